@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "core/progress.h"
+#include "core/result.h"
+
+namespace trocar {
+
+/// A structure as it was read from a segmentation, on its own grid.
+struct LabelSource {
+  std::string file;                                ///< For messages.
+  LabelGrid labels;                                ///< Values as in the file.
+  std::vector<std::pair<int, std::string>> names;  ///< Value in the file -> structure name.
+};
+
+struct BuildOptions {
+  std::string name;
+  std::vector<std::string> provenance;
+};
+
+/// A patient from a CT and segmentations: the body without table and clothing, labels resampled onto the CT's grid with
+/// priorities where they overlap, fat and muscle from HU inside the body, signed distance to the skin.
+/// Errors: a segmentation that does not overlap the CT, an unknown structure name, no body in the CT, all masks empty.
+/// Warnings (an empty mask, a structure cut by the volume's border) are appended to `warnings`.
+Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> sources, const BuildOptions& options,
+                                     std::vector<std::string>& warnings, const Progress& progress = {});
+
+/// The body in a CT: skin contour filled, CT table, clothes and air removed.
+MaskGrid find_body(const CtGrid& ct);
+
+/// One line for each label: voxels, volume, extent; used by `patient show` and `patient check`.
+struct LabelStatistics {
+  std::uint8_t id = 0;
+  std::size_t voxels = 0;
+  double volume_ml = 0.0;
+  double mean_hu = 0.0;
+  bool touches_border = false;
+  Vec3 centroid_P = Vec3::Zero();
+};
+std::vector<LabelStatistics> label_statistics(const VirtualPatient& patient);
+
+}  // namespace trocar

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "volume/image.h"
+
+namespace trocar {
+
+/// One structure of the label volume.
+struct Label {
+  std::uint8_t id = 0;  ///< Value in the label volume; 0 is never a label.
+  std::string name;     ///< TotalSegmentator's name where it has one: "rib_right_9", "liver".
+  std::string tissue;   ///< Tissue class (TissueTable): "bone", "liver".
+  Rgb color{200, 200, 200};
+};
+
+/// All structures of a patient, ordered by id; ids and names are unique.
+struct LabelTable {
+  std::vector<Label> labels;
+
+  const Label* find(std::uint8_t id) const noexcept;
+  const Label* find(std::string_view name) const noexcept;
+};
+
+/// Tissue class and colour of a structure name known out of the box: TotalSegmentator v2, the phantom's names, the mask
+/// names of 3D-IRCADb ("livertumor1", "portalvein"). Nothing for an unknown name.
+struct KnownStructure {
+  std::string_view tissue;
+  Rgb color;
+  int priority;  ///< Where masks overlap the higher one wins (a tumour over its liver).
+};
+std::optional<KnownStructure> find_known_structure(std::string_view name);
+
+/// TotalSegmentator v2, task "total": name of a label number (1..117).
+std::optional<std::string_view> totalsegmentator_name(int number);
+
+}  // namespace trocar

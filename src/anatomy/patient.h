@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "anatomy/label_table.h"
+#include "geometry/segment.h"
+#include "geometry/triangle_mesh.h"
+#include "volume/grid.h"
+
+namespace trocar {
+
+/// A named point of the patient.
+struct Landmark {
+  std::string name;
+  Vec3 p_P;
+};
+
+/// A straight needle path from the skin to a target: an expert path or a planned one.
+struct NeedlePath {
+  std::string name;
+  Segment line_P;  ///< a: entry on the skin, b: target.
+};
+
+struct NamedMesh {
+  std::string name;  ///< The label's name, or "skin".
+  TriangleMesh mesh_P;
+};
+
+/// The virtual patient: immutable once built. All volumes share one geometry; frame P (LPS, mm).
+struct VirtualPatient {
+  std::string name;
+  std::string description;
+  std::vector<std::string> provenance;  ///< What it was made from, one line each; no path of a machine.
+  CtGrid ct;                            ///< HU.
+  LabelGrid labels;                     ///< Structures, and inside the body fat and muscle found from HU.
+  LabelTable label_table;
+  FloatGrid skin_distance_mm;  ///< Signed distance to the skin, negative inside the body.
+  std::vector<Landmark> landmarks;
+  std::vector<NeedlePath> paths;  ///< Expert paths.
+  std::string content_hash;       ///< Of CT, labels and label table (hash_patient).
+};
+
+/// Content hash of CT, labels, geometry and label table.
+std::string hash_patient(const VirtualPatient& patient);
+
+/// Label at a point of P; nullptr where nothing is labelled or outside the volume.
+const Label* find_label(const VirtualPatient& patient, const Vec3& p_P) noexcept;
+
+}  // namespace trocar

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "core/progress.h"
+#include "core/result.h"
+
+namespace trocar {
+
+/// An embedded patient that the program generates itself.
+struct PhantomInfo {
+  std::string name;  ///< "abdomen".
+  std::string description;
+  std::vector<std::string> tasks;  ///< Task names that it serves.
+};
+const std::vector<PhantomInfo>& embedded_patients();
+
+/// How finely the phantom is sampled. The anatomy does not depend on it.
+struct PhantomResolution {
+  std::array<std::int64_t, 3> size{0, 0, 0};  ///< 0: the default grid (1 mm or finer).
+};
+
+/// Generates an embedded patient: the same bits for the same name, seed and resolution, whatever the number of threads.
+/// Unknown name: exit status 2, the message lists the names.
+Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed = 1,
+                                        const PhantomResolution& resolution = {}, const Progress& progress = {});
+
+}  // namespace trocar

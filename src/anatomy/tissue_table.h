@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
+namespace trocar {
+
+/// A membrane or organ surface that indents under the tip until it gives way (paper A, pre-puncture force; physics.md
+/// P1).
+struct LayerParams {
+  std::string name;                  ///< As in puncture events: skin, muscle, liver_capsule, vessel, bowel, pleura …
+  double stiffness_n_per_mm = 0.0;   ///< k. Range 0.001..50.
+  double viscosity_ns_per_mm = 0.0;  ///< nu of the loading law. Range 0..1.
+  double delta_x_mm = 0.1;           ///< Displacement after which a Voigt element is added. Range 0.01..20.
+  double puncture_force_n =
+      std::numeric_limits<double>::infinity();  ///< Gives way at this force; infinite: never (bone).
+};
+
+/// What the needle's shaft and tip feel inside a tissue (paper A, friction and cutting force; physics.md F1, C1).
+struct TissueParams {
+  std::string name;                   ///< "liver", "adipose", "bone" …; index 0 is "air".
+  double viscosity_ns_per_mm = 0.0;   ///< nu of the friction law. Range 0..1.
+  double friction_mu = 0.0;           ///< Coefficient of kinetic friction mu. Range 0..2.
+  double roughness_n = 0.0;           ///< delta: the friction fluctuates within +-delta*mu. Range 0..5.
+  double stick_n_per_mm = 0.0;        ///< Karnopp holding force a mm of inserted shaft. Range 0..0.1.
+  double cutting_n = 0.0;             ///< F_c while fresh tissue is cut. Range 0..10.
+  std::optional<std::uint8_t> layer;  ///< Index into TissueTable::layers of the surface to pierce before this tissue.
+};
+
+/// Where a number comes from.
+struct Provenance {
+  std::string source;               ///< "paper A, Table 1", a DOI, or "assumed".
+  std::optional<double> low, high;  ///< Range of an assumed or measured value.
+};
+
+/// Mechanical properties of all tissues (data/tissues.toml), after a profile and overrides.
+struct TissueTable {
+  std::string profile;  ///< "paper-a", "tented" …
+  std::vector<LayerParams> layers;
+  std::vector<TissueParams> tissues;             ///< [0] is air: all zero.
+  std::map<std::string, Provenance> provenance;  ///< "liver.friction_mu" -> where the number comes from.
+  double skin_thickness_mm = 2.0;  ///< The skin is a shell of the distance field, not voxels. Range 0.5..6.
+  std::uint8_t skin = 0;           ///< Tissue index of the skin.
+
+  std::optional<std::uint8_t> find_tissue(std::string_view name) const noexcept;
+  std::optional<std::uint8_t> find_layer(std::string_view name) const noexcept;
+  /// The table as TOML text that load_tissue_table reads back to the same values; stored in every session.
+  std::string to_toml() const;
+};
+
+/// Reads a tissue file and applies one of its profiles ("paper-a" when empty).
+Result<TissueTable> load_tissue_table(const std::filesystem::path& path, std::string_view profile = {});
+Result<TissueTable> parse_tissue_table(std::string_view toml_text, const std::string& name,
+                                       std::string_view profile = {});
+/// Profiles that a tissue file offers.
+Result<std::vector<std::string>> tissue_profiles(const std::filesystem::path& path);
+
+/// Applies one override "liver.k=0.5": TISSUE.KEY=VALUE or LAYER.KEY=VALUE, KEY a field name or its short form
+/// (k, nu, mu, dx, delta, fc, fp). A layer's key given on a tissue changes that tissue's layer; nu on a tissue with a
+/// layer of the same name changes both, as in paper A's table. Out of range or unknown: exit status 2.
+Status apply_override(TissueTable& table, std::string_view assignment);
+
+}  // namespace trocar

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
+namespace toml {
+inline namespace v3 {
+class table;
+}
+}  // namespace toml
+
+namespace trocar {
+
+/// The allowed range of a number in a configuration file.
+struct Range {
+  double low;
+  double high;
+};
+
+/// A table of a TOML document. Getters name file, key and what was expected when they fail. Cheap to copy; keeps the
+/// document alive.
+class TomlTable {
+ public:
+  /// Every key that is present, in the file's order of lines.
+  std::vector<std::string> keys() const;
+  bool has(std::string_view key) const;
+  /// An error that names the first key which is not in `known`: a misspelled key is never ignored in silence.
+  Status check_keys(const std::vector<std::string_view>& known) const;
+
+  /// Finite number inside the range, or an error.
+  Result<double> number(std::string_view key, Range range) const;
+  Result<double> number_or(std::string_view key, Range range, double fallback) const;
+  Result<std::int64_t> integer(std::string_view key, Range range) const;
+  Result<bool> boolean_or(std::string_view key, bool fallback) const;
+  Result<std::string> string(std::string_view key) const;
+  Result<std::string> string_or(std::string_view key, std::string fallback) const;
+  Result<std::vector<std::string>> strings(std::string_view key) const;  ///< A missing key is an empty list.
+  Result<std::vector<double>> numbers(std::string_view key, Range range) const;
+  Result<TomlTable> table(std::string_view key) const;
+  /// All tables of an array of tables ([[key]]); a missing key is an empty list.
+  Result<std::vector<TomlTable>> tables(std::string_view key) const;
+
+  /// "file.toml: tissues.liver": where this table stands, for messages.
+  std::string where() const;
+
+ private:
+  friend Result<TomlTable> parse_toml(std::string_view text, const std::string& name);
+  std::shared_ptr<const toml::table> document_;
+  const toml::table* table_ = nullptr;
+  std::string file_;
+  std::string path_;
+};
+
+/// Parses untrusted TOML text: at most 4 MiB of valid UTF-8 without control characters (toml++ 3.3 aborts or misbehaves
+/// on hostile bytes). `name` is used in messages.
+Result<TomlTable> parse_toml(std::string_view text, const std::string& name);
+Result<TomlTable> load_toml(const std::filesystem::path& path);
+
+}  // namespace trocar

@@ -1,0 +1,102 @@
+#include "core/atomic_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace trocar {
+namespace fs = std::filesystem;
+namespace {
+
+fs::path temporary_beside(const fs::path& target) {
+  const fs::path absolute = fs::absolute(target).lexically_normal();
+  const std::string name = absolute.filename().string();
+  return absolute.parent_path() / fmt::format(".{}.{}.part{}", absolute.stem().string(), ::getpid(),
+                                              name.ends_with(".nii.gz") ? ".nii.gz" : absolute.extension().string());
+}
+
+/// Makes the parent folder where it is missing, so that --out may name a new place.
+Status make_parent(const fs::path& target) {
+  std::error_code error;
+  const fs::path parent = fs::absolute(target).lexically_normal().parent_path();
+  fs::create_directories(parent, error);
+  if (error) return fail("cannot make the folder: " + error.message(), parent.string(), "choose another place");
+  return {};
+}
+
+Status flush_to_disk(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return fail(fmt::format("was not written: {}", std::strerror(errno)), path.string());
+  const int status = ::fsync(file);
+  const int reason = errno;
+  ::close(file);
+  if (status != 0)
+    return fail(fmt::format("cannot be written: {}", std::strerror(reason)), path.string(), "free some disk space");
+  return {};
+}
+
+}  // namespace
+
+Status write_atomically(const fs::path& target, const std::function<Status(const fs::path&)>& write) {
+  TROCAR_TRY_STATUS(make_parent(target));
+  const fs::path temporary = temporary_beside(target);
+  std::error_code error;
+  Status status = write(temporary);
+  if (status) status = flush_to_disk(temporary);
+  if (status) {
+    fs::rename(temporary, target, error);
+    if (error) status = fail("cannot be written: " + error.message(), target.string(), "choose another place");
+  }
+  if (!status) fs::remove(temporary, error);
+  return status;
+}
+
+Status write_file_atomically(const fs::path& target, std::string_view bytes) {
+  return write_atomically(target, [&](const fs::path& temporary) -> Status {
+    std::ofstream file(temporary, std::ios::binary);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file)
+      return fail(fmt::format("cannot be written: {}", std::strerror(errno)), target.string(),
+                  "check the disk space and the permissions");
+    return {};
+  });
+}
+
+Status write_folder_atomically(const fs::path& target, const std::function<Status(const fs::path&)>& write) {
+  std::error_code error;
+  const bool is_empty_folder = fs::is_directory(target, error) && fs::is_empty(target, error);
+  if (fs::exists(target, error) && !is_empty_folder)
+    return fail_usage("exists already", target.string(), "choose another name or remove it first");
+  TROCAR_TRY_STATUS(make_parent(target));
+  const fs::path temporary = temporary_beside(target);
+  fs::remove_all(temporary, error);
+  fs::create_directories(temporary, error);
+  if (error) return fail("cannot make the folder: " + error.message(), temporary.string(), "choose another place");
+  Status status = write(temporary);
+  if (status) {
+    fs::rename(temporary, target, error);
+    if (error) status = fail("cannot be written: " + error.message(), target.string(), "choose another place");
+  }
+  if (!status) fs::remove_all(temporary, error);
+  return status;
+}
+
+Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return fail("no such file", path.string(), "check the path");
+  if (fs::is_directory(path, error)) return fail("is a folder, not a file", path.string(), "name a file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return fail("cannot be read", path.string(), "check the permissions");
+  const auto size = fs::file_size(path, error);
+  if (!error && size > max_bytes) return fail(fmt::format("is larger than {} bytes", max_bytes), path.string());
+  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (file.bad() || bytes.size() > max_bytes) return fail("cannot be read", path.string(), "check the file");
+  return bytes;
+}
+
+}  // namespace trocar

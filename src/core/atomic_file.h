@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace trocar {
+
+/// Writes a file whole or not at all: `write` fills a temporary path beside `target` (same ending), which is then
+/// flushed to disk and renamed over it. On failure the temporary is removed and an existing target stays as it was.
+Status write_atomically(const std::filesystem::path& target,
+                        const std::function<Status(const std::filesystem::path& temporary)>& write);
+
+/// Writes the bytes of a text or binary file whole or not at all. A full disk is an error that says so.
+Status write_file_atomically(const std::filesystem::path& target, std::string_view bytes);
+
+/// The same for a folder: `write` fills an empty temporary folder beside `target`, which is then renamed to it. An
+/// existing target is an error (exit status 2) unless it is an empty folder: nothing of the user's is ever overwritten.
+Status write_folder_atomically(const std::filesystem::path& target,
+                               const std::function<Status(const std::filesystem::path& temporary)>& write);
+
+/// The whole file, at most `max_bytes` long.
+Result<std::string> read_file(const std::filesystem::path& path, std::size_t max_bytes = std::size_t{1} << 30);
+
+}  // namespace trocar

@@ -1,0 +1,13 @@
+#include "core/check.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace trocar::detail {
+
+void check_failed(const char* condition, const char* file, int line) noexcept {
+  std::fprintf(stderr, "internal error: %s does not hold — %s:%d — please report this\n", condition, file, line);
+  std::abort();
+}
+
+}  // namespace trocar::detail

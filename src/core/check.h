@@ -1,0 +1,17 @@
+#pragma once
+
+namespace trocar::detail {
+/// Prints the failed condition and aborts.
+[[noreturn]] void check_failed(const char* condition, const char* file, int line) noexcept;
+}  // namespace trocar::detail
+
+/// A programmer's error at a module border: always tested, aborts.
+#define TROCAR_CHECK(condition) \
+  ((condition) ? static_cast<void>(0) : ::trocar::detail::check_failed(#condition, __FILE__, __LINE__))
+
+/// The same inside a module, tested in debug builds only.
+#ifdef NDEBUG
+#define TROCAR_ASSERT(condition) static_cast<void>(sizeof(condition))
+#else
+#define TROCAR_ASSERT(condition) TROCAR_CHECK(condition)
+#endif

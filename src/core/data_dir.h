@@ -1,0 +1,11 @@
+#pragma once
+
+#include <filesystem>
+
+namespace trocar {
+
+/// The folder of the shipped tables (tissues, needles, tasks): $TROCAR_DATA_DIR, else data/ found upwards from the
+/// program's own place or share/trocar beside it. Empty when there is none.
+std::filesystem::path data_dir();
+
+}  // namespace trocar

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace trocar {
+
+/// 128-bit content hash (XXH3) as 32 hexadecimal digits: tells whether two patients or tables are the same.
+/// Not for security.
+class ContentHash {
+ public:
+  ContentHash();
+  ~ContentHash();
+  ContentHash(const ContentHash&) = delete;
+  ContentHash& operator=(const ContentHash&) = delete;
+
+  void add(std::span<const std::byte> bytes);
+  std::string digest() const;
+
+ private:
+  void* state_;
+};
+
+}  // namespace trocar

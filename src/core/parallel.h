@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace trocar {
+
+/// Calls body(first, last) on disjoint parts of [0, count) from several threads; returns when all are done.
+/// Parts are at least `grain` long. Never called from real-time code.
+void parallel_for(std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t first, std::size_t last)>& body);
+
+/// Runs the functions side by side and waits for all of them.
+void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b);
+void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b, const std::function<void()>& c);
+
+}  // namespace trocar

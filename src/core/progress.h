@@ -1,0 +1,16 @@
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+namespace trocar {
+
+/// Told by long work how far it is: what it does now and the done fraction in 0..1. May be empty.
+using Progress = std::function<void(std::string_view step, double fraction)>;
+
+/// Calls progress where there is one.
+inline void report(const Progress& progress, std::string_view step, double fraction) {
+  if (progress) progress(step, fraction);
+}
+
+}  // namespace trocar

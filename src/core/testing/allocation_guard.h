@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+
+namespace trocar::testing {
+
+/// Counts what this thread allocates and frees while it lives. Include allocation_guard.inc.h once in a test program's
+/// translation unit (it replaces operator new and delete there):
+///   AllocationGuard guard; tick(...); EXPECT_EQ(guard.count(), 0u);
+class AllocationGuard {
+ public:
+  AllocationGuard() noexcept;
+  /// Allocations plus frees on this thread since construction.
+  std::size_t count() const noexcept;
+
+ private:
+  std::size_t start_;
+};
+
+}  // namespace trocar::testing

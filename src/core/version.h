@@ -1,0 +1,8 @@
+#pragma once
+
+namespace trocar {
+
+/// The program's version, as recorded in sessions and patients.
+inline constexpr const char* kVersion = "0.1.0";
+
+}  // namespace trocar

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "anatomy/build_patient.h"
+#include "core/result.h"
+
+namespace trocar {
+
+/// Reads the `--labels` of `patient build`: each a multi-label file (names from `label_map`: "totalsegmentator" or a
+/// TOML file with a [labels] table number = "name"; a .seg.nrrd brings its own names), a single mask file (named after
+/// the file), a folder of mask files, or a folder of DICOM mask series (one sub-folder a structure, named after it).
+Result<std::vector<LabelSource>> read_label_sources(const std::vector<std::filesystem::path>& paths,
+                                                    const std::string& label_map);
+
+}  // namespace trocar

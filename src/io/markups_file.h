@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "core/result.h"
+
+namespace trocar {
+
+/// 3D Slicer markups (.mrk.json), LPS or RAS inside, LPS mm in memory.
+Result<std::vector<Landmark>> read_landmarks(const std::filesystem::path& path);
+Status write_landmarks(const std::vector<Landmark>& landmarks, const std::filesystem::path& path);
+/// Paths are line markups: control point 1 the entry, 2 the target.
+Result<std::vector<NeedlePath>> read_paths(const std::filesystem::path& path);
+Status write_paths(const std::vector<NeedlePath>& paths, const std::filesystem::path& path);
+
+}  // namespace trocar

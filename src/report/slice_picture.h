@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "volume/image.h"
+#include "volume/sampling.h"
+
+namespace trocar {
+
+enum class SliceOrientation { kAxial, kCoronal, kSagittal };
+
+struct Window {
+  double center_hu = 40.0;
+  double width_hu = 400.0;
+};
+
+/// A CT slice through a point, radiological view (patient's right on the left of the picture; coronal and sagittal with
+/// the head up), window/level, label outlines and fill by colour.
+struct SlicePicture {
+  RgbImage image;
+  SlicePlane plane;  ///< Pixel (u, v) lies at origin + u step_u + v step_v.
+  SliceOrientation orientation = SliceOrientation::kAxial;
+  /// Where a point of P falls in the picture (pixels; may be outside).
+  Eigen::Vector2d to_pixel(const Vec3& p_P) const noexcept;
+};
+struct SliceOptions {
+  Window window;
+  double label_opacity = 0.25;  ///< Fill; outlines are always opaque. Range 0..1.
+  bool has_outlines = true;
+  int size_px = 512;  ///< Longer side.
+};
+SlicePicture make_slice_picture(const VirtualPatient& patient, SliceOrientation orientation, const Vec3& through_P,
+                                const SliceOptions& options = {});
+
+}  // namespace trocar

@@ -1,0 +1,35 @@
+#include "telemetry/tick_sample.h"
+
+namespace trocar {
+
+const char* to_string(InsertionPhase phase) noexcept {
+  switch (phase) {
+    case InsertionPhase::kOutside:
+      return "outside";
+    case InsertionPhase::kLoading:
+      return "loading";
+    case InsertionPhase::kInserted:
+      return "inserted";
+    case InsertionPhase::kRetracting:
+      return "retracting";
+  }
+  return "outside";
+}
+
+const char* to_string(LimitReason reason) noexcept {
+  switch (reason) {
+    case LimitReason::kForceClamped:
+      return "force";
+    case LimitReason::kTorqueClamped:
+      return "torque";
+    case LimitReason::kInputRejected:
+      return "input";
+    case LimitReason::kSolverBound:
+      return "solver";
+    case LimitReason::kEventsDropped:
+      return "events";
+  }
+  return "unknown";
+}
+
+}  // namespace trocar

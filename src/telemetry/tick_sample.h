@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "geometry/vec.h"
+
+namespace trocar {
+
+/// Where the needle is in its insertion.
+enum class InsertionPhase : std::uint8_t { kOutside, kLoading, kInserted, kRetracting };
+const char* to_string(InsertionPhase phase) noexcept;
+
+/// Something that happened at a tick. `id` is a layer id (TissueTable) for kPuncture, a label id for kEnter, a
+/// LimitReason for kLimit.
+enum class EventKind : std::uint8_t { kNone, kPuncture, kEnter, kLimit };
+struct TickEvent {
+  EventKind kind = EventKind::kNone;
+  std::uint8_t id = 0;
+};
+
+/// Why the haptic side changed or refused something.
+enum class LimitReason : std::uint8_t { kForceClamped, kTorqueClamped, kInputRejected, kSolverBound, kEventsDropped };
+const char* to_string(LimitReason reason) noexcept;
+
+/// The record of one haptic tick: made by `haptics`, carried by `link`, scored by `training`, kept by `storage`.
+/// Vectors in P; the columns of `trocar session export` in docs and --help are exactly these fields.
+struct TickSample {
+  double time_s = 0.0;
+  Vec3 tip_mm = Vec3::Zero();        ///< Tip of the virtual needle.
+  Vec3 axis = Vec3::UnitZ();         ///< Unit, hub to tip, of the virtual needle.
+  double axial_velocity_mm_s = 0.0;  ///< Positive inward; the value put into the force law.
+  double depth_mm = 0.0;             ///< Tip below the skin along the path, 0 outside.
+  std::uint8_t tissue = 0;           ///< Tissue id (TissueTable) at the tip.
+  InsertionPhase phase = InsertionPhase::kOutside;
+  double layer_displacement_mm = 0.0;  ///< x of the layer being loaded; the value put into the force law.
+  double f_prepuncture_n = 0.0;        ///< Signed along the axis: negative pushes the needle out.
+  double f_friction_n = 0.0;
+  double f_cutting_n = 0.0;
+  Vec3 f_constraint_n = Vec3::Zero();
+  Vec3 f_weight_n = Vec3::Zero();
+  Vec3 f_total_n = Vec3::Zero();      ///< axis*(pre + friction + cutting) + constraint + weight.
+  Vec3 tau_nmm = Vec3::Zero();        ///< About the stylus origin S.
+  std::array<TickEvent, 4> events{};  ///< Filled from the front.
+  bool limited = false;               ///< The safety gate changed the wrench.
+  double breathing = 0.0;             ///< Phase 0..1, 0 = end-expiration.
+  Vec3 f_tip_proxy_n = Vec3::Zero();  ///< Volume proxy of paper B; zero with the insertion model.
+  double f_body_axial_n = 0.0;        ///< Shaft friction of the body proxies; zero with the insertion model.
+  double f_stick_n = 0.0;             ///< Karnopp holding force along the axis, apart from the paper's terms.
+  Vec3 device_mm = Vec3::Zero();      ///< Needle tip as the device has it (before the coupling).
+  Vec3 device_f_n = Vec3::Zero();     ///< What went to the device.
+  std::array<double, 4> device_rotation_wxyz{1, 0, 0, 0};  ///< R_PN of the device's needle: with device_mm and time_s
+                                                           ///< all that a replay needs. Stored, not exported to CSV.
+};
+
+}  // namespace trocar

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "telemetry/tick_sample.h"
+#include "training/needle.h"
+#include "training/plan.h"
+#include "training/task.h"
+
+namespace trocar {
+
+/// Tissue along one stretch of the specimen notch.
+struct CorePiece {
+  std::string label;     ///< Label name.
+  std::string tissue;    ///< Tissue class.
+  double from_mm = 0.0;  ///< From the notch's proximal end.
+  double to_mm = 0.0;
+};
+
+/// What the biopsy gun brought out.
+struct BiopsyCore {
+  Vec3 tip_P = Vec3::Zero();  ///< Needle tip when fired.
+  Vec3 axis_P = Vec3::UnitZ();
+  std::vector<CorePiece> pieces;
+  double target_mm = 0.0;  ///< Of the target tissue (the lesion, or the organ in a parenchymal biopsy).
+  double organ_mm = 0.0;
+  double vessel_mm = 0.0;
+  double other_mm = 0.0;
+  std::vector<std::string> risks_in_throw;  ///< Risk structures over the whole throw, by label name.
+};
+
+struct ScorePart {
+  std::string name;   ///< "target", "entry", "angle", "risk", "length", "time", "core".
+  std::string title;  ///< In words.
+  double value = 0.0;
+  std::string unit;
+  double points = 0.0;
+  double max_points = 0.0;
+};
+
+/// What an attempt is told at its end.
+struct Outcome {
+  double score = 0.0;  ///< 0..100.
+  bool target_reached = false;
+  std::vector<ScorePart> parts;
+  std::vector<std::string> hints;  ///< What to do better, most important first.
+  std::optional<BiopsyCore> core;
+  std::vector<std::string> risks_touched;
+};
+
+/// Takes the core at a fired tick.
+BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
+                     const Vec3& axis_P);
+
+/// Scores a whole attempt. `fired` is the index of the sample at which the biopsy gun was fired.
+Outcome score_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues, const Needle& needle,
+                      const PlannedPath& plan, std::span<const TickSample> samples, std::optional<std::size_t> fired);
+
+}  // namespace trocar

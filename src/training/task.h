@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "anatomy/tissue_table.h"
+#include "core/result.h"
+
+namespace trocar {
+
+/// A structure that must not be touched, and how far a planned path stays away from it.
+struct RiskStructure {
+  std::string tissue;      ///< Tissue class ("vessel", "bowel", "lung", "bone" …), or
+  std::string label;       ///< a label's name when tissue is empty.
+  double margin_mm = 5.0;  ///< Range 0..50.
+  double penalty = 20.0;   ///< Points lost when touched. Range 0..100.
+};
+
+/// A training task as data (data/tasks/NAME.toml).
+struct Task {
+  std::string name;  ///< "liver-biopsy".
+  std::string title;
+  std::string organ;                        ///< Label or tissue that holds the target: "liver".
+  std::vector<std::string> target_tissues;  ///< "liver_lesion"; where the patient has none: parenchyma of the organ.
+  std::string needle;                       ///< Name in data/needles.toml.
+  std::vector<RiskStructure> risks;
+  double min_organ_path_mm = 10.0;      ///< Organ passed before the target. Range 0..50.
+  double parenchymal_depth_mm = 20.0;   ///< Target at least this deep below the organ's surface without a lesion.
+  double parenchymal_vessel_mm = 10.0;  ///< ... and this far from large vessels.
+  double max_path_mm = 150.0;
+  // Scoring, points in 0..100 (what each part is worth) and the deviation at which a part is worth nothing.
+  double target_tolerance_mm = 5.0;
+  double entry_tolerance_mm = 10.0;
+  double angle_tolerance_deg = 10.0;
+  double time_limit_s = 120.0;
+};
+
+Result<std::vector<Task>> load_tasks(const std::filesystem::path& tasks_folder);
+Result<Task> load_task(const std::filesystem::path& tasks_folder, std::string_view name);
+
+/// Whether a patient can serve a task, and what is missing or doubtful, in words.
+struct TaskReadiness {
+  bool is_possible = false;
+  bool is_parenchymal = false;       ///< No lesion: the target lies in the organ's healthy tissue.
+  std::vector<std::string> reasons;  ///< Why not, or what is doubtful.
+};
+TaskReadiness check_task(const Task& task, const VirtualPatient& patient);
+
+}  // namespace trocar
