@@ -1,0 +1,203 @@
+// Holds every include of the source tree against src/modules.txt, and the checker itself against made-up trees.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "architecture/layers.h"
+
+namespace trocar::architecture {
+namespace {
+namespace fs = std::filesystem;
+
+const fs::path kTop = TROCAR_SOURCE_DIR;
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::string joined(const std::vector<std::string>& complaints) {
+  std::string text;
+  for (const std::string& complaint : complaints) text += complaint + "\n";
+  return text;
+}
+
+Modules modules_of(std::string_view text) {
+  std::vector<std::string> complaints;
+  Modules modules = parse_modules(text, complaints);
+  EXPECT_EQ(joined(complaints), "");
+  return modules;
+}
+
+/// All C++ files of the tree by their path in the repository, with their text.
+std::map<std::string, std::string> source_files() {
+  std::map<std::string, std::string> files;
+  for (const char* folder : {"src", "apps", "bench", "tests"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kTop / folder)) {
+      const fs::path& path = entry.path();
+      if (path.extension() == ".h" || path.extension() == ".cpp") {
+        files[fs::relative(path, kTop).generic_string()] = read(path);
+      }
+    }
+  }
+  return files;
+}
+
+const Modules& small_tree() {
+  static const Modules modules = modules_of(
+      "# a comment\n"
+      "core :  : expected\n"
+      "volume : core : highway\n"
+      "io : volume : itk vtk-io\n"
+      "scene : volume : vtk-rendering\n");
+  return modules;
+}
+
+std::string verdict(const std::string& path, std::string_view source) {
+  return joined(check_includes(small_tree(), path, source));
+}
+
+TEST(ModuleList, NamesUsesAndLibrariesAreRead) {
+  EXPECT_EQ(small_tree().size(), 4u);
+  EXPECT_EQ(small_tree().at("io").uses, (std::set<std::string>{"volume"}));
+  EXPECT_EQ(small_tree().at("io").libraries, (std::set<std::string>{"itk", "vtk-io"}));
+}
+
+TEST(ModuleList, MalformedAndDoubleLinesAreTold) {
+  std::vector<std::string> complaints;
+  parse_modules("core : :\ncore : :\nvolume core\n", complaints);
+  EXPECT_EQ(complaints.size(), 2u) << joined(complaints);
+}
+
+TEST(Arrows, ReachWhatDependenciesReach) {
+  EXPECT_EQ(reachable(small_tree(), "io"), (std::set<std::string>{"io", "volume", "core"}));
+  EXPECT_EQ(reachable(small_tree(), "core"), (std::set<std::string>{"core"}));
+}
+
+TEST(Arrows, CycleIsFound) {
+  EXPECT_EQ(check_arrows(small_tree()).size(), 0u);
+  EXPECT_EQ(check_arrows(modules_of("a : b :\nb : c :\nc : a :\n")).size(), 3u);
+  EXPECT_EQ(check_arrows(modules_of("a : a :\n")).size(), 1u);
+}
+
+TEST(Arrows, UnlistedDependencyIsFound) {
+  EXPECT_EQ(check_arrows(modules_of("a : b :\n")).size(), 1u);
+}
+
+TEST(Includes, AreReadWithTheirLines) {
+  const auto includes =
+      parse_includes("#pragma once\n  #  include <vector>\n#include \"core/log.h\"  // why\nint include;\n");
+  ASSERT_EQ(includes.size(), 2u);
+  EXPECT_EQ(includes[0].header, "vector");
+  EXPECT_EQ(includes[0].line, 2);
+  EXPECT_FALSE(includes[0].is_quoted);
+  EXPECT_EQ(includes[1].header, "core/log.h");
+  EXPECT_TRUE(includes[1].is_quoted);
+}
+
+TEST(Includes, DownwardArrowIsAllowed) {
+  EXPECT_EQ(verdict("src/io/a.cpp", "#include \"core/a.h\"\n#include \"io/detail/b.h\"\n#include <vector>\n"), "");
+  EXPECT_EQ(verdict("apps/cli/a.cpp", "#include \"io/a.h\"\n#include \"output.h\"\n#include <CLI/CLI.hpp>\n"), "");
+}
+
+TEST(Includes, UpwardOrSidewardArrowIsRefused) {
+  EXPECT_NE(verdict("src/core/a.cpp", "#include \"volume/grid.h\"\n"), "");
+  EXPECT_NE(verdict("src/io/a.cpp", "#include \"scene/view.h\"\n"), "");
+  EXPECT_NE(verdict("src/io/a.cpp", "#include \"bench/harness.h\"\n"), "");
+}
+
+TEST(Includes, FolderOutsideTheListIsRefused) {
+  EXPECT_NE(verdict("src/other/a.cpp", ""), "");
+}
+
+TEST(Includes, PrivateHeaderOfAnotherModuleIsRefused) {
+  EXPECT_NE(verdict("src/io/a.cpp", "#include \"volume/detail/rows.h\"\n"), "");
+  EXPECT_NE(verdict("apps/cli/a.cpp", "#include \"volume/detail/rows.h\"\n"), "");
+}
+
+TEST(Includes, LibraryBelongsToTheModuleThatListsIt) {
+  EXPECT_EQ(
+      verdict("src/io/a.cpp", "#include <itkImage.h>\n#include <vtkXMLPolyDataReader.h>\n#include <vtkPolyData.h>\n"),
+      "");
+  EXPECT_NE(verdict("src/volume/a.cpp", "#include <itkImage.h>\n"), "");
+  EXPECT_NE(verdict("src/io/a.cpp", "#include <hwy/highway.h>\n"), "");
+  EXPECT_NE(verdict("src/io/a.cpp", "#include <vtkRenderer.h>\n"), "");
+  EXPECT_NE(verdict("src/scene/a.cpp", "#include <vtkXMLPolyDataReader.h>\n"), "");
+  EXPECT_NE(verdict("src/volume/a.cpp", "#include <CLI/CLI.hpp>\n"), "");
+  EXPECT_NE(verdict("apps/cli/a.cpp", "#include <soci/soci.h>\n"), "");
+}
+
+TEST(Includes, UnknownLibraryIsRefused) {
+  EXPECT_NE(verdict("src/io/a.cpp", "#include <boost/any.hpp>\n"), "");
+}
+
+TEST(Includes, TestFrameworkStaysInTests) {
+  EXPECT_EQ(verdict("src/io/test/a_test.cpp", "#include <gtest/gtest.h>\n"), "");
+  EXPECT_NE(verdict("src/io/a.cpp", "#include <gtest/gtest.h>\n"), "");
+}
+
+TEST(ModuleReadme, HasTenToTwentyFiveLines) {
+  const auto text = [](int count) {
+    std::string lines;
+    for (int i = 0; i < count; ++i) lines += "line\n";
+    return lines;
+  };
+  EXPECT_TRUE(check_module_readme("io", text(10)).empty());
+  EXPECT_TRUE(check_module_readme("io", text(25)).empty());
+  EXPECT_FALSE(check_module_readme("io", text(9)).empty());
+  EXPECT_FALSE(check_module_readme("io", text(26)).empty());
+}
+
+class Repository : public testing::Test {
+ protected:
+  const Modules modules_ = modules_of(read(kTop / "src/modules.txt"));
+};
+
+TEST_F(Repository, ArrowsOnlyGoDown) {
+  ASSERT_GE(modules_.size(), 14u);
+  EXPECT_EQ(joined(check_arrows(modules_)), "");
+}
+
+TEST_F(Repository, EveryIncludeFollowsTheModuleList) {
+  const auto files = source_files();
+  ASSERT_GE(files.size(), 60u);
+  std::vector<std::string> complaints;
+  for (const auto& [path, text] : files) {
+    const auto found = check_includes(modules_, path, text);
+    complaints.insert(complaints.end(), found.begin(), found.end());
+  }
+  EXPECT_EQ(joined(complaints), "");
+}
+
+TEST_F(Repository, EveryFolderIsAModuleAndEveryModuleAFolder) {
+  std::set<std::string> folders;
+  for (const auto& entry : fs::directory_iterator(kTop / "src")) {
+    if (entry.is_directory()) folders.insert(entry.path().filename().string());
+  }
+  std::set<std::string> listed;
+  for (const auto& [name, module] : modules_) listed.insert(name);
+  EXPECT_EQ(folders, listed);
+}
+
+TEST_F(Repository, EveryModuleIsDescribed) {
+  const std::string architecture = read(kTop / "ARCHITECTURE.md");
+  std::vector<std::string> complaints;
+  for (const auto& [name, module] : modules_) {
+    const auto found = check_module_readme(name, read(kTop / "src" / name / "README.md"));
+    complaints.insert(complaints.end(), found.begin(), found.end());
+    if (architecture.find("`" + name + "`") == std::string::npos) {
+      complaints.push_back("ARCHITECTURE.md does not name `" + name + "`");
+    }
+  }
+  EXPECT_EQ(joined(complaints), "");
+}
+
+TEST_F(Repository, NoFileAsksToBeSplit) {
+  for (const auto& [path, text] : source_files()) EXPECT_LE(count_lines(text), kMaxLines) << path;
+}
+
+}  // namespace
+}  // namespace trocar::architecture

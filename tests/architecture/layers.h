@@ -1,0 +1,46 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trocar::architecture {
+
+/// A line of src/modules.txt.
+struct Module {
+  std::string name;
+  std::set<std::string> uses;       ///< Modules it may include directly.
+  std::set<std::string> libraries;  ///< Third-party libraries it may include.
+};
+using Modules = std::map<std::string, Module>;
+
+/// Reads "name : uses : libraries" lines; what is malformed or named twice is told in `complaints`.
+Modules parse_modules(std::string_view text, std::vector<std::string>& complaints);
+
+/// Modules that `name` may include: itself and all that its dependencies may use. Ends also where there is a cycle.
+std::set<std::string> reachable(const Modules& modules, const std::string& name);
+
+/// Unknown dependencies and cycles, one line each; empty when the arrows only go down.
+std::vector<std::string> check_arrows(const Modules& modules);
+
+struct Include {
+  std::string header;
+  bool is_quoted = false;  ///< "ours.h", else <theirs.h>.
+  int line = 0;
+};
+std::vector<Include> parse_includes(std::string_view source);
+
+/// Includes of one file that its place does not allow, one line each. `path` is relative to the repository:
+/// src/MODULE/..., apps/NAME/..., bench/... or tests/....
+std::vector<std::string> check_includes(const Modules& modules, const std::string& path, std::string_view source);
+
+/// What is wrong with a module's README.md: it has 10 to 25 lines.
+std::vector<std::string> check_module_readme(const std::string& module, std::string_view text);
+
+/// A file that asks to be split.
+inline constexpr int kMaxLines = 450;
+int count_lines(std::string_view text);
+
+}  // namespace trocar::architecture
