@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 
 #include "core/result.h"
@@ -10,8 +11,11 @@ namespace trocar {
 
 using Json = nlohmann::ordered_json;
 
-/// Parses untrusted JSON; the error names `name` and the byte. Never throws.
+/// Parses untrusted JSON, nested at most 64 deep; the error names `name` and the byte. Never throws.
 Result<Json> parse_json(std::string_view text, const std::string& name);
 Result<Json> load_json(const std::filesystem::path& path);
+
+/// The document as text; bytes that are not UTF-8 are replaced instead of thrown at the caller. indent < 0: one line.
+std::string json_text(const Json& json, int indent = 2);
 
 }  // namespace trocar

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,10 +30,11 @@ class TomlTable {
   /// Every key that is present, in the file's order of lines.
   std::vector<std::string> keys() const;
   bool has(std::string_view key) const;
-  /// An error that names the first key which is not in `known`: a misspelled key is never ignored in silence.
+  /// An error that names the first key which is not in `known`, and the known one it resembles: a misspelled key is
+  /// never ignored in silence.
   Status check_keys(const std::vector<std::string_view>& known) const;
 
-  /// Finite number inside the range, or an error.
+  /// Finite number inside the range, or an error. An integer in the file is a number too.
   Result<double> number(std::string_view key, Range range) const;
   Result<double> number_or(std::string_view key, Range range, double fallback) const;
   Result<std::int64_t> integer(std::string_view key, Range range) const;
@@ -52,14 +52,15 @@ class TomlTable {
 
  private:
   friend Result<TomlTable> parse_toml(std::string_view text, const std::string& name);
+  friend struct TomlNodes;
   std::shared_ptr<const toml::table> document_;
   const toml::table* table_ = nullptr;
   std::string file_;
   std::string path_;
 };
 
-/// Parses untrusted TOML text: at most 4 MiB of valid UTF-8 without control characters (toml++ 3.3 aborts or misbehaves
-/// on hostile bytes). `name` is used in messages.
+/// Parses untrusted TOML text: at most 4 MiB of valid UTF-8 without control characters, nested at most 32 deep (toml++
+/// 3.3 aborts or misbehaves on hostile bytes). `name` is used in messages.
 Result<TomlTable> parse_toml(std::string_view text, const std::string& name);
 Result<TomlTable> load_toml(const std::filesystem::path& path);
 

@@ -1,0 +1,127 @@
+#include "config/detail/toml_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace trocar::detail {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
+constexpr int kMaxDepth = 32;  ///< Nested brackets, and dots of one key.
+
+/// Length of the well-formed UTF-8 character at the start of `text`, 0 when it is malformed (Unicode, table 3-7).
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t n) -> unsigned { return static_cast<unsigned char>(text[n]); };
+  const auto tail = [&](std::size_t n, unsigned low = 0x80, unsigned high = 0xbf) {
+    return n < text.size() && byte(n) >= low && byte(n) <= high;
+  };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  if (lead >= 0xc2 && lead <= 0xdf) return tail(1) ? 2 : 0;
+  if (lead >= 0xe0 && lead <= 0xef) {
+    const unsigned low = lead == 0xe0 ? 0xa0 : 0x80;   // no overlong forms
+    const unsigned high = lead == 0xed ? 0x9f : 0xbf;  // no surrogates
+    return tail(1, low, high) && tail(2) ? 3 : 0;
+  }
+  if (lead >= 0xf0 && lead <= 0xf4) {
+    const unsigned low = lead == 0xf0 ? 0x90 : 0x80;
+    const unsigned high = lead == 0xf4 ? 0x8f : 0xbf;  // up to U+10FFFF
+    return tail(1, low, high) && tail(2) && tail(3) ? 4 : 0;
+  }
+  return 0;
+}
+
+/// End of the string or comment that starts at `n`: the offset after it. Stops where toml++ would: what follows an
+/// error is never parsed.
+std::size_t skip_string(std::string_view text, std::size_t n) {
+  const char quote = text[n];
+  const std::string_view fence(&text[n], std::min<std::size_t>(3, text.size() - n));
+  const bool is_multiline = fence == std::string(3, quote);
+  n += is_multiline ? 3 : 1;
+  while (n < text.size()) {
+    if (text[n] == '\\' && quote == '"') {
+      n += 2;
+    } else if (!is_multiline && (text[n] == quote || text[n] == '\n')) {
+      return n + 1;
+    } else if (is_multiline && text.substr(n, 3) == fence) {
+      n += 3;
+      while (n < text.size() && text[n] == quote) ++n;  // quotes that belong to the content
+      return n;
+    } else {
+      ++n;
+    }
+  }
+  return n;
+}
+
+bool is_nested_too_deep(std::string_view text) {
+  int brackets = 0;
+  int dots = 0;
+  for (std::size_t n = 0; n < text.size();) {
+    const char c = text[n];
+    if (c == '"' || c == '\'') {
+      n = skip_string(text, n);
+      continue;
+    }
+    if (c == '#') {
+      n = std::min(text.find('\n', n), text.size());
+      continue;
+    }
+    if (c == '[' || c == '{') ++brackets;
+    if ((c == ']' || c == '}') && brackets > 0) --brackets;
+    dots = c == '.' ? dots + 1 : (c == '\n' || c == '=' || c == ',') ? 0 : dots;
+    if (brackets > kMaxDepth || dots > kMaxDepth) return true;
+    ++n;
+  }
+  return false;
+}
+
+}  // namespace
+
+Status check_toml_text(std::string_view text, const std::string& name) {
+  if (text.size() > kMaxBytes)
+    return fail(fmt::format("a configuration file of {} bytes, at most {} are read", text.size(), kMaxBytes), name,
+                "is this the right file?");
+  int line = 1;
+  for (std::size_t n = 0; n < text.size();) {
+    const char c = text[n];
+    const std::size_t length = utf8_length(text.substr(n));
+    const bool is_control = (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\r' && c != '\n') || c == 0x7f;
+    if (length == 0 || is_control)
+      return fail(is_control ? "a control character in a configuration file" : "not UTF-8 text",
+                  fmt::format("{}, line {}", name, line), "save the file as UTF-8 text");
+    if (c == '\n') ++line;
+    n += length;
+  }
+  if (is_nested_too_deep(text))
+    return fail(fmt::format("nested more than {} deep", kMaxDepth), name, "is this the right file?");
+  return {};
+}
+
+std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& candidates) {
+  std::string_view nearest;
+  std::size_t smallest = std::max<std::size_t>(2, word.size() / 3) + 1;  // more edits than this are no misspelling
+  for (const std::string_view candidate : candidates) {
+    // Levenshtein distance, one row of the table at a time.
+    std::vector<std::size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i + 1;
+      for (std::size_t j = 0; j < candidate.size(); ++j) {
+        const std::size_t replaced = diagonal + (word[i] == candidate[j] ? 0 : 1);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+      }
+    }
+    if (row.back() < smallest) {
+      smallest = row.back();
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
+namespace trocar::detail {
+
+/// Whether toml++ may see this text: size, UTF-8, no control characters, bounded nesting of values and of dotted keys
+/// (its parser and destructors recurse). The error names `name` and the line.
+Status check_toml_text(std::string_view text, const std::string& name);
+
+/// The candidate that is closest to a misspelled word, empty when none is similar.
+std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& candidates);
+
+}  // namespace trocar::detail

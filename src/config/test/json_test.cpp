@@ -1,0 +1,66 @@
+#include "config/json.h"
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+
+namespace trocar {
+namespace {
+
+TEST(Json, KeepsTheOrderOfKeysAndTheBitsOfNumbers) {
+  const auto json = parse_json(R"({"z": 0.1, "a": [1, -2.5e-300, true, null, "ä"]})", "x.json");
+  ASSERT_TRUE(json);
+  EXPECT_EQ(json->begin().key(), "z");
+  EXPECT_EQ((*json)["z"].get<double>(), 0.1);
+  const auto again = parse_json(json_text(*json), "again");
+  ASSERT_TRUE(again);
+  EXPECT_EQ(*again, *json);
+}
+
+TEST(Json, ErrorNamesFileAndByte) {
+  const auto json = parse_json(R"({"a": 1,, })", "paths.mrk.json");
+  ASSERT_FALSE(json);
+  EXPECT_EQ(json.error().where, "paths.mrk.json, byte 9");
+  EXPECT_EQ(json.error().exit_status, 1);
+}
+
+TEST(Json, RefusesDeepNestingButNotBracketsInStrings) {
+  EXPECT_FALSE(parse_json(std::string(100000, '['), "deep"));
+  EXPECT_FALSE(parse_json(std::string(65, '[') + std::string(65, ']'), "deep"));
+  EXPECT_TRUE(parse_json(std::string(64, '[') + std::string(64, ']'), "deep"));
+  EXPECT_TRUE(parse_json("\"\\\"" + std::string(1000, '[') + "\"", "string"));
+}
+
+TEST(Json, RefusesNumbersThatOverflow) {
+  EXPECT_FALSE(parse_json("[1e999]", "x"));
+}
+
+TEST(Json, NeverThrowsOnDamagedText) {
+  const std::string good =
+      R"({"markups": [{"type": "Line", "points": [[1.5, -2, 3e4], [0, 1, 2]], "name": "\u00e4"}]})";
+  for (std::size_t n = 0; n < good.size(); ++n) EXPECT_FALSE(parse_json(good.substr(0, n), "cut")) << n;
+  Random random(7);
+  for (int round = 0; round < 20000; ++round) {
+    std::string bad = good;
+    for (int change = 0; change < 3; ++change)
+      bad[static_cast<std::size_t>(random.next() % bad.size())] = static_cast<char>(random.next() & 0xff);
+    const auto json = parse_json(bad, "fuzz");
+    if (!json) {
+      EXPECT_NE(json.error().where.find("fuzz"), std::string::npos);
+    }
+  }
+}
+
+TEST(Json, TextOfInvalidUtf8IsReplacedNotThrown) {
+  const Json json = {{"file", std::string("a\xff.nii")}};
+  EXPECT_TRUE(parse_json(json_text(json), "own"));
+}
+
+TEST(Json, MissingFileIsAnErrorWithItsPath) {
+  const auto json = load_json("/nonexistent/file.json");
+  ASSERT_FALSE(json);
+  EXPECT_NE(json.error().text().find("/nonexistent/file.json"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace trocar
