@@ -13,8 +13,8 @@ namespace trocar {
 /// One structure of the label volume.
 struct Label {
   std::uint8_t id = 0;  ///< Value in the label volume; 0 is never a label.
-  std::string name;     ///< TotalSegmentator's name where it has one: "rib_right_9", "liver".
-  std::string tissue;   ///< Tissue class (TissueTable): "bone", "liver".
+  std::string name;  ///< As in the segmentation, else one of those found from HU: "rib_right_9", "livertumor1", "fat".
+  std::string tissue;  ///< Tissue class (TissueTable): "bone", "liver".
   Rgb color{200, 200, 200};
 };
 
@@ -27,13 +27,18 @@ struct LabelTable {
 };
 
 /// Tissue class and colour of a structure name known out of the box: TotalSegmentator v2, the phantom's names, the mask
-/// names of 3D-IRCADb ("livertumor1", "portalvein"). Nothing for an unknown name.
+/// names of 3D-IRCADb ("livertumor1", "portalvein"), the tissues found from HU ("fat", "muscle", "gas"). Case,
+/// separators, side and a number are not looked at. Nothing for an unknown name. Tissue "skin" means a mask of the
+/// whole body, which is no structure inside it.
 struct KnownStructure {
   std::string_view tissue;
   Rgb color;
   int priority;  ///< Where masks overlap the higher one wins (a tumour over its liver).
 };
 std::optional<KnownStructure> find_known_structure(std::string_view name);
+
+/// The known names most like an unknown one (edit distance), best first; only such that could be meant.
+std::vector<std::string> similar_structure_names(std::string_view name, std::size_t count = 3);
 
 /// TotalSegmentator v2, task "total": name of a label number (1..117).
 std::optional<std::string_view> totalsegmentator_name(int number);
