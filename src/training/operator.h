@@ -1,9 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
-#include <string_view>
+#include <optional>
+#include <vector>
 
-#include "core/result.h"
 #include "geometry/pose.h"
 #include "geometry/segment.h"
 #include "telemetry/tick_sample.h"
@@ -15,7 +16,7 @@ struct OperatorView {
   double time_s = 0.0;
   double dt_s = 0.001;
   Pose X_PN_device;  ///< Needle as the device holds it now.
-  TickSample last;   ///< What the last tick made; the first time default values.
+  TickSample last;   ///< What the last tick made; at the first call default values.
 };
 
 /// Where the operator wants its hand: the hand's spring pulls the device there.
@@ -36,17 +37,22 @@ class Operator {
 
 /// What an operator needs to know of the case.
 struct OperatorCase {
-  Segment path_P;  ///< The planned (expert) path, entry -> target.
-  bool fires_biopsy = false;
-  double throw_mm = 0.0;  ///< The tip stops this far before the lesion's far side needs it.
+  Segment path_P;             ///< The planned (expert) path: entry on the skin -> where the tip shall stop.
+  bool fires_biopsy = false;  ///< The gun is fired there.
   std::uint64_t seed = 1;
 };
 
+/// Follows the path: touches, pauses, inserts slower the more it feels, stops where it sees the tip (of the virtual
+/// needle) at the target, holds still, fires, withdraws. Gives up, without firing, where it cannot get through. The
+/// device must start at the pose of the first command. 12..30 s, never more than 60.
 std::unique_ptr<Operator> make_expert(const OperatorCase& the_case);
+/// Misses the entry and the angle, trembles, moves unevenly and too fast, hesitates, pulls back, stops short or too
+/// deep: by chance, from the seed. Never more than 60 s.
 std::unique_ptr<Operator> make_novice(const OperatorCase& the_case);
-/// Along the path at a constant speed to the target, then out again. speed in mm/s, 0.1..500.
+/// Rigid: the device itself moves at the speed, whatever it meets, so that forces can be held against closed forms.
+/// From 10 mm before the entry to the target, fires there if the case does, and out again. speed in mm/s, 0.1..500.
 std::unique_ptr<Operator> make_constant_velocity(const OperatorCase& the_case, double speed_mm_per_s);
-/// The device poses of a recorded session, tick by tick.
-std::unique_ptr<Operator> make_replay(std::vector<TickSample> samples);
+/// The device poses of a recorded session, tick by tick, rigid; `fired` is the sample at which the gun was fired.
+std::unique_ptr<Operator> make_replay(std::vector<TickSample> samples, std::optional<std::size_t> fired = {});
 
 }  // namespace trocar
