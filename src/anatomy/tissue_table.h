@@ -21,7 +21,7 @@ struct LayerParams {
   double viscosity_ns_per_mm = 0.0;  ///< nu of the loading law. Range 0..1.
   double delta_x_mm = 0.1;           ///< Displacement after which a Voigt element is added. Range 0.01..20.
   double puncture_force_n =
-      std::numeric_limits<double>::infinity();  ///< Gives way at this force; infinite: never (bone).
+      std::numeric_limits<double>::infinity();  ///< Gives way at this force. Range 0.01..100; infinite: never (bone).
 };
 
 /// What the needle's shaft and tip feel inside a tissue (paper A, friction and cutting force; physics.md F1, C1).
@@ -46,7 +46,7 @@ struct TissueTable {
   std::string profile;  ///< "paper-a", "tented" …
   std::vector<LayerParams> layers;
   std::vector<TissueParams> tissues;             ///< [0] is air: all zero.
-  std::map<std::string, Provenance> provenance;  ///< "liver.friction_mu" -> where the number comes from.
+  std::map<std::string, Provenance> provenance;  ///< "tissues.liver.friction_mu", "layers.skin.delta_x_mm" -> source.
   double skin_thickness_mm = 2.0;  ///< The skin is a shell of the distance field, not voxels. Range 0.5..6.
   std::uint8_t skin = 0;           ///< Tissue index of the skin.
 
@@ -56,16 +56,19 @@ struct TissueTable {
   std::string to_toml() const;
 };
 
-/// Reads a tissue file and applies one of its profiles ("paper-a" when empty).
+/// Reads a tissue file and applies one of its profiles ("paper-a" when empty). A table that to_toml wrote has its
+/// profile in it already. Errors name the line: a number out of range or without source, an unknown key, layer or
+/// profile.
 Result<TissueTable> load_tissue_table(const std::filesystem::path& path, std::string_view profile = {});
 Result<TissueTable> parse_tissue_table(std::string_view toml_text, const std::string& name,
                                        std::string_view profile = {});
 /// Profiles that a tissue file offers.
 Result<std::vector<std::string>> tissue_profiles(const std::filesystem::path& path);
 
-/// Applies one override "liver.k=0.5": TISSUE.KEY=VALUE or LAYER.KEY=VALUE, KEY a field name or its short form
-/// (k, nu, mu, dx, delta, fc, fp). A layer's key given on a tissue changes that tissue's layer; nu on a tissue with a
-/// layer of the same name changes both, as in paper A's table. Out of range or unknown: exit status 2.
+/// Applies one override "liver.k=0.5": TISSUE.KEY=VALUE or LAYER.KEY=VALUE, KEY a field name or its short form (k, nu,
+/// mu, dx, delta, stick, fc, fp); fp may be "never"; skin.thickness_mm is the shell's. A layer's key given on a tissue
+/// changes that tissue's layer. nu given on the first tissue that carries a layer changes the layer too: paper A's
+/// table has one nu for both laws. Out of range or unknown: exit status 2, the table stays as it was.
 Status apply_override(TissueTable& table, std::string_view assignment);
 
 }  // namespace trocar

@@ -1,0 +1,165 @@
+// The tissue table as people write it: overrides on the command line, and the text that a session stores.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "anatomy/tissue_fields.h"
+#include "anatomy/tissue_table.h"
+
+namespace trocar {
+namespace {
+
+constexpr std::string_view kOverrideSource = "set by the user";
+
+/// TOML basic string.
+std::string toml_string(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return out + '"';
+}
+
+/// Shortest digits that read back to the same bits, always a TOML float or integer.
+std::string number_text(double value) {
+  return fmt::format("{}", value);
+}
+
+void append_number(std::string& out, std::string_view key, double value, const std::string& path,
+                   const std::map<std::string, Provenance>& provenance) {
+  const auto it = provenance.find(path);
+  const Provenance source = it != provenance.end() ? it->second : Provenance{std::string(kOverrideSource), {}, {}};
+  out += fmt::format("{} = {{", key);
+  out += std::isinf(value) ? "never = true" : "value = " + number_text(value);
+  out += ", source = " + toml_string(source.source);
+  if (source.low && source.high)
+    out += fmt::format(", range = [{}, {}]", number_text(*source.low), number_text(*source.high));
+  out += "}\n";
+}
+
+template <class T>
+void append_fields(std::string& out, const T& entry, std::span<const TissueField<T>> fields, std::string_view kind,
+                   const std::map<std::string, Provenance>& provenance) {
+  for (const TissueField<T>& field : fields)
+    append_number(out, field.name, entry.*field.member, fmt::format("{}.{}.{}", kind, entry.name, field.name),
+                  provenance);
+}
+
+struct Assignment {
+  std::string_view name;
+  std::string_view key;
+  double value = 0.0;
+};
+
+Result<Assignment> parse_assignment(std::string_view text) {
+  const auto malformed = [&] {
+    return fail_usage("an override is NAME.KEY=VALUE", std::string(text), "for example liver.k=0.5");
+  };
+  const std::size_t equals = text.find('=');
+  const std::size_t dot = text.substr(0, equals).rfind('.');
+  if (equals == std::string_view::npos || dot == std::string_view::npos) return malformed();
+  Assignment assignment{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), 0.0};
+  const std::string_view value = text.substr(equals + 1);
+  if (value == "never") {
+    assignment.value = std::numeric_limits<double>::infinity();
+    return assignment;
+  }
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), assignment.value);
+  if (error != std::errc() || end != value.data() + value.size() || !std::isfinite(assignment.value))
+    return malformed();
+  return assignment;
+}
+
+Status check_range(const Assignment& assignment, std::string_view field, Range range, std::string_view text) {
+  const bool is_never = std::isinf(assignment.value) && field == kPunctureForce;
+  if (is_never || (assignment.value >= range.low && assignment.value <= range.high)) return {};
+  return fail_usage(fmt::format("{} must be a number from {} to {}", field, range.low, range.high), std::string(text));
+}
+
+/// Sets the fields that an override reaches; knows nothing of text.
+class Override {
+ public:
+  Override(TissueTable& table, const Assignment& assignment, std::string_view text)
+      : table_(table), assignment_(assignment), text_(text) {}
+
+  Status apply() {
+    if (assignment_.name == "skin" && (assignment_.key == kSkinThickness)) return set_skin_thickness();
+    const auto tissue = table_.find_tissue(assignment_.name);
+    const auto layer = table_.find_layer(assignment_.name);
+    if (!tissue && !layer)
+      return fail_usage(fmt::format("there is no tissue or layer \"{}\"", assignment_.name), std::string(text_));
+    if (tissue && *tissue == 0) return fail_usage("air feels like nothing", std::string(text_));
+    const auto* tissue_field = find_field<TissueParams>(kTissueFields, assignment_.key);
+    const auto* layer_field = find_field<LayerParams>(kLayerFields, assignment_.key);
+    if (tissue && tissue_field) {
+      TROCAR_TRY_STATUS(set(table_.tissues[*tissue], *tissue_field, "tissues"));
+      const auto own_layer = table_.tissues[*tissue].layer;
+      const bool is_shared_number = layer_field && own_layer && is_first_with_layer(*tissue);
+      return is_shared_number ? set(table_.layers[*own_layer], *layer_field, "layers") : Status{};
+    }
+    if (!layer_field || (tissue && !layer && !table_.tissues[*tissue].layer)) return unknown_key(tissue.has_value());
+    return set(table_.layers[layer ? *layer : *table_.tissues[*tissue].layer], *layer_field, "layers");
+  }
+
+ private:
+  bool is_first_with_layer(std::uint8_t tissue) const {
+    for (std::uint8_t n = 0; n < tissue; ++n)
+      if (table_.tissues[n].layer == table_.tissues[tissue].layer) return false;
+    return true;
+  }
+
+  template <class T>
+  Status set(T& entry, const TissueField<T>& field, std::string_view kind) {
+    TROCAR_TRY_STATUS(check_range(assignment_, field.name, field.range, text_));
+    entry.*field.member = assignment_.value;
+    table_.provenance[fmt::format("{}.{}.{}", kind, entry.name, field.name)] = {std::string(kOverrideSource), {}, {}};
+    return {};
+  }
+
+  Status set_skin_thickness() {
+    TROCAR_TRY_STATUS(check_range(assignment_, kSkinThickness, kSkinThicknessRange, text_));
+    table_.skin_thickness_mm = assignment_.value;
+    table_.provenance["skin.thickness_mm"] = {std::string(kOverrideSource), {}, {}};
+    return {};
+  }
+
+  Status unknown_key(bool is_tissue) const {
+    std::vector<std::string_view> known;
+    if (is_tissue)
+      for (const auto& field : kTissueFields) known.push_back(field.short_name);
+    for (const auto& field : kLayerFields) known.push_back(field.short_name);
+    return fail_usage(fmt::format("\"{}\" has no \"{}\"", assignment_.name, assignment_.key), std::string(text_),
+                      fmt::format("known are: {}", fmt::join(known, ", ")));
+  }
+
+  TissueTable& table_;
+  const Assignment& assignment_;
+  std::string_view text_;
+};
+
+}  // namespace
+
+std::string TissueTable::to_toml() const {
+  std::string out = fmt::format("applied_profile = {}\n\n[skin]\n", toml_string(profile));
+  append_number(out, kSkinThickness, skin_thickness_mm, "skin.thickness_mm", provenance);
+  for (const LayerParams& layer : layers) {
+    out += fmt::format("\n[layers.{}]\n", toml_string(layer.name));
+    append_fields<LayerParams>(out, layer, kLayerFields, "layers", provenance);
+  }
+  for (std::size_t n = 1; n < tissues.size(); ++n) {
+    const TissueParams& tissue = tissues[n];
+    out += fmt::format("\n[tissues.{}]\n", toml_string(tissue.name));
+    if (tissue.layer) out += fmt::format("layer = {}\n", toml_string(layers[*tissue.layer].name));
+    append_fields<TissueParams>(out, tissue, kTissueFields, "tissues", provenance);
+  }
+  return out;
+}
+
+Status apply_override(TissueTable& table, std::string_view assignment) {
+  TROCAR_TRY(const Assignment parsed, parse_assignment(assignment));
+  return Override(table, parsed, assignment).apply();
+}
+
+}  // namespace trocar

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "config/toml.h"
+
+namespace trocar {
+
+/// A number of a data table that says where it comes from: KEY = {value = 0.46, source = "…", range = [low, high]}.
+struct SourcedNumber {
+  double value = 0.0;
+  std::string source;
+  std::optional<Range> range;  ///< Measured spread or, for an assumed number, what is thought possible.
+};
+
+/// Reads one. Errors: outside of `allowed`, no source, or a source that begins with "assumed" without a range.
+Result<SourcedNumber> read_sourced_number(const TomlTable& table, std::string_view key, Range allowed);
+
+}  // namespace trocar
