@@ -1,0 +1,26 @@
+#include "haptics/devices/virtual_device.h"
+
+#include <algorithm>
+
+namespace trocar {
+
+void step_device(VirtualDeviceState& state, const VirtualDeviceParams& params, const HandHold& hand, const Vec3& force_P,
+                 const Vec3& gravity_P, double dt_s) noexcept {
+  constexpr double kMmPerM = 1000.0;
+  const double mass = (params.mass_kg + hand.mass_kg) / kMmPerM;  // N s^2/mm
+  const double k = hand.stiffness_n_per_mm;
+  const double b = hand.damping_ns_per_mm;
+  const Vec3 outer = force_P + gravity_P * params.weight_n;
+  // Implicit Euler in the hand's spring and damper: m dv/dt = k (anchor - p) + b (v_anchor - v) + outer.
+  const Vec3 push = k * (hand.anchor_P - state.X_PN.p()) + b * hand.anchor_velocity_P + outer;
+  state.v_P = (mass * state.v_P + dt_s * push) / (mass + dt_s * b + dt_s * dt_s * k);
+  const Vec3 tip_P = state.X_PN.p() + dt_s * state.v_P;
+
+  const double share = dt_s / (dt_s + std::max(hand.turning_time_s, 0.0));
+  const Vec3 axis_P = state.X_PN.R().col(2);
+  const Vec3 turned_P = (axis_P + share * (hand.axis_P - axis_P)).normalized();
+  const Eigen::Quaterniond turned(rotation_between(axis_P, turned_P) * state.X_PN.R());
+  state.X_PN = Pose(turned.normalized().toRotationMatrix(), tip_P);  // no drift over many ticks
+}
+
+}  // namespace trocar

@@ -1,0 +1,98 @@
+#include "haptics/haptic_scene.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "volume/sampling.h"
+
+namespace trocar {
+namespace {
+
+Status check_range(double value, double low, double high, const char* name) {
+  if (std::isfinite(value) && value >= low && value <= high) return {};
+  return fail_usage(fmt::format("{} is {}, allowed is {} to {}", name, value, low, high));
+}
+
+Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& device, const InsertionOptions& options) {
+  TROCAR_TRY_STATUS(check_range(needle.radius_mm, 0.1, 2.5, "needle radius (mm)"));
+  TROCAR_TRY_STATUS(check_range(needle.length_mm, 20.0, 300.0, "needle length (mm)"));
+  TROCAR_TRY_STATUS(check_range(device.max_stiffness_n_per_mm, 0.1, 20.0, "device stiffness (N/mm)"));
+  TROCAR_TRY_STATUS(check_range(device.peak_force_n, 0.1, 200.0, "device peak force (N)"));
+  TROCAR_TRY_STATUS(check_range(device.peak_torque_nmm, 0.0, 5000.0, "device peak torque (N mm)"));
+  TROCAR_TRY_STATUS(check_range(device.stylus_weight_n, 0.0, 5.0, "stylus weight (N)"));
+  const auto& constraint = options.constraint;
+  TROCAR_TRY_STATUS(check_range(constraint.linear_mm, 0.5, 20.0, "path constraint d0 (mm)"));
+  TROCAR_TRY_STATUS(check_range(constraint.linear_rad, 0.01, 1.0, "path constraint theta0 (rad)"));
+  TROCAR_TRY_STATUS(check_range(constraint.torque_nmm, 0.0, 500.0, "path constraint n0 (N mm)"));
+  TROCAR_TRY_STATUS(check_range(options.coupling.damping_ns_per_mm, 0.0, 1.0, "coupling damping (N s/mm)"));
+  TROCAR_TRY_STATUS(check_range(options.coupling.stiffness_n_per_mm, 0.01, device.max_stiffness_n_per_mm,
+                                "coupling stiffness (N/mm, at most the device's)"));
+  return check_range(constraint.force_n / constraint.linear_mm, 0.0, device.max_stiffness_n_per_mm,
+                     "path constraint m0/d0 (N/mm, at most the device's)");
+}
+
+Status fill_laws(HapticScene& scene, const TissueTable& table) {
+  if (table.tissues.size() > kMaxTissues || table.layers.size() > kMaxLayers)
+    return fail(fmt::format("more than {} tissues or {} layers", kMaxTissues, kMaxLayers), "tissue table");
+  scene.tissue_count = static_cast<int>(table.tissues.size());
+  scene.layer_count = static_cast<int>(table.layers.size());
+  for (std::size_t i = 0; i < table.layers.size(); ++i) {
+    const LayerParams& layer = table.layers[i];
+    scene.layers[i] = {{layer.stiffness_n_per_mm, layer.viscosity_ns_per_mm, layer.delta_x_mm}, layer.puncture_force_n};
+    if (!(layer.delta_x_mm > 0.0) || !(layer.puncture_force_n > 0.0))
+      return fail_usage(fmt::format("layer {} needs positive dx and puncture force", layer.name), "tissue table");
+  }
+  for (std::size_t i = 0; i < table.tissues.size(); ++i) {
+    const TissueParams& tissue = table.tissues[i];
+    scene.tissues[i] = {tissue.viscosity_ns_per_mm, tissue.roughness_n * tissue.friction_mu, tissue.stick_n_per_mm,
+                        tissue.cutting_n, tissue.layer.value_or(kNoLayer)};
+  }
+  scene.skin = table.skin;
+  scene.skin_thickness_mm = table.skin_thickness_mm;
+  return {};
+}
+
+Status fill_label_tissues(HapticScene& scene, const TissueTable& table) {
+  const auto unlabelled = table.find_tissue("soft_tissue");
+  if (!unlabelled) return fail("has no tissue named soft_tissue", "tissue table", "add it");
+  scene.tissue_of_label.fill(*unlabelled);
+  for (const Label& label : scene.patient->label_table.labels) {
+    const auto tissue = table.find_tissue(label.tissue);
+    if (!tissue)
+      return fail(fmt::format("label {} is of tissue {}, which the tissue table does not know", label.name, label.tissue),
+                  scene.patient->name, "add the tissue to the table or change the label's tissue");
+    scene.tissue_of_label[label.id] = *tissue;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const VirtualPatient> patient,
+                                                             const TissueTable& tissues, const NeedleGeometry& needle,
+                                                             const DeviceCapability& device,
+                                                             const InsertionOptions& options) {
+  if (!patient || patient->labels.empty() || patient->skin_distance_mm.empty())
+    return fail("the patient has no labels or no skin", patient ? patient->name : "", "build it again");
+  TROCAR_TRY_STATUS(check_numbers(needle, device, options));
+  auto scene = std::make_shared<HapticScene>();
+  scene->patient = std::move(patient);
+  scene->needle = needle;
+  scene->device = device;
+  scene->options = options;
+  scene->X_SN = Pose::translation({0.0, 0.0, needle.length_mm});
+  TROCAR_TRY_STATUS(fill_laws(*scene, tissues));
+  TROCAR_TRY_STATUS(fill_label_tissues(*scene, tissues));
+  return scene;
+}
+
+TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept {
+  const double distance_mm = sample_linear(scene.patient->skin_distance_mm, p_P);
+  if (!(distance_mm <= 0.0)) return {};
+  const std::uint8_t label = sample_nearest(scene.patient->labels, p_P, std::uint8_t{0});
+  if (distance_mm > -scene.skin_thickness_mm) return {scene.skin, label};
+  return {scene.tissue_of_label[label], label};
+}
+
+}  // namespace trocar
