@@ -9,7 +9,9 @@ double AxialBalance::prepuncture_n(double s_mm) const noexcept {
   return prepuncture_force_n(displacement(s_mm), velocity(s_mm), loading);
 }
 
-double AxialBalance::friction_n(double s_mm) const noexcept { return viscous_ns_per_mm * velocity(s_mm) + noise_n; }
+double AxialBalance::friction_n(double s_mm) const noexcept {
+  return viscous_ns_per_mm * velocity(s_mm) + noise_n;
+}
 
 double AxialBalance::cutting_force_n(double s_mm) const noexcept {
   const double v = velocity(s_mm);
@@ -37,7 +39,7 @@ AxialSolution solve(const AxialBalance& balance) noexcept {
   for (; f_low > 0.0 && steps < kMaxBracket; ++steps, reach *= 2.0) f_low = balance.unbalance_n(low -= reach);
   for (reach = 0.01; f_high < 0.0 && steps < kMaxBracket; ++steps, reach *= 2.0)
     f_high = balance.unbalance_n(high += reach);
-  if (f_low > 0.0 || f_high < 0.0) return {balance.s_previous_mm, true};
+  if (!(f_low <= 0.0) || !(f_high >= 0.0)) return {balance.s_previous_mm, true};
 
   // Illinois variant of the false position: safe like bisection, nearly as fast as the secant.
   constexpr double kForceTolerance_n = 1e-10;

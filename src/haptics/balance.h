@@ -6,9 +6,9 @@
 
 namespace trocar {
 
-/// The force balance of the virtual needle along its axis for one step (physics.md V1): resistance of the tissue against
-/// the coupling to the device. The needle has no mass; its speed is (s - s_previous)/dt, so the step is implicit.
-/// Monotone in s, hence one solution. All s in mm along the path, forces in N, resistance positive.
+/// The force balance of the virtual needle along its axis for one step (physics.md V1): resistance of the tissue
+/// against the coupling to the device. The needle has no mass; its speed is (s - s_previous)/dt, so the step is
+/// implicit. Monotone in s, hence one solution. All s in mm along the path, forces in N, resistance positive.
 struct AxialBalance {
   double s_previous_mm = 0.0;
   double s_device_mm = 0.0;
@@ -17,10 +17,10 @@ struct AxialBalance {
   CouplingParams coupling;
   LoadingLaw loading;
   double surface_mm = std::numeric_limits<double>::infinity();  ///< Resting surface of the layer ahead.
-  double viscous_ns_per_mm = 0.0;                                ///< Sum of nu_i A_i over the inserted shaft.
-  double noise_n = 0.0;                                          ///< Fluctuation of the friction, this step.
+  double viscous_ns_per_mm = 0.0;                               ///< Sum of nu_i A_i over the inserted shaft.
+  double noise_n = 0.0;                                         ///< Fluctuation of the friction, this step.
   double cutting_n = 0.0;
-  double cut_to_mm = 0.0;                                        ///< Fresh tissue begins here.
+  double cut_to_mm = 0.0;  ///< Fresh tissue begins here.
 
   double velocity(double s_mm) const noexcept { return (s_mm - s_previous_mm) / dt_s; }
   double displacement(double s_mm) const noexcept { return s_mm > surface_mm ? s_mm - surface_mm : 0.0; }
@@ -34,7 +34,7 @@ struct AxialBalance {
 
 struct AxialSolution {
   double s_mm = 0.0;
-  bool hit_bound = false;   ///< The bounded iteration ended before it converged.
+  bool hit_bound = false;  ///< The bounded iteration ended before it converged.
 };
 
 /// The s at which resistance and coupling balance. Bounded, real-time safe.

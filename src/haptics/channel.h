@@ -7,18 +7,19 @@
 
 namespace trocar {
 
-/// The straight hole that a needle makes: its line, what lies along it in the resting anatomy, what has been pierced and
-/// how deep it was cut. Fixed size; copied, never allocated. Coordinate s (mm): along the line, 0 on the resting skin.
+/// The straight hole that a needle makes: its line, what lies along it in the resting anatomy, what has been pierced
+/// and how deep it was cut. Fixed size; copied, never allocated. Coordinate s (mm): along the line, 0 on the resting
+/// skin.
 struct Channel {
   static constexpr double kBin_mm = 0.1;
-  static constexpr int kBins = 3000;       ///< 300 mm, the longest needle.
+  static constexpr int kBins = 3000;  ///< 300 mm, the longest needle.
 
   bool is_used = false;
-  Vec3 origin_P = Vec3::Zero();            ///< P: where the line meets the resting skin.
-  Vec3 direction_P = Vec3::UnitZ();        ///< u, unit.
-  std::uint32_t pierced = 0;               ///< Bit by layer: gave way already.
-  double cut_to_mm = 0.0;                  ///< Deepest s that the tip has reached.
-  int known_bins = 0;                      ///< Bins [0, known_bins) are filled.
+  Vec3 origin_P = Vec3::Zero();      ///< P: where the line meets the resting skin.
+  Vec3 direction_P = Vec3::UnitZ();  ///< u, unit.
+  std::uint32_t pierced = 0;         ///< Bit by layer: gave way already.
+  double cut_to_mm = 0.0;            ///< Deepest s that the tip has reached.
+  int known_bins = 0;                ///< Bins [0, known_bins) are filled.
   std::array<std::uint8_t, kBins> tissue{};
   std::array<std::uint8_t, kBins> label{};
 
@@ -36,15 +37,15 @@ void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double 
 /// The first unpierced layer that begins between `from_mm` and `to_mm` within the known bins.
 struct LayerAhead {
   std::uint8_t layer = kNoLayer;
-  double surface_mm = 0.0;                 ///< s of its resting surface.
+  double surface_mm = 0.0;  ///< s of its resting surface.
 };
 LayerAhead next_layer(const Channel& channel, const HapticScene& scene, double from_mm, double to_mm) noexcept;
 
 /// Channels of the past insertions of one attempt; the oldest is forgotten when it is full.
 struct ChannelMemory {
   static constexpr int kCapacity = 8;
-  static constexpr double kSameHole_mm = 1.0;     ///< Entries nearer than this and
-  static constexpr double kSameHole_rad = 0.0873; ///< within 5 degrees use the same hole. [assumed]
+  static constexpr double kSameHole_mm = 1.0;      ///< Entries nearer than this and
+  static constexpr double kSameHole_rad = 0.0873;  ///< within 5 degrees use the same hole. [assumed]
   std::array<Channel, kCapacity> channels{};
   int next = 0;
 

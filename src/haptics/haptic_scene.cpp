@@ -60,8 +60,9 @@ Status fill_label_tissues(HapticScene& scene, const TissueTable& table) {
   for (const Label& label : scene.patient->label_table.labels) {
     const auto tissue = table.find_tissue(label.tissue);
     if (!tissue)
-      return fail(fmt::format("label {} is of tissue {}, which the tissue table does not know", label.name, label.tissue),
-                  scene.patient->name, "add the tissue to the table or change the label's tissue");
+      return fail(
+          fmt::format("label {} is of tissue {}, which the tissue table does not know", label.name, label.tissue),
+          scene.patient->name, "add the tissue to the table or change the label's tissue");
     scene.tissue_of_label[label.id] = *tissue;
   }
   return {};

@@ -34,14 +34,14 @@ struct CouplingParams {
 struct InsertionOptions {
   CouplingParams coupling;
   PathConstraintParams constraint;
-  bool has_stick = true;                ///< Karnopp holding force (physics.md F3).
+  bool has_stick = true;  ///< Karnopp holding force (physics.md F3).
   bool has_weight_compensation = true;
-  std::uint64_t seed = 1;               ///< Of the friction's fluctuation.
+  std::uint64_t seed = 1;  ///< Of the friction's fluctuation.
 };
 
 struct NeedleGeometry {
-  double radius_mm = 0.635;             ///< Range 0.1..2.5.
-  double length_mm = 150.0;             ///< Stylus origin to tip. Range 20..300.
+  double radius_mm = 0.635;  ///< Range 0.1..2.5.
+  double length_mm = 150.0;  ///< Stylus origin to tip. Range 20..300.
 };
 
 inline constexpr int kMaxTissues = 32;
@@ -51,7 +51,7 @@ inline constexpr std::uint8_t kNoLayer = 0xff;
 /// Tissue and layer numbers as the tick reads them: no text, fixed size.
 struct TissueLaw {
   double viscosity_ns_per_mm = 0.0;
-  double noise_n = 0.0;                 ///< delta * mu
+  double noise_n = 0.0;  ///< delta * mu
   double stick_n_per_mm = 0.0;
   double cutting_n = 0.0;
   std::uint8_t layer = kNoLayer;
@@ -74,9 +74,9 @@ struct HapticScene {
   NeedleGeometry needle;
   DeviceCapability device;
   InsertionOptions options;
-  Pose X_PD;                            ///< Device base in the patient.
-  Pose X_SN;                            ///< Needle in the stylus: tip at +z, length_mm from the stylus origin.
-  Vec3 gravity_P = Vec3::UnitY();       ///< Unit, downwards: a supine patient lies on +y.
+  Pose X_PD;                       ///< Device base in the patient.
+  Pose X_SN;                       ///< Needle in the stylus: tip at +z, length_mm from the stylus origin.
+  Vec3 gravity_P = Vec3::UnitY();  ///< Unit, downwards: a supine patient lies on +y.
 };
 
 /// Checks every number and builds the scene. Errors: coupling or constraint stiffer than the device, numbers out of
@@ -88,7 +88,7 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
 
 /// What lies at a point of the resting anatomy. Real-time safe.
 struct TissueAt {
-  std::uint8_t tissue = 0;              ///< 0: air.
+  std::uint8_t tissue = 0;  ///< 0: air.
   std::uint8_t label = 0;
 };
 TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept;

@@ -10,9 +10,9 @@
 namespace trocar {
 namespace {
 
-constexpr double kLook_mm = 10.0;          // Past the tip and the device: more than a tick can jump.
+constexpr double kLook_mm = 10.0;  // Past the tip and the device: more than a tick can jump.
 constexpr double kContactHysteresis_mm = 0.1;
-constexpr double kLeaveSkin_mm = 0.5;      // The insertion ends when the tip is this far out.
+constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the tip is this far out.
 constexpr double kSpeedSmoothing_s = 0.02;
 
 /// Distance (mm) along the axis from the tip to the resting skin; negative when the tip is below it. Nothing when the
@@ -70,7 +70,8 @@ std::optional<LineStep> place_on_line(InsertionState& state, const HapticScene& 
     const auto to_skin = distance_to_skin_along(scene, tip_P, axis_P);
     if (!to_skin) return std::nullopt;
     const Vec3 entry_P = tip_P + *to_skin * axis_P;
-    if (const Channel* hole = state.loading == kNoLayer && *to_skin < 0.0 ? state.memory.find(entry_P, axis_P) : nullptr) {
+    if (const Channel* hole =
+            state.loading == kNoLayer && *to_skin < 0.0 ? state.memory.find(entry_P, axis_P) : nullptr) {
       state.channel = *hole;
       state.has_path = true;
     } else {
@@ -140,7 +141,10 @@ bool is_held(const InsertionState& state, const HapticScene& scene, const AxialB
                                           state.device_speed_mm_per_s <= kRestSpeed_mm_per_s);
   if (!at_rest) return false;
   const double s = balance.s_previous_mm;
-  return std::abs(balance.coupling_n(s) - balance.prepuncture_n(s)) <= holding_force_n(state, scene);
+  const double push = balance.coupling_n(s) - balance.prepuncture_n(s);
+  const double holding = holding_force_n(state, scene);
+  const double uncut = s >= balance.cut_to_mm ? balance.cutting_n : 0.0;  // fresh tissue holds until it is cut
+  return push <= holding + uncut && push >= -holding;
 }
 
 /// The part of the step after which the layer carries its puncture force.
@@ -185,11 +189,14 @@ void move_tip(InsertionState& state, double rest_mm, InsertionStep& step) noexce
     const std::uint8_t label = state.channel.label[index];
     if (is_forward && label != state.label) {
       state.label = label;
-      if (label != 0 && entered < step.entered.size()) step.entered[entered++] = label;
-      else if (label != 0) step.dropped_events = true;
+      if (label != 0 && entered < step.entered.size())
+        step.entered[entered++] = label;
+      else if (label != 0)
+        step.dropped_events = true;
     }
   }
   if (!is_forward) state.label = state.channel.label[static_cast<std::size_t>(bin_of(rest_mm))];
+  state.travel_mm += high - low;
   state.rest_mm = rest_mm;
   state.channel.cut_to_mm = std::max(state.channel.cut_to_mm, rest_mm);
 }
@@ -288,13 +295,13 @@ InsertionStep step_insertion(InsertionState& state, const HapticScene& scene, co
   record_forces(balance, s_mm, state.is_stuck, step);
 
   // The tip stays at the resting surface of the layer that it indents until that gives way.
-  if (state.rest_mm > 0.0) state.travel_mm += std::abs(s_mm - line->s_previous_mm);
   state.s_mm = s_mm;
   state.s_device_mm = balance.s_device_mm;
   state.velocity_mm_per_s = step.velocity_mm_per_s;
   state.device_tip_P = device_tip_P;
   update_contact(state, ahead);
-  if (state.has_path) move_tip(state, std::max(0.0, state.loading != kNoLayer ? std::min(s_mm, state.surface_mm) : s_mm), step);
+  if (state.has_path)
+    move_tip(state, std::max(0.0, state.loading != kNoLayer ? std::min(s_mm, state.surface_mm) : s_mm), step);
   state.phase = next_phase(state);
 
   step.phase = state.phase;

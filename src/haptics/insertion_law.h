@@ -9,9 +9,9 @@ namespace trocar {
 
 /// Coefficients of one layer's loading law.
 struct LoadingLaw {
-  double stiffness_n_per_mm = 0.0;    ///< k
-  double viscosity_ns_per_mm = 0.0;   ///< nu
-  double delta_x_mm = 1.0;            ///< Displacement after which a further Voigt element is added; > 0.
+  double stiffness_n_per_mm = 0.0;   ///< k
+  double viscosity_ns_per_mm = 0.0;  ///< nu
+  double delta_x_mm = 1.0;           ///< Displacement after which a further Voigt element is added; > 0.
 };
 
 /// Pre-puncture force (N) of the incremental viscoelastic model at displacement x and velocity v (physics.md P1):
@@ -24,8 +24,8 @@ double static_displacement_mm(double force_n, const LoadingLaw& law) noexcept;
 /// Static tangent stiffness dF/dx (N/mm) at displacement x.
 double tangent_stiffness_n_per_mm(double x_mm, const LoadingLaw& law) noexcept;
 
-/// Contact area of the shaft with one tissue in cm^2 (physics.md F1: with mm^2 the paper's numbers would hold the needle
-/// a hundred times too hard).
+/// Contact area of the shaft with one tissue in cm^2 (physics.md F1: with mm^2 the paper's numbers would hold the
+/// needle a hundred times too hard).
 double contact_area_cm2(double radius_mm, double inserted_mm) noexcept;
 
 /// Fluctuation of the friction, -1..1, uniform at its nodes: a seeded function of the travelled way with correlation

@@ -9,8 +9,10 @@ class EventList {
  public:
   explicit EventList(TickSample& sample) noexcept : sample_(sample) {}
   void add(EventKind kind, std::uint8_t id) noexcept {
-    if (count_ < sample_.events.size()) sample_.events[count_++] = {kind, id};
-    else sample_.events.back() = {EventKind::kLimit, static_cast<std::uint8_t>(LimitReason::kEventsDropped)};
+    if (count_ < sample_.events.size())
+      sample_.events[count_++] = {kind, id};
+    else
+      sample_.events.back() = {EventKind::kLimit, static_cast<std::uint8_t>(LimitReason::kEventsDropped)};
   }
   void add(LimitReason reason) noexcept { add(EventKind::kLimit, static_cast<std::uint8_t>(reason)); }
 

@@ -9,8 +9,8 @@ namespace trocar {
 /// What the device gives a tick.
 struct HapticInput {
   double time_s = 0.0;
-  double dt_s = 0.001;      ///< Since the last tick; 0 < dt <= kMaxDt_s.
-  Pose X_DS;                ///< Stylus in the device base.
+  double dt_s = 0.001;  ///< Since the last tick; 0 < dt <= kMaxDt_s.
+  Pose X_DS;            ///< Stylus in the device base.
 };
 
 /// All that a tick carries to the next one. Fixed size, copyable: recorded inputs replay to the same bits.
@@ -29,8 +29,8 @@ struct HapticOutput {
 inline constexpr double kMaxDt_s = 0.1;
 
 /// One haptic tick: pose into P, needle insertion, path constraint, weight compensation, composition (paper A, force
-/// composition; physics.md T1), limits of the device. Pure: a function of its arguments only. Input that is not finite or
-/// has an impossible dt gives zero force and a limit event, and leaves the state as it was. Real-time safe.
+/// composition; physics.md T1), limits of the device. Pure: a function of its arguments only. Input that is not finite
+/// or has an impossible dt gives zero force and a limit event, and leaves the state as it was. Real-time safe.
 HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept;
 
 }  // namespace trocar

@@ -4,8 +4,8 @@
 
 namespace trocar {
 
-void step_device(VirtualDeviceState& state, const VirtualDeviceParams& params, const HandHold& hand, const Vec3& force_P,
-                 const Vec3& gravity_P, double dt_s) noexcept {
+void step_device(VirtualDeviceState& state, const VirtualDeviceParams& params, const HandHold& hand,
+                 const Vec3& force_P, const Vec3& gravity_P, double dt_s) noexcept {
   constexpr double kMmPerM = 1000.0;
   const double mass = (params.mass_kg + hand.mass_kg) / kMmPerM;  // N s^2/mm
   const double k = hand.stiffness_n_per_mm;

@@ -18,8 +18,7 @@ TEST(PrepunctureForce, IsTheSumOfVoigtElementsAtTheirThresholds) {
   // integral-corrected cubic that the paper prints. Check the printed polynomial term by term.
   for (const double x : {0.05, 0.2, 0.62, 1.5}) {
     for (const double v : {0.0, 2.0, 50.0}) {
-      const double elastic = kSkin.stiffness_n_per_mm *
-                             (x * x * x / (6 * 0.1 * 0.1) + x * x / (2 * 0.1) + x / 3.0);
+      const double elastic = kSkin.stiffness_n_per_mm * (x * x * x / (6 * 0.1 * 0.1) + x * x / (2 * 0.1) + x / 3.0);
       const double viscous = kSkin.viscosity_ns_per_mm * v * x / 0.1;
       EXPECT_NEAR(prepuncture_force_n(x, v, kSkin), elastic + viscous, 1e-12);
     }
@@ -80,7 +79,8 @@ TEST(FrictionNoise, DependsOnSeedAndTissueAndIsContinuous) {
   EXPECT_NE(friction_noise(1, 3, 5.0), friction_noise(2, 3, 5.0));
   EXPECT_NE(friction_noise(1, 3, 5.0), friction_noise(1, 4, 5.0));
   for (double s = -3.0; s < 3.0; s += 0.001)
-    ASSERT_NEAR(friction_noise(1, 3, s), friction_noise(1, 3, s + 0.001), 2.0 * 1.5 * 0.001 / kNoiseCorrelation_mm + 1e-12);
+    ASSERT_NEAR(friction_noise(1, 3, s), friction_noise(1, 3, s + 0.001),
+                2.0 * 1.5 * 0.001 / kNoiseCorrelation_mm + 1e-12);
 }
 
 TEST(MotionFade, IsZeroAtRestAndOneInMotion) {

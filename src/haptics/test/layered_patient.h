@@ -39,7 +39,9 @@ struct Slab {
 inline constexpr std::uint8_t kFat = 1, kMuscle = 2, kLiver = 3, kBone = 4;
 
 /// The usual way to the liver: fat from 0, muscle from 12, liver from 24 mm.
-inline std::vector<Slab> liver_way() { return {{0, kFat}, {12, kMuscle}, {24, kLiver}}; }
+inline std::vector<Slab> liver_way() {
+  return {{0, kFat}, {12, kMuscle}, {24, kLiver}};
+}
 
 /// A flat layered patient, 1 mm voxels: skin at z = 0, inside at z > 0; slabs by depth.
 inline std::shared_ptr<VirtualPatient> layered_patient(const std::vector<Slab>& slabs) {
@@ -63,7 +65,8 @@ inline std::shared_ptr<VirtualPatient> layered_patient(const std::vector<Slab>& 
   return patient;
 }
 
-inline std::shared_ptr<const HapticScene> make_scene(const std::vector<Slab>& slabs, const InsertionOptions& options = {},
+inline std::shared_ptr<const HapticScene> make_scene(const std::vector<Slab>& slabs,
+                                                     const InsertionOptions& options = {},
                                                      const TissueTable& tissues = paper_tissues()) {
   auto scene = make_haptic_scene(layered_patient(slabs), tissues, {}, {}, options);
   TROCAR_CHECK(scene.has_value());

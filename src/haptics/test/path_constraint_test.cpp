@@ -32,7 +32,8 @@ TEST(PathConstraint, IsLinearNearThePathAndConstantBeyond) {
 TEST(PathConstraint, TurnsTheNeedleBackOntoThePath) {
   Random random(5);
   for (int i = 0; i < 200; ++i) {
-    const Vec3 axis = (kAxis + 0.5 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))).normalized();
+    const Vec3 axis =
+        (kAxis + 0.5 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))).normalized();
     const Wrench wrench = path_constraint(kOrigin, kAxis, kOrigin + 40.0 * kAxis, axis, kParams);
     const double theta = std::acos(std::min(1.0, axis.dot(kAxis)));
     const double expected = kParams.torque_nmm * std::min(1.0, theta / kParams.linear_rad);
