@@ -16,6 +16,7 @@ find_library(SOCI_SQLITE3 soci_sqlite3 REQUIRED)
 find_path(SOCI_INCLUDE soci/soci.h REQUIRED)
 find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel FiltersCore FiltersGeneral IOXML IOGeometry
   ImagingCore RenderingCore RenderingOpenGL2 RenderingVolumeOpenGL2 InteractionStyle IOImage)
+find_package(X11 REQUIRED)
 find_package(ITK REQUIRED COMPONENTS ITKIOImageBase ITKIONIFTI ITKIONRRD ITKIOMeta ITKIOGDCM ITKIOTransformBase
   ITKIOTransformInsightLegacy ITKTransform ITKCommon)
 
@@ -38,7 +39,7 @@ set(trocar_library_highway hwy::hwy)
 set(trocar_library_vtk-filters VTK::CommonCore VTK::CommonDataModel VTK::FiltersCore VTK::FiltersGeneral)
 set(trocar_library_vtk-io VTK::CommonCore VTK::CommonDataModel VTK::IOXML VTK::IOGeometry)
 set(trocar_library_vtk-rendering VTK::CommonCore VTK::CommonDataModel VTK::RenderingCore VTK::RenderingOpenGL2
-    VTK::FiltersCore VTK::FiltersGeneral)
+    VTK::FiltersCore VTK::FiltersGeneral X11::X11)
 set(trocar_library_itk trocar_itk)
 set(trocar_library_png PNG::PNG)
 set(trocar_library_soci trocar_soci)

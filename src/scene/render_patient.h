@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -9,19 +8,23 @@
 
 namespace trocar {
 
-/// A camera position around the patient.
+/// A camera position around the patient, head up.
 enum class CameraPreset { kAnterior, kRightAnteriorOblique, kRight, kPosterior };
 
 struct SceneOptions {
-  int columns = 1000;
-  int rows = 900;
+  int columns = 1000;  ///< Range 16..8192.
+  int rows = 900;      ///< Range 16..8192.
   CameraPreset camera = CameraPreset::kRightAnteriorOblique;
-  double skin_opacity = 0.15;
-  std::vector<NeedlePath> paths;  ///< Drawn as needles.
+  double skin_opacity = 0.15;     ///< Range 0..1; at 0 the skin is left out.
+  std::vector<NeedlePath> paths;  ///< Drawn as needles that end at their targets.
 };
 
-/// A 3D picture of the patient's surfaces, off-screen. Needs an X server (VTK on Debian has no other): without one an
-/// error that says so (run under xvfb-run).
+/// Whether there is an X server that can draw: VTK on Debian has no other way, and aborts where it finds none.
+bool can_render() noexcept;
+
+/// A 3D picture of the patient's surfaces, off-screen: bone ivory, other structures in the colours of the label table,
+/// the skin and the organs around a target translucent; fat and muscle, which would hide all, are left out.
+/// An error without an X server (run under xvfb-run).
 Result<RgbImage> render_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes,
                                 const SceneOptions& options = {});
 

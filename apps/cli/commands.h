@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "output.h"
+
+namespace trocar::cli {
+
+// Each adds its command with sub-commands to the program; a parsed one sets `action`.
+void add_patient_commands(CLI::App& program, Action& action);
+void add_patient_report_commands(CLI::App& patient, Action& action);  ///< show, check and render of `patient`.
+void add_plan_command(CLI::App& program, Action& action);
+void add_task_commands(CLI::App& program, Action& action);
+void add_run_command(CLI::App& program, Action& action);
+void add_session_commands(CLI::App& program, Action& action);
+void add_bench_command(CLI::App& program, Action& action);
+
+}  // namespace trocar::cli

@@ -1,0 +1,68 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+
+#include "commands.h"
+#include "core/version.h"
+
+namespace {
+
+using namespace trocar::cli;
+
+/// The command that was being parsed when an error came up.
+const CLI::App& deepest_command(const CLI::App& program) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().back();
+  return *command;
+}
+
+std::string full_name(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return parent == nullptr ? command.get_name() : full_name(*parent) + " " + command.get_name();
+}
+
+int report_usage(const CLI::App& program, const CLI::ParseError& error) {
+  const CLI::App& command = deepest_command(program);
+  const std::string name = full_name(command);
+  std::string what = error.what();
+  if (command.get_require_subcommand_min() > 0) {
+    const auto rest = command.remaining();
+    what = rest.empty() ? "a command is missing" : "there is no command \"" + rest.front() + "\"";
+  }
+  return report_error({what, name, "see " + name + " --help", 2});
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("Trocar: a simulator on which people learn needle punctures. A trainer, not a medical device.");
+  program.name("trocar");
+  program.set_version_flag("--version", std::string("trocar ") + trocar::kVersion, "Print the version and exit");
+  program.require_subcommand(1);
+  program.footer("Example:\n  trocar run liver-biopsy --patient abdomen --operator expert --out first.session\n");
+  Action action;
+  add_patient_commands(program, action);
+  add_plan_command(program, action);
+  add_task_commands(program, action);
+  add_run_command(program, action);
+  add_session_commands(program, action);
+  add_bench_command(program, action);
+
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_text) {
+    return program.exit(asked_for_text);
+  } catch (const CLI::ParseError& error) {
+    return report_usage(program, error);
+  }
+  const trocar::Status done = action();
+  return done ? 0 : report_error(done.error());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Our code does not throw; memory can still run out.
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& exception) {
+    return report_error({std::string("unexpected: ") + exception.what(), "trocar", "", 1});
+  }
+}

@@ -1,0 +1,81 @@
+#include "output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <mutex>
+
+#include "core/data_dir.h"
+
+namespace trocar::cli {
+namespace fs = std::filesystem;
+
+int report_error(const Error& error) {
+  fmt::print(stderr, "error: {}\n", error.text());
+  return error.exit_status;
+}
+
+void print_warning(std::string_view text) {
+  fmt::print(stderr, "warning: {}\n", text);
+}
+
+void print_json(const Json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+struct ProgressPrinter::State {
+  std::mutex mutex;  // steps may be told by several threads
+  bool is_terminal = ::isatty(STDERR_FILENO) == 1;
+  std::string step;
+  int percent = -1;
+
+  void show(std::string_view new_step, double fraction) {
+    const std::lock_guard lock(mutex);
+    const int new_percent = static_cast<int>(100.0 * std::clamp(fraction, 0.0, 1.0));
+    if (new_step == step && (!is_terminal || new_percent == percent)) return;
+    step = new_step;
+    percent = new_percent;
+    if (is_terminal) {
+      constexpr int kBarWidth = 30;
+      fmt::print(stderr, "\r\033[K{:#>{}}{:.>{}} {:3} %  {}", "", percent * kBarWidth / 100, "",
+                 kBarWidth - percent * kBarWidth / 100, percent, step);
+    } else {
+      fmt::print(stderr, "{:3} % {}\n", percent, step);
+    }
+  }
+};
+
+ProgressPrinter::ProgressPrinter() : state_(std::make_unique<State>()) {}
+
+ProgressPrinter::~ProgressPrinter() {
+  if (state_->is_terminal && state_->percent >= 0) fmt::print(stderr, "\r\033[K");
+}
+
+Progress ProgressPrinter::callback() const {
+  return [state = state_.get()](std::string_view step, double fraction) { state->show(step, fraction); };
+}
+
+Status check_new(const fs::path& out) {
+  std::error_code ignored;
+  if (fs::exists(out, ignored)) {
+    return fail_usage("the output is already there", out.string(), "choose another name or remove it");
+  }
+  const fs::path folder = fs::absolute(out, ignored).parent_path();
+  if (!fs::is_directory(folder, ignored)) {
+    return fail_usage("the folder for the output is not there", folder.string(), "create it first");
+  }
+  return {};
+}
+
+Result<fs::path> find_data(std::string_view name) {
+  const fs::path folder = data_dir();
+  if (folder.empty()) {
+    return fail("the tables of tasks, needles and tissues are missing", "data/",
+                "set TROCAR_DATA_DIR to the data folder of Trocar");
+  }
+  return folder / name;
+}
+
+}  // namespace trocar::cli

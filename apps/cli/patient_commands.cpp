@@ -1,0 +1,138 @@
+// trocar patient list, generate and build: where patients come from.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+
+#include "anatomy/build_patient.h"
+#include "anatomy/phantom/phantom.h"
+#include "commands.h"
+#include "core/version.h"
+#include "io/image_file.h"
+#include "io/label_sources.h"
+#include "io/patient_folder.h"
+#include "surface/extract_surface.h"
+
+namespace trocar::cli {
+namespace {
+namespace fs = std::filesystem;
+
+/// The part of a command's work that ends at `to`, as its own progress.
+Progress part_of(const Progress& whole, double from, double to) {
+  return [=](std::string_view step, double fraction) { report(whole, step, from + (to - from) * fraction); };
+}
+
+Status list_patients(bool is_json) {
+  if (is_json) {
+    Json patients = Json::array();
+    for (const PhantomInfo& info : embedded_patients()) {
+      patients.push_back({{"name", info.name}, {"description", info.description}, {"tasks", info.tasks}});
+    }
+    print_json({{"patients", patients}});
+    return {};
+  }
+  std::map<std::string, std::vector<const PhantomInfo*>> by_task;
+  for (const PhantomInfo& info : embedded_patients()) {
+    for (const std::string& task : info.tasks) by_task[task].push_back(&info);
+  }
+  for (const auto& [task, patients] : by_task) {
+    fmt::print("{}\n", task);
+    for (const PhantomInfo* info : patients) fmt::print("  {:<12} {}\n", info->name, info->description);
+  }
+  return {};
+}
+
+Status save_with_surfaces(const VirtualPatient& patient, const fs::path& out, const Progress& progress) {
+  const auto meshes = extract_surfaces(patient, {}, part_of(progress, 0.0, 0.6));
+  return save_patient(patient, meshes, out, part_of(progress, 0.6, 1.0));
+}
+
+Status generate_patient(const std::string& name, std::uint64_t seed, const fs::path& out) {
+  TROCAR_TRY_STATUS(check_new(out));
+  const ProgressPrinter printer;
+  const Progress progress = printer.callback();
+  TROCAR_TRY(const VirtualPatient patient, generate_phantom(name, seed, {}, part_of(progress, 0.0, 0.5)));
+  return save_with_surfaces(patient, out, part_of(progress, 0.5, 1.0));
+}
+
+struct BuildArguments {
+  std::string ct;
+  std::vector<std::string> labels;
+  std::string label_map = "totalsegmentator";
+  std::string name;
+  std::string out;
+};
+
+std::string file_name(const fs::path& path) {
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+Status build(const BuildArguments& arguments) {
+  TROCAR_TRY_STATUS(check_new(arguments.out));
+  const ProgressPrinter printer;
+  const Progress progress = printer.callback();
+  report(progress, "reading the CT", 0.0);
+  TROCAR_TRY(const CtGrid ct, read_ct(arguments.ct));
+  report(progress, "reading the labels", 0.1);
+  TROCAR_TRY(auto sources, read_label_sources({arguments.labels.begin(), arguments.labels.end()}, arguments.label_map));
+
+  BuildOptions options;
+  options.name = arguments.name.empty() ? file_name(arguments.out) : arguments.name;
+  options.provenance = {fmt::format("built by trocar {}", kVersion), "CT: " + file_name(arguments.ct)};
+  for (const std::string& path : arguments.labels) options.provenance.push_back("labels: " + file_name(path));
+  std::vector<std::string> warnings;
+  TROCAR_TRY(const VirtualPatient patient,
+             build_patient(ct, std::move(sources), options, warnings, part_of(progress, 0.2, 0.5)));
+  TROCAR_TRY_STATUS(save_with_surfaces(patient, arguments.out, part_of(progress, 0.5, 1.0)));
+  for (const std::string& warning : warnings) print_warning(warning);
+  return {};
+}
+
+}  // namespace
+
+void add_patient_commands(CLI::App& program, Action& action) {
+  CLI::App* patient = program.add_subcommand("patient", "Make, look at and check virtual patients");
+  patient->require_subcommand(1);
+  patient->footer("Example:\n  trocar patient generate abdomen --out my_patient\n");
+
+  CLI::App* list = patient->add_subcommand("list", "Embedded patients, by the task they serve");
+  list->footer("Example:\n  trocar patient list\n");
+  const auto is_json = std::make_shared<bool>(false);
+  list->add_flag("--json", *is_json, "Print one JSON object");
+  list->callback([&action, is_json] { action = [is_json] { return list_patients(*is_json); }; });
+
+  struct GenerateArguments {
+    std::string name;
+    std::uint64_t seed = 1;
+    std::string out;
+  };
+  CLI::App* generate = patient->add_subcommand("generate", "Write an embedded patient as a folder");
+  generate->footer("Example:\n  trocar patient generate abdomen --seed 7 --out abdomen_7\n");
+  const auto g = std::make_shared<GenerateArguments>();
+  generate->add_option("NAME", g->name, "Embedded patient: see trocar patient list")->required();
+  generate->add_option("--out", g->out, "Folder to create")->required();
+  generate->add_option("--seed", g->seed, "Another seed, another individual")->capture_default_str();
+  generate->callback([&action, g] { action = [g] { return generate_patient(g->name, g->seed, g->out); }; });
+
+  CLI::App* build_command = patient->add_subcommand("build", "Build a patient from a CT and its segmentation");
+  build_command->footer(
+      "Examples:\n  trocar patient build --ct ct.nii.gz --labels segmentation.nii.gz --out case_1\n"
+      "  trocar patient build --ct dicom_folder --labels masks_folder --label-map names.toml --out case_2\n");
+  const auto b = std::make_shared<BuildArguments>();
+  build_command->add_option("--ct", b->ct, "CT: NIfTI, NRRD, MHA, or the folder of one DICOM series")->required();
+  build_command
+      ->add_option("--labels", b->labels, "Label volumes, single masks, folders of masks or of DICOM mask series")
+      ->required();
+  build_command
+      ->add_option("--label-map", b->label_map,
+                   "Names of label numbers: totalsegmentator, or a TOML file with a [labels] table")
+      ->capture_default_str();
+  build_command->add_option("--name", b->name, "Name of the patient; the folder's name when left out");
+  build_command->add_option("--out", b->out, "Folder to create")->required();
+  build_command->callback([&action, b] { action = [b] { return build(*b); }; });
+
+  add_patient_report_commands(*patient, action);
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,287 @@
+// trocar patient show, check and render: what a patient holds.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "anatomy/build_patient.h"
+#include "commands.h"
+#include "core/atomic_file.h"
+#include "io/png.h"
+#include "patient_source.h"
+#include "report/slice_picture.h"
+#include "scene/render_patient.h"
+#include "training/task.h"
+
+namespace trocar::cli {
+namespace {
+namespace fs = std::filesystem;
+
+struct Arguments {
+  PatientSource source;
+  bool is_json = false;
+  std::string out;
+};
+
+constexpr double kMm2PerCm2 = 100.0;
+constexpr double kMm3PerMl = 1000.0;
+
+Json to_json(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+Json grid_json(const GridGeometry& g) {
+  Json direction = Json::array();
+  for (int axis = 0; axis < 3; ++axis) direction.push_back(to_json(g.R_PV.col(axis)));
+  return {{"frame", "P: LPS, mm"},
+          {"size_voxels", {g.size[0], g.size[1], g.size[2]}},
+          {"spacing_mm", to_json(g.spacing_mm)},
+          {"origin_mm", to_json(g.origin_P)},
+          {"direction_of_ijk", direction}};
+}
+
+Json label_json(const VirtualPatient& patient, const LabelStatistics& s) {
+  const Label* label = patient.label_table.find(s.id);
+  return {{"id", s.id},
+          {"name", label != nullptr ? label->name : ""},
+          {"tissue", label != nullptr ? label->tissue : ""},
+          {"volume_ml", s.volume_ml},
+          {"mean_hu", s.mean_hu},
+          {"voxels", s.voxels},
+          {"centroid_mm", to_json(s.centroid_P)},
+          {"touches_border", s.touches_border}};
+}
+
+Json patient_json(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes) {
+  Json labels = Json::array();
+  for (const LabelStatistics& s : label_statistics(patient)) labels.push_back(label_json(patient, s));
+  Json surfaces = Json::array();
+  for (const NamedMesh& m : meshes) {
+    surfaces.push_back({{"name", m.name},
+                        {"vertices", m.mesh_P.vertices.size()},
+                        {"triangles", m.mesh_P.triangles.size()},
+                        {"area_cm2", area_mm2(m.mesh_P) / kMm2PerCm2},
+                        {"volume_ml", enclosed_volume_mm3(m.mesh_P) / kMm3PerMl}});
+  }
+  Json landmarks = Json::array();
+  for (const Landmark& l : patient.landmarks) landmarks.push_back({{"name", l.name}, {"position_mm", to_json(l.p_P)}});
+  Json paths = Json::array();
+  for (const NeedlePath& p : patient.paths) {
+    paths.push_back({{"name", p.name},
+                     {"entry_mm", to_json(p.line_P.a)},
+                     {"target_mm", to_json(p.line_P.b)},
+                     {"length_mm", p.line_P.length_mm()}});
+  }
+  return {{"name", patient.name},
+          {"description", patient.description},
+          {"provenance", patient.provenance},
+          {"content_hash", patient.content_hash},
+          {"volumes", {{"ct", grid_json(patient.ct.geometry)}, {"labels", grid_json(patient.labels.geometry)}}},
+          {"labels", labels},
+          {"meshes", surfaces},
+          {"landmarks", landmarks},
+          {"paths", paths}};
+}
+
+void print_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes) {
+  fmt::print("{}: {}\n", patient.name, patient.description);
+  for (const std::string& line : patient.provenance) fmt::print("  from {}\n", line);
+  fmt::print("  content {}\n\n", patient.content_hash);
+
+  const GridGeometry& g = patient.ct.geometry;
+  fmt::print("volumes    {} x {} x {} voxels of {:.3f} x {:.3f} x {:.3f} mm, frame P (LPS, mm)\n", g.size[0], g.size[1],
+             g.size[2], g.spacing_mm.x(), g.spacing_mm.y(), g.spacing_mm.z());
+  fmt::print("           first voxel at ({:.2f}, {:.2f}, {:.2f}) mm\n", g.origin_P.x(), g.origin_P.y(), g.origin_P.z());
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 d = g.R_PV.col(axis);
+    fmt::print("           {} runs along ({:.4f}, {:.4f}, {:.4f})\n", "ijk"[axis], d.x(), d.y(), d.z());
+  }
+
+  fmt::print("\n{:>3}  {:<30} {:<16} {:>11} {:>9}\n", "id", "label", "tissue", "volume", "mean");
+  for (const LabelStatistics& s : label_statistics(patient)) {
+    const Label* label = patient.label_table.find(s.id);
+    if (label == nullptr) continue;
+    fmt::print("{:>3}  {:<30} {:<16} {:>8.1f} ml {:>6.0f} HU\n", s.id, label->name, label->tissue, s.volume_ml,
+               s.mean_hu);
+  }
+  fmt::print("\n{:<35} {:>10} {:>15} {:>11}\n", "mesh", "triangles", "area", "volume");
+  for (const NamedMesh& m : meshes) {
+    fmt::print("{:<35} {:>10} {:>11.1f} cm2 {:>8.1f} ml\n", m.name, m.mesh_P.triangles.size(),
+               area_mm2(m.mesh_P) / kMm2PerCm2, enclosed_volume_mm3(m.mesh_P) / kMm3PerMl);
+  }
+  if (!patient.landmarks.empty()) fmt::print("\n");
+  for (const Landmark& l : patient.landmarks) {
+    fmt::print("landmark {:<26} ({:.1f}, {:.1f}, {:.1f}) mm\n", l.name, l.p_P.x(), l.p_P.y(), l.p_P.z());
+  }
+  for (const NeedlePath& p : patient.paths) fmt::print("path {:<30} {:.1f} mm\n", p.name, p.line_P.length_mm());
+}
+
+Status show(const Arguments& arguments) {
+  const ProgressPrinter printer;
+  TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, printer.callback()));
+  TROCAR_TRY(const auto meshes, open_meshes(arguments.source, patient, printer.callback()));
+  if (arguments.is_json) {
+    print_json(patient_json(patient, meshes));
+  } else {
+    print_patient(patient, meshes);
+  }
+  return {};
+}
+
+/// What a reader should know before trusting the patient.
+std::vector<std::string> find_doubts(const VirtualPatient& patient) {
+  constexpr double kCoarseMm = 2.5;
+  std::vector<std::string> doubts;
+  const Vec3& spacing = patient.ct.geometry.spacing_mm;
+  if (spacing.maxCoeff() > kCoarseMm) {
+    doubts.push_back(fmt::format("voxels of {:.2f} x {:.2f} x {:.2f} mm: thin structures are missed", spacing.x(),
+                                 spacing.y(), spacing.z()));
+  }
+  for (const LabelStatistics& s : label_statistics(patient)) {
+    const Label* label = patient.label_table.find(s.id);
+    if (label == nullptr) continue;
+    if (s.voxels == 0) doubts.push_back(label->name + " is listed and has no voxel");
+    // Fat and muscle reach every border of a scan; an organ that does is cut off.
+    const bool is_filling = label->tissue == "adipose" || label->tissue == "muscle";
+    if (s.touches_border && !is_filling) doubts.push_back(label->name + " is cut off by the edge of the scan");
+  }
+  if (patient.paths.empty()) doubts.push_back("no expert path is stored; trocar run plans one");
+  return doubts;
+}
+
+Status check(const Arguments& arguments) {
+  const ProgressPrinter printer;
+  TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, printer.callback()));
+  TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
+  TROCAR_TRY(const auto tasks, load_tasks(tasks_folder));
+  const auto doubts = find_doubts(patient);
+  if (arguments.is_json) {
+    Json list = Json::array();
+    for (const Task& task : tasks) {
+      const TaskReadiness readiness = check_task(task, patient);
+      list.push_back({{"task", task.name},
+                      {"possible", readiness.is_possible},
+                      {"parenchymal", readiness.is_parenchymal},
+                      {"reasons", readiness.reasons}});
+    }
+    print_json({{"name", patient.name}, {"tasks", list}, {"doubtful", doubts}});
+    return {};
+  }
+  for (const Task& task : tasks) {
+    const TaskReadiness readiness = check_task(task, patient);
+    fmt::print("{:<16} {}{}\n", task.name, readiness.is_possible ? "possible" : "not possible",
+               readiness.is_parenchymal ? " (parenchymal: no lesion)" : "");
+    for (const std::string& reason : readiness.reasons) fmt::print("  {}\n", reason);
+  }
+  if (!doubts.empty()) fmt::print("doubtful\n");
+  for (const std::string& doubt : doubts) fmt::print("  {}\n", doubt);
+  return {};
+}
+
+/// Where pictures look: the target of the first path, else the first lesion, else the liver, else the middle.
+Vec3 point_of_interest(const VirtualPatient& patient) {
+  if (!patient.paths.empty()) return patient.paths.front().line_P.b;
+  const auto statistics = label_statistics(patient);
+  for (const std::string_view wanted : {"liver_lesion", "liver"}) {
+    const auto found = std::find_if(statistics.begin(), statistics.end(), [&](const LabelStatistics& s) {
+      const Label* label = patient.label_table.find(s.id);
+      return label != nullptr && label->tissue == wanted && s.voxels > 0;
+    });
+    if (found != statistics.end()) return found->centroid_P;
+  }
+  const auto& size = patient.ct.geometry.size;
+  return patient.ct.geometry.to_mm(
+      0.5 * Vec3(static_cast<double>(size[0] - 1), static_cast<double>(size[1] - 1), static_cast<double>(size[2] - 1)));
+}
+
+Status write_slices(const VirtualPatient& patient, const fs::path& folder) {
+  constexpr std::array<std::pair<SliceOrientation, const char*>, 3> kOrientations = {
+      {{SliceOrientation::kAxial, "axial"},
+       {SliceOrientation::kCoronal, "coronal"},
+       {SliceOrientation::kSagittal, "sagittal"}}};
+  const Vec3 through_P = point_of_interest(patient);
+  for (const auto& [orientation, name] : kOrientations) {
+    SliceOptions plain;
+    plain.label_opacity = 0.0;
+    plain.has_outlines = false;
+    TROCAR_TRY_STATUS(write_png(make_slice_picture(patient, orientation, through_P, plain).image,
+                                folder / fmt::format("slice_{}.png", name)));
+    TROCAR_TRY_STATUS(write_png(make_slice_picture(patient, orientation, through_P).image,
+                                folder / fmt::format("slice_{}_labels.png", name)));
+  }
+  return {};
+}
+
+/// Every camera's picture.
+Status write_views(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes, const fs::path& folder,
+                   const Progress& progress) {
+  constexpr std::array<std::pair<CameraPreset, const char*>, 4> kCameras = {
+      {{CameraPreset::kRightAnteriorOblique, "right_anterior_oblique"},
+       {CameraPreset::kAnterior, "anterior"},
+       {CameraPreset::kRight, "right"},
+       {CameraPreset::kPosterior, "posterior"}}};
+  double fraction = 0.5;
+  for (const auto& [camera, name] : kCameras) {
+    report(progress, "drawing 3D pictures", fraction);
+    fraction += 0.1;
+    SceneOptions options;
+    options.camera = camera;
+    options.paths = patient.paths;
+    TROCAR_TRY(const RgbImage picture, render_patient(patient, meshes, options));
+    TROCAR_TRY_STATUS(write_png(picture, folder / fmt::format("view_{}.png", name)));
+  }
+  return {};
+}
+
+Status render(const Arguments& arguments) {
+  TROCAR_TRY_STATUS(check_new(arguments.out));
+  const ProgressPrinter printer;
+  const Progress progress = printer.callback();
+  TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, progress));
+  TROCAR_TRY(const auto meshes, open_meshes(arguments.source, patient, progress));
+  const bool can_draw = can_render();
+  const auto draw = [&](const fs::path& folder) -> Status {
+    report(progress, "drawing slices", 0.4);
+    TROCAR_TRY_STATUS(write_slices(patient, folder));
+    return can_draw ? write_views(patient, meshes, folder, progress) : Status{};
+  };
+  TROCAR_TRY_STATUS(write_folder_atomically(arguments.out, draw));
+  if (!can_draw) {
+    print_warning("no 3D pictures, slices only — there is no X server — start this command under xvfb-run");
+  }
+  return {};
+}
+
+CLI::App* add_command(CLI::App& patient, Action& action, const char* name, const char* description,
+                      Status (*work)(const Arguments&), std::shared_ptr<Arguments> arguments) {
+  CLI::App* command = patient.add_subcommand(name, description);
+  command->add_option("PATIENT", arguments->source.folder_or_name, "Patient folder, or an embedded patient's name")
+      ->required();
+  command->add_option("--seed", arguments->source.seed, "Seed of an embedded patient")->capture_default_str();
+  command->callback([&action, arguments, work] { action = [arguments, work] { return work(*arguments); }; });
+  return command;
+}
+
+}  // namespace
+
+void add_patient_report_commands(CLI::App& patient, Action& action) {
+  const auto arguments = std::make_shared<Arguments>();  // one command runs: they share it
+  CLI::App* show_command =
+      add_command(patient, action, "show", "Labels with volumes, meshes, frames, provenance", show, arguments);
+  show_command->add_flag("--json", arguments->is_json, "Print one JSON object");
+  show_command->footer("Example:\n  trocar patient show my_patient\n");
+
+  CLI::App* check_command =
+      add_command(patient, action, "check", "Which tasks a patient can serve, and what is doubtful", check, arguments);
+  check_command->add_flag("--json", arguments->is_json, "Print one JSON object");
+  check_command->footer("Example:\n  trocar patient check my_patient\n");
+
+  CLI::App* render_command = add_command(patient, action, "render",
+                                         "CT slices, and 3D pictures where there is an X server", render, arguments);
+  render_command->add_option("--out", arguments->out, "Folder to create")->required();
+  render_command->footer("Example:\n  xvfb-run -a trocar patient render my_patient --out pictures\n");
+}
+
+}  // namespace trocar::cli

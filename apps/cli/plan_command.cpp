@@ -1,0 +1,89 @@
+// trocar plan: safe needle paths for a task.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "commands.h"
+#include "io/markups_file.h"
+#include "patient_source.h"
+#include "training/plan.h"
+
+namespace trocar::cli {
+namespace {
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string task;
+  PatientSource source;
+  std::string needle;
+  PlanOptions options;
+  std::string out;
+  bool is_json = false;
+};
+
+Json to_json(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+void print_plan(const std::vector<PlannedPath>& paths, bool is_json) {
+  if (is_json) {
+    Json list = Json::array();
+    for (const PlannedPath& p : paths) {
+      list.push_back({{"entry_mm", to_json(p.line_P.a)},
+                      {"target_mm", to_json(p.line_P.b)},
+                      {"length_mm", p.length_mm},
+                      {"organ_path_mm", p.organ_path_mm},
+                      {"smallest_margin_mm", p.smallest_margin_mm},
+                      {"nearest_risk", p.nearest_risk}});
+    }
+    print_json({{"paths", list}});
+    return;
+  }
+  fmt::print("{:>4} {:>10} {:>14} {:>14}  {}\n", "path", "length", "in the organ", "spare margin", "nearest risk");
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const PlannedPath& p = paths[i];
+    fmt::print("{:>4} {:>7.1f} mm {:>11.1f} mm {:>11.1f} mm  {}\n", i + 1, p.length_mm, p.organ_path_mm,
+               p.smallest_margin_mm, p.nearest_risk);
+  }
+}
+
+Status plan(const Arguments& arguments) {
+  TROCAR_TRY_STATUS(check_new(arguments.out));
+  TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
+  TROCAR_TRY(const Task task, load_task(tasks_folder, arguments.task));
+  TROCAR_TRY(const fs::path needles, find_data("needles.toml"));
+  TROCAR_TRY(const Needle needle, load_needle(needles, arguments.needle.empty() ? task.needle : arguments.needle));
+  std::vector<PlannedPath> paths;
+  {
+    const ProgressPrinter printer;
+    TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, printer.callback()));
+    TROCAR_TRY(paths, plan_paths(task, patient, needle, arguments.options, printer.callback()));
+  }
+  std::vector<NeedlePath> named;
+  for (const PlannedPath& p : paths) named.push_back({fmt::format("{}-{}", task.name, named.size() + 1), p.line_P});
+  TROCAR_TRY_STATUS(write_paths(named, arguments.out));
+  print_plan(paths, arguments.is_json);
+  return {};
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& program, Action& action) {
+  const auto a = std::make_shared<Arguments>();
+  CLI::App* command = program.add_subcommand("plan", "Find safe needle paths: they keep every margin of the task");
+  command->add_option("TASK", a->task, "Task: see trocar task list")->required();
+  command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name")
+      ->required();
+  command->add_option("--count", a->options.count, "How many paths, each from its own entry")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--needle", a->needle, "Needle of data/needles.toml; the task's own when left out");
+  command->add_option("--seed", a->source.seed, "Seed of an embedded patient")->capture_default_str();
+  command->add_option("--out", a->out, "3D Slicer markups file to write (.mrk.json)")->required();
+  command->add_flag("--json", a->is_json, "Print one JSON object");
+  command->footer("Example:\n  trocar plan liver-biopsy --patient abdomen --count 5 --out paths.mrk.json\n");
+  command->callback([&action, a] { action = [a] { return plan(*a); }; });
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,45 @@
+// trocar task list.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "commands.h"
+#include "training/task.h"
+
+namespace trocar::cli {
+namespace {
+
+Status list_tasks(bool is_json) {
+  TROCAR_TRY(const auto folder, find_data("tasks"));
+  TROCAR_TRY(const auto tasks, load_tasks(folder));
+  if (!is_json) {
+    for (const Task& task : tasks) fmt::print("{:<16} {} (needle: {})\n", task.name, task.title, task.needle);
+    return {};
+  }
+  Json list = Json::array();
+  for (const Task& task : tasks) {
+    list.push_back({{"name", task.name},
+                    {"title", task.title},
+                    {"organ", task.organ},
+                    {"target_tissues", task.target_tissues},
+                    {"needle", task.needle},
+                    {"time_limit_s", task.time_limit_s}});
+  }
+  print_json({{"tasks", list}});
+  return {};
+}
+
+}  // namespace
+
+void add_task_commands(CLI::App& program, Action& action) {
+  CLI::App* task = program.add_subcommand("task", "Training tasks");
+  task->require_subcommand(1);
+  task->footer("Example:\n  trocar task list\n");
+  CLI::App* list = task->add_subcommand("list", "The tasks, with the needle each one uses");
+  list->footer("Example:\n  trocar task list --json\n");
+  const auto is_json = std::make_shared<bool>(false);
+  list->add_flag("--json", *is_json, "Print one JSON object");
+  list->callback([&action, is_json] { action = [is_json] { return list_tasks(*is_json); }; });
+}
+
+}  // namespace trocar::cli

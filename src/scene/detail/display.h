@@ -1,0 +1,8 @@
+#pragma once
+
+namespace trocar::detail {
+
+/// Whether $DISPLAY leads to an X server with OpenGL (GLX). Opens and closes a connection.
+bool has_opengl_display() noexcept;
+
+}  // namespace trocar::detail
