@@ -1,7 +1,5 @@
 #include "haptics/devices/virtual_device.h"
 
-#include <algorithm>
-
 namespace trocar {
 
 void step_device(VirtualDeviceState& state, const VirtualDeviceParams& params, const HandHold& hand,
@@ -14,13 +12,7 @@ void step_device(VirtualDeviceState& state, const VirtualDeviceParams& params, c
   // Implicit Euler in the hand's spring and damper: m dv/dt = k (anchor - p) + b (v_anchor - v) + outer.
   const Vec3 push = k * (hand.anchor_P - state.X_PN.p()) + b * hand.anchor_velocity_P + outer;
   state.v_P = (mass * state.v_P + dt_s * push) / (mass + dt_s * b + dt_s * dt_s * k);
-  const Vec3 tip_P = state.X_PN.p() + dt_s * state.v_P;
-
-  const double share = dt_s / (dt_s + std::max(hand.turning_time_s, 0.0));
-  const Vec3 axis_P = state.X_PN.R().col(2);
-  const Vec3 turned_P = (axis_P + share * (hand.axis_P - axis_P)).normalized();
-  const Eigen::Quaterniond turned(rotation_between(axis_P, turned_P) * state.X_PN.R());
-  state.X_PN = Pose(turned.normalized().toRotationMatrix(), tip_P);  // no drift over many ticks
+  state.X_PN = Pose(hand.R_PN, state.X_PN.p() + dt_s * state.v_P);
 }
 
 }  // namespace trocar

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "anatomy/tissue_table.h"
+#include "core/progress.h"
+#include "core/result.h"
+#include "training/needle.h"
+#include "training/plan.h"
+#include "training/task.h"
+
+namespace trocar {
+
+/// Which attempt is to be made; empty texts mean the default.
+struct CaseOptions {
+  std::string task = "liver-biopsy";
+  std::string needle;                  ///< Of data/needles.toml; the task's own when empty.
+  std::string tissue_file;             ///< data/tissues.toml when empty.
+  std::string profile;                 ///< Of the tissue file.
+  std::vector<std::string> overrides;  ///< "liver.k=0.5"
+  std::uint64_t seed = 1;
+};
+
+/// A patient, a task and a planned path: all that an attempt needs.
+struct Case {
+  std::shared_ptr<const VirtualPatient> patient;
+  Task task;
+  Needle needle;
+  TissueTable tissues;
+  PlannedPath plan;
+  bool is_parenchymal = false;
+};
+
+/// Loads tables and task from the data folder, checks that the patient can serve the task, and plans the expert path.
+/// Errors say which structure is missing or which margin leaves no path.
+Result<Case> prepare_case(std::shared_ptr<const VirtualPatient> patient, const CaseOptions& options,
+                          const Progress& progress = {});
+
+}  // namespace trocar

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "core/result.h"
+#include "headless/prepare_case.h"
+#include "storage/session_file.h"
+
+namespace trocar {
+
+/// Who performs the attempt, how, and where it is written.
+struct RunOptions {
+  std::string operator_name = "expert";  ///< expert | novice | constant-velocity:MM_PER_S | replay:SESSION
+  std::string force_model = "insertion";
+  double rate_hz = 1000.0;     ///< 250..4000. A replay takes its session's rate.
+  std::uint64_t seed = 1;      ///< Of operator and friction.
+  std::string patient_source;  ///< As the user named it: a folder, or an embedded patient's name.
+  std::uint64_t patient_seed = 1;
+  std::filesystem::path session;  ///< Written here; must not exist.
+};
+
+/// A layer that gave way.
+struct PunctureRecord {
+  std::string layer;
+  double time_s = 0.0;
+  double depth_mm = 0.0;
+  double peak_n = 0.0;  ///< Pre-puncture force when it gave way.
+};
+
+struct RunResult {
+  Outcome outcome;
+  std::vector<PunctureRecord> punctures;
+  std::size_t ticks = 0;
+  double simulated_s = 0.0;
+};
+
+/// Performs an attempt in one thread, faster than real time: operator, hand, device, tick, recording, score.
+/// Every tick is in the session file; a failure on the way leaves what was recorded, which opens again.
+Result<RunResult> run_session(const Case& the_case, const RunOptions& options, const Progress& progress = {});
+
+/// What went through the skin, in order.
+std::vector<PunctureRecord> find_punctures(const SessionInfo& info, const std::vector<TickSample>& samples);
+
+}  // namespace trocar
