@@ -15,7 +15,8 @@ Result<Case> prepare_case(std::shared_ptr<const VirtualPatient> patient, const C
   TROCAR_TRY(made.task, load_task(data / "tasks", options.task));
   const std::string needle = options.needle.empty() ? made.task.needle : options.needle;
   TROCAR_TRY(made.needle, load_needle(data / "needles.toml", needle));
-  const std::filesystem::path tissues = options.tissue_file.empty() ? data / "tissues.toml" : options.tissue_file;
+  const std::filesystem::path tissues =
+      options.tissue_file.empty() ? data / "tissues.toml" : std::filesystem::path(options.tissue_file);
   TROCAR_TRY(made.tissues, load_tissue_table(tissues, options.profile));
   for (const std::string& assignment : options.overrides) TROCAR_TRY_STATUS(apply_override(made.tissues, assignment));
 

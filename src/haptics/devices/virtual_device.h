@@ -18,8 +18,7 @@ struct HandHold {
   double stiffness_n_per_mm = 0.0;
   double damping_ns_per_mm = 0.0;
   double mass_kg = 0.0;          ///< Of hand and fingers, added to the device's.
-  Vec3 axis_P = Vec3::UnitZ();   ///< Wanted needle axis.
-  double turning_time_s = 0.02;  ///< Time constant with which the axis follows.
+  Mat3 R_PN = Mat3::Identity();  ///< Needle's orientation at the end of the tick: turned freely by the hand.
 };
 
 struct VirtualDeviceState {
