@@ -4,12 +4,13 @@
 
 namespace trocar {
 
-/// The volume on another grid, trilinear; `outside` beyond its own. Parallel.
+/// The volume on another grid, trilinear and rounded; `outside` beyond its own box, whose edge values continue for the
+/// outer half voxel (as in sample_slice). Averages nothing: smooth before going to a much coarser grid. Parallel.
 CtGrid resample_linear(const CtGrid& source, const GridGeometry& target, std::int16_t outside);
 /// The same for labels, by nearest neighbour.
 LabelGrid resample_nearest(const LabelGrid& source, const GridGeometry& target, std::uint8_t outside);
 
-/// The grid that covers the same box with (about) isotropic spacing.
+/// The grid that covers the same box with about isotropic spacing: as near to spacing_mm (> 0) as whole voxels allow.
 GridGeometry isotropic_geometry(const GridGeometry& source, double spacing_mm);
 
 /// Fraction 0..1 of the target's voxel centres that lie inside the source's box.

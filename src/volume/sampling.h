@@ -62,8 +62,7 @@ Vec3 gradient_per_mm(const Grid<T>& grid, const Vec3& p_P) noexcept {
   return grid.geometry.R_PV * slope_V;
 }
 
-/// Many trilinear samples on a plane of P: value (column u, row v) at origin_P + u*step_u_P + v*step_v_P, written row
-/// by row into `out` (columns*rows). Beyond the grid: `outside`. SIMD with run-time dispatch (Highway).
+/// Rows and columns of sample points on a plane of P: (column u, row v) lies at origin_P + u*step_u_P + v*step_v_P.
 struct SlicePlane {
   Vec3 origin_P{0, 0, 0};
   Vec3 step_u_P{1, 0, 0};  ///< mm a column.
@@ -71,8 +70,14 @@ struct SlicePlane {
   int columns = 512;
   int rows = 512;
 };
+
+/// Trilinear samples on a plane, written row by row into `out` (columns*rows, checked). The grid's box reaches half a
+/// voxel beyond the outermost voxel centres: in that rim the edge values continue, as in sample_linear; beyond it, and
+/// where the plane is not finite, stands `outside`. The box is the one of sample_nearest. One thread, floats: positions
+/// are good to 1e-5 of a voxel. SIMD, chosen at run time for the processor. No allocation.
 void sample_slice(const CtGrid& grid, const SlicePlane& plane, float outside, std::span<float> out) noexcept;
-/// Trilinear samples at any points of P.
+/// The same at any points of P; `out` is as long as they are (checked). Points within 1e-4 of a voxel of the box's
+/// faces may fall to either side.
 void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float outside, std::span<float> out) noexcept;
 
 }  // namespace trocar

@@ -1,0 +1,199 @@
+#include "volume/morphology.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "core/parallel.h"
+#include "volume/detail/run_labels.h"
+#include "volume/distance.h"
+
+namespace trocar {
+namespace {
+
+detail::Block block_of(const GridGeometry& g) {
+  return {static_cast<std::size_t>(g.size[0]), static_cast<std::size_t>(g.size[1]),
+          static_cast<std::size_t>(g.size[2])};
+}
+
+std::vector<std::size_t> component_sizes(const detail::RunLabels& labels) {
+  std::vector<std::size_t> sizes(labels.component_count, 0);
+  for (const detail::Run& run : labels.runs) sizes[run.component] += run.length();
+  return sizes;
+}
+
+/// Calls write(first voxel, length, component) for every run; rows in parallel.
+void for_each_run(const detail::RunLabels& labels, const auto& write) {
+  parallel_for(labels.block.rows * labels.block.planes, 1024, [&](std::size_t first, std::size_t last) {
+    for (std::size_t r = first; r < last; ++r)
+      for (const detail::Run& run : labels.row(r))
+        write(r * labels.block.columns + run.first, run.length(), run.component);
+  });
+}
+
+/// Which components have a voxel on the border of the block; its first and last plane count only where asked.
+std::vector<bool> touches_border(const detail::RunLabels& labels, bool with_planes) {
+  const auto& [columns, rows, planes] = labels.block;
+  std::vector<bool> result(labels.component_count, false);
+  for (std::size_t r = 0; r < rows * planes; ++r) {
+    const bool row_on_border =
+        r % rows == 0 || r % rows == rows - 1 || (with_planes && (r / rows == 0 || r / rows == planes - 1));
+    for (const detail::Run& run : labels.row(r))
+      if (row_on_border || run.first == 0 || run.last == columns - 1) result[run.component] = true;
+  }
+  return result;
+}
+
+void fill_block(std::span<std::uint8_t> voxels, const detail::Block& block, bool with_planes) {
+  const detail::RunLabels background = detail::label_runs(voxels, block, false);
+  const std::vector<bool> is_open = touches_border(background, with_planes);
+  for (std::size_t r = 0; r < block.rows * block.planes; ++r)
+    for (const detail::Run& run : background.row(r))
+      if (!is_open[run.component])
+        std::fill_n(voxels.begin() + static_cast<std::ptrdiff_t>(r * block.columns + run.first), run.length(),
+                    std::uint8_t{1});
+}
+
+/// A box of voxels, both ends inclusive.
+struct Box {
+  Index3 first;
+  Index3 last;
+};
+
+/// The smallest box around the mask; nothing for an empty mask.
+std::optional<Box> bounding_box(const MaskGrid& mask) {
+  const auto& size = mask.geometry.size;
+  Box box{size, {-1, -1, -1}};
+  for (std::int64_t k = 0; k < size[2]; ++k) {
+    for (std::int64_t j = 0; j < size[1]; ++j) {
+      const std::uint8_t* row = mask.voxels.data() + mask.geometry.offset({0, j, k});
+      const auto is_set = [](std::uint8_t v) { return v != 0; };
+      const auto* first = std::find_if(row, row + size[0], is_set);
+      if (first == row + size[0]) continue;
+      std::int64_t last_i = size[0] - 1;
+      while (row[last_i] == 0) --last_i;
+      const Index3 low{first - row, j, k};
+      const Index3 high{last_i, j, k};
+      for (std::size_t a = 0; a < 3; ++a) {
+        box.first[a] = std::min(box.first[a], low[a]);
+        box.last[a] = std::max(box.last[a], high[a]);
+      }
+    }
+  }
+  if (box.last[0] < 0) return std::nullopt;
+  return box;
+}
+
+Box grown(Box box, const GridGeometry& geometry, double margin_mm) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double voxels = std::ceil(margin_mm / geometry.spacing_mm[static_cast<int>(a)]) + 1.0;
+    const auto margin = static_cast<std::int64_t>(std::min(voxels, static_cast<double>(geometry.size[a])));
+    box.first[a] = std::max<std::int64_t>(0, box.first[a] - margin);
+    box.last[a] = std::min(geometry.size[a] - 1, box.last[a] + margin);
+  }
+  return box;
+}
+
+/// Copies a box out of a mask (1 where a voxel is set as `of_set` says).
+MaskGrid cut_out(const MaskGrid& mask, const Box& box, bool of_set) {
+  GridGeometry geometry = mask.geometry;
+  for (std::size_t a = 0; a < 3; ++a) geometry.size[a] = box.last[a] - box.first[a] + 1;
+  MaskGrid part(geometry);
+  for (std::int64_t k = 0; k < geometry.size[2]; ++k)
+    for (std::int64_t j = 0; j < geometry.size[1]; ++j) {
+      const auto from = mask.geometry.offset({box.first[0], box.first[1] + j, box.first[2] + k});
+      const auto to = geometry.offset({0, j, k});
+      for (std::size_t i = 0; i < static_cast<std::size_t>(geometry.size[0]); ++i)
+        part.voxels[to + i] = (mask.voxels[from + i] != 0) == of_set ? 1 : 0;
+    }
+  return part;
+}
+
+/// Sets the voxels of the box to `value` that lie within the radius of a voxel of `part`, the mask of that box.
+void paint_near(const MaskGrid& part, const Box& box, double radius_mm, std::uint8_t value, MaskGrid& result) {
+  // A ball of whole voxels must hold its outermost ones although distances are rounded.
+  constexpr double kRounding = 1e-6;
+  const auto limit = static_cast<float>(radius_mm * (1.0 + kRounding));
+  const FloatGrid distance = distance_to_mask_mm(part);
+  for (std::int64_t k = box.first[2]; k <= box.last[2]; ++k)
+    for (std::int64_t j = box.first[1]; j <= box.last[1]; ++j) {
+      const auto from = distance.geometry.offset({0, j - box.first[1], k - box.first[2]});
+      const auto to = result.geometry.offset({box.first[0], j, k});
+      for (std::size_t i = 0; i < static_cast<std::size_t>(distance.geometry.size[0]); ++i)
+        if (distance.voxels[from + i] <= limit) result.voxels[to + i] = value;
+    }
+}
+
+}  // namespace
+
+Components connected_components(const MaskGrid& mask) {
+  const detail::RunLabels labels = detail::label_runs(mask.voxels, block_of(mask.geometry), true);
+  const std::vector<std::size_t> sizes = component_sizes(labels);
+  std::vector<std::size_t> by_size(sizes.size());
+  std::iota(by_size.begin(), by_size.end(), std::size_t{0});
+  std::stable_sort(by_size.begin(), by_size.end(), [&](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
+
+  Components result{Grid<std::int32_t>(mask.geometry), {}};
+  std::vector<std::int32_t> id_of(sizes.size());
+  for (const std::size_t component : by_size) {
+    result.voxel_counts.push_back(sizes[component]);
+    id_of[component] = static_cast<std::int32_t>(result.voxel_counts.size());
+  }
+  for_each_run(labels, [&](std::size_t offset, std::size_t length, std::uint32_t component) {
+    std::fill_n(result.ids.voxels.begin() + static_cast<std::ptrdiff_t>(offset), length, id_of[component]);
+  });
+  return result;
+}
+
+MaskGrid largest_component(const MaskGrid& mask) {
+  const detail::RunLabels labels = detail::label_runs(mask.voxels, block_of(mask.geometry), true);
+  const std::vector<std::size_t> sizes = component_sizes(labels);
+  MaskGrid result(mask.geometry);
+  const auto largest = static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  for_each_run(labels, [&](std::size_t offset, std::size_t length, std::uint32_t component) {
+    if (component == largest)
+      std::fill_n(result.voxels.begin() + static_cast<std::ptrdiff_t>(offset), length, std::uint8_t{1});
+  });
+  return result;
+}
+
+MaskGrid fill_holes(const MaskGrid& mask) {
+  MaskGrid result = mask;
+  fill_block(result.voxels, block_of(mask.geometry), true);
+  return result;
+}
+
+MaskGrid fill_holes_in_slices(const MaskGrid& mask) {
+  MaskGrid result = mask;
+  const detail::Block slice{static_cast<std::size_t>(mask.geometry.size[0]),
+                            static_cast<std::size_t>(mask.geometry.size[1]), 1};
+  const std::size_t voxels = slice.columns * slice.rows;
+  parallel_for(static_cast<std::size_t>(mask.geometry.size[2]), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) fill_block({result.voxels.data() + k * voxels, voxels}, slice, false);
+  });
+  return result;
+}
+
+MaskGrid dilate(const MaskGrid& mask, double radius_mm) {
+  if (radius_mm < 0.0) return erode(mask, -radius_mm);
+  MaskGrid result = mask;
+  const std::optional<Box> box = bounding_box(mask);
+  if (!box || radius_mm == 0.0) return result;
+  const Box reach = grown(*box, mask.geometry, radius_mm);
+  paint_near(cut_out(mask, reach, true), reach, radius_mm, 1, result);
+  return result;
+}
+
+MaskGrid erode(const MaskGrid& mask, double radius_mm) {
+  if (radius_mm < 0.0) return dilate(mask, -radius_mm);
+  MaskGrid result = mask;
+  const std::optional<Box> box = bounding_box(mask);
+  if (!box || radius_mm == 0.0) return result;
+  // The nearest outside voxel of any inside one is at most one voxel beyond the bounding box.
+  const Box reach = grown(*box, mask.geometry, 0.0);
+  paint_near(cut_out(mask, reach, false), reach, radius_mm, 0, result);
+  return result;
+}
+
+}  // namespace trocar
