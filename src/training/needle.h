@@ -13,17 +13,22 @@ namespace trocar {
 struct Needle {
   std::string name;
   std::string title;
-  double gauge = 18.0;
+  double gauge = 18.0;              ///< Range 7..34.
   double outer_diameter_mm = 1.27;  ///< Range 0.2..5.
   double length_mm = 150.0;         ///< Tip to hub. Range 20..300.
-  double bevel_deg = 20.0;
+  double bevel_deg = 20.0;          ///< Between the bevel's face and the axis. Range 5..90.
   bool is_biopsy = false;
-  double throw_mm = 0.0;       ///< How far the inner stylet shoots beyond the tip.
-  double notch_mm = 0.0;       ///< Length of the specimen notch.
-  double dead_space_mm = 0.0;  ///< From the notch's distal end to the stylet's tip.
+  double throw_mm = 0.0;       ///< How far the inner stylet shoots beyond the tip. Range 5..40.
+  double notch_mm = 0.0;       ///< Length of the specimen notch. Range 3..40; notch and dead space fit into the throw.
+  double dead_space_mm = 0.0;  ///< From the notch's distal end to the stylet's tip. Range 0..15.
+
+  /// From the tip before firing to the middle of the notch after it; 0 for a needle that is not fired.
+  double notch_middle_mm() const noexcept { return is_biopsy ? throw_mm - dead_space_mm - 0.5 * notch_mm : 0.0; }
 };
 
+/// All needles of the file, in its order. Errors name file, line and key.
 Result<std::vector<Needle>> load_needles(const std::filesystem::path& path);
+/// Unknown name: exit status 2, the message lists the names.
 Result<Needle> load_needle(const std::filesystem::path& path, std::string_view name);
 
 }  // namespace trocar

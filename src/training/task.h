@@ -30,16 +30,25 @@ struct Task {
   double min_organ_path_mm = 10.0;      ///< Organ passed before the target. Range 0..50.
   double parenchymal_depth_mm = 20.0;   ///< Target at least this deep below the organ's surface without a lesion.
   double parenchymal_vessel_mm = 10.0;  ///< ... and this far from large vessels.
-  double max_path_mm = 150.0;
-  // Scoring, points in 0..100 (what each part is worth) and the deviation at which a part is worth nothing.
+  double max_path_mm = 150.0;           ///< Skin to the tip when it is at the target. Range 10..300.
+  double max_entry_angle_deg = 60.0;    ///< Between the needle and the skin's normal. Range 5..85.
+  double max_posterior_deg = 30.0;      ///< Supine patient: how far the skin's normal may look down. Range 0..90.
+  // Scoring: the deviation at which a part is worth nothing.
   double target_tolerance_mm = 5.0;
   double entry_tolerance_mm = 10.0;
   double angle_tolerance_deg = 10.0;
   double time_limit_s = 120.0;
 };
 
+/// All tasks of a folder, ordered by name. Errors name file, line and key.
 Result<std::vector<Task>> load_tasks(const std::filesystem::path& tasks_folder);
+/// Unknown name: exit status 2, the message lists the names.
 Result<Task> load_task(const std::filesystem::path& tasks_folder, std::string_view name);
+
+/// Whether a label is the task's organ, target, or one of its risk structures (nullptr: none).
+bool is_organ(const Task& task, const Label& label) noexcept;
+bool is_target(const Task& task, const Label& label) noexcept;
+const RiskStructure* find_risk(const Task& task, const Label& label) noexcept;
 
 /// Whether a patient can serve a task, and what is missing or doubtful, in words.
 struct TaskReadiness {

@@ -1,0 +1,65 @@
+#include "training/needle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/sourced_number.h"
+
+namespace trocar {
+namespace {
+
+Status read_value(const TomlTable& row, std::string_view key, Range range, double& value) {
+  TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, key, range));
+  value = number.value;
+  return {};
+}
+
+Result<Needle> read_needle(const TomlTable& row, const std::string& name) {
+  Needle needle;
+  needle.name = name;
+  TROCAR_TRY(needle.title, row.string("title"));
+  TROCAR_TRY(needle.gauge, row.number("gauge", {7.0, 34.0}));
+  TROCAR_TRY(needle.is_biopsy, row.boolean_or("is_biopsy", false));
+  std::vector<std::string_view> known = {"title", "gauge", "is_biopsy", "outer_diameter_mm", "length_mm", "bevel_deg"};
+  if (needle.is_biopsy) known.insert(known.end(), {"throw_mm", "notch_mm", "dead_space_mm"});
+  TROCAR_TRY_STATUS(row.check_keys(known));
+  TROCAR_TRY_STATUS(read_value(row, "outer_diameter_mm", {0.2, 5.0}, needle.outer_diameter_mm));
+  TROCAR_TRY_STATUS(read_value(row, "length_mm", {20.0, 300.0}, needle.length_mm));
+  TROCAR_TRY_STATUS(read_value(row, "bevel_deg", {5.0, 90.0}, needle.bevel_deg));
+  if (needle.is_biopsy) {
+    TROCAR_TRY_STATUS(read_value(row, "throw_mm", {5.0, 40.0}, needle.throw_mm));
+    TROCAR_TRY_STATUS(read_value(row, "notch_mm", {3.0, 40.0}, needle.notch_mm));
+    TROCAR_TRY_STATUS(read_value(row, "dead_space_mm", {0.0, 15.0}, needle.dead_space_mm));
+    if (needle.notch_mm + needle.dead_space_mm > needle.throw_mm)
+      return fail("notch and dead space are longer than the throw", row.where());
+  }
+  return needle;
+}
+
+}  // namespace
+
+Result<std::vector<Needle>> load_needles(const std::filesystem::path& path) {
+  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY_STATUS(document.check_keys({"needles"}));
+  TROCAR_TRY(const TomlTable rows, document.table("needles"));
+  std::vector<Needle> needles;
+  for (const std::string& name : rows.keys()) {
+    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(Needle needle, read_needle(row, name));
+    needles.push_back(std::move(needle));
+  }
+  return needles;
+}
+
+Result<Needle> load_needle(const std::filesystem::path& path, std::string_view name) {
+  TROCAR_TRY(std::vector<Needle> needles, load_needles(path));
+  const auto it = std::find_if(needles.begin(), needles.end(), [&](const Needle& n) { return n.name == name; });
+  if (it != needles.end()) return std::move(*it);
+  std::vector<std::string_view> names;
+  for (const Needle& needle : needles) names.push_back(needle.name);
+  return fail_usage(fmt::format("there is no needle \"{}\"", name), path.string(),
+                    fmt::format("known are: {}", fmt::join(names, ", ")));
+}
+
+}  // namespace trocar

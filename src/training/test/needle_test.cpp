@@ -1,0 +1,65 @@
+#include "training/needle.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <map>
+
+#include "core/atomic_file.h"
+#include "core/data_dir.h"
+
+namespace trocar {
+namespace {
+
+const std::filesystem::path kFile = data_dir() / "needles.toml";
+
+TEST(Needle, DiametersFollowTheGauge) {
+  const auto needles = load_needles(kFile);
+  ASSERT_TRUE(needles) << needles.error().text();
+  // Needle gauge comparison chart (Birmingham wire gauge), mm.
+  const std::map<double, double> chart = {{14, 2.108}, {16, 1.651}, {17, 1.473}, {18, 1.270}, {22, 0.7176}};
+  EXPECT_GE(needles->size(), 7u);
+  for (const Needle& needle : *needles) {
+    ASSERT_TRUE(chart.contains(needle.gauge)) << needle.name;
+    EXPECT_NEAR(needle.outer_diameter_mm, chart.at(needle.gauge), 0.0006) << needle.name;
+    EXPECT_FALSE(needle.title.empty());
+    EXPECT_EQ(needle.is_biopsy, needle.name.starts_with("biopsy")) << needle.name;
+  }
+}
+
+TEST(Needle, NotchAndDeadSpaceFitIntoTheThrow) {
+  const auto needle = load_needle(kFile, "biopsy-18g");
+  ASSERT_TRUE(needle);
+  EXPECT_EQ(needle->throw_mm, 22.0);
+  EXPECT_LE(needle->notch_mm + needle->dead_space_mm, needle->throw_mm);
+  EXPECT_EQ(needle->notch_middle_mm(), needle->throw_mm - needle->dead_space_mm - needle->notch_mm / 2);
+  EXPECT_EQ(load_needle(kFile, "chiba-22g")->notch_middle_mm(), 0.0);
+}
+
+TEST(Needle, UnknownNameListsTheKnownOnes) {
+  const auto needle = load_needle(kFile, "chiba-23g");
+  ASSERT_FALSE(needle);
+  EXPECT_EQ(needle.error().exit_status, 2);
+  EXPECT_NE(needle.error().advice.find("chiba-22g"), std::string::npos);
+}
+
+TEST(Needle, ImpossibleNeedleIsRefused) {
+  const std::string good = *read_file(kFile);
+  const auto path = std::filesystem::temp_directory_path() / ("needles_" + std::to_string(::getpid()) + ".toml");
+  const auto is_refused = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    EXPECT_TRUE(write_file_atomically(path, text));
+    const bool refused = !load_needles(path);
+    std::filesystem::remove(path);
+    return refused;
+  };
+  EXPECT_FALSE(is_refused("gauge", "gauge"));
+  EXPECT_TRUE(is_refused("dead_space_mm = {value = 3", "dead_space_mm = {value = 4"));
+  EXPECT_TRUE(is_refused("throw_mm = ", "trow_mm = "));
+  EXPECT_TRUE(is_refused("value = 1.27", "value = 127"));
+  EXPECT_TRUE(is_refused("is_biopsy = true", "is_biopsy = 1"));
+}
+
+}  // namespace
+}  // namespace trocar
