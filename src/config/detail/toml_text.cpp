@@ -102,7 +102,7 @@ Status check_toml_text(std::string_view text, const std::string& name) {
 
 std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& candidates) {
   std::string_view nearest;
-  std::size_t smallest = std::max<std::size_t>(2, word.size() / 3) + 1;  // more edits than this are no misspelling
+  std::size_t smallest = word.size() + 1;
   for (const std::string_view candidate : candidates) {
     // Levenshtein distance, one row of the table at a time.
     std::vector<std::size_t> row(candidate.size() + 1);
@@ -116,7 +116,9 @@ std::string_view nearest_word(std::string_view word, const std::vector<std::stri
         row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
       }
     }
-    if (row.back() < smallest) {
+    // More changed letters than a third are no misspelling.
+    const std::size_t allowed = std::max<std::size_t>(2, std::max(word.size(), candidate.size()) / 3);
+    if (row.back() <= allowed && row.back() < smallest) {
       smallest = row.back();
       nearest = candidate;
     }

@@ -101,7 +101,7 @@ TEST(TaskReadiness, WithoutLesionTheTargetIsParenchymal) {
 
 TEST(TaskReadiness, NamesWhatMakesTheTaskImpossible) {
   BoxPatient no_liver;
-  no_liver.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) < -22.0 ? "soft_tissue" : ""; };
+  no_liver.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) <= -22.0 ? "soft_tissue" : ""; };
   const auto readiness = check_task(liver_biopsy(), no_liver.make());
   EXPECT_FALSE(readiness.is_possible);
   EXPECT_TRUE(mentions(readiness, "no liver is labelled"));
