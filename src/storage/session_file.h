@@ -1,15 +1,20 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "anatomy/patient.h"
 #include "core/result.h"
+#include "telemetry/tick_sample.h"
 #include "training/score.h"
 
 namespace trocar {
+
+inline constexpr int kSessionFormatVersion = 1;  ///< A file of a newer version is refused.
 
 /// Everything about an attempt but its ticks: enough to repeat it.
 struct SessionInfo {
@@ -35,18 +40,21 @@ struct SessionInfo {
   std::vector<std::string> label_names;  ///< 256 entries.
 };
 
-/// Writes a session as it happens: one SQLite file in WAL mode. Killed at any moment it loses at most the last second
-/// of samples and opens again. Ticks are buffered and committed at least every 500 ms of session time.
+/// Writes a session as it happens: one SQLite file in WAL mode. Killed at any moment it loses at most the last half
+/// second of ticks and opens again: ticks are buffered and committed every 0.5 s of session time, and after as many as
+/// 0.5 s hold at the session's rate. After the first failure it writes no more and returns that failure again.
+/// Not real-time safe; one thread. Without finish() what is buffered is written and the session stays incomplete.
 class SessionWriter {
  public:
-  /// An existing file is refused (exit status 2).
+  /// An existing file is refused (exit status 2). A file that could not be set up is removed again.
   static Result<SessionWriter> create(const std::filesystem::path& path, const SessionInfo& info);
   SessionWriter(SessionWriter&&) noexcept;
   SessionWriter& operator=(SessionWriter&&) noexcept;
   ~SessionWriter();
 
   Status append(const TickSample& sample);
-  /// Writes what is buffered, then the outcome, and makes it a single file again.
+  /// Writes what is buffered, then the outcome, and makes it a single file again. `fired` is a sample's index. Nothing
+  /// can be appended afterwards.
   Status finish(const Outcome& outcome, std::optional<std::size_t> fired);
 
  private:
@@ -61,11 +69,17 @@ struct Session {
   std::optional<Outcome> outcome;    ///< Missing when the program was killed before the end.
   std::optional<std::size_t> fired;  ///< Sample at which the biopsy gun was fired.
 };
+/// Reads a finished or a killed session (its -wal file beside it). NaN comes back as NaN, -0.0 as 0.0; other values bit
+/// by bit. Errors, one line each: no such file, a folder, empty, not a session, damaged, of a newer version, a killed
+/// session where nothing can be written.
 Result<Session> load_session(const std::filesystem::path& path);
 
+/// An event in words, "puncture:skin"; empty for kNone. An id without a name is "#id".
+std::string event_text(const SessionInfo& info, const TickEvent& event);
 /// The events of a sample in words: "puncture:skin;enter:liver".
 std::string event_text(const SessionInfo& info, const TickSample& sample);
-/// One row a tick, the columns of the contract in their order.
+/// One row a tick under a header, comma separated; numbers in the shortest form that reads back to the same value, nan
+/// and inf as words. Columns: docs and `trocar session export --help`. Written whole or not at all.
 Status export_csv(const Session& session, const std::filesystem::path& path);
 
 }  // namespace trocar

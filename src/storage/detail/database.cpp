@@ -1,0 +1,77 @@
+#include "storage/detail/database.h"
+
+#include <fmt/format.h>
+
+#include "storage/detail/columns.h"
+#include "storage/session_file.h"
+
+namespace trocar::storage_detail {
+namespace {
+
+/// Columns of the view, which shows names where the table has numbers.
+std::string view_columns() {
+  std::string list;
+  const TickSample sample;
+  visit_columns(sample, [&](const char* name, const auto& field) {
+    using Field = std::remove_cvref_t<decltype(field)>;
+    if (!list.empty()) list += ", ";
+    if constexpr (std::is_same_v<Field, std::uint8_t>)
+      list += fmt::format("(SELECT name FROM tissues WHERE id = t.{0}) AS {0}", name);
+    else if constexpr (std::is_same_v<Field, InsertionPhase>)
+      list += fmt::format("(SELECT name FROM phases WHERE id = t.{0}) AS {0}", name);
+    else if constexpr (std::is_same_v<Field, std::array<TickEvent, 4>>)
+      list += fmt::format(
+          "coalesce((SELECT group_concat(text, ';') FROM (SELECT text FROM events e WHERE e.tick = t.tick"
+          " ORDER BY slot)), '') AS {}",
+          name);
+    else
+      list += fmt::format("t.{}", name);
+  });
+  return list;
+}
+
+}  // namespace
+
+void open_database(soci::session& database, const std::filesystem::path& path) {
+  const std::string absolute = std::filesystem::absolute(path).string();
+  if (absolute.find('"') != std::string::npos) throw soci::soci_error("a quotation mark in the path");
+  database.open(soci::sqlite3, "dbname=\"" + absolute + "\" timeout=5");
+}
+
+std::vector<std::string> schema_statements() {
+  std::string ticks = "CREATE TABLE ticks (tick INTEGER PRIMARY KEY";
+  const TickSample sample;
+  visit_stored_columns(sample, [&](const char* name, const auto& field) {
+    using Field = std::remove_cvref_t<decltype(field)>;
+    ticks += fmt::format(", {} {}", name, kIsReal<Field> ? "REAL" : "INTEGER NOT NULL");
+  });
+  std::vector<std::string> statements{fmt::format("PRAGMA application_id = {}", kApplicationId),
+                                      fmt::format("PRAGMA user_version = {}", kSessionFormatVersion),
+                                      "CREATE TABLE info (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"};
+  for (const char* table : {"tissues", "layers", "labels", "phases"})
+    statements.push_back(fmt::format("CREATE TABLE {} (id INTEGER PRIMARY KEY, name TEXT NOT NULL)", table));
+  statements.push_back(ticks + ")");
+  statements.emplace_back(
+      "CREATE TABLE events (tick INTEGER NOT NULL, slot INTEGER NOT NULL, kind INTEGER NOT NULL, id INTEGER NOT NULL, "
+      "text TEXT NOT NULL, PRIMARY KEY (tick, slot)) WITHOUT ROWID");
+  statements.emplace_back(
+      "CREATE TABLE outcome (score REAL, target_reached INTEGER NOT NULL, fired_tick INTEGER, json TEXT NOT NULL)");
+  statements.push_back(
+      fmt::format("CREATE VIEW session_rows AS SELECT {} FROM ticks t ORDER BY t.tick", view_columns()));
+  return statements;
+}
+
+int pragma_integer(soci::session& database, const std::string& name) {
+  int value = 0;
+  database << "PRAGMA " + name, soci::into(value);
+  return value;
+}
+
+std::string reason_of(const std::exception& error) {
+  std::string text = error.what();
+  if (const std::size_t end = text.find(" while "); end != std::string::npos) text.resize(end);
+  if (const std::size_t colon = text.rfind(": "); colon != std::string::npos) text.erase(0, colon + 2);
+  return text;
+}
+
+}  // namespace trocar::storage_detail

@@ -1,0 +1,119 @@
+#include "storage/detail/info_table.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <map>
+
+namespace trocar::storage_detail {
+namespace {
+
+/// The one list of what `info` keeps: calls visit(key, field) for each member; strings, numbers and truth values.
+template <class Info, class Visitor>
+void visit_info(Info& info, Visitor&& visit) {
+  visit("program_version", info.program_version);
+  visit("started_utc", info.started_utc);
+  visit("task", info.task);
+  visit("patient_name", info.patient_name);
+  visit("patient_source", info.patient_source);
+  visit("patient_hash", info.patient_hash);
+  visit("patient_seed", info.patient_seed);
+  visit("operator", info.operator_name);
+  visit("force_model", info.force_model);
+  visit("seed", info.seed);
+  visit("rate_hz", info.rate_hz);
+  visit("needle", info.needle);
+  visit("device", info.device);
+  visit("tissue_table_toml", info.tissue_table_toml);
+  visit("plan_name", info.plan_P.name);
+  visit("plan_entry_x_mm", info.plan_P.line_P.a[0]);
+  visit("plan_entry_y_mm", info.plan_P.line_P.a[1]);
+  visit("plan_entry_z_mm", info.plan_P.line_P.a[2]);
+  visit("plan_target_x_mm", info.plan_P.line_P.b[0]);
+  visit("plan_target_y_mm", info.plan_P.line_P.b[1]);
+  visit("plan_target_z_mm", info.plan_P.line_P.b[2]);
+  visit("is_parenchymal", info.is_parenchymal);
+}
+
+template <class Field>
+Field parse_number(const std::string& key, const std::string& text) {
+  Field value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw soci::soci_error(fmt::format("\"{}\" is no number", key));
+  return value;
+}
+
+void write_names(soci::session& database, const std::string& table, const std::vector<std::string>& names) {
+  int id = 0;
+  std::string name;
+  soci::statement insert =
+      (database.prepare << "INSERT INTO " + table + " (id, name) VALUES (:id, :name)", soci::use(id), soci::use(name));
+  for (id = 0; static_cast<std::size_t>(id) < names.size(); ++id) {
+    name = names[static_cast<std::size_t>(id)];
+    insert.execute(true);
+  }
+}
+
+std::vector<std::string> read_names(soci::session& database, const std::string& table) {
+  std::vector<std::string> names;
+  std::string name;
+  soci::statement select = (database.prepare << "SELECT name FROM " + table + " ORDER BY id", soci::into(name));
+  select.execute();
+  while (select.fetch()) names.push_back(name);
+  return names;
+}
+
+}  // namespace
+
+void write_info(soci::session& database, const SessionInfo& info) {
+  std::string key;
+  std::string value;
+  soci::statement insert =
+      (database.prepare << "INSERT INTO info (key, value) VALUES (:key, :value)", soci::use(key), soci::use(value));
+  visit_info(info, [&](const char* name, const auto& field) {
+    key = name;
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, bool>)
+      value = fmt::format("{:d}", field);
+    else
+      value = fmt::format("{}", field);
+    insert.execute(true);
+  });
+  write_names(database, "tissues", info.tissue_names);
+  write_names(database, "layers", info.layer_names);
+  write_names(database, "labels", info.label_names);
+  std::vector<std::string> phases;
+  for (const auto phase :
+       {InsertionPhase::kOutside, InsertionPhase::kLoading, InsertionPhase::kInserted, InsertionPhase::kRetracting})
+    phases.emplace_back(to_string(phase));
+  write_names(database, "phases", phases);
+}
+
+SessionInfo read_info(soci::session& database) {
+  std::map<std::string, std::string> values;
+  {
+    std::string key;
+    std::string value;
+    soci::statement select = (database.prepare << "SELECT key, value FROM info", soci::into(key), soci::into(value));
+    select.execute();
+    while (select.fetch()) values[key] = value;
+  }
+  SessionInfo info;
+  visit_info(info, [&](const char* name, auto& field) {
+    using Field = std::remove_cvref_t<decltype(field)>;
+    const auto found = values.find(name);
+    if (found == values.end()) throw soci::soci_error(fmt::format("\"{}\" is missing", name));
+    if constexpr (std::is_same_v<Field, std::string>)
+      field = found->second;
+    else if constexpr (std::is_same_v<Field, bool>)
+      field = found->second == "1";
+    else
+      field = parse_number<Field>(name, found->second);
+  });
+  info.tissue_names = read_names(database, "tissues");
+  info.layer_names = read_names(database, "layers");
+  info.label_names = read_names(database, "labels");
+  return info;
+}
+
+}  // namespace trocar::storage_detail

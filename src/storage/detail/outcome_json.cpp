@@ -1,0 +1,135 @@
+#include "storage/detail/outcome_json.h"
+
+#include <limits>
+
+#include "config/json.h"
+
+namespace trocar::storage_detail {
+namespace {
+
+Json vector_json(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+Json core_json(const BiopsyCore& core) {
+  Json pieces = Json::array();
+  for (const CorePiece& piece : core.pieces)
+    pieces.push_back(
+        {{"label", piece.label}, {"tissue", piece.tissue}, {"from_mm", piece.from_mm}, {"to_mm", piece.to_mm}});
+  return {{"tip_P", vector_json(core.tip_P)}, {"axis_P", vector_json(core.axis_P)},
+          {"pieces", std::move(pieces)},      {"target_mm", core.target_mm},
+          {"organ_mm", core.organ_mm},        {"vessel_mm", core.vessel_mm},
+          {"other_mm", core.other_mm},        {"risks_in_throw", core.risks_in_throw}};
+}
+
+/// Reads the members of one object; the first that is missing or of another kind makes the whole reading fail.
+class Reader {
+ public:
+  explicit Reader(const Json& object, bool& is_good) : object_(object), is_good_(is_good) {}
+
+  double number(const char* key) {
+    const Json* member = find(key);
+    return member != nullptr ? number_of(*member) : 0.0;
+  }
+  bool boolean(const char* key) {
+    const Json* member = find(key);
+    return is_kind(member, Json::value_t::boolean) && member->get<bool>();
+  }
+  std::string text(const char* key) {
+    const Json* member = find(key);
+    return is_kind(member, Json::value_t::string) ? member->get<std::string>() : std::string();
+  }
+  std::vector<std::string> texts(const char* key) {
+    std::vector<std::string> list;
+    for (const Json& item : array(key))
+      if (is_kind(&item, Json::value_t::string)) list.push_back(item.get<std::string>());
+    return list;
+  }
+  Vec3 vector(const char* key) {
+    const Json& items = array(key);
+    if (items.size() != 3) return is_good_ = false, Vec3::Zero();
+    return {number_of(items[0]), number_of(items[1]), number_of(items[2])};
+  }
+  const Json& array(const char* key) {
+    static const Json kEmpty = Json::array();
+    const Json* member = find(key);
+    return is_kind(member, Json::value_t::array) ? *member : kEmpty;
+  }
+
+ private:
+  const Json* find(const char* key) {
+    const auto found = object_.find(key);
+    if (found == object_.end()) return is_good_ = false, nullptr;
+    return &*found;
+  }
+  bool is_kind(const Json* value, Json::value_t kind) {
+    if (value == nullptr || value->type() != kind) is_good_ = false;
+    return is_good_;
+  }
+  double number_of(const Json& value) {
+    if (value.is_null()) return std::numeric_limits<double>::quiet_NaN();
+    if (!value.is_number()) return is_good_ = false, 0.0;
+    return value.get<double>();
+  }
+
+  const Json& object_;
+  bool& is_good_;
+};
+
+BiopsyCore read_core(const Json& object, bool& is_good) {
+  Reader reader(object, is_good);
+  BiopsyCore core;
+  core.tip_P = reader.vector("tip_P");
+  core.axis_P = reader.vector("axis_P");
+  for (const Json& item : reader.array("pieces")) {
+    Reader piece(item, is_good);
+    core.pieces.push_back({piece.text("label"), piece.text("tissue"), piece.number("from_mm"), piece.number("to_mm")});
+  }
+  core.target_mm = reader.number("target_mm");
+  core.organ_mm = reader.number("organ_mm");
+  core.vessel_mm = reader.number("vessel_mm");
+  core.other_mm = reader.number("other_mm");
+  core.risks_in_throw = reader.texts("risks_in_throw");
+  return core;
+}
+
+}  // namespace
+
+std::string outcome_to_json(const Outcome& outcome) {
+  Json parts = Json::array();
+  for (const ScorePart& part : outcome.parts)
+    parts.push_back({{"name", part.name},
+                     {"title", part.title},
+                     {"value", part.value},
+                     {"unit", part.unit},
+                     {"points", part.points},
+                     {"max_points", part.max_points}});
+  Json object{{"score", outcome.score},
+              {"target_reached", outcome.target_reached},
+              {"parts", std::move(parts)},
+              {"hints", outcome.hints},
+              {"risks_touched", outcome.risks_touched}};
+  if (outcome.core) object["core"] = core_json(*outcome.core);
+  return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<Outcome> outcome_from_json(std::string_view text, const std::string& where) {
+  TROCAR_TRY(const Json object, parse_json(text, where));
+  bool is_good = true;
+  Reader reader(object, is_good);
+  Outcome outcome;
+  outcome.score = reader.number("score");
+  outcome.target_reached = reader.boolean("target_reached");
+  for (const Json& item : reader.array("parts")) {
+    Reader part(item, is_good);
+    outcome.parts.push_back({part.text("name"), part.text("title"), part.number("value"), part.text("unit"),
+                             part.number("points"), part.number("max_points")});
+  }
+  outcome.hints = reader.texts("hints");
+  outcome.risks_touched = reader.texts("risks_touched");
+  if (const auto core = object.find("core"); core != object.end()) outcome.core = read_core(*core, is_good);
+  if (!is_good) return fail("the session's outcome is damaged", where, "record the session again");
+  return outcome;
+}
+
+}  // namespace trocar::storage_detail

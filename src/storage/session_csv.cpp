@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "core/atomic_file.h"
+#include "storage/detail/columns.h"
+#include "storage/session_file.h"
+
+namespace trocar {
+using namespace storage_detail;
+namespace {
+
+constexpr std::size_t kBytesATick = 420;  ///< Usual length of a row, to reserve by.
+
+std::string name_of(const std::vector<std::string>& names, std::uint8_t id) {
+  return id < names.size() ? names[id] : fmt::format("#{}", id);
+}
+
+/// A field as RFC 4180 wants it: quoted where it holds a comma, a quotation mark or a line break.
+void append_text(std::string& out, const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) {
+    out += text;
+    return;
+  }
+  out += '"';
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  out += '"';
+}
+
+/// The shortest digits that read back to the same double, whatever the locale.
+void append_number(std::string& out, double value) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  out.append(digits, end);
+}
+
+void append_header(std::string& out) {
+  const TickSample sample;
+  visit_columns(sample, [&](const char* name, const auto&) {
+    out += name;
+    out += ',';
+  });
+  out.back() = '\n';
+}
+
+void append_row(std::string& out, const SessionInfo& info, const TickSample& sample) {
+  visit_columns(sample, [&](const char*, const auto& field) {
+    using Field = std::remove_cvref_t<decltype(field)>;
+    if constexpr (std::is_same_v<Field, double>)
+      append_number(out, field);
+    else if constexpr (std::is_same_v<Field, std::uint8_t>)
+      append_text(out, name_of(info.tissue_names, field));
+    else if constexpr (std::is_same_v<Field, InsertionPhase>)
+      out += to_string(field);
+    else if constexpr (std::is_same_v<Field, bool>)
+      out += field ? '1' : '0';
+    else
+      append_text(out, event_text(info, sample));
+    out += ',';
+  });
+  out.back() = '\n';
+}
+
+}  // namespace
+
+std::string event_text(const SessionInfo& info, const TickEvent& event) {
+  switch (event.kind) {
+    case EventKind::kNone:
+      return {};
+    case EventKind::kPuncture:
+      return "puncture:" + name_of(info.layer_names, event.id);
+    case EventKind::kEnter:
+      return "enter:" + name_of(info.label_names, event.id);
+    case EventKind::kLimit:
+      return std::string("limit:") + to_string(static_cast<LimitReason>(event.id));
+  }
+  return {};
+}
+
+std::string event_text(const SessionInfo& info, const TickSample& sample) {
+  std::string text;
+  for (const TickEvent& event : sample.events) {
+    if (event.kind == EventKind::kNone) continue;
+    if (!text.empty()) text += ';';
+    text += event_text(info, event);
+  }
+  return text;
+}
+
+Status export_csv(const Session& session, const std::filesystem::path& path) {
+  std::string text;
+  text.reserve((session.samples.size() + 2) * kBytesATick);
+  append_header(text);
+  for (const TickSample& sample : session.samples) append_row(text, session.info, sample);
+  return write_file_atomically(path, text);
+}
+
+}  // namespace trocar

@@ -1,0 +1,244 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "core/check.h"
+#include "core/log.h"
+#include "storage/detail/columns.h"
+#include "storage/detail/database.h"
+#include "storage/detail/info_table.h"
+#include "storage/detail/outcome_json.h"
+#include "storage/session_file.h"
+
+namespace trocar {
+namespace fs = std::filesystem;
+using namespace storage_detail;
+namespace {
+
+constexpr double kBatchSeconds = 0.5;         ///< Session time between two commits.
+constexpr double kMaxBatchTicks = 100'000.0;  ///< Bound of the buffer whatever the rate says.
+constexpr const char* kWriteAdvice = "free some disk space or choose another place";
+
+/// Takes the name: an existing file is never touched.
+Status claim(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
+  if (file < 0 && errno == EEXIST)
+    return fail_usage("exists already", path.string(), "choose another name or remove it first");
+  if (file < 0) return fail(fmt::format("cannot be made: {}", std::strerror(errno)), path.string(), kWriteAdvice);
+  ::close(file);
+  return {};
+}
+
+void remove_with_companions(const fs::path& path) {
+  std::error_code ignored;
+  for (const char* suffix : {"-wal", "-shm", "-journal", ""}) fs::remove(path.string() + suffix, ignored);
+}
+
+}  // namespace
+
+/// Invariant: every buffered column is as long as `times` of `ticks`.
+struct SessionWriter::Impl {
+  fs::path path;
+  SessionInfo info;
+  std::size_t batch_ticks = 1;
+  int next_tick = 0;
+  double batch_start_s = 0.0;
+  std::optional<Error> failure;
+  bool is_finished = false;
+
+  // Buffered columns, to which the statements are bound.
+  std::vector<int> tick_column;
+  std::vector<std::vector<double>> real_columns;
+  std::vector<std::vector<soci::indicator>> real_indicators;
+  std::vector<std::vector<int>> integer_columns;
+  struct {
+    std::vector<int> tick, slot, kind, id;
+    std::vector<std::string> text;
+  } events;
+
+  soci::session database;
+  std::optional<soci::statement> insert_ticks, insert_events;
+
+  ~Impl() {
+    if (!is_finished && !failure) static_cast<void>(flush());
+    insert_events.reset();
+    insert_ticks.reset();
+  }
+
+  void set_up();
+  void prepare_insert_ticks();
+  void prepare_insert_events();
+  void buffer(const TickSample& sample);
+  Status flush();
+  void clear();
+};
+
+void SessionWriter::Impl::set_up() {
+  open_database(database, path);
+  std::string mode;
+  database << "PRAGMA journal_mode = WAL", soci::into(mode);
+  database << "PRAGMA synchronous = NORMAL";
+  database << "BEGIN IMMEDIATE";
+  for (const std::string& statement : schema_statements()) database << statement;
+  write_info(database, info);
+  database << "COMMIT";
+  prepare_insert_ticks();
+  prepare_insert_events();
+}
+
+void SessionWriter::Impl::prepare_insert_ticks() {
+  std::string names = "tick";
+  std::string values = ":tick";
+  std::size_t reals = 0;
+  std::size_t integers = 0;
+  const TickSample sample;
+  visit_stored_columns(sample, [&](const char* name, const auto& field) {
+    names += fmt::format(", {}", name);
+    values += fmt::format(", :{}", name);
+    ++(kIsReal<std::remove_cvref_t<decltype(field)>> ? reals : integers);
+  });
+  real_columns.resize(reals);
+  real_indicators.resize(reals);
+  integer_columns.resize(integers);
+
+  insert_ticks.emplace(database);
+  insert_ticks->exchange(soci::use(tick_column));
+  reals = integers = 0;
+  visit_stored_columns(sample, [&](const char*, const auto& field) {
+    if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>) {
+      insert_ticks->exchange(soci::use(real_columns[reals], real_indicators[reals]));
+      ++reals;
+    } else {
+      insert_ticks->exchange(soci::use(integer_columns[integers++]));
+    }
+  });
+  insert_ticks->alloc();
+  insert_ticks->prepare(fmt::format("INSERT INTO ticks ({}) VALUES ({})", names, values));
+  insert_ticks->define_and_bind();
+}
+
+void SessionWriter::Impl::prepare_insert_events() {
+  insert_events.emplace(database);
+  insert_events->exchange(soci::use(events.tick));
+  insert_events->exchange(soci::use(events.slot));
+  insert_events->exchange(soci::use(events.kind));
+  insert_events->exchange(soci::use(events.id));
+  insert_events->exchange(soci::use(events.text));
+  insert_events->alloc();
+  insert_events->prepare("INSERT INTO events (tick, slot, kind, id, text) VALUES (:tick, :slot, :kind, :id, :text)");
+  insert_events->define_and_bind();
+}
+
+void SessionWriter::Impl::buffer(const TickSample& sample) {
+  tick_column.push_back(next_tick);
+  std::size_t real = 0;
+  std::size_t integer = 0;
+  visit_stored_columns(sample, [&](const char*, const auto& field) {
+    if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>) {
+      // SQLite has no NaN: it is kept as NULL.
+      real_indicators[real].push_back(std::isnan(field) ? soci::i_null : soci::i_ok);
+      real_columns[real++].push_back(field);
+    } else {
+      integer_columns[integer++].push_back(static_cast<int>(field));
+    }
+  });
+  for (std::size_t slot = 0; slot < sample.events.size(); ++slot) {
+    const TickEvent& event = sample.events[slot];
+    if (event.kind == EventKind::kNone) continue;
+    events.tick.push_back(next_tick);
+    events.slot.push_back(static_cast<int>(slot));
+    events.kind.push_back(static_cast<int>(event.kind));
+    events.id.push_back(event.id);
+    events.text.push_back(event_text(info, event));
+  }
+  ++next_tick;
+}
+
+Status SessionWriter::Impl::flush() {
+  if (tick_column.empty()) return {};
+  Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
+    database << "BEGIN IMMEDIATE";
+    insert_ticks->execute(true);
+    if (!events.tick.empty()) insert_events->execute(true);
+    database << "COMMIT";
+  });
+  if (!status) failure = status.error();
+  clear();
+  return status;
+}
+
+void SessionWriter::Impl::clear() {
+  tick_column.clear();
+  for (auto& column : real_columns) column.clear();
+  for (auto& column : real_indicators) column.clear();
+  for (auto& column : integer_columns) column.clear();
+  for (auto* column : {&events.tick, &events.slot, &events.kind, &events.id}) column->clear();
+  events.text.clear();
+}
+
+SessionWriter::SessionWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SessionWriter::SessionWriter(SessionWriter&&) noexcept = default;
+SessionWriter& SessionWriter::operator=(SessionWriter&&) noexcept = default;
+SessionWriter::~SessionWriter() = default;
+
+Result<SessionWriter> SessionWriter::create(const fs::path& path, const SessionInfo& info) {
+  TROCAR_TRY_STATUS(claim(path));
+  auto impl = std::make_unique<Impl>();
+  impl->path = path;
+  impl->info = info;
+  impl->batch_ticks = static_cast<std::size_t>(std::clamp(kBatchSeconds * info.rate_hz, 1.0, kMaxBatchTicks));
+  const Status status = guarded("the session cannot be made", path, kWriteAdvice, [&] { impl->set_up(); });
+  if (!status) {
+    impl.reset();
+    remove_with_companions(path);
+    return tl::unexpected(status.error());
+  }
+  return SessionWriter(std::move(impl));
+}
+
+Status SessionWriter::append(const TickSample& sample) {
+  TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
+  if (impl_->failure) return tl::unexpected(*impl_->failure);
+  if (impl_->tick_column.empty()) impl_->batch_start_s = sample.time_s;
+  impl_->buffer(sample);
+  const bool is_due = sample.time_s - impl_->batch_start_s >= kBatchSeconds;
+  if (is_due || impl_->tick_column.size() >= impl_->batch_ticks) return impl_->flush();
+  return {};
+}
+
+Status SessionWriter::finish(const Outcome& outcome, std::optional<std::size_t> fired) {
+  TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
+  TROCAR_CHECK(!fired || *fired < static_cast<std::size_t>(impl_->next_tick));
+  if (impl_->failure) return tl::unexpected(*impl_->failure);
+  TROCAR_TRY_STATUS(impl_->flush());
+  const Status status = guarded("the session's outcome cannot be written", impl_->path, kWriteAdvice, [&] {
+    double score = outcome.score;
+    soci::indicator score_indicator = std::isnan(score) ? soci::i_null : soci::i_ok;
+    int target_reached = outcome.target_reached ? 1 : 0;
+    int fired_tick = fired ? static_cast<int>(*fired) : 0;
+    soci::indicator fired_indicator = fired ? soci::i_ok : soci::i_null;
+    std::string json = outcome_to_json(outcome);
+    impl_->database << "INSERT INTO outcome (score, target_reached, fired_tick, json) VALUES (:s, :t, :f, :j)",
+        soci::use(score, score_indicator), soci::use(target_reached), soci::use(fired_tick, fired_indicator),
+        soci::use(json);
+  });
+  if (!status) impl_->failure = status.error();
+  TROCAR_TRY_STATUS(status);
+  impl_->is_finished = true;
+  impl_->insert_events.reset();
+  impl_->insert_ticks.reset();
+  // All is committed: that somebody looks on, so that the -wal file must stay a while, is no failure.
+  const Status single = guarded("stays in two files", impl_->path, "", [&] {
+    std::string mode;
+    impl_->database << "PRAGMA journal_mode = DELETE", soci::into(mode);
+  });
+  if (!single) log_warning("{}", single.error().text());
+  return {};
+}
+
+}  // namespace trocar
