@@ -21,6 +21,10 @@ using test::example_outcome;
 using test::example_sample;
 using test::TemporaryFolder;
 
+void write_bytes(const fs::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
 /// Writes `ticks` samples; finishes the session.
 void write_session(const fs::path& path, std::size_t ticks, const SessionInfo& info = example_info()) {
   auto writer = SessionWriter::create(path, info);
@@ -175,7 +179,7 @@ TEST(SessionFile, TakesPathsWithSpacesEqualSignsAndUmlauts) {
 
 TEST(SessionFile, NeverTouchesAnExistingFile) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(write_file_atomically(folder / "mine.txt", "my text"));
+  write_bytes(folder / "mine.txt", "my text");
   const auto writer = SessionWriter::create(folder / "mine.txt", example_info());
   ASSERT_FALSE(writer);
   EXPECT_EQ(writer.error().exit_status, 2);
@@ -212,9 +216,9 @@ TEST(SessionFile, RefusesADatabaseThatIsNoSession) {
 
 TEST(SessionFile, RefusesWhatIsNoSession) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(write_file_atomically(folder / "empty", ""));
-  ASSERT_TRUE(write_file_atomically(folder / "short", "SQLite"));
-  ASSERT_TRUE(write_file_atomically(folder / "text", "a text that is long enough to be anything"));
+  write_bytes(folder / "empty", "");
+  write_bytes(folder / "short", "SQLite");
+  write_bytes(folder / "text", "a text that is long enough to be anything");
   EXPECT_NE(refusal(folder / "gone").find("no such session"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder / "gone"));
   EXPECT_NE(refusal(folder.path()).find("is a folder"), std::string::npos);
@@ -228,7 +232,7 @@ TEST(SessionFile, RefusesAFileCutAnywhere) {
   write_session(folder / "s.trocar", 200);
   const std::string bytes = *read_file(folder / "s.trocar");
   for (std::size_t keep = 16; keep + 1 < bytes.size(); keep += bytes.size() / 23) {
-    ASSERT_TRUE(write_file_atomically(folder / "cut.trocar", std::string_view(bytes).substr(0, keep)));
+    write_bytes(folder / "cut.trocar", bytes.substr(0, keep));
     EXPECT_NE(refusal(folder / "cut.trocar"), "opened") << keep << " of " << bytes.size();
   }
 }
@@ -243,7 +247,7 @@ TEST(SessionFile, SurvivesRandomBytesAnywhere) {
     std::string damaged = bytes;
     for (int n = 0; n < 40; ++n)
       damaged[16 + static_cast<std::size_t>(random.next()) % (bytes.size() - 16)] = static_cast<char>(random.next());
-    ASSERT_TRUE(write_file_atomically(folder / "bad.trocar", damaged));
+    write_bytes(folder / "bad.trocar", damaged);
     if (refusal(folder / "bad.trocar") != "opened") ++refused;
   }
   EXPECT_GT(refused, 50);  // Damage to the payload of a number cannot be seen; damage to the structure must be.
