@@ -1,0 +1,95 @@
+// What the program does with words: help, versions, mistakes.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "cli/program.h"
+#include "core/version.h"
+
+namespace trocar::cli_test {
+namespace {
+
+class Help : public testing::TestWithParam<const char*> {};
+
+TEST_P(Help, ExitsZeroWithAnExample) {
+  const Outcome outcome = trocar(std::string(GetParam()) + " --help");
+  EXPECT_EQ(outcome.exit_status, 0);
+  EXPECT_NE(outcome.out.find("Example"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.err, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
+                         testing::Values("", "patient", "patient list", "patient generate", "patient build",
+                                         "patient show", "patient check", "patient render", "plan", "task", "task list",
+                                         "run", "session", "session export", "session report", "bench"));
+
+class Mistake : public testing::TestWithParam<const char*> {};
+
+TEST_P(Mistake, ExitsTwoWithOneLine) {
+  const TemporaryFolder folder;
+  const Outcome outcome = trocar(GetParam(), "cd '" + folder.path().string() + "' &&");
+  EXPECT_EQ(outcome.exit_status, 2) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("error: ")) << outcome.err;
+  EXPECT_TRUE(folder.is_empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfTheUser, Mistake,
+    testing::Values("", "nonsense", "patient", "patient nonsense", "patient show", "patient list --nonsense",
+                    "patient generate abdomen", "patient generate nobody --out x",
+                    "patient generate abdomen --out no/such/folder/x", "patient generate abdomen --seed many --out x",
+                    "patient build --ct a.nii", "plan liver-biopsy --patient abdomen --count 0 --out x.mrk.json",
+                    "plan nonsense --patient abdomen --out x.mrk.json",
+                    "run nonsense --patient abdomen --operator expert --out x",
+                    "run liver-biopsy --patient nobody --operator expert --out x",
+                    "run liver-biopsy --patient abdomen --operator nobody --out x",
+                    "run liver-biopsy --patient abdomen --operator constant-velocity:fast --out x",
+                    "run liver-biopsy --patient abdomen --operator expert --force-model proxy --out x",
+                    "run liver-biopsy --patient abdomen --operator expert --rate 0 --out x",
+                    "run liver-biopsy --patient abdomen --operator expert --set liver.k=stiff --out x",
+                    "bench nonsense", "ultrasound sweep", "serve"));
+
+TEST(Arguments, UnknownCommandIsNamed) {
+  EXPECT_NE(trocar("nonsense").err.find("nonsense"), std::string::npos);
+  EXPECT_NE(trocar("patient nonsense").err.find("trocar patient --help"), std::string::npos);
+}
+
+TEST(Arguments, UnknownPatientListsTheEmbeddedOnes) {
+  EXPECT_NE(trocar("patient show nobody").err.find("abdomen"), std::string::npos);
+}
+
+TEST(Arguments, VersionIsPrinted) {
+  const Outcome outcome = trocar("--version");
+  EXPECT_EQ(outcome.exit_status, 0);
+  EXPECT_EQ(outcome.out, std::string("trocar ") + kVersion + "\n");
+}
+
+TEST(Arguments, ExistingOutputIsRefusedAndKept) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "mine") << "mine";
+  for (const std::string command :
+       {"patient generate abdomen --out ", "plan liver-biopsy --patient abdomen --out ",
+        "patient render abdomen --out ", "run liver-biopsy --patient abdomen --operator expert --out "}) {
+    const Outcome outcome = trocar(command + "'" + (folder / "mine") + "'");
+    EXPECT_EQ(outcome.exit_status, 2) << command << outcome.err;
+  }
+  std::ifstream kept(folder / "mine");
+  std::string text;
+  kept >> text;
+  EXPECT_EQ(text, "mine");
+}
+
+TEST(Lists, ArePrintedAsJson) {
+  const Json patients = json_of(trocar("patient list --json"));
+  ASSERT_FALSE(patients["patients"].empty());
+  EXPECT_EQ(patients["patients"][0]["name"], "abdomen");
+  const Json tasks = json_of(trocar("task list --json"));
+  ASSERT_FALSE(tasks["tasks"].empty());
+  EXPECT_NE(trocar("task list").out.find("liver-biopsy"), std::string::npos);
+  EXPECT_NE(trocar("bench --list").out.find("slice"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace trocar::cli_test

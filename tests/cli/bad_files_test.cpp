@@ -1,0 +1,79 @@
+// What the program does with files that are not what they should be: one line, exit status 1 or 2, nothing written.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "cli/program.h"
+
+namespace trocar::cli_test {
+namespace {
+namespace fs = std::filesystem;
+
+void expect_refused(const std::string& arguments) {
+  const Outcome outcome = trocar(arguments);
+  EXPECT_TRUE(outcome.exit_status == 1 || outcome.exit_status == 2) << arguments << "\n" << outcome.exit_status;
+  const auto at = outcome.err.find("error: ");
+  ASSERT_NE(at, std::string::npos) << arguments << "\n" << outcome.err;
+  EXPECT_EQ(line_count(outcome.err.substr(at)), 1) << arguments << "\n" << outcome.err;
+}
+
+class BadFiles : public testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& bytes) { std::ofstream(inputs_ / name) << bytes; }
+
+  TemporaryFolder inputs_;
+  TemporaryFolder outputs_;
+};
+
+TEST_F(BadFiles, TextIsNoImage) {
+  write("ct.nii", "hello");
+  expect_refused("patient build --ct '" + (inputs_ / "ct.nii") + "' --labels '" + (inputs_ / "ct.nii") + "' --out '" +
+                 (outputs_ / "patient") + "'");
+  EXPECT_TRUE(outputs_.is_empty());
+}
+
+TEST_F(BadFiles, MissingImageIsNamed) {
+  const Outcome outcome =
+      trocar("patient build --ct /nowhere/ct.nii --labels /nowhere/l.nii --out '" + (outputs_ / "patient") + "'");
+  EXPECT_EQ(outcome.exit_status, 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("/nowhere/ct.nii"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(outputs_.is_empty());
+}
+
+TEST_F(BadFiles, EmptyFolderIsNoPatient) {
+  for (const std::string command : {"show", "check"})
+    expect_refused("patient " + command + " '" + inputs_.path().string() + "'");
+  expect_refused("patient render '" + inputs_.path().string() + "' --out '" + (outputs_ / "pictures") + "'");
+  expect_refused("run liver-biopsy --patient '" + inputs_.path().string() + "' --operator expert --out '" +
+                 (outputs_ / "session") + "'");
+  EXPECT_TRUE(outputs_.is_empty());
+}
+
+TEST_F(BadFiles, TextIsNoSession) {
+  write("session", "hello");
+  expect_refused("session export '" + (inputs_ / "session") + "' --csv '" + (outputs_ / "x.csv") + "'");
+  expect_refused("session report '" + (inputs_ / "session") + "' --out '" + (outputs_ / "x.html") + "'");
+  expect_refused("run liver-biopsy --patient abdomen --operator 'replay:" + (inputs_ / "session") + "' --out '" +
+                 (outputs_ / "again") + "'");
+  EXPECT_TRUE(outputs_.is_empty());
+}
+
+TEST_F(BadFiles, OtherPeoplesOddImagesNeverCrashTheProgram) {
+  const char* named = std::getenv("TROCAR_TEST_DATA");
+  const fs::path data = named != nullptr ? fs::path(named) : fs::path(TROCAR_SOURCE_DIR) / "../shared/data";
+  const fs::path folder = data / "bad-input";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no bad-input folder in " << data;
+  int tried = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    ++tried;
+    expect_refused("patient build --ct '" + entry.path().string() + "' --labels '" + entry.path().string() +
+                   "' --out '" + (outputs_ / "patient") + "'");
+    ASSERT_TRUE(outputs_.is_empty()) << entry.path();
+  }
+  EXPECT_GT(tried, 5);
+}
+
+}  // namespace
+}  // namespace trocar::cli_test

@@ -1,0 +1,59 @@
+#include "cli/program.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+namespace trocar::cli_test {
+namespace fs = std::filesystem;
+
+Outcome trocar(const std::string& arguments, const std::string& before) {
+  const char* folder = std::getenv("TROCAR_BIN_DIR");
+  if (folder == nullptr) {
+    ADD_FAILURE() << "TROCAR_BIN_DIR is not set: run the test through ctest";
+    return {};
+  }
+  const TemporaryFolder temporary;
+  const std::string err_file = temporary / "err";
+  const std::string line = before + " '" + folder + "/trocar' " + arguments + " 2>'" + err_file + "'";
+  Outcome outcome;
+  FILE* pipe = popen(line.c_str(), "r");
+  if (pipe == nullptr) return outcome;
+  char buffer[4096];
+  for (std::size_t got = 0; (got = fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.out.append(buffer, got);
+  const int status = pclose(pipe);
+  outcome.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  std::ifstream err(err_file, std::ios::binary);
+  outcome.err.assign(std::istreambuf_iterator<char>(err), std::istreambuf_iterator<char>());
+  return outcome;
+}
+
+Json json_of(const Outcome& outcome) {
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+  auto json = parse_json(outcome.out, "standard output");
+  if (json) return *json;
+  ADD_FAILURE() << json.error().text() << "\n" << outcome.out;
+  return nullptr;
+}
+
+int line_count(const std::string& text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string pattern = (fs::temp_directory_path() / "trocar_cli_XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) ADD_FAILURE() << "no temporary folder";
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+}  // namespace trocar::cli_test

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "config/json.h"
+
+namespace trocar::cli_test {
+
+/// What a run of the real program gave.
+struct Outcome {
+  int exit_status = -1;  ///< 128 + signal when it was killed.
+  std::string out;
+  std::string err;
+};
+
+/// Runs `trocar ARGUMENTS` (a shell line); `before` stands in front of it ("env -u DISPLAY").
+Outcome trocar(const std::string& arguments, const std::string& before = {});
+
+/// Standard output as JSON; a test failure and null where it is none.
+Json json_of(const Outcome& outcome);
+
+int line_count(const std::string& text);
+
+/// A folder of its own, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  bool is_empty() const { return std::filesystem::is_empty(path_); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace trocar::cli_test
