@@ -14,10 +14,12 @@ struct SurfaceOptions {
   std::size_t min_voxels = 20;        ///< Structures below are left out.
 };
 
-/// Smoothed, decimated surface of every label and of the skin ("skin"), in P.
+/// Smoothed, decimated, closed surface of every structure and of the skin ("skin"), in P. What fills the space between
+/// structures (fat, the muscle found from HU, gas, soft tissue) has no surface of its own. Structures in parallel.
 std::vector<NamedMesh> extract_surfaces(const VirtualPatient& patient, const SurfaceOptions& options = {},
                                         const Progress& progress = {});
-/// Surface of one mask.
+/// Surface of one mask, closed also where the grid cuts the mask; empty for an empty mask. It encloses the volume of
+/// the mask's voxels.
 TriangleMesh extract_surface(const MaskGrid& mask, const SurfaceOptions& options = {});
 
 }  // namespace trocar

@@ -1,0 +1,138 @@
+#include "anatomy/detail/merge_sources.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/parallel.h"
+#include "volume/resample.h"
+
+namespace trocar::detail {
+namespace {
+
+constexpr double kMinOverlap = 0.05;         // of the smaller grid; below, the files are of different scans
+constexpr std::size_t kMaxStructures = 245;  // of 255 label values, the rest is for what is found from HU
+constexpr std::size_t kBlock = 1 << 16;
+
+Status check_names(const LabelSource& source) {
+  for (const auto& [value, name] : source.names) {
+    if (find_known_structure(name)) continue;
+    const std::vector<std::string> similar = similar_structure_names(name);
+    return fail(fmt::format("unknown structure \"{}\" (label {})", name, value), source.file,
+                similar.empty() ? "give it a name of TotalSegmentator with a label map (--label-map FILE.toml)"
+                                : fmt::format("did you mean {}?", fmt::join(similar, ", ")));
+  }
+  return {};
+}
+
+Status check_overlap(const LabelSource& source, const GridGeometry& grid) {
+  if (source.labels.empty()) return fail("the segmentation has no voxels", source.file);
+  const double overlap =
+      std::max(overlap_fraction(source.labels.geometry, grid), overlap_fraction(grid, source.labels.geometry));
+  if (overlap >= kMinOverlap) return {};
+  return fail(fmt::format("the segmentation does not overlap the CT ({:.1f} % common)", 100.0 * overlap), source.file,
+              "give the segmentation that was made from this CT");
+}
+
+std::array<std::size_t, 256> count_values(const LabelGrid& labels) {
+  std::array<std::size_t, 256> counts{};
+  for (const std::uint8_t value : labels.voxels) ++counts[value];
+  return counts;
+}
+
+/// Merges one source after the other.
+class Merger {
+ public:
+  explicit Merger(const GridGeometry& grid) { merged_.labels = LabelGrid(grid); }
+
+  Status add(LabelSource source, std::vector<std::string>& empty_masks) {
+    const LabelGrid labels = source.labels.geometry.matches(merged_.labels.geometry)
+                                 ? std::move(source.labels)
+                                 : resample_nearest(source.labels, merged_.labels.geometry, 0);
+    const auto counts = count_values(labels);
+    std::array<std::uint8_t, 256> id_of{};
+    std::array<bool, 256> is_named{};
+    for (const auto& [value, name] : source.names) {
+      if (value < 0 || value > 255)
+        return fail(fmt::format("label value {} of \"{}\" is not in 0..255", value, name), source.file);
+      const auto v = static_cast<std::uint8_t>(value);
+      is_named[v] = true;
+      if (v == 0) continue;
+      if (counts[v] == 0) {
+        // A label map names more than a scan shows; a file of its own that is empty is worth a word.
+        if (source.names.size() == 1) empty_masks.push_back(name);
+        continue;
+      }
+      if (find_known_structure(name)->tissue == "skin") {
+        add_body_hint(labels, v);
+        continue;
+      }
+      if (merged_.table.labels.size() == kMaxStructures)
+        return fail(fmt::format("more than {} structures", kMaxStructures), source.file, "leave some out");
+      id_of[v] = find_or_add(name);
+    }
+    for (std::size_t value = 1; value < counts.size(); ++value) {
+      if (counts[value] > 0 && !is_named[value])
+        return fail(fmt::format("label value {} has no name", value), source.file,
+                    "name it in the label map (--label-map)");
+    }
+    paint(labels, id_of);
+    return {};
+  }
+
+  MergedLabels take() { return std::move(merged_); }
+
+ private:
+  std::uint8_t find_or_add(const std::string& name) {
+    if (const Label* label = merged_.table.find(name)) return label->id;
+    const KnownStructure known = *find_known_structure(name);
+    const auto id = static_cast<std::uint8_t>(merged_.table.labels.size() + 1);
+    merged_.table.labels.push_back({id, name, std::string(known.tissue), known.color});
+    priority_[id] = known.priority;
+    return id;
+  }
+
+  void add_body_hint(const LabelGrid& labels, std::uint8_t value) {
+    if (merged_.body_hint.empty()) merged_.body_hint = MaskGrid(labels.geometry);
+    for (std::size_t n = 0; n < labels.voxels.size(); ++n) merged_.body_hint.voxels[n] |= labels.voxels[n] == value;
+  }
+
+  void paint(const LabelGrid& labels, const std::array<std::uint8_t, 256>& id_of) {
+    parallel_for(labels.voxels.size(), kBlock, [&](std::size_t first, std::size_t last) {
+      for (std::size_t n = first; n < last; ++n) {
+        const std::uint8_t id = id_of[labels.voxels[n]];
+        std::uint8_t& voxel = merged_.labels.voxels[n];
+        if (id != 0 && (voxel == 0 || priority_[id] > priority_[voxel])) voxel = id;
+      }
+    });
+  }
+
+  MergedLabels merged_;
+  std::array<int, 256> priority_{};
+};
+
+}  // namespace
+
+Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const GridGeometry& grid,
+                                   std::vector<std::string>& warnings) {
+  if (sources.empty()) return fail_usage("no segmentation given", "--labels", "give at least one label file");
+  for (const LabelSource& source : sources) {
+    TROCAR_TRY_STATUS(check_names(source));
+    TROCAR_TRY_STATUS(check_overlap(source, grid));
+  }
+  const std::string where = sources.size() == 1 ? sources.front().file : fmt::format("{} files", sources.size());
+  Merger merger(grid);
+  std::vector<std::string> empty_masks;
+  for (LabelSource& source : sources) {
+    TROCAR_TRY_STATUS(merger.add(std::move(source), empty_masks));
+  }
+  MergedLabels merged = merger.take();
+  if (merged.table.labels.empty())
+    return fail("all masks are empty", where, "check that the segmentation belongs to this CT and is not blank");
+  if (!empty_masks.empty()) warnings.push_back(fmt::format("empty masks left out: {}", fmt::join(empty_masks, ", ")));
+  return merged;
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,102 @@
+#include <algorithm>
+
+#include "anatomy/build_patient.h"
+#include "core/parallel.h"
+#include "volume/morphology.h"
+#include "volume/resample.h"
+
+namespace trocar {
+namespace {
+
+// All numbers are assumed: chosen on two CTs (3 mm and 0.74 mm voxels) and kept away from what they separate.
+constexpr std::int16_t kSolidAboveHu = -300;  // skin and fat above, air, foam and cloth below
+constexpr double kCoarseMm = 3.0;             // the table is found at this resolution
+constexpr double kThinRadiusMm = 5.0;         // plates, tubes and blankets are thinner than twice this
+constexpr double kLongMm = 120.0;             // what is thin and longer than this is no part of a body
+constexpr double kSealRadiusMm = 7.0;         // gaps that taking the table away may have torn into the chest wall
+constexpr double kNearMm = 4.0;               // the fine contour is looked for this close to the coarse one
+
+MaskGrid solid_of(const CtGrid& ct) {
+  MaskGrid mask(ct.geometry);
+  parallel_for(mask.voxels.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) mask.voxels[n] = ct.voxels[n] > kSolidAboveHu ? 1 : 0;
+  });
+  return mask;
+}
+
+/// a and not b.
+MaskGrid without(MaskGrid a, const MaskGrid& b) {
+  for (std::size_t n = 0; n < a.voxels.size(); ++n) a.voxels[n] = a.voxels[n] && !b.voxels[n] ? 1 : 0;
+  return a;
+}
+
+MaskGrid opened(const MaskGrid& mask, double radius_mm) {
+  return dilate(erode(mask, radius_mm), radius_mm);
+}
+
+/// Thin connected parts of a mask whose box is long: the CT table, tubes, folds of a blanket.
+MaskGrid long_thin_parts(const MaskGrid& solid) {
+  const GridGeometry& geometry = solid.geometry;
+  const Components parts = connected_components(without(solid, opened(solid, kThinRadiusMm)));
+  struct Box {
+    Index3 low, high;
+  };
+  std::vector<Box> boxes(parts.voxel_counts.size(), Box{geometry.size, {-1, -1, -1}});
+  for (std::size_t n = 0; n < parts.ids.voxels.size(); ++n) {
+    if (parts.ids.voxels[n] == 0) continue;
+    Box& box = boxes[static_cast<std::size_t>(parts.ids.voxels[n] - 1)];
+    const Index3 ijk = geometry.index_of(n);
+    for (std::size_t a = 0; a < 3; ++a) {
+      box.low[a] = std::min(box.low[a], ijk[a]);
+      box.high[a] = std::max(box.high[a], ijk[a]);
+    }
+  }
+  MaskGrid mask(geometry);
+  for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
+    if (parts.ids.voxels[n] == 0) continue;
+    const Box& box = boxes[static_cast<std::size_t>(parts.ids.voxels[n] - 1)];
+    double extent_mm = 0.0;
+    for (std::size_t a = 0; a < 3; ++a)
+      extent_mm = std::max(extent_mm, static_cast<double>(box.high[a] - box.low[a] + 1) *
+                                          geometry.spacing_mm[static_cast<Eigen::Index>(a)]);
+    mask.voxels[n] = extent_mm > kLongMm ? 1 : 0;
+  }
+  return mask;
+}
+
+/// The body's lungs and bowel gas filled; a torn chest wall is sealed for that, outer folds stay open.
+MaskGrid filled(const MaskGrid& body) {
+  const MaskGrid sealed = dilate(body, kSealRadiusMm);
+  const MaskGrid cavities = dilate(without(fill_holes_in_slices(sealed), sealed), kSealRadiusMm);
+  MaskGrid whole = body;
+  for (std::size_t n = 0; n < whole.voxels.size(); ++n) whole.voxels[n] |= cavities.voxels[n];
+  return fill_holes(fill_holes_in_slices(whole));
+}
+
+MaskGrid find_coarse_body(const CtGrid& ct) {
+  const MaskGrid solid = solid_of(ct);
+  const MaskGrid body = largest_component(without(solid, long_thin_parts(solid)));
+  return largest_component(opened(filled(body), kThinRadiusMm));
+}
+
+}  // namespace
+
+MaskGrid find_body(const CtGrid& ct) {
+  const CtGrid coarse_ct = resample_linear(ct, isotropic_geometry(ct.geometry, kCoarseMm), -1000);
+  MaskGrid zones = find_coarse_body(coarse_ct);
+  {  // 0 away from the body, 1 where the fine contour decides, 2 deep inside
+    const MaskGrid near = dilate(zones, kNearMm);
+    const MaskGrid deep = erode(zones, kNearMm);
+    for (std::size_t n = 0; n < zones.voxels.size(); ++n) zones.voxels[n] = deep.voxels[n] ? 2 : near.voxels[n];
+  }
+  MaskGrid body = resample_nearest(zones, ct.geometry, 0);
+  parallel_for(body.voxels.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      std::uint8_t& voxel = body.voxels[n];
+      voxel = voxel == 2 || (voxel == 1 && ct.voxels[n] > kSolidAboveHu) ? 1 : 0;
+    }
+  });
+  return largest_component(fill_holes_in_slices(body));
+}
+
+}  // namespace trocar

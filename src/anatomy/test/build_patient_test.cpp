@@ -1,0 +1,225 @@
+#include "anatomy/build_patient.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "anatomy/test/make_torso.h"
+
+namespace trocar {
+namespace {
+
+const Vec3 kSpacingMm{3, 3, 4};
+
+LabelSource source(std::string name, LabelGrid mask) {
+  return {name + ".nii.gz", std::move(mask), {{1, name}}};
+}
+
+LabelSource liver(const Vec3& spacing_mm = kSpacingMm) {
+  return source("liver", Torso::mask(Torso::grid(spacing_mm), Torso::is_liver));
+}
+
+struct Built {
+  Result<VirtualPatient> patient;
+  std::vector<std::string> warnings;
+};
+
+Built build(std::vector<LabelSource> sources, const Torso& torso = {}) {
+  std::vector<std::string> warnings;
+  auto patient = build_patient(torso.ct(Torso::grid(kSpacingMm)), std::move(sources), {"test", {"made"}}, warnings);
+  return {std::move(patient), std::move(warnings)};
+}
+
+std::string name_at(const VirtualPatient& patient, const Vec3& p_P) {
+  const Label* label = find_label(patient, p_P);
+  return label == nullptr ? "" : label->name;
+}
+
+bool has_warning(const Built& built, const std::string& text) {
+  return std::any_of(built.warnings.begin(), built.warnings.end(),
+                     [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+TEST(BuildPatient, ARayFromTheFlankCrossesFatMuscleAndLiverInOrder) {
+  const Built built = build({liver()});
+  ASSERT_TRUE(built.patient) << built.patient.error().text();
+  std::vector<std::string> crossed;
+  for (double x = -160.0; x < -60.0; x += 0.5) {
+    const std::string name = name_at(*built.patient, {x, -10.0, 0.0});
+    if (crossed.empty() || crossed.back() != name) crossed.push_back(name);
+  }
+  // Between wall and liver the torso has visceral fat.
+  EXPECT_EQ(crossed, (std::vector<std::string>{"", "fat", "muscle", "fat", "liver"}));
+}
+
+TEST(BuildPatient, EveryVoxelOfTheBodyHasALabelAndNoneOutside) {
+  const Built built = build({liver()});
+  ASSERT_TRUE(built.patient);
+  const VirtualPatient& patient = *built.patient;
+  for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n)
+    ASSERT_EQ(patient.labels.voxels[n] != 0, patient.skin_distance_mm.voxels[n] < 0.0F) << n;
+  for (const Label& label : patient.label_table.labels) EXPECT_TRUE(find_known_structure(label.name)) << label.name;
+}
+
+TEST(BuildPatient, AirInsideIsLungOrGas) {
+  const Built built = build({liver()});
+  ASSERT_TRUE(built.patient);
+  EXPECT_EQ(name_at(*built.patient, {60.0, 20.0, 10.0}), "lung");
+  EXPECT_EQ(name_at(*built.patient, {45.0, -45.0, 0.0}), "gas");
+}
+
+TEST(BuildPatient, DistanceIsToTheSkinAndNotToTheEndsOfTheScan) {
+  const Built built = build({liver()});
+  ASSERT_TRUE(built.patient);
+  const GridGeometry& geometry = built.patient->ct.geometry;
+  const auto distance = [&](const Index3& ijk) { return built.patient->skin_distance_mm[ijk]; };
+  const auto middle = [&](std::int64_t k) { return distance({geometry.size[0] / 2, geometry.size[1] / 2, k}); };
+  // The trunk is a cylinder along z: the first slice is as deep as the middle one.
+  EXPECT_NEAR(middle(0), middle(geometry.size[2] / 2), 1e-3);
+  EXPECT_NEAR(middle(0), -Torso::kHalfDepthMm, kSpacingMm.x());
+}
+
+TEST(BuildPatient, WhereMasksOverlapTheMoreSpecialWins) {
+  const auto ball = [](double radius_mm) {
+    return [radius_mm](const Vec3& p_P) { return (p_P - Vec3(-50.0, -10.0, 0.0)).norm() < radius_mm; };
+  };
+  const GridGeometry geometry = Torso::grid(kSpacingMm);
+  LabelSource tumour = source("livertumor1", Torso::mask(geometry, ball(10.0)));
+  LabelSource vein = source("portalvein", Torso::mask(geometry, ball(20.0)));
+  for (const bool reversed : {false, true}) {
+    std::vector<LabelSource> sources{liver(), vein, tumour};
+    if (reversed) std::reverse(sources.begin(), sources.end());
+    const Built built = build(std::move(sources));
+    ASSERT_TRUE(built.patient);
+    EXPECT_EQ(name_at(*built.patient, {-50.0, -10.0, 0.0}), "livertumor1");
+    EXPECT_EQ(name_at(*built.patient, {-35.0, -10.0, 0.0}), "portalvein");
+    EXPECT_EQ(name_at(*built.patient, {-25.0, -10.0, 0.0}), "liver");
+  }
+}
+
+TEST(BuildPatient, IdsFollowTheOrderOfTheFiles) {
+  LabelSource spleen = source("spleen", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
+                                return (p_P - Vec3(80.0, -20.0, 0.0)).norm() < 15.0;
+                              }));
+  const Built built = build({spleen, liver()});
+  ASSERT_TRUE(built.patient);
+  EXPECT_EQ(built.patient->label_table.find("spleen")->id, 1);
+  EXPECT_EQ(built.patient->label_table.find("liver")->id, 2);
+  EXPECT_EQ(built.patient->label_table.find("liver")->tissue, "liver");
+}
+
+TEST(BuildPatient, AMaskOnAnotherGridLandsInItsPlace) {
+  // Turned by 90 degrees about z, other spacing, cut down to a box around the liver.
+  GridGeometry turned;
+  turned.R_PV << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  turned.spacing_mm = {2, 2.5, 3};
+  turned.size = {50, 40, 40};
+  turned.origin_P = Vec3(-50.0, -10.0, 0.0) - turned.R_PV * Vec3(49.0, 48.75, 58.5);
+  const auto is_ball = [](const Vec3& p_P) { return (p_P - Vec3(-50.0, -10.0, 0.0)).norm() < 35.0; };
+  const Built built = build({source("liver", Torso::mask(turned, is_ball))});
+  ASSERT_TRUE(built.patient) << built.patient.error().text();
+  const VirtualPatient& patient = *built.patient;
+  for (const LabelStatistics& statistics : label_statistics(patient)) {
+    if (statistics.id != patient.label_table.find("liver")->id) continue;
+    EXPECT_NEAR(statistics.volume_ml, 4.0 / 3.0 * M_PI * 35.0 * 35.0 * 35.0 / 1000.0, 4.0);
+    EXPECT_LT((statistics.centroid_P - Vec3(-50.0, -10.0, 0.0)).norm(), 1.0);
+    EXPECT_NEAR(statistics.mean_hu, Torso::kLiver, 1.0);
+  }
+}
+
+TEST(BuildPatient, AMaskOfTheWholeBodyIsNoOrgan) {
+  LabelSource skin = source("skin", Torso::mask(Torso::grid(kSpacingMm), Torso::is_inside));
+  const Built built = build({skin, liver()});
+  ASSERT_TRUE(built.patient);
+  EXPECT_EQ(built.patient->label_table.find("skin"), nullptr);
+  EXPECT_EQ(name_at(*built.patient, {0.0, -105.0, 0.0}), "fat");
+}
+
+TEST(BuildPatient, AnImplausibleBodyMaskIsNotBelieved) {
+  LabelSource skin = source("skin", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
+                              return Torso::radius(p_P) < 1.0 && Torso::radius(p_P) > 0.95;
+                            }));
+  const Built built = build({skin, liver()});
+  ASSERT_TRUE(built.patient);
+  EXPECT_EQ(name_at(*built.patient, {-50.0, -10.0, 0.0}), "liver");
+}
+
+TEST(BuildPatient, AnUnknownNameIsRefusedWithWhatWasMeant) {
+  LabelSource wrong = liver();
+  wrong.names = {{1, "livr"}};
+  wrong.file = "seg.nii.gz";
+  const Built built = build({wrong});
+  ASSERT_FALSE(built.patient);
+  const std::string text = built.patient.error().text();
+  for (const char* part : {"livr", "seg.nii.gz", "liver", "label 1"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+TEST(BuildPatient, AValueWithoutANameIsRefused) {
+  LabelSource wrong = liver();
+  wrong.labels.voxels[0] = 9;
+  const Built built = build({wrong});
+  ASSERT_FALSE(built.patient);
+  EXPECT_NE(built.patient.error().text().find("label value 9 has no name"), std::string::npos);
+}
+
+TEST(BuildPatient, EmptyMasksAreWarningsUnlessAllAre) {
+  const LabelSource empty = source("spleen", LabelGrid(Torso::grid(kSpacingMm)));
+  const Built built = build({liver(), empty});
+  ASSERT_TRUE(built.patient);
+  EXPECT_TRUE(has_warning(built, "spleen"));
+  EXPECT_EQ(built.patient->label_table.find("spleen"), nullptr);
+  const Built nothing = build({empty, source("kidney_left", LabelGrid(Torso::grid(kSpacingMm)))});
+  ASSERT_FALSE(nothing.patient);
+  EXPECT_NE(nothing.patient.error().text().find("empty"), std::string::npos);
+}
+
+TEST(BuildPatient, ASegmentationOfAnotherPlaceIsRefused) {
+  LabelSource far = liver();
+  far.labels.geometry.origin_P.x() += 2000.0;
+  far.file = "other.nrrd";
+  const Built built = build({far});
+  ASSERT_FALSE(built.patient);
+  EXPECT_NE(built.patient.error().text().find("other.nrrd"), std::string::npos);
+  EXPECT_NE(built.patient.error().text().find("does not overlap"), std::string::npos);
+}
+
+TEST(BuildPatient, NamesWhatTheScanCuts) {
+  const Built built = build({liver()});  // a cylinder through the whole scan
+  ASSERT_TRUE(built.patient);
+  EXPECT_TRUE(has_warning(built, "cut by the border of the CT: liver"));
+}
+
+TEST(BuildPatient, ACtWithoutABodyIsRefused) {
+  std::vector<std::string> warnings;
+  const auto patient = build_patient(CtGrid(Torso::grid(kSpacingMm), -1000), {liver()}, {"air", {}}, warnings);
+  ASSERT_FALSE(patient);
+  EXPECT_NE(patient.error().text().find("no body"), std::string::npos);
+}
+
+TEST(BuildPatient, IslandsOfNoiseTakeTheTissueAroundThem) {
+  // Single voxels of muscle HU in the subcutaneous fat and the other way round.
+  const GridGeometry geometry = Torso::grid(kSpacingMm);
+  CtGrid ct = Torso().ct(geometry);
+  std::vector<Vec3> in_fat;
+  std::vector<Vec3> in_muscle;
+  for (double z = -40.0; z < 41.0; z += 20.0) {
+    in_fat.emplace_back(-138.0, -10.0, z);
+    in_muscle.emplace_back(-110.0, -10.0, z);
+  }
+  const auto set = [&](const Vec3& p_P, std::int16_t hu) {
+    const Vec3 index = geometry.to_index(p_P);
+    ct[{std::lround(index.x()), std::lround(index.y()), std::lround(index.z())}] = hu;
+  };
+  for (const Vec3& p_P : in_fat) set(p_P, Torso::kMuscle);
+  for (const Vec3& p_P : in_muscle) set(p_P, Torso::kFat);
+  std::vector<std::string> warnings;
+  const auto patient = build_patient(ct, {liver()}, {"noise", {}}, warnings);
+  ASSERT_TRUE(patient);
+  for (const Vec3& p_P : in_fat) EXPECT_EQ(name_at(*patient, p_P), "fat");
+  for (const Vec3& p_P : in_muscle) EXPECT_EQ(name_at(*patient, p_P), "muscle");
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,114 @@
+#include "surface/extract_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+
+#include "core/parallel.h"
+#include "surface/detail/contour.h"
+#include "volume/resample.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kSkinVoxelMm = 2.0;  // assumed: finer steps only cost triangles on a surface as smooth as the skin
+
+/// The voxels of one structure and the box around them.
+struct Box {
+  Index3 low{0, 0, 0};
+  Index3 high{-1, -1, -1};
+  std::size_t voxels = 0;
+
+  void add(const Index3& ijk, std::int64_t last_i, std::size_t count) {
+    if (voxels == 0) low = high = ijk;
+    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], ijk[a]);
+    for (std::size_t a = 0; a < 3; ++a) high[a] = std::max(high[a], ijk[a]);
+    high[0] = std::max(high[0], last_i);
+    voxels += count;
+  }
+};
+
+std::array<Box, 256> find_boxes(const LabelGrid& labels) {
+  std::array<Box, 256> boxes;
+  const auto& size = labels.geometry.size;
+  for (std::int64_t k = 0; k < size[2]; ++k) {
+    for (std::int64_t j = 0; j < size[1]; ++j) {
+      const std::uint8_t* row = labels.voxels.data() + labels.geometry.offset({0, j, k});
+      for (std::int64_t i = 0; i < size[0];) {
+        const std::int64_t first = i;
+        while (i < size[0] && row[i] == row[first]) ++i;
+        if (row[first] != 0) boxes[row[first]].add({first, j, k}, i - 1, static_cast<std::size_t>(i - first));
+      }
+    }
+  }
+  return boxes;
+}
+
+MaskGrid cut_out(const LabelGrid& labels, std::uint8_t id, const Box& box) {
+  GridGeometry geometry = labels.geometry;
+  for (std::size_t a = 0; a < 3; ++a) geometry.size[a] = box.high[a] - box.low[a] + 1;
+  geometry.origin_P = labels.geometry.to_mm(
+      Vec3(static_cast<double>(box.low[0]), static_cast<double>(box.low[1]), static_cast<double>(box.low[2])));
+  MaskGrid mask(geometry);
+  std::size_t n = 0;
+  for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k) {
+    for (std::int64_t j = box.low[1]; j <= box.high[1]; ++j) {
+      const std::uint8_t* row = labels.voxels.data() + labels.geometry.offset({0, j, k});
+      for (std::int64_t i = box.low[0]; i <= box.high[0]; ++i) mask.voxels[n++] = row[i] == id ? 1 : 0;
+    }
+  }
+  return mask;
+}
+
+bool fills_the_space_between(const Label& label) {
+  return label.tissue == "adipose" || label.tissue == "gas" || label.tissue == "soft_tissue" || label.name == "muscle";
+}
+
+MaskGrid body_mask(const FloatGrid& skin_distance_mm) {
+  MaskGrid mask(skin_distance_mm.geometry);
+  for (std::size_t n = 0; n < mask.voxels.size(); ++n) mask.voxels[n] = skin_distance_mm.voxels[n] < 0.0F ? 1 : 0;
+  if (mask.geometry.spacing_mm.minCoeff() >= kSkinVoxelMm) return mask;
+  return resample_nearest(mask, isotropic_geometry(mask.geometry, kSkinVoxelMm), 0);
+}
+
+}  // namespace
+
+TriangleMesh extract_surface(const MaskGrid& mask, const SurfaceOptions& options) {
+  const auto voxels = static_cast<std::size_t>(std::count(mask.voxels.begin(), mask.voxels.end(), 1));
+  if (voxels == 0) return {};
+  TriangleMesh mesh = detail::contour(mask, options);
+  detail::restore_volume(mesh, static_cast<double>(voxels) * mask.geometry.voxel_volume_mm3(),
+                         0.5 * mask.geometry.spacing_mm.maxCoeff());
+  for (Vec3f& vertex : mesh.vertices)
+    vertex = (mask.geometry.origin_P + mask.geometry.R_PV * vertex.cast<double>()).cast<float>();
+  return mesh;
+}
+
+std::vector<NamedMesh> extract_surfaces(const VirtualPatient& patient, const SurfaceOptions& options,
+                                        const Progress& progress) {
+  const std::array<Box, 256> boxes = find_boxes(patient.labels);
+  std::vector<NamedMesh> meshes{{"skin", {}}};
+  std::vector<std::uint8_t> ids{0};  // 0: the skin
+  for (const Label& label : patient.label_table.labels) {
+    if (fills_the_space_between(label) || boxes[label.id].voxels < std::max<std::size_t>(options.min_voxels, 1))
+      continue;
+    meshes.push_back({label.name, {}});
+    ids.push_back(label.id);
+  }
+
+  std::mutex reporting;
+  std::size_t done = 0;
+  parallel_for(ids.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      const std::uint8_t id = ids[n];
+      meshes[n].mesh_P = extract_surface(
+          id == 0 ? body_mask(patient.skin_distance_mm) : cut_out(patient.labels, id, boxes[id]), options);
+      const std::lock_guard lock(reporting);
+      report(progress, "surfaces", static_cast<double>(++done) / static_cast<double>(ids.size()));
+    }
+  });
+  std::erase_if(meshes, [](const NamedMesh& mesh) { return mesh.mesh_P.triangles.empty(); });
+  return meshes;
+}
+
+}  // namespace trocar
