@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "anatomy/patient.h"
+#include "anatomy/tissue_table.h"
 #include "telemetry/tick_sample.h"
 #include "training/needle.h"
 #include "training/plan.h"
@@ -26,7 +28,7 @@ struct BiopsyCore {
   Vec3 axis_P = Vec3::UnitZ();
   std::vector<CorePiece> pieces;
   double target_mm = 0.0;  ///< Of the target tissue (the lesion, or the organ in a parenchymal biopsy).
-  double organ_mm = 0.0;
+  double organ_mm = 0.0;   ///< Of the organ around the target; the four lengths add up to the notch.
   double vessel_mm = 0.0;
   double other_mm = 0.0;
   std::vector<std::string> risks_in_throw;  ///< Risk structures over the whole throw, by label name.
@@ -37,11 +39,13 @@ struct ScorePart {
   std::string title;  ///< In words.
   double value = 0.0;
   std::string unit;
-  double points = 0.0;
+  double points = 0.0;  ///< The risk part falls below 0 where the penalties of what was touched exceed its worth.
   double max_points = 0.0;
 };
 
-/// What an attempt is told at its end.
+/// What an attempt is told at its end. A deviation d in a part with tolerance t is worth max_points*(1 - (d/t)^2),
+/// nothing from t on: small errors cost little, closer is never worse. The parts' points add up to the score, within
+/// 0..100; without a puncture of the skin it is 0. How much each part is worth is teaching policy [assumed].
 struct Outcome {
   double score = 0.0;  ///< 0..100.
   bool target_reached = false;

@@ -74,7 +74,8 @@ void GuidedHand::sense(const OperatorView& view) noexcept {
   elapsed_s_ = view.time_s - start_time_s_;
   device_mm_ = (view.X_PN_device.p() - start_P_).dot(axis_P_);
   tip_mm_ = (view.last.tip_mm - start_P_).dot(axis_P_);
-  push_n_ += (-view.last.device_f_n.dot(axis_P_) - push_n_) * smoothing(view.dt_s, kFeeling_s);
+  const Vec3 felt_P = view.last.device_f_n - view.last.f_weight_n;  // the rest of it only carries the stylus
+  push_n_ += (-felt_P.dot(axis_P_) - push_n_) * smoothing(view.dt_s, kFeeling_s);
   is_touching_ = push_n_ > kTouch_n || view.last.phase != InsertionPhase::kOutside;
 
   peak_push_n_ = std::max(peak_push_n_, push_n_);

@@ -44,6 +44,7 @@ class LayeredBody {
   static constexpr double kCoupling_n_per_mm = 1.0;
   static constexpr double kFriction_n_per_mm = 0.008;
   static constexpr double kCutting_n = 0.6;
+  inline static const Vec3 kWeight_P{0.0, -1.0, 0.0};
 
   double along(const Vec3& p_P) const { return (p_P - path_P_.a).dot(path_P_.direction()); }
 
@@ -61,7 +62,8 @@ class LayeredBody {
     sample.depth_mm = std::max(0.0, punctured > 0 ? needle_mm_ : 0.0);
     sample.phase = needle_mm_ < 0.0 && punctured == 0 ? InsertionPhase::kOutside : InsertionPhase::kInserted;
     sample.device_mm = X_PN_.p();
-    sample.device_f_n = force_P_;
+    sample.f_weight_n = kWeight_P;  // carries the stylus; the device is weightless here
+    sample.device_f_n = force_P_ + kWeight_P;
     samples.push_back(sample);
   }
 

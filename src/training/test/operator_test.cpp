@@ -64,10 +64,10 @@ TEST(Expert, PausesAtTheSkinAndHoldsStillBeforeItFires) {
     return (body.depth_mm(body.samples[to]) - body.depth_mm(body.samples[from])) /
            (body.samples[to].time_s - body.samples[from].time_s);
   };
-  const auto touch =
-      static_cast<std::size_t>(std::find_if(body.samples.begin(), body.samples.end(),
-                                            [](const TickSample& sample) { return sample.device_f_n.norm() > 0.15; }) -
-                               body.samples.begin());
+  const auto touch = static_cast<std::size_t>(
+      std::find_if(body.samples.begin(), body.samples.end(),
+                   [](const TickSample& sample) { return (sample.device_f_n - sample.f_weight_n).norm() > 0.15; }) -
+      body.samples.begin());
   EXPECT_LT(std::abs(speed_mm_s(touch + 250, touch + 450)), 1.0);
   EXPECT_LT(std::abs(speed_mm_s(body.fired[0] - 200, body.fired[0])), 1.0);
 }

@@ -1,0 +1,32 @@
+#include "training/detail/task_labels.h"
+
+#include <algorithm>
+
+namespace trocar {
+namespace {
+
+bool occurs(const VirtualPatient& patient, std::uint8_t label_id) {
+  const auto& voxels = patient.labels.voxels;
+  return std::find(voxels.begin(), voxels.end(), label_id) != voxels.end();
+}
+
+}  // namespace
+
+TaskLabels::TaskLabels(const Task& task, const VirtualPatient& patient) {
+  const auto& labels = patient.label_table.labels;
+  is_parenchymal_ = std::none_of(labels.begin(), labels.end(), [&](const Label& label) {
+    return is_target(task, label) && occurs(patient, label.id);
+  });
+  for (const Label& label : labels) {
+    if (is_target(task, label)) {
+      parts_[label.id] = Part::kTarget;
+    } else if (is_organ(task, label)) {
+      parts_[label.id] = is_parenchymal_ ? Part::kTarget : Part::kOrgan;
+    } else if (label.tissue == "vessel") {
+      parts_[label.id] = Part::kVessel;
+    }
+    risks_[label.id] = find_risk(task, label);
+  }
+}
+
+}  // namespace trocar
