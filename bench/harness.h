@@ -32,7 +32,8 @@ struct CaseResult {
 
 /// Calls `work` `rounds` times after `warm_up` calls and returns the times in milliseconds.
 Figures time_ms(int warm_up, int rounds, const std::function<void()>& work);
-/// Median, p99, p99.9 and maximum of any numbers (sorted copy; nearest rank).
+/// Median, p99, p99.9 and maximum of any numbers, by nearest rank. A tail is left empty where fewer values than
+/// resolve it were taken: p99 below 100, p99.9 below 1000.
 Figures figures_of(std::vector<double> values);
 
 /// A benchmark: a name and what it measures. All of them are listed in registry.cpp.

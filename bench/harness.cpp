@@ -1,0 +1,104 @@
+#include "bench/harness.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <thread>
+
+#include "core/version.h"
+
+namespace trocar::bench {
+namespace {
+
+/// Nearest rank: the smallest value that at least `fraction` of all do not exceed.
+double quantile(const std::vector<double>& sorted, double fraction) {
+  const auto rank = static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(sorted.size())));
+  return sorted[std::max<std::size_t>(rank, 1) - 1];
+}
+
+std::string cpu_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (!line.starts_with("model name")) continue;
+    const auto start = line.find_first_not_of(" \t", line.find(':') + 1);
+    return start == std::string::npos ? std::string{} : line.substr(start);
+  }
+  return {};
+}
+
+Json number_or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json to_json(const CaseResult& result) {
+  Json json;
+  json["case"] = result.name;
+  json["unit"] = result.unit;
+  json["median"] = number_or_null(result.figures.median);
+  json["p99"] = number_or_null(result.figures.p99);
+  json["p999"] = number_or_null(result.figures.p999);
+  json["max"] = number_or_null(result.figures.max);
+  json["peer"] = nullptr;
+  if (result.peer)
+    json["peer"] = {{"name", result.peer->name}, {"median", result.peer->median}, {"ratio", result.peer->ratio}};
+  json["note"] = result.note;
+  return json;
+}
+
+}  // namespace
+
+Figures time_ms(int warm_up, int rounds, const std::function<void()>& work) {
+  for (int n = 0; n < warm_up; ++n) work();
+  std::vector<double> times_ms;
+  times_ms.reserve(static_cast<std::size_t>(std::max(rounds, 0)));
+  for (int n = 0; n < rounds; ++n) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  }
+  return figures_of(std::move(times_ms));
+}
+
+Figures figures_of(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  Figures figures;
+  figures.median = quantile(values, 0.5);
+  if (values.size() >= 100) figures.p99 = quantile(values, 0.99);
+  if (values.size() >= 1000) figures.p999 = quantile(values, 0.999);
+  figures.max = values.back();
+  return figures;
+}
+
+Json machine_json() {
+#ifdef NDEBUG
+  constexpr const char* kBuild = "release";
+#else
+  constexpr const char* kBuild = "debug";
+#endif
+  Json json;
+  json["cpu"] = cpu_name();
+  json["cores"] = std::thread::hardware_concurrency();
+#ifdef __clang__
+  json["compiler"] = fmt::format("clang {}", __clang_version__);
+#else
+  json["compiler"] = fmt::format("gcc {}", __VERSION__);
+#endif
+  json["build"] = kBuild;
+  json["version"] = kVersion;
+  return json;
+}
+
+Json to_json(std::string_view bench, const std::vector<CaseResult>& results) {
+  Json json;
+  json["bench"] = bench;
+  json["machine"] = machine_json();
+  json["results"] = Json::array();
+  for (const CaseResult& result : results) json["results"].push_back(to_json(result));
+  return json;
+}
+
+}  // namespace trocar::bench

@@ -1,0 +1,13 @@
+#include "bench/benchmarks.h"
+
+namespace trocar::bench {
+
+// A new benchmark: its function in benchmarks.h, a line here.
+const std::vector<Benchmark>& all_benchmarks() {
+  static const std::vector<Benchmark> benchmarks{
+      {"slice", "trilinear slices of a CT volume on one core, VTK's on two beside them", run_slice_benchmark},
+  };
+  return benchmarks;
+}
+
+}  // namespace trocar::bench
