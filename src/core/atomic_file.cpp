@@ -12,8 +12,14 @@ namespace trocar {
 namespace fs = std::filesystem;
 namespace {
 
+/// The target without "." and "..", and without the slash that a folder's name may end in.
+fs::path plain(const fs::path& target) {
+  const fs::path normal = fs::absolute(target).lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
 fs::path temporary_beside(const fs::path& target) {
-  const fs::path absolute = fs::absolute(target).lexically_normal();
+  const fs::path absolute = plain(target);
   const std::string name = absolute.filename().string();
   return absolute.parent_path() / fmt::format(".{}.{}.part{}", absolute.stem().string(), ::getpid(),
                                               name.ends_with(".nii.gz") ? ".nii.gz" : absolute.extension().string());
@@ -22,7 +28,7 @@ fs::path temporary_beside(const fs::path& target) {
 /// Makes the parent folder where it is missing, so that --out may name a new place.
 Status make_parent(const fs::path& target) {
   std::error_code error;
-  const fs::path parent = fs::absolute(target).lexically_normal().parent_path();
+  const fs::path parent = plain(target).parent_path();
   fs::create_directories(parent, error);
   if (error) return fail("cannot make the folder: " + error.message(), parent.string(), "choose another place");
   return {};
