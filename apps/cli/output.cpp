@@ -62,10 +62,6 @@ Status check_new(const fs::path& out) {
   if (fs::exists(out, ignored)) {
     return fail_usage("the output is already there", out.string(), "choose another name or remove it");
   }
-  const fs::path folder = fs::absolute(out, ignored).parent_path();
-  if (!fs::is_directory(folder, ignored)) {
-    return fail_usage("the folder for the output is not there", folder.string(), "create it first");
-  }
   return {};
 }
 

@@ -37,7 +37,7 @@ class ProgressPrinter {
   std::unique_ptr<State> state_;
 };
 
-/// Before long work: nothing may lie at `out` yet, and its folder must be there (exit status 2).
+/// Before long work: nothing may lie at `out` yet (exit status 2).
 Status check_new(const std::filesystem::path& out);
 
 /// A shipped table: "tasks", "needles.toml". An error where the data folder is missing.
