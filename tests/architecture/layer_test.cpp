@@ -109,6 +109,11 @@ TEST(Includes, UpwardOrSidewardArrowIsRefused) {
   EXPECT_NE(verdict("src/io/a.cpp", "#include \"bench/harness.h\"\n"), "");
 }
 
+TEST(Includes, HeaderWithoutItsModuleIsForTestsAlone) {
+  EXPECT_EQ(verdict("src/io/test/a_test.cpp", "#include \"make_grids.h\"\n"), "");
+  EXPECT_NE(verdict("src/io/a.cpp", "#include \"make_grids.h\"\n"), "");
+}
+
 TEST(Includes, FolderOutsideTheListIsRefused) {
   EXPECT_NE(verdict("src/other/a.cpp", ""), "");
 }
