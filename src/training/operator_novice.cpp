@@ -11,7 +11,7 @@ namespace trocar {
 namespace {
 
 // How far a novice is off; assumed, where nothing else is said.
-constexpr double kTremor_mm = 0.2;  // rms a lateral axis: PMC3032442 figure 4, 0.17 and 0.25 mm, instrument held blind
+constexpr double kTremor_mm = 0.2;  // rms a lateral axis: PMC3032442 figure 4, 0.17 and 0.25 mm without visual feedback
 constexpr double kEntryError_mm[] = {3.0, 8.0};
 constexpr double kAngleError_deg[] = {2.0, 6.0};  // CT-guided with a frame: median 1.1, range 0..6.6 (doi
                                                   // 10.3109/10929088.2011.578367)

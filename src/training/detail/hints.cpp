@@ -47,18 +47,19 @@ struct Correction {
 Correction correct(const Vec3& offset_P, const Vec3& path_direction_P) {
   const double deeper_mm = offset_P.dot(path_direction_P);
   const Vec3 sideways_P = offset_P - deeper_mm * path_direction_P;
+  const double least_mm = std::max(kNameable, kSecond * std::max(std::abs(deeper_mm), sideways_P.norm()));
   std::vector<std::string> deviations;
   std::vector<std::string> advice;
-  if (std::abs(deeper_mm) >= kNameable) {
+  if (std::abs(deeper_mm) >= least_mm) {
     deviations.push_back(fmt::format("{:.0f} mm {}", std::abs(deeper_mm), deeper_mm < 0.0 ? "short" : "too deep"));
     advice.push_back(deeper_mm < 0.0 ? fmt::format("advance {:.0f} mm further", -deeper_mm)
                                      : fmt::format("stop {:.0f} mm earlier", deeper_mm));
   }
-  if (sideways_P.norm() >= std::max(kNameable, kSecond * std::abs(deeper_mm))) {
+  if (sideways_P.norm() >= least_mm) {
     deviations.push_back(direction_words(sideways_P, " mm too far"));
     advice.push_back("aim " + direction_words(-sideways_P, " mm further"));
   }
-  return {fmt::format("{}", fmt::join(deviations, " and ")), fmt::format("{}", fmt::join(advice, " and "))};
+  return {fmt::format("{}", fmt::join(deviations, ", ")), fmt::format("{}", fmt::join(advice, ", "))};
 }
 
 void add_target_hint(const HintSubject& subject, std::vector<Hint>& hints) {
@@ -79,8 +80,10 @@ void add_target_hint(const HintSubject& subject, std::vector<Hint>& hints) {
                                  ? fmt::format("The core holds only {:.0f} mm of {} of {:.0f} mm possible",
                                                core.target_mm, target_name(subject), subject.possible_core_mm)
                                  : fmt::format("The core missed the {}", target_name(subject));
-    hints.push_back({lost_core + lost_target, fmt::format("{}: the notch lay {}; {} before you fire.", what,
-                                                          correction.deviation, correction.advice)});
+    const std::string why = correction.deviation.empty() ? "."
+                                                         : fmt::format(": the notch lay {}; {} before you fire.",
+                                                                       correction.deviation, correction.advice);
+    hints.push_back({lost_core + lost_target, what + why});
   } else if (lost_target > 0.0) {
     const Correction correction = correct(subject.metrics.target_offset_P, path_P);
     hints.push_back(

@@ -1,13 +1,14 @@
 #include "training/detail/task_labels.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace trocar {
 namespace {
 
 bool occurs(const VirtualPatient& patient, std::uint8_t label_id) {
   const auto& voxels = patient.labels.voxels;
-  return std::find(voxels.begin(), voxels.end(), label_id) != voxels.end();
+  return !voxels.empty() && std::memchr(voxels.data(), label_id, voxels.size()) != nullptr;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "training/detail/hints.h"
 #include "training/test/attempt_patient.h"
+#include "training/test/layered_body.h"
 
 namespace trocar {
 namespace {
@@ -102,6 +103,24 @@ TEST(Score, TouchedRisksCostTheirPenalty) {
   EXPECT_EQ(vessel.risks_touched, std::vector<std::string>{"portal_vein"});
   EXPECT_NEAR(part(vessel, "risk").points, 0.0, 1e-9);
   EXPECT_TRUE(has_hint(vessel, "stylet shot into a structure at risk, portal vein"));
+}
+
+TEST(Score, EveryNoviceIsWorseThanTheExpert) {
+  const auto score_of = [](auto make_operator, std::uint64_t seed) {
+    const OperatorCase the_case{make_box_plan().line_P, true, seed};
+    LayeredBody body(the_case.path_P, {{0.0, 4.5, 2.8}, {10.0, 2.8, 2.5}, {20.0, 2.7, 1.5}}, 0.001);
+    body.run(*make_operator(the_case), 60.0);
+    return score(body.samples, body.fired.empty() ? std::nullopt : std::optional(body.fired[0])).score;
+  };
+  double novices = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const double expert = score_of(make_expert, seed);
+    const double novice = score_of(make_novice, seed);
+    EXPECT_GT(expert, 95.0) << seed;
+    EXPECT_LT(novice, expert - 5.0) << seed;
+    novices += novice / 20.0;
+  }
+  EXPECT_LT(novices, 75.0);
 }
 
 TEST(Score, ScoresWhatThereIsOfAnUnfinishedAttempt) {
