@@ -12,22 +12,27 @@
 
 namespace trocar {
 
-/// A path that keeps every margin of its task.
+/// A path that keeps every margin of its task, over the throw of a biopsy needle too.
 struct PlannedPath {
-  Segment line_P;  ///< Entry on the skin -> target of the tip.
+  /// Entry on the skin -> where the tip is put: at the target, or for a biopsy needle so far before it that the middle
+  /// of the notch comes to lie in the target when it is fired.
+  Segment line_P{Vec3::Zero(), Vec3::Zero()};
   double length_mm = 0.0;
-  double organ_path_mm = 0.0;       ///< Length inside the organ before the target.
-  double smallest_margin_mm = 0.0;  ///< Clearance to the nearest risk structure, beyond the required margin.
-  std::string nearest_risk;
+  double organ_path_mm = 0.0;  ///< Length inside the organ before the lesion or the tip, what comes first.
+  double smallest_margin_mm =
+      0.0;                   ///< Clearance to the nearest risk structure, beyond the required margin; at most 10.
+  std::string nearest_risk;  ///< Label name; empty: none within 10 mm beyond its margin.
 };
 
 struct PlanOptions {
-  int count = 1;  ///< How many paths, different entries. Range 1..100000.
+  int count = 1;  ///< How many paths, different entries or targets. Range 1..100000.
   std::uint64_t seed = 1;
 };
 
-/// Safe paths, best (shortest) first; each passes skin, muscle and organ surface. The error says which margin left no
-/// path.
+/// Safe paths, best (shortest) first; each passes skin, muscle and organ surface, in this order and nothing else with a
+/// surface. More than one path have entries as far apart as they can (16 mm and less); fewer than `count` come where
+/// the patient has no more. The same paths for the same seed, whatever the number of threads. The error says which
+/// constraint left no path.
 Result<std::vector<PlannedPath>> plan_paths(const Task& task, const VirtualPatient& patient, const Needle& needle,
                                             const PlanOptions& options = {}, const Progress& progress = {});
 

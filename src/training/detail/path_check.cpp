@@ -1,0 +1,224 @@
+#include "training/detail/path_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "training/detail/block_grid.h"
+#include "volume/sampling.h"
+
+namespace trocar::detail {
+namespace {
+
+constexpr double kHubReserve_mm = 10.0;   ///< Of the needle stays outside.
+constexpr double kBorder_mm = 3.0;        ///< An entry this near to the volume's border may lie on a cut face.
+constexpr double kNormalRadius_mm = 3.0;  ///< The skin's normal is taken over this distance: voxels are steps.
+constexpr double kScreenStep_mm = 2.0;
+constexpr double kWalkStep_mm = 0.25;
+constexpr double kSkinTolerance_mm = 0.5;  ///< Above the skin: still a fold of it, not a way out of the body.
+constexpr double kMinMuscle_mm = 2.0;
+constexpr double kChunk_mm = 8.0;  ///< Of the path, for the exact margins.
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+bool is_near_border(const GridGeometry& geometry, const Vec3& p_P, double margin_mm) {
+  const Vec3 index = geometry.to_index(p_P);
+  for (int a = 0; a < 3; ++a) {
+    const double margin = margin_mm / geometry.spacing_mm[a];
+    if (index[a] < margin || index[a] > static_cast<double>(geometry.size[static_cast<std::size_t>(a)] - 1) - margin)
+      return true;
+  }
+  return false;
+}
+
+Vec3 skin_normal(const FloatGrid& skin_distance, const Vec3& p_P) {
+  Vec3 slope;
+  for (int a = 0; a < 3; ++a) {
+    Vec3 step = Vec3::Zero();
+    step[a] = kNormalRadius_mm;
+    slope[a] = sample_linear(skin_distance, p_P + step) - sample_linear(skin_distance, p_P - step);
+  }
+  return slope.norm() > 0.0 ? Vec3(slope.normalized()) : Vec3::Zero();
+}
+
+/// Distance along `outward` to the skin; negative: not found before `reach_mm` or the volume's end.
+double distance_to_skin(const FloatGrid& skin_distance, const Vec3& start_P, const Vec3& outward, double reach_mm,
+                        Verdict& verdict) {
+  double s = 0.0;
+  double inside = 0.0;
+  while (true) {
+    const Vec3 p = start_P + s * outward;
+    if (is_near_border(skin_distance.geometry, p, 0.0)) {
+      verdict = Verdict::kCutFace;
+      return -1.0;
+    }
+    const double distance = sample_linear(skin_distance, p);
+    if (distance >= 0.0) break;
+    if (s > reach_mm) {
+      verdict = Verdict::kTooLong;
+      return -1.0;
+    }
+    inside = s;
+    s += std::max(-distance, kSkinTolerance_mm);  // no surface is nearer than the distance to it
+  }
+  for (int n = 0; n < 20; ++n) {
+    const double middle = 0.5 * (inside + s);
+    (sample_linear(skin_distance, start_P + middle * outward) < 0.0 ? inside : s) = middle;
+  }
+  return s;
+}
+
+/// Distance between a segment and a box; alternating projections, which converge fast at this size.
+double segment_box_distance_mm(const Segment& segment, const GridGeometry& geometry, const Vec3& centre_P) {
+  const Vec3 half = 0.5 * geometry.spacing_mm;
+  Vec3 on_box = centre_P;
+  Vec3 on_segment = centre_P;
+  for (int n = 0; n < 3; ++n) {
+    on_segment = segment.at(closest_fraction(segment, on_box));
+    const Vec3 local = geometry.R_PV.transpose() * (on_segment - centre_P);
+    on_box = centre_P + geometry.R_PV * local.cwiseMax(-half).cwiseMin(half);
+  }
+  return (on_segment - on_box).norm();
+}
+
+/// Tells the nearest risk voxel around one piece of the path; `findings` keeps the smallest clearance.
+void look_around(const PlanningMap& map, const Segment& piece, PathFindings& findings) {
+  const LabelGrid& labels = map.patient.labels;
+  const double radius = map.largest_margin_mm + findings.smallest_margin_mm;
+  const double half_voxel = 0.5 * labels.geometry.spacing_mm.norm();
+  const IndexBox box = clipped(united(box_around(labels.geometry, piece.a, radius + half_voxel),
+                                      box_around(labels.geometry, piece.b, radius + half_voxel)),
+                               labels.geometry);
+  for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k)
+    for (std::int64_t j = box.low[1]; j <= box.high[1]; ++j)
+      for (std::int64_t i = box.low[0]; i <= box.high[0]; ++i) {
+        const std::uint8_t id = labels[{i, j, k}];
+        const RiskStructure* risk = map.risks[id];
+        if (!risk) continue;
+        const Vec3 centre =
+            labels.geometry.to_mm({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+        if (distance_mm(piece, centre) - half_voxel - risk->margin_mm > findings.smallest_margin_mm) continue;
+        const double clearance = segment_box_distance_mm(piece, labels.geometry, centre) - risk->margin_mm;
+        if (clearance >= findings.smallest_margin_mm) continue;
+        findings.smallest_margin_mm = clearance;
+        findings.nearest_risk = id;
+        findings.where_P = centre;
+      }
+}
+
+/// Exact clearance of the whole way: pieces in order of their coarse clearance, until none can be nearer.
+void measure_margins(const PlanningMap& map, const Segment& way, PathFindings& findings) {
+  const int count = static_cast<int>(std::ceil(way.length_mm() / kChunk_mm));
+  std::vector<std::pair<double, Segment>> pieces;
+  for (int n = 0; n < count; ++n) {
+    const Segment piece{way.at(static_cast<double>(n) / count), way.at(static_cast<double>(n + 1) / count)};
+    const double bound = sample_linear(map.clearance_mm, piece.at(0.5)) - 0.5 * piece.length_mm() - 2 * map.slack_mm;
+    pieces.emplace_back(bound, piece);
+  }
+  std::stable_sort(pieces.begin(), pieces.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  findings.smallest_margin_mm = kReportedMargin_mm;
+  for (const auto& [bound, piece] : pieces) {
+    if (bound > findings.smallest_margin_mm) break;
+    look_around(map, piece, findings);
+    if (findings.smallest_margin_mm < 0.0) {
+      findings.verdict = Verdict::kMargin;
+      return;
+    }
+  }
+}
+
+/// Lengths met on the way from the skin to the end of the throw.
+class Walk {
+ public:
+  Walk(const PlanningMap& map, double tip_mm) : map_(map), tip_mm_(tip_mm) {}
+
+  /// One step of the needle at arc length s; false ends the walk.
+  bool step(double s, const Vec3& p_P) {
+    const Role role = map_.role_at(p_P);
+    if (role == Role::kForbidden) return stop(Verdict::kCrosses, p_P);
+    const bool is_organ = role == Role::kOrgan || role == Role::kTarget;
+    has_organ_ |= is_organ;
+    if (!has_organ_ && role == Role::kMuscle) muscle_mm_ += kWalkStep_mm;
+    if (has_organ_ && !is_organ) outside_mm_ += kWalkStep_mm;
+    has_target_ |= role == Role::kTarget;
+    if (role == Role::kOrgan && !has_target_ && s < tip_mm_) organ_mm_ += kWalkStep_mm;
+    // Oblique voxel borders may show the organ's surface twice within a voxel.
+    if (outside_mm_ > map_.patient.labels.geometry.spacing_mm.norm()) return stop(Verdict::kLeavesOrgan, p_P);
+    if (s > 1.0 && sample_linear(map_.patient.skin_distance_mm, p_P) > kSkinTolerance_mm)
+      return stop(Verdict::kGlancing, p_P);
+    return true;
+  }
+
+  PathFindings finish() const {
+    PathFindings findings;
+    findings.organ_path_mm = organ_mm_;
+    findings.verdict = verdict_;
+    findings.where_P = where_P_;
+    if (verdict_ != Verdict::kFree) return findings;
+    if (muscle_mm_ < kMinMuscle_mm) findings.verdict = Verdict::kNoMuscle;
+    if (organ_mm_ < map_.task.min_organ_path_mm) findings.verdict = Verdict::kOrganPath;
+    return findings;
+  }
+
+ private:
+  bool stop(Verdict verdict, const Vec3& p_P) {
+    verdict_ = verdict;
+    where_P_ = p_P;
+    return false;
+  }
+
+  const PlanningMap& map_;
+  double tip_mm_;
+  double muscle_mm_ = 0.0;
+  double organ_mm_ = 0.0;
+  double outside_mm_ = 0.0;
+  bool has_organ_ = false;
+  bool has_target_ = false;
+  Verdict verdict_ = Verdict::kFree;
+  Vec3 where_P_ = Vec3::Zero();
+};
+
+}  // namespace
+
+PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec3& target_P, const Vec3& outward) {
+  const FloatGrid& skin_distance = map.patient.skin_distance_mm;
+  PathCandidate path;
+  const double ahead = needle.notch_middle_mm();
+  const double longest = std::min(map.task.max_path_mm, needle.length_mm - kHubReserve_mm);
+  const double to_skin = distance_to_skin(skin_distance, target_P, outward, longest + ahead, path.verdict);
+  if (to_skin < 0.0) return path;
+  path.line_P = {target_P + to_skin * outward, target_P + ahead * outward};
+  path.length_mm = to_skin - ahead;
+  const auto reject = [&](Verdict verdict) {
+    path.verdict = verdict;
+    return path;
+  };
+  if (path.length_mm > longest) return reject(Verdict::kTooLong);
+  if (path.length_mm < map.task.min_organ_path_mm + kMinMuscle_mm) return reject(Verdict::kOrganPath);
+  if (is_near_border(skin_distance.geometry, path.line_P.a, kBorder_mm)) return reject(Verdict::kCutFace);
+  const Vec3 normal = skin_normal(skin_distance, path.line_P.a);
+  if (normal.y() > std::sin(map.task.max_posterior_deg * kDegree)) return reject(Verdict::kOutOfReach);  // +y: back
+  if (normal.dot(outward) < std::cos(map.task.max_entry_angle_deg * kDegree)) return reject(Verdict::kGlancing);
+
+  const double whole = path.length_mm + needle.throw_mm;
+  for (double s = 0.0; s <= whole; s += kScreenStep_mm) {
+    const Vec3 p = path.line_P.a - s * outward;
+    path.where_P = p;
+    if (map.role_at(p) == Role::kForbidden) return reject(Verdict::kCrosses);
+    if (sample_linear(map.clearance_mm, p) < -map.slack_mm) return reject(Verdict::kMargin);
+  }
+  return path;
+}
+
+PathFindings check_path(const PlanningMap& map, const Needle& needle, const PathCandidate& path) {
+  const Vec3 axis = path.line_P.direction();
+  const double whole = path.length_mm + needle.throw_mm;
+  Walk walk(map, path.length_mm);
+  const int steps = static_cast<int>(std::floor(whole / kWalkStep_mm));
+  for (int n = 0; n <= steps; ++n)
+    if (const double s = n * kWalkStep_mm; !walk.step(s, path.line_P.a + s * axis)) break;
+  PathFindings findings = walk.finish();
+  if (findings.verdict == Verdict::kFree) measure_margins(map, {path.line_P.a, path.line_P.a + whole * axis}, findings);
+  return findings;
+}
+
+}  // namespace trocar::detail

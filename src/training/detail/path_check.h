@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+
+#include "training/detail/planning_map.h"
+#include "training/needle.h"
+
+namespace trocar::detail {
+
+/// Why a line is no path. The first ones have to do with the skin alone.
+enum class Verdict : std::uint8_t {
+  kFree,
+  kTooLong,
+  kCutFace,
+  kOutOfReach,
+  kGlancing,
+  kCrosses,
+  kNoMuscle,
+  kLeavesOrgan,
+  kOrganPath,
+  kMargin,
+};
+
+/// A straight way of a needle that may turn out to be no path.
+struct PathCandidate {
+  Segment line_P{Vec3::Zero(), Vec3::Zero()};  ///< Skin -> tip.
+  double length_mm = 0.0;
+  Verdict verdict = Verdict::kFree;
+  Vec3 where_P = Vec3::Zero();  ///< Where a kCrosses was found.
+};
+
+/// Searches from a target along `outward` (unit) for the skin and tests what is quick to test: length, reach, angle,
+/// the coarse clearance. What passes may still fail check_path. Deterministic.
+PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec3& target_P, const Vec3& outward);
+
+/// What an exact look at a path finds.
+struct PathFindings {
+  Verdict verdict = Verdict::kFree;
+  Vec3 where_P = Vec3::Zero();
+  double organ_path_mm = 0.0;
+  double smallest_margin_mm = 0.0;
+  std::uint8_t nearest_risk = 0;  ///< Label id; 0: none within kReportedMargin_mm.
+};
+inline constexpr double kReportedMargin_mm = 10.0;  ///< A larger clearance is told as this.
+
+/// Walks the path and the throw beyond it voxel by voxel: layers in order, organ passed, margins to the risk voxels.
+PathFindings check_path(const PlanningMap& map, const Needle& needle, const PathCandidate& path);
+
+}  // namespace trocar::detail
