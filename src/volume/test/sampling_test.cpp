@@ -1,6 +1,7 @@
 #include "volume/sampling.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <limits>
 #include <vector>
@@ -42,6 +43,20 @@ void expect_slice_equals_reference(const CtGrid& ct, const SlicePlane& plane) {
   for (int v = 0; v < plane.rows; ++v)
     for (int u = 0; u < plane.columns; ++u, ++n)
       ASSERT_NEAR(out[n], reference(ct, point_of(plane, u, v)), kToleranceHu) << "column " << u << " row " << v;
+}
+
+void expect_points_equal_reference(const CtGrid& ct, std::size_t count, Random& random) {
+  std::vector<Vec3f> points_P;
+  while (points_P.size() < count) {
+    Vec3 index;
+    for (int a = 0; a < 3; ++a)
+      index[a] = random.uniform(-3.0, static_cast<double>(ct.geometry.size[static_cast<std::size_t>(a)]) + 3.0);
+    const Vec3f p_P = ct.geometry.to_mm(index).cast<float>();
+    if (!is_near_a_face(ct.geometry, ct.geometry.to_index(p_P.cast<double>()))) points_P.push_back(p_P);
+  }
+  std::vector<float> out(count);
+  sample_points(ct, points_P, kOutside, out);
+  for (std::size_t n = 0; n < count; ++n) ASSERT_NEAR(out[n], reference(ct, points_P[n].cast<double>()), kToleranceHu);
 }
 
 /// A plane through a random voxel, with columns and rows that need not be square to each other.
@@ -114,6 +129,25 @@ TEST(SampleSlice, AgreesWithTheScalarReferenceOnRandomPlanes) {
     const CtGrid ct = noise_ct(oblique_geometry({33, 27, 21}, random), random);
     expect_slice_equals_reference(ct, random_plane(ct.geometry, random));
   }
+}
+
+TEST(SampleSlice, AgreesWithTheReferenceOnEveryInstructionSet) {
+  const std::int64_t compiled_and_here = hwy::SupportedTargets() & HWY_TARGETS;
+  ASSERT_NE(compiled_and_here, 0);
+  for (std::int64_t left = compiled_and_here; left != 0; left &= left - 1) {
+    const std::int64_t target = left & -left;
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();  // chosen anew at the next call
+    Random random(66);
+    for (int n = 0; n < 10; ++n) {
+      const CtGrid ct = noise_ct(oblique_geometry({33, 27, 21}, random), random);
+      expect_slice_equals_reference(ct, random_plane(ct.geometry, random));
+      expect_points_equal_reference(ct, 300, random);
+    }
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();  // chosen anew at the next call
 }
 
 TEST(SampleSlice, HitsVoxelCentresExactly) {
@@ -197,19 +231,8 @@ TEST(SampleSlice, FillsEverythingForAnEmptyGrid) {
 
 TEST(SamplePoints, AgreesWithTheScalarReference) {
   Random random(9);
-  for (const std::size_t count : {0, 1, 127, 128, 129, 5000}) {
-    const CtGrid ct = noise_ct(oblique_geometry({30, 40, 50}, random), random);
-    std::vector<Vec3f> points_P;
-    while (points_P.size() < count) {
-      const Vec3 index(random.uniform(-3, 33), random.uniform(-3, 43), random.uniform(-3, 53));
-      const Vec3f p_P = ct.geometry.to_mm(index).cast<float>();
-      if (!is_near_a_face(ct.geometry, ct.geometry.to_index(p_P.cast<double>()))) points_P.push_back(p_P);
-    }
-    std::vector<float> out(count);
-    sample_points(ct, points_P, kOutside, out);
-    for (std::size_t n = 0; n < count; ++n)
-      ASSERT_NEAR(out[n], reference(ct, points_P[n].cast<double>()), kToleranceHu);
-  }
+  for (const std::size_t count : {0, 1, 127, 128, 129, 5000})
+    expect_points_equal_reference(noise_ct(oblique_geometry({30, 40, 50}, random), random), count, random);
 }
 
 TEST(SamplePoints, IsOutsideForPointsThatAreNotFinite) {
