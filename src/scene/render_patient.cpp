@@ -14,11 +14,14 @@
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
+#include <vtkShaderProperty.h>
 #include <vtkSmartPointer.h>
 #include <vtkTubeFilter.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "scene/detail/appearance.h"
 #include "scene/detail/display.h"
@@ -57,11 +60,23 @@ vtkSmartPointer<vtkPolyData> to_polydata(const TriangleMesh& mesh) {
 void apply(const Appearance& look, vtkProperty& property) {
   property.SetColor(look.color[0] / 255.0, look.color[1] / 255.0, look.color[2] / 255.0);
   property.SetOpacity(look.opacity);
-  property.SetAmbient(0.12);
-  property.SetDiffuse(0.85);
+  property.SetAmbient(look.ambient);
+  property.SetDiffuse(1.0 - look.ambient);
   property.SetSpecular(look.specular);
   property.SetSpecularPower(30.0);
   property.SetInterpolationToPhong();
+}
+
+/// Clear where it is seen face on, denser towards its outline, like glass. Of a translucent surface the front alone is
+/// drawn: its far side would veil what lies inside.
+void make_glassy(vtkActor& actor) {
+  actor.GetProperty()->BackfaceCullingOn();
+  actor.GetShaderProperty()->AddFragmentShaderReplacement(
+      "//VTK::Light::Impl", true,
+      "//VTK::Light::Impl\n"
+      "  float facing = abs(dot(normalize(normalVCVSOutput), normalize(vertexVC.xyz)));\n"
+      "  gl_FragData[0].a = clamp(opacity * (0.7 + 3.5 * pow(1.0 - facing, 2.5)), 0.0, 0.95);\n",
+      false);
 }
 
 void add_surface(vtkRenderer& renderer, const TriangleMesh& mesh_P, const Appearance& look) {
@@ -75,8 +90,7 @@ void add_surface(vtkRenderer& renderer, const TriangleMesh& mesh_P, const Appear
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
   apply(look, *actor->GetProperty());
-  // Of a translucent surface the front alone: its far side would veil what lies inside.
-  if (look.opacity < 1.0) actor->GetProperty()->BackfaceCullingOn();
+  if (look.opacity < 1.0) make_glassy(*actor);
   renderer.AddActor(actor);
 }
 
@@ -103,16 +117,18 @@ void add_tube(vtkRenderer& renderer, const Segment& line_P, double radius_mm, co
   renderer.AddActor(actor);
 }
 
-/// A steel shaft that ends at the target, with its hub outside the body.
-void add_needle(vtkRenderer& renderer, const Segment& path_P) {
+/// A steel shaft that ends at the target, with its hub outside the body. Returns the hub's end.
+Vec3 add_needle(vtkRenderer& renderer, const Segment& path_P) {
   constexpr double kOutside_mm = 60.0;
   constexpr double kHub_mm = 22.0;
-  constexpr double kShaftRadius_mm = 1.0;  // thicker than life, to be seen
+  constexpr double kShaftRadius_mm = 1.2;  // thicker than life, to be seen
   constexpr double kHubRadius_mm = 3.5;
   const Vec3 back_P = -path_P.direction();
   const Vec3 hub_P = path_P.a + kOutside_mm * back_P;
+  const Vec3 end_P = hub_P + kHub_mm * back_P;
   add_tube(renderer, {hub_P, path_P.b}, kShaftRadius_mm, {{205, 212, 220}, 1.0, 0.8});
-  add_tube(renderer, {hub_P + kHub_mm * back_P, hub_P}, kHubRadius_mm, {{46, 134, 171}, 1.0, 0.4});
+  add_tube(renderer, {end_P, hub_P}, kHubRadius_mm, {{46, 134, 171}, 1.0, 0.4});
+  return end_P;
 }
 
 void add_light(vtkRenderer& renderer, const Vec3& from_camera, double intensity, const Vec3& color) {
@@ -131,7 +147,7 @@ void add_studio(vtkRenderer& renderer) {
   renderer.SetBackground2(0.20, 0.235, 0.28);
   renderer.GradientBackgroundOn();
   renderer.AutomaticLightCreationOff();
-  add_light(renderer, {-0.6, 0.8, 1.0}, 0.85, {1.0, 0.98, 0.94});
+  add_light(renderer, {-0.6, 0.8, 1.0}, 0.95, {1.0, 0.98, 0.94});
   add_light(renderer, {1.0, 0.1, 0.7}, 0.35, {0.92, 0.96, 1.0});
   add_light(renderer, {0.4, 0.9, -1.0}, 0.35, {0.85, 0.92, 1.0});
 }
@@ -151,15 +167,36 @@ Vec3 camera_direction(CameraPreset preset) {
   return {0.0, -1.0, 0.0};
 }
 
-void place_camera(vtkRenderer& renderer, CameraPreset preset) {
-  const Vec3 direction_P = camera_direction(preset);
+/// Looks at the middle from `direction_P`, as near as all points stay in the picture, with a margin.
+void place_camera(vtkRenderer& renderer, const std::vector<Vec3>& points_P, const Vec3& direction_P, double aspect) {
+  constexpr double kViewAngle_rad = 0.42;
+  constexpr double kMargin = 1.05;
+  const Vec3 right_P = Vec3::UnitZ().cross(direction_P).normalized();
+  const Vec3 up_P = direction_P.cross(right_P);
+  const auto to_camera = [&](const Vec3& p_P) -> Vec3 {
+    return {p_P.dot(right_P), p_P.dot(up_P), p_P.dot(direction_P)};
+  };
+  Vec3 low = to_camera(points_P.front());
+  Vec3 high = low;
+  for (const Vec3& p_P : points_P) {
+    low = low.cwiseMin(to_camera(p_P));
+    high = high.cwiseMax(to_camera(p_P));
+  }
+  const Vec3 middle = 0.5 * (low + high);
+  double distance = 1.0;
+  for (const Vec3& p_P : points_P) {
+    const Vec3 p = to_camera(p_P) - middle;
+    const double half_height = kMargin * std::max(std::abs(p.y()), std::abs(p.x()) / aspect);
+    distance = std::max(distance, p.z() + half_height / std::tan(0.5 * kViewAngle_rad));
+  }
+
+  const Vec3 focus_P = middle.x() * right_P + middle.y() * up_P + middle.z() * direction_P;
+  const Vec3 eye_P = focus_P + distance * direction_P;
   vtkCamera* camera = renderer.GetActiveCamera();
-  camera->SetFocalPoint(0.0, 0.0, 0.0);
-  camera->SetPosition(direction_P.x(), direction_P.y(), direction_P.z());
+  camera->SetFocalPoint(focus_P.x(), focus_P.y(), focus_P.z());
+  camera->SetPosition(eye_P.x(), eye_P.y(), eye_P.z());
   camera->SetViewUp(0.0, 0.0, 1.0);
-  camera->SetViewAngle(24.0);
-  renderer.ResetCamera();
-  camera->Zoom(1.2);
+  camera->SetViewAngle(kViewAngle_rad * 180.0 / std::numbers::pi);
   renderer.ResetCameraClippingRange();
 }
 
@@ -208,13 +245,17 @@ Result<RgbImage> render_patient(const VirtualPatient& patient, const std::vector
   vtkObject::GlobalWarningDisplayOff();
   vtkNew<vtkRenderer> renderer;
   add_studio(*renderer);
+  std::vector<Vec3> points_P;
   for (const NamedMesh& mesh : meshes) {
     const auto look = detail::find_appearance(patient.label_table, mesh.name, options.skin_opacity);
-    if (look && !mesh.mesh_P.triangles.empty()) add_surface(*renderer, mesh.mesh_P, *look);
+    if (!look || mesh.mesh_P.triangles.empty()) continue;
+    add_surface(*renderer, mesh.mesh_P, *look);
+    for (const Vec3f& vertex_P : mesh.mesh_P.vertices) points_P.push_back(vertex_P.cast<double>());
   }
-  place_camera(*renderer, options.camera);  // by the body alone, so that pictures of a patient match
-  for (const NeedlePath& path : options.paths) add_needle(*renderer, path.line_P);
-  renderer->ResetCameraClippingRange();
+  for (const NeedlePath& path : options.paths) points_P.push_back(add_needle(*renderer, path.line_P));
+  if (points_P.empty()) return fail("the patient has no surface to draw", patient.name, "see trocar patient check");
+  place_camera(*renderer, points_P, camera_direction(options.camera),
+               static_cast<double>(options.columns) / options.rows);
   renderer->SetUseDepthPeeling(1);
   renderer->SetMaximumNumberOfPeels(kPeels);
   renderer->SetOcclusionRatio(0.01);

@@ -42,8 +42,8 @@ const std::vector<HeaderRule>& header_rules() {
         {"vtkSTL", {"vtk-io"}},
     };
     for (const std::string_view rendering :
-         {"vtkActor", "vtkCamera", "vtkLight", "vtkOpenGL", "vtkPolyDataMapper", "vtkProp", "vtkRender", "vtkText",
-          "vtkVolume", "vtkWindow.", "vtkWindowToImage"}) {
+         {"vtkActor", "vtkCamera", "vtkLight", "vtkOpenGL", "vtkPolyDataMapper", "vtkProp", "vtkRender", "vtkShader",
+          "vtkText", "vtkVolume", "vtkWindow.", "vtkWindowToImage"}) {
       r.push_back({rendering, {"vtk-rendering"}});
     }
     for (const std::string_view data :

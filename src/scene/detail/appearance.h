@@ -12,6 +12,7 @@ struct Appearance {
   Rgb color;
   double opacity = 1.0;   ///< 0..1
   double specular = 0.2;  ///< 0..1
+  double ambient = 0.14;  ///< 0..1, the share of its own glow
 };
 
 /// Looks of the surface named `name`, a label of the table or "skin"; nothing for what is left out (fat, muscle, a skin
