@@ -54,6 +54,7 @@ void start_channel(InsertionState& state, const Vec3& origin_P, const Vec3& dire
 void leave_body(InsertionState& state) noexcept {
   if (state.has_path) state.memory.remember(state.channel);
   state.has_path = false;
+  state.contact_to_puncture_P = Vec3::Zero();
   state.loading = kNoLayer;
   state.is_stuck = false;
   state.pending_s = 0.0;
@@ -213,6 +214,7 @@ InsertionPhase next_phase(const InsertionState& state) noexcept {
 void update_contact(InsertionState& state, const LayerAhead& ahead) noexcept {
   if (ahead.layer == kNoLayer) return;
   if (state.s_mm > ahead.surface_mm) {
+    if (!state.has_path && state.loading == kNoLayer) state.contact_P = state.channel.origin_P;
     state.loading = ahead.layer;
     state.surface_mm = ahead.surface_mm;
   } else if (state.s_mm < ahead.surface_mm - kContactHysteresis_mm) {
@@ -226,6 +228,7 @@ void give_way(InsertionState& state, std::uint8_t layer) noexcept {
   state.channel.pierce(layer);
   if (state.has_path) return;
   state.has_path = true;
+  state.contact_to_puncture_P = state.channel.origin_P + state.s_mm * state.channel.direction_P - state.contact_P;
   state.rest_mm = 0.0;
   state.channel.known_bins = 0;  // the line may have turned while the skin was loaded
 }

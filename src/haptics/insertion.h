@@ -24,6 +24,9 @@ struct InsertionState {
   double device_speed_mm_per_s = 0.0;  ///< Smoothed |axial velocity| of the device.
   double pending_s = 0.0;              ///< Rest of the tick in which a layer gave way.
 
+  Vec3 contact_P = Vec3::Zero();              ///< P: where the needle first touched the skin.
+  Vec3 contact_to_puncture_P = Vec3::Zero();  ///< PX_p, zero before the skin gives way.
+
   std::uint8_t loading = kNoLayer;  ///< Layer under load.
   double surface_mm = 0.0;          ///< s of its resting surface.
   bool is_stuck = false;

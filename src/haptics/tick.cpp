@@ -96,6 +96,7 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
   sample.f_total_n = sample.axis * axial_n + constraint.force_n + weight.force_n;
   sample.tau_nmm = constraint.torque_nmm + weight.torque_nmm;
   sample.device_mm = X_PN.p();
+  sample.contact_to_puncture_mm = state.insertion.contact_to_puncture_P;
   const Eigen::Quaterniond q(X_PN.R());
   sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
 

@@ -49,8 +49,10 @@ struct TickSample {
   double f_stick_n = 0.0;             ///< Karnopp holding force along the axis, apart from the paper's terms.
   Vec3 device_mm = Vec3::Zero();      ///< Needle tip as the device has it (before the coupling).
   Vec3 device_f_n = Vec3::Zero();     ///< What went to the device.
-  std::array<double, 4> device_rotation_wxyz{1, 0, 0, 0};  ///< R_PN of the device's needle: with device_mm and time_s
-                                                           ///< all that a replay needs. Stored, not exported to CSV.
+  /// R_PN of the device's needle: with device_mm and time_s all that a replay needs. Stored, not in the CSV.
+  std::array<double, 4> device_rotation_wxyz{1, 0, 0, 0};
+  /// PX_p of paper A: from the first contact with the skin to where it gave way; zero before. Stored, not in the CSV.
+  Vec3 contact_to_puncture_mm = Vec3::Zero();
 };
 
 }  // namespace trocar

@@ -229,6 +229,14 @@ TEST(Insertion, KeepsThePathThatPiercedTheSkin) {
   EXPECT_GT(sample.tau_nmm.norm(), 10.0);
 }
 
+TEST(Insertion, RecordsTheWayFromContactToPuncture) {
+  Driver driver(make_scene(liver_way()));
+  const TickSample sample = driver.move(10.0, 10.0).back();
+  constexpr double kTick_mm = 0.01;  // contact is noticed at the end of a tick
+  EXPECT_NEAR(sample.contact_to_puncture_mm.z(), static_displacement_mm(2.8, {0.46, 0.02, 0.1}), 0.15);  // and viscosity
+  EXPECT_NEAR(sample.contact_to_puncture_mm.head<2>().norm(), 0.0, kTick_mm);
+}
+
 TEST(Insertion, ObliqueNeedleTouchesTheSkinWhereItsAxisMeetsIt) {
   Driver driver(make_scene(liver_way()));
   const Vec3 axis = Vec3(1.0, 0.0, 1.0).normalized();

@@ -68,6 +68,9 @@ void visit_stored_columns(Sample& s, Visitor&& visit) {
   visit("device_qx", s.device_rotation_wxyz[1]);
   visit("device_qy", s.device_rotation_wxyz[2]);
   visit("device_qz", s.device_rotation_wxyz[3]);
+  visit("px_p_x_mm", s.contact_to_puncture_mm.x());
+  visit("px_p_y_mm", s.contact_to_puncture_mm.y());
+  visit("px_p_z_mm", s.contact_to_puncture_mm.z());
 }
 
 /// Whether a visited field is kept as a real number (else as an integer).

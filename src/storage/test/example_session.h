@@ -87,6 +87,7 @@ inline TickSample example_sample(std::size_t n) {
   s.device_mm = vector();
   s.device_f_n = vector();
   s.device_rotation_wxyz = {number(), number(), number(), number()};
+  s.contact_to_puncture_mm = {number(), number(), number()};
   return s;
 }
 
