@@ -9,5 +9,9 @@ namespace trocar::bench {
 
 /// Slices and points of a volume, against vtkImageReslice.
 Result<std::vector<CaseResult>> run_slice_benchmark();
+/// A whole attempt of 30 simulated seconds, and the whole process.
+Result<std::vector<CaseResult>> run_session_benchmark();
+/// Forces of an insertion into the embedded patient: peaks, drops, second insertion.
+Result<std::vector<CaseResult>> run_insertion_benchmark();
 
 }  // namespace trocar::bench

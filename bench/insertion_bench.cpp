@@ -1,0 +1,126 @@
+// The forces of an insertion into the embedded patient, for docs/validation.md: peaks by speed and profile, drop,
+// second insertion.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "anatomy/phantom/phantom.h"
+#include "bench/harness.h"
+#include "haptics/tick.h"
+#include "headless/prepare_case.h"
+
+namespace trocar::bench {
+namespace {
+
+constexpr double kDt_s = 0.001;
+
+std::shared_ptr<const HapticScene> make_scene(const Case& the_case) {
+  const NeedleGeometry needle{the_case.needle.outer_diameter_mm / 2.0, the_case.needle.length_mm};
+  const auto scene = make_haptic_scene(the_case.patient, the_case.tissues, needle);
+  return scene ? *scene : nullptr;
+}
+
+/// Drives the device along the planned path from one depth to another at constant speed.
+std::vector<TickSample> drive(HapticState& state, const HapticScene& scene, const Segment& path_P, double from_mm,
+                              double to_mm, double speed_mm_per_s) {
+  std::vector<TickSample> samples;
+  const double step = std::copysign(speed_mm_per_s * kDt_s, to_mm - from_mm);
+  const auto count = static_cast<int>(std::abs((to_mm - from_mm) / step));
+  for (int i = 1; i <= count; ++i) {
+    const Vec3 tip_P = path_P.a + path_P.direction() * (from_mm + step * i);
+    const Pose X_DS = scene.X_PD.inverse() * needle_pose(tip_P, path_P.direction()) * scene.X_SN.inverse();
+    samples.push_back(tick(state, {i * kDt_s, kDt_s, X_DS}, scene).sample);
+  }
+  return samples;
+}
+
+double resistance_n(const TickSample& sample) {
+  return -(sample.f_prepuncture_n + sample.f_friction_n + sample.f_cutting_n);
+}
+
+/// Peak at each puncture, and how long the resistance takes to lose half of its drop within the next 0.2 s.
+void add_punctures(std::vector<CaseResult>& results, const TissueTable& tissues, const std::vector<TickSample>& samples,
+                   const std::string& name) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const TickEvent event = samples[i].events[0];
+    if (event.kind != EventKind::kPuncture) continue;
+    const std::string layer = tissues.layers[event.id].name;
+    Figures peak;
+    peak.median = -samples[i].f_prepuncture_n;
+    results.push_back({fmt::format("insertion/{}/{}-peak", name, layer),
+                       "n",
+                       peak,
+                       {},
+                       fmt::format("x {:.2f} mm, whole resistance {:.2f} N", samples[i].layer_displacement_mm,
+                                   resistance_n(samples[i]))});
+    const std::size_t end = std::min(samples.size() - 1, i + 200);
+    double lowest = resistance_n(samples[i]);
+    for (std::size_t j = i; j <= end; ++j) lowest = std::min(lowest, resistance_n(samples[j]));
+    const double half = 0.5 * (resistance_n(samples[i]) + lowest);
+    std::size_t j = i;
+    while (j < end && resistance_n(samples[j]) > half) ++j;
+    Figures drop;
+    drop.median = static_cast<double>(j - i) * kDt_s * 1e3;
+    results.push_back({fmt::format("insertion/{}/{}-half-drop", name, layer),
+                       "ms",
+                       drop,
+                       {},
+                       fmt::format("falls to {:.2f} N", lowest)});
+  }
+}
+
+double mean_resistance_n(const std::vector<TickSample>& samples, double from_mm, double to_mm) {
+  double sum = 0.0;
+  int count = 0;
+  for (const TickSample& sample : samples) {
+    if (sample.depth_mm < from_mm || sample.depth_mm > to_mm || sample.phase != InsertionPhase::kInserted) continue;
+    sum += resistance_n(sample);
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+/// The same path twice: the mean resistance over the last 10 mm in the organ.
+void add_second_insertion(std::vector<CaseResult>& results, const Case& the_case, const HapticScene& scene) {
+  HapticState state;
+  const Segment& path = the_case.plan.line_P;
+  const double length = path.length_mm();
+  const auto first = drive(state, scene, path, -10.0, length, 10.0);
+  drive(state, scene, path, length, -10.0, 20.0);
+  const auto second = drive(state, scene, path, -10.0, length, 10.0);
+  Figures difference;
+  const double before = mean_resistance_n(first, length - 12.0, length - 2.0);
+  const double after = mean_resistance_n(second, length - 12.0, length - 2.0);
+  difference.median = before - after;
+  results.push_back({"insertion/second-in-same-channel",
+                     "n",
+                     difference,
+                     {},
+                     fmt::format("first {:.3f} N, second {:.3f} N, mean over 10 mm of liver", before, after)});
+}
+
+}  // namespace
+
+Result<std::vector<CaseResult>> run_insertion_benchmark() {
+  TROCAR_TRY(VirtualPatient generated, generate_phantom("abdomen"));
+  const auto patient = std::make_shared<const VirtualPatient>(std::move(generated));
+  std::vector<CaseResult> results;
+  for (const char* profile : {"paper-a", "tented"}) {
+    CaseOptions options;
+    options.profile = profile;
+    TROCAR_TRY(const Case the_case, prepare_case(patient, options));
+    const auto scene = make_scene(the_case);
+    if (!scene) return fail("the scene could not be built", "bench insertion");
+    for (const double speed : {2.0, 10.0, 50.0}) {
+      HapticState state;
+      const auto samples = drive(state, *scene, the_case.plan.line_P, -10.0, the_case.plan.length_mm, speed);
+      add_punctures(results, the_case.tissues, samples, fmt::format("{}-{:.0f}mm_s", profile, speed));
+    }
+    if (std::string_view(profile) == "paper-a") add_second_insertion(results, the_case, *scene);
+  }
+  return results;
+}
+
+}  // namespace trocar::bench

@@ -1,0 +1,105 @@
+// A whole attempt faster than real time: the closed loop with its recording, and the whole process.
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "anatomy/phantom/phantom.h"
+#include "bench/harness.h"
+#include "headless/run_session.h"
+#include "io/patient_folder.h"
+
+extern char** environ;
+
+namespace trocar::bench {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr double kSimulated_s = 30.0;
+constexpr double kOutside_mm = 10.0;  // where make_constant_velocity starts and ends
+
+/// A folder of its own that goes away at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_(fs::temp_directory_path() / fmt::format("trocar-bench-{}", ::getpid())) {
+    fs::create_directories(path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Runs this program again with other arguments and waits for it.
+Status run_self(const std::vector<std::string>& arguments) {
+  const std::string self = fs::read_symlink("/proc/self/exe").string();
+  std::vector<char*> argv{const_cast<char*>(self.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t quiet;
+  posix_spawn_file_actions_init(&quiet);
+  posix_spawn_file_actions_addopen(&quiet, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&quiet, 2, "/dev/null", O_WRONLY, 0);
+  pid_t child = 0;
+  const int failed = ::posix_spawn(&child, self.c_str(), &quiet, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&quiet);
+  int status = 0;
+  if (failed != 0 || ::waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    return fail("trocar run failed", "bench session");
+  return {};
+}
+
+/// Times work that can fail, in ms.
+Result<Figures> time_fallible_ms(int rounds, const std::function<Status()>& work) {
+  std::vector<double> times;
+  for (int i = 0; i < rounds; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    TROCAR_TRY_STATUS(work());
+    times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  }
+  return figures_of(std::move(times));
+}
+
+}  // namespace
+
+Result<std::vector<CaseResult>> run_session_benchmark() {
+  const TemporaryFolder folder;
+  TROCAR_TRY(VirtualPatient generated, generate_phantom("abdomen"));
+  const fs::path patient_folder = folder.path() / "patient";
+  TROCAR_TRY_STATUS(save_patient(generated, {}, patient_folder));
+  TROCAR_TRY(const Case the_case, prepare_case(std::make_shared<const VirtualPatient>(std::move(generated)), {}));
+
+  // In and out along the path in just 30 simulated seconds.
+  const double speed = 2.0 * (the_case.plan.line_P.length_mm() + kOutside_mm) / kSimulated_s;
+  RunOptions options;
+  options.operator_name = fmt::format("constant-velocity:{:.6f}", speed);
+  int round = 0;
+  std::size_t ticks = 0;
+  TROCAR_TRY(const Figures loop, time_fallible_ms(7, [&]() -> Status {
+               options.session = folder.path() / fmt::format("loop{}.trocar", ++round);
+               TROCAR_TRY(const RunResult result, run_session(the_case, options));
+               ticks = result.ticks;
+               return {};
+             }));
+  TROCAR_TRY(const Figures process, time_fallible_ms(5, [&]() -> Status {
+               const fs::path session = folder.path() / fmt::format("process{}.trocar", ++round);
+               return run_self({"run", "liver-biopsy", "--patient", patient_folder.string(), "--operator",
+                                options.operator_name, "--out", session.string()});
+             }));
+  CaseResult loop_result{"session/loop", "ms", loop, {}, fmt::format("{} ticks at 1 kHz, recorded and scored", ticks)};
+  CaseResult process_result{"session/process", "ms", process, {}, "trocar run: start, patient load, plan, loop, score"};
+  return std::vector<CaseResult>{loop_result, process_result};
+}
+
+}  // namespace trocar::bench

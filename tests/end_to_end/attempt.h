@@ -1,0 +1,78 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "headless/run_session.h"
+#include "temporary_folder.h"
+
+namespace trocar::testing {
+
+/// A finished attempt: what was returned and what was recorded.
+struct Attempt {
+  RunResult result;
+  Session session;
+};
+
+/// Performs an attempt and reads its session back; a failure is a failed test with its message.
+inline Attempt perform(const Case& the_case, const std::string& operator_name, std::uint64_t seed = 1) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.operator_name = operator_name;
+  options.seed = seed;
+  options.patient_source = the_case.patient->name;
+  options.session = folder.path() / "attempt.trocar";
+  Attempt attempt;
+  auto result = run_session(the_case, options);
+  EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().text());
+  if (!result) return attempt;
+  attempt.result = *std::move(result);
+  auto session = load_session(options.session);
+  EXPECT_TRUE(session.has_value()) << (session ? "" : session.error().text());
+  if (session) attempt.session = *std::move(session);
+  return attempt;
+}
+
+inline std::vector<std::string> layers_of(const Attempt& attempt) {
+  std::vector<std::string> layers;
+  for (const PunctureRecord& puncture : attempt.result.punctures) layers.push_back(puncture.layer);
+  return layers;
+}
+
+/// Resistance along the needle (N), positive pushes it out.
+inline double resistance_n(const TickSample& sample) {
+  return -(sample.f_prepuncture_n + sample.f_friction_n + sample.f_cutting_n);
+}
+
+/// Mean resistance while the needle advances, from one puncture (by number) to the next loading.
+inline double mean_resistance_after_n(const Attempt& attempt, std::size_t puncture) {
+  const double from_s = attempt.result.punctures.at(puncture).time_s + 0.1;  // the spring of the coupling has relaxed
+  double sum = 0.0;
+  int count = 0;
+  for (const TickSample& sample : attempt.session.samples) {
+    if (sample.time_s < from_s || sample.axial_velocity_mm_s < 1.0) continue;
+    if (sample.phase != InsertionPhase::kInserted) break;
+    sum += resistance_n(sample);
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+/// The paper's observations on one expert attempt: three peaks in order, a drop after each, more force behind the
+/// capsule than behind the skin.
+inline void expect_three_peaks(const Attempt& attempt) {
+  ASSERT_EQ(layers_of(attempt), (std::vector<std::string>{"skin", "muscle", "liver_capsule"}));
+  const auto& samples = attempt.session.samples;
+  for (const PunctureRecord& puncture : attempt.result.punctures) {
+    const auto at = static_cast<std::size_t>(puncture.time_s * attempt.session.info.rate_hz + 0.5);
+    constexpr std::size_t kSoon = 150;  // ms
+    ASSERT_LT(at + kSoon, samples.size());
+    EXPECT_LT(resistance_n(samples[at + kSoon]), 0.75 * resistance_n(samples[at])) << puncture.layer;
+  }
+  EXPECT_GT(mean_resistance_after_n(attempt, 2), mean_resistance_after_n(attempt, 0));
+}
+
+}  // namespace trocar::testing

@@ -1,0 +1,109 @@
+// The whole line on the embedded patient: plan, perform, record, score, report.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "anatomy/phantom/phantom.h"
+#include "attempt.h"
+#include "core/atomic_file.h"
+#include "haptics/insertion_law.h"
+#include "report/html_report.h"
+
+namespace trocar::testing {
+namespace {
+
+class EmbeddedBiopsy : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    auto patient = generate_phantom("abdomen");
+    ASSERT_TRUE(patient.has_value());
+    auto prepared = prepare_case(std::make_shared<const VirtualPatient>(*std::move(patient)), {});
+    ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
+    the_case = new Case(*std::move(prepared));
+    expert = new Attempt(perform(*the_case, "expert"));
+  }
+  static void TearDownTestSuite() {
+    delete expert;
+    delete the_case;
+    expert = nullptr;
+    the_case = nullptr;
+  }
+  static inline Case* the_case = nullptr;
+  static inline Attempt* expert = nullptr;
+};
+
+TEST_F(EmbeddedBiopsy, ExpertFeelsThreePeaksAndReachesTheLesion) {
+  expect_three_peaks(*expert);
+  EXPECT_TRUE(expert->result.outcome.target_reached);
+  EXPECT_GT(expert->result.outcome.score, 85.0);
+  EXPECT_TRUE(expert->result.outcome.risks_touched.empty());
+  ASSERT_TRUE(expert->result.outcome.core.has_value());
+  EXPECT_GT(expert->result.outcome.core->target_mm, 5.0);
+}
+
+TEST_F(EmbeddedBiopsy, NoviceScoresLowerThanTheExpert) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Attempt novice = perform(*the_case, "novice", seed);
+    EXPECT_LT(novice.result.outcome.score, expert->result.outcome.score) << "seed " << seed;
+    EXPECT_FALSE(novice.result.outcome.hints.empty());
+  }
+}
+
+TEST_F(EmbeddedBiopsy, RecordsTheForceLawsOwnValues) {
+  const TissueTable& tissues = the_case->tissues;
+  std::size_t layer = 0;
+  std::size_t loaded = 0;
+  for (const TickSample& s : expert->session.samples) {
+    const double along = s.f_prepuncture_n + s.f_friction_n + s.f_cutting_n;
+    ASSERT_LT((s.f_total_n - s.axis * along - s.f_constraint_n - s.f_weight_n).norm(), 1e-9);
+    if (s.f_prepuncture_n == 0.0) continue;
+    const auto found = tissues.find_layer(expert->result.punctures.at(layer).layer);
+    const LayerParams& law = tissues.layers.at(*found);
+    ASSERT_NEAR(-s.f_prepuncture_n,
+                prepuncture_force_n(s.layer_displacement_mm, s.axial_velocity_mm_s,
+                                    {law.stiffness_n_per_mm, law.viscosity_ns_per_mm, law.delta_x_mm}),
+                1e-9);
+    ++loaded;
+    if (s.events[0].kind == EventKind::kPuncture) ++layer;
+  }
+  EXPECT_GT(loaded, 300u);
+}
+
+TEST_F(EmbeddedBiopsy, SameSeedGivesTheSameAttempt) {
+  const Attempt again = perform(*the_case, "expert");
+  ASSERT_EQ(again.session.samples.size(), expert->session.samples.size());
+  for (std::size_t i = 0; i < again.session.samples.size(); ++i)
+    ASSERT_EQ(again.session.samples[i].f_total_n, expert->session.samples[i].f_total_n);
+}
+
+TEST_F(EmbeddedBiopsy, ReplayGivesTheSameForces) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.session = folder.path() / "first.trocar";
+  ASSERT_TRUE(run_session(*the_case, options).has_value());
+  const Attempt replay = perform(*the_case, "replay:" + options.session.string());
+  ASSERT_EQ(replay.session.samples.size(), expert->session.samples.size());
+  double worst_n = 0.0;
+  for (std::size_t i = 0; i < replay.session.samples.size(); ++i)
+    worst_n = std::max(worst_n, (replay.session.samples[i].f_total_n - expert->session.samples[i].f_total_n).norm());
+  EXPECT_LT(worst_n, 1e-6);  // the pose is stored as a quaternion: rounding of the last digits
+  EXPECT_NEAR(replay.result.outcome.score, expert->result.outcome.score, 1e-6);
+}
+
+TEST_F(EmbeddedBiopsy, ReportShowsThePeaksByName) {
+  const std::string page = html_report(expert->session, the_case->patient.get());
+  for (const char* words : {"skin", "muscle", "liver capsule", "<svg", "data:image/png"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+}
+
+TEST_F(EmbeddedBiopsy, SessionExportsOneRowATick) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(export_csv(expert->session, folder.path() / "ticks.csv").has_value());
+  const auto text = read_file(folder.path() / "ticks.csv");
+  ASSERT_TRUE(text.has_value());
+  EXPECT_EQ(static_cast<std::size_t>(std::count(text->begin(), text->end(), '\n')), expert->session.samples.size() + 1);
+}
+
+}  // namespace
+}  // namespace trocar::testing

@@ -1,0 +1,58 @@
+// The whole line on real CTs, where the test data lies beside the checkout.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "anatomy/build_patient.h"
+#include "attempt.h"
+#include "io/image_file.h"
+#include "io/label_sources.h"
+
+namespace trocar::testing {
+namespace {
+namespace fs = std::filesystem;
+
+fs::path test_data() {
+  const char* named = std::getenv("TROCAR_TEST_DATA");
+  return named != nullptr ? fs::path(named) : fs::path(TROCAR_SOURCE_DIR) / ".." / "shared" / "data";
+}
+
+Result<Case> case_of(const fs::path& ct_path, const std::vector<fs::path>& labels, const std::string& label_map) {
+  TROCAR_TRY(const CtGrid ct, read_ct(ct_path));
+  TROCAR_TRY(auto sources, read_label_sources(labels, label_map));
+  std::vector<std::string> warnings;
+  TROCAR_TRY(VirtualPatient patient, build_patient(ct, std::move(sources), {"real", {"test data"}}, warnings));
+  return prepare_case(std::make_shared<const VirtualPatient>(std::move(patient)), {});
+}
+
+void expect_whole_line(const Result<Case>& prepared) {
+  ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
+  const Attempt expert = perform(*prepared, "expert");
+  expect_three_peaks(expert);
+  EXPECT_TRUE(expert.result.outcome.target_reached);
+  const Attempt novice = perform(*prepared, "novice");
+  EXPECT_LT(novice.result.outcome.score, expert.result.outcome.score);
+}
+
+TEST(RealCt, TorsoWithoutLesionGivesAParenchymalBiopsy) {
+  const fs::path data = test_data() / "ct-torso";
+  if (!fs::exists(data)) GTEST_SKIP() << "no test data at " << data;
+  const auto prepared =
+      case_of(data / "example_ct.nii.gz", {data / "example_seg_fast_force_split.nii.gz"}, "totalsegmentator");
+  expect_whole_line(prepared);
+  EXPECT_TRUE(prepared->is_parenchymal);
+}
+
+TEST(RealCt, LiverWithTumoursFromDicomMasks) {
+  const fs::path archive = test_data() / "ct-liver" / "3dircadb1.17_dicom_and_masks.tar.xz";
+  if (!fs::exists(archive)) GTEST_SKIP() << "no test data at " << archive;
+  const TemporaryFolder folder;
+  const std::string unpack = fmt::format("tar -xJf '{}' -C '{}'", archive.string(), folder.path().string());
+  if (std::system(unpack.c_str()) != 0) GTEST_SKIP() << "tar cannot unpack .xz here";
+  expect_whole_line(case_of(folder.path() / "PATIENT_DICOM", {folder.path() / "MASKS_DICOM"}, ""));
+}
+
+}  // namespace
+}  // namespace trocar::testing
