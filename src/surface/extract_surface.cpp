@@ -6,12 +6,13 @@
 
 #include "core/parallel.h"
 #include "surface/detail/contour.h"
-#include "volume/resample.h"
 
 namespace trocar {
 namespace {
 
-constexpr double kSkinVoxelMm = 2.0;  // assumed: finer steps only cost triangles on a surface as smooth as the skin
+// Assumed: a large structure sampled more finely only costs triangles that are decimated again.
+constexpr std::size_t kManyVoxels = 1'000'000;
+constexpr double kCoarseMm = 1.5;
 
 /// The voxels of one structure and the box around them.
 struct Box {
@@ -67,8 +68,7 @@ bool fills_the_space_between(const Label& label) {
 MaskGrid body_mask(const FloatGrid& skin_distance_mm) {
   MaskGrid mask(skin_distance_mm.geometry);
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) mask.voxels[n] = skin_distance_mm.voxels[n] < 0.0F ? 1 : 0;
-  if (mask.geometry.spacing_mm.minCoeff() >= kSkinVoxelMm) return mask;
-  return resample_nearest(mask, isotropic_geometry(mask.geometry, kSkinVoxelMm), 0);
+  return mask;
 }
 
 }  // namespace
@@ -76,11 +76,13 @@ MaskGrid body_mask(const FloatGrid& skin_distance_mm) {
 TriangleMesh extract_surface(const MaskGrid& mask, const SurfaceOptions& options) {
   const auto voxels = static_cast<std::size_t>(std::count(mask.voxels.begin(), mask.voxels.end(), 1));
   if (voxels == 0) return {};
-  TriangleMesh mesh = detail::contour(mask, options);
+  const Grid<std::uint8_t> occupancy = detail::occupancy(mask, voxels > kManyVoxels ? kCoarseMm : 0.0);
+  TriangleMesh mesh = detail::contour(occupancy, options);
   detail::restore_volume(mesh, static_cast<double>(voxels) * mask.geometry.voxel_volume_mm3(),
                          0.5 * mask.geometry.spacing_mm.maxCoeff());
+  const GridGeometry& geometry = occupancy.geometry;
   for (Vec3f& vertex : mesh.vertices)
-    vertex = (mask.geometry.origin_P + mask.geometry.R_PV * vertex.cast<double>()).cast<float>();
+    vertex = (geometry.origin_P + geometry.R_PV * vertex.cast<double>()).cast<float>();
   return mesh;
 }
 

@@ -2,7 +2,7 @@
 
 #include <vtkCellArray.h>
 #include <vtkDecimatePro.h>
-#include <vtkDiscreteFlyingEdges3D.h>
+#include <vtkFlyingEdges3D.h>
 #include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
@@ -12,16 +12,18 @@
 #include <vtkWindowedSincPolyDataFilter.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace trocar::detail {
 namespace {
 
-constexpr std::size_t kFewTriangles = 1000;  // assumed: a mesh this small is drawn as it is
+constexpr int kFull = 255;
+constexpr double kFewTriangles = 1000.0;  // assumed: a mesh this small is drawn as it is
 
-/// The mask with an empty voxel around it, so that its contour closes.
-vtkNew<vtkImageData> to_vtk(const MaskGrid& mask) {
-  const auto& size = mask.geometry.size;
-  const Vec3& spacing_mm = mask.geometry.spacing_mm;
+/// The grid with an empty voxel around it, so that its contour closes.
+vtkNew<vtkImageData> to_vtk(const Grid<std::uint8_t>& grid) {
+  const auto& size = grid.geometry.size;
+  const Vec3& spacing_mm = grid.geometry.spacing_mm;
   vtkNew<vtkImageData> image;
   image->SetDimensions(static_cast<int>(size[0]) + 2, static_cast<int>(size[1]) + 2, static_cast<int>(size[2]) + 2);
   image->SetSpacing(spacing_mm.x(), spacing_mm.y(), spacing_mm.z());
@@ -32,7 +34,7 @@ vtkNew<vtkImageData> to_vtk(const MaskGrid& mask) {
   std::fill_n(voxels, row * (size[1] + 2) * (size[2] + 2), std::uint8_t{0});
   for (std::int64_t k = 0; k < size[2]; ++k) {
     for (std::int64_t j = 0; j < size[1]; ++j)
-      std::copy_n(mask.voxels.data() + mask.geometry.offset({0, j, k}), size[0],
+      std::copy_n(grid.voxels.data() + grid.geometry.offset({0, j, k}), size[0],
                   voxels + ((k + 1) * (size[1] + 2) + j + 1) * row + 1);
   }
   return image;
@@ -59,10 +61,38 @@ TriangleMesh from_vtk(vtkPolyData& surface) {
 
 }  // namespace
 
-TriangleMesh contour(const MaskGrid& mask, const SurfaceOptions& options) {
-  vtkNew<vtkDiscreteFlyingEdges3D> edges;
-  edges->SetInputData(to_vtk(mask));
-  edges->SetValue(0, 1);
+Grid<std::uint8_t> occupancy(const MaskGrid& mask, double spacing_mm) {
+  const GridGeometry& fine = mask.geometry;
+  Index3 factor;
+  GridGeometry coarse = fine;
+  Vec3 first_centre;  // of the first coarse voxel, in fine indices
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    factor[a] = std::max<std::int64_t>(1, std::lround(spacing_mm / fine.spacing_mm[axis]));
+    coarse.size[a] = (fine.size[a] + factor[a] - 1) / factor[a];
+    coarse.spacing_mm[axis] = fine.spacing_mm[axis] * static_cast<double>(factor[a]);
+    first_centre[axis] = 0.5 * static_cast<double>(factor[a] - 1);
+  }
+  coarse.origin_P = fine.to_mm(first_centre);
+
+  std::vector<int> counts(coarse.voxel_count(), 0);
+  std::size_t n = 0;
+  for (std::int64_t k = 0; k < fine.size[2]; ++k) {
+    for (std::int64_t j = 0; j < fine.size[1]; ++j) {
+      int* row = counts.data() + coarse.offset({0, j / factor[1], k / factor[2]});
+      for (std::int64_t i = 0; i < fine.size[0]; ++i) row[i / factor[0]] += mask.voxels[n++];
+    }
+  }
+  Grid<std::uint8_t> filled(coarse);
+  const auto block = static_cast<int>(factor[0] * factor[1] * factor[2]);
+  for (n = 0; n < counts.size(); ++n) filled.voxels[n] = static_cast<std::uint8_t>(counts[n] * kFull / block);
+  return filled;
+}
+
+TriangleMesh contour(const Grid<std::uint8_t>& occupancy, const SurfaceOptions& options) {
+  vtkNew<vtkFlyingEdges3D> edges;
+  edges->SetInputData(to_vtk(occupancy));
+  edges->SetValue(0, 0.5 * kFull);
   edges->ComputeNormalsOff();
   edges->ComputeGradientsOff();
   edges->ComputeScalarsOff();
@@ -81,10 +111,12 @@ TriangleMesh contour(const MaskGrid& mask, const SurfaceOptions& options) {
     smooth->Update();
     surface = smooth->GetOutput();
   }
-  if (options.decimate_to_fraction < 1.0 && surface->GetNumberOfCells() > static_cast<vtkIdType>(kFewTriangles)) {
+  const auto triangles = static_cast<double>(surface->GetNumberOfCells());
+  const double kept = std::min(options.decimate_to_fraction, static_cast<double>(options.max_triangles) / triangles);
+  if (kept < 1.0 && triangles > kFewTriangles) {
     vtkNew<vtkDecimatePro> decimate;
     decimate->SetInputData(surface);
-    decimate->SetTargetReduction(1.0 - options.decimate_to_fraction);
+    decimate->SetTargetReduction(1.0 - kept);
     decimate->PreserveTopologyOn();
     decimate->SplittingOff();
     decimate->BoundaryVertexDeletionOff();

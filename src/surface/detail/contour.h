@@ -4,9 +4,13 @@
 
 namespace trocar::detail {
 
-/// Contour of a mask, smoothed and decimated with VTK's filters; in mm along the grid's axes from voxel (0,0,0),
-/// closed, triangles outward.
-TriangleMesh contour(const MaskGrid& mask, const SurfaceOptions& options);
+/// How much of each voxel a mask fills, 0..255, on a grid made coarser by whole factors until its spacing is about
+/// `spacing_mm` (0: the mask's own grid).
+Grid<std::uint8_t> occupancy(const MaskGrid& mask, double spacing_mm);
+
+/// Contour of a half filled voxel, smoothed and decimated with VTK's filters; in mm along the grid's axes from voxel
+/// (0,0,0), closed, triangles outward.
+TriangleMesh contour(const Grid<std::uint8_t>& occupancy, const SurfaceOptions& options);
 
 /// Moves all vertices along their normals by one distance, at most `max_shift_mm`, so that the mesh encloses the
 /// volume again that rounding off its corners took.
