@@ -16,12 +16,13 @@ namespace {
 
 // Assumed lengths.
 constexpr double kCoarseMm = 3.0;
-constexpr double kWallReachMm = 30.0;   // abdominal wall or intercostal muscles below the subcutaneous fat
-constexpr double kSpineReachMm = 30.0;  // erector spinae and psoas around the spine
+constexpr double kWallReachMm = 25.0;   // abdominal wall or intercostal muscles below the subcutaneous fat
+constexpr double kSpineReachMm = 35.0;  // erector spinae and psoas around the spine
 constexpr double kThickBoneMm = 8.0;    // radius that fits into a vertebral body or the pelvis, not into a rib
 constexpr double kDiscMm = 7.0;         // half the height of the widest disc
-constexpr double kFatSheetMm = 5.0;     // radius that cuts the fine ways from subcutaneous to visceral fat
-constexpr double kLungVesselMm = 6.0;   // vessels up to this radius belong to the lung
+constexpr double kFatSheetMm = 5.0;     // radius of what is too thin to be the subcutaneous layer
+constexpr double kStepMm = 1.5 * kCoarseMm;
+constexpr double kLungVesselMm = 6.0;  // vessels up to this radius belong to the lung
 constexpr double kMinLungMl = 20.0;
 constexpr double kLungAboveHu = -940.0;  // mean of aerated lung -700..-900, of bowel gas below
 
@@ -79,35 +80,38 @@ MaskGrid closed(const MaskGrid& mask, double radius_mm) {
   return erode(dilate(mask, radius_mm), radius_mm);
 }
 
-/// Fat that hangs together with the skin, and the skin's own shell.
-MaskGrid subcutaneous_fat(const Coarse& coarse) {
+/// Fat below the skin: all that the straight way to the nearest skin leads through is fat too. (Connectedness would
+/// lead around the muscles into the visceral fat.) Thin shadows behind gaps between muscles are cut off.
+MaskGrid subcutaneous_fat(const Coarse& coarse, const FloatGrid& skin_distance_mm) {
   const GridGeometry& grid = coarse.ct.geometry;
-  const MaskGrid fat = select(grid, [&](std::size_t n) {
+  std::vector<std::pair<float, std::size_t>> by_depth;
+  for (std::size_t n = 0; n < coarse.unlabelled.voxels.size(); ++n) {
     const std::int16_t hu = coarse.ct.voxels[n];
-    return coarse.unlabelled.voxels[n] && hu > kFatAboveHu && hu <= kFatUpToHu;
-  });
-  const MaskGrid core = erode(fat, kFatSheetMm);
-  const Components parts =
-      connected_components(select(grid, [&](std::size_t n) { return core.voxels[n] || coarse.skin_shell.voxels[n]; }));
-  std::vector<bool> at_skin(parts.voxel_counts.size() + 1, false);
-  for (std::size_t n = 0; n < core.voxels.size(); ++n) {
-    if (coarse.skin_shell.voxels[n]) at_skin[static_cast<std::size_t>(parts.ids.voxels[n])] = true;
+    if (coarse.unlabelled.voxels[n] && !coarse.skin_shell.voxels[n] && hu > kFatAboveHu && hu <= kFatUpToHu)
+      by_depth.emplace_back(-sample_nearest(skin_distance_mm, grid.to_mm(to_vec3(grid.index_of(n))), 0.0F), n);
   }
-  return select(grid, [&](std::size_t n) {
-    return parts.ids.voxels[n] != 0 && at_skin[static_cast<std::size_t>(parts.ids.voxels[n])];
-  });
+  std::sort(by_depth.begin(), by_depth.end());
+  MaskGrid fat = coarse.skin_shell;
+  for (const auto& [depth_mm, n] : by_depth) {
+    const Vec3 p_P = grid.to_mm(to_vec3(grid.index_of(n)));
+    const Vec3 outward_P = gradient_per_mm(skin_distance_mm, p_P).normalized();
+    fat.voxels[n] = sample_nearest<std::uint8_t>(fat, p_P + kStepMm * outward_P, 0);
+  }
+  const MaskGrid core = erode(fat, kFatSheetMm);
+  return select(grid, [&](std::size_t n) { return core.voxels[n] || coarse.skin_shell.voxels[n]; });
 }
 
-FloatGrid find_wall(const Coarse& coarse) {
-  const MaskGrid spine = opened(coarse.bone, kThickBoneMm);
+FloatGrid find_wall(const Coarse& coarse, const FloatGrid& skin_distance_mm) {
+  // Closed first: some segmentations leave the marrow out.
+  const MaskGrid spine = opened(closed(coarse.bone, kThickBoneMm), kThickBoneMm);
   const MaskGrid spine_with_discs = closed(spine, kDiscMm);
   const FloatGrid to_spine_mm = distance_to_mask_mm(spine);
-  FloatGrid wall = distance_to_mask_mm(subcutaneous_fat(coarse));
+  FloatGrid wall = distance_to_mask_mm(subcutaneous_fat(coarse, skin_distance_mm));
   for (std::size_t n = 0; n < wall.voxels.size(); ++n) {
-    // The fat's mask was shrunk to cut its fine ways: its border lies that much farther out.
+    // The fat's mask was shrunk: its border lies that much farther out.
     const auto from_fat_mm = static_cast<float>(wall.voxels[n] - kFatSheetMm - kWallReachMm);
     const auto from_spine_mm = static_cast<float>(to_spine_mm.voxels[n] - kSpineReachMm);
-    const bool is_disc = spine_with_discs.voxels[n] && !spine.voxels[n];
+    const bool is_disc = spine_with_discs.voxels[n] && coarse.unlabelled.voxels[n];
     wall.voxels[n] = is_disc ? static_cast<float>(kCoarseMm) : std::min(from_fat_mm, from_spine_mm);
   }
   return wall;
@@ -138,7 +142,7 @@ MaskGrid aerated_lung(const Coarse& coarse) {
 BodyFields find_body_fields(const CtGrid& smooth_ct, const LabelGrid& labels, const LabelTable& table,
                             const FloatGrid& skin_distance_mm) {
   const Coarse coarse = make_coarse(smooth_ct, labels, table, skin_distance_mm);
-  return {find_wall(coarse), signed_distance_mm(closed(aerated_lung(coarse), kLungVesselMm))};
+  return {find_wall(coarse, skin_distance_mm), signed_distance_mm(closed(aerated_lung(coarse), kLungVesselMm))};
 }
 
 }  // namespace trocar::detail

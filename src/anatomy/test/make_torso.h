@@ -6,8 +6,9 @@
 
 namespace trocar {
 
-/// A trunk of simple shapes for tests: elliptic, 300 x 220 mm, 20 mm of fat around 20 mm of muscle around a cavity of
-/// visceral fat with a "liver", a lung and a gas-filled bowel in it; below its back a CT table, over its belly a sheet.
+/// A trunk of simple shapes for tests: elliptic, 300 x 220 mm, at belly and back 20 mm of fat around 15 mm of muscle (a
+/// third more at the sides) around a cavity of visceral fat with a "liver", a lung and a gas-filled bowel in it; below
+/// its back a CT table, over its belly a sheet.
 struct Torso {
   static constexpr double kHalfWidthMm = 150.0;
   static constexpr double kHalfDepthMm = 110.0;
@@ -30,7 +31,7 @@ struct Torso {
       if (is_lung(p_P)) return kLung;
       if (is_bowel_gas(p_P)) return kGas;
       const double depth_mm = (1.0 - radius(p_P)) * kHalfDepthMm;
-      return depth_mm < 20.0 || depth_mm > 40.0 ? kFat : kMuscle;
+      return depth_mm < 20.0 || depth_mm > 35.0 ? kFat : kMuscle;
     }
     // The table: a curved plate, 5 mm thick, 400 mm wide; y points to the back.
     const double table_y_mm = kHalfDepthMm + table_gap_mm - p_P.x() * p_P.x() / 1500.0;
