@@ -18,7 +18,7 @@ find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel FiltersCore Filt
   ImagingCore RenderingCore RenderingOpenGL2 RenderingVolumeOpenGL2 InteractionStyle IOImage)
 find_package(X11 REQUIRED)
 find_package(ITK REQUIRED COMPONENTS ITKIOImageBase ITKIONIFTI ITKIONRRD ITKIOMeta ITKIOGDCM ITKIOTransformBase
-  ITKIOTransformInsightLegacy ITKTransform ITKCommon)
+  ITKIOTransformInsightLegacy ITKTransform ITKCommon ITKGDCM ITKNIFTI ITKZLIB)
 
 add_library(trocar_soci INTERFACE)
 target_include_directories(trocar_soci SYSTEM INTERFACE ${SOCI_INCLUDE})

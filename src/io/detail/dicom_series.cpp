@@ -1,0 +1,186 @@
+#include "io/detail/dicom_series.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/parallel.h"
+
+namespace trocar::detail {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double kMaxTilt_deg = 0.3;
+/// Positions may be rounded when written (0.625 mm steps as 0.6, 1.3, 1.9): so far may a slice lie off an even step.
+constexpr double kMaxStepDeviation = 0.05;     ///< Fraction of the step.
+constexpr double kMaxStepDeviation_mm = 0.06;  ///< And this much where the step is small.
+constexpr double kSamePlace_mm = 1e-3;
+constexpr const char* kNameOneSeries = "put one series into a folder of its own and name that";
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->is_regular_file(error)) files.push_back(entry->path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<DicomSlice> slices_in(const fs::path& folder) {
+  const std::vector<fs::path> files = files_in(folder);
+  std::vector<std::optional<DicomSlice>> found(files.size());
+  parallel_for(files.size(), 8, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) found[n] = find_dicom_slice(files[n]);
+  });
+  std::vector<DicomSlice> slices;
+  for (auto& slice : found)
+    if (slice) slices.push_back(std::move(*slice));
+  return slices;
+}
+
+/// A folder above the series: the message names one sub-folder that has images.
+std::string no_images_advice(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->is_directory(error) && has_dicom_images(entry->path()))
+      return "name a folder with one series, for example " + entry->path().string();
+  return "name the folder that holds the slices of one series";
+}
+
+/// "'Abdomen 3.0' (119 images), 'Topogram' (1 image)" where there is more than one series.
+std::optional<std::string> list_series(const std::vector<DicomSlice>& slices) {
+  std::map<std::string, std::pair<std::string, int>> series;
+  for (const DicomSlice& slice : slices) {
+    auto& [name, count] = series[slice.series_uid];
+    name = slice.series_description.empty() ? slice.file.filename().string() : slice.series_description;
+    ++count;
+  }
+  if (series.size() < 2) return std::nullopt;
+  std::string list;
+  for (const auto& [uid, entry] : series) {
+    if (list.size() > 200) return list + ", …";
+    if (!list.empty()) list += ", ";
+    list += fmt::format("'{}' ({} {})", entry.first, entry.second, entry.second == 1 ? "image" : "images");
+  }
+  return list;
+}
+
+bool is_alike(const DicomSlice& a, const DicomSlice& b) {
+  if (a.rows != b.rows || a.columns != b.columns) return false;
+  for (int n : {0, 1}) {
+    const auto at = static_cast<std::size_t>(n);
+    if (((*a.directions_P)[at] - (*b.directions_P)[at]).norm() > kMaxShear) return false;
+    if (std::abs((*a.spacing_mm)[at] - (*b.spacing_mm)[at]) > 1e-3 * (*a.spacing_mm)[at]) return false;
+  }
+  return true;
+}
+
+/// What makes slices unusable one by one.
+Status check_slices(const std::vector<DicomSlice>& slices, const fs::path& folder) {
+  if (slices.empty()) return fail("no DICOM image in the folder", folder.string(), no_images_advice(folder));
+  if (const auto list = list_series(slices))
+    return fail("the folder holds more than one DICOM series: " + *list, folder.string(), kNameOneSeries);
+  for (const DicomSlice& slice : slices) {
+    const std::string where = slice.file.string();
+    if (slice.frames > 1)
+      return fail(fmt::format("is a DICOM file with {} frames", slice.frames), where,
+                  "convert it to .nrrd or .nii.gz, for example with 3D Slicer");
+    if (slice.samples_per_pixel != 1) return fail("is a colour image", where, "give a CT series or a mask series");
+    if (!slice.position_P || !slice.directions_P || !slice.spacing_mm)
+      return fail("does not say where the slice lies (position, orientation or pixel spacing is missing)", where,
+                  "export the series with its geometry");
+    if (!is_alike(slices.front(), slice))
+      return fail("the slices differ in size, spacing or direction", where, kNameOneSeries);
+  }
+  if (slices.size() < 2) return fail("is a single slice, not a volume", folder.string(), "give the whole series");
+  return {};
+}
+
+/// Steps between slices ordered along the normal.
+Status check_steps(const std::vector<DicomSlice>& slices, const Vec3& normal_P, const fs::path& folder) {
+  const auto along_mm = [&](std::size_t n) { return normal_P.dot(*slices[n].position_P); };
+  const auto name = [&](std::size_t n) { return slices[n].file.filename().string(); };
+  const double mean_mm = (along_mm(slices.size() - 1) - along_mm(0)) / static_cast<double>(slices.size() - 1);
+  for (std::size_t n = 1; n < slices.size(); ++n)
+    if (along_mm(n) - along_mm(n - 1) < kSamePlace_mm)
+      return fail(fmt::format("two slices lie in the same place: {} and {}", name(n - 1), name(n)), folder.string(),
+                  "give one time point of one series");
+  const double allowed_mm = std::max(kMaxStepDeviation * mean_mm, kMaxStepDeviation_mm);
+  for (std::size_t n = 1; n < slices.size(); ++n) {
+    const double even_mm = along_mm(0) + static_cast<double>(n) * mean_mm;
+    if (std::abs(along_mm(n) - even_mm) <= allowed_mm) continue;
+    std::size_t worst = 1;
+    for (std::size_t m = 1; m < slices.size(); ++m)
+      if (along_mm(m) - along_mm(m - 1) > along_mm(worst) - along_mm(worst - 1)) worst = m;
+    return fail(
+        fmt::format("uneven slice steps, a slice seems to be missing: {:.3g} mm between {} and {}, {:.3g} mm on "
+                    "average",
+                    along_mm(worst) - along_mm(worst - 1), name(worst - 1), name(worst), mean_mm),
+        folder.string(), "export the whole series again");
+  }
+  return {};
+}
+
+Status check_tilt(const Vec3& stack_P, const Vec3& normal_P, const fs::path& folder) {
+  const double tilt_deg = std::atan2(stack_P.cross(normal_P).norm(), stack_P.dot(normal_P)) * 180.0 / std::numbers::pi;
+  if (tilt_deg <= kMaxTilt_deg) return {};
+  return fail(fmt::format("gantry tilt: the stack leans by {:.1f} degrees against the slices", tilt_deg),
+              folder.string(), "resample it onto a straight grid, for example with 3D Slicer");
+}
+
+}  // namespace
+
+Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const fs::path& folder) {
+  TROCAR_TRY_STATUS(check_slices(slices, folder));
+  const auto [row_P, column_P] = *slices.front().directions_P;
+  const Vec3 normal_P = row_P.cross(column_P).normalized();
+  std::stable_sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
+    return normal_P.dot(*a.position_P) < normal_P.dot(*b.position_P);
+  });
+  TROCAR_TRY_STATUS(check_steps(slices, normal_P, folder));
+  const Vec3 stack_P = *slices.back().position_P - *slices.front().position_P;
+  TROCAR_TRY_STATUS(check_tilt(stack_P, normal_P, folder));
+
+  DicomSeries series;
+  GridGeometry& g = series.geometry;
+  g.size = {slices.front().columns, slices.front().rows, static_cast<std::int64_t>(slices.size())};
+  g.spacing_mm = {(*slices.front().spacing_mm)[0], (*slices.front().spacing_mm)[1],
+                  stack_P.dot(normal_P) / static_cast<double>(slices.size() - 1)};
+  g.origin_P = *slices.front().position_P;
+  g.R_PV << row_P, column_P, normal_P;
+  if (auto status = tidy_geometry(g); !status) return fail(status.error().what, folder.string(), status.error().advice);
+  series.slices = std::move(slices);
+  return series;
+}
+
+template <class T>
+Result<Grid<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert) {
+  TROCAR_TRY(const DicomSeries series, order_slices(slices_in(folder), folder));
+  Grid<T> grid(series.geometry);
+  const auto pixels = static_cast<std::size_t>(series.geometry.size[0] * series.geometry.size[1]);
+  std::vector<Status> statuses(series.slices.size());
+  parallel_for(series.slices.size(), 4, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k)
+      statuses[k] = decode_slice(series.slices[k], [&](const RawVoxels& voxels) {
+        return convert(voxels, std::span(grid.voxels).subspan(k * pixels, pixels));
+      });
+  });
+  for (const Status& status : statuses)
+    if (!status) return tl::unexpected(status.error());
+  return grid;
+}
+
+template Result<Grid<std::int16_t>> read_dicom_folder(const fs::path&, Converter<std::int16_t>);
+template Result<Grid<std::uint8_t>> read_dicom_folder(const fs::path&, Converter<std::uint8_t>);
+template Result<Grid<float>> read_dicom_folder(const fs::path&, Converter<float>);
+
+bool has_dicom_images(const fs::path& folder) {
+  for (const fs::path& file : files_in(folder))
+    if (find_dicom_slice(file)) return true;
+  return false;
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/result.h"
+#include "io/detail/dicom_slice.h"
+#include "io/detail/raw_volume.h"
+#include "volume/grid.h"
+
+namespace trocar::detail {
+
+/// One series in the order of its slices along their normal.
+struct DicomSeries {
+  GridGeometry geometry;
+  std::vector<DicomSlice> slices;  ///< k = 0, 1, 2 …
+};
+
+/// Orders slices and finds their geometry; the slice step comes from the positions. Errors: no slice or only one, more
+/// than one series, several frames, colour, slices of different size or direction, no position, two slices in one
+/// place, uneven steps, gantry tilt (the stack leans by more than 0.3 degrees against the slices' normal).
+Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const std::filesystem::path& folder);
+
+/// Reads the one DICOM series of a folder; files that are no DICOM images are ignored.
+template <class T>
+Result<Grid<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert);
+
+/// True where a folder holds at least one DICOM image.
+bool has_dicom_images(const std::filesystem::path& folder);
+
+}  // namespace trocar::detail

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+#include "io/detail/payload.h"
+#include "io/detail/voxel_type.h"
+
+namespace trocar::detail {
+
+/// A 3D image as ITK gives it, LPS mm. Plain data: ITK brings an Eigen of its own that must not meet ours, so nothing
+/// that ITK's headers reach includes Eigen.
+struct ItkImage {
+  std::array<std::int64_t, 3> size{};
+  std::array<double, 3> spacing_mm{};
+  std::array<double, 3> origin_P{};
+  std::array<std::array<double, 3>, 3> axes_P{};  ///< Directions of i, j, k.
+  VoxelType type = VoxelType::kUInt8;
+  int components = 1;  ///< Numbers per voxel, running fastest.
+  std::unique_ptr<std::byte[]> bytes;
+  std::vector<std::pair<std::string, std::string>> fields;  ///< Key and value texts of the header (NRRD).
+};
+
+/// Reads through ITK; never throws, prints nothing. The file was checked by check_image_file().
+Result<ItkImage> read_with_itk(const std::filesystem::path& path, ImageFormat format);
+
+/// Writes through ITK one number a voxel (int16, uint8 or float), compressed where the format can. A full disk is not
+/// always noticed by the libraries: check the file afterwards.
+Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, const std::filesystem::path& path,
+                      ImageFormat format);
+
+}  // namespace trocar::detail

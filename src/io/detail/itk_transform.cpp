@@ -1,0 +1,77 @@
+#include "io/detail/itk_transform.h"
+
+#include <itkAffineTransform.h>
+#include <itkTransformFactoryBase.h>
+#include <itkTransformFileReader.h>
+#include <itkTransformFileWriter.h>
+#include <itkTxtTransformIO.h>
+
+#include "io/detail/quiet.h"
+
+namespace trocar::detail {
+namespace fs = std::filesystem;
+namespace {
+
+using Linear = itk::MatrixOffsetTransformBase<double, 3, 3>;
+
+/// May throw what ITK throws.
+Result<AffineMap> read_throwing(const fs::path& path) {
+  itk::TransformFactoryBase::RegisterDefaultTransforms();
+  const auto reader = itk::TransformFileReaderTemplate<double>::New();
+  reader->SetFileName(path.string());
+  reader->SetTransformIO(itk::TxtTransformIOTemplate<double>::New());
+  reader->Update();
+  const auto& transforms = *reader->GetModifiableTransformList();
+  if (transforms.size() != 1)
+    return fail("holds several transforms, not one", path.string(), "harden them into one linear transform");
+  const auto* linear = dynamic_cast<const Linear*>(transforms.front().GetPointer());
+  if (linear == nullptr)
+    return fail("is no linear transform", path.string(), "give a rigid transform (rotation and translation)");
+  AffineMap map;
+  for (unsigned row = 0; row < 3; ++row) {
+    for (unsigned column = 0; column < 3; ++column) map.matrix[row][column] = linear->GetMatrix()(row, column);
+    map.offset_mm[row] = linear->GetOffset()[row];
+  }
+  return map;
+}
+
+/// May throw what ITK throws.
+void write_throwing(const AffineMap& map, const fs::path& path) {
+  const auto affine = itk::AffineTransform<double, 3>::New();
+  itk::Matrix<double, 3, 3> matrix;
+  itk::Vector<double, 3> offset;
+  for (unsigned row = 0; row < 3; ++row) {
+    for (unsigned column = 0; column < 3; ++column) matrix(row, column) = map.matrix[row][column];
+    offset[row] = map.offset_mm[row];
+  }
+  affine->SetMatrix(matrix);
+  affine->SetOffset(offset);
+  const auto writer = itk::TransformFileWriterTemplate<double>::New();
+  writer->SetFileName(path.string());
+  writer->SetTransformIO(itk::TxtTransformIOTemplate<double>::New());
+  writer->SetInput(affine);
+  writer->Update();
+}
+
+}  // namespace
+
+Result<AffineMap> read_transform_with_itk(const fs::path& path) {
+  silence_libraries();
+  try {
+    return read_throwing(path);
+  } catch (const std::exception&) {
+    return fail("is no ITK transform file", path.string(), "save a linear transform as .tfm, for example in 3D Slicer");
+  }
+}
+
+Status write_transform_with_itk(const AffineMap& map, const fs::path& path) {
+  silence_libraries();
+  try {
+    write_throwing(map, path);
+    return {};
+  } catch (const std::exception&) {
+    return fail("the transform cannot be written", path.string(), "check the disk space and the permissions");
+  }
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "anatomy/label_table.h"
+#include "core/result.h"
+
+namespace trocar::detail {
+
+struct PatientMeshEntry {
+  std::string name;  ///< The label's name, or "skin".
+  std::string file;  ///< Below the patient folder: "meshes/liver.vtp".
+};
+
+/// What patient.toml says.
+struct PatientDescription {
+  std::string name;
+  std::string description;
+  std::vector<std::string> provenance;
+  std::string content_hash;
+  LabelTable label_table;
+  std::vector<PatientMeshEntry> meshes;
+};
+
+/// The file's text, format version kPatientFormatVersion.
+std::string to_toml(const PatientDescription& patient);
+
+/// Reads patient.toml. Errors: missing, of a newer version, an unknown key, label ids or names that are not unique, a
+/// mesh file outside of meshes/.
+Result<PatientDescription> load_patient_toml(const std::filesystem::path& path);
+
+}  // namespace trocar::detail

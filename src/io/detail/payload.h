@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "core/result.h"
+
+namespace trocar::detail {
+
+/// The image formats, told by the file's ending.
+enum class ImageFormat { kNifti, kNrrd, kMeta };
+
+/// Format of a path by its ending (.nii .nii.gz .nrrd .nhdr .mha .mhd, any case). Errors: another ending.
+Result<ImageFormat> find_image_format(const std::filesystem::path& path);
+
+/// Holds a header against its file before anything is allocated: a header of the format, one 3D volume of possible
+/// size, and as many bytes as it promises (compressed data is unpacked once, check sums included). The libraries
+/// behind ITK do not all do this. Errors name what is wrong and the file.
+Status check_image_file(const std::filesystem::path& path, ImageFormat format);
+
+}  // namespace trocar::detail

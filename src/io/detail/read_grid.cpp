@@ -1,0 +1,27 @@
+#include "io/detail/read_grid.h"
+
+#include <fmt/format.h>
+
+#include "io/detail/payload.h"
+
+namespace trocar::detail {
+namespace fs = std::filesystem;
+
+Status check_image_path(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return fail("no such file or folder", path.string(), "check the path");
+  if (fs::is_directory(path, error)) return {};
+  if (!fs::is_regular_file(path, error)) return fail("is no file", path.string(), "check the path");
+  if (fs::file_size(path, error) == 0) return fail("the file is empty", path.string(), "copy or export it again");
+  const auto format = find_image_format(path);
+  if (format) return {};
+  // Without a known ending it may be one slice of a DICOM series.
+  const auto slice = find_dicom_slice(path);
+  if (!slice) return tl::unexpected(format.error());
+  if (slice->frames > 1)
+    return fail(fmt::format("is a DICOM file with {} frames", slice->frames), path.string(),
+                "convert it to .nrrd or .nii.gz, for example with 3D Slicer");
+  return fail("is one DICOM image, not a volume", path.string(), "name the folder of its series instead");
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/result.h"
+#include "io/detail/dicom_series.h"
+#include "io/detail/raw_volume.h"
+#include "io/detail/volume_file.h"
+
+namespace trocar::detail {
+
+/// A path that must name an image file or a folder; a single DICOM file is refused with advice.
+Status check_image_path(const std::filesystem::path& path);
+
+/// Any image the project reads: a file or the folder of a DICOM series.
+template <class T>
+Result<Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> convert) {
+  TROCAR_TRY_STATUS(check_image_path(path));
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return read_dicom_folder<T>(path, convert);
+  TROCAR_TRY(const RawVolume raw, read_volume_file(path));
+  return to_grid<T>(raw, path.string(), convert);
+}
+
+}  // namespace trocar::detail
