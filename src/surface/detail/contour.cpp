@@ -12,6 +12,7 @@
 #include <vtkWindowedSincPolyDataFilter.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace trocar::detail {
@@ -59,6 +60,55 @@ TriangleMesh from_vtk(vtkPolyData& surface) {
   return mesh;
 }
 
+vtkSmartPointer<vtkPolyData> low_passed(vtkPolyData& surface, const SurfaceOptions& options) {
+  vtkNew<vtkWindowedSincPolyDataFilter> filter;
+  filter->SetInputData(&surface);
+  filter->SetNumberOfIterations(options.smoothing_iterations);
+  filter->SetPassBand(options.smoothing_pass_band);
+  filter->BoundarySmoothingOff();
+  filter->FeatureEdgeSmoothingOff();
+  filter->NonManifoldSmoothingOn();
+  filter->Update();
+  return filter->GetOutput();
+}
+
+Vec3 mean_vertex(vtkPolyData& surface) {
+  Vec3 sum = Vec3::Zero();
+  for (vtkIdType n = 0; n < surface.GetNumberOfPoints(); ++n) sum += Vec3(surface.GetPoint(n));
+  return sum / static_cast<double>(surface.GetNumberOfPoints());
+}
+
+/// The filter is linear, but its window (Hamming, before VTK 9.4) multiplies all coordinates by about 1.002 or 0.998.
+/// A small tetrahedron far from the origin tells by how much.
+double filter_gain(const SurfaceOptions& options) {
+  constexpr double kFarMm = 1000.0;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)})
+    points->InsertNextPoint(corner.x() + kFarMm, corner.y(), corner.z());
+  vtkNew<vtkCellArray> triangles;
+  for (const auto& [a, b, c] : {std::array<vtkIdType, 3>{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}) {
+    const vtkIdType corners[3] = {a, b, c};
+    triangles->InsertNextCell(3, corners);
+  }
+  vtkNew<vtkPolyData> tetrahedron;
+  tetrahedron->SetPoints(points);
+  tetrahedron->SetPolys(triangles);
+  return mean_vertex(*low_passed(*tetrahedron, options)).x() / kFarMm;
+}
+
+/// Low-passed without stretching it.
+vtkSmartPointer<vtkPolyData> smoothed(vtkPolyData& surface, const SurfaceOptions& options) {
+  vtkSmartPointer<vtkPolyData> result = low_passed(surface, options);
+  const double gain = filter_gain(options);
+  vtkPoints* points = result->GetPoints();
+  for (vtkIdType n = 0; n < points->GetNumberOfPoints(); ++n) {
+    const Vec3 p = Vec3(points->GetPoint(n)) / gain;
+    points->SetPoint(n, p.data());
+  }
+  return result;
+}
+
 }  // namespace
 
 Grid<std::uint8_t> occupancy(const MaskGrid& mask, double spacing_mm) {
@@ -99,18 +149,7 @@ TriangleMesh contour(const Grid<std::uint8_t>& occupancy, const SurfaceOptions& 
   edges->Update();
   vtkSmartPointer<vtkPolyData> surface = edges->GetOutput();
 
-  if (options.smoothing_iterations > 0) {
-    vtkNew<vtkWindowedSincPolyDataFilter> smooth;
-    smooth->SetInputData(surface);
-    smooth->SetNumberOfIterations(options.smoothing_iterations);
-    smooth->SetPassBand(options.smoothing_pass_band);
-    smooth->BoundarySmoothingOff();
-    smooth->FeatureEdgeSmoothingOff();
-    smooth->NonManifoldSmoothingOn();
-    smooth->NormalizeCoordinatesOn();
-    smooth->Update();
-    surface = smooth->GetOutput();
-  }
+  if (options.smoothing_iterations > 0) surface = smoothed(*surface, options);
   const auto triangles = static_cast<double>(surface->GetNumberOfCells());
   const double kept = std::min(options.decimate_to_fraction, static_cast<double>(options.max_triangles) / triangles);
   if (kept < 1.0 && triangles > kFewTriangles) {
