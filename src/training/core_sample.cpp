@@ -14,10 +14,11 @@ std::uint8_t label_id(const VirtualPatient& patient, const Vec3& p_P) noexcept {
   return sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
 }
 
-/// Calls visit(middle_mm, length_mm) for each step of a stretch.
+/// Calls visit(middle_mm, length_mm) for each step of a stretch; not at all where there is none.
 template <class Visit>
 void walk(double from_mm, double to_mm, Visit visit) {
-  const int steps = std::max(1, static_cast<int>(std::ceil((to_mm - from_mm) / kStep_mm)));
+  if (!(to_mm > from_mm)) return;
+  const int steps = static_cast<int>(std::ceil((to_mm - from_mm) / kStep_mm));
   const double length_mm = (to_mm - from_mm) / steps;
   for (int step = 0; step < steps; ++step) visit(from_mm + (step + 0.5) * length_mm, length_mm);
 }
@@ -49,6 +50,17 @@ void add_to_sums(BiopsyCore& core, TaskLabels::Part part, double length_mm) {
   }
 }
 
+/// How far the stylet gets: bone stops it.
+double shot_mm(const TaskLabels& labels, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
+               const Vec3& axis_P) {
+  double shot = needle.throw_mm;
+  walk(0.0, needle.throw_mm, [&](double beyond_tip_mm, double length_mm) {
+    if (labels.is_bone(label_id(patient, tip_P + beyond_tip_mm * axis_P)))
+      shot = std::min(shot, beyond_tip_mm - length_mm / 2.0);
+  });
+  return shot;
+}
+
 }  // namespace
 
 BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
@@ -58,14 +70,17 @@ BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Need
   core.tip_P = tip_P;
   core.axis_P = axis_P;
 
-  const double notch_end_mm = needle.throw_mm - needle.dead_space_mm;
-  walk(notch_end_mm - needle.notch_mm, notch_end_mm, [&](double beyond_tip_mm, double length_mm) {
+  const double shot = shot_mm(labels, patient, needle, tip_P, axis_P);
+  const double notch_end_mm = shot - needle.dead_space_mm;
+  const double notch_begin_mm =
+      std::max(0.0, notch_end_mm - needle.notch_mm);  // what stays in the cannula takes nothing
+  walk(notch_begin_mm, notch_end_mm, [&](double beyond_tip_mm, double length_mm) {
     const std::uint8_t id = label_id(patient, tip_P + beyond_tip_mm * axis_P);
     add_to_pieces(core.pieces, patient.label_table.find(id), length_mm);
     add_to_sums(core, labels.part(id), length_mm);
   });
 
-  walk(0.0, needle.throw_mm, [&](double beyond_tip_mm, double) {
+  walk(0.0, std::min(shot + kStep_mm, needle.throw_mm), [&](double beyond_tip_mm, double) {  // the bone that stopped it
     const std::uint8_t id = label_id(patient, tip_P + beyond_tip_mm * axis_P);
     if (labels.risk(id) == nullptr) return;
     const std::string& name = patient.label_table.find(id)->name;

@@ -44,7 +44,8 @@ struct OperatorCase {
 
 /// Follows the path: touches, pauses, inserts slower the more it feels, stops where it sees the tip (of the virtual
 /// needle) at the target, holds still, fires, withdraws. Gives up, without firing, where it cannot get through. The
-/// device must start at the pose of the first command. 12..30 s, never more than 60.
+/// device must start at the pose of the first command. About 10..30 s, never more
+/// than 60.
 std::unique_ptr<Operator> make_expert(const OperatorCase& the_case);
 /// Misses the entry and the angle, trembles, moves unevenly and too fast, hesitates, pulls back, stops short or too
 /// deep: by chance, from the seed. Never more than 60 s.

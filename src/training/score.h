@@ -18,7 +18,7 @@ namespace trocar {
 struct CorePiece {
   std::string label;     ///< Label name.
   std::string tissue;    ///< Tissue class.
-  double from_mm = 0.0;  ///< From the notch's proximal end.
+  double from_mm = 0.0;  ///< From the open notch's proximal end.
   double to_mm = 0.0;
 };
 
@@ -28,7 +28,7 @@ struct BiopsyCore {
   Vec3 axis_P = Vec3::UnitZ();
   std::vector<CorePiece> pieces;
   double target_mm = 0.0;  ///< Of the target tissue (the lesion, or the organ in a parenchymal biopsy).
-  double organ_mm = 0.0;   ///< Of the organ around the target; the four lengths add up to the notch.
+  double organ_mm = 0.0;   ///< Of the organ around the target; the four lengths add up to the open notch.
   double vessel_mm = 0.0;
   double other_mm = 0.0;
   std::vector<std::string> risks_in_throw;  ///< Risk structures over the whole throw, by label name.
@@ -55,7 +55,8 @@ struct Outcome {
   std::vector<std::string> risks_touched;
 };
 
-/// Takes the core at a fired tick.
+/// Takes the core at a fired tick. The stylet goes straight on from the tip; bone stops it, and what then stays of the
+/// notch inside the cannula takes nothing.
 BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
                      const Vec3& axis_P);
 

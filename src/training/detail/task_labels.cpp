@@ -27,6 +27,7 @@ TaskLabels::TaskLabels(const Task& task, const VirtualPatient& patient) {
       parts_[label.id] = Part::kVessel;
     }
     risks_[label.id] = find_risk(task, label);
+    is_bone_[label.id] = label.tissue == "bone";
   }
 }
 

@@ -34,7 +34,7 @@ TEST(TakeCore, LengthsAddUpToTheNotchWhereverItIsTaken) {
     const BiopsyCore core = take_core(make_box_task(), patient, make_gun(), tip_P, axis_P);
     EXPECT_NEAR(core.target_mm + core.organ_mm + core.vessel_mm + core.other_mm, 17.0, 1e-9);
     EXPECT_NEAR(core.pieces.back().to_mm, 17.0, 1e-9);
-  }
+  }  // none of these reaches the rib
 }
 
 TEST(TakeCore, MeasuresVesselsAndFindsRisksBeyondTheNotch) {
@@ -49,6 +49,19 @@ TEST(TakeCore, MeasuresVesselsAndFindsRisksBeyondTheNotch) {
   EXPECT_EQ(off.risks_in_throw, std::vector<std::string>{"portal_vein"});
   const BiopsyCore clear = take_core(make_box_task(), patient, make_gun(), {48.0, 40.0, 20.0}, -Vec3::UnitX());
   EXPECT_TRUE(clear.risks_in_throw.empty());
+}
+
+TEST(TakeCore, BoneStopsTheStylet) {
+  const VirtualPatient patient = make_box_patient();
+  // From the fat into the rib 10 mm below the skin: the stylet gets 8 mm far, 4 mm of them notch.
+  const BiopsyCore core = take_core(make_box_task(), patient, make_gun(), {50.0, 2.0, 75.0}, Vec3::UnitY());
+  EXPECT_EQ(core.risks_in_throw, std::vector<std::string>{"rib_right_9"});
+  EXPECT_NEAR(core.other_mm, 4.0, kVoxel_mm);
+  EXPECT_EQ(core.target_mm + core.organ_mm + core.vessel_mm, 0.0);
+  // With the tip on the rib nothing comes out.
+  const BiopsyCore none = take_core(make_box_task(), patient, make_gun(), {50.0, 10.5, 75.0}, Vec3::UnitY());
+  EXPECT_TRUE(none.pieces.empty());
+  EXPECT_EQ(none.risks_in_throw, std::vector<std::string>{"rib_right_9"});
 }
 
 TEST(TakeCore, TakesTheOrganAsTargetWhereThereIsNoLesion) {
