@@ -71,6 +71,10 @@ void add_target_hint(const HintSubject& subject, std::vector<Hint>& hints) {
     const std::string where = lost_target > 0.0 ? fmt::format(" The tip came to lie {}.", correction.deviation) : "";
     hints.push_back({lost_core + lost_target,
                      "No core was taken: bring the tip to the target, hold it still and fire the gun." + where});
+  } else if (subject.core && subject.core->pieces.empty()) {  // going deeper would be the wrong advice
+    hints.push_back({lost_core + lost_target,
+                     "No tissue came out, for bone stopped the stylet: choose an insertion point and a direction that "
+                     "pass beside it."});
   } else if (lost_core > 0.0) {
     const BiopsyCore& core = *subject.core;
     const double middle_mm = subject.needle.throw_mm - subject.needle.dead_space_mm - subject.needle.notch_mm / 2.0;

@@ -170,6 +170,12 @@ TEST(Hints, TellTheCostliestErrorFirst) {
   EXPECT_NE(outcome.hints[0].find("advance 25 mm further"), std::string::npos) << outcome.hints[0];
 }
 
+TEST(Hints, DoNotSendTheNeedleThroughBone) {
+  const Outcome outcome = score({{50.0, 0.0, 75.0}, {50.0, 10.5, 75.0}});
+  EXPECT_TRUE(has_hint(outcome, "bone stopped the stylet"));
+  EXPECT_FALSE(has_hint(outcome, "advance"));
+}
+
 TEST(Hints, SpeakOfWhatMattersOnly) {
   const Outcome outcome = score(shifted({1.0, 0.0, 0.5}));
   EXPECT_FALSE(has_hint(outcome, "insertion point"));
