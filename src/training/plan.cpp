@@ -24,7 +24,7 @@ using detail::PlanTargets;
 using detail::Verdict;
 
 constexpr std::size_t kMinLines = 65536;  ///< Lines that are tried: at 100 mm depth 1.4 mm apart on the skin.
-constexpr std::size_t kLinesPerTarget = 4096;
+constexpr std::size_t kLinesPerTarget = 2048;
 constexpr std::size_t kLinesPerPath = 32;  ///< About a fortieth of all lines are paths in a real abdomen.
 constexpr std::size_t kMaxLines = std::size_t{1} << 22;
 constexpr std::size_t kBlock = 64;            ///< Paths that are checked side by side.

@@ -80,42 +80,45 @@ double segment_box_distance_mm(const Segment& segment, const GridGeometry& geome
   return (on_segment - on_box).norm();
 }
 
-/// Tells the nearest risk voxel around one piece of the path; `findings` keeps the smallest clearance.
+/// Tells the nearest risk voxel around one piece of the path; `findings` keeps the smallest clearance. Stops at the
+/// first margin that is not kept.
 void look_around(const PlanningMap& map, const Segment& piece, PathFindings& findings) {
-  const LabelGrid& labels = map.patient.labels;
-  const double radius = map.largest_margin_mm + findings.smallest_margin_mm;
-  const double half_voxel = 0.5 * labels.geometry.spacing_mm.norm();
-  const IndexBox box = clipped(united(box_around(labels.geometry, piece.a, radius + half_voxel),
-                                      box_around(labels.geometry, piece.b, radius + half_voxel)),
-                               labels.geometry);
+  const GridGeometry& geometry = map.patient.labels.geometry;
+  const double half_voxel = 0.5 * geometry.spacing_mm.norm();
+  const double radius = map.largest_margin_mm + findings.smallest_margin_mm + half_voxel;
+  const IndexBox box =
+      clipped(united(box_around(geometry, piece.a, radius), box_around(geometry, piece.b, radius)), geometry);
   for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k)
     for (std::int64_t j = box.low[1]; j <= box.high[1]; ++j)
       for (std::int64_t i = box.low[0]; i <= box.high[0]; ++i) {
-        const std::uint8_t id = labels[{i, j, k}];
+        const std::uint8_t id = map.patient.labels[{i, j, k}];
         const RiskStructure* risk = map.risks[id];
         if (!risk) continue;
-        const Vec3 centre =
-            labels.geometry.to_mm({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+        const Vec3 centre = geometry.to_mm({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
         if (distance_mm(piece, centre) - half_voxel - risk->margin_mm > findings.smallest_margin_mm) continue;
-        const double clearance = segment_box_distance_mm(piece, labels.geometry, centre) - risk->margin_mm;
-        if (clearance >= findings.smallest_margin_mm) continue;
+        const double clearance = segment_box_distance_mm(piece, geometry, centre) - risk->margin_mm;
+        if (clearance > findings.smallest_margin_mm) continue;
         findings.smallest_margin_mm = clearance;
         findings.nearest_risk = id;
         findings.where_P = centre;
+        if (clearance < 0.0) return;
       }
 }
 
 /// Exact clearance of the whole way: pieces in order of their coarse clearance, until none can be nearer.
 void measure_margins(const PlanningMap& map, const Segment& way, PathFindings& findings) {
   const int count = static_cast<int>(std::ceil(way.length_mm() / kChunk_mm));
+  const double error =
+      2.0 * map.slack_mm;  // half a cell each for interpolation and for where the voxel lies in its cell
+  findings.smallest_margin_mm = kReportedMargin_mm;
   std::vector<std::pair<double, Segment>> pieces;
   for (int n = 0; n < count; ++n) {
     const Segment piece{way.at(static_cast<double>(n) / count), way.at(static_cast<double>(n + 1) / count)};
-    const double bound = sample_linear(map.clearance_mm, piece.at(0.5)) - 0.5 * piece.length_mm() - 2 * map.slack_mm;
-    pieces.emplace_back(bound, piece);
+    const double coarse = sample_linear(map.clearance_mm, piece.at(0.5));
+    pieces.emplace_back(coarse - 0.5 * piece.length_mm() - error, piece);
+    findings.smallest_margin_mm = std::min(findings.smallest_margin_mm, std::max(0.0, coarse + error));
   }
   std::stable_sort(pieces.begin(), pieces.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  findings.smallest_margin_mm = kReportedMargin_mm;
   for (const auto& [bound, piece] : pieces) {
     if (bound > findings.smallest_margin_mm) break;
     look_around(map, piece, findings);

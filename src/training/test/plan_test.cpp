@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -34,22 +35,24 @@ Vec3 notch_middle(const PlannedPath& path, const Needle& n) {
   return path.line_P.b + n.notch_middle_mm() * path.line_P.direction();
 }
 
-/// Smallest distance of a path, throw included, to the voxels (as boxes) of a tissue: slow, independent of the planner.
-double distance_to_tissue(const VirtualPatient& patient, const PlannedPath& path, const Needle& n,
-                          std::string_view tissue) {
+/// Smallest clearance of a path, throw included, to the risk voxels (as boxes) beyond their margins: slow, independent
+/// of the planner.
+double smallest_clearance(const Task& task, const VirtualPatient& patient, const PlannedPath& path, const Needle& n) {
   const GridGeometry& geometry = patient.labels.geometry;
   const Segment way{path.line_P.a, end_of_throw(path, n)};
+  std::array<const RiskStructure*, 256> risks{};
+  for (const Label& label : patient.label_table.labels) risks[label.id] = find_risk(task, label);
   double smallest = 1e9;
   for (std::size_t v = 0; v < patient.labels.voxels.size(); ++v) {
-    const std::uint8_t id = patient.labels.voxels[v];
-    if (id == 0 || patient.label_table.find(id)->tissue != tissue) continue;
+    const RiskStructure* risk = risks[patient.labels.voxels[v]];
+    if (!risk) continue;
     const Index3 ijk = geometry.index_of(v);
     const Vec3 centre =
         geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])});
-    if (distance_mm(way, centre) > smallest + geometry.spacing_mm.norm()) continue;
+    if (distance_mm(way, centre) - risk->margin_mm > smallest + geometry.spacing_mm.norm()) continue;
     for (double s = 0.0; s <= 1.0; s += 0.002) {
       const Vec3 outside = ((way.at(s) - centre).cwiseAbs() - 0.5 * geometry.spacing_mm).cwiseMax(0.0);
-      smallest = std::min(smallest, outside.norm());
+      smallest = std::min(smallest, outside.norm() - risk->margin_mm);
     }
   }
   return smallest;
@@ -124,9 +127,7 @@ TEST(Plan, EveryPathKeepsEveryMarginOverTheWholeThrow) {
   ASSERT_TRUE(paths) << paths.error().text();
   ASSERT_EQ(paths->size(), 40u);
   for (const PlannedPath& path : *paths) {
-    double smallest = 1e9;
-    for (const RiskStructure& risk : task.risks)
-      smallest = std::min(smallest, distance_to_tissue(patient, path, needle(), risk.tissue) - risk.margin_mm);
+    const double smallest = smallest_clearance(task, patient, path, needle());
     EXPECT_GE(smallest, -0.02);
     EXPECT_NEAR(path.smallest_margin_mm, std::min(smallest, 10.0), 0.05);
     EXPECT_EQ(path.nearest_risk.empty(), path.smallest_margin_mm >= 10.0);
