@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "anatomy/detail/fill_unlabelled.h"
 #include "anatomy/detail/merge_sources.h"
 #include "volume/distance.h"
+#include "volume/morphology.h"
 
 namespace trocar {
 namespace {
@@ -17,21 +19,23 @@ constexpr double kMinBodyMl = 100.0;       // assumed: less is no part of a pers
 constexpr double kHintAgreement = 0.9;     // Dice coefficient from which a given body mask is believed
 constexpr double kMaxShareOutside = 0.02;  // of a structure that may lie outside the body without a word
 
-/// A given mask of the whole body cuts away what it excludes, where it is one: filled, and like the one found.
-void apply_body_hint(const MaskGrid& hint, MaskGrid& body) {
+/// A given mask of the whole body, filled, cuts away what it excludes, where it is much like the one found.
+MaskGrid apply_body_hint(MaskGrid body, const MaskGrid& given) {
+  const MaskGrid hint = fill_holes_in_slices(given);
   std::size_t both = 0;
   std::size_t sum = 0;
   for (std::size_t n = 0; n < hint.voxels.size(); ++n) {
     both += hint.voxels[n] & body.voxels[n];
     sum += static_cast<std::size_t>(hint.voxels[n]) + body.voxels[n];
   }
-  if (2.0 * static_cast<double>(both) < kHintAgreement * static_cast<double>(sum)) return;
+  if (2.0 * static_cast<double>(both) < kHintAgreement * static_cast<double>(sum)) return body;
   for (std::size_t n = 0; n < hint.voxels.size(); ++n) body.voxels[n] &= hint.voxels[n];
+  return largest_component(body);
 }
 
 Result<MaskGrid> find_checked_body(const CtGrid& ct, const MaskGrid& hint) {
   MaskGrid body = find_body(ct);
-  if (!hint.empty()) apply_body_hint(hint, body);
+  if (!hint.empty()) body = apply_body_hint(std::move(body), hint);
   const auto voxels = static_cast<double>(std::count(body.voxels.begin(), body.voxels.end(), 1));
   if (voxels * ct.geometry.voxel_volume_mm3() / 1000.0 < kMinBodyMl)
     return fail("no body found in the CT", {}, "check that it is a CT in Hounsfield units and shows a patient");

@@ -6,12 +6,13 @@
 
 #include "core/parallel.h"
 #include "surface/detail/contour.h"
+#include "surface/detail/mesh_repair.h"
 
 namespace trocar {
 namespace {
 
 // Assumed: a large structure sampled more finely only costs triangles that are decimated again.
-constexpr std::size_t kManyVoxels = 1'000'000;
+constexpr std::size_t kManyVoxels = 300'000;
 constexpr double kCoarseMm = 1.5;
 
 /// The voxels of one structure and the box around them.

@@ -10,7 +10,7 @@ namespace trocar {
 struct SurfaceOptions {
   int smoothing_iterations = 20;      ///< Windowed sinc, which does not shrink. Range 0..200.
   double smoothing_pass_band = 0.05;  ///< Smaller is smoother. Range 0.001..2.
-  double decimate_to_fraction = 0.5;  ///< Triangles kept, 0..1.
+  double decimate_to_fraction = 0.5;  ///< Triangles kept (quadric decimation), 0..1.
   std::size_t max_triangles = 60000;  ///< Of one mesh, about; larger ones are decimated further. Range 1000 and up.
   std::size_t min_voxels = 20;        ///< Structures below are left out.
 };

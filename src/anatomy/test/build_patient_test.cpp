@@ -136,6 +136,17 @@ TEST(BuildPatient, AMaskOfTheWholeBodyIsNoOrgan) {
   EXPECT_EQ(name_at(*built.patient, {0.0, -105.0, 0.0}), "fat");
 }
 
+TEST(BuildPatient, AHollowMaskOfTheBodyStillHoldsItsLung) {
+  LabelSource skin = source("skin", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
+                              return Torso::radius(p_P) < 0.99 && !Torso().is_lung(p_P);
+                            }));
+  const Built built = build({skin, liver()});
+  ASSERT_TRUE(built.patient);
+  EXPECT_EQ(name_at(*built.patient, {60.0, 20.0, 0.0}), "lung");
+  // Believed: the rim that it leaves out is outside now.
+  EXPECT_EQ(name_at(*built.patient, {0.0, -109.5, 0.0}), "");
+}
+
 TEST(BuildPatient, AnImplausibleBodyMaskIsNotBelieved) {
   LabelSource skin = source("skin", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
                               return Torso::radius(p_P) < 1.0 && Torso::radius(p_P) > 0.95;

@@ -1,19 +1,21 @@
 #include "surface/detail/contour.h"
 
 #include <vtkCellArray.h>
-#include <vtkDecimatePro.h>
 #include <vtkFlyingEdges3D.h>
 #include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkQuadricDecimation.h>
 #include <vtkSmartPointer.h>
 #include <vtkWindowedSincPolyDataFilter.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "surface/detail/mesh_repair.h"
 
 namespace trocar::detail {
 namespace {
@@ -153,37 +155,20 @@ TriangleMesh contour(const Grid<std::uint8_t>& occupancy, const SurfaceOptions& 
   const auto triangles = static_cast<double>(surface->GetNumberOfCells());
   const double kept = std::min(options.decimate_to_fraction, static_cast<double>(options.max_triangles) / triangles);
   if (kept < 1.0 && triangles > kFewTriangles) {
-    vtkNew<vtkDecimatePro> decimate;
+    vtkNew<vtkQuadricDecimation> decimate;
     decimate->SetInputData(surface);
     decimate->SetTargetReduction(1.0 - kept);
-    decimate->PreserveTopologyOn();
-    decimate->SplittingOff();
-    decimate->BoundaryVertexDeletionOff();
+    decimate->VolumePreservationOn();
     decimate->Update();
     surface = decimate->GetOutput();
   }
 
   TriangleMesh mesh = from_vtk(*surface);
+  close_holes(mesh);
   if (enclosed_volume_mm3(mesh) < 0.0) {
     for (auto& [a, b, c] : mesh.triangles) std::swap(b, c);
   }
   return mesh;
-}
-
-void restore_volume(TriangleMesh& mesh, double volume_mm3, double max_shift_mm) {
-  const double area = area_mm2(mesh);
-  if (!(area > 0.0)) return;
-  const double shift_mm = std::clamp((volume_mm3 - enclosed_volume_mm3(mesh)) / area, -max_shift_mm, max_shift_mm);
-  std::vector<Vec3f> normals(mesh.vertices.size(), Vec3f::Zero());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3f normal =
-        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);  // weighs by area
-    normals[a] += normal;
-    normals[b] += normal;
-    normals[c] += normal;
-  }
-  for (std::size_t n = 0; n < mesh.vertices.size(); ++n)
-    mesh.vertices[n] += static_cast<float>(shift_mm) * normals[n].normalized();
 }
 
 }  // namespace trocar::detail

@@ -12,8 +12,4 @@ Grid<std::uint8_t> occupancy(const MaskGrid& mask, double spacing_mm);
 /// (0,0,0), closed, triangles outward.
 TriangleMesh contour(const Grid<std::uint8_t>& occupancy, const SurfaceOptions& options);
 
-/// Moves all vertices along their normals by one distance, at most `max_shift_mm`, so that the mesh encloses the
-/// volume again that rounding off its corners took.
-void restore_volume(TriangleMesh& mesh, double volume_mm3, double max_shift_mm);
-
 }  // namespace trocar::detail
