@@ -1,0 +1,185 @@
+#include "anatomy/phantom/biopsy.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+
+namespace trocar::phantom {
+namespace {
+
+constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
+constexpr int kTries = 20000;
+constexpr float kLongestPathMm = 120.0F;
+constexpr std::size_t kLesions = 3;
+constexpr float kFromHilumMm = 38.0F;  ///< The great branches of the vessels need their room.
+
+/// Structures that a path keeps away from.
+struct Risks {
+  std::vector<const Structure*> bones;
+  std::vector<const Structure*> organs;
+  const Structure* liver;
+
+  explicit Risks(const Anatomy& anatomy) : liver(&anatomy.find("liver")) {
+    for (const Structure& s : anatomy.structures) {
+      constexpr std::array kOrgans{"lung",        "portal_vein_and_splenic_vein",
+                                   "aorta",       "inferior_vena_cava",
+                                   "gallbladder", "kidney_right",
+                                   "colon",       "small_bowel",
+                                   "duodenum",    "stomach"};
+      if (s.name.starts_with("rib_") || s.name.starts_with("vertebrae") || s.name == "costal_cartilages" ||
+          s.name == "sternum")
+        bones.push_back(&s);
+      else if (std::find(kOrgans.begin(), kOrgans.end(), s.name) != kOrgans.end())
+        organs.push_back(&s);
+    }
+  }
+
+  static bool all_farther(const std::vector<const Structure*>& structures, const Place& place, float mm) {
+    const Box reach = Box::around(place.p, Vec3f::Constant(mm));
+    return std::all_of(structures.begin(), structures.end(),
+                       [&](const Structure* s) { return !s->bounds.overlaps(reach) || s->distance(place) > mm; });
+  }
+};
+
+float bone_margin(const PathMargins& m) {
+  return static_cast<float>(m.bone_mm + m.reserve_mm);
+}
+float organ_margin(const PathMargins& m) {
+  return static_cast<float>(m.organ_mm + m.reserve_mm);
+}
+
+/// The point where a ray from inside leaves the body.
+Vec3f leave_body(const Anatomy& anatomy, Vec3f inside, const Vec3f& direction) {
+  float low = 0.0F;
+  float high = kLongestPathMm + 150.0F;
+  for (int n = 0; n < 40; ++n) {
+    const float middle = 0.5F * (low + high);
+    (anatomy.torso.at(inside + middle * direction).skin < 0.0F ? low : high) = middle;
+  }
+  return inside + low * direction;
+}
+
+/// Whether a lesion may lie here: covered by liver, and no vessel that counts is swallowed.
+bool has_room(const Anatomy& anatomy, const Risks& risks, const Lesion& lesion, float cover_mm, float vessel_mm) {
+  const Place place = anatomy.torso.at(lesion.centre);
+  for (const Vec3f& gate : {kHilum, kVenousConfluence})
+    if ((lesion.centre - gate).norm() < lesion.radius_mm + kFromHilumMm) return false;
+  return risks.liver->distance(place) < -(lesion.radius_mm + cover_mm) &&
+         Risks::all_farther(risks.organs, place, lesion.radius_mm + vessel_mm);
+}
+
+/// Walks the path from the skin to the target and a little beyond.
+bool is_safe(const Anatomy& anatomy, const Risks& risks, const Vec3f& entry, const Lesion& lesion,
+             const PathMargins& margins) {
+  const Vec3f direction = (lesion.centre - entry).normalized();
+  const float length = (lesion.centre - entry).norm();
+  if (length > kLongestPathMm) return false;
+  float liver_mm = 0.0F;
+  constexpr float kStepMm = 0.5F;
+  for (float along = 0.0F; along < length + 5.0F; along += kStepMm) {
+    const Place place = anatomy.torso.at(entry + along * direction);
+    if (!Risks::all_farther(risks.bones, place, bone_margin(margins))) return false;
+    if (!Risks::all_farther(risks.organs, place, organ_margin(margins))) return false;
+    const bool in_liver = risks.liver->distance(place) < 0.0F;
+    if (in_liver && along < length - lesion.radius_mm - 1.5F) liver_mm += kStepMm;
+    if (!in_liver && liver_mm > 0.0F) return false;
+  }
+  return liver_mm >= margins.liver_mm + margins.reserve_mm;
+}
+
+struct Case {
+  Lesion lesion;
+  Vec3f entry;
+};
+
+/// A lesion and a way to it between the ribs of the right flank.
+std::optional<Case> find_case(const Anatomy& anatomy, const Risks& risks, const PathMargins& margins, Random& random) {
+  const auto between = [&](double low, double high) { return static_cast<float>(random.uniform(low, high)); };
+  for (int n = 0; n < kTries; ++n) {
+    const float side = between(78.0, 112.0) * kDegree;
+    const Vec3f gate = anatomy.torso.contours().on_cavity(-side, between(-12.0, 40.0), 6.0F);
+    const Vec3f inward = Vec3f(std::sin(side), -std::cos(side), 0.0F);
+    const Vec3f direction =
+        (inward + Vec3f(between(-0.15, 0.15), between(-0.3, 0.3), between(-0.25, 0.25))).normalized();
+    const Place at_gate = anatomy.torso.at(gate);
+    if (!Risks::all_farther(risks.bones, at_gate, bone_margin(margins))) continue;
+    if (!Risks::all_farther(risks.organs, at_gate, organ_margin(margins))) continue;
+    const Lesion lesion{gate + between(34.0, 58.0) * direction, between(9.0, 12.5)};
+    if (!has_room(anatomy, risks, lesion, 6.0F, 1.5F)) continue;
+    const Vec3f entry = leave_body(anatomy, gate, -direction);
+    if (is_safe(anatomy, risks, entry, lesion, margins)) return Case{lesion, entry};
+  }
+  return std::nullopt;
+}
+
+/// A further lesion anywhere in the liver, apart from the others.
+std::optional<Lesion> find_lesion(const Anatomy& anatomy, const Risks& risks, const std::vector<Lesion>& others,
+                                  Random& random) {
+  const Box& box = risks.liver->bounds;
+  for (int n = 0; n < kTries; ++n) {
+    const auto within = [&](int axis) { return static_cast<float>(random.uniform(box.low[axis], box.high[axis])); };
+    const float x = within(0);
+    const float y = within(1);
+    const Lesion lesion{Vec3f(x, y, within(2)), static_cast<float>(random.uniform(6.5, 13.0))};
+    const bool apart = std::all_of(others.begin(), others.end(), [&](const Lesion& other) {
+      return (other.centre - lesion.centre).norm() > other.radius_mm + lesion.radius_mm + 18.0F;
+    });
+    if (apart && has_room(anatomy, risks, lesion, 4.0F, 1.0F)) return lesion;
+  }
+  return std::nullopt;
+}
+
+void paint_lesion(Anatomy& anatomy, const Lesion& lesion, int number, Random& random) {
+  const auto& noise = anatomy.noise;
+  const auto stretch = [&] { return static_cast<float>(random.uniform(0.92, 1.10)); };
+  const float a = stretch();
+  const float b = stretch();
+  const Vec3f radii = lesion.radius_mm * Vec3f(a, b, stretch());
+  const std::string name = "liver_lesion_" + std::to_string(number);
+  const std::uint8_t label = anatomy.label(name);
+  anatomy.add({name, Box::around(lesion.centre, radii + Vec3f::Constant(3.0F)),
+               [=, &noise](const Place& place) {
+                 return ellipsoid(place.p - lesion.centre, radii) + 1.0F * noise(place.p / 7.0F);
+               },
+               [=, &noise](const Place& place, float distance, const Brush&) {
+                 const float core = clamp01(-distance / (0.8F * lesion.radius_mm));
+                 return Paint{mix(72.0F, 52.0F, core) + 4.0F * noise(place.p / 5.0F), label};
+               }});
+}
+
+}  // namespace
+
+bool BiopsyPlan::is_in_the_way(const Vec3f& p, float vessel_radius_mm) const {
+  constexpr float kLesionClearanceMm = 1.0F;
+  for (const Lesion& lesion : lesions)
+    if ((p - lesion.centre).norm() < 1.15F * lesion.radius_mm + vessel_radius_mm + kLesionClearanceMm) return true;
+  return distance_mm(path.line_P, p.cast<double>()) < vessel_radius_mm + organ_margin(margins);
+}
+
+Result<BiopsyPlan> plan_biopsy(const Anatomy& anatomy, const PathMargins& margins) {
+  Random random = anatomy.random("lesions");
+  const Risks risks(anatomy);
+  const auto first = find_case(anatomy, risks, margins, random);
+  if (!first)
+    return fail("this seed leaves no safe way to a liver lesion", "phantom \"abdomen\"", "choose another seed");
+  BiopsyPlan plan{margins, {first->lesion}, {"liver-biopsy expert", {}}};
+  plan.path.line_P = {first->entry.cast<double>(), first->lesion.centre.cast<double>()};
+  while (plan.lesions.size() < kLesions) {
+    const auto lesion = find_lesion(anatomy, risks, plan.lesions, random);
+    if (!lesion)
+      return fail("this seed leaves no room for three liver lesions", "phantom \"abdomen\"", "choose another seed");
+    plan.lesions.push_back(*lesion);
+  }
+  return plan;
+}
+
+void add_lesions(Anatomy& anatomy, const BiopsyPlan& plan) {
+  Random random = anatomy.random("lesion shapes");
+  int number = 0;
+  for (const Lesion& lesion : plan.lesions) paint_lesion(anatomy, lesion, ++number, random);
+}
+
+}  // namespace trocar::phantom

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "anatomy/phantom/structure.h"
+#include "core/result.h"
+
+namespace trocar::phantom {
+
+/// Distances that the expert path of the biopsy keeps (mm).
+struct PathMargins {
+  double bone_mm = 3.0;     ///< Ribs, cartilage, vertebrae.
+  double organ_mm = 5.0;    ///< Vessels, lung, bowel, stomach, gallbladder, kidney.
+  double liver_mm = 10.0;   ///< Liver before the lesion.
+  double reserve_mm = 1.2;  ///< On top of all: a voxel of the default grid.
+};
+
+struct Lesion {
+  Vec3f centre;  ///< P.
+  float radius_mm;
+};
+
+/// Three lesions, and the path to the first.
+struct BiopsyPlan {
+  PathMargins margins;
+  std::vector<Lesion> lesions;
+  NeedlePath path;
+
+  /// Whether a liver vessel of this radius at p would touch a lesion or the path's surroundings.
+  bool is_in_the_way(const Vec3f& p, float vessel_radius_mm) const;
+};
+
+/// Chooses places for three lesions, the first where a needle reaches it between two ribs of the right flank. Asked
+/// before the liver's vessels grow: they grow around lesions and path. The margins hold to the anatomy's surfaces.
+/// Error: no such place in 20,000 tries.
+Result<BiopsyPlan> plan_biopsy(const Anatomy& anatomy, const PathMargins& margins = {});
+
+void add_lesions(Anatomy& anatomy, const BiopsyPlan& plan);
+
+/// Portal and hepatic veins inside the liver, grown by rule around lesions and path.
+void add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan);
+
+}  // namespace trocar::phantom

@@ -1,0 +1,91 @@
+#include "anatomy/phantom/phantom.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "anatomy/phantom/abdomen.h"
+#include "anatomy/phantom/render.h"
+#include "anatomy/phantom/skeleton.h"
+
+namespace trocar {
+namespace {
+
+using namespace phantom;
+
+constexpr Index3 kDefaultSize{380, 300, 240};
+constexpr std::int64_t kLeastSize = 16;
+constexpr std::int64_t kGreatestSize = 1024;
+
+/// The phantom's box divided into voxels; the box is the same for every size.
+GridGeometry box_geometry(const Index3& size) {
+  GridGeometry geometry;
+  geometry.size = size;
+  const Vec3 extent = 2.0 * Vec3(kHalfWidth, kHalfDepth, kHalfHeight);
+  for (int a = 0; a < 3; ++a) {
+    const auto voxels = static_cast<double>(size[static_cast<std::size_t>(a)]);
+    geometry.spacing_mm[a] = extent[a] / voxels;
+    geometry.origin_P[a] = 0.5 * (geometry.spacing_mm[a] - extent[a]);
+  }
+  return geometry;
+}
+
+Result<GridGeometry> choose_geometry(const PhantomResolution& resolution) {
+  Index3 size = resolution.size;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (size[a] == 0) size[a] = kDefaultSize[a];
+    if (size[a] < kLeastSize || size[a] > kGreatestSize)
+      return fail_usage("a phantom of " + std::to_string(size[a]) + " voxels along one axis cannot be made",
+                        "resolution", "choose 16 to 1024 voxels, or 0 for the default");
+  }
+  return box_geometry(size);
+}
+
+std::vector<Landmark> landmarks(const Anatomy& anatomy) {
+  const auto& contours = anatomy.torso.contours();
+  const auto on_skin = [&](float phi, float z) -> Vec3 {
+    const double r = contours.skin_radius(phi, z);
+    return {r * std::sin(phi), r * std::cos(phi), z};
+  };
+  constexpr float kFront = std::numbers::pi_v<float>;
+  return {{"xiphoid", on_skin(kFront, 80.0F)},
+          {"umbilicus", on_skin(kFront, kUmbilicusZ)},
+          {"spinous process T12", on_skin(0.0F, vertebra_height(7) - 15.0F)},
+          {"spinous process L3", on_skin(0.0F, vertebra_height(10) - 10.0F)},
+          {"right mid-axillary line, tenth rib", on_skin(-0.5F * kFront, vertebra_height(5) - 74.0F)}};
+}
+
+}  // namespace
+
+const std::vector<PhantomInfo>& embedded_patients() {
+  static const std::vector<PhantomInfo> kPatients{
+      {"abdomen", "upper abdomen in the portal-venous phase with three liver lesions, generated", {"liver-biopsy"}}};
+  return kPatients;
+}
+
+Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed, const PhantomResolution& resolution,
+                                        const Progress& progress) {
+  const PhantomInfo& info = embedded_patients().front();
+  if (name != info.name)
+    return fail_usage("no embedded patient is called \"" + std::string(name) + "\"", {}, "there is: " + info.name);
+  TROCAR_TRY(const GridGeometry geometry, choose_geometry(resolution));
+
+  report(progress, "shaping the anatomy", 0.0);
+  Anatomy anatomy(seed);
+  TROCAR_TRY(BiopsyPlan plan, build_abdomen(anatomy));
+
+  Rendering rendering = render(anatomy, geometry, progress);
+  VirtualPatient patient;
+  patient.name = info.name;
+  patient.description = info.description;
+  patient.provenance = {"generated: embedded patient \"" + info.name + "\", seed " + std::to_string(seed)};
+  patient.ct = std::move(rendering.ct);
+  patient.labels = std::move(rendering.labels);
+  patient.skin_distance_mm = std::move(rendering.skin_distance_mm);
+  patient.label_table = std::move(anatomy.label_table);
+  patient.landmarks = landmarks(anatomy);
+  patient.paths = {std::move(plan.path)};
+  patient.content_hash = hash_patient(patient);
+  return patient;
+}
+
+}  // namespace trocar

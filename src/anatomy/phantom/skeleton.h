@@ -1,0 +1,10 @@
+#pragma once
+
+namespace trocar::phantom {
+
+/// Height (z, mm) of the centre of a vertebral body; level 0 is T5, 7 is T12, 12 is L5.
+float vertebra_height(int level);
+/// y of the centre of the vertebral bodies at a height.
+float spine_y(float z);
+
+}  // namespace trocar::phantom

@@ -1,0 +1,55 @@
+#include "anatomy/phantom/structure.h"
+
+#include <algorithm>
+
+#include "core/check.h"
+
+namespace trocar::phantom {
+
+Anatomy::Anatomy(std::uint64_t seed_) : seed(mix64(seed_)), torso(seed), noise(seed ^ 0x6e6f6973U) {}
+
+std::uint8_t Anatomy::label(std::string_view name) {
+  if (const Label* known = label_table.find(name)) return known->id;
+  const auto structure = find_known_structure(name);
+  TROCAR_CHECK(structure && label_table.labels.size() < 255);
+  const auto id = static_cast<std::uint8_t>(label_table.labels.size() + 1);
+  label_table.labels.push_back({id, std::string(name), std::string(structure->tissue), structure->color});
+  return id;
+}
+
+Random Anatomy::random(std::string_view organ) const {
+  std::uint64_t mixed = seed;
+  for (const char c : organ) mixed = mix64(mixed ^ static_cast<std::uint64_t>(c));
+  return Random(mixed);
+}
+
+const Structure& Anatomy::find(std::string_view name) const {
+  const auto found = std::find_if(structures.begin(), structures.end(), [&](const auto& s) { return s.name == name; });
+  TROCAR_CHECK(found != structures.end());
+  return *found;
+}
+
+Vec3f Anatomy::unwarped(const Vec3f& q) const {
+  Vec3f p = q;
+  for (int n = 0; n < 20; ++n) p += q - torso.at(p).q;  // the warp's slope is below 1: converges
+  return p;
+}
+
+void Anatomy::add_plain(std::string name, const Box& bounds, std::function<float(const Place&)> distance, float hu,
+                        float texture_hu, float texture_mm) {
+  const std::uint8_t id = label(name);
+  add({std::move(name), bounds, std::move(distance), [=, this](const Place& place, float, const Brush&) {
+         const float texture = texture_hu == 0.0F ? 0.0F : texture_hu * noise.fractal(place.p, texture_mm);
+         return Paint{hu + texture, id};
+       }});
+}
+
+Box whole_box() {
+  return Box::around(Vec3f::Zero(), Vec3f(kHalfWidth + 5.0F, kHalfDepth + 5.0F, kHalfHeight + 5.0F));
+}
+
+Box warped(const Box& box) {
+  return box.grown(6.0F);
+}
+
+}  // namespace trocar::phantom

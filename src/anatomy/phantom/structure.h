@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/label_table.h"
+#include "anatomy/phantom/shapes.h"
+#include "anatomy/phantom/torso.h"
+
+namespace trocar::phantom {
+
+/// What fills a place: Hounsfield units and label.
+struct Paint {
+  float hu = -1000.0F;
+  std::uint8_t label = 0;
+};
+
+/// How borders are drawn: as wide as a voxel (partial volume).
+struct Brush {
+  float blur_mm = 1.0F;
+  /// Share 0..1 of a voxel that lies inside a surface at this distance.
+  float cover(float distance) const { return smooth_step(-0.6F * blur_mm, 0.6F * blur_mm, -distance); }
+};
+
+/// One thing to paint. Later structures cover earlier ones.
+struct Structure {
+  std::string name;                             ///< Its main label, for clearances ("rib_cage" for all ribs).
+  Box bounds;                                   ///< Nothing is painted outside.
+  std::function<float(const Place&)> distance;  ///< mm, negative inside; slope within kSteepness.
+  std::function<Paint(const Place&, float distance, const Brush&)> paint;
+};
+
+/// The anatomy of one seed: everything about the patient but the voxels.
+struct Anatomy {
+  explicit Anatomy(std::uint64_t seed_);
+  Anatomy(const Anatomy&) = delete;  // the structures refer to the noise
+  Anatomy& operator=(const Anatomy&) = delete;
+
+  std::uint64_t seed;
+  Torso torso;
+  ValueNoise noise;
+  std::vector<Structure> structures;
+  LabelTable label_table;
+
+  /// The label's number; the label is added when it is new.
+  std::uint8_t label(std::string_view name);
+  /// Random numbers of one organ: what is changed in one does not change the others.
+  Random random(std::string_view organ) const;
+  const Structure& find(std::string_view name) const;
+  /// The point of P that the warp brings to q.
+  Vec3f unwarped(const Vec3f& q) const;
+  void add(Structure structure) { structures.push_back(std::move(structure)); }
+  /// A structure of one label with HU that varies slowly around `hu` (texture_hu, features of texture_mm).
+  void add_plain(std::string name, const Box& bounds, std::function<float(const Place&)> distance, float hu,
+                 float texture_hu = 0.0F, float texture_mm = 12.0F);
+};
+
+/// Where the portal vein enters the liver and the hepatic veins leave it (q).
+inline const Vec3f kHilum(-32.0F, -12.0F, 14.0F);
+inline const Vec3f kVenousConfluence(-23.0F, -8.0F, 66.0F);
+
+/// The whole box.
+Box whole_box();
+/// Bounds of a shape given around q, the warped place.
+Box warped(const Box& box);
+
+// Parts, in the order in which they are painted.
+void add_trunk(Anatomy& anatomy);   ///< Fat, muscles of the wall, cavity, diaphragm.
+void add_thorax(Anatomy& anatomy);  ///< Lungs, mediastinum, heart, oesophagus.
+void add_bowel(Anatomy& anatomy);   ///< Small bowel, colon, duodenum.
+void add_stomach(Anatomy& anatomy);
+void add_spleen(Anatomy& anatomy);
+void add_pancreas(Anatomy& anatomy);
+void add_kidneys(Anatomy& anatomy);        ///< With fat around them and the adrenal glands.
+void add_liver(Anatomy& anatomy);          ///< With gallbladder.
+void add_great_vessels(Anatomy& anatomy);  ///< Aorta, vena cava and their branches.
+void add_back_muscles(Anatomy& anatomy);
+void add_skeleton(Anatomy& anatomy);
+
+}  // namespace trocar::phantom
