@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "anatomy/phantom/skeleton.h"
+
 namespace trocar::phantom {
 namespace {
 
@@ -99,12 +101,13 @@ struct Case {
 std::optional<Case> find_case(const Anatomy& anatomy, const Risks& risks, const PathMargins& margins, Random& random) {
   const auto between = [&](double low, double high) { return static_cast<float>(random.uniform(low, high)); };
   for (int n = 0; n < kTries; ++n) {
-    const float side = between(78.0, 112.0) * kDegree;
+    const float side = between(74.0, 110.0) * kDegree;
     const Vec3f gate = anatomy.torso.contours().on_cavity(-side, between(-12.0, 40.0), 6.0F);
     const Vec3f inward = Vec3f(std::sin(side), -std::cos(side), 0.0F);
     const Vec3f direction =
         (inward + Vec3f(between(-0.15, 0.15), between(-0.3, 0.3), between(-0.25, 0.25))).normalized();
     const Place at_gate = anatomy.torso.at(gate);
+    if (!intercostal_space(at_gate)) continue;
     if (!Risks::all_farther(risks.bones, at_gate, bone_margin(margins))) continue;
     if (!Risks::all_farther(risks.organs, at_gate, organ_margin(margins))) continue;
     const Lesion lesion{gate + between(34.0, 58.0) * direction, between(9.0, 12.5)};

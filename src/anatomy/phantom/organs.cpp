@@ -103,8 +103,8 @@ void add_kidneys(Anatomy& anatomy) {
 
 void add_spleen(Anatomy& anatomy) {
   Random random = anatomy.random("spleen");
-  const Vec3f centre = vary(random, Vec3f(104.0F, 34.0F, 44.0F), 3.0F);
-  const Vec3f radii = Vec3f(42.0F, 56.0F, 56.0F) * static_cast<float>(random.uniform(0.94, 1.06));
+  const Vec3f centre = vary(random, Vec3f(106.0F, 34.0F, 36.0F), 3.0F);
+  const Vec3f radii = Vec3f(46.0F, 60.0F, 60.0F) * static_cast<float>(random.uniform(0.94, 1.06));
   const auto& noise = anatomy.noise;
   anatomy.add_plain(
       "spleen", warped(Box::around(centre, radii)),
@@ -112,7 +112,7 @@ void add_spleen(Anatomy& anatomy) {
         const Vec3f u = place.q - centre;
         const Vec3f turned(u.x() + 0.15F * u.z(), u.y() - 0.2F * u.z(), u.z());
         const float bulk = ellipsoid(turned, radii);
-        const float hollow = ellipsoid(u - Vec3f(-50.0F, -22.0F, 0.0F), Vec3f(46.0F, 52.0F, 70.0F));
+        const float hollow = ellipsoid(u - Vec3f(-56.0F, -24.0F, 0.0F), Vec3f(46.0F, 52.0F, 70.0F));
         const float carved = smooth_max(bulk, -hollow, 14.0F);
         const float under = smooth_max(carved, place.diaphragm + 3.6F, 5.0F);
         return smooth_max(under, place.cavity + 3.2F, 5.0F) + 1.6F * noise(place.p / 24.0F);

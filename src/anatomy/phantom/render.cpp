@@ -101,7 +101,7 @@ class Painter {
       const float cover = brush_.cover(distance);
       if (cover <= 0.0F) continue;
       const Paint paint = structure->paint(place, distance, brush_);
-      result.hu = mix(result.hu, paint.hu, cover);
+      result.hu = cover < 1.0F ? mix(result.hu, paint.hu, cover) : paint.hu;
       if (distance < 0.0F) result.label = paint.label;
     }
     if (place.skin >= 0.0F) result.label = 0;

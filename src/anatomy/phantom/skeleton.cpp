@@ -18,7 +18,7 @@ constexpr float kRibOutwardMm = 6.3F;
 constexpr float kRibHalfThicknessMm = 3.2F;
 constexpr float kRibHalfHeightMm = 6.2F;
 constexpr float kRibBeginDeg = 33.0F;
-constexpr std::array<float, 8> kRibEndDeg{140.0F, 136.0F, 131.0F, 126.0F, 119.0F, 107.0F, 82.0F, 49.0F};  // 5..12
+constexpr std::array<float, 8> kRibEndDeg{140.0F, 136.0F, 131.0F, 126.0F, 119.0F, 110.0F, 98.0F, 50.0F};  // 5..12
 
 float rib_drop(float side_deg) {
   return 80.0F * std::pow(side_deg / 90.0F, 1.25F) - 6.0F;
@@ -127,8 +127,11 @@ void add_cartilages(Anatomy& anatomy) {
   const std::uint8_t sternum_label = anatomy.label("sternum");
   anatomy.add({"sternum", Box::around(sternum, Vec3f(20.0F, 20.0F, 48.0F)),
                [=](const Place& place) {
-                 return smooth_min(ellipsoid(place.p - sternum, Vec3f(17.0F, 6.0F, 28.0F)),
-                                   ellipsoid(place.p - xiphoid, Vec3f(7.0F, 3.6F, 17.0F)), 5.0F);
+                 const auto plate = [&](const Vec3f& u, float half_width, float half_height) {
+                   return smooth_max(elliptic_cylinder(u.x(), u.y(), half_width, 5.5F), std::abs(u.z()) - half_height,
+                                     5.0F);
+                 };
+                 return smooth_min(plate(place.p - sternum, 16.0F, 26.0F), plate(place.p - xiphoid, 8.0F, 13.0F), 5.0F);
                },
                [=](const Place&, float distance, const Brush& brush) {
                  return bone(distance, 1.2F, 600.0F, 150.0F, sternum_label, brush);
@@ -232,6 +235,15 @@ void add_spine(Anatomy& anatomy) {
 
 float spine_y(float z) {
   return 28.0F - 5.0F * bump(z, -55.0F, 70.0F) + 3.0F * smooth_step(20.0F, 120.0F, z);
+}
+
+std::optional<int> intercostal_space(const Place& place) {
+  const float side_deg = std::atan2(std::abs(place.p.x()), place.p.y()) / kDegree;
+  for (int rib = 5; rib < 12; ++rib) {
+    const bool reaches = side_deg > kRibBeginDeg && side_deg < kRibEndDeg[static_cast<std::size_t>(rib + 1 - 5)];
+    if (reaches && place.p.z() < rib_height(rib, side_deg) && place.p.z() > rib_height(rib + 1, side_deg)) return rib;
+  }
+  return std::nullopt;
 }
 
 float vertebra_height(int level) {

@@ -43,28 +43,35 @@ struct SliceContour {
     }
   }
 
-  /// Distance in space from a point of the slice; the sign is the caller's.
+  /// Signed distance in space from a point of the slice.
   float distance(float px, float py) const {
-    std::size_t best = 0;
-    float best_square = 1e12F;
-    for (std::size_t n = 0; n < kPoints; ++n) {
+    constexpr std::size_t kCoarse = 4;
+    std::size_t near = 0;
+    float least = 1e12F;
+    const auto look_at = [&](std::size_t n) {
       const float square = (x[n] - px) * (x[n] - px) + (y[n] - py) * (y[n] - py);
-      if (square < best_square) {
-        best_square = square;
-        best = n;
+      if (square < least) {
+        least = square;
+        near = n;
       }
-    }
-    const std::size_t before = (best + kPoints - 1) % kPoints;
-    const std::size_t after = (best + 1) % kPoints;
-    return std::min(to_edge(before, best, px, py), to_edge(best, after, px, py)) * slope_factor[best];
+    };
+    for (std::size_t n = 0; n < kPoints; n += kCoarse) look_at(n);
+    const std::size_t middle = near + kPoints;
+    for (std::size_t n = middle - kCoarse; n <= middle + kCoarse; ++n) look_at(n % kPoints);
+    const float before = to_edge((near + kPoints - 1) % kPoints, near, px, py);
+    const float after = to_edge(near, (near + 1) % kPoints, px, py);
+    return (std::abs(before) < std::abs(after) ? before : after) * slope_factor[near];
   }
 
  private:
+  /// Signed distance to an edge; the inside lies to the right of the way around.
   float to_edge(std::size_t a, std::size_t b, float px, float py) const {
     const float dx = x[b] - x[a];
     const float dy = y[b] - y[a];
-    const float t = clamp01(((px - x[a]) * dx + (py - y[a]) * dy) / (dx * dx + dy * dy));
-    return std::hypot(px - x[a] - t * dx, py - y[a] - t * dy);
+    const float ux = px - x[a];
+    const float uy = py - y[a];
+    const float t = clamp01((ux * dx + uy * dy) / (dx * dx + dy * dy));
+    return std::copysign(std::hypot(ux - t * dx, uy - t * dy), uy * dx - ux * dy);
   }
 };
 
@@ -100,7 +107,7 @@ float TorsoContours::skin_radius(float phi, float z) const {
   r += 3.0F * bump(side, rad(28.0F), rad(14.0F));
   if (side > 0.5F * kPi) r -= 2.0F * bump(x, 0.0F, 8.0F);
   // The umbilicus.
-  if (side > 0.5F * kPi) r -= 9.0F * bump(std::hypot(x, z - kUmbilicusZ), 0.0F, 9.0F);
+  if (side > 0.5F * kPi) r -= 6.0F * bump(std::hypot(x, z - kUmbilicusZ), 0.0F, 13.0F);
   for (std::size_t n = 0; n < 3; ++n)
     r += wave_mm_[n] * std::sin(static_cast<float>(n + 2) * phi + wave_phase_[n] + 0.012F * z);
   return r;
@@ -137,7 +144,7 @@ float TorsoContours::diaphragm_height(float x, float y, float cavity) const {
   const float side = std::atan2(std::abs(x), y);
   // Where the diaphragm leaves the wall: low behind (the costophrenic recess), high in front.
   const float rim =
-      16.0F + 20.0F * smooth_step(rad(20.0F), rad(95.0F), side) + 38.0F * smooth_step(rad(85.0F), rad(160.0F), side);
+      16.0F + 17.0F * smooth_step(rad(20.0F), rad(95.0F), side) + 41.0F * smooth_step(rad(92.0F), rad(160.0F), side);
   const float right = 16.0F * bump(x, -72.0F, 58.0F) * bump(y, -5.0F, 75.0F);
   const float left = 7.0F * bump(x, 70.0F, 52.0F) * bump(y, 0.0F, 75.0F);
   const float dome = 72.0F + dome_mm_ + right + left;
@@ -164,33 +171,36 @@ Torso::Torso(std::uint64_t seed) : contours_(seed) {
 
 void Torso::fill_slice(std::int64_t k, const ValueNoise& warp) {
   const float z = static_cast<float>(k) * kLatticeMm - kHalfHeight - kMargin;
-  const auto skin_radius = [&](float phi, float height) { return contours_.skin_radius(phi, height); };
-  const auto wall_radius = [&](float phi, float height) { return contours_.wall_radius(phi, height); };
-  const auto cavity_radius = [&](float phi, float height) { return contours_.cavity_radius(phi, height); };
-  const SliceContour skin(skin_radius, z);
-  const SliceContour wall(wall_radius, z);
-  const SliceContour cavity(cavity_radius, z);
-  for (std::int64_t j = 0; j < size_[1]; ++j)
-    for (std::int64_t i = 0; i < size_[0]; ++i) {
+  const SliceContour skin([&](float phi, float height) { return contours_.skin_radius(phi, height); }, z);
+  const SliceContour wall([&](float phi, float height) { return contours_.wall_radius(phi, height); }, z);
+  const SliceContour cavity([&](float phi, float height) { return contours_.cavity_radius(phi, height); }, z);
+  const auto columns = static_cast<std::size_t>(size_[0]);
+  const auto rows = static_cast<std::size_t>(size_[1]);
+  Node* const slice = &nodes_[static_cast<std::size_t>(k) * columns * rows];
+  std::vector<float> height(columns * rows);
+  for (std::size_t j = 0; j < rows; ++j)
+    for (std::size_t i = 0; i < columns; ++i) {
       const float x = static_cast<float>(i) * kLatticeMm - kHalfWidth - kMargin;
       const float y = static_cast<float>(j) * kLatticeMm - kHalfDepth - kMargin;
-      const float r = std::hypot(x, y);
-      const float phi = std::atan2(x, y);
-      const auto signed_distance = [&](const SliceContour& contour, float radius) {
-        return std::copysign(contour.distance(x, y), r - radius);
-      };
-      Node& node = nodes_[static_cast<std::size_t>((k * size_[1] + j) * size_[0] + i)];
-      node[0] = signed_distance(skin, skin_radius(phi, z));
-      node[1] = signed_distance(wall, wall_radius(phi, z));
-      node[2] = signed_distance(cavity, cavity_radius(phi, z));
-      const auto height = [&](float hx, float hy) { return contours_.diaphragm_height(hx, hy, node[2]); };
-      const float inward_slope = 1.0F / 24.0F * std::exp(std::min(node[2], 0.0F) / 24.0F) * 45.0F;
-      const float gx = 0.25F * (height(x + 2.0F, y) - height(x - 2.0F, y));
-      const float gy = 0.25F * (height(x, y + 2.0F) - height(x, y - 2.0F));
-      node[3] = (z - height(x, y)) / std::sqrt(1.0F + gx * gx + gy * gy + inward_slope * inward_slope);
+      Node& node = slice[j * columns + i];
+      node << skin.distance(x, y), wall.distance(x, y), cavity.distance(x, y), 0, 0, 0, 0, 0;
+      height[j * columns + i] = contours_.diaphragm_height(x, y, node[2]);
       const Vec3f cell = Vec3f(x, y, z) / kWarpSizeMm;
       for (int a = 0; a < 3; ++a) node[4 + a] = kWarpMm * warp(cell + Vec3f::Constant(7.3F * static_cast<float>(a)));
-      node[7] = 0.0F;
+    }
+  // The distance from the diaphragm is its height difference made shorter by its slope.
+  for (std::size_t j = 0; j < rows; ++j)
+    for (std::size_t i = 0; i < columns; ++i) {
+      const auto slope = [&](std::size_t low, std::size_t high, std::size_t steps) {
+        return (height[high] - height[low]) / (kLatticeMm * static_cast<float>(steps));
+      };
+      const std::size_t i0 = i > 0 ? i - 1 : i;
+      const std::size_t i1 = std::min(i + 1, columns - 1);
+      const std::size_t j0 = j > 0 ? j - 1 : j;
+      const std::size_t j1 = std::min(j + 1, rows - 1);
+      const float gx = slope(j * columns + i0, j * columns + i1, i1 - i0);
+      const float gy = slope(j0 * columns + i, j1 * columns + i, j1 - j0);
+      slice[j * columns + i][3] = (z - height[j * columns + i]) / std::sqrt(1.0F + gx * gx + gy * gy);
     }
 }
 

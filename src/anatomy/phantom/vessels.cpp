@@ -111,8 +111,11 @@ void add_great_vessels(Anatomy& anatomy) {
 
 void add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan) {
   const Structure& liver = anatomy.find("liver");
+  const Structure& gallbladder = anatomy.find("gallbladder");
   const auto is_free = [&](const Vec3f& p, float radius) {
-    return liver.distance(anatomy.torso.at(p)) < -(radius + 2.0F) && !plan.is_in_the_way(p, radius);
+    const Place place = anatomy.torso.at(p);
+    return liver.distance(place) < -(radius + 2.0F) && gallbladder.distance(place) > radius + 2.0F &&
+           !plan.is_in_the_way(p, radius);
   };
   const std::vector<Vec3f> territory = liver_territory(anatomy, 5.0F);
 

@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "anatomy/phantom/abdomen.h"
 #include "anatomy/phantom/render.h"
-#include "volume/distance.h"
 #include "volume/sampling.h"
 
 namespace trocar::phantom {
@@ -26,13 +28,33 @@ GridGeometry box_around(const Segment& line, double margin_mm) {
   return geometry;
 }
 
+/// A planned biopsy and the voxels around its path.
+struct Case {
+  explicit Case(std::uint64_t seed) : anatomy(seed) {
+    if (auto built = build_abdomen(anatomy)) {
+      plan = *std::move(built);
+      rendering = render(anatomy, box_around(plan->path.line_P, 14.0));
+    }
+  }
+
+  Anatomy anatomy;
+  std::optional<BiopsyPlan> plan;
+  Rendering rendering;
+};
+
+/// One case a seed for all tests.
+const Case& case_of(std::uint64_t seed) {
+  static std::map<std::uint64_t, std::unique_ptr<Case>> cases;
+  auto& found = cases[seed];
+  if (!found) found = std::make_unique<Case>(seed);
+  return *found;
+}
+
 class ExpertPath : public testing::TestWithParam<std::uint64_t> {
  protected:
   void SetUp() override {
-    const auto plan = build_abdomen(anatomy_);
-    ASSERT_TRUE(plan) << plan.error().text();
-    line_ = plan->path.line_P;
-    rendering_ = render(anatomy_, box_around(line_, 14.0));
+    ASSERT_TRUE(case_.plan);
+    line_ = case_.plan->path.line_P;
   }
 
   std::string tissue_at(const Vec3& p) const {
@@ -58,16 +80,17 @@ class ExpertPath : public testing::TestWithParam<std::uint64_t> {
     return least;
   }
 
-  Anatomy anatomy_{GetParam()};
+  const Case& case_ = case_of(GetParam());
+  const Anatomy& anatomy_ = case_.anatomy;
+  const Rendering& rendering_ = case_.rendering;
   Segment line_;
-  Rendering rendering_;
 };
 
 TEST_P(ExpertPath, LeadsThroughFatMuscleAndLiverIntoTheLesion) {
   std::vector<std::string> order;
   double liver_mm = 0.0;
   constexpr double kStepMm = 0.25;
-  for (double along = 0.5; along <= line_.length_mm(); along += kStepMm) {
+  for (double along = 1.0; along <= line_.length_mm(); along += kStepMm) {
     const std::string tissue = tissue_at(line_.a + along * line_.direction());
     if (std::find(order.begin(), order.end(), tissue) == order.end()) order.push_back(tissue);
     if (tissue == "liver") liver_mm += kStepMm;
