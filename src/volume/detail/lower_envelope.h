@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -8,7 +9,8 @@
 namespace trocar::detail {
 
 /// Lower envelope of the parabolas (x - position)^2 + value, added in order of rising position (Felzenszwalb &
-/// Huttenlocher 2012, doi 10.4086/toc.2012.v008a019); here at any positions, evaluated at multiples of a spacing.
+/// Huttenlocher 2012, doi 10.4086/toc.2012.v008a019); here at any positions, evaluated at multiples of a spacing, and
+/// without the divisions that the places of the intersections would cost.
 class LowerEnvelope {
  public:
   explicit LowerEnvelope(std::size_t capacity) : parabolas_(capacity) {}
@@ -18,30 +20,27 @@ class LowerEnvelope {
   /// A parabola of infinite value is none. At most `capacity` may be added; positions rise strictly.
   void add(double position, double value) noexcept {
     if (value == std::numeric_limits<double>::infinity()) return;
-    const double height = value + position * position;
-    double from = -std::numeric_limits<double>::infinity();
-    while (count_ > 0) {
-      const Parabola& last = parabolas_[count_ - 1];
-      from = (height - last.height) / (2.0 * (position - last.position));
-      if (from > last.from) break;
-      --count_;
-      from = -std::numeric_limits<double>::infinity();
-    }
-    parabolas_[count_++] = {position, value, height, from};
+    const Parabola added{position, value};
+    while (count_ >= 2 && is_hidden(parabolas_[count_ - 2], parabolas_[count_ - 1], added)) --count_;
+    parabolas_[count_++] = added;
   }
 
   /// out[n] = the envelope at n * spacing; infinity where nothing was added.
   void evaluate(double spacing, std::span<float> out) const noexcept {
     if (count_ == 0) {
-      for (float& v : out) v = std::numeric_limits<float>::infinity();
+      std::fill(out.begin(), out.end(), std::numeric_limits<float>::infinity());
       return;
     }
     std::size_t current = 0;
     for (std::size_t n = 0; n < out.size(); ++n) {
       const double x = static_cast<double>(n) * spacing;
-      while (current + 1 < count_ && parabolas_[current + 1].from < x) ++current;
-      const double along = x - parabolas_[current].position;
-      out[n] = static_cast<float>(along * along + parabolas_[current].value);
+      double lowest = parabolas_[current].at(x);
+      for (; current + 1 < count_; ++current) {
+        const double next = parabolas_[current + 1].at(x);
+        if (next > lowest) break;
+        lowest = next;
+      }
+      out[n] = static_cast<float>(lowest);
     }
   }
 
@@ -49,9 +48,17 @@ class LowerEnvelope {
   struct Parabola {
     double position;
     double value;
-    double height;  ///< Value plus squared position.
-    double from;    ///< It is the lowest from here to the next one's.
+    double at(double x) const noexcept { return (x - position) * (x - position) + value; }
   };
+
+  /// True where b is nowhere below both a and c: c meets a before b does.
+  static bool is_hidden(const Parabola& a, const Parabola& b, const Parabola& c) noexcept {
+    const double ab = b.position - a.position;
+    const double bc = c.position - b.position;
+    const double ac = ab + bc;
+    return ac * b.value - bc * a.value - ab * c.value >= ab * bc * ac;
+  }
+
   std::vector<Parabola> parabolas_;
   std::size_t count_ = 0;
 };
