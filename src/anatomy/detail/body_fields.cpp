@@ -111,8 +111,8 @@ FloatGrid find_wall(const Coarse& coarse, const FloatGrid& skin_distance_mm) {
     // The fat's mask was shrunk: its border lies that much farther out.
     const auto from_fat_mm = static_cast<float>(wall.voxels[n] - kFatSheetMm - kWallReachMm);
     const auto from_spine_mm = static_cast<float>(to_spine_mm.voxels[n] - kSpineReachMm);
-    const bool is_disc = spine_with_discs.voxels[n] && coarse.unlabelled.voxels[n];
-    wall.voxels[n] = is_disc ? static_cast<float>(kCoarseMm) : std::min(from_fat_mm, from_spine_mm);
+    const bool in_spine = spine_with_discs.voxels[n] != 0;  // disc, canal, marrow: no muscle
+    wall.voxels[n] = in_spine ? static_cast<float>(kCoarseMm) : std::min(from_fat_mm, from_spine_mm);
   }
   return wall;
 }
