@@ -16,7 +16,8 @@ struct Window {
 };
 
 /// A CT slice through a point, radiological view (patient's right on the left of the picture; coronal and sagittal with
-/// the head up), window/level, label outlines and fill by colour.
+/// the head up, the sagittal slice with the front on the left), window/level, square pixels. Labels are filled and
+/// outlined by colour, but for fat, muscle and skin, the ground on which structures lie.
 struct SlicePicture {
   RgbImage image;
   SlicePlane plane;  ///< Pixel (u, v) lies at origin + u step_u + v step_v.
@@ -28,7 +29,10 @@ struct SliceOptions {
   Window window;
   double label_opacity = 0.25;  ///< Fill; outlines are always opaque. Range 0..1.
   bool has_outlines = true;
-  int size_px = 512;  ///< Longer side.
+  int size_px = 512;  ///< Longer side. Range 1..4096.
+  /// Only the square of this side (mm) around center_P, as far as the volume goes; 0: the whole volume.
+  double field_mm = 0.0;
+  Vec3 center_P = Vec3::Zero();
 };
 SlicePicture make_slice_picture(const VirtualPatient& patient, SliceOrientation orientation, const Vec3& through_P,
                                 const SliceOptions& options = {});

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace trocar::report_detail {
+
+/// Text for HTML and for attribute values; control characters become spaces.
+std::string escape(std::string_view text);
+
+/// A number with fixed decimals and a real minus sign; "–" when it is not finite.
+std::string number_text(double value, int decimals);
+
+/// A name of a table in words: "liver_capsule" -> "liver capsule".
+std::string words(std::string_view name);
+/// The same with a capital first letter.
+std::string title_words(std::string_view name);
+
+std::string base64(std::string_view bytes);
+
+/// About how wide a text is (px) at a font size: enough to place labels.
+double text_width(std::string_view text, double font_px);
+
+}  // namespace trocar::report_detail

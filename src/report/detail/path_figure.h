@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "anatomy/patient.h"
+#include "storage/session_file.h"
+
+namespace trocar::report_detail {
+
+/// Planned and own path over three CT slices through the target; says so where there is no patient to show.
+std::string path_figure(const Session& session, const VirtualPatient* patient);
+
+}  // namespace trocar::report_detail

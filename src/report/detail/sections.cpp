@@ -1,0 +1,178 @@
+#include "report/detail/sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/detail/force_plots.h"
+#include "report/detail/html.h"
+
+namespace trocar::report_detail {
+namespace {
+
+constexpr double kLowShare = 0.5;  ///< Of a part's points; below it the bar is shown as weak.
+
+/// A number with at most one decimal, none where it is whole.
+std::string short_number(double value) {
+  const bool is_whole = std::abs(value - std::round(value)) < 0.05;
+  return number_text(value, is_whole ? 0 : 1);
+}
+
+std::string join(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + escape(words(name));
+  return out;
+}
+
+/// "2026-01-02T03:04:05Z" -> "2026-01-02 03:04 UTC"; anything else as it is.
+std::string date_text(const std::string& utc) {
+  if (utc.size() < 16 || utc[10] != 'T') return escape(utc);
+  return escape(utc.substr(0, 10) + " " + utc.substr(11, 5) + " UTC");
+}
+
+std::string fact(const char* term, const std::string& escaped) {
+  return escaped.empty() ? std::string() : fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", term, escaped);
+}
+
+std::string score_ring(double score) {
+  constexpr double kRadius = 70.0;
+  const double around = 2.0 * 3.14159265358979 * kRadius;
+  const double share = std::isfinite(score) ? std::clamp(score / 100.0, 0.0, 1.0) : 0.0;
+  return fmt::format(
+      "<svg viewBox=\"0 0 172 172\" role=\"img\" aria-label=\"Score {0} of 100\">"
+      "<circle cx=\"86\" cy=\"86\" r=\"{1}\" fill=\"none\" stroke=\"#dfe6ea\" stroke-width=\"15\"/>"
+      "<circle cx=\"86\" cy=\"86\" r=\"{1}\" fill=\"none\" stroke=\"#0b6e75\" stroke-width=\"15\" "
+      "stroke-dasharray=\"{2:.1f} {3:.1f}\" transform=\"rotate(-90 86 86)\"/>"
+      "<text x=\"86\" y=\"98\" text-anchor=\"middle\" font-size=\"46\" font-weight=\"650\">{0}</text>"
+      "<text x=\"86\" y=\"120\" text-anchor=\"middle\" font-size=\"14\" fill=\"#5a6875\">of 100</text></svg>",
+      number_text(score, 0), kRadius, share * around, around);
+}
+
+/// "12 mm", "3°", "0".
+std::string with_unit(double value, const std::string& unit) {
+  const bool is_attached = unit.empty() || unit == "°";
+  return short_number(value) + (is_attached ? "" : " ") + escape(unit);
+}
+
+std::string part_row(const ScorePart& part) {
+  const double share =
+      part.max_points > 0.0 && std::isfinite(part.points) ? std::clamp(part.points / part.max_points, 0.0, 1.0) : 0.0;
+  return fmt::format(
+      "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"bar\"><div class=\"track\"><div class=\"fill{}\" "
+      "style=\"width:{:.1f}%\"></div></div></td><td class=\"number\"><b>{}</b> / {}</td></tr>",
+      escape(part.title), with_unit(part.value, part.unit), share < kLowShare ? " low" : "", 100.0 * share,
+      short_number(part.points), short_number(part.max_points));
+}
+
+/// The notch as a bar, its pieces to scale.
+std::string core_bar(const BiopsyCore& core) {
+  constexpr double kWidth = 760.0;
+  constexpr double kMargin = 14.0;
+  constexpr double kTickStep_mm = 5.0;
+  double length_mm = 0.0;
+  for (const CorePiece& piece : core.pieces) length_mm = std::max(length_mm, piece.to_mm);
+  if (!(length_mm > 0.0)) return "<p>The notch brought nothing out.</p>";
+  const auto x_of = [&](double mm) { return kMargin + mm / length_mm * (kWidth - 2.0 * kMargin); };
+  std::string out = "<svg viewBox=\"0 0 760 78\" role=\"img\" aria-label=\"Tissue along the specimen notch\">";
+  for (const CorePiece& piece : core.pieces) {
+    const double x = x_of(piece.from_mm);
+    const double width = x_of(piece.to_mm) - x;
+    out += fmt::format(
+        "<rect class=\"band piece {}\" x=\"{:.1f}\" y=\"6\" width=\"{:.1f}\" height=\"34\"><title>{}</title></rect>",
+        tissue_style(piece.tissue), x, width, escape(words(piece.label)));
+    if (text_width(piece.label, 12.0) + 8.0 < width)
+      out += fmt::format("<text x=\"{:.1f}\" y=\"27\" text-anchor=\"middle\">{}</text>", x + 0.5 * width,
+                         escape(words(piece.label)));
+  }
+  out += fmt::format("<rect class=\"frame\" x=\"{}\" y=\"6\" width=\"{}\" height=\"34\"/>", kMargin,
+                     kWidth - 2.0 * kMargin);
+  for (double mm = 0.0; mm <= length_mm + 1e-9; mm += kTickStep_mm)
+    out += fmt::format(
+        "<line class=\"axis\" x1=\"{0:.1f}\" y1=\"40\" x2=\"{0:.1f}\" y2=\"45\"/><text x=\"{0:.1f}\" y=\"57\" "
+        "text-anchor=\"middle\">{1:.0f}</text>",
+        x_of(mm), mm);
+  return out +
+         "<text class=\"title\" x=\"380\" y=\"74\" text-anchor=\"middle\">mm along the notch, from its hub "
+         "end</text></svg>";
+}
+
+std::string case_row(const char* name, const std::string& value) {
+  return value.empty() ? std::string() : fmt::format("<tr><th>{}</th><td>{}</td></tr>", name, escape(value));
+}
+
+}  // namespace
+
+std::string page_header(const Session& session) {
+  const SessionInfo& info = session.info;
+  return fmt::format(
+      "<header><h1>{}: session report</h1><dl class=\"facts\">{}{}{}{}</dl>"
+      "<p class=\"note\">Trocar is a training simulator, not a medical device.</p></header>",
+      escape(title_words(info.task)), fact("Patient", escape(info.patient_name)),
+      fact("Operator", escape(info.operator_name)), fact("Date", date_text(info.started_utc)),
+      fact("Trocar", escape(info.program_version)));
+}
+
+std::string result_section(const Session& session) {
+  if (!session.outcome)
+    return "<p class=\"warning\"><b>This session is incomplete.</b> The program ended before the attempt did: there is "
+           "no "
+           "score. What was recorded until then is shown below.</p>";
+  const Outcome& outcome = *session.outcome;
+  std::string out = fmt::format(
+      "<section class=\"together\"><h2>Result</h2><div class=\"result\"><div class=\"ring\">{}<div class=\"verdict\">{}"
+      "</div></div><table class=\"parts\"><tbody>",
+      score_ring(outcome.score), outcome.target_reached ? "Target reached" : "Target missed");
+  for (const ScorePart& part : outcome.parts) out += part_row(part);
+  out += "</tbody></table></div>";
+  if (!outcome.risks_touched.empty())
+    out += fmt::format("<p class=\"warning\">Touched on the way: <b>{}</b>.</p>", join(outcome.risks_touched));
+  return out + "</section>";
+}
+
+std::string hints_section(const Session& session) {
+  if (!session.outcome || session.outcome->hints.empty()) return {};
+  std::string out = "<section class=\"together\"><h2>Hints</h2><ol class=\"hints\">";
+  for (const std::string& hint : session.outcome->hints) out += "<li>" + escape(hint) + "</li>";
+  return out + "</ol></section>";
+}
+
+std::string core_section(const Session& session) {
+  if (!session.outcome || !session.outcome->core) return {};
+  const BiopsyCore& core = *session.outcome->core;
+  std::string out = "<section class=\"together\"><h2>The core</h2><figure>" + core_bar(core) +
+                    fmt::format(
+                        "<figcaption>Target tissue {} mm, organ {} mm, vessel {} mm, other {} mm.</figcaption>"
+                        "</figure>",
+                        number_text(core.target_mm, 1), number_text(core.organ_mm, 1), number_text(core.vessel_mm, 1),
+                        number_text(core.other_mm, 1));
+  if (!core.risks_in_throw.empty())
+    out += fmt::format("<p class=\"warning\">The shot went through: <b>{}</b>.</p>", join(core.risks_in_throw));
+  return out + "</section>";
+}
+
+std::string case_section(const Session& session) {
+  const SessionInfo& info = session.info;
+  const double duration_s =
+      session.samples.empty() ? 0.0 : session.samples.back().time_s - session.samples.front().time_s;
+  std::string out = "<section><h2>The case</h2><table class=\"list case\"><tbody>";
+  out += case_row("Task", info.task + (info.is_parenchymal ? " (no lesion: healthy tissue of the organ)" : ""));
+  out += case_row("Patient", info.patient_name);
+  out += case_row("Patient's source", info.patient_source);
+  out += case_row("Patient's hash", info.patient_hash);
+  out += case_row("Patient's seed", fmt::format("{}", info.patient_seed));
+  out += case_row("Operator, seed", fmt::format("{}, {}", info.operator_name, info.seed));
+  out += case_row("Force model", info.force_model);
+  out += case_row("Needle", info.needle);
+  out += case_row("Device", info.device);
+  out += case_row("Recorded", fmt::format("{} ticks, {} s at {:g} Hz", session.samples.size(),
+                                          number_text(duration_s, 1), info.rate_hz));
+  out += case_row("Program", "Trocar " + info.program_version);
+  out += "</tbody></table>";
+  if (!info.tissue_table_toml.empty())
+    out +=
+        fmt::format("<details><summary>Tissue table</summary><pre>{}</pre></details>", escape(info.tissue_table_toml));
+  return out + "</section>";
+}
+
+}  // namespace trocar::report_detail

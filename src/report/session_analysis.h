@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "storage/session_file.h"
+
+namespace trocar {
+
+/// Axial resistance that the tip and shaft meet (N), positive = pushes the needle out: the negative of pre-puncture,
+/// friction and cutting force along the axis (docs/physics.md).
+double resistance_n(const TickSample& sample) noexcept;
+
+/// A layer that gave way.
+struct Puncture {
+  std::size_t tick = 0;
+  std::string layer;
+  double time_s = 0.0;
+  double depth_mm = 0.0;
+  double layer_force_n = 0.0;  ///< Pre-puncture force of the layer when it gave way.
+  double resistance_n = 0.0;   ///< Of all axial forces at that tick.
+  double drop_n = 0.0;         ///< Fall of the resistance within the next 0.1 s, before another layer gives way.
+};
+std::vector<Puncture> find_punctures(const Session& session);
+
+/// A stay of the needle in the body: the ticks from first contact to the last before it is outside again.
+struct Insertion {
+  std::size_t first = 0;
+  std::size_t deepest = 0;  ///< Tick of the greatest depth.
+  std::size_t last = 0;
+};
+/// Insertions that reached at least `min_depth_mm`, in order.
+std::vector<Insertion> find_insertions(const Session& session, double min_depth_mm = 1.0);
+
+/// A run of one tissue along the way of the tip.
+struct TissueRun {
+  double from_mm = 0.0;
+  double to_mm = 0.0;
+  std::uint8_t tissue = 0;
+};
+/// What the tip went through on its way in, by depth: each depth counts when it is reached for the first time.
+std::vector<TissueRun> tissues_along(const Session& session, const Insertion& insertion);
+
+/// A run of one phase.
+struct PhaseRun {
+  double from_s = 0.0;
+  double to_s = 0.0;
+  InsertionPhase phase = InsertionPhase::kOutside;
+};
+std::vector<PhaseRun> phase_runs(const Session& session);
+
+/// Name of a tissue id; "#7" where the session has none.
+std::string tissue_name(const SessionInfo& info, std::uint8_t id);
+
+}  // namespace trocar

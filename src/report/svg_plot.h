@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/plot_scale.h"
+
+namespace trocar {
+
+/// A curve. `style` is a CSS class that gives colour and dashes (report/detail/style.h). Points that are not finite
+/// break the line.
+struct PlotSeries {
+  std::string name;
+  std::string style;
+  std::vector<Point2> points;
+};
+
+/// A vertical stripe of the background, named in a row above the plot.
+struct PlotBand {
+  double from = 0.0;
+  double to = 0.0;
+  std::string name;
+  std::string style;
+};
+
+/// A point with a label and a shape of its own (circle, square, triangle, diamond, in the order of the list).
+struct PlotMarker {
+  Point2 at{0.0, 0.0};
+  std::string label;
+};
+
+/// A vertical line, named in a row above the plot.
+struct PlotLine {
+  double x = 0.0;
+  std::string label;
+};
+
+/// A plot in data units. Legend, names of stripes and lines stand above the plot area, so that they never cover data.
+struct Plot {
+  std::string description;  ///< Read aloud where the picture is not seen.
+  std::string x_title;      ///< With unit.
+  std::string y_title;
+  double width = 760.0;
+  double height = 300.0;  ///< Of the plot area and its axes; legend and names come on top.
+  std::optional<AxisRange> x_range;
+  std::vector<PlotBand> bands;
+  std::vector<PlotSeries> series;
+  std::vector<PlotMarker> markers;
+  std::vector<PlotLine> lines;
+};
+
+/// The plot as an <svg> element. All texts are escaped.
+std::string to_svg(const Plot& plot);
+
+}  // namespace trocar

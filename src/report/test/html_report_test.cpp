@@ -1,0 +1,181 @@
+#include "report/html_report.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "report/test/example_attempt.h"
+
+namespace trocar {
+namespace {
+
+using test::example_attempt;
+using test::example_patient;
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++count;
+  return count;
+}
+
+/// The page without the bytes of its pictures, which may spell any word.
+std::string without_pictures(std::string html) {
+  for (std::size_t at = html.find(";base64,"); at != std::string::npos; at = html.find(";base64,", at + 1))
+    html.erase(at + 8, html.find('"', at) - at - 8);
+  return html;
+}
+
+/// The first element that is not closed in order, empty when all are: a page that breaks this was not escaped or not
+/// ended somewhere.
+std::string first_unbalanced(const std::string& html) {
+  std::vector<std::string> open;
+  for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at + 1)) {
+    if (html.compare(at, 9, "<!DOCTYPE") == 0) continue;
+    const std::size_t end = html.find('>', at);
+    if (end == std::string::npos) return html.substr(at, 40);
+    const bool is_close = html[at + 1] == '/';
+    const std::size_t from = at + (is_close ? 2 : 1);
+    const std::string name = html.substr(from, html.find_first_of(" >/", from) - from);
+    if (html[end - 1] == '/' || name == "meta") continue;
+    if (!is_close) {
+      open.push_back(name);
+    } else {
+      if (open.empty() || open.back() != name) return html.substr(at, 40);
+      open.pop_back();
+    }
+  }
+  return open.empty() ? "" : open.back();
+}
+
+TEST(HtmlReport, NamesTheThreePeaks) {
+  const Session session = example_attempt();
+  const std::string html = html_report(session, nullptr);
+  EXPECT_EQ(count_of(html, "class=\"mark\""), 3u);
+  EXPECT_EQ(count_of(html, "class=\"marklabel\""), 3u);
+  for (const char* label : {">skin 2.80 N<", ">muscle 2.60 N<", ">liver capsule 1.80 N<"})
+    EXPECT_NE(html.find(label), std::string::npos) << label;
+}
+
+TEST(HtmlReport, TellsScorePartsHintsAndCore) {
+  const std::string html = html_report(example_attempt(), nullptr);
+  for (const char* text : {">83</text>", "Distance to the target", "Hold the needle flatter", "Target tissue 11.0 mm",
+                           "Target reached", "gallbladder", "not a medical device", "2026-01-02 03:04 UTC",
+                           "00112233445566778899aabbccddeeff", "liver.friction_mu"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+}
+
+TEST(HtmlReport, IsOneFileThatLoadsNothing) {
+  const VirtualPatient patient = example_patient();
+  const std::string html = html_report(example_attempt(), &patient);
+  EXPECT_EQ(count_of(html, "<script"), 0u);
+  EXPECT_EQ(count_of(html, "http"), 0u);
+  EXPECT_EQ(count_of(html, "url("), 0u);
+  EXPECT_EQ(count_of(html, "href=\""), count_of(html, "href=\"data:image/png;base64,iVBOR"));
+  EXPECT_LT(html.size(), 2'000'000u);
+}
+
+TEST(HtmlReport, ShowsThePathInThreeSlices) {
+  const VirtualPatient patient = example_patient();
+  const std::string html = html_report(example_attempt(), &patient);
+  EXPECT_EQ(count_of(html, "<image "), 3u);
+  for (const char* text : {"Axial", "Coronal", "Sagittal", "50 mm", "Window 400/40 HU"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  EXPECT_EQ(html.find("has changed"), std::string::npos);
+}
+
+TEST(HtmlReport, SaysThatThePatientChanged) {
+  VirtualPatient patient = example_patient();
+  patient.content_hash = "other";
+  EXPECT_NE(html_report(example_attempt(), &patient).find("The patient has changed"), std::string::npos);
+}
+
+TEST(HtmlReport, SaysThatThePatientIsNotThere) {
+  EXPECT_NE(html_report(example_attempt(), nullptr).find("is not at hand"), std::string::npos);
+}
+
+TEST(HtmlReport, EscapesWhatPeopleWrote) {
+  Session session = example_attempt();
+  const std::string evil = "<script>alert('x')</script>\"&";
+  session.info.patient_name = session.info.task = session.info.operator_name = session.info.device = evil;
+  session.info.tissue_table_toml = session.info.needle = session.info.started_utc = session.info.patient_source = evil;
+  for (std::string& name : session.info.layer_names) name = evil;
+  for (std::string& name : session.info.tissue_names) name = evil;
+  session.outcome->hints = {evil};
+  session.outcome->risks_touched = session.outcome->core->risks_in_throw = {evil};
+  for (CorePiece& piece : session.outcome->core->pieces) piece.label = piece.tissue = evil;
+  for (ScorePart& part : session.outcome->parts) part.title = part.unit = evil;
+  const std::string html = html_report(session, nullptr);
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(first_unbalanced(html), "");
+}
+
+TEST(HtmlReport, IsWellFormedWhateverIsMissing) {
+  const VirtualPatient patient = example_patient();
+  Session whole = example_attempt();
+  Session no_outcome = whole;
+  no_outcome.outcome.reset();
+  no_outcome.fired.reset();
+  Session no_events = whole;
+  for (TickSample& sample : no_events.samples) sample.events = {};
+  Session outside = whole;
+  for (TickSample& sample : outside.samples) sample.phase = InsertionPhase::kOutside;
+  Session one_tick = whole;
+  one_tick.samples.resize(1);
+  Session no_ticks = whole;
+  no_ticks.samples.clear();
+  Session no_plan = whole;
+  no_plan.info.plan_P = {};
+  Session no_names = whole;
+  no_names.info.tissue_names.clear();
+  no_names.info.layer_names.clear();
+  for (const Session& session :
+       {whole, no_outcome, no_events, outside, one_tick, no_ticks, no_plan, no_names, Session{}}) {
+    for (const VirtualPatient* shown : {static_cast<const VirtualPatient*>(nullptr), &patient}) {
+      const std::string html = without_pictures(html_report(session, shown));
+      EXPECT_EQ(first_unbalanced(html), "");
+      EXPECT_EQ(count_of(html, "nan"), 0u);
+    }
+  }
+}
+
+TEST(HtmlReport, SaysThatAKilledSessionIsIncompleteAndStillPlots) {
+  Session session = example_attempt();
+  session.outcome.reset();
+  session.fired.reset();
+  const std::string html = html_report(session, nullptr);
+  EXPECT_NE(html.find("This session is incomplete"), std::string::npos);
+  EXPECT_EQ(count_of(html, "class=\"mark\""), 3u);
+  EXPECT_EQ(count_of(html, "<svg class=\"plot\""), 5u);
+}
+
+TEST(HtmlReport, LeavesNumbersThatAreNoneOutOfThePlots) {
+  Session session = example_attempt();
+  for (std::size_t i = 0; i < session.samples.size(); i += 3) {
+    session.samples[i].f_friction_n = std::numeric_limits<double>::quiet_NaN();
+    session.samples[i].device_f_n.x() = std::numeric_limits<double>::infinity();
+    session.samples[i].tip_mm.x() = std::numeric_limits<double>::quiet_NaN();
+  }
+  session.outcome->score = std::numeric_limits<double>::quiet_NaN();
+  session.outcome->parts[0].points = std::numeric_limits<double>::quiet_NaN();
+  const VirtualPatient patient = example_patient();
+  const std::string html = without_pictures(html_report(session, &patient));
+  EXPECT_EQ(count_of(html, "nan"), 0u);
+  EXPECT_EQ(count_of(html, "inf "), 0u);
+  EXPECT_EQ(first_unbalanced(html), "");
+}
+
+TEST(HtmlReport, StaysSmallForALongSession) {
+  Session session = example_attempt();
+  const auto one = session.samples;
+  for (int n = 1; n < 30; ++n) {
+    for (TickSample sample : one) {
+      sample.time_s += 8.0 * n;
+      session.samples.push_back(sample);
+    }
+  }
+  EXPECT_LT(html_report(session, nullptr).size(), 1'500'000u);
+}
+
+}  // namespace
+}  // namespace trocar
