@@ -24,7 +24,11 @@ Paint paint_lumen(const Place& place, float distance, const Brush& brush, const 
   const float inside = distance + lumen.wall_mm;
   const float mottle = noise(place.p / 3.6F) + 0.6F * noise(place.p / 8.0F);
   const float stool_hu = 45.0F + 25.0F * mottle - 420.0F * smooth_step(0.45F, 0.9F, mottle);
-  const float content = mix(lumen.fluid_hu + 6.0F * mottle, stool_hu, lumen.stool);
+  // Folds of the mucosa stand into the lumen.
+  const float folds =
+      std::abs(std::sin(0.55F * hit.arc_mm)) * smooth_step(-6.5F, -1.5F, distance) * (1.0F - lumen.stool);
+  const float fluid_hu = mix(lumen.fluid_hu + 6.0F * mottle, lumen.wall_hu, 0.55F * folds);
+  const float content = mix(fluid_hu, stool_hu, lumen.stool);
   // The level is flat, perpendicular to gravity.
   const float level = place.p.y() - (hit.centre.y() + (lumen.gas_share - lumen.stool * 0.25F * mottle) * hit.radius);
   const float hu = mix(content, kGasHu, brush.cover(level));
@@ -63,16 +67,20 @@ std::vector<Knot> small_bowel_way(Random& random) {
   const auto jitter = [&](float mm) { return static_cast<float>(random.uniform(-mm, mm)); };
   constexpr int kColumns = 6;
   constexpr int kLayers = 3;
-  constexpr int kRows = 3;
+  constexpr int kRows = 4;
+  constexpr int kUpperColumn = 3;  // the highest row lies left of the pancreas's head only
   for (int row = 0; row < kRows; ++row)
     for (int n = 0; n < kColumns; ++n) {
       const int column = row % 2 == 0 ? n : kColumns - 1 - n;
+      if (row == 0 && column < kUpperColumn) continue;
       for (int m = 0; m < kLayers; ++m) {
         const int layer = n % 2 == 0 ? m : kLayers - 1 - m;
-        const float x = -52.0F + 25.0F * static_cast<float>(column);
-        const float y = -70.0F + 25.0F * static_cast<float>(layer);
-        const float z = -48.0F - 28.0F * static_cast<float>(row);
-        knots.push_back({Vec3f(x + jitter(6.0F), y + jitter(5.0F), z + jitter(9.0F)), 11.5F + jitter(1.5F)});
+        // Staggered, so that no row shows in a slice.
+        const float x = -50.0F + 25.0F * static_cast<float>(column) + 9.0F * static_cast<float>((row + layer) % 2);
+        const float y = -68.0F + 25.0F * static_cast<float>(layer);
+        const float slant = 9.0F * std::sin(1.3F * static_cast<float>(column) + 2.0F * static_cast<float>(layer));
+        const float z = -16.0F - 27.0F * static_cast<float>(row) + slant;
+        knots.push_back({Vec3f(x + jitter(8.0F), y + jitter(7.0F), z + jitter(10.0F)), 11.0F + jitter(2.8F)});
       }
     }
   return knots;
@@ -83,7 +91,8 @@ void add_small_bowel(Anatomy& anatomy) {
   const ValueNoise content(anatomy.seed ^ 0x626f776cU);
   add_loop(anatomy, "small_bowel", chain(small_bowel_way(random), 5), 7.0F, 1.2F, [content](const TubeHit& hit) {
     const float along = content(Vec3f(hit.arc_mm / 70.0F, 3.5F, 8.5F));
-    return Lumen{2.6F, 98.0F, 26.0F, along > 0.45F ? mix(-0.4F, 0.3F, 2.0F * (along - 0.45F)) : -2.0F, 0.0F};
+    return Lumen{2.1F, 98.0F, 30.0F + 22.0F * content(Vec3f(hit.arc_mm / 40.0F, 9.5F, 1.5F)),
+                 along > 0.45F ? mix(-0.4F, 0.3F, 2.0F * (along - 0.45F)) : -2.0F, 0.0F};
   });
   // The duodenum bends around the head of the pancreas and crosses under it.
   const std::vector<Knot> duodenum{{Vec3f(-38.0F, -46.0F, 2.0F), 13.0F},   {Vec3f(-50.0F, -28.0F, 0.0F), 13.0F},

@@ -25,8 +25,9 @@ struct LiverShape {
     d = smooth_max(d, -elliptic_cylinder(q.x() - 12.0F, q.y() - 42.0F, 47.0F, 46.0F), 10.0F);
     // Porta hepatis, and the fissure of the round ligament.
     d = smooth_max(d, -ellipsoid(q - Vec3f(-22.0F, -14.0F, 6.0F), Vec3f(22.0F, 17.0F, 17.0F)), 9.0F);
-    const float fissure = std::max(std::abs(q.x() + 10.0F + 0.12F * q.y()) - 2.2F,
-                                   std::max(q.y() + 26.0F, q.z() - 42.0F - 0.25F * q.y()));
+    const float depth = clamp01((-24.0F - q.y()) / 30.0F) * smooth_step(46.0F, 5.0F, q.z() - 0.25F * q.y());
+    const float bend = 4.0F * noise(place.p / 26.0F);
+    const float fissure = std::abs(q.x() + 10.0F + 0.12F * q.y() + bend) - 3.6F * depth + 1.6F;
     d = smooth_max(d, -fissure, 4.0F);
     d += 1.4F * noise(place.p / 30.0F);
     d = smooth_max(d, place.diaphragm + 3.3F, 6.0F);

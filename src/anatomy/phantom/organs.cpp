@@ -30,7 +30,7 @@ struct KidneyShape {
     return {turned_x + 0.20F * u.z(), turned_y - 0.06F * u.z(), u.z()};  // upper pole inward and back
   }
   float outline(const Vec3f& u) const {
-    const float bean = ellipsoid(u, Vec3f(28.0F, 23.0F, 55.0F));
+    const float bean = ellipsoid(u, Vec3f(26.0F, 22.5F, 54.0F));
     const float hilum = ellipsoid(u - Vec3f(-30.0F, 0.0F, 0.0F), Vec3f(17.0F, 12.0F, 22.0F));
     return smooth_max(bean, -hilum, 9.0F) * scale;
   }
@@ -38,11 +38,10 @@ struct KidneyShape {
     return ellipsoid(u - Vec3f(-15.0F, 0.0F, 0.0F), Vec3f(14.0F, 6.5F, 25.0F)) * scale;
   }
   /// Pyramids stand around the sinus, their tips in it.
-  float pyramids(const Vec3f& u) const {
-    const float angle = std::atan2(u.z() * 0.55F, u.x() + 13.0F);
-    const float column = std::cos(angle * 5.0F) *
-                         (std::abs(u.y()) < 4.0F ? 1.0F : mix(1.0F, 0.7F, clamp01((std::abs(u.y()) - 4.0F) / 8.0F)));
-    return (0.25F - column) * 6.0F;
+  float pyramids(const Vec3f& u, float wobble) const {
+    const float along = std::cos(u.z() * 0.36F + wobble);
+    const float around = std::cos(std::atan2(u.y(), u.x() + 15.0F) * 4.0F + 1.6F * wobble);
+    return (0.15F - 0.6F * along - 0.5F * around) * 5.0F;
   }
 };
 
@@ -50,7 +49,7 @@ void add_kidney(Anatomy& anatomy, float sign) {
   const std::string side = sign < 0.0F ? "_right" : "_left";
   Random random = anatomy.random("kidney" + side);
   const Vec3f centre = vary(random, sign < 0.0F ? Vec3f(-64.0F, 33.0F, -26.0F) : Vec3f(64.0F, 32.0F, -12.0F), 3.0F);
-  const KidneyShape shape{centre, sign, static_cast<float>(random.uniform(0.95, 1.05))};
+  const KidneyShape shape{centre, sign, static_cast<float>(random.uniform(0.99, 1.07))};
   const auto& noise = anatomy.noise;
   const std::uint8_t fat = anatomy.label("fat");
   const Box bounds = warped(Box::around(centre, Vec3f(52.0F, 48.0F, 74.0F)));
@@ -71,18 +70,18 @@ void add_kidney(Anatomy& anatomy, float sign) {
                  return Paint{mix(kFatHu, -25.0F, fascia) + 0.6F * stranding, fat};
                }});
   const std::uint8_t label = anatomy.label("kidney" + side);
-  anatomy.add({"kidney" + side, bounds,
-               [=](const Place& place) { return std::max(outline(place), place.cavity + 3.0F); },
-               [=, &noise](const Place& place, float distance, const Brush& brush) {
-                 const Vec3f u = shape.local(place.q);
-                 const float medulla = brush.cover(std::max(shape.pyramids(u), distance + 6.5F));
-                 float hu = mix(186.0F + 5.0F * noise(place.p / 6.0F), 148.0F, medulla);
-                 const float sinus = shape.sinus(u) + 2.0F * noise(place.p / 8.0F);
-                 const float calyces = noise(place.p / 7.5F);
-                 const float content = mix(kFatHu + 15.0F, 35.0F, smooth_step(-0.1F, 0.25F, calyces));
-                 hu = mix(hu, content, brush.cover(sinus));
-                 return Paint{hu, label};
-               }});
+  anatomy.add(
+      {"kidney" + side, bounds, [=](const Place& place) { return std::max(outline(place), place.cavity + 3.0F); },
+       [=, &noise](const Place& place, float distance, const Brush& brush) {
+         const Vec3f u = shape.local(place.q);
+         const float medulla = brush.cover(std::max(shape.pyramids(u, 2.2F * noise(place.p / 22.0F)), distance + 6.0F));
+         float hu = mix(182.0F + 5.0F * noise(place.p / 6.0F), 157.0F, medulla);
+         const float sinus = shape.sinus(u) + 2.0F * noise(place.p / 8.0F);
+         const float calyces = noise(place.p / 7.5F);
+         const float content = mix(kFatHu + 15.0F, 35.0F, smooth_step(-0.1F, 0.25F, calyces));
+         hu = mix(hu, content, brush.cover(sinus));
+         return Paint{hu, label};
+       }});
   // Adrenal gland: a thin limb over the upper pole, medially.
   const Vec3f top = centre + Vec3f(-sign * 24.0F, -4.0F, 52.0F);
   const Tube gland(chain({{top + Vec3f(sign * 6.0F, 18.0F, -8.0F), 1.8F},

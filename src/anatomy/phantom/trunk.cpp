@@ -139,12 +139,12 @@ void add_thorax(Anatomy& anatomy) {
   const Box upper{Vec3f(-kHalfWidth, -kHalfDepth, -20.0F), Vec3f(kHalfWidth, kHalfDepth, kHalfHeight + 5.0F)};
   anatomy.add({"lung", upper, [](const Place& place) { return std::max(place.cavity + 0.6F, -place.diaphragm); },
                [=, &noise](const Place& place, float distance, const Brush&) {
-                 const float vessels = 850.0F * thread(noise, place.p / 15.0F, 0.14F) +
-                                       500.0F * thread(noise, place.p / 8.0F + Vec3f(2.0F, 5.0F, 9.0F), 0.12F);
+                 const float vessels = 880.0F * thread(noise, place.p / 17.0F, 0.16F) +
+                                       600.0F * thread(noise, place.p / 8.0F + Vec3f(2.0F, 5.0F, 9.0F), 0.12F);
                  const float gravity = 40.0F * smooth_step(-40.0F, 90.0F, place.p.y());
                  const float inner = clamp01(-distance / 6.0F);
                  return Paint{
-                     -865.0F + gravity + inner * std::min(vessels, 860.0F) + 14.0F * noise.fractal(place.p, 9.0F),
+                     -880.0F + gravity + inner * std::min(vessels, 860.0F) + 14.0F * noise.fractal(place.p, 9.0F),
                      place.p.x() > 0.0F ? left : right};
                }});
 
