@@ -77,7 +77,7 @@ footer { margin-top: 38px; padding-top: 10px; border-top: 1px solid var(--line);
 .target { fill: none; stroke: #4ade80; } .target-halo { fill: none; stroke: #000000; opacity: 0.7; }
 .tip { fill: #fb923c; stroke: #000000; } .scale { stroke: #ffffff; } .scale-halo { stroke: #000000; }
 
-@media (max-width: 800px) {
+@media screen and (max-width: 800px) {
   main { padding: 18px; } .result, .slices, .pair { flex-direction: column; }
   .result > *, .slices figure { width: 100%; }
 }
