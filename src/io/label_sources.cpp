@@ -183,6 +183,7 @@ bool try_join(const LabelSource& mask, LabelSource& into) {
   for (std::size_t n = 0; n < from.size(); ++n)
     if (from[n] != 0) to[n] = value;
   into.names.emplace_back(value, mask.names.front().second);
+  into.file = fs::path(mask.file).parent_path().string();  // The masks' folder.
   return true;
 }
 

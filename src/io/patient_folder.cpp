@@ -11,6 +11,8 @@
 #include "core/atomic_file.h"
 #include "core/parallel.h"
 #include "io/detail/patient_toml.h"
+#include "io/detail/read_grid.h"
+#include "io/detail/volume_file.h"
 #include "io/image_file.h"
 #include "io/markups_file.h"
 #include "io/mesh_file.h"
@@ -82,11 +84,18 @@ std::string mesh_file_name(const std::string& name, std::set<std::string>& taken
   return fmt::format("meshes/{}.vtp", file);
 }
 
+/// Distances pack badly and unpack slowly: plain.
+Status write_distance(const FloatGrid& distance_mm, const fs::path& path) {
+  const CtGrid hundredths = to_hundredths(distance_mm);
+  return detail::write_volume_file({detail::VoxelType::kInt16, std::as_bytes(std::span(hundredths.voxels))},
+                                   hundredths.geometry, path, detail::Packing::kPlain);
+}
+
 Status write_volumes(const VirtualPatient& patient, const fs::path& folder) {
   Status ct, labels, distance;
   parallel_invoke([&] { ct = write_image(patient.ct, folder / kCtFile); },
                   [&] { labels = write_image(patient.labels, folder / kLabelFile); },
-                  [&] { distance = write_image(to_hundredths(patient.skin_distance_mm), folder / kDistanceFile); });
+                  [&] { distance = write_distance(patient.skin_distance_mm, folder / kDistanceFile); });
   TROCAR_TRY_STATUS(ct);
   TROCAR_TRY_STATUS(labels);
   return distance;
@@ -120,10 +129,17 @@ Result<detail::PatientDescription> load_description(const fs::path& folder) {
   return detail::load_patient_toml(folder / kDescriptionFile);
 }
 
+/// The content hash tells afterwards whether CT and labels are whole.
+template <class T>
+Result<Grid<T>> read_hashed(const fs::path& path) {
+  return detail::read_grid<T>(path, detail::convert_voxels, detail::Check::kSize);
+}
+
 Status load_volumes(const fs::path& folder, VirtualPatient& patient) {
   Result<CtGrid> ct, distance;
   Result<LabelGrid> labels;
-  parallel_invoke([&] { ct = read_ct(folder / kCtFile); }, [&] { labels = read_labels(folder / kLabelFile); },
+  parallel_invoke([&] { ct = read_hashed<std::int16_t>(folder / kCtFile); },
+                  [&] { labels = read_hashed<std::uint8_t>(folder / kLabelFile); },
                   [&] {
                     distance = read_ct(folder / kDistanceFile);
                     if (distance) patient.skin_distance_mm = from_hundredths(*distance);

@@ -29,15 +29,17 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-std::vector<DicomSlice> slices_in(const fs::path& folder) {
+Result<std::vector<DicomSlice>> slices_in(const fs::path& folder) {
   const std::vector<fs::path> files = files_in(folder);
-  std::vector<std::optional<DicomSlice>> found(files.size());
+  std::vector<Result<std::optional<DicomSlice>>> found(files.size());
   parallel_for(files.size(), 8, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) found[n] = find_dicom_slice(files[n]);
   });
   std::vector<DicomSlice> slices;
-  for (auto& slice : found)
+  for (auto& result : found) {
+    TROCAR_TRY(std::optional<DicomSlice> slice, std::move(result));
     if (slice) slices.push_back(std::move(*slice));
+  }
   return slices;
 }
 
@@ -158,7 +160,8 @@ Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const fs::path&
 
 template <class T>
 Result<Grid<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert) {
-  TROCAR_TRY(const DicomSeries series, order_slices(slices_in(folder), folder));
+  TROCAR_TRY(std::vector<DicomSlice> slices, slices_in(folder));
+  TROCAR_TRY(const DicomSeries series, order_slices(std::move(slices), folder));
   Grid<T> grid(series.geometry);
   const auto pixels = static_cast<std::size_t>(series.geometry.size[0] * series.geometry.size[1]);
   std::vector<Status> statuses(series.slices.size());
@@ -179,7 +182,7 @@ template Result<Grid<float>> read_dicom_folder(const fs::path&, Converter<float>
 
 bool has_dicom_images(const fs::path& folder) {
   for (const fs::path& file : files_in(folder))
-    if (find_dicom_slice(file)) return true;
+    if (const auto slice = find_dicom_slice(file); !slice || *slice) return true;
   return false;
 }
 

@@ -25,7 +25,7 @@ Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const std::file
 template <class T>
 Result<Grid<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert);
 
-/// True where a folder holds at least one DICOM image.
+/// True where a folder holds at least one DICOM image, be it damaged.
 bool has_dicom_images(const std::filesystem::path& folder);
 
 }  // namespace trocar::detail

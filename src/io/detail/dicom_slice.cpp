@@ -1,13 +1,16 @@
 #include "io/detail/dicom_slice.h"
 
-#include <gdcmPixmapReader.h>
-#include <gdcmReader.h>
+#include <gdcmFragment.h>
+#include <gdcmImage.h>
+#include <gdcmSequenceOfFragments.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <vector>
 
+#include "io/detail/dicom_header.h"
 #include "io/detail/quiet.h"
 
 namespace trocar::detail {
@@ -16,21 +19,10 @@ namespace {
 
 constexpr const char* kExportAgain = "export the series again, uncompressed";
 
-/// The text of a short element, without the padding; empty where it is missing.
-std::string text_of(const gdcm::DataSet& data, gdcm::Tag tag) {
-  if (!data.FindDataElement(tag)) return {};
-  const gdcm::ByteValue* bytes = data.GetDataElement(tag).GetByteValue();
-  if (bytes == nullptr || bytes->GetLength() > 4096) return {};
-  std::string text(bytes->GetPointer(), bytes->GetLength());
-  const auto last = text.find_last_not_of(std::string_view(" \0", 2));
-  text.resize(last == std::string::npos ? 0 : last + 1);
-  return text;
-}
-
 /// Numbers of a decimal string "a\b\c", as many as asked for or nothing.
 template <std::size_t N>
-std::optional<std::array<double, N>> decimals_of(const gdcm::DataSet& data, gdcm::Tag tag) {
-  const std::string text = text_of(data, tag);
+std::optional<std::array<double, N>> decimals_of(const DicomHeader& header, std::uint32_t tag) {
+  const std::string text = header.text(tag);
   std::array<double, N> numbers{};
   std::size_t begin = 0;
   for (double& number : numbers) {
@@ -45,95 +37,139 @@ std::optional<std::array<double, N>> decimals_of(const gdcm::DataSet& data, gdcm
   return numbers;
 }
 
-/// An unsigned short (US) in the data set's byte order, which gdcm has already turned to ours.
-int short_of(const gdcm::DataSet& data, gdcm::Tag tag, int fallback) {
-  if (!data.FindDataElement(tag)) return fallback;
-  const gdcm::ByteValue* bytes = data.GetDataElement(tag).GetByteValue();
-  if (bytes == nullptr || bytes->GetLength() < 2) return fallback;
-  std::uint16_t value = 0;
-  std::memcpy(&value, bytes->GetPointer(), sizeof value);
-  return value;
-}
-
-DicomSlice slice_of(const gdcm::DataSet& data) {
+DicomSlice slice_of(const DicomHeader& header) {
   DicomSlice slice;
-  slice.series_uid = text_of(data, {0x0020, 0x000e});
-  slice.series_description = text_of(data, {0x0008, 0x103e});
-  slice.rows = short_of(data, {0x0028, 0x0010}, 0);
-  slice.columns = short_of(data, {0x0028, 0x0011}, 0);
-  slice.samples_per_pixel = short_of(data, {0x0028, 0x0002}, 1);
-  if (const auto frames = decimals_of<1>(data, {0x0028, 0x0008})) slice.frames = static_cast<int>((*frames)[0]);
-  if (const auto p = decimals_of<3>(data, {0x0020, 0x0032})) slice.position_P = Vec3((*p)[0], (*p)[1], (*p)[2]);
-  if (const auto d = decimals_of<6>(data, {0x0020, 0x0037}))
+  slice.series_uid = header.text(dicom_tag(0x0020, 0x000e));
+  slice.series_description = header.text(dicom_tag(0x0008, 0x103e));
+  slice.rows = header.number(dicom_tag(0x0028, 0x0010)).value_or(0);
+  slice.columns = header.number(dicom_tag(0x0028, 0x0011)).value_or(0);
+  slice.samples_per_pixel = header.number(dicom_tag(0x0028, 0x0002)).value_or(1);
+  if (const auto frames = decimals_of<1>(header, dicom_tag(0x0028, 0x0008)))
+    slice.frames = static_cast<int>(std::clamp((*frames)[0], 0.0, 1e6));
+  if (const auto p = decimals_of<3>(header, dicom_tag(0x0020, 0x0032)))
+    slice.position_P = Vec3((*p)[0], (*p)[1], (*p)[2]);
+  if (const auto d = decimals_of<6>(header, dicom_tag(0x0020, 0x0037)))
     slice.directions_P = {Vec3((*d)[0], (*d)[1], (*d)[2]), Vec3((*d)[3], (*d)[4], (*d)[5])};
   // DICOM names the distance between rows first.
-  if (const auto s = decimals_of<2>(data, {0x0028, 0x0030})) slice.spacing_mm = {(*s)[1], (*s)[0]};
-  if (const auto slope = decimals_of<1>(data, {0x0028, 0x1053})) slice.slope = (*slope)[0];
-  if (const auto intercept = decimals_of<1>(data, {0x0028, 0x1052})) slice.intercept = (*intercept)[0];
+  if (const auto s = decimals_of<2>(header, dicom_tag(0x0028, 0x0030))) slice.spacing_mm = {(*s)[1], (*s)[0]};
+  if (const auto slope = decimals_of<1>(header, dicom_tag(0x0028, 0x1053))) slice.slope = (*slope)[0];
+  if (const auto intercept = decimals_of<1>(header, dicom_tag(0x0028, 0x1052))) slice.intercept = (*intercept)[0];
   return slice;
 }
 
-std::optional<VoxelType> find_voxel_type(const gdcm::PixelFormat& format) {
-  switch (format.GetScalarType()) {
-    case gdcm::PixelFormat::UINT8:
-      return VoxelType::kUInt8;
-    case gdcm::PixelFormat::INT8:
-      return VoxelType::kInt8;
-    case gdcm::PixelFormat::UINT12:
-    case gdcm::PixelFormat::UINT16:
-      return VoxelType::kUInt16;
-    case gdcm::PixelFormat::INT12:
-    case gdcm::PixelFormat::INT16:
-      return VoxelType::kInt16;
-    case gdcm::PixelFormat::UINT32:
-      return VoxelType::kUInt32;
-    case gdcm::PixelFormat::INT32:
-      return VoxelType::kInt32;
-    default:
-      return std::nullopt;
+/// How the pixels are stored (PS3.3, C.7.6.3).
+struct PixelLayout {
+  int bits_allocated = 16;
+  int bits_stored = 16;
+  int high_bit = 15;
+  bool is_signed = false;
+  std::size_t count = 0;
+
+  std::size_t bytes() const { return count * static_cast<std::size_t>(bits_allocated / 8); }
+  VoxelType type() const {
+    if (bits_allocated == 8) return is_signed ? VoxelType::kInt8 : VoxelType::kUInt8;
+    return is_signed ? VoxelType::kInt16 : VoxelType::kUInt16;
   }
+};
+
+Result<PixelLayout> layout_of(const DicomHeader& header, const DicomSlice& slice) {
+  PixelLayout layout;
+  layout.bits_allocated = header.number(dicom_tag(0x0028, 0x0100)).value_or(16);
+  layout.bits_stored = header.number(dicom_tag(0x0028, 0x0101)).value_or(layout.bits_allocated);
+  layout.high_bit = header.number(dicom_tag(0x0028, 0x0102)).value_or(layout.bits_stored - 1);
+  layout.is_signed = header.number(dicom_tag(0x0028, 0x0103)).value_or(0) != 0;
+  layout.count = static_cast<std::size_t>(slice.columns) * static_cast<std::size_t>(slice.rows);
+  const bool is_known = (layout.bits_allocated == 8 || layout.bits_allocated == 16) && layout.bits_stored >= 1 &&
+                        layout.high_bit < layout.bits_allocated && layout.high_bit + 1 >= layout.bits_stored &&
+                        header.text(dicom_tag(0x0028, 0x0004)) != "PALETTE COLOR";
+  if (is_known) return layout;
+  return fail("stores its pixels in an unknown way", slice.file.string(), "give a CT series or a mask series");
+}
+
+/// Pixels that are not compressed: this machine's byte order, and the unused bits (old overlays) cleared.
+void unpack_plain(std::span<const char> pixels, bool is_big_endian, const PixelLayout& layout,
+                  std::span<std::byte> out) {
+  std::memcpy(out.data(), pixels.data(), out.size());
+  if (layout.bits_allocated == 8 && layout.bits_stored == 8) return;
+  if (layout.bits_allocated == 16 && layout.bits_stored == 16 && !is_big_endian) return;
+  const int width = layout.bits_allocated / 8;
+  const int down = layout.high_bit + 1 - layout.bits_stored;
+  const int up = 32 - layout.bits_stored;
+  for (std::size_t at = 0; at + static_cast<std::size_t>(width) <= out.size(); at += static_cast<std::size_t>(width)) {
+    std::byte* pixel = out.data() + at;
+    if (width == 2 && is_big_endian) std::swap(pixel[0], pixel[1]);
+    std::uint32_t stored = std::to_integer<std::uint32_t>(pixel[0]);
+    if (width == 2) stored |= std::to_integer<std::uint32_t>(pixel[1]) << 8;
+    const std::uint32_t raised = (stored >> down) << up;
+    const std::uint32_t value =
+        layout.is_signed ? static_cast<std::uint32_t>(static_cast<std::int32_t>(raised) >> up) : raised >> up;
+    pixel[0] = static_cast<std::byte>(value & 0xff);
+    if (width == 2) pixel[1] = static_cast<std::byte>(value >> 8 & 0xff);
+  }
+}
+
+/// Unpacks the fragments through GDCM's codecs. May throw what GDCM throws.
+bool unpack_compressed(const DicomHeader& header, const DicomSlice& slice, const PixelLayout& layout,
+                       std::span<std::byte> out) {
+  const auto syntax = gdcm::TransferSyntax::GetTSType(header.transfer_syntax().c_str());
+  if (syntax == gdcm::TransferSyntax::TS_END) return false;
+  gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
+  for (const std::span<const char> piece : header.pixels()) {
+    gdcm::Fragment fragment;
+    fragment.SetByteValue(piece.data(), gdcm::VL(static_cast<std::uint32_t>(piece.size())));
+    fragments->AddFragment(fragment);
+  }
+  gdcm::DataElement pixel_data(gdcm::Tag(0x7fe0, 0x0010));
+  pixel_data.SetVR(gdcm::VR::OB);
+  pixel_data.SetValue(*fragments);
+
+  gdcm::Image image;
+  image.SetNumberOfDimensions(2);
+  image.SetDimension(0, static_cast<unsigned>(slice.columns));
+  image.SetDimension(1, static_cast<unsigned>(slice.rows));
+  image.SetPixelFormat(gdcm::PixelFormat(1, static_cast<unsigned short>(layout.bits_allocated),
+                                         static_cast<unsigned short>(layout.bits_stored),
+                                         static_cast<unsigned short>(layout.high_bit), layout.is_signed ? 1 : 0));
+  image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+  image.SetTransferSyntax(syntax);
+  image.SetDataElement(pixel_data);
+  return image.GetBufferLength() == out.size() && image.GetBuffer(reinterpret_cast<char*>(out.data()));
 }
 
 /// May throw what GDCM throws.
 Status decode_throwing(const DicomSlice& slice, const std::function<Status(const RawVoxels&)>& use) {
   const std::string where = slice.file.string();
-  gdcm::PixmapReader reader;
-  reader.SetFileName(where.c_str());
-  if (!reader.Read()) return fail("the DICOM image is damaged or ends too early", where, kExportAgain);
-  const gdcm::Pixmap& image = reader.GetPixmap();
-  const auto type = find_voxel_type(image.GetPixelFormat());
-  const auto pixels = static_cast<std::size_t>(slice.columns) * static_cast<std::size_t>(slice.rows);
-  if (!type || image.GetPixelFormat().GetSamplesPerPixel() != 1)
-    return fail("stores its pixels in an unknown type", where, "give a CT series or a mask series");
-  const std::size_t bytes = pixels * bytes_per_voxel(*type);
-  const gdcm::ByteValue* raw = image.GetDataElement().GetByteValue();
-  if (image.GetBufferLength() != bytes || (raw != nullptr && raw->GetLength() < bytes))
-    return fail("the DICOM image ends before its last pixel", where, kExportAgain);
-  std::vector<std::byte> buffer(bytes);
-  if (!image.GetBuffer(reinterpret_cast<char*>(buffer.data())))
-    return fail("the DICOM image cannot be unpacked", where, kExportAgain);
-  if (auto status = use({*type, buffer, slice.slope, slice.intercept}); !status)
+  TROCAR_TRY(const std::optional<DicomHeader> header, DicomHeader::read(slice.file));
+  if (!header) return fail("is no DICOM image any more", where, kExportAgain);
+  TROCAR_TRY(const PixelLayout layout, layout_of(*header, slice));
+  const auto pieces = header->pixels();
+  if (pieces.empty()) return fail("has no pixels that could be read", where, kExportAgain);
+  std::vector<std::byte> pixels(layout.bytes());
+  if (header->is_compressed()) {
+    if (!unpack_compressed(*header, slice, layout, pixels))
+      return fail("the DICOM image cannot be unpacked", where, kExportAgain);
+  } else {
+    if (pieces.front().size() < pixels.size())
+      return fail("the DICOM image ends before its last pixel", where, kExportAgain);
+    unpack_plain(pieces.front(), header->is_big_endian(), layout, pixels);
+  }
+  if (auto status = use({layout.type(), pixels, slice.slope, slice.intercept}); !status)
     return fail(status.error().what, where, status.error().advice);
   return {};
 }
 
 }  // namespace
 
-std::optional<DicomSlice> find_dicom_slice(const fs::path& path) {
-  silence_libraries();
-  try {
-    gdcm::Reader reader;
-    reader.SetFileName(path.c_str());
-    if (!reader.CanRead() || !reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010))) return std::nullopt;
-    DicomSlice slice = slice_of(reader.GetFile().GetDataSet());
-    slice.file = path;
-    return slice.rows > 0 && slice.columns > 0 ? std::optional(slice) : std::nullopt;
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
+Result<std::optional<DicomSlice>> find_dicom_slice(const fs::path& path) {
+  TROCAR_TRY(const std::optional<DicomHeader> header, DicomHeader::read(path));
+  if (!header) return std::optional<DicomSlice>();
+  DicomSlice slice = slice_of(*header);
+  slice.file = path;
+  return slice.rows > 0 && slice.columns > 0 ? std::optional(slice) : std::nullopt;
 }
 
 Status decode_slice(const DicomSlice& slice, const std::function<Status(const RawVoxels&)>& use) {
+  silence_libraries();
   try {
     return decode_throwing(slice, use);
   } catch (const std::exception&) {

@@ -28,10 +28,11 @@ struct DicomSlice {
   double intercept = 0.0;
 };
 
-/// Header of a DICOM image with or without the "DICM" mark; nothing where the file is no DICOM or has no image.
-std::optional<DicomSlice> find_dicom_slice(const std::filesystem::path& path);
+/// Header of a DICOM image with or without the "DICM" mark; nothing where the file is no DICOM or has no image. An
+/// error where it is a DICOM file, but damaged or cut.
+Result<std::optional<DicomSlice>> find_dicom_slice(const std::filesystem::path& path);
 
-/// Unpacks the pixels of one slice (JPEG, JPEG-LS, JPEG 2000, RLE, deflated) and hands them to `use`.
+/// Unpacks the pixels of one slice (uncompressed, JPEG, JPEG-LS, JPEG 2000, RLE) and hands them to `use`.
 Status decode_slice(const DicomSlice& slice, const std::function<Status(const RawVoxels&)>& use);
 
 }  // namespace trocar::detail

@@ -119,8 +119,8 @@ itk::IOComponentEnum component_of(VoxelType type) {
 }
 
 /// May throw what ITK throws.
-void write_throwing(itk::ImageIOBase& io, const ItkImage& image, std::span<const std::byte> bytes,
-                    const fs::path& path) {
+void write_throwing(itk::ImageIOBase& io, const ItkImage& image, std::span<const std::byte> bytes, const fs::path& path,
+                    Packing packing) {
   io.SetFileName(path.string());
   io.SetNumberOfDimensions(3);
   io.SetNumberOfComponents(1);
@@ -132,7 +132,7 @@ void write_throwing(itk::ImageIOBase& io, const ItkImage& image, std::span<const
     io.SetOrigin(axis, image.origin_P[axis]);
     io.SetDirection(axis, std::vector<double>(image.axes_P[axis].begin(), image.axes_P[axis].end()));
   }
-  io.SetUseCompression(true);
+  io.SetUseCompression(packing == Packing::kCompressed);
   io.SetCompressionLevel(kCompressionLevel);
   take_whole_region(io);
   io.WriteImageInformation();
@@ -153,11 +153,11 @@ Result<ItkImage> read_with_itk(const fs::path& path, ImageFormat format) {
   }
 }
 
-Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, const fs::path& path,
-                      ImageFormat format) {
+Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, const fs::path& path, ImageFormat format,
+                      Packing packing) {
   silence_libraries();
   try {
-    write_throwing(*make_image_io(format), image, bytes, path);
+    write_throwing(*make_image_io(format), image, bytes, path, packing);
     return {};
   } catch (const std::exception&) {
     return fail("the image cannot be written", path.string(), "check the disk space and the permissions");

@@ -32,9 +32,11 @@ struct ItkImage {
 /// Reads through ITK; never throws, prints nothing. The file was checked by check_image_file().
 Result<ItkImage> read_with_itk(const std::filesystem::path& path, ImageFormat format);
 
-/// Writes through ITK one number a voxel (int16, uint8 or float), compressed where the format can. A full disk is not
-/// always noticed by the libraries: check the file afterwards.
+enum class Packing { kCompressed, kPlain };
+
+/// Writes through ITK one number a voxel (int16, uint8 or float), compressed where asked and the format can. A full
+/// disk is not always noticed by the libraries: check the file afterwards.
 Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, const std::filesystem::path& path,
-                      ImageFormat format);
+                      ImageFormat format, Packing packing);
 
 }  // namespace trocar::detail

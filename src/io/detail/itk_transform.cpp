@@ -1,10 +1,13 @@
 #include "io/detail/itk_transform.h"
 
 #include <itkAffineTransform.h>
+#include <itkTransformFactory.h>
 #include <itkTransformFactoryBase.h>
 #include <itkTransformFileReader.h>
 #include <itkTransformFileWriter.h>
 #include <itkTxtTransformIO.h>
+
+#include <mutex>
 
 #include "io/detail/quiet.h"
 
@@ -14,9 +17,18 @@ namespace {
 
 using Linear = itk::MatrixOffsetTransformBase<double, 3, 3>;
 
+/// ITK knows its usual transforms, but not the base of all linear ones, which other programs write.
+void register_transforms() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    itk::TransformFactoryBase::RegisterDefaultTransforms();
+    itk::TransformFactory<Linear>::RegisterTransform();
+  });
+}
+
 /// May throw what ITK throws.
 Result<AffineMap> read_throwing(const fs::path& path) {
-  itk::TransformFactoryBase::RegisterDefaultTransforms();
+  register_transforms();
   const auto reader = itk::TransformFileReaderTemplate<double>::New();
   reader->SetFileName(path.string());
   reader->SetTransformIO(itk::TxtTransformIOTemplate<double>::New());

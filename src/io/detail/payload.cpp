@@ -115,7 +115,7 @@ bool is_sound_stream(std::ifstream& file, std::uint64_t bytes) {
   }
 }
 
-Status check_payload(const Payload& payload, const std::string& where) {
+Status check_payload(const Payload& payload, Check check, const std::string& where) {
   std::error_code error;
   const std::uint64_t size = fs::file_size(payload.file, error);
   if (error)
@@ -130,7 +130,8 @@ Status check_payload(const Payload& payload, const std::string& where) {
   }
   std::ifstream file(payload.file, std::ios::binary);
   file.seekg(static_cast<std::streamoff>(payload.offset));
-  if (payload.bytes / kMaxDeflateRatio <= available && file && is_sound_stream(file, payload.bytes)) return {};
+  const bool could_be_enough = available > 0 && payload.bytes / kMaxDeflateRatio <= available;
+  if (could_be_enough && (check == Check::kSize || is_sound_stream(file, payload.bytes))) return {};
   return fail("the compressed voxels are damaged or end too early", where, kExportAgain);
 }
 
@@ -375,12 +376,12 @@ Result<ImageFormat> find_image_format(const fs::path& path) {
               "give a .nii, .nii.gz, .nrrd, .seg.nrrd, .mha or .mhd file, or the folder of a DICOM series");
 }
 
-Status check_image_file(const fs::path& path, ImageFormat format) {
+Status check_image_file(const fs::path& path, ImageFormat format, Check check) {
   const auto payload = format == ImageFormat::kNifti  ? nifti_payload(path)
                        : format == ImageFormat::kNrrd ? nrrd_payload(path)
                                                       : meta_payload(path);
   if (!payload) return tl::unexpected(payload.error());
-  return check_payload(*payload, path.string());
+  return check_payload(*payload, check, path.string());
 }
 
 }  // namespace trocar::detail

@@ -16,7 +16,7 @@ Status check_image_path(const fs::path& path) {
   const auto format = find_image_format(path);
   if (format) return {};
   // Without a known ending it may be one slice of a DICOM series.
-  const auto slice = find_dicom_slice(path);
+  TROCAR_TRY(const std::optional<DicomSlice> slice, find_dicom_slice(path));
   if (!slice) return tl::unexpected(format.error());
   if (slice->frames > 1)
     return fail(fmt::format("is a DICOM file with {} frames", slice->frames), path.string(),

@@ -14,11 +14,11 @@ Status check_image_path(const std::filesystem::path& path);
 
 /// Any image the project reads: a file or the folder of a DICOM series.
 template <class T>
-Result<Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> convert) {
+Result<Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> convert, Check check = Check::kUnpack) {
   TROCAR_TRY_STATUS(check_image_path(path));
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return read_dicom_folder<T>(path, convert);
-  TROCAR_TRY(const RawVolume raw, read_volume_file(path));
+  TROCAR_TRY(const RawVolume raw, read_volume_file(path, check));
   return to_grid<T>(raw, path.string(), convert);
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "io/detail/itk_image.h"
 #include "io/detail/payload.h"
 
 namespace trocar::detail {
@@ -28,9 +27,9 @@ Status reserve_space(const fs::path& path, std::uint64_t bytes) {
 
 }  // namespace
 
-Result<RawVolume> read_volume_file(const fs::path& path) {
+Result<RawVolume> read_volume_file(const fs::path& path, Check check) {
   TROCAR_TRY(const ImageFormat format, find_image_format(path));
-  TROCAR_TRY_STATUS(check_image_file(path, format));
+  TROCAR_TRY_STATUS(check_image_file(path, format, check));
   TROCAR_TRY(ItkImage image, read_with_itk(path, format));
   RawVolume volume;
   volume.geometry.size = image.size;
@@ -47,7 +46,7 @@ Result<RawVolume> read_volume_file(const fs::path& path) {
   return volume;
 }
 
-Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, const fs::path& path) {
+Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, const fs::path& path, Packing packing) {
   TROCAR_TRY(const ImageFormat format, find_image_format(path));
   TROCAR_TRY_STATUS(reserve_space(path, voxels.bytes.size() + voxels.bytes.size() / 256 + kHeaderBytes));
   ItkImage image;
@@ -59,7 +58,7 @@ Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, 
     for (int row = 0; row < 3; ++row) image.axes_P[n][static_cast<std::size_t>(row)] = geometry.R_PV(row, axis);
   }
   image.type = voxels.type;
-  TROCAR_TRY_STATUS(write_with_itk(image, voxels.bytes, path, format));
+  TROCAR_TRY_STATUS(write_with_itk(image, voxels.bytes, path, format, packing));
   if (check_image_file(path, format)) return {};
   return fail("the image was not written whole", path.string(), "check the disk space");
 }

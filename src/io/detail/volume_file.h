@@ -3,15 +3,18 @@
 #include <filesystem>
 
 #include "core/result.h"
+#include "io/detail/itk_image.h"
 #include "io/detail/raw_volume.h"
 
 namespace trocar::detail {
 
 /// Reads a NIfTI, NRRD or MetaImage file as it is, place in LPS mm.
-Result<RawVolume> read_volume_file(const std::filesystem::path& path);
+Result<RawVolume> read_volume_file(const std::filesystem::path& path, Check check = Check::kUnpack);
 
-/// Writes a volume (one number a voxel) by the path's ending, compressed where the format can, and checks that it is
-/// all there: the libraries do not report a full disk. Writes straight to `path`; the caller makes it atomic.
-Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, const std::filesystem::path& path);
+/// Writes a volume (one number a voxel) by the path's ending, compressed where asked and the format can, and checks
+/// that it is all there: the libraries do not report a full disk. Writes straight to `path`; the caller makes it
+/// atomic.
+Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, const std::filesystem::path& path,
+                         Packing packing = Packing::kCompressed);
 
 }  // namespace trocar::detail
