@@ -72,6 +72,12 @@ float ValueNoise::fractal(const Vec3f& p, float size_mm) const {
   return 0.7F * (*this)(cell) + 0.3F * (*this)(cell * 2.1F + Vec3f(5.3F, 9.1F, 2.7F));
 }
 
+float thread(const ValueNoise& noise, const Vec3f& cell, float thickness) {
+  const float a = noise(cell) / thickness;
+  const float b = noise(cell + Vec3f(11.5F, 3.7F, 6.1F)) / thickness;
+  return std::max(0.0F, 1.0F - a * a - b * b);
+}
+
 Tube::Tube(std::vector<Cone> cones) : cones_(std::move(cones)) {
   float arc = 0.0F;
   for (const Cone& cone : cones_) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -57,6 +58,9 @@ class ValueNoise {
   static constexpr int kCells = 32;
   std::vector<float> values_;
 };
+
+/// Thin winding lines where two noises cross zero together: small vessels and septa. 1 on the line, 0 off it.
+float thread(const ValueNoise& noise, const Vec3f& cell, float thickness);
 
 /// A piece of a tube: a cone with round ends.
 struct Cone {

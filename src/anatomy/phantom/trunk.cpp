@@ -20,13 +20,6 @@ float sheet(const ValueNoise& noise, const Vec3f& cell, float thickness) {
   return std::max(0.0F, 1.0F - std::abs(n) / thickness);
 }
 
-/// Thin winding lines where two noises cross zero together: small vessels and septa.
-float thread(const ValueNoise& noise, const Vec3f& cell, float thickness) {
-  const float a = noise(cell) / thickness;
-  const float b = noise(cell + Vec3f(11.5F, 3.7F, 6.1F)) / thickness;
-  return std::max(0.0F, 1.0F - a * a - b * b);
-}
-
 void add_subcutaneous_fat(Anatomy& anatomy) {
   const std::uint8_t fat = anatomy.label("fat");
   const auto& noise = anatomy.noise;
@@ -129,55 +122,6 @@ void add_trunk(Anatomy& anatomy) {
   add_wall(anatomy);
   add_cavity(anatomy);
   add_diaphragm(anatomy);
-}
-
-void add_thorax(Anatomy& anatomy) {
-  Random random = anatomy.random("heart");
-  const std::uint8_t left = anatomy.label("lung_lower_lobe_left");
-  const std::uint8_t right = anatomy.label("lung_lower_lobe_right");
-  const auto& noise = anatomy.noise;
-  const Box upper{Vec3f(-kHalfWidth, -kHalfDepth, -20.0F), Vec3f(kHalfWidth, kHalfDepth, kHalfHeight + 5.0F)};
-  anatomy.add({"lung", upper, [](const Place& place) { return std::max(place.cavity + 0.6F, -place.diaphragm); },
-               [=, &noise](const Place& place, float distance, const Brush&) {
-                 const float vessels = 880.0F * thread(noise, place.p / 17.0F, 0.16F) +
-                                       600.0F * thread(noise, place.p / 8.0F + Vec3f(2.0F, 5.0F, 9.0F), 0.12F);
-                 const float gravity = 40.0F * smooth_step(-40.0F, 90.0F, place.p.y());
-                 const float inner = clamp01(-distance / 6.0F);
-                 return Paint{
-                     -880.0F + gravity + inner * std::min(vessels, 860.0F) + 14.0F * noise.fractal(place.p, 9.0F),
-                     place.p.x() > 0.0F ? left : right};
-               }});
-
-  const Vec3f heart(static_cast<float>(random.uniform(16.0, 26.0)), -46.0F,
-                    static_cast<float>(random.uniform(116.0, 122.0)));
-  const Vec3f heart_radii(62.0F, 46.0F, 38.0F);
-  const auto heart_distance = [=](const Place& place) { return ellipsoid(place.q - heart, heart_radii); };
-  const std::uint8_t fat = anatomy.label("fat");
-  anatomy.add({"mediastinum", upper,
-               [=](const Place& place) {
-                 const float column = elliptic_cylinder(place.q.x() - 4.0F, place.q.y() - 14.0F, 34.0F, 40.0F);
-                 const float pericardium = heart_distance(place) - 5.0F;
-                 return std::max({smooth_min(column, pericardium, 14.0F), -place.diaphragm, place.cavity + 1.5F});
-               },
-               [=, &noise](const Place& place, float, const Brush&) {
-                 return Paint{-95.0F + 60.0F * thread(noise, place.p / 12.0F, 0.14F), fat};
-               }});
-  const std::uint8_t heart_label = anatomy.label("heart");
-  const Box heart_box = warped(Box::around(heart, heart_radii));
-  anatomy.add(
-      {"heart", heart_box, [=](const Place& place) { return std::max(heart_distance(place), -place.diaphragm + 2.0F); },
-       [=, &noise](const Place& place, float distance, const Brush& brush) {
-         const float chamber = brush.cover(distance + 9.0F + 4.0F * noise(place.p / 25.0F));
-         const float septum = brush.cover(std::abs(place.q.x() - heart.x() + 0.5F * (place.q.y() - heart.y())) - 5.0F);
-         return Paint{mix(112.0F, 158.0F, chamber * (1.0F - septum)), heart_label};
-       }});
-  const Tube oesophagus(chain({{Vec3f(4.0F, 0.0F, 125.0F), 7.5F},
-                               {Vec3f(8.0F, -6.0F, 100.0F), 8.0F},
-                               {Vec3f(16.0F, -10.0F, 82.0F), 8.0F},
-                               {Vec3f(34.0F, -8.0F, 70.0F), 9.0F}}));
-  anatomy.add_plain(
-      "esophagus", warped(oesophagus.bounds()), [=](const Place& place) { return oesophagus.distance(place.q); }, 62.0F,
-      12.0F, 5.0F);
 }
 
 }  // namespace trocar::phantom
