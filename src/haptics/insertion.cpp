@@ -36,6 +36,7 @@ std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec
   return t;
 }
 
+/// Needle and device on the line of this step, before and now.
 struct LineStep {
   double s_previous_mm;
   double s_device_previous_mm;
@@ -154,7 +155,8 @@ struct Puncture {
   AxialBalance balance;
   double s_mm;
 };
-Puncture find_puncture(const AxialBalance& whole, const LineStep& line, double puncture_force_n) noexcept {
+Puncture find_puncture(const AxialBalance& whole, const LineStep& line, double v_device_before_mm_per_s,
+                       double puncture_force_n) noexcept {
   constexpr int kMaxSteps = 40;
   constexpr double kTolerance = 1e-4;
   double low = 1e-3;
@@ -163,8 +165,10 @@ Puncture find_puncture(const AxialBalance& whole, const LineStep& line, double p
   for (int i = 0; i < kMaxSteps; ++i) {
     puncture.fraction = 0.5 * (low + high);
     puncture.balance.dt_s = whole.dt_s * puncture.fraction;
-    puncture.balance.s_device_mm =
-        line.s_device_previous_mm + puncture.fraction * (line.s_device_mm - line.s_device_previous_mm);
+    puncture.balance.s_device_mm = std::lerp(line.s_device_previous_mm, line.s_device_mm, puncture.fraction);
+    // The device's speed changes over the tick, not at its start: the force is continuous between ticks.
+    puncture.balance.v_device_mm_per_s =
+        std::lerp(v_device_before_mm_per_s, whole.v_device_mm_per_s, puncture.fraction);
     puncture.s_mm = solve(puncture.balance).s_mm;
     const double force = puncture.balance.prepuncture_n(puncture.s_mm);
     if (std::abs(force - puncture_force_n) < kTolerance * puncture_force_n) break;
@@ -240,7 +244,7 @@ InsertionStep step_in_air(InsertionState& state, const Vec3& tip_P, const Vec3& 
   step.tip_P = tip_P;
   step.axis_P = axis_P;
   step.velocity_mm_per_s = (tip_P - state.device_tip_P).dot(axis_P) / dt_s;
-  state.velocity_mm_per_s = step.velocity_mm_per_s;
+  state.velocity_mm_per_s = state.device_velocity_mm_per_s = step.velocity_mm_per_s;
   state.device_tip_P = tip_P;
   state.phase = InsertionPhase::kOutside;
   return step;
@@ -288,7 +292,8 @@ InsertionStep step_insertion(InsertionState& state, const HapticScene& scene, co
     s_mm = solution.s_mm;
     step.hit_solver_bound = solution.hit_bound;
     if (ahead.layer != kNoLayer && balance.prepuncture_n(s_mm) >= scene.layers[ahead.layer].puncture_force_n) {
-      const Puncture puncture = find_puncture(balance, *line, scene.layers[ahead.layer].puncture_force_n);
+      const Puncture puncture =
+          find_puncture(balance, *line, state.device_velocity_mm_per_s, scene.layers[ahead.layer].puncture_force_n);
       state.pending_s = (1.0 - puncture.fraction) * balance.dt_s;
       balance = puncture.balance;
       s_mm = puncture.s_mm;
@@ -301,6 +306,7 @@ InsertionStep step_insertion(InsertionState& state, const HapticScene& scene, co
   state.s_mm = s_mm;
   state.s_device_mm = balance.s_device_mm;
   state.velocity_mm_per_s = step.velocity_mm_per_s;
+  state.device_velocity_mm_per_s = balance.v_device_mm_per_s;
   state.device_tip_P = device_tip_P;
   update_contact(state, ahead);
   if (state.has_path)

@@ -21,6 +21,7 @@ struct InsertionState {
   double s_mm = 0.0;                 ///< Virtual needle's tip along the path.
   double rest_mm = 0.0;              ///< The same in the resting anatomy: at the surface while a layer is loaded.
   double velocity_mm_per_s = 0.0;
+  double device_velocity_mm_per_s = 0.0;  ///< Axial, of the last step.
   double device_speed_mm_per_s = 0.0;  ///< Smoothed |axial velocity| of the device.
   double pending_s = 0.0;              ///< Rest of the tick in which a layer gave way.
 

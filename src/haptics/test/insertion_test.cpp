@@ -40,6 +40,20 @@ INSTANTIATE_TEST_SUITE_P(Speeds, PuncturePeaks,
                          ::testing::Values(Drive{2, 1000}, Drive{10, 1000}, Drive{50, 1000}, Drive{10, 4000},
                                            Drive{50, 4000}, Drive{10, 250}));
 
+TEST(Insertion, PeaksAreExactForATremblingHand) {
+  for (const double phase : {0.0, 0.7, 1.4, 2.1, 2.8}) {
+    Driver driver(make_scene(liver_way()));
+    std::vector<TickSample> samples;
+    for (int i = 0; i < 3000; ++i)  // 30 mm/s with 0.4 mm of tremor at 11 Hz and encoder counts of 0.03 mm
+      samples.push_back(
+          driver.to({0, 0, 0.03 * std::round((-10 + 0.03 * i + 0.4 * std::sin(0.07 * i + phase)) / 0.03)}));
+    ASSERT_EQ(punctures(samples), (std::vector<int>{0, 1, 2}));
+    EXPECT_NEAR(peak_at_puncture(samples, 0), 2.8, 2.8 * kPeakTolerance);
+    EXPECT_NEAR(peak_at_puncture(samples, 1), 2.5, 2.5 * kPeakTolerance);
+    EXPECT_NEAR(peak_at_puncture(samples, 2), 1.5, 1.5 * kPeakTolerance);
+  }
+}
+
 TEST(Insertion, RecordsTheVeryValuesPutIntoTheLaw) {
   Driver driver(make_scene(liver_way()));
   const TissueTable table = paper_tissues();
@@ -233,7 +247,8 @@ TEST(Insertion, RecordsTheWayFromContactToPuncture) {
   Driver driver(make_scene(liver_way()));
   const TickSample sample = driver.move(10.0, 10.0).back();
   constexpr double kTick_mm = 0.01;  // contact is noticed at the end of a tick
-  EXPECT_NEAR(sample.contact_to_puncture_mm.z(), static_displacement_mm(2.8, {0.46, 0.02, 0.1}), 0.15);  // and viscosity
+  EXPECT_NEAR(sample.contact_to_puncture_mm.z(), static_displacement_mm(2.8, {0.46, 0.02, 0.1}),
+              0.15);  // and viscosity
   EXPECT_NEAR(sample.contact_to_puncture_mm.head<2>().norm(), 0.0, kTick_mm);
 }
 
