@@ -1,5 +1,6 @@
 // trocar patient show, check and render: what a patient holds.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -139,14 +140,16 @@ std::vector<std::string> find_doubts(const VirtualPatient& patient) {
     doubts.push_back(fmt::format("voxels of {:.2f} x {:.2f} x {:.2f} mm: thin structures are missed", spacing.x(),
                                  spacing.y(), spacing.z()));
   }
+  std::vector<std::string> cut_off;
   for (const LabelStatistics& s : label_statistics(patient)) {
     const Label* label = patient.label_table.find(s.id);
     if (label == nullptr) continue;
     if (s.voxels == 0) doubts.push_back(label->name + " is listed and has no voxel");
     // Fat and muscle reach every border of a scan; an organ that does is cut off.
     const bool is_filling = label->tissue == "adipose" || label->tissue == "muscle";
-    if (s.touches_border && !is_filling) doubts.push_back(label->name + " is cut off by the edge of the scan");
+    if (s.touches_border && !is_filling) cut_off.push_back(label->name);
   }
+  if (!cut_off.empty()) doubts.push_back(fmt::format("cut off by the edge of the scan: {}", fmt::join(cut_off, ", ")));
   if (patient.paths.empty()) doubts.push_back("no expert path is stored; trocar run plans one");
   return doubts;
 }

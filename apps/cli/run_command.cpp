@@ -91,6 +91,8 @@ Status run(Arguments& arguments) {
   run.patient_seed = arguments.source.seed;
   run.seed = arguments.source.seed;
   arguments.the_case.seed = arguments.source.seed;
+  TROCAR_TRY_STATUS(check_run(run));
+  TROCAR_TRY_STATUS(load_tables(arguments.the_case));
   Case the_case;
   RunResult result;
   {

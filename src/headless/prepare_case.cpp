@@ -7,8 +7,7 @@
 
 namespace trocar {
 
-Result<Case> prepare_case(std::shared_ptr<const VirtualPatient> patient, const CaseOptions& options,
-                          const Progress& progress) {
+Result<Case> load_tables(const CaseOptions& options) {
   const std::filesystem::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
   Case made;
@@ -19,7 +18,12 @@ Result<Case> prepare_case(std::shared_ptr<const VirtualPatient> patient, const C
       options.tissue_file.empty() ? data / "tissues.toml" : std::filesystem::path(options.tissue_file);
   TROCAR_TRY(made.tissues, load_tissue_table(tissues, options.profile));
   for (const std::string& assignment : options.overrides) TROCAR_TRY_STATUS(apply_override(made.tissues, assignment));
+  return made;
+}
 
+Result<Case> prepare_case(std::shared_ptr<const VirtualPatient> patient, const CaseOptions& options,
+                          const Progress& progress) {
+  TROCAR_TRY(Case made, load_tables(options));
   const TaskReadiness readiness = check_task(made.task, *patient);
   if (!readiness.is_possible)
     return fail(

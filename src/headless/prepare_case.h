@@ -34,6 +34,9 @@ struct Case {
   bool is_parenchymal = false;
 };
 
+/// Task, needle and tissues alone, from the data folder: what is wrong with them can be told before there is a patient.
+Result<Case> load_tables(const CaseOptions& options);
+
 /// Loads tables and task from the data folder, checks that the patient can serve the task, and plans the expert path.
 /// Errors say which structure is missing or which margin leaves no path.
 Result<Case> prepare_case(std::shared_ptr<const VirtualPatient> patient, const CaseOptions& options,

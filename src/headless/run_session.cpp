@@ -18,10 +18,12 @@ namespace {
 
 constexpr double kLongestAttempt_s = 120.0;
 
-/// An operator and the rate it wants to be run at.
-struct Performer {
-  std::unique_ptr<Operator> the_operator;
-  double rate_hz;
+/// An operator as it was named: the text after the colon, if any, is its speed or its session.
+struct OperatorChoice {
+  enum class Kind { kExpert, kNovice, kConstantVelocity, kReplay };
+  Kind kind = Kind::kExpert;
+  double speed_mm_per_s = 0.0;
+  std::string session;
 };
 
 Result<double> parse_speed(std::string_view text) {
@@ -31,24 +33,43 @@ Result<double> parse_speed(std::string_view text) {
   return fail_usage(fmt::format("speed {} is not a number from 0.1 to 500 mm/s", text), "--operator constant-velocity");
 }
 
-Result<Performer> make_performer(const Case& the_case, const RunOptions& options) {
-  const OperatorCase what{the_case.plan.line_P, the_case.needle.is_biopsy, options.seed};
-  const std::string_view name = options.operator_name;
-  if (name == "expert") return Performer{make_expert(what), options.rate_hz};
-  if (name == "novice") return Performer{make_novice(what), options.rate_hz};
+Result<OperatorChoice> parse_operator(std::string_view name) {
+  using Kind = OperatorChoice::Kind;
+  if (name == "expert") return OperatorChoice{Kind::kExpert, 0.0, {}};
+  if (name == "novice") return OperatorChoice{Kind::kNovice, 0.0, {}};
   constexpr std::string_view kConstant = "constant-velocity:";
   if (name.starts_with(kConstant)) {
     TROCAR_TRY(const double speed, parse_speed(name.substr(kConstant.size())));
-    return Performer{make_constant_velocity(what, speed), options.rate_hz};
+    return OperatorChoice{Kind::kConstantVelocity, speed, {}};
   }
   constexpr std::string_view kReplay = "replay:";
-  if (name.starts_with(kReplay)) {
-    TROCAR_TRY(Session session, load_session(std::string(name.substr(kReplay.size()))));
-    const double rate = session.info.rate_hz;
-    return Performer{make_replay(std::move(session.samples), session.fired), rate};
-  }
+  if (name.starts_with(kReplay)) return OperatorChoice{Kind::kReplay, 0.0, std::string(name.substr(kReplay.size()))};
   return fail_usage(fmt::format("no operator named {}", name), "--operator",
                     "use expert, novice, constant-velocity:MM_PER_S or replay:SESSION");
+}
+
+/// An operator and the rate it wants to be run at.
+struct Performer {
+  std::unique_ptr<Operator> the_operator;
+  double rate_hz;
+};
+
+Result<Performer> make_performer(const Case& the_case, const RunOptions& options) {
+  const OperatorCase what{the_case.plan.line_P, the_case.needle.is_biopsy, options.seed};
+  TROCAR_TRY(const OperatorChoice choice, parse_operator(options.operator_name));
+  switch (choice.kind) {
+    case OperatorChoice::Kind::kExpert:
+      return Performer{make_expert(what), options.rate_hz};
+    case OperatorChoice::Kind::kNovice:
+      return Performer{make_novice(what), options.rate_hz};
+    case OperatorChoice::Kind::kConstantVelocity:
+      return Performer{make_constant_velocity(what, choice.speed_mm_per_s), options.rate_hz};
+    case OperatorChoice::Kind::kReplay:
+      break;
+  }
+  TROCAR_TRY(Session session, load_session(choice.session));
+  const double rate = session.info.rate_hz;
+  return Performer{make_replay(std::move(session.samples), session.fired), rate};
 }
 
 SessionInfo describe(const Case& the_case, const RunOptions& options, double rate_hz) {
@@ -130,16 +151,17 @@ Result<Recording> perform(Performer& performer, const HapticScene& scene, Sessio
   return recording;
 }
 
-Status check(const RunOptions& options) {
+}  // namespace
+
+Status check_run(const RunOptions& options) {
   if (options.force_model != "insertion")
     return fail_usage(fmt::format("force model {} is not available", options.force_model), "--force-model",
                       "use insertion");
   if (!(options.rate_hz >= 250.0 && options.rate_hz <= 4000.0))
     return fail_usage(fmt::format("rate {} Hz is not between 250 and 4000", options.rate_hz), "--rate");
+  TROCAR_TRY_STATUS(parse_operator(options.operator_name));
   return {};
 }
-
-}  // namespace
 
 std::vector<PunctureRecord> find_punctures(const SessionInfo& info, const std::vector<TickSample>& samples) {
   std::vector<PunctureRecord> punctures;
@@ -153,7 +175,7 @@ std::vector<PunctureRecord> find_punctures(const SessionInfo& info, const std::v
 }
 
 Result<RunResult> run_session(const Case& the_case, const RunOptions& options, const Progress& progress) {
-  TROCAR_TRY_STATUS(check(options));
+  TROCAR_TRY_STATUS(check_run(options));
   TROCAR_TRY(Performer performer, make_performer(the_case, options));
   InsertionOptions insertion;
   insertion.seed = options.seed;

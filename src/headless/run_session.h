@@ -22,6 +22,9 @@ struct RunOptions {
   std::filesystem::path session;  ///< Written here; must not exist.
 };
 
+/// What can be said of the options before there is a patient (exit status 2); run_session asks it, too.
+Status check_run(const RunOptions& options);
+
 /// A layer that gave way.
 struct PunctureRecord {
   std::string layer;
