@@ -35,11 +35,11 @@ const std::vector<HeaderRule>& header_rules() {
   static const std::vector<HeaderRule> rules = [] {
     const std::vector<std::string_view> any_vtk = {"vtk-filters", "vtk-io", "vtk-rendering"};
     std::vector<HeaderRule> r = {
-        {"tl/", {"expected"}},  {"spdlog/", {"spdlog"}}, {"xxhash.h", {"xxhash"}}, {"xxh3.h", {"xxhash"}},
-        {"tbb/", {"tbb"}},      {"oneapi/", {"tbb"}},    {"toml", {"toml++"}},     {"nlohmann/", {"json"}},
-        {"hwy/", {"highway"}},  {"itk", {"itk"}},        {"gdcm", {"itk"}},        {"nifti1_io.h", {"itk"}},
-        {"png.h", {"png"}},     {"soci/", {"soci"}},     {"sqlite3.h", {"soci"}},  {"X11/", {"vtk-rendering"}},
-        {"vtkXML", {"vtk-io"}}, {"vtkSTL", {"vtk-io"}},
+        {"tl/", {"expected"}},       {"spdlog/", {"spdlog"}}, {"xxhash.h", {"xxhash"}}, {"xxh3.h", {"xxhash"}},
+        {"tbb/", {"tbb"}},           {"oneapi/", {"tbb"}},    {"toml", {"toml++"}},     {"nlohmann/", {"json"}},
+        {"hwy/", {"highway"}},       {"itk", {"itk"}},        {"gdcm", {"itk"}},        {"nifti", {"itk"}},
+        {"nifti1_io.h", {"itk"}},    {"png.h", {"png"}},      {"soci/", {"soci"}},      {"sqlite3.h", {"soci"}},
+        {"X11/", {"vtk-rendering"}}, {"vtkXML", {"vtk-io"}},  {"vtkSTL", {"vtk-io"}},
     };
     for (const std::string_view rendering :
          {"vtkActor", "vtkCamera", "vtkLight", "vtkOpenGL", "vtkPolyDataMapper", "vtkProp", "vtkRender", "vtkShader",
@@ -66,9 +66,9 @@ bool is_vocabulary(std::string_view header) {
 }
 
 bool is_system(std::string_view header) {
-  static const std::set<std::string_view> posix = {"stdlib.h",  "dlfcn.h", "fcntl.h",    "poll.h",
-                                                   "pthread.h", "sched.h", "signal.h",   "strings.h",
-                                                   "unistd.h",  "time.h",  "immintrin.h"};
+  static const std::set<std::string_view> posix = {"stdlib.h",  "dlfcn.h",  "fcntl.h",  "poll.h",
+                                                   "pthread.h", "sched.h",  "signal.h", "spawn.h",
+                                                   "strings.h", "unistd.h", "time.h",   "immintrin.h"};
   const bool is_standard = header.find_first_of("/.") == std::string_view::npos;
   return is_standard || header.starts_with("sys/") || posix.contains(header);
 }
