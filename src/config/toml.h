@@ -59,8 +59,8 @@ class TomlTable {
   std::string path_;
 };
 
-/// Parses untrusted TOML text: at most 4 MiB of valid UTF-8 without control characters, nested at most 32 deep (toml++
-/// 3.3 aborts or misbehaves on hostile bytes). `name` is used in messages.
+/// Parses untrusted TOML text: at most 4 MiB of valid UTF-8 without control characters, nested at most 32 deep, without
+/// backslashes that join lines (toml++ 3.3 aborts or misbehaves on such text). `name` is used in messages.
 Result<TomlTable> parse_toml(std::string_view text, const std::string& name);
 Result<TomlTable> load_toml(const std::filesystem::path& path);
 

@@ -33,50 +33,78 @@ std::size_t utf8_length(std::string_view text) {
   return 0;
 }
 
-/// End of the string or comment that starts at `n`: the offset after it. Stops where toml++ would: what follows an
-/// error is never parsed.
-std::size_t skip_string(std::string_view text, std::size_t n) {
-  const char quote = text[n];
-  const std::string_view fence(&text[n], std::min<std::size_t>(3, text.size() - n));
-  const bool is_multiline = fence == std::string(3, quote);
-  n += is_multiline ? 3 : 1;
-  while (n < text.size()) {
-    if (text[n] == '\\' && quote == '"') {
-      n += 2;
-    } else if (!is_multiline && (text[n] == quote || text[n] == '\n')) {
-      return n + 1;
-    } else if (is_multiline && text.substr(n, 3) == fence) {
-      n += 3;
-      while (n < text.size() && text[n] == quote) ++n;  // quotes that belong to the content
-      return n;
-    } else {
-      ++n;
-    }
-  }
-  return n;
-}
+/// Walks the text as toml++ does up to the first error: what follows an error is never parsed.
+class Scanner {
+ public:
+  explicit Scanner(std::string_view text) : text_(text) {}
 
-bool is_nested_too_deep(std::string_view text) {
-  int brackets = 0;
-  int dots = 0;
-  for (std::size_t n = 0; n < text.size();) {
-    const char c = text[n];
-    if (c == '"' || c == '\'') {
-      n = skip_string(text, n);
-      continue;
+  /// What toml++ must not see, empty when nothing.
+  std::string find_fault() {
+    int brackets = 0;
+    int dots = 0;
+    char before = '\n';  // the last character that is not blank
+    bool is_key = true;  // no value has begun on this line
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '"' || c == '\'') {
+        const bool is_start = std::string_view("\n=[{,").find(before) != std::string_view::npos;
+        if (!is_start && !(before == '.' && is_key)) return "a quote in the middle of a word";
+        before = c;
+        if (!skip_string()) return "an unknown escape or a backslash at the end of a line";
+        continue;
+      }
+      if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size());
+        continue;
+      }
+      if (static_cast<unsigned char>(c) >= 0x80) return "a letter outside of ASCII that is not in quotes";
+      if (c == '[' || c == '{') ++brackets;
+      if ((c == ']' || c == '}') && brackets > 0) --brackets;
+      dots = c == '.' ? dots + 1 : (c == '\n' || c == '=' || c == ',') ? 0 : dots;
+      if (c == '=') is_key = false;
+      if (c == '\n') is_key = brackets == 0;
+      if (brackets > kMaxDepth || dots > kMaxDepth) return fmt::format("nested more than {} deep", kMaxDepth);
+      if (c != ' ' && c != '\t' && c != '\r') before = c;
+      ++at_;
     }
-    if (c == '#') {
-      n = std::min(text.find('\n', n), text.size());
-      continue;
-    }
-    if (c == '[' || c == '{') ++brackets;
-    if ((c == ']' || c == '}') && brackets > 0) --brackets;
-    dots = c == '.' ? dots + 1 : (c == '\n' || c == '=' || c == ',') ? 0 : dots;
-    if (brackets > kMaxDepth || dots > kMaxDepth) return true;
-    ++n;
+    return {};
   }
-  return false;
-}
+
+  std::ptrdiff_t line() const {
+    return 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
+  }
+
+ private:
+  /// Goes behind the string that starts here; false at an escape that TOML does not have, or at a backslash that joins
+  /// lines: what follows one is undefined behaviour in toml++ where it is not ASCII.
+  bool skip_string() {
+    const char quote = text_[at_];
+    const std::string fence(3, quote);
+    const bool is_multiline = text_.substr(at_, 3) == fence;
+    at_ += is_multiline ? 3 : 1;
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '\\' && quote == '"') {
+        if (at_ + 1 < text_.size() && std::string_view("btnfr\"\\uU").find(text_[at_ + 1]) == std::string_view::npos)
+          return false;
+        at_ = std::min(at_ + 2, text_.size());
+      } else if (!is_multiline && (c == quote || c == '\n')) {
+        ++at_;
+        return true;
+      } else if (is_multiline && text_.substr(at_, 3) == fence) {
+        at_ += 3;
+        while (at_ < text_.size() && text_[at_] == quote) ++at_;  // quotes that belong to the content
+        return true;
+      } else {
+        ++at_;
+      }
+    }
+    return true;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+};
 
 }  // namespace
 
@@ -95,8 +123,9 @@ Status check_toml_text(std::string_view text, const std::string& name) {
     if (c == '\n') ++line;
     n += length;
   }
-  if (is_nested_too_deep(text))
-    return fail(fmt::format("nested more than {} deep", kMaxDepth), name, "is this the right file?");
+  Scanner scanner(text);
+  if (const std::string fault = scanner.find_fault(); !fault.empty())
+    return fail(fault, fmt::format("{}, line {}", name, scanner.line()), "correct the file");
   return {};
 }
 

@@ -8,8 +8,9 @@
 
 namespace trocar::detail {
 
-/// Whether toml++ may see this text: size, UTF-8, no control characters, bounded nesting of values and of dotted keys
-/// (its parser and destructors recurse). The error names `name` and the line.
+/// Whether toml++ 3.3 may see this text: size, UTF-8, no control characters, bounded nesting of values and of dotted
+/// keys (its parser and destructors recurse), nothing but ASCII outside of strings and comments and no backslash at the
+/// end of a line (both reach code that it believes unreachable). The error names `name` and the line.
 Status check_toml_text(std::string_view text, const std::string& name);
 
 /// The candidate that is closest to a misspelled word, empty when none is similar.

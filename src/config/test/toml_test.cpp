@@ -125,6 +125,15 @@ TEST(Toml, HostileBytesAreRefusedBeforeTheParserSeesThem) {
   EXPECT_FALSE(parse_toml(std::string((std::size_t{4} << 20) + 1, '#'), "big"));
 }
 
+// Found by fuzzing toml++ 3.3 under sanitizers: assertions, and code that it marks unreachable but reaches.
+TEST(Toml, TextThatToml33CannotTakeIsRefused) {
+  for (const char* bad : {"[ =", "ä = 1", "a = ä", "a =\xc2\xa0 1", "a = \"\"\"x \\\n ä\"\"\"", "a = \"\"\"\\ä\"\"\"",
+                          "a = \"\\q\"", "a = 1\"ä\"", "a = 1.\"ä\"", "a = [\n1.\"ä\"]"})
+    EXPECT_FALSE(parse_toml(bad, "bad")) << bad;
+  EXPECT_TRUE(parse_toml("a = \"ä\" # ä\n\"ä\" = '\\ä'\nb = \"\"\"\\n\\\\ ä\n\"\"\"", "good"));
+  EXPECT_TRUE(parse_toml("a.\"ä\".b = 1\n[c.\"ä\"]\nd = [\n\"ä\",\n'ö']\n[[e.'ä']]\n", "quoted keys"));
+}
+
 TEST(Toml, NestingIsBounded) {
   std::string dotted = "a";
   for (int n = 0; n < 1000000; ++n) dotted += ".a";
