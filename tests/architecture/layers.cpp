@@ -35,11 +35,11 @@ const std::vector<HeaderRule>& header_rules() {
   static const std::vector<HeaderRule> rules = [] {
     const std::vector<std::string_view> any_vtk = {"vtk-filters", "vtk-io", "vtk-rendering"};
     std::vector<HeaderRule> r = {
-        {"tl/", {"expected"}},       {"spdlog/", {"spdlog"}}, {"xxhash.h", {"xxhash"}}, {"xxh3.h", {"xxhash"}},
-        {"tbb/", {"tbb"}},           {"oneapi/", {"tbb"}},    {"toml", {"toml++"}},     {"nlohmann/", {"json"}},
-        {"hwy/", {"highway"}},       {"itk", {"itk"}},        {"gdcm", {"itk"}},        {"nifti", {"itk"}},
-        {"nifti1_io.h", {"itk"}},    {"png.h", {"png"}},      {"soci/", {"soci"}},      {"sqlite3.h", {"soci"}},
-        {"X11/", {"vtk-rendering"}}, {"vtkXML", {"vtk-io"}},  {"vtkSTL", {"vtk-io"}},
+        {"tl/", {"expected"}},  {"spdlog/", {"spdlog"}}, {"xxhash.h", {"xxhash"}}, {"xxh3.h", {"xxhash"}},
+        {"tbb/", {"tbb"}},      {"oneapi/", {"tbb"}},    {"toml", {"toml++"}},     {"nlohmann/", {"json"}},
+        {"hwy/", {"highway"}},  {"itk", {"itk"}},        {"gdcm", {"itk"}},        {"nifti1_io.h", {"itk"}},
+        {"png.h", {"png"}},     {"soci/", {"soci"}},     {"sqlite3.h", {"soci"}},  {"X11/", {"vtk-rendering"}},
+        {"vtkXML", {"vtk-io"}}, {"vtkSTL", {"vtk-io"}},
     };
     for (const std::string_view rendering :
          {"vtkActor", "vtkCamera", "vtkLight", "vtkOpenGL", "vtkPolyDataMapper", "vtkProp", "vtkRender", "vtkShader",
