@@ -62,14 +62,15 @@ class DicomWalk {
   bool run() {
     const bool has_mark = header_.bytes_.size() >= kPreamble + 4 && header_.bytes_.compare(kPreamble, 4, "DICM") == 0;
     at_ = has_mark ? kPreamble + 4 : 0;
-    if (!walk_elements(0x0002)) return false;
+    if (!walk_elements(Part::kMeta)) return false;
     header_.transfer_syntax_ = header_.text(kTransferSyntax);
     choose_encoding();
     // What GDCM unpacks as a whole is left to be refused by its transfer syntax.
-    return header_.transfer_syntax_ == kDeflated || walk_elements(0xffff);
+    return header_.transfer_syntax_ == kDeflated || walk_elements(Part::kDataSet);
   }
 
  private:
+  enum class Part { kMeta, kDataSet };
   struct Element {
     std::uint32_t tag = 0;
     std::uint32_t length = 0;
@@ -122,11 +123,11 @@ class DicomWalk {
     return true;
   }
 
-  /// Elements of the top level, up to `last_group` or the pixels.
-  bool walk_elements(std::uint16_t last_group) {
+  /// Elements of the top level: those of group 2, or all others up to the pixels.
+  bool walk_elements(Part part) {
     while (left() > 0) {
       if (left() < 8) return true;  // Some writers pad the end.
-      if (peek(0, 2) > last_group) return true;
+      if (part == Part::kMeta && peek(0, 2) != 0x0002) return true;
       is_unknown_ = false;
       Element element;
       if (!read_element(element, is_implicit_)) return false;

@@ -6,4 +6,14 @@ namespace trocar::detail {
 /// Cheap after the first call; safe from any thread.
 void silence_libraries();
 
+/// While one lives, standard error of the whole process goes nowhere: the JPEG codecs inside GDCM print there, even for
+/// sound 12-bit files, and cannot be told not to. Short-lived; safe from several threads at once.
+class MutedStandardError {
+ public:
+  MutedStandardError();
+  ~MutedStandardError();
+  MutedStandardError(const MutedStandardError&) = delete;
+  MutedStandardError& operator=(const MutedStandardError&) = delete;
+};
+
 }  // namespace trocar::detail

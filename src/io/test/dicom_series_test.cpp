@@ -1,5 +1,8 @@
 #include "io/detail/dicom_series.h"
 
+#include <cmath>
+#include <numeric>
+
 #include "io/image_file.h"
 #include "io/test/test_support.h"
 
@@ -116,6 +119,43 @@ TEST(DicomSeries, RefusesDirectionsThatAreNone) {
   slices = series(5, 2.0);
   for (DicomSlice& slice : slices) slice.spacing_mm = {0.0, 0.75};
   EXPECT_NE(error_of(slices), "ordered");
+}
+
+class RealSlice : public ::testing::TestWithParam<const char*> {};
+
+/// Mean of the pixels, NaN where they cannot be unpacked.
+double mean_of(const std::filesystem::path& file) {
+  const auto slice = detail::find_dicom_slice(file);
+  double mean = std::nan("");
+  if (!slice || !*slice) return mean;
+  (void)detail::decode_slice(**slice, [&](const detail::RawVoxels& voxels) -> Status {
+    std::vector<float> pixels(voxels.bytes.size() / detail::bytes_per_voxel(voxels.type));
+    TROCAR_TRY_STATUS(detail::convert_voxels(voxels, std::span(pixels)));
+    mean = std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(pixels.size());
+    return {};
+  });
+  return mean;
+}
+
+TEST_P(RealSlice, IsUnpackedInSilence) {
+  const auto file = shared_data() / "bad-input/dicom" / GetParam();
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real data at " << file;
+  ::testing::internal::CaptureStderr();
+  const double mean = mean_of(file);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_TRUE(std::isfinite(mean));
+}
+
+INSTANTIATE_TEST_SUITE_P(Compressions, RealSlice,
+                         ::testing::Values("CT_small.dcm", "MR_small_RLE.dcm", "MR_small_jpeg_ls_lossless.dcm",
+                                           "JPEG-lossy.dcm", "pydata_JPEG-LL.dcm", "JPEG2000.dcm", "693_J2KI.dcm"));
+
+TEST(RealSlices, RunLengthAndJpegLsKeepTheSamePixels) {
+  // Both were made without loss from the same image.
+  const auto data = shared_data() / "bad-input/dicom";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real data at " << data;
+  EXPECT_EQ(mean_of(data / "MR_small_RLE.dcm"), mean_of(data / "MR_small_jpeg_ls_lossless.dcm"));
+  EXPECT_NEAR(mean_of(data / "693_J2KI.dcm") / mean_of(data / "pydata_693_UNCR.dcm"), 1.0, 0.01);
 }
 
 class RealSeries : public ::testing::Test {
