@@ -82,7 +82,16 @@ double mean_resistance_n(const std::vector<TickSample>& samples, double from_mm,
   return count > 0 ? sum / count : 0.0;
 }
 
-/// The same path twice: the mean resistance over the last 10 mm in the organ.
+/// Depth at which the last layer of a way gave way.
+double last_puncture_mm(const std::vector<TickSample>& samples) {
+  double depth = 0.0;
+  for (const TickSample& sample : samples) {
+    if (sample.events[0].kind == EventKind::kPuncture) depth = sample.depth_mm;
+  }
+  return depth;
+}
+
+/// The same path twice: the mean resistance in the organ, once the coupling has relaxed behind its surface.
 void add_second_insertion(std::vector<CaseResult>& results, const Case& the_case, const HapticScene& scene) {
   HapticState state;
   const Segment& path = the_case.plan.line_P;
@@ -90,15 +99,18 @@ void add_second_insertion(std::vector<CaseResult>& results, const Case& the_case
   const auto first = drive(state, scene, path, -10.0, length, 10.0);
   drive(state, scene, path, length, -10.0, 20.0);
   const auto second = drive(state, scene, path, -10.0, length, 10.0);
+  const double from = last_puncture_mm(first) + 4.0;
+  const double to = first.back().depth_mm - 0.5;
+  const double before = mean_resistance_n(first, from, to);
+  const double after = mean_resistance_n(second, from, to);
   Figures difference;
-  const double before = mean_resistance_n(first, length - 12.0, length - 2.0);
-  const double after = mean_resistance_n(second, length - 12.0, length - 2.0);
   difference.median = before - after;
-  results.push_back({"insertion/second-in-same-channel",
-                     "n",
-                     difference,
-                     {},
-                     fmt::format("first {:.3f} N, second {:.3f} N, mean over 10 mm of liver", before, after)});
+  results.push_back(
+      {"insertion/second-in-same-channel",
+       "n",
+       difference,
+       {},
+       fmt::format("first {:.3f} N, second {:.3f} N, means from {:.0f} to {:.0f} mm deep", before, after, from, to)});
 }
 
 }  // namespace
