@@ -76,15 +76,15 @@ std::optional<LineStep> place_on_line(InsertionState& state, const HapticScene& 
             state.loading == kNoLayer && *to_skin < 0.0 ? state.memory.find(entry_P, axis_P) : nullptr) {
       state.channel = *hole;
       state.has_path = true;
-    } else {
-      if (state.loading == kNoLayer) start_channel(state, entry_P, axis_P);
+    } else if (state.loading == kNoLayer) {
+      start_channel(state, entry_P, axis_P);
+    } else {  // sliding and turning on the skin
       state.channel.origin_P = entry_P;
       state.channel.direction_P = axis_P;
     }
-    const Channel& line = state.channel;
-    const double s_before = line.direction_P.dot(state.device_tip_P - line.origin_P);
-    return LineStep{state.loading == kNoLayer ? s_before : state.s_mm, s_before,
-                    line.direction_P.dot(tip_P - line.origin_P)};
+    if (state.loading == kNoLayer) {  // nothing touched yet: needle and device were in one place
+      state.s_mm = state.s_device_mm = state.channel.direction_P.dot(state.device_tip_P - state.channel.origin_P);
+    }
   }
   const Channel& line = state.channel;
   return LineStep{state.s_mm, state.s_device_mm, line.direction_P.dot(tip_P - line.origin_P)};

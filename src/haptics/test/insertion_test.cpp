@@ -54,6 +54,20 @@ TEST(Insertion, PeaksAreExactForATremblingHand) {
   }
 }
 
+TEST(Insertion, SkinPeakIsExactForANeedleThatSlidesAndTilts) {
+  for (const double slide_mm_per_s : {-40.0, 15.0, 40.0}) {
+    Driver driver(make_scene(liver_way()));
+    std::vector<TickSample> samples;
+    for (int i = 0; i < 1500 && punctures(samples).empty(); ++i) {
+      const double t = 0.001 * i;
+      const Vec3 axis = Vec3(0.5 + 0.2 * std::sin(9.0 * t), 0.7, 1.0).normalized();
+      samples.push_back(driver.to({slide_mm_per_s * (t - 0.3), 3.0 * std::sin(50.0 * t), -8.0 + 25.0 * t}, axis));
+    }
+    ASSERT_EQ(punctures(samples), (std::vector<int>{0}));
+    EXPECT_NEAR(peak_at_puncture(samples, 0), 2.8, 2.8 * kPeakTolerance);
+  }
+}
+
 TEST(Insertion, RecordsTheVeryValuesPutIntoTheLaw) {
   Driver driver(make_scene(liver_way()));
   const TissueTable table = paper_tissues();
