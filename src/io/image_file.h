@@ -7,19 +7,24 @@
 
 namespace trocar {
 
-/// Reads a 3D CT: NIfTI, NRRD, MHA/MHD, one DICOM series (a folder, JPEG 2000 included; slice step from positions).
-/// Result in LPS mm, HU rounded to int16; RAS files are turned, mirrored grids re-ordered. Refused with a clear
-/// message: no image, truncated, 4D, empty, NaN or infinite voxels, values outside int16, uneven slice steps, gantry
-/// tilt, more than one series in a folder.
+/// Reads a 3D CT: NIfTI, NRRD, MHA/MHD, or one DICOM series given by its folder (uncompressed, RLE, JPEG, JPEG-LS, JPEG
+/// 2000; the slice step comes from the positions; files that are no DICOM image are ignored). Result in LPS mm, HU
+/// rounded to int16; RAS files are turned, mirrored grids re-ordered along k; values below -32768 are padding and
+/// become -32768. Refused with a clear message: no image, truncated, damaged or of an impossible size, a single slice,
+/// 4D, NaN or infinite voxels, values above 32767, sheared axes; in a folder more than one series, uneven slice steps,
+/// two slices in one place, gantry tilt above 0.3 degrees, multi-frame, colour or deflated files; one DICOM file by
+/// itself.
 Result<CtGrid> read_ct(const std::filesystem::path& path);
 
-/// Reads a label volume or a mask: the same formats, .seg.nrrd and DICOM mask series included. Values 0..255.
+/// Reads a label volume or a mask: the same formats, .seg.nrrd without overlaps and DICOM mask series included. Values
+/// are whole numbers 0..255, anything else is refused.
 Result<LabelGrid> read_labels(const std::filesystem::path& path);
 
-/// A float volume (distance fields, float NIfTI).
+/// A float volume (distance fields, float NIfTI). NaN and infinity are refused.
 Result<FloatGrid> read_float(const std::filesystem::path& path);
 
-/// Writes by ending: .nrrd .nii .nii.gz .mha; compressed where the format can; whole or not at all.
+/// Writes by ending: .nrrd .nii .nii.gz .mha; compressed where the format can; whole or not at all. Needs free
+/// disk space for the image without compression.
 Status write_image(const CtGrid& grid, const std::filesystem::path& path);
 Status write_image(const LabelGrid& grid, const std::filesystem::path& path);
 Status write_image(const FloatGrid& grid, const std::filesystem::path& path);

@@ -12,10 +12,12 @@ namespace trocar {
 inline constexpr int kPatientFormatVersion = 1;  ///< A folder of a newer version is refused.
 
 /// Writes a patient folder, whole or not at all: patient.toml, ct.nrrd, labels.nrrd, skin_distance.nrrd,
-/// meshes/NAME.vtp, landmarks.mrk.json, paths.mrk.json. An existing folder is never overwritten.
+/// meshes/NAME.vtp, landmarks.mrk.json, paths.mrk.json. An existing folder is never overwritten. The skin distance is
+/// kept in hundredths of a mm, up to 327 mm.
 Status save_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes,
                     const std::filesystem::path& folder, const Progress& progress = {});
-/// Reads it back without the meshes; volumes side by side. Checks geometry, label table and hash.
+/// Reads it back without the meshes; volumes side by side. Errors: no patient folder, a newer version, a missing or
+/// damaged file, volumes on different grids, a label without a name, a content hash that does not fit.
 Result<VirtualPatient> load_patient(const std::filesystem::path& folder);
 Result<std::vector<NamedMesh>> load_patient_meshes(const std::filesystem::path& folder);
 

@@ -7,8 +7,9 @@
 
 namespace trocar {
 
-/// A rigid ITK transform (.tfm, LPS mm): points of the frame named first to the frame named second. A file that is no
-/// transform, or not rigid within 1e-4, is an error.
+/// A rigid ITK transform (.tfm, LPS mm): points of the frame named first to the frame named second, so that X_PT as a
+/// file maps points of the tool T to P. Any linear ITK type is read, its centre of rotation worked in; written as an
+/// affine one. A file that is no transform, several, not finite, or not rigid within 1e-4 is an error.
 Result<Pose> read_transform(const std::filesystem::path& path);
 Status write_transform(const Pose& X_AB, const std::filesystem::path& path);
 

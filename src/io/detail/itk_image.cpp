@@ -86,10 +86,13 @@ void take_whole_region(itk::ImageIOBase& io) {
 }
 
 /// May throw what ITK throws.
-Result<ItkImage> read_throwing(itk::ImageIOBase& io, const fs::path& path) {
+Result<ItkImage> read_throwing(itk::ImageIOBase& io, const fs::path& path, ImageFormat format) {
   const std::string where = path.string();
   io.SetFileName(where);
-  io.ReadImageInformation();
+  {
+    const MutedStandardError muted;
+    io.ReadImageInformation();
+  }
   if (io.GetNumberOfDimensions() < 3) return fail("is no 3D image", where, "give a volume, not a picture");
   for (unsigned axis = 3; axis < io.GetNumberOfDimensions(); ++axis)
     if (io.GetDimensions(axis) > 1) return fail("is a 4D image", where, "extract one volume and give that");
@@ -103,6 +106,8 @@ Result<ItkImage> read_throwing(itk::ImageIOBase& io, const fs::path& path) {
   image.fields = text_fields(io);
   take_whole_region(io);
   image.bytes = std::make_unique_for_overwrite<std::byte[]>(static_cast<std::size_t>(io.GetImageSizeInBytes()));
+  std::optional<MutedStandardError> muted;
+  if (format == ImageFormat::kMeta) muted.emplace();
   io.Read(image.bytes.get());
   return image;
 }
@@ -144,7 +149,7 @@ void write_throwing(itk::ImageIOBase& io, const ItkImage& image, std::span<const
 Result<ItkImage> read_with_itk(const fs::path& path, ImageFormat format) {
   silence_libraries();
   try {
-    return read_throwing(*make_image_io(format), path);
+    return read_throwing(*make_image_io(format), path, format);
   } catch (const std::bad_alloc&) {
     return fail("not enough memory for the image", path.string(), "close other programs or crop the image");
   } catch (const std::exception&) {

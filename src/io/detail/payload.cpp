@@ -35,6 +35,7 @@ struct Payload {
   fs::path file;               ///< The file that has the voxels.
   std::uint64_t offset = 0;    ///< Where the voxels, or their compressed stream, start.
   std::uint64_t bytes = 0;     ///< Bytes after unpacking.
+  std::uint64_t packed = 0;    ///< Length of the compressed stream, 0 where the header does not say.
   bool is_compressed = false;  ///< gzip or zlib.
   bool is_text = false;        ///< Numbers written as text; their count is left to the reader.
 };
@@ -85,8 +86,9 @@ Result<std::uint64_t> volume_bytes(const std::vector<std::int64_t>& sizes, std::
   return voxels * bytes_per_voxel;
 }
 
-/// Unpacks a gzip or zlib stream and throws the bytes away: true when it is sound and has at least `bytes` of them.
-bool is_sound_stream(std::ifstream& file, std::uint64_t bytes) {
+/// Unpacks a gzip or zlib stream of `packed` bytes and throws the result away: true when it is sound and has at least
+/// `bytes` of them.
+bool is_sound_stream(std::ifstream& file, std::uint64_t packed, std::uint64_t bytes) {
   z_stream stream{};
   if (inflateInit2(&stream, MAX_WBITS + 32) != Z_OK) return false;  // +32: gzip or zlib, whichever it is.
   const std::unique_ptr<z_stream, int (*)(z_stream*)> guard(&stream, inflateEnd);
@@ -95,9 +97,11 @@ bool is_sound_stream(std::ifstream& file, std::uint64_t bytes) {
   bool at_end = false;
   while (true) {
     if (stream.avail_in == 0) {
-      file.read(reinterpret_cast<char*>(in.data()), static_cast<std::streamsize>(in.size()));
+      file.read(reinterpret_cast<char*>(in.data()),
+                static_cast<std::streamsize>(std::min<std::uint64_t>(in.size(), packed)));
       stream.next_in = in.data();
       stream.avail_in = static_cast<unsigned>(file.gcount());
+      packed -= stream.avail_in;
       if (stream.avail_in == 0) return at_end && unpacked >= bytes;
     }
     if (at_end) {
@@ -130,8 +134,9 @@ Status check_payload(const Payload& payload, Check check, const std::string& whe
   }
   std::ifstream file(payload.file, std::ios::binary);
   file.seekg(static_cast<std::streamoff>(payload.offset));
-  const bool could_be_enough = available > 0 && payload.bytes / kMaxDeflateRatio <= available;
-  if (could_be_enough && (check == Check::kSize || is_sound_stream(file, payload.bytes))) return {};
+  const std::uint64_t packed = payload.packed > 0 ? payload.packed : available;
+  const bool could_be_enough = packed <= available && available > 0 && payload.bytes / kMaxDeflateRatio <= available;
+  if (could_be_enough && (check == Check::kSize || is_sound_stream(file, packed, payload.bytes))) return {};
   return fail("the compressed voxels are damaged or end too early", where, kExportAgain);
 }
 
@@ -256,8 +261,8 @@ Result<Payload> nifti_payload(const fs::path& path) {
   const bool is_compressed = gzdirect(file.get()) == 0;
   const auto skipped = static_cast<std::uint64_t>(std::max(offset, static_cast<double>(is_2 ? 540 : 348)));
   TROCAR_TRY_STATUS(check_finite(file.get(), header, skipped, voxels, where));
-  if (is_compressed) return Payload{path, 0, voxels + skipped, true, false};
-  return Payload{path, skipped, voxels, false, false};
+  if (is_compressed) return Payload{path, 0, voxels + skipped, 0, true, false};
+  return Payload{path, skipped, voxels, 0, false, false};
 }
 
 // --- NRRD and MetaImage: text headers -------------------------------------------------------------------------------
@@ -321,7 +326,7 @@ Result<Payload> nrrd_payload(const fs::path& path) {
   TROCAR_TRY(const std::uint64_t bytes, volume_bytes(sizes, *type_bytes * layers, where));
 
   const std::string encoding = lower(header->get("encoding"));
-  Payload payload{path, header->end, bytes, encoding == "gzip" || encoding == "gz", false};
+  Payload payload{path, header->end, bytes, 0, encoding == "gzip" || encoding == "gz", false};
   payload.is_text = encoding != "raw" && !payload.is_compressed;
   const std::string data_file = header->get("data file", header->get("datafile"));
   if (!data_file.empty()) {
@@ -354,7 +359,9 @@ Result<Payload> meta_payload(const fs::path& path) {
     return fail("has several values in each voxel", where, "give an image of one value a voxel");
   TROCAR_TRY(const std::uint64_t bytes, volume_bytes(whole_numbers(header->get("dimsize")), *type_bytes, where));
 
-  Payload payload{path, header->end, bytes, lower(header->get("compresseddata")).starts_with('t'), false};
+  Payload payload{path, header->end, bytes, 0, lower(header->get("compresseddata")).starts_with('t'), false};
+  const std::vector<std::int64_t> packed = whole_numbers(header->get("compresseddatasize"));
+  if (packed.size() == 1 && packed[0] > 0) payload.packed = static_cast<std::uint64_t>(packed[0]);
   payload.is_text = lower(header->get("binarydata", "true")).starts_with('f');
   const std::string data_file = header->get("elementdatafile");
   if (lower(data_file) == "local") return payload;

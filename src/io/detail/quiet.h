@@ -7,7 +7,8 @@ namespace trocar::detail {
 void silence_libraries();
 
 /// While one lives, standard error of the whole process goes nowhere: the JPEG codecs inside GDCM print there, even for
-/// sound 12-bit files, and cannot be told not to. Short-lived; safe from several threads at once.
+/// sound 12-bit files, as do MetaIO and VNL for damaged headers, and cannot be told not to. Only around such calls of
+/// milliseconds; safe from several threads at once.
 class MutedStandardError {
  public:
   MutedStandardError();

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/random.h"
 #include "io/test/test_support.h"
 
 namespace trocar {
@@ -138,6 +139,25 @@ TEST_P(EveryFormat, SaysNothingOnTheTerminal) {
   }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+}
+
+TEST_P(EveryFormat, SurvivesDamagedHeadersInSilence) {
+  const CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
+  const std::string name = std::string("ct") + GetParam();
+  ASSERT_TRUE(write_image(ct, folder_ / name));
+  const std::string whole = read_bytes(folder_ / name);
+  Random random(7);
+  ::testing::internal::CaptureStderr();
+  for (int round = 0; round < 200; ++round) {
+    std::string damaged = whole;
+    for (int change = 0; change < 3; ++change)
+      damaged[random.next() % std::min<std::size_t>(whole.size(), 400)] = static_cast<char>(random.next());
+    write_bytes(folder_ / ("damaged" + name), damaged);
+    const auto read = read_ct(folder_ / ("damaged" + name));
+    const bool is_whole = read && read->voxels.size() == read->geometry.voxel_count();
+    EXPECT_TRUE(is_whole || (!read && !read.error().advice.empty())) << round;
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_P(EveryFormat, LeavesNothingWhenTheDiskIsFull) {

@@ -1,6 +1,7 @@
 #include "io/patient_folder.h"
 
 #include <cmath>
+#include <csignal>
 
 #include "io/image_file.h"
 #include "io/test/test_support.h"
@@ -162,6 +163,24 @@ TEST(PatientFolderFailure, LeavesNothingBehind) {
   patient.landmarks.push_back({"lost", Vec3::Constant(std::nan(""))});  // found after the volumes are written
   EXPECT_FALSE(save_patient(patient, {}, folder / "patient"));
   EXPECT_TRUE(folder.is_empty());
+}
+
+TEST(PatientFolderFailure, KilledHalfWayLeavesNoPatient) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // the child starts afresh: no threads are lost in a fork
+  // The child runs this from the top, so the folder's name must be the same there.
+  const auto folder = std::filesystem::temp_directory_path() / ("trocar_io_killed_" + std::to_string(::getuid()));
+  std::filesystem::remove_all(folder);
+  const VirtualPatient patient = small_patient();
+  const auto die_at_surfaces = [](std::string_view step, double) {
+    if (step == "surfaces") std::raise(SIGKILL);
+  };
+  EXPECT_EXIT((void)save_patient(patient, {tetrahedron("liver")}, folder / "patient", die_at_surfaces),
+              ::testing::KilledBySignal(SIGKILL), "");
+  EXPECT_FALSE(std::filesystem::exists(folder / "patient"));
+  EXPECT_FALSE(std::filesystem::is_empty(folder));  // it had begun
+  EXPECT_TRUE(save_patient(patient, {tetrahedron("liver")}, folder / "patient"));
+  EXPECT_TRUE(load_patient(folder / "patient"));
+  std::filesystem::remove_all(folder);
 }
 
 TEST(PatientFolderFailure, RefusesAPatientThatDoesNotFitTogether) {
