@@ -5,19 +5,15 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cctype>
 #include <charconv>
-#include <cmath>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "io/detail/raw_volume.h"
+#include "io/detail/header_payload.h"
 
 namespace trocar::detail {
 namespace fs = std::filesystem;
@@ -27,18 +23,6 @@ constexpr std::int64_t kMaxSide = 65'535;            ///< Voxels along one axis.
 constexpr std::uint64_t kMaxVoxels = 2'000'000'000;  ///< 4 GB of int16, far above any CT.
 constexpr std::size_t kMaxHeaderBytes = 16u << 20;   ///< .seg.nrrd headers of many segments are long.
 constexpr std::uint64_t kMaxDeflateRatio = 1'032;    ///< Deflate cannot pack tighter.
-constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
-constexpr const char* kExportAgain = "copy or export the file again";
-
-/// What a header promises about its voxels.
-struct Payload {
-  fs::path file;               ///< The file that has the voxels.
-  std::uint64_t offset = 0;    ///< Where the voxels, or their compressed stream, start.
-  std::uint64_t bytes = 0;     ///< Bytes after unpacking.
-  std::uint64_t packed = 0;    ///< Length of the compressed stream, 0 where the header does not say.
-  bool is_compressed = false;  ///< gzip or zlib.
-  bool is_text = false;        ///< Numbers written as text; their count is left to the reader.
-};
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -67,23 +51,6 @@ std::vector<std::int64_t> whole_numbers(const std::string& text) {
     at = next;
   }
   return numbers;
-}
-
-/// Bytes of one volume with these sides; extra axes must be one long.
-Result<std::uint64_t> volume_bytes(const std::vector<std::int64_t>& sizes, std::uint64_t bytes_per_voxel,
-                                   const std::string& where) {
-  if (sizes.size() < 3) return fail("is no 3D image", where, "give a volume, not a picture");
-  std::uint64_t voxels = 1;
-  for (std::size_t axis = 0; axis < sizes.size(); ++axis) {
-    if (sizes[axis] < 1) return fail("the image is empty", where, kExportAgain);
-    if (axis >= 3 && sizes[axis] > 1)
-      return fail(fmt::format("is a 4D image with {} volumes", sizes[axis]), where, "extract one volume and give that");
-    if (sizes[axis] > kMaxSide || (voxels *= static_cast<std::uint64_t>(sizes[axis])) > kMaxVoxels)
-      return fail("the header claims an impossible size", where, kExportAgain);
-  }
-  if (sizes[0] < 2 || sizes[1] < 2 || sizes[2] < 2)
-    return fail("is a single slice, not a volume", where, "give a volume of at least two slices");
-  return voxels * bytes_per_voxel;
 }
 
 /// Unpacks a gzip or zlib stream of `packed` bytes and throws the result away: true when it is sound and has at least
@@ -138,131 +105,6 @@ Status check_payload(const Payload& payload, Check check, const std::string& whe
   const bool could_be_enough = packed <= available && available > 0 && payload.bytes / kMaxDeflateRatio <= available;
   if (could_be_enough && (check == Check::kSize || is_sound_stream(file, packed, payload.bytes))) return {};
   return fail("the compressed voxels are damaged or end too early", where, kExportAgain);
-}
-
-// --- NIfTI ---------------------------------------------------------------------------------------------------------
-
-/// Fixed-offset fields of a NIfTI header in either byte order.
-class NiftiHeader {
- public:
-  NiftiHeader(const unsigned char* bytes, bool swap, bool is_version_2)
-      : bytes_(bytes), swap_(swap), is_version_2_(is_version_2) {}
-
-  std::vector<std::int64_t> sizes() const {
-    const std::int64_t count = dim(0);
-    std::vector<std::int64_t> sizes;
-    for (std::int64_t axis = 1; axis <= std::min<std::int64_t>(count, 7); ++axis)
-      sizes.push_back(dim(static_cast<std::size_t>(axis)));
-    return sizes;
-  }
-  int bits_per_voxel() const { return get<std::int16_t>(is_version_2_ ? 14 : 72); }
-  bool is_float() const {
-    const auto code = get<std::int16_t>(is_version_2_ ? 12 : 70);
-    return code == 16 || code == 64;  // NIFTI_TYPE_FLOAT32, NIFTI_TYPE_FLOAT64
-  }
-  bool is_swapped() const { return swap_; }
-  double voxel_offset() const {
-    return is_version_2_ ? static_cast<double>(get<std::int64_t>(168)) : static_cast<double>(get<float>(108));
-  }
-  bool has_sform() const { return (is_version_2_ ? get<std::int32_t>(348) : get<std::int16_t>(254)) > 0; }
-  Mat3 sform_axes() const {
-    Mat3 axes;
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 3; ++column) {
-        const auto n = static_cast<std::size_t>(4 * row + column);
-        axes(row, column) = is_version_2_ ? get<double>(400 + 8 * n) : static_cast<double>(get<float>(280 + 4 * n));
-      }
-    return axes;
-  }
-
- private:
-  template <class T>
-  T get(std::size_t offset) const {
-    std::array<unsigned char, sizeof(T)> raw;
-    std::memcpy(raw.data(), bytes_ + offset, sizeof(T));
-    if (swap_) std::reverse(raw.begin(), raw.end());
-    return std::bit_cast<T>(raw);
-  }
-  std::int64_t dim(std::size_t n) const {
-    return is_version_2_ ? get<std::int64_t>(16 + 8 * n) : get<std::int16_t>(40 + 2 * n);
-  }
-
-  const unsigned char* bytes_;
-  bool swap_;
-  bool is_version_2_;
-};
-
-/// ITK falls back to another transform where the first is sheared; we refuse instead.
-Status check_sform(const NiftiHeader& header, const std::string& where) {
-  if (!header.has_sform()) return {};
-  const Mat3 axes = header.sform_axes();
-  const Vec3 lengths = axes.colwise().norm().transpose();
-  if (!axes.allFinite() || (lengths.array() <= 0.0).any())
-    return fail("the header's sform places no voxel", where, kExportAgain);
-  GridGeometry probe;
-  probe.R_PV = axes * lengths.cwiseInverse().asDiagonal();
-  if (auto status = tidy_geometry(probe); !status) return fail(status.error().what, where, status.error().advice);
-  return {};
-}
-
-template <class Number>
-bool has_only_finite(std::span<unsigned char> bytes, bool is_swapped) {
-  for (std::size_t at = 0; at + sizeof(Number) <= bytes.size(); at += sizeof(Number)) {
-    if (is_swapped) std::reverse(bytes.data() + at, bytes.data() + at + sizeof(Number));
-    Number number;
-    std::memcpy(&number, bytes.data() + at, sizeof number);
-    if (!std::isfinite(number)) return false;
-  }
-  return true;
-}
-
-/// The NIfTI library reads NaN and infinity as 0 without a word: they are looked for here.
-Status check_finite(gzFile file, const NiftiHeader& header, std::uint64_t offset, std::uint64_t count,
-                    const std::string& where) {
-  if (!header.is_float() || gzseek(file, static_cast<z_off_t>(offset), SEEK_SET) < 0) return {};
-  std::vector<unsigned char> chunk(kChunkBytes);
-  while (count > 0) {
-    const int got = gzread(file, chunk.data(), static_cast<unsigned>(std::min<std::uint64_t>(count, chunk.size())));
-    if (got <= 0) return {};  // A short file is found by check_payload().
-    count -= static_cast<std::uint64_t>(got);
-    const std::span bytes(chunk.data(), static_cast<std::size_t>(got));
-    if (!(header.bits_per_voxel() == 32 ? has_only_finite<float>(bytes, header.is_swapped())
-                                        : has_only_finite<double>(bytes, header.is_swapped())))
-      return fail("the image has a voxel that is no number", where, "export it again without NaN");
-  }
-  return {};
-}
-
-Result<Payload> nifti_payload(const fs::path& path) {
-  const std::string where = path.string();
-  std::array<unsigned char, 540> bytes{};
-  // gzread passes plain files through.
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
-  const int count = file ? gzread(file.get(), bytes.data(), bytes.size()) : -1;
-  std::int32_t header_size = 0;
-  std::memcpy(&header_size, bytes.data(), sizeof header_size);
-  const auto swapped = static_cast<std::int32_t>(__builtin_bswap32(static_cast<std::uint32_t>(header_size)));
-  const bool is_1 = header_size == 348 || swapped == 348;
-  const bool is_2 = header_size == 540 || swapped == 540;
-  const auto magic = std::string_view(reinterpret_cast<const char*>(bytes.data()) + (is_2 ? 4 : 344), 3);
-  if (count < 348 || (is_2 && count < 540) || !(is_1 || is_2) || (magic != "n+1" && magic != "n+2"))
-    return fail("is no NIfTI image", where, "give a .nii or .nii.gz file with header and voxels in one");
-
-  const NiftiHeader header(bytes.data(), header_size != 348 && header_size != 540, is_2);
-  const int bits = header.bits_per_voxel();
-  if (bits < 8 || bits > 128 || bits % 8 != 0)
-    return fail(fmt::format("stores voxels of {} bits", bits), where, "convert it to 16-bit integers");
-  TROCAR_TRY(const std::uint64_t voxels, volume_bytes(header.sizes(), static_cast<std::uint64_t>(bits / 8), where));
-  TROCAR_TRY_STATUS(check_sform(header, where));
-  const double offset = header.voxel_offset();
-  if (!(offset >= 0.0 && offset < 1e9)) return fail("the NIfTI header is damaged", where, kExportAgain);
-
-  // In a compressed file the header is part of the stream.
-  const bool is_compressed = gzdirect(file.get()) == 0;
-  const auto skipped = static_cast<std::uint64_t>(std::max(offset, static_cast<double>(is_2 ? 540 : 348)));
-  TROCAR_TRY_STATUS(check_finite(file.get(), header, skipped, voxels, where));
-  if (is_compressed) return Payload{path, 0, voxels + skipped, 0, true, false};
-  return Payload{path, skipped, voxels, 0, false, false};
 }
 
 // --- NRRD and MetaImage: text headers -------------------------------------------------------------------------------
@@ -373,6 +215,22 @@ Result<Payload> meta_payload(const fs::path& path) {
 }
 
 }  // namespace
+
+Result<std::uint64_t> volume_bytes(const std::vector<std::int64_t>& sizes, std::uint64_t bytes_per_voxel,
+                                   const std::string& where) {
+  if (sizes.size() < 3) return fail("is no 3D image", where, "give a volume, not a picture");
+  std::uint64_t voxels = 1;
+  for (std::size_t axis = 0; axis < sizes.size(); ++axis) {
+    if (sizes[axis] < 1) return fail("the image is empty", where, kExportAgain);
+    if (axis >= 3 && sizes[axis] > 1)
+      return fail(fmt::format("is a 4D image with {} volumes", sizes[axis]), where, "extract one volume and give that");
+    if (sizes[axis] > kMaxSide || (voxels *= static_cast<std::uint64_t>(sizes[axis])) > kMaxVoxels)
+      return fail("the header claims an impossible size", where, kExportAgain);
+  }
+  if (sizes[0] < 2 || sizes[1] < 2 || sizes[2] < 2)
+    return fail("is a single slice, not a volume", where, "give a volume of at least two slices");
+  return voxels * bytes_per_voxel;
+}
 
 Result<ImageFormat> find_image_format(const fs::path& path) {
   const std::string name = lower(path.filename().string());

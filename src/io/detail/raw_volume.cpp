@@ -105,6 +105,7 @@ void make_right_handed(Grid<T>& grid) {
   if (g.R_PV.determinant() > 0.0) return;
   g.origin_P = g.to_mm({0.0, 0.0, static_cast<double>(g.size[2] - 1)});
   g.R_PV.col(2) = -g.R_PV.col(2);
+  g.R_PV.array() += 0.0;  // -0 becomes 0.
   const auto slice = static_cast<std::size_t>(g.size[0] * g.size[1]);
   for (std::size_t low = 0, high = static_cast<std::size_t>(g.size[2]) - 1; low < high; ++low, --high)
     std::swap_ranges(grid.voxels.data() + low * slice, grid.voxels.data() + (low + 1) * slice,
