@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <mutex>
 
@@ -25,16 +26,26 @@ void print_json(const Json& json) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+namespace {
+constexpr std::chrono::seconds kBetweenLines{1};
+}  // namespace
+
 struct ProgressPrinter::State {
   std::mutex mutex;  // steps may be told by several threads
   bool is_terminal = ::isatty(STDERR_FILENO) == 1;
   std::string step;
   int percent = -1;
+  std::chrono::steady_clock::time_point last_line = std::chrono::steady_clock::now();
 
   void show(std::string_view new_step, double fraction) {
     const std::lock_guard lock(mutex);
     const int new_percent = static_cast<int>(100.0 * std::clamp(fraction, 0.0, 1.0));
-    if (new_step == step && (!is_terminal || new_percent == percent)) return;
+    if (new_step == step && new_percent == percent) return;
+    if (!is_terminal) {  // plain lines, and only of work that takes long
+      const auto now = std::chrono::steady_clock::now();
+      if (now - last_line < kBetweenLines) return;
+      last_line = now;
+    }
     step = new_step;
     percent = new_percent;
     if (is_terminal) {

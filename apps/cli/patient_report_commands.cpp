@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "anatomy/build_patient.h"
+#include "anatomy/plausible_hu.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "io/png.h"
@@ -140,8 +141,10 @@ std::vector<std::string> find_doubts(const VirtualPatient& patient) {
     doubts.push_back(fmt::format("voxels of {:.2f} x {:.2f} x {:.2f} mm: thin structures are missed", spacing.x(),
                                  spacing.y(), spacing.z()));
   }
+  const auto statistics = label_statistics(patient);
+  for (std::string& doubt : find_implausible_hu(patient, statistics)) doubts.push_back(std::move(doubt));
   std::vector<std::string> cut_off;
-  for (const LabelStatistics& s : label_statistics(patient)) {
+  for (const LabelStatistics& s : statistics) {
     const Label* label = patient.label_table.find(s.id);
     if (label == nullptr) continue;
     if (s.voxels == 0) doubts.push_back(label->name + " is listed and has no voxel");

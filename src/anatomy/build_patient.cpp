@@ -9,6 +9,7 @@
 
 #include "anatomy/detail/fill_unlabelled.h"
 #include "anatomy/detail/merge_sources.h"
+#include "anatomy/plausible_hu.h"
 #include "volume/distance.h"
 #include "volume/morphology.h"
 
@@ -63,12 +64,13 @@ void clear_outside(const MaskGrid& body, LabelGrid& labels, const LabelTable& ta
   }
 }
 
-void warn_of_cut_structures(const VirtualPatient& patient, std::size_t known_count,
-                            std::vector<std::string>& warnings) {
+void warn_of_doubtful_structures(const VirtualPatient& patient, std::size_t known_count,
+                                 std::vector<std::string>& warnings) {
+  const auto statistics = label_statistics(patient);
+  for (std::string& doubt : find_implausible_hu(patient, statistics)) warnings.push_back(std::move(doubt));
   std::vector<std::string> cut;
-  for (const LabelStatistics& statistics : label_statistics(patient)) {
-    if (statistics.touches_border && statistics.id <= known_count)
-      cut.push_back(patient.label_table.find(statistics.id)->name);
+  for (const LabelStatistics& label : statistics) {
+    if (label.touches_border && label.id <= known_count) cut.push_back(patient.label_table.find(label.id)->name);
   }
   if (!cut.empty()) warnings.push_back(fmt::format("cut by the border of the CT: {}", fmt::join(cut, ", ")));
 }
@@ -98,7 +100,7 @@ Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> 
   report(progress, "fat and muscle", 0.7);
   const std::size_t known_count = patient.label_table.labels.size();
   detail::fill_unlabelled(patient.ct, patient.skin_distance_mm, patient.labels, patient.label_table);
-  warn_of_cut_structures(patient, known_count, warnings);
+  warn_of_doubtful_structures(patient, known_count, warnings);
   patient.content_hash = hash_patient(patient);
   report(progress, "patient", 1.0);
   return patient;
