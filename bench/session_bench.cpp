@@ -11,6 +11,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "bench/harness.h"
+#include "core/temporary_folder.h"
 #include "headless/run_session.h"
 #include "io/patient_folder.h"
 
@@ -22,24 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr double kSimulated_s = 30.0;
 constexpr double kOutside_mm = 10.0;  // where make_constant_velocity starts and ends
-
-/// A folder of its own that goes away at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_(fs::temp_directory_path() / fmt::format("trocar-bench-{}", ::getpid())) {
-    fs::create_directories(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// Runs this program again with other arguments and waits for it.
 Status run_self(const std::vector<std::string>& arguments) {

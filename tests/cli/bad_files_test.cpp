@@ -1,10 +1,10 @@
 // What the program does with files that are not what they should be: one line, exit status 1 or 2, nothing written.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 
 #include "cli/program.h"
+#include "core/testing/test_data.h"
 
 namespace trocar::cli_test {
 namespace {
@@ -18,7 +18,7 @@ void expect_refused(const std::string& arguments) {
   EXPECT_EQ(line_count(outcome.err.substr(at)), 1) << arguments << "\n" << outcome.err;
 }
 
-class BadFiles : public testing::Test {
+class BadFiles : public ::testing::Test {
  protected:
   void write(const std::string& name, const std::string& bytes) { std::ofstream(inputs_ / name) << bytes; }
 
@@ -60,10 +60,8 @@ TEST_F(BadFiles, TextIsNoSession) {
 }
 
 TEST_F(BadFiles, OtherPeoplesOddImagesNeverCrashTheProgram) {
-  const char* named = std::getenv("TROCAR_TEST_DATA");
-  const fs::path data = named != nullptr ? fs::path(named) : fs::path(TROCAR_SOURCE_DIR) / "../shared/data";
-  const fs::path folder = data / "bad-input";
-  if (!fs::exists(folder)) GTEST_SKIP() << "no bad-input folder in " << data;
+  const fs::path folder = trocar::testing::test_data() / "bad-input";
+  if (!fs::exists(folder)) GTEST_SKIP() << "no test data at " << folder;
   int tried = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (!entry.is_regular_file()) continue;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "config/json.h"
+#include "core/temporary_folder.h"
 
 namespace trocar::cli_test {
 
@@ -22,20 +23,15 @@ Json json_of(const Outcome& outcome);
 
 int line_count(const std::string& text);
 
-/// A folder of its own, removed at the end.
+/// A folder of its own, removed at the end, that names its files as text for command lines.
 class TemporaryFolder {
  public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  bool is_empty() const { return std::filesystem::is_empty(path_); }
+  const std::filesystem::path& path() const { return folder_.path(); }
+  std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
+  bool is_empty() const { return folder_.is_empty(); }
 
  private:
-  std::filesystem::path path_;
+  trocar::TemporaryFolder folder_;
 };
 
 }  // namespace trocar::cli_test

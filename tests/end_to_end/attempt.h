@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/temporary_folder.h"
 #include "headless/run_session.h"
-#include "temporary_folder.h"
 
 namespace trocar::testing {
 

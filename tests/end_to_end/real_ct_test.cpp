@@ -7,17 +7,13 @@
 
 #include "anatomy/build_patient.h"
 #include "attempt.h"
+#include "core/testing/test_data.h"
 #include "io/image_file.h"
 #include "io/label_sources.h"
 
 namespace trocar::testing {
 namespace {
 namespace fs = std::filesystem;
-
-fs::path test_data() {
-  const char* named = std::getenv("TROCAR_TEST_DATA");
-  return named != nullptr ? fs::path(named) : fs::path(TROCAR_SOURCE_DIR) / ".." / "shared" / "data";
-}
 
 Result<Case> case_of(const fs::path& ct_path, const std::vector<fs::path>& labels, const std::string& label_map) {
   TROCAR_TRY(const CtGrid ct, read_ct(ct_path));

@@ -10,8 +10,7 @@
 namespace trocar {
 namespace {
 
-using testing::shared_data;
-using testing::TemporaryFolder;
+using testing::test_data;
 
 std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
@@ -48,7 +47,7 @@ class BadInput : public ::testing::Test {
     EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
     EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
   }
-  std::filesystem::path data_ = shared_data() / "bad-input";
+  std::filesystem::path data_ = test_data() / "bad-input";
   TemporaryFolder folder_;
 };
 

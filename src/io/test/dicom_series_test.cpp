@@ -11,8 +11,7 @@ namespace {
 
 using detail::DicomSlice;
 using detail::order_slices;
-using testing::shared_data;
-using testing::TemporaryFolder;
+using testing::test_data;
 
 constexpr double kDegree = M_PI / 180.0;
 
@@ -138,7 +137,7 @@ double mean_of(const std::filesystem::path& file) {
 }
 
 TEST_P(RealSlice, IsUnpackedInSilence) {
-  const auto file = shared_data() / "bad-input/dicom" / GetParam();
+  const auto file = test_data() / "bad-input/dicom" / GetParam();
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real data at " << file;
   ::testing::internal::CaptureStderr();
   const double mean = mean_of(file);
@@ -152,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(Compressions, RealSlice,
 
 TEST(RealSlices, RunLengthAndJpegLsKeepTheSamePixels) {
   // Both were made without loss from the same image.
-  const auto data = shared_data() / "bad-input/dicom";
+  const auto data = test_data() / "bad-input/dicom";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real data at " << data;
   EXPECT_EQ(mean_of(data / "MR_small_RLE.dcm"), mean_of(data / "MR_small_jpeg_ls_lossless.dcm"));
   EXPECT_NEAR(mean_of(data / "693_J2KI.dcm") / mean_of(data / "pydata_693_UNCR.dcm"), 1.0, 0.01);
@@ -172,7 +171,7 @@ class RealSeries : public ::testing::Test {
       std::filesystem::copy_file(file, folder_ / file.filename().string());
     }
   }
-  std::filesystem::path data_ = shared_data() / "ct-torso/example_ct_dicom";
+  std::filesystem::path data_ = test_data() / "ct-torso/example_ct_dicom";
   TemporaryFolder folder_;
 };
 

@@ -16,7 +16,6 @@ using testing::expect_same_place;
 using testing::numbered_grid;
 using testing::oblique_geometry;
 using testing::read_bytes;
-using testing::TemporaryFolder;
 using testing::write_bytes;
 
 // NIfTI keeps the place in single precision; the other formats in decimal text of full precision.

@@ -9,8 +9,7 @@ namespace trocar {
 namespace {
 
 using testing::oblique_geometry;
-using testing::shared_data;
-using testing::TemporaryFolder;
+using testing::test_data;
 using testing::write_bytes;
 
 using Names = std::vector<std::pair<int, std::string>>;
@@ -168,7 +167,7 @@ TEST(LabelSources, FoldersWithoutMasksAreRefused) {
 }
 
 TEST(LabelSources, TotalSegmentatorsFolderKeepsEveryMask) {
-  const auto folder = shared_data() / "ct-torso/example_seg_fast";
+  const auto folder = test_data() / "ct-torso/example_seg_fast";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real data at " << folder;
   const auto sources = read_label_sources({folder}, "");
   ASSERT_TRUE(sources) << error_of(sources);
@@ -189,7 +188,7 @@ TEST(LabelSources, TotalSegmentatorsFolderKeepsEveryMask) {
 }
 
 TEST(LabelSources, TotalSegmentatorsNumbersAreKnown) {
-  const auto data = shared_data() / "ct-torso";
+  const auto data = test_data() / "ct-torso";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real data at " << data;
   const auto known = read_label_sources({data / "example_seg_fast_force_split.nii.gz"}, "totalsegmentator");
   ASSERT_TRUE(known) << error_of(known);

@@ -7,7 +7,6 @@
 namespace trocar {
 namespace {
 
-using testing::TemporaryFolder;
 using testing::write_bytes;
 
 std::string markups(const std::string& inside) {

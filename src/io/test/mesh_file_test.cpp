@@ -8,7 +8,6 @@ namespace trocar {
 namespace {
 
 using testing::read_bytes;
-using testing::TemporaryFolder;
 using testing::write_bytes;
 
 /// A sphere of triangles facing outward.

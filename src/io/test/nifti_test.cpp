@@ -10,7 +10,6 @@ namespace {
 
 using testing::numbered_grid;
 using testing::read_bytes;
-using testing::TemporaryFolder;
 using testing::write_bytes;
 
 /// Fields of a hand-made NIfTI-1 header, as the standard numbers its bytes.

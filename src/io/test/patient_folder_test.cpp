@@ -11,7 +11,6 @@ namespace {
 
 using testing::oblique_geometry;
 using testing::read_bytes;
-using testing::TemporaryFolder;
 using testing::write_bytes;
 
 constexpr float kHalfUnit_mm = 0.005F;  // skin_distance.nrrd has hundredths of a mm

@@ -26,7 +26,7 @@ TEST(Png, DecodesToTheSamePixels) {
 }
 
 TEST(Png, IsWrittenAsAFile) {
-  testing::TemporaryFolder folder;
+  TemporaryFolder folder;
   const RgbImage image(2, 2, {1, 2, 3});
   ASSERT_TRUE(write_png(image, folder / "a.png"));
   EXPECT_EQ(testing::read_bytes(folder / "a.png"), encode_png(image));

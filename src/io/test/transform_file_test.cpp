@@ -8,7 +8,6 @@ namespace trocar {
 namespace {
 
 using testing::read_bytes;
-using testing::TemporaryFolder;
 using testing::write_bytes;
 
 std::string tfm(const std::string& type, const std::string& parameters, const std::string& fixed) {

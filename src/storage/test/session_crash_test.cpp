@@ -14,7 +14,6 @@ namespace fs = std::filesystem;
 using test::example_info;
 using test::example_outcome;
 using test::example_sample;
-using test::TemporaryFolder;
 
 /// Runs `work` in a process of its own and returns how that ended (waitpid's status).
 template <class Work>

@@ -15,7 +15,6 @@ namespace {
 
 using test::example_info;
 using test::example_sample;
-using test::TemporaryFolder;
 
 /// The columns as promised to scripts: spelled out here on purpose.
 constexpr const char* kHeader =

@@ -19,7 +19,6 @@ namespace fs = std::filesystem;
 using test::example_info;
 using test::example_outcome;
 using test::example_sample;
-using test::TemporaryFolder;
 
 void write_bytes(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
