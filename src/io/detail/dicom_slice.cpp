@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kRle = "1.2.840.10008.1.2.5";  ///< DICOM PS3.5, annex A.
+constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
 constexpr const char* kExportAgain = "export the series again, uncompressed";
 
 /// Numbers of a decimal string "a\b\c", as many as asked for or nothing.
@@ -206,6 +207,8 @@ Status decode_throwing(const DicomSlice& slice, const std::function<Status(const
 Result<std::optional<DicomSlice>> find_dicom_slice(const fs::path& path) {
   TROCAR_TRY(const std::optional<DicomHeader> header, DicomHeader::read(path));
   if (!header) return std::optional<DicomSlice>();
+  // Its elements cannot be seen: a slice that is left out in silence would shift the others.
+  if (header->transfer_syntax() == kDeflated) return fail("is a deflated DICOM file", path.string(), kExportAgain);
   DicomSlice slice = slice_of(*header);
   slice.file = path;
   return slice.rows > 0 && slice.columns > 0 ? std::optional(slice) : std::nullopt;

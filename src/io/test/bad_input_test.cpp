@@ -86,6 +86,15 @@ TEST_F(BadInput, EveryDicomFileDoubledIsRefused) {
   }
 }
 
+TEST_F(BadInput, DeflatedDicomIsRefusedByNameNotLeftOut) {
+  const auto deflated = data_ / "dicom" / "image_dfl.dcm";
+  if (!std::filesystem::exists(deflated)) GTEST_SKIP() << "no test data at " << deflated;
+  std::filesystem::copy_file(deflated, folder_ / "slice.dcm");
+  const auto volume = read_ct(folder_.path());
+  ASSERT_FALSE(volume);
+  EXPECT_NE(volume.error().text().find("deflated"), std::string::npos) << volume.error().text();
+}
+
 TEST_F(BadInput, EveryFileCutInHalfIsRefusedOrRead) {
   for (const auto& file : files_below(data_)) {
     SCOPED_TRACE(file.string());
