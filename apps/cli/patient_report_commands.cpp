@@ -11,6 +11,7 @@
 #include "anatomy/plausible_hu.h"
 #include "commands.h"
 #include "core/atomic_file.h"
+#include "io/markups_file.h"
 #include "io/png.h"
 #include "patient_source.h"
 #include "report/slice_picture.h"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   PatientSource source;
   bool is_json = false;
+  std::string paths;  ///< Markups file with needle paths to draw; empty: the patient's own.
   std::string out;
 };
 
@@ -88,7 +90,7 @@ Json patient_json(const VirtualPatient& patient, const std::vector<NamedMesh>& m
 }
 
 void print_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes) {
-  fmt::print("{}: {}\n", patient.name, patient.description);
+  fmt::print("{}{}{}\n", patient.name, patient.description.empty() ? "" : ": ", patient.description);
   for (const std::string& line : patient.provenance) fmt::print("  from {}\n", line);
   fmt::print("  content {}\n\n", patient.content_hash);
 
@@ -245,7 +247,10 @@ Status render(const Arguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
-  TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, progress));
+  TROCAR_TRY(VirtualPatient patient, open_patient(arguments.source, progress));
+  if (!arguments.paths.empty()) {
+    TROCAR_TRY(patient.paths, read_paths(arguments.paths));
+  }
   TROCAR_TRY(const auto meshes, open_meshes(arguments.source, patient, progress));
   const bool can_draw = can_render();
   const auto draw = [&](const fs::path& folder) -> Status {
@@ -287,6 +292,7 @@ void add_patient_report_commands(CLI::App& patient, Action& action) {
   CLI::App* render_command = add_command(patient, action, "render",
                                          "CT slices, and 3D pictures where there is an X server", render, arguments);
   render_command->add_option("--out", arguments->out, "Folder to create")->required();
+  render_command->add_option("--paths", arguments->paths, "Needle paths to draw, as trocar plan writes them");
   render_command->footer("Example:\n  xvfb-run -a trocar patient render my_patient --out pictures\n");
 }
 
