@@ -2,6 +2,7 @@
 #include <exception>
 
 #include "commands.h"
+#include "core/log.h"
 #include "core/version.h"
 
 namespace {
@@ -35,6 +36,8 @@ int run(int argc, char** argv) {
   CLI::App program("Trocar: a simulator on which people learn needle punctures. A trainer, not a medical device.");
   program.name("trocar");
   program.set_version_flag("--version", std::string("trocar ") + trocar::kVersion, "Print the version and exit");
+  bool is_verbose = false;
+  program.add_flag("-v,--verbose", is_verbose, "Tell on standard error what is done and how long it takes");
   program.require_subcommand(1);
   program.footer("Example:\n  trocar run liver-biopsy --patient abdomen --operator expert --out first.session\n");
   Action action;
@@ -52,6 +55,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return report_usage(program, error);
   }
+  if (is_verbose) trocar::set_log_level(trocar::LogLevel::kInfo);
   const trocar::Status done = action();
   return done ? 0 : report_error(done.error());
 }

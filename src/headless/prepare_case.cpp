@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "core/data_dir.h"
+#include "core/log.h"
 
 namespace trocar {
 
@@ -32,6 +33,8 @@ Result<Case> prepare_case(std::shared_ptr<const VirtualPatient> patient, const C
   made.is_parenchymal = readiness.is_parenchymal;
   TROCAR_TRY(const auto paths, plan_paths(made.task, *patient, made.needle, {1, options.seed}, progress));
   made.plan = paths.front();
+  log_info("planned path: {:.1f} mm, {:.1f} mm of it in the organ, {:.1f} mm to spare from {}", made.plan.length_mm,
+           made.plan.organ_path_mm, made.plan.smallest_margin_mm, made.plan.nearest_risk);
   made.patient = std::move(patient);
   return made;
 }

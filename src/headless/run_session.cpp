@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/log.h"
 #include "core/version.h"
 #include "haptics/devices/virtual_device.h"
 #include "haptics/tick.h"
@@ -184,7 +185,10 @@ Result<RunResult> run_session(const Case& the_case, const RunOptions& options, c
 
   const SessionInfo info = describe(the_case, options, performer.rate_hz);
   TROCAR_TRY(SessionWriter writer, SessionWriter::create(options.session, info));
+  const auto start = std::chrono::steady_clock::now();
   TROCAR_TRY(const Recording recording, perform(performer, *scene, writer, progress));
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  log_info("{} ticks performed and recorded in {:.0f} ms", recording.samples.size(), took.count());
 
   RunResult result;
   result.outcome = score_attempt(the_case.task, *the_case.patient, the_case.tissues, the_case.needle, the_case.plan,

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/atomic_file.h"
+#include "core/log.h"
 #include "core/parallel.h"
 #include "io/detail/patient_toml.h"
 #include "io/detail/read_grid.h"
@@ -175,6 +176,8 @@ Result<VirtualPatient> load_patient(const fs::path& folder) {
   TROCAR_TRY(patient.landmarks, read_landmarks(folder / kLandmarkFile));
   TROCAR_TRY(patient.paths, read_paths(folder / kPathFile));
   patient.content_hash = hash_patient(patient);
+  log_info("loaded {}: {} labels, {:.1f} Mvoxel", folder.string(), patient.label_table.labels.size(),
+           1e-6 * static_cast<double>(patient.labels.voxels.size()));
   if (patient.content_hash == description.content_hash) return patient;
   return fail("the patient's volumes or labels were changed after it was built", folder.string(), kBuildAgain);
 }
