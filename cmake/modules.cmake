@@ -23,7 +23,7 @@ function(trocar_add_module name uses libraries)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   file(GLOB_RECURSE tests CONFIGURE_DEPENDS ${folder}/test/*.cpp ${folder}/*/test/*.cpp)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${folder}/*.h)
-  list(FILTER headers EXCLUDE REGEX "\\.inc\\.h$")
+  list(FILTER headers EXCLUDE REGEX "/test(ing)?/")  # these need what a test program defines
   list(REMOVE_ITEM sources ${tests})
   set(target trocar_${name})
   set(links Eigen3::Eigen fmt::fmt)

@@ -22,8 +22,8 @@ struct InsertionState {
   double rest_mm = 0.0;              ///< The same in the resting anatomy: at the surface while a layer is loaded.
   double velocity_mm_per_s = 0.0;
   double device_velocity_mm_per_s = 0.0;  ///< Axial, of the last step.
-  double device_speed_mm_per_s = 0.0;  ///< Smoothed |axial velocity| of the device.
-  double pending_s = 0.0;              ///< Rest of the tick in which a layer gave way.
+  double device_speed_mm_per_s = 0.0;     ///< Smoothed |axial velocity| of the device.
+  double pending_s = 0.0;                 ///< Rest of the tick in which a layer gave way.
 
   Vec3 contact_P = Vec3::Zero();              ///< P: where the needle first touched the skin.
   Vec3 contact_to_puncture_P = Vec3::Zero();  ///< PX_p, zero before the skin gives way.
