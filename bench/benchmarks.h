@@ -9,6 +9,8 @@ namespace trocar::bench {
 
 /// Slices and points of a volume, against vtkImageReslice.
 Result<std::vector<CaseResult>> run_slice_benchmark();
+/// One haptic tick beside a fixed piece of arithmetic.
+Result<std::vector<CaseResult>> run_haptics_benchmark();
 /// A whole attempt of 30 simulated seconds, and the whole process.
 Result<std::vector<CaseResult>> run_session_benchmark();
 /// Forces of an insertion into the embedded patient: peaks, drops, second insertion.

@@ -6,6 +6,7 @@ namespace trocar::bench {
 const std::vector<Benchmark>& all_benchmarks() {
   static const std::vector<Benchmark> benchmarks{
       {"slice", "trilinear slices of a CT volume on one core, VTK's on two beside them", run_slice_benchmark},
+      {"haptics", "one haptic tick, call by call, beside a fixed piece of arithmetic", run_haptics_benchmark},
       {"session", "30 simulated seconds at 1 kHz with recording, and the whole process", run_session_benchmark},
       {"insertion", "forces into the embedded patient: peaks by speed, drops, second insertion",
        run_insertion_benchmark},
