@@ -160,7 +160,8 @@ std::string case_section(const Session& session) {
   out += case_row("Patient", info.patient_name);
   out += case_row("Patient's source", info.patient_source);
   out += case_row("Patient's hash", info.patient_hash);
-  out += case_row("Patient's seed", fmt::format("{}", info.patient_seed));
+  // An embedded patient is named as it is called; a folder has no seed.
+  if (info.patient_source == info.patient_name) out += case_row("Patient's seed", fmt::format("{}", info.patient_seed));
   out += case_row("Operator, seed", fmt::format("{}, {}", info.operator_name, info.seed));
   out += case_row("Force model", info.force_model);
   out += case_row("Needle", info.needle);
