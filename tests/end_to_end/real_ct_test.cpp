@@ -38,7 +38,7 @@ TEST(RealCt, TorsoWithoutLesionGivesAParenchymalBiopsy) {
   const auto prepared =
       case_of(data / "example_ct.nii.gz", {data / "example_seg_fast_force_split.nii.gz"}, "totalsegmentator");
   expect_whole_line(prepared);
-  EXPECT_TRUE(prepared->is_parenchymal);
+  EXPECT_TRUE(prepared && prepared->is_parenchymal);
 }
 
 TEST(RealCt, LiverWithTumoursFromDicomMasks) {

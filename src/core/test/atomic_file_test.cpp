@@ -1,13 +1,13 @@
 #include "core/atomic_file.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
 #include <iterator>
+
+#include "core/temporary_folder.h"
 
 namespace trocar {
 namespace {
@@ -16,19 +16,12 @@ namespace fs = std::filesystem;
 /// A folder of its own for every test, removed after it.
 class AtomicFile : public ::testing::Test {
  protected:
-  AtomicFile()
-      : folder_(
-            fs::temp_directory_path() /
-            fmt::format("trocar-{}-{}", ::getpid(), ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::create_directories(folder_);
-  }
-  ~AtomicFile() override { fs::remove_all(folder_); }
-
   std::size_t entries() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
   }
 
-  fs::path folder_;
+  TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 /// While it lives, files of this process cannot grow past a size: what a write meets on a full disk.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
+#include <optional>
 
 #include "io/image_file.h"
 #include "io/test/test_support.h"
@@ -166,9 +168,11 @@ TEST(PatientFolderFailure, LeavesNothingBehind) {
 
 TEST(PatientFolderFailure, KilledHalfWayLeavesNoPatient) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");  // the child starts afresh: no threads are lost in a fork
-  // The child runs this from the top, so the folder's name must be the same there.
-  const auto folder = std::filesystem::temp_directory_path() / ("trocar_io_killed_" + std::to_string(::getuid()));
-  std::filesystem::remove_all(folder);
+  // The child runs this from the top: it has to find its parent's folder, not make one of its own.
+  constexpr const char* kFolderName = "TROCAR_TEST_KILLED_IN";
+  std::optional<TemporaryFolder> own;
+  if (std::getenv(kFolderName) == nullptr) ::setenv(kFolderName, own.emplace().path().c_str(), 1);
+  const std::filesystem::path folder = std::getenv(kFolderName);
   const VirtualPatient patient = small_patient();
   const auto die_at_surfaces = [](std::string_view step, double) {
     if (step == "surfaces") std::raise(SIGKILL);
@@ -179,7 +183,7 @@ TEST(PatientFolderFailure, KilledHalfWayLeavesNoPatient) {
   EXPECT_FALSE(std::filesystem::is_empty(folder));  // it had begun
   EXPECT_TRUE(save_patient(patient, {tetrahedron("liver")}, folder / "patient"));
   EXPECT_TRUE(load_patient(folder / "patient"));
-  std::filesystem::remove_all(folder);
+  ::unsetenv(kFolderName);
 }
 
 TEST(PatientFolderFailure, RefusesAPatientThatDoesNotFitTogether) {

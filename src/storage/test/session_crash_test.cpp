@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <csignal>
@@ -152,7 +153,10 @@ TEST(SessionCrash, LeavesNothingWhereTheFirstPageFindsNoRoom) {
 TEST(SessionCrash, SaysWhatToDoWhereAKilledSessionCannotBeRecovered) {
   const TemporaryFolder folder;
   const fs::path path = folder / "s.trocar";
-  in_child([&] { write_and_die(path, 1200, 0.001, 1000.0); });
+  in_child([&] {
+    ::umask(022);  // whoever comes later may read
+    write_and_die(path, 1200, 0.001, 1000.0);
+  });
   fs::remove(folder / "s.trocar-shm");
   constexpr fs::perms kReadOnly{0555};
   fs::permissions(folder.path(), kReadOnly);

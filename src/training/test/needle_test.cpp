@@ -1,12 +1,12 @@
 #include "training/needle.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <map>
 
 #include "core/atomic_file.h"
 #include "core/data_dir.h"
+#include "core/temporary_folder.h"
 
 namespace trocar {
 namespace {
@@ -45,14 +45,13 @@ TEST(Needle, UnknownNameListsTheKnownOnes) {
 
 TEST(Needle, ImpossibleNeedleIsRefused) {
   const std::string good = *read_file(kFile);
-  const auto path = std::filesystem::temp_directory_path() / ("needles_" + std::to_string(::getpid()) + ".toml");
+  const TemporaryFolder folder;
+  const auto path = folder / "needles.toml";
   const auto is_refused = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     text.replace(text.find(from), from.size(), to);
     EXPECT_TRUE(write_file_atomically(path, text));
-    const bool refused = !load_needles(path);
-    std::filesystem::remove(path);
-    return refused;
+    return !load_needles(path);
   };
   EXPECT_FALSE(is_refused("gauge", "gauge"));
   EXPECT_TRUE(is_refused("dead_space_mm = {value = 3", "dead_space_mm = {value = 4"));

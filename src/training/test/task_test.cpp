@@ -1,10 +1,10 @@
 #include "training/task.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/atomic_file.h"
 #include "core/data_dir.h"
+#include "core/temporary_folder.h"
 #include "training/needle.h"
 #include "training/test/box_patient.h"
 
@@ -64,13 +64,12 @@ TEST(Task, MissingFolderSaysWhatToDo) {
 
 TEST(Task, DamagedTaskIsRefusedWithItsPlace) {
   const std::string good = *read_file(kTasks / "liver-biopsy.toml");
-  const auto folder = std::filesystem::temp_directory_path() / ("tasks_" + std::to_string(::getpid()));
+  const TemporaryFolder folder;
   const auto error_of = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     text.replace(text.find(from), from.size(), to);
     EXPECT_TRUE(write_file_atomically(folder / "liver-biopsy.toml", text));
-    const auto task = load_task(folder, "liver-biopsy");
-    std::filesystem::remove_all(folder);
+    const auto task = load_task(folder.path(), "liver-biopsy");
     return task ? std::string("no error") : task.error().text();
   };
   EXPECT_EQ(error_of("organ", "organ"), "no error");
