@@ -107,13 +107,7 @@ class Expert final : public Operator {
     return target_left_mm() < -kArrived_mm ? std::max(-kCreepBack_mm_s, kHoming_per_s * target_left_mm()) : 0.0;
   }
 
-  bool is_stuck() noexcept {
-    if (hand_.tip_mm() > deepest_mm_ + 1.0) {
-      deepest_mm_ = hand_.tip_mm();
-      gained_s_ = hand_.elapsed_s();
-    }
-    return hand_.elapsed_s() - std::max(gained_s_, step_start_s_) > kStuck_s;
-  }
+  bool is_stuck() noexcept { return stall_.stalled_s(hand_, step_start_s_) > kStuck_s; }
 
   GuidedHand hand_;
   double target_mm_;
@@ -121,8 +115,7 @@ class Expert final : public Operator {
   Step step_ = Step::kApproach;
   double step_start_s_ = 0.0;
   double drop_s_ = -10.0;
-  double deepest_mm_ = kStart_mm;
-  double gained_s_ = 0.0;
+  StallWatch stall_;
 };
 
 }  // namespace

@@ -130,13 +130,7 @@ class Novice final : public Operator {
     return speed_mm_s_ * (1.0 + kUnevenness * std::sin(rhythm_rad_s_ * hand_.elapsed_s()));
   }
 
-  bool is_stuck() noexcept {
-    if (hand_.tip_mm() > deepest_mm_ + 1.0) {
-      deepest_mm_ = hand_.tip_mm();
-      gained_s_ = hand_.elapsed_s();
-    }
-    return hand_.elapsed_s() - std::max(gained_s_, step_start_s_) > kStuck_s;
-  }
+  bool is_stuck() noexcept { return stall_.stalled_s(hand_, step_start_s_) > kStuck_s; }
 
   double start_mm_;
   GuidedHand hand_;
@@ -149,8 +143,7 @@ class Novice final : public Operator {
   std::size_t next_doubt_ = 0;
   Step step_ = Step::kAdvance;
   double step_start_s_ = 0.0;
-  double deepest_mm_ = -1e9;
-  double gained_s_ = 0.0;
+  StallWatch stall_;
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "geometry/segment.h"
 #include "training/operator.h"
@@ -64,6 +66,24 @@ class GuidedHand {
   bool is_first_ = true;
   bool is_touching_ = false;
   bool has_felt_drop_ = false;
+};
+
+/// Notices that a needle gains no ground.
+class StallWatch {
+ public:
+  /// Seconds since the tip last gained a millimetre, or since `from_s` where that is later.
+  double stalled_s(const GuidedHand& hand, double from_s) noexcept {
+    constexpr double kGain_mm = 1.0;
+    if (hand.tip_mm() > deepest_mm_ + kGain_mm) {
+      deepest_mm_ = hand.tip_mm();
+      gained_s_ = hand.elapsed_s();
+    }
+    return hand.elapsed_s() - std::max(gained_s_, from_s);
+  }
+
+ private:
+  double deepest_mm_ = -std::numeric_limits<double>::infinity();
+  double gained_s_ = 0.0;
 };
 
 }  // namespace trocar
