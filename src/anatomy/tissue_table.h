@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "anatomy/hu_transfer.h"
 #include "core/result.h"
 
 namespace trocar {
@@ -22,6 +23,7 @@ struct LayerParams {
   double delta_x_mm = 0.1;           ///< Displacement after which a Voigt element is added. Range 0.01..20.
   double puncture_force_n =
       std::numeric_limits<double>::infinity();  ///< Gives way at this force. Range 0.01..100; infinite: never (bone).
+  bool is_wall = false;  ///< Volume proxy: must be pierced at a label's border, because the CT does not show it.
 };
 
 /// What the needle's shaft and tip feel inside a tissue (paper A, friction and cutting force; physics.md F1, C1).
@@ -33,6 +35,7 @@ struct TissueParams {
   double stick_n_per_mm = 0.0;        ///< Karnopp holding force a mm of inserted shaft. Range 0..0.1.
   double cutting_n = 0.0;             ///< F_c while fresh tissue is cut. Range 0..10.
   std::optional<std::uint8_t> layer;  ///< Index into TissueTable::layers of the surface to pierce before this tissue.
+  double young_kpa = 10.0;            ///< Young's modulus under slow load: bed of the shaft, palpation. Range 0..1e6.
 };
 
 /// Where a number comes from.
@@ -49,6 +52,7 @@ struct TissueTable {
   std::map<std::string, Provenance> provenance;  ///< "tissues.liver.friction_mu", "layers.skin.delta_x_mm" -> source.
   double skin_thickness_mm = 2.0;  ///< The skin is a shell of the distance field, not voxels. Range 0.5..6.
   std::uint8_t skin = 0;           ///< Tissue index of the skin.
+  HuTransfer transfer;             ///< Of unlabelled tissue, over HU.
 
   std::optional<std::uint8_t> find_tissue(std::string_view name) const noexcept;
   std::optional<std::uint8_t> find_layer(std::string_view name) const noexcept;

@@ -1,6 +1,9 @@
 #include "haptics/channel.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "volume/sampling.h"
 
 namespace trocar {
 
@@ -11,12 +14,16 @@ int bin_of(double s_mm) noexcept {
 void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double ahead_mm) noexcept {
   const int wanted = bin_of(s_mm + ahead_mm) + 1;
   const int last = std::min(wanted, channel.known_bins + kMaxBinsPerLook);
+  const bool reads_ct = scene.options.force_model != ForceModel::kInsertion;
   for (int bin = channel.known_bins; bin < last; ++bin) {
     const double middle_mm = (bin + 0.5) * Channel::kBin_mm;
-    const TissueAt here = tissue_at(scene, channel.origin_P + channel.direction_P * middle_mm);
+    const Vec3 middle_P = channel.origin_P + channel.direction_P * middle_mm;
+    const TissueAt here = tissue_at(scene, middle_P);
     const auto index = static_cast<std::size_t>(bin);
     channel.tissue[index] = here.tissue;
     channel.label[index] = here.label;
+    if (reads_ct)
+      channel.hu[index] = static_cast<std::int16_t>(std::lround(sample_linear(scene.patient->ct, middle_P)));
   }
   channel.known_bins = std::max(channel.known_bins, last);
 }

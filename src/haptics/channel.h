@@ -22,6 +22,7 @@ struct Channel {
   int known_bins = 0;                ///< Bins [0, known_bins) are filled.
   std::array<std::uint8_t, kBins> tissue{};
   std::array<std::uint8_t, kBins> label{};
+  std::array<std::int16_t, kBins> hu{};  ///< Of the CT; filled where the force model reads it, else 0.
 
   bool is_pierced(std::uint8_t layer) const noexcept { return ((pierced >> layer) & 1U) != 0; }
   void pierce(std::uint8_t layer) noexcept { pierced |= 1U << layer; }

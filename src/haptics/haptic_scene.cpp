@@ -14,9 +14,15 @@ Status check_range(double value, double low, double high, const char* name) {
   return fail_usage(fmt::format("{} is {}, allowed is {} to {}", name, value, low, high));
 }
 
-Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& device, const InsertionOptions& options) {
+Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& device, const HapticOptions& options) {
   TROCAR_TRY_STATUS(check_range(needle.radius_mm, 0.1, 2.5, "needle radius (mm)"));
   TROCAR_TRY_STATUS(check_range(needle.length_mm, 20.0, 300.0, "needle length (mm)"));
+  TROCAR_TRY_STATUS(check_range(needle.inner_radius_mm, 0.0, 0.95 * needle.radius_mm, "radius of the bore (mm)"));
+  TROCAR_TRY_STATUS(check_range(needle.stylet_radius_mm, 0.0, needle.inner_radius_mm, "radius of the stylet (mm)"));
+  TROCAR_TRY_STATUS(check_range(needle.young_gpa, 50.0, 250.0, "Young's modulus of the needle (GPa)"));
+  TROCAR_TRY_STATUS(check_range(needle.bevel_rad, 0.05, 1.571, "bevel (rad)"));
+  TROCAR_TRY_STATUS(check_range(needle.bevel_share, 0.0, 1.0, "bevel's sideways share"));
+  TROCAR_TRY_STATUS(check_range(needle.body_proxies, 1.0, kMaxBodyProxies, "number of body proxies"));
   TROCAR_TRY_STATUS(check_range(device.max_stiffness_n_per_mm, 0.1, 20.0, "device stiffness (N/mm)"));
   TROCAR_TRY_STATUS(check_range(device.peak_force_n, 0.1, 200.0, "device peak force (N)"));
   TROCAR_TRY_STATUS(check_range(device.peak_torque_nmm, 0.0, 5000.0, "device peak torque (N mm)"));
@@ -32,6 +38,12 @@ Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& devic
                      "path constraint m0/d0 (N/mm, at most the device's)");
 }
 
+/// A spring that bears the puncture force at the same indentation as the loading law.
+double indentation_stiffness(const LoadingLaw& law, double puncture_force_n) noexcept {
+  if (!std::isfinite(puncture_force_n)) return law.stiffness_n_per_mm;
+  return puncture_force_n / static_displacement_mm(puncture_force_n, law);
+}
+
 Status fill_laws(HapticScene& scene, const TissueTable& table) {
   if (table.tissues.size() > kMaxTissues || table.layers.size() > kMaxLayers)
     return fail(fmt::format("more than {} tissues or {} layers", kMaxTissues, kMaxLayers), "tissue table");
@@ -39,16 +51,20 @@ Status fill_laws(HapticScene& scene, const TissueTable& table) {
   scene.layer_count = static_cast<int>(table.layers.size());
   for (std::size_t i = 0; i < table.layers.size(); ++i) {
     const LayerParams& layer = table.layers[i];
-    scene.layers[i] = {{layer.stiffness_n_per_mm, layer.viscosity_ns_per_mm, layer.delta_x_mm}, layer.puncture_force_n};
+    const LoadingLaw loading{layer.stiffness_n_per_mm, layer.viscosity_ns_per_mm, layer.delta_x_mm};
+    scene.layers[i] = {loading, layer.puncture_force_n, indentation_stiffness(loading, layer.puncture_force_n),
+                       layer.is_wall};
     if (!(layer.delta_x_mm > 0.0) || !(layer.puncture_force_n > 0.0))
       return fail_usage(fmt::format("layer {} needs positive dx and puncture force", layer.name), "tissue table");
   }
   for (std::size_t i = 0; i < table.tissues.size(); ++i) {
     const TissueParams& tissue = table.tissues[i];
-    scene.tissues[i] = {tissue.viscosity_ns_per_mm, tissue.roughness_n * tissue.friction_mu, tissue.stick_n_per_mm,
-                        tissue.cutting_n, tissue.layer.value_or(kNoLayer)};
+    scene.tissues[i] = {tissue.viscosity_ns_per_mm, tissue.roughness_n * tissue.friction_mu,
+                        tissue.stick_n_per_mm,      tissue.cutting_n,
+                        tissue.young_kpa,           tissue.layer.value_or(kNoLayer)};
   }
   scene.skin = table.skin;
+  scene.transfer = table.transfer;
   scene.skin_thickness_mm = table.skin_thickness_mm;
   return {};
 }
@@ -68,20 +84,55 @@ Status fill_label_tissues(HapticScene& scene, const TissueTable& table) {
   return {};
 }
 
+Status check_patient(const VirtualPatient* patient, ForceModel model) {
+  if (!patient) return fail("there is no patient", "haptic scene");
+  if (patient->skin_distance_mm.empty()) return fail("the patient has no skin", patient->name, "build it again");
+  if (model == ForceModel::kInsertion && patient->labels.empty())
+    return fail("the patient has no labels, which the insertion model needs", patient->name,
+                "build it with labels, or use --force-model proxy");
+  if (model != ForceModel::kInsertion && patient->ct.empty())
+    return fail("the patient has no CT, which the proxy reads", patient->name,
+                "build it with a CT, or use --force-model insertion");
+  return {};
+}
+
 }  // namespace
+
+const char* to_string(ForceModel model) noexcept {
+  switch (model) {
+    case ForceModel::kInsertion:
+      return "insertion";
+    case ForceModel::kProxy:
+      return "proxy";
+    case ForceModel::kCombined:
+      return "combined";
+  }
+  return "insertion";
+}
+
+Result<ForceModel> parse_force_model(std::string_view name) {
+  for (const ForceModel model : {ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined}) {
+    if (name == to_string(model)) return model;
+  }
+  return fail_usage(fmt::format("there is no force model {}", name), "--force-model",
+                    "use insertion, proxy or combined");
+}
 
 Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const VirtualPatient> patient,
                                                              const TissueTable& tissues, const NeedleGeometry& needle,
                                                              const DeviceCapability& device,
-                                                             const InsertionOptions& options) {
-  if (!patient || patient->labels.empty() || patient->skin_distance_mm.empty())
-    return fail("the patient has no labels or no skin", patient ? patient->name : "", "build it again");
+                                                             const HapticOptions& options) {
+  TROCAR_TRY_STATUS(check_patient(patient.get(), options.force_model));
   TROCAR_TRY_STATUS(check_numbers(needle, device, options));
+  if (options.force_model != ForceModel::kInsertion && tissues.transfer.knot_count == 0)
+    return fail("has no transfer functions, which the proxy needs", "tissue table", "add [transfer] to it");
   auto scene = std::make_shared<HapticScene>();
   scene->patient = std::move(patient);
   scene->needle = needle;
   scene->device = device;
   scene->options = options;
+  scene->beam_with_stylet = make_needle_beam(needle, true);
+  scene->beam_without_stylet = make_needle_beam(needle, false);
   scene->X_SN = Pose::translation({0.0, 0.0, needle.length_mm});
   TROCAR_TRY_STATUS(fill_laws(*scene, tissues));
   TROCAR_TRY_STATUS(fill_label_tissues(*scene, tissues));
@@ -91,7 +142,8 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
 TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept {
   const double distance_mm = sample_linear(scene.patient->skin_distance_mm, p_P);
   if (!(distance_mm <= 0.0)) return {};
-  const std::uint8_t label = sample_nearest(scene.patient->labels, p_P, std::uint8_t{0});
+  const LabelGrid& labels = scene.patient->labels;
+  const std::uint8_t label = labels.empty() ? std::uint8_t{0} : sample_nearest(labels, p_P, std::uint8_t{0});
   if (distance_mm > -scene.skin_thickness_mm) return {scene.skin, label};
   return {scene.tissue_of_label[label], label};
 }

@@ -4,44 +4,54 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <string_view>
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue_table.h"
 #include "core/result.h"
 #include "geometry/pose.h"
 #include "haptics/insertion_law.h"
+#include "haptics/needle_beam.h"
+#include "haptics/needle_geometry.h"
 #include "haptics/path_constraint.h"
 
 namespace trocar {
 
+/// Which law makes the force (docs/physics.md T1, T2).
+enum class ForceModel : std::uint8_t {
+  kInsertion,  ///< Paper A: layers that load and give way, friction, cutting, path constraint.
+  kProxy,      ///< Paper B: tip proxy on CT and labels, body proxies on the path, bending.
+  kCombined,   ///< A's loading and cutting where a tissue has parameters, B elsewhere and for the shaft.
+};
+const char* to_string(ForceModel model) noexcept;
+/// "insertion", "proxy", "combined"; else exit status 2.
+Result<ForceModel> parse_force_model(std::string_view name);
+
 /// What a device senses and can bear. Defaults: PHANTOM Premium 1.5 High Force 6DOF (paper B, section 2.1).
 struct DeviceCapability {
   double peak_force_n = 37.5;
-  double peak_torque_nmm = 515.0;
+  double peak_torque_nmm = 515.0;       ///< 0: senses rotation, gives no torque.
   double max_stiffness_n_per_mm = 3.5;  ///< Range 0.1..20. Source: vendor's nominal figure, references.md.
   double stylus_weight_n = 0.5;         ///< Weight that links and stylus put on the hand. Range 0..5. [assumed]
   double stylus_lever_mm = 20.0;        ///< Centre of that weight behind the stylus origin, along -z of S. [assumed]
 };
 
-/// Spring and damper between device and virtual needle, along the axis (physics.md V1). Range: stiffness at most the
-/// device's. Values: references.md, steady within 0.3 N on a bare 45-150 g mass.
+/// Spring and damper between device and virtual needle (physics.md V1). Range: stiffness at most the device's. Values:
+/// references.md, steady within 0.3 N on a bare 45-150 g mass.
 struct CouplingParams {
   double stiffness_n_per_mm = 1.0;
   double damping_ns_per_mm = 0.004;
 };
 
 /// Whose weight is compensated, and switches for study.
-struct InsertionOptions {
+struct HapticOptions {
+  ForceModel force_model = ForceModel::kInsertion;
   CouplingParams coupling;
   PathConstraintParams constraint;
   bool has_stick = true;  ///< Karnopp holding force (physics.md F3).
   bool has_weight_compensation = true;
-  std::uint64_t seed = 1;  ///< Of the friction's fluctuation.
-};
-
-struct NeedleGeometry {
-  double radius_mm = 0.635;  ///< Range 0.1..2.5.
-  double length_mm = 150.0;  ///< Stylus origin to tip. Range 20..300.
+  bool has_bending = true;  ///< Proxy and combined: false keeps the shaft straight.
+  std::uint64_t seed = 1;   ///< Of the friction's fluctuation.
 };
 
 inline constexpr int kMaxTissues = 32;
@@ -54,11 +64,14 @@ struct TissueLaw {
   double noise_n = 0.0;  ///< delta * mu
   double stick_n_per_mm = 0.0;
   double cutting_n = 0.0;
+  double young_kpa = 0.0;
   std::uint8_t layer = kNoLayer;
 };
 struct LayerLaw {
   LoadingLaw loading;
   double puncture_force_n = std::numeric_limits<double>::infinity();
+  double indent_n_per_mm = 1.0;  ///< Puncture force over the static indentation at it; bone: its stiffness.
+  bool is_wall = false;          ///< Proxy models: gives way at a label's border.
 };
 
 /// Everything the tick reads and never changes. Built off-line, shared, read by many threads.
@@ -71,20 +84,24 @@ struct HapticScene {
   std::array<std::uint8_t, 256> tissue_of_label{};  ///< By label id.
   std::uint8_t skin = 0;
   double skin_thickness_mm = 2.0;
+  HuTransfer transfer;  ///< Unlabelled tissue, proxy and combined.
   NeedleGeometry needle;
+  NeedleBeam beam_with_stylet;
+  NeedleBeam beam_without_stylet;
   DeviceCapability device;
-  InsertionOptions options;
+  HapticOptions options;
   Pose X_PD;                       ///< Device base in the patient.
   Pose X_SN;                       ///< Needle in the stylus: tip at +z, length_mm from the stylus origin.
   Vec3 gravity_P = Vec3::UnitY();  ///< Unit, downwards: a supine patient lies on +y.
 };
 
 /// Checks every number and builds the scene. Errors: coupling or constraint stiffer than the device, numbers out of
-/// range, too many tissues, a label whose tissue the table does not know, a patient without labels or skin distance.
+/// range, too many tissues, a label whose tissue the table does not know; a patient without skin distance, without
+/// labels (insertion), without CT or a table without transfer functions (proxy, combined).
 Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const VirtualPatient> patient,
                                                              const TissueTable& tissues, const NeedleGeometry& needle,
                                                              const DeviceCapability& device = {},
-                                                             const InsertionOptions& options = {});
+                                                             const HapticOptions& options = {});
 
 /// What lies at a point of the resting anatomy. Real-time safe.
 struct TissueAt {

@@ -2,6 +2,7 @@
 
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion.h"
+#include "haptics/resting_anatomy.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar {
@@ -11,6 +12,8 @@ struct HapticInput {
   double time_s = 0.0;
   double dt_s = 0.001;  ///< Since the last tick; 0 < dt <= kMaxDt_s.
   Pose X_DS;            ///< Stylus in the device base.
+  bool is_stylet_in = true;
+  RestingAnatomy resting;  ///< The patient's motion now.
 };
 
 /// All that a tick carries to the next one. Fixed size, copyable: recorded inputs replay to the same bits.

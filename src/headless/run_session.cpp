@@ -178,7 +178,7 @@ std::vector<PunctureRecord> find_punctures(const SessionInfo& info, const std::v
 Result<RunResult> run_session(const Case& the_case, const RunOptions& options, const Progress& progress) {
   TROCAR_TRY_STATUS(check_run(options));
   TROCAR_TRY(Performer performer, make_performer(the_case, options));
-  InsertionOptions insertion;
+  HapticOptions insertion;
   insertion.seed = options.seed;
   const NeedleGeometry needle{the_case.needle.outer_diameter_mm / 2.0, the_case.needle.length_mm};
   TROCAR_TRY(const auto scene, make_haptic_scene(the_case.patient, the_case.tissues, needle, {}, insertion));

@@ -28,6 +28,10 @@ const char* to_string(LimitReason reason) noexcept {
       return "solver";
     case LimitReason::kEventsDropped:
       return "events";
+    case LimitReason::kResumedInside:
+      return "resumed";
+    case LimitReason::kJumped:
+      return "jump";
   }
   return "unknown";
 }

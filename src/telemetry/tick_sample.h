@@ -20,7 +20,15 @@ struct TickEvent {
 };
 
 /// Why the haptic side changed or refused something.
-enum class LimitReason : std::uint8_t { kForceClamped, kTorqueClamped, kInputRejected, kSolverBound, kEventsDropped };
+enum class LimitReason : std::uint8_t {
+  kForceClamped,
+  kTorqueClamped,
+  kInputRejected,
+  kSolverBound,
+  kEventsDropped,
+  kResumedInside,  ///< The needle was found inside the body: no force step, taken as inserted.
+  kJumped,         ///< The device moved further in one tick than a hand can: started afresh where it is.
+};
 const char* to_string(LimitReason reason) noexcept;
 
 /// The record of one haptic tick: made by `haptics`, carried by `link`, scored by `training`, kept by `storage`.

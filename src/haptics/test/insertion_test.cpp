@@ -98,7 +98,7 @@ TEST(Insertion, DropsAfterEachPuncture) {
 }
 
 TEST(Insertion, SumsTheFrictionOfEveryTissueByItsOwnLength) {
-  InsertionOptions options;
+  HapticOptions options;
   TissueTable smooth = paper_tissues();
   for (TissueParams& tissue : smooth.tissues) tissue.roughness_n = 0.0;
   Driver driver(make_scene(liver_way(), options, smooth));

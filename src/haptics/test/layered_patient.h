@@ -65,8 +65,7 @@ inline std::shared_ptr<VirtualPatient> layered_patient(const std::vector<Slab>& 
   return patient;
 }
 
-inline std::shared_ptr<const HapticScene> make_scene(const std::vector<Slab>& slabs,
-                                                     const InsertionOptions& options = {},
+inline std::shared_ptr<const HapticScene> make_scene(const std::vector<Slab>& slabs, const HapticOptions& options = {},
                                                      const TissueTable& tissues = paper_tissues()) {
   auto scene = make_haptic_scene(layered_patient(slabs), tissues, {}, {}, options);
   TROCAR_CHECK(scene.has_value());

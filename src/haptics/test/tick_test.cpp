@@ -50,7 +50,7 @@ TEST(Tick, CompensatesTheWeightUpwards) {
   Driver driver(make_scene(liver_way()));
   const TickSample sample = driver.to({0, 0, -10});
   EXPECT_LT((sample.f_weight_n - Vec3(0, -0.5, 0)).norm(), 1e-12);  // supine: up is -y
-  InsertionOptions off;
+  HapticOptions off;
   off.has_weight_compensation = false;
   EXPECT_EQ(Driver(make_scene(liver_way(), off)).to({0, 0, -10}).f_total_n.norm(), 0.0);
 }

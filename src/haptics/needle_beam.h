@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+
+#include "geometry/vec.h"
+#include "haptics/needle_geometry.h"
+
+namespace trocar {
+
+/// The shaft as a beam (Euler, Bernoulli), clamped in the grip (paper B, section 2.1, last paragraph; physics.md B8).
+/// Nodes 0..n-1 are the body proxies at equal distances from the grip, node n is the tip.
+struct NeedleBeam {
+  int node_count = 17;                       ///< n + 1.
+  double spacing_mm = 150.0 / 17.0;          ///< Between nodes, and from the grip to node 0.
+  double bending_stiffness_n_mm2 = 20000.0;  ///< E I.
+};
+
+inline constexpr int kMaxBeamNodes = kMaxBodyProxies + 1;
+
+/// E I (N mm^2) of the tube, and of the stylet beside it when it is in.
+double bending_stiffness_n_mm2(const NeedleGeometry& needle, bool is_stylet_in) noexcept;
+NeedleBeam make_needle_beam(const NeedleGeometry& needle, bool is_stylet_in) noexcept;
+
+/// The bed that holds the shaft: a spring a node, from the shaft to where its proxy lies.
+struct BeamBed {
+  std::array<double, kMaxBeamNodes> stiffness_n_per_mm{};  ///< >= 0; 0 outside the body.
+  std::array<Vec3, kMaxBeamNodes> offset_mm{};  ///< From the straight shaft's node to its proxy, across the shaft.
+};
+
+/// Where the shaft comes to rest in its bed, across its straight axis, as a linear function of a force on the tip.
+struct BeamSolution {
+  int node_count = 0;
+  std::array<Vec3, kMaxBeamNodes> deflection_mm{};         ///< Without a force on the tip.
+  std::array<double, kMaxBeamNodes> per_tip_force_mm_n{};  ///< Deflection a newton on the tip; the last is the tip's.
+  bool is_bound = false;  ///< Deflections were limited (kMaxDeflection of the length: the beam is linear).
+};
+inline constexpr double kMaxDeflection = 0.3;
+
+/// Exact for loads at nodes; banded, bounded. Real-time safe.
+BeamSolution solve_beam(const NeedleBeam& beam, const BeamBed& bed) noexcept;
+
+}  // namespace trocar
