@@ -1,25 +1,9 @@
 #include "haptics/tick.h"
 
-#include <algorithm>
+#include "haptics/detail/tick_parts.h"
 
 namespace trocar {
 namespace {
-
-class EventList {
- public:
-  explicit EventList(TickSample& sample) noexcept : sample_(sample) {}
-  void add(EventKind kind, std::uint8_t id) noexcept {
-    if (count_ < sample_.events.size())
-      sample_.events[count_++] = {kind, id};
-    else
-      sample_.events.back() = {EventKind::kLimit, static_cast<std::uint8_t>(LimitReason::kEventsDropped)};
-  }
-  void add(LimitReason reason) noexcept { add(EventKind::kLimit, static_cast<std::uint8_t>(reason)); }
-
- private:
-  TickSample& sample_;
-  std::size_t count_ = 0;
-};
 
 bool is_usable(const HapticInput& input) noexcept {
   constexpr double kFarAway_mm = 1e5;
@@ -43,22 +27,6 @@ Wrench constraint_wrench(const InsertionState& state, const HapticScene& scene, 
   const Channel& line = state.channel;
   if (line.direction_P.dot(X_PN.p() - line.origin_P) <= 0.0) return {};
   return path_constraint(line.origin_P, line.direction_P, X_PN.p(), X_PN.R().col(2), scene.options.constraint);
-}
-
-/// Carries the weight of links and stylus, so that the hand feels only the needle (paper A; physics.md W1).
-Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) noexcept {
-  if (!scene.options.has_weight_compensation) return {};
-  const Vec3 lift_P = -scene.gravity_P * scene.device.stylus_weight_n;
-  const Vec3 arm_P = R_PS * Vec3(0.0, 0.0, -scene.device.stylus_lever_mm);
-  return {lift_P, arm_P.cross(lift_P)};
-}
-
-/// Scales a vector to a norm; true when it had to.
-bool clamp_norm(Vec3& v, double limit) noexcept {
-  const double norm = v.norm();
-  if (!(norm > limit)) return false;
-  v *= limit / norm;
-  return true;
 }
 
 void fill_insertion(TickSample& sample, const InsertionStep& step) noexcept {
@@ -110,16 +78,7 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
 
   // The device gets the coupling's force: the balance of the laws and the holding force.
   sample.device_f_n = sample.f_total_n + sample.axis * sample.f_stick_n;
-  Vec3 torque_P = sample.tau_nmm;
-  const bool force_limited = clamp_norm(sample.device_f_n, scene.device.peak_force_n);
-  const bool torque_limited = clamp_norm(torque_P, scene.device.peak_torque_nmm);
-  if (force_limited) events.add(LimitReason::kForceClamped);
-  if (torque_limited) events.add(LimitReason::kTorqueClamped);
-  sample.limited = force_limited || torque_limited;
-
-  const Mat3 R_DP = scene.X_PD.R().transpose();
-  output.f_D = R_DP * sample.device_f_n;
-  output.tau_D = R_DP * torque_P;
+  limit_to_device(output, events, scene);
   state.last = sample;
   return output;
 }

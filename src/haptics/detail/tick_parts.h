@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+
+#include "haptics/tick.h"
+
+/// What the ticks of all tools share. Private to `haptics`; all of it real-time safe.
+namespace trocar {
+
+/// Fills the few places for events in a sample; the last one says when there were more.
+class EventList {
+ public:
+  explicit EventList(TickSample& sample) noexcept : sample_(sample) {}
+  void add(EventKind kind, std::uint8_t id) noexcept {
+    if (count_ < sample_.events.size())
+      sample_.events[count_++] = {kind, id};
+    else
+      sample_.events.back() = {EventKind::kLimit, static_cast<std::uint8_t>(LimitReason::kEventsDropped)};
+  }
+  void add(LimitReason reason) noexcept { add(EventKind::kLimit, static_cast<std::uint8_t>(reason)); }
+
+ private:
+  TickSample& sample_;
+  std::size_t count_ = 0;
+};
+
+/// Carries the weight of links and stylus, so that the hand feels only the tool (paper A; physics.md W1).
+inline Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) noexcept {
+  if (!scene.options.has_weight_compensation) return {};
+  const Vec3 lift_P = -scene.gravity_P * scene.device.stylus_weight_n;
+  const Vec3 arm_P = R_PS * Vec3(0.0, 0.0, -scene.device.stylus_lever_mm);
+  return {lift_P, arm_P.cross(lift_P)};
+}
+
+/// Scales a vector to a norm; true when it had to.
+inline bool clamp_norm(Vec3& v, double limit) noexcept {
+  const double norm = v.norm();
+  if (!(norm > limit)) return false;
+  v *= limit / norm;
+  return true;
+}
+
+/// The last step of every tick: `device_f_n` and the torque limited to the device's peaks, said in the events, turned
+/// into D.
+inline void limit_to_device(HapticOutput& output, EventList& events, const HapticScene& scene) noexcept {
+  TickSample& sample = output.sample;
+  Vec3 torque_P = sample.tau_nmm;
+  const bool force_limited = clamp_norm(sample.device_f_n, scene.device.peak_force_n);
+  const bool torque_limited = clamp_norm(torque_P, scene.device.peak_torque_nmm);
+  if (force_limited) events.add(LimitReason::kForceClamped);
+  if (torque_limited) events.add(LimitReason::kTorqueClamped);
+  sample.limited = force_limited || torque_limited;
+
+  const Mat3 R_DP = scene.X_PD.R().transpose();
+  output.f_D = R_DP * sample.device_f_n;
+  output.tau_D = R_DP * torque_P;
+}
+
+}  // namespace trocar
