@@ -13,9 +13,12 @@ constexpr int kMuscle = 20;
 constexpr int kHollow = 30;      // lung, bowel, fluid
 constexpr int kParenchyma = 40;  // solid organs
 constexpr int kBone = 50;
-constexpr int kCanal = 60;  // the cord inside the vertebra
+constexpr int kCanal = 60;  // what fills the canal of the vertebrae
+constexpr int kSac = 62;    // the sac of the dura in it
+constexpr int kCord = 64;   // the cord in that
 constexpr int kVein = 70;   // vessels inside an organ
 constexpr int kArtery = 75;
+constexpr int kDuct = 77;  // bile ducts beside them
 constexpr int kCyst = 80;
 constexpr int kLesion = 90;  // a tumour over everything it grows in
 
@@ -38,6 +41,10 @@ constexpr Rgb kBileGreen{70, 140, 70};
 constexpr Rgb kPancreasOchre{226, 176, 110};
 constexpr Rgb kGlandOrange{228, 148, 64};
 constexpr Rgb kHeartRed{180, 50, 54};
+constexpr Rgb kLigamentSand{206, 186, 150};
+constexpr Rgb kFlavumGold{218, 178, 60};
+constexpr Rgb kCsfBlue{146, 206, 236};
+constexpr Rgb kSerousPearl{214, 200, 206};
 constexpr Rgb kNerveYellow{250, 238, 130};
 constexpr Rgb kFluidBlue{120, 180, 220};
 constexpr Rgb kGasGrey{70, 82, 96};
@@ -101,9 +108,9 @@ constexpr Row kRows[] = {
     {"rectum", {"bowel", kBowelPink, kHollow}},
     {"urinarybladder", {"fluid", kFluidBlue, kHollow}},
     {"bladder", {"fluid", kFluidBlue, kHollow}},
-    {"ascites", {"fluid", kFluidBlue, kFill}},
+    {"ascites", {"ascites", kFluidBlue, kFill}},
+    {"peritoneum", {"peritoneum", kSerousPearl, kFill}},
     {"pleuraleffusion", {"fluid", kFluidBlue, kHollow}},
-    {"csf", {"fluid", kFluidBlue, kCanal}},
     {"lung", {"lung", kLungRose, kHollow}},
     {"lungs", {"lung", kLungRose, kHollow}},
     {"lungbase", {"lung", kLungRose, kHollow}},
@@ -138,9 +145,12 @@ constexpr Row kRows[] = {
     {"brachiocephalicvein", {"vessel", kVeinBlue, kVein}},
     {"iliacvena", {"vessel", kVeinBlue, kVein}},
     {"iliacvein", {"vessel", kVeinBlue, kVein}},
-    {"biliarysystem", {"vessel", kBileGreen, kVein}},
-    {"bileduct#", {"vessel", kBileGreen, kVein}},
-    {"bileducts", {"vessel", kBileGreen, kVein}},
+    {"biliarysystem", {"bile_duct", kBileGreen, kDuct}},
+    {"biliarytree", {"bile_duct", kBileGreen, kDuct}},
+    {"bileduct#", {"bile_duct", kBileGreen, kDuct}},
+    {"bileducts", {"bile_duct", kBileGreen, kDuct}},
+    {"commonbileduct", {"bile_duct", kBileGreen, kDuct}},
+    {"hepaticduct", {"bile_duct", kBileGreen, kDuct}},
 
     {"bone", {"bone", kBoneIvory, kBone}},
     {"bones", {"bone", kBoneIvory, kBone}},
@@ -169,8 +179,22 @@ constexpr Row kRows[] = {
     {"intervertebraldisc#", {"cartilage", kCartilageBlueGrey, kBone}},
     {"disc#", {"cartilage", kCartilageBlueGrey, kBone}},
     {"discs", {"cartilage", kCartilageBlueGrey, kBone}},
-    {"spinalcord", {"nerve", kNerveYellow, kCanal}},
-    {"spinalcanal", {"nerve", kNerveYellow, kCanal}},
+    {"spinalcord", {"nerve", kNerveYellow, kCord}},
+    {"spinalcanal", {"csf", kCsfBlue, kCanal}},
+    {"csf", {"csf", kCsfBlue, kSac}},
+    {"cerebrospinalfluid", {"csf", kCsfBlue, kSac}},
+    {"dura", {"csf", kCsfBlue, kSac}},
+    {"duralsac", {"csf", kCsfBlue, kSac}},
+    {"thecalsac", {"csf", kCsfBlue, kSac}},
+    {"epiduralfat", {"adipose", kFatYellow, kCanal}},
+    {"epiduralspace", {"adipose", kFatYellow, kCanal}},
+
+    {"ligamentumflavum", {"ligamentum_flavum", kFlavumGold, kCanal}},
+    {"ligamentaflava", {"ligamentum_flavum", kFlavumGold, kCanal}},
+    {"supraspinousligament", {"ligament", kLigamentSand, kBone}},
+    {"interspinousligament", {"ligament", kLigamentSand, kBone}},
+    {"ligament", {"ligament", kLigamentSand, kBone}},
+    {"ligaments", {"ligament", kLigamentSand, kBone}},
     {"brain", {"nerve", kNerveYellow, kParenchyma}},
 
     {"autochthon", {"muscle", kMuscleRed, kMuscle}},

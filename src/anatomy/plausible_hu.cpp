@@ -15,11 +15,12 @@ struct HuRange {
   double high;
 };
 // Wide limits around textbook values: what lies outside is not this tissue, plain or with contrast. [assumed]
-constexpr std::array kRanges{HuRange{"bone", 90, 2000},         HuRange{"liver", 0, 250},
-                             HuRange{"liver_lesion", -30, 300}, HuRange{"spleen", 0, 300},
-                             HuRange{"kidney", -10, 350},       HuRange{"vessel", -20, 600},
-                             HuRange{"muscle", -50, 150},       HuRange{"lung", -1000, -300},
-                             HuRange{"organ", -60, 250},        HuRange{"gallbladder", -30, 150}};
+constexpr std::array kRanges{
+    HuRange{"bone", 90, 2000},        HuRange{"liver", 0, 250},      HuRange{"liver_lesion", -30, 300},
+    HuRange{"spleen", 0, 300},        HuRange{"kidney", -10, 350},   HuRange{"vessel", -20, 600},
+    HuRange{"muscle", -50, 150},      HuRange{"lung", -1000, -300},  HuRange{"organ", -60, 250},
+    HuRange{"gallbladder", -30, 150}, HuRange{"csf", -30, 80},       HuRange{"ascites", -30, 60},
+    HuRange{"bile_duct", -30, 150},   HuRange{"ligament", -60, 250}, HuRange{"ligamentum_flavum", -60, 250}};
 constexpr double kSmallestJudged_ml = 1.0;
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "anatomy/hu_transfer_text.h"
 #include "anatomy/tissue_fields.h"
 #include "config/sourced_number.h"
 #include "core/atomic_file.h"
@@ -11,6 +12,7 @@
 namespace trocar {
 namespace {
 
+constexpr Range kUnknownYoung{1.0, 1000.0};
 constexpr std::size_t kMaxEntries = 250;  ///< Tissues and layers are numbered with one byte.
 
 template <class T>
@@ -72,13 +74,28 @@ std::vector<std::string_view> field_names(std::span<const TissueField<T>> fields
   return names;
 }
 
+/// The fields of a tissue that a row must have. Sessions that were stored before tissues had a Young's modulus still
+/// load: what is missing takes the default, and says so.
+std::span<const TissueField<TissueParams>> required_fields(const TomlTable& row, bool is_stored,
+                                                           const std::string& path, TissueTable& table) {
+  const std::span<const TissueField<TissueParams>> fields = kTissueFields;
+  static_assert(kTissueFields.back().name == kYoung);
+  if (!is_stored || row.has(kYoung)) return fields;
+  table.provenance[fmt::format("{}.{}", path, kYoung)] = {"assumed, stored without it", kUnknownYoung.low,
+                                                          kUnknownYoung.high};
+  return fields.first(fields.size() - 1);
+}
+
 Status read_layers(const TomlTable& document, TissueTable& table) {
   TROCAR_TRY(const TomlTable rows, document.table("layers"));
   for (const std::string& name : rows.keys()) {
     TROCAR_TRY(const TomlTable row, rows.table(name));
-    TROCAR_TRY_STATUS(row.check_keys(field_names<LayerParams>(kLayerFields)));
+    std::vector<std::string_view> known = field_names<LayerParams>(kLayerFields);
+    known.push_back(kWall);
+    TROCAR_TRY_STATUS(row.check_keys(known));
     LayerParams layer;
     layer.name = name;
+    TROCAR_TRY(layer.is_wall, row.boolean_or(kWall, false));
     TROCAR_TRY_STATUS(read_fields<LayerParams>(row, kLayerFields, "layers." + name, true, layer, table));
     table.layers.push_back(std::move(layer));
   }
@@ -92,13 +109,15 @@ Status read_tissues(const TomlTable& document, TissueTable& table) {
   TROCAR_TRY(const TomlTable rows, document.table("tissues"));
   std::vector<std::string_view> known = field_names<TissueParams>(kTissueFields);
   known.push_back("layer");
+  const bool is_stored = document.has("applied_profile");
   for (const std::string& name : rows.keys()) {
     TROCAR_TRY(const TomlTable row, rows.table(name));
     if (name == "air") return fail("air is implied and feels like nothing", row.where(), "remove it");
     TROCAR_TRY_STATUS(row.check_keys(known));
     TissueParams tissue;
     tissue.name = name;
-    TROCAR_TRY_STATUS(read_fields<TissueParams>(row, kTissueFields, "tissues." + name, true, tissue, table));
+    const auto fields = required_fields(row, is_stored, "tissues." + name, table);
+    TROCAR_TRY_STATUS(read_fields<TissueParams>(row, fields, "tissues." + name, true, tissue, table));
     if (row.has("layer")) {
       TROCAR_TRY(const std::string layer, row.string("layer"));
       tissue.layer = table.find_layer(layer);
@@ -146,7 +165,7 @@ Status apply_profile(const TomlTable& document, std::string_view wanted, TissueT
 }
 
 Result<TissueTable> read_table(const TomlTable& document, std::string_view profile) {
-  TROCAR_TRY_STATUS(document.check_keys({"skin", "layers", "tissues", "profiles", "applied_profile"}));
+  TROCAR_TRY_STATUS(document.check_keys({"skin", "layers", "tissues", "profiles", "applied_profile", kTransfer}));
   TissueTable table;
   TROCAR_TRY(const TomlTable skin, document.table("skin"));
   TROCAR_TRY_STATUS(skin.check_keys({kSkinThickness}));
@@ -160,6 +179,7 @@ Result<TissueTable> read_table(const TomlTable& document, std::string_view profi
   if (!skin_index || !table.tissues[*skin_index].layer)
     return fail("a tissue \"skin\" with a layer is needed", document.where(), "add [tissues.skin]");
   table.skin = *skin_index;
+  TROCAR_TRY_STATUS(read_hu_transfer(document, table));
   TROCAR_TRY_STATUS(apply_profile(document, profile, table));
   return table;
 }

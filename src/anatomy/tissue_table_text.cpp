@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "anatomy/hu_transfer_text.h"
 #include "anatomy/tissue_fields.h"
 #include "anatomy/tissue_table.h"
 
@@ -11,33 +12,6 @@ namespace trocar {
 namespace {
 
 constexpr std::string_view kOverrideSource = "set by the user";
-
-/// TOML basic string.
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return out + '"';
-}
-
-/// Shortest digits that read back to the same bits, always a TOML float or integer.
-std::string number_text(double value) {
-  return fmt::format("{}", value);
-}
-
-void append_number(std::string& out, std::string_view key, double value, const std::string& path,
-                   const std::map<std::string, Provenance>& provenance) {
-  const auto it = provenance.find(path);
-  const Provenance source = it != provenance.end() ? it->second : Provenance{std::string(kOverrideSource), {}, {}};
-  out += fmt::format("{} = {{", key);
-  out += std::isinf(value) ? "never = true" : "value = " + number_text(value);
-  out += ", source = " + toml_string(source.source);
-  if (source.low && source.high)
-    out += fmt::format(", range = [{}, {}]", number_text(*source.low), number_text(*source.high));
-  out += "}\n";
-}
 
 template <class T>
 void append_fields(std::string& out, const T& entry, std::span<const TissueField<T>> fields, std::string_view kind,
@@ -86,11 +60,13 @@ class Override {
 
   Status apply() {
     if (assignment_.name == "skin" && (assignment_.key == kSkinThickness)) return set_skin_thickness();
+    if (assignment_.name == kTransfer) return set_gradient_number();
     const auto tissue = table_.find_tissue(assignment_.name);
     const auto layer = table_.find_layer(assignment_.name);
     if (!tissue && !layer)
       return fail_usage(fmt::format("there is no tissue or layer \"{}\"", assignment_.name), std::string(text_));
     if (tissue && *tissue == 0) return fail_usage("air feels like nothing", std::string(text_));
+    if (layer && assignment_.key == kWall) return set_wall(table_.layers[*layer]);
     const auto* tissue_field = find_field<TissueParams>(kTissueFields, assignment_.key);
     const auto* layer_field = find_field<LayerParams>(kLayerFields, assignment_.key);
     if (tissue && tissue_field) {
@@ -125,6 +101,30 @@ class Override {
     return {};
   }
 
+  Status set_gradient_number() {
+    const auto* field = find_field<HuTransfer>(kGradientFields, assignment_.key);
+    if (!field)
+      return fail_usage(fmt::format("{} has no \"{}\" that can be set", kTransfer, assignment_.key), std::string(text_),
+                        "known are: gradient_scale_mm, gradient_none_hu_per_mm, gradient_full_hu_per_mm");
+    if (table_.transfer.knot_count == 0)
+      return fail_usage("the tissue table has no transfer functions", std::string(text_));
+    TROCAR_TRY_STATUS(check_range(assignment_, field->name, field->range, text_));
+    HuTransfer changed = table_.transfer;
+    changed.*field->member = assignment_.value;
+    if (!(changed.gradient_full_hu_per_mm > changed.gradient_none_hu_per_mm))
+      return fail_usage("gradient_full_hu_per_mm must be above gradient_none_hu_per_mm", std::string(text_));
+    table_.transfer = changed;
+    table_.provenance[fmt::format("{}.{}", kTransfer, field->name)] = {std::string(kOverrideSource), {}, {}};
+    return {};
+  }
+
+  Status set_wall(LayerParams& layer) {
+    if (assignment_.value != 0.0 && assignment_.value != 1.0)
+      return fail_usage("wall must be 0 or 1", std::string(text_));
+    layer.is_wall = assignment_.value == 1.0;
+    return {};
+  }
+
   Status unknown_key(bool is_tissue) const {
     std::vector<std::string_view> known;
     if (is_tissue)
@@ -141,11 +141,37 @@ class Override {
 
 }  // namespace
 
+std::string toml_string(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return out + '"';
+}
+
+Provenance find_provenance(const std::map<std::string, Provenance>& provenance, const std::string& path) {
+  const auto it = provenance.find(path);
+  return it != provenance.end() ? it->second : Provenance{std::string(kOverrideSource), {}, {}};
+}
+
+void append_number(std::string& out, std::string_view key, double value, const std::string& path,
+                   const std::map<std::string, Provenance>& provenance) {
+  const Provenance source = find_provenance(provenance, path);
+  out += fmt::format("{} = {{", key);
+  // The shortest digits that read back to the same bits.
+  out += std::isinf(value) ? "never = true" : fmt::format("value = {}", value);
+  out += ", source = " + toml_string(source.source);
+  if (source.low && source.high) out += fmt::format(", range = [{}, {}]", *source.low, *source.high);
+  out += "}\n";
+}
+
 std::string TissueTable::to_toml() const {
   std::string out = fmt::format("applied_profile = {}\n\n[skin]\n", toml_string(profile));
   append_number(out, kSkinThickness, skin_thickness_mm, "skin.thickness_mm", provenance);
   for (const LayerParams& layer : layers) {
     out += fmt::format("\n[layers.{}]\n", toml_string(layer.name));
+    if (layer.is_wall) out += fmt::format("{} = true\n", kWall);
     append_fields<LayerParams>(out, layer, kLayerFields, "layers", provenance);
   }
   for (std::size_t n = 1; n < tissues.size(); ++n) {
@@ -154,6 +180,7 @@ std::string TissueTable::to_toml() const {
     if (tissue.layer) out += fmt::format("layer = {}\n", toml_string(layers[*tissue.layer].name));
     append_fields<TissueParams>(out, tissue, kTissueFields, "tissues", provenance);
   }
+  append_hu_transfer(out, *this);
   return out;
 }
 

@@ -61,6 +61,22 @@ TEST(KnownStructure, TissueFollowsTheName) {
   EXPECT_EQ(tissue_of("fat"), "adipose");
 }
 
+TEST(KnownStructure, KnowsWhatLiesOnThePathsOfSpineBileDuctAndAscites) {
+  for (const auto& [name, tissue] :
+       std::initializer_list<std::pair<const char*, const char*>>{{"supraspinous_ligament", "ligament"},
+                                                                  {"interspinous_ligament", "ligament"},
+                                                                  {"ligamentum_flavum", "ligamentum_flavum"},
+                                                                  {"epidural_fat", "adipose"},
+                                                                  {"dura", "csf"},
+                                                                  {"csf", "csf"},
+                                                                  {"spinal_canal", "csf"},
+                                                                  {"bile_duct", "bile_duct"},
+                                                                  {"biliarysystem", "bile_duct"},
+                                                                  {"peritoneum", "peritoneum"},
+                                                                  {"ascites", "ascites"}})
+    EXPECT_EQ(tissue_of(name), tissue) << name;
+}
+
 TEST(KnownStructure, KnowsTheMaskNamesOf3dIrcadb) {
   for (const auto& [name, tissue] :
        std::initializer_list<std::pair<const char*, const char*>>{{"liver", "liver"},
@@ -102,6 +118,9 @@ TEST(KnownStructure, WhatLiesInsideAnotherWins) {
   EXPECT_GT(priority("aorta"), priority("inferior_vena_cava"));
   EXPECT_GT(priority("bone"), priority("autochthon_left"));
   EXPECT_GT(priority("spinal_cord"), priority("vertebrae_L1"));
+  EXPECT_GT(priority("spinal_cord"), priority("dura"));
+  EXPECT_GT(priority("dura"), priority("epidural_fat"));
+  EXPECT_GT(priority("bile_duct"), priority("liver"));
   EXPECT_GT(priority("liver"), priority("lungs"));
   EXPECT_GT(priority("kidney_cyst_left"), priority("kidney_left"));
 }

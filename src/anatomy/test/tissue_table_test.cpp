@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "anatomy/hu_transfer_text.h"
 #include "core/data_dir.h"
 #include "core/random.h"
 
@@ -45,6 +46,16 @@ double puncture_depth_mm(const LayerParams& p) {
   return low;
 }
 
+void expect_same_transfer(const HuTransfer& a, const HuTransfer& b) {
+  ASSERT_EQ(a.knot_count, b.knot_count);
+  EXPECT_EQ(a.hu, b.hu);
+  for (std::size_t n = 0; n < a.knot_count; ++n) {
+    for (const auto& field : kHuLawFields)
+      EXPECT_EQ(a.laws[n].*field.member, b.laws[n].*field.member) << field.name << n;
+  }
+  for (const auto& field : kGradientFields) EXPECT_EQ(a.*field.member, b.*field.member) << field.name;
+}
+
 void expect_same(const TissueTable& a, const TissueTable& b) {
   EXPECT_EQ(a.profile, b.profile);
   EXPECT_EQ(a.skin_thickness_mm, b.skin_thickness_mm);
@@ -57,6 +68,7 @@ void expect_same(const TissueTable& a, const TissueTable& b) {
     EXPECT_EQ(a.layers[n].viscosity_ns_per_mm, b.layers[n].viscosity_ns_per_mm);
     EXPECT_EQ(a.layers[n].delta_x_mm, b.layers[n].delta_x_mm);
     EXPECT_EQ(a.layers[n].puncture_force_n, b.layers[n].puncture_force_n);
+    EXPECT_EQ(a.layers[n].is_wall, b.layers[n].is_wall);
   }
   for (std::size_t n = 0; n < a.tissues.size(); ++n) {
     EXPECT_EQ(a.tissues[n].name, b.tissues[n].name);
@@ -65,8 +77,10 @@ void expect_same(const TissueTable& a, const TissueTable& b) {
     EXPECT_EQ(a.tissues[n].roughness_n, b.tissues[n].roughness_n);
     EXPECT_EQ(a.tissues[n].stick_n_per_mm, b.tissues[n].stick_n_per_mm);
     EXPECT_EQ(a.tissues[n].cutting_n, b.tissues[n].cutting_n);
+    EXPECT_EQ(a.tissues[n].young_kpa, b.tissues[n].young_kpa);
     EXPECT_EQ(a.tissues[n].layer, b.tissues[n].layer);
   }
+  expect_same_transfer(a.transfer, b.transfer);
   ASSERT_EQ(a.provenance.size(), b.provenance.size());
   for (const auto& [key, value] : a.provenance) {
     const auto it = b.provenance.find(key);
@@ -114,7 +128,9 @@ TEST(TissueTable, HoldsTable1OfPaperAAsPrinted) {
 TEST(TissueTable, EveryNumberHasASourceAndEveryAssumedFiniteNumberARange) {
   for (const std::string_view profile : {"paper-a", "tented"}) {
     const TissueTable table = shipped(profile);
-    EXPECT_EQ(table.provenance.size(), 1 + 4 * table.layers.size() + 5 * (table.tissues.size() - 1));
+    EXPECT_EQ(table.provenance.size(), 1 + kLayerFields.size() * table.layers.size() +
+                                           kTissueFields.size() * (table.tissues.size() - 1) + kHuLawFields.size() +
+                                           kGradientFields.size());
     for (const auto& [path, provenance] : table.provenance) {
       EXPECT_FALSE(provenance.source.empty()) << path;
       const bool is_never = path == "layers.bone.puncture_force_n";
@@ -127,13 +143,25 @@ TEST(TissueTable, EveryNumberHasASourceAndEveryAssumedFiniteNumberARange) {
 
 TEST(TissueTable, CoversTheVocabularyAndTheLayersItCarries) {
   const TissueTable table = shipped();
-  const std::map<std::string, std::string> layer_of = {
-      {"skin", "skin"},          {"muscle", "muscle"}, {"liver", "liver_capsule"}, {"liver_lesion", "liver_capsule"},
-      {"vessel", "vessel"},      {"bowel", "bowel"},   {"lung", "pleura"},         {"bone", "bone"},
-      {"cartilage", "cartilage"}};
+  const std::map<std::string, std::string> layer_of = {{"skin", "skin"},
+                                                       {"muscle", "muscle"},
+                                                       {"liver", "liver_capsule"},
+                                                       {"liver_lesion", "liver_capsule"},
+                                                       {"vessel", "vessel"},
+                                                       {"bowel", "bowel"},
+                                                       {"lung", "pleura"},
+                                                       {"bone", "bone"},
+                                                       {"cartilage", "cartilage"},
+                                                       {"ligamentum_flavum", "ligamentum_flavum"},
+                                                       {"csf", "dura"},
+                                                       {"ascites", "peritoneum"},
+                                                       {"peritoneum", "peritoneum"},
+                                                       {"bile_duct", "bile_duct"}};
   const std::set<std::string> vocabulary = {
-      "air",  "skin",   "adipose", "muscle",      "liver", "liver_lesion", "bone",  "cartilage",   "vessel", "bowel",
-      "lung", "kidney", "spleen",  "gallbladder", "organ", "nerve",        "fluid", "soft_tissue", "gas"};
+      "air",       "skin",    "adipose",    "muscle",      "liver",  "liver_lesion", "bone",
+      "cartilage", "vessel",  "bowel",      "lung",        "kidney", "spleen",       "gallbladder",
+      "organ",     "nerve",   "fluid",      "soft_tissue", "gas",    "ligament",     "ligamentum_flavum",
+      "csf",       "ascites", "peritoneum", "bile_duct"};
   std::set<std::string> names;
   for (const TissueParams& entry : table.tissues) {
     names.insert(entry.name);

@@ -24,7 +24,7 @@ Role role_of(const Task& task, const Label& label) {
   if (is_organ(task, label)) return Role::kOrgan;
   if (find_risk(task, label)) return Role::kForbidden;
   if (label.tissue == "muscle") return Role::kMuscle;
-  for (const char* tissue : {"skin", "adipose", "soft_tissue", "fluid"})
+  for (const char* tissue : {"skin", "adipose", "soft_tissue", "fluid", "ascites", "peritoneum"})
     if (label.tissue == tissue) return Role::kPassable;
   return Role::kForbidden;
 }
