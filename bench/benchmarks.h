@@ -15,5 +15,7 @@ Result<std::vector<CaseResult>> run_haptics_benchmark();
 Result<std::vector<CaseResult>> run_session_benchmark();
 /// Forces of an insertion into the embedded patient: peaks, drops, second insertion.
 Result<std::vector<CaseResult>> run_insertion_benchmark();
+/// Partly against fully segmented data along planned paths: the study of the Luebeck group.
+Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options);
 
 }  // namespace trocar::bench

@@ -1,13 +1,19 @@
 #pragma once
 
+#include <concepts>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "anatomy/patient.h"
 #include "config/json.h"
+#include "core/progress.h"
 #include "core/result.h"
+#include "haptics/haptic_scene.h"
 
 namespace trocar::bench {
 
@@ -19,7 +25,7 @@ struct Figures {
 /// One line of `trocar bench`.
 struct CaseResult {
   std::string name;  ///< "slice/512-oblique".
-  std::string unit;  ///< us, ms, fps, mm, n, ratio.
+  std::string unit;  ///< us, ms, fps, mm, n, nmm (N mm), ratio.
   Figures figures;
   struct Peer {
     std::string name;
@@ -36,11 +42,38 @@ Figures time_ms(int warm_up, int rounds, const std::function<void()>& work);
 /// resolve it were taken: p99 below 100, p99.9 below 1000.
 Figures figures_of(std::vector<double> values);
 
+/// What a user may ask of a benchmark. An option that a benchmark does not name in Benchmark::options is refused.
+struct Options {
+  std::shared_ptr<const VirtualPatient> patient;  ///< Empty: the benchmark's own.
+  std::string task = "liver-biopsy";
+  int paths = 2000;
+  std::optional<ForceModel> force_model;
+  std::uint64_t seed = 1;
+  std::filesystem::path out;  ///< Folder for files; empty: none are written.
+  Progress progress;
+  std::function<void(std::string_view)> print;  ///< For people, beside the figures; empty with --json.
+};
+
+/// The work of a benchmark: a function with options or without.
+class Work {
+ public:
+  template <std::invocable Function>
+  Work(Function function) : call_([function](const Options&) { return function(); }) {}
+  template <std::invocable<const Options&> Function>
+  Work(Function function) : call_(function) {}
+
+  Result<std::vector<CaseResult>> operator()(const Options& options) const { return call_(options); }
+
+ private:
+  std::function<Result<std::vector<CaseResult>>(const Options&)> call_;
+};
+
 /// A benchmark: a name and what it measures. All of them are listed in registry.cpp.
 struct Benchmark {
   std::string_view name;  ///< "slice", "session".
   std::string_view description;
-  std::function<Result<std::vector<CaseResult>>()> run;
+  Work run;
+  std::vector<std::string_view> options{};  ///< Those of the command line that it can use: "--patient".
 };
 const std::vector<Benchmark>& all_benchmarks();
 

@@ -1,11 +1,13 @@
 // trocar bench: the kernels' benchmarks.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "bench/harness.h"
 #include "commands.h"
+#include "patient_source.h"
 
 namespace trocar::cli {
 namespace {
@@ -14,7 +16,14 @@ struct Arguments {
   std::vector<std::string> names;
   bool is_json = false;
   bool is_list = false;
+  PatientSource source;
+  std::string force_model;
+  bench::Options options;
+  std::vector<std::string> given;  ///< Of kForSome.
 };
+
+/// Options that only some benchmarks can use.
+constexpr const char* kForSome[] = {"--patient", "--task", "--paths", "--force-model", "--seed", "--out"};
 
 std::string cell(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : "-";
@@ -45,15 +54,51 @@ Result<std::vector<const bench::Benchmark*>> choose(const std::vector<std::strin
   return chosen;
 }
 
-Status run_benchmarks(const Arguments& arguments) {
+/// An option must mean something to every benchmark that is to run.
+Status check_options(const std::vector<const bench::Benchmark*>& chosen, const std::vector<std::string>& given) {
+  for (const std::string& option : given) {
+    for (const bench::Benchmark* benchmark : chosen) {
+      const auto& usable = benchmark->options;
+      if (std::find(usable.begin(), usable.end(), option) != usable.end()) continue;
+      return fail_usage(
+          fmt::format("the benchmark cannot use {}", option), std::string(benchmark->name),
+          usable.empty() ? "it takes no options" : fmt::format("its options are {}", fmt::join(usable, ", ")));
+    }
+  }
+  return {};
+}
+
+Status prepare(Arguments& arguments) {
+  if (!arguments.force_model.empty()) {
+    TROCAR_TRY(arguments.options.force_model, parse_force_model(arguments.force_model));
+  }
+  if (!arguments.options.out.empty()) TROCAR_TRY_STATUS(check_new(arguments.options.out));
+  if (!arguments.is_json) arguments.options.print = [](std::string_view text) { fmt::print("{}", text); };
+  return {};
+}
+
+Result<std::vector<bench::CaseResult>> measure(const bench::Benchmark& benchmark, const Arguments& arguments) {
+  const ProgressPrinter printer;
+  bench::Options options = arguments.options;
+  options.progress = printer.callback();
+  if (!arguments.source.folder_or_name.empty()) {
+    TROCAR_TRY(VirtualPatient patient, open_patient(arguments.source, printer.callback()));
+    options.patient = std::make_shared<const VirtualPatient>(std::move(patient));
+  }
+  return benchmark.run(options);
+}
+
+Status run_benchmarks(Arguments& arguments) {
   if (arguments.is_list) {
     for (const bench::Benchmark& b : bench::all_benchmarks()) fmt::print("{:<12} {}\n", b.name, b.description);
     return {};
   }
   TROCAR_TRY(const auto chosen, choose(arguments.names));
+  TROCAR_TRY_STATUS(check_options(chosen, arguments.given));
+  TROCAR_TRY_STATUS(prepare(arguments));
   Json all = Json::array();
   for (const bench::Benchmark* benchmark : chosen) {
-    TROCAR_TRY(const auto results, benchmark->run());
+    TROCAR_TRY(const auto results, measure(*benchmark, arguments));
     if (arguments.is_json) {
       all.push_back(bench::to_json(benchmark->name, results));
     } else {
@@ -72,8 +117,21 @@ void add_bench_command(CLI::App& program, Action& action) {
   command->add_option("NAME", a->names, "Benchmarks to run; all when left out");
   command->add_flag("--list", a->is_list, "List the benchmarks");
   command->add_flag("--json", a->is_json, "Print one JSON object; with several benchmarks a list under \"benches\"");
-  command->footer("Example:\n  trocar bench slice --json\n");
-  command->callback([&action, a] { action = [a] { return run_benchmarks(*a); }; });
+  command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
+  command->add_option("--task", a->options.task, "Task whose paths are planned")->capture_default_str();
+  command->add_option("--paths", a->options.paths, "How many planned paths")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--force-model", a->force_model, "How forces are made: insertion, proxy or combined");
+  command->add_option("--seed", a->options.seed, "Of the choice of paths and the motion along them")
+      ->capture_default_str();
+  command->add_option("--out", a->options.out, "Folder to create, for the benchmark's files");
+  command->footer("Examples:\n  trocar bench slice --json\n  trocar bench paths --patient my_patient --paths 2000\n");
+  command->callback([&action, a, command] {
+    for (const char* option : kForSome)
+      if (command->count(option) > 0) a->given.emplace_back(option);
+    action = [a] { return run_benchmarks(*a); };
+  });
 }
 
 }  // namespace trocar::cli

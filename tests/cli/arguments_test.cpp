@@ -49,7 +49,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "run liver-biopsy --patient abdomen --operator expert --force-model proxy --out x",
                     "run liver-biopsy --patient abdomen --operator expert --rate 0 --out x",
                     "run liver-biopsy --patient abdomen --operator expert --set liver.k=stiff --out x",
-                    "bench nonsense", "ultrasound sweep", "serve"));
+                    "bench nonsense", "bench slice --paths 3", "bench paths --paths 0", "bench paths --patient nobody",
+                    "bench paths --force-model nonsense", "bench --patient abdomen", "ultrasound sweep", "serve"));
 
 TEST(Arguments, UnknownCommandIsNamed) {
   EXPECT_NE(trocar("nonsense").err.find("nonsense"), std::string::npos);

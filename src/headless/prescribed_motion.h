@@ -1,0 +1,27 @@
+#pragma once
+
+#include "geometry/pose.h"
+#include "geometry/segment.h"
+#include "haptics/tick.h"
+
+namespace trocar {
+
+/// A device that is led along a needle path, whatever the forces: open loop, so that two scenes get the same poses.
+/// It runs at constant speed from `before_mm` outside the skin to the path's end; on the way it drifts off the path
+/// and tilts, smoothly and only inside the body, so that the path constraint and the shaft have work to do.
+struct PrescribedMotion {
+  Segment line_P{Vec3::Zero(), Vec3::Zero()};  ///< Skin -> target.
+  double speed_mm_per_s = 10.0;                ///< Range 0.1..500.
+  double dt_s = 0.001;
+  double before_mm = 10.0;
+  Vec3 drift_P = Vec3::Zero();     ///< Of the tip at the path's end, across the path.
+  Vec3 tilt_rad_P = Vec3::Zero();  ///< Rotation vector about the tip at the path's end.
+};
+
+int tick_count(const PrescribedMotion& motion) noexcept;
+/// Way of the tip along the path at a tick (1 = the first), mm; negative outside the skin.
+double way_mm(const PrescribedMotion& motion, int tick) noexcept;
+/// What the device gives the scene at that tick.
+HapticInput input_at(const PrescribedMotion& motion, const HapticScene& scene, int tick) noexcept;
+
+}  // namespace trocar
