@@ -2,11 +2,21 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
 
 namespace trocar {
 
 using Vec3 = Eigen::Vector3d;   ///< Point (mm), direction, force (N) or torque (N mm); the name tells frame and kind.
 using Vec3f = Eigen::Vector3f;  ///< The same in bulk data (meshes).
 using Mat3 = Eigen::Matrix3d;
+
+/// N zero vectors. `std::array<Vec3, N> x{}` is not zero: Eigen leaves its numbers as they lie in memory.
+template <std::size_t N>
+std::array<Vec3, N> zero_vectors() noexcept {
+  std::array<Vec3, N> vectors;
+  vectors.fill(Vec3::Zero());
+  return vectors;
+}
 
 }  // namespace trocar

@@ -10,8 +10,8 @@ namespace trocar::testing {
 
 inline thread_local std::size_t allocation_events = 0;
 
-inline AllocationGuard::AllocationGuard() noexcept : start_(allocation_events) {}
-inline std::size_t AllocationGuard::count() const noexcept {
+AllocationGuard::AllocationGuard() noexcept : start_(allocation_events) {}
+std::size_t AllocationGuard::count() const noexcept {
   return allocation_events - start_;
 }
 
