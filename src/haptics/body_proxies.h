@@ -9,6 +9,9 @@
 
 namespace trocar {
 
+/// The channel's tissue is read in cells that stand still in it, so that sums over a sliding shaft have no steps.
+inline constexpr double kShaftCell_mm = 2.0;
+
 /// Dry and viscous friction of the inserted shaft: summed over the body proxies, each by the tissue it lies in and the
 /// length of shaft it stands for (paper B, section 2.1; physics.md B6). `tip_mm`: depth of the tip along the channel.
 /// Real-time safe.
@@ -19,7 +22,9 @@ struct ShaftResistance {
 ShaftResistance shaft_resistance(const Channel& channel, const HapticScene& scene, double tip_mm) noexcept;
 
 /// The shaft held to the channel's line by its body proxies, before the tip's force is known. `X_PN`: the device's
-/// needle (rigid, +z axis). Real-time safe.
+/// needle (rigid, +z axis). Purely elastic; the bed is at most half as stiff as the device can show, and reaches the
+/// device's peak torque at 0.05 rad or later. `beam.is_bound` tells of proxies or deflections beyond kMaxDeflection and
+/// of a pose that is not finite (then nothing holds). Real-time safe.
 struct HeldShaft {
   BeamSolution beam;
   BeamBed bed;
@@ -31,7 +36,7 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
 /// Points of the bent shaft in P, grip first, tip last: for pictures, ultrasound and X-ray.
 struct BentNeedle {
   int count = 0;
-  std::array<Vec3, kMaxBeamNodes + 1> points_P{};
+  std::array<Vec3, kMaxBeamNodes + 1> points_P = zero_vectors<kMaxBeamNodes + 1>();
 };
 
 /// What the shaft does to the hand with `tip_force_P`, the tissue's force on the tip (only its part across the shaft
@@ -42,6 +47,10 @@ struct ShaftReaction {
   BentNeedle needle;
 };
 ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3& tip_force_P) noexcept;
+
+/// Sideways force of the tissue on the bevel (N, in P): `bevel_share` of what resists the advancing tip, towards -y of
+/// N, away from where the face looks; zero on retreat. Goes into the tip force of `react`. Real-time safe.
+Vec3 bevel_force_P(const NeedleGeometry& needle, const Pose& X_PN, double axial_resistance_n) noexcept;
 
 /// A straight needle, for models without bending.
 BentNeedle straight_needle(const Pose& X_PN, const HapticScene& scene) noexcept;

@@ -24,19 +24,22 @@ NeedleBeam make_needle_beam(const NeedleGeometry& needle, bool is_stylet_in) noe
 /// The bed that holds the shaft: a spring a node, from the shaft to where its proxy lies.
 struct BeamBed {
   std::array<double, kMaxBeamNodes> stiffness_n_per_mm{};  ///< >= 0; 0 outside the body.
-  std::array<Vec3, kMaxBeamNodes> offset_mm{};  ///< From the straight shaft's node to its proxy, across the shaft.
+  std::array<Vec3, kMaxBeamNodes> offset_mm =
+      zero_vectors<kMaxBeamNodes>();  ///< From the straight shaft's node to its proxy, across the shaft.
 };
 
 /// Where the shaft comes to rest in its bed, across its straight axis, as a linear function of a force on the tip.
 struct BeamSolution {
   int node_count = 0;
-  std::array<Vec3, kMaxBeamNodes> deflection_mm{};         ///< Without a force on the tip.
+  std::array<Vec3, kMaxBeamNodes> deflection_mm = zero_vectors<kMaxBeamNodes>();  ///< Without a force on the tip.
   std::array<double, kMaxBeamNodes> per_tip_force_mm_n{};  ///< Deflection a newton on the tip; the last is the tip's.
   bool is_bound = false;  ///< Deflections were limited (kMaxDeflection of the length: the beam is linear).
 };
 inline constexpr double kMaxDeflection = 0.3;
 
-/// Exact for loads at nodes; banded, bounded. Real-time safe.
+/// Exact for forces at nodes, in two passes over them: the compliance of clamp, spans and springs outwards, force and
+/// moment back (physics.md B8). A stiffness that is negative or not finite holds nothing; a solution that is not finite
+/// is zero and flagged. Real-time safe.
 BeamSolution solve_beam(const NeedleBeam& beam, const BeamBed& bed) noexcept;
 
 }  // namespace trocar
