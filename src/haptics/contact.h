@@ -2,51 +2,43 @@
 
 #include <array>
 
-#include "anatomy/patient.h"
+#include "haptics/contact_column.h"
+#include "haptics/contact_face.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/path_constraint.h"
 
 namespace trocar {
 
-inline constexpr int kMaxContactPoints = 32;
-
-/// The face of a tool that lies on the skin, as points with an area and an outward normal each, in the tool's frame T
-/// (transducer: x lateral, y into the body, z elevation, origin at the array's centre; a finger: +y along the finger
-/// out of its tip).
-struct ContactFace {
-  int count = 0;
-  std::array<Vec3, kMaxContactPoints> point_T{};
-  std::array<Vec3, kMaxContactPoints> normal_T{};  ///< Unit, out of the tool.
-  std::array<double, kMaxContactPoints> area_mm2{};
-  double friction_mu = 0.0;  ///< Against the skin.
-};
-/// Convex array: an arc of `radius_mm` over `width_mm`, `thickness_mm` in elevation. With gel: mu is small.
-ContactFace make_transducer_face(double radius_mm = 60.0, double width_mm = 60.0, double thickness_mm = 14.0);
-/// A fingertip: half a ball.
-ContactFace make_finger_face(double radius_mm = 8.0);
-
+/// What a tool on the skin carries from tick to tick. Fixed size, copyable.
 struct ContactState {
   bool is_started = false;
-  Pose X_PT;                                       ///< The tool as it is shown: it does not pass through the skin.
-  std::array<Vec3, kMaxContactPoints> anchor_P{};  ///< Where each point sticks to the skin.
-  std::array<bool, kMaxContactPoints> is_anchored{};
+  double engagement = 1.0;       ///< 0..1: share of the tissue's forces; below 1 after a start inside the body.
+  Pose X_PT_device;              ///< Where the device had the tool.
+  Pose X_PT;                     ///< The tool as it is shown: it does not pass through the skin.
+  Vec3 offset_P = Vec3::Zero();  ///< Of the shown tool's origin from the device's.
+  Vec3 tilt_P = Vec3::Zero();    ///< Rotation vector of the shown tool against the device's (rad).
+  std::array<double, kMaxContactPoints> depth_mm{};  ///< Indentation under each point, >= 0.
+  std::array<Vec3, kMaxContactPoints> stretch_P{};   ///< Of the skin by friction: from where it is free to the point.
 };
+
+/// Inside this time a tool that started in the body is pressed out: no force step. [assumed] 0.2..2 s.
+inline constexpr double kEngage_s = 0.5;
 
 struct ContactStep {
-  Wrench wrench_P;  ///< On the tool, about its origin T, in P.
+  Wrench wrench_P;  ///< On the tool, about its origin T, in P: the coupling's, in balance with the skin.
   int points_in_contact = 0;
-  double depth_mm = 0.0;  ///< Deepest indentation of the skin.
-  bool is_bound = false;  ///< A bounded loop ended early.
+  double depth_mm = 0.0;        ///< Deepest indentation of the skin.
+  double normal_n = 0.0;        ///< Sum of the points' normal forces.
+  double friction_n = 0.0;      ///< Sum of the points' friction forces.
+  bool is_bound = false;        ///< A bounded loop ended early.
+  bool started_inside = false;  ///< The tool was found in the body at the start.
+  bool has_jumped = false;      ///< The device moved further than a hand can: started afresh where it is.
 };
 
-/// A tool of finite size on soft skin (physics.md B9): every point in contact is carried by the column of tissue under
-/// it, softer where the column is thick and soft, stiff where bone or a hard tumour lies shallow; friction on the skin.
-/// Coupled to the device by the scene's coupling. `X_PT`: the device's tool. dt > 0. Real-time safe.
+/// A tool of finite size on soft skin (physics.md B9, B10): every point in contact is carried by the column of tissue
+/// under it, softer where the column is thick and soft, stiff where bone or a hard tumour lies shallow; friction on the
+/// skin. Coupled to the device by the scene's coupling in all six degrees of freedom. `X_PT`: the device's tool.
+/// dt > 0, finite pose. Real-time safe.
 ContactStep step_contact(ContactState& state, const HapticScene& scene, const Pose& X_PT, double dt_s) noexcept;
-
-/// Stiffness a unit of area (N/mm^3) of the tissue under a point of the skin, looking inwards: 1 / integral of dz/E
-/// down to kColumn_mm or to bone. Real-time safe.
-double column_stiffness_n_per_mm3(const HapticScene& scene, const Vec3& skin_point_P, const Vec3& inward_P) noexcept;
-inline constexpr double kColumn_mm = 40.0;
 
 }  // namespace trocar

@@ -84,9 +84,20 @@ Status fill_label_tissues(HapticScene& scene, const TissueTable& table) {
   return {};
 }
 
-Status check_patient(const VirtualPatient* patient, ForceModel model) {
+/// The columns of tissue under a face read labels, or HU where there are none.
+Status check_palpable(const VirtualPatient& patient, const TissueTable& tissues) {
+  if (!patient.labels.empty()) return {};
+  if (!patient.ct.empty() && tissues.transfer.knot_count > 0) return {};
+  return fail(
+      "the patient has neither labels nor a CT that the tissue table can read, which the skin's stiffness needs",
+      patient.name, "build it with labels or with a CT");
+}
+
+Status check_patient(const VirtualPatient* patient, const TissueTable& tissues, const HapticOptions& options) {
+  const ForceModel model = options.force_model;
   if (!patient) return fail("there is no patient", "haptic scene");
   if (patient->skin_distance_mm.empty()) return fail("the patient has no skin", patient->name, "build it again");
+  if (options.tool != Tool::kNeedle) return check_palpable(*patient, tissues);
   if (model == ForceModel::kInsertion && patient->labels.empty())
     return fail("the patient has no labels, which the insertion model needs", patient->name,
                 "build it with labels, or use --force-model proxy");
@@ -122,9 +133,10 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
                                                              const TissueTable& tissues, const NeedleGeometry& needle,
                                                              const DeviceCapability& device,
                                                              const HapticOptions& options) {
-  TROCAR_TRY_STATUS(check_patient(patient.get(), options.force_model));
+  TROCAR_TRY_STATUS(check_patient(patient.get(), tissues, options));
   TROCAR_TRY_STATUS(check_numbers(needle, device, options));
-  if (options.force_model != ForceModel::kInsertion && tissues.transfer.knot_count == 0)
+  if (options.tool == Tool::kNeedle && options.force_model != ForceModel::kInsertion &&
+      tissues.transfer.knot_count == 0)
     return fail("has no transfer functions, which the proxy needs", "tissue table", "add [transfer] to it");
   auto scene = std::make_shared<HapticScene>();
   scene->patient = std::move(patient);
@@ -133,7 +145,9 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
   scene->options = options;
   scene->beam_with_stylet = make_needle_beam(needle, true);
   scene->beam_without_stylet = make_needle_beam(needle, false);
-  scene->X_SN = Pose::translation({0.0, 0.0, needle.length_mm});
+  scene->face = make_face(options.tool);
+  scene->X_SN =
+      options.tool == Tool::kNeedle ? Pose::translation({0.0, 0.0, needle.length_mm}) : tool_in_stylus(scene->face);
   TROCAR_TRY_STATUS(fill_laws(*scene, tissues));
   TROCAR_TRY_STATUS(fill_label_tissues(*scene, tissues));
   return scene;

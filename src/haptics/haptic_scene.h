@@ -10,6 +10,7 @@
 #include "anatomy/tissue_table.h"
 #include "core/result.h"
 #include "geometry/pose.h"
+#include "haptics/contact_face.h"
 #include "haptics/insertion_law.h"
 #include "haptics/needle_beam.h"
 #include "haptics/needle_geometry.h"
@@ -45,6 +46,7 @@ struct CouplingParams {
 
 /// Whose weight is compensated, and switches for study.
 struct HapticOptions {
+  Tool tool = Tool::kNeedle;
   ForceModel force_model = ForceModel::kInsertion;
   CouplingParams coupling;
   PathConstraintParams constraint;
@@ -86,18 +88,22 @@ struct HapticScene {
   double skin_thickness_mm = 2.0;
   HuTransfer transfer;  ///< Unlabelled tissue, proxy and combined.
   NeedleGeometry needle;
+  ContactFace face;  ///< Of a transducer or a finger.
   NeedleBeam beam_with_stylet;
   NeedleBeam beam_without_stylet;
   DeviceCapability device;
   HapticOptions options;
-  Pose X_PD;                       ///< Device base in the patient.
-  Pose X_SN;                       ///< Needle in the stylus: tip at +z, length_mm from the stylus origin.
+  Pose X_PD;  ///< Device base in the patient.
+  /// Needle in the stylus: tip at +z, length_mm from the stylus origin. For a transducer or a finger X_ST: y of T
+  /// along +z of S, face.reach_mm from the stylus origin.
+  Pose X_SN;
   Vec3 gravity_P = Vec3::UnitY();  ///< Unit, downwards: a supine patient lies on +y.
 };
 
 /// Checks every number and builds the scene. Errors: coupling or constraint stiffer than the device, numbers out of
 /// range, too many tissues, a label whose tissue the table does not know; a patient without skin distance, without
-/// labels (insertion), without CT or a table without transfer functions (proxy, combined).
+/// labels (insertion), without CT or a table without transfer functions (proxy, combined);
+/// a transducer or a finger needs labels, or a CT and transfer functions, whatever the force model.
 Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const VirtualPatient> patient,
                                                              const TissueTable& tissues, const NeedleGeometry& needle,
                                                              const DeviceCapability& device = {},

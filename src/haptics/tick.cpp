@@ -1,6 +1,7 @@
 #include "haptics/tick.h"
 
 #include "haptics/detail/tick_parts.h"
+#include "haptics/tick_contact.h"
 
 namespace trocar {
 namespace {
@@ -47,6 +48,7 @@ void fill_insertion(TickSample& sample, const InsertionStep& step) noexcept {
 
 HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept {
   if (!is_usable(input)) return reject(state, input);
+  if (scene.options.tool != Tool::kNeedle) return tick_contact(state, input, scene);
   const Pose X_PS = scene.X_PD * input.X_DS;
   const Pose X_PN = X_PS * scene.X_SN;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "haptics/contact.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion.h"
 #include "haptics/resting_anatomy.h"
@@ -19,6 +20,7 @@ struct HapticInput {
 /// All that a tick carries to the next one. Fixed size, copyable: recorded inputs replay to the same bits.
 struct HapticState {
   InsertionState insertion;
+  ContactState contact;  ///< Of a transducer or a finger.
   TickSample last;
 };
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "haptics/haptic_scene.h"
+
+namespace trocar {
+
+/// The tissue that carries a unit of area of a tool's face (physics.md B9).
+struct TissueColumn {
+  double stiffness_n_per_mm3 = 0.0;  ///< Pressure a mm of indentation, for small ones.
+  double length_mm = kColumn_mm;     ///< Down to what is rigid, or kColumn_mm: it cannot be pressed flatter than that.
+};
+
+inline constexpr double kRigid_kpa = 1e4;    ///< From this modulus on tissue ends the column: bone. [assumed]
+inline constexpr double kSoftest_kpa = 1.0;  ///< Fluid and gas are held by what is around them. Range 0.2..3. [assumed]
+inline constexpr double kPoisson = 0.5;      ///< Soft tissue hardly changes its volume.
+
+/// Column under a point of the skin, looking inwards (unit vector), loaded by the scene's face: layers in series. At
+/// most kColumnCells samples and a few to find the bone's border. Real-time safe.
+TissueColumn tissue_column(const HapticScene& scene, const Vec3& skin_point_P, const Vec3& inward_P) noexcept;
+
+/// Pressure (N/mm^2) of a column pressed by `indentation_mm`: k p / (1 - p/L), from 98 % of L on its tangent; zero
+/// below zero. Real-time safe.
+double column_pressure(const TissueColumn& column, double indentation_mm) noexcept;
+/// Its derivative (N/mm^3).
+double column_tangent(const TissueColumn& column, double indentation_mm) noexcept;
+
+}  // namespace trocar

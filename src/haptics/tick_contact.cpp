@@ -1,0 +1,49 @@
+#include "haptics/tick_contact.h"
+
+#include "haptics/detail/tick_parts.h"
+
+namespace trocar {
+
+HapticOutput tick_contact(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept {
+  const Pose X_PS = scene.X_PD * input.X_DS;
+  const Pose X_PT_now = X_PS * scene.X_SN;
+  const Pose X_PT = input.resting.pull_back(X_PT_now);
+  const Pose X_PT_before = state.contact.X_PT;
+  const bool was_started = state.contact.is_started;
+
+  const ContactStep step = step_contact(state.contact, scene, X_PT, input.dt_s);
+  const Vec3 force_P = input.resting.push_forward(X_PT.p(), step.wrench_P.force_n);
+  const Vec3 torque_P = input.resting.push_forward(X_PT.p(), step.wrench_P.torque_nmm);
+  const Wrench weight = weight_compensation(scene, X_PS.R());
+  const Pose& shown = state.contact.X_PT;
+  const bool has_past = was_started && !step.has_jumped;
+
+  HapticOutput output;
+  TickSample& sample = output.sample;
+  sample.time_s = input.time_s;
+  sample.tip_mm = shown.p();
+  sample.axis = shown.R().col(1);
+  sample.axial_velocity_mm_s = has_past ? sample.axis.dot(shown.p() - X_PT_before.p()) / input.dt_s : 0.0;
+  sample.depth_mm = step.depth_mm;
+  sample.tissue = step.points_in_contact > 0 ? scene.skin : std::uint8_t{0};
+  sample.phase = step.points_in_contact > 0 ? InsertionPhase::kLoading : InsertionPhase::kOutside;
+  sample.f_constraint_n = force_P;
+  sample.f_weight_n = weight.force_n;
+  sample.f_total_n = force_P + weight.force_n;
+  sample.tau_nmm = torque_P + (X_PT_now.p() - X_PS.p()).cross(force_P) + weight.torque_nmm;
+  sample.device_f_n = sample.f_total_n;
+  sample.device_mm = X_PT_now.p();
+  sample.breathing = input.resting.breathing;
+  const Eigen::Quaterniond q(X_PT_now.R());
+  sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
+
+  EventList events(sample);
+  if (step.has_jumped) events.add(LimitReason::kJumped);
+  if (step.started_inside) events.add(LimitReason::kResumedInside);
+  if (step.is_bound) events.add(LimitReason::kSolverBound);
+  limit_to_device(output, events, scene);
+  state.last = sample;
+  return output;
+}
+
+}  // namespace trocar
