@@ -46,6 +46,7 @@ int run(int argc, char** argv) {
   add_task_commands(program, action);
   add_run_command(program, action);
   add_session_commands(program, action);
+  add_device_commands(program, action);
   add_bench_command(program, action);
 
   try {

@@ -50,6 +50,7 @@ Json result_json(const Arguments& arguments, const Case& the_case, const RunResu
           {"task", the_case.task.name},
           {"patient", the_case.patient->name},
           {"operator", arguments.run.operator_name},
+          {"device", arguments.run.device},
           {"parenchymal", the_case.is_parenchymal},
           {"simulated_s", result.simulated_s},
           {"ticks", result.ticks},
@@ -123,6 +124,8 @@ void add_run_command(CLI::App& program, Action& action) {
       ->required();
   command->add_option("--out", a->run.session, "Session file to write")->required();
   command->add_option("--force-model", a->run.force_model, "How forces are made: insertion")->capture_default_str();
+  command->add_option("--device", a->run.device, "Simulated device: its limits and coupling; see trocar device list")
+      ->capture_default_str();
   command->add_option("--needle", a->the_case.needle, "Needle of data/needles.toml; the task's own when left out");
   command->add_option("--tissues", a->the_case.tissue_file, "Tissue table (TOML) instead of data/tissues.toml");
   command->add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");

@@ -7,8 +7,10 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/data_dir.h"
 #include "core/log.h"
 #include "core/version.h"
+#include "haptics/devices/device_preset.h"
 #include "haptics/devices/virtual_device.h"
 #include "haptics/tick.h"
 #include "training/hand.h"
@@ -73,7 +75,13 @@ Result<Performer> make_performer(const Case& the_case, const RunOptions& options
   return Performer{make_replay(std::move(session.samples), session.fired), rate};
 }
 
-SessionInfo describe(const Case& the_case, const RunOptions& options, double rate_hz) {
+Result<DevicePreset> find_device(const RunOptions& options) {
+  const std::filesystem::path data = data_dir();
+  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  return load_device_preset(data / "devices.toml", options.device);
+}
+
+SessionInfo describe(const Case& the_case, const RunOptions& options, const DevicePreset& device, double rate_hz) {
   SessionInfo info;
   info.program_version = kVersion;
   info.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
@@ -87,7 +95,7 @@ SessionInfo describe(const Case& the_case, const RunOptions& options, double rat
   info.seed = options.seed;
   info.rate_hz = rate_hz;
   info.needle = the_case.needle.name;
-  info.device = "virtual (PHANTOM Premium 1.5 HF 6DOF limits)";
+  info.device = fmt::format("{}, simulated: {}", device.name, device.title);
   info.tissue_table_toml = the_case.tissues.to_toml();
   info.plan_P = {the_case.task.name + " plan", the_case.plan.line_P};
   info.is_parenchymal = the_case.is_parenchymal;
@@ -99,8 +107,8 @@ SessionInfo describe(const Case& the_case, const RunOptions& options, double rat
 }
 
 /// One step of the device under the operator's hand and the force of the last tick.
-void move_device(VirtualDeviceState& device, const HandCommand& command, const Vec3& force_P, const HapticScene& scene,
-                 double dt_s) noexcept {
+void move_device(VirtualDeviceState& device, double mass_kg, const HandCommand& command, const Vec3& force_P,
+                 const HapticScene& scene, double dt_s) noexcept {
   if (command.is_rigid) {
     device = {command.X_PN, command.v_P};
     return;
@@ -113,7 +121,7 @@ void move_device(VirtualDeviceState& device, const HandCommand& command, const V
                       spring.damping_ns_per_mm,
                       spring.mass_kg,
                       follow_rotation(kHand, device.X_PN.R(), command.X_PN.R(), dt_s)};
-  const VirtualDeviceParams params{0.1, scene.device.stylus_weight_n};
+  const VirtualDeviceParams params{mass_kg, scene.device.stylus_weight_n};
   step_device(device, params, hold, force_P, scene.gravity_P, dt_s);
 }
 
@@ -123,7 +131,7 @@ struct Recording {
 };
 
 /// The closed loop, until the operator is done.
-Result<Recording> perform(Performer& performer, const HapticScene& scene, SessionWriter& writer,
+Result<Recording> perform(Performer& performer, const HapticScene& scene, double mass_kg, SessionWriter& writer,
                           const Progress& progress) {
   Recording recording;
   const double dt_s = 1.0 / performer.rate_hz;
@@ -138,7 +146,7 @@ Result<Recording> perform(Performer& performer, const HapticScene& scene, Sessio
     const HandCommand command = performer.the_operator->next(view);
     if (command.is_done) break;
     if (i == 0) device.X_PN = command.X_PN;
-    move_device(device, command, state.last.device_f_n, scene, dt_s);
+    move_device(device, mass_kg, command, state.last.device_f_n, scene, dt_s);
 
     const Pose X_DS = scene.X_PD.inverse() * device.X_PN * scene.X_SN.inverse();
     const HapticOutput output = tick(state, {view.time_s, dt_s, X_DS}, scene);
@@ -160,6 +168,7 @@ Status check_run(const RunOptions& options) {
                       "use insertion");
   if (!(options.rate_hz >= 250.0 && options.rate_hz <= 4000.0))
     return fail_usage(fmt::format("rate {} Hz is not between 250 and 4000", options.rate_hz), "--rate");
+  TROCAR_TRY_STATUS(find_device(options));
   TROCAR_TRY_STATUS(parse_operator(options.operator_name));
   return {};
 }
@@ -178,15 +187,18 @@ std::vector<PunctureRecord> find_punctures(const SessionInfo& info, const std::v
 Result<RunResult> run_session(const Case& the_case, const RunOptions& options, const Progress& progress) {
   TROCAR_TRY_STATUS(check_run(options));
   TROCAR_TRY(Performer performer, make_performer(the_case, options));
+  TROCAR_TRY(const DevicePreset device, find_device(options));
   HapticOptions insertion;
   insertion.seed = options.seed;
+  apply_device_preset(device, insertion);
   const NeedleGeometry needle{the_case.needle.outer_diameter_mm / 2.0, the_case.needle.length_mm};
-  TROCAR_TRY(const auto scene, make_haptic_scene(the_case.patient, the_case.tissues, needle, {}, insertion));
+  TROCAR_TRY(const auto scene,
+             make_haptic_scene(the_case.patient, the_case.tissues, needle, device.capability, insertion));
 
-  const SessionInfo info = describe(the_case, options, performer.rate_hz);
+  const SessionInfo info = describe(the_case, options, device, performer.rate_hz);
   TROCAR_TRY(SessionWriter writer, SessionWriter::create(options.session, info));
   const auto start = std::chrono::steady_clock::now();
-  TROCAR_TRY(const Recording recording, perform(performer, *scene, writer, progress));
+  TROCAR_TRY(const Recording recording, perform(performer, *scene, device.apparent_mass_kg, writer, progress));
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   log_info("{} ticks performed and recorded in {:.0f} ms", recording.samples.size(), took.count());
 

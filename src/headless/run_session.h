@@ -15,9 +15,10 @@ namespace trocar {
 struct RunOptions {
   std::string operator_name = "expert";  ///< expert | novice | constant-velocity:MM_PER_S | replay:SESSION
   std::string force_model = "insertion";
-  double rate_hz = 1000.0;     ///< 250..4000. A replay takes its session's rate.
-  std::uint64_t seed = 1;      ///< Of operator and friction.
-  std::string patient_source;  ///< As the user named it: a folder, or an embedded patient's name.
+  std::string device = "premium";  ///< Of data/devices.toml: its limits and coupling, simulated.
+  double rate_hz = 1000.0;         ///< 250..4000. A replay takes its session's rate.
+  std::uint64_t seed = 1;          ///< Of operator and friction.
+  std::string patient_source;      ///< As the user named it: a folder, or an embedded patient's name.
   std::uint64_t patient_seed = 1;
   std::filesystem::path session;  ///< Written here; must not exist.
 };

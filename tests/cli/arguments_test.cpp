@@ -21,7 +21,8 @@ TEST_P(Help, ExitsZeroWithAnExample) {
 INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
                          testing::Values("", "patient", "patient list", "patient generate", "patient build",
                                          "patient show", "patient check", "patient render", "plan", "task", "task list",
-                                         "run", "session", "session export", "session report", "bench"));
+                                         "device", "device list", "run", "session", "session export", "session report",
+                                         "bench"));
 
 class Mistake : public testing::TestWithParam<const char*> {};
 

@@ -1,0 +1,77 @@
+// trocar device list.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <numbers>
+
+#include "commands.h"
+#include "haptics/devices/device_preset.h"
+
+namespace trocar::cli {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+/// An unknown or absent figure is null.
+Json optional_json(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json preset_json(const DevicePreset& preset) {
+  const DeviceCapability& capability = preset.capability;
+  return {{"name", preset.name},
+          {"title", preset.title},
+          {"sensed_dof", preset.sensed_dof},
+          {"actuated_dof", preset.actuated_dof},
+          {"workspace_radius_mm", preset.workspace_radius_mm},
+          {"peak_force_n", capability.peak_force_n},
+          {"continuous_force_n", optional_json(preset.continuous_force_n)},
+          {"peak_torque_nmm", capability.peak_torque_nmm},
+          {"continuous_torque_nmm", optional_json(preset.continuous_torque_nmm)},
+          {"max_stiffness_n_per_mm", capability.max_stiffness_n_per_mm},
+          {"position_count_mm", preset.encoder.count_mm},
+          {"angle_count_deg", preset.sensed_dof == 6 ? Json(preset.encoder.count_rad * kDegPerRad) : Json(nullptr)},
+          {"apparent_mass_kg", preset.apparent_mass_kg},
+          {"stylus_weight_n", capability.stylus_weight_n},
+          {"coupling_stiffness_n_per_mm", preset.coupling.stiffness_n_per_mm},
+          {"coupling_damping_ns_per_mm", preset.coupling.damping_ns_per_mm}};
+}
+
+void print_preset(const DevicePreset& preset) {
+  const DeviceCapability& capability = preset.capability;
+  const std::string torque = preset.has_torque() ? fmt::format("{:.0f} N mm", capability.peak_torque_nmm) : "none";
+  fmt::print("{:<8} {:>6.1f} N {:>9} {:>5.1f} N/mm {:>7.4f} mm {:>5.2f} N/mm  {}\n", preset.name,
+             capability.peak_force_n, torque, capability.max_stiffness_n_per_mm, preset.encoder.count_mm,
+             preset.coupling.stiffness_n_per_mm, preset.title);
+}
+
+Status list_devices(bool is_json) {
+  TROCAR_TRY(const auto file, find_data("devices.toml"));
+  TROCAR_TRY(const auto presets, load_device_presets(file));
+  if (is_json) {
+    Json list = Json::array();
+    for (const DevicePreset& preset : presets) list.push_back(preset_json(preset));
+    print_json({{"devices", list}});
+    return {};
+  }
+  fmt::print("{:<8} {:>8} {:>9} {:>10} {:>10} {:>10}\n", "name", "force", "torque", "stiffness", "count", "coupling");
+  for (const DevicePreset& preset : presets) print_preset(preset);
+  return {};
+}
+
+}  // namespace
+
+void add_device_commands(CLI::App& program, Action& action) {
+  CLI::App* device = program.add_subcommand("device", "Haptic devices");
+  device->require_subcommand(1);
+  device->footer("Example:\n  trocar device list\n");
+  CLI::App* list = device->add_subcommand(
+      "list",
+      "The devices of data/devices.toml: peak force and torque, stiffness, encoder count, our coupling's spring");
+  list->footer("Example:\n  trocar device list --json\n");
+  const auto is_json = std::make_shared<bool>(false);
+  list->add_flag("--json", *is_json, "Print one JSON object");
+  list->callback([&action, is_json] { action = [is_json] { return list_devices(*is_json); }; });
+}
+
+}  // namespace trocar::cli
