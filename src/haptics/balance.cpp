@@ -10,7 +10,8 @@ double AxialBalance::prepuncture_n(double s_mm) const noexcept {
 }
 
 double AxialBalance::friction_n(double s_mm) const noexcept {
-  return viscous_ns_per_mm * velocity(s_mm) + noise_n;
+  const double v = velocity(s_mm);
+  return viscous_ns_per_mm * v + noise_n + std::copysign(dry_n * motion_fade(v), v);
 }
 
 double AxialBalance::cutting_force_n(double s_mm) const noexcept {

@@ -19,6 +19,7 @@ struct AxialBalance {
   double surface_mm = std::numeric_limits<double>::infinity();  ///< Resting surface of the layer ahead.
   double viscous_ns_per_mm = 0.0;                               ///< Sum of nu_i A_i over the inserted shaft.
   double noise_n = 0.0;                                         ///< Fluctuation of the friction, this step.
+  double dry_n = 0.0;  ///< Dry friction of the body proxies, against the motion.
   double cutting_n = 0.0;
   double cut_to_mm = 0.0;  ///< Fresh tissue begins here.
 

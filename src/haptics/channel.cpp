@@ -11,6 +11,25 @@ int bin_of(double s_mm) noexcept {
   return std::clamp(static_cast<int>(std::max(0.0, s_mm) / Channel::kBin_mm), 0, Channel::kBins - 1);
 }
 
+namespace {
+
+/// The wall at the border into a structure. Coming back out of a walled structure into the one around it (a vessel in
+/// the liver) pierces nothing.
+std::uint8_t wall_at_next_bin(Channel& channel, std::uint8_t layer) noexcept {
+  if (layer == channel.wall_here) return kNoLayer;
+  const bool is_return = layer == channel.wall_before && channel.wall_here != kNoLayer;
+  channel.wall_before = channel.wall_here;
+  channel.wall_here = layer;
+  return is_return ? kNoLayer : layer;
+}
+
+std::uint8_t walled_layer(const HapticScene& scene, std::uint8_t tissue) noexcept {
+  const std::uint8_t layer = scene.tissues[tissue].layer;
+  return layer != kNoLayer && scene.layers[layer].is_wall ? layer : kNoLayer;
+}
+
+}  // namespace
+
 void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double ahead_mm) noexcept {
   const int wanted = bin_of(s_mm + ahead_mm) + 1;
   const int last = std::min(wanted, channel.known_bins + kMaxBinsPerLook);
@@ -22,6 +41,7 @@ void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double 
     const auto index = static_cast<std::size_t>(bin);
     channel.tissue[index] = here.tissue;
     channel.label[index] = here.label;
+    channel.wall[index] = wall_at_next_bin(channel, walled_layer(scene, here.tissue));
     if (reads_ct)
       channel.hu[index] = static_cast<std::int16_t>(std::lround(sample_linear(scene.patient->ct, middle_P)));
   }
@@ -33,6 +53,16 @@ LayerAhead next_layer(const Channel& channel, const HapticScene& scene, double f
   for (int bin = bin_of(from_mm); bin < end; ++bin) {
     const std::uint8_t layer = scene.tissues[channel.tissue[static_cast<std::size_t>(bin)]].layer;
     if (layer != kNoLayer && !channel.is_pierced(layer)) return {layer, std::max(from_mm, bin * Channel::kBin_mm)};
+  }
+  return {};
+}
+
+LayerAhead next_wall(const Channel& channel, double from_mm, double to_mm) noexcept {
+  const int end = std::min(channel.known_bins, bin_of(to_mm) + 1);
+  for (int bin = bin_of(std::max(from_mm, channel.cut_to_mm)); bin < end; ++bin) {
+    const std::uint8_t layer = channel.wall[static_cast<std::size_t>(bin)];
+    const double surface_mm = bin * Channel::kBin_mm;
+    if (layer != kNoLayer && surface_mm >= channel.cut_to_mm) return {layer, surface_mm};
   }
   return {};
 }

@@ -24,6 +24,15 @@ struct Channel {
   std::array<std::uint8_t, kBins> label{};
   std::array<std::int16_t, kBins> hu{};  ///< Of the CT; filled where the force model reads it, else 0.
 
+  /// Wall that begins with this bin (volume proxy; physics.md B4): layer to pierce, else kNoLayer.
+  std::array<std::uint8_t, kBins> wall{};
+  std::uint8_t wall_here = kNoLayer;    ///< Walled structure of the last known bin,
+  std::uint8_t wall_before = kNoLayer;  ///< and of the stretch before it.
+
+  void forget_bins() noexcept {
+    known_bins = 0;
+    wall_here = wall_before = kNoLayer;
+  }
   bool is_pierced(std::uint8_t layer) const noexcept { return ((pierced >> layer) & 1U) != 0; }
   void pierce(std::uint8_t layer) noexcept { pierced |= 1U << layer; }
 };
@@ -41,6 +50,10 @@ struct LayerAhead {
   double surface_mm = 0.0;  ///< s of its resting surface.
 };
 LayerAhead next_layer(const Channel& channel, const HapticScene& scene, double from_mm, double to_mm) noexcept;
+
+/// The first wall that begins in fresh tissue between `from_mm` and `to_mm` within the known bins: what has been passed
+/// stays open.
+LayerAhead next_wall(const Channel& channel, double from_mm, double to_mm) noexcept;
 
 /// Channels of the past insertions of one attempt; the oldest is forgotten when it is full.
 struct ChannelMemory {

@@ -59,9 +59,13 @@ Status fill_laws(HapticScene& scene, const TissueTable& table) {
   }
   for (std::size_t i = 0; i < table.tissues.size(); ++i) {
     const TissueParams& tissue = table.tissues[i];
-    scene.tissues[i] = {tissue.viscosity_ns_per_mm, tissue.roughness_n * tissue.friction_mu,
-                        tissue.stick_n_per_mm,      tissue.cutting_n,
-                        tissue.young_kpa,           tissue.layer.value_or(kNoLayer)};
+    scene.tissues[i] = {tissue.viscosity_ns_per_mm,
+                        tissue.roughness_n * tissue.friction_mu,
+                        tissue.stick_n_per_mm,
+                        tissue.cutting_n,
+                        tissue.young_kpa,
+                        tissue.friction_mu,
+                        tissue.layer.value_or(kNoLayer)};
   }
   scene.skin = table.skin;
   scene.transfer = table.transfer;

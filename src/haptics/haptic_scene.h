@@ -67,6 +67,7 @@ struct TissueLaw {
   double stick_n_per_mm = 0.0;
   double cutting_n = 0.0;
   double young_kpa = 0.0;
+  double friction_mu = 0.0;
   std::uint8_t layer = kNoLayer;
 };
 struct LayerLaw {

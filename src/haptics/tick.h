@@ -2,7 +2,7 @@
 
 #include "haptics/contact.h"
 #include "haptics/haptic_scene.h"
-#include "haptics/insertion.h"
+#include "haptics/needle_step.h"
 #include "haptics/resting_anatomy.h"
 #include "telemetry/tick_sample.h"
 
@@ -14,12 +14,12 @@ struct HapticInput {
   double dt_s = 0.001;  ///< Since the last tick; 0 < dt <= kMaxDt_s.
   Pose X_DS;            ///< Stylus in the device base.
   bool is_stylet_in = true;
-  RestingAnatomy resting;  ///< The patient's motion now.
+  RestingAnatomy resting{};  ///< The patient's motion now.
 };
 
 /// All that a tick carries to the next one. Fixed size, copyable: recorded inputs replay to the same bits.
 struct HapticState {
-  InsertionState insertion;
+  NeedleState needle;
   ContactState contact;  ///< Of a transducer or a finger.
   TickSample last;
 };
@@ -32,10 +32,13 @@ struct HapticOutput {
 };
 
 inline constexpr double kMaxDt_s = 0.1;
+inline constexpr double kFarAway_mm = 5000.0;  ///< No device reaches that far.
 
-/// One haptic tick: pose into P, needle insertion, path constraint, weight compensation, composition (paper A, force
-/// composition; physics.md T1), limits of the device. Pure: a function of its arguments only. Input that is not finite
-/// or has an impossible dt gives zero force and a limit event, and leaves the state as it was. Real-time safe.
+/// One haptic tick: pose into P and into the resting anatomy, force model of the scene, weight compensation,
+/// composition (paper A, force composition; physics.md T1, T2), limits of the device. Pure: a function of its arguments
+/// only. Input that is not finite, further than kFarAway_mm or with an impossible dt gives zero force and a limit
+/// event, and leaves the state as it was. A start inside the body and a jump give no force step and say so. Real-time
+/// safe.
 HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept;
 
 }  // namespace trocar

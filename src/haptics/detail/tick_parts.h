@@ -46,14 +46,15 @@ inline void limit_to_device(HapticOutput& output, EventList& events, const Hapti
   TickSample& sample = output.sample;
   Vec3 torque_P = sample.tau_nmm;
   const bool force_limited = clamp_norm(sample.device_f_n, scene.device.peak_force_n);
-  const bool torque_limited = clamp_norm(torque_P, scene.device.peak_torque_nmm);
+  const bool has_torque = scene.device.peak_torque_nmm > 0.0;
+  const bool torque_limited = has_torque && clamp_norm(torque_P, scene.device.peak_torque_nmm);
   if (force_limited) events.add(LimitReason::kForceClamped);
   if (torque_limited) events.add(LimitReason::kTorqueClamped);
   sample.limited = force_limited || torque_limited;
 
   const Mat3 R_DP = scene.X_PD.R().transpose();
   output.f_D = R_DP * sample.device_f_n;
-  output.tau_D = R_DP * torque_P;
+  output.tau_D = has_torque ? Vec3(R_DP * torque_P) : Vec3::Zero();
 }
 
 }  // namespace trocar

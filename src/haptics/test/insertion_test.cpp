@@ -216,24 +216,24 @@ TEST(Insertion, ForceIsNeverPullingOnRetreatFromALoadedLayer) {
     EXPECT_LE(sample.f_prepuncture_n, 0.0);
     EXPECT_NE(sample.phase, InsertionPhase::kInserted);
   }
-  EXPECT_EQ(driver.state().insertion.phase, InsertionPhase::kOutside);
+  EXPECT_EQ(driver.state().needle.insertion.phase, InsertionPhase::kOutside);
 }
 
 TEST(Insertion, HoldsANeedleThatIsLetGo) {
   Driver driver(make_scene(liver_way()));
   driver.move(50.0, 10.0);
   driver.hold(1.0);
-  const double before = driver.state().insertion.s_mm;
+  const double before = driver.state().needle.insertion.s_mm;
   EXPECT_GT(std::abs(driver.state().last.f_stick_n), 0.01);  // the stretch that the stop left
   // A pull below the holding force (0.1 N: 0.1 mm of the coupling) does not move it …
   TickSample held;
   for (double z = 50.0; z > before - 0.1; z -= 0.0004) held = driver.to({0, 0, z});
-  EXPECT_NEAR(driver.state().insertion.s_mm, before, 1e-9);
+  EXPECT_NEAR(driver.state().needle.insertion.s_mm, before, 1e-9);
   EXPECT_NEAR(held.f_stick_n, 0.1, 0.005);
   EXPECT_EQ(held.axial_velocity_mm_s, 0.0);
   // … a strong one does.
   driver.move(40.0, 10.0);
-  EXPECT_LT(driver.state().insertion.s_mm, before - 5.0);
+  EXPECT_LT(driver.state().needle.insertion.s_mm, before - 5.0);
 }
 
 TEST(Insertion, PhasesFollowTheNeedle) {

@@ -27,7 +27,7 @@ TEST(Tick, NeverAllocates) {
     events += guard.count();
   }
   EXPECT_EQ(events, 0u);
-  EXPECT_EQ(state.insertion.memory.channels[0].is_used, true);
+  EXPECT_EQ(state.needle.path.memory.channels[0].is_used, true);
 }
 
 TEST(AllocationGuard, SeesAnAllocation) {

@@ -1,0 +1,128 @@
+#include "haptics/needle_step.h"
+
+#include <algorithm>
+
+#include "haptics/tip_law.h"
+
+namespace trocar {
+namespace {
+
+/// A hand moves a needle by less than this in a tick.
+constexpr double kJump_mm = 5.0;
+constexpr double kJump_mm_per_s = 3000.0;
+
+/// Starts where the needle is: outside, or inside with everything down to the tip pierced.
+void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, NeedleStep& step) noexcept {
+  step.has_jumped = state.is_started;
+  leave_body(state.path);
+  step.has_resumed = resume_inside(state.path, scene, X_PN.p(), X_PN.R().col(2));
+  start_insertion(state.insertion, state.path, X_PN.p());
+  start_proxy_needle(state.proxy, state.path, X_PN.p());
+  state.X_PN = X_PN;
+  state.is_started = true;
+}
+
+/// The pose a damping time ahead: springs that act on it damp in proportion to their stiffness (physics.md B7).
+Pose pose_ahead(const Pose& before, const Pose& now, double steps) noexcept {
+  const Vec3 axis = now.R().col(2);
+  const Vec3 ahead = (axis + steps * (axis - before.R().col(2))).normalized();
+  return {rotation_between(axis, ahead) * now.R(), now.p() + steps * (now.p() - before.p())};
+}
+
+/// Paper A: path constraint, only while the needle is in the skin (docs/physics.md C3).
+Wrench path_constraint_wrench(const InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
+  if (!path.is_open || !(path.rest_mm > 0.0)) return {};
+  const Channel& line = path.channel;
+  if (line.direction_P.dot(X_PN.p() - line.origin_P) <= 0.0) return {};
+  return path_constraint(line.origin_P, line.direction_P, X_PN.p(), X_PN.R().col(2), scene.options.constraint);
+}
+
+/// What the body proxies hold, and the shape it bends the needle to. Returns the force of the body proxies alone: the
+/// tip's own force is counted with the tip.
+Wrench body_wrench(NeedleState& state, const HeldShaft& shaft, const HapticScene& scene, const Vec3& tip_force_P,
+                   double axial_resistance_n) noexcept {
+  const Vec3 bevel_P = bevel_force_P(scene.needle, shaft.X_PN, axial_resistance_n);
+  const ShaftReaction reaction = react(shaft, scene, tip_force_P + bevel_P);
+  state.shape = reaction.needle;
+  const Vec3 axis_P = shaft.X_PN.R().col(2);
+  const Vec3 tip_across_P = tip_force_P - tip_force_P.dot(axis_P) * axis_P;
+  return {reaction.wrench_P.force_n - tip_across_P, reaction.wrench_P.torque_nmm};
+}
+
+/// Model B's part along the path of the combined model: the shaft's friction, and the tip in unlabelled tissue, of
+/// which model A knows nothing.
+ProxyShare proxy_share(const InsertionPath& path, const HapticScene& scene) noexcept {
+  ProxyShare share;
+  if (!path.is_open) return share;
+  share.shaft = shaft_resistance(path.channel, scene, path.rest_mm);
+  const auto bin = static_cast<std::size_t>(bin_of(path.rest_mm));
+  const TissueAt here{path.channel.tissue[bin], path.channel.label[bin]};
+  if (!(path.rest_mm > 0.0) || here.label != 0 || here.tissue == scene.skin) return share;
+  const Vec3& u = path.channel.direction_P;
+  const TipLaw law = tip_law_at(scene, path.channel.origin_P + path.rest_mm * u, here);
+  share.tip_n = threshold_along_n(law, u);
+  share.tip_viscous_ns_per_mm = (1.0 - law.border) * law.law.viscosity_ns_per_mm;
+  return share;
+}
+
+void step_insertion_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, double dt_s,
+                          NeedleStep& step) noexcept {
+  step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s);
+  step.held_P = path_constraint_wrench(state.path, scene, X_PN);
+  state.shape = straight_needle(X_PN, scene);
+}
+
+void step_proxy_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
+                      bool is_stylet_in, double dt_s, NeedleStep& step) noexcept {
+  HeldShaft shaft;
+  if (state.path.is_open) shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
+  const bool was_open = state.path.is_open;
+  const ProxyNeedleStep moved = step_proxy_needle(state.proxy, state.path, scene, X_PN, X_PN_ahead, shaft, dt_s);
+  step.axial = moved.axial;
+  step.tip_proxy_P = moved.tip_force_P;
+  if (was_open && state.path.is_open)
+    step.held_P = body_wrench(state, shaft, scene, moved.tip_force_P, -moved.tip_force_P.dot(moved.axial.axis_P));
+  else
+    state.shape = straight_needle(X_PN, scene);
+}
+
+void step_combined_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
+                         bool is_stylet_in, double dt_s, NeedleStep& step) noexcept {
+  const ProxyShare share = proxy_share(state.path, scene);
+  step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s, &share);
+  step.tip_proxy_P = -step.axial.tip_proxy_n * step.axial.axis_P;
+  if (!state.path.is_open) {
+    state.shape = straight_needle(X_PN, scene);
+    return;
+  }
+  const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
+  const double on_tip_n = step.axial.prepuncture_n + step.axial.cutting_n + step.axial.tip_proxy_n;
+  step.held_P = body_wrench(state, shaft, scene, Vec3::Zero(), on_tip_n);
+}
+
+}  // namespace
+
+NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose& X_PN, bool is_stylet_in,
+                       double dt_s) noexcept {
+  NeedleStep step;
+  const double way_mm = (X_PN.p() - state.X_PN.p()).norm();
+  if (!state.is_started || way_mm > kJump_mm + kJump_mm_per_s * dt_s) start(state, scene, X_PN, step);
+  const CouplingParams& coupling = scene.options.coupling;
+  const double ahead_s = coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm;
+  const Pose X_PN_ahead = pose_ahead(state.X_PN, X_PN, ahead_s / dt_s);
+  switch (scene.options.force_model) {
+    case ForceModel::kInsertion:
+      step_insertion_model(state, scene, X_PN, dt_s, step);
+      break;
+    case ForceModel::kProxy:
+      step_proxy_model(state, scene, X_PN, X_PN_ahead, is_stylet_in, dt_s, step);
+      break;
+    case ForceModel::kCombined:
+      step_combined_model(state, scene, X_PN, X_PN_ahead, is_stylet_in, dt_s, step);
+      break;
+  }
+  state.X_PN = X_PN;
+  return step;
+}
+
+}  // namespace trocar

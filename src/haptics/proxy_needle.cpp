@@ -1,0 +1,229 @@
+#include "haptics/proxy_needle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptics/tip_proxy.h"
+#include "volume/sampling.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kLook_mm = 10.0;
+constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the proxy is this far out.
+constexpr double kGrazing = 0.17;      // cosine of 80 degrees: a flatter needle does not pierce
+constexpr double kAtWall_mm = 1e-6;
+
+double in_series(double a, double b) noexcept {
+  return a * b / (a + b);
+}
+
+ProxySpring make_spring(const HapticScene& scene, const Vec3& u_P, double tissue_n_per_mm, double dt_s) noexcept {
+  const CouplingParams& coupling = scene.options.coupling;
+  const double k = in_series(coupling.stiffness_n_per_mm, tissue_n_per_mm);
+  return {u_P, k, k, coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm, dt_s};
+}
+
+double skin_distance(const HapticScene& scene, const Vec3& p_P) noexcept {
+  return sample_linear(scene.patient->skin_distance_mm, p_P);
+}
+
+/// Where the way from a point outside to one inside meets the skin.
+Vec3 meet_skin(const HapticScene& scene, const Vec3& outside_P, const Vec3& inside_P) noexcept {
+  double low = 0.0;
+  double high = 1.0;
+  for (int i = 0; i < 30; ++i) {
+    const double t = 0.5 * (low + high);
+    (skin_distance(scene, outside_P + t * (inside_P - outside_P)) > 0.0 ? low : high) = t;
+  }
+  return outside_P + low * (inside_P - outside_P);
+}
+
+/// The tip in its tissue during one step, and what the step has found.
+struct TipStep {
+  ProxySpring spring;
+  double tissue_n_per_mm = 1.0;
+  Vec3 moved = Vec3::Zero();
+  std::uint8_t wall = kNoLayer;  ///< Wall that the tip presses on.
+  std::uint8_t punctured = kNoLayer;
+  bool hit_bound = false;
+};
+
+ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose& X_PN, double dt_s) noexcept {
+  if (path.is_open) leave_body(path);
+  ProxyNeedleStep step;
+  step.axial.tip_P = X_PN.p();
+  step.axial.axis_P = X_PN.R().col(2);
+  step.axial.velocity_mm_per_s = (X_PN.p() - state.proxy_P).dot(step.axial.axis_P) / dt_s;
+  state.proxy_P = X_PN.p();
+  state.is_on_skin = false;
+  state.phase = InsertionPhase::kOutside;
+  return step;
+}
+
+/// The tip on closed skin: it slides with friction, indents, and breaks through at the skin's puncture force.
+ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
+                        const Pose& X_PN_ahead, double dt_s) noexcept {
+  const Vec3 axis_P = X_PN.R().col(2);
+  const Vec3 inward_P = -gradient_per_mm(scene.patient->skin_distance_mm, state.proxy_P).normalized();
+  const std::uint8_t layer = scene.tissues[scene.skin].layer;
+  const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
+  const ProxySpring spring = make_spring(scene, inward_P, tissue_n_per_mm, dt_s);
+  Vec3 f = spring_force(spring, X_PN_ahead.p(), state.proxy_P, Vec3::Zero());
+  double f_normal = f.dot(inward_P);
+  if (!(f_normal > 0.0)) return in_air(state, path, X_PN, dt_s);
+
+  ProxyNeedleStep step;
+  const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
+  const bool gives_way = f_normal >= puncture_n && axis_P.dot(inward_P) > kGrazing;
+  if (gives_way) f_normal = puncture_n;
+  Vec3 sideways = f - f.dot(inward_P) * inward_P;
+  const double grip_n = scene.tissues[scene.skin].friction_mu * f_normal;
+  if (sideways.norm() > grip_n) {
+    const Vec3 slip = sideways * (1.0 - grip_n / sideways.norm());
+    sideways -= slip;
+    state.proxy_P += slip / (spring.lateral_n_per_mm * (1.0 + spring.damping_s / dt_s));
+    state.proxy_P += skin_distance(scene, state.proxy_P) * inward_P;  // back to the surface
+  }
+  f = f_normal * inward_P + sideways;
+  step.tip_force_P = -f;
+  step.axial.tip_P = state.proxy_P + f / tissue_n_per_mm;
+  step.axial.axis_P = axis_P;
+  step.axial.displacement_mm = step.axial.depth_mm = f_normal / tissue_n_per_mm;
+  step.axial.tissue = scene.skin;
+  step.axial.phase = state.phase = InsertionPhase::kLoading;
+  if (gives_way) {
+    start_channel(path, state.proxy_P, axis_P);
+    open_path(path, layer);
+    path.contact_to_puncture_P = step.axial.tip_P - state.contact_P;
+    step.axial.punctured = layer;
+    state.is_on_skin = false;
+  }
+  return step;
+}
+
+/// Moves the proxy along the path until it rests, meets a wall or the bound of sub-steps.
+TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
+                   const ProxySpring& shaft_spring, const Vec3& target_P, double tip_compliance_mm_n,
+                   const AxialFriction& friction) noexcept {
+  Channel& channel = path.channel;
+  const Vec3& u = channel.direction_P;
+  TipStep step;
+  double s_mm = u.dot(state.proxy_P - channel.origin_P);
+  look_ahead(channel, scene, std::max(0.0, s_mm), kLook_mm);
+  const LayerAhead ahead = next_wall(channel, s_mm, s_mm + kLook_mm);
+  for (int i = 0; i < kMaxProxySteps; ++i) {
+    const auto bin = static_cast<std::size_t>(bin_of(s_mm));
+    const TissueAt here = s_mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
+    const bool is_at_wall = ahead.layer != kNoLayer && s_mm >= ahead.surface_mm - kAtWall_mm;
+    const TipLaw law = tip_law_at(scene, state.proxy_P, here);
+    step.tissue_n_per_mm = is_at_wall ? scene.layers[ahead.layer].indent_n_per_mm : law.law.stiffness_n_per_mm;
+    step.spring = make_spring(scene, u, step.tissue_n_per_mm, shaft_spring.dt_s);
+    step.spring.lateral_n_per_mm /= 1.0 + step.spring.lateral_n_per_mm * tip_compliance_mm_n;
+
+    Vec3 motion = proxy_motion(step.spring, friction, law, target_P, state.proxy_P, step.moved);
+    double forward = motion.dot(u);
+    if (is_at_wall && forward > 0.0) {
+      const Vec3 f = spring_force(step.spring, target_P, state.proxy_P, step.moved);
+      const double on_shaft_n = friction_share_n(step.spring, friction, f.dot(u), step.moved.dot(u));
+      step.wall = ahead.layer;
+      if (f.dot(u) - on_shaft_n < scene.layers[ahead.layer].puncture_force_n) {
+        state.proxy_P += motion - forward * u;
+        return step;
+      }
+      step.punctured = ahead.layer;
+      channel.cut_to_mm = ahead.surface_mm + 0.5 * Channel::kBin_mm;
+      return step;
+    }
+    const double length = motion.norm();
+    const bool is_long = length > kProxyStep_mm;
+    if (is_long) motion *= kProxyStep_mm / length;
+    forward = motion.dot(u);
+    const bool meets_wall = ahead.layer != kNoLayer && s_mm + forward > ahead.surface_mm;
+    if (meets_wall) motion *= std::max(0.0, ahead.surface_mm - s_mm) / forward;
+    state.proxy_P += motion;
+    step.moved += motion;
+    s_mm = meets_wall ? ahead.surface_mm : u.dot(state.proxy_P - channel.origin_P);
+    if (!is_long && !meets_wall) return step;
+  }
+  step.hit_bound = true;
+  return step;
+}
+
+InsertionPhase next_phase(const ProxyNeedleState& state, bool is_loading) noexcept {
+  if (is_loading) return InsertionPhase::kLoading;
+  if (state.velocity_mm_per_s < -kRestSpeed_mm_per_s) return InsertionPhase::kRetracting;
+  if (state.velocity_mm_per_s > kRestSpeed_mm_per_s) return InsertionPhase::kInserted;
+  return state.phase == InsertionPhase::kRetracting ? InsertionPhase::kRetracting : InsertionPhase::kInserted;
+}
+
+/// The tip on its path through the body.
+ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN_ahead,
+                        const HeldShaft& shaft, double dt_s) noexcept {
+  const Vec3 u = path.channel.direction_P;
+  const auto tip = static_cast<std::size_t>(shaft.beam.node_count - 1);
+  const Vec3 target_P = X_PN_ahead.p() + shaft.beam.deflection_mm[tip];
+  const ShaftResistance resistance = shaft_resistance(path.channel, scene, path.rest_mm);
+  const AxialFriction friction{resistance.dry_n, resistance.viscous_ns_per_mm};
+  const TipStep moved = move_proxy(state, path, scene, make_spring(scene, u, 1.0, dt_s), target_P,
+                                   shaft.beam.per_tip_force_mm_n[tip], friction);
+
+  const Vec3 f = spring_force(moved.spring, target_P, state.proxy_P, moved.moved);
+  const double on_shaft_n = friction_share_n(moved.spring, friction, f.dot(u), moved.moved.dot(u));
+  Vec3 on_tip = f - on_shaft_n * u;
+  if (moved.punctured != kNoLayer) {  // the wall bore its puncture force and no more
+    on_tip += (scene.layers[moved.punctured].puncture_force_n - on_tip.dot(u)) * u;
+  }
+
+  ProxyNeedleStep step;
+  step.tip_force_P = -on_tip;
+  InsertionStep& axial = step.axial;
+  axial.body_axial_n = on_shaft_n;
+  axial.punctured = moved.punctured;
+  axial.hit_solver_bound = moved.hit_bound;
+  axial.axis_P = u;
+  axial.tip_P = state.proxy_P + on_tip / moved.tissue_n_per_mm;
+  axial.velocity_mm_per_s = state.velocity_mm_per_s = moved.moved.dot(u) / dt_s;
+  if (moved.wall != kNoLayer) axial.displacement_mm = on_tip.dot(u) / moved.tissue_n_per_mm;
+  const double s_mm = u.dot(state.proxy_P - path.channel.origin_P);
+  axial.entered = move_tip(path, std::max(0.0, s_mm));
+  axial.depth_mm = std::max(0.0, u.dot(axial.tip_P - path.channel.origin_P));
+  axial.tissue = path.rest_mm > 0.0 ? path.channel.tissue[static_cast<std::size_t>(bin_of(path.rest_mm))] : 0;
+  axial.phase = state.phase = next_phase(state, moved.wall != kNoLayer);
+  if (s_mm < -kLeaveSkin_mm) leave_body(path);
+  return step;
+}
+
+/// A tip that comes from outside: where it meets the skin, and the open hole it may fall into.
+void meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
+  state.proxy_P = skin_distance(scene, state.proxy_P) > 0.0 ? meet_skin(scene, state.proxy_P, X_PN.p()) : X_PN.p();
+  state.contact_P = state.proxy_P;
+  state.is_on_skin = true;
+  if (const Channel* hole = path.memory.find(state.proxy_P, X_PN.R().col(2))) {
+    path.channel = *hole;
+    path.is_open = true;
+    path.rest_mm = 0.0;
+    state.is_on_skin = false;
+  }
+}
+
+}  // namespace
+
+void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, const Vec3& tip_P) noexcept {
+  state = {};
+  state.proxy_P = tip_P;
+  if (path.is_open) state.phase = InsertionPhase::kInserted;
+}
+
+ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
+                                  const Pose& X_PN, const Pose& X_PN_ahead, const HeldShaft& shaft,
+                                  double dt_s) noexcept {
+  if (!path.is_open && !state.is_on_skin) {
+    if (!(skin_distance(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
+    meet(state, path, scene, X_PN);
+  }
+  if (!path.is_open) return on_skin(state, path, scene, X_PN, X_PN_ahead, dt_s);
+  return in_body(state, path, scene, X_PN_ahead, shaft, dt_s);
+}
+
+}  // namespace trocar

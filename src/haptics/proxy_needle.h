@@ -1,0 +1,37 @@
+#pragma once
+
+#include "haptics/body_proxies.h"
+#include "haptics/insertion.h"
+#include "haptics/insertion_path.h"
+
+namespace trocar {
+
+/// The tip of paper B from one tick to the next. Fixed size.
+struct ProxyNeedleState {
+  Vec3 proxy_P = Vec3::Zero();    ///< x_p
+  Vec3 contact_P = Vec3::Zero();  ///< Where the needle first touched the skin.
+  bool is_on_skin = false;        ///< Touches the skin that has not given way yet.
+  double velocity_mm_per_s = 0.0;
+  InsertionPhase phase = InsertionPhase::kOutside;
+};
+
+/// One step of the tip, forces as the needle feels them in P.
+struct ProxyNeedleStep {
+  InsertionStep axial;              ///< Place, phase, events; its forces of paper A are zero.
+  Vec3 tip_force_P = Vec3::Zero();  ///< On the tip.
+};
+
+/// Takes the proxy to be where the tip is: no force. Real-time safe.
+void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, const Vec3& tip_P) noexcept;
+
+/// One step of the tip proxy (physics.md B1 to B4): before the skin gives way on the skin's surface, then along the
+/// path, held across it by the shaft. `shaft`: the body proxies at the pose `X_PN_ahead`, a damping time ahead of the
+/// device's. Bounded sub-steps of kProxyStep_mm. Real-time safe.
+ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
+                                  const Pose& X_PN, const Pose& X_PN_ahead, const HeldShaft& shaft,
+                                  double dt_s) noexcept;
+
+inline constexpr double kProxyStep_mm = 0.25;  ///< At most this far before the law is read again.
+inline constexpr int kMaxProxySteps = 32;      ///< A tick: 8 m/s at 1 kHz.
+
+}  // namespace trocar
