@@ -9,6 +9,20 @@
 
 namespace trocar::testing {
 
+/// Transfer functions for tests: air, fat, muscle, bone.
+inline HuTransfer test_transfer() {
+  HuTransfer transfer;
+  transfer.knot_count = 5;
+  transfer.hu = {-200, -100, 50, 250, 500};
+  //                  K    T_N   T_T   R0    c      shaft   nu     E
+  transfer.laws = {{{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0},
+                    {1.0, 0.2, 0.05, 0.05, 0.002, 0.002, 0.01, 10.0},
+                    {2.0, 2.5, 0.2, 0.2, 0.005, 0.004, 0.03, 30.0},
+                    {5.0, 5.0, 0.5, 0.5, 0.005, 0.01, 0.03, 100.0},
+                    {20.0, 100.0, 5.0, 20.0, 0.01, 0.05, 0.05, 1e6}}};
+  return transfer;
+}
+
 /// Paper A, Table 1, and puncture and cutting forces of references.md (skin 2.8 N, muscle 2.5 N, capsule 1.5 N).
 inline TissueTable paper_tissues() {
   TissueTable table;
@@ -28,6 +42,8 @@ inline TissueTable paper_tissues() {
                    tissue("bone", 0.0, 0.3, 0.1, 0.0, 0, 3),
                    tissue("soft_tissue", 0.01, 0.1, 0.1, 0.002, 0, {})};
   table.skin = 1;
+  table.transfer = test_transfer();
+  for (LayerParams& layer : table.layers) layer.is_wall = layer.name != "muscle";
   return table;
 }
 
@@ -37,6 +53,7 @@ struct Slab {
   std::uint8_t label;
 };
 inline constexpr std::uint8_t kFat = 1, kMuscle = 2, kLiver = 3, kBone = 4;
+inline constexpr std::array<std::int16_t, 5> kHuOfLabel{-1000, -100, 50, 60, 800};
 
 /// The usual way to the liver: fat from 0, muscle from 12, liver from 24 mm.
 inline std::vector<Slab> liver_way() {
@@ -59,6 +76,7 @@ inline std::shared_ptr<VirtualPatient> layered_patient(const std::vector<Slab>& 
     for (const Slab& slab : slabs) {
       if (z >= slab.from_mm && z >= 0.0) patient->labels.voxels[n] = slab.label;
     }
+    patient->ct.voxels[n] = kHuOfLabel[patient->labels.voxels[n]];
   }
   patient->label_table.labels = {
       {kFat, "fat", "adipose"}, {kMuscle, "muscle", "muscle"}, {kLiver, "liver", "liver"}, {kBone, "rib", "bone"}};
@@ -68,6 +86,25 @@ inline std::shared_ptr<VirtualPatient> layered_patient(const std::vector<Slab>& 
 inline std::shared_ptr<const HapticScene> make_scene(const std::vector<Slab>& slabs, const HapticOptions& options = {},
                                                      const TissueTable& tissues = paper_tissues()) {
   auto scene = make_haptic_scene(layered_patient(slabs), tissues, {}, {}, options);
+  TROCAR_CHECK(scene.has_value());
+  return *scene;
+}
+
+inline std::shared_ptr<const HapticScene> make_scene(const std::vector<Slab>& slabs, ForceModel model,
+                                                     const TissueTable& tissues = paper_tissues()) {
+  HapticOptions options;
+  options.force_model = model;
+  return make_scene(slabs, options, tissues);
+}
+
+/// The same patient without labels: everything but the skin is felt from the CT.
+inline std::shared_ptr<const HapticScene> make_unlabelled_scene(const std::vector<Slab>& slabs, ForceModel model,
+                                                                const TissueTable& tissues = paper_tissues()) {
+  auto patient = layered_patient(slabs);
+  patient->labels = LabelGrid(patient->ct.geometry, 0);
+  HapticOptions options;
+  options.force_model = model;
+  auto scene = make_haptic_scene(std::move(patient), tissues, {}, {}, options);
   TROCAR_CHECK(scene.has_value());
   return *scene;
 }
@@ -93,6 +130,8 @@ class Driver {
     for (int i = 1; i <= count; ++i) samples.push_back(to({0.0, 0.0, start + step * i}));
     return samples;
   }
+  /// Puts the tip there at once.
+  void jump_to(double depth_mm) { to({0.0, 0.0, depth_mm}); }
   std::vector<TickSample> hold(double seconds) {
     std::vector<TickSample> samples;
     for (double t = 0.0; t < seconds; t += dt_s_) samples.push_back(to({0.0, 0.0, depth_mm_}));
