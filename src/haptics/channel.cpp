@@ -25,7 +25,8 @@ std::uint8_t wall_at_next_bin(Channel& channel, std::uint8_t layer) noexcept {
 
 std::uint8_t walled_layer(const HapticScene& scene, std::uint8_t tissue) noexcept {
   const std::uint8_t layer = scene.tissues[tissue].layer;
-  return layer != kNoLayer && scene.layers[layer].is_wall ? layer : kNoLayer;
+  const bool is_walled = tissue != scene.skin && layer != kNoLayer && scene.layers[layer].is_wall;
+  return is_walled ? layer : kNoLayer;  // the skin is pierced where the path begins
 }
 
 }  // namespace

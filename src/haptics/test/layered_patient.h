@@ -53,7 +53,7 @@ struct Slab {
   std::uint8_t label;
 };
 inline constexpr std::uint8_t kFat = 1, kMuscle = 2, kLiver = 3, kBone = 4;
-inline constexpr std::array<std::int16_t, 5> kHuOfLabel{-1000, -100, 50, 60, 800};
+inline constexpr std::array<std::int16_t, 5> kHuOfLabel{0, -100, 50, 60, 800};
 
 /// The usual way to the liver: fat from 0, muscle from 12, liver from 24 mm.
 inline std::vector<Slab> liver_way() {
@@ -76,7 +76,7 @@ inline std::shared_ptr<VirtualPatient> layered_patient(const std::vector<Slab>& 
     for (const Slab& slab : slabs) {
       if (z >= slab.from_mm && z >= 0.0) patient->labels.voxels[n] = slab.label;
     }
-    patient->ct.voxels[n] = kHuOfLabel[patient->labels.voxels[n]];
+    patient->ct.voxels[n] = z < 0.0 ? std::int16_t{-1000} : kHuOfLabel[patient->labels.voxels[n]];
   }
   patient->label_table.labels = {
       {kFat, "fat", "adipose"}, {kMuscle, "muscle", "muscle"}, {kLiver, "liver", "liver"}, {kBone, "rib", "bone"}};

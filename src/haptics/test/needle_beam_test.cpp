@@ -108,7 +108,9 @@ TEST(NeedleBeam, LiesInAFoundationAsHetenyiSays) {
     const double error = solve_beam(beam, bed).per_tip_force_mm_n[at(nodes - 1)] * k / (2.0 * b) - 1.0;
     const double order = error / std::pow(b * beam.spacing_mm, 2.0);
     EXPECT_LT(std::abs(order), 1.0 / 3.0);
-    if (previous != 0.0) EXPECT_NEAR(order, previous, 0.1 * std::abs(previous));
+    if (previous != 0.0) {
+      EXPECT_NEAR(order, previous, 0.1 * std::abs(previous));
+    }
     previous = order;
   }
 }
