@@ -286,6 +286,7 @@ TEST(ContactTick, RecordsTheToolAndComposesTheTotal) {
 TEST(ContactTick, NeedsTissueToReadFrom) {
   auto patient = flat_patient(all_fat);
   patient->labels = {};
+  patient->ct = {};
   HapticOptions options;
   options.tool = Tool::kFinger;
   EXPECT_FALSE(make_haptic_scene(patient, soft_tissues(), {}, {}, options).has_value());
