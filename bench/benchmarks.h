@@ -17,5 +17,7 @@ Result<std::vector<CaseResult>> run_session_benchmark();
 Result<std::vector<CaseResult>> run_insertion_benchmark();
 /// Partly against fully segmented data along planned paths: the study of the Luebeck group.
 Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options);
+/// Force along one needle path as a curve, by each force model.
+Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options);
 
 }  // namespace trocar::bench

@@ -14,6 +14,10 @@ const std::vector<Benchmark>& all_benchmarks() {
        "forces of partly against fully segmented data along planned paths",
        run_paths_benchmark,
        {"--patient", "--task", "--paths", "--force-model", "--seed"}},
+      {"curves",
+       "force along one needle path by each force model, and its punctures; plots with --out",
+       run_curves_benchmark,
+       {"--patient", "--force-model", "--out"}},
   };
   return benchmarks;
 }

@@ -30,9 +30,11 @@ std::string cell(const std::optional<double>& value) {
 }
 
 void print_table(std::string_view bench, const std::vector<bench::CaseResult>& results) {
-  fmt::print("{}\n  {:<34} {:>9} {:>9} {:>9} {:>9}  unit\n", bench, "case", "median", "p99", "p99.9", "max");
+  std::size_t width = 34;
+  for (const bench::CaseResult& r : results) width = std::max(width, r.name.size());
+  fmt::print("{}\n  {:<{}} {:>9} {:>9} {:>9} {:>9}  unit\n", bench, "case", width, "median", "p99", "p99.9", "max");
   for (const bench::CaseResult& r : results) {
-    fmt::print("  {:<34} {:>9} {:>9} {:>9} {:>9}  {}", r.name, cell(r.figures.median), cell(r.figures.p99),
+    fmt::print("  {:<{}} {:>9} {:>9} {:>9} {:>9}  {:<5}", r.name, width, cell(r.figures.median), cell(r.figures.p99),
                cell(r.figures.p999), cell(r.figures.max), r.unit);
     if (r.peer)
       fmt::print("  {:.2f} times as fast as {} ({:.4g} {})", r.peer->ratio, r.peer->name, r.peer->median, r.unit);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "report/detail/html.h"
+#include "report/detail/style.h"
 
 namespace trocar {
 using report_detail::escape;
@@ -222,9 +223,14 @@ std::string draw_lines(const Plot& plot, const Frame& frame, double baseline) {
   return out + draw_names(frame, baseline, at, names, "eventname");
 }
 
-}  // namespace
+/// A drawing with its size, without the <svg> element around it.
+struct Drawing {
+  double width = 0.0;
+  double height = 0.0;
+  std::string elements;
+};
 
-std::string to_svg(const Plot& plot) {
+Drawing draw(const Plot& plot) {
   const std::vector<LegendEntry> legend = lay_out_legend(plot);
   // A single curve needs no legend: the axis names it.
   const double legend_height = plot.series.size() > 1 ? kRow * (legend.back().row + 1) + 3.0 : 0.0;
@@ -251,15 +257,38 @@ std::string to_svg(const Plot& plot) {
   frame.y = nice_range(frame.y, frame.y_step);
   if (dip < 0.0 && dip > -kDip * frame.y_step) frame.y.low = -kDip * frame.y_step;
 
-  std::string out = fmt::format("<svg class=\"plot\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">",
-                                plot.width, total, escape(plot.description));
-  out += draw_bands(plot, frame, legend_height + lines_height + bands_height);
+  std::string out = draw_bands(plot, frame, legend_height + lines_height + bands_height);
   out += draw_axes(plot, frame);
   out += draw_lines(plot, frame, legend_height + lines_height - 2.0);
   for (const PlotSeries& series : plot.series) out += draw_series(series, frame);
   out += draw_markers(plot, frame);
   if (plot.series.size() > 1) out += draw_legend(legend);
-  return out + "</svg>";
+  return {plot.width, total, std::move(out)};
+}
+
+}  // namespace
+
+std::string to_svg(const Plot& plot) {
+  const Drawing drawing = draw(plot);
+  return fmt::format("<svg class=\"plot\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">{}</svg>",
+                     drawing.width, drawing.height, escape(plot.description), drawing.elements);
+}
+
+std::string to_svg_file(const Plot& plot, std::string_view title) {
+  constexpr double kTitle = 30.0;  // room above the drawing
+  constexpr double kMargin = 8.0;
+  const Drawing drawing = draw(plot);
+  const double width = drawing.width + 2.0 * kMargin;
+  const double height = drawing.height + kTitle + kMargin;
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
+      "{1:.0f}\">\n"
+      "<title>{2}</title>\n<style>{3}</style>\n<rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n"
+      "<text class=\"heading\" x=\"{4:.1f}\" y=\"{5:.1f}\">{6}</text>\n<g transform=\"translate({7:.1f} "
+      "{8:.1f})\">{9}</g>\n"
+      "</svg>\n",
+      width, height, escape(plot.description), report_detail::plot_style(), kLeft + kMargin, 0.66 * kTitle,
+      escape(title), kMargin, kTitle, drawing.elements);
 }
 
 }  // namespace trocar

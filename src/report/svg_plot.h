@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "report/plot_scale.h"
@@ -52,5 +53,7 @@ struct Plot {
 
 /// The plot as an <svg> element. All texts are escaped.
 std::string to_svg(const Plot& plot);
+/// The same as a file of its own, with style and a title above it: for print, and for programs that know no page.
+std::string to_svg_file(const Plot& plot, std::string_view title);
 
 }  // namespace trocar

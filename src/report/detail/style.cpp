@@ -4,7 +4,7 @@ namespace trocar::report_detail {
 namespace {
 
 // Colours of curves are dark enough for 4.5:1 on white; stripes of tissues also differ in lightness.
-constexpr std::string_view kStyle = R"css(
+constexpr std::string_view kPageStyle = R"css(
 :root { --ink: #1c2733; --soft: #5a6875; --line: #d9dfe5; --accent: #0b6e75; --paper: #ffffff; }
 * { box-sizing: border-box; }
 body { margin: 0; background: #eef1f4; color: var(--ink); font: 15px/1.5 "Segoe UI", "Helvetica Neue", "DejaVu Sans",
@@ -48,7 +48,9 @@ pre { font: 12px/1.4 "DejaVu Sans Mono", Consolas, monospace; background: #f6f8f
 .key li { display: flex; align-items: center; gap: 7px; }
 .key svg { width: 30px; height: 13px; }
 footer { margin-top: 38px; padding-top: 10px; border-top: 1px solid var(--line); color: var(--soft); font-size: 12.5px; }
+)css";
 
+constexpr std::string_view kPlotStyle = R"css(
 .axis { stroke: #51606d; } .grid { stroke: #dde3e8; stroke-width: 0.8; } .zero { stroke: #7b8a96; stroke-width: 1; }
 .frame { fill: none; stroke: #51606d; stroke-width: 1; } .title { font-size: 12.5px; }
 .curve { fill: none; stroke-width: 1.5; stroke-linejoin: round; }
@@ -66,9 +68,14 @@ footer { margin-top: 38px; padding-top: 10px; border-top: 1px solid var(--line);
 .t-skin { fill: #f2c9a8; } .t-adipose { fill: #fdf4cf; } .t-muscle { fill: #f1cfcf; } .t-liver { fill: #ead9d0; }
 .t-liver_lesion { fill: #d3e6b5; } .t-vessel { fill: #cfd8f1; } .t-bone { fill: #e3ddca; } .t-air { fill: #ffffff; }
 .t-cartilage { fill: #dbe6e4; } .t-lung { fill: #f5e3ea; } .t-bowel { fill: #f1ddcb; } .t-fluid { fill: #d4ebf5; }
+.t-ligament { fill: #dfe8c8; } .t-ligamentum_flavum { fill: #f3e28a; } .t-csf { fill: #cfe9fb; } .t-nerve { fill: #e6d5ec; }
+.t-ascites { fill: #d4ebf5; } .t-peritoneum { fill: #eec3d2; } .t-bile_duct { fill: #cfe3b0; } .t-gallbladder { fill: #cfe3b0; }
+.t-organ, .t-kidney, .t-spleen { fill: #e6dada; } .t-soft_tissue { fill: #f3ece6; } .t-gas { fill: #ffffff; }
 .p-outside { fill: #ffffff; } .p-loading { fill: #f6d9a8; } .p-inserted { fill: #eef2f5; } .p-retracting { fill: #dbe3ea; }
 .piece { stroke: #ffffff; stroke-width: 1.5; }
+)css";
 
+constexpr std::string_view kPictureStyle = R"css(
 .letter { fill: #ffffff; font-weight: 650; text-anchor: middle; stroke: #000000; stroke-width: 3px; paint-order: stroke; }
 .planned { fill: none; stroke: #4ade80; stroke-dasharray: 9 6; }
 .own { fill: none; stroke: #fb923c; } .shaft { fill: none; stroke: #fb923c; }
@@ -93,8 +100,16 @@ footer { margin-top: 38px; padding-top: 10px; border-top: 1px solid var(--line);
 
 }  // namespace
 
-std::string_view style_sheet() {
-  return kStyle;
+std::string style_sheet() {
+  return std::string(kPageStyle) + std::string(kPlotStyle) + std::string(kPictureStyle);
+}
+
+std::string plot_style() {
+  // In a page the style of all <svg> comes with it.
+  constexpr std::string_view kAlone =
+      "svg { font: 11.5px \"Segoe UI\", \"Helvetica Neue\", \"DejaVu Sans\", Arial, sans-serif; fill: #1c2733; }\n"
+      ".paper { fill: #ffffff; } .heading { font-size: 14px; font-weight: 650; }";
+  return std::string(kAlone) + std::string(kPlotStyle);
 }
 
 }  // namespace trocar::report_detail

@@ -1,10 +1,12 @@
 #pragma once
 
-#include <string_view>
+#include <string>
 
 namespace trocar::report_detail {
 
 /// The style sheet of the report: screen and A4 print, curves told apart by dashes as well as by colour.
-std::string_view style_sheet();
+std::string style_sheet();
+/// The part of it that a plot alone needs.
+std::string plot_style();
 
 }  // namespace trocar::report_detail

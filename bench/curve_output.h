@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "headless/force_curve.h"
+
+namespace trocar::bench {
+
+/// The curve of one force model.
+struct ModelCurve {
+  ForceModel model = ForceModel::kInsertion;
+  std::vector<CurvePoint> points;
+  std::vector<CurveEvent> events;
+};
+
+/// One path with its curves: the same motion for each model.
+struct PathCurves {
+  std::string name;   ///< "lumbar": of files and cases.
+  std::string title;  ///< Patient, needle, speed: above the plot.
+  std::vector<PathPiece> pieces;
+  std::vector<ModelCurve> curves;
+};
+
+/// The curves side by side, a row of bars every few millimetres of depth: the largest force in that row. An asterisk
+/// marks a row in which a layer gave way.
+std::string curves_text(const PathCurves& path);
+
+/// NAME.csv: a row a tick, NAME.svg: the curves over the layers. The folder is there.
+Status write_curves(const PathCurves& path, const TissueTable& tissues, const std::filesystem::path& folder);
+
+}  // namespace trocar::bench

@@ -1,0 +1,167 @@
+// The force along one needle path as a curve, by each force model: the layered patients, or any patient with a path of
+// its own.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "anatomy/phantom/phantom.h"
+#include "bench/benchmarks.h"
+#include "bench/curve_output.h"
+#include "core/atomic_file.h"
+#include "core/data_dir.h"
+#include "training/needle.h"
+
+namespace trocar::bench {
+namespace {
+
+constexpr double kSpeed_mm_per_s = 5.0;
+constexpr ForceModel kModels[] = {ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined};
+
+/// A patient and the needle that goes into it.
+struct Way {
+  std::string patient;
+  std::string needle;
+};
+constexpr const char* kOtherNeedle = "chiba-22g";
+const std::vector<Way>& layered_ways() {
+  static const std::vector<Way> ways{
+      {"layers-lumbar", "quincke-22g"}, {"layers-ascites", "paracentesis-14g"}, {"layers-liver", kOtherNeedle}};
+  return ways;
+}
+
+bool is_embedded(const std::string& name) {
+  const auto& all = embedded_patients();
+  return std::any_of(all.begin(), all.end(), [&](const PhantomInfo& info) { return info.name == name; });
+}
+
+/// "layers-lumbar" -> "lumbar"; other names keep only what a file's name may have.
+std::string short_name(std::string name) {
+  constexpr std::string_view kLayers = "layers-";
+  if (name.starts_with(kLayers)) name.erase(0, kLayers.size());
+  for (char& c : name) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    if (!is_plain) c = '_';
+  }
+  return name;
+}
+
+std::string needle_for(const std::string& patient) {
+  for (const Way& way : layered_ways())
+    if (way.patient == patient) return way.needle;
+  return kOtherNeedle;
+}
+
+struct Tables {
+  TissueTable tissues;
+  std::vector<Needle> needles;
+};
+
+Result<Tables> load_tables_of_curves() {
+  const std::filesystem::path data = data_dir();
+  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  Tables tables;
+  TROCAR_TRY(tables.tissues, load_tissue_table(data / "tissues.toml"));
+  TROCAR_TRY(tables.needles, load_needles(data / "needles.toml"));
+  return tables;
+}
+
+Result<PathCurves> curves_of(std::shared_ptr<const VirtualPatient> patient, const Tables& tables,
+                             const Options& options) {
+  if (patient->paths.empty())
+    return fail_usage("the patient has no needle path of its own", patient->name, "use an embedded patient");
+  const std::string needle_name = needle_for(patient->name);
+  const auto needle = std::find_if(tables.needles.begin(), tables.needles.end(),
+                                   [&](const Needle& candidate) { return candidate.name == needle_name; });
+  if (needle == tables.needles.end()) return fail("there is no needle of that name", needle_name);
+
+  PrescribedMotion motion;
+  motion.line_P = patient->paths.front().line_P;
+  motion.speed_mm_per_s = kSpeed_mm_per_s;
+  PathCurves path;
+  path.name = short_name(patient->name);
+  path.title = fmt::format("{}, {}, {:.0f} mm/s", patient->name, needle_name, kSpeed_mm_per_s);
+  for (const ForceModel model : kModels) {
+    if (options.force_model && *options.force_model != model) continue;
+    HapticOptions haptic;
+    haptic.force_model = model;
+    haptic.has_weight_compensation = false;
+    const NeedleGeometry geometry{needle->outer_diameter_mm / 2.0, needle->length_mm};
+    TROCAR_TRY(const auto scene, make_haptic_scene(patient, tables.tissues, geometry, {}, haptic));
+    if (path.pieces.empty()) path.pieces = pieces_along(*scene, tables.tissues, motion.line_P);
+    ModelCurve curve{model, force_curve(*scene, motion), {}};
+    curve.events = find_curve_events(curve.points, tables.tissues);
+    path.curves.push_back(std::move(curve));
+  }
+  return path;
+}
+
+Figures single(double value) {
+  Figures figures;
+  figures.median = value;
+  return figures;
+}
+
+/// A line a layer that gave way, in order; one that gives way again is numbered. For programs drop and time of the drop
+/// are cases of their own; people read them in the note.
+void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is_for_people) {
+  for (const ModelCurve& curve : path.curves) {
+    std::map<std::string, int> times;
+    for (const CurveEvent& event : curve.events) {
+      const int number = ++times[event.layer];
+      std::string name = fmt::format("curves/{}/{}/{}", path.name, to_string(curve.model), event.layer);
+      if (number > 1) name += fmt::format("-{}", number);
+      const std::string note =
+          fmt::format("peak, device {:.1f} mm deep; then {:.2f} N: {:.2f} N less, nine tenths of it in {:.0f} ms",
+                      event.way_mm, event.after_n, event.drop_n(), event.fall_ms);
+      results.push_back({name, "n", single(event.peak_n), {}, note});
+      if (is_for_people) continue;
+      results.push_back({name + "/drop", "n", single(event.drop_n()), {}, ""});
+      results.push_back({name + "/fall", "ms", event.drop_n() > 0.0 ? single(event.fall_ms) : Figures{}, {}, ""});
+      results.push_back({name + "/way", "mm", single(event.way_mm), {}, "of the device past the resting skin"});
+    }
+  }
+}
+
+Result<std::vector<std::shared_ptr<const VirtualPatient>>> patients_of(const Options& options) {
+  std::vector<std::shared_ptr<const VirtualPatient>> patients;
+  if (options.patient) return std::vector{options.patient};
+  for (const Way& way : layered_ways()) {
+    if (!is_embedded(way.patient)) continue;
+    TROCAR_TRY(VirtualPatient generated, generate_phantom(way.patient, 1, {}, options.progress));
+    patients.push_back(std::make_shared<const VirtualPatient>(std::move(generated)));
+  }
+  if (!patients.empty()) return patients;
+  TROCAR_TRY(VirtualPatient generated, generate_phantom("abdomen", 1, {}, options.progress));
+  patients.push_back(std::make_shared<const VirtualPatient>(std::move(generated)));
+  return patients;
+}
+
+Status write_all(const std::vector<PathCurves>& paths, const TissueTable& tissues, const std::filesystem::path& out) {
+  return write_folder_atomically(out, [&](const std::filesystem::path& folder) -> Status {
+    for (const PathCurves& path : paths) TROCAR_TRY_STATUS(write_curves(path, tissues, folder));
+    return {};
+  });
+}
+
+}  // namespace
+
+Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options) {
+  TROCAR_TRY(const Tables tables, load_tables_of_curves());
+  TROCAR_TRY(const auto patients, patients_of(options));
+  std::vector<PathCurves> paths;
+  for (const auto& patient : patients) {
+    TROCAR_TRY(PathCurves path, curves_of(patient, tables, options));
+    paths.push_back(std::move(path));
+  }
+  std::vector<CaseResult> results;
+  for (const PathCurves& path : paths) {
+    if (options.print && options.out.empty()) options.print(curves_text(path));
+    add_cases(results, path, static_cast<bool>(options.print));
+  }
+  if (!options.out.empty()) TROCAR_TRY_STATUS(write_all(paths, tables.tissues, options.out));
+  return results;
+}
+
+}  // namespace trocar::bench
