@@ -187,6 +187,7 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
   const double scale = largest_mm > most_mm ? most_mm / largest_mm : 1.0;
   reaction.needle.count = nodes + 1;
   reaction.needle.points_P[0] = grip_P;
+  Vec3 before_P = Vec3::Zero();
   for (int i = 0; i < nodes; ++i) {
     const auto index = static_cast<std::size_t>(i);
     const Vec3 bent_P = scale * deflection_P[index];
@@ -195,7 +196,12 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
     if (i == nodes - 1) force_P += tip_P;
     reaction.wrench_P.force_n += force_P;
     reaction.wrench_P.torque_nmm += lever_P.cross(force_P);
-    reaction.needle.points_P[index + 1] = grip_P + lever_P + bent_P;
+    // Steel does not stretch: spans keep their length and take their direction from the beam.
+    const Vec3 span_P = axis_P * spacing_mm + bent_P - before_P;
+    const double drawn_mm = span_P.stableNorm();
+    const double kept = drawn_mm > 0.0 ? spacing_mm / drawn_mm : 0.0;
+    reaction.needle.points_P[index + 1] = reaction.needle.points_P[index] + span_P * kept;
+    before_P = bent_P;
   }
   return reaction;
 }

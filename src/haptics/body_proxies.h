@@ -33,7 +33,8 @@ struct HeldShaft {
 HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,
                      bool is_stylet_in) noexcept;
 
-/// Points of the bent shaft in P, grip first, tip last: for pictures, ultrasound and X-ray.
+/// Points of the bent shaft in P, grip first, tip last, as long as the straight one: for pictures, ultrasound and
+/// X-ray.
 struct BentNeedle {
   int count = 0;
   std::array<Vec3, kMaxBeamNodes + 1> points_P = zero_vectors<kMaxBeamNodes + 1>();
