@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "haptics/insertion_law.h"
 
@@ -10,7 +11,6 @@ namespace {
 
 constexpr double kTissuePoisson = 0.5;  // Soft tissue keeps its volume.
 constexpr double kNPerMm2PerKpa = 0.001;
-constexpr double kFullTorque_rad = 0.05;    // The bed's torque meets the device's peak at this turn. [assumed]
 constexpr double kMostTipForce_n = 1000.0;  // Far beyond any device: keeps the numbers finite.
 
 /// A vector, cut to a length; zero where it is not a number.
@@ -96,13 +96,12 @@ const NeedleBeam& beam_of(const HapticScene& scene, bool is_stylet_in) noexcept 
   return is_stylet_in ? scene.beam_with_stylet : scene.beam_without_stylet;
 }
 
-/// Springs of the bed, no stiffer in sum than what the device can show: across, and turning about the grip.
+/// Springs of the bed, no stiffer in sum than what the device can show.
 void fill_stiffness(BeamBed& bed, const Channel& channel, const HapticScene& scene, const NeedleBeam& beam,
                     double tip_mm) noexcept {
   const BedLaw law{2.0 * scene.needle.radius_mm, beam.bending_stiffness_n_mm2};
   const double most_kpa = law.young_kpa_of(scene.options.coupling.stiffness_n_per_mm / beam.spacing_mm);
   double sum_n_per_mm = 0.0;
-  double sum_nmm_per_rad = 0.0;
   for (int i = 0; i < beam.node_count; ++i) {
     const Piece piece = piece_of(beam, i, tip_mm);
     if (!(piece.length_mm() > 0.0)) continue;
@@ -112,18 +111,12 @@ void fill_stiffness(BeamBed& bed, const Channel& channel, const HapticScene& sce
     });
     const double length_mm = piece.length_mm();
     const double k = law.stiffness_n_per_mm2(young_kpa_mm / length_mm) * length_mm;
-    const double lever_mm = beam.spacing_mm * (i + 1);
     bed.stiffness_n_per_mm[static_cast<std::size_t>(i)] = k;
     sum_n_per_mm += k;
-    sum_nmm_per_rad += k * lever_mm * lever_mm;
   }
-  double scale = 1.0;
   const double most_n_per_mm = 0.5 * scene.device.max_stiffness_n_per_mm;
-  if (sum_n_per_mm > most_n_per_mm) scale = most_n_per_mm / sum_n_per_mm;
-  const double most_nmm_per_rad = scene.device.peak_torque_nmm / kFullTorque_rad;
-  if (most_nmm_per_rad > 0.0 && sum_nmm_per_rad > most_nmm_per_rad)
-    scale = std::min(scale, most_nmm_per_rad / sum_nmm_per_rad);
-  for (double& k : bed.stiffness_n_per_mm) k *= scale;
+  if (!(sum_n_per_mm > most_n_per_mm)) return;
+  for (double& k : bed.stiffness_n_per_mm) k *= most_n_per_mm / sum_n_per_mm;
 }
 
 }  // namespace
@@ -143,7 +136,7 @@ ShaftResistance shaft_resistance(const Channel& channel, const HapticScene& scen
 
 HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,
                      bool is_stylet_in) noexcept {
-  const NeedleBeam& beam = beam_of(scene, is_stylet_in);
+  NeedleBeam beam = beam_of(scene, is_stylet_in);
   HeldShaft shaft;
   shaft.beam.node_count = beam.node_count;
   if (!X_PN.is_finite()) {
@@ -164,7 +157,12 @@ HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pos
     shaft.bed.offset_mm[index] = within(offset_P, most_mm);
     is_far = is_far || shaft.bed.offset_mm[index] != offset_P;
   }
-  if (scene.options.has_bending) shaft.beam = solve_beam(beam, shaft.bed);
+  if (scene.options.has_bending)
+    shaft.beam = solve_beam(beam, shaft.bed);
+  else
+    beam.bending_stiffness_n_mm2 = std::numeric_limits<double>::infinity();
+  const double turning = grip_stiffness(beam, shaft.bed).turning_nmm_per_rad;
+  if (turning > kMostTurning_nmm_per_rad) shaft.share = kMostTurning_nmm_per_rad / turning;
   shaft.beam.is_bound = shaft.beam.is_bound || is_far;
   return shaft;
 }
@@ -192,7 +190,7 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
     const auto index = static_cast<std::size_t>(i);
     const Vec3 bent_P = scale * deflection_P[index];
     const Vec3 lever_P = axis_P * (spacing_mm * (i + 1));
-    Vec3 force_P = shaft.bed.stiffness_n_per_mm[index] * (shaft.bed.offset_mm[index] - bent_P);
+    Vec3 force_P = shaft.share * shaft.bed.stiffness_n_per_mm[index] * (shaft.bed.offset_mm[index] - bent_P);
     if (i == nodes - 1) force_P += tip_P;
     reaction.wrench_P.force_n += force_P;
     reaction.wrench_P.torque_nmm += lever_P.cross(force_P);

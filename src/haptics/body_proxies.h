@@ -22,14 +22,16 @@ struct ShaftResistance {
 ShaftResistance shaft_resistance(const Channel& channel, const HapticScene& scene, double tip_mm) noexcept;
 
 /// The shaft held to the channel's line by its body proxies, before the tip's force is known. `X_PN`: the device's
-/// needle (rigid, +z axis). Purely elastic; the bed is at most half as stiff as the device can show, and reaches the
-/// device's peak torque at 0.05 rad or later. `beam.is_bound` tells of proxies or deflections beyond kMaxDeflection and
+/// needle (rigid, +z axis). Purely elastic; at the grip at most half as stiff as the device can show, and at most
+/// kMostTurning_nmm_per_rad. `beam.is_bound` tells of proxies or deflections beyond kMaxDeflection and
 /// of a pose that is not finite (then nothing holds). Real-time safe.
 struct HeldShaft {
   BeamSolution beam;
   BeamBed bed;
   Pose X_PN;
+  double share = 1.0;  ///< Of the bed's forces that the hand gets: below 1 where it would turn the grip too stiffly.
 };
+inline constexpr double kMostTurning_nmm_per_rad = 1500.0;
 HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,
                      bool is_stylet_in) noexcept;
 
@@ -42,7 +44,8 @@ struct BentNeedle {
 
 /// What the shaft does to the hand with `tip_force_P`, the tissue's force on the tip (only its part across the shaft
 /// bends and is turned into torque here): force across the shaft and torque about the grip, M = sum l_i x f_i (paper B,
-/// eq. 6), in P; no torque about the shaft's own axis: the needle rolls freely. Real-time safe.
+/// eq. 6), in P, the bed's forces times its share; no torque about the shaft's own axis: the needle rolls freely.
+/// Real-time safe.
 struct ShaftReaction {
   Wrench wrench_P;  ///< On the needle, about the grip (stylus origin), of the body proxies and the tip.
   BentNeedle needle;

@@ -52,8 +52,10 @@ void limit(BeamSolution& solution, double most_mm) noexcept {
     deflection = std::isfinite(most) ? Vec3(deflection * scale) : Vec3::Zero();
 }
 
+constexpr double kRigid_n_per_mm = 1e9;  // Stiffer than anything; keeps the numbers finite.
+
 double usable(double stiffness) noexcept {
-  return stiffness > 0.0 && std::isfinite(stiffness) ? stiffness : 0.0;
+  return stiffness > 0.0 && std::isfinite(stiffness) ? std::min(stiffness, kRigid_n_per_mm) : 0.0;
 }
 
 }  // namespace
@@ -116,6 +118,32 @@ BeamSolution solve_beam(const NeedleBeam& beam, const BeamBed& bed) noexcept {
   }
   limit(solution, kMaxDeflection * h * count);
   return solution;
+}
+
+GripStiffness grip_stiffness(const NeedleBeam& beam, const BeamBed& bed) noexcept {
+  // From the tip inwards: stiffness K of all beyond, to deflection and slope. A span with compliance C and lever T
+  // makes it T' K (1 + C K)^-1 T.
+  const double h = beam.spacing_mm;
+  const double ei = beam.bending_stiffness_n_mm2;
+  const double c_ww = h * h * h / (3.0 * ei);
+  const double c_ws = h * h / (2.0 * ei);
+  const double c_ss = h / ei;
+  double k_ww = 0.0;
+  double k_ws = 0.0;
+  double k_ss = 0.0;
+  for (int i = std::clamp(beam.node_count, 1, kMaxBeamNodes) - 1; i >= 0; --i) {
+    k_ww += usable(bed.stiffness_n_per_mm[static_cast<std::size_t>(i)]);
+    const double determinant = k_ww * k_ss - k_ws * k_ws;
+    const double share =
+        1.0 / (1.0 + c_ww * k_ww + 2.0 * c_ws * k_ws + c_ss * k_ss + (c_ww * c_ss - c_ws * c_ws) * determinant);
+    const double soft_ww = (k_ww + c_ss * determinant) * share;
+    const double soft_ws = (k_ws - c_ws * determinant) * share;
+    const double soft_ss = (k_ss + c_ww * determinant) * share;
+    k_ww = soft_ww;
+    k_ws = soft_ws + h * soft_ww;
+    k_ss = soft_ss + 2.0 * h * soft_ws + h * h * soft_ww;
+  }
+  return {k_ww, k_ss};
 }
 
 }  // namespace trocar

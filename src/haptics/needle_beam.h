@@ -42,4 +42,11 @@ inline constexpr double kMaxDeflection = 0.3;
 /// is zero and flagged. Real-time safe.
 BeamSolution solve_beam(const NeedleBeam& beam, const BeamBed& bed) noexcept;
 
+/// What a bed opposes to the hand: a force across a shift of the grip, a torque to its turn. Real-time safe.
+struct GripStiffness {
+  double across_n_per_mm = 0.0;
+  double turning_nmm_per_rad = 0.0;
+};
+GripStiffness grip_stiffness(const NeedleBeam& beam, const BeamBed& bed) noexcept;
+
 }  // namespace trocar

@@ -151,6 +151,40 @@ TEST(NeedleBeam, FollowsAShiftedAndTurnedBedOnlyAsFarAsItMust) {
   }
 }
 
+TEST(NeedleBeam, TellsTheStiffnessThatTheGripMeets) {
+  // Against the supports of a shifted and of a turned grip; a rigid shaft adds up its springs.
+  Random random(11);
+  for (int trial = 0; trial < 50; ++trial) {
+    const NeedleBeam beam = beam_of(2 + trial % 32);
+    BeamBed shifted, turned;
+    double sum = 0.0, sum_turning = 0.0;
+    for (int i = 0; i < beam.node_count; ++i) {
+      const double k = std::pow(10.0, random.uniform(-4, 0));
+      shifted.stiffness_n_per_mm[at(i)] = turned.stiffness_n_per_mm[at(i)] = k;
+      shifted.offset_mm[at(i)] = Vec3::UnitX();
+      turned.offset_mm[at(i)] = arc_mm(beam, i) / kLength_mm * Vec3::UnitX();
+      sum += k;
+      sum_turning += k * arc_mm(beam, i) * arc_mm(beam, i);
+    }
+    double across = 0.0, turning = 0.0;
+    const BeamSolution shift = solve_beam(beam, shifted);
+    const BeamSolution turn = solve_beam(beam, turned);
+    for (int i = 0; i < beam.node_count; ++i) {
+      const double k = shifted.stiffness_n_per_mm[at(i)];
+      across += k * (1.0 - shift.deflection_mm[at(i)].x());
+      turning += k * arc_mm(beam, i) * (arc_mm(beam, i) - kLength_mm * turn.deflection_mm[at(i)].x());
+    }
+    const GripStiffness grip = grip_stiffness(beam, shifted);
+    constexpr double kCancelling = 1e-7;  // Relative: supports are small differences of offset and deflection.
+    EXPECT_NEAR(grip.across_n_per_mm, across, kCancelling * sum);
+    EXPECT_NEAR(grip.turning_nmm_per_rad, turning, kCancelling * sum_turning);
+    NeedleBeam rigid = beam;
+    rigid.bending_stiffness_n_mm2 = std::numeric_limits<double>::infinity();
+    EXPECT_NEAR(grip_stiffness(rigid, shifted).across_n_per_mm, sum, kRounding * sum);
+    EXPECT_NEAR(grip_stiffness(rigid, shifted).turning_nmm_per_rad, sum_turning, kRounding * sum_turning);
+  }
+}
+
 TEST(NeedleBeam, IsStiffByTubeAndStylet) {
   NeedleGeometry needle;
   needle.radius_mm = 0.359;  // 22 G
@@ -186,6 +220,7 @@ TEST(NeedleBeam, StaysFiniteOnNumbersThatAreNone) {
     for (const BeamBed& bed : {stiff, off}) {
       for (const int nodes : {-5, 0, 1, 17, 1000}) {
         const BeamSolution solution = solve_beam({nodes, 8.8, kStiffness_n_mm2}, bed);
+        EXPECT_TRUE(std::isfinite(grip_stiffness({nodes, 8.8, kStiffness_n_mm2}, bed).turning_nmm_per_rad)) << bad;
         for (int i = 0; i < solution.node_count; ++i) {
           EXPECT_TRUE(solution.deflection_mm[at(i)].allFinite()) << bad << " " << nodes;
           EXPECT_TRUE(std::isfinite(solution.per_tip_force_mm_n[at(i)])) << bad << " " << nodes;
@@ -201,8 +236,9 @@ TEST(NeedleBeam, NeverAllocates) {
   bed.offset_mm.fill(Vec3::UnitX());
   const AllocationGuard guard;
   const BeamSolution solution = solve_beam(beam_of(33), bed);
+  const GripStiffness grip = grip_stiffness(beam_of(33), bed);
   EXPECT_EQ(guard.count(), 0u);
-  EXPECT_GT(solution.deflection_mm[32].x(), 0.0);
+  EXPECT_GT(solution.deflection_mm[32].x() * grip.across_n_per_mm, 0.0);
 }
 
 }  // namespace
