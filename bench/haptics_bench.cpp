@@ -9,6 +9,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "haptics/tick.h"
+#include "headless/needle_geometry.h"
 #include "headless/prepare_case.h"
 
 namespace trocar::bench {
@@ -60,7 +61,7 @@ Round measure_round(const HapticScene& scene, const Segment& path_P) {
 Result<std::vector<CaseResult>> run_haptics_benchmark() {
   TROCAR_TRY(VirtualPatient generated, generate_phantom("abdomen"));
   TROCAR_TRY(const Case the_case, prepare_case(std::make_shared<const VirtualPatient>(std::move(generated)), {}));
-  const NeedleGeometry needle{the_case.needle.outer_diameter_mm / 2.0, the_case.needle.length_mm};
+  const NeedleGeometry needle = needle_geometry(the_case.needle);
   TROCAR_TRY(const auto scene, make_haptic_scene(the_case.patient, the_case.tissues, needle));
 
   Figures tick;

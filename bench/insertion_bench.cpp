@@ -9,6 +9,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/harness.h"
 #include "haptics/tick.h"
+#include "headless/needle_geometry.h"
 #include "headless/prepare_case.h"
 
 namespace trocar::bench {
@@ -17,7 +18,7 @@ namespace {
 constexpr double kDt_s = 0.001;
 
 std::shared_ptr<const HapticScene> make_scene(const Case& the_case) {
-  const NeedleGeometry needle{the_case.needle.outer_diameter_mm / 2.0, the_case.needle.length_mm};
+  const NeedleGeometry needle = needle_geometry(the_case.needle);
   const auto scene = make_haptic_scene(the_case.patient, the_case.tissues, needle);
   return scene ? *scene : nullptr;
 }

@@ -7,6 +7,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
+#include "headless/needle_geometry.h"
 #include "headless/prepare_case.h"
 #include "headless/segmentation_study.h"
 
@@ -95,7 +96,7 @@ Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options) {
   case_options.task = options.task;
   TROCAR_TRY(const Case tables, load_tables(case_options));
   TROCAR_TRY(const auto patient, patient_of(options));
-  const NeedleGeometry needle{tables.needle.outer_diameter_mm / 2.0, tables.needle.length_mm};
+  const NeedleGeometry needle = needle_geometry(tables.needle);
   HapticOptions haptic;
   haptic.force_model = options.force_model.value_or(kModel);
   haptic.has_weight_compensation = false;

@@ -13,6 +13,7 @@
 #include "haptics/devices/device_preset.h"
 #include "haptics/devices/virtual_device.h"
 #include "haptics/tick.h"
+#include "headless/needle_geometry.h"
 #include "training/hand.h"
 #include "training/operator.h"
 
@@ -191,7 +192,7 @@ Result<RunResult> run_session(const Case& the_case, const RunOptions& options, c
   HapticOptions insertion;
   insertion.seed = options.seed;
   apply_device_preset(device, insertion);
-  const NeedleGeometry needle{the_case.needle.outer_diameter_mm / 2.0, the_case.needle.length_mm};
+  const NeedleGeometry needle = needle_geometry(the_case.needle);
   TROCAR_TRY(const auto scene,
              make_haptic_scene(the_case.patient, the_case.tissues, needle, device.capability, insertion));
 

@@ -9,6 +9,8 @@
 namespace trocar {
 namespace {
 
+constexpr double kThinnestWall = 0.95;  ///< Largest bore as a share of the outer diameter.
+
 Status read_value(const TomlTable& row, std::string_view key, Range range, double& value) {
   TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, key, range));
   value = number.value;
@@ -21,12 +23,21 @@ Result<Needle> read_needle(const TomlTable& row, const std::string& name) {
   TROCAR_TRY(needle.title, row.string("title"));
   TROCAR_TRY(needle.gauge, row.number("gauge", {7.0, 34.0}));
   TROCAR_TRY(needle.is_biopsy, row.boolean_or("is_biopsy", false));
-  std::vector<std::string_view> known = {"title", "gauge", "is_biopsy", "outer_diameter_mm", "length_mm", "bevel_deg"};
+  std::vector<std::string_view> known = {
+      "title",     "gauge",     "is_biopsy",  "outer_diameter_mm", "inner_diameter_mm", "stylet_diameter_mm",
+      "length_mm", "bevel_deg", "bevel_share"};
   if (needle.is_biopsy) known.insert(known.end(), {"throw_mm", "notch_mm", "dead_space_mm"});
   TROCAR_TRY_STATUS(row.check_keys(known));
   TROCAR_TRY_STATUS(read_value(row, "outer_diameter_mm", {0.2, 5.0}, needle.outer_diameter_mm));
+  TROCAR_TRY_STATUS(read_value(row, "inner_diameter_mm", {0.0, 5.0}, needle.inner_diameter_mm));
+  if (needle.inner_diameter_mm > kThinnestWall * needle.outer_diameter_mm)
+    return fail("inner_diameter_mm leaves no wall", row.where(), "give at most 0.95 of the outer diameter");
+  TROCAR_TRY_STATUS(read_value(row, "stylet_diameter_mm", {0.0, 5.0}, needle.stylet_diameter_mm));
+  if (needle.stylet_diameter_mm > needle.inner_diameter_mm)
+    return fail("stylet_diameter_mm is wider than the bore", row.where());
   TROCAR_TRY_STATUS(read_value(row, "length_mm", {20.0, 300.0}, needle.length_mm));
   TROCAR_TRY_STATUS(read_value(row, "bevel_deg", {5.0, 90.0}, needle.bevel_deg));
+  TROCAR_TRY_STATUS(read_value(row, "bevel_share", {0.0, 1.0}, needle.bevel_share));
   if (needle.is_biopsy) {
     TROCAR_TRY_STATUS(read_value(row, "throw_mm", {5.0, 40.0}, needle.throw_mm));
     TROCAR_TRY_STATUS(read_value(row, "notch_mm", {3.0, 40.0}, needle.notch_mm));

@@ -13,10 +13,13 @@ namespace trocar {
 struct Needle {
   std::string name;
   std::string title;
-  double gauge = 18.0;              ///< Range 7..34.
-  double outer_diameter_mm = 1.27;  ///< Range 0.2..5.
-  double length_mm = 150.0;         ///< Tip to hub. Range 20..300.
-  double bevel_deg = 20.0;          ///< Between the bevel's face and the axis. Range 5..90.
+  double gauge = 18.0;               ///< Range 7..34.
+  double outer_diameter_mm = 1.27;   ///< Range 0.2..5.
+  double inner_diameter_mm = 0.838;  ///< Of the bore. Range 0..5, below the outer one; 0: solid.
+  double stylet_diameter_mm = 0.0;   ///< Of the rod in the bore; 0: has none. At most the bore's.
+  double length_mm = 150.0;          ///< Tip to hub. Range 20..300.
+  double bevel_deg = 20.0;           ///< Between the bevel's face and the axis. Range 5..90.
+  double bevel_share = 0.1;          ///< Sideways force of the bevel as a share of the tip's axial force. Range 0..1.
   bool is_biopsy = false;
   double throw_mm = 0.0;       ///< How far the inner stylet shoots beyond the tip. Range 5..40.
   double notch_mm = 0.0;       ///< Length of the specimen notch. Range 3..40; notch and dead space fit into the throw.

@@ -18,10 +18,13 @@ TEST(Needle, DiametersFollowTheGauge) {
   ASSERT_TRUE(needles) << needles.error().text();
   // Needle gauge comparison chart (Birmingham wire gauge), mm.
   const std::map<double, double> chart = {{14, 2.108}, {16, 1.651}, {17, 1.473}, {18, 1.270}, {22, 0.7176}};
+  const std::map<double, double> bore = {{14, 1.600}, {16, 1.194}, {17, 1.067}, {18, 0.838}, {22, 0.413}};
   EXPECT_GE(needles->size(), 7u);
   for (const Needle& needle : *needles) {
     ASSERT_TRUE(chart.contains(needle.gauge)) << needle.name;
     EXPECT_NEAR(needle.outer_diameter_mm, chart.at(needle.gauge), 0.0006) << needle.name;
+    EXPECT_NEAR(needle.inner_diameter_mm, bore.at(needle.gauge), 0.0006) << needle.name;
+    EXPECT_LE(needle.stylet_diameter_mm, needle.inner_diameter_mm) << needle.name;
     EXPECT_FALSE(needle.title.empty());
     EXPECT_EQ(needle.is_biopsy, needle.name.starts_with("biopsy")) << needle.name;
   }
@@ -57,6 +60,11 @@ TEST(Needle, ImpossibleNeedleIsRefused) {
   EXPECT_TRUE(is_refused("dead_space_mm = {value = 3", "dead_space_mm = {value = 4"));
   EXPECT_TRUE(is_refused("throw_mm = ", "trow_mm = "));
   EXPECT_TRUE(is_refused("value = 1.27", "value = 127"));
+  EXPECT_TRUE(is_refused("inner_diameter_mm = {value = 0.838", "inner_diameter_mm = {value = 1.26"));
+  EXPECT_TRUE(
+      is_refused("stylet_diameter_mm = {value = 0.788, source = \"assumed, 0.05 mm of play\", range = [0.688, 0.838]",
+                 "stylet_diameter_mm = {value = 0.85, source = \"mine\""));
+  EXPECT_TRUE(is_refused("bevel_share = {value = 0.1", "bevel_share = {value = 1.1"));
   EXPECT_TRUE(is_refused("is_biopsy = true", "is_biopsy = 1"));
 }
 
