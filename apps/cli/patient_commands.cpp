@@ -38,7 +38,11 @@ Status list_patients(bool is_json) {
   }
   for (const auto& [task, patients] : by_task) {
     fmt::print("{}\n", task);
-    for (const PhantomInfo* info : patients) fmt::print("  {:<12} {}\n", info->name, info->description);
+    for (const PhantomInfo* info : patients) fmt::print("  {:<14} {}\n", info->name, info->description);
+  }
+  fmt::print("without a task\n");
+  for (const PhantomInfo& info : embedded_patients()) {
+    if (info.tasks.empty()) fmt::print("  {:<14} {}\n", info.name, info.description);
   }
   return {};
 }

@@ -1,9 +1,11 @@
 #include "anatomy/phantom/phantom.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "anatomy/phantom/abdomen.h"
+#include "anatomy/phantom/layers.h"
 #include "anatomy/phantom/render.h"
 #include "anatomy/phantom/skeleton.h"
 
@@ -17,27 +19,25 @@ constexpr std::int64_t kLeastSize = 16;
 constexpr std::int64_t kGreatestSize = 1024;
 
 /// The phantom's box divided into voxels; the box is the same for every size.
-GridGeometry box_geometry(const Index3& size) {
+GridGeometry box_geometry(const PhantomResolution& resolution) {
   GridGeometry geometry;
-  geometry.size = size;
   const Vec3 extent = 2.0 * Vec3(kHalfWidth, kHalfDepth, kHalfHeight);
-  for (int a = 0; a < 3; ++a) {
-    const auto voxels = static_cast<double>(size[static_cast<std::size_t>(a)]);
-    geometry.spacing_mm[a] = extent[a] / voxels;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto a = static_cast<Eigen::Index>(n);
+    geometry.size[n] = resolution.size[n] > 0 ? resolution.size[n] : kDefaultSize[n];
+    geometry.spacing_mm[a] = extent[a] / static_cast<double>(geometry.size[n]);
     geometry.origin_P[a] = 0.5 * (geometry.spacing_mm[a] - extent[a]);
   }
   return geometry;
 }
 
-Result<GridGeometry> choose_geometry(const PhantomResolution& resolution) {
-  Index3 size = resolution.size;
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (size[a] == 0) size[a] = kDefaultSize[a];
-    if (size[a] < kLeastSize || size[a] > kGreatestSize)
-      return fail_usage("a phantom of " + std::to_string(size[a]) + " voxels along one axis cannot be made",
-                        "resolution", "choose 16 to 1024 voxels, or 0 for the default");
+Status check_resolution(const PhantomResolution& resolution) {
+  for (const std::int64_t size : resolution.size) {
+    if (size != 0 && (size < kLeastSize || size > kGreatestSize))
+      return fail_usage("a phantom of " + std::to_string(size) + " voxels along one axis cannot be made", "resolution",
+                        "choose 16 to 1024 voxels, or 0 for the default");
   }
-  return box_geometry(size);
+  return {};
 }
 
 std::vector<Landmark> landmarks(const Anatomy& anatomy) {
@@ -54,21 +54,9 @@ std::vector<Landmark> landmarks(const Anatomy& anatomy) {
           {"right mid-axillary line, tenth rib", on_skin(-0.5F * kFront, vertebra_height(5) - 74.0F)}};
 }
 
-}  // namespace
-
-const std::vector<PhantomInfo>& embedded_patients() {
-  static const std::vector<PhantomInfo> kPatients{
-      {"abdomen", "upper abdomen in the portal-venous phase with three liver lesions, generated", {"liver-biopsy"}}};
-  return kPatients;
-}
-
-Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed, const PhantomResolution& resolution,
-                                        const Progress& progress) {
-  const PhantomInfo& info = embedded_patients().front();
-  if (name != info.name)
-    return fail_usage("no embedded patient is called \"" + std::string(name) + "\"", {}, "there is: " + info.name);
-  TROCAR_TRY(const GridGeometry geometry, choose_geometry(resolution));
-
+Result<VirtualPatient> generate_abdomen(const PhantomInfo& info, std::uint64_t seed,
+                                        const PhantomResolution& resolution, const Progress& progress) {
+  const GridGeometry geometry = box_geometry(resolution);
   report(progress, "shaping the anatomy", 0.0);
   Anatomy anatomy(seed);
   TROCAR_TRY(BiopsyPlan plan, build_abdomen(anatomy));
@@ -86,6 +74,33 @@ Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t see
   patient.paths = {std::move(plan.path)};
   patient.content_hash = hash_patient(patient);
   return patient;
+}
+
+}  // namespace
+
+const std::vector<PhantomInfo>& embedded_patients() {
+  static const std::vector<PhantomInfo> kPatients = [] {
+    std::vector<PhantomInfo> patients{
+        {"abdomen", "upper abdomen in the portal-venous phase with three liver lesions, generated", {"liver-biopsy"}}};
+    patients.insert(patients.end(), layered_scenes().begin(), layered_scenes().end());
+    return patients;
+  }();
+  return kPatients;
+}
+
+Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed, const PhantomResolution& resolution,
+                                        const Progress& progress) {
+  const auto& patients = embedded_patients();
+  const auto found =
+      std::find_if(patients.begin(), patients.end(), [&](const PhantomInfo& i) { return i.name == name; });
+  if (found == patients.end()) {
+    std::string names;
+    for (const PhantomInfo& patient : patients) names += (names.empty() ? "" : ", ") + patient.name;
+    return fail_usage("no embedded patient is called \"" + std::string(name) + "\"", {}, "there are: " + names);
+  }
+  TROCAR_TRY_STATUS(check_resolution(resolution));
+  if (found != patients.begin()) return make_layered_scene(name, seed, resolution);
+  return generate_abdomen(*found, seed, resolution, progress);
 }
 
 }  // namespace trocar

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "anatomy/phantom/shapes.h"
+
+namespace trocar::phantom {
+
+/// One thing in a layered scene, in its own coordinates: x as in P, the depth below the skin, z as in P. Later shapes
+/// cover earlier ones.
+struct LayerShape {
+  std::string_view name;  ///< A known structure.
+  float hu = 0.0F;
+  float texture_hu = 0.0F;
+  std::function<float(float x, float depth, float z)> distance;  ///< mm, negative inside.
+};
+
+struct LayerScene {
+  std::vector<LayerShape> shapes;
+  bool is_from_back = false;   ///< The skin faces +y, else -y.
+  float target_mm = 0.0F;      ///< Depth of the expert path's target, at x = z = 0.
+  std::string_view path_name;  ///< Of the expert path.
+};
+
+LayerScene lumbar_scene();
+LayerScene ascites_scene();
+LayerScene liver_scene();
+
+}  // namespace trocar::phantom

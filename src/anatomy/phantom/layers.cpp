@@ -1,0 +1,161 @@
+#include "anatomy/phantom/layers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "anatomy/phantom/layer_scene.h"
+#include "anatomy/phantom/texture.h"
+#include "core/check.h"
+#include "core/parallel.h"
+#include "core/random.h"
+
+namespace trocar::phantom {
+namespace {
+
+const Vec3 kHalfBox(40.0, 70.0, 40.0);
+constexpr double kVoxel_mm = 0.8;
+constexpr float kSkinY = 45.0F;  ///< The skin lies 25 mm inside the box: air before it.
+constexpr float kTexture_mm = 6.0F;
+constexpr double kPsfSigma_mm =
+    0.7;  ///< With the voxel an edge as wide as a CT's with a soft kernel, FWHM 1.8 mm. [assumed]
+constexpr float kAirHu = -1000.0F;
+
+GridGeometry scene_geometry(const PhantomResolution& resolution) {
+  GridGeometry geometry;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    const double extent_mm = 2.0 * kHalfBox[axis];
+    geometry.size[a] = resolution.size[a] > 0 ? resolution.size[a] : std::llround(extent_mm / kVoxel_mm);
+    geometry.spacing_mm[axis] = extent_mm / static_cast<double>(geometry.size[a]);
+    geometry.origin_P[axis] = 0.5 * geometry.spacing_mm[axis] - kHalfBox[axis];
+  }
+  return geometry;
+}
+
+/// Labels of the scene's shapes in their order, one a name.
+struct ShapeLabels {
+  LabelTable table;
+  std::vector<std::uint8_t> ids;  ///< By shape.
+
+  explicit ShapeLabels(const LayerScene& scene) {
+    for (const LayerShape& shape : scene.shapes) {
+      const Label* known = table.find(shape.name);
+      if (known == nullptr) {
+        const auto structure = find_known_structure(shape.name);
+        TROCAR_CHECK(structure.has_value());
+        const auto id = static_cast<std::uint8_t>(table.labels.size() + 1);
+        table.labels.push_back({id, std::string(shape.name), std::string(structure->tissue), structure->color});
+      }
+      ids.push_back(table.find(shape.name)->id);
+    }
+  }
+};
+
+float depth_at(const LayerScene& scene, double y) {
+  return kSkinY + (scene.is_from_back ? -1.0F : 1.0F) * static_cast<float>(y);
+}
+
+/// The scene as it is, voxels at a border in proportion: HU, labels, distance to the skin.
+void paint(const LayerScene& scene, const ShapeLabels& labels, std::uint64_t seed, FloatGrid& hu,
+           VirtualPatient& patient) {
+  const GridGeometry& geometry = hu.geometry;
+  const ValueNoise noise(seed);
+  const auto voxel_mm = static_cast<float>(std::cbrt(geometry.voxel_volume_mm3()));
+  parallel_for(hu.voxels.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      const Index3 ijk = geometry.index_of(n);
+      const Vec3f p =
+          geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])))
+              .cast<float>();
+      const float depth = depth_at(scene, p.y());
+      const float texture = noise.fractal(p, kTexture_mm);
+      float value = kAirHu;
+      std::uint8_t label = 0;
+      for (std::size_t s = 0; s < scene.shapes.size(); ++s) {
+        const LayerShape& shape = scene.shapes[s];
+        const float distance = shape.distance(p.x(), depth, p.z());
+        const float cover = clamp01(0.5F - distance / voxel_mm);
+        if (cover > 0.0F) value = mix(value, shape.hu + shape.texture_hu * texture, cover);
+        if (distance <= 0.0F) label = labels.ids[s];  // slabs that touch leave nothing between them
+      }
+      hu.voxels[n] = value;
+      patient.labels.voxels[n] = depth > 0.0F ? label : 0;
+      patient.skin_distance_mm.voxels[n] = -depth;
+    }
+  });
+}
+
+/// A Gaussian along one axis; the end values continue outside.
+void blur_along(FloatGrid& grid, std::size_t axis, double sigma_mm) {
+  const GridGeometry& geometry = grid.geometry;
+  const double sigma = sigma_mm / geometry.spacing_mm[static_cast<Eigen::Index>(axis)];
+  const auto reach = static_cast<std::int64_t>(std::ceil(3.0 * sigma));
+  std::vector<float> kernel;
+  for (std::int64_t step = -reach; step <= reach; ++step) {
+    const double u = static_cast<double>(step) / sigma;
+    kernel.push_back(static_cast<float>(std::exp(-0.5 * u * u)));
+  }
+  float sum = 0.0F;
+  for (const float weight : kernel) sum += weight;
+  const std::vector<float> before = grid.voxels;
+  parallel_for(before.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      Index3 ijk = geometry.index_of(n);
+      const std::int64_t middle = ijk[axis];
+      float value = 0.0F;
+      for (std::size_t k = 0; k < kernel.size(); ++k) {
+        ijk[axis] = std::clamp<std::int64_t>(middle + static_cast<std::int64_t>(k) - reach, 0, geometry.size[axis] - 1);
+        value += kernel[k] * before[geometry.offset(ijk)];
+      }
+      grid.voxels[n] = value / sum;
+    }
+  });
+}
+
+}  // namespace
+
+const std::vector<PhantomInfo>& layered_scenes() {
+  static const std::vector<PhantomInfo> kScenes{
+      {"layers-lumbar", "layered test scene: lumbar puncture from the back, between two spinous processes", {}},
+      {"layers-ascites", "layered test scene: ascites behind the wall of the left lower quadrant, bowel behind", {}},
+      {"layers-liver", "layered test scene: liver behind the chest wall, with a bile duct and a vein", {}}};
+  return kScenes;
+}
+
+Result<VirtualPatient> make_layered_scene(std::string_view name, std::uint64_t seed,
+                                          const PhantomResolution& resolution) {
+  const auto& scenes = layered_scenes();
+  const auto info = std::find_if(scenes.begin(), scenes.end(), [&](const PhantomInfo& i) { return i.name == name; });
+  if (info == scenes.end()) return fail_usage("no layered scene is called \"" + std::string(name) + "\"");
+  const LayerScene scene = name == "layers-lumbar"    ? lumbar_scene()
+                           : name == "layers-ascites" ? ascites_scene()
+                                                      : liver_scene();
+  const ShapeLabels labels(scene);
+  const GridGeometry geometry = scene_geometry(resolution);
+  const std::uint64_t mixed_seed = mix64(seed);
+
+  VirtualPatient patient;
+  patient.name = info->name;
+  patient.description = info->description;
+  patient.provenance = {"generated: embedded patient \"" + info->name + "\", seed " + std::to_string(seed)};
+  patient.label_table = labels.table;
+  patient.labels = LabelGrid(geometry);
+  patient.skin_distance_mm = FloatGrid(geometry);
+  FloatGrid hu(geometry);
+  paint(scene, labels, mixed_seed, hu, patient);
+  for (std::size_t axis = 0; axis < 3; ++axis) blur_along(hu, axis, kPsfSigma_mm);
+  patient.ct = CtGrid(geometry);
+  std::transform(hu.voxels.begin(), hu.voxels.end(), patient.ct.voxels.begin(),
+                 [](float value) { return static_cast<std::int16_t>(std::lround(value)); });
+  add_scanner_noise(patient.ct, patient.skin_distance_mm, mixed_seed);
+
+  const double inwards = scene.is_from_back ? -1.0 : 1.0;
+  const Vec3 entry_P(0.0, -inwards * static_cast<double>(kSkinY), 0.0);
+  const Vec3 target_P = entry_P + Vec3(0.0, inwards * static_cast<double>(scene.target_mm), 0.0);
+  patient.landmarks = {{"entry", entry_P}};
+  patient.paths = {{std::string(scene.path_name), {entry_P, target_P}}};
+  patient.content_hash = hash_patient(patient);
+  return patient;
+}
+
+}  // namespace trocar::phantom
