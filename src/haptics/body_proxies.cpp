@@ -190,8 +190,9 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
     const auto index = static_cast<std::size_t>(i);
     const Vec3 bent_P = scale * deflection_P[index];
     const Vec3 lever_P = axis_P * (spacing_mm * (i + 1));
-    Vec3 force_P = shaft.share * shaft.bed.stiffness_n_per_mm[index] * (shaft.bed.offset_mm[index] - bent_P);
+    Vec3 force_P = shaft.bed.stiffness_n_per_mm[index] * (shaft.bed.offset_mm[index] - bent_P);
     if (i == nodes - 1) force_P += tip_P;
+    force_P *= shaft.share;
     reaction.wrench_P.force_n += force_P;
     reaction.wrench_P.torque_nmm += lever_P.cross(force_P);
     // Steel does not stretch: spans keep their length and take their direction from the beam.

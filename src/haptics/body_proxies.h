@@ -29,7 +29,8 @@ struct HeldShaft {
   BeamSolution beam;
   BeamBed bed;
   Pose X_PN;
-  double share = 1.0;  ///< Of the bed's forces that the hand gets: below 1 where it would turn the grip too stiffly.
+  double share =
+      1.0;  ///< Of the shaft's forces that the hand gets: below 1 where the bed would turn the grip too stiffly.
 };
 inline constexpr double kMostTurning_nmm_per_rad = 1500.0;
 HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,
@@ -44,7 +45,7 @@ struct BentNeedle {
 
 /// What the shaft does to the hand with `tip_force_P`, the tissue's force on the tip (only its part across the shaft
 /// bends and is turned into torque here): force across the shaft and torque about the grip, M = sum l_i x f_i (paper B,
-/// eq. 6), in P, the bed's forces times its share; no torque about the shaft's own axis: the needle rolls freely.
+/// eq. 6), in P, all times the shaft's share; no torque about the shaft's own axis: the needle rolls freely.
 /// Real-time safe.
 struct ShaftReaction {
   Wrench wrench_P;  ///< On the needle, about the grip (stylus origin), of the body proxies and the tip.

@@ -269,7 +269,7 @@ TEST(React, GivesTheTorqueOfEquationSix) {
     const auto n = static_cast<std::size_t>(i);
     const Vec3 node = grip + axis * (150.0 * (i + 1) / 17.0);
     const Vec3 bent = shaft.beam.deflection_mm[n] + shaft.beam.per_tip_force_mm_n[n] * tip_across;
-    const Vec3 support = shaft.share * shaft.bed.stiffness_n_per_mm[n] * (shaft.bed.offset_mm[n] - bent);
+    const Vec3 support = shaft.bed.stiffness_n_per_mm[n] * (shaft.bed.offset_mm[n] - bent);
     force += support;
     torque += (node - grip).cross(support);
   }
@@ -278,6 +278,20 @@ TEST(React, GivesTheTorqueOfEquationSix) {
   EXPECT_GT(torque.norm(), 1.0);
   EXPECT_NEAR(reaction.wrench_P.torque_nmm.dot(axis), 0.0, 1e-10);
   EXPECT_NEAR(reaction.wrench_P.force_n.dot(axis), 0.0, 1e-10);
+}
+
+TEST(React, LetsABedThatHoldsTheTipKeepItsForceFromTheHand) {
+  // A shaft that turns the grip too stiffly gives a share of all its forces: bed and tip still balance.
+  NeedleGeometry needle;
+  needle.radius_mm = 1.0;
+  const World world = make_world({{0, kFat}, {20, kBone}}, true, needle);
+  const Pose X_PN = displaced(world, 99.0, {0, 0, 0}, {0, 0, 0});
+  const HeldShaft shaft = hold_shaft(world.channel, *world.scene, X_PN, 99.0, true);
+  EXPECT_LT(shaft.share, 0.5);
+  const Wrench all = react({shaft.beam, shaft.bed, X_PN, 1.0}, *world.scene, {1, 0, 0}).wrench_P;
+  const Wrench told = react(shaft, *world.scene, {1, 0, 0}).wrench_P;
+  EXPECT_NEAR((told.force_n - shaft.share * all.force_n).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((told.torque_nmm - shaft.share * all.torque_nmm).norm(), 0.0, 1e-10);
 }
 
 TEST(React, TurnsATipForceInAirIntoTheWholeLever) {
