@@ -25,7 +25,7 @@ double length_mm(const PathCurves& path) {
 
 double largest_n(const PathCurves& path) {
   double largest = 0.0;
-  for (const ModelCurve& curve : path.curves)
+  for (const NamedCurve& curve : path.curves)
     for (const CurvePoint& point : curve.points) largest = std::max(largest, point.force_n);
   return largest;
 }
@@ -35,7 +35,7 @@ struct Bin {
   double force_n = 0.0;
   bool is_puncture = false;
 };
-Bin bin_of(const ModelCurve& curve, double from_mm, double to_mm) {
+Bin bin_of(const NamedCurve& curve, double from_mm, double to_mm) {
   Bin bin;
   bool is_first = true;
   for (const CurvePoint& point : curve.points) {
@@ -62,7 +62,7 @@ std::string names_in(const PathCurves& path, double from_mm, double to_mm) {
 Plot plot_of(const PathCurves& path) {
   constexpr const char* kStyles[] = {"c-total", "c-second", "c-third"};
   Plot plot;
-  plot.description = "Force along the needle against the depth of the device, by force model; " + path.title;
+  plot.description = "Force along the needle against the depth of the device, " + path.title;
   plot.x_title = "way of the device past the resting skin (mm)";
   plot.y_title = "force along the needle (N)";
   plot.width = 940.0;
@@ -73,7 +73,7 @@ Plot plot_of(const PathCurves& path) {
     if (piece.from_mm > 0.0) plot.lines.push_back({piece.from_mm, ""});
   }
   for (std::size_t i = 0; i < path.curves.size(); ++i) {
-    PlotSeries series{to_string(path.curves[i].model), kStyles[i % std::size(kStyles)], {}};
+    PlotSeries series{path.curves[i].name, kStyles[i % std::size(kStyles)], {}};
     for (const CurvePoint& point : path.curves[i].points) series.points.emplace_back(point.way_mm, point.force_n);
     plot.series.push_back(std::move(series));
   }
@@ -83,13 +83,13 @@ Plot plot_of(const PathCurves& path) {
 /// Curves of one motion: their ticks are the same.
 std::string csv_of(const PathCurves& path, const TissueTable& tissues) {
   std::string csv = "time_s,device_mm";
-  for (const ModelCurve& curve : path.curves)
-    csv += fmt::format(",{0}_force_n,{0}_tip_mm,{0}_tissue,{0}_puncture", to_string(curve.model));
+  for (const NamedCurve& curve : path.curves)
+    csv += fmt::format(",{0}_force_n,{0}_tip_mm,{0}_tissue,{0}_puncture", curve.name);
   csv += "\n";
   const std::size_t count = path.curves.empty() ? 0 : path.curves.front().points.size();
   for (std::size_t i = 0; i < count; ++i) {
     csv += fmt::format("{:.3f},{:.4f}", path.curves.front().points[i].time_s, path.curves.front().points[i].way_mm);
-    for (const ModelCurve& curve : path.curves) {
+    for (const NamedCurve& curve : path.curves) {
       const CurvePoint& point = curve.points[i];
       csv += fmt::format(",{:.5f},{:.4f},{},{}", point.force_n, point.tip_mm, tissues.tissues[point.tissue].name,
                          point.layer == kNoLayer ? std::string() : tissues.layers[point.layer].name);
@@ -107,13 +107,13 @@ std::string curves_text(const PathCurves& path) {
   const double step = nice_step({0.0, length}, kRows);
   const double full_n = std::max(largest_n(path), 1e-9);
   std::string text = fmt::format("{}\n  {:>7}", path.title, "mm");
-  for (const ModelCurve& curve : path.curves) text += fmt::format("   {:<{}}", to_string(curve.model), kBar + 7);
+  for (const NamedCurve& curve : path.curves) text += fmt::format("   {:<{}}", curve.name, kBar + 7);
   text += " begins here\n";
   const auto rows = static_cast<int>(std::ceil(length / step - 1e-9));
   for (int row = 0; row < rows; ++row) {
     const double from = step * row;
     text += fmt::format("  {:>7}", tick_text(from, step));
-    for (const ModelCurve& curve : path.curves) {
+    for (const NamedCurve& curve : path.curves) {
       const Bin bin = bin_of(curve, from, from + step);
       const auto filled = static_cast<int>(std::lround(kBar * std::clamp(bin.force_n / full_n, 0.0, 1.0)));
       text += fmt::format("   {:5.2f}{}{:<{}} ", bin.force_n, bin.is_puncture ? '*' : ' ',

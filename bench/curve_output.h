@@ -9,19 +9,19 @@
 
 namespace trocar::bench {
 
-/// The curve of one force model.
-struct ModelCurve {
-  ForceModel model = ForceModel::kInsertion;
+/// One of the curves that are held against each other: of a force model, or of a patient.
+struct NamedCurve {
+  std::string name;  ///< "proxy".
   std::vector<CurvePoint> points;
   std::vector<CurveEvent> events;
 };
 
-/// One path with its curves: the same motion for each model.
+/// One path with its curves: the same motion for each.
 struct PathCurves {
   std::string name;   ///< "lumbar": of files and cases.
   std::string title;  ///< Patient, needle, speed: above the plot.
   std::vector<PathPiece> pieces;
-  std::vector<ModelCurve> curves;
+  std::vector<NamedCurve> curves;
 };
 
 /// The curves side by side, a row of bars every few millimetres of depth: the largest force in that row. An asterisk

@@ -90,7 +90,7 @@ Result<PathCurves> curves_of(std::shared_ptr<const VirtualPatient> patient, cons
     const NeedleGeometry geometry{needle->outer_diameter_mm / 2.0, needle->length_mm};
     TROCAR_TRY(const auto scene, make_haptic_scene(patient, tables.tissues, geometry, {}, haptic));
     if (path.pieces.empty()) path.pieces = pieces_along(*scene, tables.tissues, motion.line_P);
-    ModelCurve curve{model, force_curve(*scene, motion), {}};
+    NamedCurve curve{to_string(model), force_curve(*scene, motion), {}};
     curve.events = find_curve_events(curve.points, tables.tissues);
     path.curves.push_back(std::move(curve));
   }
@@ -106,11 +106,11 @@ Figures single(double value) {
 /// A line a layer that gave way, in order; one that gives way again is numbered. For programs drop and time of the drop
 /// are cases of their own; people read them in the note.
 void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is_for_people) {
-  for (const ModelCurve& curve : path.curves) {
+  for (const NamedCurve& curve : path.curves) {
     std::map<std::string, int> times;
     for (const CurveEvent& event : curve.events) {
       const int number = ++times[event.layer];
-      std::string name = fmt::format("curves/{}/{}/{}", path.name, to_string(curve.model), event.layer);
+      std::string name = fmt::format("curves/{}/{}/{}", path.name, curve.name, event.layer);
       if (number > 1) name += fmt::format("-{}", number);
       const std::string note =
           fmt::format("peak, device {:.1f} mm deep; then {:.2f} N: {:.2f} N less, nine tenths of it in {:.0f} ms",

@@ -3,10 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <numeric>
 
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
+#include "bench/curve_output.h"
+#include "core/atomic_file.h"
 #include "headless/needle_geometry.h"
 #include "headless/prepare_case.h"
 #include "headless/segmentation_study.h"
@@ -89,6 +93,60 @@ void add_worst_places(std::vector<CaseResult>& results, const std::vector<PathEr
   }
 }
 
+/// Both scenes, the paths through them and what came out.
+struct Study {
+  std::shared_ptr<const HapticScene> full;
+  std::shared_ptr<const HapticScene> partly;
+  std::vector<PrescribedMotion> motions;
+  std::vector<PathError> errors;
+};
+
+std::string csv_of(const Study& study, const TissueTable& tissues) {
+  std::string csv =
+      "path,entry_x_mm,entry_y_mm,entry_z_mm,target_x_mm,target_y_mm,target_z_mm,rms_n,max_n,torque_rms_nmm,"
+      "torque_max_nmm,affected,force_rms_n,force_max_n,worst_at_mm,worst_tissue,worst_ahead\n";
+  for (std::size_t i = 0; i < study.errors.size(); ++i) {
+    const PathError& e = study.errors[i];
+    const Vec3& a = e.line_P.a;
+    const Vec3& b = e.line_P.b;
+    csv +=
+        fmt::format("{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},", i + 1, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+    csv += fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{},{}\n", e.rms_n, e.max_n,
+                       e.torque_rms_nmm, e.torque_max_nmm, static_cast<double>(e.affected) / std::max(1, e.ticks),
+                       e.full_rms_n, e.full_max_n, e.worst_depth_mm, tissues.tissues[e.worst_tissue].name,
+                       tissues.tissues[e.worst_ahead].name);
+  }
+  return csv;
+}
+
+/// Both forces along one of the paths.
+PathCurves curves_on(const Study& study, std::size_t i, const TissueTable& tissues, const std::string& name) {
+  PathCurves path;
+  path.name = name;
+  path.title =
+      fmt::format("{}, {} model, path {}, rms {:.2f} N, max {:.2f} N", study.full->patient->name,
+                  to_string(study.full->options.force_model), i + 1, study.errors[i].rms_n, study.errors[i].max_n);
+  path.pieces = pieces_along(*study.full, tissues, study.motions[i].line_P);
+  for (const auto& [label, scene] : {std::pair("fully segmented", study.full), std::pair("partly", study.partly)}) {
+    NamedCurve curve{label, force_curve(*scene, study.motions[i]), {}};
+    curve.events = find_curve_events(curve.points, tissues);
+    path.curves.push_back(std::move(curve));
+  }
+  return path;
+}
+
+/// paths.csv, and both forces along the worst, the median and the best path (by their largest error).
+Status write_study(const Study& study, const TissueTable& tissues, const std::filesystem::path& folder) {
+  TROCAR_TRY_STATUS(write_file_atomically(folder / "paths.csv", csv_of(study, tissues)));
+  std::vector<std::size_t> order(study.errors.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return study.errors[a].max_n < study.errors[b].max_n; });
+  TROCAR_TRY_STATUS(write_curves(curves_on(study, order.back(), tissues, "worst"), tissues, folder));
+  TROCAR_TRY_STATUS(write_curves(curves_on(study, order[order.size() / 2], tissues, "median"), tissues, folder));
+  return write_curves(curves_on(study, order.front(), tissues, "best"), tissues, folder);
+}
+
 }  // namespace
 
 Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options) {
@@ -101,20 +159,24 @@ Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options) {
   haptic.force_model = options.force_model.value_or(kModel);
   haptic.has_weight_compensation = false;
   haptic.seed = options.seed;
-  TROCAR_TRY(const auto full, make_haptic_scene(patient, tables.tissues, needle, {}, haptic));
+  Study study;
+  TROCAR_TRY(study.full, make_haptic_scene(patient, tables.tissues, needle, {}, haptic));
   const auto less = std::make_shared<const VirtualPatient>(partly_segmented(*patient, kPartlySegmented));
-  TROCAR_TRY(const auto partly, make_haptic_scene(less, tables.tissues, needle, {}, haptic));
-  TROCAR_TRY(const auto motions, plan_motions(tables, *patient, options));
+  TROCAR_TRY(study.partly, make_haptic_scene(less, tables.tissues, needle, {}, haptic));
+  TROCAR_TRY(study.motions, plan_motions(tables, *patient, options));
 
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<PathError> errors = compare_forces(*full, *partly, motions, options.progress);
+  study.errors = compare_forces(*study.full, *study.partly, study.motions, options.progress);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
 
-  const std::string what = fmt::format("{} paths of {}, {} model, {} of {} labels kept", errors.size(), patient->name,
-                                       to_string(haptic.force_model), less->label_table.labels.size(),
+  const std::string what = fmt::format("{} paths of {}, {} model, {} of {} labels kept", study.errors.size(),
+                                       patient->name, to_string(haptic.force_model), less->label_table.labels.size(),
                                        patient->label_table.labels.size(), took.count());
-  std::vector<CaseResult> results = results_of(errors, what, took.count());
-  add_worst_places(results, errors, tables.tissues);
+  std::vector<CaseResult> results = results_of(study.errors, what, took.count());
+  add_worst_places(results, study.errors, tables.tissues);
+  if (options.out.empty()) return results;
+  TROCAR_TRY_STATUS(write_folder_atomically(
+      options.out, [&](const std::filesystem::path& folder) { return write_study(study, tables.tissues, folder); }));
   return results;
 }
 

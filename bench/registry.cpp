@@ -13,7 +13,7 @@ const std::vector<Benchmark>& all_benchmarks() {
       {"paths",
        "forces of partly against fully segmented data along planned paths",
        run_paths_benchmark,
-       {"--patient", "--task", "--paths", "--force-model", "--seed"}},
+       {"--patient", "--task", "--paths", "--force-model", "--seed", "--out"}},
       {"curves",
        "force along one needle path by each force model, and its punctures; plots with --out",
        run_curves_benchmark,
