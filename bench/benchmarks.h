@@ -19,5 +19,9 @@ Result<std::vector<CaseResult>> run_insertion_benchmark();
 Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options);
 /// Force along one needle path as a curve, by each force model.
 Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options);
+/// Every tissue, force model, device and holder in closed loop: comes to rest, gives no energy.
+Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options);
+/// A hand pushes the needle on bone and through the ligamentum flavum, by device and force model.
+Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options);
 
 }  // namespace trocar::bench

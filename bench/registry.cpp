@@ -18,6 +18,14 @@ const std::vector<Benchmark>& all_benchmarks() {
        "force along one needle path by each force model, and its punctures; plots with --out",
        run_curves_benchmark,
        {"--patient", "--force-model", "--out"}},
+      {"stability",
+       "every tissue, force model and device in closed loop, 60 simulated seconds each: minutes",
+       run_stability_benchmark,
+       {"--force-model", "--seed"}},
+      {"contact",
+       "bone and the loss of resistance behind the ligamentum flavum, by device and force model",
+       run_contact_benchmark,
+       {"--force-model", "--seed"}},
   };
   return benchmarks;
 }

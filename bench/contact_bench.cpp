@@ -1,0 +1,104 @@
+// What the two events that users ask for feel like on every device: the needle on bone, and the loss of resistance
+// behind the ligamentum flavum. docs/validation.md, Bone and loss of resistance by device.
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "bench/benchmarks.h"
+#include "bench/flat_scene.h"
+#include "core/data_dir.h"
+#include "haptics/devices/push_trial.h"
+
+namespace trocar::bench {
+namespace {
+
+constexpr std::array kModels{ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined};
+constexpr double kBone_mm = 25.0;
+constexpr double kPastBone_mm = 10.0;  // the hand wants the tip this far in
+constexpr double kFlavum_mm = 30.0;
+constexpr double kFlavumThickness_mm = 4.0;  // [assumed] 3..5
+constexpr double kPastFlavum_mm = 25.0;
+
+struct Setting {
+  const TissueTable& table;
+  const DevicePreset& device;
+  ForceModel model;
+  std::uint64_t seed;
+};
+
+Result<std::vector<PushSample>> push(const Setting& setting, const std::shared_ptr<const VirtualPatient>& patient,
+                                     const PushTrial& trial) {
+  HapticOptions haptic;
+  haptic.force_model = setting.model;
+  haptic.seed = setting.seed;
+  apply_device_preset(setting.device, haptic);
+  TROCAR_TRY(const auto scene, make_haptic_scene(patient, setting.table, {}, setting.device.capability, haptic));
+  return run_push_trial(scene, setting.device, trial);
+}
+
+void add(std::vector<CaseResult>& results, std::string name, const char* unit, double value, std::string note = {}) {
+  Figures figures;
+  figures.median = value;
+  results.push_back({std::move(name), unit, figures, {}, std::move(note)});
+}
+
+Status add_bone(std::vector<CaseResult>& results, const Setting& setting,
+                const std::shared_ptr<const VirtualPatient>& patient) {
+  PushTrial trial;
+  trial.to_mm = kBone_mm + kPastBone_mm;
+  TROCAR_TRY(const auto samples, push(setting, patient, trial));
+  const BoneContact contact = judge_bone_contact(samples, trial, kBone_mm, setting.device.capability.peak_force_n);
+  const std::string name = fmt::format("contact/bone/{}/{}", setting.device.name, to_string(setting.model));
+  add(results, name, "n", contact.peak_n,
+      fmt::format("peak; steady {:.2f} N, overshoot {:.0f} %, p-p at rest {:.3f} N{}", contact.steady_n,
+                  100.0 * contact.overshoot, contact.chatter_n, contact.is_limited ? ", at the device's limit" : ""));
+  add(results, name + "/slope", "n_per_mm", contact.slope_n_per_mm);
+  return {};
+}
+
+Status add_flavum(std::vector<CaseResult>& results, const Setting& setting,
+                  const std::shared_ptr<const VirtualPatient>& patient, std::uint8_t layer) {
+  PushTrial trial;
+  trial.to_mm = kFlavum_mm + kPastFlavum_mm;
+  TROCAR_TRY(const auto samples, push(setting, patient, trial));
+  const LossOfResistance loss = judge_loss_of_resistance(samples, layer);
+  const std::string name = fmt::format("contact/flavum/{}/{}", setting.device.name, to_string(setting.model));
+  if (!loss.has_given_way) {
+    add(results, name, "n", 0.0, "did not give way");
+    return {};
+  }
+  add(results, name, "n", loss.peak_n, "peak on the device");
+  add(results, name + "/drop", "n", loss.drop_n);
+  add(results, name + "/drop-time", "ms", 1000.0 * loss.drop_time_s, "10 to 90 %");
+  add(results, name + "/jump", "mm", loss.jump_mm, "needle beyond the hand's way within 0.3 s");
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options) {
+  const std::filesystem::path data = data_dir();
+  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const TissueTable table, load_tissue_table(data / "tissues.toml"));
+  TROCAR_TRY(const auto devices, load_device_presets(data / "devices.toml"));
+  TROCAR_TRY(const auto bone, make_flat_patient({{0.0, "adipose"}, {10.0, "muscle"}, {kBone_mm, "bone"}}));
+  TROCAR_TRY(const auto back, make_flat_patient({{0.0, "adipose"},
+                                                 {10.0, "ligament"},
+                                                 {kFlavum_mm, "ligamentum_flavum"},
+                                                 {kFlavum_mm + kFlavumThickness_mm, "adipose"}}));
+  const auto flavum = table.find_layer("ligamentum_flavum");
+  if (!flavum) return fail("has no layer ligamentum_flavum", "tissue table", "add it");
+  std::vector<CaseResult> results;
+  for (const ForceModel model : kModels) {
+    if (options.force_model && *options.force_model != model) continue;
+    for (const DevicePreset& device : devices) {
+      const Setting setting{table, device, model, options.seed};
+      TROCAR_TRY_STATUS(add_bone(results, setting, bone));
+      TROCAR_TRY_STATUS(add_flavum(results, setting, back, *flavum));
+    }
+  }
+  return results;
+}
+
+}  // namespace trocar::bench

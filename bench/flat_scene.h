@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "anatomy/tissue_table.h"
+#include "core/result.h"
+
+namespace trocar::bench {
+
+/// From this depth (mm) under the skin on there is this tissue.
+struct FlatLayer {
+  double from_mm;
+  std::string tissue;
+};
+
+/// A flat patient of layers: skin at z = 0, inside at z > 0, 1 mm voxels, 100 mm deep, CT with a typical HU of every
+/// tissue, everything labelled. Errors: more than 255 layers.
+Result<std::shared_ptr<const VirtualPatient>> make_flat_patient(const std::vector<FlatLayer>& layers);
+
+/// Typical HU of a tissue of the table, plain CT. [assumed] textbook values; unknown: 40.
+double typical_hu(std::string_view tissue) noexcept;
+
+}  // namespace trocar::bench

@@ -1,0 +1,146 @@
+// Every tissue, force model, device and holder in closed loop: does the needle come to rest, and does the haptic side
+// give no energy meanwhile? docs/validation.md, Stability.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "bench/benchmarks.h"
+#include "bench/flat_scene.h"
+#include "core/data_dir.h"
+#include "core/parallel.h"
+#include "haptics/devices/stability_trial.h"
+
+namespace trocar::bench {
+namespace {
+
+constexpr double kSurface_mm = 10.0;  // adipose tissue above, under the skin
+constexpr double kDeep_mm = 40.0;
+constexpr double kAtWall_mm = 0.5;  // the device's tip under a wall's resting surface: no wall gives way
+constexpr double kIntoBone_mm = 2.0;
+constexpr std::array kModels{ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined};
+
+struct Trial {
+  std::shared_ptr<const HapticScene> scene;
+  const DevicePreset* device;
+  ForceModel model;
+  Holder holder;
+  std::string tissue;
+  bool is_at_wall;
+  double depth_mm;
+  StabilityOutcome outcome;
+};
+
+/// Where the needle is let go: deep in the tissue, and at its wall where it has one.
+std::vector<std::pair<bool, double>> depths(const TissueTable& table, const TissueParams& tissue) {
+  const double surface_mm = tissue.name == "skin" ? 0.0 : kSurface_mm;
+  const bool has_wall = tissue.layer.has_value();
+  const bool is_closed = has_wall && !std::isfinite(table.layers[*tissue.layer].puncture_force_n);
+  std::vector<std::pair<bool, double>> depths{{false, is_closed ? surface_mm + kIntoBone_mm : kDeep_mm}};
+  if (has_wall) depths.emplace_back(true, surface_mm + kAtWall_mm);
+  return depths;
+}
+
+Result<std::vector<Trial>> plan_trials(const TissueTable& table, const std::vector<DevicePreset>& devices,
+                                       const Options& options) {
+  std::vector<Trial> trials;
+  for (std::size_t i = 1; i < table.tissues.size(); ++i) {  // 0 is air
+    const TissueParams& tissue = table.tissues[i];
+    TROCAR_TRY(const auto patient, make_flat_patient({{0.0, "adipose"}, {kSurface_mm, tissue.name}}));
+    for (const ForceModel model : kModels) {
+      if (options.force_model && *options.force_model != model) continue;
+      for (const DevicePreset& device : devices) {
+        HapticOptions haptic;
+        haptic.force_model = model;
+        haptic.seed = options.seed;
+        apply_device_preset(device, haptic);
+        TROCAR_TRY(const auto scene, make_haptic_scene(patient, table, {}, device.capability, haptic));
+        for (const Holder holder : kAllHolders)
+          for (const auto& [is_at_wall, depth] : depths(table, tissue))
+            trials.push_back({scene, &device, model, holder, tissue.name, is_at_wall, depth, {}});
+      }
+    }
+  }
+  return trials;
+}
+
+void run_trials(std::vector<Trial>& trials, const Progress& progress) {
+  std::atomic<std::size_t> done{0};
+  parallel_for(trials.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      Trial& trial = trials[i];
+      trial.outcome = run_stability_trial(trial.scene, *trial.device, trial.holder, {trial.depth_mm});
+      const std::size_t count = ++done;
+      if (count % 32 == 0)
+        report(progress, "letting needles go", static_cast<double>(count) / static_cast<double>(trials.size()));
+    }
+  });
+}
+
+std::string name_of(const Trial& trial) {
+  return fmt::format("{}{} held by {}", trial.is_at_wall ? "wall of " : "", trial.tissue, to_string(trial.holder));
+}
+
+/// One line a model, device and kind of holder.
+void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& trials, ForceModel model,
+                 const DevicePreset& device) {
+  std::vector<const Trial*> group;
+  for (const Trial& trial : trials)
+    if (trial.model == model && trial.device == &device) group.push_back(&trial);
+  if (group.empty()) return;
+  const auto worst = [&](auto&& value) {
+    return *std::max_element(group.begin(), group.end(),
+                             [&](const Trial* a, const Trial* b) { return value(*a) < value(*b); });
+  };
+  const auto position = [](const Trial& t) { return t.outcome.position_mm; };
+  const auto force = [](const Trial& t) { return t.outcome.force_n; };
+  const auto growth = [](const Trial& t) { return t.outcome.growth_mj; };
+  const auto stable = std::count_if(group.begin(), group.end(), [](const Trial* t) { return t->outcome.is_stable(); });
+  const std::string prefix = fmt::format("stability/{}/{}", to_string(model), device.name);
+  const auto add = [&](const char* what, const char* unit, double value, std::string note) {
+    Figures figures;
+    figures.median = value;
+    results.push_back({prefix + what, unit, figures, {}, std::move(note)});
+  };
+  add("", "ratio", static_cast<double>(stable) / static_cast<double>(group.size()),
+      fmt::format("{} of {} runs come to rest and give no energy", stable, group.size()));
+  add("/position", "mm", position(*worst(position)),
+      fmt::format("worst peak to peak, allowed {:.3f}: {}", group.front()->outcome.allowed_mm,
+                  name_of(*worst(position))));
+  add("/force", "n", force(*worst(force)),
+      fmt::format("worst peak to peak, allowed {:.2f}: {}", group.front()->outcome.allowed_n, name_of(*worst(force))));
+  add("/energy", "mj", growth(*worst(growth)),
+      fmt::format("worst growth, allowed {:.3f}: {}", group.front()->outcome.allowed_mj, name_of(*worst(growth))));
+}
+
+/// What did not come to rest, a line each.
+void print_failures(const std::vector<Trial>& trials, const Options& options) {
+  if (!options.print) return;
+  for (const Trial& t : trials) {
+    if (t.outcome.is_stable()) continue;
+    options.print(fmt::format("not at rest: {:<9} {:<8} {:<34} {:8.3f} mm {:7.3f} N {:9.3f} mJ", to_string(t.model),
+                              t.device->name, name_of(t), t.outcome.position_mm, t.outcome.force_n,
+                              t.outcome.growth_mj));
+  }
+}
+
+}  // namespace
+
+Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options) {
+  const std::filesystem::path data = data_dir();
+  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  TROCAR_TRY(const TissueTable table, load_tissue_table(data / "tissues.toml"));
+  TROCAR_TRY(const auto devices, load_device_presets(data / "devices.toml"));
+  TROCAR_TRY(auto trials, plan_trials(table, devices, options));
+  run_trials(trials, options.progress);
+  print_failures(trials, options);
+  std::vector<CaseResult> results;
+  for (const ForceModel model : kModels)
+    for (const DevicePreset& device : devices) add_results(results, trials, model, device);
+  return results;
+}
+
+}  // namespace trocar::bench
