@@ -11,6 +11,7 @@
 #include "bench/curve_output.h"
 #include "core/atomic_file.h"
 #include "core/data_dir.h"
+#include "headless/needle_geometry.h"
 #include "training/needle.h"
 
 namespace trocar::bench {
@@ -87,7 +88,7 @@ Result<PathCurves> curves_of(std::shared_ptr<const VirtualPatient> patient, cons
     HapticOptions haptic;
     haptic.force_model = model;
     haptic.has_weight_compensation = false;
-    const NeedleGeometry geometry{needle->outer_diameter_mm / 2.0, needle->length_mm};
+    const NeedleGeometry geometry = needle_geometry(*needle);
     TROCAR_TRY(const auto scene, make_haptic_scene(patient, tables.tissues, geometry, {}, haptic));
     if (path.pieces.empty()) path.pieces = pieces_along(*scene, tables.tissues, motion.line_P);
     NamedCurve curve{to_string(model), force_curve(*scene, motion), {}};

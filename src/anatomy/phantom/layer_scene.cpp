@@ -80,7 +80,7 @@ void add_back_muscles(LayerScene& scene) {
     const float sign = is_left ? 1.0F : -1.0F;
     scene.shapes.push_back(
         {is_left ? "autochthon_left" : "autochthon_right", kMuscleHu, 7.0F,
-         [sign](float x, float d, float) { return std::max(5.0F - sign * x, slab(d, 17.0F, 60.0F)); }});
+         [sign](float x, float d, float) { return std::max(4.0F - sign * x, slab(d, 17.0F, 60.0F)); }});
     scene.shapes.push_back(
         {is_left ? "iliopsoas_left" : "iliopsoas_right", kMuscleHu, 7.0F,
          [sign](float x, float d, float) { return std::max(26.0F - sign * x, slab(d, 74.0F, 112.0F)); }});
@@ -106,7 +106,7 @@ void add_loop(LayerScene& scene, float z0, bool has_gas) {
 LayerScene lumbar_scene() {
   LayerScene scene;
   scene.is_from_back = true;
-  scene.target_mm = 0.5F * (lumbar::kDura + lumbar::kSacEnd);
+  scene.target_mm = lumbar::kDura + 10.0F;  // the dura gives way up to 6 mm behind its resting place
   scene.path_name = "lumbar puncture";
   add_cover(scene);
   add_back_muscles(scene);
