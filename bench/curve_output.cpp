@@ -19,8 +19,12 @@ std::string words(std::string text) {
   return text;
 }
 
+/// Of the longest curve.
 double length_mm(const PathCurves& path) {
-  return path.pieces.empty() ? 0.0 : path.pieces.back().to_mm;
+  double length = 0.0;
+  for (const NamedCurve& curve : path.curves)
+    if (!curve.points.empty()) length = std::max(length, curve.points.back().way_mm);
+  return length;
 }
 
 double largest_n(const PathCurves& path) {
@@ -77,6 +81,14 @@ Plot plot_of(const PathCurves& path) {
     for (const CurvePoint& point : path.curves[i].points) series.points.emplace_back(point.way_mm, point.force_n);
     plot.series.push_back(std::move(series));
   }
+  // The layers are named once, on the curve on which the most give way.
+  const auto marked =
+      std::max_element(path.curves.begin(), path.curves.end(),
+                       [](const NamedCurve& a, const NamedCurve& b) { return a.events.size() <= b.events.size(); });
+  if (marked == path.curves.end()) return plot;
+  for (const CurveEvent& event : marked->events)
+    plot.markers.push_back(
+        {{event.way_mm, event.peak_n}, fmt::format("{} {:.1f} N", words(event.layer), event.peak_n)});
   return plot;
 }
 
@@ -86,10 +98,17 @@ std::string csv_of(const PathCurves& path, const TissueTable& tissues) {
   for (const NamedCurve& curve : path.curves)
     csv += fmt::format(",{0}_force_n,{0}_tip_mm,{0}_tissue,{0}_puncture", curve.name);
   csv += "\n";
-  const std::size_t count = path.curves.empty() ? 0 : path.curves.front().points.size();
+  const auto longest =
+      std::max_element(path.curves.begin(), path.curves.end(),
+                       [](const NamedCurve& a, const NamedCurve& b) { return a.points.size() < b.points.size(); });
+  const std::size_t count = path.curves.empty() ? 0 : longest->points.size();
   for (std::size_t i = 0; i < count; ++i) {
-    csv += fmt::format("{:.3f},{:.4f}", path.curves.front().points[i].time_s, path.curves.front().points[i].way_mm);
+    csv += fmt::format("{:.3f},{:.4f}", longest->points[i].time_s, longest->points[i].way_mm);
     for (const NamedCurve& curve : path.curves) {
+      if (i >= curve.points.size()) {
+        csv += ",,,,";
+        continue;
+      }
       const CurvePoint& point = curve.points[i];
       csv += fmt::format(",{:.5f},{:.4f},{},{}", point.force_n, point.tip_mm, tissues.tissues[point.tissue].name,
                          point.layer == kNoLayer ? std::string() : tissues.layers[point.layer].name);

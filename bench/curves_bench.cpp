@@ -18,6 +18,7 @@ namespace trocar::bench {
 namespace {
 
 constexpr double kSpeed_mm_per_s = 5.0;
+constexpr double kAfter_mm = 10.0;  ///< At most, for the tip to arrive.
 constexpr ForceModel kModels[] = {ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined};
 
 /// A patient and the needle that goes into it.
@@ -80,6 +81,8 @@ Result<PathCurves> curves_of(std::shared_ptr<const VirtualPatient> patient, cons
   PrescribedMotion motion;
   motion.line_P = patient->paths.front().line_P;
   motion.speed_mm_per_s = kSpeed_mm_per_s;
+  motion.after_mm = kAfter_mm;
+  const Segment with_rest{motion.line_P.a, motion.line_P.b + kAfter_mm * motion.line_P.direction()};
   PathCurves path;
   path.name = short_name(patient->name);
   path.title = fmt::format("{}, {}, {:.0f} mm/s", patient->name, needle_name, kSpeed_mm_per_s);
@@ -90,7 +93,7 @@ Result<PathCurves> curves_of(std::shared_ptr<const VirtualPatient> patient, cons
     haptic.has_weight_compensation = false;
     const NeedleGeometry geometry = needle_geometry(*needle);
     TROCAR_TRY(const auto scene, make_haptic_scene(patient, tables.tissues, geometry, {}, haptic));
-    if (path.pieces.empty()) path.pieces = pieces_along(*scene, tables.tissues, motion.line_P);
+    if (path.pieces.empty()) path.pieces = pieces_along(*scene, tables.tissues, with_rest);
     NamedCurve curve{to_string(model), force_curve(*scene, motion), {}};
     curve.events = find_curve_events(curve.points, tables.tissues);
     path.curves.push_back(std::move(curve));
@@ -113,9 +116,11 @@ void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is
       const int number = ++times[event.layer];
       std::string name = fmt::format("curves/{}/{}/{}", path.name, curve.name, event.layer);
       if (number > 1) name += fmt::format("-{}", number);
-      const std::string note =
+      constexpr double kRise_n = 0.05;
+      std::string note =
           fmt::format("peak, device {:.1f} mm deep; then {:.2f} N: {:.2f} N less, nine tenths of it in {:.0f} ms",
                       event.way_mm, event.after_n, event.drop_n(), event.fall_ms);
+      if (event.highest_n > event.peak_n + kRise_n) note += fmt::format("; ROSE to {:.2f} N first", event.highest_n);
       results.push_back({name, "n", single(event.peak_n), {}, note});
       if (is_for_people) continue;
       results.push_back({name + "/drop", "n", single(event.drop_n()), {}, ""});

@@ -9,6 +9,7 @@ std::vector<CurvePoint> force_curve(const HapticScene& scene, const PrescribedMo
   const auto state = std::make_unique<HapticState>();
   const Vec3 axis_P = motion.line_P.direction();
   std::vector<CurvePoint> curve;
+  const double length_mm = motion.line_P.length_mm();
   const int count = tick_count(motion);
   curve.reserve(static_cast<std::size_t>(count));
   for (int i = 1; i <= count; ++i) {
@@ -22,6 +23,7 @@ std::vector<CurvePoint> force_curve(const HapticScene& scene, const PrescribedMo
     for (const TickEvent& event : sample.events)
       if (event.kind == EventKind::kPuncture) point.layer = event.id;
     curve.push_back(point);
+    if (motion.after_mm > 0.0 && point.way_mm >= length_mm && point.tip_mm >= length_mm) break;
   }
   return curve;
 }
@@ -51,6 +53,7 @@ std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, 
     event.way_mm = peak->way_mm;
     event.peak_n = peak->force_n;
     event.after_n = lowest->force_n;
+    event.highest_n = std::max_element(peak, lowest + 1, lower)->force_n;
     const double fallen_n = event.peak_n - 0.9 * event.drop_n();
     const auto fallen = std::find_if(peak, lowest, [&](const CurvePoint& point) { return point.force_n <= fallen_n; });
     event.fall_ms = event.drop_n() > 0.0 ? 1e3 * (fallen->time_s - peak->time_s) : 0.0;

@@ -23,11 +23,12 @@ struct CurvePoint {
 /// A layer that gave way, as the hand feels it.
 struct CurveEvent {
   std::string layer;
-  std::size_t at = 0;    ///< Point of the peak.
-  double way_mm = 0.0;   ///< Of the device.
-  double peak_n = 0.0;   ///< Largest force just before it gave way.
-  double after_n = 0.0;  ///< Lowest within kAfter_s, and before the next layer gives way.
-  double fall_ms = 0.0;  ///< From the peak through nine tenths of the drop; 0 where nothing drops.
+  std::size_t at = 0;      ///< Point of the peak.
+  double way_mm = 0.0;     ///< Of the device.
+  double peak_n = 0.0;     ///< Largest force just before it gave way.
+  double highest_n = 0.0;  ///< From then to the lowest: above the peak where the force goes on rising, which is wrong.
+  double after_n = 0.0;    ///< Lowest within kAfter_s, and before the next layer gives way.
+  double fall_ms = 0.0;    ///< From the peak through nine tenths of the drop; 0 where nothing drops.
 
   double drop_n() const noexcept { return peak_n - after_n; }
 };
@@ -40,8 +41,9 @@ struct PathPiece {
   std::string tissue;  ///< Of the tissue table.
 };
 
-/// Leads the device along the path and back to nowhere: one way in. Without the stylus' weight where the scene leaves
-/// it out.
+/// Leads the device along the path, and on past its end (after_mm) until the needle's tip has arrived there, too: the
+/// tip lags behind the device by what tissue and coupling yield. Without the stylus' weight where the scene leaves it
+/// out.
 std::vector<CurvePoint> force_curve(const HapticScene& scene, const PrescribedMotion& motion);
 /// The layers that gave way, in order.
 std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, const TissueTable& tissues);

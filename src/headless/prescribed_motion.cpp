@@ -16,7 +16,7 @@ double share_of_drift(const PrescribedMotion& motion, double s_mm) noexcept {
 
 int tick_count(const PrescribedMotion& motion) noexcept {
   const double step_mm = motion.speed_mm_per_s * motion.dt_s;
-  return static_cast<int>((motion.before_mm + motion.line_P.length_mm()) / step_mm);
+  return static_cast<int>((motion.before_mm + motion.line_P.length_mm() + motion.after_mm) / step_mm);
 }
 
 double way_mm(const PrescribedMotion& motion, int tick) noexcept {

@@ -14,6 +14,7 @@ struct PrescribedMotion {
   double speed_mm_per_s = 10.0;                ///< Range 0.1..500.
   double dt_s = 0.001;
   double before_mm = 10.0;
+  double after_mm = 0.0;           ///< Straight on past the path's end.
   Vec3 drift_P = Vec3::Zero();     ///< Of the tip at the path's end, across the path.
   Vec3 tilt_rad_P = Vec3::Zero();  ///< Rotation vector about the tip at the path's end.
 };

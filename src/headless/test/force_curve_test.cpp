@@ -47,6 +47,18 @@ TEST(ForceCurve, FindsTheLayersInOrderWithTheirDrops) {
   }
 }
 
+TEST(ForceCurve, GoesOnUntilTheTipHasArrived) {
+  PrescribedMotion motion = straight_in();
+  const auto shorter = force_curve(*weightless_scene(), motion);
+  EXPECT_LT(shorter.back().tip_mm, 40.0);  // the coupling's spring is stretched by the force in the liver
+  motion.after_mm = 10.0;
+  const auto longer = force_curve(*weightless_scene(), motion);
+  EXPECT_NEAR(longer.back().tip_mm, 40.0, 0.05);
+  EXPECT_LT(longer.back().way_mm, 43.0);
+  ASSERT_GT(longer.size(), shorter.size());
+  for (std::size_t i = 0; i < shorter.size(); ++i) EXPECT_EQ(shorter[i].force_n, longer[i].force_n);
+}
+
 TEST(ForceCurve, ReadsPeakDropAndTimeOffAKnownCurve) {
   // 4 N until the layer gives way, then 0.1 N less a tick down to 1 N, then a slow rise.
   std::vector<CurvePoint> curve;
