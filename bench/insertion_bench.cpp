@@ -36,11 +36,6 @@ std::vector<TickSample> drive(HapticState& state, const HapticScene& scene, cons
   }
   return samples;
 }
-
-double resistance_n(const TickSample& sample) {
-  return -(sample.f_prepuncture_n + sample.f_friction_n + sample.f_cutting_n);
-}
-
 /// Peak at each puncture, and how long the resistance takes to lose half of its drop within the next 0.2 s.
 void add_punctures(std::vector<CaseResult>& results, const TissueTable& tissues, const std::vector<TickSample>& samples,
                    const std::string& name) {
@@ -55,13 +50,13 @@ void add_punctures(std::vector<CaseResult>& results, const TissueTable& tissues,
                        peak,
                        {},
                        fmt::format("x {:.2f} mm, whole resistance {:.2f} N", samples[i].layer_displacement_mm,
-                                   resistance_n(samples[i]))});
+                                   axial_resistance_n(samples[i]))});
     const std::size_t end = std::min(samples.size() - 1, i + 200);
-    double lowest = resistance_n(samples[i]);
-    for (std::size_t j = i; j <= end; ++j) lowest = std::min(lowest, resistance_n(samples[j]));
-    const double half = 0.5 * (resistance_n(samples[i]) + lowest);
+    double lowest = axial_resistance_n(samples[i]);
+    for (std::size_t j = i; j <= end; ++j) lowest = std::min(lowest, axial_resistance_n(samples[j]));
+    const double half = 0.5 * (axial_resistance_n(samples[i]) + lowest);
     std::size_t j = i;
-    while (j < end && resistance_n(samples[j]) > half) ++j;
+    while (j < end && axial_resistance_n(samples[j]) > half) ++j;
     Figures drop;
     drop.median = static_cast<double>(j - i) * kDt_s * 1e3;
     results.push_back({fmt::format("insertion/{}/{}-half-drop", name, layer),
@@ -77,7 +72,7 @@ double mean_resistance_n(const std::vector<TickSample>& samples, double from_mm,
   int count = 0;
   for (const TickSample& sample : samples) {
     if (sample.depth_mm < from_mm || sample.depth_mm > to_mm || sample.phase != InsertionPhase::kInserted) continue;
-    sum += resistance_n(sample);
+    sum += axial_resistance_n(sample);
     ++count;
   }
   return count > 0 ? sum / count : 0.0;

@@ -123,7 +123,9 @@ void add_run_command(CLI::App& program, Action& action) {
       ->add_option("--operator", a->run.operator_name, "expert, novice, constant-velocity:MM_PER_S or replay:SESSION")
       ->required();
   command->add_option("--out", a->run.session, "Session file to write")->required();
-  command->add_option("--force-model", a->run.force_model, "How forces are made: insertion")->capture_default_str();
+  command->add_option(
+      "--force-model", a->run.force_model,
+      "How forces are made: insertion (paper A), proxy (paper B) or combined; the task's own when left out");
   command->add_option("--device", a->run.device, "Simulated device: its limits and coupling; see trocar device list")
       ->capture_default_str();
   command->add_option("--needle", a->the_case.needle, "Needle of data/needles.toml; the task's own when left out");

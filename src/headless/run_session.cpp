@@ -56,6 +56,7 @@ Result<OperatorChoice> parse_operator(std::string_view name) {
 struct Performer {
   std::unique_ptr<Operator> the_operator;
   double rate_hz;
+  std::string force_model;  ///< Unless the user wants another.
 };
 
 Result<Performer> make_performer(const Case& the_case, const RunOptions& options) {
@@ -63,17 +64,17 @@ Result<Performer> make_performer(const Case& the_case, const RunOptions& options
   TROCAR_TRY(const OperatorChoice choice, parse_operator(options.operator_name));
   switch (choice.kind) {
     case OperatorChoice::Kind::kExpert:
-      return Performer{make_expert(what), options.rate_hz};
+      return Performer{make_expert(what), options.rate_hz, the_case.task.force_model};
     case OperatorChoice::Kind::kNovice:
-      return Performer{make_novice(what), options.rate_hz};
+      return Performer{make_novice(what), options.rate_hz, the_case.task.force_model};
     case OperatorChoice::Kind::kConstantVelocity:
-      return Performer{make_constant_velocity(what, choice.speed_mm_per_s), options.rate_hz};
+      return Performer{make_constant_velocity(what, choice.speed_mm_per_s), options.rate_hz, the_case.task.force_model};
     case OperatorChoice::Kind::kReplay:
       break;
   }
   TROCAR_TRY(Session session, load_session(choice.session));
   const double rate = session.info.rate_hz;
-  return Performer{make_replay(std::move(session.samples), session.fired), rate};
+  return Performer{make_replay(std::move(session.samples), session.fired), rate, session.info.force_model};
 }
 
 Result<DevicePreset> find_device(const RunOptions& options) {
@@ -82,7 +83,8 @@ Result<DevicePreset> find_device(const RunOptions& options) {
   return load_device_preset(data / "devices.toml", options.device);
 }
 
-SessionInfo describe(const Case& the_case, const RunOptions& options, const DevicePreset& device, double rate_hz) {
+SessionInfo describe(const Case& the_case, const RunOptions& options, const DevicePreset& device, double rate_hz,
+                     ForceModel force_model) {
   SessionInfo info;
   info.program_version = kVersion;
   info.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
@@ -92,7 +94,7 @@ SessionInfo describe(const Case& the_case, const RunOptions& options, const Devi
   info.patient_hash = the_case.patient->content_hash;
   info.patient_seed = options.patient_seed;
   info.operator_name = options.operator_name;
-  info.force_model = options.force_model;
+  info.force_model = to_string(force_model);
   info.seed = options.seed;
   info.rate_hz = rate_hz;
   info.needle = the_case.needle.name;
@@ -164,9 +166,7 @@ Result<Recording> perform(Performer& performer, const HapticScene& scene, double
 }  // namespace
 
 Status check_run(const RunOptions& options) {
-  if (options.force_model != "insertion")
-    return fail_usage(fmt::format("force model {} is not available", options.force_model), "--force-model",
-                      "use insertion");
+  if (!options.force_model.empty()) TROCAR_TRY_STATUS(parse_force_model(options.force_model));
   if (!(options.rate_hz >= 250.0 && options.rate_hz <= 4000.0))
     return fail_usage(fmt::format("rate {} Hz is not between 250 and 4000", options.rate_hz), "--rate");
   TROCAR_TRY_STATUS(find_device(options));
@@ -179,7 +179,7 @@ std::vector<PunctureRecord> find_punctures(const SessionInfo& info, const std::v
   for (const TickSample& sample : samples) {
     for (const TickEvent& event : sample.events) {
       if (event.kind != EventKind::kPuncture) continue;
-      punctures.push_back({info.layer_names.at(event.id), sample.time_s, sample.depth_mm, -sample.f_prepuncture_n});
+      punctures.push_back({info.layer_names.at(event.id), sample.time_s, sample.depth_mm, tip_load_n(sample)});
     }
   }
   return punctures;
@@ -189,14 +189,16 @@ Result<RunResult> run_session(const Case& the_case, const RunOptions& options, c
   TROCAR_TRY_STATUS(check_run(options));
   TROCAR_TRY(Performer performer, make_performer(the_case, options));
   TROCAR_TRY(const DevicePreset device, find_device(options));
-  HapticOptions insertion;
-  insertion.seed = options.seed;
-  apply_device_preset(device, insertion);
+  HapticOptions haptics;
+  haptics.seed = options.seed;
+  const std::string& model = !options.force_model.empty() ? options.force_model : performer.force_model;
+  TROCAR_TRY(haptics.force_model, parse_force_model(model));
+  apply_device_preset(device, haptics);
   const NeedleGeometry needle = needle_geometry(the_case.needle);
   TROCAR_TRY(const auto scene,
-             make_haptic_scene(the_case.patient, the_case.tissues, needle, device.capability, insertion));
+             make_haptic_scene(the_case.patient, the_case.tissues, needle, device.capability, haptics));
 
-  const SessionInfo info = describe(the_case, options, device, performer.rate_hz);
+  const SessionInfo info = describe(the_case, options, device, performer.rate_hz, haptics.force_model);
   TROCAR_TRY(SessionWriter writer, SessionWriter::create(options.session, info));
   const auto start = std::chrono::steady_clock::now();
   TROCAR_TRY(const Recording recording, perform(performer, *scene, device.apparent_mass_kg, writer, progress));

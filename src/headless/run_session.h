@@ -14,7 +14,7 @@ namespace trocar {
 /// Who performs the attempt, how, and where it is written.
 struct RunOptions {
   std::string operator_name = "expert";  ///< expert | novice | constant-velocity:MM_PER_S | replay:SESSION
-  std::string force_model = "insertion";
+  std::string force_model;  ///< insertion | proxy | combined; empty: the task's, or that of the replayed session.
   std::string device = "premium";  ///< Of data/devices.toml: its limits and coupling, simulated.
   double rate_hz = 1000.0;         ///< 250..4000. A replay takes its session's rate.
   std::uint64_t seed = 1;          ///< Of operator and friction.

@@ -15,19 +15,15 @@ bool gives_way(const TickSample& sample) {
 }
 
 double drop_after(const std::vector<TickSample>& samples, std::size_t tick) {
-  double lowest = resistance_n(samples[tick]);
+  double lowest = axial_resistance_n(samples[tick]);
   for (std::size_t i = tick + 1; i < samples.size(); ++i) {
     if (samples[i].time_s > samples[tick].time_s + kDropWindow_s || gives_way(samples[i])) break;
-    lowest = std::min(lowest, resistance_n(samples[i]));
+    lowest = std::min(lowest, axial_resistance_n(samples[i]));
   }
-  return resistance_n(samples[tick]) - lowest;
+  return axial_resistance_n(samples[tick]) - lowest;
 }
 
 }  // namespace
-
-double resistance_n(const TickSample& sample) noexcept {
-  return -(sample.f_prepuncture_n + sample.f_friction_n + sample.f_cutting_n);
-}
 
 std::vector<Puncture> find_punctures(const Session& session) {
   std::vector<Puncture> punctures;
@@ -37,7 +33,7 @@ std::vector<Puncture> find_punctures(const Session& session) {
       if (event.kind != EventKind::kPuncture) continue;
       const auto& names = session.info.layer_names;
       punctures.push_back({i, event.id < names.size() ? names[event.id] : fmt::format("#{}", event.id), sample.time_s,
-                           sample.depth_mm, -sample.f_prepuncture_n, resistance_n(sample),
+                           sample.depth_mm, tip_load_n(sample), axial_resistance_n(sample),
                            drop_after(session.samples, i)});
     }
   }

@@ -9,17 +9,13 @@
 
 namespace trocar {
 
-/// Axial resistance that the tip and shaft meet (N), positive = pushes the needle out: the negative of pre-puncture,
-/// friction and cutting force along the axis (docs/physics.md).
-double resistance_n(const TickSample& sample) noexcept;
-
 /// A layer that gave way.
 struct Puncture {
   std::size_t tick = 0;
   std::string layer;
   double time_s = 0.0;
   double depth_mm = 0.0;
-  double layer_force_n = 0.0;  ///< Pre-puncture force of the layer when it gave way.
+  double layer_force_n = 0.0;  ///< On the tip when the layer gave way.
   double resistance_n = 0.0;   ///< Of all axial forces at that tick.
   double drop_n = 0.0;         ///< Fall of the resistance within the next 0.1 s, before another layer gives way.
 };

@@ -36,4 +36,12 @@ const char* to_string(LimitReason reason) noexcept {
   return "unknown";
 }
 
+double axial_resistance_n(const TickSample& s) noexcept {
+  return -(s.f_prepuncture_n + s.f_friction_n + s.f_cutting_n + s.f_body_axial_n + s.f_tip_proxy_n.dot(s.axis));
+}
+
+double tip_load_n(const TickSample& s) noexcept {
+  return -(s.f_prepuncture_n + s.f_tip_proxy_n.dot(s.axis));
+}
+
 }  // namespace trocar

@@ -47,7 +47,7 @@ struct TickSample {
   double f_cutting_n = 0.0;
   Vec3 f_constraint_n = Vec3::Zero();
   Vec3 f_weight_n = Vec3::Zero();
-  Vec3 f_total_n = Vec3::Zero();      ///< axis*(pre + friction + cutting) + constraint + weight.
+  Vec3 f_total_n = Vec3::Zero();      ///< axis*(pre + friction + cutting + body) + constraint + tip proxy + weight.
   Vec3 tau_nmm = Vec3::Zero();        ///< About the stylus origin S.
   std::array<TickEvent, 4> events{};  ///< Filled from the front.
   bool limited = false;               ///< The safety gate changed the wrench.
@@ -62,5 +62,11 @@ struct TickSample {
   /// PX_p of paper A: from the first contact with the skin to where it gave way; zero before. Stored, not in the CSV.
   Vec3 contact_to_puncture_mm = Vec3::Zero();
 };
+
+/// Resistance (N) along the needle of tip and shaft together, whatever force model made it: positive pushes the needle
+/// out. Without path constraint, weight and stick.
+double axial_resistance_n(const TickSample& sample) noexcept;
+/// The part of it that loads the tip: what a layer bears before it gives way.
+double tip_load_n(const TickSample& sample) noexcept;
 
 }  // namespace trocar

@@ -50,14 +50,15 @@ Status read_scoring(const TomlTable& document, Task& task) {
 
 Result<Task> read_task(const fs::path& path) {
   TROCAR_TRY(const TomlTable document, load_toml(path));
-  TROCAR_TRY_STATUS(
-      document.check_keys({"title", "organ", "target_tissues", "needle", "path", "parenchymal", "scoring", "risks"}));
+  TROCAR_TRY_STATUS(document.check_keys(
+      {"title", "organ", "target_tissues", "needle", "force_model", "path", "parenchymal", "scoring", "risks"}));
   Task task;
   task.name = path.stem().string();
   TROCAR_TRY(task.title, document.string("title"));
   TROCAR_TRY(task.organ, document.string("organ"));
   TROCAR_TRY(task.target_tissues, document.strings("target_tissues"));
   TROCAR_TRY(task.needle, document.string("needle"));
+  TROCAR_TRY(task.force_model, document.string_or("force_model", task.force_model));
   TROCAR_TRY_STATUS(read_path(document, task));
   TROCAR_TRY_STATUS(read_scoring(document, task));
   TROCAR_TRY(const std::vector<TomlTable> risks, document.tables("risks"));

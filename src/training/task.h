@@ -26,6 +26,7 @@ struct Task {
   std::string organ;                        ///< Label or tissue that holds the target: "liver".
   std::vector<std::string> target_tissues;  ///< "liver_lesion"; where the patient has none: parenchyma of the organ.
   std::string needle;                       ///< Name in data/needles.toml.
+  std::string force_model = "insertion";    ///< insertion, proxy or combined; see docs/physics.md T2.
   std::vector<RiskStructure> risks;
   double min_organ_path_mm = 10.0;      ///< Organ passed before the target. Range 0..50.
   double parenchymal_depth_mm = 20.0;   ///< Target at least this deep below the organ's surface without a lesion.

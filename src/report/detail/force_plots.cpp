@@ -120,7 +120,7 @@ std::string force_depth_figure(const Session& session) {
   for (std::size_t n = 0; n < std::min(insertions.size(), kMostInsertions); ++n) {
     PlotSeries series{kNames[n], kStyles[n], {}};
     for (std::size_t i = insertions[n].first; i <= insertions[n].deepest; ++i)
-      series.points.emplace_back(session.samples[i].depth_mm, resistance_n(session.samples[i]));
+      series.points.emplace_back(session.samples[i].depth_mm, axial_resistance_n(session.samples[i]));
     plot.series.push_back(std::move(series));
   }
   std::vector<Puncture> punctures = find_punctures(session);
@@ -132,7 +132,7 @@ std::string force_depth_figure(const Session& session) {
     plot.markers.push_back({peak, fmt::format("{} {} N", words(puncture.layer), number_text(peak.y(), 2))});
   }
   return figure(to_svg(plot),
-                "Pre-puncture, friction and cutting force on the way in; positive pushes the needle out. Each marked "
+                "What tip and shaft meet along the needle on the way in; positive pushes the needle out. Each marked "
                 "peak is a layer giving way. Stripes: tissue at the tip.");
 }
 
@@ -159,6 +159,12 @@ std::string force_time_figure(const Session& session) {
                   over_time(session, "friction", "c-friction", [](const TickSample& s) { return -s.f_friction_n; }),
                   over_time(session, "cutting", "c-cutting", [](const TickSample& s) { return -s.f_cutting_n; }),
                   over_time(session, "stick", "c-stick", [](const TickSample& s) { return -s.f_stick_n; })};
+  if (session.info.force_model != "insertion") {
+    axial.series.push_back(
+        over_time(session, "tip proxy", "c-tip", [](const TickSample& s) { return -s.f_tip_proxy_n.dot(s.axis); }));
+    axial.series.push_back(
+        over_time(session, "body proxies", "c-body", [](const TickSample& s) { return -s.f_body_axial_n; }));
+  }
 
   Plot norms = time_plot(session, false);
   norms.description = "Magnitudes of the forces over time";
@@ -166,7 +172,7 @@ std::string force_time_figure(const Session& session) {
   norms.height = 220.0;
   norms.series = {
       over_time(session, "model total", "c-total", [](const TickSample& s) { return s.f_total_n.norm(); }),
-      over_time(session, "path constraint", "c-constraint",
+      over_time(session, "across the path", "c-constraint",
                 [](const TickSample& s) { return s.f_constraint_n.norm(); }),
       over_time(session, "to the device", "c-device", [](const TickSample& s) { return s.device_f_n.norm(); })};
   return "<figure>" + to_svg(axial) + "</figure>" +

@@ -58,6 +58,7 @@ constexpr std::string_view kPlotStyle = R"css(
 .c-third { stroke: #b4430c; stroke-dasharray: 2 2.5; }
 .c-pre { stroke: #c2410c; } .c-friction { stroke: #1d5fa8; stroke-dasharray: 7 3; }
 .c-cutting { stroke: #0f7b4f; stroke-dasharray: 2 2.5; } .c-stick { stroke: #7b3aa5; stroke-dasharray: 9 3 2 3; }
+.c-tip { stroke: #0a6ea8; } .c-body { stroke: #a05a00; stroke-dasharray: 6 2; }
 .c-constraint { stroke: #a16207; stroke-dasharray: 10 4; } .c-device { stroke: #0e7490; stroke-dasharray: 3.5 2.5; }
 .c-depth, .c-velocity { stroke: #14212b; stroke-width: 1.2; }
 .lead { stroke: #51606d; stroke-width: 0.8; }
