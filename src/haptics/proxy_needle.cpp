@@ -70,26 +70,28 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
   const ProxySpring spring = make_spring(scene, inward_P, tissue_n_per_mm, dt_s);
   Vec3 f = spring_force(spring, X_PN_ahead.p(), state.proxy_P, Vec3::Zero());
-  double f_normal = f.dot(inward_P);
+  const double f_normal = f.dot(inward_P);
   if (!(f_normal > 0.0)) return in_air(state, path, X_PN, dt_s);
 
   ProxyNeedleStep step;
   const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
-  const bool gives_way = f_normal >= puncture_n && axis_P.dot(inward_P) > kGrazing;
-  if (gives_way) f_normal = puncture_n;
-  Vec3 sideways = f - f.dot(inward_P) * inward_P;
-  const double grip_n = scene.tissues[scene.skin].friction_mu * f_normal;
-  if (sideways.norm() > grip_n) {
-    const Vec3 slip = sideways * (1.0 - grip_n / sideways.norm());
-    sideways -= slip;
-    state.proxy_P += slip / (spring.lateral_n_per_mm * (1.0 + spring.damping_s / dt_s));
-    state.proxy_P += skin_distance(scene, state.proxy_P) * inward_P;  // back to the surface
+  const bool gives_way = axis_P.dot(inward_P) > kGrazing && f.dot(axis_P) >= puncture_n;
+  if (gives_way) {  // the skin bore its puncture force along the needle and no more
+    f *= puncture_n / f.dot(axis_P);
+  } else {
+    const Vec3 sideways = f - f_normal * inward_P;
+    const double grip_n = scene.tissues[scene.skin].friction_mu * f_normal;
+    if (sideways.norm() > grip_n) {
+      const Vec3 slip = sideways * (1.0 - grip_n / sideways.norm());
+      f -= slip;
+      state.proxy_P += slip / (spring.lateral_n_per_mm * (1.0 + spring.damping_s / dt_s));
+      state.proxy_P += skin_distance(scene, state.proxy_P) * inward_P;  // back to the surface
+    }
   }
-  f = f_normal * inward_P + sideways;
   step.tip_force_P = -f;
   step.axial.tip_P = state.proxy_P + f / tissue_n_per_mm;
   step.axial.axis_P = axis_P;
-  step.axial.displacement_mm = step.axial.depth_mm = f_normal / tissue_n_per_mm;
+  step.axial.displacement_mm = step.axial.depth_mm = f.dot(inward_P) / tissue_n_per_mm;
   step.axial.tissue = scene.skin;
   step.axial.phase = state.phase = InsertionPhase::kLoading;
   if (gives_way) {

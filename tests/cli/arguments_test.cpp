@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "run liver-biopsy --patient nobody --operator expert --out x",
                     "run liver-biopsy --patient abdomen --operator nobody --out x",
                     "run liver-biopsy --patient abdomen --operator constant-velocity:fast --out x",
-                    "run liver-biopsy --patient abdomen --operator expert --force-model proxy --out x",
+                    "run liver-biopsy --patient abdomen --operator expert --force-model springs --out x",
                     "run liver-biopsy --patient abdomen --operator expert --rate 0 --out x",
                     "run liver-biopsy --patient abdomen --operator expert --set liver.k=stiff --out x",
                     "bench nonsense", "bench slice --paths 3", "bench paths --paths 0", "bench paths --patient nobody",

@@ -18,11 +18,13 @@ struct Attempt {
 };
 
 /// Performs an attempt and reads its session back; a failure is a failed test with its message.
-inline Attempt perform(const Case& the_case, const std::string& operator_name, std::uint64_t seed = 1) {
+inline Attempt perform(const Case& the_case, const std::string& operator_name, std::uint64_t seed = 1,
+                       const std::string& force_model = "") {
   const TemporaryFolder folder;
   RunOptions options;
   options.operator_name = operator_name;
   options.seed = seed;
+  options.force_model = force_model;
   options.patient_source = the_case.patient->name;
   options.session = folder.path() / "attempt.trocar";
   Attempt attempt;
@@ -42,11 +44,6 @@ inline std::vector<std::string> layers_of(const Attempt& attempt) {
   return layers;
 }
 
-/// Resistance along the needle (N), positive pushes it out.
-inline double resistance_n(const TickSample& sample) {
-  return -(sample.f_prepuncture_n + sample.f_friction_n + sample.f_cutting_n);
-}
-
 /// Mean resistance while the needle advances, from one puncture (by number) to the next loading.
 inline double mean_resistance_after_n(const Attempt& attempt, std::size_t puncture) {
   const double from_s = attempt.result.punctures.at(puncture).time_s + 0.1;  // the spring of the coupling has relaxed
@@ -55,7 +52,7 @@ inline double mean_resistance_after_n(const Attempt& attempt, std::size_t punctu
   for (const TickSample& sample : attempt.session.samples) {
     if (sample.time_s < from_s || sample.axial_velocity_mm_s < 1.0) continue;
     if (sample.phase != InsertionPhase::kInserted) break;
-    sum += resistance_n(sample);
+    sum += axial_resistance_n(sample);
     ++count;
   }
   return count > 0 ? sum / count : 0.0;
@@ -70,7 +67,7 @@ inline void expect_three_peaks(const Attempt& attempt) {
     const auto at = static_cast<std::size_t>(puncture.time_s * attempt.session.info.rate_hz + 0.5);
     constexpr std::size_t kSoon = 150;  // ms
     ASSERT_LT(at + kSoon, samples.size());
-    EXPECT_LT(resistance_n(samples[at + kSoon]), 0.75 * resistance_n(samples[at])) << puncture.layer;
+    EXPECT_LT(axial_resistance_n(samples[at + kSoon]), 0.75 * axial_resistance_n(samples[at])) << puncture.layer;
   }
   EXPECT_GT(mean_resistance_after_n(attempt, 2), mean_resistance_after_n(attempt, 0));
 }

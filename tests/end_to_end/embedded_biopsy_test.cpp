@@ -70,6 +70,32 @@ TEST_F(EmbeddedBiopsy, RecordsTheForceLawsOwnValues) {
   EXPECT_GT(loaded, 300u);
 }
 
+TEST_F(EmbeddedBiopsy, EveryForceModelLeadsTheExpertToTheLesion) {
+  using Layers = std::vector<std::string>;
+  const std::vector<std::pair<std::string, Layers>> models{{"proxy", {"skin", "liver_capsule"}},
+                                                           {"combined", {"skin", "muscle", "liver_capsule"}}};
+  for (const auto& [model, layers] : models) {
+    const Attempt attempt = perform(*the_case, "expert", 1, model);
+    EXPECT_EQ(attempt.session.info.force_model, model);
+    EXPECT_EQ(layers_of(attempt), layers) << model;
+    EXPECT_TRUE(attempt.result.outcome.target_reached) << model;
+    EXPECT_GT(attempt.result.outcome.score, 85.0) << model;
+    for (const PunctureRecord& puncture : attempt.result.punctures) {
+      const LayerParams& layer = the_case->tissues.layers.at(*the_case->tissues.find_layer(puncture.layer));
+      EXPECT_NEAR(puncture.peak_n, layer.puncture_force_n, 0.01 * layer.puncture_force_n) << model << puncture.layer;
+    }
+    for (const TickSample& s : attempt.session.samples) {
+      const double along = s.f_prepuncture_n + s.f_friction_n + s.f_cutting_n + s.f_body_axial_n;
+      ASSERT_LT((s.f_total_n - s.axis * along - s.f_constraint_n - s.f_tip_proxy_n - s.f_weight_n).norm(), 1e-9);
+      ASSERT_EQ(s.f_friction_n, 0.0);
+      if (model == "proxy") {
+        ASSERT_EQ(s.f_prepuncture_n, 0.0);
+        ASSERT_EQ(s.f_cutting_n, 0.0);
+      }
+    }
+  }
+}
+
 TEST_F(EmbeddedBiopsy, SameSeedGivesTheSameAttempt) {
   const Attempt again = perform(*the_case, "expert");
   ASSERT_EQ(again.session.samples.size(), expert->session.samples.size());
