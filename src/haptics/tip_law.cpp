@@ -26,6 +26,12 @@ std::uint8_t wall_of(const HapticScene& scene, const Vec3& p_P) noexcept {
   return layer != kNoLayer && scene.layers[layer].is_wall ? layer : kNoLayer;
 }
 
+/// Whether the air outside, as blurred as a CT shows it, reaches into the gradient at a point.
+bool is_under_skin(const HapticScene& scene, const Vec3& p_P) noexcept {
+  constexpr double kBlur_mm = 2.0;
+  return sample_linear(scene.patient->skin_distance_mm, p_P) > -(scene.transfer.gradient_scale_mm + kBlur_mm);
+}
+
 /// Whether the border at a point is that of a walled structure, which has a threshold of its own.
 bool is_wall_border(const HapticScene& scene, const Vec3& p_P, const Vec3& normal_P) noexcept {
   const double reach_mm = 2.0 * scene.transfer.gradient_scale_mm;
@@ -50,7 +56,7 @@ TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& her
   const double strength = gradient.norm();
   if (!(strength > transfer.gradient_none_hu_per_mm)) return tip;
   const Vec3 normal_P = gradient / strength;
-  if (is_wall_border(scene, p_P, normal_P)) return tip;
+  if (is_under_skin(scene, p_P) || is_wall_border(scene, p_P, normal_P)) return tip;
   const double t = std::min(1.0, (strength - transfer.gradient_none_hu_per_mm) /
                                      (transfer.gradient_full_hu_per_mm - transfer.gradient_none_hu_per_mm));
   tip.normal_P = normal_P;
