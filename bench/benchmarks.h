@@ -23,5 +23,7 @@ Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options);
 /// A hand pushes the needle on bone and through the ligamentum flavum, by device and force model.
 Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options);
+/// Fingertip and transducer on the embedded patient: newtons a place, and what a tick costs.
+Result<std::vector<CaseResult>> run_palpation_benchmark();
 
 }  // namespace trocar::bench

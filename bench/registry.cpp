@@ -10,6 +10,7 @@ const std::vector<Benchmark>& all_benchmarks() {
       {"session", "30 simulated seconds at 1 kHz with recording, and the whole process", run_session_benchmark},
       {"insertion", "forces into the embedded patient: peaks by speed, drops, second insertion",
        run_insertion_benchmark},
+      {"palpation", "fingertip and transducer on the skin: newtons by place, and one tick", run_palpation_benchmark},
       {"paths",
        "forces of partly against fully segmented data along planned paths",
        run_paths_benchmark,

@@ -17,12 +17,16 @@ struct ContactState {
   Pose X_PT;                     ///< The tool as it is shown: it does not pass through the skin.
   Vec3 offset_P = Vec3::Zero();  ///< Of the shown tool's origin from the device's.
   Vec3 tilt_P = Vec3::Zero();    ///< Rotation vector of the shown tool against the device's (rad).
-  std::array<double, kMaxContactPoints> depth_mm{};  ///< Indentation under each point, >= 0.
-  std::array<Vec3, kMaxContactPoints> stretch_P{};   ///< Of the skin by friction: from where it is free to the point.
+  std::array<double, kMaxContactPoints> depth_mm{};      ///< Indentation under each point, >= 0.
+  std::array<TissueColumn, kMaxContactPoints> column{};  ///< Under each point in contact, smoothed in time.
+  std::array<Vec3, kMaxContactPoints> stretch_P{};  ///< Of the skin by friction: from where it is free to the point.
 };
 
 /// Inside this time a tool that started in the body is pressed out: no force step. [assumed] 0.2..2 s.
 inline constexpr double kEngage_s = 0.5;
+
+/// A column goes over into the next one in this time, so that a voxel's border is no click. [assumed] 0.005..0.03 s.
+inline constexpr double kColumnBlend_s = 0.015;
 
 struct ContactStep {
   Wrench wrench_P;  ///< On the tool, about its origin T, in P: the coupling's, in balance with the skin.

@@ -44,7 +44,7 @@ struct ContactSolution {
   bool hit_bound = false;  ///< The bounded iteration ended before normal forces balanced.
 };
 
-/// Along the mean normal one monotone equation, across it and in rotation linear steps, in bounded sweeps.
+/// Along the mean normal one monotone, convex equation, across it and in rotation linear steps, in bounded sweeps.
 /// Real-time safe.
 ContactSolution solve(const ContactBalance& balance) noexcept;
 

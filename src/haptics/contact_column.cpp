@@ -6,7 +6,7 @@
 namespace trocar {
 namespace {
 
-constexpr double kMaxStrain = 0.98;
+constexpr double kTiny_mm = 1e-9;
 constexpr double kLeastLength_mm = 0.5;
 constexpr double kNPerMm2PerKpa = 1e-3;
 
@@ -29,8 +29,12 @@ class Ray {
       : scene_(scene),
         geometry_(scene.patient->skin_distance_mm.geometry),
         from_(geometry_.to_index(from_P) + Vec3::Constant(0.5)),
-        step_((geometry_.R_PV.transpose() * direction_P).cwiseQuotient(geometry_.spacing_mm)) {}
+        step_((geometry_.R_PV.transpose() * direction_P).cwiseQuotient(geometry_.spacing_mm)),
+        is_inside_(holds(from_) && holds(from_ + kColumn_mm * step_)) {}
 
+  double soft_kpa(double depth_mm) const noexcept { return std::max(young_kpa(depth_mm), kSoftest_kpa); }
+
+ private:
   double young_kpa(double depth_mm) const noexcept {
     if (depth_mm < scene_.skin_thickness_mm) return scene_.tissues[scene_.skin].young_kpa;
     const std::size_t voxel = voxel_at(depth_mm);
@@ -41,9 +45,17 @@ class Ray {
     return scene_.tissues[scene_.tissue_of_label[label]].young_kpa;
   }
 
- private:
+  bool holds(const Vec3& index) const noexcept {
+    return index.x() >= 0.0 && index.y() >= 0.0 && index.z() >= 0.0 &&
+           index.x() < static_cast<double>(geometry_.size[0]) && index.y() < static_cast<double>(geometry_.size[1]) &&
+           index.z() < static_cast<double>(geometry_.size[2]);
+  }
   std::size_t voxel_at(double depth_mm) const noexcept {
     const Vec3 index = from_ + depth_mm * step_;
+    if (is_inside_) {
+      return geometry_.offset({static_cast<std::int64_t>(index.x()), static_cast<std::int64_t>(index.y()),
+                               static_cast<std::int64_t>(index.z())});
+    }
     Index3 ijk;
     for (std::size_t a = 0; a < 3; ++a) {
       const auto last = static_cast<double>(geometry_.size[a] - 1);
@@ -57,6 +69,7 @@ class Ray {
   const GridGeometry& geometry_;
   Vec3 from_;
   Vec3 step_;
+  bool is_inside_;
 };
 
 /// Where between two depths the tissue becomes rigid.
@@ -64,7 +77,7 @@ double rigid_from_mm(const Ray& ray, double soft_mm, double rigid_mm) noexcept {
   constexpr int kHalvings = 4;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (soft_mm + rigid_mm);
-    (ray.young_kpa(middle) >= kRigid_kpa ? rigid_mm : soft_mm) = middle;
+    (ray.soft_kpa(middle) >= kRigid_kpa ? rigid_mm : soft_mm) = middle;
   }
   return 0.5 * (soft_mm + rigid_mm);
 }
@@ -72,42 +85,38 @@ double rigid_from_mm(const Ray& ray, double soft_mm, double rigid_mm) noexcept {
 }  // namespace
 
 TissueColumn tissue_column(const HapticScene& scene, const Vec3& skin_point_P, const Vec3& inward_P) noexcept {
-  constexpr double kCell_mm = kColumn_mm / kColumnCells;
   constexpr double kPlaneStrain = 1.0 - kPoisson * kPoisson;
   const Ray ray(scene, skin_point_P, inward_P);
   const ContactFace& face = scene.face;
   TissueColumn column;
-  double yields = 0.0;  // mm/kPa
-  double modulus = std::max(ray.young_kpa(0.0), kSoftest_kpa);
+  double yields = 0.0;   // mm/kPa, of layers in series
+  double squares = 0.0;  // mm/kPa^2
+  double young = ray.soft_kpa(0.0);
+  double yield = 1.0 / young;
   double above_mm = 0.0;
+  const auto add = [&](double settlement, double thickness_mm) {
+    const double yielding = settlement * yield;
+    yields += yielding;
+    squares += yielding * yielding / thickness_mm;
+  };
   for (std::size_t cell = 0; cell < kColumnCells; ++cell) {
-    const double middle_mm = (static_cast<double>(cell) + 0.5) * kCell_mm;
-    const double young = std::max(ray.young_kpa(middle_mm), kSoftest_kpa);
-    if (young >= kRigid_kpa) {
+    const double middle_mm = 0.5 * (kCellBorder_mm[cell] + kCellBorder_mm[cell + 1]);
+    const double here = ray.soft_kpa(middle_mm);
+    if (here >= kRigid_kpa) {
       column.length_mm = std::max(rigid_from_mm(ray, above_mm, middle_mm), kLeastLength_mm);
-      // The cell's border may lie on either side of the bone's.
-      yields += (settlement_mm(column.length_mm, face.spread_mm) - face.settlement_mm[cell]) / modulus;
+      // The bone may begin on either side of the cell's border.
+      const double more_mm = column.length_mm - kCellBorder_mm[cell];
+      if (std::abs(more_mm) > kTiny_mm)
+        add(settlement_mm(column.length_mm, face.spread_mm) - face.settlement_mm[cell], more_mm);
       break;
     }
-    yields += (face.settlement_mm[cell + 1] - face.settlement_mm[cell]) / young;
-    modulus = young;
+    if (here != young) yield = 1.0 / (young = here);
+    add(face.settlement_mm[cell + 1] - face.settlement_mm[cell], kCellBorder_mm[cell + 1] - kCellBorder_mm[cell]);
     above_mm = middle_mm;
   }
+  column.stiffening_per_mm = std::max(squares / (yields * yields) - 1.0 / column.length_mm, 0.0);
   column.stiffness_n_per_mm3 = kNPerMm2PerKpa / (kPlaneStrain * yields);
   return column;
-}
-
-double column_pressure(const TissueColumn& column, double indentation_mm) noexcept {
-  if (!(indentation_mm > 0.0)) return 0.0;
-  const double strain = std::min(indentation_mm / column.length_mm, kMaxStrain);
-  const double pressure = column.stiffness_n_per_mm3 * strain * column.length_mm / (1.0 - strain);
-  return pressure + (indentation_mm - strain * column.length_mm) * column_tangent(column, indentation_mm);
-}
-
-double column_tangent(const TissueColumn& column, double indentation_mm) noexcept {
-  if (!(indentation_mm > 0.0)) return 0.0;
-  const double room = 1.0 - std::min(indentation_mm / column.length_mm, kMaxStrain);
-  return column.stiffness_n_per_mm3 / (room * room);
 }
 
 }  // namespace trocar

@@ -8,6 +8,13 @@ namespace trocar {
 struct TissueColumn {
   double stiffness_n_per_mm3 = 0.0;  ///< Pressure a mm of indentation, for small ones.
   double length_mm = kColumn_mm;     ///< Down to what is rigid, or kColumn_mm: it cannot be pressed flatter than that.
+  double stiffening_per_mm = 0.0;    ///< >= 0: how much earlier the soft layers are flat than all of the column.
+};
+
+/// Pressure (N/mm^2) and its derivative (N/mm^3).
+struct ColumnResponse {
+  double pressure = 0.0;
+  double tangent = 0.0;
 };
 
 inline constexpr double kRigid_kpa = 1e4;    ///< From this modulus on tissue ends the column: bone. [assumed]
@@ -18,10 +25,18 @@ inline constexpr double kPoisson = 0.5;      ///< Soft tissue hardly changes its
 /// most kColumnCells samples and a few to find the bone's border. Real-time safe.
 TissueColumn tissue_column(const HapticScene& scene, const Vec3& skin_point_P, const Vec3& inward_P) noexcept;
 
-/// Pressure (N/mm^2) of a column pressed by `indentation_mm`: k p / (1 - p/L), from 98 % of L on its tangent; zero
-/// below zero. Real-time safe.
-double column_pressure(const TissueColumn& column, double indentation_mm) noexcept;
-/// Its derivative (N/mm^3).
-double column_tangent(const TissueColumn& column, double indentation_mm) noexcept;
+/// Of a column pressed by `indentation_mm`: k p (1 + q p)/(1 - p/L), from 98 % of L on its tangent; zero below zero.
+/// Convex, without steps. Real-time safe.
+inline ColumnResponse respond(const TissueColumn& column, double indentation_mm) noexcept {
+  if (!(indentation_mm > 0.0)) return {};
+  constexpr double kMaxStrain = 0.98;
+  const double flat_mm = kMaxStrain * column.length_mm;
+  const double p = indentation_mm < flat_mm ? indentation_mm : flat_mm;
+  const double shorter = 1.0 / (column.length_mm - p);
+  const double k = column.stiffness_n_per_mm3 * column.length_mm * shorter;
+  const double pressure = k * p * (1.0 + column.stiffening_per_mm * p);
+  const double tangent = k * (1.0 + 2.0 * column.stiffening_per_mm * p) + pressure * shorter;
+  return {pressure + (indentation_mm - p) * tangent, tangent};
+}
 
 }  // namespace trocar

@@ -23,8 +23,7 @@ void add_point(ContactFace& face, const Vec3& p_T, const Vec3& n_T, double area_
 
 void set_spread(ContactFace& face, double spread_mm) {
   face.spread_mm = spread_mm;
-  for (int i = 0; i <= kColumnCells; ++i)
-    face.settlement_mm[static_cast<std::size_t>(i)] = settlement_mm(kColumn_mm * i / kColumnCells, spread_mm);
+  for (std::size_t i = 0; i <= kColumnCells; ++i) face.settlement_mm[i] = settlement_mm(kCellBorder_mm[i], spread_mm);
 }
 
 }  // namespace
@@ -56,7 +55,7 @@ double settlement_mm(double depth_mm, double spread_mm) noexcept {
 }
 
 ContactFace make_transducer_face(double radius_mm, double width_mm, double thickness_mm) {
-  constexpr int kColumns = 10;
+  constexpr int kColumns = 9;
   constexpr int kRows = 3;
   static_assert(kColumns * kRows <= kMaxContactPoints);
   const double half_angle = std::asin(std::min(1.0, 0.5 * width_mm / radius_mm));
@@ -80,7 +79,7 @@ ContactFace make_transducer_face(double radius_mm, double width_mm, double thick
 ContactFace make_finger_face(double radius_mm) {
   // Rings between heights above the tip (as a share of the radius), narrow where contact begins: a shallow dent's
   // volume is met within 5 %.
-  constexpr std::array<int, 5> kPoints{3, 5, 7, 8, 9};
+  constexpr std::array<int, 5> kPoints{3, 5, 6, 6, 7};
   constexpr std::array<double, 6> kBorder{0.0, 0.05, 0.15, 0.3, 0.55, 1.0};
   ContactFace face;
   for (std::size_t ring = 0; ring < kPoints.size(); ++ring) {

@@ -20,8 +20,11 @@ const char* to_string(Tool tool) noexcept;
 Result<Tool> parse_tool(std::string_view name);
 
 inline constexpr int kMaxContactPoints = 32;
-inline constexpr int kColumnCells = 20;
+inline constexpr int kColumnCells = 15;
 inline constexpr double kColumn_mm = 40.0;  ///< Tissue deeper than this does not yield. Range 20..80. [assumed]
+/// Borders of a column's cells: coarser where less of the load is left.
+inline constexpr std::array<double, kColumnCells + 1> kCellBorder_mm{0,  2,  4,  6,  8,  10, 12, 14,
+                                                                     16, 18, 20, 24, 28, 32, 36, kColumn_mm};
 
 /// The face of a tool that lies on the skin, as points with an area and an outward normal each, in the tool's frame T
 /// (transducer: x lateral, y into the body, z elevation, origin at the array's centre; finger: the same, +y along the

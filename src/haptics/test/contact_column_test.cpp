@@ -62,14 +62,32 @@ TEST(TissueColumn, ReadsUnlabelledTissueFromHu) {
   EXPECT_NEAR(tissue_column(*by_hu, Vec3::Zero(), Vec3::UnitZ()).stiffness_n_per_mm3, 1.0 / yields, 1e-9);
 }
 
-TEST(ColumnPressure, StiffensWithoutStepsAndItsTangentIsItsSlope) {
-  const TissueColumn column{0.002, 10.0};
-  EXPECT_EQ(column_pressure(column, -1.0), 0.0);
-  EXPECT_NEAR(column_pressure(column, 5.0), 0.002 * 5.0 / 0.5, 1e-12);
+TEST(TissueColumn, EachLayerFlattensOnItsOwn) {
+  // Layers of E e/(1 - e) in series: their indentation under a pressure, summed over the cells.
+  const auto scene = make_face_scene(Tool::kTransducer, [](const Vec3& p) { return p.z() < 15.5 ? kFat : kMuscle; });
+  const TissueColumn column = tissue_column(*scene, Vec3::Zero(), Vec3::UnitZ());
+  for (const double pressure : {0.0005, 0.001, 0.002}) {
+    double indentation = 0.0;
+    for (std::size_t cell = 0; cell < kColumnCells; ++cell) {
+      const double thickness = kCellBorder_mm[cell + 1] - kCellBorder_mm[cell];
+      const double share = (scene->face.settlement_mm[cell + 1] - scene->face.settlement_mm[cell]) / thickness;
+      const double strain = pressure * share / plane_strain_n_per_mm2(cell < 8 ? 5.0 : 20.0);
+      indentation += thickness * strain / (1.0 + strain);
+    }
+    EXPECT_NEAR(respond(column, indentation).pressure, pressure, 0.03 * pressure);  // good to the second order
+  }
+}
+
+TEST(ColumnResponse, IsConvexWithoutStepsAndItsTangentIsItsSlope) {
+  const TissueColumn column{0.002, 10.0, 0.05};
+  EXPECT_EQ(respond(column, -1.0).pressure, 0.0);
+  EXPECT_NEAR(respond(column, 5.0).pressure, 0.002 * 5.0 * 1.25 / 0.5, 1e-12);
+  double before = 0.002 - 1e-9;
   for (double p = 0.05; p < 14.0; p += 0.1) {
-    const double slope = (column_pressure(column, p + 1e-6) - column_pressure(column, p - 1e-6)) / 2e-6;
-    EXPECT_NEAR(column_tangent(column, p), slope, 1e-5 * slope) << p;
-    EXPECT_GE(slope, 0.002 - 1e-9);
+    const double slope = (respond(column, p + 1e-6).pressure - respond(column, p - 1e-6).pressure) / 2e-6;
+    EXPECT_NEAR(respond(column, p).tangent, slope, 1e-5 * slope) << p;
+    EXPECT_GE(slope, before * (1.0 - 1e-6));
+    before = slope;
   }
 }
 
