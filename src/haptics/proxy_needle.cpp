@@ -21,7 +21,7 @@ double in_series(double a, double b) noexcept {
 ProxySpring make_spring(const HapticScene& scene, const Vec3& u_P, double tissue_n_per_mm, double dt_s) noexcept {
   const CouplingParams& coupling = scene.options.coupling;
   const double k = in_series(coupling.stiffness_n_per_mm, tissue_n_per_mm);
-  return {u_P, k, k, coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm, dt_s};
+  return {u_P, coupling.stiffness_n_per_mm, k, k, coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm, dt_s};
 }
 
 double skin_distance(const HapticScene& scene, const Vec3& p_P) noexcept {
@@ -44,7 +44,7 @@ struct TipStep {
   ProxySpring spring;
   double tissue_n_per_mm = 1.0;
   Vec3 moved = Vec3::Zero();
-  std::uint8_t wall = kNoLayer;  ///< Wall that the tip presses on.
+  double front_mm = 0.0;  ///< Tip on the path in the resting anatomy.
   std::uint8_t punctured = kNoLayer;
   bool hit_bound = false;
 };
@@ -56,6 +56,8 @@ ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose&
   step.axial.axis_P = X_PN.R().col(2);
   step.axial.velocity_mm_per_s = (X_PN.p() - state.proxy_P).dot(step.axial.axis_P) / dt_s;
   state.proxy_P = X_PN.p();
+  state.spring_n_per_mm = 0.0;
+  state.wall = kNoLayer;
   state.is_on_skin = false;
   state.phase = InsertionPhase::kOutside;
   return step;
@@ -69,7 +71,7 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   const std::uint8_t layer = scene.tissues[scene.skin].layer;
   const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
   const ProxySpring spring = make_spring(scene, inward_P, tissue_n_per_mm, dt_s);
-  Vec3 f = spring_force(spring, X_PN_ahead.p(), state.proxy_P, Vec3::Zero());
+  Vec3 f = proxy_force(spring, {}, X_PN_ahead.p(), state.proxy_P, Vec3::Zero()).on_tip_P;
   const double f_normal = f.dot(inward_P);
   if (!(f_normal > 0.0)) return in_air(state, path, X_PN, dt_s);
 
@@ -104,49 +106,85 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   return step;
 }
 
+/// The spring where the tip is now. Where tissue gets stiffer, or a wall is met, the proxy shifts so that the force of
+/// the tip stays what it was: a stiffness that is read anew must not be felt as a blow.
+void set_spring(TipStep& step, ProxyNeedleState& state, const HapticScene& scene, const TipStep& before,
+                double tissue_n_per_mm, const Vec3& target_P, const AxialFriction& friction, bool meets_wall) noexcept {
+  step.tissue_n_per_mm = tissue_n_per_mm;
+  step.spring = make_spring(scene, before.spring.u_P, tissue_n_per_mm, before.spring.dt_s);
+  const double old_n_per_mm = state.spring_n_per_mm;
+  state.spring_n_per_mm = step.spring.axial_n_per_mm;
+  if (!(old_n_per_mm > 0.0) || !(meets_wall || state.spring_n_per_mm > old_n_per_mm)) return;
+  ProxySpring old = step.spring;
+  old.axial_n_per_mm = old_n_per_mm;
+  const Vec3& u = step.spring.u_P;
+  const double on_tip_n = proxy_force(old, friction, target_P, state.proxy_P, step.moved).on_tip_P.dot(u);
+  if (on_tip_n > 0.0) state.proxy_P += on_tip_n * (1.0 / old_n_per_mm - 1.0 / state.spring_n_per_mm) * u;
+}
+
+/// A needle of this length must not turn the grip harder than its bed may.
+double lateral_limit_n_per_mm(const HapticScene& scene) noexcept {
+  return kMostTurning_nmm_per_rad / (scene.needle.length_mm * scene.needle.length_mm);
+}
+
+/// The tip presses on a wall, which bears it or gives way.
+void press_wall(TipStep& step, ProxyNeedleState& state, Channel& channel, const HapticScene& scene, const Vec3& motion,
+                double tip_load_n) noexcept {
+  const Vec3& u = channel.direction_P;
+  if (tip_load_n < scene.layers[state.wall].puncture_force_n) {
+    state.proxy_P += motion - motion.dot(u) * u;
+    return;
+  }
+  step.punctured = state.wall;
+  state.wall = kNoLayer;
+  step.front_mm = channel.cut_to_mm = state.wall_mm + 0.5 * Channel::kBin_mm;
+}
+
 /// Moves the proxy along the path until it rests, meets a wall or the bound of sub-steps.
-TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
-                   const ProxySpring& shaft_spring, const Vec3& target_P, double tip_compliance_mm_n,
-                   const AxialFriction& friction) noexcept {
+TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Vec3& target_P,
+                   double tip_compliance_mm_n, const AxialFriction& friction, double dt_s) noexcept {
   Channel& channel = path.channel;
   const Vec3& u = channel.direction_P;
+  const auto along = [&] { return u.dot(state.proxy_P - channel.origin_P); };
   TipStep step;
-  double s_mm = u.dot(state.proxy_P - channel.origin_P);
-  look_ahead(channel, scene, std::max(0.0, s_mm), kLook_mm);
-  const LayerAhead ahead = next_wall(channel, s_mm, s_mm + kLook_mm);
+  step.spring = make_spring(scene, u, 1.0, dt_s);
+  look_ahead(channel, scene, std::max(0.0, along()), kLook_mm);
+  const LayerAhead ahead = next_wall(channel, channel.cut_to_mm, along() + kLook_mm);
   for (int i = 0; i < kMaxProxySteps; ++i) {
-    const auto bin = static_cast<std::size_t>(bin_of(s_mm));
-    const TissueAt here = s_mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
-    const bool is_at_wall = ahead.layer != kNoLayer && s_mm >= ahead.surface_mm - kAtWall_mm;
+    const double s_mm = along();
+    if (state.wall != kNoLayer && s_mm < state.wall_mm - kAtWall_mm) state.wall = kNoLayer;  // back from it
+    const bool meets = state.wall == kNoLayer && ahead.layer != kNoLayer && s_mm >= ahead.surface_mm - kAtWall_mm;
+    if (meets) {
+      state.wall = ahead.layer;
+      state.wall_mm = ahead.surface_mm;
+    }
+    const bool is_at_wall = state.wall != kNoLayer;
+    step.front_mm = is_at_wall ? std::min(s_mm, state.wall_mm) : s_mm;
+    const auto bin = static_cast<std::size_t>(bin_of(step.front_mm));
+    const TissueAt here = step.front_mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
     const TipLaw law = tip_law_at(scene, state.proxy_P, here);
-    step.tissue_n_per_mm = is_at_wall ? scene.layers[ahead.layer].indent_n_per_mm : law.law.stiffness_n_per_mm;
-    step.spring = make_spring(scene, u, step.tissue_n_per_mm, shaft_spring.dt_s);
-    step.spring.lateral_n_per_mm /= 1.0 + step.spring.lateral_n_per_mm * tip_compliance_mm_n;
+    set_spring(step, state, scene, step,
+               is_at_wall ? scene.layers[state.wall].indent_n_per_mm : law.law.stiffness_n_per_mm, target_P, friction,
+               meets);
+    double& lateral = step.spring.lateral_n_per_mm;
+    lateral = std::min(lateral / (1.0 + lateral * tip_compliance_mm_n), lateral_limit_n_per_mm(scene));
 
     Vec3 motion = proxy_motion(step.spring, friction, law, target_P, state.proxy_P, step.moved);
-    double forward = motion.dot(u);
-    if (is_at_wall && forward > 0.0) {
-      const Vec3 f = spring_force(step.spring, target_P, state.proxy_P, step.moved);
-      const double on_shaft_n = friction_share_n(step.spring, friction, f.dot(u), step.moved.dot(u));
-      step.wall = ahead.layer;
-      if (f.dot(u) - on_shaft_n < scene.layers[ahead.layer].puncture_force_n) {
-        state.proxy_P += motion - forward * u;
-        return step;
-      }
-      step.punctured = ahead.layer;
-      channel.cut_to_mm = ahead.surface_mm + 0.5 * Channel::kBin_mm;
+    if (is_at_wall && motion.dot(u) > 0.0) {
+      const ProxyForce force = proxy_force(step.spring, friction, target_P, state.proxy_P, step.moved);
+      press_wall(step, state, channel, scene, motion, force.on_tip_P.dot(u));
       return step;
     }
     const double length = motion.norm();
     const bool is_long = length > kProxyStep_mm;
     if (is_long) motion *= kProxyStep_mm / length;
-    forward = motion.dot(u);
-    const bool meets_wall = ahead.layer != kNoLayer && s_mm + forward > ahead.surface_mm;
-    if (meets_wall) motion *= std::max(0.0, ahead.surface_mm - s_mm) / forward;
+    const double forward = motion.dot(u);
+    const bool reaches_wall = !is_at_wall && ahead.layer != kNoLayer && s_mm + forward > ahead.surface_mm;
+    if (reaches_wall) motion *= std::max(0.0, ahead.surface_mm - s_mm) / forward;
     state.proxy_P += motion;
     step.moved += motion;
-    s_mm = meets_wall ? ahead.surface_mm : u.dot(state.proxy_P - channel.origin_P);
-    if (!is_long && !meets_wall) return step;
+    step.front_mm = is_at_wall ? std::min(along(), state.wall_mm) : along();
+    if (!is_long && !reaches_wall) return step;
   }
   step.hit_bound = true;
   return step;
@@ -167,32 +205,30 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
   const Vec3 target_P = X_PN_ahead.p() + shaft.beam.deflection_mm[tip];
   const ShaftResistance resistance = shaft_resistance(path.channel, scene, path.rest_mm);
   const AxialFriction friction{resistance.dry_n, resistance.viscous_ns_per_mm};
-  const TipStep moved = move_proxy(state, path, scene, make_spring(scene, u, 1.0, dt_s), target_P,
-                                   shaft.beam.per_tip_force_mm_n[tip], friction);
+  const TipStep moved = move_proxy(state, path, scene, target_P, shaft.beam.per_tip_force_mm_n[tip], friction, dt_s);
 
-  const Vec3 f = spring_force(moved.spring, target_P, state.proxy_P, moved.moved);
-  const double on_shaft_n = friction_share_n(moved.spring, friction, f.dot(u), moved.moved.dot(u));
-  Vec3 on_tip = f - on_shaft_n * u;
+  const ProxyForce force = proxy_force(moved.spring, friction, target_P, state.proxy_P, moved.moved);
+  Vec3 on_tip = force.on_tip_P;
   if (moved.punctured != kNoLayer) {  // the wall bore its puncture force and no more
     on_tip += (scene.layers[moved.punctured].puncture_force_n - on_tip.dot(u)) * u;
   }
+  const bool is_at_wall = moved.punctured != kNoLayer || state.wall != kNoLayer;
 
   ProxyNeedleStep step;
   step.tip_force_P = -on_tip;
   InsertionStep& axial = step.axial;
-  axial.body_axial_n = on_shaft_n;
+  axial.body_axial_n = force.on_shaft_n;
   axial.punctured = moved.punctured;
   axial.hit_solver_bound = moved.hit_bound;
   axial.axis_P = u;
   axial.tip_P = state.proxy_P + on_tip / moved.tissue_n_per_mm;
   axial.velocity_mm_per_s = state.velocity_mm_per_s = moved.moved.dot(u) / dt_s;
-  if (moved.wall != kNoLayer) axial.displacement_mm = on_tip.dot(u) / moved.tissue_n_per_mm;
-  const double s_mm = u.dot(state.proxy_P - path.channel.origin_P);
-  axial.entered = move_tip(path, std::max(0.0, s_mm));
+  if (is_at_wall) axial.displacement_mm = std::max(0.0, on_tip.dot(u)) / moved.tissue_n_per_mm;
+  axial.entered = move_tip(path, std::max(0.0, moved.front_mm));
   axial.depth_mm = std::max(0.0, u.dot(axial.tip_P - path.channel.origin_P));
   axial.tissue = path.rest_mm > 0.0 ? path.channel.tissue[static_cast<std::size_t>(bin_of(path.rest_mm))] : 0;
-  axial.phase = state.phase = next_phase(state, moved.wall != kNoLayer);
-  if (s_mm < -kLeaveSkin_mm) leave_body(path);
+  axial.phase = state.phase = next_phase(state, is_at_wall);
+  if (moved.front_mm < -kLeaveSkin_mm) leave_body(path);
   return step;
 }
 

@@ -8,10 +8,12 @@ namespace trocar {
 /// x_t by a spring and a damper, which moves only as far as the tissue's thresholds let it.
 
 /// Spring between tip and proxy, for one step: along the shaft (unit u) and across it, where the shaft gives way, too.
-/// Equation (1) with a damper; the step is implicit, so that neither force nor stability hang on the tick rate.
+/// Equation (1) with a damper; the step is implicit, so that neither force nor stability hang on the tick rate. Along
+/// the shaft it is the coupling in series with the tissue: friction loads the coupling alone, the tip both.
 struct ProxySpring {
   Vec3 u_P = Vec3::UnitZ();
-  double axial_n_per_mm = 1.0;
+  double coupling_n_per_mm = 1.0;
+  double axial_n_per_mm = 1.0;  ///< At most the coupling's.
   double lateral_n_per_mm = 1.0;
   double damping_s = 0.004;  ///< Damping over stiffness.
   double dt_s = 0.001;
@@ -28,16 +30,17 @@ struct AxialFriction {
 /// force that the tissue can bear. `resistance_n`: R of this step, R0 + c|v| of the motion so far.
 Vec3 residual_force(const Vec3& f, const TipLaw& law, double resistance_n) noexcept;
 
-/// The force on the spring with the tip at `target_P` (a damping time ahead of the device) and the proxy at `proxy_P`,
+/// What the needle bears with the tip at `target_P` (a damping time ahead of the device) and the proxy at `proxy_P`,
 /// having moved by `moved` in this step.
-Vec3 spring_force(const ProxySpring& spring, const Vec3& target_P, const Vec3& proxy_P, const Vec3& moved) noexcept;
+struct ProxyForce {
+  double on_shaft_n = 0.0;       ///< Along u, by friction.
+  Vec3 on_tip_P = Vec3::Zero();  ///< By the tissue at the tip.
+};
+ProxyForce proxy_force(const ProxySpring& spring, const AxialFriction& friction, const Vec3& target_P,
+                       const Vec3& proxy_P, const Vec3& moved) noexcept;
 
 /// How far the proxy moves on from here in this step under the law read here; `moved` is what it has moved already.
 Vec3 proxy_motion(const ProxySpring& spring, const AxialFriction& friction, const TipLaw& law, const Vec3& target_P,
                   const Vec3& proxy_P, const Vec3& moved) noexcept;
-
-/// Share of an axial force that dry and viscous friction bear.
-double friction_share_n(const ProxySpring& spring, const AxialFriction& friction, double axial_n,
-                        double moved_mm) noexcept;
 
 }  // namespace trocar

@@ -85,6 +85,21 @@ TEST(ProxyNeedle, BoneStopsTheNeedleWithOrWithoutItsLabel) {
   }
 }
 
+TEST(ProxyNeedle, StiffnessThatIsReadAnewIsNotFeltAsABlow) {
+  // Soft fat that needs force, then the stiffer wall of the liver: the force must rise from where it was.
+  TissueTable tissues = paper_tissues();
+  tissues.tissues[2].cutting_n = 1.0;
+  tissues.transfer.laws[1].stiffness_n_per_mm = 0.3;
+  Driver driver(make_scene({{0, kFat}, {30, kLiver}}, ForceModel::kProxy, tissues));
+  double before = 0.0;
+  for (const TickSample& s : driver.move(45.0, 10.0)) {
+    if (s.depth_mm > 10.0 && s.events[0].kind != EventKind::kPuncture) {
+      ASSERT_LT(axial(s) - before, 0.03) << s.depth_mm;  // 10 mm/s on 1 N/mm is 0.01 N a tick
+    }
+    before = axial(s);
+  }
+}
+
 TEST(ProxyNeedle, SteadyForceIsTheSameAtAnyRate) {
   std::vector<double> forces;
   for (const double rate : {1000.0, 2000.0, 4000.0}) {

@@ -37,7 +37,8 @@ Vec3 steady_force(const TipLaw& law, const Vec3& velocity, double rate_hz, const
     const Vec3 target = tip + spring.damping_s * velocity;
     const Vec3 motion = proxy_motion(spring, friction, law, target, proxy, Vec3::Zero());
     proxy += motion;
-    force = spring_force(spring, target, proxy, motion);
+    const ProxyForce borne = proxy_force(spring, friction, target, proxy, motion);
+    force = borne.on_tip_P + borne.on_shaft_n * spring.u_P;
   }
   return force;
 }
