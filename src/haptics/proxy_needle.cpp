@@ -18,10 +18,8 @@ double in_series(double a, double b) noexcept {
   return a * b / (a + b);
 }
 
-ProxySpring make_spring(const HapticScene& scene, const Vec3& u_P, double tissue_n_per_mm, double dt_s) noexcept {
-  const CouplingParams& coupling = scene.options.coupling;
-  const double k = in_series(coupling.stiffness_n_per_mm, tissue_n_per_mm);
-  return {u_P, coupling.stiffness_n_per_mm, k, k, coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm, dt_s};
+double damping_s(const HapticScene& scene) noexcept {
+  return scene.options.coupling.damping_ns_per_mm / scene.options.coupling.stiffness_n_per_mm;
 }
 
 double skin_distance(const HapticScene& scene, const Vec3& p_P) noexcept {
@@ -39,10 +37,10 @@ Vec3 meet_skin(const HapticScene& scene, const Vec3& outside_P, const Vec3& insi
   return outside_P + low * (inside_P - outside_P);
 }
 
-/// The tip in its tissue during one step, and what the step has found.
+/// The needle in its tissue during one step, and what the step has found.
 struct TipStep {
-  ProxySpring spring;
-  double tissue_n_per_mm = 1.0;
+  NeedleBalance balance;
+  TipSpring spring;
   Vec3 moved = Vec3::Zero();
   double front_mm = 0.0;  ///< Tip on the path in the resting anatomy.
   std::uint8_t punctured = kNoLayer;
@@ -56,7 +54,7 @@ ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose&
   step.axial.axis_P = X_PN.R().col(2);
   step.axial.velocity_mm_per_s = (X_PN.p() - state.proxy_P).dot(step.axial.axis_P) / dt_s;
   state.proxy_P = X_PN.p();
-  state.spring_n_per_mm = 0.0;
+  state.tissue_n_per_mm = 0.0;
   state.wall = kNoLayer;
   state.is_on_skin = false;
   state.phase = InsertionPhase::kOutside;
@@ -70,8 +68,9 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   const Vec3 inward_P = -gradient_per_mm(scene.patient->skin_distance_mm, state.proxy_P).normalized();
   const std::uint8_t layer = scene.tissues[scene.skin].layer;
   const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
-  const ProxySpring spring = make_spring(scene, inward_P, tissue_n_per_mm, dt_s);
-  Vec3 f = proxy_force(spring, {}, X_PN_ahead.p(), state.proxy_P, Vec3::Zero()).on_tip_P;
+  const double k = in_series(scene.options.coupling.stiffness_n_per_mm, tissue_n_per_mm);
+  const TipSpring spring = free_spring(k, damping_s(scene), X_PN_ahead.p(), state.proxy_P, Vec3::Zero(), dt_s);
+  Vec3 f = spring.force_P;
   const double f_normal = f.dot(inward_P);
   if (!(f_normal > 0.0)) return in_air(state, path, X_PN, dt_s);
 
@@ -86,7 +85,7 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
     if (sideways.norm() > grip_n) {
       const Vec3 slip = sideways * (1.0 - grip_n / sideways.norm());
       f -= slip;
-      state.proxy_P += slip / (spring.lateral_n_per_mm * (1.0 + spring.damping_s / dt_s));
+      state.proxy_P += slip / spring.lateral_n_per_mm;
       state.proxy_P += skin_distance(scene, state.proxy_P) * inward_P;  // back to the surface
     }
   }
@@ -100,26 +99,40 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
     start_channel(path, state.proxy_P, axis_P);
     open_path(path, layer);
     path.contact_to_puncture_P = step.axial.tip_P - state.contact_P;
+    state.needle_mm = step.axial.depth_mm;
+    state.tissue_n_per_mm = tissue_n_per_mm;
     step.axial.punctured = layer;
     state.is_on_skin = false;
   }
   return step;
 }
 
-/// The spring where the tip is now. Where tissue gets stiffer, or a wall is met, the proxy shifts so that the force of
-/// the tip stays what it was: a stiffness that is read anew must not be felt as a blow.
-void set_spring(TipStep& step, ProxyNeedleState& state, const HapticScene& scene, const TipStep& before,
-                double tissue_n_per_mm, const Vec3& target_P, const AxialFriction& friction, bool meets_wall) noexcept {
-  step.tissue_n_per_mm = tissue_n_per_mm;
-  step.spring = make_spring(scene, before.spring.u_P, tissue_n_per_mm, before.spring.dt_s);
-  const double old_n_per_mm = state.spring_n_per_mm;
-  state.spring_n_per_mm = step.spring.axial_n_per_mm;
-  if (!(old_n_per_mm > 0.0) || !(meets_wall || state.spring_n_per_mm > old_n_per_mm)) return;
-  ProxySpring old = step.spring;
-  old.axial_n_per_mm = old_n_per_mm;
-  const Vec3& u = step.spring.u_P;
-  const double on_tip_n = proxy_force(old, friction, target_P, state.proxy_P, step.moved).on_tip_P.dot(u);
-  if (on_tip_n > 0.0) state.proxy_P += on_tip_n * (1.0 / old_n_per_mm - 1.0 / state.spring_n_per_mm) * u;
+/// Reads the tissue's stiffness where the tip is now. Where it grows, or a wall is met, the proxy shifts so that the
+/// force of the tip stays what it was: a stiffness that is read anew must not be felt as a blow.
+void set_stiffness(ProxyNeedleState& state, const NeedleDrive& drive, const Channel& channel, double tissue_n_per_mm,
+                   bool meets_wall) noexcept {
+  const double before = state.tissue_n_per_mm;
+  state.tissue_n_per_mm = tissue_n_per_mm;
+  if (!(before > 0.0) || !(meets_wall || tissue_n_per_mm > before)) return;
+  const Vec3& u = channel.direction_P;
+  const NeedleBalance old = balance_needle(drive, before, u.dot(state.proxy_P - channel.origin_P));
+  if (old.on_tip_n > 0.0) state.proxy_P += old.on_tip_n * (1.0 / before - 1.0 / tissue_n_per_mm) * u;
+}
+
+/// Spring of the tip: along the path what the needle's balance says, across it in series with the shaft.
+TipSpring path_spring(const ProxyNeedleState& state, const HapticScene& scene, const Channel& channel,
+                      const NeedleBalance& balance, const Vec3& target_P, double lateral_n_per_mm, const Vec3& moved,
+                      double dt_s) noexcept {
+  const Vec3& u = channel.direction_P;
+  const double tau_s = damping_s(scene);
+  const Vec3 stretch = target_P - state.proxy_P - tau_s / dt_s * moved;
+  TipSpring spring;
+  spring.u_P = u;
+  spring.dt_s = dt_s;
+  spring.force_P = balance.on_tip_n * u + lateral_n_per_mm * (stretch - stretch.dot(u) * u);
+  spring.axial_n_per_mm = balance.tip_n_per_mm;
+  spring.lateral_n_per_mm = lateral_n_per_mm * (1.0 + tau_s / dt_s);
+  return spring;
 }
 
 /// A needle of this length must not turn the grip harder than its bed may.
@@ -140,50 +153,69 @@ void press_wall(TipStep& step, ProxyNeedleState& state, Channel& channel, const 
   step.front_mm = channel.cut_to_mm = state.wall_mm + 0.5 * Channel::kBin_mm;
 }
 
+/// The tissue, or the wall, that the front of the tip is at.
+struct Front {
+  TipLaw law;
+  double tissue_n_per_mm = 1.0;
+  double mm = 0.0;
+  bool meets_wall = false;
+};
+Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticScene& scene,
+                 const LayerAhead& ahead) noexcept {
+  Front front;
+  const double s_mm = channel.direction_P.dot(state.proxy_P - channel.origin_P);
+  if (state.wall != kNoLayer && s_mm < state.wall_mm - kAtWall_mm) state.wall = kNoLayer;  // back from it
+  front.meets_wall = state.wall == kNoLayer && ahead.layer != kNoLayer && s_mm >= ahead.surface_mm - kAtWall_mm;
+  if (front.meets_wall) {
+    state.wall = ahead.layer;
+    state.wall_mm = ahead.surface_mm;
+  }
+  front.mm = state.wall != kNoLayer ? std::min(s_mm, state.wall_mm) : s_mm;
+  const auto bin = static_cast<std::size_t>(bin_of(front.mm));
+  const TissueAt here = front.mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
+  front.law = tip_law_at(scene, state.proxy_P, here);
+  front.tissue_n_per_mm =
+      state.wall != kNoLayer ? scene.layers[state.wall].indent_n_per_mm : front.law.law.stiffness_n_per_mm;
+  return front;
+}
+
 /// Moves the proxy along the path until it rests, meets a wall or the bound of sub-steps.
 TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Vec3& target_P,
-                   double tip_compliance_mm_n, const AxialFriction& friction, double dt_s) noexcept {
+                   double tip_compliance_mm_n, const NeedleDrive& drive) noexcept {
   Channel& channel = path.channel;
   const Vec3& u = channel.direction_P;
   const auto along = [&] { return u.dot(state.proxy_P - channel.origin_P); };
   TipStep step;
-  step.spring = make_spring(scene, u, 1.0, dt_s);
   look_ahead(channel, scene, std::max(0.0, along()), kLook_mm);
   const LayerAhead ahead = next_wall(channel, channel.cut_to_mm, along() + kLook_mm);
   for (int i = 0; i < kMaxProxySteps; ++i) {
-    const double s_mm = along();
-    if (state.wall != kNoLayer && s_mm < state.wall_mm - kAtWall_mm) state.wall = kNoLayer;  // back from it
-    const bool meets = state.wall == kNoLayer && ahead.layer != kNoLayer && s_mm >= ahead.surface_mm - kAtWall_mm;
-    if (meets) {
-      state.wall = ahead.layer;
-      state.wall_mm = ahead.surface_mm;
-    }
-    const bool is_at_wall = state.wall != kNoLayer;
-    step.front_mm = is_at_wall ? std::min(s_mm, state.wall_mm) : s_mm;
-    const auto bin = static_cast<std::size_t>(bin_of(step.front_mm));
-    const TissueAt here = step.front_mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
-    const TipLaw law = tip_law_at(scene, state.proxy_P, here);
-    set_spring(step, state, scene, step,
-               is_at_wall ? scene.layers[state.wall].indent_n_per_mm : law.law.stiffness_n_per_mm, target_P, friction,
-               meets);
-    double& lateral = step.spring.lateral_n_per_mm;
+    const Front front = find_front(state, channel, scene, ahead);
+    step.front_mm = front.mm;
+    set_stiffness(state, drive, channel, front.tissue_n_per_mm, front.meets_wall);
+    double lateral = in_series(drive.coupling.stiffness_n_per_mm, front.tissue_n_per_mm);
     lateral = std::min(lateral / (1.0 + lateral * tip_compliance_mm_n), lateral_limit_n_per_mm(scene));
-
-    Vec3 motion = proxy_motion(step.spring, friction, law, target_P, state.proxy_P, step.moved);
-    if (is_at_wall && motion.dot(u) > 0.0) {
-      const ProxyForce force = proxy_force(step.spring, friction, target_P, state.proxy_P, step.moved);
-      press_wall(step, state, channel, scene, motion, force.on_tip_P.dot(u));
+    const auto spring = [&] {
+      step.balance = balance_needle(drive, front.tissue_n_per_mm, along());
+      return path_spring(state, scene, channel, step.balance, target_P, lateral, step.moved, drive.dt_s);
+    };
+    step.spring = spring();
+    Vec3 motion = proxy_motion(step.spring, front.law, step.moved);
+    if (state.wall != kNoLayer && motion.dot(u) > 0.0) {
+      press_wall(step, state, channel, scene, motion, step.balance.on_tip_n);
+      step.spring = spring();
       return step;
     }
     const double length = motion.norm();
     const bool is_long = length > kProxyStep_mm;
     if (is_long) motion *= kProxyStep_mm / length;
     const double forward = motion.dot(u);
-    const bool reaches_wall = !is_at_wall && ahead.layer != kNoLayer && s_mm + forward > ahead.surface_mm;
-    if (reaches_wall) motion *= std::max(0.0, ahead.surface_mm - s_mm) / forward;
+    const bool reaches_wall =
+        state.wall == kNoLayer && ahead.layer != kNoLayer && front.mm + forward > ahead.surface_mm;
+    if (reaches_wall) motion *= std::max(0.0, ahead.surface_mm - front.mm) / forward;
     state.proxy_P += motion;
     step.moved += motion;
-    step.front_mm = is_at_wall ? std::min(along(), state.wall_mm) : along();
+    step.front_mm = state.wall != kNoLayer ? std::min(along(), state.wall_mm) : along();
+    step.spring = spring();
     if (!is_long && !reaches_wall) return step;
   }
   step.hit_bound = true;
@@ -204,11 +236,13 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
   const auto tip = static_cast<std::size_t>(shaft.beam.node_count - 1);
   const Vec3 target_P = X_PN_ahead.p() + shaft.beam.deflection_mm[tip];
   const ShaftResistance resistance = shaft_resistance(path.channel, scene, path.rest_mm);
-  const AxialFriction friction{resistance.dry_n, resistance.viscous_ns_per_mm};
-  const TipStep moved = move_proxy(state, path, scene, target_P, shaft.beam.per_tip_force_mm_n[tip], friction, dt_s);
-
-  const ProxyForce force = proxy_force(moved.spring, friction, target_P, state.proxy_P, moved.moved);
-  Vec3 on_tip = force.on_tip_P;
+  const NeedleDrive drive{scene.options.coupling,
+                          {resistance.dry_n, resistance.viscous_ns_per_mm},
+                          u.dot(X_PN_ahead.p() - path.channel.origin_P),
+                          state.needle_mm,
+                          dt_s};
+  const TipStep moved = move_proxy(state, path, scene, target_P, shaft.beam.per_tip_force_mm_n[tip], drive);
+  Vec3 on_tip = moved.spring.force_P;
   if (moved.punctured != kNoLayer) {  // the wall bore its puncture force and no more
     on_tip += (scene.layers[moved.punctured].puncture_force_n - on_tip.dot(u)) * u;
   }
@@ -217,15 +251,17 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
   ProxyNeedleStep step;
   step.tip_force_P = -on_tip;
   InsertionStep& axial = step.axial;
-  axial.body_axial_n = force.on_shaft_n;
+  axial.body_axial_n = moved.balance.on_shaft_n;
   axial.punctured = moved.punctured;
   axial.hit_solver_bound = moved.hit_bound;
   axial.axis_P = u;
-  axial.tip_P = state.proxy_P + on_tip / moved.tissue_n_per_mm;
-  axial.velocity_mm_per_s = state.velocity_mm_per_s = moved.moved.dot(u) / dt_s;
-  if (is_at_wall) axial.displacement_mm = std::max(0.0, on_tip.dot(u)) / moved.tissue_n_per_mm;
+  const Vec3 aside_P = state.proxy_P - path.channel.origin_P;
+  axial.tip_P = path.channel.origin_P + moved.balance.needle_mm * u + (aside_P - aside_P.dot(u) * u);
+  axial.velocity_mm_per_s = state.velocity_mm_per_s = (moved.balance.needle_mm - state.needle_mm) / dt_s;
+  state.needle_mm = moved.balance.needle_mm;
+  if (is_at_wall) axial.displacement_mm = std::max(0.0, on_tip.dot(u)) / state.tissue_n_per_mm;
   axial.entered = move_tip(path, std::max(0.0, moved.front_mm));
-  axial.depth_mm = std::max(0.0, u.dot(axial.tip_P - path.channel.origin_P));
+  axial.depth_mm = std::max(0.0, state.needle_mm);
   axial.tissue = path.rest_mm > 0.0 ? path.channel.tissue[static_cast<std::size_t>(bin_of(path.rest_mm))] : 0;
   axial.phase = state.phase = next_phase(state, is_at_wall);
   if (moved.front_mm < -kLeaveSkin_mm) leave_body(path);
@@ -241,6 +277,7 @@ void meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene
     path.channel = *hole;
     path.is_open = true;
     path.rest_mm = 0.0;
+    state.needle_mm = path.channel.direction_P.dot(state.proxy_P - path.channel.origin_P);
     state.is_on_skin = false;
   }
 }
@@ -250,7 +287,9 @@ void meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene
 void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, const Vec3& tip_P) noexcept {
   state = {};
   state.proxy_P = tip_P;
-  if (path.is_open) state.phase = InsertionPhase::kInserted;
+  if (!path.is_open) return;
+  state.needle_mm = path.channel.direction_P.dot(tip_P - path.channel.origin_P);
+  state.phase = InsertionPhase::kInserted;
 }
 
 ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,

@@ -11,7 +11,8 @@ struct ProxyNeedleState {
   Vec3 proxy_P = Vec3::Zero();    ///< x_p
   Vec3 contact_P = Vec3::Zero();  ///< Where the needle first touched the skin.
   bool is_on_skin = false;        ///< Touches the skin that has not given way yet.
-  double spring_n_per_mm = 0.0;   ///< Along the shaft, at the last step; 0: none yet.
+  double needle_mm = 0.0;         ///< Virtual needle along the path: between the device and the proxy.
+  double tissue_n_per_mm = 0.0;   ///< K at the last step; 0: none yet.
   std::uint8_t wall = kNoLayer;   ///< Wall that the tip stands at,
   double wall_mm = 0.0;           ///< and where on the path it rests.
   double velocity_mm_per_s = 0.0;

@@ -24,34 +24,42 @@ Vec3 residual_force(const Vec3& f, const TipLaw& tip, double resistance_n) noexc
   return beyond(normal * tip.normal_P + tangential, resistance_n);  // (5)
 }
 
-ProxyForce proxy_force(const ProxySpring& spring, const AxialFriction& friction, const Vec3& target_P,
-                       const Vec3& proxy_P, const Vec3& moved) noexcept {
-  const Vec3 stretch = target_P - proxy_P - spring.damping_s / spring.dt_s * moved;
-  const double axial = stretch.dot(spring.u_P);
-  const double viscous_n = friction.viscous_ns_per_mm * moved.dot(spring.u_P) / spring.dt_s;
-  ProxyForce force;
-  force.on_shaft_n =
-      viscous_n + std::clamp(spring.coupling_n_per_mm * axial - viscous_n, -friction.dry_n, friction.dry_n);
-  const double tip_stretch = axial - force.on_shaft_n / spring.coupling_n_per_mm;
-  force.on_tip_P =
-      spring.axial_n_per_mm * tip_stretch * spring.u_P + spring.lateral_n_per_mm * (stretch - axial * spring.u_P);
-  return force;
+TipSpring free_spring(double stiffness_n_per_mm, double damping_s, const Vec3& target_P, const Vec3& proxy_P,
+                      const Vec3& moved, double dt_s) noexcept {
+  TipSpring spring;
+  spring.force_P = stiffness_n_per_mm * (target_P - proxy_P - damping_s / dt_s * moved);
+  spring.axial_n_per_mm = spring.lateral_n_per_mm = stiffness_n_per_mm * (1.0 + damping_s / dt_s);
+  spring.dt_s = dt_s;
+  return spring;
 }
 
-Vec3 proxy_motion(const ProxySpring& spring, const AxialFriction& friction, const TipLaw& tip, const Vec3& target_P,
-                  const Vec3& proxy_P, const Vec3& moved) noexcept {
-  const ProxyForce force = proxy_force(spring, friction, target_P, proxy_P, moved);
+Vec3 proxy_motion(const TipSpring& spring, const TipLaw& tip, const Vec3& moved) noexcept {
   const double c = (1.0 - tip.border) * tip.law.viscosity_ns_per_mm;
   const double resistance_n = (1.0 - tip.border) * tip.law.resistance_n + c * moved.norm() / spring.dt_s;
-  const Vec3 residual = residual_force(force.on_tip_P, tip, resistance_n);
+  const Vec3 residual = residual_force(spring.force_P, tip, resistance_n);
   // Moving on by delta lowers the spring's force and raises what is viscous.
-  const double follow = 1.0 + spring.damping_s / spring.dt_s;
   const double axial = residual.dot(spring.u_P);
   const Vec3 lateral = residual - axial * spring.u_P;
-  const double shaft = spring.axial_n_per_mm / spring.coupling_n_per_mm * friction.viscous_ns_per_mm;
-  const double axial_n_per_mm = spring.axial_n_per_mm * follow + (c + shaft) / spring.dt_s;
-  const double lateral_n_per_mm = spring.lateral_n_per_mm * follow + c / spring.dt_s;
-  return axial / axial_n_per_mm * spring.u_P + lateral / lateral_n_per_mm;
+  return axial / (spring.axial_n_per_mm + c / spring.dt_s) * spring.u_P +
+         lateral / (spring.lateral_n_per_mm + c / spring.dt_s);
+}
+
+NeedleBalance balance_needle(const NeedleDrive& drive, double tissue_n_per_mm, double proxy_mm) noexcept {
+  const CouplingParams& coupling = drive.coupling;
+  const double push_n =
+      coupling.stiffness_n_per_mm * (drive.ahead_mm - drive.before_mm) - tissue_n_per_mm * (drive.before_mm - proxy_mm);
+  const double slip_n = push_n - std::clamp(push_n, -drive.friction.dry_n, drive.friction.dry_n);
+  const double denominator = coupling.stiffness_n_per_mm + tissue_n_per_mm +
+                             (coupling.damping_ns_per_mm + drive.friction.viscous_ns_per_mm) / drive.dt_s;
+  NeedleBalance balance;
+  const double way_mm = slip_n / denominator;
+  balance.needle_mm = drive.before_mm + way_mm;
+  balance.on_tip_n = tissue_n_per_mm * (balance.needle_mm - proxy_mm);
+  balance.on_shaft_n = coupling.stiffness_n_per_mm * (drive.ahead_mm - balance.needle_mm) -
+                       coupling.damping_ns_per_mm * way_mm / drive.dt_s - balance.on_tip_n;
+  const double follow = slip_n != 0.0 ? tissue_n_per_mm / denominator : 0.0;
+  balance.tip_n_per_mm = tissue_n_per_mm * (1.0 - follow);
+  return balance;
 }
 
 }  // namespace trocar

@@ -24,39 +24,63 @@ TipLaw bulk_law(double resistance_n, double viscosity) {
   return tip;
 }
 
-/// Pulls the tip at constant velocity until the force is steady; the force on the tip.
-Vec3 steady_force(const TipLaw& law, const Vec3& velocity, double rate_hz, const AxialFriction& friction = {}) {
-  ProxySpring spring;
-  spring.dt_s = 1.0 / rate_hz;
+/// Motion of a proxy at the origin that is tied to a tip at d by a spring without damper.
+Vec3 motion_at(const Vec3& d, const TipLaw& law, double k = 1.0) {
+  return proxy_motion(free_spring(k, 0.0, d, Vec3::Zero(), Vec3::Zero(), 0.001), law, Vec3::Zero());
+}
+
+/// Pulls the tip at constant velocity until the force is steady; the force on the tissue.
+Vec3 steady_force(const TipLaw& law, const Vec3& velocity, double rate_hz) {
+  const double dt = 1.0 / rate_hz;
+  constexpr double kDamping_s = 0.004;
   Vec3 tip = Vec3::Zero();
   Vec3 proxy = Vec3::Zero();
   Vec3 force = Vec3::Zero();
   const auto ticks = static_cast<int>(2.0 * rate_hz);
   for (int i = 0; i < ticks; ++i) {
-    tip += velocity * spring.dt_s;
-    const Vec3 target = tip + spring.damping_s * velocity;
-    const Vec3 motion = proxy_motion(spring, friction, law, target, proxy, Vec3::Zero());
+    tip += velocity * dt;
+    const Vec3 target = tip + kDamping_s * velocity;
+    const Vec3 motion = proxy_motion(free_spring(1.0, kDamping_s, target, proxy, Vec3::Zero(), dt), law, Vec3::Zero());
     proxy += motion;
-    const ProxyForce borne = proxy_force(spring, friction, target, proxy, motion);
-    force = borne.on_tip_P + borne.on_shaft_n * spring.u_P;
+    force = free_spring(1.0, kDamping_s, target, proxy, motion, dt).force_P;
   }
   return force;
 }
 
+/// The same along a path, with friction of the shaft and soft tissue at the tip.
+NeedleBalance steady_needle(const TipLaw& law, double speed, double rate_hz, const AxialFriction& friction) {
+  constexpr double kTissue_n_per_mm = 0.5;
+  const double dt = 1.0 / rate_hz;
+  double device = 0.0;
+  double proxy = 0.0;
+  NeedleBalance balance;
+  const auto ticks = static_cast<int>(3.0 * rate_hz);
+  for (int i = 0; i < ticks; ++i) {
+    device += speed * dt;
+    const CouplingParams coupling;
+    const double ahead = device + coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm * speed;
+    const NeedleDrive drive{coupling, friction, ahead, balance.needle_mm, dt};
+    const NeedleBalance before = balance_needle(drive, kTissue_n_per_mm, proxy);
+    TipSpring spring;
+    spring.dt_s = dt;
+    spring.force_P = before.on_tip_n * spring.u_P;
+    spring.axial_n_per_mm = before.tip_n_per_mm;
+    proxy += proxy_motion(spring, law, Vec3::Zero()).z();
+    balance = balance_needle(drive, kTissue_n_per_mm, proxy);
+  }
+  return balance;
+}
+
 TEST(TipProxy, StaysWhileTheForceIsBelowTheThreshold) {
-  const ProxySpring spring;  // 1 N/mm
   const TipLaw law = border_law(2.0, 0.5);
-  EXPECT_EQ(proxy_motion(spring, {}, law, {0, 0, 1.9}, Vec3::Zero(), Vec3::Zero()).norm(), 0.0);
-  EXPECT_GT(proxy_motion(spring, {}, law, {0, 0, 2.1}, Vec3::Zero(), Vec3::Zero()).norm(), 0.0);
-  EXPECT_EQ(proxy_motion(spring, {}, law, {0.4, 0, 0}, Vec3::Zero(), Vec3::Zero()).norm(), 0.0);
-  EXPECT_GT(proxy_motion(spring, {}, law, {0.6, 0, 0}, Vec3::Zero(), Vec3::Zero()).norm(), 0.0);
+  EXPECT_EQ(motion_at({0, 0, 1.9}, law).norm(), 0.0);
+  EXPECT_GT(motion_at({0, 0, 2.1}, law).norm(), 0.0);
+  EXPECT_EQ(motion_at({0.4, 0, 0}, law).norm(), 0.0);
+  EXPECT_GT(motion_at({0.6, 0, 0}, law).norm(), 0.0);
 }
 
 TEST(TipProxy, MovesAsEquationsThreeAndFourFromOnePointWithoutDamper) {
-  ProxySpring spring;
-  spring.axial_n_per_mm = spring.lateral_n_per_mm = 0.8;
-  spring.damping_s = 0.0;
-  const Vec3 motion = proxy_motion(spring, {}, border_law(2.0, 0.5), {1.5, 2.0, 4.0}, Vec3::Zero(), Vec3::Zero());
+  const Vec3 motion = motion_at({1.5, 2.0, 4.0}, border_law(2.0, 0.5), 0.8);
   // x_p + N (d.N - T_N/k) and + T (d.T - T_T/k), k = 0.8
   const Vec3 tangent = Vec3(1.5, 2.0, 0.0) / 2.5;
   const Vec3 expected = Vec3::UnitZ() * (4.0 - 2.0 / 0.8) + tangent * (2.5 - 0.5 / 0.8);
@@ -69,10 +93,8 @@ TEST(TipProxy, FollowsFreelyOutOfDenseTissue) {
 }
 
 TEST(TipProxy, MovesAsTheCorrectedEquationFive) {
-  ProxySpring spring;
-  spring.damping_s = 0.0;
   const Vec3 d(0.6, 0.0, 0.8);
-  const Vec3 motion = proxy_motion(spring, {}, bulk_law(0.3, 0.0), d, Vec3::Zero(), Vec3::Zero());
+  const Vec3 motion = motion_at(d, bulk_law(0.3, 0.0));
   EXPECT_LT((motion - d.normalized() * (1.0 - 0.3)).norm(), 1e-12);  // x_p + d^(|d| - R/k)
 }
 
@@ -85,7 +107,28 @@ TEST_P(Rates, SteadyForceIsTheThresholdAtAnyRate) {
   EXPECT_NEAR(steady_force(border_law(2.0, 0.5), {20, 0, 0}, rate).x(), 0.5, 1e-9);
   EXPECT_NEAR(steady_force(bulk_law(0.3, 0.01), {0, 0, 20}, rate).z(), 0.3 + 0.01 * 20.0, 1e-9);
   EXPECT_NEAR(steady_force(bulk_law(0.3, 0.01), {12, 16, 0}, rate).norm(), 0.3 + 0.01 * 20.0, 1e-9);
-  EXPECT_NEAR(steady_force(bulk_law(0.3, 0.01), {0, 0, 20}, rate, {0.4, 0.02}).z(), 0.3 + 0.2 + 0.4 + 0.4, 1e-9);
+}
+
+TEST_P(Rates, AlongThePathShaftAndTipEachBearTheirOwn) {
+  const NeedleBalance balance = steady_needle(bulk_law(0.3, 0.01), 20.0, GetParam(), {0.4, 0.02});
+  EXPECT_NEAR(balance.on_tip_n, 0.3 + 0.01 * 20.0, 1e-9);
+  EXPECT_NEAR(balance.on_shaft_n, 0.4 + 0.02 * 20.0, 1e-9);
+}
+
+TEST(NeedleBalance, DryFrictionHoldsTheNeedle) {
+  const NeedleDrive drive{{}, {0.5, 0.0}, 0.4, 0.0, 0.001};
+  const NeedleBalance held = balance_needle(drive, 1.0, 0.0);
+  EXPECT_EQ(held.needle_mm, 0.0);
+  EXPECT_NEAR(held.on_shaft_n, 0.4, 1e-12);  // k_c times the stretch
+  EXPECT_EQ(held.on_tip_n, 0.0);
+}
+
+TEST(NeedleBalance, SetsTheSpringsInSeries) {
+  CouplingParams coupling;
+  coupling.damping_ns_per_mm = 0.0;
+  const NeedleBalance balance = balance_needle({coupling, {}, 3.0, 0.0, 0.001}, 0.5, 0.0);
+  EXPECT_NEAR(balance.on_tip_n, 3.0 * 0.5 / 1.5, 1e-12);
+  EXPECT_NEAR(balance.tip_n_per_mm, 0.5 / 1.5, 1e-12);
 }
 
 TEST_P(Rates, AFastHandCannotOutrunViscosity) {
