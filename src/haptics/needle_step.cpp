@@ -65,10 +65,10 @@ ProxyShare proxy_share(const InsertionPath& path, const HapticScene& scene) noex
   return share;
 }
 
-void step_insertion_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, double dt_s,
-                          NeedleStep& step) noexcept {
+void step_insertion_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
+                          double dt_s, NeedleStep& step) noexcept {
   step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s);
-  step.held_P = path_constraint_wrench(state.path, scene, X_PN);
+  step.held_P = path_constraint_wrench(state.path, scene, X_PN_ahead);
   state.shape = straight_needle(X_PN, scene);
 }
 
@@ -112,7 +112,7 @@ NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose&
   const Pose X_PN_ahead = pose_ahead(state.X_PN, X_PN, ahead_s / dt_s);
   switch (scene.options.force_model) {
     case ForceModel::kInsertion:
-      step_insertion_model(state, scene, X_PN, dt_s, step);
+      step_insertion_model(state, scene, X_PN, X_PN_ahead, dt_s, step);
       break;
     case ForceModel::kProxy:
       step_proxy_model(state, scene, X_PN, X_PN_ahead, is_stylet_in, dt_s, step);

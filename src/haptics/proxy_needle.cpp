@@ -71,8 +71,12 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   const double k = in_series(scene.options.coupling.stiffness_n_per_mm, tissue_n_per_mm);
   const TipSpring spring = free_spring(k, damping_s(scene), X_PN_ahead.p(), state.proxy_P, Vec3::Zero(), dt_s);
   Vec3 f = spring.force_P;
-  const double f_normal = f.dot(inward_P);
-  if (!(f_normal > 0.0)) return in_air(state, path, X_PN, dt_s);
+  double f_normal = f.dot(inward_P);
+  if (!(f_normal > 0.0)) {  // a count back in the skin is no parting from it: the surface stays where it was
+    if (!(skin_distance(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
+    f = Vec3::Zero();
+    f_normal = 0.0;
+  }
 
   ProxyNeedleStep step;
   const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
@@ -270,7 +274,7 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
 
 /// A tip that comes from outside: where it meets the skin, and the open hole it may fall into.
 void meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
-  state.proxy_P = skin_distance(scene, state.proxy_P) > 0.0 ? meet_skin(scene, state.proxy_P, X_PN.p()) : X_PN.p();
+  state.proxy_P = skin_distance(scene, state.proxy_P) >= 0.0 ? meet_skin(scene, state.proxy_P, X_PN.p()) : X_PN.p();
   state.contact_P = state.proxy_P;
   state.is_on_skin = true;
   if (const Channel* hole = path.memory.find(state.proxy_P, X_PN.R().col(2))) {

@@ -29,9 +29,9 @@ std::shared_ptr<const HapticScene> scene_for(const DevicePreset& preset, const s
   return *scene;
 }
 
-class Rest : public ::testing::TestWithParam<const char*> {};
+class RestInTheHand : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(Rest, ComesInTheHandAndTakesNoEnergy) {
+TEST_P(RestInTheHand, ComesAndTakesNoEnergy) {
   const DevicePreset preset = device(GetParam());
   const auto scene = scene_for(preset, liver_way());
   for (const double depth_mm : {0.5, 8.0, 12.5, 24.5, 50.0}) {
@@ -43,7 +43,32 @@ TEST_P(Rest, ComesInTheHandAndTakesNoEnergy) {
     EXPECT_TRUE(outcome.is_passive()) << depth_mm << ": " << outcome.growth_mj << " mJ";
   }
 }
-INSTANTIATE_TEST_SUITE_P(Devices, Rest, ::testing::Values("premium", "omni", "omega6", "sigma7", "falcon"));
+INSTANTIATE_TEST_SUITE_P(Devices, RestInTheHand, ::testing::Values("premium", "omni", "omega6", "sigma7", "falcon"));
+
+TEST(Rest, ComesToABareMassOnThePath) {
+  const DevicePreset preset = device("omega6");
+  const auto scene = scene_for(preset, liver_way());
+  for (const Holder holder : {Holder::kBare45g, Holder::kBare150g}) {
+    const StabilityOutcome outcome = run_stability_trial(scene, preset, holder, {50.0, 6.0});
+    EXPECT_TRUE(outcome.is_stable()) << outcome.position_mm << " mm, " << outcome.growth_mj << " mJ";
+  }
+}
+
+TEST(ClosedSkin, GivesWayToTheProxyWhateverCountTheTipComesInBy) {
+  const auto presets = load_device_presets(data_dir() / "devices.toml");
+  const auto table = load_tissue_table(data_dir() / "tissues.toml");
+  ASSERT_TRUE(presets && table);
+  for (const DevicePreset& preset : *presets) {  // some tell a tip that lies just on the skin
+    HapticOptions options;
+    options.force_model = ForceModel::kProxy;
+    apply_device_preset(preset, options);
+    const auto scene = make_haptic_scene(layered_patient(liver_way()), *table, {}, preset.capability, options);
+    ASSERT_TRUE(scene);
+    PushTrial trial;
+    trial.to_mm = 20.0;
+    EXPECT_TRUE(judge_loss_of_resistance(run_push_trial(*scene, preset, trial), 0).has_given_way) << preset.name;
+  }
+}
 
 TEST(StabilityTrial, SeesALoopThatIsTooStiff) {
   DevicePreset preset = device("omega6");
