@@ -55,7 +55,7 @@ BoneContact judge_bone_contact(const std::vector<PushSample>& samples, const Pus
   contact.steady_n = sum / std::max(count, 1);
   contact.chatter_n = high - low;
 
-  // The force just before the bone is friction; the slope is taken over the first half of the rise above it.
+  // The force just before the bone is friction; the slope is that of the rise above it.
   const auto touch =
       std::find_if(samples.begin(), samples.end(), [&](const PushSample& s) { return s.device_mm >= surface_mm; });
   if (touch == samples.end()) return contact;
@@ -67,10 +67,21 @@ BoneContact judge_bone_contact(const std::vector<PushSample>& samples, const Pus
     const double wanted = before_n + share * (contact.steady_n - before_n);
     return std::find_if(touch, samples.end(), [&](const PushSample& s) { return s.resistance_n >= wanted; });
   };
-  const auto from = reaches(0.1);
-  const auto to = reaches(0.5);
-  if (to == samples.end() || !(to->device_mm > from->device_mm)) return contact;
-  contact.slope_n_per_mm = (to->resistance_n - from->resistance_n) / (to->device_mm - from->device_mm);
+  const auto to = reaches(0.8);
+  double n = 0.0;
+  double x = 0.0;
+  double f = 0.0;
+  double xx = 0.0;
+  double xf = 0.0;
+  for (auto it = reaches(0.1); it < to; ++it) {  // straight line by least squares: counts ripple
+    n += 1.0;
+    x += it->device_mm;
+    f += it->resistance_n;
+    xx += it->device_mm * it->device_mm;
+    xf += it->device_mm * it->resistance_n;
+  }
+  const double spread = n * xx - x * x;
+  if (spread > 0.0) contact.slope_n_per_mm = (n * xf - x * f) / spread;
   return contact;
 }
 

@@ -29,7 +29,7 @@ std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene,
 
 /// What the push against something that does not give way felt like. `surface_mm`: depth of its resting surface.
 struct BoneContact {
-  double slope_n_per_mm = 0.0;  ///< Of the force over the device's way, from a tenth to a half of the steady rise.
+  double slope_n_per_mm = 0.0;  ///< Of the force over the device's way, from 10 to 80 % of the steady rise.
   double peak_n = 0.0;
   double steady_n = 0.0;    ///< Mean of the last fifth of the hold.
   double overshoot = 0.0;   ///< Of the peak over the steady force, as a share of it.
