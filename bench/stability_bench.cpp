@@ -111,7 +111,7 @@ void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& tri
       fmt::format("worst peak to peak, allowed {:.3f}: {}", group.front()->outcome.allowed_mm,
                   name_of(*worst(position))));
   add("/force", "n", force(*worst(force)),
-      fmt::format("worst peak to peak, allowed {:.2f}: {}", group.front()->outcome.allowed_n, name_of(*worst(force))));
+      fmt::format("worst peak to peak, allowed {:.2f}: {}", StabilityOutcome::kAllowed_n, name_of(*worst(force))));
   add("/energy", "mj", growth(*worst(growth)),
       fmt::format("worst growth, allowed {:.3f}: {}", group.front()->outcome.allowed_mj, name_of(*worst(growth))));
 }

@@ -46,23 +46,15 @@ double push_n(const ClosedLoop& loop, Holder holder) noexcept {
   return (now.f_weight_n - loop.wrench_P().force_n).dot(now.axis);
 }
 
-/// Limits: what a count of position does to a loop is no instability. A tip whose place is told in counts may wander by
-/// four of them; a count that flips costs the coupling's spring and twice its damper; swung ten times a second, the
-/// spring's energy.
+/// Limits: a tip whose place is told in counts may wander by four of them, and counts swung ten times a second cost the
+/// coupling's spring. The force has one limit for all devices.
 void judge(StabilityOutcome& outcome, const DevicePreset& preset, const StabilityTrial& trial,
            const HapticScene& scene) noexcept {
   constexpr double kCounts = 4.0;
-  constexpr double kSmallest_n = 0.3;
-  constexpr double kMargin = 1.35;
   constexpr double kSwings_per_s = 10.0;
-  constexpr double kTick_s = 0.001;
-  const CouplingParams& coupling = preset.coupling;
   const double count_mm = preset.encoder.count_mm + preset.encoder.count_rad * scene.needle.length_mm;
-  const double flip_n =
-      preset.encoder.count_mm * (coupling.stiffness_n_per_mm + 2.0 * coupling.damping_ns_per_mm / kTick_s);
   outcome.allowed_mm = kCounts * count_mm;
-  outcome.allowed_n = std::max(kSmallest_n, kMargin * flip_n);
-  outcome.allowed_mj = coupling.stiffness_n_per_mm * count_mm * count_mm * kSwings_per_s * trial.seconds;
+  outcome.allowed_mj = preset.coupling.stiffness_n_per_mm * count_mm * count_mm * kSwings_per_s * trial.seconds;
 }
 
 }  // namespace

@@ -19,13 +19,13 @@ struct StabilityOutcome {
   double force_n = 0.0;      ///< Of the force on the device, likewise.
   double growth_mj = 0.0;    ///< Largest rise of the energy given to the device after the first sixth.
   double allowed_mm = 0.0;   ///< Limits, from the device's counts.
-  double allowed_n = 0.0;
   double allowed_mj = 0.0;
   bool is_finite = true;
 
-  bool is_bounded() const noexcept { return is_finite && position_mm <= allowed_mm && force_n <= allowed_n; }
+  bool is_bounded() const noexcept { return is_finite && position_mm <= allowed_mm && force_n <= kAllowed_n; }
   bool is_passive() const noexcept { return is_finite && growth_mj <= allowed_mj; }
   bool is_stable() const noexcept { return is_bounded() && is_passive(); }
+  static constexpr double kAllowed_n = 0.3;
 };
 
 StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset,
