@@ -168,13 +168,13 @@ Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticSc
                  const LayerAhead& ahead) noexcept {
   Front front;
   const double s_mm = channel.direction_P.dot(state.proxy_P - channel.origin_P);
-  if (state.wall != kNoLayer && s_mm < state.wall_mm - kAtWall_mm) state.wall = kNoLayer;  // back from it
+  if (state.wall != kNoLayer && s_mm < state.wall_anchor_mm - kAtWall_mm) state.wall = kNoLayer;  // back from it
   front.meets_wall = state.wall == kNoLayer && ahead.layer != kNoLayer && s_mm >= ahead.surface_mm - kAtWall_mm;
   if (front.meets_wall) {
     state.wall = ahead.layer;
     state.wall_mm = ahead.surface_mm;
   }
-  front.mm = state.wall != kNoLayer ? std::min(s_mm, state.wall_mm) : s_mm;
+  front.mm = state.wall != kNoLayer ? state.wall_mm : s_mm;
   const auto bin = static_cast<std::size_t>(bin_of(front.mm));
   const TissueAt here = front.mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
   front.law = tip_law_at(scene, state.proxy_P, here);
@@ -196,6 +196,7 @@ TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticSce
     const Front front = find_front(state, channel, scene, ahead);
     step.front_mm = front.mm;
     set_stiffness(state, drive, channel, front.tissue_n_per_mm, front.meets_wall);
+    if (front.meets_wall) state.wall_anchor_mm = along();
     double lateral = in_series(drive.coupling.stiffness_n_per_mm, front.tissue_n_per_mm);
     lateral = std::min(lateral / (1.0 + lateral * tip_compliance_mm_n), lateral_limit_n_per_mm(scene));
     const auto spring = [&] {
@@ -218,7 +219,7 @@ TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticSce
     if (reaches_wall) motion *= std::max(0.0, ahead.surface_mm - front.mm) / forward;
     state.proxy_P += motion;
     step.moved += motion;
-    step.front_mm = state.wall != kNoLayer ? std::min(along(), state.wall_mm) : along();
+    step.front_mm = state.wall != kNoLayer ? front.mm : along();
     step.spring = spring();
     if (!is_long && !reaches_wall) return step;
   }

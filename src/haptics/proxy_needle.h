@@ -14,7 +14,8 @@ struct ProxyNeedleState {
   double needle_mm = 0.0;         ///< Virtual needle along the path: between the device and the proxy.
   double tissue_n_per_mm = 0.0;   ///< K at the last step; 0: none yet.
   std::uint8_t wall = kNoLayer;   ///< Wall that the tip stands at,
-  double wall_mm = 0.0;           ///< and where on the path it rests.
+  double wall_mm = 0.0;           ///< where on the path it rests,
+  double wall_anchor_mm = 0.0;    ///< and the proxy's place under its load.
   double velocity_mm_per_s = 0.0;
   InsertionPhase phase = InsertionPhase::kOutside;
 };

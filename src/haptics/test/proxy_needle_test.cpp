@@ -100,6 +100,14 @@ TEST(ProxyNeedle, StiffnessThatIsReadAnewIsNotFeltAsABlow) {
   }
 }
 
+TEST(ProxyNeedle, AWallSofterThanTheTissueBeforeItMustBePiercedToo) {
+  TissueTable tissues = paper_tissues();
+  tissues.layers[2].delta_x_mm = 5.0;  // gives way some millimetres in, like the dura
+  tissues.transfer.laws[1].stiffness_n_per_mm = 5.0;
+  Driver driver(make_scene({{0, kFat}, {30, kLiver}}, ForceModel::kProxy, tissues));
+  EXPECT_EQ(punctures(driver.move(45.0, 10.0)), (std::vector<int>{kSkinLayer, kCapsuleLayer}));
+}
+
 TEST(ProxyNeedle, SteadyForceIsTheSameAtAnyRate) {
   std::vector<double> forces;
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
