@@ -99,6 +99,8 @@ void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& tri
   const auto force = [](const Trial& t) { return t.outcome.force_n; };
   const auto growth = [](const Trial& t) { return t.outcome.growth_mj; };
   const auto stable = std::count_if(group.begin(), group.end(), [](const Trial* t) { return t->outcome.is_stable(); });
+  const auto resting =
+      std::count_if(group.begin(), group.end(), [](const Trial* t) { return t->outcome.is_at_rest(); });
   const std::string prefix = fmt::format("stability/{}/{}", to_string(model), device.name);
   const auto add = [&](const char* what, const char* unit, double value, std::string note) {
     Figures figures;
@@ -106,7 +108,7 @@ void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& tri
     results.push_back({prefix + what, unit, figures, {}, std::move(note)});
   };
   add("", "ratio", static_cast<double>(stable) / static_cast<double>(group.size()),
-      fmt::format("{} of {} runs come to rest and give no energy", stable, group.size()));
+      fmt::format("{} of {} runs are stable, {} come to rest", stable, group.size(), resting));
   add("/position", "mm", position(*worst(position)),
       fmt::format("worst peak to peak, allowed {:.3f}: {}", group.front()->outcome.allowed_mm,
                   name_of(*worst(position))));
@@ -116,12 +118,12 @@ void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& tri
       fmt::format("worst growth, allowed {:.3f}: {}", group.front()->outcome.allowed_mj, name_of(*worst(growth))));
 }
 
-/// What did not come to rest, a line each.
+/// What is not stable, a line each.
 void print_failures(const std::vector<Trial>& trials, const Options& options) {
   if (!options.print) return;
   for (const Trial& t : trials) {
     if (t.outcome.is_stable()) continue;
-    options.print(fmt::format("not at rest: {:<9} {:<8} {:<34} {:8.3f} mm {:7.3f} N {:9.3f} mJ", to_string(t.model),
+    options.print(fmt::format("not stable: {:<9} {:<8} {:<34} {:8.3f} mm {:7.3f} N {:9.3f} mJ", to_string(t.model),
                               t.device->name, name_of(t), t.outcome.position_mm, t.outcome.force_n,
                               t.outcome.growth_mj));
   }

@@ -19,14 +19,19 @@ void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, Needl
   start_insertion(state.insertion, state.path, X_PN.p());
   start_proxy_needle(state.proxy, state.path, X_PN.p());
   state.X_PN = X_PN;
+  state.tip_velocity_P = state.axis_rate_P = Vec3::Zero();
   state.is_started = true;
 }
 
 /// The pose a damping time ahead: springs that act on it damp in proportion to their stiffness (physics.md B7).
-Pose pose_ahead(const Pose& before, const Pose& now, double steps) noexcept {
-  const Vec3 axis = now.R().col(2);
-  const Vec3 ahead = (axis + steps * (axis - before.R().col(2))).normalized();
-  return {rotation_between(axis, ahead) * now.R(), now.p() + steps * (now.p() - before.p())};
+Pose pose_ahead(NeedleState& state, const Pose& X_PN, double ahead_s, double dt_s) noexcept {
+  constexpr double kSmoothing_s = 0.002;
+  const double share = dt_s / (dt_s + kSmoothing_s);
+  const Vec3 axis = X_PN.R().col(2);
+  state.tip_velocity_P += share * ((X_PN.p() - state.X_PN.p()) / dt_s - state.tip_velocity_P);
+  state.axis_rate_P += share * ((axis - state.X_PN.R().col(2)) / dt_s - state.axis_rate_P);
+  const Vec3 ahead = (axis + ahead_s * state.axis_rate_P).normalized();
+  return {rotation_between(axis, ahead) * X_PN.R(), X_PN.p() + ahead_s * state.tip_velocity_P};
 }
 
 /// Paper A: path constraint, only while the needle is in the skin (docs/physics.md C3).
@@ -109,7 +114,7 @@ NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose&
   if (!state.is_started || way_mm > kJump_mm + kJump_mm_per_s * dt_s) start(state, scene, X_PN, step);
   const CouplingParams& coupling = scene.options.coupling;
   const double ahead_s = coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm;
-  const Pose X_PN_ahead = pose_ahead(state.X_PN, X_PN, ahead_s / dt_s);
+  const Pose X_PN_ahead = pose_ahead(state, X_PN, ahead_s, dt_s);
   switch (scene.options.force_model) {
     case ForceModel::kInsertion:
       step_insertion_model(state, scene, X_PN, X_PN_ahead, dt_s, step);

@@ -10,7 +10,9 @@ namespace trocar {
 /// The needle under any force model, from one tick to the next. Fixed size.
 struct NeedleState {
   bool is_started = false;
-  Pose X_PN;  ///< Device's needle at the last tick, in the resting anatomy.
+  Pose X_PN;                           ///< Device's needle at the last tick, in the resting anatomy.
+  Vec3 tip_velocity_P = Vec3::Zero();  ///< mm/s, and
+  Vec3 axis_rate_P = Vec3::Zero();     ///< 1/s, of the device's needle, smoothed: counts of its encoders would ripple.
   InsertionPath path;
   InsertionState insertion;  ///< Insertion and combined.
   ProxyNeedleState proxy;    ///< Proxy.

@@ -13,6 +13,7 @@ constexpr double kLook_mm = 10.0;
 constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the proxy is this far out.
 constexpr double kGrazing = 0.17;      // cosine of 80 degrees: a flatter needle does not pierce
 constexpr double kAtWall_mm = 1e-6;
+constexpr double kHole_mm = 0.2;  // Less than this behind the deepest place is still its end.
 
 double in_series(double a, double b) noexcept {
   return a * b / (a + b);
@@ -178,6 +179,10 @@ Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticSc
   const auto bin = static_cast<std::size_t>(bin_of(front.mm));
   const TissueAt here = front.mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
   front.law = tip_law_at(scene, state.proxy_P, here);
+  if (front.mm < channel.cut_to_mm - kHole_mm) {  // in its own hole the tip cuts nothing and meets no border
+    front.law.border = 0.0;
+    front.law.law.resistance_n = 0.0;
+  }
   front.tissue_n_per_mm =
       state.wall != kNoLayer ? scene.layers[state.wall].indent_n_per_mm : front.law.law.stiffness_n_per_mm;
   return front;
@@ -205,7 +210,7 @@ TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticSce
     };
     step.spring = spring();
     Vec3 motion = proxy_motion(step.spring, front.law, step.moved);
-    if (state.wall != kNoLayer && motion.dot(u) > 0.0) {
+    if (state.wall != kNoLayer && step.balance.on_tip_n > 0.0) {
       press_wall(step, state, channel, scene, motion, step.balance.on_tip_n);
       step.spring = spring();
       return step;

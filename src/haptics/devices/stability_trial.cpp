@@ -39,13 +39,6 @@ StylusHold hold_here(const ClosedLoop& loop, Holder holder) noexcept {
   return hold;
 }
 
-/// Without a hand a needle that rests on something unpierced is pushed on, along its axis, with what it bears.
-double push_n(const ClosedLoop& loop, Holder holder) noexcept {
-  const TickSample& now = loop.last();
-  if (holder == Holder::kHand || now.phase != InsertionPhase::kLoading) return 0.0;
-  return (now.f_weight_n - loop.wrench_P().force_n).dot(now.axis);
-}
-
 /// Limits: a tip whose place is told in counts may wander by four of them, and counts swung ten times a second cost the
 /// coupling's spring. The force has one limit for all devices.
 void judge(StabilityOutcome& outcome, const DevicePreset& preset, const StabilityTrial& trial,
@@ -63,8 +56,7 @@ StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, c
                                      Holder holder, const StabilityTrial& trial) {
   const auto loop = std::make_unique<ClosedLoop>(scene, preset, holder);
   carry_in(*loop, trial.depth_mm);
-  StylusHold hold = hold_here(*loop, holder);
-  const double push = push_n(*loop, holder);
+  const StylusHold hold = hold_here(*loop, holder);
   // Nothing holds a needle across the skin before it is open.
   const bool is_open =
       loop->last().phase != InsertionPhase::kOutside && loop->last().contact_to_puncture_mm != Vec3::Zero();
@@ -72,12 +64,12 @@ StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, c
   if (is_open && preset.has_torque()) loop->stylus().w_P += Vec3(0.0, trial.tap_rad_per_s, 0.0);
 
   StabilityOutcome outcome;
+  outcome.must_rest = holder == Holder::kHand;
   Extent position;
   Extent force;
   const auto ticks = static_cast<int>(trial.seconds / loop->dt_s());
   for (int i = 0; i < ticks; ++i) {
     if (i == ticks / 6) loop->restart_observer();
-    hold.push_n = push * loop->stylus().X_PS.R().col(2);
     loop->run(hold);
     if (i < ticks - ticks / 6) continue;
     position.add(loop->tip_P());

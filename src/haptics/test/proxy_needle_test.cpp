@@ -74,6 +74,17 @@ TEST(ProxyNeedle, SecondTimeInTheSameHoleNeedsNoPuncture) {
   EXPECT_EQ(driver.state().needle.path.is_open, true);
 }
 
+TEST(ProxyNeedle, ItsOwnHoleHasNoBordersAndNothingToCut) {
+  Driver driver(make_unlabelled_scene({{0, kMuscle}, {15, kFat}, {30, kMuscle}}, ForceModel::kProxy));
+  driver.move(45.0, 5.0);
+  for (const TickSample& s : driver.move(5.0, 5.0)) {  // out of fat into muscle, on the way back
+    if (s.depth_mm < 43.0) {
+      ASSERT_LT(std::abs(axial(s)), 0.03) << s.depth_mm;  // c v
+    }
+  }
+  EXPECT_LT(peak_between(driver.move(44.0, 5.0), 6.0, 43.0), 0.03);
+}
+
 TEST(ProxyNeedle, BoneStopsTheNeedleWithOrWithoutItsLabel) {
   for (const auto& scene : {make_scene({{0, kFat}, {15, kBone}}, ForceModel::kProxy),
                             make_unlabelled_scene({{0, kFat}, {15, kBone}}, ForceModel::kProxy)}) {
