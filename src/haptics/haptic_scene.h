@@ -41,7 +41,7 @@ struct DeviceCapability {
 /// references.md, steady within 0.3 N on a bare 45-150 g mass.
 struct CouplingParams {
   double stiffness_n_per_mm = 1.0;
-  double damping_ns_per_mm = 0.004;
+  double damping_ns_per_mm = 0.003;
 };
 
 /// Whose weight is compensated, and switches for study.

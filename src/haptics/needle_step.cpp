@@ -42,16 +42,20 @@ Wrench path_constraint_wrench(const InsertionPath& path, const HapticScene& scen
   return path_constraint(line.origin_P, line.direction_P, X_PN.p(), X_PN.R().col(2), scene.options.constraint);
 }
 
-/// What the body proxies hold, and the shape it bends the needle to. Returns the force of the body proxies alone: the
-/// tip's own force is counted with the tip.
-Wrench body_wrench(NeedleState& state, const HeldShaft& shaft, const HapticScene& scene, const Vec3& tip_force_P,
-                   double axial_resistance_n) noexcept {
-  const Vec3 bevel_P = bevel_force_P(scene.needle, shaft.X_PN, axial_resistance_n);
-  const ShaftReaction reaction = react(shaft, scene, tip_force_P + bevel_P);
+/// What the body proxies hold across the path, the shape it bends the needle to, and the torque about the grip of all
+/// forces (paper B, eq. 6): those along the path act at the tip, by whose way they are found.
+void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ahead, bool is_stylet_in,
+               NeedleStep& step) noexcept {
+  if (!state.path.is_open) return;
+  const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
+  const InsertionStep& axial = step.axial;
+  const double on_tip_n = axial.prepuncture_n + axial.cutting_n - step.tip_proxy_P.dot(axial.axis_P);
+  const ShaftReaction reaction = react(shaft, scene, bevel_force_P(scene.needle, X_PN_ahead, on_tip_n));
   state.shape = reaction.needle;
-  const Vec3 axis_P = shaft.X_PN.R().col(2);
-  const Vec3 tip_across_P = tip_force_P - tip_force_P.dot(axis_P) * axis_P;
-  return {reaction.wrench_P.force_n - tip_across_P, reaction.wrench_P.torque_nmm};
+  step.held_P = reaction.wrench_P;
+  const double along_n = on_tip_n + axial.body_axial_n + axial.stick_n;
+  const Vec3 lever_P = scene.needle.length_mm * X_PN_ahead.R().col(2);
+  step.held_P.torque_nmm -= along_n * lever_P.cross(axial.axis_P);
 }
 
 /// Model B's part along the path of the combined model: the shaft's friction, and the tip in unlabelled tissue, of
@@ -79,30 +83,20 @@ void step_insertion_model(NeedleState& state, const HapticScene& scene, const Po
 
 void step_proxy_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
                       bool is_stylet_in, double dt_s, NeedleStep& step) noexcept {
-  HeldShaft shaft;
-  if (state.path.is_open) shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
-  const bool was_open = state.path.is_open;
-  const ProxyNeedleStep moved = step_proxy_needle(state.proxy, state.path, scene, X_PN, X_PN_ahead, shaft, dt_s);
+  state.shape = straight_needle(X_PN, scene);
+  const ProxyNeedleStep moved = step_proxy_needle(state.proxy, state.path, scene, X_PN, X_PN_ahead, dt_s);
   step.axial = moved.axial;
   step.tip_proxy_P = moved.tip_force_P;
-  if (was_open && state.path.is_open)
-    step.held_P = body_wrench(state, shaft, scene, moved.tip_force_P, -moved.tip_force_P.dot(moved.axial.axis_P));
-  else
-    state.shape = straight_needle(X_PN, scene);
+  hold_body(state, scene, X_PN_ahead, is_stylet_in, step);
 }
 
 void step_combined_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
                          bool is_stylet_in, double dt_s, NeedleStep& step) noexcept {
+  state.shape = straight_needle(X_PN, scene);
   const ProxyShare share = proxy_share(state.path, scene);
   step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s, &share);
   step.tip_proxy_P = -step.axial.tip_proxy_n * step.axial.axis_P;
-  if (!state.path.is_open) {
-    state.shape = straight_needle(X_PN, scene);
-    return;
-  }
-  const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
-  const double on_tip_n = step.axial.prepuncture_n + step.axial.cutting_n + step.axial.tip_proxy_n;
-  step.held_P = body_wrench(state, shaft, scene, Vec3::Zero(), on_tip_n);
+  hold_body(state, scene, X_PN_ahead, is_stylet_in, step);
 }
 
 }  // namespace

@@ -41,8 +41,7 @@ Vec3 meet_skin(const HapticScene& scene, const Vec3& outside_P, const Vec3& insi
 /// The needle in its tissue during one step, and what the step has found.
 struct TipStep {
   NeedleBalance balance;
-  TipSpring spring;
-  Vec3 moved = Vec3::Zero();
+  double moved_mm = 0.0;  ///< By the proxy.
   double front_mm = 0.0;  ///< Tip on the path in the resting anatomy.
   std::uint8_t punctured = kNoLayer;
   bool hit_bound = false;
@@ -124,38 +123,21 @@ void set_stiffness(ProxyNeedleState& state, const NeedleDrive& drive, const Chan
   if (old.on_tip_n > 0.0) state.proxy_P += old.on_tip_n * (1.0 / before - 1.0 / tissue_n_per_mm) * u;
 }
 
-/// Spring of the tip: along the path what the needle's balance says, across it in series with the shaft.
-TipSpring path_spring(const ProxyNeedleState& state, const HapticScene& scene, const Channel& channel,
-                      const NeedleBalance& balance, const Vec3& target_P, double lateral_n_per_mm, const Vec3& moved,
-                      double dt_s) noexcept {
-  const Vec3& u = channel.direction_P;
-  const double tau_s = damping_s(scene);
-  const Vec3 stretch = target_P - state.proxy_P - tau_s / dt_s * moved;
-  TipSpring spring;
-  spring.u_P = u;
-  spring.dt_s = dt_s;
-  spring.force_P = balance.on_tip_n * u + lateral_n_per_mm * (stretch - stretch.dot(u) * u);
-  spring.axial_n_per_mm = balance.tip_n_per_mm;
-  spring.lateral_n_per_mm = lateral_n_per_mm * (1.0 + tau_s / dt_s);
-  return spring;
-}
-
-/// A needle of this length must not turn the grip harder than its bed may.
-double lateral_limit_n_per_mm(const HapticScene& scene) noexcept {
-  return kMostTurning_nmm_per_rad / (scene.needle.length_mm * scene.needle.length_mm);
-}
-
 /// The tip presses on a wall, which bears it or gives way.
-void press_wall(TipStep& step, ProxyNeedleState& state, Channel& channel, const HapticScene& scene, const Vec3& motion,
-                double tip_load_n) noexcept {
-  const Vec3& u = channel.direction_P;
-  if (tip_load_n < scene.layers[state.wall].puncture_force_n) {
-    state.proxy_P += motion - motion.dot(u) * u;
-    return;
-  }
+void press_wall(TipStep& step, ProxyNeedleState& state, Channel& channel, const HapticScene& scene) noexcept {
+  if (step.balance.on_tip_n < scene.layers[state.wall].puncture_force_n) return;
   step.punctured = state.wall;
   state.wall = kNoLayer;
   step.front_mm = channel.cut_to_mm = state.wall_mm + 0.5 * Channel::kBin_mm;
+}
+
+/// How far the proxy moves on along the path (physics.md B3): against the greatest force that its tissue bears there.
+double motion_along(const TipStep& step, const TipLaw& law, const Vec3& u_P, double dt_s) noexcept {
+  const double load_n = step.balance.on_tip_n;
+  const double c = (1.0 - law.border) * law.law.viscosity_ns_per_mm;
+  const double borne_n = threshold_along_n(law, load_n < 0.0 ? Vec3(-u_P) : u_P) + c * std::abs(step.moved_mm) / dt_s;
+  const double way_mm = std::max(0.0, std::abs(load_n) - borne_n) / (step.balance.tip_n_per_mm + c / dt_s);
+  return std::copysign(way_mm, load_n);
 }
 
 /// The tissue, or the wall, that the front of the tip is at.
@@ -189,8 +171,8 @@ Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticSc
 }
 
 /// Moves the proxy along the path until it rests, meets a wall or the bound of sub-steps.
-TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Vec3& target_P,
-                   double tip_compliance_mm_n, const NeedleDrive& drive) noexcept {
+TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
+                   const NeedleDrive& drive) noexcept {
   Channel& channel = path.channel;
   const Vec3& u = channel.direction_P;
   const auto along = [&] { return u.dot(state.proxy_P - channel.origin_P); };
@@ -202,30 +184,21 @@ TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticSce
     step.front_mm = front.mm;
     set_stiffness(state, drive, channel, front.tissue_n_per_mm, front.meets_wall);
     if (front.meets_wall) state.wall_anchor_mm = along();
-    double lateral = in_series(drive.coupling.stiffness_n_per_mm, front.tissue_n_per_mm);
-    lateral = std::min(lateral / (1.0 + lateral * tip_compliance_mm_n), lateral_limit_n_per_mm(scene));
-    const auto spring = [&] {
-      step.balance = balance_needle(drive, front.tissue_n_per_mm, along());
-      return path_spring(state, scene, channel, step.balance, target_P, lateral, step.moved, drive.dt_s);
-    };
-    step.spring = spring();
-    Vec3 motion = proxy_motion(step.spring, front.law, step.moved);
+    step.balance = balance_needle(drive, front.tissue_n_per_mm, along());
     if (state.wall != kNoLayer && step.balance.on_tip_n > 0.0) {
-      press_wall(step, state, channel, scene, motion, step.balance.on_tip_n);
-      step.spring = spring();
+      press_wall(step, state, channel, scene);
       return step;
     }
-    const double length = motion.norm();
-    const bool is_long = length > kProxyStep_mm;
-    if (is_long) motion *= kProxyStep_mm / length;
-    const double forward = motion.dot(u);
+    double motion_mm = motion_along(step, front.law, u, drive.dt_s);
+    const bool is_long = std::abs(motion_mm) > kProxyStep_mm;
+    if (is_long) motion_mm = std::copysign(kProxyStep_mm, motion_mm);
     const bool reaches_wall =
-        state.wall == kNoLayer && ahead.layer != kNoLayer && front.mm + forward > ahead.surface_mm;
-    if (reaches_wall) motion *= std::max(0.0, ahead.surface_mm - front.mm) / forward;
-    state.proxy_P += motion;
-    step.moved += motion;
+        state.wall == kNoLayer && ahead.layer != kNoLayer && front.mm + motion_mm > ahead.surface_mm;
+    if (reaches_wall) motion_mm = std::max(0.0, ahead.surface_mm - front.mm);
+    state.proxy_P += motion_mm * u;
+    step.moved_mm += motion_mm;
     step.front_mm = state.wall != kNoLayer ? front.mm : along();
-    step.spring = spring();
+    step.balance = balance_needle(drive, front.tissue_n_per_mm, along());
     if (!is_long && !reaches_wall) return step;
   }
   step.hit_bound = true;
@@ -241,35 +214,33 @@ InsertionPhase next_phase(const ProxyNeedleState& state, bool is_loading) noexce
 
 /// The tip on its path through the body.
 ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN_ahead,
-                        const HeldShaft& shaft, double dt_s) noexcept {
+                        double dt_s) noexcept {
   const Vec3 u = path.channel.direction_P;
-  const auto tip = static_cast<std::size_t>(shaft.beam.node_count - 1);
-  const Vec3 target_P = X_PN_ahead.p() + shaft.beam.deflection_mm[tip];
   const ShaftResistance resistance = shaft_resistance(path.channel, scene, path.rest_mm);
   const NeedleDrive drive{scene.options.coupling,
                           {resistance.dry_n, resistance.viscous_ns_per_mm},
                           u.dot(X_PN_ahead.p() - path.channel.origin_P),
                           state.needle_mm,
                           dt_s};
-  const TipStep moved = move_proxy(state, path, scene, target_P, shaft.beam.per_tip_force_mm_n[tip], drive);
-  Vec3 on_tip = moved.spring.force_P;
-  if (moved.punctured != kNoLayer) {  // the wall bore its puncture force and no more
-    on_tip += (scene.layers[moved.punctured].puncture_force_n - on_tip.dot(u)) * u;
-  }
+  const Vec3 origin_P = path.channel.origin_P;
+  state.proxy_P = origin_P + u.dot(state.proxy_P - origin_P) * u;  // the path holds the tip, too
+  const TipStep moved = move_proxy(state, path, scene, drive);
   const bool is_at_wall = moved.punctured != kNoLayer || state.wall != kNoLayer;
+  // A wall that gives way bore its puncture force and no more.
+  const double on_tip_n =
+      moved.punctured != kNoLayer ? scene.layers[moved.punctured].puncture_force_n : moved.balance.on_tip_n;
 
   ProxyNeedleStep step;
-  step.tip_force_P = -on_tip;
+  step.tip_force_P = -on_tip_n * u;
   InsertionStep& axial = step.axial;
   axial.body_axial_n = moved.balance.on_shaft_n;
   axial.punctured = moved.punctured;
   axial.hit_solver_bound = moved.hit_bound;
   axial.axis_P = u;
-  const Vec3 aside_P = state.proxy_P - path.channel.origin_P;
-  axial.tip_P = path.channel.origin_P + moved.balance.needle_mm * u + (aside_P - aside_P.dot(u) * u);
+  axial.tip_P = origin_P + moved.balance.needle_mm * u;
   axial.velocity_mm_per_s = state.velocity_mm_per_s = (moved.balance.needle_mm - state.needle_mm) / dt_s;
   state.needle_mm = moved.balance.needle_mm;
-  if (is_at_wall) axial.displacement_mm = std::max(0.0, on_tip.dot(u)) / state.tissue_n_per_mm;
+  if (is_at_wall) axial.displacement_mm = std::max(0.0, on_tip_n) / state.tissue_n_per_mm;
   axial.entered = move_tip(path, std::max(0.0, moved.front_mm));
   axial.depth_mm = std::max(0.0, state.needle_mm);
   axial.tissue = path.rest_mm > 0.0 ? path.channel.tissue[static_cast<std::size_t>(bin_of(path.rest_mm))] : 0;
@@ -303,14 +274,13 @@ void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, cons
 }
 
 ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
-                                  const Pose& X_PN, const Pose& X_PN_ahead, const HeldShaft& shaft,
-                                  double dt_s) noexcept {
+                                  const Pose& X_PN, const Pose& X_PN_ahead, double dt_s) noexcept {
   if (!path.is_open && !state.is_on_skin) {
     if (!(skin_distance(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
     meet(state, path, scene, X_PN);
   }
   if (!path.is_open) return on_skin(state, path, scene, X_PN, X_PN_ahead, dt_s);
-  return in_body(state, path, scene, X_PN_ahead, shaft, dt_s);
+  return in_body(state, path, scene, X_PN_ahead, dt_s);
 }
 
 }  // namespace trocar

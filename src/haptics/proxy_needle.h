@@ -29,12 +29,11 @@ struct ProxyNeedleStep {
 /// Takes the proxy to be where the tip is: no force. Real-time safe.
 void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, const Vec3& tip_P) noexcept;
 
-/// One step of the tip proxy (physics.md B1 to B4): before the skin gives way on the skin's surface, then along the
-/// path, held across it by the shaft. `shaft`: the body proxies at the pose `X_PN_ahead`, a damping time ahead of the
-/// device's. Bounded sub-steps of kProxyStep_mm. Real-time safe.
+/// One step of the tip proxy (physics.md B1 to B4): before the skin gives way on the skin's surface, then on the path's
+/// line, held there by the body proxies. `X_PN_ahead`: the pose a damping time ahead of the device's. Bounded sub-steps
+/// of kProxyStep_mm. Real-time safe.
 ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
-                                  const Pose& X_PN, const Pose& X_PN_ahead, const HeldShaft& shaft,
-                                  double dt_s) noexcept;
+                                  const Pose& X_PN, const Pose& X_PN_ahead, double dt_s) noexcept;
 
 inline constexpr double kProxyStep_mm = 0.25;  ///< At most this far before the law is read again.
 inline constexpr int kMaxProxySteps = 32;      ///< A tick: 8 m/s at 1 kHz.
