@@ -45,12 +45,14 @@ Wrench path_constraint_wrench(const InsertionPath& path, const HapticScene& scen
 /// What the body proxies hold across the path, the shape it bends the needle to, and the torque about the grip of all
 /// forces (paper B, eq. 6): those along the path act at the tip, by whose way they are found.
 void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ahead, bool is_stylet_in,
-               NeedleStep& step) noexcept {
+               double cutting_mm_per_s, NeedleStep& step) noexcept {
   if (!state.path.is_open) return;
   const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
   const InsertionStep& axial = step.axial;
   const double on_tip_n = axial.prepuncture_n + axial.cutting_n - step.tip_proxy_P.dot(axial.axis_P);
-  const ShaftReaction reaction = react(shaft, scene, bevel_force_P(scene.needle, X_PN_ahead, on_tip_n));
+  // The bevel pushes aside what it cuts: at rest it does not, or it would be a force without a potential.
+  const double cuts = cutting_mm_per_s > 0.0 ? motion_fade(cutting_mm_per_s) : 0.0;
+  const ShaftReaction reaction = react(shaft, scene, bevel_force_P(scene.needle, X_PN_ahead, cuts * on_tip_n));
   state.shape = reaction.needle;
   step.held_P = reaction.wrench_P;
   const double along_n = on_tip_n + axial.body_axial_n + axial.stick_n;
@@ -84,10 +86,12 @@ void step_insertion_model(NeedleState& state, const HapticScene& scene, const Po
 void step_proxy_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
                       bool is_stylet_in, double dt_s, NeedleStep& step) noexcept {
   state.shape = straight_needle(X_PN, scene);
+  const Vec3 proxy_before_P = state.proxy.proxy_P;
   const ProxyNeedleStep moved = step_proxy_needle(state.proxy, state.path, scene, X_PN, X_PN_ahead, dt_s);
   step.axial = moved.axial;
   step.tip_proxy_P = moved.tip_force_P;
-  hold_body(state, scene, X_PN_ahead, is_stylet_in, step);
+  const double cutting_mm_per_s = (state.proxy.proxy_P - proxy_before_P).dot(step.axial.axis_P) / dt_s;
+  hold_body(state, scene, X_PN_ahead, is_stylet_in, cutting_mm_per_s, step);
 }
 
 void step_combined_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
@@ -96,7 +100,7 @@ void step_combined_model(NeedleState& state, const HapticScene& scene, const Pos
   const ProxyShare share = proxy_share(state.path, scene);
   step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s, &share);
   step.tip_proxy_P = -step.axial.tip_proxy_n * step.axial.axis_P;
-  hold_body(state, scene, X_PN_ahead, is_stylet_in, step);
+  hold_body(state, scene, X_PN_ahead, is_stylet_in, step.axial.velocity_mm_per_s, step);
 }
 
 }  // namespace
