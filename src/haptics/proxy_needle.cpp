@@ -84,14 +84,14 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   if (gives_way) {  // the skin bore its puncture force along the needle and no more
     f *= puncture_n / f.dot(axis_P);
   } else {
-    const Vec3 sideways = f - f_normal * inward_P;
-    const double grip_n = scene.tissues[scene.skin].friction_mu * f_normal;
-    if (sideways.norm() > grip_n) {
-      const Vec3 slip = sideways * (1.0 - grip_n / sideways.norm());
-      f -= slip;
-      state.proxy_P += slip / spring.lateral_n_per_mm;
-      state.proxy_P += skin_distance(scene, state.proxy_P) * inward_P;  // back to the surface
-    }
+    TipLaw skin;  // equations (3) and (4): closed along the normal, Coulomb friction across it
+    skin.normal_P = inward_P;
+    skin.border = 1.0;
+    skin.law.normal_n = f_normal;
+    skin.law.tangential_n = scene.tissues[scene.skin].friction_mu * f_normal;
+    state.proxy_P += proxy_motion(spring, skin, Vec3::Zero());
+    state.proxy_P += skin_distance(scene, state.proxy_P) * inward_P;  // back to the surface
+    f -= residual_force(f, skin, 0.0);
   }
   step.tip_force_P = -f;
   step.axial.tip_P = state.proxy_P + f / tissue_n_per_mm;
