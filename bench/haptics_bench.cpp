@@ -10,6 +10,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
+#include "bench/calibration.h"
 #include "haptics/tick.h"
 #include "headless/needle_geometry.h"
 #include "headless/prepare_case.h"
@@ -20,20 +21,6 @@ namespace {
 constexpr double kDt_s = 0.001;
 constexpr double kSpeed_mm_per_s = 10.0;
 constexpr int kRounds = 5;
-
-template <class Work>
-double time_us(Work&& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// A chain of multiplications and additions that nothing can shorten: about 8 us, the same on every call.
-double calibration_arithmetic(double x) noexcept {
-  constexpr int kSteps = 5000;
-  for (int i = 0; i < kSteps; ++i) x = x * 0.999 + 0.001;
-  return x;
-}
 
 struct Round {
   std::vector<double> tick_us;

@@ -11,6 +11,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
+#include "bench/calibration.h"
 #include "haptics/tick.h"
 #include "headless/prepare_case.h"
 #include "volume/sampling.h"
@@ -188,20 +189,6 @@ void add_probe(std::vector<CaseResult>& results, const HapticScene& scene, const
                      {},
                      fmt::format("lever that rights it: {:.1f} N mm at {:.1f} N", flat.torque_nmm - tilted.torque_nmm,
                                  tilted.at_depth_n)});
-}
-
-template <class Work>
-double time_us(Work&& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// A chain of multiplications and additions that nothing can shorten: about 8 us, the same on every call.
-double calibration_arithmetic(double x) noexcept {
-  constexpr int kSteps = 5000;
-  for (int i = 0; i < kSteps; ++i) x = x * 0.999 + 0.001;
-  return x;
 }
 
 /// The tool slides over the skin, pressed in; a calibration after each tick.

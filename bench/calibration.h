@@ -1,0 +1,23 @@
+#pragma once
+
+#include <chrono>
+
+namespace trocar::bench {
+
+/// Time of one call, in microseconds.
+template <class Work>
+double time_us(Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A chain of multiplications and additions that nothing can shorten: about 8 us, the same on every call. Interleaved
+/// with a tick it tells what the machine was worth at the time.
+inline double calibration_arithmetic(double x) noexcept {
+  constexpr int kSteps = 5000;
+  for (int i = 0; i < kSteps; ++i) x = x * 0.999 + 0.001;
+  return x;
+}
+
+}  // namespace trocar::bench
