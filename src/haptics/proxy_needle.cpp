@@ -12,6 +12,7 @@ namespace {
 constexpr double kLook_mm = 10.0;
 constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the proxy is this far out.
 constexpr double kGrazing = 0.17;      // cosine of 80 degrees: a flatter needle does not pierce
+constexpr double kTipGrip = 2.0;       // A sharp tip pricks: it slides only beyond 63 degrees. [assumed]
 constexpr double kAtWall_mm = 1e-6;
 constexpr double kHole_mm = 0.2;  // Less than this behind the deepest place is still its end.
 
@@ -88,7 +89,7 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
     skin.normal_P = inward_P;
     skin.border = 1.0;
     skin.law.normal_n = f_normal;
-    skin.law.tangential_n = scene.tissues[scene.skin].friction_mu * f_normal;
+    skin.law.tangential_n = kTipGrip * f_normal;
     state.proxy_P += proxy_motion(spring, skin, Vec3::Zero());
     state.proxy_P += skin_distance(scene, state.proxy_P) * inward_P;  // back to the surface
     f -= residual_force(f, skin, 0.0);
