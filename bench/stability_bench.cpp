@@ -12,7 +12,7 @@
 #include "bench/flat_scene.h"
 #include "core/data_dir.h"
 #include "core/parallel.h"
-#include "haptics/devices/stability_trial.h"
+#include "haptics/simulation/stability_trial.h"
 
 namespace trocar::bench {
 namespace {

@@ -20,6 +20,19 @@ find_package(X11 REQUIRED)
 find_package(ITK REQUIRED COMPONENTS ITKIOImageBase ITKIONIFTI ITKIONRRD ITKIOMeta ITKIOGDCM ITKIOTransformBase
   ITKIOTransformInsightLegacy ITKTransform ITKCommon ITKGDCM ITKNIFTI ITKZLIB)
 
+find_package(cppzmq REQUIRED)
+find_package(FlatBuffers NAMES FlatBuffers Flatbuffers REQUIRED)
+find_program(FLATC flatc REQUIRED)
+find_package(SDL2 REQUIRED)
+find_library(SPNAV spnav REQUIRED)
+find_package(Boost REQUIRED)
+find_package(Threads REQUIRED)
+
+# Header-only Beast and Asio; Asio wants threads.
+add_library(trocar_boost INTERFACE)
+target_include_directories(trocar_boost SYSTEM INTERFACE ${Boost_INCLUDE_DIRS})
+target_link_libraries(trocar_boost INTERFACE Threads::Threads)
+
 add_library(trocar_soci INTERFACE)
 target_include_directories(trocar_soci SYSTEM INTERFACE ${SOCI_INCLUDE})
 target_link_libraries(trocar_soci INTERFACE ${SOCI_CORE} ${SOCI_SQLITE3})
@@ -43,3 +56,8 @@ set(trocar_library_vtk-rendering VTK::CommonCore VTK::CommonDataModel VTK::Rende
 set(trocar_library_itk trocar_itk)
 set(trocar_library_png PNG::PNG)
 set(trocar_library_soci trocar_soci)
+set(trocar_library_zeromq cppzmq)
+set(trocar_library_flatbuffers flatbuffers::flatbuffers_shared)
+set(trocar_library_sdl2 SDL2::SDL2)
+set(trocar_library_spnav ${SPNAV})
+set(trocar_library_boost trocar_boost)

@@ -34,8 +34,22 @@ function(trocar_add_module name uses libraries)
     list(APPEND links ${trocar_library_${library}})
   endforeach()
 
+  # Schemas of messages: NAME.fbs becomes "MODULE/detail/NAME_generated.h", for the module alone.
+  file(GLOB schemas CONFIGURE_DEPENDS ${folder}/*.fbs)
+  foreach(schema IN LISTS schemas)
+    get_filename_component(schema_name ${schema} NAME_WE)
+    set(generated ${CMAKE_BINARY_DIR}/generated/${name}/detail/${schema_name}_generated.h)
+    get_filename_component(generated_folder ${generated} DIRECTORY)
+    add_custom_command(OUTPUT ${generated} DEPENDS ${schema} VERBATIM
+      COMMAND ${FLATC} --cpp --scoped-enums -o ${generated_folder} ${schema})
+    list(APPEND sources ${generated})
+  endforeach()
+
   if(sources)
     add_library(${target} STATIC ${sources})
+    if(schemas)
+      target_include_directories(${target} SYSTEM PRIVATE ${CMAKE_BINARY_DIR}/generated)
+    endif()
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${links} PRIVATE trocar_warnings)
     if("vtk-rendering" IN_LIST libraries)

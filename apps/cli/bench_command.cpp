@@ -7,7 +7,7 @@
 
 #include "bench/harness.h"
 #include "commands.h"
-#include "patient_source.h"
+#include "io/patient_source.h"
 
 namespace trocar::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "commands.h"
-#include "haptics/devices/device_preset.h"
+#include "haptics/device_preset.h"
 
 namespace trocar::cli {
 namespace {

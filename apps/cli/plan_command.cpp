@@ -6,7 +6,7 @@
 
 #include "commands.h"
 #include "io/markups_file.h"
-#include "patient_source.h"
+#include "io/patient_source.h"
 #include "training/plan.h"
 
 namespace trocar::cli {

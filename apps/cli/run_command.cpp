@@ -5,7 +5,7 @@
 
 #include "commands.h"
 #include "headless/run_session.h"
-#include "patient_source.h"
+#include "io/patient_source.h"
 
 namespace trocar::cli {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "commands.h"
 #include "core/atomic_file.h"
-#include "patient_source.h"
+#include "io/patient_source.h"
 #include "report/html_report.h"
 #include "storage/session_file.h"
 

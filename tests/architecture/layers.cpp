@@ -39,7 +39,8 @@ const std::vector<HeaderRule>& header_rules() {
         {"tbb/", {"tbb"}},      {"oneapi/", {"tbb"}},    {"toml", {"toml++"}},     {"nlohmann/", {"json"}},
         {"hwy/", {"highway"}},  {"itk", {"itk"}},        {"gdcm", {"itk"}},        {"nifti1_io.h", {"itk"}},
         {"png.h", {"png"}},     {"soci/", {"soci"}},     {"sqlite3.h", {"soci"}},  {"X11/", {"vtk-rendering"}},
-        {"vtkXML", {"vtk-io"}}, {"vtkSTL", {"vtk-io"}},
+        {"vtkXML", {"vtk-io"}}, {"vtkSTL", {"vtk-io"}},  {"zmq", {"zeromq"}},      {"flatbuffers/", {"flatbuffers"}},
+        {"SDL", {"sdl2"}},      {"spnav.h", {"spnav"}},  {"boost/", {"boost"}},
     };
     for (const std::string_view rendering :
          {"vtkActor", "vtkCamera", "vtkLight", "vtkOpenGL", "vtkPolyDataMapper", "vtkProp", "vtkRender", "vtkShader",

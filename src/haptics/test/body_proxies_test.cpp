@@ -9,8 +9,8 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/devices/virtual_stylus.h"
 #include "haptics/insertion_law.h"
+#include "haptics/simulation/virtual_stylus.h"
 #include "haptics/test/layered_patient.h"
 
 namespace trocar::testing {

@@ -1,13 +1,13 @@
 // A device in closed loop with the tick: trocar bench stability and trocar bench contact run the whole matrix, here a
 // few.
-#include "haptics/devices/closed_loop.h"
+#include "haptics/simulation/closed_loop.h"
 
 #include <gtest/gtest.h>
 
 #include "core/data_dir.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/devices/push_trial.h"
-#include "haptics/devices/stability_trial.h"
+#include "haptics/simulation/push_trial.h"
+#include "haptics/simulation/stability_trial.h"
 #include "haptics/test/layered_patient.h"
 
 namespace trocar {

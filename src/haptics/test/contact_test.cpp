@@ -9,8 +9,8 @@
 #include "core/data_dir.h"
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/devices/closed_loop.h"
-#include "haptics/devices/virtual_device.h"
+#include "haptics/simulation/closed_loop.h"
+#include "haptics/simulation/virtual_device.h"
 #include "haptics/test/flat_skin.h"
 #include "haptics/tick.h"
 

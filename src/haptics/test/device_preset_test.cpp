@@ -1,4 +1,4 @@
-#include "haptics/devices/device_preset.h"
+#include "haptics/device_preset.h"
 
 #include <gtest/gtest.h>
 

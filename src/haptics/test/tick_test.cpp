@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.inc.h"
-#include "haptics/devices/virtual_device.h"
+#include "haptics/simulation/virtual_device.h"
 #include "haptics/test/layered_patient.h"
 
 namespace trocar::testing {

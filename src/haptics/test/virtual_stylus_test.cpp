@@ -1,4 +1,4 @@
-#include "haptics/devices/virtual_stylus.h"
+#include "haptics/simulation/virtual_stylus.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/devices/encoder.h"
-#include "haptics/devices/passivity_observer.h"
-#include "haptics/devices/rotation.h"
+#include "haptics/simulation/encoder.h"
+#include "haptics/simulation/passivity_observer.h"
+#include "haptics/simulation/rotation.h"
 
 namespace trocar {
 namespace {

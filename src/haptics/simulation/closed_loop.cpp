@@ -1,4 +1,4 @@
-#include "haptics/devices/closed_loop.h"
+#include "haptics/simulation/closed_loop.h"
 
 namespace trocar {
 

@@ -1,4 +1,4 @@
-#include "haptics/devices/push_trial.h"
+#include "haptics/simulation/push_trial.h"
 
 #include <algorithm>
 #include <cmath>

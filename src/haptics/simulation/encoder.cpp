@@ -1,6 +1,6 @@
-#include "haptics/devices/encoder.h"
+#include "haptics/simulation/encoder.h"
 
-#include "haptics/devices/rotation.h"
+#include "haptics/simulation/rotation.h"
 
 namespace trocar {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptics/devices/virtual_device.h"
+#include "haptics/simulation/virtual_device.h"
 
 namespace trocar {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/result.h"
-#include "haptics/devices/encoder.h"
 #include "haptics/haptic_scene.h"
+#include "haptics/simulation/encoder.h"
 
 namespace trocar {
 

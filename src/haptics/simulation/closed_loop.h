@@ -3,9 +3,9 @@
 #include <array>
 #include <memory>
 
-#include "haptics/devices/device_preset.h"
-#include "haptics/devices/passivity_observer.h"
-#include "haptics/devices/virtual_stylus.h"
+#include "haptics/device_preset.h"
+#include "haptics/simulation/passivity_observer.h"
+#include "haptics/simulation/virtual_stylus.h"
 #include "haptics/tick.h"
 
 namespace trocar {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "haptics/devices/closed_loop.h"
+#include "haptics/simulation/closed_loop.h"
 
 namespace trocar {
 

@@ -1,4 +1,4 @@
-#include "haptics/devices/rotation.h"
+#include "haptics/simulation/rotation.h"
 
 #include <cmath>
 

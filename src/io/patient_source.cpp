@@ -1,4 +1,4 @@
-#include "patient_source.h"
+#include "io/patient_source.h"
 
 #include <filesystem>
 
@@ -6,7 +6,7 @@
 #include "io/patient_folder.h"
 #include "surface/extract_surface.h"
 
-namespace trocar::cli {
+namespace trocar {
 namespace {
 namespace fs = std::filesystem;
 
@@ -28,4 +28,4 @@ Result<std::vector<NamedMesh>> open_meshes(const PatientSource& source, const Vi
   return extract_surfaces(patient, {}, progress);
 }
 
-}  // namespace trocar::cli
+}  // namespace trocar

@@ -8,7 +8,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 
-namespace trocar::cli {
+namespace trocar {
 
 /// How a command names its patient: a patient folder, or else an embedded patient by name.
 struct PatientSource {
@@ -23,4 +23,4 @@ Result<VirtualPatient> open_patient(const PatientSource& source, const Progress&
 Result<std::vector<NamedMesh>> open_meshes(const PatientSource& source, const VirtualPatient& patient,
                                            const Progress& progress = {});
 
-}  // namespace trocar::cli
+}  // namespace trocar

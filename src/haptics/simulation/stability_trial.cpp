@@ -1,4 +1,4 @@
-#include "haptics/devices/stability_trial.h"
+#include "haptics/simulation/stability_trial.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "haptics/devices/virtual_stylus.h"
+#include "haptics/simulation/virtual_stylus.h"
 
-#include "haptics/devices/rotation.h"
+#include "haptics/simulation/rotation.h"
 
 namespace trocar {
 

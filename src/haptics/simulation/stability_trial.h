@@ -1,6 +1,6 @@
 #pragma once
 
-#include "haptics/devices/closed_loop.h"
+#include "haptics/simulation/closed_loop.h"
 
 namespace trocar {
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
+namespace trocar {
+
+/// What a faulty device does.
+enum class DeviceFault : std::uint8_t {
+  kJitter,      ///< The pose shakes: uniform noise of `amount` mm.
+  kDropped,     ///< Reads repeat the last pose.
+  kNan,         ///< Poses are NaN.
+  kStuck,       ///< The encoder stands still while reads claim to be fresh.
+  kJump,        ///< The pose is `amount` mm off.
+  kDisconnect,  ///< Reads say disconnected, writes are refused.
+  kSlowWrite,   ///< Writes take `amount` ms.
+  kSlowRead,    ///< Reads take `amount` ms.
+};
+const char* to_string(DeviceFault fault) noexcept;
+
+struct ScheduledFault {
+  DeviceFault fault = DeviceFault::kJitter;
+  double from_s = 0.0;  ///< Since the device was opened.
+  double for_s = 0.0;   ///< Infinite: for ever.
+  double amount = 0.0;
+};
+
+/// "nan@2.0+0.5", "jitter:0.3@1+2", "disconnect@5": KIND[:AMOUNT]@FROM_S[+FOR_S]. Exit status 2 where it is not that.
+Result<ScheduledFault> parse_fault(std::string_view text);
+
+}  // namespace trocar

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+
+#include "haptics/path_constraint.h"  // Wrench
+
+namespace trocar {
+
+/// Why the gate is at zero until somebody resets it. The first one stays.
+enum class GateFault : std::uint8_t {
+  kNone,
+  kNotFinite,     ///< The wrench, or what the device told, was NaN, infinite or beyond all reason.
+  kDeviceLost,    ///< Unplugged, or refused what was written.
+  kDeviceSilent,  ///< No fresh reading for longer than max_unread_s.
+  kRunaway,       ///< Faster than brake_mm_per_s for longer than max_runaway_s.
+  kEncoderStuck,  ///< Force without motion of a single count, for longer than the caller allows.
+  kRequested,     ///< Somebody pressed the stop button.
+};
+const char* to_string(GateFault fault) noexcept;
+
+/// Where the gate is on its way to full force.
+enum class GateMode : std::uint8_t {
+  kOff,      ///< Nobody asked for forces: zero.
+  kWaiting,  ///< For a small commanded force: zero.
+  kRising,   ///< Ramps up.
+  kOn,
+  kFading,  ///< The client is silent: ramps to zero, or is there.
+  kFault,   ///< Latched; ramps to zero within fault_ramp_s, then zero.
+};
+const char* to_string(GateMode mode) noexcept;
+
+/// What the gate did to the wrench in this period; bits.
+enum GateAction : std::uint16_t {
+  kGatePassivity = 1 << 0,   ///< Took out energy that was made.
+  kGateContinuous = 1 << 1,  ///< Held below the peak: the motors are warm.
+  kGateSlew = 1 << 2,        ///< Held back a rise.
+  kGateStale = 1 << 3,       ///< The client is silent.
+  kGateClamp = 1 << 4,       ///< At the device's peak force or torque.
+  kGateBrake = 1 << 5,       ///< Brakes a device that is too fast.
+  kGateStart = 1 << 6,       ///< Safe start: waiting or rising.
+  kGateFault = 1 << 7,
+  kGateOff = 1 << 8,
+};
+
+/// Limits of a device and of the gate. Where no source is named a number is assumed.
+struct GateParams {
+  double peak_force_n = 37.5;    ///< Range 0.1..200.
+  double peak_torque_nmm = 515;  ///< 0: the device gives no torque.
+  double continuous_force_n = 6.2;
+  double continuous_torque_nmm = 188;
+  double thermal_time_s = 10.0;         ///< Of the motors' first-order warming. Range 0.5..600.
+  double max_damping_ns_per_mm = 0.01;  ///< That the passivity control may add, what the device shows at 1 kHz.
+  double passivity_margin_mj = 2.0;  ///< Energy that may be given before it is taken out: counts, delay. Range 0..50.
+  double slew_n_per_s = 4000.0;      ///< Rises only. Range 50..1e5.
+  double slew_nmm_per_s = 8e4;
+  double stale_s = 0.25;       ///< Silence of the client before the force fades.
+  double fade_s = 0.2;         ///< From full force to zero.
+  double rise_s = 0.5;         ///< Safe start and resume: from zero to full force.
+  double small_force_n = 0.3;  ///< Safe start begins below it.
+  double small_torque_nmm = 20.0;
+  double fault_ramp_s = 0.02;
+  double brake_mm_per_s = 1000.0;  ///< A hand with a needle stays below. Range 100..5000.
+  double brake_ns_per_mm = 0.005;  ///< Of the brake, at most max_damping_ns_per_mm.
+  double max_runaway_s = 0.05;
+  double max_unread_s = 0.02;  ///< Range 0.002..1.
+};
+
+/// What a period gives the gate: the wrench that the tick wants (about S, any frame, all in the same one), and what is
+/// known of the device and of the client.
+struct GateInput {
+  Wrench wanted;                   ///< Without the weight: what tissue and path do.
+  Wrench weight;                   ///< Compensation of the stylus' weight; conservative, not watched for energy.
+  Vec3 axis = Vec3::UnitZ();       ///< Unit, along the needle: the part of a force that is kept when it saturates.
+  Vec3 v_mm_per_s = Vec3::Zero();  ///< Of the stylus, measured; and
+  Vec3 w_rad_per_s = Vec3::Zero();
+  double dt_s = 0.001;
+  double silence_s = 0.0;                     ///< Since the client was last heard.
+  double unread_s = 0.0;                      ///< Since the device's last fresh reading.
+  bool is_wanted = false;                     ///< Somebody asked for forces.
+  GateFault device_fault = GateFault::kNone;  ///< What the caller saw (kDeviceLost, kEncoderStuck, kRequested).
+  bool is_reset = false;                      ///< Explicit reset of a fault; without effect while its cause lasts.
+};
+
+/// Fixed size, copyable.
+struct GateState {
+  GateMode mode = GateMode::kOff;
+  GateFault fault = GateFault::kNone;
+  Wrench last;              ///< What went out.
+  double scale = 0.0;       ///< Of safe start and fading, 0..1.
+  double energy_mj = 0.0;   ///< That the wanted wrench gave to the device, less what was taken out; at least -margin.
+  double force_heat = 0.0;  ///< Mean square of the force over the continuous one's square: 1 = warm.
+  double torque_heat = 0.0;
+  double runaway_s = 0.0;
+  double drop_from_n = 0.0;  ///< Of the fall that is going on.
+  double drop_s = 0.0;
+};
+
+struct GateOutput {
+  Wrench wrench;              ///< For the device. Always finite, always within its limits.
+  std::uint16_t actions = 0;  ///< GateAction bits.
+  double drop_n = 0.0;        ///< A fall of the force that ended in this period: by how much,
+  double drop_s = 0.0;        ///< and how long it took. Zero otherwise.
+};
+
+/// The last step before the motors and the only one that writes to them (physics.md G1-G9): finite check, passivity
+/// control (Hannaford and Ryu's observer and controller), continuous-force limit, slew limit on rises only, velocity
+/// brake, staleness ramp and safe start, norm clamp last. When a force saturates the lateral part and the torque are
+/// scaled by one factor and the axial part is kept. Any fault fades to zero within fault_ramp_s and latches. A pure
+/// function of its arguments; real-time safe; total: any bits in, a wrench within the limits out.
+GateOutput step_gate(GateState& state, const GateInput& input, const GateParams& params) noexcept;
+
+}  // namespace trocar

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/result.h"
+#include "link/messages.h"
+
+namespace trocar {
+
+using Bytes = std::vector<std::byte>;
+
+/// Any struct of messages.h as bytes. A batch of more than kMostSamples is the caller's mistake.
+Bytes encode(const ClientMessage& message);
+Bytes encode(const ServerMessage& message);
+
+/// Hostile bytes welcome: truncated, oversized, of another version, with NaN poses, rotations that are none, texts too
+/// long or not UTF-8, enumerators out of range: an Error that says which. Never allocates more than a small multiple of
+/// the bytes.
+Result<ClientMessage> decode_client_message(std::span<const std::byte> bytes);
+Result<ServerMessage> decode_server_message(std::span<const std::byte> bytes);
+
+}  // namespace trocar

@@ -1,0 +1,170 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "realtime/loop_statistics.h"
+#include "telemetry/tick_sample.h"
+
+namespace trocar {
+
+inline constexpr std::uint32_t kLinkVersion = 1;  ///< Both sides must have the same.
+
+// From a client.
+
+/// The first message: who is there. The first client that wants control has it until it leaves or is silent for
+/// kControlLost_s; all others may watch.
+struct Hello {
+  std::string client;
+  bool wants_control = true;
+};
+
+/// At 100 Hz, from a thread of its own.
+struct Heartbeat {
+  double client_time_s = 0.0;        ///< Steady clock of the client, to be sent back.
+  double window_age_s = 0.0;         ///< Since the client's window drew its last picture; 0: it has none.
+  std::uint64_t ticks_received = 0;  ///< So far.
+};
+
+/// A scene: patient, tool, tissues, force model. Built off-line and swapped in whole.
+struct LoadScene {
+  std::string task;     ///< For status and log only.
+  std::string patient;  ///< Folder (of the server's machine), or an embedded patient's name.
+  std::uint64_t patient_seed = 1;
+  std::string patient_hash;     ///< Refused when it is another; empty: any.
+  std::string tool = "needle";  ///< needle | probe | finger
+  double needle_length_mm = 160.0, needle_diameter_mm = 1.27, needle_inner_diameter_mm = 0.84;
+  double needle_bevel_deg = 0.0;  ///< 0: none.
+  double needle_young_gpa = 200.0;
+  std::string force_model = "insertion";
+  std::string tissues_toml;  ///< The whole table; empty: the server's own.
+  std::uint64_t seed = 1;
+  Pose X_PW;  ///< Room in the patient.
+};
+
+/// While it runs: "liver.k=0.5", "coupling.stiffness=0.8", "force_model=proxy". The scene is built anew and swapped in;
+/// the insertion goes on.
+struct SetParameters {
+  std::vector<std::string> settings;
+};
+
+enum class ServerCommand : std::uint8_t {
+  kStart,  ///< Forces on (through the safe start).
+  kStop,   ///< Forces off.
+  kResetFault,
+  kReconnect,  ///< Open the device again.
+  kStyletOut,
+  kStyletIn,
+};
+
+/// A command wants a Reply with the same number.
+struct Command {
+  std::uint32_t request = 0;
+  std::variant<LoadScene, SetParameters, ServerCommand> what = ServerCommand::kStop;
+};
+
+/// Where a simulated or pointing hand wants the tool: a needle X_PN, a transducer X_PT. Not answered; the newest
+/// counts.
+struct HandTarget {
+  Pose X_PN;
+  Vec3 v_P = Vec3::Zero();     ///< mm/s, of the tip (for extrapolation), and
+  Vec3 w_P = Vec3::Zero();     ///< rad/s
+  double server_time_s = 0.0;  ///< When it is meant for.
+  double stiffness_n_per_mm = 0.6;
+  double damping_ns_per_mm = 0.012;
+  double mass_kg = 0.15;
+  double turning_nmm_per_rad = 300.0;
+  double turning_damping_nmms_per_rad = 8.0;
+  double inertia_kg_mm2 = 50.0;
+  bool holds_tip = false;  ///< The spring acts at the tip; false: at the grip.
+  std::uint32_t buttons = 0;
+  bool is_held = true;
+  bool is_rigid = false;
+  bool is_placed = false;
+};
+
+struct Goodbye {};
+
+using ClientBody = std::variant<Hello, Heartbeat, Command, HandTarget, Goodbye>;
+
+// From the server.
+
+/// What the device can do, for a client to show.
+struct DeviceSummary {
+  std::string name, title;
+  int sensed_dof = 6, actuated_dof = 6;
+  double workspace_radius_mm = 0.0;
+  double peak_force_n = 0.0, continuous_force_n = 0.0, peak_torque_nmm = 0.0;
+  double force_scale = 1.0;
+};
+
+/// Answer to Hello. Every later message of this client carries `session`.
+struct Welcome {
+  std::uint64_t session = 0;
+  std::string server;  ///< "trocar-hapticd 0.1.0"
+  std::string tool;
+  bool has_control = false;
+  DeviceSummary device;
+};
+
+struct Reply {
+  std::uint32_t request = 0;
+  bool is_done = false;
+  std::string text;  ///< What was wrong, as Error::text, or what was done.
+};
+
+struct Pong {
+  double client_time_s = 0.0;  ///< Of the heartbeat.
+  double server_time_s = 0.0;
+};
+
+/// Everything a status bar wants to tell the truth.
+struct ServerStatus {
+  double server_time_s = 0.0;
+  std::string state;      ///< "no scene", "loading", "ready", "running", "fault" …
+  std::string gate_mode;  ///< to_string(GateMode)
+  std::string fault;      ///< to_string(GateFault); "none".
+  std::string warning;    ///< "the client's window has stood still for 2 s"; empty: none.
+  std::string grant;      ///< RealTimeGrant::text
+  std::string patient, patient_hash, force_model, task;
+  double loading = 0.0;  ///< 0..1 while a scene is being built.
+  LoopSummary loop;
+  std::uint64_t ticks = 0;          ///< Made.
+  std::uint64_t ticks_dropped = 0;  ///< That no batch could take: every gap in the numbers is counted here.
+  std::uint64_t messages_refused = 0;
+  std::uint32_t gate_actions = 0;     ///< GateAction bits since the last status.
+  double drop_n = 0.0, drop_s = 0.0;  ///< The last fall of the force.
+  bool is_device_connected = true;
+  bool has_controller = false;
+};
+
+/// Consecutive ticks: number of the first, and at most kMostSamples of them. The status comes with the newest.
+struct StateBatch {
+  std::uint64_t first_tick = 0;
+  std::vector<TickSample> samples;
+  std::optional<ServerStatus> status;  ///< Now and then: at least at 20 Hz.
+};
+inline constexpr std::size_t kMostSamples = 512;
+
+using ServerBody = std::variant<Welcome, StateBatch, Reply, Pong>;
+
+/// What goes over the wire.
+template <class Body>
+struct Envelope {
+  std::uint64_t session = 0;   ///< Of the welcome; 0 in a Hello.
+  std::uint64_t sequence = 0;  ///< Rises by one with every message of a session.
+  Body body;
+};
+using ClientMessage = Envelope<ClientBody>;
+using ServerMessage = Envelope<ServerBody>;
+
+inline constexpr std::size_t kMostMessageBytes = 1 << 20;  ///< Larger ones are dropped unread.
+inline constexpr std::size_t kMostTextBytes = 256 * 1024;  ///< Of one string (a tissue table is the longest).
+inline constexpr double kControlLost_s = 2.0;
+
+}  // namespace trocar

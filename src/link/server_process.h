@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+
+namespace trocar {
+
+/// A trocar-hapticd that this process started. Ends it (SIGTERM, then SIGKILL after 2 s) when destroyed; a killed
+/// parent takes it along.
+class ServerProcess {
+ public:
+  /// Starts `program` with `arguments` and returns at once; standard error goes to `log`, or is ours when empty.
+  static Result<ServerProcess> start(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                                     const std::filesystem::path& log = {});
+  ServerProcess(ServerProcess&&) noexcept;
+  ServerProcess& operator=(ServerProcess&&) noexcept;
+  ~ServerProcess();
+
+  int pid() const;
+  bool is_running();
+  /// "ended with exit status 1", "was killed by signal 9"; empty while it runs.
+  std::string how_it_ended();
+  void stop();
+
+ private:
+  struct Impl;
+  explicit ServerProcess(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// trocar-hapticd beside the running program, else on PATH. Error: neither.
+Result<std::filesystem::path> find_server_program();
+
+}  // namespace trocar

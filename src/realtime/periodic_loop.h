@@ -1,0 +1,64 @@
+#pragma once
+
+#include <time.h>
+
+#include <atomic>
+#include <cstdint>
+
+#include "realtime/loop_statistics.h"
+
+namespace trocar {
+
+/// Steady clock, ns.
+inline std::int64_t now_ns() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
+}
+inline double seconds(std::int64_t ns) noexcept {
+  return static_cast<double>(ns) * 1e-9;
+}
+/// Sleeps until then; on the way through signals.
+inline void sleep_until_ns(std::int64_t then_ns) noexcept {
+  const timespec then{then_ns / 1'000'000'000, then_ns % 1'000'000'000};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &then, nullptr) != 0) {
+  }
+}
+
+/// One period as the loop's body sees it.
+struct Period {
+  std::int64_t begin_ns = 0;  ///< When it was due.
+  double now_s = 0.0;         ///< The same, in seconds of the steady clock.
+  double dt_s = 0.0;          ///< Since the last tick's: one period, more where some were skipped.
+  std::uint64_t number = 0;   ///< Of the period, skipped ones counted.
+};
+
+/// Runs `body(const Period&, const LoopStatistics&)` at absolute times until `is_stopping`. A period whose time has
+/// passed is counted and skipped, never caught up: the next one keeps the grid. The statistics are of the ticks before.
+/// The calling thread is the loop's; ask for real time before.
+template <class Body>
+void run_periodic(std::int64_t period_ns, const std::atomic<bool>& is_stopping, LoopStatistics& statistics,
+                  Body&& body) noexcept {
+  Period period;
+  period.begin_ns = now_ns() + period_ns;
+  period.dt_s = seconds(period_ns);
+  std::uint64_t skipped = 0;
+  while (!is_stopping.load(std::memory_order_relaxed)) {
+    sleep_until_ns(period.begin_ns);
+    const std::int64_t woke_ns = now_ns();
+    period.now_s = seconds(period.begin_ns);
+    body(static_cast<const Period&>(period), static_cast<const LoopStatistics&>(statistics));
+    const std::int64_t done_ns = now_ns();
+    statistics.add(period.begin_ns, woke_ns, done_ns, skipped);
+
+    // The first begin that is still to come; the one that passed while the tick ran is skipped with the others.
+    const std::int64_t late_ns = done_ns - period.begin_ns;
+    const std::int64_t steps = late_ns < period_ns ? 1 : late_ns / period_ns + 1;
+    skipped = static_cast<std::uint64_t>(steps - 1);
+    period.begin_ns += steps * period_ns;
+    period.number += static_cast<std::uint64_t>(steps);
+    period.dt_s = seconds(steps * period_ns);
+  }
+}
+
+}  // namespace trocar
