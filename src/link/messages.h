@@ -36,11 +36,15 @@ struct LoadScene {
   std::string task;     ///< For status and log only.
   std::string patient;  ///< Folder (of the server's machine), or an embedded patient's name.
   std::uint64_t patient_seed = 1;
-  std::string patient_hash;     ///< Refused when it is another; empty: any.
-  std::string tool = "needle";  ///< needle | probe | finger
-  double needle_length_mm = 160.0, needle_diameter_mm = 1.27, needle_inner_diameter_mm = 0.84;
-  double needle_bevel_deg = 0.0;  ///< 0: none.
+  std::string patient_hash;         ///< Refused when it is another; empty: any.
+  std::string tool = "needle";      ///< needle | probe | finger
+  double needle_length_mm = 150.0;  ///< Grip to tip; these are the fields of NeedleGeometry.
+  double needle_radius_mm = 0.635;
+  double needle_inner_radius_mm = 0.0;
+  double needle_stylet_radius_mm = 0.0;  ///< 0: has none.
   double needle_young_gpa = 200.0;
+  double needle_bevel_rad = 0.35;
+  double needle_bevel_share = 0.1;
   std::string force_model = "insertion";
   std::string tissues_toml;  ///< The whole table; empty: the server's own.
   std::uint64_t seed = 1;
