@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "devices/device_spec.h"
+
+namespace trocar {
+
+using OpenedDevice = Result<std::unique_ptr<HapticDevice>>;
+
+/// One factory a kind; device_spec.cpp lists them. Each opens the device or says what is missing and how to get it.
+OpenedDevice open_virtual(const DeviceSpec& spec, const DeviceOptions& options);
+OpenedDevice open_pointer(const DeviceSpec& spec, const DeviceOptions& options);
+OpenedDevice open_replay(const DeviceSpec& spec, const DeviceOptions& options);
+OpenedDevice open_gamepad(const DeviceSpec& spec, const DeviceOptions& options);
+OpenedDevice open_spacemouse(const DeviceSpec& spec, const DeviceOptions& options);
+OpenedDevice open_openhaptics(const DeviceSpec& spec, const DeviceOptions& options);
+OpenedDevice open_forcedimension(const DeviceSpec& spec, const DeviceOptions& options);
+OpenedDevice open_haply(const DeviceSpec& spec, const DeviceOptions& options);
+
+/// For factories: the row of options.preset, or of `own` where none is named.
+Result<DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own);
+
+}  // namespace trocar
