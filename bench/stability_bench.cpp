@@ -135,7 +135,8 @@ Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options) 
   const std::filesystem::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
   TROCAR_TRY(const TissueTable table, load_tissue_table(data / "tissues.toml"));
-  TROCAR_TRY(const auto devices, load_device_presets(data / "devices.toml"));
+  TROCAR_TRY(auto devices, load_device_presets(data / "devices.toml"));
+  std::erase_if(devices, [](const DevicePreset& device) { return !device.has_force(); });
   TROCAR_TRY(auto trials, plan_trials(table, devices, options));
   run_trials(trials, options.progress);
   print_failures(trials, options);

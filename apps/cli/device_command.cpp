@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "haptics/device_preset.h"
+#include "haptics/simulation/rotation.h"
 
 namespace trocar::cli {
 namespace {
@@ -15,6 +16,10 @@ constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 /// An unknown or absent figure is null.
 Json optional_json(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
+}
+
+Json vector_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
 }
 
 Json preset_json(const DevicePreset& preset) {
@@ -31,7 +36,15 @@ Json preset_json(const DevicePreset& preset) {
           {"max_stiffness_n_per_mm", capability.max_stiffness_n_per_mm},
           {"position_count_mm", preset.encoder.count_mm},
           {"angle_count_deg", preset.sensed_dof == 6 ? Json(preset.encoder.count_rad * kDegPerRad) : Json(nullptr)},
+          {"max_damping_ns_per_mm", preset.max_damping_ns_per_mm},
           {"apparent_mass_kg", preset.apparent_mass_kg},
+          {"friction_n", preset.friction_n},
+          {"viscosity_ns_per_mm", preset.viscosity_ns_per_mm},
+          {"force_scale", preset.force_scale},
+          {"motion_scale", preset.motion_scale},
+          {"clutch_button", preset.clutch_button},
+          {"base_mm", vector_json(preset.X_WD.p())},
+          {"base_turn_deg", vector_json(rotation_vector(preset.X_WD.R()) * kDegPerRad)},
           {"stylus_weight_n", capability.stylus_weight_n},
           {"coupling_stiffness_n_per_mm", preset.coupling.stiffness_n_per_mm},
           {"coupling_damping_ns_per_mm", preset.coupling.damping_ns_per_mm}};
@@ -40,9 +53,10 @@ Json preset_json(const DevicePreset& preset) {
 void print_preset(const DevicePreset& preset) {
   const DeviceCapability& capability = preset.capability;
   const std::string torque = preset.has_torque() ? fmt::format("{:.0f} N mm", capability.peak_torque_nmm) : "none";
-  fmt::print("{:<8} {:>6.1f} N {:>9} {:>5.1f} N/mm {:>7.4f} mm {:>5.2f} N/mm  {}\n", preset.name,
-             capability.peak_force_n, torque, capability.max_stiffness_n_per_mm, preset.encoder.count_mm,
-             preset.coupling.stiffness_n_per_mm, preset.title);
+  const std::string force = preset.has_force() ? fmt::format("{:.1f} N", capability.peak_force_n) : "shown";
+  fmt::print("{:<10} {:>8} {:>9} {:>5.1f} N/mm {:>7.4f} mm {:>5.2f} N/mm  {}\n", preset.name, force, torque,
+             capability.max_stiffness_n_per_mm, preset.encoder.count_mm, preset.coupling.stiffness_n_per_mm,
+             preset.title);
 }
 
 Status list_devices(bool is_json) {
@@ -54,7 +68,7 @@ Status list_devices(bool is_json) {
     print_json({{"devices", list}});
     return {};
   }
-  fmt::print("{:<8} {:>8} {:>9} {:>10} {:>10} {:>10}\n", "name", "force", "torque", "stiffness", "count", "coupling");
+  fmt::print("{:<10} {:>8} {:>9} {:>10} {:>10} {:>10}\n", "name", "force", "torque", "stiffness", "count", "coupling");
   for (const DevicePreset& preset : presets) print_preset(preset);
   return {};
 }

@@ -165,7 +165,7 @@ DeviceCapability scene_capability(const DevicePreset& preset) noexcept {
   capability.peak_force_n /= preset.force_scale;
   capability.peak_torque_nmm /= preset.force_scale;
   capability.stylus_weight_n /= preset.force_scale;
-  capability.max_stiffness_n_per_mm *= preset.motion_scale / preset.force_scale;
+  capability.max_stiffness_n_per_mm /= preset.motion_scale * preset.force_scale;
   return capability;
 }
 

@@ -45,7 +45,7 @@ Result<std::vector<DevicePreset>> load_device_presets(const std::filesystem::pat
 Result<DevicePreset> load_device_preset(const std::filesystem::path& path, std::string_view name);
 
 /// What a scene may ask for in patient newtons and millimetres, so that it arrives at the device within its limits:
-/// peaks and weight over force_scale, stiffness times motion_scale over force_scale.
+/// peaks and weight over force_scale, stiffness over both scales.
 DeviceCapability scene_capability(const DevicePreset& preset) noexcept;
 
 /// What a scene for this device needs: its coupling, and no constraint stiffer than it.
