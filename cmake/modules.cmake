@@ -25,6 +25,7 @@ function(trocar_add_module name uses libraries)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${folder}/*.h)
   list(FILTER headers EXCLUDE REGEX "/test(ing)?/")  # these need what a test program defines
   list(REMOVE_ITEM sources ${tests})
+  list(FILTER sources EXCLUDE REGEX "/fuzz/")  # built by scripts/fuzz
   set(target trocar_${name})
   set(links Eigen3::Eigen fmt::fmt)
   foreach(use IN LISTS uses)
@@ -34,7 +35,8 @@ function(trocar_add_module name uses libraries)
     list(APPEND links ${trocar_library_${library}})
   endforeach()
 
-  # Schemas of messages: NAME.fbs becomes "MODULE/detail/NAME_generated.h", for the module alone.
+  # Schemas of messages: NAME.fbs becomes "MODULE/detail/NAME_generated.h", for the module and its tests; the layer test
+  # holds others off detail/.
   file(GLOB schemas CONFIGURE_DEPENDS ${folder}/*.fbs)
   foreach(schema IN LISTS schemas)
     get_filename_component(schema_name ${schema} NAME_WE)
@@ -48,7 +50,7 @@ function(trocar_add_module name uses libraries)
   if(sources)
     add_library(${target} STATIC ${sources})
     if(schemas)
-      target_include_directories(${target} SYSTEM PRIVATE ${CMAKE_BINARY_DIR}/generated)
+      target_include_directories(${target} SYSTEM PUBLIC ${CMAKE_BINARY_DIR}/generated)
     endif()
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${links} PRIVATE trocar_warnings)

@@ -1,0 +1,192 @@
+// The client's half of codec.h: what clients say.
+#include <array>
+
+#include "link/codec.h"
+#include "link/detail/frame.h"
+#include "link/detail/inspection.h"
+
+namespace trocar {
+namespace {
+using namespace detail;
+
+constexpr std::size_t kMostSettings = 256;  ///< In one SetParameters; the trainer has some dozens. [assumed]
+
+// Beyond what the scene takes (NeedleGeometry, hands): it says itself what it does not like. [assumed]
+constexpr Range kNeedleLengths_mm = {0.0, 1e4};
+constexpr Range kNeedleRadii_mm = {0.0, 1e3};
+constexpr Range kYoung_gpa = {0.0, 1e4};
+constexpr Range kBevels_rad = {0.0, 3.2};
+constexpr Range kShares = {0.0, 1.0};
+constexpr Range kHandParameters = {0.0, 1e6};
+constexpr double kMostSpeed_mm_per_s = 1e5;
+constexpr double kMostTurning_rad_per_s = 1e4;
+
+// To bytes.
+
+using ClientMember = Member<wire::ClientBody>;
+using CommandMember = Member<wire::What>;
+
+CommandMember build_what(Builder& b, const LoadScene& scene) {
+  const Text task = b.CreateString(scene.task), patient = b.CreateString(scene.patient);
+  const Text hash = b.CreateString(scene.patient_hash), tool = b.CreateString(scene.tool);
+  const Text force_model = b.CreateString(scene.force_model), tissues = b.CreateString(scene.tissues_toml);
+  const wire::Needle needle(scene.needle_length_mm, scene.needle_radius_mm, scene.needle_inner_radius_mm,
+                            scene.needle_stylet_radius_mm, scene.needle_young_gpa, scene.needle_bevel_rad,
+                            scene.needle_bevel_share);
+  const wire::Pose X_PW = to_wire(scene.X_PW);
+  const auto table = wire::CreateLoadScene(b, task, patient, scene.patient_seed, hash, tool, &needle, force_model,
+                                           tissues, scene.seed, &X_PW);
+  return {wire::What::LoadScene, table.Union()};
+}
+
+CommandMember build_what(Builder& b, const SetParameters& parameters) {
+  const auto settings = b.CreateVectorOfStrings(parameters.settings);
+  return {wire::What::SetParameters, wire::CreateSetParameters(b, settings).Union()};
+}
+
+CommandMember build_what(Builder& b, ServerCommand command) {
+  return {wire::What::SimpleCommand, wire::CreateSimpleCommand(b, static_cast<std::uint8_t>(command)).Union()};
+}
+
+ClientMember build_body(Builder& b, const Hello& hello) {
+  const Text client = b.CreateString(hello.client);
+  return {wire::ClientBody::Hello, wire::CreateHello(b, client, hello.wants_control).Union()};
+}
+
+ClientMember build_body(Builder& b, const Heartbeat& beat) {
+  const auto table = wire::CreateHeartbeat(b, beat.client_time_s, beat.window_age_s, beat.ticks_received);
+  return {wire::ClientBody::Heartbeat, table.Union()};
+}
+
+ClientMember build_body(Builder& b, const Command& command) {
+  const auto [type, what] = std::visit([&](const auto& alternative) { return build_what(b, alternative); },  //
+                                       command.what);
+  return {wire::ClientBody::Command, wire::CreateCommand(b, command.request, type, what).Union()};
+}
+
+ClientMember build_body(Builder& b, const HandTarget& target) {
+  const wire::Hand hand(to_wire(target.X_PN), to_wire(target.v_P), to_wire(target.w_P), target.server_time_s,
+                        target.stiffness_n_per_mm, target.damping_ns_per_mm, target.mass_kg, target.turning_nmm_per_rad,
+                        target.turning_damping_nmms_per_rad, target.inertia_kg_mm2, target.buttons, target.holds_tip,
+                        target.is_held, target.is_rigid, target.is_placed);
+  return {wire::ClientBody::HandTarget, wire::CreateHandTarget(b, &hand).Union()};
+}
+
+ClientMember build_body(Builder& b, const Goodbye&) {
+  return {wire::ClientBody::Goodbye, wire::CreateGoodbye(b).Union()};
+}
+
+// From bytes.
+
+Hello read(const wire::Hello& table, Inspection& in) {
+  return {in.text(table.client(), "client"), table.wants_control()};
+}
+
+Heartbeat read(const wire::Heartbeat& table, Inspection& in) {
+  return {in.number(table.client_time_s(), kTimes_s, "client_time_s"),
+          in.number(table.window_age_s(), kDurations_s, "window_age_s"), table.ticks_received()};
+}
+
+LoadScene read(const wire::LoadScene& table, Inspection& in) {
+  LoadScene scene;
+  scene.task = in.text(table.task(), "task");
+  scene.patient = in.text(table.patient(), "patient");
+  scene.patient_seed = table.patient_seed();
+  scene.patient_hash = in.text(table.patient_hash(), "patient_hash");
+  scene.tool = in.text(table.tool(), "tool");
+  const wire::Needle& needle = *table.needle();
+  scene.needle_length_mm = in.number(needle.length_mm(), kNeedleLengths_mm, "needle_length_mm");
+  scene.needle_radius_mm = in.number(needle.radius_mm(), kNeedleRadii_mm, "needle_radius_mm");
+  scene.needle_inner_radius_mm = in.number(needle.inner_radius_mm(), kNeedleRadii_mm, "needle_inner_radius_mm");
+  scene.needle_stylet_radius_mm = in.number(needle.stylet_radius_mm(), kNeedleRadii_mm, "needle_stylet_radius_mm");
+  scene.needle_young_gpa = in.number(needle.young_gpa(), kYoung_gpa, "needle_young_gpa");
+  scene.needle_bevel_rad = in.number(needle.bevel_rad(), kBevels_rad, "needle_bevel_rad");
+  scene.needle_bevel_share = in.number(needle.bevel_share(), kShares, "needle_bevel_share");
+  scene.force_model = in.text(table.force_model(), "force_model");
+  scene.tissues_toml = in.text(table.tissues_toml(), "tissues_toml", Layout::kLines);
+  scene.seed = table.seed();
+  scene.X_PW = in.pose(*table.x_pw(), "X_PW");
+  return scene;
+}
+
+SetParameters read(const wire::SetParameters& table, Inspection& in) {
+  SetParameters parameters;
+  if (table.settings() == nullptr) return parameters;
+  if (table.settings()->size() > kMostSettings) {
+    in.refuse("more settings than a message may have", "settings");
+    return parameters;
+  }
+  for (const flatbuffers::String* setting : *table.settings()) {
+    parameters.settings.push_back(in.text(setting, "settings"));
+    if (!in.is_good()) break;
+  }
+  return parameters;
+}
+
+Command read(const wire::Command& table, Inspection& in) {
+  Command command{table.request(), {}};
+  if (const auto* scene = table.what_as_LoadScene()) {
+    command.what = read(*scene, in);
+  } else if (const auto* parameters = table.what_as_SetParameters()) {
+    command.what = read(*parameters, in);
+  } else if (const auto* simple = table.what_as_SimpleCommand()) {
+    command.what = in.enumerator(simple->command(), ServerCommand::kStyletIn, "command");
+  } else {
+    in.refuse("no command, or an unknown one", "what");
+  }
+  return command;
+}
+
+HandTarget read(const wire::HandTarget& table, Inspection& in) {
+  const wire::Hand& hand = *table.hand();
+  HandTarget target;
+  target.X_PN = in.pose(hand.x_pn(), "X_PN");
+  target.v_P = in.vector(hand.v_p(), kMostSpeed_mm_per_s, "v_P");
+  target.w_P = in.vector(hand.w_p(), kMostTurning_rad_per_s, "w_P");
+  target.server_time_s = in.number(hand.server_time_s(), kTimes_s, "server_time_s");
+  target.stiffness_n_per_mm = in.number(hand.stiffness_n_per_mm(), kHandParameters, "stiffness_n_per_mm");
+  target.damping_ns_per_mm = in.number(hand.damping_ns_per_mm(), kHandParameters, "damping_ns_per_mm");
+  target.mass_kg = in.number(hand.mass_kg(), kHandParameters, "mass_kg");
+  target.turning_nmm_per_rad = in.number(hand.turning_nmm_per_rad(), kHandParameters, "turning_nmm_per_rad");
+  target.turning_damping_nmms_per_rad =
+      in.number(hand.turning_damping_nmms_per_rad(), kHandParameters, "turning_damping_nmms_per_rad");
+  target.inertia_kg_mm2 = in.number(hand.inertia_kg_mm2(), kHandParameters, "inertia_kg_mm2");
+  target.holds_tip = hand.holds_tip();
+  target.buttons = hand.buttons();
+  target.is_held = hand.is_held();
+  target.is_rigid = hand.is_rigid();
+  target.is_placed = hand.is_placed();
+  return target;
+}
+
+ClientBody read(const wire::ClientMessage& table, Inspection& in) {
+  if (const auto* hello = table.body_as_Hello()) return read(*hello, in);
+  if (const auto* beat = table.body_as_Heartbeat()) return read(*beat, in);
+  if (const auto* command = table.body_as_Command()) return read(*command, in);
+  if (const auto* target = table.body_as_HandTarget()) return read(*target, in);
+  if (table.body_as_Goodbye() == nullptr) in.refuse("no body, or an unknown one", "body");
+  return Goodbye{};
+}
+
+}  // namespace
+
+Bytes encode(const ClientMessage& message) {
+  Builder b;
+  const auto [type, body] = std::visit([&](const auto& alternative) { return build_body(b, alternative); },  //
+                                       message.body);
+  b.Finish(wire::CreateClientMessage(b, kLinkVersion, message.session, message.sequence, type, body),
+           kClientIdentifier);
+  return take_bytes(b);
+}
+
+Result<ClientMessage> decode_client_message(std::span<const std::byte> bytes) {
+  TROCAR_TRY_STATUS(check_size(bytes.size()));
+  const AlignedBytes aligned(bytes);
+  TROCAR_TRY(const wire::ClientMessage* root, find_root<wire::ClientMessage>(aligned, kClientIdentifier));
+  Inspection inspection(bytes.size());
+  ClientMessage message{root->session(), root->sequence(), read(*root, inspection)};
+  if (!inspection.is_good()) return tl::unexpected(*inspection.complaint());
+  return message;
+}
+
+}  // namespace trocar

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+#include "link/codec.h"
+#include "link/detail/messages_generated.h"
+
+namespace trocar::detail {
+
+inline constexpr char kClientIdentifier[] = "TRCC";  ///< File identifier of a client's message.
+inline constexpr char kServerIdentifier[] = "TRCS";
+
+/// A copy of a message that starts where its numbers are aligned: bytes from a socket start anywhere.
+class AlignedBytes {
+ public:
+  explicit AlignedBytes(std::span<const std::byte> bytes);
+  const std::uint8_t* data() const { return reinterpret_cast<const std::uint8_t*>(words_.data()); }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::vector<std::uint64_t> words_;  ///< The strictest alignment that a message has.
+  std::size_t size_;
+};
+
+/// Size, identifier and version, before a byte is copied or any other field is looked at.
+Status check_size(std::size_t bytes);
+Status check_frame(const AlignedBytes& bytes, const char* identifier);
+flatbuffers::Verifier make_verifier(const AlignedBytes& bytes);
+
+/// The verified root; lives as long as `bytes`.
+template <class Root>
+Result<const Root*> find_root(const AlignedBytes& bytes, const char* identifier) {
+  TROCAR_TRY_STATUS(check_frame(bytes, identifier));
+  flatbuffers::Verifier verifier = make_verifier(bytes);
+  if (!verifier.VerifyBuffer<Root>(identifier)) return fail("a message that is cut or damaged", "link");
+  return flatbuffers::GetRoot<Root>(bytes.data());
+}
+
+/// A body as the member of a union, as it goes into the root.
+template <class Type>
+using Member = std::pair<Type, flatbuffers::Offset<void>>;
+
+/// What was built, copied out of the builder.
+Bytes take_bytes(const flatbuffers::FlatBufferBuilder& builder);
+
+/// FlatBuffers counts in 32 bits; everything that we build is far smaller.
+using Builder = flatbuffers::FlatBufferBuilder;
+using Text = flatbuffers::Offset<flatbuffers::String>;
+
+}  // namespace trocar::detail

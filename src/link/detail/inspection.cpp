@@ -1,0 +1,119 @@
+#include "link/detail/inspection.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "link/messages.h"
+
+namespace trocar::detail {
+namespace {
+
+constexpr double kRotationTolerance = 1e-6;   ///< Of an entry of R^T R, and of the determinant.
+constexpr double kRoundingTolerance = 1e-12;  ///< Below this a rotation is left as it is, bit for bit.
+
+double rotation_error(const Mat3& R) {
+  const double skewness = (R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff();
+  return std::max(skewness, std::abs(R.determinant() - 1.0));
+}
+
+/// The code points that a lead byte of UTF-8 begins: how many bytes follow, and the least value (no overlong forms).
+struct Lead {
+  int following;
+  char32_t bits;
+  char32_t least;
+};
+std::optional<Lead> read_lead(unsigned char byte) {
+  if (byte < 0x80) return Lead{0, byte, 0};
+  if ((byte & 0xE0) == 0xC0) return Lead{1, byte & 0x1FU, 0x80};
+  if ((byte & 0xF0) == 0xE0) return Lead{2, byte & 0x0FU, 0x800};
+  if ((byte & 0xF8) == 0xF0) return Lead{3, byte & 0x07U, 0x10000};
+  return std::nullopt;
+}
+
+bool is_clean_character(char32_t c, Layout layout) {
+  if (c == '\t' || c == '\n' || c == '\r') return layout == Layout::kLines;
+  const bool is_control = c < 0x20 || (c >= 0x7F && c < 0xA0);
+  const bool is_surrogate = c >= 0xD800 && c < 0xE000;
+  return !is_control && !is_surrogate && c <= 0x10FFFF;
+}
+
+}  // namespace
+
+bool is_clean_text(std::string_view text, Layout layout) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::optional<Lead> lead = read_lead(static_cast<unsigned char>(text[i++]));
+    if (!lead || static_cast<std::size_t>(lead->following) > text.size() - i) return false;
+    char32_t c = lead->bits;
+    for (int k = 0; k < lead->following; ++k) {
+      const auto byte = static_cast<unsigned char>(text[i++]);
+      if ((byte & 0xC0) != 0x80) return false;
+      c = (c << 6) | (byte & 0x3FU);
+    }
+    if (c < lead->least || !is_clean_character(c, layout)) return false;
+  }
+  return true;
+}
+
+void Inspection::refuse(std::string what, const char* field) {
+  if (complaint_) return;
+  complaint_ = Error{std::move(what), fmt::format("message over the link, field {}", field), "", 1};
+}
+
+std::string Inspection::text(const flatbuffers::String* text, const char* field, Layout layout) {
+  if (text == nullptr || complaint_) return {};
+  const std::string_view view(text->c_str(), text->size());
+  if (view.size() > kMostTextBytes) {
+    refuse(fmt::format("a text of {} bytes, {} are allowed", view.size(), kMostTextBytes), field);
+  } else if (view.size() > text_budget_) {
+    refuse("more text than the message has bytes", field);
+  } else if (!is_clean_text(view, layout)) {
+    refuse("a text that is not UTF-8 or has control characters", field);
+  } else {
+    text_budget_ -= view.size();
+    return std::string(view);
+  }
+  return {};
+}
+
+double Inspection::number(double value, Range range, const char* field) {
+  if (value >= range.low && value <= range.high) return value;  // false for NaN
+  refuse(fmt::format("{} is not a number in {:g} to {:g}", value, range.low, range.high), field);
+  return 0.0;
+}
+
+int Inspection::whole_number(std::int32_t value, int low, int high, const char* field) {
+  if (value >= low && value <= high) return value;
+  refuse(fmt::format("{} is not in {} to {}", value, low, high), field);
+  return low;
+}
+
+Vec3 Inspection::vector(const wire::Vec3& vector, double longest, const char* field) {
+  const Vec3 v = from_wire(vector);
+  if (v.squaredNorm() <= longest * longest) return v;  // false for NaN
+  refuse(fmt::format("not a vector of at most {:g}", longest), field);
+  return Vec3::Zero();
+}
+
+Pose Inspection::pose(const wire::Pose& pose, const char* field) {
+  const Vec3 p = vector(pose.position(), kMostPosition_mm, field);
+  Mat3 R;
+  for (flatbuffers::uoffset_t i = 0; i < 9; ++i) R(i / 3, i % 3) = pose.rotation()->Get(i);
+  const double error = rotation_error(R);
+  if (!R.allFinite() || !(error <= kRotationTolerance)) {
+    refuse("not a rotation", field);
+    return {};
+  }
+  if (error > kRoundingTolerance) R = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  return {R, p};
+}
+
+wire::Pose to_wire(const Pose& pose) {
+  std::array<double, 9> rotation;
+  for (int i = 0; i < 9; ++i) rotation[static_cast<std::size_t>(i)] = pose.R()(i / 3, i % 3);
+  return {flatbuffers::span<const double, 9>(rotation.data(), rotation.size()), to_wire(pose.p())};
+}
+
+}  // namespace trocar::detail

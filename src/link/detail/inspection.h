@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+#include "geometry/pose.h"
+#include "link/detail/messages_generated.h"
+
+namespace trocar::detail {
+
+/// Both ends belong to it.
+struct Range {
+  double low, high;
+};
+
+// Far beyond what a real message holds, near enough that no later sum or square overflows. [assumed]
+inline constexpr double kMostPosition_mm = 1e5;
+inline constexpr double kMostTime_s = 1e10;  ///< 300 years of a steady clock.
+inline constexpr Range kTimes_s = {-kMostTime_s, kMostTime_s};
+inline constexpr Range kDurations_s = {0.0, kMostTime_s};
+inline constexpr Range kMagnitudes = {0.0, 1e9};  ///< Of what is only shown.
+
+enum class Layout { kLine, kLines };  ///< kLines: tab, CR and newline may be in the text.
+
+/// Takes values out of a verified message of strangers and keeps the first complaint. After a complaint values are
+/// empty or zero; no value leaves it unchecked.
+class Inspection {
+ public:
+  /// `text_budget`: bytes of all texts together, so that one text named often does not multiply.
+  explicit Inspection(std::size_t text_budget) : text_budget_(text_budget) {}
+
+  /// UTF-8 without control characters, at most kMostTextBytes; absent is empty.
+  std::string text(const flatbuffers::String* text, const char* field, Layout layout = Layout::kLine);
+  double number(double value, Range range, const char* field);
+  int whole_number(std::int32_t value, int low, int high, const char* field);
+  /// Finite, and no longer than `longest`.
+  Vec3 vector(const wire::Vec3& vector, double longest, const char* field);
+  /// A rotation that is one within 1e-6 (made exact when it is off by more than rounding), not too far away.
+  Pose pose(const wire::Pose& pose, const char* field);
+  /// `last` is the enumeration's last value.
+  template <class Enum>
+  Enum enumerator(std::uint8_t value, Enum last, const char* field) {
+    if (value <= static_cast<std::uint8_t>(last)) return static_cast<Enum>(value);
+    refuse("a value that the enumeration does not have", field);
+    return Enum{};
+  }
+
+  void refuse(std::string what, const char* field);
+  bool is_good() const { return !complaint_; }
+  const std::optional<Error>& complaint() const { return complaint_; }
+
+ private:
+  std::size_t text_budget_;
+  std::optional<Error> complaint_;
+};
+
+/// Valid UTF-8 (no overlong forms, surrogates or values beyond U+10FFFF) without C0, DEL and C1 control characters.
+bool is_clean_text(std::string_view text, Layout layout);
+
+inline wire::Vec3 to_wire(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline Vec3 from_wire(const wire::Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+wire::Pose to_wire(const Pose& pose);
+
+}  // namespace trocar::detail

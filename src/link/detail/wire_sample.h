@@ -1,0 +1,14 @@
+#pragma once
+
+#include "link/detail/inspection.h"
+#include "telemetry/tick_sample.h"
+
+namespace trocar::detail {
+
+/// Every field, bit for bit: NaN too.
+wire::Sample to_wire(const TickSample& sample);
+/// Time, needle and device are finite, phase and events are known. All other numbers stay as they came, for a record of
+/// a fault must show it.
+TickSample read_sample(const wire::Sample& sample, Inspection& inspection);
+
+}  // namespace trocar::detail

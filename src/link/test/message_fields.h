@@ -1,0 +1,68 @@
+#pragma once
+
+#include <type_traits>
+
+#include "link/messages.h"
+
+namespace trocar {
+
+/// Shows `visit` every field of a struct of messages.h. A field that is added there and forgotten here does not
+/// compile.
+template <class T, class Visit>
+void each_field(T& value, Visit&& visit) {
+  using Plain = std::remove_const_t<T>;
+  const auto all = [&](auto&... fields) { (visit(fields), ...); };
+  if constexpr (std::is_same_v<Plain, Hello>) {
+    auto& [a, b] = value;
+    all(a, b);
+  } else if constexpr (std::is_same_v<Plain, Heartbeat>) {
+    auto& [a, b, c] = value;
+    all(a, b, c);
+  } else if constexpr (std::is_same_v<Plain, LoadScene>) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = value;
+    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
+  } else if constexpr (std::is_same_v<Plain, SetParameters>) {
+    auto& [a] = value;
+    all(a);
+  } else if constexpr (std::is_same_v<Plain, Command>) {
+    auto& [a, b] = value;
+    all(a, b);
+  } else if constexpr (std::is_same_v<Plain, HandTarget>) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = value;
+    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+  } else if constexpr (std::is_same_v<Plain, DeviceSummary>) {
+    auto& [a, b, c, d, e, f, g, h, i] = value;
+    all(a, b, c, d, e, f, g, h, i);
+  } else if constexpr (std::is_same_v<Plain, Welcome>) {
+    auto& [a, b, c, d, e] = value;
+    all(a, b, c, d, e);
+  } else if constexpr (std::is_same_v<Plain, Reply>) {
+    auto& [a, b, c] = value;
+    all(a, b, c);
+  } else if constexpr (std::is_same_v<Plain, Pong>) {
+    auto& [a, b] = value;
+    all(a, b);
+  } else if constexpr (std::is_same_v<Plain, LatencySummary>) {
+    auto& [a, b, c, d] = value;
+    all(a, b, c, d);
+  } else if constexpr (std::is_same_v<Plain, LoopSummary>) {
+    auto& [a, b, c, d, e, f, g] = value;
+    all(a, b, c, d, e, f, g);
+  } else if constexpr (std::is_same_v<Plain, ServerStatus>) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t] = value;
+    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t);
+  } else if constexpr (std::is_same_v<Plain, TickEvent>) {
+    auto& [a, b] = value;
+    all(a, b);
+  } else if constexpr (std::is_same_v<Plain, TickSample>) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y] = value;
+    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y);
+  } else if constexpr (std::is_same_v<Plain, StateBatch>) {
+    auto& [a, b, c] = value;
+    all(a, b, c);
+  } else {
+    static_assert(std::is_same_v<Plain, Goodbye>);
+  }
+}
+
+}  // namespace trocar
