@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "core/result.h"
 #include "geometry/pose.h"
+#include "link/detail/clean_text.h"
 #include "link/detail/messages_generated.h"
 
 namespace trocar::detail {
@@ -23,8 +23,6 @@ inline constexpr double kMostTime_s = 1e10;  ///< 300 years of a steady clock.
 inline constexpr Range kTimes_s = {-kMostTime_s, kMostTime_s};
 inline constexpr Range kDurations_s = {0.0, kMostTime_s};
 inline constexpr Range kMagnitudes = {0.0, 1e9};  ///< Of what is only shown.
-
-enum class Layout { kLine, kLines };  ///< kLines: tab, CR and newline may be in the text.
 
 /// Takes values out of a verified message of strangers and keeps the first complaint. After a complaint values are
 /// empty or zero; no value leaves it unchecked.
@@ -57,9 +55,6 @@ class Inspection {
   std::size_t text_budget_;
   std::optional<Error> complaint_;
 };
-
-/// Valid UTF-8 (no overlong forms, surrogates or values beyond U+10FFFF) without C0, DEL and C1 control characters.
-bool is_clean_text(std::string_view text, Layout layout);
 
 inline wire::Vec3 to_wire(const Vec3& v) {
   return {v.x(), v.y(), v.z()};

@@ -1,0 +1,113 @@
+#include "link/endpoint.h"
+
+#include <fmt/format.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+#include "core/log.h"
+#include "link/detail/clean_text.h"
+#include "link/detail/private_folder.h"
+
+namespace trocar {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostPathBytes = sizeof(sockaddr_un::sun_path) - 1;
+constexpr std::size_t kMostHostBytes = 253;  ///< Of a DNS name.
+constexpr std::string_view kIpc = "ipc://";
+constexpr std::string_view kTcp = "tcp://";
+constexpr std::string_view kAdvice = "write ipc:///PATH, or tcp://HOST:PORT as in tcp://127.0.0.1:5571";
+
+/// A whole number of 0 to `most`, in digits alone.
+std::optional<unsigned> parse_number(std::string_view digits, unsigned most) {
+  unsigned value = 0;
+  const char* const end = digits.data() + digits.size();
+  const auto [stop, error] = std::from_chars(digits.data(), end, value);
+  const bool is_number = !digits.empty() && error == std::errc() && stop == end && value <= most;
+  return is_number ? std::optional(value) : std::nullopt;
+}
+
+/// 127.0.0.0/8 in four numbers: a name that begins with 127 is none.
+bool is_ipv4_loopback(std::string_view host) {
+  constexpr unsigned kMostOctet = 255;
+  for (int octet = 0; octet < 4; ++octet) {
+    const std::size_t dot = host.find('.');
+    if ((dot == std::string_view::npos) != (octet == 3)) return false;
+    const auto value = parse_number(host.substr(0, dot), kMostOctet);
+    if (!value || (octet == 0 && *value != 127)) return false;
+    host.remove_prefix(dot == std::string_view::npos ? host.size() : dot + 1);
+  }
+  return true;
+}
+
+bool is_one_of(char c, std::string_view others) {
+  const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  return is_letter || (c >= '0' && c <= '9') || others.find(c) != std::string_view::npos;
+}
+
+/// "*", a name or address, or an address of version 6 in brackets.
+bool is_host(std::string_view host) {
+  if (host == "*") return true;
+  const bool is_bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
+  if (is_bracketed) host = host.substr(1, host.size() - 2);
+  const std::string_view others = is_bracketed ? ":.%" : ".-_";
+  return !host.empty() && host.size() <= kMostHostBytes &&
+         std::all_of(host.begin(), host.end(), [&](char c) { return is_one_of(c, others); });
+}
+
+Result<Endpoint> parse_ipc(std::string_view path) {
+  const std::string where = fmt::format("{}{}", kIpc, path);
+  if (!path.starts_with('/')) return fail_usage("the socket's path is not absolute", where, std::string(kAdvice));
+  if (path.ends_with('/')) return fail_usage("names a folder, not a socket", where, std::string(kAdvice));
+  if (path.size() > kMostPathBytes) {
+    return fail_usage(fmt::format("the socket's path has {} bytes, {} are possible", path.size(), kMostPathBytes),
+                      where, "choose a shorter one");
+  }
+  return Endpoint{where, true};
+}
+
+Result<Endpoint> parse_tcp(std::string_view address) {
+  constexpr unsigned kMostPort = 65535;
+  const std::string where = fmt::format("{}{}", kTcp, address);
+  const std::size_t colon = address.rfind(':');
+  if (colon == std::string_view::npos) return fail_usage("the port is missing", where, std::string(kAdvice));
+  std::string_view host = address.substr(0, colon);
+  const auto port = parse_number(address.substr(colon + 1), kMostPort);
+  if (!port) return fail_usage(fmt::format("the port is not a number of 0 to {}", kMostPort), where);
+  if (!is_host(host)) return fail_usage("this is no host", where, std::string(kAdvice));
+  if (host == "localhost") host = "127.0.0.1";  // sockets are not bound to names
+  return Endpoint{fmt::format("{}{}:{}", kTcp, host, *port), host == "[::1]" || is_ipv4_loopback(host)};
+}
+
+}  // namespace
+
+Result<Endpoint> parse_endpoint(std::string_view text) {
+  if (text.empty()) return fail_usage("no endpoint is given", "endpoint", std::string(kAdvice));
+  if (!detail::is_clean_text(text, detail::Layout::kLine)) {
+    return fail_usage("has control characters or is not UTF-8", "endpoint", std::string(kAdvice));
+  }
+  if (text.starts_with(kIpc)) return parse_ipc(text.substr(kIpc.size()));
+  if (text.starts_with(kTcp)) return parse_tcp(text.substr(kTcp.size()));
+  return fail_usage("neither ipc:// nor tcp://", std::string(text), std::string(kAdvice));
+}
+
+std::string default_endpoint(std::string_view tool) {
+  const char* const runtime = std::getenv("XDG_RUNTIME_DIR");
+  fs::path folder = runtime == nullptr ? "" : runtime;
+  if (!folder.is_absolute() || !detail::check_private_folder(folder)) {
+    folder = fmt::format("/tmp/trocar-{}", ::geteuid());
+    if (const Status made = detail::make_private_folder(folder); !made) {
+      log_warning("no folder for the endpoint: {}", made.error().text());
+      return {};
+    }
+  }
+  return fmt::format("{}{}", kIpc, (folder / fmt::format("trocar-{}", tool)).string());
+}
+
+}  // namespace trocar
