@@ -7,6 +7,7 @@
 #include <array>
 
 #include "devices/detail/factories.h"
+#include "devices/faulty_device.h"
 
 namespace trocar {
 namespace {
@@ -19,16 +20,15 @@ struct DeviceKind {
   OpenedDevice (*open)(const DeviceSpec&, const DeviceOptions&);  ///< nullptr: not made yet.
 };
 
+// virtual:PRESET, replay:FILE, openhaptics:NAME, haply:ws://HOST:PORT
 constexpr std::array kKinds{
-    DeviceKind{"virtual", Argument::kOptional, nullptr},      // :PRESET
-    DeviceKind{"mouse", Argument::kNone, nullptr},            //
-    DeviceKind{"gamepad", Argument::kNone, nullptr},          //
-    DeviceKind{"spacemouse", Argument::kNone, nullptr},       //
-    DeviceKind{"replay", Argument::kNeeded, nullptr},         // :FILE
-    DeviceKind{"openhaptics", Argument::kOptional, nullptr},  // :NAME
-    DeviceKind{"forcedimension", Argument::kNone, nullptr},   //
-    DeviceKind{"haply", Argument::kOptional, nullptr},        // :ws://HOST:PORT
+    DeviceKind{"virtual", Argument::kOptional, open_virtual}, DeviceKind{"mouse", Argument::kNone, open_pointer},
+    DeviceKind{"gamepad", Argument::kNone, nullptr},          DeviceKind{"spacemouse", Argument::kNone, nullptr},
+    DeviceKind{"replay", Argument::kNeeded, open_replay},     DeviceKind{"openhaptics", Argument::kOptional, nullptr},
+    DeviceKind{"forcedimension", Argument::kNone, nullptr},   DeviceKind{"haply", Argument::kOptional, nullptr},
 };
+
+constexpr std::uint64_t kFaultSeed = 1;  ///< Of jitter.
 
 const DeviceKind* find_kind(std::string_view name) noexcept {
   const auto* it =
@@ -71,7 +71,9 @@ Result<std::unique_ptr<HapticDevice>> open_device(const DeviceSpec& spec, const 
   if (kind->open == nullptr) {
     return fail(fmt::format("device kind \"{}\" is not in this build", spec.kind), "device", "use virtual or mouse");
   }
-  return kind->open(spec, options);
+  TROCAR_TRY(std::unique_ptr<HapticDevice> device, kind->open(spec, options));
+  if (options.faults.empty()) return device;
+  return std::make_unique<FaultyDevice>(std::move(device), options.faults, kFaultSeed);
 }
 
 Result<DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own) {

@@ -21,9 +21,12 @@ enum class DeviceFault : std::uint8_t {
 };
 const char* to_string(DeviceFault fault) noexcept;
 
+/// A read or write is never slower than this, so that a server with such a device can still be stopped.
+inline constexpr double kMaxSlow_ms = 2000.0;
+
 struct ScheduledFault {
   DeviceFault fault = DeviceFault::kJitter;
-  double from_s = 0.0;  ///< Since the device was opened.
+  double from_s = 0.0;  ///< Since the device's first read.
   double for_s = 0.0;   ///< Infinite: for ever.
   double amount = 0.0;
 };

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "devices/haptic_device.h"
+
+namespace trocar {
+
+/// How a pointed pose follows the pointer. All [assumed].
+struct PointerParams {
+  double time_constant_s = 0.02;      ///< First order; a trainer's frames become a path. Range 0..0.5.
+  double max_speed_mm_per_s = 400.0;  ///< A quick hand; a click far away becomes a motion. Range 10..5000.
+  double max_turn_rad_per_s = 6.0;    ///< Range 0.1..100.
+};
+
+/// Mouse and keyboard of a trainer: the pose is where the trainer's hand target is, smoothed. Nobody feels a force:
+/// what is written is shown by the trainer, and the tick makes the pointer lag. Real-time safe once made.
+class PointerDevice final : public HapticDevice {
+ public:
+  PointerDevice(DevicePreset preset, const PointerParams& params) noexcept;
+
+  const DevicePreset& preset() const noexcept override { return preset_; }
+  std::string name() const override { return preset_.name; }
+  DeviceReading read(double now_s) noexcept override;
+  /// Not taken: what is no sane wrench.
+  bool write(const Wrench& wrench_D) noexcept override;
+  void hold(const DeviceHand& hand) noexcept override;
+  Status reconnect() override { return {}; }
+
+ private:
+  DevicePreset preset_;
+  PointerParams params_;
+  DeviceHand hand_;
+  Pose X_DS_;
+  bool was_ever_held_ = false;
+  double placed_s_ = 0.0;
+  double last_s_ = 0.0;
+  bool is_started_ = false;
+};
+
+}  // namespace trocar

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "devices/haptic_device.h"
+
+namespace trocar {
+
+/// A recorded hand: poses X_DS at a rate, from the first read on; between them interpolated, after the last one held.
+/// It goes its way whatever is written. Not empty, and finite. Real-time safe once made.
+class ReplayDevice final : public HapticDevice {
+ public:
+  ReplayDevice(DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz);
+
+  const DevicePreset& preset() const noexcept override { return preset_; }
+  std::string name() const override { return "replay:" + name_; }
+  DeviceReading read(double now_s) noexcept override;
+  /// Recorded nowhere; not taken is what is no sane wrench.
+  bool write(const Wrench& wrench_D) noexcept override;
+  Status reconnect() override { return {}; }
+
+ private:
+  DevicePreset preset_;
+  std::string name_;
+  std::vector<Pose> poses_;
+  double rate_hz_;
+  double start_s_ = 0.0;
+  double last_s_ = 0.0;
+  bool is_started_ = false;
+};
+
+}  // namespace trocar

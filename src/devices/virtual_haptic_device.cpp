@@ -1,0 +1,199 @@
+#include "devices/virtual_haptic_device.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devices/detail/factories.h"
+#include "devices/detail/hand_motion.h"
+#include "haptics/simulation/rotation.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kMaxGap_s = 0.1;    ///< Beyond it the device stood still: a debugger, a suspended machine.
+constexpr double kMaxStep_s = 1e-3;  ///< physics.md H2 holds at 1 kHz.
+constexpr double kMmPerM = 1000.0;
+
+void clamp_norm(Vec3& v, double most) noexcept {
+  const double norm = v.norm();
+  if (norm > most) v *= most / norm;
+}
+
+template <class T, std::size_t n>
+void push_front(std::array<T, n>& values, const T& value) noexcept {
+  for (std::size_t i = n - 1; i > 0; --i) values[i] = values[i - 1];
+  values[0] = value;
+}
+
+/// The part of a mean velocity that dry friction leaves. `drag`: force a unit of mean velocity, so that `drag * v` is
+/// what drives it.
+double kept_by_friction(double speed, double drag, double friction) noexcept {
+  const double drive = drag * speed;
+  return drive > friction ? 1.0 - friction / drive : 0.0;
+}
+
+}  // namespace
+
+VirtualHapticDevice::VirtualHapticDevice(DevicePreset preset, const SimulatedDeviceParams& params) noexcept
+    : preset_(std::move(preset)), params_(params) {
+  params_.force_delay = std::clamp(params_.force_delay, 0, kMaxDelay);
+  params_.reading_delay = std::clamp(params_.reading_delay, 0, kMaxDelay);
+}
+
+Pose VirtualHapticDevice::X_DS() const noexcept {
+  return held_.X_PS * Pose::translation({0.0, 0.0, -point_mm_});
+}
+
+Vec3 VirtualHapticDevice::v_D() const noexcept {
+  return held_.v_P - held_.w_P.cross(held_.X_PS.R().col(2) * point_mm_);
+}
+
+void VirtualHapticDevice::grip_at(double point_mm) noexcept {
+  const Vec3 way_D = held_.X_PS.R().col(2) * (point_mm - point_mm_);
+  held_.X_PS = Pose(held_.X_PS.R(), held_.X_PS.p() + way_D);
+  held_.v_P += held_.w_P.cross(way_D);
+  point_mm_ = point_mm;
+}
+
+void VirtualHapticDevice::hold(const DeviceHand& hand) noexcept {
+  if (!is_usable(hand)) return;
+  hand_ = hand;
+  const double point_mm = hand.is_held ? hand.point_mm : 0.0;
+  if (point_mm != point_mm_) grip_at(point_mm);
+  if (hand.is_placed && (!was_ever_held_ || hand.time_s != placed_s_)) {
+    held_ = {};
+    held_.X_PS = hand.X_DS * Pose::translation({0.0, 0.0, point_mm_});
+    placed_s_ = hand.time_s;
+    was_ever_held_ = true;
+  }
+  if (hand.is_held && !was_ever_held_) {  // taken out of its holder: it is where the hand is
+    held_ = {};
+    held_.X_PS = hand_at(hand, last_s_).X_DS * Pose::translation({0.0, 0.0, point_mm_});
+    was_ever_held_ = true;
+  }
+}
+
+bool VirtualHapticDevice::write(const Wrench& wrench_D) noexcept {
+  if (!is_sane(wrench_D)) return false;
+  Wrench wrench = wrench_D;
+  clamp_norm(wrench.force_n, preset_.has_force() ? preset_.capability.peak_force_n : 0.0);
+  clamp_norm(wrench.torque_nmm, preset_.capability.peak_torque_nmm);
+  commanded_D_ = wrench;
+  return true;
+}
+
+DeviceReading VirtualHapticDevice::read(double now_s) noexcept {
+  if (!std::isfinite(now_s)) now_s = last_s_;
+  if (!is_started_) {
+    is_started_ = true;
+    last_s_ = now_s;
+    readings_.fill(tell());
+    return readings_[0];
+  }
+  const double gap_s = std::clamp(now_s - last_s_, 0.0, kMaxGap_s);
+  if (!(gap_s > 0.0)) {
+    DeviceReading again = readings_[static_cast<std::size_t>(params_.reading_delay)];
+    again.status = DeviceStatus::kRepeated;
+    return again;
+  }
+  push_front(written_, commanded_D_);
+  acting_D_ = written_[static_cast<std::size_t>(params_.force_delay)];
+  const int steps = std::max(1, static_cast<int>(std::ceil(gap_s / kMaxStep_s - 1e-9)));
+  const double dt_s = gap_s / steps;
+  for (int i = 1; i <= steps; ++i) step(now_s - gap_s + i * dt_s, dt_s);
+  last_s_ = now_s;
+  push_front(readings_, tell());
+  return readings_[static_cast<std::size_t>(params_.reading_delay)];
+}
+
+DeviceReading VirtualHapticDevice::tell() noexcept {
+  DeviceReading reading;
+  reading.X_DS = quantise(X_DS(), preset_.encoder);
+  if (preset_.sensed_dof == 3) reading.X_DS = Pose::translation(reading.X_DS.p());
+  reading.buttons = hand_.buttons;
+  return reading;
+}
+
+/// The end stops' force on S: a spring with half of critical damping against what moves outwards.
+Wrench VirtualHapticDevice::wall() const noexcept {
+  const Vec3 p_D = X_DS().p();
+  const double beyond_mm = p_D.norm() - preset_.workspace_radius_mm;
+  if (!(beyond_mm > 0.0)) return {};
+  const Vec3 outwards = p_D.normalized();
+  const double k = params_.wall_stiffness_n_per_mm;
+  const double damping = std::sqrt(k * preset_.apparent_mass_kg / kMmPerM);
+  const double speed = std::max(0.0, v_D().dot(outwards));
+  return {-(k * beyond_mm + damping * speed) * outwards, Vec3::Zero()};
+}
+
+void VirtualHapticDevice::step(double time_s, double dt_s) noexcept {
+  if (!was_ever_held_) return;
+  const HandNow hand = hand_at(hand_, time_s);
+  const Pose X_SH = Pose::translation({0.0, 0.0, point_mm_});  // H: where it is held
+  const Pose X_DH = hand.X_DS * X_SH;
+  const Vec3 v_H = hand.v_D + hand.w_D.cross(hand.X_DS.R().col(2) * point_mm_);
+  if (hand_.is_held && hand_.is_rigid) {
+    held_ = {X_DH, v_H, hand.w_D};
+    return;
+  }
+
+  StylusHold hold;
+  hold.damping_ns_per_mm = preset_.viscosity_ns_per_mm;
+  hold.turning_damping_nmms_per_rad = params_.gimbal_viscosity_nmms;
+  if (hand_.is_held) {
+    hold.X_PS = X_DH;
+    hold.stiffness_n_per_mm = hand_.stiffness_n_per_mm;
+    hold.damping_ns_per_mm += hand_.damping_ns_per_mm;
+    hold.mass_kg = hand_.mass_kg;
+    hold.turning_nmm_per_rad = hand_.turning_nmm_per_rad;
+    hold.turning_damping_nmms_per_rad += hand_.turning_damping_nmms_per_rad;
+    hold.inertia_kg_mm2 = hand_.inertia_kg_mm2;
+    // The hand damps against its own motion, the joints against rest.
+    if (hold.damping_ns_per_mm > 0.0) hold.velocity_P = v_H * (hand_.damping_ns_per_mm / hold.damping_ns_per_mm);
+    if (hold.turning_damping_nmms_per_rad > 0.0) {
+      hold.angular_velocity_P = hand.w_D * (hand_.turning_damping_nmms_per_rad / hold.turning_damping_nmms_per_rad);
+    }
+  }
+
+  // Everything that pulls at S, moved to the point where it is held.
+  const Wrench stop = wall();
+  Wrench push{acting_D_.force_n + stop.force_n, acting_D_.torque_nmm};
+  push.torque_nmm -= (held_.X_PS.R().col(2) * point_mm_).cross(push.force_n);
+  rub(hold, push, dt_s);
+}
+
+/// A step with dry friction in arm and gimbal: the mean velocity of the step without it says what force drives the
+/// motion; friction takes its part of that, or all of it and the joint stands.
+void VirtualHapticDevice::rub(const StylusHold& hold, const Wrench& push, double dt_s) noexcept {
+  const VirtualStylusState before = held_;
+  VirtualStylusParams params;
+  params.mass_kg = preset_.apparent_mass_kg;
+  params.inertia_kg_mm2 = params_.inertia_kg_mm2;
+  params.weight_n = preset_.capability.stylus_weight_n;
+  // A gimbal without motors carries no lever: it is balanced, and the weight hangs on S.
+  params.weight_lever_mm = point_mm_ + (preset_.has_torque() ? preset_.capability.stylus_lever_mm : 0.0);
+  const StylusMotion free = step_stylus(held_, params, hold, push, -Vec3::UnitZ(), dt_s);
+
+  const double half_s = 0.5 * dt_s;
+  const double mass = (params.mass_kg + hold.mass_kg) / kMmPerM;
+  const double inertia = (params.inertia_kg_mm2 + hold.inertia_kg_mm2) / kMmPerM;
+  const double drag = mass / half_s + hold.damping_ns_per_mm + half_s * hold.stiffness_n_per_mm;
+  const double turning_drag = inertia / half_s + hold.turning_damping_nmms_per_rad + half_s * hold.turning_nmm_per_rad;
+  const double kept = kept_by_friction(free.v_P.norm(), drag, preset_.friction_n);
+  const double kept_turning = kept_by_friction(free.w_P.norm(), turning_drag, params_.gimbal_friction_nmm);
+
+  const Vec3 v = kept * free.v_P;
+  const Vec3 w = kept_turning * free.w_P;
+  const Eigen::Quaterniond turned(rotation_from_vector(dt_s * w) * before.X_PS.R());
+  held_.X_PS = Pose(turned.normalized().toRotationMatrix(), before.X_PS.p() + dt_s * v);
+  held_.v_P = kept > 0.0 ? Vec3(2.0 * v - before.v_P) : Vec3::Zero();
+  held_.w_P = kept_turning > 0.0 ? Vec3(2.0 * w - before.w_P) : Vec3::Zero();
+}
+
+OpenedDevice open_virtual(const DeviceSpec& spec, const DeviceOptions& options) {
+  const std::string& named = spec.argument.empty() ? options.preset : spec.argument;
+  TROCAR_TRY(DevicePreset preset, load_device_preset(options.devices_file, named.empty() ? "premium" : named));
+  return std::make_unique<VirtualHapticDevice>(std::move(preset), SimulatedDeviceParams{});
+}
+
+}  // namespace trocar
