@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/result.h"
 #include "haptics/path_constraint.h"  // Wrench
 
 namespace trocar {
@@ -42,7 +43,7 @@ enum GateAction : std::uint16_t {
   kGateOff = 1 << 8,
 };
 
-/// Limits of a device and of the gate. Where no source is named a number is assumed.
+/// Limits of a device and of the gate. Where no source is named a number is assumed. Ranges: gate_params.cpp.
 struct GateParams {
   double peak_force_n = 37.5;    ///< Range 0.1..200.
   double peak_torque_nmm = 515;  ///< 0: the device gives no torque.
@@ -51,6 +52,8 @@ struct GateParams {
   double thermal_time_s = 10.0;         ///< Of the motors' first-order warming. Range 0.5..600.
   double max_damping_ns_per_mm = 0.01;  ///< That the passivity control may add, what the device shows at 1 kHz.
   double passivity_margin_mj = 2.0;  ///< Energy that may be given before it is taken out: counts, delay. Range 0..50.
+  double softest_n_per_mm = 0.2;     ///< Softest spring whose energy may come back. Range 0.01..5.
+  double softest_nmm_per_rad = 100;  ///< The same of a turn. Range 5..1e4.
   double slew_n_per_s = 4000.0;      ///< Rises only. Range 50..1e5.
   double slew_nmm_per_s = 8e4;
   double stale_s = 0.25;       ///< Silence of the client before the force fades.
@@ -65,13 +68,17 @@ struct GateParams {
   double max_unread_s = 0.02;  ///< Range 0.002..1.
 };
 
-/// What a period gives the gate: the wrench that the tick wants (about S, any frame, all in the same one), and what is
-/// known of the device and of the client.
+/// Errors: the first field that is out of its range, a continuous limit above its peak. step_gate() takes any bits: a
+/// field out of its range is there what gives the least force.
+Status check(const GateParams& params);
+
+/// What a period gives the gate: the wrench that the tick wants (about S, in any frame at rest, all in the same one),
+/// and what is known of the device and of the client.
 struct GateInput {
   Wrench wanted;                   ///< Without the weight: what tissue and path do.
   Wrench weight;                   ///< Compensation of the stylus' weight; conservative, not watched for energy.
   Vec3 axis = Vec3::UnitZ();       ///< Unit, along the needle: the part of a force that is kept when it saturates.
-  Vec3 v_mm_per_s = Vec3::Zero();  ///< Of the stylus, measured; and
+  Vec3 v_mm_per_s = Vec3::Zero();  ///< Of the stylus, the mean since the last period (its way over dt); and
   Vec3 w_rad_per_s = Vec3::Zero();
   double dt_s = 0.001;
   double silence_s = 0.0;                     ///< Since the client was last heard.
@@ -85,9 +92,10 @@ struct GateInput {
 struct GateState {
   GateMode mode = GateMode::kOff;
   GateFault fault = GateFault::kNone;
-  Wrench last;              ///< What went out.
-  double scale = 0.0;       ///< Of safe start and fading, 0..1.
-  double energy_mj = 0.0;   ///< That the wanted wrench gave to the device, less what was taken out; at least -margin.
+  Wrench last;              ///< What went out; and
+  Wrench watched;           ///< the same without the weight's share, whose energy is watched.
+  double scale = 0.0;       ///< Of safe start, fading and a fault's ramp, 0..1.
+  double energy_mj = 0.0;   ///< Given to the device, less what was taken out; at least what springs may store (G2).
   double force_heat = 0.0;  ///< Mean square of the force over the continuous one's square: 1 = warm.
   double torque_heat = 0.0;
   double runaway_s = 0.0;
@@ -102,11 +110,12 @@ struct GateOutput {
   double drop_s = 0.0;        ///< and how long it took. Zero otherwise.
 };
 
-/// The last step before the motors and the only one that writes to them (physics.md G1-G9): finite check, passivity
-/// control (Hannaford and Ryu's observer and controller), continuous-force limit, slew limit on rises only, velocity
-/// brake, staleness ramp and safe start, norm clamp last. When a force saturates the lateral part and the torque are
-/// scaled by one factor and the axial part is kept. Any fault fades to zero within fault_ramp_s and latches. A pure
-/// function of its arguments; real-time safe; total: any bits in, a wrench within the limits out.
+/// The last step before the motors and the only one that writes to them (physics.md G1-G9): finite check, faults,
+/// passivity control (Hannaford and Ryu's observer and controller), velocity brake, continuous-force limit, scale of
+/// safe start and staleness, slew limit on rises only, norm clamp last. When a force saturates the lateral part and the
+/// torque are scaled by one factor and the axial part is kept (to 2 %: it leaves room for a lateral fifth of the
+/// limit). Any fault fades to zero within fault_ramp_s and latches. A pure function of its arguments; real-time safe;
+/// total: any bits in, a wrench within the limits out.
 GateOutput step_gate(GateState& state, const GateInput& input, const GateParams& params) noexcept;
 
 }  // namespace trocar
