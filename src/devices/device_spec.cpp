@@ -20,13 +20,18 @@ struct DeviceKind {
   OpenedDevice (*open)(const DeviceSpec&, const DeviceOptions&);  ///< nullptr: not made yet.
 };
 
-// virtual:PRESET, replay:FILE, openhaptics:NAME, haply:ws://HOST:PORT
+// clang-format off: a kind a line
 constexpr std::array kKinds{
-    DeviceKind{"virtual", Argument::kOptional, open_virtual}, DeviceKind{"mouse", Argument::kNone, open_pointer},
-    DeviceKind{"gamepad", Argument::kNone, nullptr},          DeviceKind{"spacemouse", Argument::kNone, nullptr},
-    DeviceKind{"replay", Argument::kNeeded, open_replay},     DeviceKind{"openhaptics", Argument::kOptional, nullptr},
-    DeviceKind{"forcedimension", Argument::kNone, nullptr},   DeviceKind{"haply", Argument::kOptional, nullptr},
+    DeviceKind{"virtual", Argument::kOptional, open_virtual},  // :PRESET
+    DeviceKind{"mouse", Argument::kNone, open_pointer},
+    DeviceKind{"gamepad", Argument::kNone, nullptr},
+    DeviceKind{"spacemouse", Argument::kNone, nullptr},
+    DeviceKind{"replay", Argument::kNeeded, open_replay},     // :FILE
+    DeviceKind{"openhaptics", Argument::kOptional, nullptr},  // :NAME
+    DeviceKind{"forcedimension", Argument::kNone, nullptr},
+    DeviceKind{"haply", Argument::kOptional, nullptr},  // :ws://HOST:PORT
 };
+// clang-format on
 
 constexpr std::uint64_t kFaultSeed = 1;  ///< Of jitter.
 
