@@ -48,9 +48,8 @@ flatbuffers::Offset<wire::ServerStatus> build_status(Builder& b, const ServerSta
 
 ServerMember build_body(Builder& b, const StateBatch& batch) {
   TROCAR_CHECK(batch.samples.size() <= kMostSamples);
-  wire::Sample* place = nullptr;
-  const auto samples = b.CreateUninitializedVectorOfStructs(batch.samples.size(), &place);
-  for (const TickSample& sample : batch.samples) *place++ = detail::to_wire(sample);
+  const auto samples = b.CreateVectorOfNativeStructs<wire::Sample, TickSample>(batch.samples.data(),
+                                                                               batch.samples.size(), detail::to_wire);
   flatbuffers::Offset<wire::ServerStatus> status;
   if (batch.status) status = build_status(b, *batch.status);
   return {wire::ServerBody::StateBatch, wire::CreateStateBatch(b, batch.first_tick, samples, status).Union()};

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "link/test/field_walk.h"
+
+namespace trocar {
+
+/// What holds for every message that a decoder accepts; empty where all does, else what is broken.
+template <class Body>
+std::string find_broken_invariant(Envelope<Body> message) {
+  constexpr double kFar_mm = 1e5;
+  constexpr double kRounding = 1e-11;
+  std::string broken;
+  const auto expect = [&](bool holds, const char* what) {
+    if (!holds) broken += std::string(what) + "; ";
+  };
+  const auto is_near = [&](const Vec3& p) { return p.norm() <= kFar_mm; };
+  const auto check_text = [&](const std::string& text, bool is_table) {
+    expect(text.size() <= kMostTextBytes, "text too long");
+    for (const char c : text) {
+      const bool is_space = is_table && (c == '\t' || c == '\n' || c == '\r');
+      expect(static_cast<unsigned char>(c) >= 0x20 || is_space, "control character in a text");
+      expect(c != 0x7f, "DEL in a text");
+    }
+  };
+  walk(message,
+       Overloaded{[&](double& value) { expect(std::isfinite(value), "number not finite"); },
+                  [&](Pose& X) {
+                    expect((X.R().transpose() * X.R() - Mat3::Identity()).norm() < kRounding, "no rotation");
+                    expect(std::abs(X.R().determinant() - 1.0) < kRounding, "mirrored");
+                    expect(is_near(X.p()), "pose far away");
+                  },
+                  [&](std::string& text) { check_text(text, false); },
+                  [&](ServerCommand& command) { expect(command <= ServerCommand::kStyletIn, "unknown command"); },
+                  [&](LoadScene& scene) {
+                    expect(scene.needle_length_mm >= 0.0 && scene.needle_radius_mm >= 0.0, "negative needle");
+                    check_text(scene.tissues_toml, true);
+                    check_text(scene.patient, false);
+                    expect(scene.X_PW.is_finite(), "room not finite");
+                  },
+                  [&](TickSample& sample) {
+                    expect(std::isfinite(sample.time_s), "tick without a time");
+                    expect(is_near(sample.tip_mm) && is_near(sample.device_mm), "tick far away");
+                    expect(sample.axis.allFinite(), "axis not finite");
+                    expect(sample.phase <= InsertionPhase::kRetracting, "unknown phase");
+                    for (const TickEvent& event : sample.events)
+                      expect(event.kind <= EventKind::kLimit, "unknown event");
+                  }});
+  if constexpr (std::is_same_v<Body, ServerBody>) {
+    const auto* batch = std::get_if<StateBatch>(&message.body);
+    expect(batch == nullptr || batch->samples.size() <= kMostSamples, "too many ticks");
+  }
+  return broken;
+}
+
+}  // namespace trocar

@@ -1,0 +1,199 @@
+// Well-formed bytes that say what no message may say.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "link/codec.h"
+#include "link/detail/clean_text.h"
+#include "link/test/field_walk.h"
+#include "link/test/random_message.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool is_accepted(const ClientMessage& message) {
+  return decode_client_message(encode(message)).has_value();
+}
+bool is_accepted(const ServerMessage& message) {
+  return decode_server_message(encode(message)).has_value();
+}
+bool is_accepted(const ClientBody& body) {
+  return is_accepted(ClientMessage{1, 1, body});
+}
+
+/// A struct with one field set.
+template <class Struct, class Field, class Value>
+Struct with(Field Struct::*field, const Value& value) {
+  Struct result;
+  result.*field = value;
+  return result;
+}
+
+/// Puts each of `values`, one at a time, into each value of that type (those of ticks apart); all must be refused.
+template <class T, class Message>
+int expect_none_accepted(const Message& good, const std::vector<T>& values) {
+  int count = 0;
+  Message counted = good;
+  walk(counted, Overloaded{[&](T&) { ++count; }, [](TickSample&) {}});
+  for (const T& value : values) {
+    for (int chosen = 0; chosen < count; ++chosen) {
+      Message bad = good;
+      int i = 0;
+      walk(bad, Overloaded{[&](T& field) {
+                             if (i++ == chosen) field = value;
+                           },
+                           [](TickSample&) {}});
+      EXPECT_FALSE(is_accepted(bad)) << "field " << chosen << " of body " << good.body.index();
+    }
+  }
+  return count;
+}
+
+TEST(UnsoundNumber, IsRefusedWhereverItStands) {
+  const std::vector<double> values = {kNan, kInfinity, -kInfinity, 1e200, -1e200};
+  RandomMessages random(21);
+  int count = 0;
+  for (const ClientMessage& message : random.client_messages()) count += expect_none_accepted(message, values);
+  for (const ServerMessage& message : random.server_messages()) count += expect_none_accepted(message, values);
+  EXPECT_GE(count, 67) << "numbers of all messages";
+}
+
+TEST(UnsoundText, IsRefusedWhereverItStands) {
+  const std::vector<std::string> texts = {std::string(kMostTextBytes + 1, 'a'),
+                                          "a\x01",
+                                          std::string("a\0b", 3),
+                                          "a\x7f",
+                                          "\xff",
+                                          "a\xc3",
+                                          "\xc0\xaf",
+                                          "\xc2\x9b"
+                                          "31m"};
+  RandomMessages random(22);
+  int count = 0;
+  for (const ClientMessage& message : random.client_messages()) count += expect_none_accepted(message, texts);
+  for (const ServerMessage& message : random.server_messages()) count += expect_none_accepted(message, texts);
+  EXPECT_GT(count, 20);
+}
+
+TEST(UnsoundText, LinesAreForTissueTablesAlone) {
+  EXPECT_TRUE(is_accepted(Command{1, with(&LoadScene::tissues_toml, "[skin]\r\n\tk = 1 # é\n")}));
+  EXPECT_FALSE(is_accepted(Command{1, with(&LoadScene::patient, "a\nb")}));
+  EXPECT_FALSE(is_accepted(Command{1, SetParameters{{"liver.k=0.5\n"}}}));
+  EXPECT_FALSE(is_accepted(Hello{"a\tb", true}));
+}
+
+TEST(CleanText, IsUtf8AsTheStandardHasIt) {
+  using detail::is_clean_text;
+  using detail::Layout;
+  for (const char* good : {"", "a b", "\xc2\xa0", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
+                           "\xef\xbf\xbf", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"}) {
+    EXPECT_TRUE(is_clean_text(good, Layout::kLine)) << testing::PrintToString(good);
+  }
+  for (const char* bad : {"\x80",
+                          "\xbf",
+                          "\xc0\x80",
+                          "\xc1\xbf",
+                          "\xc2",
+                          "\xc2\x41",
+                          "\xe0\x80\x80",
+                          "\xe0\x9f\xbf",
+                          "\xe1\x80",
+                          "\xed\xa0\x80",
+                          "\xed\xbf\xbf",
+                          "\xf0\x80\x80\x80",
+                          "\xf0\x8f\xbf\xbf",
+                          "\xf4\x90\x80\x80",
+                          "\xf5\x80\x80\x80",
+                          "\xf8\x88\x80\x80\x80",
+                          "\xfe",
+                          "\x1b[31m",
+                          "\xc2\x80",
+                          "\xc2\x9f",
+                          "\x7f",
+                          "\v",
+                          "\f"}) {
+    EXPECT_FALSE(is_clean_text(bad, Layout::kLines)) << testing::PrintToString(bad);
+  }
+}
+
+TEST(UnsoundPose, WhatIsNoRotationIsRefused) {
+  const auto accepts = [](const Mat3& R) { return is_accepted(with(&HandTarget::X_PN, Pose(R, Vec3::Zero()))); };
+  const Mat3 R = RandomMessages(23).some<Pose>().R();
+  Mat3 sheared = R;
+  sheared.col(0) += 1e-4 * sheared.col(1);
+  EXPECT_TRUE(accepts(R));
+  EXPECT_FALSE(accepts(sheared));
+  EXPECT_FALSE(accepts(Mat3::Zero()));
+  EXPECT_FALSE(accepts(-R)) << "mirrored";
+  EXPECT_FALSE(accepts(1.0001 * R));
+  EXPECT_FALSE(accepts(Vec3(1, 1, -1).asDiagonal() * R));
+  EXPECT_FALSE(is_accepted(Command{1, with(&LoadScene::X_PW, Pose(2.0 * R, Vec3::Zero()))}));
+}
+
+TEST(UnsoundPose, TooFarAwayIsRefused) {
+  constexpr double kFar_mm = 1e5;
+  EXPECT_TRUE(is_accepted(with(&HandTarget::X_PN, Pose::translation({kFar_mm, 0, 0}))));
+  EXPECT_FALSE(is_accepted(with(&HandTarget::X_PN, Pose::translation({kFar_mm, 1000, 0}))));
+}
+
+TEST(UnsoundNumber, NegativeStiffnessMassOrLengthIsRefused) {
+  EXPECT_FALSE(is_accepted(with(&HandTarget::stiffness_n_per_mm, -1e-9)));
+  EXPECT_FALSE(is_accepted(with(&HandTarget::damping_ns_per_mm, -1e-9)));
+  EXPECT_FALSE(is_accepted(with(&HandTarget::mass_kg, -1e-9)));
+  EXPECT_FALSE(is_accepted(with(&HandTarget::inertia_kg_mm2, -1e-9)));
+  EXPECT_FALSE(is_accepted(Command{1, with(&LoadScene::needle_length_mm, -1.0)}));
+  EXPECT_FALSE(is_accepted(Heartbeat{0.0, -1.0, 0}));
+}
+
+TEST(UnsoundEnumerator, IsRefused) {
+  EXPECT_TRUE(is_accepted(Command{1, ServerCommand::kStyletIn}));
+  EXPECT_FALSE(is_accepted(Command{1, static_cast<ServerCommand>(6)}));
+  EXPECT_FALSE(is_accepted(Command{1, static_cast<ServerCommand>(255)}));
+}
+
+bool is_accepted_in_a_batch(const TickSample& sample) {
+  return is_accepted(ServerMessage{1, 1, StateBatch{1, {TickSample{}, sample}, std::nullopt}});
+}
+
+TEST(UnsoundTick, EnumeratorsOutOfRangeAreRefused) {
+  EXPECT_FALSE(is_accepted_in_a_batch(with(&TickSample::phase, static_cast<InsertionPhase>(4))));
+  for (std::size_t i = 0; i < 4; ++i) {
+    TickSample sample;
+    sample.events[i].kind = static_cast<EventKind>(4);
+    EXPECT_FALSE(is_accepted_in_a_batch(sample));
+  }
+}
+
+TEST(UnsoundTick, TimeNeedleAndDeviceAreFinite) {
+  for (const double bad : {kNan, kInfinity, 1e200}) {
+    EXPECT_FALSE(is_accepted_in_a_batch(with(&TickSample::time_s, bad)));
+    for (int k = 0; k < 3; ++k) {
+      TickSample tip, axis, device;
+      tip.tip_mm[k] = axis.axis[k] = device.device_mm[k] = bad;
+      EXPECT_FALSE(is_accepted_in_a_batch(tip));
+      EXPECT_FALSE(is_accepted_in_a_batch(axis));
+      EXPECT_FALSE(is_accepted_in_a_batch(device));
+    }
+  }
+}
+
+TEST(UnsoundTick, ForcesOfAFaultArriveAsTheyWere) {
+  TickSample sample;
+  sample.f_total_n.x() = kNan;
+  sample.f_stick_n = -kInfinity;
+  EXPECT_TRUE(is_accepted_in_a_batch(sample));
+}
+
+TEST(UnsoundDevice, ImpossibleDegreesOfFreedomAreRefused) {
+  for (const int dof : {-1, 8, std::numeric_limits<int>::max()}) {
+    Welcome welcome;
+    welcome.device.sensed_dof = dof;
+    EXPECT_FALSE(is_accepted(ServerMessage{1, 1, welcome}));
+  }
+}
+
+}  // namespace
+}  // namespace trocar
