@@ -13,6 +13,9 @@ namespace {
 constexpr double kMaxGap_s = 0.1;    ///< Beyond it the device stood still: a debugger, a suspended machine.
 constexpr double kMaxStep_s = 1e-3;  ///< physics.md H2 holds at 1 kHz.
 constexpr double kMmPerM = 1000.0;
+/// Twice the stiffest hand of physics.md H1, and that at the end of a 30 mm grip. A stiffer one would swing for ever.
+constexpr double kStiffestHand_n_per_mm = 10.0;
+constexpr double kStiffestTurn_nmm_per_rad = 1e4;
 
 void clamp_norm(Vec3& v, double most) noexcept {
   const double norm = v.norm();
@@ -58,6 +61,8 @@ void VirtualHapticDevice::grip_at(double point_mm) noexcept {
 void VirtualHapticDevice::hold(const DeviceHand& hand) noexcept {
   if (!is_usable(hand)) return;
   hand_ = hand;
+  hand_.stiffness_n_per_mm = std::min(hand.stiffness_n_per_mm, kStiffestHand_n_per_mm);
+  hand_.turning_nmm_per_rad = std::min(hand.turning_nmm_per_rad, kStiffestTurn_nmm_per_rad);
   const double point_mm = hand.is_held ? hand.point_mm : 0.0;
   if (point_mm != point_mm_) grip_at(point_mm);
   if (hand.is_placed && (!was_ever_held_ || hand.time_s != placed_s_)) {
