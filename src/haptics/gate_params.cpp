@@ -17,7 +17,7 @@ struct FieldRange {
   double careful;
 };
 
-constexpr std::array<FieldRange, 21> kRanges{{
+constexpr std::array<FieldRange, 23> kRanges{{
     {"peak_force_n", &GateParams::peak_force_n, 0.1, 200.0, 0.0},
     {"peak_torque_nmm", &GateParams::peak_torque_nmm, 0.0, 5000.0, 0.0},
     {"continuous_force_n", &GateParams::continuous_force_n, 0.05, 200.0, 0.0},
@@ -27,6 +27,8 @@ constexpr std::array<FieldRange, 21> kRanges{{
     {"passivity_margin_mj", &GateParams::passivity_margin_mj, 0.0, 50.0, 0.0},
     {"softest_n_per_mm", &GateParams::softest_n_per_mm, 0.01, 5.0, 5.0},
     {"softest_nmm_per_rad", &GateParams::softest_nmm_per_rad, 5.0, 1e4, 1e4},
+    {"count_mm", &GateParams::count_mm, 0.0, 1.0, 0.0},
+    {"count_rad", &GateParams::count_rad, 0.0, 0.1, 0.0},
     {"slew_n_per_s", &GateParams::slew_n_per_s, 50.0, 1e5, 50.0},
     {"slew_nmm_per_s", &GateParams::slew_nmm_per_s, 1e3, 2e6, 1e3},
     {"stale_s", &GateParams::stale_s, 0.02, 5.0, 0.02},

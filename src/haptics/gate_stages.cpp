@@ -10,6 +10,8 @@ constexpr double kBeyondReason = 1e6;       // of any unit: a force, a speed, a 
 constexpr double kDampingLever_mm = 20.0;   // turns damping of a force into that of a torque, b l^2 [assumed, 10..40]
 constexpr double kLeastSpeed_mm_per_s = 1;  // below it damping takes nothing worth the noise [assumed, 0.1..5]
 constexpr double kMostExcess_mj = 100.0;    // remembered beyond the margin [assumed, 20..500]
+constexpr double kFriction_n = 0.05;        // that every device has in its joints [assumed, 0.02..0.2]
+constexpr double kQuiet_s = 0.25;           // without force, after which an excess is over [assumed, 0.1..1]
 constexpr double kCool = 0.8;               // share of the continuous heat up to which the peak is allowed [assumed]
 constexpr double kLateralShare = 0.2;  // of the force's limit that an axial force leaves to a lateral one [assumed]
 constexpr double kLeastAxis = 1e-6;    // length below which an axis has no direction
@@ -29,6 +31,15 @@ Vec3 clipped(const Vec3& value, double limit) noexcept {
 double spring_energy_mj(double wanted, double limit, double stiffness) noexcept {
   const double given = std::min(wanted, limit);
   return given * (wanted - 0.5 * given) / stiffness;
+}
+
+/// Work of a pull on a way told in counts: `before` acted, for the last count of the way perhaps already `now`; that
+/// doubt is worth at most the device's friction.
+double work_mj(const Vec3& before, const Vec3& now, const Vec3& way, double count, double friction) noexcept {
+  const double length = way.norm();
+  if (length <= 0.0) return 0.0;
+  const double doubt = 0.5 * std::min(1.0, count / length) * (now - before).dot(way);
+  return before.dot(way) + std::clamp(doubt, -friction * length, friction * length);
 }
 
 double damping_lever_mm(const GateParams& params) noexcept {
@@ -66,12 +77,16 @@ bool is_sound(const GateInput& input) noexcept {
          is_sound(input.w_rad_per_s) && is_sound(input.dt_s) && input.dt_s > 0.0;
 }
 
+bool is_small(const Wrench& wrench, const GateParams& params) noexcept {
+  return wrench.force_n.norm() < params.small_force_n && wrench.torque_nmm.norm() < params.small_torque_nmm;
+}
+
 bool restore(GateState& state) noexcept {
   const bool is_usable = is_sound(state.last) && is_sound(state.watched) && state.scale >= 0.0 && state.scale <= 1.0 &&
                          std::isfinite(state.energy_mj) && state.force_heat >= 0.0 && std::isfinite(state.force_heat) &&
                          state.torque_heat >= 0.0 && std::isfinite(state.torque_heat) && is_sound(state.runaway_s) &&
-                         is_sound(state.drop_from_n) && is_sound(state.drop_s) && state.mode <= GateMode::kFault &&
-                         state.fault <= GateFault::kRequested &&
+                         is_sound(state.quiet_s) && is_sound(state.drop_from_n) && is_sound(state.drop_s) &&
+                         state.mode <= GateMode::kFault && state.fault <= GateFault::kRequested &&
                          (state.mode == GateMode::kFault) == (state.fault != GateFault::kNone);
   if (is_usable) return true;
   const GateFault fault = state.fault <= GateFault::kRequested ? state.fault : GateFault::kNotFinite;
@@ -83,8 +98,13 @@ bool restore(GateState& state) noexcept {
 }
 
 void observe_energy(GateState& state, const GateInput& input, double dt_s, const GateParams& params) noexcept {
+  const Wrench now = limited(input.wanted, input.axis, params.peak_force_n, params.peak_torque_nmm);
   state.energy_mj +=
-      (state.watched.force_n.dot(input.v_mm_per_s) + state.watched.torque_nmm.dot(input.w_rad_per_s)) * dt_s;
+      work_mj(state.watched.force_n, state.scale * now.force_n, dt_s * input.v_mm_per_s, params.count_mm, kFriction_n) +
+      work_mj(state.watched.torque_nmm, state.scale * now.torque_nmm, dt_s * input.w_rad_per_s, params.count_rad,
+              kFriction_n * kDampingLever_mm);
+  state.quiet_s = is_small(input.wanted, params) ? std::min(state.quiet_s + dt_s, kQuiet_s) : 0.0;
+  if (state.quiet_s >= kQuiet_s) state.energy_mj = std::min(state.energy_mj, 0.0);
   const double stored_mj =
       spring_energy_mj(input.wanted.force_n.norm(), params.peak_force_n, params.softest_n_per_mm) +
       spring_energy_mj(input.wanted.torque_nmm.norm(), params.peak_torque_nmm, params.softest_nmm_per_rad);

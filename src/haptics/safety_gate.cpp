@@ -69,10 +69,8 @@ void step_mode(GateState& state, const GateInput& input, const GateParams& param
   }
   const bool is_silent = is_client_silent(input, params);
   if (state.mode == GateMode::kWaiting) {
-    const bool is_small =
-        input.wanted.force_n.norm() < params.small_force_n && input.wanted.torque_nmm.norm() < params.small_torque_nmm;
     if (!input.is_wanted) state.mode = GateMode::kOff;
-    if (input.is_wanted && !is_silent && is_small) state.mode = GateMode::kRising;
+    if (input.is_wanted && !is_silent && detail::is_small(input.wanted, params)) state.mode = GateMode::kRising;
     if (state.mode != GateMode::kRising) return;
   }
   if (state.mode == GateMode::kOff) return;

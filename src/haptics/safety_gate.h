@@ -54,7 +54,9 @@ struct GateParams {
   double passivity_margin_mj = 2.0;  ///< Energy that may be given before it is taken out: counts, delay. Range 0..50.
   double softest_n_per_mm = 0.2;     ///< Softest spring whose energy may come back. Range 0.01..5.
   double softest_nmm_per_rad = 100;  ///< The same of a turn. Range 5..1e4.
-  double slew_n_per_s = 4000.0;      ///< Rises only. Range 50..1e5.
+  double count_mm = 0.0295;      ///< Of the device's encoders: motion within it has no moment. Range 0..1; 0: exact.
+  double count_rad = 4.0e-5;     ///< Range 0..0.1.
+  double slew_n_per_s = 4000.0;  ///< Rises only. Range 50..1e5.
   double slew_nmm_per_s = 8e4;
   double stale_s = 0.25;       ///< Silence of the client before the force fades.
   double fade_s = 0.2;         ///< From full force to zero.
@@ -96,6 +98,7 @@ struct GateState {
   Wrench watched;           ///< the same without the weight's share, whose energy is watched.
   double scale = 0.0;       ///< Of safe start, fading and a fault's ramp, 0..1.
   double energy_mj = 0.0;   ///< Given to the device, less what was taken out; at least what springs may store (G2).
+  double quiet_s = 0.0;     ///< Since more than a small force was wanted.
   double force_heat = 0.0;  ///< Mean square of the force over the continuous one's square: 1 = warm.
   double torque_heat = 0.0;
   double runaway_s = 0.0;

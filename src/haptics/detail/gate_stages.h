@@ -23,6 +23,8 @@ GateParams made_safe(const GateParams& params) noexcept;
 bool is_sound(double value) noexcept;
 bool is_sound(const Wrench& wrench) noexcept;
 bool is_sound(const GateInput& input) noexcept;
+/// Small enough for a safe start to begin.
+bool is_small(const Wrench& wrench, const GateParams& params) noexcept;
 /// Makes a state usable whatever its bits are; false: something had to be thrown away.
 bool restore(GateState& state) noexcept;
 
