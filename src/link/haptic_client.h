@@ -38,9 +38,10 @@ struct ClientView {
   std::uint64_t ticks_received = 0;
   std::uint64_t ticks_missing = 0;  ///< Gaps in the numbers: dropped on the way, or by the server.
   std::uint64_t messages_refused = 0;
+  std::uint64_t welcomes = 0;  ///< Sessions so far: above 1 the server was lost and found again.
 };
 
-/// A tick and its number (rises by one with every tick the server makes).
+/// A tick and its number: rises by one with every tick the server makes, begins at 0 again with a new server.
 struct NumberedSample {
   std::uint64_t tick = 0;
   TickSample sample;
@@ -62,7 +63,8 @@ class HapticClient {
   /// The newest tick, if there was one.
   std::optional<TickSample> newest() const;
 
-  /// Sends a command and gives its number; replies come by take_replies().
+  /// Sends a command and gives its number; its reply comes by take_replies(), in any case: where there is no server, or
+  /// it goes away, it says so. A command is never kept for a server that comes later.
   std::uint32_t send(decltype(Command::what) what);
   std::vector<Reply> take_replies();
   /// Sends a command and waits for its reply. Errors: the reply's own, no server, no answer in time.

@@ -1,0 +1,124 @@
+#include "link/detail/ipc_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <optional>
+
+namespace trocar::detail {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr mode_t kForUserAlone = 0600;
+constexpr int kWaitingConnections = 64;
+
+/// A descriptor, closed at the end.
+struct Descriptor {
+  explicit Descriptor(int opened) noexcept : number(opened) {}
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number;
+};
+
+std::optional<sockaddr_un> socket_name(const fs::path& path) {
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  if (path.native().empty() || path.native().size() >= sizeof name.sun_path) return {};
+  std::memcpy(name.sun_path, path.c_str(), path.native().size());
+  return name;
+}
+
+const sockaddr* as_address(const sockaddr_un& name) {
+  return reinterpret_cast<const sockaddr*>(&name);
+}
+
+/// Somebody listens, or may: only a refused connection proves a dead server.
+bool is_alive(const sockaddr_un& name) {
+  const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  return ::connect(probe.number, as_address(name), sizeof name) == 0 || (errno != ECONNREFUSED && errno != ENOENT);
+}
+
+/// Removes what a dead server left.
+Status clear_place(const fs::path& path, const sockaddr_un& name) {
+  struct stat found {};
+  if (::lstat(path.c_str(), &found) != 0) return {};
+  if (!S_ISSOCK(found.st_mode)) {
+    return fail("there is a file that is no socket", path.string(), "choose another endpoint");
+  }
+  if (is_alive(name)) {
+    return fail("the endpoint is in use by another server", path.string(), "end that one or choose another endpoint");
+  }
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) {
+    return fail("the socket of a dead server cannot be removed", path.string(), std::strerror(errno));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<IpcFile> IpcFile::listen(const fs::path& path) {
+  const auto name = socket_name(path);
+  if (!name) return fail_usage("the name of the socket is empty or too long", path.string());
+
+  // Two servers that start at once take turns, so that none removes the other's fresh socket. A lock that somebody else
+  // keeps must not keep us.
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const Descriptor turn(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (turn.number < 0) return fail("the folder of the socket cannot be opened", folder.string(), std::strerror(errno));
+  ::flock(turn.number, LOCK_EX | LOCK_NB);
+
+  TROCAR_TRY_STATUS(clear_place(path, *name));
+  Descriptor listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  // The mode of the descriptor becomes the file's: there is no moment at which others could connect.
+  struct stat made {};
+  if (listener.number < 0 || ::fchmod(listener.number, kForUserAlone) != 0 ||
+      ::bind(listener.number, as_address(*name), sizeof *name) != 0 ||
+      ::listen(listener.number, kWaitingConnections) != 0 || ::lstat(path.c_str(), &made) != 0) {
+    if (errno == EADDRINUSE) return fail("the endpoint is in use by another server", path.string());
+    return fail("the socket cannot be made", path.string(), std::strerror(errno));
+  }
+  IpcFile file;
+  file.path_ = path;
+  file.descriptor_ = std::exchange(listener.number, -1);
+  file.device_ = made.st_dev;
+  file.inode_ = made.st_ino;
+  return file;
+}
+
+IpcFile::IpcFile(IpcFile&& other) noexcept
+    : path_(std::exchange(other.path_, {})),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      device_(other.device_),
+      inode_(other.inode_) {}
+
+IpcFile& IpcFile::operator=(IpcFile&& other) noexcept {
+  if (this != &other) {
+    remove();
+    path_ = std::exchange(other.path_, {});
+    descriptor_ = std::exchange(other.descriptor_, -1);
+    device_ = other.device_;
+    inode_ = other.inode_;
+  }
+  return *this;
+}
+
+void IpcFile::remove() noexcept {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  if (path_.empty()) return;
+  struct stat found {};
+  if (::lstat(path_.c_str(), &found) == 0 && found.st_dev == device_ && found.st_ino == inode_) {
+    ::unlink(path_.c_str());
+  }
+  path_.clear();
+}
+
+}  // namespace trocar::detail
