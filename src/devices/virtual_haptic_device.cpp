@@ -120,51 +120,52 @@ DeviceReading VirtualHapticDevice::tell() noexcept {
 }
 
 /// The end stops' force on S: a spring with half of critical damping against what moves outwards.
-Wrench VirtualHapticDevice::wall() const noexcept {
+Vec3 VirtualHapticDevice::wall_n() const noexcept {
   const Vec3 p_D = X_DS().p();
   const double beyond_mm = p_D.norm() - preset_.workspace_radius_mm;
-  if (!(beyond_mm > 0.0)) return {};
+  if (!(beyond_mm > 0.0)) return Vec3::Zero();
   const Vec3 outwards = p_D.normalized();
   const double k = params_.wall_stiffness_n_per_mm;
   const double damping = std::sqrt(k * preset_.apparent_mass_kg / kMmPerM);
   const double speed = std::max(0.0, v_D().dot(outwards));
-  return {-(k * beyond_mm + damping * speed) * outwards, Vec3::Zero()};
+  return -(k * beyond_mm + damping * speed) * outwards;
+}
+
+/// The hand's spring where it holds, and the damping of the joints against rest.
+StylusHold VirtualHapticDevice::grip(const HandNow& hand) const noexcept {
+  StylusHold hold;
+  hold.damping_ns_per_mm = preset_.viscosity_ns_per_mm;
+  hold.turning_damping_nmms_per_rad = params_.gimbal_viscosity_nmms;
+  if (!hand_.is_held) return hold;
+  hold.X_PS = hand.X_DS;
+  hold.stiffness_n_per_mm = hand_.stiffness_n_per_mm;
+  hold.damping_ns_per_mm += hand_.damping_ns_per_mm;
+  hold.mass_kg = hand_.mass_kg;
+  hold.turning_nmm_per_rad = hand_.turning_nmm_per_rad;
+  hold.turning_damping_nmms_per_rad += hand_.turning_damping_nmms_per_rad;
+  hold.inertia_kg_mm2 = hand_.inertia_kg_mm2;
+  // One damper against the mean of two velocities, weighted, is two dampers.
+  if (hold.damping_ns_per_mm > 0.0) hold.velocity_P = hand.v_D * (hand_.damping_ns_per_mm / hold.damping_ns_per_mm);
+  if (hold.turning_damping_nmms_per_rad > 0.0) {
+    hold.angular_velocity_P = hand.w_D * (hand_.turning_damping_nmms_per_rad / hold.turning_damping_nmms_per_rad);
+  }
+  return hold;
 }
 
 void VirtualHapticDevice::step(double time_s, double dt_s) noexcept {
   if (!was_ever_held_) return;
-  const HandNow hand = hand_at(hand_, time_s);
-  const Pose X_SH = Pose::translation({0.0, 0.0, point_mm_});  // H: where it is held
-  const Pose X_DH = hand.X_DS * X_SH;
-  const Vec3 v_H = hand.v_D + hand.w_D.cross(hand.X_DS.R().col(2) * point_mm_);
+  HandNow hand = hand_at(hand_, time_s);  // and of the point where it holds
+  const Vec3 reach_D = hand.X_DS.R().col(2) * point_mm_;
+  hand.X_DS = Pose(hand.X_DS.R(), hand.X_DS.p() + reach_D);
+  hand.v_D += hand.w_D.cross(reach_D);
   if (hand_.is_held && hand_.is_rigid) {
-    held_ = {X_DH, v_H, hand.w_D};
+    held_ = {hand.X_DS, hand.v_D, hand.w_D};
     return;
   }
-
-  StylusHold hold;
-  hold.damping_ns_per_mm = preset_.viscosity_ns_per_mm;
-  hold.turning_damping_nmms_per_rad = params_.gimbal_viscosity_nmms;
-  if (hand_.is_held) {
-    hold.X_PS = X_DH;
-    hold.stiffness_n_per_mm = hand_.stiffness_n_per_mm;
-    hold.damping_ns_per_mm += hand_.damping_ns_per_mm;
-    hold.mass_kg = hand_.mass_kg;
-    hold.turning_nmm_per_rad = hand_.turning_nmm_per_rad;
-    hold.turning_damping_nmms_per_rad += hand_.turning_damping_nmms_per_rad;
-    hold.inertia_kg_mm2 = hand_.inertia_kg_mm2;
-    // The hand damps against its own motion, the joints against rest.
-    if (hold.damping_ns_per_mm > 0.0) hold.velocity_P = v_H * (hand_.damping_ns_per_mm / hold.damping_ns_per_mm);
-    if (hold.turning_damping_nmms_per_rad > 0.0) {
-      hold.angular_velocity_P = hand.w_D * (hand_.turning_damping_nmms_per_rad / hold.turning_damping_nmms_per_rad);
-    }
-  }
-
   // Everything that pulls at S, moved to the point where it is held.
-  const Wrench stop = wall();
-  Wrench push{acting_D_.force_n + stop.force_n, acting_D_.torque_nmm};
+  Wrench push{acting_D_.force_n + wall_n(), acting_D_.torque_nmm};
   push.torque_nmm -= (held_.X_PS.R().col(2) * point_mm_).cross(push.force_n);
-  rub(hold, push, dt_s);
+  rub(grip(hand), push, dt_s);
 }
 
 /// A step with dry friction in arm and gimbal: the mean velocity of the step without it says what force drives the

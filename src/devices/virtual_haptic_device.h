@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "devices/detail/hand_motion.h"
 #include "devices/haptic_device.h"
 #include "haptics/simulation/virtual_stylus.h"
 
@@ -45,7 +46,8 @@ class VirtualHapticDevice final : public HapticDevice {
   void step(double time_s, double dt_s) noexcept;
   void rub(const StylusHold& hold, const Wrench& push, double dt_s) noexcept;
   void grip_at(double point_mm) noexcept;
-  Wrench wall() const noexcept;
+  StylusHold grip(const HandNow& hand) const noexcept;
+  Vec3 wall_n() const noexcept;
   DeviceReading tell() noexcept;
 
   DevicePreset preset_;

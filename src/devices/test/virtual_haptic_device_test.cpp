@@ -3,85 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
-#include <optional>
+#include <limits>
 
-#include "core/data_dir.h"
 #include "core/random.h"
-#include "haptics/simulation/closed_loop.h"
+#include "devices/test/server_periods.h"
 #include "haptics/simulation/rotation.h"
+#include "haptics/test/layered_patient.h"
+#include "haptics/tick.h"
 
 namespace trocar {
 namespace {
 
-constexpr double kDt_s = 0.001;
-
-DevicePreset preset_of(const char* name) {
-  const auto preset = load_device_preset(data_dir() / "devices.toml", name);
-  EXPECT_TRUE(preset) << preset.error().text();
-  return *preset;
-}
-
-/// Exact sensors and no friction, for closed forms.
-DevicePreset ideal() {
-  DevicePreset preset = preset_of("premium");
-  preset.encoder = {0.0, 0.0};
-  preset.friction_n = 0.0;
-  preset.viscosity_ns_per_mm = 0.0;
-  return preset;
-}
-SimulatedDeviceParams without_friction() {
-  SimulatedDeviceParams params;
-  params.gimbal_friction_nmm = 0.0;
-  params.gimbal_viscosity_nmms = 0.0;
-  return params;
-}
-
-DeviceHand placed_at(const Pose& X_DS) {
-  DeviceHand hand;
-  hand.X_DS = X_DS;
-  hand.is_placed = true;
-  return hand;
-}
-/// The hand of physics.md H1.
-DeviceHand holding(const Pose& X_DS, double time_s) {
-  const StylusHold made = make_hand();
-  DeviceHand hand;
-  hand.X_DS = X_DS;
-  hand.time_s = time_s;
-  hand.stiffness_n_per_mm = made.stiffness_n_per_mm;
-  hand.damping_ns_per_mm = made.damping_ns_per_mm;
-  hand.mass_kg = made.mass_kg;
-  hand.turning_nmm_per_rad = made.turning_nmm_per_rad;
-  hand.turning_damping_nmms_per_rad = made.turning_damping_nmms_per_rad;
-  hand.inertia_kg_mm2 = made.inertia_kg_mm2;
-  hand.is_held = true;
-  return hand;
-}
-
-/// The tick's compensation of links and stylus (physics.md W1), from the pose that was told.
-Wrench weight_compensation(const DevicePreset& preset, const Pose& X_DS) {
-  const Vec3 lift = Vec3::UnitZ() * preset.capability.stylus_weight_n;
-  const Vec3 arm = X_DS.R() * Vec3(0.0, 0.0, -preset.capability.stylus_lever_mm);
-  return {lift, arm.cross(lift)};
-}
-
-/// A device and its clock; the server's periods.
-struct Bench {
-  VirtualHapticDevice device;
-  double time_s = 100.0;
-
-  explicit Bench(const DevicePreset& preset, const SimulatedDeviceParams& params = {}) : device(preset, params) {
-    device.read(time_s);
-  }
-  DeviceReading period(const std::optional<DeviceHand>& hand, const Wrench& wrench, double dt_s = kDt_s) {
-    time_s += dt_s;
-    const DeviceReading reading = device.read(time_s);
-    if (hand) device.hold(*hand);
-    EXPECT_TRUE(device.write(wrench));
-    return reading;
-  }
-};
+using namespace trocar::testing;
 
 class ReleasedInAir : public ::testing::TestWithParam<const char*> {};
 
@@ -106,6 +39,36 @@ TEST_P(ReleasedInAir, SinksWithoutCompensation) {
   EXPECT_LT(bench.device.v_D().norm(), 1.0);  // and lies there
 }
 INSTANTIATE_TEST_SUITE_P(Presets, ReleasedInAir, ::testing::Values("premium", "omni", "omega7", "inverse3", "falcon"));
+
+TEST(ReleasedStylus, TickOfAServerCarriesTheStylus) {
+  const DevicePreset preset = preset_of("premium");
+  for (const bool is_carried : {true, false}) {
+    HapticOptions options;
+    options.has_weight_compensation = is_carried;
+    apply_device_preset(preset, options);
+    const auto made = make_haptic_scene(layered_patient(liver_way()), paper_tissues(), {}, preset.capability, options);
+    ASSERT_TRUE(made) << made.error().text();
+    HapticScene scene = **made;
+    // Down in D is down in P, and the needle is far above the skin.
+    scene.X_PD = Pose(rotation_between(-Vec3::UnitZ(), scene.gravity_P), -800.0 * scene.gravity_P);
+    Bench bench(preset);
+    DeviceReading reading = bench.period(placed_at(Pose(rotation_from_vector({2.0, 0.5, 0.0}), Vec3::Zero())), {});
+    HapticState state;
+    for (int i = 0; i < 2000; ++i) {
+      HapticInput input;
+      input.time_s = bench.time_s;
+      input.X_DS = reading.X_DS;
+      const HapticOutput output = tick(state, input, scene);
+      reading = bench.period(DeviceHand{}, {output.f_D, output.tau_D});
+    }
+    const double sunk_mm = -bench.device.X_DS().p().z();
+    if (is_carried) {
+      EXPECT_LT(std::abs(sunk_mm), 0.5);
+    } else {
+      EXPECT_GT(sunk_mm, 100.0);
+    }
+  }
+}
 
 TEST(VirtualHapticDevice, FallsAsItsWeightAndMassSay) {
   const DevicePreset preset = ideal();
@@ -268,86 +231,6 @@ TEST(VirtualHapticDevice, ViscosityLimitsTheSpeed) {
   EXPECT_NEAR(bench.device.v_D().x(), 100.0, 0.01);
 }
 
-TEST(VirtualHapticDevice, HeldAgainstAForceGivesWayAsTheHandsSpring) {
-  for (const double point_mm : {0.0, 160.0}) {
-    const DevicePreset preset = preset_of("premium");
-    Bench bench(preset);
-    DeviceHand hand = holding(Pose(), bench.time_s);
-    hand.point_mm = point_mm;
-    bench.period(hand, {});
-    DeviceReading reading;
-    for (int i = 0; i < 2000; ++i) {
-      hand.time_s = bench.time_s;
-      Wrench wrench = weight_compensation(preset, reading.X_DS);
-      wrench.force_n += Vec3(0.0, 0.0, 1.2);
-      reading = bench.period(hand, wrench);
-    }
-    // 1.2 N along the stylus on 0.6 N/mm, less dry friction.
-    EXPECT_NEAR(reading.X_DS.p().z(), 2.0, preset.friction_n / hand.stiffness_n_per_mm + 0.03) << point_mm;
-    EXPECT_NEAR(reading.X_DS.p().x(), 0.0, 0.1) << point_mm;
-  }
-}
-
-TEST(VirtualHapticDevice, HeldAtTheTipSwingsAboutIt) {
-  DevicePreset preset = preset_of("premium");
-  preset.capability.stylus_weight_n = 0.0;
-  Bench bench(preset);
-  DeviceHand hand = holding(Pose(), bench.time_s);
-  hand.point_mm = 100.0;
-  bench.period(hand, {});
-  for (int i = 0; i < 2000; ++i) {
-    hand.time_s = bench.time_s;
-    bench.period(hand, {{0.5, 0.0, 0.0}, Vec3::Zero()});
-  }
-  // 0.5 N across at S: 50 N mm about the tip on 300 N mm/rad, and the tip itself gives way by 0.5 N on 0.6 N/mm.
-  const Pose X_DS = bench.device.X_DS();
-  const Vec3 tip = X_DS * Vec3(0.0, 0.0, 100.0);
-  const double angle = rotation_vector(X_DS.R()).norm();
-  EXPECT_NEAR(angle, 50.0 / 300.0, 0.01);
-  EXPECT_NEAR(tip.x(), 0.5 / 0.6, 0.1);
-  EXPECT_GT(X_DS.p().x(), 10.0);
-}
-
-TEST(VirtualHapticDevice, TakingAnotherHoldMovesNothing) {
-  Bench bench(preset_of("premium"));
-  const Pose X_DS(rotation_from_vector({0.2, -0.7, 0.1}), {5.0, 6.0, 7.0});
-  DeviceHand hand = holding(X_DS, bench.time_s);
-  bench.period(hand, {});
-  const Pose before = bench.device.X_DS();
-  const Vec3 v_before = bench.device.v_D();
-  for (const double point_mm : {160.0, 20.0, 0.0}) {
-    hand.point_mm = point_mm;
-    bench.device.hold(hand);
-    EXPECT_LT((bench.device.X_DS().p() - before.p()).norm(), 1e-9);
-    EXPECT_LT((bench.device.v_D() - v_before).norm(), 1e-9);
-  }
-  bench.device.hold({});
-  EXPECT_LT((bench.device.X_DS().p() - before.p()).norm(), 1e-9);
-}
-
-TEST(VirtualHapticDevice, HandGoesOnByItsVelocityForAWhileAndThenStands) {
-  Bench bench(ideal());
-  DeviceHand hand = holding(Pose(), bench.time_s);
-  hand.v_D = Vec3(100.0, 0.0, 0.0);
-  hand.is_rigid = true;
-  bench.device.hold(hand);
-  for (int i = 0; i < 40; ++i) bench.period(std::nullopt, {});
-  EXPECT_NEAR(bench.device.X_DS().p().x(), 4.0, 1e-9);
-  for (int i = 0; i < 100; ++i) bench.period(std::nullopt, {});
-  EXPECT_NEAR(bench.device.X_DS().p().x(), 5.0, 1e-9);  // 50 ms of it
-  EXPECT_EQ(bench.device.v_D().norm(), 0.0);
-}
-
-TEST(VirtualHapticDevice, RigidHandFollowsExactlyWhateverItPushes) {
-  Bench bench(ideal());
-  const Pose X_DS(rotation_from_vector({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
-  DeviceHand hand = holding(X_DS, bench.time_s);
-  hand.is_rigid = true;
-  for (int i = 0; i < 50; ++i) bench.period(hand, {{30.0, 30.0, 0.0}, {400.0, 0.0, 0.0}});
-  EXPECT_LT((bench.device.X_DS().p() - X_DS.p()).norm(), 1e-12);
-  EXPECT_LT((bench.device.X_DS().R() - X_DS.R()).norm(), 1e-12);
-}
-
 TEST(VirtualHapticDevice, WorkspaceEndsInASoftWall) {
   const DevicePreset preset = preset_of("premium");
   Bench bench(preset);
@@ -399,33 +282,6 @@ TEST(VirtualHapticDevice, SameTimeAgainIsARepeatedReading) {
   Bench bench(preset_of("premium"));
   EXPECT_EQ(bench.device.read(bench.time_s + kDt_s).status, DeviceStatus::kFresh);
   EXPECT_EQ(bench.device.read(bench.time_s + kDt_s).status, DeviceStatus::kRepeated);
-}
-
-TEST(VirtualHapticDevice, GivesTheButtonsOfTheHand) {
-  Bench bench(preset_of("premium"));
-  DeviceHand hand = holding(Pose(), bench.time_s);
-  hand.buttons = kButtonMain | kButtonSecond;
-  bench.period(hand, {});
-  EXPECT_EQ(bench.period(hand, {}).buttons, kButtonMain | kButtonSecond);
-}
-
-TEST(VirtualHapticDevice, HandThatIsNotFiniteIsIgnored) {
-  Bench bench(preset_of("premium"));
-  const DeviceHand good = holding(Pose::translation({1.0, 0.0, 0.0}), bench.time_s);
-  bench.period(good, {});
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (int i = 0; i < 6; ++i) {
-    DeviceHand bad = good;
-    if (i == 0) bad.X_DS = Pose::translation({nan, 0.0, 0.0});
-    if (i == 1) bad.v_D.x() = nan;
-    if (i == 2) bad.stiffness_n_per_mm = -1.0;
-    if (i == 3) bad.mass_kg = nan;
-    if (i == 4) bad.time_s = nan;
-    if (i == 5) bad.inertia_kg_mm2 = -50.0;
-    bench.period(bad, {});
-    EXPECT_TRUE(bench.period(std::nullopt, {}).X_DS.is_finite()) << i;
-  }
-  EXPECT_NEAR(bench.device.X_DS().p().x(), 1.0, 0.2);  // held as before, less the sag under its weight
 }
 
 }  // namespace
