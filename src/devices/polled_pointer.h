@@ -1,0 +1,96 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "devices/haptic_device.h"
+#include "realtime/triple_buffer.h"
+
+namespace trocar {
+
+/// What a pad or a knob asks of the stylus. Motions add up.
+struct PointerMotion {
+  Vec3 v_D = Vec3::Zero();         ///< mm/s
+  double inward_mm_per_s = 0.0;    ///< Along +z of S: from the grip to the tip.
+  Vec3 w_D = Vec3::Zero();         ///< rad/s, about the origin of S.
+  double turning_rad_per_s = 0.0;  ///< About +z of S: turns the bevel.
+  std::uint32_t buttons = 0;       ///< kButtonMain, kButtonSecond and higher bits.
+};
+
+/// Where a pointer starts: in the middle of the workspace, its tip down, +x of S to the right.
+Pose pointer_start() noexcept;
+
+/// X_DS after `dt_s` of a motion: its origin stays within the workspace's ball and slides along its edge. A motion or
+/// a time that is not finite, and time that runs back, moves nothing. Real-time safe.
+Pose move_pointer(const Pose& X_DS, const PointerMotion& motion, double dt_s, double workspace_radius_mm) noexcept;
+
+/// A pad or knob of which one can ask how it stands. All functions are called by one thread.
+class PointerSource {
+ public:
+  virtual ~PointerSource() = default;
+  PointerSource(const PointerSource&) = delete;
+  PointerSource& operator=(const PointerSource&) = delete;
+
+  virtual std::string name() const = 0;
+  /// Finds and opens it; may take a second. Again after close.
+  virtual Status open() = 0;
+  /// A file descriptor that becomes readable when there is news; -1: there is none.
+  virtual int descriptor() const noexcept { return -1; }
+  /// What it asks for now; false: it is gone.
+  virtual bool poll(PointerMotion& motion) noexcept = 0;
+  /// Lets the hand know of a force (N): rumble.
+  virtual void show_force(double) noexcept {}
+  virtual void close() noexcept = 0;
+
+ protected:
+  PointerSource() = default;
+};
+
+inline constexpr std::int64_t kPointerPeriod_ns = 4'000'000;  ///< The thread polls at 250 Hz. [assumed]
+inline constexpr double kPointerSilence_s = 0.1;  ///< Without news for so long, the stylus stands still. [assumed]
+inline constexpr double kPointerStep_s = 0.02;    ///< The longest time that one reading moves the stylus for. [assumed]
+/// Without a fresh wrench for so long, no force is shown.
+inline constexpr std::int64_t kPointerForceAge_ns = 20'000'000;
+
+/// A device made of a source: a thread of its own polls it, each reading moves the stylus on. So a pose is new at
+/// every reading, however slowly the source speaks. Invariant: the source is used by the thread alone.
+class PolledPointer final : public HapticDevice {
+ public:
+  static Result<std::unique_ptr<HapticDevice>> open(const DevicePreset& preset, std::unique_ptr<PointerSource> source);
+  ~PolledPointer() override;
+
+  const DevicePreset& preset() const noexcept override { return preset_; }
+  std::string name() const override { return name_; }
+  DeviceReading read(double now_s) noexcept override;
+  bool write(const Wrench& wrench_D) noexcept override;
+  Status reconnect() override;
+
+ private:
+  PolledPointer(const DevicePreset& preset, std::unique_ptr<PointerSource> source);
+  Status start();
+  void stop() noexcept;
+  void run(std::promise<Status> opened);
+  void poll_until_stopped() noexcept;
+
+  DevicePreset preset_;
+  std::unique_ptr<PointerSource> source_;
+  std::string name_;
+  int wake_ = -1;  ///< Event descriptor: ends the thread's waiting.
+  std::thread thread_;
+  std::atomic<bool> is_stopping_{false};
+  std::atomic<bool> is_gone_{false};
+  TripleBuffer<PointerMotion> motion_;  ///< Thread to reader.
+  TripleBuffer<double> force_n_;        ///< Writer to thread.
+
+  // The reader's own.
+  Pose X_DS_ = pointer_start();
+  double read_s_ = 0.0;
+  double heard_s_ = 0.0;
+  bool has_read_ = false;
+};
+
+}  // namespace trocar
