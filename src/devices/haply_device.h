@@ -1,0 +1,67 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "devices/haptic_device.h"
+#include "realtime/triple_buffer.h"
+
+namespace trocar {
+
+inline constexpr const char* kHaplyAddress = "ws://localhost:10001";  ///< Source: the vendor's documentation.
+inline constexpr std::int64_t kHaplyPeriod_ns = 500'000;              ///< One state and its command: 2 kHz. [assumed]
+inline constexpr std::int64_t kHaplyForceAge_ns = 20'000'000;         ///< Without a fresh wrench for so long: no force.
+inline constexpr int kHaplyMostUnusable = 50;  ///< Messages in a row that cannot be used: taken for gone. [assumed]
+
+class WebSocket;
+
+/// A Haply Inverse3 with its grip, through the Inverse service: position and direction sensed, force alone. A thread
+/// answers each state with one command; the service decides by its answers how fast that goes, at most at
+/// kHaplyPeriod_ns. Closed at zero force. Invariant: the connection is the thread's while it runs.
+class HaplyDevice final : public HapticDevice {
+ public:
+  /// `address`: "ws://HOST:PORT". Without a grip it senses 3 degrees of freedom, whatever the preset says.
+  static Result<std::unique_ptr<HapticDevice>> open(const DevicePreset& preset, const std::string& address);
+  ~HaplyDevice() override;
+
+  const DevicePreset& preset() const noexcept override { return preset_; }
+  std::string name() const override { return "haply:" + address_; }
+  DeviceReading read(double now_s) noexcept override;
+  bool write(const Wrench& wrench_D) noexcept override;
+  Status reconnect() override;
+
+ private:
+  struct Sample {
+    Pose X_DS;
+    std::uint32_t buttons = 0;
+  };
+
+  HaplyDevice(const DevicePreset& preset, std::string address);
+  Status start();
+  void stop() noexcept;
+  void run();
+  bool take_state(const std::string& message);
+  bool answer(const Vec3& f_D);
+  bool wait_for_state(std::string& message);
+  Vec3 force_now() noexcept;
+  void say_goodbye(bool is_answer_due);
+
+  DevicePreset preset_;
+  std::string address_;
+  std::string device_id_;
+  bool is_centred_ = false;
+  bool has_grip_ = false;
+  int unusable_ = 0;
+  std::int64_t written_ns_ = 0;
+  std::unique_ptr<WebSocket> socket_;
+  std::thread thread_;
+  std::atomic<bool> is_stopping_{false};
+  std::atomic<bool> is_gone_{false};
+  TripleBuffer<Sample> state_;               ///< Thread to reader.
+  TripleBuffer<Vec3> force_{Vec3(0, 0, 0)};  ///< N in D, writer to thread.
+};
+
+}  // namespace trocar
