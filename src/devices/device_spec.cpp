@@ -24,12 +24,12 @@ struct DeviceKind {
 constexpr std::array kKinds{
     DeviceKind{"virtual", Argument::kOptional, open_virtual},  // :PRESET
     DeviceKind{"mouse", Argument::kNone, open_pointer},
-    DeviceKind{"gamepad", Argument::kNone, nullptr},
-    DeviceKind{"spacemouse", Argument::kNone, nullptr},
+    DeviceKind{"gamepad", Argument::kNone, open_gamepad},
+    DeviceKind{"spacemouse", Argument::kNone, open_spacemouse},
     DeviceKind{"replay", Argument::kNeeded, open_replay},     // :FILE
     DeviceKind{"openhaptics", Argument::kOptional, nullptr},  // :NAME
     DeviceKind{"forcedimension", Argument::kNone, nullptr},
-    DeviceKind{"haply", Argument::kOptional, nullptr},  // :ws://HOST:PORT
+    DeviceKind{"haply", Argument::kOptional, open_haply},  // :ws://HOST:PORT
 };
 // clang-format on
 

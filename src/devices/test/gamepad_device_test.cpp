@@ -9,7 +9,9 @@
 #include <limits>
 
 #include "bounded_wait.h"
+#include "core/data_dir.h"
 #include "core/testing/allocation_guard.h"
+#include "devices/device_spec.h"
 
 namespace trocar {
 namespace {
@@ -315,6 +317,17 @@ TEST(Gamepad, ReadAndWriteDoNotAllocate) {
     device->write({Vec3(0.0, 1.0, 0.0), Vec3::Zero()});
   }
   EXPECT_EQ(guard.count(), 0U);
+}
+
+TEST(Gamepad, IsOpenedByItsName) {
+  const VirtualPad pad;
+  const auto spec = parse_device_spec("gamepad");
+  ASSERT_TRUE(spec.has_value()) << spec.error().text();
+  DeviceOptions options;
+  options.devices_file = data_dir() / "devices.toml";
+  const auto device = open_device(*spec, options);
+  ASSERT_TRUE(device.has_value()) << device.error().text();
+  EXPECT_EQ((*device)->preset().name, "gamepad");
 }
 
 }  // namespace

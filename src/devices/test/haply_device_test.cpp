@@ -6,9 +6,11 @@
 #include <limits>
 
 #include "bounded_wait.h"
+#include "core/data_dir.h"
 #include "core/testing/allocation_guard.h"
 #include "devices/detail/haply_messages.h"
 #include "devices/detail/websocket.h"
+#include "devices/device_spec.h"
 #include "haply_service.h"
 
 namespace trocar {
@@ -329,6 +331,17 @@ TEST(HaplyDevice, ReadAndWriteDoNotAllocate) {
     device->write(pull(0.01, 0.0, 0.0));
   }
   EXPECT_EQ(guard.count(), 0U);
+}
+
+TEST(HaplyDevice, IsOpenedByItsName) {
+  const HaplyService service;
+  const auto spec = parse_device_spec("haply:" + service.address());
+  ASSERT_TRUE(spec.has_value()) << spec.error().text();
+  DeviceOptions options;
+  options.devices_file = data_dir() / "devices.toml";
+  const auto device = open_device(*spec, options);
+  ASSERT_TRUE(device.has_value()) << device.error().text();
+  EXPECT_EQ((*device)->preset().name, "inverse3");
 }
 
 }  // namespace

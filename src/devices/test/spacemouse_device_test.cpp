@@ -6,7 +6,9 @@
 #include <string>
 
 #include "bounded_wait.h"
+#include "core/data_dir.h"
 #include "core/testing/allocation_guard.h"
+#include "devices/device_spec.h"
 #include "spacenav_daemon.h"
 
 namespace trocar {
@@ -180,6 +182,17 @@ TEST(SpaceMouse, ReadAndWriteDoNotAllocate) {
     device->write({Vec3(0.0, 1.0, 0.0), Vec3::Zero()});
   }
   EXPECT_EQ(guard.count(), 0U);
+}
+
+TEST(SpaceMouse, IsOpenedByItsName) {
+  const SpacenavDaemon daemon;
+  const auto spec = parse_device_spec("spacemouse");
+  ASSERT_TRUE(spec.has_value()) << spec.error().text();
+  DeviceOptions options;
+  options.devices_file = data_dir() / "devices.toml";
+  const auto device = open_device(*spec, options);
+  ASSERT_TRUE(device.has_value()) << device.error().text();
+  EXPECT_EQ((*device)->preset().name, "spacemouse");
 }
 
 }  // namespace
