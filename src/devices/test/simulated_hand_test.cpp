@@ -55,9 +55,14 @@ TEST(SimulatedHand, TakingAnotherHoldMovesNothing) {
   Bench bench(preset_of("premium"));
   const Pose X_DS(rotation_from_vector({0.2, -0.7, 0.1}), {5.0, 6.0, 7.0});
   DeviceHand hand = holding(X_DS, bench.time_s);
+  hand.v_D = Vec3(50.0, -20.0, 10.0);
+  hand.w_D = Vec3(1.0, 2.0, -3.0);
+  hand.is_rigid = true;
   bench.period(hand, {});
+  bench.period(hand, {});  // moves and turns
   const Pose before = bench.device.X_DS();
   const Vec3 v_before = bench.device.v_D();
+  ASSERT_GT(v_before.norm(), 10.0);
   for (const double point_mm : {160.0, 20.0, 0.0}) {
     hand.point_mm = point_mm;
     bench.device.hold(hand);
@@ -66,6 +71,17 @@ TEST(SimulatedHand, TakingAnotherHoldMovesNothing) {
   }
   bench.device.hold({});
   EXPECT_LT((bench.device.X_DS().p() - before.p()).norm(), 1e-9);
+}
+
+TEST(SimulatedHand, PutsTheStylusInPlaceOnceATarget) {
+  Bench bench(ideal());
+  DeviceHand hand = placed_at(Pose::translation({0.0, 0.0, 40.0}));
+  for (int i = 0; i < 50; ++i) bench.period(hand, {});  // the same target, told every period
+  EXPECT_LT(bench.device.X_DS().p().z(), 39.0);         // it fell all the while
+  hand.time_s += 1.0;
+  bench.device.hold(hand);
+  EXPECT_EQ(bench.device.X_DS().p().z(), 40.0);
+  EXPECT_EQ(bench.device.v_D().norm(), 0.0);
 }
 
 TEST(SimulatedHand, HandGoesOnByItsVelocityForAWhileAndThenStands) {
