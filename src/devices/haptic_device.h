@@ -66,6 +66,8 @@ class HapticDevice {
   virtual bool write(const Wrench& wrench_D) noexcept = 0;
   /// For devices that nobody really holds; ignored by all others. Real-time safe.
   virtual void hold(const DeviceHand&) noexcept {}
+  /// A person's hand holds it: it never stands quite still. false: a simulated hand, or a recorded one.
+  virtual bool is_in_real_hand() const noexcept { return true; }
   /// After kDisconnected, by a thread that may wait, while nobody calls read or write: opens it again.
   virtual Status reconnect() = 0;
 

@@ -23,6 +23,7 @@ class PointerDevice final : public HapticDevice {
   /// Not taken: what is no sane wrench.
   bool write(const Wrench& wrench_D) noexcept override;
   void hold(const DeviceHand& hand) noexcept override;
+  bool is_in_real_hand() const noexcept override { return false; }
   Status reconnect() override { return {}; }
 
  private:

@@ -17,6 +17,7 @@ class ReplayDevice final : public HapticDevice {
   DeviceReading read(double now_s) noexcept override;
   /// Recorded nowhere; not taken is what is no sane wrench.
   bool write(const Wrench& wrench_D) noexcept override;
+  bool is_in_real_hand() const noexcept override { return false; }
   Status reconnect() override { return {}; }
 
  private:

@@ -36,6 +36,7 @@ class VirtualHapticDevice final : public HapticDevice {
   bool write(const Wrench& wrench_D) noexcept override;
   /// Ignored where it is not finite.
   void hold(const DeviceHand& hand) noexcept override;
+  bool is_in_real_hand() const noexcept override { return false; }
   Status reconnect() override { return {}; }
 
   /// What the encoders do not tell: the stylus itself.

@@ -179,6 +179,8 @@ const char* to_string(GateFault fault) noexcept {
       return "runaway";
     case GateFault::kEncoderStuck:
       return "encoder_stuck";
+    case GateFault::kLoopStalled:
+      return "loop_stalled";
     case GateFault::kRequested:
       return "requested";
   }

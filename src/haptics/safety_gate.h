@@ -15,6 +15,7 @@ enum class GateFault : std::uint8_t {
   kDeviceSilent,  ///< No fresh reading for longer than max_unread_s.
   kRunaway,       ///< Faster than brake_mm_per_s for longer than max_runaway_s.
   kEncoderStuck,  ///< Force without motion of a single count, for longer than the caller allows.
+  kLoopStalled,   ///< The loop itself had a hole longer than the caller allows.
   kRequested,     ///< Somebody pressed the stop button.
 };
 const char* to_string(GateFault fault) noexcept;
@@ -86,7 +87,7 @@ struct GateInput {
   double silence_s = 0.0;                     ///< Since the client was last heard.
   double unread_s = 0.0;                      ///< Since the device's last fresh reading.
   bool is_wanted = false;                     ///< Somebody asked for forces.
-  GateFault device_fault = GateFault::kNone;  ///< What the caller saw (kDeviceLost, kEncoderStuck, kRequested).
+  GateFault device_fault = GateFault::kNone;  ///< What the caller saw (kDeviceLost, kEncoderStuck, kLoopStalled, kRequested).
   bool is_reset = false;                      ///< Explicit reset of a fault; without effect while its cause lasts.
 };
 

@@ -82,7 +82,7 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
 
   // The device gets the coupling's force: the balance of the laws and the holding force.
   sample.device_f_n = sample.f_total_n + sample.axis * sample.f_stick_n;
-  limit_to_device(output, events, scene);
+  limit_to_device(output, weight, events, scene);
   state.last = sample;
   return output;
 }

@@ -28,6 +28,7 @@ struct HapticState {
 struct HapticOutput {
   Vec3 f_D = Vec3::Zero();
   Vec3 tau_D = Vec3::Zero();
+  Wrench weight_D;  ///< The part of it that carries the weight of links and stylus (before the device's limits).
   TickSample sample;
 };
 

@@ -41,7 +41,7 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   if (step.has_jumped) events.add(LimitReason::kJumped);
   if (step.started_inside) events.add(LimitReason::kResumedInside);
   if (step.is_bound) events.add(LimitReason::kSolverBound);
-  limit_to_device(output, events, scene);
+  limit_to_device(output, weight, events, scene);
   state.last = sample;
   return output;
 }

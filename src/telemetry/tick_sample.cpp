@@ -32,6 +32,20 @@ const char* to_string(LimitReason reason) noexcept {
       return "resumed";
     case LimitReason::kJumped:
       return "jump";
+    case LimitReason::kPassivity:
+      return "passivity";
+    case LimitReason::kContinuous:
+      return "continuous";
+    case LimitReason::kSlew:
+      return "slew";
+    case LimitReason::kStale:
+      return "stale";
+    case LimitReason::kBrake:
+      return "brake";
+    case LimitReason::kSafeStart:
+      return "safe_start";
+    case LimitReason::kFault:
+      return "fault";
   }
   return "unknown";
 }

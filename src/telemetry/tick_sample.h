@@ -28,6 +28,14 @@ enum class LimitReason : std::uint8_t {
   kEventsDropped,
   kResumedInside,  ///< The needle was found inside the body: no force step, taken as inserted.
   kJumped,         ///< The device moved further in one tick than a hand can: started afresh where it is.
+  // The safety gate began to...
+  kPassivity,   ///< take out energy,
+  kContinuous,  ///< spare warm motors,
+  kSlew,        ///< hold back a rise,
+  kStale,       ///< fade: the client is silent,
+  kBrake,       ///< brake,
+  kSafeStart,   ///< wait or ramp up,
+  kFault,       ///< fade to zero, for good.
 };
 const char* to_string(LimitReason reason) noexcept;
 

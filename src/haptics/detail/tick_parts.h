@@ -41,8 +41,9 @@ inline bool clamp_norm(Vec3& v, double limit) noexcept {
 }
 
 /// The last step of every tick: `device_f_n` and the torque limited to the device's peaks, said in the events, turned
-/// into D.
-inline void limit_to_device(HapticOutput& output, EventList& events, const HapticScene& scene) noexcept {
+/// into D, and beside them the weight's part of them.
+inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, EventList& events,
+                            const HapticScene& scene) noexcept {
   TickSample& sample = output.sample;
   Vec3 torque_P = sample.tau_nmm;
   const bool force_limited = clamp_norm(sample.device_f_n, scene.device.peak_force_n);
@@ -55,6 +56,8 @@ inline void limit_to_device(HapticOutput& output, EventList& events, const Hapti
   const Mat3 R_DP = scene.X_PD.R().transpose();
   output.f_D = R_DP * sample.device_f_n;
   output.tau_D = has_torque ? Vec3(R_DP * torque_P) : Vec3::Zero();
+  output.weight_D.force_n = R_DP * weight_P.force_n;
+  if (has_torque) output.weight_D.torque_nmm = R_DP * weight_P.torque_nmm;
 }
 
 }  // namespace trocar
