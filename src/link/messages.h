@@ -64,6 +64,7 @@ enum class ServerCommand : std::uint8_t {
   kReconnect,  ///< Open the device again.
   kStyletOut,
   kStyletIn,
+  kRestartStatistics,  ///< Of the loop.
 };
 
 /// A command wants a Reply with the same number.

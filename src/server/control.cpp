@@ -1,0 +1,119 @@
+#include "server/detail/control.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+
+#include "core/log.h"
+#include "server/flight_recorder.h"
+
+namespace trocar {
+namespace {
+
+constexpr std::chrono::milliseconds kPausePatience{500};
+
+/// Has the real-time thread leave the device alone while it lives.
+class DevicePause {
+ public:
+  explicit DevicePause(Shared& shared) : shared_(shared) {
+    shared.pause_wanted.store(true, std::memory_order_release);
+    const auto end = std::chrono::steady_clock::now() + kPausePatience;
+    while (!is_granted() && std::chrono::steady_clock::now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ~DevicePause() { shared_.pause_wanted.store(false, std::memory_order_release); }
+  DevicePause(const DevicePause&) = delete;
+  DevicePause& operator=(const DevicePause&) = delete;
+  bool is_granted() const { return shared_.is_paused.load(std::memory_order_acquire); }
+
+ private:
+  Shared& shared_;
+};
+
+}  // namespace
+
+Control::Control(Shared& shared, HapticDevice& device, SceneBuilder builder, std::string tool,
+                 std::filesystem::path flight_folder)
+    : shared_(shared),
+      device_(device),
+      builder_(std::move(builder)),
+      tool_(std::move(tool)),
+      flight_folder_(std::move(flight_folder)) {}
+
+void Control::run() {
+  ControlJob job;
+  while (shared_.door.wait(job)) {
+    const Result<std::string> done = perform(job);
+    if (done) {
+      log_info("{}", *done);
+    } else {
+      log_warning("{}", done.error().text());
+    }
+    if (job.session != 0)
+      shared_.door.answer({job.session, {job.request, done.has_value(), done ? *done : done.error().text()}});
+    shared_.scene.collect();
+  }
+}
+
+Result<std::string> Control::perform(const ControlJob& job) {
+  return std::visit([this](const auto& what) { return perform(what); }, job.what);
+}
+
+void Control::publish(const ServoScene& scene) {
+  shared_.scene.publish(std::make_shared<const ServoScene>(scene));
+  const LoadScene& request = builder_.request();
+  shared_.door.update([&](ControlStatus& status) {
+    status.has_scene = true;
+    status.patient = request.patient;
+    status.patient_hash = builder_.patient()->content_hash;
+    status.force_model = to_string(scene.scene->options.force_model);
+    status.task = request.task;
+    status.warning.clear();
+  });
+}
+
+Result<std::string> Control::perform(const LoadScene& request) {
+  if (request.tool != tool_)
+    return fail(fmt::format("this server holds the {}, not the {}", tool_, request.tool), "tool",
+                "send the scene to the other server");
+  const auto tell = [this](double done) { shared_.door.update([&](ControlStatus& status) { status.loading = done; }); };
+  constexpr double kBegun = 0.01;
+  tell(kBegun);
+  const Result<ServoScene> scene =
+      builder_.load(request, [&](std::string_view, double fraction) { tell(std::max(kBegun, fraction)); });
+  tell(0.0);
+  if (!scene) return tl::unexpected(scene.error());
+  publish(*scene);
+  return fmt::format("scene {} is loaded: {}, {} model", scene->number, request.patient,
+                     to_string(scene->scene->options.force_model));
+}
+
+Result<std::string> Control::perform(const SetParameters& request) {
+  TROCAR_TRY(const ServoScene scene, builder_.change(request));
+  publish(scene);
+  return fmt::format("scene {} has other numbers; the coupling is {:.3g} N/mm", scene.number,
+                     scene.scene->options.coupling.stiffness_n_per_mm);
+}
+
+Result<std::string> Control::perform(ServerCommand) {
+  const DevicePause pause(shared_);
+  if (!pause.is_granted()) return fail("the real-time thread does not let go of the device", device_.name());
+  TROCAR_TRY_STATUS(device_.reconnect());
+  return fmt::format("{} is open again; reset the fault to go on", device_.name());
+}
+
+Result<std::string> Control::perform(const WriteFlight& flight) {
+  if (flight_folder_.empty()) return std::string("no folder for flight records was given");
+  const std::string utc = fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
+  const Result<std::filesystem::path> path = write_flight(flight_folder_, utc, flight.records);
+  const std::string text =
+      path ? fmt::format("a fault: the last {} periods are in {}", flight.records.size(), path->string())
+           : fmt::format("the flight record could not be written: {}", path.error().text());
+  shared_.door.update([&](ControlStatus& status) { status.warning = text; });
+  if (!path) return tl::unexpected(path.error());
+  return text;
+}
+
+}  // namespace trocar

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+
+#include "server/detail/shared.h"
+#include "server/scene_builder.h"
+
+namespace trocar {
+
+/// The control thread: scenes, reconnecting, flight records; one job after the other, until the door is closed.
+class Control {
+ public:
+  Control(Shared& shared, HapticDevice& device, SceneBuilder builder, std::string tool,
+          std::filesystem::path flight_folder);
+  void run();
+
+ private:
+  Result<std::string> perform(const ControlJob& job);
+  Result<std::string> perform(const LoadScene& request);
+  Result<std::string> perform(const SetParameters& request);
+  Result<std::string> perform(ServerCommand command);
+  Result<std::string> perform(const WriteFlight& flight);
+  void publish(const ServoScene& scene);
+
+  Shared& shared_;
+  HapticDevice& device_;
+  SceneBuilder builder_;
+  std::string tool_;
+  std::filesystem::path flight_folder_;
+};
+
+}  // namespace trocar

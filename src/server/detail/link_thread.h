@@ -1,0 +1,40 @@
+#pragma once
+
+#include "link/server_socket.h"
+#include "server/detail/shared.h"
+#include "server/flight_recorder.h"
+
+namespace trocar {
+
+/// The link's thread: messages in, batches out, status 20 times a second, the flight recorder's feed.
+class LinkThread {
+ public:
+  LinkThread(Shared& shared, ServerSocket& socket, Welcome welcome, int priority);
+  void run();
+  std::uint64_t ticks() const noexcept { return ticks_; }  ///< After run() has ended.
+
+ private:
+  void take(const Received& received);
+  void take(const Received& received, const Command& command);
+  void reply(const Received& received, std::uint32_t request, bool is_done, std::string text);
+  void drain();
+  void flush();
+  ServerStatus make_status(double now_s);
+  std::string warning() const;
+
+  Shared& shared_;
+  ServerSocket& socket_;
+  Welcome welcome_;
+  int priority_;
+  FlightRecorder recorder_;
+  StateBatch batch_;
+  ServoRecord newest_;
+  std::uint64_t ticks_ = 0;
+  std::uint64_t in_control_ = 0;  ///< Session; 0: nobody.
+  double window_age_s_ = 0.0;
+  std::uint32_t actions_ = 0;
+  double drop_n_ = 0.0, drop_s_ = 0.0;
+  double sent_s_ = 0.0, told_s_ = 0.0;
+};
+
+}  // namespace trocar

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "link/messages.h"
+#include "realtime/handover.h"
+#include "realtime/loop_statistics.h"
+#include "realtime/real_time_grant.h"
+#include "realtime/spsc_ring.h"
+#include "realtime/triple_buffer.h"
+#include "server/servo.h"
+
+/// What the three threads of a haptic server share. Private to `server`.
+namespace trocar {
+
+/// Work for the control thread.
+struct WriteFlight {
+  std::vector<ServoRecord> records;
+};
+struct ControlJob {
+  std::uint64_t session = 0;  ///< Who gets the reply; 0: nobody.
+  std::uint32_t request = 0;
+  std::variant<LoadScene, SetParameters, ServerCommand, WriteFlight> what;
+};
+struct AddressedReply {
+  std::uint64_t session = 0;
+  Reply reply;
+};
+
+/// What the control thread knows and the link's thread tells.
+struct ControlStatus {
+  std::string patient, patient_hash, force_model, task, warning;
+  bool has_scene = false;
+  double loading = 0.0;  ///< 0: nothing is being loaded.
+};
+
+/// The door between link and control thread: both may wait, neither is the real-time thread.
+class ControlDoor {
+ public:
+  void post(ControlJob job) {
+    {
+      const std::lock_guard lock(mutex_);
+      jobs_.push_back(std::move(job));
+    }
+    wake_.notify_one();
+  }
+  /// The next job; false: closed.
+  bool wait(ControlJob& job) {
+    std::unique_lock lock(mutex_);
+    wake_.wait(lock, [&] { return is_closed_ || !jobs_.empty(); });
+    if (is_closed_) return false;
+    job = std::move(jobs_.front());
+    jobs_.pop_front();
+    return true;
+  }
+  void close() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_closed_ = true;
+    }
+    wake_.notify_all();
+  }
+  void answer(AddressedReply reply) {
+    const std::lock_guard lock(mutex_);
+    replies_.push_back(std::move(reply));
+  }
+  std::vector<AddressedReply> take_replies() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(replies_, {});
+  }
+  ControlStatus status() const {
+    const std::lock_guard lock(mutex_);
+    return status_;
+  }
+  template <class Change>
+  void update(Change&& change) {
+    const std::lock_guard lock(mutex_);
+    change(status_);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<ControlJob> jobs_;
+  std::vector<AddressedReply> replies_;
+  ControlStatus status_;
+  bool is_closed_ = false;
+};
+
+inline constexpr std::size_t kRecordsKept = 8192;  // 2 s at 4 kHz
+inline constexpr std::size_t kCommandsKept = 64;
+inline constexpr int kMostCommandsAPeriod = 8;
+inline constexpr double kNeverHeard_s = 1e6;
+
+/// Everything between the threads, named by its direction.
+struct Shared {
+  explicit Shared(std::int64_t period) : period_ns(period), statistics(LoopStatistics(period)) {}
+
+  const std::int64_t period_ns;
+  std::atomic<bool> is_stopping{false};
+  std::atomic<bool> is_fading{false};  ///< The server is about to stop: forces off.
+
+  // Link -> real time.
+  SpscRing<ServerCommand> commands{kCommandsKept};
+  TripleBuffer<HandTarget> hand;
+  std::atomic<std::int64_t> heard_ns{0};  ///< The client in control; 0: there is none.
+
+  // Real time -> link.
+  SpscRing<ServoRecord> records{kRecordsKept};
+  std::atomic<std::uint64_t> records_dropped{0};
+  TripleBuffer<LoopStatistics> statistics;
+  std::atomic<bool> is_wanted{false};
+  std::atomic<bool> has_grant{false};
+  RealTimeGrant grant;  ///< Written before has_grant is set.
+
+  // Control <-> real time.
+  Handover<ServoScene> scene;
+  std::atomic<bool> pause_wanted{false};  ///< The control thread wants the device for itself...
+  std::atomic<bool> is_paused{false};     ///< ...and has it.
+
+  // Link <-> control.
+  ControlDoor door;
+};
+
+/// The body of the real-time thread.
+void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept;
+
+}  // namespace trocar

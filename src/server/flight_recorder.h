@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "server/servo.h"
+
+namespace trocar {
+
+/// Keeps the last periods, and gives them away once a fault has latched and a little more has been seen. Fed by the
+/// link's thread with the records that leave the servo: the servo itself pays nothing for it.
+class FlightRecorder {
+ public:
+  /// `rate_hz`: of the records. Keeps kBefore_s before the fault and kAfter_s of what came after it.
+  explicit FlightRecorder(double rate_hz);
+  /// One record; a flight when it is complete.
+  std::optional<std::vector<ServoRecord>> add(const ServoRecord& record);
+
+  static constexpr double kBefore_s = 2.0;
+  static constexpr double kAfter_s = 0.1;
+
+ private:
+  std::size_t before_, after_;
+  std::size_t wanted_ = 0;  ///< Records still to come; 0: no fault is being recorded.
+  GateFault fault_ = GateFault::kNone;
+  std::deque<ServoRecord> records_;
+};
+
+/// Writes FOLDER/flight-UTC-FAULT.csv, one row a period: time, pose, buttons, wanted and written wrench, what the gate
+/// did. Gives its path.
+Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, const std::string& utc,
+                                           const std::vector<ServoRecord>& flight);
+
+}  // namespace trocar

@@ -1,0 +1,114 @@
+#include "server/haptic_server.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <thread>
+
+#include "core/log.h"
+#include "core/version.h"
+#include "server/detail/control.h"
+#include "server/detail/link_thread.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kNsPerS = 1e9;
+
+Welcome make_welcome(const HapticDevice& device, const std::string& tool, double force_scale) {
+  const DevicePreset& preset = device.preset();
+  Welcome welcome;
+  welcome.server = fmt::format("trocar-hapticd {}", kVersion);
+  welcome.tool = tool;
+  welcome.device = {device.name(),
+                    preset.title,
+                    preset.sensed_dof,
+                    preset.actuated_dof,
+                    preset.workspace_radius_mm,
+                    preset.capability.peak_force_n,
+                    preset.continuous_force_n.value_or(0.0),
+                    preset.capability.peak_torque_nmm,
+                    force_scale};
+  return welcome;
+}
+
+}  // namespace
+
+struct HapticServer::Impl {
+  Impl(const ServerOptions& options, std::unique_ptr<HapticDevice> the_device, PatientOpener open_patient,
+       ServerSocket the_socket)
+      : params(servo_params(the_device->preset())),
+        device(std::move(the_device)),
+        socket(std::move(the_socket)),
+        url(socket.bound_url()),
+        shared(static_cast<std::int64_t>(kNsPerS / options.rate_hz)),
+        servo(*device, params),
+        control(shared, *device, SceneBuilder(std::move(open_patient), options.tissues_file, device->preset()),
+                options.tool, options.flight_folder),
+        link(shared, socket, make_welcome(*device, options.tool, params.workspace.force_scale),
+             options.priority > 0 ? kLinkPriority : 0) {
+    control_thread = std::thread([this] { control.run(); });
+    link_thread = std::thread([this] { link.run(); });
+    servo_thread = std::thread([this, priority = options.priority] { run_servo_thread(shared, servo, priority); });
+  }
+  ~Impl() { stop(); }
+
+  ServerReport stop() {
+    if (shared.is_stopping) return {};
+    shared.is_fading = true;
+    constexpr double kMargin_s = 0.05;
+    std::this_thread::sleep_for(std::chrono::duration<double>(params.gate.fade_s + kMargin_s));
+    shared.is_stopping = true;
+    servo_thread.join();
+    link_thread.join();
+    shared.door.close();
+    control_thread.join();
+    return {shared.statistics.newest().summary(),
+            shared.grant,
+            link.ticks(),
+            shared.records_dropped,
+            socket.refused(),
+            socket.batches_not_taken()};
+  }
+
+  ServoParams params;
+  std::unique_ptr<HapticDevice> device;
+  ServerSocket socket;
+  std::string url;
+  Shared shared;
+  Servo servo;
+  Control control;
+  LinkThread link;
+  std::thread control_thread, link_thread, servo_thread;
+};
+
+HapticServer::HapticServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+HapticServer::HapticServer(HapticServer&&) noexcept = default;
+HapticServer& HapticServer::operator=(HapticServer&&) noexcept = default;
+HapticServer::~HapticServer() = default;
+
+Result<HapticServer> HapticServer::start(const ServerOptions& options, std::unique_ptr<HapticDevice> device,
+                                         PatientOpener open_patient) {
+  constexpr double kSlowest_hz = 250.0, kFastest_hz = 4000.0;
+  if (!(options.rate_hz >= kSlowest_hz && options.rate_hz <= kFastest_hz))
+    return fail_usage(
+        fmt::format("rate {} Hz is not between {:.0f} and {:.0f}", options.rate_hz, kSlowest_hz, kFastest_hz),
+        "--rate");
+  TROCAR_TRY_STATUS(parse_tool(options.tool));
+  TROCAR_TRY(ServerSocket socket, ServerSocket::bind(options.endpoint, options.security));
+  return HapticServer(std::make_unique<Impl>(options, std::move(device), std::move(open_patient), std::move(socket)));
+}
+
+void HapticServer::load(const LoadScene& request) {
+  impl_->shared.door.post({0, 0, request});
+}
+
+std::string HapticServer::url() const {
+  return impl_->url;
+}
+
+ServerReport HapticServer::stop() {
+  return impl_->stop();
+}
+
+}  // namespace trocar

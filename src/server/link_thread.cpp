@@ -1,0 +1,152 @@
+#include "server/detail/link_thread.h"
+
+#include <fmt/format.h>
+
+#include "core/log.h"
+#include "realtime/periodic_loop.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kBatch_s = 0.005;
+constexpr double kStatus_s = 0.05;
+constexpr std::size_t kSendAt = 128;  // samples: a batch is sent before its time
+constexpr int kWait_ms = 1;
+constexpr double kStalled_s = 1.0;  // a window without a picture for so long is told of
+
+}  // namespace
+
+LinkThread::LinkThread(Shared& shared, ServerSocket& socket, Welcome welcome, int priority)
+    : shared_(shared),
+      socket_(socket),
+      welcome_(std::move(welcome)),
+      priority_(priority),
+      recorder_(1e9 / static_cast<double>(shared.period_ns)) {}
+
+void LinkThread::run() {
+  const RealTimeGrant grant = request_real_time(priority_);
+  log_info("link thread: {}", grant.text());
+  while (!shared_.is_stopping.load(std::memory_order_relaxed)) {
+    double now_s = seconds(now_ns());
+    for (int wait_ms = kWait_ms; const auto received = socket_.receive(wait_ms, welcome_, now_s); wait_ms = 0) {
+      take(*received);
+      now_s = seconds(now_ns());
+    }
+    now_s = seconds(now_ns());
+    socket_.drop_silent(now_s);
+    const std::optional<double> heard_s = socket_.controller_heard_s();
+    shared_.heard_ns.store(heard_s ? static_cast<std::int64_t>(*heard_s * 1e9) : 0, std::memory_order_relaxed);
+    for (const AddressedReply& answer : shared_.door.take_replies()) socket_.send_reply(answer.session, answer.reply);
+
+    drain();
+    if (now_s - sent_s_ < kBatch_s) continue;
+    if (now_s - told_s_ >= kStatus_s) {
+      batch_.status = make_status(now_s);
+      told_s_ = now_s;
+    }
+    flush();
+    sent_s_ = now_s;
+  }
+  drain();
+  flush();
+}
+
+void LinkThread::drain() {
+  ServoRecord record;
+  while (shared_.records.pop(record)) {
+    // A gap ends a batch: its ticks are numbered from the first.
+    if (!batch_.samples.empty() && record.tick != batch_.first_tick + batch_.samples.size()) flush();
+    if (batch_.samples.empty()) batch_.first_tick = record.tick;
+    batch_.samples.push_back(record.sample);
+    if (batch_.samples.size() >= kSendAt) flush();
+    if (record.drop_n > 0.0) {
+      drop_n_ = record.drop_n;
+      drop_s_ = record.drop_s;
+    }
+    actions_ |= record.actions;
+    ticks_ = record.tick + 1;
+    if (auto flight = recorder_.add(record)) shared_.door.post({0, 0, WriteFlight{std::move(*flight)}});
+    newest_ = record;
+  }
+}
+
+void LinkThread::flush() {
+  if (batch_.samples.empty() && !batch_.status) return;
+  socket_.send_batch(batch_);
+  batch_.samples.clear();
+  batch_.status.reset();
+}
+
+void LinkThread::take(const Received& received) {
+  if (const auto* beat = std::get_if<Heartbeat>(&received.body)) {
+    if (received.has_control) window_age_s_ = beat->window_age_s;
+  } else if (const auto* command = std::get_if<Command>(&received.body)) {
+    take(received, *command);
+  } else if (const auto* target = std::get_if<HandTarget>(&received.body)) {
+    shared_.hand.write(*target);
+  }
+  // Another client took over, or the one in control said goodbye: forces wait to be asked for again.
+  const bool has_left = received.session == in_control_ && !received.has_control;
+  const bool is_another = received.has_control && received.session != in_control_;
+  if (!has_left && !is_another) return;
+  if (in_control_ != 0) shared_.commands.push(ServerCommand::kStop);
+  in_control_ = is_another ? received.session : 0;
+  window_age_s_ = 0.0;
+}
+
+void LinkThread::reply(const Received& received, std::uint32_t request, bool is_done, std::string text) {
+  socket_.send_reply(received.session, {request, is_done, std::move(text)});
+}
+
+void LinkThread::take(const Received& received, const Command& command) {
+  const auto* simple = std::get_if<ServerCommand>(&command.what);
+  if (simple == nullptr || *simple == ServerCommand::kReconnect) {
+    ControlJob job{received.session, command.request, ServerCommand::kReconnect};
+    std::visit([&](const auto& what) { job.what = what; }, command.what);
+    shared_.door.post(std::move(job));
+    return;
+  }
+  if (*simple == ServerCommand::kStart && !shared_.door.status().has_scene) {
+    reply(received, command.request, false, "there is no scene to feel — load one first");
+    return;
+  }
+  const bool is_taken = shared_.commands.push(*simple);
+  reply(received, command.request, is_taken, is_taken ? "done" : "too many commands at once — send it again");
+}
+
+std::string LinkThread::warning() const {
+  if (window_age_s_ > kStalled_s) return fmt::format("the client's window has stood still for {:.1f} s", window_age_s_);
+  return shared_.door.status().warning;
+}
+
+ServerStatus LinkThread::make_status(double now_s) {
+  const ControlStatus control = shared_.door.status();
+  ServerStatus status;
+  status.server_time_s = now_s;
+  status.gate_mode = to_string(newest_.mode);
+  status.fault = to_string(newest_.fault);
+  status.warning = warning();
+  if (shared_.has_grant.load(std::memory_order_acquire)) status.grant = shared_.grant.text();
+  status.patient = control.patient;
+  status.patient_hash = control.patient_hash;
+  status.force_model = control.force_model;
+  status.task = control.task;
+  status.loading = control.loading;
+  status.loop = shared_.statistics.newest().summary();
+  status.ticks = ticks_;
+  status.ticks_dropped = shared_.records_dropped.load(std::memory_order_relaxed);
+  status.messages_refused = socket_.refused().total();
+  status.gate_actions = std::exchange(actions_, 0);
+  status.drop_n = drop_n_;
+  status.drop_s = drop_s_;
+  status.is_device_connected = newest_.status != DeviceStatus::kDisconnected;
+  status.has_controller = in_control_ != 0;
+  status.state = newest_.fault != GateFault::kNone                   ? "fault"
+                 : control.loading > 0.0                             ? "loading"
+                 : !control.has_scene                                ? "no scene"
+                 : shared_.is_wanted.load(std::memory_order_relaxed) ? "running"
+                                                                     : "ready";
+  return status;
+}
+
+}  // namespace trocar

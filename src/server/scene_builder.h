@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "anatomy/patient.h"
+#include "core/progress.h"
+#include "core/result.h"
+#include "haptics/device_preset.h"
+#include "link/messages.h"
+#include "server/servo.h"
+
+namespace trocar {
+
+/// Opens a patient folder or makes an embedded patient. Files are above this module, so that its tests need none.
+using PatientOpener = std::function<Result<std::shared_ptr<const VirtualPatient>>(
+    const std::string& patient, std::uint64_t seed, const Progress& progress)>;
+
+/// Makes scenes for the servo. By the control thread alone; keeps the patient of the last scene.
+class SceneBuilder {
+ public:
+  SceneBuilder(PatientOpener open_patient, std::filesystem::path tissues_file, DevicePreset device);
+
+  /// Everything anew. Errors: what is wrong with patient, tissues, needle or options; the last scene stays.
+  Result<ServoScene> load(const LoadScene& request, const Progress& progress = {});
+  /// The last scene with other numbers: "liver.k=0.5", "coupling.stiffness=0.8", "coupling.damping=0.002",
+  /// "force_model=proxy", "bending=0". All of them or none. Errors: no scene yet, an unknown name, a number out of
+  /// range.
+  Result<ServoScene> change(const SetParameters& request);
+
+  const LoadScene& request() const noexcept { return request_; }
+  const VirtualPatient* patient() const noexcept { return patient_.get(); }
+
+ private:
+  struct Parts {
+    TissueTable tissues;
+    HapticOptions options;
+  };
+  Result<std::shared_ptr<const VirtualPatient>> patient_for(const LoadScene& request, const Progress& progress);
+  Result<Parts> parts_for(const LoadScene& request) const;
+  Result<ServoScene> build(const LoadScene& request, std::shared_ptr<const VirtualPatient> patient, Parts parts,
+                           bool continues);
+
+  PatientOpener open_patient_;
+  std::filesystem::path tissues_file_;
+  DevicePreset device_;
+  LoadScene request_;
+  Parts parts_;
+  std::shared_ptr<const VirtualPatient> patient_;
+  std::uint64_t number_ = 0;
+};
+
+}  // namespace trocar

@@ -1,0 +1,83 @@
+#include "realtime/periodic_loop.h"
+#include "server/detail/shared.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kStatistics_s = 0.05;  // between two copies of the statistics
+
+/// What commands have changed so far.
+struct Switches {
+  bool is_wanted = false;
+  bool is_stylet_in = true;
+  bool is_reset = false;  ///< In this period.
+};
+
+/// Pops a bounded number of commands.
+void obey(Shared& shared, Switches& switches, LoopStatistics& statistics) noexcept {
+  switches.is_reset = false;
+  ServerCommand command{};
+  for (int i = 0; i < kMostCommandsAPeriod && shared.commands.pop(command); ++i) {
+    switch (command) {
+      case ServerCommand::kStart:
+        switches.is_wanted = true;
+        break;
+      case ServerCommand::kStop:
+        switches.is_wanted = false;
+        break;
+      case ServerCommand::kResetFault:
+        switches.is_reset = true;
+        break;
+      case ServerCommand::kStyletOut:
+        switches.is_stylet_in = false;
+        break;
+      case ServerCommand::kStyletIn:
+        switches.is_stylet_in = true;
+        break;
+      case ServerCommand::kRestartStatistics:
+        statistics = LoopStatistics(shared.period_ns);
+        break;
+      case ServerCommand::kReconnect:  // the control thread's
+        break;
+    }
+  }
+}
+
+}  // namespace
+
+void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
+  shared.grant = request_real_time(priority);
+  shared.has_grant.store(true, std::memory_order_release);
+  LoopStatistics statistics(shared.period_ns);
+  Switches switches;
+  double told_s = 0.0;
+  run_periodic(shared.period_ns, shared.is_stopping, statistics,
+               [&](const Period& period, const LoopStatistics& so_far) {
+                 obey(shared, switches, statistics);
+                 if (shared.is_fading.load(std::memory_order_relaxed)) switches.is_wanted = false;
+                 shared.is_wanted.store(switches.is_wanted, std::memory_order_relaxed);
+                 const bool is_paused = shared.pause_wanted.load(std::memory_order_acquire);
+                 shared.is_paused.store(is_paused, std::memory_order_release);
+                 if (is_paused) return;
+
+                 ServoInput input;
+                 input.now_s = period.now_s;
+                 input.dt_s = period.dt_s;
+                 input.scene = shared.scene.acquire();
+                 if (shared.hand.update()) input.hand = shared.hand.value();
+                 const std::int64_t heard_ns = shared.heard_ns.load(std::memory_order_relaxed);
+                 input.silence_s = heard_ns == 0 ? kNeverHeard_s : seconds(period.begin_ns - heard_ns);
+                 input.is_wanted = switches.is_wanted;
+                 input.is_stylet_in = switches.is_stylet_in;
+                 input.is_reset = switches.is_reset;
+                 if (!shared.records.push(servo.step(input)))
+                   shared.records_dropped.fetch_add(1, std::memory_order_relaxed);
+
+                 if (period.now_s - told_s < kStatistics_s) return;
+                 told_s = period.now_s;
+                 shared.statistics.write(so_far);
+               });
+  shared.statistics.write(statistics);
+}
+
+}  // namespace trocar

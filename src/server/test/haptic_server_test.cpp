@@ -1,0 +1,166 @@
+#include "server/haptic_server.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "core/temporary_folder.h"
+#include "link/haptic_client.h"
+#include "server/test/servo_rig.h"
+
+namespace trocar {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ScriptedDevice;
+
+/// Long enough for a loaded machine; nothing is measured by it.
+constexpr auto kPatience = 20s;
+
+bool wait_for(const std::function<bool()>& is_so) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!is_so()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
+/// A server with a scripted device on an endpoint of its own, and a client.
+class ServerRig {
+ public:
+  ServerRig() : server_(start()) {}
+
+  HapticServer start() {
+    ServerOptions options;
+    options.endpoint = *parse_endpoint("ipc://" + (folder_ / "needle").string());
+    options.priority = 0;
+    options.tissues_file = testing::data_file("tissues.toml");
+    options.flight_folder = folder_.path();
+    auto device = std::make_unique<ScriptedDevice>(testing::device_preset());
+    device->reading.X_DS = testing::needle_at_depth(-10.0);
+    device_ = device.get();
+    auto server = HapticServer::start(options, std::move(device), testing::layered_opener());
+    TROCAR_CHECK(server.has_value());
+    return std::move(*server);
+  }
+  HapticClient connect(bool wants_control = true) {
+    ClientOptions options;
+    options.endpoint = server_.url();
+    options.wants_control = wants_control;
+    auto client = HapticClient::connect(options);
+    TROCAR_CHECK(client.has_value());
+    TROCAR_CHECK(client->wait_connected(kPatience).has_value());
+    return std::move(*client);
+  }
+  HapticServer& server() { return server_; }
+  const TemporaryFolder& folder() const { return folder_; }
+
+ private:
+  TemporaryFolder folder_;
+  ScriptedDevice* device_ = nullptr;
+  HapticServer server_;
+};
+
+TEST(HapticServer, LoadsASceneAndRuns) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  const auto loaded = client.ask(testing::layered_request(), kPatience);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.gate_mode == to_string(GateMode::kOn); }));
+  EXPECT_EQ(client.view().status.patient, "layers");
+  EXPECT_FALSE(client.view().status.grant.empty());
+  EXPECT_TRUE(client.ask(ServerCommand::kStop, kPatience));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.state == "ready"; }));
+}
+
+TEST(HapticServer, SendsEveryTickOrCountsIt) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  std::uint64_t expected = 0, seen = 0, gaps = 0;
+  const bool is_enough = wait_for([&] {
+    for (const NumberedSample& numbered : client.take_samples()) {
+      if (seen > 0) gaps += numbered.tick - expected;
+      expected = numbered.tick + 1;
+      ++seen;
+    }
+    return seen >= 1000;
+  });
+  EXPECT_TRUE(is_enough);
+  EXPECT_EQ(gaps, client.view().ticks_missing);
+}
+
+TEST(HapticServer, RefusesToStartWithoutAScene) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  const auto started = client.ask(ServerCommand::kStart, kPatience);
+  ASSERT_FALSE(started);
+  EXPECT_NE(started.error().text().find("scene"), std::string::npos);
+}
+
+TEST(HapticServer, TellsWhatIsWrongWithAScene) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  LoadScene request = testing::layered_request();
+  request.patient = "nobody";
+  const auto loaded = client.ask(request, kPatience);
+  ASSERT_FALSE(loaded);
+  EXPECT_NE(loaded.error().text().find("nobody"), std::string::npos);
+  request = testing::layered_request();
+  request.tool = "probe";
+  EXPECT_FALSE(client.ask(request, kPatience)) << "this server holds the needle";
+}
+
+TEST(HapticServer, LetsAWatcherSeeButNotCommand) {
+  ServerRig rig;
+  HapticClient master = rig.connect();
+  ASSERT_TRUE(master.ask(testing::layered_request(), kPatience));
+  HapticClient watcher = rig.connect(false);
+  EXPECT_FALSE(watcher.ask(ServerCommand::kStart, kPatience));
+  EXPECT_TRUE(wait_for([&] { return watcher.newest().has_value(); }));
+}
+
+TEST(HapticServer, TakesForcesBackWhenTheClientInControlLeaves) {
+  ServerRig rig;
+  {
+    HapticClient client = rig.connect();
+    ASSERT_TRUE(client.ask(testing::layered_request(), kPatience));
+    ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+    EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
+  }
+  HapticClient next = rig.connect();
+  EXPECT_TRUE(wait_for([&] { return next.view().status.state == "ready"; }));
+}
+
+TEST(HapticServer, WarnsOfAClientsWindowThatStandsStill) {
+  ServerRig rig;
+  ClientOptions options;
+  options.endpoint = rig.server().url();
+  options.has_window = true;
+  auto client = HapticClient::connect(options);
+  ASSERT_TRUE(client);
+  client->frame_drawn();
+  EXPECT_TRUE(wait_for([&] { return client->view().status.warning.find("window") != std::string::npos; }));
+  EXPECT_TRUE(wait_for([&] {
+    client->frame_drawn();
+    return client->view().status.warning.empty();
+  }));
+}
+
+TEST(HapticServer, RefusesARateItCannotKeep) {
+  const TemporaryFolder folder;
+  ServerOptions options;
+  options.endpoint = *parse_endpoint("ipc://" + (folder / "needle").string());
+  options.rate_hz = 100'000.0;
+  const auto server = HapticServer::start(options, std::make_unique<ScriptedDevice>(testing::device_preset()),
+                                          testing::layered_opener());
+  ASSERT_FALSE(server);
+  EXPECT_EQ(server.error().exit_status, 2);
+}
+
+}  // namespace
+}  // namespace trocar

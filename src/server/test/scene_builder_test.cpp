@@ -1,0 +1,96 @@
+#include "server/scene_builder.h"
+
+#include <gtest/gtest.h>
+
+#include "server/test/servo_rig.h"
+
+namespace trocar {
+namespace {
+
+using testing::data_file;
+using testing::device_preset;
+using testing::layered_opener;
+using testing::layered_request;
+
+SceneBuilder make_builder(const char* device = "premium") {
+  return {layered_opener(), data_file("tissues.toml"), device_preset(device)};
+}
+
+TEST(SceneBuilder, BuildsWhatIsAskedFor) {
+  SceneBuilder builder = make_builder();
+  const auto scene = builder.load(layered_request("proxy"));
+  ASSERT_TRUE(scene) << scene.error().text();
+  EXPECT_EQ(scene->scene->options.force_model, ForceModel::kProxy);
+  EXPECT_FALSE(scene->continues);
+  EXPECT_LT((scene->scene->gravity_P - Vec3::UnitZ()).norm(), 1e-12) << "down in the room is into the layers";
+}
+
+TEST(SceneBuilder, SaysWhatIsWrongAndKeepsTheLastScene) {
+  SceneBuilder builder = make_builder();
+  EXPECT_FALSE(builder.change({{"liver.k=0.5"}})) << "there is none yet";
+  ASSERT_TRUE(builder.load(layered_request()));
+  for (const auto& spoil : std::vector<std::function<void(LoadScene&)>>{
+           [](LoadScene& r) { r.patient = "nobody"; }, [](LoadScene& r) { r.tool = "spoon"; },
+           [](LoadScene& r) { r.force_model = "magic"; }, [](LoadScene& r) { r.tissues_toml = "[tissues"; },
+           [](LoadScene& r) { r.needle_radius_mm = 9.0; }, [](LoadScene& r) { r.patient_hash = "another"; }}) {
+    LoadScene request = layered_request();
+    spoil(request);
+    const auto scene = builder.load(request);
+    ASSERT_FALSE(scene);
+    EXPECT_FALSE(scene.error().what.empty());
+  }
+  EXPECT_EQ(builder.request().patient, "layers");
+  EXPECT_TRUE(builder.change({{"liver.k=0.5"}}));
+}
+
+TEST(SceneBuilder, ChangesAllNumbersOrNone) {
+  SceneBuilder builder = make_builder();
+  const auto before = builder.load(layered_request());
+  ASSERT_TRUE(before);
+  EXPECT_FALSE(builder.change({{"coupling.stiffness=0.5", "liver.nonsense=1"}}));
+  const auto after = builder.change({{"liver.mu=0.2"}});
+  ASSERT_TRUE(after) << after.error().text();
+  EXPECT_TRUE(after->continues);
+  EXPECT_GT(after->number, before->number);
+  EXPECT_EQ(after->scene->options.coupling.stiffness_n_per_mm, before->scene->options.coupling.stiffness_n_per_mm);
+  for (const char* bad :
+       {"coupling.stiffness=much", "coupling.stiffness=nan", "liver.mu=1e9", "force_model=none", ""}) {
+    EXPECT_FALSE(builder.change({{bad}})) << bad;
+  }
+}
+
+TEST(SceneBuilder, StartsAnewWithAnotherForceModel) {
+  SceneBuilder builder = make_builder();
+  ASSERT_TRUE(builder.load(layered_request()));
+  const auto scene = builder.change({{"force_model=combined"}});
+  ASSERT_TRUE(scene);
+  EXPECT_FALSE(scene->continues);
+}
+
+TEST(SceneBuilder, ClipsTheCouplingToTheDeviceOverTheWorkspaceScale) {
+  DevicePreset preset = device_preset("premium");
+  preset.motion_scale = 5.0;
+  SceneBuilder builder(layered_opener(), data_file("tissues.toml"), preset);
+  const auto scene = builder.load(layered_request());
+  ASSERT_TRUE(scene) << scene.error().text();
+  const double most = preset.capability.max_stiffness_n_per_mm / 5.0;
+  EXPECT_LE(scene->scene->options.coupling.stiffness_n_per_mm, most + 1e-12);
+  const auto stiffer = builder.change({{"coupling.stiffness=3.0"}});
+  ASSERT_TRUE(stiffer);
+  EXPECT_NEAR(stiffer->scene->options.coupling.stiffness_n_per_mm, most, 1e-12);
+}
+
+TEST(SceneBuilder, OpensAPatientOnceForManyScenes) {
+  int opened = 0;
+  const auto counting = [&](const std::string& name, std::uint64_t seed, const Progress& progress) {
+    ++opened;
+    return layered_opener()(name, seed, progress);
+  };
+  SceneBuilder builder(counting, data_file("tissues.toml"), device_preset());
+  ASSERT_TRUE(builder.load(layered_request()));
+  ASSERT_TRUE(builder.load(layered_request("proxy")));
+  EXPECT_EQ(opened, 1);
+}
+
+}  // namespace
+}  // namespace trocar

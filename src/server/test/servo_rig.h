@@ -1,0 +1,138 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "haptics/test/layered_patient.h"
+#include "server/scene_builder.h"
+#include "server/servo.h"
+
+namespace trocar::testing {
+
+inline std::filesystem::path data_file(const char* name) {
+  return std::filesystem::path(TROCAR_SOURCE_DIR) / "data" / name;
+}
+inline DevicePreset device_preset(const char* name = "premium") {
+  auto preset = load_device_preset(data_file("devices.toml"), name);
+  TROCAR_CHECK(preset.has_value());
+  return *preset;
+}
+
+/// The flat layered patient lies under the room: z of W is up, the tip of a needle that hangs down from the origin of W
+/// is 20 mm below the skin.
+inline LoadScene layered_request(const std::string& force_model = "insertion") {
+  LoadScene request;
+  request.patient = "layers";
+  request.force_model = force_model;
+  Mat3 R_PW;
+  R_PW.col(0) = Vec3::UnitX();
+  R_PW.col(1) = -Vec3::UnitY();
+  R_PW.col(2) = -Vec3::UnitZ();
+  request.X_PW = Pose(R_PW, {0.0, 0.0, 20.0 - request.needle_length_mm});
+  return request;
+}
+inline PatientOpener layered_opener() {
+  return [](const std::string& name, std::uint64_t, const Progress&) -> Result<std::shared_ptr<const VirtualPatient>> {
+    if (name != "layers") return fail("there is no such patient", name);
+    return layered_patient(liver_way());
+  };
+}
+/// The needle hangs down over the layered patient, its tip so deep below the skin (mm).
+inline Pose needle_at_depth(double depth_mm) {
+  return {rotation_between(Vec3::UnitZ(), -Vec3::UnitZ()), {0.0, 0.0, 20.0 - depth_mm}};
+}
+
+/// A device whose pose is said and whose wrench is written down.
+class ScriptedDevice final : public HapticDevice {
+ public:
+  explicit ScriptedDevice(DevicePreset preset) : preset_(std::move(preset)) {}
+  const DevicePreset& preset() const noexcept override { return preset_; }
+  std::string name() const override { return "scripted"; }
+  DeviceReading read(double) noexcept override { return reading; }
+  bool write(const Wrench& wrench_D) noexcept override {
+    written = wrench_D;
+    return takes_writes;
+  }
+  Status reconnect() override { return {}; }
+
+  DeviceReading reading;
+  Wrench written;
+  bool takes_writes = true;
+
+ private:
+  DevicePreset preset_;
+};
+
+/// A servo with a scripted device over the layered patient, driven in simulated time.
+class ServoRig {
+ public:
+  explicit ServoRig(const char* device_name = "premium", const std::string& force_model = "insertion")
+      : preset(device_preset(device_name)),
+        device(preset),
+        builder(layered_opener(), data_file("tissues.toml"), preset),
+        servo(device, servo_params(preset)) {
+    auto made = builder.load(layered_request(force_model));
+    TROCAR_CHECK(made.has_value());
+    scene = *made;
+    input.scene = &scene;
+    input.is_wanted = true;
+    device.reading.X_DS = needle_at_depth(depth);
+  }
+  ServoRecord step() {
+    input.now_s += input.dt_s;
+    const ServoRecord record = servo.step(input);
+    const double written_n = device.written.force_n.norm();
+    most_n = std::max(most_n, written_n);
+    largest_rise_n = std::max(largest_rise_n, written_n - last_n);
+    last_n = written_n;
+    input.hand.reset();
+    input.is_reset = false;
+    return record;
+  }
+  /// The tip goes to a depth at a speed; all records.
+  std::vector<ServoRecord> move_to(double depth_mm, double speed_mm_per_s) {
+    std::vector<ServoRecord> records;
+    const double step_mm = speed_mm_per_s * input.dt_s;
+    while (depth != depth_mm) {
+      depth = depth_mm > depth ? std::min(depth_mm, depth + step_mm) : std::max(depth_mm, depth - step_mm);
+      device.reading.X_DS = needle_at_depth(depth);
+      records.push_back(step());
+    }
+    return records;
+  }
+  /// Trembling a little, as a hand does, so that the encoder is seen to live.
+  std::vector<ServoRecord> hold(double seconds) {
+    std::vector<ServoRecord> records;
+    const auto count = static_cast<int>(seconds / input.dt_s + 0.5);
+    for (int i = 0; i < count; ++i) {
+      device.reading.X_DS = needle_at_depth(depth + 0.02 * ((i / 20) % 2));
+      records.push_back(step());
+    }
+    return records;
+  }
+  /// Forces on, past the safe start, outside the body.
+  void start() { hold(2.0); }
+
+  DevicePreset preset;
+  ScriptedDevice device;
+  SceneBuilder builder;
+  ServoScene scene;
+  Servo servo;
+  ServoInput input;
+  double depth = -10.0;
+  double most_n = 0.0, largest_rise_n = 0.0, last_n = 0.0;
+};
+
+inline bool has_event(const std::vector<ServoRecord>& records, EventKind kind, int id = -1) {
+  return std::any_of(records.begin(), records.end(), [&](const ServoRecord& record) {
+    return std::any_of(record.sample.events.begin(), record.sample.events.end(),
+                       [&](const TickEvent& event) { return event.kind == kind && (id < 0 || event.id == id); });
+  });
+}
+inline bool has_limit(const std::vector<ServoRecord>& records, LimitReason reason) {
+  return has_event(records, EventKind::kLimit, static_cast<int>(reason));
+}
+
+}  // namespace trocar::testing

@@ -1,0 +1,229 @@
+#include "server/servo.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/random.h"
+#include "core/testing/allocation_guard.h"
+#include "core/testing/allocation_guard.inc.h"
+#include "server/test/servo_rig.h"
+
+namespace trocar {
+namespace {
+
+using testing::AllocationGuard;
+using testing::has_event;
+using testing::has_limit;
+using testing::ServoRig;
+
+TEST(Servo, GivesNoForceBeforeItIsAskedFor) {
+  ServoRig rig;
+  rig.input.is_wanted = false;
+  rig.move_to(3.0, 20.0);
+  EXPECT_EQ(rig.most_n, 0.0);
+}
+
+TEST(Servo, LetsTheHandFeelTheSkinAndItsGivingWay) {
+  ServoRig rig;
+  rig.start();
+  EXPECT_EQ(rig.servo.mode(), GateMode::kOn);
+  const auto records = rig.move_to(20.0, 10.0);
+  EXPECT_TRUE(has_event(records, EventKind::kPuncture));
+  const auto drop = std::find_if(records.begin(), records.end(), [](const ServoRecord& r) { return r.drop_n > 1.0; });
+  EXPECT_NE(drop, records.end()) << "the gate reports the fall of the force";
+  for (const ServoRecord& record : records) {
+    const Vec3 written_P = testing::layered_request().X_PW.R() * record.written_D.force_n;
+    ASSERT_NEAR((written_P - record.sample.device_f_n).norm(), 0.0, 1e-12) << "what is recorded is what was written";
+  }
+}
+
+TEST(Servo, LeavesTheTicksWrenchAsItIsWhereNothingIsWrong) {
+  ServoRig rig;
+  rig.start();
+  int untouched = 0;
+  for (const ServoRecord& record : rig.move_to(20.0, 10.0)) {
+    if (record.actions != 0) continue;
+    ++untouched;
+    ASSERT_NEAR((record.written_D.force_n - record.wanted_D.force_n).norm(), 0.0, 1e-9) << record.sample.time_s;
+  }
+  EXPECT_GT(untouched, 2500) << "of 3000 periods";
+}
+
+TEST(Servo, FadesWhenTheClientIsSilentAndComesBackWithoutAJump) {
+  ServoRig rig;
+  rig.start();
+  rig.move_to(2.0, 10.0);
+  const double before_n = rig.hold(0.5).back().written_D.force_n.norm();
+  ASSERT_GT(before_n, 0.5);
+  for (int i = 1; i <= 450; ++i) {
+    rig.input.silence_s = 0.001 * i;
+    const ServoRecord record = rig.step();
+    if (i <= 250) {
+      ASSERT_EQ(record.actions & kGateStale, 0) << i;
+    }
+  }
+  EXPECT_LT(rig.device.written.force_n.norm(), 1e-9);
+  rig.input.silence_s = 0.0;
+  rig.largest_rise_n = 0.0;
+  const auto records = rig.hold(1.5);
+  EXPECT_NEAR(records.back().written_D.force_n.norm(), before_n, 0.1 * before_n);
+  EXPECT_LT(rig.largest_rise_n, 0.05 * before_n);
+}
+
+TEST(Servo, LatchesAFaultWhenTheDeviceIsGoneAndGoesOnAfterAReset) {
+  ServoRig rig;
+  rig.start();
+  rig.move_to(2.0, 10.0);
+  rig.device.reading.status = DeviceStatus::kDisconnected;
+  for (int i = 0; i < 30; ++i) rig.step();
+  EXPECT_EQ(rig.device.written.force_n.norm(), 0.0);
+  rig.device.reading.status = DeviceStatus::kFresh;
+  EXPECT_EQ(rig.hold(0.5).back().fault, GateFault::kDeviceLost) << "until somebody resets it";
+  rig.input.is_reset = true;
+  rig.step();
+  rig.move_to(-10.0, 50.0);
+  EXPECT_EQ(rig.hold(2.0).back().fault, GateFault::kNone);
+  EXPECT_EQ(rig.servo.mode(), GateMode::kOn);
+}
+
+TEST(Servo, TakesARefusedWriteAsALostDevice) {
+  ServoRig rig;
+  rig.start();
+  rig.device.takes_writes = false;
+  rig.hold(0.1);
+  EXPECT_EQ(rig.step().fault, GateFault::kDeviceLost);
+}
+
+TEST(Servo, LatchesAFaultOnAPoseThatIsNone) {
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e200}) {
+    ServoRig rig;
+    rig.start();
+    rig.move_to(2.0, 10.0);
+    rig.device.reading.X_DS = Pose(Mat3::Identity(), {bad, 0.0, 0.0});
+    EXPECT_EQ(rig.step().fault, GateFault::kNotFinite);
+    for (int i = 0; i < 30; ++i) rig.step();
+    EXPECT_EQ(rig.device.written.force_n.norm(), 0.0);
+  }
+}
+
+TEST(Servo, NoticesAnEncoderThatStandsStillUnderForce) {
+  ServoRig rig;
+  rig.start();
+  rig.move_to(3.0, 10.0);
+  ASSERT_GT(rig.device.written.force_n.norm(), ServoParams{}.stuck_n);
+  ServoRecord record;
+  int periods = 0;
+  for (; periods < 7000 && record.fault == GateFault::kNone; ++periods) record = rig.step();
+  EXPECT_EQ(record.fault, GateFault::kEncoderStuck);
+  EXPECT_NEAR(periods * rig.input.dt_s, ServoParams{}.stuck_s, 0.01);
+}
+
+TEST(Servo, DoesNotMistakeATremblingHandForAStuckEncoder) {
+  ServoRig rig;
+  rig.start();
+  rig.move_to(3.0, 10.0);
+  EXPECT_EQ(rig.hold(8.0).back().fault, GateFault::kNone);
+}
+
+TEST(Servo, NeverAllocates) {
+  ServoRig rig;
+  rig.start();
+  const AllocationGuard guard;
+  for (int i = 0; i < 3000; ++i) {
+    rig.device.reading.X_DS = testing::needle_at_depth(0.01 * i);
+    if (i == 2000) rig.device.reading.status = DeviceStatus::kDisconnected;
+    rig.input.hand = HandTarget{};
+    rig.input.silence_s = i == 1000 ? 0.4 : 0.0;
+    rig.servo.step(rig.input);
+  }
+  EXPECT_EQ(guard.count(), 0U);
+}
+
+TEST(Servo, MakesTheSameOfTheSame) {
+  const auto run = [] {
+    ServoRig rig("premium", "proxy");
+    rig.start();
+    rig.move_to(30.0, 25.0);
+    return rig.device.written;
+  };
+  const Wrench first = run(), second = run();
+  EXPECT_EQ(first.force_n, second.force_n);
+  EXPECT_EQ(first.torque_nmm, second.torque_nmm);
+}
+
+TEST(Servo, GoesOnWithTheInsertionWhenOnlyNumbersChange) {
+  ServoRig rig;
+  rig.start();
+  rig.move_to(30.0, 20.0);
+  const double before_mm = rig.hold(0.3).back().sample.depth_mm;
+  ASSERT_GT(before_mm, 15.0);
+  auto changed = rig.builder.change({{"liver.mu=0.1"}});
+  ASSERT_TRUE(changed) << changed.error().text();
+  rig.input.scene = &*changed;
+  const auto records = rig.hold(0.3);
+  EXPECT_NEAR(records.back().sample.depth_mm, before_mm, 1.0);
+  EXPECT_EQ(rig.servo.mode(), GateMode::kOn);
+  EXPECT_FALSE(has_limit(records, LimitReason::kSafeStart));
+}
+
+TEST(Servo, GoesThroughTheSafeStartWithAnotherScene) {
+  ServoRig rig;
+  rig.start();
+  rig.move_to(30.0, 20.0);
+  auto other = rig.builder.load(testing::layered_request("proxy"));
+  ASSERT_TRUE(other);
+  rig.input.scene = &*other;
+  rig.largest_rise_n = 0.0;
+  const auto records = rig.hold(0.1);
+  EXPECT_TRUE(has_limit(records, LimitReason::kSafeStart));
+  EXPECT_LT(rig.largest_rise_n, 0.2);
+}
+
+TEST(Servo, ScalesForcesForAWeakDeviceAndStaysWithinItsLimits) {
+  ServoRig strong, weak("omni");
+  for (ServoRig* rig : {&strong, &weak}) {
+    rig->start();
+    rig->move_to(30.0, 10.0);
+  }
+  EXPECT_LE(weak.most_n, weak.preset.capability.peak_force_n + 1e-9);
+  EXPECT_LT(weak.most_n, 0.7 * strong.most_n);
+}
+
+TEST(Servo, LatchesAFaultAfterALongHoleInTimeAndTakesAShortOne) {
+  for (const double hole_s : {0.05, 3.0}) {
+    ServoRig rig;
+    rig.start();
+    rig.move_to(20.0, 20.0);
+    rig.input.now_s += hole_s;
+    rig.input.dt_s = hole_s;
+    rig.step();
+    rig.input.dt_s = 0.001;
+    rig.largest_rise_n = 0.0;
+    const auto records = rig.hold(1.0);
+    EXPECT_TRUE(records.back().written_D.force_n.allFinite());
+    EXPECT_LE(rig.largest_rise_n, GateParams{}.slew_n_per_s * rig.input.dt_s + 1e-9);
+    EXPECT_EQ(records.back().fault, hole_s > 1.0 ? GateFault::kLoopStalled : GateFault::kNone);
+  }
+}
+
+TEST(Servo, NeverExceedsTheDeviceWhateverTheHandDoes) {
+  for (const char* model : {"insertion", "proxy", "combined"}) {
+    ServoRig rig("premium", model);
+    rig.start();
+    Random random(11);
+    for (int i = 0; i < 20'000; ++i) {
+      const Vec3 p(random.uniform(-60, 60), random.uniform(-60, 60), random.uniform(-60, 60));
+      const Vec3 axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      if (i % 50 == 0 && axis.norm() > 0.1)
+        rig.device.reading.X_DS = Pose(rotation_between(Vec3::UnitZ(), axis.normalized()), p);
+      const ServoRecord record = rig.step();
+      ASSERT_TRUE(record.written_D.force_n.allFinite());
+      ASSERT_LE(record.written_D.force_n.norm(), rig.preset.capability.peak_force_n + 1e-9);
+      ASSERT_LE(record.written_D.torque_nmm.norm(), rig.preset.capability.peak_torque_nmm + 1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trocar
