@@ -1,0 +1,248 @@
+// trocar-hapticd: the haptic server, one process a device.
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+
+#include "core/data_dir.h"
+#include "core/log.h"
+#include "core/version.h"
+#include "devices/device_spec.h"
+#include "headless/scene_request.h"
+#include "io/patient_source.h"
+#include "server/haptic_server.h"
+#include "storage/session_file.h"
+
+namespace {
+
+using namespace trocar;
+
+struct Arguments {
+  std::string device = "virtual", preset, tool = "needle", endpoint, replay_file;
+  std::vector<std::string> faults;
+  PatientSource patient;
+  CaseOptions the_case;
+  std::string force_model;
+  double rate_hz = 1000.0;
+  int priority = 80;
+  std::string key_file, allow_file, flight_folder = ".";
+  bool is_verbose = false;
+};
+
+/// Patients for the server; one that was opened here already is not opened twice.
+class Patients {
+ public:
+  Result<std::shared_ptr<const VirtualPatient>> open(const std::string& name, std::uint64_t seed,
+                                                     const Progress& progress) {
+    if (patient_ != nullptr && name == source_.folder_or_name && seed == source_.seed)
+      return std::exchange(patient_, {});
+    TROCAR_TRY(VirtualPatient patient, open_patient({name, seed}, progress));
+    return std::make_shared<const VirtualPatient>(std::move(patient));
+  }
+  void keep(const PatientSource& source, std::shared_ptr<const VirtualPatient> patient) {
+    source_ = source;
+    patient_ = std::move(patient);
+  }
+
+ private:
+  PatientSource source_;
+  std::shared_ptr<const VirtualPatient> patient_;
+};
+
+Result<std::vector<Pose>> replayed_poses(const Session& session, double needle_length_mm) {
+  // The room of the replay is that of its own plan; the stylus is the needle's grip.
+  const Pose X_WP = room_in_patient(session.info.plan_P.line_P, needle_length_mm).inverse();
+  const Pose X_NS = Pose::translation({0.0, 0.0, -needle_length_mm});
+  std::vector<Pose> poses;
+  poses.reserve(session.samples.size());
+  for (const TickSample& sample : session.samples) {
+    const auto& q = sample.device_rotation_wxyz;
+    const Mat3 R_PN = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+    poses.push_back(X_WP * Pose(R_PN, sample.device_mm) * X_NS);
+  }
+  if (poses.empty()) return fail("the session has no ticks to replay");
+  return poses;
+}
+
+Result<std::unique_ptr<HapticDevice>> open_named_device(const Arguments& arguments) {
+  TROCAR_TRY(const DeviceSpec spec, parse_device_spec(arguments.device));
+  DeviceOptions options;
+  options.devices_file = data_dir() / "devices.toml";
+  options.preset = arguments.preset;
+  for (const std::string& text : arguments.faults) {
+    TROCAR_TRY(const ScheduledFault fault, parse_fault(text));
+    options.faults.push_back(fault);
+  }
+  if (spec.kind == "replay") {
+    TROCAR_TRY(const Session session, load_session(spec.argument));
+    CaseOptions of_session;
+    of_session.task = session.info.task;
+    of_session.needle = session.info.needle;
+    TROCAR_TRY(const Case tables, load_tables(of_session));
+    TROCAR_TRY(options.replay, replayed_poses(session, tables.needle.length_mm));
+    options.replay_rate_hz = session.info.rate_hz;
+  }
+  return open_device(spec, options);
+}
+
+Result<std::optional<ServerSecurity>> load_security(const Arguments& arguments) {
+  if (arguments.key_file.empty() && arguments.allow_file.empty()) return std::nullopt;
+  if (arguments.key_file.empty() || arguments.allow_file.empty())
+    return fail_usage("a key file and an allow-list belong together", "--keys, --allow", "see trocar link keygen");
+  ServerSecurity security;
+  TROCAR_TRY(security.keys, load_curve_keys(arguments.key_file));
+  TROCAR_TRY(security.allowed, load_allow_list(arguments.allow_file));
+  return security;
+}
+
+/// The scene of the command line: the patient is planned as `trocar run` would, so that the room stands at the entry.
+Result<LoadScene> first_scene(const Arguments& arguments, Patients& patients) {
+  TROCAR_TRY(VirtualPatient opened, open_patient(arguments.patient));
+  const auto patient = std::make_shared<const VirtualPatient>(std::move(opened));
+  TROCAR_TRY(const Case the_case, prepare_case(patient, arguments.the_case));
+  patients.keep(arguments.patient, patient);
+  SceneChoice choice;
+  choice.tool = arguments.tool;
+  choice.force_model = arguments.force_model;
+  choice.patient_source = arguments.patient.folder_or_name;
+  choice.patient_seed = arguments.patient.seed;
+  return scene_request(the_case, choice);
+}
+
+void wait_for_the_end() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  int signal = 0;
+  sigwait(&signals, &signal);
+}
+
+void print_report(const ServerReport& report) {
+  const LoopSummary& loop = report.loop;
+  fmt::print("{} ticks at {:.1f} of {:.0f} Hz, {:.4f} % of periods served ({} missed, {} of them skipped)\n",
+             report.ticks, loop.achieved_hz, loop.wanted_hz, 100.0 * loop.served(), loop.missed, loop.skipped);
+  const auto line = [](const char* name, const LatencySummary& s) {
+    fmt::print("{:<9} p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.0f} us\n", name, s.p50_us, s.p99_us, s.p999_us,
+               s.max_us);
+  };
+  line("lateness", loop.lateness);
+  line("tick", loop.tick);
+  fmt::print("{}\n", report.grant.text());
+  if (report.ticks_dropped + report.refused.total() + report.batches_not_taken > 0)
+    fmt::print("{} ticks dropped, {} messages refused, {} batches that a client did not take\n", report.ticks_dropped,
+               report.refused.total(), report.batches_not_taken);
+}
+
+Status serve(Arguments& arguments) {
+  if (data_dir().empty()) return fail("the data folder was not found", "data/", "set TROCAR_DATA_DIR to it");
+  ServerOptions options;
+  TROCAR_TRY(options.endpoint,
+             parse_endpoint(arguments.endpoint.empty() ? default_endpoint(arguments.tool) : arguments.endpoint));
+  TROCAR_TRY(options.security, load_security(arguments));
+  options.rate_hz = arguments.rate_hz;
+  options.tool = arguments.tool;
+  options.priority = arguments.priority;
+  options.tissues_file = data_dir() / "tissues.toml";
+  options.flight_folder = arguments.flight_folder;
+
+  Patients patients;
+  std::optional<LoadScene> scene;
+  if (!arguments.patient.folder_or_name.empty()) {
+    TROCAR_TRY(scene, first_scene(arguments, patients));
+  }
+  TROCAR_TRY(std::unique_ptr<HapticDevice> device, open_named_device(arguments));
+  const std::string name = device->name();
+  const auto opener = [&patients](const std::string& patient, std::uint64_t seed, const Progress& progress) {
+    return patients.open(patient, seed, progress);
+  };
+  TROCAR_TRY(HapticServer server, HapticServer::start(options, std::move(device), opener));
+  if (scene) server.load(*scene);
+  fmt::print("{} for the {} at {}, {:.0f} Hz\n", name, arguments.tool, server.url(), arguments.rate_hz);
+  std::fflush(stdout);
+  wait_for_the_end();
+  print_report(server.stop());
+  return {};
+}
+
+void add_options(CLI::App& program, Arguments& a) {
+  program
+      .add_option("--device", a.device,
+                  "virtual[:PRESET], mouse, gamepad, spacemouse, replay:SESSION, openhaptics[:NAME], forcedimension or "
+                  "haply[:ws://HOST:PORT]")
+      ->capture_default_str();
+  program.add_option("--preset", a.preset, "Row of data/devices.toml instead of the device's own");
+  program.add_option("--tool", a.tool, "What the device stands for: needle, probe or finger")->capture_default_str();
+  program.add_option("--patient", a.patient.folder_or_name, "Patient to load at once; without it a client sends one");
+  program.add_option("--patient-seed", a.patient.seed, "Of an embedded patient")->capture_default_str();
+  program.add_option("--task", a.the_case.task, "Task that places the patient in the room")->capture_default_str();
+  program.add_option("--needle", a.the_case.needle, "Needle of data/needles.toml; the task's own when left out");
+  program.add_option("--force-model", a.force_model, "insertion, proxy or combined; the task's own when left out");
+  program.add_option("--rate", a.rate_hz, "Ticks a second, in Hz, 250 to 4000")->capture_default_str();
+  program.add_option("--endpoint", a.endpoint,
+                     "ipc://PATH or tcp://HOST:PORT; beyond this machine only with --keys and --allow");
+  program.add_option("--keys", a.key_file, "The server's key file (trocar link keygen)");
+  program.add_option("--allow", a.allow_file, "Public keys of the clients that may connect");
+  program.add_option("--priority", a.priority, "Of SCHED_FIFO, 1 to 99; 0: ordinary scheduling")
+      ->check(CLI::Range(0, 99))
+      ->capture_default_str();
+  program.add_option("--flight-records", a.flight_folder, "Folder for the last 2 s before a fault")
+      ->capture_default_str();
+  program
+      .add_option(
+          "--fault", a.faults,
+          "Break the device on schedule, to see what happens: KIND[:AMOUNT]@FROM_S[+FOR_S], as nan@2+0.5; kinds "
+          "jitter, dropped, nan, stuck, jump, disconnect, slow_write, slow_read")
+      ->allow_extra_args(false);
+  program.add_flag("-v,--verbose", a.is_verbose, "Tell on standard error what is done");
+  program.footer(
+      "It runs until it is interrupted, keeps its device safe whatever its clients do, and gives no force before a "
+      "client asks "
+      "for it.\nExamples:\n  trocar-hapticd --device virtual --tool needle --patient abdomen\n"
+      "  trocar-hapticd --device openhaptics --tool probe --endpoint tcp://127.0.0.1:5571\n");
+}
+
+int report_error(const Error& error) {
+  fmt::print(stderr, "error: {}\n", error.text());
+  return error.exit_status;
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("The haptic server of Trocar: one process a device. A trainer, not a medical device.");
+  program.name("trocar-hapticd");
+  program.set_version_flag("--version", std::string("trocar-hapticd ") + kVersion, "Print the version and exit");
+  Arguments arguments;
+  add_options(program, arguments);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_text) {
+    return program.exit(asked_for_text);
+  } catch (const CLI::ParseError& error) {
+    return report_error({error.what(), "trocar-hapticd", "see trocar-hapticd --help", 2});
+  }
+  if (arguments.is_verbose) set_log_level(LogLevel::kInfo);
+  const Status done = serve(arguments);
+  return done ? 0 : report_error(done.error());
+}
+
+/// All threads inherit it: the signals that end the server are waited for, not handled.
+void block_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Our code does not throw; memory can still run out.
+  try {
+    block_signals();
+    return run(argc, argv);
+  } catch (const std::exception& exception) {
+    return report_error({std::string("unexpected: ") + exception.what(), "trocar-hapticd", "", 1});
+  }
+}
