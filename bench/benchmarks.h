@@ -25,5 +25,7 @@ Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options);
 /// Fingertip and transducer on the embedded patient: newtons a place, and what a tick costs.
 Result<std::vector<CaseResult>> run_palpation_benchmark();
+/// Two live servers, a drawing client and a busy process: rate, lateness, ticks, missed deadlines.
+Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options);
 
 }  // namespace trocar::bench

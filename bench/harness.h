@@ -49,6 +49,8 @@ struct Options {
   int paths = 2000;
   std::optional<ForceModel> force_model;
   std::uint64_t seed = 1;
+  double seconds = 10.0;               ///< How long live servers are watched.
+  std::vector<double> rates_hz{1000.0, 4000.0};
   std::filesystem::path out;  ///< Folder for files; empty: none are written.
   Progress progress;
   std::function<void(std::string_view)> print;  ///< For people, beside the figures; empty with --json.

@@ -27,6 +27,10 @@ const std::vector<Benchmark>& all_benchmarks() {
        "bone and the loss of resistance behind the ligamentum flavum, by device and force model",
        run_contact_benchmark,
        {"--force-model", "--seed"}},
+      {"servers",
+       "two live haptic servers, a drawing client and a busy process: lateness, ticks, missed deadlines",
+       run_servers_benchmark,
+       {"--seconds", "--rate", "--force-model"}},
   };
   return benchmarks;
 }

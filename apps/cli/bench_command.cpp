@@ -23,7 +23,8 @@ struct Arguments {
 };
 
 /// Options that only some benchmarks can use.
-constexpr const char* kForSome[] = {"--patient", "--task", "--paths", "--force-model", "--seed", "--out"};
+constexpr const char* kForSome[] = {"--patient", "--task", "--paths",   "--force-model",
+                                    "--seed",    "--out",  "--seconds", "--rate"};
 
 std::string cell(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : "-";
@@ -126,6 +127,12 @@ void add_bench_command(CLI::App& program, Action& action) {
       ->capture_default_str();
   command->add_option("--force-model", a->force_model, "How forces are made: insertion, proxy or combined");
   command->add_option("--seed", a->options.seed, "Of the choice of paths and the motion along them")
+      ->capture_default_str();
+  command->add_option("--seconds", a->options.seconds, "How long live servers are watched")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str();
+  command->add_option("--rate", a->options.rates_hz, "Of live servers, Hz; several may be given")
+      ->check(CLI::Range(250.0, 4000.0))
       ->capture_default_str();
   command->add_option("--out", a->options.out, "Folder to create, for the benchmark's files");
   command->footer("Examples:\n  trocar bench slice --json\n  trocar bench paths --patient my_patient --paths 2000\n");

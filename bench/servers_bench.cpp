@@ -1,0 +1,251 @@
+// Two live servers (a needle with the full model, a transducer on the skin), a client that draws, and one more busy
+// process: what the servers' loops get done (docs/validation.md, Servers).
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <thread>
+
+#include "anatomy/phantom/phantom.h"
+#include "bench/benchmarks.h"
+#include "core/temporary_folder.h"
+#include "headless/scene_request.h"
+#include "link/haptic_client.h"
+#include "link/server_process.h"
+#include "volume/sampling.h"
+
+namespace trocar::bench {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kPatience = 60s;
+constexpr auto kFrame = 16ms;  // a client draws at most 60 times a second
+constexpr int kSlicePixels = 512;
+constexpr double kSlice_mm = 200.0;
+
+/// A process that does nothing but arithmetic until it is ended.
+class BusyProcess {
+ public:
+  BusyProcess() : pid_(::fork()) {
+    if (pid_ != 0) return;
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    volatile double sum = 1.0;
+    for (;;) sum = sum * 1.0000001 + 1e-9;
+  }
+  ~BusyProcess() {
+    if (pid_ <= 0) return;
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  BusyProcess(const BusyProcess&) = delete;
+  BusyProcess& operator=(const BusyProcess&) = delete;
+
+ private:
+  pid_t pid_;
+};
+
+/// A server of its own and the client that holds it.
+struct Station {
+  std::string tool;
+  ServerProcess process;
+  HapticClient client;
+};
+
+Result<Station> open_station(const std::filesystem::path& program, const TemporaryFolder& folder,
+                             const std::string& tool, double rate_hz) {
+  const std::string url = "ipc://" + (folder / tool).string();
+  const std::vector<std::string> arguments{"--device",         "virtual:premium",
+                                           "--tool",           tool,
+                                           "--rate",           fmt::format("{:.0f}", rate_hz),
+                                           "--endpoint",       url,
+                                           "--flight-records", folder.path().string()};
+  TROCAR_TRY(ServerProcess process, ServerProcess::start(program, arguments, folder / (tool + ".log")));
+  ClientOptions options;
+  options.endpoint = url;
+  options.name = "trocar bench";
+  options.has_window = true;
+  TROCAR_TRY(HapticClient client, HapticClient::connect(options));
+  TROCAR_TRY_STATUS(client.wait_connected(std::chrono::duration_cast<std::chrono::milliseconds>(kPatience)));
+  return Station{tool, std::move(process), std::move(client)};
+}
+
+/// In and out along the path, 12 s a cycle, with a little tremor.
+HandTarget needle_hand(const Segment& line_P, double time_s) {
+  constexpr double kCycle_s = 12.0, kTremor_hz = 9.0, kTremor_mm = 0.1, kOutside_mm = 10.0;
+  const double swing = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * time_s / kCycle_s);
+  const double way_mm = -kOutside_mm + (line_P.length_mm() + kOutside_mm) * swing;
+  const Vec3 u = line_P.direction();
+  const Vec3 side = u.unitOrthogonal() * kTremor_mm * std::sin(2.0 * std::numbers::pi * kTremor_hz * time_s);
+  HandTarget hand;
+  hand.X_PN = needle_pose(line_P.a + u * way_mm + side, u);
+  hand.holds_tip = true;
+  return hand;
+}
+
+/// The transducer is pressed 4 mm into the skin beside the entry and rocked.
+HandTarget probe_hand(const VirtualPatient& patient, const Vec3& entry_P, double time_s) {
+  constexpr double kBeside_mm = 40.0, kPress_mm = 4.0, kRock_mm = 2.0, kRock_hz = 0.5, kTremor_mm = 0.1,
+                   kTremor_hz = 9.0;
+  const FloatGrid& distance = patient.skin_distance_mm;
+  Vec3 p = entry_P + Vec3::UnitZ() * kBeside_mm;
+  Vec3 normal = gradient_per_mm(distance, p).normalized();
+  for (int i = 0; i < 10; ++i) {
+    p -= sample_linear(distance, p) * normal;
+    normal = gradient_per_mm(distance, p).normalized();
+  }
+  const double press_mm = kPress_mm + kRock_mm * std::sin(2.0 * std::numbers::pi * kRock_hz * time_s) +
+                          kTremor_mm * std::sin(2.0 * std::numbers::pi * kTremor_hz * time_s);
+  const Vec3 y = -normal;
+  const Vec3 z = (Vec3::UnitZ() - y * y.z()).normalized();
+  Mat3 R;
+  R.col(0) = y.cross(z);
+  R.col(1) = y;
+  R.col(2) = z;
+  HandTarget hand;
+  hand.X_PN = Pose(R, p + y * press_mm);
+  hand.holds_tip = true;
+  return hand;
+}
+
+/// Three slices through the tip, as a window with slice viewers draws them. Gives their sum, so that it is not left
+/// out.
+double draw_frame(const CtGrid& ct, const Vec3& tip_P, const Vec3& axis_P) {
+  const Vec3 across = axis_P.unitOrthogonal();
+  const std::array<std::pair<Vec3, Vec3>, 3> planes{
+      std::pair<Vec3, Vec3>{axis_P, across}, {axis_P, axis_P.cross(across)}, {across, axis_P.cross(across)}};
+  double sum = 0.0;
+  constexpr double kStep_mm = kSlice_mm / kSlicePixels;
+  for (const auto& [a, b] : planes) {
+    for (int row = 0; row < kSlicePixels; ++row) {
+      const Vec3 start = tip_P + (row - kSlicePixels / 2) * kStep_mm * a - 0.5 * kSlice_mm * b;
+      for (int column = 0; column < kSlicePixels; ++column)
+        sum += sample_linear(ct, Vec3(start + column * kStep_mm * b));
+    }
+  }
+  return sum;
+}
+
+CaseResult latency_case(const std::string& name, const LatencySummary& s, std::string note = {}) {
+  CaseResult result;
+  result.name = name;
+  result.unit = "us";
+  result.figures = {s.p50_us, s.p99_us, s.p999_us, s.max_us};
+  result.note = std::move(note);
+  return result;
+}
+CaseResult number_case(const std::string& name, const char* unit, double value, std::string note = {}) {
+  CaseResult result;
+  result.name = name;
+  result.unit = unit;
+  result.figures.median = value;
+  result.note = std::move(note);
+  return result;
+}
+
+void add_results(const Station& station, double rate_hz, std::vector<CaseResult>& results) {
+  const ClientView view = station.client.view();
+  const LoopSummary& loop = view.status.loop;
+  const std::string name = fmt::format("servers/{}-{:.0f}hz/", station.tool, rate_hz);
+  results.push_back(number_case(name + "achieved-hz", "n", loop.achieved_hz, view.status.grant));
+  results.push_back(
+      number_case(name + "served", "ratio", loop.served(),
+                  fmt::format("{} of {} periods missed, {} skipped", loop.missed, loop.periods, loop.skipped)));
+  results.push_back(latency_case(name + "lateness", loop.lateness));
+  results.push_back(latency_case(name + "tick", loop.tick));
+  results.push_back(number_case(
+      name + "ticks-missing", "n", static_cast<double>(view.ticks_missing),
+      fmt::format("{} received, {} dropped by the server", view.ticks_received, view.status.ticks_dropped)));
+}
+
+/// Draws and moves the hands until the time is over; frames drawn.
+int play(std::array<Station*, 2> stations, const Case& the_case, double seconds, const Progress& progress) {
+  const Segment& line_P = the_case.plan.line_P;
+  const auto start = std::chrono::steady_clock::now();
+  const auto time_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  // Hands move by a thread of their own, 200 times a second, as a scripted operator would.
+  std::atomic<bool> is_done{false};
+  std::thread hands([&] {
+    while (!is_done) {
+      const double now_s = time_s();
+      for (Station* station : stations) {
+        HandTarget hand =
+            station->tool == "needle" ? needle_hand(line_P, now_s) : probe_hand(*the_case.patient, line_P.a, now_s);
+        station->client.set_hand(hand);
+      }
+      std::this_thread::sleep_for(5ms);
+    }
+  });
+  int frames = 0;
+  volatile double shown = 0.0;
+  for (double now_s = 0.0; now_s < seconds; now_s = time_s()) {
+    const auto begun = std::chrono::steady_clock::now();
+    const auto newest = stations[0]->client.newest();
+    shown = draw_frame(the_case.patient->ct, newest ? newest->tip_mm : line_P.a,
+                       newest ? newest->axis : line_P.direction());
+    for (Station* station : stations) {
+      station->client.take_samples();
+      station->client.frame_drawn();
+    }
+    ++frames;
+    report(progress, "servers are running", now_s / seconds);
+    std::this_thread::sleep_until(begun + kFrame);
+  }
+  is_done = true;
+  hands.join();
+  return frames;
+}
+
+Status measure(const Case& the_case, const Options& options, double rate_hz, std::vector<CaseResult>& results) {
+  TROCAR_TRY(const std::filesystem::path program, find_server_program());
+  const TemporaryFolder folder;
+  TROCAR_TRY(Station needle, open_station(program, folder, "needle", rate_hz));
+  TROCAR_TRY(Station probe, open_station(program, folder, "probe", rate_hz));
+  const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(kPatience);
+  for (Station* station : {&needle, &probe}) {
+    SceneChoice choice;
+    choice.tool = station->tool;
+    choice.force_model = to_string(options.force_model.value_or(ForceModel::kProxy));
+    choice.patient_source = "abdomen";
+    LoadScene request = scene_request(the_case, choice);
+    request.patient_hash.clear();
+    TROCAR_TRY_STATUS(station->client.ask(request, patience));
+    HandTarget hand = station->tool == "needle" ? needle_hand(the_case.plan.line_P, 0.0)
+                                                : probe_hand(*the_case.patient, the_case.plan.line_P.a, 0.0);
+    hand.is_placed = true;
+    station->client.set_hand(hand);
+    TROCAR_TRY_STATUS(station->client.ask(ServerCommand::kStart, patience));
+  }
+  const BusyProcess busy;
+  std::this_thread::sleep_for(1s);  // past the safe start
+  for (Station* station : {&needle, &probe}) {
+    TROCAR_TRY_STATUS(station->client.ask(ServerCommand::kRestartStatistics, patience));
+  }
+  const int frames = play({&needle, &probe}, the_case, options.seconds, options.progress);
+  for (const Station* station : {&needle, &probe}) add_results(*station, rate_hz, results);
+  results.push_back(number_case(fmt::format("servers/client-{:.0f}hz/frames", rate_hz), "fps", frames / options.seconds,
+                                "three 512 x 512 slices a frame, at most 60"));
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options) {
+  TROCAR_TRY(VirtualPatient abdomen, generate_phantom("abdomen"));
+  TROCAR_TRY(const Case the_case, prepare_case(std::make_shared<const VirtualPatient>(std::move(abdomen)), {}));
+  std::vector<CaseResult> results;
+  for (const double rate_hz : options.rates_hz) {
+    TROCAR_TRY_STATUS(measure(the_case, options, rate_hz, results));
+  }
+  return results;
+}
+
+}  // namespace trocar::bench
