@@ -172,6 +172,7 @@ ClientBody read(const wire::ClientMessage& table, Inspection& in) {
 
 Bytes encode(const ClientMessage& message) {
   Builder b;
+  b.ForceDefaults(true);  // else a zero is not sent, and -0.0 is taken for one
   const auto [type, body] = std::visit([&](const auto& alternative) { return build_body(b, alternative); },  //
                                        message.body);
   b.Finish(wire::CreateClientMessage(b, kLinkVersion, message.session, message.sequence, type, body),

@@ -174,6 +174,7 @@ ServerBody read(const wire::ServerMessage& table, Inspection& in) {
 
 Bytes encode(const ServerMessage& message) {
   Builder b(expected_bytes(message));
+  b.ForceDefaults(true);  // else a zero is not sent, and -0.0 is taken for one
   const auto [type, body] = std::visit([&](const auto& alternative) { return build_body(b, alternative); },  //
                                        message.body);
   b.Finish(wire::CreateServerMessage(b, kLinkVersion, message.session, message.sequence, type, body),

@@ -1,0 +1,38 @@
+// What scripts/fuzz runs: whatever the bytes are, a decoder refuses them or gives a sound message.
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/check.h"
+#include "link/codec.h"
+#include "link/test/fingerprint.h"
+#include "link/test/invariants.h"
+
+namespace trocar {
+namespace {
+
+/// A message that was accepted comes through the codec once more as it is.
+template <class Message, class Decode>
+void check(std::span<const std::byte> bytes, Decode decode) {
+  const Result<Message> decoded = decode(bytes);
+  if (!decoded) {
+    TROCAR_CHECK(!decoded.error().text().empty());
+    return;
+  }
+  TROCAR_CHECK(find_broken_invariant(*decoded).empty());
+  const Bytes encoded = encode(*decoded);
+  if (encoded.size() > kMostMessageBytes) return;  // parts of a message may lie over one another
+  const Result<Message> again = decode(encoded);
+  TROCAR_CHECK(again.has_value());
+  TROCAR_CHECK(Fingerprint(*again) == Fingerprint(*decoded));
+}
+
+}  // namespace
+}  // namespace trocar
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto bytes = std::as_bytes(std::span(data, size));
+  trocar::check<trocar::ClientMessage>(bytes, trocar::decode_client_message);
+  trocar::check<trocar::ServerMessage>(bytes, trocar::decode_server_message);
+  return 0;
+}
