@@ -14,6 +14,7 @@ void add_task_commands(CLI::App& program, Action& action);
 void add_run_command(CLI::App& program, Action& action);
 void add_session_commands(CLI::App& program, Action& action);
 void add_device_commands(CLI::App& program, Action& action);
+void add_link_commands(CLI::App& program, Action& action);
 void add_bench_command(CLI::App& program, Action& action);
 
 }  // namespace trocar::cli

@@ -21,8 +21,8 @@ TEST_P(Help, ExitsZeroWithAnExample) {
 INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
                          testing::Values("", "patient", "patient list", "patient generate", "patient build",
                                          "patient show", "patient check", "patient render", "plan", "task", "task list",
-                                         "device", "device list", "run", "session", "session export", "session report",
-                                         "bench"));
+                                         "device", "device list", "link", "link keygen", "run", "session",
+                                         "session export", "session report", "bench"));
 
 class Mistake : public testing::TestWithParam<const char*> {};
 
@@ -49,9 +49,10 @@ INSTANTIATE_TEST_SUITE_P(
                     "run liver-biopsy --patient abdomen --operator constant-velocity:fast --out x",
                     "run liver-biopsy --patient abdomen --operator expert --force-model springs --out x",
                     "run liver-biopsy --patient abdomen --operator expert --rate 0 --out x",
-                    "run liver-biopsy --patient abdomen --operator expert --set liver.k=stiff --out x",
-                    "bench nonsense", "bench slice --paths 3", "bench paths --paths 0", "bench paths --patient nobody",
-                    "bench paths --force-model nonsense", "bench --patient abdomen", "ultrasound sweep", "serve"));
+                    "run liver-biopsy --patient abdomen --operator expert --set liver.k=stiff --out x", "link",
+                    "link keygen", "link nonsense", "bench nonsense", "bench slice --paths 3", "bench paths --paths 0",
+                    "bench paths --patient nobody", "bench paths --force-model nonsense", "bench --patient abdomen",
+                    "ultrasound sweep", "serve"));
 
 TEST(Arguments, UnknownCommandIsNamed) {
   EXPECT_NE(trocar("nonsense").err.find("nonsense"), std::string::npos);
@@ -71,9 +72,9 @@ TEST(Arguments, VersionIsPrinted) {
 TEST(Arguments, ExistingOutputIsRefusedAndKept) {
   const TemporaryFolder folder;
   std::ofstream(folder / "mine") << "mine";
-  for (const std::string command :
-       {"patient generate abdomen --out ", "plan liver-biopsy --patient abdomen --out ",
-        "patient render abdomen --out ", "run liver-biopsy --patient abdomen --operator expert --out "}) {
+  for (const std::string command : {"patient generate abdomen --out ", "plan liver-biopsy --patient abdomen --out ",
+                                    "patient render abdomen --out ", "link keygen --out ",
+                                    "run liver-biopsy --patient abdomen --operator expert --out "}) {
     const Outcome outcome = trocar(command + "'" + (folder / "mine") + "'");
     EXPECT_EQ(outcome.exit_status, 2) << command << outcome.err;
   }
