@@ -44,14 +44,19 @@ Result<std::unique_ptr<HapticDevice>> HaplyDevice::open(const DevicePreset& pres
   std::unique_ptr<HaplyDevice> device(new HaplyDevice(preset, address));
   TROCAR_TRY_STATUS(device->start());
   // What the service told: constant from here on.
-  if (!device->has_grip_) device->preset_.sensed_dof = 3;
+  if (!*device->has_grip_) device->preset_.sensed_dof = 3;
   device->preset_.actuated_dof = 3;
   device->preset_.capability.peak_torque_nmm = 0.0;
   return device;
 }
 
 HaplyDevice::HaplyDevice(const DevicePreset& preset, std::string address)
-    : preset_(preset), address_(std::move(address)) {}
+    : preset_(preset), address_(std::move(address)) {
+  const std::size_t hash = address_.find('#');
+  if (hash == std::string::npos) return;
+  device_id_ = address_.substr(hash + 1);
+  address_.resize(hash);
+}
 
 HaplyDevice::~HaplyDevice() {
   stop();
@@ -68,21 +73,35 @@ Status HaplyDevice::start() {
   if (socket_->receive(message, kFirstStateLimit) != WebSocket::Received::kMessage) {
     return fail("the Inverse service says nothing", address_, "start the Inverse service anew");
   }
-  const HaplyState first = parse_haply_state(message, {});
-  if (first.condition != HaplyCondition::kReady) {
-    return fail(to_string(first.condition), address_, advice_for(first.condition));
-  }
-  device_id_ = first.device_id;
-  is_centred_ = first.is_centred;
-  has_grip_ = first.q_grip.has_value();
+  TROCAR_TRY_STATUS(take_first_state(message));
   unusable_ = 0;
   written_ns_ = 0;
   force_.update();  // what was written before is not for the device opened now
-  state_.write({haply_pose(first, is_centred_), first.buttons});
   is_stopping_ = false;
   is_gone_ = false;
   thread_ = std::thread([this] { run(); });
   return {};
+}
+
+Status HaplyDevice::take_first_state(const std::string& message) {
+  const HaplyState first = parse_haply_state(message, device_id_);
+  if (first.condition != HaplyCondition::kReady) {
+    return fail(to_string(first.condition), address_, advice_for(first.condition));
+  }
+  if (has_grip_.value_or(false) && !first.q_grip) {
+    return fail("the grip is missing", address_, "switch it on, or start the server anew without it");
+  }
+  if (!has_grip_) has_grip_ = first.q_grip.has_value();
+  device_id_ = first.device_id;
+  is_centred_ = first.is_centred;
+  state_.write({pose_of(first), first.buttons});
+  return {};
+}
+
+/// A grip that turns up later is no part of a device that was opened without one.
+Pose HaplyDevice::pose_of(HaplyState state) const noexcept {
+  if (!has_grip_.value_or(false)) state.q_grip.reset();
+  return haply_pose(state, is_centred_);
 }
 
 void HaplyDevice::stop() noexcept {
@@ -111,10 +130,10 @@ void HaplyDevice::run() {
 /// false: the device is gone.
 bool HaplyDevice::take_state(const std::string& message) {
   const HaplyState state = parse_haply_state(message, device_id_);
-  const bool is_usable = state.condition == HaplyCondition::kReady && state.q_grip.has_value() == has_grip_;
+  const bool is_usable = state.condition == HaplyCondition::kReady && (state.q_grip.has_value() || !*has_grip_);
   if (is_usable) {
     unusable_ = 0;
-    state_.write({haply_pose(state, is_centred_), state.buttons});
+    state_.write({pose_of(state), state.buttons});
     return true;
   }
   const bool is_unclear = state.condition == HaplyCondition::kReady || state.condition == HaplyCondition::kMalformed;

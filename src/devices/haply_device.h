@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -17,13 +18,16 @@ inline constexpr std::int64_t kHaplyForceAge_ns = 20'000'000;         ///< Witho
 inline constexpr int kHaplyMostUnusable = 50;  ///< Messages in a row that cannot be used: taken for gone. [assumed]
 
 class WebSocket;
+struct HaplyState;
 
 /// A Haply Inverse3 with its grip, through the Inverse service: position and direction sensed, force alone. A thread
 /// answers each state with one command; the service decides by its answers how fast that goes, at most at
 /// kHaplyPeriod_ns. Closed at zero force. Invariant: the connection is the thread's while it runs.
 class HaplyDevice final : public HapticDevice {
  public:
-  /// `address`: "ws://HOST:PORT". Without a grip it senses 3 degrees of freedom, whatever the preset says.
+  /// `address`: "ws://HOST:PORT", the service's first Inverse3, or "ws://HOST:PORT#ID", the one with this id. Without a
+  /// grip it senses 3 degrees of freedom, whatever the preset says. Reconnects to the same device, with a grip if it
+  /// had one.
   static Result<std::unique_ptr<HapticDevice>> open(const DevicePreset& preset, const std::string& address);
   ~HaplyDevice() override;
 
@@ -41,8 +45,10 @@ class HaplyDevice final : public HapticDevice {
 
   HaplyDevice(const DevicePreset& preset, std::string address);
   Status start();
+  Status take_first_state(const std::string& message);
   void stop() noexcept;
   void run();
+  Pose pose_of(HaplyState state) const noexcept;
   bool take_state(const std::string& message);
   bool answer(const Vec3& f_D);
   bool wait_for_state(std::string& message);
@@ -51,9 +57,9 @@ class HaplyDevice final : public HapticDevice {
 
   DevicePreset preset_;
   std::string address_;
-  std::string device_id_;
+  std::string device_id_;  ///< Empty until one is found.
   bool is_centred_ = false;
-  bool has_grip_ = false;
+  std::optional<bool> has_grip_;  ///< As first found.
   int unusable_ = 0;
   std::int64_t written_ns_ = 0;
   std::unique_ptr<WebSocket> socket_;

@@ -119,6 +119,7 @@ void PolledPointer::poll_until_stopped() noexcept {
 
 DeviceReading PolledPointer::read(double now_s) noexcept {
   if (is_gone_.load(std::memory_order_acquire)) return {DeviceStatus::kDisconnected, X_DS_, 0};
+  if (!std::isfinite(now_s)) now_s = read_s_;
   const bool has_news = motion_.update();
   if (has_news) heard_s_ = now_s;
   const double dt_s = has_read_ ? std::min(now_s - read_s_, kPointerStep_s) : 0.0;
@@ -135,6 +136,12 @@ bool PolledPointer::write(const Wrench& wrench_D) noexcept {
   const bool is_taken = std::isfinite(force_n) && !is_gone_.load(std::memory_order_acquire);
   force_n_.write(is_taken ? force_n : 0.0);
   return is_taken;
+}
+
+void PolledPointer::hold(const DeviceHand& hand) noexcept {
+  if (!hand.is_placed || placed_s_ == hand.time_s || !hand.X_DS.is_finite()) return;
+  placed_s_ = hand.time_s;
+  X_DS_ = hand.X_DS;
 }
 
 Status PolledPointer::reconnect() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -67,6 +68,8 @@ class PolledPointer final : public HapticDevice {
   std::string name() const override { return name_; }
   DeviceReading read(double now_s) noexcept override;
   bool write(const Wrench& wrench_D) noexcept override;
+  /// Puts the stylus where a new `is_placed` says; all else of the hand is the pad's.
+  void hold(const DeviceHand& hand) noexcept override;
   Status reconnect() override;
 
  private:
@@ -91,6 +94,7 @@ class PolledPointer final : public HapticDevice {
   double read_s_ = 0.0;
   double heard_s_ = 0.0;
   bool has_read_ = false;
+  std::optional<double> placed_s_;  ///< Which placement was carried out.
 };
 
 }  // namespace trocar

@@ -171,6 +171,40 @@ TEST(HaplyDevice, WithoutAGripSensesThreeDegreesOfFreedom) {
   EXPECT_EQ(device->read(0.0).X_DS.R(), Mat3::Identity().eval());
 }
 
+TEST(HaplyDevice, IsTheOneWhoseIdIsNamed) {
+  const HaplyService service;
+  EXPECT_TRUE(HaplyDevice::open(inverse3(), service.address() + "#049D").has_value());
+  const auto other = HaplyDevice::open(inverse3(), service.address() + "#1234");
+  ASSERT_FALSE(other.has_value());
+  EXPECT_NE(other.error().text().find("no Inverse3"), std::string::npos);
+}
+
+TEST(HaplyDevice, ReconnectsWithItsGripAlone) {
+  HaplyService service;
+  const auto device = open_at(service);
+  ASSERT_NE(device, nullptr);
+  service.set_mood(HaplyMood::kNoGrip);
+  EXPECT_TRUE(comes_to(*device, DeviceStatus::kDisconnected));
+  const Status status = device->reconnect();
+  ASSERT_FALSE(status.has_value());
+  EXPECT_NE(status.error().text().find("the grip is missing"), std::string::npos);
+  EXPECT_EQ(device->read(0.0).status, DeviceStatus::kDisconnected);
+}
+
+TEST(HaplyDevice, AGripThatTurnsUpLaterIsNoPartOfIt) {
+  HaplyService service(HaplyMood::kNoGrip);
+  const auto device = open_at(service);
+  ASSERT_NE(device, nullptr);
+  service.set_grip(Eigen::Quaterniond(Eigen::AngleAxisd(kRightAngle_rad, Vec3::UnitX())), true, false);
+  service.set_mood(HaplyMood::kGood);
+  DeviceReading reading;
+  EXPECT_TRUE(wait_until([&] {
+    reading = device->read(0.0);
+    return reading.buttons == kButtonMain;
+  }));
+  EXPECT_EQ(reading.X_DS.R(), Mat3::Identity().eval());
+}
+
 TEST(HaplyDevice, ForceMovesTheCursorAlongIt) {
   HaplyService service;
   const auto device = open_at(service);

@@ -105,5 +105,28 @@ TEST(PolledPointer, MovesOnAtEveryReadingAndStopsWhenItsThreadHangs) {
   EXPECT_TRUE(testing::wait_until([&] { return (*device)->read(now_s).status == DeviceStatus::kFresh; }));
 }
 
+TEST(PolledPointer, IsPlacedOnceAndGoesOnFromThere) {
+  const std::atomic<bool> is_silent{false};
+  DevicePreset preset;
+  preset.workspace_radius_mm = kRadius_mm;
+  const auto device = PolledPointer::open(preset, std::make_unique<SteadySource>(is_silent));
+  ASSERT_TRUE(device.has_value());
+  ASSERT_TRUE(testing::wait_until([&] { return (*device)->read(1.0).status == DeviceStatus::kFresh; }));
+  DeviceHand hand;
+  hand.X_DS = Pose::translation(Vec3(1.0, 2.0, 3.0));
+  hand.time_s = 7.0;
+  hand.is_placed = true;
+  (*device)->hold(hand);
+  EXPECT_EQ((*device)->read(1.0).X_DS.p(), hand.X_DS.p());
+  const Pose moved = (*device)->read(1.01).X_DS;
+  (*device)->hold(hand);  // the same again, as every period
+  EXPECT_EQ((*device)->read(1.01).X_DS.p(), moved.p());
+  EXPECT_NEAR(moved.p().x(), 1.1, 1e-9);
+  hand.time_s = 8.0;
+  hand.X_DS = Pose::translation(Vec3(kNaN, 0.0, 0.0));
+  (*device)->hold(hand);
+  EXPECT_EQ((*device)->read(1.01).X_DS.p(), moved.p());
+}
+
 }  // namespace
 }  // namespace trocar
