@@ -130,7 +130,7 @@ Command read(const wire::Command& table, Inspection& in) {
   } else if (const auto* parameters = table.what_as_SetParameters()) {
     command.what = read(*parameters, in);
   } else if (const auto* simple = table.what_as_SimpleCommand()) {
-    command.what = in.enumerator(simple->command(), ServerCommand::kRestartStatistics, "command");
+    command.what = in.enumerator(simple->command(), kLastServerCommand, "command");
   } else {
     in.refuse("no command, or an unknown one", "what");
   }

@@ -66,6 +66,7 @@ enum class ServerCommand : std::uint8_t {
   kStyletIn,
   kRestartStatistics,  ///< Of the loop.
 };
+inline constexpr ServerCommand kLastServerCommand = ServerCommand::kRestartStatistics;
 
 /// A command wants a Reply with the same number.
 struct Command {

@@ -25,29 +25,28 @@ std::string find_broken_invariant(Envelope<Body> message) {
       expect(c != 0x7f, "DEL in a text");
     }
   };
-  walk(message,
-       Overloaded{[&](double& value) { expect(std::isfinite(value), "number not finite"); },
-                  [&](Pose& X) {
-                    expect((X.R().transpose() * X.R() - Mat3::Identity()).norm() < kRounding, "no rotation");
-                    expect(std::abs(X.R().determinant() - 1.0) < kRounding, "mirrored");
-                    expect(is_near(X.p()), "pose far away");
-                  },
-                  [&](std::string& text) { check_text(text, false); },
-                  [&](ServerCommand& command) { expect(command <= ServerCommand::kStyletIn, "unknown command"); },
-                  [&](LoadScene& scene) {
-                    expect(scene.needle_length_mm >= 0.0 && scene.needle_radius_mm >= 0.0, "negative needle");
-                    check_text(scene.tissues_toml, true);
-                    check_text(scene.patient, false);
-                    expect(scene.X_PW.is_finite(), "room not finite");
-                  },
-                  [&](TickSample& sample) {
-                    expect(std::isfinite(sample.time_s), "tick without a time");
-                    expect(is_near(sample.tip_mm) && is_near(sample.device_mm), "tick far away");
-                    expect(sample.axis.allFinite(), "axis not finite");
-                    expect(sample.phase <= InsertionPhase::kRetracting, "unknown phase");
-                    for (const TickEvent& event : sample.events)
-                      expect(event.kind <= EventKind::kLimit, "unknown event");
-                  }});
+  walk(message, Overloaded{[&](double& value) { expect(std::isfinite(value), "number not finite"); },
+                           [&](Pose& X) {
+                             expect((X.R().transpose() * X.R() - Mat3::Identity()).norm() < kRounding, "no rotation");
+                             expect(std::abs(X.R().determinant() - 1.0) < kRounding, "mirrored");
+                             expect(is_near(X.p()), "pose far away");
+                           },
+                           [&](std::string& text) { check_text(text, false); },
+                           [&](ServerCommand& command) { expect(command <= kLastServerCommand, "unknown command"); },
+                           [&](LoadScene& scene) {
+                             expect(scene.needle_length_mm >= 0.0 && scene.needle_radius_mm >= 0.0, "negative needle");
+                             check_text(scene.tissues_toml, true);
+                             check_text(scene.patient, false);
+                             expect(scene.X_PW.is_finite(), "room not finite");
+                           },
+                           [&](TickSample& sample) {
+                             expect(std::isfinite(sample.time_s), "tick without a time");
+                             expect(is_near(sample.tip_mm) && is_near(sample.device_mm), "tick far away");
+                             expect(sample.axis.allFinite(), "axis not finite");
+                             expect(sample.phase <= InsertionPhase::kRetracting, "unknown phase");
+                             for (const TickEvent& event : sample.events)
+                               expect(event.kind <= EventKind::kLimit, "unknown event");
+                           }});
   if constexpr (std::is_same_v<Body, ServerBody>) {
     const auto* batch = std::get_if<StateBatch>(&message.body);
     expect(batch == nullptr || batch->samples.size() <= kMostSamples, "too many ticks");

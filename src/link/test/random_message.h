@@ -58,7 +58,9 @@ class RandomMessages {
   void fill(std::uint64_t& value) { value = random_.next(); }
   void fill(InsertionPhase& value) { value = static_cast<InsertionPhase>(below(4)); }
   void fill(EventKind& value) { value = static_cast<EventKind>(below(4)); }
-  void fill(ServerCommand& value) { value = static_cast<ServerCommand>(below(6)); }
+  void fill(ServerCommand& value) {
+    value = static_cast<ServerCommand>(below(static_cast<std::size_t>(kLastServerCommand) + 1));
+  }
   void fill(std::string& text) {
     constexpr std::array<const char*, 5> kCharacters = {"n", "=", "ä", "→", "𝛿"};
     for (std::size_t n = below(20); n > 0; --n) text += kCharacters[below(kCharacters.size())];

@@ -149,8 +149,9 @@ TEST(UnsoundNumber, NegativeStiffnessMassOrLengthIsRefused) {
 }
 
 TEST(UnsoundEnumerator, IsRefused) {
-  EXPECT_TRUE(is_accepted(Command{1, ServerCommand::kStyletIn}));
-  EXPECT_FALSE(is_accepted(Command{1, static_cast<ServerCommand>(6)}));
+  constexpr auto kLast = static_cast<std::uint8_t>(kLastServerCommand);
+  EXPECT_TRUE(is_accepted(Command{1, kLastServerCommand}));
+  EXPECT_FALSE(is_accepted(Command{1, static_cast<ServerCommand>(kLast + 1)}));
   EXPECT_FALSE(is_accepted(Command{1, static_cast<ServerCommand>(255)}));
 }
 
