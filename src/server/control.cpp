@@ -70,7 +70,6 @@ void Control::publish(const ServoScene& scene) {
     status.patient_hash = builder_.patient()->content_hash;
     status.force_model = to_string(scene.scene->options.force_model);
     status.task = request.task;
-    status.warning.clear();
   });
 }
 

@@ -110,6 +110,7 @@ void LinkThread::take(const Received& received, const Command& command) {
     reply(received, command.request, false, "there is no scene to feel — load one first");
     return;
   }
+  if (*simple == ServerCommand::kResetFault) shared_.door.update([](ControlStatus& status) { status.warning.clear(); });
   const bool is_taken = shared_.commands.push(*simple);
   reply(received, command.request, is_taken, is_taken ? "done" : "too many commands at once — send it again");
 }

@@ -31,7 +31,10 @@ struct Prepared {
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   ::dup2(prepared.null, STDIN_FILENO);
-  if (prepared.log >= 0) ::dup2(prepared.log, STDERR_FILENO);
+  if (prepared.log >= 0) {
+    ::dup2(prepared.log, STDOUT_FILENO);
+    ::dup2(prepared.log, STDERR_FILENO);
+  }
   ::execv(prepared.path, prepared.arguments);
   const int why = errno;
   [[maybe_unused]] const ssize_t written = ::write(prepared.failure, &why, sizeof why);

@@ -11,7 +11,7 @@ namespace trocar::detail {
 struct Program {
   std::filesystem::path path;
   std::vector<std::string> arguments;
-  std::filesystem::path log;  ///< Standard error is added to it; empty: ours.
+  std::filesystem::path log;  ///< Standard output and error are added to it; empty: ours.
 };
 
 /// Starts a child that the kernel ends (SIGTERM) when the calling thread ends; gives its process id. Errors: the log

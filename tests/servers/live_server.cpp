@@ -1,0 +1,93 @@
+#include "servers/live_server.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <thread>
+
+#include "headless/scene_request.h"
+
+namespace trocar::servers_test {
+namespace {
+const Vec3 kEntry_P(0.0, -45.0, 0.0);  // on the skin of the layered patients; the body is at +y
+}
+
+bool wait_for(const std::function<bool()>& is_so) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!is_so()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+LiveServer::LiveServer(std::vector<std::string> more) : url_("ipc://" + (folder_ / "needle").string()) {
+  arguments_ = {"--endpoint", url_, "--priority", "0", "--flight-records", folder_.path().string()};
+  arguments_.insert(arguments_.end(), more.begin(), more.end());
+  start();
+}
+
+void LiveServer::start() {
+  const auto program = find_server_program();
+  ASSERT_TRUE(program) << program.error().text();
+  auto process = ServerProcess::start(*program, arguments_, folder_ / "log");
+  ASSERT_TRUE(process) << process.error().text();
+  process_.emplace(std::move(*process));
+}
+
+void LiveServer::kill(int signal) {
+  ::kill(process_->pid(), signal);
+}
+
+HapticClient connect(const std::string& url, bool wants_control) {
+  ClientOptions options;
+  options.endpoint = url;
+  options.wants_control = wants_control;
+  auto client = HapticClient::connect(options);
+  EXPECT_TRUE(client) << client.error().text();
+  const Status connected = client->wait_connected(kPatience);
+  EXPECT_TRUE(connected);
+  return std::move(*client);
+}
+
+LoadScene layers_scene() {
+  LoadScene scene;
+  scene.patient = "layers-liver";
+  scene.X_PW = room_in_patient({kEntry_P, kEntry_P + 40.0 * Vec3::UnitY()}, scene.needle_length_mm);
+  return scene;
+}
+
+HandTarget hand_at_depth(double depth_mm) {
+  HandTarget hand;
+  hand.X_PN = needle_pose(kEntry_P + depth_mm * Vec3::UnitY(), Vec3::UnitY());
+  hand.holds_tip = true;
+  return hand;
+}
+
+void press_on_skin(HapticClient& client) {
+  const auto loaded = client.ask(layers_scene(), kPatience);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  HandTarget hand = hand_at_depth(-5.0);
+  hand.is_placed = true;
+  client.set_hand(hand);
+  ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+  ASSERT_TRUE(wait_for([&] { return client.view().status.gate_mode == "on"; })) << client.view().status.gate_mode;
+  client.set_hand(hand_at_depth(4.0));
+  ASSERT_TRUE(wait_for([&] {
+    const auto newest = client.newest();
+    return newest && felt_n(*newest) > 0.5;
+  }));
+}
+
+double felt_n(const TickSample& sample) {
+  return (sample.device_f_n - sample.f_weight_n).norm();
+}
+
+bool has_limit(const TickSample& sample, LimitReason reason) {
+  for (const TickEvent& event : sample.events) {
+    if (event.kind == EventKind::kLimit && event.id == static_cast<std::uint8_t>(reason)) return true;
+  }
+  return false;
+}
+
+}  // namespace trocar::servers_test

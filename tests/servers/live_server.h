@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/temporary_folder.h"
+#include "link/haptic_client.h"
+#include "link/server_process.h"
+
+namespace trocar::servers_test {
+
+/// Long enough for a loaded machine; nothing is measured by it.
+inline constexpr std::chrono::milliseconds kPatience{60'000};
+
+bool wait_for(const std::function<bool()>& is_so);
+
+/// A trocar-hapticd with a simulated device on an endpoint of its own; ordinary scheduling, so that it takes no core
+/// from other tests.
+class LiveServer {
+ public:
+  explicit LiveServer(std::vector<std::string> more = {});
+  void start();
+  void kill(int signal);
+  ServerProcess& process() { return *process_; }
+  const std::string& url() const { return url_; }
+  const TemporaryFolder& folder() const { return folder_; }
+
+ private:
+  TemporaryFolder folder_;
+  std::string url_;
+  std::vector<std::string> arguments_;
+  std::optional<ServerProcess> process_;
+};
+
+HapticClient connect(const std::string& url, bool wants_control = true);
+/// The layered liver patient, entered straight down; the hand can be told by depth below the skin.
+LoadScene layers_scene();
+HandTarget hand_at_depth(double depth_mm);
+/// Scene, hand pressed on the skin, forces on and past the safe start.
+void press_on_skin(HapticClient& client);
+/// Newtons of tissue on the device (without the stylus' weight).
+double felt_n(const TickSample& sample);
+bool has_limit(const TickSample& sample, LimitReason reason);
+
+}  // namespace trocar::servers_test

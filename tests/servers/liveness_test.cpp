@@ -1,0 +1,171 @@
+// Processes that die, stop and come back, on either side of the link.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <stdlib.h>
+
+#include <thread>
+
+#include "servers/live_server.h"
+
+namespace trocar::servers_test {
+namespace {
+
+constexpr const char* kHeldUrl = "TROCAR_TEST_HELD_URL";
+
+/// A client in a process of its own: this program again, with the test below.
+ServerProcess start_holder(const std::string& url) {
+  ::setenv(kHeldUrl, url.c_str(), 1);
+  auto holder = ServerProcess::start(
+      "/proc/self/exe", {"--gtest_also_run_disabled_tests", "--gtest_filter=*HoldsTheServerUntilItIsKilled"});
+  ::unsetenv(kHeldUrl);
+  EXPECT_TRUE(holder) << holder.error().text();
+  return std::move(*holder);
+}
+
+/// What a watching client sees of the force after something happened: when it began to fade and when it was gone.
+struct Fade {
+  bool has_begun = false, has_ended = false;
+  double began_s = 0.0, ended_s = 0.0;
+};
+void follow(Fade& fade, const std::vector<NumberedSample>& samples) {
+  for (const NumberedSample& numbered : samples) {
+    const TickSample& sample = numbered.sample;
+    if (!fade.has_begun && has_limit(sample, LimitReason::kStale)) {
+      fade.has_begun = true;
+      fade.began_s = sample.time_s;
+    }
+    if (fade.has_begun && !fade.has_ended && sample.device_f_n.norm() == 0.0) {
+      fade.has_ended = true;
+      fade.ended_s = sample.time_s;
+    }
+  }
+}
+
+// Not a test: the other process of the tests below.
+TEST(Holder, DISABLED_HoldsTheServerUntilItIsKilled) {
+  const char* url = ::getenv(kHeldUrl);
+  ASSERT_NE(url, nullptr);
+  HapticClient client = connect(url);
+  press_on_skin(client);
+  for (;;) std::this_thread::sleep_for(std::chrono::seconds(1));
+}
+
+TEST(Liveness, ForceIsGoneInTimeWhenTheClientIsKilled) {
+  LiveServer server;
+  ServerProcess holder = start_holder(server.url());
+  HapticClient watcher = connect(server.url(), false);
+  ASSERT_TRUE(wait_for([&] {
+    const auto newest = watcher.newest();
+    return newest && felt_n(*newest) > 0.5;
+  }));
+  watcher.take_samples();
+  ::kill(holder.pid(), SIGKILL);
+  Fade fade;
+  ASSERT_TRUE(wait_for([&] {
+    follow(fade, watcher.take_samples());
+    return fade.has_ended;
+  }));
+  // By the server's own clock: 200 ms, and a hole of the machine's scheduling.
+  EXPECT_LE(fade.ended_s - fade.began_s, 0.2 + 0.05);
+}
+
+TEST(Liveness, ForceFadesWhileTheClientIsStoppedAndComesBackSmoothly) {
+  LiveServer server;
+  ServerProcess holder = start_holder(server.url());
+  HapticClient watcher = connect(server.url(), false);
+  ASSERT_TRUE(wait_for([&] {
+    const auto newest = watcher.newest();
+    return newest && felt_n(*newest) > 0.5;
+  }));
+  watcher.take_samples();
+  ::kill(holder.pid(), SIGSTOP);
+  Fade fade;
+  ASSERT_TRUE(wait_for([&] {
+    follow(fade, watcher.take_samples());
+    return fade.has_ended;
+  }));
+  ::kill(holder.pid(), SIGCONT);
+  double last_n = 0.0, largest_rise_n = 0.0;
+  ASSERT_TRUE(wait_for([&] {
+    for (const NumberedSample& numbered : watcher.take_samples()) {
+      const double now_n = numbered.sample.device_f_n.norm();
+      largest_rise_n = std::max(largest_rise_n, now_n - last_n);
+      last_n = now_n;
+    }
+    return last_n > 0.5;
+  })) << watcher.view().status.state;
+  EXPECT_LT(largest_rise_n, 0.1) << "N in one tick";
+}
+
+TEST(Liveness, AClientSeesAKilledServerAndItsSuccessor) {
+  LiveServer server;
+  HapticClient client = connect(server.url());
+  press_on_skin(client);
+  const std::uint64_t first_session = client.view().welcome.session;
+  server.kill(SIGKILL);
+  EXPECT_TRUE(wait_for([&] { return !client.view().is_connected; }));
+  EXPECT_TRUE(wait_for([&] { return !server.process().is_running(); }));
+  EXPECT_FALSE(client.ask(ServerCommand::kStart, std::chrono::milliseconds(100))) << "nobody is there";
+  server.start();
+  ASSERT_TRUE(wait_for([&] { return client.view().is_connected && client.view().welcome.session != first_session; }));
+  press_on_skin(client);
+}
+
+TEST(Liveness, AServerThatWasStoppedHasAFaultUntilItIsReset) {
+  LiveServer server;
+  HapticClient client = connect(server.url());
+  press_on_skin(client);
+  server.kill(SIGSTOP);
+  EXPECT_TRUE(wait_for([&] { return !client.view().is_connected; }));
+  server.kill(SIGCONT);
+  ASSERT_TRUE(wait_for([&] { return client.view().status.state == "fault"; }));
+  EXPECT_EQ(client.view().status.fault, "loop_stalled");
+  EXPECT_TRUE(wait_for([&] {
+    const auto newest = client.newest();
+    return newest && newest->device_f_n.norm() == 0.0;
+  }));
+  ASSERT_TRUE(client.ask(ServerCommand::kResetFault, kPatience));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.fault == "none"; }));
+}
+
+TEST(Liveness, AFlightRecordTellsOfAFault) {
+  LiveServer server({"--fault", "nan@0.1"});
+  HapticClient client = connect(server.url());
+  ASSERT_TRUE(client.ask(layers_scene(), kPatience));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.state == "fault"; }));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.warning.find("flight-") != std::string::npos; }))
+      << client.view().status.warning;
+  int flights = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(server.folder().path())) {
+    if (entry.path().filename().string().starts_with("flight-")) ++flights;
+  }
+  EXPECT_EQ(flights, 1);
+}
+
+TEST(Liveness, AnUnpluggedDeviceIsOpenedAgainOnRequest) {
+  LiveServer server({"--fault", "disconnect@0.1+0.2"});
+  HapticClient client = connect(server.url());
+  ASSERT_TRUE(client.ask(layers_scene(), kPatience));
+  ASSERT_TRUE(wait_for([&] { return client.view().status.fault == "device_lost"; }));
+  // The schedule plugs it in again after a while; until then it stays lost.
+  ASSERT_TRUE(wait_for([&] { return client.ask(ServerCommand::kReconnect, kPatience).has_value(); }));
+  ASSERT_TRUE(wait_for([&] {
+    return client.ask(ServerCommand::kResetFault, kPatience).has_value() && client.view().status.fault == "none";
+  }));
+  ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
+}
+
+TEST(Liveness, EndsOnRequestWithItsFiguresAndExitStatusZero) {
+  LiveServer server;
+  {
+    HapticClient client = connect(server.url());
+    press_on_skin(client);
+  }
+  server.kill(SIGTERM);
+  ASSERT_TRUE(wait_for([&] { return !server.process().is_running(); }));
+  EXPECT_EQ(server.process().how_it_ended(), "ended with exit status 0");
+}
+
+}  // namespace
+}  // namespace trocar::servers_test
