@@ -25,7 +25,7 @@ struct Figures {
 /// One line of `trocar bench`.
 struct CaseResult {
   std::string name;  ///< "slice/512-oblique".
-  std::string unit;  ///< us, ms, fps, mm, n, nmm (N mm), ratio.
+  std::string unit;  ///< us, ms, fps, mm, n, nmm (N mm), mib, ratio.
   Figures figures;
   struct Peer {
     std::string name;

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <numbers>
 #include <thread>
 
@@ -58,6 +59,7 @@ struct Station {
   std::string tool;
   ServerProcess process;
   HapticClient client;
+  double resident_mib = 0.0;  ///< When the measurement began.
 };
 
 Result<Station> open_station(const std::filesystem::path& program, const TemporaryFolder& folder,
@@ -75,7 +77,7 @@ Result<Station> open_station(const std::filesystem::path& program, const Tempora
   options.has_window = true;
   TROCAR_TRY(HapticClient client, HapticClient::connect(options));
   TROCAR_TRY_STATUS(client.wait_connected(std::chrono::duration_cast<std::chrono::milliseconds>(kPatience)));
-  return Station{tool, std::move(process), std::move(client)};
+  return Station{tool, std::move(process), std::move(client), 0.0};
 }
 
 /// In and out along the path, 12 s a cycle, with a little tremor.
@@ -134,6 +136,15 @@ double draw_frame(const CtGrid& ct, const Vec3& tip_P, const Vec3& axis_P) {
   return sum;
 }
 
+/// Resident memory of a process, MiB; 0 where it cannot be read.
+double resident_mib(int pid) {
+  std::ifstream status(fmt::format("/proc/{}/statm", pid));
+  std::uint64_t size = 0, resident = 0;
+  status >> size >> resident;
+  constexpr double kMiB = 1024.0 * 1024.0;
+  return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / kMiB;
+}
+
 CaseResult latency_case(const std::string& name, const LatencySummary& s, std::string note = {}) {
   CaseResult result;
   result.name = name;
@@ -151,7 +162,7 @@ CaseResult number_case(const std::string& name, const char* unit, double value, 
   return result;
 }
 
-void add_results(const Station& station, double rate_hz, std::vector<CaseResult>& results) {
+void add_results(Station& station, double rate_hz, std::vector<CaseResult>& results) {
   const ClientView view = station.client.view();
   const LoopSummary& loop = view.status.loop;
   const std::string name = fmt::format("servers/{}-{:.0f}hz/", station.tool, rate_hz);
@@ -164,6 +175,9 @@ void add_results(const Station& station, double rate_hz, std::vector<CaseResult>
   results.push_back(number_case(
       name + "ticks-missing", "n", static_cast<double>(view.ticks_missing),
       fmt::format("{} received, {} dropped by the server", view.ticks_received, view.status.ticks_dropped)));
+  const double now_mib = resident_mib(station.process.pid());
+  results.push_back(number_case(name + "memory-growth", "mib", now_mib - station.resident_mib,
+                                fmt::format("{:.1f} MiB at the end", now_mib)));
 }
 
 /// Draws and moves the hands until the time is over; frames drawn.
@@ -185,12 +199,12 @@ int play(std::array<Station*, 2> stations, const Case& the_case, double seconds,
     }
   });
   int frames = 0;
-  volatile double shown = 0.0;
+  double shown = 0.0;
   for (double now_s = 0.0; now_s < seconds; now_s = time_s()) {
     const auto begun = std::chrono::steady_clock::now();
     const auto newest = stations[0]->client.newest();
-    shown = draw_frame(the_case.patient->ct, newest ? newest->tip_mm : line_P.a,
-                       newest ? newest->axis : line_P.direction());
+    shown += draw_frame(the_case.patient->ct, newest ? newest->tip_mm : line_P.a,
+                        newest ? newest->axis : line_P.direction());
     for (Station* station : stations) {
       station->client.take_samples();
       station->client.frame_drawn();
@@ -228,9 +242,10 @@ Status measure(const Case& the_case, const Options& options, double rate_hz, std
   std::this_thread::sleep_for(1s);  // past the safe start
   for (Station* station : {&needle, &probe}) {
     TROCAR_TRY_STATUS(station->client.ask(ServerCommand::kRestartStatistics, patience));
+    station->resident_mib = resident_mib(station->process.pid());
   }
   const int frames = play({&needle, &probe}, the_case, options.seconds, options.progress);
-  for (const Station* station : {&needle, &probe}) add_results(*station, rate_hz, results);
+  for (Station* station : {&needle, &probe}) add_results(*station, rate_hz, results);
   results.push_back(number_case(fmt::format("servers/client-{:.0f}hz/frames", rate_hz), "fps", frames / options.seconds,
                                 "three 512 x 512 slices a frame, at most 60"));
   return {};
