@@ -1,0 +1,51 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace trocar {
+
+/// Where a vendor's library is looked for, and what to tell people who have none.
+struct LibraryPlace {
+  const char* variable = nullptr;      ///< Environment variable that names another path: "TROCAR_LIBHD".
+  std::span<const char* const> names;  ///< Tried in this order by the system's rules: "libHD.so".
+  std::string_view package;            ///< What is missing: "the OpenHaptics toolkit".
+  std::string_view advice;             ///< How to get it.
+};
+
+/// A shared library opened at run time. It stays in the process until its end: vendors' drivers do not bear being
+/// unloaded (CHAI3D, src/devices/CPhantomDevices.cpp, says so of PHANTOM's).
+class DynamicLibrary {
+ public:
+  /// Everything is bound at once, so that no first call costs a search. The error names package, driver and variable.
+  static Result<DynamicLibrary> open(const LibraryPlace& place);
+
+  /// Looks `name` up and sets `function`, a pointer to a C function. The error says which function an old library
+  /// lacks.
+  template <class Function>
+  Status find(const char* name, Function*& function) const {
+    TROCAR_TRY(void* const symbol, find_symbol(name));
+    function = reinterpret_cast<Function*>(symbol);
+    return {};
+  }
+  /// The same for a function that older releases lack: nullptr then.
+  template <class Function>
+  void find_optional(const char* name, Function*& function) const {
+    const auto symbol = find_symbol(name);
+    function = symbol ? reinterpret_cast<Function*>(*symbol) : nullptr;
+  }
+
+  const std::string& path() const noexcept { return path_; }
+
+ private:
+  DynamicLibrary(void* handle, std::string path) : handle_(handle), path_(std::move(path)) {}
+  Result<void*> find_symbol(const char* name) const;
+
+  void* handle_;
+  std::string path_;  ///< As it was asked for.
+};
+
+}  // namespace trocar
