@@ -26,6 +26,7 @@ function(trocar_add_module name uses libraries)
   list(FILTER headers EXCLUDE REGEX "/test(ing)?/")  # these need what a test program defines
   list(REMOVE_ITEM sources ${tests})
   list(FILTER sources EXCLUDE REGEX "/fuzz/")  # built by scripts/fuzz
+  list(FILTER tests EXCLUDE REGEX "/test/standin/")  # libraries of their own, by test/standin/CMakeLists.txt
   set(target trocar_${name})
   set(links Eigen3::Eigen fmt::fmt)
   foreach(use IN LISTS uses)
@@ -68,6 +69,7 @@ function(trocar_add_module name uses libraries)
 
   if(TROCAR_TESTS AND tests)
     trocar_add_test(${name} ${target} ${tests})
+    include(${folder}/test/standin/CMakeLists.txt OPTIONAL)
   endif()
 endfunction()
 

@@ -27,8 +27,8 @@ constexpr std::array kKinds{
     DeviceKind{"gamepad", Argument::kNone, open_gamepad},
     DeviceKind{"spacemouse", Argument::kNone, open_spacemouse},
     DeviceKind{"replay", Argument::kNeeded, open_replay},     // :FILE
-    DeviceKind{"openhaptics", Argument::kOptional, nullptr},  // :NAME
-    DeviceKind{"forcedimension", Argument::kNone, nullptr},
+    DeviceKind{"openhaptics", Argument::kOptional, open_openhaptics},  // :NAME
+    DeviceKind{"forcedimension", Argument::kNone, open_forcedimension},
     DeviceKind{"haply", Argument::kOptional, open_haply},  // :ws://HOST:PORT
 };
 // clang-format on

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <atomic>
+
+namespace trocar {
+
+/// What a servo loop of ours does once a period.
+class ServoBody {
+ public:
+  virtual void serve(double now_s) noexcept = 0;
+
+ protected:
+  ~ServoBody() = default;
+};
+
+/// When a servo loop of ours wakes. The real one keeps absolute times; a test's wakes when it is told to.
+class ServoPace {
+ public:
+  virtual ~ServoPace() = default;
+  /// By the loop's own thread: a period of `body` after the other until `is_stopping`.
+  virtual void run(const std::atomic<bool>& is_stopping, ServoBody& body) noexcept = 0;
+  /// By another thread, after it set `is_stopping`: ends a long wait.
+  virtual void wake() noexcept {}
+};
+
+}  // namespace trocar

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace trocar::testing {
+
+/// Broken calling rules, in the order in which they were broken.
+class Violations {
+ public:
+  void require(bool is_kept, const char* rule) {
+    if (!is_kept) broken_.emplace_back(rule);
+  }
+  void clear() { broken_.clear(); }
+  std::string text() const {
+    std::string lines;
+    for (const std::string& rule : broken_) lines += rule + "\n";
+    return lines;
+  }
+
+ private:
+  std::vector<std::string> broken_;
+};
+
+}  // namespace trocar::testing

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+namespace trocar::testing {
+
+/// The stand-in's side of a vendor's library from the test tree, and the environment that makes Trocar find it.
+template <class StandIn>
+StandIn* use_stand_in(const char* variable, const char* file, const char* function) {
+  const std::string path = std::string(TROCAR_STANDIN_FOLDER) + "/" + file;
+  setenv(variable, path.c_str(), 1);
+  void* library = dlopen(path.c_str(), RTLD_NOW);
+  if (library == nullptr) {
+    ADD_FAILURE() << dlerror();
+    return nullptr;
+  }
+  const auto stand_in = reinterpret_cast<StandIn* (*)()>(dlsym(library, function));
+  return stand_in != nullptr ? stand_in() : nullptr;
+}
+
+}  // namespace trocar::testing
