@@ -64,7 +64,7 @@ class ForceDimensionDevice final : public HapticDevice {
     return last_;
   }
   bool write(const Wrench& wrench_D) noexcept override {
-    return connection_ && connection_->exchange().write(wrench_D, preset_.has_torque());
+    return connection_ && connection_->exchange().write(wrench_D, preset_.capability);
   }
   Status reconnect() override {
     const char* cause = connection_ ? connection_->last_error() : nullptr;

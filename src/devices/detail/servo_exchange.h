@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "devices/detail/hand_motion.h"  // is_sane
 #include "devices/haptic_device.h"
 #include "realtime/triple_buffer.h"
 
@@ -48,15 +49,17 @@ class ServoExchange {
     reading.status = is_lost() ? DeviceStatus::kDisconnected : is_new ? DeviceStatus::kFresh : DeviceStatus::kRepeated;
     return reading;
   }
-  /// By the real-time thread. false: not finite (zero goes out instead), refused by the vendor's safety, or lost.
-  /// `has_torque`: else it is left out.
-  bool write(const Wrench& wrench_D, bool has_torque) noexcept {
-    const bool is_finite = wrench_D.force_n.allFinite() && wrench_D.torque_nmm.allFinite();
+  /// By the real-time thread. Cut to the device's peaks, a torque left out where that peak is zero. false: no gate
+  /// wrote that (zero goes out instead), the vendor's safety refuses forces, or the device is lost.
+  bool write(const Wrench& wrench_D, const DeviceCapability& capability) noexcept {
+    const bool is_taken = is_sane(wrench_D);
     Wrench sent;
-    if (is_finite) sent.force_n = wrench_D.force_n;
-    if (is_finite && has_torque) sent.torque_nmm = wrench_D.torque_nmm;
+    if (is_taken) {
+      sent.force_n = cut(wrench_D.force_n, capability.peak_force_n);
+      sent.torque_nmm = cut(wrench_D.torque_nmm, capability.peak_torque_nmm);
+    }
     wrenches_.write(sent);
-    return is_finite && !sample_.is_force_refused && !is_lost();
+    return is_taken && !sample_.is_force_refused && !is_lost();
   }
 
   /// By the servo loop: what the motors are to get now.
@@ -77,6 +80,11 @@ class ServoExchange {
   bool is_lost() const noexcept { return is_lost_.load(std::memory_order_relaxed); }
 
  private:
+  static Vec3 cut(const Vec3& vector, double peak) noexcept {
+    const double norm = vector.norm();
+    return norm <= peak ? vector : Vec3(vector * (peak / norm));
+  }
+
   // Of the real-time thread.
   ServoSample sample_;
   double heard_s_ = 0.0;

@@ -180,6 +180,15 @@ TEST_F(ForceDimension, ReadThatCameTooEarlyIsRepeated) {
   EXPECT_EQ(read_after(1).status, DeviceStatus::kRepeated);
 }
 
+TEST_F(ForceDimension, ForceAboveThePeakIsCut) {
+  open_or_fail();
+  const double peak_n = device->preset().capability.peak_force_n;
+  EXPECT_NEAR(force_after({0, 0, 5 * peak_n}).norm(), peak_n, kTiny);
+  EXPECT_FALSE(device->write({Vec3(0, 0, 1e6), Vec3::Zero()})) << "no gate writes that";
+  pace->step(1);
+  EXPECT_EQ(vendor->arm().force_n.norm(), 0.0);
+}
+
 TEST_F(ForceDimension, OldWrenchBecomesZero) {
   open_or_fail();
   EXPECT_GT(force_after({0, 0, 1}).norm(), 0.9);

@@ -190,6 +190,15 @@ TEST_F(OpenHaptics, TorqueGoesToSixDegreesOfFreedomAlone) {
   EXPECT_LT((vendor->arm().torque_nmm - Vec3(10, 30, -20)).norm(), kTiny);
 }
 
+TEST_F(OpenHaptics, ForceAboveThePeakIsCut) {
+  open_or_fail();
+  const double peak_n = device->preset().capability.peak_force_n;
+  EXPECT_NEAR(force_after({0, 0, 5 * peak_n}).norm(), peak_n, kTiny);
+  EXPECT_FALSE(device->write({Vec3(0, 0, 1e6), Vec3::Zero()})) << "no gate writes that";
+  vendor->step(1);
+  EXPECT_EQ(vendor->arm().force_n.norm(), 0.0);
+}
+
 TEST_F(OpenHaptics, OldWrenchBecomesZero) {
   open_or_fail();
   EXPECT_GT(force_after({0, 0, 1}).norm(), 0.9);
