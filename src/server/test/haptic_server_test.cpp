@@ -6,8 +6,11 @@
 #include <functional>
 #include <thread>
 
+#include "core/random.h"
 #include "core/temporary_folder.h"
+#include "link/codec.h"
 #include "link/haptic_client.h"
+#include "link/test/raw_link.h"
 #include "server/test/servo_rig.h"
 
 namespace trocar {
@@ -149,6 +152,40 @@ TEST(HapticServer, WarnsOfAClientsWindowThatStandsStill) {
     client->frame_drawn();
     return client->view().status.warning.empty();
   }));
+}
+
+TEST(HapticServer, CountsBadMessagesAndKeepsItsForcesMeanwhile) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  ASSERT_TRUE(client.ask(testing::layered_request(), kPatience));
+  ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+  ASSERT_TRUE(wait_for([&] { return client.view().status.gate_mode == to_string(GateMode::kOn); }));
+
+  testing::RawClient stranger(rig.server().url());
+  stranger.connect();
+  const Bytes good = encode(ClientMessage{1, 1, Heartbeat{}});
+  Random random(3);
+  constexpr int kRounds = 50;
+  for (int i = 0; i < kRounds; ++i) {
+    Bytes noise(1 + random.next() % 4000);
+    for (std::byte& byte : noise) byte = static_cast<std::byte>(random.next());
+    stranger.send(noise);
+    stranger.send(std::span(good).first(random.next() % good.size()));  // truncated
+    stranger.send(good);                                                // of no session
+  }
+  stranger.send(Bytes(kMostMessageBytes + 1));
+  ASSERT_TRUE(stranger.hello("stranger"));
+  const auto welcome = stranger.next<Welcome>();
+  ASSERT_TRUE(welcome);
+  EXPECT_FALSE(welcome->has_control);
+  stranger.send(welcome->session, 5, Heartbeat{});
+  stranger.send(welcome->session, 5, Heartbeat{});                       // replayed
+  stranger.send(welcome->session, 6, Command{1, ServerCommand::kStop});  // not in control
+
+  EXPECT_TRUE(wait_for([&] { return client.view().status.messages_refused >= 3 * kRounds + 3; }))
+      << client.view().status.messages_refused;
+  EXPECT_EQ(client.view().status.gate_mode, to_string(GateMode::kOn));
+  EXPECT_EQ(client.view().status.state, "running");
 }
 
 TEST(HapticServer, RefusesARateItCannotKeep) {
