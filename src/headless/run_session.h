@@ -1,13 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "core/progress.h"
 #include "core/result.h"
 #include "headless/prepare_case.h"
-#include "storage/session_file.h"
+#include "headless/run_result.h"
 
 namespace trocar {
 
@@ -26,26 +26,8 @@ struct RunOptions {
 /// What can be said of the options before there is a patient (exit status 2); run_session asks it, too.
 Status check_run(const RunOptions& options);
 
-/// A layer that gave way.
-struct PunctureRecord {
-  std::string layer;
-  double time_s = 0.0;
-  double depth_mm = 0.0;
-  double peak_n = 0.0;  ///< Pre-puncture force when it gave way.
-};
-
-struct RunResult {
-  Outcome outcome;
-  std::vector<PunctureRecord> punctures;
-  std::size_t ticks = 0;
-  double simulated_s = 0.0;
-};
-
 /// Performs an attempt in one thread, faster than real time: operator, hand, device, tick, recording, score.
 /// Every tick is in the session file; a failure on the way leaves what was recorded, which opens again.
 Result<RunResult> run_session(const Case& the_case, const RunOptions& options, const Progress& progress = {});
-
-/// What went through the skin, in order.
-std::vector<PunctureRecord> find_punctures(const SessionInfo& info, const std::vector<TickSample>& samples);
 
 }  // namespace trocar

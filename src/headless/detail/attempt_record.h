@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "headless/run_session.h"
+#include "training/operator.h"
+
+namespace trocar {
+
+/// What an attempt's record says of how it was made, beside case and options.
+struct AttemptFacts {
+  std::string device;  ///< In words.
+  double rate_hz = 1000.0;
+  std::string force_model;
+};
+
+/// An attempt while it happens: every tick in memory and in the session file, scored at the end. What was appended is
+/// in the file, whatever becomes of the attempt.
+class AttemptRecord {
+ public:
+  /// The case must outlive it. Errors: the session file.
+  static Result<AttemptRecord> create(const Case& the_case, const RunOptions& options, const AttemptFacts& facts);
+
+  /// What the operator does before the next tick: fires, perhaps.
+  void note(const HandCommand& command) noexcept;
+  Status append(const TickSample& sample);
+  /// Scores, and closes the session file.
+  Result<RunResult> finish();
+
+ private:
+  AttemptRecord(const Case& the_case, SessionInfo info, SessionWriter writer, std::size_t expected_ticks);
+
+  const Case* the_case_;
+  SessionInfo info_;
+  SessionWriter writer_;
+  std::vector<TickSample> samples_;
+  std::optional<std::size_t> fired_;
+};
+
+}  // namespace trocar

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "realtime/loop_statistics.h"
+#include "storage/session_file.h"
+
+namespace trocar {
+
+/// A layer that gave way.
+struct PunctureRecord {
+  std::string layer;
+  double time_s = 0.0;
+  double depth_mm = 0.0;
+  double peak_n = 0.0;  ///< Pre-puncture force when it gave way.
+};
+
+/// How a haptic server did while an attempt went through it.
+struct ServerFigures {
+  std::string tool;  ///< "needle", "probe"
+  std::string endpoint;
+  std::string server;  ///< "trocar-hapticd 0.1.0"
+  std::string device;  ///< "virtual:premium"
+  std::string grant;   ///< What the system granted it, in words.
+  LoopSummary loop;    ///< Since the server was started.
+  std::uint64_t ticks_received = 0;
+  std::uint64_t ticks_missing = 0;  ///< Gaps in their numbers.
+  int returns = 0;                  ///< How often it was lost and found again.
+};
+
+struct RunResult {
+  Outcome outcome;
+  std::vector<PunctureRecord> punctures;
+  std::size_t ticks = 0;
+  double simulated_s = 0.0;            ///< Of the last tick; through live servers their time, gaps included.
+  std::uint64_t ticks_missing = 0;     ///< Of the session: ticks that a live server made and nobody received.
+  std::vector<ServerFigures> servers;  ///< Of an attempt through live servers: the needle's first.
+  std::vector<std::string> warnings;
+};
+
+/// What went through the skin, in order.
+std::vector<PunctureRecord> find_punctures(const SessionInfo& info, const std::vector<TickSample>& samples);
+
+}  // namespace trocar
