@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
-#include "headless/run_session.h"
+#include "headless/realtime_session.h"
 #include "io/patient_source.h"
 
 namespace trocar::cli {
@@ -15,6 +15,11 @@ struct Arguments {
   RunOptions run;
   PatientSource source;
   bool is_json = false;
+  bool is_realtime = false;
+  RealtimeOptions realtime;
+  std::string key_file, server_key_file;
+  double patience_s = 5.0;
+  bool has_device = false, has_rate = false;  ///< Named on the command line.
 };
 
 Json core_json(const BiopsyCore& core) {
@@ -26,6 +31,42 @@ Json core_json(const BiopsyCore& core) {
   return {{"target_mm", core.target_mm},           {"organ_mm", core.organ_mm},
           {"vessel_mm", core.vessel_mm},           {"other_mm", core.other_mm},
           {"risks_in_throw", core.risks_in_throw}, {"pieces", pieces}};
+}
+
+Json latency_json(const LatencySummary& latency) {
+  return {
+      {"p50_us", latency.p50_us}, {"p99_us", latency.p99_us}, {"p999_us", latency.p999_us}, {"max_us", latency.max_us}};
+}
+
+Json servers_json(const std::vector<ServerFigures>& servers) {
+  Json all = Json::array();
+  for (const ServerFigures& server : servers) {
+    all.push_back({{"tool", server.tool},
+                   {"endpoint", server.endpoint},
+                   {"server", server.server},
+                   {"device", server.device},
+                   {"real_time", server.grant},
+                   {"wanted_hz", server.loop.wanted_hz},
+                   {"achieved_hz", server.loop.achieved_hz},
+                   {"periods", server.loop.periods},
+                   {"periods_missed", server.loop.missed},
+                   {"periods_served", server.loop.served()},
+                   {"lateness", latency_json(server.loop.lateness)},
+                   {"tick", latency_json(server.loop.tick)},
+                   {"ticks_received", server.ticks_received},
+                   {"ticks_missing", server.ticks_missing},
+                   {"returns", server.returns}});
+  }
+  return all;
+}
+
+void print_server(const ServerFigures& server) {
+  const LoopSummary& loop = server.loop;
+  fmt::print("server of the {}: {}, {}, {}\n", server.tool, server.server, server.device, server.endpoint);
+  fmt::print("  {:.1f} of {:.0f} Hz, {:.3f} % of {} periods served; lateness p99 {:.0f} us, tick p99 {:.0f} us\n",
+             loop.achieved_hz, loop.wanted_hz, 100.0 * loop.served(), loop.periods, loop.lateness.p99_us,
+             loop.tick.p99_us);
+  fmt::print("  {} ticks received, {} missing; {}\n", server.ticks_received, server.ticks_missing, server.grant);
 }
 
 Json result_json(const Arguments& arguments, const Case& the_case, const RunResult& result) {
@@ -46,21 +87,27 @@ Json result_json(const Arguments& arguments, const Case& the_case, const RunResu
                          {"depth_mm", puncture.depth_mm},
                          {"peak_n", puncture.peak_n}});
   }
-  return {{"session", arguments.run.session.string()},
-          {"task", the_case.task.name},
-          {"patient", the_case.patient->name},
-          {"operator", arguments.run.operator_name},
-          {"device", arguments.run.device},
-          {"parenchymal", the_case.is_parenchymal},
-          {"simulated_s", result.simulated_s},
-          {"ticks", result.ticks},
-          {"score", outcome.score},
-          {"target_reached", outcome.target_reached},
-          {"parts", parts},
-          {"punctures", punctures},
-          {"risks_touched", outcome.risks_touched},
-          {"core", outcome.core ? core_json(*outcome.core) : Json(nullptr)},
-          {"hints", outcome.hints}};
+  Json json = {{"session", arguments.run.session.string()},
+               {"task", the_case.task.name},
+               {"patient", the_case.patient->name},
+               {"operator", arguments.run.operator_name},
+               {"device", arguments.run.device},
+               {"parenchymal", the_case.is_parenchymal},
+               {"simulated_s", result.simulated_s},
+               {"ticks", result.ticks},
+               {"score", outcome.score},
+               {"target_reached", outcome.target_reached},
+               {"parts", parts},
+               {"punctures", punctures},
+               {"risks_touched", outcome.risks_touched},
+               {"core", outcome.core ? core_json(*outcome.core) : Json(nullptr)},
+               {"hints", outcome.hints}};
+  if (arguments.is_realtime) {
+    json["ticks_missing"] = result.ticks_missing;
+    json["servers"] = servers_json(result.servers);
+    json["warnings"] = result.warnings;
+  }
+  return json;
 }
 
 void print_result(const Arguments& arguments, const Case& the_case, const RunResult& result) {
@@ -83,6 +130,29 @@ void print_result(const Arguments& arguments, const Case& the_case, const RunRes
                part.max_points);
   }
   for (const std::string& hint : outcome.hints) fmt::print("hint: {}\n", hint);
+  for (const ServerFigures& server : result.servers) print_server(server);
+}
+
+/// What belongs to live servers, and what does not.
+Status check_servers(Arguments& a) {
+  const bool names_servers = !a.realtime.endpoints.empty() || !a.key_file.empty() || !a.server_key_file.empty();
+  if (names_servers && !a.is_realtime)
+    return fail_usage("servers are of an attempt in real time", "--endpoint, --keys, --server-key", "add --realtime");
+  if (!a.is_realtime) return {};
+  if (a.key_file.empty() != a.server_key_file.empty())
+    return fail_usage("one's own keys and the server's belong together", "--keys, --server-key",
+                      "see trocar link keygen");
+  if (!a.realtime.endpoints.empty() && (a.has_device || a.has_rate))
+    return fail_usage("running servers have their device and their rate", "--device, --rate",
+                      "name them to trocar-hapticd");
+  if (!a.key_file.empty()) {
+    ClientSecurity security;
+    TROCAR_TRY(security.keys, load_curve_keys(a.key_file));
+    TROCAR_TRY(security.server_key, load_public_key(a.server_key_file));
+    a.realtime.security = std::move(security);
+  }
+  a.realtime.patience = std::chrono::milliseconds(static_cast<int>(1000.0 * a.patience_s));
+  return check_realtime(a.realtime);
 }
 
 Status run(Arguments& arguments) {
@@ -93,7 +163,9 @@ Status run(Arguments& arguments) {
   run.seed = arguments.source.seed;
   arguments.the_case.seed = arguments.source.seed;
   TROCAR_TRY_STATUS(check_run(run));
+  TROCAR_TRY_STATUS(check_servers(arguments));
   TROCAR_TRY_STATUS(load_tables(arguments.the_case));
+  if (arguments.is_realtime) TROCAR_TRY_STATUS(find_servers(arguments.realtime));
   Case the_case;
   RunResult result;
   {
@@ -101,14 +173,31 @@ Status run(Arguments& arguments) {
     TROCAR_TRY(VirtualPatient patient, open_patient(arguments.source, printer.callback()));
     TROCAR_TRY(the_case, prepare_case(std::make_shared<const VirtualPatient>(std::move(patient)), arguments.the_case,
                                       printer.callback()));
-    TROCAR_TRY(result, run_session(the_case, run, printer.callback()));
+    TROCAR_TRY(result, arguments.is_realtime
+                           ? run_realtime_session(the_case, run, arguments.realtime, printer.callback())
+                           : run_session(the_case, run, printer.callback()));
   }
+  for (const std::string& warning : result.warnings) print_warning(warning);
   if (arguments.is_json) {
     print_json(result_json(arguments, the_case, result));
   } else {
     print_result(arguments, the_case, result);
   }
   return {};
+}
+
+void add_server_options(CLI::App& command, Arguments& a) {
+  command.add_flag("--realtime", a.is_realtime,
+                   "In real time through live haptic servers; without --endpoint two are started, needle and probe");
+  command
+      .add_option("--endpoint", a.realtime.endpoints,
+                  "A running trocar-hapticd: ipc://PATH or tcp://HOST:PORT; again for a second one, in any order")
+      ->allow_extra_args(false);
+  command.add_option("--keys", a.key_file, "One's own key file, for servers of other machines (trocar link keygen)");
+  command.add_option("--server-key", a.server_key_file, "The servers' public key");
+  command.add_option("--patience", a.patience_s, "How long a server may be silent, in s")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -126,8 +215,10 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option(
       "--force-model", a->run.force_model,
       "How forces are made: insertion (paper A), proxy (paper B) or combined; the task's own when left out");
-  command->add_option("--device", a->run.device, "Simulated device: its limits and coupling; see trocar device list")
-      ->capture_default_str();
+  CLI::Option* device =
+      command
+          ->add_option("--device", a->run.device, "Simulated device: its limits and coupling; see trocar device list")
+          ->capture_default_str();
   command->add_option("--needle", a->the_case.needle, "Needle of data/needles.toml; the task's own when left out");
   command->add_option("--tissues", a->the_case.tissue_file, "Tissue table (TOML) instead of data/tissues.toml");
   command->add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");
@@ -135,13 +226,22 @@ void add_run_command(CLI::App& program, Action& action) {
       ->allow_extra_args(false);
   command->add_option("--seed", a->source.seed, "Of operator, friction, plan and embedded patient")
       ->capture_default_str();
-  command->add_option("--rate", a->run.rate_hz, "Ticks a second, in Hz, 250 to 4000")->capture_default_str();
+  CLI::Option* rate =
+      command->add_option("--rate", a->run.rate_hz, "Ticks a second, in Hz, 250 to 4000")->capture_default_str();
+  add_server_options(*command, *a);
   command->add_flag("--json", a->is_json, "Print one JSON object");
   command->footer(
       "Examples:\n  trocar run liver-biopsy --patient abdomen --operator expert --out first.session\n"
       "  trocar run liver-biopsy --patient my_patient --operator novice --set liver.k=0.5 --seed 4 --out "
-      "second.session\n");
-  command->callback([&action, a] { action = [a] { return run(*a); }; });
+      "second.session\n"
+      "  trocar run liver-biopsy --patient abdomen --operator expert --realtime --out live.session\n"
+      "  trocar run liver-biopsy --patient abdomen --operator expert --realtime --endpoint ipc:///tmp/needle "
+      "--endpoint ipc:///tmp/probe --out live.session\n");
+  command->callback([&action, a, device, rate] {
+    a->has_device = device->count() > 0;
+    a->has_rate = rate->count() > 0;
+    action = [a] { return run(*a); };
+  });
 }
 
 }  // namespace trocar::cli

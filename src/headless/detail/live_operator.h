@@ -1,0 +1,54 @@
+#pragma once
+
+#include "headless/detail/attempt_record.h"
+#include "headless/detail/performer.h"
+#include "link/messages.h"
+
+namespace trocar {
+
+/// The operator of an attempt whose ticks come from a live server, some milliseconds late: every tick is recorded,
+/// shown to the operator, and answered with where the hand shall be next.
+class LiveOperator {
+ public:
+  /// Performer and record must outlive it. The operator's first command, made by the caller, placed the hand.
+  LiveOperator(const Performer& performer, AttemptRecord& record, const HandCommand& first);
+
+  /// The server was just seated, for the first time or again. `clock_offset_s`: its clock minus ours.
+  void begin(double clock_offset_s) noexcept;
+  /// A tick of the server; its time becomes the session's. false: the operator is done.
+  Result<bool> take(const TickSample& tick);
+  /// A tick that comes too late to be answered, because this program stood still: recorded; the operator does not see
+  /// it and its hand's time stands still with it.
+  Status take_unseen(const TickSample& tick);
+  /// The answer to the last tick.
+  HandTarget hand() const noexcept;
+
+  double time_s() const noexcept { return time_s_; }      ///< Of the session.
+  double paused_s() const noexcept { return paused_s_; }  ///< Of it, while there was no server; and
+  double unseen_s() const noexcept { return unseen_s_; }  ///< while the operator did not look.
+  const Pose& X_PN_device() const noexcept { return view_.X_PN_device; }
+
+ private:
+  /// Records a tick; gives the time since the last one.
+  Result<double> record(const TickSample& tick);
+
+  const Performer* performer_;
+  AttemptRecord* record_;
+  HandCommand command_;
+  OperatorView view_;
+  double period_s_;
+  double offset_s_ = 0.0;
+  double origin_s_ = 0.0;
+  double time_s_ = 0.0;
+  double paused_s_ = 0.0;
+  double unseen_s_ = 0.0;
+  double server_time_s_ = 0.0;
+  bool has_begun_ = false;
+  bool is_seated_anew_ = false;
+};
+
+/// A command as a server's hand takes it: the in-process hand (training/hand.h), which holds the tip. `server_time_s`:
+/// when it is meant for.
+HandTarget hand_target(const HandCommand& command, double server_time_s) noexcept;
+
+}  // namespace trocar

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "anatomy/patient.h"
+#include "geometry/segment.h"
+#include "link/messages.h"
+
+namespace trocar {
+
+/// A hand that holds the transducer on the skin beside a needle's entry: from above it presses down a few mm and stays,
+/// with the tremor of a hand. A function of time alone. Frame P.
+class ProbeHand {
+ public:
+  /// Beside path_P.a, towards head or feet, where the skin is flatter.
+  ProbeHand(const VirtualPatient& patient, const Segment& path_P) noexcept;
+
+  /// Where the hand wants the transducer, `time_s` after the forces came on; not its server_time_s.
+  HandTarget at(double time_s) const noexcept;
+  /// Room in the patient: where the grip is at rest, so that the device's workspace is about it.
+  Pose room(const Pose& X_PW_of_needle) const noexcept;
+
+  static constexpr double kBeside_mm = 40.0;  ///< From the entry, along the skin's tangent; a needle needs its place.
+  static constexpr double kPress_mm = 4.0;    ///< Beyond the resting skin. [assumed] 2.4 N at the hand's 0.6 N/mm
+  static constexpr double kAbove_mm = 10.0;   ///< Where it begins.
+
+ private:
+  Pose X_PT_skin_;  ///< On the resting skin.
+};
+
+}  // namespace trocar

@@ -1,0 +1,224 @@
+#include "headless/detail/server_seat.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "haptics/safety_gate.h"
+
+namespace trocar {
+namespace {
+
+using State = ServerSeat::State;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPlaceAgain{20};
+constexpr double kSagging_mm =
+    10.0;  // without forces the hand alone bears the stylus' weight: 0.5 N at 0.6 N/mm, tilted
+constexpr double kSettled_mm = 0.5;
+constexpr double kSettledAxis = 0.02;        // rad
+constexpr milliseconds kMostSettling{1000};  // inside tissue it comes to rest elsewhere
+
+Vec3 axis_of(const TickSample& sample) noexcept {
+  const auto& [w, x, y, z] = sample.device_rotation_wxyz;
+  return Eigen::Quaterniond(w, x, y, z).toRotationMatrix().col(2);
+}
+
+}  // namespace
+
+Result<ServerSeat> ServerSeat::connect(const std::string& endpoint, const std::optional<ClientSecurity>& security,
+                                       milliseconds patience) {
+  ClientOptions options;
+  options.endpoint = endpoint;
+  options.name = "trocar run";
+  options.security = security;
+  TROCAR_TRY(HapticClient client, HapticClient::connect(options));
+  return ServerSeat(std::move(client), endpoint, patience);
+}
+
+ServerSeat::ServerSeat(HapticClient client, std::string endpoint, milliseconds patience)
+    : client_(std::move(client)), endpoint_(std::move(endpoint)), patience_(patience), entered_(Clock::now()) {}
+
+void ServerSeat::hold(const SeatRequest& request) {
+  request_ = request;
+  request_->place.v_P = request_->place.w_P = Vec3::Zero();
+}
+
+void ServerSeat::place_at(const Pose& X_PN) {
+  if (request_) request_->place.X_PN = X_PN;
+}
+
+void ServerSeat::enter(State state) {
+  state_ = state;
+  entered_ = Clock::now();
+}
+
+Status ServerSeat::check_time(const char* what, const char* advice) const {
+  if (Clock::now() - entered_ < patience_) return {};
+  return fail(fmt::format("{} within {:.1f} s", what, std::chrono::duration<double>(patience_).count()), endpoint_,
+              advice);
+}
+
+Result<State> ServerSeat::look() {
+  view_ = client_.view();
+  if (view_.silent_s > std::chrono::duration<double>(patience_).count()) {
+    const bool was_heard = view_.welcome.session != 0;
+    return fail(fmt::format("{} for {:.1f} s", was_heard ? "the server is gone, silent" : "no server answers, tried",
+                            view_.silent_s),
+                endpoint_,
+                was_heard ? "look at its log; it may be started again within --patience"
+                          : "start trocar-hapticd there; with keys, both sides must know each other's");
+  }
+  if (state_ != State::kConnecting && view_.welcome.session != session_) {
+    if (session_ != 0) ++returns_;
+    enter(State::kConnecting);
+  }
+  switch (state_) {
+    case State::kConnecting:
+      TROCAR_TRY_STATUS(connecting());
+      break;
+    case State::kReady:
+      if (request_) {
+        asked_ = client_.send(request_->scene);
+        enter(State::kLoading);
+      }
+      break;
+    case State::kLoading:
+      TROCAR_TRY_STATUS(loading_scene());
+      break;
+    case State::kPlacing:
+      TROCAR_TRY_STATUS(placing());
+      break;
+    case State::kStarting:
+      TROCAR_TRY_STATUS(starting());
+      break;
+    case State::kSettling:
+      settling();
+      break;
+    case State::kOn:
+      break;
+  }
+  const bool is_ours = state_ != State::kConnecting && view_.is_connected;
+  if (is_ours && !view_.status.fault.empty() && view_.status.fault != to_string(GateFault::kNone))
+    return fail(fmt::format("the safety gate has latched a fault: {}", view_.status.fault), endpoint_,
+                "the server's flight record tells what came before; start the server again");
+  return state_;
+}
+
+Status ServerSeat::connecting() {
+  const bool has_all = view_.is_connected && view_.welcome.session != 0 && view_.status.loop.wanted_hz > 0.0;
+  if (!has_all) return {};
+  if (!view_.welcome.has_control)
+    return fail("another client has this server", endpoint_, "end it, or name another server");
+  session_ = view_.welcome.session;
+  client_.take_replies();
+  enter(State::kReady);
+  return {};
+}
+
+Result<bool> ServerSeat::is_answered() {
+  for (const Reply& reply : client_.take_replies()) {
+    if (reply.request != asked_) continue;
+    if (reply.is_done) return true;
+    // A command that found the server gone is no refusal: when it is back it will be asked again.
+    const ClientView now = client_.view();
+    if (now.is_connected && now.welcome.session == session_) return fail(reply.text, endpoint_);
+    return false;
+  }
+  return false;
+}
+
+Status ServerSeat::loading_scene() {
+  TROCAR_TRY(const bool is_loaded, is_answered());
+  if (is_loaded) enter(State::kPlacing);
+  return {};
+}
+
+bool ServerSeat::is_near(const TickSample& sample, double most_mm) const {
+  return (sample.device_mm - request_->place.X_PN.p()).norm() < most_mm;
+}
+
+Status ServerSeat::placing() {
+  TROCAR_TRY_STATUS(check_time("the device did not go where the operator's hand put it",
+                               "scripted operators move simulated devices alone: trocar-hapticd --device virtual"));
+  const std::optional<TickSample> newest = client_.newest();
+  if (!newest) return {};
+  HandTarget place = request_->place;
+  place.server_time_s = newest->time_s;
+  if (placed_ > entered_ && newest->time_s != placed_newest_s_ && is_near(*newest, kSagging_mm)) {
+    client_.set_hand(place);
+    asked_ = client_.send(ServerCommand::kStart);
+    started_server_s_ = 0.0;
+    enter(State::kStarting);
+  } else if (Clock::now() - placed_ > kPlaceAgain) {
+    place.is_placed = true;
+    client_.set_hand(place);
+    placed_ = Clock::now();
+    placed_newest_s_ = newest->time_s;
+  }
+  return {};
+}
+
+Status ServerSeat::starting() {
+  if (started_server_s_ == 0.0) {
+    TROCAR_TRY(const bool is_started, is_answered());
+    if (is_started) started_server_s_ = view_.status.server_time_s;
+  }
+  if (state_ != State::kStarting) return {};
+  const bool is_told_since = started_server_s_ > 0.0 && view_.status.server_time_s > started_server_s_;
+  if (is_told_since && view_.status.gate_mode == to_string(GateMode::kOn)) {
+    enter(State::kSettling);
+    return {};
+  }
+  return check_time("the forces did not come on", "look at the server's log");
+}
+
+void ServerSeat::settling() {
+  const std::optional<TickSample> newest = client_.newest();
+  const bool is_settled = newest && is_near(*newest, kSettled_mm) &&
+                          (axis_of(*newest) - request_->place.X_PN.R().col(2)).norm() < kSettledAxis;
+  if (!is_settled && Clock::now() - entered_ < kMostSettling) return;
+  client_.take_samples();
+  last_tick_.reset();
+  enter(State::kOn);
+}
+
+std::vector<NumberedSample> ServerSeat::take_samples() {
+  if (state_ != State::kOn) return {};
+  std::vector<NumberedSample> samples = client_.take_samples();
+  if (client_.view().welcome.session != session_) {
+    // Ticks of the server that came back may be among them: ours are those that follow on without a gap.
+    std::uint64_t next = last_tick_ ? *last_tick_ + 1 : 0;
+    const auto end = std::find_if(samples.begin(), samples.end(),
+                                  [&next](const NumberedSample& sample) { return sample.tick != next++; });
+    samples.erase(end, samples.end());
+  }
+  for (const NumberedSample& sample : samples) {
+    if (last_tick_ && sample.tick > *last_tick_) missing_ += sample.tick - *last_tick_ - 1;
+    last_tick_ = sample.tick;
+  }
+  return samples;
+}
+
+void ServerSeat::stop() {
+  constexpr milliseconds kStopPatience{500};
+  if (view_.is_connected) static_cast<void>(client_.ask(ServerCommand::kStop, kStopPatience));
+  view_ = client_.view();
+}
+
+ServerFigures ServerSeat::figures() const {
+  ServerFigures figures;
+  figures.tool = view_.welcome.tool;
+  figures.endpoint = endpoint_;
+  figures.server = view_.welcome.server;
+  figures.device = view_.welcome.device.name;
+  figures.grant = view_.status.grant;
+  figures.loop = view_.status.loop;
+  figures.ticks_received = view_.ticks_received;
+  figures.ticks_missing = view_.ticks_missing;
+  figures.returns = returns_;
+  return figures;
+}
+
+}  // namespace trocar

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "headless/run_result.h"
+#include "link/haptic_client.h"
+
+namespace trocar {
+
+/// What a server is to hold, and where the hand begins, at rest.
+struct SeatRequest {
+  LoadScene scene;
+  HandTarget place;
+};
+
+/// One haptic server as an attempt sees it. It connects, has the scene loaded, puts the hand in its place, turns the
+/// forces on; from then on the attempt moves the hand. A server that went away and came back goes through all of it
+/// again. Nothing here waits: look() is called every millisecond or so.
+class ServerSeat {
+ public:
+  enum class State { kConnecting, kReady, kLoading, kPlacing, kStarting, kSettling, kOn };
+
+  static Result<ServerSeat> connect(const std::string& endpoint, const std::optional<ClientSecurity>& security,
+                                    std::chrono::milliseconds patience);
+
+  /// What to hold from now on; until then a connected server stays in kReady. Where the hand begins may be told anew.
+  void hold(const SeatRequest& request);
+  void place_at(const Pose& X_PN);
+
+  /// Goes one step further where it can. Errors: silent for longer than the patience, a refusal, a fault.
+  Result<State> look();
+  State state() const noexcept { return state_; }
+  double loading() const noexcept { return view_.status.loading; }  ///< 0..1
+
+  /// Ticks since the forces were on, or since the last call. None from before that, or of a server that came back.
+  std::vector<NumberedSample> take_samples();
+  std::uint64_t ticks_missing() const noexcept { return missing_; }  ///< Among them, so far.
+  /// Only in kOn.
+  void set_hand(const HandTarget& target) { client_.set_hand(target); }
+  void stop();
+
+  const ClientView& view() const noexcept { return view_; }
+  const std::string& endpoint() const noexcept { return endpoint_; }
+  int returns() const noexcept { return returns_; }
+  ServerFigures figures() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  ServerSeat(HapticClient client, std::string endpoint, std::chrono::milliseconds patience);
+  void enter(State state);
+  /// The reply to the command that was sent last; none yet: empty.
+  Result<bool> is_answered();
+  Status check_time(const char* what, const char* advice) const;
+  Status connecting();
+  Status loading_scene();
+  Status placing();
+  Status starting();
+  void settling();
+  bool is_near(const TickSample& sample, double most_mm) const;
+
+  HapticClient client_;
+  std::string endpoint_;
+  std::chrono::milliseconds patience_;
+  std::optional<SeatRequest> request_;
+  ClientView view_;
+  State state_ = State::kConnecting;
+  Clock::time_point entered_;
+  Clock::time_point placed_;
+  std::uint64_t session_ = 0;  ///< Of the server that holds our scene.
+  std::optional<std::uint64_t> last_tick_;
+  std::uint64_t missing_ = 0;
+  std::uint32_t asked_ = 0;
+  double placed_newest_s_ = 0.0;   ///< Time of the newest tick when the hand was placed.
+  double started_server_s_ = 0.0;  ///< Server's time when it said that it would start.
+  int returns_ = 0;
+};
+
+}  // namespace trocar

@@ -1,0 +1,143 @@
+#include "headless/detail/live_operator.h"
+
+#include <gtest/gtest.h>
+
+#include "anatomy/phantom/phantom.h"
+#include "core/temporary_folder.h"
+
+namespace trocar {
+namespace {
+
+/// Keeps what it is shown, and wants the needle as many mm down as it was asked times.
+class Witness final : public Operator {
+ public:
+  HandCommand next(const OperatorView& view) noexcept override {
+    views.push_back(view);
+    HandCommand command;
+    command.X_PN = Pose::translation({0.0, static_cast<double>(views.size()), 0.0});
+    command.v_P = {0.0, 7.0, 0.0};
+    command.has_fired = views.size() == fires_at;
+    command.is_done = views.size() == done_at;
+    return command;
+  }
+  std::vector<OperatorView> views;
+  std::size_t fires_at = 0, done_at = 0;
+};
+
+class LiveOperatorTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto patient = generate_phantom("layers-liver");
+    auto tables = load_tables({});
+    ASSERT_TRUE(patient.has_value() && tables.has_value());
+    the_case_ = *std::move(tables);
+    the_case_.patient = std::make_shared<const VirtualPatient>(*std::move(patient));
+    the_case_.plan.line_P = {Vec3::Zero(), Vec3(0.0, 50.0, 0.0)};
+    auto witness = std::make_unique<Witness>();
+    witness_ = witness.get();
+    performer_.the_operator = std::move(witness);
+    RunOptions options;
+    options.session = folder_ / "attempt.session";
+    auto record = AttemptRecord::create(the_case_, options, {"a device", performer_.rate_hz, "insertion"});
+    ASSERT_TRUE(record.has_value()) << record.error().text();
+    record_.emplace(*std::move(record));
+    live_.emplace(performer_, *record_, HandCommand{});
+  }
+  bool take(double server_time_s, InsertionPhase phase = InsertionPhase::kOutside) {
+    const auto goes_on = live_->take(tick(server_time_s, phase));
+    EXPECT_TRUE(goes_on.has_value());
+    return goes_on.value_or(false);
+  }
+  static TickSample tick(double server_time_s, InsertionPhase phase = InsertionPhase::kOutside) {
+    TickSample sample;
+    sample.time_s = server_time_s;
+    sample.phase = phase;
+    return sample;
+  }
+  /// What is in the file when the attempt ends here.
+  Session recorded() {
+    EXPECT_TRUE(record_->finish().has_value());
+    auto session = load_session(folder_ / "attempt.session");
+    EXPECT_TRUE(session.has_value()) << (session ? "" : session.error().text());
+    return session ? *std::move(session) : Session{};
+  }
+
+  TemporaryFolder folder_;
+  Case the_case_;
+  Performer performer_;
+  Witness* witness_ = nullptr;
+  std::optional<AttemptRecord> record_;
+  std::optional<LiveOperator> live_;
+  static constexpr double kServer_s = 5000.0;  // steady clock of the server when the attempt begins
+  static constexpr double kTolerance_s = 1e-9;
+};
+
+TEST_F(LiveOperatorTest, RecordsFromZeroAndLooksOnePeriodAhead) {
+  live_->begin(300.0);
+  take(kServer_s);
+  take(kServer_s + 0.001);
+  ASSERT_EQ(witness_->views.size(), 2u);
+  EXPECT_NEAR(witness_->views[0].time_s, 0.001, kTolerance_s);
+  EXPECT_NEAR(witness_->views[1].time_s, 0.002, kTolerance_s);
+  EXPECT_NEAR(witness_->views[1].dt_s, 0.001, kTolerance_s);
+  const HandTarget hand = live_->hand();
+  EXPECT_NEAR(hand.server_time_s, kServer_s + 0.002, kTolerance_s);
+  EXPECT_EQ(hand.X_PN.p().y(), 2.0);
+  EXPECT_EQ(hand.v_P.y(), 7.0);
+  EXPECT_TRUE(hand.holds_tip);
+  const Session session = recorded();
+  ASSERT_EQ(session.samples.size(), 2u);
+  EXPECT_EQ(session.samples[0].time_s, 0.0);
+  EXPECT_NEAR(session.samples[1].time_s, 0.001, kTolerance_s);
+}
+
+TEST_F(LiveOperatorTest, CoversMissingTicksWithOneLongerStep) {
+  live_->begin(0.0);
+  take(kServer_s);
+  take(kServer_s + 0.006);
+  EXPECT_NEAR(witness_->views[1].dt_s, 0.006, kTolerance_s);
+  EXPECT_NEAR(witness_->views[1].time_s, 0.007, kTolerance_s);
+}
+
+TEST_F(LiveOperatorTest, StandsStillWhileTheServerIsAwayThoughTimeGoesOn) {
+  live_->begin(100.0);
+  take(kServer_s);
+  take(kServer_s + 0.001, InsertionPhase::kInserted);
+  live_->begin(-4000.0);  // another machine's clock
+  const double again_s = kServer_s - 100.0 - 4000.0 + 2.001;
+  take(again_s, InsertionPhase::kInserted);
+  EXPECT_NEAR(live_->time_s(), 2.001, kTolerance_s);
+  EXPECT_NEAR(live_->paused_s(), 1.999, kTolerance_s);
+  EXPECT_NEAR(witness_->views[2].time_s, 0.003, kTolerance_s);
+  EXPECT_NEAR(witness_->views[2].dt_s, 0.001, kTolerance_s);
+  const Session session = recorded();
+  ASSERT_EQ(session.samples.size(), 3u);
+  EXPECT_NEAR(session.samples[2].time_s, 2.001, kTolerance_s);
+  EXPECT_EQ(session.samples[1].events[0].kind, EventKind::kNone);
+  EXPECT_EQ(session.samples[2].events[0].id, static_cast<std::uint8_t>(LimitReason::kResumedInside));
+}
+
+TEST_F(LiveOperatorTest, RecordsWhatTheOperatorCouldNotAnswer) {
+  live_->begin(0.0);
+  take(kServer_s);
+  for (int i = 1; i <= 100; ++i) ASSERT_TRUE(live_->take_unseen(tick(kServer_s + 0.001 * i)));
+  take(kServer_s + 0.101);
+  ASSERT_EQ(witness_->views.size(), 2u);
+  EXPECT_NEAR(witness_->views[1].time_s, 0.002, kTolerance_s);
+  EXPECT_NEAR(live_->unseen_s(), 0.1, kTolerance_s);
+  EXPECT_EQ(recorded().samples.size(), 102u);
+}
+
+TEST_F(LiveOperatorTest, FiresAtTheTickAfterTheCommandAndEndsWhenTheOperatorIsDone) {
+  witness_->fires_at = 2;
+  witness_->done_at = 4;
+  live_->begin(0.0);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(take(kServer_s + 0.001 * i));
+  EXPECT_FALSE(take(kServer_s + 0.003));
+  const Session session = recorded();
+  EXPECT_EQ(session.fired, std::optional<std::size_t>(2));
+  EXPECT_EQ(session.samples.size(), 4u);
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/data_dir.h"
+#include "core/temporary_folder.h"
+#include "devices/device_spec.h"
+#include "headless/prepare_case.h"
+#include "server/haptic_server.h"
+
+namespace trocar::testing {
+
+/// A haptic server of this process with a simulated device, at ordinary priority: what is tested is what arrives, not
+/// when.
+class LiveServer {
+ public:
+  LiveServer(const Case& the_case, const std::string& tool, const TemporaryFolder& folder)
+      : patient_(the_case.patient), tool_(tool), url_("ipc://" + (folder / tool).string()) {
+    start();
+  }
+
+  const std::string& url() const { return url_; }
+  void start() {
+    auto endpoint = parse_endpoint(url_);
+    DeviceOptions device_options;
+    device_options.devices_file = data_dir() / "devices.toml";
+    auto device = open_device({"virtual", "premium"}, device_options);
+    ASSERT_TRUE(endpoint.has_value() && device.has_value());
+    ServerOptions options;
+    options.endpoint = *endpoint;
+    options.tool = tool_;
+    options.priority = 0;
+    options.tissues_file = data_dir() / "tissues.toml";
+    auto server = HapticServer::start(
+        options, *std::move(device),
+        [patient = patient_](const std::string&, std::uint64_t,
+                             const Progress&) -> Result<std::shared_ptr<const VirtualPatient>> { return patient; });
+    ASSERT_TRUE(server.has_value()) << server.error().text();
+    server_.emplace(*std::move(server));
+  }
+  /// Gone: not even a socket is left.
+  void end() { server_.reset(); }
+
+ private:
+  std::shared_ptr<const VirtualPatient> patient_;
+  std::string tool_, url_;
+  std::optional<HapticServer> server_;
+};
+
+}  // namespace trocar::testing
