@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kConnectLimit{2000};
 constexpr milliseconds kFirstStateLimit{2000};
 constexpr milliseconds kSendLimit{100};
-constexpr milliseconds kStateLimit{500};  // a service that is silent for longer is gone
+constexpr milliseconds kStateLimit{1000};  // a service that is silent for longer is gone
 constexpr milliseconds kGoodbyeLimit{200};
 constexpr milliseconds kLook{20};  // how often a waiting thread looks whether it shall end
 
@@ -149,8 +149,7 @@ bool HaplyDevice::wait_for_state(std::string& message) {
   for (milliseconds waited{0}; waited < kStateLimit; waited += kLook) {
     const WebSocket::Received received = socket_->receive(message, kLook);
     if (received != WebSocket::Received::kNothingYet) return received == WebSocket::Received::kMessage;
-    const bool has_waited_enough = waited >= kGoodbyeLimit;
-    if (has_waited_enough && is_stopping_.load(std::memory_order_relaxed)) return false;
+    if (waited >= kStateLimit / 2 && is_stopping_.load(std::memory_order_relaxed)) return false;
   }
   return false;
 }
@@ -165,7 +164,7 @@ Vec3 HaplyDevice::force_now() noexcept {
 void HaplyDevice::say_goodbye(bool is_answer_due) {
   const bool is_sent = answer(Vec3::Zero());
   std::string message;
-  if (is_sent && is_answer_due) socket_->receive(message, kGoodbyeLimit);  // it was taken
+  if (is_sent && is_answer_due) socket_->receive(message, kStateLimit);  // it was taken
   socket_->close(kGoodbyeLimit);
 }
 

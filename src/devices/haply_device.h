@@ -14,7 +14,8 @@ namespace trocar {
 
 inline constexpr const char* kHaplyAddress = "ws://localhost:10001";  ///< Source: the vendor's documentation.
 inline constexpr std::int64_t kHaplyPeriod_ns = 500'000;              ///< One state and its command: 2 kHz. [assumed]
-inline constexpr std::int64_t kHaplyForceAge_ns = 20'000'000;         ///< Without a fresh wrench for so long: no force.
+inline constexpr std::int64_t kHaplyForceAge_ns =
+    20'000'000;                                ///< Without a fresh wrench for so long: no force. [assumed]
 inline constexpr int kHaplyMostUnusable = 50;  ///< Messages in a row that cannot be used: taken for gone. [assumed]
 
 class WebSocket;

@@ -54,7 +54,7 @@ class PointerSource {
 inline constexpr std::int64_t kPointerPeriod_ns = 4'000'000;  ///< The thread polls at 250 Hz. [assumed]
 inline constexpr double kPointerSilence_s = 0.1;  ///< Without news for so long, the stylus stands still. [assumed]
 inline constexpr double kPointerStep_s = 0.02;    ///< The longest time that one reading moves the stylus for. [assumed]
-/// Without a fresh wrench for so long, no force is shown.
+/// Without a fresh wrench for so long, no force is shown. [assumed]
 inline constexpr std::int64_t kPointerForceAge_ns = 20'000'000;
 
 /// A device made of a source: a thread of its own polls it, each reading moves the stylus on. So a pose is new at

@@ -37,6 +37,7 @@ struct HaplyService::Wire {
   asio::io_context context;
   beast::websocket::stream<asio::ip::tcp::socket> stream{context};
   beast::flat_buffer buffer;
+  bool is_early = false;  ///< There was something to read before the last state was sent.
 };
 
 HaplyService::HaplyService(HaplyMood mood) : mood_(mood) {
@@ -121,9 +122,9 @@ void HaplyService::serve_client(Wire& wire) {
   while (!is_stopping_) {
     wire.buffer.clear();
     wire.stream.read(wire.buffer, error);
-    if (error) return;
+    if (error) return;  // a close may come at any time
+    if (wire.is_early) note("a second command before the next state");
     take_command(beast::buffers_to_string(wire.buffer.cdata()));
-    // The next command may come after the next state alone; a close may come at any time, without a message.
     if (!send_state(wire, false)) return;
   }
 }
@@ -135,8 +136,7 @@ bool HaplyService::send_state(Wire& wire, bool is_first) {
     ::poll(nullptr, 0, 1);
   }
   if (is_stopping_ || mood_ == HaplyMood::kClose) return false;
-  const bool has_early_command = mood_ == HaplyMood::kGood && has_more_to_read(descriptor);
-  if (has_early_command) note("a second command before the next state");
+  wire.is_early = mood_ == HaplyMood::kGood && has_more_to_read(descriptor);
   error_code error;
   wire.stream.write(asio::buffer(state_text(mood_, is_first)), error);
   return !error;
