@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <new>
 #include <thread>
 #include <vector>
 
@@ -32,6 +33,15 @@ TEST(AllocationGuard, CountsAllocationsAndFrees) {
   escaped = one.get();
   EXPECT_EQ(guard.count(), 1u);
   one.reset();
+  EXPECT_EQ(guard.count(), 2u);
+}
+
+TEST(AllocationGuard, CountsAllocationsThatMayFail) {
+  const AllocationGuard guard;
+  auto* one = new (std::nothrow) int(1);
+  escaped = one;
+  EXPECT_EQ(guard.count(), 1u);
+  delete one;
   EXPECT_EQ(guard.count(), 2u);
 }
 

@@ -27,6 +27,14 @@ inline void* counted_allocation(std::size_t size, std::size_t alignment) {
   return memory;
 }
 
+inline void* counted_allocation_or_none(std::size_t size) noexcept {
+  try {
+    return counted_allocation(size, 0);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+
 inline void counted_free(void* memory) noexcept {
   if (memory != nullptr) ++allocation_events;
   std::free(memory);
@@ -45,6 +53,12 @@ void* operator new(std::size_t size, std::align_val_t a) {
 }
 void* operator new[](std::size_t size, std::align_val_t a) {
   return trocar::testing::counted_allocation(size, static_cast<std::size_t>(a));
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return trocar::testing::counted_allocation_or_none(size);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return trocar::testing::counted_allocation_or_none(size);
 }
 void operator delete(void* memory) noexcept {
   trocar::testing::counted_free(memory);
