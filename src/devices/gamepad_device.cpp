@@ -123,8 +123,10 @@ void GamepadSource::show_force(double force_n) noexcept {
 void GamepadSource::close() noexcept {
   if (pad_ != nullptr) SDL_GameControllerClose(pad_);
   pad_ = nullptr;
-  if (has_sdl_) SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
+  if (!has_sdl_) return;
   has_sdl_ = false;
+  SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
+  SDL_TLSCleanup();  // what SDL keeps for a thread that it did not make
 }
 
 }  // namespace
