@@ -365,10 +365,11 @@ TEST(HapticClient, AllowedKeyIsWelcomedAndOthersAreNot) {
   options.security = ClientSecurity{allowed, unknown.public_key};
   auto misled = HapticClient::connect(options);
   options.security = ClientSecurity{allowed, server_keys.public_key};
+  options.name = "the allowed one";
   auto good = HapticClient::connect(options);
   ASSERT_TRUE(keyless && stranger && misled && good);
   EXPECT_TRUE(good->ask(ServerCommand::kStart, kPatience));
-  EXPECT_EQ(server.received<Hello>().size(), 1u);
+  for (const Hello& hello : server.received<Hello>()) EXPECT_EQ(hello.client, "the allowed one");
   for (const HapticClient* other : {&*keyless, &*stranger, &*misled}) {
     EXPECT_FALSE(other->view().is_connected);
     EXPECT_EQ(other->view().welcomes, 0u);
