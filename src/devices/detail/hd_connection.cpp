@@ -154,7 +154,7 @@ std::string Connection::last_error() const {
 
 unsigned int Connection::on_period(void* connection) {
   auto& self = *static_cast<Connection*>(connection);
-  if (self.is_lost_.load(std::memory_order_relaxed)) return kCallbackDone;
+  if (self.is_done_ || self.is_lost_.load(std::memory_order_relaxed)) return kCallbackDone;
   self.serve();
   return self.is_lost_.load(std::memory_order_relaxed) ? kCallbackDone : kCallbackContinue;
 }
@@ -180,9 +180,11 @@ unsigned int Connection::on_calibration_update(void* connection) {
   return kCallbackDone;
 }
 
-/// After the callback of its period, whose frame brought the motors to zero: no second frame in one period.
+/// After the callback of its period, whose frame brought the motors to zero: no second frame in one period, and none
+/// in the periods until the scheduler stops.
 unsigned int Connection::on_closing(void* connection) {
-  const auto& self = *static_cast<Connection*>(connection);
+  auto& self = *static_cast<Connection*>(connection);
+  self.is_done_ = true;
   self.api_.disable(kForceOutput);
   return kCallbackDone;
 }

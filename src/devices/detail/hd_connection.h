@@ -68,6 +68,7 @@ class Connection {
   std::optional<ServoExchange> exchange_;
   std::atomic<Enum> last_error_{kSuccess};
   std::atomic<bool> is_lost_{false};
+  bool is_done_ = false;  ///< Of the scheduler's thread.
 };
 
 }  // namespace trocar::hd

@@ -178,6 +178,7 @@ void HdSimulatedDevice::start() {
 }
 
 void HdSimulatedDevice::stop() {
+  step(1);  // the real one is never caught between two periods
   {
     const std::lock_guard lock(mutex_);
     violations_.require(state_.is_open && is_running_, "hdStopScheduler of none");
