@@ -21,6 +21,7 @@
 #include "headless/scene_request.h"
 #include "link/haptic_client.h"
 #include "link/server_process.h"
+#include "realtime/periodic_loop.h"
 #include "volume/sampling.h"
 
 namespace trocar::bench {
@@ -180,6 +181,31 @@ void add_results(Station& station, double rate_hz, std::vector<CaseResult>& resu
                                 fmt::format("{:.1f} MiB at the end", now_mib)));
 }
 
+/// What the machine itself does to a program that never waits: time that a spinning thread loses in one piece. A loop
+/// cannot be better than that.
+CaseResult machine_holes(double rate_hz) {
+  constexpr std::int64_t kWatch_ns = 3'000'000'000;
+  constexpr std::int64_t kHole_ns = 50'000;  // no tick and no interrupt takes so long
+  LatencyHistogram holes;
+  std::int64_t lost_ns = 0;
+  const std::int64_t begin_ns = now_ns();
+  for (std::int64_t last_ns = begin_ns, at_ns = now_ns(); at_ns - begin_ns < kWatch_ns;
+       last_ns = at_ns, at_ns = now_ns()) {
+    if (at_ns - last_ns < kHole_ns) continue;
+    holes.add(at_ns - last_ns);
+    lost_ns += at_ns - last_ns;
+  }
+  const LatencySummary s = summarise(holes);
+  CaseResult result;
+  result.name = fmt::format("servers/machine-{:.0f}hz/holes", rate_hz);
+  result.unit = "us";
+  result.figures = {s.p50_us, s.p99_us, s.p999_us, s.max_us};
+  result.note = fmt::format("before it began: {:.0f} holes a second of 50 us and more, {:.2f} % of the time",
+                            static_cast<double>(holes.count()) / seconds(kWatch_ns),
+                            100.0 * static_cast<double>(lost_ns) / static_cast<double>(kWatch_ns));
+  return result;
+}
+
 /// Draws and moves the hands until the time is over; frames drawn.
 int play(std::array<Station*, 2> stations, const Case& the_case, double seconds, const Progress& progress) {
   const Segment& line_P = the_case.plan.line_P;
@@ -219,6 +245,7 @@ int play(std::array<Station*, 2> stations, const Case& the_case, double seconds,
 }
 
 Status measure(const Case& the_case, const Options& options, double rate_hz, std::vector<CaseResult>& results) {
+  results.push_back(machine_holes(rate_hz));
   TROCAR_TRY(const std::filesystem::path program, find_server_program());
   const TemporaryFolder folder;
   TROCAR_TRY(Station needle, open_station(program, folder, "needle", rate_hz));

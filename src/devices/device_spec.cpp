@@ -17,7 +17,7 @@ enum class Argument : std::uint8_t { kNone, kOptional, kNeeded };
 struct DeviceKind {
   std::string_view name;
   Argument argument;
-  OpenedDevice (*open)(const DeviceSpec&, const DeviceOptions&);  ///< nullptr: not made yet.
+  OpenedDevice (*open)(const DeviceSpec&, const DeviceOptions&);
 };
 
 // clang-format off: a kind a line
@@ -26,7 +26,7 @@ constexpr std::array kKinds{
     DeviceKind{"mouse", Argument::kNone, open_pointer},
     DeviceKind{"gamepad", Argument::kNone, open_gamepad},
     DeviceKind{"spacemouse", Argument::kNone, open_spacemouse},
-    DeviceKind{"replay", Argument::kNeeded, open_replay},     // :FILE
+    DeviceKind{"replay", Argument::kNeeded, open_replay},              // :FILE
     DeviceKind{"openhaptics", Argument::kOptional, open_openhaptics},  // :NAME
     DeviceKind{"forcedimension", Argument::kNone, open_forcedimension},
     DeviceKind{"haply", Argument::kOptional, open_haply},  // :ws://HOST:PORT
@@ -73,9 +73,6 @@ Result<DeviceSpec> parse_device_spec(std::string_view text) {
 Result<std::unique_ptr<HapticDevice>> open_device(const DeviceSpec& spec, const DeviceOptions& options) {
   const DeviceKind* kind = find_kind(spec.kind);
   if (kind == nullptr) return fail_unknown(spec.kind);
-  if (kind->open == nullptr) {
-    return fail(fmt::format("device kind \"{}\" is not in this build", spec.kind), "device", "use virtual or mouse");
-  }
   TROCAR_TRY(std::unique_ptr<HapticDevice> device, kind->open(spec, options));
   if (options.faults.empty()) return device;
   return std::make_unique<FaultyDevice>(std::move(device), options.faults, kFaultSeed);

@@ -8,6 +8,7 @@
 namespace trocar {
 
 std::string RealTimeGrant::text() const {
+  if (!was_asked) return "ordinary scheduling, as asked";
   const std::string scheduling =
       has_fifo ? fmt::format("SCHED_FIFO priority {}", priority)
                : std::string("no SCHED_FIFO (allow it: an rtprio line in /etc/security/limits.conf)");
@@ -16,8 +17,10 @@ std::string RealTimeGrant::text() const {
 
 RealTimeGrant request_real_time(int priority) noexcept {
   RealTimeGrant grant;
-  grant.has_locked_memory = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
   grant.has_fine_timers = prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL) == 0;
+  grant.was_asked = priority > 0;
+  if (!grant.was_asked) return grant;
+  grant.has_locked_memory = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
   sched_param wanted{};
   wanted.sched_priority = priority;
   grant.has_fifo = sched_setscheduler(0, SCHED_FIFO, &wanted) == 0;

@@ -6,6 +6,7 @@ namespace trocar {
 
 /// What the machine gave a thread that wants to be on time.
 struct RealTimeGrant {
+  bool was_asked = false;          ///< Somebody wanted it.
   bool has_fifo = false;           ///< SCHED_FIFO.
   bool has_locked_memory = false;  ///< mlockall of present and future pages.
   bool has_fine_timers = false;    ///< Timer slack of 1 ns (matters without SCHED_FIFO).
@@ -15,7 +16,8 @@ struct RealTimeGrant {
   std::string text() const;
 };
 
-/// Asks for all of it for the calling thread (memory: for the process). Never fails: what is not granted is left.
+/// Asks for all of it for the calling thread (memory: for the process). Priority 1..99; 0 asks for fine timers alone.
+/// Never fails: what is not granted is left.
 RealTimeGrant request_real_time(int priority = 80) noexcept;
 
 }  // namespace trocar

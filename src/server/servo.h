@@ -26,7 +26,7 @@ struct ServoParams {
   WorkspaceParams workspace;
   double stuck_s = 5.0;  ///< The same reading for so long under stuck_n: a stuck encoder. A hand trembles. [assumed]
   double stuck_n = 1.0;
-  double max_hole_s = 0.1;  ///< A longer period latches a fault: the motors held the last wrench meanwhile. [assumed]
+  double max_hole_s = 0.25;  ///< A longer period latches a fault, as long as a client may be silent. [assumed]
 };
 
 /// Gate, calibration and scales of a device's preset; a stuck encoder is looked for above 0.15 of its continuous force
