@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "headless/scene_request.h"
@@ -72,8 +73,12 @@ void press_on_skin(HapticClient& client) {
   client.set_hand(hand);
   ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
   ASSERT_TRUE(wait_for([&] { return client.view().status.gate_mode == "on"; })) << client.view().status.gate_mode;
-  client.set_hand(hand_at_depth(4.0));
+  // Slowly: a hand that is thrown at the skin goes through it.
+  constexpr double kStep_mm = 0.02, kDeepest_mm = 3.5;
+  double depth_mm = -5.0;
   ASSERT_TRUE(wait_for([&] {
+    depth_mm = std::min(depth_mm + kStep_mm, kDeepest_mm);
+    client.set_hand(hand_at_depth(depth_mm));
     const auto newest = client.newest();
     return newest && felt_n(*newest) > 0.5;
   }));

@@ -85,14 +85,18 @@ TEST(Liveness, ForceFadesWhileTheClientIsStoppedAndComesBackSmoothly) {
     return fade.has_ended;
   }));
   ::kill(holder.pid(), SIGCONT);
-  double last_n = 0.0, largest_rise_n = 0.0;
+  std::optional<NumberedSample> last;
+  double largest_rise_n = 0.0;
   ASSERT_TRUE(wait_for([&] {
     for (const NumberedSample& numbered : watcher.take_samples()) {
-      const double now_n = numbered.sample.device_f_n.norm();
-      largest_rise_n = std::max(largest_rise_n, now_n - last_n);
-      last_n = now_n;
+      // Of neighbours alone: where the machine skipped periods the force goes on from where it would be.
+      if (last && numbered.sample.time_s - last->sample.time_s < 0.0015) {
+        const double rise_n = numbered.sample.device_f_n.norm() - last->sample.device_f_n.norm();
+        largest_rise_n = std::max(largest_rise_n, rise_n);
+      }
+      last = numbered;
     }
-    return last_n > 0.5;
+    return last && felt_n(last->sample) > 0.4;
   })) << watcher.view().status.state;
   EXPECT_LT(largest_rise_n, 0.1) << "N in one tick";
 }
@@ -116,7 +120,8 @@ TEST(Liveness, AServerThatWasStoppedHasAFaultUntilItIsReset) {
   HapticClient client = connect(server.url());
   press_on_skin(client);
   server.kill(SIGSTOP);
-  EXPECT_TRUE(wait_for([&] { return !client.view().is_connected; }));
+  constexpr double kStopped_s = 0.5;  // twice the hole that a loop may have
+  EXPECT_TRUE(wait_for([&] { return client.view().silent_s > kStopped_s; }));
   server.kill(SIGCONT);
   ASSERT_TRUE(wait_for([&] { return client.view().status.state == "fault"; }));
   EXPECT_EQ(client.view().status.fault, "loop_stalled");
@@ -148,9 +153,9 @@ TEST(Liveness, AnUnpluggedDeviceIsOpenedAgainOnRequest) {
   ASSERT_TRUE(client.ask(layers_scene(), kPatience));
   ASSERT_TRUE(wait_for([&] { return client.view().status.fault == "device_lost"; }));
   // The schedule plugs it in again after a while; until then it stays lost.
-  ASSERT_TRUE(wait_for([&] { return client.ask(ServerCommand::kReconnect, kPatience).has_value(); }));
   ASSERT_TRUE(wait_for([&] {
-    return client.ask(ServerCommand::kResetFault, kPatience).has_value() && client.view().status.fault == "none";
+    return client.ask(ServerCommand::kReconnect, kPatience) && client.ask(ServerCommand::kResetFault, kPatience) &&
+           client.view().status.fault == "none";
   }));
   ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
   EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));

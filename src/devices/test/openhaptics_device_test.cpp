@@ -373,7 +373,8 @@ TEST_F(OpenHaptics, RunsFreelyBesideTheRealTimeThread) {
     ASSERT_NE(reading.status, DeviceStatus::kDisconnected);
     ASSERT_TRUE(reading.X_DS.is_finite());
     if (reading.status == DeviceStatus::kFresh) ++fresh;
-    ASSERT_TRUE(device->write({-0.01 * reading.X_DS.p() + Vec3(0.01, 0, 0), Vec3::Zero()}));
+    // No force: how far a free mass would run meanwhile is up to the machine's scheduling.
+    ASSERT_TRUE(device->write({}));
     std::this_thread::yield();
   }
 }
