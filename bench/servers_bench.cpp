@@ -18,6 +18,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "core/temporary_folder.h"
+#include "headless/probe_hand.h"
 #include "headless/scene_request.h"
 #include "link/haptic_client.h"
 #include "link/server_process.h"
@@ -90,31 +91,6 @@ HandTarget needle_hand(const Segment& line_P, double time_s) {
   const Vec3 side = u.unitOrthogonal() * kTremor_mm * std::sin(2.0 * std::numbers::pi * kTremor_hz * time_s);
   HandTarget hand;
   hand.X_PN = needle_pose(line_P.a + u * way_mm + side, u);
-  hand.holds_tip = true;
-  return hand;
-}
-
-/// The transducer is pressed 4 mm into the skin beside the entry and rocked.
-HandTarget probe_hand(const VirtualPatient& patient, const Vec3& entry_P, double time_s) {
-  constexpr double kBeside_mm = 40.0, kPress_mm = 4.0, kRock_mm = 2.0, kRock_hz = 0.5, kTremor_mm = 0.1,
-                   kTremor_hz = 9.0;
-  const FloatGrid& distance = patient.skin_distance_mm;
-  Vec3 p = entry_P + Vec3::UnitZ() * kBeside_mm;
-  Vec3 normal = gradient_per_mm(distance, p).normalized();
-  for (int i = 0; i < 10; ++i) {
-    p -= sample_linear(distance, p) * normal;
-    normal = gradient_per_mm(distance, p).normalized();
-  }
-  const double press_mm = kPress_mm + kRock_mm * std::sin(2.0 * std::numbers::pi * kRock_hz * time_s) +
-                          kTremor_mm * std::sin(2.0 * std::numbers::pi * kTremor_hz * time_s);
-  const Vec3 y = -normal;
-  const Vec3 z = (Vec3::UnitZ() - y * y.z()).normalized();
-  Mat3 R;
-  R.col(0) = y.cross(z);
-  R.col(1) = y;
-  R.col(2) = z;
-  HandTarget hand;
-  hand.X_PN = Pose(R, p + y * press_mm);
   hand.holds_tip = true;
   return hand;
 }
@@ -208,6 +184,7 @@ CaseResult machine_holes(double rate_hz) {
 
 /// Draws and moves the hands until the time is over; frames drawn.
 int play(std::array<Station*, 2> stations, const Case& the_case, double seconds, const Progress& progress) {
+  const ProbeHand probe(*the_case.patient, the_case.plan.line_P);
   const Segment& line_P = the_case.plan.line_P;
   const auto start = std::chrono::steady_clock::now();
   const auto time_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
@@ -217,8 +194,7 @@ int play(std::array<Station*, 2> stations, const Case& the_case, double seconds,
     while (!is_done) {
       const double now_s = time_s();
       for (Station* station : stations) {
-        HandTarget hand =
-            station->tool == "needle" ? needle_hand(line_P, now_s) : probe_hand(*the_case.patient, line_P.a, now_s);
+        HandTarget hand = station->tool == "needle" ? needle_hand(line_P, now_s) : probe.at(now_s);
         station->client.set_hand(hand);
       }
       std::this_thread::sleep_for(5ms);
@@ -249,30 +225,31 @@ Status measure(const Case& the_case, const Options& options, double rate_hz, std
   TROCAR_TRY(const std::filesystem::path program, find_server_program());
   const TemporaryFolder folder;
   TROCAR_TRY(Station needle, open_station(program, folder, "needle", rate_hz));
-  TROCAR_TRY(Station probe, open_station(program, folder, "probe", rate_hz));
+  TROCAR_TRY(Station probe_station, open_station(program, folder, "probe", rate_hz));
+  const ProbeHand probe(*the_case.patient, the_case.plan.line_P);
   const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(kPatience);
-  for (Station* station : {&needle, &probe}) {
+  for (Station* station : {&needle, &probe_station}) {
     SceneChoice choice;
     choice.tool = station->tool;
     choice.force_model = to_string(options.force_model.value_or(ForceModel::kProxy));
     choice.patient_source = "abdomen";
     LoadScene request = scene_request(the_case, choice);
     request.patient_hash.clear();
+    if (station->tool == "probe") request.X_PW = probe.room(request.X_PW);
     TROCAR_TRY_STATUS(station->client.ask(request, patience));
-    HandTarget hand = station->tool == "needle" ? needle_hand(the_case.plan.line_P, 0.0)
-                                                : probe_hand(*the_case.patient, the_case.plan.line_P.a, 0.0);
+    HandTarget hand = station->tool == "needle" ? needle_hand(the_case.plan.line_P, 0.0) : probe.at(0.0);
     hand.is_placed = true;
     station->client.set_hand(hand);
     TROCAR_TRY_STATUS(station->client.ask(ServerCommand::kStart, patience));
   }
   const BusyProcess busy;
   std::this_thread::sleep_for(1s);  // past the safe start
-  for (Station* station : {&needle, &probe}) {
+  for (Station* station : {&needle, &probe_station}) {
     TROCAR_TRY_STATUS(station->client.ask(ServerCommand::kRestartStatistics, patience));
     station->resident_mib = resident_mib(station->process.pid());
   }
-  const int frames = play({&needle, &probe}, the_case, options.seconds, options.progress);
-  for (Station* station : {&needle, &probe}) add_results(*station, rate_hz, results);
+  const int frames = play({&needle, &probe_station}, the_case, options.seconds, options.progress);
+  for (Station* station : {&needle, &probe_station}) add_results(*station, rate_hz, results);
   results.push_back(number_case(fmt::format("servers/client-{:.0f}hz/frames", rate_hz), "fps", frames / options.seconds,
                                 "three 512 x 512 slices a frame, at most 60"));
   return {};

@@ -8,7 +8,7 @@
 
 #include "headless/detail/live_operator.h"
 #include "headless/detail/own_servers.h"
-#include "headless/detail/probe_hand.h"
+#include "headless/probe_hand.h"
 #include "headless/detail/server_seat.h"
 #include "headless/scene_request.h"
 #include "link/endpoint.h"

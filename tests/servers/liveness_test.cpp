@@ -41,6 +41,25 @@ void follow(Fade& fade, const std::vector<NumberedSample>& samples) {
   }
 }
 
+Fade watch_fade(HapticClient& watcher) {
+  Fade fade;
+  wait_for([&] {
+    follow(fade, watcher.take_samples());
+    return fade.has_ended;
+  });
+  return fade;
+}
+
+/// The holder presses on the skin; what the watcher has seen so far is taken.
+bool wait_until_felt(HapticClient& watcher) {
+  const bool is_felt = wait_for([&] {
+    const auto newest = watcher.newest();
+    return newest && felt_n(*newest) > 0.5;
+  });
+  watcher.take_samples();
+  return is_felt;
+}
+
 // Not a test: the other process of the tests below.
 TEST(Holder, DISABLED_HoldsTheServerUntilItIsKilled) {
   const char* url = ::getenv(kHeldUrl);
@@ -54,17 +73,10 @@ TEST(Liveness, ForceIsGoneInTimeWhenTheClientIsKilled) {
   LiveServer server;
   ServerProcess holder = start_holder(server.url());
   HapticClient watcher = connect(server.url(), false);
-  ASSERT_TRUE(wait_for([&] {
-    const auto newest = watcher.newest();
-    return newest && felt_n(*newest) > 0.5;
-  }));
-  watcher.take_samples();
+  ASSERT_TRUE(wait_until_felt(watcher));
   ::kill(holder.pid(), SIGKILL);
-  Fade fade;
-  ASSERT_TRUE(wait_for([&] {
-    follow(fade, watcher.take_samples());
-    return fade.has_ended;
-  }));
+  const Fade fade = watch_fade(watcher);
+  ASSERT_TRUE(fade.has_ended);
   // By the server's own clock: 200 ms, and a hole of the machine's scheduling.
   EXPECT_LE(fade.ended_s - fade.began_s, 0.2 + 0.05);
 }
@@ -73,17 +85,10 @@ TEST(Liveness, ForceFadesWhileTheClientIsStoppedAndComesBackSmoothly) {
   LiveServer server;
   ServerProcess holder = start_holder(server.url());
   HapticClient watcher = connect(server.url(), false);
-  ASSERT_TRUE(wait_for([&] {
-    const auto newest = watcher.newest();
-    return newest && felt_n(*newest) > 0.5;
-  }));
-  watcher.take_samples();
+  ASSERT_TRUE(wait_until_felt(watcher));
   ::kill(holder.pid(), SIGSTOP);
-  Fade fade;
-  ASSERT_TRUE(wait_for([&] {
-    follow(fade, watcher.take_samples());
-    return fade.has_ended;
-  }));
+  const Fade fade = watch_fade(watcher);
+  ASSERT_TRUE(fade.has_ended);
   ::kill(holder.pid(), SIGCONT);
   std::optional<NumberedSample> last;
   double largest_rise_n = 0.0;

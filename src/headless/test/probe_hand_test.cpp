@@ -1,4 +1,4 @@
-#include "headless/detail/probe_hand.h"
+#include "headless/probe_hand.h"
 
 #include <gtest/gtest.h>
 
