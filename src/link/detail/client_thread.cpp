@@ -21,9 +21,9 @@ namespace {
 
 constexpr std::int64_t kBeat_ns = 10'000'000;
 constexpr double kHelloAgain_s = 0.2;
-/// Beats without a word until the server counts as gone, 500 ms. Beats, not time: a client that was suspended reads
-/// what waits for it before it gives its server up.
-constexpr int kSilentBeats = 50;
+/// Beats without a word until the server counts as gone, 2 s: one that fills memory for a scene may be silent for some.
+/// Beats, not time: a client that was suspended reads what waits for it before it gives its server up.
+constexpr int kSilentBeats = 200;
 constexpr int kMostWaitingOut = 200;  ///< Messages that the server does not take [assumed: two seconds of beats].
 constexpr int kMostWaitingIn = 1000;  ///< [assumed: ten seconds of batches at 100 Hz]
 constexpr int kMostReadAtOnce = 256;  ///< Messages between two looks at the clock [assumed].
