@@ -49,7 +49,7 @@ struct Options {
   int paths = 2000;
   std::optional<ForceModel> force_model;
   std::uint64_t seed = 1;
-  double seconds = 10.0;               ///< How long live servers are watched.
+  double seconds = 10.0;  ///< How long live servers are watched.
   std::vector<double> rates_hz{1000.0, 4000.0};
   std::filesystem::path out;  ///< Folder for files; empty: none are written.
   Progress progress;

@@ -11,7 +11,8 @@
 namespace trocar {
 
 /// Any device, broken on schedule; times count from its first read. A tool to show what a server does when a device
-/// fails, and watched as a real one would be: its slow reads and writes wait, which no other device's do. Seeded: the same reads give the same poses.
+/// fails, and watched as a real one would be: its slow reads and writes wait, which no other device's do. Seeded: the
+/// same reads give the same poses.
 class FaultyDevice final : public HapticDevice {
  public:
   /// Waits for so many ms; nanosleep unless a test counts instead.

@@ -84,11 +84,12 @@ struct GateInput {
   Vec3 v_mm_per_s = Vec3::Zero();  ///< Of the stylus, the mean since the last period (its way over dt); and
   Vec3 w_rad_per_s = Vec3::Zero();
   double dt_s = 0.001;
-  double silence_s = 0.0;                     ///< Since the client was last heard.
-  double unread_s = 0.0;                      ///< Since the device's last fresh reading.
-  bool is_wanted = false;                     ///< Somebody asked for forces.
-  GateFault device_fault = GateFault::kNone;  ///< What the caller saw (kDeviceLost, kEncoderStuck, kLoopStalled, kRequested).
-  bool is_reset = false;                      ///< Explicit reset of a fault; without effect while its cause lasts.
+  double silence_s = 0.0;  ///< Since the client was last heard.
+  double unread_s = 0.0;   ///< Since the device's last fresh reading.
+  bool is_wanted = false;  ///< Somebody asked for forces.
+  GateFault device_fault =
+      GateFault::kNone;   ///< What the caller saw (kDeviceLost, kEncoderStuck, kLoopStalled, kRequested).
+  bool is_reset = false;  ///< Explicit reset of a fault; without effect while its cause lasts.
 };
 
 /// Fixed size, copyable.

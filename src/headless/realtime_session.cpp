@@ -8,8 +8,8 @@
 
 #include "headless/detail/live_operator.h"
 #include "headless/detail/own_servers.h"
-#include "headless/probe_hand.h"
 #include "headless/detail/server_seat.h"
+#include "headless/probe_hand.h"
 #include "headless/scene_request.h"
 #include "link/endpoint.h"
 

@@ -13,7 +13,8 @@ namespace trocar {
 /// parent takes it along.
 class ServerProcess {
  public:
-  /// Starts `program` with `arguments` and returns at once; standard output and error go to `log`, or are ours when empty.
+  /// Starts `program` with `arguments` and returns at once; standard output and error go to `log`, or are ours when
+  /// empty.
   static Result<ServerProcess> start(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                                      const std::filesystem::path& log = {});
   ServerProcess(ServerProcess&&) noexcept;
