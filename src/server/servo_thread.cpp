@@ -53,12 +53,13 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
   double told_s = 0.0;
   run_periodic(shared.period_ns, shared.is_stopping, statistics,
                [&](const Period& period, const LoopStatistics& so_far) {
+                 const bool is_paused = shared.pause_wanted.load(std::memory_order_acquire);
+                 shared.is_paused.store(is_paused, std::memory_order_release);
+                 if (is_paused) return;  // commands wait: a reset must not get lost
+
                  obey(shared, switches, statistics);
                  if (shared.is_fading.load(std::memory_order_relaxed)) switches.is_wanted = false;
                  shared.is_wanted.store(switches.is_wanted, std::memory_order_relaxed);
-                 const bool is_paused = shared.pause_wanted.load(std::memory_order_acquire);
-                 shared.is_paused.store(is_paused, std::memory_order_release);
-                 if (is_paused) return;
 
                  ServoInput input;
                  input.now_s = period.now_s;

@@ -4,7 +4,7 @@
 
 namespace trocar::testing {
 
-/// A mass that the motors push, in the vendor's axes.
+/// A mass that the motors push and a slack hand brakes, in the vendor's axes.
 struct SimulatedArm {
   Vec3 p_mm = Vec3::Zero();
   Vec3 v_mm_per_s = Vec3::Zero();
@@ -14,8 +14,9 @@ struct SimulatedArm {
 
   void advance(double dt_s) {
     constexpr double kMass_kg = 0.1;
+    constexpr double kHand_ns_per_mm = 0.01;  // without it the motors make it fly in a tenth of a second
     constexpr double kMmPerM = 1000.0;
-    v_mm_per_s += kMmPerM / kMass_kg * force_n * dt_s;
+    v_mm_per_s += kMmPerM / kMass_kg * (force_n - kHand_ns_per_mm * v_mm_per_s) * dt_s;
     p_mm += v_mm_per_s * dt_s;
   }
 };
