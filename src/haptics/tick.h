@@ -3,7 +3,7 @@
 #include "haptics/contact.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/needle_step.h"
-#include "haptics/resting_anatomy.h"
+#include "anatomy/resting_anatomy.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar {

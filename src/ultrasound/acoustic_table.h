@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
+namespace trocar {
+
+/// What sound meets in a tissue (data/acoustics.toml; each number there has its source).
+struct AcousticTissue {
+  std::string name;                        ///< A tissue of data/tissues.toml, or "air", "gel", "water".
+  double speed_m_per_s = 1540.0;           ///< Range 300..4500.
+  double density_kg_per_m3 = 1050.0;       ///< Range 1..2500.
+  double attenuation_db_per_cm_mhz = 0.5;  ///< One way, at 1 MHz. Range 0..100.
+  double attenuation_exponent = 1.0;       ///< Of frequency in MHz. Range 0.5..2.
+  double backscatter_db = 0.0;     ///< Mean level of its speckle against liver's, without attenuation. Range -80..30.
+  double scatterer_share = 1.0;    ///< Scatterers against fully developed speckle. Range 0..1.
+  double texture_db_per_hu = 0.0;  ///< How its speckle follows the CT's deviation from the tissue's mean. Range -1..1.
+  double roughness = 0.2;          ///< Part of a surface's echo that goes to all sides. Range 0..1.
+  double fibre_db = 0.0;           ///< Depth of the layering along the skin (muscle, fat with septa). Range 0..20.
+
+  /// Z = density times speed, MRayl.
+  double impedance_mrayl() const noexcept { return density_kg_per_m3 * speed_m_per_s * 1e-6; }
+  double attenuation_db_per_cm(double frequency_mhz) const noexcept;
+};
+
+struct AcousticTable {
+  std::vector<AcousticTissue> tissues;  ///< [0] is air. At most 127.
+
+  std::optional<std::uint8_t> find(std::string_view name) const noexcept;
+};
+
+Result<AcousticTable> load_acoustic_table(const std::filesystem::path& path);
+
+/// Amplitude reflected at a plane border under normal incidence: (z2 - z1) / (z2 + z1), -1..1.
+double reflection(double z1_mrayl, double z2_mrayl) noexcept;
+
+}  // namespace trocar

@@ -1,0 +1,18 @@
+#pragma once
+
+namespace trocar {
+
+/// What sound does beside going straight and coming back; each can be switched off.
+struct Artefacts {
+  bool attenuation = true;       ///< Shadow behind bone and gas, enhancement behind fluid.
+  bool reverberation = true;     ///< A-lines, ring-down at gas.
+  bool mirror = true;            ///< Mirror image at a strong, smooth reflector (the diaphragm).
+  bool refraction = true;        ///< Edge shadows, bent scanlines.
+  bool range_distortion = true;  ///< Depth is time, and sound's speed differs.
+  bool side_lobes = true;        ///< And grating lobes.
+  bool contact_loss = true;      ///< Air where the face has left the skin.
+  bool clutter = true;           ///< Haze of the near field.
+  bool noise = true;             ///< Of the receiver; rises with depth because the gain does.
+};
+
+}  // namespace trocar

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "ultrasound/acoustic_scene.h"
+#include "ultrasound/artefacts.h"
+#include "ultrasound/beam.h"
+#include "ultrasound/needle_echo.h"
+#include "ultrasound/scan_geometry.h"
+#include "ultrasound/transducer.h"
+
+namespace trocar {
+
+/// How the transducer listens: what a scanner's knobs change before the echoes are there.
+struct Acquisition {
+  double depth_mm = 160.0;
+  double frequency_mhz = 3.5;
+  double focus_mm = 80.0;
+  int lines = 256;     ///< Range 2..1024.
+  int samples = 1024;  ///< A scanline. Range 16..4096.
+  int planes = 5;      ///< Across the beam's thickness. 1, 3, 5, 7 or 9.
+  Artefacts artefacts;
+};
+/// The transducer's own defaults.
+Acquisition default_acquisition(const Transducer& transducer);
+
+/// What one frame is made of.
+struct BModeInput {
+  Pose X_PT;  ///< Transducer in the (resting) patient.
+  std::span<const NeedleEcho> needles;
+  double time_s = 0.0;
+};
+
+/// Echoes of one frame, beamformed, demodulated and not yet amplified: complex baseband, scanline by scanline (sample
+/// runs fastest). 1.0 is the root mean square of liver's speckle without attenuation.
+struct BasebandFrame {
+  ScanGeometry geometry;
+  Beam beam;
+  std::vector<float> re, im;
+  std::vector<float> contact;  ///< A scanline: 1 where the face is coupled to the skin, 0 in air.
+};
+
+/// Ultrasound from an acoustic scene (docs/physics.md U1–U12). Buffers are taken once; render allocates nothing. The
+/// result is the same whatever the number of threads.
+class BMode {
+ public:
+  BMode(std::shared_ptr<const AcousticScene> scene, Transducer transducer, const Acquisition& acquisition);
+  ~BMode();
+  BMode(BMode&&) noexcept;
+  BMode& operator=(BMode&&) noexcept;
+
+  /// New settings; takes buffers anew.
+  void set_acquisition(const Acquisition& acquisition);
+  const Acquisition& acquisition() const noexcept;
+  const ScanGeometry& geometry() const noexcept;
+
+  /// The echoes from that pose. The frame stays valid until the next call.
+  const BasebandFrame& render(const BModeInput& input) noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace trocar
