@@ -12,6 +12,14 @@
 
 namespace trocar {
 
+/// One scatterer that stands out: a wire of a test phantom across the image, a microcalcification. Frame P, mm.
+struct AcousticPoint {
+  Vec3 p_P = Vec3::Zero();
+  /// Peak of its echo in the middle of the beam, without attenuation, against liver's speckle (root mean square), at any
+  /// depth. Range -40..80.
+  double amplitude_db = 40.0;
+};
+
 /// The patient as sound meets him, in resting anatomy; immutable, shared by all who scan. Frame P, mm.
 struct AcousticScene {
   /// About isotropic: `tissue` and `texture` lie on it.
@@ -23,6 +31,7 @@ struct AcousticScene {
   std::vector<std::int8_t> texture;
   FloatGrid skin_distance_mm;  ///< Negative inside.
   AcousticTable table;
+  std::vector<AcousticPoint> points;  ///< Beside the tissue's scatterers; they do not shadow.
 };
 
 inline constexpr std::uint8_t kMixedCell = 0x80;
