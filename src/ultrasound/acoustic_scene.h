@@ -15,8 +15,8 @@ namespace trocar {
 /// One scatterer that stands out: a wire of a test phantom across the image, a microcalcification. Frame P, mm.
 struct AcousticPoint {
   Vec3 p_P = Vec3::Zero();
-  /// Peak of its echo in the middle of the beam, without attenuation, against liver's speckle (root mean square), at any
-  /// depth. Range -40..80.
+  /// Peak of its echo in the middle of the beam, without attenuation and at any depth, against liver's speckle (root
+  /// mean square). Range -40..80.
   double amplitude_db = 40.0;
 };
 
