@@ -83,11 +83,21 @@ struct VendorFault {
 
 class VendorFaults : public ::testing::TestWithParam<VendorFault> {};
 
-TEST_P(VendorFaults, EndAtZeroAndBreakNoRule) {
-  const VendorFault& expected = GetParam();
-  constexpr double kOn_s = 0.9;      // past the safe start
-  constexpr double kFault_s = 1.2;   // as the schedules say
-  constexpr double kSilent_s = 0.5;  // a loaded machine may keep a device's thread waiting for some time
+/// What a device that breaks at kFault_s led to.
+struct Trial {
+  GateFault fault = GateFault::kNone;
+  double broken_s =
+      0.0;  ///< 0: the fault came before its time, from a loaded machine that starved the device's thread.
+  double last_force_s = 0.0;
+  double most_n = 0.0;
+  std::string violations;
+};
+
+constexpr double kOn_s = 0.9;      // past the safe start
+constexpr double kFault_s = 1.2;   // as the schedules say
+constexpr double kSilent_s = 0.5;  // a loaded machine may keep a device's thread waiting for some time
+
+void run_trial(const VendorFault& expected, Trial& trial) {
   const Hardware hardware(expected.kind);
   {
     DeviceOptions options;
@@ -102,7 +112,6 @@ TEST_P(VendorFaults, EndAtZeroAndBreakNoRule) {
     Servo servo(**device, params);
     ApproachingPatient patient(preset);
 
-    double broken_s = 0.0, last_force_s = 0.0, most_n = 0.0;
     ServoRecord record;
     const double end_s = kFault_s + (expected.fault == GateFault::kDeviceSilent ? kSilent_s : 0.0) + 0.3;
     constexpr double kPeriod_s = 1e-3;  // the servo's time is counted: a hole of the machine must look like no plunge
@@ -113,24 +122,37 @@ TEST_P(VendorFaults, EndAtZeroAndBreakNoRule) {
       input.now_s = time_s;
       input.dt_s = kPeriod_s;
       input.is_wanted = true;
-      if (broken_s == 0.0 && time_s >= kFault_s) broken_s = time_s;
+      if (trial.broken_s == 0.0 && time_s >= kFault_s) trial.broken_s = time_s;
       const double depth_mm = std::min(3.0, -10.0 + std::max(0.0, time_s - kOn_s) * 60.0);
       const Pose X_WS =
           preset.sensed_dof == 6 ? record.X_DS : Pose(rotation_between(Vec3::UnitZ(), -Vec3::UnitZ()), record.X_DS.p());
       input.scene = patient.at(params.workspace.X_WD * X_WS, depth_mm);
       record = servo.step(input);
+      trial.fault = record.fault;
+      if (trial.broken_s == 0.0 && record.fault != GateFault::kNone) break;
       const double written_n = record.written_D.force_n.norm();
-      most_n = std::max(most_n, written_n);
-      if (written_n > 0.0) last_force_s = time_s;
+      trial.most_n = std::max(trial.most_n, written_n);
+      if (written_n > 0.0) trial.last_force_s = time_s;
       ASSERT_LE(written_n, preset.capability.peak_force_n + 1e-9);
     }
-    EXPECT_GT(most_n, 0.1) << "there was something to be felt before";
-    EXPECT_STREQ(to_string(record.fault), to_string(expected.fault));
-    constexpr double kRamp_s = 0.05;  // the gate's 20 ms, and a period of a loaded machine
-    EXPECT_LE(last_force_s,
-              broken_s + kRamp_s + (expected.fault == GateFault::kDeviceSilent ? kSilent_s + kRamp_s : 0.0));
   }
-  EXPECT_EQ(hardware.violations(), "");
+  trial.violations = hardware.violations();
+}
+
+TEST_P(VendorFaults, EndAtZeroAndBreakNoRule) {
+  const VendorFault& expected = GetParam();
+  Trial trial;
+  for (int attempt = 0; attempt < 3 && trial.broken_s == 0.0; ++attempt) {
+    trial = {};
+    ASSERT_NO_FATAL_FAILURE(run_trial(expected, trial));
+  }
+  ASSERT_GT(trial.broken_s, 0.0) << "the device broke before its time: " << to_string(trial.fault);
+  EXPECT_GT(trial.most_n, 0.1) << "there was something to be felt before";
+  EXPECT_STREQ(to_string(trial.fault), to_string(expected.fault));
+  constexpr double kRamp_s = 0.05;  // the gate's 20 ms, and a period of a loaded machine
+  EXPECT_LE(trial.last_force_s,
+            trial.broken_s + kRamp_s + (expected.fault == GateFault::kDeviceSilent ? kSilent_s + kRamp_s : 0.0));
+  EXPECT_EQ(trial.violations, "");
 }
 
 std::vector<VendorFault> all_vendor_faults() {
