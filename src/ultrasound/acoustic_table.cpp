@@ -25,6 +25,7 @@ constexpr Field kFields[] = {
     {"backscatter_db", {-80.0, 30.0}, &AcousticTissue::backscatter_db},
     {"scatterer_share", {0.0, 1.0}, &AcousticTissue::scatterer_share},
     {"texture_db_per_hu", {-1.0, 1.0}, &AcousticTissue::texture_db_per_hu},
+    {"texture_below_db_per_hu", {-1.0, 1.0}, &AcousticTissue::texture_below_db_per_hu},
     {"roughness", {0.0, 1.0}, &AcousticTissue::roughness},
     {"fibre_db", {0.0, 20.0}, &AcousticTissue::fibre_db},
 };
@@ -46,6 +47,11 @@ Result<AcousticTissue> read_tissue(const TomlTable& row, const std::string& name
 
 double AcousticTissue::attenuation_db_per_cm(double frequency_mhz) const noexcept {
   return attenuation_db_per_cm_mhz * std::pow(frequency_mhz, attenuation_exponent);
+}
+
+double AcousticTissue::texture_db(double deviation_hu) const noexcept {
+  const double db = deviation_hu * (deviation_hu > 0.0 ? texture_db_per_hu : texture_below_db_per_hu);
+  return std::clamp(db, -kMostTexture_db, kMostTexture_db);
 }
 
 std::optional<std::uint8_t> AcousticTable::find(std::string_view name) const noexcept {

@@ -20,14 +20,20 @@ struct AcousticTissue {
   double attenuation_exponent = 1.0;       ///< Of frequency in MHz. Range 0.5..2.
   double backscatter_db = 0.0;     ///< Mean level of its speckle against liver's, without attenuation. Range -80..30.
   double scatterer_share = 1.0;    ///< Scatterers against fully developed speckle. Range 0..1.
-  double texture_db_per_hu = 0.0;  ///< How its speckle follows the CT's deviation from the tissue's mean. Range -1..1.
-  double roughness = 0.2;          ///< Part of a surface's echo that goes to all sides. Range 0..1.
-  double fibre_db = 0.0;           ///< Depth of the layering along the skin (muscle, fat with septa). Range 0..20.
+  double texture_db_per_hu = 0.0;  ///< How its speckle follows a CT above the tissue's mean. Range -1..1.
+  double texture_below_db_per_hu = 0.0;  ///< The same below the mean: positive is darker. Range -1..1.
+  double roughness = 0.2;                ///< Part of a surface's echo that goes to all sides. Range 0..1.
+  double fibre_db = 0.0;  ///< Depth of the layering along the skin (muscle, fat with septa). Range 0..20.
 
   /// Z = density times speed, MRayl.
   double impedance_mrayl() const noexcept { return density_kg_per_m3 * speed_m_per_s * 1e-6; }
   double attenuation_db_per_cm(double frequency_mhz) const noexcept;
+  /// Change of its speckle where the CT lies that far from the tissue's mean; at most kMostTexture_db either way.
+  double texture_db(double deviation_hu) const noexcept;
 };
+
+/// No structure that labels have missed is darker against its organ than blood. Assumed, range 15..40.
+inline constexpr double kMostTexture_db = 28.0;
 
 struct AcousticTable {
   std::vector<AcousticTissue> tissues;  ///< [0] is air. At most 127.
@@ -35,6 +41,7 @@ struct AcousticTable {
   std::optional<std::uint8_t> find(std::string_view name) const noexcept;
 };
 
+/// Errors name file, tissue and key: no air in front, unknown key, out of range, no source.
 Result<AcousticTable> load_acoustic_table(const std::filesystem::path& path);
 
 /// Amplitude reflected at a plane border under normal incidence: (z2 - z1) / (z2 + z1), -1..1.

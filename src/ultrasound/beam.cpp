@@ -48,7 +48,7 @@ Beam make_beam(const Transducer& transducer, double frequency_mhz, double focus_
       std::sqrt(2.0 * std::numbers::ln2) / (2.0 * std::numbers::pi) * beam.wavelength_mm / transducer.bandwidth;
   beam.focus_mm = focus_mm;
   beam.f_number = transducer.f_number;
-  beam.aperture_mm = transducer.face_width_mm();
+  beam.aperture_mm = transducer.aperture_mm();
   beam.elevation_aperture_mm = transducer.elevation_aperture_mm;
   beam.elevation_focus_mm = transducer.elevation_focus_mm;
   return beam;

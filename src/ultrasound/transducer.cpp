@@ -73,6 +73,7 @@ Status read_pulse(Reader& reader, Transducer& t) {
 Status read_array(Reader& reader, Transducer& t) {
   const bool has_arc = t.kind == TransducerKind::kConvex || t.kind == TransducerKind::kMechanicalConvex;
   TROCAR_TRY_STATUS(reader.count("elements", {16.0, 1024.0}, t.elements));
+  TROCAR_TRY_STATUS(reader.count("active_elements", {8.0, static_cast<double>(t.elements)}, t.active_elements));
   TROCAR_TRY_STATUS(reader.value("pitch_mm", {0.05, 2.0}, t.pitch_mm));
   TROCAR_TRY_STATUS(reader.value("elevation_aperture_mm", {1.0, 30.0}, t.elevation_aperture_mm));
   TROCAR_TRY_STATUS(reader.value("elevation_focus_mm", {5.0, 200.0}, t.elevation_focus_mm));

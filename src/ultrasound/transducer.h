@@ -27,6 +27,7 @@ struct Transducer {
   double highest_mhz = 5.0;
   double bandwidth = 0.6;               ///< Fractional, -6 dB, of the pulse and its echo. Range 0.2..1.2.
   int elements = 128;                   ///< Range 16..1024.
+  int active_elements = 64;             ///< That work together at most. Range 8..elements.
   double pitch_mm = 0.5;                ///< Between elements' centres, along the face.
   double radius_mm = 60.0;              ///< Of the array's arc; convex kinds only.
   double field_of_view_rad = 1.2;       ///< Between the outermost scanlines; fans only.
@@ -42,9 +43,11 @@ struct Transducer {
 
   /// Width of the face along its surface, mm.
   double face_width_mm() const noexcept { return pitch_mm * elements; }
+  /// Largest active aperture, mm.
+  double aperture_mm() const noexcept { return pitch_mm * active_elements; }
 };
 
-/// All transducers of a file. Errors name the line: unknown key, out of range, no source.
+/// All transducers of a file. Errors name file, transducer and key: unknown key, out of range, no source.
 Result<std::vector<Transducer>> load_transducers(const std::filesystem::path& path);
 /// One by name; an unknown one is an error that lists the names (exit status 2).
 Result<Transducer> load_transducer(const std::filesystem::path& path, std::string_view name);
