@@ -1,0 +1,194 @@
+#include "ultrasound/b_mode.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "core/check.h"
+#include "core/parallel.h"
+#include "ultrasound/detail/frame_state.h"
+#include "ultrasound/detail/multiple_echoes.h"
+#include "ultrasound/detail/point_spread.h"
+#include "ultrasound/detail/scan_plan.h"
+#include "ultrasound/detail/scatterer_bricks.h"
+#include "ultrasound/detail/sound_paths.h"
+#include "ultrasound/detail/surface_echo.h"
+#include "ultrasound/detail/tissue_texture.h"
+#include "ultrasound/detail/tissue_walk.h"
+
+namespace trocar {
+namespace {
+
+using namespace detail;
+
+/// What one task needs beside the frame.
+struct Scratch {
+  WalkResult walk;
+  Texture texture;
+};
+
+/// Echoes of single points, by one thread: there are few.
+void add_points(const ScanPlan& plan, FrameState& frame) noexcept {
+  const Pose X_TP = frame.X_PT.inverse();
+  for (const AcousticPoint& point : frame.scene->points) {
+    const Vec3 p_T = X_TP * point.p_P;
+    const Polar at = plan.geometry.to_polar(Vec2(p_T.x(), p_T.y()));
+    const int line = static_cast<int>(std::floor(at.line));
+    const int near_line = static_cast<int>(std::lround(at.line));
+    if (near_line < 0 || near_line >= plan.lines || at.depth_mm <= 0.0) continue;
+    const double walk = at.depth_mm / plan.geometry.sample_mm() - 0.5 +
+                        static_cast<double>(frame.pressed_samples[static_cast<std::size_t>(near_line)]);
+    if (walk < 0.0 || walk > plan.samples - 1) continue;
+    const auto s = static_cast<std::size_t>(walk);
+    const double zeta = p_T.z() * static_cast<double>(plan.inverse_elevation_sigma[s]);
+    if (std::abs(zeta) > static_cast<double>(kBeamEdge)) continue;
+    const std::size_t place = static_cast<std::size_t>(near_line) * static_cast<std::size_t>(plan.samples) + s;
+    const double amplitude = std::pow(10.0, point.amplitude_db / 20.0) * std::exp(-0.5 * zeta * zeta) *
+                             static_cast<double>(frame.way_gain[place]);
+    const double shown = walk + static_cast<double>(frame.delay[place]);
+    const auto sample = static_cast<std::ptrdiff_t>(std::lround(shown));
+    if (sample < 0 || sample >= plan.samples) continue;
+    const double turn = 2.0 * std::numbers::pi * shown * static_cast<double>(plan.cycles_per_sample);
+    for (int side = 0; side < 2; ++side) {
+      if (line + side < 0 || line + side >= plan.lines) continue;
+      const double part = side == 0 ? 1.0 - (at.line - line) : at.line - line;
+      const auto to = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(line + side) * plan.stride + kPad + sample);
+      frame.re[to] += static_cast<float>(part * amplitude * std::cos(turn));
+      frame.im[to] -= static_cast<float>(part * amplitude * std::sin(turn));
+    }
+  }
+}
+
+}  // namespace
+
+struct BMode::Impl {
+  std::shared_ptr<const AcousticScene> scene;
+  Transducer transducer;
+  ScanPlan plan;
+  FrameState frame;
+  BasebandFrame out;
+  std::vector<Brick> bricks = make_brick_library();
+  std::vector<Scratch> scratch;  ///< One a group of scanlines.
+
+  int groups() const noexcept { return (plan.lines + kGroup - 1) / kGroup; }
+
+  template <class Body>
+  void for_groups(const Body& body) noexcept {
+    const auto part = [&](std::size_t first, std::size_t last) {
+      for (std::size_t g = first; g < last; ++g) {
+        const int begin = static_cast<int>(g) * kGroup;
+        body(static_cast<int>(g), begin, std::min(begin + kGroup, plan.lines));
+      }
+    };
+    parallel_for(static_cast<std::size_t>(groups()), 1, std::ref(part));
+  }
+
+  void walk_and_echo(int group, int first, int last) noexcept;
+};
+
+void BMode::Impl::walk_and_echo(int group, int first, int last) noexcept {
+  Scratch& s = scratch[static_cast<std::size_t>(group)];
+  const auto samples = static_cast<std::size_t>(plan.samples);
+  std::fill(frame.re.begin() + static_cast<std::ptrdiff_t>(first) * plan.stride,
+            frame.re.begin() + static_cast<std::ptrdiff_t>(last) * plan.stride, 0.0F);
+  std::fill(frame.im.begin() + static_cast<std::ptrdiff_t>(first) * plan.stride,
+            frame.im.begin() + static_cast<std::ptrdiff_t>(last) * plan.stride, 0.0F);
+  const int central = plan.planes / 2;
+  for (int line = first; line < last; ++line) {
+    const LineWalk& path = frame.walks[static_cast<std::size_t>(line)];
+    const float* bend = frame.bend_mm.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
+    for (int n = 0; n < plan.samples + kCoarse; ++n) {
+      const auto c = static_cast<std::size_t>(std::min(n / kCoarse, plan.samples / kCoarse));
+      const float part = static_cast<float>(n % kCoarse) / static_cast<float>(kCoarse);
+      s.walk.sideways_mm[static_cast<std::size_t>(n)] = std::lerp(bend[c], bend[c + 1], part);
+    }
+    for (int order = 0; order < plan.planes; ++order) {
+      // The central plane first: the others take its layers and delays.
+      const int plane = order == 0 ? central : (order <= central ? order - 1 : order);
+      const float zeta = static_cast<float>(plane - central) * plan.plane_step;
+      float* delay = plane == central ? frame.delay.data() + static_cast<std::size_t>(line) * samples : nullptr;
+      walk_line(plan, frame, path, zeta, s.walk, delay);
+      make_texture(plan, frame, s.walk, line, plane == central, s.texture);
+      const std::size_t at =
+          (static_cast<std::size_t>(plane) * static_cast<std::size_t>(plan.lines) + static_cast<std::size_t>(line)) *
+          samples;
+      to_gain(s.walk.log_gain.data(), s.texture.added.data(), plan.samples, frame.gain.data() + at);
+      for (std::size_t n = 0; n < samples; ++n) frame.share[at + n] = plan.share[s.walk.tissue[n] & 127U];
+      if (plane == central) {
+        std::fill_n(s.texture.added.begin(), samples, 0.0F);
+        to_gain(s.walk.log_way.data(), s.texture.added.data(), plan.samples,
+                frame.way_gain.data() + static_cast<std::size_t>(line) * samples);
+      }
+      add_surface_echoes(plan, frame, s.walk, line, plane);
+    }
+    if (plan.acquisition.artefacts.reverberation) add_ring_down(plan, frame, line);
+  }
+  add_scatterers(plan, bricks, frame, first, last);
+}
+
+Acquisition default_acquisition(const Transducer& transducer) {
+  Acquisition acquisition;
+  acquisition.depth_mm = transducer.depth_mm;
+  acquisition.frequency_mhz = transducer.frequency_mhz;
+  acquisition.focus_mm = transducer.focus_mm;
+  acquisition.lines = transducer.scanlines;
+  return acquisition;
+}
+
+BMode::BMode(std::shared_ptr<const AcousticScene> scene, Transducer transducer, const Acquisition& acquisition)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->scene = std::move(scene);
+  impl_->transducer = std::move(transducer);
+  set_acquisition(acquisition);
+}
+BMode::~BMode() = default;
+BMode::BMode(BMode&&) noexcept = default;
+BMode& BMode::operator=(BMode&&) noexcept = default;
+
+void BMode::set_acquisition(const Acquisition& acquisition) {
+  Impl& impl = *impl_;
+  TROCAR_CHECK(acquisition.samples >= 16 && acquisition.samples <= kMaxSamples && acquisition.lines >= 2);
+  TROCAR_CHECK(acquisition.planes >= 1 && acquisition.planes <= kMaxPlanes && acquisition.planes % 2 == 1);
+  impl.plan = make_scan_plan(*impl.scene, impl.transducer, acquisition);
+  impl.frame = make_frame_state(*impl.scene, impl.plan);
+  impl.scratch.resize(static_cast<std::size_t>(impl.groups()));
+  impl.out.geometry = impl.plan.geometry;
+  impl.out.beam = impl.plan.beam;
+  const auto lines = static_cast<std::size_t>(impl.plan.lines);
+  impl.out.re.assign(lines * static_cast<std::size_t>(impl.plan.samples), 0.0F);
+  impl.out.im = impl.out.re;
+  impl.out.contact.assign(lines, 1.0F);
+}
+
+const Acquisition& BMode::acquisition() const noexcept {
+  return impl_->plan.acquisition;
+}
+const ScanGeometry& BMode::geometry() const noexcept {
+  return impl_->plan.geometry;
+}
+
+const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
+  Impl& impl = *impl_;
+  ScanPlan& plan = impl.plan;
+  FrameState& frame = impl.frame;
+  frame.X_PT = input.X_PT;
+  find_contact(impl.scene->skin_distance_mm, plan.geometry, input.X_PT, frame.contact);
+  aim_lines(plan, frame);
+  impl.for_groups([&](int group, int first, int last) {
+    probe_lines(plan, frame, impl.scratch[static_cast<std::size_t>(group)].walk, first, last);
+  });
+  bend_lines(plan, frame);
+  impl.for_groups([&](int group, int first, int last) { impl.walk_and_echo(group, first, last); });
+  add_points(plan, frame);
+  impl.for_groups([&](int, int first, int last) { spread_laterally(plan, frame, first, last); });
+  impl.for_groups([&](int, int first, int last) {
+    spread_axially(plan, frame, first, last, impl.out);
+    if (!plan.acquisition.artefacts.reverberation) return;
+    for (int line = first; line < last; ++line) add_reverberation(plan, frame, line, impl.out);
+  });
+  for (std::size_t line = 0; line < frame.contact.size(); ++line) impl.out.contact[line] = frame.walks[line].coupling;
+  return impl.out;
+}
+
+}  // namespace trocar

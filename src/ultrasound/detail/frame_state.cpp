@@ -1,0 +1,24 @@
+#include "ultrasound/detail/frame_state.h"
+
+namespace trocar::detail {
+
+FrameState make_frame_state(const AcousticScene& scene, const ScanPlan& plan) {
+  FrameState frame;
+  frame.scene = &scene;
+  const auto lines = static_cast<std::size_t>(plan.lines), samples = static_cast<std::size_t>(plan.samples);
+  const auto padded = lines * static_cast<std::size_t>(plan.stride);
+  frame.contact.resize(lines);
+  frame.walks.resize(lines);
+  frame.pressed_samples.assign(lines, 0.0F);
+  frame.reflectors.resize(lines);
+  for (auto* coarse : {&frame.bend_mm, &frame.focus_log, &frame.slowness})
+    coarse->assign(lines * plan.coarse_samples(), 0.0F);
+  frame.delay.assign(lines * samples + 16, 0.0F);
+  frame.way_gain.assign(lines * samples + 16, 0.0F);
+  frame.gain.assign(static_cast<std::size_t>(plan.planes) * lines * samples, 0.0F);
+  frame.share.assign(frame.gain.size(), 0);
+  for (auto* echoes : {&frame.re, &frame.im, &frame.wide_re, &frame.wide_im}) echoes->assign(padded, 0.0F);
+  return frame;
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "ultrasound/detail/scan_plan.h"
+#include "ultrasound/needle_echo.h"
+#include "ultrasound/probe_contact.h"
+
+namespace trocar::detail {
+
+/// A scanline as voxel indices of the scene: origin + along * mm + lateral * mm + elevation * mm, reflected where it
+/// lies behind a mirror.
+struct LineWalk {
+  std::array<float, 3> origin{}, along{}, lateral{};  ///< Index, index a mm.
+  /// Distance behind the mirror, mm: [0] + [1] * along + [2] * elevation + [3] * lateral.
+  std::array<float, 4> mirror{-1e30F, 0.0F, 0.0F, 0.0F};
+  std::array<float, 3> mirror_normal{};  ///< Index for each mm of distance, twice.
+  float mirror_gain = 0.0F;              ///< Amplitude of what the mirror shows.
+  float mirror_depth_mm = 1e30F;         ///< Along the central plane, from the face; 1e30: no mirror.
+  float mirror_reflection = 0.0F;
+  std::uint8_t mirror_before = 0, mirror_behind = 0;  ///< Tissues.
+  float pressed_mm = 0.0F;
+  float coupling = 1.0F;
+};
+
+/// The strongest smooth reflector of a scanline, for what goes to and fro before it.
+struct Reflector {
+  float shown = -1.0F;     ///< Sample; negative: none.
+  float amplitude = 0.0F;  ///< Of the sound that comes back, 0..1, losses on the way in it.
+  float rough_amplitude = 0.0F;
+  bool is_gas = false;
+  std::uint32_t key = 0;  ///< Of its place in P.
+};
+
+/// Tissue that a needle drags along.
+struct Drag {
+  Vec3f tip_T = Vec3f::Zero();
+  Vec3f shift_T = Vec3f::Zero();
+  float reach_mm = 0.0F;  ///< 0: none.
+};
+
+/// One frame in the making. All that grows is sized by make_frame_state.
+struct FrameState {
+  const AcousticScene* scene = nullptr;
+  Pose X_PT;
+  std::array<std::array<float, 3>, 3> index_of_T{};  ///< Columns: voxel index a mm of x, y, z of T.
+  std::array<float, 3> index_of_origin{};
+  std::array<float, 3> elevation{};  ///< Index a mm.
+  Drag drag;
+  float widest_warp = 0.0F;  ///< Scanlines.
+  float deepest_dent_mm = 0.0F;
+
+  std::vector<LineContact> contact;
+  std::vector<LineWalk> walks;
+  std::vector<float> pressed_samples;  ///< A scanline: how deep the face dents the skin.
+  std::vector<Reflector> reflectors;
+  std::vector<float> bend_mm;           ///< line * coarse_samples: sideways displacement by refraction.
+  std::vector<float> focus_log;         ///< The same: neper of amplitude by beams that part or meet.
+  std::vector<float> slowness;          ///< The same: c0/c - 1 of the central plane.
+  std::vector<float> delay;             ///< line * samples: shown - walk, samples.
+  std::vector<float> way_gain;          ///< The same: amplitude left of an echo from there, without its own strength.
+  std::vector<float> gain;              ///< (plane * lines + line) * samples: of a scatterer there.
+  std::vector<std::uint8_t> share;      ///< The same.
+  std::vector<float> re, im;            ///< line * stride + kPad + sample: echoes before the point spread.
+  std::vector<float> wide_re, wide_im;  ///< The same after the lateral point spread.
+};
+
+FrameState make_frame_state(const AcousticScene& scene, const ScanPlan& plan);
+
+}  // namespace trocar::detail

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ultrasound/detail/frame_state.h"
+#include "ultrasound/detail/scan_plan.h"
+
+/// Scatterers fill P in cubes, "bricks". What a brick holds is a pure function of its place in P, so that speckle moves
+/// with the tissue; it is one of a library's, turned and mirrored.
+namespace trocar::detail {
+
+inline constexpr int kBrickScatterers = 32;
+/// Amplitudes are even in -1..1: their kurtosis, 1.8, lets speckle be fully developed with few scatterers.
+inline constexpr double kMeanSquareScatterer = 1.0 / 3.0;
+inline constexpr int kBricks = 256;
+
+/// Scatterers of one brick: place in the brick, -0.5..0.5 of its side, amplitude, and the share of scatterers at which
+/// it is one of those that are there.
+struct alignas(64) Brick {
+  std::array<float, kBrickScatterers> x, y, z, amplitude, rank;
+};
+std::vector<Brick> make_brick_library();
+
+/// Adds the echoes of all scatterers that scanlines [first, last) hear. Each task writes to its own scanlines.
+void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, FrameState& frame, int first,
+                    int last) noexcept;
+
+}  // namespace trocar::detail

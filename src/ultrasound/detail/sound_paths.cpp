@@ -1,0 +1,146 @@
+#include "ultrasound/detail/sound_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::detail {
+namespace {
+
+/// A border that reflects more than this (amplitude) from a tissue far lighter than water is gas: it can mirror.
+constexpr float kMirrorReflection = 0.6F;
+/// What a mirror gives back of what falls on it, twice over a surface that is never quite smooth (assumed).
+constexpr float kMirrorShare = 0.5F;
+
+std::array<float, 3> floats(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+/// Outward normal of the impedance's change, unit, in voxel-mm axes of the scene; zero where nothing changes.
+Vec3 normal_at(const AcousticScene& scene, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept {
+  constexpr float kReach = 1.5F;  // voxels
+  Vec3 slope = Vec3::Zero();
+  for (int a = 0; a < 3; ++a) {
+    Vec3 step = Vec3::Zero();
+    step[a] = kReach;
+    const Vec3 high = index + step, low = index - step;
+    const auto z_at = [&](const Vec3& p) {
+      return blend_at(scene, rows, static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()))
+          .row.log_z;
+    };
+    slope[a] = static_cast<double>(z_at(high) - z_at(low)) / scene.geometry.spacing_mm[a];
+  }
+  const double size = slope.norm();
+  return size > 1e-6 ? Vec3(slope / size) : Vec3(Vec3::Zero());
+}
+
+/// The mirror that stands where a scanline meets gas; its side away from the transducer shows what lies before it.
+void set_mirror(const ScanPlan& plan, FrameState& frame, LineWalk& line, const WalkResult& walk,
+                const Border& border) noexcept {
+  const AcousticScene& scene = *frame.scene;
+  const auto at = static_cast<std::size_t>(std::clamp(border.walk, 0.0F, static_cast<float>(plan.samples - 1)));
+  const Vec3 index(walk.index[0][at], walk.index[1][at], walk.index[2][at]);
+  const Vec3 spacing = scene.geometry.spacing_mm;
+  const auto in_mm = [&](const std::array<float, 3>& v) { return Vec3(Vec3(v[0], v[1], v[2]).cwiseProduct(spacing)); };
+  const Vec3 along = in_mm(line.along);
+  Vec3 normal = -normal_at(scene, plan.rows, index);  // impedance falls into gas: along the sound
+  const double facing = normal.dot(along);
+  if (facing < 0.2) return;
+  const Vec3 origin = in_mm(line.origin), place = index.cwiseProduct(spacing);
+  line.mirror = {static_cast<float>((origin - place).dot(normal)), static_cast<float>(along.dot(normal)),
+                 static_cast<float>(in_mm(frame.elevation).dot(normal)),
+                 static_cast<float>(in_mm(line.lateral).dot(normal))};
+  line.mirror_normal = floats(2.0 * normal.cwiseQuotient(spacing));
+  line.mirror_depth_mm = (border.walk + 0.5F) * plan.sample_mm;
+  line.mirror_reflection = border.reflection;
+  line.mirror_before = border.before;
+  line.mirror_behind = border.behind;
+  const float rough = plan.roughness[border.behind];
+  line.mirror_gain = kMirrorShare * (1.0F - rough) * std::abs(border.reflection);
+}
+
+}  // namespace
+
+void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept {
+  const GridGeometry& grid = frame.scene->geometry;
+  const Mat3 index_of_T = grid.spacing_mm.cwiseInverse().asDiagonal() * Mat3(grid.R_PV.transpose() * frame.X_PT.R());
+  const Vec3 index_of_origin = grid.to_index(frame.X_PT.p());
+  frame.elevation = floats(index_of_T.col(2));
+  frame.deepest_dent_mm = 0.0F;
+  for (int l = 0; l < plan.lines; ++l) {
+    const Vec2 origin = plan.geometry.line_origin(l), along = plan.geometry.line_direction(l);
+    const auto at = static_cast<std::size_t>(l);
+    const LineContact& contact = frame.contact[at];
+    LineWalk line;
+    line.origin = floats(index_of_origin + index_of_T * Vec3(origin.x(), origin.y(), 0.0));
+    line.along = floats(index_of_T * Vec3(along.x(), along.y(), 0.0));
+    line.lateral = floats(index_of_T * Vec3(along.y(), -along.x(), 0.0));
+    line.pressed_mm = contact.pressed_mm;
+    line.coupling = plan.acquisition.artefacts.contact_loss ? contact.coupling : 1.0F;
+    frame.walks[at] = line;
+    frame.pressed_samples[at] = contact.pressed_mm / plan.sample_mm;
+    frame.deepest_dent_mm = std::max(frame.deepest_dent_mm, contact.pressed_mm);
+  }
+}
+
+void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept {
+  const auto coarse = plan.coarse_samples();
+  std::fill_n(scratch.sideways_mm.begin(), plan.samples + kCoarse, 0.0F);
+  for (int l = first; l < last; ++l) {
+    LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
+    walk_line(plan, frame, line, 0.0F, scratch, frame.delay.data() + static_cast<std::ptrdiff_t>(l) * plan.samples);
+    float* slowness = frame.slowness.data() + static_cast<std::size_t>(l) * coarse;
+    for (std::size_t c = 0; c < coarse; ++c) {
+      const std::size_t s = std::min(c * kCoarse, static_cast<std::size_t>(plan.samples - 1));
+      const auto& row = plan.rows[scratch.tissue[s]];
+      constexpr float kBendable = 0.15F;  // gas and bone let nothing through that could be seen
+      slowness[c] = std::abs(row.delay) < kBendable ? row.delay : 0.0F;
+    }
+    if (!plan.acquisition.artefacts.mirror) continue;
+    for (int b = 0; b < scratch.border_count; ++b) {
+      const Border& border = scratch.borders[static_cast<std::size_t>(b)];
+      if (border.reflection > -kMirrorReflection) continue;
+      set_mirror(plan, frame, line, scratch, border);
+      break;
+    }
+  }
+}
+
+void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept {
+  const auto coarse = plan.coarse_samples();
+  const auto lines = static_cast<std::size_t>(plan.lines);
+  frame.widest_warp = 0.0F;
+  std::fill(frame.bend_mm.begin(), frame.bend_mm.end(), 0.0F);
+  std::fill(frame.focus_log.begin(), frame.focus_log.end(), 0.0F);
+  if (!plan.acquisition.artefacts.refraction) return;
+  const float step_mm = kCoarse * plan.sample_mm;
+  // A ray turns towards the slower side: slope += -d(ln c)/dx * dr; ln c = -ln(1 + slowness).
+  for (std::size_t l = 0; l < lines; ++l) {
+    // Over some scanlines to either side, so that a voxel's edge is no prism.
+    const std::size_t low = l >= 2 ? l - 2 : 0, high = std::min(l + 2, lines - 1);
+    float slope = 0.0F, bend = 0.0F;
+    for (std::size_t c = 0; c < coarse; ++c) {
+      const auto depth_mm = static_cast<double>(c) * step_mm;
+      const auto spacing = static_cast<float>(plan.geometry.line_spacing_mm(depth_mm));
+      const float change = frame.slowness[high * coarse + c] - frame.slowness[low * coarse + c];
+      slope += change / (static_cast<float>(high - low) * spacing) * step_mm;
+      slope = std::clamp(slope, -0.2F, 0.2F);
+      bend += slope * step_mm;
+      frame.bend_mm[l * coarse + c] = bend;
+      frame.widest_warp = std::max(frame.widest_warp, std::abs(bend) / std::max(spacing, 0.02F));
+    }
+  }
+  for (std::size_t l = 0; l < lines; ++l) {
+    const std::size_t low = l >= 1 ? l - 1 : 0, high = std::min(l + 1, lines - 1);
+    for (std::size_t c = 0; c < coarse; ++c) {
+      const auto spacing = static_cast<float>(plan.geometry.line_spacing_mm(static_cast<double>(c) * step_mm));
+      const float parting = (frame.bend_mm[high * coarse + c] - frame.bend_mm[low * coarse + c]) /
+                            (static_cast<float>(high - low) * spacing);
+      // Intensity goes with the inverse of the width of the tube of rays, there and back.
+      frame.focus_log[l * coarse + c] = -std::log(std::clamp(1.0F + parting, 0.4F, 4.0F));
+    }
+  }
+  constexpr float kMostLines = 12.0F;
+  frame.widest_warp = std::min(frame.widest_warp, kMostLines);
+}
+
+}  // namespace trocar::detail

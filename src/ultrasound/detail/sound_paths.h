@@ -1,0 +1,20 @@
+#pragma once
+
+#include "ultrasound/detail/frame_state.h"
+#include "ultrasound/detail/scan_plan.h"
+#include "ultrasound/detail/tissue_walk.h"
+
+/// Where sound goes: contact of the face, straight scanlines, what bends them and what mirrors them. On the central
+/// plane, in coarse steps (docs/physics.md U5, U7, U8).
+namespace trocar::detail {
+
+/// Frame-wide transforms and each scanline's straight walk.
+void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept;
+
+/// Slowness and mirror of scanlines [first, last).
+void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept;
+
+/// After all lines were probed: displacement and focusing by refraction, from how slowness changes sideways.
+void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept;
+
+}  // namespace trocar::detail

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "ultrasound/detail/frame_state.h"
+#include "ultrasound/detail/scan_plan.h"
+#include "ultrasound/detail/tissue_walk.h"
+
+/// Echoes of the borders that a scanline crosses (docs/physics.md U6).
+namespace trocar::detail {
+
+/// Adds them to the scanline, weighted as plane `plane` of the beam; of the central plane notes the reflector.
+void add_surface_echoes(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, int line, int plane) noexcept;
+
+}  // namespace trocar::detail

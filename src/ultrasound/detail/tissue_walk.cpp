@@ -1,0 +1,339 @@
+#include "ultrasound/detail/tissue_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "ultrasound/detail/tissue_walk.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which sets the instruction set that this header compiles for.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace trocar::detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = hn::ScalableTag<float>;
+using I = hn::RebindToSigned<F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+
+void place_samples(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
+                   WalkResult& result) {
+  const F f;
+  const I d;
+  const GridGeometry& grid = frame.scene->geometry;
+  const std::int32_t stride[3] = {1, static_cast<std::int32_t>(grid.size[0]),
+                                  static_cast<std::int32_t>(grid.size[0] * grid.size[1])};
+  const VF zeta_v = hn::Set(f, zeta);
+  const VF pressed = hn::Set(f, -line.pressed_mm);
+  const VF mm = hn::Set(f, plan.sample_mm);
+  const bool has_mirror = line.mirror[0] > -1e29F || line.mirror[1] != 0.0F;
+  for (int s = 0; s < plan.samples; s += static_cast<int>(hn::Lanes(f))) {
+    const VF at = hn::Iota(f, static_cast<float>(s) + 0.5F);
+    const VF along = hn::MulAdd(pressed, hn::LoadU(f, plan.contact_shape.data() + s), hn::Mul(at, mm));
+    const VF elevation = hn::Mul(zeta_v, hn::LoadU(f, plan.elevation_sigma_mm.data() + s));
+    const VF sideways = hn::Load(f, result.sideways_mm.data() + s);
+    VF behind = hn::Zero(f);
+    if (has_mirror) {
+      behind = hn::MulAdd(along, hn::Set(f, line.mirror[1]), hn::Set(f, line.mirror[0]));
+      behind = hn::MulAdd(elevation, hn::Set(f, line.mirror[2]), behind);
+      behind = hn::Max(hn::MulAdd(sideways, hn::Set(f, line.mirror[3]), behind), hn::Zero(f));
+    }
+    VI cell = hn::Zero(d);
+    auto inside = hn::FirstN(f, hn::Lanes(f));
+    for (std::size_t a = 0; a < 3; ++a) {
+      VF index = hn::MulAdd(along, hn::Set(f, line.along[a]), hn::Set(f, line.origin[a]));
+      index = hn::MulAdd(elevation, hn::Set(f, frame.elevation[a]), index);
+      index = hn::MulAdd(sideways, hn::Set(f, line.lateral[a]), index);
+      index = hn::NegMulAdd(behind, hn::Set(f, line.mirror_normal[a]), index);
+      const float last = static_cast<float>(grid.size[a] - 1);
+      inside = hn::And(inside, hn::And(hn::Gt(index, hn::Set(f, -0.5F)), hn::Lt(index, hn::Set(f, last + 0.5F))));
+      const VF clamped = hn::Min(hn::Max(index, hn::Zero(f)), hn::Set(f, last - 1e-3F));
+      hn::Store(clamped, f, result.index[a].data() + s);
+      cell = hn::Add(cell, hn::Mul(hn::ConvertTo(d, clamped), hn::Set(d, stride[a])));
+    }
+    hn::Store(hn::IfThenElse(hn::RebindMask(d, inside), cell, hn::Set(d, -1)), d, result.cell.data() + s);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace trocar::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace trocar::detail {
+
+HWY_EXPORT(place_samples);
+
+void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
+                WalkResult& result) noexcept {
+  HWY_DYNAMIC_DISPATCH(place_samples)(plan, frame, line, zeta, result);
+}
+
+Blend blend_at(const AcousticScene& scene, const std::array<TissueRow, kTissues>& rows, float i, float j,
+               float k) noexcept {
+  const auto& size = scene.geometry.size;
+  const auto cell = [](float v, std::int64_t n, float& part) {
+    const float clamped = std::clamp(v, 0.0F, static_cast<float>(n - 1) - 1e-3F);
+    const auto low = static_cast<std::int64_t>(clamped);
+    part = clamped - static_cast<float>(low);
+    return low;
+  };
+  float f[3];
+  const std::int64_t a = cell(i, size[0], f[0]), b = cell(j, size[1], f[1]), c = cell(k, size[2], f[2]);
+  const std::uint8_t* first = scene.tissue.data() + (c * size[1] + b) * size[0] + a;
+  Blend blend{{0.0F, 0.0F, 0.0F, 0.0F}, 0};
+  float most = 0.0F;
+  std::array<std::uint8_t, 8> tissues;
+  std::array<float, 8> weights;
+  for (std::size_t n = 0; n < 8; ++n) {
+    const std::ptrdiff_t offset =
+        static_cast<std::ptrdiff_t>(n & 1U) + ((n & 2U) != 0 ? size[0] : 0) + ((n & 4U) != 0 ? size[0] * size[1] : 0);
+    tissues[n] = static_cast<std::uint8_t>(first[offset] & ~kMixedCell);
+    weights[n] = ((n & 1U) != 0 ? f[0] : 1.0F - f[0]) * ((n & 2U) != 0 ? f[1] : 1.0F - f[1]) *
+                 ((n & 4U) != 0 ? f[2] : 1.0F - f[2]);
+    const TissueRow& row = rows[tissues[n]];
+    blend.row.log_z += weights[n] * row.log_z;
+    blend.row.loss += weights[n] * row.loss;
+    blend.row.log_b += weights[n] * row.log_b;
+    blend.row.delay += weights[n] * row.delay;
+  }
+  for (std::size_t n = 0; n < 8; ++n) {
+    float sum = 0.0F;
+    for (std::size_t m = 0; m < 8; ++m) sum += tissues[m] == tissues[n] ? weights[m] : 0.0F;
+    if (sum > most) {
+      most = sum;
+      blend.tissue = tissues[n];
+    }
+  }
+  return blend;
+}
+
+namespace {
+
+constexpr int kBlock = 16;
+/// Organs are wrapped: a border reflects at least so much, even between tissues of one impedance (assumed).
+constexpr float kWrapping = 0.012F;
+/// Tissue so near to the face is still met through coupling gel where the volume shows air.
+constexpr float kEntry_mm = 5.0F;
+
+/// The walk in the making.
+class Walk {
+ public:
+  Walk(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
+       float* delay) noexcept
+      : plan_(plan), scene_(*frame.scene), line_(line), result_(result), delay_(delay) {
+    log_gain_ = 2.0F * std::log(std::max(line.coupling, 1e-6F));
+    entry_samples_ = static_cast<int>(kEntry_mm / plan.sample_mm);
+    if (line.mirror_depth_mm < 1e29F) stand_mirror(zeta);
+  }
+
+  void run() noexcept {
+    result_.border_count = 0;
+    int s = 0;
+    while (s < plan_.samples) {
+      const int end = std::min(s + kBlock, plan_.samples);
+      const bool is_at_mirror = end > mirror_from_ && s < mirror_to_;
+      if (s >= entry_samples_ && end - s == kBlock && !is_at_mirror && is_plain(s)) {
+        step_plain(s);
+      } else {
+        for (int n = s; n < end; ++n) step(n);
+      }
+      s = end;
+    }
+    finish_ramp();
+  }
+
+ private:
+  /// Samples about the mirror on this plane, where the walk turns back within the mixed cells of the border.
+  void stand_mirror(float zeta) noexcept {
+    const auto near = static_cast<std::size_t>(
+        std::clamp(line_.mirror_depth_mm / plan_.sample_mm, 0.0F, static_cast<float>(plan_.samples - 1)));
+    const float elevation_mm = zeta * plan_.elevation_sigma_mm[near];
+    const float along_mm =
+        -(line_.mirror[0] + line_.mirror[2] * elevation_mm + line_.mirror[3] * result_.sideways_mm[near]) /
+        line_.mirror[1];
+    const float walk = (along_mm + line_.pressed_mm * plan_.contact_shape[near]) / plan_.sample_mm - 0.5F;
+    const auto spacing_mm = static_cast<float>(scene_.geometry.spacing_mm.maxCoeff());
+    const float reach = 1.8F * spacing_mm / line_.mirror[1] / plan_.sample_mm;
+    mirror_from_ = static_cast<int>(walk - reach);
+    mirror_at_ = static_cast<int>(walk);
+    mirror_to_ = static_cast<int>(walk + reach) + 1;
+  }
+
+  /// Near the mirror: the tissue before it, and at its middle the mirror itself.
+  void step_at_mirror(int s) noexcept {
+    const auto at = static_cast<std::size_t>(s);
+    if (is_in_ramp_) finish_ramp();
+    const std::uint8_t tissue = settled_ == kNoData ? line_.mirror_before : settled_;
+    const TissueRow& row = plan_.rows[tissue];
+    result_.tissue[at] = tissue;
+    result_.log_way[at] = log_gain_ - 0.5F * row.loss;
+    result_.log_gain[at] = row.log_b + result_.log_way[at];
+    log_gain_ -= row.loss;
+    if (delay_ != nullptr) delay_[s] = late_ + 0.5F * row.delay;
+    late_ += row.delay;
+    tissue_ = settled_ = tissue;
+    log_z_ = row.log_z;
+    if (s != mirror_at_) return;
+    if (result_.border_count < kMaxBorders)
+      result_.borders[static_cast<std::size_t>(result_.border_count++)] = {
+          static_cast<float>(s), line_.mirror_reflection, log_gain_, tissue, line_.mirror_behind};
+    log_gain_ += std::log(std::max(line_.mirror_gain, 1e-6F));
+  }
+
+  /// The whole block lies in the tissue that the walk is in.
+  bool is_plain(int s) const noexcept {
+    if (is_in_ramp_ || tissue_ == kNoData) return false;
+    unsigned differs = 0;
+    for (int n = s; n < s + kBlock; ++n) {
+      const std::int32_t cell = result_.cell[static_cast<std::size_t>(n)];
+      if (cell < 0) return false;
+      differs |= static_cast<unsigned>(scene_.tissue[static_cast<std::size_t>(cell)]) ^ tissue_;
+    }
+    return differs == 0;
+  }
+
+  void step_plain(int s) noexcept {
+    const TissueRow& row = plan_.rows[tissue_];
+    const auto at = static_cast<std::size_t>(s);
+    for (int n = 0; n < kBlock; ++n) {
+      const float way = log_gain_ - row.loss * (static_cast<float>(n) + 0.5F);
+      result_.log_way[at + static_cast<std::size_t>(n)] = way;
+      result_.log_gain[at + static_cast<std::size_t>(n)] = row.log_b + way;
+    }
+    std::fill_n(result_.tissue.begin() + s, kBlock, tissue_);
+    log_gain_ -= row.loss * kBlock;
+    if (delay_ == nullptr) return;
+    for (int n = 0; n < kBlock; ++n) delay_[s + n] = late_ + row.delay * (static_cast<float>(n) + 0.5F);
+    late_ += row.delay * kBlock;
+  }
+
+  void step(int s) noexcept {
+    if (s >= mirror_from_ && s < mirror_to_) return step_at_mirror(s);
+    const auto at = static_cast<std::size_t>(s);
+    const auto& rows = s < entry_samples_ && !is_entered_ ? plan_.entry_rows : plan_.rows;
+    const std::int32_t cell = result_.cell[at];
+    std::uint8_t tissue = kNoData;
+    TissueRow row = rows[kNoData];
+    bool is_mixed = false;
+    if (cell >= 0) {
+      const std::uint8_t voxel = scene_.tissue[static_cast<std::size_t>(cell)];
+      if ((voxel & kMixedCell) == 0) {
+        tissue = voxel;
+        row = rows[tissue];
+      } else {
+        const Blend blend = blend_at(scene_, rows, result_.index[0][at], result_.index[1][at], result_.index[2][at]);
+        tissue = blend.tissue;
+        row = blend.row;
+        is_mixed = true;
+      }
+    }
+    if (tissue != 0 && !is_mixed) is_entered_ = true;
+    meet(s, tissue, row, is_mixed);
+    result_.tissue[at] = tissue;
+    result_.log_way[at] = log_gain_ - 0.5F * row.loss;
+    result_.log_gain[at] = row.log_b + result_.log_way[at];
+    log_gain_ -= row.loss;
+    if (delay_ != nullptr) delay_[s] = late_ + 0.5F * row.delay;
+    late_ += row.delay;
+  }
+
+  /// Borders are ramps of the impedance over a voxel or two; each becomes one border at its middle.
+  void meet(int s, std::uint8_t tissue, const TissueRow& row, bool is_mixed) noexcept {
+    if (tissue == kNoData || tissue_ == kNoData) {
+      is_in_ramp_ = false;
+      tissue_ = tissue;
+      log_z_ = row.log_z;
+      if (!is_mixed) settled_ = tissue;
+      return;
+    }
+    const float rise = row.log_z - log_z_;
+    if (rise != 0.0F || is_mixed) {
+      if (!is_in_ramp_) begin_ramp(s);
+      const float size = std::abs(rise);
+      if (rise > 0.0F) {
+        up_ += rise;
+        up_at_ += size * (static_cast<float>(s) - 0.5F);
+      } else {
+        down_ += rise;
+        down_at_ += size * (static_cast<float>(s) - 0.5F);
+      }
+      ramp_end_ = s;
+      most_ = std::max(most_, size);
+    }
+    log_z_ = row.log_z;
+    tissue_ = tissue;
+    if (!is_mixed) {
+      behind_ = tissue;
+      finish_ramp();
+      settled_ = tissue;
+    }
+  }
+
+  void begin_ramp(int s) noexcept {
+    is_in_ramp_ = true;
+    ramp_begin_ = s;
+    up_ = down_ = up_at_ = down_at_ = most_ = 0.0F;
+    behind_ = settled_;
+  }
+
+  void finish_ramp() noexcept {
+    if (!is_in_ramp_) return;
+    is_in_ramp_ = false;
+    constexpr float kNothing = 2e-3F;
+    const bool has_up = up_ > kNothing, has_down = -down_ > kNothing;
+    const float up_at = has_up ? up_at_ / up_ : 0.0F, down_at = has_down ? down_at_ / -down_ : 0.0F;
+    if (has_up && has_down && up_at < down_at) {
+      add_border(up_at, std::tanh(0.5F * up_));
+      add_border(down_at, std::tanh(0.5F * down_));
+    } else {
+      if (has_down) add_border(down_at, std::tanh(0.5F * down_));
+      if (has_up) add_border(up_at, std::tanh(0.5F * up_));
+    }
+    if (!has_up && !has_down && behind_ != settled_)
+      add_border(0.5F * static_cast<float>(ramp_begin_ + ramp_end_), kWrapping);
+  }
+
+  void add_border(float walk, float reflection) noexcept {
+    if (result_.border_count < kMaxBorders) {
+      const float size = std::max(std::abs(reflection), behind_ != settled_ ? kWrapping : 0.0F);
+      result_.borders[static_cast<std::size_t>(result_.border_count++)] = {walk, std::copysign(size, reflection),
+                                                                           log_gain_, settled_, behind_};
+    }
+    // What is reflected does not go on: 1 - R^2 of the intensity passes, there and back.
+    if (plan_.acquisition.artefacts.attenuation) log_gain_ += std::log(std::max(1.0F - reflection * reflection, 1e-4F));
+  }
+
+  const ScanPlan& plan_;
+  const AcousticScene& scene_;
+  const LineWalk& line_;
+  WalkResult& result_;
+  float* delay_;
+  float log_gain_ = 0.0F;
+  int mirror_from_ = kMaxSamples * 4, mirror_at_ = -1, mirror_to_ = -1;
+  float late_ = 0.0F;
+  int entry_samples_ = 0;
+  bool is_entered_ = false;
+
+  std::uint8_t tissue_ = kNoData;   ///< Of the last sample.
+  std::uint8_t settled_ = kNoData;  ///< The last one that a whole cell was made of.
+  std::uint8_t behind_ = kNoData;
+  float log_z_ = 0.0F;
+  bool is_in_ramp_ = false;
+  int ramp_begin_ = 0, ramp_end_ = 0;
+  float up_ = 0.0F, down_ = 0.0F, up_at_ = 0.0F, down_at_ = 0.0F, most_ = 0.0F;
+};
+
+}  // namespace
+
+void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
+               float* delay) noexcept {
+  place_line(plan, frame, line, zeta, result);
+  Walk(plan, frame, line, zeta, result, delay).run();
+}
+
+}  // namespace trocar::detail
+#endif

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "ultrasound/detail/frame_state.h"
+#include "ultrasound/detail/scan_plan.h"
+
+/// Marches a scanline of one plane through the tissues: what sound loses on the way, where it meets borders.
+namespace trocar::detail {
+
+/// A border that a scanline crosses.
+struct Border {
+  float walk = 0.0F;        ///< Sample.
+  float reflection = 0.0F;  ///< Amplitude under normal incidence, -1..1.
+  float log_gain = 0.0F;    ///< Neper, of the way there and back.
+  std::uint8_t before = 0, behind = 0;
+};
+
+inline constexpr int kMaxSamples = 4096;
+inline constexpr int kMaxBorders = 64;
+
+/// What a walk leaves behind. Some 70 KiB, kept a thread.
+struct alignas(64) WalkResult {
+  std::array<std::array<float, kMaxSamples + 16>, 3> index;  ///< Place of each sample, fractional voxels.
+  std::array<std::int32_t, kMaxSamples + 16> cell;           ///< Offset of its first voxel; -1 beyond the volume.
+  std::array<float, kMaxSamples + 16> log_gain;              ///< Of a scatterer there: loss and backscatter, neper.
+  std::array<float, kMaxSamples + 16> log_way;               ///< Loss alone, neper.
+  std::array<float, kMaxSamples + 16> sideways_mm;           ///< Displacement by refraction.
+  std::array<std::uint8_t, kMaxSamples + 16> tissue;         ///< The nearest or prevailing one.
+  std::array<Border, kMaxBorders> borders;
+  int border_count = 0;
+};
+
+/// Walks; fills everything but `sideways_mm`, which it reads. For the central plane, `delay` (samples long) takes the
+/// samples by which echoes come later; else it is nullptr.
+void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
+               float* delay) noexcept;
+
+/// Only finds the places of the samples (index, cell).
+void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
+                WalkResult& result) noexcept;
+
+/// Properties at a fractional voxel index, neighbours blended; the prevailing tissue.
+struct Blend {
+  TissueRow row;
+  std::uint8_t tissue;
+};
+Blend blend_at(const AcousticScene& scene, const std::array<TissueRow, kTissues>& rows, float i, float j,
+               float k) noexcept;
+
+}  // namespace trocar::detail

@@ -1,1 +1,0 @@
-#include "core/testing/allocation_guard.inc.h"  // once in this test program
