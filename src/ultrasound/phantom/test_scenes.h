@@ -1,0 +1,76 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ultrasound/phantom/scene_painter.h"
+
+/// Scenes with one thing in them, as a physicist's test phantom has, in which each artefact is seen alone. In all of
+/// them the identity is X_PT. `y` is depth below the face's middle, mm.
+namespace trocar {
+
+/// Tissues of the test scenes: round numbers, so that what is measured can be held against what was set. All but the
+/// named ones have 1540 m/s and 1000 kg/m3, so that no border between them reflects.
+enum class TestTissue : std::uint8_t {
+  kAir,
+  kWater,     ///< Silent and without loss.
+  kTissue,    ///< Speckle of 0 dB, 0.5 dB/cm/MHz.
+  kLossless,  ///< The same without loss.
+  kLossy,     ///< The same with 0.8 dB/cm/MHz^1.2.
+  kMinus12,   ///< kTissue with speckle of -12 dB; so on.
+  kMinus6,
+  kPlus6,
+  kPlus12,
+  kBone,   ///< 3500 m/s, 1900 kg/m3, 10 dB/cm/MHz.
+  kGas,    ///< As air, smooth.
+  kFast,   ///< 1640 m/s at the impedance of the others, without loss.
+  kSlow,   ///< 1450 m/s likewise.
+  kDense,  ///< 1200 kg/m3, without loss: reflects 1/11 of the amplitude.
+  kDenser  ///< 2000 kg/m3, without loss: reflects 1/3 of the amplitude.
+};
+inline constexpr std::uint8_t index_of(TestTissue tissue) noexcept {
+  return static_cast<std::uint8_t>(tissue);
+}
+AcousticTable test_table();
+
+using ScenePtr = std::shared_ptr<const AcousticScene>;
+
+/// One tissue everywhere.
+ScenePtr homogeneous_scene(const SceneBox& box, TestTissue tissue);
+/// Points in a silent or speckling medium.
+ScenePtr points_scene(const SceneBox& box, TestTissue medium, std::vector<AcousticPoint> points);
+/// Layers across the beam, each down to its depth; the last one goes on.
+struct TestLayer {
+  double to_y_mm;
+  TestTissue tissue;
+};
+ScenePtr layers_scene(const SceneBox& box, std::span<const TestLayer> layers, std::vector<AcousticPoint> points = {});
+/// Cylinders along z in a medium. A rod with z within half_length_mm only; the default goes through.
+struct TestRod {
+  double x_mm, y_mm, radius_mm;
+  TestTissue tissue;
+  double half_length_mm = 1e9;
+};
+ScenePtr rods_scene(const SceneBox& box, TestTissue medium, std::span<const TestRod> rods,
+                    std::vector<AcousticPoint> points = {});
+/// A slab from -half_width to half_width in x, between two depths: a rib seen across.
+struct TestSlab {
+  double half_width_mm, from_y_mm, to_y_mm;
+  TestTissue tissue;
+};
+ScenePtr slab_scene(const SceneBox& box, TestTissue medium, const TestSlab& slab);
+/// Behind a plane through (0, y) whose normal is turned by `tilt_rad` about z, all is `behind`: diaphragm with lung.
+struct TestPlane {
+  double y_mm;
+  double tilt_rad;  ///< Positive: nearer to the face at positive x.
+  TestTissue behind = TestTissue::kGas;
+};
+ScenePtr plane_scene(const SceneBox& box, TestTissue medium, const TestPlane& plane, std::span<const TestRod> rods = {},
+                     std::vector<AcousticPoint> points = {});
+/// Where the plane shows a point of the picture's plane again (x, y).
+Vec3 mirrored(const Vec3& p_P, const TestPlane& plane);
+/// Tissue whose skin falls `gap_mm` back from a flat face for x > from_x_mm.
+ScenePtr gap_scene(const SceneBox& box, TestTissue tissue, double from_x_mm, double gap_mm);
+
+}  // namespace trocar
