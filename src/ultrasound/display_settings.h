@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace trocar {
+
+inline constexpr int kTgcSliders = 8;
+
+/// From a level's place in the dynamic range to gray.
+enum class GrayMap {
+  kLinear,        ///< Proportional to dB.
+  kSoft,          ///< Dark tissue, bright borders; as the abdominal sweep of docs/validation.md looks.
+  kHighContrast,  ///< As kSoft but steeper, and black below.
+};
+
+/// The knobs behind the receiver: they change the picture of echoes that are there already.
+struct DisplaySettings {
+  double gain_db = 0.0;                      ///< Range -40..40.
+  std::array<double, kTgcSliders> tgc_db{};  ///< From near to far, beside the automatic part. Range -20..20.
+  double automatic_tgc_db_per_cm_mhz = 0.5;  ///< Two-way loss that is made good. Range 0..1.5 (one way).
+  /// Where the automatic part ends, so that the receiver's noise stays darker than tissue. Range 0..120. Assumed from
+  /// the sweep of docs/validation.md, whose liver fades below 11 cm while the depth below it stays black.
+  double automatic_tgc_limit_db = 38.0;
+  double dynamic_range_db = 60.0;  ///< Range 20..100.
+  double persistence = 0.0;        ///< Part of the last picture that stays. Range 0..0.95.
+  GrayMap gray_map = GrayMap::kSoft;
+  bool is_mirrored = false;  ///< Left and right swapped, as the orientation marker says.
+
+  bool operator==(const DisplaySettings&) const = default;
+};
+
+/// An error names the knob that is out of its range (exit status 2).
+Status check(const DisplaySettings& settings);
+/// The same settings with each knob held in its range; one that is not a number gets its default. Real-time safe.
+DisplaySettings within_ranges(const DisplaySettings& settings) noexcept;
+
+/// "linear", "soft", "high-contrast"; an unknown name is an error (exit status 2).
+Result<GrayMap> parse_gray_map(std::string_view name);
+std::string_view name_of(GrayMap map) noexcept;
+
+/// Gain at a depth (docs/physics.md U10), dB: the automatic part and the sliders, which are spread over the depth of
+/// the scan and joined by a cubic that never leaves the range of neighbouring sliders. Real-time safe.
+double tgc_gain_db(const DisplaySettings& settings, double depth_mm, double scan_depth_mm,
+                   double frequency_mhz) noexcept;
+
+/// What is shown as white at gain 0, against liver's speckle after TGC (root mean square). Assumed, range 15..35: liver
+/// then has the gray of the sweep in docs/validation.md.
+inline constexpr double kWhite_db = 24.0;
+
+/// Gray of a level after TGC and before gain, dB against liver's speckle (docs/physics.md U10). Grows with the level.
+/// 0..255. Real-time safe.
+std::uint8_t gray_of_level(double level_db, const DisplaySettings& settings) noexcept;
+
+}  // namespace trocar

@@ -1,0 +1,1 @@
+#include "core/testing/allocation_guard.inc.h"  // once in this test program
