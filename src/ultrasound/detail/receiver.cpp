@@ -19,7 +19,8 @@ constexpr std::uint64_t kBandSeed = 0x5eed0003;
 /// -30..0 dB were measured in bladders, Lediju et al. 2008).
 constexpr double kHaze_db = -10.0;
 constexpr double kHazeDecay_mm = 5.0;
-constexpr double kClutterDepth_mm = 25.0;  ///< Where it has fallen to -32 dB.
+/// Where it ends: it is faded out from half of that depth on, since TGC would lift a sudden end into view. Assumed.
+constexpr double kClutterDepth_mm = 25.0;
 /// Width of the haze's speckle, which is out of focus so near the face. Assumed, range 1..3.
 constexpr double kHazeWidth_mm = 1.5;
 
@@ -104,7 +105,9 @@ void Receiver::add_haze(const ScanGeometry& scan) {
   std::vector<float> level(clutter_samples_);
   for (std::size_t s = 0; s < clutter_samples_; ++s) {
     const double depth_mm = (static_cast<double>(s) + 0.5) * scan.sample_mm();
-    level[s] = static_cast<float>(amplitude(kHaze_db) * std::exp(-0.5 * depth_mm / kHazeDecay_mm));
+    const double end = std::clamp(2.0 * depth_mm / kClutterDepth_mm - 1.0, 0.0, 1.0);
+    const double fade = 0.5 + 0.5 * std::cos(std::numbers::pi * end);
+    level[s] = static_cast<float>(fade * amplitude(kHaze_db) * std::exp(-0.5 * depth_mm / kHazeDecay_mm));
   }
   // Sources lie on lines beyond the ends as well: source j is line j - reach.
   const std::size_t reach = across.size() - 1;
