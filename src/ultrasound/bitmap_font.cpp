@@ -118,10 +118,6 @@ unsigned glyph_row(char character, int row) noexcept {
   return kGlyphs[static_cast<std::size_t>(character - kFirst)][r];
 }
 
-int text_width(std::string_view text, int scale) noexcept {
-  return text.empty() ? 0 : (static_cast<int>(text.size()) * kGlyphAdvance - 1) * scale;
-}
-
 void draw_text(RgbImage& image, int column, int row, std::string_view text, Rgb colour, int scale) noexcept {
   const auto draw_dot = [&](int left, int top) {
     for (int r = top; r < top + scale; ++r) {

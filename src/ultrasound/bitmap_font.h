@@ -13,8 +13,6 @@ inline constexpr int kGlyphAdvance = 6;
 
 /// Bit (4 - column) of row 0..6 of a character's picture.
 unsigned glyph_row(char character, int row) noexcept;
-/// Pixels from the first letter's left to the last one's right, each dot `scale` pixels wide.
-int text_width(std::string_view text, int scale = 1) noexcept;
 /// Text with its top left dot at (column, row); what is beyond the picture is left out.
 void draw_text(RgbImage& image, int column, int row, std::string_view text, Rgb colour, int scale = 1) noexcept;
 

@@ -112,7 +112,6 @@ TEST(BitmapFont, DrawsDotsAsLargeAsAsked) {
   EXPECT_EQ(image.at(2, 15)[0], 9);
   EXPECT_EQ(image.at(3, 2)[0], 0);
   EXPECT_EQ(image.at(10, 15)[0], 9);
-  EXPECT_EQ(text_width("LL", 2), 22);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 namespace trocar::detail {
 namespace {
 
-/// Of the logarithm, dB; a gray value is never finer than 0.05 dB.
-constexpr double kLogError_db = 0.02;
+/// Of the logarithm (0.0004 dB) and half a fine level, dB; a gray value is never finer than 0.05 dB.
+constexpr double kLogError_db = 0.002;
 
 std::vector<std::uint16_t> detected(const std::vector<float>& re, const std::vector<float>& im) {
   const std::vector<float> zero(re.size(), 0.0F);
@@ -25,7 +25,7 @@ double db_of(std::uint16_t level) {
   return kLevelFloor_db + level / kFineLevels_per_db;
 }
 
-TEST(Detect, LogarithmIsExactToTheHundredthOfADecibel) {
+TEST(Detect, LogarithmIsExactToTheLevelsResolution) {
   std::vector<float> re, im;
   for (double db = -79.9; db < 47.4; db += 0.003) {
     const double amplitude = std::pow(10.0, db / 20.0);
