@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "core/result.h"
+
+namespace trocar {
+
+enum class ScanPlane {
+  kLongitudinal,  ///< +x of T towards the patient's head.
+  kTransverse,    ///< +x of T towards the patient's right (from the flanks: to the back on the right side).
+};
+
+/// What a view wants of bone in its way.
+enum class BoneWish {
+  kAvoid,   ///< None in the middle.
+  kBeside,  ///< A free middle with a rib at either side.
+  kShow,    ///< Bone is what the view is about.
+};
+
+enum class TargetPoint {
+  kMiddle,  ///< The label's voxel nearest to its centroid.
+  kFacing,  ///< Where it comes nearest to the middle of what the view looks through.
+};
+
+/// A standard view (data/views.toml): how a transducer is put onto any patient to see a structure. Directions in P
+/// (LPS).
+struct ProbeView {
+  std::string name;  ///< "liver-right-kidney".
+  std::string title;
+  std::vector<std::string> targets;  ///< Label names, the first that the patient has counts; '*' ends a stem.
+  std::vector<std::string> through;  ///< Labels that the sound should pass on its way; may be empty.
+  TargetPoint point = TargetPoint::kMiddle;
+  Vec3 offset_mm = Vec3::Zero();  ///< From the target's point to what is aimed at.
+  Vec3 direction_P{0, -1, 0};     ///< Unit, from the target to the skin.
+  ScanPlane plane = ScanPlane::kLongitudinal;
+  double angle_rad = 0.0;  ///< Turns the plane about the beam (y of T), right-handed. Range -pi..pi.
+  BoneWish bone = BoneWish::kAvoid;
+  double pressed_mm = 5.0;  ///< The middle of the face dents the skin at least so deep. Range 0..15.
+  double search_mm = 20.0;  ///< The face may move so far along the skin for a better way in. Range 0..60.
+  double depth_mm = 160.0;  ///< Of the picture. Range 20..300.
+  std::string transducer;   ///< A name of data/transducers.toml.
+};
+
+/// All views of a file. Errors name the line: unknown key, out of range, a direction of length zero.
+Result<std::vector<ProbeView>> load_probe_views(const std::filesystem::path& path);
+
+/// The label that a view aims at: the largest of those that match the first pattern which any matches; labels of fewer
+/// than 8 voxels do not count. Case and separators do not matter.
+const Label* find_target(const VirtualPatient& patient, std::span<const std::string> patterns);
+
+/// Names of the views whose targets a patient has.
+std::vector<std::string> possible_views(const VirtualPatient& patient, std::span<const ProbeView> views);
+
+/// The view of that name. Errors (exit status 2): an unknown name, with all names; a patient who lacks its target, with
+/// the views that he has.
+Result<ProbeView> choose_view(const VirtualPatient& patient, std::span<const ProbeView> views, std::string_view name);
+
+}  // namespace trocar
