@@ -36,6 +36,8 @@ constexpr double kThroughCost = 0.7;  ///< A way that meets nothing of what it s
 constexpr double kShiftCost = 0.15;   ///< A place at the end of the search.
 constexpr double kSlantCost = 2.0;    ///< A rad beyond kFreeSlant.
 constexpr double kContactCost = 1.5;  ///< A face that touches nowhere.
+constexpr double kDentCost = 0.04;    ///< A mm of the deepest dent beyond kFreeDent_mm.
+constexpr double kFreeDent_mm = 9.0;
 
 /// What a patient's voxels mean to a scanline.
 struct Ground {
@@ -181,6 +183,7 @@ Mat3 orientation(const ProbeView& view, const Vec3& beam_P) {
 struct Candidate {
   Pose X_PT;
   double touching = 0.0;  ///< Share of the scanlines with contact.
+  double dent_mm = 0.0;   ///< The deepest.
   double cost = 0.0;
 };
 
@@ -200,7 +203,8 @@ class Placer {
     press(candidate);
     const double slant = std::acos(std::clamp(-ground_.skin_normal(skin_P).dot(candidate.X_PT.R().col(1)), -1.0, 1.0));
     candidate.cost = way_cost(candidate.X_PT) + kShiftCost * shift_share * shift_share +
-                     kSlantCost * std::max(slant - kFreeSlant, 0.0) + kContactCost * (1.0 - candidate.touching);
+                     kSlantCost * std::max(slant - kFreeSlant, 0.0) + kContactCost * (1.0 - candidate.touching) +
+                     kDentCost * std::max(candidate.dent_mm - kFreeDent_mm, 0.0);
     return candidate;
   }
 
@@ -236,6 +240,8 @@ class Placer {
       const auto touching =
           std::count_if(contact_.begin(), contact_.end(), [](const LineContact& c) { return c.coupling > 0.5F; });
       candidate.touching = static_cast<double>(touching) / kLines;
+      candidate.dent_mm = 0.0;
+      for (const LineContact& line : contact_) candidate.dent_mm = std::max<double>(candidate.dent_mm, line.pressed_mm);
       if (candidate.touching >= kTouchingShare || press_mm + kPressStep_mm > kGreatestPress_mm) return;
     }
   }
