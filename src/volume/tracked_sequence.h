@@ -1,9 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,21 +12,29 @@ namespace trocar {
 
 /// 2D gray images with where they were taken, as a tracker said it: what PLUS and 3D Slicer write as .igs.mha. Outside
 /// names stay: "ProbeToTracker" maps points of Probe to Tracker and is X_TrackerProbe here. Matrices, since
-/// calibrations (ImageToProbe) scale pixels to mm.
+/// calibrations (ImageToProbe) scale pixels to mm. Frame "Image": column, row, 0; pixel centres at integers.
 struct TrackedSequence {
   using Matrix4 = Eigen::Matrix4d;
+  using Transforms = std::map<std::string, Matrix4, std::less<>>;  ///< "ProbeToTracker" -> matrix.
 
   struct Frame {
-    double time_s = 0.0;
-    bool is_valid = true;                       ///< ImageStatus is OK.
-    std::map<std::string, Matrix4> transforms;  ///< "ProbeToTracker" -> matrix; only those whose status is OK.
+    double time_s = 0.0;    ///< On the recorder's clock.
+    bool is_valid = true;   ///< ImageStatus is OK.
+    Transforms transforms;  ///< Only those whose status is OK.
   };
 
   int columns = 0;
   int rows = 0;
-  std::vector<std::uint8_t> pixels;  ///< Frame by frame, row by row.
+  std::vector<std::uint8_t>
+      pixels;  ///< Frame by frame, row by row: columns to the marked side, rows away from the face.
   std::vector<Frame> frames;
-  std::string image_orientation;  ///< UltrasoundImageOrientation, "MFA": marked to the right, far down.
+
+  std::size_t frame_pixels() const noexcept {
+    return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  }
+  std::span<const std::uint8_t> picture(std::size_t frame) const noexcept {
+    return std::span(pixels).subspan(frame * frame_pixels(), frame_pixels());
+  }
 };
 
 }  // namespace trocar

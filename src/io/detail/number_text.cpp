@@ -1,0 +1,45 @@
+#include "io/detail/number_text.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace trocar::detail {
+namespace {
+
+constexpr std::string_view kWhite = " \t\r\n\f\v";
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(kWhite);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kWhite) - first + 1);
+}
+
+std::optional<std::vector<double>> find_numbers(std::string_view text, std::size_t most) {
+  std::vector<double> numbers;
+  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+    const std::string_view word = text.substr(0, text.find_first_of(kWhite));
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number) || numbers.size() == most)
+      return std::nullopt;
+    numbers.push_back(number);
+    text.remove_prefix(word.size());
+  }
+  return numbers;
+}
+
+Result<TrackedSequence::Matrix4> parse_matrix(std::string_view text) {
+  const auto numbers = find_numbers(text, 16);
+  if (!numbers || numbers->size() != 16) return fail("is no matrix of 16 finite numbers");
+  TrackedSequence::Matrix4 matrix;
+  for (int n = 0; n < 16; ++n) matrix(n / 4, n % 4) = (*numbers)[static_cast<std::size_t>(n)];
+  if (matrix(3, 0) != 0.0 || matrix(3, 1) != 0.0 || matrix(3, 2) != 0.0 || matrix(3, 3) != 1.0)
+    return fail("is no affine matrix: its last row is not 0 0 0 1");
+  return matrix;
+}
+
+}  // namespace trocar::detail
