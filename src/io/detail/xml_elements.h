@@ -1,0 +1,22 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
+namespace trocar::detail {
+
+/// An element of an XML document; text between elements is left aside.
+struct XmlElement {
+  std::string path;  ///< Names from the root, with "/" between: "PlusConfiguration/VolumeReconstruction".
+  std::map<std::string, std::string, std::less<>> attributes;
+};
+
+/// All elements in the order of the document: a flat list, so that deep nesting cannot exhaust the stack. Errors
+/// (without a place): no XML, a document type, nested deeper than 32, more than 100,000 elements.
+Result<std::vector<XmlElement>> parse_xml(std::string_view text);
+
+}  // namespace trocar::detail
