@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "core/result.h"
 #include "volume/grid.h"
@@ -28,5 +30,17 @@ Result<FloatGrid> read_float(const std::filesystem::path& path);
 Status write_image(const CtGrid& grid, const std::filesystem::path& path);
 Status write_image(const LabelGrid& grid, const std::filesystem::path& path);
 Status write_image(const FloatGrid& grid, const std::filesystem::path& path);
+
+/// Texts in the header of an image: what a volume is beside its voxels, such as the fan of an ultrasound sweep.
+using ImageFields = std::map<std::string, std::string>;
+
+/// The same with fields, in .nrrd only ("key:=value"). Keys of letters, digits, "_", "-" and "."; values of printable
+/// text in one line, else exit status 2.
+Status write_image(const CtGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
+Status write_image(const LabelGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
+Status write_image(const FloatGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
+
+/// The fields of a .nrrd; none for other formats. Values are whatever somebody wrote: check them.
+Result<ImageFields> read_image_fields(const std::filesystem::path& path);
 
 }  // namespace trocar

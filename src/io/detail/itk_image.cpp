@@ -67,8 +67,8 @@ void take_geometry(const itk::ImageIOBase& io, ItkImage& image) {
   }
 }
 
-std::vector<std::pair<std::string, std::string>> text_fields(const itk::ImageIOBase& io) {
-  std::vector<std::pair<std::string, std::string>> fields;
+TextFields text_fields(const itk::ImageIOBase& io) {
+  TextFields fields;
   const itk::MetaDataDictionary& dictionary = io.GetMetaDataDictionary();
   for (const std::string& key : dictionary.GetKeys())
     if (std::string value; itk::ExposeMetaData<std::string>(dictionary, key, value)) fields.emplace_back(key, value);
@@ -139,6 +139,8 @@ void write_throwing(itk::ImageIOBase& io, const ItkImage& image, std::span<const
   }
   io.SetUseCompression(packing == Packing::kCompressed);
   io.SetCompressionLevel(kCompressionLevel);
+  for (const auto& [key, value] : image.fields)
+    itk::EncapsulateMetaData<std::string>(io.GetMetaDataDictionary(), key, value);
   take_whole_region(io);
   io.WriteImageInformation();
   io.Write(bytes.data());
@@ -155,6 +157,19 @@ Result<ItkImage> read_with_itk(const fs::path& path, ImageFormat format) {
   } catch (const std::exception&) {
     // ITK's own words speak of source files and line numbers.
     return fail("cannot be read as an image", path.string(), "open it in 3D Slicer and save it as .nrrd");
+  }
+}
+
+Result<TextFields> read_fields_with_itk(const fs::path& path, ImageFormat format) {
+  silence_libraries();
+  try {
+    const auto io = make_image_io(format);
+    io->SetFileName(path.string());
+    const MutedStandardError muted;
+    io->ReadImageInformation();
+    return text_fields(*io);
+  } catch (const std::exception&) {
+    return fail("the header cannot be read", path.string(), "open it in 3D Slicer and save it as .nrrd");
   }
 }
 

@@ -16,6 +16,9 @@
 
 namespace trocar::detail {
 
+/// Key and value texts of a header.
+using TextFields = std::vector<std::pair<std::string, std::string>>;
+
 /// A 3D image as ITK gives it, LPS mm. Plain data: ITK brings an Eigen of its own that must not meet ours, so nothing
 /// that ITK's headers reach includes Eigen.
 struct ItkImage {
@@ -26,11 +29,14 @@ struct ItkImage {
   VoxelType type = VoxelType::kUInt8;
   int components = 1;  ///< Numbers per voxel, running fastest.
   std::unique_ptr<std::byte[]> bytes;
-  std::vector<std::pair<std::string, std::string>> fields;  ///< Key and value texts of the header (NRRD).
+  TextFields fields;  ///< NRRD only.
 };
 
 /// Reads through ITK; never throws, prints nothing. The file was checked by check_image_file().
 Result<ItkImage> read_with_itk(const std::filesystem::path& path, ImageFormat format);
+
+/// The fields of the header alone, with ITK's own notes ("NRRD_...", "ITK_...") among them.
+Result<TextFields> read_fields_with_itk(const std::filesystem::path& path, ImageFormat format);
 
 enum class Packing { kCompressed, kPlain };
 

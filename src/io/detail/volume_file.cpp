@@ -46,7 +46,8 @@ Result<RawVolume> read_volume_file(const fs::path& path, Check check) {
   return volume;
 }
 
-Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, const fs::path& path, Packing packing) {
+Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, const fs::path& path, Packing packing,
+                         TextFields fields) {
   TROCAR_TRY(const ImageFormat format, find_image_format(path));
   TROCAR_TRY_STATUS(reserve_space(path, voxels.bytes.size() + voxels.bytes.size() / 256 + kHeaderBytes));
   ItkImage image;
@@ -58,6 +59,7 @@ Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, 
     for (int row = 0; row < 3; ++row) image.axes_P[n][static_cast<std::size_t>(row)] = geometry.R_PV(row, axis);
   }
   image.type = voxels.type;
+  image.fields = std::move(fields);
   TROCAR_TRY_STATUS(write_with_itk(image, voxels.bytes, path, format, packing));
   if (check_image_file(path, format)) return {};
   return fail("the image was not written whole", path.string(), "check the disk space");

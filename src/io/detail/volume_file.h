@@ -13,8 +13,8 @@ Result<RawVolume> read_volume_file(const std::filesystem::path& path, Check chec
 
 /// Writes a volume (one number a voxel) by the path's ending, compressed where asked and the format can, and checks
 /// that it is all there: the libraries do not report a full disk. Writes straight to `path`; the caller makes it
-/// atomic.
+/// atomic. Fields only where the format has them (NRRD).
 Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, const std::filesystem::path& path,
-                         Packing packing = Packing::kCompressed);
+                         Packing packing = Packing::kCompressed, TextFields fields = {});
 
 }  // namespace trocar::detail
