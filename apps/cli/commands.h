@@ -15,6 +15,8 @@ void add_run_command(CLI::App& program, Action& action);
 void add_session_commands(CLI::App& program, Action& action);
 void add_device_commands(CLI::App& program, Action& action);
 void add_link_commands(CLI::App& program, Action& action);
+void add_ultrasound_commands(CLI::App& program, Action& action);
+void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action);  ///< reconstruct of `ultrasound`.
 void add_bench_command(CLI::App& program, Action& action);
 
 }  // namespace trocar::cli

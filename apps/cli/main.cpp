@@ -48,6 +48,7 @@ int run(int argc, char** argv) {
   add_session_commands(program, action);
   add_device_commands(program, action);
   add_link_commands(program, action);
+  add_ultrasound_commands(program, action);
   add_bench_command(program, action);
 
   try {

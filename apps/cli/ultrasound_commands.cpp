@@ -1,0 +1,15 @@
+// trocar ultrasound: pictures, sweeps and volumes; each sub-command has a file of its own.
+#include <CLI/CLI.hpp>
+
+#include "commands.h"
+
+namespace trocar::cli {
+
+void add_ultrasound_commands(CLI::App& program, Action& action) {
+  CLI::App* ultrasound = program.add_subcommand("ultrasound", "Ultrasound pictures, sweeps and volumes");
+  ultrasound->require_subcommand(1);
+  ultrasound->footer("Example:\n  trocar ultrasound reconstruct sweep.igs.mha --spacing 0.5 --out volume.nrrd\n");
+  add_ultrasound_reconstruct_command(*ultrasound, action);
+}
+
+}  // namespace trocar::cli

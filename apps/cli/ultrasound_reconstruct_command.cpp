@@ -1,0 +1,170 @@
+// trocar ultrasound reconstruct: a tracked freehand sweep as a volume.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <map>
+
+#include "commands.h"
+#include "io/image_file.h"
+#include "io/plus_config.h"
+#include "io/sequence_file.h"
+#include "ultrasound/freehand.h"
+
+namespace trocar::cli {
+namespace {
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string sequence;
+  std::string calibration;
+  std::string out;
+  double spacing_mm = 0.0;
+  std::string interpolation, compounding, holes, reference;  ///< Empty: what the calibration file says.
+  std::string black;  ///< Empty: kept where the calibration file says how to reconstruct, as PLUS keeps it.
+  bool is_json = false;
+};
+
+const std::map<std::string, FreehandInterpolation>& interpolations() {
+  static const std::map<std::string, FreehandInterpolation> names{{"nearest", FreehandInterpolation::kNearest},
+                                                                  {"linear", FreehandInterpolation::kLinear}};
+  return names;
+}
+
+const std::map<std::string, FreehandCompounding>& compoundings() {
+  static const std::map<std::string, FreehandCompounding> names{{"mean", FreehandCompounding::kMean},
+                                                                {"maximum", FreehandCompounding::kMaximum},
+                                                                {"latest", FreehandCompounding::kLatest}};
+  return names;
+}
+
+const std::map<std::string, HoleFilling::Kind>& hole_fillings() {
+  static const std::map<std::string, HoleFilling::Kind> names{{"stick", HoleFilling::Kind::kStick},
+                                                              {"nearest", HoleFilling::Kind::kNearest},
+                                                              {"gaussian", HoleFilling::Kind::kGaussian}};
+  return names;
+}
+
+template <class Value>
+std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values) names.push_back(name);
+  return names;
+}
+
+/// What the calibration file says, and over it what the command line says.
+Result<PlusConfig> gather(const Arguments& arguments) {
+  PlusConfig config;
+  if (!arguments.calibration.empty()) {
+    TROCAR_TRY(config, read_plus_config(arguments.calibration));
+  }
+  FreehandOptions& options = config.reconstruction;
+  if (!config.has_reconstruction) options.holes = {HoleFilling{}};
+  if (arguments.spacing_mm > 0.0) options.spacing_mm = Vec3::Constant(arguments.spacing_mm);
+  if (!arguments.interpolation.empty()) options.interpolation = interpolations().at(arguments.interpolation);
+  if (!arguments.compounding.empty()) options.compounding = compoundings().at(arguments.compounding);
+  if (!arguments.reference.empty()) options.reference_frame = arguments.reference;
+  if (arguments.holes == "none") {
+    options.holes.clear();
+  } else if (!arguments.holes.empty()) {
+    HoleFilling way;
+    way.kind = hole_fillings().at(arguments.holes);
+    options.holes = {way};
+  }
+  options.is_black_left_out = arguments.black.empty() ? !config.has_reconstruction : arguments.black == "skip";
+  return config;
+}
+
+Json to_json(const FreehandVolume& volume, const FreehandOptions& options, double seconds) {
+  const GridGeometry& grid = volume.gray.geometry;
+  Json json;
+  json["size"] = grid.size;
+  json["spacing_mm"] = {grid.spacing_mm[0], grid.spacing_mm[1], grid.spacing_mm[2]};
+  json["origin_mm"] = {grid.origin_P[0], grid.origin_P[1], grid.origin_P[2]};
+  json["reference"] = options.reference_frame;
+  json["frames_used"] = volume.frames_used;
+  json["frames_left_out"] = volume.frames_left_out;
+  json["voxels_met"] = volume.voxels_met;
+  json["holes_filled"] = volume.holes_filled;
+  json["seconds"] = seconds;
+  return json;
+}
+
+void print_summary(const FreehandVolume& volume, const FreehandOptions& options, double seconds) {
+  const GridGeometry& grid = volume.gray.geometry;
+  fmt::print("{} voxels of {:g} x {:g} x {:g} mm from {} frames in {:.2f} s\n", fmt::join(grid.size, " x "),
+             grid.spacing_mm[0], grid.spacing_mm[1], grid.spacing_mm[2], volume.frames_used, seconds);
+  fmt::print("{} voxels met by a pixel, {} holes filled\n", volume.voxels_met, volume.holes_filled);
+  fmt::print("axes of the frame {}, stored as LPS\n", options.reference_frame);
+}
+
+Status reconstruct(const Arguments& arguments) {
+  const std::string extension = fs::path(arguments.out).extension().string();
+  if (extension != ".nrrd")
+    return fail_usage("the volume is written as .nrrd", arguments.out, "let the name end in .nrrd");
+  TROCAR_TRY_STATUS(check_new(arguments.out));
+  TROCAR_TRY(const PlusConfig config, gather(arguments));
+  const ProgressPrinter printer;
+  const Progress progress = printer.callback();
+  report(progress, "reading the sequence", 0.0);
+  TROCAR_TRY(const TrackedSequence sequence, read_sequence(arguments.sequence));
+  const auto start = std::chrono::steady_clock::now();
+  auto volume = reconstruct_freehand(
+      sequence, config.transforms, config.reconstruction,
+      [&](std::string_view step, double fraction) { report(progress, step, 0.4 + 0.4 * fraction); });
+  if (!volume) return fail(volume.error().what, arguments.sequence, volume.error().advice);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report(progress, "writing the volume", 0.8);
+  TROCAR_TRY_STATUS(write_image(volume->gray, arguments.out));
+  report(progress, "done", 1.0);
+  for (const std::string& what : config.left_aside)
+    print_warning(fmt::format("{} of {} is not followed", what, arguments.calibration));
+  if (volume->frames_left_out > 0)
+    print_warning(fmt::format("{} frames are left out: invalid, or without a place", volume->frames_left_out));
+  if (arguments.is_json) {
+    print_json(to_json(*volume, config.reconstruction, seconds));
+  } else {
+    print_summary(*volume, config.reconstruction, seconds);
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action) {
+  CLI::App* command = ultrasound.add_subcommand("reconstruct", "Make a volume of a tracked freehand sweep");
+  command->footer(
+      "Examples:\n  trocar ultrasound reconstruct sweep.igs.mha --calibration PlusDeviceSet.xml --spacing 0.5 --out "
+      "volume.nrrd\n  trocar ultrasound reconstruct sweep.igs.mha --spacing 1 --reference Tracker --out volume.nrrd\n");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("SEQUENCE", a->sequence, "Tracked pictures of PLUS or 3D Slicer: .igs.mha")->required();
+  command->add_option("--calibration", a->calibration,
+                      "PLUS configuration (XML) with ImageToProbe; its <VolumeReconstruction> gives the defaults");
+  command->add_option("--spacing", a->spacing_mm, "Edge of a voxel, mm; 1 or the calibration file's when left out")
+      ->check(CLI::Range(0.01, 100.0));
+  command->add_option("--out", a->out, "Volume to write: .nrrd, one byte a voxel, LPS axes of the reference")
+      ->required();
+  command->add_option("--reference", a->reference, "Tracked frame that the volume stands in; Reference when left out");
+  command->add_option("--interpolation", a->interpolation, "nearest or linear; nearest when left out")
+      ->check(CLI::IsMember(names_of(interpolations())));
+  command
+      ->add_option("--compounding", a->compounding,
+                   "Of pixels in one voxel: mean, maximum or latest; mean when left out")
+      ->check(CLI::IsMember(names_of(compoundings())));
+  auto holes = names_of(hole_fillings());
+  holes.emplace_back("none");
+  command
+      ->add_option("--holes", a->holes, "How holes are filled: stick, nearest, gaussian or none; stick when left out")
+      ->check(CLI::IsMember(holes));
+  command
+      ->add_option("--black", a->black,
+                   "Pixels black in all frames, such as the margin beside the fan: skip or keep; skip when left out, "
+                   "unless the calibration file has a <VolumeReconstruction>")
+      ->check(CLI::IsMember({"skip", "keep"}));
+  command->add_flag("--json", a->is_json, "Print one JSON object");
+  command->callback([&action, a] { action = [a] { return reconstruct(*a); }; });
+}
+
+}  // namespace trocar::cli
