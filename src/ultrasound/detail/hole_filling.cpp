@@ -157,7 +157,7 @@ std::optional<double> fill_by(const HoleFilling& way, const Known& known, const 
   return fill_by_sticks(known, ijk, way);
 }
 
-/// Blocks of 8³ voxels that have something known within reach: most of a sweep's box is empty and needs no search.
+/// Blocks of 4³ voxels that have something known within reach: most of a sweep's box is empty and needs no search.
 class NearBlocks {
  public:
   NearBlocks(const GridGeometry& grid, const std::vector<std::uint8_t>& is_known, std::int64_t reach) {
@@ -173,7 +173,7 @@ class NearBlocks {
   bool is_near(const Index3& ijk) const { return is_near_[block_of(ijk)] != 0; }
 
  private:
-  static constexpr std::int64_t kEdge = 8;
+  static constexpr std::int64_t kEdge = 4;
 
   std::size_t block_of(const Index3& ijk) const {
     return static_cast<std::size_t>((ijk[2] / kEdge * blocks_[1] + ijk[1] / kEdge) * blocks_[0] + ijk[0] / kEdge);
@@ -198,7 +198,7 @@ class NearBlocks {
 std::int64_t reach_of(const std::vector<HoleFilling>& ways) {
   int reach = 0;
   for (const HoleFilling& way : ways)
-    reach = std::max(reach, way.kind == HoleFilling::Kind::kStick ? way.stick_length_limit - 1 : (way.size - 1) / 2);
+    reach = std::max(reach, way.kind == HoleFilling::Kind::kStick ? way.stick_length_limit - 2 : (way.size - 1) / 2);
   return reach;
 }
 
