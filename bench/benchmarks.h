@@ -27,5 +27,7 @@ Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_palpation_benchmark();
 /// Two live servers, a drawing client and a busy process: rate, lateness, ticks, missed deadlines.
 Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options);
+/// Volumes from tracked freehand sweeps; with the test data against PLUS' own volume.
+Result<std::vector<CaseResult>> run_reconstruct_benchmark();
 
 }  // namespace trocar::bench

@@ -27,6 +27,7 @@ const std::vector<Benchmark>& all_benchmarks() {
        "bone and the loss of resistance behind the ligamentum flavum, by device and force model",
        run_contact_benchmark,
        {"--force-model", "--seed"}},
+      {"reconstruct", "volumes from tracked freehand sweeps; real ones against PLUS' own", run_reconstruct_benchmark},
       {"servers",
        "two live haptic servers, a drawing client and a busy process: lateness, ticks, missed deadlines",
        run_servers_benchmark,

@@ -1,0 +1,103 @@
+// Freehand reconstruction: a made sweep, and real ones where the test data lies beside the checkout, with how near the
+// spine phantom comes to PLUS' own volume.
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cstdlib>
+
+#include "bench/benchmarks.h"
+#include "core/data_dir.h"
+#include "core/random.h"
+#include "io/image_file.h"
+#include "io/plus_config.h"
+#include "io/sequence_file.h"
+#include "ultrasound/freehand.h"
+#include "volume/correlation.h"
+
+namespace trocar::bench {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr int kRounds = 5;
+
+/// 100 pictures of 640 by 480 pixels of 0.3 mm in a tilting sweep, full of speckle.
+TrackedSequence made_sweep() {
+  TrackedSequence sequence;
+  sequence.columns = 640;
+  sequence.rows = 480;
+  sequence.frames.resize(100);
+  sequence.pixels.resize(sequence.frame_pixels() * sequence.frames.size());
+  Random random(1);
+  for (auto& pixel : sequence.pixels) pixel = static_cast<std::uint8_t>(1 + random.next() % 255);
+  for (std::size_t n = 0; n < sequence.frames.size(); ++n) {
+    const double angle_rad = 0.006 * static_cast<double>(n);
+    const Eigen::Affine3d T_PI = Eigen::Translation3d(0.0, 0.0, 0.2 * static_cast<double>(n)) *
+                                 Eigen::AngleAxisd(angle_rad, Vec3::UnitX()) * Eigen::Scaling(0.3);
+    sequence.frames[n].transforms.emplace("ImageToReference", T_PI.matrix());
+  }
+  return sequence;
+}
+
+fs::path real_data() {
+  const char* named = std::getenv("TROCAR_TEST_DATA");
+  return named != nullptr ? fs::path(named) : data_dir() / ".." / ".." / "shared" / "data";
+}
+
+std::string note_of(const FreehandVolume& volume) {
+  const auto& size = volume.gray.geometry.size;
+  return fmt::format("{} frames, {}x{}x{} voxels, {} holes filled", volume.frames_used, size[0], size[1], size[2],
+                     volume.holes_filled);
+}
+
+/// Times one reconstruction and gives its volume.
+Result<FreehandVolume> measure(const std::string& name, const TrackedSequence& sequence, const PlusConfig& config,
+                               std::vector<CaseResult>& results) {
+  TROCAR_TRY(FreehandVolume volume, reconstruct_freehand(sequence, config.transforms, config.reconstruction));
+  const Figures figures =
+      time_ms(0, kRounds, [&] { (void)reconstruct_freehand(sequence, config.transforms, config.reconstruction); });
+  results.push_back({name, "ms", figures, {}, note_of(volume)});
+  return volume;
+}
+
+Status measure_spine_phantom(const fs::path& folder, std::vector<CaseResult>& results) {
+  TROCAR_TRY(const TrackedSequence sequence, read_sequence(folder / "SpinePhantomFreehand.igs.mha"));
+  TROCAR_TRY(PlusConfig config,
+             read_plus_config(folder / "PlusDeviceSet_VolumeReconstructionOnly_SpinePhantom_NN_MEAN.xml"));
+  TROCAR_TRY(const LabelGrid reference, read_labels(folder / "vtkVolumeReconstructorTestNNMEANvolumeRef.mha"));
+  TROCAR_TRY(const FreehandVolume volume, measure("reconstruct/spine-phantom", sequence, config, results));
+  if (!volume.gray.geometry.matches(reference.geometry))
+    return fail("the grid is not that of PLUS", folder.string(), "see docs/physics.md U12");
+  const auto add = [&](const char* name, ComparedVoxels voxels, const char* note) {
+    Figures figures;
+    figures.median = correlation(volume.gray.voxels, reference.voxels, voxels);
+    results.push_back({name, "ratio", figures, {}, note});
+  };
+  add("reconstruct/spine-phantom-ncc", ComparedVoxels::kAll, "with PLUS' volume, all voxels");
+  add("reconstruct/spine-phantom-ncc-both", ComparedVoxels::kBothAboveZero,
+      "with PLUS' volume, where both have echoes");
+  config.reconstruction.interpolation = FreehandInterpolation::kLinear;
+  TROCAR_TRY(const FreehandVolume linear, measure("reconstruct/spine-phantom-linear", sequence, config, results));
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<CaseResult>> run_reconstruct_benchmark() {
+  std::vector<CaseResult> results;
+  PlusConfig made;
+  made.reconstruction.spacing_mm = Vec3::Constant(0.7);
+  made.reconstruction.is_black_left_out = true;
+  made.reconstruction.holes = {HoleFilling{}};
+  TROCAR_TRY(const FreehandVolume volume, measure("reconstruct/made-sweep", made_sweep(), made, results));
+  const fs::path spine = real_data() / "us-spine-phantom";
+  if (fs::exists(spine)) TROCAR_TRY_STATUS(measure_spine_phantom(spine, results));
+  const fs::path liver = real_data() / "us-liver-sweep" / "liver_sweep_decoded.igs.mha";
+  if (fs::exists(liver)) {
+    TROCAR_TRY(const TrackedSequence sequence, read_sequence(liver));
+    TROCAR_TRY(const FreehandVolume sweep, measure("reconstruct/liver-sweep", sequence, made, results));
+  }
+  return results;
+}
+
+}  // namespace trocar::bench
