@@ -22,7 +22,8 @@ INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
                          testing::Values("", "patient", "patient list", "patient generate", "patient build",
                                          "patient show", "patient check", "patient render", "plan", "task", "task list",
                                          "device", "device list", "link", "link keygen", "run", "session",
-                                         "session export", "session report", "bench"));
+                                         "session export", "session report", "ultrasound", "ultrasound reconstruct",
+                                         "bench"));
 
 class Mistake : public testing::TestWithParam<const char*> {};
 
@@ -38,21 +39,22 @@ TEST_P(Mistake, ExitsTwoWithOneLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     OfTheUser, Mistake,
-    testing::Values("", "nonsense", "patient", "patient nonsense", "patient show", "patient list --nonsense",
-                    "patient generate abdomen", "patient generate nobody --out x",
-                    "patient generate abdomen --seed many --out x", "patient build --ct a.nii",
-                    "plan liver-biopsy --patient abdomen --count 0 --out x.mrk.json",
-                    "plan nonsense --patient abdomen --out x.mrk.json",
-                    "run nonsense --patient abdomen --operator expert --out x",
-                    "run liver-biopsy --patient nobody --operator expert --out x",
-                    "run liver-biopsy --patient abdomen --operator nobody --out x",
-                    "run liver-biopsy --patient abdomen --operator constant-velocity:fast --out x",
-                    "run liver-biopsy --patient abdomen --operator expert --force-model springs --out x",
-                    "run liver-biopsy --patient abdomen --operator expert --rate 0 --out x",
-                    "run liver-biopsy --patient abdomen --operator expert --set liver.k=stiff --out x", "link",
-                    "link keygen", "link nonsense", "bench nonsense", "bench slice --paths 3", "bench paths --paths 0",
-                    "bench paths --patient nobody", "bench paths --force-model nonsense", "bench --patient abdomen",
-                    "ultrasound sweep", "serve"));
+    testing::Values(
+        "", "nonsense", "patient", "patient nonsense", "patient show", "patient list --nonsense",
+        "patient generate abdomen", "patient generate nobody --out x", "patient generate abdomen --seed many --out x",
+        "patient build --ct a.nii", "plan liver-biopsy --patient abdomen --count 0 --out x.mrk.json",
+        "plan nonsense --patient abdomen --out x.mrk.json", "run nonsense --patient abdomen --operator expert --out x",
+        "run liver-biopsy --patient nobody --operator expert --out x",
+        "run liver-biopsy --patient abdomen --operator nobody --out x",
+        "run liver-biopsy --patient abdomen --operator constant-velocity:fast --out x",
+        "run liver-biopsy --patient abdomen --operator expert --force-model springs --out x",
+        "run liver-biopsy --patient abdomen --operator expert --rate 0 --out x",
+        "run liver-biopsy --patient abdomen --operator expert --set liver.k=stiff --out x", "link", "link keygen",
+        "link nonsense", "bench nonsense", "bench slice --paths 3", "bench paths --paths 0",
+        "bench paths --patient nobody", "bench paths --force-model nonsense", "bench --patient abdomen", "ultrasound",
+        "ultrasound sweep", "ultrasound reconstruct a.igs.mha", "ultrasound reconstruct --out x.nrrd",
+        "ultrasound reconstruct a.igs.mha --out x.nii", "ultrasound reconstruct a.igs.mha --spacing 0 --out x.nrrd",
+        "ultrasound reconstruct a.igs.mha --holes all --out x.nrrd", "serve"));
 
 TEST(Arguments, UnknownCommandIsNamed) {
   EXPECT_NE(trocar("nonsense").err.find("nonsense"), std::string::npos);

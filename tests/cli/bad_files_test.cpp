@@ -33,6 +33,17 @@ TEST_F(BadFiles, TextIsNoImage) {
   EXPECT_TRUE(outputs_.is_empty());
 }
 
+TEST_F(BadFiles, TextIsNoSequenceAndNoCalibration) {
+  write("sweep.igs.mha", "hello");
+  write("calibration.xml", "hello");
+  const std::string begin =
+      "ultrasound reconstruct '" + (inputs_ / "sweep.igs.mha") + "' --out '" + (outputs_ / "v.nrrd");
+  expect_refused(begin + "'");
+  expect_refused(begin + "' --calibration '" + (inputs_ / "calibration.xml") + "'");
+  expect_refused("ultrasound reconstruct /nowhere/sweep.igs.mha --out '" + (outputs_ / "v.nrrd") + "'");
+  EXPECT_TRUE(outputs_.is_empty());
+}
+
 TEST_F(BadFiles, MissingImageIsNamed) {
   const Outcome outcome =
       trocar("patient build --ct /nowhere/ct.nii --labels /nowhere/l.nii --out '" + (outputs_ / "patient") + "'");
