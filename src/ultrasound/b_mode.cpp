@@ -140,6 +140,7 @@ BMode::BMode(std::shared_ptr<const AcousticScene> scene, Transducer transducer, 
     : impl_(std::make_unique<Impl>()) {
   impl_->scene = std::move(scene);
   impl_->transducer = std::move(transducer);
+  impl_->frame = make_frame_state(*impl_->scene);
   set_acquisition(acquisition);
 }
 BMode::~BMode() = default;
@@ -151,7 +152,7 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   TROCAR_CHECK(acquisition.samples >= 16 && acquisition.samples <= kMaxSamples && acquisition.lines >= 2);
   TROCAR_CHECK(acquisition.planes >= 1 && acquisition.planes <= kMaxPlanes && acquisition.planes % 2 == 1);
   impl.plan = make_scan_plan(*impl.scene, impl.transducer, acquisition);
-  impl.frame = make_frame_state(*impl.scene, impl.plan);
+  fit_frame(impl.frame, impl.plan);
   impl.scratch.resize(static_cast<std::size_t>(impl.groups()));
   impl.out.geometry = impl.plan.geometry;
   impl.out.beam = impl.plan.beam;

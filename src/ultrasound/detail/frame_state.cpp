@@ -2,9 +2,14 @@
 
 namespace trocar::detail {
 
-FrameState make_frame_state(const AcousticScene& scene, const ScanPlan& plan) {
+FrameState make_frame_state(const AcousticScene& scene) {
   FrameState frame;
   frame.scene = &scene;
+  frame.tiles = TiledTissue(scene);
+  return frame;
+}
+
+void fit_frame(FrameState& frame, const ScanPlan& plan) {
   const auto lines = static_cast<std::size_t>(plan.lines), samples = static_cast<std::size_t>(plan.samples);
   const auto padded = lines * static_cast<std::size_t>(plan.stride);
   frame.contact.resize(lines);
@@ -18,7 +23,6 @@ FrameState make_frame_state(const AcousticScene& scene, const ScanPlan& plan) {
   frame.gain.assign(static_cast<std::size_t>(plan.planes) * lines * samples, 0.0F);
   frame.share.assign(frame.gain.size(), 0);
   for (auto* echoes : {&frame.re, &frame.im, &frame.wide_re, &frame.wide_im}) echoes->assign(padded, 0.0F);
-  return frame;
 }
 
 }  // namespace trocar::detail

@@ -6,6 +6,7 @@
 
 #include "geometry/pose.h"
 #include "ultrasound/detail/scan_plan.h"
+#include "ultrasound/detail/tiled_tissue.h"
 #include "ultrasound/needle_echo.h"
 #include "ultrasound/probe_contact.h"
 
@@ -45,6 +46,7 @@ struct Drag {
 /// One frame in the making. All that grows is sized by make_frame_state.
 struct FrameState {
   const AcousticScene* scene = nullptr;
+  TiledTissue tiles;
   Pose X_PT;
   std::array<std::array<float, 3>, 3> index_of_T{};  ///< Columns: voxel index a mm of x, y, z of T.
   std::array<float, 3> index_of_origin{};
@@ -68,6 +70,8 @@ struct FrameState {
   std::vector<float> wide_re, wide_im;  ///< The same after the lateral point spread.
 };
 
-FrameState make_frame_state(const AcousticScene& scene, const ScanPlan& plan);
+FrameState make_frame_state(const AcousticScene& scene);
+/// Takes buffers for a plan.
+void fit_frame(FrameState& frame, const ScanPlan& plan);
 
 }  // namespace trocar::detail

@@ -28,7 +28,8 @@ void lateral(const ScanPlan& plan, FrameState& frame, int first, int last) {
       const VF middle = hn::LoadU(f, plan.lateral.data() + s);
       VF re = hn::Mul(middle, hn::LoadU(f, frame.re.data() + row + s));
       VF im = hn::Mul(middle, hn::LoadU(f, frame.im.data() + row + s));
-      for (int k = 1; k <= plan.lateral_reach; ++k) {
+      const int reach = plan.lateral_reach_at[static_cast<std::size_t>(s) / 16];
+      for (int k = 1; k <= reach; ++k) {
         const VF weight = hn::LoadU(f, plan.lateral.data() + static_cast<std::ptrdiff_t>(k) * plan.samples + s);
         if (line - k >= 0) {
           re = hn::MulAdd(weight, hn::LoadU(f, frame.re.data() + row - k * stride + s), re);

@@ -33,6 +33,7 @@ void fill_rows(ScanPlan& plan, const AcousticTable& table) {
     for (int step = -128; step < 128; ++step)
       plan.texture_gain[t][static_cast<std::size_t>(step + 128)] =
           static_cast<float>(tissue.texture_db(step * kTextureStep_hu) * kNeperPerDb);
+    plan.has_texture[t] = tissue.texture_db_per_hu != 0.0 || tissue.texture_below_db_per_hu != 0.0 ? 1 : 0;
     plan.fibre_gain[t] = static_cast<float>(tissue.fibre_db * kNeperPerDb);
     plan.roughness[t] = static_cast<float>(tissue.roughness);
     plan.share[t] = static_cast<std::uint8_t>(std::lround(255.0 * share));
@@ -67,12 +68,13 @@ void fill_lateral(ScanPlan& plan) {
     widest = std::max(widest, kernel_sigma[s]);
   }
   // Side lobes: of an aperture with moderate apodisation, alternating in sign (docs/physics.md U6).
-  constexpr double kFirstLobe_sigma = 3.6, kLastLobe_sigma = 12.0, kLobeSpacing_sigma = 1.7;
+  constexpr double kFirstLobe_sigma = 3.6, kLastLobe_sigma = 10.0, kLobeSpacing_sigma = 1.7;
   const double lobe = plan.acquisition.artefacts.side_lobes ? std::pow(10.0, -40.0 / 20.0) : 0.0;
   const double reach_sigma = lobe > 0.0 ? kLastLobe_sigma : 3.3;
   plan.lateral_reach = std::clamp(static_cast<int>(std::ceil(reach_sigma * widest)), 1, std::min(48, plan.lines - 1));
   plan.lateral.assign((static_cast<std::size_t>(plan.lateral_reach) + 1) * n + 16, 0.0F);
   plan.surface_scale.assign(n, 0.0F);
+  plan.lateral_reach_at.assign(n / 16 + 1, 0);
   for (std::size_t s = 0; s < n; ++s) {
     const double height = sigma[s] / kernel_sigma[s];
     double sum = 0.0;
@@ -86,6 +88,8 @@ void fill_lateral(ScanPlan& plan) {
       sum += (k == 0 ? 1.0 : 2.0) * std::abs(height * std::exp(-0.5 * x * x));
     }
     plan.surface_scale[s] = static_cast<float>(1.0 / sum);
+    const int reach = std::clamp(static_cast<int>(std::ceil(reach_sigma * kernel_sigma[s])), 1, plan.lateral_reach);
+    plan.lateral_reach_at[s / 16] = std::max(plan.lateral_reach_at[s / 16], reach);
   }
 }
 
@@ -113,8 +117,11 @@ void fill_scatterers(ScanPlan& plan) {
   const double per_mm3 = kWantedPerCell / (kEffectiveVolume * smallest_mm3);
   plan.brick_mm = static_cast<float>(std::cbrt(kBrickScatterers / per_mm3));
   plan.speckle_scale.resize(n);
+  plan.most_rank.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
-    const double mean = per_mm3 * kMeanSquareScatterer * std::pow(std::numbers::pi, 1.5) * volume_mm3[s];
+    const double share = std::max(smallest_mm3 / volume_mm3[s], 0.02);
+    plan.most_rank[s] = static_cast<float>(share);
+    const double mean = share * per_mm3 * kMeanSquareScatterer * std::pow(std::numbers::pi, 1.5) * volume_mm3[s];
     plan.speckle_scale[s] = static_cast<float>(1.0 / std::sqrt(mean));
   }
 }

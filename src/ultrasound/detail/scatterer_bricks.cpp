@@ -22,17 +22,29 @@ struct PlacedBrick {
   const Brick* brick;
 };
 
-/// The scanlines and resting depths that a task looks for scatterers in.
+/// The scanlines and resting depths that a task looks for scatterers in, with bounds that are cheap to test in T: half
+/// planes on either side (x * nx + (y + radius) * ny <= 0), squared distance from the apex (fans) or y, thickness.
 struct Cell {
   int first_line, last_line;
   float first_rest, last_rest;
+  float side_x[2], side_y[2], side_d[2];
+  float low, high;
+  float half_thickness_mm;
+  float most_rank;
 };
 
-/// Echoes of one brick, compact.
+/// Scatterers that are near a cell, in T, until there are enough to hear them together.
+struct alignas(64) Candidates {
+  static constexpr int kMost = 1024;
+  float x[kMost + 64], y[kMost + 64], z[kMost + 64], amplitude[kMost + 64], rank[kMost + 64];
+  int count = 0;
+};
+
+/// Echoes of some candidates, compact.
 struct alignas(64) Echoes {
-  float line[kBrickScatterers], sample[kBrickScatterers], re[kBrickScatterers], im[kBrickScatterers];
-  float rank[kBrickScatterers];
-  std::int32_t place[kBrickScatterers];
+  float line[Candidates::kMost + 64], sample[Candidates::kMost + 64], re[Candidates::kMost + 64], im[Candidates::kMost + 64];
+  float rank[Candidates::kMost + 64];
+  std::int32_t place[Candidates::kMost + 64];
 };
 
 }  // namespace trocar::detail
@@ -100,8 +112,42 @@ HWY_INLINE VF walk_of_rest(const ScanPlan& plan, VF rest, VF pressed_samples) {
   return walk;
 }
 
-int echoes_of(const ScanPlan& plan, const FrameState& frame, const float* pressed_samples, const Cell& cell,
-              const PlacedBrick& placed, bool is_dragged, Echoes& echoes) {
+/// Appends those scatterers of a brick that the cell's bounds let pass.
+void take_near(const ScanPlan& plan, const Drag* drag, const Cell& cell, const PlacedBrick& placed, Candidates& near) {
+  const F f;
+  const VF radius = hn::Set(f, plan.geometry.is_fan ? static_cast<float>(plan.geometry.radius_mm) : 0.0F);
+  for (std::size_t s = 0; s < kBrickScatterers; s += hn::Lanes(f)) {
+    const VF rank = hn::Load(f, placed.brick->rank.data() + s);
+    const auto wanted = hn::Lt(rank, hn::Set(f, cell.most_rank));
+    if (hn::AllFalse(f, wanted)) return;  // they are sorted by rank
+    const VF bx = hn::Load(f, placed.brick->x.data() + s);
+    const VF by = hn::Load(f, placed.brick->y.data() + s);
+    const VF bz = hn::Load(f, placed.brick->z.data() + s);
+    VF z = axis_of(placed, 2, bx, by, bz);
+    VF x = axis_of(placed, 0, bx, by, bz);
+    VF y = axis_of(placed, 1, bx, by, bz);
+    if (drag != nullptr) drag_along(*drag, x, y, z);
+    auto near_by = hn::And(wanted, hn::Lt(hn::Abs(z), hn::Set(f, cell.half_thickness_mm)));
+    const VF from_apex = hn::Add(y, radius);
+    for (int side = 0; side < 2; ++side) {
+      const VF out = hn::MulAdd(x, hn::Set(f, cell.side_x[side]),
+                                hn::MulAdd(from_apex, hn::Set(f, cell.side_y[side]), hn::Set(f, cell.side_d[side])));
+      near_by = hn::And(near_by, hn::Le(out, hn::Zero(f)));
+    }
+    const VF far = plan.geometry.is_fan ? hn::MulAdd(x, x, hn::Mul(from_apex, from_apex)) : y;
+    near_by = hn::And(near_by, hn::And(hn::Ge(far, hn::Set(f, cell.low)), hn::Lt(far, hn::Set(f, cell.high))));
+    if (hn::AllFalse(f, near_by)) continue;
+    hn::CompressStore(x, near_by, f, near.x + near.count);
+    hn::CompressStore(y, near_by, f, near.y + near.count);
+    hn::CompressStore(z, near_by, f, near.z + near.count);
+    hn::CompressStore(rank, near_by, f, near.rank + near.count);
+    near.count += static_cast<int>(
+        hn::CompressStore(hn::Load(f, placed.brick->amplitude.data() + s), near_by, f, near.amplitude + near.count));
+  }
+}
+
+/// What the cell's scanlines hear of the candidates; returns how many echoes.
+int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const Candidates& near, Echoes& echoes) {
   const F f;
   const I d;
   const ScanGeometry& g = plan.geometry;
@@ -114,15 +160,9 @@ int echoes_of(const ScanPlan& plan, const FrameState& frame, const float* presse
   const VI samples = hn::Set(d, plan.samples);
   const auto coarse = static_cast<std::int32_t>(plan.coarse_samples());
   int n = 0;
-  for (std::size_t s = 0; s < kBrickScatterers; s += hn::Lanes(f)) {
-    const VF bx = hn::Load(f, placed.brick->x.data() + s);
-    const VF by = hn::Load(f, placed.brick->y.data() + s);
-    const VF bz = hn::Load(f, placed.brick->z.data() + s);
-    VF x = axis_of(placed, 0, bx, by, bz);
-    VF y = axis_of(placed, 1, bx, by, bz);
-    VF z = axis_of(placed, 2, bx, by, bz);
-    if (is_dragged) drag_along(frame.drag, x, y, z);
-
+  for (int s = 0; s < near.count; s += static_cast<int>(hn::Lanes(f))) {
+    const VF x = hn::Load(f, near.x + s);
+    const VF y = hn::Load(f, near.y + s);
     VF line, rest;
     if (g.is_fan) {
       const VF from_apex = hn::Add(y, radius);
@@ -133,23 +173,25 @@ int echoes_of(const ScanPlan& plan, const FrameState& frame, const float* presse
       rest = hn::Mul(y, per_mm);
     }
     rest = hn::Sub(rest, hn::Set(f, 0.5F));  // samples lie at (s + 1/2)
-    auto heard = hn::And(hn::Ge(rest, hn::Set(f, cell.first_rest)), hn::Lt(rest, hn::Set(f, cell.last_rest)));
+    auto heard = hn::FirstN(f, static_cast<std::size_t>(near.count - s));
+    heard = hn::And(heard, hn::And(hn::Ge(rest, hn::Set(f, cell.first_rest)), hn::Lt(rest, hn::Set(f, cell.last_rest))));
     const VI near_line = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
-    const VF walk = walk_of_rest(plan, rest, hn::GatherIndex(f, pressed_samples, near_line));
+    const VF walk = walk_of_rest(plan, rest, hn::GatherIndex(f, frame.pressed_samples.data(), near_line));
     heard = hn::And(heard, hn::And(hn::Ge(walk, hn::Zero(f)), hn::Le(walk, last_sample)));
-    if (hn::AllFalse(f, heard)) continue;
     const VI at = hn::ConvertTo(d, hn::Min(hn::Max(walk, hn::Zero(f)), last_sample));
     const VI at_coarse = hn::Add(hn::Mul(near_line, hn::Set(d, coarse)), hn::ShiftRight<3>(at));
     static_assert(kCoarse == 8);
-    const VF depth_mm = hn::Mul(walk, hn::Set(f, plan.sample_mm));
-    const VF spacing_mm = g.is_fan ? hn::Mul(hn::Add(depth_mm, radius), hn::Set(f, static_cast<float>(g.line_step)))
+    const VF spacing_mm = g.is_fan ? hn::Mul(hn::MulAdd(walk, hn::Set(f, plan.sample_mm), radius),
+                                             hn::Set(f, static_cast<float>(g.line_step)))
                                    : hn::Set(f, static_cast<float>(g.line_step));
-    line = hn::Sub(
-        line, hn::Div(hn::GatherIndex(f, frame.bend_mm.data(), at_coarse), hn::Max(spacing_mm, hn::Set(f, 0.02F))));
+    line = hn::Sub(line, hn::Div(hn::GatherIndex(f, frame.bend_mm.data(), at_coarse),
+                                 hn::Max(spacing_mm, hn::Set(f, 0.02F))));
     heard = hn::And(heard, hn::And(hn::Ge(line, hn::Set(f, static_cast<float>(cell.first_line - 1))),
                                    hn::Lt(line, hn::Set(f, static_cast<float>(cell.last_line)))));
-    const VF zeta = hn::Mul(z, hn::GatherIndex(f, plan.inverse_elevation_sigma.data(), at));
+    const VF zeta = hn::Mul(hn::Load(f, near.z + s), hn::GatherIndex(f, plan.inverse_elevation_sigma.data(), at));
     heard = hn::And(heard, hn::Lt(hn::Abs(zeta), hn::Set(f, kBeamEdge)));
+    const VF rank = hn::Load(f, near.rank + s);
+    heard = hn::And(heard, hn::Lt(rank, hn::GatherIndex(f, plan.most_rank.data(), at)));
     if (hn::AllFalse(f, heard)) continue;
 
     const VI line_index = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
@@ -162,8 +204,8 @@ int echoes_of(const ScanPlan& plan, const FrameState& frame, const float* presse
     const VF shown = hn::Add(walk, hn::GatherIndex(f, frame.delay.data(), in_line));
     const VF weight = hn::Mul(hn::Exp(f, hn::Mul(hn::Mul(zeta, zeta), hn::Set(f, -0.5F))),
                               hn::GatherIndex(f, plan.speckle_scale.data(), at));
-    const VF amplitude = hn::Mul(hn::Mul(hn::Load(f, placed.brick->amplitude.data() + s), weight),
-                                 hn::GatherIndex(f, frame.gain.data(), place));
+    const VF amplitude =
+        hn::Mul(hn::Mul(hn::Load(f, near.amplitude + s), weight), hn::GatherIndex(f, frame.gain.data(), place));
     VF cosine, sine;
     turn(hn::Mul(shown, hn::Set(f, plan.cycles_per_sample)), cosine, sine);
     heard = hn::And(heard, hn::Le(shown, last_sample));
@@ -171,7 +213,7 @@ int echoes_of(const ScanPlan& plan, const FrameState& frame, const float* presse
     hn::CompressStore(shown, heard, f, echoes.sample + n);
     hn::CompressStore(hn::Mul(amplitude, cosine), heard, f, echoes.re + n);
     hn::CompressStore(hn::Neg(hn::Mul(amplitude, sine)), heard, f, echoes.im + n);
-    hn::CompressStore(hn::Load(f, placed.brick->rank.data() + s), heard, f, echoes.rank + n);
+    hn::CompressStore(rank, heard, f, echoes.rank + n);
     n += static_cast<int>(hn::CompressStore(place, hn::RebindMask(d, heard), d, echoes.place + n));
   }
   return n;
@@ -184,7 +226,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace trocar::detail {
 
-HWY_EXPORT(echoes_of);
+HWY_EXPORT(take_near);
+HWY_EXPORT(hear);
 
 std::vector<Brick> make_brick_library() {
   constexpr std::uint64_t kSeed = 0x7573;
@@ -196,8 +239,9 @@ std::vector<Brick> make_brick_library() {
       brick.y[s] = static_cast<float>(random.uniform() - 0.5);
       brick.z[s] = static_cast<float>(random.uniform() - 0.5);
       brick.amplitude[s] = static_cast<float>(random.uniform(-1.0, 1.0));
-      brick.rank[s] = static_cast<float>(random.uniform(0.0, 255.0));
+      brick.rank[s] = static_cast<float>(random.uniform());
     }
+    std::sort(brick.rank.begin(), brick.rank.end());
   }
   return library;
 }
@@ -232,7 +276,9 @@ PlacedBrick place(const Index& index, const std::vector<Brick>& library, const V
 
 void splat(const ScanPlan& plan, const Echoes& echoes, int n, const Cell& cell, FrameState& frame) noexcept {
   for (int e = 0; e < n; ++e) {
-    if (echoes.rank[e] > static_cast<float>(frame.share[static_cast<std::size_t>(echoes.place[e])])) continue;
+    const auto walk = static_cast<std::size_t>(std::max(echoes.sample[e], 0.0F));
+    const auto share = static_cast<float>(frame.share[static_cast<std::size_t>(echoes.place[e])]) * (1.0F / 255.0F);
+    if (echoes.rank[e] >= share * plan.most_rank[walk]) continue;
     const float floor_line = std::floor(echoes.line[e]);
     const float part = echoes.line[e] - floor_line;
     const int line = static_cast<int>(floor_line);
@@ -250,54 +296,84 @@ void splat(const ScanPlan& plan, const Echoes& echoes, int n, const Cell& cell, 
   }
 }
 
-/// Bricks of a cell: those of the box in P around its corners that come near it.
+std::size_t sample_near(const ScanPlan& plan, float s) noexcept {
+  return static_cast<std::size_t>(std::clamp(s, 0.0F, static_cast<float>(plan.samples - 1)));
+}
+
+Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int last, float first_rest,
+               float last_rest) noexcept {
+  Cell cell{};
+  cell.first_line = first;
+  cell.last_line = last;
+  cell.first_rest = first_rest;
+  cell.last_rest = last_rest;
+  const std::size_t near = sample_near(plan, first_rest), far = sample_near(plan, last_rest);
+  cell.half_thickness_mm = kBeamEdge * std::max(plan.elevation_sigma_mm[near], plan.elevation_sigma_mm[far]);
+  cell.most_rank = std::max(plan.most_rank[near], plan.most_rank[far]);
+  const ScanGeometry& g = plan.geometry;
+  const double margin = 1.0 + static_cast<double>(frame.widest_warp);
+  const double low_mm = (static_cast<double>(first_rest) + 0.4) * g.sample_mm(), high_mm = (static_cast<double>(last_rest) + 0.6) * g.sample_mm();
+  const double lines[2] = {first - margin, last + margin};
+  for (int side = 0; side < 2; ++side) {
+    const double outwards = side == 0 ? -1.0 : 1.0;
+    const double angle = (lines[side] - g.middle_line()) * g.line_step;
+    cell.side_x[side] = static_cast<float>(outwards * (g.is_fan ? std::cos(angle) : 1.0));
+    cell.side_y[side] = static_cast<float>(outwards * (g.is_fan ? -std::sin(angle) : 0.0));
+    cell.side_d[side] = static_cast<float>(g.is_fan ? 0.0 : -outwards * angle);
+  }
+  const auto bound = [&](double mm) { return static_cast<float>(g.is_fan ? std::pow(std::max(g.radius_mm + mm, 0.0), 2) : mm); };
+  cell.low = bound(low_mm);
+  cell.high = bound(high_mm);
+  return cell;
+}
+
+/// The box in P around a cell, in bricks.
 struct CellBox {
   Index low, high;
-  float half_thickness_mm;
 };
 
 CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept {
   const double margin_lines = 1.0 + static_cast<double>(frame.widest_warp);
-  const auto sample_of = [&](float s) {
-    return static_cast<std::size_t>(std::clamp(s, 0.0F, static_cast<float>(plan.samples - 1)));
-  };
-  const float thick =
-      std::max(plan.elevation_sigma_mm[sample_of(cell.first_rest)], plan.elevation_sigma_mm[sample_of(cell.last_rest)]);
   CellBox box{};
-  box.half_thickness_mm = kBeamEdge * thick;
   Vec3 low = Vec3::Constant(1e30), high = Vec3::Constant(-1e30);
-  for (const double line :
-       {static_cast<double>(cell.first_line) - margin_lines, 0.5 * (cell.first_line + cell.last_line),
-        static_cast<double>(cell.last_line) + margin_lines}) {
+  for (const double line : {cell.first_line - margin_lines, 0.5 * (cell.first_line + cell.last_line),
+                            cell.last_line + margin_lines}) {
     for (const float rest : {cell.first_rest, cell.last_rest}) {
-      const Vec2 p = plan.geometry.to_cartesian({line, (rest + 0.5) * plan.sample_mm});
-      for (const double z : {-box.half_thickness_mm, box.half_thickness_mm}) {
-        const Vec3 p_P = frame.X_PT * Vec3(p.x(), p.y(), z);
+      const Vec2 p = plan.geometry.to_cartesian({line, (static_cast<double>(rest) + 0.5) * plan.geometry.sample_mm()});
+      for (const float z : {-cell.half_thickness_mm, cell.half_thickness_mm}) {
+        const Vec3 p_P = frame.X_PT * Vec3(p.x(), p.y(), static_cast<double>(z));
         low = low.cwiseMin(p_P);
         high = high.cwiseMax(p_P);
       }
     }
   }
-  const double reach_mm = frame.drag.reach_mm > 0.0F ? frame.drag.shift_T.norm() : 0.0;
+  const double reach_mm = frame.drag.reach_mm > 0.0F ? static_cast<double>(frame.drag.shift_T.norm()) : 0.0;
+  const auto brick_of = [&](double mm) { return static_cast<std::int32_t>(std::floor(mm / static_cast<double>(plan.brick_mm))); };
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
-    box.low[a] = static_cast<std::int32_t>(std::floor((low[axis] - reach_mm) / plan.brick_mm));
-    box.high[a] = static_cast<std::int32_t>(std::floor((high[axis] + reach_mm) / plan.brick_mm));
+    box.low[a] = brick_of(low[axis] - reach_mm);
+    box.high[a] = brick_of(high[axis] + reach_mm);
   }
   return box;
 }
 
-/// Whether a brick of that middle can hold a scatterer of the cell.
-bool comes_near(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const CellBox& box,
-                const Vec3f& middle_T, float radius_mm) noexcept {
-  if (std::abs(middle_T.z()) > box.half_thickness_mm + radius_mm) return false;
-  const Polar at = plan.geometry.to_polar(Vec2(middle_T.x(), middle_T.y()));
-  const double margin_lines =
-      1.0 + frame.widest_warp + radius_mm / std::max(plan.geometry.line_spacing_mm(std::max(at.depth_mm, 0.0)), 0.02);
-  const double radius = radius_mm / plan.sample_mm + 1.0;
-  const double rest = at.depth_mm / plan.sample_mm;
-  return at.line > cell.first_line - margin_lines && at.line < cell.last_line + margin_lines &&
-         rest > cell.first_rest - radius && rest < cell.last_rest + radius;
+/// Whether a brick of that middle, a ball about it, can hold a scatterer of the cell.
+bool comes_near(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T, float radius_mm) noexcept {
+  if (std::abs(middle_T.z()) > cell.half_thickness_mm + radius_mm) return false;
+  const bool is_fan = plan.geometry.is_fan;
+  const float y = middle_T.y() + (is_fan ? static_cast<float>(plan.geometry.radius_mm) : 0.0F);
+  for (int side = 0; side < 2; ++side)
+    if (middle_T.x() * cell.side_x[side] + y * cell.side_y[side] + cell.side_d[side] > radius_mm) return false;
+  if (!is_fan) return y > cell.low - radius_mm && y < cell.high + radius_mm;
+  const float far = std::sqrt(middle_T.x() * middle_T.x() + y * y);
+  return far > std::sqrt(cell.low) - radius_mm && far < std::sqrt(cell.high) + radius_mm;
+}
+
+/// Hears what has been gathered and adds it to the scanlines.
+void flush(const ScanPlan& plan, FrameState& frame, const Cell& cell, Candidates& near, Echoes& echoes) noexcept {
+  const int n = HWY_DYNAMIC_DISPATCH(hear)(plan, frame, cell, near, echoes);
+  splat(plan, echoes, n, cell, frame);
+  near.count = 0;
 }
 
 }  // namespace
@@ -306,30 +382,30 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
                     int last) noexcept {
   const Pose X_TP = frame.X_PT.inverse();
   const Eigen::Matrix3f side_T = (X_TP.R() * static_cast<double>(plan.brick_mm)).cast<float>();
-  const float drag_reach_mm = frame.drag.reach_mm;
-  const float radius_mm = 0.87F * plan.brick_mm + (drag_reach_mm > 0.0F ? frame.drag.shift_T.norm() : 0.0F);
-  const float deepest = frame.deepest_dent_mm / plan.sample_mm;
+  const bool has_drag = frame.drag.reach_mm > 0.0F;
+  const float radius_mm = 0.87F * plan.brick_mm + (has_drag ? frame.drag.shift_T.norm() : 0.0F);
   const float segment = 12.0F / plan.sample_mm;
-  const auto per_call = HWY_DYNAMIC_DISPATCH(echoes_of);
-  for (float rest = -deepest - 1.0F; rest < static_cast<float>(plan.samples); rest += segment) {
-    const Cell cell{first, last, rest, std::min(rest + segment, static_cast<float>(plan.samples))};
+  const auto take = HWY_DYNAMIC_DISPATCH(take_near);
+  Candidates near;
+  Echoes echoes;
+  for (float rest = -frame.deepest_dent_mm / plan.sample_mm - 1.0F; rest < static_cast<float>(plan.samples);
+       rest += segment) {
+    const Cell cell = make_cell(plan, frame, first, last, rest, std::min(rest + segment, static_cast<float>(plan.samples)));
     const CellBox box = box_of(plan, frame, cell);
     Index b{};
     for (b[2] = box.low[2]; b[2] <= box.high[2]; ++b[2]) {
       for (b[1] = box.low[1]; b[1] <= box.high[1]; ++b[1]) {
-        for (b[0] = box.low[0]; b[0] <= box.high[0]; ++b[0]) {
-          const Vec3 middle_P = (Vec3(b[0], b[1], b[2]) + Vec3::Constant(0.5)) * static_cast<double>(plan.brick_mm);
-          const Vec3f middle_T = (X_TP * middle_P).cast<float>();
-          if (!comes_near(plan, frame, cell, box, middle_T, radius_mm)) continue;
-          const bool is_dragged =
-              drag_reach_mm > 0.0F && (middle_T - frame.drag.tip_T).norm() < drag_reach_mm + radius_mm;
-          Echoes echoes;
-          const int n = per_call(plan, frame, frame.pressed_samples.data(), cell, place(b, library, middle_T, side_T),
-                                 is_dragged, echoes);
-          splat(plan, echoes, n, cell, frame);
+        const Vec3 row_P = (Vec3(box.low[0], b[1], b[2]) + Vec3::Constant(0.5)) * static_cast<double>(plan.brick_mm);
+        Vec3f middle_T = (X_TP * row_P).cast<float>();
+        for (b[0] = box.low[0]; b[0] <= box.high[0]; ++b[0], middle_T += side_T.col(0)) {
+          if (!comes_near(plan, cell, middle_T, radius_mm)) continue;
+          const bool is_dragged = has_drag && (middle_T - frame.drag.tip_T).norm() < frame.drag.reach_mm + radius_mm;
+          take(plan, is_dragged ? &frame.drag : nullptr, cell, place(b, library, middle_T, side_T), near);
+          if (near.count > Candidates::kMost - kBrickScatterers) flush(plan, frame, cell, near, echoes);
         }
       }
     }
+    flush(plan, frame, cell, near, echoes);
   }
 }
 

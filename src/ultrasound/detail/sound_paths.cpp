@@ -16,7 +16,7 @@ std::array<float, 3> floats(const Vec3& v) {
 }
 
 /// Outward normal of the impedance's change, unit, in voxel-mm axes of the scene; zero where nothing changes.
-Vec3 normal_at(const AcousticScene& scene, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept {
+Vec3 normal_at(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept {
   constexpr float kReach = 1.5F;  // voxels
   Vec3 slope = Vec3::Zero();
   for (int a = 0; a < 3; ++a) {
@@ -24,10 +24,10 @@ Vec3 normal_at(const AcousticScene& scene, const std::array<TissueRow, kTissues>
     step[a] = kReach;
     const Vec3 high = index + step, low = index - step;
     const auto z_at = [&](const Vec3& p) {
-      return blend_at(scene, rows, static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()))
+      return blend_at(frame, rows, static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()))
           .row.log_z;
     };
-    slope[a] = static_cast<double>(z_at(high) - z_at(low)) / scene.geometry.spacing_mm[a];
+    slope[a] = static_cast<double>(z_at(high) - z_at(low)) / frame.scene->geometry.spacing_mm[a];
   }
   const double size = slope.norm();
   return size > 1e-6 ? Vec3(slope / size) : Vec3(Vec3::Zero());
@@ -42,7 +42,7 @@ void set_mirror(const ScanPlan& plan, FrameState& frame, LineWalk& line, const W
   const Vec3 spacing = scene.geometry.spacing_mm;
   const auto in_mm = [&](const std::array<float, 3>& v) { return Vec3(Vec3(v[0], v[1], v[2]).cwiseProduct(spacing)); };
   const Vec3 along = in_mm(line.along);
-  Vec3 normal = -normal_at(scene, plan.rows, index);  // impedance falls into gas: along the sound
+  Vec3 normal = -normal_at(frame, plan.rows, index);  // impedance falls into gas: along the sound
   const double facing = normal.dot(along);
   if (facing < 0.2) return;
   const Vec3 origin = in_mm(line.origin), place = index.cwiseProduct(spacing);

@@ -17,7 +17,7 @@ constexpr float kTilt_rad = 0.2F;
 /// What a wholly rough surface sends back of it (assumed).
 constexpr float kRoughShare = 0.12F;
 
-Vec3 gradient_mm(const AcousticScene& scene, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept {
+Vec3 gradient_mm(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept {
   constexpr double kReach = 1.5;  // voxels
   Vec3 slope;
   for (int a = 0; a < 3; ++a) {
@@ -26,10 +26,10 @@ Vec3 gradient_mm(const AcousticScene& scene, const std::array<TissueRow, kTissue
       Vec3 p = index;
       p[a] += side == 0 ? -kReach : kReach;
       z[side] = static_cast<double>(
-          blend_at(scene, rows, static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()))
+          blend_at(frame, rows, static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()))
               .row.log_z);
     }
-    slope[a] = (z[1] - z[0]) / scene.geometry.spacing_mm[a];
+    slope[a] = (z[1] - z[0]) / frame.scene->geometry.spacing_mm[a];
   }
   return slope;
 }
@@ -60,7 +60,7 @@ void add_surface_echoes(const ScanPlan& plan, FrameState& frame, const WalkResul
     const int s = std::clamp(static_cast<int>(border.walk), 0, plan.samples - 1);
     const auto at = static_cast<std::size_t>(s);
     const Vec3 index(walk.index[0][at], walk.index[1][at], walk.index[2][at]);
-    const Vec3 slope = gradient_mm(scene, plan.rows, index);
+    const Vec3 slope = gradient_mm(frame, plan.rows, index);
     const double size = slope.norm();
     const float facing = size > 1e-6 ? static_cast<float>(std::min(1.0, std::abs(slope.dot(along)) / size)) : 0.7F;
     const float tilt = std::acos(facing);

@@ -37,70 +37,102 @@ float noise(float x, float y, float z) noexcept {
   return std::lerp(std::lerp(row(j, k), row(j + 1, k), v), std::lerp(row(j, k + 1), row(j + 1, k + 1), v), w);
 }
 
-/// -0.5 between layers, to 1 on a layer's bright sheet; sheets come and go.
-float layers(float below_skin_mm, const Vec3& p_mm) noexcept {
+/// Where in the layers a place is, and how strong they are there.
+struct Layering {
+  float phase = 0.0F;
+  float strength = 0.0F;
+};
+
+Layering layering_at(float below_skin_mm, const Vec3& p_mm) noexcept {
   const auto x = static_cast<float>(p_mm.x()), y = static_cast<float>(p_mm.y()), z = static_cast<float>(p_mm.z());
   const float wave = noise(x / kWave_mm, y / kWave_mm, z / kWave_mm);
-  const float phase = below_skin_mm / kLayer_mm + 0.9F * wave;
-  const float part = noise(phase, 7.3F, 0.4F * wave);
-  const float sheet = std::exp(-part * part / 0.03F);
-  const float strength = 0.6F + 0.4F * noise(x / 5.0F + 31.0F, y / 5.0F, z / 5.0F);
-  return 1.5F * sheet * strength - 0.5F;
+  return {below_skin_mm / kLayer_mm + 0.9F * wave, 0.6F + 0.4F * noise(x / 5.0F + 31.0F, y / 5.0F, z / 5.0F)};
 }
 
-float texture_at(const AcousticScene& scene, std::int32_t cell) noexcept {
-  return static_cast<float>(scene.texture[static_cast<std::size_t>(cell)]);
+/// Profile of the layers along their phase: -0.5 between them, up to 1 on a bright sheet; sheets come unevenly.
+class LayerProfile {
+ public:
+  LayerProfile() {
+    for (std::size_t n = 0; n < kSteps; ++n) {
+      const float part = noise(static_cast<float>(n) / kStepsAUnit, 7.3F, 0.0F);
+      values_[n] = std::exp(-part * part / 0.03F);
+    }
+  }
+  float at(const Layering& layer) const noexcept {
+    const float place = layer.phase * kStepsAUnit;
+    const auto n = static_cast<std::size_t>(static_cast<std::int64_t>(std::floor(place))) % kSteps;
+    return 1.5F * values_[n] * layer.strength - 0.5F;
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 4096;
+  static constexpr float kStepsAUnit = 32.0F;
+  std::array<float, kSteps> values_;
+};
+
+/// Texture between the voxels of a cell, steps.
+float texture_between(const FrameState& frame, const WalkResult& walk, std::size_t s) noexcept {
+  const CellCorners corners = corners_at(frame.tiles, walk.index[0][s], walk.index[1][s], walk.index[2][s]);
+  float sum = 0.0F;
+  for (std::size_t n = 0; n < 8; ++n)
+    sum += corners.weight[n] * static_cast<float>(frame.tiles.texture(corners.offset[n]));
+  return sum;
 }
 
-/// Texture between the voxels of a cell.
-float texture_between(const AcousticScene& scene, const WalkResult& walk, std::size_t s) noexcept {
-  const auto& size = scene.geometry.size;
-  const std::int32_t cell = walk.cell[s];
-  const float x = walk.index[0][s], y = walk.index[1][s], z = walk.index[2][s];
-  const float u = x - std::floor(x), v = y - std::floor(y), w = z - std::floor(z);
-  const auto j = static_cast<std::int32_t>(size[0]), k = static_cast<std::int32_t>(size[0] * size[1]);
-  const auto row = [&](std::int32_t at) { return std::lerp(texture_at(scene, at), texture_at(scene, at + 1), u); };
-  return std::lerp(std::lerp(row(cell), row(cell + j), v), std::lerp(row(cell + k), row(cell + k + j), v), w);
+/// Layers along the central plane: their place in coarse steps, the sheets themselves sample by sample.
+void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, Texture& texture) noexcept {
+  static const LayerProfile profile;
+  const AcousticScene& scene = *frame.scene;
+  Layering last;
+  bool was_in = false;
+  for (int begin = 0; begin < plan.samples; begin += kCoarse) {
+    const auto at = static_cast<std::size_t>(std::min(begin + kCoarse, plan.samples - 1));
+    const bool is_in = plan.fibre_gain[walk.tissue[at]] > 0.0F && walk.cell[at] >= 0;
+    Layering next;
+    if (is_in) {
+      const Vec3 p_mm =
+          Vec3(walk.index[0][at], walk.index[1][at], walk.index[2][at]).cwiseProduct(scene.geometry.spacing_mm);
+      const Vec3 p_P = scene.geometry.origin_P + scene.geometry.R_PV * p_mm;
+      const double skin_mm = scene.skin_distance_mm.empty() ? -p_mm.y() : sample_linear(scene.skin_distance_mm, p_P);
+      next = layering_at(static_cast<float>(-skin_mm), p_mm);
+    }
+    if (is_in && !was_in) last = next;
+    if (!is_in && was_in) next = last;
+    for (int n = 0; n < kCoarse; ++n) {
+      const float part = static_cast<float>(n) / static_cast<float>(kCoarse);
+      texture.fibres[static_cast<std::size_t>(begin + n)] =
+          is_in || was_in ? profile.at({std::lerp(last.phase, next.phase, part), std::lerp(last.strength, next.strength, part)})
+                          : 0.0F;
+    }
+    last = next;
+    was_in = is_in;
+  }
 }
 
 }  // namespace
 
 void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line, bool is_central,
                   Texture& texture) noexcept {
-  const AcousticScene& scene = *frame.scene;
-  const auto coarse = static_cast<int>(plan.coarse_samples());
+  if (is_central) make_fibres(plan, frame, walk, texture);
   const float* focus = frame.focus_log.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
-  const Vec3 spacing = scene.geometry.spacing_mm;
-  float last = 0.0F;
-  for (int c = 0; c < coarse; ++c) {
+  const auto value_at = [&](int c) {
     const auto s = static_cast<std::size_t>(std::min(c * kCoarse, plan.samples - 1));
     const std::uint8_t tissue = walk.tissue[s];
-    float value = focus[c];
-    if (walk.cell[s] >= 0) {
-      if (is_central) {
-        float& fibre = texture.fibres[static_cast<std::size_t>(c)];
-        fibre = 0.0F;
-        if (plan.fibre_gain[tissue] > 0.0F) {
-          const Vec3 p_mm = Vec3(walk.index[0][s], walk.index[1][s], walk.index[2][s]).cwiseProduct(spacing);
-          const Vec3 p_P = scene.geometry.origin_P + scene.geometry.R_PV * p_mm;
-          const double skin_mm =
-              scene.skin_distance_mm.empty() ? -p_mm.y() : sample_linear(scene.skin_distance_mm, p_P);
-          fibre = layers(static_cast<float>(-skin_mm), p_mm);
-        }
-      }
-      value += plan.fibre_gain[tissue] * texture.fibres[static_cast<std::size_t>(c)];
-      if (!scene.texture.empty()) {
-        const float step = std::clamp(texture_between(scene, walk, s), -128.0F, 126.9F) + 128.0F;
-        const auto low = static_cast<std::size_t>(step);
-        const auto& gain = plan.texture_gain[tissue];
-        value += std::lerp(gain[low], gain[low + 1], step - static_cast<float>(low));
-      }
+    if (walk.cell[s] < 0 || plan.has_texture[tissue] == 0 || !frame.tiles.has_texture()) return focus[c];
+    const float step = std::clamp(texture_between(frame, walk, s), -128.0F, 126.9F) + 128.0F;
+    const auto low = static_cast<std::size_t>(step);
+    const auto& gain = plan.texture_gain[tissue];
+    return focus[c] + std::lerp(gain[low], gain[low + 1], step - static_cast<float>(low));
+  };
+  float last = value_at(0);
+  for (int c = 0; c * kCoarse < plan.samples; ++c) {
+    const float next = value_at(c + 1);
+    for (int n = 0; n < kCoarse; ++n) {
+      const auto s = static_cast<std::size_t>(c * kCoarse + n);
+      texture.added[s] = last + (next - last) * (static_cast<float>(n) / static_cast<float>(kCoarse)) +
+                         plan.fibre_gain[walk.tissue[s]] * texture.fibres[s];
     }
-    if (c > 0)
-      for (int n = 0; n < kCoarse; ++n)
-        texture.added[static_cast<std::size_t>((c - 1) * kCoarse + n)] =
-            last + (value - last) * static_cast<float>(n) / static_cast<float>(kCoarse);
-    last = value;
+    last = next;
   }
 }
 

@@ -8,10 +8,10 @@
 namespace trocar::detail {
 
 /// What is added to a walk's log_gain, neper a sample: the CT's texture, layers of muscle and fat, focusing by
-/// refraction. `fibres` (coarse_samples) is made on the central plane and read on the others.
+/// refraction. `fibres` is made on the central plane and read on the others.
 struct alignas(64) Texture {
   std::array<float, kMaxSamples + 16> added;
-  std::array<float, kMaxSamples / kCoarse + 4> fibres;
+  std::array<float, kMaxSamples + 16> fibres;  ///< Layers, -0.5 to about 1.
 };
 void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line, bool is_central,
                   Texture& texture) noexcept;

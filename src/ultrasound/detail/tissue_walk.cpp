@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Core>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ultrasound/detail/tissue_walk.cpp"
 #include <hwy/foreach_target.h>
@@ -24,8 +26,9 @@ void place_samples(const ScanPlan& plan, const FrameState& frame, const LineWalk
   const F f;
   const I d;
   const GridGeometry& grid = frame.scene->geometry;
-  const std::int32_t stride[3] = {1, static_cast<std::int32_t>(grid.size[0]),
-                                  static_cast<std::int32_t>(grid.size[0] * grid.size[1])};
+  // Offset among the tiles: (index / 4) * stride + (index % 4) * step, an axis.
+  const std::int32_t stride[3] = {TiledTissue::kTile, frame.tiles.row(), frame.tiles.slab()};
+  const std::int32_t step[3] = {1, 4, 16};
   const VF zeta_v = hn::Set(f, zeta);
   const VF pressed = hn::Set(f, -line.pressed_mm);
   const VF mm = hn::Set(f, plan.sample_mm);
@@ -52,7 +55,9 @@ void place_samples(const ScanPlan& plan, const FrameState& frame, const LineWalk
       inside = hn::And(inside, hn::And(hn::Gt(index, hn::Set(f, -0.5F)), hn::Lt(index, hn::Set(f, last + 0.5F))));
       const VF clamped = hn::Min(hn::Max(index, hn::Zero(f)), hn::Set(f, last - 1e-3F));
       hn::Store(clamped, f, result.index[a].data() + s);
-      cell = hn::Add(cell, hn::Mul(hn::ConvertTo(d, clamped), hn::Set(d, stride[a])));
+      const VI voxel = hn::ConvertTo(d, clamped);
+      cell = hn::Add(cell, hn::Mul(hn::ShiftRight<2>(voxel), hn::Set(d, stride[a])));
+      cell = hn::Add(cell, hn::Mul(hn::And(voxel, hn::Set(d, 3)), hn::Set(d, step[a])));
     }
     hn::Store(hn::IfThenElse(hn::RebindMask(d, inside), cell, hn::Set(d, -1)), d, result.cell.data() + s);
   }
@@ -72,42 +77,21 @@ void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& l
   HWY_DYNAMIC_DISPATCH(place_samples)(plan, frame, line, zeta, result);
 }
 
-Blend blend_at(const AcousticScene& scene, const std::array<TissueRow, kTissues>& rows, float i, float j,
+Blend blend_at(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, float i, float j,
                float k) noexcept {
-  const auto& size = scene.geometry.size;
-  const auto cell = [](float v, std::int64_t n, float& part) {
-    const float clamped = std::clamp(v, 0.0F, static_cast<float>(n - 1) - 1e-3F);
-    const auto low = static_cast<std::int64_t>(clamped);
-    part = clamped - static_cast<float>(low);
-    return low;
-  };
-  float f[3];
-  const std::int64_t a = cell(i, size[0], f[0]), b = cell(j, size[1], f[1]), c = cell(k, size[2], f[2]);
-  const std::uint8_t* first = scene.tissue.data() + (c * size[1] + b) * size[0] + a;
-  Blend blend{{0.0F, 0.0F, 0.0F, 0.0F}, 0};
-  float most = 0.0F;
-  std::array<std::uint8_t, 8> tissues;
-  std::array<float, 8> weights;
+  const auto& size = frame.scene->geometry.size;
+  const auto within = [](float v, std::int64_t n) { return std::clamp(v, 0.0F, static_cast<float>(n - 1) - 1e-3F); };
+  const CellCorners corners = corners_at(frame.tiles, within(i, size[0]), within(j, size[1]), within(k, size[2]));
+  using Row = Eigen::Array4f;
+  static_assert(sizeof(TissueRow) == sizeof(Row));
+  Row sum = Row::Zero();
   for (std::size_t n = 0; n < 8; ++n) {
-    const std::ptrdiff_t offset =
-        static_cast<std::ptrdiff_t>(n & 1U) + ((n & 2U) != 0 ? size[0] : 0) + ((n & 4U) != 0 ? size[0] * size[1] : 0);
-    tissues[n] = static_cast<std::uint8_t>(first[offset] & ~kMixedCell);
-    weights[n] = ((n & 1U) != 0 ? f[0] : 1.0F - f[0]) * ((n & 2U) != 0 ? f[1] : 1.0F - f[1]) *
-                 ((n & 4U) != 0 ? f[2] : 1.0F - f[2]);
-    const TissueRow& row = rows[tissues[n]];
-    blend.row.log_z += weights[n] * row.log_z;
-    blend.row.loss += weights[n] * row.loss;
-    blend.row.log_b += weights[n] * row.log_b;
-    blend.row.delay += weights[n] * row.delay;
+    const auto tissue = static_cast<std::size_t>(frame.tiles.tissue(corners.offset[n]) & ~kMixedCell);
+    sum += corners.weight[n] * Eigen::Map<const Row, Eigen::Aligned16>(&rows[tissue].log_z);
   }
-  for (std::size_t n = 0; n < 8; ++n) {
-    float sum = 0.0F;
-    for (std::size_t m = 0; m < 8; ++m) sum += tissues[m] == tissues[n] ? weights[m] : 0.0F;
-    if (sum > most) {
-      most = sum;
-      blend.tissue = tissues[n];
-    }
-  }
+  Blend blend{};
+  Eigen::Map<Row, Eigen::Aligned16>(&blend.row.log_z) = sum;
+  blend.tissue = static_cast<std::uint8_t>(frame.tiles.tissue(corners.offset[corners.nearest]) & ~kMixedCell);
   return blend;
 }
 
@@ -124,7 +108,7 @@ class Walk {
  public:
   Walk(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
        float* delay) noexcept
-      : plan_(plan), scene_(*frame.scene), line_(line), result_(result), delay_(delay) {
+      : plan_(plan), frame_(frame), line_(line), result_(result), delay_(delay) {
     log_gain_ = 2.0F * std::log(std::max(line.coupling, 1e-6F));
     entry_samples_ = static_cast<int>(kEntry_mm / plan.sample_mm);
     if (line.mirror_depth_mm < 1e29F) stand_mirror(zeta);
@@ -156,7 +140,7 @@ class Walk {
         -(line_.mirror[0] + line_.mirror[2] * elevation_mm + line_.mirror[3] * result_.sideways_mm[near]) /
         line_.mirror[1];
     const float walk = (along_mm + line_.pressed_mm * plan_.contact_shape[near]) / plan_.sample_mm - 0.5F;
-    const auto spacing_mm = static_cast<float>(scene_.geometry.spacing_mm.maxCoeff());
+    const auto spacing_mm = static_cast<float>(frame_.scene->geometry.spacing_mm.maxCoeff());
     const float reach = 1.8F * spacing_mm / line_.mirror[1] / plan_.sample_mm;
     mirror_from_ = static_cast<int>(walk - reach);
     mirror_at_ = static_cast<int>(walk);
@@ -191,7 +175,7 @@ class Walk {
     for (int n = s; n < s + kBlock; ++n) {
       const std::int32_t cell = result_.cell[static_cast<std::size_t>(n)];
       if (cell < 0) return false;
-      differs |= static_cast<unsigned>(scene_.tissue[static_cast<std::size_t>(cell)]) ^ tissue_;
+      differs |= static_cast<unsigned>(frame_.tiles.tissue(cell)) ^ tissue_;
     }
     return differs == 0;
   }
@@ -220,12 +204,12 @@ class Walk {
     TissueRow row = rows[kNoData];
     bool is_mixed = false;
     if (cell >= 0) {
-      const std::uint8_t voxel = scene_.tissue[static_cast<std::size_t>(cell)];
+      const std::uint8_t voxel = frame_.tiles.tissue(cell);
       if ((voxel & kMixedCell) == 0) {
         tissue = voxel;
         row = rows[tissue];
       } else {
-        const Blend blend = blend_at(scene_, rows, result_.index[0][at], result_.index[1][at], result_.index[2][at]);
+        const Blend blend = blend_at(frame_, rows, result_.index[0][at], result_.index[1][at], result_.index[2][at]);
         tissue = blend.tissue;
         row = blend.row;
         is_mixed = true;
@@ -308,7 +292,7 @@ class Walk {
   }
 
   const ScanPlan& plan_;
-  const AcousticScene& scene_;
+  const FrameState& frame_;
   const LineWalk& line_;
   WalkResult& result_;
   float* delay_;

@@ -23,7 +23,7 @@ inline constexpr int kMaxBorders = 64;
 /// What a walk leaves behind. Some 70 KiB, kept a thread.
 struct alignas(64) WalkResult {
   std::array<std::array<float, kMaxSamples + 16>, 3> index;  ///< Place of each sample, fractional voxels.
-  std::array<std::int32_t, kMaxSamples + 16> cell;           ///< Offset of its first voxel; -1 beyond the volume.
+  std::array<std::int32_t, kMaxSamples + 16> cell;           ///< Offset of its first voxel among the tiles; -1 beyond the volume.
   std::array<float, kMaxSamples + 16> log_gain;              ///< Of a scatterer there: loss and backscatter, neper.
   std::array<float, kMaxSamples + 16> log_way;               ///< Loss alone, neper.
   std::array<float, kMaxSamples + 16> sideways_mm;           ///< Displacement by refraction.
@@ -41,12 +41,12 @@ void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& li
 void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
                 WalkResult& result) noexcept;
 
-/// Properties at a fractional voxel index, neighbours blended; the prevailing tissue.
+/// Properties at a fractional voxel index, neighbours blended; the nearest tissue. Beyond the volume: at its edge.
 struct Blend {
   TissueRow row;
   std::uint8_t tissue;
 };
-Blend blend_at(const AcousticScene& scene, const std::array<TissueRow, kTissues>& rows, float i, float j,
+Blend blend_at(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, float i, float j,
                float k) noexcept;
 
 }  // namespace trocar::detail

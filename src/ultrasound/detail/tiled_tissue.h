@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ultrasound/acoustic_scene.h"
+
+namespace trocar::detail {
+
+/// A scene's voxels in cubes of 4 x 4 x 4, one cache line each: a scan plane lies across the rows of a plain volume and
+/// would read a line for every voxel. The offset of a voxel is the sum of three parts, one an axis.
+class TiledTissue {
+ public:
+  TiledTissue() = default;
+  explicit TiledTissue(const AcousticScene& scene);
+
+  std::int32_t part_i(std::int32_t i) const noexcept { return (i >> 2) * kTile + (i & 3); }
+  std::int32_t part_j(std::int32_t j) const noexcept { return (j >> 2) * row_ + ((j & 3) << 2); }
+  std::int32_t part_k(std::int32_t k) const noexcept { return (k >> 2) * slab_ + ((k & 3) << 4); }
+  std::int32_t row() const noexcept { return row_; }
+  std::int32_t slab() const noexcept { return slab_; }
+
+  /// Tissue and kMixedCell of the voxel at an offset.
+  std::uint8_t tissue(std::int32_t offset) const noexcept {
+    return tissue_[static_cast<std::size_t>(offset) / kTile].voxels[static_cast<std::size_t>(offset) % kTile];
+  }
+  std::int8_t texture(std::int32_t offset) const noexcept {
+    return static_cast<std::int8_t>(
+        texture_[static_cast<std::size_t>(offset) / kTile].voxels[static_cast<std::size_t>(offset) % kTile]);
+  }
+  bool has_texture() const noexcept { return !texture_.empty(); }
+
+  static constexpr std::int32_t kTile = 64;
+
+ private:
+  struct alignas(64) Tile {
+    std::array<std::uint8_t, kTile> voxels{};
+  };
+  std::int32_t row_ = 0, slab_ = 0;
+  std::vector<Tile> tissue_, texture_;
+};
+
+/// The eight voxels around a fractional index, and their weights.
+struct CellCorners {
+  std::array<std::int32_t, 8> offset;
+  std::array<float, 8> weight;
+  std::size_t nearest;
+};
+/// The index must lie in [0, size - 1).
+CellCorners corners_at(const TiledTissue& tiles, float i, float j, float k) noexcept;
+
+}  // namespace trocar::detail
