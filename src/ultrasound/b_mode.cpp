@@ -150,6 +150,7 @@ BMode& BMode::operator=(BMode&&) noexcept = default;
 void BMode::set_acquisition(const Acquisition& acquisition) {
   Impl& impl = *impl_;
   TROCAR_CHECK(acquisition.samples >= 16 && acquisition.samples <= kMaxSamples && acquisition.lines >= 2);
+  TROCAR_CHECK(acquisition.looks >= 1 && acquisition.looks <= 5);
   TROCAR_CHECK(acquisition.planes >= 1 && acquisition.planes <= kMaxPlanes && acquisition.planes % 2 == 1);
   impl.plan = make_scan_plan(*impl.scene, impl.transducer, acquisition);
   fit_frame(impl.frame, impl.plan);
@@ -157,7 +158,9 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   impl.out.geometry = impl.plan.geometry;
   impl.out.beam = impl.plan.beam;
   const auto lines = static_cast<std::size_t>(impl.plan.lines);
-  impl.out.re.assign(lines * static_cast<std::size_t>(impl.plan.samples), 0.0F);
+  impl.out.looks = impl.plan.looks;
+  impl.out.re.assign(static_cast<std::size_t>(impl.plan.looks) * lines * static_cast<std::size_t>(impl.plan.samples),
+                     0.0F);
   impl.out.im = impl.out.re;
   impl.out.contact.assign(lines, 1.0F);
 }
@@ -175,6 +178,10 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   FrameState& frame = impl.frame;
   frame.X_PT = input.X_PT;
   find_contact(impl.scene->skin_distance_mm, plan.geometry, input.X_PT, frame.contact);
+  const double reach_mm = find_dent_reach_mm(*impl.scene, plan.geometry, input.X_PT);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(plan.samples); ++s)
+    frame.contact_shape[s] =
+        static_cast<float>(dent_share((static_cast<double>(s) + 0.5) * plan.geometry.sample_mm(), reach_mm));
   aim_lines(plan, frame);
   impl.for_groups([&](int group, int first, int last) {
     probe_lines(plan, frame, impl.scratch[static_cast<std::size_t>(group)].walk, first, last);
@@ -186,7 +193,8 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   impl.for_groups([&](int, int first, int last) {
     spread_axially(plan, frame, first, last, impl.out);
     if (!plan.acquisition.artefacts.reverberation) return;
-    for (int line = first; line < last; ++line) add_reverberation(plan, frame, line, impl.out);
+    for (int look = 0; look < plan.looks; ++look)
+      for (int line = first; line < last; ++line) add_reverberation(plan, frame, look, line, impl.out);
   });
   for (std::size_t line = 0; line < frame.contact.size(); ++line) impl.out.contact[line] = frame.walks[line].coupling;
   return impl.out;

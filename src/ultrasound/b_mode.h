@@ -21,7 +21,8 @@ struct Acquisition {
   double focus_mm = 80.0;
   int lines = 256;     ///< Range 2..1024.
   int samples = 1024;  ///< A scanline. Range 16..4096.
-  int planes = 5;      ///< Across the beam's thickness. 1, 3, 5, 7 or 9.
+  int looks = 3;   ///< Of a compound picture: sub-apertures whose pictures are averaged. Range 1..5; 1: full speckle.
+  int planes = 5;  ///< Across the beam's thickness. 1, 3, 5, 7 or 9.
   Artefacts artefacts;
 };
 /// The transducer's own defaults.
@@ -35,11 +36,12 @@ struct BModeInput {
 };
 
 /// Echoes of one frame, beamformed, demodulated and not yet amplified: complex baseband, scanline by scanline (sample
-/// runs fastest). 1.0 is the root mean square of liver's speckle without attenuation.
+/// runs fastest), look after look. 1.0 is the root mean square of liver's speckle without attenuation.
 struct BasebandFrame {
   ScanGeometry geometry;
   Beam beam;
-  std::vector<float> re, im;
+  int looks = 1;
+  std::vector<float> re, im;   ///< looks * lines * samples.
   std::vector<float> contact;  ///< A scanline: 1 where the face is coupled to the skin, 0 in air.
 };
 

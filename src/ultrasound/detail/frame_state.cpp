@@ -16,13 +16,16 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.walks.resize(lines);
   frame.pressed_samples.assign(lines, 0.0F);
   frame.reflectors.resize(lines);
-  for (auto* coarse : {&frame.bend_mm, &frame.focus_log, &frame.slowness})
+  frame.contact_shape.assign(samples + 16, 0.0F);
+  for (auto* coarse : {&frame.bend_mm, &frame.focus_log, &frame.slowness, &frame.smooth_slowness, &frame.probed_way})
     coarse->assign(lines * plan.coarse_samples(), 0.0F);
   frame.delay.assign(lines * samples + 16, 0.0F);
   frame.way_gain.assign(lines * samples + 16, 0.0F);
   frame.gain.assign(static_cast<std::size_t>(plan.planes) * lines * samples, 0.0F);
   frame.share.assign(frame.gain.size(), 0);
-  for (auto* echoes : {&frame.re, &frame.im, &frame.wide_re, &frame.wide_im}) echoes->assign(padded, 0.0F);
+  for (auto* echoes : {&frame.re, &frame.im}) echoes->assign(padded, 0.0F);
+  for (auto* echoes : {&frame.wide_re, &frame.wide_im})
+    echoes->assign(padded * static_cast<std::size_t>(plan.looks), 0.0F);
 }
 
 }  // namespace trocar::detail

@@ -56,11 +56,14 @@ struct FrameState {
   float deepest_dent_mm = 0.0F;
 
   std::vector<LineContact> contact;
+  std::vector<float> contact_shape;  ///< A sample of `walk`: share of the dent that tissue there follows.
   std::vector<LineWalk> walks;
   std::vector<float> pressed_samples;  ///< A scanline: how deep the face dents the skin.
   std::vector<Reflector> reflectors;
   std::vector<float> bend_mm;           ///< line * coarse_samples: sideways displacement by refraction.
+  std::vector<float> probed_way;        ///< The same: neper left of an echo, without its own strength.
   std::vector<float> focus_log;         ///< The same: neper of amplitude by beams that part or meet.
+  std::vector<float> smooth_slowness;   ///< The same, over the beam's width.
   std::vector<float> slowness;          ///< The same: c0/c - 1 of the central plane.
   std::vector<float> delay;             ///< line * samples: shown - walk, samples.
   std::vector<float> way_gain;          ///< The same: amplitude left of an echo from there, without its own strength.

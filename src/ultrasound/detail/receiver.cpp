@@ -64,7 +64,7 @@ std::size_t distance(std::size_t a, std::size_t b) {
 
 }  // namespace
 
-Receiver::Receiver() : white_(kNoiseLength), noise_(kNoiseLength + kMostSamples) {
+Receiver::Receiver() : white_(kNoiseLength), noise_(kNoiseLength + 2 * kMostSamples) {
   Random random(kTableSeed);
   for (float& value : white_) value = static_cast<float>(random.normal());
 }
@@ -78,7 +78,7 @@ void Receiver::filter_noise(double sigma_samples) {
     }
     noise_[i] = sum;
   }
-  std::copy_n(noise_.begin(), kMostSamples, noise_.begin() + kNoiseLength);
+  std::copy_n(noise_.begin(), 2 * kMostSamples, noise_.begin() + kNoiseLength);
 }
 
 Receiver::Noise Receiver::noise(std::uint64_t seed, std::size_t line) const noexcept {

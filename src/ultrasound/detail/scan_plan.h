@@ -50,14 +50,16 @@ struct ScanPlan {
   // A value a sample of `walk` or `shown`, which differ by too little to matter here.
   std::vector<float> elevation_sigma_mm, inverse_elevation_sigma;
   std::vector<float> speckle_scale;  ///< Makes fully developed speckle of unit scatterers 1 root mean square.
-  std::vector<float> most_rank;      ///< Share of the scatterers that are enough there: resolution cells differ in size.
+  std::vector<float> most_rank;  ///< Share of the scatterers that are enough there: resolution cells differ in size.
   std::vector<float> surface_scale;  ///< Makes a plane reflector independent of how many scanlines see it.
-  std::vector<float> contact_shape;  ///< Share of the dent that tissue at that depth follows.
 
+  int looks = 1;                 ///< Of the compound.
+  std::vector<float> look_turn;  ///< A sample: phase from scanline to scanline of the second look, rad.
   std::vector<float> lateral;  ///< (lateral_reach + 1) rows of `samples` weights: of scanlines 0, 1, 2 … away; 16 more.
   int lateral_reach = 0;
+  std::vector<int> main_lobe_reach_at;
   std::vector<int> lateral_reach_at;  ///< The same for each 16 samples: the fan's scanlines part with depth.
-  std::vector<float> axial;  ///< 2 axial_reach + 1 weights.
+  std::vector<float> axial;           ///< 2 axial_reach + 1 weights.
   int axial_reach = 0;
 
   float cycles_per_sample = 0.0F;  ///< Of the echo's phase.

@@ -40,15 +40,20 @@ template <bool kWithClutter>
 HWY_INLINE void detect_at(const ReceivedLine& line, std::size_t s, std::uint16_t* HWY_RESTRICT level) {
   const F f;
   const VF noise = hn::Set(f, line.noise);
-  VF re = hn::MulAdd(noise, hn::LoadU(f, line.noise_re + s), hn::LoadU(f, line.re + s));
-  VF im = hn::MulAdd(noise, hn::LoadU(f, line.noise_im + s), hn::LoadU(f, line.im + s));
-  if constexpr (kWithClutter) {
-    re = hn::Add(re, hn::LoadU(f, line.clutter_re + s));
-    im = hn::Add(im, hn::LoadU(f, line.clutter_im + s));
+  VF power = hn::Zero(f);
+  for (std::size_t look = 0; look < line.looks; ++look) {
+    const std::size_t at = s + look * line.look_step, noise_at = s + look * line.noise_step;
+    VF re = hn::MulAdd(noise, hn::LoadU(f, line.noise_re + noise_at), hn::LoadU(f, line.re + at));
+    VF im = hn::MulAdd(noise, hn::LoadU(f, line.noise_im + noise_at), hn::LoadU(f, line.im + at));
+    if constexpr (kWithClutter) {
+      re = hn::Add(re, hn::LoadU(f, line.clutter_re + s));
+      im = hn::Add(im, hn::LoadU(f, line.clutter_im + s));
+    }
+    power = hn::MulAdd(re, re, hn::MulAdd(im, im, power));
   }
   // Far below and far above all that is shown; the comparison is false for NaN.
   const VF least = hn::Set(f, 1e-30F);
-  const VF power = hn::MulAdd(re, re, hn::Mul(im, im));
+  power = hn::Mul(power, hn::Set(f, 1.0F / static_cast<float>(line.looks)));
   const VF clean = hn::Max(hn::IfThenElse(hn::Lt(power, hn::Set(f, 1e38F)), power, least), least);
   constexpr auto kScale = static_cast<float>(3.01029995663981 * kFineLevels_per_db);
   const VF fine = hn::MulAdd(log2_of(clean), hn::Set(f, kScale), hn::LoadU(f, line.offset + s));

@@ -42,7 +42,8 @@ struct alignas(64) Candidates {
 
 /// Echoes of some candidates, compact.
 struct alignas(64) Echoes {
-  float line[Candidates::kMost + 64], sample[Candidates::kMost + 64], re[Candidates::kMost + 64], im[Candidates::kMost + 64];
+  float line[Candidates::kMost + 64], sample[Candidates::kMost + 64], re[Candidates::kMost + 64],
+      im[Candidates::kMost + 64];
   float rank[Candidates::kMost + 64];
   std::int32_t place[Candidates::kMost + 64];
 };
@@ -100,14 +101,14 @@ HWY_INLINE void drag_along(const Drag& drag, VF& x, VF& y, VF& z) {
 }
 
 /// Where along the scanline that resting tissue lies now: walk = rest + pressed * shape(walk), two rounds.
-HWY_INLINE VF walk_of_rest(const ScanPlan& plan, VF rest, VF pressed_samples) {
+HWY_INLINE VF walk_of_rest(const ScanPlan& plan, const FrameState& frame, VF rest, VF pressed_samples) {
   const F f;
   const I d;
   const VF last = hn::Set(f, static_cast<float>(plan.samples - 1));
   VF walk = rest;
   for (int round = 0; round < 3; ++round) {
     const VI at = hn::ConvertTo(d, hn::Min(hn::Max(walk, hn::Zero(f)), last));
-    walk = hn::MulAdd(pressed_samples, hn::GatherIndex(f, plan.contact_shape.data(), at), rest);
+    walk = hn::MulAdd(pressed_samples, hn::GatherIndex(f, frame.contact_shape.data(), at), rest);
   }
   return walk;
 }
@@ -174,9 +175,10 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     }
     rest = hn::Sub(rest, hn::Set(f, 0.5F));  // samples lie at (s + 1/2)
     auto heard = hn::FirstN(f, static_cast<std::size_t>(near.count - s));
-    heard = hn::And(heard, hn::And(hn::Ge(rest, hn::Set(f, cell.first_rest)), hn::Lt(rest, hn::Set(f, cell.last_rest))));
+    heard =
+        hn::And(heard, hn::And(hn::Ge(rest, hn::Set(f, cell.first_rest)), hn::Lt(rest, hn::Set(f, cell.last_rest))));
     const VI near_line = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
-    const VF walk = walk_of_rest(plan, rest, hn::GatherIndex(f, frame.pressed_samples.data(), near_line));
+    const VF walk = walk_of_rest(plan, frame, rest, hn::GatherIndex(f, frame.pressed_samples.data(), near_line));
     heard = hn::And(heard, hn::And(hn::Ge(walk, hn::Zero(f)), hn::Le(walk, last_sample)));
     const VI at = hn::ConvertTo(d, hn::Min(hn::Max(walk, hn::Zero(f)), last_sample));
     const VI at_coarse = hn::Add(hn::Mul(near_line, hn::Set(d, coarse)), hn::ShiftRight<3>(at));
@@ -184,8 +186,8 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     const VF spacing_mm = g.is_fan ? hn::Mul(hn::MulAdd(walk, hn::Set(f, plan.sample_mm), radius),
                                              hn::Set(f, static_cast<float>(g.line_step)))
                                    : hn::Set(f, static_cast<float>(g.line_step));
-    line = hn::Sub(line, hn::Div(hn::GatherIndex(f, frame.bend_mm.data(), at_coarse),
-                                 hn::Max(spacing_mm, hn::Set(f, 0.02F))));
+    line = hn::Sub(
+        line, hn::Div(hn::GatherIndex(f, frame.bend_mm.data(), at_coarse), hn::Max(spacing_mm, hn::Set(f, 0.02F))));
     heard = hn::And(heard, hn::And(hn::Ge(line, hn::Set(f, static_cast<float>(cell.first_line - 1))),
                                    hn::Lt(line, hn::Set(f, static_cast<float>(cell.last_line)))));
     const VF zeta = hn::Mul(hn::Load(f, near.z + s), hn::GatherIndex(f, plan.inverse_elevation_sigma.data(), at));
@@ -235,13 +237,15 @@ std::vector<Brick> make_brick_library() {
   std::vector<Brick> library(kBricks);
   for (Brick& brick : library) {
     for (std::size_t s = 0; s < kBrickScatterers; ++s) {
-      brick.x[s] = static_cast<float>(random.uniform() - 0.5);
-      brick.y[s] = static_cast<float>(random.uniform() - 0.5);
-      brick.z[s] = static_cast<float>(random.uniform() - 0.5);
-      brick.amplitude[s] = static_cast<float>(random.uniform(-1.0, 1.0));
-      brick.rank[s] = static_cast<float>(random.uniform());
+      // The first eight fall into the eight octants, and so do the next: any first part of a brick is even, too.
+      const std::size_t quarter = s >> 3;
+      const std::size_t i = 2 * (s & 1U) + (quarter & 1U), j = 2 * ((s >> 1) & 1U) + (((quarter >> 1) ^ quarter) & 1U);
+      brick.x[s] = static_cast<float>((static_cast<double>(i) + random.uniform()) / 4.0 - 0.5);
+      brick.y[s] = static_cast<float>((static_cast<double>(j) + random.uniform()) / 4.0 - 0.5);
+      brick.z[s] = static_cast<float>((static_cast<double>((s >> 2) & 1U) + random.uniform()) / 2.0 - 0.5);
+      brick.amplitude[s] = random.uniform() < 0.5 ? -1.0F : 1.0F;
+      brick.rank[s] = (static_cast<float>(s) + static_cast<float>(random.uniform())) / kBrickScatterers;
     }
-    std::sort(brick.rank.begin(), brick.rank.end());
   }
   return library;
 }
@@ -312,7 +316,8 @@ Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int las
   cell.most_rank = std::max(plan.most_rank[near], plan.most_rank[far]);
   const ScanGeometry& g = plan.geometry;
   const double margin = 1.0 + static_cast<double>(frame.widest_warp);
-  const double low_mm = (static_cast<double>(first_rest) + 0.4) * g.sample_mm(), high_mm = (static_cast<double>(last_rest) + 0.6) * g.sample_mm();
+  const double low_mm = (static_cast<double>(first_rest) + 0.4) * g.sample_mm(),
+               high_mm = (static_cast<double>(last_rest) + 0.6) * g.sample_mm();
   const double lines[2] = {first - margin, last + margin};
   for (int side = 0; side < 2; ++side) {
     const double outwards = side == 0 ? -1.0 : 1.0;
@@ -321,7 +326,9 @@ Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int las
     cell.side_y[side] = static_cast<float>(outwards * (g.is_fan ? -std::sin(angle) : 0.0));
     cell.side_d[side] = static_cast<float>(g.is_fan ? 0.0 : -outwards * angle);
   }
-  const auto bound = [&](double mm) { return static_cast<float>(g.is_fan ? std::pow(std::max(g.radius_mm + mm, 0.0), 2) : mm); };
+  const auto bound = [&](double mm) {
+    return static_cast<float>(g.is_fan ? std::pow(std::max(g.radius_mm + mm, 0.0), 2) : mm);
+  };
   cell.low = bound(low_mm);
   cell.high = bound(high_mm);
   return cell;
@@ -336,8 +343,8 @@ CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) 
   const double margin_lines = 1.0 + static_cast<double>(frame.widest_warp);
   CellBox box{};
   Vec3 low = Vec3::Constant(1e30), high = Vec3::Constant(-1e30);
-  for (const double line : {cell.first_line - margin_lines, 0.5 * (cell.first_line + cell.last_line),
-                            cell.last_line + margin_lines}) {
+  for (const double line :
+       {cell.first_line - margin_lines, 0.5 * (cell.first_line + cell.last_line), cell.last_line + margin_lines}) {
     for (const float rest : {cell.first_rest, cell.last_rest}) {
       const Vec2 p = plan.geometry.to_cartesian({line, (static_cast<double>(rest) + 0.5) * plan.geometry.sample_mm()});
       for (const float z : {-cell.half_thickness_mm, cell.half_thickness_mm}) {
@@ -348,7 +355,9 @@ CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) 
     }
   }
   const double reach_mm = frame.drag.reach_mm > 0.0F ? static_cast<double>(frame.drag.shift_T.norm()) : 0.0;
-  const auto brick_of = [&](double mm) { return static_cast<std::int32_t>(std::floor(mm / static_cast<double>(plan.brick_mm))); };
+  const auto brick_of = [&](double mm) {
+    return static_cast<std::int32_t>(std::floor(mm / static_cast<double>(plan.brick_mm)));
+  };
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
     box.low[a] = brick_of(low[axis] - reach_mm);
@@ -390,7 +399,8 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
   Echoes echoes;
   for (float rest = -frame.deepest_dent_mm / plan.sample_mm - 1.0F; rest < static_cast<float>(plan.samples);
        rest += segment) {
-    const Cell cell = make_cell(plan, frame, first, last, rest, std::min(rest + segment, static_cast<float>(plan.samples)));
+    const Cell cell =
+        make_cell(plan, frame, first, last, rest, std::min(rest + segment, static_cast<float>(plan.samples)));
     const CellBox box = box_of(plan, frame, cell);
     Index b{};
     for (b[2] = box.low[2]; b[2] <= box.high[2]; ++b[2]) {

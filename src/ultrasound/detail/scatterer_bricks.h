@@ -12,8 +12,9 @@
 namespace trocar::detail {
 
 inline constexpr int kBrickScatterers = 32;
-/// Amplitudes are even in -1..1: their kurtosis, 1.8, lets speckle be fully developed with few scatterers.
-inline constexpr double kMeanSquareScatterer = 1.0 / 3.0;
+/// All are equally strong, of either sign, and stratified in their brick: with that a few in a resolution cell are
+/// enough for fully developed speckle (free places and amplitudes need four times as many).
+inline constexpr double kMeanSquareScatterer = 1.0;
 inline constexpr int kBricks = 256;
 
 /// Scatterers of one brick: place in the brick, -0.5..0.5 of its side, amplitude, and the share of scatterers at which

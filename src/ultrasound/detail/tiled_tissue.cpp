@@ -16,7 +16,8 @@ TiledTissue::TiledTissue(const AcousticScene& scene) {
   tissue_.resize(count);
   if (!scene.texture.empty()) texture_.resize(count);
   parallel_for(static_cast<std::size_t>(tiles(2)), 1, [&](std::size_t first, std::size_t last) {
-    for (auto k = static_cast<std::int64_t>(4 * first); k < std::min<std::int64_t>(static_cast<std::int64_t>(4 * last), size[2]); ++k) {
+    for (auto k = static_cast<std::int64_t>(4 * first);
+         k < std::min<std::int64_t>(static_cast<std::int64_t>(4 * last), size[2]); ++k) {
       for (std::int64_t j = 0; j < size[1]; ++j) {
         const std::size_t from = scene.geometry.offset({0, j, k});
         const std::int32_t row = part_j(static_cast<std::int32_t>(j)) + part_k(static_cast<std::int32_t>(k));
@@ -24,7 +25,8 @@ TiledTissue::TiledTissue(const AcousticScene& scene) {
           const auto to = static_cast<std::size_t>(row + part_i(i));
           tissue_[to / kTile].voxels[to % kTile] = scene.tissue[from + static_cast<std::size_t>(i)];
           if (!texture_.empty())
-            texture_[to / kTile].voxels[to % kTile] = static_cast<std::uint8_t>(scene.texture[from + static_cast<std::size_t>(i)]);
+            texture_[to / kTile].voxels[to % kTile] =
+                static_cast<std::uint8_t>(scene.texture[from + static_cast<std::size_t>(i)]);
         }
       }
     }

@@ -101,8 +101,10 @@ void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult
     for (int n = 0; n < kCoarse; ++n) {
       const float part = static_cast<float>(n) / static_cast<float>(kCoarse);
       texture.fibres[static_cast<std::size_t>(begin + n)] =
-          is_in || was_in ? profile.at({std::lerp(last.phase, next.phase, part), std::lerp(last.strength, next.strength, part)})
-                          : 0.0F;
+          is_in || was_in
+              ? plan.fibre_gain[walk.tissue[static_cast<std::size_t>(begin + n)]] *
+                    profile.at({std::lerp(last.phase, next.phase, part), std::lerp(last.strength, next.strength, part)})
+              : 0.0F;
     }
     last = next;
     was_in = is_in;
@@ -129,8 +131,8 @@ void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResul
     const float next = value_at(c + 1);
     for (int n = 0; n < kCoarse; ++n) {
       const auto s = static_cast<std::size_t>(c * kCoarse + n);
-      texture.added[s] = last + (next - last) * (static_cast<float>(n) / static_cast<float>(kCoarse)) +
-                         plan.fibre_gain[walk.tissue[s]] * texture.fibres[s];
+      texture.added[s] =
+          last + (next - last) * (static_cast<float>(n) / static_cast<float>(kCoarse)) + texture.fibres[s];
     }
     last = next;
   }

@@ -11,7 +11,7 @@ namespace trocar::detail {
 /// refraction. `fibres` is made on the central plane and read on the others.
 struct alignas(64) Texture {
   std::array<float, kMaxSamples + 16> added;
-  std::array<float, kMaxSamples + 16> fibres;  ///< Layers, -0.5 to about 1.
+  std::array<float, kMaxSamples + 16> fibres;
 };
 void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line, bool is_central,
                   Texture& texture) noexcept;

@@ -1,9 +1,8 @@
 #include "ultrasound/detail/tissue_walk.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/Core>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ultrasound/detail/tissue_walk.cpp"
@@ -35,7 +34,7 @@ void place_samples(const ScanPlan& plan, const FrameState& frame, const LineWalk
   const bool has_mirror = line.mirror[0] > -1e29F || line.mirror[1] != 0.0F;
   for (int s = 0; s < plan.samples; s += static_cast<int>(hn::Lanes(f))) {
     const VF at = hn::Iota(f, static_cast<float>(s) + 0.5F);
-    const VF along = hn::MulAdd(pressed, hn::LoadU(f, plan.contact_shape.data() + s), hn::Mul(at, mm));
+    const VF along = hn::MulAdd(pressed, hn::LoadU(f, frame.contact_shape.data() + s), hn::Mul(at, mm));
     const VF elevation = hn::Mul(zeta_v, hn::LoadU(f, plan.elevation_sigma_mm.data() + s));
     const VF sideways = hn::Load(f, result.sideways_mm.data() + s);
     VF behind = hn::Zero(f);
@@ -139,7 +138,7 @@ class Walk {
     const float along_mm =
         -(line_.mirror[0] + line_.mirror[2] * elevation_mm + line_.mirror[3] * result_.sideways_mm[near]) /
         line_.mirror[1];
-    const float walk = (along_mm + line_.pressed_mm * plan_.contact_shape[near]) / plan_.sample_mm - 0.5F;
+    const float walk = (along_mm + line_.pressed_mm * frame_.contact_shape[near]) / plan_.sample_mm - 0.5F;
     const auto spacing_mm = static_cast<float>(frame_.scene->geometry.spacing_mm.maxCoeff());
     const float reach = 1.8F * spacing_mm / line_.mirror[1] / plan_.sample_mm;
     mirror_from_ = static_cast<int>(walk - reach);

@@ -23,11 +23,12 @@ inline constexpr int kMaxBorders = 64;
 /// What a walk leaves behind. Some 70 KiB, kept a thread.
 struct alignas(64) WalkResult {
   std::array<std::array<float, kMaxSamples + 16>, 3> index;  ///< Place of each sample, fractional voxels.
-  std::array<std::int32_t, kMaxSamples + 16> cell;           ///< Offset of its first voxel among the tiles; -1 beyond the volume.
-  std::array<float, kMaxSamples + 16> log_gain;              ///< Of a scatterer there: loss and backscatter, neper.
-  std::array<float, kMaxSamples + 16> log_way;               ///< Loss alone, neper.
-  std::array<float, kMaxSamples + 16> sideways_mm;           ///< Displacement by refraction.
-  std::array<std::uint8_t, kMaxSamples + 16> tissue;         ///< The nearest or prevailing one.
+  std::array<std::int32_t, kMaxSamples + 16>
+      cell;                                      ///< Offset of its first voxel among the tiles; -1 beyond the volume.
+  std::array<float, kMaxSamples + 16> log_gain;  ///< Of a scatterer there: loss and backscatter, neper.
+  std::array<float, kMaxSamples + 16> log_way;   ///< Loss alone, neper.
+  std::array<float, kMaxSamples + 16> sideways_mm;    ///< Displacement by refraction.
+  std::array<std::uint8_t, kMaxSamples + 16> tissue;  ///< The nearest or prevailing one.
   std::array<Border, kMaxBorders> borders;
   int border_count = 0;
 };
