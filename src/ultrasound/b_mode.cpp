@@ -179,6 +179,7 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   frame.X_PT = input.X_PT;
   find_contact(impl.scene->skin_distance_mm, plan.geometry, input.X_PT, frame.contact);
   const double reach_mm = find_dent_reach_mm(*impl.scene, plan.geometry, input.X_PT);
+  frame.dent_reach = static_cast<float>(reach_mm / plan.geometry.sample_mm());
   for (std::size_t s = 0; s < static_cast<std::size_t>(plan.samples); ++s)
     frame.contact_shape[s] =
         static_cast<float>(dent_share((static_cast<double>(s) + 0.5) * plan.geometry.sample_mm(), reach_mm));

@@ -54,6 +54,7 @@ struct FrameState {
   Drag drag;
   float widest_warp = 0.0F;  ///< Scanlines.
   float deepest_dent_mm = 0.0F;
+  float dent_reach = 1.0F;  ///< Samples: deeper tissue does not yield.
 
   std::vector<LineContact> contact;
   std::vector<float> contact_shape;  ///< A sample of `walk`: share of the dent that tissue there follows.

@@ -100,17 +100,17 @@ HWY_INLINE void drag_along(const Drag& drag, VF& x, VF& y, VF& z) {
   z = hn::MulAdd(falls, hn::Set(f, drag.shift_T.z()), z);
 }
 
-/// Where along the scanline that resting tissue lies now: walk = rest + pressed * shape(walk), two rounds.
-HWY_INLINE VF walk_of_rest(const ScanPlan& plan, const FrameState& frame, VF rest, VF pressed_samples) {
+/// Where along the scanline that resting tissue lies now, samples: pressed_depth_mm of probe_contact.h.
+HWY_INLINE VF walk_of_rest(const FrameState& frame, VF rest, VF pressed) {
   const F f;
-  const I d;
-  const VF last = hn::Set(f, static_cast<float>(plan.samples - 1));
-  VF walk = rest;
-  for (int round = 0; round < 3; ++round) {
-    const VI at = hn::ConvertTo(d, hn::Min(hn::Max(walk, hn::Zero(f)), last));
-    walk = hn::MulAdd(pressed_samples, hn::GatherIndex(f, frame.contact_shape.data(), at), rest);
-  }
-  return walk;
+  const VF reach = hn::Set(f, frame.dent_reach);
+  const VF one = hn::Set(f, 1.0F);
+  const VF sum = hn::Add(pressed, rest);
+  const VF b = hn::MulAdd(hn::Set(f, 2.0F / frame.dent_reach), pressed, one);
+  const VF product = hn::Mul(hn::Mul(pressed, sum), hn::Set(f, 4.0F / (frame.dent_reach * frame.dent_reach)));
+  const VF root = hn::Sqrt(hn::Max(hn::NegMulAdd(one, product, hn::Mul(b, b)), hn::Zero(f)));
+  const VF yielding = hn::Div(hn::Add(sum, sum), hn::Add(b, root));
+  return hn::IfThenElse(hn::Lt(rest, reach), yielding, rest);
 }
 
 /// Appends those scatterers of a brick that the cell's bounds let pass.
@@ -178,7 +178,10 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     heard =
         hn::And(heard, hn::And(hn::Ge(rest, hn::Set(f, cell.first_rest)), hn::Lt(rest, hn::Set(f, cell.last_rest))));
     const VI near_line = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
-    const VF walk = walk_of_rest(plan, frame, rest, hn::GatherIndex(f, frame.pressed_samples.data(), near_line));
+    // Depths count from the face, samples from half a step before it.
+    const VF half = hn::Set(f, 0.5F);
+    const VF walk = hn::Sub(
+        walk_of_rest(frame, hn::Add(rest, half), hn::GatherIndex(f, frame.pressed_samples.data(), near_line)), half);
     heard = hn::And(heard, hn::And(hn::Ge(walk, hn::Zero(f)), hn::Le(walk, last_sample)));
     const VI at = hn::ConvertTo(d, hn::Min(hn::Max(walk, hn::Zero(f)), last_sample));
     const VI at_coarse = hn::Add(hn::Mul(near_line, hn::Set(d, coarse)), hn::ShiftRight<3>(at));
