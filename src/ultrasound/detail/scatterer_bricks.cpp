@@ -199,7 +199,10 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     heard = hn::And(heard, hn::Lt(rank, hn::GatherIndex(f, plan.most_rank.data(), at)));
     if (hn::AllFalse(f, heard)) continue;
 
-    const VI line_index = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
+    // Of the task's own scanlines: the neighbours' gains may not be there yet.
+    const VF own_line = hn::Min(hn::Max(hn::Round(line), hn::Set(f, static_cast<float>(cell.first_line))),
+                                hn::Set(f, static_cast<float>(cell.last_line - 1)));
+    const VI line_index = hn::ConvertTo(d, own_line);
     const VF plane = hn::Round(
         hn::MulAdd(zeta, hn::Set(f, 1.0F / plan.plane_step), hn::Set(f, static_cast<float>(plan.planes / 2))));
     const VI plane_index =
