@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "ultrasound/detail/frame_state.h"
 #include "ultrasound/detail/multiple_echoes.h"
+#include "ultrasound/detail/needle_image.h"
 #include "ultrasound/detail/point_spread.h"
 #include "ultrasound/detail/scan_plan.h"
 #include "ultrasound/detail/scatterer_bricks.h"
@@ -68,6 +69,7 @@ struct BMode::Impl {
   ScanPlan plan;
   FrameState frame;
   BasebandFrame out;
+  NeedleImage needles;
   std::vector<Brick> bricks = make_brick_library();
   std::vector<Scratch> scratch;  ///< One a group of scanlines.
 
@@ -124,6 +126,7 @@ void BMode::Impl::walk_and_echo(int group, int first, int last) noexcept {
     }
     if (plan.acquisition.artefacts.reverberation) add_ring_down(plan, frame, line);
   }
+  add_needles(plan, frame, needles, first, last);
   add_scatterers(plan, bricks, frame, first, last);
 }
 
@@ -154,6 +157,7 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   TROCAR_CHECK(acquisition.planes >= 1 && acquisition.planes <= kMaxPlanes && acquisition.planes % 2 == 1);
   impl.plan = make_scan_plan(*impl.scene, impl.transducer, acquisition);
   fit_frame(impl.frame, impl.plan);
+  impl.needles = make_needle_image(impl.plan);
   impl.scratch.resize(static_cast<std::size_t>(impl.groups()));
   impl.out.geometry = impl.plan.geometry;
   impl.out.beam = impl.plan.beam;
@@ -188,6 +192,7 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
     probe_lines(plan, frame, impl.scratch[static_cast<std::size_t>(group)].walk, first, last);
   });
   bend_lines(plan, frame);
+  lay_needles(plan, frame, input.needles, impl.needles);
   impl.for_groups([&](int group, int first, int last) { impl.walk_and_echo(group, first, last); });
   add_points(plan, frame);
   impl.for_groups([&](int, int first, int last) { spread_laterally(plan, frame, first, last); });
