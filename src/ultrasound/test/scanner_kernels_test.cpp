@@ -16,7 +16,7 @@ std::vector<std::uint16_t> detected(const std::vector<float>& re, const std::vec
   const std::vector<float> zero(re.size(), 0.0F);
   const std::vector<float> offset(re.size(), static_cast<float>(-kLevelFloor_db * kFineLevels_per_db));
   std::vector<std::uint16_t> level(re.size());
-  detect({re.data(), im.data(), zero.data(), zero.data(), 0.0F, nullptr, nullptr, offset.data(), re.size()},
+  detect({re.data(), im.data(), zero.data(), zero.data(), 0.0F, nullptr, nullptr, 1, 0, 0, offset.data(), re.size()},
          level.data());
   return level;
 }
@@ -76,9 +76,9 @@ TEST(Detect, SumsEchoNoiseAndClutter) {
   const std::vector<float> echo(kCount, 1.0F), noise(kCount, 10.0F), clutter(kCount, 2.0F), zero(kCount, 0.0F);
   const std::vector<float> offset(kCount, static_cast<float>(-kLevelFloor_db * kFineLevels_per_db));
   std::vector<std::uint16_t> level(kCount);
-  detect(
-      {echo.data(), zero.data(), noise.data(), zero.data(), 0.1F, zero.data(), clutter.data(), offset.data(), kCount},
-      level.data());
+  detect({echo.data(), zero.data(), noise.data(), zero.data(), 0.1F, zero.data(), clutter.data(), 1, 0, 0,
+          offset.data(), kCount},
+         level.data());
   EXPECT_NEAR(db_of(level[kCount - 1]), 20.0 * std::log10(std::hypot(2.0, 2.0)), kLogError_db);
 }
 
