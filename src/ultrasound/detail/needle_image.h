@@ -27,8 +27,8 @@ inline constexpr int kRepeats = 8;
 inline constexpr double kShadowShare = 0.3;
 inline constexpr float kDragReach_mm = 8.0F;  ///< Range 3..15.
 
-/// Distance at which repeated echoes of a needle are shown: twice through its wall (steel, 5790 m/s), once through the bore
-/// (1480 m/s), shown at the speed that scanners assume.
+/// Distance at which repeated echoes of a needle are shown: twice through its wall (steel, 5790 m/s), once through the
+/// bore (1480 m/s), shown at the speed that scanners assume.
 double repeat_spacing_mm(const NeedleEcho& needle) noexcept;
 
 /// A short piece of a shaft's smooth surface.
