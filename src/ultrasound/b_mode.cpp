@@ -86,10 +86,12 @@ struct BMode::Impl {
     parallel_for(static_cast<std::size_t>(groups()), 1, std::ref(part));
   }
 
-  void walk_and_echo(int group, int first, int last) noexcept;
+  void walk(int group, int first, int last) noexcept;
+  /// After all scanlines were walked: a scanline hears what lies between it and the next.
+  void echo(int first, int last) noexcept;
 };
 
-void BMode::Impl::walk_and_echo(int group, int first, int last) noexcept {
+void BMode::Impl::walk(int group, int first, int last) noexcept {
   Scratch& s = scratch[static_cast<std::size_t>(group)];
   const auto samples = static_cast<std::size_t>(plan.samples);
   std::fill(frame.re.begin() + static_cast<std::ptrdiff_t>(first) * plan.stride,
@@ -122,8 +124,14 @@ void BMode::Impl::walk_and_echo(int group, int first, int last) noexcept {
         to_gain(s.walk.log_way.data(), s.texture.added.data(), plan.samples,
                 frame.way_gain.data() + static_cast<std::size_t>(line) * samples);
       }
-      add_surface_echoes(plan, frame, s.walk, line, plane);
+      keep_borders(plan, frame, s.walk, plane, line);
     }
+  }
+}
+
+void BMode::Impl::echo(int first, int last) noexcept {
+  for (int line = first; line < last; ++line) {
+    for (int plane = 0; plane < plan.planes; ++plane) add_surface_echoes(plan, frame, line, plane);
     if (plan.acquisition.artefacts.reverberation) add_ring_down(plan, frame, line);
   }
   add_needles(plan, frame, needles, first, last);
@@ -191,9 +199,11 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   impl.for_groups([&](int group, int first, int last) {
     probe_lines(plan, frame, impl.scratch[static_cast<std::size_t>(group)].walk, first, last);
   });
+  stand_mirrors(plan, frame);
   bend_lines(plan, frame);
   lay_needles(plan, frame, input.needles, impl.needles);
-  impl.for_groups([&](int group, int first, int last) { impl.walk_and_echo(group, first, last); });
+  impl.for_groups([&](int group, int first, int last) { impl.walk(group, first, last); });
+  impl.for_groups([&](int, int first, int last) { impl.echo(first, last); });
   add_points(plan, frame);
   impl.for_groups([&](int, int first, int last) { spread_laterally(plan, frame, first, last); });
   impl.for_groups([&](int, int first, int last) {

@@ -16,6 +16,9 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.walks.resize(lines);
   frame.pressed_samples.assign(lines, 0.0F);
   frame.reflectors.resize(lines);
+  frame.gas.resize(lines);
+  frame.borders.resize(static_cast<std::size_t>(plan.planes) * lines * kMaxBorders);
+  frame.border_counts.assign(static_cast<std::size_t>(plan.planes) * lines, 0);
   frame.contact_shape.assign(samples + 16, 0.0F);
   for (auto* coarse : {&frame.bend_mm, &frame.focus_log, &frame.slowness, &frame.smooth_slowness, &frame.probed_way})
     coarse->assign(lines * plan.coarse_samples(), 0.0F);

@@ -27,6 +27,23 @@ struct LineWalk {
   float coupling = 1.0F;
 };
 
+/// A border that a scanline crosses.
+struct Border {
+  float walk = 0.0F;                    ///< Sample.
+  float reflection = 0.0F;              ///< Amplitude under normal incidence, -1..1.
+  float log_gain = 0.0F;                ///< Neper, of the way there and back.
+  std::array<float, 3> index{};         ///< Place, fractional voxels.
+  std::uint8_t before = 0, behind = 0;  ///< Tissues.
+};
+inline constexpr int kMaxBorders = 32;  ///< A scanline and plane.
+
+/// The first gas that a scanline meets, on the central plane.
+struct GasBorder {
+  bool is_there = false;
+  Border border;
+  float slope_across = 0.0F;  ///< Of its surface, across the image, from the volume's gradient.
+};
+
 /// The strongest smooth reflector of a scanline, for what goes to and fro before it.
 struct Reflector {
   float shown = -1.0F;     ///< Sample; negative: none.
@@ -59,7 +76,10 @@ struct FrameState {
   std::vector<LineContact> contact;
   std::vector<float> contact_shape;  ///< A sample of `walk`: share of the dent that tissue there follows.
   std::vector<LineWalk> walks;
-  std::vector<float> pressed_samples;  ///< A scanline: how deep the face dents the skin.
+  std::vector<Border> borders;              ///< (plane * lines + line) * kMaxBorders.
+  std::vector<std::uint8_t> border_counts;  ///< plane * lines + line.
+  std::vector<float> pressed_samples;       ///< A scanline: how deep the face dents the skin.
+  std::vector<GasBorder> gas;
   std::vector<Reflector> reflectors;
   std::vector<float> bend_mm;           ///< line * coarse_samples: sideways displacement by refraction.
   std::vector<float> probed_way;        ///< The same: neper left of an echo, without its own strength.

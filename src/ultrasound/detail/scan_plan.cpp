@@ -26,9 +26,8 @@ void fill_rows(ScanPlan& plan, const AcousticTable& table) {
     row.log_z = static_cast<float>(std::log(tissue.impedance_mrayl()));
     row.loss = static_cast<float>(2.0 * loss_db_per_mm * kNeperPerDb * plan.sample_mm);
     row.log_b = static_cast<float>(tissue.backscatter_db * kNeperPerDb - 0.5 * std::log(share));
-    row.delay = plan.acquisition.artefacts.range_distortion
-                    ? static_cast<float>(assumed_m_per_s / std::clamp(tissue.speed_m_per_s, 1300.0, 4500.0) - 1.0)
-                    : 0.0F;
+    plan.slowness[t] = static_cast<float>(assumed_m_per_s / std::clamp(tissue.speed_m_per_s, 1300.0, 4500.0) - 1.0);
+    row.delay = plan.acquisition.artefacts.range_distortion ? plan.slowness[t] : 0.0F;
     for (int step = -128; step < 128; ++step)
       plan.texture_gain[t][static_cast<std::size_t>(step + 128)] =
           static_cast<float>(tissue.texture_db(step * kTextureStep_hu) * kNeperPerDb);

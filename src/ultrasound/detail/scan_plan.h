@@ -41,6 +41,7 @@ struct ScanPlan {
 
   std::array<TissueRow, kTissues> rows{};
   std::array<TissueRow, kTissues> entry_rows{};  ///< The same with coupling gel for air: before a line is in the body.
+  std::array<float, kTissues> slowness{};        ///< c0 / c - 1.
   std::array<std::uint8_t, kTissues> has_texture{};
   std::array<std::array<float, 256>, kTissues> texture_gain{};  ///< Neper, by texture step + 128.
   std::array<float, kTissues> fibre_gain{};                     ///< Neper.

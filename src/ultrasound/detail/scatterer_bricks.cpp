@@ -184,13 +184,19 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
         walk_of_rest(frame, hn::Add(rest, half), hn::GatherIndex(f, frame.pressed_samples.data(), near_line)), half);
     heard = hn::And(heard, hn::And(hn::Ge(walk, hn::Zero(f)), hn::Le(walk, last_sample)));
     const VI at = hn::ConvertTo(d, hn::Min(hn::Max(walk, hn::Zero(f)), last_sample));
-    const VI at_coarse = hn::Add(hn::Mul(near_line, hn::Set(d, coarse)), hn::ShiftRight<3>(at));
     static_assert(kCoarse == 8);
+    const VI at_coarse = hn::ShiftRight<3>(at);
     const VF spacing_mm = g.is_fan ? hn::Mul(hn::MulAdd(walk, hn::Set(f, plan.sample_mm), radius),
                                              hn::Set(f, static_cast<float>(g.line_step)))
                                    : hn::Set(f, static_cast<float>(g.line_step));
-    line = hn::Sub(
-        line, hn::Div(hn::GatherIndex(f, frame.bend_mm.data(), at_coarse), hn::Max(spacing_mm, hn::Set(f, 0.02F))));
+    const VF lines_per_mm = hn::Div(hn::Set(f, 1.0F), hn::Max(spacing_mm, hn::Set(f, 0.02F)));
+    // The scanline that hears it is the one whose bent ray comes by.
+    const VF straight = line;
+    for (int round = 0; round < 3; ++round) {
+      const VI by = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
+      const VF bend = hn::GatherIndex(f, frame.bend_mm.data(), hn::Add(hn::Mul(by, hn::Set(d, coarse)), at_coarse));
+      line = hn::NegMulAdd(bend, lines_per_mm, straight);
+    }
     heard = hn::And(heard, hn::And(hn::Ge(line, hn::Set(f, static_cast<float>(cell.first_line - 1))),
                                    hn::Lt(line, hn::Set(f, static_cast<float>(cell.last_line)))));
     const VF zeta = hn::Mul(hn::Load(f, near.z + s), hn::GatherIndex(f, plan.inverse_elevation_sigma.data(), at));

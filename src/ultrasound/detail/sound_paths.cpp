@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ultrasound/detail/border_fit.h"
+
 namespace trocar::detail {
 namespace {
 
@@ -15,47 +17,70 @@ std::array<float, 3> floats(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-/// Outward normal of the impedance's change, unit, in voxel-mm axes of the scene; zero where nothing changes.
-Vec3 normal_at(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept {
-  constexpr float kReach = 1.5F;  // voxels
-  Vec3 slope = Vec3::Zero();
-  for (int a = 0; a < 3; ++a) {
-    Vec3 step = Vec3::Zero();
-    step[a] = kReach;
-    const Vec3 high = index + step, low = index - step;
-    const auto z_at = [&](const Vec3& p) {
-      return blend_at(frame, rows, static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()))
-          .row.log_z;
-    };
-    slope[a] = static_cast<double>(z_at(high) - z_at(low)) / frame.scene->geometry.spacing_mm[a];
+/// Slope of a surface across the image, mean over scanlines about `line`: only the central plane was probed, and the
+/// volume's gradient on one scanline has the voxels' steps in it.
+float slope_across(const ScanPlan& plan, const FrameState& frame, int line) noexcept {
+  constexpr int kReach = 8;
+  float sum = 0.0F;
+  int count = 0;
+  for (int l = std::max(0, line - kReach); l <= std::min(plan.lines - 1, line + kReach); ++l) {
+    const GasBorder& gas = frame.gas[static_cast<std::size_t>(l)];
+    if (!gas.is_there) continue;
+    sum += gas.slope_across;
+    ++count;
   }
-  const double size = slope.norm();
-  return size > 1e-6 ? Vec3(slope / size) : Vec3(Vec3::Zero());
+  return count > 0 ? sum / static_cast<float>(count) : 0.0F;
 }
 
 /// The mirror that stands where a scanline meets gas; its side away from the transducer shows what lies before it.
-void set_mirror(const ScanPlan& plan, FrameState& frame, LineWalk& line, const WalkResult& walk,
-                const Border& border) noexcept {
-  const AcousticScene& scene = *frame.scene;
-  const auto at = static_cast<std::size_t>(std::clamp(border.walk, 0.0F, static_cast<float>(plan.samples - 1)));
-  const Vec3 index(walk.index[0][at], walk.index[1][at], walk.index[2][at]);
-  const Vec3 spacing = scene.geometry.spacing_mm;
+void set_mirror(const ScanPlan& plan, FrameState& frame, int l) noexcept {
+  LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
+  const Border& border = frame.gas[static_cast<std::size_t>(l)].border;
+  const SurfaceFit fit = fit_surface(plan, frame, plan.planes / 2, l, border);
+  const Vec3 spacing = frame.scene->geometry.spacing_mm;
   const auto in_mm = [&](const std::array<float, 3>& v) { return Vec3(Vec3(v[0], v[1], v[2]).cwiseProduct(spacing)); };
-  const Vec3 along = in_mm(line.along);
-  Vec3 normal = -normal_at(frame, plan.rows, index);  // impedance falls into gas: along the sound
-  const double facing = normal.dot(along);
-  if (facing < 0.2) return;
-  const Vec3 origin = in_mm(line.origin), place = index.cwiseProduct(spacing);
-  line.mirror = {static_cast<float>((origin - place).dot(normal)), static_cast<float>(along.dot(normal)),
-                 static_cast<float>(in_mm(frame.elevation).dot(normal)),
-                 static_cast<float>(in_mm(line.lateral).dot(normal))};
+  const Vec3 along = in_mm(line.along), lateral = in_mm(line.lateral), elevation = in_mm(frame.elevation);
+  const Vec3 normal = (along - static_cast<double>(fit.lateral) * lateral -
+                       static_cast<double>(slope_across(plan, frame, l)) * elevation)
+                          .normalized();
+  constexpr double kLeastFacing = 0.35;
+  if (!(normal.dot(along) > kLeastFacing)) return;
+  const double walk_mm = (static_cast<double>(fit.walk) + 0.5) * static_cast<double>(plan.sample_mm);
+  const auto at = static_cast<std::size_t>(std::clamp(fit.walk, 0.0F, static_cast<float>(plan.samples - 1)));
+  const Vec3 place =
+      in_mm(line.origin) + (walk_mm - static_cast<double>(line.pressed_mm * frame.contact_shape[at])) * along;
+  line.mirror = {static_cast<float>((in_mm(line.origin) - place).dot(normal)), static_cast<float>(along.dot(normal)),
+                 static_cast<float>(elevation.dot(normal)), static_cast<float>(lateral.dot(normal))};
   line.mirror_normal = floats(2.0 * normal.cwiseQuotient(spacing));
-  line.mirror_depth_mm = (border.walk + 0.5F) * plan.sample_mm;
+  line.mirror_depth_mm = static_cast<float>(walk_mm);
   line.mirror_reflection = border.reflection;
   line.mirror_before = border.before;
   line.mirror_behind = border.behind;
-  const float rough = plan.roughness[border.behind];
-  line.mirror_gain = kMirrorShare * (1.0F - rough) * std::abs(border.reflection);
+  line.mirror_gain = kMirrorShare * (1.0F - plan.roughness[border.behind]) * std::abs(border.reflection);
+}
+
+/// Notes the first gas that a scanline meets.
+void note_gas(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, int line) noexcept {
+  GasBorder& gas = frame.gas[static_cast<std::size_t>(line)];
+  gas = {};
+  for (int b = 0; b < walk.border_count; ++b) {
+    const Border& border = walk.borders[static_cast<std::size_t>(b)];
+    if (border.reflection > -kMirrorReflection) continue;
+    gas.is_there = true;
+    gas.border = border;
+    const Vec3 spacing = frame.scene->geometry.spacing_mm;
+    const LineWalk& path = frame.walks[static_cast<std::size_t>(line)];
+    const auto in_mm = [&](const std::array<float, 3>& v) {
+      return Vec3(Vec3(v[0], v[1], v[2]).cwiseProduct(spacing));
+    };
+    const Vec3 slope = impedance_slope(frame, plan.rows, Vec3(border.index[0], border.index[1], border.index[2]));
+    const double towards = slope.dot(in_mm(path.along));
+    constexpr double kMostSlope = 2.0;
+    if (std::abs(towards) > 1e-9)
+      gas.slope_across =
+          static_cast<float>(std::clamp(-slope.dot(in_mm(frame.elevation)) / towards, -kMostSlope, kMostSlope));
+    return;
+  }
 }
 
 }  // namespace
@@ -92,19 +117,20 @@ void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, i
     float* slowness = frame.slowness.data() + static_cast<std::size_t>(l) * coarse;
     for (std::size_t c = 0; c < coarse; ++c) {
       const std::size_t s = std::min(c * kCoarse, static_cast<std::size_t>(plan.samples - 1));
-      const auto& row = plan.rows[scratch.tissue[s]];
       constexpr float kBendable = 0.15F;  // gas and bone let nothing through that could be seen
       way[c] = scratch.log_way[s];
-      slowness[c] = std::abs(row.delay) < kBendable ? row.delay : 0.0F;
+      const float slow = plan.slowness[scratch.tissue[s]];
+      slowness[c] = std::abs(slow) < kBendable ? slow : 0.0F;
     }
-    if (!plan.acquisition.artefacts.mirror) continue;
-    for (int b = 0; b < scratch.border_count; ++b) {
-      const Border& border = scratch.borders[static_cast<std::size_t>(b)];
-      if (border.reflection > -kMirrorReflection) continue;
-      set_mirror(plan, frame, line, scratch, border);
-      break;
-    }
+    keep_borders(plan, frame, scratch, plan.planes / 2, l);
+    note_gas(plan, frame, scratch, l);
   }
+}
+
+void stand_mirrors(const ScanPlan& plan, FrameState& frame) noexcept {
+  if (!plan.acquisition.artefacts.mirror) return;
+  for (int l = 0; l < plan.lines; ++l)
+    if (frame.gas[static_cast<std::size_t>(l)].is_there) set_mirror(plan, frame, l);
 }
 
 namespace {

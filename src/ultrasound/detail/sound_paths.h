@@ -11,8 +11,11 @@ namespace trocar::detail {
 /// Frame-wide transforms and each scanline's straight walk.
 void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept;
 
-/// Slowness and mirror of scanlines [first, last).
+/// Slowness, losses and gas of scanlines [first, last).
 void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept;
+
+/// After all lines were probed: the mirrors.
+void stand_mirrors(const ScanPlan& plan, FrameState& frame) noexcept;
 
 /// After all lines were probed: displacement and focusing by refraction, from how slowness changes sideways.
 void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept;

@@ -2,12 +2,12 @@
 
 #include "ultrasound/detail/frame_state.h"
 #include "ultrasound/detail/scan_plan.h"
-#include "ultrasound/detail/tissue_walk.h"
 
 /// Echoes of the borders that a scanline crosses (docs/physics.md U6).
 namespace trocar::detail {
 
-/// Adds them to the scanline, weighted as plane `plane` of the beam; of the central plane notes the reflector.
-void add_surface_echoes(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, int line, int plane) noexcept;
+/// After all scanlines were walked: adds them to the scanline, weighted as plane `plane` of the beam; of the central
+/// plane notes the reflector.
+void add_surface_echoes(const ScanPlan& plan, FrameState& frame, int line, int plane) noexcept;
 
 }  // namespace trocar::detail

@@ -23,11 +23,10 @@ class TiledTissue {
 
   /// Tissue and kMixedCell of the voxel at an offset.
   std::uint8_t tissue(std::int32_t offset) const noexcept {
-    return tissue_[static_cast<std::size_t>(offset) / kTile].voxels[static_cast<std::size_t>(offset) % kTile];
+    return tissue_.data()->voxels.data()[offset];  // tiles lie end to end
   }
   std::int8_t texture(std::int32_t offset) const noexcept {
-    return static_cast<std::int8_t>(
-        texture_[static_cast<std::size_t>(offset) / kTile].voxels[static_cast<std::size_t>(offset) % kTile]);
+    return static_cast<std::int8_t>(texture_.data()->voxels.data()[offset]);
   }
   bool has_texture() const noexcept { return !texture_.empty(); }
 

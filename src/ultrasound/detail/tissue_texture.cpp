@@ -70,13 +70,11 @@ class LayerProfile {
   std::array<float, kSteps> values_;
 };
 
-/// Texture between the voxels of a cell, steps.
-float texture_between(const FrameState& frame, const WalkResult& walk, std::size_t s) noexcept {
-  const CellCorners corners = corners_at(frame.tiles, walk.index[0][s], walk.index[1][s], walk.index[2][s]);
-  float sum = 0.0F;
-  for (std::size_t n = 0; n < 8; ++n)
-    sum += corners.weight[n] * static_cast<float>(frame.tiles.texture(corners.offset[n]));
-  return sum;
+/// Texture of the nearest voxel, steps. It is smooth over more than a voxel.
+float texture_at(const FrameState& frame, const WalkResult& walk, std::size_t s) noexcept {
+  const auto nearest = [&](std::size_t a) { return static_cast<std::int32_t>(walk.index[a][s] + 0.5F); };
+  return static_cast<float>(frame.tiles.texture(frame.tiles.part_i(nearest(0)) + frame.tiles.part_j(nearest(1)) +
+                                                frame.tiles.part_k(nearest(2))));
 }
 
 /// Layers along the central plane: their place in coarse steps, the sheets themselves sample by sample.
@@ -117,22 +115,21 @@ void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResul
                   Texture& texture) noexcept {
   if (is_central) make_fibres(plan, frame, walk, texture);
   const float* focus = frame.focus_log.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
-  const auto value_at = [&](int c) {
-    const auto s = static_cast<std::size_t>(std::min(c * kCoarse, plan.samples - 1));
-    const std::uint8_t tissue = walk.tissue[s];
-    if (walk.cell[s] < 0 || plan.has_texture[tissue] == 0 || !frame.tiles.has_texture()) return focus[c];
-    const float step = std::clamp(texture_between(frame, walk, s), -128.0F, 126.9F) + 128.0F;
-    const auto low = static_cast<std::size_t>(step);
-    const auto& gain = plan.texture_gain[tissue];
-    return focus[c] + std::lerp(gain[low], gain[low + 1], step - static_cast<float>(low));
+  constexpr int kStep = kCoarse / 2;
+  const auto value_at = [&](int s) {
+    const float log_focus =
+        (s % kCoarse) == 0 ? focus[s / kCoarse] : 0.5F * (focus[s / kCoarse] + focus[s / kCoarse + 1]);
+    const auto at = static_cast<std::size_t>(std::min(s, plan.samples - 1));
+    const std::uint8_t tissue = walk.tissue[at];
+    if (walk.cell[at] < 0 || plan.has_texture[tissue] == 0 || !frame.tiles.has_texture()) return log_focus;
+    return log_focus + plan.texture_gain[tissue][static_cast<std::size_t>(texture_at(frame, walk, at) + 128.0F)];
   };
   float last = value_at(0);
-  for (int c = 0; c * kCoarse < plan.samples; ++c) {
-    const float next = value_at(c + 1);
-    for (int n = 0; n < kCoarse; ++n) {
-      const auto s = static_cast<std::size_t>(c * kCoarse + n);
-      texture.added[s] =
-          last + (next - last) * (static_cast<float>(n) / static_cast<float>(kCoarse)) + texture.fibres[s];
+  for (int begin = 0; begin < plan.samples; begin += kStep) {
+    const float next = value_at(begin + kStep);
+    for (int n = 0; n < kStep; ++n) {
+      const auto s = static_cast<std::size_t>(begin + n);
+      texture.added[s] = last + (next - last) * (static_cast<float>(n) / static_cast<float>(kStep)) + texture.fibres[s];
     }
     last = next;
   }

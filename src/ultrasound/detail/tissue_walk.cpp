@@ -94,6 +94,18 @@ Blend blend_at(const FrameState& frame, const std::array<TissueRow, kTissues>& r
   return blend;
 }
 
+Vec3 impedance_slope(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept {
+  // The corners of a tetrahedron: four samples instead of six.
+  constexpr double kReach = 0.87;  // voxels along each axis, 1.5 from the middle
+  const Vec3 corners[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  Vec3 slope = Vec3::Zero();
+  for (const Vec3& corner : corners) {
+    const Vec3f p = (index + kReach * corner).cast<float>();
+    slope += static_cast<double>(blend_at(frame, rows, p.x(), p.y(), p.z()).row.log_z) * corner;
+  }
+  return (slope / (4.0 * kReach)).cwiseQuotient(frame.scene->geometry.spacing_mm);
+}
+
 namespace {
 
 constexpr int kBlock = 16;
@@ -163,7 +175,8 @@ class Walk {
     if (s != mirror_at_) return;
     if (result_.border_count < kMaxBorders)
       result_.borders[static_cast<std::size_t>(result_.border_count++)] = {
-          static_cast<float>(s), line_.mirror_reflection, log_gain_, tissue, line_.mirror_behind};
+          static_cast<float>(s), line_.mirror_reflection, log_gain_, place_of(static_cast<float>(s)), tissue,
+          line_.mirror_behind};
     log_gain_ += std::log(std::max(line_.mirror_gain, 1e-6F));
   }
 
@@ -208,12 +221,15 @@ class Walk {
         tissue = voxel;
         row = rows[tissue];
       } else {
-        const Blend blend = blend_at(frame_, rows, result_.index[0][at], result_.index[1][at], result_.index[2][at]);
-        tissue = blend.tissue;
-        row = blend.row;
+        // A voxel is several samples long: every other one is enough within a border.
+        if (!was_blended_ || (s & 1) == 0)
+          blend_ = blend_at(frame_, rows, result_.index[0][at], result_.index[1][at], result_.index[2][at]);
+        tissue = blend_.tissue;
+        row = blend_.row;
         is_mixed = true;
       }
     }
+    was_blended_ = is_mixed;
     if (tissue != 0 && !is_mixed) is_entered_ = true;
     meet(s, tissue, row, is_mixed);
     result_.tissue[at] = tissue;
@@ -261,6 +277,8 @@ class Walk {
     ramp_begin_ = s;
     up_ = down_ = up_at_ = down_at_ = most_ = 0.0F;
     behind_ = settled_;
+    // A border's echo has the losses of the tissue before it, not those of an absorber within its own ramp.
+    ramp_log_gain_ = log_gain_;
   }
 
   void finish_ramp() noexcept {
@@ -283,11 +301,17 @@ class Walk {
   void add_border(float walk, float reflection) noexcept {
     if (result_.border_count < kMaxBorders) {
       const float size = std::max(std::abs(reflection), behind_ != settled_ ? kWrapping : 0.0F);
-      result_.borders[static_cast<std::size_t>(result_.border_count++)] = {walk, std::copysign(size, reflection),
-                                                                           log_gain_, settled_, behind_};
+      result_.borders[static_cast<std::size_t>(result_.border_count++)] = {
+          walk, std::copysign(size, reflection), ramp_log_gain_, place_of(walk), settled_, behind_};
     }
+    ramp_log_gain_ += std::log(std::max(1.0F - reflection * reflection, 1e-4F));
     // What is reflected does not go on: 1 - R^2 of the intensity passes, there and back.
     if (plan_.acquisition.artefacts.attenuation) log_gain_ += std::log(std::max(1.0F - reflection * reflection, 1e-4F));
+  }
+
+  std::array<float, 3> place_of(float walk) const noexcept {
+    const auto at = static_cast<std::size_t>(std::clamp(walk, 0.0F, static_cast<float>(plan_.samples - 1)));
+    return {result_.index[0][at], result_.index[1][at], result_.index[2][at]};
   }
 
   const ScanPlan& plan_;
@@ -300,6 +324,8 @@ class Walk {
   float late_ = 0.0F;
   int entry_samples_ = 0;
   bool is_entered_ = false;
+  bool was_blended_ = false;
+  Blend blend_{};
 
   std::uint8_t tissue_ = kNoData;   ///< Of the last sample.
   std::uint8_t settled_ = kNoData;  ///< The last one that a whole cell was made of.
@@ -307,6 +333,7 @@ class Walk {
   float log_z_ = 0.0F;
   bool is_in_ramp_ = false;
   int ramp_begin_ = 0, ramp_end_ = 0;
+  float ramp_log_gain_ = 0.0F;
   float up_ = 0.0F, down_ = 0.0F, up_at_ = 0.0F, down_at_ = 0.0F, most_ = 0.0F;
 };
 
@@ -316,6 +343,13 @@ void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& li
                float* delay) noexcept {
   place_line(plan, frame, line, zeta, result);
   Walk(plan, frame, line, zeta, result, delay).run();
+}
+
+void keep_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept {
+  const auto at = static_cast<std::size_t>(plane * plan.lines + line);
+  std::copy_n(result.borders.begin(), result.border_count,
+              frame.borders.begin() + static_cast<std::ptrdiff_t>(at * kMaxBorders));
+  frame.border_counts[at] = static_cast<std::uint8_t>(result.border_count);
 }
 
 }  // namespace trocar::detail

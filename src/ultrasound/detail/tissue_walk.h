@@ -9,16 +9,7 @@
 /// Marches a scanline of one plane through the tissues: what sound loses on the way, where it meets borders.
 namespace trocar::detail {
 
-/// A border that a scanline crosses.
-struct Border {
-  float walk = 0.0F;        ///< Sample.
-  float reflection = 0.0F;  ///< Amplitude under normal incidence, -1..1.
-  float log_gain = 0.0F;    ///< Neper, of the way there and back.
-  std::uint8_t before = 0, behind = 0;
-};
-
 inline constexpr int kMaxSamples = 4096;
-inline constexpr int kMaxBorders = 64;
 
 /// What a walk leaves behind. Some 70 KiB, kept a thread.
 struct alignas(64) WalkResult {
@@ -38,6 +29,9 @@ struct alignas(64) WalkResult {
 void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
                float* delay) noexcept;
 
+/// Keeps a walk's borders with the frame.
+void keep_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept;
+
 /// Only finds the places of the samples (index, cell).
 void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
                 WalkResult& result) noexcept;
@@ -49,5 +43,8 @@ struct Blend {
 };
 Blend blend_at(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, float i, float j,
                float k) noexcept;
+
+/// Gradient of the impedance's logarithm at a fractional voxel index, a mm, in the scene's voxel axes; over 1.5 voxels.
+Vec3 impedance_slope(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept;
 
 }  // namespace trocar::detail
