@@ -107,14 +107,15 @@ EchoPatch polar_picture(const FanPicture& picture, int lines, double sample_mm) 
 
 void PictureStatistics::add(const FanPicture& picture) {
   const EchoPatch polar = polar_picture(picture, kLines, kSample_mm);
-  const auto bands = static_cast<std::size_t>(std::ceil(picture.scan.depth_mm / kLevelBand_mm));
+  const auto bands = static_cast<std::size_t>(picture.scan.depth_mm / kLevelBand_mm);
   if (band_counts_.size() < bands) band_counts_.resize(bands);
   for (int line = 0; line < polar.lines; ++line)
     for (int sample = 0; sample < polar.samples; ++sample) {
       const auto gray = static_cast<std::size_t>(std::lround(polar.at(line, sample)));
       ++counts_[gray];
       const auto band = static_cast<std::size_t>((sample + 0.5) * polar.sample_mm / kLevelBand_mm);
-      if (line >= polar.lines / 6 && line < polar.lines - polar.lines / 6) ++band_counts_[band][gray];
+      const bool is_middle = line >= polar.lines / 6 && line < polar.lines - polar.lines / 6;
+      if (is_middle && band < bands) ++band_counts_[band][gray];
     }
   add_patches(polar, picture.scan);
 }

@@ -64,6 +64,16 @@ std::vector<double> autocovariance(const EchoPatch& patch, double mean, bool is_
   return covariance;
 }
 
+/// Where the curve falls to one half, between shifts i - 1 and i: on the Gaussian through both values, or straight where
+/// there is none.
+double half_height_shift(std::size_t i, double before, double here) {
+  const auto x1 = static_cast<double>(i);
+  const double x0 = x1 - 1.0;
+  if (here <= 0.0) return x0 + (before - 0.5) / (before - here);
+  const double part = std::log(2.0 * before) / std::log(before / here);
+  return std::sqrt(x0 * x0 + part * (x1 * x1 - x0 * x0));
+}
+
 struct Widths {
   double fwhm = 0.0;
   double cell = 0.0;
@@ -74,8 +84,7 @@ Widths widths_of(const std::vector<double>& covariance) {
   for (std::size_t i = 1; i < covariance.size(); ++i) {
     const double before = covariance[i - 1];
     const double here = covariance[i];
-    if (std::isnan(widths.fwhm) && here < 0.5)
-      widths.fwhm = 2.0 * (static_cast<double>(i - 1) + (before - 0.5) / (before - here));
+    if (std::isnan(widths.fwhm) && here < 0.5) widths.fwhm = 2.0 * half_height_shift(i, before, here);
     if (here <= 0.0) break;
     widths.cell += 2.0 * here;
   }
