@@ -29,5 +29,7 @@ Result<std::vector<CaseResult>> run_palpation_benchmark();
 Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options);
 /// Volumes from tracked freehand sweeps; with the test data against PLUS' own volume.
 Result<std::vector<CaseResult>> run_reconstruct_benchmark();
+/// Simulated ultrasound beside a recorded sweep: gray levels, size of the speckle, a picture of both.
+Result<std::vector<CaseResult>> run_likeness_benchmark(const Options& options);
 
 }  // namespace trocar::bench

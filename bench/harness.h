@@ -25,7 +25,7 @@ struct Figures {
 /// One line of `trocar bench`.
 struct CaseResult {
   std::string name;  ///< "slice/512-oblique".
-  std::string unit;  ///< us, ms, fps, mm, n, nmm (N mm), mib, ratio.
+  std::string unit;  ///< us, ms, fps, mm, n, nmm (N mm), mib, ratio, gray.
   Figures figures;
   struct Peer {
     std::string name;
@@ -51,7 +51,8 @@ struct Options {
   std::uint64_t seed = 1;
   double seconds = 10.0;  ///< How long live servers are watched.
   std::vector<double> rates_hz{1000.0, 4000.0};
-  std::filesystem::path out;  ///< Folder for files; empty: none are written.
+  std::filesystem::path sequence;  ///< Tracked sequence to be held against; empty: none.
+  std::filesystem::path out;       ///< Folder for files; empty: none are written.
   Progress progress;
   std::function<void(std::string_view)> print;  ///< For people, beside the figures; empty with --json.
 };

@@ -32,6 +32,10 @@ const std::vector<Benchmark>& all_benchmarks() {
        "two live haptic servers, a drawing client and a busy process: lateness, ticks, missed deadlines",
        run_servers_benchmark,
        {"--seconds", "--rate", "--force-model"}},
+      {"likeness",
+       "simulated ultrasound of the liver beside a recorded sweep: gray levels, speckle; a picture with --out",
+       run_likeness_benchmark,
+       {"--patient", "--sequence", "--out"}},
   };
   return benchmarks;
 }

@@ -23,8 +23,8 @@ struct Arguments {
 };
 
 /// Options that only some benchmarks can use.
-constexpr const char* kForSome[] = {"--patient", "--task", "--paths",   "--force-model",
-                                    "--seed",    "--out",  "--seconds", "--rate"};
+constexpr const char* kForSome[] = {"--patient", "--task",    "--paths", "--force-model", "--seed",
+                                    "--out",     "--seconds", "--rate",  "--sequence"};
 
 std::string cell(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : "-";
@@ -134,6 +134,7 @@ void add_bench_command(CLI::App& program, Action& action) {
   command->add_option("--rate", a->options.rates_hz, "Of live servers, Hz; several may be given")
       ->check(CLI::Range(250.0, 4000.0))
       ->capture_default_str();
+  command->add_option("--sequence", a->options.sequence, "Recorded ultrasound (.igs.mha) to hold pictures against");
   command->add_option("--out", a->options.out, "Folder to create, for the benchmark's files");
   command->footer("Examples:\n  trocar bench slice --json\n  trocar bench paths --patient my_patient --paths 2000\n");
   command->callback([&action, a, command] {
