@@ -64,8 +64,8 @@ std::vector<double> autocovariance(const EchoPatch& patch, double mean, bool is_
   return covariance;
 }
 
-/// Where the curve falls to one half, between shifts i - 1 and i: on the Gaussian through both values, or straight where
-/// there is none.
+/// Where the curve falls to one half, between shifts i - 1 and i: on the Gaussian through both values, or straight
+/// where there is none.
 double half_height_shift(std::size_t i, double before, double here) {
   const auto x1 = static_cast<double>(i);
   const double x0 = x1 - 1.0;
