@@ -111,7 +111,7 @@ void fill_axial(ScanPlan& plan) {
 /// As many scatterers as the smallest resolution cell needs for fully developed speckle, and the factor that makes its
 /// mean independent of the cell's size: n E[a^2] pi^1.5 sx sy sz is the mean intensity of a Gaussian point spread.
 void fill_scatterers(ScanPlan& plan) {
-  constexpr double kWantedPerCell = 6.0;
+  constexpr double kWantedPerCell = 5.0;
   constexpr double kEffectiveVolume = 15.75;  // (2 pi)^1.5, of sx sy sz: (sum w^2)^2 / sum w^4
   const auto n = static_cast<std::size_t>(plan.samples);
   std::vector<double> volume_mm3(n);
@@ -126,8 +126,8 @@ void fill_scatterers(ScanPlan& plan) {
   plan.speckle_scale.resize(n);
   plan.most_rank.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
-    // Fewer of a stratified brick are less even: where only some are wanted, twice as many.
-    const double share = std::clamp(2.0 * smallest_mm3 / volume_mm3[s], 0.05, 1.0);
+    // Fewer of a stratified brick are less even: where only some are wanted, half as many more.
+    const double share = std::clamp(1.5 * smallest_mm3 / volume_mm3[s], 0.05, 1.0);
     plan.most_rank[s] = static_cast<float>(share);
     const double mean = share * per_mm3 * kMeanSquareScatterer * std::pow(std::numbers::pi, 1.5) * volume_mm3[s];
     plan.speckle_scale[s] = static_cast<float>(1.0 / std::sqrt(mean));

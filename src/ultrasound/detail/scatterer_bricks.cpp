@@ -80,12 +80,23 @@ HWY_INLINE VF arctan(VF t) {
   return hn::Mul(p, t);
 }
 
-/// cos and sin of a number of cycles.
+/// cos and sin of a number of cycles, to 3e-4.
 HWY_INLINE void turn(VF cycles, VF& cosine, VF& sine) {
   const F f;
-  const VF part = hn::Mul(hn::Set(f, 6.28318531F), hn::Sub(cycles, hn::Round(cycles)));  // -pi..pi
-  cosine = hn::Cos(f, part);
-  sine = hn::Sin(f, part);
+  // Half the angle lies in -pi/2..pi/2, where short series do; then the double angle.
+  const VF half = hn::Mul(hn::Set(f, 3.14159265F), hn::Sub(cycles, hn::Round(cycles)));
+  const VF h2 = hn::Mul(half, half);
+  VF s = hn::Set(f, -1.8363654e-4F);
+  s = hn::MulAdd(s, h2, hn::Set(f, 8.3063250e-3F));
+  s = hn::MulAdd(s, h2, hn::Set(f, -0.16664824F));
+  s = hn::Mul(half, hn::MulAdd(s, h2, hn::Set(f, 0.99999661F)));
+  VF c = hn::Set(f, 2.3153932e-5F);
+  c = hn::MulAdd(c, h2, hn::Set(f, -1.3853704e-3F));
+  c = hn::MulAdd(c, h2, hn::Set(f, 4.1663585e-2F));
+  c = hn::MulAdd(c, h2, hn::Set(f, -0.49999905F));
+  c = hn::MulAdd(c, h2, hn::Set(f, 0.99999995F));
+  sine = hn::Mul(hn::Add(s, s), c);
+  cosine = hn::NegMulAdd(hn::Add(s, s), s, hn::Set(f, 1.0F));
 }
 
 HWY_INLINE void drag_along(const Drag& drag, VF& x, VF& y, VF& z) {
@@ -190,9 +201,11 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
                                              hn::Set(f, static_cast<float>(g.line_step)))
                                    : hn::Set(f, static_cast<float>(g.line_step));
     const VF lines_per_mm = hn::Div(hn::Set(f, 1.0F), hn::Max(spacing_mm, hn::Set(f, 0.02F)));
+    constexpr float kFeltWarp = 0.05F;
     // The scanline that hears it is the one whose bent ray comes by.
     const VF straight = line;
-    for (int round = 0; round < 3; ++round) {
+    const int rounds = frame.widest_warp > kFeltWarp ? 3 : 0;
+    for (int round = 0; round < rounds; ++round) {
       const VI by = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
       const VF bend = hn::GatherIndex(f, frame.bend_mm.data(), hn::Add(hn::Mul(by, hn::Set(d, coarse)), at_coarse));
       line = hn::NegMulAdd(bend, lines_per_mm, straight);
@@ -249,12 +262,14 @@ std::vector<Brick> make_brick_library() {
   std::vector<Brick> library(kBricks);
   for (Brick& brick : library) {
     for (std::size_t s = 0; s < kBrickScatterers; ++s) {
-      // The first eight fall into the eight octants, and so do the next: any first part of a brick is even, too.
-      const std::size_t quarter = s >> 3;
-      const std::size_t i = 2 * (s & 1U) + (quarter & 1U), j = 2 * ((s >> 1) & 1U) + (((quarter >> 1) ^ quarter) & 1U);
+      // The first four fall into a tetrahedron of octants, the first eight into all: any first part of a brick is even.
+      constexpr std::size_t kOctants[8] = {0, 3, 5, 6, 7, 4, 2, 1};
+      const std::size_t octant = kOctants[s & 7U], quarter = s >> 3;
+      const std::size_t i = 2 * (octant & 1U) + (quarter & 1U);
+      const std::size_t j = 2 * ((octant >> 1) & 1U) + (((quarter >> 1) ^ quarter) & 1U);
       brick.x[s] = static_cast<float>((static_cast<double>(i) + random.uniform()) / 4.0 - 0.5);
       brick.y[s] = static_cast<float>((static_cast<double>(j) + random.uniform()) / 4.0 - 0.5);
-      brick.z[s] = static_cast<float>((static_cast<double>((s >> 2) & 1U) + random.uniform()) / 2.0 - 0.5);
+      brick.z[s] = static_cast<float>((static_cast<double>(octant >> 2) + random.uniform()) / 2.0 - 0.5);
       brick.amplitude[s] = random.uniform() < 0.5 ? -1.0F : 1.0F;
       brick.rank[s] = (static_cast<float>(s) + static_cast<float>(random.uniform())) / kBrickScatterers;
     }

@@ -179,6 +179,39 @@ void soften_shadows(const ScanPlan& plan, FrameState& frame) noexcept {
   }
 }
 
+/// Edge shadows: a scanline that grazes a border between tissues of different speed is turned by (n - 1) tan(tilt), and
+/// what is turned by more than the beam's opening does not come back. Adds to focus_log, behind the border.
+void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
+  constexpr float kOpening_rad = 0.1F;  // assumed, about 1 / (2 f-number)
+  constexpr float kMostTangent = 3.0F, kMostLoss = 2.3F, kBendable = 0.15F;
+  const auto coarse = plan.coarse_samples();
+  const int central = plan.planes / 2;
+  for (int line = 0; line < plan.lines; ++line) {
+    const auto first = static_cast<std::size_t>(central * plan.lines + line);
+    float loss = 0.0F;
+    std::size_t c = 0;
+    float* losses = frame.smooth_slowness.data() + static_cast<std::size_t>(line) * coarse;  // free until later
+    for (std::size_t b = 0; b < frame.border_counts[first]; ++b) {
+      const Border& border = frame.borders[first * kMaxBorders + b];
+      const float before = plan.slowness[border.before & 127U], behind = plan.slowness[border.behind & 127U];
+      if (std::abs(before) > kBendable || std::abs(behind) > kBendable || std::abs(before - behind) < 2e-3F) continue;
+      const SurfaceFit fit = fit_surface(plan, frame, central, line, border);
+      const float tangent = std::min(std::hypot(fit.lateral, fit.elevation), kMostTangent);
+      const float turned = (before - behind) * tangent / kOpening_rad;
+      for (const auto end = static_cast<std::size_t>(std::max(border.walk, 0.0F)) / kCoarse; c <= end && c < coarse;
+           ++c)
+        losses[c] = loss;
+      loss = std::min(loss + turned * turned, kMostLoss);  // half of its square, there and back
+    }
+    for (; c < coarse; ++c) losses[c] = loss;
+  }
+  for (std::size_t c = 0; c < coarse; ++c)
+    average_lines(
+        plan, half_width(plan, c, kShadingShare),
+        [&](int l) { return frame.smooth_slowness[static_cast<std::size_t>(l) * coarse + c]; },
+        [&](int l, float mean) { frame.focus_log[static_cast<std::size_t>(l) * coarse + c] -= mean; });
+}
+
 }  // namespace
 
 void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept {
@@ -189,6 +222,7 @@ void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept {
   std::fill(frame.focus_log.begin(), frame.focus_log.end(), 0.0F);
   if (plan.acquisition.artefacts.attenuation) soften_shadows(plan, frame);
   if (!plan.acquisition.artefacts.refraction) return;
+  shade_edges(plan, frame);
   const float step_mm = kCoarse * plan.sample_mm;
   // A ray turns towards the slower side: slope += -d(ln c)/dx * dr; ln c = -ln(1 + slowness). The change is kept in
   // bend_mm first.
