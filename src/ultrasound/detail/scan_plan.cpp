@@ -126,8 +126,8 @@ void fill_scatterers(ScanPlan& plan) {
   plan.speckle_scale.resize(n);
   plan.most_rank.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
-    // Fewer of a stratified brick are less even: where only some are wanted, half as many more.
-    const double share = std::clamp(1.5 * smallest_mm3 / volume_mm3[s], 0.05, 1.0);
+    // Fewer of a stratified brick are less even: where only some are wanted, twice as many.
+    const double share = std::clamp(2.2 * smallest_mm3 / volume_mm3[s], 0.05, 1.0);
     plan.most_rank[s] = static_cast<float>(share);
     const double mean = share * per_mm3 * kMeanSquareScatterer * std::pow(std::numbers::pi, 1.5) * volume_mm3[s];
     plan.speckle_scale[s] = static_cast<float>(1.0 / std::sqrt(mean));

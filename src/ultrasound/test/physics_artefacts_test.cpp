@@ -116,6 +116,40 @@ TEST(RangeDistortion, ShowsAPointBehindASlowLayerTooDeep) {
   }
 }
 
+/// Level against x behind a cylinder, against the same scatterers without it, dB; from -20 to 20 mm by 1 mm.
+std::vector<double> profile_behind(TestTissue tissue, const Artefacts& artefacts) {
+  const Transducer transducer = convex();
+  const SceneBox box = box_for(transducer, 110.0, 0.5);
+  const TestRod rods[] = {{0.0, 45.0, 10.0, tissue}};
+  Acquisition acquisition = plain(transducer, artefacts);
+  acquisition.depth_mm = 110.0;
+  BMode with(rods_scene(box, TestTissue::kLossless, rods), transducer, acquisition);
+  BMode without(homogeneous_scene(box, TestTissue::kLossless), transducer, acquisition);
+  const BasebandFrame &a = with.render({}), &b = without.render({});
+  std::vector<double> profile;
+  for (int x = -25; x <= 25; ++x)
+    profile.push_back(level_db(patch_at(a, x, 1.2, 70.0, 105.0)) - level_db(patch_at(b, x, 1.2, 70.0, 105.0)));
+  return profile;
+}
+
+TEST(Refraction, DarkensBehindTheEdgesOfACylinder) {
+  for (const TestTissue tissue : {TestTissue::kSlow, TestTissue::kFast}) {
+    Artefacts both = only(&Artefacts::refraction);
+    both.range_distortion = true;
+    const std::vector<double> on = profile_behind(tissue, both);
+    // Scanlines diverge: the edge at 10 mm throws its shadow to 10 * (61 + 87) / (61 + 45) = 14 mm.
+    const auto lowest = [](const std::vector<double>& p, int from, int to) {
+      return *std::min_element(p.begin() + 25 + from, p.begin() + 25 + to);
+    };
+    double middle = 0.0;
+    for (int x = -4; x <= 4; ++x) middle += on[static_cast<std::size_t>(25 + x)] / 9.0;
+    EXPECT_LT(lowest(on, -18, -9), middle - 3.0);
+    EXPECT_LT(lowest(on, 10, 19), middle - 3.0);
+    EXPECT_GT(lowest(on, 21, 25), -2.0) << "beside";
+    for (const double value : profile_behind(tissue, no_artefacts())) ASSERT_NEAR(value, 0.0, 0.2) << "off";
+  }
+}
+
 TEST(SideLobes, SurroundAStrongPoint) {
   const Transducer transducer = convex();
   const ScenePtr scene =
