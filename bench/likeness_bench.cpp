@@ -9,18 +9,19 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
-#include "bench/liver_view.h"
 #include "core/data_dir.h"
 #include "io/png.h"
 #include "io/sequence_file.h"
 #include "ultrasound/b_mode.h"
 #include "ultrasound/picture_figures.h"
+#include "ultrasound/probe_placement.h"
 #include "ultrasound/scanner.h"
 
 namespace trocar::bench {
 namespace {
 
 constexpr const char* kTransducer = "liver-sweep";
+constexpr const char* kView = "diaphragm";
 /// Of the recorded pictures (739 x 593 pixels): size of a pixel, and the pixel at the middle of the face; fitted to the
 /// fan's edges.
 constexpr double kPixel_mm = 0.3148;
@@ -75,14 +76,15 @@ Result<Pictures> simulated(const VirtualPatient& patient, const Transducer& tran
   TROCAR_TRY(AcousticTable table, load_acoustic_table(data_dir() / "acoustics.toml"));
   TROCAR_TRY(const auto scene, make_acoustic_scene(patient, std::move(table), {}, options.progress));
   BMode engine(scene, transducer, default_acquisition(transducer));
-  const auto view = find_liver_view(patient, engine.geometry());
-  if (!view) return fail_usage("no place on the skin shows the liver", patient.name, "use a patient that has one");
+  TROCAR_TRY(const auto views, load_probe_views(data_dir() / "views.toml"));
+  TROCAR_TRY(const ProbeView chosen, choose_view(patient, views, kView));
+  TROCAR_TRY(const Pose view, place_probe(patient, chosen, transducer));
   Scanner scanner(kColumns, kRows);
   PictureStatistics statistics;
   Pictures pictures;
   for (int frame = 0; frame < kSimulated; ++frame) {
     const double along_mm = kSweep_mm * (static_cast<double>(frame) / (kSimulated - 1) - 0.5);
-    const Pose X_PT = *view * Pose::translation(Vec3(0.0, 0.0, along_mm));
+    const Pose X_PT = view * Pose::translation(Vec3(0.0, 0.0, along_mm));
     const GrayImage& shown = scanner.show(engine.render({X_PT, {}, 0.0}), static_cast<std::uint64_t>(frame));
     statistics.add({scanner.raster(), engine.geometry(), shown.pixels});
     if (frame == kSimulated / 2) pictures.shown = rgb_of(shown.pixels, shown.columns, shown.rows);

@@ -47,9 +47,9 @@ std::string_view name_of(GrayMap map) noexcept;
 double tgc_gain_db(const DisplaySettings& settings, double depth_mm, double scan_depth_mm,
                    double frequency_mhz) noexcept;
 
-/// What is shown as white at gain 0, against liver's speckle after TGC (root mean square). Assumed, range 15..35: liver
+/// What is shown as white at gain 0, against liver's speckle after TGC (root mean square). Assumed, range 10..35: liver behind a wall that takes some 8 dB
 /// then has the gray of the sweep in docs/validation.md.
-inline constexpr double kWhite_db = 24.0;
+inline constexpr double kWhite_db = 15.0;
 
 /// Gray of a level after TGC and before gain, dB against liver's speckle (docs/physics.md U10). Grows with the level.
 /// 0..255. Real-time safe.

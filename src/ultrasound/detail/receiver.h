@@ -13,9 +13,9 @@ inline constexpr std::size_t kNoiseLength = std::size_t{1} << 16;
 inline constexpr std::size_t kMostSamples = 4096;  ///< A scanline, see Acquisition.
 
 /// Amplitude of the receiver's noise (root mean square of |re + i im|), before TGC, against liver's speckle without
-/// attenuation. Assumed, range -70..-45: with it liver of 0.5 dB/cm/MHz is as strong as the noise at 157 mm and 3.5 MHz
-/// (the depth of penetration of IEC 61391-2), 61 mm at 9 MHz.
-inline constexpr double kReceiverNoise_db = -55.0;
+/// attenuation. Assumed, range -70..-45: with it liver of 0.5 dB/cm/MHz is as strong as the noise at 180 mm and 3.5 MHz
+/// (the depth of penetration of IEC 61391-2), 70 mm at 9 MHz.
+inline constexpr double kReceiverNoise_db = -63.0;
 
 /// What a receiver adds by itself (docs/physics.md U9): noise, and the clutter of its own face. Buffers are taken by
 /// the constructor and, for the clutter, by set_geometry.

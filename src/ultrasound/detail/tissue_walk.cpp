@@ -110,7 +110,7 @@ namespace {
 
 constexpr int kBlock = 16;
 /// Organs are wrapped: a border reflects at least so much, even between tissues of one impedance (assumed).
-constexpr float kWrapping = 0.012F;
+constexpr float kWrapping = 0.03F;
 /// Tissue so near to the face is still met through coupling gel where the volume shows air.
 constexpr float kEntry_mm = 5.0F;
 
