@@ -9,6 +9,7 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "ultrasound/detail/slice_blend.h"
+#include "ultrasound/detail/strands.h"
 #include "ultrasound/detail/tissue_volume.h"
 #include "ultrasound/detail/tissue_votes.h"
 #include "volume/sampling.h"
@@ -248,6 +249,7 @@ Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const VirtualPa
   });
   report(progress, "borders", 0.9);
   mark_mixed_cells(*scene);
+  detail::add_strands(*scene);
   report(progress, "acoustic scene", 1.0);
   return scene;
 }

@@ -39,6 +39,12 @@ Result<AcousticTissue> read_tissue(const TomlTable& row, const std::string& name
     tissue.*field.value = number.value;
     known.push_back(field.key);
   }
+  constexpr std::string_view kStrands = "strands_per_ml";  // most tissues have none
+  known.push_back(kStrands);
+  if (row.has(kStrands)) {
+    TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, kStrands, {0.0, 20.0}));
+    tissue.strands_per_ml = number.value;
+  }
   TROCAR_TRY_STATUS(row.check_keys(known));
   return tissue;
 }

@@ -23,6 +23,8 @@ struct AcousticTissue {
   double texture_db_per_hu = 0.0;  ///< How its speckle follows a CT above the tissue's mean. Range -1..1.
   double texture_below_db_per_hu = 0.0;  ///< The same below the mean: positive is darker. Range -1..1.
   double roughness = 0.2;                ///< Part of a surface's echo that goes to all sides. Range 0..1.
+  double strands_per_ml =
+      0.0;                ///< Sheets of tissue across it that echo where the beam meets them squarely. Range 0..20.
   double fibre_db = 0.0;  ///< Depth of the layering along the skin (muscle, fat with septa). Range 0..20.
 
   /// Z = density times speed, MRayl.

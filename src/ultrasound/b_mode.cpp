@@ -10,6 +10,7 @@
 #include "ultrasound/detail/frame_state.h"
 #include "ultrasound/detail/multiple_echoes.h"
 #include "ultrasound/detail/needle_image.h"
+#include "ultrasound/detail/point_echo.h"
 #include "ultrasound/detail/point_spread.h"
 #include "ultrasound/detail/scan_plan.h"
 #include "ultrasound/detail/scatterer_bricks.h"
@@ -28,38 +29,6 @@ struct Scratch {
   WalkResult walk;
   Texture texture;
 };
-
-/// Echoes of single points, by one thread: there are few.
-void add_points(const ScanPlan& plan, FrameState& frame) noexcept {
-  const Pose X_TP = frame.X_PT.inverse();
-  for (const AcousticPoint& point : frame.scene->points) {
-    const Vec3 p_T = X_TP * point.p_P;
-    const Polar at = plan.geometry.to_polar(Vec2(p_T.x(), p_T.y()));
-    const int line = static_cast<int>(std::floor(at.line));
-    const int near_line = static_cast<int>(std::lround(at.line));
-    if (near_line < 0 || near_line >= plan.lines || at.depth_mm <= 0.0) continue;
-    const double walk = at.depth_mm / plan.geometry.sample_mm() - 0.5 +
-                        static_cast<double>(frame.pressed_samples[static_cast<std::size_t>(near_line)]);
-    if (walk < 0.0 || walk > plan.samples - 1) continue;
-    const auto s = static_cast<std::size_t>(walk);
-    const double zeta = p_T.z() * static_cast<double>(plan.inverse_elevation_sigma[s]);
-    if (std::abs(zeta) > static_cast<double>(kBeamEdge)) continue;
-    const std::size_t place = static_cast<std::size_t>(near_line) * static_cast<std::size_t>(plan.samples) + s;
-    const double amplitude = std::pow(10.0, point.amplitude_db / 20.0) * std::exp(-0.5 * zeta * zeta) *
-                             static_cast<double>(frame.way_gain[place]);
-    const double shown = walk + static_cast<double>(frame.delay[place]);
-    const auto sample = static_cast<std::ptrdiff_t>(std::lround(shown));
-    if (sample < 0 || sample >= plan.samples) continue;
-    const double turn = 2.0 * std::numbers::pi * shown * static_cast<double>(plan.cycles_per_sample);
-    for (int side = 0; side < 2; ++side) {
-      if (line + side < 0 || line + side >= plan.lines) continue;
-      const double part = side == 0 ? 1.0 - (at.line - line) : at.line - line;
-      const auto to = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(line + side) * plan.stride + kPad + sample);
-      frame.re[to] += static_cast<float>(part * amplitude * std::cos(turn));
-      frame.im[to] -= static_cast<float>(part * amplitude * std::sin(turn));
-    }
-  }
-}
 
 }  // namespace
 

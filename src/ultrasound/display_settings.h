@@ -24,7 +24,7 @@ struct DisplaySettings {
   double automatic_tgc_db_per_cm_mhz = 0.5;  ///< Two-way loss that is made good. Range 0..1.5 (one way).
   /// Where the automatic part ends, so that the receiver's noise stays darker than tissue. Range 0..120. Assumed from
   /// the sweep of docs/validation.md, whose liver fades below 11 cm while the depth below it stays black.
-  double automatic_tgc_limit_db = 38.0;
+  double automatic_tgc_limit_db = 34.0;
   double dynamic_range_db = 60.0;  ///< Range 20..100.
   double persistence = 0.0;        ///< Part of the last picture that stays. Range 0..0.95.
   GrayMap gray_map = GrayMap::kSoft;
@@ -47,8 +47,8 @@ std::string_view name_of(GrayMap map) noexcept;
 double tgc_gain_db(const DisplaySettings& settings, double depth_mm, double scan_depth_mm,
                    double frequency_mhz) noexcept;
 
-/// What is shown as white at gain 0, against liver's speckle after TGC (root mean square). Assumed, range 10..35: liver behind a wall that takes some 8 dB
-/// then has the gray of the sweep in docs/validation.md.
+/// What is shown as white at gain 0, against liver's speckle after TGC (root mean square). Assumed, range 10..35: liver
+/// behind a wall that takes some 8 dB then has the gray of the sweep in docs/validation.md.
 inline constexpr double kWhite_db = 15.0;
 
 /// Gray of a level after TGC and before gain, dB against liver's speckle (docs/physics.md U10). Grows with the level.

@@ -26,7 +26,8 @@ void add_ring_down(const ScanPlan& plan, FrameState& frame, int line) noexcept {
   const std::uint64_t key = mix64(reflector.key);
   // Some bubbles ring, most only shadow.
   constexpr float kSilentShare = 0.8F;
-  const float loud = std::max(0.0F, static_cast<float>(key & 0xffffU) / 65535.0F - kSilentShare) / (1.0F - kSilentShare);
+  const float loud =
+      std::max(0.0F, static_cast<float>(key & 0xffffU) / 65535.0F - kSilentShare) / (1.0F - kSilentShare);
   const float level = kRingLevel * loud * loud * reflector.rough_amplitude;
   const auto begin = static_cast<int>(reflector.shown);
   // Bands: the pulse goes round within a cluster of bubbles.

@@ -15,20 +15,20 @@ constexpr std::uint64_t kHazeSeed = 0x5eed0002;
 constexpr std::uint64_t kBandSeed = 0x5eed0003;
 
 /// Haze: reverberation between face, skin and the layers below. Its power falls by e every 5 mm (mean of the
-/// exponential distribution of clutter along depth, Byram and Shu 2016); at the face -10 dB against liver (assumed;
+/// exponential distribution of clutter along depth, Byram and Shu 2016); at the face -17 dB against liver (assumed;
 /// -30..0 dB were measured in bladders, Lediju et al. 2008).
-constexpr double kHaze_db = -10.0;
+constexpr double kHaze_db = -17.0;
 constexpr double kHazeDecay_mm = 5.0;
 /// Where it ends: it is faded out from half of that depth on, since TGC would lift a sudden end into view. Assumed.
 constexpr double kClutterDepth_mm = 25.0;
 /// Width of the haze's speckle, which is out of focus so near the face. Assumed, range 1..3.
 constexpr double kHazeWidth_mm = 1.5;
 
-/// Bands: the pulse's end and the echoes between the two sides of lens and skin. Assumed: first +14 dB (8..20), each
-/// further one 7 dB (4..10) less, 1.7 mm apart (skin of 1.5..2.5 mm), uneven by 30 % over 8 mm along the face.
+/// Bands: the pulse's end and the echoes between the two sides of lens and skin. Assumed: first +4 dB (0..15), each
+/// further one 4 dB (3..10) less, 1.7 mm apart (skin of 1.5..2.5 mm), uneven by 30 % over 8 mm along the face.
 constexpr int kBands = 6;
-constexpr double kFirstBand_db = 14.0;
-constexpr double kBandDecay_db = 7.0;
+constexpr double kFirstBand_db = 4.0;
+constexpr double kBandDecay_db = 4.0;
 constexpr double kBandSpacing_mm = 1.7;
 constexpr double kBandUnevenness = 0.3;
 constexpr double kUnevenness_mm = 8.0;

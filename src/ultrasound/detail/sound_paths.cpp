@@ -182,7 +182,7 @@ void soften_shadows(const ScanPlan& plan, FrameState& frame) noexcept {
 /// Edge shadows: a scanline that grazes a border between tissues of different speed is turned by (n - 1) tan(tilt), and
 /// what is turned by more than the beam's opening does not come back. Adds to focus_log, behind the border.
 void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
-  constexpr float kOpening_rad = 0.1F;  // assumed, about 1 / (2 f-number)
+  constexpr float kOpening_rad = 0.13F;  // assumed, about 1 / (2 f-number)
   constexpr float kMostTangent = 3.0F, kMostLoss = 2.3F, kBendable = 0.15F;
   const auto coarse = plan.coarse_samples();
   const int central = plan.planes / 2;

@@ -17,7 +17,7 @@ constexpr float kPerfect = 250.0F;
 /// Tilt at which a smooth surface's echo has fallen to exp(-1/2), rad (assumed, range 0.1..0.35).
 constexpr float kTilt_rad = 0.2F;
 /// What a wholly rough surface sends back of it (assumed).
-constexpr float kRoughShare = 0.12F;
+constexpr float kRoughShare = 0.22F;
 
 std::uint32_t key_of(const std::array<float, 3>& index) noexcept {
   const auto part = [](float v, int shift) {
@@ -46,7 +46,9 @@ void note_reflector(Reflector& reflector, const Border& border, float shown, flo
   constexpr float kGas = -0.6F;
   const bool is_gas = border.reflection < kGas;
   if (is_gas ? reflector.is_gas : reflector.is_gas || strength * smooth_share <= reflector.amplitude) return;
-  reflector = {shown, strength * smooth_share, strength * rough, is_gas, key};
+  // Bubbles are rough gas; the smooth surface of the lung does not ring.
+  constexpr float kBubbly = 0.35F;
+  reflector = {shown, strength * smooth_share, strength * std::max(0.0F, rough - kBubbly), is_gas, key};
 }
 
 }  // namespace

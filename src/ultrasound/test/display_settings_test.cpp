@@ -64,7 +64,8 @@ TEST(DisplaySettings, GrayMapsAreKnownByTheirNames) {
 }
 
 TEST(Tgc, AutomaticPartMakesGoodTheWayThereAndBack) {
-  const DisplaySettings settings;
+  DisplaySettings settings;
+  settings.automatic_tgc_limit_db = 120.0;
   const double near_db = tgc_gain_db(settings, 20.0, kDepth_mm, kFrequency_mhz);
   const double far_db = tgc_gain_db(settings, 60.0, kDepth_mm, kFrequency_mhz);
   EXPECT_NEAR(far_db - near_db, 2.0 * 0.5 * kFrequency_mhz * 4.0, 0.02);
