@@ -8,7 +8,7 @@ namespace trocar::detail {
 namespace {
 
 constexpr double kReach_mm = 3.0;  ///< To either side: several voxels, and less than most organs' curvature.
-constexpr int kMostLines = 10;
+constexpr int kMostSteps = 4;      ///< Scanlines looked at, to either side.
 constexpr float kSteepest = 1.7F;  ///< Slope that is still followed from line to line …
 constexpr float kStep_mm = 1.2F;   ///< … beside a voxel's step.
 
@@ -53,13 +53,13 @@ SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane,
                        const Border& border) noexcept {
   const double depth_mm = (static_cast<double>(border.walk) + 0.5) * static_cast<double>(plan.sample_mm);
   const auto spacing_mm = static_cast<float>(plan.geometry.line_spacing_mm(std::max(depth_mm, 0.1)));
-  const int reach = std::clamp(static_cast<int>(kReach_mm / static_cast<double>(spacing_mm)), 2, kMostLines);
-  const float step = (kSteepest * spacing_mm + kStep_mm) / plan.sample_mm;
+  const int stride = std::max(1, static_cast<int>(kReach_mm / (kMostSteps * static_cast<double>(spacing_mm))));
+  const float step = (kSteepest * static_cast<float>(stride) * spacing_mm + kStep_mm) / plan.sample_mm;
   Line along_face;
   along_face.add(0.0F, border.walk);
   for (const int side : {-1, 1}) {
     float walk = border.walk;
-    for (int k = 1; k <= reach; ++k) {
+    for (int k = stride; k <= kMostSteps * stride; k += stride) {
       const int other = line + side * k;
       if (other < 0 || other >= plan.lines) break;
       const Border* next = find_near(borders_of(plan, frame, plane, other), border, walk, step);

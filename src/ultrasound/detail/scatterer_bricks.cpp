@@ -31,6 +31,8 @@ struct Cell {
   float low, high;
   float half_thickness_mm;
   float most_rank;
+  /// What varies slowly with depth, as a line through its values at the cell's ends: [0] + [1] * sample.
+  float speckle_scale[2], rank[2];
 };
 
 /// Scatterers that are near a cell, in T, until there are enough to hear them together.
@@ -158,6 +160,11 @@ void take_near(const ScanPlan& plan, const Drag* drag, const Cell& cell, const P
   }
 }
 
+HWY_INLINE VF along(const float (&line)[2], VF sample) {
+  const F f;
+  return hn::MulAdd(hn::Set(f, line[1]), sample, hn::Set(f, line[0]));
+}
+
 /// What the cell's scanlines hear of the candidates; returns how many echoes.
 int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const Candidates& near, Echoes& echoes) {
   const F f;
@@ -215,7 +222,7 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     const VF zeta = hn::Mul(hn::Load(f, near.z + s), hn::GatherIndex(f, plan.inverse_elevation_sigma.data(), at));
     heard = hn::And(heard, hn::Lt(hn::Abs(zeta), hn::Set(f, kBeamEdge)));
     const VF rank = hn::Load(f, near.rank + s);
-    heard = hn::And(heard, hn::Lt(rank, hn::GatherIndex(f, plan.most_rank.data(), at)));
+    heard = hn::And(heard, hn::Lt(rank, along(cell.rank, walk)));
     if (hn::AllFalse(f, heard)) continue;
 
     // Of the task's own scanlines: the neighbours' gains may not be there yet.
@@ -229,8 +236,8 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     const VI in_line = hn::Add(hn::Mul(line_index, samples), at);
     const VI place = hn::Add(in_line, hn::Mul(plane_index, hn::Set(d, plan.lines * plan.samples)));
     const VF shown = hn::Add(walk, hn::GatherIndex(f, frame.delay.data(), in_line));
-    const VF weight = hn::Mul(hn::Exp(f, hn::Mul(hn::Mul(zeta, zeta), hn::Set(f, -0.5F))),
-                              hn::GatherIndex(f, plan.speckle_scale.data(), at));
+    const VF weight =
+        hn::Mul(hn::Exp(f, hn::Mul(hn::Mul(zeta, zeta), hn::Set(f, -0.5F))), along(cell.speckle_scale, walk));
     const VF amplitude =
         hn::Mul(hn::Mul(hn::Load(f, near.amplitude + s), weight), hn::GatherIndex(f, frame.gain.data(), place));
     VF cosine, sine;
@@ -341,6 +348,12 @@ Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int las
   const std::size_t near = sample_near(plan, first_rest), far = sample_near(plan, last_rest);
   cell.half_thickness_mm = kBeamEdge * std::max(plan.elevation_sigma_mm[near], plan.elevation_sigma_mm[far]);
   cell.most_rank = std::max(plan.most_rank[near], plan.most_rank[far]);
+  const auto line_through = [&](const std::vector<float>& values, float(&line)[2]) {
+    line[1] = far > near ? (values[far] - values[near]) / static_cast<float>(far - near) : 0.0F;
+    line[0] = values[near] - line[1] * static_cast<float>(near);
+  };
+  line_through(plan.speckle_scale, cell.speckle_scale);
+  line_through(plan.most_rank, cell.rank);
   const ScanGeometry& g = plan.geometry;
   const double margin = 1.0 + static_cast<double>(frame.widest_warp);
   const double low_mm = (static_cast<double>(first_rest) + 0.4) * g.sample_mm(),
@@ -420,7 +433,8 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
   const Eigen::Matrix3f side_T = (X_TP.R() * static_cast<double>(plan.brick_mm)).cast<float>();
   const bool has_drag = frame.drag.reach_mm > 0.0F;
   const float radius_mm = 0.87F * plan.brick_mm + (has_drag ? frame.drag.shift_T.norm() : 0.0F);
-  const float segment = 12.0F / plan.sample_mm;
+  constexpr int kSegments = 14;  // to a depth: what varies along one is near enough to a line
+  const float segment = static_cast<float>(plan.samples) / kSegments;
   const auto take = HWY_DYNAMIC_DISPATCH(take_near);
   Candidates near;
   Echoes echoes;
