@@ -45,7 +45,7 @@ struct BasebandFrame {
   std::vector<float> contact;  ///< A scanline: 1 where the face is coupled to the skin, 0 in air.
 };
 
-/// Ultrasound from an acoustic scene (docs/physics.md U1–U12). Buffers are taken once; render allocates nothing. The
+/// Ultrasound from an acoustic scene (docs/physics.md U1–U9). Buffers are taken once; render allocates nothing. The
 /// result is the same whatever the number of threads.
 class BMode {
  public:

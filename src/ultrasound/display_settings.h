@@ -42,7 +42,7 @@ DisplaySettings within_ranges(const DisplaySettings& settings) noexcept;
 Result<GrayMap> parse_gray_map(std::string_view name);
 std::string_view name_of(GrayMap map) noexcept;
 
-/// Gain at a depth (docs/physics.md U10), dB: the automatic part and the sliders, which are spread over the depth of
+/// Gain at a depth (docs/physics.md U11), dB: the automatic part and the sliders, which are spread over the depth of
 /// the scan and joined by a cubic that never leaves the range of neighbouring sliders. Real-time safe.
 double tgc_gain_db(const DisplaySettings& settings, double depth_mm, double scan_depth_mm,
                    double frequency_mhz) noexcept;
@@ -51,7 +51,7 @@ double tgc_gain_db(const DisplaySettings& settings, double depth_mm, double scan
 /// behind a wall that takes some 8 dB then has the gray of the sweep in docs/validation.md.
 inline constexpr double kWhite_db = 15.0;
 
-/// Gray of a level after TGC and before gain, dB against liver's speckle (docs/physics.md U10). Grows with the level.
+/// Gray of a level after TGC and before gain, dB against liver's speckle (docs/physics.md U11). Grows with the level.
 /// 0..255. Real-time safe.
 std::uint8_t gray_of_level(double level_db, const DisplaySettings& settings) noexcept;
 

@@ -20,7 +20,7 @@ struct GrayImage {
 };
 
 /// The back end of a scanner: receiver noise and near-field clutter, TGC, envelope, log compression, persistence, gain
-/// and gray map, scan conversion (docs/physics.md U9–U11). Buffers are taken once for a geometry (of scan and beam);
+/// and gray map, scan conversion (docs/physics.md U10–U11). Buffers are taken once for a geometry (of scan and beam);
 /// show allocates nothing while that and `is_mirrored` stay.
 class Scanner {
  public:

@@ -17,7 +17,7 @@ inline constexpr std::size_t kMostSamples = 4096;  ///< A scanline, see Acquisit
 /// (the depth of penetration of IEC 61391-2), 70 mm at 9 MHz.
 inline constexpr double kReceiverNoise_db = -63.0;
 
-/// What a receiver adds by itself (docs/physics.md U9): noise, and the clutter of its own face. Buffers are taken by
+/// What a receiver adds by itself (docs/physics.md U10): noise, and the clutter of its own face. Buffers are taken by
 /// the constructor and, for the clutter, by set_geometry.
 class Receiver {
  public:

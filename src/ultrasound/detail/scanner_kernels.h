@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The steps of the scanner's back end that run over every sample and every pixel (docs/physics.md U10, U11). Compiled
+/// The steps of the scanner's back end that run over every sample and every pixel (docs/physics.md U11). Compiled
 /// for every instruction set and chosen at run time. Real-time safe.
 namespace trocar::detail {
 

@@ -5,7 +5,7 @@
 #include "ultrasound/detail/tissue_walk.h"
 
 /// Where sound goes: contact of the face, straight scanlines, what bends them and what mirrors them. On the central
-/// plane, in coarse steps (docs/physics.md U5, U7, U8).
+/// plane, in coarse steps (docs/physics.md U7, U8).
 namespace trocar::detail {
 
 /// Frame-wide transforms and each scanline's straight walk.
