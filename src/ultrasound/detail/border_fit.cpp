@@ -10,6 +10,7 @@ namespace {
 constexpr double kReach_mm = 3.0;  ///< To either side: several voxels, and less than most organs' curvature.
 constexpr int kMostSteps = 4;      ///< Scanlines looked at, to either side.
 constexpr float kSteepest = 1.7F;  ///< Slope that is still followed from line to line …
+constexpr float kRamp = 16.0F;     ///< Samples.
 constexpr float kStep_mm = 1.2F;   ///< … beside a voxel's step.
 
 std::span<const Border> borders_of(const ScanPlan& plan, const FrameState& frame, int plane, int line) noexcept {
@@ -17,10 +18,13 @@ std::span<const Border> borders_of(const ScanPlan& plan, const FrameState& frame
   return {frame.borders.data() + at * kMaxBorders, frame.border_counts[at]};
 }
 
-/// The border between those two tissues that lies nearest to a place; nullptr: none within `reach` samples.
+/// The border between those two tissues that lies nearest to a place; nullptr: none within `reach` samples. They are
+/// sorted by depth, up to two of one ramp.
 const Border* find_near(std::span<const Border> borders, const Border& like, float walk, float reach) noexcept {
   const Border* found = nullptr;
+  const float end = walk + reach + kRamp;
   for (const Border& border : borders) {
+    if (border.walk > end) break;
     if (border.before != like.before || border.behind != like.behind) continue;
     const float far = std::abs(border.walk - walk);
     if (far > reach) continue;

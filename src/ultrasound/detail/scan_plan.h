@@ -14,7 +14,7 @@ namespace trocar::detail {
 
 inline constexpr int kPad = 96;    ///< Zero samples before and behind a scanline, for the pulse to reach into.
 inline constexpr int kCoarse = 8;  ///< Samples to a step of what varies slowly.
-inline constexpr int kGroup = 16;  ///< Scanlines that one task handles.
+inline constexpr int kGroup = 32;  ///< Scanlines that one task handles.
 inline constexpr int kMaxPlanes = 9;
 inline constexpr int kTissues = 128;
 inline constexpr std::uint8_t kNoData = 127;  ///< Tissue beyond the volume.

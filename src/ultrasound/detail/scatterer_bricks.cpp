@@ -26,6 +26,7 @@ struct PlacedBrick {
 /// planes on either side (x * nx + (y + radius) * ny <= 0), squared distance from the apex (fans) or y, thickness.
 struct Cell {
   int first_line, last_line;
+  double low_line, high_line;  ///< Straight scanlines between which lies what the bent ones hear.
   float first_rest, last_rest;
   float side_x[2], side_y[2], side_d[2];
   float low, high;
@@ -243,12 +244,14 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     VF cosine, sine;
     turn(hn::Mul(shown, hn::Set(f, plan.cycles_per_sample)), cosine, sine);
     heard = hn::And(heard, hn::Le(shown, last_sample));
-    hn::CompressStore(line, heard, f, echoes.line + n);
-    hn::CompressStore(shown, heard, f, echoes.sample + n);
-    hn::CompressStore(hn::Mul(amplitude, cosine), heard, f, echoes.re + n);
-    hn::CompressStore(hn::Neg(hn::Mul(amplitude, sine)), heard, f, echoes.im + n);
-    hn::CompressStore(rank, heard, f, echoes.rank + n);
-    n += static_cast<int>(hn::CompressStore(place, hn::RebindMask(d, heard), d, echoes.place + n));
+    // Not compacted: most are heard. Who is not has a rank beyond all.
+    hn::Store(line, f, echoes.line + n);
+    hn::Store(shown, f, echoes.sample + n);
+    hn::Store(hn::Mul(amplitude, cosine), f, echoes.re + n);
+    hn::Store(hn::Neg(hn::Mul(amplitude, sine)), f, echoes.im + n);
+    hn::Store(hn::IfThenElse(heard, rank, hn::Set(f, 2.0F)), f, echoes.rank + n);
+    hn::Store(place, d, echoes.place + n);
+    n += static_cast<int>(hn::Lanes(f));
   }
   return n;
 }
@@ -314,6 +317,7 @@ PlacedBrick place(const Index& index, const std::vector<Brick>& library, const V
 
 void splat(const ScanPlan& plan, const Echoes& echoes, int n, const Cell& cell, FrameState& frame) noexcept {
   for (int e = 0; e < n; ++e) {
+    if (echoes.rank[e] > 1.0F) continue;
     const auto walk = static_cast<std::size_t>(std::max(echoes.sample[e], 0.0F));
     const auto share = static_cast<float>(frame.share[static_cast<std::size_t>(echoes.place[e])]) * (1.0F / 255.0F);
     if (echoes.rank[e] >= share * plan.most_rank[walk]) continue;
@@ -338,6 +342,23 @@ std::size_t sample_near(const ScanPlan& plan, float s) noexcept {
   return static_cast<std::size_t>(std::clamp(s, 0.0F, static_cast<float>(plan.samples - 1)));
 }
 
+void set_lines(const ScanPlan& plan, const FrameState& frame, std::size_t near, std::size_t far, Cell& cell) noexcept {
+  float least = 0.0F, most = 0.0F;
+  if (frame.widest_warp > 0.0F) {
+    for (int line = std::max(cell.first_line - 1, 0); line <= std::min(cell.last_line, plan.lines - 1); ++line) {
+      const float* bend = frame.bend_mm.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
+      for (std::size_t c = near / kCoarse; c <= far / kCoarse + 1; ++c) {
+        least = std::min(least, bend[c]);
+        most = std::max(most, bend[c]);
+      }
+    }
+  }
+  const double depth_mm = (static_cast<double>(near) + 0.5) * plan.geometry.sample_mm();
+  const double spacing_mm = std::max(plan.geometry.line_spacing_mm(depth_mm), 0.02);
+  cell.low_line = cell.first_line - 1.0 + static_cast<double>(least) / spacing_mm;
+  cell.high_line = cell.last_line + 1.0 + static_cast<double>(most) / spacing_mm;
+}
+
 Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int last, float first_rest,
                float last_rest) noexcept {
   Cell cell{};
@@ -355,10 +376,10 @@ Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int las
   line_through(plan.speckle_scale, cell.speckle_scale);
   line_through(plan.most_rank, cell.rank);
   const ScanGeometry& g = plan.geometry;
-  const double margin = 1.0 + static_cast<double>(frame.widest_warp);
+  set_lines(plan, frame, near, far, cell);
   const double low_mm = (static_cast<double>(first_rest) + 0.4) * g.sample_mm(),
                high_mm = (static_cast<double>(last_rest) + 0.6) * g.sample_mm();
-  const double lines[2] = {first - margin, last + margin};
+  const double lines[2] = {cell.low_line, cell.high_line};
   for (int side = 0; side < 2; ++side) {
     const double outwards = side == 0 ? -1.0 : 1.0;
     const double angle = (lines[side] - g.middle_line()) * g.line_step;
@@ -380,11 +401,9 @@ struct CellBox {
 };
 
 CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept {
-  const double margin_lines = 1.0 + static_cast<double>(frame.widest_warp);
   CellBox box{};
   Vec3 low = Vec3::Constant(1e30), high = Vec3::Constant(-1e30);
-  for (const double line :
-       {cell.first_line - margin_lines, 0.5 * (cell.first_line + cell.last_line), cell.last_line + margin_lines}) {
+  for (const double line : {cell.low_line, 0.5 * (cell.low_line + cell.high_line), cell.high_line}) {
     for (const float rest : {cell.first_rest, cell.last_rest}) {
       const Vec2 p = plan.geometry.to_cartesian({line, (static_cast<double>(rest) + 0.5) * plan.geometry.sample_mm()});
       for (const float z : {-cell.half_thickness_mm, cell.half_thickness_mm}) {
@@ -404,6 +423,17 @@ CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) 
     box.high[a] = brick_of(high[axis] + reach_mm);
   }
   return box;
+}
+
+/// Narrows first..last to the steps of a row, z = start + step * n, that stay within the beam's thickness.
+void stay_in_beam(float start, float step, float half_mm, int& first, int& last) noexcept {
+  if (std::abs(step) < 1e-4F) {
+    if (std::abs(start) > half_mm) last = first - 1;
+    return;
+  }
+  const float a = (-half_mm - start) / step, b = (half_mm - start) / step;
+  first = std::max(first, static_cast<int>(std::ceil(std::min(a, b))));
+  last = std::min(last, static_cast<int>(std::floor(std::max(a, b))));
 }
 
 /// Whether a brick of that middle, a ball about it, can hold a scatterer of the cell.
@@ -447,8 +477,11 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
     for (b[2] = box.low[2]; b[2] <= box.high[2]; ++b[2]) {
       for (b[1] = box.low[1]; b[1] <= box.high[1]; ++b[1]) {
         const Vec3 row_P = (Vec3(box.low[0], b[1], b[2]) + Vec3::Constant(0.5)) * static_cast<double>(plan.brick_mm);
-        Vec3f middle_T = (X_TP * row_P).cast<float>();
-        for (b[0] = box.low[0]; b[0] <= box.high[0]; ++b[0], middle_T += side_T.col(0)) {
+        const Vec3f row_T = (X_TP * row_P).cast<float>();
+        int first_i = 0, last_i = box.high[0] - box.low[0];
+        stay_in_beam(row_T.z(), side_T(2, 0), cell.half_thickness_mm + radius_mm, first_i, last_i);
+        Vec3f middle_T = row_T + static_cast<float>(first_i) * side_T.col(0);
+        for (b[0] = box.low[0] + first_i; b[0] <= box.low[0] + last_i; ++b[0], middle_T += side_T.col(0)) {
           if (!comes_near(plan, cell, middle_T, radius_mm)) continue;
           const bool is_dragged = has_drag && (middle_T - frame.drag.tip_T).norm() < frame.drag.reach_mm + radius_mm;
           take(plan, is_dragged ? &frame.drag : nullptr, cell, place(b, library, middle_T, side_T), near);

@@ -53,21 +53,21 @@ Layering layering_at(float below_skin_mm, const Vec3& p_mm) noexcept {
 class LayerProfile {
  public:
   LayerProfile() {
-    for (std::size_t n = 0; n < kSteps; ++n) {
-      const float part = noise(static_cast<float>(n) / kStepsAUnit, 7.3F, 0.0F);
+    for (std::size_t n = 0; n < steps; ++n) {
+      const float part = noise(static_cast<float>(n) / stepsAUnit, 7.3F, 0.0F);
       values_[n] = std::exp(-part * part / 0.03F);
     }
   }
   float at(const Layering& layer) const noexcept {
-    const float place = layer.phase * kStepsAUnit;
-    const auto n = static_cast<std::size_t>(static_cast<std::int64_t>(std::floor(place))) % kSteps;
+    const float place = layer.phase * stepsAUnit;
+    const auto n = static_cast<std::size_t>(static_cast<std::int64_t>(std::floor(place))) % steps;
     return 1.5F * values_[n] * layer.strength - 0.5F;
   }
 
  private:
-  static constexpr std::size_t kSteps = 4096;
-  static constexpr float kStepsAUnit = 32.0F;
-  std::array<float, kSteps> values_;
+  static constexpr std::size_t steps = 4096;
+  static constexpr float stepsAUnit = 32.0F;
+  std::array<float, steps> values_;
 };
 
 /// Texture of the nearest voxel, steps. It is smooth over more than a voxel.
@@ -80,11 +80,12 @@ float texture_at(const FrameState& frame, const WalkResult& walk, std::size_t s)
 /// Layers along the central plane: their place in coarse steps, the sheets themselves sample by sample.
 void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, Texture& texture) noexcept {
   static const LayerProfile profile;
+  constexpr int kLayering = 2 * kCoarse;  // samples; what is found there waves over centimetres
   const AcousticScene& scene = *frame.scene;
   Layering last;
   bool was_in = false;
-  for (int begin = 0; begin < plan.samples; begin += kCoarse) {
-    const auto at = static_cast<std::size_t>(std::min(begin + kCoarse, plan.samples - 1));
+  for (int begin = 0; begin < plan.samples; begin += kLayering) {
+    const auto at = static_cast<std::size_t>(std::min(begin + kLayering, plan.samples - 1));
     const bool is_in = plan.fibre_gain[walk.tissue[at]] > 0.0F && walk.cell[at] >= 0;
     Layering next;
     if (is_in) {
@@ -96,8 +97,8 @@ void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult
     }
     if (is_in && !was_in) last = next;
     if (!is_in && was_in) next = last;
-    for (int n = 0; n < kCoarse; ++n) {
-      const float part = static_cast<float>(n) / static_cast<float>(kCoarse);
+    for (int n = 0; n < kLayering; ++n) {
+      const float part = static_cast<float>(n) / static_cast<float>(kLayering);
       texture.fibres[static_cast<std::size_t>(begin + n)] =
           is_in || was_in
               ? plan.fibre_gain[walk.tissue[static_cast<std::size_t>(begin + n)]] *
@@ -115,7 +116,9 @@ void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResul
                   Texture& texture) noexcept {
   if (is_central) make_fibres(plan, frame, walk, texture);
   const float* focus = frame.focus_log.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
-  constexpr int kStep = kCoarse / 2;
+  // The CT's texture is smoothed over more than a millimetre.
+  constexpr float kTextureStep_mm = 1.5F;
+  const int step = plan.sample_mm * kCoarse < kTextureStep_mm ? kCoarse : kCoarse / 2;
   const auto value_at = [&](int s) {
     const float log_focus =
         (s % kCoarse) == 0 ? focus[s / kCoarse] : 0.5F * (focus[s / kCoarse] + focus[s / kCoarse + 1]);
@@ -125,11 +128,11 @@ void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResul
     return log_focus + plan.texture_gain[tissue][static_cast<std::size_t>(texture_at(frame, walk, at) + 128.0F)];
   };
   float last = value_at(0);
-  for (int begin = 0; begin < plan.samples; begin += kStep) {
-    const float next = value_at(begin + kStep);
-    for (int n = 0; n < kStep; ++n) {
+  for (int begin = 0; begin < plan.samples; begin += step) {
+    const float next = value_at(begin + step);
+    for (int n = 0; n < step; ++n) {
       const auto s = static_cast<std::size_t>(begin + n);
-      texture.added[s] = last + (next - last) * (static_cast<float>(n) / static_cast<float>(kStep)) + texture.fibres[s];
+      texture.added[s] = last + (next - last) * (static_cast<float>(n) / static_cast<float>(step)) + texture.fibres[s];
     }
     last = next;
   }
