@@ -106,8 +106,8 @@ ScanAnnotation make_scan_annotation(const RasterGeometry& raster, const ScanGeom
   add_caption(annotation, scan, caption);
   add_wedge(annotation, raster, within_ranges(caption.settings));
   annotation.focus_row = raster.to_pixel({0.0, caption.focus_mm}).y();
-  const Vec2 end_pixel = raster.to_pixel(scan.line_origin(0.0));
-  const double outwards = raster.is_mirrored ? 1.0 : -1.0;
+  const Vec2 end_pixel = raster.to_pixel(scan.line_origin(scan.lines - 1));
+  const double outwards = raster.is_mirrored ? -1.0 : 1.0;
   annotation.marker_pixel = end_pixel + Vec2(outwards * kMarkerDistance * annotation.text_scale, 0.0);
   return annotation;
 }

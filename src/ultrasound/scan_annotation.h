@@ -38,7 +38,7 @@ struct ScanAnnotation {
   int scale_column = 0;         ///< Ticks reach left from here, labels are right of it.
   std::vector<Tick> ticks;      ///< Depth below the middle of the face; the 0 as well.
   double focus_row = 0.0;       ///< Of the focus' triangle, which points at the scale from the left.
-  Vec2 marker_pixel{0.0, 0.0};  ///< Beside the end of the face that is marked on the transducer: its -x end.
+  Vec2 marker_pixel{0.0, 0.0};  ///< Beside the end of the face that is marked on the transducer: its +x end.
   Wedge wedge;                  ///< Gray of the levels within the dynamic range, white on top.
   std::vector<Text> texts;      ///< Depth labels in cm and the caption.
   int text_scale = 1;           ///< Pixels a dot.

@@ -56,8 +56,9 @@ TEST(ScanAnnotation, MarkerStaysWithTheMarkedEndWhenThePictureIsMirrored) {
   for (const bool is_mirrored : {false, true}) {
     const RasterGeometry raster = fit_raster(scan, 640, 480, is_mirrored);
     const ScanAnnotation annotation = make_scan_annotation(raster, scan, caption());
-    EXPECT_LT(raster.to_T(annotation.marker_pixel.x(), annotation.marker_pixel.y()).x(), scan.line_origin(0.0).x());
-    EXPECT_EQ(annotation.marker_pixel.x() < 320.0, !is_mirrored);
+    EXPECT_GT(raster.to_T(annotation.marker_pixel.x(), annotation.marker_pixel.y()).x(),
+              scan.line_origin(scan.lines - 1).x());
+    EXPECT_EQ(annotation.marker_pixel.x() < 320.0, is_mirrored);
   }
 }
 
