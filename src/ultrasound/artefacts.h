@@ -1,5 +1,10 @@
 #pragma once
 
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
 namespace trocar {
 
 /// What sound does beside going straight and coming back; each can be switched off.
@@ -14,5 +19,11 @@ struct Artefacts {
   bool clutter = true;           ///< Haze of the near field.
   bool noise = true;             ///< Of the receiver; rises with depth because the gain does.
 };
+
+/// "attenuation", "reverberation", "mirror", "refraction", "range-distortion", "side-lobes", "contact-loss", "clutter",
+/// "noise".
+std::vector<std::string_view> artefact_names();
+/// Switches one off, or "all". An unknown name is an error that lists the names (exit status 2).
+Status switch_off(Artefacts& artefacts, std::string_view name);
 
 }  // namespace trocar
