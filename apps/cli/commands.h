@@ -16,7 +16,11 @@ void add_session_commands(CLI::App& program, Action& action);
 void add_device_commands(CLI::App& program, Action& action);
 void add_link_commands(CLI::App& program, Action& action);
 void add_ultrasound_commands(CLI::App& program, Action& action);
-void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action);  ///< reconstruct of `ultrasound`.
+// Of `ultrasound`: image; sweep; reconstruct; views and transducers.
+void add_ultrasound_image_command(CLI::App& ultrasound, Action& action);
+void add_ultrasound_sweep_command(CLI::App& ultrasound, Action& action);
+void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action);
+void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action);
 void add_bench_command(CLI::App& program, Action& action);
 
 }  // namespace trocar::cli

@@ -8,8 +8,13 @@ namespace trocar::cli {
 void add_ultrasound_commands(CLI::App& program, Action& action) {
   CLI::App* ultrasound = program.add_subcommand("ultrasound", "Ultrasound pictures, sweeps and volumes");
   ultrasound->require_subcommand(1);
-  ultrasound->footer("Example:\n  trocar ultrasound reconstruct sweep.igs.mha --spacing 0.5 --out volume.nrrd\n");
+  ultrasound->footer(
+      "Examples:\n  trocar ultrasound image --patient abdomen --view liver-right-kidney --out kidney.png\n"
+      "  trocar ultrasound reconstruct sweep.igs.mha --spacing 0.5 --out volume.nrrd\n");
+  add_ultrasound_image_command(*ultrasound, action);
+  add_ultrasound_sweep_command(*ultrasound, action);
   add_ultrasound_reconstruct_command(*ultrasound, action);
+  add_ultrasound_list_commands(*ultrasound, action);
 }
 
 }  // namespace trocar::cli

@@ -116,6 +116,13 @@ Acquisition default_acquisition(const Transducer& transducer) {
   return acquisition;
 }
 
+double coupled_share(const BasebandFrame& frame) noexcept {
+  constexpr float kMost = 0.5F;
+  const auto coupled =
+      std::count_if(frame.contact.begin(), frame.contact.end(), [](float part) { return part > kMost; });
+  return static_cast<double>(coupled) / static_cast<double>(frame.contact.size());
+}
+
 BMode::BMode(std::shared_ptr<const AcousticScene> scene, Transducer transducer, const Acquisition& acquisition)
     : impl_(std::make_unique<Impl>()) {
   impl_->scene = std::move(scene);

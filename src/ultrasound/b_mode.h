@@ -45,6 +45,9 @@ struct BasebandFrame {
   std::vector<float> contact;  ///< A scanline: 1 where the face is coupled to the skin, 0 in air.
 };
 
+/// Share of the scanlines that are coupled to the skin, 0..1.
+double coupled_share(const BasebandFrame& frame) noexcept;
+
 /// Ultrasound from an acoustic scene (docs/physics.md U1–U9). Buffers are taken once; render allocates nothing. The
 /// result is the same whatever the number of threads.
 class BMode {

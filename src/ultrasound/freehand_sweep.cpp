@@ -86,9 +86,9 @@ std::vector<Pose> tilt_on_skin(const Pose& X_PT, double angle_rad, double radius
   return poses;
 }
 
-TrackedSequence make_freehand_sweep(const std::shared_ptr<const AcousticScene>& scene, const Transducer& transducer,
-                                    std::span<const Pose> X_PT, const FreehandSweepOptions& options,
-                                    const Progress& progress) {
+FreehandSweep make_freehand_sweep(const std::shared_ptr<const AcousticScene>& scene, const Transducer& transducer,
+                                  std::span<const Pose> X_PT, const FreehandSweepOptions& options,
+                                  const Progress& progress) {
   BMode engine(scene, transducer, options.acquisition);
   Scanner scanner(options.columns, options.rows);
   scanner.settings = options.display;
@@ -100,7 +100,8 @@ TrackedSequence make_freehand_sweep(const std::shared_ptr<const AcousticScene>& 
   const Pose X_TrackerReference = patient_pose_in_tracker();
   const TrackedSequence::Matrix4 image_to_probe = matrix_of(X_TProbe.inverse()) * image_to_transducer(raster);
 
-  TrackedSequence sequence;
+  FreehandSweep sweep{{}, 0.0};
+  TrackedSequence& sequence = sweep.sequence;
   sequence.columns = options.columns;
   sequence.rows = options.rows;
   sequence.pixels.reserve(sequence.frame_pixels() * X_PT.size());
@@ -108,8 +109,9 @@ TrackedSequence make_freehand_sweep(const std::shared_ptr<const AcousticScene>& 
     report(progress, "sweeping", static_cast<double>(n) / static_cast<double>(X_PT.size()));
     TrackedSequence::Frame frame;
     frame.time_s = static_cast<double>(n) / options.frames_per_s;
-    const GrayImage& picture = scanner.show(engine.render({X_PT[n], {}, frame.time_s}),
-                                            mix64(mix64(options.seed) ^ static_cast<std::uint64_t>(n)));
+    const BasebandFrame& echoes = engine.render({X_PT[n], {}, frame.time_s});
+    sweep.mean_contact += coupled_share(echoes) / static_cast<double>(X_PT.size());
+    const GrayImage& picture = scanner.show(echoes, mix64(mix64(options.seed) ^ static_cast<std::uint64_t>(n)));
     sequence.pixels.insert(sequence.pixels.end(), picture.pixels.begin(), picture.pixels.end());
     frame.transforms.emplace("ImageToProbe", image_to_probe);
     frame.transforms.emplace("ProbeToTracker", matrix_of(X_TrackerReference * X_PT[n] * X_TProbe));
@@ -117,7 +119,7 @@ TrackedSequence make_freehand_sweep(const std::shared_ptr<const AcousticScene>& 
     sequence.frames.push_back(std::move(frame));
   }
   report(progress, "done", 1.0);
-  return sequence;
+  return sweep;
 }
 
 }  // namespace trocar

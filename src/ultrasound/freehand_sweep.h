@@ -30,12 +30,17 @@ struct FreehandSweepOptions {
   std::uint64_t seed = 1;  ///< Of the receiver's noise.
 };
 
+struct FreehandSweep {
+  TrackedSequence sequence;
+  double mean_contact = 1.0;  ///< Share of all pictures' scanlines that are coupled to the skin.
+};
+
 /// A freehand sweep as PLUS would have recorded it. A sensor rides on the transducer ("Probe"), another one on the
 /// patient ("Reference", whose axes are those of P), and a tracker sees both: ProbeToTracker and ReferenceToTracker of
 /// each frame, and the calibration ImageToProbe. Columns run along +x of T, rows along +y. Where the sensors sit and
 /// where the tracker stands is assumed.
-TrackedSequence make_freehand_sweep(const std::shared_ptr<const AcousticScene>& scene, const Transducer& transducer,
-                                    std::span<const Pose> X_PT, const FreehandSweepOptions& options,
-                                    const Progress& progress = {});
+FreehandSweep make_freehand_sweep(const std::shared_ptr<const AcousticScene>& scene, const Transducer& transducer,
+                                  std::span<const Pose> X_PT, const FreehandSweepOptions& options,
+                                  const Progress& progress = {});
 
 }  // namespace trocar

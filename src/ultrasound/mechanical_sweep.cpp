@@ -29,13 +29,8 @@ bool is_within(double value, double low, double high) {
 /// Frames one after another, scanline by scanline.
 struct Frames {
   std::vector<std::uint8_t> gray;
-  double least_contact = 1.0;
+  double mean_contact = 0.0;
 };
-
-double share_in_contact(const std::vector<float>& contact) {
-  const auto coupled = std::count_if(contact.begin(), contact.end(), [](float part) { return part > 0.5F; });
-  return static_cast<double>(coupled) / static_cast<double>(contact.size());
-}
 
 /// Samples are finer than voxels: a voxel shows the mean of those that it is long, not one by chance.
 void average_along_lines(const std::vector<std::uint8_t>& polar, int samples, int half_length, std::uint8_t* out) {
@@ -67,7 +62,7 @@ Frames take_frames(const std::shared_ptr<const AcousticScene>& scene, const Tran
   for (int n = 0; n < geometry.frames; ++n) {
     report(progress, "swinging the array", 0.8 * n / geometry.frames);
     const BasebandFrame& echoes = engine.render({X_PT * geometry.frame_pose(n), {}, 0.0});
-    frames.least_contact = std::min(frames.least_contact, share_in_contact(echoes.contact));
+    frames.mean_contact += coupled_share(echoes) / geometry.frames;
     scanner.show(echoes, mix64(mix64(options.seed) ^ static_cast<std::uint64_t>(n)));
     average_along_lines(scanner.polar(), geometry.scan.samples, half_length,
                         frames.gray.data() + frame_size * static_cast<std::size_t>(n));
@@ -193,7 +188,7 @@ Result<SweepVolume> make_mechanical_sweep(const std::shared_ptr<const AcousticSc
   TROCAR_TRY(volume.geometry, plan_sweep(transducer, options));
   TROCAR_TRY(const GridGeometry grid, lay_grid(volume.geometry, options.spacing_mm));
   const Frames frames = take_frames(scene, transducer, X_PT, volume.geometry, options, progress);
-  volume.least_contact = frames.least_contact;
+  volume.mean_contact = frames.mean_contact;
   report(progress, "laying the frames into a volume", 0.8);
   volume.gray = LabelGrid(grid);
   const auto row = static_cast<std::size_t>(grid.size[0]);

@@ -52,7 +52,7 @@ struct MechanicalSweepOptions {
 struct SweepVolume {
   LabelGrid gray;  ///< Gray 0..255; 0 beside the fan as well. Its axes are those of T in the middle of the swing.
   SweepGeometry geometry;
-  double least_contact = 1.0;  ///< Of all frames: the share of scanlines that are coupled to the skin.
+  double mean_contact = 1.0;  ///< Share of all frames' scanlines that are coupled to the skin.
 };
 
 /// Swings the array of a transducer that is held still at X_PT, and puts the frames' gray levels into a volume. The

@@ -19,7 +19,7 @@ FreehandVolume reconstruct(const std::vector<Pose>& poses, double spacing_mm) {
   options.acquisition = lab_options().acquisition;
   options.columns = 320;
   options.rows = 240;
-  const TrackedSequence sequence = make_freehand_sweep(lab_scene(), motor_probe(), poses, options);
+  const TrackedSequence sequence = make_freehand_sweep(lab_scene(), motor_probe(), poses, options).sequence;
   FreehandOptions how;
   how.spacing_mm = Vec3::Constant(spacing_mm);
   how.interpolation = FreehandInterpolation::kLinear;
@@ -95,7 +95,7 @@ TEST(FreehandSweep, EveryFrameSaysWhereAndWhenAsPlusDoes) {
   options.columns = 64;
   options.rows = 48;
   const std::vector<Pose> poses = tilt_on_skin({}, 0.2, 0.0, 3);
-  const TrackedSequence sequence = make_freehand_sweep(lab_scene(), motor_probe(), poses, options);
+  const TrackedSequence sequence = make_freehand_sweep(lab_scene(), motor_probe(), poses, options).sequence;
   ASSERT_EQ(sequence.frames.size(), 3U);
   EXPECT_EQ(sequence.pixels.size(), 3U * 64U * 48U);
   const RasterGeometry raster = fit_raster(make_scan_geometry(motor_probe(), options.acquisition.depth_mm,

@@ -1,0 +1,268 @@
+// trocar ultrasound image: a B-mode picture of a patient, and how fast pictures come.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <span>
+
+#include "bench/harness.h"
+#include "commands.h"
+#include "io/image_file.h"
+#include "io/png.h"
+#include "io/transform_file.h"
+#include "ultrasound/scan_annotation.h"
+#include "ultrasound/scanner.h"
+#include "ultrasound_scan.h"
+
+namespace trocar::cli {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr double kNeedleLength_mm = 200.0;
+constexpr int kMostFrames = 100000;
+/// So many pictures persist to within a gray value or two.
+constexpr int kPersistingPictures = 40;
+
+struct Arguments {
+  ScanArguments scan;
+  std::string needle;
+  int needle_gauge = 18;
+  std::string engine = "raycast";
+  std::string out;
+  std::string size = "640x480";
+  int frames = 0;
+  bool is_plain = false;
+  bool is_unmirrored = false;
+  bool is_json = false;
+};
+
+/// Outer diameter of a needle, mm (needle gauge comparison chart, Birmingham wire gauge).
+Result<double> diameter_of_gauge(int gauge) {
+  constexpr int kFirst = 14;
+  constexpr std::array kDiameters_mm = {2.108, 1.829, 1.651, 1.473, 1.270, 1.067,
+                                        0.908, 0.819, 0.718, 0.642, 0.566, 0.515};
+  const int last = kFirst + static_cast<int>(kDiameters_mm.size()) - 1;
+  if (gauge < kFirst || gauge > last)
+    return fail_usage(fmt::format("--needle-gauge is not within {}..{}", kFirst, last), fmt::format("{}", gauge));
+  return kDiameters_mm[static_cast<std::size_t>(gauge - kFirst)];
+}
+
+struct Size {
+  int columns = 0, rows = 0;
+};
+Result<Size> parse_size(const std::string& text) {
+  Size size;
+  int read = 0;
+  const bool is_read = std::sscanf(text.c_str(), "%5dx%5d%n", &size.columns, &size.rows, &read) == 2 &&
+                       static_cast<std::size_t>(read) == text.size();
+  if (!is_read || size.columns < 16 || size.rows < 16 || size.columns > 4096 || size.rows > 4096)
+    return fail_usage("--size is not COLUMNSxROWS within 16..4096", text, "640x480 for example");
+  return size;
+}
+
+/// The straight needle of a file; no shaft without a file.
+struct Needle {
+  std::vector<Vec3> shaft_P;
+  double diameter_mm = 0.0;
+};
+Result<Needle> load_needle(const Arguments& arguments) {
+  Needle needle;
+  TROCAR_TRY(needle.diameter_mm, diameter_of_gauge(arguments.needle_gauge));
+  if (arguments.needle.empty()) return needle;
+  TROCAR_TRY(const Pose X_PN, read_transform(arguments.needle));
+  needle.shaft_P = {X_PN * Vec3(0.0, 0.0, -kNeedleLength_mm), X_PN.p()};
+  return needle;
+}
+
+/// What the arguments ask for, before any work.
+struct Request {
+  Size size;
+  Needle needle;
+};
+Result<Request> check_arguments(const Arguments& arguments) {
+  if (arguments.engine == "panorama")
+    return fail_usage("pictures from stitched volumes come later", "--engine panorama", "leave it out, or raycast");
+  const std::string ending = fs::path(arguments.out).extension().string();
+  if (ending != ".png" && ending != ".nrrd")
+    return fail_usage("the picture is written as .png or .nrrd", arguments.out, "let the name end in one of them");
+  if (arguments.frames < 0 || arguments.frames > kMostFrames)
+    return fail_usage(fmt::format("--frames is not within 1..{}", kMostFrames), fmt::format("{}", arguments.frames));
+  TROCAR_TRY_STATUS(check_outputs({arguments.out, arguments.scan.save_pose}));
+  Request request;
+  TROCAR_TRY(request.size, parse_size(arguments.size));
+  TROCAR_TRY(request.needle, load_needle(arguments));
+  return request;
+}
+
+/// The picture as a volume of one slice where its plane lies in the patient; 3D programs show it in place.
+LabelGrid as_slice(const GrayImage& picture, const RasterGeometry& raster, const Pose& X_PT) {
+  const Vec3 along_columns(raster.is_mirrored ? -1.0 : 1.0, 0.0, 0.0);
+  Mat3 R_TI;
+  R_TI << along_columns, Vec3::UnitY(), along_columns.cross(Vec3::UnitY());
+  GridGeometry geometry;
+  geometry.size = {picture.columns, picture.rows, 1};
+  geometry.spacing_mm = {raster.mm_per_pixel, raster.mm_per_pixel, 1.0};
+  geometry.origin_P = X_PT * Vec3(raster.first_T.x(), raster.first_T.y(), 0.0);
+  geometry.R_PV = X_PT.R() * R_TI;
+  LabelGrid slice(geometry);
+  slice.voxels = picture.pixels;
+  return slice;
+}
+
+/// Where a hand is at one of many frames: always a little elsewhere, so that nothing of the last frame serves again.
+Pose moved_a_little(const Pose& X_PT, int frame) {
+  constexpr double kReach_mm = 4.0;
+  constexpr double kTilt_rad = 0.05;
+  const double phase = 0.11 * (frame + 1);
+  const double tilt_rad = kTilt_rad * std::sin(1.7 * phase);
+  const double c = std::cos(tilt_rad), s = std::sin(tilt_rad);
+  Mat3 R;
+  R << 1, 0, 0, 0, c, -s, 0, s, c;
+  return X_PT * Pose(R, {0.3 * kReach_mm * std::sin(2.3 * phase), 0.0, kReach_mm * std::sin(phase)});
+}
+
+struct Timing {
+  double frames_per_s = 0.0;  ///< Of all frames, one after another.
+  bench::Figures frame_ms, engine_ms, scanner_ms;
+};
+Timing time_frames(BMode& engine, Scanner& scanner, const Scan& scan, std::span<const NeedleEcho> needles, int frames,
+                   std::uint64_t seed, const Progress& progress) {
+  using Clock = std::chrono::steady_clock;
+  const auto ms = [](Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+  };
+  std::vector<double> frame_ms, engine_ms, scanner_ms;
+  double whole_ms = 0.0;
+  for (int n = 0; n < frames; ++n) {
+    report(progress, "timing frames", static_cast<double>(n) / frames);
+    const auto start = Clock::now();
+    const BasebandFrame& echoes = engine.render({moved_a_little(scan.X_PT, n), needles, static_cast<double>(n) / 60.0});
+    const auto heard = Clock::now();
+    scanner.show(echoes, seed + static_cast<std::uint64_t>(n));
+    const auto shown = Clock::now();
+    engine_ms.push_back(ms(start, heard));
+    scanner_ms.push_back(ms(heard, shown));
+    frame_ms.push_back(ms(start, shown));
+    whole_ms += frame_ms.back();
+  }
+  return {1000.0 * frames / whole_ms, bench::figures_of(frame_ms), bench::figures_of(engine_ms),
+          bench::figures_of(scanner_ms)};
+}
+
+Json to_json(const bench::Figures& figures) {
+  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+  return {{"median", number(figures.median)}, {"p99", number(figures.p99)}, {"max", number(figures.max)}};
+}
+
+Json to_json(const Timing& timing, int frames) {
+  return {{"count", frames},
+          {"frames_per_s", timing.frames_per_s},
+          {"frame_ms", to_json(timing.frame_ms)},
+          {"engine_ms", to_json(timing.engine_ms)},
+          {"scanner_ms", to_json(timing.scanner_ms)}};
+}
+
+void print_figures(const char* name, const bench::Figures& figures) {
+  const std::string tail =
+      figures.p99 ? fmt::format("p99 {:.2f}", *figures.p99) : std::string("no p99 below 100 frames");
+  fmt::print("  {:<8} median {:.2f} ms, {}, max {:.2f}\n", name, *figures.median, tail, *figures.max);
+}
+
+Status write_picture(const Arguments& arguments, const Scan& scan, const GrayImage& gray, const RasterGeometry& raster,
+                     const ScanGeometry& geometry) {
+  if (fs::path(arguments.out).extension() == ".nrrd")
+    return write_image(as_slice(gray, raster, scan.X_PT), arguments.out);
+  RgbImage picture = to_rgb(gray);
+  if (!arguments.is_plain) {
+    ScanCaption caption;
+    caption.transducer = scan.transducer.name;
+    caption.frequency_mhz = scan.acquisition.frequency_mhz;
+    caption.focus_mm = scan.acquisition.focus_mm;
+    caption.settings = scan.display;
+    draw_annotation(picture, make_scan_annotation(raster, geometry, caption));
+  }
+  return write_png(picture, arguments.out);
+}
+
+Status make_image(const Arguments& arguments) {
+  TROCAR_TRY(const Request request, check_arguments(arguments));
+  const ProgressPrinter printer;
+  TROCAR_TRY(Scan scan, prepare_scan(arguments.scan, {}, printer.callback()));
+  scan.display.is_mirrored = !arguments.is_unmirrored;
+
+  BMode engine(scan.scene, scan.transducer, scan.acquisition);
+  Scanner scanner(request.size.columns, request.size.rows);
+  scanner.settings = scan.display;
+  scanner.artefacts = scan.acquisition.artefacts;
+  NeedleEcho needle;
+  needle.shaft_P = request.needle.shaft_P;
+  needle.diameter_mm = request.needle.diameter_mm;
+  const std::span<const NeedleEcho> needles(&needle, needle.shaft_P.empty() ? 0 : 1);
+  const BasebandFrame& echoes = engine.render({scan.X_PT, needles, 0.0});
+  const double coupled = coupled_share(echoes);
+  const int pictures = scan.display.persistence > 0.0 ? kPersistingPictures : 1;
+  GrayImage picture;
+  for (int n = 0; n < pictures; ++n)
+    picture = scanner.show(echoes, arguments.scan.seed + static_cast<std::uint64_t>(n));
+  const RasterGeometry raster = scanner.raster();
+
+  Timing timing;
+  if (arguments.frames > 0)
+    timing = time_frames(engine, scanner, scan, needles, arguments.frames, arguments.scan.seed, printer.callback());
+  TROCAR_TRY_STATUS(write_picture(arguments, scan, picture, raster, engine.geometry()));
+  if (!arguments.scan.save_pose.empty()) TROCAR_TRY_STATUS(write_transform(scan.X_PT, arguments.scan.save_pose));
+
+  warn_of_contact(coupled);
+  if (arguments.is_json) {
+    Json json = to_json(scan);
+    json["out"] = arguments.out;
+    json["columns"] = picture.columns;
+    json["rows"] = picture.rows;
+    json["mm_per_pixel"] = raster.mm_per_pixel;
+    json["coupled"] = coupled;
+    json["frames"] = arguments.frames > 0 ? to_json(timing, arguments.frames) : Json(nullptr);
+    print_json(json);
+  } else if (arguments.frames > 0) {
+    fmt::print("{:.1f} frames/s over {} frames, the transducer moving\n", timing.frames_per_s, arguments.frames);
+    print_figures("frame", timing.frame_ms);
+    print_figures("engine", timing.engine_ms);
+    print_figures("scanner", timing.scanner_ms);
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
+  CLI::App* command = ultrasound.add_subcommand("image", "Make a B-mode picture of a patient");
+  command->footer(
+      "Examples:\n  trocar ultrasound image --patient abdomen --view liver-right-kidney --out kidney.png\n"
+      "  trocar ultrasound image --patient my_patient --pose probe.tfm --needle needle.tfm --out needle.png\n"
+      "  trocar ultrasound image --patient abdomen --pose probe.tfm --frames 300 --out frame.png\n");
+  const auto a = std::make_shared<Arguments>();
+  add_scan_options(*command, a->scan);
+  command->add_option("--persistence", a->scan.display.persistence, "Part of the last picture that stays, 0..0.95")
+      ->capture_default_str();
+  command->add_option("--needle", a->needle,
+                      "X_PN: points of the needle, tip at 0 and +z to it, to the patient's (.tfm)");
+  command->add_option("--needle-gauge", a->needle_gauge, "14..25")->capture_default_str();
+  command->add_option("--engine", a->engine, "raycast (from CT and labels) or panorama (from stitched volumes: later)")
+      ->check(CLI::IsMember({"raycast", "panorama"}))
+      ->capture_default_str();
+  command->add_option("--out", a->out, "Picture: .png, or .nrrd as one slice where its plane lies in the patient")
+      ->required();
+  command->add_option("--size", a->size, "Of the picture, COLUMNSxROWS")->capture_default_str();
+  command->add_option("--frames", a->frames, "Time so many more frames while the transducer moves");
+  command->add_flag("--plain", a->is_plain, "No scale, marker and settings around the picture");
+  command->add_flag("--unmirrored", a->is_unmirrored,
+                    "+x of the transducer (head, or the patient's right) to the right");
+  command->add_flag("--json", a->is_json, "Print one JSON object");
+  command->callback([&action, a] { action = [a] { return make_image(*a); }; });
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,142 @@
+// trocar ultrasound views and transducers: what can be asked for.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <numbers>
+
+#include "commands.h"
+#include "io/patient_source.h"
+#include "ultrasound/probe_view.h"
+#include "ultrasound/transducer.h"
+
+namespace trocar::cli {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+struct Arguments {
+  PatientSource source;
+  bool is_json = false;
+};
+
+Json view_json(const ProbeView& view, const std::optional<bool>& is_possible, const Label* target) {
+  return {{"name", view.name},
+          {"title", view.title},
+          {"transducer", view.transducer},
+          {"depth_mm", view.depth_mm},
+          {"possible", is_possible ? Json(*is_possible) : Json(nullptr)},
+          {"target", target != nullptr ? Json(target->name) : Json(nullptr)}};
+}
+
+Status list_views(const Arguments& arguments) {
+  TROCAR_TRY(const auto file, find_data("views.toml"));
+  TROCAR_TRY(const auto views, load_probe_views(file));
+  const bool has_patient = !arguments.source.folder_or_name.empty();
+  VirtualPatient patient;
+  if (has_patient) {
+    const ProgressPrinter printer;
+    TROCAR_TRY(patient, open_patient(arguments.source, printer.callback()));
+  }
+  const auto possible = has_patient ? possible_views(patient, views) : std::vector<std::string>{};
+  Json list = Json::array();
+  for (const ProbeView& view : views) {
+    const bool is_possible = std::find(possible.begin(), possible.end(), view.name) != possible.end();
+    const Label* target = is_possible ? find_target(patient, view.targets) : nullptr;
+    if (arguments.is_json) {
+      list.push_back(view_json(view, has_patient ? std::optional(is_possible) : std::nullopt, target));
+      continue;
+    }
+    const std::string what = !has_patient ? "" : target != nullptr ? target->name : "not in this patient";
+    fmt::print("{:<20} {:<6} {:>3.0f} mm  {}{}\n", view.name, view.transducer, view.depth_mm, view.title,
+               what.empty() ? "" : fmt::format(" ({})", what));
+  }
+  if (arguments.is_json) print_json({{"views", list}});
+  return {};
+}
+
+const char* name_of(TransducerKind kind) {
+  switch (kind) {
+    case TransducerKind::kConvex:
+      return "convex";
+    case TransducerKind::kLinear:
+      return "linear";
+    case TransducerKind::kPhased:
+      return "phased";
+    case TransducerKind::kMechanicalConvex:
+      return "mechanical convex";
+  }
+  return "";
+}
+
+Json transducer_json(const Transducer& t) {
+  const bool is_fan = t.kind != TransducerKind::kLinear;
+  const bool has_arc = is_fan && t.kind != TransducerKind::kPhased;
+  const bool has_motor = t.kind == TransducerKind::kMechanicalConvex;
+  const auto where = [](bool applies, double value) { return applies ? Json(value) : Json(nullptr); };
+  return {{"name", t.name},
+          {"description", t.description},
+          {"kind", name_of(t.kind)},
+          {"frequency_mhz", t.frequency_mhz},
+          {"lowest_mhz", t.lowest_mhz},
+          {"highest_mhz", t.highest_mhz},
+          {"elements", t.elements},
+          {"pitch_mm", t.pitch_mm},
+          {"face_width_mm", t.face_width_mm()},
+          {"radius_mm", where(has_arc, t.radius_mm)},
+          {"field_of_view_deg", where(is_fan, t.field_of_view_rad * kDegPerRad)},
+          {"depth_mm", t.depth_mm},
+          {"greatest_depth_mm", t.greatest_depth_mm},
+          {"focus_mm", t.focus_mm},
+          {"elevation_focus_mm", t.elevation_focus_mm},
+          {"sweep_deg", where(has_motor, t.sweep_rad * kDegPerRad)},
+          {"sweep_radius_mm", where(has_motor, t.sweep_radius_mm)}};
+}
+
+void print_transducers(const std::vector<Transducer>& transducers) {
+  fmt::print("{:<12} {:<18} {:>12} {:>9} {:>8} {:>7} {:>8} {:>10}\n", "name", "kind", "MHz", "face", "radius", "fan",
+             "depth", "sweep");
+  for (const Transducer& t : transducers) {
+    const bool is_fan = t.kind != TransducerKind::kLinear;
+    const bool has_arc = is_fan && t.kind != TransducerKind::kPhased;
+    const std::string radius = has_arc ? fmt::format("{:.0f} mm", t.radius_mm) : "";
+    const std::string fan = is_fan ? fmt::format("{:.0f} deg", t.field_of_view_rad * kDegPerRad) : "";
+    const std::string sweep =
+        t.kind == TransducerKind::kMechanicalConvex ? fmt::format("{:.0f} deg", t.sweep_rad * kDegPerRad) : "";
+    fmt::print("{:<12} {:<18} {:>12} {:>6.0f} mm {:>8} {:>7} {:>5.0f} mm {:>10}  {}\n", t.name, name_of(t.kind),
+               fmt::format("{:g} ({:g}-{:g})", t.frequency_mhz, t.lowest_mhz, t.highest_mhz), t.face_width_mm(), radius,
+               fan, t.depth_mm, sweep, t.description);
+  }
+}
+
+Status list_transducers(const Arguments& arguments) {
+  TROCAR_TRY(const auto file, find_data("transducers.toml"));
+  TROCAR_TRY(const auto transducers, load_transducers(file));
+  if (!arguments.is_json) {
+    print_transducers(transducers);
+    return {};
+  }
+  Json list = Json::array();
+  for (const Transducer& transducer : transducers) list.push_back(transducer_json(transducer));
+  print_json({{"transducers", list}});
+  return {};
+}
+
+}  // namespace
+
+void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action) {
+  const auto a = std::make_shared<Arguments>();  // one command runs: they share it
+  CLI::App* views = ultrasound.add_subcommand("views", "Standard views, and which of them a patient has");
+  views->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
+  views->add_option("--patient-seed", a->source.seed, "Of an embedded patient")->capture_default_str();
+  views->add_flag("--json", a->is_json, "Print one JSON object");
+  views->footer("Example:\n  trocar ultrasound views --patient abdomen\n");
+  views->callback([&action, a] { action = [a] { return list_views(*a); }; });
+
+  CLI::App* transducers = ultrasound.add_subcommand("transducers", "Transducers that can be held");
+  transducers->add_flag("--json", a->is_json, "Print one JSON object");
+  transducers->footer("Example:\n  trocar ultrasound transducers\n");
+  transducers->callback([&action, a] { action = [a] { return list_transducers(*a); }; });
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,190 @@
+#include "ultrasound_scan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "io/transform_file.h"
+#include "ultrasound/probe_placement.h"
+
+namespace trocar::cli {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr double kLeastDepth_mm = 20.0;
+constexpr double kLeastFocus_mm = 5.0;
+/// Where the user says a depth and no focus, the focus stays within the picture.
+constexpr double kDeepestFocus = 0.75;
+
+/// Also false for what is no number, which CLI::Range lets through.
+template <class Number>
+Status check_range(const char* option, Number value, Number low, Number high) {
+  if (value >= low && value <= high) return {};
+  return fail_usage(
+      fmt::format("{} is not within {:g}..{:g}", option, static_cast<double>(low), static_cast<double>(high)),
+      fmt::format("{}", value));
+}
+
+template <class Number>
+Status take(const char* option, const std::optional<Number>& asked, Number low, Number high, Number& value) {
+  if (!asked) return {};
+  value = *asked;
+  return check_range(option, value, low, high);
+}
+
+Result<Acquisition> gather_acquisition(const ScanArguments& a, const Transducer& transducer,
+                                       const std::optional<ProbeView>& view) {
+  Acquisition acquisition = default_acquisition(transducer);
+  if (view) acquisition.depth_mm = std::min(view->depth_mm, transducer.greatest_depth_mm);
+  TROCAR_TRY_STATUS(take("--depth-mm", a.depth_mm, kLeastDepth_mm, transducer.greatest_depth_mm, acquisition.depth_mm));
+  TROCAR_TRY_STATUS(take("--frequency-mhz", a.frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz,
+                         acquisition.frequency_mhz));
+  acquisition.focus_mm = std::min(acquisition.focus_mm, kDeepestFocus * acquisition.depth_mm);
+  TROCAR_TRY_STATUS(take("--focus-mm", a.focus_mm, kLeastFocus_mm, transducer.greatest_depth_mm, acquisition.focus_mm));
+  TROCAR_TRY_STATUS(take("--lines", a.lines, 2, 1024, acquisition.lines));
+  TROCAR_TRY_STATUS(take("--samples", a.samples, 16, 4096, acquisition.samples));
+  TROCAR_TRY_STATUS(take("--looks", a.looks, 1, 5, acquisition.looks));
+  TROCAR_TRY_STATUS(take("--planes", a.planes, 1, 9, acquisition.planes));
+  if (acquisition.planes % 2 == 0)
+    return fail_usage("--planes is not odd", fmt::format("{}", acquisition.planes), "choose 1, 3, 5, 7 or 9");
+  for (const std::string& name : a.off) TROCAR_TRY_STATUS(switch_off(acquisition.artefacts, name));
+  return acquisition;
+}
+
+Result<DisplaySettings> gather_display(const ScanArguments& a) {
+  DisplaySettings display = a.display;
+  if (!a.gray_map.empty()) {
+    TROCAR_TRY(display.gray_map, parse_gray_map(a.gray_map));
+  }
+  if (!a.tgc_db.empty()) {
+    if (a.tgc_db.size() != display.tgc_db.size())
+      return fail_usage("--tgc wants eight numbers, from near to far", fmt::format("{}", fmt::join(a.tgc_db, ",")));
+    std::copy(a.tgc_db.begin(), a.tgc_db.end(), display.tgc_db.begin());
+  }
+  TROCAR_TRY_STATUS(check(display));
+  return display;
+}
+
+/// A view by its name, before there is a patient to hold it against.
+Result<std::optional<ProbeView>> find_view(const std::vector<ProbeView>& views, const std::string& name) {
+  if (name.empty()) return std::nullopt;
+  const auto found = std::find_if(views.begin(), views.end(), [&](const ProbeView& view) { return view.name == name; });
+  if (found != views.end()) return *found;
+  TROCAR_TRY(ProbeView unknown, choose_view(VirtualPatient{}, views, name));
+  return unknown;
+}
+
+}  // namespace
+
+void add_scan_options(CLI::App& command, ScanArguments& a) {
+  command.add_option("--patient", a.source.folder_or_name, "Patient folder, or an embedded patient's name")->required();
+  command.add_option("--patient-seed", a.source.seed, "Of an embedded patient")->capture_default_str();
+  CLI::Option* pose = command.add_option("--pose", a.pose, "X_PT: points of the transducer to the patient's (.tfm)");
+  CLI::Option* view =
+      command.add_option("--view", a.view, "Place the transducer in a standard view: trocar ultrasound views");
+  pose->excludes(view);
+  command.add_option("--save-pose", a.save_pose, "Write X_PT as a .tfm");
+  command.add_option("--transducer", a.transducer,
+                     "One of trocar ultrasound transducers; when left out the view's, or a fitting one");
+  command.add_option("--depth-mm", a.depth_mm, "Of the picture, below the face");
+  command.add_option("--frequency-mhz", a.frequency_mhz, "Within the transducer's band");
+  command.add_option("--focus-mm", a.focus_mm, "Depth of the transmit focus");
+  command.add_option("--gain-db", a.display.gain_db, "-40..40")->capture_default_str();
+  command.add_option("--tgc", a.tgc_db, "Eight sliders from near to far, dB, -20..20: 0,0,0,0,0,0,0,0")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--dynamic-range-db", a.display.dynamic_range_db, "20..100")->capture_default_str();
+  command.add_option("--gray-map", a.gray_map, "linear, soft or high-contrast; soft when left out");
+  command.add_option("--lines", a.lines, "Scanlines, 2..1024");
+  command.add_option("--samples", a.samples, "A scanline, 16..4096; 1024 when left out");
+  command.add_option("--planes", a.planes, "Across the beam's thickness: 1, 3, 5, 7 or 9; 5 when left out");
+  command.add_option("--looks", a.looks, "That are compounded, 1..5; 3 when left out, 1 gives full speckle");
+  command
+      .add_option("--off", a.off,
+                  fmt::format("Artefacts to switch off, with commas: {}, all", fmt::join(artefact_names(), ", ")))
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--seed", a.seed, "Of the receiver's noise")->capture_default_str();
+}
+
+Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_transducer, const Progress& progress) {
+  if (a.pose.empty() && a.view.empty())
+    return fail_usage("the transducer's place is missing", {}, "give --pose FILE.tfm or --view NAME");
+  Scan scan;
+  TROCAR_TRY(const fs::path views_file, find_data("views.toml"));
+  TROCAR_TRY(const auto views, load_probe_views(views_file));
+  TROCAR_TRY(scan.view, find_view(views, a.view));
+  const std::string fitting = scan.view && default_transducer.empty() ? scan.view->transducer : default_transducer;
+  const std::string& name = !a.transducer.empty() ? a.transducer : fitting.empty() ? std::string("C5-2") : fitting;
+  TROCAR_TRY(const fs::path transducers_file, find_data("transducers.toml"));
+  TROCAR_TRY(scan.transducer, load_transducer(transducers_file, name));
+  TROCAR_TRY(scan.acquisition, gather_acquisition(a, scan.transducer, scan.view));
+  TROCAR_TRY(scan.display, gather_display(a));
+  if (!a.pose.empty()) {
+    TROCAR_TRY(scan.X_PT, read_transform(a.pose));
+  }
+  TROCAR_TRY(const fs::path acoustics_file, find_data("acoustics.toml"));
+  TROCAR_TRY(AcousticTable table, load_acoustic_table(acoustics_file));
+
+  TROCAR_TRY(const VirtualPatient patient, open_patient(a.source, progress));
+  scan.patient_name = patient.name;
+  if (scan.view) {
+    TROCAR_TRY(scan.view, choose_view(patient, views, a.view));
+    report(progress, "placing the transducer", 0.0);
+    TROCAR_TRY(scan.X_PT, place_probe(patient, *scan.view, scan.transducer));
+  }
+  TROCAR_TRY(scan.scene, make_acoustic_scene(patient, std::move(table), {}, progress));
+  return scan;
+}
+
+Status check_outputs(const std::vector<std::string>& outputs) {
+  std::set<fs::path> paths;
+  for (const std::string& out : outputs) {
+    if (out.empty()) continue;
+    TROCAR_TRY_STATUS(check_new(out));
+    std::error_code ignored;
+    const fs::path path = fs::absolute(out, ignored).lexically_normal();
+    if (!fs::is_directory(path.parent_path(), ignored))
+      return fail("there is no folder to write into", path.parent_path().string(), "make it first");
+    if (!paths.insert(path).second) return fail_usage("two outputs have the same name", out);
+  }
+  return {};
+}
+
+void warn_of_contact(double coupled) {
+  constexpr double kHardlyAny = 0.02;
+  constexpr double kMost = 0.75;
+  if (coupled < kHardlyAny) {
+    print_warning("the face does not touch the skin: nothing but air is seen");
+  } else if (coupled < kMost) {
+    print_warning(fmt::format("only {:.0f} % of the face touch the skin", 100.0 * coupled));
+  }
+}
+
+Json to_json(const Pose& X) {
+  Json rows = Json::array();
+  for (int row = 0; row < 3; ++row) rows.push_back({X.R()(row, 0), X.R()(row, 1), X.R()(row, 2), X.p()[row]});
+  rows.push_back({0.0, 0.0, 0.0, 1.0});
+  return rows;
+}
+
+Json to_json(const Scan& scan) {
+  const Acquisition& a = scan.acquisition;
+  return {{"patient", scan.patient_name},
+          {"transducer", scan.transducer.name},
+          {"view", scan.view ? Json(scan.view->name) : Json(nullptr)},
+          {"X_PT", to_json(scan.X_PT)},
+          {"depth_mm", a.depth_mm},
+          {"frequency_mhz", a.frequency_mhz},
+          {"focus_mm", a.focus_mm},
+          {"lines", a.lines},
+          {"samples", a.samples},
+          {"planes", a.planes},
+          {"looks", a.looks}};
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/patient_source.h"
+#include "output.h"
+#include "ultrasound/b_mode.h"
+#include "ultrasound/display_settings.h"
+#include "ultrasound/probe_view.h"
+
+namespace trocar::cli {
+
+/// What all commands that scan a patient ask for; what is left out is the transducer's or the view's.
+struct ScanArguments {
+  PatientSource source;
+  std::string pose, view, save_pose;
+  std::string transducer;
+  std::optional<double> depth_mm, frequency_mhz, focus_mm;
+  std::optional<int> lines, samples, planes, looks;
+  DisplaySettings display;
+  std::vector<double> tgc_db;
+  std::string gray_map;
+  std::vector<std::string> off;
+  std::uint64_t seed = 1;  ///< Of the receiver's noise.
+};
+
+/// Adds the options; `arguments` lives as long as the command.
+void add_scan_options(CLI::App& command, ScanArguments& arguments);
+
+/// Arguments put together and held against their ranges, and the patient as sound meets him.
+struct Scan {
+  Transducer transducer;
+  Acquisition acquisition;
+  DisplaySettings display;
+  std::optional<ProbeView> view;
+  Pose X_PT;
+  std::string patient_name;
+  std::shared_ptr<const AcousticScene> scene;
+};
+
+/// What is wrong in the arguments is said before the patient is opened. `default_transducer`: where neither the
+/// arguments nor the view name one.
+Result<Scan> prepare_scan(const ScanArguments& arguments, const std::string& default_transducer,
+                          const Progress& progress);
+
+/// Outputs can be written: nothing lies there yet, their folders exist, and no two are the same. Empty ones are left
+/// out.
+Status check_outputs(const std::vector<std::string>& outputs);
+
+/// Warns where a face or a part of it hears nothing. `coupled`: the share of scanlines on the skin, 0..1.
+void warn_of_contact(double coupled);
+
+Json to_json(const Pose& X);
+Json to_json(const Scan& scan);
+
+}  // namespace trocar::cli

@@ -1,0 +1,204 @@
+// trocar ultrasound sweep: a volume as a mechanical 3D transducer makes it, or a tracked sweep as a hand makes it.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <numbers>
+
+#include "commands.h"
+#include "io/image_file.h"
+#include "io/sequence_file.h"
+#include "io/transform_file.h"
+#include "ultrasound/freehand_sweep.h"
+#include "ultrasound/mechanical_sweep.h"
+#include "ultrasound_scan.h"
+
+namespace trocar::cli {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+struct Arguments {
+  ScanArguments scan;
+  std::string out, tracked;
+  double angle_deg = 0.0;  ///< 0: the transducer's, or by hand a slide.
+  double step_deg = 0.75;
+  double spacing_mm = 0.7;
+  bool is_in_patient = false;
+  double length_mm = 60.0;
+  int frames = 0;  ///< By hand; 0: one a mm, or a step.
+  bool is_json = false;
+};
+
+std::string text_of(const Vec3& v) {
+  return fmt::format("{:.9g} {:.9g} {:.9g}", v.x(), v.y(), v.z());
+}
+
+std::string text_of(const Pose& X) {
+  std::string text;
+  for (int row = 0; row < 3; ++row)
+    text += text_of(Vec3(X.R().row(row).transpose())) + fmt::format(" {:.9g} ", X.p()[row]);
+  return text + "0 0 0 1";
+}
+
+/// The fan for those who stitch or register: the frame of the numbers is the volume's own, T or P.
+ImageFields fan_fields(const Scan& scan, const SweepVolume& volume, bool is_in_patient) {
+  const SweepGeometry& sweep = volume.geometry;
+  const Pose X = is_in_patient ? scan.X_PT : Pose();
+  ImageFields fields = {
+      {"trocar_apex_mm", text_of(X * Vec3(0.0, -sweep.scan.radius_mm, 0.0))},
+      {"trocar_radius_mm", fmt::format("{:.9g}", sweep.scan.radius_mm)},
+      {"trocar_depth_mm", fmt::format("{:.9g}", sweep.scan.depth_mm)},
+      {"trocar_fov_rad", fmt::format("{:.9g}", scan.transducer.field_of_view_rad)},
+      {"trocar_beam_axis", "+y"},
+      {"trocar_sweep_rad", fmt::format("{:.9g}", sweep.sweep_rad)},
+      {"trocar_sweep_radius_mm", fmt::format("{:.9g}", sweep.radius_mm)},
+      {"trocar_sweep_axis_mm", text_of(X * Vec3(0.0, -sweep.radius_mm, 0.0))},
+      {"trocar_sweep_frames", fmt::format("{}", sweep.frames)},
+      {"trocar_transducer", scan.transducer.name},
+      {"trocar_frequency_mhz", fmt::format("{:.9g}", scan.acquisition.frequency_mhz)},
+      {"trocar_frame", is_in_patient ? "P" : "T"},
+  };
+  if (is_in_patient) fields.emplace("trocar_X_PT", text_of(scan.X_PT));
+  return fields;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void print_done(const Arguments& arguments, const Json& json, const std::string& line) {
+  if (arguments.is_json) {
+    print_json(json);
+  } else {
+    fmt::print("{}\n", line);
+  }
+}
+
+Status sweep_by_motor(const Arguments& arguments, const Scan& scan, const Progress& progress) {
+  MechanicalSweepOptions options;
+  options.acquisition = scan.acquisition;
+  options.display = scan.display;
+  options.sweep_rad = arguments.angle_deg * kRadPerDeg;
+  options.step_rad = arguments.step_deg * kRadPerDeg;
+  options.spacing_mm = arguments.spacing_mm;
+  options.seed = arguments.scan.seed;
+  const auto start = std::chrono::steady_clock::now();
+  TROCAR_TRY(const SweepVolume volume,
+             make_mechanical_sweep(scan.scene, scan.transducer, scan.X_PT, options, progress));
+  const double seconds = seconds_since(start);
+  const bool is_in_patient = arguments.is_in_patient;
+  const ImageFields fields = fan_fields(scan, volume, is_in_patient);
+  TROCAR_TRY_STATUS(write_image(is_in_patient ? in_patient(volume, scan.X_PT) : volume.gray, arguments.out, fields));
+  warn_of_contact(volume.mean_contact);
+
+  const auto& size = volume.gray.geometry.size;
+  Json json = to_json(scan);
+  json["out"] = arguments.out;
+  json["frame"] = is_in_patient ? "P" : "T";
+  json["size"] = size;
+  json["spacing_mm"] = arguments.spacing_mm;
+  json["frames"] = volume.geometry.frames;
+  json["sweep_deg"] = volume.geometry.sweep_rad / kRadPerDeg;
+  json["coupled"] = volume.mean_contact;
+  json["seconds"] = seconds;
+  print_done(
+      arguments, json,
+      fmt::format("{} voxels of {:g} mm from {} frames over {:.0f} degrees in {:.1f} s, in {}", fmt::join(size, " x "),
+                  arguments.spacing_mm, volume.geometry.frames, volume.geometry.sweep_rad / kRadPerDeg, seconds,
+                  is_in_patient ? "the patient's axes" : "the transducer's axes"));
+  return {};
+}
+
+std::vector<Pose> hand_poses(const Arguments& arguments, const Scan& scan) {
+  if (arguments.angle_deg > 0.0) {
+    const int steps = static_cast<int>(std::ceil(arguments.angle_deg / arguments.step_deg));
+    const int frames = arguments.frames > 0 ? arguments.frames : std::max(2, steps + 1);
+    return tilt_on_skin(scan.X_PT, arguments.angle_deg * kRadPerDeg, scan.transducer.sweep_radius_mm, frames);
+  }
+  const int frames = arguments.frames > 0 ? arguments.frames : std::max(2, static_cast<int>(arguments.length_mm) + 1);
+  return slide_over_skin(scan.scene->skin_distance_mm, scan.X_PT, arguments.length_mm, frames);
+}
+
+Status sweep_by_hand(const Arguments& arguments, const Scan& scan, const Progress& progress) {
+  FreehandSweepOptions options;
+  options.acquisition = scan.acquisition;
+  options.display = scan.display;
+  options.seed = arguments.scan.seed;
+  const std::vector<Pose> poses = hand_poses(arguments, scan);
+  const auto start = std::chrono::steady_clock::now();
+  const FreehandSweep sweep = make_freehand_sweep(scan.scene, scan.transducer, poses, options, progress);
+  const double seconds = seconds_since(start);
+  TROCAR_TRY_STATUS(write_sequence(sweep.sequence, arguments.tracked));
+  warn_of_contact(sweep.mean_contact);
+  Json json = to_json(scan);
+  json["out"] = arguments.tracked;
+  json["frames"] = poses.size();
+  json["coupled"] = sweep.mean_contact;
+  json["seconds"] = seconds;
+  print_done(arguments, json,
+             fmt::format("{} tracked pictures of {} x {} pixels in {:.1f} s", poses.size(), sweep.sequence.columns,
+                         sweep.sequence.rows, seconds));
+  return {};
+}
+
+/// Also refuses what is no number, which CLI::Range lets through.
+Status check_number(const char* option, double value, double low, double high) {
+  if (value >= low && value <= high) return {};
+  return fail_usage(fmt::format("{} is not within {:g}..{:g}", option, low, high), fmt::format("{:g}", value));
+}
+
+Status check_arguments(const Arguments& arguments) {
+  if (arguments.out.empty() == arguments.tracked.empty())
+    return fail_usage("what to write is not said", {}, "give either --out VOLUME.nrrd or --tracked SEQUENCE.igs.mha");
+  if (!arguments.out.empty() && fs::path(arguments.out).extension() != ".nrrd")
+    return fail_usage("the volume is written as .nrrd", arguments.out, "let the name end in .nrrd");
+  if (!arguments.tracked.empty() && fs::path(arguments.tracked).extension() != ".mha")
+    return fail_usage("the sequence is written as .igs.mha", arguments.tracked, "let the name end in .igs.mha");
+  if (arguments.angle_deg != 0.0) TROCAR_TRY_STATUS(check_number("--angle-deg", arguments.angle_deg, 1.0, 90.0));
+  TROCAR_TRY_STATUS(check_number("--step-deg", arguments.step_deg, 0.1, 10.0));
+  TROCAR_TRY_STATUS(check_number("--spacing", arguments.spacing_mm, 0.2, 5.0));
+  TROCAR_TRY_STATUS(check_number("--length-mm", arguments.length_mm, 1.0, 300.0));
+  if (arguments.frames != 0) TROCAR_TRY_STATUS(check_number("--frames", arguments.frames, 2.0, 1000.0));
+  return check_outputs({arguments.out, arguments.tracked, arguments.scan.save_pose});
+}
+
+Status sweep(const Arguments& arguments) {
+  TROCAR_TRY_STATUS(check_arguments(arguments));
+  const bool is_by_motor = !arguments.out.empty();
+  const ProgressPrinter printer;
+  TROCAR_TRY(const Scan scan, prepare_scan(arguments.scan, is_by_motor ? "4DC7-3" : "", printer.callback()));
+  TROCAR_TRY_STATUS(is_by_motor ? sweep_by_motor(arguments, scan, printer.callback())
+                                : sweep_by_hand(arguments, scan, printer.callback()));
+  return arguments.scan.save_pose.empty() ? Status{} : write_transform(scan.X_PT, arguments.scan.save_pose);
+}
+
+}  // namespace
+
+void add_ultrasound_sweep_command(CLI::App& ultrasound, Action& action) {
+  CLI::App* command = ultrasound.add_subcommand("sweep", "Make a simulated 3D acquisition");
+  command->footer(
+      "Examples:\n  trocar ultrasound sweep --patient my_patient --pose probe.tfm --out volume.nrrd\n"
+      "  trocar ultrasound sweep --patient abdomen --view liver-right-kidney --in-patient --out liver.nrrd\n"
+      "  trocar ultrasound sweep --patient abdomen --view liver-right-kidney --tracked sweep.igs.mha\n");
+  const auto a = std::make_shared<Arguments>();
+  add_scan_options(*command, a->scan);
+  command->add_option("--out", a->out, "Volume of a mechanical 3D transducer: .nrrd, one byte a voxel, with its fan");
+  command->add_option("--tracked", a->tracked, "Instead: pictures of a sweep by hand with their places, .igs.mha");
+  command->add_option(
+      "--angle-deg", a->angle_deg,
+      "Whole angle of the sweep, 1..90; the transducer's own when left out. By hand: tilt, do not slide");
+  command->add_option("--step-deg", a->step_deg, "Between frames")->capture_default_str();
+  command->add_option("--spacing", a->spacing_mm, "Edge of a voxel, mm")->capture_default_str();
+  command->add_flag("--in-patient", a->is_in_patient,
+                    "Axes and place of the patient; when left out those of the transducer in mid sweep, as a scanner");
+  command->add_option("--length-mm", a->length_mm, "By hand: way over the skin")->capture_default_str();
+  command->add_option("--frames", a->frames, "By hand: how many; one a mm, or a step of the angle, when left out");
+  command->add_flag("--json", a->is_json, "Print one JSON object");
+  command->callback([&action, a] { action = [a] { return sweep(*a); }; });
+}
+
+}  // namespace trocar::cli
