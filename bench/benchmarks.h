@@ -31,5 +31,7 @@ Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_reconstruct_benchmark();
 /// Simulated ultrasound beside a recorded sweep: gray levels, size of the speckle, a picture of both.
 Result<std::vector<CaseResult>> run_likeness_benchmark(const Options& options);
+/// Ultrasound frames of the embedded patient while the transducer moves.
+Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options);
 
 }  // namespace trocar::bench

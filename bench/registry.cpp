@@ -28,6 +28,8 @@ const std::vector<Benchmark>& all_benchmarks() {
        run_contact_benchmark,
        {"--force-model", "--seed"}},
       {"reconstruct", "volumes from tracked freehand sweeps; real ones against PLUS' own", run_reconstruct_benchmark},
+      {"ultrasound", "B-mode frames of the embedded patient while the transducer moves, and what they allocate",
+       run_ultrasound_benchmark},
       {"servers",
        "two live haptic servers, a drawing client and a busy process: lateness, ticks, missed deadlines",
        run_servers_benchmark,

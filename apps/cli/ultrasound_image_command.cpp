@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <span>
@@ -15,6 +14,7 @@
 #include "io/image_file.h"
 #include "io/png.h"
 #include "io/transform_file.h"
+#include "ultrasound/freehand_sweep.h"
 #include "ultrasound/scan_annotation.h"
 #include "ultrasound/scanner.h"
 #include "ultrasound_scan.h"
@@ -99,31 +99,23 @@ Result<Request> check_arguments(const Arguments& arguments) {
   return request;
 }
 
-/// The picture as a volume of one slice where its plane lies in the patient; 3D programs show it in place.
-LabelGrid as_slice(const GrayImage& picture, const RasterGeometry& raster, const Pose& X_PT) {
+/// The picture as a thin volume where its plane lies in the patient: two equal slices, since a volume of one has no
+/// inside that readers could interpolate in.
+LabelGrid as_slab(const GrayImage& picture, const RasterGeometry& raster, const Pose& X_PT) {
+  constexpr double kThickness_mm = 1.0;
   const Vec3 along_columns(raster.is_mirrored ? -1.0 : 1.0, 0.0, 0.0);
   Mat3 R_TI;
   R_TI << along_columns, Vec3::UnitY(), along_columns.cross(Vec3::UnitY());
   GridGeometry geometry;
-  geometry.size = {picture.columns, picture.rows, 1};
-  geometry.spacing_mm = {raster.mm_per_pixel, raster.mm_per_pixel, 1.0};
-  geometry.origin_P = X_PT * Vec3(raster.first_T.x(), raster.first_T.y(), 0.0);
+  geometry.size = {picture.columns, picture.rows, 2};
+  geometry.spacing_mm = {raster.mm_per_pixel, raster.mm_per_pixel, kThickness_mm};
+  geometry.origin_P = X_PT * (Vec3(raster.first_T.x(), raster.first_T.y(), 0.0) - 0.5 * kThickness_mm * R_TI.col(2));
   geometry.R_PV = X_PT.R() * R_TI;
-  LabelGrid slice(geometry);
-  slice.voxels = picture.pixels;
-  return slice;
-}
-
-/// Where a hand is at one of many frames: always a little elsewhere, so that nothing of the last frame serves again.
-Pose moved_a_little(const Pose& X_PT, int frame) {
-  constexpr double kReach_mm = 4.0;
-  constexpr double kTilt_rad = 0.05;
-  const double phase = 0.11 * (frame + 1);
-  const double tilt_rad = kTilt_rad * std::sin(1.7 * phase);
-  const double c = std::cos(tilt_rad), s = std::sin(tilt_rad);
-  Mat3 R;
-  R << 1, 0, 0, 0, c, -s, 0, s, c;
-  return X_PT * Pose(R, {0.3 * kReach_mm * std::sin(2.3 * phase), 0.0, kReach_mm * std::sin(phase)});
+  LabelGrid slab(geometry);
+  std::copy(picture.pixels.begin(), picture.pixels.end(), slab.voxels.begin());
+  std::copy(picture.pixels.begin(), picture.pixels.end(),
+            slab.voxels.begin() + static_cast<std::ptrdiff_t>(picture.pixels.size()));
+  return slab;
 }
 
 struct Timing {
@@ -141,7 +133,7 @@ Timing time_frames(BMode& engine, Scanner& scanner, const Scan& scan, std::span<
   for (int n = 0; n < frames; ++n) {
     report(progress, "timing frames", static_cast<double>(n) / frames);
     const auto start = Clock::now();
-    const BasebandFrame& echoes = engine.render({moved_a_little(scan.X_PT, n), needles, static_cast<double>(n) / 60.0});
+    const BasebandFrame& echoes = engine.render({sway(scan.X_PT, n), needles, static_cast<double>(n) / 60.0});
     const auto heard = Clock::now();
     scanner.show(echoes, seed + static_cast<std::uint64_t>(n));
     const auto shown = Clock::now();
@@ -176,7 +168,7 @@ void print_figures(const char* name, const bench::Figures& figures) {
 Status write_picture(const Arguments& arguments, const Scan& scan, const GrayImage& gray, const RasterGeometry& raster,
                      const ScanGeometry& geometry) {
   if (fs::path(arguments.out).extension() == ".nrrd")
-    return write_image(as_slice(gray, raster, scan.X_PT), arguments.out);
+    return write_image(as_slab(gray, raster, scan.X_PT), arguments.out);
   RgbImage picture = to_rgb(gray);
   if (!arguments.is_plain) {
     ScanCaption caption;
@@ -254,7 +246,7 @@ void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
   command->add_option("--engine", a->engine, "raycast (from CT and labels) or panorama (from stitched volumes: later)")
       ->check(CLI::IsMember({"raycast", "panorama"}))
       ->capture_default_str();
-  command->add_option("--out", a->out, "Picture: .png, or .nrrd as one slice where its plane lies in the patient")
+  command->add_option("--out", a->out, "Picture: .png, or .nrrd as a thin slab where its plane lies in the patient")
       ->required();
   command->add_option("--size", a->size, "Of the picture, COLUMNSxROWS")->capture_default_str();
   command->add_option("--frames", a->frames, "Time so many more frames while the transducer moves");

@@ -86,6 +86,17 @@ std::vector<Pose> tilt_on_skin(const Pose& X_PT, double angle_rad, double radius
   return poses;
 }
 
+Pose sway(const Pose& X_PT, int frame) noexcept {
+  constexpr double kReach_mm = 3.8;
+  constexpr double kTilt_rad = 0.05;
+  const double phase = 0.11 * frame + 0.05;  // no frame is the still one
+  const double tilt_rad = kTilt_rad * std::sin(1.7 * phase);
+  const double c = std::cos(tilt_rad), s = std::sin(tilt_rad);
+  Mat3 R;
+  R << 1, 0, 0, 0, c, -s, 0, s, c;
+  return X_PT * Pose(R, {0.3 * kReach_mm * std::sin(2.3 * phase), 0.0, kReach_mm * std::sin(phase)});
+}
+
 FreehandSweep make_freehand_sweep(const std::shared_ptr<const AcousticScene>& scene, const Transducer& transducer,
                                   std::span<const Pose> X_PT, const FreehandSweepOptions& options,
                                   const Progress& progress) {

@@ -22,8 +22,9 @@ INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
                          testing::Values("", "patient", "patient list", "patient generate", "patient build",
                                          "patient show", "patient check", "patient render", "plan", "task", "task list",
                                          "device", "device list", "link", "link keygen", "run", "session",
-                                         "session export", "session report", "ultrasound", "ultrasound reconstruct",
-                                         "bench"));
+                                         "session export", "session report", "ultrasound", "ultrasound image",
+                                         "ultrasound sweep", "ultrasound reconstruct", "ultrasound views",
+                                         "ultrasound transducers", "bench"));
 
 class Mistake : public testing::TestWithParam<const char*> {};
 

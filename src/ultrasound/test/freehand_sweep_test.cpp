@@ -89,6 +89,17 @@ TEST(FreehandSweep, ASlideBesideTheBodyStaysStraight) {
   for (const Pose& pose : poses) EXPECT_TRUE(pose.is_finite());
 }
 
+TEST(FreehandSweep, AHandThatHoldsStillIsNeverAtTheSamePlaceAgain) {
+  const Pose X_PT = Pose::translation({5.0, 6.0, 7.0});
+  std::vector<Vec3> places{X_PT.p()};
+  for (int n = 0; n < 300; ++n) {
+    const Vec3 p = sway(X_PT, n).p();
+    EXPECT_LT((p - X_PT.p()).norm(), 4.0);
+    for (const Vec3& other : places) EXPECT_GT((p - other).norm(), 1e-4);
+    places.push_back(p);
+  }
+}
+
 TEST(FreehandSweep, EveryFrameSaysWhereAndWhenAsPlusDoes) {
   FreehandSweepOptions options;
   options.acquisition = lab_options().acquisition;

@@ -1,0 +1,58 @@
+#include "bench/allocation_count.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace trocar::bench {
+namespace {
+
+std::atomic<bool> is_counting{false};
+std::atomic<std::size_t> allocations{0};
+
+void* take(std::size_t size, std::size_t alignment) {
+  if (is_counting.load(std::memory_order_relaxed)) allocations.fetch_add(1, std::memory_order_relaxed);
+  void* memory = nullptr;
+  if (alignment <= alignof(std::max_align_t)) {
+    memory = std::malloc(size == 0 ? 1 : size);
+  } else if (::posix_memalign(&memory, alignment, size) != 0) {
+    memory = nullptr;
+  }
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+AllocationCount::AllocationCount() noexcept {
+  allocations = 0;
+  is_counting = true;
+}
+AllocationCount::~AllocationCount() {
+  is_counting = false;
+}
+std::size_t AllocationCount::count() const noexcept {
+  return allocations;
+}
+
+}  // namespace trocar::bench
+
+// The array and nothrow forms of the library call these.
+void* operator new(std::size_t size) {
+  return trocar::bench::take(size, 0);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return trocar::bench::take(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}

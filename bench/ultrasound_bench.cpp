@@ -1,0 +1,152 @@
+// Frames of ultrasound from the embedded patient while the transducer moves: engine and scanner, what they allocate.
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <algorithm>
+
+#include "anatomy/phantom/phantom.h"
+#include "bench/allocation_count.h"
+#include "bench/benchmarks.h"
+#include "bench/calibration.h"
+#include "core/data_dir.h"
+#include "ultrasound/b_mode.h"
+#include "ultrasound/freehand_sweep.h"
+#include "ultrasound/probe_placement.h"
+#include "ultrasound/scanner.h"
+
+namespace trocar::bench {
+namespace {
+
+constexpr int kRounds = 5;  ///< The best median counts, as machines are noisy.
+constexpr int kFrames = 120;
+constexpr int kWarmUp = 5;
+constexpr int kColumns = 640, kRows = 480;
+constexpr double kMsPerS = 1000.0;
+
+/// A scan to be timed.
+struct Setting {
+  std::string name;
+  std::string transducer;
+  int looks = 3;
+};
+
+struct Round {
+  std::vector<double> frame_ms, engine_ms, scanner_ms, calibration_us;
+  double allocations_a_frame = 0.0;
+};
+
+Round measure_round(BMode& engine, Scanner& scanner, const Pose& X_PT, int first_frame) {
+  Round round;
+  for (auto* list : {&round.frame_ms, &round.engine_ms, &round.scanner_ms, &round.calibration_us})
+    list->reserve(kFrames);
+  volatile double sink = 0.5;
+  const AllocationCount allocations;
+  for (int n = first_frame; n < first_frame + kFrames; ++n) {
+    const Pose X_PT_now = sway(X_PT, n);
+    const BasebandFrame* echoes = nullptr;
+    const double engine_us = time_us([&] { echoes = &engine.render({X_PT_now, {}, n / 60.0}); });
+    const double scanner_us = time_us([&] { scanner.show(*echoes, static_cast<std::uint64_t>(n)); });
+    round.calibration_us.push_back(time_us([&] { sink = calibration_arithmetic(sink); }));
+    round.engine_ms.push_back(engine_us / kMsPerS);
+    round.scanner_ms.push_back(scanner_us / kMsPerS);
+    round.frame_ms.push_back((engine_us + scanner_us) / kMsPerS);
+  }
+  round.allocations_a_frame = static_cast<double>(allocations.count()) / kFrames;
+  return round;
+}
+
+/// The round with the least median, and the most that any round allocated.
+struct Best {
+  Figures frame, engine, scanner, calibration;
+  double allocations_a_frame = 0.0;
+};
+Best measure(const std::shared_ptr<const AcousticScene>& scene, const Transducer& transducer, const Pose& X_PT,
+             const Acquisition& acquisition) {
+  BMode engine(scene, transducer, acquisition);
+  Scanner scanner(kColumns, kRows);
+  for (int n = 0; n < kWarmUp; ++n) scanner.show(engine.render({sway(X_PT, -n), {}, 0.0}), 1);
+  Best best;
+  for (int round = 0; round < kRounds; ++round) {
+    Round taken = measure_round(engine, scanner, X_PT, round * kFrames);
+    best.allocations_a_frame = std::max(best.allocations_a_frame, taken.allocations_a_frame);
+    const Figures frame = figures_of(std::move(taken.frame_ms));
+    if (round > 0 && *frame.median >= *best.frame.median) continue;
+    best.frame = frame;
+    best.engine = figures_of(std::move(taken.engine_ms));
+    best.scanner = figures_of(std::move(taken.scanner_ms));
+    best.calibration = figures_of(std::move(taken.calibration_us));
+  }
+  return best;
+}
+
+std::string load_note() {
+  double load = 0.0;
+  return ::getloadavg(&load, 1) == 1 ? fmt::format("load {:.1f}", load) : std::string("load unknown");
+}
+
+/// Frames a second; the tail is what 99 of 100 frames reach.
+Figures frames_per_s(const Figures& frame_ms) {
+  Figures figures;
+  figures.median = kMsPerS / *frame_ms.median;
+  if (frame_ms.p99) figures.p99 = kMsPerS / *frame_ms.p99;
+  return figures;
+}
+
+void append(const std::string& name, const Best& best, std::vector<CaseResult>& results) {
+  results.push_back(
+      {name,
+       "fps",
+       frames_per_s(best.frame),
+       {},
+       fmt::format("moving transducer, 640x480, best of {} rounds of {} frames; {}", kRounds, kFrames, load_note())});
+  results.push_back({name + "/frame", "ms", best.frame, {}, {}});
+  results.push_back({name + "/engine", "ms", best.engine, {}, {}});
+  results.push_back({name + "/scanner", "ms", best.scanner, {}, {}});
+  Figures allocations;
+  allocations.median = best.allocations_a_frame;
+  results.push_back({name + "/allocations", "n", allocations, {}, "a frame, operator new of all threads, worst round"});
+  Figures ratio;
+  ratio.median = *best.frame.median * kMsPerS / *best.calibration.median;
+  results.push_back({name + "-to-calibration", "ratio", ratio, {}, "a frame to the fixed loop after it, medians"});
+}
+
+}  // namespace
+
+Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options) {
+  report(options.progress, "patient", 0.0);
+  TROCAR_TRY(const VirtualPatient patient, generate_phantom("abdomen", 1, {{512, 512, 119}}));
+  TROCAR_TRY(AcousticTable table, load_acoustic_table(data_dir() / "acoustics.toml"));
+  TROCAR_TRY(const auto views, load_probe_views(data_dir() / "views.toml"));
+  TROCAR_TRY(const ProbeView view, choose_view(patient, views, "liver-right-kidney"));
+
+  std::vector<CaseResult> results;
+  std::shared_ptr<const AcousticScene> scene;
+  const double scene_us = time_us([&] {
+    if (auto made = make_acoustic_scene(patient, std::move(table))) scene = *std::move(made);
+  });
+  if (scene == nullptr) return fail("the embedded patient has no acoustic scene");
+  Figures scene_ms;
+  scene_ms.median = scene_us / kMsPerS;
+  results.push_back({"raycast/scene", "ms", scene_ms, {}, "once for a patient of 512x512x119 voxels"});
+
+  const Setting settings[] = {{"raycast/256x1024x5", "C5-2", 3},
+                              {"raycast/256x1024x5-one-look", "C5-2", 1},
+                              {"raycast/liver-sweep", "liver-sweep", 3},
+                              {"raycast/linear", "L14-5", 3}};
+  double fraction = 0.2;
+  for (const Setting& setting : settings) {
+    report(options.progress, setting.name, fraction);
+    fraction += 0.2;
+    TROCAR_TRY(const Transducer transducer, load_transducer(data_dir() / "transducers.toml", setting.transducer));
+    TROCAR_TRY(const Pose X_PT, place_probe(patient, view, transducer));
+    Acquisition acquisition = default_acquisition(transducer);
+    acquisition.looks = setting.looks;
+    const Best best = measure(scene, transducer, X_PT, acquisition);
+    if (&setting == settings)
+      results.push_back({"calibration/arithmetic", "us", best.calibration, {}, "a fixed loop, after each frame"});
+    append(setting.name, best, results);
+  }
+  return results;
+}
+
+}  // namespace trocar::bench
