@@ -14,7 +14,7 @@ namespace trocar {
 
 /// Where the samples of a swung array lie. The motor's axis is the line y = -radius_mm, z = 0 of T, which is the
 /// transducer's frame in the middle of the swing; turned by angle a, a point (x, y, 0) of the array's plane comes to
-/// (x, (y + radius) cos a - radius, (y + radius) sin a). Within the plane docs/physics.md U1.
+/// (x, (y + radius) cos a - radius, (y + radius) sin a): docs/physics.md U14.
 struct SweepGeometry {
   ScanGeometry scan;
   double radius_mm = 27.0;  ///< From the motor's axis to the middle of the face. Range 0..200.
