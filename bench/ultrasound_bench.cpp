@@ -1,6 +1,7 @@
 // Frames of ultrasound from the embedded patient while the transducer moves: engine and scanner, what they allocate.
 #include <fmt/format.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include <algorithm>
 
@@ -33,7 +34,15 @@ struct Setting {
 struct Round {
   std::vector<double> frame_ms, engine_ms, scanner_ms, calibration_us;
   double allocations_a_frame = 0.0;
+  double cpu_ms_a_frame = 0.0;  ///< Of all threads.
 };
+
+/// Processor time of this process, all threads.
+double cpu_ms() {
+  timespec now{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * kMsPerS + static_cast<double>(now.tv_nsec) * 1e-6;
+}
 
 Round measure_round(BMode& engine, Scanner& scanner, const Pose& X_PT, int first_frame) {
   Round round;
@@ -41,6 +50,7 @@ Round measure_round(BMode& engine, Scanner& scanner, const Pose& X_PT, int first
     list->reserve(kFrames);
   volatile double sink = 0.5;
   const AllocationCount allocations;
+  const double cpu_before_ms = cpu_ms();
   for (int n = first_frame; n < first_frame + kFrames; ++n) {
     const Pose X_PT_now = sway(X_PT, n);
     const BasebandFrame* echoes = nullptr;
@@ -52,6 +62,7 @@ Round measure_round(BMode& engine, Scanner& scanner, const Pose& X_PT, int first
     round.frame_ms.push_back((engine_us + scanner_us) / kMsPerS);
   }
   round.allocations_a_frame = static_cast<double>(allocations.count()) / kFrames;
+  round.cpu_ms_a_frame = (cpu_ms() - cpu_before_ms) / kFrames;
   return round;
 }
 
@@ -59,6 +70,7 @@ Round measure_round(BMode& engine, Scanner& scanner, const Pose& X_PT, int first
 struct Best {
   Figures frame, engine, scanner, calibration;
   double allocations_a_frame = 0.0;
+  double cpu_ms_a_frame = 0.0;  ///< The least.
 };
 Best measure(const std::shared_ptr<const AcousticScene>& scene, const Transducer& transducer, const Pose& X_PT,
              const Acquisition& acquisition) {
@@ -69,6 +81,7 @@ Best measure(const std::shared_ptr<const AcousticScene>& scene, const Transducer
   for (int round = 0; round < kRounds; ++round) {
     Round taken = measure_round(engine, scanner, X_PT, round * kFrames);
     best.allocations_a_frame = std::max(best.allocations_a_frame, taken.allocations_a_frame);
+    best.cpu_ms_a_frame = round == 0 ? taken.cpu_ms_a_frame : std::min(best.cpu_ms_a_frame, taken.cpu_ms_a_frame);
     const Figures frame = figures_of(std::move(taken.frame_ms));
     if (round > 0 && *frame.median >= *best.frame.median) continue;
     best.frame = frame;
@@ -102,6 +115,9 @@ void append(const std::string& name, const Best& best, std::vector<CaseResult>& 
   results.push_back({name + "/frame", "ms", best.frame, {}, {}});
   results.push_back({name + "/engine", "ms", best.engine, {}, {}});
   results.push_back({name + "/scanner", "ms", best.scanner, {}, {}});
+  Figures cpu;
+  cpu.median = best.cpu_ms_a_frame;
+  results.push_back({name + "/cpu", "ms", cpu, {}, "processor time a frame, all threads, mean of the best round"});
   Figures allocations;
   allocations.median = best.allocations_a_frame;
   results.push_back({name + "/allocations", "n", allocations, {}, "a frame, operator new of all threads, worst round"});
