@@ -86,8 +86,9 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
       const std::size_t at =
           (static_cast<std::size_t>(plane) * static_cast<std::size_t>(plan.lines) + static_cast<std::size_t>(line)) *
           samples;
-      to_gain(s.walk.log_gain.data(), s.texture.added.data(), plan.samples, frame.gain.data() + at);
-      for (std::size_t n = 0; n < samples; ++n) frame.share[at + n] = plan.share[s.walk.tissue[n] & 127U];
+      for (std::size_t n = 0; n < samples; ++n) s.walk.share[n] = plan.share[s.walk.tissue[n] & 127U];
+      pack_gains(s.walk.log_gain.data(), s.texture.added.data(), s.walk.share.data(), plan.samples,
+                 frame.gain.data() + at);
       if (plane == central) {
         std::fill_n(s.texture.added.begin(), samples, 0.0F);
         to_gain(s.walk.log_way.data(), s.texture.added.data(), plan.samples,

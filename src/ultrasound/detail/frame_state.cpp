@@ -24,8 +24,7 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
     coarse->assign(lines * plan.coarse_samples(), 0.0F);
   frame.delay.assign(lines * samples + 16, 0.0F);
   frame.way_gain.assign(lines * samples + 16, 0.0F);
-  frame.gain.assign(static_cast<std::size_t>(plan.planes) * lines * samples, 0.0F);
-  frame.share.assign(frame.gain.size(), 0);
+  frame.gain.assign(static_cast<std::size_t>(plan.planes) * lines * samples + 2, 0);
   for (auto* echoes : {&frame.re, &frame.im}) echoes->assign(padded, 0.0F);
   for (auto* echoes : {&frame.wide_re, &frame.wide_im})
     echoes->assign(padded * static_cast<std::size_t>(plan.looks), 0.0F);

@@ -6,6 +6,7 @@
 
 #include "geometry/pose.h"
 #include "ultrasound/detail/scan_plan.h"
+#include "ultrasound/detail/scatterer_gain.h"
 #include "ultrasound/detail/tiled_tissue.h"
 #include "ultrasound/needle_echo.h"
 #include "ultrasound/probe_contact.h"
@@ -88,8 +89,7 @@ struct FrameState {
   std::vector<float> slowness;          ///< The same: c0/c - 1 of the central plane.
   std::vector<float> delay;             ///< line * samples: shown - walk, samples.
   std::vector<float> way_gain;          ///< The same: amplitude left of an echo from there, without its own strength.
-  std::vector<float> gain;              ///< (plane * lines + line) * samples: of a scatterer there.
-  std::vector<std::uint8_t> share;      ///< The same.
+  std::vector<ScattererGain> gain;      ///< (plane * lines + line) * samples: of a scatterer there; two more.
   std::vector<float> re, im;            ///< line * stride + kPad + sample: echoes before the point spread.
   std::vector<float> wide_re, wide_im;  ///< The same after the lateral point spread.
 };

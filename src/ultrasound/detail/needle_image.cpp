@@ -136,9 +136,13 @@ void darken(const ScanPlan& plan, FrameState& frame, int line, const Cover& cove
     const auto fade = [&](float* values) {
       for (std::size_t k = 0; k < n; ++k) values[k] *= left;
     };
-    for (int plane = 0; plane < plan.planes; ++plane)
-      fade(frame.gain.data() +
-           (static_cast<std::size_t>(plane) * static_cast<std::size_t>(plan.lines) + at_line) * samples + at);
+    const float neper = -std::log(std::max(left, 1e-6F));
+    for (int plane = 0; plane < plan.planes; ++plane) {
+      ScattererGain* gains =
+          frame.gain.data() +
+          (static_cast<std::size_t>(plane) * static_cast<std::size_t>(plan.lines) + at_line) * samples + at;
+      for (std::size_t k = 0; k < n; ++k) gains[k] = weaken(gains[k], neper);
+    }
     fade(frame.way_gain.data() + at_line * samples + at);
     const std::size_t row = at_line * static_cast<std::size_t>(plan.stride) + kPad + at;
     fade(frame.re.data() + row);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "ultrasound/detail/scatterer_bricks.h"
+#include "ultrasound/detail/scatterer_gain.h"
 
 namespace trocar::detail {
 namespace {
@@ -21,7 +22,7 @@ void fill_rows(ScanPlan& plan, const AcousticTable& table) {
     const AcousticTissue& tissue = table.tissues[t];
     const double loss_db_per_mm =
         plan.acquisition.artefacts.attenuation ? tissue.attenuation_db_per_cm(mhz) / 10.0 : 0.0;
-    const double share = std::max(tissue.scatterer_share, 1.0 / 255.0);
+    const double share = std::max(static_cast<double>(kShares[share_class(tissue.scatterer_share)]), 1.0 / 255.0);
     TissueRow& row = plan.rows[t];
     row.log_z = static_cast<float>(std::log(tissue.impedance_mrayl()));
     row.loss = static_cast<float>(2.0 * loss_db_per_mm * kNeperPerDb * plan.sample_mm);
@@ -34,7 +35,7 @@ void fill_rows(ScanPlan& plan, const AcousticTable& table) {
     plan.has_texture[t] = tissue.texture_db_per_hu != 0.0 || tissue.texture_below_db_per_hu != 0.0 ? 1 : 0;
     plan.fibre_gain[t] = static_cast<float>(tissue.fibre_db * kNeperPerDb);
     plan.roughness[t] = static_cast<float>(tissue.roughness);
-    plan.share[t] = static_cast<std::uint8_t>(std::lround(255.0 * share));
+    plan.share[t] = share_class(tissue.scatterer_share);
   }
   plan.entry_rows = plan.rows;
   const auto skin = table.find("skin");
@@ -127,7 +128,7 @@ void fill_scatterers(ScanPlan& plan) {
   plan.most_rank.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
     // Fewer of a stratified brick are less even: where only some are wanted, twice as many.
-    const double share = std::clamp(2.2 * smallest_mm3 / volume_mm3[s], 0.05, 1.0);
+    const double share = std::clamp(2.4 * smallest_mm3 / volume_mm3[s], 0.1, 1.0);
     plan.most_rank[s] = static_cast<float>(share);
     const double mean = share * per_mm3 * kMeanSquareScatterer * std::pow(std::numbers::pi, 1.5) * volume_mm3[s];
     plan.speckle_scale[s] = static_cast<float>(1.0 / std::sqrt(mean));

@@ -46,7 +46,7 @@ struct ScanPlan {
   std::array<std::array<float, 256>, kTissues> texture_gain{};  ///< Neper, by texture step + 128.
   std::array<float, kTissues> fibre_gain{};                     ///< Neper.
   std::array<float, kTissues> roughness{};
-  std::array<std::uint8_t, kTissues> share{};  ///< Scatterers that are there, 0..255.
+  std::array<std::uint8_t, kTissues> share{};  ///< Class of its share of scatterers, into kShares.
 
   // A value a sample of `walk` or `shown`, which differ by too little to matter here.
   std::vector<float> elevation_sigma_mm, inverse_elevation_sigma;

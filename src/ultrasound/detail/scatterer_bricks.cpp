@@ -48,7 +48,6 @@ struct alignas(64) Echoes {
   float line[Candidates::kMost + 64], sample[Candidates::kMost + 64], re[Candidates::kMost + 64],
       im[Candidates::kMost + 64];
   float rank[Candidates::kMost + 64];
-  std::int32_t place[Candidates::kMost + 64];
 };
 
 }  // namespace trocar::detail
@@ -237,10 +236,16 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     const VI in_line = hn::Add(hn::Mul(line_index, samples), at);
     const VI place = hn::Add(in_line, hn::Mul(plane_index, hn::Set(d, plan.lines * plan.samples)));
     const VF shown = hn::Add(walk, hn::GatherIndex(f, frame.delay.data(), in_line));
-    const VF weight =
-        hn::Mul(hn::Exp(f, hn::Mul(hn::Mul(zeta, zeta), hn::Set(f, -0.5F))), along(cell.speckle_scale, walk));
-    const VF amplitude =
-        hn::Mul(hn::Mul(hn::Load(f, near.amplitude + s), weight), hn::GatherIndex(f, frame.gain.data(), place));
+    const VI packed =
+        hn::And(hn::GatherOffset(d, reinterpret_cast<const std::int32_t*>(frame.gain.data()), hn::Add(place, place)),
+                hn::Set(d, 0xffff));  // two bytes each: the upper half is the next one's
+    const VF log_gain = hn::MulAdd(hn::ConvertTo(f, hn::ShiftRight<kShareBits>(packed)), hn::Set(f, kLogGainStep),
+                                   hn::Set(f, kLeastLogGain));
+    const VF share = hn::GatherIndex(f, kShares.data(), hn::And(packed, hn::Set(d, (1 << kShareBits) - 1)));
+    heard = hn::And(heard, hn::Lt(rank, hn::Mul(share, along(cell.rank, walk))));
+    const VF weight = hn::Mul(hn::Exp(f, hn::MulAdd(hn::Mul(zeta, zeta), hn::Set(f, -0.5F), log_gain)),
+                              along(cell.speckle_scale, walk));
+    const VF amplitude = hn::Mul(hn::Load(f, near.amplitude + s), weight);
     VF cosine, sine;
     turn(hn::Mul(shown, hn::Set(f, plan.cycles_per_sample)), cosine, sine);
     heard = hn::And(heard, hn::Le(shown, last_sample));
@@ -250,7 +255,6 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     hn::Store(hn::Mul(amplitude, cosine), f, echoes.re + n);
     hn::Store(hn::Neg(hn::Mul(amplitude, sine)), f, echoes.im + n);
     hn::Store(hn::IfThenElse(heard, rank, hn::Set(f, 2.0F)), f, echoes.rank + n);
-    hn::Store(place, d, echoes.place + n);
     n += static_cast<int>(hn::Lanes(f));
   }
   return n;
@@ -318,9 +322,6 @@ PlacedBrick place(const Index& index, const std::vector<Brick>& library, const V
 void splat(const ScanPlan& plan, const Echoes& echoes, int n, const Cell& cell, FrameState& frame) noexcept {
   for (int e = 0; e < n; ++e) {
     if (echoes.rank[e] > 1.0F) continue;
-    const auto walk = static_cast<std::size_t>(std::max(echoes.sample[e], 0.0F));
-    const auto share = static_cast<float>(frame.share[static_cast<std::size_t>(echoes.place[e])]) * (1.0F / 255.0F);
-    if (echoes.rank[e] >= share * plan.most_rank[walk]) continue;
     const float floor_line = std::floor(echoes.line[e]);
     const float part = echoes.line[e] - floor_line;
     const int line = static_cast<int>(floor_line);
