@@ -127,8 +127,8 @@ void fill_scatterers(ScanPlan& plan) {
   plan.speckle_scale.resize(n);
   plan.most_rank.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
-    // Fewer of a stratified brick are less even: where only some are wanted, twice as many.
-    const double share = std::clamp(2.4 * smallest_mm3 / volume_mm3[s], 0.1, 1.0);
+    // A small part of a stratified brick is less even than the whole: the fewer, the more of them in a resolution cell.
+    const double share = std::clamp(1.6 * std::pow(smallest_mm3 / volume_mm3[s], 0.7), 0.1, 1.0);
     plan.most_rank[s] = static_cast<float>(share);
     const double mean = share * per_mm3 * kMeanSquareScatterer * std::pow(std::numbers::pi, 1.5) * volume_mm3[s];
     plan.speckle_scale[s] = static_cast<float>(1.0 / std::sqrt(mean));
