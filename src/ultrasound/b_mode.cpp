@@ -193,4 +193,16 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   return impl.out;
 }
 
+SoundWay BMode::sound_way(int line) const noexcept {
+  const Impl& impl = *impl_;
+  TROCAR_CHECK(line >= 0 && line < impl.plan.lines);
+  const auto samples = static_cast<std::size_t>(impl.plan.samples);
+  const auto at = static_cast<std::size_t>(line);
+  const LineWalk& walk = impl.frame.walks[at];
+  return {{impl.frame.way_gain.data() + at * samples, samples},
+          walk.pressed_mm,
+          {impl.frame.contact_shape.data(), samples},
+          walk.mirror_depth_mm};
+}
+
 }  // namespace trocar

@@ -48,6 +48,15 @@ struct BasebandFrame {
 /// Share of the scanlines that are coupled to the skin, 0..1.
 double coupled_share(const BasebandFrame& frame) noexcept;
 
+/// What the last frame's sound met on the way along one scanline; for Doppler.
+struct SoundWay {
+  std::span<const float> gain;  ///< A sample: amplitude left of an echo from there, without its own strength.
+  /// A sample at depth r shows what rests at r - pressed_mm * dent_share.
+  float pressed_mm = 0.0F;
+  std::span<const float> dent_share;
+  float mirror_depth_mm = 1e30F;  ///< Deeper samples show a mirror image.
+};
+
 /// Ultrasound from an acoustic scene (docs/physics.md U1–U9). Buffers are taken once; render allocates nothing. The
 /// result is the same whatever the number of threads.
 class BMode {
@@ -64,6 +73,8 @@ class BMode {
 
   /// The echoes from that pose. The frame stays valid until the next call.
   const BasebandFrame& render(const BModeInput& input) noexcept;
+  /// Of a scanline of that frame; valid as long. 0 <= line < lines.
+  SoundWay sound_way(int line) const noexcept;
 
  private:
   struct Impl;
