@@ -55,19 +55,20 @@ double way_mm(const CentrelineTree& tree, int from, int to) {
 }
 
 /// The tip at the head: the one that is farthest from the most caudal one, along the vessels and in height together, so
-/// that the arch of the aorta does not matter. At the feet: the other way round.
+/// that the arch of the aorta does not matter; wide tips count more, so that winding branches do not either. At the
+/// feet: the other way round.
 std::vector<bool> tip_at(const CentrelineTree& tree, FlowRule::At at) {
   const double sign = at == FlowRule::At::kHead ? 1.0 : -1.0;
   const auto opposite = std::min_element(
       tree.tips.begin(), tree.tips.end(),
       [&](const CentrelineTree::Tip& a, const CentrelineTree::Tip& b) { return sign * a.p_P.z() < sign * b.p_P.z(); });
   std::size_t farthest = 0;
-  double longest_mm = -1.0;
+  double best = -1.0;
   for (std::size_t e = 0; e < tree.tips.size(); ++e) {
     const double height_mm = sign * (tree.tips[e].p_P.z() - opposite->p_P.z());
-    const double length_mm = way_mm(tree, tree.tips[e].node, opposite->node) + height_mm;
-    if (length_mm > longest_mm) {
-      longest_mm = length_mm;
+    const double score = (way_mm(tree, tree.tips[e].node, opposite->node) + height_mm) * tree.tips[e].radius_mm;
+    if (score > best) {
+      best = score;
       farthest = e;
     }
   }

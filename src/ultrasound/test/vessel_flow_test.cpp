@@ -114,6 +114,23 @@ TEST(VesselFlow, JoinsTwoSourcesIntoOneSink) {
   EXPECT_LT((*flow)->velocity_P(0.5 * liver, 0.0).x(), -50.0);
 }
 
+TEST(VesselFlow, ComesFromTheWideEndThoughABranchIsLongerAndHigher) {
+  const auto is_near_line = [](const Vec3& p, const Vec3& a, const Vec3& b, double radius) {
+    return distance_mm(Segment{a, b}, p) < radius;
+  };
+  const Vec3 fork(0, 0, -25), out(45, 0, -25), up(45, 0, 52);
+  const VirtualPatient patient = make_tube_patient(
+      Vec3(130, 30, 120), Vec3(1, 1, 1), {{"artery", [&](const Vec3& p) {
+                                             return is_near_line(p, {0, 0, 35}, {0, 0, -50}, 8.0) ||
+                                                    is_near_line(p, fork, out, 2.5) || is_near_line(p, out, up, 2.5);
+                                           }}});
+  const auto flow = make_vessel_flow(patient, shipped_table());
+  ASSERT_TRUE(flow.has_value()) << flow.error().text();
+  const double systole_s = 0.17;
+  EXPECT_LT((*flow)->velocity_P(Vec3(0, 0, 10), systole_s).z(), -500.0);
+  EXPECT_GT((*flow)->velocity_P(Vec3(45, 0, 20), systole_s).z(), 500.0);
+}
+
 TEST(VesselFlow, GoesTheRightWayInTheEmbeddedPatient) {
   const Vec3 aorta = peak_flow(Vec3(4.0, -4.0, -60.0));
   EXPECT_LT(aorta.z(), -700.0);
