@@ -31,8 +31,8 @@ constexpr std::array<Plane, 5> kPlanes = {
 
 /// Blood's echo against liver's speckle at the picture's frequency, as in data/acoustics.toml (vessel). Range -35..-20.
 constexpr double kBlood_db = -28.0;
-/// Noise against the picture's: a longer pulse of more energy in a narrower band. Assumed, range -20..-5.
-constexpr double kLongPulse_db = -12.0;
+/// Noise against the picture's: a longer pulse of more energy in a narrower band. Assumed, range -12..-3.
+constexpr double kLongPulse_db = -6.0;
 /// Correlation between pulses, in units of the noise's power, that is shown at gain 0. Assumed, range 0.5..2: then
 /// noise hardly ever reaches it.
 constexpr float kThreshold = 0.7F;
