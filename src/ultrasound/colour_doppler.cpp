@@ -67,13 +67,14 @@ struct ColourDoppler::Impl {
   DopplerFrame frame;
   std::vector<float> raw_re, raw_im;    ///< Before smoothing.
   std::vector<float> wide_re, wide_im;  ///< Along the gates.
+  std::vector<float> sigma_mm;          ///< A gate: half the beam's thickness.
   VesselFlow::Moment moment{};
   detail::ColourConversion conversion;
 
   void set_cells(const ScanGeometry& geometry, const DopplerSettings& settings);
   struct Ray;
   Ray make_ray(const DopplerInput& input, int line) const noexcept;
-  std::array<float, 2> correlate(const Ray& ray, float depth_mm, std::size_t sample, std::uint64_t key) const noexcept;
+  std::array<float, 2> correlate(const Ray& ray, int gate, std::size_t sample, std::uint64_t key) const noexcept;
   void measure_line(const DopplerInput& input, int line) noexcept;
   void smooth_along(int line) noexcept;
   void finish_line(int line) noexcept;
@@ -97,6 +98,7 @@ void ColourDoppler::Impl::set_cells(const ScanGeometry& geometry, const DopplerS
     for (auto* values : {&raw_re, &raw_im, &wide_re, &wide_im, &frame.re, &frame.im, &frame.velocity_cm_per_s})
       values->assign(cells, 0.0F);
     frame.has_flow.assign(cells, 0);
+    sigma_mm.assign(static_cast<std::size_t>(frame.gates), 0.0F);
     has_kept = false;
     has_cells = true;
     conversion.forget();
@@ -144,14 +146,15 @@ ColourDoppler::Impl::Ray ColourDoppler::Impl::make_ray(const DopplerInput& input
 }
 
 /// Blood at a gate in all planes of the beam, through the wall filter; 0 where there is none.
-std::array<float, 2> ColourDoppler::Impl::correlate(const Ray& ray, float depth_mm, std::size_t sample,
+std::array<float, 2> ColourDoppler::Impl::correlate(const Ray& ray, int gate, std::size_t sample,
                                                     std::uint64_t key) const noexcept {
   std::array<float, 2> sum{0.0F, 0.0F};
+  const auto depth_mm = static_cast<float>(frame.first_mm + frame.gate_mm * gate);
   if (depth_mm > ray.way.mirror_depth_mm) return sum;
   const Vec3f middle_P = ray.start_P + ray.rest_mm(depth_mm, sample) * ray.along_P;
-  const auto sigma_mm = static_cast<float>(ray.beam->elevation_sigma_mm(static_cast<double>(depth_mm)));
+  const Vec3f thick_P = sigma_mm[static_cast<std::size_t>(gate)] * ray.elevation_P;
   for (std::size_t n = 0; n < kPlanes.size(); ++n) {
-    const VesselFlow::Blood blood = flow->at(middle_P + kPlanes[n].zeta * sigma_mm * ray.elevation_P, moment);
+    const VesselFlow::Blood blood = flow->at(middle_P + kPlanes[n].zeta * thick_P, moment);
     if (blood.share <= 0.0F) continue;
     // Towards the face is positive; the phase between pulses in half turns, aliased.
     float share = -blood.velocity_P.dot(ray.along_P) / ray.scale_mm_per_s;
@@ -177,7 +180,7 @@ void ColourDoppler::Impl::measure_line(const DopplerInput& input, int line) noex
     const std::size_t cell = frame.at(line, gate);
     const auto sample = std::min(static_cast<std::size_t>(depth_mm / scan.sample_mm()), last);
     const std::uint64_t key = mix64(input.seed ^ mix64(cell));
-    const std::array<float, 2> blood = correlate(ray, static_cast<float>(depth_mm), sample, key);
+    const std::array<float, 2> blood = correlate(ray, gate, sample, key);
     // Noise is uncorrelated between pulses: a mean of so many products with itself and with the signal.
     const float power = std::sqrt(blood[0] * blood[0] + blood[1] * blood[1]);
     const float deviation = spread * std::sqrt(0.5F + power);
@@ -236,6 +239,9 @@ const DopplerFrame& ColourDoppler::render(const DopplerInput& input) noexcept {
   Impl& impl = *impl_;
   impl.set_cells(input.geometry, within_ranges(settings));
   impl.moment = impl.flow->moment(input.time_s);
+  for (std::size_t gate = 0; gate < impl.sigma_mm.size(); ++gate)
+    impl.sigma_mm[gate] = static_cast<float>(
+        input.beam.elevation_sigma_mm(impl.frame.first_mm + impl.frame.gate_mm * static_cast<double>(gate)));
   const auto lines = static_cast<std::size_t>(impl.frame.lines);
   constexpr std::size_t kLinesTogether = 4;
   auto measure = [&](std::size_t first, std::size_t last) {

@@ -29,8 +29,8 @@ VesselFlow::Blood VesselFlow::at(const Vec3f& p_P, const Moment& moment) const n
     if (!(index >= 0.0F && index < static_cast<float>(kBrick * brick_count_[a]))) return blood;
     const auto whole = static_cast<std::int32_t>(index);
     part[a] = index - static_cast<float>(whole);
-    brick[a] = whole / kBrick;
-    cell[a] = whole % kBrick;
+    brick[a] = whole >> kBrickBits;
+    cell[a] = whole & (kBrick - 1);
   }
   const std::int32_t first =
       bricks_[static_cast<std::size_t>((brick[2] * brick_count_[1] + brick[1]) * brick_count_[0] + brick[0])];

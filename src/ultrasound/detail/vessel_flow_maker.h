@@ -9,7 +9,8 @@
 
 namespace trocar {
 
-inline constexpr std::int32_t kBrick = 8;
+inline constexpr std::int32_t kBrickBits = 3;
+inline constexpr std::int32_t kBrick = 1 << kBrickBits;
 inline constexpr std::int32_t kBrickSide = kBrick + 1;
 inline constexpr float kSpeedStep_mm_per_s = 0.1F;
 
