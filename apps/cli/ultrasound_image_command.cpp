@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "bench/harness.h"
@@ -17,6 +18,7 @@
 #include "ultrasound/freehand_sweep.h"
 #include "ultrasound/scan_annotation.h"
 #include "ultrasound/scanner.h"
+#include "ultrasound_doppler.h"
 #include "ultrasound_scan.h"
 
 namespace trocar::cli {
@@ -30,6 +32,7 @@ constexpr int kPersistingPictures = 40;
 
 struct Arguments {
   ScanArguments scan;
+  DopplerArguments doppler;
   std::string needle;
   int needle_gauge = 18;
   std::string engine = "raycast";
@@ -83,6 +86,7 @@ Result<Needle> load_needle(const Arguments& arguments) {
 struct Request {
   Size size;
   Needle needle;
+  DopplerSettings doppler;
 };
 Result<Request> check_arguments(const Arguments& arguments) {
   if (arguments.engine == "panorama")
@@ -96,6 +100,9 @@ Result<Request> check_arguments(const Arguments& arguments) {
   Request request;
   TROCAR_TRY(request.size, parse_size(arguments.size));
   TROCAR_TRY(request.needle, load_needle(arguments));
+  TROCAR_TRY(request.doppler, gather_doppler(arguments.doppler));
+  if (arguments.doppler.is_wanted && ending != ".png")
+    return fail_usage("a volume has no colours", arguments.out, "let the name end in .png, or leave --doppler out");
   return request;
 }
 
@@ -166,10 +173,10 @@ void print_figures(const char* name, const bench::Figures& figures) {
 }
 
 Status write_picture(const Arguments& arguments, const Scan& scan, const GrayImage& gray, const RasterGeometry& raster,
-                     const ScanGeometry& geometry) {
+                     const ScanGeometry& geometry, std::optional<ColourPicture> colour) {
   if (fs::path(arguments.out).extension() == ".nrrd")
     return write_image(as_slab(gray, raster, scan.X_PT), arguments.out);
-  RgbImage picture = to_rgb(gray);
+  RgbImage picture = colour ? colour->image : to_rgb(gray);
   if (!arguments.is_plain) {
     ScanCaption caption;
     caption.transducer = scan.transducer.name;
@@ -177,6 +184,7 @@ Status write_picture(const Arguments& arguments, const Scan& scan, const GrayIma
     caption.focus_mm = scan.acquisition.focus_mm;
     caption.settings = scan.display;
     draw_annotation(picture, make_scan_annotation(raster, geometry, caption));
+    if (colour) draw_colour_bar(picture, *colour);
   }
   return write_png(picture, arguments.out);
 }
@@ -184,7 +192,9 @@ Status write_picture(const Arguments& arguments, const Scan& scan, const GrayIma
 Status make_image(const Arguments& arguments) {
   TROCAR_TRY(const Request request, check_arguments(arguments));
   const ProgressPrinter printer;
-  TROCAR_TRY(Scan scan, prepare_scan(arguments.scan, {}, printer.callback()));
+  ScanArguments wanted = arguments.scan;
+  wanted.needs_flow = arguments.doppler.is_wanted;
+  TROCAR_TRY(Scan scan, prepare_scan(wanted, {}, printer.callback()));
   scan.display.is_mirrored = !arguments.is_unmirrored;
 
   BMode engine(scan.scene, scan.transducer, scan.acquisition);
@@ -202,11 +212,15 @@ Status make_image(const Arguments& arguments) {
   for (int n = 0; n < pictures; ++n)
     picture = scanner.show(echoes, arguments.scan.seed + static_cast<std::uint64_t>(n));
   const RasterGeometry raster = scanner.raster();
+  std::optional<ColourPicture> colour;
+  if (scan.flow)
+    colour = colour_picture(scan.flow, request.doppler, arguments.doppler.time_s, engine, echoes, scan.X_PT, picture,
+                            raster, arguments.scan.seed);
 
   Timing timing;
   if (arguments.frames > 0)
     timing = time_frames(engine, scanner, scan, needles, arguments.frames, arguments.scan.seed, printer.callback());
-  TROCAR_TRY_STATUS(write_picture(arguments, scan, picture, raster, engine.geometry()));
+  TROCAR_TRY_STATUS(write_picture(arguments, scan, picture, raster, engine.geometry(), colour));
   if (!arguments.scan.save_pose.empty()) TROCAR_TRY_STATUS(write_transform(scan.X_PT, arguments.scan.save_pose));
 
   warn_of_contact(coupled);
@@ -217,6 +231,7 @@ Status make_image(const Arguments& arguments) {
     json["rows"] = picture.rows;
     json["mm_per_pixel"] = raster.mm_per_pixel;
     json["coupled"] = coupled;
+    json["doppler_scale_cm_per_s"] = colour ? Json(colour->scale_cm_per_s) : Json(nullptr);
     json["frames"] = arguments.frames > 0 ? to_json(timing, arguments.frames) : Json(nullptr);
     print_json(json);
   } else if (arguments.frames > 0) {
@@ -234,10 +249,12 @@ void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
   CLI::App* command = ultrasound.add_subcommand("image", "Make a B-mode picture of a patient");
   command->footer(
       "Examples:\n  trocar ultrasound image --patient abdomen --view liver-right-kidney --out kidney.png\n"
+      "  trocar ultrasound image --patient abdomen --view aorta --doppler --doppler-scale 60 --out aorta.png\n"
       "  trocar ultrasound image --patient my_patient --pose probe.tfm --needle needle.tfm --out needle.png\n"
       "  trocar ultrasound image --patient abdomen --pose probe.tfm --frames 300 --out frame.png\n");
   const auto a = std::make_shared<Arguments>();
   add_scan_options(*command, a->scan);
+  add_doppler_options(*command, a->doppler);
   command->add_option("--persistence", a->scan.display.persistence, "Part of the last picture that stays, 0..0.95")
       ->capture_default_str();
   command->add_option("--needle", a->needle,

@@ -138,6 +138,11 @@ Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_tra
     TROCAR_TRY(scan.X_PT, place_probe(patient, *scan.view, scan.transducer));
   }
   TROCAR_TRY(scan.scene, make_acoustic_scene(patient, std::move(table), {}, progress));
+  if (a.needs_flow) {
+    TROCAR_TRY(const fs::path flow_file, find_data("flow.toml"));
+    TROCAR_TRY(FlowTable flow_table, load_flow_table(flow_file));
+    TROCAR_TRY(scan.flow, make_vessel_flow(patient, std::move(flow_table), {}, progress));
+  }
   return scan;
 }
 

@@ -11,6 +11,7 @@
 #include "ultrasound/b_mode.h"
 #include "ultrasound/display_settings.h"
 #include "ultrasound/probe_view.h"
+#include "ultrasound/vessel_flow.h"
 
 namespace trocar::cli {
 
@@ -26,6 +27,7 @@ struct ScanArguments {
   std::string gray_map;
   std::vector<std::string> off;
   std::uint64_t seed = 1;  ///< Of the receiver's noise.
+  bool needs_flow = false;
 };
 
 /// Adds the options; `arguments` lives as long as the command.
@@ -40,6 +42,7 @@ struct Scan {
   Pose X_PT;
   std::string patient_name;
   std::shared_ptr<const AcousticScene> scene;
+  std::shared_ptr<const VesselFlow> flow;  ///< Where it was asked for.
 };
 
 /// What is wrong in the arguments is said before the patient is opened. `default_transducer`: where neither the

@@ -48,7 +48,7 @@ struct DopplerFrame {
   }
 };
 
-/// Colour Doppler of the vessels' flow (docs/physics.md U14): velocity along the beam from the phase of the
+/// Colour Doppler of the vessels' flow (docs/physics.md U15): velocity along the beam from the phase of the
 /// autocorrelation of blood's echoes between pulses, with aliasing, wall filter, noise and persistence. Buffers are
 /// taken for a geometry and box; while these stay nothing is allocated. The same whatever the number of threads.
 class ColourDoppler {

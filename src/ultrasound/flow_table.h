@@ -12,7 +12,7 @@
 
 namespace trocar {
 
-/// Speed over one heartbeat, against its peak (data/flow.toml; physics.md U14).
+/// Speed over one heartbeat, against its peak (data/flow.toml; physics.md U15).
 struct FlowWaveform {
   std::string name;
   std::vector<double> values;  ///< Even steps from the R wave on. Range -1..1; at least 4.

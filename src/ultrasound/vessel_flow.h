@@ -39,7 +39,7 @@ struct VesselFlowOptions {
 };
 
 /// Blood flow in the labelled vessels of a patient at rest: along the middle lines, with a profile across the lumen and
-/// a waveform over the heartbeat (docs/physics.md U14). Immutable once made; frame P. Not in it: vortices, helices,
+/// a waveform over the heartbeat (docs/physics.md U15). Immutable once made; frame P. Not in it: vortices, helices,
 /// jets, the pulse's travel time, walls that move.
 class VesselFlow {
  public:

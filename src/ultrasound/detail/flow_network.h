@@ -9,7 +9,7 @@
 namespace trocar::detail {
 
 /// Which tips of the trees are sources of blood: the rule's named ends, or all others. Every tree has a source and a
-/// sink. `label` is the vessel's own. docs/physics.md U14.
+/// sink. `label` is the vessel's own. docs/physics.md U15.
 std::vector<std::vector<bool>> find_sources(const VirtualPatient& patient, std::uint8_t label, const FlowRule& rule,
                                             const std::vector<CentrelineTree>& trees);
 

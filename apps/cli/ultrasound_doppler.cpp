@@ -1,0 +1,73 @@
+#include "ultrasound_doppler.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <utility>
+
+namespace trocar::cli {
+namespace {
+
+constexpr double kPercent = 0.01;
+/// So many pictures persist until the newest is all that is seen.
+constexpr int kPictures = 12;
+
+/// Where the colour bar stands, in dots: right of the gray wedge.
+constexpr int kBarColumn = 18;
+constexpr int kBarColumns = 10;
+
+}  // namespace
+
+void add_doppler_options(CLI::App& command, DopplerArguments& a) {
+  DopplerSettings& s = a.settings;
+  command.add_flag("--doppler", a.is_wanted, "Flow of the labelled vessels in colour");
+  command.add_option("--doppler-scale", s.scale_cm_per_s, "Velocity at the ends of the colour bar, cm/s, 2..200")
+      ->capture_default_str();
+  command.add_option("--doppler-box", a.box, "Part of width and depth, percent: first,last,near,far; 20,80,20,90")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--doppler-gain-db", s.gain_db, "-40..40")->capture_default_str();
+  command.add_option("--doppler-filter", s.wall_filter, "Wall filter, part of the scale, 0..0.6")
+      ->capture_default_str();
+  command.add_option("--doppler-mhz", s.frequency_mhz, "Frequency of the colour's pulses")->capture_default_str();
+  command
+      .add_option("--doppler-baseline", s.baseline, "Shift of the colour bar's middle, part of the scale, -0.9..0.9")
+      ->capture_default_str();
+  command.add_flag("--doppler-invert", s.is_inverted, "Blue towards the transducer");
+  command.add_option("--time-s", a.time_s, "Of heart and breath, since an R wave")->capture_default_str();
+}
+
+Result<DopplerSettings> gather_doppler(const DopplerArguments& a) {
+  DopplerSettings settings = a.settings;
+  if (!a.box.empty()) {
+    if (a.box.size() != 4)
+      return fail_usage(fmt::format("--doppler-box has {} numbers", a.box.size()), {}, "give first,last,near,far");
+    settings.box = {kPercent * a.box[0], kPercent * a.box[1], kPercent * a.box[2], kPercent * a.box[3]};
+  }
+  TROCAR_TRY_STATUS(check(settings));
+  return settings;
+}
+
+ColourPicture colour_picture(std::shared_ptr<const VesselFlow> flow, const DopplerSettings& settings, double time_s,
+                             const BMode& engine, const BasebandFrame& echoes, const Pose& X_PT,
+                             const GrayImage& picture, const RasterGeometry& raster, std::uint64_t seed) {
+  ColourDoppler doppler(std::move(flow));
+  doppler.settings = settings;
+  ColourPicture colour;
+  colour.settings = settings;
+  DopplerInput input{X_PT, echoes.geometry, echoes.beam, time_s, seed, &engine};
+  for (int n = 0; n < kPictures; ++n, ++input.seed) colour.scale_cm_per_s = doppler.render(input).scale_cm_per_s;
+  colour.image = doppler.overlay(picture, raster);
+  return colour;
+}
+
+void draw_colour_bar(RgbImage& image, const ColourPicture& picture) {
+  constexpr int kColumnsPerScale = 640;
+  const int dot = std::max(1, image.columns / kColumnsPerScale);
+  const int rows = image.rows / 4;
+  draw_colour_bar(image, kBarColumn * dot, (image.rows - rows) / 2, kBarColumns * dot, rows, picture.scale_cm_per_s,
+                  picture.settings);
+}
+
+}  // namespace trocar::cli
