@@ -40,6 +40,9 @@ Result<Acquisition> gather_acquisition(const ScanArguments& a, const Transducer&
                                        const std::optional<ProbeView>& view) {
   Acquisition acquisition = default_acquisition(transducer);
   if (view) acquisition.depth_mm = std::min(view->depth_mm, transducer.greatest_depth_mm);
+  if (view && view->frequency_mhz)
+    acquisition.frequency_mhz = std::clamp(*view->frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz);
+  if (view && view->focus_mm) acquisition.focus_mm = *view->focus_mm;
   TROCAR_TRY_STATUS(take("--depth-mm", a.depth_mm, kLeastDepth_mm, transducer.greatest_depth_mm, acquisition.depth_mm));
   TROCAR_TRY_STATUS(take("--frequency-mhz", a.frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz,
                          acquisition.frequency_mhz));

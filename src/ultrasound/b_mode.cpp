@@ -13,7 +13,7 @@
 #include "ultrasound/detail/point_echo.h"
 #include "ultrasound/detail/point_spread.h"
 #include "ultrasound/detail/scan_plan.h"
-#include "ultrasound/detail/scatterer_bricks.h"
+#include "ultrasound/detail/scatterer_echo.h"
 #include "ultrasound/detail/sound_paths.h"
 #include "ultrasound/detail/surface_echo.h"
 #include "ultrasound/detail/tissue_texture.h"

@@ -24,7 +24,7 @@ struct DisplaySettings {
   double automatic_tgc_db_per_cm_mhz = 0.5;  ///< Two-way loss that is made good. Range 0..1.5 (one way).
   /// Where the automatic part ends, so that the receiver's noise stays darker than tissue. Range 0..120. Assumed from
   /// the sweep of docs/validation.md, whose liver fades below 11 cm while the depth below it stays black.
-  double automatic_tgc_limit_db = 34.0;
+  double automatic_tgc_limit_db = 40.0;
   double dynamic_range_db = 60.0;  ///< Range 20..100.
   double persistence = 0.0;        ///< Part of the last picture that stays. Range 0..0.95.
   GrayMap gray_map = GrayMap::kSoft;

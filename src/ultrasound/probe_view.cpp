@@ -54,8 +54,9 @@ Status read_choices(const TomlTable& row, ProbeView& view) {
 }
 
 Result<ProbeView> read_view(const TomlTable& row, const std::string& name) {
-  TROCAR_TRY_STATUS(row.check_keys({"title", "targets", "through", "point", "offset_mm", "direction", "plane",
-                                    "angle_deg", "bone", "pressed_mm", "search_mm", "depth_mm", "transducer"}));
+  TROCAR_TRY_STATUS(
+      row.check_keys({"title", "targets", "through", "point", "offset_mm", "direction", "plane", "angle_deg", "bone",
+                      "pressed_mm", "search_mm", "depth_mm", "frequency_mhz", "focus_mm", "transducer"}));
   ProbeView view;
   view.name = name;
   TROCAR_TRY(view.title, row.string("title"));
@@ -73,6 +74,12 @@ Result<ProbeView> read_view(const TomlTable& row, const std::string& name) {
   view.angle_rad = angle_deg * std::numbers::pi / 180.0;
   TROCAR_TRY(view.pressed_mm, row.number_or("pressed_mm", {0.0, 15.0}, view.pressed_mm));
   TROCAR_TRY(view.search_mm, row.number_or("search_mm", {0.0, 60.0}, view.search_mm));
+  if (row.has("frequency_mhz")) {
+    TROCAR_TRY(view.frequency_mhz, row.number("frequency_mhz", {1.0, 20.0}));
+  }
+  if (row.has("focus_mm")) {
+    TROCAR_TRY(view.focus_mm, row.number("focus_mm", {5.0, 300.0}));
+  }
   TROCAR_TRY(view.depth_mm, row.number_or("depth_mm", {20.0, 300.0}, view.depth_mm));
   TROCAR_TRY(view.transducer, row.string("transducer"));
   return view;

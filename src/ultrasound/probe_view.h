@@ -42,10 +42,12 @@ struct ProbeView {
   ScanPlane plane = ScanPlane::kLongitudinal;
   double angle_rad = 0.0;  ///< Turns the plane about the beam (y of T), right-handed. Range -pi..pi.
   BoneWish bone = BoneWish::kAvoid;
-  double pressed_mm = 5.0;  ///< The middle of the face dents the skin at least so deep. Range 0..15.
-  double search_mm = 20.0;  ///< The face may move so far along the skin for a better way in. Range 0..60.
-  double depth_mm = 160.0;  ///< Of the picture. Range 20..300.
-  std::string transducer;   ///< A name of data/transducers.toml.
+  double pressed_mm = 5.0;              ///< The middle of the face dents the skin at least so deep. Range 0..15.
+  double search_mm = 20.0;              ///< The face may move so far along the skin for a better way in. Range 0..60.
+  double depth_mm = 160.0;              ///< Of the picture. Range 20..300.
+  std::optional<double> frequency_mhz;  ///< Nothing: the transducer's own. Range 1..20.
+  std::optional<double> focus_mm;       ///< The same. Range 5..300.
+  std::string transducer;               ///< A name of data/transducers.toml.
 };
 
 /// All views of a file. Errors name the line: unknown key, out of range, a direction of length zero.

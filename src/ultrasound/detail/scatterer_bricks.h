@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ultrasound/detail/frame_state.h"
-#include "ultrasound/detail/scan_plan.h"
+#include "ultrasound/detail/scatterer_cell.h"
 
 /// Scatterers fill P in cubes, "bricks". What a brick holds is a pure function of its place in P, so that speckle moves
 /// with the tissue; it is one of a library's, turned and mirrored.
@@ -24,8 +23,14 @@ struct alignas(64) Brick {
 };
 std::vector<Brick> make_brick_library();
 
-/// Adds the echoes of all scatterers that scanlines [first, last) hear. Each task writes to its own scanlines.
-void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, FrameState& frame, int first,
-                    int last) noexcept;
+/// A brick as it lies in T: middle + x * scatterer.x + y * scatterer.y + z * scatterer.z.
+struct PlacedBrick {
+  float middle[3], x[3], y[3], z[3];
+  const Brick* brick;
+};
+/// The brick of that place in the lattice: which of the library, its axes exchanged and mirrored. `side_T`: the sides
+/// of a brick, columns, in T.
+PlacedBrick place_brick(const BrickIndex& index, const std::vector<Brick>& library, const Vec3f& middle_T,
+                        const Eigen::Matrix3f& side_T) noexcept;
 
 }  // namespace trocar::detail

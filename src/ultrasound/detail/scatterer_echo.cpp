@@ -1,0 +1,319 @@
+#include "ultrasound/detail/scatterer_echo.h"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "ultrasound/detail/scatterer_echo.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which sets the instruction set that these headers compile for.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#ifndef TROCAR_ULTRASOUND_ECHO_TYPES
+#define TROCAR_ULTRASOUND_ECHO_TYPES
+namespace trocar::detail {
+
+/// Scatterers that are near a cell, in T, until there are enough to hear them together.
+struct alignas(64) Candidates {
+  static constexpr int kMost = 1024;
+  float x[kMost + 64], y[kMost + 64], z[kMost + 64], amplitude[kMost + 64], rank[kMost + 64];
+  int count = 0;
+};
+
+/// Echoes of some candidates, compact.
+struct alignas(64) Echoes {
+  float line[Candidates::kMost + 64], sample[Candidates::kMost + 64], re[Candidates::kMost + 64],
+      im[Candidates::kMost + 64];
+  float rank[Candidates::kMost + 64];
+};
+
+}  // namespace trocar::detail
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace trocar::detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = hn::ScalableTag<float>;
+using I = hn::RebindToSigned<F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+
+HWY_INLINE VF axis_of(const PlacedBrick& brick, int a, VF x, VF y, VF z) {
+  const F f;
+  const VF far = hn::MulAdd(hn::Set(f, brick.z[a]), z, hn::Set(f, brick.middle[a]));
+  return hn::MulAdd(hn::Set(f, brick.x[a]), x, hn::MulAdd(hn::Set(f, brick.y[a]), y, far));
+}
+
+/// arctan for |t| <= 1.2; Taylor-like minimax, error below 1e-4 rad where fans are.
+HWY_INLINE VF arctan(VF t) {
+  const F f;
+  const VF t2 = hn::Mul(t, t);
+  VF p = hn::Set(f, -0.01172120F);
+  p = hn::MulAdd(p, t2, hn::Set(f, 0.05265332F));
+  p = hn::MulAdd(p, t2, hn::Set(f, -0.11643287F));
+  p = hn::MulAdd(p, t2, hn::Set(f, 0.19354346F));
+  p = hn::MulAdd(p, t2, hn::Set(f, -0.33262347F));
+  p = hn::MulAdd(p, t2, hn::Set(f, 0.99997726F));
+  return hn::Mul(p, t);
+}
+
+/// cos and sin of a number of cycles, to 3e-4.
+HWY_INLINE void turn(VF cycles, VF& cosine, VF& sine) {
+  const F f;
+  // Half the angle lies in -pi/2..pi/2, where short series do; then the double angle.
+  const VF half = hn::Mul(hn::Set(f, 3.14159265F), hn::Sub(cycles, hn::Round(cycles)));
+  const VF h2 = hn::Mul(half, half);
+  VF s = hn::Set(f, -1.8363654e-4F);
+  s = hn::MulAdd(s, h2, hn::Set(f, 8.3063250e-3F));
+  s = hn::MulAdd(s, h2, hn::Set(f, -0.16664824F));
+  s = hn::Mul(half, hn::MulAdd(s, h2, hn::Set(f, 0.99999661F)));
+  VF c = hn::Set(f, 2.3153932e-5F);
+  c = hn::MulAdd(c, h2, hn::Set(f, -1.3853704e-3F));
+  c = hn::MulAdd(c, h2, hn::Set(f, 4.1663585e-2F));
+  c = hn::MulAdd(c, h2, hn::Set(f, -0.49999905F));
+  c = hn::MulAdd(c, h2, hn::Set(f, 0.99999995F));
+  sine = hn::Mul(hn::Add(s, s), c);
+  cosine = hn::NegMulAdd(hn::Add(s, s), s, hn::Set(f, 1.0F));
+}
+
+HWY_INLINE void drag_along(const Drag& drag, VF& x, VF& y, VF& z) {
+  const F f;
+  const VF dx = hn::Sub(x, hn::Set(f, drag.tip_T.x()));
+  const VF dy = hn::Sub(y, hn::Set(f, drag.tip_T.y()));
+  const VF dz = hn::Sub(z, hn::Set(f, drag.tip_T.z()));
+  const VF r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+  const VF falls = hn::Exp(f, hn::Mul(r2, hn::Set(f, -4.0F / (drag.reach_mm * drag.reach_mm))));
+  x = hn::MulAdd(falls, hn::Set(f, drag.shift_T.x()), x);
+  y = hn::MulAdd(falls, hn::Set(f, drag.shift_T.y()), y);
+  z = hn::MulAdd(falls, hn::Set(f, drag.shift_T.z()), z);
+}
+
+/// Where along the scanline that resting tissue lies now, samples: pressed_depth_mm of probe_contact.h.
+HWY_INLINE VF walk_of_rest(const FrameState& frame, VF rest, VF pressed) {
+  const F f;
+  const VF reach = hn::Set(f, frame.dent_reach);
+  const VF one = hn::Set(f, 1.0F);
+  const VF sum = hn::Add(pressed, rest);
+  const VF b = hn::MulAdd(hn::Set(f, 2.0F / frame.dent_reach), pressed, one);
+  const VF product = hn::Mul(hn::Mul(pressed, sum), hn::Set(f, 4.0F / (frame.dent_reach * frame.dent_reach)));
+  const VF root = hn::Sqrt(hn::Max(hn::NegMulAdd(one, product, hn::Mul(b, b)), hn::Zero(f)));
+  const VF yielding = hn::Div(hn::Add(sum, sum), hn::Add(b, root));
+  return hn::IfThenElse(hn::Lt(rest, reach), yielding, rest);
+}
+
+/// Appends those scatterers of a brick that the cell's bounds let pass.
+void take_near(const ScanPlan& plan, const Drag* drag, const Cell& cell, const PlacedBrick& placed, Candidates& near) {
+  const F f;
+  const VF radius = hn::Set(f, plan.geometry.is_fan ? static_cast<float>(plan.geometry.radius_mm) : 0.0F);
+  for (std::size_t s = 0; s < kBrickScatterers; s += hn::Lanes(f)) {
+    const VF rank = hn::Load(f, placed.brick->rank.data() + s);
+    const auto wanted = hn::Lt(rank, hn::Set(f, cell.most_rank));
+    if (hn::AllFalse(f, wanted)) return;  // they are sorted by rank
+    const VF bx = hn::Load(f, placed.brick->x.data() + s);
+    const VF by = hn::Load(f, placed.brick->y.data() + s);
+    const VF bz = hn::Load(f, placed.brick->z.data() + s);
+    VF z = axis_of(placed, 2, bx, by, bz);
+    VF x = axis_of(placed, 0, bx, by, bz);
+    VF y = axis_of(placed, 1, bx, by, bz);
+    if (drag != nullptr) drag_along(*drag, x, y, z);
+    auto near_by = hn::And(wanted, hn::Lt(hn::Abs(z), hn::Set(f, cell.half_thickness_mm)));
+    const VF from_apex = hn::Add(y, radius);
+    for (int side = 0; side < 2; ++side) {
+      const VF out = hn::MulAdd(x, hn::Set(f, cell.side_x[side]),
+                                hn::MulAdd(from_apex, hn::Set(f, cell.side_y[side]), hn::Set(f, cell.side_d[side])));
+      near_by = hn::And(near_by, hn::Le(out, hn::Zero(f)));
+    }
+    const VF far = plan.geometry.is_fan ? hn::MulAdd(x, x, hn::Mul(from_apex, from_apex)) : y;
+    near_by = hn::And(near_by, hn::And(hn::Ge(far, hn::Set(f, cell.low)), hn::Lt(far, hn::Set(f, cell.high))));
+    if (hn::AllFalse(f, near_by)) continue;
+    hn::CompressStore(x, near_by, f, near.x + near.count);
+    hn::CompressStore(y, near_by, f, near.y + near.count);
+    hn::CompressStore(z, near_by, f, near.z + near.count);
+    hn::CompressStore(rank, near_by, f, near.rank + near.count);
+    near.count += static_cast<int>(
+        hn::CompressStore(hn::Load(f, placed.brick->amplitude.data() + s), near_by, f, near.amplitude + near.count));
+  }
+}
+
+HWY_INLINE VF along(const float (&line)[2], VF sample) {
+  const F f;
+  return hn::MulAdd(hn::Set(f, line[1]), sample, hn::Set(f, line[0]));
+}
+
+/// What the cell's scanlines hear of the candidates; returns how many echoes.
+int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const Candidates& near, Echoes& echoes) {
+  const F f;
+  const I d;
+  const ScanGeometry& g = plan.geometry;
+  const VF radius = hn::Set(f, static_cast<float>(g.radius_mm));
+  const VF per_line = hn::Set(f, static_cast<float>(1.0 / g.line_step));
+  const VF middle = hn::Set(f, static_cast<float>(g.middle_line()));
+  const VF per_mm = hn::Set(f, 1.0F / plan.sample_mm);
+  const VF last_sample = hn::Set(f, static_cast<float>(plan.samples - 1));
+  const VF last_line = hn::Set(f, static_cast<float>(plan.lines - 1));
+  const VI samples = hn::Set(d, plan.samples);
+  const auto coarse = static_cast<std::int32_t>(plan.coarse_samples());
+  int n = 0;
+  for (int s = 0; s < near.count; s += static_cast<int>(hn::Lanes(f))) {
+    const VF x = hn::Load(f, near.x + s);
+    const VF y = hn::Load(f, near.y + s);
+    VF line, rest;
+    if (g.is_fan) {
+      const VF from_apex = hn::Add(y, radius);
+      line = hn::MulAdd(arctan(hn::Div(x, hn::Max(from_apex, hn::Set(f, 1e-3F)))), per_line, middle);
+      rest = hn::Mul(hn::Sub(hn::Sqrt(hn::MulAdd(x, x, hn::Mul(from_apex, from_apex))), radius), per_mm);
+    } else {
+      line = hn::MulAdd(x, per_line, middle);
+      rest = hn::Mul(y, per_mm);
+    }
+    rest = hn::Sub(rest, hn::Set(f, 0.5F));  // samples lie at (s + 1/2)
+    auto heard = hn::FirstN(f, static_cast<std::size_t>(near.count - s));
+    heard =
+        hn::And(heard, hn::And(hn::Ge(rest, hn::Set(f, cell.first_rest)), hn::Lt(rest, hn::Set(f, cell.last_rest))));
+    const VI near_line = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
+    // Depths count from the face, samples from half a step before it.
+    const VF half = hn::Set(f, 0.5F);
+    const VF walk = hn::Sub(
+        walk_of_rest(frame, hn::Add(rest, half), hn::GatherIndex(f, frame.pressed_samples.data(), near_line)), half);
+    heard = hn::And(heard, hn::And(hn::Ge(walk, hn::Zero(f)), hn::Le(walk, last_sample)));
+    const VI at = hn::ConvertTo(d, hn::Min(hn::Max(walk, hn::Zero(f)), last_sample));
+    static_assert(kCoarse == 8);
+    const VI at_coarse = hn::ShiftRight<3>(at);
+    const VF spacing_mm = g.is_fan ? hn::Mul(hn::MulAdd(walk, hn::Set(f, plan.sample_mm), radius),
+                                             hn::Set(f, static_cast<float>(g.line_step)))
+                                   : hn::Set(f, static_cast<float>(g.line_step));
+    const VF lines_per_mm = hn::Div(hn::Set(f, 1.0F), hn::Max(spacing_mm, hn::Set(f, 0.02F)));
+    constexpr float kFeltWarp = 0.05F;
+    // The scanline that hears it is the one whose bent ray comes by.
+    const VF straight = line;
+    const int rounds = frame.widest_warp > kFeltWarp ? 3 : 0;
+    for (int round = 0; round < rounds; ++round) {
+      const VI by = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
+      const VF bend = hn::GatherIndex(f, frame.bend_mm.data(), hn::Add(hn::Mul(by, hn::Set(d, coarse)), at_coarse));
+      line = hn::NegMulAdd(bend, lines_per_mm, straight);
+    }
+    heard = hn::And(heard, hn::And(hn::Ge(line, hn::Set(f, static_cast<float>(cell.first_line - 1))),
+                                   hn::Lt(line, hn::Set(f, static_cast<float>(cell.last_line)))));
+    const VF zeta = hn::Mul(hn::Load(f, near.z + s), hn::GatherIndex(f, plan.inverse_elevation_sigma.data(), at));
+    heard = hn::And(heard, hn::Lt(hn::Abs(zeta), hn::Set(f, kBeamEdge)));
+    const VF rank = hn::Load(f, near.rank + s);
+    heard = hn::And(heard, hn::Lt(rank, along(cell.rank, walk)));
+    if (hn::AllFalse(f, heard)) continue;
+
+    // Of the task's own scanlines: the neighbours' gains may not be there yet.
+    const VF own_line = hn::Min(hn::Max(hn::Round(line), hn::Set(f, static_cast<float>(cell.first_line))),
+                                hn::Set(f, static_cast<float>(cell.last_line - 1)));
+    const VI line_index = hn::ConvertTo(d, own_line);
+    const VF plane = hn::Round(
+        hn::MulAdd(zeta, hn::Set(f, 1.0F / plan.plane_step), hn::Set(f, static_cast<float>(plan.planes / 2))));
+    const VI plane_index =
+        hn::ConvertTo(d, hn::Min(hn::Max(plane, hn::Zero(f)), hn::Set(f, static_cast<float>(plan.planes - 1))));
+    const VI in_line = hn::Add(hn::Mul(line_index, samples), at);
+    const VI place = hn::Add(in_line, hn::Mul(plane_index, hn::Set(d, plan.lines * plan.samples)));
+    const VF shown = hn::Add(walk, hn::GatherIndex(f, frame.delay.data(), in_line));
+    const VI packed =
+        hn::And(hn::GatherOffset(d, reinterpret_cast<const std::int32_t*>(frame.gain.data()), hn::Add(place, place)),
+                hn::Set(d, 0xffff));  // two bytes each: the upper half is the next one's
+    const VF log_gain = hn::MulAdd(hn::ConvertTo(f, hn::ShiftRight<kShareBits>(packed)), hn::Set(f, kLogGainStep),
+                                   hn::Set(f, kLeastLogGain));
+    const VF share = hn::GatherIndex(f, kShares.data(), hn::And(packed, hn::Set(d, (1 << kShareBits) - 1)));
+    heard = hn::And(heard, hn::Lt(rank, hn::Mul(share, along(cell.rank, walk))));
+    const VF weight = hn::Mul(hn::Exp(f, hn::MulAdd(hn::Mul(zeta, zeta), hn::Set(f, -0.5F), log_gain)),
+                              along(cell.speckle_scale, walk));
+    const VF amplitude = hn::Mul(hn::Load(f, near.amplitude + s), weight);
+    VF cosine, sine;
+    turn(hn::Mul(shown, hn::Set(f, plan.cycles_per_sample)), cosine, sine);
+    heard = hn::And(heard, hn::Le(shown, last_sample));
+    // Not compacted: most are heard. Who is not has a rank beyond all.
+    hn::Store(line, f, echoes.line + n);
+    hn::Store(shown, f, echoes.sample + n);
+    hn::Store(hn::Mul(amplitude, cosine), f, echoes.re + n);
+    hn::Store(hn::Neg(hn::Mul(amplitude, sine)), f, echoes.im + n);
+    hn::Store(hn::IfThenElse(heard, rank, hn::Set(f, 2.0F)), f, echoes.rank + n);
+    n += static_cast<int>(hn::Lanes(f));
+  }
+  return n;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace trocar::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace trocar::detail {
+
+HWY_EXPORT(take_near);
+HWY_EXPORT(hear);
+
+namespace {
+
+void splat(const ScanPlan& plan, const Echoes& echoes, int n, const Cell& cell, FrameState& frame) noexcept {
+  for (int e = 0; e < n; ++e) {
+    if (echoes.rank[e] > 1.0F) continue;
+    const float floor_line = std::floor(echoes.line[e]);
+    const float part = echoes.line[e] - floor_line;
+    const int line = static_cast<int>(floor_line);
+    const int sample = static_cast<int>(echoes.sample[e] + 0.5F);
+    if (sample < -kPad / 2) continue;
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(line) * plan.stride + kPad + sample;
+    if (line >= cell.first_line) {
+      frame.re[static_cast<std::size_t>(at)] += (1.0F - part) * echoes.re[e];
+      frame.im[static_cast<std::size_t>(at)] += (1.0F - part) * echoes.im[e];
+    }
+    if (line + 1 < cell.last_line) {
+      frame.re[static_cast<std::size_t>(at + plan.stride)] += part * echoes.re[e];
+      frame.im[static_cast<std::size_t>(at + plan.stride)] += part * echoes.im[e];
+    }
+  }
+}
+
+/// Hears what has been gathered and adds it to the scanlines.
+void flush(const ScanPlan& plan, FrameState& frame, const Cell& cell, Candidates& near, Echoes& echoes) noexcept {
+  const int n = HWY_DYNAMIC_DISPATCH(hear)(plan, frame, cell, near, echoes);
+  splat(plan, echoes, n, cell, frame);
+  near.count = 0;
+}
+
+}  // namespace
+
+void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, FrameState& frame, int first,
+                    int last) noexcept {
+  const Pose X_TP = frame.X_PT.inverse();
+  const Eigen::Matrix3f side_T = (X_TP.R() * static_cast<double>(plan.brick_mm)).cast<float>();
+  const bool has_drag = frame.drag.reach_mm > 0.0F;
+  const float radius_mm = 0.87F * plan.brick_mm + (has_drag ? frame.drag.shift_T.norm() : 0.0F);
+  constexpr int kSegments = 14;  // to a depth: what varies along one is near enough to a line
+  const float segment = static_cast<float>(plan.samples) / kSegments;
+  const auto take = HWY_DYNAMIC_DISPATCH(take_near);
+  Candidates near;
+  Echoes echoes;
+  for (float rest = -frame.deepest_dent_mm / plan.sample_mm - 1.0F; rest < static_cast<float>(plan.samples);
+       rest += segment) {
+    const Cell cell =
+        make_cell(plan, frame, first, last, rest, std::min(rest + segment, static_cast<float>(plan.samples)));
+    const CellBox box = box_of(plan, frame, cell);
+    BrickIndex b{};
+    for (b[2] = box.low[2]; b[2] <= box.high[2]; ++b[2]) {
+      for (b[1] = box.low[1]; b[1] <= box.high[1]; ++b[1]) {
+        const Vec3 row_P = (Vec3(box.low[0], b[1], b[2]) + Vec3::Constant(0.5)) * static_cast<double>(plan.brick_mm);
+        const Vec3f row_T = (X_TP * row_P).cast<float>();
+        int first_i = 0, last_i = box.high[0] - box.low[0];
+        stay_in_beam(row_T.z(), side_T(2, 0), cell.half_thickness_mm + radius_mm, first_i, last_i);
+        Vec3f middle_T = row_T + static_cast<float>(first_i) * side_T.col(0);
+        for (b[0] = box.low[0] + first_i; b[0] <= box.low[0] + last_i; ++b[0], middle_T += side_T.col(0)) {
+          if (!comes_near(plan, cell, middle_T, radius_mm)) continue;
+          const bool is_dragged = has_drag && (middle_T - frame.drag.tip_T).norm() < frame.drag.reach_mm + radius_mm;
+          take(plan, is_dragged ? &frame.drag : nullptr, cell, place_brick(b, library, middle_T, side_T), near);
+          if (near.count > Candidates::kMost - kBrickScatterers) flush(plan, frame, cell, near, echoes);
+        }
+      }
+    }
+    flush(plan, frame, cell, near, echoes);
+  }
+}
+
+}  // namespace trocar::detail
+#endif
