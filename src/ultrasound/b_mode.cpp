@@ -76,6 +76,8 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
       const float part = static_cast<float>(n % kCoarse) / static_cast<float>(kCoarse);
       s.walk.sideways_mm[static_cast<std::size_t>(n)] = std::lerp(bend[c], bend[c + 1], part);
     }
+    int& audible = frame.audible[static_cast<std::size_t>(line)];
+    audible = 0;
     for (int order = 0; order < plan.planes; ++order) {
       // The central plane first: the others take its layers and delays.
       const int plane = order == 0 ? central : (order <= central ? order - 1 : order);
@@ -94,6 +96,7 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
         to_gain(s.walk.log_way.data(), s.texture.added.data(), plan.samples,
                 frame.way_gain.data() + static_cast<std::size_t>(line) * samples);
       }
+      audible = std::max(audible, s.walk.audible);
       keep_borders(plan, frame, s.walk, plane, line);
     }
   }

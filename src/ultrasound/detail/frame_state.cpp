@@ -14,6 +14,7 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   const auto padded = lines * static_cast<std::size_t>(plan.stride);
   frame.contact.resize(lines);
   frame.walks.resize(lines);
+  frame.audible.assign(lines, plan.samples);
   frame.pressed_samples.assign(lines, 0.0F);
   frame.reflectors.resize(lines);
   frame.gas.resize(lines);

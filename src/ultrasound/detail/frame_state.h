@@ -77,6 +77,7 @@ struct FrameState {
   std::vector<LineContact> contact;
   std::vector<float> contact_shape;  ///< A sample of `walk`: share of the dent that tissue there follows.
   std::vector<LineWalk> walks;
+  std::vector<int> audible;                 ///< A scanline: samples, on any plane, before nothing more comes back.
   std::vector<Border> borders;              ///< (plane * lines + line) * kMaxBorders.
   std::vector<std::uint8_t> border_counts;  ///< plane * lines + line.
   std::vector<float> pressed_samples;       ///< A scanline: how deep the face dents the skin.

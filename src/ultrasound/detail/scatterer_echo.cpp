@@ -290,8 +290,9 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
   const auto take = HWY_DYNAMIC_DISPATCH(take_near);
   Candidates near;
   Echoes echoes;
-  for (float rest = -frame.deepest_dent_mm / plan.sample_mm - 1.0F; rest < static_cast<float>(plan.samples);
-       rest += segment) {
+  const auto audible =
+      static_cast<float>(*std::max_element(frame.audible.begin() + first, frame.audible.begin() + last));
+  for (float rest = -frame.deepest_dent_mm / plan.sample_mm - 1.0F; rest < audible; rest += segment) {
     const Cell cell =
         make_cell(plan, frame, first, last, rest, std::min(rest + segment, static_cast<float>(plan.samples)));
     const CellBox box = box_of(plan, frame, cell);

@@ -1,5 +1,7 @@
 #include "ultrasound/detail/tiled_tissue.h"
 
+#include <algorithm>
+
 #include "core/check.h"
 #include "core/parallel.h"
 
@@ -29,6 +31,15 @@ TiledTissue::TiledTissue(const AcousticScene& scene) {
                 static_cast<std::uint8_t>(scene.texture[from + static_cast<std::size_t>(i)]);
         }
       }
+    }
+  });
+  whole_.resize(count);
+  parallel_for(count, 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t t = first; t < last; ++t) {
+      const auto& of_tile = tissue_[t].voxels;
+      const bool is_whole = (of_tile[0] & kMixedCell) == 0 &&
+                            std::all_of(of_tile.begin(), of_tile.end(), [&](std::uint8_t v) { return v == of_tile[0]; });
+      whole_[t] = is_whole ? of_tile[0] : kMixedTile;
     }
   });
 }

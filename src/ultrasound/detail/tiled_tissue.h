@@ -28,9 +28,12 @@ class TiledTissue {
   std::int8_t texture(std::int32_t offset) const noexcept {
     return static_cast<std::int8_t>(texture_.data()->voxels.data()[offset]);
   }
+  /// Tissue of the whole tile around an offset; kMixedTile where it holds a border.
+  std::uint8_t tile_tissue(std::int32_t offset) const noexcept { return whole_[static_cast<std::size_t>(offset >> 6)]; }
   bool has_texture() const noexcept { return !texture_.empty(); }
 
   static constexpr std::int32_t kTile = 64;
+  static constexpr std::uint8_t kMixedTile = 0xff;
 
  private:
   struct alignas(64) Tile {
@@ -38,6 +41,7 @@ class TiledTissue {
   };
   std::int32_t row_ = 0, slab_ = 0;
   std::vector<Tile> tissue_, texture_;
+  std::vector<std::uint8_t> whole_;
 };
 
 /// The eight voxels around a fractional index, and their weights.

@@ -109,6 +109,9 @@ Vec3 impedance_slope(const FrameState& frame, const std::array<TissueRow, kTissu
 namespace {
 
 constexpr int kBlock = 16;
+/// An echo 160 dB below liver's speckle is far below any receiver's noise.
+constexpr float kInaudible = -18.4F;
+constexpr float kSilence = -60.0F;  // neper
 /// Organs are wrapped: a border reflects at least so much, even between tissues of one impedance (assumed).
 constexpr float kWrapping = 0.03F;
 /// Tissue so near to the face is still met through coupling gel where the volume shows air.
@@ -127,8 +130,10 @@ class Walk {
 
   void run() noexcept {
     result_.border_count = 0;
+    result_.audible = plan_.samples;
     int s = 0;
     while (s < plan_.samples) {
+      if (log_gain_ < kInaudible && s >= entry_samples_) return fall_silent(s);
       const int end = std::min(s + kBlock, plan_.samples);
       const bool is_at_mirror = end > mirror_from_ && s < mirror_to_;
       if (s >= entry_samples_ && end - s == kBlock && !is_at_mirror && is_plain(s)) {
@@ -142,6 +147,17 @@ class Walk {
   }
 
  private:
+  /// Nothing more will be heard: the rest of the scanline lies in shadow.
+  void fall_silent(int s) noexcept {
+    const auto left = static_cast<std::size_t>(plan_.samples - s);
+    const auto at = static_cast<std::size_t>(s);
+    std::fill_n(result_.log_gain.begin() + s, left, kSilence);
+    std::fill_n(result_.log_way.begin() + s, left, kSilence);
+    std::fill_n(result_.tissue.begin() + s, left, kNoData);
+    if (delay_ != nullptr) std::fill_n(delay_ + at, left, late_);
+    result_.audible = s;
+  }
+
   /// Samples about the mirror on this plane, where the walk turns back within the mixed cells of the border.
   void stand_mirror(float zeta) noexcept {
     const auto near = static_cast<std::size_t>(
@@ -183,6 +199,15 @@ class Walk {
   /// The whole block lies in the tissue that the walk is in.
   bool is_plain(int s) const noexcept {
     if (is_in_ramp_ || tissue_ == kNoData) return false;
+    // Tiles are several blocks' samples wide: mostly one of a single tissue holds the whole block.
+    static_assert(kBlock == 16);
+    bool is_whole = true;
+    for (const int n : {0, 5, 10, 15}) {
+      const std::int32_t cell = result_.cell[static_cast<std::size_t>(s + n)];
+      if (cell < 0) return false;
+      is_whole = is_whole && frame_.tiles.tile_tissue(cell) == tissue_;
+    }
+    if (is_whole) return true;
     unsigned differs = 0;
     for (int n = s; n < s + kBlock; ++n) {
       const std::int32_t cell = result_.cell[static_cast<std::size_t>(n)];

@@ -19,10 +19,11 @@ struct alignas(64) WalkResult {
   std::array<float, kMaxSamples + 16> log_gain;  ///< Of a scatterer there: loss and backscatter, neper.
   std::array<float, kMaxSamples + 16> log_way;   ///< Loss alone, neper.
   std::array<float, kMaxSamples + 16> sideways_mm;    ///< Displacement by refraction.
-  std::array<std::uint8_t, kMaxSamples + 16> share;          ///< Class of the share of scatterers.
+  std::array<std::uint8_t, kMaxSamples + 16> share;   ///< Class of the share of scatterers.
   std::array<std::uint8_t, kMaxSamples + 16> tissue;  ///< The nearest or prevailing one.
   std::array<Border, kMaxBorders> borders;
   int border_count = 0;
+  int audible = 0;  ///< Samples before the shadow that nothing comes back from.
 };
 
 /// Walks; fills everything but `sideways_mm`, which it reads. For the central plane, `delay` (samples long) takes the
