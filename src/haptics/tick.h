@@ -1,9 +1,9 @@
 #pragma once
 
+#include "anatomy/resting_anatomy.h"
 #include "haptics/contact.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/needle_step.h"
-#include "anatomy/resting_anatomy.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar {

@@ -37,8 +37,9 @@ TiledTissue::TiledTissue(const AcousticScene& scene) {
   parallel_for(count, 4096, [&](std::size_t first, std::size_t last) {
     for (std::size_t t = first; t < last; ++t) {
       const auto& of_tile = tissue_[t].voxels;
-      const bool is_whole = (of_tile[0] & kMixedCell) == 0 &&
-                            std::all_of(of_tile.begin(), of_tile.end(), [&](std::uint8_t v) { return v == of_tile[0]; });
+      const bool is_whole =
+          (of_tile[0] & kMixedCell) == 0 &&
+          std::all_of(of_tile.begin(), of_tile.end(), [&](std::uint8_t v) { return v == of_tile[0]; });
       whole_[t] = is_whole ? of_tile[0] : kMixedTile;
     }
   });
