@@ -135,6 +135,17 @@ TEST(Includes, LibraryBelongsToTheModuleThatListsIt) {
   EXPECT_NE(verdict("apps/cli/a.cpp", "#include <soci/soci.h>\n"), "");
 }
 
+TEST(Includes, QtBelongsToTheTrainerAlone) {
+  EXPECT_EQ(verdict("apps/trainer/views/a.cpp", "#include <QWidget>\n#include <QVTKOpenGLNativeWidget.h>\n"), "");
+  EXPECT_NE(verdict("apps/cli/a.cpp", "#include <QString>\n"), "");
+  EXPECT_NE(verdict("src/scene/a.cpp", "#include <QWidget>\n"), "");
+}
+
+TEST(Includes, RoomsOfTheTrainerSeeEachOther) {
+  EXPECT_EQ(verdict("apps/trainer/views/a.cpp", "#include \"shell/theme.h\"\n#include \"io/a.h\"\n"), "");
+  EXPECT_NE(verdict("apps/cli/a.cpp", "#include \"shell/theme.h\"\n"), "");
+}
+
 TEST(Includes, UnknownLibraryIsRefused) {
   EXPECT_NE(verdict("src/io/a.cpp", "#include <boost/any.hpp>\n"), "");
 }

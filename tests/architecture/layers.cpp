@@ -74,6 +74,12 @@ bool is_system(std::string_view header) {
   return is_standard || header.starts_with("sys/") || posix.contains(header);
 }
 
+/// Qt's classes and its bridge to VTK.
+bool is_qt(std::string_view header) {
+  return header.size() > 1 && header[0] == 'Q' && header[1] >= 'A' && header[1] <= 'Z' &&
+         header.find('/') == std::string_view::npos;
+}
+
 bool is_test_framework(std::string_view header) {
   return header.starts_with("gtest/") || header.starts_with("gmock/");
 }
@@ -84,6 +90,7 @@ struct Place {
   std::set<std::string> modules;
   std::set<std::string> libraries;
   bool is_program = false;
+  bool has_window = false;  ///< The trainer: the only one to use Qt.
   bool is_test = false;
   bool is_bench = false;
 };
@@ -94,6 +101,7 @@ std::optional<Place> find_place(const Modules& modules, const std::string& path)
                   path.find("/testing/") != std::string::npos;
   place.is_bench = path.starts_with("bench/");
   place.is_program = path.starts_with("apps/");
+  place.has_window = path.starts_with("apps/trainer/");
   if (path.starts_with("src/")) {
     place.module = path.substr(4, path.find('/', 4) - 4);
     const auto found = modules.find(place.module);
@@ -104,6 +112,7 @@ std::optional<Place> find_place(const Modules& modules, const std::string& path)
   }
   for (const auto& [name, module] : modules) place.modules.insert(name);
   if (place.is_bench) place.libraries = {"vtk-filters", "vtk-rendering"};  // peers to be measured beside our kernels
+  if (place.has_window) place.libraries = {"vtk-rendering"};  // a window's widget takes what scene draws on
   return place;
 }
 
@@ -115,13 +124,17 @@ std::optional<std::string> complaint_about_ours(const Place& place, const std::s
   }
   const std::string target = header.substr(0, slash);
   if (target == "bench" && (place.is_bench || place.is_program)) return std::nullopt;
-  if (place.is_test && place.module.empty() && !place.modules.contains(target)) return std::nullopt;
+  if (place.module.empty() && (place.is_test || place.has_window) && !place.modules.contains(target))
+    return std::nullopt;  // a folder beside it, of the same program
   if (!place.modules.contains(target)) return "module " + target + " is not below it in src/modules.txt";
   if (header.find("/detail/") != std::string::npos && target != place.module) return "detail/ is private to " + target;
   return std::nullopt;
 }
 
 std::optional<std::string> complaint_about_theirs(const Place& place, const std::string& header) {
+  if (is_qt(header)) {
+    return place.has_window ? std::nullopt : std::optional<std::string>("Qt belongs to apps/trainer alone");
+  }
   if (is_system(header) || is_vocabulary(header)) return std::nullopt;
   if (is_test_framework(header)) {
     return place.is_test ? std::nullopt : std::optional<std::string>("a test framework outside of tests");

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <QColor>
+#include <QFont>
+
+class QApplication;
+
+namespace trocar::trainer {
+
+/// The one palette. Widgets that paint themselves take their colours from here, all others from the style sheet that
+/// is made of it. Text on its ground has a contrast of at least 4.5 (WCAG 2.1, AA).
+struct Theme {
+  QColor ground{0x10, 0x14, 0x1a};  ///< Behind everything.
+  QColor view{0x08, 0x0a, 0x0d};    ///< Behind pictures.
+  QColor panel{0x18, 0x1e, 0x27};
+  QColor raised{0x24, 0x2d, 0x39};  ///< Buttons, fields.
+  QColor line{0x35, 0x41, 0x50};
+  QColor text{0xe8, 0xed, 0xf3};
+  QColor dim{0x9a, 0xa8, 0xb9};  ///< Captions, units.
+  QColor accent{0x4f, 0xb3, 0xd9};
+  QColor good{0x57, 0xc7, 0x8b};
+  QColor warning{0xf2, 0xb6, 0x3c};
+  QColor bad{0xf0, 0x62, 0x5d};
+  // Of planes and tools, the same in all views.
+  QColor axial{0xe0, 0x5a, 0x5a};
+  QColor coronal{0x5f, 0xc4, 0x6f};
+  QColor sagittal{0xe3, 0xc5, 0x4a};
+  QColor needle{0xd8, 0xe2, 0xee};
+  QColor path{0x54, 0xd1, 0xc4};  ///< Of the expert.
+  QColor target{0xff, 0x8a, 0x3d};
+};
+const Theme& theme() noexcept;
+
+/// Sets style, palette, font and style sheet of the program.
+void apply_theme(QApplication& application);
+/// The program's font, larger or smaller by a factor.
+QFont scaled_font(double factor, bool is_bold = false);
+
+}  // namespace trocar::trainer
