@@ -80,7 +80,7 @@ function(trocar_add_test name library)
   set_target_properties(${name}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_compile_definitions(${name}_test PRIVATE TROCAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set(launcher)
-  if(name MATCHES "^(scene|cli)$")  # VTK draws on an X server only
+  if(name MATCHES "^(scene|cli|trainer)$")  # VTK and Qt draw on an X server only
     set(launcher ${PROJECT_SOURCE_DIR}/scripts/with_display)
   endif()
   add_test(NAME ${name} COMMAND ${launcher} $<TARGET_FILE:${name}_test>)

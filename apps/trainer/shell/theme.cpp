@@ -31,8 +31,8 @@ QPushButton:disabled, QToolButton:disabled { color: @faint; background: @panel; 
 QPushButton[role="primary"] { background: @accent; color: @ground; border-color: @accent; font-weight: 600; padding: 9px 26px; }
 QPushButton[role="primary"]:hover { background: @bright; }
 QPushButton[role="primary"]:disabled { background: @raised; color: @faint; border-color: @line; }
-QPushButton[role="stop"] { background: @bad; color: white; border: 2px solid @bad; font-weight: 700; padding: 6px 22px; }
-QPushButton[role="stop"]:hover { background: #ff7a75; }
+QPushButton[role="stop"] { background: #c8322d; color: white; border: 2px solid #e0524d; font-weight: 700; padding: 6px 22px; }
+QPushButton[role="stop"]:hover { background: #e0423c; }
 QToolButton::menu-indicator { image: none; }
 QLineEdit, QSpinBox, QDoubleSpinBox, QComboBox, QPlainTextEdit, QTextEdit { background: @raised; border: 1px solid @line; border-radius: 5px; padding: 4px 8px; min-height: 18px; }
 QLineEdit:focus, QSpinBox:focus, QDoubleSpinBox:focus, QComboBox:focus { border-color: @accent; }
