@@ -28,6 +28,7 @@ using namespace detail;
 struct Scratch {
   WalkResult walk;
   Texture texture;
+  ScattererField scatterers;
 };
 
 }  // namespace
@@ -57,7 +58,7 @@ struct BMode::Impl {
 
   void walk(int group, int first, int last) noexcept;
   /// After all scanlines were walked: a scanline hears what lies between it and the next.
-  void echo(int first, int last) noexcept;
+  void echo(int group, int first, int last) noexcept;
 };
 
 void BMode::Impl::walk(int group, int first, int last) noexcept {
@@ -102,13 +103,13 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
   }
 }
 
-void BMode::Impl::echo(int first, int last) noexcept {
+void BMode::Impl::echo(int group, int first, int last) noexcept {
   for (int line = first; line < last; ++line) {
     for (int plane = 0; plane < plan.planes; ++plane) add_surface_echoes(plan, frame, line, plane);
     if (plan.acquisition.artefacts.reverberation) add_ring_down(plan, frame, line);
   }
   add_needles(plan, frame, needles, first, last);
-  add_scatterers(plan, bricks, frame, first, last);
+  add_scatterers(plan, bricks, frame, first, last, scratch[static_cast<std::size_t>(group)].scatterers);
 }
 
 Acquisition default_acquisition(const Transducer& transducer) {
@@ -147,6 +148,7 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   fit_frame(impl.frame, impl.plan);
   impl.needles = make_needle_image(impl.plan);
   impl.scratch.resize(static_cast<std::size_t>(impl.groups()));
+  for (Scratch& scratch : impl.scratch) scratch.scatterers = make_scatterer_field(impl.plan);
   impl.out.geometry = impl.plan.geometry;
   impl.out.beam = impl.plan.beam;
   const auto lines = static_cast<std::size_t>(impl.plan.lines);
@@ -183,7 +185,7 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   bend_lines(plan, frame);
   lay_needles(plan, frame, input.needles, impl.needles);
   impl.for_groups([&](int group, int first, int last) { impl.walk(group, first, last); });
-  impl.for_groups([&](int, int first, int last) { impl.echo(first, last); });
+  impl.for_groups([&](int group, int first, int last) { impl.echo(group, first, last); });
   add_points(plan, frame);
   impl.for_groups([&](int, int first, int last) { spread_laterally(plan, frame, first, last); });
   impl.for_groups([&](int, int first, int last) {

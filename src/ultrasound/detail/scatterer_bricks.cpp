@@ -31,8 +31,8 @@ std::vector<Brick> make_brick_library() {
       brick.x[s] = static_cast<float>((static_cast<double>(i) + random.uniform()) / 4.0 - 0.5);
       brick.y[s] = static_cast<float>((static_cast<double>(j) + random.uniform()) / 4.0 - 0.5);
       brick.z[s] = static_cast<float>((static_cast<double>(octant >> 2) + random.uniform()) / 2.0 - 0.5);
-      brick.amplitude[s] = random.uniform() < 0.5 ? -1.0F : 1.0F;
-      brick.rank[s] = (static_cast<float>(s) + static_cast<float>(random.uniform())) / kBrickScatterers;
+      const float sign = random.uniform() < 0.5 ? -1.0F : 1.0F;
+      brick.rank[s] = sign * (static_cast<float>(s) + static_cast<float>(random.uniform())) / kBrickScatterers;
     }
   }
   return library;
@@ -44,7 +44,7 @@ PlacedBrick place_brick(const BrickIndex& index, const std::vector<Brick>& libra
   const std::uint64_t hash = hash_of(index);
   const int* order = kOrders[(hash >> 16) % 6];
   PlacedBrick placed{};
-  placed.brick = &library[hash % library.size()];
+  placed.brick = &library[hash % kBricks];
   float* const columns[3] = {placed.x, placed.y, placed.z};
   for (int c = 0; c < 3; ++c) {
     const float sign = ((hash >> (32 + c)) & 1U) != 0 ? -1.0F : 1.0F;

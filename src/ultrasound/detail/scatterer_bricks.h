@@ -14,12 +14,12 @@ inline constexpr int kBrickScatterers = 32;
 /// All are equally strong, of either sign, and stratified in their brick: with that a few in a resolution cell are
 /// enough for fully developed speckle (free places and amplitudes need four times as many).
 inline constexpr double kMeanSquareScatterer = 1.0;
-inline constexpr int kBricks = 256;
+inline constexpr int kBricks = 256;  ///< Of the library.
 
-/// Scatterers of one brick: place in the brick, -0.5..0.5 of its side, amplitude, and the share of scatterers at which
-/// it is one of those that are there.
+/// Scatterers of one brick: place in the brick, -0.5..0.5 of its side, and its rank: the share of scatterers at which
+/// it is one of those that are there, with the sign of its amplitude.
 struct alignas(64) Brick {
-  std::array<float, kBrickScatterers> x, y, z, amplitude, rank;
+  std::array<float, kBrickScatterers> x, y, z, rank;
 };
 std::vector<Brick> make_brick_library();
 

@@ -10,6 +10,18 @@ std::size_t sample_near(const ScanPlan& plan, float s) noexcept {
   return static_cast<std::size_t>(std::clamp(s, 0.0F, static_cast<float>(plan.samples - 1)));
 }
 
+/// Through the values at both ends and the middle between them.
+void fit_parabola(const std::vector<float>& values, std::size_t first, std::size_t last,
+                  float (&parabola)[3]) noexcept {
+  const std::size_t middle = (first + last) / 2;
+  const auto a = static_cast<float>(first), b = static_cast<float>(middle), c = static_cast<float>(last);
+  const float slope = middle > first ? (values[middle] - values[first]) / (b - a) : 0.0F;
+  const float next_slope = last > middle ? (values[last] - values[middle]) / (c - b) : slope;
+  parabola[2] = last > first ? (next_slope - slope) / (c - a) : 0.0F;
+  parabola[1] = slope - parabola[2] * (a + b);
+  parabola[0] = values[first] - (parabola[1] + parabola[2] * a) * a;
+}
+
 void set_lines(const ScanPlan& plan, const FrameState& frame, std::size_t near, std::size_t far, Cell& cell) noexcept {
   float least = 0.0F, most = 0.0F;
   if (frame.widest_warp > 0.0F) {
@@ -39,12 +51,10 @@ Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int las
   const std::size_t near = sample_near(plan, first_rest), far = sample_near(plan, last_rest);
   cell.half_thickness_mm = kBeamEdge * std::max(plan.elevation_sigma_mm[near], plan.elevation_sigma_mm[far]);
   cell.most_rank = std::max(plan.most_rank[near], plan.most_rank[far]);
-  const auto line_through = [&](const std::vector<float>& values, float(&line)[2]) {
-    line[1] = far > near ? (values[far] - values[near]) / static_cast<float>(far - near) : 0.0F;
-    line[0] = values[near] - line[1] * static_cast<float>(near);
-  };
-  line_through(plan.speckle_scale, cell.speckle_scale);
-  line_through(plan.most_rank, cell.rank);
+  cell.yields = frame.deepest_dent_mm > 0.0F && first_rest < frame.dent_reach;
+  fit_parabola(plan.speckle_scale, near, far, cell.speckle_scale);
+  fit_parabola(plan.most_rank, near, far, cell.rank);
+  fit_parabola(plan.inverse_elevation_sigma, near, far, cell.inverse_elevation_sigma);
   const ScanGeometry& g = plan.geometry;
   set_lines(plan, frame, near, far, cell);
   const double low_mm = (static_cast<double>(first_rest) + 0.4) * g.sample_mm(),
@@ -62,6 +72,8 @@ Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int las
   };
   cell.low = bound(low_mm);
   cell.high = bound(high_mm);
+  cell.near_mm = g.is_fan ? std::sqrt(cell.low) : cell.low;
+  cell.far_mm = g.is_fan ? std::sqrt(cell.high) : cell.high;
   return cell;
 }
 
@@ -90,25 +102,46 @@ CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) 
   return box;
 }
 
-void stay_in_beam(float start, float step, float half_mm, int& first, int& last) noexcept {
-  if (std::abs(step) < 1e-4F) {
-    if (std::abs(start) > half_mm) last = first - 1;
+namespace {
+
+/// Narrows first..last to the steps n for which start + step * n <= most.
+void stay_below(float start, float step, float most, int& first, int& last) noexcept {
+  constexpr float kLevel = 1e-4F;
+  if (std::abs(step) < kLevel) {
+    if (start > most) last = first - 1;
     return;
   }
-  const float a = (-half_mm - start) / step, b = (half_mm - start) / step;
-  first = std::max(first, static_cast<int>(std::ceil(std::min(a, b))));
-  last = std::min(last, static_cast<int>(std::floor(std::max(a, b))));
+  const float end = std::clamp((most - start) / step, -1e6F, 1e6F);
+  if (step > 0.0F)
+    last = std::min(last, static_cast<int>(std::floor(end)));
+  else
+    first = std::max(first, static_cast<int>(std::ceil(end)));
 }
 
-bool comes_near(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T, float radius_mm) noexcept {
-  if (std::abs(middle_T.z()) > cell.half_thickness_mm + radius_mm) return false;
-  const bool is_fan = plan.geometry.is_fan;
-  const float y = middle_T.y() + (is_fan ? static_cast<float>(plan.geometry.radius_mm) : 0.0F);
-  for (int side = 0; side < 2; ++side)
-    if (middle_T.x() * cell.side_x[side] + y * cell.side_y[side] + cell.side_d[side] > radius_mm) return false;
-  if (!is_fan) return y > cell.low - radius_mm && y < cell.high + radius_mm;
-  const float far = std::sqrt(middle_T.x() * middle_T.x() + y * y);
-  return far > std::sqrt(cell.low) - radius_mm && far < std::sqrt(cell.high) + radius_mm;
+float from_apex(const ScanPlan& plan, float y) noexcept {
+  return y + (plan.geometry.is_fan ? static_cast<float>(plan.geometry.radius_mm) : 0.0F);
+}
+
+}  // namespace
+
+void stay_in_cell(const ScanPlan& plan, const Cell& cell, const Vec3f& start_T, const Vec3f& step_T, float radius_mm,
+                  int& first, int& last) noexcept {
+  const float half_mm = cell.half_thickness_mm + radius_mm;
+  stay_below(start_T.z(), step_T.z(), half_mm, first, last);
+  stay_below(-start_T.z(), -step_T.z(), half_mm, first, last);
+  const float y = from_apex(plan, start_T.y());
+  for (int side = 0; side < 2; ++side) {
+    stay_below(start_T.x() * cell.side_x[side] + y * cell.side_y[side] + cell.side_d[side],
+               step_T.x() * cell.side_x[side] + step_T.y() * cell.side_y[side], radius_mm, first, last);
+  }
+}
+
+bool is_at_depth(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T, float radius_mm) noexcept {
+  const float y = from_apex(plan, middle_T.y());
+  const float low = cell.near_mm - radius_mm, high = cell.far_mm + radius_mm;
+  if (!plan.geometry.is_fan) return y > low && y < high;
+  const float far2 = middle_T.x() * middle_T.x() + y * y;
+  return (low < 0.0F || far2 > low * low) && far2 < high * high;
 }
 
 }  // namespace trocar::detail

@@ -17,10 +17,12 @@ struct Cell {
   float first_rest, last_rest;
   float side_x[2], side_y[2], side_d[2];
   float low, high;
+  float near_mm, far_mm;  ///< The same two, not squared.
   float half_thickness_mm;
   float most_rank;
-  /// What varies slowly with depth, as a line through its values at the cell's ends: [0] + [1] * sample.
-  float speckle_scale[2], rank[2];
+  bool yields;  ///< Some of its tissue gives way to a dented face.
+  /// What varies slowly with depth, as a parabola: [0] + [1] * sample + [2] * sample^2.
+  float speckle_scale[3], rank[3], inverse_elevation_sigma[3];
 };
 Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int last, float first_rest,
                float last_rest) noexcept;
@@ -33,9 +35,11 @@ struct CellBox {
 };
 CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept;
 
-/// Narrows first..last to the steps of a row, z = start + step * n, that stay within the beam's thickness.
-void stay_in_beam(float start, float step, float half_mm, int& first, int& last) noexcept;
-/// Whether a brick of that middle, a ball about it, can hold a scatterer of the cell.
-bool comes_near(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T, float radius_mm) noexcept;
+/// Narrows first..last to those bricks of a row, balls about start_T + step_T * n, that come into the cell's sides and
+/// the beam's thickness.
+void stay_in_cell(const ScanPlan& plan, const Cell& cell, const Vec3f& start_T, const Vec3f& step_T, float radius_mm,
+                  int& first, int& last) noexcept;
+/// Whether such a ball comes into the cell's depths.
+bool is_at_depth(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T, float radius_mm) noexcept;
 
 }  // namespace trocar::detail

@@ -1,5 +1,6 @@
 #include "ultrasound/detail/scatterer_echo.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -17,15 +18,15 @@ namespace trocar::detail {
 /// Scatterers that are near a cell, in T, until there are enough to hear them together.
 struct alignas(64) Candidates {
   static constexpr int kMost = 1024;
-  float x[kMost + 64], y[kMost + 64], z[kMost + 64], amplitude[kMost + 64], rank[kMost + 64];
+  float x[kMost + 64], y[kMost + 64], z[kMost + 64], rank[kMost + 64];
   int count = 0;
 };
 
-/// Echoes of some candidates, compact.
+/// Echoes of some candidates: where each goes in the task's field, and what it adds there to the real and imaginary
+/// part of two neighbouring scanlines.
 struct alignas(64) Echoes {
-  float line[Candidates::kMost + 64], sample[Candidates::kMost + 64], re[Candidates::kMost + 64],
-      im[Candidates::kMost + 64];
-  float rank[Candidates::kMost + 64];
+  std::int32_t place[Candidates::kMost + 64];
+  float parts[4 * (Candidates::kMost + 64)];
 };
 
 }  // namespace trocar::detail
@@ -110,7 +111,7 @@ void take_near(const ScanPlan& plan, const Drag* drag, const Cell& cell, const P
   const VF radius = hn::Set(f, plan.geometry.is_fan ? static_cast<float>(plan.geometry.radius_mm) : 0.0F);
   for (std::size_t s = 0; s < kBrickScatterers; s += hn::Lanes(f)) {
     const VF rank = hn::Load(f, placed.brick->rank.data() + s);
-    const auto wanted = hn::Lt(rank, hn::Set(f, cell.most_rank));
+    const auto wanted = hn::Lt(hn::Abs(rank), hn::Set(f, cell.most_rank));
     if (hn::AllFalse(f, wanted)) return;  // they are sorted by rank
     const VF bx = hn::Load(f, placed.brick->x.data() + s);
     const VF by = hn::Load(f, placed.brick->y.data() + s);
@@ -132,15 +133,35 @@ void take_near(const ScanPlan& plan, const Drag* drag, const Cell& cell, const P
     hn::CompressStore(x, near_by, f, near.x + near.count);
     hn::CompressStore(y, near_by, f, near.y + near.count);
     hn::CompressStore(z, near_by, f, near.z + near.count);
-    hn::CompressStore(rank, near_by, f, near.rank + near.count);
-    near.count += static_cast<int>(
-        hn::CompressStore(hn::Load(f, placed.brick->amplitude.data() + s), near_by, f, near.amplitude + near.count));
+    near.count += static_cast<int>(hn::CompressStore(rank, near_by, f, near.rank + near.count));
   }
 }
 
-HWY_INLINE VF along(const float (&line)[2], VF sample) {
+HWY_INLINE VF at_depth(const float (&parabola)[3], VF sample) {
   const F f;
-  return hn::MulAdd(hn::Set(f, line[1]), sample, hn::Set(f, line[0]));
+  return hn::MulAdd(hn::MulAdd(hn::Set(f, parabola[2]), sample, hn::Set(f, parabola[1])), sample,
+                    hn::Set(f, parabola[0]));
+}
+
+/// Whole numbers of [0, most] nearest to `values`.
+HWY_INLINE VI nearest_index(VF values, VF most) {
+  const F f;
+  return hn::NearestInt(hn::Min(hn::Max(values, hn::Zero(f)), most));
+}
+
+/// The scanline, fractional, whose bent ray comes by a place on the straight one `line`, `lines_per_mm` apart.
+HWY_INLINE VF bent_line(const ScanPlan& plan, const FrameState& frame, VF line, VI sample, VF lines_per_mm) {
+  const F f;
+  const I d;
+  const VF last_line = hn::Set(f, static_cast<float>(plan.lines - 1));
+  const VI coarse = hn::Set(d, static_cast<std::int32_t>(plan.coarse_samples()));
+  static_assert(kCoarse == 8);
+  VF bent = line;
+  for (int round = 0; round < 3; ++round) {
+    const VI at = hn::Add(hn::Mul(nearest_index(bent, last_line), coarse), hn::ShiftRight<3>(sample));
+    bent = hn::NegMulAdd(hn::GatherIndex(f, frame.bend_mm.data(), at), lines_per_mm, line);
+  }
+  return bent;
 }
 
 /// What the cell's scanlines hear of the candidates; returns how many echoes.
@@ -153,9 +174,9 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
   const VF middle = hn::Set(f, static_cast<float>(g.middle_line()));
   const VF per_mm = hn::Set(f, 1.0F / plan.sample_mm);
   const VF last_sample = hn::Set(f, static_cast<float>(plan.samples - 1));
-  const VF last_line = hn::Set(f, static_cast<float>(plan.lines - 1));
-  const VI samples = hn::Set(d, plan.samples);
-  const auto coarse = static_cast<std::int32_t>(plan.coarse_samples());
+  const VF half = hn::Set(f, 0.5F);
+  constexpr float kFeltWarp = 0.05F;
+  const bool is_bent = frame.widest_warp > kFeltWarp;
   int n = 0;
   for (int s = 0; s < near.count; s += static_cast<int>(hn::Lanes(f))) {
     const VF x = hn::Load(f, near.x + s);
@@ -169,49 +190,39 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
       line = hn::MulAdd(x, per_line, middle);
       rest = hn::Mul(y, per_mm);
     }
-    rest = hn::Sub(rest, hn::Set(f, 0.5F));  // samples lie at (s + 1/2)
+    // Depths count from the face, samples from half a step before it.
+    VF walk = hn::Sub(rest, half);
     auto heard = hn::FirstN(f, static_cast<std::size_t>(near.count - s));
     heard =
-        hn::And(heard, hn::And(hn::Ge(rest, hn::Set(f, cell.first_rest)), hn::Lt(rest, hn::Set(f, cell.last_rest))));
-    const VI near_line = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
-    // Depths count from the face, samples from half a step before it.
-    const VF half = hn::Set(f, 0.5F);
-    const VF walk = hn::Sub(
-        walk_of_rest(frame, hn::Add(rest, half), hn::GatherIndex(f, frame.pressed_samples.data(), near_line)), half);
+        hn::And(heard, hn::And(hn::Ge(walk, hn::Set(f, cell.first_rest)), hn::Lt(walk, hn::Set(f, cell.last_rest))));
+    if (cell.yields) {
+      const VI near_line = nearest_index(line, hn::Set(f, static_cast<float>(plan.lines - 1)));
+      walk = hn::Sub(walk_of_rest(frame, rest, hn::GatherIndex(f, frame.pressed_samples.data(), near_line)), half);
+    }
     heard = hn::And(heard, hn::And(hn::Ge(walk, hn::Zero(f)), hn::Le(walk, last_sample)));
     const VI at = hn::ConvertTo(d, hn::Min(hn::Max(walk, hn::Zero(f)), last_sample));
-    static_assert(kCoarse == 8);
-    const VI at_coarse = hn::ShiftRight<3>(at);
-    const VF spacing_mm = g.is_fan ? hn::Mul(hn::MulAdd(walk, hn::Set(f, plan.sample_mm), radius),
-                                             hn::Set(f, static_cast<float>(g.line_step)))
-                                   : hn::Set(f, static_cast<float>(g.line_step));
-    const VF lines_per_mm = hn::Div(hn::Set(f, 1.0F), hn::Max(spacing_mm, hn::Set(f, 0.02F)));
-    constexpr float kFeltWarp = 0.05F;
-    // The scanline that hears it is the one whose bent ray comes by.
-    const VF straight = line;
-    const int rounds = frame.widest_warp > kFeltWarp ? 3 : 0;
-    for (int round = 0; round < rounds; ++round) {
-      const VI by = hn::ConvertTo(d, hn::Min(hn::Max(hn::Round(line), hn::Zero(f)), last_line));
-      const VF bend = hn::GatherIndex(f, frame.bend_mm.data(), hn::Add(hn::Mul(by, hn::Set(d, coarse)), at_coarse));
-      line = hn::NegMulAdd(bend, lines_per_mm, straight);
+    if (is_bent) {
+      const VF step = hn::Set(f, static_cast<float>(g.line_step));
+      const VF spacing_mm = g.is_fan ? hn::Mul(hn::MulAdd(walk, hn::Set(f, plan.sample_mm), radius), step) : step;
+      const VF lines_per_mm = hn::Div(hn::Set(f, 1.0F), hn::Max(spacing_mm, hn::Set(f, 0.02F)));
+      line = bent_line(plan, frame, line, at, lines_per_mm);
     }
     heard = hn::And(heard, hn::And(hn::Ge(line, hn::Set(f, static_cast<float>(cell.first_line - 1))),
                                    hn::Lt(line, hn::Set(f, static_cast<float>(cell.last_line)))));
-    const VF zeta = hn::Mul(hn::Load(f, near.z + s), hn::GatherIndex(f, plan.inverse_elevation_sigma.data(), at));
+    const VF zeta = hn::Mul(hn::Load(f, near.z + s), at_depth(cell.inverse_elevation_sigma, walk));
     heard = hn::And(heard, hn::Lt(hn::Abs(zeta), hn::Set(f, kBeamEdge)));
-    const VF rank = hn::Load(f, near.rank + s);
-    heard = hn::And(heard, hn::Lt(rank, along(cell.rank, walk)));
+    const VF signed_rank = hn::Load(f, near.rank + s);
+    const VF rank = hn::Abs(signed_rank), most_rank = at_depth(cell.rank, walk);
+    heard = hn::And(heard, hn::Lt(rank, most_rank));
     if (hn::AllFalse(f, heard)) continue;
 
     // Of the task's own scanlines: the neighbours' gains may not be there yet.
-    const VF own_line = hn::Min(hn::Max(hn::Round(line), hn::Set(f, static_cast<float>(cell.first_line))),
-                                hn::Set(f, static_cast<float>(cell.last_line - 1)));
-    const VI line_index = hn::ConvertTo(d, own_line);
-    const VF plane = hn::Round(
-        hn::MulAdd(zeta, hn::Set(f, 1.0F / plan.plane_step), hn::Set(f, static_cast<float>(plan.planes / 2))));
-    const VI plane_index =
-        hn::ConvertTo(d, hn::Min(hn::Max(plane, hn::Zero(f)), hn::Set(f, static_cast<float>(plan.planes - 1))));
-    const VI in_line = hn::Add(hn::Mul(line_index, samples), at);
+    const VI own_line = hn::NearestInt(hn::Min(hn::Max(line, hn::Set(f, static_cast<float>(cell.first_line))),
+                                               hn::Set(f, static_cast<float>(cell.last_line - 1))));
+    const VF plane =
+        hn::MulAdd(zeta, hn::Set(f, 1.0F / plan.plane_step), hn::Set(f, static_cast<float>(plan.planes / 2)));
+    const VI plane_index = nearest_index(plane, hn::Set(f, static_cast<float>(plan.planes - 1)));
+    const VI in_line = hn::Add(hn::Mul(own_line, hn::Set(d, plan.samples)), at);
     const VI place = hn::Add(in_line, hn::Mul(plane_index, hn::Set(d, plan.lines * plan.samples)));
     const VF shown = hn::Add(walk, hn::GatherIndex(f, frame.delay.data(), in_line));
     const VI packed =
@@ -220,20 +231,23 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     const VF log_gain = hn::MulAdd(hn::ConvertTo(f, hn::ShiftRight<kShareBits>(packed)), hn::Set(f, kLogGainStep),
                                    hn::Set(f, kLeastLogGain));
     const VF share = hn::GatherIndex(f, kShares.data(), hn::And(packed, hn::Set(d, (1 << kShareBits) - 1)));
-    heard = hn::And(heard, hn::Lt(rank, hn::Mul(share, along(cell.rank, walk))));
+    const VI sample = hn::ConvertTo(d, hn::Add(shown, half));
+    heard = hn::And(heard, hn::And(hn::Lt(rank, hn::Mul(share, most_rank)), hn::Le(shown, last_sample)));
+    heard = hn::And(heard, hn::RebindMask(f, hn::Gt(sample, hn::Set(d, -kBeforeFace - 1))));
     const VF weight = hn::Mul(hn::Exp(f, hn::MulAdd(hn::Mul(zeta, zeta), hn::Set(f, -0.5F), log_gain)),
-                              along(cell.speckle_scale, walk));
-    const VF amplitude = hn::Mul(hn::Load(f, near.amplitude + s), weight);
+                              at_depth(cell.speckle_scale, walk));
+    const VF amplitude = hn::CopySign(weight, signed_rank);
     VF cosine, sine;
     turn(hn::Mul(shown, hn::Set(f, plan.cycles_per_sample)), cosine, sine);
-    heard = hn::And(heard, hn::Le(shown, last_sample));
-    // Not compacted: most are heard. Who is not has a rank beyond all.
-    hn::Store(line, f, echoes.line + n);
-    hn::Store(shown, f, echoes.sample + n);
-    hn::Store(hn::Mul(amplitude, cosine), f, echoes.re + n);
-    hn::Store(hn::Neg(hn::Mul(amplitude, sine)), f, echoes.im + n);
-    hn::Store(hn::IfThenElse(heard, rank, hn::Set(f, 2.0F)), f, echoes.rank + n);
-    n += static_cast<int>(hn::Lanes(f));
+    const VF re = hn::Mul(amplitude, cosine), im = hn::Neg(hn::Mul(amplitude, sine));
+    const VF lower = hn::Floor(line), part = hn::Sub(line, lower), rest_of_it = hn::Sub(hn::Set(f, 1.0F), part);
+    const VI column = hn::Sub(hn::ConvertTo(d, lower), hn::Set(d, cell.first_line - 1));
+    const VI row = hn::Mul(hn::Add(sample, hn::Set(d, kBeforeFace)), hn::Set(d, kFieldRow));
+    hn::StoreU(hn::Compress(hn::Add(row, hn::Add(column, column)), hn::RebindMask(d, heard)), d, echoes.place + n);
+    hn::StoreInterleaved4(hn::Compress(hn::Mul(rest_of_it, re), heard), hn::Compress(hn::Mul(rest_of_it, im), heard),
+                          hn::Compress(hn::Mul(part, re), heard), hn::Compress(hn::Mul(part, im), heard), f,
+                          echoes.parts + 4 * n);
+    n += static_cast<int>(hn::CountTrue(f, heard));
   }
   return n;
 }
@@ -250,46 +264,56 @@ HWY_EXPORT(hear);
 
 namespace {
 
-void splat(const ScanPlan& plan, const Echoes& echoes, int n, const Cell& cell, FrameState& frame) noexcept {
+void splat(const Echoes& echoes, int n, float* field) noexcept {
+  using Parts = Eigen::Array4f;
   for (int e = 0; e < n; ++e) {
-    if (echoes.rank[e] > 1.0F) continue;
-    const float floor_line = std::floor(echoes.line[e]);
-    const float part = echoes.line[e] - floor_line;
-    const int line = static_cast<int>(floor_line);
-    const int sample = static_cast<int>(echoes.sample[e] + 0.5F);
-    if (sample < -kPad / 2) continue;
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(line) * plan.stride + kPad + sample;
-    if (line >= cell.first_line) {
-      frame.re[static_cast<std::size_t>(at)] += (1.0F - part) * echoes.re[e];
-      frame.im[static_cast<std::size_t>(at)] += (1.0F - part) * echoes.im[e];
-    }
-    if (line + 1 < cell.last_line) {
-      frame.re[static_cast<std::size_t>(at + plan.stride)] += part * echoes.re[e];
-      frame.im[static_cast<std::size_t>(at + plan.stride)] += part * echoes.im[e];
+    Eigen::Map<Parts> at(field + echoes.place[e]);
+    at += Eigen::Map<const Parts, Eigen::Aligned16>(echoes.parts + 4 * e);
+  }
+}
+
+/// Hears what has been gathered and adds it to the field.
+void flush(const ScanPlan& plan, const FrameState& frame, const Cell& cell, Candidates& near, Echoes& echoes,
+           float* field) noexcept {
+  const int n = HWY_DYNAMIC_DISPATCH(hear)(plan, frame, cell, near, echoes);
+  splat(echoes, n, field);
+  near.count = 0;
+}
+
+/// From the field to the scanlines [first, last).
+void add_field(const ScanPlan& plan, const ScattererField& field, FrameState& frame, int first, int last) noexcept {
+  constexpr int kRows = 16;  // which stay in the nearest cache meanwhile
+  for (int begin = -kBeforeFace; begin < plan.samples; begin += kRows) {
+    const int end = std::min(begin + kRows, plan.samples);
+    for (int line = first; line < last; ++line) {
+      const std::size_t to = static_cast<std::size_t>(line) * static_cast<std::size_t>(plan.stride) + kPad;
+      const float* from = field.data() + 2 * (line - first + 1);
+      for (int s = begin; s < end; ++s) {
+        frame.re[to + static_cast<std::size_t>(s)] += from[(s + kBeforeFace) * kFieldRow];
+        frame.im[to + static_cast<std::size_t>(s)] += from[(s + kBeforeFace) * kFieldRow + 1];
+      }
     }
   }
 }
 
-/// Hears what has been gathered and adds it to the scanlines.
-void flush(const ScanPlan& plan, FrameState& frame, const Cell& cell, Candidates& near, Echoes& echoes) noexcept {
-  const int n = HWY_DYNAMIC_DISPATCH(hear)(plan, frame, cell, near, echoes);
-  splat(plan, echoes, n, cell, frame);
-  near.count = 0;
-}
-
 }  // namespace
 
-void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, FrameState& frame, int first,
-                    int last) noexcept {
+ScattererField make_scatterer_field(const ScanPlan& plan) {
+  return ScattererField(static_cast<std::size_t>((kBeforeFace + plan.samples) * kFieldRow));
+}
+
+void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, FrameState& frame, int first, int last,
+                    ScattererField& field) noexcept {
   const Pose X_TP = frame.X_PT.inverse();
   const Eigen::Matrix3f side_T = (X_TP.R() * static_cast<double>(plan.brick_mm)).cast<float>();
   const bool has_drag = frame.drag.reach_mm > 0.0F;
   const float radius_mm = 0.87F * plan.brick_mm + (has_drag ? frame.drag.shift_T.norm() : 0.0F);
-  constexpr int kSegments = 14;  // to a depth: what varies along one is near enough to a line
+  constexpr int kSegments = 14;  // to a depth: what varies along one is near enough to a parabola
   const float segment = static_cast<float>(plan.samples) / kSegments;
   const auto take = HWY_DYNAMIC_DISPATCH(take_near);
   Candidates near;
   Echoes echoes;
+  std::fill(field.begin(), field.end(), 0.0F);
   const auto audible =
       static_cast<float>(*std::max_element(frame.audible.begin() + first, frame.audible.begin() + last));
   for (float rest = -frame.deepest_dent_mm / plan.sample_mm - 1.0F; rest < audible; rest += segment) {
@@ -302,18 +326,20 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
         const Vec3 row_P = (Vec3(box.low[0], b[1], b[2]) + Vec3::Constant(0.5)) * static_cast<double>(plan.brick_mm);
         const Vec3f row_T = (X_TP * row_P).cast<float>();
         int first_i = 0, last_i = box.high[0] - box.low[0];
-        stay_in_beam(row_T.z(), side_T(2, 0), cell.half_thickness_mm + radius_mm, first_i, last_i);
-        Vec3f middle_T = row_T + static_cast<float>(first_i) * side_T.col(0);
-        for (b[0] = box.low[0] + first_i; b[0] <= box.low[0] + last_i; ++b[0], middle_T += side_T.col(0)) {
-          if (!comes_near(plan, cell, middle_T, radius_mm)) continue;
+        stay_in_cell(plan, cell, row_T, side_T.col(0), radius_mm, first_i, last_i);
+        for (int i = first_i; i <= last_i; ++i) {
+          const Vec3f middle_T = row_T + static_cast<float>(i) * side_T.col(0);
+          if (!is_at_depth(plan, cell, middle_T, radius_mm)) continue;
           const bool is_dragged = has_drag && (middle_T - frame.drag.tip_T).norm() < frame.drag.reach_mm + radius_mm;
+          b[0] = box.low[0] + i;
           take(plan, is_dragged ? &frame.drag : nullptr, cell, place_brick(b, library, middle_T, side_T), near);
-          if (near.count > Candidates::kMost - kBrickScatterers) flush(plan, frame, cell, near, echoes);
+          if (near.count > Candidates::kMost - kBrickScatterers) flush(plan, frame, cell, near, echoes, field.data());
         }
       }
     }
-    flush(plan, frame, cell, near, echoes);
+    flush(plan, frame, cell, near, echoes, field.data());
   }
+  add_field(plan, field, frame, first, last);
 }
 
 }  // namespace trocar::detail
