@@ -1,0 +1,129 @@
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/progress.h"
+#include "core/result.h"
+
+namespace trocar {
+
+/// How far work in the background is.
+struct JobView {
+  std::string step;       ///< What it does now.
+  double fraction = 0.0;  ///< 0..1, done.
+  bool is_done = false;   ///< The result can be taken.
+};
+
+/// Work on a thread of its own, for a window that looks at it once a frame. Nothing here waits for the work but the
+/// destructor (see RetiredJobs). One thread owns the job; the work has only its Progress and its stop token.
+template <class T>
+class BackgroundJob {
+ public:
+  /// No work: view() is not done, take() gives nothing.
+  BackgroundJob() = default;
+  /// Starts. `work` is `Result<T>(const Progress&)`, or `Result<T>(const Progress&, std::stop_token)` where it can stop
+  /// on the way: its result is then dropped, whatever it is.
+  template <class Work>
+  requires(!std::is_same_v<std::remove_cvref_t<Work>, BackgroundJob>) explicit BackgroundJob(Work work)
+      : state_(std::make_shared<State>()) {
+    thread_ = std::jthread([state = state_, work = std::move(work)](const std::stop_token& stop) mutable {
+      std::optional<Result<T>> result = run(work, progress_to(state), stop);
+      const std::lock_guard lock(state->mutex);
+      if (!stop.stop_requested()) state->result = std::move(result);
+      state->view.is_done = true;
+    });
+  }
+  BackgroundJob(BackgroundJob&&) noexcept = default;
+  BackgroundJob& operator=(BackgroundJob&&) noexcept = default;
+
+  bool has_work() const noexcept { return state_ != nullptr; }
+  JobView view() const {
+    if (!state_) return {};
+    const std::lock_guard lock(state_->mutex);
+    return state_->view;
+  }
+  /// The result is not wanted any more; returns at once. The work is told and may go on for a while.
+  void cancel() noexcept { thread_.request_stop(); }
+  bool is_cancelled() const noexcept { return thread_.get_stop_token().stop_requested(); }
+  /// The result, once; nothing before it is there, and never that of a cancelled job.
+  std::optional<Result<T>> take() {
+    if (!state_ || is_cancelled()) return std::nullopt;
+    const std::lock_guard lock(state_->mutex);
+    return std::exchange(state_->result, std::nullopt);
+  }
+
+ private:
+  struct State {
+    std::mutex mutex;
+    JobView view;
+    std::optional<Result<T>> result;
+  };
+
+  static Progress progress_to(const std::shared_ptr<State>& state) {
+    return [state](std::string_view step, double fraction) {
+      const std::lock_guard lock(state->mutex);
+      state->view.step = step;
+      state->view.fraction = std::clamp(fraction, 0.0, 1.0);
+    };
+  }
+
+  template <class Work>
+  static Result<T> run(Work& work, const Progress& progress, const std::stop_token& stop) {
+    try {
+      if constexpr (std::is_invocable_v<Work&, const Progress&, std::stop_token>) {
+        return work(progress, stop);
+      } else {
+        return work(progress);
+      }
+    } catch (const std::bad_alloc&) {
+      return fail("there is not enough memory", {}, "close other programs, or use smaller data");
+    }
+  }
+
+  std::shared_ptr<State> state_;
+  std::jthread thread_;
+};
+
+/// Jobs whose results nobody wants and whose work has not ended yet: kept here so that their owner need not wait for
+/// them. What is still at work when this ends is waited for then.
+class RetiredJobs {
+ public:
+  template <class T>
+  void retire(BackgroundJob<T> job) {
+    if (!job.has_work()) return;
+    job.cancel();
+    jobs_.push_back(std::make_unique<Retired<T>>(std::move(job)));
+  }
+  /// Lets go of those that have ended; to be called now and then. Gives how many are still at work.
+  std::size_t sweep() {
+    std::erase_if(jobs_, [](const std::unique_ptr<Any>& job) { return job->is_done(); });
+    return jobs_.size();
+  }
+
+ private:
+  struct Any {
+    virtual ~Any() = default;
+    virtual bool is_done() const = 0;
+  };
+  template <class T>
+  struct Retired final : Any {
+    explicit Retired(BackgroundJob<T> retired) : job(std::move(retired)) {}
+    bool is_done() const override { return job.view().is_done; }
+    BackgroundJob<T> job;
+  };
+  std::vector<std::unique_ptr<Any>> jobs_;
+};
+
+}  // namespace trocar
