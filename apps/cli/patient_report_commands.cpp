@@ -14,8 +14,8 @@
 #include "io/markups_file.h"
 #include "io/patient_source.h"
 #include "io/png.h"
-#include "report/slice_picture.h"
 #include "scene/render_patient.h"
+#include "slices/slice_picture.h"
 #include "training/task.h"
 
 namespace trocar::cli {

@@ -76,8 +76,12 @@ struct SlicePlane {
 /// where the plane is not finite, stands `outside`. The box is the one of sample_nearest. One thread, floats: positions
 /// are good to 1e-5 of a voxel. SIMD, chosen at run time for the processor. No allocation.
 void sample_slice(const CtGrid& grid, const SlicePlane& plane, float outside, std::span<float> out) noexcept;
-/// The same at any points of P; `out` is as long as they are (checked). Points within 1e-4 of a voxel of the box's
-/// faces may fall to either side.
+/// The value of the nearest voxel at each point of a plane, `outside` beyond the grid's box, as sample_nearest has it
+/// (positions on the border of two voxels may fall to either side). One thread, no allocation.
+void sample_slice_nearest(const Grid<std::uint8_t>& grid, const SlicePlane& plane, std::uint8_t outside,
+                          std::span<std::uint8_t> out) noexcept;
+/// As sample_slice, at any points of P; `out` is as long as they are (checked). Points within 1e-4 of a voxel of the
+/// box's faces may fall to either side.
 void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float outside, std::span<float> out) noexcept;
 
 }  // namespace trocar

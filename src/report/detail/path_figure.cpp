@@ -9,7 +9,7 @@
 #include "report/detail/html.h"
 #include "report/plot_scale.h"
 #include "report/session_analysis.h"
-#include "report/slice_picture.h"
+#include "slices/slice_picture.h"
 
 namespace trocar::report_detail {
 namespace {

@@ -229,6 +229,27 @@ TEST(SampleSlice, FillsEverythingForAnEmptyGrid) {
   for (const float v : out) EXPECT_EQ(v, kOutside);
 }
 
+TEST(SampleSliceNearest, AgreesWithTheNearestVoxelOnRandomPlanes) {
+  Random random(11);
+  for (int round = 0; round < 40; ++round) {
+    const CtGrid ct = noise_ct(oblique_geometry({33, 27, 21}, random), random);
+    Grid<std::uint8_t> labels(ct.geometry);
+    for (std::size_t n = 0; n < labels.voxels.size(); ++n)
+      labels.voxels[n] = static_cast<std::uint8_t>(static_cast<unsigned>(ct.voxels[n]) % 251U);
+    const SlicePlane plane = random_plane(ct.geometry, random);
+    std::vector<std::uint8_t> out(static_cast<std::size_t>(plane.columns * plane.rows), 254);
+    sample_slice_nearest(labels, plane, 255, out);
+    for (int v = 0; v < plane.rows; ++v)
+      for (int u = 0; u < plane.columns; ++u) {
+        const Vec3 index = labels.geometry.to_index(point_of(plane, u, v));
+        const Vec3 to_border = (index.array() - index.array().floor() - 0.5).abs();
+        if (to_border.minCoeff() < 1e-5) continue;  // to either side
+        EXPECT_EQ(out[static_cast<std::size_t>(v * plane.columns + u)],
+                  sample_nearest<std::uint8_t>(labels, point_of(plane, u, v), 255));
+      }
+  }
+}
+
 TEST(SamplePoints, AgreesWithTheScalarReference) {
   Random random(9);
   for (const std::size_t count : {0, 1, 127, 128, 129, 5000})

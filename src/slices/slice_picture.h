@@ -1,19 +1,9 @@
 #pragma once
 
-#include <vector>
-
-#include "anatomy/patient.h"
-#include "volume/image.h"
-#include "volume/sampling.h"
+#include "slices/paint_slice.h"
+#include "slices/slice_geometry.h"
 
 namespace trocar {
-
-enum class SliceOrientation { kAxial, kCoronal, kSagittal };
-
-struct Window {
-  double center_hu = 40.0;
-  double width_hu = 400.0;
-};
 
 /// A CT slice through a point, radiological view (patient's right on the left of the picture; coronal and sagittal with
 /// the head up, the sagittal slice with the front on the left), window/level, square pixels. Labels are filled and

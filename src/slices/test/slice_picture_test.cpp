@@ -1,4 +1,4 @@
-#include "report/slice_picture.h"
+#include "slices/slice_picture.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,103 @@
+#include "slices/paint_slice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace trocar {
+namespace {
+
+/// Fat and muscle fill the whole body: they are the ground on which structures are drawn.
+bool is_drawn(const Label& label) {
+  return label.tissue != "adipose" && label.tissue != "muscle" && label.tissue != "skin";
+}
+
+/// A label's colour laid over gray: (gray * gray_share + color) / 256, rounded. All zero: the label is not drawn.
+struct Ink {
+  std::array<std::uint32_t, 3> color{};
+  std::uint32_t gray_share = 256;
+};
+
+Ink ink_of(const Rgb& color, double opacity) {
+  Ink ink;
+  const auto share = static_cast<std::uint32_t>(std::lround(256.0 * std::clamp(opacity, 0.0, 1.0)));
+  ink.gray_share = 256 - share;
+  for (std::size_t c = 0; c < 3; ++c) ink.color[c] = share * color[c] + 128;
+  return ink;
+}
+
+struct Inks {
+  std::array<bool, 256> is_drawn{};
+  std::array<Ink, 256> fill;
+  std::array<Ink, 256> outline;
+};
+
+Inks inks_of(const LabelTable& table, const SliceStyle& style) {
+  Inks inks;
+  for (const Label& label : table.labels) {
+    if (!is_drawn(label)) continue;
+    inks.is_drawn[label.id] = true;
+    inks.fill[label.id] = ink_of(label.color, style.label_opacity);
+    inks.outline[label.id] = style.has_outlines ? ink_of(label.color, 1.0) : inks.fill[label.id];
+  }
+  return inks;
+}
+
+Rgb lay_over(std::uint8_t gray, const Ink& ink) {
+  Rgb out;
+  for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>((gray * ink.gray_share + ink.color[c]) >> 8U);
+  return out;
+}
+
+/// One row of labels over gray. `above` and `below` are the neighbouring rows; beyond the picture there is no label.
+struct LabelRow {
+  const std::uint8_t* ids;
+  const std::uint8_t* above;
+  const std::uint8_t* below;
+};
+
+void draw_row(const LabelRow& row, const std::uint8_t* gray, const Inks& inks, std::size_t columns, Rgb* out) {
+  for (std::size_t u = 0; u < columns; ++u) {
+    const std::uint8_t id = row.ids[u];
+    if (!inks.is_drawn[id]) continue;
+    const std::uint8_t left = u > 0 ? row.ids[u - 1] : std::uint8_t{0};
+    const std::uint8_t right = u + 1 < columns ? row.ids[u + 1] : std::uint8_t{0};
+    const bool is_edge = left != id || right != id || row.above[u] != id || row.below[u] != id;
+    out[u] = lay_over(gray[u], is_edge ? inks.outline[id] : inks.fill[id]);
+  }
+}
+
+void draw_labels(const VirtualPatient& patient, const SlicePlane& plane, const SliceStyle& style, SliceBuffers& buffers,
+                 RgbImage& picture) {
+  // A row of "no label" stands before the first and after the last one.
+  const auto columns = static_cast<std::size_t>(plane.columns);
+  const auto rows = static_cast<std::size_t>(plane.rows);
+  buffers.ids.assign((rows + 2) * columns, 0);
+  sample_slice_nearest(patient.labels, plane, 0, std::span(buffers.ids).subspan(columns, rows * columns));
+  const Inks inks = inks_of(patient.label_table, style);
+  for (std::size_t v = 0; v < rows; ++v) {
+    const std::uint8_t* ids = buffers.ids.data() + (v + 1) * columns;
+    draw_row({ids, ids - columns, ids + columns}, buffers.gray.data() + v * columns, inks, columns,
+             picture.pixels.data() + v * columns);
+  }
+}
+
+}  // namespace
+
+void paint_slice(const VirtualPatient& patient, const SlicePlane& plane, const SliceStyle& style, SliceBuffers& buffers,
+                 RgbImage& picture) {
+  constexpr float kAir_hu = -1024.0F;
+  const std::size_t count = static_cast<std::size_t>(plane.columns) * static_cast<std::size_t>(plane.rows);
+  picture.columns = plane.columns;
+  picture.rows = plane.rows;
+  picture.pixels.resize(count);
+  buffers.hu.resize(count);
+  buffers.gray.resize(count);
+  sample_slice(patient.ct, plane, kAir_hu, buffers.hu);
+  apply_window(buffers.hu, style.window, buffers.gray);
+  for (std::size_t n = 0; n < count; ++n) picture.pixels[n].fill(buffers.gray[n]);
+  const bool shows_labels = style.label_opacity > 0.0 || style.has_outlines;
+  if (shows_labels && !patient.labels.empty()) draw_labels(patient, plane, style, buffers, picture);
+}
+
+}  // namespace trocar
