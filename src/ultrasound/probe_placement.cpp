@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "ultrasound/probe_contact.h"
+#include "ultrasound/face_fit.h"
 #include "ultrasound/scan_geometry.h"
 #include "volume/sampling.h"
 
@@ -21,11 +21,7 @@ namespace {
 constexpr double kFarthestSkin_mm = 400.0;
 constexpr double kSlope_mm = 6.0;  ///< The skin's normal is that of a patch so large, not of a voxel.
 constexpr double kSearchStep_mm = 4.0;
-constexpr double kGreatestTilt = 15.0 * std::numbers::pi / 180.0;  ///< In the plane, for the sake of contact.
-constexpr double kFreeSlant = 30.0 * std::numbers::pi / 180.0;     ///< Between beam and skin, without a malus.
-constexpr double kGreatestPress_mm = 15.0;
-constexpr double kPressStep_mm = 0.5;
-constexpr double kTouchingShare = 0.97;  ///< Of the scanlines that are to have contact.
+constexpr double kFreeSlant = 30.0 * std::numbers::pi / 180.0;  ///< Between beam and skin, without a malus.
 constexpr int kLines = 33;
 constexpr double kWayStep_mm = 2.0;
 constexpr int kGasBelow_hu = -300;  ///< As in src/anatomy; gas in bowel is labelled bowel.
@@ -182,8 +178,6 @@ Mat3 orientation(const ProbeView& view, const Vec3& beam_P) {
 /// A place that has been tried.
 struct Candidate {
   Pose X_PT;
-  double touching = 0.0;  ///< Share of the scanlines with contact.
-  double dent_mm = 0.0;   ///< The deepest.
   double cost = 0.0;
 };
 
@@ -193,59 +187,22 @@ class Placer {
       : ground_(ground),
         view_(view),
         scan_(make_scan_geometry(transducer, view.depth_mm, kLines, 16)),
-        target_P_(target_P),
-        contact_(kLines) {}
+        target_P_(target_P) {}
 
   Candidate place(const Vec3& skin_P, double shift_share) {
     const Vec3 beam_P = (target_P_ - skin_P).normalized();
     Candidate candidate;
-    candidate.X_PT = fit(skin_P, orientation(view_, beam_P));
-    press(candidate);
+    const FaceFit fit =
+        fit_face(ground_.patient.skin_distance_mm, scan_, skin_P, orientation(view_, beam_P), view_.pressed_mm);
+    candidate.X_PT = fit.X_PT;
     const double slant = std::acos(std::clamp(-ground_.skin_normal(skin_P).dot(candidate.X_PT.R().col(1)), -1.0, 1.0));
     candidate.cost = way_cost(candidate.X_PT) + kShiftCost * shift_share * shift_share +
-                     kSlantCost * std::max(slant - kFreeSlant, 0.0) + kContactCost * (1.0 - candidate.touching) +
-                     kDentCost * std::max(candidate.dent_mm - kFreeDent_mm, 0.0);
+                     kSlantCost * std::max(slant - kFreeSlant, 0.0) + kContactCost * (1.0 - fit.touching) +
+                     kDentCost * std::max(fit.dent_mm - kFreeDent_mm, 0.0);
     return candidate;
   }
 
  private:
-  /// Tilts the face in its plane so that it lies along the skin (least squares), within bounds.
-  Pose fit(const Vec3& skin_P, const Mat3& R_PT) const {
-    double tilt = 0.0;
-    for (int round = 0; round < 4; ++round) {
-      const Pose X_PT = tilted(skin_P, R_PT, tilt);
-      double sum_xx = 0.0;
-      double sum_xd = 0.0;
-      for (int n = 0; n < kLines; ++n) {
-        const Vec2 at_T = scan_.line_origin(n);
-        sum_xx += at_T.x() * at_T.x();
-        sum_xd += at_T.x() * -ground_.skin_mm(X_PT * Vec3(at_T.x(), at_T.y(), 0.0));
-      }
-      if (sum_xx <= 0.0) break;  // a phased array: all scanlines leave one point
-      tilt = std::clamp(tilt - std::atan(sum_xd / sum_xx), -kGreatestTilt, kGreatestTilt);
-    }
-    return tilted(skin_P, R_PT, tilt);
-  }
-
-  static Pose tilted(const Vec3& skin_P, const Mat3& R_PT, double tilt) {
-    return {R_PT * Mat3(Eigen::AngleAxisd(tilt, Vec3::UnitZ())), skin_P};
-  }
-
-  /// Presses the face in until it touches along its width.
-  void press(Candidate& candidate) {
-    const Pose on_skin = candidate.X_PT;
-    for (double press_mm = view_.pressed_mm;; press_mm += kPressStep_mm) {
-      candidate.X_PT = {on_skin.R(), on_skin.p() + press_mm * on_skin.R().col(1)};
-      find_contact(ground_.patient.skin_distance_mm, scan_, candidate.X_PT, contact_);
-      const auto touching =
-          std::count_if(contact_.begin(), contact_.end(), [](const LineContact& c) { return c.coupling > 0.5F; });
-      candidate.touching = static_cast<double>(touching) / kLines;
-      candidate.dent_mm = 0.0;
-      for (const LineContact& line : contact_) candidate.dent_mm = std::max<double>(candidate.dent_mm, line.pressed_mm);
-      if (candidate.touching >= kTouchingShare || press_mm + kPressStep_mm > kGreatestPress_mm) return;
-    }
-  }
-
   /// What a scanline meets on its way to the target's depth.
   struct Way {
     double seen = 1.0;     ///< Share before bone or gas.
@@ -307,7 +264,6 @@ class Placer {
   const ProbeView& view_;
   ScanGeometry scan_;
   Vec3 target_P_;
-  std::vector<LineContact> contact_;
 };
 
 /// The point of the skin near a point.
