@@ -1,0 +1,304 @@
+#include "pages/start_page.h"
+
+#include <QButtonGroup>
+#include <QComboBox>
+#include <QFileDialog>
+#include <QFormLayout>
+#include <QFrame>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QSettings>
+#include <QVBoxLayout>
+#include <algorithm>
+
+#include "anatomy/phantom/phantom.h"
+#include "core/data_dir.h"
+#include "shell/parts.h"
+#include "training/needle.h"
+#include "training/task.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr int kSource = Qt::UserRole;
+constexpr int kText = Qt::UserRole + 1;
+constexpr int kMostFolders = 8;
+
+struct HelpLevel {
+  Difficulty difficulty;
+  const char* name;
+  const char* title;
+  const char* text;
+};
+constexpr HelpLevel kHelpLevels[] = {
+    {Difficulty::kGuided, "difficulty-guided", "Guided", "Expert path, entry zone and hints."},
+    {Difficulty::kAssisted, "difficulty-assisted", "Assisted", "Hints and the target, no path."},
+    {Difficulty::kExam, "difficulty-exam", "Exam", "Pictures and forces alone."},
+};
+
+struct DeviceChoice {
+  const char* spec;
+  const char* title;
+};
+constexpr DeviceChoice kDevices[] = {
+    {"virtual", "Mouse and keyboard"},     {"gamepad", "Gamepad"},
+    {"spacemouse", "SpaceMouse"},          {"openhaptics", "3D Systems Touch (OpenHaptics)"},
+    {"forcedimension", "Force Dimension"}, {"haply", "Haply Inverse3"},
+};
+
+QListWidgetItem* find_item(const QListWidget& list, const QString& source) {
+  for (int row = 0; row < list.count(); ++row)
+    if (list.item(row)->data(kSource).toString() == source) return list.item(row);
+  return nullptr;
+}
+
+void add_item(QListWidget& list, const QString& title, const QString& source, const QString& text) {
+  auto* item = new QListWidgetItem(title, &list);
+  item->setData(kSource, source);
+  item->setData(kText, text);
+  item->setToolTip(text);
+}
+
+QListWidget* make_list(const char* name, const QString& title) {
+  auto* list = new QListWidget;
+  list->setObjectName(QString::fromLatin1(name));
+  list->setAccessibleName(title);
+  return list;
+}
+
+}  // namespace
+
+StartPage::StartPage(QWidget* parent) : QWidget(parent) {
+  setObjectName(QStringLiteral("start-page"));
+  auto* page = new QVBoxLayout(this);
+  page->setContentsMargins(40, 24, 40, 24);
+  page->setSpacing(16);
+  page->addWidget(make_label(tr("What will you practise?"), "title"));
+  page->addWidget(make_recovery());
+  auto* columns = new QHBoxLayout;
+  columns->setSpacing(16);
+  columns->addWidget(make_tasks(), 4);
+  columns->addWidget(make_patients(), 5);
+  columns->addWidget(make_help_choice(), 4);
+  page->addLayout(columns, 1);
+
+  auto* bottom = new QHBoxLayout;
+  bottom->addWidget(make_label(tr("A trainer, no medical device."), "dim"));
+  bottom->addStretch();
+  start_ = make_button("start", tr("Start"), tr("Opens the case and shows the briefing"), QStringLiteral("Return"));
+  start_->setProperty("role", "primary");
+  bottom->addWidget(start_);
+  page->addLayout(bottom);
+  connect(start_, &QPushButton::clicked, this, [this] {
+    save();
+    Q_EMIT start_wanted(choice());
+  });
+  connect(tasks_, &QListWidget::currentRowChanged, this, [this] { fill_patients(); });
+  connect(patients_, &QListWidget::currentRowChanged, this, [this] { tell_patient(); });
+
+  const QSettings settings;
+  const auto text = [&](const char* key, const std::string& otherwise) {
+    return to_std(settings.value(QString::fromLatin1(key), to_qt(otherwise)).toString());
+  };
+  SeatChoice last;
+  last.task = text("start/task", last.task);
+  last.patient = text("start/patient", last.patient);
+  last.needle = text("start/needle", {});
+  last.force_model = text("start/model", {});
+  last.needle_device = text("start/device", last.needle_device);
+  last.difficulty =
+      static_cast<Difficulty>(std::clamp(settings.value(QStringLiteral("start/difficulty")).toInt(), 0, 2));
+  choose(last);
+}
+
+QWidget* StartPage::make_tasks() {
+  QBoxLayout* content = nullptr;
+  QFrame* card = make_card(tr("Task"), content);
+  tasks_ = make_list("tasks", tr("Task"));
+  const auto tasks = load_tasks(data_dir() / "tasks");
+  if (tasks) {
+    for (const Task& task : *tasks)
+      add_item(*tasks_, to_qt(task.title), to_qt(task.name), tr("Target organ: %1").arg(to_qt(task.organ)));
+  } else {
+    content->addWidget(make_label(to_qt(tasks.error().text()), "dim"));
+  }
+  content->addWidget(tasks_, 1);
+  return card;
+}
+
+QWidget* StartPage::make_patients() {
+  QBoxLayout* content = nullptr;
+  QFrame* card = make_card(tr("Patient"), content);
+  patients_ = make_list("patients", tr("Patient"));
+  content->addWidget(patients_, 1);
+  patient_text_ = make_label({}, "dim");
+  patient_text_->setWordWrap(true);
+  patient_text_->setMinimumHeight(patient_text_->fontMetrics().lineSpacing() * 3);
+  patient_text_->setAlignment(Qt::AlignTop);
+  content->addWidget(patient_text_);
+  auto* open =
+      make_button("open-patient", tr("Open a patient folder …"),
+                  tr("A folder made by the case builder or by trocar patient build"), QStringLiteral("Ctrl+O"));
+  connect(open, &QPushButton::clicked, this, &StartPage::open_folder);
+  content->addWidget(open);
+  return card;
+}
+
+QWidget* StartPage::make_help_choice() {
+  QBoxLayout* content = nullptr;
+  QFrame* card = make_card(tr("Help and tools"), content);
+  difficulty_ = new QButtonGroup(this);
+  for (const HelpLevel& level : kHelpLevels) {
+    auto* button = new QRadioButton(QString::fromUtf8(level.title));
+    button->setObjectName(QString::fromLatin1(level.name));
+    button->setToolTip(QString::fromUtf8(level.text));
+    difficulty_->addButton(button, static_cast<int>(level.difficulty));
+    content->addWidget(button);
+    auto* text = make_label(QString::fromUtf8(level.text), "dim");
+    text->setIndent(24);
+    text->setWordWrap(true);
+    content->addWidget(text);
+  }
+  content->addSpacing(8);
+  auto* form = new QFormLayout;
+  form->setSpacing(10);
+  form->setLabelAlignment(Qt::AlignLeft);
+  const auto add = [&](const QString& title, const char* name) {
+    auto* box = new QComboBox;
+    box->setObjectName(QString::fromLatin1(name));
+    box->setAccessibleName(title);
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    form->addRow(make_label(title, "dim"), box);
+    return box;
+  };
+  needle_ = add(tr("Needle"), "needle");
+  needle_->addItem(tr("The task's own"), QString());
+  if (const auto needles = load_needles(data_dir() / "needles.toml"))
+    for (const Needle& needle : *needles) needle_->addItem(to_qt(needle.title), to_qt(needle.name));
+  model_ = add(tr("Forces"), "force-model");
+  model_->addItem(tr("The task's own"), QString());
+  model_->addItem(tr("Insertion model"), QStringLiteral("insertion"));
+  model_->addItem(tr("Volume proxy"), QStringLiteral("proxy"));
+  model_->addItem(tr("Both combined"), QStringLiteral("combined"));
+  device_ = add(tr("Device"), "device");
+  for (const DeviceChoice& device : kDevices)
+    device_->addItem(QString::fromUtf8(device.title), QString::fromLatin1(device.spec));
+  content->addLayout(form);
+  content->addStretch();
+  return card;
+}
+
+QWidget* StartPage::make_recovery() {
+  recovery_ = new QFrame;
+  recovery_->setProperty("role", "card");
+  auto* row = new QHBoxLayout(recovery_);
+  recovery_text_ = make_label({});
+  recovery_text_->setWordWrap(true);
+  row->addWidget(recovery_text_, 1);
+  auto* resume = make_button("recover", tr("See it"), tr("Scores and replays what was recorded"));
+  auto* decline = make_button("decline-recovery", tr("Not now"), tr("Keeps the recording and starts anew"));
+  row->addWidget(resume);
+  row->addWidget(decline);
+  connect(resume, &QPushButton::clicked, this, &StartPage::recovery_wanted);
+  connect(decline, &QPushButton::clicked, this, [this] {
+    offer_recovery({});
+    Q_EMIT recovery_declined();
+  });
+  recovery_->hide();
+  return recovery_;
+}
+
+void StartPage::offer_recovery(const QString& text) {
+  recovery_text_->setText(text);
+  recovery_->setVisible(!text.isEmpty());
+}
+
+/// Embedded patients that serve the chosen task, and folders that were opened before.
+void StartPage::fill_patients() {
+  const QListWidgetItem* task = tasks_->currentItem();
+  const QListWidgetItem* before = patients_->currentItem();
+  const QString chosen = before == nullptr ? QString() : before->data(kSource).toString();
+  {
+    const QSignalBlocker blocked(patients_);
+    patients_->clear();
+    const std::string name = task == nullptr ? std::string() : to_std(task->data(kSource).toString());
+    for (const PhantomInfo& info : embedded_patients()) {
+      if (std::find(info.tasks.begin(), info.tasks.end(), name) == info.tasks.end()) continue;
+      add_item(*patients_, to_qt(info.name) + tr("  · embedded"), to_qt(info.name), to_qt(info.description));
+    }
+    const QSettings settings;
+    for (const QString& folder : settings.value(QStringLiteral("start/folders")).toStringList())
+      add_item(*patients_, folder.section('/', -1), folder, folder);
+    QListWidgetItem* again = find_item(*patients_, chosen);
+    patients_->setCurrentItem(again != nullptr ? again : patients_->item(0));
+  }
+  tell_patient();
+}
+
+void StartPage::tell_patient() {
+  const QListWidgetItem* patient = patients_->currentItem();
+  patient_text_->setText(patient == nullptr ? tr("No patient for this task yet: open a folder.")
+                                            : patient->data(kText).toString());
+  start_->setEnabled(patient != nullptr && tasks_->currentItem() != nullptr);
+}
+
+void StartPage::open_folder() {
+  const QString folder = QFileDialog::getExistingDirectory(this, tr("Patient folder"));
+  if (!folder.isEmpty()) add_patient(folder);
+}
+
+void StartPage::add_patient(const QString& folder) {
+  QSettings settings;
+  QStringList folders = settings.value(QStringLiteral("start/folders")).toStringList();
+  folders.removeAll(folder);
+  folders.prepend(folder);
+  while (folders.size() > kMostFolders) folders.removeLast();
+  settings.setValue(QStringLiteral("start/folders"), folders);
+  fill_patients();
+  patients_->setCurrentItem(find_item(*patients_, folder));
+}
+
+void StartPage::choose(const SeatChoice& choice) {
+  QListWidgetItem* task = find_item(*tasks_, to_qt(choice.task));
+  tasks_->setCurrentItem(task != nullptr ? task : tasks_->item(0));
+  fill_patients();
+  QListWidgetItem* patient = find_item(*patients_, to_qt(choice.patient));
+  if (patient == nullptr && choice.patient.find('/') != std::string::npos) {
+    add_item(*patients_, to_qt(choice.patient).section('/', -1), to_qt(choice.patient), to_qt(choice.patient));
+    patient = patients_->item(patients_->count() - 1);
+  }
+  if (patient != nullptr) patients_->setCurrentItem(patient);
+  if (auto* button = difficulty_->button(static_cast<int>(choice.difficulty))) button->setChecked(true);
+  const auto select = [](QComboBox& box, const std::string& value) {
+    box.setCurrentIndex(std::max(0, box.findData(to_qt(value))));
+  };
+  select(*needle_, choice.needle);
+  select(*model_, choice.force_model);
+  select(*device_, choice.needle_device);
+}
+
+SeatChoice StartPage::choice() const {
+  SeatChoice choice;
+  if (const auto* task = tasks_->currentItem()) choice.task = to_std(task->data(kSource).toString());
+  if (const auto* patient = patients_->currentItem()) choice.patient = to_std(patient->data(kSource).toString());
+  choice.needle = to_std(needle_->currentData().toString());
+  choice.force_model = to_std(model_->currentData().toString());
+  choice.needle_device = to_std(device_->currentData().toString());
+  choice.difficulty = static_cast<Difficulty>(difficulty_->checkedId());
+  return choice;
+}
+
+void StartPage::save() const {
+  const SeatChoice now = choice();
+  QSettings settings;
+  settings.setValue(QStringLiteral("start/task"), to_qt(now.task));
+  settings.setValue(QStringLiteral("start/patient"), to_qt(now.patient));
+  settings.setValue(QStringLiteral("start/needle"), to_qt(now.needle));
+  settings.setValue(QStringLiteral("start/model"), to_qt(now.force_model));
+  settings.setValue(QStringLiteral("start/device"), to_qt(now.needle_device));
+  settings.setValue(QStringLiteral("start/difficulty"), static_cast<int>(now.difficulty));
+}
+
+}  // namespace trocar::trainer

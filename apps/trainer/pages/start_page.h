@@ -1,0 +1,58 @@
+#pragma once
+
+#include <QWidget>
+
+#include "shell/seat_choice.h"
+
+class QButtonGroup;
+class QComboBox;
+class QFrame;
+class QLabel;
+class QListWidget;
+class QPushButton;
+
+namespace trocar::trainer {
+
+/// Where a trainee begins: task, patient, how much help, with which device. Keys: Enter starts, Ctrl+O opens a patient
+/// folder. What was chosen last is chosen again at the next start.
+class StartPage : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit StartPage(QWidget* parent = nullptr);
+
+  void choose(const SeatChoice& choice);
+  SeatChoice choice() const;
+  /// Offers to go on with an attempt that a crash has cut off; empty: nothing to offer.
+  void offer_recovery(const QString& text);
+  /// Adds a patient folder to the list and chooses it.
+  void add_patient(const QString& folder);
+
+ Q_SIGNALS:
+  void start_wanted(const trocar::trainer::SeatChoice& choice);
+  void recovery_wanted();
+  void recovery_declined();
+
+ private:
+  QWidget* make_tasks();
+  QWidget* make_patients();
+  QWidget* make_help_choice();
+  QWidget* make_recovery();
+  void fill_patients();
+  void open_folder();
+  void tell_patient();
+  void save() const;
+
+  QListWidget* tasks_ = nullptr;
+  QListWidget* patients_ = nullptr;
+  QLabel* patient_text_ = nullptr;
+  QButtonGroup* difficulty_ = nullptr;
+  QComboBox* device_ = nullptr;
+  QComboBox* needle_ = nullptr;
+  QComboBox* model_ = nullptr;
+  QPushButton* start_ = nullptr;
+  QFrame* recovery_ = nullptr;
+  QLabel* recovery_text_ = nullptr;
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,134 @@
+#include "panels/feedback_panel.h"
+
+#include <QGridLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QVBoxLayout>
+#include <algorithm>
+
+#include "panels/score_dial.h"
+#include "shell/parts.h"
+#include "shell/theme.h"
+
+namespace trocar::trainer {
+namespace {
+
+QString verdict_of(const Outcome& outcome) {
+  constexpr double kExcellent = 90.0, kGood = 75.0, kFair = 50.0;
+  if (!outcome.risks_touched.empty()) return FeedbackPanel::tr("A structure at risk was touched");
+  if (!outcome.target_reached) return FeedbackPanel::tr("The target was missed");
+  if (outcome.score >= kExcellent) return FeedbackPanel::tr("Excellent");
+  if (outcome.score >= kGood) return FeedbackPanel::tr("Good");
+  return outcome.score >= kFair ? FeedbackPanel::tr("Target reached, room to improve")
+                                : FeedbackPanel::tr("Target reached the hard way");
+}
+
+QString core_text(const BiopsyCore& core) {
+  return FeedbackPanel::tr("Core: %1 mm of target, %2 mm of organ, %3 mm of vessel, %4 mm of other tissue")
+      .arg(core.target_mm, 0, 'f', 1)
+      .arg(core.organ_mm, 0, 'f', 1)
+      .arg(core.vessel_mm, 0, 'f', 1)
+      .arg(core.other_mm, 0, 'f', 1);
+}
+
+void clear(QGridLayout& grid) {
+  while (QLayoutItem* item = grid.takeAt(0)) {
+    delete item->widget();
+    delete item;
+  }
+}
+
+}  // namespace
+
+FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
+  setObjectName(QStringLiteral("feedback-panel"));
+  auto* outer = new QVBoxLayout(this);
+  outer->setContentsMargins(0, 0, 0, 0);
+  auto* scroll = new QScrollArea;
+  scroll->setWidgetResizable(true);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  auto* inside = new QWidget;
+  auto* content = new QVBoxLayout(inside);
+  content->setContentsMargins(16, 12, 16, 12);
+  content->setSpacing(10);
+  dial_ = new ScoreDial;
+  content->addWidget(dial_, 0, Qt::AlignHCenter);
+  verdict_ = make_label({}, "heading");
+  verdict_->setObjectName(QStringLiteral("verdict"));
+  verdict_->setAlignment(Qt::AlignHCenter);
+  verdict_->setWordWrap(true);
+  content->addWidget(verdict_);
+  parts_ = new QGridLayout;
+  parts_->setHorizontalSpacing(10);
+  parts_->setVerticalSpacing(6);
+  parts_->setColumnStretch(2, 1);
+  content->addLayout(parts_);
+  core_ = make_label({}, "dim");
+  core_->setWordWrap(true);
+  content->addWidget(core_);
+  content->addWidget(make_label(tr("What to do better"), "heading"));
+  hints_ = make_label({});
+  hints_->setObjectName(QStringLiteral("hints"));
+  hints_->setWordWrap(true);
+  content->addWidget(hints_);
+  worst_ = make_label({}, "dim");
+  worst_->setWordWrap(true);
+  content->addWidget(worst_);
+  content->addStretch();
+  scroll->setWidget(inside);
+  outer->addWidget(scroll, 1);
+  outer->addWidget(make_buttons());
+}
+
+QWidget* FeedbackPanel::make_buttons() {
+  auto* bar = new QWidget;
+  auto* grid = new QGridLayout(bar);
+  grid->setContentsMargins(16, 8, 16, 12);
+  grid->setSpacing(8);
+  auto* again = make_button("try-again", tr("Try again"), tr("The same case once more"), QStringLiteral("Ctrl+R"));
+  again->setProperty("role", "primary");
+  auto* worst = make_button("worst-moment", tr("Worst moment"), tr("Goes to it in the replay (W)"));
+  auto* other = make_button("other-case", tr("Other case"), tr("Back to the start page"), QStringLiteral("Ctrl+N"));
+  auto* report =
+      make_button("open-report", tr("Report …"), tr("The attempt as a page to keep"), QStringLiteral("Ctrl+P"));
+  grid->addWidget(again, 0, 0, 1, 3);
+  grid->addWidget(worst, 1, 0);
+  grid->addWidget(report, 1, 1);
+  grid->addWidget(other, 1, 2);
+  connect(again, &QPushButton::clicked, this, &FeedbackPanel::again_wanted);
+  connect(worst, &QPushButton::clicked, this, &FeedbackPanel::worst_wanted);
+  connect(other, &QPushButton::clicked, this, &FeedbackPanel::other_case_wanted);
+  connect(report, &QPushButton::clicked, this, &FeedbackPanel::report_wanted);
+  return bar;
+}
+
+void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_moment) {
+  dial_->set_score(outcome.score);
+  verdict_->setText(verdict_of(outcome));
+  clear(*parts_);
+  int row = 0;
+  for (const ScorePart& part : outcome.parts) {
+    auto* title = make_label(to_qt(part.title));
+    title->setWordWrap(true);
+    parts_->addWidget(title, row, 0);
+    auto* value =
+        make_label(tr("%1 %2").arg(part.value, 0, 'f', part.value < 100.0 ? 1 : 0).arg(to_qt(part.unit)), "dim");
+    value->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+    parts_->addWidget(value, row, 1);
+    parts_->addWidget(new PointsBar(part.points, part.max_points), row, 2);
+    auto* points = make_label(tr("%1 / %2").arg(part.points, 0, 'f', 0).arg(part.max_points, 0, 'f', 0), "dim");
+    points->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+    parts_->addWidget(points, row, 3);
+    ++row;
+  }
+  QStringList hints;
+  for (const std::string& hint : outcome.hints) hints << QStringLiteral("•  ") + to_qt(hint);
+  hints_->setText(hints.isEmpty() ? tr("Nothing: as the expert does it.") : hints.join(QStringLiteral("\n\n")));
+  core_->setText(outcome.core ? core_text(*outcome.core) : QString());
+  core_->setVisible(outcome.core.has_value());
+  worst_->setText(worst_moment);
+  worst_->setVisible(!worst_moment.isEmpty());
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <QWidget>
+
+#include "training/score.h"
+
+class QGridLayout;
+class QLabel;
+class QVBoxLayout;
+
+namespace trocar::trainer {
+
+class ScoreDial;
+
+/// What an attempt is told at its end: the score, its parts, what to do better. Keys: Ctrl+R tries again, W shows the
+/// worst moment.
+class FeedbackPanel : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit FeedbackPanel(QWidget* parent = nullptr);
+
+  void show_outcome(const Outcome& outcome, const QString& worst_moment);
+
+ Q_SIGNALS:
+  void again_wanted();
+  void other_case_wanted();
+  void report_wanted();
+  void worst_wanted();
+
+ private:
+  QWidget* make_buttons();
+
+  ScoreDial* dial_ = nullptr;
+  QLabel* verdict_ = nullptr;
+  QGridLayout* parts_ = nullptr;
+  QLabel* hints_ = nullptr;
+  QLabel* core_ = nullptr;
+  QLabel* worst_ = nullptr;
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,83 @@
+#include "script/script.h"
+
+#include <QFile>
+#include <map>
+#include <optional>
+
+#include "shell/parts.h"
+
+namespace trocar::trainer {
+namespace {
+
+struct Arity {
+  int least, most;
+};
+const std::map<QString, Arity>& verbs() {
+  static const std::map<QString, Arity> all = {
+      {"click", {1, 3}},      {"double-click", {1, 3}},  {"right-click", {1, 3}}, {"drag", {5, 7}},
+      {"wheel", {2, 4}},      {"wheel-until", {5, 7}},   {"key", {1, 2}},         {"type", {1, 1}},
+      {"choose", {2, 2}},     {"set", {2, 2}},           {"wait", {1, 1}},        {"wait-for", {3, 5}},
+      {"expect", {3, 3}},     {"expect-pixels", {4, 4}}, {"resize", {2, 2}},      {"screenshot", {1, 2}},
+      {"end-server", {1, 1}}, {"reset-watch", {0, 0}},   {"print", {1, 16}},
+  };
+  return all;
+}
+
+/// Words of a line up to a comment; nothing where a quotation does not end.
+std::optional<QStringList> words_of(const QString& line) {
+  QStringList words;
+  QString word;
+  bool is_quoted = false, has_word = false;
+  for (const QChar c : line) {
+    if (c == '"') {
+      is_quoted = !is_quoted;
+      has_word = true;
+    } else if (!is_quoted && c == '#' && !has_word) {
+      break;
+    } else if (!is_quoted && c.isSpace()) {
+      if (has_word) words.append(word);
+      word.clear();
+      has_word = false;
+    } else {
+      word.append(c);
+      has_word = true;
+    }
+  }
+  if (is_quoted) return std::nullopt;
+  if (has_word) words.append(word);
+  return words;
+}
+
+}  // namespace
+
+Result<std::vector<ScriptStep>> parse_script(const QString& text, const QString& name) {
+  std::vector<ScriptStep> steps;
+  int number = 0;
+  for (const QString& line : text.split('\n')) {
+    ++number;
+    const std::string where = to_std(QStringLiteral("%1:%2").arg(name).arg(number));
+    auto words = words_of(line);
+    if (!words) return fail("a quotation is not closed", where, "put \" at its end");
+    if (words->isEmpty()) continue;
+    const QString verb = words->takeFirst();
+    const auto found = verbs().find(verb);
+    if (found == verbs().end())
+      return fail("there is no step \"" + to_std(verb) + "\"", where, "see trocar-trainer --help");
+    if (words->size() < found->second.least || words->size() > found->second.most)
+      return fail("\"" + to_std(verb) + "\" has " + std::to_string(words->size()) + " arguments", where,
+                  "see trocar-trainer --help");
+    steps.push_back({number, verb, *words});
+  }
+  if (steps.empty()) return fail("the script has no step", to_std(name), "see trocar-trainer --help");
+  return steps;
+}
+
+Result<std::vector<ScriptStep>> load_script(const std::filesystem::path& path) {
+  QFile file(to_qt(path.string()));
+  if (!file.open(QIODevice::ReadOnly)) return fail("the script cannot be read", path.string(), "check its name");
+  constexpr qint64 kMostBytes = 1 << 20;
+  if (file.size() > kMostBytes) return fail("the script is larger than 1 MiB", path.string(), "is it a script?");
+  return parse_script(QString::fromUtf8(file.readAll()), to_qt(path.filename().string()));
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,223 @@
+#include "script/script_player.h"
+
+#include <fmt/format.h>
+
+#include <QAbstractButton>
+#include <QApplication>
+#include <QPixmap>
+#include <QWidget>
+#include <algorithm>
+#include <cmath>
+
+#include "script/widget_events.h"
+#include "shell/parts.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr int kBetweenSteps_ms = 15;
+constexpr double kPatience_s = 30.0;
+constexpr double kDrag_s = 0.4;
+
+QPointF place_of(const QStringList& arguments, int first) {
+  if (arguments.size() < first + 2) return {0.5, 0.5};
+  return {arguments[first].toDouble(), arguments[first + 1].toDouble()};
+}
+
+/// "within SECONDS" at the end of a step.
+double patience_of(const QStringList& arguments) {
+  const auto at = arguments.indexOf(QStringLiteral("within"));
+  return at >= 0 && at + 1 < arguments.size() ? arguments[at + 1].toDouble() : kPatience_s;
+}
+
+}  // namespace
+
+ScriptPlayer::ScriptPlayer(std::vector<ScriptStep> steps, Stage stage, QObject* parent)
+    : QObject(parent), steps_(std::move(steps)), stage_(std::move(stage)) {
+  timer_.setInterval(kBetweenSteps_ms);
+  connect(&timer_, &QTimer::timeout, this, &ScriptPlayer::play_on);
+}
+
+void ScriptPlayer::start() {
+  clock_.start();
+  timer_.start();
+}
+
+void ScriptPlayer::play_on() {
+  if (at_ >= steps_.size()) {
+    timer_.stop();
+    Q_EMIT finished({});
+    return;
+  }
+  const ScriptStep& step = steps_[at_];
+  const Result<Progress> progress = play(step);
+  if (!progress) {
+    timer_.stop();
+    Q_EMIT finished(tr("line %1: %2").arg(step.line).arg(to_qt(progress.error().text())));
+    return;
+  }
+  if (*progress == Progress::kAgain) return;
+  ++at_;
+  sent_ = 0;
+  clock_.restart();
+}
+
+Result<QWidget*> ScriptPlayer::find(const QString& name) const {
+  if (name == QLatin1String("window")) return stage_.window;
+  QWidget* hidden = nullptr;
+  for (QWidget* top : QApplication::topLevelWidgets()) {
+    for (QWidget* widget : top->findChildren<QWidget*>(name)) {
+      if (widget->isVisible()) return widget;
+      hidden = widget;
+    }
+  }
+  if (hidden != nullptr) return fail("it is not to be seen now", to_std(name), "is another page open?");
+  return fail("there is no such widget", to_std(name), "see its object name");
+}
+
+Result<bool> ScriptPlayer::holds(const QString& fact, const QString& op, const QString& value) const {
+  const QVariantMap facts = stage_.facts();
+  const auto found = facts.find(fact);
+  if (found == facts.end())
+    return fail("there is no fact \"" + to_std(fact) + "\"", {}, "known: " + to_std(facts.keys().join(' ')));
+  if (op == QLatin1String("is")) return found->toString() == value;
+  if (op == QLatin1String("isnt")) return found->toString() != value;
+  if (op == QLatin1String("has")) return found->toString().contains(value);
+  const double a = found->toDouble(), b = value.toDouble();
+  if (op == QLatin1String("<")) return a < b;
+  if (op == QLatin1String(">")) return a > b;
+  if (op == QLatin1String("<=")) return a <= b;
+  if (op == QLatin1String(">=")) return a >= b;
+  return fail("\"" + to_std(op) + "\" compares nothing", {}, "write is, isnt, has, <, >, <= or >=");
+}
+
+Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
+  const QString& verb = step.verb;
+  const QStringList& a = step.arguments;
+  if (verb.startsWith(QLatin1String("wait"))) return play_waiting(step);
+  if (verb.startsWith(QLatin1String("expect")) || verb == QLatin1String("screenshot") || verb == QLatin1String("print"))
+    return play_looking(step);
+  if (verb == QLatin1String("key")) {
+    TROCAR_TRY_STATUS(strike(*stage_.window, a[0]));
+    return ++sent_ >= (a.size() > 1 ? a[1].toInt() : 1) ? Progress::kDone : Progress::kAgain;
+  }
+  if (verb == QLatin1String("type")) {
+    type_text(*stage_.window, a[0]);
+    return Progress::kDone;
+  }
+  if (verb == QLatin1String("resize")) {
+    stage_.window->resize(a[0].toInt(), a[1].toInt());
+    return Progress::kDone;
+  }
+  if (verb == QLatin1String("end-server")) {
+    stage_.end_server(a[0]);
+    return Progress::kDone;
+  }
+  if (verb == QLatin1String("reset-watch")) {
+    stage_.reset_watch();
+    return Progress::kDone;
+  }
+  TROCAR_TRY(QWidget* const widget, find(a[0]));
+  if (!widget->isEnabled()) return fail("it cannot be used now", to_std(a[0]), "it is disabled");
+  if (verb == QLatin1String("choose") || verb == QLatin1String("set")) {
+    TROCAR_TRY_STATUS(verb == QLatin1String("set") ? set_value(*widget, a[1]) : choose_entry(*widget, a[1]));
+    return Progress::kDone;
+  }
+  return play_pointer(step, *widget);
+}
+
+Result<ScriptPlayer::Progress> ScriptPlayer::play_pointer(const ScriptStep& step, QWidget& widget) {
+  const QStringList& a = step.arguments;
+  if (step.verb == QLatin1String("drag")) return play_drag(step, widget);
+  if (step.verb == QLatin1String("wheel-until")) return play_wheel_until(step, widget);
+  if (step.verb == QLatin1String("wheel")) {
+    const int notches = a[1].toInt();
+    if (notches == 0) return Progress::kDone;
+    turn_wheel(widget, place_of(a, 2), notches > 0 ? 1 : -1);
+    return ++sent_ >= std::abs(notches) ? Progress::kDone : Progress::kAgain;
+  }
+  const QPointF place = place_of(a, 1);
+  if (step.verb == QLatin1String("double-click")) {
+    double_click(widget, place);
+    return Progress::kDone;
+  }
+  const Qt::MouseButton button = step.verb == QLatin1String("right-click") ? Qt::RightButton : Qt::LeftButton;
+  press(widget, place, button);
+  release(widget, place, button);
+  return Progress::kDone;
+}
+
+Result<ScriptPlayer::Progress> ScriptPlayer::play_drag(const ScriptStep& step, QWidget& widget) {
+  const QStringList& a = step.arguments;
+  const QString name = a.size() > 5 ? a[5] : QStringLiteral("left");
+  const Qt::MouseButton button = name == QLatin1String("right")    ? Qt::RightButton
+                                 : name == QLatin1String("middle") ? Qt::MiddleButton
+                                                                   : Qt::LeftButton;
+  const double duration_s = a.size() > 6 ? a[6].toDouble() : kDrag_s;
+  const QPointF from = place_of(a, 1), to = place_of(a, 3);
+  if (sent_++ == 0) {
+    press(widget, from, button);
+    return Progress::kAgain;
+  }
+  const double share = std::min(1.0, seconds() / std::max(duration_s, 1e-3));
+  move(widget, from + share * (to - from), button);
+  if (share < 1.0) return Progress::kAgain;
+  release(widget, to, button);
+  return Progress::kDone;
+}
+
+Result<ScriptPlayer::Progress> ScriptPlayer::play_wheel_until(const ScriptStep& step, QWidget& widget) {
+  const QStringList& a = step.arguments;
+  TROCAR_TRY(const bool is_there, holds(a[2], a[3], a[4]));
+  if (is_there) return Progress::kDone;
+  if (seconds() > patience_of(a))
+    return fail("it did not come about: " + to_std(a[2] + ' ' + a[3] + ' ' + a[4]),
+                to_std(a[2] + " is " + stage_.facts().value(a[2]).toString()), "give it longer: within SECONDS");
+  const double per_s = a[1].toDouble();
+  const int due = static_cast<int>(seconds() * std::abs(per_s));
+  for (; sent_ < due; ++sent_) turn_wheel(widget, {0.5, 0.5}, per_s > 0 ? 1 : -1);
+  return Progress::kAgain;
+}
+
+Result<ScriptPlayer::Progress> ScriptPlayer::play_waiting(const ScriptStep& step) {
+  const QStringList& a = step.arguments;
+  if (step.verb == QLatin1String("wait")) return seconds() >= a[0].toDouble() ? Progress::kDone : Progress::kAgain;
+  TROCAR_TRY(const bool is_so, holds(a[0], a[1], a[2]));
+  if (is_so) return Progress::kDone;
+  if (seconds() > patience_of(a))
+    return fail("it did not come about: " + to_std(a[0] + ' ' + a[1] + ' ' + a[2]),
+                to_std(a[0] + " is " + stage_.facts().value(a[0]).toString()), "give it longer: within SECONDS");
+  return Progress::kAgain;
+}
+
+Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step) {
+  const QStringList& a = step.arguments;
+  if (step.verb == QLatin1String("print")) {
+    const QVariantMap facts = stage_.facts();
+    for (const QString& fact : a) fmt::print("{}: {}\n", to_std(fact), to_std(facts.value(fact).toString()));
+    std::fflush(stdout);
+    return Progress::kDone;
+  }
+  if (step.verb == QLatin1String("expect")) {
+    TROCAR_TRY(const bool is_so, holds(a[0], a[1], a[2]));
+    if (!is_so)
+      return fail("expected " + to_std(a[0] + ' ' + a[1] + ' ' + a[2]),
+                  "it is " + to_std(stage_.facts().value(a[0]).toString()));
+    return Progress::kDone;
+  }
+  TROCAR_TRY(QWidget* const widget,
+             find(step.verb == QLatin1String("screenshot") && a.size() < 2 ? QStringLiteral("window")
+                  : step.verb == QLatin1String("screenshot")               ? a[1]
+                                                                           : a[0]));
+  const QImage image = widget->grab().toImage();
+  if (step.verb == QLatin1String("screenshot")) {
+    if (!image.save(a[0])) return fail("the picture cannot be written", to_std(a[0]), "check the folder");
+    return Progress::kDone;
+  }
+  const double share = share_near(image, QColor(a[1]), a[2].toInt());
+  if (share < a[3].toDouble())
+    return fail(fmt::format("only {:.2f} % of its pixels are near {}", 100.0 * share, to_std(a[1])), to_std(a[0]));
+  return Progress::kDone;
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <QElapsedTimer>
+#include <QObject>
+#include <QTimer>
+#include <QVariant>
+#include <functional>
+
+#include "script/script.h"
+
+class QWidget;
+
+namespace trocar::trainer {
+
+/// What a player needs of the window, so that it can be tried on any widget.
+struct Stage {
+  QWidget* window = nullptr;
+  std::function<QVariantMap()> facts;
+  std::function<void(const QString& tool)> end_server;
+  std::function<void()> reset_watch;
+};
+
+/// Plays a script on a window as a person would: events to the widgets, one step after the other, the window running
+/// meanwhile. Ends with what went wrong, or nothing.
+class ScriptPlayer : public QObject {
+  Q_OBJECT
+
+ public:
+  ScriptPlayer(std::vector<ScriptStep> steps, Stage stage, QObject* parent = nullptr);
+  void start();
+
+ Q_SIGNALS:
+  /// Empty: all steps were played. Else "line 12: …".
+  void finished(const QString& error);
+
+ private:
+  enum class Progress { kDone, kAgain };
+
+  void play_on();
+  Result<Progress> play(const ScriptStep& step);
+  Result<Progress> play_pointer(const ScriptStep& step, QWidget& widget);
+  Result<Progress> play_drag(const ScriptStep& step, QWidget& widget);
+  Result<Progress> play_wheel_until(const ScriptStep& step, QWidget& widget);
+  Result<Progress> play_waiting(const ScriptStep& step);
+  Result<Progress> play_looking(const ScriptStep& step);
+  Result<QWidget*> find(const QString& name) const;
+  Result<bool> holds(const QString& fact, const QString& op, const QString& value) const;
+  double seconds() const { return static_cast<double>(clock_.nsecsElapsed()) / 1e9; }
+
+  std::vector<ScriptStep> steps_;
+  Stage stage_;
+  std::size_t at_ = 0;
+  QTimer timer_;
+  QElapsedTimer clock_;  ///< Since the step began.
+  int sent_ = 0;         ///< Events of this step so far.
+};
+
+}  // namespace trocar::trainer

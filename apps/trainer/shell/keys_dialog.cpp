@@ -1,0 +1,70 @@
+#include "shell/keys_dialog.h"
+
+#include <QDialog>
+#include <QGridLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <span>
+
+#include "shell/parts.h"
+
+namespace trocar::trainer {
+namespace {
+
+struct Key {
+  const char* keys;
+  const char* does;
+};
+constexpr Key kTools[] = {{"1, 2, 0", "needle, transducer, view in hand"},
+                          {"drag", "glides over the skin"},
+                          {"right drag", "tilts; with Shift it turns about the axis"},
+                          {"wheel", "needle in and out, transducer harder and softer; Shift: finely"},
+                          {"arrows", "as dragging, a millimetre a step"},
+                          {"Page up, down", "as the wheel"},
+                          {"H", "to the planned entry"},
+                          {"X", "clamps the tool in hand, or frees it"},
+                          {"Enter", "fires the biopsy gun"},
+                          {"E", "ends the attempt"},
+                          {"Space", "stops all forces, or turns them on again"}};
+constexpr Key kViews[] = {{"Ctrl+1 … 4", "layouts"},
+                          {"F", "freezes the ultrasound"},
+                          {"G, D", "gain, depth; with Shift less"},
+                          {"C", "colour Doppler"},
+                          {"M", "measures a distance"},
+                          {"Ctrl+R", "tries again"},
+                          {"W", "worst moment of the replay"},
+                          {"N, P", "next and previous event of the replay"},
+                          {"Ctrl+T", "tissue parameters"},
+                          {"Ctrl+B", "case builder"},
+                          {"F1", "these keys"},
+                          {"F11", "full screen"}};
+
+void add_keys(QGridLayout& grid, int column, const QString& title, std::span<const Key> keys) {
+  grid.addWidget(make_label(title, "heading"), 0, column, 1, 2);
+  int row = 1;
+  for (const Key& key : keys) {
+    grid.addWidget(make_label(QString::fromUtf8(key.keys), "badge"), row, column, Qt::AlignLeft);
+    grid.addWidget(make_label(QString::fromUtf8(key.does)), row, column + 1);
+    ++row;
+  }
+}
+
+}  // namespace
+
+void show_keys(QWidget* parent) {
+  QDialog dialog(parent);
+  dialog.setObjectName(QStringLiteral("keys"));
+  dialog.setWindowTitle(QDialog::tr("Keys and mouse"));
+  auto* grid = new QGridLayout(&dialog);
+  grid->setContentsMargins(24, 20, 24, 20);
+  grid->setHorizontalSpacing(16);
+  grid->setVerticalSpacing(8);
+  add_keys(*grid, 0, QDialog::tr("Tools"), kTools);
+  add_keys(*grid, 2, QDialog::tr("Views and pages"), kViews);
+  auto* close = make_button("close-keys", QDialog::tr("Close"), QDialog::tr("Closes this"), QStringLiteral("Esc"));
+  grid->addWidget(close, grid->rowCount(), 3, Qt::AlignRight);
+  QObject::connect(close, &QPushButton::clicked, &dialog, &QDialog::accept);
+  dialog.exec();
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <QString>
+#include <QVariant>
+#include <string>
+#include <string_view>
+
+class QBoxLayout;
+class QFrame;
+class QLabel;
+class QPushButton;
+class QToolButton;
+class QWidget;
+
+/// The small parts that all pages are made of, so that they look alike.
+namespace trocar::trainer {
+
+/// A role of the style sheet: "title", "heading", "dim", "badge"; empty: plain text.
+QLabel* make_label(const QString& text, const char* role = "", QWidget* parent = nullptr);
+/// `name` is the object name that scripts use; a shortcut ("Ctrl+R") acts in the whole window and is told in the
+/// tooltip.
+QPushButton* make_button(const char* name, const QString& text, const QString& tooltip, const QString& shortcut = {});
+QToolButton* make_tool_button(const char* name, const QString& text, const QString& tooltip,
+                              const QString& shortcut = {});
+/// A rounded panel with a heading.
+QFrame* make_card(const QString& heading, QBoxLayout*& content);
+/// Sets a property that the style sheet looks at, and has the look made anew.
+void set_look(QWidget& widget, const char* property, const QVariant& value);
+
+QString to_qt(std::string_view text);
+std::string to_std(const QString& text);
+
+}  // namespace trocar::trainer

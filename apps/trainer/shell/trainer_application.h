@@ -1,0 +1,47 @@
+#pragma once
+
+#include <QApplication>
+#include <QString>
+#include <vector>
+
+namespace trocar::trainer {
+
+/// A handler that held up the window.
+struct SlowHandler {
+  double ms = 0.0;
+  QString what;  ///< Event and receiver.
+};
+
+/// The application, which watches how long each event's handler takes. Drawing is counted apart: it is bounded by the
+/// detail that is drawn, all else must be short.
+class TrainerApplication : public QApplication {
+  Q_OBJECT
+
+ public:
+  TrainerApplication(int& argc, char** argv);
+
+  bool notify(QObject* receiver, QEvent* event) override;
+
+  /// The slowest handlers other than drawing since the last reset, slowest first, ten at most.
+  const std::vector<SlowHandler>& slowest() const noexcept { return slowest_; }
+  void reset_watch();
+
+  /// Time spent in here is drawing and not the handler's own.
+  class DrawingScope {
+   public:
+    DrawingScope();
+    ~DrawingScope();
+    DrawingScope(const DrawingScope&) = delete;
+    DrawingScope& operator=(const DrawingScope&) = delete;
+
+   private:
+    std::int64_t begin_ns_;
+  };
+
+ private:
+  std::int64_t drawn_ns_ = 0;  ///< Within the outermost handler under way.
+  int depth_ = 0;
+  std::vector<SlowHandler> slowest_;
+};
+
+}  // namespace trocar::trainer
