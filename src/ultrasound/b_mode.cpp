@@ -29,6 +29,7 @@ struct Scratch {
   WalkResult walk;
   Texture texture;
   ScattererField scatterers;
+  LookRows rows;
 };
 
 }  // namespace
@@ -59,15 +60,15 @@ struct BMode::Impl {
   void walk(int group, int first, int last) noexcept;
   /// After all scanlines were walked: a scanline hears what lies between it and the next.
   void echo(int group, int first, int last) noexcept;
+  /// After all echoes are there: the frame's own samples.
+  void spread(int group, int first, int last) noexcept;
 };
 
 void BMode::Impl::walk(int group, int first, int last) noexcept {
   Scratch& s = scratch[static_cast<std::size_t>(group)];
   const auto samples = static_cast<std::size_t>(plan.samples);
-  std::fill(frame.re.begin() + static_cast<std::ptrdiff_t>(first) * plan.stride,
-            frame.re.begin() + static_cast<std::ptrdiff_t>(last) * plan.stride, 0.0F);
-  std::fill(frame.im.begin() + static_cast<std::ptrdiff_t>(first) * plan.stride,
-            frame.im.begin() + static_cast<std::ptrdiff_t>(last) * plan.stride, 0.0F);
+  const auto row = static_cast<std::ptrdiff_t>(plan.echo_row(first) - kPad);
+  for (auto* echoes : {&frame.re, &frame.im}) std::fill_n(echoes->begin() + row, (last - first) * plan.stride, 0.0F);
   const int central = plan.planes / 2;
   for (int line = first; line < last; ++line) {
     const LineWalk& path = frame.walks[static_cast<std::size_t>(line)];
@@ -112,6 +113,14 @@ void BMode::Impl::echo(int group, int first, int last) noexcept {
   add_scatterers(plan, bricks, frame, first, last, scratch[static_cast<std::size_t>(group)].scatterers);
 }
 
+void BMode::Impl::spread(int group, int first, int last) noexcept {
+  for (int line = first; line < last; ++line) {
+    spread_echoes(plan, frame, line, scratch[static_cast<std::size_t>(group)].rows, out);
+    if (!plan.acquisition.artefacts.reverberation) continue;
+    for (int look = 0; look < plan.looks; ++look) add_reverberation(plan, frame, look, line, out);
+  }
+}
+
 Acquisition default_acquisition(const Transducer& transducer) {
   Acquisition acquisition;
   acquisition.depth_mm = transducer.depth_mm;
@@ -148,7 +157,10 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   fit_frame(impl.frame, impl.plan);
   impl.needles = make_needle_image(impl.plan);
   impl.scratch.resize(static_cast<std::size_t>(impl.groups()));
-  for (Scratch& scratch : impl.scratch) scratch.scatterers = make_scatterer_field(impl.plan);
+  for (Scratch& scratch : impl.scratch) {
+    scratch.scatterers = make_scatterer_field(impl.plan);
+    scratch.rows = LookRows(impl.plan);
+  }
   impl.out.geometry = impl.plan.geometry;
   impl.out.beam = impl.plan.beam;
   const auto lines = static_cast<std::size_t>(impl.plan.lines);
@@ -187,13 +199,7 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   impl.for_groups([&](int group, int first, int last) { impl.walk(group, first, last); });
   impl.for_groups([&](int group, int first, int last) { impl.echo(group, first, last); });
   add_points(plan, frame);
-  impl.for_groups([&](int, int first, int last) { spread_laterally(plan, frame, first, last); });
-  impl.for_groups([&](int, int first, int last) {
-    spread_axially(plan, frame, first, last, impl.out);
-    if (!plan.acquisition.artefacts.reverberation) return;
-    for (int look = 0; look < plan.looks; ++look)
-      for (int line = first; line < last; ++line) add_reverberation(plan, frame, look, line, impl.out);
-  });
+  impl.for_groups([&](int group, int first, int last) { impl.spread(group, first, last); });
   for (std::size_t line = 0; line < frame.contact.size(); ++line) impl.out.contact[line] = frame.walks[line].coupling;
   return impl.out;
 }

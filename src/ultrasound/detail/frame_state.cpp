@@ -11,7 +11,6 @@ FrameState make_frame_state(const AcousticScene& scene) {
 
 void fit_frame(FrameState& frame, const ScanPlan& plan) {
   const auto lines = static_cast<std::size_t>(plan.lines), samples = static_cast<std::size_t>(plan.samples);
-  const auto padded = lines * static_cast<std::size_t>(plan.stride);
   frame.contact.resize(lines);
   frame.walks.resize(lines);
   frame.audible.assign(lines, plan.samples);
@@ -26,9 +25,7 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.delay.assign(lines * samples + 16, 0.0F);
   frame.way_gain.assign(lines * samples + 16, 0.0F);
   frame.gain.assign(static_cast<std::size_t>(plan.planes) * lines * samples + 2, 0);
-  for (auto* echoes : {&frame.re, &frame.im}) echoes->assign(padded, 0.0F);
-  for (auto* echoes : {&frame.wide_re, &frame.wide_im})
-    echoes->assign(padded * static_cast<std::size_t>(plan.looks), 0.0F);
+  for (auto* echoes : {&frame.re, &frame.im}) echoes->assign(plan.echo_row(plan.lines + plan.lateral_reach), 0.0F);
 }
 
 }  // namespace trocar::detail

@@ -83,16 +83,15 @@ struct FrameState {
   std::vector<float> pressed_samples;       ///< A scanline: how deep the face dents the skin.
   std::vector<GasBorder> gas;
   std::vector<Reflector> reflectors;
-  std::vector<float> bend_mm;           ///< line * coarse_samples: sideways displacement by refraction.
-  std::vector<float> probed_way;        ///< The same: neper left of an echo, without its own strength.
-  std::vector<float> focus_log;         ///< The same: neper of amplitude by beams that part or meet.
-  std::vector<float> smooth_slowness;   ///< The same, over the beam's width.
-  std::vector<float> slowness;          ///< The same: c0/c - 1 of the central plane.
-  std::vector<float> delay;             ///< line * samples: shown - walk, samples.
-  std::vector<float> way_gain;          ///< The same: amplitude left of an echo from there, without its own strength.
-  std::vector<ScattererGain> gain;      ///< (plane * lines + line) * samples: of a scatterer there; two more.
-  std::vector<float> re, im;            ///< line * stride + kPad + sample: echoes before the point spread.
-  std::vector<float> wide_re, wide_im;  ///< The same after the lateral point spread.
+  std::vector<float> bend_mm;          ///< line * coarse_samples: sideways displacement by refraction.
+  std::vector<float> probed_way;       ///< The same: neper left of an echo, without its own strength.
+  std::vector<float> focus_log;        ///< The same: neper of amplitude by beams that part or meet.
+  std::vector<float> smooth_slowness;  ///< The same, over the beam's width.
+  std::vector<float> slowness;         ///< The same: c0/c - 1 of the central plane.
+  std::vector<float> delay;            ///< line * samples: shown - walk, samples.
+  std::vector<float> way_gain;         ///< The same: amplitude left of an echo from there, without its own strength.
+  std::vector<ScattererGain> gain;     ///< (plane * lines + line) * samples: of a scatterer there; two more.
+  std::vector<float> re, im;           ///< ScanPlan::echo_row(line) + sample: echoes before the point spread.
 };
 
 FrameState make_frame_state(const AcousticScene& scene);

@@ -35,7 +35,7 @@ void add_ring_down(const ScanPlan& plan, FrameState& frame, int line) noexcept {
   const float fade = std::exp(-plan.sample_mm / kRingFade_mm);
   float amplitude =
       level / std::sqrt(plan.surface_scale[static_cast<std::size_t>(std::clamp(begin, 0, plan.samples - 1))]);
-  const std::size_t row = static_cast<std::size_t>(line) * static_cast<std::size_t>(plan.stride) + kPad;
+  const std::size_t row = plan.echo_row(line);
   for (int s = std::max(begin, 0); s < plan.samples; ++s) {
     amplitude *= fade;
     const float phase = 2.0F * std::numbers::pi_v<float> * static_cast<float>(s - begin) * plan.sample_mm / band_mm;

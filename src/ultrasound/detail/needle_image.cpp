@@ -90,7 +90,7 @@ class Painter {
       const float part = side == 0 ? 1.0F - (at_line - floor_line) : at_line - floor_line;
       Way way;
       if (!find_way(plan_, frame_, line + side, walk, way)) continue;
-      put_echo(static_cast<std::size_t>(line + side) * static_cast<std::size_t>(plan_.stride) + kPad, way, part);
+      put_echo(plan_.echo_row(line + side), way, part);
     }
   }
 
@@ -144,7 +144,7 @@ void darken(const ScanPlan& plan, FrameState& frame, int line, const Cover& cove
       for (std::size_t k = 0; k < n; ++k) gains[k] = weaken(gains[k], neper);
     }
     fade(frame.way_gain.data() + at_line * samples + at);
-    const std::size_t row = at_line * static_cast<std::size_t>(plan.stride) + kPad + at;
+    const std::size_t row = plan.echo_row(line) + at;
     fade(frame.re.data() + row);
     fade(frame.im.data() + row);
   }

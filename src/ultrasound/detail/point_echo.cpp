@@ -58,7 +58,7 @@ void add_points(const ScanPlan& plan, FrameState& frame) noexcept {
     for (int side = 0; side < 2; ++side) {
       if (line + side < 0 || line + side >= plan.lines) continue;
       const double part = side == 0 ? 1.0 - (heard.line - line) : heard.line - line;
-      const auto to = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(line + side) * plan.stride + kPad + sample);
+      const auto to = plan.echo_row(line + side) + static_cast<std::size_t>(sample);
       frame.re[to] += static_cast<float>(part * amplitude * std::cos(turn));
       frame.im[to] -= static_cast<float>(part * amplitude * std::sin(turn));
     }

@@ -18,83 +18,96 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 
-/// One look of scanlines [first, last): `turn` times the plan's phase a scanline is put on the echoes before they are
-/// added.
-void lateral(const ScanPlan& plan, FrameState& frame, int look, float turn, int first, int last) {
+/// The lateral point spread of one scanline, of the look straight on and of looks from `kSides` angles to either side.
+template <std::size_t kSides>
+HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, int line, LookRows& rows) {
   const F f;
   const auto lanes = static_cast<int>(hn::Lanes(f));
-  const std::ptrdiff_t stride = plan.stride;
-  const std::ptrdiff_t to = static_cast<std::ptrdiff_t>(look) * plan.lines * stride;
-  const bool is_turned = turn != 0.0F;
-  const std::vector<int>& reaches = is_turned ? plan.main_lobe_reach_at : plan.lateral_reach_at;
-  for (int line = first; line < last; ++line) {
-    const std::ptrdiff_t row = line * stride + kPad;
-    for (int s = 0; s < plan.samples; s += lanes) {
-      const VF middle = hn::LoadU(f, plan.lateral.data() + s);
-      VF re = hn::Mul(middle, hn::LoadU(f, frame.re.data() + row + s));
-      VF im = hn::Mul(middle, hn::LoadU(f, frame.im.data() + row + s));
-      const int reach = reaches[static_cast<std::size_t>(s) / 16];
-      // The phase goes on by the same turn from scanline to scanline.
-      const VF phase = hn::Mul(hn::Set(f, turn), hn::LoadU(f, plan.look_turn.data() + s));
-      const VF turn_re = is_turned ? hn::Cos(f, phase) : hn::Set(f, 1.0F);
-      const VF turn_im = is_turned ? hn::Sin(f, phase) : hn::Zero(f);
-      VF c = turn_re, d = turn_im;
-      for (int k = 1; k <= reach; ++k) {
-        const VF weight = hn::LoadU(f, plan.lateral.data() + static_cast<std::ptrdiff_t>(k) * plan.samples + s);
-        VF left_re = hn::Zero(f), left_im = hn::Zero(f), right_re = hn::Zero(f), right_im = hn::Zero(f);
-        if (line - k >= 0) {
-          left_re = hn::LoadU(f, frame.re.data() + row - k * stride + s);
-          left_im = hn::LoadU(f, frame.im.data() + row - k * stride + s);
-        }
-        if (line + k < plan.lines) {
-          right_re = hn::LoadU(f, frame.re.data() + row + k * stride + s);
-          right_im = hn::LoadU(f, frame.im.data() + row + k * stride + s);
-        }
-        const VF sum_re = hn::Add(left_re, right_re), sum_im = hn::Add(left_im, right_im);
-        if (!is_turned) {
-          re = hn::MulAdd(weight, sum_re, re);
-          im = hn::MulAdd(weight, sum_im, im);
-          continue;
-        }
-        // right * (c + jd) + left * (c - jd)
-        const VF apart_re = hn::Sub(right_re, left_re), apart_im = hn::Sub(right_im, left_im);
-        re = hn::MulAdd(weight, hn::NegMulAdd(d, apart_im, hn::Mul(c, sum_re)), re);
-        im = hn::MulAdd(weight, hn::MulAdd(d, apart_re, hn::Mul(c, sum_im)), im);
-        const VF next = hn::NegMulAdd(d, turn_im, hn::Mul(c, turn_re));
-        d = hn::MulAdd(c, turn_im, hn::Mul(d, turn_re));
-        c = next;
-      }
-      hn::StoreU(re, f, frame.wide_re.data() + to + row + s);
-      hn::StoreU(im, f, frame.wide_im.data() + to + row + s);
+  const std::ptrdiff_t stride = plan.stride, samples = plan.samples;
+  for (int s = 0; s < plan.samples; s += lanes) {
+    const float* const at_re = frame.re.data() + plan.echo_row(line) + s;
+    const float* const at_im = frame.im.data() + plan.echo_row(line) + s;
+    const float* weights = plan.lateral.data() + s;
+    VF re = hn::Mul(hn::LoadU(f, weights), hn::LoadU(f, at_re));
+    VF im = hn::Mul(hn::LoadU(f, weights), hn::LoadU(f, at_im));
+    // Looks from two sides: what both have in common, and what they differ in.
+    VF both_re[kSides + 1], both_im[kSides + 1], apart_re[kSides + 1], apart_im[kSides + 1];
+    for (std::size_t side = 0; side < kSides; ++side) {
+      both_re[side] = re;
+      both_im[side] = im;
+      apart_re[side] = apart_im[side] = hn::Zero(f);
     }
-    // The last vector may have written beyond the scanline, where silence must stay.
-    std::fill_n(frame.wide_re.begin() + to + row + plan.samples, 16, 0.0F);
-    std::fill_n(frame.wide_im.begin() + to + row + plan.samples, 16, 0.0F);
+    const auto block = static_cast<std::size_t>(s) / 16;
+    const int reach = plan.lateral_reach_at[block], main_lobe = std::min(plan.main_lobe_reach_at[block], reach);
+    for (int k = 1; k <= main_lobe; ++k) {
+      const VF left_re = hn::LoadU(f, at_re - k * stride), right_re = hn::LoadU(f, at_re + k * stride);
+      const VF left_im = hn::LoadU(f, at_im - k * stride), right_im = hn::LoadU(f, at_im + k * stride);
+      const VF sum_re = hn::Add(left_re, right_re), sum_im = hn::Add(left_im, right_im);
+      const VF weight = hn::LoadU(f, weights + k * samples);
+      re = hn::MulAdd(weight, sum_re, re);
+      im = hn::MulAdd(weight, sum_im, im);
+      const VF difference_re = hn::Sub(right_re, left_re), difference_im = hn::Sub(right_im, left_im);
+      for (std::size_t side = 0; side < kSides; ++side) {
+        const std::size_t row = plan.side_row(side, k) + static_cast<std::size_t>(s);
+        const VF cosine = hn::LoadU(f, plan.side_cosine.data() + row), sine = hn::LoadU(f, plan.side_sine.data() + row);
+        both_re[side] = hn::MulAdd(cosine, sum_re, both_re[side]);
+        both_im[side] = hn::MulAdd(cosine, sum_im, both_im[side]);
+        apart_re[side] = hn::NegMulAdd(sine, difference_im, apart_re[side]);
+        apart_im[side] = hn::MulAdd(sine, difference_re, apart_im[side]);
+      }
+    }
+    for (int k = main_lobe + 1; k <= reach; ++k) {
+      const VF weight = hn::LoadU(f, weights + k * samples);
+      re = hn::MulAdd(weight, hn::Add(hn::LoadU(f, at_re - k * stride), hn::LoadU(f, at_re + k * stride)), re);
+      im = hn::MulAdd(weight, hn::Add(hn::LoadU(f, at_im - k * stride), hn::LoadU(f, at_im + k * stride)), im);
+    }
+    hn::StoreU(re, f, rows.re(0) + s);
+    hn::StoreU(im, f, rows.im(0) + s);
+    for (std::size_t side = 0; side < kSides; ++side) {
+      hn::StoreU(hn::Add(both_re[side], apart_re[side]), f, rows.re(2 * side + 1) + s);
+      hn::StoreU(hn::Add(both_im[side], apart_im[side]), f, rows.im(2 * side + 1) + s);
+      hn::StoreU(hn::Sub(both_re[side], apart_re[side]), f, rows.re(2 * side + 2) + s);
+      hn::StoreU(hn::Sub(both_im[side], apart_im[side]), f, rows.im(2 * side + 2) + s);
+    }
   }
 }
 
-void axial(const ScanPlan& plan, const FrameState& frame, int look, int first, int last, BasebandFrame& out) {
+/// The pulse along one scanline; `from` has silence before and behind its samples.
+HWY_INLINE void spread_axially(const ScanPlan& plan, const float* from, float* to) {
   const F f;
   const auto lanes = static_cast<int>(hn::Lanes(f));
-  for (int line = first; line < last; ++line) {
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(look) * plan.lines + line;
-    const std::ptrdiff_t from = at * plan.stride + kPad, to = at * plan.samples;
-    for (int s = 0; s < plan.samples; s += lanes) {
-      VF re = hn::Zero(f), im = hn::Zero(f);
-      for (int k = -plan.axial_reach; k <= plan.axial_reach; ++k) {
-        const VF weight = hn::Set(f, plan.axial[static_cast<std::size_t>(k + plan.axial_reach)]);
-        re = hn::MulAdd(weight, hn::LoadU(f, frame.wide_re.data() + from + s + k), re);
-        im = hn::MulAdd(weight, hn::LoadU(f, frame.wide_im.data() + from + s + k), im);
-      }
-      const auto n = static_cast<std::size_t>(std::min(lanes, plan.samples - s));
-      if (n == static_cast<std::size_t>(lanes)) {
-        hn::StoreU(re, f, out.re.data() + to + s);
-        hn::StoreU(im, f, out.im.data() + to + s);
-      } else {
-        hn::BlendedStore(re, hn::FirstN(f, n), f, out.re.data() + to + s);
-        hn::BlendedStore(im, hn::FirstN(f, n), f, out.im.data() + to + s);
-      }
+  for (int s = 0; s < plan.samples; s += lanes) {
+    VF sum = hn::Mul(hn::Set(f, plan.axial[0]), hn::LoadU(f, from + s));
+    for (int k = 1; k <= plan.axial_reach; ++k) {
+      const VF sides = hn::Add(hn::LoadU(f, from + s - k), hn::LoadU(f, from + s + k));
+      sum = hn::MulAdd(hn::Set(f, plan.axial[static_cast<std::size_t>(k)]), sides, sum);
     }
+    const auto n = static_cast<std::size_t>(std::min(lanes, plan.samples - s));
+    if (n == static_cast<std::size_t>(lanes))
+      hn::StoreU(sum, f, to + s);
+    else
+      hn::BlendedStore(sum, hn::FirstN(f, n), f, to + s);
+  }
+}
+
+void spread(const ScanPlan& plan, const FrameState& frame, int line, LookRows& rows, BasebandFrame& out) {
+  switch (plan.looks / 2) {
+    case 0:
+      spread_laterally<0>(plan, frame, line, rows);
+      break;
+    case 1:
+      spread_laterally<1>(plan, frame, line, rows);
+      break;
+    default:
+      spread_laterally<2>(plan, frame, line, rows);
+      break;
+  }
+  rows.silence_behind();
+  for (std::size_t look = 0; look < static_cast<std::size_t>(plan.looks); ++look) {
+    const std::size_t to = (look * static_cast<std::size_t>(plan.lines) + static_cast<std::size_t>(line)) *
+                           static_cast<std::size_t>(plan.samples);
+    spread_axially(plan, rows.re(look), out.re.data() + to);
+    spread_axially(plan, rows.im(look), out.im.data() + to);
   }
 }
 
@@ -120,19 +133,25 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace trocar::detail {
 
-HWY_EXPORT(lateral);
-HWY_EXPORT(axial);
+HWY_EXPORT(spread);
 HWY_EXPORT(gains);
 
-void spread_laterally(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
-  for (int look = 0; look < plan.looks; ++look) {
-    const int side = look == 0 ? 0 : (look % 2 == 1 ? (look + 1) / 2 : -look / 2);
-    HWY_DYNAMIC_DISPATCH(lateral)(plan, frame, look, static_cast<float>(side), first, last);
-  }
+LookRows::LookRows(const ScanPlan& plan)
+    : stride_(static_cast<std::size_t>(plan.stride)), samples_(static_cast<std::size_t>(plan.samples)) {
+  // Looks come in pairs beside the first.
+  looks_ = static_cast<std::size_t>(plan.looks / 2 * 2 + 1);
+  values_.assign(2 * looks_ * stride_, 0.0F);
 }
 
-void spread_axially(const ScanPlan& plan, const FrameState& frame, int first, int last, BasebandFrame& out) noexcept {
-  for (int look = 0; look < plan.looks; ++look) HWY_DYNAMIC_DISPATCH(axial)(plan, frame, look, first, last, out);
+void LookRows::silence_behind() noexcept {
+  constexpr std::size_t kMostLanes = 16;
+  for (std::size_t row = 0; row < 2 * looks_; ++row)
+    std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(row * stride_ + kPad + samples_), kMostLanes, 0.0F);
+}
+
+void spread_echoes(const ScanPlan& plan, const FrameState& frame, int line, LookRows& rows,
+                   BasebandFrame& out) noexcept {
+  HWY_DYNAMIC_DISPATCH(spread)(plan, frame, line, rows, out);
 }
 
 void to_gain(const float* log_gain, const float* added, int n, float* gain) noexcept {

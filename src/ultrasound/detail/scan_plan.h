@@ -54,18 +54,29 @@ struct ScanPlan {
   std::vector<float> most_rank;  ///< Share of the scatterers that are enough there: resolution cells differ in size.
   std::vector<float> surface_scale;  ///< Makes a plane reflector independent of how many scanlines see it.
 
-  int looks = 1;                 ///< Of the compound.
-  std::vector<float> look_turn;  ///< A sample: phase from scanline to scanline of the second look, rad.
+  int looks = 1;               ///< Of the compound: straight on, then pairs from angles to either side.
   std::vector<float> lateral;  ///< (lateral_reach + 1) rows of `samples` weights: of scanlines 0, 1, 2 … away; 16 more.
   int lateral_reach = 0;
+  int main_lobe_reach = 0;
   std::vector<int> main_lobe_reach_at;
+  /// Of looks from the side: rows of `samples`, lateral weights times cosine and sine of the phase between scanlines.
+  std::vector<float> side_cosine, side_sine;
   std::vector<int> lateral_reach_at;  ///< The same for each 16 samples: the fan's scanlines part with depth.
-  std::vector<float> axial;           ///< 2 axial_reach + 1 weights.
+  std::vector<float> axial;           ///< axial_reach + 1 weights: half of the symmetric pulse.
   int axial_reach = 0;
 
   float cycles_per_sample = 0.0F;  ///< Of the echo's phase.
   float brick_mm = 2.5F;           ///< Side of the cube that holds kBrickScatterers.
 
+  /// Where side_cosine and side_sine have the weights of scanlines k away, 1 <= k <= main_lobe_reach.
+  std::size_t side_row(std::size_t side, int k) const noexcept {
+    return (side * static_cast<std::size_t>(main_lobe_reach) + static_cast<std::size_t>(k - 1)) *
+           static_cast<std::size_t>(samples);
+  }
+  /// Where a scanline's echoes begin among those of all. Silence surrounds them, as wide as the point spread reaches.
+  std::size_t echo_row(int line) const noexcept {
+    return static_cast<std::size_t>(line + lateral_reach) * static_cast<std::size_t>(stride) + kPad;
+  }
   std::size_t coarse_samples() const noexcept { return static_cast<std::size_t>(samples / kCoarse) + 2; }
 };
 

@@ -286,7 +286,7 @@ void add_field(const ScanPlan& plan, const ScattererField& field, FrameState& fr
   for (int begin = -kBeforeFace; begin < plan.samples; begin += kRows) {
     const int end = std::min(begin + kRows, plan.samples);
     for (int line = first; line < last; ++line) {
-      const std::size_t to = static_cast<std::size_t>(line) * static_cast<std::size_t>(plan.stride) + kPad;
+      const std::size_t to = plan.echo_row(line);
       const float* from = field.data() + 2 * (line - first + 1);
       for (int s = begin; s < end; ++s) {
         frame.re[to + static_cast<std::size_t>(s)] += from[(s + kBeforeFace) * kFieldRow];

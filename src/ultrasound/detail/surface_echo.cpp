@@ -79,7 +79,7 @@ void add_surface_echoes(const ScanPlan& plan, FrameState& frame, int line, int p
     const float size_of_rough = std::sqrt(-std::log(std::max(static_cast<float>(key >> 16) / 65536.0F, 1e-4F)));
     // Rough echoes of neighbouring scanlines and planes add up in disorder: more of each is needed for the same level.
     const float rough_part = rough * kRoughShare * std::cos(tilt) * size_of_rough / std::sqrt(plan.surface_scale[at]);
-    const std::size_t to = at_line * static_cast<std::size_t>(plan.stride) + kPad + static_cast<std::size_t>(sample);
+    const std::size_t to = plan.echo_row(line) + static_cast<std::size_t>(sample);
     frame.re[to] += amplitude * (smooth_share + rough_part * std::cos(turn));
     frame.im[to] += amplitude * rough_part * std::sin(turn);
     if (is_central) note_reflector(frame.reflectors[at_line], border, shown, strength, smooth_share, rough, key);

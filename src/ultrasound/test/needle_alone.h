@@ -44,7 +44,8 @@ class NeedleAlone {
       : scene(homogeneous_scene(box_for(convex(), 100.0, 3.0), TestTissue::kWater)),
         plan(make_scan_plan(*scene, convex(), acquisition)),
         frame(make_frame_state(*scene)),
-        image(make_needle_image(plan)) {
+        image(make_needle_image(plan)),
+        rows(plan) {
     fit_frame(frame, plan);
     out.geometry = plan.geometry;
     out.beam = plan.beam;
@@ -59,8 +60,7 @@ class NeedleAlone {
     lay_needles(plan, frame, input.needles, image);
     for (int first = 0; first < plan.lines; first += kGroup)
       add_needles(plan, frame, image, first, std::min(first + kGroup, plan.lines));
-    spread_laterally(plan, frame, 0, plan.lines);
-    spread_axially(plan, frame, 0, plan.lines, out);
+    for (int line = 0; line < plan.lines; ++line) spread_echoes(plan, frame, line, rows, out);
     return out;
   }
 
@@ -68,6 +68,7 @@ class NeedleAlone {
   ScanPlan plan;
   FrameState frame;
   NeedleImage image;
+  LookRows rows;
   BasebandFrame out;
 };
 
