@@ -73,10 +73,11 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
   for (int line = first; line < last; ++line) {
     const LineWalk& path = frame.walks[static_cast<std::size_t>(line)];
     const float* bend = frame.bend_mm.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
-    for (int n = 0; n < plan.samples + kCoarse; ++n) {
-      const auto c = static_cast<std::size_t>(std::min(n / kCoarse, plan.samples / kCoarse));
-      const float part = static_cast<float>(n % kCoarse) / static_cast<float>(kCoarse);
-      s.walk.sideways_mm[static_cast<std::size_t>(n)] = std::lerp(bend[c], bend[c + 1], part);
+    for (int n = 0; n < plan.samples; n += kCoarse) {
+      const auto c = static_cast<std::size_t>(n / kCoarse);
+      const float step = (bend[c + 1] - bend[c]) / kCoarse;
+      for (int part = 0; part < kCoarse; ++part)
+        s.walk.sideways_mm[static_cast<std::size_t>(n + part)] = bend[c] + static_cast<float>(part) * step;
     }
     int& audible = frame.audible[static_cast<std::size_t>(line)];
     audible = 0;
@@ -90,7 +91,6 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
       const std::size_t at =
           (static_cast<std::size_t>(plane) * static_cast<std::size_t>(plan.lines) + static_cast<std::size_t>(line)) *
           samples;
-      for (std::size_t n = 0; n < samples; ++n) s.walk.share[n] = plan.share[s.walk.tissue[n] & 127U];
       pack_gains(s.walk.log_gain.data(), s.texture.added.data(), s.walk.share.data(), plan.samples,
                  frame.gain.data() + at);
       if (plane == central) {

@@ -109,6 +109,9 @@ Vec3 impedance_slope(const FrameState& frame, const std::array<TissueRow, kTissu
 namespace {
 
 constexpr int kBlock = 16;
+/// Middles of a block's samples.
+constexpr std::array<float, kBlock> kSteps{0.5F, 1.5F, 2.5F,  3.5F,  4.5F,  5.5F,  6.5F,  7.5F,
+                                           8.5F, 9.5F, 10.5F, 11.5F, 12.5F, 13.5F, 14.5F, 15.5F};
 /// An echo 160 dB below liver's speckle is far below any receiver's noise.
 constexpr float kInaudible = -18.4F;
 constexpr float kSilence = -60.0F;  // neper
@@ -116,6 +119,21 @@ constexpr float kSilence = -60.0F;  // neper
 constexpr float kWrapping = 0.03F;
 /// Tissue so near to the face is still met through coupling gel where the volume shows air.
 constexpr float kEntry_mm = 5.0F;
+
+/// Amplitude reflected where the impedance's logarithm rises so much: tanh(rise / 2). Few borders need more than a
+/// series.
+float reflection_of(float rise) noexcept {
+  constexpr float kSmall = 0.1F;
+  const float half = 0.5F * rise;
+  return std::abs(half) < kSmall ? half * (1.0F - half * half / 3.0F) : std::tanh(half);
+}
+
+/// What is reflected does not go on: 1 - R^2 of the intensity passes, there and back; its logarithm.
+float log_passed(float reflection) noexcept {
+  constexpr float kSmall = 0.01F;
+  const float lost = reflection * reflection;
+  return lost < kSmall ? -lost * (1.0F + 0.5F * lost) : std::log(std::max(1.0F - lost, 1e-4F));
+}
 
 /// The walk in the making.
 class Walk {
@@ -134,14 +152,15 @@ class Walk {
     int s = 0;
     while (s < plan_.samples) {
       if (log_gain_ < kInaudible && s >= entry_samples_) return fall_silent(s);
-      const int end = std::min(s + kBlock, plan_.samples);
-      const bool is_at_mirror = end > mirror_from_ && s < mirror_to_;
-      if (s >= entry_samples_ && end - s == kBlock && !is_at_mirror && is_plain(s)) {
-        step_plain(s);
+      const int same = s >= entry_samples_ ? same_tissue(s) : 0;
+      if (same == kBlock) {
+        step_same<kBlock>(s, kBlock);
+      } else if (same > 0) {
+        step_same<Eigen::Dynamic>(s, same);
       } else {
-        for (int n = s; n < end; ++n) step(n);
+        step(s);
       }
-      s = end;
+      s += std::max(same, 1);
     }
     finish_ramp();
   }
@@ -150,11 +169,13 @@ class Walk {
   /// Nothing more will be heard: the rest of the scanline lies in shadow.
   void fall_silent(int s) noexcept {
     const auto left = static_cast<std::size_t>(plan_.samples - s);
-    const auto at = static_cast<std::size_t>(s);
     std::fill_n(result_.log_gain.begin() + s, left, kSilence);
-    std::fill_n(result_.log_way.begin() + s, left, kSilence);
     std::fill_n(result_.tissue.begin() + s, left, kNoData);
-    if (delay_ != nullptr) std::fill_n(delay_ + at, left, late_);
+    std::fill_n(result_.share.begin() + s, left, plan_.share[kNoData]);
+    if (delay_ != nullptr) {
+      std::fill_n(result_.log_way.begin() + s, left, kSilence);
+      std::fill_n(delay_ + s, left, late_);
+    }
     result_.audible = s;
   }
 
@@ -176,16 +197,10 @@ class Walk {
 
   /// Near the mirror: the tissue before it, and at its middle the mirror itself.
   void step_at_mirror(int s) noexcept {
-    const auto at = static_cast<std::size_t>(s);
     if (is_in_ramp_) finish_ramp();
     const std::uint8_t tissue = settled_ == kNoData ? line_.mirror_before : settled_;
     const TissueRow& row = plan_.rows[tissue];
-    result_.tissue[at] = tissue;
-    result_.log_way[at] = log_gain_ - 0.5F * row.loss;
-    result_.log_gain[at] = row.log_b + result_.log_way[at];
-    log_gain_ -= row.loss;
-    if (delay_ != nullptr) delay_[s] = late_ + 0.5F * row.delay;
-    late_ += row.delay;
+    pass(s, tissue, row);
     tissue_ = settled_ = tissue;
     log_z_ = row.log_z;
     if (s != mirror_at_) return;
@@ -196,40 +211,51 @@ class Walk {
     log_gain_ += std::log(std::max(line_.mirror_gain, 1e-6F));
   }
 
-  /// The whole block lies in the tissue that the walk is in.
-  bool is_plain(int s) const noexcept {
-    if (is_in_ramp_ || tissue_ == kNoData) return false;
+  /// How many of the next samples, at most a block, lie in whole cells of the tissue that the walk is in.
+  int same_tissue(int s) const noexcept {
+    if (is_in_ramp_ || tissue_ == kNoData) return 0;
+    const int most = std::min(kBlock, (s < mirror_from_ ? std::min(mirror_from_, plan_.samples) : plan_.samples) - s);
+    if (s >= mirror_from_ && s < mirror_to_) return 0;
     // Tiles are several blocks' samples wide: mostly one of a single tissue holds the whole block.
     static_assert(kBlock == 16);
-    bool is_whole = true;
-    for (const int n : {0, 5, 10, 15}) {
-      const std::int32_t cell = result_.cell[static_cast<std::size_t>(s + n)];
-      if (cell < 0) return false;
-      is_whole = is_whole && frame_.tiles.tile_tissue(cell) == tissue_;
-    }
-    if (is_whole) return true;
-    unsigned differs = 0;
-    for (int n = s; n < s + kBlock; ++n) {
-      const std::int32_t cell = result_.cell[static_cast<std::size_t>(n)];
-      if (cell < 0) return false;
-      differs |= static_cast<unsigned>(frame_.tiles.tissue(cell)) ^ tissue_;
-    }
-    return differs == 0;
+    const std::int32_t* cells = result_.cell.data() + s;
+    const auto is_whole = [&](int n) { return cells[n] >= 0 && frame_.tiles.tile_tissue(cells[n]) == tissue_; };
+    if (most == kBlock && is_whole(0) && is_whole(5) && is_whole(10) && is_whole(15)) return kBlock;
+    int n = 0;
+    while (n < most && cells[n] >= 0 && frame_.tiles.tissue(cells[n]) == tissue_) ++n;
+    return n;
   }
 
-  void step_plain(int s) noexcept {
+  /// `n` samples of the tissue that the walk is in; `kCount` is the same, or Eigen::Dynamic.
+  template <int kCount>
+  void step_same(int s, int n) noexcept {
+    using Samples = Eigen::Array<float, kCount, 1>;
     const TissueRow& row = plan_.rows[tissue_];
     const auto at = static_cast<std::size_t>(s);
-    for (int n = 0; n < kBlock; ++n) {
-      const float way = log_gain_ - row.loss * (static_cast<float>(n) + 0.5F);
-      result_.log_way[at + static_cast<std::size_t>(n)] = way;
-      result_.log_gain[at + static_cast<std::size_t>(n)] = row.log_b + way;
-    }
-    std::fill_n(result_.tissue.begin() + s, kBlock, tissue_);
-    log_gain_ -= row.loss * kBlock;
+    const auto steps = Eigen::Map<const Samples>(kSteps.data(), n);
+    const float way = log_gain_;
+    Eigen::Map<Samples>(result_.log_gain.data() + at, n) = (way + row.log_b) - row.loss * steps;
+    std::fill_n(result_.tissue.begin() + s, n, tissue_);
+    std::fill_n(result_.share.begin() + s, n, plan_.share[tissue_]);
+    log_gain_ -= row.loss * static_cast<float>(n);
     if (delay_ == nullptr) return;
-    for (int n = 0; n < kBlock; ++n) delay_[s + n] = late_ + row.delay * (static_cast<float>(n) + 0.5F);
-    late_ += row.delay * kBlock;
+    Eigen::Map<Samples>(result_.log_way.data() + at, n) = way - row.loss * steps;
+    Eigen::Map<Samples>(delay_ + s, n) = late_ + row.delay * steps;
+    late_ += row.delay * static_cast<float>(n);
+  }
+
+  /// One sample of a tissue, or of a blend.
+  void pass(int s, std::uint8_t tissue, const TissueRow& row) noexcept {
+    const auto at = static_cast<std::size_t>(s);
+    const float way = log_gain_ - 0.5F * row.loss;
+    result_.tissue[at] = tissue;
+    result_.share[at] = plan_.share[tissue];
+    result_.log_gain[at] = row.log_b + way;
+    log_gain_ -= row.loss;
+    if (delay_ == nullptr) return;
+    result_.log_way[at] = way;
+    delay_[s] = late_ + 0.5F * row.delay;
+    late_ += row.delay;
   }
 
   void step(int s) noexcept {
@@ -257,12 +283,7 @@ class Walk {
     was_blended_ = is_mixed;
     if (tissue != 0 && !is_mixed) is_entered_ = true;
     meet(s, tissue, row, is_mixed);
-    result_.tissue[at] = tissue;
-    result_.log_way[at] = log_gain_ - 0.5F * row.loss;
-    result_.log_gain[at] = row.log_b + result_.log_way[at];
-    log_gain_ -= row.loss;
-    if (delay_ != nullptr) delay_[s] = late_ + 0.5F * row.delay;
-    late_ += row.delay;
+    pass(s, tissue, row);
   }
 
   /// Borders are ramps of the impedance over a voxel or two; each becomes one border at its middle.
@@ -313,11 +334,11 @@ class Walk {
     const bool has_up = up_ > kNothing, has_down = -down_ > kNothing;
     const float up_at = has_up ? up_at_ / up_ : 0.0F, down_at = has_down ? down_at_ / -down_ : 0.0F;
     if (has_up && has_down && up_at < down_at) {
-      add_border(up_at, std::tanh(0.5F * up_));
-      add_border(down_at, std::tanh(0.5F * down_));
+      add_border(up_at, reflection_of(up_));
+      add_border(down_at, reflection_of(down_));
     } else {
-      if (has_down) add_border(down_at, std::tanh(0.5F * down_));
-      if (has_up) add_border(up_at, std::tanh(0.5F * up_));
+      if (has_down) add_border(down_at, reflection_of(down_));
+      if (has_up) add_border(up_at, reflection_of(up_));
     }
     if (!has_up && !has_down && behind_ != settled_)
       add_border(0.5F * static_cast<float>(ramp_begin_ + ramp_end_), kWrapping);
@@ -329,9 +350,9 @@ class Walk {
       result_.borders[static_cast<std::size_t>(result_.border_count++)] = {
           walk, std::copysign(size, reflection), ramp_log_gain_, place_of(walk), settled_, behind_};
     }
-    ramp_log_gain_ += std::log(std::max(1.0F - reflection * reflection, 1e-4F));
-    // What is reflected does not go on: 1 - R^2 of the intensity passes, there and back.
-    if (plan_.acquisition.artefacts.attenuation) log_gain_ += std::log(std::max(1.0F - reflection * reflection, 1e-4F));
+    const float passed = log_passed(reflection);
+    ramp_log_gain_ += passed;
+    if (plan_.acquisition.artefacts.attenuation) log_gain_ += passed;
   }
 
   std::array<float, 3> place_of(float walk) const noexcept {
