@@ -13,21 +13,21 @@ constexpr float kSteepest = 1.7F;  ///< Slope that is still followed from line t
 constexpr float kRamp = 16.0F;     ///< Samples.
 constexpr float kStep_mm = 1.2F;   ///< … beside a voxel's step.
 
-std::span<const Border> borders_of(const ScanPlan& plan, const FrameState& frame, int plane, int line) noexcept {
+std::span<const BorderKey> borders_of(const ScanPlan& plan, const FrameState& frame, int plane, int line) noexcept {
   const auto at = static_cast<std::size_t>(plane * plan.lines + line);
-  return {frame.borders.data() + at * kMaxBorders, frame.border_counts[at]};
+  return {frame.border_keys.data() + at * kMaxBorders, frame.border_counts[at]};
 }
 
-/// The border between those two tissues that lies nearest to a place; nullptr: none within `reach` samples. They are
+/// The border between two tissues that lies nearest to a place; nullptr: none within `reach` samples. They are
 /// sorted by depth, up to two of one ramp.
-const Border* find_near(std::span<const Border> borders, const Border& like, float walk, float reach) noexcept {
-  const Border* found = nullptr;
+const BorderKey* find_near(std::span<const BorderKey> borders, std::uint16_t tissues, float walk,
+                           float reach) noexcept {
+  const BorderKey* found = nullptr;
   const float end = walk + reach + kRamp;
-  for (const Border& border : borders) {
+  for (const BorderKey& border : borders) {
     if (border.walk > end) break;
-    if (border.before != like.before || border.behind != like.behind) continue;
     const float far = std::abs(border.walk - walk);
-    if (far > reach) continue;
+    if (border.tissues != tissues || far > reach) continue;
     reach = far;
     found = &border;
   }
@@ -59,6 +59,7 @@ SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane,
   const auto spacing_mm = static_cast<float>(plan.geometry.line_spacing_mm(std::max(depth_mm, 0.1)));
   const int stride = std::max(1, static_cast<int>(kReach_mm / (kMostSteps * static_cast<double>(spacing_mm))));
   const float step = (kSteepest * static_cast<float>(stride) * spacing_mm + kStep_mm) / plan.sample_mm;
+  const std::uint16_t tissues = tissues_of(border);
   Line along_face;
   along_face.add(0.0F, border.walk);
   for (const int side : {-1, 1}) {
@@ -66,7 +67,7 @@ SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane,
     for (int k = stride; k <= kMostSteps * stride; k += stride) {
       const int other = line + side * k;
       if (other < 0 || other >= plan.lines) break;
-      const Border* next = find_near(borders_of(plan, frame, plane, other), border, walk, step);
+      const BorderKey* next = find_near(borders_of(plan, frame, plane, other), tissues, walk, step);
       if (next == nullptr) break;
       walk = next->walk;
       along_face.add(static_cast<float>(side * k) * spacing_mm, walk);
@@ -77,10 +78,11 @@ SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane,
   const float plane_mm = plan.plane_step * plan.elevation_sigma_mm[at];
   for (int other = 0; other < plan.planes; ++other) {
     const float z_mm = static_cast<float>(other - plane) * plane_mm;
-    const Border* next = other == plane ? &border
-                                        : find_near(borders_of(plan, frame, other, line), border, border.walk,
-                                                    (kSteepest * std::abs(z_mm) + kStep_mm) / plan.sample_mm);
-    if (next != nullptr) across.add(z_mm, next->walk);
+    const float reach = (kSteepest * std::abs(z_mm) + kStep_mm) / plan.sample_mm;
+    if (other == plane)
+      across.add(z_mm, border.walk);
+    else if (const BorderKey* next = find_near(borders_of(plan, frame, other, line), tissues, border.walk, reach))
+      across.add(z_mm, next->walk);
   }
   SurfaceFit fit;
   fit.neighbours = static_cast<int>(along_face.n) - 1;

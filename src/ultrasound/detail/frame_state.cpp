@@ -18,6 +18,7 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.reflectors.resize(lines);
   frame.gas.resize(lines);
   frame.borders.resize(static_cast<std::size_t>(plan.planes) * lines * kMaxBorders);
+  frame.border_keys.resize(frame.borders.size());
   frame.border_counts.assign(static_cast<std::size_t>(plan.planes) * lines, 0);
   frame.contact_shape.assign(samples + 16, 0.0F);
   for (auto* coarse : {&frame.bend_mm, &frame.focus_log, &frame.slowness, &frame.smooth_slowness, &frame.probed_way})

@@ -38,6 +38,15 @@ struct Border {
 };
 inline constexpr int kMaxBorders = 32;  ///< A scanline and plane.
 
+/// What a search among a scanline's borders looks at.
+struct BorderKey {
+  float walk = 0.0F;  ///< Sample.
+  std::uint16_t tissues = 0;
+};
+constexpr std::uint16_t tissues_of(const Border& border) noexcept {
+  return static_cast<std::uint16_t>(border.before << 8 | border.behind);
+}
+
 /// The first gas that a scanline meets, on the central plane.
 struct GasBorder {
   bool is_there = false;
@@ -79,6 +88,7 @@ struct FrameState {
   std::vector<LineWalk> walks;
   std::vector<int> audible;                 ///< A scanline: samples, on any plane, before nothing more comes back.
   std::vector<Border> borders;              ///< (plane * lines + line) * kMaxBorders.
+  std::vector<BorderKey> border_keys;       ///< The same.
   std::vector<std::uint8_t> border_counts;  ///< plane * lines + line.
   std::vector<float> pressed_samples;       ///< A scanline: how deep the face dents the skin.
   std::vector<GasBorder> gas;

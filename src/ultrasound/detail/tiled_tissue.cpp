@@ -7,6 +7,22 @@
 
 namespace trocar::detail {
 
+namespace {
+
+/// Mean texture of the cell from that voxel to the next along i, j and k: that of the cell's middle.
+std::int8_t mean_texture(const AcousticScene& scene, const Index3& voxel) {
+  const GridGeometry& grid = scene.geometry;
+  int sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Index3 at = voxel;
+    for (std::size_t a = 0; a < 3; ++a) at[a] = std::min(at[a] + ((corner >> a) & 1), grid.size[a] - 1);
+    sum += scene.texture[grid.offset(at)];
+  }
+  return static_cast<std::int8_t>((sum + (sum < 0 ? -4 : 4)) / 8);
+}
+
+}  // namespace
+
 TiledTissue::TiledTissue(const AcousticScene& scene) {
   const auto& size = scene.geometry.size;
   const auto tiles = [&](std::size_t a) { return static_cast<std::int32_t>((size[a] + 3) / 4); };
@@ -27,8 +43,7 @@ TiledTissue::TiledTissue(const AcousticScene& scene) {
           const auto to = static_cast<std::size_t>(row + part_i(i));
           tissue_[to / kTile].voxels[to % kTile] = scene.tissue[from + static_cast<std::size_t>(i)];
           if (!texture_.empty())
-            texture_[to / kTile].voxels[to % kTile] =
-                static_cast<std::uint8_t>(scene.texture[from + static_cast<std::size_t>(i)]);
+            texture_[to / kTile].voxels[to % kTile] = static_cast<std::uint8_t>(mean_texture(scene, {i, j, k}));
         }
       }
     }
@@ -43,22 +58,6 @@ TiledTissue::TiledTissue(const AcousticScene& scene) {
       whole_[t] = is_whole ? of_tile[0] : kMixedTile;
     }
   });
-}
-
-CellCorners corners_at(const TiledTissue& tiles, float i, float j, float k) noexcept {
-  const auto a = static_cast<std::int32_t>(i), b = static_cast<std::int32_t>(j), c = static_cast<std::int32_t>(k);
-  const float u = i - static_cast<float>(a), v = j - static_cast<float>(b), w = k - static_cast<float>(c);
-  const std::int32_t i_parts[2] = {tiles.part_i(a), tiles.part_i(a + 1)};
-  const std::int32_t j_parts[2] = {tiles.part_j(b), tiles.part_j(b + 1)};
-  const std::int32_t k_parts[2] = {tiles.part_k(c), tiles.part_k(c + 1)};
-  const float i_weights[2] = {1.0F - u, u}, j_weights[2] = {1.0F - v, v}, k_weights[2] = {1.0F - w, w};
-  CellCorners corners;
-  for (std::size_t n = 0; n < 8; ++n) {
-    corners.offset[n] = i_parts[n & 1U] + j_parts[(n >> 1) & 1U] + k_parts[n >> 2];
-    corners.weight[n] = i_weights[n & 1U] * j_weights[(n >> 1) & 1U] * k_weights[n >> 2];
-  }
-  corners.nearest = (u > 0.5F ? 1U : 0U) | (v > 0.5F ? 2U : 0U) | (w > 0.5F ? 4U : 0U);
-  return corners;
 }
 
 }  // namespace trocar::detail

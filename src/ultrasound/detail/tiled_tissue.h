@@ -25,6 +25,7 @@ class TiledTissue {
   std::uint8_t tissue(std::int32_t offset) const noexcept {
     return tissue_.data()->voxels.data()[offset];  // tiles lie end to end
   }
+  /// Texture in the middle of the cell from that voxel to the next.
   std::int8_t texture(std::int32_t offset) const noexcept {
     return static_cast<std::int8_t>(texture_.data()->voxels.data()[offset]);
   }
@@ -51,6 +52,20 @@ struct CellCorners {
   std::size_t nearest;
 };
 /// The index must lie in [0, size - 1).
-CellCorners corners_at(const TiledTissue& tiles, float i, float j, float k) noexcept;
+inline CellCorners corners_at(const TiledTissue& tiles, float i, float j, float k) noexcept {
+  const auto a = static_cast<std::int32_t>(i), b = static_cast<std::int32_t>(j), c = static_cast<std::int32_t>(k);
+  const float u = i - static_cast<float>(a), v = j - static_cast<float>(b), w = k - static_cast<float>(c);
+  const std::int32_t i_parts[2] = {tiles.part_i(a), tiles.part_i(a + 1)};
+  const std::int32_t j_parts[2] = {tiles.part_j(b), tiles.part_j(b + 1)};
+  const std::int32_t k_parts[2] = {tiles.part_k(c), tiles.part_k(c + 1)};
+  const float i_weights[2] = {1.0F - u, u}, j_weights[2] = {1.0F - v, v}, k_weights[2] = {1.0F - w, w};
+  CellCorners corners;
+  for (std::size_t n = 0; n < 8; ++n) {
+    corners.offset[n] = i_parts[n & 1U] + j_parts[(n >> 1) & 1U] + k_parts[n >> 2];
+    corners.weight[n] = i_weights[n & 1U] * j_weights[(n >> 1) & 1U] * k_weights[n >> 2];
+  }
+  corners.nearest = (u > 0.5F ? 1U : 0U) | (v > 0.5F ? 2U : 0U) | (w > 0.5F ? 4U : 0U);
+  return corners;
+}
 
 }  // namespace trocar::detail

@@ -58,10 +58,10 @@ class LayerProfile {
       values_[n] = std::exp(-part * part / 0.03F);
     }
   }
-  float at(const Layering& layer) const noexcept {
-    const float place = layer.phase * stepsAUnit;
-    const auto n = static_cast<std::size_t>(static_cast<std::int64_t>(std::floor(place))) % steps;
-    return 1.5F * values_[n] * layer.strength - 0.5F;
+  float at(float phase, float strength) const noexcept {
+    constexpr float kTurns = 64.0F;  // depths below the skin stay below that many periods of the profile: no floor
+    const auto n = static_cast<std::size_t>(static_cast<std::int32_t>(phase * stepsAUnit + kTurns * steps)) % steps;
+    return 1.5F * values_[n] * strength - 0.5F;
   }
 
  private:
@@ -69,13 +69,6 @@ class LayerProfile {
   static constexpr float stepsAUnit = 32.0F;
   std::array<float, steps> values_;
 };
-
-/// Texture of the nearest voxel, steps. It is smooth over more than a voxel.
-float texture_at(const FrameState& frame, const WalkResult& walk, std::size_t s) noexcept {
-  const auto nearest = [&](std::size_t a) { return static_cast<std::int32_t>(walk.index[a][s] + 0.5F); };
-  return static_cast<float>(frame.tiles.texture(frame.tiles.part_i(nearest(0)) + frame.tiles.part_j(nearest(1)) +
-                                                frame.tiles.part_k(nearest(2))));
-}
 
 /// Layers along the central plane: their place in coarse steps, the sheets themselves sample by sample.
 void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, Texture& texture) noexcept {
@@ -97,13 +90,17 @@ void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult
     }
     if (is_in && !was_in) last = next;
     if (!is_in && was_in) next = last;
-    for (int n = 0; n < kLayering; ++n) {
-      const float part = static_cast<float>(n) / static_cast<float>(kLayering);
-      texture.fibres[static_cast<std::size_t>(begin + n)] =
-          is_in || was_in
-              ? plan.fibre_gain[walk.tissue[static_cast<std::size_t>(begin + n)]] *
-                    profile.at({std::lerp(last.phase, next.phase, part), std::lerp(last.strength, next.strength, part)})
-              : 0.0F;
+    float* const fibres = texture.fibres.data() + begin;
+    if (is_in || was_in) {
+      const float phase_step = (next.phase - last.phase) / kLayering;
+      const float strength_step = (next.strength - last.strength) / kLayering;
+      for (int n = 0; n < kLayering; ++n) {
+        const float gain = plan.fibre_gain[walk.tissue[static_cast<std::size_t>(begin + n)]];
+        const auto part = static_cast<float>(n);
+        fibres[n] = gain * profile.at(last.phase + part * phase_step, last.strength + part * strength_step);
+      }
+    } else {
+      std::fill_n(fibres, kLayering, 0.0F);
     }
     last = next;
     was_in = is_in;
@@ -125,14 +122,14 @@ void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResul
     const auto at = static_cast<std::size_t>(std::min(s, plan.samples - 1));
     const std::uint8_t tissue = walk.tissue[at];
     if (walk.cell[at] < 0 || plan.has_texture[tissue] == 0 || !frame.tiles.has_texture()) return log_focus;
-    return log_focus + plan.texture_gain[tissue][static_cast<std::size_t>(texture_at(frame, walk, at) + 128.0F)];
+    return log_focus + plan.texture_gain[tissue][static_cast<std::size_t>(frame.tiles.texture(walk.cell[at]) + 128)];
   };
   float last = value_at(0);
   for (int begin = 0; begin < plan.samples; begin += step) {
-    const float next = value_at(begin + step);
+    const float next = value_at(begin + step), slope = (next - last) / static_cast<float>(step);
     for (int n = 0; n < step; ++n) {
       const auto s = static_cast<std::size_t>(begin + n);
-      texture.added[s] = last + (next - last) * (static_cast<float>(n) / static_cast<float>(step)) + texture.fibres[s];
+      texture.added[s] = last + slope * static_cast<float>(n) + texture.fibres[s];
     }
     last = next;
   }

@@ -393,8 +393,11 @@ void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& li
 
 void keep_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept {
   const auto at = static_cast<std::size_t>(plane * plan.lines + line);
-  std::copy_n(result.borders.begin(), result.border_count,
-              frame.borders.begin() + static_cast<std::ptrdiff_t>(at * kMaxBorders));
+  for (std::size_t b = 0; b < static_cast<std::size_t>(result.border_count); ++b) {
+    const Border& border = result.borders[b];
+    frame.borders[at * kMaxBorders + b] = border;
+    frame.border_keys[at * kMaxBorders + b] = {border.walk, tissues_of(border)};
+  }
   frame.border_counts[at] = static_cast<std::uint8_t>(result.border_count);
 }
 
