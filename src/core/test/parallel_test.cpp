@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <mutex>
+#include <set>
+#include <thread>
 #include <vector>
 
 namespace trocar {
@@ -31,6 +34,21 @@ TEST(ParallelFor, CanBeNested) {
       parallel_for(10, 1, [&](std::size_t a, std::size_t b) { sum += static_cast<int>(b - a); });
   });
   EXPECT_EQ(sum.load(), 100);
+}
+
+TEST(RunOnThreads, KeepsToTheCallersThreadWhereOneIsAllowed) {
+  std::mutex mutex;
+  std::set<std::thread::id> used;
+  std::atomic<int> visits = 0;
+  run_on_threads(1, [&] {
+    parallel_for(1000, 1, [&](std::size_t first, std::size_t last) {
+      const std::lock_guard lock(mutex);
+      used.insert(std::this_thread::get_id());
+      visits += static_cast<int>(last - first);
+    });
+  });
+  EXPECT_EQ(visits.load(), 1000);
+  EXPECT_EQ(used, std::set{std::this_thread::get_id()});
 }
 
 TEST(ParallelInvoke, RunsAllAndWaits) {
