@@ -18,6 +18,8 @@ struct Artefacts {
   bool contact_loss = true;      ///< Air where the face has left the skin.
   bool clutter = true;           ///< Haze of the near field.
   bool noise = true;             ///< Of the receiver; rises with depth because the gain does.
+
+  bool operator==(const Artefacts&) const = default;
 };
 
 /// "attenuation", "reverberation", "mirror", "refraction", "range-distortion", "side-lobes", "contact-loss", "clutter",

@@ -24,6 +24,8 @@ struct Acquisition {
   int looks = 3;   ///< Of a compound picture: sub-apertures whose pictures are averaged. Range 1..5; 1: full speckle.
   int planes = 5;  ///< Across the beam's thickness. 1, 3, 5, 7 or 9.
   Artefacts artefacts;
+
+  bool operator==(const Acquisition&) const = default;
 };
 /// The transducer's own defaults.
 Acquisition default_acquisition(const Transducer& transducer);
