@@ -6,9 +6,9 @@
 namespace trocar {
 namespace {
 
-/// Nominal work of a frame, in samples: what is done for every plane and look of a sample, and once for it. From frames
-/// of the embedded abdomen; what is off is learned.
-constexpr double kWorkOfSample = 1.0, kWorkOfPlane = 1.0, kWorkOfLook = 0.6;
+/// Nominal work of a frame, in samples: of one whatever its detail (contact, scan conversion), for every sample, and
+/// for each plane and look of it. From frames of the embedded abdomen; what is off is learned.
+constexpr double kWorkOfFrame = 1.3e6, kWorkOfSample = 1.0, kWorkOfPlane = 1.0, kWorkOfLook = 0.6;
 
 /// Parts of a new measurement that go to the machine's load and to the detail's own work. The first is larger: servers
 /// and windows come and go, what a detail costs does not.
@@ -26,7 +26,8 @@ std::size_t at(ScanDetail detail) noexcept {
 
 double work(const Acquisition& full, ScanDetail detail) noexcept {
   const Acquisition a = with_detail(full, detail);
-  return a.lines * static_cast<double>(a.samples) * (kWorkOfSample + kWorkOfPlane * a.planes + kWorkOfLook * a.looks);
+  return kWorkOfFrame +
+         a.lines * static_cast<double>(a.samples) * (kWorkOfSample + kWorkOfPlane * a.planes + kWorkOfLook * a.looks);
 }
 
 }  // namespace
