@@ -3,6 +3,7 @@
 #include <QAbstractButton>
 #include <QAbstractItemView>
 #include <QAbstractSlider>
+#include <QAction>
 #include <QApplication>
 #include <QComboBox>
 #include <QDoubleSpinBox>
@@ -11,6 +12,7 @@
 #include <QKeySequence>
 #include <QLineEdit>
 #include <QMouseEvent>
+#include <QShortcut>
 #include <QSpinBox>
 #include <QTabBar>
 #include <QTabWidget>
@@ -47,6 +49,27 @@ void send_mouse(QWidget& widget, QEvent::Type type, const QPointF& place, Qt::Mo
 Status no_such(const QWidget& widget, const QString& what) {
   return fail("\"" + to_std(what) + "\" cannot be set", to_std(widget.objectName()),
               std::string("it is a ") + widget.metaObject()->className());
+}
+
+/// Shortcuts are found by the window system's path alone; so they are looked up here.
+bool act_on_shortcut(QWidget& window, const QKeySequence& sequence) {
+  for (QAbstractButton* button : window.findChildren<QAbstractButton*>()) {
+    if (button->shortcut() != sequence || !button->isVisible() || !button->isEnabled()) continue;
+    button->click();
+    return true;
+  }
+  for (QShortcut* shortcut : window.findChildren<QShortcut*>()) {
+    const auto* owner = qobject_cast<const QWidget*>(shortcut->parent());
+    if (shortcut->key() != sequence || !shortcut->isEnabled() || owner == nullptr || !owner->isVisible()) continue;
+    Q_EMIT shortcut->activated();
+    return true;
+  }
+  for (QAction* action : window.findChildren<QAction*>()) {
+    if (action->shortcut() != sequence || !action->isEnabled()) continue;
+    action->trigger();
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -90,16 +113,12 @@ Status strike(QWidget& window, const QString& keys) {
 #endif
   QWidget* target = QApplication::focusWidget() != nullptr ? QApplication::focusWidget() : &window;
   const QString text = modifiers == Qt::NoModifier && key < 0x100 ? QString(QChar(key)).toLower() : QString();
-  // Shortcuts are looked up by the window system's path alone; an override event first, as it does.
+  // An override event first, as the window system does: a text field keeps its keys.
   QKeyEvent override_event(QEvent::ShortcutOverride, key, modifiers, text);
   override_event.ignore();
   QCoreApplication::sendEvent(target, &override_event);
   if (!override_event.isAccepted()) {
-    for (QAbstractButton* button : window.findChildren<QAbstractButton*>()) {
-      if (button->shortcut() != sequence || !button->isVisible() || !button->isEnabled()) continue;
-      button->animateClick();
-      return {};
-    }
+    if (act_on_shortcut(window, sequence)) return {};
   }
   QKeyEvent down(QEvent::KeyPress, key, modifiers, text);
   QCoreApplication::sendEvent(target, &down);

@@ -37,8 +37,7 @@ QToolButton::menu-indicator { image: none; }
 QLineEdit, QSpinBox, QDoubleSpinBox, QComboBox, QPlainTextEdit, QTextEdit { background: @raised; border: 1px solid @line; border-radius: 5px; padding: 4px 8px; min-height: 18px; }
 QLineEdit:focus, QSpinBox:focus, QDoubleSpinBox:focus, QComboBox:focus { border-color: @accent; }
 QSpinBox::up-button, QSpinBox::down-button, QDoubleSpinBox::up-button, QDoubleSpinBox::down-button { width: 0; border: none; }
-QComboBox::drop-down { border: none; width: 22px; }
-QComboBox::down-arrow { image: none; border-left: 4px solid transparent; border-right: 4px solid transparent; border-top: 5px solid @dim; width: 0; height: 0; }
+QComboBox::drop-down { border: none; background: transparent; width: 22px; }
 QComboBox QAbstractItemView { background: @raised; border: 1px solid @line; padding: 2px; }
 QCheckBox, QRadioButton { spacing: 8px; }
 QCheckBox::indicator, QRadioButton::indicator { width: 15px; height: 15px; background: @raised; border: 1px solid @line; border-radius: 4px; }
