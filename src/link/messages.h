@@ -52,7 +52,8 @@ struct LoadScene {
 };
 
 /// While it runs: "liver.k=0.5", "coupling.stiffness=0.8", "force_model=proxy". The scene is built anew and swapped in;
-/// the insertion goes on.
+/// the insertion goes on. Numbers of tissues are all that differ from the loaded table: they replace those of the last
+/// message that named any; no settings at all: as loaded.
 struct SetParameters {
   std::vector<std::string> settings;
 };

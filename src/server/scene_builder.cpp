@@ -34,7 +34,8 @@ NeedleGeometry needle_of(const LoadScene& request) noexcept {
   return needle;
 }
 
-Status apply_setting(std::string_view text, TissueTable& tissues, HapticOptions& options) {
+/// Of a scene's option; nothing where the text is not one of them.
+Result<bool> apply_option(std::string_view text, HapticOptions& options) {
   const std::size_t at = text.find('=');
   const Setting setting{text.substr(0, at), at == std::string_view::npos ? "" : text.substr(at + 1)};
   if (setting.name == "force_model") {
@@ -47,9 +48,9 @@ Status apply_setting(std::string_view text, TissueTable& tissues, HapticOptions&
     TROCAR_TRY(const double bending, parse_number(setting));
     options.has_bending = bending != 0.0;
   } else {
-    return apply_override(tissues, text);
+    return false;
   }
-  return {};
+  return true;
 }
 
 }  // namespace
@@ -79,10 +80,11 @@ Result<std::shared_ptr<const VirtualPatient>> SceneBuilder::patient_for(const Lo
 Result<SceneBuilder::Parts> SceneBuilder::parts_for(const LoadScene& request) const {
   Parts parts;
   if (request.tissues_toml.empty()) {
-    TROCAR_TRY(parts.tissues, load_tissue_table(tissues_file_));
+    TROCAR_TRY(parts.loaded, load_tissue_table(tissues_file_));
   } else {
-    TROCAR_TRY(parts.tissues, parse_tissue_table(request.tissues_toml, "the client's tissue table"));
+    TROCAR_TRY(parts.loaded, parse_tissue_table(request.tissues_toml, "the client's tissue table"));
   }
+  parts.tissues = parts.loaded;
   apply_device_preset(device_, parts.options);
   TROCAR_TRY(parts.options.tool, parse_tool(request.tool));
   TROCAR_TRY(parts.options.force_model, parse_force_model(request.force_model));
@@ -120,9 +122,15 @@ Result<ServoScene> SceneBuilder::load(const LoadScene& request, const Progress& 
 Result<ServoScene> SceneBuilder::change(const SetParameters& request) {
   if (patient_ == nullptr) return fail("there is no scene whose numbers could be changed", "", "load one first");
   Parts parts = parts_;
+  TissueTable tissues = parts.loaded;
+  bool has_tissues = request.settings.empty();
   for (const std::string& setting : request.settings) {
-    TROCAR_TRY_STATUS(apply_setting(setting, parts.tissues, parts.options));
+    TROCAR_TRY(const bool is_option, apply_option(setting, parts.options));
+    if (is_option) continue;
+    TROCAR_TRY_STATUS(apply_override(tissues, setting));
+    has_tissues = true;
   }
+  if (has_tissues) parts.tissues = std::move(tissues);
   const bool continues = parts.options.force_model == parts_.options.force_model;
   return build(request_, patient_, std::move(parts), continues);
 }

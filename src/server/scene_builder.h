@@ -26,8 +26,10 @@ class SceneBuilder {
   /// Everything anew. Errors: what is wrong with patient, tissues, needle or options; the last scene stays.
   Result<ServoScene> load(const LoadScene& request, const Progress& progress = {});
   /// The last scene with other numbers: "liver.k=0.5", "coupling.stiffness=0.8", "coupling.damping=0.002",
-  /// "force_model=proxy", "bending=0". All of them or none. Errors: no scene yet, an unknown name, a number out of
-  /// range.
+  /// "force_model=proxy", "bending=0". All of them or none. Numbers of tissues replace those of earlier changes: what
+  /// is not named is again as it was loaded (no settings at all: every tissue), so that a change that was undone or a
+  /// message that was lost leaves nothing behind; a change that names no tissue leaves them. Errors: no scene yet, an
+  /// unknown name, a number out of range.
   Result<ServoScene> change(const SetParameters& request);
 
   const LoadScene& request() const noexcept { return request_; }
@@ -35,7 +37,8 @@ class SceneBuilder {
 
  private:
   struct Parts {
-    TissueTable tissues;
+    TissueTable loaded;   ///< As the client gave it,
+    TissueTable tissues;  ///< and with changed numbers.
     HapticOptions options;
   };
   Result<std::shared_ptr<const VirtualPatient>> patient_for(const LoadScene& request, const Progress& progress);

@@ -59,6 +59,26 @@ TEST(SceneBuilder, ChangesAllNumbersOrNone) {
   }
 }
 
+TEST(SceneBuilder, NumbersOfTissuesReplaceThoseOfEarlierChanges) {
+  SceneBuilder builder = make_builder();
+  const auto loaded = builder.load(layered_request());
+  ASSERT_TRUE(loaded);
+  const TissueTable table = load_tissue_table(data_file("tissues.toml")).value();
+  const std::uint8_t liver = *table.find_tissue("liver"), capsule = *table.find_layer("liver_capsule");
+  const auto cutting_n = [&](const auto& scene) { return scene->scene->tissues[liver].cutting_n; };
+  const auto fp_n = [&](const auto& scene) { return scene->scene->layers[capsule].puncture_force_n; };
+  EXPECT_EQ(cutting_n(builder.change({{"liver.fc=2"}})), 2.0);
+  EXPECT_EQ(cutting_n(builder.change({{"coupling.stiffness=0.5"}})), 2.0) << "names no tissue";
+  const auto other = builder.change({{"liver.fp=3"}});
+  EXPECT_EQ(fp_n(other), 3.0);
+  EXPECT_EQ(cutting_n(other), cutting_n(loaded)) << "is not named any more";
+  EXPECT_FALSE(builder.change({{"liver.fc=99"}}));
+  EXPECT_EQ(fp_n(builder.change({{"bending=1"}})), 3.0) << "a refused change changes nothing";
+  const auto reset = builder.change({});
+  ASSERT_TRUE(reset);
+  EXPECT_EQ(fp_n(reset), fp_n(loaded));
+}
+
 TEST(SceneBuilder, StartsAnewWithAnotherForceModel) {
   SceneBuilder builder = make_builder();
   ASSERT_TRUE(builder.load(layered_request()));
