@@ -25,6 +25,9 @@ inline constexpr std::array<TissueField<HuTransfer>, 3> kGradientFields{{
     {"gradient_full_hu_per_mm", "full", &HuTransfer::gradient_full_hu_per_mm, {0.0, 1000.0}},
 }};
 inline constexpr std::string_view kTransfer = "transfer";
+/// An override transfer.FIELD_factor multiplies a curve.
+inline constexpr std::string_view kFactorEnding = "_factor";
+inline constexpr Range kCurveFactorRange{0.1, 10.0};
 inline constexpr Range kHuRange{-1100.0, 4000.0};
 
 /// Reads [transfer] into table.transfer; nothing when the file has none. Errors name the line: knots that do not rise,

@@ -1,6 +1,7 @@
 // The tissue table as people write it: overrides on the command line, and the text that a session stores.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -12,6 +13,7 @@ namespace trocar {
 namespace {
 
 constexpr std::string_view kOverrideSource = "set by the user";
+constexpr std::string_view kOfLayers = "layers.", kOfTissues = "tissues.";
 
 template <class T>
 void append_fields(std::string& out, const T& entry, std::span<const TissueField<T>> fields, std::string_view kind,
@@ -60,7 +62,11 @@ class Override {
 
   Status apply() {
     if (assignment_.name == "skin" && (assignment_.key == kSkinThickness)) return set_skin_thickness();
-    if (assignment_.name == kTransfer) return set_gradient_number();
+    if (assignment_.name == kTransfer)
+      return assignment_.key.ends_with(kFactorEnding) ? scale_curve() : set_gradient_number();
+    if (assignment_.name.starts_with(kOfLayers)) return set_row<LayerParams>(table_.layers, kLayerFields, kOfLayers);
+    if (assignment_.name.starts_with(kOfTissues))
+      return set_row<TissueParams>(table_.tissues, kTissueFields, kOfTissues);
     const auto tissue = table_.find_tissue(assignment_.name);
     const auto layer = table_.find_layer(assignment_.name);
     if (!tissue && !layer)
@@ -94,6 +100,19 @@ class Override {
     return {};
   }
 
+  /// tissues.NAME.KEY, layers.NAME.KEY: that row alone. `kind` ends in its dot.
+  template <class T>
+  Status set_row(std::vector<T>& rows, std::span<const TissueField<T>> fields, std::string_view kind) {
+    const std::string_view name = assignment_.name.substr(kind.size());
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const T& entry) { return entry.name == name; });
+    if (row == rows.end() || name == table_.tissues.front().name)
+      return fail_usage(fmt::format("there is no \"{}\"", assignment_.name), std::string(text_));
+    const TissueField<T>* field = find_field<T>(fields, assignment_.key);
+    if (!field)
+      return fail_usage(fmt::format("\"{}\" has no \"{}\"", assignment_.name, assignment_.key), std::string(text_));
+    return set(*row, *field, kind.substr(0, kind.size() - 1));
+  }
+
   Status set_skin_thickness() {
     TROCAR_TRY_STATUS(check_range(assignment_, kSkinThickness, kSkinThicknessRange, text_));
     table_.skin_thickness_mm = assignment_.value;
@@ -114,6 +133,23 @@ class Override {
     if (!(changed.gradient_full_hu_per_mm > changed.gradient_none_hu_per_mm))
       return fail_usage("gradient_full_hu_per_mm must be above gradient_none_hu_per_mm", std::string(text_));
     table_.transfer = changed;
+    table_.provenance[fmt::format("{}.{}", kTransfer, field->name)] = {std::string(kOverrideSource), {}, {}};
+    return {};
+  }
+
+  Status scale_curve() {
+    const std::string_view key = assignment_.key.substr(0, assignment_.key.size() - kFactorEnding.size());
+    const auto* field = find_field<HuLaw>(kHuLawFields, key);
+    if (!field)
+      return fail_usage(fmt::format("{} has no curve \"{}\"", kTransfer, key), std::string(text_),
+                        "known are: k, tn, tt, r0, c, shaft, nu, young, each with _factor behind it");
+    if (table_.transfer.knot_count == 0)
+      return fail_usage("the tissue table has no transfer functions", std::string(text_));
+    TROCAR_TRY_STATUS(check_range(assignment_, assignment_.key, kCurveFactorRange, text_));
+    for (std::size_t n = 0; n < table_.transfer.knot_count; ++n) {
+      double& value = table_.transfer.laws[n].*field->member;
+      value = std::clamp(value * assignment_.value, field->range.low, field->range.high);
+    }
     table_.provenance[fmt::format("{}.{}", kTransfer, field->name)] = {std::string(kOverrideSource), {}, {}};
     return {};
   }

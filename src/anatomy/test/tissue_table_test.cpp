@@ -259,6 +259,33 @@ TEST(TissueTable, OverrideReachesTissueLayerOrBoth) {
   expect_same(*stored, table);
 }
 
+TEST(TissueTable, OverrideOfARowReachesThatRowAlone) {
+  TissueTable table = shipped();
+  ASSERT_TRUE(apply_override(table, "layers.vessel.nu=0.03"));
+  EXPECT_EQ(layer(table, "vessel").viscosity_ns_per_mm, 0.03);
+  EXPECT_EQ(tissue(table, "vessel").viscosity_ns_per_mm, tissue(shipped(), "vessel").viscosity_ns_per_mm);
+  ASSERT_TRUE(apply_override(table, "tissues.vessel.nu=0.01"));
+  EXPECT_EQ(tissue(table, "vessel").viscosity_ns_per_mm, 0.01);
+  EXPECT_EQ(layer(table, "vessel").viscosity_ns_per_mm, 0.03);
+}
+
+TEST(TissueTable, OverrideScalesACurveOverHu) {
+  const TissueTable before = shipped();
+  TissueTable table = before;
+  ASSERT_TRUE(apply_override(table, "transfer.tn_factor=2"));
+  ASSERT_TRUE(apply_override(table, "transfer.stiffness_n_per_mm_factor=10"));
+  for (std::size_t n = 0; n < table.transfer.knot_count; ++n) {
+    const HuLaw &was = before.transfer.laws[n], &is = table.transfer.laws[n];
+    EXPECT_EQ(is.normal_n, 2.0 * was.normal_n);
+    EXPECT_EQ(is.stiffness_n_per_mm, std::min(50.0, 10.0 * was.stiffness_n_per_mm)) << "kept in its range";
+    EXPECT_EQ(is.resistance_n, was.resistance_n);
+  }
+  EXPECT_EQ(table.provenance.at("transfer.normal_n").source, "set by the user");
+  const auto stored = parse_tissue_table(table.to_toml(), "stored");
+  ASSERT_TRUE(stored) << stored.error().text();
+  expect_same(*stored, table);
+}
+
 TEST(TissueTable, UnusableOverrideIsAUsageErrorAndChangesNothing) {
   const TissueTable before = shipped();
   for (const char* bad : {"",
@@ -280,6 +307,16 @@ TEST(TissueTable, UnusableOverrideIsAUsageErrorAndChangesNothing) {
                           "skin.thickness_mm=7",
                           "=1",
                           ".k=1",
+                          "layers.liver.k=1",
+                          "layers.liver_capsule.mu=1",
+                          "tissues.air.mu=1",
+                          "tissues.liver.k=1",
+                          "layers..k=1",
+                          "transfer.tn_factor=0.05",
+                          "transfer.tn_factor=11",
+                          "transfer.tn_factor=never",
+                          "transfer.q_factor=1",
+                          "transfer._factor=1",
                           "muscle.nu=1.01"}) {
     TissueTable table = before;
     const Status status = apply_override(table, bad);
