@@ -15,7 +15,7 @@ struct Key {
   const char* keys;
   const char* does;
 };
-constexpr Key kTools[] = {{"1, 2, 0", "needle, transducer, view in hand"},
+constexpr Key kTools[] = {{"A, S, V", "needle, transducer, view in hand"},
                           {"drag", "glides over the skin"},
                           {"right drag", "tilts; with Shift it turns about the axis"},
                           {"wheel", "needle in and out, transducer harder and softer; Shift: finely"},

@@ -1,0 +1,176 @@
+#include "pages/briefing_page.h"
+
+#include <QImage>
+#include <QLabel>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+#include "shell/parts.h"
+#include "shell/theme.h"
+#include "views/briefing_picture.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr int kSteps = 1000;
+
+const char* kControls = QT_TRANSLATE_NOOP("BriefingPage",
+                                          "<table cellspacing='0' cellpadding='3'>"
+                                          "<tr><td><b>A</b> / <b>S</b></td><td>take the needle / the transducer</td></tr>"
+                                          "<tr><td><b>drag</b></td><td>glide over the skin; right button: tilt</td></tr>"
+                                          "<tr><td><b>wheel</b></td><td>push in and pull out; Shift: finely</td></tr>"
+                                          "<tr><td><b>H</b></td><td>put the needle to the planned entry (guided)</td></tr>"
+                                          "<tr><td><b>Enter</b></td><td>fire the biopsy gun</td></tr>"
+                                          "<tr><td><b>E</b></td><td>end the attempt</td></tr>"
+                                          "<tr><td><b>Space</b></td><td>stop all forces</td></tr>"
+                                          "<tr><td><b>F1</b></td><td>all keys</td></tr></table>");
+
+QString risks_text(const Task& task) {
+  QStringList risks;
+  for (const RiskStructure& risk : task.risks)
+    risks << BriefingPage::tr("%1 (−%2)")
+                 .arg(to_qt(risk.label.empty() ? risk.tissue : risk.label))
+                 .arg(risk.penalty, 0, 'f', 0);
+  return risks.join(QStringLiteral(", "));
+}
+
+QString counts_text(const Task& task) {
+  return BriefingPage::tr(
+             "Tip at the target (worth nothing beyond %1 mm), entry (%2 mm) and angle (%3°) as the expert's, a core of "
+             "the target, a short way, %4 s. Not to be touched: %5.")
+      .arg(task.target_tolerance_mm, 0, 'f', 0)
+      .arg(task.entry_tolerance_mm, 0, 'f', 0)
+      .arg(task.angle_tolerance_deg, 0, 'f', 0)
+      .arg(task.time_limit_s, 0, 'f', 0)
+      .arg(risks_text(task));
+}
+
+QLabel* paragraph() {
+  auto* label = make_label({});
+  label->setWordWrap(true);
+  label->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  return label;
+}
+
+}  // namespace
+
+BriefingPage::BriefingPage(QWidget* parent) : QWidget(parent) {
+  setObjectName(QStringLiteral("briefing-page"));
+  auto* page = new QVBoxLayout(this);
+  page->setContentsMargins(40, 24, 40, 24);
+  page->setSpacing(12);
+  title_ = make_label({}, "title");
+  subtitle_ = make_label({}, "dim");
+  page->addWidget(title_);
+  page->addWidget(subtitle_);
+  auto* columns = new QHBoxLayout;
+  columns->setSpacing(16);
+  columns->addWidget(make_text(), 5);
+  columns->addWidget(make_pictures(), 6);
+  page->addLayout(columns, 1);
+  page->addWidget(make_bottom());
+}
+
+QWidget* BriefingPage::make_text() {
+  QBoxLayout* content = nullptr;
+  QFrame* card = make_card(tr("What to do"), content);
+  goal_ = paragraph();
+  content->addWidget(goal_);
+  content->addWidget(make_label(tr("What counts"), "heading"));
+  counts_ = paragraph();
+  content->addWidget(counts_);
+  content->addWidget(make_label(tr("How to move"), "heading"));
+  auto* controls = paragraph();
+  controls->setText(tr(kControls));
+  content->addWidget(controls);
+  content->addStretch();
+  return card;
+}
+
+QWidget* BriefingPage::make_pictures() {
+  QBoxLayout* content = nullptr;
+  QFrame* card = make_card(tr("Where the target lies"), content);
+  auto* pictures = new QHBoxLayout;
+  for (QLabel** label : {&axial_, &along_}) {
+    *label = make_label({}, "dim");
+    (*label)->setAlignment(Qt::AlignCenter);
+    (*label)->setMinimumSize(240, 240);
+    (*label)->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored);
+    pictures->addWidget(*label, 1);
+  }
+  content->addLayout(pictures, 1);
+  return card;
+}
+
+QWidget* BriefingPage::make_bottom() {
+  auto* bottom = new QWidget;
+  auto* row = new QHBoxLayout(bottom);
+  row->setContentsMargins(0, 0, 0, 0);
+  auto* back = make_button("back", tr("Back"), tr("To the start page; stops opening"), QStringLiteral("Esc"));
+  row->addWidget(back);
+  state_ = make_label({}, "dim");
+  state_->setObjectName(QStringLiteral("opening-state"));
+  row->addWidget(state_, 1);
+  progress_ = new QProgressBar;
+  progress_->setObjectName(QStringLiteral("opening-progress"));
+  progress_->setRange(0, kSteps);
+  progress_->setFixedWidth(260);
+  row->addWidget(progress_);
+  begin_ = make_button("begin", tr("Begin"), tr("Starts the haptic servers and the attempt"), QStringLiteral("Return"));
+  begin_->setProperty("role", "primary");
+  row->addWidget(begin_);
+  connect(back, &QPushButton::clicked, this, &BriefingPage::back_wanted);
+  connect(begin_, &QPushButton::clicked, this, &BriefingPage::begin_wanted);
+  return bottom;
+}
+
+void BriefingPage::show_opening(const SeatChoice& choice) {
+  const QString patient = to_qt(choice.patient).section('/', -1);
+  title_->setText(tr("Briefing"));
+  subtitle_->setText(tr("Patient %1").arg(patient));
+  goal_->clear();
+  counts_->clear();
+  axial_->clear();
+  along_->clear();
+  begin_->setEnabled(false);
+  progress_->show();
+  show_progress(tr("Opening the patient"), 0.0);
+}
+
+void BriefingPage::show_progress(const QString& step, double fraction) {
+  state_->setText(step);
+  progress_->setValue(static_cast<int>(kSteps * fraction));
+}
+
+void BriefingPage::show_error(const QString& text) {
+  progress_->hide();
+  state_->setText(text);
+  state_->setWordWrap(true);
+}
+
+void BriefingPage::show_case(const OpenCase& open, Difficulty difficulty) {
+  const Case& the_case = open.the_case;
+  const bool is_guided = difficulty == Difficulty::kGuided;
+  title_->setText(to_qt(the_case.task.title));
+  subtitle_->setText(tr("Patient %1 · needle %2").arg(to_qt(the_case.patient->name), to_qt(the_case.needle.title)));
+  goal_->setText(tr("Bring the needle's tip to the %1 %2, under ultrasound. The planned way is %3 mm long, %4 mm of it "
+                    "in the %5; nearest to it lies: %6.")
+                     .arg(the_case.is_parenchymal ? tr("middle of the") : tr("lesion of the"),
+                          to_qt(the_case.task.organ))
+                     .arg(the_case.plan.length_mm, 0, 'f', 0)
+                     .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
+                     .arg(to_qt(the_case.task.organ))
+                     .arg(the_case.plan.nearest_risk.empty() ? tr("nothing at risk")
+                                                             : to_qt(the_case.plan.nearest_risk)));
+  counts_->setText(counts_text(the_case.task));
+  const QSize side(qMax(240, axial_->width()), qMax(240, axial_->height()));
+  axial_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAxial, side, is_guided)));
+  along_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAlongPath, side, is_guided)));
+  progress_->hide();
+  state_->setText(tr("Ready"));
+  begin_->setEnabled(true);
+  begin_->setFocus();
+}
+
+}  // namespace trocar::trainer

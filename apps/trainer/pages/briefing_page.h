@@ -1,0 +1,48 @@
+#pragma once
+
+#include <QWidget>
+
+#include "shell/seat_choice.h"
+#include "station/open_case.h"
+
+class QBoxLayout;
+class QLabel;
+class QProgressBar;
+class QPushButton;
+
+namespace trocar::trainer {
+
+/// What there is to do, with which patient and needle, what counts, and how the tools are moved; while the case opens it
+/// shows how far that is. Keys: Enter begins, Escape goes back.
+class BriefingPage : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit BriefingPage(QWidget* parent = nullptr);
+
+  void show_opening(const SeatChoice& choice);
+  void show_progress(const QString& step, double fraction);
+  void show_error(const QString& text);
+  void show_case(const OpenCase& open, Difficulty difficulty);
+
+ Q_SIGNALS:
+  void begin_wanted();
+  void back_wanted();
+
+ private:
+  QWidget* make_text();
+  QWidget* make_pictures();
+  QWidget* make_bottom();
+
+  QLabel* title_ = nullptr;
+  QLabel* subtitle_ = nullptr;
+  QLabel* goal_ = nullptr;
+  QLabel* counts_ = nullptr;
+  QLabel* axial_ = nullptr;
+  QLabel* along_ = nullptr;
+  QLabel* state_ = nullptr;
+  QProgressBar* progress_ = nullptr;
+  QPushButton* begin_ = nullptr;
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,73 @@
+#include "views/briefing_picture.h"
+
+#include <QPainter>
+#include <QPainterPath>
+
+#include "shell/theme.h"
+#include "slices/paint_slice.h"
+#include "slices/slice_geometry.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr double kAroundPath_mm = 60.0;
+
+SliceGeometry geometry_of(const OpenCase& open, BriefingPlane plane, const QSize& size) {
+  const VirtualPatient& patient = *open.the_case.patient;
+  const Segment& path_P = open.the_case.plan.line_P;
+  SliceGeometry geometry;
+  geometry.columns = size.width();
+  geometry.rows = size.height();
+  if (plane == BriefingPlane::kAxial) {
+    const Box body = body_box(patient);
+    geometry.axes = slice_axes(SliceOrientation::kAxial);
+    geometry.center_P = body.center();
+    geometry.center_P.z() = path_P.b.z();
+    geometry.mm_per_px = fitting_scale(body, geometry.axes, geometry.columns, geometry.rows);
+  } else {
+    geometry.axes = needle_axes(path_P.direction(), NeedlePlane::kAlong);
+    geometry.center_P = 0.5 * (path_P.a + path_P.b);
+    geometry.mm_per_px = (path_P.length_mm() + kAroundPath_mm) / std::min(geometry.columns, geometry.rows);
+  }
+  return geometry;
+}
+
+void draw_path(QPainter& painter, const SliceGeometry& geometry, const Segment& path_P, bool has_path) {
+  const auto pixel = [&](const Vec3& p_P) {
+    const Eigen::Vector2d p = geometry.to_pixel(p_P);
+    return QPointF(p.x() + 0.5, p.y() + 0.5);
+  };
+  const QPointF target = pixel(path_P.b);
+  if (has_path) {
+    painter.setPen(QPen(theme().path, 2.0, Qt::DashLine));
+    painter.drawLine(pixel(path_P.a), target);
+  }
+  constexpr double kRing_px = 7.0;
+  painter.setPen(QPen(theme().target, 2.0));
+  painter.drawEllipse(target, kRing_px, kRing_px);
+}
+
+}  // namespace
+
+QImage to_qimage(const RgbImage& picture) {
+  static_assert(sizeof(Rgb) == 3);
+  return QImage(reinterpret_cast<const uchar*>(picture.pixels.data()), picture.columns, picture.rows,
+                3 * picture.columns, QImage::Format_RGB888)
+      .copy();
+}
+
+QImage briefing_picture(const OpenCase& open, BriefingPlane plane, const QSize& size, bool has_path) {
+  const SliceGeometry geometry = geometry_of(open, plane, size);
+  SliceBuffers buffers;
+  RgbImage picture;
+  SliceStyle style;
+  style.window = {60.0, 350.0};
+  paint_slice(*open.the_case.patient, geometry.plane(), style, buffers, picture);
+  QImage image = to_qimage(picture).convertToFormat(QImage::Format_RGB32);
+  QPainter painter(&image);
+  painter.setRenderHint(QPainter::Antialiasing);
+  draw_path(painter, geometry, open.the_case.plan.line_P, has_path);
+  return image;
+}
+
+}  // namespace trocar::trainer

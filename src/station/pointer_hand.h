@@ -1,0 +1,84 @@
+#pragma once
+
+#include "anatomy/patient.h"
+#include "geometry/pose.h"
+#include "geometry/segment.h"
+
+namespace trocar {
+
+/// Hands that are moved by mouse, wheel and keys: each gesture is a small change, and what comes out is where the hand
+/// wants the tool. No time in here: how fast a hand gets there is limited where it is sent (hand_motion.h). Frame P.
+
+/// The needle's hand. It knows the entry E, where the needle's axis meets the resting skin, the direction d and how far
+/// the tip is past E. Before the skin (not past E) the entry glides over the skin; in the body the needle turns about E
+/// and nothing else, as the hole holds it.
+class PointerNeedle {
+ public:
+  static constexpr double kAbove_mm = 20.0;      ///< Where aiming puts the tip before the skin.
+  static constexpr double kFarthest_mm = 80.0;   ///< Above the skin.
+  static constexpr double kFlattest_rad = 1.35;  ///< Between needle and the skin's inward normal.
+
+  /// Over the entry of a path, along it. The patient must outlive it.
+  PointerNeedle(const VirtualPatient& patient, const Segment& path_P, double length_mm);
+
+  const Pose& X_PN() const noexcept { return X_PN_; }
+  bool is_past_skin() const noexcept { return past_mm_ > 0.0; }
+  double past_mm() const noexcept { return past_mm_; }  ///< Of the tip, along the needle.
+  const Vec3& entry_P() const noexcept { return entry_P_; }
+
+  void aim_at(const Segment& path_P);
+  /// Takes over from where the needle is: after another hand has led it.
+  void put(const Pose& X_PN);
+  /// A shift of the hand, mm: over the skin, or of the hub about the entry.
+  void glide(const Vec3& shift_P);
+  /// The hub goes by so many rad towards `right_P` and `down_P` (unit, a view's), about the entry.
+  void tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad);
+  void turn(double rad);  ///< About its axis: where the bevel looks.
+  void push(double mm);   ///< Along its axis, inward positive.
+
+ private:
+  void lean(const Vec3& axis_P);
+  void update();
+
+  const VirtualPatient* patient_;
+  double length_mm_;
+  Vec3 entry_P_;
+  Vec3 axis_P_;  ///< Unit, hub to tip.
+  double past_mm_ = -kAbove_mm;
+  double roll_rad_ = 0.0;
+  Pose X_PN_;
+};
+
+/// The transducer's hand: a point of the skin under the middle of the face, how the face is turned there, and how deep
+/// it is pressed in.
+class PointerProbe {
+ public:
+  static constexpr double kDeepest_mm = 12.0;
+  static constexpr double kFarthest_mm = 40.0;  ///< Off the skin.
+  static constexpr double kFlattest_rad = 0.9;  ///< Between beam and the skin's inward normal.
+
+  /// Begins there; the patient must outlive it.
+  PointerProbe(const VirtualPatient& patient, const Pose& X_PT);
+
+  Pose X_PT() const noexcept;
+  double pressed_mm() const noexcept { return pressed_mm_; }  ///< Negative: off the skin.
+
+  void put(const Pose& X_PT);
+  void glide(const Vec3& shift_P);  ///< Over the skin; the face turns with it.
+  void tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad);
+  void turn(double rad);  ///< About the beam: the picture's plane.
+  void push(double mm);
+
+ private:
+  const VirtualPatient* patient_;
+  Vec3 skin_P_;
+  Mat3 R_PT_;
+  double pressed_mm_ = 0.0;
+};
+
+/// The point of the resting skin nearest to a point that lies within some cm of it.
+Vec3 nearest_skin_point(const VirtualPatient& patient, const Vec3& p_P) noexcept;
+/// Unit normal of the skin there, into the body.
+Vec3 skin_inward(const VirtualPatient& patient, const Vec3& p_P) noexcept;
+
+}  // namespace trocar
