@@ -15,7 +15,7 @@ find_library(SOCI_CORE soci_core REQUIRED)
 find_library(SOCI_SQLITE3 soci_sqlite3 REQUIRED)
 find_path(SOCI_INCLUDE soci/soci.h REQUIRED)
 find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel FiltersCore FiltersGeneral IOXML IOGeometry
-  ImagingCore RenderingCore RenderingOpenGL2 RenderingVolumeOpenGL2 InteractionStyle IOImage GUISupportQt)
+  ImagingCore RenderingCore RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2 RenderingFreeType InteractionStyle IOImage GUISupportQt)
 # VTK's bridge is built for one Qt: the program takes the same.
 find_package(QT NAMES Qt6 Qt5 REQUIRED COMPONENTS Core)
 find_package(Qt${QT_VERSION_MAJOR} REQUIRED COMPONENTS Widgets)
@@ -55,7 +55,7 @@ set(trocar_library_highway hwy::hwy)
 set(trocar_library_vtk-filters VTK::CommonCore VTK::CommonDataModel VTK::FiltersCore VTK::FiltersGeneral)
 set(trocar_library_vtk-io VTK::CommonCore VTK::CommonDataModel VTK::IOXML VTK::IOGeometry)
 set(trocar_library_vtk-rendering VTK::CommonCore VTK::CommonDataModel VTK::RenderingCore VTK::RenderingOpenGL2
-    VTK::FiltersCore VTK::FiltersGeneral X11::X11)
+    VTK::RenderingVolume VTK::RenderingVolumeOpenGL2 VTK::RenderingFreeType VTK::FiltersCore VTK::FiltersGeneral X11::X11)
 set(trocar_library_itk trocar_itk)
 set(trocar_library_png PNG::PNG)
 set(trocar_library_soci trocar_soci)

@@ -4,12 +4,10 @@
 
 #include "anatomy/patient.h"
 #include "core/result.h"
+#include "scene/camera.h"
 #include "volume/image.h"
 
 namespace trocar {
-
-/// A camera position around the patient, head up.
-enum class CameraPreset { kAnterior, kRightAnteriorOblique, kRight, kPosterior };
 
 struct SceneOptions {
   int columns = 1000;  ///< Range 16..8192.

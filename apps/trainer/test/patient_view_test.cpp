@@ -1,0 +1,161 @@
+#include "views/patient_view.h"
+
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QWheelEvent>
+
+#include "io/patient_source.h"
+#include "volume/sampling.h"
+
+namespace trocar::trainer {
+namespace {
+
+struct Abdomen {
+  std::shared_ptr<const VirtualPatient> patient;
+  std::shared_ptr<const std::vector<NamedMesh>> meshes;
+};
+
+/// The embedded patient, opened once.
+const Abdomen& abdomen() {
+  static const Abdomen the_abdomen = [] {
+    const PatientSource source{"abdomen", 1};
+    auto patient = open_patient(source);
+    EXPECT_TRUE(patient) << patient.error().text();
+    auto meshes = open_meshes(source, *patient);
+    EXPECT_TRUE(meshes) << meshes.error().text();
+    return Abdomen{std::make_shared<const VirtualPatient>(std::move(*patient)),
+                   std::make_shared<const std::vector<NamedMesh>>(std::move(*meshes))};
+  }();
+  return the_abdomen;
+}
+
+class PatientViewTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    view.resize(480, 360);
+    view.show();
+    QApplication::processEvents();
+    view.show_patient(abdomen().patient, abdomen().meshes);
+    view.scene().finish_loading();
+  }
+  /// What a user sees once the picture is whole.
+  QImage whole_picture() {
+    view.draw_whole();
+    QApplication::processEvents();
+    return view.grab().toImage().convertToFormat(QImage::Format_RGB32);
+  }
+  void send_mouse(QEvent::Type type, const QPoint& place, Qt::MouseButton button, Qt::MouseButtons buttons) {
+    QWidget* surface = view.findChild<QWidget*>(QStringLiteral("patient-view-surface"));
+    QMouseEvent event(type, place, surface->mapToGlobal(place), button, buttons, Qt::NoModifier);
+    QApplication::sendEvent(surface, &event);
+  }
+  void press(int key) {
+    QKeyEvent event(QEvent::KeyPress, key, Qt::NoModifier);
+    QApplication::sendEvent(&view, &event);
+  }
+  PatientView view;
+};
+
+int count_of(const QImage& image, bool (*passes)(const QColor&)) {
+  int count = 0;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) count += passes(image.pixelColor(x, y)) ? 1 : 0;
+  }
+  return count;
+}
+
+bool is_ivory(const QColor& c) {
+  return c.red() > 140 && c.green() > 125 && c.blue() > 100 && c.red() - c.blue() > 15 && c.red() - c.blue() < 70;
+}
+bool is_liver(const QColor& c) {
+  return c.red() > 70 && c.red() > c.green() + 30 && c.green() < 90 && c.blue() < 80;
+}
+bool is_teal(const QColor& c) {
+  return c.green() > 150 && c.blue() > 140 && c.red() < 130;
+}
+
+TEST_F(PatientViewTest, ShowsBonesAndLiverAndPresetsHideThem) {
+  const QImage all = whole_picture();
+  EXPECT_GT(count_of(all, is_ivory), 2000);
+  EXPECT_GT(count_of(all, is_liver), 1000);
+  view.apply_preset(StructurePreset::kBones);
+  const QImage bones = whole_picture();
+  EXPECT_GT(count_of(bones, is_ivory), 2000);
+  EXPECT_EQ(count_of(bones, is_liver), 0);
+  view.apply_preset(StructurePreset::kTarget);
+  const QImage target = whole_picture();
+  EXPECT_LT(count_of(target, is_ivory), 50);
+  EXPECT_GT(count_of(target, is_liver), 300);
+}
+
+TEST_F(PatientViewTest, DragTurnsWheelZoomsAndKeysChooseViews) {
+  whole_picture();
+  const CameraView before = view.view();
+  send_mouse(QEvent::MouseButtonPress, {200, 200}, Qt::LeftButton, Qt::LeftButton);
+  send_mouse(QEvent::MouseMove, {260, 200}, Qt::NoButton, Qt::LeftButton);
+  send_mouse(QEvent::MouseButtonRelease, {260, 200}, Qt::LeftButton, Qt::NoButton);
+  EXPECT_NEAR((view.view().focus_P - before.focus_P).norm(), 0.0, 1e-9);
+  EXPECT_GT((view.view().eye_P - before.eye_P).norm(), 100.0);
+  press(Qt::Key_Plus);
+  EXPECT_LT(view.view().distance_mm(), before.distance_mm());
+  press(Qt::Key_1);
+  whole_picture();
+  EXPECT_NEAR(view.view().forward_P().y(), 1.0, 1e-6);
+  press(Qt::Key_5);
+  whole_picture();
+  EXPECT_NEAR(view.view().forward_P().y(), -1.0, 1e-6);
+}
+
+TEST_F(PatientViewTest, GuidanceFollowsItsKey) {
+  view.set_path(abdomen().patient->paths.front().line_P, 10.0);
+  EXPECT_GT(count_of(whole_picture(), is_teal), 100);
+  press(Qt::Key_G);
+  EXPECT_EQ(count_of(whole_picture(), is_teal), 0);
+}
+
+TEST_F(PatientViewTest, DoubleClickPicksThePointOnTheSkin) {
+  whole_picture();
+  std::optional<Vec3> picked_P;
+  QObject::connect(&view, &PatientView::picked, [&](const Vec3& p_P) { picked_P = p_P; });
+  send_mouse(QEvent::MouseButtonDblClick, {240, 180}, Qt::LeftButton, Qt::LeftButton);
+  ASSERT_TRUE(picked_P);
+  // The skin's surface is smoothed by less than two voxels.
+  EXPECT_NEAR(sample_linear(abdomen().patient->skin_distance_mm, *picked_P), 0.0, 3.0);
+  picked_P.reset();
+  send_mouse(QEvent::MouseButtonDblClick, {2, 2}, Qt::LeftButton, Qt::LeftButton);
+  EXPECT_FALSE(picked_P);
+}
+
+TEST_F(PatientViewTest, AnUnchangedPictureIsNotDrawnAgain) {
+  whole_picture();
+  const std::size_t frames = view.still_frame_times().count() + view.moving_frame_times().count();
+  for (int i = 0; i < 5; ++i) view.draw();
+  EXPECT_EQ(view.still_frame_times().count() + view.moving_frame_times().count(), frames);
+}
+
+TEST_F(PatientViewTest, AnInterruptedPictureFallsBackToACheapOne) {
+  whole_picture();
+  if (view.scene().has_gpu()) GTEST_SKIP() << "a graphics card draws every frame in full";
+  view.set_interrupt([] { return true; });
+  view.set_tools_moving(true);
+  view.set_opacity("liver", 0.8);
+  view.draw();  // cheap, because something has changed
+  EXPECT_FALSE(view.is_still());
+  EXPECT_EQ(view.broken_frames(), 0);
+}
+
+TEST_F(PatientViewTest, MirroredOutputIsFlippedOnTheScreen) {
+  const QImage image = whole_picture();
+  StereoOptions options;
+  options.is_mirrored_left_right = true;
+  options.is_mirrored_up_down = true;
+  view.set_stereo(options);
+  const QImage flipped = whole_picture().mirrored(true, true);
+  EXPECT_EQ(image, flipped);
+}
+
+}  // namespace
+}  // namespace trocar::trainer

@@ -1,0 +1,147 @@
+#include "scene/detail/guide_layer.h"
+
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkTextProperty.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "scene/needle_shape.h"
+#include "volume/sampling.h"
+
+namespace trocar::detail {
+namespace {
+
+// The trainer's colours of path and target (shell/theme.h).
+constexpr Rgb kPathColor = {0x54, 0xd1, 0xc4};
+constexpr Rgb kTargetColor = {0xff, 0x8a, 0x3d};
+constexpr Rgb kLandmarkColor = {0xf2, 0xd0, 0x6b};
+constexpr double kPathRadius_mm = 1.0;
+constexpr double kDash_mm = 6.0;
+constexpr double kGap_mm = 4.0;
+constexpr double kOutside_mm = 45.0;  ///< The path goes on so far before the skin.
+constexpr double kTargetRadius_mm = 3.0;
+constexpr double kRingRadius_mm = 0.9;
+constexpr double kLandmarkRadius_mm = 3.0;
+constexpr double kAboveSkin_mm = 0.6;
+
+/// The point of the skin on the line through p along the path.
+Vec3 onto_skin(const Vec3& p_P, const Vec3& along_P, const FloatGrid& skin_distance_mm) {
+  constexpr int kSteps = 12;
+  constexpr double kFarthest_mm = 30.0;
+  if (skin_distance_mm.empty()) return p_P;
+  double moved_mm = 0.0;
+  for (int step = 0; step < kSteps; ++step) {
+    const double distance_mm = sample_linear(skin_distance_mm, p_P + moved_mm * along_P);
+    moved_mm += distance_mm - kAboveSkin_mm;
+    if (std::abs(distance_mm - kAboveSkin_mm) < 0.05) break;
+  }
+  return std::abs(moved_mm) < kFarthest_mm ? Vec3(p_P + moved_mm * along_P) : p_P;
+}
+
+std::vector<Vec3> entry_ring(const Segment& line_P, double radius_mm, const FloatGrid& skin_distance_mm) {
+  constexpr int kPoints = 72;
+  const Vec3 along_P = line_P.direction();
+  const Vec3 u_P = along_P.unitOrthogonal();
+  const Vec3 v_P = along_P.cross(u_P);
+  std::vector<Vec3> ring_P;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kPoints;
+    ring_P.push_back(
+        onto_skin(line_P.a + radius_mm * (std::cos(angle) * u_P + std::sin(angle) * v_P), along_P, skin_distance_mm));
+  }
+  return ring_P;
+}
+
+/// The ring's inside: a fan from its middle.
+TriangleMesh disc(const std::vector<Vec3>& ring_P, const Vec3& middle_P) {
+  TriangleMesh mesh;
+  mesh.vertices.push_back(middle_P.cast<float>());
+  for (const Vec3& p_P : ring_P) mesh.vertices.push_back(p_P.cast<float>());
+  for (std::uint32_t i = 1; i + 1 < mesh.vertices.size(); ++i) mesh.triangles.push_back({0, i + 1, i});
+  return mesh;
+}
+
+TriangleMesh dashes(const Segment& line_P) {
+  TriangleMesh all;
+  const double length_mm = line_P.length_mm();
+  for (double from_mm = -kOutside_mm; from_mm < length_mm - kTargetRadius_mm; from_mm += kDash_mm + kGap_mm) {
+    const double to_mm = std::min(from_mm + kDash_mm, length_mm);
+    const Vec3 ends_P[2] = {line_P.a + from_mm * line_P.direction(), line_P.a + to_mm * line_P.direction()};
+    const TriangleMesh dash = make_tube(ends_P, kPathRadius_mm, 10);
+    const auto first = static_cast<std::uint32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), dash.vertices.begin(), dash.vertices.end());
+    for (const auto& t : dash.triangles) all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  return all;
+}
+
+}  // namespace
+
+void GuideLayer::clear(Props& props) {
+  for (const auto& prop : props) renderer_.RemoveViewProp(prop);
+  props.clear();
+}
+
+void GuideLayer::add_mesh(Props& props, const TriangleMesh& mesh_P, const Rgb& color, double opacity, bool is_lit) {
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(make_mapper(to_polydata(mesh_P)));
+  apply(Appearance{color, opacity, 0.2, 0.35}, *actor);
+  actor->GetProperty()->BackfaceCullingOff();
+  if (!is_lit) make_unlit(*actor);
+  renderer_.AddActor(actor);
+  props.push_back(actor);
+}
+
+void GuideLayer::add_text(Props& props, const Vec3& p_P, const std::string& text, const Rgb& color) {
+  auto label = vtkSmartPointer<vtkBillboardTextActor3D>::New();
+  label->SetInput(text.c_str());
+  label->SetPosition(p_P.x(), p_P.y(), p_P.z());
+  label->SetDisplayOffset(8, 6);
+  label->ForceOpaqueOn();
+  vtkTextProperty& look = *label->GetTextProperty();
+  look.SetFontSize(13);
+  look.SetColor(color[0] / 255.0, color[1] / 255.0, color[2] / 255.0);
+  look.SetBackgroundColor(0.04, 0.05, 0.07);
+  look.SetBackgroundOpacity(1.0);
+  renderer_.AddActor(label);
+  props.push_back(label);
+}
+
+void GuideLayer::set_path(const std::optional<Segment>& line_P, double entry_radius_mm,
+                          const FloatGrid& skin_distance_mm) {
+  clear(path_);
+  if (!line_P || !(line_P->length_mm() > 0.0)) return;
+  add_mesh(path_, dashes(*line_P), kPathColor, 1.0, false);
+  add_mesh(path_, make_ball(line_P->b, kTargetRadius_mm), kTargetColor, 1.0, true);
+  const std::vector<Vec3> ring_P = entry_ring(*line_P, entry_radius_mm, skin_distance_mm);
+  add_mesh(path_, make_tube(ring_P, kRingRadius_mm, 8), kPathColor, 1.0, false);
+  add_mesh(path_, disc(ring_P, onto_skin(line_P->a, line_P->direction(), skin_distance_mm)), kPathColor, 0.3, false);
+  for (const auto& prop : path_) prop->SetVisibility(is_path_visible_);
+}
+
+void GuideLayer::set_landmarks(const std::vector<Landmark>& landmarks) {
+  clear(landmarks_);
+  for (const Landmark& landmark : landmarks) {
+    add_mesh(landmarks_, make_ball(landmark.p_P, kLandmarkRadius_mm), kLandmarkColor, 1.0, true);
+    add_text(landmarks_, landmark.p_P, landmark.name, kLandmarkColor);
+  }
+  for (const auto& prop : landmarks_) prop->SetVisibility(are_landmarks_visible_);
+}
+
+bool GuideLayer::set_path_visible(bool is_visible) {
+  if (is_visible == is_path_visible_) return false;
+  is_path_visible_ = is_visible;
+  for (const auto& prop : path_) prop->SetVisibility(is_visible);
+  return true;
+}
+
+bool GuideLayer::set_landmarks_visible(bool are_visible) {
+  if (are_visible == are_landmarks_visible_) return false;
+  are_landmarks_visible_ = are_visible;
+  for (const auto& prop : landmarks_) prop->SetVisibility(are_visible);
+  return true;
+}
+
+}  // namespace trocar::detail

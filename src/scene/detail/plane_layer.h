@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "geometry/segment.h"
+#include "scene/detail/drawing.h"
+#include "scene/mpr.h"
+
+namespace trocar::detail {
+
+/// The CT on planes along the needle.
+class PlaneLayer {
+ public:
+  explicit PlaneLayer(vtkRenderer& renderer);
+
+  void set_ct(const CtGrid* ct) noexcept;  ///< Kept, not copied; nullptr: none.
+  bool set_options(const MprOptions& options);
+  const MprOptions& options() const noexcept { return options_; }
+  /// Samples the planes anew where the needle or the options have changed; `pixels` along an edge.
+  void update(const std::optional<Segment>& needle_P, int pixels);
+
+ private:
+  void draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right_P, const Vec3& down_P, int pixels);
+
+  const CtGrid* ct_ = nullptr;
+  MprOptions options_;
+  std::array<PictureQuad, 3> quads_;
+  std::vector<float> hu_;
+  std::optional<Segment> drawn_for_P_;
+  int drawn_pixels_ = 0;
+};
+
+}  // namespace trocar::detail

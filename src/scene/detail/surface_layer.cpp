@@ -1,0 +1,184 @@
+#include "scene/detail/surface_layer.h"
+
+#include <vtkObjectFactory.h>
+#include <vtkOpenGLActor.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+
+#include <algorithm>
+
+#include "core/parallel.h"
+#include "scene/detail/simplify.h"
+
+namespace trocar::detail {
+namespace {
+
+/// Cells of the coarser levels, in mean edges.
+constexpr std::array<double, kMeshLevels> kCoarseness = {0.0, 2.0, 4.0};
+/// Meshes below are not made coarser: they cost nothing and would lose their shape.
+constexpr std::size_t kFewTriangles = 800;
+constexpr double kLeastOpacity = 0.004;
+
+/// A surface that is skipped once the frame is to be given up. Depth peeling draws each many times: this is where a
+/// slow frame can end early.
+class BreakableActor : public vtkOpenGLActor {
+ public:
+  static BreakableActor* New();
+  vtkTypeMacro(BreakableActor, vtkOpenGLActor);
+  void Render(vtkRenderer* renderer, vtkMapper* mapper) override {
+    if (frame_break == nullptr || !frame_break->is_wanted()) Superclass::Render(renderer, mapper);
+  }
+  FrameBreak* frame_break = nullptr;
+};
+vtkStandardNewMacro(BreakableActor)
+
+}  // namespace
+
+SurfaceLayer::SurfaceLayer(vtkRenderer& renderer, FrameBreak& frame_break)
+    : renderer_(renderer), frame_break_(frame_break) {}
+
+SurfaceLayer::~SurfaceLayer() {
+  if (loading_.valid()) loading_.wait();
+}
+
+std::vector<SurfaceLayer::Surface> SurfaceLayer::build(const std::vector<std::pair<std::string, Appearance>>& looks,
+                                                       const std::vector<NamedMesh>& meshes) {
+  std::vector<Surface> surfaces(looks.size());
+  parallel_for(looks.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const auto mesh =
+          std::find_if(meshes.begin(), meshes.end(), [&](const NamedMesh& m) { return m.name == looks[i].first; });
+      Surface& surface = surfaces[i];
+      surface.name = mesh->name;
+      surface.look = looks[i].second;
+      surface.levels[0] = to_polydata(mesh->mesh_P);
+      const bool has_few = mesh->mesh_P.triangles.size() < kFewTriangles;
+      for (std::size_t level = 1; level < surface.levels.size(); ++level) {
+        surface.levels[level] = has_few ? surface.levels[0] : to_polydata(simplify(mesh->mesh_P, kCoarseness[level]));
+      }
+      for (std::size_t level = 0; level < surface.levels.size(); ++level) {
+        surface.mappers[level] = make_mapper(surface.levels[level]);
+      }
+    }
+  });
+  return surfaces;
+}
+
+void SurfaceLayer::show(std::vector<StructureInfo> structures, std::shared_ptr<const std::vector<NamedMesh>> meshes,
+                        const LabelTable& table) {
+  if (loading_.valid()) loading_.get();
+  for (Surface& surface : surfaces_) renderer_.RemoveActor(surface.actor);
+  surfaces_.clear();
+  structures_ = std::move(structures);
+  std::vector<std::pair<std::string, Appearance>> looks;
+  for (const StructureInfo& info : structures_) {
+    looks.emplace_back(info.name, find_appearance(table, info.name).value_or(Appearance{info.color}));
+  }
+  loading_ = std::async(std::launch::async, [looks = std::move(looks), meshes] { return build(looks, *meshes); });
+}
+
+void SurfaceLayer::wait() {
+  if (loading_.valid()) loading_.wait();
+}
+
+bool SurfaceLayer::poll() {
+  if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  surfaces_ = loading_.get();
+  for (Surface& surface : surfaces_) {
+    auto actor = vtkSmartPointer<BreakableActor>::New();
+    actor->frame_break = &frame_break_;
+    surface.actor = actor;
+    make_glassy(*actor);
+    for (const auto& mapper : surface.mappers) {
+      if (is_cut_) mapper->AddClippingPlane(cut_);
+    }
+    update(surface);
+    renderer_.AddActor(actor);
+  }
+  return true;
+}
+
+StructureInfo* SurfaceLayer::find(std::string_view name) {
+  const auto found =
+      std::find_if(structures_.begin(), structures_.end(), [&](const StructureInfo& s) { return s.name == name; });
+  return found == structures_.end() ? nullptr : &*found;
+}
+
+void SurfaceLayer::update(Surface& surface) {
+  const double opacity = find(surface.name)->opacity;
+  Appearance look = surface.look;
+  look.opacity = opacity;
+  apply(look, *surface.actor);
+  // What is cut open shows its inside.
+  if (is_cut_) surface.actor->GetProperty()->BackfaceCullingOff();
+  surface.actor->SetMapper(surface.mappers[static_cast<std::size_t>(level_)]);
+  surface.actor->SetVisibility(is_visible_ && opacity > kLeastOpacity);
+}
+
+bool SurfaceLayer::set_opacity(std::string_view name, double opacity) {
+  StructureInfo* info = find(name);
+  const double bounded = std::clamp(opacity, 0.0, 1.0);
+  if (info == nullptr || info->opacity == bounded) return false;
+  info->opacity = bounded;
+  for (Surface& surface : surfaces_) {
+    if (surface.name == name) update(surface);
+  }
+  return true;
+}
+
+void SurfaceLayer::set_level(int level) {
+  if (level == level_) return;
+  level_ = level;
+  for (Surface& surface : surfaces_) update(surface);
+}
+
+void SurfaceLayer::set_visible(bool is_visible) {
+  if (is_visible == is_visible_) return;
+  is_visible_ = is_visible;
+  for (Surface& surface : surfaces_) update(surface);
+}
+
+void SurfaceLayer::set_cut(const std::optional<std::pair<Vec3, Vec3>>& plane_P) {
+  if (plane_P) {
+    cut_->SetOrigin(plane_P->first.x(), plane_P->first.y(), plane_P->first.z());
+    cut_->SetNormal(-plane_P->second.x(), -plane_P->second.y(), -plane_P->second.z());
+  }
+  if (plane_P.has_value() == is_cut_) return;
+  is_cut_ = plane_P.has_value();
+  for (Surface& surface : surfaces_) {
+    for (const auto& mapper : surface.mappers) {
+      mapper->RemoveAllClippingPlanes();
+      if (is_cut_) mapper->AddClippingPlane(cut_);
+    }
+    update(surface);
+  }
+}
+
+std::vector<Vec3> SurfaceLayer::outline_P() const {
+  std::vector<Vec3> points_P;
+  for (const bool only_shown : {true, false}) {
+    for (const Surface& surface : surfaces_) {
+      if (only_shown && surface.actor->GetVisibility() == 0) continue;
+      vtkPolyData& data = *surface.levels.back();
+      for (vtkIdType i = 0; i < data.GetNumberOfPoints(); ++i) points_P.emplace_back(data.GetPoint(i));
+    }
+    if (!points_P.empty()) break;
+  }
+  return points_P;
+}
+
+std::size_t SurfaceLayer::triangle_count(int level) const noexcept {
+  std::size_t count = 0;
+  for (const Surface& surface : surfaces_) {
+    if (surface.actor->GetVisibility() != 0) {
+      count += static_cast<std::size_t>(surface.levels[static_cast<std::size_t>(level)]->GetNumberOfPolys());
+    }
+  }
+  return count;
+}
+
+bool SurfaceLayer::has_actor(const vtkProp* prop) const {
+  return std::any_of(surfaces_.begin(), surfaces_.end(), [&](const Surface& s) { return s.actor.Get() == prop; });
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <vtkNew.h>
+#include <vtkPlane.h>
+
+#include <array>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/detail/drawing.h"
+#include "scene/detail_policy.h"
+
+namespace trocar::detail {
+
+/// Whether the frame being drawn is to be given up; asked before every surface.
+class FrameBreak {
+ public:
+  virtual ~FrameBreak() = default;
+  virtual bool is_wanted() = 0;
+};
+
+/// The patient's surfaces. Their drawable forms at all levels are made on a thread of their own; they appear when they
+/// are ready. All calls from the one thread that draws.
+class SurfaceLayer {
+ public:
+  SurfaceLayer(vtkRenderer& renderer, FrameBreak& frame_break);
+  ~SurfaceLayer();
+  SurfaceLayer(const SurfaceLayer&) = delete;
+  SurfaceLayer& operator=(const SurfaceLayer&) = delete;
+
+  void show(std::vector<StructureInfo> structures, std::shared_ptr<const std::vector<NamedMesh>> meshes,
+            const LabelTable& table);
+  /// Puts surfaces in the picture that have become ready; true when all are there and some are new.
+  bool poll();
+  void wait();
+  bool is_ready() const noexcept { return !loading_.valid(); }
+
+  const std::vector<StructureInfo>& structures() const noexcept { return structures_; }
+  /// True when it changed something; an unknown name changes nothing.
+  bool set_opacity(std::string_view name, double opacity);
+  void set_level(int level);
+  void set_visible(bool is_visible);
+  /// Leaves out what lies before the plane through p_P, on the side of `normal_P`; nothing: all is whole.
+  void set_cut(const std::optional<std::pair<Vec3, Vec3>>& plane_P);
+
+  /// Vertices of the shown surfaces, coarse; of all where none is shown.
+  std::vector<Vec3> outline_P() const;
+  std::size_t triangle_count(int level) const noexcept;
+  /// Nearest point on a shown surface along a ray, the translucent ones passed through where an opaque one lies behind.
+  bool has_actor(const vtkProp* prop) const;
+
+ private:
+  struct Surface {
+    std::string name;
+    Appearance look;
+    std::array<vtkSmartPointer<vtkPolyData>, kMeshLevels> levels;
+    std::array<vtkSmartPointer<vtkPolyDataMapper>, kMeshLevels> mappers;
+    vtkSmartPointer<vtkActor> actor;
+  };
+
+  static std::vector<Surface> build(const std::vector<std::pair<std::string, Appearance>>& looks,
+                                    const std::vector<NamedMesh>& meshes);
+  void update(Surface& surface);
+  StructureInfo* find(std::string_view name);
+
+  vtkRenderer& renderer_;
+  FrameBreak& frame_break_;
+  std::vector<StructureInfo> structures_;
+  std::vector<Surface> surfaces_;
+  std::future<std::vector<Surface>> loading_;
+  vtkNew<vtkPlane> cut_;
+  bool is_cut_ = false;
+  bool is_visible_ = true;
+  int level_ = 0;
+};
+
+}  // namespace trocar::detail

@@ -1,0 +1,138 @@
+#include "scene/detail/tool_layer.h"
+
+#include <vtkCellArray.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+
+namespace trocar::detail {
+namespace {
+
+/// Motion below is not seen: half a hundredth of a millimetre.
+constexpr double kUnseen_mm = 0.005;
+constexpr double kGhostOpacity = 0.3;
+constexpr double kGhostRadius_mm = 1.2;
+constexpr double kGhostHubRadius_mm = 4.0;
+constexpr double kGhostHub_mm = 22.0;
+constexpr Rgb kGhostColor = {150, 205, 255};
+/// A change of the least thickness below this share rebuilds nothing.
+constexpr double kThicknessStep = 0.15;
+
+vtkSmartPointer<vtkActor> make_tool(vtkRenderer& renderer) {
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  vtkNew<vtkPolyData> nothing;
+  auto mapper = make_mapper(nothing);
+  mapper->ScalarVisibilityOn();
+  mapper->SetColorModeToDirectScalars();
+  actor->SetMapper(mapper);
+  apply(Appearance{{255, 255, 255}, 1.0, 0.5, 0.16}, *actor);
+  actor->VisibilityOff();
+  renderer.AddActor(actor);
+  return actor;
+}
+
+bool are_close(std::span<const Vec3> a, std::span<const Vec3> b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                            [](const Vec3& p, const Vec3& q) { return (p - q).norm() < kUnseen_mm; });
+}
+
+void set_data(vtkActor& actor, vtkPolyData* data) {
+  static_cast<vtkPolyDataMapper*>(actor.GetMapper())->SetInputData(data);
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkPolyData> to_colored_polydata(std::span<const ShapePart> parts) {
+  TriangleMesh all;
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetNumberOfComponents(3);
+  for (const ShapePart& part : parts) {
+    const auto first = static_cast<std::uint32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
+    for (const auto& t : part.mesh.triangles) all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    for (std::size_t i = 0; i < part.mesh.vertices.size(); ++i) colors->InsertNextTypedTuple(part.color.data());
+  }
+  auto data = to_polydata(all);
+  data->GetPointData()->SetScalars(colors);
+  return data;
+}
+
+ToolLayer::ToolLayer(vtkRenderer& renderer)
+    : needle_(make_tool(renderer)), ghost_(make_tool(renderer)), transducer_(make_tool(renderer)) {
+  ghost_->GetProperty()->SetOpacity(kGhostOpacity);
+  ghost_->GetProperty()->BackfaceCullingOn();
+  renderer.AddActor(ultrasound_.actor());
+}
+
+bool ToolLayer::set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model) {
+  if (are_close(shaft_P, shaft_P_) && diameter_mm == diameter_mm_ && model == model_) return false;
+  shaft_P_.assign(shaft_P.begin(), shaft_P.end());
+  diameter_mm_ = diameter_mm;
+  model_ = model;
+  rebuild_needle();
+  return true;
+}
+
+void ToolLayer::rebuild_needle() {
+  needle_->SetVisibility(shaft_P_.size() >= 2);
+  if (shaft_P_.size() < 2) return;
+  set_data(*needle_, to_colored_polydata(make_needle_shape(shaft_P_, diameter_mm_, model_, least_mm_)));
+}
+
+void ToolLayer::set_least_thickness(double least_mm) {
+  if (std::max(least_mm, least_mm_) <= diameter_mm_) return;
+  if (std::abs(least_mm - least_mm_) <= kThicknessStep * least_mm_) return;
+  least_mm_ = least_mm;
+  rebuild_needle();
+}
+
+bool ToolLayer::set_hand(const std::optional<Segment>& ghost_P) {
+  if (!ghost_P && !ghost_P_) return false;
+  if (ghost_P && ghost_P_ && (ghost_P->a - ghost_P_->a).norm() < kUnseen_mm &&
+      (ghost_P->b - ghost_P_->b).norm() < kUnseen_mm)
+    return false;
+  ghost_P_ = ghost_P;
+  ghost_->SetVisibility(ghost_P.has_value());
+  if (!ghost_P) return true;
+  const Vec3 hub_end_P = ghost_P->a - kGhostHub_mm * ghost_P->direction();
+  const Vec3 shaft_P[2] = {ghost_P->a, ghost_P->b};
+  const Vec3 hub_P[2] = {hub_end_P, ghost_P->a};
+  const ShapePart parts[2] = {{make_tube(shaft_P, kGhostRadius_mm), kGhostColor},
+                              {make_tube(hub_P, kGhostHubRadius_mm), kGhostColor}};
+  set_data(*ghost_, to_colored_polydata(parts));
+  return true;
+}
+
+bool ToolLayer::set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face) {
+  const bool is_same_face = face_ == face;
+  if (!X_PT && !X_PT_) return false;
+  if (X_PT && X_PT_ && is_same_face && (X_PT->p() - X_PT_->p()).norm() < kUnseen_mm &&
+      (X_PT->R() - X_PT_->R()).norm() < 1e-5)
+    return false;
+  X_PT_ = X_PT;
+  transducer_->SetVisibility(X_PT.has_value());
+  if (!X_PT) return true;
+  if (!is_same_face) {
+    face_ = face;
+    set_data(*transducer_, to_colored_polydata(make_transducer_shape(face)));
+  }
+  vtkNew<vtkMatrix4x4> matrix;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) matrix->SetElement(row, column, X_PT->R()(row, column));
+    matrix->SetElement(row, 3, X_PT->p()[row]);
+  }
+  transducer_->SetUserMatrix(matrix);
+  return true;
+}
+
+std::optional<Segment> ToolLayer::needle_P() const noexcept {
+  if (shaft_P_.size() < 2) return std::nullopt;
+  return Segment{shaft_P_.front(), shaft_P_.back()};
+}
+
+}  // namespace trocar::detail

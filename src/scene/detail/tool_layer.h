@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "scene/detail/drawing.h"
+#include "scene/transducer_shape.h"
+
+namespace trocar::detail {
+
+/// Parts of one tool as one surface, each in its own colour.
+vtkSmartPointer<vtkPolyData> to_colored_polydata(std::span<const ShapePart> parts);
+
+/// Needle, ghost of the hand, and transducer with its picture.
+class ToolLayer {
+ public:
+  explicit ToolLayer(vtkRenderer& renderer);
+
+  // Each tells whether it changed the picture.
+  bool set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
+  bool set_hand(const std::optional<Segment>& ghost_P);
+  bool set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
+  /// Draws the needle no thinner than this.
+  void set_least_thickness(double least_mm);
+
+  PictureQuad& ultrasound() noexcept { return ultrasound_; }
+  /// Hub to tip, straight; nothing without a needle.
+  std::optional<Segment> needle_P() const noexcept;
+  const std::optional<Pose>& X_PT() const noexcept { return X_PT_; }
+
+ private:
+  void rebuild_needle();
+
+  std::vector<Vec3> shaft_P_;
+  double diameter_mm_ = 1.0;
+  NeedleModel model_ = NeedleModel::kChiba;
+  double least_mm_ = 0.0;
+  std::optional<Segment> ghost_P_;
+  std::optional<Pose> X_PT_;
+  std::optional<TransducerFace> face_;
+  vtkSmartPointer<vtkActor> needle_;
+  vtkSmartPointer<vtkActor> ghost_;
+  vtkSmartPointer<vtkActor> transducer_;
+  PictureQuad ultrasound_;
+};
+
+}  // namespace trocar::detail

@@ -1,0 +1,63 @@
+#include "scene/detail_policy.h"
+
+#include <algorithm>
+
+namespace trocar {
+namespace {
+
+/// One slow frame may be another program's doing; the second is a reason.
+constexpr int kSlowFrames = 2;
+/// So much above the target a single frame is enough.
+constexpr double kMuchTooSlow = 2.5;
+
+}  // namespace
+
+DetailPolicy::DetailPolicy(bool has_gpu, const DetailPolicyParams& params) : params_(params), has_gpu_(has_gpu) {}
+
+Detail DetailPolicy::moving(int level) noexcept {
+  switch (std::clamp(level, 0, kMovingLevels - 1)) {
+    case 0:
+      return {0, false, true, false, 1.0};
+    case 1:
+      return {1, false, false, false, 1.0};
+    case 2:
+      return {2, false, false, false, 1.0};
+    case 3:
+      return {2, false, false, false, 0.7};
+    default:
+      return {2, false, false, false, 0.5};
+  }
+}
+
+void DetailPolicy::note_motion(Time now) noexcept {
+  has_moved_ = true;
+  last_motion_ = now;
+}
+
+bool DetailPolicy::is_moving(Time now) const noexcept {
+  return has_moved_ && now - last_motion_ < params_.still_after;
+}
+
+Detail DetailPolicy::next(Time now) const noexcept {
+  return has_gpu_ || !is_moving(now) ? full() : moving(level_);
+}
+
+void DetailPolicy::note_frame(const Detail& detail, double frame_ms, Time now) noexcept {
+  if (has_gpu_ || detail != moving(level_)) return;
+  if (frame_ms > params_.target_ms) {
+    comfortable_frames_ = 0;
+    ++slow_frames_;
+    if (slow_frames_ < kSlowFrames && frame_ms < kMuchTooSlow * params_.target_ms) return;
+    slow_frames_ = 0;
+    if (level_ + 1 < kMovingLevels) ++level_;
+    no_finer_before_ = now + params_.retry_after;
+    return;
+  }
+  slow_frames_ = 0;
+  comfortable_frames_ = frame_ms < params_.comfort * params_.target_ms ? comfortable_frames_ + 1 : 0;
+  if (comfortable_frames_ < params_.patience_frames || now < no_finer_before_) return;
+  comfortable_frames_ = 0;
+  if (level_ > 0) --level_;
+}
+
+}  // namespace trocar

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <chrono>
+
+namespace trocar {
+
+/// How much work goes into a frame.
+struct Detail {
+  int mesh_level = 0;       ///< 0: all triangles; 1, 2: fewer.
+  bool is_peeled = true;    ///< Translucent surfaces in their right order, pixel by pixel.
+  bool is_smooth = true;    ///< Edges smoothed.
+  bool has_volume = true;   ///< The CT volume, where one is chosen; else surfaces stand in for it.
+  double resolution = 1.0;  ///< Of the picture against the window, 0.25..1.
+  bool operator==(const Detail&) const = default;
+};
+
+inline constexpr int kMeshLevels = 3;
+
+struct DetailPolicyParams {
+  double target_ms = 40.0;                        ///< A frame while something moves. Range 5..500.
+  double comfort = 0.55;                          ///< Below this share of the target more detail is tried.
+  int patience_frames = 20;                       ///< So many comfortable frames in a row. Range 1..1000.
+  std::chrono::milliseconds still_after{300};     ///< Without motion for so long: full quality.
+  std::chrono::milliseconds retry_after{10'000};  ///< A level that was too slow is not tried again before.
+};
+
+/// Chooses the detail of the next frame from what frames have cost. With a graphics card every frame is drawn in full.
+/// Without one the full quality waits until nothing has moved for a while; what moves is drawn at a level that keeps
+/// the frame time. Time is an argument.
+class DetailPolicy {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  explicit DetailPolicy(bool has_gpu, const DetailPolicyParams& params = {});
+
+  /// Something was moved at this time: tool, camera, opacity.
+  void note_motion(Time now) noexcept;
+  /// A frame of this detail has taken so long. One that was broken off is not told.
+  void note_frame(const Detail& detail, double frame_ms, Time now) noexcept;
+  /// Detail of a frame that begins now.
+  Detail next(Time now) const noexcept;
+  bool is_moving(Time now) const noexcept;
+  /// Level in use while things move: 0 is the finest.
+  int moving_level() const noexcept { return level_; }
+
+  static Detail full() noexcept { return {}; }
+  static Detail moving(int level) noexcept;
+  static constexpr int kMovingLevels = 5;
+
+ private:
+  DetailPolicyParams params_;
+  bool has_gpu_;
+  int level_ = 1;
+  int comfortable_frames_ = 0;
+  int slow_frames_ = 0;
+  bool has_moved_ = false;
+  Time last_motion_{};
+  Time no_finer_before_{};
+};
+
+}  // namespace trocar

@@ -1,0 +1,220 @@
+#include "scene/needle_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/check.h"
+#include "scene/detail/solids.h"
+
+namespace trocar {
+namespace {
+
+using detail::Ring;
+
+constexpr Rgb kSteel = {205, 212, 220};
+constexpr Rgb kDarkSteel = {96, 104, 114};
+constexpr Rgb kHubBlue = {46, 134, 171};
+constexpr Rgb kHubYellow = {226, 186, 60};
+constexpr Rgb kHubBlack = {54, 60, 70};
+constexpr Rgb kGunGreen = {44, 150, 110};
+constexpr Rgb kHandleGrey = {120, 130, 142};
+constexpr Rgb kWhite = {232, 236, 240};
+constexpr int kSides = 16;
+
+/// How a needle ends; lengths in shaft diameters.
+struct Tip {
+  double bevel = 0.0;     ///< Length of the slanted face.
+  double curve = 0.0;     ///< Sideways bend of the end (Tuohy).
+  bool is_point = false;  ///< Runs out to a three-sided point instead.
+};
+
+Tip tip_of(NeedleModel model) {
+  switch (model) {
+    case NeedleModel::kChiba:
+      return {2.1, 0.0, false};  // 25 degrees
+    case NeedleModel::kTuohy:
+      return {1.8, 0.6, false};
+    case NeedleModel::kQuincke:
+      return {2.6, 0.0, false};
+    case NeedleModel::kBiopsyGun:
+      return {2.7, 0.0, false};  // 20 degrees
+    case NeedleModel::kTrocar:
+      return {1.6, 0.0, true};
+  }
+  return {};
+}
+
+/// The frames along a line: z forward, turned as little as may be from one point to the next.
+std::vector<Pose> frames_along(std::span<const Vec3> line) {
+  std::vector<Pose> frames;
+  Mat3 R = Mat3::Identity();
+  Vec3 forward = Vec3::UnitZ();
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const Vec3 along = line[std::min(i + 1, line.size() - 1)] - line[i == 0 ? 0 : i - 1];
+    const Vec3 next = along.norm() > 1e-9 ? Vec3(along.normalized()) : forward;
+    R = rotation_between(forward, next) * R;
+    forward = next;
+    frames.emplace_back(R, line[i]);
+  }
+  return frames;
+}
+
+std::vector<Vec3> circle(const Pose& X_AL, double radius_mm, int sides) {
+  std::vector<Vec3> points;
+  for (int s = 0; s < sides; ++s) {
+    const double angle = 2.0 * std::numbers::pi * s / sides;
+    points.push_back(X_AL * Vec3(radius_mm * std::cos(angle), radius_mm * std::sin(angle), 0.0));
+  }
+  return points;
+}
+
+/// As many points as of a circle on a triangle with corners at `radius_mm`.
+std::vector<Vec3> triangle(const Pose& X_AL, double radius_mm, int sides) {
+  constexpr double kCorner_rad = 2.0 * std::numbers::pi / 3.0;
+  std::vector<Vec3> points;
+  for (int s = 0; s < sides; ++s) {
+    const double angle = 2.0 * std::numbers::pi * s / sides;
+    const double from_side_middle = std::fmod(angle, kCorner_rad) - 0.5 * kCorner_rad;
+    const double r = radius_mm * std::cos(0.5 * kCorner_rad) / std::cos(from_side_middle);
+    points.push_back(X_AL * Vec3(r * std::cos(angle), r * std::sin(angle), 0.0));
+  }
+  return points;
+}
+
+/// The shaft, its last ring cut to the tip's shape: the bevel's longest point lies at the line's end.
+TriangleMesh make_shaft(std::span<const Vec3> line, double diameter_mm, const Tip& tip) {
+  const double radius_mm = 0.5 * diameter_mm;
+  const std::vector<Pose> frames = frames_along(line);
+  std::vector<std::vector<Vec3>> rings;
+  const Pose& X_AEnd = frames.back();
+  const double length_mm = tip.bevel * diameter_mm;
+  const auto before_tip = [&](const Pose& X) { return -(X_AEnd.inverse() * X.p()).z() > 1.2 * length_mm; };
+  for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
+    if (i == 0 || before_tip(frames[i])) rings.push_back(circle(frames[i], radius_mm, kSides));
+  }
+  const Vec3 lift = tip.curve * diameter_mm * Vec3::UnitY();
+  rings.push_back(circle(X_AEnd * Pose::translation(Vec3(0, 0, -1.15 * length_mm)), radius_mm, kSides));
+  if (tip.is_point) {
+    rings.push_back(triangle(X_AEnd * Pose::translation(Vec3(0, 0, -0.8 * length_mm)), 0.8 * radius_mm, kSides));
+    rings.push_back(triangle(X_AEnd, 0.02 * radius_mm, kSides));
+    return detail::make_loft(rings);
+  }
+  std::vector<Vec3> cut;
+  for (int s = 0; s < kSides; ++s) {
+    const double angle = 2.0 * std::numbers::pi * s / kSides;
+    const double back_mm = 0.5 * length_mm * (1.0 + std::sin(angle));  // the face looks along +y
+    const double share = 1.0 - back_mm / std::max(length_mm, 1e-9);
+    cut.push_back(X_AEnd *
+                  (Vec3(radius_mm * std::cos(angle), radius_mm * std::sin(angle), -back_mm) + share * share * lift));
+  }
+  rings.push_back(std::move(cut));
+  return detail::make_loft(rings);
+}
+
+void add_turned(std::vector<ShapePart>& parts, const Pose& X_AL, std::initializer_list<Ring> rings, const Rgb& color,
+                double specular = 0.4) {
+  parts.push_back({detail::make_turned(X_AL, std::vector<Ring>(rings)), color, specular});
+}
+
+void add_box(std::vector<ShapePart>& parts, const Pose& X_AL, const Vec3& middle, const Vec3& half_mm, double corner_mm,
+             const Rgb& color) {
+  parts.push_back({detail::make_box(X_AL * Pose::translation(middle), half_mm, corner_mm), color, 0.35});
+}
+
+/// Dark rings every 10 mm of the shaft, as depth marks.
+void add_depth_marks(std::vector<ShapePart>& parts, std::span<const Vec3> line, double diameter_mm) {
+  constexpr double kStep_mm = 10.0;
+  constexpr double kWidth_mm = 1.0;
+  double from_tip_mm = 0.0;
+  double next_mm = kStep_mm;
+  for (std::size_t i = line.size() - 1; i > 0; --i) {
+    const Vec3 back = line[i - 1] - line[i];
+    const double length_mm = back.norm();
+    for (; length_mm > 1e-9 && next_mm < from_tip_mm + length_mm - kWidth_mm; next_mm += kStep_mm) {
+      const Vec3 middle = line[i] + (next_mm - from_tip_mm) / length_mm * back;
+      const Vec3 half = 0.5 * kWidth_mm / length_mm * back;
+      const Vec3 ends[2] = {middle + half, middle - half};
+      parts.push_back({make_tube(ends, 0.54 * diameter_mm, kSides), kDarkSteel, 0.2});
+    }
+    from_tip_mm += length_mm;
+  }
+}
+
+/// Hubs are built on the pose of the shaft's first point: z towards the tip, so that they lie at negative z.
+void add_hub(std::vector<ShapePart>& parts, const Pose& X_AH, NeedleModel model, double diameter_mm) {
+  switch (model) {
+    case NeedleModel::kChiba:
+      add_turned(parts, X_AH, {{-22, 3.6}, {-19, 3.6}, {-18.6, 3.0}, {-8, 2.6}, {-2, 1.8}, {0, 0.9}}, kHubBlue);
+      add_turned(parts, X_AH, {{-29, 2.4}, {-28.4, 3.2}, {-22.5, 3.2}, {-22, 2.6}}, kWhite);
+      return;
+    case NeedleModel::kTuohy:
+      add_turned(parts, X_AH, {{-26, 3.4}, {-24, 3.4}, {-23, 2.8}, {-6, 2.6}, {0, 1.2}}, kHubYellow);
+      add_box(parts, X_AH, {0, 0, -9}, {17.0, 0.9, 4.5}, 0.8, kHubYellow);
+      add_turned(parts, X_AH, {{-31, 2.6}, {-26, 2.8}}, kWhite);
+      return;
+    case NeedleModel::kQuincke:
+      add_turned(parts, X_AH, {{-17, 3.4}, {-15.5, 3.4}, {-15, 2.5}, {-4, 2.1}, {0, 0.9}}, kHubBlack);
+      add_box(parts, X_AH, {0, 0, -22}, {3.2, 1.4, 5.0}, 1.2, kHubBlack);
+      return;
+    case NeedleModel::kBiopsyGun:
+      add_turned(parts, X_AH, {{-14, 4.2}, {-4, 3.4}, {0, 1.6}}, kWhite);
+      add_box(parts, X_AH, {0, 0, -74}, {11.0, 8.0, 60.0}, 4.0, kGunGreen);
+      add_box(parts, X_AH, {0, 8.5, -60}, {5.5, 1.5, 14.0}, 1.4, kWhite);
+      add_turned(parts, X_AH, {{-146, 6.5}, {-144, 7.0}, {-138, 7.0}, {-134, 5.0}}, kHandleGrey);
+      return;
+    case NeedleModel::kTrocar: {
+      const double collar_mm = std::max(6.0, 2.2 * diameter_mm);
+      add_turned(parts, X_AH, {{-8, 0.8 * collar_mm}, {-6, collar_mm}, {-2, collar_mm}, {0, 0.6 * collar_mm}},
+                 kHandleGrey);
+      add_turned(parts, X_AH, {{-26, 5.0}, {-8, 4.4}}, kSteel, 0.7);
+      add_turned(parts, X_AH,
+                 {{-52, 2.0}, {-51, 6.0}, {-48, 10.0}, {-43, 13.0}, {-38, 14.0}, {-32, 12.5}, {-28, 9.0}, {-25, 5.0}},
+                 kHubBlack);
+      return;
+    }
+  }
+}
+
+/// The notch of a biopsy stylet: a dark flat bed that shows on the bevel's side, behind the tip.
+void add_notch(std::vector<ShapePart>& parts, const Pose& X_AEnd, double diameter_mm) {
+  constexpr double kDeadSpace_mm = 3.0;
+  constexpr double kNotch_mm = 19.0;
+  const Pose X_AMiddle = X_AEnd * Pose::translation(Vec3(0, 0.36 * diameter_mm, -kDeadSpace_mm - 0.5 * kNotch_mm));
+  parts.push_back(
+      {detail::make_box(X_AMiddle, Vec3(0.36 * diameter_mm, 0.18 * diameter_mm, 0.5 * kNotch_mm)), kDarkSteel, 0.1});
+}
+
+}  // namespace
+
+std::vector<ShapePart> make_needle_shape(std::span<const Vec3> shaft, double diameter_mm, NeedleModel model,
+                                         double least_diameter_mm) {
+  TROCAR_CHECK(shaft.size() >= 2);
+  const double shown_mm = std::max(diameter_mm, least_diameter_mm);
+  const std::vector<Pose> frames = frames_along(shaft);
+  std::vector<ShapePart> parts;
+  parts.push_back({make_shaft(shaft, shown_mm, tip_of(model)), kSteel, 0.8});
+  add_hub(parts, frames.front(), model, diameter_mm);
+  if (model == NeedleModel::kChiba || model == NeedleModel::kTuohy) add_depth_marks(parts, shaft, shown_mm);
+  if (model == NeedleModel::kBiopsyGun) add_notch(parts, frames.back(), shown_mm);
+  return parts;
+}
+
+TriangleMesh make_tube(std::span<const Vec3> line, double radius_mm, int sides) {
+  TROCAR_CHECK(line.size() >= 2);
+  std::vector<std::vector<Vec3>> rings;
+  for (const Pose& frame : frames_along(line)) rings.push_back(circle(frame, radius_mm, sides));
+  return detail::make_loft(rings);
+}
+
+TriangleMesh make_ball(const Vec3& center, double radius_mm) {
+  constexpr int kRings = 12;
+  std::vector<Ring> rings;
+  for (int i = 0; i <= kRings; ++i) {
+    const double angle = std::numbers::pi * i / kRings;
+    rings.push_back({-radius_mm * std::cos(angle), radius_mm * std::max(1e-3, std::sin(angle))});
+  }
+  return detail::make_turned(Pose::translation(center), rings);
+}
+
+}  // namespace trocar

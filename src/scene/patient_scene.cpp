@@ -1,0 +1,421 @@
+#include "scene/patient_scene.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkNew.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "scene/detail/display.h"
+#include "scene/detail/guide_layer.h"
+#include "scene/detail/pick.h"
+#include "scene/detail/plane_layer.h"
+#include "scene/detail/surface_layer.h"
+#include "scene/detail/tool_layer.h"
+#include "scene/detail/volume_layer.h"
+
+namespace trocar {
+namespace {
+
+constexpr int kPeels = 6;
+/// A needle is drawn at least so many pixels thick.
+constexpr double kLeastNeedle_px = 2.6;
+constexpr int kPlanePixels = 320;
+constexpr int kPlanePixelsMoving = 192;
+/// A cut leaves the needle and so much before it whole.
+constexpr double kCutBeforeNeedle_mm = 1.5;
+
+/// Asks the caller of `render` and stays at a yes until the frame is over.
+class CallersBreak : public detail::FrameBreak {
+ public:
+  bool is_wanted() override {
+    if (!has_broken_ && wants_break_ && *wants_break_ && (*wants_break_)()) has_broken_ = true;
+    return has_broken_;
+  }
+  void begin(const std::function<bool()>& wants_break) {
+    wants_break_ = &wants_break;
+    has_broken_ = false;
+  }
+  void end() noexcept { wants_break_ = nullptr; }
+  bool has_broken() const noexcept { return has_broken_; }
+
+ private:
+  const std::function<bool()>* wants_break_ = nullptr;
+  bool has_broken_ = false;
+};
+
+int to_vtk(StereoMode mode) {
+  switch (mode) {
+    case StereoMode::kQuadBuffer:
+      return VTK_STEREO_CRYSTAL_EYES;
+    case StereoMode::kAnaglyph:
+      return VTK_STEREO_ANAGLYPH;
+    case StereoMode::kSideBySide:
+      return VTK_STEREO_SPLITVIEWPORT_HORIZONTAL;
+    case StereoMode::kInterlaced:
+      return VTK_STEREO_INTERLACED;
+    case StereoMode::kOff:
+      break;
+  }
+  return VTK_STEREO_CRYSTAL_EYES;
+}
+
+RgbImage mirrored(const RgbImage& image, bool left_right, bool up_down) {
+  if (!left_right && !up_down) return image;
+  RgbImage result(image.columns, image.rows);
+  for (int row = 0; row < image.rows; ++row) {
+    for (int column = 0; column < image.columns; ++column) {
+      result.at(left_right ? image.columns - 1 - column : column, up_down ? image.rows - 1 - row : row) =
+          image.at(column, row);
+    }
+  }
+  return result;
+}
+
+std::string renderer_of(vtkRenderWindow& window) {
+  constexpr std::string_view kKey = "OpenGL renderer string:";
+  const char* report = window.ReportCapabilities();
+  const std::string text = report == nullptr ? "" : report;
+  const auto at = text.find(kKey);
+  if (at == std::string::npos) return {};
+  const auto first = text.find_first_not_of(' ', at + kKey.size());
+  return first == std::string::npos ? std::string() : text.substr(first, text.find('\n', first) - first);
+}
+
+}  // namespace
+
+struct PatientScene::Impl {
+  explicit Impl(vtkRenderWindow& a_window) : window(&a_window) {
+    detail::add_studio(*renderer);
+    renderer->SetMaximumNumberOfPeels(kPeels);
+    renderer->SetOcclusionRatio(0.01);
+    window->SetMultiSamples(0);
+    window->SetAlphaBitPlanes(1);
+    window->AddRenderer(renderer);
+    abort_check->SetClientData(this);
+    abort_check->SetCallback([](vtkObject*, unsigned long, void* client, void*) {
+      auto& impl = *static_cast<Impl*>(client);
+      if (impl.frame_break.is_wanted()) impl.window->SetAbortRender(1);
+    });
+    abort_tag = window->AddObserver(vtkCommand::AbortCheckEvent, abort_check);
+  }
+  ~Impl() {
+    window->RemoveObserver(abort_tag);
+    window->RemoveRenderer(renderer);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  double aspect() const {
+    const int* size = window->GetSize();
+    return static_cast<double>(std::max(1, size[0])) / std::max(1, size[1]);
+  }
+  void poll();
+  void place_camera(int rows);
+  void prepare(const Detail& detail);
+  void set_up_stereo();
+
+  vtkSmartPointer<vtkRenderWindow> window;
+  vtkNew<vtkRenderer> renderer;
+  vtkNew<vtkCallbackCommand> abort_check;
+  unsigned long abort_tag = 0;
+  CallersBreak frame_break;
+  std::shared_ptr<const VirtualPatient> patient;
+  std::shared_ptr<const std::vector<NamedMesh>> meshes;
+  std::string around_name;
+  detail::SurfaceLayer surfaces{*renderer.Get(), frame_break};
+  detail::ToolLayer tools{*renderer.Get()};
+  detail::GuideLayer guides{*renderer.Get()};
+  detail::PlaneLayer planes{*renderer.Get()};
+  detail::VolumeLayer volume{*renderer.Get()};
+  CameraView view;
+  std::optional<CameraPreset> wanted_preset;  ///< Applied when there is something to look at.
+  FollowMode follow = FollowMode::kFree;
+  bool is_follow_new = false;
+  StereoOptions stereo;
+  std::string renderer_name;
+  bool has_changed = true;
+};
+
+void PatientScene::Impl::poll() {
+  if (surfaces.poll()) has_changed = true;
+  if (volume.poll()) has_changed = true;
+  if (wanted_preset && surfaces.is_ready()) {
+    const std::vector<Vec3> outline_P = surfaces.outline_P();
+    if (outline_P.empty()) return;
+    view = fit_camera(outline_P, *wanted_preset, aspect());
+    wanted_preset.reset();
+    has_changed = true;
+  }
+}
+
+void PatientScene::Impl::place_camera(int rows) {
+  const auto needle_P = tools.needle_P();
+  if (needle_P && follow != FollowMode::kFree) {
+    view = following(view, follow, *needle_P, is_follow_new);
+    is_follow_new = false;
+  }
+  if (follow == FollowMode::kSide && needle_P) {
+    const Vec3 back_P = -view.forward_P();
+    surfaces.set_cut(std::pair(Vec3(needle_P->b + kCutBeforeNeedle_mm * back_P), back_P));
+  } else {
+    surfaces.set_cut(std::nullopt);
+  }
+  if (needle_P) tools.set_least_thickness(kLeastNeedle_px * view.mm_per_pixel(needle_P->b, rows));
+}
+
+void PatientScene::Impl::set_up_stereo() {
+  const bool is_on = stereo.mode != StereoMode::kOff;
+  if (is_on) window->SetStereoType(to_vtk(stereo.mode));
+  window->SetStereoRender(is_on);
+  renderer->GetActiveCamera()->SetEyeAngle(stereo.swaps_eyes ? -stereo.eye_angle_deg : stereo.eye_angle_deg);
+}
+
+void PatientScene::Impl::prepare(const Detail& detail) {
+  const bool draws_volume = detail.has_volume && volume.is_ready();
+  place_camera(window->GetSize()[1]);
+  planes.update(tools.needle_P(), detail == DetailPolicy::full() ? kPlanePixels : kPlanePixelsMoving);
+  surfaces.set_level(detail.mesh_level);
+  surfaces.set_visible(!draws_volume);
+  volume.set_visible(draws_volume);
+  renderer->SetUseDepthPeeling(detail.is_peeled);
+  renderer->SetUseFXAA(detail.is_smooth);
+  CameraView shown = view;
+  if (stereo.mode != StereoMode::kOff) shown.focus_P += stereo.focus_shift * (view.focus_P - view.eye_P);
+  detail::apply(shown, *renderer);
+  set_up_stereo();
+}
+
+PatientScene::PatientScene() = default;
+PatientScene::PatientScene(vtkRenderWindow& window) : impl_(std::make_unique<Impl>(window)) {}
+PatientScene::~PatientScene() = default;
+
+Result<std::unique_ptr<PatientScene>> PatientScene::make_off_screen(int columns, int rows) {
+  if (!detail::has_opengl_display()) {
+    return fail("3D pictures need an X server, and there is none", "DISPLAY", "start the program under xvfb-run");
+  }
+  vtkNew<vtkRenderWindow> window;
+  window->SetShowWindow(false);
+  window->SetOffScreenRendering(1);
+  window->SetSize(columns, rows);
+  std::unique_ptr<PatientScene> scene(new PatientScene());
+  scene->impl_ = std::make_unique<Impl>(*window);
+  return scene;
+}
+
+void PatientScene::show_patient(std::shared_ptr<const VirtualPatient> patient,
+                                std::shared_ptr<const std::vector<NamedMesh>> meshes) {
+  Impl& s = *impl_;
+  std::string target_name;
+  s.around_name.clear();
+  if (!patient->paths.empty()) {
+    const Vec3& target_P = patient->paths.front().line_P.b;
+    target_name = find_target_name(*patient, target_P);
+    s.around_name = find_name_around(*patient, target_P);
+  }
+  s.surfaces.show(describe_structures(patient->label_table, *meshes, target_name, s.around_name), meshes,
+                  patient->label_table);
+  s.planes.set_ct(&patient->ct);
+  s.guides.set_landmarks(patient->landmarks);
+  s.volume.set_patient(patient);
+  s.patient = std::move(patient);
+  s.meshes = std::move(meshes);
+  s.wanted_preset = CameraPreset::kRightAnteriorOblique;
+  s.has_changed = true;
+}
+
+bool PatientScene::is_ready() const noexcept {
+  return impl_->surfaces.is_ready();
+}
+
+void PatientScene::finish_loading() {
+  impl_->surfaces.wait();
+  impl_->volume.wait();
+  impl_->poll();
+}
+
+const std::vector<StructureInfo>& PatientScene::structures() const noexcept {
+  return impl_->surfaces.structures();
+}
+
+void PatientScene::set_opacity(std::string_view name, double opacity) {
+  if (impl_->surfaces.set_opacity(name, opacity)) impl_->has_changed = true;
+}
+
+void PatientScene::apply_preset(StructurePreset preset) {
+  const std::vector<StructureInfo> structures = impl_->surfaces.structures();
+  for (const StructureInfo& structure : structures) {
+    set_opacity(structure.name, preset_opacity(structure, preset, impl_->around_name));
+  }
+}
+
+void PatientScene::set_path(const std::optional<Segment>& line_P, double entry_radius_mm) {
+  static const FloatGrid kNoSkin;
+  impl_->guides.set_path(line_P, entry_radius_mm, impl_->patient ? impl_->patient->skin_distance_mm : kNoSkin);
+  impl_->has_changed = true;
+}
+
+void PatientScene::set_guidance_visible(bool is_visible) {
+  if (impl_->guides.set_path_visible(is_visible)) impl_->has_changed = true;
+}
+
+void PatientScene::set_landmarks_visible(bool are_visible) {
+  if (impl_->guides.set_landmarks_visible(are_visible)) impl_->has_changed = true;
+}
+
+void PatientScene::set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model) {
+  if (impl_->tools.set_needle(shaft_P, diameter_mm, model)) impl_->has_changed = true;
+}
+
+void PatientScene::set_hand(const std::optional<Segment>& ghost_P) {
+  if (impl_->tools.set_hand(ghost_P)) impl_->has_changed = true;
+}
+
+void PatientScene::set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face) {
+  if (impl_->tools.set_transducer(X_PT, face)) impl_->has_changed = true;
+}
+
+void PatientScene::set_ultrasound(const RgbImage& picture, std::span<const std::uint8_t> alpha,
+                                  const std::array<Vec3, 3>& corners_P) {
+  if (picture.pixels.empty()) return hide_ultrasound();
+  TROCAR_CHECK(alpha.empty() || alpha.size() == picture.pixels.size());
+  const std::span<std::uint8_t> rgba = impl_->tools.ultrasound().resize(picture.columns, picture.rows);
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    std::copy(picture.pixels[i].begin(), picture.pixels[i].end(), rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
+    rgba[4 * i + 3] = alpha.empty() ? std::uint8_t{255} : alpha[i];
+  }
+  impl_->tools.ultrasound().show(corners_P);
+  impl_->has_changed = true;
+}
+
+void PatientScene::hide_ultrasound() {
+  impl_->tools.ultrasound().hide();
+  impl_->has_changed = true;
+}
+
+void PatientScene::set_mpr(const MprOptions& options) {
+  if (impl_->planes.set_options(options)) impl_->has_changed = true;
+}
+
+const MprOptions& PatientScene::mpr() const noexcept {
+  return impl_->planes.options();
+}
+
+void PatientScene::set_volume_preset(VolumePreset preset) {
+  if (impl_->volume.set_preset(preset, has_gpu())) impl_->has_changed = true;
+}
+
+VolumePreset PatientScene::volume_preset() const noexcept {
+  return impl_->volume.preset();
+}
+
+void PatientScene::set_camera(CameraPreset preset) {
+  impl_->follow = FollowMode::kFree;
+  impl_->wanted_preset = preset;
+  impl_->has_changed = true;
+}
+
+void PatientScene::set_view(const CameraView& view) {
+  impl_->view = view;
+  impl_->wanted_preset.reset();
+  impl_->has_changed = true;
+}
+
+const CameraView& PatientScene::view() const noexcept {
+  return impl_->view;
+}
+
+void PatientScene::set_follow(FollowMode mode) {
+  if (mode == impl_->follow) return;
+  impl_->follow = mode;
+  impl_->is_follow_new = true;
+  impl_->has_changed = true;
+}
+
+FollowMode PatientScene::follow() const noexcept {
+  return impl_->follow;
+}
+
+void PatientScene::set_stereo(const StereoOptions& options) {
+  if (options == impl_->stereo) return;
+  impl_->stereo = options;
+  impl_->has_changed = true;
+}
+
+const StereoOptions& PatientScene::stereo() const noexcept {
+  return impl_->stereo;
+}
+
+bool PatientScene::has_quad_buffer() const {
+  return impl_->window->GetStereoCapableWindow() != 0;
+}
+
+void PatientScene::poll() {
+  impl_->poll();
+}
+
+bool PatientScene::has_changed() const noexcept {
+  return impl_->has_changed;
+}
+
+bool PatientScene::render(const Detail& detail, const std::function<bool()>& wants_break) {
+  Impl& s = *impl_;
+  s.poll();
+  s.prepare(detail);
+  s.frame_break.begin(wants_break);
+  s.window->SetAbortRender(0);
+  s.window->Render();
+  s.frame_break.end();
+  if (s.renderer_name.empty()) s.renderer_name = renderer_of(*s.window);
+  if (s.frame_break.has_broken()) return false;
+  s.has_changed = false;
+  return true;
+}
+
+RgbImage PatientScene::picture() const {
+  const int* size = impl_->window->GetSize();
+  return mirrored(detail::read_picture(*impl_->window, size[0], size[1], 1), impl_->stereo.is_mirrored_left_right,
+                  impl_->stereo.is_mirrored_up_down);
+}
+
+std::optional<Vec3> PatientScene::pick(double right, double down) {
+  Impl& s = *impl_;
+  if (s.meshes == nullptr) return std::nullopt;
+  const CameraView& view = s.view;
+  const double half_height = std::tan(0.5 * view.view_angle_rad);
+  const Vec3 ray_P = (view.forward_P() + (1.0 - 2.0 * down) * half_height * view.up_P +
+                      (2.0 * right - 1.0) * half_height * s.aspect() * view.right_P())
+                         .normalized();
+  std::optional<double> nearest_mm;
+  for (const StructureInfo& structure : s.surfaces.structures()) {
+    if (structure.opacity <= 0.0) continue;
+    const auto mesh =
+        std::find_if(s.meshes->begin(), s.meshes->end(), [&](const NamedMesh& m) { return m.name == structure.name; });
+    const auto hit_mm = detail::first_hit_mm(mesh->mesh_P, view.eye_P, ray_P);
+    if (hit_mm && (!nearest_mm || *hit_mm < *nearest_mm)) nearest_mm = hit_mm;
+  }
+  if (!nearest_mm) return std::nullopt;
+  return Vec3(view.eye_P + *nearest_mm * ray_P);
+}
+
+std::string PatientScene::renderer_name() const {
+  return impl_->renderer_name;
+}
+
+bool PatientScene::has_gpu() const {
+  const std::string& name = impl_->renderer_name;
+  const auto is_by_processor = [&](const char* part) { return name.find(part) != std::string::npos; };
+  return !name.empty() && !is_by_processor("llvmpipe") && !is_by_processor("softpipe") && !is_by_processor("swrast") &&
+         !is_by_processor("SWR") && !is_by_processor("Software");
+}
+
+std::size_t PatientScene::triangle_count(int mesh_level) const noexcept {
+  return impl_->surfaces.triangle_count(mesh_level);
+}
+
+}  // namespace trocar

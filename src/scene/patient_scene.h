@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+#include "geometry/pose.h"
+#include "scene/camera.h"
+#include "scene/detail_policy.h"
+#include "scene/mpr.h"
+#include "scene/needle_shape.h"
+#include "scene/stereo.h"
+#include "scene/structure.h"
+#include "scene/transducer_shape.h"
+#include "scene/volume_preset.h"
+
+class vtkRenderWindow;
+
+namespace trocar {
+
+/// A patient with tools and guidance, drawn as often as one likes. Everything is in P (mm). All calls from the thread
+/// of the window's OpenGL context; surfaces and volume are prepared on threads of their own and appear when they are
+/// ready.
+class PatientScene {
+ public:
+  /// Draws into a window, which outlives the scene.
+  explicit PatientScene(vtkRenderWindow& window);
+  /// Draws off-screen. An error without an X server.
+  static Result<std::unique_ptr<PatientScene>> make_off_screen(int columns, int rows);
+  ~PatientScene();
+  PatientScene(const PatientScene&) = delete;
+  PatientScene& operator=(const PatientScene&) = delete;
+
+  void show_patient(std::shared_ptr<const VirtualPatient> patient,
+                    std::shared_ptr<const std::vector<NamedMesh>> meshes);
+  bool is_ready() const noexcept;  ///< The surfaces are there.
+  void finish_loading();           ///< Waits for surfaces and volume.
+
+  const std::vector<StructureInfo>& structures() const noexcept;
+  void set_opacity(std::string_view name, double opacity);
+  void apply_preset(StructurePreset preset);
+
+  void set_path(const std::optional<Segment>& line_P, double entry_radius_mm);
+  void set_guidance_visible(bool is_visible);
+  void set_landmarks_visible(bool are_visible);
+  /// Fewer than two points: no needle.
+  void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
+  void set_hand(const std::optional<Segment>& ghost_P);
+  void set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
+  /// A picture in space; corners of its outline: top left, top right, bottom left. `alpha`, one byte a pixel or empty
+  /// (all shown), is 0 where nothing is to be seen.
+  void set_ultrasound(const RgbImage& picture, std::span<const std::uint8_t> alpha,
+                      const std::array<Vec3, 3>& corners_P);
+  void hide_ultrasound();
+  void set_mpr(const MprOptions& options);
+  const MprOptions& mpr() const noexcept;
+  void set_volume_preset(VolumePreset preset);
+  VolumePreset volume_preset() const noexcept;
+
+  void set_camera(CameraPreset preset);
+  void set_view(const CameraView& view);
+  const CameraView& view() const noexcept;
+  void set_follow(FollowMode mode);
+  FollowMode follow() const noexcept;
+
+  void set_stereo(const StereoOptions& options);
+  const StereoOptions& stereo() const noexcept;
+  /// Whether the window has buffers for two eyes.
+  bool has_quad_buffer() const;
+
+  /// Takes over surfaces and volume that have become ready.
+  void poll();
+  /// Something was set, or has become ready, since the last whole frame.
+  bool has_changed() const noexcept;
+  /// Draws a frame. `wants_break` (may be empty) is asked many times; once it says yes the frame is given up, what is
+  /// in the window is then of no use, and false is returned.
+  bool render(const Detail& detail, const std::function<bool()>& wants_break = {});
+  /// The window's picture after `render`, as a mirror wants it where one is set.
+  RgbImage picture() const;
+
+  /// First surface, tool or plane at a place of the window (shares of its width and height from the top left), in P.
+  std::optional<Vec3> pick(double right, double down);
+
+  /// What draws, by OpenGL's own name ("llvmpipe (LLVM 15.0.6, 256 bits)"); known after the first frame.
+  std::string renderer_name() const;
+  /// Not drawn by the processor. Known after the first frame; until then false.
+  bool has_gpu() const;
+  std::size_t triangle_count(int mesh_level) const noexcept;
+
+ private:
+  PatientScene();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace trocar

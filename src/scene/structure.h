@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/patient.h"
+
+namespace trocar {
+
+/// What a structure counts as when many are shown or hidden together.
+enum class StructureKind { kSkin, kBone, kVessel, kLung, kHollowOrgan, kOrgan, kMuscle, kTarget };
+
+/// A surface of the patient and how it is shown.
+struct StructureInfo {
+  std::string name;  ///< The label's, or "skin".
+  StructureKind kind = StructureKind::kOrgan;
+  Rgb color{200, 200, 200};
+  double opacity = 1.0;          ///< 0 (not drawn) .. 1.
+  double default_opacity = 1.0;  ///< That it begins with.
+};
+
+/// Which structures are seen.
+enum class StructurePreset {
+  kAll,       ///< Each with its default opacity.
+  kSkinOnly,  ///< The opaque skin.
+  kBones,     ///< Bones and cartilage.
+  kVessels,   ///< Vessels and the target, in faint bones.
+  kTarget,    ///< The target, the organ around it translucent, and vessels.
+};
+
+/// All surfaces with kind, colour and default opacity, skin first, then by kind and name. `target_name` is the
+/// structure that is aimed at (find_target_name), `around_name` the organ around it; both may be empty.
+std::vector<StructureInfo> describe_structures(const LabelTable& table, const std::vector<NamedMesh>& meshes,
+                                               std::string_view target_name, std::string_view around_name);
+/// Opacity of a structure in a preset, 0..1.
+double preset_opacity(const StructureInfo& structure, StructurePreset preset, std::string_view around_name) noexcept;
+
+/// Name of the structure at a point of P ("" for none), and of the one that surrounds it: what is most often met on a
+/// ball of `radius_mm` that is not that structure, fat or muscle.
+std::string find_target_name(const VirtualPatient& patient, const Vec3& target_P);
+std::string find_name_around(const VirtualPatient& patient, const Vec3& target_P, double radius_mm = 20.0);
+
+}  // namespace trocar

@@ -1,0 +1,188 @@
+#include "scene/patient_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "scene/render_patient.h"
+#include "two_organs.h"
+
+namespace trocar {
+namespace {
+
+constexpr int kSize = 160;
+
+/// A red organ on the patient's right and a green one towards the head, in a skin.
+class PatientSceneTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!can_render()) GTEST_SKIP() << "no X server: run under scripts/with_display";
+    auto made = PatientScene::make_off_screen(kSize, kSize);
+    ASSERT_TRUE(made) << made.error().text();
+    scene = std::move(*made);
+    Scene organs = two_organs();
+    organs.patient.landmarks = {{"umbilicus", {0, -100, 0}}};
+    patient = std::make_shared<const VirtualPatient>(std::move(organs.patient));
+    scene->show_patient(patient, std::make_shared<const std::vector<NamedMesh>>(std::move(organs.meshes)));
+    scene->set_camera(CameraPreset::kAnterior);
+    scene->finish_loading();
+  }
+  RgbImage draw(const Detail& detail = DetailPolicy::full()) {
+    EXPECT_TRUE(scene->render(detail));
+    return scene->picture();
+  }
+  std::unique_ptr<PatientScene> scene;
+  std::shared_ptr<const VirtualPatient> patient;
+};
+
+bool is_bright(const Rgb& c) {
+  return c[0] > 120 && c[1] > 120 && c[2] > 120;
+}
+bool is_teal(const Rgb& c) {
+  return c[1] > 150 && c[2] > 140 && c[0] < 130;
+}
+bool is_magenta(const Rgb& c) {
+  return c[0] > 200 && c[2] > 200 && c[1] < 60;
+}
+
+TEST_F(PatientSceneTest, AnteriorViewHasPatientsRightOnTheLeftAndHeadUpAtEveryDetail) {
+  for (const Detail& detail : {DetailPolicy::full(), DetailPolicy::moving(0), DetailPolicy::moving(2)}) {
+    const RgbImage image = draw(detail);
+    EXPECT_LT(middle_of(image, is_reddish).x(), 60.0);
+    EXPECT_NEAR(middle_of(image, is_reddish).y(), 80.0, 4.0);
+    EXPECT_LT(middle_of(image, is_greenish).y(), 60.0);
+  }
+}
+
+TEST_F(PatientSceneTest, OpacityHidesAndShowsOneStructure) {
+  scene->set_opacity("right", 0.0);
+  EXPECT_EQ(count_of(draw(), is_reddish), 0);
+  EXPECT_GT(count_of(draw(), is_greenish), 50);
+  scene->set_opacity("right", 1.0);
+  EXPECT_GT(count_of(draw(), is_reddish), 50);
+}
+
+TEST_F(PatientSceneTest, SkinOnlyHidesTheOrgansAndAllBringsThemBack) {
+  scene->apply_preset(StructurePreset::kSkinOnly);
+  EXPECT_EQ(count_of(draw(), is_reddish), 0);
+  EXPECT_GT(count_of(draw(), is_bright), 2000);
+  scene->apply_preset(StructurePreset::kAll);
+  EXPECT_GT(count_of(draw(), is_reddish), 50);
+}
+
+TEST_F(PatientSceneTest, NeedleIsSeenWhereItIs) {
+  scene->apply_preset(StructurePreset::kBones);  // there are none
+  const Vec3 shaft_P[3] = {{-60, 0, -50}, {0, 0, -48}, {60, 0, -40}};
+  for (const NeedleModel model : {NeedleModel::kChiba, NeedleModel::kTuohy, NeedleModel::kQuincke,
+                                  NeedleModel::kBiopsyGun, NeedleModel::kTrocar}) {
+    scene->set_needle(shaft_P, 2.0, model);
+    const auto middle = middle_of(draw(), is_bright);
+    EXPECT_NEAR(middle.y(), 80.0 + 48.0 * 80.0 / 105.0, 12.0) << static_cast<int>(model);
+  }
+  scene->set_needle({}, 2.0, NeedleModel::kChiba);
+  EXPECT_EQ(count_of(draw(), is_bright), 0);
+}
+
+TEST_F(PatientSceneTest, ThinNeedleIsStillSeenFromAfar) {
+  scene->apply_preset(StructurePreset::kBones);
+  const Vec3 shaft_P[2] = {{-60, 0, -50}, {60, 0, -50}};
+  scene->set_needle(shaft_P, 0.05, NeedleModel::kQuincke);
+  EXPECT_GT(count_of(draw(), is_bright), 60);
+}
+
+TEST_F(PatientSceneTest, UltrasoundPictureHangsInItsPlaneAndIsClearOutsideOfTheFan) {
+  scene->apply_preset(StructurePreset::kBones);
+  const RgbImage picture(10, 10, {255, 0, 255});
+  std::vector<std::uint8_t> alpha(100, 255);
+  const std::array<Vec3, 3> corners_P = {Vec3(-50, -110, 50), Vec3(50, -110, 50), Vec3(-50, -110, -50)};
+  scene->set_ultrasound(picture, alpha, corners_P);
+  const int whole = count_of(draw(), is_magenta);
+  EXPECT_GT(whole, 3000);
+  std::fill(alpha.begin(), alpha.begin() + 50, std::uint8_t{0});  // the upper half
+  scene->set_ultrasound(picture, alpha, corners_P);
+  const RgbImage half = draw();
+  EXPECT_NEAR(count_of(half, is_magenta), 0.5 * whole, 0.08 * whole);
+  EXPECT_GT(middle_of(half, is_magenta).y(), 90.0);
+  scene->hide_ultrasound();
+  EXPECT_EQ(count_of(draw(), is_magenta), 0);
+}
+
+TEST_F(PatientSceneTest, GuidanceIsShownAndHidden) {
+  scene->set_path(Segment{{60, -95, -50}, {20, 0, -50}}, 15.0);
+  EXPECT_GT(count_of(draw(), is_teal), 30);
+  scene->set_guidance_visible(false);
+  EXPECT_EQ(count_of(draw(), is_teal), 0);
+}
+
+TEST_F(PatientSceneTest, LandmarksAreShownWhenAsked) {
+  scene->apply_preset(StructurePreset::kBones);
+  const RgbImage without = draw();
+  scene->set_landmarks_visible(true);
+  const RgbImage with = draw();
+  EXPECT_NE(with.pixels, without.pixels);
+}
+
+TEST_F(PatientSceneTest, PickFindsTheFrontOfWhatIsShown) {
+  draw();
+  const auto skin_P = scene->pick(0.5, 0.5);
+  ASSERT_TRUE(skin_P);
+  EXPECT_NEAR((*skin_P - Vec3(0, -100, 0)).norm(), 0.0, 2.0);
+  EXPECT_FALSE(scene->pick(0.01, 0.01));
+}
+
+TEST_F(PatientSceneTest, ABreakGivesUpTheFrame) {
+  draw();
+  scene->set_opacity("right", 0.5);
+  EXPECT_FALSE(scene->render(DetailPolicy::full(), [] { return true; }));
+  EXPECT_TRUE(scene->has_changed());
+  EXPECT_TRUE(scene->render(DetailPolicy::full(), [] { return false; }));
+  EXPECT_FALSE(scene->has_changed());
+}
+
+TEST_F(PatientSceneTest, MirroredPictureIsTheFlippedOne) {
+  const RgbImage image = draw();
+  StereoOptions options;
+  options.is_mirrored_left_right = true;
+  scene->set_stereo(options);
+  const RgbImage flipped = draw();
+  for (int column = 0; column < kSize; ++column) EXPECT_EQ(image.at(column, 80), flipped.at(kSize - 1 - column, 80));
+}
+
+TEST_F(PatientSceneTest, AnaglyphSplitsTheEyesIntoRedAndCyan) {
+  scene->apply_preset(StructurePreset::kSkinOnly);
+  StereoOptions options;
+  options.mode = StereoMode::kAnaglyph;
+  options.eye_angle_deg = 6.0;
+  scene->set_stereo(options);
+  // A tinted pixel is one that only one eye's picture lights: along the outline of the skin.
+  const auto is_tinted = [](const Rgb& c) { return std::abs(c[0] - c[1]) > 60; };
+  const RgbImage anaglyph = draw();
+  EXPECT_GT(count_of(anaglyph, is_tinted), 20);
+  scene->set_stereo({});
+  const RgbImage mono = draw();
+  EXPECT_EQ(count_of(mono, is_tinted), 0);
+}
+
+TEST_F(PatientSceneTest, SideBySideShowsTheOrganOnceForEachEye) {
+  StereoOptions options;
+  options.mode = StereoMode::kSideBySide;
+  scene->set_stereo(options);
+  const RgbImage image = draw();
+  int left = 0, right = 0;
+  for (int row = 0; row < kSize; ++row) {
+    for (int column = 0; column < kSize; ++column) {
+      if (is_reddish(image.at(column, row))) ++(column < kSize / 2 ? left : right);
+    }
+  }
+  EXPECT_GT(left, 20);
+  EXPECT_NEAR(left, right, 0.3 * left);
+}
+
+TEST_F(PatientSceneTest, SoftwareRendererIsKnownAsSuch) {
+  draw();
+  ASSERT_FALSE(scene->renderer_name().empty());
+  EXPECT_EQ(scene->has_gpu(), scene->renderer_name().find("llvmpipe") == std::string::npos);
+}
+
+}  // namespace
+}  // namespace trocar

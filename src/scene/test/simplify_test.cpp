@@ -1,0 +1,39 @@
+#include "scene/detail/simplify.h"
+
+#include <gtest/gtest.h>
+
+#include "two_organs.h"
+
+namespace trocar {
+namespace {
+
+TEST(Simplify, LeavesFewerTrianglesOfTheSameShape) {
+  const TriangleMesh fine = ball({10, -20, 30}, 50.0);
+  // The ball's own triangles are 7 degrees wide: chords over four of them lose a fifth of the volume.
+  constexpr double kChords = 0.22;
+  std::size_t last = fine.triangles.size();
+  for (const double coarseness : {2.0, 3.0, 4.0}) {
+    const TriangleMesh coarse = detail::simplify(fine, coarseness);
+    EXPECT_LT(coarse.triangles.size(), last);
+    EXPECT_GT(coarse.triangles.size(), 50u);
+    last = coarse.triangles.size();
+    EXPECT_NEAR(enclosed_volume_mm3(coarse) / enclosed_volume_mm3(fine), 1.0, kChords);
+  }
+}
+
+TEST(Simplify, NothingStaysNothing) {
+  EXPECT_TRUE(detail::simplify({}, 2.0).triangles.empty());
+}
+
+TEST(VertexNormals, OfABallPointOutward) {
+  const TriangleMesh mesh = ball({0, 0, 0}, 10.0);
+  const std::vector<Vec3f> normals = detail::vertex_normals(mesh);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (normals[i].norm() > 0.5F) {
+      EXPECT_GT(normals[i].dot(mesh.vertices[i].normalized()), 0.98F);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trocar
