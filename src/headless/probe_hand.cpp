@@ -71,8 +71,12 @@ HandTarget ProbeHand::at(double time_s) const noexcept {
 }
 
 Pose ProbeHand::room(const Pose& X_PW_of_needle) const noexcept {
+  return probe_room(X_PW_of_needle, X_PT_skin_);
+}
+
+Pose probe_room(const Pose& X_PW_of_needle, const Pose& X_PT) noexcept {
   const Pose X_TS = tool_in_stylus(make_face(Tool::kTransducer)).inverse();
-  return {X_PW_of_needle.R(), (X_PT_skin_ * X_TS).p()};
+  return {X_PW_of_needle.R(), (X_PT * X_TS).p()};
 }
 
 }  // namespace trocar

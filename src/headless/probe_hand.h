@@ -26,4 +26,7 @@ class ProbeHand {
   Pose X_PT_skin_;  ///< On the resting skin.
 };
 
+/// Room of a transducer in the patient: turned as the needle's, with the grip at its origin where it is held at X_PT.
+Pose probe_room(const Pose& X_PW_of_needle, const Pose& X_PT) noexcept;
+
 }  // namespace trocar

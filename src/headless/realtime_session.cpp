@@ -6,11 +6,11 @@
 #include <cmath>
 #include <thread>
 
-#include "headless/detail/live_operator.h"
 #include "headless/detail/own_servers.h"
-#include "headless/detail/server_seat.h"
+#include "headless/live_operator.h"
 #include "headless/probe_hand.h"
 #include "headless/scene_request.h"
+#include "headless/server_seat.h"
 #include "link/endpoint.h"
 
 namespace trocar {
@@ -61,7 +61,11 @@ Result<LiveServers> LiveServers::connect(const RunOptions& options, const Realti
   }
   std::vector<ServerSeat> seats;
   for (const std::string& endpoint : endpoints) {
-    TROCAR_TRY(ServerSeat seat, ServerSeat::connect(endpoint, realtime.security, realtime.patience));
+    ClientOptions client;
+    client.endpoint = endpoint;
+    client.name = "trocar run";
+    client.security = realtime.security;
+    TROCAR_TRY(ServerSeat seat, ServerSeat::connect(client, realtime.patience));
     seats.push_back(std::move(seat));
   }
   const auto is_ready = [](const ServerSeat& seat) { return seat.state() == State::kReady; };

@@ -9,9 +9,9 @@
 #include "haptics/device_preset.h"
 #include "haptics/simulation/virtual_device.h"
 #include "haptics/tick.h"
-#include "headless/detail/attempt_record.h"
-#include "headless/detail/performer.h"
+#include "headless/attempt_record.h"
 #include "headless/needle_geometry.h"
+#include "headless/performer.h"
 #include "training/hand.h"
 
 namespace trocar {

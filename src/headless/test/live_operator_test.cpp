@@ -1,4 +1,4 @@
-#include "headless/detail/live_operator.h"
+#include "headless/live_operator.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "headless/detail/attempt_record.h"
+#include "headless/attempt_record.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/version.h"
-#include "headless/detail/performer.h"
+#include "headless/performer.h"
 
 namespace trocar {
 namespace {

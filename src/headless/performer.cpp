@@ -1,4 +1,4 @@
-#include "headless/detail/performer.h"
+#include "headless/performer.h"
 
 #include <fmt/format.h>
 

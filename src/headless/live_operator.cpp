@@ -1,4 +1,4 @@
-#include "headless/detail/live_operator.h"
+#include "headless/live_operator.h"
 
 #include <algorithm>
 
@@ -40,8 +40,13 @@ HandTarget hand_target(const HandCommand& command, double server_time_s) noexcep
   return target;
 }
 
-LiveOperator::LiveOperator(const Performer& performer, AttemptRecord& record, const HandCommand& first)
-    : performer_(&performer), record_(&record), command_(first), period_s_(1.0 / performer.rate_hz) {
+LiveOperator::LiveOperator(const Performer& performer, AttemptRecord& record, const HandCommand& first,
+                           double longest_s)
+    : performer_(&performer),
+      record_(&record),
+      command_(first),
+      period_s_(1.0 / performer.rate_hz),
+      longest_s_(longest_s) {
   view_.X_PN_device = first.X_PN;
   record.note(first);
 }
@@ -75,7 +80,7 @@ Result<bool> LiveOperator::take(const TickSample& tick) {
   view_.time_s += step_s;
   view_.dt_s = std::min(step_s, kLongestStep_s);
   command_ = performer_->the_operator->next(view_);
-  if (command_.is_done || time_s_ > kLongestAttempt_s) return false;
+  if (command_.is_done || time_s_ > longest_s_) return false;
   record_->note(command_);
   return true;
 }

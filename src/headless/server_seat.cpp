@@ -1,4 +1,4 @@
-#include "headless/detail/server_seat.h"
+#include "headless/server_seat.h"
 
 #include <fmt/format.h>
 
@@ -25,16 +25,15 @@ Vec3 axis_of(const TickSample& sample) noexcept {
   return Eigen::Quaterniond(w, x, y, z).toRotationMatrix().col(2);
 }
 
+bool has_fault(const ServerStatus& status) {
+  return !status.fault.empty() && status.fault != to_string(GateFault::kNone);
+}
+
 }  // namespace
 
-Result<ServerSeat> ServerSeat::connect(const std::string& endpoint, const std::optional<ClientSecurity>& security,
-                                       milliseconds patience) {
-  ClientOptions options;
-  options.endpoint = endpoint;
-  options.name = "trocar run";
-  options.security = security;
+Result<ServerSeat> ServerSeat::connect(const ClientOptions& options, milliseconds patience) {
   TROCAR_TRY(HapticClient client, HapticClient::connect(options));
-  return ServerSeat(std::move(client), endpoint, patience);
+  return ServerSeat(std::move(client), options.endpoint, patience);
 }
 
 ServerSeat::ServerSeat(HapticClient client, std::string endpoint, milliseconds patience)
@@ -100,7 +99,7 @@ Result<State> ServerSeat::look() {
       break;
   }
   const bool is_ours = state_ != State::kConnecting && view_.is_connected;
-  if (is_ours && !view_.status.fault.empty() && view_.status.fault != to_string(GateFault::kNone))
+  if (is_ours && has_fault(view_.status))
     return fail(fmt::format("the safety gate has latched a fault: {}", view_.status.fault), endpoint_,
                 "the server's flight record tells what came before; start the server again");
   return state_;
@@ -111,6 +110,12 @@ Status ServerSeat::connecting() {
   if (!has_all) return {};
   if (!view_.welcome.has_control)
     return fail("another client has this server", endpoint_, "end it, or name another server");
+  if (has_fault(view_.status) && request_ && request_->resets_fault) {
+    if (!has_reset_) client_.send(ServerCommand::kResetFault);
+    has_reset_ = true;
+    return check_time("the fault of the safety gate did not go away", "look at the server's log");
+  }
+  has_reset_ = false;
   session_ = view_.welcome.session;
   client_.take_replies();
   enter(State::kReady);
@@ -146,6 +151,12 @@ Status ServerSeat::placing() {
   if (!newest) return {};
   HandTarget place = request_->place;
   place.server_time_s = newest->time_s;
+  if (request_->is_in_real_hand) {
+    asked_ = client_.send(ServerCommand::kStart);
+    started_server_s_ = 0.0;
+    enter(State::kStarting);
+    return {};
+  }
   if (placed_ > entered_ && newest->time_s != placed_newest_s_ && is_near(*newest, kSagging_mm)) {
     client_.set_hand(place);
     asked_ = client_.send(ServerCommand::kStart);
@@ -176,8 +187,9 @@ Status ServerSeat::starting() {
 
 void ServerSeat::settling() {
   const std::optional<TickSample> newest = client_.newest();
-  const bool is_settled = newest && is_near(*newest, kSettled_mm) &&
-                          (axis_of(*newest) - request_->place.X_PN.R().col(2)).norm() < kSettledAxis;
+  const bool is_settled =
+      request_->is_in_real_hand || (newest && is_near(*newest, kSettled_mm) &&
+                                    (axis_of(*newest) - request_->place.X_PN.R().col(2)).norm() < kSettledAxis);
   if (!is_settled && Clock::now() - entered_ < kMostSettling) return;
   client_.take_samples();
   last_tick_.reset();

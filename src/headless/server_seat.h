@@ -16,6 +16,9 @@ namespace trocar {
 struct SeatRequest {
   LoadScene scene;
   HandTarget place;
+  /// A person's hand holds the device: it is not put anywhere, the forces come on where it is.
+  bool is_in_real_hand = false;
+  bool resets_fault = false;  ///< A fault that the gate has latched before we came is forgotten.
 };
 
 /// One haptic server as an attempt sees it. It connects, has the scene loaded, puts the hand in its place, turns the
@@ -25,8 +28,7 @@ class ServerSeat {
  public:
   enum class State { kConnecting, kReady, kLoading, kPlacing, kStarting, kSettling, kOn };
 
-  static Result<ServerSeat> connect(const std::string& endpoint, const std::optional<ClientSecurity>& security,
-                                    std::chrono::milliseconds patience);
+  static Result<ServerSeat> connect(const ClientOptions& options, std::chrono::milliseconds patience);
 
   /// What to hold from now on; until then a connected server stays in kReady. Where the hand begins may be told anew.
   void hold(const SeatRequest& request);
@@ -43,6 +45,12 @@ class ServerSeat {
   /// Only in kOn.
   void set_hand(const HandTarget& target) { client_.set_hand(target); }
   void stop();
+  /// Only in kOn, and when a seat is given up: a command beside those of the seat itself. Gives its number.
+  std::uint32_t send(decltype(Command::what) what) { return client_.send(std::move(what)); }
+  std::vector<Reply> take_replies() { return client_.take_replies(); }  ///< Only in kOn.
+  void frame_drawn() { client_.frame_drawn(); }                         ///< See HapticClient.
+  /// The newest tick, whatever the state: where the device is while it is not ours.
+  std::optional<TickSample> newest() const { return client_.newest(); }
 
   const ClientView& view() const noexcept { return view_; }
   const std::string& endpoint() const noexcept { return endpoint_; }
@@ -79,6 +87,7 @@ class ServerSeat {
   double placed_newest_s_ = 0.0;   ///< Time of the newest tick when the hand was placed.
   double started_server_s_ = 0.0;  ///< Server's time when it said that it would start.
   int returns_ = 0;
+  bool has_reset_ = false;
 };
 
 }  // namespace trocar

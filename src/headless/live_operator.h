@@ -1,7 +1,7 @@
 #pragma once
 
-#include "headless/detail/attempt_record.h"
-#include "headless/detail/performer.h"
+#include "headless/attempt_record.h"
+#include "headless/performer.h"
 #include "link/messages.h"
 
 namespace trocar {
@@ -11,7 +11,9 @@ namespace trocar {
 class LiveOperator {
  public:
   /// Performer and record must outlive it. The operator's first command, made by the caller, placed the hand.
-  LiveOperator(const Performer& performer, AttemptRecord& record, const HandCommand& first);
+  /// After `longest_s` of the session it is done, whatever it says.
+  LiveOperator(const Performer& performer, AttemptRecord& record, const HandCommand& first,
+               double longest_s = kLongestAttempt_s);
 
   /// The server was just seated, for the first time or again. `clock_offset_s`: its clock minus ours.
   void begin(double clock_offset_s) noexcept;
@@ -27,6 +29,8 @@ class LiveOperator {
   double paused_s() const noexcept { return paused_s_; }  ///< Of it, while there was no server; and
   double unseen_s() const noexcept { return unseen_s_; }  ///< while the operator did not look.
   const Pose& X_PN_device() const noexcept { return view_.X_PN_device; }
+  const TickSample& last() const noexcept { return view_.last; }    ///< With the session's time.
+  const HandCommand& command() const noexcept { return command_; }  ///< The answer to it.
 
  private:
   /// Records a tick; gives the time since the last one.
@@ -37,6 +41,7 @@ class LiveOperator {
   HandCommand command_;
   OperatorView view_;
   double period_s_;
+  double longest_s_;
   double offset_s_ = 0.0;
   double origin_s_ = 0.0;
   double time_s_ = 0.0;

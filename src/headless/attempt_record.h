@@ -26,6 +26,8 @@ class AttemptRecord {
   /// What the operator does before the next tick: fires, perhaps.
   void note(const HandCommand& command) noexcept;
   Status append(const TickSample& sample);
+  const SessionInfo& info() const noexcept { return info_; }
+  const std::vector<TickSample>& samples() const noexcept { return samples_; }  ///< So far.
   /// Scores, and closes the session file.
   Result<RunResult> finish();
 
