@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "telemetry/tick_sample.h"
+
+namespace trocar {
+
+enum class AttemptPhase : std::uint8_t {
+  kStarting,    ///< Servers come up and load; `progress` says how far.
+  kReady,       ///< Forces are on, the needle is outside the skin.
+  kInBody,      ///< The skin was pierced, the needle is inside.
+  kServerLost,  ///< The needle's server is away and is being brought back; `banner` says what is being done.
+  kStopped,     ///< Forces were stopped by the trainee; resume_forces() goes on.
+  kFinishing,   ///< Being scored.
+  kFinished,    ///< result() has the score.
+  kFailed,      ///< result() has the error. What was recorded is in the session file.
+};
+const char* to_string(AttemptPhase phase) noexcept;
+
+/// What the needle does, as felt. Frame P.
+struct NeedleView {
+  bool is_known = false;      ///< A tick has come.
+  double time_s = 0.0;        ///< Of the session; 0 until it is recorded.
+  Pose X_PN;                  ///< Felt: tip and axis of the virtual needle, the device's roll.
+  std::vector<Vec3> shaft_P;  ///< Hub to tip, see needle_shaft.h.
+  Pose X_PN_device;           ///< As the device has it: ahead of the felt one by what tissue yields.
+  Pose X_PN_hand;             ///< Where the hand wants it.
+  double resistance_n = 0.0;  ///< Along the needle; positive pushes it out.
+  double lag_mm = 0.0;        ///< Felt tip behind the hand's, along the axis.
+  double depth_mm = 0.0;      ///< Of the tip below the skin.
+  double speed_mm_s = 0.0;    ///< Along the axis; positive inward.
+  std::string tissue;         ///< At the tip: a label's name where one lies there, else the tissue's; empty outside.
+  InsertionPhase phase = InsertionPhase::kOutside;
+  bool is_clamped = false;
+};
+
+/// What the transducer does, as felt. Frame P.
+struct ProbeView {
+  bool is_known = false;
+  Pose X_PT;                ///< Felt: it does not pass through the skin.
+  Pose X_PT_hand;           ///< Where the hand wants it.
+  double contact_n = 0.0;   ///< Of skin and face.
+  double pressed_mm = 0.0;  ///< Deepest dent of the skin.
+  bool is_clamped = false;
+};
+
+/// How a haptic server does: what a status bar tells.
+struct ServerView {
+  std::string tool;  ///< "needle", "probe"
+  int pid = 0;
+  bool is_connected = false;
+  bool is_on = false;                     ///< Its forces are on, and the hand moves it.
+  std::string device;                     ///< "virtual:premium"
+  double rate_hz = 0.0, wanted_hz = 0.0;  ///< Served, wished for.
+  double p99_us = 0.0;                    ///< Lateness of its periods.
+  std::uint64_t ticks_missing = 0;        ///< Made there, never received here.
+  std::string gate;                       ///< "on", "off", "rising" …
+  std::string fault;                      ///< Of the safety gate; empty: none.
+  std::string grant;                      ///< What real time the system granted.
+  std::string warning;                    ///< The server's own.
+  int restarts = 0;                       ///< How often it was started again or seated again.
+};
+
+/// All that a page shows of an attempt, at one moment.
+struct AttemptView {
+  AttemptPhase phase = AttemptPhase::kStarting;
+  std::string progress;            ///< What is being done in kStarting and kFinishing.
+  double progress_fraction = 0.0;  ///< 0..1
+  std::string banner;              ///< One line that must be seen; empty: all is well.
+  std::string message;             ///< What came of the last set_parameters(), or of a command.
+  std::string hint;                ///< What to do now; guided attempts alone; empty: nothing to say.
+  NeedleView needle;
+  ProbeView probe;
+  bool has_probe = false;
+  std::array<ServerView, 2> servers;  ///< Needle, probe.
+  double session_s = 0.0;             ///< Recorded so far.
+  double since_contact_s = 0.0;       ///< Since the needle first touched the skin; 0 before.
+  bool has_fired = false;
+  bool is_performing = false;      ///< A scripted operator moves the needle.
+  std::vector<std::string> notes;  ///< What went wrong on the way, in order.
+};
+
+/// A point of the force plot.
+struct ForcePoint {
+  double time_s = 0.0;
+  double depth_mm = 0.0;
+  double force_n = 0.0;  ///< Resistance along the needle; positive pushes it out.
+};
+
+/// Something that happened to the needle.
+struct AttemptEvent {
+  double time_s = 0.0;
+  double depth_mm = 0.0;
+  EventKind kind = EventKind::kNone;
+  std::string name;  ///< Of the layer or label.
+  std::string text;  ///< "through the liver capsule at 1.9 N"
+};
+
+}  // namespace trocar

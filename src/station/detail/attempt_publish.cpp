@@ -1,0 +1,121 @@
+// What the window sees of an attempt.
+#include "station/attempt_event.h"
+#include "station/detail/attempt_loop.h"
+#include "station/needle_shaft.h"
+#include "station/puncture_guide.h"
+
+namespace trocar {
+
+const char* to_string(AttemptPhase phase) noexcept {
+  switch (phase) {
+    case AttemptPhase::kStarting:
+      return "starting";
+    case AttemptPhase::kReady:
+      return "ready";
+    case AttemptPhase::kInBody:
+      return "in the body";
+    case AttemptPhase::kServerLost:
+      return "server lost";
+    case AttemptPhase::kStopped:
+      return "forces stopped";
+    case AttemptPhase::kFinishing:
+      return "finishing";
+    case AttemptPhase::kFinished:
+      return "finished";
+    case AttemptPhase::kFailed:
+      return "failed";
+  }
+  return "?";
+}
+
+AttemptPhase AttemptLoop::phase_now() const {
+  if (is_stopped_) return AttemptPhase::kStopped;
+  if (!has_ever_been_on_) return AttemptPhase::kStarting;
+  if (!needle_->is_on()) return AttemptPhase::kServerLost;
+  const bool is_inside = last_needle_ && (last_needle_->phase == InsertionPhase::kInserted ||
+                                          last_needle_->phase == InsertionPhase::kRetracting ||
+                                          last_needle_->depth_mm > open_case_->the_case.tissues.skin_thickness_mm);
+  return is_inside ? AttemptPhase::kInBody : AttemptPhase::kReady;
+}
+
+NeedleView AttemptLoop::needle_view() const {
+  NeedleView view;
+  view.X_PN_hand = command_.X_PN;
+  view.is_clamped = steering_->hand().is_clamped();
+  if (!last_needle_) {
+    view.X_PN = view.X_PN_device = command_.X_PN;
+    return view;
+  }
+  const TickSample& sample = *last_needle_;
+  const Case& the_case = open_case_->the_case;
+  view.is_known = true;
+  view.time_s = sample.time_s;
+  view.X_PN = felt_needle(sample);
+  view.shaft_P = needle_shaft(sample, the_case.needle.length_mm);
+  view.X_PN_device = device_pose(sample);
+  if (needle_ && device_hold(options_.device_needle) != DeviceHold::kOurHand) view.X_PN_hand = view.X_PN_device;
+  view.resistance_n = axial_resistance_n(sample);
+  view.lag_mm = (view.X_PN_hand.p() - sample.tip_mm).dot(view.X_PN.R().col(2));
+  view.depth_mm = sample.depth_mm;
+  view.speed_mm_s = sample.axial_velocity_mm_s;
+  view.phase = sample.phase;
+  if (sample.tissue != 0 && sample.tissue < the_case.tissues.tissues.size()) {
+    const Label* label =
+        sample.tissue == the_case.tissues.skin ? nullptr : find_label(*the_case.patient, sample.tip_mm);
+    view.tissue = in_words(label != nullptr ? label->name : the_case.tissues.tissues[sample.tissue].name);
+  }
+  return view;
+}
+
+ProbeView AttemptLoop::probe_view() const {
+  ProbeView view;
+  view.X_PT_hand = view.X_PT = probe_hand_.X_P();
+  view.is_clamped = probe_hand_.is_clamped();
+  if (!last_probe_) return view;
+  view.is_known = true;
+  view.X_PT = felt_probe(*last_probe_);
+  if (device_hold(options_.device_probe) != DeviceHold::kOurHand) view.X_PT_hand = device_pose(*last_probe_);
+  view.contact_n = last_probe_->f_constraint_n.norm();
+  view.pressed_mm = last_probe_->depth_mm;
+  return view;
+}
+
+void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> result) {
+  AttemptView view;
+  view.phase = phase;
+  view.progress = progress_;
+  view.progress_fraction = progress_fraction_;
+  view.message = message_;
+  view.needle = needle_view();
+  view.probe = probe_view();
+  view.has_probe = probe_.has_value();
+  view.is_performing = steering_->is_performing();
+  view.has_fired = steering_->has_fired();
+  view.notes = notes_;
+  for (const std::optional<ToolServer>* server : {&probe_, &needle_}) {  // the needle's banner counts more
+    if (!*server) continue;
+    view.servers[server == &needle_ ? 0 : 1] = (*server)->view();
+    if (!(*server)->banner().empty()) view.banner = (*server)->banner();
+  }
+  if (is_stopped_ && view.banner.empty()) view.banner = "Forces are stopped. Resume to go on.";
+  if (last_needle_) {
+    view.session_s = last_needle_->time_s;
+    view.since_contact_s = contact_s_ ? last_needle_->time_s - *contact_s_ : 0.0;
+    const bool is_moving = phase == AttemptPhase::kReady || phase == AttemptPhase::kInBody;
+    if (options_.is_guided && is_moving) view.hint = guide_puncture(open_case_->the_case, *last_needle_);
+  }
+  std::vector<ForcePoint> forces = trace_.take();
+  constexpr std::size_t kMostKept = 100'000;  // by a window that takes none
+
+  const std::lock_guard lock(desk_.mutex);
+  AttemptNews& news = desk_.news;
+  view.is_performing = view.is_performing || desk_.wishes.performer != nullptr;
+  news.view = std::move(view);
+  news.servers = servers_;
+  if (news.forces.size() < kMostKept) news.forces.insert(news.forces.end(), forces.begin(), forces.end());
+  if (news.events.size() < kMostKept) news.events.insert(news.events.end(), events_.begin(), events_.end());
+  events_.clear();
+  if (result) news.result = std::move(result);
+}
+
+}  // namespace trocar

@@ -1,0 +1,239 @@
+#include "station/detail/tool_server.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace trocar {
+namespace {
+
+using State = ServerSeat::State;
+using namespace std::chrono_literals;
+
+constexpr std::size_t kMostReturns = 6;  ///< In a minute; more often, something is wrong with the machine. [assumed]
+
+}  // namespace
+
+DeviceHold device_hold(const std::string& device_spec) {
+  const std::string kind = device_spec.substr(0, device_spec.find(':'));
+  if (kind == "virtual" || kind == "mouse") return DeviceHold::kOurHand;
+  if (kind == "gamepad" || kind == "spacemouse") return DeviceHold::kPlaced;
+  return DeviceHold::kRealHand;
+}
+
+ToolServer::ToolServer(OwnServer& process, std::chrono::milliseconds patience, bool has_window)
+    : process_(&process),
+      patience_(patience),
+      has_window_(has_window),
+      is_real_hand_(device_hold(process.options().device) == DeviceHold::kRealHand),
+      tool_(process.options().tool) {
+  connect();
+}
+
+void ToolServer::connect() {
+  if (seat_) missing_before_ += seat_->ticks_missing();
+  seat_.reset();  // says goodbye before the next one asks for control
+  was_on_ = false;
+  asked_.clear();
+  ClientOptions options;
+  options.endpoint = process_->endpoint();
+  options.name = "trocar station";
+  options.has_window = has_window_;
+  Result<ServerSeat> seat = ServerSeat::connect(options, patience_);
+  if (!seat) {
+    banner_ = seat.error().text();
+    has_given_up_ = true;
+    return;
+  }
+  seat_.emplace(*std::move(seat));
+  if (request_) seat_->hold(*request_);
+}
+
+void ToolServer::hold(const SeatRequest& request) {
+  request_ = request;
+  request_->is_in_real_hand = is_real_hand_;
+  request_->resets_fault = true;
+  if (seat_) seat_->hold(*request_);
+}
+
+void ToolServer::place_at(const Pose& X_PN) {
+  if (request_) request_->place.X_PN = X_PN;
+  if (seat_) seat_->place_at(X_PN);
+}
+
+std::string ToolServer::bring_back(const std::string& what, bool is_new_process) {
+  const auto now = Clock::now();
+  while (!returns_.empty() && now - returns_.front() > 60s) returns_.pop_front();
+  returns_.push_back(now);
+  if (returns_.size() > kMostReturns) {
+    has_given_up_ = true;
+    banner_ = fmt::format("The server of the {} does not stay: {}. Resume to try again, or finish.", tool_, what);
+    return banner_;
+  }
+  ++restarts_;
+  if (is_new_process) {
+    if (const Status started = process_->restart(); !started) {
+      has_given_up_ = true;
+      banner_ = started.error().text();
+      return banner_;
+    }
+  }
+  connect();
+  banner_ = fmt::format("The server of the {} is being brought back where it was: {}", tool_, what);
+  return banner_;
+}
+
+std::string ToolServer::look() {
+  if (has_given_up_ || waits_for_resume_ || !seat_) return {};
+  if (is_stopped_ && !was_on_) return {};  // seating it would turn forces on
+  if (const Status alive = process_->check(); !alive) {
+    if (!was_ever_heard_) {
+      // It cannot come up: a device that is not there, a wrong name.
+      has_given_up_ = true;
+      return banner_ = alive.error().text();
+    }
+    if (!is_stopped_) return bring_back(alive.error().what, true);
+    was_on_ = false;
+    banner_ = alive.error().what + "; it is started again when you resume";
+    return banner_;
+  }
+  const Result<State> state = seat_->look();
+  was_ever_heard_ = was_ever_heard_ || seat_->view().welcome.session != 0;
+  if (!state) {
+    const bool is_heard = seat_->view().is_connected;
+    if (is_stopped_ || (is_real_hand_ && is_heard)) {
+      was_on_ = false;
+      waits_for_resume_ = !is_stopped_;
+      banner_ = state.error().what + "; resume when you are ready";
+      return banner_;
+    }
+    // A server that answers has a fault, which the next seat resets; one that does not is ended.
+    return bring_back(state.error().what, !is_heard);
+  }
+  if (*state == State::kOn && !was_on_) {
+    was_on_ = true;
+    banner_.clear();
+    send_settings();
+  }
+  if (was_on_ && *state != State::kOn) was_on_ = false;
+  if (!was_on_) return {};
+  if (!seat_->view().is_connected) {
+    banner_ = fmt::format("The server of the {} does not answer", tool_);
+  } else if (!is_stopped_) {
+    banner_.clear();
+  }
+  for (const Reply& reply : seat_->take_replies()) {
+    const auto asked = asked_.find(reply.request);
+    if (asked == asked_.end()) continue;
+    if (!reply.is_done) settings_.erase(asked->second.substr(0, asked->second.find('=')));
+    messages_.push_back(reply.text);
+    asked_.erase(asked);
+  }
+  return {};
+}
+
+bool ToolServer::is_on() const noexcept {
+  return seat_ && was_on_ && !has_given_up_ && seat_->state() == State::kOn && seat_->view().is_connected;
+}
+
+std::string ToolServer::doing() const {
+  if (!seat_) return fmt::format("starting the server of the {}", tool_);
+  switch (seat_->state()) {
+    case State::kConnecting:
+    case State::kReady:
+      return fmt::format("starting the server of the {}", tool_);
+    case State::kLoading:
+      return fmt::format("loading the patient for the {}", tool_);
+    case State::kPlacing:
+    case State::kStarting:
+    case State::kSettling:
+    case State::kOn:
+      break;
+  }
+  return fmt::format("turning on the forces of the {}", tool_);
+}
+
+std::vector<NumberedSample> ToolServer::take_samples() {
+  return seat_ && was_on_ ? seat_->take_samples() : std::vector<NumberedSample>{};
+}
+
+void ToolServer::set_hand(const HandTarget& target) {
+  if (is_on()) seat_->set_hand(target);
+}
+
+void ToolServer::send_settings() {
+  for (const auto& [key, setting] : settings_) asked_[seat_->send(SetParameters{{setting}})] = setting;
+}
+
+void ToolServer::set_parameters(const std::vector<std::string>& settings) {
+  for (const std::string& setting : settings) {
+    settings_[setting.substr(0, setting.find('='))] = setting;
+    if (is_on()) asked_[seat_->send(SetParameters{{setting}})] = setting;
+  }
+}
+
+std::vector<std::string> ToolServer::take_messages() {
+  return std::exchange(messages_, {});
+}
+
+void ToolServer::stop_forces() {
+  is_stopped_ = true;
+  if (seat_) seat_->send(ServerCommand::kStop);
+}
+
+void ToolServer::resume_forces() {
+  is_stopped_ = false;
+  waits_for_resume_ = false;
+  if (has_given_up_) returns_.clear();
+  const bool is_alive = process_->check().has_value();
+  if (is_on() && is_alive) {
+    seat_->send(ServerCommand::kStart);
+    return;
+  }
+  has_given_up_ = false;
+  bring_back("resumed", !is_alive);
+}
+
+void ToolServer::frame_drawn() {
+  if (seat_) seat_->frame_drawn();
+}
+
+void ToolServer::end() {
+  if (seat_) seat_->stop();
+}
+
+const ClientView& ToolServer::client() const {
+  static const ClientView kNone;
+  return seat_ ? seat_->view() : kNone;
+}
+
+ServerView ToolServer::view() const {
+  const ClientView& client_view = client();
+  const ServerStatus& status = client_view.status;
+  ServerView view;
+  view.tool = tool_;
+  view.pid = process_->pid();
+  view.is_connected = client_view.is_connected;
+  view.is_on = is_on() && !is_stopped_;
+  view.device = client_view.welcome.device.name;
+  view.rate_hz = status.loop.achieved_hz;
+  view.wanted_hz = status.loop.wanted_hz;
+  view.p99_us = status.loop.lateness.p99_us;
+  view.ticks_missing = missing_before_ + (seat_ ? seat_->ticks_missing() : 0);
+  view.gate = status.gate_mode;
+  view.fault = status.fault == "none" ? std::string() : status.fault;
+  view.grant = status.grant;
+  view.warning = status.warning;
+  view.restarts = restarts_;
+  return view;
+}
+
+ServerFigures ToolServer::figures() const {
+  ServerFigures figures;
+  if (seat_) figures = seat_->figures();
+  figures.tool = tool_;
+  figures.returns = restarts_;
+  return figures;
+}
+
+}  // namespace trocar

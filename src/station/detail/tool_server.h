@@ -1,0 +1,84 @@
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "headless/own_server.h"
+#include "headless/server_seat.h"
+#include "station/attempt_view.h"
+
+namespace trocar {
+
+/// How a device goes to where an attempt wants it.
+enum class DeviceHold {
+  kOurHand,   ///< Moved by hand targets: "virtual…", "mouse".
+  kPlaced,    ///< Moves itself, can be put somewhere: "gamepad", "spacemouse".
+  kRealHand,  ///< In a person's hand.
+};
+DeviceHold device_hold(const std::string& device_spec);
+
+/// One tool's haptic server, process and seat: brought up, and brought back when it ends, falls silent or latches a
+/// fault. A device in a real hand gets no forces again by itself after a fault: somebody must resume. Nothing waits.
+class ToolServer {
+ public:
+  /// The process must outlive it.
+  ToolServer(OwnServer& process, std::chrono::milliseconds patience, bool has_window);
+
+  void hold(const SeatRequest& request);
+  void place_at(const Pose& X_PN);  ///< Where it is put when it comes back.
+  /// One step. Gives what happened that is worth a note; empty: nothing.
+  std::string look();
+  bool is_on() const noexcept;  ///< Seated, forces on (unless stopped), and heard within the last 250 ms.
+  bool has_given_up() const noexcept { return has_given_up_; }
+  const std::string& banner() const noexcept { return banner_; }
+  double loading() const noexcept { return seat_ ? seat_->loading() : 0.0; }
+  std::string doing() const;  ///< "loading the patient", for a progress line.
+
+  std::vector<NumberedSample> take_samples();
+  void set_hand(const HandTarget& target);
+  /// Sent now, and again whenever the server comes back. What is said of them comes by take_messages().
+  void set_parameters(const std::vector<std::string>& settings);
+  std::vector<std::string> take_messages();
+  void stop_forces();
+  void resume_forces();
+  void frame_drawn();
+  void end();  ///< Forces off; waits for the answer, half a second at most.
+
+  double clock_offset_s() const noexcept { return seat_ ? seat_->view().clock_offset_s : 0.0; }
+  double wanted_hz() const noexcept { return seat_ ? seat_->view().status.loop.wanted_hz : 0.0; }
+  const ClientView& client() const;
+  ServerView view() const;
+  ServerFigures figures() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void connect();
+  std::string bring_back(const std::string& what, bool is_new_process);
+  void send_settings();
+
+  OwnServer* process_;
+  std::chrono::milliseconds patience_;
+  bool has_window_;
+  bool is_real_hand_;
+  std::string tool_;
+  std::optional<ServerSeat> seat_;
+  std::optional<SeatRequest> request_;
+  std::string banner_;
+  std::map<std::string, std::string> settings_;  ///< Whole setting by its key.
+  std::map<std::uint32_t, std::string> asked_;
+  std::vector<std::string> messages_;
+  std::deque<Clock::time_point> returns_;  ///< Of the last minute.
+  int restarts_ = 0;
+  std::uint64_t missing_before_ = 0;  ///< By seats that were given up.
+  bool was_on_ = false;               ///< Since the seat was taken.
+  bool was_ever_heard_ = false;
+  bool is_stopped_ = false;
+  bool has_given_up_ = false;
+  bool waits_for_resume_ = false;
+};
+
+}  // namespace trocar

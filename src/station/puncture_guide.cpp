@@ -1,0 +1,86 @@
+#include "station/puncture_guide.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "station/attempt_event.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kFarFromEntry_mm = 15.0;
+constexpr double kLookStep_mm = 0.5;
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+/// Where a direction leads, as people say it beside a patient (LPS).
+const char* direction_word(const Vec3& way_P) {
+  int axis = 0;
+  way_P.cwiseAbs().maxCoeff(&axis);
+  constexpr std::array<std::array<const char*, 2>, 3> kWords{{{"to the patient's right", "to the patient's left"},
+                                                              {"to the patient's front", "to the patient's back"},
+                                                              {"to the patient's feet", "to the patient's head"}}};
+  return kWords[static_cast<std::size_t>(axis)][way_P[axis] > 0.0 ? 1 : 0];
+}
+
+/// What must not be touched, ahead of the tip.
+std::string danger_ahead(const Case& the_case, const TickSample& sample) {
+  for (double ahead_mm = 0.0; ahead_mm <= kGuideAhead_mm; ahead_mm += kLookStep_mm) {
+    const Label* label = find_label(*the_case.patient, sample.tip_mm + ahead_mm * sample.axis);
+    if (label == nullptr) continue;
+    const bool is_bone = label->tissue == "bone";
+    if (!is_bone && find_risk(the_case.task, *label) == nullptr) continue;
+    if (ahead_mm == 0.0) return fmt::format("The tip is in the {}: pull back", in_words(label->name));
+    return fmt::format("{} {:.0f} mm ahead: stop, {}", is_bone ? "Bone" : in_words(label->name), std::ceil(ahead_mm),
+                       sample.depth_mm > 0.0 ? "pull back and tilt" : "aim anew");
+  }
+  return {};
+}
+
+std::string guide_outside(const Segment& path_P, const TickSample& sample) {
+  const Vec3 to_entry = path_P.a - sample.tip_mm;
+  const Vec3 axis = path_P.direction();
+  const Vec3 across = to_entry - to_entry.dot(axis) * axis;
+  if (across.norm() > kFarFromEntry_mm)
+    return fmt::format("The entry is {:.0f} mm {}", across.norm(), direction_word(across));
+  if (across.norm() > kGuideBeside_mm)
+    return fmt::format("{:.1f} mm beside the entry: move the tip {}", across.norm(), direction_word(across));
+  const double angle_deg = kDegPerRad * angle_between_rad(sample.axis, axis);
+  if (angle_deg > kGuideTilt_deg)
+    return fmt::format("{:.0f} degrees off the path: tilt the hub {}", angle_deg, direction_word(sample.axis - axis));
+  return "On the path: advance";
+}
+
+std::string guide_inside(const Case& the_case, const TickSample& sample) {
+  const Segment& path_P = the_case.plan.line_P;
+  const Vec3 axis = path_P.direction();
+  const Vec3 to_target = path_P.b - sample.tip_mm;
+  const double left_mm = to_target.dot(axis);
+  if (left_mm < -kGuideDepth_mm) return fmt::format("{:.1f} mm too deep: pull back", -left_mm);
+  const Vec3 across = to_target - left_mm * axis;
+  const double beside_mm = across.norm();
+  if (std::abs(left_mm) <= kGuideDepth_mm && beside_mm <= the_case.task.target_tolerance_mm)
+    return the_case.needle.is_biopsy ? "At the target: hold still and fire" : "At the target: hold still";
+  if (beside_mm > kGuideBeside_mm) {
+    const double turn_deg = kDegPerRad * angle_between_rad(sample.axis, to_target);
+    return fmt::format("{:.1f} mm beside the path: tilt the tip {} by {:.0f} degrees", beside_mm,
+                       direction_word(across), std::min(turn_deg, 90.0));
+  }
+  return fmt::format("{:.0f} mm to the target", left_mm);
+}
+
+}  // namespace
+
+std::string guide_puncture(const Case& the_case, const TickSample& sample) {
+  if (!sample.tip_mm.allFinite() || !(std::abs(sample.axis.norm() - 1.0) < 1e-3)) return {};
+  std::string danger = danger_ahead(the_case, sample);
+  if (!danger.empty()) return danger;
+  const bool is_inside = sample.phase == InsertionPhase::kInserted || sample.phase == InsertionPhase::kRetracting ||
+                         sample.depth_mm > the_case.tissues.skin_thickness_mm;
+  return is_inside ? guide_inside(the_case, sample) : guide_outside(the_case.plan.line_P, sample);
+}
+
+}  // namespace trocar

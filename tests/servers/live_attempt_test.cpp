@@ -1,0 +1,252 @@
+// A trainee's attempt through servers that it starts and looks after itself.
+#include "station/live_attempt.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+
+#include "core/temporary_folder.h"
+#include "servers/live_server.h"
+#include "station/hand_motion.h"
+#include "storage/session_file.h"
+
+namespace trocar::servers_test {
+namespace {
+
+std::shared_ptr<const OpenCase> layered_case() {
+  static const std::shared_ptr<const OpenCase> kOpen = [] {
+    CaseChoice choice;
+    choice.patient_source = "layers-liver";
+    auto made = make_open_case(choice);
+    EXPECT_TRUE(made) << made.error().text();
+    return made ? *made : nullptr;
+  }();
+  return kOpen;
+}
+
+class LiveAttemptTest : public ::testing::Test {
+ protected:
+  AttemptOptions options() const {
+    AttemptOptions options;
+    options.session = folder_ / "attempt.trocar";
+    options.priority = 0;  // ordinary scheduling: it takes no core from other tests
+    options.patience = std::chrono::seconds(30);
+    return options;
+  }
+  void start(const AttemptOptions& options, std::shared_ptr<SeatServers> servers = nullptr) {
+    attempt = std::make_unique<LiveAttempt>(layered_case(), options, std::move(servers));
+  }
+  bool wait_phase(AttemptPhase phase) {
+    return wait_for([&] {
+             const AttemptPhase now = attempt->view().phase;
+             return now == phase || now == AttemptPhase::kFailed;
+           }) &&
+           attempt->view().phase == phase;
+  }
+  std::unique_ptr<Operator> expert() const {
+    const Case& the_case = layered_case()->the_case;
+    return make_expert({the_case.plan.line_P, the_case.needle.is_biopsy, 1});
+  }
+  bool wait_deeper(double depth_mm) {
+    return wait_for([&] { return attempt->view().needle.depth_mm > depth_mm; });
+  }
+  RunResult finished() {
+    if (!wait_for([&] { return attempt->view().phase >= AttemptPhase::kFinished; })) return {};
+    auto result = attempt->take_result();
+    EXPECT_TRUE(result && *result) << (result && !*result ? result->error().text() : "no result");
+    EXPECT_FALSE(attempt->take_result());
+    return result && *result ? **result : RunResult{};
+  }
+  std::string where() const {
+    const AttemptView view = attempt->view();
+    return std::string(to_string(view.phase)) + " | " + view.progress + " | " + view.banner;
+  }
+
+  TemporaryFolder folder_;
+  std::unique_ptr<LiveAttempt> attempt;
+};
+
+TEST_F(LiveAttemptTest, ExpertReachesTheTarget) {
+  AttemptOptions guided = options();
+  guided.is_guided = true;
+  start(guided);
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  EXPECT_FALSE(attempt->view().hint.empty());
+  attempt->perform(expert());
+  ASSERT_TRUE(wait_phase(AttemptPhase::kInBody)) << where();
+  const AttemptView inside = attempt->view();
+  EXPECT_GT(inside.since_contact_s, 0.0);
+  EXPECT_FALSE(inside.needle.tissue.empty());
+  EXPECT_GE(inside.needle.shaft_P.size(), 2u);
+  EXPECT_EQ(inside.needle.shaft_P.back(), inside.needle.X_PN.p());
+  EXPECT_GT(inside.probe.contact_n, 0.1);
+  EXPECT_EQ(inside.servers[0].tool, "needle");
+  EXPECT_GT(inside.servers[0].pid, 0);
+  EXPECT_GT(inside.servers[1].wanted_hz, 0.0);
+  ASSERT_TRUE(wait_for([&] { return attempt->view().has_fired; }));
+  ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; }));
+  attempt->finish();
+  const RunResult result = finished();
+  EXPECT_GT(result.outcome.score, 80.0);
+  EXPECT_TRUE(result.outcome.target_reached);
+  ASSERT_EQ(result.servers.size(), 2u);
+
+  const auto session = load_session(options().session);
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_EQ(session->samples.size(), result.ticks);
+  EXPECT_EQ(session->info.operator_name, "trainee");
+  // The plot keeps every peak of the record.
+  double highest_n = 0.0, plotted_n = 0.0;
+  for (const TickSample& sample : session->samples) highest_n = std::max(highest_n, axial_resistance_n(sample));
+  const std::vector<ForcePoint> forces = attempt->take_forces();
+  for (const ForcePoint& point : forces) plotted_n = std::max(plotted_n, point.force_n);
+  EXPECT_EQ(plotted_n, highest_n);
+  EXPECT_LT(forces.size(), session->samples.size() / 4);
+  const auto events = attempt->take_events();
+  const auto is_capsule = [](const AttemptEvent& event) { return event.name == "liver_capsule"; };
+  EXPECT_EQ(std::count_if(events.begin(), events.end(), is_capsule), 1);
+}
+
+TEST_F(LiveAttemptTest, GoesOnWhereItWasWhenTheNeedlesServerIsKilled) {
+  start(options());
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  attempt->perform(expert());
+  ASSERT_TRUE(wait_deeper(15.0)) << where();
+  const int pid = attempt->view().servers[0].pid;
+  ::kill(pid, SIGKILL);
+  ASSERT_TRUE(wait_phase(AttemptPhase::kServerLost)) << where();
+  EXPECT_FALSE(attempt->view().banner.empty());
+  ASSERT_TRUE(wait_phase(AttemptPhase::kInBody)) << where();
+  EXPECT_TRUE(attempt->view().banner.empty()) << attempt->view().banner;
+  EXPECT_NE(attempt->view().servers[0].pid, pid);
+  EXPECT_EQ(attempt->view().servers[0].restarts, 1);
+  ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
+  attempt->finish();
+  const RunResult result = finished();
+  EXPECT_GT(result.outcome.score, 60.0);
+  EXPECT_TRUE(result.outcome.target_reached);
+  const auto skins = std::count_if(result.punctures.begin(), result.punctures.end(),
+                                   [](const PunctureRecord& puncture) { return puncture.layer == "skin"; });
+  EXPECT_EQ(skins, 1);
+  EXPECT_FALSE(result.warnings.empty());
+}
+
+TEST_F(LiveAttemptTest, StopsTheForcesAndGoesOn) {
+  start(options());
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  attempt->perform(expert());
+  ASSERT_TRUE(wait_deeper(10.0)) << where();
+  attempt->stop_forces();
+  ASSERT_TRUE(wait_phase(AttemptPhase::kStopped));
+  ASSERT_TRUE(wait_for([&] { return attempt->view().servers[0].gate == "off"; })) << attempt->view().servers[0].gate;
+  EXPECT_FALSE(attempt->view().banner.empty());
+  attempt->resume_forces();
+  ASSERT_TRUE(wait_for([&] { return attempt->view().servers[0].gate == "on"; })) << attempt->view().servers[0].gate;
+  ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
+  attempt->finish();
+  EXPECT_GT(finished().outcome.score, 0.0);
+}
+
+TEST_F(LiveAttemptTest, StaysStoppedWhenTheServerDiesMeanwhile) {
+  start(options());
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  attempt->stop_forces();
+  ASSERT_TRUE(wait_for([&] { return attempt->view().servers[0].gate == "off"; }));
+  const int pid = attempt->view().servers[0].pid;
+  ::kill(pid, SIGKILL);
+  ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("resume") != std::string::npos; })) << where();
+  EXPECT_EQ(attempt->view().phase, AttemptPhase::kStopped);
+  EXPECT_EQ(attempt->view().servers[0].restarts, 0);
+  attempt->resume_forces();
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  EXPECT_NE(attempt->view().servers[0].pid, pid);
+}
+
+TEST_F(LiveAttemptTest, TheHandLeadsTheNeedleAndAClampedOneDoesNot) {
+  start(options());
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  const Pose from = attempt->view().needle.X_PN;
+  const Pose aside = moved(from, Vec3(6.0, 0.0, 0.0), Vec3::Zero());
+  attempt->set_hand(HandTool::kNeedle, aside);
+  ASSERT_TRUE(wait_for([&] { return (attempt->view().needle.X_PN.p() - aside.p()).norm() < 0.5; })) << where();
+  attempt->hold(HandTool::kNeedle, true);
+  ASSERT_TRUE(wait_for([&] { return attempt->view().needle.is_clamped; }));
+  attempt->set_hand(HandTool::kNeedle, from);
+  const Pose probe = attempt->view().probe.X_PT;
+  attempt->set_hand(HandTool::kProbe, moved(probe, Vec3(0.0, -20.0, 0.0), Vec3::Zero()));
+  ASSERT_TRUE(wait_for([&] { return attempt->view().probe.contact_n == 0.0; }));  // lifted off
+  EXPECT_LT((attempt->view().needle.X_PN.p() - aside.p()).norm(), 1.0);
+}
+
+TEST_F(LiveAttemptTest, ParametersReachTheServerWhileItRuns) {
+  start(options());
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  attempt->set_parameters({"skin.fp=9"});
+  ASSERT_TRUE(wait_for([&] { return attempt->view().message.find("other numbers") != std::string::npos; }));
+  attempt->set_parameters({"skin.colour=9"});
+  ASSERT_TRUE(wait_for([&] { return attempt->view().message.find("colour") != std::string::npos; }))
+      << attempt->view().message;
+  attempt->perform(expert());  // gives up at a skin that does not give way
+  ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
+  attempt->finish();
+  const RunResult result = finished();
+  EXPECT_EQ(result.punctures.size(), 0u);
+  EXPECT_NE(result.warnings.back().find("skin.fp=9"), std::string::npos);
+}
+
+TEST_F(LiveAttemptTest, NextAttemptTakesTheServersOver) {
+  AttemptOptions waiting = options();
+  waiting.waits_for_begin = true;
+  start(waiting);
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  EXPECT_EQ(attempt->view().session_s, 0.0);
+  EXPECT_FALSE(std::filesystem::exists(waiting.session));
+  const int pid = attempt->view().servers[0].pid;
+  std::shared_ptr<SeatServers> servers = attempt->servers();
+  attempt.reset();
+  AttemptOptions next = options();
+  next.session = folder_ / "next.trocar";
+  start(next, std::move(servers));
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  EXPECT_EQ(attempt->view().servers[0].pid, pid);
+  ASSERT_TRUE(wait_for([&] { return attempt->view().session_s > 0.1; }));
+  attempt->finish();
+  EXPECT_EQ(finished().outcome.score, 0.0);  // nothing was punctured
+  EXPECT_TRUE(load_session(next.session));
+}
+
+TEST_F(LiveAttemptTest, AnAttemptThatIsLeftKeepsWhatWasRecorded) {
+  start(options());
+  ASSERT_TRUE(wait_for([&] { return attempt->view().session_s > 0.6; })) << where();
+  attempt.reset();
+  const auto session = load_session(options().session);
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_FALSE(session->outcome);
+  EXPECT_GT(session->samples.size(), 100u);
+}
+
+TEST_F(LiveAttemptTest, MovesTheMousesDeviceAsWell) {
+  AttemptOptions mouse = options();
+  mouse.device_needle = mouse.device_probe = "mouse";
+  start(mouse);
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  EXPECT_EQ(attempt->view().servers[0].device, "mouse");
+  attempt->perform(expert());
+  ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
+  attempt->finish();
+  EXPECT_GT(finished().outcome.score, 80.0);
+}
+
+TEST_F(LiveAttemptTest, SaysWhyItCannotStart) {
+  AttemptOptions wrong = options();
+  wrong.device_needle = "virtual:nobody";
+  start(wrong);
+  ASSERT_TRUE(wait_for([&] { return attempt->view().phase == AttemptPhase::kFailed; })) << where();
+  const auto result = attempt->take_result();
+  ASSERT_TRUE(result && !*result);
+  EXPECT_NE(result->error().text().find("nobody"), std::string::npos) << result->error().text();
+}
+
+}  // namespace
+}  // namespace trocar::servers_test
