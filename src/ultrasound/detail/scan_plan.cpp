@@ -128,7 +128,7 @@ void fill_axial(ScanPlan& plan) {
 /// As many scatterers as the smallest resolution cell needs for fully developed speckle, and the factor that makes its
 /// mean independent of the cell's size: n E[a^2] pi^1.5 sx sy sz is the mean intensity of a Gaussian point spread.
 void fill_scatterers(ScanPlan& plan) {
-  constexpr double kWantedPerCell = 5.0;
+  constexpr double kWantedPerCell = 4.0;
   constexpr double kEffectiveVolume = 15.75;  // (2 pi)^1.5, of sx sy sz: (sum w^2)^2 / sum w^4
   const auto n = static_cast<std::size_t>(plan.samples);
   std::vector<double> volume_mm3(n);
