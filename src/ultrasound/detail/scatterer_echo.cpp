@@ -230,7 +230,9 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
                 hn::Set(d, 0xffff));  // two bytes each: the upper half is the next one's
     const VF log_gain = hn::MulAdd(hn::ConvertTo(f, hn::ShiftRight<kShareBits>(packed)), hn::Set(f, kLogGainStep),
                                    hn::Set(f, kLeastLogGain));
-    const VF share = hn::GatherIndex(f, kShares.data(), hn::And(packed, hn::Set(d, (1 << kShareBits) - 1)));
+    const VI share_class = hn::And(packed, hn::Set(d, (1 << kShareBits) - 1));
+    VF share = hn::Set(f, kShares[0]);  // most tissues'
+    if (!hn::AllTrue(d, hn::Eq(share_class, hn::Zero(d)))) share = hn::GatherIndex(f, kShares.data(), share_class);
     const VI sample = hn::ConvertTo(d, hn::Add(shown, half));
     heard = hn::And(heard, hn::And(hn::Lt(rank, hn::Mul(share, most_rank)), hn::Le(shown, last_sample)));
     heard = hn::And(heard, hn::RebindMask(f, hn::Gt(sample, hn::Set(d, -kBeforeFace - 1))));
