@@ -3,14 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
-#include <QKeyEvent>
-#include <QMouseEvent>
-#include <QWheelEvent>
 #include <cmath>
-#include <cstdlib>
 
 #include "anatomy/phantom/phantom.h"
 #include "shell/theme.h"
+#include "test/widget_actions.h"
 
 namespace trocar::trainer {
 namespace {
@@ -19,32 +16,6 @@ std::shared_ptr<const VirtualPatient> abdomen() {
   static const auto patient =
       std::make_shared<const VirtualPatient>(generate_phantom("abdomen", 1, {{180, 144, 128}}).value());
   return patient;
-}
-
-void mouse(QWidget& widget, QEvent::Type type, const QPointF& at, Qt::MouseButton button,
-           Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-  const Qt::MouseButton changed = type == QEvent::MouseMove ? Qt::NoButton : button;
-  const Qt::MouseButtons held = type == QEvent::MouseButtonRelease ? Qt::NoButton : button;
-  QMouseEvent event(type, at, QPointF(widget.mapToGlobal(at.toPoint())), changed, held, modifiers);
-  QCoreApplication::sendEvent(&widget, &event);
-}
-
-void drag(QWidget& widget, const QPointF& from, const QPointF& to, Qt::MouseButton button,
-          Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-  mouse(widget, QEvent::MouseButtonPress, from, button, modifiers);
-  mouse(widget, QEvent::MouseMove, to, button, modifiers);
-  mouse(widget, QEvent::MouseButtonRelease, to, button, modifiers);
-}
-
-void wheel(QWidget& widget, const QPointF& at, int delta, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-  QWheelEvent event(at, QPointF(widget.mapToGlobal(at.toPoint())), {}, {0, delta}, Qt::NoButton, modifiers,
-                    Qt::NoScrollPhase, false);
-  QCoreApplication::sendEvent(&widget, &event);
-}
-
-void press_key(QWidget& widget, int key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-  QKeyEvent event(QEvent::KeyPress, key, modifiers);
-  QCoreApplication::sendEvent(&widget, &event);
 }
 
 struct Shown {
@@ -68,12 +39,6 @@ struct Shown {
 
 Segment expert_path() {
   return abdomen()->paths.front().line_P;
-}
-
-/// Saves the picture for people to look at, where TROCAR_SAVE_PICTURES names a prefix.
-void save(QWidget& widget, const char* name) {
-  if (const char* prefix = std::getenv("TROCAR_SAVE_PICTURES"))
-    widget.grab().save(QString::fromLocal8Bit(prefix) + QString::fromLatin1(name));
 }
 
 TEST(SliceView, LeadsFromPixelsToThePatientAndBack) {
