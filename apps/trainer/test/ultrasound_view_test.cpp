@@ -1,142 +1,12 @@
 #include "views/ultrasound_view.h"
 
-#include <gtest/gtest.h>
-
-#include <QCoreApplication>
-#include <QElapsedTimer>
-#include <QKeyEvent>
-#include <QMouseEvent>
-#include <QSettings>
-#include <QTemporaryDir>
-#include <QThread>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
-#include "core/data_dir.h"
-#include "io/patient_source.h"
-#include "ultrasound/probe_placement.h"
+#include "test/ultrasound_lab.h"
 
 namespace trocar::trainer {
 namespace {
-
-constexpr double kFrame_s = 1.0 / 60.0;
-
-struct Patient {
-  VirtualPatient patient;
-  std::shared_ptr<const AcousticScene> scene;
-  std::shared_ptr<const VesselFlow> flow;
-  std::vector<Transducer> transducers;
-};
-
-const Patient& abdomen() {
-  static const Patient made = [] {
-    Patient p;
-    const auto data = data_dir();
-    p.patient = open_patient({"abdomen", 1}).value();
-    p.scene = make_acoustic_scene(p.patient, load_acoustic_table(data / "acoustics.toml").value()).value();
-    p.flow = make_vessel_flow(p.patient, load_flow_table(data / "flow.toml").value()).value();
-    p.transducers = load_transducers(data / "transducers.toml").value();
-    return p;
-  }();
-  return made;
-}
-
-const Transducer& transducer(const std::string& name) {
-  for (const Transducer& t : abdomen().transducers)
-    if (t.name == name) return t;
-  ADD_FAILURE() << name;
-  return abdomen().transducers.front();
-}
-
-/// A standard view's place, and its depth.
-struct Place {
-  Pose X_PT;
-  double depth_mm;
-};
-Place place(const char* view, const Transducer& probe) {
-  const auto views = load_probe_views(data_dir() / "views.toml").value();
-  const ProbeView found = choose_view(abdomen().patient, views, view).value();
-  return {place_probe(abdomen().patient, found, probe).value(), found.depth_mm};
-}
-
-class UltrasoundViewTest : public testing::Test {
- protected:
-  static void SetUpTestSuite() { abdomen(); }
-
-  void SetUp() override {
-    QCoreApplication::setOrganizationName(QStringLiteral("Trocar test"));
-    QCoreApplication::setApplicationName(QStringLiteral("ultrasound view"));
-    QSettings::setDefaultFormat(QSettings::IniFormat);
-    QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, folder_.path());
-  }
-
-  void open(UltrasoundView& view, const char* view_name, QSize size, const char* probe_name = "C5-2") {
-    const Transducer& probe = transducer(probe_name);
-    view.resize(size);
-    view.show();
-    view.show_patient(abdomen().scene, abdomen().flow, probe);
-    const Place at = place(view_name, probe);
-    view.change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = at.depth_mm; });
-    X_PT_ = at.X_PT;
-    view.set_transducer_pose(X_PT_);
-  }
-
-  /// As the frame loop does, until it is as it should be; false after a long time.
-  template <class Ready>
-  bool run_until(UltrasoundView& view, const Ready& is_ready) {
-    QElapsedTimer timer;
-    for (timer.start(); timer.elapsed() < 60000;) {
-      now_s_ += kFrame_s;
-      view.advance(now_s_);
-      QCoreApplication::processEvents();
-      if (view.picture() && is_ready(*view.picture())) return true;
-      QThread::msleep(4);
-    }
-    return false;
-  }
-
-  /// A picture of now at full detail.
-  bool settle(UltrasoundView& view) {
-    const std::uint64_t before = view.picture() ? view.picture()->number : 0;
-    const Acquisition& a = view.settings().acquisition;
-    return run_until(view, [&](const ScanPicture& p) {
-      return p.detail == ScanDetail::kFull && p.number > before + 1 && p.acquisition.depth_mm == a.depth_mm &&
-             p.display == view.settings().display && (!p.colour.pixels.empty()) == view.settings().has_doppler;
-    });
-  }
-
-  /// The widget as it is shown; kept where TROCAR_TEST_PICTURES says.
-  QImage look(UltrasoundView& view, const char* name) {
-    view.advance(now_s_ += kFrame_s);
-    const QImage image = view.grab().toImage();
-    if (const char* folder = std::getenv("TROCAR_TEST_PICTURES"))
-      image.save(QStringLiteral("%1/usview_%2.png").arg(QString::fromUtf8(folder), QString::fromUtf8(name)));
-    return image;
-  }
-
-  static void press(UltrasoundView& view, const QPointF& at) { mouse(view, QEvent::MouseButtonPress, at); }
-  static void release(UltrasoundView& view, const QPointF& at) { mouse(view, QEvent::MouseButtonRelease, at); }
-  static void mouse(UltrasoundView& view, QEvent::Type type, const QPointF& at) {
-    const bool is_move = type == QEvent::MouseMove;
-    QMouseEvent event(type, at, view.mapToGlobal(at.toPoint()), is_move ? Qt::NoButton : Qt::LeftButton,
-                      type == QEvent::MouseButtonRelease ? Qt::NoButton : Qt::LeftButton, Qt::NoModifier);
-    QCoreApplication::sendEvent(&view, &event);
-  }
-  static void strike(UltrasoundView& view, int key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
-    QKeyEvent down(QEvent::KeyPress, key, modifiers);
-    QCoreApplication::sendEvent(&view, &down);
-  }
-
-  QTemporaryDir folder_;
-  Pose X_PT_;
-  double now_s_ = 0.0;
-};
-
-PictureMap map_of(const UltrasoundView& view) {
-  const ScanPicture& p = *view.picture();
-  return view.picture_map().value_or(PictureMap(QRectF(0, 0, 1, 1), p.raster));
-}
 
 double mean_gray(const QImage& image, const QPointF& middle, int half) {
   double sum = 0.0;
@@ -172,8 +42,262 @@ TEST_F(UltrasoundViewTest, FanIsBrightInTissueAndBlackBeside) {
         EXPECT_EQ(mean_gray(image, map.to_view(scan.to_cartesian({line, share * scan.depth_mm})), 0), 0.0)
             << line << " " << share;
     // The picture uses the room that it has.
-    EXPECT_GT(map.pixels_per_mm() * scan.depth_mm, 0.7 * size.height());
+    EXPECT_GT(map.pixels_per_mm() * scan.depth_mm, 0.6 * size.height());
   }
+}
+
+/// Straight, from the skin beside the face to 70 mm depth, in the plane moved by `beside_mm`.
+std::vector<Vec3> needle_in_plane(const Pose& X_PT, double beside_mm) {
+  return {X_PT * Vec3(50.0, -10.0, beside_mm), X_PT * Vec3(-5.0, 70.0, beside_mm)};
+}
+
+/// Mean of the brightest pixels beside the shaft's middle third: lines across it.
+double brightness_along(const QImage& image, const UltrasoundView& view, const std::vector<Vec3>& shaft_P) {
+  const PictureMap map = map_of(view);
+  double sum = 0.0;
+  constexpr int kPlaces = 20;
+  for (int n = 0; n < kPlaces; ++n) {
+    const double share = 0.6 + 0.35 * n / kPlaces;
+    const QPointF at = map.to_view(shown_place_T(*view.picture(), shaft_P[0] + share * (shaft_P[1] - shaft_P[0])));
+    int most = 0;
+    for (int y = -4; y <= 4; ++y) most = std::max(most, qGray(image.pixel(at.toPoint() + QPoint(0, y))));
+    sum += most;
+  }
+  return sum / kPlaces;
+}
+
+TEST_F(UltrasoundViewTest, NeedleIsSeenInThePlaneAlone) {
+  UltrasoundView view;
+  open(view, "liver-right-kidney", {900, 700});
+  const std::vector<Vec3> within = needle_in_plane(X_PT_, 0.0);
+  ASSERT_TRUE(settle(view));
+  const double without = brightness_along(look(view, "no_needle"), view, within);
+  view.set_needle(within, 1.27);
+  ASSERT_TRUE(settle(view));
+  const double in_plane = brightness_along(look(view, "needle"), view, within);
+  EXPECT_GT(in_plane, without + 25.0);
+  view.set_needle(needle_in_plane(X_PT_, 15.0), 1.27);
+  ASSERT_TRUE(settle(view));
+  EXPECT_LT(brightness_along(look(view, "needle_beside"), view, within), without + 8.0);
+}
+
+TEST_F(UltrasoundViewTest, GuideShowsWhereTheNeedleGoes) {
+  UltrasoundView view;
+  open(view, "liver-right-kidney", {900, 700});
+  const Vec3 pierce_T(10.0, 60.0, 0.0), along_T = Vec3(-0.3, 0.5, 0.8).normalized();
+  const std::vector<Vec3> shaft = {X_PT_ * (pierce_T - 90.0 * along_T), X_PT_ * (pierce_T - 30.0 * along_T)};
+  view.set_needle(shaft, 1.27);
+  ASSERT_TRUE(settle(view));
+  const QPointF at = map_of(view).to_view(shown_place_T(*view.picture(), X_PT_ * pierce_T));
+  const auto is_marked = [&](const QImage& image) {
+    const QColor c = image.pixelColor(at.toPoint());
+    return c.green() > c.red() + 60;
+  };
+  EXPECT_FALSE(is_marked(look(view, "axis_hidden")));
+  view.set_guide_visible(true);
+  view.change_settings([](UltrasoundSettings& s) { s.guide.is_shown = true; });
+  EXPECT_TRUE(is_marked(look(view, "axis")));
+}
+
+TEST_F(UltrasoundViewTest, CaliperGivesTheKnownDistance) {
+  UltrasoundView view;
+  open(view, "liver-right-kidney", {900, 700});
+  ASSERT_TRUE(settle(view));
+  view.set_frozen(true);
+  ASSERT_TRUE(run_until(view, [](const ScanPicture& p) { return p.is_frozen; }));
+  const PictureMap map = map_of(view);
+  const Vec2 a_T(-20.0, 40.0), b_T(25.0, 100.0);
+  view.start_measuring(MeasuringTool::kDistance);
+  for (const Vec2& mark_T : {a_T, b_T}) {
+    mouse(view, QEvent::MouseMove, map.to_view(mark_T));
+    press(view, map.to_view(mark_T));
+    release(view, map.to_view(mark_T));
+  }
+  ASSERT_EQ(view.measurements().items().size(), 1U);
+  EXPECT_EQ(view.measuring_tool(), MeasuringTool::kNone);
+  // Marks are set to whole pixels.
+  const double pixel_mm = 1.0 / map.pixels_per_mm();
+  EXPECT_NEAR(std::get<DistanceCaliper>(view.measurements().items()[0]).distance_mm(), 75.0, pixel_mm);
+
+  // The same by dragging; then an ellipse and an angle.
+  view.start_measuring(MeasuringTool::kDistance);
+  press(view, map.to_view(a_T));
+  mouse(view, QEvent::MouseMove, map.to_view(b_T));
+  release(view, map.to_view(b_T));
+  ASSERT_EQ(view.measurements().items().size(), 2U);
+  EXPECT_NEAR(std::get<DistanceCaliper>(view.measurements().items()[1]).distance_mm(), 75.0, pixel_mm);
+  const auto click_all = [&](MeasuringTool tool, std::initializer_list<Vec2> marks_T) {
+    view.start_measuring(tool);
+    for (const Vec2& mark_T : marks_T) {
+      press(view, map.to_view(mark_T));
+      release(view, map.to_view(mark_T));
+    }
+  };
+  click_all(MeasuringTool::kEllipse, {{-10.0, 60.0}, {10.0, 60.0}, {0.0, 68.0}});
+  click_all(MeasuringTool::kAngle, {{0.0, 110.0}, {0.0, 80.0}, {30.0, 110.0}});
+  ASSERT_EQ(view.measurements().items().size(), 4U);
+  const auto& ellipse = std::get<EllipseCaliper>(view.measurements().items()[2]);
+  EXPECT_NEAR(ellipse.area_mm2(), std::numbers::pi * 10.0 * 8.0, 8.0);
+  EXPECT_NEAR(std::get<AngleCaliper>(view.measurements().items()[3]).angle_rad(), 0.5 * std::numbers::pi, 0.02);
+  const QImage image = look(view, "calipers");
+  const QColor mark = image.pixelColor(map_of(view).to_view(b_T).toPoint());
+  EXPECT_GT(mark.red(), mark.blue() + 60) << "the cross is drawn";
+
+  strike(view, Qt::Key_Delete);
+  EXPECT_EQ(view.measurements().items().size(), 3U);
+  strike(view, Qt::Key_Z, Qt::ControlModifier);
+  EXPECT_EQ(view.measurements().items().size(), 4U);
+  strike(view, Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+  EXPECT_EQ(view.measurements().items().size(), 3U);
+  view.start_measuring(MeasuringTool::kAngle);
+  press(view, map.to_view(a_T));
+  strike(view, Qt::Key_Escape);
+  EXPECT_EQ(view.measuring_tool(), MeasuringTool::kAngle) << "takes the mark back first";
+  strike(view, Qt::Key_Escape);
+  EXPECT_EQ(view.measuring_tool(), MeasuringTool::kNone);
+}
+
+TEST_F(UltrasoundViewTest, FrozenPictureStaysAndIsStepped) {
+  UltrasoundView view;
+  open(view, "liver-right-kidney", {480, 420});
+  ASSERT_TRUE(settle(view));
+  view.set_frozen(true);
+  ASSERT_TRUE(run_until(view, [](const ScanPicture& p) { return p.is_frozen; }));
+  view.set_transducer_pose(X_PT_ * Pose::translation({10.0, 0.0, 0.0}));
+  for (int n = 0; n < 30; ++n) {
+    view.advance(now_s_ += kFrame_s);
+    QThread::msleep(4);
+  }
+  EXPECT_EQ(view.picture()->X_PT.p(), X_PT_.p());
+  ASSERT_GE(view.cine().size, 2);
+  const int newest = view.cine().position;
+  look(view, "frozen");
+  strike(view, Qt::Key_Left);
+  ASSERT_TRUE(run_until(view, [&](const ScanPicture&) { return view.cine().position == newest - 1; }));
+  view.set_frozen(false);
+  EXPECT_TRUE(
+      run_until(view, [&](const ScanPicture& p) { return (p.X_PT.p() - X_PT_.p()).norm() > 9.0 && !p.is_frozen; }));
+}
+
+TEST_F(UltrasoundViewTest, DopplerColoursTheVessel) {
+  for (const char* name : {"portal-vein", "aorta"}) {
+    UltrasoundView view;
+    open(view, name, {900, 700});
+    ASSERT_TRUE(settle(view));
+    const auto within_scan = [&] {
+      const PictureMap map = map_of(view);
+      const ScanGeometry& scan = view.picture()->scan;
+      const QPointF a = map.to_view(scan.to_cartesian({0.25 * scan.lines, 0.25 * scan.depth_mm}));
+      const QPointF b = map.to_view(scan.to_cartesian({0.75 * scan.lines, 0.88 * scan.depth_mm}));
+      return QRect(a.toPoint(), b.toPoint()).normalized();
+    };
+    EXPECT_LT(coloured(look(view, "no_colour"), within_scan()), 10) << name;
+    view.change_settings([](UltrasoundSettings& s) { s.has_doppler = true; });
+    int most = 0;
+    for (int beat = 0; beat < 12 && most < 300; ++beat) {
+      now_s_ += 0.09;
+      ASSERT_TRUE(settle(view));
+      most = std::max(most, coloured(look(view, name), within_scan()));
+    }
+    EXPECT_GE(most, 300) << name;
+  }
+}
+
+TEST_F(UltrasoundViewTest, ColourBoxIsDraggedWithTheMouse) {
+  UltrasoundView view;
+  open(view, "aorta", {900, 700});
+  view.change_settings([](UltrasoundSettings& s) { s.has_doppler = true; });
+  ASSERT_TRUE(settle(view));
+  const DopplerBox before = view.settings().doppler.box;
+  const ScanGeometry scan = view.picture()->scan;
+  const PictureMap map = map_of(view);
+  const auto at = [&](double across, double along) {
+    return map.to_view(scan.to_cartesian({across * (scan.lines - 1), along * scan.depth_mm}));
+  };
+  press(view, at(0.5, 0.5));
+  mouse(view, QEvent::MouseMove, at(0.4, 0.45));
+  release(view, at(0.4, 0.45));
+  const DopplerBox moved = view.settings().doppler.box;
+  EXPECT_NEAR(moved.first_line, before.first_line - 0.1, 0.01);
+  EXPECT_NEAR(moved.far, before.far - 0.05, 0.01);
+  EXPECT_NEAR(moved.last_line - moved.first_line, before.last_line - before.first_line, 1e-9);
+  press(view, at(moved.last_line, 0.5));
+  mouse(view, QEvent::MouseMove, at(moved.last_line - 0.2, 0.5));
+  release(view, at(moved.last_line - 0.2, 0.5));
+  EXPECT_NEAR(view.settings().doppler.box.last_line, moved.last_line - 0.2, 0.01);
+  EXPECT_EQ(view.settings().doppler.box.first_line, moved.first_line);
+}
+
+TEST_F(UltrasoundViewTest, SaysWhenTheFaceHasLeftTheSkin) {
+  UltrasoundView view;
+  open(view, "liver-right-kidney", {480, 420});
+  view.set_transducer_pose(X_PT_ * Pose::translation({0.0, -40.0, 0.0}));
+  ASSERT_TRUE(settle(view));
+  EXPECT_LT(view.picture()->coupled_share, 0.02);
+  const QImage image = look(view, "no_contact");
+  int warning = 0;
+  for (int y = 0; y < 160; ++y)
+    for (int x = 0; x < 120; ++x) {
+      const QColor c = image.pixelColor(x, y);
+      warning += c.red() > 180 && c.blue() < 110 ? 1 : 0;
+    }
+  EXPECT_GT(warning, 20);
+}
+
+TEST_F(UltrasoundViewTest, NothingLiesOnTheScan) {
+  // Of every transducer in small and large views: caption, bars and scale are beside it.
+  for (const Transducer& probe : abdomen().transducers)
+    for (const QSize size : {QSize(240, 180), QSize(480, 420), QSize(900, 700), QSize(700, 300), QSize(300, 800)}) {
+      const ScanGeometry scan = make_scan_geometry(probe, probe.depth_mm, 128, 256);
+      const bool is_small = size.width() < 300;
+      const UltrasoundRoom room{is_small ? QSizeF(75.0, 32.0) : QSizeF(110.0, 130.0),
+                                is_small ? QSizeF() : QSizeF(56.0, 150.0), 34.0, 8.0};
+      const UltrasoundLayout layout = lay_out(size, scan, room);
+      const RasterGeometry raster =
+          fit_raster(scan, static_cast<int>(layout.picture.width()), static_cast<int>(layout.picture.height()));
+      const PictureMap map(layout.picture, raster);
+      for (double line = 0.0; line < scan.lines; line += 1.0)
+        for (double depth_mm = 0.0; depth_mm <= scan.depth_mm; depth_mm += scan.depth_mm / 100.0) {
+          const QPointF at = map.to_view(scan.to_cartesian({line, depth_mm}));
+          ASSERT_FALSE(layout.caption.contains(at)) << probe.name << " " << size.width();
+          ASSERT_FALSE(layout.bars.contains(at)) << probe.name << " " << size.width();
+          ASSERT_LT(at.x(), layout.scale_x) << probe.name << " " << size.width();
+          ASSERT_GE(at.x(), 0.0);
+        }
+    }
+}
+
+TEST_F(UltrasoundViewTest, KnobsAreKeptForEachTransducer) {
+  {
+    UltrasoundView view;
+    open(view, "liver-right-kidney", {480, 420});
+    view.change_settings([](UltrasoundSettings& s) {
+      s.display.gain_db = 7.0;
+      s.display.tgc_db[3] = -5.0;
+      s.acquisition.depth_mm = 110.0;
+      s.display.gray_map = GrayMap::kLinear;
+    });
+    view.choose_transducer(transducer("L14-5"));
+    EXPECT_EQ(view.settings().display.gain_db, 0.0);
+    view.change_settings([](UltrasoundSettings& s) { s.display.gain_db = -3.0; });
+  }
+  UltrasoundView view;
+  view.show_patient(abdomen().scene, nullptr, transducer("C5-2"));
+  EXPECT_EQ(view.settings().display.gain_db, 7.0);
+  EXPECT_EQ(view.settings().display.tgc_db[3], -5.0);
+  EXPECT_EQ(view.settings().acquisition.depth_mm, 110.0);
+  EXPECT_EQ(view.settings().display.gray_map, GrayMap::kLinear);
+  view.reset_settings();
+  EXPECT_EQ(view.settings(), default_settings(transducer("C5-2")));
+}
+
+TEST_F(UltrasoundViewTest, LinearArrayFillsItsView) {
+  UltrasoundView view;
+  open(view, "aorta", {480, 420}, "L14-5");
+  view.change_settings([](UltrasoundSettings& s) { s.acquisition.depth_mm = 50.0; });
+  ASSERT_TRUE(settle(view));
+  look(view, "linear");
+  EXPECT_GT(map_of(view).pixels_per_mm() * 50.0, 300.0);
 }
 
 }  // namespace

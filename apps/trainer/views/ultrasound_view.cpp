@@ -231,8 +231,12 @@ UltrasoundRoom UltrasoundView::room() const {
   if (picture_) {
     const CaptionFacts facts{to_qt(transducer_.name), 88.0, {}, measurements_.items(), is_small};
     std::vector<CaptionLine> lines = caption_of(*picture_, facts);
-    // Room for the longest that may come and go, so that the picture stays where it is.
-    lines.push_back({QStringLiteral("Frozen 888/888"), CaptionLine::Kind::kFrozen});
+    // Room for what comes and goes, so that the picture stays where it is.
+    std::erase_if(lines, [](const CaptionLine& line) {
+      return line.kind == CaptionLine::Kind::kWarning || line.kind == CaptionLine::Kind::kFrozen;
+    });
+    lines.push_back({QStringLiteral("Poor contact"), CaptionLine::Kind::kWarning});
+    if (!is_small && picture_->is_frozen) lines.push_back({QStringLiteral("8"), CaptionLine::Kind::kPlain});
     room.caption = caption_size(lines, font);
   }
   if (!is_small) room.bars = bars_size(font, height(), picture_ && picture_->doppler_scale_cm_per_s > 0.0);

@@ -1,0 +1,61 @@
+#include "views/ultrasound_controls.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QPushButton>
+#include <QSlider>
+
+#include "test/ultrasound_lab.h"
+
+namespace trocar::trainer {
+namespace {
+
+class UltrasoundControlsTest : public UltrasoundViewTest {};
+
+template <class Widget>
+Widget& find(UltrasoundControls& controls, const char* name) {
+  auto* found = controls.findChild<Widget*>(QString::fromLatin1(name));
+  if (found == nullptr) ADD_FAILURE() << name;
+  return *found;
+}
+
+TEST_F(UltrasoundControlsTest, ControlsAndViewShowTheSame) {
+  UltrasoundView view;
+  open(view, "aorta", {480, 420});
+  UltrasoundControls controls(view);
+  controls.resize(300, 1010);
+  controls.show();
+  ASSERT_TRUE(settle(view));
+  find<QSlider>(controls, "ultrasound-gain").setValue(9);
+  EXPECT_EQ(view.settings().display.gain_db, 9.0);
+  find<QSlider>(controls, "ultrasound-tgc-8").setValue(-4);
+  EXPECT_EQ(view.settings().display.tgc_db[7], -4.0);
+  view.change_settings([](UltrasoundSettings& s) { s.acquisition.depth_mm = 120.0; });
+  EXPECT_EQ(find<QSlider>(controls, "ultrasound-depth").value(), 24);
+  find<QCheckBox>(controls, "ultrasound-doppler").click();
+  EXPECT_TRUE(view.settings().has_doppler);
+  find<QPushButton>(controls, "ultrasound-distance").click();
+  EXPECT_EQ(view.measuring_tool(), MeasuringTool::kDistance);
+  find<QPushButton>(controls, "ultrasound-freeze").click();
+  ASSERT_TRUE(run_until(view, [](const ScanPicture& p) { return p.is_frozen; }));
+  EXPECT_TRUE(find<QSlider>(controls, "ultrasound-cine").isVisible());
+  if (const char* folder = std::getenv("TROCAR_TEST_PICTURES")) {
+    controls.setStyleSheet(QStringLiteral("trocar--trainer--UltrasoundControls { background: #181e27; }"));
+    controls.grab().save(QStringLiteral("%1/usview_controls.png").arg(QString::fromUtf8(folder)));
+  }
+  find<QSlider>(controls, "ultrasound-cine").setValue(0);
+  EXPECT_TRUE(run_until(view, [&](const ScanPicture&) { return view.cine().position == 0; }));
+  find<QPushButton>(controls, "ultrasound-freeze").click();
+  EXPECT_FALSE(view.is_frozen());
+  auto& presets = find<QComboBox>(controls, "ultrasound-preset");
+  presets.setCurrentIndex(presets.findText(QStringLiteral("Shallow vessel")));
+  Q_EMIT presets.activated(presets.currentIndex());
+  EXPECT_EQ(view.transducer().name, "L14-5");
+  EXPECT_EQ(view.settings().acquisition.depth_mm, 40.0);
+  EXPECT_EQ(find<QComboBox>(controls, "ultrasound-transducer").currentText(), QStringLiteral("L14-5"));
+  find<QPushButton>(controls, "ultrasound-reset").click();
+  EXPECT_EQ(view.settings(), default_settings(transducer("L14-5")));
+}
+
+}  // namespace
+}  // namespace trocar::trainer
