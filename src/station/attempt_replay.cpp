@@ -1,0 +1,114 @@
+#include "station/attempt_replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "geometry/segment.h"
+#include "station/needle_shaft.h"
+
+namespace trocar {
+namespace {
+
+std::string words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+/// The label behind an event, by its id in the session.
+const Label* find_entered(const OpenCase& open, const TickEvent& event) {
+  if (event.kind != EventKind::kEnter) return nullptr;
+  for (const Label& label : open.the_case.patient->label_table.labels)
+    if (label.id == event.id) return &label;
+  return nullptr;
+}
+
+}  // namespace
+
+Result<AttemptReplay> AttemptReplay::load(const std::filesystem::path& path, std::shared_ptr<const OpenCase> open) {
+  TROCAR_TRY(Session session, load_session(path));
+  if (session.samples.empty())
+    return fail("the attempt was cut off before its first tick", path.string(), "start another one");
+  if (session.info.patient_hash != open->the_case.patient->content_hash)
+    return fail("the session is of another patient than the case", path.string(), "open that patient first");
+  const bool was_cut_off = !session.outcome.has_value();
+  if (was_cut_off) {
+    const Case& the_case = open->the_case;
+    session.outcome = score_attempt(the_case.task, *the_case.patient, the_case.tissues, the_case.needle, the_case.plan,
+                                    session.samples, session.fired);
+  }
+  return AttemptReplay(std::move(session), std::move(open), was_cut_off);
+}
+
+AttemptReplay::AttemptReplay(Session session, std::shared_ptr<const OpenCase> open, bool was_cut_off)
+    : session_(std::move(session)), open_(std::move(open)), was_cut_off_(was_cut_off) {
+  find_moments();
+  find_worst();
+  moments_.push_back(worst_);
+  std::stable_sort(moments_.begin(), moments_.end(),
+                   [](const ReplayMoment& a, const ReplayMoment& b) { return a.time_s < b.time_s; });
+}
+
+const TickSample& AttemptReplay::at(double time_s) const noexcept {
+  const auto& samples = session_.samples;
+  const auto next = std::upper_bound(samples.begin(), samples.end(), time_s,
+                                     [](double t, const TickSample& sample) { return t < sample.time_s; });
+  return next == samples.begin() ? samples.front() : *(next - 1);
+}
+
+std::vector<Vec3> AttemptReplay::shaft_at(double time_s) const {
+  return needle_shaft(at(time_s), open_->the_case.needle.length_mm);
+}
+
+void AttemptReplay::find_moments() {
+  using Kind = ReplayMoment::Kind;
+  for (const TickSample& sample : session_.samples) {
+    for (const TickEvent& event : sample.events) {
+      if (event.kind == EventKind::kPuncture) {
+        const std::string text = event_text(session_.info, event);
+        moments_.push_back({sample.time_s, Kind::kPuncture, "through the " + words(text.substr(text.find(':') + 1))});
+      }
+      const Label* label = find_entered(*open_, event);
+      if (label == nullptr) continue;
+      const bool is_risk = find_risk(open_->the_case.task, *label) != nullptr;
+      moments_.push_back({sample.time_s, is_risk ? Kind::kRisk : Kind::kEnter,
+                          is_risk ? "touched: " + words(label->name) : "into the " + words(label->name)});
+    }
+  }
+  if (session_.fired) moments_.push_back({session_.samples[*session_.fired].time_s, Kind::kFired, "the gun was fired"});
+}
+
+/// What was at risk comes first; then where the needle was farthest beside the path in the body; then the greatest
+/// force.
+void AttemptReplay::find_worst() {
+  const auto risk = std::find_if(moments_.begin(), moments_.end(),
+                                 [](const ReplayMoment& m) { return m.kind == ReplayMoment::Kind::kRisk; });
+  worst_.kind = ReplayMoment::Kind::kWorst;
+  if (risk != moments_.end()) {
+    worst_.time_s = risk->time_s;
+    worst_.text = risk->text;
+    return;
+  }
+  constexpr double kInside_mm = 1.0;
+  const Segment& plan_P = session_.info.plan_P.line_P;
+  const Vec3 direction_P = plan_P.direction();
+  double farthest_mm = -1.0;
+  for (const TickSample& sample : session_.samples) {
+    if (sample.depth_mm < kInside_mm) continue;
+    const double beside_mm = distance_to_line_mm(plan_P.a, direction_P, sample.tip_mm);
+    if (beside_mm <= farthest_mm) continue;
+    farthest_mm = beside_mm;
+    worst_.time_s = sample.time_s;
+  }
+  if (farthest_mm >= 0.0) {
+    worst_.text = fmt::format("{:.1f} mm beside the planned path", farthest_mm);
+    return;
+  }
+  const auto strongest = std::max_element(
+      session_.samples.begin(), session_.samples.end(),
+      [](const TickSample& a, const TickSample& b) { return axial_resistance_n(a) < axial_resistance_n(b); });
+  worst_.time_s = strongest->time_s;
+  worst_.text = fmt::format("{:.1f} N, and the skin was not pierced", axial_resistance_n(*strongest));
+}
+
+}  // namespace trocar
