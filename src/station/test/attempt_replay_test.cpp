@@ -19,7 +19,7 @@ const Recorded& recorded() {
   static const Recorded the_one = [] {
     Recorded r;
     r.open = *make_open_case({});
-    r.folder = *TemporaryFolder::create("replay");
+    r.folder = std::make_unique<TemporaryFolder>();
     r.session = r.folder->path() / "expert.trocar";
     RunOptions options;
     options.session = r.session;

@@ -9,7 +9,7 @@ namespace trocar {
 namespace {
 
 struct JournalTest : testing::Test {
-  JournalTest() : folder(*TemporaryFolder::create("journal")), journal(folder->path()) {
+  JournalTest() : folder(std::make_unique<TemporaryFolder>()), journal(folder->path()) {
     state.choice.patient_source = "layers-liver";
     state.choice.patient_seed = 7;
     state.choice.force_model = "proxy";
