@@ -74,6 +74,12 @@ void ForcePlot::set_reference(std::vector<QPointF> curve) {
   change_ground();
 }
 
+void ForcePlot::set_curve_names(const QString& predicted, const QString& reference) {
+  predicted_name_ = predicted;
+  reference_name_ = reference;
+  update();
+}
+
 void ForcePlot::append(std::span<const ForcePoint> points) {
   for (const ForcePoint& point : points) {
     if (!std::isfinite(point.time_s) || !std::isfinite(point.depth_mm) || !std::isfinite(point.resistance_n)) continue;
@@ -298,8 +304,8 @@ void ForcePlot::paint_strip(QPainter& painter) const {
     if (!has_room) put(force, true, t.accent, true);
   }
   if (axis_ == Axis::kTime) return;
-  if (!reference_.empty()) put(QStringLiteral("— ") + tr("expert"), false, t.path, true);
-  if (!predicted_.empty()) put(QStringLiteral("- - ") + tr("predicted"), false, t.dim, true);
+  if (!reference_.empty()) put(QStringLiteral("— ") + reference_name_, false, t.path, true);
+  if (!predicted_.empty()) put(QStringLiteral("- - ") + predicted_name_, false, t.dim, true);
 }
 
 void ForcePlot::paintEvent(QPaintEvent* /*event*/) {

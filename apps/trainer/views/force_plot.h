@@ -44,6 +44,8 @@ class ForcePlot : public QWidget {
   /// Depth (mm) and resistance (N) by rising depth; empty hides the curve.
   void set_predicted(std::vector<QPointF> curve);
   void set_reference(std::vector<QPointF> curve);
+  /// What the two are called in the picture; "predicted" and "expert" if nothing is said.
+  void set_curve_names(const QString& predicted, const QString& reference);
   /// By rising time. Points that are not finite are left out.
   void append(std::span<const ForcePoint> points);
   void add_event(double depth_mm, double time_s, const QString& text);
@@ -93,6 +95,7 @@ class ForcePlot : public QWidget {
   Axis axis_ = Axis::kDepth;
   std::vector<Band> bands_;
   std::vector<QPointF> predicted_, reference_;
+  QString predicted_name_ = tr("predicted"), reference_name_ = tr("expert");
   CurveTrace by_depth_, by_time_;
   std::vector<Event> events_;
   std::optional<double> cursor_s_;
