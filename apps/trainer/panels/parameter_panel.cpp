@@ -1,0 +1,193 @@
+#include "panels/parameter_panel.h"
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QShortcut>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <utility>
+#include <vector>
+
+#include "panels/force_preview.h"
+#include "panels/parameter_list.h"
+#include "shell/parts.h"
+#include "shell/theme.h"
+
+namespace trocar::trainer {
+namespace {
+
+/// A moving slider changes the number with every picture; the server and the prediction get the newest after this.
+constexpr std::chrono::milliseconds kQuiet{150};
+
+std::vector<std::string> texts_of(const QStringList& list) {
+  std::vector<std::string> texts;
+  for (const QString& text : list) texts.push_back(to_std(text));
+  return texts;
+}
+
+}  // namespace
+
+ParameterPanel::ParameterPanel(QWidget* parent)
+    : QWidget(parent),
+      empty_(make_label(tr("Open a case to adjust its tissues."), "dim")),
+      body_(new QWidget),
+      preview_(new ForcePreview),
+      scroll_(new QScrollArea),
+      list_(new ParameterList) {
+  setObjectName(QStringLiteral("parameter-panel"));
+  setAccessibleName(tr("Tissue parameters"));
+  setAttribute(Qt::WA_StyledBackground);
+  setStyleSheet(QStringLiteral("#parameter-panel { background: %1; }").arg(theme().ground.name()));
+  scroll_->setWidget(list_);
+  scroll_->setWidgetResizable(true);
+  scroll_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll_->setFocusPolicy(Qt::NoFocus);
+  scroll_->setMinimumHeight(120);
+
+  auto* parts = new QVBoxLayout(body_);
+  parts->setContentsMargins(0, 0, 0, 0);
+  parts->setSpacing(8);
+  parts->addWidget(preview_);
+  parts->addWidget(scroll_, 1);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(8, 8, 8, 8);
+  layout->setSpacing(8);
+  layout->addWidget(make_head());
+  layout->addWidget(empty_);
+  layout->addWidget(body_, 1);
+  layout->addStretch(0);
+  make_shortcuts();
+
+  connect(preview_, &ForcePreview::model_changed, this, [this](const QString& model) {
+    list_->show_model(model);
+    Q_EMIT model_changed(model);
+  });
+  connect(list_, &ParameterList::edited, this, &ParameterPanel::edit);
+  connect(list_, &ParameterList::reset_asked, this, [this](const std::string& setting) {
+    edits_.reset(setting);
+    show_changes();
+  });
+  connect(list_, &ParameterList::reset_tissue_asked, this, [this](const std::string& tissue) {
+    for (const TissueParameterGroup& group : edits_.groups())
+      if (group.name == tissue) edits_.reset(group);
+    show_changes();
+  });
+  connect(list_, &ParameterList::opened, this, [this] { show_values(); });
+  show_case(nullptr);
+}
+
+QWidget* ParameterPanel::make_head() {
+  auto* head = new QWidget;
+  auto* layout = new QHBoxLayout(head);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(6);
+  layout->addWidget(make_label(tr("Tissues"), "heading"), 1);
+  undo_ = make_tool_button("parameter-undo", QStringLiteral("⤺"), tr("Undo  (Ctrl+Z in this panel)"));
+  undo_->setAccessibleName(tr("Undo"));
+  redo_ = make_tool_button("parameter-redo", QStringLiteral("⤻"), tr("Redo  (Ctrl+Shift+Z in this panel)"));
+  redo_->setAccessibleName(tr("Redo"));
+  reset_ = make_tool_button("parameter-reset-all", tr("Reset all"), tr("All numbers back to the case's own"));
+  connect(undo_, &QToolButton::clicked, this, &ParameterPanel::undo);
+  connect(redo_, &QToolButton::clicked, this, &ParameterPanel::redo);
+  connect(reset_, &QToolButton::clicked, this, [this] {
+    edits_.reset_all();
+    show_changes();
+  });
+  for (QToolButton* button : {undo_, redo_, reset_}) {
+    button->setFocusPolicy(Qt::StrongFocus);
+    layout->addWidget(button);
+  }
+  return head;
+}
+
+void ParameterPanel::make_shortcuts() {
+  const auto add = [this](const QKeySequence& keys, void (ParameterPanel::*act)()) {
+    auto* shortcut = new QShortcut(keys, this);
+    shortcut->setContext(Qt::WidgetWithChildrenShortcut);
+    connect(shortcut, &QShortcut::activated, this, act);
+  };
+  add(QKeySequence(QStringLiteral("Ctrl+Z")), &ParameterPanel::undo);
+  add(QKeySequence(QStringLiteral("Ctrl+Shift+Z")), &ParameterPanel::redo);
+}
+
+void ParameterPanel::show_case(std::shared_ptr<const OpenCase> open_case) {
+  case_ = std::move(open_case);
+  empty_->setVisible(case_ == nullptr);
+  body_->setVisible(case_ != nullptr);
+  edits_.start(case_ ? case_->the_case.tissues : TissueTable{});
+  preview_->show_case(case_);
+  list_->show_model(preview_->model());
+  list_->show_tissues(edits_.groups(), case_ ? case_->pieces : std::vector<PathPiece>{});
+  // A server that has just loaded the case has its own numbers.
+  sent_.clear();
+  show_changes();
+}
+
+QStringList ParameterPanel::settings() const {
+  QStringList list;
+  for (const std::string& setting : edits_.settings()) list << to_qt(setting);
+  return list;
+}
+
+Status ParameterPanel::apply_settings(const QStringList& settings) {
+  TROCAR_TRY_STATUS(edits_.replace(texts_of(settings)));
+  show_changes();
+  return {};
+}
+
+void ParameterPanel::edit(const std::string& setting, double value, bool joins) {
+  const Status done = edits_.set(setting, value, joins);
+  if (done) {
+    show_changes();
+  } else {
+    show_values();
+    list_->show_refusal(setting, to_qt(done.error().what));
+  }
+}
+
+void ParameterPanel::undo() {
+  edits_.undo();
+  show_changes();
+}
+
+void ParameterPanel::redo() {
+  edits_.redo();
+  show_changes();
+}
+
+void ParameterPanel::show_changes() {
+  show_values();
+  changed_at_ = std::chrono::steady_clock::now();
+}
+
+void ParameterPanel::show_values() {
+  list_->show_values(edits_);
+  undo_->setEnabled(edits_.can_undo());
+  redo_->setEnabled(edits_.can_redo());
+  reset_->setEnabled(edits_.is_changed());
+}
+
+void ParameterPanel::advance() {
+  if (changed_at_ && std::chrono::steady_clock::now() - *changed_at_ >= kQuiet) {
+    changed_at_.reset();
+    preview_->show_settings(edits_.settings());
+    const QStringList now = settings();
+    if (now != sent_) {
+      sent_ = now;
+      Q_EMIT parameters_changed(now);
+    }
+  }
+  preview_->advance();
+}
+
+bool ParameterPanel::is_settled() const noexcept {
+  return !changed_at_ && preview_->is_settled();
+}
+
+QSize ParameterPanel::sizeHint() const {
+  return {340, 700};
+}
+
+}  // namespace trocar::trainer
