@@ -1,0 +1,74 @@
+#pragma once
+
+#include <QColor>
+#include <QString>
+#include <QWidget>
+#include <vector>
+
+namespace trocar::trainer {
+
+/// What stands out in a session, and how it is marked.
+enum class TimeMark { kEnter, kPuncture, kFire, kOther, kWorst };
+
+/// The painted part of a time line: phases as a coloured strip, the force as a small curve, events as marks, the time
+/// now as a handle that follows the mouse. Its values are set by TimeLine. Object name: time-track.
+class TimeTrack : public QWidget {
+  Q_OBJECT
+
+ public:
+  struct Event {
+    double time_s = 0.0;
+    QString title;
+    TimeMark kind = TimeMark::kOther;
+  };
+  struct Phase {
+    double from_s = 0.0;
+    double to_s = 0.0;
+    QString name;
+    QColor color;
+  };
+
+  explicit TimeTrack(QWidget* parent = nullptr);
+
+  void set_duration(double duration_s);
+  void set_events(std::vector<Event> events);
+  void set_phases(std::vector<Phase> phases);
+  /// Time (s) and force (N) by rising time.
+  void set_curve(std::vector<QPointF> curve);
+  void set_time(double time_s);
+
+  double duration_s() const noexcept { return duration_s_; }
+  double time_s() const noexcept { return time_s_; }
+  const std::vector<Event>& events() const noexcept { return events_; }
+  /// In points of the widget, and back.
+  double x_of(double time_s) const;
+  double time_at(double x) const;
+
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override;
+
+ Q_SIGNALS:
+  /// A person asks for a time.
+  void scrubbed(double time_s);
+
+ protected:
+  bool event(QEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+
+ private:
+  QRectF area() const;
+  void scrub(double x);
+  void paint_curve(QPainter& painter) const;
+  void paint_marks(QPainter& painter) const;
+  QString text_at(const QPoint& position) const;
+
+  double duration_s_ = 0.0;
+  double time_s_ = 0.0;
+  std::vector<Event> events_;
+  std::vector<Phase> phases_;
+  std::vector<QPointF> curve_;
+};
+
+}  // namespace trocar::trainer
