@@ -40,7 +40,8 @@ Acquisition with_detail(const Acquisition& full, ScanDetail detail) noexcept {
   a.samples = std::max(64, is_middle ? full.samples * 3 / 4 : full.samples / 2);
   a.lines = std::min(a.lines, full.lines);
   a.samples = std::min(a.samples, full.samples);
-  a.planes = std::min(full.planes, is_middle ? 3 : 1);
+  // A single plane makes borders too bright and sharp, and saves little.
+  a.planes = std::min(full.planes, 3);
   a.looks = std::min(full.looks, is_middle ? 2 : 1);
   return a;
 }
