@@ -37,6 +37,7 @@ void fill_rows(ScanPlan& plan, const AcousticTable& table) {
     plan.roughness[t] = static_cast<float>(tissue.roughness);
     plan.share[t] = share_class(tissue.scatterer_share);
   }
+  plan.share[kNoData] = share_class(0.0);
   plan.entry_rows = plan.rows;
   const auto skin = table.find("skin");
   plan.entry_rows[0] = {skin ? plan.rows[*skin].log_z : static_cast<float>(std::log(1e-3 * kGelSpeed_m_per_s)), 0.0F,

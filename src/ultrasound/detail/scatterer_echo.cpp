@@ -236,6 +236,7 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     const VI sample = hn::ConvertTo(d, hn::Add(shown, half));
     heard = hn::And(heard, hn::And(hn::Lt(rank, hn::Mul(share, most_rank)), hn::Le(shown, last_sample)));
     heard = hn::And(heard, hn::RebindMask(f, hn::Gt(sample, hn::Set(d, -kBeforeFace - 1))));
+    if (hn::AllFalse(f, heard)) continue;
     const VF weight = hn::Mul(hn::Exp(f, hn::MulAdd(hn::Mul(zeta, zeta), hn::Set(f, -0.5F), log_gain)),
                               at_depth(cell.speckle_scale, walk));
     const VF amplitude = hn::CopySign(weight, signed_rank);

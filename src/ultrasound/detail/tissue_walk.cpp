@@ -112,8 +112,9 @@ constexpr int kBlock = 16;
 /// Middles of a block's samples.
 constexpr std::array<float, kBlock> kSteps{0.5F, 1.5F, 2.5F,  3.5F,  4.5F,  5.5F,  6.5F,  7.5F,
                                            8.5F, 9.5F, 10.5F, 11.5F, 12.5F, 13.5F, 14.5F, 15.5F};
-/// An echo 160 dB below liver's speckle is far below any receiver's noise.
-constexpr float kInaudible = -18.4F;
+/// 131 dB: from there even a perfect reflector, 48 dB above liver's speckle, is 20 dB below the receiver's noise (-63
+/// dB).
+constexpr float kInaudible = -15.1F;
 constexpr float kSilence = -60.0F;  // neper
 /// Organs are wrapped: a border reflects at least so much, even between tissues of one impedance (assumed).
 constexpr float kWrapping = 0.03F;
