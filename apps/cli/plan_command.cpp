@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "headless/prepare_case.h"
 #include "io/markups_file.h"
 #include "io/patient_source.h"
 #include "training/plan.h"
@@ -50,18 +51,20 @@ void print_plan(const std::vector<PlannedPath>& paths, bool is_json) {
 
 Status plan(const Arguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
-  TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
-  TROCAR_TRY(const Task task, load_task(tasks_folder, arguments.task));
-  TROCAR_TRY(const fs::path needles, find_data("needles.toml"));
-  TROCAR_TRY(const Needle needle, load_needle(needles, arguments.needle.empty() ? task.needle : arguments.needle));
+  CaseOptions options;
+  options.task = arguments.task;
+  options.needle = arguments.needle;
+  options.patient_folder = arguments.source.folder_or_name;
+  TROCAR_TRY(const Case tables, load_tables(options));
   std::vector<PlannedPath> paths;
   {
     const ProgressPrinter printer;
     TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, printer.callback()));
-    TROCAR_TRY(paths, plan_paths(task, patient, needle, arguments.options, printer.callback()));
+    TROCAR_TRY(paths, plan_paths(tables.task, patient, tables.needle, arguments.options, printer.callback()));
   }
   std::vector<NeedlePath> named;
-  for (const PlannedPath& p : paths) named.push_back({fmt::format("{}-{}", task.name, named.size() + 1), p.line_P});
+  for (const PlannedPath& p : paths)
+    named.push_back({fmt::format("{}-{}", tables.task.name, named.size() + 1), p.line_P});
   TROCAR_TRY_STATUS(write_paths(named, arguments.out));
   print_plan(paths, arguments.is_json);
   return {};
@@ -72,7 +75,8 @@ Status plan(const Arguments& arguments) {
 void add_plan_command(CLI::App& program, Action& action) {
   const auto a = std::make_shared<Arguments>();
   CLI::App* command = program.add_subcommand("plan", "Find safe needle paths: they keep every margin of the task");
-  command->add_option("TASK", a->task, "Task: see trocar task list")->required();
+  command->add_option("TASK,--task", a->task,
+                      "Task: see trocar task list, or a task file (.toml); the patient's own when left out");
   command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name")
       ->required();
   command->add_option("--count", a->options.count, "How many paths, each from its own entry")

@@ -162,6 +162,7 @@ Status run(Arguments& arguments) {
   run.patient_seed = arguments.source.seed;
   run.seed = arguments.source.seed;
   arguments.the_case.seed = arguments.source.seed;
+  arguments.the_case.patient_folder = arguments.source.folder_or_name;
   TROCAR_TRY_STATUS(check_run(run));
   TROCAR_TRY_STATUS(check_servers(arguments));
   TROCAR_TRY_STATUS(load_tables(arguments.the_case));
@@ -205,7 +206,9 @@ void add_server_options(CLI::App& command, Arguments& a) {
 void add_run_command(CLI::App& program, Action& action) {
   const auto a = std::make_shared<Arguments>();
   CLI::App* command = program.add_subcommand("run", "Perform a task with a scripted operator and record it");
-  command->add_option("TASK", a->the_case.task, "Task: see trocar task list")->required();
+  a->the_case.task.clear();
+  command->add_option("TASK,--task", a->the_case.task,
+                      "Task: see trocar task list, or a task file (.toml); the patient's own when left out");
   command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name")
       ->required();
   command
@@ -234,6 +237,7 @@ void add_run_command(CLI::App& program, Action& action) {
       "Examples:\n  trocar run liver-biopsy --patient abdomen --operator expert --out first.session\n"
       "  trocar run liver-biopsy --patient my_patient --operator novice --set liver.k=0.5 --seed 4 --out "
       "second.session\n"
+      "  trocar run --patient my_case --operator expert --out own_task.session\n"
       "  trocar run liver-biopsy --patient abdomen --operator expert --realtime --out live.session\n"
       "  trocar run liver-biopsy --patient abdomen --operator expert --realtime --endpoint ipc:///tmp/needle "
       "--endpoint ipc:///tmp/probe --out live.session\n");

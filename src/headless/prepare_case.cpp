@@ -5,14 +5,47 @@
 
 #include "core/data_dir.h"
 #include "core/log.h"
+#include "training/assess_path.h"
 
 namespace trocar {
+namespace {
+namespace fs = std::filesystem;
+
+Result<Task> find_task(const CaseOptions& options, const fs::path& tasks_folder) {
+  const bool is_file = options.task.ends_with(".toml");
+  if (!is_file && !options.task.empty()) return load_task(tasks_folder, options.task);
+  if (is_file) return load_task_file(options.task, tasks_folder);
+  if (has_own_task(options.patient_folder))
+    return load_task_file(fs::path(options.patient_folder) / kOwnTaskFile, tasks_folder);
+  return fail_usage("the patient has no task of its own", options.patient_folder, "name one: see trocar task list");
+}
+
+/// The path that the task names, measured as a planned one. What is wrong with it is told and stays the author's
+/// affair.
+Result<PlannedPath> find_expert_path(const Case& the_case, const VirtualPatient& patient) {
+  const std::string& name = the_case.task.expert_path;
+  for (const NeedlePath& path : patient.paths) {
+    if (path.name != name) continue;
+    const PathAssessment assessment = assess_path(the_case.task, patient, the_case.needle, path.line_P);
+    for (const PathFinding& finding : assessment.findings) log_warning("expert path {}: {}", name, finding.text);
+    return assessment.path;
+  }
+  return fail(fmt::format("the expert path \"{}\" is not among the patient's paths", name), patient.name,
+              "draw it again in the case builder, or take expert_path out of the task");
+}
+
+}  // namespace
+
+bool has_own_task(const std::string& patient_folder) {
+  std::error_code ignored;
+  return !patient_folder.empty() && fs::is_regular_file(fs::path(patient_folder) / kOwnTaskFile, ignored);
+}
 
 Result<Case> load_tables(const CaseOptions& options) {
   const std::filesystem::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
   Case made;
-  TROCAR_TRY(made.task, load_task(data / "tasks", options.task));
+  TROCAR_TRY(made.task, find_task(options, data / "tasks"));
   const std::string needle = options.needle.empty() ? made.task.needle : options.needle;
   TROCAR_TRY(made.needle, load_needle(data / "needles.toml", needle));
   const std::filesystem::path tissues =
@@ -31,9 +64,13 @@ Result<Case> prepare_case(std::shared_ptr<const VirtualPatient> patient, const C
         fmt::format("the patient cannot serve the task {}: {}", made.task.name, fmt::join(readiness.reasons, "; ")),
         patient->name, "see trocar patient check");
   made.is_parenchymal = readiness.is_parenchymal;
-  TROCAR_TRY(const auto paths, plan_paths(made.task, *patient, made.needle, {1, options.seed}, progress));
-  made.plan = paths.front();
-  log_info("planned path: {:.1f} mm, {:.1f} mm of it in the organ, {:.1f} mm to spare from {}", made.plan.length_mm,
+  if (!made.task.expert_path.empty()) {
+    TROCAR_TRY(made.plan, find_expert_path(made, *patient));
+  } else {
+    TROCAR_TRY(const auto paths, plan_paths(made.task, *patient, made.needle, {1, options.seed}, progress));
+    made.plan = paths.front();
+  }
+  log_info("expert path: {:.1f} mm, {:.1f} mm of it in the organ, {:.1f} mm to spare from {}", made.plan.length_mm,
            made.plan.organ_path_mm, made.plan.smallest_margin_mm, made.plan.nearest_risk);
   made.patient = std::move(patient);
   return made;

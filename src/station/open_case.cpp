@@ -118,9 +118,10 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
   const auto begin = std::chrono::steady_clock::now();
   auto made = std::make_shared<OpenCase>();
   made->choice = choice;
+  made->choice.options.patient_folder = choice.patient_source;  // where a task of the patient's own would lie
   if (previous && !is_same_patient(previous->choice, choice)) previous.reset();
   // What is wrong with the tables is told before a patient is opened.
-  TROCAR_TRY_STATUS(load_tables(choice.options));
+  TROCAR_TRY_STATUS(load_tables(made->choice.options));
   SharedProgress shared(progress);
   std::shared_ptr<const VirtualPatient> patient;
   if (previous) {

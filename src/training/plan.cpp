@@ -43,6 +43,19 @@ Vec3 direction(std::uint64_t seed, std::size_t n) {
   return {r * std::cos(2.0 * std::numbers::pi * v), r * std::sin(2.0 * std::numbers::pi * v), z};
 }
 
+/// The same towards the entry zone, in the cone of directions that it fills as seen from the target.
+Vec3 direction_to(const EntryZone& zone, const Vec3& target_P, const Vec3& on_sphere) {
+  const Vec3 way = zone.centre_P - target_P;
+  const double distance = way.norm();
+  if (distance <= zone.radius_mm) return on_sphere;
+  const double cos_edge = std::sqrt(1.0 - std::pow(zone.radius_mm / distance, 2));
+  const double z = 1.0 - 0.5 * (1.0 - on_sphere.z()) * (1.0 - cos_edge);
+  const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
+  const double around = std::atan2(on_sphere.y(), on_sphere.x());
+  const Vec3 local(r * std::cos(around), r * std::sin(around), z);
+  return Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), way / distance) * local;
+}
+
 std::vector<PathCandidate> trace_lines(const PlanningMap& map, const Needle& needle, const PlanTargets& targets,
                                        const PlanOptions& options) {
   const std::size_t target_count = targets.points_P.size();
@@ -50,8 +63,12 @@ std::vector<PathCandidate> trace_lines(const PlanningMap& map, const Needle& nee
                                        std::max(kMinLines, kLinesPerTarget * target_count), kMaxLines);
   std::vector<PathCandidate> lines(count);
   parallel_for(count, 512, [&](std::size_t first, std::size_t last) {
-    for (std::size_t n = first; n < last; ++n)
-      lines[n] = trace_path(map, needle, targets.points_P[n % target_count], direction(options.seed, n / target_count));
+    for (std::size_t n = first; n < last; ++n) {
+      const Vec3& target_P = targets.points_P[n % target_count];
+      Vec3 outward = direction(options.seed, n / target_count);
+      if (map.task.entry_zone) outward = direction_to(*map.task.entry_zone, target_P, outward);
+      lines[n] = trace_path(map, needle, target_P, outward);
+    }
   });
   return lines;
 }
@@ -163,6 +180,8 @@ std::string reason_of(const PlanningMap& map, const Needle& needle, const PathCa
       return "leave the volume before the skin";
     case Verdict::kOutOfReach:
       return "start at the back, out of reach";
+    case Verdict::kOutsideZone:
+      return "start outside the entry zone";
     case Verdict::kGlancing:
       return fmt::format("meet the skin at more than {} degrees", task.max_entry_angle_deg);
     case Verdict::kNoMuscle:
@@ -187,7 +206,7 @@ std::string reason_of(const PlanningMap& map, const Needle& needle, const PathCa
 
 bool is_about_skin(Verdict verdict) {
   return verdict == Verdict::kTooLong || verdict == Verdict::kCutFace || verdict == Verdict::kOutOfReach ||
-         verdict == Verdict::kGlancing;
+         verdict == Verdict::kOutsideZone || verdict == Verdict::kGlancing;
 }
 
 /// Names what ruled out the most lines; the lines that do not even start at a usable place of the skin (half of a body

@@ -42,6 +42,12 @@ std::vector<RiskTouch> find_stylet_risks(const TaskLabels& labels, const Virtual
   return touches;
 }
 
+/// How far the entry is from where it should be: from the zone's edge, or without a zone from the expert's entry.
+double entry_miss_mm(const Task& task, const PlannedPath& plan, const AttemptMetrics& metrics) noexcept {
+  if (task.entry_zone) return task.entry_zone->distance_outside_mm(plan.line_P.a + metrics.entry_offset_P);
+  return metrics.entry_offset_P.norm();
+}
+
 struct Worth {
   double target = 0.0, core = 0.0, entry = 0.0, angle = 0.0, length = 0.0, time = 0.0;  // shares 0..1
   double risk_penalty = 0.0;
@@ -54,7 +60,7 @@ Worth worth_of(const Task& task, const Needle& needle, const PlannedPath& plan, 
   Worth worth;
   worth.target = share_left(metrics.target_offset_P.norm(), task.target_tolerance_mm);
   worth.core = core ? core_share(*core, possible_mm) : 0.0;
-  worth.entry = share_left(metrics.entry_offset_P.norm(), task.entry_tolerance_mm);
+  worth.entry = share_left(entry_miss_mm(task, plan, metrics), task.entry_tolerance_mm);
   worth.angle = share_left(metrics.angle_deg, task.angle_tolerance_deg);
   worth.length = share_left(std::max(0.0, metrics.travel_mm - length_mm), length_mm);
   worth.time = is_finished ? share_left(metrics.time_s, task.time_limit_s) : 0.0;
@@ -62,7 +68,8 @@ Worth worth_of(const Task& task, const Needle& needle, const PlannedPath& plan, 
 }
 
 std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, const AttemptMetrics& metrics,
-                                const std::optional<BiopsyCore>& core, std::size_t risks, bool is_biopsy) {
+                                double entry_mm, const std::optional<BiopsyCore>& core, std::size_t risks,
+                                bool is_biopsy) {
   const double safe = metrics.has_entered ? weights.risk - worth.risk_penalty : 0.0;
   const double scale = metrics.has_entered ? 1.0 : 0.0;
   const auto part = [&](const char* name, const char* title, double value, const char* unit, double share, double max) {
@@ -70,7 +77,7 @@ std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, cons
   };
   std::vector<ScorePart> parts{
       part("target", "Distance to the target", metrics.target_offset_P.norm(), "mm", worth.target, weights.target),
-      part("entry", "Insertion point", metrics.entry_offset_P.norm(), "mm", worth.entry, weights.entry),
+      part("entry", "Insertion point", entry_mm, "mm", worth.entry, weights.entry),
       part("angle", "Needle direction", metrics.angle_deg, "°", worth.angle, weights.angle),
       ScorePart{"risk", "Structures at risk touched", static_cast<double>(risks), "", safe, weights.risk},
       part("length", "Needle travel inside the body", metrics.travel_mm, "mm", worth.length, weights.length),
@@ -104,7 +111,8 @@ Outcome score_attempt(const Task& task, const VirtualPatient& patient, const Tis
       outcome.risks_touched.push_back(touch.label);
       worth.risk_penalty += touch.penalty;
     }
-  outcome.parts = parts_of(worth, needle.is_biopsy ? kBiopsy : kPuncture, metrics, outcome.core,
+  outcome.parts = parts_of(worth, needle.is_biopsy ? kBiopsy : kPuncture, metrics,
+                           metrics.has_entered ? entry_miss_mm(task, plan, metrics) : 0.0, outcome.core,
                            outcome.risks_touched.size(), needle.is_biopsy);
   for (const ScorePart& part : outcome.parts) outcome.score += part.points;
   outcome.score = std::clamp(outcome.score, 0.0, 100.0);

@@ -45,7 +45,8 @@ struct ScorePart {
 
 /// What an attempt is told at its end. A deviation d in a part with tolerance t is worth max_points*(1 - (d/t)^2),
 /// nothing from t on: small errors cost little, closer is never worse. The parts' points add up to the score, within
-/// 0..100; without a puncture of the skin it is 0. How much each part is worth is teaching policy [assumed].
+/// 0..100. An entry inside the task's entry zone is whole; outside, its deviation counts from the zone's edge. Without
+/// a puncture of the skin it is 0. How much each part is worth is teaching policy [assumed].
 struct Outcome {
   double score = 0.0;  ///< 0..100.
   bool target_reached = false;

@@ -5,25 +5,13 @@
 #include <algorithm>
 #include <set>
 
-#include "config/json.h"
 #include "config/toml.h"
+#include "config/toml_quoted.h"
 #include "io/patient_folder.h"
 
 namespace trocar::detail {
 namespace fs = std::filesystem;
 namespace {
-
-/// A TOML basic string. Its escapes are those of JSON, but TOML wants DEL escaped too.
-std::string quoted(const std::string& text) {
-  std::string quoted;
-  for (const char c : json_text(Json(text), -1)) {
-    if (c == '\x7f')
-      quoted += "\\u007f";
-    else
-      quoted += c;
-  }
-  return quoted;
-}
 
 Result<Label> label_of(const TomlTable& table) {
   TROCAR_TRY_STATUS(table.check_keys({"id", "name", "tissue", "color"}));
@@ -78,16 +66,17 @@ std::string to_toml(const PatientDescription& patient) {
       "# A virtual patient. ct.nrrd: HU; labels.nrrd: ids of [[labels]]; skin_distance.nrrd: hundredths\n"
       "# of a mm, negative inside the body. Frame P: LPS, mm.\n";
   text += fmt::format("format_version = {}\n", kPatientFormatVersion);
-  text += fmt::format("name = {}\n", quoted(patient.name));
-  text += fmt::format("description = {}\n", quoted(patient.description));
+  text += fmt::format("name = {}\n", toml_quoted(patient.name));
+  text += fmt::format("description = {}\n", toml_quoted(patient.description));
   text += "provenance = [\n";
-  for (const std::string& line : patient.provenance) text += fmt::format("  {},\n", quoted(line));
-  text += fmt::format("]\ncontent_hash = {}\n", quoted(patient.content_hash));
+  for (const std::string& line : patient.provenance) text += fmt::format("  {},\n", toml_quoted(line));
+  text += fmt::format("]\ncontent_hash = {}\n", toml_quoted(patient.content_hash));
   for (const Label& label : patient.label_table.labels)
-    text += fmt::format("\n[[labels]]\nid = {}\nname = {}\ntissue = {}\ncolor = [{}, {}, {}]\n", label.id,
-                        quoted(label.name), quoted(label.tissue), label.color[0], label.color[1], label.color[2]);
+    text +=
+        fmt::format("\n[[labels]]\nid = {}\nname = {}\ntissue = {}\ncolor = [{}, {}, {}]\n", label.id,
+                    toml_quoted(label.name), toml_quoted(label.tissue), label.color[0], label.color[1], label.color[2]);
   for (const PatientMeshEntry& mesh : patient.meshes)
-    text += fmt::format("\n[[meshes]]\nname = {}\nfile = {}\n", quoted(mesh.name), quoted(mesh.file));
+    text += fmt::format("\n[[meshes]]\nname = {}\nfile = {}\n", toml_quoted(mesh.name), toml_quoted(mesh.file));
   return text;
 }
 

@@ -10,7 +10,6 @@
 namespace trocar::detail {
 namespace {
 
-constexpr double kHubReserve_mm = 10.0;   ///< Of the needle stays outside.
 constexpr double kBorder_mm = 3.0;        ///< An entry this near to the volume's border may lie on a cut face.
 constexpr double kNormalRadius_mm = 3.0;  ///< The skin's normal is taken over this distance: voxels are steps.
 constexpr double kScreenStep_mm = 2.0;
@@ -28,16 +27,6 @@ bool is_near_border(const GridGeometry& geometry, const Vec3& p_P, double margin
       return true;
   }
   return false;
-}
-
-Vec3 skin_normal(const FloatGrid& skin_distance, const Vec3& p_P) {
-  Vec3 slope;
-  for (int a = 0; a < 3; ++a) {
-    Vec3 step = Vec3::Zero();
-    step[a] = kNormalRadius_mm;
-    slope[a] = sample_linear(skin_distance, p_P + step) - sample_linear(skin_distance, p_P - step);
-  }
-  return slope.norm() > 0.0 ? Vec3(slope.normalized()) : Vec3::Zero();
 }
 
 /// Distance along `outward` to the skin; negative: not found before `reach_mm` or the volume's end.
@@ -65,19 +54,6 @@ double distance_to_skin(const FloatGrid& skin_distance, const Vec3& start_P, con
     (sample_linear(skin_distance, start_P + middle * outward) < 0.0 ? inside : s) = middle;
   }
   return s;
-}
-
-/// Distance between a segment and a box; alternating projections, which converge fast at this size.
-double segment_box_distance_mm(const Segment& segment, const GridGeometry& geometry, const Vec3& centre_P) {
-  const Vec3 half = 0.5 * geometry.spacing_mm;
-  Vec3 on_box = centre_P;
-  Vec3 on_segment = centre_P;
-  for (int n = 0; n < 3; ++n) {
-    on_segment = segment.at(closest_fraction(segment, on_box));
-    const Vec3 local = geometry.R_PV.transpose() * (on_segment - centre_P);
-    on_box = centre_P + geometry.R_PV * local.cwiseMax(-half).cwiseMin(half);
-  }
-  return (on_segment - on_box).norm();
 }
 
 /// Tells the nearest risk voxel around one piece of the path; `findings` keeps the smallest clearance. Stops at the
@@ -182,6 +158,29 @@ class Walk {
 
 }  // namespace
 
+Vec3 skin_normal(const FloatGrid& skin_distance, const Vec3& p_P) {
+  Vec3 slope;
+  for (int a = 0; a < 3; ++a) {
+    Vec3 step = Vec3::Zero();
+    step[a] = kNormalRadius_mm;
+    slope[a] = sample_linear(skin_distance, p_P + step) - sample_linear(skin_distance, p_P - step);
+  }
+  return slope.norm() > 0.0 ? Vec3(slope.normalized()) : Vec3::Zero();
+}
+
+double segment_box_distance_mm(const Segment& segment, const GridGeometry& geometry, const Vec3& centre_P) {
+  // Alternating projections converge fast at this size.
+  const Vec3 half = 0.5 * geometry.spacing_mm;
+  Vec3 on_box = centre_P;
+  Vec3 on_segment = centre_P;
+  for (int n = 0; n < 3; ++n) {
+    on_segment = segment.at(closest_fraction(segment, on_box));
+    const Vec3 local = geometry.R_PV.transpose() * (on_segment - centre_P);
+    on_box = centre_P + geometry.R_PV * local.cwiseMax(-half).cwiseMin(half);
+  }
+  return (on_segment - on_box).norm();
+}
+
 PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec3& target_P, const Vec3& outward) {
   const FloatGrid& skin_distance = map.patient.skin_distance_mm;
   PathCandidate path;
@@ -198,6 +197,8 @@ PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec
   if (path.length_mm > longest) return reject(Verdict::kTooLong);
   if (path.length_mm < map.task.min_organ_path_mm + kMinMuscle_mm) return reject(Verdict::kOrganPath);
   if (is_near_border(skin_distance.geometry, path.line_P.a, kBorder_mm)) return reject(Verdict::kCutFace);
+  if (map.task.entry_zone && map.task.entry_zone->distance_outside_mm(path.line_P.a) > 0.0)
+    return reject(Verdict::kOutsideZone);
   const Vec3 normal = skin_normal(skin_distance, path.line_P.a);
   if (normal.y() > std::sin(map.task.max_posterior_deg * kDegree)) return reject(Verdict::kOutOfReach);  // +y: back
   if (normal.dot(outward) < std::cos(map.task.max_entry_angle_deg * kDegree)) return reject(Verdict::kGlancing);

@@ -13,6 +13,7 @@ enum class Verdict : std::uint8_t {
   kTooLong,
   kCutFace,
   kOutOfReach,
+  kOutsideZone,
   kGlancing,
   kCrosses,
   kNoMuscle,
@@ -33,6 +34,12 @@ struct PathCandidate {
 /// the coarse clearance. What passes may still fail check_path. Deterministic.
 PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec3& target_P, const Vec3& outward);
 
+/// Outward normal of the skin at a point of P, over a few voxels; zero where the distance has no slope.
+Vec3 skin_normal(const FloatGrid& skin_distance, const Vec3& p_P);
+
+/// Distance between a segment and the box of a voxel. mm.
+double segment_box_distance_mm(const Segment& segment, const GridGeometry& geometry, const Vec3& centre_P);
+
 /// What an exact look at a path finds.
 struct PathFindings {
   Verdict verdict = Verdict::kFree;
@@ -41,6 +48,7 @@ struct PathFindings {
   double smallest_margin_mm = 0.0;
   std::uint8_t nearest_risk = 0;  ///< Label id; 0: none within kReportedMargin_mm.
 };
+inline constexpr double kHubReserve_mm = 10.0;      ///< Of the needle stays outside.
 inline constexpr double kReportedMargin_mm = 10.0;  ///< A larger clearance is told as this.
 
 /// Walks the path and the throw beyond it voxel by voxel: layers in order, organ passed, margins to the risk voxels.

@@ -1,5 +1,7 @@
 #include "training/detail/planning_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -113,6 +115,11 @@ PlanningMap make_planning_map(const Task& task, const VirtualPatient& patient) {
 
 Result<PlanTargets> find_targets(const PlanningMap& map) {
   const LabelGrid& labels = map.patient.labels;
+  if (map.task.target_P) {
+    const Role role = map.role_at(*map.task.target_P);
+    if (role == Role::kTarget || role == Role::kOrgan) return PlanTargets{{*map.task.target_P}, role == Role::kOrgan};
+    return fail("the target point does not lie in the " + map.task.organ, map.patient.name, "move the target");
+  }
   const LabelBoxes boxes = find_label_boxes(labels);
   PlanTargets targets;
   std::vector<std::pair<std::size_t, std::uint8_t>> lesions;
@@ -127,6 +134,9 @@ Result<PlanTargets> find_targets(const PlanningMap& map) {
   for (const auto& [voxels, id] : lesions)
     if (targets.points_P.size() < kMaxLesions) targets.points_P.push_back(lesion_middle(labels, id, boxes.boxes[id]));
   if (!targets.points_P.empty()) return targets;
+  if (!map.task.target_label.empty())
+    return fail(fmt::format("has no structure \"{}\", the target", map.task.target_label), map.patient.name,
+                "choose another target");
   targets.is_parenchymal = true;
   targets.points_P = spread_targets(parenchymal_points(map, organ_box), map.patient.skin_distance_mm);
   if (targets.points_P.empty())

@@ -1,23 +1,10 @@
 #include "training/detail/task_labels.h"
 
-#include <algorithm>
-#include <cstring>
-
 namespace trocar {
-namespace {
-
-bool occurs(const VirtualPatient& patient, std::uint8_t label_id) {
-  const auto& voxels = patient.labels.voxels;
-  return !voxels.empty() && std::memchr(voxels.data(), label_id, voxels.size()) != nullptr;
-}
-
-}  // namespace
 
 TaskLabels::TaskLabels(const Task& task, const VirtualPatient& patient) {
   const auto& labels = patient.label_table.labels;
-  is_parenchymal_ = std::none_of(labels.begin(), labels.end(), [&](const Label& label) {
-    return is_target(task, label) && occurs(patient, label.id);
-  });
+  is_parenchymal_ = trocar::is_parenchymal(task, patient);
   for (const Label& label : labels) {
     if (is_target(task, label)) {
       parts_[label.id] = Part::kTarget;

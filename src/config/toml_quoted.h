@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace trocar {
+
+/// A text as a TOML string in quotes, for files that are written.
+std::string toml_quoted(const std::string& text);
+
+}  // namespace trocar
