@@ -5,23 +5,16 @@
 #include <filesystem>
 #include <map>
 
-#include "anatomy/build_patient.h"
 #include "anatomy/phantom/phantom.h"
 #include "commands.h"
-#include "core/version.h"
-#include "io/image_file.h"
-#include "io/label_sources.h"
+#include "core/part_of_progress.h"
+#include "io/build_from_files.h"
 #include "io/patient_folder.h"
 #include "surface/extract_surface.h"
 
 namespace trocar::cli {
 namespace {
 namespace fs = std::filesystem;
-
-/// The part of a command's work that ends at `to`, as its own progress.
-Progress part_of(const Progress& whole, double from, double to) {
-  return [=](std::string_view step, double fraction) { report(whole, step, from + (to - from) * fraction); };
-}
 
 Status list_patients(bool is_json) {
   if (is_json) {
@@ -68,26 +61,14 @@ struct BuildArguments {
   std::string out;
 };
 
-std::string file_name(const fs::path& path) {
-  return (path.has_filename() ? path : path.parent_path()).filename().string();
-}
-
 Status build(const BuildArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
-  report(progress, "reading the CT", 0.0);
-  TROCAR_TRY(const CtGrid ct, read_ct(arguments.ct));
-  report(progress, "reading the labels", 0.1);
-  TROCAR_TRY(auto sources, read_label_sources({arguments.labels.begin(), arguments.labels.end()}, arguments.label_map));
-
-  BuildOptions options;
-  options.name = arguments.name.empty() ? file_name(arguments.out) : arguments.name;
-  options.provenance = {fmt::format("built by trocar {}", kVersion), "CT: " + file_name(arguments.ct)};
-  for (const std::string& path : arguments.labels) options.provenance.push_back("labels: " + file_name(path));
+  PatientFiles files{arguments.ct, {arguments.labels.begin(), arguments.labels.end()}, arguments.label_map, {}};
+  files.name = arguments.name.empty() ? last_name(arguments.out) : arguments.name;
   std::vector<std::string> warnings;
-  TROCAR_TRY(const VirtualPatient patient,
-             build_patient(ct, std::move(sources), options, warnings, part_of(progress, 0.2, 0.5)));
+  TROCAR_TRY(const VirtualPatient patient, build_from_files(files, warnings, part_of(progress, 0.0, 0.5)));
   TROCAR_TRY_STATUS(save_with_surfaces(patient, arguments.out, part_of(progress, 0.5, 1.0)));
   for (const std::string& warning : warnings) print_warning(warning);
   return {};

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "anatomy/build_patient.h"
-#include "anatomy/plausible_hu.h"
+#include "anatomy/patient_doubts.h"
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "io/markups_file.h"
@@ -134,37 +134,13 @@ Status show(const Arguments& arguments) {
   return {};
 }
 
-/// What a reader should know before trusting the patient.
-std::vector<std::string> find_doubts(const VirtualPatient& patient) {
-  constexpr double kCoarseMm = 2.5;
-  std::vector<std::string> doubts;
-  const Vec3& spacing = patient.ct.geometry.spacing_mm;
-  if (spacing.maxCoeff() > kCoarseMm) {
-    doubts.push_back(fmt::format("voxels of {:.2f} x {:.2f} x {:.2f} mm: thin structures are missed", spacing.x(),
-                                 spacing.y(), spacing.z()));
-  }
-  const auto statistics = label_statistics(patient);
-  for (std::string& doubt : find_implausible_hu(patient, statistics)) doubts.push_back(std::move(doubt));
-  std::vector<std::string> cut_off;
-  for (const LabelStatistics& s : statistics) {
-    const Label* label = patient.label_table.find(s.id);
-    if (label == nullptr) continue;
-    if (s.voxels == 0) doubts.push_back(label->name + " is listed and has no voxel");
-    // Fat and muscle reach every border of a scan; an organ that does is cut off.
-    const bool is_filling = label->tissue == "adipose" || label->tissue == "muscle";
-    if (s.touches_border && !is_filling) cut_off.push_back(label->name);
-  }
-  if (!cut_off.empty()) doubts.push_back(fmt::format("cut off by the edge of the scan: {}", fmt::join(cut_off, ", ")));
-  if (patient.paths.empty()) doubts.push_back("no expert path is stored; trocar run plans one");
-  return doubts;
-}
-
 Status check(const Arguments& arguments) {
   const ProgressPrinter printer;
   TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, printer.callback()));
   TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
   TROCAR_TRY(const auto tasks, load_tasks(tasks_folder));
-  const auto doubts = find_doubts(patient);
+  auto doubts = find_doubts(patient, label_statistics(patient));
+  if (patient.paths.empty()) doubts.push_back("no expert path is stored; trocar run plans one");
   if (arguments.is_json) {
     Json list = Json::array();
     for (const Task& task : tasks) {

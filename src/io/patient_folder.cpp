@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/atomic_file.h"
+#include "core/check.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "io/detail/patient_toml.h"
@@ -156,11 +157,17 @@ Status load_volumes(const fs::path& folder, VirtualPatient& patient) {
 }  // namespace
 
 Status save_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes, const fs::path& folder,
-                    const Progress& progress) {
+                    const Progress& progress, const std::vector<PatientExtra>& extras) {
   TROCAR_TRY_STATUS(check_geometry(patient, folder.string()));
   TROCAR_TRY_STATUS(check_label_ids(patient, folder.string()));
-  return write_folder_atomically(
-      folder, [&](const fs::path& temporary) { return write_contents(patient, meshes, temporary, progress); });
+  return write_folder_atomically(folder, [&](const fs::path& temporary) -> Status {
+    TROCAR_TRY_STATUS(write_contents(patient, meshes, temporary, progress));
+    for (const PatientExtra& extra : extras) {
+      TROCAR_CHECK(!fs::exists(temporary / extra.name));
+      TROCAR_TRY_STATUS(write_file_atomically(temporary / extra.name, extra.text));
+    }
+    return {};
+  });
 }
 
 Result<VirtualPatient> load_patient(const fs::path& folder) {

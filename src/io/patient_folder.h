@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -11,11 +12,18 @@ namespace trocar {
 
 inline constexpr int kPatientFormatVersion = 1;  ///< A folder of a newer version is refused.
 
+/// A small file that lies beside the patient's own: task.toml.
+struct PatientExtra {
+  std::string name;  ///< Without a folder; none of the patient's own files.
+  std::string text;
+};
+
 /// Writes a patient folder, whole or not at all: patient.toml, ct.nrrd, labels.nrrd, skin_distance.nrrd,
 /// meshes/NAME.vtp, landmarks.mrk.json, paths.mrk.json. An existing folder is never overwritten. The skin distance is
 /// kept in hundredths of a mm, up to 327 mm.
 Status save_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes,
-                    const std::filesystem::path& folder, const Progress& progress = {});
+                    const std::filesystem::path& folder, const Progress& progress = {},
+                    const std::vector<PatientExtra>& extras = {});
 /// Reads it back without the meshes; volumes side by side. Errors: no patient folder, a newer version, a missing or
 /// damaged file, volumes on different grids, a label without a name, a content hash that does not fit.
 Result<VirtualPatient> load_patient(const std::filesystem::path& folder);
