@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "authoring/case_draft.h"
+
+namespace trocar {
+
+/// The draft with its steps back and forth. At most kMaxSteps are kept, some kilobytes each; the volumes of the import
+/// are shared. A new import begins a new history, so that no more than one import is held.
+class CaseHistory {
+ public:
+  static constexpr std::size_t kMaxSteps = 200;
+
+  const CaseDraft& draft() const noexcept { return draft_; }
+  /// Counts every change of the draft, undo and redo included.
+  std::uint64_t version() const noexcept { return version_; }
+
+  /// Forgets all steps.
+  void begin(CaseDraft draft);
+  /// One step. `what` in words, for the buttons. Steps that follow each other with the same `gesture` (a drag, a number
+  /// that is turned) are one; empty: a step of its own. A draft that says the same is no step.
+  void apply(CaseDraft next, std::string what, const std::string& gesture = {});
+
+  bool can_undo() const noexcept { return !undone_by_.empty(); }
+  bool can_redo() const noexcept { return !redone_by_.empty(); }
+  std::string undo_text() const { return can_undo() ? undone_by_.back().what : std::string(); }
+  std::string redo_text() const { return can_redo() ? redone_by_.back().what : std::string(); }
+  void undo();  ///< Nothing where there is nothing to undo.
+  void redo();
+
+ private:
+  struct Step {
+    std::string what;
+    CaseDraft other;  ///< The draft on the other side of the step.
+  };
+  CaseDraft draft_;
+  std::deque<Step> undone_by_;
+  std::vector<Step> redone_by_;
+  std::string gesture_;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace trocar
