@@ -17,7 +17,7 @@ DetailPolicy::DetailPolicy(bool has_gpu, const DetailPolicyParams& params) : par
 Detail DetailPolicy::moving(int level) noexcept {
   switch (std::clamp(level, 0, kMovingLevels - 1)) {
     case 0:
-      return {0, false, true, false, 1.0};
+      return {1, false, true, false, 1.0};
     case 1:
       return {1, false, false, false, 1.0};
     case 2:

@@ -6,7 +6,7 @@ namespace trocar {
 
 /// How much work goes into a frame.
 struct Detail {
-  int mesh_level = 0;       ///< 0: all triangles; 1, 2: fewer.
+  int mesh_level = 0;       ///< 0: all triangles; 1, 2: fewer, in simpler light.
   bool is_peeled = true;    ///< Translucent surfaces in their right order, pixel by pixel.
   bool is_smooth = true;    ///< Edges smoothed.
   bool has_volume = true;   ///< The CT volume, where one is chosen; else surfaces stand in for it.

@@ -182,6 +182,7 @@ void PatientScene::Impl::prepare(const Detail& detail) {
   planes.update(tools.needle_P(), detail == DetailPolicy::full() ? kPlanePixels : kPlanePixelsMoving);
   surfaces.set_level(detail.mesh_level);
   surfaces.set_visible(!draws_volume);
+  if (detail.mesh_level > 0) surfaces.draw_moving_last();
   volume.set_visible(draws_volume);
   renderer->SetUseDepthPeeling(detail.is_peeled);
   renderer->SetUseFXAA(detail.is_smooth);
@@ -414,7 +415,7 @@ bool PatientScene::has_gpu() const {
          !is_by_processor("SWR") && !is_by_processor("Software");
 }
 
-std::size_t PatientScene::triangle_count(int mesh_level) const noexcept {
+std::size_t PatientScene::triangle_count(int mesh_level) const {
   return impl_->surfaces.triangle_count(mesh_level);
 }
 

@@ -92,7 +92,7 @@ class PatientScene {
   std::string renderer_name() const;
   /// Not drawn by the processor. Known after the first frame; until then false.
   bool has_gpu() const;
-  std::size_t triangle_count(int mesh_level) const noexcept;
+  std::size_t triangle_count(int mesh_level) const;
 
  private:
   PatientScene();

@@ -22,13 +22,16 @@
 namespace trocar::detail {
 
 vtkSmartPointer<vtkPolyData> to_polydata(const TriangleMesh& mesh) {
+  return to_polydata(mesh, vertex_normals(mesh));
+}
+
+vtkSmartPointer<vtkPolyData> to_polydata(const TriangleMesh& mesh, const std::vector<Vec3f>& unit_normals) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToFloat();
   points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.vertices.size()));
   vtkNew<vtkFloatArray> normals;
   normals->SetNumberOfComponents(3);
   normals->SetNumberOfTuples(static_cast<vtkIdType>(mesh.vertices.size()));
-  const std::vector<Vec3f> unit_normals = vertex_normals(mesh);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     points->SetPoint(static_cast<vtkIdType>(i), mesh.vertices[i].x(), mesh.vertices[i].y(), mesh.vertices[i].z());
     normals->SetTypedTuple(static_cast<vtkIdType>(i), unit_normals[i].data());
@@ -81,6 +84,10 @@ void make_unlit(vtkActor& actor) {
   actor.GetProperty()->LightingOff();
   actor.GetProperty()->SetAmbient(1.0);
   actor.GetProperty()->SetDiffuse(0.0);
+}
+
+void blend_at_once(vtkActor& actor) {
+  actor.ForceOpaqueOn();
 }
 
 namespace {

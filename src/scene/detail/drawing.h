@@ -8,6 +8,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "geometry/triangle_mesh.h"
 #include "scene/camera.h"
@@ -19,7 +20,8 @@ class vtkRenderWindow;
 
 namespace trocar::detail {
 
-/// The mesh with its vertices' normals.
+/// The mesh with normals, one a vertex; without them they are those of the mesh.
+vtkSmartPointer<vtkPolyData> to_polydata(const TriangleMesh& mesh, const std::vector<Vec3f>& normals);
 vtkSmartPointer<vtkPolyData> to_polydata(const TriangleMesh& mesh);
 vtkSmartPointer<vtkPolyDataMapper> make_mapper(vtkPolyData* data);
 
@@ -30,6 +32,10 @@ void apply(const Appearance& look, vtkActor& actor);
 void make_glassy(vtkActor& actor);
 /// Drawn in its own colour, whatever the light.
 void make_unlit(vtkActor& actor);
+
+/// Translucent, and yet drawn in its turn among the opaque ones: over what has been drawn before it. Costs no pass of
+/// its own.
+void blend_at_once(vtkActor& actor);
 
 /// Key from the upper left, a weak fill from the right, a cool rim from behind; a dark gradient behind all.
 void add_studio(vtkRenderer& renderer);

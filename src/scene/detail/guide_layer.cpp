@@ -90,6 +90,7 @@ void GuideLayer::add_mesh(Props& props, const TriangleMesh& mesh_P, const Rgb& c
   apply(Appearance{color, opacity, 0.2, 0.35}, *actor);
   actor->GetProperty()->BackfaceCullingOff();
   if (!is_lit) make_unlit(*actor);
+  if (opacity < 1.0) blend_at_once(*actor);
   renderer_.AddActor(actor);
   props.push_back(actor);
 }

@@ -23,11 +23,12 @@ std::uint64_t cell_of(const Vec3f& p, float cell_mm) {
 
 }  // namespace
 
-TriangleMesh simplify(const TriangleMesh& mesh, double coarseness) {
-  if (mesh.triangles.empty()) return mesh;
+SimplifiedMesh simplify(const TriangleMesh& mesh, const std::vector<Vec3f>& normals, double coarseness) {
+  if (mesh.triangles.empty()) return {mesh, normals};
   const float cell_mm = static_cast<float>(coarseness) * mean_edge_mm(mesh);
-  if (!(cell_mm > 0.0F)) return mesh;
-  TriangleMesh result;
+  if (!(cell_mm > 0.0F)) return {mesh, normals};
+  SimplifiedMesh simplified;
+  TriangleMesh& result = simplified.mesh;
   std::unordered_map<std::uint64_t, std::uint32_t> ids;
   ids.reserve(mesh.vertices.size() / 2);
   std::vector<std::uint32_t> id_of(mesh.vertices.size());
@@ -37,20 +38,26 @@ TriangleMesh simplify(const TriangleMesh& mesh, double coarseness) {
         ids.try_emplace(cell_of(mesh.vertices[v], cell_mm), static_cast<std::uint32_t>(result.vertices.size()));
     if (is_new) {
       result.vertices.push_back(Vec3f::Zero());
+      simplified.normals.push_back(Vec3f::Zero());
       counts.push_back(0.0F);
     }
     id_of[v] = entry->second;
     result.vertices[entry->second] += mesh.vertices[v];
+    simplified.normals[entry->second] += normals[v];
     counts[entry->second] += 1.0F;
   }
-  for (std::size_t v = 0; v < counts.size(); ++v) result.vertices[v] /= counts[v];
+  for (std::size_t v = 0; v < counts.size(); ++v) {
+    result.vertices[v] /= counts[v];
+    const float length = simplified.normals[v].norm();
+    if (length > 0.0F) simplified.normals[v] /= length;
+  }
   for (const auto& t : mesh.triangles) {
     const std::array<std::uint32_t, 3> corners = {id_of[t[0]], id_of[t[1]], id_of[t[2]]};
     if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]) {
       result.triangles.push_back(corners);
     }
   }
-  return result;
+  return simplified;
 }
 
 std::vector<Vec3f> vertex_normals(const TriangleMesh& mesh) {

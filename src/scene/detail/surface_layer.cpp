@@ -35,7 +35,7 @@ vtkStandardNewMacro(BreakableActor)
 }  // namespace
 
 SurfaceLayer::SurfaceLayer(vtkRenderer& renderer, FrameBreak& frame_break)
-    : renderer_(renderer), frame_break_(frame_break) {}
+    : renderer_(renderer), frame_break_(frame_break), moving_(renderer) {}
 
 SurfaceLayer::~SurfaceLayer() {
   if (loading_.valid()) loading_.wait();
@@ -51,14 +51,18 @@ std::vector<SurfaceLayer::Surface> SurfaceLayer::build(const std::vector<std::pa
       Surface& surface = surfaces[i];
       surface.name = mesh->name;
       surface.look = looks[i].second;
-      surface.levels[0] = to_polydata(mesh->mesh_P);
+      const std::vector<Vec3f> normals = vertex_normals(mesh->mesh_P);
+      surface.levels[0] = to_polydata(mesh->mesh_P, normals);
       const bool has_few = mesh->mesh_P.triangles.size() < kFewTriangles;
       for (std::size_t level = 1; level < surface.levels.size(); ++level) {
-        surface.levels[level] = has_few ? surface.levels[0] : to_polydata(simplify(mesh->mesh_P, kCoarseness[level]));
+        if (has_few) {
+          surface.levels[level] = surface.levels[0];
+          continue;
+        }
+        const SimplifiedMesh coarse = simplify(mesh->mesh_P, normals, kCoarseness[level]);
+        surface.levels[level] = to_polydata(coarse.mesh, coarse.normals);
       }
-      for (std::size_t level = 0; level < surface.levels.size(); ++level) {
-        surface.mappers[level] = make_mapper(surface.levels[level]);
-      }
+      surface.mapper = make_mapper(surface.levels[0]);
     }
   });
   return surfaces;
@@ -69,6 +73,7 @@ void SurfaceLayer::show(std::vector<StructureInfo> structures, std::shared_ptr<c
   if (loading_.valid()) loading_.get();
   for (Surface& surface : surfaces_) renderer_.RemoveActor(surface.actor);
   surfaces_.clear();
+  moving_.set_parts({});
   structures_ = std::move(structures);
   std::vector<std::pair<std::string, Appearance>> looks;
   for (const StructureInfo& info : structures_) {
@@ -89,12 +94,13 @@ bool SurfaceLayer::poll() {
     actor->frame_break = &frame_break_;
     surface.actor = actor;
     make_glassy(*actor);
-    for (const auto& mapper : surface.mappers) {
-      if (is_cut_) mapper->AddClippingPlane(cut_);
-    }
+    actor->SetMapper(surface.mapper);
+    if (is_cut_) surface.mapper->AddClippingPlane(cut_);
     update(surface);
     renderer_.AddActor(actor);
   }
+  is_moving_stale_ = true;
+  update_moving();
   return true;
 }
 
@@ -111,8 +117,20 @@ void SurfaceLayer::update(Surface& surface) {
   apply(look, *surface.actor);
   // What is cut open shows its inside.
   if (is_cut_) surface.actor->GetProperty()->BackfaceCullingOff();
-  surface.actor->SetMapper(surface.mappers[static_cast<std::size_t>(level_)]);
-  surface.actor->SetVisibility(is_visible_ && opacity > kLeastOpacity);
+  surface.actor->SetVisibility(is_visible_ && level_ == 0 && opacity > kLeastOpacity);
+}
+
+void SurfaceLayer::update_moving() {
+  moving_.set_visible(is_visible_ && level_ > 0);
+  if (level_ == 0 || !is_moving_stale_) return;
+  std::vector<MovingPart> parts;
+  for (const Surface& surface : surfaces_) {
+    const double opacity = find(surface.name)->opacity;
+    if (opacity <= kLeastOpacity) continue;
+    parts.push_back({surface.levels[static_cast<std::size_t>(level_)], surface.look.color, opacity});
+  }
+  moving_.set_parts(parts);
+  is_moving_stale_ = false;
 }
 
 bool SurfaceLayer::set_opacity(std::string_view name, double opacity) {
@@ -123,19 +141,26 @@ bool SurfaceLayer::set_opacity(std::string_view name, double opacity) {
   for (Surface& surface : surfaces_) {
     if (surface.name == name) update(surface);
   }
+  is_moving_stale_ = true;
+  update_moving();
   return true;
 }
 
 void SurfaceLayer::set_level(int level) {
   if (level == level_) return;
+  // From still to moving and back the same moving pieces serve, as long as their level is the same.
+  if (level > 0 && level != moving_level_) is_moving_stale_ = true;
+  if (level > 0) moving_level_ = level;
   level_ = level;
   for (Surface& surface : surfaces_) update(surface);
+  update_moving();
 }
 
 void SurfaceLayer::set_visible(bool is_visible) {
   if (is_visible == is_visible_) return;
   is_visible_ = is_visible;
   for (Surface& surface : surfaces_) update(surface);
+  update_moving();
 }
 
 void SurfaceLayer::set_cut(const std::optional<std::pair<Vec3, Vec3>>& plane_P) {
@@ -146,19 +171,23 @@ void SurfaceLayer::set_cut(const std::optional<std::pair<Vec3, Vec3>>& plane_P) 
   if (plane_P.has_value() == is_cut_) return;
   is_cut_ = plane_P.has_value();
   for (Surface& surface : surfaces_) {
-    for (const auto& mapper : surface.mappers) {
-      mapper->RemoveAllClippingPlanes();
-      if (is_cut_) mapper->AddClippingPlane(cut_);
-    }
+    surface.mapper->RemoveAllClippingPlanes();
+    if (is_cut_) surface.mapper->AddClippingPlane(cut_);
     update(surface);
   }
+  moving_.set_cut(is_cut_ ? cut_.Get() : nullptr);
+}
+
+bool SurfaceLayer::is_shown(const Surface& surface) const {
+  return std::any_of(structures_.begin(), structures_.end(),
+                     [&](const StructureInfo& s) { return s.name == surface.name && s.opacity > kLeastOpacity; });
 }
 
 std::vector<Vec3> SurfaceLayer::outline_P() const {
   std::vector<Vec3> points_P;
   for (const bool only_shown : {true, false}) {
     for (const Surface& surface : surfaces_) {
-      if (only_shown && surface.actor->GetVisibility() == 0) continue;
+      if (only_shown && !is_shown(surface)) continue;
       vtkPolyData& data = *surface.levels.back();
       for (vtkIdType i = 0; i < data.GetNumberOfPoints(); ++i) points_P.emplace_back(data.GetPoint(i));
     }
@@ -167,18 +196,14 @@ std::vector<Vec3> SurfaceLayer::outline_P() const {
   return points_P;
 }
 
-std::size_t SurfaceLayer::triangle_count(int level) const noexcept {
+std::size_t SurfaceLayer::triangle_count(int level) const {
   std::size_t count = 0;
   for (const Surface& surface : surfaces_) {
-    if (surface.actor->GetVisibility() != 0) {
+    if (is_shown(surface)) {
       count += static_cast<std::size_t>(surface.levels[static_cast<std::size_t>(level)]->GetNumberOfPolys());
     }
   }
   return count;
-}
-
-bool SurfaceLayer::has_actor(const vtkProp* prop) const {
-  return std::any_of(surfaces_.begin(), surfaces_.end(), [&](const Surface& s) { return s.actor.Get() == prop; });
 }
 
 }  // namespace trocar::detail

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scene/detail/drawing.h"
+#include "scene/detail/moving_surfaces.h"
 #include "scene/detail_policy.h"
 
 namespace trocar::detail {
@@ -41,6 +42,7 @@ class SurfaceLayer {
   const std::vector<StructureInfo>& structures() const noexcept { return structures_; }
   /// True when it changed something; an unknown name changes nothing.
   bool set_opacity(std::string_view name, double opacity);
+  /// Level 0 are the single surfaces; coarser ones are for what moves (MovingSurfaces).
   void set_level(int level);
   void set_visible(bool is_visible);
   /// Leaves out what lies before the plane through p_P, on the side of `normal_P`; nothing: all is whole.
@@ -48,29 +50,33 @@ class SurfaceLayer {
 
   /// Vertices of the shown surfaces, coarse; of all where none is shown.
   std::vector<Vec3> outline_P() const;
-  std::size_t triangle_count(int level) const noexcept;
-  /// Nearest point on a shown surface along a ray, the translucent ones passed through where an opaque one lies behind.
-  bool has_actor(const vtkProp* prop) const;
+  std::size_t triangle_count(int level) const;
+  void draw_moving_last() { moving_.draw_last(); }
 
  private:
   struct Surface {
     std::string name;
     Appearance look;
     std::array<vtkSmartPointer<vtkPolyData>, kMeshLevels> levels;
-    std::array<vtkSmartPointer<vtkPolyDataMapper>, kMeshLevels> mappers;
+    vtkSmartPointer<vtkPolyDataMapper> mapper;  ///< Of level 0.
     vtkSmartPointer<vtkActor> actor;
   };
 
   static std::vector<Surface> build(const std::vector<std::pair<std::string, Appearance>>& looks,
                                     const std::vector<NamedMesh>& meshes);
   void update(Surface& surface);
+  void update_moving();
   StructureInfo* find(std::string_view name);
+  bool is_shown(const Surface& surface) const;
 
   vtkRenderer& renderer_;
   FrameBreak& frame_break_;
   std::vector<StructureInfo> structures_;
   std::vector<Surface> surfaces_;
   std::future<std::vector<Surface>> loading_;
+  MovingSurfaces moving_;
+  bool is_moving_stale_ = true;
+  int moving_level_ = 0;  ///< That the moving pieces are made of.
   vtkNew<vtkPlane> cut_;
   bool is_cut_ = false;
   bool is_visible_ = true;

@@ -66,6 +66,7 @@ ToolLayer::ToolLayer(vtkRenderer& renderer)
     : needle_(make_tool(renderer)), ghost_(make_tool(renderer)), transducer_(make_tool(renderer)) {
   ghost_->GetProperty()->SetOpacity(kGhostOpacity);
   ghost_->GetProperty()->BackfaceCullingOn();
+  blend_at_once(*ghost_);
   renderer.AddActor(ultrasound_.actor());
 }
 

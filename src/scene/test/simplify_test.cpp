@@ -13,7 +13,11 @@ TEST(Simplify, LeavesFewerTrianglesOfTheSameShape) {
   constexpr double kChords = 0.22;
   std::size_t last = fine.triangles.size();
   for (const double coarseness : {2.0, 3.0, 4.0}) {
-    const TriangleMesh coarse = detail::simplify(fine, coarseness);
+    const auto [coarse, normals] = detail::simplify(fine, detail::vertex_normals(fine), coarseness);
+    ASSERT_EQ(normals.size(), coarse.vertices.size());
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      EXPECT_GT(normals[i].dot((coarse.vertices[i] - Vec3f(10, -20, 30)).normalized()), 0.9F);
+    }
     EXPECT_LT(coarse.triangles.size(), last);
     EXPECT_GT(coarse.triangles.size(), 50u);
     last = coarse.triangles.size();
@@ -22,7 +26,7 @@ TEST(Simplify, LeavesFewerTrianglesOfTheSameShape) {
 }
 
 TEST(Simplify, NothingStaysNothing) {
-  EXPECT_TRUE(detail::simplify({}, 2.0).triangles.empty());
+  EXPECT_TRUE(detail::simplify({}, {}, 2.0).mesh.triangles.empty());
 }
 
 TEST(VertexNormals, OfABallPointOutward) {

@@ -1,0 +1,108 @@
+#include "scene/detail/moving_surfaces.h"
+
+#include <vtkAppendPolyData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPropCollection.h>
+#include <vtkProperty.h>
+#include <vtkShaderProperty.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+
+namespace trocar::detail {
+namespace {
+
+/// A key from the upper left and a sky; the denser outline of what is like glass. Replaces three lights with shine,
+/// which cost a processor three times as much.
+constexpr const char* kSimpleLight =
+    "  vec3 towards = normalVCVSOutput;\n"
+    "  float key = max(0.0, dot(towards, vec3(-0.42, 0.57, 0.71)));\n"
+    "  float sky = 0.5 + 0.3 * towards.x + 0.2 * towards.y;\n"
+    "  gl_FragData[0] = vec4(diffuseColor * (0.2 + 0.66 * key + 0.22 * sky), opacity);\n"
+    "  if (opacity < 1.0) {\n"
+    "    float edge = 1.0 - abs(towards.z);\n"
+    "    gl_FragData[0].a = min(0.95, opacity * (0.7 + 3.0 * edge * edge));\n"
+    "  }\n";
+
+vtkSmartPointer<vtkPolyData> colored(const MovingPart& part) {
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->ShallowCopy(part.data);
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetName("color");
+  colors->SetNumberOfComponents(3);
+  colors->SetNumberOfTuples(data->GetNumberOfPoints());
+  for (int channel = 0; channel < 3; ++channel) {
+    colors->FillComponent(channel, part.color[static_cast<std::size_t>(channel)]);
+  }
+  data->GetPointData()->SetScalars(colors);
+  return data;
+}
+
+}  // namespace
+
+void MovingSurfaces::add(vtkPolyData* data, const Rgb& color, double opacity, bool has_colors) {
+  auto mapper = make_mapper(data);
+  if (has_colors) {
+    mapper->ScalarVisibilityOn();
+    mapper->SetColorModeToDirectScalars();
+  }
+  if (cut_ != nullptr) mapper->AddClippingPlane(cut_);
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  apply(Appearance{color, opacity, 0.0, 0.0}, *actor);
+  if (cut_ != nullptr) actor->GetProperty()->BackfaceCullingOff();
+  blend_at_once(*actor);
+  actor->GetShaderProperty()->AddFragmentShaderReplacement("//VTK::Light::Impl", true, kSimpleLight, false);
+  actor->SetVisibility(is_visible_);
+  renderer_.AddActor(actor);
+  actors_.push_back(actor);
+}
+
+void MovingSurfaces::set_parts(const std::vector<MovingPart>& parts) {
+  for (const auto& actor : actors_) renderer_.RemoveActor(actor);
+  actors_.clear();
+  vtkNew<vtkAppendPolyData> together;
+  std::vector<const MovingPart*> translucent;
+  for (const MovingPart& part : parts) {
+    if (part.opacity < 1.0) {
+      translucent.push_back(&part);
+    } else {
+      together->AddInputData(colored(part));
+    }
+  }
+  if (translucent.size() < parts.size()) {
+    together->Update();
+    add(together->GetOutput(), {255, 255, 255}, 1.0, true);
+  }
+  // What is larger lies around what is smaller.
+  std::sort(translucent.begin(), translucent.end(),
+            [](const MovingPart* a, const MovingPart* b) { return a->data->GetLength() < b->data->GetLength(); });
+  for (const MovingPart* part : translucent) add(part->data, part->color, part->opacity, false);
+}
+
+void MovingSurfaces::set_visible(bool is_visible) {
+  is_visible_ = is_visible;
+  for (const auto& actor : actors_) actor->SetVisibility(is_visible);
+}
+
+void MovingSurfaces::set_cut(vtkPlane* cut) {
+  cut_ = cut;
+  for (const auto& actor : actors_) {
+    actor->GetMapper()->RemoveAllClippingPlanes();
+    if (cut != nullptr) actor->GetMapper()->AddClippingPlane(cut);
+    actor->GetProperty()->SetBackfaceCulling(cut == nullptr && actor->GetProperty()->GetOpacity() < 1.0);
+  }
+}
+
+void MovingSurfaces::draw_last() {
+  if (actors_.empty() || renderer_.GetViewProps()->GetLastProp() == actors_.back().Get()) return;
+  for (const auto& actor : actors_) {
+    if (actor->GetProperty()->GetOpacity() >= 1.0) continue;
+    renderer_.RemoveActor(actor);
+    renderer_.AddActor(actor);
+  }
+}
+
+}  // namespace trocar::detail
