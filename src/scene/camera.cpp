@@ -12,9 +12,8 @@ constexpr double kFarthest_mm = 5000.0;
 /// Least angle between the line of sight and the head-feet axis while a hand turns the view.
 constexpr double kPoleGap_rad = 0.03;
 constexpr double kSideDistance_mm = 320.0;
-constexpr double kBehindHub_mm = 60.0;
 constexpr double kBeforeTip_mm = 30.0;
-/// The eye stands a little beside the shaft, or the hub would hide all else.
+/// The eye stands where the shaft begins and a little beside it, or the hub would hide all else.
 constexpr double kBesideShaft_mm = 14.0;
 
 /// Unit vectors from the patient to the camera and upward, in P (x left, y back, z head).
@@ -130,7 +129,7 @@ CameraView following(const CameraView& view, FollowMode mode, const Segment& nee
       return next;
     case FollowMode::kAlongNeedle: {
       const Vec3 up_P = square_to(std::abs(axis_P.z()) < 0.95 ? Vec3(0, 0, 1) : Vec3(0, -1, 0), axis_P);
-      next.eye_P = needle_P.a - kBehindHub_mm * axis_P + kBesideShaft_mm * up_P;
+      next.eye_P = needle_P.a + kBesideShaft_mm * up_P;
       next.focus_P = tip_P + kBeforeTip_mm * axis_P;
       next.up_P = square_to(up_P, next.forward_P());
       return next;

@@ -21,7 +21,7 @@ enum class CameraPreset {
 enum class FollowMode {
   kFree,         ///< Nothing.
   kTip,          ///< Keeps the tip in the middle, its direction and distance stay.
-  kAlongNeedle,  ///< Looks from behind the hub along the shaft.
+  kAlongNeedle,  ///< Looks from the hub along the shaft.
   kSide,         ///< Looks at the tip square to the shaft, from near by; what lies in front of the needle is cut away.
 };
 

@@ -13,6 +13,7 @@
 #include "core/check.h"
 #include "scene/detail/display.h"
 #include "scene/detail/guide_layer.h"
+#include "scene/detail/output.h"
 #include "scene/detail/pick.h"
 #include "scene/detail/plane_layer.h"
 #include "scene/detail/surface_layer.h"
@@ -49,44 +50,6 @@ class CallersBreak : public detail::FrameBreak {
   bool has_broken_ = false;
 };
 
-int to_vtk(StereoMode mode) {
-  switch (mode) {
-    case StereoMode::kQuadBuffer:
-      return VTK_STEREO_CRYSTAL_EYES;
-    case StereoMode::kAnaglyph:
-      return VTK_STEREO_ANAGLYPH;
-    case StereoMode::kSideBySide:
-      return VTK_STEREO_SPLITVIEWPORT_HORIZONTAL;
-    case StereoMode::kInterlaced:
-      return VTK_STEREO_INTERLACED;
-    case StereoMode::kOff:
-      break;
-  }
-  return VTK_STEREO_CRYSTAL_EYES;
-}
-
-RgbImage mirrored(const RgbImage& image, bool left_right, bool up_down) {
-  if (!left_right && !up_down) return image;
-  RgbImage result(image.columns, image.rows);
-  for (int row = 0; row < image.rows; ++row) {
-    for (int column = 0; column < image.columns; ++column) {
-      result.at(left_right ? image.columns - 1 - column : column, up_down ? image.rows - 1 - row : row) =
-          image.at(column, row);
-    }
-  }
-  return result;
-}
-
-std::string renderer_of(vtkRenderWindow& window) {
-  constexpr std::string_view kKey = "OpenGL renderer string:";
-  const char* report = window.ReportCapabilities();
-  const std::string text = report == nullptr ? "" : report;
-  const auto at = text.find(kKey);
-  if (at == std::string::npos) return {};
-  const auto first = text.find_first_not_of(' ', at + kKey.size());
-  return first == std::string::npos ? std::string() : text.substr(first, text.find('\n', first) - first);
-}
-
 }  // namespace
 
 struct PatientScene::Impl {
@@ -116,6 +79,11 @@ struct PatientScene::Impl {
     return static_cast<double>(std::max(1, size[0])) / std::max(1, size[1]);
   }
   void poll();
+  /// The path again, on the skin of the patient that is shown now.
+  void lay_path() {
+    guides.set_path(path_P, entry_radius_mm, patient ? patient->skin_distance_mm : FloatGrid{});
+    has_changed = true;
+  }
   void place_camera(int rows);
   void prepare(const Detail& detail);
   void set_up_stereo();
@@ -128,6 +96,8 @@ struct PatientScene::Impl {
   std::shared_ptr<const VirtualPatient> patient;
   std::shared_ptr<const std::vector<NamedMesh>> meshes;
   std::string around_name;
+  std::optional<Segment> path_P;
+  double entry_radius_mm = 0.0;
   detail::SurfaceLayer surfaces{*renderer.Get(), frame_break};
   detail::ToolLayer tools{*renderer.Get()};
   detail::GuideLayer guides{*renderer.Get()};
@@ -150,6 +120,7 @@ void PatientScene::Impl::poll() {
     if (outline_P.empty()) return;
     view = fit_camera(outline_P, *wanted_preset, aspect());
     wanted_preset.reset();
+    is_follow_new = true;
     has_changed = true;
   }
 }
@@ -171,7 +142,7 @@ void PatientScene::Impl::place_camera(int rows) {
 
 void PatientScene::Impl::set_up_stereo() {
   const bool is_on = stereo.mode != StereoMode::kOff;
-  if (is_on) window->SetStereoType(to_vtk(stereo.mode));
+  if (is_on) window->SetStereoType(detail::to_vtk(stereo.mode));
   window->SetStereoRender(is_on);
   renderer->GetActiveCamera()->SetEyeAngle(stereo.swaps_eyes ? -stereo.eye_angle_deg : stereo.eye_angle_deg);
 }
@@ -221,11 +192,12 @@ void PatientScene::show_patient(std::shared_ptr<const VirtualPatient> patient,
   }
   s.surfaces.show(describe_structures(patient->label_table, *meshes, target_name, s.around_name), meshes,
                   patient->label_table);
-  s.planes.set_ct(&patient->ct);
+  s.planes.set_patient(patient.get());
   s.guides.set_landmarks(patient->landmarks);
   s.volume.set_patient(patient);
   s.patient = std::move(patient);
   s.meshes = std::move(meshes);
+  s.lay_path();
   s.wanted_preset = CameraPreset::kRightAnteriorOblique;
   s.has_changed = true;
 }
@@ -256,9 +228,13 @@ void PatientScene::apply_preset(StructurePreset preset) {
 }
 
 void PatientScene::set_path(const std::optional<Segment>& line_P, double entry_radius_mm) {
-  static const FloatGrid kNoSkin;
-  impl_->guides.set_path(line_P, entry_radius_mm, impl_->patient ? impl_->patient->skin_distance_mm : kNoSkin);
-  impl_->has_changed = true;
+  Impl& s = *impl_;
+  const bool is_same = line_P.has_value() == s.path_P.has_value() && entry_radius_mm == s.entry_radius_mm &&
+                       (!line_P || (line_P->a == s.path_P->a && line_P->b == s.path_P->b));
+  if (is_same) return;
+  s.path_P = line_P;
+  s.entry_radius_mm = entry_radius_mm;
+  s.lay_path();
 }
 
 void PatientScene::set_guidance_visible(bool is_visible) {
@@ -285,18 +261,11 @@ void PatientScene::set_ultrasound(const RgbImage& picture, std::span<const std::
                                   const std::array<Vec3, 3>& corners_P) {
   if (picture.pixels.empty()) return hide_ultrasound();
   TROCAR_CHECK(alpha.empty() || alpha.size() == picture.pixels.size());
-  const std::span<std::uint8_t> rgba = impl_->tools.ultrasound().resize(picture.columns, picture.rows);
-  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-    std::copy(picture.pixels[i].begin(), picture.pixels[i].end(), rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
-    rgba[4 * i + 3] = alpha.empty() ? std::uint8_t{255} : alpha[i];
-  }
-  impl_->tools.ultrasound().show(corners_P);
-  impl_->has_changed = true;
+  if (impl_->tools.ultrasound().show_picture(picture, alpha, corners_P)) impl_->has_changed = true;
 }
 
 void PatientScene::hide_ultrasound() {
-  impl_->tools.ultrasound().hide();
-  impl_->has_changed = true;
+  if (impl_->tools.ultrasound().hide()) impl_->has_changed = true;
 }
 
 void PatientScene::set_mpr(const MprOptions& options) {
@@ -372,7 +341,7 @@ bool PatientScene::render(const Detail& detail, const std::function<bool()>& wan
   s.window->SetAbortRender(0);
   s.window->Render();
   s.frame_break.end();
-  if (s.renderer_name.empty()) s.renderer_name = renderer_of(*s.window);
+  if (s.renderer_name.empty()) s.renderer_name = detail::renderer_of(*s.window);
   if (s.frame_break.has_broken()) return false;
   s.has_changed = false;
   return true;
@@ -380,8 +349,8 @@ bool PatientScene::render(const Detail& detail, const std::function<bool()>& wan
 
 RgbImage PatientScene::picture() const {
   const int* size = impl_->window->GetSize();
-  return mirrored(detail::read_picture(*impl_->window, size[0], size[1], 1), impl_->stereo.is_mirrored_left_right,
-                  impl_->stereo.is_mirrored_up_down);
+  return detail::mirrored(detail::read_picture(*impl_->window, size[0], size[1], 1),
+                          impl_->stereo.is_mirrored_left_right, impl_->stereo.is_mirrored_up_down);
 }
 
 std::optional<Vec3> PatientScene::pick(double right, double down) {
@@ -410,9 +379,7 @@ std::string PatientScene::renderer_name() const {
 
 bool PatientScene::has_gpu() const {
   const std::string& name = impl_->renderer_name;
-  const auto is_by_processor = [&](const char* part) { return name.find(part) != std::string::npos; };
-  return !name.empty() && !is_by_processor("llvmpipe") && !is_by_processor("softpipe") && !is_by_processor("swrast") &&
-         !is_by_processor("SWR") && !is_by_processor("Software");
+  return !name.empty() && !detail::is_by_processor(name);
 }
 
 std::size_t PatientScene::triangle_count(int mesh_level) const {

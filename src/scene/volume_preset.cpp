@@ -16,7 +16,7 @@ constexpr TransferPoint kSoftTissueRamp[] = {{-20, kFlesh, 0.0},  {40, kFlesh, 0
                                              {180, kBlood, 0.25}, {260, kBone, 0.4},   {900, kBoneWhite, 0.85}};
 constexpr TransferPoint kVesselRamp[] = {{125, kBlood, 0.0}, {165, kBlood, 0.22}, {260, kBlood, 0.4},
                                          {340, kBone, 0.2},  {600, kBone, 0.4},   {1200, kBoneWhite, 0.8}};
-constexpr TransferPoint kSkinAndBoneRamp[] = {{-500, kSkin, 0.0},     {-300, kSkin, 0.05}, {-150, kSkin, 0.0},
+constexpr TransferPoint kSkinAndBoneRamp[] = {{-700, kSkin, 0.0},     {-400, kSkin, 0.16}, {-170, kSkin, 0.0},
                                               {180, kBone, 0.0},      {300, kBone, 0.2},   {500, kBone, 0.5},
                                               {1200, kBoneWhite, 0.9}};
 

@@ -166,6 +166,7 @@ std::span<std::uint8_t> PictureQuad::resize(int columns, int rows) {
 }
 
 void PictureQuad::show(const std::array<Vec3, 3>& corners_P) {
+  corners_P_ = corners_P;
   const Vec3 last_P = corners_P[1] + corners_P[2] - corners_P[0];
   const Vec3* order[4] = {&corners_P[0], &corners_P[1], &last_P, &corners_P[2]};
   for (vtkIdType i = 0; i < 4; ++i) rectangle_->GetPoints()->SetPoint(i, order[i]->data());
@@ -175,8 +176,28 @@ void PictureQuad::show(const std::array<Vec3, 3>& corners_P) {
   actor_->VisibilityOn();
 }
 
-void PictureQuad::hide() {
+bool PictureQuad::show_picture(const RgbImage& picture, std::span<const std::uint8_t> alpha,
+                               const std::array<Vec3, 3>& corners_P) {
+  constexpr double kUnseen_mm = 0.005;
+  const std::span<std::uint8_t> rgba = resize(picture.columns, picture.rows);
+  bool is_new = actor_->GetVisibility() == 0;
+  for (std::size_t i = 0; i < 3; ++i) is_new |= (corners_P[i] - corners_P_[i]).norm() > kUnseen_mm;
+  const auto put = [&is_new](std::uint8_t& place, std::uint8_t value) {
+    is_new |= place != value;
+    place = value;
+  };
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    for (std::size_t channel = 0; channel < 3; ++channel) put(rgba[4 * i + channel], picture.pixels[i][channel]);
+    put(rgba[4 * i + 3], alpha.empty() ? std::uint8_t{255} : alpha[i]);
+  }
+  if (is_new) show(corners_P);
+  return is_new;
+}
+
+bool PictureQuad::hide() {
+  const bool was_shown = actor_->GetVisibility() != 0;
   actor_->VisibilityOff();
+  return was_shown;
 }
 
 RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supersampling) {

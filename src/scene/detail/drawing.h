@@ -50,9 +50,13 @@ class PictureQuad {
   std::span<std::uint8_t> resize(int columns, int rows);
   /// Corners of the picture's outline in P: top left, top right, bottom left.
   void show(const std::array<Vec3, 3>& corners_P);
-  void hide();
+  /// Both at once for a picture with its alpha (one byte a pixel; empty: all shown); tells whether anything is new.
+  bool show_picture(const RgbImage& picture, std::span<const std::uint8_t> alpha, const std::array<Vec3, 3>& corners_P);
+  /// Tells whether it was shown.
+  bool hide();
 
  private:
+  std::array<Vec3, 3> corners_P_ = zero_vectors<3>();
   vtkSmartPointer<vtkImageData> image_;
   vtkSmartPointer<vtkPolyData> rectangle_;
   vtkSmartPointer<vtkActor> actor_;

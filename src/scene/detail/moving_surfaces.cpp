@@ -17,7 +17,7 @@ namespace {
 /// A key from the upper left and a sky; the denser outline of what is like glass. Replaces three lights with shine,
 /// which cost a processor three times as much.
 constexpr const char* kSimpleLight =
-    "  vec3 towards = normalVCVSOutput;\n"
+    "  vec3 towards = normalVCVSOutput.z < 0.0 ? -normalVCVSOutput : normalVCVSOutput;\n"
     "  float key = max(0.0, dot(towards, vec3(-0.42, 0.57, 0.71)));\n"
     "  float sky = 0.5 + 0.3 * towards.x + 0.2 * towards.y;\n"
     "  gl_FragData[0] = vec4(diffuseColor * (0.2 + 0.66 * key + 0.22 * sky), opacity);\n"

@@ -10,6 +10,8 @@ namespace {
 
 constexpr float kOutside_hu = -32768.0F;
 constexpr double kUnseen_mm = 0.02;
+/// The air around the patient is left out: it would hide what lies behind. So far before the skin the plane ends.
+constexpr float kRim_mm = 2.0F;
 
 bool are_close(const std::optional<Segment>& a, const std::optional<Segment>& b) {
   if (!a || !b) return !a && !b;
@@ -22,8 +24,8 @@ PlaneLayer::PlaneLayer(vtkRenderer& renderer) {
   for (const PictureQuad& quad : quads_) renderer.AddActor(quad.actor());
 }
 
-void PlaneLayer::set_ct(const CtGrid* ct) noexcept {
-  ct_ = ct;
+void PlaneLayer::set_patient(const VirtualPatient* patient) noexcept {
+  patient_ = patient;
   drawn_pixels_ = 0;
 }
 
@@ -39,7 +41,7 @@ void PlaneLayer::update(const std::optional<Segment>& needle_P, int pixels) {
   drawn_for_P_ = needle_P;
   drawn_pixels_ = pixels;
   for (PictureQuad& quad : quads_) quad.hide();
-  if (ct_ == nullptr || ct_->empty() || !needle_P || !(needle_P->length_mm() > 0.0)) return;
+  if (patient_ == nullptr || patient_->ct.empty() || !needle_P || !(needle_P->length_mm() > 0.0)) return;
   const Vec3 axis_P = needle_P->direction();
   // In the first plane lies, beside the axis, the direction nearest to axial that is square to it.
   const Vec3 across_P = std::abs(axis_P.z()) < 0.95 ? Vec3(axis_P.cross(Vec3::UnitZ()).normalized())
@@ -60,14 +62,22 @@ void PlaneLayer::draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right
   plane.step_v_P = step_mm * down_P;
   plane.columns = plane.rows = pixels;
   hu_.resize(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
-  sample_slice(*ct_, plane, kOutside_hu, hu_);
+  sample_slice(patient_->ct, plane, kOutside_hu, hu_);
   const std::span<std::uint8_t> rgba = quad.resize(pixels, pixels);
   const auto low_hu = static_cast<float>(options_.level_hu - 0.5 * options_.window_hu);
   const auto scale = static_cast<float>(255.0 / options_.window_hu);
+  const auto is_body = [&](std::size_t i) {
+    if (hu_[i] < 0.5F * kOutside_hu) return false;
+    if (patient_->skin_distance_mm.empty()) return true;
+    const auto column = static_cast<double>(i % static_cast<std::size_t>(pixels));
+    const auto row = static_cast<double>(i / static_cast<std::size_t>(pixels));
+    const Vec3 p_P = plane.origin_P + column * plane.step_u_P + row * plane.step_v_P;
+    return sample_nearest(patient_->skin_distance_mm, p_P, 2.0F * kRim_mm) < kRim_mm;
+  };
   for (std::size_t i = 0; i < hu_.size(); ++i) {
     const auto grey = static_cast<std::uint8_t>(std::clamp((hu_[i] - low_hu) * scale, 0.0F, 255.0F));
     rgba[4 * i] = rgba[4 * i + 1] = rgba[4 * i + 2] = grey;
-    rgba[4 * i + 3] = hu_[i] > 0.5F * kOutside_hu ? 255 : 0;
+    rgba[4 * i + 3] = is_body(i) ? 255 : 0;
   }
   quad.show({corner_P, corner_P + options_.size_mm * right_P, corner_P + options_.size_mm * down_P});
 }

@@ -15,7 +15,8 @@ class PlaneLayer {
  public:
   explicit PlaneLayer(vtkRenderer& renderer);
 
-  void set_ct(const CtGrid* ct) noexcept;  ///< Kept, not copied; nullptr: none.
+  /// CT and the distance to the skin (may be empty) of this patient are kept, not copied; nullptr: none.
+  void set_patient(const VirtualPatient* patient) noexcept;
   bool set_options(const MprOptions& options);
   const MprOptions& options() const noexcept { return options_; }
   /// Samples the planes anew where the needle or the options have changed; `pixels` along an edge.
@@ -24,7 +25,7 @@ class PlaneLayer {
  private:
   void draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right_P, const Vec3& down_P, int pixels);
 
-  const CtGrid* ct_ = nullptr;
+  const VirtualPatient* patient_ = nullptr;
   MprOptions options_;
   std::array<PictureQuad, 3> quads_;
   std::vector<float> hu_;

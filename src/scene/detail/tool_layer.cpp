@@ -15,7 +15,7 @@ namespace {
 
 /// Motion below is not seen: half a hundredth of a millimetre.
 constexpr double kUnseen_mm = 0.005;
-constexpr double kGhostOpacity = 0.3;
+constexpr double kGhostOpacity = 0.4;
 constexpr double kGhostRadius_mm = 1.2;
 constexpr double kGhostHubRadius_mm = 4.0;
 constexpr double kGhostHub_mm = 22.0;
@@ -67,6 +67,7 @@ ToolLayer::ToolLayer(vtkRenderer& renderer)
   ghost_->GetProperty()->SetOpacity(kGhostOpacity);
   ghost_->GetProperty()->BackfaceCullingOn();
   blend_at_once(*ghost_);
+  make_unlit(*ghost_);
   renderer.AddActor(ultrasound_.actor());
 }
 

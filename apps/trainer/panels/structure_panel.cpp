@@ -1,0 +1,328 @@
+#include "panels/structure_panel.h"
+
+#include <QActionGroup>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QMenu>
+#include <QPainter>
+#include <QScrollArea>
+#include <QSignalBlocker>
+#include <QSlider>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <QWidgetAction>
+
+#include "shell/parts.h"
+#include "views/patient_view.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr int kGap = 8;
+constexpr int kSwatch = 12;
+
+QString widget_name(const char* prefix, const std::string& structure) {
+  return QString::fromLatin1(prefix) + to_qt(structure).replace(QLatin1Char('_'), QLatin1Char('-'));
+}
+
+/// "kidney_left" as people read it.
+QString shown_name(const std::string& structure) {
+  QString name = to_qt(structure).replace(QLatin1Char('_'), QLatin1Char(' '));
+  if (!name.isEmpty()) name[0] = name[0].toUpper();
+  return name;
+}
+
+/// A round patch of the structure's colour; a ring where it is hidden.
+QIcon swatch(const Rgb& color, double ratio) {
+  QIcon icon;
+  for (const bool is_shown : {true, false}) {
+    QPixmap pixmap(qRound(kSwatch * ratio), qRound(kSwatch * ratio));
+    pixmap.setDevicePixelRatio(ratio);
+    pixmap.fill(Qt::transparent);
+    QPainter painter(&pixmap);
+    painter.setRenderHint(QPainter::Antialiasing);
+    const QColor ink(color[0], color[1], color[2]);
+    painter.setPen(QPen(ink, 1.5));
+    painter.setBrush(is_shown ? QBrush(ink) : QBrush(Qt::NoBrush));
+    painter.drawEllipse(QRectF(1, 1, kSwatch - 2, kSwatch - 2));
+    painter.end();
+    icon.addPixmap(pixmap, QIcon::Normal, is_shown ? QIcon::On : QIcon::Off);
+  }
+  return icon;
+}
+
+QToolButton* make_toggle(const char* name, const QString& text, const QString& tooltip, bool is_on) {
+  QToolButton* button = make_tool_button(name, text, tooltip);
+  button->setCheckable(true);
+  button->setChecked(is_on);
+  return button;
+}
+
+}  // namespace
+
+StructurePanel::StructurePanel(PatientView& view, QWidget* parent) : QWidget(parent), view_(view) {
+  setObjectName(QStringLiteral("structure-panel"));
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(kGap, kGap, kGap, kGap);
+  layout->setSpacing(kGap);
+  add_presets(*layout);
+  auto* scroll = new QScrollArea(this);
+  scroll->setObjectName(QStringLiteral("structure-list"));
+  scroll->setWidgetResizable(true);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  auto* rows = new QWidget(scroll);
+  list_ = new QVBoxLayout(rows);
+  list_->setContentsMargins(0, 0, kGap, 0);
+  list_->setSpacing(2);
+  scroll->setWidget(rows);
+  layout->addWidget(scroll, 1);
+  add_volume(*layout);
+  add_toggles(*layout);
+  add_menus(*layout);
+  connect(&view_, &PatientView::changed, this, &StructurePanel::refresh);
+  rebuild();
+}
+
+void StructurePanel::add_presets(QBoxLayout& layout) {
+  struct Choice {
+    const char* name;
+    QString text;
+    QString tooltip;
+    StructurePreset preset;
+  };
+  const Choice choices[] = {
+      {"preset-all", tr("All"), tr("All structures as they begin"), StructurePreset::kAll},
+      {"preset-skin", tr("Skin"), tr("The skin alone"), StructurePreset::kSkinOnly},
+      {"preset-bones", tr("Bones"), tr("Bones and cartilage"), StructurePreset::kBones},
+      {"preset-vessels", tr("Vessels"), tr("Vessels and target in faint bones"), StructurePreset::kVessels},
+      {"preset-target", tr("Target"), tr("The target and the organ around it"), StructurePreset::kTarget},
+  };
+  auto* row = new QHBoxLayout;
+  row->setSpacing(kGap / 2);
+  for (const Choice& choice : choices) {
+    QToolButton* button = make_tool_button(choice.name, choice.text, choice.tooltip);
+    button->setAccessibleName(choice.tooltip);
+    connect(button, &QToolButton::clicked, this, [this, preset = choice.preset] {
+      view_.apply_preset(preset);
+      refresh();
+    });
+    row->addWidget(button);
+  }
+  row->addStretch(1);
+  layout.addLayout(row);
+}
+
+void StructurePanel::rebuild() {
+  while (QLayoutItem* item = list_->takeAt(0)) {
+    delete item->widget();
+    delete item;
+  }
+  rows_.clear();
+  for (const StructureInfo& info : view_.structures()) add_row(info);
+  list_->addStretch(1);
+}
+
+void StructurePanel::add_row(const StructureInfo& info) {
+  auto* line = new QWidget(list_->parentWidget());
+  auto* layout = new QHBoxLayout(line);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(kGap);
+  Row row{info, new QToolButton(line), new QSlider(Qt::Horizontal, line)};
+  const QString name = shown_name(info.name);
+  row.eye->setObjectName(widget_name("structure-eye-", info.name));
+  row.eye->setCheckable(true);
+  row.eye->setAutoRaise(true);
+  row.eye->setIcon(swatch(info.color, devicePixelRatioF()));
+  row.eye->setIconSize({kSwatch, kSwatch});
+  row.eye->setChecked(info.opacity > 0.0);
+  row.eye->setToolTip(tr("Show or hide %1 (Space)").arg(name));
+  row.eye->setAccessibleName(tr("Show %1").arg(name));
+  auto* label = make_label(name, "", line);
+  label->setToolTip(name);
+  label->setMinimumWidth(60);
+  row.slider->setObjectName(widget_name("structure-opacity-", info.name));
+  row.slider->setRange(0, 100);
+  row.slider->setValue(qRound(100.0 * info.opacity));
+  row.slider->setFixedWidth(fontMetrics().averageCharWidth() * 14);
+  row.slider->setToolTip(tr("Opacity of %1 (arrow keys)").arg(name));
+  row.slider->setAccessibleName(tr("Opacity of %1").arg(name));
+  layout->addWidget(row.eye);
+  layout->addWidget(label, 1);
+  layout->addWidget(row.slider);
+  connect(row.slider, &QSlider::valueChanged, this, [this, structure = info.name](int percent) {
+    view_.set_opacity(structure, percent / 100.0);
+    refresh();
+  });
+  connect(row.eye, &QToolButton::toggled, this, [this, info](bool is_on) {
+    view_.set_opacity(info.name, !is_on ? 0.0 : info.default_opacity > 0.0 ? info.default_opacity : 1.0);
+    refresh();
+  });
+  list_->addWidget(line);
+  rows_.push_back(row);
+}
+
+void StructurePanel::refresh() {
+  const std::vector<StructureInfo> structures = view_.structures();
+  for (std::size_t i = 0; i < rows_.size() && i < structures.size(); ++i) {
+    const QSignalBlocker quiet_slider(rows_[i].slider);
+    const QSignalBlocker quiet_eye(rows_[i].eye);
+    rows_[i].slider->setValue(qRound(100.0 * structures[i].opacity));
+    rows_[i].eye->setChecked(structures[i].opacity > 0.0);
+  }
+  const QSignalBlocker quiet_guidance(guidance_);
+  const QSignalBlocker quiet_landmarks(landmarks_);
+  guidance_->setChecked(view_.is_guidance_visible());
+  landmarks_->setChecked(view_.are_landmarks_visible());
+}
+
+void StructurePanel::add_volume(QBoxLayout& layout) {
+  volume_ = new QComboBox(this);
+  volume_->setObjectName(QStringLiteral("volume-preset"));
+  volume_->setToolTip(tr("The CT itself as a cloud (Up, Down)"));
+  volume_->setAccessibleName(tr("CT volume"));
+  volume_->addItems(
+      {tr("Surfaces"), tr("CT: bone"), tr("CT: soft tissue"), tr("CT: vessels"), tr("CT: skin and bone")});
+  connect(volume_, qOverload<int>(&QComboBox::currentIndexChanged), this,
+          [this](int index) { view_.set_volume_preset(static_cast<VolumePreset>(index)); });
+  layout.addWidget(volume_);
+}
+
+void StructurePanel::add_toggles(QBoxLayout& layout) {
+  const auto add_plane = [this](QBoxLayout& row, const char* name, const QString& text, const QString& tooltip,
+                                bool MprOptions::*plane) {
+    QToolButton* button = make_toggle(name, text, tooltip, view_.mpr().*plane);
+    button->setAccessibleName(tooltip);
+    connect(button, &QToolButton::toggled, this, [this, plane](bool is_on) {
+      MprOptions options = view_.mpr();
+      options.*plane = is_on;
+      view_.set_mpr(options);
+    });
+    row.addWidget(button);
+  };
+  auto* planes = new QHBoxLayout;
+  planes->setSpacing(kGap / 2);
+  planes->addWidget(make_label(tr("CT planes"), "dim", this));
+  planes->addStretch(1);
+  add_plane(*planes, "plane-long", tr("Along"), tr("CT plane along the needle"), &MprOptions::has_long_plane);
+  add_plane(*planes, "plane-cross", tr("Turned"), tr("CT plane along the needle, turned by 90°"),
+            &MprOptions::has_cross_plane);
+  add_plane(*planes, "plane-tip", tr("Across"), tr("CT plane across the needle at its tip"),
+            &MprOptions::has_tip_plane);
+  layout.addLayout(planes);
+
+  auto* marks = new QHBoxLayout;
+  marks->setSpacing(kGap / 2);
+  guidance_ =
+      make_toggle("show-guidance", tr("Guidance"), tr("Expert path and entry zone (G)"), view_.is_guidance_visible());
+  landmarks_ =
+      make_toggle("show-landmarks", tr("Landmarks"), tr("Landmarks with names (M)"), view_.are_landmarks_visible());
+  connect(guidance_, &QToolButton::toggled, this, [this](bool is_on) { view_.set_guidance_visible(is_on); });
+  connect(landmarks_, &QToolButton::toggled, this, [this](bool is_on) { view_.set_landmarks_visible(is_on); });
+  for (QToolButton* button : {guidance_, landmarks_}) {
+    button->setAccessibleName(button->text());
+    marks->addWidget(button);
+  }
+  marks->addStretch(1);
+  layout.addLayout(marks);
+}
+
+void StructurePanel::add_menus(QBoxLayout& layout) {
+  auto* row = new QHBoxLayout;
+  row->setSpacing(kGap / 2);
+  const auto add = [&](const char* name, const QString& text, const QString& tooltip) {
+    QToolButton* button = make_tool_button(name, text, tooltip);
+    button->setAccessibleName(tooltip);
+    button->setPopupMode(QToolButton::InstantPopup);
+    auto* menu = new QMenu(button);
+    button->setMenu(menu);
+    row->addWidget(button);
+    return menu;
+  };
+  fill_camera_menu(*add("camera-menu", tr("Camera ▾"), tr("Where the patient is seen from")));
+  fill_stereo_menu(*add("stereo-menu", tr("Stereo ▾"), tr("Pictures for two eyes, and for a mirror")));
+  row->addStretch(1);
+  layout.addLayout(row);
+}
+
+void StructurePanel::fill_camera_menu(QMenu& menu) {
+  const std::tuple<QString, const char*, CameraPreset> presets[] = {
+      {tr("Anterior\t1"), "camera-anterior", CameraPreset::kAnterior},
+      {tr("Right oblique\t2"), "camera-oblique", CameraPreset::kRightAnteriorOblique},
+      {tr("Right\t3"), "camera-right", CameraPreset::kRight},
+      {tr("Left\t4"), "camera-left", CameraPreset::kLeft},
+      {tr("Posterior\t5"), "camera-posterior", CameraPreset::kPosterior},
+      {tr("Cranial\t6"), "camera-cranial", CameraPreset::kCranial},
+  };
+  for (const auto& [text, name, preset] : presets) {
+    QAction* action = menu.addAction(text, this, [this, p = preset] { view_.set_camera(p); });
+    action->setObjectName(QString::fromLatin1(name));
+  }
+  menu.addSeparator();
+  const std::tuple<QString, const char*, FollowMode> modes[] = {
+      {tr("Stay\tHome"), "follow-free", FollowMode::kFree},
+      {tr("Follow the tip\tF"), "follow-tip", FollowMode::kTip},
+      {tr("Look along the needle\tL"), "follow-along", FollowMode::kAlongNeedle},
+      {tr("Side view at the tip\tN"), "follow-side", FollowMode::kSide},
+  };
+  for (const auto& [text, name, mode] : modes) {
+    QAction* action = menu.addAction(text, this, [this, m = mode] {
+      view_.set_follow(m);
+      if (m == FollowMode::kFree) view_.reset_camera();
+    });
+    action->setObjectName(QString::fromLatin1(name));
+  }
+}
+
+void StructurePanel::fill_stereo_menu(QMenu& menu) {
+  const auto change = [this](auto&& edit) {
+    StereoOptions options = view_.stereo();
+    edit(options);
+    view_.set_stereo(options);
+  };
+  auto* modes = new QActionGroup(&menu);
+  const auto add_mode = [&](const QString& text, const char* name, StereoMode mode) {
+    QAction* action = menu.addAction(text, this, [=] { change([=](StereoOptions& o) { o.mode = mode; }); });
+    action->setObjectName(QString::fromLatin1(name));
+    action->setCheckable(true);
+    action->setChecked(view_.stereo().mode == mode);
+    modes->addAction(action);
+  };
+  add_mode(tr("One picture"), "stereo-off", StereoMode::kOff);
+  add_mode(tr("Red-cyan glasses"), "stereo-anaglyph", StereoMode::kAnaglyph);
+  add_mode(tr("Side by side"), "stereo-side-by-side", StereoMode::kSideBySide);
+  add_mode(tr("Interlaced rows"), "stereo-interlaced", StereoMode::kInterlaced);
+  if (view_.has_quad_buffer()) add_mode(tr("Shutter glasses"), "stereo-shutter", StereoMode::kQuadBuffer);
+  menu.addSeparator();
+  const auto add_switch = [&](const QString& text, const char* name, bool StereoOptions::*field) {
+    QAction* action = menu.addAction(text);
+    action->setObjectName(QString::fromLatin1(name));
+    action->setCheckable(true);
+    action->setChecked(view_.stereo().*field);
+    connect(action, &QAction::toggled, this, [=](bool is_on) { change([=](StereoOptions& o) { o.*field = is_on; }); });
+  };
+  add_switch(tr("Swap eyes"), "stereo-swap", &StereoOptions::swaps_eyes);
+  add_switch(tr("Mirror left-right"), "mirror-left-right", &StereoOptions::is_mirrored_left_right);
+  add_switch(tr("Mirror up-down"), "mirror-up-down", &StereoOptions::is_mirrored_up_down);
+  const auto add_number = [&](const QString& prefix, const char* name, double low, double high, double step,
+                              double StereoOptions::*field) {
+    auto* box = new QDoubleSpinBox(&menu);
+    box->setObjectName(QString::fromLatin1(name));
+    box->setAccessibleName(prefix);
+    box->setToolTip(prefix + tr(" (Up, Down)"));
+    box->setPrefix(prefix + QStringLiteral("  "));
+    box->setRange(low, high);
+    box->setSingleStep(step);
+    box->setValue(view_.stereo().*field);
+    connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
+            [=](double value) { change([=](StereoOptions& o) { o.*field = value; }); });
+    auto* action = new QWidgetAction(&menu);
+    action->setDefaultWidget(box);
+    menu.addAction(action);
+  };
+  add_number(tr("Eye angle, degrees"), "stereo-angle", 0.0, 10.0, 0.5, &StereoOptions::eye_angle_deg);
+  add_number(tr("Focus shift"), "stereo-focus", -0.5, 1.0, 0.05, &StereoOptions::focus_shift);
+}
+
+}  // namespace trocar::trainer

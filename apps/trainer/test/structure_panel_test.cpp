@@ -1,0 +1,99 @@
+#include "panels/structure_panel.h"
+
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QComboBox>
+#include <QSlider>
+#include <QToolButton>
+#include <algorithm>
+
+#include "views/patient_view.h"
+
+namespace trocar::trainer {
+namespace {
+
+/// A ball of 200 points is too round for a test of buttons: a tetrahedron is enough.
+TriangleMesh tetrahedron(const Vec3f& middle_P, float size_mm) {
+  TriangleMesh mesh;
+  mesh.vertices = {middle_P + size_mm * Vec3f(1, 1, 1), middle_P + size_mm * Vec3f(-1, -1, 1),
+                   middle_P + size_mm * Vec3f(-1, 1, -1), middle_P + size_mm * Vec3f(1, -1, -1)};
+  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
+  return mesh;
+}
+
+class StructurePanelTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    VirtualPatient patient;
+    patient.label_table.labels = {{1, "kidney_left", "kidney", {200, 40, 40}}, {2, "rib_left_9", "bone", {0, 0, 0}}};
+    std::vector<NamedMesh> meshes = {{"skin", tetrahedron({0, 0, 0}, 100)},
+                                     {"kidney_left", tetrahedron({30, 0, 0}, 10)},
+                                     {"rib_left_9", tetrahedron({0, 0, 40}, 10)}};
+    view.show_patient(std::make_shared<const VirtualPatient>(std::move(patient)),
+                      std::make_shared<const std::vector<NamedMesh>>(std::move(meshes)));
+    panel = std::make_unique<StructurePanel>(view);
+    panel->resize(300, 600);
+    panel->show();
+    QApplication::processEvents();
+  }
+  template <class Widget>
+  Widget& find(const char* name) {
+    auto* widget = panel->findChild<Widget*>(QString::fromLatin1(name));
+    EXPECT_NE(widget, nullptr) << name;
+    return *widget;
+  }
+  double opacity(const char* name) {
+    for (const StructureInfo& info : view.structures()) {
+      if (info.name == name) return info.opacity;
+    }
+    return -1.0;
+  }
+  PatientView view;
+  std::unique_ptr<StructurePanel> panel;
+};
+
+TEST_F(StructurePanelTest, SliderAndEyeSetTheOpacity) {
+  find<QSlider>("structure-opacity-kidney-left").setValue(40);
+  EXPECT_DOUBLE_EQ(opacity("kidney_left"), 0.4);
+  find<QToolButton>("structure-eye-kidney-left").click();
+  EXPECT_DOUBLE_EQ(opacity("kidney_left"), 0.0);
+  EXPECT_EQ(find<QSlider>("structure-opacity-kidney-left").value(), 0);
+  find<QToolButton>("structure-eye-kidney-left").click();
+  EXPECT_DOUBLE_EQ(opacity("kidney_left"), 1.0);
+}
+
+TEST_F(StructurePanelTest, PresetsMoveTheSliders) {
+  find<QToolButton>("preset-bones").click();
+  EXPECT_DOUBLE_EQ(opacity("skin"), 0.0);
+  EXPECT_EQ(find<QSlider>("structure-opacity-skin").value(), 0);
+  EXPECT_EQ(find<QSlider>("structure-opacity-rib-left-9").value(), 100);
+  find<QToolButton>("preset-all").click();
+  EXPECT_GT(opacity("skin"), 0.0);
+}
+
+TEST_F(StructurePanelTest, TogglesReachTheView) {
+  find<QToolButton>("plane-tip").click();
+  EXPECT_TRUE(view.mpr().has_tip_plane);
+  find<QToolButton>("show-landmarks").click();
+  EXPECT_TRUE(view.are_landmarks_visible());
+  find<QToolButton>("show-guidance").click();
+  EXPECT_FALSE(view.is_guidance_visible());
+  find<QComboBox>("volume-preset").setCurrentIndex(1);
+  EXPECT_EQ(view.volume_preset(), VolumePreset::kBone);
+}
+
+TEST_F(StructurePanelTest, EveryControlHasANameATooltipAndFits) {
+  for (QWidget* widget : panel->findChildren<QWidget*>()) {
+    if (qobject_cast<QToolButton*>(widget) == nullptr && qobject_cast<QSlider*>(widget) == nullptr) continue;
+    if (!widget->isVisible()) continue;
+    EXPECT_FALSE(widget->objectName().isEmpty());
+    EXPECT_FALSE(widget->toolTip().isEmpty()) << widget->objectName().toStdString();
+    EXPECT_FALSE(widget->accessibleName().isEmpty()) << widget->objectName().toStdString();
+    const QRect place(widget->mapTo(panel.get(), QPoint(0, 0)), widget->size());
+    EXPECT_LE(place.right(), panel->width()) << widget->objectName().toStdString();
+  }
+}
+
+}  // namespace
+}  // namespace trocar::trainer

@@ -1,0 +1,8 @@
+#pragma once
+
+namespace trocar {
+
+/// Puts the X server's pointer at a place of the screen, as a hand does.
+void move_pointer(int x, int y);
+
+}  // namespace trocar
