@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "headless/needle_geometry.h"
 #include "io/patient_source.h"
+#include "station/patient_cache.h"
 #include "station/probe_start.h"
 
 namespace trocar {
@@ -45,13 +46,33 @@ bool is_same_patient(const CaseChoice& a, const CaseChoice& b) {
   return a.patient_source == b.patient_source && a.patient_seed == b.patient_seed;
 }
 
-Result<std::shared_ptr<const VirtualPatient>> patient_of(const CaseChoice& choice, const Progress& progress) {
-  TROCAR_TRY(VirtualPatient patient, open_patient({choice.patient_source, choice.patient_seed}, progress));
+PatientSource source_of(const CaseChoice& choice) {
+  return {choice.patient_source, choice.patient_seed};
+}
+
+/// The patient, from where it is kept if it is; `made.server_source` says where from.
+Result<std::shared_ptr<const VirtualPatient>> patient_of(OpenCase& made, const PatientCache& cache,
+                                                         const Progress& progress) {
+  made.server_source = made.choice.patient_source;
+  if (const auto kept = cache.find(source_of(made.choice))) {
+    if (auto patient = open_patient({kept->string(), 1}, progress)) {
+      made.server_source = kept->string();
+      return std::make_shared<const VirtualPatient>(*std::move(patient));
+    }
+    cache.forget(source_of(made.choice));
+  }
+  TROCAR_TRY(VirtualPatient patient, open_patient(source_of(made.choice), progress));
   return std::make_shared<const VirtualPatient>(std::move(patient));
 }
 
-Status add_surfaces(OpenCase& made, const VirtualPatient& patient, const Progress& progress) {
-  TROCAR_TRY(auto meshes, open_meshes({made.choice.patient_source, made.choice.patient_seed}, patient, progress));
+Status add_surfaces(OpenCase& made, const VirtualPatient& patient, const PatientCache& cache,
+                    const Progress& progress) {
+  TROCAR_TRY(auto meshes, open_meshes({made.server_source, made.choice.patient_seed}, patient, progress));
+  const bool is_kept = made.server_source != made.choice.patient_source;
+  if (!is_kept) {
+    // Where it cannot be kept, it is made again the next time.
+    if (const auto kept = cache.keep(source_of(made.choice), patient, meshes)) made.server_source = kept->string();
+  }
   made.meshes = std::make_shared<const std::vector<NamedMesh>>(std::move(meshes));
   return {};
 }
@@ -112,13 +133,14 @@ bool operator==(const CaseChoice& a, const CaseChoice& b) {
          x.tissue_file == y.tissue_file && x.profile == y.profile && x.overrides == y.overrides && x.seed == y.seed;
 }
 
-Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
-                                                       std::shared_ptr<const OpenCase> previous,
+Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice, const OpenOptions& options,
                                                        const Progress& progress, const std::stop_token& stop) {
   const auto begin = std::chrono::steady_clock::now();
   auto made = std::make_shared<OpenCase>();
   made->choice = choice;
   made->choice.options.patient_folder = choice.patient_source;  // where a task of the patient's own would lie
+  const PatientCache cache(options.cache_folder);
+  std::shared_ptr<const OpenCase> previous = options.previous;
   if (previous && !is_same_patient(previous->choice, choice)) previous.reset();
   // What is wrong with the tables is told before a patient is opened.
   TROCAR_TRY_STATUS(load_tables(made->choice.options));
@@ -126,21 +148,21 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
   std::shared_ptr<const VirtualPatient> patient;
   if (previous) {
     patient = previous->the_case.patient;
+    made->server_source = previous->server_source;
     made->meshes = previous->meshes;
     made->acoustic = previous->acoustic;
     made->flow = previous->flow;
     if (!made->flow) made->notes.push_back("no colour Doppler: no vessel of this patient has flow");
     TROCAR_TRY_STATUS(add_case(*made, patient, shared.part(0.8)));
   } else {
-    TROCAR_TRY(patient, patient_of(choice, shared.part(0.3)));
+    TROCAR_TRY(patient, patient_of(*made, cache, shared.part(0.3)));
     if (stop.stop_requested()) return fail("the case was not opened: cancelled");
     std::array<Status, 3> done;
     const Progress of_case = shared.part(0.2), of_surfaces = shared.part(0.2), of_acoustics = shared.part(0.25);
-    std::vector<std::string> notes;
     OpenCase acoustics;
     acoustics.choice = choice;
     parallel_invoke([&] { done[0] = add_case(*made, patient, of_case); },
-                    [&] { done[1] = add_surfaces(*made, *patient, of_surfaces); },
+                    [&] { done[1] = add_surfaces(*made, *patient, cache, of_surfaces); },
                     [&] { done[2] = add_acoustics(acoustics, *patient, of_acoustics); });
     for (Status& status : done) TROCAR_TRY_STATUS(std::move(status));
     made->acoustic = std::move(acoustics.acoustic);
@@ -155,11 +177,15 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
   return std::shared_ptr<const OpenCase>(std::move(made));
 }
 
-BackgroundJob<std::shared_ptr<const OpenCase>> open_case(CaseChoice choice, std::shared_ptr<const OpenCase> previous) {
-  return BackgroundJob<std::shared_ptr<const OpenCase>>([choice = std::move(choice), previous = std::move(previous)](
+BackgroundJob<std::shared_ptr<const OpenCase>> open_case(CaseChoice choice, OpenOptions options) {
+  return BackgroundJob<std::shared_ptr<const OpenCase>>([choice = std::move(choice), options = std::move(options)](
                                                             const Progress& progress, const std::stop_token& stop) {
-    return make_open_case(choice, previous, progress, stop);
+    return make_open_case(choice, options, progress, stop);
   });
+}
+
+BackgroundJob<std::shared_ptr<const OpenCase>> open_case(CaseChoice choice, std::shared_ptr<const OpenCase> previous) {
+  return open_case(std::move(choice), OpenOptions{std::move(previous), {}});
 }
 
 Result<std::vector<CurvePoint>> predict_force(const Case& the_case, const std::vector<std::string>& overrides,

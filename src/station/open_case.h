@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -31,6 +32,8 @@ struct OpenCase {
   CaseChoice choice;
   Case the_case;
   std::string force_model;  ///< The choice's, else the task's.
+  /// How a haptic server of this machine opens the patient: the choice's source, or the folder where it is kept.
+  std::string server_source;
   std::shared_ptr<const std::vector<NamedMesh>> meshes;
   std::shared_ptr<const AcousticScene> acoustic;
   std::shared_ptr<const VesselFlow> flow;  ///< Null: no vessel of this patient has flow; notes say so.
@@ -46,13 +49,20 @@ struct OpenCase {
   double seconds = 0.0;               ///< That opening took.
 };
 
-/// Opens a case; what is slow runs side by side. `previous`, if given, lends patient, surfaces and acoustic scene where
-/// they are the same. `stop` is looked at between the parts. Errors: the patient, the tables, no path for this task
-/// (with what is in the way).
-Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
-                                                       std::shared_ptr<const OpenCase> previous = nullptr,
+struct OpenOptions {
+  /// Lends patient, surfaces and acoustic scene where they are the same.
+  std::shared_ptr<const OpenCase> previous;
+  /// Embedded patients are kept there (PatientCache), so that they and the servers' scenes open in a second or two the
+  /// next time; empty: they are made anew each time, half a minute of computing. `user_cache_folder()` is the place.
+  std::filesystem::path cache_folder;
+};
+
+/// Opens a case; what is slow runs side by side. `stop` is looked at between the parts. Errors: the patient, the
+/// tables, no path for this task (with what is in the way).
+Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice, const OpenOptions& options = {},
                                                        const Progress& progress = {}, const std::stop_token& stop = {});
-/// The same in the background. An embedded patient takes several seconds of computing, most of them for its surfaces.
+/// The same in the background.
+BackgroundJob<std::shared_ptr<const OpenCase>> open_case(CaseChoice choice, OpenOptions options);
 BackgroundJob<std::shared_ptr<const OpenCase>> open_case(CaseChoice choice,
                                                          std::shared_ptr<const OpenCase> previous = nullptr);
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <thread>
 
+#include "core/temporary_folder.h"
 #include "ultrasound/probe_contact.h"
 #include "ultrasound/scan_geometry.h"
 
@@ -67,7 +68,7 @@ TEST_F(OpenedCase, LendsWhatIsTheSameToTheNextChoice) {
   CaseChoice other = opened->choice;
   other.options.overrides = {"skin.fp=5"};
   ASSERT_FALSE(other == opened->choice);
-  const auto next = make_open_case(other, opened);
+  const auto next = make_open_case(other, {opened, {}});
   ASSERT_TRUE(next) << next.error().text();
   EXPECT_EQ((*next)->meshes, opened->meshes);
   EXPECT_EQ((*next)->acoustic, opened->acoustic);
@@ -99,6 +100,33 @@ TEST(OpenCase, SaysWhatIsWrongBeforeItOpensThePatient) {
   const auto nobody = make_open_case(choice);
   ASSERT_FALSE(nobody);
   EXPECT_NE(nobody.error().text().find("abdomen"), std::string::npos);
+}
+
+TEST(OpenCase, KeepsAnEmbeddedPatientForTheNextTime) {
+  const TemporaryFolder folder;
+  OpenOptions options;
+  options.cache_folder = folder / "patients";
+  CaseChoice choice;
+  choice.patient_source = "layers-liver";
+  const auto first = make_open_case(choice, options);
+  ASSERT_TRUE(first) << first.error().text();
+  EXPECT_TRUE(std::filesystem::is_directory((*first)->server_source));
+  const auto second = make_open_case(choice, options);
+  ASSERT_TRUE(second) << second.error().text();
+  EXPECT_EQ((*second)->server_source, (*first)->server_source);
+  EXPECT_EQ((*second)->the_case.patient->content_hash, (*first)->the_case.patient->content_hash);
+  EXPECT_EQ((*second)->meshes->size(), (*first)->meshes->size());
+  EXPECT_LT(((*second)->the_case.plan.line_P.b - (*first)->the_case.plan.line_P.b).norm(), 1e-6);
+
+  // A damaged one is made anew.
+  std::filesystem::resize_file(std::filesystem::path((*first)->server_source) / "labels.nrrd", 100);
+  const auto third = make_open_case(choice, options);
+  ASSERT_TRUE(third) << third.error().text();
+  EXPECT_EQ((*third)->the_case.patient->content_hash, (*first)->the_case.patient->content_hash);
+  choice.patient_seed = 2;
+  const auto other = make_open_case(choice, options);
+  ASSERT_TRUE(other) << other.error().text();
+  EXPECT_NE((*other)->server_source, (*first)->server_source);
 }
 
 TEST(OpenCase, CancelledGivesNothing) {
