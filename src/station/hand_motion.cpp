@@ -1,6 +1,7 @@
 #include "station/hand_motion.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace trocar {
 namespace {
@@ -53,7 +54,10 @@ void LedHand::step(double dt_s) noexcept {
   age_s_ += dt_s;
   const double ahead_s = std::min(age_s_, kStandsStill_s);
   const Pose wanted = is_clamped_ ? X_P_ : moved(goal_P_, ahead_s * goal_v_P_, ahead_s * goal_w_P_);
-  const Pose next = moved_towards(X_P_, wanted, limits_.most_mm_per_s * dt_s, limits_.most_rad_per_s * dt_s);
+  const double share = 1.0 - std::exp(-dt_s / kSmoothing_s);
+  const double step_mm = std::min(share * (wanted.p() - X_P_.p()).norm(), limits_.most_mm_per_s * dt_s);
+  const double step_rad = std::min(share * turn_between(X_P_.R(), wanted.R()).norm(), limits_.most_rad_per_s * dt_s);
+  const Pose next = moved_towards(X_P_, wanted, step_mm, step_rad);
   v_P_ = (next.p() - X_P_.p()) / dt_s;
   w_P_ = turn_between(X_P_.R(), next.R()) / dt_s;
   X_P_ = next;

@@ -19,11 +19,13 @@ Vec3 turn_between(const Mat3& from, const Mat3& to) noexcept;
 /// A pose turned by a rotation vector about its own origin, and moved.
 Pose moved(const Pose& X, const Vec3& shift, const Vec3& turn_rad) noexcept;
 
-/// A hand that is told where to be now and then, by a window's frames, and moves there evenly. In between it goes on
-/// with the velocity that it was told, for kStandsStill_s at most. Bounded; no clock.
+/// A hand that is told where to be now and then, by a window's frames, and moves there evenly: with a first-order lag
+/// of kSmoothing_s, within its limits. In between it goes on with the velocity that it was told, for kStandsStill_s at
+/// most. Bounded; no clock.
 class LedHand {
  public:
   static constexpr double kStandsStill_s = 0.05;
+  static constexpr double kSmoothing_s = 0.03;  ///< Two frames of a window. [assumed]
 
   explicit LedHand(const HandLimits& limits = {}) noexcept : limits_(limits) {}
 

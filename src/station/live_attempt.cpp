@@ -120,8 +120,7 @@ void LiveAttempt::resume_forces() {
 
 void LiveAttempt::set_parameters(std::vector<std::string> settings) {
   const std::lock_guard lock(impl_->desk.mutex);
-  std::vector<std::string>& all = impl_->desk.wishes.settings;
-  all.insert(all.end(), std::make_move_iterator(settings.begin()), std::make_move_iterator(settings.end()));
+  impl_->desk.wishes.settings.push_back(std::move(settings));
 }
 
 void LiveAttempt::perform(std::unique_ptr<Operator> the_operator) {

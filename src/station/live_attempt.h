@@ -87,7 +87,9 @@ class LiveAttempt {
   void fire();   ///< The biopsy gun; counts once.
   void stop_forces();
   void resume_forces();
-  /// "liver.k=0.5", "force_model=proxy": to the servers while they run; the insertion goes on.
+  /// "liver.k=0.5", "force_model=proxy": to the servers while they run; the insertion goes on. Numbers of tissues are
+  /// all that differ from the case's table, and replace those of the last call that named any; an empty list: as the
+  /// case has them (see SetParameters). What the server says of it is the view's message.
   void set_parameters(std::vector<std::string> settings);
   /// An operator of `training` moves the needle, after the hand has gone to where it begins; the view's is_performing
   /// says how long.

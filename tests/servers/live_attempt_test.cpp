@@ -72,7 +72,7 @@ TEST_F(LiveAttemptTest, ExpertReachesTheTarget) {
   guided.is_guided = true;
   start(guided);
   ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
-  EXPECT_FALSE(attempt->view().hint.empty());
+  EXPECT_TRUE(wait_for([&] { return !attempt->view().hint.empty(); }));  // with the first tick
   attempt->perform(expert());
   ASSERT_TRUE(wait_phase(AttemptPhase::kInBody)) << where();
   const AttemptView inside = attempt->view();
@@ -187,12 +187,14 @@ TEST_F(LiveAttemptTest, ParametersReachTheServerWhileItRuns) {
   attempt->set_parameters({"skin.colour=9"});
   ASSERT_TRUE(wait_for([&] { return attempt->view().message.find("colour") != std::string::npos; }))
       << attempt->view().message;
+  // What was refused changed nothing, and a message replaces the one before it.
+  attempt->set_parameters({"skin.fp=9", "liver.mu=0.2"});
   attempt->perform(expert());  // gives up at a skin that does not give way
   ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
   attempt->finish();
   const RunResult result = finished();
   EXPECT_EQ(result.punctures.size(), 0u);
-  EXPECT_NE(result.warnings.back().find("skin.fp=9"), std::string::npos);
+  EXPECT_NE(result.warnings.back().find("skin.fp=9 liver.mu=0.2"), std::string::npos);
 }
 
 TEST_F(LiveAttemptTest, NextAttemptTakesTheServersOver) {

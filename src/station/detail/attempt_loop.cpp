@@ -33,7 +33,7 @@ SeatRequest seat_request(const OpenCase& open_case, const AttemptOptions& option
   SceneChoice choice;
   choice.tool = tool;
   choice.force_model = options.force_model.empty() ? open_case.force_model : options.force_model;
-  choice.patient_source = as_server_sees(open_case.choice.patient_source);
+  choice.patient_source = as_server_sees(open_case.server_source);
   choice.patient_seed = open_case.choice.patient_seed;
   choice.seed = options.seed;
   return {scene_request(open_case.the_case, choice), {}};
@@ -139,10 +139,10 @@ Status AttemptLoop::take_wishes() {
   if (wishes.fires) steering_->fire();
   if (wishes.stopped) stop_or_resume(*wishes.stopped);
   if (wishes.performer) steering_->perform(std::move(wishes.performer));
-  if (!wishes.settings.empty()) {
-    needle_->set_parameters(wishes.settings);
-    if (probe_) probe_->set_parameters(wishes.settings);
-    if (record_) changed_.insert(changed_.end(), wishes.settings.begin(), wishes.settings.end());
+  for (const std::vector<std::string>& settings : wishes.settings) {
+    needle_->set_parameters(settings);
+    if (probe_) probe_->set_parameters(settings);
+    if (record_) changed_.push_back(fmt::format("{}", fmt::join(settings, " ")));
   }
   if (wishes.has_drawn) {
     needle_->frame_drawn();
@@ -282,7 +282,7 @@ Result<RunResult> AttemptLoop::score(const Status& status) {
   if (!changed_.empty())
     result.warnings.push_back(
         fmt::format("tissues were changed during the attempt, which the session's table does not tell: {}",
-                    fmt::join(changed_, " ")));
+                    fmt::join(changed_, "; ")));
   if (result.ticks_missing > 0)
     result.warnings.push_back(
         fmt::format("{} ticks of the needle did not arrive: the session has gaps there", result.ticks_missing));

@@ -26,7 +26,7 @@ struct AttemptWishes {
   std::optional<Lead> needle, probe;
   std::optional<bool> needle_clamped, probe_clamped;
   std::optional<bool> stopped;
-  std::vector<std::string> settings;
+  std::vector<std::vector<std::string>> settings;  ///< Messages, in order.
   std::unique_ptr<Operator> performer;
   bool begins = false, fires = false, finishes = false, has_drawn = false;
 };
@@ -73,8 +73,8 @@ class AttemptLoop {
   Result<RunResult> score(const Status& status);
 
   AttemptPhase phase_now() const;
-  NeedleView needle_view() const;
-  ProbeView probe_view() const;
+  NeedleView needle_now() const;
+  ProbeView probe_now() const;
   void publish(AttemptPhase phase, std::optional<Result<RunResult>> result = {});
 
   std::shared_ptr<const OpenCase> open_case_;

@@ -1,7 +1,7 @@
 // What the window sees of an attempt.
-#include "station/attempt_event.h"
 #include "station/detail/attempt_loop.h"
 #include "station/needle_shaft.h"
+#include "station/needle_view.h"
 #include "station/puncture_guide.h"
 
 namespace trocar {
@@ -38,36 +38,19 @@ AttemptPhase AttemptLoop::phase_now() const {
   return is_inside ? AttemptPhase::kInBody : AttemptPhase::kReady;
 }
 
-NeedleView AttemptLoop::needle_view() const {
+NeedleView AttemptLoop::needle_now() const {
   NeedleView view;
-  view.X_PN_hand = command_.X_PN;
+  if (last_needle_) {
+    const bool is_led = device_hold(options_.device_needle) == DeviceHold::kOurHand;
+    view = needle_view(open_case_->the_case, *last_needle_, is_led ? command_.X_PN : device_pose(*last_needle_));
+  } else {
+    view.X_PN = view.X_PN_device = view.X_PN_hand = command_.X_PN;
+  }
   view.is_clamped = steering_->hand().is_clamped();
-  if (!last_needle_) {
-    view.X_PN = view.X_PN_device = command_.X_PN;
-    return view;
-  }
-  const TickSample& sample = *last_needle_;
-  const Case& the_case = open_case_->the_case;
-  view.is_known = true;
-  view.time_s = sample.time_s;
-  view.X_PN = felt_needle(sample);
-  view.shaft_P = needle_shaft(sample, the_case.needle.length_mm);
-  view.X_PN_device = device_pose(sample);
-  if (needle_ && device_hold(options_.device_needle) != DeviceHold::kOurHand) view.X_PN_hand = view.X_PN_device;
-  view.resistance_n = axial_resistance_n(sample);
-  view.lag_mm = (view.X_PN_hand.p() - sample.tip_mm).dot(view.X_PN.R().col(2));
-  view.depth_mm = sample.depth_mm;
-  view.speed_mm_s = sample.axial_velocity_mm_s;
-  view.phase = sample.phase;
-  if (sample.tissue != 0 && sample.tissue < the_case.tissues.tissues.size()) {
-    const Label* label =
-        sample.tissue == the_case.tissues.skin ? nullptr : find_label(*the_case.patient, sample.tip_mm);
-    view.tissue = in_words(label != nullptr ? label->name : the_case.tissues.tissues[sample.tissue].name);
-  }
   return view;
 }
 
-ProbeView AttemptLoop::probe_view() const {
+ProbeView AttemptLoop::probe_now() const {
   ProbeView view;
   view.X_PT_hand = view.X_PT = probe_hand_.X_P();
   view.is_clamped = probe_hand_.is_clamped();
@@ -86,8 +69,8 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   view.progress = progress_;
   view.progress_fraction = progress_fraction_;
   view.message = message_;
-  view.needle = needle_view();
-  view.probe = probe_view();
+  view.needle = needle_now();
+  view.probe = probe_now();
   view.has_probe = probe_.has_value();
   view.is_performing = steering_->is_performing();
   view.has_fired = steering_->has_fired();

@@ -8,7 +8,7 @@
 
 namespace trocar {
 
-inline constexpr HandLimits kSteeredHand{120.0, 3.0};  ///< A page's own hands are slower. [assumed]
+inline constexpr HandLimits kSteeredHand;  ///< A jump of the mouse is no jump of the tool.
 
 /// Who moves the needle's hand: the trainee's, led by the window, or a scripted operator, to whose start the hand goes
 /// first. To the attempt it is one operator that is never done.

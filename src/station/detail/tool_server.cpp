@@ -34,7 +34,7 @@ void ToolServer::connect() {
   if (seat_) missing_before_ += seat_->ticks_missing();
   seat_.reset();  // says goodbye before the next one asks for control
   was_on_ = false;
-  asked_.clear();
+  before_.clear();
   ClientOptions options;
   options.endpoint = process_->endpoint();
   options.name = "trocar station";
@@ -123,11 +123,11 @@ std::string ToolServer::look() {
     banner_.clear();
   }
   for (const Reply& reply : seat_->take_replies()) {
-    const auto asked = asked_.find(reply.request);
-    if (asked == asked_.end()) continue;
-    if (!reply.is_done) settings_.erase(asked->second.substr(0, asked->second.find('=')));
+    const auto before = before_.find(reply.request);
+    if (before == before_.end()) continue;
+    if (!reply.is_done) settings_ = before->second;  // all of a message or nothing
     messages_.push_back(reply.text);
-    asked_.erase(asked);
+    before_.erase(before);
   }
   return {};
 }
@@ -162,14 +162,25 @@ void ToolServer::set_hand(const HandTarget& target) {
 }
 
 void ToolServer::send_settings() {
-  for (const auto& [key, setting] : settings_) asked_[seat_->send(SetParameters{{setting}})] = setting;
+  std::vector<std::string> all = settings_.tissues;
+  for (const auto& [key, setting] : settings_.other) all.push_back(setting);
+  if (!all.empty()) seat_->send(SetParameters{std::move(all)});
 }
 
 void ToolServer::set_parameters(const std::vector<std::string>& settings) {
+  const Settings before = settings_;
+  std::vector<std::string> tissues;
   for (const std::string& setting : settings) {
-    settings_[setting.substr(0, setting.find('='))] = setting;
-    if (is_on()) asked_[seat_->send(SetParameters{{setting}})] = setting;
+    const std::string key = setting.substr(0, setting.find('='));
+    const bool is_tissues = key != "force_model" && key != "bending" && !key.starts_with("coupling.");
+    if (is_tissues) {
+      tissues.push_back(setting);
+    } else {
+      settings_.other[key] = setting;
+    }
   }
+  if (!tissues.empty() || settings.empty()) settings_.tissues = std::move(tissues);
+  if (is_on()) before_[seat_->send(SetParameters{settings})] = before;
 }
 
 std::vector<std::string> ToolServer::take_messages() {

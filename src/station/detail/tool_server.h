@@ -40,7 +40,8 @@ class ToolServer {
 
   std::vector<NumberedSample> take_samples();
   void set_hand(const HandTarget& target);
-  /// Sent now, and again whenever the server comes back. What is said of them comes by take_messages().
+  /// As SetParameters means them. Sent now, and what holds then again whenever the server comes back. What is said of
+  /// them comes by take_messages().
   void set_parameters(const std::vector<std::string>& settings);
   std::vector<std::string> take_messages();
   void stop_forces();
@@ -68,8 +69,13 @@ class ToolServer {
   std::optional<ServerSeat> seat_;
   std::optional<SeatRequest> request_;
   std::string banner_;
-  std::map<std::string, std::string> settings_;  ///< Whole setting by its key.
-  std::map<std::uint32_t, std::string> asked_;
+  /// What was set since the scene was loaded.
+  struct Settings {
+    std::vector<std::string> tissues;          ///< Of the last message that named any.
+    std::map<std::string, std::string> other;  ///< "force_model=proxy", by key.
+  };
+  Settings settings_;
+  std::map<std::uint32_t, Settings> before_;  ///< What held before a message that is not answered yet.
   std::vector<std::string> messages_;
   std::deque<Clock::time_point> returns_;  ///< Of the last minute.
   int restarts_ = 0;

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "headless/prepare_case.h"
+#include "station/attempt_view.h"
+
+namespace trocar {
+
+/// What a page shows of a tick of the needle. `X_PN_hand`: where the hand wants it.
+NeedleView needle_view(const Case& the_case, const TickSample& sample, const Pose& X_PN_hand);
+
+}  // namespace trocar

@@ -1,0 +1,73 @@
+#include "station/needle_shaft.h"
+
+#include <gtest/gtest.h>
+
+namespace trocar {
+namespace {
+
+constexpr double kLength_mm = 150.0;
+
+TickSample sample_at(const Pose& X_PN) {
+  TickSample sample;
+  sample.tip_mm = sample.device_mm = X_PN.p();
+  sample.axis = X_PN.R().col(2);
+  const Eigen::Quaterniond q(X_PN.R());
+  sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
+  return sample;
+}
+
+double length_of(const std::vector<Vec3>& points) {
+  double length_mm = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) length_mm += (points[i] - points[i - 1]).norm();
+  return length_mm;
+}
+
+const Pose kHeld = needle_pose({10.0, 20.0, 30.0}, Vec3(0.3, 1.0, -0.2).normalized());
+
+TEST(NeedleShaft, IsStraightFromHubToTipWhileNothingBendsIt) {
+  const std::vector<Vec3> shaft = needle_shaft(sample_at(kHeld), kLength_mm);
+  ASSERT_EQ(shaft.size(), 2u);
+  EXPECT_EQ(shaft.back(), kHeld.p());
+  EXPECT_NEAR((shaft.front() - (kHeld.p() - kLength_mm * kHeld.R().col(2))).norm(), 0.0, 1e-9);
+}
+
+TEST(NeedleShaft, KeepsItsLengthWhenTheTipLagsBehindTheHand) {
+  TickSample sample = sample_at(kHeld);
+  sample.tip_mm -= 5.0 * sample.axis;
+  const std::vector<Vec3> shaft = needle_shaft(sample, kLength_mm);
+  EXPECT_NEAR(length_of(shaft), kLength_mm, 1e-9);
+  EXPECT_EQ(shaft.back(), sample.tip_mm);
+}
+
+TEST(NeedleShaft, BendsFromTheGripsDirectionToTheTips) {
+  TickSample sample = sample_at(kHeld);
+  const Vec3 aside = sample.axis.unitOrthogonal();
+  sample.tip_mm += 6.0 * aside;
+  sample.axis = (sample.axis + 0.1 * aside).normalized();
+  const std::vector<Vec3> shaft = needle_shaft(sample, kLength_mm);
+  ASSERT_GT(shaft.size(), 8u);
+  EXPECT_EQ(shaft.back(), sample.tip_mm);
+  EXPECT_NEAR(length_of(shaft), kLength_mm, 1.0);
+  const Vec3 first = (shaft[1] - shaft[0]).normalized(), last = (shaft.back() - shaft[shaft.size() - 2]).normalized();
+  EXPECT_LT(angle_between_rad(first, kHeld.R().col(2)), 0.02);
+  EXPECT_LT(angle_between_rad(last, sample.axis), 0.02);
+}
+
+TEST(FeltNeedle, TurnsTheDevicesPoseToTheFeltAxis) {
+  TickSample sample = sample_at(kHeld);
+  sample.axis = (sample.axis + 0.2 * sample.axis.unitOrthogonal()).normalized();
+  sample.tip_mm += Vec3(1.0, 0.0, 0.0);
+  const Pose felt = felt_needle(sample);
+  EXPECT_NEAR((felt.R().col(2) - sample.axis).norm(), 0.0, 1e-12);
+  EXPECT_EQ(felt.p(), sample.tip_mm);
+  EXPECT_NEAR((device_pose(sample).R() - kHeld.R()).norm(), 0.0, 1e-12);
+}
+
+TEST(FeltProbe, HasItsAxisInY) {
+  TickSample sample = sample_at(Pose());
+  sample.axis = Vec3(0.0, 1.0, 0.1).normalized();
+  EXPECT_NEAR((felt_probe(sample).R().col(1) - sample.axis).norm(), 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace trocar
