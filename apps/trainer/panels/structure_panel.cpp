@@ -22,6 +22,9 @@ namespace {
 
 constexpr int kGap = 8;
 constexpr int kSwatch = 12;
+// Many small controls stand side by side here: less padding than elsewhere.
+constexpr const char* kSlim = "padding: 5px 3px;";
+constexpr const char* kFlat = "background: transparent; border: none; padding: 3px;";
 
 QString widget_name(const char* prefix, const std::string& structure) {
   return QString::fromLatin1(prefix) + to_qt(structure).replace(QLatin1Char('_'), QLatin1Char('-'));
@@ -108,9 +111,10 @@ void StructurePanel::add_presets(QBoxLayout& layout) {
       view_.apply_preset(preset);
       refresh();
     });
+    button->setStyleSheet(QString::fromLatin1(kSlim));
+    button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     row->addWidget(button);
   }
-  row->addStretch(1);
   layout.addLayout(row);
 }
 
@@ -133,7 +137,7 @@ void StructurePanel::add_row(const StructureInfo& info) {
   const QString name = shown_name(info.name);
   row.eye->setObjectName(widget_name("structure-eye-", info.name));
   row.eye->setCheckable(true);
-  row.eye->setAutoRaise(true);
+  row.eye->setStyleSheet(QString::fromLatin1(kFlat));
   row.eye->setIcon(swatch(info.color, devicePixelRatioF()));
   row.eye->setIconSize({kSwatch, kSwatch});
   row.eye->setChecked(info.opacity > 0.0);
@@ -145,7 +149,7 @@ void StructurePanel::add_row(const StructureInfo& info) {
   row.slider->setObjectName(widget_name("structure-opacity-", info.name));
   row.slider->setRange(0, 100);
   row.slider->setValue(qRound(100.0 * info.opacity));
-  row.slider->setFixedWidth(fontMetrics().averageCharWidth() * 14);
+  row.slider->setFixedWidth(fontMetrics().averageCharWidth() * 10);
   row.slider->setToolTip(tr("Opacity of %1 (arrow keys)").arg(name));
   row.slider->setAccessibleName(tr("Opacity of %1").arg(name));
   layout->addWidget(row.eye);
@@ -194,6 +198,7 @@ void StructurePanel::add_toggles(QBoxLayout& layout) {
                                 bool MprOptions::*plane) {
     QToolButton* button = make_toggle(name, text, tooltip, view_.mpr().*plane);
     button->setAccessibleName(tooltip);
+    button->setStyleSheet(QString::fromLatin1(kSlim));
     connect(button, &QToolButton::toggled, this, [this, plane](bool is_on) {
       MprOptions options = view_.mpr();
       options.*plane = is_on;

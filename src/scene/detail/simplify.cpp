@@ -1,5 +1,11 @@
 #include "scene/detail/simplify.h"
 
+#include <vtkCellArray.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkQuadricDecimation.h>
+
 #include <cmath>
 #include <unordered_map>
 
@@ -58,6 +64,40 @@ SimplifiedMesh simplify(const TriangleMesh& mesh, const std::vector<Vec3f>& norm
     }
   }
   return simplified;
+}
+
+SimplifiedMesh decimate(const TriangleMesh& mesh, double keep) {
+  vtkNew<vtkPoints> points;
+  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.vertices.size()));
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    points->SetPoint(static_cast<vtkIdType>(i), mesh.vertices[i].x(), mesh.vertices[i].y(), mesh.vertices[i].z());
+  }
+  vtkNew<vtkCellArray> cells;
+  for (const auto& triangle : mesh.triangles) {
+    const vtkIdType corners[3] = {triangle[0], triangle[1], triangle[2]};
+    cells->InsertNextCell(3, corners);
+  }
+  vtkNew<vtkPolyData> data;
+  data->SetPoints(points);
+  data->SetPolys(cells);
+  vtkNew<vtkQuadricDecimation> filter;
+  filter->SetInputData(data);
+  filter->SetTargetReduction(1.0 - keep);
+  filter->Update();
+
+  SimplifiedMesh result;
+  vtkPolyData& coarse = *filter->GetOutput();
+  for (vtkIdType i = 0; i < coarse.GetNumberOfPoints(); ++i) {
+    result.mesh.vertices.push_back(Vec3(coarse.GetPoint(i)).cast<float>());
+  }
+  const auto to_id = [](vtkIdType id) { return static_cast<std::uint32_t>(id); };
+  vtkIdType count = 0;
+  const vtkIdType* corners = nullptr;
+  for (coarse.GetPolys()->InitTraversal(); coarse.GetPolys()->GetNextCell(count, corners) != 0;) {
+    if (count == 3) result.mesh.triangles.push_back({to_id(corners[0]), to_id(corners[1]), to_id(corners[2])});
+  }
+  result.normals = vertex_normals(result.mesh);
+  return result;
 }
 
 std::vector<Vec3f> vertex_normals(const TriangleMesh& mesh) {

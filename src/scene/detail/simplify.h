@@ -20,4 +20,8 @@ struct SimplifiedMesh {
 /// plays on it as on the fine mesh. Linear in the mesh's size.
 SimplifiedMesh simplify(const TriangleMesh& mesh, const std::vector<Vec3f>& normals, double coarseness);
 
+/// About `keep` (0..1) of a mesh's triangles by collapsing edges where that changes the shape least (VTK's quadric
+/// decimation), with the new mesh's own normals. Slow beside `simplify`, and better where little is kept.
+SimplifiedMesh decimate(const TriangleMesh& mesh, double keep);
+
 }  // namespace trocar::detail

@@ -13,8 +13,10 @@
 namespace trocar::detail {
 namespace {
 
-/// Cells of the coarser levels, in mean edges.
-constexpr std::array<double, kMeshLevels> kCoarseness = {0.0, 2.0, 4.0};
+/// Cells of level 1, in mean edges, and what level 2 keeps of its triangles.
+constexpr double kCoarseness = 2.0;
+constexpr double kKeep = 0.25;
+static_assert(kMeshLevels == 3);
 /// Meshes below are not made coarser: they cost nothing and would lose their shape.
 constexpr std::size_t kFewTriangles = 800;
 constexpr double kLeastOpacity = 0.004;
@@ -54,13 +56,14 @@ std::vector<SurfaceLayer::Surface> SurfaceLayer::build(const std::vector<std::pa
       const std::vector<Vec3f> normals = vertex_normals(mesh->mesh_P);
       surface.levels[0] = to_polydata(mesh->mesh_P, normals);
       const bool has_few = mesh->mesh_P.triangles.size() < kFewTriangles;
-      for (std::size_t level = 1; level < surface.levels.size(); ++level) {
-        if (has_few) {
-          surface.levels[level] = surface.levels[0];
-          continue;
-        }
-        const SimplifiedMesh coarse = simplify(mesh->mesh_P, normals, kCoarseness[level]);
-        surface.levels[level] = to_polydata(coarse.mesh, coarse.normals);
+      if (has_few) {
+        surface.levels[1] = surface.levels[2] = surface.levels[0];
+      } else {
+        // The first step is quick and harmless; only its result is small enough for the slow one.
+        const SimplifiedMesh coarse = simplify(mesh->mesh_P, normals, kCoarseness);
+        const SimplifiedMesh coarser = decimate(coarse.mesh, kKeep);
+        surface.levels[1] = to_polydata(coarse.mesh, coarse.normals);
+        surface.levels[2] = to_polydata(coarser.mesh, coarser.normals);
       }
       surface.mapper = make_mapper(surface.levels[0]);
     }

@@ -18,6 +18,8 @@ namespace {
 
 /// Voxels along the longest edge that a processor casts through in about a second.
 constexpr std::int64_t kCoarseEdge = 220;
+/// Steps of a ray, in voxels: longer ones leave rings on the skin.
+constexpr double kStepShare = 0.6;
 constexpr std::int16_t kAir_hu = -1000;
 
 /// The CT on a grid of every `step`-th voxel (means of blocks), air outside of the skin.
@@ -71,7 +73,7 @@ vtkSmartPointer<vtkVolumeMapper> make_ray_caster(vtkImageData* image, bool has_g
   mapper->SetInputData(image);
   mapper->AutoAdjustSampleDistancesOff();
   mapper->SetImageSampleDistance(1.5F);
-  mapper->SetSampleDistance(static_cast<float>(image->GetSpacing()[0]));
+  mapper->SetSampleDistance(static_cast<float>(kStepShare * image->GetSpacing()[0]));
   mapper->IntermixIntersectingGeometryOn();
   return mapper;
 }

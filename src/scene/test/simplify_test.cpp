@@ -25,6 +25,16 @@ TEST(Simplify, LeavesFewerTrianglesOfTheSameShape) {
   }
 }
 
+TEST(Decimate, KeepsTheShapeWithAQuarterOfTheTriangles) {
+  // The ball has many vertices at its poles: the lattice makes them one.
+  const TriangleMesh poled = ball({10, -20, 30}, 50.0);
+  const TriangleMesh fine = detail::simplify(poled, detail::vertex_normals(poled), 0.8).mesh;
+  const auto [coarse, normals] = detail::decimate(fine, 0.25);
+  EXPECT_LT(coarse.triangles.size(), 0.35 * static_cast<double>(fine.triangles.size()));
+  EXPECT_NEAR(enclosed_volume_mm3(coarse) / enclosed_volume_mm3(fine), 1.0, 0.05);
+  EXPECT_EQ(normals.size(), coarse.vertices.size());
+}
+
 TEST(Simplify, NothingStaysNothing) {
   EXPECT_TRUE(detail::simplify({}, {}, 2.0).mesh.triangles.empty());
 }
