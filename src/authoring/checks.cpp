@@ -62,8 +62,13 @@ class Checks {
   }
 
   void look_at_labels() {
-    for (const std::string& warning : draft_.imported->warnings) warn(CaseStep::kImport, warning);
-    for (std::string& doubt : find_doubts(patient_, statistics_)) warn(CaseStep::kLabels, std::move(doubt));
+    const std::vector<std::string> doubts = find_doubts(patient_, statistics_);
+    for (const std::string& doubt : doubts) warn(CaseStep::kLabels, doubt);
+    for (const std::string& warning : draft_.imported->warnings) {
+      const bool is_told = std::find(doubts.begin(), doubts.end(), warning) != doubts.end() ||
+                           warning.starts_with("cut by the border of the CT");  // a doubt in other words
+      if (!is_told) warn(CaseStep::kImport, warning);
+    }
     look_outside();
     for (const LabelStatistics& s : statistics_) {
       const Label& label = *patient_.label_table.find(s.id);

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <QWidget>
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "authoring/case_desk.h"
+#include "panels/case_panel.h"
+
+class QLabel;
+class QProgressBar;
+class QPushButton;
+class QStackedWidget;
+class QVBoxLayout;
+
+namespace trocar::trainer {
+
+class CheckList;
+class PatientView;
+class SliceMarks;
+class SliceView;
+
+/// The case builder for instructors: six steps at the left (import, labels, target and risks, entry and path, forces,
+/// save), three slices and a 3D view, and a list of what is right and wrong. Clicks into the pictures set what the
+/// chosen tool is for; a left drag moves it.
+/// Keys: Ctrl+Z undo, Ctrl+Shift+Z redo, Alt+1..6 steps, Ctrl+T target, Ctrl+L landmark, Ctrl+E entry zone, Ctrl+P
+/// plan, Ctrl+1 entry, Ctrl+2 tip, Ctrl+S save, Esc puts the tool away.
+class CasePage : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit CasePage(QWidget* parent = nullptr);
+  ~CasePage() override;
+
+  /// Once a frame.
+  void advance();
+  CaseDesk& desk() noexcept { return *desk_; }
+
+ Q_SIGNALS:
+  /// "Open this case" was pressed: the patient folder with its own task.
+  void case_saved(QString patient_folder);
+
+ protected:
+  void keyPressEvent(QKeyEvent* event) override;
+
+ private:
+  QWidget* make_head();
+  QWidget* make_steps();
+  QWidget* make_views();
+  QWidget* make_foot();
+  void add_panel(CasePanel* panel, const QString& title);
+  void go_to(int step);
+  void refresh();
+  void refresh_foot();
+  void refresh_views();
+  void show_place(const Vec3& p_P);
+  void set_click(CaseClick click);
+  void click_at(const Vec3& p_P, bool is_drag);
+  Result<CaseDraft> clicked_draft(const Vec3& p_P) const;
+
+  std::unique_ptr<CaseDesk> desk_;
+  std::vector<QPushButton*> steps_;
+  std::vector<CasePanel*> panels_;
+  QStackedWidget* stack_ = nullptr;
+  QLabel* step_title_ = nullptr;
+  QPushButton* undo_ = nullptr;
+  QPushButton* redo_ = nullptr;
+  QLabel* message_ = nullptr;
+  QLabel* click_text_ = nullptr;
+  QProgressBar* progress_ = nullptr;
+  QPushButton* cancel_ = nullptr;
+  CheckList* checks_ = nullptr;
+  std::array<SliceView*, 3> slices_{};
+  std::array<SliceMarks*, 3> marks_{};
+  PatientView* view_ = nullptr;
+  std::shared_ptr<const VirtualPatient> shown_patient_;
+  std::shared_ptr<const std::vector<NamedMesh>> shown_meshes_;
+  std::shared_ptr<const ImportedPatient> placed_import_;
+  /// What the panels show; empty at first.
+  struct Shown {
+    std::uint64_t version = ~std::uint64_t{0};
+    bool is_reviewed = false;
+    CaseDesk::Work work = CaseDesk::Work::kNone;
+    const VirtualPatient* patient = nullptr;
+    std::string message;
+    bool operator==(const Shown&) const = default;
+  };
+  Shown shown_;
+  std::optional<Segment> shown_path_;
+  CaseClick click_ = CaseClick::kLook;
+  int clicks_ = 0;
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,14 @@
+#include "panels/case_panel.h"
+
+#include <QVBoxLayout>
+
+namespace trocar::trainer {
+
+CasePanel::CasePanel(CaseDesk& desk, QWidget* parent) : QWidget(parent), desk_(desk), content_(new QVBoxLayout(this)) {
+  content_->setContentsMargins(0, 0, 0, 0);
+  content_->setSpacing(8);
+}
+
+void CasePanel::show_click(CaseClick /*click*/) {}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,302 @@
+// The case builder as an instructor uses it: import, target, path, save, open again.
+#include "pages/case_page.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <QComboBox>
+#include <QCoreApplication>
+#include <QElapsedTimer>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QMouseEvent>
+#include <QPushButton>
+#include <QTableWidget>
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "authoring/case_edits.h"
+#include "core/atomic_file.h"
+#include "core/temporary_folder.h"
+#include "core/testing/test_data.h"
+#include "headless/prepare_case.h"
+#include "io/image_file.h"
+#include "io/patient_folder.h"
+#include "io/patient_source.h"
+#include "shell/parts.h"
+#include "views/slice_view.h"
+
+namespace trocar::trainer {
+namespace {
+namespace fs = std::filesystem;
+
+/// A page on the screen at the size of a small window, with a case to work at.
+class CasePageTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    page_.resize(1280, 720);
+    page_.show();
+    QCoreApplication::processEvents();
+  }
+
+  template <class Widget>
+  Widget& find(const char* name) {
+    auto* widget = page_.findChild<Widget*>(QString::fromLatin1(name));
+    EXPECT_NE(widget, nullptr) << name;
+    return *widget;
+  }
+  void press(const char* name) {
+    page_.advance();
+    find<QPushButton>(name).click();
+  }
+  /// Frames until `is_there`, at most four minutes: the machine may be busy.
+  template <class Condition>
+  bool wait_for(Condition is_there) {
+    QElapsedTimer timer;
+    timer.start();
+    while (!is_there() && timer.elapsed() < 240000) {
+      page_.advance();
+      QCoreApplication::processEvents(QEventLoop::AllEvents, 5);
+    }
+    page_.advance();
+    return is_there();
+  }
+  bool wait_for_work() {
+    return wait_for([&] { return page_.desk().work() == CaseDesk::Work::kNone; });
+  }
+  bool wait_for_review() {
+    return wait_for([&] { return page_.desk().is_reviewed(); });
+  }
+  void import(const std::string& ct, const std::string& labels, const std::string& map) {
+    press("case-step-1");
+    find<QLineEdit>("case-ct").setText(to_qt(ct));
+    find<QLineEdit>("case-labels").setText(to_qt(labels));
+    find<QComboBox>("case-label-map").setCurrentText(to_qt(map));
+    press("case-import");
+  }
+  void click(SliceView& slice, const Vec3& p_P) {
+    const QPointF at = slice.position_of(p_P);
+    QMouseEvent down(QEvent::MouseButtonPress, at, slice.mapToGlobal(at.toPoint()), Qt::LeftButton, Qt::LeftButton, {});
+    QMouseEvent up(QEvent::MouseButtonRelease, at, slice.mapToGlobal(at.toPoint()), Qt::LeftButton, Qt::NoButton, {});
+    QCoreApplication::sendEvent(&slice, &down);
+    QCoreApplication::sendEvent(&slice, &up);
+  }
+  /// Pictures of all steps for people to look at, where TROCAR_SAVE_PICTURES names a prefix.
+  void save_steps(const std::string& name) {
+    if (std::getenv("TROCAR_SAVE_PICTURES") == nullptr) return;
+    QElapsedTimer timer;
+    timer.start();
+    while (timer.elapsed() < 3000) {
+      page_.advance();
+      QCoreApplication::processEvents(QEventLoop::AllEvents, 20);
+    }
+    for (int step = 1; step <= kCaseSteps; ++step) {
+      press(fmt::format("case-step-{}", step).c_str());
+      page_.advance();
+      QCoreApplication::processEvents();
+      page_.grab().save(to_qt(fmt::format("{}{}_{}.png", std::getenv("TROCAR_SAVE_PICTURES"), name, step)));
+    }
+  }
+  int errors(CaseStep step) {
+    return static_cast<int>(
+        std::count_if(page_.desk().checks().begin(), page_.desk().checks().end(),
+                      [&](const CaseCheck& check) { return check.step == step && check.level == CheckLevel::kError; }));
+  }
+
+  CasePage page_;
+};
+
+/// The embedded patient as an instructor gets patients: a CT and a segmentation with a list of names.
+void write_files(const fs::path& folder) {
+  const auto patient = open_patient({"abdomen", 1});
+  ASSERT_TRUE(patient) << patient.error().text();
+  LabelGrid labels = patient->labels;
+  std::string names = "[labels]\n";
+  for (const Label& label : patient->label_table.labels) {
+    const bool is_found_anew = label.tissue == "adipose" || label.tissue == "skin" || label.name == "muscle";
+    if (!is_found_anew) names += fmt::format("{} = \"{}\"\n", label.id, label.name);
+    if (is_found_anew)
+      for (std::uint8_t& id : labels.voxels) id = id == label.id ? std::uint8_t{0} : id;
+  }
+  ASSERT_TRUE(write_image(patient->ct, folder / "ct.nrrd"));
+  ASSERT_TRUE(write_image(labels, folder / "labels.nrrd"));
+  ASSERT_TRUE(write_file_atomically(folder / "names.toml", names));
+}
+
+TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
+  const TemporaryFolder folder;
+  write_files(folder.path());
+  import((folder.path() / "ct.nrrd").string(), (folder.path() / "labels.nrrd").string(),
+         (folder.path() / "names.toml").string());
+  ASSERT_TRUE(wait_for_work());
+  ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
+  ASSERT_TRUE(wait_for_review());
+
+  press("case-step-3");
+  const Vec3 target_P = *find_target_point(page_.desk().draft());
+  press("case-target-pick");
+  click(find<SliceView>("slice-axial"), target_P);
+  ASSERT_TRUE(page_.desk().draft().task.target_P);
+  EXPECT_LT((*page_.desk().draft().task.target_P - target_P).norm(), 1.5);  // a pixel
+  press("case-undo");
+  page_.advance();
+  EXPECT_FALSE(page_.desk().draft().task.target_P);
+  press("case-redo");
+  EXPECT_TRUE(page_.desk().draft().task.target_P);
+
+  press("case-step-4");
+  press("case-plan");
+  ASSERT_TRUE(wait_for_work());
+  const NeedlePath* path = find_expert_path(page_.desk().draft());
+  ASSERT_NE(path, nullptr) << page_.desk().message();
+  const Segment planned_P = path->line_P;
+  press("case-zone-pick");
+  auto& axial = find<SliceView>("slice-axial");
+  axial.set_focus(planned_P.a);
+  click(axial, planned_P.a);
+  ASSERT_TRUE(page_.desk().draft().task.entry_zone);
+  EXPECT_LT((page_.desk().draft().task.entry_zone->centre_P - planned_P.a).norm(), 3.0);
+  press("case-entry-pick");
+  axial.set_focus(planned_P.a);
+  click(axial, planned_P.a);
+  EXPECT_GT((find_expert_path(page_.desk().draft())->line_P.a - planned_P.a).norm(), 0.0);
+  EXPECT_LT((find_expert_path(page_.desk().draft())->line_P.a - planned_P.a).norm(), 3.0);
+  press("case-undo");  // a planned path may keep its margins just so
+  ASSERT_TRUE(wait_for_review());
+  EXPECT_EQ(errors(CaseStep::kPath), 0);
+  press("case-step-5");
+  ASSERT_TRUE(page_.desk().preview());
+  EXPECT_GE(find<QTableWidget>("case-force-events").rowCount(), 2);
+
+  save_steps("case");
+  press("case-step-6");
+  find<QLineEdit>("case-name").setText(QStringLiteral("From clicks"));
+  Q_EMIT find<QLineEdit>("case-name").textEdited(QStringLiteral("From clicks"));
+  const fs::path case_folder = folder.path() / "case";
+  find<QLineEdit>("case-folder").setText(to_qt(case_folder.string()));
+  EXPECT_FALSE(find<QPushButton>("case-open").isEnabled());
+  press("case-save");
+  ASSERT_TRUE(wait_for_work());
+  ASSERT_FALSE(page_.desk().is_error()) << page_.desk().message();
+  ASSERT_TRUE(fs::exists(case_folder / "task.toml"));
+  std::vector<std::string> opened;
+  QObject::connect(&page_, &CasePage::case_saved, [&](const QString& at) { opened.push_back(to_std(at)); });
+  press("case-open");
+  EXPECT_EQ(opened, std::vector<std::string>{case_folder.string()});
+
+  auto patient = load_patient(case_folder);
+  ASSERT_TRUE(patient) << patient.error().text();
+  CaseOptions options;
+  options.task.clear();
+  options.patient_folder = case_folder.string();
+  const auto the_case = prepare_case(std::make_shared<const VirtualPatient>(std::move(*patient)), options);
+  ASSERT_TRUE(the_case) << the_case.error().text();
+  const CaseDraft made = page_.desk().draft();
+  EXPECT_LT((the_case->plan.line_P.a - find_expert_path(made)->line_P.a).norm(), 1e-6);
+
+  import(case_folder.string(), "", "totalsegmentator");
+  ASSERT_TRUE(wait_for_work());
+  CaseDraft again = page_.desk().draft();
+  again.imported = made.imported;
+  EXPECT_TRUE(is_same_draft(again, made));
+}
+
+TEST_F(CasePageTest, RealCtBecomesACase) {
+  const fs::path data = trocar::testing::test_data() / "ct-torso";
+  if (!fs::exists(data)) GTEST_SKIP() << "no real data at " << data;
+  import((data / "example_ct.nii.gz").string(), (data / "example_seg_fast_force_split.nii.gz").string(),
+         "totalsegmentator");
+  ASSERT_TRUE(wait_for_work());
+  ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
+  ASSERT_TRUE(wait_for_review());
+  EXPECT_GT(find<QTableWidget>("case-label-table").rowCount(), 30);
+  EXPECT_GT(find<QListWidget>("case-checks").count(), 3);
+  press("case-step-4");
+  press("case-plan");
+  ASSERT_TRUE(wait_for_work());
+  ASSERT_NE(find_expert_path(page_.desk().draft()), nullptr) << page_.desk().message();
+  ASSERT_TRUE(wait_for_review());
+  EXPECT_EQ(errors(CaseStep::kPath), 0);
+  save_steps("case_torso");
+}
+
+TEST_F(CasePageTest, BrokenImportSaysOneLineAndLeavesTheDraft) {
+  import("layers-liver", "", "totalsegmentator");
+  ASSERT_TRUE(wait_for_work());
+  ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
+  const CaseDraft before = page_.desk().draft();
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder / "ct.nrrd", "NRRD0004\nno volume"));
+  import((folder / "ct.nrrd").string(), (folder / "ct.nrrd").string(), "totalsegmentator");
+  ASSERT_TRUE(wait_for_work());
+  EXPECT_TRUE(page_.desk().is_error());
+  const QString text = find<QLabel>("case-message").text();
+  EXPECT_FALSE(text.isEmpty());
+  EXPECT_FALSE(text.contains(QLatin1Char('\n')));
+  EXPECT_TRUE(is_same_draft(page_.desk().draft(), before));
+}
+
+TEST_F(CasePageTest, CancelledImportLeavesThePageAsItWas) {
+  import("abdomen", "", "totalsegmentator");
+  page_.advance();
+  EXPECT_TRUE(find<QPushButton>("case-cancel").isVisible());
+  press("case-cancel");
+  page_.advance();
+  EXPECT_EQ(page_.desk().work(), CaseDesk::Work::kNone);
+  EXPECT_FALSE(page_.desk().has_patient());
+  EXPECT_FALSE(find<QPushButton>("case-cancel").isVisible());
+}
+
+TEST_F(CasePageTest, LabelsAndRisksAreEditedWithUndo) {
+  import("layers-liver", "", "totalsegmentator");
+  ASSERT_TRUE(wait_for_work());
+  ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
+  press("case-step-2");
+  auto& table = find<QTableWidget>("case-label-table");
+  ASSERT_GT(table.rowCount(), 1);
+  table.selectRow(0);
+  auto& name = find<QLineEdit>("case-label-name");
+  const QString before = name.text();
+  name.setText(QStringLiteral("renamed"));
+  Q_EMIT name.editingFinished();
+  page_.advance();
+  EXPECT_EQ(table.item(0, 0)->text(), QStringLiteral("renamed"));
+  press("case-undo");
+  page_.advance();
+  EXPECT_EQ(table.item(0, 0)->text(), before);
+  EXPECT_FALSE(find<QPushButton>("case-undo").isEnabled());
+
+  press("case-step-3");
+  auto& risks = find<QTableWidget>("case-risk-table");
+  const int rows = risks.rowCount();
+  risks.selectRow(0);
+  press("case-risk-remove");
+  page_.advance();
+  EXPECT_EQ(risks.rowCount(), rows - 1);
+  press("case-undo");
+  page_.advance();
+  EXPECT_EQ(risks.rowCount(), rows);
+}
+
+TEST_F(CasePageTest, CheckJumpsToWhatItMeans) {
+  import("abdomen", "", "totalsegmentator");
+  ASSERT_TRUE(wait_for_work());
+  const Vec3 target_P = *find_target_point(page_.desk().draft());
+  ASSERT_TRUE(page_.desk().edit(set_expert_path(page_.desk().draft(), {target_P - Vec3(0, 0, 40), target_P}), "path"));
+  ASSERT_TRUE(wait_for_review());
+  EXPECT_GT(errors(CaseStep::kPath), 0);
+  auto& checks = find<QListWidget>("case-checks");
+  for (int row = 0; row < checks.count(); ++row) {
+    if (!checks.item(row)->text().contains(QStringLiteral("below the skin"))) continue;
+    if (!checks.item(row)->text().startsWith(QStringLiteral("the path begins"))) continue;
+    Q_EMIT checks.itemClicked(checks.item(row));
+    EXPECT_LT((find<SliceView>("slice-axial").focus() - (target_P - Vec3(0, 0, 40))).norm(), 1e-6);
+    return;
+  }
+  FAIL() << "no check about the path's begin";
+}
+
+}  // namespace
+}  // namespace trocar::trainer

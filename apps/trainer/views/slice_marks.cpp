@@ -1,0 +1,94 @@
+#include "views/slice_marks.h"
+
+#include <QEvent>
+#include <QPainter>
+#include <QPen>
+#include <cmath>
+
+#include "shell/parts.h"
+#include "shell/theme.h"
+#include "views/slice_view.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr double kInPlane_mm = 1.5;
+constexpr double kNear_mm = 15.0;  ///< A landmark farther from the slice is not drawn.
+
+bool is_same(const std::optional<EntryZone>& a, const std::optional<EntryZone>& b) {
+  return a.has_value() == b.has_value() && (!a || (a->centre_P == b->centre_P && a->radius_mm == b->radius_mm));
+}
+
+}  // namespace
+
+SliceMarks::SliceMarks(SliceView* view) : QWidget(view), view_(view) {
+  setAttribute(Qt::WA_TransparentForMouseEvents);
+  setFocusPolicy(Qt::NoFocus);
+  resize(view->size());
+  view->installEventFilter(this);
+}
+
+bool SliceMarks::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == view_ && event->type() == QEvent::Resize) resize(view_->size());
+  return QWidget::eventFilter(watched, event);
+}
+
+void SliceMarks::set_target(const std::optional<Vec3>& p_P) {
+  if (p_P == target_P_) return;
+  target_P_ = p_P;
+  update();
+}
+
+void SliceMarks::set_zone(const std::optional<EntryZone>& zone) {
+  if (is_same(zone, zone_)) return;
+  zone_ = zone;
+  update();
+}
+
+void SliceMarks::set_landmarks(const std::vector<Landmark>& landmarks) {
+  landmarks_ = landmarks;
+  update();
+}
+
+double SliceMarks::away_mm(const Vec3& p_P) const {
+  return std::abs((p_P - view_->geometry().center_P).dot(view_->geometry().axes.normal_P()));
+}
+
+void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setClipRect(view_->picture_rect());
+  const auto pen_of = [](QColor color, double width, bool is_near) {
+    color.setAlphaF(is_near ? 1.0 : 0.45);
+    return QPen(color, width, is_near ? Qt::SolidLine : Qt::DashLine);
+  };
+  if (zone_) {
+    const double away = away_mm(zone_->centre_P);
+    if (away < zone_->radius_mm) {
+      const double points_per_mm = 1.0 / (view_->geometry().mm_per_px * devicePixelRatioF());
+      const double radius = std::sqrt(zone_->radius_mm * zone_->radius_mm - away * away) * points_per_mm;
+      painter.setPen(QPen(theme().path, 1.5, Qt::DashLine));
+      painter.drawEllipse(view_->position_of(zone_->centre_P), radius, radius);
+    }
+  }
+  for (const Landmark& landmark : landmarks_) {
+    const double away = away_mm(landmark.p_P);
+    if (away > kNear_mm) continue;
+    const QPointF at = view_->position_of(landmark.p_P);
+    painter.setPen(pen_of(theme().warning, 1.5, away < kInPlane_mm));
+    painter.drawLine(at - QPointF(4, 4), at + QPointF(4, 4));
+    painter.drawLine(at - QPointF(4, -4), at + QPointF(4, -4));
+    painter.drawText(at + QPointF(7, 4), to_qt(landmark.name));
+  }
+  if (target_P_) {
+    const QPointF at = view_->position_of(*target_P_);
+    painter.setPen(pen_of(theme().target, 2.0, away_mm(*target_P_) < kInPlane_mm));
+    painter.drawEllipse(at, 7.0, 7.0);
+    painter.drawLine(at - QPointF(11, 0), at - QPointF(4, 0));
+    painter.drawLine(at + QPointF(4, 0), at + QPointF(11, 0));
+    painter.drawLine(at - QPointF(0, 11), at - QPointF(0, 4));
+    painter.drawLine(at + QPointF(0, 4), at + QPointF(0, 11));
+  }
+}
+
+}  // namespace trocar::trainer
