@@ -1,10 +1,129 @@
 // trocar-trainer: the desktop that a trainee sits at.
-#include <QApplication>
+#include <QVTKOpenGLNativeWidget.h>
+#include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <QPixmap>
+#include <QSurfaceFormat>
+#include <QTimer>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+#include "control/seat_flow.h"
+#include "core/version.h"
+#include "pages/start_page.h"
+#include "scene/render_patient.h"
+#include "script/benchmark.h"
+#include "script/script_player.h"
+#include "shell/main_window.h"
+#include "shell/parts.h"
 #include "shell/theme.h"
+#include "shell/trainer_application.h"
+
+namespace {
+
+using namespace trocar;
+using namespace trocar::trainer;
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::optional<std::string> task, patient;
+  std::string script, screenshot, state_folder;
+  bool is_benchmark = false;
+};
+
+/// $XDG_STATE_HOME/trocar, else ~/.local/state/trocar, as the XDG base directory specification has it.
+fs::path default_state_folder() {
+  if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0')
+    return fs::path(state) / "trocar";
+  const char* home = std::getenv("HOME");
+  return fs::path(home != nullptr ? home : ".") / ".local" / "state" / "trocar";
+}
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("--task", arguments.task, "Task that is chosen at the start");
+  app.add_option("--patient", arguments.patient, "Patient folder, or an embedded patient's name");
+  app.add_option("--script", arguments.script, "Plays a user's steps, then ends; exit status 1 where one fails")
+      ->check(CLI::ExistingFile);
+  app.add_option("--screenshot", arguments.screenshot,
+                 "Saves the window as a PNG and ends; after the script if there is one");
+  app.add_flag("--benchmark", arguments.is_benchmark, "Plays a puncture in every layout and prints frame times");
+  app.add_option("--state", arguments.state_folder, "Folder for sessions [$XDG_STATE_HOME/trocar]");
+  app.set_version_flag("--version", fmt::format("trocar-trainer {}", kVersion));
+  app.footer(
+      "Examples:\n  trocar-trainer --task liver-biopsy --patient abdomen\n"
+      "  trocar-trainer --script steps.txt --screenshot window.png\n\n"
+      "Steps of a script: click, drag, wheel, key, choose, set, wait-for, expect, screenshot … (docs/user_guide.md)");
+}
+
+int complain(const Error& error) {
+  fmt::print(stderr, "error: {}\n", error.text());
+  return error.exit_status;
+}
+
+void save_window(MainWindow& window, const std::string& file) {
+  const bool is_saved = window.grab().save(to_qt(file), "PNG");
+  if (!is_saved) complain(Error{"the picture cannot be written", file, "check the folder"});
+  QCoreApplication::exit(is_saved ? 0 : 1);
+}
+
+/// The script, then the picture, then the end.
+Status play(const Arguments& arguments, MainWindow& window, TrainerApplication& application) {
+  if (arguments.script.empty() && !arguments.is_benchmark) {
+    constexpr int kSettled_ms = 700;
+    if (!arguments.screenshot.empty())
+      QTimer::singleShot(kSettled_ms, &window, [&] { save_window(window, arguments.screenshot); });
+    return {};
+  }
+  TROCAR_TRY(std::vector<ScriptStep> steps,
+             arguments.is_benchmark ? benchmark_steps() : load_script(arguments.script));
+  const Stage stage{&window, [&] { return window.facts(); },
+                    [&](const QString& tool) { window.flow().end_server(tool); }, [&] { application.reset_watch(); }};
+  auto* player = new ScriptPlayer(std::move(steps), stage, &window);
+  QObject::connect(player, &ScriptPlayer::finished, &window, [&](const QString& error) {
+    if (!error.isEmpty()) {
+      fmt::print(stderr, "error: {}\n", to_std(error));
+      if (!arguments.screenshot.empty()) window.grab().save(to_qt(arguments.screenshot), "PNG");
+      return QCoreApplication::exit(1);
+    }
+    arguments.screenshot.empty() ? QCoreApplication::exit(0) : save_window(window, arguments.screenshot);
+  });
+  player->start();
+  return {};
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  QApplication application(argc, argv);
-  trocar::trainer::apply_theme(application);
-  return 0;
+  CLI::App app("The desktop that a trainee sits at: ultrasound, slices, 3D, forces and a score.", "trocar-trainer");
+  Arguments arguments;
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (!can_render())
+    return complain(Error{"the window needs an X server that can draw, and there is none", "DISPLAY",
+                          "start it from a desktop, or under xvfb-run"});
+
+  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+#if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
+  QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
+  QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
+#endif
+  QCoreApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
+  QCoreApplication::setOrganizationName(QStringLiteral("trocar"));
+  QCoreApplication::setApplicationName(QStringLiteral("trocar-trainer"));
+  TrainerApplication application(argc, argv);
+  apply_theme(application);
+  MainWindow window(arguments.state_folder.empty() ? default_state_folder() : fs::path(arguments.state_folder));
+  SeatChoice choice = window.start().choice();
+  if (arguments.task) choice.task = *arguments.task;
+  if (arguments.patient) choice.patient = *arguments.patient;
+  window.start().choose(choice);
+  window.show();
+  if (const Status status = play(arguments, window, application); !status) return complain(status.error());
+  return QApplication::exec();
 }

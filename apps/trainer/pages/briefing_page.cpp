@@ -15,16 +15,17 @@ namespace {
 
 constexpr int kSteps = 1000;
 
-const char* kControls = QT_TRANSLATE_NOOP("BriefingPage",
-                                          "<table cellspacing='0' cellpadding='3'>"
-                                          "<tr><td><b>A</b> / <b>S</b></td><td>take the needle / the transducer</td></tr>"
-                                          "<tr><td><b>drag</b></td><td>glide over the skin; right button: tilt</td></tr>"
-                                          "<tr><td><b>wheel</b></td><td>push in and pull out; Shift: finely</td></tr>"
-                                          "<tr><td><b>H</b></td><td>put the needle to the planned entry (guided)</td></tr>"
-                                          "<tr><td><b>Enter</b></td><td>fire the biopsy gun</td></tr>"
-                                          "<tr><td><b>E</b></td><td>end the attempt</td></tr>"
-                                          "<tr><td><b>Space</b></td><td>stop all forces</td></tr>"
-                                          "<tr><td><b>F1</b></td><td>all keys</td></tr></table>");
+const char* kControls =
+    QT_TRANSLATE_NOOP("BriefingPage",
+                      "<table cellspacing='0' cellpadding='3'>"
+                      "<tr><td><b>A</b> / <b>S</b></td><td>take the needle / the transducer</td></tr>"
+                      "<tr><td><b>drag</b></td><td>glide over the skin; right button: tilt</td></tr>"
+                      "<tr><td><b>wheel</b></td><td>push in and pull out; Shift: finely</td></tr>"
+                      "<tr><td><b>H</b></td><td>put the needle to the planned entry (guided)</td></tr>"
+                      "<tr><td><b>Enter</b></td><td>fire the biopsy gun</td></tr>"
+                      "<tr><td><b>E</b></td><td>end the attempt</td></tr>"
+                      "<tr><td><b>Space</b></td><td>stop all forces</td></tr>"
+                      "<tr><td><b>F1</b></td><td>all keys</td></tr></table>");
 
 QString risks_text(const Task& task) {
   QStringList risks;
@@ -91,11 +92,11 @@ QWidget* BriefingPage::make_text() {
 QWidget* BriefingPage::make_pictures() {
   QBoxLayout* content = nullptr;
   QFrame* card = make_card(tr("Where the target lies"), content);
-  auto* pictures = new QHBoxLayout;
+  auto* pictures = new QVBoxLayout;
   for (QLabel** label : {&axial_, &along_}) {
     *label = make_label({}, "dim");
     (*label)->setAlignment(Qt::AlignCenter);
-    (*label)->setMinimumSize(240, 240);
+    (*label)->setMinimumSize(240, 160);
     (*label)->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored);
     pictures->addWidget(*label, 1);
   }
@@ -154,17 +155,16 @@ void BriefingPage::show_case(const OpenCase& open, Difficulty difficulty) {
   const bool is_guided = difficulty == Difficulty::kGuided;
   title_->setText(to_qt(the_case.task.title));
   subtitle_->setText(tr("Patient %1 · needle %2").arg(to_qt(the_case.patient->name), to_qt(the_case.needle.title)));
-  goal_->setText(tr("Bring the needle's tip to the %1 %2, under ultrasound. The planned way is %3 mm long, %4 mm of it "
-                    "in the %5; nearest to it lies: %6.")
-                     .arg(the_case.is_parenchymal ? tr("middle of the") : tr("lesion of the"),
-                          to_qt(the_case.task.organ))
-                     .arg(the_case.plan.length_mm, 0, 'f', 0)
-                     .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
-                     .arg(to_qt(the_case.task.organ))
-                     .arg(the_case.plan.nearest_risk.empty() ? tr("nothing at risk")
-                                                             : to_qt(the_case.plan.nearest_risk)));
+  goal_->setText(
+      tr("Bring the needle's tip to the %1 %2, under ultrasound. The planned way is %3 mm long, %4 mm of it "
+         "in the %5; nearest to it lies: %6.")
+          .arg(the_case.is_parenchymal ? tr("middle of the") : tr("lesion of the"), to_qt(the_case.task.organ))
+          .arg(the_case.plan.length_mm, 0, 'f', 0)
+          .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
+          .arg(to_qt(the_case.task.organ))
+          .arg(the_case.plan.nearest_risk.empty() ? tr("nothing at risk") : to_qt(the_case.plan.nearest_risk).replace(QLatin1Char(0x5f), QLatin1Char(0x20))));
   counts_->setText(counts_text(the_case.task));
-  const QSize side(qMax(240, axial_->width()), qMax(240, axial_->height()));
+  const QSize side(qMax(240, axial_->width()), qMax(160, axial_->height()));
   axial_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAxial, side, is_guided)));
   along_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAlongPath, side, is_guided)));
   progress_->hide();

@@ -61,8 +61,8 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   content->addWidget(verdict_);
   parts_ = new QGridLayout;
   parts_->setHorizontalSpacing(10);
-  parts_->setVerticalSpacing(6);
-  parts_->setColumnStretch(2, 1);
+  parts_->setVerticalSpacing(3);
+  parts_->setColumnStretch(0, 1);
   content->addLayout(parts_);
   core_ = make_label({}, "dim");
   core_->setWordWrap(true);
@@ -91,11 +91,11 @@ QWidget* FeedbackPanel::make_buttons() {
   auto* worst = make_button("worst-moment", tr("Worst moment"), tr("Goes to it in the replay (W)"));
   auto* other = make_button("other-case", tr("Other case"), tr("Back to the start page"), QStringLiteral("Ctrl+N"));
   auto* report =
-      make_button("open-report", tr("Report …"), tr("The attempt as a page to keep"), QStringLiteral("Ctrl+P"));
-  grid->addWidget(again, 0, 0, 1, 3);
-  grid->addWidget(worst, 1, 0);
-  grid->addWidget(report, 1, 1);
-  grid->addWidget(other, 1, 2);
+      make_button("open-report", tr("Report"), tr("The attempt as a page to keep"), QStringLiteral("Ctrl+P"));
+  grid->addWidget(again, 0, 0, 1, 2);
+  grid->addWidget(worst, 1, 0, 1, 2);
+  grid->addWidget(report, 2, 0);
+  grid->addWidget(other, 2, 1);
   connect(again, &QPushButton::clicked, this, &FeedbackPanel::again_wanted);
   connect(worst, &QPushButton::clicked, this, &FeedbackPanel::worst_wanted);
   connect(other, &QPushButton::clicked, this, &FeedbackPanel::other_case_wanted);
@@ -114,13 +114,13 @@ void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_mo
     parts_->addWidget(title, row, 0);
     auto* value =
         make_label(tr("%1 %2").arg(part.value, 0, 'f', part.value < 100.0 ? 1 : 0).arg(to_qt(part.unit)), "dim");
-    value->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+    value->setAlignment(Qt::AlignRight | Qt::AlignBottom);
     parts_->addWidget(value, row, 1);
-    parts_->addWidget(new PointsBar(part.points, part.max_points), row, 2);
+    parts_->addWidget(new PointsBar(part.points, part.max_points), row + 1, 0);
     auto* points = make_label(tr("%1 / %2").arg(part.points, 0, 'f', 0).arg(part.max_points, 0, 'f', 0), "dim");
     points->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
-    parts_->addWidget(points, row, 3);
-    ++row;
+    parts_->addWidget(points, row + 1, 1);
+    row += 2;
   }
   QStringList hints;
   for (const std::string& hint : outcome.hints) hints << QStringLiteral("•  ") + to_qt(hint);

@@ -32,6 +32,7 @@ QPushButton[role="primary"] { background: @accent; color: @ground; border-color:
 QPushButton[role="primary"]:hover { background: @bright; }
 QPushButton[role="primary"]:disabled { background: @raised; color: @faint; border-color: @line; }
 QPushButton[role="stop"] { background: #c8322d; color: white; border: 2px solid #e0524d; font-weight: 700; padding: 6px 22px; }
+QPushButton[role="stop"]:disabled { background: @panel; border-color: @line; color: @faint; }
 QPushButton[role="stop"]:hover { background: #e0423c; }
 QToolButton::menu-indicator { image: none; }
 QLineEdit, QSpinBox, QDoubleSpinBox, QComboBox, QPlainTextEdit, QTextEdit { background: @raised; border: 1px solid @line; border-radius: 5px; padding: 4px 8px; min-height: 18px; }

@@ -1,0 +1,248 @@
+#include "control/attempt_control.h"
+
+#include <signal.h>
+
+#include <algorithm>
+
+#include "control/force_bands.h"
+#include "desk/desk.h"
+#include "pages/work_page.h"
+#include "panels/puncture_panel.h"
+#include "shell/parts.h"
+#include "views/force_plot.h"
+#include "views/patient_view.h"
+#include "views/ultrasound_view.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr double kStill_s = 0.3;
+constexpr double kGhost_mm = 1.0;  ///< A hand that is less ahead of the needle is not shown.
+/// End of the force bar: what liver biopsies stay below (docs/references of the force models: 2 to 8 N).
+constexpr double kFullForce_n = 8.0;
+
+QString phase_text(const AttemptView& view) {
+  switch (view.phase) {
+    case AttemptPhase::kStarting:
+      return AttemptControl::tr("starting");
+    case AttemptPhase::kServerLost:
+      return AttemptControl::tr("server lost");
+    case AttemptPhase::kStopped:
+      return AttemptControl::tr("forces stopped");
+    case AttemptPhase::kFinishing:
+      return AttemptControl::tr("being scored");
+    default:
+      break;
+  }
+  switch (view.needle.phase) {
+    case InsertionPhase::kOutside:
+      return AttemptControl::tr("outside");
+    case InsertionPhase::kLoading:
+      return AttemptControl::tr("pressing");
+    case InsertionPhase::kInserted:
+      return AttemptControl::tr("in the body");
+    case InsertionPhase::kRetracting:
+      return AttemptControl::tr("pulling back");
+  }
+  return {};
+}
+
+}  // namespace
+
+AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatChoice& choice, AttemptOptions options,
+                               std::shared_ptr<SeatServers> servers, WorkPage& page)
+    : open_(std::move(open)),
+      choice_(choice),
+      page_(page),
+      attempt_(open_, std::move(options), std::move(servers)),
+      needle_(*open_->the_case.patient, open_->the_case.plan.line_P, open_->the_case.needle.length_mm),
+      probe_(*open_->the_case.patient, open_->X_PT_start) {
+  connect_panel();
+  ForcePlot& plot = page_.desk().forces();
+  plot.clear();
+  plot.set_bands(force_bands(*open_));
+  plot.set_reference({});
+  plot.set_cursor({});
+  plot.set_predicted(choice_.difficulty == Difficulty::kExam ? std::vector<QPointF>{} : predicted_curve(*open_));
+  page_.puncture().begin(kFullForce_n);
+  take(ToolInHand::kNeedle);
+}
+
+AttemptControl::~AttemptControl() {
+  gestures_.unwatch();
+}
+
+void AttemptControl::connect_panel() {
+  PuncturePanel& panel = page_.puncture();
+  connect(&panel, &PuncturePanel::hand_wanted, this, &AttemptControl::take);
+  connect(&panel, &PuncturePanel::clamp_wanted, this, &AttemptControl::toggle_clamp);
+  connect(&panel, &PuncturePanel::aim_wanted, this, &AttemptControl::aim);
+  connect(&panel, &PuncturePanel::fire_wanted, this, [this] { attempt_.fire(); });
+  connect(&panel, &PuncturePanel::end_wanted, this, [this] { attempt_.finish(); });
+  connect(&gestures_, &ToolGestures::gestured, this, &AttemptControl::gesture);
+  connect(&gestures_, &ToolGestures::key_struck, this, &AttemptControl::strike);
+  connect(&gestures_, &ToolGestures::taken, &panel, &PuncturePanel::show_hand);
+  Desk& desk = page_.desk();
+  gestures_.watch(desk.view_3d(), [this] { return scale_of_3d(); });
+  gestures_.watch(desk.ultrasound(), [this] { return scale_of_ultrasound(); });
+  gestures_.watch_keys(*page_.window());
+}
+
+void AttemptControl::take(ToolInHand tool) {
+  if (gestures_.in_hand() != tool) gestures_.take(tool);
+  page_.puncture().show_hand(tool);
+}
+
+void AttemptControl::strike(int key) {
+  if (key == Qt::Key_H) aim();
+  if (key == Qt::Key_X) toggle_clamp();
+  if (key == Qt::Key_E) attempt_.finish();
+  if (key == Qt::Key_Return || key == Qt::Key_Enter) attempt_.fire();
+}
+
+ViewScale AttemptControl::scale_of_3d() const {
+  const PatientView& view = page_.desk().view_3d();
+  const CameraView& camera = view.view();
+  return {camera.right_P(), -camera.up_P, camera.mm_per_pixel(needle_.entry_P(), std::max(1, view.height()))};
+}
+
+ViewScale AttemptControl::scale_of_ultrasound() const {
+  const UltrasoundView& view = page_.desk().ultrasound();
+  const auto picture = view.picture();
+  if (!picture || view.measuring_tool() != MeasuringTool::kNone || view.is_frozen()) return {};
+  const auto& corners_P = picture->corners_P;
+  const Vec3 down_P = corners_P[2] - corners_P[0];
+  return {(corners_P[1] - corners_P[0]).normalized(), down_P.normalized(), down_P.norm() / std::max(1, view.height())};
+}
+
+void AttemptControl::gesture(const Gesture& gesture) {
+  const ViewScale& v = gesture.view;
+  const auto move = [&](auto& hand) {
+    switch (gesture.kind) {
+      case Gesture::Kind::kGlide:
+        return hand.glide(gesture.right * v.right_P + gesture.down * v.down_P);
+      case Gesture::Kind::kTilt:
+        return hand.tilt(v.right_P, v.down_P, gesture.right, gesture.down);
+      case Gesture::Kind::kTurn:
+        return hand.turn(gesture.right);
+      case Gesture::Kind::kPush:
+        return hand.push(gesture.right);
+    }
+  };
+  if (gestures_.in_hand() == ToolInHand::kNeedle && is_free(HandTool::kNeedle)) move(needle_);
+  if (gestures_.in_hand() == ToolInHand::kTransducer && is_free(HandTool::kProbe)) move(probe_);
+}
+
+bool AttemptControl::is_free(HandTool tool) const {
+  return !is_clamped_[static_cast<std::size_t>(tool)] && !view_.is_performing;
+}
+
+void AttemptControl::aim() {
+  if (choice_.difficulty != Difficulty::kGuided) return;
+  if (gestures_.in_hand() == ToolInHand::kTransducer) probe_.put(open_->X_PT_start);
+  if (gestures_.in_hand() == ToolInHand::kNeedle && !needle_.is_past_skin())
+    needle_.aim_at(open_->the_case.plan.line_P);
+}
+
+void AttemptControl::toggle_clamp() {
+  if (gestures_.in_hand() == ToolInHand::kNone) return;
+  const HandTool tool = gestures_.in_hand() == ToolInHand::kNeedle ? HandTool::kNeedle : HandTool::kProbe;
+  bool& is_clamped = is_clamped_[static_cast<std::size_t>(tool)];
+  is_clamped = !is_clamped;
+  attempt_.hold(tool, is_clamped);
+}
+
+void AttemptControl::toggle_forces() {
+  view_.phase == AttemptPhase::kStopped ? attempt_.resume_forces() : attempt_.stop_forces();
+}
+
+void AttemptControl::end_server(const QString& tool) {
+  const ServerView& server = view_.servers[tool == QLatin1String("probe") ? 1 : 0];
+  if (server.pid > 0) ::kill(server.pid, SIGKILL);
+}
+
+void AttemptControl::advance(double dt_s) {
+  view_ = attempt_.view();
+  const bool are_on = view_.phase == AttemptPhase::kReady || view_.phase == AttemptPhase::kInBody;
+  if (!are_on && view_.needle.is_known && view_.phase != AttemptPhase::kFinishing) {
+    // The hands wait where the tools are, so that nothing jumps when the forces come back.
+    needle_.put(view_.needle.X_PN);
+  }
+  attempt_.set_hand(HandTool::kNeedle, needle_.X_PN());
+  attempt_.set_hand(HandTool::kProbe, probe_.X_PT());
+  std::vector<ForcePoint> points;
+  for (const trocar::ForcePoint& point : attempt_.take_forces())
+    points.push_back({point.time_s, point.depth_mm, point.force_n});
+  ForcePlot& plot = page_.desk().forces();
+  plot.append(points);
+  for (const AttemptEvent& event : attempt_.take_events()) {
+    page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(to_qt(event.text)));
+    if (event.kind == EventKind::kPuncture) plot.add_event(event.depth_mm, event.time_s, to_qt(event.name));
+  }
+  show_tools(dt_s);
+  show_panel();
+}
+
+void AttemptControl::show_tools(double dt_s) {
+  ToolsShown tools;
+  const NeedleView& needle = view_.needle;
+  if (needle.is_known) {
+    tools.shaft_P = needle.shaft_P;
+    tools.X_PN = needle.X_PN;
+    // Before the skin the slices show what the needle looks at.
+    constexpr double kAhead_mm = 40.0;
+    tools.focus_P = needle.depth_mm > 0.0 ? needle.X_PN.p()
+                                          : Vec3(needle_.entry_P() + kAhead_mm * needle_.X_PN().R().col(2));
+    const Pose& X_PN_hand = needle.X_PN_hand;
+    const double length_mm = open_->the_case.needle.length_mm;
+    if ((X_PN_hand.p() - needle.X_PN.p()).norm() > kGhost_mm)
+      tools.hand_P = Segment{X_PN_hand.p() - length_mm * X_PN_hand.R().col(2), X_PN_hand.p()};
+  }
+  if (view_.has_probe && view_.probe.is_known) tools.X_PT = view_.probe.X_PT;
+  constexpr double kMoving_mm_s = 0.5;
+  const bool is_moving = std::abs(needle.speed_mm_s) > kMoving_mm_s || tools.hand_P.has_value();
+  still_s_ = is_moving ? 0.0 : still_s_ + dt_s;
+  tools.are_moving = still_s_ < kStill_s;
+  page_.desk().show_tools(tools);
+}
+
+double AttemptControl::distance_mm() const {
+  return (view_.needle.X_PN.p() - open_->the_case.plan.line_P.b).norm();
+}
+
+void AttemptControl::show_panel() {
+  PunctureFigures figures;
+  figures.phase = phase_text(view_);
+  figures.tissue = to_qt(view_.needle.tissue);
+  const bool is_starting = view_.phase == AttemptPhase::kStarting || view_.phase == AttemptPhase::kFinishing;
+  figures.hint = to_qt(is_starting ? view_.progress : view_.hint);
+  figures.depth_mm = view_.needle.depth_mm;
+  if (choice_.difficulty == Difficulty::kGuided && view_.needle.is_known) figures.to_target_mm = distance_mm();
+  figures.force_n = std::abs(view_.needle.resistance_n);
+  figures.lag_mm = std::abs(view_.needle.lag_mm);
+  figures.time_s = view_.session_s;
+  figures.since_contact_s = view_.since_contact_s;
+  figures.can_fire = open_->the_case.needle.is_biopsy && !view_.has_fired && view_.phase == AttemptPhase::kInBody;
+  figures.is_clamped[0] = is_clamped_[0];
+  figures.is_clamped[1] = is_clamped_[1];
+  page_.puncture().show_figures(figures);
+}
+
+QVariantMap AttemptControl::facts() const {
+  QVariantMap facts;
+  facts[QStringLiteral("phase")] = QString::fromLatin1(to_string(view_.phase));
+  facts[QStringLiteral("depth_mm")] = view_.needle.depth_mm;
+  facts[QStringLiteral("distance_mm")] = distance_mm();
+  facts[QStringLiteral("force_n")] = view_.needle.resistance_n;
+  facts[QStringLiteral("lag_mm")] = view_.needle.lag_mm;
+  facts[QStringLiteral("tissue")] = to_qt(view_.needle.tissue);
+  facts[QStringLiteral("hint")] = to_qt(view_.hint);
+  facts[QStringLiteral("has_fired")] = view_.has_fired;
+  facts[QStringLiteral("probe_pressed_mm")] = view_.probe.pressed_mm;
+  facts[QStringLiteral("probe_force_n")] = view_.probe.contact_n;
+  facts[QStringLiteral("restarts")] = view_.servers[0].restarts;
+  facts[QStringLiteral("session")] = to_qt(attempt_.session_path().string());
+  return facts;
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <QObject>
+#include <QVariantMap>
+#include <memory>
+
+#include "control/tool_gestures.h"
+#include "shell/seat_choice.h"
+#include "station/live_attempt.h"
+#include "station/open_case.h"
+#include "station/pointer_hand.h"
+
+namespace trocar::trainer {
+
+class WorkPage;
+
+/// One attempt as the window performs it: gestures move the hands, the servers answer, desk and panel show it.
+class AttemptControl : public QObject {
+  Q_OBJECT
+
+ public:
+  AttemptControl(std::shared_ptr<const OpenCase> open, const SeatChoice& choice, AttemptOptions options,
+                 std::shared_ptr<SeatServers> servers, WorkPage& page);
+  ~AttemptControl() override;
+
+  /// Once a frame.
+  void advance(double dt_s);
+  const AttemptView& view() const noexcept { return view_; }  ///< Of the last frame.
+  LiveAttempt& attempt() noexcept { return attempt_; }
+  void toggle_forces();
+  void end_server(const QString& tool);
+  QVariantMap facts() const;
+
+ private:
+  void connect_panel();
+  void gesture(const Gesture& gesture);
+  void strike(int key);
+  void take(ToolInHand tool);
+  void aim();
+  void toggle_clamp();
+  void show_tools(double dt_s);
+  void show_panel();
+  bool is_free(HandTool tool) const;
+  ViewScale scale_of_3d() const;
+  ViewScale scale_of_ultrasound() const;
+  double distance_mm() const;
+
+  std::shared_ptr<const OpenCase> open_;
+  SeatChoice choice_;
+  WorkPage& page_;
+  LiveAttempt attempt_;
+  ToolGestures gestures_;
+  PointerNeedle needle_;
+  PointerProbe probe_;
+  bool is_clamped_[2] = {false, false};  ///< By HandTool.
+  AttemptView view_;
+  double still_s_ = 0.0;
+};
+
+}  // namespace trocar::trainer

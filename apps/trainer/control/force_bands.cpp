@@ -1,0 +1,32 @@
+#include "control/force_bands.h"
+
+#include "shell/parts.h"
+
+namespace trocar::trainer {
+namespace {
+
+QColor color_of(const OpenCase& open, const PathPiece& piece) {
+  for (const Label& label : open.the_case.patient->label_table.labels)
+    if (label.name == piece.name) return {label.color[0], label.color[1], label.color[2]};
+  return {0x8a, 0x7a, 0x60};  // what has no label: fat, the skin's shell
+}
+
+}  // namespace
+
+std::vector<ForcePlot::Band> force_bands(const OpenCase& open) {
+  std::vector<ForcePlot::Band> bands;
+  for (const PathPiece& piece : open.pieces) {
+    QString name = to_qt(piece.name);
+    bands.push_back({piece.from_mm, piece.to_mm, name.replace('_', ' '), color_of(open, piece)});
+  }
+  return bands;
+}
+
+std::vector<QPointF> predicted_curve(const OpenCase& open) {
+  std::vector<QPointF> curve;
+  curve.reserve(open.predicted.size());
+  for (const CurvePoint& point : open.predicted) curve.emplace_back(point.tip_mm, point.force_n);
+  return curve;
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <QPointF>
+#include <vector>
+
+#include "station/open_case.h"
+#include "views/force_plot.h"
+
+namespace trocar::trainer {
+
+/// Tissues along the planned path, in their labels' colours.
+std::vector<ForcePlot::Band> force_bands(const OpenCase& open);
+/// What the planned path feels like: depth (mm), resistance (N).
+std::vector<QPointF> predicted_curve(const OpenCase& open);
+
+}  // namespace trocar::trainer

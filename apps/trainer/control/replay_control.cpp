@@ -1,0 +1,144 @@
+#include "control/replay_control.h"
+
+#include <algorithm>
+
+#include "control/force_bands.h"
+#include "core/atomic_file.h"
+#include "desk/desk.h"
+#include "pages/work_page.h"
+#include "panels/feedback_panel.h"
+#include "report/html_report.h"
+#include "shell/parts.h"
+#include "shell/theme.h"
+#include "station/needle_shaft.h"
+#include "views/force_plot.h"
+#include "views/time_line.h"
+
+namespace trocar::trainer {
+namespace {
+
+using Event = TimeLine::Event;
+
+TimeMark kind_of(const ReplayMoment& moment) {
+  switch (moment.kind) {
+    case ReplayMoment::Kind::kPuncture:
+      return TimeMark::kPuncture;
+    case ReplayMoment::Kind::kEnter:
+      return TimeMark::kEnter;
+    case ReplayMoment::Kind::kRisk:
+      return TimeMark::kOther;
+    case ReplayMoment::Kind::kFired:
+      return TimeMark::kFire;
+    case ReplayMoment::Kind::kWorst:
+      return TimeMark::kWorst;
+  }
+  return TimeMark::kOther;
+}
+
+QColor phase_color(InsertionPhase phase) {
+  switch (phase) {
+    case InsertionPhase::kLoading:
+      return theme().warning;
+    case InsertionPhase::kInserted:
+      return theme().accent;
+    case InsertionPhase::kRetracting:
+      return theme().good;
+    case InsertionPhase::kOutside:
+      break;
+  }
+  return theme().line;
+}
+
+}  // namespace
+
+ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCase> open, WorkPage& page)
+    : replay_(std::move(replay)), open_(std::move(open)), page_(page) {
+  fill_plot();
+  fill_time_line();
+  const ReplayMoment& worst = replay_.worst();
+  page_.feedback().show_outcome(replay_.outcome(),
+                                tr("Worst moment: %1, after %2 s").arg(to_qt(worst.text)).arg(worst.time_s, 0, 'f', 1));
+  page_.desk().show_help(Difficulty::kGuided);  // afterwards everybody may see the expert's path
+  connect(&page_.feedback(), &FeedbackPanel::worst_wanted, this, &ReplayControl::go_to_worst);
+  show_at(replay_.duration_s());
+}
+
+void ReplayControl::fill_plot() {
+  ForcePlot& plot = page_.desk().forces();
+  plot.clear();
+  plot.set_bands(force_bands(*open_));
+  plot.set_predicted({});
+  plot.set_reference(predicted_curve(*open_));
+  std::vector<ForcePoint> points;
+  points.reserve(replay_.session().samples.size());
+  for (const TickSample& sample : replay_.session().samples)
+    points.push_back({sample.time_s, sample.depth_mm, axial_resistance_n(sample)});
+  plot.append(points);
+  for (const ReplayMoment& moment : replay_.moments())
+    if (moment.kind == ReplayMoment::Kind::kPuncture)
+      plot.add_event(replay_.at(moment.time_s).depth_mm, moment.time_s, to_qt(moment.text));
+}
+
+void ReplayControl::fill_time_line() {
+  TimeLine& line = page_.time_line();
+  line.set_duration(replay_.duration_s());
+  std::vector<Event> events;
+  for (const ReplayMoment& moment : replay_.moments())
+    events.push_back({moment.time_s, to_qt(moment.text), kind_of(moment)});
+  line.set_events(std::move(events));
+  std::vector<TimeLine::Phase> phases;
+  std::vector<QPointF> curve;
+  constexpr std::size_t kEvery = 10;
+  const auto& samples = replay_.session().samples;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    if (s % kEvery == 0) curve.emplace_back(samples[s].time_s, axial_resistance_n(samples[s]));
+    if (s > 0 && samples[s].phase == samples[s - 1].phase) {
+      phases.back().to_s = samples[s].time_s;
+      continue;
+    }
+    phases.push_back({samples[s].time_s, samples[s].time_s, QString::fromLatin1(to_string(samples[s].phase)),
+                      phase_color(samples[s].phase)});
+  }
+  line.set_phases(std::move(phases));
+  line.set_curve(std::move(curve));
+  line.set_time(replay_.duration_s());
+}
+
+void ReplayControl::advance(double dt_s) {
+  page_.time_line().advance(dt_s);
+  if (page_.time_line().time_s() != shown_s_) show_at(page_.time_line().time_s());
+}
+
+void ReplayControl::show_at(double time_s) {
+  const TickSample& sample = replay_.at(time_s);
+  ToolsShown tools;
+  tools.shaft_P = replay_.shaft_at(time_s);
+  tools.X_PN = felt_needle(sample);
+  tools.focus_P = sample.depth_mm > 0.0 ? sample.tip_mm : open_->the_case.plan.line_P.b;
+  tools.X_PT = open_->X_PT_start;
+  tools.are_moving = page_.time_line().is_playing();
+  page_.desk().show_tools(tools);
+  page_.desk().forces().set_cursor(time_s);
+  shown_s_ = time_s;
+}
+
+void ReplayControl::go_to_worst() {
+  page_.time_line().go_to_worst();
+}
+
+Status ReplayControl::save_report(const std::filesystem::path& file) const {
+  return write_file_atomically(file, html_report(replay_.session(), open_->the_case.patient.get()));
+}
+
+QVariantMap ReplayControl::facts() const {
+  QVariantMap facts;
+  facts[QStringLiteral("score")] = replay_.outcome().score;
+  facts[QStringLiteral("target_reached")] = replay_.outcome().target_reached;
+  facts[QStringLiteral("replay_s")] = shown_s_;
+  facts[QStringLiteral("duration_s")] = replay_.duration_s();
+  facts[QStringLiteral("worst_s")] = replay_.worst().time_s;
+  facts[QStringLiteral("was_cut_off")] = replay_.was_cut_off();
+  return facts;
+}
+
+}  // namespace trocar::trainer

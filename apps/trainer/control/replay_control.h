@@ -1,0 +1,40 @@
+#pragma once
+
+#include <QObject>
+#include <QVariantMap>
+#include <filesystem>
+#include <memory>
+
+#include "shell/seat_choice.h"
+#include "station/attempt_replay.h"
+#include "station/open_case.h"
+
+namespace trocar::trainer {
+
+class WorkPage;
+
+/// A recorded attempt on the desk: the time line moves the needle in all views, score and hints stand beside it.
+class ReplayControl : public QObject {
+  Q_OBJECT
+
+ public:
+  ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCase> open, WorkPage& page);
+
+  /// Once a frame.
+  void advance(double dt_s);
+  void go_to_worst();
+  Status save_report(const std::filesystem::path& file) const;
+  QVariantMap facts() const;
+
+ private:
+  void fill_plot();
+  void fill_time_line();
+  void show_at(double time_s);
+
+  AttemptReplay replay_;
+  std::shared_ptr<const OpenCase> open_;
+  WorkPage& page_;
+  double shown_s_ = -1.0;
+};
+
+}  // namespace trocar::trainer

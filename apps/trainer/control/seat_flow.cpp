@@ -1,0 +1,282 @@
+#include "control/seat_flow.h"
+
+#include <QDateTime>
+#include <QDir>
+#include <QFileDialog>
+#include <algorithm>
+
+#include "control/attempt_control.h"
+#include "control/replay_control.h"
+#include "desk/desk.h"
+#include "pages/briefing_page.h"
+#include "pages/case_page.h"
+#include "pages/start_page.h"
+#include "pages/work_page.h"
+#include "panels/feedback_panel.h"
+#include "panels/parameter_panel.h"
+#include "panels/puncture_panel.h"
+#include "report/html_report.h"
+#include "shell/main_window.h"
+#include "shell/parts.h"
+#include "shell/status_strip.h"
+#include "storage/session_file.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr int kFrame_ms = 16;
+constexpr double kLateFrame_s = 0.1;
+constexpr double kFramesOver_s = 1.0;
+
+CaseChoice case_choice(const SeatChoice& choice) {
+  CaseChoice result;
+  result.options.task = choice.task;
+  result.options.needle = choice.needle;
+  result.patient_source = choice.patient;
+  result.patient_seed = choice.patient_seed;
+  result.force_model = choice.force_model;
+  return result;
+}
+
+ServerLine line_of(const ServerView& server, const QString& tool) {
+  ServerLine line;
+  line.tool = tool;
+  line.is_connected = server.is_connected;
+  line.rate_hz = server.rate_hz;
+  line.served = server.wanted_hz > 0.0 ? std::min(1.0, server.rate_hz / server.wanted_hz) : 1.0;
+  line.lateness_p99_us = server.p99_us;
+  line.ticks_missing = server.ticks_missing;
+  line.fault = to_qt(server.fault);
+  line.grant = to_qt(server.grant);
+  line.is_real_time = server.grant.find("SCHED_FIFO") != std::string::npos;
+  return line;
+}
+
+std::vector<std::string> texts(const QStringList& list) {
+  std::vector<std::string> result;
+  for (const QString& text : list) result.push_back(to_std(text));
+  return result;
+}
+
+}  // namespace
+
+SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
+    : QObject(&window), window_(window), state_folder_(std::move(state_folder)), journal_(state_folder_) {
+  std::error_code error;
+  std::filesystem::create_directories(state_folder_ / "sessions", error);
+  if (error) window_.show_banner(tr("Sessions cannot be kept in %1").arg(to_qt(state_folder_.string())), true);
+  connect_pages();
+  if (const auto cut_off = journal_.recover(); cut_off && !cut_off->session.empty())
+    window_.start().offer_recovery(
+        tr("The last attempt was cut off. What was recorded is kept: it can be scored and seen again."));
+  clock_.start();
+  timer_.setTimerType(Qt::PreciseTimer);
+  timer_.setInterval(kFrame_ms);
+  timer_.setObjectName(QStringLiteral("frame-timer"));
+  connect(&timer_, &QTimer::timeout, this, &SeatFlow::frame);
+  timer_.start();
+}
+
+SeatFlow::~SeatFlow() = default;
+
+void SeatFlow::connect_pages() {
+  connect(&window_.start(), &StartPage::start_wanted, this, &SeatFlow::open);
+  connect(&window_.start(), &StartPage::recovery_wanted, this, &SeatFlow::recover);
+  connect(&window_.start(), &StartPage::recovery_declined, this, [this] { journal_.clear(); });
+  connect(&window_.briefing(), &BriefingPage::back_wanted, this, &SeatFlow::go_to_start);
+  connect(&window_.briefing(), &BriefingPage::begin_wanted, this, &SeatFlow::begin_attempt);
+  FeedbackPanel& feedback = window_.work().feedback();
+  connect(&feedback, &FeedbackPanel::again_wanted, this, &SeatFlow::try_again);
+  connect(&feedback, &FeedbackPanel::other_case_wanted, this, &SeatFlow::go_to_start);
+  connect(&feedback, &FeedbackPanel::report_wanted, this, &SeatFlow::save_report);
+  connect(&window_.case_builder(), &CasePage::case_saved, this, [this](const QString& folder) {
+    window_.start().add_patient(folder);
+    go_to_start();
+  });
+  connect(&window_.strip(), &StatusStrip::stop_wanted, this, [this] {
+    if (attempt_) attempt_->attempt().stop_forces();
+  });
+  connect(&window_.strip(), &StatusStrip::resume_wanted, this, [this] {
+    if (attempt_) attempt_->attempt().resume_forces();
+  });
+  ParameterPanel& parameters = window_.work().parameters();
+  connect(&parameters, &ParameterPanel::parameters_changed, this, [this](const QStringList& changed) {
+    if (attempt_) attempt_->attempt().set_parameters(texts(changed));
+  });
+  connect(&parameters, &ParameterPanel::model_changed, this, [this](const QString& model) {
+    if (attempt_) attempt_->attempt().set_parameters({"force_model=" + to_std(model)});
+  });
+}
+
+void SeatFlow::go_to_start() {
+  retired_.retire(std::exchange(opening_, {}));
+  attempt_.reset();
+  replay_.reset();
+  window_.show_banner({}, false);
+  window_.show_page(QStringLiteral("start"));
+}
+
+void SeatFlow::go_to_case_builder() {
+  if (attempt_) return window_.show_banner(tr("End the attempt first (E)."), false);
+  window_.show_page(QStringLiteral("case-builder"));
+}
+
+void SeatFlow::open(const SeatChoice& choice) {
+  choice_ = choice;
+  retired_.retire(std::exchange(opening_, open_case(case_choice(choice), open_)));
+  window_.briefing().show_opening(choice);
+  window_.show_page(QStringLiteral("briefing"));
+}
+
+void SeatFlow::look_at_opening() {
+  if (!opening_.has_work()) return;
+  const JobView view = opening_.view();
+  auto result = opening_.take();
+  if (!result) {
+    if (!view.is_done) window_.briefing().show_progress(to_qt(view.step), view.fraction);
+    return;
+  }
+  opening_ = {};
+  if (!*result) return window_.briefing().show_error(to_qt(result->error().text()));
+  open_ = **result;
+  window_.briefing().show_case(*open_, choice_.difficulty);
+  window_.work().desk().show_case(open_);
+  window_.work().desk().show_help(choice_.difficulty);
+  window_.work().parameters().show_case(open_);
+  if (cut_off_) load_replay(std::exchange(cut_off_, {})->session);
+}
+
+void SeatFlow::begin_attempt() {
+  if (!open_) return;
+  AttemptOptions options;
+  const QString name = QDateTime::currentDateTime().toString(QStringLiteral("yyyy-MM-dd_HH-mm-ss-zzz"));
+  options.session = state_folder_ / "sessions" / to_std(name + QStringLiteral(".trocar"));
+  options.device_needle = choice_.needle_device == "virtual" ? "virtual:premium" : choice_.needle_device;
+  options.force_model = choice_.force_model;
+  options.is_guided = choice_.difficulty != Difficulty::kExam;
+  replay_.reset();
+  if (const Status kept = journal_.begin({case_choice(choice_), options.session}); !kept)
+    window_.show_banner(to_qt(kept.error().text()), true);
+  window_.work().show_puncture();
+  window_.show_page(QStringLiteral("puncture"));
+  attempt_ = std::make_unique<AttemptControl>(open_, choice_, std::move(options), servers_, window_.work());
+  if (const QStringList changed = window_.work().parameters().settings(); !changed.isEmpty())
+    attempt_->attempt().set_parameters(texts(changed));
+}
+
+void SeatFlow::try_again() {
+  attempt_.reset();
+  begin_attempt();
+}
+
+void SeatFlow::look_at_attempt() {
+  if (!attempt_) return;
+  const AttemptView& view = attempt_->view();
+  window_.show_banner(to_qt(view.banner), view.phase == AttemptPhase::kFailed);
+  std::vector<ServerLine> servers{line_of(view.servers[0], tr("Needle"))};
+  if (view.has_probe) servers.push_back(line_of(view.servers[1], tr("Transducer")));
+  window_.strip().show_servers(servers);
+  const bool are_on = view.phase == AttemptPhase::kReady || view.phase == AttemptPhase::kInBody;
+  window_.strip().show_forces(are_on || view.phase == AttemptPhase::kStopped, are_on);
+  auto result = attempt_->attempt().take_result();
+  if (!result) return;
+  const std::filesystem::path session = attempt_->attempt().session_path();
+  servers_ = attempt_->attempt().servers();
+  attempt_.reset();
+  window_.strip().show_forces(false, false);
+  journal_.clear();
+  if (!*result) {
+    window_.show_banner(to_qt(result->error().text()), true);
+    return window_.show_page(QStringLiteral("briefing"));
+  }
+  load_replay(session);
+}
+
+void SeatFlow::load_replay(const std::filesystem::path& session) {
+  loading_ = BackgroundJob<AttemptReplay>(
+      [session, open = open_](const Progress&) { return AttemptReplay::load(session, open); });
+}
+
+void SeatFlow::look_at_replay() {
+  auto loaded = loading_.take();
+  if (!loaded) return;
+  loading_ = {};
+  if (!*loaded) return window_.show_banner(to_qt(loaded->error().text()), true);
+  replay_ = std::make_unique<ReplayControl>(std::move(**loaded), open_, window_.work());
+  window_.work().show_feedback();
+  window_.show_page(QStringLiteral("feedback"));
+}
+
+/// Opens the case of the attempt that was cut off; its replay follows when that is there.
+void SeatFlow::recover() {
+  cut_off_ = journal_.recover();
+  journal_.clear();
+  window_.start().offer_recovery({});
+  if (!cut_off_) return;
+  SeatChoice choice = window_.start().choice();
+  choice.task = cut_off_->choice.options.task;
+  choice.patient = cut_off_->choice.patient_source;
+  choice.patient_seed = cut_off_->choice.patient_seed;
+  choice.needle = cut_off_->choice.options.needle;
+  choice.force_model = cut_off_->choice.force_model;
+  open(choice);
+}
+
+void SeatFlow::save_report() {
+  if (!replay_) return;
+  const QString file = QFileDialog::getSaveFileName(&window_, tr("Report of the attempt"),
+                                                    QStringLiteral("report.html"), tr("Pages (*.html)"));
+  if (file.isEmpty()) return;
+  const Status status = replay_->save_report(to_std(file));
+  window_.show_banner(status ? tr("The report is in %1").arg(file) : to_qt(status.error().text()), !status);
+}
+
+void SeatFlow::frame() {
+  const double now = now_s();
+  retired_.sweep();
+  look_at_opening();
+  look_at_attempt();
+  look_at_replay();
+  const double dt_s = frames_s_.empty() ? 0.0 : now - frames_s_.back();
+  if (attempt_) attempt_->advance(dt_s);
+  if (replay_) replay_->advance(dt_s);
+  if (window_.page() == QLatin1String("case-builder")) window_.case_builder().advance();
+  if (attempt_ || replay_) {
+    window_.work().parameters().advance();
+    window_.work().desk().draw(now);
+  }
+  if (attempt_) attempt_->attempt().frame_drawn();
+  measure_frame(now_s());
+}
+
+void SeatFlow::measure_frame(double now) {
+  if (!frames_s_.empty() && attempt_ && now - frames_s_.back() > kLateFrame_s) ++late_frames_;
+  frames_s_.push_back(now);
+  while (frames_s_.size() > 2 && now - frames_s_.front() > kFramesOver_s) frames_s_.pop_front();
+  const double span_s = frames_s_.back() - frames_s_.front();
+  if (span_s > 0.5) window_.strip().show_frames(static_cast<double>(frames_s_.size() - 1) / span_s, late_frames_);
+}
+
+void SeatFlow::close() {
+  timer_.stop();
+  attempt_.reset();
+  replay_.reset();
+  servers_.reset();
+  retired_.retire(std::exchange(opening_, {}));
+}
+
+void SeatFlow::end_server(const QString& tool) {
+  if (attempt_) attempt_->end_server(tool);
+}
+
+QVariantMap SeatFlow::facts() const {
+  QVariantMap facts;
+  facts[QStringLiteral("case")] = open_ ? to_qt(open_->the_case.patient->name) : QString();
+  facts[QStringLiteral("is_open")] = open_ != nullptr && !opening_.has_work();
+  facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(late_frames_);
+  if (attempt_) facts.insert(attempt_->facts());
+  if (replay_) facts.insert(replay_->facts());
+  return facts;
+}
+
+}  // namespace trocar::trainer

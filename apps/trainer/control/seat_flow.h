@@ -1,0 +1,74 @@
+#pragma once
+
+#include <QElapsedTimer>
+#include <QObject>
+#include <QTimer>
+#include <QVariantMap>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "core/background_job.h"
+#include "shell/seat_choice.h"
+#include "station/attempt_replay.h"
+#include "station/journal.h"
+#include "station/live_attempt.h"
+#include "station/open_case.h"
+
+namespace trocar::trainer {
+
+class AttemptControl;
+class MainWindow;
+class ReplayControl;
+
+/// The way through the pages: choose, open, brief, puncture, feedback, and again. Owns what a case and an attempt are
+/// made of; once a frame it looks at what goes on in the background and has the views drawn.
+class SeatFlow : public QObject {
+  Q_OBJECT
+
+ public:
+  SeatFlow(MainWindow& window, std::filesystem::path state_folder);
+  ~SeatFlow() override;
+
+  void go_to_start();
+  void go_to_case_builder();
+  void open(const SeatChoice& choice);
+  void begin_attempt();
+  void try_again();
+  void save_report();
+  void close();
+  QVariantMap facts() const;
+  /// Kills a haptic server, for scripts that try what happens.
+  void end_server(const QString& tool);
+
+ private:
+  void connect_pages();
+  void frame();
+  void look_at_opening();
+  void look_at_attempt();
+  void look_at_replay();
+  void load_replay(const std::filesystem::path& session);
+  void recover();
+  void measure_frame(double now_s);
+  double now_s() const { return static_cast<double>(clock_.nsecsElapsed()) / 1e9; }
+
+  MainWindow& window_;
+  std::filesystem::path state_folder_;
+  Journal journal_;
+  SeatChoice choice_;
+  BackgroundJob<std::shared_ptr<const OpenCase>> opening_;
+  BackgroundJob<AttemptReplay> loading_;
+  RetiredJobs retired_;
+  std::optional<SeatState> cut_off_;
+  std::shared_ptr<const OpenCase> open_;
+  std::shared_ptr<SeatServers> servers_;  ///< Kept from one attempt to the next.
+  std::unique_ptr<AttemptControl> attempt_;
+  std::unique_ptr<ReplayControl> replay_;
+  QTimer timer_;
+  QElapsedTimer clock_;
+  std::deque<double> frames_s_;  ///< When the last frames were drawn.
+  std::uint64_t late_frames_ = 0;
+};
+
+}  // namespace trocar::trainer

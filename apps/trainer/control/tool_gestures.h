@@ -1,0 +1,79 @@
+#pragma once
+
+#include <QObject>
+#include <QPointF>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "geometry/vec.h"
+#include "panels/puncture_panel.h"
+
+class QKeyEvent;
+class QMouseEvent;
+class QWheelEvent;
+class QWidget;
+
+namespace trocar::trainer {
+
+/// How a view sees the patient where the tools are.
+struct ViewScale {
+  Vec3 right_P = Vec3::UnitX(), down_P = -Vec3::UnitZ();  ///< Unit, of the view.
+  double mm_per_px = 0.0;                                 ///< 0: the view keeps its mouse.
+};
+
+/// A person's gesture, in what it means for a tool.
+struct Gesture {
+  enum class Kind {
+    kGlide,  ///< Over the skin; right, down in mm of the view.
+    kTilt,   ///< right, down in rad.
+    kTurn,   ///< About the own axis, rad in `right`.
+    kPush,   ///< Along the own axis, mm in `right`: needle inward, transducer harder.
+  };
+  Kind kind = Kind::kGlide;
+  double right = 0.0, down = 0.0;
+  ViewScale view;
+};
+
+/// Hears mouse, wheel and keys on views and says what they mean for the tool in hand. With no tool in hand, and with
+/// Ctrl held, the views keep their mouse.
+class ToolGestures : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit ToolGestures(QObject* parent = nullptr);
+
+  /// Also of the widgets within. Keys take the first view's directions.
+  void watch(QWidget& view, std::function<ViewScale()> scale);
+  /// Keys that nobody within the page has taken.
+  void watch_keys(QWidget& page);
+  void unwatch();
+  ToolInHand in_hand() const noexcept { return in_hand_; }
+  void take(ToolInHand tool);
+
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ Q_SIGNALS:
+  void gestured(const trocar::trainer::Gesture& gesture);
+  void taken(trocar::trainer::ToolInHand tool);
+  /// Keys that mean something for the attempt: H aim, X clamp, Enter fire, E end.
+  void key_struck(int key);
+
+ private:
+  struct Watched {
+    QWidget* view;
+    std::function<ViewScale()> scale;
+  };
+  const Watched* find(const QObject* object) const;
+  bool press(const QMouseEvent& event);
+  bool move(const Watched& watched, const QMouseEvent& event);
+  bool turn(const Watched& watched, const QWheelEvent& event);
+  bool strike(const QKeyEvent& event);
+
+  std::vector<Watched> watched_;
+  QWidget* page_ = nullptr;
+  ToolInHand in_hand_ = ToolInHand::kNone;
+  std::optional<QPointF> from_px_;
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,327 @@
+#include "desk/desk.h"
+
+#include <QAction>
+#include <QDockWidget>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QMenu>
+#include <QSettings>
+#include <QToolButton>
+#include <algorithm>
+
+#include "desk/layouts.h"
+#include "shell/parts.h"
+#include "shell/theme.h"
+#include "ultrasound/scan_annotation.h"
+#include "views/force_plot.h"
+#include "views/patient_view.h"
+#include "views/slice_view.h"
+#include "views/ultrasound_controls.h"
+#include "views/ultrasound_view.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr double kEntryZone_mm = 10.0;
+
+/// A slim title with a button to let the view float and one to hide it.
+QWidget* make_title(QDockWidget& dock, const QString& title) {
+  auto* bar = new QFrame;
+  bar->setProperty("role", "bar");
+  auto* row = new QHBoxLayout(bar);
+  row->setContentsMargins(8, 1, 2, 1);
+  row->setSpacing(2);
+  auto* label = make_label(title, "dim");
+  row->addWidget(label, 1);
+  const auto add = [&](const QString& text, const QString& tooltip) {
+    auto* button = new QToolButton;
+    button->setText(text);
+    button->setToolTip(tooltip);
+    button->setAutoRaise(true);
+    button->setFocusPolicy(Qt::NoFocus);
+    button->setStyleSheet(
+        QStringLiteral("QToolButton { border: none; background: transparent; padding: 0 5px; color: %1; }"
+                       "QToolButton:hover { color: %2; }")
+            .arg(theme().dim.name(), theme().accent.name()));
+    row->addWidget(button);
+    return button;
+  };
+  QObject::connect(add(QStringLiteral("❐"), Desk::tr("Floats as a window of its own, or docks again")),
+                   &QToolButton::clicked, &dock, [&dock] { dock.setFloating(!dock.isFloating()); });
+  QObject::connect(add(QStringLiteral("✕"), Desk::tr("Hides it; the menu Views shows it again")), &QToolButton::clicked,
+                   &dock, &QDockWidget::hide);
+  return bar;
+}
+
+QString settings_key(const QString& layout) {
+  return QStringLiteral("desk/") + layout;
+}
+
+/// Less than the eye sees: a tool at rest trembles by the servo's noise, and each change costs a frame.
+constexpr double kUnseen_mm = 0.03, kUnseen_rad = 5e-4;
+
+bool are_near(const Pose& a, const Pose& b) {
+  return (a.p() - b.p()).norm() < kUnseen_mm && (a.R() - b.R()).norm() < kUnseen_rad;
+}
+
+bool are_near(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const Vec3& p, const Vec3& q) {
+           return (p - q).norm() < kUnseen_mm;
+         });
+}
+
+bool are_same(const ToolsShown& a, const ToolsShown& b) {
+  const auto same_ends = [](const Segment& s, const Segment& t) {
+    return (s.a - t.a).norm() < kUnseen_mm && (s.b - t.b).norm() < kUnseen_mm;
+  };
+  return are_near(a.shaft_P, b.shaft_P) && are_near(a.X_PN, b.X_PN) && a.X_PT.has_value() == b.X_PT.has_value() &&
+         (!a.X_PT || are_near(*a.X_PT, *b.X_PT)) && a.hand_P.has_value() == b.hand_P.has_value() &&
+         (!a.hand_P || same_ends(*a.hand_P, *b.hand_P)) && a.focus_P.has_value() == b.focus_P.has_value() &&
+         (!a.focus_P || (*a.focus_P - *b.focus_P).norm() < kUnseen_mm);
+}
+
+NeedleModel model_of(const Needle& needle) {
+  const auto has = [&](const char* part) { return needle.name.find(part) != std::string::npos; };
+  if (needle.is_biopsy) return NeedleModel::kBiopsyGun;
+  if (has("tuohy")) return NeedleModel::kTuohy;
+  if (has("quincke")) return NeedleModel::kQuincke;
+  if (has("trocar")) return NeedleModel::kTrocar;
+  return NeedleModel::kChiba;
+}
+
+}  // namespace
+
+Desk::Desk(QWidget* parent) : QMainWindow(parent) {
+  setObjectName(QStringLiteral("desk"));
+  setDockNestingEnabled(true);
+  setDockOptions(QMainWindow::AllowNestedDocks | QMainWindow::AllowTabbedDocks);
+  view_3d_ = new PatientView;
+  side_ = new PatientView;
+  forces_ = new ForcePlot;
+  ultrasound_ = new UltrasoundView;
+  ultrasound_controls_ = new UltrasoundControls(*ultrasound_);
+  for (const SliceKind kind : {SliceKind::kAxial, SliceKind::kCoronal, SliceKind::kSagittal, SliceKind::kAlongNeedle,
+                               SliceKind::kAcrossNeedle})
+    slices_.push_back(new SliceView(kind));
+  auto* scanner = new QWidget;
+  auto* row = new QHBoxLayout(scanner);
+  row->setContentsMargins(0, 0, 0, 0);
+  row->setSpacing(0);
+  row->addWidget(ultrasound_, 1);
+  row->addWidget(ultrasound_controls_);
+  ultrasound_controls_->hide();
+
+  add_view("3d", tr("3D"), *view_3d_);
+  add_view("side", tr("Beside the needle"), *side_);
+  add_view("ultrasound", tr("Ultrasound"), *scanner);
+  add_knobs_button();
+  add_view("forces", tr("Force"), *forces_, false);
+  const std::pair<const char*, QString> slices[] = {{"axial", tr("Axial")},
+                                                    {"coronal", tr("Coronal")},
+                                                    {"sagittal", tr("Sagittal")},
+                                                    {"along", tr("Along the needle")},
+                                                    {"across", tr("Across the tip")}};
+  for (std::size_t s = 0; s < slices_.size(); ++s) add_view(slices[s].first, slices[s].second, *slices_[s], false);
+  view_3d_->setObjectName(QStringLiteral("view-3d"));
+  side_->setObjectName(QStringLiteral("view-side"));
+  side_->set_follow(FollowMode::kSide);
+  connect_views();
+  choose_layout(QSettings().value(QStringLiteral("desk/layout"), built_in_layouts().front().name).toString());
+}
+
+void Desk::add_view(const char* name, const QString& title, QWidget& view, bool has_title) {
+  auto* dock = new QDockWidget(title, this);
+  dock->setObjectName(QStringLiteral("dock-") + QString::fromLatin1(name));
+  dock->setTitleBarWidget(make_title(*dock, has_title ? title : QString()));
+  view.setMinimumSize(200, 140);
+  dock->setWidget(&view);
+  addDockWidget(Qt::LeftDockWidgetArea, dock);
+  docks_[QString::fromLatin1(name)] = dock;
+}
+
+/// In the title of the ultrasound view, where it covers nothing of the picture.
+void Desk::add_knobs_button() {
+  auto* knobs = make_tool_button("ultrasound-knobs", tr("Knobs"), tr("The scanner's knobs beside its picture"),
+                                 QStringLiteral("K"));
+  knobs->setCheckable(true);
+  knobs->setFocusPolicy(Qt::NoFocus);
+  knobs->setStyleSheet(QStringLiteral("QToolButton { padding: 0 8px; min-height: 0; }"));
+  auto* row = qobject_cast<QHBoxLayout*>(docks_.at(QStringLiteral("ultrasound"))->titleBarWidget()->layout());
+  row->insertWidget(1, knobs);
+  connect(knobs, &QToolButton::toggled, ultrasound_controls_, &QWidget::setVisible);
+}
+
+void Desk::connect_views() {
+  for (SliceView* slice : slices_) {
+    connect(slice, &SliceView::focus_moved, this, [this](const Vec3& p_P) {
+      for (SliceView* other : slices_) other->set_focus(p_P);
+    });
+    connect(slice, &SliceView::window_changed, this, [this](double centre_hu, double width_hu) {
+      for (SliceView* other : slices_) other->set_window(centre_hu, width_hu);
+    });
+  }
+}
+
+const std::vector<QString>& Desk::layouts() {
+  static const std::vector<QString> names = [] {
+    std::vector<QString> all;
+    for (const Layout& layout : built_in_layouts()) all.push_back(layout.name);
+    return all;
+  }();
+  return names;
+}
+
+void Desk::choose_layout(const QString& name) {
+  if (std::find(layouts().begin(), layouts().end(), name) == layouts().end()) return choose_layout(layouts().front());
+  if (!layout_.isEmpty()) save_layout();
+  layout_ = name;
+  QSettings settings;
+  settings.setValue(QStringLiteral("desk/layout"), name);
+  const QByteArray kept = settings.value(settings_key(name)).toByteArray();
+  if (kept.isEmpty() || !restoreState(kept)) arrange(name);
+}
+
+void Desk::save_layout() const {
+  QSettings().setValue(settings_key(layout_), saveState());
+}
+
+void Desk::reset_layout() {
+  QSettings().remove(settings_key(layout_));
+  arrange(layout_);
+}
+
+void Desk::arrange(const QString& name) {
+  const auto layout = std::find_if(built_in_layouts().begin(), built_in_layouts().end(),
+                                   [&](const Layout& l) { return l.name == name; });
+  for (const auto& [view, dock] : docks_) {
+    dock->setFloating(false);
+    removeDockWidget(dock);
+  }
+  QList<QDockWidget*> column_tops;
+  QList<int> widths;
+  const int width_px = std::max(width(), 640), height_px = std::max(height(), 400);
+  int all_columns = 0;
+  for (const LayoutColumn& column : layout->columns) all_columns += column.share;
+  // Columns first, so that they reach from top to bottom; then each is cut into its rows.
+  for (const LayoutColumn& column : layout->columns) {
+    QDockWidget* top = docks_.at(column.cells.front().views.front());
+    if (column_tops.isEmpty())
+      addDockWidget(Qt::LeftDockWidgetArea, top);
+    else
+      splitDockWidget(column_tops.last(), top, Qt::Horizontal);
+    top->show();
+    column_tops << top;
+    widths << width_px * column.share / all_columns;
+  }
+  for (const LayoutColumn& column : layout->columns) {
+    QList<QDockWidget*> rows;
+    QList<int> heights;
+    int all_cells = 0;
+    for (const LayoutCell& part : column.cells) all_cells += part.share;
+    for (const LayoutCell& part : column.cells) {
+      QDockWidget* first = docks_.at(part.views.front());
+      if (!rows.isEmpty()) splitDockWidget(rows.last(), first, Qt::Vertical);
+      first->show();
+      rows << first;
+      heights << height_px * part.share / all_cells;
+    }
+    for (const LayoutCell& part : column.cells) {
+      for (std::size_t v = 1; v < part.views.size(); ++v) {
+        splitDockWidget(docks_.at(part.views[v - 1]), docks_.at(part.views[v]), Qt::Horizontal);
+        docks_.at(part.views[v])->show();
+      }
+    }
+    resizeDocks(rows, heights, Qt::Vertical);
+  }
+  resizeDocks(column_tops, widths, Qt::Horizontal);
+}
+
+void Desk::fill_menu(QMenu& menu) {
+  int number = 0;
+  for (const QString& name : layouts()) {
+    QAction* action = menu.addAction(tr("Layout: %1").arg(name));
+    action->setShortcut(QKeySequence(QStringLiteral("Ctrl+%1").arg(++number)));
+    connect(action, &QAction::triggered, this, [this, name] { choose_layout(name); });
+  }
+  QAction* reset = menu.addAction(tr("Layout as it was made"));
+  connect(reset, &QAction::triggered, this, &Desk::reset_layout);
+  menu.addSeparator();
+  for (const auto& [name, dock] : docks_) {
+    QAction* action = dock->toggleViewAction();
+    action->setText(dock->windowTitle());
+    menu.addAction(action);
+  }
+}
+
+void Desk::show_case(std::shared_ptr<const OpenCase> open) {
+  open_ = std::move(open);
+  const Case& the_case = open_->the_case;
+  for (PatientView* view : {view_3d_, side_}) {
+    view->show_patient(the_case.patient, open_->meshes);
+    view->set_path(the_case.plan.line_P, kEntryZone_mm);
+  }
+  for (SliceView* slice : slices_) {
+    slice->show_patient(the_case.patient);
+    slice->set_path(the_case.plan.line_P);
+    slice->set_focus(the_case.plan.line_P.b);
+  }
+  ultrasound_->show_patient(open_->acoustic, open_->flow, open_->transducer);
+  ultrasound_->change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = open_->probe_depth_mm; });
+  picture_number_ = 0;
+  shown_ = {};
+}
+
+void Desk::show_help(Difficulty difficulty) {
+  const bool is_guided = difficulty == Difficulty::kGuided;
+  view_3d_->set_guidance_visible(is_guided);
+  side_->set_guidance_visible(is_guided);
+  for (SliceView* slice : slices_) slice->set_guidance_visible(is_guided);
+  ultrasound_->set_guide_visible(is_guided);
+}
+
+void Desk::show_tools(const ToolsShown& tools) {
+  for (PatientView* view : {view_3d_, side_}) view->set_tools_moving(tools.are_moving);
+  are_moving_ = tools.are_moving;
+  if (are_same(tools, shown_)) return;
+  shown_ = tools;
+  has_whole_picture_ = false;
+  const Needle& needle = open_->the_case.needle;
+  for (PatientView* view : {view_3d_, side_}) {
+    view->set_needle(tools.shaft_P, needle.outer_diameter_mm, model_of(needle));
+    view->set_hand(tools.hand_P);
+  }
+  if (!tools.shaft_P.empty()) {
+    for (SliceView* slice : slices_) {
+      slice->set_needle(tools.shaft_P);
+      slice->set_needle_frame(tools.X_PN);
+    }
+  }
+  if (tools.focus_P)
+    for (SliceView* slice : slices_) slice->set_focus(*tools.focus_P);
+  ultrasound_->set_needle(tools.shaft_P, needle.outer_diameter_mm);
+  if (tools.X_PT) ultrasound_->set_transducer_pose(*tools.X_PT);
+}
+
+void Desk::draw(double now_s) {
+  ultrasound_->advance(now_s);
+  show_picture_in_space();
+  for (PatientView* view : {view_3d_, side_})
+    if (view->isVisible()) view->draw();
+}
+
+/// The newest ultrasound picture as a plane of the 3D views. With the tools at rest one in full detail stays there: its
+/// noise alone is not worth drawing the patient again.
+void Desk::show_picture_in_space() {
+  const auto picture = ultrasound_->picture();
+  if (!picture || picture->number == picture_number_ || (has_whole_picture_ && !are_moving_)) return;
+  picture_number_ = picture->number;
+  has_whole_picture_ = picture->detail == ScanDetail::kFull;
+  const RgbImage image = picture->colour.pixels.empty() ? to_rgb(picture->gray) : picture->colour;
+  for (PatientView* view : {view_3d_, side_}) {
+    if (!view->isVisible()) continue;
+    view->set_transducer(picture->X_PT, picture->scan);
+    view->set_ultrasound(image, picture->corners_P);
+  }
+}
+
+}  // namespace trocar::trainer

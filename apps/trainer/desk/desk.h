@@ -1,0 +1,84 @@
+#pragma once
+
+#include <QMainWindow>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "geometry/segment.h"
+#include "shell/seat_choice.h"
+#include "station/open_case.h"
+
+class QDockWidget;
+class QMenu;
+
+namespace trocar::trainer {
+
+class ForcePlot;
+class PatientView;
+class SliceView;
+class UltrasoundControls;
+class UltrasoundView;
+
+/// Where the tools are in one frame. Frame P.
+struct ToolsShown {
+  std::vector<Vec3> shaft_P;      ///< Hub to tip; empty: no needle.
+  Pose X_PN;                      ///< Of the needle's tip.
+  std::optional<Segment> hand_P;  ///< Where the hand holds the needle, when it is ahead of it.
+  std::optional<Pose> X_PT;       ///< Transducer.
+  std::optional<Vec3> focus_P;    ///< What the slices go through.
+  bool are_moving = false;
+};
+
+/// All views of a case, in layouts that are freely docked and remembered. Keys: Ctrl+1 .. Ctrl+4 choose a layout.
+class Desk : public QMainWindow {
+  Q_OBJECT
+
+ public:
+  explicit Desk(QWidget* parent = nullptr);
+
+  void show_case(std::shared_ptr<const OpenCase> open);
+  void show_help(Difficulty difficulty);
+  void show_tools(const ToolsShown& tools);
+  /// Draws what has changed; once a frame. `now_s`: any steady clock.
+  void draw(double now_s);
+
+  PatientView& view_3d() noexcept { return *view_3d_; }
+  UltrasoundView& ultrasound() noexcept { return *ultrasound_; }
+  ForcePlot& forces() noexcept { return *forces_; }
+
+  static const std::vector<QString>& layouts();
+  QString layout_name() const { return layout_; }
+  void choose_layout(const QString& name);
+  void reset_layout();
+  void save_layout() const;
+  /// Layouts and views to show or hide.
+  void fill_menu(QMenu& menu);
+
+ private:
+  /// A view that names itself needs no title.
+  void add_view(const char* name, const QString& title, QWidget& view, bool has_title = true);
+  void arrange(const QString& layout);
+  void add_knobs_button();
+  void connect_views();
+  void show_picture_in_space();
+
+  PatientView* view_3d_ = nullptr;
+  PatientView* side_ = nullptr;
+  std::vector<SliceView*> slices_;  ///< Axial, coronal, sagittal, along, across the needle.
+  UltrasoundView* ultrasound_ = nullptr;
+  UltrasoundControls* ultrasound_controls_ = nullptr;
+  ForcePlot* forces_ = nullptr;
+  std::map<QString, QDockWidget*> docks_;
+  QString layout_;
+  std::shared_ptr<const OpenCase> open_;
+  ToolsShown shown_;
+  std::uint64_t picture_number_ = 0;  ///< Of the one in the 3D views.
+  bool has_whole_picture_ = false;    ///< It is in full detail.
+  bool are_moving_ = false;
+};
+
+}  // namespace trocar::trainer

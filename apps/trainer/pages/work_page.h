@@ -1,0 +1,44 @@
+#pragma once
+
+#include <QWidget>
+
+class QStackedWidget;
+
+namespace trocar::trainer {
+
+class Desk;
+class FeedbackPanel;
+class ParameterPanel;
+class PuncturePanel;
+class StructurePanel;
+class TimeLine;
+
+/// The views, and beside them what belongs to the moment: figures and tools while the puncture goes on, score and
+/// replay afterwards.
+class WorkPage : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit WorkPage(QWidget* parent = nullptr);
+
+  Desk& desk() noexcept { return *desk_; }
+  PuncturePanel& puncture() noexcept { return *puncture_; }
+  FeedbackPanel& feedback() noexcept { return *feedback_; }
+  ParameterPanel& parameters() noexcept { return *parameters_; }
+  TimeLine& time_line() noexcept { return *time_line_; }
+
+  void show_puncture();
+  void show_feedback();
+  void toggle_parameters();
+  bool are_parameters_shown() const;
+
+ private:
+  Desk* desk_ = nullptr;
+  QStackedWidget* side_ = nullptr;
+  PuncturePanel* puncture_ = nullptr;
+  FeedbackPanel* feedback_ = nullptr;
+  ParameterPanel* parameters_ = nullptr;
+  TimeLine* time_line_ = nullptr;
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,142 @@
+#include "panels/puncture_panel.h"
+
+#include <QButtonGroup>
+#include <QGridLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+#include "shell/parts.h"
+#include "shell/theme.h"
+#include "views/force_bar.h"
+
+namespace trocar::trainer {
+namespace {
+
+void set_text(QLabel& label, const QString& text) {
+  if (label.text() != text) label.setText(text);
+}
+
+QLabel* make_figure(QGridLayout& grid, int row, const QString& title, const char* name) {
+  grid.addWidget(make_label(title, "dim"), row, 0);
+  auto* value = make_label({});
+  value->setObjectName(QString::fromLatin1(name));
+  value->setAlignment(Qt::AlignRight);
+  grid.addWidget(value, row, 1);
+  return value;
+}
+
+}  // namespace
+
+PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
+  setObjectName(QStringLiteral("puncture-panel"));
+  auto* content = new QVBoxLayout(this);
+  content->setContentsMargins(12, 12, 12, 12);
+  content->setSpacing(10);
+  content->addWidget(make_hand());
+  content->addWidget(make_figures());
+  hint_ = make_label({});
+  hint_->setObjectName(QStringLiteral("hint"));
+  hint_->setWordWrap(true);
+  hint_->setMinimumHeight(hint_->fontMetrics().lineSpacing() * 3);
+  hint_->setAlignment(Qt::AlignTop);
+  content->addWidget(hint_);
+  force_ = new ForceBar(Qt::Horizontal);
+  force_->setObjectName(QStringLiteral("force-bar"));
+  content->addWidget(force_);
+  events_ = new QListWidget;
+  events_->setObjectName(QStringLiteral("events"));
+  events_->setFocusPolicy(Qt::NoFocus);
+  events_->setSelectionMode(QAbstractItemView::NoSelection);
+  content->addWidget(events_, 1);
+  fire_ = make_button("fire", tr("Fire the gun"), tr("Takes the core (Enter)"));
+  fire_->setProperty("role", "primary");
+  fire_->setFocusPolicy(Qt::NoFocus);
+  auto* end = make_button("end-attempt", tr("End the attempt"), tr("Scores what was done (E)"));
+  end->setFocusPolicy(Qt::NoFocus);
+  content->addWidget(fire_);
+  content->addWidget(end);
+  connect(fire_, &QPushButton::clicked, this, &PuncturePanel::fire_wanted);
+  connect(end, &QPushButton::clicked, this, &PuncturePanel::end_wanted);
+}
+
+QWidget* PuncturePanel::make_hand() {
+  auto* box = new QWidget;
+  auto* grid = new QGridLayout(box);
+  grid->setContentsMargins(0, 0, 0, 0);
+  grid->setSpacing(6);
+  grid->addWidget(make_label(tr("In your hand"), "dim"), 0, 0, 1, 2);
+  hand_ = new QButtonGroup(this);
+  const auto add = [&](ToolInHand tool, const char* name, const QString& text, const QString& tooltip, int row,
+                       int column) {
+    auto* button = make_button(name, text, tooltip);
+    button->setCheckable(true);
+    button->setFocusPolicy(Qt::NoFocus);
+    hand_->addButton(button, static_cast<int>(tool));
+    grid->addWidget(button, row, column);
+    connect(button, &QPushButton::clicked, this, [this, tool] { Q_EMIT hand_wanted(tool); });
+  };
+  add(ToolInHand::kNeedle, "hand-needle", tr("Needle"), tr("The mouse moves the needle (A)"), 1, 0);
+  add(ToolInHand::kTransducer, "hand-transducer", tr("Transducer"), tr("The mouse moves the transducer (S)"), 1, 1);
+  add(ToolInHand::kNone, "hand-none", tr("View"), tr("The mouse turns the view (V)"), 2, 0);
+  clamp_ = make_button("clamp", tr("Clamp"), tr("Holds the tool in hand where it is (X)"));
+  clamp_->setCheckable(true);
+  clamp_->setFocusPolicy(Qt::NoFocus);
+  grid->addWidget(clamp_, 2, 1);
+  connect(clamp_, &QPushButton::clicked, this, &PuncturePanel::clamp_wanted);
+  auto* aim = make_button("aim", tr("To the planned entry"), tr("Puts needle or transducer where the plan has it (H)"));
+  aim->setFocusPolicy(Qt::NoFocus);
+  grid->addWidget(aim, 3, 0, 1, 2);
+  connect(aim, &QPushButton::clicked, this, &PuncturePanel::aim_wanted);
+  return box;
+}
+
+QWidget* PuncturePanel::make_figures() {
+  auto* box = new QWidget;
+  auto* grid = new QGridLayout(box);
+  grid->setContentsMargins(0, 0, 0, 0);
+  grid->setHorizontalSpacing(8);
+  grid->setVerticalSpacing(4);
+  phase_ = make_figure(*grid, 0, tr("Needle"), "phase");
+  tissue_ = make_figure(*grid, 1, tr("Tissue at the tip"), "tissue");
+  depth_ = make_figure(*grid, 2, tr("Depth"), "depth");
+  target_ = make_figure(*grid, 3, tr("To the target"), "to-target");
+  time_ = make_figure(*grid, 4, tr("Since the skin"), "time");
+  return box;
+}
+
+void PuncturePanel::begin(double most_force_n) {
+  events_->clear();
+  force_->clear();
+  constexpr double kFullLag_mm = 15.0;
+  force_->set_scale(most_force_n, kFullLag_mm);
+  show_figures({});
+}
+
+void PuncturePanel::show_figures(const PunctureFigures& figures) {
+  set_text(*phase_, figures.phase);
+  set_text(*tissue_, figures.tissue);
+  set_text(*depth_, tr("%1 mm").arg(figures.depth_mm, 0, 'f', 1));
+  set_text(*target_, figures.to_target_mm ? tr("%1 mm").arg(*figures.to_target_mm, 0, 'f', 1) : QStringLiteral("–"));
+  set_text(*time_, tr("%1 s").arg(figures.since_contact_s, 0, 'f', 0));
+  set_text(*hint_, figures.hint);
+  force_->set_force(figures.force_n, figures.time_s);
+  force_->set_lag(figures.lag_mm);
+  if (fire_->isEnabled() != figures.can_fire) fire_->setEnabled(figures.can_fire);
+  const int hand = hand_->checkedId();
+  const bool is_clamped = (hand == static_cast<int>(ToolInHand::kNeedle) && figures.is_clamped[0]) ||
+                          (hand == static_cast<int>(ToolInHand::kTransducer) && figures.is_clamped[1]);
+  if (clamp_->isChecked() != is_clamped) clamp_->setChecked(is_clamped);
+}
+
+void PuncturePanel::show_hand(ToolInHand tool) {
+  if (auto* button = hand_->button(static_cast<int>(tool))) button->setChecked(true);
+}
+
+void PuncturePanel::add_event(const QString& text) {
+  events_->addItem(text);
+  events_->scrollToBottom();
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <QWidget>
+#include <optional>
+
+class QButtonGroup;
+class QLabel;
+class QListWidget;
+class QPushButton;
+
+namespace trocar::trainer {
+
+class ForceBar;
+
+enum class ToolInHand { kNone, kNeedle, kTransducer };
+
+/// What the panel tells in one frame.
+struct PunctureFigures {
+  QString phase;
+  QString tissue;
+  QString hint;
+  double depth_mm = 0.0;
+  std::optional<double> to_target_mm;  ///< Only where help is given.
+  double force_n = 0.0;
+  double lag_mm = 0.0;           ///< Of the tool behind the hand.
+  double time_s = 0.0;           ///< Of the session.
+  double since_contact_s = 0.0;  ///< With the skin.
+  bool can_fire = false;
+  bool is_clamped[2] = {false, false};  ///< Needle, transducer.
+};
+
+/// Beside the views while the puncture goes on: tool in hand, where the needle is, what it meets, what to do now. Keys:
+/// A and S take a tool, V none, X clamps the one in hand, Enter fires, E ends.
+class PuncturePanel : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit PuncturePanel(QWidget* parent = nullptr);
+
+  void begin(double most_force_n);
+  void show_figures(const PunctureFigures& figures);
+  void show_hand(ToolInHand tool);
+  void add_event(const QString& text);
+
+ Q_SIGNALS:
+  void hand_wanted(trocar::trainer::ToolInHand tool);
+  void clamp_wanted();
+  void aim_wanted();
+  void fire_wanted();
+  void end_wanted();
+
+ private:
+  QWidget* make_hand();
+  QWidget* make_figures();
+
+  QButtonGroup* hand_ = nullptr;
+  QPushButton* clamp_ = nullptr;
+  QLabel* phase_ = nullptr;
+  QLabel* tissue_ = nullptr;
+  QLabel* depth_ = nullptr;
+  QLabel* target_ = nullptr;
+  QLabel* time_ = nullptr;
+  QLabel* hint_ = nullptr;
+  ForceBar* force_ = nullptr;
+  QListWidget* events_ = nullptr;
+  QPushButton* fire_ = nullptr;
+};
+
+}  // namespace trocar::trainer

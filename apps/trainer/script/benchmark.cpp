@@ -1,0 +1,34 @@
+#include "script/benchmark.h"
+
+#include "desk/desk.h"
+
+namespace trocar::trainer {
+
+Result<std::vector<ScriptStep>> benchmark_steps() {
+  QString text = QStringLiteral(
+      "resize 1280 800\n"
+      "click start\n"
+      "wait-for is_open is true within 120\n"
+      "click begin\n"
+      "wait-for phase is ready within 120\n"
+      "key H\n"
+      "wait 2\n");
+  int number = 0;
+  for (const QString& layout : Desk::layouts()) {
+    ++number;
+    // In and out again, so that each layout sees a tool that moves through skin and liver.
+    text += QStringLiteral(
+                "key Ctrl+%1\n"
+                "wait 2\n"
+                "reset-watch\n"
+                "wheel-until view-3d %2 depth_mm %3 within 60\n"
+                "print layout frames_per_s frame_p50_ms frame_p99_ms render_p50_ms render_p99_ms slowest\n")
+                .arg(number)
+                .arg(number % 2 == 1 ? QStringLiteral("12") : QStringLiteral("-12"),
+                     number % 2 == 1 ? QStringLiteral("> 45") : QStringLiteral("< 1"));
+    Q_UNUSED(layout);
+  }
+  return parse_script(text, QStringLiteral("benchmark"));
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <QMainWindow>
+#include <QVariantMap>
+#include <filesystem>
+#include <vector>
+
+class QLabel;
+class QStackedWidget;
+
+namespace trocar::trainer {
+
+class BriefingPage;
+class CasePage;
+class SeatFlow;
+class StartPage;
+class StatusStrip;
+class WorkPage;
+
+/// The window: the pages, the bar above and the strip at the foot. What happens from page to page is the flow's.
+class MainWindow : public QMainWindow {
+  Q_OBJECT
+
+ public:
+  /// `state_folder`: sessions, profiles and what survives a crash are kept here.
+  explicit MainWindow(const std::filesystem::path& state_folder, QWidget* parent = nullptr);
+  ~MainWindow() override;  ///< Ends what goes on before the views go.
+
+  StartPage& start() noexcept { return *start_; }
+  BriefingPage& briefing() noexcept { return *briefing_; }
+  WorkPage& work() noexcept { return *work_; }
+  CasePage& case_builder() noexcept { return *case_; }
+  StatusStrip& strip() noexcept { return *strip_; }
+  SeatFlow& flow() noexcept { return *flow_; }
+
+  /// "start", "briefing", "puncture", "feedback", "case-builder".
+  void show_page(const QString& name);
+  QString page() const { return page_; }
+  /// A line across the window until it is empty again.
+  void show_banner(const QString& text, bool is_bad);
+  /// What the window shows and knows, for scripts.
+  QVariantMap facts() const;
+
+ protected:
+  void closeEvent(QCloseEvent* event) override;
+
+ private:
+  QWidget* make_top_bar();
+  void add_shortcuts();
+
+  QStackedWidget* pages_ = nullptr;
+  StartPage* start_ = nullptr;
+  BriefingPage* briefing_ = nullptr;
+  WorkPage* work_ = nullptr;
+  CasePage* case_ = nullptr;
+  StatusStrip* strip_ = nullptr;
+  QLabel* banner_ = nullptr;
+  std::vector<QLabel*> steps_;
+  SeatFlow* flow_ = nullptr;
+  QString page_;
+};
+
+}  // namespace trocar::trainer
