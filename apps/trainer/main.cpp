@@ -6,7 +6,6 @@
 #include <QPixmap>
 #include <QSurfaceFormat>
 #include <QTimer>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 
@@ -20,6 +19,7 @@
 #include "shell/parts.h"
 #include "shell/theme.h"
 #include "shell/trainer_application.h"
+#include "station/user_folders.h"
 
 namespace {
 
@@ -32,14 +32,6 @@ struct Arguments {
   std::string script, screenshot, state_folder;
   bool is_benchmark = false;
 };
-
-/// $XDG_STATE_HOME/trocar, else ~/.local/state/trocar, as the XDG base directory specification has it.
-fs::path default_state_folder() {
-  if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0')
-    return fs::path(state) / "trocar";
-  const char* home = std::getenv("HOME");
-  return fs::path(home != nullptr ? home : ".") / ".local" / "state" / "trocar";
-}
 
 void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--task", arguments.task, "Task that is chosen at the start");
@@ -69,17 +61,16 @@ void save_window(MainWindow& window, const std::string& file) {
 }
 
 /// The script, then the picture, then the end.
-Status play(const Arguments& arguments, MainWindow& window, TrainerApplication& application) {
+Status play(const Arguments& arguments, MainWindow& window) {
   if (arguments.script.empty() && !arguments.is_benchmark) {
     constexpr int kSettled_ms = 700;
     if (!arguments.screenshot.empty())
       QTimer::singleShot(kSettled_ms, &window, [&] { save_window(window, arguments.screenshot); });
     return {};
   }
-  TROCAR_TRY(std::vector<ScriptStep> steps,
-             arguments.is_benchmark ? benchmark_steps() : load_script(arguments.script));
+  TROCAR_TRY(std::vector<ScriptStep> steps, arguments.is_benchmark ? benchmark_steps() : load_script(arguments.script));
   const Stage stage{&window, [&] { return window.facts(); },
-                    [&](const QString& tool) { window.flow().end_server(tool); }, [&] { application.reset_watch(); }};
+                    [&](const QString& tool) { window.flow().end_server(tool); }, [&] { window.flow().reset_watch(); }};
   auto* player = new ScriptPlayer(std::move(steps), stage, &window);
   QObject::connect(player, &ScriptPlayer::finished, &window, [&](const QString& error) {
     if (!error.isEmpty()) {
@@ -118,12 +109,12 @@ int main(int argc, char** argv) {
   QCoreApplication::setApplicationName(QStringLiteral("trocar-trainer"));
   TrainerApplication application(argc, argv);
   apply_theme(application);
-  MainWindow window(arguments.state_folder.empty() ? default_state_folder() : fs::path(arguments.state_folder));
+  MainWindow window(arguments.state_folder.empty() ? user_state_folder() : fs::path(arguments.state_folder));
   SeatChoice choice = window.start().choice();
   if (arguments.task) choice.task = *arguments.task;
   if (arguments.patient) choice.patient = *arguments.patient;
   window.start().choose(choice);
   window.show();
-  if (const Status status = play(arguments, window, application); !status) return complain(status.error());
+  if (const Status status = play(arguments, window); !status) return complain(status.error());
   return QApplication::exec();
 }

@@ -64,11 +64,17 @@ AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatC
   plot.set_reference({});
   plot.set_cursor({});
   plot.set_predicted(choice_.difficulty == Difficulty::kExam ? std::vector<QPointF>{} : predicted_curve(*open_));
+  // A picture of full quality takes long without a graphics card: a needle that moves breaks it off.
+  page_.desk().view_3d().set_interrupt([this] {
+    constexpr double kMoved_mm = 0.5;
+    return (attempt_.view().needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
+  });
   page_.puncture().begin(kFullForce_n);
   take(ToolInHand::kNeedle);
 }
 
 AttemptControl::~AttemptControl() {
+  page_.desk().view_3d().set_interrupt({});
   gestures_.unwatch();
 }
 
@@ -191,8 +197,8 @@ void AttemptControl::show_tools(double dt_s) {
     tools.X_PN = needle.X_PN;
     // Before the skin the slices show what the needle looks at.
     constexpr double kAhead_mm = 40.0;
-    tools.focus_P = needle.depth_mm > 0.0 ? needle.X_PN.p()
-                                          : Vec3(needle_.entry_P() + kAhead_mm * needle_.X_PN().R().col(2));
+    tools.focus_P =
+        needle.depth_mm > 0.0 ? needle.X_PN.p() : Vec3(needle_.entry_P() + kAhead_mm * needle_.X_PN().R().col(2));
     const Pose& X_PN_hand = needle.X_PN_hand;
     const double length_mm = open_->the_case.needle.length_mm;
     if ((X_PN_hand.p() - needle.X_PN.p()).norm() > kGhost_mm)

@@ -3,6 +3,7 @@
 #include <QDateTime>
 #include <QDir>
 #include <QFileDialog>
+#include <QShortcut>
 #include <algorithm>
 
 #include "control/attempt_control.h"
@@ -19,7 +20,10 @@
 #include "shell/main_window.h"
 #include "shell/parts.h"
 #include "shell/status_strip.h"
-#include "storage/session_file.h"
+#include "shell/trainer_application.h"
+#include "station/user_folders.h"
+#include "views/patient_view.h"
+#include "views/time_line.h"
 
 namespace trocar::trainer {
 namespace {
@@ -27,6 +31,7 @@ namespace {
 constexpr int kFrame_ms = 16;
 constexpr double kLateFrame_s = 0.1;
 constexpr double kFramesOver_s = 1.0;
+constexpr std::size_t kMostFrames = 200'000;  // an hour
 
 CaseChoice case_choice(const SeatChoice& choice) {
   CaseChoice result;
@@ -52,6 +57,13 @@ ServerLine line_of(const ServerView& server, const QString& tool) {
   return line;
 }
 
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
 std::vector<std::string> texts(const QStringList& list) {
   std::vector<std::string> result;
   for (const QString& text : list) result.push_back(to_std(text));
@@ -66,6 +78,11 @@ SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
   std::filesystem::create_directories(state_folder_ / "sessions", error);
   if (error) window_.show_banner(tr("Sessions cannot be kept in %1").arg(to_qt(state_folder_.string())), true);
   connect_pages();
+  stop_ = new QShortcut(QKeySequence(Qt::Key_Space), &window_);
+  stop_->setEnabled(false);  // elsewhere the key belongs to buttons and the time line
+  connect(stop_, &QShortcut::activated, this, [this] {
+    if (attempt_) attempt_->toggle_forces();
+  });
   if (const auto cut_off = journal_.recover(); cut_off && !cut_off->session.empty())
     window_.start().offer_recovery(
         tr("The last attempt was cut off. What was recorded is kept: it can be scored and seen again."));
@@ -112,6 +129,8 @@ void SeatFlow::go_to_start() {
   retired_.retire(std::exchange(opening_, {}));
   attempt_.reset();
   replay_.reset();
+  stop_->setEnabled(false);
+  window_.strip().show_forces(false, false);
   window_.show_banner({}, false);
   window_.show_page(QStringLiteral("start"));
 }
@@ -123,7 +142,8 @@ void SeatFlow::go_to_case_builder() {
 
 void SeatFlow::open(const SeatChoice& choice) {
   choice_ = choice;
-  retired_.retire(std::exchange(opening_, open_case(case_choice(choice), open_)));
+  retired_.retire(
+      std::exchange(opening_, open_case(case_choice(choice), OpenOptions{open_, user_cache_folder() / "patients"})));
   window_.briefing().show_opening(choice);
   window_.show_page(QStringLiteral("briefing"));
 }
@@ -151,7 +171,8 @@ void SeatFlow::begin_attempt() {
   AttemptOptions options;
   const QString name = QDateTime::currentDateTime().toString(QStringLiteral("yyyy-MM-dd_HH-mm-ss-zzz"));
   options.session = state_folder_ / "sessions" / to_std(name + QStringLiteral(".trocar"));
-  options.device_needle = choice_.needle_device == "virtual" ? "virtual:premium" : choice_.needle_device;
+  options.device_needle = choice_.needle_device;
+  options.device_probe = "mouse";  // of the simulated devices the one with room for a whole body
   options.force_model = choice_.force_model;
   options.is_guided = choice_.difficulty != Difficulty::kExam;
   replay_.reset();
@@ -177,12 +198,14 @@ void SeatFlow::look_at_attempt() {
   if (view.has_probe) servers.push_back(line_of(view.servers[1], tr("Transducer")));
   window_.strip().show_servers(servers);
   const bool are_on = view.phase == AttemptPhase::kReady || view.phase == AttemptPhase::kInBody;
+  stop_->setEnabled(are_on || view.phase == AttemptPhase::kStopped);
   window_.strip().show_forces(are_on || view.phase == AttemptPhase::kStopped, are_on);
   auto result = attempt_->attempt().take_result();
   if (!result) return;
   const std::filesystem::path session = attempt_->attempt().session_path();
   servers_ = attempt_->attempt().servers();
   attempt_.reset();
+  stop_->setEnabled(false);
   window_.strip().show_forces(false, false);
   journal_.clear();
   if (!*result) {
@@ -205,6 +228,7 @@ void SeatFlow::look_at_replay() {
   replay_ = std::make_unique<ReplayControl>(std::move(**loaded), open_, window_.work());
   window_.work().show_feedback();
   window_.show_page(QStringLiteral("feedback"));
+  window_.work().time_line().setFocus();
 }
 
 /// Opens the case of the attempt that was cut off; its replay follows when that is there.
@@ -250,6 +274,8 @@ void SeatFlow::frame() {
 }
 
 void SeatFlow::measure_frame(double now) {
+  if (!frames_s_.empty() && (attempt_ || replay_) && frame_ms_.size() < kMostFrames)
+    frame_ms_.push_back(1e3 * (now - frames_s_.back()));
   if (!frames_s_.empty() && attempt_ && now - frames_s_.back() > kLateFrame_s) ++late_frames_;
   frames_s_.push_back(now);
   while (frames_s_.size() > 2 && now - frames_s_.front() > kFramesOver_s) frames_s_.pop_front();
@@ -276,7 +302,24 @@ QVariantMap SeatFlow::facts() const {
   facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(late_frames_);
   if (attempt_) facts.insert(attempt_->facts());
   if (replay_) facts.insert(replay_->facts());
+  facts[QStringLiteral("frame_p50_ms")] = quantile(frame_ms_, 0.5);
+  facts[QStringLiteral("frame_p99_ms")] = quantile(frame_ms_, 0.99);
+  const FrameTimes& renders = window_.work().desk().view_3d().moving_frame_times();
+  facts[QStringLiteral("render_p50_ms")] = renders.p50_ms();
+  facts[QStringLiteral("render_p99_ms")] = renders.p99_ms();
+  if (const auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) {
+    const auto& slowest = application->slowest();
+    facts[QStringLiteral("slowest_ms")] = slowest.empty() ? 0.0 : slowest.front().ms;
+    facts[QStringLiteral("slowest")] =
+        slowest.empty() ? QString()
+                        : QStringLiteral("%1 ms: %2").arg(slowest.front().ms, 0, 'f', 1).arg(slowest.front().what);
+  }
   return facts;
+}
+
+void SeatFlow::reset_watch() {
+  frame_ms_.clear();
+  if (auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) application->reset_watch();
 }
 
 }  // namespace trocar::trainer

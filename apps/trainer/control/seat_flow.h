@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/background_job.h"
 #include "shell/seat_choice.h"
@@ -15,6 +16,8 @@
 #include "station/journal.h"
 #include "station/live_attempt.h"
 #include "station/open_case.h"
+
+class QShortcut;
 
 namespace trocar::trainer {
 
@@ -41,6 +44,8 @@ class SeatFlow : public QObject {
   QVariantMap facts() const;
   /// Kills a haptic server, for scripts that try what happens.
   void end_server(const QString& tool);
+  /// Frame times and slow handlers count from now on.
+  void reset_watch();
 
  private:
   void connect_pages();
@@ -69,6 +74,8 @@ class SeatFlow : public QObject {
   QElapsedTimer clock_;
   std::deque<double> frames_s_;  ///< When the last frames were drawn.
   std::uint64_t late_frames_ = 0;
+  std::vector<double> frame_ms_;  ///< Since the last reset, of an attempt or replay; kMostFrames at most.
+  QShortcut* stop_ = nullptr;
 };
 
 }  // namespace trocar::trainer

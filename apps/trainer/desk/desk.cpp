@@ -10,8 +10,10 @@
 #include <algorithm>
 
 #include "desk/layouts.h"
+#include "panels/structure_panel.h"
 #include "shell/parts.h"
 #include "shell/theme.h"
+#include "shell/trainer_application.h"
 #include "ultrasound/scan_annotation.h"
 #include "views/force_plot.h"
 #include "views/patient_view.h"
@@ -65,9 +67,8 @@ bool are_near(const Pose& a, const Pose& b) {
 }
 
 bool are_near(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const Vec3& p, const Vec3& q) {
-           return (p - q).norm() < kUnseen_mm;
-         });
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                            [](const Vec3& p, const Vec3& q) { return (p - q).norm() < kUnseen_mm; });
 }
 
 bool are_same(const ToolsShown& a, const ToolsShown& b) {
@@ -116,6 +117,8 @@ Desk::Desk(QWidget* parent) : QMainWindow(parent) {
   add_view("ultrasound", tr("Ultrasound"), *scanner);
   add_knobs_button();
   add_view("forces", tr("Force"), *forces_, false);
+  structures_ = new StructurePanel(*view_3d_);
+  add_view("structures", tr("What the 3D view shows"), *structures_);
   const std::pair<const char*, QString> slices[] = {{"axial", tr("Axial")},
                                                     {"coronal", tr("Coronal")},
                                                     {"sagittal", tr("Sagittal")},
@@ -260,6 +263,7 @@ void Desk::show_case(std::shared_ptr<const OpenCase> open) {
     view->show_patient(the_case.patient, open_->meshes);
     view->set_path(the_case.plan.line_P, kEntryZone_mm);
   }
+  structures_->rebuild();
   for (SliceView* slice : slices_) {
     slice->show_patient(the_case.patient);
     slice->set_path(the_case.plan.line_P);
@@ -303,8 +307,10 @@ void Desk::show_tools(const ToolsShown& tools) {
 }
 
 void Desk::draw(double now_s) {
+  if (structures_->isVisible()) structures_->refresh();
   ultrasound_->advance(now_s);
   show_picture_in_space();
+  const TrainerApplication::DrawingScope drawing;
   for (PatientView* view : {view_3d_, side_})
     if (view->isVisible()) view->draw();
 }

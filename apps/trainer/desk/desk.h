@@ -20,6 +20,7 @@ namespace trocar::trainer {
 class ForcePlot;
 class PatientView;
 class SliceView;
+class StructurePanel;
 class UltrasoundControls;
 class UltrasoundView;
 
@@ -69,6 +70,7 @@ class Desk : public QMainWindow {
   PatientView* view_3d_ = nullptr;
   PatientView* side_ = nullptr;
   std::vector<SliceView*> slices_;  ///< Axial, coronal, sagittal, along, across the needle.
+  StructurePanel* structures_ = nullptr;
   UltrasoundView* ultrasound_ = nullptr;
   UltrasoundControls* ultrasound_controls_ = nullptr;
   ForcePlot* forces_ = nullptr;

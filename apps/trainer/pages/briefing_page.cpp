@@ -162,7 +162,9 @@ void BriefingPage::show_case(const OpenCase& open, Difficulty difficulty) {
           .arg(the_case.plan.length_mm, 0, 'f', 0)
           .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
           .arg(to_qt(the_case.task.organ))
-          .arg(the_case.plan.nearest_risk.empty() ? tr("nothing at risk") : to_qt(the_case.plan.nearest_risk).replace(QLatin1Char(0x5f), QLatin1Char(0x20))));
+          .arg(the_case.plan.nearest_risk.empty()
+                   ? tr("nothing at risk")
+                   : to_qt(the_case.plan.nearest_risk).replace(QLatin1Char(0x5f), QLatin1Char(0x20))));
   counts_->setText(counts_text(the_case.task));
   const QSize side(qMax(240, axial_->width()), qMax(160, axial_->height()));
   axial_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAxial, side, is_guided)));

@@ -43,7 +43,7 @@ struct DeviceChoice {
   const char* title;
 };
 constexpr DeviceChoice kDevices[] = {
-    {"virtual", "Mouse and keyboard"},     {"gamepad", "Gamepad"},
+    {"mouse", "Mouse and keyboard"},       {"gamepad", "Gamepad"},
     {"spacemouse", "SpaceMouse"},          {"openhaptics", "3D Systems Touch (OpenHaptics)"},
     {"forcedimension", "Force Dimension"}, {"haply", "Haply Inverse3"},
 };

@@ -21,7 +21,7 @@ struct SeatChoice {
   std::string needle;       ///< Empty: the task's own.
   std::string force_model;  ///< Empty: the task's own.
   Difficulty difficulty = Difficulty::kGuided;
-  std::string needle_device = "virtual";  ///< As trocar-hapticd --device takes it.
+  std::string needle_device = "mouse";  ///< As trocar-hapticd --device takes it.
 };
 
 }  // namespace trocar::trainer
