@@ -81,7 +81,9 @@ struct PatientScene::Impl {
   void poll();
   /// The path again, on the skin of the patient that is shown now.
   void lay_path() {
-    guides.set_path(path_P, entry_radius_mm, patient ? patient->skin_distance_mm : FloatGrid{});
+    static const FloatGrid kNoSkin;
+    const FloatGrid& skin = patient ? patient->skin_distance_mm : kNoSkin;  // not a choice of values: that copies it
+    guides.set_path(path_P, entry_radius_mm, skin);
     has_changed = true;
   }
   void place_camera(int rows);

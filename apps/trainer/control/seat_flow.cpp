@@ -318,6 +318,7 @@ QVariantMap SeatFlow::facts() const {
 }
 
 void SeatFlow::reset_watch() {
+  window_.work().desk().view_3d().clear_frame_times();
   frame_ms_.clear();
   if (auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) application->reset_watch();
 }

@@ -55,6 +55,7 @@ QWidget* make_title(QDockWidget& dock, const QString& title) {
   return bar;
 }
 
+/// What is kept is of so many views: with more or fewer of them it no longer fits and is not taken.
 QString settings_key(const QString& layout) {
   return QStringLiteral("desk/") + layout;
 }
@@ -139,6 +140,7 @@ void Desk::add_view(const char* name, const QString& title, QWidget& view, bool 
   view.setMinimumSize(200, 140);
   dock->setWidget(&view);
   addDockWidget(Qt::LeftDockWidgetArea, dock);
+  dock->hide();  // a layout shows it
   docks_[QString::fromLatin1(name)] = dock;
 }
 
@@ -181,11 +183,11 @@ void Desk::choose_layout(const QString& name) {
   QSettings settings;
   settings.setValue(QStringLiteral("desk/layout"), name);
   const QByteArray kept = settings.value(settings_key(name)).toByteArray();
-  if (kept.isEmpty() || !restoreState(kept)) arrange(name);
+  if (kept.isEmpty() || !restoreState(kept, static_cast<int>(docks_.size()))) arrange(name);
 }
 
 void Desk::save_layout() const {
-  QSettings().setValue(settings_key(layout_), saveState());
+  QSettings().setValue(settings_key(layout_), saveState(static_cast<int>(docks_.size())));
 }
 
 void Desk::reset_layout() {
@@ -256,13 +258,16 @@ void Desk::fill_menu(QMenu& menu) {
   }
 }
 
+void Desk::show_in_space(PatientView& view) {
+  view.show_patient(open_->the_case.patient, open_->meshes);
+  view.set_path(open_->the_case.plan.line_P, kEntryZone_mm);
+}
+
 void Desk::show_case(std::shared_ptr<const OpenCase> open) {
   open_ = std::move(open);
   const Case& the_case = open_->the_case;
-  for (PatientView* view : {view_3d_, side_}) {
-    view->show_patient(the_case.patient, open_->meshes);
-    view->set_path(the_case.plan.line_P, kEntryZone_mm);
-  }
+  show_in_space(*view_3d_);
+  has_side_patient_ = false;
   structures_->rebuild();
   for (SliceView* slice : slices_) {
     slice->show_patient(the_case.patient);
@@ -307,6 +312,11 @@ void Desk::show_tools(const ToolsShown& tools) {
 }
 
 void Desk::draw(double now_s) {
+  // Its surfaces cost seconds of computing: only where it is looked at.
+  if (!has_side_patient_ && side_->isVisible()) {
+    show_in_space(*side_);
+    has_side_patient_ = true;
+  }
   if (structures_->isVisible()) structures_->refresh();
   ultrasound_->advance(now_s);
   show_picture_in_space();

@@ -65,6 +65,7 @@ class Desk : public QMainWindow {
   void arrange(const QString& layout);
   void add_knobs_button();
   void connect_views();
+  void show_in_space(PatientView& view);
   void show_picture_in_space();
 
   PatientView* view_3d_ = nullptr;
@@ -81,6 +82,7 @@ class Desk : public QMainWindow {
   std::uint64_t picture_number_ = 0;  ///< Of the one in the 3D views.
   bool has_whole_picture_ = false;    ///< It is in full detail.
   bool are_moving_ = false;
+  bool has_side_patient_ = false;
 };
 
 }  // namespace trocar::trainer

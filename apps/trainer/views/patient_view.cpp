@@ -223,6 +223,11 @@ const FrameTimes& PatientView::still_frame_times() const noexcept {
   return impl_->still_times;
 }
 
+void PatientView::clear_frame_times() noexcept {
+  impl_->moving_times.clear();
+  impl_->still_times.clear();
+}
+
 bool PatientView::is_still() const noexcept {
   return impl_->has_drawn && impl_->drawn == DetailPolicy::full();
 }

@@ -82,6 +82,7 @@ class PatientView : public QWidget {
   /// Of the frames while things moved, and of those in full quality.
   const FrameTimes& moving_frame_times() const noexcept;
   const FrameTimes& still_frame_times() const noexcept;
+  void clear_frame_times() noexcept;
   /// The last frame was drawn in full quality.
   bool is_still() const noexcept;
   int broken_frames() const noexcept;
