@@ -69,7 +69,15 @@ Result<TissueProfile> load_profile(const std::filesystem::path& file) {
   TROCAR_TRY(profile.note, table.string_or("note", ""));
   TROCAR_TRY(profile.force_model, table.string_or("force_model", ""));
   TROCAR_TRY(profile.overrides, table.strings("overrides"));
+  profile.file = file;
   return profile;
+}
+
+Status delete_profile(const TissueProfile& profile) {
+  std::error_code error;
+  std::filesystem::remove(profile.file, error);
+  if (error) return fail("the profile cannot be deleted: " + error.message(), profile.file.string());
+  return {};
 }
 
 ProfileList list_profiles(const std::filesystem::path& folder) {

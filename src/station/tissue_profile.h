@@ -15,6 +15,7 @@ struct TissueProfile {
   std::string note;
   std::string force_model;             ///< Empty: the task's.
   std::vector<std::string> overrides;  ///< "liver.k=0.5", as apply_override takes them.
+  std::filesystem::path file = {};     ///< That it was loaded from; saving looks at the name only.
 };
 
 /// The file of a profile in a folder: its name with what file systems do not take replaced.
@@ -25,6 +26,8 @@ Status save_profile(const TissueProfile& profile, const TissueTable& table, cons
                     bool may_replace);
 /// Errors name file, line and key.
 Result<TissueProfile> load_profile(const std::filesystem::path& file);
+/// Removes the file that it was loaded from. Error: the disk.
+Status delete_profile(const TissueProfile& profile);
 /// All profiles of a folder, by name; none where there is no folder. What cannot be read is left out and named in
 /// `problems`.
 struct ProfileList {

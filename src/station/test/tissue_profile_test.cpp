@@ -48,6 +48,20 @@ TEST_F(Profiles, AreReplacedOnlyWhenThatIsMeant) {
   EXPECT_EQ(load_profile(profile_file(folder.path(), soft.name))->overrides, other.overrides);
 }
 
+TEST_F(Profiles, AreDeletedWhereTheyWereLoadedFrom) {
+  ASSERT_TRUE(save_profile(soft, table, folder.path(), false));
+  std::filesystem::rename(profile_file(folder.path(), soft.name), folder / "mine.toml");
+  const ProfileList list = list_profiles(folder.path());
+  ASSERT_EQ(list.profiles.size(), 1u);
+  EXPECT_EQ(list.profiles[0].file, folder / "mine.toml");
+  ASSERT_TRUE(delete_profile(list.profiles[0]));
+  EXPECT_TRUE(folder.is_empty());
+  std::filesystem::create_directories(folder / "full" / "more");
+  TissueProfile wrong = soft;
+  wrong.file = folder / "full";
+  EXPECT_FALSE(delete_profile(wrong));
+}
+
 TEST_F(Profiles, WithNumbersThatTheTableDoesNotTakeAreNotWritten) {
   TissueProfile wrong = soft;
   wrong.overrides = {"liver.mu=700"};
