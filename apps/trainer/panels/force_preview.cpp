@@ -52,7 +52,10 @@ ForcePreview::ForcePreview(QWidget* parent)
   model_->addItem(tr("Insertion (layers)"), QStringLiteral("insertion"));
   model_->addItem(tr("Proxy (CT and walls)"), QStringLiteral("proxy"));
   model_->addItem(tr("Combined"), QStringLiteral("combined"));
-  connect(model_, QOverload<int>::of(&QComboBox::activated), this, &ForcePreview::choose_model);
+  connect(model_, QOverload<int>::of(&QComboBox::activated), this, [this] {
+    want();
+    Q_EMIT model_changed(model());
+  });
   refusal_->setObjectName(QStringLiteral("parameter-preview-error"));
   refusal_->setWordWrap(true);
   refusal_->setStyleSheet(QStringLiteral("color: %1").arg(theme().bad.name()));
@@ -111,9 +114,14 @@ void ForcePreview::show_settings(std::vector<std::string> settings) {
   want();
 }
 
-void ForcePreview::choose_model() {
+bool ForcePreview::offers(const QString& model) const {
+  return model_->findData(model) >= 0;
+}
+
+void ForcePreview::choose_model(const QString& model) {
+  const QSignalBlocker silent(model_);
+  model_->setCurrentIndex(std::max(0, model_->findData(model)));
   want();
-  Q_EMIT model_changed(model());
 }
 
 /// What is at work now is old.

@@ -37,6 +37,9 @@ class ForcePreview : public QWidget {
   void advance();
 
   QString model() const;
+  bool offers(const QString& model) const;
+  /// One that it offers, chosen by the program: model_changed is not told.
+  void choose_model(const QString& model);
   /// Whether the curves are those of what was last asked for.
   bool is_settled() const noexcept { return !is_wanted_ && !job_.has_work() && !default_job_.has_work(); }
   /// As shown; empty until it is there.
@@ -48,7 +51,6 @@ class ForcePreview : public QWidget {
   void model_changed(QString model);
 
  private:
-  void choose_model();
   void want();
   void start_work();
   void take_work();

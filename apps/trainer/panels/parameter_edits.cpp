@@ -28,16 +28,21 @@ double number_in(std::string_view text) {
 
 }  // namespace
 
-void ParameterEdits::start(TissueTable defaults) {
+void ParameterEdits::start(TissueTable defaults, std::string model) {
   defaults_ = std::move(defaults);
+  default_model_ = std::move(model);
   groups_ = tissue_parameters(defaults_);
   undone_to_.clear();
   redone_to_.clear();
-  std::erase_if(values_, [&](const auto& change) {
-    const TissueParameter* parameter = find(change.first);
-    return parameter == nullptr || parameter->value == change.second;
-  });
-  if (!check(values_)) values_.clear();
+  for (Values* values : {&now_.values, &now_.base}) {
+    std::erase_if(*values, [&](const auto& change) {
+      const TissueParameter* parameter = find(change.first);
+      return parameter == nullptr || parameter->value == change.second;
+    });
+    if (!check(*values)) values->clear();
+  }
+  now_.model = default_model_;
+  if (now_.profile.empty()) now_.base_model = default_model_;
 }
 
 const TissueParameter* ParameterEdits::find(std::string_view setting) const noexcept {
@@ -48,8 +53,8 @@ const TissueParameter* ParameterEdits::find(std::string_view setting) const noex
 }
 
 double ParameterEdits::value_of(const TissueParameter& parameter) const {
-  const auto changed = values_.find(parameter.setting);
-  return changed != values_.end() ? changed->second : parameter.value;
+  const auto changed = now_.values.find(parameter.setting);
+  return changed != now_.values.end() ? changed->second : parameter.value;
 }
 
 bool ParameterEdits::is_changed(const TissueParameterGroup& group) const {
@@ -60,7 +65,7 @@ bool ParameterEdits::is_changed(const TissueParameterGroup& group) const {
 Status ParameterEdits::set(const std::string& setting, double value, bool joins) {
   const TissueParameter* parameter = find(setting);
   if (parameter == nullptr) return fail_usage(fmt::format("there is no number \"{}\"", setting), "tissue parameters");
-  Values values = values_;
+  Values values = now_.values;
   if (value == parameter->value) {
     values.erase(setting);
   } else {
@@ -72,19 +77,25 @@ Status ParameterEdits::set(const std::string& setting, double value, bool joins)
 }
 
 void ParameterEdits::reset(const std::string& setting) {
-  Values values = values_;
+  Values values = now_.values;
   values.erase(setting);
   if (check(values)) keep(std::move(values));
 }
 
 void ParameterEdits::reset(const TissueParameterGroup& group) {
-  Values values = values_;
+  Values values = now_.values;
   for (const TissueParameter& parameter : group.parameters) values.erase(parameter.setting);
   if (check(values)) keep(std::move(values));
 }
 
 void ParameterEdits::reset_all() {
-  keep({});
+  keep({{}, now_.model, {}, {}, default_model_});
+}
+
+void ParameterEdits::set_model(const std::string& model) {
+  Step step = now_;
+  step.model = model;
+  keep(std::move(step));
 }
 
 Status ParameterEdits::replace(const std::vector<std::string>& settings) {
@@ -94,6 +105,41 @@ Status ParameterEdits::replace(const std::vector<std::string>& settings) {
   return {};
 }
 
+Status ParameterEdits::choose_profile(const std::string& profile, const std::vector<std::string>& settings,
+                                      const std::string& model) {
+  TROCAR_TRY(const Values values, read(settings));
+  TROCAR_TRY_STATUS(check(values));
+  keep({values, model, profile, values, model});
+  return {};
+}
+
+template <class Change>
+void ParameterEdits::change_all_steps(const Change& change) {
+  change(now_);
+  for (std::vector<Step>* steps : {&undone_to_, &redone_to_})
+    for (Step& step : *steps) change(step);
+}
+
+void ParameterEdits::call_profile(const std::string& profile) {
+  now_.profile = profile;
+  const Values base = now_.values;
+  const std::string model = now_.model;
+  change_all_steps([&](Step& step) {
+    if (step.profile != profile) return;
+    step.base = base;
+    step.base_model = model;
+  });
+}
+
+void ParameterEdits::forget_profile(const std::string& profile) {
+  change_all_steps([&](Step& step) {
+    if (step.profile != profile) return;
+    step.profile.clear();
+    step.base.clear();
+    step.base_model = default_model_;
+  });
+}
+
 /// Profiles may be written by hand, with other names of the same numbers ("liver_capsule.stiffness_n_per_mm=0.5"): what
 /// such a setting does to the table tells which number is meant.
 Result<ParameterEdits::Values> ParameterEdits::read(const std::vector<std::string>& settings) const {
@@ -101,39 +147,76 @@ Result<ParameterEdits::Values> ParameterEdits::read(const std::vector<std::strin
   TissueTable table = defaults_;
   for (const std::string& text : settings) {
     TROCAR_TRY_STATUS(apply_override(table, text));
-    const std::size_t equals = text.find('=');
-    if (const TissueParameter* named = find(std::string_view(text).substr(0, equals))) {
-      values[named->setting] = number_in(std::string_view(text).substr(equals + 1));
-      continue;
+    const std::string_view all = text;
+    const std::size_t equals = all.find('=');
+    const TissueParameter* named = find(all.substr(0, equals));
+    const bool is_new = named != nullptr && !values.contains(named->setting);
+    if (named != nullptr) {
+      values[named->setting] = number_in(all.substr(equals + 1));
+    } else {
+      read_from(table, values);
     }
-    for (const TissueParameterGroup& group : tissue_parameters(table))
-      for (const TissueParameter& is : group.parameters) {
-        const TissueParameter* was = find(is.setting);
-        if (was != nullptr && is.value != was->value) values[is.setting] = is.value;
-      }
+    if (!is_new && !gives(values, table))
+      return fail_usage("this setting changes what the panel cannot adjust", text,
+                        "write it as the panel saves it, or use it with --set");
   }
   std::erase_if(values, [&](const auto& change) { return find(change.first)->value == change.second; });
   return values;
 }
 
+/// Numbers that differ between the table and the defaults. A factor is relative to the curve as it stands, so no table
+/// tells it.
+void ParameterEdits::read_from(const TissueTable& table, Values& values) const {
+  for (const TissueParameterGroup& group : tissue_parameters(table))
+    for (const TissueParameter& is : group.parameters) {
+      const TissueParameter* was = find(is.setting);
+      if (was == nullptr || is.setting.ends_with("_factor")) continue;
+      if (is.value != was->value) {
+        values[is.setting] = is.value;
+      } else {
+        values.erase(is.setting);
+      }
+    }
+}
+
+/// Whether these numbers make this table out of the defaults; where they come from does not matter.
+bool ParameterEdits::gives(const Values& values, TissueTable table) const {
+  TissueTable made = defaults_;
+  for (const std::string& setting : settings_of(values))
+    if (!apply_override(made, setting)) return false;
+  made.provenance.clear();
+  table.provenance.clear();
+  return made.to_toml() == table.to_toml();
+}
+
 void ParameterEdits::undo() {
   if (undone_to_.empty()) return;
-  redone_to_.push_back(std::exchange(values_, std::move(undone_to_.back())));
+  redone_to_.push_back(std::exchange(now_, std::move(undone_to_.back())));
   undone_to_.pop_back();
 }
 
 void ParameterEdits::redo() {
   if (redone_to_.empty()) return;
-  undone_to_.push_back(std::exchange(values_, std::move(redone_to_.back())));
+  undone_to_.push_back(std::exchange(now_, std::move(redone_to_.back())));
   redone_to_.pop_back();
 }
 
 void ParameterEdits::keep(Values values, bool joins) {
-  if (values == values_) return;
-  if (!joins || undone_to_.empty()) undone_to_.push_back(values_);
+  Step step = now_;
+  step.values = std::move(values);
+  keep(std::move(step), joins);
+}
+
+void ParameterEdits::keep(Step step, bool joins) {
+  // Another name alone is nothing that anybody would undo.
+  if (step.values == now_.values && step.model == now_.model) {
+    now_ = std::move(step);
+    return;
+  }
+  if (!joins || undone_to_.empty()) undone_to_.push_back(now_);
   if (undone_to_.size() > kMostSteps) undone_to_.erase(undone_to_.begin());
   redone_to_.clear();
-  values_ = std::move(values);
+  now_ = std::move(step);
 }
 
 std::vector<std::string> ParameterEdits::settings_of(const Values& values) const {

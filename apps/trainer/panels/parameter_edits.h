@@ -11,20 +11,21 @@
 
 namespace trocar::trainer {
 
-/// The numbers of a tissue table that a person has changed, with undo. Invariant: every number is in its range, differs
-/// from the default, and all of them together can be applied to the default table.
+/// The numbers of a tissue table that a person has changed, the force model they are meant for and the profile they
+/// began with, with undo. Invariant: every number is in its range, differs from the default, and all of them together
+/// can be applied to the default table.
 class ParameterEdits {
  public:
-  /// Another table of defaults. Changes are kept where they still fit and still differ; what can be undone is
-  /// forgotten.
-  void start(TissueTable defaults);
+  /// Another table of defaults with its force model. Changes are kept where they still fit and still differ; what can
+  /// be undone is forgotten.
+  void start(TissueTable defaults, std::string model);
 
   const std::vector<TissueParameterGroup>& groups() const noexcept { return groups_; }
   const TissueParameter* find(std::string_view setting) const noexcept;
   double value_of(const TissueParameter& parameter) const;
-  bool is_changed(const TissueParameter& parameter) const { return values_.contains(parameter.setting); }
+  bool is_changed(const TissueParameter& parameter) const { return now_.values.contains(parameter.setting); }
   bool is_changed(const TissueParameterGroup& group) const;
-  bool is_changed() const noexcept { return !values_.empty(); }
+  bool is_changed() const noexcept { return !now_.values.empty(); }
 
   /// `joins`: one step of undo together with the last change (a slider that is still held). Errors: an unknown setting,
   /// a number out of range or against another one; nothing is changed then.
@@ -34,6 +35,20 @@ class ParameterEdits {
   void reset_all();
   /// All changes at once, as a profile has them: "liver.k=0.5". Errors name the setting; nothing is changed then.
   Status replace(const std::vector<std::string>& settings);
+  const std::string& model() const noexcept { return now_.model; }
+  void set_model(const std::string& model);
+
+  /// The profile that was chosen last, by its file; empty: the defaults.
+  const std::string& profile() const noexcept { return now_.profile; }
+  /// Whether numbers or model are other than that profile's.
+  bool differs_from_profile() const noexcept { return now_.values != now_.base || now_.model != now_.base_model; }
+  /// Numbers and model of a profile as one step; "" with no settings and the defaults' model: the defaults. Errors as
+  /// replace().
+  Status choose_profile(const std::string& profile, const std::vector<std::string>& settings, const std::string& model);
+  /// All is now as saved in that profile.
+  void call_profile(const std::string& profile);
+  /// There is no such profile any more; numbers that came from it stay.
+  void forget_profile(const std::string& profile);
 
   bool can_undo() const noexcept { return !undone_to_.empty(); }
   bool can_redo() const noexcept { return !redone_to_.empty(); }
@@ -41,20 +56,33 @@ class ParameterEdits {
   void redo();
 
   /// What differs from the defaults, "liver.k=0.5", in an order that can be applied one after the other.
-  std::vector<std::string> settings() const { return settings_of(values_); }
+  std::vector<std::string> settings() const { return settings_of(now_.values); }
 
  private:
   using Values = std::map<std::string, double, std::less<>>;
+  /// All that one step of undo gives back.
+  struct Step {
+    Values values;
+    std::string model, profile;
+    Values base;  ///< Of the profile, and its model.
+    std::string base_model;
+  };
 
   std::vector<std::string> settings_of(const Values& values) const;
   Status check(const Values& values) const;
   void keep(Values values, bool joins = false);
+  void keep(Step step, bool joins = false);
   Result<Values> read(const std::vector<std::string>& settings) const;
+  void read_from(const TissueTable& table, Values& values) const;
+  bool gives(const Values& values, TissueTable table) const;
+  template <class Change>
+  void change_all_steps(const Change& change);
 
   TissueTable defaults_;
   std::vector<TissueParameterGroup> groups_;
-  Values values_;
-  std::vector<Values> undone_to_, redone_to_;
+  std::string default_model_;
+  Step now_;
+  std::vector<Step> undone_to_, redone_to_;
 };
 
 }  // namespace trocar::trainer

@@ -11,7 +11,7 @@ namespace trocar::trainer {
 namespace {
 
 QString title_of(const std::string& tissue) {
-  if (tissue == "transfer") return ParameterList::tr("Unlabelled tissue, by CT number");
+  if (tissue == "transfer") return ParameterList::tr("Unlabelled, by CT number");
   QString title = to_qt(tissue).replace(QLatin1Char('_'), QLatin1Char(' '));
   if (tissue == "csf") return title.toUpper();
   title[0] = title[0].toUpper();
@@ -82,6 +82,7 @@ void ParameterList::add_section(const TissueParameterGroup& group, const QString
   section.header->setAccessibleName(section.title);
   section.header->setToolTip(tr("Shows the numbers of this tissue  (Space)"));
   section.header->setCheckable(true);
+  section.header->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // A long text must not widen the list.
   section.header->setStyleSheet(QStringLiteral("text-align: left; padding: 5px 8px"));
   connect(section.header, &QPushButton::clicked, this,
           [this, name = group.name](bool is_open) { choose(is_open ? name : std::string()); });
@@ -131,6 +132,13 @@ void ParameterList::fill(Section& section) {
       }
   setTabOrder(last, reset_tissue_);
   Q_EMIT opened(section.header);
+}
+
+QRect ParameterList::chosen_rect() const {
+  const auto place = [this](const QWidget& part) { return QRect(part.mapTo(this, QPoint()), part.size()); };
+  for (const Section& section : sections_)
+    if (section.group.name == chosen_ && body_ != nullptr) return place(*section.header).united(place(*body_));
+  return {};
 }
 
 QWidget* ParameterList::make_rows(const TissueParameterGroup& group) {

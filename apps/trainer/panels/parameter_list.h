@@ -31,6 +31,8 @@ class ParameterList : public QWidget {
   /// Empty closes all.
   void choose(const std::string& tissue);
   const std::string& chosen() const noexcept { return chosen_; }
+  /// Header and rows of the chosen tissue, in this widget; null: none is.
+  QRect chosen_rect() const;
   /// The row of the chosen tissue with this setting says why a number was refused.
   void show_refusal(const std::string& setting, const QString& text);
 

@@ -5,15 +5,19 @@
 #include <QScrollArea>
 #include <QScrollBar>
 #include <QShortcut>
+#include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "panels/force_preview.h"
 #include "panels/parameter_list.h"
+#include "panels/parameter_profiles.h"
 #include "shell/parts.h"
 #include "shell/theme.h"
+#include "station/user_folders.h"
 
 namespace trocar::trainer {
 namespace {
@@ -33,6 +37,7 @@ ParameterPanel::ParameterPanel(QWidget* parent)
     : QWidget(parent),
       empty_(make_label(tr("Open a case to adjust its tissues."), "dim")),
       body_(new QWidget),
+      profiles_(new ParameterProfiles),
       preview_(new ForcePreview),
       scroll_(new QScrollArea),
       list_(new ParameterList) {
@@ -49,6 +54,7 @@ ParameterPanel::ParameterPanel(QWidget* parent)
   auto* parts = new QVBoxLayout(body_);
   parts->setContentsMargins(0, 0, 0, 0);
   parts->setSpacing(8);
+  parts->addWidget(profiles_);
   parts->addWidget(preview_);
   parts->addWidget(scroll_, 1);
   auto* layout = new QVBoxLayout(this);
@@ -61,7 +67,9 @@ ParameterPanel::ParameterPanel(QWidget* parent)
   make_shortcuts();
 
   connect(preview_, &ForcePreview::model_changed, this, [this](const QString& model) {
+    edits_.set_model(to_std(model));
     list_->show_model(model);
+    show_values();
     Q_EMIT model_changed(model);
   });
   connect(list_, &ParameterList::edited, this, &ParameterPanel::edit);
@@ -74,7 +82,15 @@ ParameterPanel::ParameterPanel(QWidget* parent)
       if (group.name == tissue) edits_.reset(group);
     show_changes();
   });
-  connect(list_, &ParameterList::opened, this, [this] { show_values(); });
+  connect(list_, &ParameterList::opened, this, [this] {
+    show_values();
+    // The rows have their places when the layouts have been through.
+    QTimer::singleShot(0, this, &ParameterPanel::scroll_to_opened);
+  });
+  connect(profiles_, &ParameterProfiles::chosen, this, &ParameterPanel::choose_profile);
+  connect(profiles_, &ParameterProfiles::save_asked, this, &ParameterPanel::save_profile_as);
+  connect(profiles_, &ParameterProfiles::listed, this, &ParameterPanel::show_values);
+  set_profile_folder(user_config_folder() / "profiles");
   show_case(nullptr);
 }
 
@@ -116,8 +132,8 @@ void ParameterPanel::show_case(std::shared_ptr<const OpenCase> open_case) {
   case_ = std::move(open_case);
   empty_->setVisible(case_ == nullptr);
   body_->setVisible(case_ != nullptr);
-  edits_.start(case_ ? case_->the_case.tissues : TissueTable{});
   preview_->show_case(case_);
+  edits_.start(case_ ? case_->the_case.tissues : TissueTable{}, to_std(preview_->model()));
   list_->show_model(preview_->model());
   list_->show_tissues(edits_.groups(), case_ ? case_->pieces : std::vector<PathPiece>{});
   // A server that has just loaded the case has its own numbers.
@@ -158,15 +174,79 @@ void ParameterPanel::redo() {
 }
 
 void ParameterPanel::show_changes() {
+  show_model();
   show_values();
   changed_at_ = std::chrono::steady_clock::now();
 }
 
+/// Undo or a profile may have brought another.
+void ParameterPanel::show_model() {
+  const QString model = to_qt(edits_.model());
+  if (model == preview_->model()) return;
+  preview_->choose_model(model);
+  list_->show_model(model);
+  Q_EMIT model_changed(model);
+}
+
 void ParameterPanel::show_values() {
+  if (!edits_.profile().empty() && profiles_->find(edits_.profile()) == nullptr)
+    edits_.forget_profile(edits_.profile());
+  profiles_->show_chosen(edits_.profile(), edits_.differs_from_profile());
   list_->show_values(edits_);
   undo_->setEnabled(edits_.can_undo());
   redo_->setEnabled(edits_.can_redo());
   reset_->setEnabled(edits_.is_changed());
+}
+
+void ParameterPanel::set_profile_folder(const std::filesystem::path& folder) {
+  profiles_->set_folder(folder);
+}
+
+void ParameterPanel::choose_profile(const std::string& file) {
+  if (!case_) return;
+  TissueProfile profile;  // The case's own.
+  if (const TissueProfile* found = profiles_->find(file)) profile = *found;
+  if (profile.force_model.empty()) profile.force_model = case_->force_model;
+  Status done;
+  if (preview_->offers(to_qt(profile.force_model))) {
+    done = edits_.choose_profile(file, profile.overrides, profile.force_model);
+  } else {
+    done = fail_usage("there is no force model \"" + profile.force_model + "\"", file,
+                      "write insertion, proxy or combined");
+  }
+  if (done) {
+    show_changes();
+  } else {
+    show_values();
+  }
+  profiles_->show_problem(done ? QString()
+                               : tr("“%1” is not used: %2").arg(to_qt(profile.name), to_qt(done.error().text())));
+}
+
+void ParameterPanel::save_profile_as(TissueProfile profile, bool may_replace) {
+  if (!case_) return;
+  profile.force_model = edits_.model();
+  profile.overrides = edits_.settings();
+  profile.file = profile_file(profiles_->folder(), profile.name);
+  const Status saved = save_profile(profile, case_->the_case.tissues, profiles_->folder(), may_replace);
+  if (!saved) {
+    profiles_->show_problem(to_qt(saved.error().text()));
+    return;
+  }
+  profiles_->finish_saving(profile);
+  edits_.call_profile(profile.file.string());
+  show_values();
+}
+
+/// Not where the header stands high already; else as little as shows the whole tissue, its header in any case.
+void ParameterPanel::scroll_to_opened() {
+  constexpr int kMargin_px = 4;
+  const QRect opened = list_->chosen_rect();
+  QScrollBar* bar = scroll_->verticalScrollBar();
+  const int header = opened.top() - bar->value();
+  if (opened.isNull() || (header >= 0 && header < scroll_->viewport()->height() / 4)) return;
+  const int lowest = opened.bottom() + kMargin_px - scroll_->viewport()->height();
+  bar->setValue(std::min(std::max(bar->value(), lowest), opened.top() - kMargin_px));
 }
 
 void ParameterPanel::advance() {

@@ -4,11 +4,13 @@
 #include <QStringList>
 #include <QWidget>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "panels/parameter_edits.h"
 #include "station/open_case.h"
+#include "station/tissue_profile.h"
 
 class QLabel;
 class QScrollArea;
@@ -18,6 +20,7 @@ namespace trocar::trainer {
 
 class ForcePreview;
 class ParameterList;
+class ParameterProfiles;
 
 /// Fits the mechanical numbers of the tissues to the patient (paper A: "an interface to facilitate users in adaptively
 /// adjusting these parameters"), both force models, with the predicted force beside them. The defaults are the case's
@@ -33,6 +36,8 @@ class ParameterPanel : public QWidget {
 
   /// Null: nothing to adjust.
   void show_case(std::shared_ptr<const OpenCase> open_case);
+  /// Where profiles are kept; else in the user's folder of settings.
+  void set_profile_folder(const std::filesystem::path& folder);
   /// Once a frame: sends what has changed, looks at the work in the background.
   void advance();
 
@@ -60,6 +65,10 @@ class ParameterPanel : public QWidget {
   /// Shows the numbers as they are now; what differs is sent a moment later.
   void show_changes();
   void show_values();
+  void show_model();
+  void choose_profile(const std::string& file);
+  void save_profile_as(TissueProfile profile, bool may_replace);
+  void scroll_to_opened();
 
   std::shared_ptr<const OpenCase> case_;
   ParameterEdits edits_;
@@ -68,6 +77,7 @@ class ParameterPanel : public QWidget {
   QToolButton *undo_ = nullptr, *redo_ = nullptr, *reset_ = nullptr;
   QLabel* empty_;
   QWidget* body_;
+  ParameterProfiles* profiles_;
   ForcePreview* preview_;
   QScrollArea* scroll_;
   ParameterList* list_;

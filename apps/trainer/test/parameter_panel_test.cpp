@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <QComboBox>
-#include <QCoreApplication>
-#include <QKeyEvent>
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
@@ -12,92 +10,16 @@
 #include <QSlider>
 #include <QToolButton>
 #include <algorithm>
-#include <thread>
 
 #include "panels/force_preview.h"
 #include "panels/parameter_scale.h"
 #include "script/widget_events.h"
+#include "test/parameter_lab.h"
 
 namespace trocar::trainer {
 namespace {
 
-class ParameterPanelTest : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    auto result = make_open_case({});
-    ASSERT_TRUE(result) << result.error().text();
-    opened = *result;
-  }
-  static void TearDownTestSuite() { opened.reset(); }
-
-  void SetUp() override {
-    panel.resize(340, 700);
-    QObject::connect(&panel, &ParameterPanel::parameters_changed, [this](const QStringList& s) { sent.push_back(s); });
-    QObject::connect(&panel, &ParameterPanel::model_changed, [this](const QString& m) { models.push_back(m); });
-    panel.show_case(opened);
-    panel.show();
-    panel.activateWindow();
-    settle();
-  }
-
-  template <class Widget>
-  Widget* part(const char* name) {
-    auto* found = panel.findChild<Widget*>(QString::fromLatin1(name));
-    EXPECT_NE(found, nullptr) << name;
-    return found;
-  }
-
-  /// Frames until every change has been sent and predicted.
-  void settle() {
-    const auto begin = std::chrono::steady_clock::now();
-    do {
-      QCoreApplication::processEvents();
-      panel.advance();
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    } while (!panel.is_settled() && std::chrono::steady_clock::now() - begin < std::chrono::minutes(2));
-    EXPECT_TRUE(panel.is_settled());
-  }
-
-  void open_tissue(const char* name) {
-    auto* header = part<QPushButton>(name);
-    if (header != nullptr && !header->isChecked()) header->click();
-    QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);
-    QCoreApplication::processEvents();
-  }
-
-  static void key(QWidget& widget, int code, const QString& text = {}) {
-    QKeyEvent event(QEvent::KeyPress, code, Qt::NoModifier, text);
-    QCoreApplication::sendEvent(&widget, &event);
-  }
-
-  void type(const char* name, const char* text) {
-    auto* field = part<QLineEdit>(name);
-    ASSERT_NE(field, nullptr);
-    field->setFocus();
-    field->selectAll();
-    for (const char* c = text; *c != '\0'; ++c) key(*field, 0, QString(QLatin1Char(*c)));
-    key(*field, Qt::Key_Return);
-  }
-
-  /// Where the device is when a layer gives way.
-  double way_mm(const char* layer) const {
-    const auto& curve = panel.preview().changed_curve();
-    for (const CurveEvent& event : find_curve_events(curve, opened->the_case.tissues))
-      if (event.layer == layer) return event.way_mm;
-    return -1.0;
-  }
-
-  void keep_picture(const char* name) {
-    QCoreApplication::processEvents();
-    if (const QString folder = qEnvironmentVariable("TROCAR_TEST_PICTURES"); !folder.isEmpty())
-      panel.grab().save(folder + QLatin1Char('/') + QString::fromLatin1(name));
-  }
-
-  static inline std::shared_ptr<const OpenCase> opened;
-  ParameterPanel panel;
-  std::vector<QStringList> sent;
-  std::vector<QString> models;
-};
+using ParameterPanelTest = ParameterLab;
 
 TEST_F(ParameterPanelTest, TissuesOnThePathComeFirst) {
   std::vector<std::string> on_path;
@@ -233,6 +155,49 @@ TEST_F(ParameterPanelTest, ChangesOutliveAnotherCaseWithTheSameTissues) {
   EXPECT_TRUE(panel.settings().isEmpty());
 }
 
+TEST_F(ParameterPanelTest, TakesHandWrittenNamesAsOneStep) {
+  // skin is the first tissue with its layer and has one viscosity: nu is both laws'.
+  const Status done = panel.apply_settings(
+      {QStringLiteral("liver_capsule.stiffness_n_per_mm=0.9"), QStringLiteral("layers.skin.fp=4"),
+       QStringLiteral("tissues.liver.friction_mu=0.25"), QStringLiteral("skin.viscosity_ns_per_mm=0.05")});
+  ASSERT_TRUE(done) << done.error().text();
+  EXPECT_EQ(panel.settings(), (QStringList{QStringLiteral("skin.nu=0.05"), QStringLiteral("skin.fp=4"),
+                                           QStringLiteral("liver.k=0.9"), QStringLiteral("liver.mu=0.25")}));
+  const QStringList before = panel.settings();
+  // The last of two counts, also where it gives the default back under another name.
+  ASSERT_TRUE(panel.apply_settings({QStringLiteral("liver.k=0.9"), QStringLiteral("layers.liver_capsule.k=0.42")}));
+  EXPECT_TRUE(panel.settings().isEmpty());
+  part<QToolButton>("parameter-undo")->click();
+  EXPECT_EQ(panel.settings(), before);
+  for (const char* bad :
+       {"liver.k=51", "liver.weight=1", "nothing.k=1", "liver.k", "layers.skin.nu=0.05", "skin.wall=0"}) {
+    const Status refused = panel.apply_settings({QStringLiteral("liver.mu=0.3"), QString::fromLatin1(bad)});
+    ASSERT_FALSE(refused) << bad;
+    EXPECT_EQ(refused.error().exit_status, 2) << bad;
+    EXPECT_EQ(panel.settings(), before) << bad;
+  }
+  part<QToolButton>("parameter-undo")->click();
+  EXPECT_TRUE(panel.settings().isEmpty());
+}
+
+TEST_F(ParameterPanelTest, ATissueLowInTheListIsScrolledIntoView) {
+  auto* scroll = panel.findChild<QScrollArea*>();
+  const auto top_of = [&](const char* name) {
+    return part<QPushButton>(name)->mapTo(scroll->viewport(), QPoint()).y();
+  };
+  const int height = scroll->viewport()->height();
+  ASSERT_GT(top_of("parameter-tissue-transfer"), height);
+  open_tissue("parameter-tissue-transfer");
+  settle();
+  EXPECT_GE(top_of("parameter-tissue-transfer"), 0);
+  EXPECT_LT(top_of("parameter-tissue-transfer"), height / 4) << "and its rows below";
+  keep_picture("parameters_scrolled.png");
+  open_tissue("parameter-tissue-skin");
+  settle();
+  EXPECT_GE(top_of("parameter-tissue-skin"), 0);
+  EXPECT_LT(top_of("parameter-tissue-skin"), height / 4);
+}
+
 TEST_F(ParameterPanelTest, NothingIsCutOffAt340By700) {
   open_tissue("parameter-tissue-skin");
   keep_picture("parameters_340.png");
@@ -247,6 +212,27 @@ TEST_F(ParameterPanelTest, NothingIsCutOffAt340By700) {
       const int right = button->mapTo(&panel, QPoint(button->width(), 0)).x();
       EXPECT_LE(right, panel.width()) << button->objectName().toStdString();
     }
+}
+
+TEST_F(ParameterPanelTest, AllHeadersFitWhenAllTissuesAreChanged) {
+  QStringList all;
+  std::vector<std::string> groups;
+  for (const TissueParameterGroup& group : tissue_parameters(opened->the_case.tissues)) {
+    groups.push_back(group.name);
+    for (const TissueParameter& parameter : group.parameters)
+      if (parameter.key == "mu" || parameter.key == "tn")
+        all << QString::fromStdString(parameter.setting) + QStringLiteral("=1.2");
+  }
+  ASSERT_TRUE(panel.apply_settings(all));
+  settle();
+  keep_picture("parameters_all_changed.png");
+  auto* scroll = panel.findChild<QScrollArea*>();
+  EXPECT_LE(scroll->widget()->width(), scroll->viewport()->width());
+  for (const std::string& name : groups) {
+    auto* header = part<QPushButton>(("parameter-tissue-" + name).c_str());
+    EXPECT_TRUE(header->text().contains(QStringLiteral("changed"))) << name;
+    EXPECT_GE(header->width(), header->sizeHint().width()) << name;
+  }
 }
 
 TEST(ParameterScale, PositionsAndNumbersBelongTogether) {
