@@ -14,6 +14,7 @@
 #include "pages/start_page.h"
 #include "pages/work_page.h"
 #include "panels/feedback_panel.h"
+#include "panels/force_preview.h"
 #include "panels/parameter_panel.h"
 #include "panels/puncture_panel.h"
 #include "report/html_report.h"
@@ -173,7 +174,7 @@ void SeatFlow::begin_attempt() {
   options.session = state_folder_ / "sessions" / to_std(name + QStringLiteral(".trocar"));
   options.device_needle = choice_.needle_device;
   options.device_probe = "mouse";  // of the simulated devices the one with room for a whole body
-  options.force_model = choice_.force_model;
+  options.force_model = to_std(window_.work().parameters().preview().model());
   options.is_guided = choice_.difficulty != Difficulty::kExam;
   replay_.reset();
   if (const Status kept = journal_.begin({case_choice(choice_), options.session}); !kept)

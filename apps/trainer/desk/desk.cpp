@@ -239,6 +239,14 @@ void Desk::arrange(const QString& name) {
     resizeDocks(rows, heights, Qt::Vertical);
   }
   resizeDocks(column_tops, widths, Qt::Horizontal);
+  for (const auto& [view, dock] : docks_) {
+    const bool is_shown = std::any_of(layout->columns.begin(), layout->columns.end(), [&](const LayoutColumn& column) {
+      return std::any_of(column.cells.begin(), column.cells.end(), [&](const LayoutCell& part) {
+        return std::find(part.views.begin(), part.views.end(), view) != part.views.end();
+      });
+    });
+    if (!is_shown) dock->hide();
+  }
 }
 
 void Desk::fill_menu(QMenu& menu) {

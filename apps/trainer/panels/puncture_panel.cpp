@@ -48,6 +48,8 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   events_ = new QListWidget;
   events_->setObjectName(QStringLiteral("events"));
   events_->setFocusPolicy(Qt::NoFocus);
+  events_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  events_->setWordWrap(true);
   events_->setSelectionMode(QAbstractItemView::NoSelection);
   content->addWidget(events_, 1);
   fire_ = make_button("fire", tr("Fire the gun"), tr("Takes the core (Enter)"));

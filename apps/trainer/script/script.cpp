@@ -18,7 +18,7 @@ const std::map<QString, Arity>& verbs() {
       {"wheel", {2, 4}},      {"wheel-until", {5, 7}},   {"key", {1, 2}},         {"type", {1, 1}},
       {"choose", {2, 2}},     {"set", {2, 2}},           {"wait", {1, 1}},        {"wait-for", {3, 5}},
       {"expect", {3, 3}},     {"expect-pixels", {4, 4}}, {"resize", {2, 2}},      {"screenshot", {1, 2}},
-      {"end-server", {1, 1}}, {"reset-watch", {0, 0}},   {"print", {1, 16}},
+      {"end-server", {1, 1}}, {"end-window", {0, 0}},    {"reset-watch", {0, 0}}, {"print", {1, 16}},
   };
   return all;
 }
@@ -28,12 +28,15 @@ std::optional<QStringList> words_of(const QString& line) {
   QStringList words;
   QString word;
   bool is_quoted = false, has_word = false;
-  for (const QChar c : line) {
+  for (int at = 0; at < line.size(); ++at) {
+    const QChar c = line[at];
+    // A colour begins with the same sign.
+    const bool is_comment =
+        c == '#' && !has_word && !is_quoted && (words.isEmpty() || at + 1 == line.size() || line[at + 1].isSpace());
+    if (is_comment) break;
     if (c == '"') {
       is_quoted = !is_quoted;
       has_word = true;
-    } else if (!is_quoted && c == '#' && !has_word) {
-      break;
     } else if (!is_quoted && c.isSpace()) {
       if (has_word) words.append(word);
       word.clear();

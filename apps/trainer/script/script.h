@@ -33,6 +33,7 @@ struct ScriptStep {
 ///   resize COLUMNS ROWS
 ///   screenshot FILE [NAME]      of the window or a widget
 ///   end-server needle|probe     kills it, to see what happens
+///   end-window                  kills the program itself: what it leaves must be found again
 ///   reset-watch
 ///   print FACT…
 ///

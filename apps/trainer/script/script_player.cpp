@@ -1,6 +1,7 @@
 #include "script/script_player.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 
 #include <QAbstractButton>
 #include <QApplication>
@@ -113,6 +114,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
     stage_.end_server(a[0]);
     return Progress::kDone;
   }
+  if (verb == QLatin1String("end-window")) ::raise(SIGKILL);
   if (verb == QLatin1String("reset-watch")) {
     stage_.reset_watch();
     return Progress::kDone;

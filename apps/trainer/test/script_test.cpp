@@ -32,6 +32,13 @@ TEST(Script, StepsCommentsAndQuotationsAreRead) {
   EXPECT_EQ((*steps)[2].arguments[1], QStringLiteral("-3"));
 }
 
+TEST(Script, ColoursAreNoComments) {
+  const auto steps = parse_script(QStringLiteral("expect-pixels view #54d1c4 12 0.1  # the path\n#all of it\n"), {});
+  ASSERT_TRUE(steps);
+  ASSERT_EQ(steps->size(), 1u);
+  EXPECT_EQ(steps->front().arguments.size(), 4);
+}
+
 TEST(Script, MistakesNameTheirLine) {
   EXPECT_NE(error_of("click start\nclock start\n").find("steps.txt:2"), std::string::npos);
   EXPECT_NE(error_of("click\n").find("0 arguments"), std::string::npos);
