@@ -36,7 +36,8 @@ constexpr std::size_t kMostFrames = 200'000;  // an hour
 
 CaseChoice case_choice(const SeatChoice& choice) {
   CaseChoice result;
-  result.options.task = choice.task;
+  // A patient that the case builder has made brings a task of its own.
+  result.options.task = has_own_task(choice.patient) ? std::string() : choice.task;
   result.options.needle = choice.needle;
   result.patient_source = choice.patient;
   result.patient_seed = choice.patient_seed;
