@@ -17,6 +17,7 @@ namespace trocar::trainer {
 namespace {
 
 constexpr double kStill_s = 0.3;
+constexpr std::size_t kFramesAPlot = 2;
 constexpr double kGhost_mm = 1.0;  ///< A hand that is less ahead of the needle is not shown.
 /// End of the force bar: what liver biopsies stay below (docs/references of the force models: 2 to 8 N).
 constexpr double kFullForce_n = 8.0;
@@ -176,11 +177,13 @@ void AttemptControl::advance(double dt_s) {
   }
   attempt_.set_hand(HandTool::kNeedle, needle_.X_PN());
   attempt_.set_hand(HandTool::kProbe, probe_.X_PT());
-  std::vector<ForcePoint> points;
-  for (const trocar::ForcePoint& point : attempt_.take_forces())
-    points.push_back({point.time_s, point.depth_mm, point.force_n});
   ForcePlot& plot = page_.desk().forces();
-  plot.append(points);
+  if (++frame_ % kFramesAPlot == 0) {
+    std::vector<ForcePoint> points;
+    for (const trocar::ForcePoint& point : attempt_.take_forces())
+      points.push_back({point.time_s, point.depth_mm, point.force_n});
+    plot.append(points);
+  }
   for (const AttemptEvent& event : attempt_.take_events()) {
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(to_qt(event.text)));
     if (event.kind == EventKind::kPuncture) plot.add_event(event.depth_mm, event.time_s, to_qt(event.name));

@@ -55,6 +55,7 @@ class AttemptControl : public QObject {
   bool is_clamped_[2] = {false, false};  ///< By HandTool.
   AttemptView view_;
   double still_s_ = 0.0;
+  std::size_t frame_ = 0;
 };
 
 }  // namespace trocar::trainer

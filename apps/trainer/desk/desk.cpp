@@ -307,14 +307,7 @@ void Desk::show_tools(const ToolsShown& tools) {
     view->set_needle(tools.shaft_P, needle.outer_diameter_mm, model_of(needle));
     view->set_hand(tools.hand_P);
   }
-  if (!tools.shaft_P.empty()) {
-    for (SliceView* slice : slices_) {
-      slice->set_needle(tools.shaft_P);
-      slice->set_needle_frame(tools.X_PN);
-    }
-  }
-  if (tools.focus_P)
-    for (SliceView* slice : slices_) slice->set_focus(*tools.focus_P);
+  stale_slices_ = (1U << slices_.size()) - 1U;
   ultrasound_->set_needle(tools.shaft_P, needle.outer_diameter_mm);
   if (tools.X_PT) ultrasound_->set_transducer_pose(*tools.X_PT);
 }
@@ -327,10 +320,27 @@ void Desk::draw(double now_s) {
   }
   if (structures_->isVisible()) structures_->refresh();
   ultrasound_->advance(now_s);
+  follow_with_slices();
   show_picture_in_space();
   const TrainerApplication::DrawingScope drawing;
   for (PatientView* view : {view_3d_, side_})
     if (view->isVisible()) view->draw();
+}
+
+/// Slices follow the tools; while these move every other one at a time, which the eye does not miss and the processor
+/// feels.
+void Desk::follow_with_slices() {
+  ++frame_;
+  for (std::size_t s = 0; s < slices_.size(); ++s) {
+    const unsigned bit = 1U << s;
+    if ((stale_slices_ & bit) == 0 || (are_moving_ && (frame_ + s) % 2 != 0)) continue;
+    stale_slices_ &= ~bit;
+    if (!shown_.shaft_P.empty()) {
+      slices_[s]->set_needle(shown_.shaft_P);
+      slices_[s]->set_needle_frame(shown_.X_PN);
+    }
+    if (shown_.focus_P) slices_[s]->set_focus(*shown_.focus_P);
+  }
 }
 
 /// The newest ultrasound picture as a plane of the 3D views. With the tools at rest one in full detail stays there: its

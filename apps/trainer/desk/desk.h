@@ -66,6 +66,7 @@ class Desk : public QMainWindow {
   void add_knobs_button();
   void connect_views();
   void show_in_space(PatientView& view);
+  void follow_with_slices();
   void show_picture_in_space();
 
   PatientView* view_3d_ = nullptr;
@@ -82,6 +83,8 @@ class Desk : public QMainWindow {
   std::uint64_t picture_number_ = 0;  ///< Of the one in the 3D views.
   bool has_whole_picture_ = false;    ///< It is in full detail.
   bool are_moving_ = false;
+  unsigned stale_slices_ = 0;  ///< A bit a slice that has not seen the tools yet.
+  std::size_t frame_ = 0;
   bool has_side_patient_ = false;
 };
 
