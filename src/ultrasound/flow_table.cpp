@@ -10,27 +10,13 @@
 #include <utility>
 
 #include "config/sourced_number.h"
+#include "ultrasound/detail/label_pattern.h"
 
 namespace trocar {
 namespace {
 
 constexpr std::size_t kMostWaveforms = 32;
 constexpr double kSecondsPerMinute = 60.0;
-
-/// Lower case letters, digits and '*' alone.
-std::string plain(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    const auto u = static_cast<unsigned char>(c);
-    if (std::isalnum(u) || c == '*') text += static_cast<char>(std::tolower(u));
-  }
-  return text;
-}
-
-bool matches(std::string_view pattern, std::string_view name) {
-  if (pattern.ends_with('*')) return name.starts_with(pattern.substr(0, pattern.size() - 1));
-  return pattern == name;
-}
 
 Result<double> read_number(const TomlTable& row, std::string_view key, Range range) {
   TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, key, range));
@@ -82,9 +68,10 @@ Result<FlowRule> read_rule(const TomlTable& row, const std::string& name, const 
 }  // namespace
 
 bool is_named(std::string_view label, const std::vector<std::string>& patterns) {
-  const std::string name = plain(label);
-  return std::any_of(patterns.begin(), patterns.end(),
-                     [&](const std::string& pattern) { return matches(plain(pattern), name); });
+  const std::string name = detail::plain_name(label);
+  return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
+    return detail::matches_pattern(detail::plain_name(pattern), name);
+  });
 }
 
 double FlowWaveform::at(double time_s, double heart_per_min, double breaths_per_min) const noexcept {

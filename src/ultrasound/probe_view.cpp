@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "config/toml.h"
+#include "ultrasound/detail/label_pattern.h"
 
 namespace trocar {
 namespace {
@@ -85,21 +86,6 @@ Result<ProbeView> read_view(const TomlTable& row, const std::string& name) {
   return view;
 }
 
-/// Lower case letters, digits and '*' alone.
-std::string plain(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    const auto u = static_cast<unsigned char>(c);
-    if (std::isalnum(u) || c == '*') text += static_cast<char>(std::tolower(u));
-  }
-  return text;
-}
-
-bool matches(std::string_view pattern, std::string_view name) {
-  if (pattern.ends_with('*')) return name.starts_with(pattern.substr(0, pattern.size() - 1));
-  return pattern == name;
-}
-
 std::array<std::size_t, 256> count_voxels(const LabelGrid& labels) {
   std::array<std::size_t, 256> counts{};
   for (const std::uint8_t id : labels.voxels) ++counts[id];
@@ -109,10 +95,10 @@ std::array<std::size_t, 256> count_voxels(const LabelGrid& labels) {
 const Label* find_counted(const LabelTable& table, const std::array<std::size_t, 256>& voxels,
                           std::span<const std::string> patterns) {
   for (const std::string& pattern : patterns) {
-    const std::string key = plain(pattern);
+    const std::string key = detail::plain_name(pattern);
     const Label* largest = nullptr;
     for (const Label& label : table.labels) {
-      if (voxels[label.id] < kLeastVoxels || !matches(key, plain(label.name))) continue;
+      if (voxels[label.id] < kLeastVoxels || !detail::matches_pattern(key, detail::plain_name(label.name))) continue;
       if (largest == nullptr || voxels[label.id] > voxels[largest->id]) largest = &label;
     }
     if (largest != nullptr) return largest;
