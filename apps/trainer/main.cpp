@@ -6,10 +6,13 @@
 #include <QPixmap>
 #include <QSurfaceFormat>
 #include <QTimer>
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
+#include "anatomy/phantom/phantom.h"
 #include "control/seat_flow.h"
+#include "core/data_dir.h"
 #include "core/version.h"
 #include "pages/start_page.h"
 #include "scene/render_patient.h"
@@ -20,6 +23,7 @@
 #include "shell/theme.h"
 #include "shell/trainer_application.h"
 #include "station/user_folders.h"
+#include "training/task.h"
 
 namespace {
 
@@ -52,6 +56,27 @@ void add_options(CLI::App& app, Arguments& arguments) {
 int complain(const Error& error) {
   fmt::print(stderr, "error: {}\n", error.text());
   return error.exit_status;
+}
+
+/// What the arguments choose, before there is a window: an unknown name is told, not passed over.
+Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments) {
+  if (arguments.task) {
+    TROCAR_TRY(const Task task, load_task(data_dir() / "tasks", *arguments.task));
+    choice.task = task.name;
+  }
+  if (!arguments.patient) return choice;
+  const auto& embedded = embedded_patients();
+  std::error_code error;
+  if (fs::is_directory(*arguments.patient, error)) {
+    choice.patient = fs::absolute(*arguments.patient).string();
+  } else if (std::any_of(embedded.begin(), embedded.end(),
+                         [&](const PhantomInfo& info) { return info.name == *arguments.patient; })) {
+    choice.patient = *arguments.patient;
+  } else {
+    return fail_usage("there is no such patient", *arguments.patient,
+                      "name a patient folder or an embedded patient (trocar patient list)");
+  }
+  return choice;
 }
 
 void save_window(MainWindow& window, const std::string& file) {
@@ -110,10 +135,9 @@ int main(int argc, char** argv) {
   TrainerApplication application(argc, argv);
   apply_theme(application);
   MainWindow window(arguments.state_folder.empty() ? user_state_folder() : fs::path(arguments.state_folder));
-  SeatChoice choice = window.start().choice();
-  if (arguments.task) choice.task = *arguments.task;
-  if (arguments.patient) choice.patient = *arguments.patient;
-  window.start().choose(choice);
+  const Result<SeatChoice> choice = with_arguments(window.start().choice(), arguments);
+  if (!choice) return complain(choice.error());
+  window.start().choose(*choice);
   window.show();
   if (const Status status = play(arguments, window); !status) return complain(status.error());
   return QApplication::exec();

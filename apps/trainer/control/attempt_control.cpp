@@ -19,7 +19,8 @@ namespace {
 constexpr double kStill_s = 0.3;
 constexpr std::size_t kFramesAPlot = 2;
 constexpr double kGhost_mm = 1.0;  ///< A hand that is less ahead of the needle is not shown.
-/// End of the force bar: what liver biopsies stay below (docs/references of the force models: 2 to 8 N).
+/// End of the force bar. Assumed: above what the embedded patient's layers bear (docs/validation.md), so that a peak
+/// stays in sight.
 constexpr double kFullForce_n = 8.0;
 
 QString phase_text(const AttemptView& view) {

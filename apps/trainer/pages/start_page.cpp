@@ -34,7 +34,7 @@ struct HelpLevel {
 };
 constexpr HelpLevel kHelpLevels[] = {
     {Difficulty::kGuided, "difficulty-guided", "Guided", "Expert path, entry zone and hints."},
-    {Difficulty::kAssisted, "difficulty-assisted", "Assisted", "Hints and the target, no path."},
+    {Difficulty::kAssisted, "difficulty-assisted", "Assisted", "Hints, no path."},
     {Difficulty::kExam, "difficulty-exam", "Exam", "Pictures and forces alone."},
 };
 

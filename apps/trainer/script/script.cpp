@@ -3,6 +3,7 @@
 #include <QFile>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "shell/parts.h"
 
@@ -21,6 +22,36 @@ const std::map<QString, Arity>& verbs() {
       {"end-server", {1, 1}}, {"end-window", {0, 0}},    {"reset-watch", {0, 0}}, {"print", {1, 16}},
   };
   return all;
+}
+
+/// Which arguments of a step are numbers.
+const std::map<QString, std::vector<int>>& numbers() {
+  static const std::map<QString, std::vector<int>> all = {
+      {"click", {1, 2}},
+      {"double-click", {1, 2}},
+      {"right-click", {1, 2}},
+      {"drag", {1, 2, 3, 4, 6}},
+      {"wheel", {1, 2, 3}},
+      {"wheel-until", {1, 6}},
+      {"key", {1}},
+      {"wait", {0}},
+      {"wait-for", {4}},
+      {"resize", {0, 1}},
+      {"expect-pixels", {2, 3}},
+  };
+  return all;
+}
+
+/// The argument that should be a number and is none.
+std::optional<QString> find_no_number(const QString& verb, const QStringList& words) {
+  const auto found = numbers().find(verb);
+  if (found == numbers().end()) return std::nullopt;
+  for (const int at : found->second) {
+    bool is_number = true;
+    if (at < words.size()) words[at].toDouble(&is_number);
+    if (!is_number) return words[at];
+  }
+  return std::nullopt;
 }
 
 /// Words of a line up to a comment; nothing where a quotation does not end.
@@ -69,6 +100,8 @@ Result<std::vector<ScriptStep>> parse_script(const QString& text, const QString&
     if (words->size() < found->second.least || words->size() > found->second.most)
       return fail("\"" + to_std(verb) + "\" has " + std::to_string(words->size()) + " arguments", where,
                   "see trocar-trainer --help");
+    if (const auto wrong = find_no_number(verb, *words))
+      return fail("\"" + to_std(*wrong) + "\" is no number", where, "see trocar-trainer --help");
     steps.push_back({number, verb, *words});
   }
   if (steps.empty()) return fail("the script has no step", to_std(name), "see trocar-trainer --help");

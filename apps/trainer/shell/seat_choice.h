@@ -9,7 +9,7 @@ namespace trocar::trainer {
 /// How much the trainee is helped.
 enum class Difficulty {
   kGuided,    ///< Expert path, entry zone and hints are shown.
-  kAssisted,  ///< Hints, and the target in the slices.
+  kAssisted,  ///< Hints alone.
   kExam,      ///< Nothing but pictures and forces.
 };
 

@@ -42,6 +42,8 @@ TEST(Script, ColoursAreNoComments) {
 TEST(Script, MistakesNameTheirLine) {
   EXPECT_NE(error_of("click start\nclock start\n").find("steps.txt:2"), std::string::npos);
   EXPECT_NE(error_of("click\n").find("0 arguments"), std::string::npos);
+  EXPECT_NE(error_of("wait soon\n").find("no number"), std::string::npos);
+  EXPECT_NE(error_of("wheel view-3d many\n").find("no number"), std::string::npos);
   EXPECT_NE(error_of("type \"abc\n").find("quotation"), std::string::npos);
   EXPECT_NE(error_of("# nothing\n"), "");
 }

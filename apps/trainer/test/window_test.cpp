@@ -95,6 +95,11 @@ TEST_F(WindowTest, AScriptThatFailsSaysWhere) {
 TEST_F(WindowTest, WrongArgumentsAreToldInOneLine) {
   EXPECT_EQ(run({QStringLiteral("--script"), QStringLiteral("/nowhere/steps.txt")}).exit_status, 2);
   EXPECT_EQ(run({QStringLiteral("--unheard-of")}).exit_status, 2);
+  for (const char* name : {"--patient", "--task"}) {
+    const Played wrong = run({QString::fromUtf8(name), QStringLiteral("nobody")});
+    EXPECT_EQ(wrong.exit_status, 2) << name;
+    EXPECT_TRUE(wrong.output.contains(QStringLiteral("nobody"))) << wrong.output.toStdString();
+  }
   const Played played = run({QStringLiteral("--script"), write("bad.txt", "dance\n")});
   EXPECT_EQ(played.exit_status, 1);
   EXPECT_TRUE(played.output.contains(QStringLiteral("dance"))) << played.output.toStdString();
