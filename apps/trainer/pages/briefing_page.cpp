@@ -158,7 +158,7 @@ void BriefingPage::show_case(const OpenCase& open, Difficulty difficulty) {
   goal_->setText(
       tr("Bring the needle's tip to the %1 %2, under ultrasound. The planned way is %3 mm long, %4 mm of it "
          "in the %5; nearest to it lies: %6.")
-          .arg(the_case.is_parenchymal ? tr("middle of the") : tr("lesion of the"), to_qt(the_case.task.organ))
+          .arg(the_case.is_parenchymal ? tr("healthy tissue of the") : tr("lesion of the"), to_qt(the_case.task.organ))
           .arg(the_case.plan.length_mm, 0, 'f', 0)
           .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
           .arg(to_qt(the_case.task.organ))
