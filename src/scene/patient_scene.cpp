@@ -83,7 +83,8 @@ struct PatientScene::Impl {
   void lay_path() {
     static const FloatGrid kNoSkin;
     const FloatGrid& skin = patient ? patient->skin_distance_mm : kNoSkin;  // not a choice of values: that copies it
-    guides.set_path(path_P, entry_radius_mm, skin);
+    const Vec3 begin_P = path_P ? path_P->a : Vec3::Zero();
+    guides.set_path(path_P, {entry_centre_P.value_or(begin_P), entry_radius_mm}, skin);
     has_changed = true;
   }
   void place_camera(int rows);
@@ -100,6 +101,7 @@ struct PatientScene::Impl {
   std::string around_name;
   std::optional<Segment> path_P;
   double entry_radius_mm = 0.0;
+  std::optional<Vec3> entry_centre_P;
   detail::SurfaceLayer surfaces{*renderer.Get(), frame_break};
   detail::ToolLayer tools{*renderer.Get()};
   detail::GuideLayer guides{*renderer.Get()};
@@ -239,8 +241,22 @@ void PatientScene::set_path(const std::optional<Segment>& line_P, double entry_r
   s.lay_path();
 }
 
+void PatientScene::set_entry_centre(const std::optional<Vec3>& centre_P) {
+  if (centre_P == impl_->entry_centre_P) return;
+  impl_->entry_centre_P = centre_P;
+  impl_->lay_path();
+}
+
+void PatientScene::set_guidance(Guidance guidance) {
+  if (impl_->guides.set_guidance(guidance)) impl_->has_changed = true;
+}
+
+Guidance PatientScene::guidance() const noexcept {
+  return impl_->guides.guidance();
+}
+
 void PatientScene::set_guidance_visible(bool is_visible) {
-  if (impl_->guides.set_path_visible(is_visible)) impl_->has_changed = true;
+  if (impl_->guides.set_guidance_visible(is_visible)) impl_->has_changed = true;
 }
 
 void PatientScene::set_landmarks_visible(bool are_visible) {

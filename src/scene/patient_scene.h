@@ -14,6 +14,7 @@
 #include "geometry/pose.h"
 #include "scene/camera.h"
 #include "scene/detail_policy.h"
+#include "scene/guidance.h"
 #include "scene/mpr.h"
 #include "scene/needle_shape.h"
 #include "scene/stereo.h"
@@ -47,7 +48,13 @@ class PatientScene {
   void set_opacity(std::string_view name, double opacity);
   void apply_preset(StructurePreset preset);
 
+  /// The path with its target at the end, and an entry zone about its begin.
   void set_path(const std::optional<Segment>& line_P, double entry_radius_mm);
+  /// A zone about another point than the path's begin; empty: that again.
+  void set_entry_centre(const std::optional<Vec3>& centre_P);
+  /// What the guidance consists of, and whether it is shown.
+  void set_guidance(Guidance guidance);
+  Guidance guidance() const noexcept;
   void set_guidance_visible(bool is_visible);
   void set_landmarks_visible(bool are_visible);
   /// Fewer than two points: no needle.

@@ -62,16 +62,17 @@ AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatC
   connect_panel();
   ForcePlot& plot = page_.desk().forces();
   plot.clear();
-  plot.set_bands(force_bands(*open_));
+  const bool is_exam = choice_.difficulty == Difficulty::kExam;
+  plot.set_bands(is_exam ? std::vector<ForcePlot::Band>{} : force_bands(*open_));
   plot.set_reference({});
   plot.set_cursor({});
-  plot.set_predicted(choice_.difficulty == Difficulty::kExam ? std::vector<QPointF>{} : predicted_curve(*open_));
+  plot.set_predicted(is_exam ? std::vector<QPointF>{} : predicted_curve(*open_));
   // A picture of full quality takes long without a graphics card: a needle that moves breaks it off.
   page_.desk().view_3d().set_interrupt([this] {
     constexpr double kMoved_mm = 0.5;
     return (attempt_.view().needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
   });
-  page_.puncture().begin(kFullForce_n);
+  page_.puncture().begin(kFullForce_n, choice_.difficulty == Difficulty::kGuided);
   take(ToolInHand::kNeedle);
 }
 

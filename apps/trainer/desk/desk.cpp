@@ -26,6 +26,11 @@ namespace {
 
 constexpr double kEntryZone_mm = 10.0;
 
+/// The task's own, else the skin about the planned entry.
+EntryZone entry_zone_of(const Case& the_case) {
+  return the_case.task.entry_zone.value_or(EntryZone{the_case.plan.line_P.a, kEntryZone_mm});
+}
+
 /// A slim title with a button to let the view float and one to hide it.
 QWidget* make_title(QDockWidget& dock, const QString& title) {
   auto* bar = new QFrame;
@@ -268,7 +273,9 @@ void Desk::fill_menu(QMenu& menu) {
 
 void Desk::show_in_space(PatientView& view) {
   view.show_patient(open_->the_case.patient, open_->meshes);
-  view.set_path(open_->the_case.plan.line_P, kEntryZone_mm);
+  const EntryZone zone = entry_zone_of(open_->the_case);
+  view.set_path(open_->the_case.plan.line_P, zone.radius_mm);
+  view.scene().set_entry_centre(zone.centre_P);
 }
 
 void Desk::show_case(std::shared_ptr<const OpenCase> open) {
@@ -280,6 +287,7 @@ void Desk::show_case(std::shared_ptr<const OpenCase> open) {
   for (SliceView* slice : slices_) {
     slice->show_patient(the_case.patient);
     slice->set_path(the_case.plan.line_P);
+    slice->set_entry_zone(entry_zone_of(the_case));
     slice->set_focus(the_case.plan.line_P.b);
   }
   ultrasound_->show_patient(open_->acoustic, open_->flow, open_->transducer);
@@ -289,11 +297,15 @@ void Desk::show_case(std::shared_ptr<const OpenCase> open) {
 }
 
 void Desk::show_help(Difficulty difficulty) {
-  const bool is_guided = difficulty == Difficulty::kGuided;
-  view_3d_->set_guidance_visible(is_guided);
-  side_->set_guidance_visible(is_guided);
-  for (SliceView* slice : slices_) slice->set_guidance_visible(is_guided);
-  ultrasound_->set_guide_visible(is_guided);
+  const Guidance guidance = guidance_of(difficulty);
+  for (PatientView* view : {view_3d_, side_}) {
+    view->set_guidance(guidance);
+    view->set_guidance_visible(true);
+  }
+  for (SliceView* slice : slices_) slice->set_guidance(guidance);
+  ultrasound_->set_guide_offered(difficulty != Difficulty::kExam);
+  ultrasound_->set_guide_visible(guidance == Guidance::kPath);
+  structures_->refresh();
 }
 
 void Desk::show_tools(const ToolsShown& tools) {

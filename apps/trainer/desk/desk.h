@@ -42,6 +42,7 @@ class Desk : public QMainWindow {
   explicit Desk(QWidget* parent = nullptr);
 
   void show_case(std::shared_ptr<const OpenCase> open);
+  /// Of the plan, in all views; the structure panel and the keys of the views show no more than that.
   void show_help(Difficulty difficulty);
   void show_tools(const ToolsShown& tools);
   /// Draws what has changed; once a frame. `now_s`: any steady clock.

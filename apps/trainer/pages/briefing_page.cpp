@@ -93,7 +93,7 @@ QWidget* BriefingPage::make_pictures() {
   QBoxLayout* content = nullptr;
   QFrame* card = make_card(tr("Where the target lies"), content);
   auto* pictures = new QVBoxLayout;
-  for (QLabel** label : {&axial_, &along_}) {
+  for (QLabel** label : {&axial_, &second_}) {
     *label = make_label({}, "dim");
     (*label)->setAlignment(Qt::AlignCenter);
     (*label)->setMinimumSize(240, 160);
@@ -133,7 +133,7 @@ void BriefingPage::show_opening(const SeatChoice& choice) {
   goal_->clear();
   counts_->clear();
   axial_->clear();
-  along_->clear();
+  second_->clear();
   begin_->setEnabled(false);
   progress_->show();
   show_progress(tr("Opening the patient"), 0.0);
@@ -152,9 +152,11 @@ void BriefingPage::show_error(const QString& text) {
 
 void BriefingPage::show_case(const OpenCase& open, Difficulty difficulty) {
   const Case& the_case = open.the_case;
-  const bool is_guided = difficulty == Difficulty::kGuided;
+  const Guidance guidance = guidance_of(difficulty);
   title_->setText(to_qt(the_case.task.title));
-  subtitle_->setText(tr("Patient %1 · needle %2").arg(to_qt(the_case.patient->name), to_qt(the_case.needle.title)));
+  subtitle_->setText(tr("Patient %1 · needle %2 · %3: %4")
+                         .arg(to_qt(the_case.patient->name), to_qt(the_case.needle.title), tr(title_of(difficulty)),
+                              tr(help_text_of(difficulty))));
   goal_->setText(
       tr("Bring the needle's tip to the %1 %2, under ultrasound. The planned way is %3 mm long, %4 mm of it "
          "in the %5; nearest to it lies: %6.")
@@ -167,8 +169,10 @@ void BriefingPage::show_case(const OpenCase& open, Difficulty difficulty) {
                    : to_qt(the_case.plan.nearest_risk).replace(QLatin1Char(0x5f), QLatin1Char(0x20))));
   counts_->setText(counts_text(the_case.task));
   const QSize side(qMax(240, axial_->width()), qMax(160, axial_->height()));
-  axial_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAxial, side, is_guided)));
-  along_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAlongPath, side, is_guided)));
+  // A plane along the path would tell where the path lies.
+  const BriefingPlane second = guidance == Guidance::kPath ? BriefingPlane::kAlongPath : BriefingPlane::kSagittal;
+  axial_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAxial, side, guidance)));
+  second_->setPixmap(QPixmap::fromImage(briefing_picture(open, second, side, guidance)));
   progress_->hide();
   state_->setText(tr("Ready"));
   begin_->setEnabled(true);

@@ -39,7 +39,7 @@ class BriefingPage : public QWidget {
   QLabel* goal_ = nullptr;
   QLabel* counts_ = nullptr;
   QLabel* axial_ = nullptr;
-  QLabel* along_ = nullptr;
+  QLabel* second_ = nullptr;  ///< A slice across the first.
   QLabel* state_ = nullptr;
   QProgressBar* progress_ = nullptr;
   QPushButton* begin_ = nullptr;

@@ -287,11 +287,13 @@ void CasePage::refresh_views() {
   const std::optional<Segment> line_P = path != nullptr ? std::optional(path->line_P) : std::nullopt;
   if (line_P && !shown_path_ && click_ == CaseClick::kLook) show_place(line_P->b);
   shown_path_ = line_P;
-  view_->set_path(line_P, draft.task.entry_zone ? draft.task.entry_zone->radius_mm : 0.0);
+  const std::optional<EntryZone>& zone = draft.task.entry_zone;
+  view_->set_path(line_P, zone ? zone->radius_mm : 0.0);
+  view_->scene().set_entry_centre(zone ? std::optional(zone->centre_P) : std::nullopt);
   for (std::size_t n = 0; n < slices_.size(); ++n) {
     slices_[n]->set_path(line_P);
+    slices_[n]->set_entry_zone(draft.task.entry_zone);
     marks_[n]->set_target(target_P);
-    marks_[n]->set_zone(draft.task.entry_zone);
     marks_[n]->set_landmarks(draft.landmarks);
   }
 }

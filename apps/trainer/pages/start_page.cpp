@@ -26,16 +26,10 @@ constexpr int kSource = Qt::UserRole;
 constexpr int kText = Qt::UserRole + 1;
 constexpr int kMostFolders = 8;
 
-struct HelpLevel {
-  Difficulty difficulty;
-  const char* name;
-  const char* title;
-  const char* text;
-};
-constexpr HelpLevel kHelpLevels[] = {
-    {Difficulty::kGuided, "difficulty-guided", "Guided", "Expert path, entry zone and hints."},
-    {Difficulty::kAssisted, "difficulty-assisted", "Assisted", "Hints, no path."},
-    {Difficulty::kExam, "difficulty-exam", "Exam", "Pictures and forces alone."},
+constexpr std::pair<Difficulty, const char*> kHelpLevels[] = {
+    {Difficulty::kGuided, "difficulty-guided"},
+    {Difficulty::kAssisted, "difficulty-assisted"},
+    {Difficulty::kExam, "difficulty-exam"},
 };
 
 struct DeviceChoice {
@@ -150,13 +144,14 @@ QWidget* StartPage::make_help_choice() {
   QBoxLayout* content = nullptr;
   QFrame* card = make_card(tr("Help and tools"), content);
   difficulty_ = new QButtonGroup(this);
-  for (const HelpLevel& level : kHelpLevels) {
-    auto* button = new QRadioButton(QString::fromUtf8(level.title));
-    button->setObjectName(QString::fromLatin1(level.name));
-    button->setToolTip(QString::fromUtf8(level.text));
-    difficulty_->addButton(button, static_cast<int>(level.difficulty));
+  for (const auto& [difficulty, name] : kHelpLevels) {
+    const QString help = tr(help_text_of(difficulty));
+    auto* button = new QRadioButton(tr(title_of(difficulty)));
+    button->setObjectName(QString::fromLatin1(name));
+    button->setToolTip(help);
+    difficulty_->addButton(button, static_cast<int>(difficulty));
     content->addWidget(button);
-    auto* text = make_label(QString::fromUtf8(level.text), "dim");
+    auto* text = make_label(help, "dim");
     text->setIndent(24);
     text->setWordWrap(true);
     content->addWidget(text);

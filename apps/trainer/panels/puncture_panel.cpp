@@ -87,10 +87,10 @@ QWidget* PuncturePanel::make_hand() {
   clamp_->setFocusPolicy(Qt::NoFocus);
   grid->addWidget(clamp_, 2, 1);
   connect(clamp_, &QPushButton::clicked, this, &PuncturePanel::clamp_wanted);
-  auto* aim = make_button("aim", tr("To the planned entry"), tr("Puts needle or transducer where the plan has it (H)"));
-  aim->setFocusPolicy(Qt::NoFocus);
-  grid->addWidget(aim, 3, 0, 1, 2);
-  connect(aim, &QPushButton::clicked, this, &PuncturePanel::aim_wanted);
+  aim_ = make_button("aim", tr("To the planned entry"), tr("Puts needle or transducer where the plan has it (H)"));
+  aim_->setFocusPolicy(Qt::NoFocus);
+  grid->addWidget(aim_, 3, 0, 1, 2);
+  connect(aim_, &QPushButton::clicked, this, &PuncturePanel::aim_wanted);
   return box;
 }
 
@@ -108,7 +108,8 @@ QWidget* PuncturePanel::make_figures() {
   return box;
 }
 
-void PuncturePanel::begin(double most_force_n) {
+void PuncturePanel::begin(double most_force_n, bool can_aim) {
+  aim_->setEnabled(can_aim);
   events_->clear();
   force_->clear();
   constexpr double kFullLag_mm = 15.0;

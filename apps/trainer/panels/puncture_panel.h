@@ -37,7 +37,8 @@ class PuncturePanel : public QWidget {
  public:
   explicit PuncturePanel(QWidget* parent = nullptr);
 
-  void begin(double most_force_n);
+  /// `can_aim`: the tools may be put where the plan has them.
+  void begin(double most_force_n, bool can_aim);
   void show_figures(const PunctureFigures& figures);
   void show_hand(ToolInHand tool);
   void add_event(const QString& text);
@@ -55,6 +56,7 @@ class PuncturePanel : public QWidget {
 
   QButtonGroup* hand_ = nullptr;
   QPushButton* clamp_ = nullptr;
+  QPushButton* aim_ = nullptr;
   QLabel* phase_ = nullptr;
   QLabel* tissue_ = nullptr;
   QLabel* depth_ = nullptr;

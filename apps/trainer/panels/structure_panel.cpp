@@ -177,7 +177,9 @@ void StructurePanel::refresh() {
   }
   const QSignalBlocker quiet_guidance(guidance_);
   const QSignalBlocker quiet_landmarks(landmarks_);
-  guidance_->setChecked(view_.is_guidance_visible());
+  // There may be nothing that it could show.
+  guidance_->setEnabled(view_.scene().guidance() != Guidance::kNone);
+  guidance_->setChecked(guidance_->isEnabled() && view_.is_guidance_visible());
   landmarks_->setChecked(view_.are_landmarks_visible());
 }
 
@@ -219,8 +221,8 @@ void StructurePanel::add_toggles(QBoxLayout& layout) {
 
   auto* marks = new QHBoxLayout;
   marks->setSpacing(kGap / 2);
-  guidance_ =
-      make_toggle("show-guidance", tr("Guidance"), tr("Expert path and entry zone (G)"), view_.is_guidance_visible());
+  guidance_ = make_toggle("show-guidance", tr("Guidance"),
+                          tr("Path, entry zone and target, as far as the help goes (G)"), view_.is_guidance_visible());
   landmarks_ =
       make_toggle("show-landmarks", tr("Landmarks"), tr("Landmarks with names (M)"), view_.are_landmarks_visible());
   connect(guidance_, &QToolButton::toggled, this, [this](bool is_on) { view_.set_guidance_visible(is_on); });

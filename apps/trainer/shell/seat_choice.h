@@ -1,17 +1,26 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "headless/prepare_case.h"
+#include "scene/guidance.h"
 
 namespace trocar::trainer {
 
 /// How much the trainee is helped.
 enum class Difficulty {
-  kGuided,    ///< Expert path, entry zone and hints are shown.
-  kAssisted,  ///< Hints alone.
+  kGuided,    ///< Expert path, entry zone, target, where the needle goes, the force to come, and hints.
+  kAssisted,  ///< Entry zone, target, the force to come, and hints; no path.
   kExam,      ///< Nothing but pictures and forces.
 };
+constexpr Guidance guidance_of(Difficulty difficulty) noexcept {
+  constexpr std::array kOf{Guidance::kPath, Guidance::kTarget, Guidance::kNone};
+  return kOf[static_cast<std::size_t>(difficulty)];
+}
+/// "Assisted", and what that means in a line.
+const char* title_of(Difficulty difficulty) noexcept;
+const char* help_text_of(Difficulty difficulty) noexcept;
 
 /// What is chosen on the start page.
 struct SeatChoice {

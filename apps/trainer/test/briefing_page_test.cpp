@@ -8,19 +8,12 @@
 
 #include "script/widget_events.h"
 #include "shell/theme.h"
+#include "test/open_abdomen.h"
+#include "test/widget_actions.h"
 #include "views/briefing_picture.h"
 
 namespace trocar::trainer {
 namespace {
-
-/// The embedded patient's liver biopsy, opened once for all.
-const OpenCase& open_abdomen() {
-  static const std::shared_ptr<const OpenCase> open = [] {
-    auto result = make_open_case({});
-    return result ? *result : nullptr;
-  }();
-  return *open;
-}
 
 TEST(BriefingPage, TellsHowFarOpeningIsAndLetsNobodyBeginBefore) {
   BriefingPage page;
@@ -36,17 +29,34 @@ TEST(BriefingPage, ShowsTheCaseAndLetsBegin) {
   page.show();
   page.show_opening({});
   QCoreApplication::processEvents();
-  page.show_case(open_abdomen(), Difficulty::kGuided);
+  page.show_case(*open_abdomen(), Difficulty::kGuided);
   EXPECT_TRUE(page.findChild<QPushButton*>(QStringLiteral("begin"))->isEnabled());
+  save(page, "briefing_guided.png");
+  page.show_case(*open_abdomen(), Difficulty::kAssisted);
+  save(page, "briefing_assisted.png");
+  bool says_help = false;
+  for (const QLabel* label : page.findChildren<QLabel*>())
+    says_help |= label->text().contains(QStringLiteral("Assisted"));
+  EXPECT_TRUE(says_help);
 }
 
 TEST(BriefingPicture, ShowsThePathInGuidedAttemptsAlone) {
   const QSize size(400, 300);
-  const auto share_of_path = [&](bool has_path) {
-    return share_near(briefing_picture(open_abdomen(), BriefingPlane::kAlongPath, size, has_path), theme().path, 12);
+  const auto share_of_path = [&](Guidance guidance) {
+    return share_near(briefing_picture(*open_abdomen(), BriefingPlane::kAlongPath, size, guidance), theme().path, 12);
   };
-  EXPECT_GT(share_of_path(true), 0.001);
-  EXPECT_LT(share_of_path(false), 0.0001);
+  const double line = share_of_path(Guidance::kPath), entry = share_of_path(Guidance::kTarget);
+  EXPECT_GT(line, 0.001);
+  EXPECT_LT(entry, 0.5 * line);
+  EXPECT_GT(entry, 0.0001);  // the ring at the entry
+  EXPECT_EQ(share_of_path(Guidance::kNone), 0.0);
+}
+
+TEST(BriefingPicture, MarksTheTargetInEveryPlane) {
+  for (const BriefingPlane plane : {BriefingPlane::kAxial, BriefingPlane::kSagittal, BriefingPlane::kAlongPath}) {
+    const QImage image = briefing_picture(*open_abdomen(), plane, {400, 300}, Guidance::kNone);
+    EXPECT_GT(share_near(image, theme().target, 12), 0.0001);
+  }
 }
 
 }  // namespace

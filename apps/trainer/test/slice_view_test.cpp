@@ -196,14 +196,32 @@ TEST(SliceView, NeedlePlanesHoldTheShaftAndTheTipPointsDown) {
   }
 }
 
-TEST(SliceView, HidesTheExpertPathWithoutGuidance) {
+TEST(SliceView, ShowsAsMuchOfThePlanAsGuidanceAllows) {
   Shown shown(SliceKind::kAxial);
-  shown.view.set_focus(expert_path().b);
+  const Segment path = expert_path();
+  shown.view.set_focus(0.5 * (path.a + path.b) + Vec3(0.0, 40.0, 0.0));  // the cross-hairs beside all that is looked at
+  shown.view.grab();
   const QImage none = shown.view.grab().toImage();
-  shown.view.set_path(expert_path());
-  EXPECT_NE(shown.view.grab().toImage(), none);
-  shown.view.set_guidance_visible(false);
+  shown.view.set_path(path);
+  shown.view.set_entry_zone(EntryZone{path.a, 15.0});
+  shown.view.set_guidance(Guidance::kNone);
   EXPECT_EQ(shown.view.grab().toImage(), none);
+  const auto drawn_at = [&](const Vec3& p_P, double radius) {
+    const QImage image = shown.view.grab().toImage();
+    const QPoint at = shown.view.position_of(p_P).toPoint();
+    int drawn = 0;
+    for (int y = at.y() - static_cast<int>(radius); y <= at.y() + radius; ++y)
+      for (int x = at.x() - static_cast<int>(radius); x <= at.x() + radius; ++x)
+        drawn += image.pixel(x, y) != none.pixel(x, y) ? 1 : 0;
+    return drawn;
+  };
+  const double zone_px = 15.0 / shown.view.geometry().mm_per_px + 3.0;
+  shown.view.set_guidance(Guidance::kTarget);
+  EXPECT_GT(drawn_at(path.b, 12.0), 20);
+  EXPECT_GT(drawn_at(path.a, zone_px), 20);
+  EXPECT_EQ(drawn_at(path.at(0.6), 4.0), 0);
+  shown.view.set_guidance(Guidance::kPath);
+  EXPECT_GT(drawn_at(path.at(0.6), 4.0), 3);
 }
 
 /// All kinds of views about a path, the right ones as small as views may be.

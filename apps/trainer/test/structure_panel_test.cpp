@@ -79,6 +79,9 @@ TEST_F(StructurePanelTest, TogglesReachTheView) {
   EXPECT_TRUE(view.are_landmarks_visible());
   find<QToolButton>("show-guidance").click();
   EXPECT_FALSE(view.is_guidance_visible());
+  view.set_guidance(Guidance::kNone);
+  panel->refresh();
+  EXPECT_FALSE(find<QToolButton>("show-guidance").isEnabled());
   find<QComboBox>("volume-preset").setCurrentIndex(1);
   EXPECT_EQ(view.volume_preset(), VolumePreset::kBone);
 }

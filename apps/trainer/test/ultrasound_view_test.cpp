@@ -97,6 +97,8 @@ TEST_F(UltrasoundViewTest, GuideShowsWhereTheNeedleGoes) {
   view.set_guide_visible(true);
   view.change_settings([](UltrasoundSettings& s) { s.guide.is_shown = true; });
   EXPECT_TRUE(is_marked(look(view, "axis")));
+  view.set_guide_offered(false);
+  EXPECT_FALSE(is_marked(look(view, "axis_not_offered")));
 }
 
 TEST_F(UltrasoundViewTest, CaliperGivesTheKnownDistance) {

@@ -108,6 +108,10 @@ void PatientView::set_path(const std::optional<Segment>& line_P, double entry_ra
   impl_->scene->set_path(line_P, entry_radius_mm);
 }
 
+void PatientView::set_guidance(Guidance guidance) {
+  impl_->scene->set_guidance(guidance);
+}
+
 void PatientView::set_guidance_visible(bool is_visible) {
   is_guidance_visible_ = is_visible;
   impl_->scene->set_guidance_visible(is_visible);

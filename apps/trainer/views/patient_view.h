@@ -35,6 +35,8 @@ class PatientView : public QWidget {
   bool is_ready() const;
 
   void set_path(const std::optional<Segment>& line_P, double entry_radius_mm);
+  /// What the guidance consists of; set_guidance_visible and the key G show and hide that.
+  void set_guidance(Guidance guidance);
   void set_guidance_visible(bool is_visible);
   bool is_guidance_visible() const noexcept { return is_guidance_visible_; }
   void set_landmarks_visible(bool are_visible);

@@ -113,18 +113,32 @@ void draw_path(const SliceCanvas& canvas, const Segment& path_P) {
   painter.setBrush(Qt::NoBrush);
   painter.setPen(round_pen(theme().path, 1.6));
   painter.drawEllipse(canvas.to_point(path_P.a), 4.0, 4.0);
+}
 
+void draw_target(const SliceCanvas& canvas, const Vec3& p_P) {
+  QPainter& painter = canvas.painter;
+  painter.setBrush(Qt::NoBrush);
   constexpr double kFar_mm = 5.0;  // the target is a place of some size: it fades later than lines do
   constexpr double kRing = 5.5, kArm = 10.0;
-  const bool is_near = std::abs(canvas.geometry.height_mm(path_P.b)) <= kFar_mm;
+  const bool is_near = std::abs(canvas.geometry.height_mm(p_P)) <= kFar_mm;
   const QColor color = is_near ? theme().target : faded(theme().target, 0.5);
-  const QPointF target = canvas.to_point(path_P.b);
+  const QPointF target = canvas.to_point(p_P);
   for (const QPen& pen : {round_pen(faded(kHalo, is_near ? 1.0 : 0.4), 3.6), round_pen(color, 1.8)}) {
     painter.setPen(pen);
     painter.drawEllipse(target, kRing, kRing);
     for (const QPointF& way : {QPointF(1, 0), QPointF(-1, 0), QPointF(0, 1), QPointF(0, -1)})
       painter.drawLine(target + kRing * way, target + kArm * way);
   }
+}
+
+void draw_entry_zone(const SliceCanvas& canvas, const EntryZone& zone) {
+  const double away_mm = std::abs(canvas.geometry.height_mm(zone.centre_P));
+  if (!(away_mm < zone.radius_mm)) return;
+  const double mm_per_point = canvas.geometry.mm_per_px * canvas.device_pixel_ratio;
+  const double radius = std::sqrt(zone.radius_mm * zone.radius_mm - away_mm * away_mm) / mm_per_point;
+  canvas.painter.setBrush(Qt::NoBrush);
+  canvas.painter.setPen(QPen(theme().path, 1.5, Qt::DashLine));
+  canvas.painter.drawEllipse(canvas.to_point(zone.centre_P), radius, radius);
 }
 
 void draw_crosshair(const SliceCanvas& canvas, const Vec3& p_P, const CrossColors& colors, bool only_ends) {

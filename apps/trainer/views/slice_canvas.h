@@ -6,6 +6,7 @@
 
 #include "geometry/segment.h"
 #include "slices/slice_geometry.h"
+#include "training/task.h"
 
 namespace trocar::trainer {
 
@@ -28,8 +29,12 @@ void draw_line(const SliceCanvas& canvas, std::span<const Vec3> points_P, const 
 void draw_needle(const SliceCanvas& canvas, std::span<const Vec3> shaft_P);
 /// Dots ahead of the tip, where the needle would go.
 void draw_aim(const SliceCanvas& canvas, std::span<const Vec3> shaft_P);
-/// An expert path: the line, a ring at the entry, cross-hairs on the target.
+/// The line of an expert path, with a ring at its entry.
 void draw_path(const SliceCanvas& canvas, const Segment& path_P);
+/// Cross-hairs on the target, faint where it lies off the plane.
+void draw_target(const SliceCanvas& canvas, const Vec3& p_P);
+/// The circle in which the plane cuts the zone's ball; nothing where it does not.
+void draw_entry_zone(const SliceCanvas& canvas, const EntryZone& zone);
 
 struct CrossColors {
   QColor vertical, horizontal;

@@ -15,10 +15,6 @@ namespace {
 constexpr double kInPlane_mm = 1.5;
 constexpr double kNear_mm = 15.0;  ///< A landmark farther from the slice is not drawn.
 
-bool is_same(const std::optional<EntryZone>& a, const std::optional<EntryZone>& b) {
-  return a.has_value() == b.has_value() && (!a || (a->centre_P == b->centre_P && a->radius_mm == b->radius_mm));
-}
-
 }  // namespace
 
 SliceMarks::SliceMarks(SliceView* view) : QWidget(view), view_(view) {
@@ -39,12 +35,6 @@ void SliceMarks::set_target(const std::optional<Vec3>& p_P) {
   update();
 }
 
-void SliceMarks::set_zone(const std::optional<EntryZone>& zone) {
-  if (is_same(zone, zone_)) return;
-  zone_ = zone;
-  update();
-}
-
 void SliceMarks::set_landmarks(const std::vector<Landmark>& landmarks) {
   landmarks_ = landmarks;
   update();
@@ -62,15 +52,6 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
     color.setAlphaF(is_near ? 1.0 : 0.45);
     return QPen(color, width, is_near ? Qt::SolidLine : Qt::DashLine);
   };
-  if (zone_) {
-    const double away = away_mm(zone_->centre_P);
-    if (away < zone_->radius_mm) {
-      const double points_per_mm = 1.0 / (view_->geometry().mm_per_px * devicePixelRatioF());
-      const double radius = std::sqrt(zone_->radius_mm * zone_->radius_mm - away * away) * points_per_mm;
-      painter.setPen(QPen(theme().path, 1.5, Qt::DashLine));
-      painter.drawEllipse(view_->position_of(zone_->centre_P), radius, radius);
-    }
-  }
   for (const Landmark& landmark : landmarks_) {
     const double away = away_mm(landmark.p_P);
     if (away > kNear_mm) continue;

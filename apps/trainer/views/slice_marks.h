@@ -5,14 +5,13 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "training/task.h"
 
 namespace trocar::trainer {
 
 class SliceView;
 
-/// Lies over a slice viewer and marks what a case is made of: the target, the entry zone where the slice cuts it, and
-/// landmarks; faint where they lie beside the slice. Lets the mouse through.
+/// Lies over a slice viewer and marks what a case is made of beside the plan: the target and landmarks; faint where
+/// they lie beside the slice. Lets the mouse through.
 class SliceMarks : public QWidget {
   Q_OBJECT
 
@@ -20,7 +19,6 @@ class SliceMarks : public QWidget {
   explicit SliceMarks(SliceView* view);
 
   void set_target(const std::optional<Vec3>& p_P);
-  void set_zone(const std::optional<EntryZone>& zone);
   void set_landmarks(const std::vector<Landmark>& landmarks);
 
  protected:
@@ -33,7 +31,6 @@ class SliceMarks : public QWidget {
 
   SliceView* view_;
   std::optional<Vec3> target_P_;
-  std::optional<EntryZone> zone_;
   std::vector<Landmark> landmarks_;
 };
 

@@ -124,8 +124,16 @@ void SliceView::set_path(const std::optional<Segment>& path_P) {
   update();
 }
 
-void SliceView::set_guidance_visible(bool is_visible) {
-  if (std::exchange(has_guidance_, is_visible) != is_visible) update();
+void SliceView::set_entry_zone(const std::optional<EntryZone>& zone) {
+  const bool is_same = zone.has_value() == zone_.has_value() &&
+                       (!zone || (zone->centre_P == zone_->centre_P && zone->radius_mm == zone_->radius_mm));
+  if (is_same) return;
+  zone_ = zone;
+  update();
+}
+
+void SliceView::set_guidance(Guidance guidance) {
+  if (std::exchange(guidance_, guidance) != guidance) update();
 }
 
 void SliceView::set_window(double centre_hu, double width_hu) {
@@ -265,15 +273,22 @@ void SliceView::paintEvent(QPaintEvent* /*event*/) {
   paint_strip(painter);
 }
 
+void SliceView::draw_plan(const SliceCanvas& canvas) const {
+  if (guidance_ == Guidance::kNone) return;
+  if (zone_) draw_entry_zone(canvas, *zone_);
+  if (guidance_ == Guidance::kPath && path_P_) draw_path(canvas, *path_P_);
+  if (path_P_) draw_target(canvas, path_P_->b);
+  const bool is_along = kind_ == SliceKind::kAlongNeedle || kind_ == SliceKind::kAlongNeedleTurned;
+  if (guidance_ == Guidance::kPath && is_along) draw_aim(canvas, shaft_P_);
+}
+
 void SliceView::paint_overlay(QPainter& painter) const {
   painter.save();
   painter.setClipRect(picture_rect());
   painter.setRenderHint(QPainter::Antialiasing);
   const SliceCanvas canvas{painter, geometry_, picture_rect(), device_pixel_ratio_};
   draw_crosshair(canvas, anchor_P(), info_of(kind_).cross, follows_needle());
-  if (has_guidance_ && path_P_) draw_path(canvas, *path_P_);
-  const bool is_along = kind_ == SliceKind::kAlongNeedle || kind_ == SliceKind::kAlongNeedleTurned;
-  if (has_guidance_ && is_along) draw_aim(canvas, shaft_P_);
+  draw_plan(canvas);
   draw_needle(canvas, shaft_P_);
   draw_letters(canvas);
   draw_scale_bar(canvas);

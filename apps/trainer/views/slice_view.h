@@ -9,17 +9,21 @@
 #include "anatomy/patient.h"
 #include "geometry/pose.h"
 #include "geometry/segment.h"
+#include "scene/guidance.h"
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
+#include "training/task.h"
 
 namespace trocar::trainer {
+
+struct SliceCanvas;
 
 /// Three radiological slices through the focus, and three planes of the needle through its tip (NeedlePlane).
 enum class SliceKind { kAxial, kCoronal, kSagittal, kAlongNeedle, kAlongNeedleTurned, kAcrossNeedle };
 
 /// One slice viewer: CT with labels in a plane, under a strip with name, place and window; cross-hairs in the colours
-/// of the planes they stand for, orientation letters, a scale bar, the needle, and with guidance the expert path.
-/// Points are in P (LPS, mm). Object names: slice-axial, slice-coronal, slice-sagittal, slice-along-needle,
+/// of the planes they stand for, orientation letters, a scale bar, the needle, and as much of the plan as is to be
+/// seen. Points are in P (LPS, mm). Object names: slice-axial, slice-coronal, slice-sagittal, slice-along-needle,
 /// slice-along-turned, slice-across-needle.
 ///
 /// Mouse: left drag moves the cross-hairs; right drag changes the window (right: wider, up: brighter); middle drag or
@@ -43,7 +47,9 @@ class SliceView : public QWidget {
   void set_needle_frame(const Pose& X_PN);
   /// The expert path, from the skin to the target.
   void set_path(const std::optional<Segment>& path_P);
-  void set_guidance_visible(bool is_visible);
+  void set_entry_zone(const std::optional<EntryZone>& zone);
+  /// What is shown of path, target and zone; with the path also where the needle would go.
+  void set_guidance(Guidance guidance);
   /// Does not signal window_changed. Width: at least 1 HU.
   void set_window(double centre_hu, double width_hu);
   /// Of the labels' fill, 0..1.
@@ -110,6 +116,7 @@ class SliceView : public QWidget {
   void redraw_picture();
   void paint_strip(QPainter& painter) const;
   void paint_overlay(QPainter& painter) const;
+  void draw_plan(const SliceCanvas& canvas) const;
   QString place_text() const;
 
   SliceKind kind_;
@@ -120,7 +127,8 @@ class SliceView : public QWidget {
   double offset_mm_ = 0.0;  ///< Of a needle's plane from the tip, along the plane's normal.
   std::vector<Vec3> shaft_P_;
   std::optional<Segment> path_P_;
-  bool has_guidance_ = true;
+  std::optional<EntryZone> zone_;
+  Guidance guidance_ = Guidance::kPath;
   bool has_labels_ = true;
   bool is_fitted_ = true;  ///< Until someone pans or zooms: a new size fits the picture again.
 

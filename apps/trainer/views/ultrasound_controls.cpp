@@ -307,6 +307,7 @@ QWidget* UltrasoundControls::make_guide() {
                    [](S& s) -> double& { return s.guide.angle_deg; },
                    [](double deg) { return QStringLiteral("%1°").arg(deg, 0, 'f', 0); }});
   box->addLayout(grid);
+  guide_ = widget;
   return widget;
 }
 
@@ -378,7 +379,8 @@ void UltrasoundControls::show_view() {
   undo_->setEnabled(view_.measurements().can_undo());
   remove_->setEnabled(!view_.measurements().items().empty());
   clear_->setEnabled(!view_.measurements().items().empty());
-  axis_->setChecked(view_.is_guide_visible());
+  guide_->setEnabled(view_.is_guide_offered());
+  axis_->setChecked(view_.is_guide_visible() && view_.is_guide_offered());
   doppler_->setEnabled(view_.has_flow());
   doppler_knobs_->setVisible(settings.has_doppler);
 }

@@ -78,6 +78,7 @@ class UltrasoundControls : public QWidget {
   QPushButton* undo_ = nullptr;
   QPushButton* remove_ = nullptr;
   QPushButton* clear_ = nullptr;
+  QWidget* guide_ = nullptr;
   QCheckBox* axis_ = nullptr;
   QWidget* doppler_knobs_ = nullptr;
   QCheckBox* doppler_ = nullptr;

@@ -163,6 +163,12 @@ void UltrasoundView::count_picture(double now_s, bool is_live) {
   counting_since_s_ = now_s;
 }
 
+void UltrasoundView::set_guide_offered(bool is_offered) {
+  if (std::exchange(is_guide_offered_, is_offered) == is_offered) return;
+  update();
+  Q_EMIT changed();
+}
+
 void UltrasoundView::set_guide_visible(bool is_visible) {
   if (std::exchange(is_guide_visible_, is_visible) == is_visible) return;
   update();
@@ -301,8 +307,9 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
 
   painter.save();
   painter.setClipPath(outline_of(picture_->scan, map));
-  if (is_guide_visible_ && settings_.guide.is_shown) draw_guide(painter, map, guide_line_T());
-  if (is_guide_visible_) draw_needle_axis(painter, map, *picture_, needle_shaft_P_);
+  const bool has_guide = is_guide_visible_ && is_guide_offered_;
+  if (has_guide && settings_.guide.is_shown) draw_guide(painter, map, guide_line_T());
+  if (has_guide) draw_needle_axis(painter, map, *picture_, needle_shaft_P_);
   painter.restore();
   draw_measurements(painter, map, measurements_.items());
   if (tool_ != MeasuringTool::kNone)

@@ -44,6 +44,9 @@ class UltrasoundView : public QWidget {
   /// The newest; nullptr before the first.
   std::shared_ptr<const ScanPicture> picture() const { return picture_; }
 
+  /// Whether there is a guide at all; none is shown, whatever is set, where it is not offered.
+  void set_guide_offered(bool is_offered);
+  bool is_guide_offered() const noexcept { return is_guide_offered_; }
   /// Where the needle's axis goes in the picture, and the bracket's line if it is mounted.
   void set_guide_visible(bool is_visible);
   bool is_guide_visible() const noexcept { return is_guide_visible_; }
@@ -130,7 +133,7 @@ class UltrasoundView : public QWidget {
   std::optional<Pose> X_PT_;
   std::vector<Vec3> needle_shaft_P_;
   double needle_diameter_mm_ = 1.2, needle_bore_share_ = 0.0, tip_shift_mm_ = 0.0;
-  bool is_guide_visible_ = false;
+  bool is_guide_visible_ = false, is_guide_offered_ = true;
 
   std::shared_ptr<const ScanPicture> picture_;
   QImage image_;  ///< Of the picture's pixels, which it does not own.

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "scene/needle_shape.h"
 #include "volume/sampling.h"
@@ -40,16 +41,15 @@ Vec3 onto_skin(const Vec3& p_P, const Vec3& along_P, const FloatGrid& skin_dista
   return std::abs(moved_mm) < kFarthest_mm ? Vec3(p_P + moved_mm * along_P) : p_P;
 }
 
-std::vector<Vec3> entry_ring(const Segment& line_P, double radius_mm, const FloatGrid& skin_distance_mm) {
+std::vector<Vec3> entry_ring(const EntryMark& entry, const Vec3& along_P, const FloatGrid& skin_distance_mm) {
   constexpr int kPoints = 72;
-  const Vec3 along_P = line_P.direction();
   const Vec3 u_P = along_P.unitOrthogonal();
   const Vec3 v_P = along_P.cross(u_P);
   std::vector<Vec3> ring_P;
   for (int i = 0; i <= kPoints; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kPoints;
-    ring_P.push_back(
-        onto_skin(line_P.a + radius_mm * (std::cos(angle) * u_P + std::sin(angle) * v_P), along_P, skin_distance_mm));
+    ring_P.push_back(onto_skin(entry.centre_P + entry.radius_mm * (std::cos(angle) * u_P + std::sin(angle) * v_P),
+                               along_P, skin_distance_mm));
   }
   return ring_P;
 }
@@ -110,16 +110,23 @@ void GuideLayer::add_text(Props& props, const Vec3& p_P, const std::string& text
   props.push_back(label);
 }
 
-void GuideLayer::set_path(const std::optional<Segment>& line_P, double entry_radius_mm,
+void GuideLayer::set_path(const std::optional<Segment>& line_P, const EntryMark& entry,
                           const FloatGrid& skin_distance_mm) {
-  clear(path_);
+  clear(line_);
+  clear(marks_);
   if (!line_P || !(line_P->length_mm() > 0.0)) return;
-  add_mesh(path_, dashes(*line_P), kPathColor, 1.0, false);
-  add_mesh(path_, make_ball(line_P->b, kTargetRadius_mm), kTargetColor, 1.0, true);
-  const std::vector<Vec3> ring_P = entry_ring(*line_P, entry_radius_mm, skin_distance_mm);
-  add_mesh(path_, make_tube(ring_P, kRingRadius_mm, 8), kPathColor, 1.0, false);
-  add_mesh(path_, disc(ring_P, onto_skin(line_P->a, line_P->direction(), skin_distance_mm)), kPathColor, 0.3, false);
-  for (const auto& prop : path_) prop->SetVisibility(is_path_visible_);
+  const Vec3 along_P = line_P->direction();
+  add_mesh(line_, dashes(*line_P), kPathColor, 1.0, false);
+  add_mesh(marks_, make_ball(line_P->b, kTargetRadius_mm), kTargetColor, 1.0, true);
+  const std::vector<Vec3> ring_P = entry_ring(entry, along_P, skin_distance_mm);
+  add_mesh(marks_, make_tube(ring_P, kRingRadius_mm, 8), kPathColor, 1.0, false);
+  add_mesh(marks_, disc(ring_P, onto_skin(entry.centre_P, along_P, skin_distance_mm)), kPathColor, 0.3, false);
+  show_guidance();
+}
+
+void GuideLayer::show_guidance() {
+  for (const auto& prop : line_) prop->SetVisibility(is_guidance_visible_ && guidance_ == Guidance::kPath);
+  for (const auto& prop : marks_) prop->SetVisibility(is_guidance_visible_ && guidance_ != Guidance::kNone);
 }
 
 void GuideLayer::set_landmarks(const std::vector<Landmark>& landmarks) {
@@ -131,10 +138,15 @@ void GuideLayer::set_landmarks(const std::vector<Landmark>& landmarks) {
   for (const auto& prop : landmarks_) prop->SetVisibility(are_landmarks_visible_);
 }
 
-bool GuideLayer::set_path_visible(bool is_visible) {
-  if (is_visible == is_path_visible_) return false;
-  is_path_visible_ = is_visible;
-  for (const auto& prop : path_) prop->SetVisibility(is_visible);
+bool GuideLayer::set_guidance(Guidance guidance) {
+  if (std::exchange(guidance_, guidance) == guidance) return false;
+  show_guidance();
+  return true;
+}
+
+bool GuideLayer::set_guidance_visible(bool is_visible) {
+  if (std::exchange(is_guidance_visible_, is_visible) == is_visible) return false;
+  show_guidance();
   return true;
 }
 

@@ -6,21 +6,29 @@
 #include <vector>
 
 #include "scene/detail/drawing.h"
+#include "scene/guidance.h"
 
 namespace trocar::detail {
 
-/// The expert's path with its entry zone on the skin and its target, and named landmarks.
+/// Where the needle may enter: the skin within a ball. Frame P, mm.
+struct EntryMark {
+  Vec3 centre_P = Vec3::Zero();
+  double radius_mm = 0.0;
+};
+
+/// The expert's path, the entry zone on the skin and the target, and named landmarks.
 class GuideLayer {
  public:
   explicit GuideLayer(vtkRenderer& renderer) : renderer_(renderer) {}
 
-  /// Draws the path anew. `skin_distance_mm` lays the entry zone on the skin; may be empty.
-  void set_path(const std::optional<Segment>& line_P, double entry_radius_mm, const FloatGrid& skin_distance_mm);
+  /// Draws path, zone and target anew. `skin_distance_mm` lays the zone on the skin; may be empty.
+  void set_path(const std::optional<Segment>& line_P, const EntryMark& entry, const FloatGrid& skin_distance_mm);
   void set_landmarks(const std::vector<Landmark>& landmarks);
-  /// True when it changed something.
-  bool set_path_visible(bool is_visible);
+  // True when it changed something.
+  bool set_guidance(Guidance guidance);
+  bool set_guidance_visible(bool is_visible);
   bool set_landmarks_visible(bool is_visible);
-  bool is_path_visible() const noexcept { return is_path_visible_; }
+  Guidance guidance() const noexcept { return guidance_; }
   bool are_landmarks_visible() const noexcept { return are_landmarks_visible_; }
 
  private:
@@ -28,11 +36,14 @@ class GuideLayer {
   void add_mesh(Props& props, const TriangleMesh& mesh_P, const Rgb& color, double opacity, bool is_lit);
   void add_text(Props& props, const Vec3& p_P, const std::string& text, const Rgb& color);
   void clear(Props& props);
+  void show_guidance();
 
   vtkRenderer& renderer_;
-  Props path_;
+  Props line_;   ///< The way from before the skin to the target.
+  Props marks_;  ///< Target and entry zone.
   Props landmarks_;
-  bool is_path_visible_ = true;
+  Guidance guidance_ = Guidance::kPath;
+  bool is_guidance_visible_ = true;
   bool are_landmarks_visible_ = false;
 };
 

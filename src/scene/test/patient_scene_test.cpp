@@ -114,6 +114,36 @@ TEST_F(PatientSceneTest, GuidanceIsShownAndHidden) {
   EXPECT_EQ(count_of(draw(), is_teal), 0);
 }
 
+bool is_orange(const Rgb& c) {
+  return c[0] > 130 && c[0] > c[1] + 50 && c[1] > c[2] + 10 && c[1] > 60;
+}
+
+TEST_F(PatientSceneTest, GuidanceWithoutThePathIsTargetAndEntryZone) {
+  scene->apply_preset(StructurePreset::kBones);  // there are none: nothing hides the marks
+  scene->set_path(Segment{{60, -95, -50}, {20, 0, -50}}, 15.0);
+  const RgbImage guided = draw();
+  scene->set_guidance(Guidance::kTarget);
+  const RgbImage assisted = draw();
+  EXPECT_GT(count_of(guided, is_orange), 5);
+  EXPECT_NEAR(count_of(assisted, is_orange), count_of(guided, is_orange), 3);
+  EXPECT_GT(count_of(assisted, is_teal), 20);
+  EXPECT_LT(count_of(assisted, is_teal), count_of(guided, is_teal) - 20);
+  scene->set_guidance(Guidance::kNone);
+  const RgbImage exam = draw();
+  EXPECT_EQ(count_of(exam, is_orange) + count_of(exam, is_teal), 0);
+}
+
+TEST_F(PatientSceneTest, EntryZoneLiesAboutItsOwnCentre) {
+  scene->apply_preset(StructurePreset::kBones);
+  scene->set_path(Segment{{60, -95, -50}, {20, 0, -50}}, 15.0);
+  scene->set_guidance(Guidance::kTarget);
+  const auto about_path = middle_of(draw(), is_teal);
+  scene->set_entry_centre(Vec3(60, -95, 20));
+  const auto about_centre = middle_of(draw(), is_teal);
+  EXPECT_NEAR(about_centre.x(), about_path.x(), 4.0);
+  EXPECT_LT(about_centre.y(), about_path.y() - 40.0);  // 70 mm towards the head
+}
+
 TEST_F(PatientSceneTest, LandmarksAreShownWhenAsked) {
   scene->apply_preset(StructurePreset::kBones);
   const RgbImage without = draw();

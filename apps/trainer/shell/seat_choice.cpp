@@ -1,0 +1,16 @@
+#include "shell/seat_choice.h"
+
+namespace trocar::trainer {
+
+const char* title_of(Difficulty difficulty) noexcept {
+  constexpr std::array kTitles{"Guided", "Assisted", "Exam"};
+  return kTitles[static_cast<std::size_t>(difficulty)];
+}
+
+const char* help_text_of(Difficulty difficulty) noexcept {
+  constexpr std::array kTexts{"Expert path, entry zone, target, guide line and hints.",
+                              "Entry zone, target and hints; you find the way.", "Pictures and forces alone."};
+  return kTexts[static_cast<std::size_t>(difficulty)];
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace trocar {
+
+/// How much of a plan the views of a case give away.
+enum class Guidance {
+  kNone,    ///< Nothing.
+  kTarget,  ///< The target and where the needle may enter.
+  kPath,    ///< The expert's path between them, too.
+};
+
+}  // namespace trocar
