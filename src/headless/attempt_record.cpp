@@ -61,6 +61,12 @@ Status AttemptRecord::append(const TickSample& sample) {
   return writer_.append(sample);
 }
 
+Status AttemptRecord::append(const TransducerSample& sample) {
+  if (transducer_s_ && sample.time_s < *transducer_s_ + kTransducerEvery_s) return {};
+  transducer_s_ = sample.time_s;
+  return writer_.append(sample);
+}
+
 Result<RunResult> AttemptRecord::finish() {
   RunResult result;
   result.outcome = score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,

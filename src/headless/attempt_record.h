@@ -16,6 +16,10 @@ struct AttemptFacts {
   std::string force_model;
 };
 
+/// The transducer is recorded so often at most: a hand moves it 0.6 mm in that time, its tremor has 8 to 12 Hz, a
+/// screen shows 60 pictures a second. It makes a file about 5 % larger; every tick would make it half as large again.
+inline constexpr double kTransducerEvery_s = 0.01;
+
 /// An attempt while it happens: every tick in memory and in the session file, scored at the end. What was appended is
 /// in the file, whatever becomes of the attempt.
 class AttemptRecord {
@@ -26,6 +30,8 @@ class AttemptRecord {
   /// What the operator does before the next tick: fires, perhaps.
   void note(const HandCommand& command) noexcept;
   Status append(const TickSample& sample);
+  /// Kept at most every kTransducerEvery_s; it has no part in the score.
+  Status append(const TransducerSample& sample);
   const SessionInfo& info() const noexcept { return info_; }
   const std::vector<TickSample>& samples() const noexcept { return samples_; }  ///< So far.
   /// Scores, and closes the session file.
@@ -39,6 +45,7 @@ class AttemptRecord {
   SessionWriter writer_;
   std::vector<TickSample> samples_;
   std::optional<std::size_t> fired_;
+  std::optional<double> transducer_s_;  ///< Of the last one kept.
 };
 
 }  // namespace trocar

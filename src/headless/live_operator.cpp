@@ -2,17 +2,13 @@
 
 #include <algorithm>
 
+#include "telemetry/tick_pose.h"
 #include "training/hand.h"
 
 namespace trocar {
 namespace {
 
 constexpr double kLongestStep_s = 0.02;  // of a hand: a longer gap between ticks is a pause, not a motion
-
-Pose device_pose(const TickSample& sample) noexcept {
-  const auto& [w, x, y, z] = sample.device_rotation_wxyz;
-  return {Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix(), sample.device_mm};
-}
 
 /// The server resumed the needle while the hand was being placed, in ticks that are not recorded.
 void note_resumption(TickSample& sample) noexcept {
@@ -88,6 +84,17 @@ Result<bool> LiveOperator::take(const TickSample& tick) {
 Status LiveOperator::take_unseen(const TickSample& tick) {
   TROCAR_TRY(const double step_s, record(tick));
   unseen_s_ += step_s;
+  return {};
+}
+
+Status LiveOperator::note_transducer(std::span<const NumberedSample> ticks, double clock_offset_s) {
+  if (!has_begun_) return {};
+  for (const NumberedSample& numbered : ticks) {
+    const TickSample& tick = numbered.sample;
+    const double at_s = tick.time_s - clock_offset_s - origin_s_;
+    if (at_s < 0.0) continue;
+    TROCAR_TRY_STATUS(record_->append(TransducerSample{at_s, felt_probe(tick), tick.f_constraint_n.norm()}));
+  }
   return {};
 }
 

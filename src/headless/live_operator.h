@@ -1,8 +1,10 @@
 #pragma once
 
+#include <span>
+
 #include "headless/attempt_record.h"
 #include "headless/performer.h"
-#include "link/messages.h"
+#include "link/haptic_client.h"
 
 namespace trocar {
 
@@ -22,6 +24,9 @@ class LiveOperator {
   /// A tick that comes too late to be answered, because this program stood still: recorded; the operator does not see
   /// it and its hand's time stands still with it.
   Status take_unseen(const TickSample& tick);
+  /// Ticks of the transducer's server, whose clock is so far ahead of ours: recorded in the session's time. Before the
+  /// needle's first tick there is no session yet.
+  Status note_transducer(std::span<const NumberedSample> ticks, double clock_offset_s);
   /// The answer to the last tick.
   HandTarget hand() const noexcept;
 

@@ -39,7 +39,8 @@ class LiveServers {
 
   /// One look at all. Errors: what befalls the needle's server; without the probe's the attempt goes on.
   Result<State> look();
-  void move_probe(const ProbeHand& hand);
+  /// Moves the transducer's hand on and records where it was felt.
+  Status move_probe(const ProbeHand& hand, LiveOperator& live);
   void stop();
   void tell(RunResult& result);
 
@@ -122,20 +123,21 @@ Result<State> LiveServers::look() {
   return needle_.front().look();
 }
 
-void LiveServers::move_probe(const ProbeHand& hand) {
-  if (!has_probe()) return;
+Status LiveServers::move_probe(const ProbeHand& hand, LiveOperator& live) {
+  if (!has_probe()) return {};
   ServerSeat& probe = probe_.front();
   if (probe.state() != State::kOn) {
     probe_on_s_.reset();
-    return;
+    return {};
   }
   const std::vector<NumberedSample> samples = probe.take_samples();
-  if (samples.empty()) return;
+  if (samples.empty()) return {};
   const double now_s = samples.back().sample.time_s;
   if (!probe_on_s_) probe_on_s_ = now_s;
   HandTarget target = hand.at(now_s - *probe_on_s_);
   target.server_time_s = now_s;
   probe.set_hand(target);
+  return live.note_transducer(samples, probe.view().clock_offset_s);
 }
 
 void LiveServers::stop() {
@@ -190,7 +192,7 @@ Status perform(LiveServers& servers, LiveOperator& live, const ProbeHand& probe_
       needle.set_hand(live.hand());
       needle.place_at(live.X_PN_device());
     }
-    servers.move_probe(probe_hand);
+    TROCAR_TRY_STATUS(servers.move_probe(probe_hand, live));
     report(progress, was_on ? "performing" : "waiting for the needle's server", live.time_s() / kLongestAttempt_s);
     TROCAR_TRY_STATUS(servers.look());
     std::this_thread::sleep_for(kBetweenLooks);

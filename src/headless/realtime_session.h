@@ -28,7 +28,7 @@ Status find_servers(const RealtimeOptions& options);
 
 /// Performs an attempt through live haptic servers, in real time: operator here, hand, device and tick there. The
 /// needle's every tick is recorded and scored as by run_session, times from the first one; ticks that get lost on the
-/// way are counted. A transducer is held on the skin beside the entry meanwhile; its ticks are counted, not recorded.
+/// way are counted. A transducer is held on the skin beside the entry meanwhile; where it was is recorded, too.
 /// A needle's server that goes away and comes back within the patience gets scene and hand again, and the attempt goes
 /// on from where the needle was. Errors: no server, another client in control, what a server refuses, a fault of the
 /// needle's gate, a needle's server that stays away; the session file then holds everything up to there.

@@ -60,6 +60,19 @@ std::vector<Vec3> AttemptReplay::shaft_at(double time_s) const {
   return needle_shaft(at(time_s), open_->the_case.needle.length_mm);
 }
 
+std::optional<Pose> AttemptReplay::transducer_at(double time_s) const noexcept {
+  const auto& moments = session_.transducer;
+  if (moments.empty()) return std::nullopt;
+  const auto next = std::upper_bound(moments.begin(), moments.end(), time_s,
+                                     [](double t, const TransducerSample& sample) { return t < sample.time_s; });
+  if (next == moments.begin()) return moments.front().X_PT;
+  const TransducerSample& before = *(next - 1);
+  if (next == moments.end() || next->time_s - before.time_s > kTransducerGap_s) return before.X_PT;
+  const double share = (time_s - before.time_s) / (next->time_s - before.time_s);
+  const Eigen::Quaterniond from(before.X_PT.R()), to(next->X_PT.R());
+  return Pose(from.slerp(share, to).toRotationMatrix(), before.X_PT.p() + share * (next->X_PT.p() - before.X_PT.p()));
+}
+
 void AttemptReplay::find_moments() {
   using Kind = ReplayMoment::Kind;
   for (const TickSample& sample : session_.samples) {

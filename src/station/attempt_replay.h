@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,10 @@ class AttemptReplay {
   /// The tick under way at a time; the ends beyond them.
   const TickSample& at(double time_s) const noexcept;
   std::vector<Vec3> shaft_at(double time_s) const;
+  /// X_PT between the recorded moments; across a gap of more than kTransducerGap_s it stays where it was. Empty: the
+  /// session tells nothing of a transducer.
+  std::optional<Pose> transducer_at(double time_s) const noexcept;
+  static constexpr double kTransducerGap_s = 0.1;
 
   /// By time, the worst among them.
   const std::vector<ReplayMoment>& moments() const noexcept { return moments_; }

@@ -2,6 +2,7 @@
 
 #include "station/attempt_event.h"
 #include "station/needle_shaft.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar {
 

@@ -9,6 +9,7 @@
 
 #include "anatomy/patient.h"
 #include "core/result.h"
+#include "geometry/pose.h"
 #include "telemetry/tick_sample.h"
 #include "training/score.h"
 
@@ -40,6 +41,13 @@ struct SessionInfo {
   std::vector<std::string> label_names;  ///< 256 entries.
 };
 
+/// Where the transducer was felt at a moment. Frame P.
+struct TransducerSample {
+  double time_s = 0.0;     ///< As the ticks' time.
+  Pose X_PT;               ///< As felt: it does not pass through the skin.
+  double contact_n = 0.0;  ///< Of skin and face.
+};
+
 /// Writes a session as it happens: one SQLite file in WAL mode. Killed at any moment it loses at most the last half
 /// second of ticks and opens again: ticks are buffered and committed every 0.5 s of session time, and after as many as
 /// 0.5 s hold at the session's rate. After the first failure it writes no more and returns that failure again.
@@ -53,6 +61,8 @@ class SessionWriter {
   ~SessionWriter();
 
   Status append(const TickSample& sample);
+  /// In the order of time. One that is not later than the last one, or not finite, is left out.
+  Status append(const TransducerSample& sample);
   /// Writes what is buffered, then the outcome, and makes it a single file again. `fired` is a sample's index. Nothing
   /// can be appended afterwards.
   Status finish(const Outcome& outcome, std::optional<std::size_t> fired);
@@ -66,8 +76,9 @@ class SessionWriter {
 struct Session {
   SessionInfo info;
   std::vector<TickSample> samples;
-  std::optional<Outcome> outcome;    ///< Missing when the program was killed before the end.
-  std::optional<std::size_t> fired;  ///< Sample at which the biopsy gun was fired.
+  std::vector<TransducerSample> transducer;  ///< By time; empty: there was none, or an older program recorded it.
+  std::optional<Outcome> outcome;            ///< Missing when the program was killed before the end.
+  std::optional<std::size_t> fired;          ///< Sample at which the biopsy gun was fired.
 };
 /// Reads a finished or a killed session (its -wal file beside it). NaN comes back as NaN, -0.0 as 0.0; other values bit
 /// by bit. Errors, one line each: no such file, a folder, empty, not a session, damaged, of a newer version, a killed

@@ -9,6 +9,7 @@
 #include "storage/detail/database.h"
 #include "storage/detail/info_table.h"
 #include "storage/detail/outcome_json.h"
+#include "storage/detail/transducer_table.h"
 #include "storage/session_file.h"
 
 namespace trocar {
@@ -188,6 +189,7 @@ Result<Session> load_session(const fs::path& path) {
     session.info = read_info(database);
     session.samples = read_ticks(database);
     read_events(database, session.samples);
+    session.transducer = read_transducer(database);
     outcome_json = read_outcome(database, session);
   }));
   TROCAR_TRY_STATUS(identity);

@@ -13,6 +13,7 @@
 #include "storage/detail/database.h"
 #include "storage/detail/info_table.h"
 #include "storage/detail/outcome_json.h"
+#include "storage/detail/transducer_table.h"
 #include "storage/session_file.h"
 
 namespace trocar {
@@ -60,6 +61,7 @@ struct SessionWriter::Impl {
     std::vector<int> tick, slot, kind, id;
     std::vector<std::string> text;
   } events;
+  TransducerBuffer transducer;
 
   soci::session database;
   std::optional<soci::statement> insert_ticks, insert_events;
@@ -160,11 +162,12 @@ void SessionWriter::Impl::buffer(const TickSample& sample) {
 }
 
 Status SessionWriter::Impl::flush() {
-  if (tick_column.empty()) return {};
+  if (tick_column.empty() && transducer.is_empty()) return {};
   Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
     database << "BEGIN IMMEDIATE";
-    insert_ticks->execute(true);
+    if (!tick_column.empty()) insert_ticks->execute(true);
     if (!events.tick.empty()) insert_events->execute(true);
+    transducer.write(database);
     database << "COMMIT";
   });
   if (!status) failure = status.error();
@@ -179,6 +182,7 @@ void SessionWriter::Impl::clear() {
   for (auto& column : integer_columns) column.clear();
   for (auto* column : {&events.tick, &events.slot, &events.kind, &events.id}) column->clear();
   events.text.clear();
+  transducer.clear();
 }
 
 SessionWriter::SessionWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -209,6 +213,13 @@ Status SessionWriter::append(const TickSample& sample) {
   const bool is_due = sample.time_s - impl_->batch_start_s >= kBatchSeconds;
   if (is_due || impl_->tick_column.size() >= impl_->batch_ticks) return impl_->flush();
   return {};
+}
+
+Status SessionWriter::append(const TransducerSample& sample) {
+  TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
+  if (impl_->failure) return tl::unexpected(*impl_->failure);
+  impl_->transducer.add(sample);
+  return impl_->transducer.span_s() >= kBatchSeconds ? impl_->flush() : Status{};  // it moves on without the needle
 }
 
 Status SessionWriter::finish(const Outcome& outcome, std::optional<std::size_t> fired) {

@@ -1,15 +1,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "telemetry/tick_pose.h"
 #include "training/operator.h"
 
 namespace trocar {
 namespace {
-
-Pose device_pose(const TickSample& sample) noexcept {
-  const auto& [w, x, y, z] = sample.device_rotation_wxyz;
-  return {Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix(), sample.device_mm};
-}
 
 class Replay final : public Operator {
  public:

@@ -100,6 +100,9 @@ TEST_F(RealtimeSession, ExpertThroughTwoServersDoesWhatItDoesInProcess) {
 
   EXPECT_EQ(attempt.session.samples.size(), live->ticks);
   EXPECT_EQ(attempt.session.samples.front().time_s, 0.0);
+  const auto& transducer = attempt.session.transducer;
+  ASSERT_FALSE(transducer.empty());
+  EXPECT_TRUE(std::any_of(transducer.begin(), transducer.end(), [](const auto& m) { return m.contact_n > 0.5; }));
   EXPECT_NE(attempt.session.info.device.find("through trocar-hapticd"), std::string::npos);
   ASSERT_EQ(live->servers.size(), 2u);
   EXPECT_EQ(live->servers[0].tool, "needle");

@@ -8,6 +8,7 @@
 
 #include "core/temporary_folder.h"
 #include "servers/live_server.h"
+#include "station/attempt_replay.h"
 #include "station/hand_motion.h"
 #include "storage/session_file.h"
 
@@ -177,6 +178,30 @@ TEST_F(LiveAttemptTest, TheHandLeadsTheNeedleAndAClampedOneDoesNot) {
   attempt->set_hand(HandTool::kProbe, moved(probe, Vec3(0.0, -20.0, 0.0), Vec3::Zero()));
   ASSERT_TRUE(wait_for([&] { return attempt->view().probe.contact_n == 0.0; }));  // lifted off
   EXPECT_LT((attempt->view().needle.X_PN.p() - aside.p()).norm(), 1.0);
+}
+
+TEST_F(LiveAttemptTest, TheReplayMovesTheTransducerAsItWasMoved) {
+  start(options());
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_for([&] { return attempt->view().probe.contact_n > 0.1; }));
+  const Pose from = attempt->view().probe.X_PT;
+  const double pressed_s = attempt->view().session_s;
+  const Pose aside = moved(from, Vec3(12.0, 0.0, 0.0), Vec3::Zero());
+  attempt->set_hand(HandTool::kProbe, aside);
+  ASSERT_TRUE(wait_for([&] { return (attempt->view().probe.X_PT.p() - aside.p()).norm() < 1.0; })) << where();
+  const double moved_s = attempt->view().session_s;
+  ASSERT_TRUE(wait_for([&] { return attempt->view().session_s > moved_s + 0.2; }));
+  attempt->finish();
+  finished();
+  const auto replay = AttemptReplay::load(options().session, layered_case());
+  ASSERT_TRUE(replay) << replay.error().text();
+  ASSERT_TRUE(replay->transducer_at(0.0));
+  constexpr double kLate_mm = 2.0;  // what a hand moves while a tick travels and is looked at
+  EXPECT_LT((replay->transducer_at(pressed_s)->p() - from.p()).norm(), kLate_mm);
+  EXPECT_LT((replay->transducer_at(moved_s + 0.2)->p() - aside.p()).norm(), kLate_mm);
+  const auto& moments = replay->session().transducer;
+  EXPECT_LE(static_cast<double>(moments.size()), 100.0 * moments.back().time_s + 1.0);
+  EXPECT_TRUE(std::any_of(moments.begin(), moments.end(), [](const auto& m) { return m.contact_n > 0.1; }));
 }
 
 TEST_F(LiveAttemptTest, ParametersReachTheServerWhileItRuns) {

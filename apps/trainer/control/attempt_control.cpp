@@ -251,6 +251,7 @@ QVariantMap AttemptControl::facts() const {
   facts[QStringLiteral("has_fired")] = view_.has_fired;
   facts[QStringLiteral("probe_pressed_mm")] = view_.probe.pressed_mm;
   facts[QStringLiteral("probe_force_n")] = view_.probe.contact_n;
+  facts[QStringLiteral("probe_from_plan_mm")] = (view_.probe.X_PT.p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("restarts")] = view_.servers[0].restarts;
   facts[QStringLiteral("session")] = to_qt(attempt_.session_path().string());
   return facts;

@@ -10,7 +10,7 @@
 #include "report/html_report.h"
 #include "shell/parts.h"
 #include "shell/theme.h"
-#include "station/needle_shaft.h"
+#include "telemetry/tick_pose.h"
 #include "views/force_plot.h"
 #include "views/time_line.h"
 
@@ -60,7 +60,7 @@ ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCas
                                 tr("Worst moment: %1, after %2 s").arg(to_qt(worst.text)).arg(worst.time_s, 0, 'f', 1));
   page_.desk().show_help(Difficulty::kGuided);  // afterwards everybody may see the expert's path
   connect(&page_.feedback(), &FeedbackPanel::worst_wanted, this, &ReplayControl::go_to_worst);
-  show_at(replay_.duration_s());
+  show_at(replay_.duration_s(), false);
 }
 
 void ReplayControl::fill_plot() {
@@ -106,17 +106,26 @@ void ReplayControl::fill_time_line() {
 
 void ReplayControl::advance(double dt_s) {
   page_.time_line().advance(dt_s);
-  if (page_.time_line().time_s() != shown_s_) show_at(page_.time_line().time_s());
+  const double time_s = page_.time_line().time_s();
+  // Scrubbing is moving, too: pictures of full quality come when the time rests.
+  constexpr double kStill_s = 0.3;
+  const bool was_moving = still_s_ < kStill_s;
+  still_s_ = time_s != shown_s_ || page_.time_line().is_playing() ? 0.0 : still_s_ + dt_s;
+  if (time_s != shown_s_ || was_moving != (still_s_ < kStill_s)) show_at(time_s, still_s_ < kStill_s);
 }
 
-void ReplayControl::show_at(double time_s) {
+Pose ReplayControl::transducer_at(double time_s) const {
+  return replay_.transducer_at(time_s).value_or(open_->X_PT_start);
+}
+
+void ReplayControl::show_at(double time_s, bool is_moving) {
   const TickSample& sample = replay_.at(time_s);
   ToolsShown tools;
   tools.shaft_P = replay_.shaft_at(time_s);
   tools.X_PN = felt_needle(sample);
   tools.focus_P = sample.depth_mm > 0.0 ? sample.tip_mm : open_->the_case.plan.line_P.b;
-  tools.X_PT = open_->X_PT_start;
-  tools.are_moving = page_.time_line().is_playing();
+  tools.X_PT = transducer_at(time_s);
+  tools.are_moving = is_moving;
   page_.desk().show_tools(tools);
   page_.desk().forces().set_cursor(time_s);
   shown_s_ = time_s;
@@ -137,6 +146,7 @@ QVariantMap ReplayControl::facts() const {
   facts[QStringLiteral("replay_s")] = shown_s_;
   facts[QStringLiteral("duration_s")] = replay_.duration_s();
   facts[QStringLiteral("worst_s")] = replay_.worst().time_s;
+  facts[QStringLiteral("probe_from_plan_mm")] = (transducer_at(shown_s_).p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("was_cut_off")] = replay_.was_cut_off();
   return facts;
 }

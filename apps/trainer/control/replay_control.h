@@ -29,12 +29,14 @@ class ReplayControl : public QObject {
  private:
   void fill_plot();
   void fill_time_line();
-  void show_at(double time_s);
+  void show_at(double time_s, bool is_moving);
+  Pose transducer_at(double time_s) const;
 
   AttemptReplay replay_;
   std::shared_ptr<const OpenCase> open_;
   WorkPage& page_;
   double shown_s_ = -1.0;
+  double still_s_ = 1.0;  ///< Since the time last changed.
 };
 
 }  // namespace trocar::trainer

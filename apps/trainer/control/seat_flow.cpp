@@ -25,6 +25,7 @@
 #include "station/user_folders.h"
 #include "views/patient_view.h"
 #include "views/time_line.h"
+#include "views/ultrasound_view.h"
 
 namespace trocar::trainer {
 namespace {
@@ -304,6 +305,9 @@ QVariantMap SeatFlow::facts() const {
   facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(late_frames_);
   if (attempt_) facts.insert(attempt_->facts());
   if (replay_) facts.insert(replay_->facts());
+  // What the ultrasound picture on the screen was made at.
+  if (const auto picture = window_.work().desk().ultrasound().picture(); picture && open_)
+    facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("frame_p50_ms")] = quantile(frame_ms_, 0.5);
   facts[QStringLiteral("frame_p99_ms")] = quantile(frame_ms_, 0.99);
   const FrameTimes& renders = window_.work().desk().view_3d().moving_frame_times();

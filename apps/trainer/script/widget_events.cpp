@@ -46,6 +46,12 @@ void send_mouse(QWidget& widget, QEvent::Type type, const QPointF& place, Qt::Mo
   QCoreApplication::sendEvent(&target, &event);
 }
 
+/// What has the focus, or has it as soon as the window is the active one: a bare X server makes none active.
+QWidget& focused(QWidget& window) {
+  if (QWidget* widget = QApplication::focusWidget()) return *widget;
+  return window.focusWidget() != nullptr ? *window.focusWidget() : window;
+}
+
 Status no_such(const QWidget& widget, const QString& what) {
   return fail("\"" + to_std(what) + "\" cannot be set", to_std(widget.objectName()),
               std::string("it is a ") + widget.metaObject()->className());
@@ -111,7 +117,7 @@ Status strike(QWidget& window, const QString& keys) {
   const int key = sequence[0] & ~static_cast<int>(Qt::KeyboardModifierMask);
   const Qt::KeyboardModifiers modifiers(sequence[0] & static_cast<int>(Qt::KeyboardModifierMask));
 #endif
-  QWidget* target = QApplication::focusWidget() != nullptr ? QApplication::focusWidget() : &window;
+  QWidget* target = &focused(window);
   const QString text = modifiers == Qt::NoModifier && key < 0x100 ? QString(QChar(key)).toLower() : QString();
   // An override event first, as the window system does: a text field keeps its keys.
   QKeyEvent override_event(QEvent::ShortcutOverride, key, modifiers, text);
@@ -128,7 +134,7 @@ Status strike(QWidget& window, const QString& keys) {
 }
 
 void type_text(QWidget& window, const QString& text) {
-  QWidget* target = QApplication::focusWidget() != nullptr ? QApplication::focusWidget() : &window;
+  QWidget* target = &focused(window);
   for (const QChar c : text) {
     QKeyEvent down(QEvent::KeyPress, 0, Qt::NoModifier, QString(c));
     QCoreApplication::sendEvent(target, &down);

@@ -73,6 +73,10 @@ TEST_F(WindowTest, EveryLayoutShowsWhatItNames) {
   expect_played(play("layouts.txt"));
 }
 
+TEST_F(WindowTest, TheReplayMovesTheTransducerAsItWasMoved) {
+  expect_played(play("transducer.txt"));
+}
+
 TEST_F(WindowTest, AnAttemptThatACrashCutOffCanBeSeenAgain) {
   // The window is killed in mid-puncture by its own script's host.
   const QString script = write("cut.txt",

@@ -139,5 +139,35 @@ TEST_F(LiveOperatorTest, FiresAtTheTickAfterTheCommandAndEndsWhenTheOperatorIsDo
   EXPECT_EQ(session.samples.size(), 4u);
 }
 
+TEST_F(LiveOperatorTest, RecordsTheTransducerInTheSessionsTime) {
+  constexpr double kProbesClock_s = -700.0, kNeedlesClock_s = 300.0;
+  const auto probe_ticks = [&](double from_s, int count) {
+    std::vector<NumberedSample> ticks;
+    for (int i = 0; i < count; ++i) {
+      TickSample sample = tick(kServer_s - kNeedlesClock_s + kProbesClock_s + from_s + 0.001 * i);
+      sample.axis = Vec3::UnitY();
+      sample.tip_mm = sample.device_mm = {sample.time_s, 0.0, 0.0};
+      sample.f_constraint_n = {0.0, -3.0, 0.0};
+      ticks.push_back({static_cast<std::uint64_t>(i), sample});
+    }
+    return ticks;
+  };
+  live_->begin(kNeedlesClock_s);
+  ASSERT_TRUE(live_->note_transducer(probe_ticks(-0.1, 50), kProbesClock_s));  // there is no session yet
+  take(kServer_s);
+  take(kServer_s + 0.001);
+  ASSERT_TRUE(live_->note_transducer(probe_ticks(-0.05, 300), kProbesClock_s));
+  const Session session = recorded();
+  ASSERT_EQ(session.samples.size(), 2u);
+  ASSERT_GE(session.transducer.size(), 23u);  // of the 250 ms in it, at most 100 a second
+  ASSERT_LE(session.transducer.size(), 25u);
+  EXPECT_NEAR(session.transducer.front().time_s, 0.0, 0.0011);
+  EXPECT_NEAR(session.transducer.back().time_s, 0.25, 0.0121);
+  for (const TransducerSample& moment : session.transducer) {
+    EXPECT_NEAR(moment.X_PT.p().x(), kServer_s - kNeedlesClock_s + kProbesClock_s + moment.time_s, kTolerance_s);
+    EXPECT_EQ(moment.contact_n, 3.0);
+  }
+}
+
 }  // namespace
 }  // namespace trocar

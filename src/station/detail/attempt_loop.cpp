@@ -9,7 +9,7 @@
 
 #include "headless/scene_request.h"
 #include "station/attempt_event.h"
-#include "station/needle_shaft.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar {
 namespace {
@@ -116,7 +116,7 @@ Status AttemptLoop::step() {
   TROCAR_TRY_STATUS(take_wishes());
   // Ticks first: when a look finds the server changed, all of the old one's are already taken.
   TROCAR_TRY_STATUS(step_needle());
-  if (probe_) step_probe();
+  if (probe_) TROCAR_TRY_STATUS(step_probe());
   look_at(*needle_);
   if (probe_) look_at(*probe_);
   TROCAR_TRY_STATUS(check_start());
@@ -249,11 +249,11 @@ void AttemptLoop::note_tick(const TickSample& sample) {
   }
 }
 
-void AttemptLoop::step_probe() {
+Status AttemptLoop::step_probe() {
   const std::vector<NumberedSample> samples = probe_->take_samples();
   if (samples.empty()) {
     was_probe_on_ = was_probe_on_ && probe_->is_on();
-    return;
+    return {};
   }
   const double now_s = samples.back().sample.time_s;
   if (!was_probe_on_) probe_time_s_ = samples.front().sample.time_s;
@@ -268,6 +268,7 @@ void AttemptLoop::step_probe() {
   target.server_time_s = now_s;
   probe_->set_hand(target);
   probe_->place_at(device_pose(*last_probe_));
+  return live_ ? live_->note_transducer(samples, probe_->clock_offset_s()) : Status{};
 }
 
 Result<RunResult> AttemptLoop::score(const Status& status) {

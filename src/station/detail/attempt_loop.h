@@ -66,7 +66,7 @@ class AttemptLoop {
   void answer_unrecorded(const std::vector<NumberedSample>& samples);
   Status record(const std::vector<NumberedSample>& samples);
   void note_tick(const TickSample& sample);
-  void step_probe();
+  Status step_probe();
   void look_at(ToolServer& server);
   Status check_start();
   void conclude(Status status);

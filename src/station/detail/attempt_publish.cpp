@@ -1,8 +1,8 @@
 // What the window sees of an attempt.
 #include "station/detail/attempt_loop.h"
-#include "station/needle_shaft.h"
 #include "station/needle_view.h"
 #include "station/puncture_guide.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar {
 

@@ -59,6 +59,44 @@ TEST(AttemptReplay, NamesWhatHappenedInOrder) {
   EXPECT_NE(replay->worst().text.find("mm beside"), std::string::npos) << replay->worst().text;
 }
 
+/// A session of two ticks in which the transducer is moved, and one without.
+std::filesystem::path short_session(const TemporaryFolder& folder, const std::vector<TransducerSample>& moments) {
+  const std::filesystem::path path = folder / "short.trocar";
+  const auto from = load_session(recorded().session);
+  EXPECT_TRUE(from);
+  auto writer = SessionWriter::create(path, from->info);
+  EXPECT_TRUE(writer);
+  for (std::size_t n = 0; n < 2; ++n) EXPECT_TRUE(writer->append(from->samples[n]));
+  for (const TransducerSample& moment : moments) EXPECT_TRUE(writer->append(moment));
+  return path;
+}
+
+TEST(AttemptReplay, MovesTheTransducerBetweenItsRecordedMoments) {
+  const TemporaryFolder folder;
+  const Pose from = needle_pose({1.0, 2.0, 3.0}, Vec3::UnitY());
+  const Mat3 turned = Eigen::AngleAxisd(0.2, Vec3::UnitX()).toRotationMatrix();
+  const Pose to(turned * from.R(), from.p() + Vec3(4.0, 0.0, 0.0));
+  const Pose later(to.R(), to.p() + Vec3(0.0, 0.0, 50.0));
+  const auto replay = AttemptReplay::load(short_session(folder, {{1.0, from, 0.0}, {1.01, to, 2.0}, {3.0, later, 0.0}}),
+                                          recorded().open);
+  ASSERT_TRUE(replay) << replay.error().text();
+  const auto at = [&](double time_s) { return replay->transducer_at(time_s).value(); };
+  EXPECT_EQ(at(0.0).p(), from.p());
+  EXPECT_NEAR((at(1.005).p() - Vec3(3.0, 2.0, 3.0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(Eigen::AngleAxisd(Mat3(at(1.005).R() * from.R().transpose())).angle(), 0.1, 1e-9);
+  EXPECT_EQ(at(1.01).p(), to.p());
+  EXPECT_EQ(at(2.9).p(), to.p());  // its server was away: it does not drift
+  EXPECT_EQ(at(3.0).p(), later.p());
+  EXPECT_EQ(at(9.0).p(), later.p());
+}
+
+TEST(AttemptReplay, TellsNoTransducerThatWasNotRecorded) {
+  const TemporaryFolder folder;
+  const auto replay = AttemptReplay::load(short_session(folder, {}), recorded().open);
+  ASSERT_TRUE(replay) << replay.error().text();
+  EXPECT_FALSE(replay->transducer_at(0.5));
+}
+
 TEST(AttemptReplay, ASessionOfAnotherPatientIsRefused) {
   auto other = std::make_shared<OpenCase>(*recorded().open);
   auto patient = std::make_shared<VirtualPatient>(*other->the_case.patient);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/pose.h"
+
 namespace trocar {
 namespace {
 
@@ -51,22 +53,6 @@ TEST(NeedleShaft, BendsFromTheGripsDirectionToTheTips) {
   const Vec3 first = (shaft[1] - shaft[0]).normalized(), last = (shaft.back() - shaft[shaft.size() - 2]).normalized();
   EXPECT_LT(angle_between_rad(first, kHeld.R().col(2)), 0.02);
   EXPECT_LT(angle_between_rad(last, sample.axis), 0.02);
-}
-
-TEST(FeltNeedle, TurnsTheDevicesPoseToTheFeltAxis) {
-  TickSample sample = sample_at(kHeld);
-  sample.axis = (sample.axis + 0.2 * sample.axis.unitOrthogonal()).normalized();
-  sample.tip_mm += Vec3(1.0, 0.0, 0.0);
-  const Pose felt = felt_needle(sample);
-  EXPECT_NEAR((felt.R().col(2) - sample.axis).norm(), 0.0, 1e-12);
-  EXPECT_EQ(felt.p(), sample.tip_mm);
-  EXPECT_NEAR((device_pose(sample).R() - kHeld.R()).norm(), 0.0, 1e-12);
-}
-
-TEST(FeltProbe, HasItsAxisInY) {
-  TickSample sample = sample_at(Pose());
-  sample.axis = Vec3(0.0, 1.0, 0.1).normalized();
-  EXPECT_NEAR((felt_probe(sample).R().col(1) - sample.axis).norm(), 0.0, 1e-12);
 }
 
 }  // namespace

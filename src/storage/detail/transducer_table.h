@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "storage/detail/database.h"
+#include "storage/session_file.h"
+
+namespace trocar::storage_detail {
+
+/// The table `transducer`: time, origin and rotation of X_PT, force of contact; real numbers, none is missing. Sessions
+/// of older programs do not have it.
+inline constexpr std::array kTransducerColumns{"time_s", "x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz", "contact_n"};
+
+std::string transducer_schema();
+
+/// Samples on their way into the table. Invariant: columns of one length; time rises.
+class TransducerBuffer {
+ public:
+  /// One that is not later than the last one, or not finite, is left out.
+  void add(const TransducerSample& sample);
+  bool is_empty() const noexcept { return columns_[0].empty(); }
+  double span_s() const noexcept { return is_empty() ? 0.0 : columns_[0].back() - columns_[0].front(); }
+  /// Throws soci::soci_error.
+  void write(soci::session& database);
+  void clear() noexcept;
+
+ private:
+  std::array<std::vector<double>, kTransducerColumns.size()> columns_;
+  double last_s_ = -std::numeric_limits<double>::infinity();
+};
+
+/// All of them by time; none where there is no such table. Throws soci::soci_error, also for what is no pose.
+std::vector<TransducerSample> read_transducer(soci::session& database);
+
+}  // namespace trocar::storage_detail

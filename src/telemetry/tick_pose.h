@@ -1,0 +1,15 @@
+#pragma once
+
+#include "geometry/pose.h"
+#include "telemetry/tick_sample.h"
+
+namespace trocar {
+
+/// The device's tool of a tick: X_PN, or X_PT of a transducer. Without a rotation: unturned.
+Pose device_pose(const TickSample& sample) noexcept;
+/// The felt needle: tip and axis of the virtual one, the device's roll.
+Pose felt_needle(const TickSample& sample) noexcept;
+/// The same of a transducer, whose axis is y of T.
+Pose felt_probe(const TickSample& sample) noexcept;
+
+}  // namespace trocar
