@@ -49,6 +49,12 @@ QString phase_text(const AttemptView& view) {
   return {};
 }
 
+bool is_risk(const Case& the_case, const AttemptEvent& event) {
+  if (event.kind != EventKind::kEnter) return false;
+  const Label* label = the_case.patient->label_table.find(std::string_view(event.name));
+  return label != nullptr && find_risk(the_case.task, *label) != nullptr;
+}
+
 }  // namespace
 
 AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatChoice& choice, AttemptOptions options,
@@ -187,7 +193,8 @@ void AttemptControl::advance(double dt_s) {
     plot.append(points);
   }
   for (const AttemptEvent& event : attempt_.take_events()) {
-    page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(to_qt(event.text)));
+    page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(to_qt(event.text)),
+                               is_risk(open_->the_case, event));
     if (event.kind == EventKind::kPuncture) plot.add_event(event.depth_mm, event.time_s, to_qt(event.name));
   }
   show_tools(dt_s);

@@ -26,7 +26,7 @@ TimeMark kind_of(const ReplayMoment& moment) {
     case ReplayMoment::Kind::kEnter:
       return TimeMark::kEnter;
     case ReplayMoment::Kind::kRisk:
-      return TimeMark::kOther;
+      return TimeMark::kRisk;
     case ReplayMoment::Kind::kFired:
       return TimeMark::kFire;
     case ReplayMoment::Kind::kWorst:

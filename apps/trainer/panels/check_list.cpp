@@ -4,6 +4,7 @@
 #include <QPixmap>
 #include <algorithm>
 
+#include "panels/wrapped_rows.h"
 #include "shell/parts.h"
 #include "shell/theme.h"
 
@@ -58,8 +59,7 @@ CheckList::CheckList(QWidget* parent) : QListWidget(parent) {
   setObjectName(QStringLiteral("case-checks"));
   setAccessibleName(tr("Checks of the case"));
   setToolTip(tr("A click jumps to what is meant  (Enter)"));
-  setWordWrap(true);
-  setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  wrap_rows(*this);
   const auto choose = [this](QListWidgetItem* item) {
     Q_EMIT check_chosen(checks_[static_cast<std::size_t>(row(item))]);
   };

@@ -7,6 +7,7 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "panels/wrapped_rows.h"
 #include "shell/parts.h"
 #include "shell/theme.h"
 #include "views/force_bar.h"
@@ -48,8 +49,7 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   events_ = new QListWidget;
   events_->setObjectName(QStringLiteral("events"));
   events_->setFocusPolicy(Qt::NoFocus);
-  events_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  events_->setWordWrap(true);
+  wrap_rows(*events_);
   events_->setSelectionMode(QAbstractItemView::NoSelection);
   content->addWidget(events_, 1);
   fire_ = make_button("fire", tr("Fire the gun"), tr("Takes the core (Enter)"));
@@ -137,8 +137,9 @@ void PuncturePanel::show_hand(ToolInHand tool) {
   if (auto* button = hand_->button(static_cast<int>(tool))) button->setChecked(true);
 }
 
-void PuncturePanel::add_event(const QString& text) {
-  events_->addItem(text);
+void PuncturePanel::add_event(const QString& text, bool is_bad) {
+  auto* row = new QListWidgetItem(text, events_);
+  if (is_bad) row->setForeground(theme().bad);
   events_->scrollToBottom();
 }
 

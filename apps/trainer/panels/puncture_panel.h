@@ -41,7 +41,8 @@ class PuncturePanel : public QWidget {
   void begin(double most_force_n, bool can_aim);
   void show_figures(const PunctureFigures& figures);
   void show_hand(ToolInHand tool);
-  void add_event(const QString& text);
+  /// A bad one is in the colour of what is wrong.
+  void add_event(const QString& text, bool is_bad = false);
 
  Q_SIGNALS:
   void hand_wanted(trocar::trainer::ToolInHand tool);

@@ -112,6 +112,31 @@ TEST(TimeLine, ShowsPhasesAndMarksWhereTheyAre) {
   EXPECT_EQ(color(15.5, 7), theme().target);
 }
 
+TEST(TimeLine, ARiskThatWasHitIsSeenOverTheWorstMoment) {
+  Shown shown;
+  shown.line.set_events({{4.0, "touched: lung", TimeMark::kRisk},
+                         {8.0, "touched: rib", TimeMark::kRisk},
+                         {8.0, "the worst", TimeMark::kWorst},
+                         {12.0, "the liver", TimeMark::kEnter}});
+  shown.line.set_time(20.0);
+  save(shown.line, "time_line_risk.png");
+  TimeTrack& track = shown.track();
+  const QImage image = track.grab().toImage();
+  const auto reddish = [&](double time_s) {
+    const int x = static_cast<int>(track.x_of(time_s));
+    int count = 0;
+    for (int column = x - 9; column <= x + 9; ++column)
+      for (int row = 0; row < track.height(); ++row) {
+        const QColor c = image.pixelColor(column, row);
+        count += c.red() > 200 && c.red() > c.green() + 60 && c.red() > c.blue() + 60 ? 1 : 0;
+      }
+    return count;
+  };
+  EXPECT_GT(reddish(4.0), 60);
+  EXPECT_GT(reddish(8.0), 60);
+  EXPECT_LT(reddish(12.0), 10);
+}
+
 TEST(TimeLine, OffersTheWorstMomentOnlyWhereThereIsOne) {
   Shown shown;
   EXPECT_TRUE(shown.line.findChild<QToolButton*>("time-worst")->isVisible());

@@ -27,15 +27,25 @@ QColor color_of(TimeMark kind) {
       return t.warning;
     case TimeMark::kFire:
       return t.target;
-    case TimeMark::kWorst:
+    case TimeMark::kRisk:
       return t.bad;
+    case TimeMark::kWorst:
+      return t.text;
     case TimeMark::kOther:
       break;
   }
   return t.dim;
 }
 
-/// Shapes differ as colours do: a triangle that points down, a diamond, a square, a disc.
+/// The sign "!" in the middle of a mark.
+void draw_exclamation(QPainter& painter, const QPointF& at) {
+  painter.setPen(QPen(theme().ground, 2.0));
+  painter.drawLine(at - QPointF(0.0, 3.0), at + QPointF(0.0, 0.5));
+  painter.drawPoint(at + QPointF(0.0, 3.5));
+}
+
+/// Shapes differ as colours do: a triangle that points down, a diamond, a square, a disc, and the triangle of a warning
+/// sign for what was at risk.
 void draw_mark(QPainter& painter, const QPointF& at, TimeMark kind) {
   constexpr double kSize = 5.0;
   painter.setPen(QPen(theme().panel, 1.0));
@@ -47,10 +57,11 @@ void draw_mark(QPainter& painter, const QPointF& at, TimeMark kind) {
       return;
     case TimeMark::kWorst:
       painter.drawEllipse(at, kSize + 1.0, kSize + 1.0);
-      painter.setPen(QPen(theme().ground, 2.0));
-      painter.drawLine(QPointF(x, y - 3.0), QPointF(x, y + 0.5));
-      painter.drawPoint(QPointF(x, y + 3.5));
-      return;
+      return draw_exclamation(painter, at);
+    case TimeMark::kRisk:
+      painter.drawPolygon(
+          QPolygonF({{x, y - kSize - 2.0}, {x + kSize + 2.0, y + kSize}, {x - kSize - 2.0, y + kSize}}));
+      return draw_exclamation(painter, at);
     case TimeMark::kFire:
       painter.drawRect(QRectF(x - 4.0, y - 4.0, 8.0, 8.0));
       return;
@@ -176,14 +187,16 @@ void TimeTrack::paint_curve(QPainter& painter) const {
 }
 
 void TimeTrack::paint_marks(QPainter& painter) const {
-  // The worst moment lies over the others.
-  for (const bool is_worst : {false, true}) {
+  // The worst moment lies over the others, and what was at risk over that: it often is the worst.
+  const auto rank = [](TimeMark kind) { return kind == TimeMark::kRisk ? 2 : kind == TimeMark::kWorst ? 1 : 0; };
+  for (const int now : {0, 1, 2}) {
     for (const Event& event : events_) {
-      if ((event.kind == TimeMark::kWorst) != is_worst) continue;
+      if (rank(event.kind) != now) continue;
+      const bool is_risk = event.kind == TimeMark::kRisk;
       const double x = x_of(event.time_s);
       QColor line = color_of(event.kind);
-      line.setAlphaF(0.45);
-      painter.setPen(QPen(line, 1.0));
+      line.setAlphaF(is_risk ? 0.9 : 0.45);
+      painter.setPen(QPen(line, is_risk ? 2.0 : 1.0));
       painter.drawLine(QPointF(x, kMarkHigh), QPointF(x, area().bottom()));
       draw_mark(painter, {x, 0.5 * kMarkHigh + 1.0}, event.kind);
     }

@@ -7,8 +7,8 @@
 
 namespace trocar::trainer {
 
-/// What stands out in a session, and how it is marked.
-enum class TimeMark { kEnter, kPuncture, kFire, kOther, kWorst };
+/// What stands out in a session, and how it is marked: kRisk over all others, in the colour of what is wrong.
+enum class TimeMark { kEnter, kPuncture, kRisk, kFire, kOther, kWorst };
 
 /// The painted part of a time line: phases as a coloured strip, the force as a small curve, events as marks, the time
 /// now as a handle that follows the mouse. Its values are set by TimeLine. Object name: time-track.

@@ -1,0 +1,69 @@
+#include "panels/puncture_panel.h"
+
+#include <gtest/gtest.h>
+
+#include <QCoreApplication>
+#include <QListWidget>
+#include <QPushButton>
+#include <cmath>
+
+#include "test/widget_actions.h"
+
+namespace trocar::trainer {
+namespace {
+
+/// As wide as beside the views; events come while it is shown.
+struct Shown {
+  Shown() {
+    panel.resize(238, 700);
+    panel.begin(8.0, true);
+    panel.show();
+    QCoreApplication::processEvents();
+  }
+  QListWidget& events() { return *panel.findChild<QListWidget*>(QStringLiteral("events")); }
+  QRect place_of(int row) { return events().visualItemRect(events().item(row)); }
+  /// Whether the last line of a row's height holds text.
+  bool is_last_line_used(int row) {
+    const QRect place = place_of(row);
+    const int high = events().fontMetrics().lineSpacing();
+    const QImage image = events().viewport()->grab(place.adjusted(4, place.height() - high, -4, 0)).toImage();
+    const QColor ground = image.pixelColor(image.width() - 1, 0);
+    for (int y = 0; y < image.height(); ++y)
+      for (int x = 0; x < image.width(); ++x)
+        if (std::abs(qGray(image.pixel(x, y)) - qGray(ground.rgb())) > 60) return true;
+    return false;
+  }
+  PuncturePanel panel;
+};
+
+TEST(PuncturePanel, NoRowOfEventsHasABlankLine) {
+  // Longer and longer: some text ends where the scroll bar would be.
+  Shown shown;
+  QString text = QStringLiteral("3.7 s  through the");
+  for (int longer = 0; longer < 24; ++longer) {
+    shown.panel.begin(8.0, true);
+    shown.panel.add_event(text);
+    shown.panel.add_event(QStringLiteral("3.9 s  into the fat"));
+    QCoreApplication::processEvents();
+    EXPECT_TRUE(shown.is_last_line_used(0)) << text.toStdString();
+    EXPECT_EQ(shown.place_of(1).top(), shown.place_of(0).bottom() + 1);
+    text += longer % 5 == 0 ? QStringLiteral(" m") : QStringLiteral("i");
+  }
+  EXPECT_GT(shown.place_of(0).height(), shown.place_of(1).height()) << "the longest breaks";
+  shown.panel.begin(8.0, true);
+  shown.panel.add_event(QStringLiteral("3.7 s  through the skin at 2.8 N"));
+  shown.panel.add_event(QStringLiteral("3.9 s  into the fat"));
+  QCoreApplication::processEvents();
+  save(shown.panel, "puncture_panel.png");
+}
+
+TEST(PuncturePanel, AimsOnlyWhereThePlanMayBeTold) {
+  Shown shown;
+  auto* aim = shown.panel.findChild<QPushButton*>(QStringLiteral("aim"));
+  EXPECT_TRUE(aim->isEnabled());
+  shown.panel.begin(8.0, false);
+  EXPECT_FALSE(aim->isEnabled());
+}
+
+}  // namespace
+}  // namespace trocar::trainer
