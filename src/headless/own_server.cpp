@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <optional>
+#include <string_view>
 
 namespace trocar {
 namespace {
@@ -15,6 +17,18 @@ std::string last_line(const std::filesystem::path& log) {
   for (std::string line; std::getline(file, line);)
     if (!line.empty()) last = line;
   return last;
+}
+
+/// What the server itself says is wrong, where its last line is an error: "error: what — where — what to do".
+std::optional<Error> own_error(std::string_view line) {
+  constexpr std::string_view kMark = "error: ", kBetween = " — ";
+  if (!line.starts_with(kMark)) return std::nullopt;
+  line.remove_prefix(kMark.size());
+  const std::size_t first = line.find(kBetween), last = line.rfind(kBetween);
+  if (first == std::string_view::npos) return Error{std::string(line), {}, {}};
+  const std::string what(line.substr(0, first)), advice(line.substr(last + kBetween.size()));
+  const std::size_t begin = first + kBetween.size();
+  return Error{what, first == last ? std::string() : std::string(line.substr(begin, last - begin)), advice};
 }
 
 }  // namespace
@@ -45,9 +59,11 @@ Status OwnServer::restart() {
 
 Status OwnServer::check() {
   if (process_ && process_->is_running()) return {};
+  const std::string last = last_line(*folder_ / kLog);
+  if (auto told = own_error(last)) return tl::unexpected(*std::move(told));
   return fail(fmt::format("the server of the {} {}", options_.tool,
                           process_ ? process_->how_it_ended() : "could not be started again"),
-              "trocar-hapticd", last_line(*folder_ / kLog));
+              "trocar-hapticd", last);
 }
 
 }  // namespace trocar

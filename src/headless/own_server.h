@@ -27,7 +27,7 @@ class OwnServer {
   const OwnServerOptions& options() const noexcept { return options_; }
   const std::string& endpoint() const noexcept { return endpoint_; }
   int pid() const { return process_->pid(); }
-  /// Error: it has ended, with the last line of its log.
+  /// Error: it has ended; what it said was wrong, else how it ended and the last line of its log.
   Status check();
   /// A new process on the same socket; ends the old one where it still runs.
   Status restart();

@@ -25,6 +25,10 @@ bool fits_one(const OwnServer& server, const OwnServerOptions& wanted) {
 
 }  // namespace
 
+bool is_moved_by_hand_targets(const std::string& device) {
+  return device_hold(device) == DeviceHold::kOurHand;
+}
+
 Result<std::shared_ptr<SeatServers>> SeatServers::start(const AttemptOptions& options) {
   TROCAR_TRY(OwnServer of_needle, OwnServer::start(server_options(options, "needle")));
   std::shared_ptr<SeatServers> servers(new SeatServers(std::move(of_needle)));

@@ -37,6 +37,9 @@ struct AttemptOptions {
   std::chrono::milliseconds patience{8000};  ///< How long a server may be silent before it is started again.
 };
 
+/// Whether set_hand() moves a device of that name; else it moves itself, or a person does.
+bool is_moved_by_hand_targets(const std::string& device);
+
 /// The haptic servers of a seat. Kept from one attempt to the next they need not open the patient again. At most one
 /// attempt uses them at a time.
 class SeatServers {

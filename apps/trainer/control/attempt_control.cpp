@@ -28,7 +28,7 @@ QString phase_text(const AttemptView& view) {
     case AttemptPhase::kStarting:
       return AttemptControl::tr("starting");
     case AttemptPhase::kServerLost:
-      return AttemptControl::tr("server lost");
+      return AttemptControl::tr("interrupted");
     case AttemptPhase::kStopped:
       return AttemptControl::tr("forces stopped");
     case AttemptPhase::kFinishing:
@@ -64,7 +64,8 @@ AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatC
       page_(page),
       attempt_(open_, std::move(options), std::move(servers)),
       needle_(*open_->the_case.patient, open_->the_case.plan.line_P, open_->the_case.needle.length_mm),
-      probe_(*open_->the_case.patient, open_->X_PT_start) {
+      probe_(*open_->the_case.patient, open_->X_PT_start),
+      is_led_(is_moved_by_hand_targets(choice.needle_device)) {
   connect_panel();
   ForcePlot& plot = page_.desk().forces();
   plot.clear();
@@ -149,13 +150,14 @@ void AttemptControl::gesture(const Gesture& gesture) {
 }
 
 bool AttemptControl::is_free(HandTool tool) const {
+  if (tool == HandTool::kNeedle && !is_led_) return false;
   return !is_clamped_[static_cast<std::size_t>(tool)] && !view_.is_performing;
 }
 
 void AttemptControl::aim() {
   if (choice_.difficulty != Difficulty::kGuided) return;
   if (gestures_.in_hand() == ToolInHand::kTransducer) probe_.put(open_->X_PT_start);
-  if (gestures_.in_hand() == ToolInHand::kNeedle && !needle_.is_past_skin())
+  if (gestures_.in_hand() == ToolInHand::kNeedle && is_led_ && !needle_.is_past_skin())
     needle_.aim_at(open_->the_case.plan.line_P);
 }
 
@@ -179,7 +181,7 @@ void AttemptControl::end_server(const QString& tool) {
 void AttemptControl::advance(double dt_s) {
   view_ = attempt_.view();
   const bool are_on = view_.phase == AttemptPhase::kReady || view_.phase == AttemptPhase::kInBody;
-  if (!are_on && view_.needle.is_known && view_.phase != AttemptPhase::kFinishing) {
+  if ((!are_on || !is_led_) && view_.needle.is_known && view_.phase != AttemptPhase::kFinishing) {
     // The hands wait where the tools are, so that nothing jumps when the forces come back.
     needle_.put(view_.needle.X_PN);
   }
@@ -251,6 +253,7 @@ QVariantMap AttemptControl::facts() const {
   facts[QStringLiteral("phase")] = QString::fromLatin1(to_string(view_.phase));
   facts[QStringLiteral("depth_mm")] = view_.needle.depth_mm;
   facts[QStringLiteral("distance_mm")] = distance_mm();
+  facts[QStringLiteral("entry_from_plan_mm")] = (needle_.entry_P() - open_->the_case.plan.line_P.a).norm();
   facts[QStringLiteral("force_n")] = view_.needle.resistance_n;
   facts[QStringLiteral("lag_mm")] = view_.needle.lag_mm;
   facts[QStringLiteral("tissue")] = to_qt(view_.needle.tissue);

@@ -52,6 +52,7 @@ class AttemptControl : public QObject {
   ToolGestures gestures_;
   PointerNeedle needle_;
   PointerProbe probe_;
+  bool is_led_;                          ///< The needle is moved by mouse and keys; else its device moves itself.
   bool is_clamped_[2] = {false, false};  ///< By HandTool.
   AttemptView view_;
   double still_s_ = 0.0;

@@ -60,6 +60,14 @@ ServerLine line_of(const ServerView& server, const QString& tool) {
   return line;
 }
 
+/// "No gamepad is connected: plug one in." Where it was is for the tooltip.
+QString sentence_of(const Error& error) {
+  QString text = to_qt(error.what);
+  if (!error.advice.empty()) text += QStringLiteral(": ") + to_qt(error.advice);
+  if (!text.isEmpty()) text[0] = text[0].toUpper();
+  return text.endsWith('.') ? text : text + '.';
+}
+
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -212,7 +220,9 @@ void SeatFlow::look_at_attempt() {
   window_.strip().show_forces(false, false);
   journal_.clear();
   if (!*result) {
-    window_.show_banner(to_qt(result->error().text()), true);
+    window_.strip().show_servers({});
+    window_.show_banner(sentence_of(result->error()) + tr(" Begin tries again; Back leads to the start page."), true,
+                        to_qt(result->error().text()));
     return window_.show_page(QStringLiteral("briefing"));
   }
   load_replay(session);

@@ -5,9 +5,11 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QVBoxLayout>
+#include <span>
 
 #include "shell/parts.h"
 #include "shell/theme.h"
+#include "station/live_attempt.h"
 #include "views/briefing_picture.h"
 
 namespace trocar::trainer {
@@ -15,17 +17,40 @@ namespace {
 
 constexpr int kSteps = 1000;
 
-const char* kControls =
-    QT_TRANSLATE_NOOP("BriefingPage",
-                      "<table cellspacing='0' cellpadding='3'>"
-                      "<tr><td><b>A</b> / <b>S</b></td><td>take the needle / the transducer</td></tr>"
-                      "<tr><td><b>drag</b></td><td>glide over the skin; right button: tilt</td></tr>"
-                      "<tr><td><b>wheel</b></td><td>push in and pull out; Shift: finely</td></tr>"
-                      "<tr><td><b>H</b></td><td>put the needle to the planned entry (guided)</td></tr>"
-                      "<tr><td><b>Enter</b></td><td>fire the biopsy gun</td></tr>"
-                      "<tr><td><b>E</b></td><td>end the attempt</td></tr>"
-                      "<tr><td><b>Space</b></td><td>stop all forces</td></tr>"
-                      "<tr><td><b>F1</b></td><td>all keys</td></tr></table>");
+struct Control {
+  const char* with;
+  const char* does;
+};
+constexpr Control kWithMouse[] = {{"A / S", "take the needle / the transducer"},
+                                  {"drag", "glide over the skin; right button: tilt"},
+                                  {"wheel", "push in and pull out; Shift: finely"},
+                                  {"H", "put the needle to the planned entry (guided)"}};
+constexpr Control kWithGamepad[] = {{"left stick", "moves the needle; cross: lifts and lowers it"},
+                                    {"right stick", "swings the tip to where it points"},
+                                    {"triggers", "right: push in, left: pull out; rumble: resistance"},
+                                    {"shoulders", "turn the bevel"},
+                                    {"S, mouse", "drag and wheel move the transducer"}};
+constexpr Control kWithSpaceMouse[] = {{"cap", "push and turn it: the needle moves and turns that way"},
+                                       {"S, mouse", "drag and wheel move the transducer"}};
+constexpr Control kWithStylus[] = {{"stylus", "is the needle"}, {"S, mouse", "drag and wheel move the transducer"}};
+constexpr Control kAlways[] = {
+    {"Enter", "fire the biopsy gun"}, {"E", "end the attempt"}, {"Space", "stop all forces"}, {"F1", "all keys"}};
+
+std::span<const Control> controls_of(const std::string& device) {
+  if (is_moved_by_hand_targets(device)) return kWithMouse;
+  if (device == "gamepad") return kWithGamepad;
+  if (device == "spacemouse") return kWithSpaceMouse;
+  return kWithStylus;
+}
+
+QString controls_text(const std::string& device) {
+  QString rows;
+  for (const std::span<const Control> part : {controls_of(device), std::span<const Control>(kAlways)})
+    for (const Control& control : part)
+      rows += QStringLiteral("<tr><td><b>%1</b></td><td>%2</td></tr>")
+                  .arg(BriefingPage::tr(control.with), BriefingPage::tr(control.does));
+  return QStringLiteral("<table cellspacing='0' cellpadding='3'>") + rows + QStringLiteral("</table>");
+}
 
 QString risks_text(const Task& task) {
   QStringList risks;
@@ -82,9 +107,8 @@ QWidget* BriefingPage::make_text() {
   counts_ = paragraph();
   content->addWidget(counts_);
   content->addWidget(make_label(tr("How to move"), "heading"));
-  auto* controls = paragraph();
-  controls->setText(tr(kControls));
-  content->addWidget(controls);
+  controls_ = paragraph();
+  content->addWidget(controls_);
   content->addStretch();
   return card;
 }
@@ -130,6 +154,7 @@ void BriefingPage::show_opening(const SeatChoice& choice) {
   const QString patient = to_qt(choice.patient).section('/', -1);
   title_->setText(tr("Briefing"));
   subtitle_->setText(tr("Patient %1").arg(patient));
+  controls_->setText(controls_text(choice.needle_device));
   goal_->clear();
   counts_->clear();
   axial_->clear();

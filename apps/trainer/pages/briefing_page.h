@@ -38,6 +38,7 @@ class BriefingPage : public QWidget {
   QLabel* subtitle_ = nullptr;
   QLabel* goal_ = nullptr;
   QLabel* counts_ = nullptr;
+  QLabel* controls_ = nullptr;
   QLabel* axial_ = nullptr;
   QLabel* second_ = nullptr;  ///< A slice across the first.
   QLabel* state_ = nullptr;

@@ -23,6 +23,7 @@ struct ScriptStep {
 ///   wheel NAME STEPS [X Y]      positive: away from the user
 ///   wheel-until NAME STEPS_PER_S FACT OP VALUE [within SECONDS]
 ///   key KEYS [TIMES]            "Ctrl+Z", "Space", to what has the focus
+///   key-until KEYS A_SECOND FACT OP VALUE [within SECONDS]
 ///   type TEXT                   to what has the focus
 ///   choose NAME TEXT            an entry of a list, box or tab
 ///   set NAME VALUE              a slider, number, check box or text field

@@ -102,6 +102,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
     TROCAR_TRY_STATUS(strike(*stage_.window, a[0]));
     return ++sent_ >= (a.size() > 1 ? a[1].toInt() : 1) ? Progress::kDone : Progress::kAgain;
   }
+  if (verb == QLatin1String("key-until")) return play_until(step, [&] { return strike(*stage_.window, a[0]); });
   if (verb == QLatin1String("type")) {
     type_text(*stage_.window, a[0]);
     return Progress::kDone;
@@ -131,7 +132,12 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
 Result<ScriptPlayer::Progress> ScriptPlayer::play_pointer(const ScriptStep& step, QWidget& widget) {
   const QStringList& a = step.arguments;
   if (step.verb == QLatin1String("drag")) return play_drag(step, widget);
-  if (step.verb == QLatin1String("wheel-until")) return play_wheel_until(step, widget);
+  if (step.verb == QLatin1String("wheel-until")) {
+    return play_until(step, [&]() -> Status {
+      turn_wheel(widget, {0.5, 0.5}, a[1].toDouble() > 0 ? 1 : -1);
+      return {};
+    });
+  }
   if (step.verb == QLatin1String("wheel")) {
     const int notches = a[1].toInt();
     if (notches == 0) return Progress::kDone;
@@ -168,16 +174,15 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_drag(const ScriptStep& step, Q
   return Progress::kDone;
 }
 
-Result<ScriptPlayer::Progress> ScriptPlayer::play_wheel_until(const ScriptStep& step, QWidget& widget) {
+Result<ScriptPlayer::Progress> ScriptPlayer::play_until(const ScriptStep& step, const std::function<Status()>& act) {
   const QStringList& a = step.arguments;
   TROCAR_TRY(const bool is_there, holds(a[2], a[3], a[4]));
   if (is_there) return Progress::kDone;
   if (seconds() > patience_of(a))
     return fail("it did not come about: " + to_std(a[2] + ' ' + a[3] + ' ' + a[4]),
                 to_std(a[2] + " is " + stage_.facts().value(a[2]).toString()), "give it longer: within SECONDS");
-  const double per_s = a[1].toDouble();
-  const int due = static_cast<int>(seconds() * std::abs(per_s));
-  for (; sent_ < due; ++sent_) turn_wheel(widget, {0.5, 0.5}, per_s > 0 ? 1 : -1);
+  const int due = static_cast<int>(seconds() * std::abs(a[1].toDouble()));
+  for (; sent_ < due; ++sent_) TROCAR_TRY_STATUS(act());
   return Progress::kAgain;
 }
 

@@ -40,7 +40,8 @@ class ScriptPlayer : public QObject {
   Result<Progress> play(const ScriptStep& step);
   Result<Progress> play_pointer(const ScriptStep& step, QWidget& widget);
   Result<Progress> play_drag(const ScriptStep& step, QWidget& widget);
-  Result<Progress> play_wheel_until(const ScriptStep& step, QWidget& widget);
+  /// Acts so often a second until the fact is there.
+  Result<Progress> play_until(const ScriptStep& step, const std::function<Status()>& act);
   Result<Progress> play_waiting(const ScriptStep& step);
   Result<Progress> play_looking(const ScriptStep& step);
   Result<QWidget*> find(const QString& name) const;

@@ -124,12 +124,13 @@ void MainWindow::show_page(const QString& name) {
   page->setFocus();
 }
 
-void MainWindow::show_banner(const QString& text, bool is_bad) {
+void MainWindow::show_banner(const QString& text, bool is_bad, const QString& details) {
   if (text.isEmpty()) {
     banner_->hide();
     return;
   }
   banner_->setText(text);
+  banner_->setToolTip(details);
   const QColor& color = is_bad ? theme().bad : theme().warning;
   banner_->setStyleSheet(QStringLiteral("background: %1; color: %2; font-weight: 600; padding: 6px;")
                              .arg(color.name(), theme().ground.name()));

@@ -36,8 +36,8 @@ class MainWindow : public QMainWindow {
   /// "start", "briefing", "puncture", "feedback", "case-builder".
   void show_page(const QString& name);
   QString page() const { return page_; }
-  /// A line across the window until it is empty again.
-  void show_banner(const QString& text, bool is_bad);
+  /// A line across the window until it is empty again; its tooltip has the details.
+  void show_banner(const QString& text, bool is_bad, const QString& details = {});
   /// What the window shows and knows, for scripts.
   QVariantMap facts() const;
 

@@ -6,7 +6,13 @@
 #include <QImage>
 #include <QProcess>
 #include <QTemporaryDir>
+#include <atomic>
 #include <cstdlib>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include "devices/test/gamepad_stand_in.h"
 
 namespace trocar::trainer {
 namespace {
@@ -21,7 +27,7 @@ struct Played {
 };
 
 /// Settings and sessions in a folder of the test's own; patients made once are kept beside the build.
-struct WindowTest : testing::Test {
+struct WindowTest : ::testing::Test {
   Played run(const QStringList& arguments) const {
     QProcess process;
     QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
@@ -53,6 +59,31 @@ struct WindowTest : testing::Test {
   QTemporaryDir folder;
 };
 
+/// Somebody beside the window: does one thing after the other, each as soon as it is its turn.
+class Hand {
+ public:
+  struct Act {
+    std::function<bool()> is_due;
+    std::function<void()> act;
+  };
+  explicit Hand(std::vector<Act> acts)
+      : thread_([this, acts = std::move(acts)](const std::stop_token& stop) {
+          for (const Act& act : acts) {
+            while (!act.is_due()) {
+              if (stop.stop_requested()) return;
+              std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            }
+            act.act();
+          }
+          has_done_all_ = true;
+        }) {}
+  bool has_done_all() const { return has_done_all_; }
+
+ private:
+  std::atomic<bool> has_done_all_{false};
+  std::jthread thread_;
+};
+
 void expect_played(const Played& played) {
   EXPECT_EQ(played.exit_status, 0) << played.output.toStdString();
 }
@@ -75,6 +106,32 @@ TEST_F(WindowTest, EveryLayoutShowsWhatItNames) {
 
 TEST_F(WindowTest, TheReplayMovesTheTransducerAsItWasMoved) {
   expect_played(play("transducer.txt"));
+}
+
+TEST_F(WindowTest, ABiopsyIsPerformedByKeysAlone) {
+  expect_played(play("keyboard.txt"));
+}
+
+TEST_F(WindowTest, ADeviceThatIsNotThereIsToldAndAnotherOneTaken) {
+  const trocar::testing::GamepadStandIn unplugged(false);
+  expect_played(play("no_device.txt"));
+}
+
+TEST_F(WindowTest, AGamepadDrivesTheNeedleAndMayBeUnpluggedMeanwhile) {
+  trocar::testing::GamepadStandIn pad;
+  // The script takes a picture where it is the hand's turn.
+  const auto at_picture = [&](const char* name) { return QFile::exists(folder.filePath(QString::fromUtf8(name))); };
+  Hand hand({{[&] { return at_picture("ready.png"); }, [&] { pad.pull_right_trigger(0.7); }},
+             {[&] { return at_picture("inside.png"); }, [&] { pad.pull_right_trigger(0.0); }},
+             {[&] { return at_picture("rests.png"); }, [&] { pad.plug(false); }},
+             {[&] { return at_picture("gone.png"); }, [&] { pad.plug(true); }},
+             {[&] { return at_picture("again.png"); }, [&] { pad.pull_right_trigger(0.7); }}});
+  QFile script(QStringLiteral(TROCAR_SOURCE_DIR "/apps/trainer/test/scripts/gamepad.txt"));
+  ASSERT_TRUE(script.open(QIODevice::ReadOnly));
+  const QString here = QString::fromUtf8(script.readAll()).replace(QStringLiteral("FOLDER"), folder.path());
+  expect_played(run({QStringLiteral("--script"), write("gamepad.txt", here.toUtf8().constData())}));
+  EXPECT_TRUE(hand.has_done_all());
+  EXPECT_GT(pad.strongest_rumble(), 0);
 }
 
 TEST_F(WindowTest, AnAttemptThatACrashCutOffCanBeSeenAgain) {

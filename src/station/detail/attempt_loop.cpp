@@ -105,7 +105,7 @@ void AttemptLoop::look_at(ToolServer& server) {
 /// Before the forces were ever on there is nothing to be brought back: what fails then fails the attempt.
 Status AttemptLoop::check_start() {
   if (has_ever_been_on_) return {};
-  if (needle_->has_given_up()) return fail(needle_->banner());
+  if (needle_->has_given_up()) return tl::unexpected(needle_->failure());
   progress_ = needle_->is_on() && probe_ ? probe_->doing() : needle_->doing();
   progress_fraction_ = needle_->loading();
   if (probe_) progress_fraction_ = 0.5 * (progress_fraction_ + probe_->loading());

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "haptics/safety_gate.h"
+
 namespace trocar {
 namespace {
 
@@ -11,6 +13,12 @@ using State = ServerSeat::State;
 using namespace std::chrono_literals;
 
 constexpr std::size_t kMostReturns = 6;  ///< In a minute; more often, something is wrong with the machine. [assumed]
+constexpr auto kAskAgain = 1s;           ///< Whether a device is back.
+
+std::string words_of(const std::string& device) {
+  if (device == "spacemouse") return "SpaceMouse";
+  return device.empty() ? "device" : device.substr(0, device.find(':'));
+}
 
 }  // namespace
 
@@ -34,6 +42,7 @@ void ToolServer::connect() {
   if (seat_) missing_before_ += seat_->ticks_missing();
   seat_.reset();  // says goodbye before the next one asks for control
   was_on_ = false;
+  lost_device_.reset();
   before_.clear();
   ClientOptions options;
   options.endpoint = process_->endpoint();
@@ -41,8 +50,7 @@ void ToolServer::connect() {
   options.has_window = has_window_;
   Result<ServerSeat> seat = ServerSeat::connect(options, patience_);
   if (!seat) {
-    banner_ = seat.error().text();
-    has_given_up_ = true;
+    give_up(seat.error());
     return;
   }
   seat_.emplace(*std::move(seat));
@@ -63,26 +71,53 @@ void ToolServer::place_at(const Pose& X_PN) {
   if (seat_) seat_->place_at(X_PN);
 }
 
+std::string ToolServer::give_up(Error why) {
+  has_given_up_ = true;
+  failure_ = std::move(why);
+  return banner_ = failure_.text();
+}
+
 std::string ToolServer::bring_back(const std::string& what, bool is_new_process) {
   const auto now = Clock::now();
   while (!returns_.empty() && now - returns_.front() > 60s) returns_.pop_front();
   returns_.push_back(now);
   if (returns_.size() > kMostReturns) {
-    has_given_up_ = true;
-    banner_ = fmt::format("The server of the {} does not stay: {}. Resume to try again, or finish.", tool_, what);
-    return banner_;
+    return give_up(
+        {fmt::format("The server of the {} does not stay: {}. Resume to try again, or finish.", tool_, what)});
   }
   ++restarts_;
   if (is_new_process) {
     if (const Status started = process_->restart(); !started) {
-      has_given_up_ = true;
-      banner_ = started.error().text();
-      return banner_;
+      return give_up(started.error());
     }
   }
   connect();
   banner_ = fmt::format("The server of the {} is being brought back where it was: {}", tool_, what);
   return banner_;
+}
+
+bool ToolServer::is_device_lost() const {
+  const std::string& fault = seat_->view().status.fault;
+  return seat_->view().is_connected &&
+         (fault == to_string(GateFault::kDeviceLost) || fault == to_string(GateFault::kDeviceSilent));
+}
+
+/// Until it is there again; forces stay off meanwhile, for the fault is latched.
+std::string ToolServer::open_device_again() {
+  LostDevice& lost = *lost_device_;
+  const auto now = Clock::now();
+  for (const Reply& reply : seat_->take_replies()) {
+    if (reply.request != lost.asked) continue;
+    if (reply.is_done) return bring_back(fmt::format("the {} is there again", device_words()), false);
+    lost.asked.reset();
+    lost.refused = now;
+    if (!is_real_hand_) continue;
+    waits_for_resume_ = true;
+    banner_ = reply.text + "; resume to try again";
+  }
+  if (!waits_for_resume_ && !lost.asked && now - lost.refused > kAskAgain)
+    lost.asked = seat_->send(ServerCommand::kReconnect);
+  return {};
 }
 
 std::string ToolServer::look() {
@@ -91,8 +126,7 @@ std::string ToolServer::look() {
   if (const Status alive = process_->check(); !alive) {
     if (!was_ever_heard_) {
       // It cannot come up: a device that is not there, a wrong name.
-      has_given_up_ = true;
-      return banner_ = alive.error().text();
+      return give_up(alive.error());
     }
     if (!is_stopped_) return bring_back(alive.error().what, true);
     was_on_ = false;
@@ -103,6 +137,14 @@ std::string ToolServer::look() {
   was_ever_heard_ = was_ever_heard_ || seat_->view().welcome.session != 0;
   if (!state) {
     const bool is_heard = seat_->view().is_connected;
+    if (lost_device_ && is_heard) return open_device_again();
+    if (is_device_lost() && !is_stopped_ && !is_real_hand_) {
+      was_on_ = false;
+      lost_device_.emplace();
+      return banner_ = fmt::format(
+                 "The {} is gone. Plug it in again and the puncture goes on where it is; or end the attempt.",
+                 device_words());
+    }
     if (is_stopped_ || (is_real_hand_ && is_heard)) {
       was_on_ = false;
       waits_for_resume_ = !is_stopped_;
@@ -204,6 +246,10 @@ void ToolServer::resume_forces() {
     return;
   }
   has_given_up_ = false;
+  if (is_alive && seat_ && is_device_lost()) {
+    lost_device_.emplace();  // the next look opens it again
+    return;
+  }
   bring_back("resumed", !is_alive);
 }
 
@@ -213,6 +259,10 @@ void ToolServer::frame_drawn() {
 
 void ToolServer::end() {
   if (seat_) seat_->stop();
+}
+
+std::string ToolServer::device_words() const {
+  return words_of(client().welcome.device.name);
 }
 
 const ClientView& ToolServer::client() const {

@@ -22,7 +22,8 @@ enum class DeviceHold {
 DeviceHold device_hold(const std::string& device_spec);
 
 /// One tool's haptic server, process and seat: brought up, and brought back when it ends, falls silent or latches a
-/// fault. A device in a real hand gets no forces again by itself after a fault: somebody must resume. Nothing waits.
+/// fault. A device that was unplugged is opened again as soon as it is back. A device in a real hand gets no forces
+/// again by itself after a fault: somebody must resume. Nothing waits.
 class ToolServer {
  public:
   /// The process must outlive it.
@@ -34,6 +35,7 @@ class ToolServer {
   std::string look();
   bool is_on() const noexcept;  ///< Seated, forces on (unless stopped), and heard within the last 250 ms.
   bool has_given_up() const noexcept { return has_given_up_; }
+  const Error& failure() const noexcept { return failure_; }  ///< Why it has given up.
   const std::string& banner() const noexcept { return banner_; }
   double loading() const noexcept { return seat_ ? seat_->loading() : 0.0; }
   std::string doing() const;  ///< "loading the patient", for a progress line.
@@ -58,7 +60,11 @@ class ToolServer {
  private:
   using Clock = std::chrono::steady_clock;
   void connect();
+  std::string give_up(Error why);
   std::string bring_back(const std::string& what, bool is_new_process);
+  bool is_device_lost() const;
+  std::string open_device_again();
+  std::string device_words() const;  ///< "gamepad"
   void send_settings();
 
   OwnServer* process_;
@@ -69,6 +75,7 @@ class ToolServer {
   std::optional<ServerSeat> seat_;
   std::optional<SeatRequest> request_;
   std::string banner_;
+  Error failure_;
   /// What was set since the scene was loaded.
   struct Settings {
     std::vector<std::string> tissues;          ///< Of the last message that named any.
@@ -85,6 +92,12 @@ class ToolServer {
   bool is_stopped_ = false;
   bool has_given_up_ = false;
   bool waits_for_resume_ = false;
+  /// The device is gone, its server is not.
+  struct LostDevice {
+    std::optional<std::uint32_t> asked;  ///< To open it again; not answered yet.
+    Clock::time_point refused;           ///< When it was last not there.
+  };
+  std::optional<LostDevice> lost_device_;
 };
 
 }  // namespace trocar
