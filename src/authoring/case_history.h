@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <string>
-#include <vector>
 
 #include "authoring/case_draft.h"
+#include "core/step_history.h"
 
 namespace trocar {
 
@@ -15,7 +14,7 @@ class CaseHistory {
  public:
   static constexpr std::size_t kMaxSteps = 200;
 
-  const CaseDraft& draft() const noexcept { return draft_; }
+  const CaseDraft& draft() const noexcept { return steps_.now().draft; }
   /// Counts every change of the draft, undo and redo included.
   std::uint64_t version() const noexcept { return version_; }
 
@@ -25,21 +24,19 @@ class CaseHistory {
   /// that is turned) are one; empty: a step of its own. A draft that says the same is no step.
   void apply(CaseDraft next, std::string what, const std::string& gesture = {});
 
-  bool can_undo() const noexcept { return !undone_by_.empty(); }
-  bool can_redo() const noexcept { return !redone_by_.empty(); }
-  std::string undo_text() const { return can_undo() ? undone_by_.back().what : std::string(); }
-  std::string redo_text() const { return can_redo() ? redone_by_.back().what : std::string(); }
+  bool can_undo() const noexcept { return steps_.can_undo(); }
+  bool can_redo() const noexcept { return steps_.can_redo(); }
+  std::string undo_text() const { return can_undo() ? steps_.now().what : std::string(); }
+  std::string redo_text() const { return can_redo() ? steps_.next().what : std::string(); }
   void undo();  ///< Nothing where there is nothing to undo.
   void redo();
 
  private:
   struct Step {
-    std::string what;
-    CaseDraft other;  ///< The draft on the other side of the step.
+    CaseDraft draft;
+    std::string what;  ///< Led to it.
   };
-  CaseDraft draft_;
-  std::deque<Step> undone_by_;
-  std::vector<Step> redone_by_;
+  StepHistory<Step> steps_{kMaxSteps};
   std::string gesture_;
   std::uint64_t version_ = 0;
 };

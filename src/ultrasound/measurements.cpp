@@ -7,28 +7,21 @@
 
 namespace trocar {
 
-void Measurements::change(std::vector<Measurement> items) {
-  states_.resize(now_ + 1);
-  states_.push_back(std::move(items));
-  if (states_.size() > kMostStates) states_.erase(states_.begin());
-  now_ = states_.size() - 1;
-}
-
 void Measurements::add(const Measurement& measurement) {
   std::vector<Measurement> changed = items();
   changed.push_back(measurement);
-  change(std::move(changed));
+  history_.step_to(std::move(changed));
 }
 
 void Measurements::remove_last() {
   if (items().empty()) return;
   std::vector<Measurement> changed = items();
   changed.pop_back();
-  change(std::move(changed));
+  history_.step_to(std::move(changed));
 }
 
 void Measurements::clear() {
-  if (!items().empty()) change({});
+  if (!items().empty()) history_.step_to({});
 }
 
 std::vector<std::string> results(const Measurement& measurement) {

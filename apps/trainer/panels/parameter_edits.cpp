@@ -11,7 +11,6 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr std::size_t kMostSteps = 200;  ///< That can be undone.
 constexpr std::string_view kNone = "transfer.none", kFull = "transfer.full";
 
 std::string text_of(double value) {
@@ -32,17 +31,17 @@ void ParameterEdits::start(TissueTable defaults, std::string model) {
   defaults_ = std::move(defaults);
   default_model_ = std::move(model);
   groups_ = tissue_parameters(defaults_);
-  undone_to_.clear();
-  redone_to_.clear();
-  for (Values* values : {&now_.values, &now_.base}) {
+  Step step = now();
+  for (Values* values : {&step.values, &step.base}) {
     std::erase_if(*values, [&](const auto& change) {
       const TissueParameter* parameter = find(change.first);
       return parameter == nullptr || parameter->value == change.second;
     });
     if (!check(*values)) values->clear();
   }
-  now_.model = default_model_;
-  if (now_.profile.empty()) now_.base_model = default_model_;
+  step.model = default_model_;
+  if (step.profile.empty()) step.base_model = default_model_;
+  steps_.begin(std::move(step));
 }
 
 const TissueParameter* ParameterEdits::find(std::string_view setting) const noexcept {
@@ -53,8 +52,8 @@ const TissueParameter* ParameterEdits::find(std::string_view setting) const noex
 }
 
 double ParameterEdits::value_of(const TissueParameter& parameter) const {
-  const auto changed = now_.values.find(parameter.setting);
-  return changed != now_.values.end() ? changed->second : parameter.value;
+  const auto changed = now().values.find(parameter.setting);
+  return changed != now().values.end() ? changed->second : parameter.value;
 }
 
 bool ParameterEdits::is_changed(const TissueParameterGroup& group) const {
@@ -65,7 +64,7 @@ bool ParameterEdits::is_changed(const TissueParameterGroup& group) const {
 Status ParameterEdits::set(const std::string& setting, double value, bool joins) {
   const TissueParameter* parameter = find(setting);
   if (parameter == nullptr) return fail_usage(fmt::format("there is no number \"{}\"", setting), "tissue parameters");
-  Values values = now_.values;
+  Values values = now().values;
   if (value == parameter->value) {
     values.erase(setting);
   } else {
@@ -77,23 +76,23 @@ Status ParameterEdits::set(const std::string& setting, double value, bool joins)
 }
 
 void ParameterEdits::reset(const std::string& setting) {
-  Values values = now_.values;
+  Values values = now().values;
   values.erase(setting);
   if (check(values)) keep(std::move(values));
 }
 
 void ParameterEdits::reset(const TissueParameterGroup& group) {
-  Values values = now_.values;
+  Values values = now().values;
   for (const TissueParameter& parameter : group.parameters) values.erase(parameter.setting);
   if (check(values)) keep(std::move(values));
 }
 
 void ParameterEdits::reset_all() {
-  keep({{}, now_.model, {}, {}, default_model_});
+  keep({{}, now().model, {}, {}, default_model_});
 }
 
 void ParameterEdits::set_model(const std::string& model) {
-  Step step = now_;
+  Step step = now();
   step.model = model;
   keep(std::move(step));
 }
@@ -113,26 +112,19 @@ Status ParameterEdits::choose_profile(const std::string& profile, const std::vec
   return {};
 }
 
-template <class Change>
-void ParameterEdits::change_all_steps(const Change& change) {
-  change(now_);
-  for (std::vector<Step>* steps : {&undone_to_, &redone_to_})
-    for (Step& step : *steps) change(step);
-}
-
 void ParameterEdits::call_profile(const std::string& profile) {
-  now_.profile = profile;
-  const Values base = now_.values;
-  const std::string model = now_.model;
-  change_all_steps([&](Step& step) {
+  Step called = now();
+  called.profile = profile;
+  steps_.put(called);
+  steps_.change_all([&](Step& step) {
     if (step.profile != profile) return;
-    step.base = base;
-    step.base_model = model;
+    step.base = called.values;
+    step.base_model = called.model;
   });
 }
 
 void ParameterEdits::forget_profile(const std::string& profile) {
-  change_all_steps([&](Step& step) {
+  steps_.change_all([&](Step& step) {
     if (step.profile != profile) return;
     step.profile.clear();
     step.base.clear();
@@ -189,34 +181,16 @@ bool ParameterEdits::gives(const Values& values, TissueTable table) const {
   return made.to_toml() == table.to_toml();
 }
 
-void ParameterEdits::undo() {
-  if (undone_to_.empty()) return;
-  redone_to_.push_back(std::exchange(now_, std::move(undone_to_.back())));
-  undone_to_.pop_back();
-}
-
-void ParameterEdits::redo() {
-  if (redone_to_.empty()) return;
-  undone_to_.push_back(std::exchange(now_, std::move(redone_to_.back())));
-  redone_to_.pop_back();
-}
-
 void ParameterEdits::keep(Values values, bool joins) {
-  Step step = now_;
+  Step step = now();
   step.values = std::move(values);
   keep(std::move(step), joins);
 }
 
 void ParameterEdits::keep(Step step, bool joins) {
   // Another name alone is nothing that anybody would undo.
-  if (step.values == now_.values && step.model == now_.model) {
-    now_ = std::move(step);
-    return;
-  }
-  if (!joins || undone_to_.empty()) undone_to_.push_back(now_);
-  if (undone_to_.size() > kMostSteps) undone_to_.erase(undone_to_.begin());
-  redone_to_.clear();
-  now_ = std::move(step);
+  if (step.values == now().values && step.model == now().model) return steps_.put(std::move(step));
+  steps_.step_to(std::move(step), joins);
 }
 
 std::vector<std::string> ParameterEdits::settings_of(const Values& values) const {

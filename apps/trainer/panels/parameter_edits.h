@@ -8,6 +8,7 @@
 #include "anatomy/tissue_parameters.h"
 #include "anatomy/tissue_table.h"
 #include "core/result.h"
+#include "core/step_history.h"
 
 namespace trocar::trainer {
 
@@ -23,9 +24,9 @@ class ParameterEdits {
   const std::vector<TissueParameterGroup>& groups() const noexcept { return groups_; }
   const TissueParameter* find(std::string_view setting) const noexcept;
   double value_of(const TissueParameter& parameter) const;
-  bool is_changed(const TissueParameter& parameter) const { return now_.values.contains(parameter.setting); }
+  bool is_changed(const TissueParameter& parameter) const { return now().values.contains(parameter.setting); }
   bool is_changed(const TissueParameterGroup& group) const;
-  bool is_changed() const noexcept { return !now_.values.empty(); }
+  bool is_changed() const noexcept { return !now().values.empty(); }
 
   /// `joins`: one step of undo together with the last change (a slider that is still held). Errors: an unknown setting,
   /// a number out of range or against another one; nothing is changed then.
@@ -35,13 +36,13 @@ class ParameterEdits {
   void reset_all();
   /// All changes at once, as a profile has them: "liver.k=0.5". Errors name the setting; nothing is changed then.
   Status replace(const std::vector<std::string>& settings);
-  const std::string& model() const noexcept { return now_.model; }
+  const std::string& model() const noexcept { return now().model; }
   void set_model(const std::string& model);
 
   /// The profile that was chosen last, by its file; empty: the defaults.
-  const std::string& profile() const noexcept { return now_.profile; }
+  const std::string& profile() const noexcept { return now().profile; }
   /// Whether numbers or model are other than that profile's.
-  bool differs_from_profile() const noexcept { return now_.values != now_.base || now_.model != now_.base_model; }
+  bool differs_from_profile() const noexcept { return now().values != now().base || now().model != now().base_model; }
   /// Numbers and model of a profile as one step; "" with no settings and the defaults' model: the defaults. Errors as
   /// replace().
   Status choose_profile(const std::string& profile, const std::vector<std::string>& settings, const std::string& model);
@@ -50,13 +51,13 @@ class ParameterEdits {
   /// There is no such profile any more; numbers that came from it stay.
   void forget_profile(const std::string& profile);
 
-  bool can_undo() const noexcept { return !undone_to_.empty(); }
-  bool can_redo() const noexcept { return !redone_to_.empty(); }
-  void undo();
-  void redo();
+  bool can_undo() const noexcept { return steps_.can_undo(); }
+  bool can_redo() const noexcept { return steps_.can_redo(); }
+  void undo() { steps_.undo(); }
+  void redo() { steps_.redo(); }
 
   /// What differs from the defaults, "liver.k=0.5", in an order that can be applied one after the other.
-  std::vector<std::string> settings() const { return settings_of(now_.values); }
+  std::vector<std::string> settings() const { return settings_of(now().values); }
 
  private:
   using Values = std::map<std::string, double, std::less<>>;
@@ -75,14 +76,12 @@ class ParameterEdits {
   Result<Values> read(const std::vector<std::string>& settings) const;
   void read_from(const TissueTable& table, Values& values) const;
   bool gives(const Values& values, TissueTable table) const;
-  template <class Change>
-  void change_all_steps(const Change& change);
+  const Step& now() const noexcept { return steps_.now(); }
 
   TissueTable defaults_;
   std::vector<TissueParameterGroup> groups_;
   std::string default_model_;
-  Step now_;
-  std::vector<Step> undone_to_, redone_to_;
+  StepHistory<Step> steps_;
 };
 
 }  // namespace trocar::trainer

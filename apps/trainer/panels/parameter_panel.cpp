@@ -4,7 +4,6 @@
 #include <QLabel>
 #include <QScrollArea>
 #include <QScrollBar>
-#include <QShortcut>
 #include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -64,7 +63,6 @@ ParameterPanel::ParameterPanel(QWidget* parent)
   layout->addWidget(empty_);
   layout->addWidget(body_, 1);
   layout->addStretch(0);
-  make_shortcuts();
 
   connect(preview_, &ForcePreview::model_changed, this, [this](const QString& model) {
     edits_.set_model(to_std(model));
@@ -100,32 +98,17 @@ QWidget* ParameterPanel::make_head() {
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(6);
   layout->addWidget(make_label(tr("Tissues"), "heading"), 1);
-  undo_ = make_tool_button("parameter-undo", QStringLiteral("⤺"), tr("Undo  (Ctrl+Z in this panel)"));
-  undo_->setAccessibleName(tr("Undo"));
-  redo_ = make_tool_button("parameter-redo", QStringLiteral("⤻"), tr("Redo  (Ctrl+Shift+Z in this panel)"));
-  redo_->setAccessibleName(tr("Redo"));
+  undo_buttons_.emplace(
+      "parameter", *this, [this] { undo(); }, [this] { redo(); });
+  undo_buttons_->add_to(*layout);
   reset_ = make_tool_button("parameter-reset-all", tr("Reset all"), tr("All numbers back to the case's own"));
-  connect(undo_, &QToolButton::clicked, this, &ParameterPanel::undo);
-  connect(redo_, &QToolButton::clicked, this, &ParameterPanel::redo);
   connect(reset_, &QToolButton::clicked, this, [this] {
     edits_.reset_all();
     show_changes();
   });
-  for (QToolButton* button : {undo_, redo_, reset_}) {
-    button->setFocusPolicy(Qt::StrongFocus);
-    layout->addWidget(button);
-  }
+  reset_->setFocusPolicy(Qt::StrongFocus);
+  layout->addWidget(reset_);
   return head;
-}
-
-void ParameterPanel::make_shortcuts() {
-  const auto add = [this](const QKeySequence& keys, void (ParameterPanel::*act)()) {
-    auto* shortcut = new QShortcut(keys, this);
-    shortcut->setContext(Qt::WidgetWithChildrenShortcut);
-    connect(shortcut, &QShortcut::activated, this, act);
-  };
-  add(QKeySequence(QStringLiteral("Ctrl+Z")), &ParameterPanel::undo);
-  add(QKeySequence(QStringLiteral("Ctrl+Shift+Z")), &ParameterPanel::redo);
 }
 
 void ParameterPanel::show_case(std::shared_ptr<const OpenCase> open_case) {
@@ -193,8 +176,7 @@ void ParameterPanel::show_values() {
     edits_.forget_profile(edits_.profile());
   profiles_->show_chosen(edits_.profile(), edits_.differs_from_profile());
   list_->show_values(edits_);
-  undo_->setEnabled(edits_.can_undo());
-  redo_->setEnabled(edits_.can_redo());
+  undo_buttons_->show(edits_.can_undo(), edits_.can_redo());
   reset_->setEnabled(edits_.is_changed());
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "panels/parameter_edits.h"
+#include "panels/undo_buttons.h"
 #include "station/open_case.h"
 #include "station/tissue_profile.h"
 
@@ -58,7 +59,6 @@ class ParameterPanel : public QWidget {
 
  private:
   QWidget* make_head();
-  void make_shortcuts();
   void edit(const std::string& setting, double value, bool joins);
   void undo();
   void redo();
@@ -74,7 +74,8 @@ class ParameterPanel : public QWidget {
   ParameterEdits edits_;
   QStringList sent_;
   std::optional<std::chrono::steady_clock::time_point> changed_at_;  ///< Of a change that is not sent yet.
-  QToolButton *undo_ = nullptr, *redo_ = nullptr, *reset_ = nullptr;
+  std::optional<UndoButtons> undo_buttons_;
+  QToolButton* reset_ = nullptr;
   QLabel* empty_;
   QWidget* body_;
   ParameterProfiles* profiles_;

@@ -109,7 +109,7 @@ void StructurePanel::add_presets(QBoxLayout& layout) {
     button->setAccessibleName(choice.tooltip);
     connect(button, &QToolButton::clicked, this, [this, preset = choice.preset] {
       view_.apply_preset(preset);
-      refresh();
+      note_change();
     });
     button->setStyleSheet(QString::fromLatin1(kSlim));
     button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
@@ -126,6 +126,31 @@ void StructurePanel::rebuild() {
   rows_.clear();
   for (const StructureInfo& info : view_.structures()) add_row(info);
   list_->addStretch(1);
+  dragged_ = nullptr;
+  steps_.begin(opacities());
+  refresh();
+}
+
+StructurePanel::Opacities StructurePanel::opacities() const {
+  Opacities all;
+  for (const StructureInfo& info : view_.structures()) all[info.name] = info.opacity;
+  return all;
+}
+
+void StructurePanel::note_change(const QSlider* slider) {
+  Opacities next = opacities();
+  const bool is_held = slider != nullptr && slider->isSliderDown();
+  if (next != steps_.now()) {
+    steps_.step_to(std::move(next), is_held && slider == dragged_);
+    dragged_ = is_held ? slider : nullptr;
+  }
+  refresh();
+}
+
+void StructurePanel::show_step() {
+  dragged_ = nullptr;
+  for (const auto& [name, opacity] : steps_.now()) view_.set_opacity(name, opacity);
+  refresh();
 }
 
 void StructurePanel::add_row(const StructureInfo& info) {
@@ -155,13 +180,14 @@ void StructurePanel::add_row(const StructureInfo& info) {
   layout->addWidget(row.eye);
   layout->addWidget(label, 1);
   layout->addWidget(row.slider);
-  connect(row.slider, &QSlider::valueChanged, this, [this, structure = info.name](int percent) {
+  connect(row.slider, &QSlider::valueChanged, this, [this, structure = info.name, slider = row.slider](int percent) {
     view_.set_opacity(structure, percent / 100.0);
-    refresh();
+    note_change(slider);
   });
+  connect(row.slider, &QSlider::sliderReleased, this, [this] { dragged_ = nullptr; });
   connect(row.eye, &QToolButton::toggled, this, [this, info](bool is_on) {
     view_.set_opacity(info.name, !is_on ? 0.0 : info.default_opacity > 0.0 ? info.default_opacity : 1.0);
-    refresh();
+    note_change();
   });
   list_->addWidget(line);
   rows_.push_back(row);
@@ -175,6 +201,7 @@ void StructurePanel::refresh() {
     rows_[i].slider->setValue(qRound(100.0 * structures[i].opacity));
     rows_[i].eye->setChecked(structures[i].opacity > 0.0);
   }
+  undo_buttons_->show(steps_.can_undo(), steps_.can_redo());
   const QSignalBlocker quiet_guidance(guidance_);
   const QSignalBlocker quiet_landmarks(landmarks_);
   // There may be nothing that it could show.
@@ -192,7 +219,17 @@ void StructurePanel::add_volume(QBoxLayout& layout) {
       {tr("Surfaces"), tr("CT: bone"), tr("CT: soft tissue"), tr("CT: vessels"), tr("CT: skin and bone")});
   connect(volume_, qOverload<int>(&QComboBox::currentIndexChanged), this,
           [this](int index) { view_.set_volume_preset(static_cast<VolumePreset>(index)); });
-  layout.addWidget(volume_);
+  auto* row = new QHBoxLayout;
+  row->setSpacing(kGap / 2);
+  row->addWidget(volume_, 1);
+  const auto walk = [this](void (StepHistory<Opacities>::*way)()) {
+    (steps_.*way)();
+    show_step();
+  };
+  undo_buttons_.emplace(
+      "structure", *this, [=] { walk(&StepHistory<Opacities>::undo); }, [=] { walk(&StepHistory<Opacities>::redo); });
+  undo_buttons_->add_to(*row);
+  layout.addLayout(row);
 }
 
 void StructurePanel::add_toggles(QBoxLayout& layout) {

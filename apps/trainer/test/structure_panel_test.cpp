@@ -8,6 +8,8 @@
 #include <QToolButton>
 #include <algorithm>
 
+#include "script/widget_events.h"
+#include "test/widget_actions.h"
 #include "views/patient_view.h"
 
 namespace trocar::trainer {
@@ -72,6 +74,55 @@ TEST_F(StructurePanelTest, PresetsMoveTheSliders) {
   EXPECT_GT(opacity("skin"), 0.0);
 }
 
+TEST_F(StructurePanelTest, OpacitiesAreUndoneAndDoneAgain) {
+  auto& undo = find<QToolButton>("structure-undo");
+  auto& redo = find<QToolButton>("structure-redo");
+  EXPECT_FALSE(undo.isEnabled());
+  const double skin = opacity("skin"), kidney = opacity("kidney_left");
+  auto& slider = find<QSlider>("structure-opacity-kidney-left");
+  slider.setSliderDown(true);
+  for (const int percent : {80, 60, 35}) slider.setValue(percent);
+  slider.setSliderDown(false);
+  slider.setValue(30);  // a key: a step of its own
+  find<QToolButton>("preset-bones").click();
+  find<QToolButton>("structure-eye-skin").click();
+  const double shown = opacity("skin");
+  EXPECT_GT(shown, 0.0);
+
+  undo.click();
+  EXPECT_DOUBLE_EQ(opacity("skin"), 0.0);
+  undo.click();
+  EXPECT_DOUBLE_EQ(opacity("kidney_left"), 0.3);
+  EXPECT_DOUBLE_EQ(opacity("skin"), skin);
+  EXPECT_EQ(slider.value(), 30);
+  undo.click();
+  EXPECT_DOUBLE_EQ(opacity("kidney_left"), 0.35);
+  undo.click();
+  EXPECT_DOUBLE_EQ(opacity("kidney_left"), kidney);
+  EXPECT_FALSE(undo.isEnabled());
+  for (int n = 0; n < 4; ++n) redo.click();
+  EXPECT_DOUBLE_EQ(opacity("skin"), shown);
+  EXPECT_DOUBLE_EQ(opacity("kidney_left"), 0.0);
+  EXPECT_FALSE(redo.isEnabled());
+}
+
+TEST_F(StructurePanelTest, UndoHasItsKeysInThePanel) {
+  find<QSlider>("structure-opacity-kidney-left").setValue(40);
+  panel->activateWindow();
+  find<QSlider>("structure-opacity-kidney-left").setFocus();
+  QApplication::processEvents();
+  EXPECT_TRUE(strike(*panel, QStringLiteral("Ctrl+Z")));
+  EXPECT_NE(opacity("kidney_left"), 0.4);
+  EXPECT_TRUE(strike(*panel, QStringLiteral("Ctrl+Shift+Z")));
+  EXPECT_DOUBLE_EQ(opacity("kidney_left"), 0.4);
+}
+
+TEST_F(StructurePanelTest, AnotherPatientHasNothingToUndo) {
+  find<QSlider>("structure-opacity-kidney-left").setValue(40);
+  panel->rebuild();
+  EXPECT_FALSE(find<QToolButton>("structure-undo").isEnabled());
+}
+
 TEST_F(StructurePanelTest, TogglesReachTheView) {
   find<QToolButton>("plane-tip").click();
   EXPECT_TRUE(view.mpr().has_tip_plane);
@@ -87,6 +138,7 @@ TEST_F(StructurePanelTest, TogglesReachTheView) {
 }
 
 TEST_F(StructurePanelTest, EveryControlHasANameATooltipAndFits) {
+  save(*panel, "structures.png");
   for (QWidget* widget : panel->findChildren<QWidget*>()) {
     if (qobject_cast<QToolButton*>(widget) == nullptr && qobject_cast<QSlider*>(widget) == nullptr) continue;
     if (!widget->isVisible()) continue;

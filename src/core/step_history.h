@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <utility>
+#include <vector>
+
+namespace trocar {
+
+/// A value with its steps back and forth. Whole values are kept: they should share what is large.
+template <class State>
+class StepHistory {
+ public:
+  static constexpr std::size_t kMostSteps = 200;
+  explicit StepHistory(std::size_t most_steps = kMostSteps) : most_steps_(most_steps) {}
+
+  const State& now() const noexcept { return now_; }
+
+  /// Another value, with no steps.
+  void begin(State state) {
+    now_ = std::move(state);
+    before_.clear();
+    after_.clear();
+  }
+  /// A step to another value. `joins`: one step together with the last (a slider that is still held), where there is
+  /// one. What was undone can no longer be done again; of more than the most steps the oldest is forgotten.
+  void step_to(State next, bool joins = false) {
+    if (!joins || before_.empty()) before_.push_back(std::move(now_));
+    if (before_.size() > most_steps_) before_.pop_front();
+    after_.clear();
+    now_ = std::move(next);
+  }
+  /// Another value in the place of this one, without a step.
+  void put(State state) { now_ = std::move(state); }
+  /// Changes this value and all that undo and redo lead to.
+  template <class Change>
+  void change_all(const Change& change) {
+    change(now_);
+    for (State& state : before_) change(state);
+    for (State& state : after_) change(state);
+  }
+
+  bool can_undo() const noexcept { return !before_.empty(); }
+  bool can_redo() const noexcept { return !after_.empty(); }
+  /// What redo() leads to; can_redo() only.
+  const State& next() const noexcept { return after_.back(); }
+  void undo() {  ///< Nothing where there is nothing to undo.
+    if (!can_undo()) return;
+    after_.push_back(std::exchange(now_, std::move(before_.back())));
+    before_.pop_back();
+  }
+  void redo() {
+    if (!can_redo()) return;
+    before_.push_back(std::exchange(now_, std::move(after_.back())));
+    after_.pop_back();
+  }
+
+ private:
+  std::size_t most_steps_;
+  State now_{};
+  std::deque<State> before_;
+  std::vector<State> after_;
+};
+
+}  // namespace trocar
