@@ -26,11 +26,14 @@ DistanceCaliper place_distance(const RasterGeometry& raster, const Vec2& a_pixel
 EllipseCaliper place_ellipse(const RasterGeometry& raster, const Vec2& a_pixel, const Vec2& b_pixel,
                              const Vec2& side_pixel) noexcept {
   EllipseCaliper caliper{place(raster, a_pixel), place(raster, b_pixel), 0.0};
-  const Vec2 axis = caliper.b_T - caliper.a_T;
-  const double length_mm = axis.norm();
-  if (length_mm > 0.0)
-    caliper.half_width_mm = std::abs(cross(axis, place(raster, side_pixel) - caliper.a_T)) / length_mm;
+  caliper.half_width_mm = caliper.distance_to_axis_mm(place(raster, side_pixel));
   return caliper;
+}
+
+double EllipseCaliper::distance_to_axis_mm(const Vec2& p_T) const noexcept {
+  const Vec2 axis = b_T - a_T;
+  const double length_mm = axis.norm();
+  return length_mm > 0.0 ? std::abs(cross(axis, p_T - a_T)) / length_mm : 0.0;
 }
 
 double EllipseCaliper::area_mm2() const noexcept {

@@ -24,6 +24,8 @@ struct EllipseCaliper {
   double length_mm() const noexcept { return (b_T - a_T).norm(); }  ///< Of the axis that was set first.
   double width_mm() const noexcept { return 2.0 * half_width_mm; }
   double area_mm2() const noexcept;
+  /// Of a point from the first axis' line: where the outline goes through such a point's height, it is the semi-axis.
+  double distance_to_axis_mm(const Vec2& p_T) const noexcept;
   /// Exact, by the arithmetic-geometric mean.
   double circumference_mm() const noexcept;
   /// Points on the outline, `count` of them, evenly by angle.

@@ -13,15 +13,44 @@ void Measurements::add(const Measurement& measurement) {
   history_.step_to(std::move(changed));
 }
 
-void Measurements::remove_last() {
-  if (items().empty()) return;
+void Measurements::put(std::size_t item, const Measurement& measurement, bool joins) {
+  if (item >= items().size()) return;
   std::vector<Measurement> changed = items();
-  changed.pop_back();
+  changed[item] = measurement;
+  history_.step_to(std::move(changed), joins);
+}
+
+void Measurements::remove(std::size_t item) {
+  if (item >= items().size()) return;
+  std::vector<Measurement> changed = items();
+  changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(item));
   history_.step_to(std::move(changed));
 }
 
 void Measurements::clear() {
   if (!items().empty()) history_.step_to({});
+}
+
+std::vector<Vec2> marks_T(const Measurement& measurement) {
+  if (const auto* distance = std::get_if<DistanceCaliper>(&measurement)) return {distance->a_T, distance->b_T};
+  if (const auto* ellipse = std::get_if<EllipseCaliper>(&measurement))
+    return {ellipse->a_T, ellipse->b_T, ellipse->outline_T(4)[1]};
+  const auto& angle = std::get<AngleCaliper>(measurement);
+  return {angle.corner_T, angle.a_T, angle.b_T};
+}
+
+Measurement with_mark(Measurement measurement, std::size_t mark, const Vec2& p_T) {
+  if (auto* distance = std::get_if<DistanceCaliper>(&measurement)) {
+    (mark == 0 ? distance->a_T : distance->b_T) = p_T;
+  } else if (auto* ellipse = std::get_if<EllipseCaliper>(&measurement)) {
+    if (mark == 0) ellipse->a_T = p_T;
+    if (mark == 1) ellipse->b_T = p_T;
+    if (mark == 2) ellipse->half_width_mm = ellipse->distance_to_axis_mm(p_T);
+  } else {
+    auto& angle = std::get<AngleCaliper>(measurement);
+    (mark == 0 ? angle.corner_T : mark == 1 ? angle.a_T : angle.b_T) = p_T;
+  }
+  return measurement;
 }
 
 std::vector<std::string> results(const Measurement& measurement) {

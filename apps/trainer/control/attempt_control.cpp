@@ -125,7 +125,7 @@ ViewScale AttemptControl::scale_of_3d() const {
 ViewScale AttemptControl::scale_of_ultrasound() const {
   const UltrasoundView& view = page_.desk().ultrasound();
   const auto picture = view.picture();
-  if (!picture || view.measuring_tool() != MeasuringTool::kNone || view.is_frozen()) return {};
+  if (!picture || view.measuring_tool() != MeasuringTool::kNone || view.is_frozen() || view.is_over_mark()) return {};
   const auto& corners_P = picture->corners_P;
   const Vec3 down_P = corners_P[2] - corners_P[0];
   return {(corners_P[1] - corners_P[0]).normalized(), down_P.normalized(), down_P.norm() / std::max(1, view.height())};

@@ -159,6 +159,66 @@ TEST_F(UltrasoundViewTest, CaliperGivesTheKnownDistance) {
   EXPECT_EQ(view.measuring_tool(), MeasuringTool::kNone);
 }
 
+TEST_F(UltrasoundViewTest, CaliperEndsArePickedUpAndMoved) {
+  UltrasoundView view;
+  open(view, "liver-right-kidney", {900, 700});
+  ASSERT_TRUE(settle(view));
+  view.set_frozen(true);
+  ASSERT_TRUE(run_until(view, [](const ScanPicture& p) { return p.is_frozen; }));
+  const PictureMap map = map_of(view);
+  const auto measure = [&](const Vec2& a_T, const Vec2& b_T) {
+    view.start_measuring(MeasuringTool::kDistance);
+    press(view, map.to_view(a_T));
+    mouse(view, QEvent::MouseMove, map.to_view(b_T));
+    release(view, map.to_view(b_T));
+  };
+  const auto distance = [&](std::size_t item) {
+    return std::get<DistanceCaliper>(view.measurements().items()[item]).distance_mm();
+  };
+  measure({-20.0, 40.0}, {25.0, 100.0});
+  measure({-30.0, 60.0}, {-30.0, 80.0});
+  const double pixel_mm = 1.0 / map.pixels_per_mm();
+  ASSERT_NEAR(distance(0), 75.0, pixel_mm);
+
+  // Beside the mark nothing is picked up; over it the pointer says so.
+  const QPointF end = map.to_view({25.0, 100.0});
+  mouse(view, QEvent::MouseMove, end + QPointF(20.0, 0.0));
+  EXPECT_EQ(view.cursor().shape(), Qt::ArrowCursor);
+  EXPECT_FALSE(view.is_over_mark());
+  mouse(view, QEvent::MouseMove, end + QPointF(5.0, 3.0));
+  EXPECT_EQ(view.cursor().shape(), Qt::PointingHandCursor);
+  EXPECT_TRUE(view.is_over_mark());
+
+  press(view, end + QPointF(5.0, 3.0));
+  EXPECT_NEAR(distance(0), 75.0, pixel_mm) << "a press alone moves nothing";
+  for (const double share : {0.3, 0.7, 1.0})
+    mouse(view, QEvent::MouseMove,
+          end + QPointF(5.0, 3.0) + share * (map.to_view({-20.0, 70.0}) - map.to_view({25.0, 100.0})));
+  look(view, "caliper_held");
+  release(view, map.to_view({-20.0, 70.0}) + QPointF(5.0, 3.0));
+  EXPECT_NEAR(distance(0), 30.0, 2.0 * pixel_mm);
+  EXPECT_EQ(view.chosen_measurement(), 0U);
+  const QPointF later = map.to_view({0.0, 90.0});
+  mouse(view, QEvent::MouseMove, later);
+  EXPECT_NEAR(distance(0), 30.0, 2.0 * pixel_mm) << "it was let go";
+  strike(view, Qt::Key_Z, Qt::ControlModifier);
+  EXPECT_NEAR(distance(0), 75.0, pixel_mm) << "the whole drag is one step";
+  strike(view, Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+  EXPECT_NEAR(distance(0), 30.0, 2.0 * pixel_mm);
+
+  // Delete takes the one that was picked up, not the newest; without one, the newest.
+  press(view, map.to_view({-20.0, 40.0}));
+  release(view, map.to_view({-20.0, 40.0}));
+  strike(view, Qt::Key_Delete);
+  ASSERT_EQ(view.measurements().items().size(), 1U);
+  EXPECT_NEAR(distance(0), 20.0, pixel_mm);
+  press(view, map.to_view({-30.0, 80.0}));
+  release(view, map.to_view({-30.0, 80.0}));
+  press(view, later);
+  release(view, later);
+  EXPECT_FALSE(view.chosen_measurement());
+}
+
 TEST_F(UltrasoundViewTest, FrozenPictureStaysAndIsStepped) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {480, 420});

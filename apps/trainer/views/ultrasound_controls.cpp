@@ -276,8 +276,9 @@ QWidget* UltrasoundControls::make_measuring() {
   tool(2, "ultrasound-angle", tr("Angle"), tr("The corner, then both arms"), MeasuringTool::kAngle);
   undo_ = add(1, 0, "ultrasound-undo", tr("Undo"), tr("Takes the last change back  (Ctrl+Z, redo Ctrl+Shift+Z)"),
               [this] { view_.undo_measurement(); });
-  remove_ = add(1, 1, "ultrasound-delete", tr("Delete"), tr("Takes the last measurement away  (Delete)"),
-                [this] { view_.remove_measurement(); });
+  remove_ =
+      add(1, 1, "ultrasound-delete", tr("Delete"), tr("Takes the chosen measurement away, else the last  (Delete)"),
+          [this] { view_.remove_measurement(); });
   clear_ = add(1, 2, "ultrasound-clear", tr("Clear"), tr("Takes all measurements away"),
                [this] { view_.clear_measurements(); });
   box->addLayout(grid);

@@ -213,28 +213,27 @@ void draw_outline(QPainter& painter, const PictureMap& map, const EllipseCaliper
 
 }  // namespace
 
-void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const Measurement> measurements) {
+void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const Measurement> measurements,
+                       std::optional<std::size_t> chosen) {
   painter.setBrush(Qt::NoBrush);
   painter.setFont(caption_font(false));
-  const QPen line = dotted(kCaliperInk, 1.2);
-  int number = 0;
-  for (const Measurement& measurement : measurements) {
-    painter.setPen(QPen(kCaliperInk, 1.2));
+  for (std::size_t n = 0; n < measurements.size(); ++n) {
+    const Measurement& measurement = measurements[n];
+    const bool is_chosen = chosen == n;
+    const QPen line = dotted(kCaliperInk, is_chosen ? 1.8 : 1.2);
+    painter.setPen(QPen(kCaliperInk, is_chosen ? 1.8 : 1.2));
     std::vector<QPointF> marks;
-    if (const auto* distance = std::get_if<DistanceCaliper>(&measurement)) {
-      marks = {map.to_view(distance->a_T), map.to_view(distance->b_T)};
-      draw_line(painter, marks[0], marks[1], line);
-    } else if (const auto* ellipse = std::get_if<EllipseCaliper>(&measurement)) {
-      marks = {map.to_view(ellipse->a_T), map.to_view(ellipse->b_T)};
+    for (const Vec2& mark_T : marks_T(measurement)) marks.push_back(map.to_view(mark_T));
+    if (const auto* ellipse = std::get_if<EllipseCaliper>(&measurement)) {
       draw_outline(painter, map, *ellipse, line);
     } else {
-      const auto& angle = std::get<AngleCaliper>(measurement);
-      marks = {map.to_view(angle.a_T), map.to_view(angle.corner_T), map.to_view(angle.b_T)};
-      draw_line(painter, marks[1], marks[0], line);
-      draw_line(painter, marks[1], marks[2], line);
+      for (std::size_t end = 1; end < marks.size(); ++end) draw_line(painter, marks[0], marks[end], line);
     }
     for (const QPointF& mark : marks) draw_cross(painter, mark, kCross_px);
-    draw_tag(painter, marks.back() + QPointF(kCross_px + 3.0, -3.0), QString::number(++number));
+    if (is_chosen)
+      for (const QPointF& mark : marks) painter.drawEllipse(mark, kCross_px + 3.0, kCross_px + 3.0);
+    const QPointF& last = marks[std::holds_alternative<AngleCaliper>(measurement) ? 2 : 1];
+    draw_tag(painter, last + QPointF(kCross_px + (is_chosen ? 6.0 : 3.0), -3.0), QString::number(n + 1));
   }
 }
 
@@ -249,8 +248,7 @@ void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const V
   if (marks_T.empty()) return;
   if (is_ellipse && marks_T.size() == 2) {
     EllipseCaliper ellipse{marks_T[0], marks_T[1], 0.0};
-    const Vec2 axis = marks_T[1] - marks_T[0], side = hover_T - marks_T[0];
-    if (axis.norm() > 0.0) ellipse.half_width_mm = std::abs(axis.x() * side.y() - axis.y() * side.x()) / axis.norm();
+    ellipse.half_width_mm = ellipse.distance_to_axis_mm(hover_T);
     draw_outline(painter, map, ellipse, line);
     return;
   }

@@ -4,6 +4,7 @@
 #include <QSizeF>
 #include <QString>
 #include <QStringList>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,8 +45,10 @@ void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x, 
 void draw_bars(QPainter& painter, const QRectF& place, const ScanAnnotation& annotation, const ScanPicture& picture,
                const QFont& font);
 
-/// Calipers with their numbers; `marks_T` of one in the making, whose next mark is at hover_T.
-void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const Measurement> measurements);
+/// Calipers with their numbers, rings about the marks of the chosen one; `marks_T` of one in the making, whose next
+/// mark is at hover_T.
+void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const Measurement> measurements,
+                       std::optional<std::size_t> chosen);
 void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const Vec2> marks_T, const Vec2& hover_T,
                      bool is_ellipse, bool is_angle);
 

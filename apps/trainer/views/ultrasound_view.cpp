@@ -74,6 +74,7 @@ void UltrasoundView::show_patient(std::shared_ptr<const AcousticScene> scene, st
   picture_.reset();
   image_ = QImage();
   measurements_ = {};
+  forget_choice();
   marks_T_.clear();
   tool_ = MeasuringTool::kNone;
   frames_per_s_ = 0.0;
@@ -202,7 +203,10 @@ void UltrasoundView::save_now() {
 void UltrasoundView::set_frozen(bool is_frozen) {
   scanner_.set_frozen(is_frozen);
   // What was measured belongs to the picture that goes.
-  if (!is_frozen) measurements_.clear();
+  if (!is_frozen) {
+    measurements_.clear();
+    forget_choice();
+  }
   update();
   Q_EMIT changed();
 }
@@ -311,7 +315,7 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
   if (has_guide && settings_.guide.is_shown) draw_guide(painter, map, guide_line_T());
   if (has_guide) draw_needle_axis(painter, map, *picture_, needle_shaft_P_);
   painter.restore();
-  draw_measurements(painter, map, measurements_.items());
+  draw_measurements(painter, map, measurements_.items(), chosen_);
   if (tool_ != MeasuringTool::kNone)
     draw_unfinished(painter, map, marks_T_, hover_T_, tool_ == MeasuringTool::kEllipse, tool_ == MeasuringTool::kAngle);
 }

@@ -10,6 +10,7 @@
 
 #include "ultrasound/live_scanner.h"
 #include "ultrasound/measurements.h"
+#include "views/caliper_marks.h"
 #include "views/ultrasound_box.h"
 #include "views/ultrasound_layout.h"
 #include "views/ultrasound_settings.h"
@@ -22,9 +23,10 @@ enum class MeasuringTool { kNone, kDistance, kEllipse, kAngle };
 /// captions, calipers and needle guide. Pictures come from a thread of their own; nothing here waits.
 ///
 /// Keys, in the whole window: F freezes, G / Shift+G gain, D / Shift+D depth, C colour Doppler, M measures a distance.
-/// With the focus here: Esc leaves the tool, Delete takes the last measurement away, Ctrl+Z and Ctrl+Shift+Z undo and
-/// redo; of a frozen loop Left and Right step, P plays. Mouse: clicks set marks, a drag sets two; without a tool the
-/// Doppler box is dragged, or sized by its edges; the wheel steps the frozen loop.
+/// With the focus here: Esc leaves the tool, Delete takes the chosen measurement away, else the last, Ctrl+Z and
+/// Ctrl+Shift+Z undo and redo; of a frozen loop Left and Right step, P plays. Mouse: clicks set marks, a drag sets two;
+/// without a tool a mark is picked up and moved, which chooses its measurement, and the Doppler box is dragged, or
+/// sized by its edges; the wheel steps the frozen loop.
 class UltrasoundView : public QWidget {
   Q_OBJECT
  public:
@@ -75,6 +77,11 @@ class UltrasoundView : public QWidget {
   const Measurements& measurements() const noexcept { return measurements_; }
   void undo_measurement();
   void redo_measurement();
+  /// The one whose mark was picked up last; nothing after a click beside all marks.
+  std::optional<std::size_t> chosen_measurement() const noexcept { return chosen_; }
+  /// The pointer can pick up a mark, or holds one.
+  bool is_over_mark() const noexcept { return is_over_mark_ || grip_.has_value(); }
+  /// The chosen one, else the last.
   void remove_measurement();
   void clear_measurements();
 
@@ -105,6 +112,13 @@ class UltrasoundView : public QWidget {
     Vec2 from{0.0, 0.0};
   };
 
+  /// A mark between the mouse's press and its release.
+  struct Grip {
+    CaliperMark mark;
+    Vec2 beside_T{0.0, 0.0};  ///< Of the mark from where it was picked up.
+    bool has_moved = false;
+  };
+
   void make_shortcuts();
   ScanRequest make_request(double now_s);
   void take_picture(double now_s);
@@ -116,6 +130,9 @@ class UltrasoundView : public QWidget {
   const UltrasoundLayout& layout_for(const ScanGeometry& scan) const;
   std::vector<Vec2> guide_line_T() const;
   void set_mark(const Vec2& p_T);
+  bool begin_grip(const QPointF& place);
+  void move_grip(const Vec2& to_T);
+  void forget_choice();
   bool begin_box_drag(const QPointF& place);
   void show_cursor(const QPointF& place);
   bool handle_key(int key, Qt::KeyboardModifiers modifiers, bool is_rehearsal);
@@ -148,6 +165,9 @@ class UltrasoundView : public QWidget {
   QPointF pressed_at_;
   bool is_pressed_ = false;
   std::optional<BoxDrag> box_drag_;
+  std::optional<Grip> grip_;
+  std::optional<std::size_t> chosen_;
+  bool is_over_mark_ = false;
 
   struct LayoutKey {
     QSizeF view, caption, bars;

@@ -31,8 +31,7 @@ Measurement finished(MeasuringTool tool, const std::vector<Vec2>& m) {
   if (tool == MeasuringTool::kDistance) return DistanceCaliper{m[0], m[1]};
   if (tool == MeasuringTool::kAngle) return AngleCaliper{m[0], m[1], m[2]};
   EllipseCaliper ellipse{m[0], m[1], 0.0};
-  const Vec2 axis = m[1] - m[0], side = m[2] - m[0];
-  if (axis.norm() > 0.0) ellipse.half_width_mm = std::abs(axis.x() * side.y() - axis.y() * side.x()) / axis.norm();
+  ellipse.half_width_mm = ellipse.distance_to_axis_mm(m[2]);
   return ellipse;
 }
 
@@ -61,6 +60,7 @@ void UltrasoundView::make_shortcuts() {
 void UltrasoundView::start_measuring(MeasuringTool tool) {
   tool_ = picture_ ? tool : MeasuringTool::kNone;
   marks_T_.clear();
+  forget_choice();
   is_pressed_ = false;
   if (tool_ != MeasuringTool::kNone) setFocus();
   setCursor(tool_ != MeasuringTool::kNone ? Qt::CrossCursor : Qt::ArrowCursor);
@@ -85,21 +85,58 @@ void UltrasoundView::measurements_changed() {
 
 void UltrasoundView::undo_measurement() {
   measurements_.undo();
+  forget_choice();
   measurements_changed();
 }
 
 void UltrasoundView::redo_measurement() {
   measurements_.redo();
+  forget_choice();
   measurements_changed();
 }
 
 void UltrasoundView::remove_measurement() {
-  measurements_.remove_last();
+  if (chosen_) {
+    measurements_.remove(*chosen_);
+  } else {
+    measurements_.remove_last();
+  }
+  forget_choice();
   measurements_changed();
 }
 
 void UltrasoundView::clear_measurements() {
   measurements_.clear();
+  forget_choice();
+  measurements_changed();
+}
+
+/// The numbers of measurements are not what they were, or nobody means one of them any more.
+void UltrasoundView::forget_choice() {
+  chosen_.reset();
+  grip_.reset();
+  is_over_mark_ = false;
+}
+
+bool UltrasoundView::begin_grip(const QPointF& place) {
+  const auto map = picture_map();
+  const auto found = map ? find_mark(*map, measurements_.items(), place) : std::nullopt;
+  if (!found) {
+    if (std::exchange(chosen_, std::nullopt)) measurements_changed();
+    return false;
+  }
+  const Vec2 mark_T = marks_T(measurements_.items()[found->item])[found->mark];
+  grip_ = Grip{*found, mark_T - map->to_T(place), false};
+  chosen_ = found->item;
+  setFocus();
+  measurements_changed();
+  return true;
+}
+
+void UltrasoundView::move_grip(const Vec2& to_T) {
+  const Measurement& held = measurements_.items()[grip_->mark.item];
+  measurements_.put(grip_->mark.item, with_mark(held, grip_->mark.mark, to_T + grip_->beside_T), grip_->has_moved);
+  grip_->has_moved = true;
   measurements_changed();
 }
 
@@ -126,7 +163,10 @@ void UltrasoundView::show_cursor(const QPointF& place) {
   if (tool_ != MeasuringTool::kNone) return;
   Qt::CursorShape shape = Qt::ArrowCursor;
   const auto map = picture_map();
-  if (map && settings_.has_doppler && !picture_->colour.pixels.empty() && !picture_->is_frozen) {
+  is_over_mark_ = map && find_mark(*map, measurements_.items(), place);
+  if (is_over_mark_) {
+    shape = Qt::PointingHandCursor;
+  } else if (map && settings_.has_doppler && !picture_->colour.pixels.empty() && !picture_->is_frozen) {
     const auto part = find_box_part(settings_.doppler.box, box_place(picture_->scan, map->to_T(place)));
     if (part == BoxPart::kWhole) shape = Qt::SizeAllCursor;
     if (part == BoxPart::kFirst || part == BoxPart::kLast) shape = Qt::SizeHorCursor;
@@ -148,12 +188,13 @@ void UltrasoundView::mousePressEvent(QMouseEvent* event) {
     set_mark(hover_T_);
     return;
   }
-  if (!begin_box_drag(event->pos())) event->ignore();
+  if (!begin_grip(event->pos()) && !begin_box_drag(event->pos())) event->ignore();
 }
 
 void UltrasoundView::mouseMoveEvent(QMouseEvent* event) {
   const auto map = picture_map();
   if (!map) return;
+  if (grip_) return move_grip(map->to_T(event->pos()));
   if (box_drag_) {
     const Vec2 by = box_place(picture_->scan, map->to_T(event->pos())) - box_drag_->from;
     change_settings([&](UltrasoundSettings& s) { s.doppler.box = moved_box(box_drag_->begun, box_drag_->part, by); });
@@ -169,6 +210,7 @@ void UltrasoundView::mouseMoveEvent(QMouseEvent* event) {
 void UltrasoundView::mouseReleaseEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton) return;
   box_drag_.reset();
+  grip_.reset();
   if (!std::exchange(is_pressed_, false) || tool_ == MeasuringTool::kNone || marks_T_.empty()) return;
   const QPointF moved = event->pos() - pressed_at_;
   const auto map = picture_map();
