@@ -1,10 +1,8 @@
 // trocar-trainer: the desktop that a trainee sits at.
-#include <QVTKOpenGLNativeWidget.h>
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <QPixmap>
-#include <QSurfaceFormat>
 #include <QTimer>
 #include <algorithm>
 #include <filesystem>
@@ -124,12 +122,10 @@ int main(int argc, char** argv) {
     return complain(Error{"the window needs an X server that can draw, and there is none", "DISPLAY",
                           "start it from a desktop, or under xvfb-run"});
 
-  QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
 #if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
   QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
   QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
 #endif
-  QCoreApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
   QCoreApplication::setOrganizationName(QStringLiteral("trocar"));
   QCoreApplication::setApplicationName(QStringLiteral("trocar-trainer"));
   TrainerApplication application(argc, argv);

@@ -17,7 +17,7 @@ struct Detail {
 inline constexpr int kMeshLevels = 3;
 
 struct DetailPolicyParams {
-  double target_ms = 40.0;                        ///< A frame while something moves. Range 5..500.
+  double target_ms = 32.0;                        ///< A frame while something moves. Range 5..500.
   double comfort = 0.55;                          ///< Below this share of the target more detail is tried.
   int patience_frames = 20;                       ///< So many comfortable frames in a row. Range 1..1000.
   std::chrono::milliseconds still_after{300};     ///< Without motion for so long: full quality.
@@ -33,6 +33,8 @@ class DetailPolicy {
 
   explicit DetailPolicy(bool has_gpu, const DetailPolicyParams& params = {});
 
+  /// Another frame time to keep, ms, 5..500.
+  void set_target(double target_ms) noexcept { params_.target_ms = target_ms; }
   /// Something was moved at this time: tool, camera, opacity.
   void note_motion(Time now) noexcept;
   /// A frame of this detail has taken so long. One that was broken off is not told.

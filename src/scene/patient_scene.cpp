@@ -53,7 +53,10 @@ class CallersBreak : public detail::FrameBreak {
 }  // namespace
 
 struct PatientScene::Impl {
-  explicit Impl(vtkRenderWindow& a_window) : window(&a_window) {
+  Impl(int columns, int rows) {
+    window->SetShowWindow(false);
+    window->SetOffScreenRendering(1);
+    window->SetSize(columns, rows);
     detail::add_studio(*renderer);
     renderer->SetMaximumNumberOfPeels(kPeels);
     renderer->SetOcclusionRatio(0.01);
@@ -88,10 +91,10 @@ struct PatientScene::Impl {
     has_changed = true;
   }
   void place_camera(int rows);
-  void prepare(const Detail& detail);
-  void set_up_stereo();
+  void prepare(const Detail& detail, Eye eye);
+  void set_up_stereo(Eye eye);
 
-  vtkSmartPointer<vtkRenderWindow> window;
+  vtkNew<vtkRenderWindow> window;
   vtkNew<vtkRenderer> renderer;
   vtkNew<vtkCallbackCommand> abort_check;
   unsigned long abort_tag = 0;
@@ -144,14 +147,14 @@ void PatientScene::Impl::place_camera(int rows) {
   if (needle_P) tools.set_least_thickness(kLeastNeedle_px * view.mm_per_pixel(needle_P->b, rows));
 }
 
-void PatientScene::Impl::set_up_stereo() {
+void PatientScene::Impl::set_up_stereo(Eye eye) {
   const bool is_on = stereo.mode != StereoMode::kOff;
-  if (is_on) window->SetStereoType(detail::to_vtk(stereo.mode));
+  if (is_on) window->SetStereoType(detail::to_vtk(stereo.mode, eye));
   window->SetStereoRender(is_on);
   renderer->GetActiveCamera()->SetEyeAngle(stereo.swaps_eyes ? -stereo.eye_angle_deg : stereo.eye_angle_deg);
 }
 
-void PatientScene::Impl::prepare(const Detail& detail) {
+void PatientScene::Impl::prepare(const Detail& detail, Eye eye) {
   const bool draws_volume = detail.has_volume && volume.is_ready();
   place_camera(window->GetSize()[1]);
   planes.update(tools.needle_P(), detail == DetailPolicy::full() ? kPlanePixels : kPlanePixelsMoving);
@@ -164,24 +167,17 @@ void PatientScene::Impl::prepare(const Detail& detail) {
   CameraView shown = view;
   if (stereo.mode != StereoMode::kOff) shown.focus_P += stereo.focus_shift * (view.focus_P - view.eye_P);
   detail::apply(shown, *renderer);
-  set_up_stereo();
+  set_up_stereo(eye);
 }
 
-PatientScene::PatientScene() = default;
-PatientScene::PatientScene(vtkRenderWindow& window) : impl_(std::make_unique<Impl>(window)) {}
+PatientScene::PatientScene(int columns, int rows) : impl_(std::make_unique<Impl>(columns, rows)) {}
 PatientScene::~PatientScene() = default;
 
-Result<std::unique_ptr<PatientScene>> PatientScene::make_off_screen(int columns, int rows) {
+Result<std::unique_ptr<PatientScene>> PatientScene::make(int columns, int rows) {
   if (!detail::has_opengl_display()) {
     return fail("3D pictures need an X server, and there is none", "DISPLAY", "start the program under xvfb-run");
   }
-  vtkNew<vtkRenderWindow> window;
-  window->SetShowWindow(false);
-  window->SetOffScreenRendering(1);
-  window->SetSize(columns, rows);
-  std::unique_ptr<PatientScene> scene(new PatientScene());
-  scene->impl_ = std::make_unique<Impl>(*window);
-  return scene;
+  return std::unique_ptr<PatientScene>(new PatientScene(columns, rows));
 }
 
 void PatientScene::show_patient(std::shared_ptr<const VirtualPatient> patient,
@@ -339,8 +335,8 @@ const StereoOptions& PatientScene::stereo() const noexcept {
   return impl_->stereo;
 }
 
-bool PatientScene::has_quad_buffer() const {
-  return impl_->window->GetStereoCapableWindow() != 0;
+void PatientScene::set_size(int columns, int rows) {
+  impl_->window->SetSize(columns, rows);
 }
 
 void PatientScene::poll() {
@@ -351,10 +347,10 @@ bool PatientScene::has_changed() const noexcept {
   return impl_->has_changed;
 }
 
-bool PatientScene::render(const Detail& detail, const std::function<bool()>& wants_break) {
+bool PatientScene::render(const Detail& detail, const std::function<bool()>& wants_break, Eye eye) {
   Impl& s = *impl_;
   s.poll();
-  s.prepare(detail);
+  s.prepare(detail, eye);
   s.frame_break.begin(wants_break);
   s.window->SetAbortRender(0);
   s.window->Render();
@@ -365,10 +361,10 @@ bool PatientScene::render(const Detail& detail, const std::function<bool()>& wan
   return true;
 }
 
-RgbImage PatientScene::picture() const {
-  const int* size = impl_->window->GetSize();
-  return detail::mirrored(detail::read_picture(*impl_->window, size[0], size[1], 1),
-                          impl_->stereo.is_mirrored_left_right, impl_->stereo.is_mirrored_up_down);
+void PatientScene::copy_picture(std::span<std::uint32_t> pixels) const {
+  detail::copy_picture(*impl_->window, pixels);
+  detail::mirror(pixels, impl_->window->GetSize()[0], impl_->stereo.is_mirrored_left_right,
+                 impl_->stereo.is_mirrored_up_down);
 }
 
 std::optional<Vec3> PatientScene::pick(double right, double down) {

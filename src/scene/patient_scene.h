@@ -22,19 +22,14 @@
 #include "scene/transducer_shape.h"
 #include "scene/volume_preset.h"
 
-class vtkRenderWindow;
-
 namespace trocar {
 
-/// A patient with tools and guidance, drawn as often as one likes. Everything is in P (mm). All calls from the thread
-/// of the window's OpenGL context; surfaces and volume are prepared on threads of their own and appear when they are
-/// ready.
+/// A patient with tools and guidance, drawn off-screen as often as one likes. Everything is in P (mm). All calls from
+/// one thread; surfaces and volume are prepared on threads of their own and appear when they are ready.
 class PatientScene {
  public:
-  /// Draws into a window, which outlives the scene.
-  explicit PatientScene(vtkRenderWindow& window);
-  /// Draws off-screen. An error without an X server.
-  static Result<std::unique_ptr<PatientScene>> make_off_screen(int columns, int rows);
+  /// An error without an X server.
+  static Result<std::unique_ptr<PatientScene>> make(int columns, int rows);
   ~PatientScene();
   PatientScene(const PatientScene&) = delete;
   PatientScene& operator=(const PatientScene&) = delete;
@@ -79,20 +74,22 @@ class PatientScene {
 
   void set_stereo(const StereoOptions& options);
   const StereoOptions& stereo() const noexcept;
-  /// Whether the window has buffers for two eyes.
-  bool has_quad_buffer() const;
 
+  /// Size of the pictures from the next frame on.
+  void set_size(int columns, int rows);
   /// Takes over surfaces and volume that have become ready.
   void poll();
   /// Something was set, or has become ready, since the last whole frame.
   bool has_changed() const noexcept;
-  /// Draws a frame. `wants_break` (may be empty) is asked many times; once it says yes the frame is given up, what is
-  /// in the window is then of no use, and false is returned.
-  bool render(const Detail& detail, const std::function<bool()>& wants_break = {});
-  /// The window's picture after `render`, as a mirror wants it where one is set.
-  RgbImage picture() const;
+  /// Draws a frame. `wants_break` (may be empty) is asked many times; once it says yes the frame is given up, its
+  /// picture is of no use, and false is returned. Quad-buffer stereo takes a frame for each eye; the other modes draw
+  /// both into one and have no use for `eye`.
+  bool render(const Detail& detail, const std::function<bool()>& wants_break = {}, Eye eye = Eye::kLeft);
+  /// The picture after `render`, as a mirror wants it where one is set: 0xffRRGGBB, rows from the top. `pixels` has a
+  /// place for each.
+  void copy_picture(std::span<std::uint32_t> pixels) const;
 
-  /// First surface, tool or plane at a place of the window (shares of its width and height from the top left), in P.
+  /// First surface, tool or plane at a place of the picture (shares of its width and height from the top left), in P.
   std::optional<Vec3> pick(double right, double down);
 
   /// What draws, by OpenGL's own name ("llvmpipe (LLVM 15.0.6, 256 bits)"); known after the first frame.
@@ -102,7 +99,7 @@ class PatientScene {
   std::size_t triangle_count(int mesh_level) const;
 
  private:
-  PatientScene();
+  PatientScene(int columns, int rows);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -4,11 +4,13 @@ namespace trocar {
 
 enum class StereoMode {
   kOff,
-  kQuadBuffer,  ///< Shutter glasses; only where the window has left and right buffers.
+  kQuadBuffer,  ///< Shutter glasses: a picture for each eye, for a screen that shows them in turns.
   kAnaglyph,    ///< Red-cyan glasses.
   kSideBySide,
   kInterlaced,  ///< Even rows to one eye, odd ones to the other.
 };
+
+enum class Eye { kLeft, kRight };
 
 struct StereoOptions {
   StereoMode mode = StereoMode::kOff;

@@ -11,7 +11,6 @@ struct TransducerFace {
   double field_of_view_rad = 1.2;  ///< Between the outermost scanlines; convex only.
   double width_mm = 40.0;          ///< Of a flat face.
   double least_width_mm = 16.0;    ///< A phased array's face is at least so wide.
-  bool operator==(const TransducerFace&) const = default;
 };
 
 /// A transducer's housing in its frame T (x lateral, y into the body, z elevation): lens, body, handle and the start of

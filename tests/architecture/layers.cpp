@@ -76,6 +76,7 @@ bool is_system(std::string_view header) {
 
 /// Qt's classes and its bridge to VTK.
 bool is_qt(std::string_view header) {
+  if (header.starts_with("QVTK")) return false;  // VTK's bridge: what draws it would draw the whole window by OpenGL
   return header.size() > 1 && header[0] == 'Q' && header[1] >= 'A' && header[1] <= 'Z' &&
          header.find('/') == std::string_view::npos;
 }
@@ -112,7 +113,6 @@ std::optional<Place> find_place(const Modules& modules, const std::string& path)
   }
   for (const auto& [name, module] : modules) place.modules.insert(name);
   if (place.is_bench) place.libraries = {"vtk-filters", "vtk-rendering"};  // peers to be measured beside our kernels
-  if (place.has_window) place.libraries = {"vtk-rendering"};  // a window's widget takes what scene draws on
   return place;
 }
 

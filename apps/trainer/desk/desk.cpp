@@ -25,6 +25,9 @@ namespace trocar::trainer {
 namespace {
 
 constexpr double kEntryZone_mm = 10.0;
+/// What the 3D views may take of a frame while tools move, so that with slices, ultrasound and curves 15 a second
+/// remain.
+constexpr double kFrameOfOne_ms = 32.0, kFrameOfTwo_ms = 20.0;
 
 /// The task's own, else the skin about the planned entry.
 EntryZone entry_zone_of(const Case& the_case) {
@@ -335,8 +338,16 @@ void Desk::draw(double now_s) {
   follow_with_slices();
   show_picture_in_space();
   const TrainerApplication::DrawingScope drawing;
-  for (PatientView* view : {view_3d_, side_})
-    if (view->isVisible()) view->draw();
+  draw_in_space();
+}
+
+/// Two views share the time of one; while tools move the side view is drawn every other time.
+void Desk::draw_in_space() {
+  const bool has_both = view_3d_->isVisible() && side_->isVisible();
+  for (PatientView* view : {view_3d_, side_}) {
+    view->set_frame_target(has_both ? kFrameOfTwo_ms : kFrameOfOne_ms);
+    if (view->isVisible() && !(has_both && view == side_ && are_moving_ && frame_ % 2 == 0)) view->draw();
+  }
 }
 
 /// Slices follow the tools; while these move every other one at a time, which the eye does not miss and the processor

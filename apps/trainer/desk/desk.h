@@ -68,6 +68,7 @@ class Desk : public QMainWindow {
   void connect_views();
   void show_in_space(PatientView& view);
   void follow_with_slices();
+  void draw_in_space();
   void show_picture_in_space();
 
   PatientView* view_3d_ = nullptr;

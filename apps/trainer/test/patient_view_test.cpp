@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QElapsedTimer>
 #include <QKeyEvent>
 #include <QMouseEvent>
+#include <QScreen>
 #include <QWheelEvent>
 
 #include "io/patient_source.h"
+#include "views/stereo_output.h"
 #include "volume/sampling.h"
 
 namespace trocar::trainer {
@@ -48,9 +51,8 @@ class PatientViewTest : public testing::Test {
     return view.grab().toImage().convertToFormat(QImage::Format_RGB32);
   }
   void send_mouse(QEvent::Type type, const QPoint& place, Qt::MouseButton button, Qt::MouseButtons buttons) {
-    QWidget* surface = view.findChild<QWidget*>(QStringLiteral("patient-view-surface"));
-    QMouseEvent event(type, place, surface->mapToGlobal(place), button, buttons, Qt::NoModifier);
-    QApplication::sendEvent(surface, &event);
+    QMouseEvent event(type, place, view.mapToGlobal(place), button, buttons, Qt::NoModifier);
+    QApplication::sendEvent(&view, &event);
   }
   void press(int key) {
     QKeyEvent event(QEvent::KeyPress, key, Qt::NoModifier);
@@ -161,6 +163,38 @@ TEST_F(PatientViewTest, MirroredOutputIsFlippedOnTheScreen) {
   view.set_stereo(options);
   const QImage flipped = whole_picture().mirrored(true, true);
   EXPECT_EQ(image, flipped);
+}
+
+TEST_F(PatientViewTest, ShutterGlassesGetASurfaceOfTheirOwnThatHandsItsEventsOn) {
+  whole_picture();
+  const QImage mono = view.grab().toImage();
+  StereoOptions options;
+  options.mode = StereoMode::kQuadBuffer;
+  options.eye_angle_deg = 0.0;  // the screen of this test may show the left eye only
+  view.set_stereo(options);
+  view.draw_whole();
+  auto* output = view.findChild<StereoOutput*>();
+  if (output == nullptr) {  // a window is no child of the widget that contains it
+    for (QWindow* window : QGuiApplication::allWindows()) {
+      if (auto* found = qobject_cast<StereoOutput*>(window)) output = found;
+    }
+  }
+  ASSERT_NE(output, nullptr);
+  QElapsedTimer clock;
+  for (clock.start(); !output->isExposed() && clock.elapsed() < 5'000;) QApplication::processEvents();
+  view.draw_whole();
+  QApplication::processEvents();
+  const QImage shown = output->screen()->grabWindow(output->winId()).toImage().convertToFormat(QImage::Format_RGB32);
+  ASSERT_EQ(shown.size(), mono.size());
+  EXPECT_NEAR(count_of(shown, is_ivory), count_of(mono, is_ivory), 0.02 * count_of(mono, is_ivory));
+  EXPECT_GT(count_of(shown, is_ivory), 2000);
+  const double before_mm = view.view().distance_mm();
+  QWheelEvent wheel(QPointF(100, 100), QPointF(100, 100), QPoint(), QPoint(0, 120), Qt::NoButton, Qt::NoModifier,
+                    Qt::NoScrollPhase, false);
+  QApplication::sendEvent(output, &wheel);
+  EXPECT_LT(view.view().distance_mm(), before_mm);
+  view.set_stereo({});
+  EXPECT_FALSE(output->isVisible());
 }
 
 }  // namespace

@@ -1,17 +1,16 @@
 #include "views/patient_view.h"
 
-#include <vtkGenericOpenGLRenderWindow.h>
-#include <vtkNew.h>
-
 #include <QKeyEvent>
 #include <QMouseEvent>
-#include <QVBoxLayout>
+#include <QPainter>
 #include <QWheelEvent>
 #include <cmath>
 
+#include "core/check.h"
 #include "scene/input_watch.h"
-#include "views/gl_view.h"
+#include "shell/theme.h"
 #include "views/scan_mask.h"
+#include "views/stereo_output.h"
 
 namespace trocar::trainer {
 namespace {
@@ -23,6 +22,7 @@ constexpr double kZoomPerNotch = 1.15;
 constexpr double kZoomPerView = 6.0;  ///< A drag over the whole height.
 constexpr double kKeyOrbit_rad = 0.12;
 constexpr double kWheelNotch = 120.0;  ///< Of QWheelEvent::angleDelta.
+constexpr int kFirstSize_px = 64;      ///< Before the widget has one.
 /// The user's hand is asked for at most so often while a picture is drawn.
 constexpr std::chrono::milliseconds kWatchEvery{4};
 
@@ -47,15 +47,17 @@ QPointF place_of(const QMouseEvent& event) {
 }  // namespace
 
 struct PatientView::Impl {
-  vtkNew<vtkGenericOpenGLRenderWindow> window;
-  GlView* gl = nullptr;
   std::unique_ptr<PatientScene> scene;
+  QImage image;                     ///< Of the last whole frame; of the left eye with shutter glasses.
+  StereoOutput* shutter = nullptr;  ///< Made when shutter glasses are chosen.
+  QWidget* shutter_cover = nullptr;
+  DetailPolicyParams params;
   std::unique_ptr<DetailPolicy> policy;  ///< Made when it is known what draws.
   Detail drawn;                          ///< Of the last whole frame.
   bool has_drawn = false;
   bool are_tools_moving = false;
   bool is_drawing = false;
-  QSize drawn_size;
+  QSize drawn_size;  ///< Of the widget in the last whole frame.
   FrameTimes moving_times;
   FrameTimes still_times;
   int broken_frames = 0;
@@ -70,16 +72,10 @@ struct PatientView::Impl {
 };
 
 PatientView::PatientView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<Impl>()) {
-  impl_->gl = new GlView(this);
-  impl_->gl->setRenderWindow(impl_->window.Get());
-  impl_->scene = std::make_unique<PatientScene>(*impl_->window);
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(impl_->gl);
-  impl_->gl->setObjectName(QStringLiteral("patient-view-surface"));
-  impl_->gl->setFocusProxy(this);
-  impl_->gl->installEventFilter(this);
-  impl_->gl->setMouseTracking(false);
+  Result<std::unique_ptr<PatientScene>> scene = PatientScene::make(kFirstSize_px, kFirstSize_px);
+  TROCAR_CHECK(scene);  // main() has asked can_render()
+  impl_->scene = std::move(*scene);
+  setAttribute(Qt::WA_OpaquePaintEvent);
   setFocusPolicy(Qt::StrongFocus);
   setObjectName(QStringLiteral("patient-view"));
   setAccessibleName(tr("3D view of the patient"));
@@ -87,9 +83,7 @@ PatientView::PatientView(QWidget* parent) : QWidget(parent), impl_(std::make_uni
       tr("Drag: turn · Shift+drag: move · wheel: zoom · 1–6: views · F follow · L along the needle · N side view"));
 }
 
-PatientView::~PatientView() {
-  impl_->scene.reset();
-}
+PatientView::~PatientView() = default;
 
 void PatientView::note_motion() {
   if (impl_->policy) impl_->policy->note_motion(Clock::now());
@@ -199,20 +193,33 @@ void PatientView::reset_camera() {
 }
 
 void PatientView::set_stereo(const StereoOptions& options) {
-  impl_->scene->set_stereo(options);
-  impl_->gl->set_mirrored(options.is_mirrored_left_right, options.is_mirrored_up_down);
+  Impl& v = *impl_;
+  v.scene->set_stereo(options);
+  const bool has_shutter = options.mode == StereoMode::kQuadBuffer;
+  if (has_shutter && v.shutter == nullptr) {
+    v.shutter = new StereoOutput(*this);
+    v.shutter_cover = QWidget::createWindowContainer(v.shutter, this);
+    v.shutter_cover->setFocusProxy(this);
+    v.shutter_cover->setGeometry(rect());
+  }
+  if (v.shutter_cover != nullptr) v.shutter_cover->setVisible(has_shutter);
 }
 
 const StereoOptions& PatientView::stereo() const {
   return impl_->scene->stereo();
 }
 
-bool PatientView::has_quad_buffer() const {
-  return impl_->scene->has_quad_buffer();
+bool PatientView::has_quad_buffer() {
+  return StereoOutput::is_offered();
 }
 
 void PatientView::set_tools_moving(bool are_moving) {
   impl_->are_tools_moving = are_moving;
+}
+
+void PatientView::set_frame_target(double target_ms) {
+  impl_->params.target_ms = target_ms;
+  if (impl_->policy) impl_->policy->set_target(target_ms);
 }
 
 void PatientView::set_interrupt(std::function<bool()> wants_break) {
@@ -244,23 +251,39 @@ PatientScene& PatientView::scene() noexcept {
   return *impl_->scene;
 }
 
-void PatientView::render(const Detail& detail, bool may_break) {
+QSize PatientView::picture_size(const Detail& detail) const {
+  return (QSizeF(size()) * devicePixelRatioF() * detail.resolution).toSize().expandedTo({1, 1});
+}
+
+bool PatientView::render_eye(const Detail& detail, bool may_break, Eye eye, QImage& image) {
   Impl& v = *impl_;
-  const double ratio = devicePixelRatioF() * detail.resolution;
-  const double wanted = detail.resolution < 1.0 ? ratio : 0.0;  // 0: the screen's own
-  if (v.gl->customDevicePixelRatio() != wanted) v.gl->setCustomDevicePixelRatio(wanted);
   const auto wants_break = [&v] {
     const auto now = Clock::now();
     if (now - v.last_watch < kWatchEvery) return false;
     v.last_watch = now;
     return v.watch.has_happened() || (v.interrupt && v.interrupt());
   };
+  if (!v.scene->render(detail, may_break ? std::function<bool()>(wants_break) : nullptr, eye)) return false;
+  const QSize size = picture_size(detail);
+  if (image.size() != size) image = QImage(size, QImage::Format_RGB32);
+  v.scene->copy_picture({reinterpret_cast<std::uint32_t*>(image.bits()),
+                         static_cast<std::size_t>(size.width()) * static_cast<std::size_t>(size.height())});
+  return true;
+}
+
+void PatientView::render(const Detail& detail, bool may_break) {
+  Impl& v = *impl_;
   if (may_break) v.watch.start();
   const auto start = Clock::now();
-  const bool is_whole = v.scene->render(detail, may_break ? std::function<bool()>(wants_break) : nullptr);
+  const QSize size = picture_size(detail);
+  v.scene->set_size(size.width(), size.height());
+  const bool has_shutter = v.scene->stereo().mode == StereoMode::kQuadBuffer;
+  QImage right;
+  const bool is_whole = render_eye(detail, may_break, Eye::kLeft, v.image) &&
+                        (!has_shutter || render_eye(detail, may_break, Eye::kRight, right));
   const auto end = Clock::now();
   const double frame_ms = std::chrono::duration<double, std::milli>(end - start).count();
-  if (!v.policy) v.policy = std::make_unique<DetailPolicy>(v.scene->has_gpu());
+  if (!v.policy) v.policy = std::make_unique<DetailPolicy>(v.scene->has_gpu(), v.params);
   if (!is_whole) {
     ++v.broken_frames;
     v.policy->note_motion(end);
@@ -270,12 +293,25 @@ void PatientView::render(const Detail& detail, bool may_break) {
   (detail == DetailPolicy::full() ? v.still_times : v.moving_times).add(frame_ms);
   v.drawn = detail;
   v.has_drawn = true;
-  v.drawn_size = v.gl->size();
+  v.drawn_size = this->size();
+  if (has_shutter) v.shutter->show_eyes(v.image, right);
+  update();
+}
+
+void PatientView::paintEvent(QPaintEvent* /*event*/) {
+  QPainter painter(this);
+  if (impl_->image.isNull()) return painter.fillRect(rect(), theme().view);
+  painter.setRenderHint(QPainter::SmoothPixmapTransform);
+  painter.drawImage(rect(), impl_->image);
+}
+
+void PatientView::resizeEvent(QResizeEvent* /*event*/) {
+  if (impl_->shutter_cover != nullptr) impl_->shutter_cover->setGeometry(rect());
 }
 
 void PatientView::draw() {
   Impl& v = *impl_;
-  if (v.is_drawing || !isVisible() || !v.gl->isValid()) return;
+  if (v.is_drawing || !isVisible()) return;
   v.is_drawing = true;
   const auto now = Clock::now();
   // What draws is only known after a frame: the first one is a cheap one.
@@ -284,7 +320,7 @@ void PatientView::draw() {
     note_motion();
   } else {
     v.scene->poll();
-    const bool has_changed = v.scene->has_changed() || v.drawn_size != v.gl->size();
+    const bool has_changed = v.scene->has_changed() || v.drawn_size != size();
     if (has_changed || v.are_tools_moving) v.policy->note_motion(now);
     const Detail detail = v.policy->next(now);
     const bool rises = v.drawn != detail && detail == DetailPolicy::full();
@@ -298,57 +334,44 @@ void PatientView::draw_whole() {
   render(DetailPolicy::full(), false);
 }
 
-bool PatientView::eventFilter(QObject* watched, QEvent* event) {
-  if (watched != impl_->gl) return QWidget::eventFilter(watched, event);
-  switch (event->type()) {
-    case QEvent::MouseButtonPress:
-    case QEvent::MouseButtonRelease:
-    case QEvent::MouseButtonDblClick:
-    case QEvent::MouseMove:
-    case QEvent::Wheel:
-      return on_mouse(event);
-    case QEvent::KeyPress:
-    case QEvent::KeyRelease:
-    case QEvent::Enter:
-    case QEvent::Leave:
-      event->ignore();
-      return true;  // VTK's interactor has keys of its own
-    default:
-      return QWidget::eventFilter(watched, event);
-  }
+QPointF PatientView::unmirrored(const QPointF& place) const {
+  const StereoOptions& options = stereo();
+  return {options.is_mirrored_left_right ? width() - place.x() : place.x(),
+          options.is_mirrored_up_down ? height() - place.y() : place.y()};
 }
 
-bool PatientView::on_mouse(QEvent* event) {
-  Impl& v = *impl_;
-  if (event->type() == QEvent::Wheel) {
-    const double notches = static_cast<QWheelEvent*>(event)->angleDelta().y() / kWheelNotch;
-    set_view(zoomed(view(), std::pow(kZoomPerNotch, notches)));
-    event->accept();
-    return true;
-  }
-  auto& mouse = *static_cast<QMouseEvent*>(event);
-  const QPointF place = v.gl->unmirrored(place_of(mouse));
-  const double height = std::max(1, v.gl->height());
-  if (event->type() == QEvent::MouseButtonDblClick) {
-    const auto p_P = v.scene->pick(place.x() / std::max(1, v.gl->width()), place.y() / height);
-    if (p_P) Q_EMIT picked(*p_P);
-  } else if (event->type() == QEvent::MouseButtonPress) {
-    setFocus(Qt::MouseFocusReason);
-    v.drag = mouse.button() == Qt::LeftButton && (mouse.modifiers() & Qt::ShiftModifier) != 0 ? Qt::MiddleButton
-                                                                                              : mouse.button();
-    v.last_place = place;
-  } else if (event->type() == QEvent::MouseButtonRelease) {
-    v.drag = Qt::NoButton;
-  } else if (v.drag != Qt::NoButton) {
-    const QPointF moved = (place - v.last_place) / height;
-    v.last_place = place;
-    if (v.drag == Qt::LeftButton)
-      set_view(orbited(view(), kOrbit_rad_per_view * moved.x(), -kOrbit_rad_per_view * moved.y()));
-    if (v.drag == Qt::MiddleButton) set_view(panned(view(), moved.x(), moved.y()));
-    if (v.drag == Qt::RightButton) set_view(zoomed(view(), std::pow(kZoomPerView, -moved.y())));
-  }
+void PatientView::wheelEvent(QWheelEvent* event) {
+  const double notches = event->angleDelta().y() / kWheelNotch;
+  set_view(zoomed(view(), std::pow(kZoomPerNotch, notches)));
   event->accept();
-  return true;
+}
+
+void PatientView::mousePressEvent(QMouseEvent* event) {
+  const bool has_shift = (event->modifiers() & Qt::ShiftModifier) != 0;
+  impl_->drag = event->button() == Qt::LeftButton && has_shift ? Qt::MiddleButton : event->button();
+  impl_->last_place = unmirrored(place_of(*event));
+  setFocus(Qt::MouseFocusReason);
+}
+
+void PatientView::mouseMoveEvent(QMouseEvent* event) {
+  Impl& v = *impl_;
+  const QPointF place = unmirrored(place_of(*event));
+  const QPointF moved = (place - v.last_place) / std::max(1, height());
+  v.last_place = place;
+  if (v.drag == Qt::LeftButton)
+    set_view(orbited(view(), kOrbit_rad_per_view * moved.x(), -kOrbit_rad_per_view * moved.y()));
+  if (v.drag == Qt::MiddleButton) set_view(panned(view(), moved.x(), moved.y()));
+  if (v.drag == Qt::RightButton) set_view(zoomed(view(), std::pow(kZoomPerView, -moved.y())));
+}
+
+void PatientView::mouseReleaseEvent(QMouseEvent* /*event*/) {
+  impl_->drag = Qt::NoButton;
+}
+
+void PatientView::mouseDoubleClickEvent(QMouseEvent* event) {
+  const QPointF place = unmirrored(place_of(*event));
+  const auto p_P = impl_->scene->pick(place.x() / std::max(1, width()), place.y() / std::max(1, height()));
+  if (p_P) Q_EMIT picked(*p_P);
 }
 
 void PatientView::keyPressEvent(QKeyEvent* event) {

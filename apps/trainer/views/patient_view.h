@@ -1,5 +1,6 @@
 #pragma once
 
+#include <QImage>
 #include <QWidget>
 #include <array>
 #include <chrono>
@@ -17,7 +18,8 @@
 namespace trocar::trainer {
 
 /// The patient in 3D with tools and guidance. Setters are cheap and may be called every frame; `draw()` renders when
-/// something has changed or the picture's quality is to rise.
+/// something has changed or the picture's quality is to rise. Drawn off-screen and painted as an image: a widget that
+/// OpenGL draws on makes Qt put the whole window together by OpenGL, which costs a processor more than the patient.
 ///
 /// Mouse: left drag turns, middle drag or Shift + left drag moves, right drag or wheel zooms, double click picks.
 /// Keys: 1..6 views (anterior, oblique, right, left, posterior, cranial), F follow the needle's tip, L look along the
@@ -70,10 +72,13 @@ class PatientView : public QWidget {
 
   void set_stereo(const StereoOptions& options);
   const StereoOptions& stereo() const;
-  bool has_quad_buffer() const;
+  /// Whether the screen can show quad-buffer stereo.
+  static bool has_quad_buffer();
 
   /// Tools move by themselves (a haptic device, a replay): the picture stays cheap.
   void set_tools_moving(bool are_moving);
+  /// What a frame may take while things move, ms, 5..500, without a graphics card.
+  void set_frame_target(double target_ms);
   /// Asked while a picture of full quality is drawn, which takes long without a graphics card: a yes breaks it off.
   /// Pointer and keys are watched anyway. Called in the GUI thread.
   void set_interrupt(std::function<bool()> wants_break);
@@ -100,14 +105,24 @@ class PatientView : public QWidget {
   void changed();
 
  protected:
+  void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
-  bool eventFilter(QObject* watched, QEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void mouseDoubleClickEvent(QMouseEvent* event) override;
 
  private:
   struct Impl;
   void note_motion();
   void render(const Detail& detail, bool may_break);
-  bool on_mouse(QEvent* event);
+  /// In pixels of the screen.
+  QSize picture_size(const Detail& detail) const;
+  bool render_eye(const Detail& detail, bool may_break, Eye eye, QImage& image);
+  /// Places of events as the unmirrored picture has them.
+  QPointF unmirrored(const QPointF& place) const;
 
   std::unique_ptr<Impl> impl_;
   bool is_guidance_visible_ = true;

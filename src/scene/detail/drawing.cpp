@@ -14,6 +14,7 @@
 #include <vtkTexture.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <cstring>
 #include <numbers>
 
@@ -182,14 +183,15 @@ bool PictureQuad::show_picture(const RgbImage& picture, std::span<const std::uin
   const std::span<std::uint8_t> rgba = resize(picture.columns, picture.rows);
   bool is_new = actor_->GetVisibility() == 0;
   for (std::size_t i = 0; i < 3; ++i) is_new |= (corners_P[i] - corners_P_[i]).norm() > kUnseen_mm;
-  const auto put = [&is_new](std::uint8_t& place, std::uint8_t value) {
-    is_new |= place != value;
-    place = value;
-  };
+  // Collected without a branch, which the compiler turns into vectors: this is done for every picture of the scanner.
+  unsigned changes = 0;
   for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-    for (std::size_t channel = 0; channel < 3; ++channel) put(rgba[4 * i + channel], picture.pixels[i][channel]);
-    put(rgba[4 * i + 3], alpha.empty() ? std::uint8_t{255} : alpha[i]);
+    const Rgb& pixel = picture.pixels[i];
+    const std::array<std::uint8_t, 4> bytes{pixel[0], pixel[1], pixel[2], alpha.empty() ? std::uint8_t{255} : alpha[i]};
+    for (std::size_t b = 0; b < bytes.size(); ++b) changes |= static_cast<unsigned>(rgba[4 * i + b] ^ bytes[b]);
+    std::copy(bytes.begin(), bytes.end(), rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
   }
+  is_new |= changes != 0;
   if (is_new) show(corners_P);
   return is_new;
 }

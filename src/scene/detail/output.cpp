@@ -1,16 +1,20 @@
 #include "scene/detail/output.h"
 
+#include <vtkNew.h>
 #include <vtkRenderWindow.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <array>
 
+#include "core/check.h"
+
 namespace trocar::detail {
 
-int to_vtk(StereoMode mode) {
+int to_vtk(StereoMode mode, Eye eye) {
   switch (mode) {
     case StereoMode::kQuadBuffer:
-      return VTK_STEREO_CRYSTAL_EYES;
+      return eye == Eye::kLeft ? VTK_STEREO_LEFT : VTK_STEREO_RIGHT;
     case StereoMode::kAnaglyph:
       return VTK_STEREO_ANAGLYPH;
     case StereoMode::kSideBySide:
@@ -20,19 +24,32 @@ int to_vtk(StereoMode mode) {
     case StereoMode::kOff:
       break;
   }
-  return VTK_STEREO_CRYSTAL_EYES;
+  return VTK_STEREO_LEFT;
 }
 
-RgbImage mirrored(const RgbImage& image, bool left_right, bool up_down) {
-  if (!left_right && !up_down) return image;
-  RgbImage result(image.columns, image.rows);
-  for (int row = 0; row < image.rows; ++row) {
-    for (int column = 0; column < image.columns; ++column) {
-      result.at(left_right ? image.columns - 1 - column : column, up_down ? image.rows - 1 - row : row) =
-          image.at(column, row);
-    }
+void copy_picture(vtkRenderWindow& window, std::span<std::uint32_t> pixels) {
+  const int columns = window.GetSize()[0];
+  const int rows = window.GetSize()[1];
+  TROCAR_CHECK(pixels.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  vtkNew<vtkUnsignedCharArray> bytes;
+  window.GetRGBACharPixelData(0, 0, columns - 1, rows - 1, 0, bytes);
+  const std::uint8_t* rgba = bytes->GetPointer(0);
+  for (int row = rows - 1; row >= 0; --row) {  // OpenGL begins at the bottom
+    std::uint32_t* pixel = pixels.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(columns);
+    for (int column = 0; column < columns; ++column, rgba += 4)
+      pixel[column] = 0xff000000U | std::uint32_t{rgba[0]} << 16 | std::uint32_t{rgba[1]} << 8 | rgba[2];
   }
-  return result;
+}
+
+void mirror(std::span<std::uint32_t> pixels, int columns, bool left_right, bool up_down) {
+  if (left_right) {
+    for (std::size_t first = 0; first < pixels.size(); first += static_cast<std::size_t>(columns))
+      std::reverse(pixels.begin() + static_cast<std::ptrdiff_t>(first),
+                   pixels.begin() + static_cast<std::ptrdiff_t>(first) + columns);
+  }
+  if (!up_down) return;
+  for (auto top = pixels.begin(), bottom = pixels.end() - columns; top < bottom; top += columns, bottom -= columns)
+    std::swap_ranges(top, top + columns, bottom);
 }
 
 std::string renderer_of(vtkRenderWindow& window) {

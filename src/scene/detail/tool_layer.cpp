@@ -9,6 +9,7 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace trocar::detail {
 namespace {
@@ -34,6 +35,14 @@ vtkSmartPointer<vtkActor> make_tool(vtkRenderer& renderer) {
   actor->VisibilityOff();
   renderer.AddActor(actor);
   return actor;
+}
+
+/// Faces that look the same: a live scan's number of scanlines changes, and with it the last digits of its width.
+bool are_alike(const TransducerFace& a, const TransducerFace& b) {
+  constexpr double kUnseen_rad = 1e-4;
+  return a.is_convex == b.is_convex && std::abs(a.radius_mm - b.radius_mm) < kUnseen_mm &&
+         std::abs(a.field_of_view_rad - b.field_of_view_rad) < kUnseen_rad &&
+         std::abs(a.width_mm - b.width_mm) < kUnseen_mm && std::abs(a.least_width_mm - b.least_width_mm) < kUnseen_mm;
 }
 
 bool are_close(std::span<const Vec3> a, std::span<const Vec3> b) {
@@ -111,7 +120,7 @@ bool ToolLayer::set_hand(const std::optional<Segment>& ghost_P) {
 }
 
 bool ToolLayer::set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face) {
-  const bool is_same_face = face_ == face;
+  const bool is_same_face = face_ && are_alike(*face_, face);
   if (!X_PT && !X_PT_) return false;
   if (X_PT && X_PT_ && is_same_face && (X_PT->p() - X_PT_->p()).norm() < kUnseen_mm &&
       (X_PT->R() - X_PT_->R()).norm() < 1e-5)

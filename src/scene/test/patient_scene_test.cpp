@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "scene/render_patient.h"
@@ -17,7 +18,7 @@ class PatientSceneTest : public testing::Test {
  protected:
   void SetUp() override {
     if (!can_render()) GTEST_SKIP() << "no X server: run under scripts/with_display";
-    auto made = PatientScene::make_off_screen(kSize, kSize);
+    auto made = PatientScene::make(kSize, kSize);
     ASSERT_TRUE(made) << made.error().text();
     scene = std::move(*made);
     Scene organs = two_organs();
@@ -29,7 +30,16 @@ class PatientSceneTest : public testing::Test {
   }
   RgbImage draw(const Detail& detail = DetailPolicy::full()) {
     EXPECT_TRUE(scene->render(detail));
-    return scene->picture();
+    return picture();
+  }
+  RgbImage picture() const {
+    std::vector<std::uint32_t> pixels(static_cast<std::size_t>(kSize) * kSize);
+    scene->copy_picture(pixels);
+    RgbImage image(kSize, kSize);
+    std::transform(pixels.begin(), pixels.end(), image.pixels.begin(), [](std::uint32_t p) {
+      return Rgb{static_cast<std::uint8_t>(p >> 16), static_cast<std::uint8_t>(p >> 8), static_cast<std::uint8_t>(p)};
+    });
+    return image;
   }
   std::unique_ptr<PatientScene> scene;
   std::shared_ptr<const VirtualPatient> patient;
@@ -176,6 +186,40 @@ TEST_F(PatientSceneTest, MirroredPictureIsTheFlippedOne) {
   scene->set_stereo(options);
   const RgbImage flipped = draw();
   for (int column = 0; column < kSize; ++column) EXPECT_EQ(image.at(column, 80), flipped.at(kSize - 1 - column, 80));
+  options.is_mirrored_up_down = true;
+  scene->set_stereo(options);
+  const RgbImage turned = draw();
+  for (int row = 0; row < kSize; ++row) EXPECT_EQ(image.at(100, row), turned.at(kSize - 1 - 100, kSize - 1 - row));
+}
+
+TEST_F(PatientSceneTest, ShutterGlassesGetAPictureForEachEyeWithTheNearThingsApart) {
+  scene->apply_preset(StructurePreset::kBones);
+  // Before the plane without parallax: what is near stands farther right for the left eye.
+  const Vec3 shaft_P[2] = {{-30, -90, 0}, {30, -90, 0}};
+  scene->set_needle(shaft_P, 4.0, NeedleModel::kChiba);
+  draw();
+  CameraView view = scene->view();
+  view.focus_P = {0, 0, 0};
+  scene->set_view(view);
+  StereoOptions options;
+  options.mode = StereoMode::kQuadBuffer;
+  options.eye_angle_deg = 6.0;
+  scene->set_stereo(options);
+  ASSERT_TRUE(scene->render(DetailPolicy::full(), {}, Eye::kLeft));
+  const double left = middle_of(picture(), is_bright).x();
+  ASSERT_TRUE(scene->render(DetailPolicy::full(), {}, Eye::kRight));
+  const double right = middle_of(picture(), is_bright).x();
+  EXPECT_GT(left, right + 2.0);
+}
+
+TEST_F(PatientSceneTest, SizeOfThePictureFollows) {
+  draw();
+  scene->set_size(kSize / 2, kSize / 4);
+  ASSERT_TRUE(scene->render(DetailPolicy::full()));
+  std::vector<std::uint32_t> pixels(static_cast<std::size_t>(kSize) / 2 * kSize / 4);
+  scene->copy_picture(pixels);
+  const auto is_red = [](std::uint32_t p) { return (p >> 16 & 255U) > (p >> 8 & 255U) + 40; };
+  EXPECT_GT(std::count_if(pixels.begin(), pixels.end(), is_red), 20);
 }
 
 TEST_F(PatientSceneTest, AnaglyphSplitsTheEyesIntoRedAndCyan) {
