@@ -5,6 +5,7 @@
 #include "headless/attempt_record.h"
 #include "headless/performer.h"
 #include "link/haptic_client.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar {
 
@@ -33,7 +34,9 @@ class LiveOperator {
   double time_s() const noexcept { return time_s_; }      ///< Of the session.
   double paused_s() const noexcept { return paused_s_; }  ///< Of it, while there was no server; and
   double unseen_s() const noexcept { return unseen_s_; }  ///< while the operator did not look.
-  const Pose& X_PN_device() const noexcept { return view_.X_PN_device; }
+  /// Where the needle is put again when its server comes back: as it was felt, which is in its channel. The device's
+  /// own grip may have swung aside of it while the server went away.
+  Pose X_PN_to_resume() const noexcept { return felt_needle(view_.last); }
   const TickSample& last() const noexcept { return view_.last; }    ///< With the session's time.
   const HandCommand& command() const noexcept { return command_; }  ///< The answer to it.
 

@@ -190,7 +190,7 @@ Status perform(LiveServers& servers, LiveOperator& live, const ProbeHand& probe_
     }
     if (!samples.empty()) {
       needle.set_hand(live.hand());
-      needle.place_at(live.X_PN_device());
+      needle.place_at(live.X_PN_to_resume());
     }
     TROCAR_TRY_STATUS(servers.move_probe(probe_hand, live));
     report(progress, was_on ? "performing" : "waiting for the needle's server", live.time_s() / kLongestAttempt_s);

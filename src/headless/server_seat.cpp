@@ -42,6 +42,8 @@ ServerSeat::ServerSeat(HapticClient client, std::string endpoint, milliseconds p
 void ServerSeat::hold(const SeatRequest& request) {
   request_ = request;
   request_->place.v_P = request_->place.w_P = Vec3::Zero();
+  // A soft hand would let the stylus sag across the needle's channel until the forces are on: they would not come on.
+  request_->place.is_rigid = true;
 }
 
 void ServerSeat::place_at(const Pose& X_PN) {

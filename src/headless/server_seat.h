@@ -12,7 +12,7 @@
 
 namespace trocar {
 
-/// What a server is to hold, and where the hand begins, at rest.
+/// What a server is to hold, and where the hand begins: at rest, and rigid until the forces are on.
 struct SeatRequest {
   LoadScene scene;
   HandTarget place;

@@ -102,7 +102,7 @@ TEST_F(RealtimeSession, ExpertThroughTwoServersDoesWhatItDoesInProcess) {
   EXPECT_EQ(attempt.session.samples.front().time_s, 0.0);
   const auto& transducer = attempt.session.transducer;
   ASSERT_FALSE(transducer.empty());
-  EXPECT_TRUE(std::any_of(transducer.begin(), transducer.end(), [](const auto& m) { return m.contact_n > 0.5; }));
+  EXPECT_TRUE(std::any_of(transducer.begin(), transducer.end(), [](const auto& m) { return m.contact_n > 0.1; }));
   EXPECT_NE(attempt.session.info.device.find("through trocar-hapticd"), std::string::npos);
   ASSERT_EQ(live->servers.size(), 2u);
   EXPECT_EQ(live->servers[0].tool, "needle");
@@ -130,6 +130,25 @@ TEST_F(RealtimeSession, GoesOnWhereTheNeedleWasWhenItsServerComesBack) {
   }
   EXPECT_LT(furthest_mm, 10.0);  // the pause of a second would be 60 mm at this speed
   EXPECT_TRUE(live->outcome.target_reached);
+}
+
+/// The hand of an operator that feels is soft: without forces it would let the stylus sag out of the needle's channel.
+TEST_F(RealtimeSession, TheExpertsNeedleStaysInItsChannelWhileTheServerIsAway) {
+  const Attempt in_process = perform(*the_case, "expert");
+  constexpr double kDeep_mm = 25.0;
+  const auto& samples = in_process.session.samples;
+  const auto deep = std::find_if(samples.begin(), samples.end(), [](const auto& s) { return s.depth_mm > kDeep_mm; });
+  ASSERT_NE(deep, samples.end());
+  LiveServer needle(*the_case, "needle", folder_);
+  const auto live = perform_live("expert", {needle.url()}, kLong, once_after(deep->time_s, [&] {
+                                   needle.end();
+                                   needle.start();
+                                 }));
+  ASSERT_TRUE(live.has_value()) << live.error().text();
+  EXPECT_EQ(live->servers.at(0).returns, 1);
+  EXPECT_EQ(layers_of({*live, recorded()}), layers_of(in_process));
+  constexpr double kPoints = 5.0;  // the pause costs time
+  EXPECT_NEAR(live->outcome.score, in_process.result.outcome.score, kPoints);
 }
 
 TEST_F(RealtimeSession, GoesOnWithoutTheProbeWhenItsServerIsGone) {

@@ -26,6 +26,18 @@ std::shared_ptr<const OpenCase> layered_case() {
   return kOpen;
 }
 
+/// Its way to the liver is slanted: a stylus that sags leaves the needle's channel. The patient is kept, so that the
+/// servers need not make it again.
+std::shared_ptr<const OpenCase> abdomen_case() {
+  static const TemporaryFolder kKept;
+  static const std::shared_ptr<const OpenCase> kOpen = [] {
+    auto made = make_open_case({}, OpenOptions{nullptr, kKept.path()});
+    EXPECT_TRUE(made) << made.error().text();
+    return made ? *made : nullptr;
+  }();
+  return kOpen;
+}
+
 class LiveAttemptTest : public ::testing::Test {
  protected:
   AttemptOptions options() const {
@@ -36,7 +48,7 @@ class LiveAttemptTest : public ::testing::Test {
     return options;
   }
   void start(const AttemptOptions& options, std::shared_ptr<SeatServers> servers = nullptr) {
-    attempt = std::make_unique<LiveAttempt>(layered_case(), options, std::move(servers));
+    attempt = std::make_unique<LiveAttempt>(open, options, std::move(servers));
   }
   bool wait_phase(AttemptPhase phase) {
     return wait_for([&] {
@@ -46,7 +58,7 @@ class LiveAttemptTest : public ::testing::Test {
            attempt->view().phase == phase;
   }
   std::unique_ptr<Operator> expert() const {
-    const Case& the_case = layered_case()->the_case;
+    const Case& the_case = open->the_case;
     return make_expert({the_case.plan.line_P, the_case.needle.is_biopsy, 1});
   }
   bool wait_deeper(double depth_mm) {
@@ -65,6 +77,7 @@ class LiveAttemptTest : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
+  std::shared_ptr<const OpenCase> open = layered_case();
   std::unique_ptr<LiveAttempt> attempt;
 };
 
@@ -110,22 +123,26 @@ TEST_F(LiveAttemptTest, ExpertReachesTheTarget) {
 }
 
 TEST_F(LiveAttemptTest, GoesOnWhereItWasWhenTheNeedlesServerIsKilled) {
+  open = abdomen_case();
   start(options());
   ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
   attempt->perform(expert());
-  ASSERT_TRUE(wait_deeper(15.0)) << where();
-  const int pid = attempt->view().servers[0].pid;
-  ::kill(pid, SIGKILL);
-  ASSERT_TRUE(wait_phase(AttemptPhase::kServerLost)) << where();
-  EXPECT_FALSE(attempt->view().banner.empty());
-  ASSERT_TRUE(wait_phase(AttemptPhase::kInBody)) << where();
-  EXPECT_TRUE(attempt->view().banner.empty()) << attempt->view().banner;
-  EXPECT_NE(attempt->view().servers[0].pid, pid);
-  EXPECT_EQ(attempt->view().servers[0].restarts, 1);
+  int kills = 0;
+  for (const double depth_mm : {15.0, 25.0, 35.0}) {
+    ASSERT_TRUE(wait_deeper(depth_mm)) << where();
+    const int pid = attempt->view().servers[0].pid;
+    ::kill(pid, SIGKILL);
+    ASSERT_TRUE(wait_phase(AttemptPhase::kServerLost)) << where();
+    EXPECT_FALSE(attempt->view().banner.empty());
+    ASSERT_TRUE(wait_phase(AttemptPhase::kInBody)) << where();
+    EXPECT_TRUE(attempt->view().banner.empty()) << attempt->view().banner;
+    EXPECT_NE(attempt->view().servers[0].pid, pid);
+    ASSERT_EQ(attempt->view().servers[0].restarts, ++kills) << "it did not come back at once";
+  }
   ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
   attempt->finish();
   const RunResult result = finished();
-  EXPECT_GT(result.outcome.score, 60.0);
+  EXPECT_GT(result.outcome.score, 80.0);
   EXPECT_TRUE(result.outcome.target_reached);
   const auto skins = std::count_if(result.punctures.begin(), result.punctures.end(),
                                    [](const PunctureRecord& puncture) { return puncture.layer == "skin"; });

@@ -208,7 +208,7 @@ Status AttemptLoop::step_needle() {
   }
   HandTarget target = live_ ? live_->hand() : hand_target(command_, needle_time_s_ + 1.0 / performer_.rate_hz);
   needle_->set_hand(target);
-  needle_->place_at(device_pose(samples.back().sample));
+  needle_->place_at(felt_needle(samples.back().sample));  // in its channel, wherever the grip has swung
   return {};
 }
 

@@ -61,8 +61,6 @@ void ToolServer::hold(const SeatRequest& request) {
   request_ = request;
   request_->is_in_real_hand = is_real_hand_;
   request_->resets_fault = true;
-  // A soft hand would let the stylus sag across the needle's channel until the forces are on: they would not come on.
-  request_->place.is_rigid = true;
   if (seat_) seat_->hold(*request_);
 }
 
