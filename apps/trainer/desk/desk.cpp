@@ -191,6 +191,8 @@ void Desk::choose_layout(const QString& name) {
   QSettings settings;
   settings.setValue(QStringLiteral("desk/layout"), name);
   const QByteArray kept = settings.value(settings_key(name)).toByteArray();
+  // First: views of both layouts together would widen the window.
+  for (const auto& [view, dock] : docks_) dock->hide();
   if (kept.isEmpty() || !restoreState(kept, static_cast<int>(docks_.size()))) arrange(name);
 }
 
@@ -206,13 +208,16 @@ void Desk::reset_layout() {
 void Desk::arrange(const QString& name) {
   const auto layout = std::find_if(built_in_layouts().begin(), built_in_layouts().end(),
                                    [&](const Layout& l) { return l.name == name; });
+  // All views, hidden, in a column on the right: there the menu shows one that the layout does not have, and what is
+  // kept of the layout knows that it was hidden.
   for (const auto& [view, dock] : docks_) {
+    dock->hide();
     dock->setFloating(false);
-    removeDockWidget(dock);
+    addDockWidget(Qt::RightDockWidgetArea, dock);
   }
   QList<QDockWidget*> column_tops;
   QList<int> widths;
-  const int width_px = std::max(width(), 640), height_px = std::max(height(), 400);
+  const int width_px = std::max(width(), 640);
   int all_columns = 0;
   for (const LayoutColumn& column : layout->columns) all_columns += column.share;
   // Columns first, so that they reach from top to bottom; then each is cut into its rows.
@@ -226,35 +231,30 @@ void Desk::arrange(const QString& name) {
     column_tops << top;
     widths << width_px * column.share / all_columns;
   }
-  for (const LayoutColumn& column : layout->columns) {
-    QList<QDockWidget*> rows;
-    QList<int> heights;
-    int all_cells = 0;
-    for (const LayoutCell& part : column.cells) all_cells += part.share;
-    for (const LayoutCell& part : column.cells) {
-      QDockWidget* first = docks_.at(part.views.front());
-      if (!rows.isEmpty()) splitDockWidget(rows.last(), first, Qt::Vertical);
-      first->show();
-      rows << first;
-      heights << height_px * part.share / all_cells;
-    }
-    for (const LayoutCell& part : column.cells) {
-      for (std::size_t v = 1; v < part.views.size(); ++v) {
-        splitDockWidget(docks_.at(part.views[v - 1]), docks_.at(part.views[v]), Qt::Horizontal);
-        docks_.at(part.views[v])->show();
-      }
-    }
-    resizeDocks(rows, heights, Qt::Vertical);
-  }
+  for (const LayoutColumn& column : layout->columns) arrange_rows(column);
   resizeDocks(column_tops, widths, Qt::Horizontal);
-  for (const auto& [view, dock] : docks_) {
-    const bool is_shown = std::any_of(layout->columns.begin(), layout->columns.end(), [&](const LayoutColumn& column) {
-      return std::any_of(column.cells.begin(), column.cells.end(), [&](const LayoutCell& part) {
-        return std::find(part.views.begin(), part.views.end(), view) != part.views.end();
-      });
-    });
-    if (!is_shown) dock->hide();
+}
+
+void Desk::arrange_rows(const LayoutColumn& column) {
+  const int height_px = std::max(height(), 400);
+  QList<QDockWidget*> rows;
+  QList<int> heights;
+  int all_cells = 0;
+  for (const LayoutCell& cell : column.cells) all_cells += cell.share;
+  for (const LayoutCell& cell : column.cells) {
+    QDockWidget* first = docks_.at(cell.views.front());
+    if (!rows.isEmpty()) splitDockWidget(rows.last(), first, Qt::Vertical);
+    first->show();
+    rows << first;
+    heights << height_px * cell.share / all_cells;
   }
+  for (const LayoutCell& cell : column.cells) {
+    for (std::size_t v = 1; v < cell.views.size(); ++v) {
+      splitDockWidget(docks_.at(cell.views[v - 1]), docks_.at(cell.views[v]), Qt::Horizontal);
+      docks_.at(cell.views[v])->show();
+    }
+  }
+  resizeDocks(rows, heights, Qt::Vertical);
 }
 
 void Desk::fill_menu(QMenu& menu) {

@@ -18,6 +18,7 @@ class QMenu;
 namespace trocar::trainer {
 
 class ForcePlot;
+struct LayoutColumn;
 class PatientView;
 class SliceView;
 class StructurePanel;
@@ -64,6 +65,7 @@ class Desk : public QMainWindow {
   /// A view that names itself needs no title.
   void add_view(const char* name, const QString& title, QWidget& view, bool has_title = true);
   void arrange(const QString& layout);
+  void arrange_rows(const LayoutColumn& column);
   void add_knobs_button();
   void connect_views();
   void show_in_space(PatientView& view);

@@ -1,0 +1,90 @@
+#include "desk/layouts.h"
+
+#include <gtest/gtest.h>
+
+#include <QAction>
+#include <QApplication>
+#include <QDockWidget>
+#include <QSettings>
+#include <set>
+
+#include "desk/desk.h"
+
+namespace trocar::trainer {
+namespace {
+
+using Names = std::set<std::string>;
+
+/// Without layouts that an earlier test has kept.
+struct LayoutsTest : ::testing::Test {
+  LayoutsTest() { QSettings().clear(); }
+};
+
+Names shown_by(const Desk& desk) {
+  Names names;
+  for (const QDockWidget* dock : desk.findChildren<QDockWidget*>()) {
+    if (dock->isVisible()) names.insert(dock->objectName().mid(5).toStdString());
+  }
+  return names;
+}
+
+Names named_by(const Layout& layout) {
+  Names names;
+  for (const LayoutColumn& column : layout.columns) {
+    for (const LayoutCell& cell : column.cells) {
+      for (const QString& view : cell.views) names.insert(view.toStdString());
+    }
+  }
+  return names;
+}
+
+TEST_F(LayoutsTest, ALayoutShowsItsViewsAndNoOthersWheneverItIsChosen) {
+  Desk desk;
+  desk.resize(1000, 700);
+  desk.show();
+  for (int round = 0; round < 3; ++round) {  // from the second on as it was kept
+    for (const Layout& layout : built_in_layouts()) {
+      desk.choose_layout(layout.name);
+      QApplication::processEvents();
+      EXPECT_EQ(desk.width(), 1000) << "a change of layout must not widen the window";
+      EXPECT_EQ(shown_by(desk), named_by(layout)) << layout.name.toStdString() << " in round " << round;
+    }
+  }
+}
+
+TEST_F(LayoutsTest, TheMenuAddsAViewToALayoutThatDoesNotHaveIt) {
+  Desk desk;
+  desk.resize(1000, 700);
+  desk.show();
+  const Layout& first = built_in_layouts().front();
+  desk.choose_layout(first.name);
+  auto* dock = desk.findChild<QDockWidget*>(QStringLiteral("dock-coronal"));
+  dock->toggleViewAction()->trigger();
+  QApplication::processEvents();
+  ASSERT_TRUE(dock->isVisible());
+  const QRect place = dock->geometry();
+  for (const QDockWidget* other : desk.findChildren<QDockWidget*>()) {
+    if (other != dock && other->isVisible()) {
+      EXPECT_FALSE(other->geometry().intersects(place)) << "it covers " << other->objectName().toStdString();
+    }
+  }
+}
+
+TEST_F(LayoutsTest, AViewThatWasHiddenStaysHiddenUntilTheLayoutIsReset) {
+  Desk desk;
+  desk.resize(1000, 700);
+  desk.show();
+  const Layout& first = built_in_layouts().front();
+  desk.choose_layout(first.name);
+  desk.findChild<QDockWidget*>(QStringLiteral("dock-forces"))->hide();
+  desk.choose_layout(built_in_layouts().back().name);
+  desk.choose_layout(first.name);
+  Names expected = named_by(first);
+  expected.erase("forces");
+  EXPECT_EQ(shown_by(desk), expected);
+  desk.reset_layout();
+  EXPECT_EQ(shown_by(desk), named_by(first));
+}
+
+}  // namespace
+}  // namespace trocar::trainer
