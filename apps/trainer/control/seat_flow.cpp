@@ -323,6 +323,9 @@ QVariantMap SeatFlow::facts() const {
   const FrameTimes& renders = window_.work().desk().view_3d().moving_frame_times();
   facts[QStringLiteral("render_p50_ms")] = renders.p50_ms();
   facts[QStringLiteral("render_p99_ms")] = renders.p99_ms();
+  const FrameTimes& stills = window_.work().desk().view_3d().still_frame_times();
+  facts[QStringLiteral("still_p50_ms")] = stills.p50_ms();
+  facts[QStringLiteral("unwatched_ms")] = window_.work().desk().view_3d().unwatched_times().percentile_ms(1.0);
   if (const auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) {
     const auto& slowest = application->slowest();
     facts[QStringLiteral("slowest_ms")] = slowest.empty() ? 0.0 : slowest.front().ms;

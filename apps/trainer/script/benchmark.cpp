@@ -22,7 +22,9 @@ Result<std::vector<ScriptStep>> benchmark_steps() {
                 "wait 2\n"
                 "reset-watch\n"
                 "wheel-until view-3d %2 depth_mm %3 within 60\n"
-                "print layout frame_p50_ms frame_p99_ms render_p50_ms render_p99_ms slowest\n")
+                "print layout frame_p50_ms frame_p99_ms render_p50_ms render_p99_ms slowest\n"
+                "wait 3\n"  // at rest: full quality
+                "print still_p50_ms unwatched_ms\n")
                 .arg(number)
                 .arg(number % 2 == 1 ? QStringLiteral("12") : QStringLiteral("-12"),
                      number % 2 == 1 ? QStringLiteral("> 45") : QStringLiteral("< 1"));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QCursor>
 #include <QElapsedTimer>
 #include <QKeyEvent>
 #include <QMouseEvent>
@@ -153,6 +154,24 @@ TEST_F(PatientViewTest, AnInterruptedPictureFallsBackToACheapOne) {
   wants_break = false;
   while (!view.is_still()) view.draw();
   EXPECT_EQ(view.still_frame_times().count(), 2u);
+}
+
+TEST_F(PatientViewTest, APointerThatMovesBreaksOffTheWholePicture) {
+  whole_picture();
+  if (view.scene().has_gpu()) GTEST_SKIP() << "a graphics card draws every frame in full";
+  QCursor::setPos(20, 20);
+  int asked = 0;
+  view.set_interrupt([&] {
+    if (++asked == 3) QCursor::setPos(40, 30);
+    return false;
+  });
+  view.set_opacity("liver", 0.8);
+  view.draw();
+  while (view.broken_frames() == 0 && !view.is_still()) view.draw();
+  EXPECT_EQ(view.broken_frames(), 1);
+  EXPECT_FALSE(view.is_still());
+  EXPECT_EQ(asked, 3);  // seen the next time that it looked
+  EXPECT_GE(view.unwatched_times().count(), 4U);
 }
 
 TEST_F(PatientViewTest, MirroredOutputIsFlippedOnTheScreen) {

@@ -39,6 +39,10 @@ TransducerFace face_of(const ScanGeometry& scan) {
   return face;
 }
 
+double in_ms(Clock::duration time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
+
 /// Where the pointer of a mouse event is; the same in Qt 5 and Qt 6.
 QPointF place_of(const QMouseEvent& event) {
   return QPointF(event.pos());
@@ -47,6 +51,11 @@ QPointF place_of(const QMouseEvent& event) {
 }  // namespace
 
 struct PatientView::Impl {
+  void note_watch(Clock::time_point now) {
+    unwatched_times.add(in_ms(now - last_watch));
+    last_watch = now;
+  }
+
   std::unique_ptr<PatientScene> scene;
   QImage image;                     ///< Of the last whole frame; of the left eye with shutter glasses.
   StereoOutput* shutter = nullptr;  ///< Made when shutter glasses are chosen.
@@ -60,6 +69,7 @@ struct PatientView::Impl {
   QSize drawn_size;  ///< Of the widget in the last whole frame.
   FrameTimes moving_times;
   FrameTimes still_times;
+  FrameTimes unwatched_times;
   int broken_frames = 0;
   InputWatch watch;
   Clock::time_point last_watch{};
@@ -234,7 +244,12 @@ const FrameTimes& PatientView::still_frame_times() const noexcept {
   return impl_->still_times;
 }
 
+const FrameTimes& PatientView::unwatched_times() const noexcept {
+  return impl_->unwatched_times;
+}
+
 void PatientView::clear_frame_times() noexcept {
+  impl_->unwatched_times.clear();
   impl_->moving_times.clear();
   impl_->still_times.clear();
 }
@@ -260,7 +275,7 @@ bool PatientView::render_eye(const Detail& detail, bool may_break, Eye eye, QIma
   const auto wants_break = [&v] {
     const auto now = Clock::now();
     if (now - v.last_watch < kWatchEvery) return false;
-    v.last_watch = now;
+    v.note_watch(now);
     return v.watch.has_happened() || (v.interrupt && v.interrupt());
   };
   if (!v.scene->render(detail, may_break ? std::function<bool()>(wants_break) : nullptr, eye)) return false;
@@ -273,8 +288,9 @@ bool PatientView::render_eye(const Detail& detail, bool may_break, Eye eye, QIma
 
 void PatientView::render(const Detail& detail, bool may_break) {
   Impl& v = *impl_;
-  if (may_break) v.watch.start();
   const auto start = Clock::now();
+  if (may_break) v.watch.start();
+  v.last_watch = start;
   const QSize size = picture_size(detail);
   v.scene->set_size(size.width(), size.height());
   const bool has_shutter = v.scene->stereo().mode == StereoMode::kQuadBuffer;
@@ -282,7 +298,8 @@ void PatientView::render(const Detail& detail, bool may_break) {
   const bool is_whole = render_eye(detail, may_break, Eye::kLeft, v.image) &&
                         (!has_shutter || render_eye(detail, may_break, Eye::kRight, right));
   const auto end = Clock::now();
-  const double frame_ms = std::chrono::duration<double, std::milli>(end - start).count();
+  if (may_break) v.note_watch(end);
+  const double frame_ms = in_ms(end - start);
   if (!v.policy) v.policy = std::make_unique<DetailPolicy>(v.scene->has_gpu(), v.params);
   if (!is_whole) {
     ++v.broken_frames;

@@ -89,6 +89,8 @@ class PatientView : public QWidget {
   /// Of the frames while things moved, and of those in full quality.
   const FrameTimes& moving_frame_times() const noexcept;
   const FrameTimes& still_frame_times() const noexcept;
+  /// Times for which a picture of full quality did not look for input: it is given up so long after the hand moves.
+  const FrameTimes& unwatched_times() const noexcept;
   void clear_frame_times() noexcept;
   /// The last frame was drawn in full quality.
   bool is_still() const noexcept;
