@@ -138,6 +138,7 @@ void SeatFlow::connect_pages() {
 
 void SeatFlow::go_to_start() {
   retired_.retire(std::exchange(opening_, {}));
+  opened_.reset();
   attempt_.reset();
   replay_.reset();
   stop_->setEnabled(false);
@@ -153,6 +154,7 @@ void SeatFlow::go_to_case_builder() {
 
 void SeatFlow::open(const SeatChoice& choice) {
   choice_ = choice;
+  opened_.reset();
   retired_.retire(
       std::exchange(opening_, open_case(case_choice(choice), OpenOptions{open_, user_cache_folder() / "patients"})));
   window_.briefing().show_opening(choice);
@@ -169,11 +171,22 @@ void SeatFlow::look_at_opening() {
   }
   opening_ = {};
   if (!*result) return window_.briefing().show_error(to_qt(result->error().text()));
-  open_ = **result;
-  window_.briefing().show_case(*open_, choice_.difficulty);
-  window_.work().desk().show_case(open_);
+  opened_ = **result;
+  window_.work().desk().begin_case(opened_);
+}
+
+/// The briefing last: from then on one may begin.
+void SeatFlow::show_opened() {
+  if (!opened_) return;
+  if (window_.work().desk().show_part()) return;
+  if (open_ != opened_) {
+    open_ = opened_;
+    window_.work().parameters().show_case(open_);
+    return;
+  }
+  opened_.reset();
   window_.work().desk().show_help(choice_.difficulty);
-  window_.work().parameters().show_case(open_);
+  window_.briefing().show_case(*open_, choice_.difficulty);
   if (cut_off_) load_replay(std::exchange(cut_off_, {})->session);
 }
 
@@ -271,6 +284,7 @@ void SeatFlow::save_report() {
 void SeatFlow::frame() {
   const double now = now_s();
   retired_.sweep();
+  show_opened();
   look_at_opening();
   look_at_attempt();
   look_at_replay();
@@ -311,7 +325,7 @@ void SeatFlow::end_server(const QString& tool) {
 QVariantMap SeatFlow::facts() const {
   QVariantMap facts;
   facts[QStringLiteral("case")] = open_ ? to_qt(open_->the_case.patient->name) : QString();
-  facts[QStringLiteral("is_open")] = open_ != nullptr && !opening_.has_work();
+  facts[QStringLiteral("is_open")] = open_ != nullptr && !opening_.has_work() && !opened_;
   facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(late_frames_);
   if (attempt_) facts.insert(attempt_->facts());
   if (replay_) facts.insert(replay_->facts());

@@ -51,6 +51,7 @@ class SeatFlow : public QObject {
   void connect_pages();
   void frame();
   void look_at_opening();
+  void show_opened();
   void look_at_attempt();
   void look_at_replay();
   void load_replay(const std::filesystem::path& session);
@@ -66,6 +67,7 @@ class SeatFlow : public QObject {
   BackgroundJob<AttemptReplay> loading_;
   RetiredJobs retired_;
   std::optional<SeatState> cut_off_;
+  std::shared_ptr<const OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
   std::shared_ptr<const OpenCase> open_;
   std::shared_ptr<SeatServers> servers_;  ///< Kept from one attempt to the next.
   std::unique_ptr<AttemptControl> attempt_;

@@ -14,6 +14,7 @@
 #include "shell/parts.h"
 #include "shell/theme.h"
 #include "shell/trainer_application.h"
+#include "slices/slice_geometry.h"
 #include "ultrasound/scan_annotation.h"
 #include "views/force_plot.h"
 #include "views/patient_view.h"
@@ -282,21 +283,48 @@ void Desk::show_in_space(PatientView& view) {
 }
 
 void Desk::show_case(std::shared_ptr<const OpenCase> open) {
+  begin_case(std::move(open));
+  while (show_part()) {
+  }
+}
+
+void Desk::begin_case(std::shared_ptr<const OpenCase> open) {
   open_ = std::move(open);
-  const Case& the_case = open_->the_case;
-  show_in_space(*view_3d_);
   has_side_patient_ = false;
-  structures_->rebuild();
+  picture_number_ = 0;
+  shown_ = {};
+  parts_shown_ = 0;
+}
+
+bool Desk::show_part() {
+  switch (parts_shown_++) {
+    case 0:
+      show_in_space(*view_3d_);
+      return true;
+    case 1:
+      structures_->rebuild();
+      return true;
+    case 2:
+      show_in_slices();
+      return true;
+    case 3:
+      ultrasound_->show_patient(open_->acoustic, open_->flow, open_->transducer);
+      ultrasound_->change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = open_->probe_depth_mm; });
+      return true;
+    default:
+      return false;
+  }
+}
+
+void Desk::show_in_slices() {
+  const Case& the_case = open_->the_case;
+  const Box body_P = body_box(*the_case.patient);
   for (SliceView* slice : slices_) {
-    slice->show_patient(the_case.patient);
+    slice->show_patient(the_case.patient, body_P);
     slice->set_path(the_case.plan.line_P);
     slice->set_entry_zone(entry_zone_of(the_case));
     slice->set_focus(the_case.plan.line_P.b);
   }
-  ultrasound_->show_patient(open_->acoustic, open_->flow, open_->transducer);
-  ultrasound_->change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = open_->probe_depth_mm; });
-  picture_number_ = 0;
-  shown_ = {};
 }
 
 void Desk::show_help(Difficulty difficulty) {

@@ -43,6 +43,9 @@ class Desk : public QMainWindow {
   explicit Desk(QWidget* parent = nullptr);
 
   void show_case(std::shared_ptr<const OpenCase> open);
+  /// The same in parts, each short enough for a frame: show_part() shows the next one; false: all are shown.
+  void begin_case(std::shared_ptr<const OpenCase> open);
+  bool show_part();
   /// Of the plan, in all views; the structure panel and the keys of the views show no more than that.
   void show_help(Difficulty difficulty);
   void show_tools(const ToolsShown& tools);
@@ -69,6 +72,7 @@ class Desk : public QMainWindow {
   void add_knobs_button();
   void connect_views();
   void show_in_space(PatientView& view);
+  void show_in_slices();
   void follow_with_slices();
   void draw_in_space();
   void show_picture_in_space();
@@ -90,6 +94,7 @@ class Desk : public QMainWindow {
   unsigned stale_slices_ = 0;  ///< A bit a slice that has not seen the tools yet.
   std::size_t frame_ = 0;
   bool has_side_patient_ = false;
+  int parts_shown_ = 0;  ///< Of the case.
 };
 
 }  // namespace trocar::trainer

@@ -81,10 +81,15 @@ SliceView::SliceView(SliceKind kind, QWidget* parent) : QWidget(parent), kind_(k
 SliceView::~SliceView() = default;
 
 void SliceView::show_patient(std::shared_ptr<const VirtualPatient> patient) {
+  const Box body_P = patient ? body_box(*patient) : Box();
+  show_patient(std::move(patient), body_P);
+}
+
+void SliceView::show_patient(std::shared_ptr<const VirtualPatient> patient, const Box& body_P) {
   patient_ = std::move(patient);
   is_stale_ = true;
   if (patient_) {
-    body_P_ = body_box(*patient_);
+    body_P_ = body_P;
     focus_P_ = body_P_.center();
     fit();
   }

@@ -39,6 +39,8 @@ class SliceView : public QWidget {
   ~SliceView() override;
 
   void show_patient(std::shared_ptr<const VirtualPatient> patient);
+  /// The same where the patient's body_box() is known.
+  void show_patient(std::shared_ptr<const VirtualPatient> patient, const Box& body_P);
   /// Moves the slice to a point and, where that leaves the middle part of the picture, the picture after it.
   void set_focus(const Vec3& p_P);
   /// From hub to tip; empty hides the needle.
