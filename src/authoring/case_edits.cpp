@@ -33,6 +33,11 @@ Result<Label*> find_label(CaseDraft& draft, std::uint8_t id) {
   return fail(fmt::format("there is no label {}", id));
 }
 
+std::vector<Landmark>::iterator find_landmark(CaseDraft& draft, const std::string& name) {
+  return std::find_if(draft.landmarks.begin(), draft.landmarks.end(),
+                      [&](const Landmark& landmark) { return landmark.name == name; });
+}
+
 bool is_same_structure(const RiskStructure& a, const RiskStructure& b) {
   return a.tissue == b.tissue && a.label == b.label;
 }
@@ -150,10 +155,25 @@ CaseDraft clear_expert_path(CaseDraft draft) {
   return draft;
 }
 
-Result<CaseDraft> add_landmark(CaseDraft draft, const std::string& name, const Vec3& p_P) {
+Result<CaseDraft> set_landmark(CaseDraft draft, const std::string& name, const Vec3& p_P) {
   TROCAR_TRY_STATUS(check_in_volume(draft, p_P, "landmark"));
-  if (name.empty()) return fail("a landmark needs a name", {}, "type one");
-  draft.landmarks.push_back({name, p_P});
+  if (name.empty()) return fail("a landmark needs a name", {}, "choose or type one");
+  const auto found = find_landmark(draft, name);
+  if (found != draft.landmarks.end()) {
+    found->p_P = p_P;
+  } else {
+    draft.landmarks.push_back({name, p_P});
+  }
+  return draft;
+}
+
+Result<CaseDraft> rename_landmark(CaseDraft draft, std::size_t row, const std::string& name) {
+  if (row >= draft.landmarks.size()) return fail("there is no such landmark");
+  Landmark& landmark = draft.landmarks[row];
+  if (name.empty()) return fail("a landmark needs a name", landmark.name, "type one");
+  if (name != landmark.name && find_landmark(draft, name) != draft.landmarks.end())
+    return fail(fmt::format("another landmark is called \"{}\" already", name), landmark.name, "choose another name");
+  landmark.name = name;
   return draft;
 }
 

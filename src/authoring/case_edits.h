@@ -37,7 +37,10 @@ CaseDraft clear_entry_zone(CaseDraft draft);
 Result<CaseDraft> set_expert_path(CaseDraft draft, const Segment& line_P);
 CaseDraft clear_expert_path(CaseDraft draft);
 
-Result<CaseDraft> add_landmark(CaseDraft draft, const std::string& name, const Vec3& p_P);
+/// Adds a landmark inside the volume, or moves the one of that name.
+Result<CaseDraft> set_landmark(CaseDraft draft, const std::string& name, const Vec3& p_P);
+/// Names are unique and not empty.
+Result<CaseDraft> rename_landmark(CaseDraft draft, std::size_t row, const std::string& name);
 Result<CaseDraft> remove_landmark(CaseDraft draft, std::size_t row);
 
 }  // namespace trocar

@@ -255,6 +255,11 @@ void PatientScene::set_guidance_visible(bool is_visible) {
   if (impl_->guides.set_guidance_visible(is_visible)) impl_->has_changed = true;
 }
 
+void PatientScene::set_landmarks(const std::vector<Landmark>& landmarks) {
+  impl_->guides.set_landmarks(landmarks);
+  impl_->has_changed = true;
+}
+
 void PatientScene::set_landmarks_visible(bool are_visible) {
   if (impl_->guides.set_landmarks_visible(are_visible)) impl_->has_changed = true;
 }

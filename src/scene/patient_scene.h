@@ -51,6 +51,8 @@ class PatientScene {
   void set_guidance(Guidance guidance);
   Guidance guidance() const noexcept;
   void set_guidance_visible(bool is_visible);
+  /// Others than the patient's own, until another patient is shown.
+  void set_landmarks(const std::vector<Landmark>& landmarks);
   void set_landmarks_visible(bool are_visible);
   /// Fewer than two points: no needle.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);

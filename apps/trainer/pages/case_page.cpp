@@ -39,7 +39,7 @@ const char* hint_of(CaseClick click) {
     case CaseClick::kTip:
       return "Click where the tip is put. Esc: done.";
     case CaseClick::kLandmark:
-      return "Click a landmark. Esc: done.";
+      return "Click the place of “%1”: in a slice, or by a double click in 3D. Esc: done.";
   }
   return "";
 }
@@ -136,6 +136,7 @@ void CasePage::add_panel(CasePanel* panel, const QString& title) {
   stack_->addWidget(panel);
   panels_.push_back(panel);
   connect(panel, &CasePanel::click_wanted, this, &CasePage::set_click);
+  connect(panel, &CasePanel::click_name_changed, this, &CasePage::show_hint);
   connect(panel, &CasePanel::place_wanted, this, &CasePage::show_place);
   connect(panel, &CasePanel::label_opacity_changed, this, [this](double opacity) {
     for (SliceView* slice : slices_) slice->set_label_opacity(opacity);
@@ -165,6 +166,7 @@ QWidget* CasePage::make_views() {
   }
   view_ = new PatientView;
   view_->setObjectName(QStringLiteral("case-3d"));
+  view_->set_landmarks_visible(true);
   connect(view_, &PatientView::picked, this, [this](const Vec3& p_P) {
     show_place(p_P);
     click_at(p_P, false);
@@ -216,9 +218,20 @@ void CasePage::keyPressEvent(QKeyEvent* event) {
 
 void CasePage::set_click(CaseClick click) {
   click_ = click;
-  click_text_->setText(tr(hint_of(click)));
+  show_hint();
   click_text_->setVisible(click != CaseClick::kLook);
   for (CasePanel* panel : panels_) panel->show_click(click);
+}
+
+void CasePage::show_hint() {
+  QString text = tr(hint_of(click_));
+  if (click_ == CaseClick::kLandmark) text = text.arg(to_qt(click_name()));
+  click_text_->setText(text);
+}
+
+/// Of the panel that is shown.
+std::string CasePage::click_name() const {
+  return panels_[static_cast<std::size_t>(stack_->currentIndex())]->click_name();
 }
 
 void CasePage::show_place(const Vec3& p_P) {
@@ -248,7 +261,7 @@ Result<CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
       if (path == nullptr) return fail("the path has no entry yet", {}, "set the entry first, or have it planned");
       return set_expert_path(draft, {path->line_P.a, p_P});
     case CaseClick::kLandmark:
-      return add_landmark(draft, "landmark " + std::to_string(draft.landmarks.size() + 1), p_P);
+      return set_landmark(draft, click_name(), p_P);
     case CaseClick::kLook:
       break;
   }
@@ -257,9 +270,8 @@ Result<CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
 
 void CasePage::click_at(const Vec3& p_P, bool is_drag) {
   if (click_ == CaseClick::kLook || !desk_->patient()) return;
-  if (is_drag && click_ == CaseClick::kLandmark) return;
   const char* const words[] = {
-      "", "set the target", "set the entry zone", "set the entry", "set the tip", "add a landmark"};
+      "", "set the target", "set the entry zone", "set the entry", "set the tip", "place a landmark"};
   const std::string what = words[static_cast<std::size_t>(click_)];
   // Press and drag are one step; a click ends it.
   desk_->edit(clicked_draft(p_P), what, what + std::to_string(clicks_));
@@ -275,6 +287,7 @@ void CasePage::refresh_views() {
     const CameraView before = view_->view();
     if (shown_patient_ && shown_meshes_) view_->show_patient(shown_patient_, shown_meshes_);
     if (is_known) view_->set_view(before);  // another name or tissue is no reason to look from elsewhere
+    shown_landmarks_.reset();
   }
   const CaseDraft& draft = desk_->draft();
   const auto target_P = find_target_point(draft);
@@ -290,12 +303,23 @@ void CasePage::refresh_views() {
   const std::optional<EntryZone>& zone = draft.task.entry_zone;
   view_->set_path(line_P, zone ? zone->radius_mm : 0.0);
   view_->scene().set_entry_centre(zone ? std::optional(zone->centre_P) : std::nullopt);
+  show_landmarks();
   for (std::size_t n = 0; n < slices_.size(); ++n) {
     slices_[n]->set_path(line_P);
     slices_[n]->set_entry_zone(draft.task.entry_zone);
     marks_[n]->set_target(target_P);
-    marks_[n]->set_landmarks(draft.landmarks);
   }
+}
+
+void CasePage::show_landmarks() {
+  const std::vector<Landmark>& landmarks = desk_->draft().landmarks;
+  const auto is_same = [](const Landmark& a, const Landmark& b) { return a.name == b.name && a.p_P == b.p_P; };
+  if (shown_landmarks_ &&
+      std::equal(landmarks.begin(), landmarks.end(), shown_landmarks_->begin(), shown_landmarks_->end(), is_same))
+    return;
+  shown_landmarks_ = landmarks;
+  view_->scene().set_landmarks(landmarks);
+  for (SliceMarks* marks : marks_) marks->set_landmarks(landmarks);
 }
 
 void CasePage::refresh_foot() {

@@ -25,7 +25,7 @@ class SliceView;
 
 /// The case builder for instructors: six steps at the left (import, labels, target and risks, entry and path, forces,
 /// save), three slices and a 3D view, and a list of what is right and wrong. Clicks into the pictures set what the
-/// chosen tool is for; a left drag moves it.
+/// chosen tool is for; a left drag moves it. Landmarks are shown in slices and in 3D (M there).
 /// Keys: Ctrl+Z undo, Ctrl+Shift+Z redo, Alt+1..6 steps, Ctrl+T target, Ctrl+L landmark, Ctrl+E entry zone, Ctrl+P
 /// plan, Ctrl+1 entry, Ctrl+2 tip, Ctrl+S save, Esc puts the tool away.
 class CasePage : public QWidget {
@@ -56,8 +56,11 @@ class CasePage : public QWidget {
   void refresh();
   void refresh_foot();
   void refresh_views();
+  void show_landmarks();
   void show_place(const Vec3& p_P);
   void set_click(CaseClick click);
+  void show_hint();
+  std::string click_name() const;
   void click_at(const Vec3& p_P, bool is_drag);
   Result<CaseDraft> clicked_draft(const Vec3& p_P) const;
 
@@ -90,6 +93,7 @@ class CasePage : public QWidget {
   };
   Shown shown_;
   std::optional<Segment> shown_path_;
+  std::optional<std::vector<Landmark>> shown_landmarks_;
   CaseClick click_ = CaseClick::kLook;
   int clicks_ = 0;
 };

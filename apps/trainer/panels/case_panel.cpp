@@ -11,4 +11,8 @@ CasePanel::CasePanel(CaseDesk& desk, QWidget* parent) : QWidget(parent), desk_(d
 
 void CasePanel::show_click(CaseClick /*click*/) {}
 
+std::string CasePanel::click_name() const {
+  return {};
+}
+
 }  // namespace trocar::trainer

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QWidget>
+#include <string>
 
 #include "authoring/case_desk.h"
 
@@ -21,10 +22,14 @@ class CasePanel : public QWidget {
   virtual void refresh() = 0;
   /// The click tool that is on, so that its button shows it.
   virtual void show_click(CaseClick click);
+  /// Of what a click places; empty: of nothing that has a name.
+  virtual std::string click_name() const;
 
  Q_SIGNALS:
   /// A tool was chosen, or put away (kLook).
   void click_wanted(trocar::trainer::CaseClick click);
+  /// click_name() is another one.
+  void click_name_changed();
   void place_wanted(const trocar::Vec3& p_P);
   void label_visible_changed(const QString& name, bool is_visible);
   void label_opacity_changed(double opacity);

@@ -4,10 +4,12 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QPushButton>
+#include <QTabWidget>
 #include <QTableWidget>
 #include <QVBoxLayout>
 
 #include "authoring/case_edits.h"
+#include "panels/case_landmarks.h"
 #include "panels/case_panel.h"
 #include "shell/parts.h"
 
@@ -25,8 +27,11 @@ class TargetPanel final : public CasePanel {
   TargetPanel(CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
     add_template();
     add_target();
-    add_table();
-    add_editor();
+    auto* tabs = new QTabWidget;
+    tabs->setObjectName(QStringLiteral("case-target-tabs"));
+    tabs->addTab(make_risks(), tr("Not to be touched"));
+    tabs->addTab(make_landmarks(), tr("Landmarks"));
+    content()->addWidget(tabs, 1);
   }
 
   void refresh() override {
@@ -40,13 +45,16 @@ class TargetPanel final : public CasePanel {
                     : draft.task.target_P ? tr("point %1").arg(place(*target_P))
                                           : tr("middle of the label, %1").arg(place(*target_P)));
     fill_table();
+    landmarks_->refresh();
     is_refreshing_ = false;
   }
 
   void show_click(CaseClick click) override {
     pick_->setChecked(click == CaseClick::kTarget);
-    landmark_->setChecked(click == CaseClick::kLandmark);
+    landmarks_->show_picking(click == CaseClick::kLandmark);
   }
+
+  std::string click_name() const override { return landmarks_->name(); }
 
  private:
   static QString place(const Vec3& p_P) {
@@ -81,26 +89,36 @@ class TargetPanel final : public CasePanel {
       if (is_refreshing_ || row < 0) return;
       desk_.edit(set_target_label(desk_.draft(), to_std(target_->currentData().toString())), "choose the target");
     });
-    auto* row = new QHBoxLayout;
     pick_ = make_button("case-target-pick", tr("Click a point"),
                         tr("Click the target in a slice, or double click it in 3D"), QStringLiteral("Ctrl+T"));
     pick_->setCheckable(true);
-    landmark_ = make_button("case-landmark-pick", tr("Landmark"), tr("Click a landmark in a slice or in 3D"),
-                            QStringLiteral("Ctrl+L"));
-    landmark_->setCheckable(true);
-    row->addWidget(pick_);
-    row->addWidget(landmark_);
-    content()->addLayout(row);
+    content()->addWidget(pick_);
     where_ = make_label({}, "dim");
     content()->addWidget(where_);
     connect(pick_, &QPushButton::clicked, this,
             [this](bool is_on) { Q_EMIT click_wanted(is_on ? CaseClick::kTarget : CaseClick::kLook); });
-    connect(landmark_, &QPushButton::clicked, this,
-            [this](bool is_on) { Q_EMIT click_wanted(is_on ? CaseClick::kLandmark : CaseClick::kLook); });
   }
 
-  void add_table() {
-    content()->addWidget(make_label(tr("Must not be touched"), "dim"));
+  QWidget* make_risks() {
+    auto* risks = new QWidget;
+    auto* column = new QVBoxLayout(risks);
+    column->setContentsMargins(0, 8, 0, 0);
+    column->setSpacing(8);
+    add_table(*column);
+    add_editor(*column);
+    return risks;
+  }
+
+  QWidget* make_landmarks() {
+    landmarks_ = new CaseLandmarks(desk_);
+    connect(landmarks_, &CaseLandmarks::picking_wanted, this,
+            [this](bool is_on) { Q_EMIT click_wanted(is_on ? CaseClick::kLandmark : CaseClick::kLook); });
+    connect(landmarks_, &CaseLandmarks::name_changed, this, &CasePanel::click_name_changed);
+    connect(landmarks_, &CaseLandmarks::place_wanted, this, &CasePanel::place_wanted);
+    return landmarks_;
+  }
+
+  void add_table(QVBoxLayout& column) {
     table_ = new QTableWidget(0, kColumns);
     table_->setObjectName(QStringLiteral("case-risk-table"));
     table_->setAccessibleName(tr("Risk structures"));
@@ -115,7 +133,7 @@ class TargetPanel final : public CasePanel {
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
     table_->setSelectionMode(QAbstractItemView::SingleSelection);
-    content()->addWidget(table_, 1);
+    column.addWidget(table_, 1);
     connect(table_, &QTableWidget::itemSelectionChanged, this, [this] { show_selected(); });
   }
 
@@ -131,13 +149,13 @@ class TargetPanel final : public CasePanel {
     return number;
   }
 
-  void add_editor() {
+  void add_editor(QVBoxLayout& column) {
     auto* numbers = new QHBoxLayout;
     margin_ = make_number("case-risk-margin", tr("Margin that a path keeps"), 50.0, tr(" mm"));
     penalty_ = make_number("case-risk-penalty", tr("Points that a touch costs"), 100.0, tr(" points"));
     numbers->addWidget(margin_);
     numbers->addWidget(penalty_);
-    content()->addLayout(numbers);
+    column.addLayout(numbers);
     auto* row = new QHBoxLayout;
     structure_ = new QComboBox;
     structure_->setObjectName(QStringLiteral("case-risk-structure"));
@@ -150,7 +168,7 @@ class TargetPanel final : public CasePanel {
     row->addWidget(structure_, 1);
     row->addWidget(add);
     row->addWidget(remove);
-    content()->addLayout(row);
+    column.addLayout(row);
     connect(add, &QPushButton::clicked, this, [this] { add_risk(); });
     connect(remove, &QPushButton::clicked, this, [this] {
       if (table_->currentRow() >= 0)
@@ -230,7 +248,7 @@ class TargetPanel final : public CasePanel {
   QComboBox* template_ = nullptr;
   QComboBox* target_ = nullptr;
   QPushButton* pick_ = nullptr;
-  QPushButton* landmark_ = nullptr;
+  CaseLandmarks* landmarks_ = nullptr;
   QLabel* where_ = nullptr;
   QTableWidget* table_ = nullptr;
   QDoubleSpinBox* margin_ = nullptr;

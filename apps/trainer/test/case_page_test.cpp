@@ -12,11 +12,14 @@
 #include <QListWidget>
 #include <QMouseEvent>
 #include <QPushButton>
+#include <QTabWidget>
 #include <QTableWidget>
+#include <QThread>
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
+#include "anatomy/phantom/phantom.h"
 #include "authoring/case_edits.h"
 #include "core/atomic_file.h"
 #include "core/temporary_folder.h"
@@ -24,17 +27,39 @@
 #include "headless/prepare_case.h"
 #include "io/image_file.h"
 #include "io/patient_folder.h"
-#include "io/patient_source.h"
 #include "shell/parts.h"
+#include "test/widget_actions.h"
 #include "views/slice_view.h"
 
 namespace trocar::trainer {
 namespace {
 namespace fs = std::filesystem;
 
+/// A small made patient as an instructor gets patients: a CT and a segmentation with a list of names.
+void write_files(const fs::path& folder) {
+  const auto patient = generate_phantom("abdomen", 1, {{144, 116, 104}});
+  ASSERT_TRUE(patient) << patient.error().text();
+  LabelGrid labels = patient->labels;
+  std::string names = "[labels]\n";
+  for (const Label& label : patient->label_table.labels) {
+    const bool is_found_anew = label.tissue == "adipose" || label.tissue == "skin" || label.name == "muscle";
+    if (!is_found_anew) names += fmt::format("{} = \"{}\"\n", label.id, label.name);
+    if (is_found_anew)
+      for (std::uint8_t& id : labels.voxels) id = id == label.id ? std::uint8_t{0} : id;
+  }
+  ASSERT_TRUE(write_image(patient->ct, folder / "ct.nrrd"));
+  ASSERT_TRUE(write_image(labels, folder / "labels.nrrd"));
+  ASSERT_TRUE(write_file_atomically(folder / "names.toml", names));
+}
+
 /// A page on the screen at the size of a small window, with a case to work at.
 class CasePageTest : public ::testing::Test {
  protected:
+  static void SetUpTestSuite() {
+    files_ = std::make_unique<TemporaryFolder>();
+    write_files(files_->path());
+  }
+  static void TearDownTestSuite() { files_.reset(); }
   void SetUp() override {
     page_.resize(1280, 720);
     page_.show();
@@ -59,6 +84,7 @@ class CasePageTest : public ::testing::Test {
     while (!is_there() && timer.elapsed() < 240000) {
       page_.advance();
       QCoreApplication::processEvents(QEventLoop::AllEvents, 5);
+      QThread::msleep(2);  // the machine is the work's
     }
     page_.advance();
     return is_there();
@@ -76,12 +102,33 @@ class CasePageTest : public ::testing::Test {
     find<QComboBox>("case-label-map").setCurrentText(to_qt(map));
     press("case-import");
   }
+  void start_import_of_files() {
+    import((*files_ / "ct.nrrd").string(), (*files_ / "labels.nrrd").string(), (*files_ / "names.toml").string());
+  }
+  void import_files() {
+    start_import_of_files();
+    ASSERT_TRUE(wait_for_work());
+    ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
+  }
   void click(SliceView& slice, const Vec3& p_P) {
     const QPointF at = slice.position_of(p_P);
     QMouseEvent down(QEvent::MouseButtonPress, at, slice.mapToGlobal(at.toPoint()), Qt::LeftButton, Qt::LeftButton, {});
     QMouseEvent up(QEvent::MouseButtonRelease, at, slice.mapToGlobal(at.toPoint()), Qt::LeftButton, Qt::NoButton, {});
     QCoreApplication::sendEvent(&slice, &down);
     QCoreApplication::sendEvent(&slice, &up);
+  }
+  /// Two, by clicks.
+  void place_landmarks() {
+    press("case-step-3");
+    auto& coronal = find<SliceView>("slice-coronal");
+    press("case-landmark-pick");
+    find<QTabWidget>("case-target-tabs").setCurrentIndex(1);
+    const Vec3 middle_P = coronal.focus();
+    for (const char* name : {"xiphoid process", "where the drain was"}) {
+      find<QComboBox>("case-landmark-name").setEditText(QString::fromLatin1(name));
+      click(coronal, middle_P + Vec3(20.0, 0.0, name[0] == 'x' ? 40.0 : -10.0));
+    }
+    press("case-landmark-pick");
   }
   /// Pictures of all steps for people to look at, where TROCAR_SAVE_PICTURES names a prefix.
   void save_steps(const std::string& name) {
@@ -105,33 +152,14 @@ class CasePageTest : public ::testing::Test {
                       [&](const CaseCheck& check) { return check.step == step && check.level == CheckLevel::kError; }));
   }
 
+  static std::unique_ptr<TemporaryFolder> files_;
   CasePage page_;
 };
-
-/// The embedded patient as an instructor gets patients: a CT and a segmentation with a list of names.
-void write_files(const fs::path& folder) {
-  const auto patient = open_patient({"abdomen", 1});
-  ASSERT_TRUE(patient) << patient.error().text();
-  LabelGrid labels = patient->labels;
-  std::string names = "[labels]\n";
-  for (const Label& label : patient->label_table.labels) {
-    const bool is_found_anew = label.tissue == "adipose" || label.tissue == "skin" || label.name == "muscle";
-    if (!is_found_anew) names += fmt::format("{} = \"{}\"\n", label.id, label.name);
-    if (is_found_anew)
-      for (std::uint8_t& id : labels.voxels) id = id == label.id ? std::uint8_t{0} : id;
-  }
-  ASSERT_TRUE(write_image(patient->ct, folder / "ct.nrrd"));
-  ASSERT_TRUE(write_image(labels, folder / "labels.nrrd"));
-  ASSERT_TRUE(write_file_atomically(folder / "names.toml", names));
-}
+std::unique_ptr<TemporaryFolder> CasePageTest::files_;
 
 TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   const TemporaryFolder folder;
-  write_files(folder.path());
-  import((folder.path() / "ct.nrrd").string(), (folder.path() / "labels.nrrd").string(),
-         (folder.path() / "names.toml").string());
-  ASSERT_TRUE(wait_for_work());
-  ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
+  import_files();
   ASSERT_TRUE(wait_for_review());
 
   press("case-step-3");
@@ -170,6 +198,7 @@ TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   ASSERT_TRUE(page_.desk().preview());
   EXPECT_GE(find<QTableWidget>("case-force-events").rowCount(), 2);
 
+  place_landmarks();
   save_steps("case");
   press("case-step-6");
   find<QLineEdit>("case-name").setText(QStringLiteral("From clicks"));
@@ -188,6 +217,9 @@ TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
 
   auto patient = load_patient(case_folder);
   ASSERT_TRUE(patient) << patient.error().text();
+  ASSERT_EQ(patient->landmarks.size(), 2U);
+  EXPECT_EQ(patient->landmarks[0].name, "xiphoid process");
+  EXPECT_EQ(patient->landmarks[1].name, "where the drain was");
   CaseOptions options;
   options.task.clear();
   options.patient_folder = case_folder.string();
@@ -239,7 +271,7 @@ TEST_F(CasePageTest, BrokenImportSaysOneLineAndLeavesTheDraft) {
 }
 
 TEST_F(CasePageTest, CancelledImportLeavesThePageAsItWas) {
-  import("abdomen", "", "totalsegmentator");
+  start_import_of_files();
   page_.advance();
   EXPECT_TRUE(find<QPushButton>("case-cancel").isVisible());
   press("case-cancel");
@@ -280,8 +312,65 @@ TEST_F(CasePageTest, LabelsAndRisksAreEditedWithUndo) {
   EXPECT_EQ(risks.rowCount(), rows);
 }
 
+TEST_F(CasePageTest, LandmarksArePlacedMovedRenamedAndRemovedWithUndo) {
+  import("layers-liver", "", "totalsegmentator");
+  ASSERT_TRUE(wait_for_work());
+  press("case-step-3");
+  const auto& landmarks = [&]() -> const std::vector<Landmark>& { return page_.desk().draft().landmarks; };
+  auto& axial = find<SliceView>("slice-axial");
+  auto& list = find<QListWidget>("case-landmarks");
+  find<QTabWidget>("case-target-tabs").setCurrentIndex(1);
+  find<QComboBox>("case-landmark-name").setEditText(QStringLiteral("spinous process L3"));
+  press("case-landmark-pick");
+  EXPECT_TRUE(find<QLabel>("case-click-text").text().contains(QStringLiteral("spinous process L3")));
+  const std::size_t before = landmarks().size();  // the patient's own
+  const Vec3 first_P = axial.focus() + Vec3(10.0, -12.0, 0.0);
+  click(axial, first_P);
+  page_.advance();
+  ASSERT_EQ(landmarks().size(), before + 1);
+  const auto n = static_cast<int>(before);
+  EXPECT_EQ(landmarks()[before].name, "spinous process L3");
+  EXPECT_LT((landmarks()[before].p_P - first_P).norm(), 2.5);  // a pixel
+  EXPECT_EQ(list.item(n)->text(), QStringLiteral("spinous process L3"));
+
+  // The tool stays: another click moves it, another name places another one.
+  const Vec3 second_P = first_P + Vec3(0.0, 20.0, 0.0);
+  click(axial, second_P);
+  ASSERT_EQ(landmarks().size(), before + 1);
+  EXPECT_LT((landmarks()[before].p_P - second_P).norm(), 2.5);
+  press("case-undo");
+  EXPECT_LT((landmarks()[before].p_P - first_P).norm(), 2.5);
+  find<QComboBox>("case-landmark-name").setEditText(QStringLiteral("  "));
+  click(axial, second_P);
+  EXPECT_TRUE(page_.desk().is_error()) << "a landmark without a name";
+  find<QComboBox>("case-landmark-name").setEditText(QStringLiteral("umbilicus"));
+  click(axial, second_P);
+  page_.advance();
+  ASSERT_EQ(list.count(), n + 2);
+
+  list.item(n + 1)->setText(QStringLiteral("spinous process L3"));
+  page_.advance();
+  EXPECT_EQ(list.item(n + 1)->text(), QStringLiteral("umbilicus")) << "the name is taken";
+  list.item(n + 1)->setText(QStringLiteral("navel"));
+  page_.advance();
+  EXPECT_EQ(landmarks()[before + 1].name, "navel");
+  Q_EMIT list.itemClicked(list.item(n));
+  EXPECT_LT((find<SliceView>("slice-coronal").focus() - landmarks()[before].p_P).norm(), 1e-9);
+  list.setCurrentRow(n);
+  press_key(list, Qt::Key_Delete);
+  page_.advance();
+  ASSERT_EQ(list.count(), n + 1);
+  EXPECT_EQ(list.item(n)->text(), QStringLiteral("navel"));
+  press("case-undo");
+  page_.advance();
+  EXPECT_EQ(list.count(), n + 2);
+  save(page_, "case_landmarks.png");
+  press("case-step-1");
+  EXPECT_FALSE(find<QLabel>("case-click-text").isVisible()) << "the tool is put away";
+}
+
 TEST_F(CasePageTest, CheckJumpsToWhatItMeans) {
-  import("abdomen", "", "totalsegmentator");
+  import("layers-liver", "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
   const Vec3 target_P = *find_target_point(page_.desk().draft());
   ASSERT_TRUE(page_.desk().edit(set_expert_path(page_.desk().draft(), {target_P - Vec3(0, 0, 40), target_P}), "path"));

@@ -57,19 +57,18 @@ class SplitLine {
   std::array<QPainterPath, 2> paths_;
 };
 
-/// Text with a dark rim, readable on any gray.
-void draw_text(QPainter& painter, const QPointF& baseline, const QString& text, const QColor& color) {
-  QPainterPath path;
-  path.addText(baseline, painter.font(), text);
-  painter.strokePath(path, round_pen(QColor(0, 0, 0, 190), 2.5));
-  painter.fillPath(path, color);
-}
-
 }  // namespace
 
 QPointF SliceCanvas::to_point(const Vec3& p_P) const {
   const Eigen::Vector2d pixel = geometry.to_pixel(p_P);
   return picture.topLeft() + QPointF(pixel.x() + 0.5, pixel.y() + 0.5) / device_pixel_ratio;
+}
+
+void draw_text(QPainter& painter, const QPointF& baseline, const QString& text, const QColor& color) {
+  QPainterPath path;
+  path.addText(baseline, painter.font(), text);
+  painter.strokePath(path, round_pen(QColor(0, 0, 0, 190), 2.5));
+  painter.fillPath(path, color);
 }
 
 void draw_line(const SliceCanvas& canvas, std::span<const Vec3> points_P, const QColor& color, double width) {

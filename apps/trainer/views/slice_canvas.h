@@ -41,6 +41,8 @@ struct CrossColors {
 };
 /// The traces of two other planes through a point, with a gap about the point; `only_ends`: at the borders only.
 void draw_crosshair(const SliceCanvas& canvas, const Vec3& p_P, const CrossColors& colors, bool only_ends);
+/// Text with a dark rim, readable on any gray.
+void draw_text(QPainter& painter, const QPointF& baseline, const QString& text, const QColor& color);
 /// Letters of the directions at the four borders.
 void draw_letters(const SliceCanvas& canvas);
 /// A bar of 1, 2 or 5 times a power of ten mm at the lower left.

@@ -7,12 +7,12 @@
 
 #include "shell/parts.h"
 #include "shell/theme.h"
+#include "views/slice_canvas.h"
 #include "views/slice_view.h"
 
 namespace trocar::trainer {
 namespace {
 
-constexpr double kInPlane_mm = 1.5;
 constexpr double kNear_mm = 15.0;  ///< A landmark farther from the slice is not drawn.
 
 }  // namespace
@@ -59,7 +59,7 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
     painter.setPen(pen_of(theme().warning, 1.5, away < kInPlane_mm));
     painter.drawLine(at - QPointF(4, 4), at + QPointF(4, 4));
     painter.drawLine(at - QPointF(4, -4), at + QPointF(4, -4));
-    painter.drawText(at + QPointF(7, 4), to_qt(landmark.name));
+    draw_text(painter, at + QPointF(7, 4), to_qt(landmark.name), painter.pen().color());
   }
   if (target_P_) {
     const QPointF at = view_->position_of(*target_P_);

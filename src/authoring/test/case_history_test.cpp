@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <set>
 
 #include "authoring/case_edits.h"
+#include "authoring/landmark_names.h"
 #include "authoring/test/made_draft.h"
 #include "core/random.h"
 
@@ -43,7 +45,8 @@ std::vector<Edit> all_edits() {
         return set_expert_path(d, {{-100.0, 0.0, 0.0}, point(c)});
       },
       [](const CaseDraft& d, double) { return Result<CaseDraft>(clear_expert_path(d)); },
-      [=](const CaseDraft& d, double c) { return add_landmark(d, "rib 9", point(c)); },
+      [=](const CaseDraft& d, double c) { return set_landmark(d, c < 0.5 ? "rib 9" : "xiphoid process", point(c)); },
+      [](const CaseDraft& d, double c) { return rename_landmark(d, 0, c < 0.5 ? "tenth rib" : "rib 9"); },
       [](const CaseDraft& d, double) { return remove_landmark(d, 0); },
   };
 }
@@ -83,11 +86,34 @@ TEST(CaseHistory, AnySequenceUndoneGivesTheFirstDraftAndRedoneTheLast) {
   }
 }
 
+TEST(CaseEdits, ALandmarkIsPlacedMovedAndRenamedUnderOneName) {
+  CaseDraft draft = made_draft();
+  const std::size_t before = draft.landmarks.size();
+  draft = *set_landmark(draft, "xiphoid process", {0.0, -90.0, 0.0});
+  draft = *set_landmark(draft, "umbilicus", {0.0, -90.0, -20.0});
+  draft = *set_landmark(draft, "xiphoid process", {1.0, -90.0, 2.0});
+  ASSERT_EQ(draft.landmarks.size(), before + 2);
+  EXPECT_EQ(draft.landmarks[before].p_P, Vec3(1.0, -90.0, 2.0));
+  EXPECT_FALSE(set_landmark(draft, "", {0.0, 0.0, 0.0}));
+  EXPECT_FALSE(set_landmark(draft, "far away", {0.0, 0.0, 9000.0}));
+  EXPECT_FALSE(rename_landmark(draft, before, "umbilicus")) << "another has that name";
+  EXPECT_FALSE(rename_landmark(draft, before, ""));
+  EXPECT_FALSE(rename_landmark(draft, before + 2, "new"));
+  EXPECT_TRUE(rename_landmark(draft, before, "xiphoid process")) << "its own name";
+  draft = *rename_landmark(draft, before, "xiphisternal joint");
+  EXPECT_EQ(draft.landmarks[before].name, "xiphisternal joint");
+}
+
+TEST(CaseEdits, NamesOfLandmarksDiffer) {
+  const auto names = landmark_names();
+  EXPECT_EQ(std::set<std::string_view>(names.begin(), names.end()).size(), names.size());
+}
+
 TEST(CaseHistory, DraftsShareTheVolumes) {
   CaseHistory history;
   history.begin(made_draft());
   for (int n = 0; n < 10; ++n)
-    history.apply(*add_landmark(history.draft(), "point", {0.0, 0.0, static_cast<double>(n)}), "landmark");
+    history.apply(*set_landmark(history.draft(), "point", {0.0, 0.0, static_cast<double>(n)}), "landmark");
   EXPECT_EQ(history.draft().imported.use_count(), 11);  // ten steps and the draft: one import
 }
 

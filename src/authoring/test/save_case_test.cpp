@@ -25,7 +25,7 @@ CaseDraft full_draft() {
   draft = *set_target_label(draft, "lesion");
   draft = *set_risk(draft, {"vessel", "", 4.0, 40.0});
   draft = *set_entry_zone(draft, good_path(biopsy_gun()).a, 15.0);
-  draft = *add_landmark(draft, "rib 9", {-80.0, 10.0, 5.0});
+  draft = *set_landmark(draft, "rib 9", {-80.0, 10.0, 5.0});
   draft = *rename_label(draft, 3, "liver of the box");
   draft.task.organ = "liver";
   return draft;

@@ -162,6 +162,18 @@ TEST_F(PatientSceneTest, LandmarksAreShownWhenAsked) {
   EXPECT_NE(with.pixels, without.pixels);
 }
 
+TEST_F(PatientSceneTest, LandmarksAreThoseThatWereSetLast) {
+  scene->apply_preset(StructurePreset::kBones);
+  scene->set_landmarks_visible(true);
+  const RgbImage own = draw();
+  scene->set_landmarks({{"xiphoid process", {0, -100, 60}}, {"umbilicus", {0, -100, 0}}});
+  EXPECT_TRUE(scene->has_changed());
+  const RgbImage others = draw();
+  EXPECT_NE(others.pixels, own.pixels);
+  scene->set_landmarks(patient->landmarks);
+  EXPECT_EQ(draw().pixels, own.pixels);
+}
+
 TEST_F(PatientSceneTest, PickFindsTheFrontOfWhatIsShown) {
   draw();
   const auto skin_P = scene->pick(0.5, 0.5);
