@@ -14,6 +14,7 @@
 #include "core/temporary_folder.h"
 #include "panels/force_preview.h"
 #include "panels/parameter_panel.h"
+#include "test/open_abdomen.h"
 
 namespace trocar::trainer {
 
@@ -21,11 +22,9 @@ namespace trocar::trainer {
 class ParameterLab : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto result = make_open_case({});
-    ASSERT_TRUE(result) << result.error().text();
-    opened = *result;
+    opened = open_abdomen();
+    ASSERT_NE(opened, nullptr);
   }
-  static void TearDownTestSuite() { opened.reset(); }
 
   void SetUp() override {
     panel.set_profile_folder(folder / "profiles");

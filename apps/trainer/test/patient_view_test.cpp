@@ -10,31 +10,12 @@
 #include <QScreen>
 #include <QWheelEvent>
 
-#include "io/patient_source.h"
+#include "test/open_abdomen.h"
 #include "views/stereo_output.h"
 #include "volume/sampling.h"
 
 namespace trocar::trainer {
 namespace {
-
-struct Abdomen {
-  std::shared_ptr<const VirtualPatient> patient;
-  std::shared_ptr<const std::vector<NamedMesh>> meshes;
-};
-
-/// The embedded patient, opened once.
-const Abdomen& abdomen() {
-  static const Abdomen the_abdomen = [] {
-    const PatientSource source{"abdomen", 1};
-    auto patient = open_patient(source);
-    EXPECT_TRUE(patient) << patient.error().text();
-    auto meshes = open_meshes(source, *patient);
-    EXPECT_TRUE(meshes) << meshes.error().text();
-    return Abdomen{std::make_shared<const VirtualPatient>(std::move(*patient)),
-                   std::make_shared<const std::vector<NamedMesh>>(std::move(*meshes))};
-  }();
-  return the_abdomen;
-}
 
 class PatientViewTest : public testing::Test {
  protected:
@@ -42,7 +23,7 @@ class PatientViewTest : public testing::Test {
     view.resize(480, 360);
     view.show();
     QApplication::processEvents();
-    view.show_patient(abdomen().patient, abdomen().meshes);
+    view.show_patient(open_abdomen()->the_case.patient, open_abdomen()->meshes);
     view.scene().finish_loading();
   }
   /// What a user sees once the picture is whole.
@@ -113,7 +94,7 @@ TEST_F(PatientViewTest, DragTurnsWheelZoomsAndKeysChooseViews) {
 }
 
 TEST_F(PatientViewTest, GuidanceFollowsItsKey) {
-  view.set_path(abdomen().patient->paths.front().line_P, 10.0);
+  view.set_path(open_abdomen()->the_case.patient->paths.front().line_P, 10.0);
   EXPECT_GT(count_of(whole_picture(), is_teal), 100);
   press(Qt::Key_G);
   EXPECT_EQ(count_of(whole_picture(), is_teal), 0);
@@ -126,7 +107,7 @@ TEST_F(PatientViewTest, DoubleClickPicksThePointOnTheSkin) {
   send_mouse(QEvent::MouseButtonDblClick, {240, 180}, Qt::LeftButton, Qt::LeftButton);
   ASSERT_TRUE(picked_P);
   // The skin's surface is smoothed by less than two voxels.
-  EXPECT_NEAR(sample_linear(abdomen().patient->skin_distance_mm, *picked_P), 0.0, 3.0);
+  EXPECT_NEAR(sample_linear(open_abdomen()->the_case.patient->skin_distance_mm, *picked_P), 0.0, 3.0);
   picked_P.reset();
   send_mouse(QEvent::MouseButtonDblClick, {2, 2}, Qt::LeftButton, Qt::LeftButton);
   EXPECT_FALSE(picked_P);

@@ -12,7 +12,7 @@
 #include <cstdlib>
 
 #include "core/data_dir.h"
-#include "io/patient_source.h"
+#include "test/open_abdomen.h"
 #include "ultrasound/probe_placement.h"
 #include "views/ultrasound_view.h"
 
@@ -21,7 +21,7 @@ namespace trocar::trainer {
 inline constexpr double kFrame_s = 1.0 / 60.0;
 
 struct Patient {
-  VirtualPatient patient;
+  std::shared_ptr<const VirtualPatient> patient;
   std::shared_ptr<const AcousticScene> scene;
   std::shared_ptr<const VesselFlow> flow;
   std::vector<Transducer> transducers;
@@ -30,11 +30,11 @@ struct Patient {
 inline const Patient& abdomen() {
   static const Patient made = [] {
     Patient p;
-    const auto data = data_dir();
-    p.patient = open_patient({"abdomen", 1}).value();
-    p.scene = make_acoustic_scene(p.patient, load_acoustic_table(data / "acoustics.toml").value()).value();
-    p.flow = make_vessel_flow(p.patient, load_flow_table(data / "flow.toml").value()).value();
-    p.transducers = load_transducers(data / "transducers.toml").value();
+    const OpenCase& open = *open_abdomen();
+    p.patient = open.the_case.patient;
+    p.scene = open.acoustic;
+    p.flow = open.flow;
+    p.transducers = load_transducers(data_dir() / "transducers.toml").value();
     return p;
   }();
   return made;
@@ -55,9 +55,9 @@ struct Place {
 inline Place place(const std::string& name, const Transducer& probe) {
   const auto views = load_probe_views(data_dir() / "views.toml").value();
   const bool is_portal = name == "portal-vein";
-  ProbeView view = choose_view(abdomen().patient, views, is_portal ? "liver-lesion" : name).value();
+  ProbeView view = choose_view(*abdomen().patient, views, is_portal ? "liver-lesion" : name).value();
   if (is_portal) view.targets = {"portal_vein*"};
-  return {place_probe(abdomen().patient, view, probe).value(), view.depth_mm};
+  return {place_probe(*abdomen().patient, view, probe).value(), view.depth_mm};
 }
 
 /// Views of the embedded patient, with a frame loop, a mouse and keys; knobs are kept in a folder of the test's own.
