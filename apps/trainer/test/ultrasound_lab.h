@@ -67,7 +67,7 @@ class UltrasoundViewTest : public testing::Test {
 
   void SetUp() override {
     QCoreApplication::setOrganizationName(QStringLiteral("Trocar test"));
-    QCoreApplication::setApplicationName(QStringLiteral("ultrasound view"));
+    QCoreApplication::setApplicationName(QStringLiteral("ultrasound-view"));
     QSettings::setDefaultFormat(QSettings::IniFormat);
     QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, folder_.path());
   }
