@@ -4,7 +4,9 @@
 #include <signal.h>
 
 #include <QAbstractButton>
+#include <QAction>
 #include <QApplication>
+#include <QMenu>
 #include <QPixmap>
 #include <QWidget>
 #include <algorithm>
@@ -68,12 +70,21 @@ Result<QWidget*> ScriptPlayer::find(const QString& name) const {
   QWidget* hidden = nullptr;
   for (QWidget* top : QApplication::topLevelWidgets()) {
     for (QWidget* widget : top->findChildren<QWidget*>(name)) {
-      if (widget->isVisible()) return widget;
+      // What stands in a menu is reached without opening it, which would stop the player.
+      if (widget->isVisible() || qobject_cast<QMenu*>(widget->window()) != nullptr) return widget;
       hidden = widget;
     }
   }
   if (hidden != nullptr) return fail("it is not to be seen now", to_std(name), "is another page open?");
   return fail("there is no such widget", to_std(name), "see its object name");
+}
+
+Result<bool> ScriptPlayer::click_menu_entry(const QString& name) const {
+  auto* entry = stage_.window->findChild<QAction*>(name);
+  if (entry == nullptr) return false;
+  if (!entry->isEnabled()) return fail("it cannot be used now", to_std(name), "it is disabled");
+  entry->trigger();
+  return true;
 }
 
 Result<bool> ScriptPlayer::holds(const QString& fact, const QString& op, const QString& value) const {
@@ -119,6 +130,10 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
   if (verb == QLatin1String("reset-watch")) {
     stage_.reset_watch();
     return Progress::kDone;
+  }
+  if (verb == QLatin1String("click")) {
+    TROCAR_TRY(const bool was_entry, click_menu_entry(a[0]));
+    if (was_entry) return Progress::kDone;
   }
   TROCAR_TRY(QWidget* const widget, find(a[0]));
   if (!widget->isEnabled()) return fail("it cannot be used now", to_std(a[0]), "it is disabled");

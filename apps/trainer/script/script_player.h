@@ -45,6 +45,8 @@ class ScriptPlayer : public QObject {
   Result<Progress> play_waiting(const ScriptStep& step);
   Result<Progress> play_looking(const ScriptStep& step);
   Result<QWidget*> find(const QString& name) const;
+  /// False: no menu has such an entry.
+  Result<bool> click_menu_entry(const QString& name) const;
   Result<bool> holds(const QString& fact, const QString& op, const QString& value) const;
   double seconds() const { return static_cast<double>(clock_.nsecsElapsed()) / 1e9; }
 

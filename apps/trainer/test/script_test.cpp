@@ -4,10 +4,12 @@
 
 #include <QCoreApplication>
 #include <QEventLoop>
+#include <QMenu>
 #include <QPushButton>
 #include <QSlider>
 #include <QSpinBox>
 #include <QVBoxLayout>
+#include <QWidgetAction>
 
 #include "script/script_player.h"
 #include "script/widget_events.h"
@@ -91,6 +93,21 @@ TEST_F(SmallStage, ClicksKeysAndValuesReachTheWidgets) {
       play("click push\nclick push\nkey Ctrl+K\nwait-for pushed >= 3 within 5\nset slide 40\nexpect value is 40\n"),
       QString());
   EXPECT_EQ(pushed, 3);
+}
+
+TEST_F(SmallStage, EntriesAndNumbersOfAMenuAreReachedWhileItIsClosed) {
+  auto* menu = new QMenu(&window);
+  auto* entry = menu->addAction(QStringLiteral("Entry"), &window, [this] { ++pushed; });
+  entry->setObjectName(QStringLiteral("menu-entry"));
+  auto* number = new QSpinBox(menu);
+  number->setObjectName(QStringLiteral("menu-number"));
+  auto* row = new QWidgetAction(menu);
+  row->setDefaultWidget(number);
+  menu->addAction(row);
+  EXPECT_EQ(play("click menu-entry\nset menu-number 7\nexpect pushed is 1\n"), QString());
+  EXPECT_EQ(number->value(), 7);
+  entry->setEnabled(false);
+  EXPECT_TRUE(play("click menu-entry\n").contains(QStringLiteral("disabled")));
 }
 
 TEST_F(SmallStage, WheelGoesOnUntilAFactHolds) {
