@@ -6,19 +6,23 @@ namespace {
 constexpr Rgb kSkin = {224, 178, 150};
 constexpr Rgb kFlesh = {176, 84, 66};
 constexpr Rgb kBlood = {206, 44, 36};
+constexpr Rgb kBloodBright = {232, 96, 74};
+constexpr Rgb kMarrow = {216, 172, 138};
 constexpr Rgb kBone = {236, 226, 202};
 constexpr Rgb kBoneWhite = {250, 246, 236};
 
 // Opacities are assumed, tuned by eye on an abdomen in the portal venous phase.
 constexpr TransferPoint kBoneRamp[] = {
-    {160, kBlood, 0.0}, {260, kBone, 0.12}, {450, kBone, 0.5}, {1200, kBoneWhite, 0.9}};
+    {180, kMarrow, 0.0}, {250, kMarrow, 0.12}, {330, kBone, 0.5}, {700, kBoneWhite, 0.9}};
 constexpr TransferPoint kSoftTissueRamp[] = {{-20, kFlesh, 0.0},  {40, kFlesh, 0.015}, {110, kFlesh, 0.10},
                                              {180, kBlood, 0.25}, {260, kBone, 0.4},   {900, kBoneWhite, 0.85}};
-constexpr TransferPoint kVesselRamp[] = {{125, kBlood, 0.0}, {165, kBlood, 0.22}, {260, kBlood, 0.4},
-                                         {340, kBone, 0.2},  {600, kBone, 0.4},   {1200, kBoneWhite, 0.8}};
-constexpr TransferPoint kSkinAndBoneRamp[] = {{-700, kSkin, 0.0},     {-400, kSkin, 0.16}, {-170, kSkin, 0.0},
-                                              {180, kBone, 0.0},      {300, kBone, 0.2},   {500, kBone, 0.5},
-                                              {1200, kBoneWhite, 0.9}};
+// Bone has been taken out: what is denser than blood is contrast, or calcified.
+constexpr TransferPoint kVesselRamp[] = {
+    {140, kBlood, 0.0}, {190, kBlood, 0.25}, {260, kBlood, 0.5}, {450, kBloodBright, 0.7}, {700, kBoneWhite, 0.9}};
+// The skin is a band that is wide enough in HU for a ray not to step over it.
+constexpr TransferPoint kSkinAndBoneRamp[] = {{-900, kSkin, 0.0}, {-600, kSkin, 0.11},   {-300, kSkin, 0.11},
+                                              {-130, kSkin, 0.0}, {200, kMarrow, 0.0},   {260, kMarrow, 0.14},
+                                              {350, kBone, 0.5},  {700, kBoneWhite, 0.9}};
 
 }  // namespace
 

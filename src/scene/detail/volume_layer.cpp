@@ -9,57 +9,31 @@
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
-#include <cmath>
-
-#include "core/parallel.h"
 
 namespace trocar::detail {
 namespace {
 
 /// Voxels along the longest edge that a processor casts through in about a second.
-constexpr std::int64_t kCoarseEdge = 220;
-/// Steps of a ray, in voxels: longer ones leave rings on the skin.
-constexpr double kStepShare = 0.6;
-constexpr std::int16_t kAir_hu = -1000;
+constexpr std::int64_t kCoarseEdge = 190;
+/// Steps of a ray, in voxels and at most in mm: longer ones leave rings on the skin.
+constexpr double kStepShare = 0.5;
+constexpr double kLongestStep_mm = 0.9;
 
-/// The CT on a grid of every `step`-th voxel (means of blocks), air outside of the skin.
-vtkSmartPointer<vtkImageData> make_copy(const VirtualPatient& patient, bool has_gpu) {
-  const GridGeometry& g = patient.ct.geometry;
-  const std::int64_t longest = std::max({g.size[0], g.size[1], g.size[2]});
-  const std::int64_t step = has_gpu ? 1 : (longest + kCoarseEdge - 1) / kCoarseEdge;
-  Index3 size;
-  for (std::size_t a = 0; a < 3; ++a) size[a] = std::max<std::int64_t>(1, g.size[a] / step);
+/// Values of the grid without its place, which goes to the volume as a matrix.
+vtkSmartPointer<vtkImageData> to_image(const CtGrid& grid) {
+  const GridGeometry& g = grid.geometry;
   auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(static_cast<int>(size[0]), static_cast<int>(size[1]), static_cast<int>(size[2]));
-  const Vec3 spacing_mm = static_cast<double>(step) * g.spacing_mm;
-  image->SetSpacing(spacing_mm.data());
-  const Vec3 first = 0.5 * static_cast<double>(step - 1) * g.spacing_mm;
-  image->SetOrigin(first.data());
+  image->SetDimensions(static_cast<int>(g.size[0]), static_cast<int>(g.size[1]), static_cast<int>(g.size[2]));
+  image->SetSpacing(g.spacing_mm.data());
   image->AllocateScalars(VTK_SHORT, 1);
-  auto* out = static_cast<std::int16_t*>(image->GetScalarPointer());
-  const auto block_mean = [&](const Index3& low) {
-    int sum = 0;
-    int count = 0;
-    for (std::int64_t k = low[2]; k < low[2] + step; ++k) {
-      for (std::int64_t j = low[1]; j < low[1] + step; ++j) {
-        for (std::int64_t i = low[0]; i < low[0] + step; ++i, ++count) {
-          const std::size_t at = g.offset({i, j, k});
-          const bool is_outside = !patient.skin_distance_mm.empty() && patient.skin_distance_mm.voxels[at] > 1.0F;
-          sum += is_outside ? kAir_hu : patient.ct.voxels[at];
-        }
-      }
-    }
-    return static_cast<std::int16_t>(sum / std::max(1, count));
-  };
-  parallel_for(static_cast<std::size_t>(size[2]), 4, [&](std::size_t first_k, std::size_t last_k) {
-    for (auto k = static_cast<std::int64_t>(first_k); k < static_cast<std::int64_t>(last_k); ++k) {
-      std::int16_t* row = out + k * size[0] * size[1];
-      for (std::int64_t j = 0; j < size[1]; ++j) {
-        for (std::int64_t i = 0; i < size[0]; ++i) *row++ = block_mean({i * step, j * step, k * step});
-      }
-    }
-  });
+  std::copy(grid.voxels.begin(), grid.voxels.end(), static_cast<std::int16_t*>(image->GetScalarPointer()));
   return image;
+}
+
+VolumeLayer::Cloud make_drawable(const VirtualPatient& patient, CloudContent content, bool has_gpu) {
+  const std::array<std::int64_t, 3> all{1, 1, 1};
+  const CtGrid grid = make_cloud(patient, content, has_gpu ? all : cloud_steps(patient.ct.geometry, kCoarseEdge));
+  return {to_image(grid), grid.geometry, content};
 }
 
 vtkSmartPointer<vtkVolumeMapper> make_ray_caster(vtkImageData* image, bool has_gpu) {
@@ -73,7 +47,8 @@ vtkSmartPointer<vtkVolumeMapper> make_ray_caster(vtkImageData* image, bool has_g
   mapper->SetInputData(image);
   mapper->AutoAdjustSampleDistancesOff();
   mapper->SetImageSampleDistance(1.5F);
-  mapper->SetSampleDistance(static_cast<float>(kStepShare * image->GetSpacing()[0]));
+  const double edge_mm = *std::min_element(image->GetSpacing(), image->GetSpacing() + 3);
+  mapper->SetSampleDistance(static_cast<float>(std::min(kStepShare * edge_mm, kLongestStep_mm)));
   mapper->IntermixIntersectingGeometryOn();
   return mapper;
 }
@@ -85,18 +60,23 @@ VolumeLayer::~VolumeLayer() {
 }
 
 void VolumeLayer::set_patient(std::shared_ptr<const VirtualPatient> patient) {
-  wait();
-  poll();
+  if (loading_.valid()) loading_.get();
   if (volume_ != nullptr) renderer_.RemoveViewProp(volume_);
   volume_ = nullptr;
-  image_ = nullptr;
+  cloud_.reset();
   patient_ = std::move(patient);
-  if (preset_ != VolumePreset::kNone) start(has_gpu_);
+  start();
 }
 
-void VolumeLayer::start(bool has_gpu) {
-  if (patient_ == nullptr || patient_->ct.empty() || loading_.valid()) return;
-  loading_ = std::async(std::launch::async, [patient = patient_, has_gpu] { return make_copy(*patient, has_gpu); });
+void VolumeLayer::start() {
+  if (preset_ == VolumePreset::kNone || patient_ == nullptr || patient_->ct.empty() || loading_.valid()) return;
+  loading_ = std::async(std::launch::async, [patient = patient_, content = content_of(preset_), gpu = has_gpu_] {
+    return make_drawable(*patient, content, gpu);
+  });
+}
+
+bool VolumeLayer::is_ready() const noexcept {
+  return preset_ != VolumePreset::kNone && cloud_ && cloud_->content == content_of(preset_);
 }
 
 bool VolumeLayer::set_preset(VolumePreset preset, bool has_gpu) {
@@ -104,23 +84,32 @@ bool VolumeLayer::set_preset(VolumePreset preset, bool has_gpu) {
   preset_ = preset;
   has_gpu_ = has_gpu;
   if (preset == VolumePreset::kNone) return true;
-  if (image_ == nullptr) {
-    start(has_gpu);
-  } else {
+  if (is_ready()) {
     rebuild();
+  } else {
+    start();
   }
   return true;
 }
 
 bool VolumeLayer::poll() {
   if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-  image_ = loading_.get();
-  if (preset_ != VolumePreset::kNone) rebuild();
+  cloud_ = loading_.get();
+  if (volume_ != nullptr) renderer_.RemoveViewProp(volume_);
+  volume_ = nullptr;
+  if (is_ready()) {
+    rebuild();
+  } else {
+    start();  // another preset has been chosen meanwhile
+  }
   return true;
 }
 
 void VolumeLayer::wait() {
-  if (loading_.valid()) loading_.wait();
+  while (loading_.valid()) {
+    loading_.wait();
+    poll();
+  }
 }
 
 void VolumeLayer::set_visible(bool is_visible) {
@@ -137,8 +126,8 @@ void VolumeLayer::rebuild() {
   }
   if (volume_ == nullptr) {
     volume_ = vtkSmartPointer<vtkVolume>::New();
-    volume_->SetMapper(make_ray_caster(image_, has_gpu_));
-    const GridGeometry& g = patient_->ct.geometry;
+    volume_->SetMapper(make_ray_caster(cloud_->image, has_gpu_));
+    const GridGeometry& g = cloud_->geometry;
     vtkNew<vtkMatrix4x4> matrix;
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) matrix->SetElement(row, column, g.R_PV(row, column));
@@ -153,9 +142,10 @@ void VolumeLayer::rebuild() {
   look.SetScalarOpacityUnitDistance(1.0);
   look.SetInterpolationTypeToLinear();
   look.ShadeOn();
-  look.SetAmbient(0.25);
-  look.SetDiffuse(0.8);
-  look.SetSpecular(0.15);
+  look.SetAmbient(0.35);
+  look.SetDiffuse(0.9);
+  look.SetSpecular(0.2);
+  look.SetSpecularPower(10.0);
   volume_->SetVisibility(is_visible_);
 }
 

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "anatomy/patient.h"
+#include "scene/detail/volume_copy.h"
 #include "scene/volume_preset.h"
 
 namespace trocar::detail {
@@ -27,15 +28,23 @@ class VolumeLayer {
   void set_patient(std::shared_ptr<const VirtualPatient> patient);
   bool set_preset(VolumePreset preset, bool has_gpu);
   VolumePreset preset() const noexcept { return preset_; }
-  /// Whether the cloud can be drawn: a preset is chosen and the copy is ready.
-  bool is_ready() const noexcept { return preset_ != VolumePreset::kNone && image_ != nullptr; }
-  /// True when the copy has just become ready.
+  /// Whether the cloud can be drawn: a preset is chosen and its copy is ready.
+  bool is_ready() const noexcept;
+  /// True when a copy has just become ready.
   bool poll();
+  /// Until the copy that the preset wants is there.
   void wait();
   void set_visible(bool is_visible);
 
+  /// A copy of the CT that can be drawn.
+  struct Cloud {
+    vtkSmartPointer<vtkImageData> image;
+    GridGeometry geometry;
+    CloudContent content = CloudContent::kWhole;
+  };
+
  private:
-  void start(bool has_gpu);
+  void start();
   void rebuild();
 
   vtkRenderer& renderer_;
@@ -43,8 +52,8 @@ class VolumeLayer {
   VolumePreset preset_ = VolumePreset::kNone;
   bool has_gpu_ = false;
   bool is_visible_ = false;
-  std::future<vtkSmartPointer<vtkImageData>> loading_;
-  vtkSmartPointer<vtkImageData> image_;
+  std::future<Cloud> loading_;
+  std::optional<Cloud> cloud_;
   vtkSmartPointer<vtkVolume> volume_;
 };
 
