@@ -93,6 +93,8 @@ struct PatientScene::Impl {
   void place_camera(int rows);
   void prepare(const Detail& detail, Eye eye);
   void set_up_stereo(Eye eye);
+  /// The rows that VTK would draw for the left eye are the right one's on the screen.
+  bool has_rows_of_other_eye() const;
 
   vtkNew<vtkRenderWindow> window;
   vtkNew<vtkRenderer> renderer;
@@ -115,6 +117,7 @@ struct PatientScene::Impl {
   FollowMode follow = FollowMode::kFree;
   bool is_follow_new = false;
   StereoOptions stereo;
+  int first_row = 0;
   std::string renderer_name;
   bool has_changed = true;
 };
@@ -144,14 +147,23 @@ void PatientScene::Impl::place_camera(int rows) {
   } else {
     surfaces.set_cut(std::nullopt);
   }
+  tools.set_transducer_glassy(needle_P && follow == FollowMode::kAlongNeedle);
   if (needle_P) tools.set_least_thickness(kLeastNeedle_px * view.mm_per_pixel(needle_P->b, rows));
+}
+
+bool PatientScene::Impl::has_rows_of_other_eye() const {
+  if (stereo.mode != StereoMode::kInterlaced) return false;
+  // VTK gives the picture's first row from below to the left eye; mirrored it is the first one from above.
+  const int rows = window->GetSize()[1];
+  return (first_row + (stereo.is_mirrored_up_down ? 0 : rows - 1)) % 2 != 0;
 }
 
 void PatientScene::Impl::set_up_stereo(Eye eye) {
   const bool is_on = stereo.mode != StereoMode::kOff;
   if (is_on) window->SetStereoType(detail::to_vtk(stereo.mode, eye));
   window->SetStereoRender(is_on);
-  renderer->GetActiveCamera()->SetEyeAngle(stereo.swaps_eyes ? -stereo.eye_angle_deg : stereo.eye_angle_deg);
+  const bool is_swapped = stereo.swaps_eyes != has_rows_of_other_eye();
+  renderer->GetActiveCamera()->SetEyeAngle(is_swapped ? -stereo.eye_angle_deg : stereo.eye_angle_deg);
 }
 
 void PatientScene::Impl::prepare(const Detail& detail, Eye eye) {
@@ -181,16 +193,12 @@ Result<std::unique_ptr<PatientScene>> PatientScene::make(int columns, int rows) 
 }
 
 void PatientScene::show_patient(std::shared_ptr<const VirtualPatient> patient,
-                                std::shared_ptr<const std::vector<NamedMesh>> meshes) {
+                                std::shared_ptr<const std::vector<NamedMesh>> meshes, std::optional<Vec3> target_P) {
   Impl& s = *impl_;
-  std::string target_name;
-  s.around_name.clear();
-  if (!patient->paths.empty()) {
-    const Vec3& target_P = patient->paths.front().line_P.b;
-    target_name = find_target_name(*patient, target_P);
-    s.around_name = find_name_around(*patient, target_P);
-  }
-  s.surfaces.show(describe_structures(patient->label_table, *meshes, target_name, s.around_name), meshes,
+  if (!target_P && !patient->paths.empty()) target_P = patient->paths.front().line_P.b;
+  const Aim aim = target_P ? find_aim(*patient, *target_P) : Aim{};
+  s.around_name = aim.around_name;
+  s.surfaces.show(describe_structures(patient->label_table, *meshes, aim.target_name, aim.around_name), meshes,
                   patient->label_table);
   s.planes.set_patient(patient.get());
   s.guides.set_landmarks(patient->landmarks);
@@ -342,6 +350,17 @@ const StereoOptions& PatientScene::stereo() const noexcept {
 
 void PatientScene::set_size(int columns, int rows) {
   impl_->window->SetSize(columns, rows);
+}
+
+void PatientScene::set_text_scale(double scale) {
+  if (impl_->guides.set_text_scale(scale)) impl_->has_changed = true;
+}
+
+void PatientScene::set_first_row(int row) {
+  const int parity = row & 1;
+  if (parity == impl_->first_row) return;
+  impl_->first_row = parity;
+  if (impl_->stereo.mode == StereoMode::kInterlaced) impl_->has_changed = true;
 }
 
 void PatientScene::poll() {

@@ -34,8 +34,9 @@ class PatientScene {
   PatientScene(const PatientScene&) = delete;
   PatientScene& operator=(const PatientScene&) = delete;
 
-  void show_patient(std::shared_ptr<const VirtualPatient> patient,
-                    std::shared_ptr<const std::vector<NamedMesh>> meshes);
+  /// `target_P` is what is aimed at; without it the end of the patient's first path is, if there is one.
+  void show_patient(std::shared_ptr<const VirtualPatient> patient, std::shared_ptr<const std::vector<NamedMesh>> meshes,
+                    std::optional<Vec3> target_P = {});
   bool is_ready() const noexcept;  ///< The surfaces are there.
   void finish_loading();           ///< Waits for surfaces and volume.
 
@@ -79,6 +80,11 @@ class PatientScene {
 
   /// Size of the pictures from the next frame on.
   void set_size(int columns, int rows);
+  /// How large names are written: pixels of the picture for one of an ordinary window. Range 0.1..8.
+  void set_text_scale(double scale);
+  /// Row of the screen that the picture's first row falls on: in interlaced stereo the screen's even rows are the left
+  /// eye's, wherever the picture stands and however it is mirrored.
+  void set_first_row(int row);
   /// Takes over surfaces and volume that have become ready.
   void poll();
   /// Something was set, or has become ready, since the last whole frame.

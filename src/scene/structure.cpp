@@ -11,6 +11,9 @@ namespace {
 
 constexpr double kFaint = 0.15;
 constexpr double kAroundTarget = 0.35;
+constexpr double kAroundRadius_mm = 20.0;
+constexpr double kDeepRadius_mm = 12.0;
+constexpr double kDeepShare = 0.6;
 
 int order_of(StructureKind kind) {
   switch (kind) {
@@ -36,6 +39,29 @@ int order_of(StructureKind kind) {
 
 bool fills_space(const Label& label) {
   return label.tissue == "adipose" || label.tissue == "muscle" || label.tissue == "soft_tissue";
+}
+
+/// Points all around, evenly enough for a vote.
+std::vector<Vec3> ball_about(const Vec3& middle_P, double radius_mm) {
+  std::vector<Vec3> points_P;
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) {
+      for (int z = -2; z <= 2; ++z) {
+        if (x != 0 || y != 0 || z != 0) points_P.push_back(middle_P + radius_mm * Vec3(x, y, z).normalized());
+      }
+    }
+  }
+  return points_P;
+}
+
+/// An organ that goes on about the point, not a small structure that is held for one.
+bool is_deep_in_organ(const VirtualPatient& patient, const Vec3& p_P, const Label& organ) {
+  const auto look = detail::find_appearance(patient.label_table, organ.name);
+  if (!look || look->kind != StructureKind::kOrgan) return false;
+  const std::vector<Vec3> ball_P = ball_about(p_P, kDeepRadius_mm);
+  const auto same =
+      std::count_if(ball_P.begin(), ball_P.end(), [&](const Vec3& q_P) { return find_label(patient, q_P) == &organ; });
+  return static_cast<double>(same) > kDeepShare * static_cast<double>(ball_P.size());
 }
 
 }  // namespace
@@ -80,26 +106,21 @@ double preset_opacity(const StructureInfo& structure, StructurePreset preset, st
   return structure.default_opacity;
 }
 
-std::string find_target_name(const VirtualPatient& patient, const Vec3& target_P) {
-  const Label* label = find_label(patient, target_P);
-  return label == nullptr || fills_space(*label) ? std::string() : label->name;
-}
-
-std::string find_name_around(const VirtualPatient& patient, const Vec3& target_P, double radius_mm) {
+Aim find_aim(const VirtualPatient& patient, const Vec3& target_P) {
   const Label* inside = find_label(patient, target_P);
+  if (inside != nullptr && fills_space(*inside)) inside = nullptr;
+  if (inside != nullptr && is_deep_in_organ(patient, target_P, *inside)) return Aim{{}, inside->name};
   std::map<std::string_view, int> votes;
-  for (int x = -2; x <= 2; ++x) {
-    for (int y = -2; y <= 2; ++y) {
-      for (int z = -2; z <= 2; ++z) {
-        if (x == 0 && y == 0 && z == 0) continue;
-        const Label* label = find_label(patient, target_P + radius_mm * Vec3(x, y, z).normalized());
-        if (label != nullptr && label != inside && !fills_space(*label)) ++votes[label->name];
-      }
-    }
+  for (const Vec3& p_P : ball_about(target_P, kAroundRadius_mm)) {
+    const Label* label = find_label(patient, p_P);
+    if (label != nullptr && label != inside && !fills_space(*label)) ++votes[label->name];
   }
   const auto best =
       std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  return best == votes.end() ? std::string() : std::string(best->first);
+  Aim aim;
+  if (inside != nullptr) aim.target_name = inside->name;
+  if (best != votes.end()) aim.around_name = best->first;
+  return aim;
 }
 
 }  // namespace trocar

@@ -30,15 +30,22 @@ enum class StructurePreset {
 };
 
 /// All surfaces with kind, colour and default opacity, skin first, then by kind and name. `target_name` is the
-/// structure that is aimed at (find_target_name), `around_name` the organ around it; both may be empty.
+/// structure that is aimed at (find_aim), `around_name` the organ around it; both may be empty.
 std::vector<StructureInfo> describe_structures(const LabelTable& table, const std::vector<NamedMesh>& meshes,
                                                std::string_view target_name, std::string_view around_name);
 /// Opacity of a structure in a preset, 0..1.
 double preset_opacity(const StructureInfo& structure, StructurePreset preset, std::string_view around_name) noexcept;
 
-/// Name of the structure at a point of P ("" for none), and of the one that surrounds it: what is most often met on a
-/// ball of `radius_mm` that is not that structure, fat or muscle.
-std::string find_target_name(const VirtualPatient& patient, const Vec3& target_P);
-std::string find_name_around(const VirtualPatient& patient, const Vec3& target_P, double radius_mm = 20.0);
+/// What is aimed at, and the structure that surrounds it; "" where there is none.
+struct Aim {
+  std::string target_name;
+  std::string around_name;
+  bool operator==(const Aim&) const = default;
+};
+
+/// Of a point of P. The target is the structure there, but fat and muscle never are. A place deep in an organ is no
+/// structure of its own: the organ is around it. Else what is around is met most often on a ball of 20 mm that is not
+/// the target, fat or muscle.
+Aim find_aim(const VirtualPatient& patient, const Vec3& target_P);
 
 }  // namespace trocar

@@ -276,7 +276,7 @@ void Desk::fill_menu(QMenu& menu) {
 }
 
 void Desk::show_in_space(PatientView& view) {
-  view.show_patient(open_->the_case.patient, open_->meshes);
+  view.show_patient(open_->the_case.patient, open_->meshes, open_->the_case.plan.line_P.b);
   const EntryZone zone = entry_zone_of(open_->the_case);
   view.set_path(open_->the_case.plan.line_P, zone.radius_mm);
   view.scene().set_entry_centre(zone.centre_P);

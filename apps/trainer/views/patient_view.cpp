@@ -100,8 +100,9 @@ void PatientView::note_motion() {
 }
 
 void PatientView::show_patient(std::shared_ptr<const VirtualPatient> patient,
-                               std::shared_ptr<const std::vector<NamedMesh>> meshes) {
-  impl_->scene->show_patient(std::move(patient), std::move(meshes));
+                               std::shared_ptr<const std::vector<NamedMesh>> meshes,
+                               const std::optional<Vec3>& target_P) {
+  impl_->scene->show_patient(std::move(patient), std::move(meshes), target_P);
 }
 
 bool PatientView::is_ready() const {
@@ -267,7 +268,9 @@ PatientScene& PatientView::scene() noexcept {
 }
 
 QSize PatientView::picture_size(const Detail& detail) const {
-  return (QSizeF(size()) * devicePixelRatioF() * detail.resolution).toSize().expandedTo({1, 1});
+  // Rows that are drawn smaller and stretched would mix the eyes.
+  const double share = stereo().mode == StereoMode::kInterlaced ? 1.0 : detail.resolution;
+  return (QSizeF(size()) * devicePixelRatioF() * share).toSize().expandedTo({1, 1});
 }
 
 bool PatientView::render_eye(const Detail& detail, bool may_break, Eye eye, QImage& image) {
@@ -293,6 +296,7 @@ void PatientView::render(const Detail& detail, bool may_break) {
   v.last_watch = start;
   const QSize size = picture_size(detail);
   v.scene->set_size(size.width(), size.height());
+  v.scene->set_text_scale(static_cast<double>(size.height()) / std::max(1, height()));
   const bool has_shutter = v.scene->stereo().mode == StereoMode::kQuadBuffer;
   QImage right;
   const bool is_whole = render_eye(detail, may_break, Eye::kLeft, v.image) &&
@@ -337,6 +341,7 @@ void PatientView::draw() {
     note_motion();
   } else {
     v.scene->poll();
+    v.scene->set_first_row(qRound(mapToGlobal(QPoint(0, 0)).y() * devicePixelRatioF()));
     const bool has_changed = v.scene->has_changed() || v.drawn_size != size();
     if (has_changed || v.are_tools_moving) v.policy->note_motion(now);
     const Detail detail = v.policy->next(now);

@@ -31,8 +31,8 @@ class PatientView : public QWidget {
   explicit PatientView(QWidget* parent = nullptr);
   ~PatientView() override;
 
-  void show_patient(std::shared_ptr<const VirtualPatient> patient,
-                    std::shared_ptr<const std::vector<NamedMesh>> meshes);
+  void show_patient(std::shared_ptr<const VirtualPatient> patient, std::shared_ptr<const std::vector<NamedMesh>> meshes,
+                    const std::optional<Vec3>& target_P = {});
   /// Surfaces are prepared in the background after show_patient.
   bool is_ready() const;
 

@@ -1,9 +1,12 @@
 #include "scene/detail/guide_layer.h"
 
+#include <vtkCoordinate.h>
+#include <vtkNew.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkTextProperty.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -24,6 +27,8 @@ constexpr double kGap_mm = 4.0;
 constexpr double kOutside_mm = 45.0;  ///< The path goes on so far before the skin.
 constexpr double kTargetRadius_mm = 3.0;
 constexpr double kRingRadius_mm = 0.9;
+constexpr double kFont_px = 13.0;  ///< At a text scale of 1.
+constexpr double kBesideMark_px = 8.0;
 constexpr double kLandmarkRadius_mm = 3.0;
 constexpr double kAboveSkin_mm = 0.6;
 
@@ -95,19 +100,36 @@ void GuideLayer::add_mesh(Props& props, const TriangleMesh& mesh_P, const Rgb& c
   props.push_back(actor);
 }
 
-void GuideLayer::add_text(Props& props, const Vec3& p_P, const std::string& text, const Rgb& color) {
-  auto label = vtkSmartPointer<vtkBillboardTextActor3D>::New();
+void GuideLayer::add_text(const Vec3& p_P, const std::string& text, const Rgb& color) {
+  auto label = vtkSmartPointer<vtkTextActor>::New();
   label->SetInput(text.c_str());
-  label->SetPosition(p_P.x(), p_P.y(), p_P.z());
-  label->SetDisplayOffset(8, 6);
-  label->ForceOpaqueOn();
+  // Beside the mark, and over all that is drawn: half a name is worse than none.
+  vtkNew<vtkCoordinate> mark;
+  mark->SetCoordinateSystemToWorld();
+  mark->SetValue(p_P.x(), p_P.y(), p_P.z());
+  label->GetPositionCoordinate()->SetCoordinateSystemToViewport();
+  label->GetPositionCoordinate()->SetReferenceCoordinate(mark);
   vtkTextProperty& look = *label->GetTextProperty();
-  look.SetFontSize(13);
   look.SetColor(color[0] / 255.0, color[1] / 255.0, color[2] / 255.0);
   look.SetBackgroundColor(0.04, 0.05, 0.07);
-  look.SetBackgroundOpacity(1.0);
-  renderer_.AddActor(label);
-  props.push_back(label);
+  look.SetBackgroundOpacity(0.8);
+  renderer_.AddViewProp(label);
+  landmarks_.push_back(label);
+  texts_.push_back(label);
+}
+
+bool GuideLayer::set_text_scale(double scale) {
+  if (scale == text_scale_) return false;
+  text_scale_ = scale;
+  scale_texts();
+  return are_landmarks_visible_ && !texts_.empty();
+}
+
+void GuideLayer::scale_texts() {
+  for (const auto& text : texts_) {
+    text->GetTextProperty()->SetFontSize(std::max(4, static_cast<int>(std::lround(kFont_px * text_scale_))));
+    text->GetPositionCoordinate()->SetValue(kBesideMark_px * text_scale_, 0.75 * kBesideMark_px * text_scale_);
+  }
 }
 
 void GuideLayer::set_path(const std::optional<Segment>& line_P, const EntryMark& entry,
@@ -131,10 +153,12 @@ void GuideLayer::show_guidance() {
 
 void GuideLayer::set_landmarks(const std::vector<Landmark>& landmarks) {
   clear(landmarks_);
+  texts_.clear();
   for (const Landmark& landmark : landmarks) {
     add_mesh(landmarks_, make_ball(landmark.p_P, kLandmarkRadius_mm), kLandmarkColor, 1.0, true);
-    add_text(landmarks_, landmark.p_P, landmark.name, kLandmarkColor);
+    add_text(landmark.p_P, landmark.name, kLandmarkColor);
   }
+  scale_texts();
   for (const auto& prop : landmarks_) prop->SetVisibility(are_landmarks_visible_);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vtkBillboardTextActor3D.h>
+#include <vtkTextActor.h>
 
 #include <optional>
 #include <vector>
@@ -28,13 +28,15 @@ class GuideLayer {
   bool set_guidance(Guidance guidance);
   bool set_guidance_visible(bool is_visible);
   bool set_landmarks_visible(bool is_visible);
+  bool set_text_scale(double scale);
   Guidance guidance() const noexcept { return guidance_; }
   bool are_landmarks_visible() const noexcept { return are_landmarks_visible_; }
 
  private:
   using Props = std::vector<vtkSmartPointer<vtkProp>>;
   void add_mesh(Props& props, const TriangleMesh& mesh_P, const Rgb& color, double opacity, bool is_lit);
-  void add_text(Props& props, const Vec3& p_P, const std::string& text, const Rgb& color);
+  void add_text(const Vec3& p_P, const std::string& text, const Rgb& color);
+  void scale_texts();
   void clear(Props& props);
   void show_guidance();
 
@@ -42,6 +44,8 @@ class GuideLayer {
   Props line_;   ///< The way from before the skin to the target.
   Props marks_;  ///< Target and entry zone.
   Props landmarks_;
+  std::vector<vtkSmartPointer<vtkTextActor>> texts_;  ///< Of the landmarks.
+  double text_scale_ = 1.0;
   Guidance guidance_ = Guidance::kPath;
   bool is_guidance_visible_ = true;
   bool are_landmarks_visible_ = false;

@@ -11,7 +11,7 @@ namespace {
 constexpr float kOutside_hu = -32768.0F;
 constexpr double kUnseen_mm = 0.02;
 /// The air around the patient is left out: it would hide what lies behind. So far before the skin the plane ends.
-constexpr float kRim_mm = 2.0F;
+constexpr double kRim_mm = 0.5;
 
 bool are_close(const std::optional<Segment>& a, const std::optional<Segment>& b) {
   if (!a || !b) return !a && !b;
@@ -72,7 +72,7 @@ void PlaneLayer::draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right
     const auto column = static_cast<double>(i % static_cast<std::size_t>(pixels));
     const auto row = static_cast<double>(i / static_cast<std::size_t>(pixels));
     const Vec3 p_P = plane.origin_P + column * plane.step_u_P + row * plane.step_v_P;
-    return sample_nearest(patient_->skin_distance_mm, p_P, 2.0F * kRim_mm) < kRim_mm;
+    return sample_linear(patient_->skin_distance_mm, p_P) < kRim_mm;
   };
   for (std::size_t i = 0; i < hu_.size(); ++i) {
     const auto grey = static_cast<std::uint8_t>(std::clamp((hu_[i] - low_hu) * scale, 0.0F, 255.0F));

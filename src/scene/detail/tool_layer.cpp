@@ -16,6 +16,7 @@ namespace {
 
 /// Motion below is not seen: half a hundredth of a millimetre.
 constexpr double kUnseen_mm = 0.005;
+constexpr double kGlassyTransducer = 0.3;
 constexpr double kGhostOpacity = 0.4;
 constexpr double kGhostRadius_mm = 1.2;
 constexpr double kGhostHubRadius_mm = 4.0;
@@ -139,6 +140,11 @@ bool ToolLayer::set_transducer(const std::optional<Pose>& X_PT, const Transducer
   }
   transducer_->SetUserMatrix(matrix);
   return true;
+}
+
+void ToolLayer::set_transducer_glassy(bool is_glassy) {
+  transducer_->GetProperty()->SetOpacity(is_glassy ? kGlassyTransducer : 1.0);
+  transducer_->GetProperty()->SetBackfaceCulling(is_glassy);
 }
 
 std::optional<Segment> ToolLayer::needle_P() const noexcept {

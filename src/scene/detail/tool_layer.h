@@ -22,6 +22,8 @@ class ToolLayer {
   bool set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
   bool set_hand(const std::optional<Segment>& ghost_P);
   bool set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
+  /// What stands behind the transducer is seen through it.
+  void set_transducer_glassy(bool is_glassy);
   /// Draws the needle no thinner than this.
   void set_least_thickness(double least_mm);
 

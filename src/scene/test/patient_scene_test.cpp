@@ -264,6 +264,38 @@ TEST_F(PatientSceneTest, SideBySideShowsTheOrganOnceForEachEye) {
   EXPECT_NEAR(left, right, 0.3 * left);
 }
 
+TEST_F(PatientSceneTest, EvenRowsOfTheScreenAreTheLeftEyesHoweverThePictureStands) {
+  scene->apply_preset(StructurePreset::kBones);
+  // Before the plane without parallax: what is near stands farther right for the left eye.
+  const Vec3 shaft_P[2] = {{0, -90, -60}, {0, -90, 60}};
+  scene->set_needle(shaft_P, 4.0, NeedleModel::kChiba);
+  draw();
+  CameraView view = scene->view();
+  view.focus_P = {0, 0, 0};
+  scene->set_view(view);
+  StereoOptions options;
+  options.mode = StereoMode::kInterlaced;
+  options.eye_angle_deg = 6.0;
+  const auto left_lead_px = [&](int first_row) {
+    scene->set_stereo(options);
+    scene->set_first_row(first_row);
+    RgbImage of_eye[2] = {draw(), {}};
+    of_eye[1] = of_eye[0];
+    for (int row = 0; row < kSize; ++row) {
+      RgbImage& other = of_eye[(first_row + row + 1) % 2];
+      for (int column = 0; column < kSize; ++column) other.at(column, row) = {0, 0, 0};
+    }
+    return middle_of(of_eye[0], is_bright).x() - middle_of(of_eye[1], is_bright).x();
+  };
+  EXPECT_GT(left_lead_px(0), 2.0);
+  EXPECT_GT(left_lead_px(1), 2.0);
+  options.is_mirrored_up_down = true;
+  EXPECT_GT(left_lead_px(0), 2.0);
+  EXPECT_GT(left_lead_px(1), 2.0);
+  options.swaps_eyes = true;
+  EXPECT_LT(left_lead_px(0), -2.0);
+}
+
 TEST_F(PatientSceneTest, SoftwareRendererIsKnownAsSuch) {
   draw();
   ASSERT_FALSE(scene->renderer_name().empty());

@@ -1,0 +1,52 @@
+#include "scene/structure.h"
+
+#include <gtest/gtest.h>
+
+namespace trocar {
+namespace {
+
+constexpr std::uint8_t kLiver = 1, kLesion = 2, kFat = 3;
+
+/// 100 mm of liver in fat, with a lesion of 10 mm in its middle.
+VirtualPatient liver_in_fat() {
+  VirtualPatient patient;
+  GridGeometry g;
+  g.size = {80, 80, 80};
+  g.spacing_mm = {2.0, 2.0, 2.0};
+  patient.labels = LabelGrid(g, kFat);
+  patient.label_table.labels = {
+      {kLiver, "liver", "liver"}, {kLesion, "tumour", "liver_lesion"}, {kFat, "fat", "adipose"}};
+  const Vec3 middle_P(80, 80, 80);
+  for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
+    const Index3 ijk = g.index_of(n);
+    const double away_mm =
+        (g.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])}) - middle_P)
+            .norm();
+    if (away_mm < 50.0) patient.labels.voxels[n] = away_mm < 5.0 ? kLesion : kLiver;
+  }
+  return patient;
+}
+
+TEST(Structure, ALesionIsTheTargetAndItsOrganIsAround) {
+  EXPECT_EQ(find_aim(liver_in_fat(), {80, 80, 80}), (Aim{"tumour", "liver"}));
+}
+
+TEST(Structure, APlaceDeepInAnOrganHasTheOrganAround) {
+  EXPECT_EQ(find_aim(liver_in_fat(), {80, 80, 106}), (Aim{"", "liver"}));
+}
+
+TEST(Structure, FatIsNoTarget) {
+  EXPECT_EQ(find_aim(liver_in_fat(), {80, 80, 5}), (Aim{"", ""}));
+  EXPECT_EQ(find_aim(liver_in_fat(), {80, 80, 140}), (Aim{"", "liver"}));  // 10 mm beside the liver
+}
+
+TEST(Structure, TheTargetPresetShowsTheOrganAroundAPlaceThatHasNoStructure) {
+  const StructureInfo liver{"liver", StructureKind::kOrgan, {}, 0.5, 0.5};
+  const Aim aim = find_aim(liver_in_fat(), {80, 80, 106});
+  const double opacity = preset_opacity(liver, StructurePreset::kTarget, aim.around_name);
+  EXPECT_GT(opacity, 0.1);
+  EXPECT_LT(opacity, 0.6);
+}
+
+}  // namespace
+}  // namespace trocar
