@@ -21,6 +21,7 @@ namespace {
 constexpr int kBetweenSteps_ms = 15;
 constexpr double kPatience_s = 30.0;
 constexpr double kDrag_s = 0.4;
+constexpr int kMostAtOnce = 2;  ///< Events of a step that goes on until something holds.
 
 QPointF place_of(const QStringList& arguments, int first) {
   if (arguments.size() < first + 2) return {0.5, 0.5};
@@ -197,6 +198,8 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_until(const ScriptStep& step, 
     return fail("it did not come about: " + to_std(a[2] + ' ' + a[3] + ' ' + a[4]),
                 to_std(a[2] + " is " + stage_.facts().value(a[2]).toString()), "give it longer: within SECONDS");
   const int due = static_cast<int>(seconds() * std::abs(a[1].toDouble()));
+  // A hand does not make up for the time in which it saw nothing: it would go far past the mark.
+  sent_ = std::max(sent_, due - kMostAtOnce);
   for (; sent_ < due; ++sent_) TROCAR_TRY_STATUS(act());
   return Progress::kAgain;
 }

@@ -79,7 +79,8 @@ void take_bone_out(CtGrid& cloud, const LabelGrid& flags) {
       const std::int64_t low = std::max<std::int64_t>(0, other[a] - reach[a]);
       const std::int64_t high = std::min(g.size[a] - 1, other[a] + reach[a]);
       std::uint8_t& flag = near[{i, j, k}];
-      for (other[a] = low; other[a] <= high; ++other[a]) flag |= before[other] & kHasBone;
+      for (other[a] = low; other[a] <= high; ++other[a])
+        flag = static_cast<std::uint8_t>(flag | (before[other] & kHasBone));
     });
   }
   for_each_voxel(g, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
@@ -129,7 +130,7 @@ CtGrid make_cloud(const VirtualPatient& patient, CloudContent content, const std
                        k * steps[2] + n / (steps[0] * steps[1])};
       const std::size_t at = g.offset(ijk);
       sum += cloud_hu(patient, content, at);
-      if (has_labels) flag |= flag_of_label[patient.labels.voxels[at]];
+      if (has_labels) flag = static_cast<std::uint8_t>(flag | flag_of_label[patient.labels.voxels[at]]);
     }
     cloud[{i, j, k}] = static_cast<std::int16_t>(sum / count);
     if (has_labels) flags[{i, j, k}] = flag;
