@@ -141,6 +141,7 @@ void PatientScene::Impl::place_camera(int rows) {
     view = following(view, follow, *needle_P, is_follow_new);
     is_follow_new = false;
   }
+  guides.look_from(view);
   if (follow == FollowMode::kSide && needle_P) {
     const Vec3 back_P = -view.forward_P();
     surfaces.set_cut(std::pair(Vec3(needle_P->b + kCutBeforeNeedle_mm * back_P), back_P));

@@ -197,7 +197,8 @@ void AttemptControl::advance(double dt_s) {
   for (const AttemptEvent& event : attempt_.take_events()) {
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(to_qt(event.text)),
                                is_risk(open_->the_case, event));
-    if (event.kind == EventKind::kPuncture) plot.add_event(event.depth_mm, event.time_s, to_qt(event.name));
+    if (event.kind == EventKind::kPuncture)
+      plot.add_event(event.depth_mm, event.time_s, to_qt(event.name).replace('_', ' '));
   }
   show_tools(dt_s);
   show_panel();

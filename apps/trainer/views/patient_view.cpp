@@ -1,6 +1,5 @@
 #include "views/patient_view.h"
 
-#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
 #include <QWheelEvent>
@@ -20,7 +19,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kOrbit_rad_per_view = 3.6;  ///< A drag over the whole height.
 constexpr double kZoomPerNotch = 1.15;
 constexpr double kZoomPerView = 6.0;  ///< A drag over the whole height.
-constexpr double kKeyOrbit_rad = 0.12;
 constexpr double kWheelNotch = 120.0;  ///< Of QWheelEvent::angleDelta.
 constexpr int kFirstSize_px = 64;      ///< Before the widget has one.
 /// The user's hand is asked for at most so often while a picture is drawn.
@@ -394,70 +392,6 @@ void PatientView::mouseDoubleClickEvent(QMouseEvent* event) {
   const QPointF place = unmirrored(place_of(*event));
   const auto p_P = impl_->scene->pick(place.x() / std::max(1, width()), place.y() / std::max(1, height()));
   if (p_P) Q_EMIT picked(*p_P);
-}
-
-void PatientView::keyPressEvent(QKeyEvent* event) {
-  const auto turn = [&](double right, double up) { set_view(orbited(view(), right, up)); };
-  const auto toggle = [&](FollowMode mode) { set_follow(follow() == mode ? FollowMode::kFree : mode); };
-  switch (event->key()) {
-    case Qt::Key_1:
-      set_camera(CameraPreset::kAnterior);
-      break;
-    case Qt::Key_2:
-      set_camera(CameraPreset::kRightAnteriorOblique);
-      break;
-    case Qt::Key_3:
-      set_camera(CameraPreset::kRight);
-      break;
-    case Qt::Key_4:
-      set_camera(CameraPreset::kLeft);
-      break;
-    case Qt::Key_5:
-      set_camera(CameraPreset::kPosterior);
-      break;
-    case Qt::Key_6:
-      set_camera(CameraPreset::kCranial);
-      break;
-    case Qt::Key_F:
-      toggle(FollowMode::kTip);
-      break;
-    case Qt::Key_L:
-      toggle(FollowMode::kAlongNeedle);
-      break;
-    case Qt::Key_N:
-      toggle(FollowMode::kSide);
-      break;
-    case Qt::Key_G:
-      set_guidance_visible(!is_guidance_visible_);
-      break;
-    case Qt::Key_M:
-      set_landmarks_visible(!are_landmarks_visible_);
-      break;
-    case Qt::Key_Home:
-      reset_camera();
-      break;
-    case Qt::Key_Left:
-      turn(-kKeyOrbit_rad, 0.0);
-      break;
-    case Qt::Key_Right:
-      turn(kKeyOrbit_rad, 0.0);
-      break;
-    case Qt::Key_Up:
-      turn(0.0, kKeyOrbit_rad);
-      break;
-    case Qt::Key_Down:
-      turn(0.0, -kKeyOrbit_rad);
-      break;
-    case Qt::Key_Plus:
-      set_view(zoomed(view(), kZoomPerNotch));
-      break;
-    case Qt::Key_Minus:
-      set_view(zoomed(view(), 1.0 / kZoomPerNotch));
-      break;
-    default:
-      return QWidget::keyPressEvent(event);
-  }
-  Q_EMIT changed();
 }
 
 }  // namespace trocar::trainer

@@ -29,6 +29,7 @@ constexpr double kTargetRadius_mm = 3.0;
 constexpr double kRingRadius_mm = 0.9;
 constexpr double kFont_px = 13.0;  ///< At a text scale of 1.
 constexpr double kBesideMark_px = 8.0;
+constexpr double kFarBehind_mm = 25.0;
 constexpr double kLandmarkRadius_mm = 3.0;
 constexpr double kAboveSkin_mm = 0.6;
 
@@ -112,10 +113,9 @@ void GuideLayer::add_text(const Vec3& p_P, const std::string& text, const Rgb& c
   vtkTextProperty& look = *label->GetTextProperty();
   look.SetColor(color[0] / 255.0, color[1] / 255.0, color[2] / 255.0);
   look.SetBackgroundColor(0.04, 0.05, 0.07);
-  look.SetBackgroundOpacity(0.8);
   renderer_.AddViewProp(label);
   landmarks_.push_back(label);
-  texts_.push_back(label);
+  texts_.push_back({label, p_P});
 }
 
 bool GuideLayer::set_text_scale(double scale) {
@@ -126,9 +126,17 @@ bool GuideLayer::set_text_scale(double scale) {
 }
 
 void GuideLayer::scale_texts() {
-  for (const auto& text : texts_) {
-    text->GetTextProperty()->SetFontSize(std::max(4, static_cast<int>(std::lround(kFont_px * text_scale_))));
-    text->GetPositionCoordinate()->SetValue(kBesideMark_px * text_scale_, 0.75 * kBesideMark_px * text_scale_);
+  for (const Text& text : texts_) {
+    text.actor->GetTextProperty()->SetFontSize(std::max(4, static_cast<int>(std::lround(kFont_px * text_scale_))));
+    text.actor->GetPositionCoordinate()->SetValue(kBesideMark_px * text_scale_, 0.75 * kBesideMark_px * text_scale_);
+  }
+}
+
+void GuideLayer::look_from(const CameraView& view) {
+  for (const Text& text : texts_) {
+    const bool is_far = (text.p_P - view.focus_P).dot(view.forward_P()) > kFarBehind_mm;
+    text.actor->GetTextProperty()->SetOpacity(is_far ? 0.35 : 1.0);
+    text.actor->GetTextProperty()->SetBackgroundOpacity(is_far ? 0.2 : 0.8);
   }
 }
 

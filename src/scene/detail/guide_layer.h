@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "scene/camera.h"
 #include "scene/detail/drawing.h"
 #include "scene/guidance.h"
 
@@ -29,10 +30,17 @@ class GuideLayer {
   bool set_guidance_visible(bool is_visible);
   bool set_landmarks_visible(bool is_visible);
   bool set_text_scale(double scale);
+  /// Names of landmarks on the far side of what is looked at are faint.
+  void look_from(const CameraView& view);
   Guidance guidance() const noexcept { return guidance_; }
   bool are_landmarks_visible() const noexcept { return are_landmarks_visible_; }
 
  private:
+  /// Name of a landmark.
+  struct Text {
+    vtkSmartPointer<vtkTextActor> actor;
+    Vec3 p_P;
+  };
   using Props = std::vector<vtkSmartPointer<vtkProp>>;
   void add_mesh(Props& props, const TriangleMesh& mesh_P, const Rgb& color, double opacity, bool is_lit);
   void add_text(const Vec3& p_P, const std::string& text, const Rgb& color);
@@ -44,7 +52,7 @@ class GuideLayer {
   Props line_;   ///< The way from before the skin to the target.
   Props marks_;  ///< Target and entry zone.
   Props landmarks_;
-  std::vector<vtkSmartPointer<vtkTextActor>> texts_;  ///< Of the landmarks.
+  std::vector<Text> texts_;
   double text_scale_ = 1.0;
   Guidance guidance_ = Guidance::kPath;
   bool is_guidance_visible_ = true;
