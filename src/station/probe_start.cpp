@@ -35,6 +35,7 @@ constexpr std::array kSeen{0.3, 0.5, 0.7, 0.85, 1.0};  ///< Places on the path t
 
 // Weights of what a place costs; assumed, chosen on the embedded patients.
 constexpr double kTargetCost = 4.0;
+constexpr double kDarkCost = 1.0;  ///< All of the fan behind ribs or gas: between ribs is better than across them.
 constexpr double kTiltCost = 2.0;  ///< A rad between plane and skin's normal.
 constexpr double kContactCost = 1.5;
 constexpr double kUnderHubCost = 1.5;
@@ -109,8 +110,9 @@ class InPlane {
     const double target_hidden = hidden_share(fit.X_PT, path_P_.b);
     const double under_hub = std::max(0.0, -path_P_.direction().dot(along_P));
     place.target_depth_mm = polar(fit.X_PT, path_P_.b).depth_mm;
-    place.cost = kTargetCost * target_hidden + hidden + kTiltCost * tilt + kContactCost * (1.0 - fit.touching) +
-                 kUnderHubCost * under_hub + kFarCost * far_mm / kFarthest_mm;
+    place.cost = kTargetCost * target_hidden + hidden + kDarkCost * dark_share(fit.X_PT, place.target_depth_mm) +
+                 kTiltCost * tilt + kContactCost * (1.0 - fit.touching) + kUnderHubCost * under_hub +
+                 kFarCost * far_mm / kFarthest_mm;
     place.is_good = target_hidden == 0.0 && tilt < kTiltedSkin && fit.touching > kTouching;
     return place;
   }
@@ -140,6 +142,19 @@ class InPlane {
     const Polar at = polar(X_PT, p_P);
     if (!(at.line >= 0.0 && at.line <= scan_.lines - 1 && at.depth_mm > 0.0 && at.depth_mm < scan_.depth_mm))
       return 1.0;
+    return hidden_share(X_PT, at);
+  }
+
+  /// Of all scanlines down to a depth.
+  double dark_share(const Pose& X_PT, double depth_mm) const {
+    double sum = 0.0;
+    for (int line = 0; line < scan_.lines; ++line)
+      sum += hidden_share(X_PT, Polar{static_cast<double>(line), depth_mm});
+    return sum / scan_.lines;
+  }
+
+  /// The share of the way to a place of the fan that lies behind bone or gas.
+  double hidden_share(const Pose& X_PT, const Polar& at) const {
     const Vec2 from = scan_.line_origin(at.line);
     const Vec2 way = scan_.line_direction(at.line);
     const Vec3 from_P = X_PT * Vec3(from.x(), from.y(), 0.0);

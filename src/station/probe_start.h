@@ -20,9 +20,9 @@ struct ProbeStart {
 };
 
 /// Holds the transducer for a puncture along `path_P` (entry on the skin, target): in the path's plane, the face beside
-/// the entry and not under the needle's hub, with the target in the fan and least bone, gas and lung before it. Of
-/// planes about the path and places along the skin the best; where none shows the target, a standard view of it.
-/// Errors: the transducers' or views' file.
+/// the entry and not under the needle's hub, with the target in the fan, least bone, gas and lung before it, and as
+/// much else as can be seen. Of planes about the path and places along the skin the best; where none shows the target,
+/// a standard view of it. Errors: the transducers' or views' file.
 Result<ProbeStart> find_probe_start(const VirtualPatient& patient, const Segment& path_P);
 
 }  // namespace trocar

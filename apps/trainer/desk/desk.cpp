@@ -21,6 +21,7 @@
 #include "views/slice_view.h"
 #include "views/ultrasound_controls.h"
 #include "views/ultrasound_view.h"
+#include "views/view_strip.h"
 
 namespace trocar::trainer {
 namespace {
@@ -36,14 +37,13 @@ EntryZone entry_zone_of(const Case& the_case) {
 }
 
 /// A slim title with a button to let the view float and one to hide it.
-QWidget* make_title(QDockWidget& dock, const QString& title) {
+QWidget* make_title(QDockWidget& dock, QWidget& line) {
   auto* bar = new QFrame;
   bar->setProperty("role", "bar");
   auto* row = new QHBoxLayout(bar);
-  row->setContentsMargins(8, 1, 2, 1);
+  row->setContentsMargins(0, 0, 2, 0);
   row->setSpacing(2);
-  auto* label = make_label(title, "dim");
-  row->addWidget(label, 1);
+  row->addWidget(&line, 1);
   const auto add = [&](const QString& text, const QString& tooltip) {
     auto* button = new QToolButton;
     button->setText(text);
@@ -126,7 +126,7 @@ Desk::Desk(QWidget* parent) : QMainWindow(parent) {
   add_view("side", tr("Beside the needle"), *side_);
   add_view("ultrasound", tr("Ultrasound"), *scanner);
   add_knobs_button();
-  add_view("forces", tr("Force"), *forces_, false);
+  add_view("forces", tr("Force"), *forces_, &forces_->strip());
   structures_ = new StructurePanel(*view_3d_);
   add_view("structures", tr("What the 3D view shows"), *structures_);
   const std::pair<const char*, QString> slices[] = {{"axial", tr("Axial")},
@@ -134,7 +134,8 @@ Desk::Desk(QWidget* parent) : QMainWindow(parent) {
                                                     {"sagittal", tr("Sagittal")},
                                                     {"along", tr("Along the needle")},
                                                     {"across", tr("Across the tip")}};
-  for (std::size_t s = 0; s < slices_.size(); ++s) add_view(slices[s].first, slices[s].second, *slices_[s], false);
+  for (std::size_t s = 0; s < slices_.size(); ++s)
+    add_view(slices[s].first, slices[s].second, *slices_[s], &slices_[s]->strip());
   view_3d_->setObjectName(QStringLiteral("view-3d"));
   side_->setObjectName(QStringLiteral("view-side"));
   side_->set_follow(FollowMode::kSide);
@@ -142,10 +143,14 @@ Desk::Desk(QWidget* parent) : QMainWindow(parent) {
   choose_layout(QSettings().value(QStringLiteral("desk/layout"), built_in_layouts().front().name).toString());
 }
 
-void Desk::add_view(const char* name, const QString& title, QWidget& view, bool has_title) {
+void Desk::add_view(const char* name, const QString& title, QWidget& view, QWidget* strip) {
   auto* dock = new QDockWidget(title, this);
   dock->setObjectName(QStringLiteral("dock-") + QString::fromLatin1(name));
-  dock->setTitleBarWidget(make_title(*dock, has_title ? title : QString()));
+  if (strip == nullptr) {
+    strip = make_label(title, "dim");
+    strip->setContentsMargins(8, 1, 0, 1);
+  }
+  dock->setTitleBarWidget(make_title(*dock, *strip));
   view.setMinimumSize(200, 140);
   dock->setWidget(&view);
   addDockWidget(Qt::LeftDockWidgetArea, dock);

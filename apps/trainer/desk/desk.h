@@ -65,8 +65,8 @@ class Desk : public QMainWindow {
   void fill_menu(QMenu& menu);
 
  private:
-  /// A view that names itself needs no title.
-  void add_view(const char* name, const QString& title, QWidget& view, bool has_title = true);
+  /// A view that has a strip of its own lends it to the title.
+  void add_view(const char* name, const QString& title, QWidget& view, QWidget* strip = nullptr);
   void arrange(const QString& layout);
   void arrange_rows(const LayoutColumn& column);
   void add_knobs_button();

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "shell/theme.h"
+#include "views/view_strip.h"
 
 namespace trocar::trainer {
 namespace {
@@ -39,7 +40,10 @@ QColor faded(QColor color, double share) {
 
 }  // namespace
 
-ForcePlot::ForcePlot(QWidget* parent) : QWidget(parent), axis_button_(new QToolButton(this)) {
+ForcePlot::ForcePlot(QWidget* parent)
+    : QWidget(parent),
+      axis_button_(new QToolButton(this)),
+      strip_(new ViewStrip(*this, [this](QPainter& painter, const QRectF& room) { paint_strip(painter, room); })) {
   setObjectName(QStringLiteral("force-plot"));
   setAccessibleName(tr("Resistance"));
   setToolTip(tr("Resistance of the tissue along the needle. T: against depth or time"));
@@ -52,6 +56,7 @@ ForcePlot::ForcePlot(QWidget* parent) : QWidget(parent), axis_button_(new QToolB
   axis_button_->setStyleSheet(QStringLiteral("QToolButton { padding: 0 8px; min-height: 0; border-radius: 4px; }"));
   connect(axis_button_, &QToolButton::clicked, this,
           [this] { set_axis(axis_ == Axis::kDepth ? Axis::kTime : Axis::kDepth); });
+  strip_->add_button(*axis_button_);
   set_axis(Axis::kDepth);
   clear();
 }
@@ -136,10 +141,6 @@ void ForcePlot::change_ground() {
   update();
 }
 
-double ForcePlot::strip_height() const {
-  return std::ceil(QFontMetricsF(scaled_font(0.95)).height()) + 8.0;
-}
-
 double ForcePlot::band_height() const {
   if (bands_.empty() || axis_ == Axis::kTime) return 0.0;
   return std::ceil(QFontMetricsF(scaled_font(0.75)).height()) + 2.0;
@@ -149,9 +150,9 @@ PlotFrame ForcePlot::frame() const {
   const QFontMetricsF metrics(scaled_font(0.82));
   const double left = std::ceil(metrics.horizontalAdvance(QStringLiteral("\u22120.0"))) + 10.0;
   const double below = band_height() + std::ceil(metrics.height()) + 6.0;
+  const double top = strip_->height_in_view() + 6.0;
   PlotFrame frame;
-  frame.area = QRectF(left, strip_height() + 6.0, std::max(20.0, width() - left - 10.0),
-                      std::max(20.0, height() - strip_height() - 6.0 - below));
+  frame.area = QRectF(left, top, std::max(20.0, width() - left - 10.0), std::max(20.0, height() - top - below));
   frame.y = rounded_out({kHeadroom * low_n_, kHeadroom * high_n_}, kForceSteps);
   if (axis_ == Axis::kDepth) {
     frame.x = rounded_out({0.0, far_mm_}, kDepthSteps);
@@ -285,9 +286,18 @@ void ForcePlot::paint_events(QPainter& painter, const PlotFrame& frame) const {
   }
 }
 
-void ForcePlot::paint_strip(QPainter& painter) const {
+QString ForcePlot::force_text() const {
+  const auto now = current();
+  return now ? QStringLiteral("%1 N").arg(now->resistance_n, 0, 'f', 2) : QString();
+}
+
+QString ForcePlot::depth_text() const {
+  const auto now = current();
+  return now ? QStringLiteral("%1 mm").arg(now->depth_mm, 0, 'f', 0) : QString();
+}
+
+void ForcePlot::paint_strip(QPainter& painter, QRectF room) const {
   const Theme& t = theme();
-  QRectF room(8.0, 0.0, axis_button_->x() - 16.0, strip_height());
   const auto put = [&](const QString& text, bool is_bold, const QColor& color, bool is_right) {
     painter.setFont(scaled_font(is_bold ? 0.95 : 0.85, is_bold));
     const double wide = std::ceil(QFontMetricsF(painter.font()).horizontalAdvance(text));
@@ -298,11 +308,8 @@ void ForcePlot::paint_strip(QPainter& painter) const {
     return true;
   };
   put(tr("Resistance"), true, t.text, false);
-  if (const auto now = current()) {
-    const QString force = QStringLiteral("%1 N").arg(now->resistance_n, 0, 'f', 2);
-    const bool has_room = put(force + QStringLiteral(" · %1 mm").arg(now->depth_mm, 0, 'f', 0), true, t.accent, true);
-    if (!has_room) put(force, true, t.accent, true);
-  }
+  if (current() && !put(force_text() + QStringLiteral(" · ") + depth_text(), true, t.accent, true))
+    put(force_text(), true, t.accent, true);
   if (axis_ == Axis::kTime) return;
   if (!reference_.empty()) put(QStringLiteral("— ") + reference_name_, false, t.path, true);
   if (!predicted_.empty()) put(QStringLiteral("- - ") + predicted_name_, false, t.dim, true);
@@ -316,7 +323,8 @@ void ForcePlot::paintEvent(QPaintEvent* /*event*/) {
   painter.setRenderHint(QPainter::Antialiasing);
   paint_events(painter, plot);
   paint_curve(painter, plot);
-  paint_strip(painter);
+  strip_->refresh(force_text() + depth_text() + (predicted_.empty() ? QString() : predicted_name_) +
+                  (reference_.empty() ? QString() : reference_name_) + axis_button_->text());
 }
 
 QString ForcePlot::text_at(const QPoint& position) const {
@@ -352,9 +360,7 @@ void ForcePlot::keyPressEvent(QKeyEvent* event) {
 }
 
 void ForcePlot::resizeEvent(QResizeEvent* /*event*/) {
-  const int high = static_cast<int>(strip_height()) - 6;
-  const int wide = axis_button_->sizeHint().width();
-  axis_button_->setGeometry(width() - wide - 8, 3, wide, high);
+  strip_->follow_view();
 }
 
 QSize ForcePlot::sizeHint() const {

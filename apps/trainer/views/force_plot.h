@@ -15,6 +15,8 @@ class QToolButton;
 
 namespace trocar::trainer {
 
+class ViewStrip;
+
 struct ForcePoint {
   double time_s = 0.0;
   double depth_mm = 0.0;  ///< Of the tip; 0 at the skin.
@@ -61,6 +63,9 @@ class ForcePlot : public QWidget {
   /// The point that the mark stands on.
   std::optional<ForcePoint> current() const;
 
+  /// Name, force and axis; a dock may take it into its title.
+  ViewStrip& strip() noexcept { return *strip_; }
+
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
 
@@ -76,7 +81,6 @@ class ForcePlot : public QWidget {
     QString text;
   };
 
-  double strip_height() const;
   double band_height() const;
   /// How many of the points lie before the cursor.
   std::size_t shown_count() const;
@@ -89,7 +93,9 @@ class ForcePlot : public QWidget {
   void paint_bands(QPainter& painter, const PlotFrame& frame) const;
   void paint_curve(QPainter& painter, const PlotFrame& frame);
   void paint_events(QPainter& painter, const PlotFrame& frame) const;
-  void paint_strip(QPainter& painter) const;
+  void paint_strip(QPainter& painter, QRectF room) const;
+  QString force_text() const;
+  QString depth_text() const;
   QString text_at(const QPoint& position) const;
 
   Axis axis_ = Axis::kDepth;
@@ -103,6 +109,7 @@ class ForcePlot : public QWidget {
   QPixmap ground_;                  ///< All that stands still: axes, bands, curves behind.
   AxisRange ground_x_, ground_y_;
   QToolButton* axis_button_;
+  ViewStrip* strip_;
 };
 
 }  // namespace trocar::trainer

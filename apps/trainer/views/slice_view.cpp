@@ -6,6 +6,7 @@
 
 #include "shell/theme.h"
 #include "views/slice_canvas.h"
+#include "views/view_strip.h"
 
 namespace trocar::trainer {
 namespace {
@@ -65,11 +66,15 @@ const char* const kHelp =
 
 }  // namespace
 
-SliceView::SliceView(SliceKind kind, QWidget* parent) : QWidget(parent), kind_(kind) {
+SliceView::SliceView(SliceKind kind, QWidget* parent)
+    : QWidget(parent),
+      kind_(kind),
+      strip_(new ViewStrip(*this, [this](QPainter& painter, const QRectF& room) { paint_strip(painter, room); })) {
   const KindInfo info = info_of(kind);
   setObjectName(QString::fromLatin1(info.object_name));
   setAccessibleName(QString::fromLatin1(info.title) + QStringLiteral(" slice"));
   setToolTip(QString::fromUtf8(kHelp));
+  strip_->setToolTip(toolTip());
   setFocusPolicy(Qt::StrongFocus);
   setAttribute(Qt::WA_OpaquePaintEvent);
   setCursor(Qt::CrossCursor);
@@ -170,12 +175,8 @@ void SliceView::reset() {
   change_window(Window{});
 }
 
-double SliceView::strip_height() const {
-  return std::ceil(QFontMetricsF(scaled_font(0.95)).height()) + 8.0;
-}
-
 QRectF SliceView::picture_rect() const {
-  const double top = strip_height();
+  const double top = strip_->height_in_view();
   return {0.0, top, static_cast<double>(width()), std::max(1.0, height() - top)};
 }
 
@@ -275,7 +276,8 @@ void SliceView::paintEvent(QPaintEvent* /*event*/) {
     painter.setFont(scaled_font(1.0));
     painter.drawText(area, Qt::AlignCenter, tr("No patient"));
   }
-  paint_strip(painter);
+  strip_->refresh(place_text() + window_text() + (hasFocus() ? QLatin1String("*") : QLatin1String()) +
+                  (has_labels_ ? QLatin1String() : QLatin1String("-")));
 }
 
 void SliceView::draw_plan(const SliceCanvas& canvas) const {
@@ -318,14 +320,21 @@ QString SliceView::place_text() const {
   }
 }
 
-void SliceView::paint_strip(QPainter& painter) const {
+QString SliceView::window_text() const {
+  const Window& window = style_.window;
+  return QStringLiteral("W %1 L %2").arg(std::lround(window.width_hu)).arg(std::lround(window.center_hu));
+}
+
+void SliceView::paint_strip(QPainter& painter, QRectF room) const {
   constexpr double kMargin = 8.0;
   const Theme& t = theme();
   const KindInfo info = info_of(kind_);
-  const QRectF strip(0.0, 0.0, width(), strip_height());
+  constexpr double kLine = 2.0;
+  const QRectF strip = strip_->rect();
   painter.fillRect(strip, t.panel);
-  painter.fillRect(QRectF(0.0, strip.bottom() - 2.0, width(), 2.0), hasFocus() ? info.color : info.color.darker(220));
-  QRectF room = strip.adjusted(kMargin, 0.0, -kMargin, -2.0);
+  painter.fillRect(strip.adjusted(0.0, strip.height() - kLine, 0.0, 0.0),
+                   hasFocus() ? info.color : info.color.darker(220));
+  room.adjust(0.0, 0.0, 0.0, -kLine);
 
   bool has_room = true;  // what has none is left out, and so is what is needed less
   const auto put = [&](const QString& text, double size, bool is_bold, const QColor& color, bool is_right) {
@@ -337,13 +346,11 @@ void SliceView::paint_strip(QPainter& painter) const {
     painter.drawText(room, static_cast<int>(Qt::AlignVCenter | (is_right ? Qt::AlignRight : Qt::AlignLeft)), text);
     is_right ? room.setRight(room.right() - wide - kMargin) : room.setLeft(room.left() + wide + kMargin);
   };
-  const Window& window = style_.window;
   put(QString::fromLatin1(info.title), 0.95, true, info.color, false);
   put(place_text(), 0.9, false, t.text, false);
-  put(QStringLiteral("W %1 L %2").arg(std::lround(window.width_hu)).arg(std::lround(window.center_hu)), 0.85, false,
-      t.dim, true);
+  put(window_text(), 0.85, false, t.dim, true);
   if (!has_labels_) put(tr("no labels"), 0.85, false, t.warning, true);
-  put(QString::fromStdString(std::string(window_name(window))), 0.85, false, t.dim, true);
+  put(QString::fromStdString(std::string(window_name(style_.window))), 0.85, false, t.dim, true);
 }
 
 QSize SliceView::sizeHint() const {

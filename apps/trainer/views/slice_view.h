@@ -21,6 +21,8 @@ struct SliceCanvas;
 /// Three radiological slices through the focus, and three planes of the needle through its tip (NeedlePlane).
 enum class SliceKind { kAxial, kCoronal, kSagittal, kAlongNeedle, kAlongNeedleTurned, kAcrossNeedle };
 
+class ViewStrip;
+
 /// One slice viewer: CT with labels in a plane, under a strip with name, place and window; cross-hairs in the colours
 /// of the planes they stand for, orientation letters, a scale bar, the needle, and as much of the plan as is to be
 /// seen. Points are in P (LPS, mm). Object names: slice-axial, slice-coronal, slice-sagittal, slice-along-needle,
@@ -68,6 +70,8 @@ class SliceView : public QWidget {
   const SliceGeometry& geometry() const noexcept { return geometry_; }
   /// Where the picture lies in the widget, in points.
   QRectF picture_rect() const;
+  /// Name, place and window; a dock may take it into its title.
+  ViewStrip& strip() noexcept { return *strip_; }
   /// The point of the slice behind a point of the widget, and back.
   Vec3 point_at(const QPointF& position) const;
   QPointF position_of(const Vec3& p_P) const;
@@ -98,7 +102,6 @@ class SliceView : public QWidget {
   enum class Drag { kNone, kFocus, kWindow, kPan };
 
   bool follows_needle() const noexcept { return kind_ >= SliceKind::kAlongNeedle; }
-  double strip_height() const;
   /// The point that the plane goes through and the cross-hairs stand on.
   Vec3 anchor_P() const;
   void update_axes();
@@ -116,12 +119,14 @@ class SliceView : public QWidget {
   void change_window(const Window& window);
   Eigen::Vector2d to_pixel(const QPointF& position) const;
   void redraw_picture();
-  void paint_strip(QPainter& painter) const;
+  void paint_strip(QPainter& painter, QRectF room) const;
+  QString window_text() const;
   void paint_overlay(QPainter& painter) const;
   void draw_plan(const SliceCanvas& canvas) const;
   QString place_text() const;
 
   SliceKind kind_;
+  ViewStrip* strip_;
   std::shared_ptr<const VirtualPatient> patient_;
   Box body_P_;
   Vec3 focus_P_ = Vec3::Zero();

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "views/slice_view.h"
+#include "views/view_strip.h"
 
 namespace trocar::trainer {
 namespace {
@@ -22,7 +23,8 @@ constexpr double kPanStep = 16.0;  ///< Points an arrow key.
 
 bool SliceView::event(QEvent* event) {
   // Over the picture a help text would hide what is being looked at.
-  if (event->type() == QEvent::ToolTip && static_cast<QHelpEvent*>(event)->pos().y() > strip_height()) return true;
+  if (event->type() == QEvent::ToolTip && static_cast<QHelpEvent*>(event)->pos().y() > picture_rect().top())
+    return true;
   return QWidget::event(event);
 }
 
@@ -32,6 +34,7 @@ void SliceView::changeEvent(QEvent* event) {
 }
 
 void SliceView::resizeEvent(QResizeEvent* /*event*/) {
+  strip_->follow_view();
   update_size();
 }
 
