@@ -100,6 +100,20 @@ TEST_F(PatientViewTest, GuidanceFollowsItsKey) {
   EXPECT_EQ(count_of(whole_picture(), is_teal), 0);
 }
 
+TEST_F(PatientViewTest, ItsKeysAreItsOwnAgainstTheWindowsShortcuts) {
+  const auto is_taken = [&](int key, Qt::KeyboardModifiers modifiers) {
+    QKeyEvent event(QEvent::ShortcutOverride, key, modifiers);
+    event.ignore();
+    QApplication::sendEvent(&view, &event);
+    return event.isAccepted();
+  };
+  EXPECT_TRUE(is_taken(Qt::Key_G, Qt::NoModifier));
+  EXPECT_TRUE(is_taken(Qt::Key_Plus, Qt::ShiftModifier));
+  EXPECT_FALSE(is_taken(Qt::Key_G, Qt::ShiftModifier));  // the scanner's gain
+  EXPECT_FALSE(is_taken(Qt::Key_1, Qt::ControlModifier));
+  EXPECT_FALSE(is_taken(Qt::Key_Space, Qt::NoModifier));  // stops the forces
+}
+
 TEST_F(PatientViewTest, DoubleClickPicksThePointOnTheSkin) {
   whole_picture();
   std::optional<Vec3> picked_P;

@@ -1,9 +1,6 @@
 #include "views/patient_view.h"
 
-#include <QMouseEvent>
 #include <QPainter>
-#include <QWheelEvent>
-#include <cmath>
 
 #include "core/check.h"
 #include "scene/input_watch.h"
@@ -16,11 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kOrbit_rad_per_view = 3.6;  ///< A drag over the whole height.
-constexpr double kZoomPerNotch = 1.15;
-constexpr double kZoomPerView = 6.0;  ///< A drag over the whole height.
-constexpr double kWheelNotch = 120.0;  ///< Of QWheelEvent::angleDelta.
-constexpr int kFirstSize_px = 64;      ///< Before the widget has one.
+constexpr int kFirstSize_px = 64;  ///< Before the widget has one.
 /// The user's hand is asked for at most so often while a picture is drawn.
 constexpr std::chrono::milliseconds kWatchEvery{4};
 
@@ -39,11 +32,6 @@ TransducerFace face_of(const ScanGeometry& scan) {
 
 double in_ms(Clock::duration time) {
   return std::chrono::duration<double, std::milli>(time).count();
-}
-
-/// Where the pointer of a mouse event is; the same in Qt 5 and Qt 6.
-QPointF place_of(const QMouseEvent& event) {
-  return QPointF(event.pos());
 }
 
 }  // namespace
@@ -75,8 +63,6 @@ struct PatientView::Impl {
   ScanMask scan_mask;
   std::optional<Pose> X_PT;
   ScanGeometry scan;
-  Qt::MouseButton drag = Qt::NoButton;
-  QPointF last_place;
 };
 
 PatientView::PatientView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<Impl>()) {
@@ -352,46 +338,6 @@ void PatientView::draw() {
 void PatientView::draw_whole() {
   impl_->scene->finish_loading();
   render(DetailPolicy::full(), false);
-}
-
-QPointF PatientView::unmirrored(const QPointF& place) const {
-  const StereoOptions& options = stereo();
-  return {options.is_mirrored_left_right ? width() - place.x() : place.x(),
-          options.is_mirrored_up_down ? height() - place.y() : place.y()};
-}
-
-void PatientView::wheelEvent(QWheelEvent* event) {
-  const double notches = event->angleDelta().y() / kWheelNotch;
-  set_view(zoomed(view(), std::pow(kZoomPerNotch, notches)));
-  event->accept();
-}
-
-void PatientView::mousePressEvent(QMouseEvent* event) {
-  const bool has_shift = (event->modifiers() & Qt::ShiftModifier) != 0;
-  impl_->drag = event->button() == Qt::LeftButton && has_shift ? Qt::MiddleButton : event->button();
-  impl_->last_place = unmirrored(place_of(*event));
-  setFocus(Qt::MouseFocusReason);
-}
-
-void PatientView::mouseMoveEvent(QMouseEvent* event) {
-  Impl& v = *impl_;
-  const QPointF place = unmirrored(place_of(*event));
-  const QPointF moved = (place - v.last_place) / std::max(1, height());
-  v.last_place = place;
-  if (v.drag == Qt::LeftButton)
-    set_view(orbited(view(), kOrbit_rad_per_view * moved.x(), -kOrbit_rad_per_view * moved.y()));
-  if (v.drag == Qt::MiddleButton) set_view(panned(view(), moved.x(), moved.y()));
-  if (v.drag == Qt::RightButton) set_view(zoomed(view(), std::pow(kZoomPerView, -moved.y())));
-}
-
-void PatientView::mouseReleaseEvent(QMouseEvent* /*event*/) {
-  impl_->drag = Qt::NoButton;
-}
-
-void PatientView::mouseDoubleClickEvent(QMouseEvent* event) {
-  const QPointF place = unmirrored(place_of(*event));
-  const auto p_P = impl_->scene->pick(place.x() / std::max(1, width()), place.y() / std::max(1, height()));
-  if (p_P) Q_EMIT picked(*p_P);
 }
 
 }  // namespace trocar::trainer

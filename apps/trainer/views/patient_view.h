@@ -107,6 +107,7 @@ class PatientView : public QWidget {
   void changed();
 
  protected:
+  bool event(QEvent* event) override;
   void paintEvent(QPaintEvent* event) override;
   void resizeEvent(QResizeEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
@@ -129,6 +130,8 @@ class PatientView : public QWidget {
   std::unique_ptr<Impl> impl_;
   bool is_guidance_visible_ = true;
   bool are_landmarks_visible_ = false;
+  Qt::MouseButton drag_ = Qt::NoButton;
+  QPointF last_place_;  ///< Of the pointer in a drag, unmirrored.
 };
 
 }  // namespace trocar::trainer
