@@ -44,7 +44,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "Saves the window as a PNG and ends; after the script if there is one");
   app.add_flag("--benchmark", arguments.is_benchmark, "Plays a puncture in every layout and prints frame times");
   app.add_option("--state", arguments.state_folder, "Folder for sessions [$XDG_STATE_HOME/trocar]");
-  app.set_version_flag("--version", fmt::format("trocar-trainer {}", kVersion));
+  app.set_version_flag("--version", fmt::format("trocar-trainer {} (Qt {})", kVersion, qVersion()));
   app.footer(
       "Examples:\n  trocar-trainer --task liver-biopsy --patient abdomen\n"
       "  trocar-trainer --script steps.txt --screenshot window.png\n\n"

@@ -29,7 +29,7 @@ void paint_cross(QPainter& painter) {
 QString shortened(const QString& text) {
   constexpr int kLongest = 120;
   if (text.size() <= kLongest) return text;
-  const int comma = text.lastIndexOf(QStringLiteral(", "), kLongest);
+  const auto comma = text.lastIndexOf(QStringLiteral(", "), kLongest);
   return comma > 0 ? text.left(comma) + QStringLiteral(" …") : text;
 }
 

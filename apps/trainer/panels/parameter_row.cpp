@@ -44,7 +44,7 @@ void MarkedSlider::paintEvent(QPaintEvent* event) {
     const double middle = 0.5 * height();
     if (high_ > low_) {
       QColor band = theme().path;
-      band.setAlphaF(0.35);
+      band.setAlphaF(0.35F);
       painter.fillRect(QRectF(x_of(low_), middle + 7.0, x_of(high_) - x_of(low_), 3.0), band);
     }
     painter.fillRect(QRectF(x_of(default_) - 1.0, middle + 4.0, 2.0, 8.0), theme().text);

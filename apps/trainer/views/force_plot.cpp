@@ -34,7 +34,7 @@ std::vector<QPointF> finite_only(std::vector<QPointF> curve) {
 }
 
 QColor faded(QColor color, double share) {
-  color.setAlphaF(share);
+  color.setAlphaF(static_cast<float>(share));
   return color;
 }
 

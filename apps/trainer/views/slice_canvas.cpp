@@ -14,7 +14,7 @@ namespace {
 constexpr QColor kHalo(0, 0, 0, 150);
 
 QColor faded(QColor color, double share) {
-  color.setAlphaF(share * color.alphaF());
+  color.setAlphaF(static_cast<float>(share * color.alphaF()));
   return color;
 }
 

@@ -49,7 +49,7 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setClipRect(view_->picture_rect());
   const auto pen_of = [](QColor color, double width, bool is_near) {
-    color.setAlphaF(is_near ? 1.0 : 0.45);
+    color.setAlphaF(is_near ? 1.0F : 0.45F);
     return QPen(color, width, is_near ? Qt::SolidLine : Qt::DashLine);
   };
   for (const Landmark& landmark : landmarks_) {

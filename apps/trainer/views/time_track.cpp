@@ -178,7 +178,7 @@ void TimeTrack::paint_curve(QPainter& painter) const {
   filled.append({line.last().x(), zero});
   filled.append({line.first().x(), zero});
   QColor fill = theme().accent;
-  fill.setAlphaF(0.18);
+  fill.setAlphaF(0.18F);
   painter.setPen(Qt::NoPen);
   painter.setBrush(fill);
   painter.drawPolygon(filled);
@@ -195,7 +195,7 @@ void TimeTrack::paint_marks(QPainter& painter) const {
       const bool is_risk = event.kind == TimeMark::kRisk;
       const double x = x_of(event.time_s);
       QColor line = color_of(event.kind);
-      line.setAlphaF(is_risk ? 0.9 : 0.45);
+      line.setAlphaF(is_risk ? 0.9F : 0.45F);
       painter.setPen(QPen(line, is_risk ? 2.0 : 1.0));
       painter.drawLine(QPointF(x, kMarkHigh), QPointF(x, area().bottom()));
       draw_mark(painter, {x, 0.5 * kMarkHigh + 1.0}, event.kind);
@@ -220,7 +220,7 @@ void TimeTrack::paintEvent(QPaintEvent* /*event*/) {
   paint_marks(painter);
   const double x = x_of(time_s_);
   QColor later = t.ground;  // what is still to come is dimmed
-  later.setAlphaF(0.45);
+  later.setAlphaF(0.45F);
   painter.fillRect(QRectF(x, room.top(), room.right() - x, room.height()), later);
   painter.setPen(QPen(t.text, 2.0));
   painter.drawLine(QPointF(x, room.top() - 2.0), QPointF(x, room.bottom() + 2.0));
