@@ -143,6 +143,7 @@ void SeatFlow::go_to_start() {
   replay_.reset();
   stop_->setEnabled(false);
   window_.strip().show_forces(false, false);
+  window_.strip().show_servers({});
   window_.show_banner({}, false);
   window_.show_page(QStringLiteral("start"));
 }
@@ -231,6 +232,7 @@ void SeatFlow::look_at_attempt() {
   attempt_.reset();
   stop_->setEnabled(false);
   window_.strip().show_forces(false, false);
+  window_.strip().show_servers({});  // they wait for the next attempt; what they did is no longer so
   journal_.clear();
   if (!*result) {
     window_.strip().show_servers({});

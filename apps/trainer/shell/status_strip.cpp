@@ -41,7 +41,7 @@ StatusStrip::StatusStrip(QWidget* parent) : QFrame(parent) {
   auto* row = new QHBoxLayout(this);
   row->setContentsMargins(16, 6, 8, 6);
   row->setSpacing(20);
-  needle_ = make_label(tr("No haptic server is running"), "dim");
+  needle_ = make_label(tr("No attempt is running: no forces"), "dim");
   probe_ = make_label({});
   frames_ = make_label({}, "dim");
   needle_->setObjectName(QStringLiteral("status-needle"));
@@ -67,7 +67,7 @@ void StatusStrip::show_servers(const std::vector<ServerLine>& servers) {
     labels[s]->setText(s < servers.size() ? line_text(servers[s]) : QString());
     labels[s]->setToolTip(s < servers.size() ? tr("Granted by the system: %1").arg(servers[s].grant) : QString());
   }
-  if (servers.empty()) needle_->setText(tr("No haptic server is running"));
+  if (servers.empty()) needle_->setText(tr("No attempt is running: no forces"));
 }
 
 void StatusStrip::show_frames(double frames_per_s, std::uint64_t dropped) {
