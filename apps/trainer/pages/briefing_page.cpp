@@ -179,7 +179,7 @@ void BriefingPage::show_case(const OpenCase& open, Difficulty difficulty) {
   const Case& the_case = open.the_case;
   const Guidance guidance = guidance_of(difficulty);
   title_->setText(to_qt(the_case.task.title));
-  subtitle_->setText(tr("Patient %1 · needle %2 · %3: %4")
+  subtitle_->setText(tr("Patient %1 · %2 · %3: %4")
                          .arg(to_qt(the_case.patient->name), to_qt(the_case.needle.title), tr(title_of(difficulty)),
                               tr(help_text_of(difficulty))));
   goal_->setText(
