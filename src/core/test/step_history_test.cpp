@@ -34,7 +34,9 @@ TEST(StepHistory, AnySequenceWalksThroughTheSameValues) {
       ASSERT_EQ(history.now(), all[now]);
       ASSERT_EQ(history.can_undo(), now > 0);
       ASSERT_EQ(history.can_redo(), now + 1 < all.size());
-      if (history.can_redo()) ASSERT_EQ(history.next(), all[now + 1]);
+      if (history.can_redo()) {
+        ASSERT_EQ(history.next(), all[now + 1]);
+      }
     }
   }
 }

@@ -57,8 +57,10 @@ TEST(Measurements, AMovedMarkLiesWhereItWasPut) {
       } else {
         EXPECT_EQ(marks_T(moved)[mark], to_T);
       }
-      for (std::size_t other = 0; other < 2; ++other)
-        if (other != mark) EXPECT_EQ(marks_T(moved)[other], marks_T(measurement)[other]);
+      for (std::size_t other = 0; other < 2; ++other) {
+        if (other == mark) continue;
+        EXPECT_EQ(marks_T(moved)[other], marks_T(measurement)[other]);
+      }
     }
   }
   const EllipseCaliper lying{{-10.0, 50.0}, {10.0, 50.0}, 6.0};
