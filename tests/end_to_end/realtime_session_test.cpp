@@ -135,7 +135,7 @@ TEST_F(RealtimeSession, GoesOnWhereTheNeedleWasWhenItsServerComesBack) {
 /// The hand of an operator that feels is soft: without forces it would let the stylus sag out of the needle's channel.
 TEST_F(RealtimeSession, TheExpertsNeedleStaysInItsChannelWhileTheServerIsAway) {
   const Attempt in_process = perform(*the_case, "expert");
-  constexpr double kDeep_mm = 25.0;
+  static constexpr double kDeep_mm = 25.0;
   const auto& samples = in_process.session.samples;
   const auto deep = std::find_if(samples.begin(), samples.end(), [](const auto& s) { return s.depth_mm > kDeep_mm; });
   ASSERT_NE(deep, samples.end());

@@ -18,7 +18,7 @@ const std::map<QString, Arity>& verbs() {
       {"click", {1, 3}},      {"double-click", {1, 3}}, {"right-click", {1, 3}},   {"drag", {5, 7}},
       {"wheel", {2, 4}},      {"wheel-until", {5, 7}},  {"key", {1, 2}},           {"key-until", {5, 7}},
       {"type", {1, 1}},       {"choose", {2, 2}},       {"set", {2, 2}},           {"wait", {1, 1}},
-      {"wait-for", {3, 5}},   {"expect", {3, 3}},       {"expect-pixels", {4, 4}}, {"resize", {2, 2}},
+      {"wait-for", {3, 5}},   {"expect", {3, 5}},       {"expect-pixels", {4, 6}}, {"resize", {2, 2}},
       {"screenshot", {1, 2}}, {"end-server", {1, 1}},   {"end-window", {0, 0}},    {"reset-watch", {0, 0}},
       {"print", {1, 16}},
   };
@@ -39,7 +39,8 @@ const std::map<QString, std::vector<int>>& numbers() {
       {"wait", {0}},
       {"wait-for", {4}},
       {"resize", {0, 1}},
-      {"expect-pixels", {2, 3}},
+      {"expect", {4}},
+      {"expect-pixels", {2, 3, 5}},
   };
   return all;
 }
@@ -54,6 +55,15 @@ std::optional<QString> find_no_number(const QString& verb, const QStringList& wo
     if (!is_number) return words[at];
   }
   return std::nullopt;
+}
+
+/// What should compare a fact with a value and does not.
+std::optional<QString> find_no_comparison(const QString& verb, const QStringList& words) {
+  static const std::map<QString, int> places = {{"wheel-until", 3}, {"key-until", 3}, {"wait-for", 1}, {"expect", 1}};
+  static const QStringList comparisons = {"is", "isnt", "has", "<", ">", "<=", ">="};
+  const auto found = places.find(verb);
+  if (found == places.end() || comparisons.contains(words[found->second])) return std::nullopt;
+  return words[found->second];
 }
 
 /// Words of a line up to a comment; nothing where a quotation does not end.
@@ -104,6 +114,8 @@ Result<std::vector<ScriptStep>> parse_script(const QString& text, const QString&
                   "see trocar-trainer --help");
     if (const auto wrong = find_no_number(verb, *words))
       return fail("\"" + to_std(*wrong) + "\" is no number", where, "see trocar-trainer --help");
+    if (const auto wrong = find_no_comparison(verb, *words))
+      return fail("\"" + to_std(*wrong) + "\" compares nothing", where, "write is, isnt, has, <, >, <= or >=");
     steps.push_back({number, verb, *words});
   }
   if (steps.empty()) return fail("the script has no step", to_std(name), "see trocar-trainer --help");

@@ -16,7 +16,8 @@ struct ScriptStep {
   QStringList arguments;  ///< Quoted ones are one.
 };
 
-/// A user's steps, a line each; # begins a comment, "…" holds words together.
+/// A user's steps, a line each; # begins a comment, "…" holds words together. A widget that is not to be seen or is
+/// disabled is waited for as long as a person would.
 ///
 ///   click NAME [X Y]            left button, at a place in 0..1 of the widget; also double-click, right-click
 ///   drag NAME X1 Y1 X2 Y2 [left|right|middle] [SECONDS]
@@ -29,8 +30,8 @@ struct ScriptStep {
 ///   set NAME VALUE              a slider, number, check box or text field
 ///   wait SECONDS
 ///   wait-for FACT OP VALUE [within SECONDS]      OP: is isnt has < > <= >=; 30 s unless told
-///   expect FACT OP VALUE
-///   expect-pixels NAME #RRGGBB TOLERANCE LEAST_SHARE    share of the widget's pixels near a colour
+///   expect FACT OP VALUE [within SECONDS]        looks again until it is so, for 10 s unless told
+///   expect-pixels NAME #RRGGBB TOLERANCE LEAST_SHARE [within SECONDS]    share of the widget's pixels near a colour
 ///   resize COLUMNS ROWS
 ///   screenshot FILE [NAME]      of the window or a widget
 ///   end-server needle|probe     kills it, to see what happens

@@ -29,9 +29,9 @@ QPointF place_of(const QStringList& arguments, int first) {
 }
 
 /// "within SECONDS" at the end of a step.
-double patience_of(const QStringList& arguments) {
+double patience_of(const QStringList& arguments, double unless_told_s = kPatience_s) {
   const auto at = arguments.indexOf(QStringLiteral("within"));
-  return at >= 0 && at + 1 < arguments.size() ? arguments[at + 1].toDouble() : kPatience_s;
+  return at >= 0 && at + 1 < arguments.size() ? arguments[at + 1].toDouble() : unless_told_s;
 }
 
 }  // namespace
@@ -76,23 +76,31 @@ Result<QWidget*> ScriptPlayer::find(const QString& name) const {
       hidden = widget;
     }
   }
-  if (hidden != nullptr) return fail("it is not to be seen now", to_std(name), "is another page open?");
-  return fail("there is no such widget", to_std(name), "see its object name");
+  if (hidden == nullptr) return fail("there is no such widget", to_std(name), "see its object name");
+  if (seconds() < stage_.look_s) return nullptr;
+  return fail("it is not to be seen now", to_std(name), "is another page open?");
 }
 
-Result<bool> ScriptPlayer::click_menu_entry(const QString& name) const {
-  auto* entry = stage_.window->findChild<QAction*>(name);
-  if (entry == nullptr) return false;
-  if (!entry->isEnabled()) return fail("it cannot be used now", to_std(name), "it is disabled");
-  entry->trigger();
-  return true;
+Result<QWidget*> ScriptPlayer::find_usable(const QString& name) const {
+  TROCAR_TRY(QWidget* const widget, find(name));
+  if (widget == nullptr || widget->isEnabled()) return widget;
+  if (seconds() < stage_.look_s) return nullptr;
+  return fail("it cannot be used now", to_std(name), "it is disabled");
 }
 
-Result<bool> ScriptPlayer::holds(const QString& fact, const QString& op, const QString& value) const {
+Result<ScriptPlayer::Progress> ScriptPlayer::click_menu_entry(QAction& entry) const {
+  if (entry.isEnabled()) {
+    entry.trigger();
+    return Progress::kDone;
+  }
+  if (seconds() < stage_.look_s) return Progress::kAgain;
+  return fail("it cannot be used now", to_std(entry.objectName()), "it is disabled");
+}
+
+bool ScriptPlayer::holds(const QString& fact, const QString& op, const QString& value) const {
   const QVariantMap facts = stage_.facts();
   const auto found = facts.find(fact);
-  if (found == facts.end())
-    return fail("there is no fact \"" + to_std(fact) + "\"", {}, "known: " + to_std(facts.keys().join(' ')));
+  if (found == facts.end()) return false;  // it may come
   if (op == QLatin1String("is")) return found->toString() == value;
   if (op == QLatin1String("isnt")) return found->toString() != value;
   if (op == QLatin1String("has")) return found->toString().contains(value);
@@ -100,8 +108,18 @@ Result<bool> ScriptPlayer::holds(const QString& fact, const QString& op, const Q
   if (op == QLatin1String("<")) return a < b;
   if (op == QLatin1String(">")) return a > b;
   if (op == QLatin1String("<=")) return a <= b;
-  if (op == QLatin1String(">=")) return a >= b;
-  return fail("\"" + to_std(op) + "\" compares nothing", {}, "write is, isnt, has, <, >, <= or >=");
+  return a >= b;
+}
+
+Result<ScriptPlayer::Progress> ScriptPlayer::wait_until_holds(const QStringList& fact_op_value, double patience_s) {
+  const QString& fact = fact_op_value[0];
+  if (holds(fact, fact_op_value[1], fact_op_value[2])) return Progress::kDone;
+  if (seconds() < patience_s) return Progress::kAgain;
+  const QVariantMap facts = stage_.facts();
+  if (!facts.contains(fact))
+    return fail("there is no fact \"" + to_std(fact) + "\"", {}, "known: " + to_std(facts.keys().join(' ')));
+  return fail("it did not come about: " + to_std(fact_op_value.mid(0, 3).join(' ')),
+              to_std(fact + " is " + facts.value(fact).toString()), "give it longer: within SECONDS");
 }
 
 Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
@@ -133,11 +151,10 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
     return Progress::kDone;
   }
   if (verb == QLatin1String("click")) {
-    TROCAR_TRY(const bool was_entry, click_menu_entry(a[0]));
-    if (was_entry) return Progress::kDone;
+    if (auto* entry = stage_.window->findChild<QAction*>(a[0])) return click_menu_entry(*entry);
   }
-  TROCAR_TRY(QWidget* const widget, find(a[0]));
-  if (!widget->isEnabled()) return fail("it cannot be used now", to_std(a[0]), "it is disabled");
+  TROCAR_TRY(QWidget* const widget, find_usable(a[0]));
+  if (widget == nullptr) return Progress::kAgain;
   if (verb == QLatin1String("choose") || verb == QLatin1String("set")) {
     TROCAR_TRY_STATUS(verb == QLatin1String("set") ? set_value(*widget, a[1]) : choose_entry(*widget, a[1]));
     return Progress::kDone;
@@ -192,11 +209,8 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_drag(const ScriptStep& step, Q
 
 Result<ScriptPlayer::Progress> ScriptPlayer::play_until(const ScriptStep& step, const std::function<Status()>& act) {
   const QStringList& a = step.arguments;
-  TROCAR_TRY(const bool is_there, holds(a[2], a[3], a[4]));
-  if (is_there) return Progress::kDone;
-  if (seconds() > patience_of(a))
-    return fail("it did not come about: " + to_std(a[2] + ' ' + a[3] + ' ' + a[4]),
-                to_std(a[2] + " is " + stage_.facts().value(a[2]).toString()), "give it longer: within SECONDS");
+  TROCAR_TRY(const Progress progress, wait_until_holds(a.mid(2), patience_of(a)));
+  if (progress == Progress::kDone) return progress;
   const int due = static_cast<int>(seconds() * std::abs(a[1].toDouble()));
   // A hand does not make up for the time in which it saw nothing: it would go far past the mark.
   sent_ = std::max(sent_, due - kMostAtOnce);
@@ -207,12 +221,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_until(const ScriptStep& step, 
 Result<ScriptPlayer::Progress> ScriptPlayer::play_waiting(const ScriptStep& step) {
   const QStringList& a = step.arguments;
   if (step.verb == QLatin1String("wait")) return seconds() >= a[0].toDouble() ? Progress::kDone : Progress::kAgain;
-  TROCAR_TRY(const bool is_so, holds(a[0], a[1], a[2]));
-  if (is_so) return Progress::kDone;
-  if (seconds() > patience_of(a))
-    return fail("it did not come about: " + to_std(a[0] + ' ' + a[1] + ' ' + a[2]),
-                to_std(a[0] + " is " + stage_.facts().value(a[0]).toString()), "give it longer: within SECONDS");
-  return Progress::kAgain;
+  return wait_until_holds(a, patience_of(a));
 }
 
 Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step) {
@@ -223,26 +232,22 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
     std::fflush(stdout);
     return Progress::kDone;
   }
-  if (step.verb == QLatin1String("expect")) {
-    TROCAR_TRY(const bool is_so, holds(a[0], a[1], a[2]));
-    if (!is_so)
-      return fail("expected " + to_std(a[0] + ' ' + a[1] + ' ' + a[2]),
-                  "it is " + to_std(stage_.facts().value(a[0]).toString()));
-    return Progress::kDone;
-  }
+  if (step.verb == QLatin1String("expect")) return wait_until_holds(a, patience_of(a, stage_.look_s));
   TROCAR_TRY(QWidget* const widget,
              find(step.verb == QLatin1String("screenshot") && a.size() < 2 ? QStringLiteral("window")
                   : step.verb == QLatin1String("screenshot")               ? a[1]
                                                                            : a[0]));
+  if (widget == nullptr) return Progress::kAgain;
   const QImage image = widget->grab().toImage();
   if (step.verb == QLatin1String("screenshot")) {
     if (!image.save(a[0])) return fail("the picture cannot be written", to_std(a[0]), "check the folder");
     return Progress::kDone;
   }
   const double share = share_near(image, QColor(a[1]), a[2].toInt());
-  if (share < a[3].toDouble())
+  if (share >= a[3].toDouble()) return Progress::kDone;
+  if (seconds() >= patience_of(a, stage_.look_s))
     return fail(fmt::format("only {:.2f} % of its pixels are near {}", 100.0 * share, to_std(a[1])), to_std(a[0]));
-  return Progress::kDone;
+  return Progress::kAgain;
 }
 
 }  // namespace trocar::trainer

@@ -8,6 +8,7 @@
 
 #include "script/script.h"
 
+class QAction;
 class QWidget;
 
 namespace trocar::trainer {
@@ -18,6 +19,7 @@ struct Stage {
   std::function<QVariantMap()> facts;
   std::function<void(const QString& tool)> end_server;
   std::function<void()> reset_watch;
+  double look_s = 10.0;  ///< A person looks so long for what is not there yet before giving up.
 };
 
 /// Plays a script on a window as a person would: events to the widgets, one step after the other, the window running
@@ -44,10 +46,14 @@ class ScriptPlayer : public QObject {
   Result<Progress> play_until(const ScriptStep& step, const std::function<Status()>& act);
   Result<Progress> play_waiting(const ScriptStep& step);
   Result<Progress> play_looking(const ScriptStep& step);
+  /// Null: not to be seen yet.
   Result<QWidget*> find(const QString& name) const;
-  /// False: no menu has such an entry.
-  Result<bool> click_menu_entry(const QString& name) const;
-  Result<bool> holds(const QString& fact, const QString& op, const QString& value) const;
+  /// Null: not to be seen, or disabled, yet.
+  Result<QWidget*> find_usable(const QString& name) const;
+  Result<Progress> click_menu_entry(QAction& entry) const;
+  bool holds(const QString& fact, const QString& op, const QString& value) const;
+  /// Done once the fact holds; an error where it does not within the step's time.
+  Result<Progress> wait_until_holds(const QStringList& fact_op_value, double patience_s);
   double seconds() const { return static_cast<double>(clock_.nsecsElapsed()) / 1e9; }
 
   std::vector<ScriptStep> steps_;

@@ -8,6 +8,7 @@
 #include <QPushButton>
 #include <QSlider>
 #include <QSpinBox>
+#include <QTimer>
 #include <QVBoxLayout>
 #include <QWidgetAction>
 
@@ -46,6 +47,7 @@ TEST(Script, MistakesNameTheirLine) {
   EXPECT_NE(error_of("click\n").find("0 arguments"), std::string::npos);
   EXPECT_NE(error_of("wait soon\n").find("no number"), std::string::npos);
   EXPECT_NE(error_of("wheel view-3d many\n").find("no number"), std::string::npos);
+  EXPECT_NE(error_of("expect depth_mm = 3\n").find("compares nothing"), std::string::npos);
   EXPECT_NE(error_of("type \"abc\n").find("quotation"), std::string::npos);
   EXPECT_NE(error_of("# nothing\n"), "");
 }
@@ -69,7 +71,7 @@ struct SmallStage : testing::Test {
   QString play(const char* text) {
     const auto steps = parse_script(QString::fromUtf8(text), QStringLiteral("s"));
     EXPECT_TRUE(steps) << steps.error().text();
-    ScriptPlayer player(*steps, {&window, [this] { return facts(); }, [](const QString&) {}, [] {}});
+    ScriptPlayer player(*steps, {&window, [this] { return facts(); }, [](const QString&) {}, [] {}, look_s});
     QEventLoop loop;
     QString said;
     QObject::connect(&player, &ScriptPlayer::finished, &loop, [&](const QString& error) {
@@ -86,6 +88,7 @@ struct SmallStage : testing::Test {
   QPushButton* button = nullptr;
   QSlider* slider = nullptr;
   int pushed = 0;
+  double look_s = 10.0;
 };
 
 TEST_F(SmallStage, ClicksKeysAndValuesReachTheWidgets) {
@@ -107,6 +110,7 @@ TEST_F(SmallStage, EntriesAndNumbersOfAMenuAreReachedWhileItIsClosed) {
   EXPECT_EQ(play("click menu-entry\nset menu-number 7\nexpect pushed is 1\n"), QString());
   EXPECT_EQ(number->value(), 7);
   entry->setEnabled(false);
+  look_s = 0.05;
   EXPECT_TRUE(play("click menu-entry\n").contains(QStringLiteral("disabled")));
 }
 
@@ -115,7 +119,19 @@ TEST_F(SmallStage, WheelGoesOnUntilAFactHolds) {
   EXPECT_GE(slider->value(), 30);
 }
 
+TEST_F(SmallStage, WhatIsNotThereYetIsWaitedFor) {
+  button->setEnabled(false);
+  slider->hide();
+  QTimer::singleShot(100, &window, [this] { button->setEnabled(true); });
+  QTimer::singleShot(200, &window, [this] { slider->show(); });
+  QTimer::singleShot(300, &window, [this] { slider->setValue(9); });
+  QTimer::singleShot(400, &window, [this] { window.setStyleSheet(QStringLiteral("background: #ff00ff")); });
+  EXPECT_EQ(play("click push\nwheel slide 0\nexpect value is 9\nexpect-pixels window #ff00ff 2 0.2\n"), QString());
+  EXPECT_EQ(pushed, 1);
+}
+
 TEST_F(SmallStage, WhatFailsNamesItsLine) {
+  look_s = 0.05;
   EXPECT_TRUE(play("click push\nexpect pushed is 7\n").startsWith(QStringLiteral("line 2:")));
   EXPECT_TRUE(play("click nothing\n").contains(QStringLiteral("nothing")));
   EXPECT_TRUE(play("wait-for pushed > 99 within 0.1\n").contains(QStringLiteral("did not come about")));

@@ -81,7 +81,7 @@ std::string ToolServer::bring_back(const std::string& what, bool is_new_process)
   returns_.push_back(now);
   if (returns_.size() > kMostReturns) {
     return give_up(
-        {fmt::format("The server of the {} does not stay: {}. Resume to try again, or finish.", tool_, what)});
+        {fmt::format("The server of the {} does not stay: {}. Resume to try again, or finish.", tool_, what), {}, {}});
   }
   ++restarts_;
   if (is_new_process) {
