@@ -7,12 +7,13 @@
 #include <string>
 
 #include "architecture/layers.h"
+#include "core/testing/source_dir.h"
 
 namespace trocar::architecture {
 namespace {
 namespace fs = std::filesystem;
 
-const fs::path kTop = TROCAR_SOURCE_DIR;
+const fs::path kTop = testing::source_dir();
 
 std::string read(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -169,7 +170,7 @@ TEST(ModuleReadme, HasTenToTwentyFiveLines) {
   EXPECT_FALSE(check_module_readme("io", text(26)).empty());
 }
 
-class Repository : public testing::Test {
+class Repository : public ::testing::Test {
  protected:
   const Modules modules_ = modules_of(read(kTop / "src/modules.txt"));
 };

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/testing/source_dir.h"
 #include "devices/test/gamepad_stand_in.h"
 
 namespace trocar::trainer {
@@ -19,6 +20,10 @@ namespace {
 
 QString program() {
   return QString::fromUtf8(std::getenv("TROCAR_BIN_DIR")) + QStringLiteral("/trocar-trainer");
+}
+
+QString script_named(const char* name) {
+  return QString::fromStdString((testing::source_dir() / "apps/trainer/test/scripts" / name).string());
 }
 
 struct Played {
@@ -45,10 +50,7 @@ struct WindowTest : ::testing::Test {
     return {process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1,
             QString::fromUtf8(process.readAll())};
   }
-  Played play(const char* script) const {
-    return run({QStringLiteral("--script"),
-                QStringLiteral(TROCAR_SOURCE_DIR "/apps/trainer/test/scripts/") + QString::fromUtf8(script)});
-  }
+  Played play(const char* script) const { return run({QStringLiteral("--script"), script_named(script)}); }
   QString write(const char* name, const char* text) const {
     QFile file(folder.filePath(QString::fromUtf8(name)));
     EXPECT_TRUE(file.open(QIODevice::WriteOnly));
@@ -126,7 +128,7 @@ TEST_F(WindowTest, AGamepadDrivesTheNeedleAndMayBeUnpluggedMeanwhile) {
              {[&] { return at_picture("rests.png"); }, [&] { pad.plug(false); }},
              {[&] { return at_picture("gone.png"); }, [&] { pad.plug(true); }},
              {[&] { return at_picture("again.png"); }, [&] { pad.pull_right_trigger(0.7); }}});
-  QFile script(QStringLiteral(TROCAR_SOURCE_DIR "/apps/trainer/test/scripts/gamepad.txt"));
+  QFile script(script_named("gamepad.txt"));
   ASSERT_TRUE(script.open(QIODevice::ReadOnly));
   const QString here = QString::fromUtf8(script.readAll()).replace(QStringLiteral("FOLDER"), folder.path());
   expect_played(run({QStringLiteral("--script"), write("gamepad.txt", here.toUtf8().constData())}));

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/testing/allocation_guard.h"
+#include "core/testing/source_dir.h"
 #include "devices/detail/dhd_api.h"
 #include "devices/detail/servo_exchange.h"
 #include "devices/device_spec.h"
@@ -38,7 +39,7 @@ class ForceDimension : public ::testing::Test {
 
   Status open() {
     ForceDimensionOptions options;
-    options.devices_file = std::string(TROCAR_SOURCE_DIR) + "/data/devices.toml";
+    options.devices_file = testing::source_dir() / "data/devices.toml";
     options.pace = pace;
     auto opened = open_forcedimension_device(options);
     if (!opened) return tl::unexpected(opened.error());
@@ -282,7 +283,7 @@ TEST_F(ForceDimension, UncalibratedDeviceIsTold) {
 
 TEST_F(ForceDimension, OpensByItsKindAtItsOwnPace) {
   DeviceOptions options;
-  options.devices_file = std::string(TROCAR_SOURCE_DIR) + "/data/devices.toml";
+  options.devices_file = testing::source_dir() / "data/devices.toml";
   options.preset = "no such row";
   const auto opened = open_device({"forcedimension", ""}, options);
   ASSERT_FALSE(opened);

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/testing/allocation_guard.h"
+#include "core/testing/source_dir.h"
 #include "devices/detail/hd_api.h"
 #include "devices/detail/servo_exchange.h"
 #include "devices/device_spec.h"
@@ -42,7 +43,7 @@ class OpenHaptics : public ::testing::Test {
 
   Status open() {
     OpenHapticsOptions options;
-    options.devices_file = std::string(TROCAR_SOURCE_DIR) + "/data/devices.toml";
+    options.devices_file = testing::source_dir() / "data/devices.toml";
     options.clock_s = &callback_clock_s;
     auto opened = open_openhaptics_device(options);
     if (!opened) return tl::unexpected(opened.error());
@@ -335,7 +336,7 @@ TEST_F(OpenHaptics, UncalibratedDeviceIsToldAndNotMoved) {
 TEST_F(OpenHaptics, SecondDeviceInOneProgramIsRefused) {
   open_or_fail();
   OpenHapticsOptions options;
-  options.devices_file = std::string(TROCAR_SOURCE_DIR) + "/data/devices.toml";
+  options.devices_file = testing::source_dir() / "data/devices.toml";
   const auto second = open_openhaptics_device(options);
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().text().find("in use"), std::string::npos);
@@ -344,7 +345,7 @@ TEST_F(OpenHaptics, SecondDeviceInOneProgramIsRefused) {
 
 TEST_F(OpenHaptics, OpensByItsKindAndName) {
   DeviceOptions options;
-  options.devices_file = std::string(TROCAR_SOURCE_DIR) + "/data/devices.toml";
+  options.devices_file = testing::source_dir() / "data/devices.toml";
   auto opened = open_device({"openhaptics", "Left Device"}, options);
   ASSERT_TRUE(opened) << opened.error().text();
   device = *std::move(opened);

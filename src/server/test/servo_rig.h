@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/testing/source_dir.h"
 #include "haptics/test/layered_patient.h"
 #include "server/scene_builder.h"
 #include "server/servo.h"
@@ -12,7 +13,7 @@
 namespace trocar::testing {
 
 inline std::filesystem::path data_file(const char* name) {
-  return std::filesystem::path(TROCAR_SOURCE_DIR) / "data" / name;
+  return testing::source_dir() / "data" / name;
 }
 inline DevicePreset device_preset(const char* name = "premium") {
   auto preset = load_device_preset(data_file("devices.toml"), name);
