@@ -135,9 +135,9 @@ TEST_F(RealtimeSession, GoesOnWhereTheNeedleWasWhenItsServerComesBack) {
 /// The hand of an operator that feels is soft: without forces it would let the stylus sag out of the needle's channel.
 TEST_F(RealtimeSession, TheExpertsNeedleStaysInItsChannelWhileTheServerIsAway) {
   const Attempt in_process = perform(*the_case, "expert");
-  static constexpr double kDeep_mm = 25.0;
   const auto& samples = in_process.session.samples;
-  const auto deep = std::find_if(samples.begin(), samples.end(), [](const auto& s) { return s.depth_mm > kDeep_mm; });
+  const auto is_deep = [](const auto& sample) { return sample.depth_mm > 25.0; };
+  const auto deep = std::find_if(samples.begin(), samples.end(), is_deep);
   ASSERT_NE(deep, samples.end());
   LiveServer needle(*the_case, "needle", folder_);
   const auto live = perform_live("expert", {needle.url()}, kLong, once_after(deep->time_s, [&] {
