@@ -99,6 +99,8 @@ Status add_case(OpenCase& made, std::shared_ptr<const VirtualPatient> patient, c
   made.X_PT_start = start.X_PT;
   made.is_in_plane = start.is_in_plane;
   if (!start.note.empty()) made.notes.push_back(start.note);
+  TROCAR_TRY(made.neutral, find_neutral_start(made.the_case, made.transducer, made.X_PT_start));
+  if (!made.neutral.note.empty()) made.notes.push_back(made.neutral.note);
   return {};
 }
 

@@ -12,6 +12,7 @@
 #include "geometry/pose.h"
 #include "headless/force_curve.h"
 #include "headless/prepare_case.h"
+#include "station/neutral_start.h"
 #include "ultrasound/acoustic_scene.h"
 #include "ultrasound/transducer.h"
 #include "ultrasound/vessel_flow.h"
@@ -43,6 +44,7 @@ struct OpenCase {
   /// the entry; where that cannot be, a standard view (is_in_plane says which).
   Pose X_PT_start;
   bool is_in_plane = false;
+  NeutralStart neutral;               ///< Where the tools begin when nothing of the plan may be told.
   std::vector<PathPiece> pieces;      ///< Tissue along the planned path.
   std::vector<CurvePoint> predicted;  ///< Force along it at 10 mm/s, without the stylus' weight.
   std::vector<std::string> notes;     ///< What is missing or doubtful, a line each.

@@ -64,8 +64,9 @@ AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatC
       page_(page),
       attempt_(open_, std::move(options), std::move(servers)),
       needle_(*open_->the_case.patient, open_->the_case.plan.line_P, open_->the_case.needle.length_mm),
-      probe_(*open_->the_case.patient, open_->X_PT_start),
+      probe_(*open_->the_case.patient, attempt_.options().X_PT_start.value_or(open_->X_PT_start)),
       is_led_(is_moved_by_hand_targets(choice.needle_device)) {
+  if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
   connect_panel();
   ForcePlot& plot = page_.desk().forces();
   plot.clear();
@@ -155,10 +156,17 @@ bool AttemptControl::is_free(HandTool tool) const {
 }
 
 void AttemptControl::aim() {
-  if (choice_.difficulty != Difficulty::kGuided) return;
+  if (choice_.difficulty != Difficulty::kGuided)
+    return say(tr("Where the plan has the tools is told in guided attempts alone."));
   if (gestures_.in_hand() == ToolInHand::kTransducer) probe_.put(open_->X_PT_start);
   if (gestures_.in_hand() == ToolInHand::kNeedle && is_led_ && !needle_.is_past_skin())
     needle_.aim_at(open_->the_case.plan.line_P);
+}
+
+void AttemptControl::say(const QString& text) {
+  constexpr double kSaid_s = 5.0;
+  said_ = text;
+  said_s_ = kSaid_s;
 }
 
 void AttemptControl::toggle_clamp() {
@@ -200,6 +208,7 @@ void AttemptControl::advance(double dt_s) {
     if (event.kind == EventKind::kPuncture)
       plot.add_event(event.depth_mm, event.time_s, to_qt(event.name).replace('_', ' '));
   }
+  said_s_ -= dt_s;
   show_tools(dt_s);
   show_panel();
 }
@@ -231,12 +240,16 @@ double AttemptControl::distance_mm() const {
   return (view_.needle.X_PN.p() - open_->the_case.plan.line_P.b).norm();
 }
 
+QString AttemptControl::hint() const {
+  return said_s_ > 0.0 ? said_ : to_qt(view_.hint);
+}
+
 void AttemptControl::show_panel() {
   PunctureFigures figures;
   figures.phase = phase_text(view_);
   figures.tissue = to_qt(view_.needle.tissue);
   const bool is_starting = view_.phase == AttemptPhase::kStarting || view_.phase == AttemptPhase::kFinishing;
-  figures.hint = to_qt(is_starting ? view_.progress : view_.hint);
+  figures.hint = is_starting ? to_qt(view_.progress) : hint();
   figures.depth_mm = view_.needle.depth_mm;
   if (choice_.difficulty == Difficulty::kGuided && view_.needle.is_known) figures.to_target_mm = distance_mm();
   figures.force_n = std::abs(view_.needle.resistance_n);
@@ -258,7 +271,7 @@ QVariantMap AttemptControl::facts() const {
   facts[QStringLiteral("force_n")] = view_.needle.resistance_n;
   facts[QStringLiteral("lag_mm")] = view_.needle.lag_mm;
   facts[QStringLiteral("tissue")] = to_qt(view_.needle.tissue);
-  facts[QStringLiteral("hint")] = to_qt(view_.hint);
+  facts[QStringLiteral("hint")] = hint();
   facts[QStringLiteral("has_fired")] = view_.has_fired;
   facts[QStringLiteral("probe_pressed_mm")] = view_.probe.pressed_mm;
   facts[QStringLiteral("probe_force_n")] = view_.probe.contact_n;

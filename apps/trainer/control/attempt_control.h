@@ -38,6 +38,9 @@ class AttemptControl : public QObject {
   void take(ToolInHand tool);
   void aim();
   void toggle_clamp();
+  /// In the hint's place, for some seconds.
+  void say(const QString& text);
+  QString hint() const;
   void show_tools(double dt_s);
   void show_panel();
   bool is_free(HandTool tool) const;
@@ -56,6 +59,8 @@ class AttemptControl : public QObject {
   bool is_clamped_[2] = {false, false};  ///< By HandTool.
   AttemptView view_;
   double still_s_ = 0.0;
+  QString said_;
+  double said_s_ = 0.0;  ///< So long it is still shown.
   std::size_t frame_ = 0;
 };
 

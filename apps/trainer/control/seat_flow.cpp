@@ -200,6 +200,11 @@ void SeatFlow::begin_attempt() {
   options.device_probe = "mouse";  // of the simulated devices the one with room for a whole body
   options.force_model = to_std(window_.work().parameters().preview().model());
   options.is_guided = choice_.difficulty != Difficulty::kExam;
+  if (choice_.difficulty != Difficulty::kGuided) {
+    // Where the plan begins would be the solution.
+    options.X_PN_start = open_->neutral.X_PN;
+    options.X_PT_start = open_->neutral.X_PT;
+  }
   replay_.reset();
   if (const Status kept = journal_.begin({case_choice(choice_), options.session}); !kept)
     window_.show_banner(to_qt(kept.error().text()), true);

@@ -87,7 +87,7 @@ QWidget* PuncturePanel::make_hand() {
   clamp_->setFocusPolicy(Qt::NoFocus);
   grid->addWidget(clamp_, 2, 1);
   connect(clamp_, &QPushButton::clicked, this, &PuncturePanel::clamp_wanted);
-  aim_ = make_button("aim", tr("To the planned entry"), tr("Puts needle or transducer where the plan has it (H)"));
+  aim_ = make_button("aim", tr("To the planned entry"), {});
   aim_->setFocusPolicy(Qt::NoFocus);
   grid->addWidget(aim_, 3, 0, 1, 2);
   connect(aim_, &QPushButton::clicked, this, &PuncturePanel::aim_wanted);
@@ -110,6 +110,8 @@ QWidget* PuncturePanel::make_figures() {
 
 void PuncturePanel::begin(double most_force_n, bool can_aim) {
   aim_->setEnabled(can_aim);
+  aim_->setToolTip(can_aim ? tr("Puts needle or transducer where the plan has it (H)")
+                           : tr("Where the plan has the tools is told in guided attempts alone"));
   events_->clear();
   force_->clear();
   constexpr double kFullLag_mm = 15.0;

@@ -7,6 +7,7 @@ namespace trocar::trainer {
 Result<std::vector<ScriptStep>> benchmark_steps() {
   QString text = QStringLiteral(
       "resize 1280 800\n"
+      "click difficulty-guided\n"  // the last one's choice may be another
       "click start\n"
       "wait-for is_open is true within 120\n"
       "click begin\n"

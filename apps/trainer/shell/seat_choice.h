@@ -10,9 +10,9 @@ namespace trocar::trainer {
 
 /// How much the trainee is helped.
 enum class Difficulty {
-  kGuided,    ///< Expert path, entry zone, target, where the needle goes, the force to come, and hints.
-  kAssisted,  ///< Entry zone, target, the force to come, and hints; no path.
-  kExam,      ///< Nothing but pictures and forces.
+  kGuided,    ///< Expert path, entry zone, target, where the needle goes, the force to come, hints; tools as planned.
+  kAssisted,  ///< Entry zone, target, the force to come, and hints; no path, and the tools begin away from it.
+  kExam,      ///< Nothing but pictures and forces; the tools begin away from the plan.
 };
 constexpr Guidance guidance_of(Difficulty difficulty) noexcept {
   constexpr std::array kOf{Guidance::kPath, Guidance::kTarget, Guidance::kNone};

@@ -114,6 +114,10 @@ TEST_F(WindowTest, ABiopsyIsPerformedByKeysAlone) {
   expect_played(play("keyboard.txt"));
 }
 
+TEST_F(WindowTest, OnlyAGuidedAttemptBeginsWhereThePlanHasTheTools) {
+  expect_played(play("help_levels.txt"));
+}
+
 TEST_F(WindowTest, ADeviceThatIsNotThereIsToldAndAnotherOneTaken) {
   const trocar::testing::GamepadStandIn unplugged(false);
   expect_played(play("no_device.txt"));
