@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,6 +26,10 @@ struct LabelTable {
   const Label* find(std::uint8_t id) const noexcept;
   const Label* find(std::string_view name) const noexcept;
 };
+
+/// By label id: of a lesion (tissue "X_lesion") the id of the organ that it lies in, the first label of tissue "X", or
+/// 0 where the table has none; of all else the id itself.
+std::array<std::uint8_t, 256> lesions_as_organs(const LabelTable& table) noexcept;
 
 /// Tissue class and colour of a structure name known out of the box: TotalSegmentator v2, the phantom's names, the mask
 /// names of 3D-IRCADb ("livertumor1", "portalvein"), the tissues found from HU ("fat", "muscle", "gas"). Case,

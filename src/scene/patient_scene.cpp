@@ -253,7 +253,9 @@ void PatientScene::set_entry_centre(const std::optional<Vec3>& centre_P) {
 }
 
 void PatientScene::set_guidance(Guidance guidance) {
-  if (impl_->guides.set_guidance(guidance)) impl_->has_changed = true;
+  const bool has_other_marks = impl_->guides.set_guidance(guidance);
+  const bool has_other_lesions = impl_->surfaces.withhold_lesions(guidance == Guidance::kNone);
+  if (has_other_marks || has_other_lesions) impl_->has_changed = true;
 }
 
 Guidance PatientScene::guidance() const noexcept {
@@ -402,7 +404,7 @@ std::optional<Vec3> PatientScene::pick(double right, double down) {
                          .normalized();
   std::optional<double> nearest_mm;
   for (const StructureInfo& structure : s.surfaces.structures()) {
-    if (structure.opacity <= 0.0) continue;
+    if (structure.opacity <= 0.0 || structure.is_withheld) continue;
     const auto mesh =
         std::find_if(s.meshes->begin(), s.meshes->end(), [&](const NamedMesh& m) { return m.name == structure.name; });
     const auto hit_mm = detail::first_hit_mm(mesh->mesh_P, view.eye_P, ray_P);

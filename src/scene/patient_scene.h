@@ -48,7 +48,7 @@ class PatientScene {
   void set_path(const std::optional<Segment>& line_P, double entry_radius_mm);
   /// A zone about another point than the path's begin; empty: that again.
   void set_entry_centre(const std::optional<Vec3>& centre_P);
-  /// What the guidance consists of, and whether it is shown.
+  /// What the guidance consists of, and whether it is shown. Guidance::kNone withholds lesions, too.
   void set_guidance(Guidance guidance);
   Guidance guidance() const noexcept;
   void set_guidance_visible(bool is_visible);

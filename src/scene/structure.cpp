@@ -1,6 +1,7 @@
 #include "scene/structure.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <tuple>
 
@@ -68,12 +69,14 @@ bool is_deep_in_organ(const VirtualPatient& patient, const Vec3& p_P, const Labe
 
 std::vector<StructureInfo> describe_structures(const LabelTable& table, const std::vector<NamedMesh>& meshes,
                                                std::string_view target_name, std::string_view around_name) {
+  const std::array<std::uint8_t, 256> organ_of = lesions_as_organs(table);
   std::vector<StructureInfo> structures;
   for (const NamedMesh& mesh : meshes) {
     if (mesh.mesh_P.triangles.empty()) continue;
     const auto look = detail::find_appearance(table, mesh.name);
     if (!look) continue;
     StructureInfo info{mesh.name, look->kind, look->color, look->opacity, look->opacity};
+    if (const Label* label = table.find(mesh.name)) info.is_lesion = organ_of[label->id] != label->id;
     if (mesh.name == target_name) info.kind = StructureKind::kTarget;
     if (mesh.name == around_name && info.opacity > detail::kOrganAroundTargetOpacity) {
       info.opacity = info.default_opacity = detail::kOrganAroundTargetOpacity;

@@ -18,6 +18,8 @@ struct StructureInfo {
   Rgb color{200, 200, 200};
   double opacity = 1.0;          ///< 0 (not drawn) .. 1.
   double default_opacity = 1.0;  ///< That it begins with.
+  bool is_lesion = false;        ///< Of an organ (lesions_as_organs).
+  bool is_withheld = false;      ///< Not drawn, whatever its opacity, and not to be named either.
 };
 
 /// Which structures are seen.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace trocar {
 namespace {
@@ -67,6 +68,11 @@ void draw_row(const LabelRow& row, const std::uint8_t* gray, const Inks& inks, s
   }
 }
 
+void hide_lesions(const LabelTable& table, std::span<std::uint8_t> ids) {
+  const std::array<std::uint8_t, 256> shown = lesions_as_organs(table);
+  for (std::uint8_t& id : ids) id = shown[id];
+}
+
 void draw_labels(const VirtualPatient& patient, const SlicePlane& plane, const SliceStyle& style, SliceBuffers& buffers,
                  RgbImage& picture) {
   // A row of "no label" stands before the first and after the last one.
@@ -74,6 +80,7 @@ void draw_labels(const VirtualPatient& patient, const SlicePlane& plane, const S
   const auto rows = static_cast<std::size_t>(plane.rows);
   buffers.ids.assign((rows + 2) * columns, 0);
   sample_slice_nearest(patient.labels, plane, 0, std::span(buffers.ids).subspan(columns, rows * columns));
+  if (style.hides_lesions) hide_lesions(patient.label_table, buffers.ids);
   const Inks inks = inks_of(patient.label_table, style);
   for (std::size_t v = 0; v < rows; ++v) {
     const std::uint8_t* ids = buffers.ids.data() + (v + 1) * columns;

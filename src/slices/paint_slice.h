@@ -14,6 +14,7 @@ struct SliceStyle {
   Window window;
   double label_opacity = 0.25;  ///< Fill; outlines are always opaque. Range 0..1.
   bool has_outlines = true;
+  bool hides_lesions = false;  ///< Lesions (lesions_as_organs) are painted as the organ that they lie in.
 
   bool operator==(const SliceStyle&) const = default;
 };

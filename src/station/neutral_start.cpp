@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/data_dir.h"
@@ -168,8 +169,8 @@ class NeutralProbe {
   NeutralProbe(const Case& the_case, const UpperSkin& skin, const Transducer& transducer, const Pose& X_PT_planned)
       : case_(the_case), skin_(skin), transducer_(transducer), X_PT_planned_(X_PT_planned) {}
 
-  /// In a view of something else than the lesion.
-  std::optional<Pose> in_view(const std::vector<ProbeView>& views) const {
+  /// In a view of something else than the lesion; its depth of picture with it.
+  std::optional<std::pair<Pose, double>> in_view(const std::vector<ProbeView>& views) const {
     std::vector<std::string> names(kFirstViews.begin(), kFirstViews.end());
     for (const ProbeView& view : views) names.push_back(view.name);
     const std::vector<std::string> possible = possible_views(*case_.patient, views);
@@ -178,7 +179,7 @@ class NeutralProbe {
       const auto view = choose_view(*case_.patient, views, name);
       if (!view) continue;
       const auto X_PT = place_probe(*case_.patient, *view, transducer_);
-      if (X_PT && is_neutral(X_PT->p()) && skin_.is_on_side(-X_PT->R().col(1))) return *X_PT;
+      if (X_PT && is_neutral(X_PT->p()) && skin_.is_on_side(-X_PT->R().col(1))) return std::pair(*X_PT, view->depth_mm);
     }
     return std::nullopt;
   }
@@ -218,8 +219,13 @@ Result<NeutralStart> find_neutral_start(const Case& the_case, const Transducer& 
   const UpperSkin skin(the_case, path_P.a);
   const NeutralProbe probe(the_case, skin, transducer, X_PT_planned);
   NeutralStart start;
-  std::optional<Pose> X_PT = probe.in_view(views);
-  if (!X_PT) X_PT = probe.anywhere();
+  std::optional<Pose> X_PT;
+  if (const auto view = probe.in_view(views)) {
+    X_PT = view->first;
+    start.depth_mm = std::min(view->second, transducer.greatest_depth_mm);
+  } else {
+    X_PT = probe.anywhere();
+  }
   const std::optional<Pose> X_PN = neutral_needle(the_case, skin, X_PT);
   start.X_PT = X_PT.value_or(X_PT_planned);
   start.X_PN = X_PN.value_or(needle_pose(path_P.a - NeutralStart::kAbove_mm * path_P.direction(), path_P.direction()));

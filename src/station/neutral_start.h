@@ -14,9 +14,10 @@ struct NeutralStart {
   static constexpr double kApart_mm = 60.0;  ///< from each other: hub and housing are thick.
   static constexpr double kAbove_mm = 20.0;  ///< Of the tip over the skin.
 
-  Pose X_PN;         ///< Over the skin, straight at it along its normal.
-  Pose X_PT;         ///< Pressed onto the skin, in a standard view of something else where there is one.
-  std::string note;  ///< What could not be had, and is as planned; empty: nothing.
+  Pose X_PN;                ///< Over the skin, straight at it along its normal.
+  Pose X_PT;                ///< Pressed onto the skin, in a standard view of something else where there is one.
+  double depth_mm = 160.0;  ///< Of the picture: the view's.
+  std::string note;         ///< What could not be had, and is as planned; empty: nothing.
 };
 
 /// From the patient, and from the plan only what must be kept away from: the needle begins over the skin nearest to the

@@ -21,8 +21,13 @@ struct Box {
   Index3 high{-1, -1, -1};
   std::size_t voxels = 0;
 
+  void add(const Box& other) {
+    if (other.voxels == 0) return;
+    add(other.low, other.high[0], 0);
+    add(other.high, other.high[0], other.voxels);
+  }
   void add(const Index3& ijk, std::int64_t last_i, std::size_t count) {
-    if (voxels == 0) low = high = ijk;
+    if (high[0] < low[0]) low = high = ijk;
     for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], ijk[a]);
     for (std::size_t a = 0; a < 3; ++a) high[a] = std::max(high[a], ijk[a]);
     high[0] = std::max(high[0], last_i);
@@ -46,7 +51,23 @@ std::array<Box, 256> find_boxes(const LabelGrid& labels) {
   return boxes;
 }
 
-MaskGrid cut_out(const LabelGrid& labels, std::uint8_t id, const Box& box) {
+/// What belongs to one surface: a label, and the lesions in it.
+struct Body {
+  std::array<bool, 256> has{};
+  Box box;
+};
+
+Body body_of(std::uint8_t id, const std::array<Box, 256>& boxes, const std::array<std::uint8_t, 256>& organ_of) {
+  Body body;
+  for (std::size_t label = 1; label < boxes.size(); ++label) {
+    body.has[label] = label == id || organ_of[label] == id;
+    if (body.has[label]) body.box.add(boxes[label]);
+  }
+  return body;
+}
+
+MaskGrid cut_out(const LabelGrid& labels, const Body& body) {
+  const Box& box = body.box;
   GridGeometry geometry = labels.geometry;
   for (std::size_t a = 0; a < 3; ++a) geometry.size[a] = box.high[a] - box.low[a] + 1;
   geometry.origin_P = labels.geometry.to_mm(
@@ -56,7 +77,7 @@ MaskGrid cut_out(const LabelGrid& labels, std::uint8_t id, const Box& box) {
   for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k) {
     for (std::int64_t j = box.low[1]; j <= box.high[1]; ++j) {
       const std::uint8_t* row = labels.voxels.data() + labels.geometry.offset({0, j, k});
-      for (std::int64_t i = box.low[0]; i <= box.high[0]; ++i) mask.voxels[n++] = row[i] == id ? 1 : 0;
+      for (std::int64_t i = box.low[0]; i <= box.high[0]; ++i) mask.voxels[n++] = body.has[row[i]] ? 1 : 0;
     }
   }
   return mask;
@@ -99,13 +120,15 @@ std::vector<NamedMesh> extract_surfaces(const VirtualPatient& patient, const Sur
     ids.push_back(label.id);
   }
 
+  const std::array<std::uint8_t, 256> organ_of = lesions_as_organs(patient.label_table);
   std::mutex reporting;
   std::size_t done = 0;
   parallel_for(ids.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       const std::uint8_t id = ids[n];
       meshes[n].mesh_P = extract_surface(
-          id == 0 ? body_mask(patient.skin_distance_mm) : cut_out(patient.labels, id, boxes[id]), options);
+          id == 0 ? body_mask(patient.skin_distance_mm) : cut_out(patient.labels, body_of(id, boxes, organ_of)),
+          options);
       const std::lock_guard lock(reporting);
       report(progress, "surfaces", static_cast<double>(++done) / static_cast<double>(ids.size()));
     }

@@ -16,7 +16,8 @@ struct SurfaceOptions {
 };
 
 /// Smoothed, decimated, closed surface of every structure and of the skin ("skin"), in P. What fills the space between
-/// structures (fat, the muscle found from HU, gas, soft tissue) has no surface of its own. Structures in parallel.
+/// structures (fat, the muscle found from HU, gas, soft tissue) has no surface of its own. An organ's surface goes
+/// about its lesions (lesions_as_organs), which have their own besides. Structures in parallel.
 std::vector<NamedMesh> extract_surfaces(const VirtualPatient& patient, const SurfaceOptions& options = {},
                                         const Progress& progress = {});
 /// Surface of one mask, closed also where the grid cuts the mask; empty for an empty mask. It encloses the volume of

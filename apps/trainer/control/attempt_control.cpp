@@ -70,11 +70,10 @@ AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatC
   connect_panel();
   ForcePlot& plot = page_.desk().forces();
   plot.clear();
-  const bool is_exam = choice_.difficulty == Difficulty::kExam;
-  plot.set_bands(is_exam ? std::vector<ForcePlot::Band>{} : force_bands(*open_));
+  plot.set_bands(is_exam() ? std::vector<ForcePlot::Band>{} : force_bands(*open_));
   plot.set_reference({});
   plot.set_cursor({});
-  plot.set_predicted(is_exam ? std::vector<QPointF>{} : predicted_curve(*open_));
+  plot.set_predicted(is_exam() ? std::vector<QPointF>{} : predicted_curve(*open_));
   // A picture of full quality takes long without a graphics card: a needle that moves breaks it off.
   page_.desk().view_3d().set_interrupt([this] {
     constexpr double kMoved_mm = 0.5;
@@ -203,6 +202,7 @@ void AttemptControl::advance(double dt_s) {
     plot.append(points);
   }
   for (const AttemptEvent& event : attempt_.take_events()) {
+    if (is_exam() && event.kind == EventKind::kEnter) continue;  // of the segmentation, not felt
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(to_qt(event.text)),
                                is_risk(open_->the_case, event));
     if (event.kind == EventKind::kPuncture)
@@ -247,7 +247,7 @@ QString AttemptControl::hint() const {
 void AttemptControl::show_panel() {
   PunctureFigures figures;
   figures.phase = phase_text(view_);
-  figures.tissue = to_qt(view_.needle.tissue);
+  figures.tissue = is_exam() ? QStringLiteral("–") : to_qt(view_.needle.tissue);
   const bool is_starting = view_.phase == AttemptPhase::kStarting || view_.phase == AttemptPhase::kFinishing;
   figures.hint = is_starting ? to_qt(view_.progress) : hint();
   figures.depth_mm = view_.needle.depth_mm;

@@ -44,6 +44,7 @@ class AttemptControl : public QObject {
   void show_tools(double dt_s);
   void show_panel();
   bool is_free(HandTool tool) const;
+  bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
   ViewScale scale_of_3d() const;
   ViewScale scale_of_ultrasound() const;
   double distance_mm() const;

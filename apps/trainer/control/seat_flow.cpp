@@ -186,7 +186,12 @@ void SeatFlow::show_opened() {
     return;
   }
   opened_.reset();
-  window_.work().desk().show_help(choice_.difficulty);
+  Desk& desk = window_.work().desk();
+  desk.show_help(choice_.difficulty);
+  // How deep the target lies is of the plan, too.
+  const bool is_guided = choice_.difficulty == Difficulty::kGuided;
+  const double depth_mm = is_guided ? open_->probe_depth_mm : open_->neutral.depth_mm;
+  desk.ultrasound().change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = depth_mm; });
   window_.briefing().show_case(*open_, choice_.difficulty);
   if (cut_off_) load_replay(std::exchange(cut_off_, {})->session);
 }

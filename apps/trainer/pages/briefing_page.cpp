@@ -72,6 +72,22 @@ QString counts_text(const Task& task) {
       .arg(risks_text(task));
 }
 
+QString goal_text(const Case& the_case) {
+  return BriefingPage::tr("Bring the needle's tip to the %1 %2, under ultrasound.")
+      .arg(the_case.is_parenchymal ? BriefingPage::tr("healthy tissue of the") : BriefingPage::tr("lesion of the"),
+           to_qt(the_case.task.organ));
+}
+
+QString way_text(const Case& the_case) {
+  return BriefingPage::tr(" The planned way is %1 mm long, %2 mm of it in the %3; nearest to it lies: %4.")
+      .arg(the_case.plan.length_mm, 0, 'f', 0)
+      .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
+      .arg(to_qt(the_case.task.organ))
+      .arg(the_case.plan.nearest_risk.empty()
+               ? BriefingPage::tr("nothing at risk")
+               : to_qt(the_case.plan.nearest_risk).replace(QLatin1Char(0x5f), QLatin1Char(0x20)));
+}
+
 QLabel* paragraph() {
   auto* label = make_label({});
   label->setWordWrap(true);
@@ -182,16 +198,7 @@ void BriefingPage::show_case(const OpenCase& open, Difficulty difficulty) {
   subtitle_->setText(tr("Patient %1 · %2 · %3: %4")
                          .arg(to_qt(the_case.patient->name), to_qt(the_case.needle.title), tr(title_of(difficulty)),
                               tr(help_text_of(difficulty))));
-  goal_->setText(
-      tr("Bring the needle's tip to the %1 %2, under ultrasound. The planned way is %3 mm long, %4 mm of it "
-         "in the %5; nearest to it lies: %6.")
-          .arg(the_case.is_parenchymal ? tr("healthy tissue of the") : tr("lesion of the"), to_qt(the_case.task.organ))
-          .arg(the_case.plan.length_mm, 0, 'f', 0)
-          .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
-          .arg(to_qt(the_case.task.organ))
-          .arg(the_case.plan.nearest_risk.empty()
-                   ? tr("nothing at risk")
-                   : to_qt(the_case.plan.nearest_risk).replace(QLatin1Char(0x5f), QLatin1Char(0x20))));
+  goal_->setText(difficulty == Difficulty::kExam ? goal_text(the_case) : goal_text(the_case) + way_text(the_case));
   counts_->setText(counts_text(the_case.task));
   const QSize side(qMax(240, axial_->width()), qMax(160, axial_->height()));
   // A plane along the path would tell where the path lies.

@@ -158,7 +158,7 @@ void StructurePanel::add_row(const StructureInfo& info) {
   auto* layout = new QHBoxLayout(line);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(kGap);
-  Row row{info, new QToolButton(line), new QSlider(Qt::Horizontal, line)};
+  Row row{info, line, new QToolButton(line), new QSlider(Qt::Horizontal, line)};
   const QString name = shown_name(info.name);
   row.eye->setObjectName(widget_name("structure-eye-", info.name));
   row.eye->setCheckable(true);
@@ -200,6 +200,7 @@ void StructurePanel::refresh() {
     const QSignalBlocker quiet_eye(rows_[i].eye);
     rows_[i].slider->setValue(qRound(100.0 * structures[i].opacity));
     rows_[i].eye->setChecked(structures[i].opacity > 0.0);
+    if (rows_[i].line->isHidden() != structures[i].is_withheld) rows_[i].line->setVisible(!structures[i].is_withheld);
   }
   undo_buttons_->show(steps_.can_undo(), steps_.can_redo());
   const QSignalBlocker quiet_guidance(guidance_);

@@ -44,6 +44,7 @@ class StructurePanel : public QWidget {
  private:
   struct Row {
     StructureInfo info;
+    QWidget* line = nullptr;
     QToolButton* eye = nullptr;
     QSlider* slider = nullptr;
   };

@@ -5,6 +5,7 @@
 #include <QCoreApplication>
 #include <QLabel>
 #include <QPushButton>
+#include <algorithm>
 
 #include "script/widget_events.h"
 #include "shell/theme.h"
@@ -38,6 +39,23 @@ TEST(BriefingPage, ShowsTheCaseAndLetsBegin) {
   for (const QLabel* label : page.findChildren<QLabel*>())
     says_help |= label->text().contains(QStringLiteral("Assisted"));
   EXPECT_TRUE(says_help);
+}
+
+TEST(BriefingPage, TellsNothingOfTheWayInAnExam) {
+  BriefingPage page;
+  page.resize(1280, 700);
+  page.show();
+  const auto says = [&](const char* text) {
+    const auto labels = page.findChildren<QLabel*>();
+    return std::any_of(labels.begin(), labels.end(),
+                       [&](const QLabel* label) { return label->text().contains(QString::fromUtf8(text)); });
+  };
+  page.show_case(*open_abdomen(), Difficulty::kAssisted);
+  EXPECT_TRUE(says("lesion of the liver") && says("planned way"));
+  page.show_case(*open_abdomen(), Difficulty::kExam);
+  EXPECT_TRUE(says("lesion of the liver"));
+  EXPECT_FALSE(says("planned way"));
+  save(page, "briefing_exam.png");
 }
 
 TEST(BriefingPicture, ShowsThePathInGuidedAttemptsAlone) {

@@ -25,6 +25,10 @@ TEST(Desk, ShowsOfThePlanWhatTheHelpAllows) {
   ASSERT_NE(axial, nullptr);
   axial->resize(480, 400);
   const auto share_of = [&](const QColor& color) { return share_near(axial->grab().toImage(), color, 40); };
+  const Rgb& green = open_abdomen()->the_case.patient->label_table.find("liver_lesion_1")->color;
+  const QColor lesion(green[0], green[1], green[2]);
+  auto* lesion_eye = desk.findChild<QToolButton*>(QStringLiteral("structure-eye-liver-lesion-1"));
+  ASSERT_NE(lesion_eye, nullptr);
   struct Expected {
     Difficulty difficulty;
     Guidance in_space;
@@ -41,6 +45,8 @@ TEST(Desk, ShowsOfThePlanWhatTheHelpAllows) {
     EXPECT_EQ(desk.findChild<QToolButton*>(QStringLiteral("show-guidance"))->isEnabled(),
               e.in_space != Guidance::kNone);
     EXPECT_EQ(share_of(theme().target) > 0.0002, e.has_target) << title_of(e.difficulty);
+    EXPECT_EQ(share_near(axial->grab().toImage(), lesion, 12) > 0.0001, e.has_target) << title_of(e.difficulty);
+    EXPECT_EQ(!lesion_eye->parentWidget()->isHidden(), e.has_target) << title_of(e.difficulty);
     const double path = share_of(theme().path);  // the entry zone's circle has its colour too
     EXPECT_LT(path, last_path) << title_of(e.difficulty);
     last_path = path;

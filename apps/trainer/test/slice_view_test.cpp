@@ -201,10 +201,10 @@ TEST(SliceView, ShowsAsMuchOfThePlanAsGuidanceAllows) {
   const Segment path = expert_path();
   shown.view.set_focus(0.5 * (path.a + path.b) + Vec3(0.0, 40.0, 0.0));  // the cross-hairs beside all that is looked at
   shown.view.grab();
+  shown.view.set_guidance(Guidance::kNone);  // no plan yet; lesions are gone, too
   const QImage none = shown.view.grab().toImage();
   shown.view.set_path(path);
   shown.view.set_entry_zone(EntryZone{path.a, 15.0});
-  shown.view.set_guidance(Guidance::kNone);
   EXPECT_EQ(shown.view.grab().toImage(), none);
   const auto drawn_at = [&](const Vec3& p_P, double radius) {
     const QImage image = shown.view.grab().toImage();

@@ -71,6 +71,7 @@ QImage briefing_picture(const OpenCase& open, BriefingPlane plane, const QSize& 
   RgbImage picture;
   SliceStyle style;
   style.window = {60.0, 350.0};
+  style.hides_lesions = guidance == Guidance::kNone;
   paint_slice(*open.the_case.patient, geometry.plane(), style, buffers, picture);
   QImage image = to_qimage(picture).convertToFormat(QImage::Format_RGB32);
   QPainter painter(&image);

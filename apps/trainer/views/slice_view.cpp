@@ -143,7 +143,9 @@ void SliceView::set_entry_zone(const std::optional<EntryZone>& zone) {
 }
 
 void SliceView::set_guidance(Guidance guidance) {
-  if (std::exchange(guidance_, guidance) != guidance) update();
+  if (std::exchange(guidance_, guidance) == guidance) return;
+  is_stale_ = true;  // lesions come and go
+  update();
 }
 
 void SliceView::set_window(double centre_hu, double width_hu) {
@@ -252,6 +254,7 @@ void SliceView::fit() {
 void SliceView::redraw_picture() {
   if (!is_stale_ || !patient_) return;
   SliceStyle style = style_;
+  style.hides_lesions = guidance_ == Guidance::kNone;
   if (!has_labels_) {
     style.label_opacity = 0.0;
     style.has_outlines = false;

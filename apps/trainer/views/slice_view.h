@@ -53,6 +53,7 @@ class SliceView : public QWidget {
   void set_path(const std::optional<Segment>& path_P);
   void set_entry_zone(const std::optional<EntryZone>& zone);
   /// What is shown of path, target and zone; with the path also where the needle would go.
+  /// With none, lesions are painted as the organ around them.
   void set_guidance(Guidance guidance);
   /// Does not signal window_changed. Width: at least 1 HU.
   void set_window(double centre_hu, double width_hu);

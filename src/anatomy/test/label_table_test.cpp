@@ -100,6 +100,18 @@ TEST(KnownStructure, KnowsTheMaskNamesOf3dIrcadb) {
     EXPECT_EQ(tissue_of(name), tissue) << name;
 }
 
+TEST(LabelTable, FindsTheOrganOfEachLesion) {
+  LabelTable table;
+  table.labels = {{2, "livertumor1", "liver_lesion", {}},
+                  {5, "liver", "liver", {}},
+                  {6, "liver_segment_2", "liver", {}},
+                  {7, "lung_tumour", "lung_lesion", {}}};
+  const auto shown = lesions_as_organs(table);
+  EXPECT_EQ(shown[2], 5);
+  EXPECT_EQ(shown[7], 0);
+  for (const std::size_t id : {0U, 1U, 5U, 6U, 255U}) EXPECT_EQ(shown[id], id);
+}
+
 TEST(KnownStructure, CaseSeparatorsAndSideDoNotMatter) {
   for (const char* name : {"Liver Tumor 1", "LIVER-TUMOR", "liver_tumor_12"})
     EXPECT_EQ(tissue_of(name), "liver_lesion") << name;

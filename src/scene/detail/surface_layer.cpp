@@ -6,6 +6,7 @@
 #include <vtkProperty.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/parallel.h"
 #include "scene/detail/simplify.h"
@@ -19,7 +20,6 @@ constexpr double kKeep = 0.25;
 static_assert(kMeshLevels == 3);
 /// Meshes below are not made coarser: they cost nothing and would lose their shape.
 constexpr std::size_t kFewTriangles = 800;
-constexpr double kLeastOpacity = 0.004;
 
 /// A surface that is skipped once the frame is to be given up. Depth peeling draws each many times: this is where a
 /// slow frame can end early.
@@ -78,6 +78,7 @@ void SurfaceLayer::show(std::vector<StructureInfo> structures, std::shared_ptr<c
   surfaces_.clear();
   moving_.set_parts({});
   structures_ = std::move(structures);
+  note_withheld();
   std::vector<std::pair<std::string, Appearance>> looks;
   for (const StructureInfo& info : structures_) {
     looks.emplace_back(info.name, find_appearance(table, info.name).value_or(Appearance{info.color}));
@@ -114,7 +115,7 @@ StructureInfo* SurfaceLayer::find(std::string_view name) {
 }
 
 void SurfaceLayer::update(Surface& surface) {
-  const double opacity = find(surface.name)->opacity;
+  const double opacity = shown_opacity(surface);
   Appearance look = surface.look;
   look.opacity = opacity;
   apply(look, *surface.actor);
@@ -128,7 +129,7 @@ void SurfaceLayer::update_moving() {
   if (level_ == 0 || !is_moving_stale_) return;
   std::vector<MovingPart> parts;
   for (const Surface& surface : surfaces_) {
-    const double opacity = find(surface.name)->opacity;
+    const double opacity = shown_opacity(surface);
     if (opacity <= kLeastOpacity) continue;
     parts.push_back({surface.levels[static_cast<std::size_t>(level_)], surface.look.color, opacity});
   }
@@ -144,6 +145,19 @@ bool SurfaceLayer::set_opacity(std::string_view name, double opacity) {
   for (Surface& surface : surfaces_) {
     if (surface.name == name) update(surface);
   }
+  is_moving_stale_ = true;
+  update_moving();
+  return true;
+}
+
+void SurfaceLayer::note_withheld() {
+  for (StructureInfo& info : structures_) info.is_withheld = info.is_lesion && are_lesions_withheld_;
+}
+
+bool SurfaceLayer::withhold_lesions(bool are_withheld) {
+  if (std::exchange(are_lesions_withheld_, are_withheld) == are_withheld) return false;
+  note_withheld();
+  for (Surface& surface : surfaces_) update(surface);
   is_moving_stale_ = true;
   update_moving();
   return true;
@@ -181,9 +195,10 @@ void SurfaceLayer::set_cut(const std::optional<std::pair<Vec3, Vec3>>& plane_P) 
   moving_.set_cut(is_cut_ ? cut_.Get() : nullptr);
 }
 
-bool SurfaceLayer::is_shown(const Surface& surface) const {
-  return std::any_of(structures_.begin(), structures_.end(),
-                     [&](const StructureInfo& s) { return s.name == surface.name && s.opacity > kLeastOpacity; });
+double SurfaceLayer::shown_opacity(const Surface& surface) const {
+  const auto found = std::find_if(structures_.begin(), structures_.end(),
+                                  [&](const StructureInfo& s) { return s.name == surface.name; });
+  return found == structures_.end() || found->is_withheld ? 0.0 : found->opacity;
 }
 
 std::vector<Vec3> SurfaceLayer::outline_P() const {

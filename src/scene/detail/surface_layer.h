@@ -42,6 +42,8 @@ class SurfaceLayer {
   const std::vector<StructureInfo>& structures() const noexcept { return structures_; }
   /// True when it changed something; an unknown name changes nothing.
   bool set_opacity(std::string_view name, double opacity);
+  /// True when it changed something. Holds for later patients, too.
+  bool withhold_lesions(bool are_withheld);
   /// Level 0 are the single surfaces; coarser ones are for what moves (MovingSurfaces).
   void set_level(int level);
   void set_visible(bool is_visible);
@@ -54,6 +56,8 @@ class SurfaceLayer {
   void draw_moving_last() { moving_.draw_last(); }
 
  private:
+  static constexpr double kLeastOpacity = 0.004;
+
   struct Surface {
     std::string name;
     Appearance look;
@@ -67,7 +71,10 @@ class SurfaceLayer {
   void update(Surface& surface);
   void update_moving();
   StructureInfo* find(std::string_view name);
-  bool is_shown(const Surface& surface) const;
+  void note_withheld();
+  /// Of what is drawn: 0 of what is withheld.
+  double shown_opacity(const Surface& surface) const;
+  bool is_shown(const Surface& surface) const { return shown_opacity(surface) > kLeastOpacity; }
 
   vtkRenderer& renderer_;
   FrameBreak& frame_break_;
@@ -80,6 +87,7 @@ class SurfaceLayer {
   vtkNew<vtkPlane> cut_;
   bool is_cut_ = false;
   bool is_visible_ = true;
+  bool are_lesions_withheld_ = false;
   int level_ = 0;
 };
 

@@ -143,6 +143,34 @@ TEST_F(PatientSceneTest, GuidanceWithoutThePathIsTargetAndEntryZone) {
   EXPECT_EQ(count_of(exam, is_orange) + count_of(exam, is_teal), 0);
 }
 
+TEST_F(PatientSceneTest, NoGuidanceWithholdsLesionsWhateverIsSet) {
+  VirtualPatient sick = *patient;
+  sick.label_table.labels = {{1, "right", "kidney", kRed}, {2, "upper", "liver_lesion", kGreen}};
+  scene->set_guidance(Guidance::kNone);
+  scene->show_patient(std::make_shared<const VirtualPatient>(std::move(sick)),
+                      std::make_shared<const std::vector<NamedMesh>>(two_organs().meshes));
+  scene->set_camera(CameraPreset::kAnterior);
+  scene->finish_loading();
+  const auto withheld = [&] {
+    return std::count_if(scene->structures().begin(), scene->structures().end(),
+                         [](const StructureInfo& s) { return s.is_withheld; });
+  };
+  const Detail moving{.mesh_level = 1};
+  for (const StructurePreset preset : {StructurePreset::kAll, StructurePreset::kTarget, StructurePreset::kVessels}) {
+    scene->apply_preset(preset);
+    EXPECT_EQ(count_of(draw(), is_greenish), 0);
+    EXPECT_EQ(count_of(draw(moving), is_greenish), 0);
+  }
+  scene->set_opacity("skin", 0.0);
+  EXPECT_EQ(withheld(), 1);
+  EXPECT_FALSE(scene->pick(0.5, 0.33).has_value());
+  scene->set_guidance(Guidance::kTarget);
+  EXPECT_EQ(withheld(), 0);
+  EXPECT_GT(count_of(draw(), is_greenish), 100);
+  EXPECT_GT(count_of(draw(moving), is_greenish), 100);
+  EXPECT_TRUE(scene->pick(0.5, 0.33).has_value());
+}
+
 TEST_F(PatientSceneTest, EntryZoneLiesAboutItsOwnCentre) {
   scene->apply_preset(StructurePreset::kBones);
   scene->set_path(Segment{{60, -95, -50}, {20, 0, -50}}, 15.0);

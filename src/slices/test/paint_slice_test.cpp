@@ -96,6 +96,25 @@ TEST(PaintSlice, OutlinesStructuresInFullColour) {
   EXPECT_GT(inside, 500);
 }
 
+TEST(PaintSlice, PaintsLesionsAsTheirOrganWhereTheyAreToBeFound) {
+  const Label& lesion = *coarse_abdomen().label_table.find("liver_lesion_1");
+  const SliceGeometry view = view_of(middle_of(coarse_abdomen(), lesion.name), slice_axes(SliceOrientation::kAxial));
+  const auto painted = [&](const SliceStyle& style) {
+    SliceBuffers buffers;
+    RgbImage picture;
+    paint_slice(coarse_abdomen(), view.plane(), style, buffers, picture);
+    return picture;
+  };
+  const RgbImage open = painted({{}, 1.0, true}), exam = painted({{}, 1.0, true, true});
+  const Rgb liver = coarse_abdomen().label_table.find("liver")->color;
+  int lesions = 0;
+  for (std::size_t n = 0; n < open.pixels.size(); ++n) {
+    if (open.pixels[n] == lesion.color) ++lesions;
+    EXPECT_EQ(exam.pixels[n], open.pixels[n] == lesion.color ? liver : open.pixels[n]) << n;
+  }
+  EXPECT_GT(lesions, 20);
+}
+
 TEST(PaintSlice, AllocatesNothingAfterTheFirstPicture) {
   SliceGeometry view = view_of(middle_of(coarse_abdomen(), "liver"), slice_axes(SliceOrientation::kAxial));
   SliceBuffers buffers;
@@ -105,7 +124,7 @@ TEST(PaintSlice, AllocatesNothingAfterTheFirstPicture) {
   for (int n = 0; n < 5; ++n) {
     view.center_P.z() += 3.0;
     view.rows -= 10;
-    paint_slice(coarse_abdomen(), view.plane(), {}, buffers, picture);
+    paint_slice(coarse_abdomen(), view.plane(), {{}, 0.25, true, n % 2 == 0}, buffers, picture);
   }
   EXPECT_EQ(guard.count(), 0U);
 }

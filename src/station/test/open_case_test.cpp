@@ -64,6 +64,20 @@ TEST_F(OpenedCase, PutsTheTransducerInPlaneBesideTheEntry) {
   EXPECT_GT(touching, 52);
 }
 
+TEST_F(OpenedCase, HasANeutralStartWithAPictureOfSomethingElse) {
+  const NeutralStart& start = opened->neutral;
+  EXPECT_EQ(start.note, "");
+  EXPECT_GT((start.X_PT.p() - opened->X_PT_start.p()).norm(), NeutralStart::kAway_mm);
+  EXPECT_GT((start.X_PN.p() - opened->the_case.plan.line_P.a).norm(), NeutralStart::kAway_mm);
+  EXPECT_EQ(start.depth_mm, 140.0);      // the aorta's view
+  EXPECT_GT(start.X_PT.R()(1, 1), 0.8);  // from the front
+  const ScanGeometry scan = make_scan_geometry(opened->transducer, start.depth_mm, 65, 64);
+  std::vector<LineContact> contact(65);
+  find_contact(opened->the_case.patient->skin_distance_mm, scan, start.X_PT, contact);
+  const auto touching = std::count_if(contact.begin(), contact.end(), [](const auto& c) { return c.coupling > 0.5F; });
+  EXPECT_GT(touching, 52);
+}
+
 TEST_F(OpenedCase, LendsWhatIsTheSameToTheNextChoice) {
   CaseChoice other = opened->choice;
   other.options.overrides = {"skin.fp=5"};

@@ -186,6 +186,29 @@ TEST(ExtractSurfaces, GivesSkinAndStructuresWithoutFillingsAndCrumbs) {
     EXPECT_LT((vertex.cast<double>() - Vec3(39, 39, 39)).norm(), 17.0);
 }
 
+TEST(ExtractSurfaces, AnOrganGoesAboutItsLesions) {
+  // One within it, one at its border; of both the organ's own surface shows nothing.
+  VirtualPatient patient = small_patient();
+  const double whole_mm3 = [&] {
+    patient.labels[{19, 19, 19}] = 3;
+    return enclosed_volume_mm3(extract_surfaces(patient)[1].mesh_P);
+  }();
+  for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
+    const Index3 ijk = patient.labels.geometry.index_of(n);
+    const auto near = [&](std::int64_t i, double most) {
+      return std::hypot(static_cast<double>(ijk[0] - i), static_cast<double>(ijk[1] - 19),
+                        static_cast<double>(ijk[2] - 19)) < most;
+    };
+    if (patient.labels.voxels[n] == 3 && (near(17, 3.0) || near(25, 3.0))) patient.labels.voxels[n] = 4;
+  }
+  const auto meshes = extract_surfaces(patient);
+  ASSERT_EQ(meshes.size(), 3u);
+  EXPECT_NEAR(enclosed_volume_mm3(meshes[1].mesh_P), whole_mm3, 1e-3 * whole_mm3);
+  for (const Vec3f& vertex : meshes[1].mesh_P.vertices)
+    EXPECT_GT((vertex.cast<double>() - Vec3(39, 39, 39)).norm(), 13.0);
+  EXPECT_GT(enclosed_volume_mm3(meshes[2].mesh_P), 1000.0);
+}
+
 TEST(ExtractSurfaces, CrumbsAreAMatterOfTheOptions) {
   SurfaceOptions options;
   options.min_voxels = 1;
