@@ -6,7 +6,6 @@
 
 #include "link/detail/client_thread.h"
 #include "link/endpoint.h"
-#include "realtime/periodic_loop.h"
 
 namespace trocar {
 namespace {
@@ -49,7 +48,7 @@ HapticClient& HapticClient::operator=(HapticClient&&) noexcept = default;
 HapticClient::~HapticClient() = default;
 
 ClientView HapticClient::view() const {
-  return impl_->thread->mailbox().view(seconds(now_ns()));
+  return impl_->thread->mailbox().view();
 }
 
 std::vector<NumberedSample> HapticClient::take_samples() {

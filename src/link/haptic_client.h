@@ -27,12 +27,13 @@ struct ClientOptions {
   bool has_window = false;
 };
 
-/// What a client knows of its server.
+/// What a client knows of its server. Silence is counted in beats of the client's own thread: where that thread gets
+/// no processor nothing can be heard, and the server is not to blame.
 struct ClientView {
   bool is_connected = false;  ///< Heard within the last 250 ms.
   double silent_s = 0.0;      ///< Since it was last heard; since the start when never.
   Welcome welcome;
-  ServerStatus status;
+  ServerStatus status;          ///< Empty until this session's first one came.
   double clock_offset_s = 0.0;  ///< Server's clock minus ours, from the fastest round trip of the last seconds.
   double round_trip_s = 0.0;    ///< Of that one.
   std::uint64_t ticks_received = 0;

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "realtime/periodic_loop.h"
-
 namespace trocar::detail {
 namespace {
 
-constexpr double kConnected_s = 0.25;                ///< Heard within that time.
+constexpr double kBeat_s = 1e-9 * static_cast<double>(kBeat_ns);
+constexpr int kConnectedBeats = 25;                  ///< Heard within so many.
 constexpr std::size_t kMostSamplesHeld = 60 * 4000;  ///< A minute at 4 kHz.
 constexpr std::size_t kMostRepliesHeld = 1024;       ///< A caller that takes none loses the oldest [assumed].
 
@@ -29,16 +28,16 @@ void ClientMailbox::leave() {
   outgoing_.is_leaving = true;
 }
 
-ClientView ClientMailbox::view(double now_s) const {
+ClientView ClientMailbox::view() const {
   const std::lock_guard lock(mutex_);
   ClientView view = view_;
-  view.silent_s = std::max(0.0, now_s - heard_s_);
-  view.is_connected = is_connected(now_s);
+  view.silent_s = kBeat_s * silent_beats_;
+  view.is_connected = is_connected();
   return view;
 }
 
-bool ClientMailbox::is_connected(double now_s) const {
-  return has_session_ && now_s - heard_s_ <= kConnected_s;
+bool ClientMailbox::is_connected() const {
+  return has_session_ && silent_beats_ <= kConnectedBeats;
 }
 
 std::vector<NumberedSample> ClientMailbox::take_samples() {
@@ -84,7 +83,7 @@ std::optional<Reply> ClientMailbox::wait_reply(std::uint32_t request, std::chron
 
 bool ClientMailbox::wait_heard(std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
-  return news_.wait_for(lock, patience, [&] { return is_connected(seconds(now_ns())); });
+  return news_.wait_for(lock, patience, [&] { return is_connected(); });
 }
 
 Outgoing ClientMailbox::take_outgoing() {
@@ -95,14 +94,23 @@ Outgoing ClientMailbox::take_outgoing() {
 void ClientMailbox::put_welcome(const Welcome& welcome, bool is_new) {
   const std::lock_guard lock(mutex_);
   view_.welcome = welcome;
-  if (is_new) ++view_.welcomes;
+  if (is_new) {
+    ++view_.welcomes;
+    view_.status = {};  // what the last one said is not so of this one
+    newest_.reset();
+  }
   has_session_ = true;
 }
 
-void ClientMailbox::put_heard(double now_s) {
+void ClientMailbox::put_beat() {
+  const std::lock_guard lock(mutex_);
+  ++silent_beats_;
+}
+
+void ClientMailbox::put_heard() {
   {
     const std::lock_guard lock(mutex_);
-    heard_s_ = now_s;
+    silent_beats_ = 0;
   }
   news_.notify_all();
 }

@@ -11,6 +11,8 @@
 
 namespace trocar::detail {
 
+inline constexpr std::int64_t kBeat_ns = 10'000'000;  ///< Between two beats of a client's thread.
+
 /// What the caller wants of the client's thread.
 struct Outgoing {
   std::vector<Command> commands;
@@ -25,8 +27,7 @@ class ClientMailbox {
   void post(Command command);
   void post(const HandTarget& hand);
   void leave();
-  /// is_connected and silent_s are as of now_s.
-  ClientView view(double now_s) const;
+  ClientView view() const;
   std::vector<NumberedSample> take_samples();
   std::optional<TickSample> newest() const;
   std::vector<Reply> take_replies();
@@ -37,24 +38,24 @@ class ClientMailbox {
   // The thread's side.
   Outgoing take_outgoing();
   void put_welcome(const Welcome& welcome, bool is_new);
+  /// A beat of the thread's clock: it is ready to hear.
+  void put_beat();
   /// A sign of life.
-  void put_heard(double now_s);
+  void put_heard();
   void put_clock(double offset_s, double round_trip_s);
   void put_batch(StateBatch batch, std::uint64_t missing_before);
   void put_reply(Reply reply);
   void put_lost();
   void put_refused(std::uint64_t messages_refused);
 
-  explicit ClientMailbox(double start_s) : heard_s_(start_s) {}
-
  private:
-  bool is_connected(double now_s) const;  ///< With the lock.
+  bool is_connected() const;  ///< With the lock.
 
   mutable std::mutex mutex_;
   std::condition_variable news_;
   Outgoing outgoing_;
   ClientView view_;
-  double heard_s_;  ///< Steady clock; the start when never.
+  int silent_beats_ = 0;  ///< Since the server was last heard; since the start when never.
   bool has_session_ = false;
   std::deque<StateBatch> batches_;
   std::size_t samples_held_ = 0;

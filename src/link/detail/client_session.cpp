@@ -23,7 +23,7 @@ bool ClientSession::take(ServerMessage message, double now_s) {
     return false;
   }
   if (welcome != nullptr) mailbox_.put_welcome(*welcome, is_new);
-  mailbox_.put_heard(now_s);
+  mailbox_.put_heard();
   return true;
 }
 

@@ -19,7 +19,6 @@
 namespace trocar::detail {
 namespace {
 
-constexpr std::int64_t kBeat_ns = 10'000'000;
 constexpr double kHelloAgain_s = 0.2;
 /// Beats without a word until the server counts as gone, 2 s: one that fills memory for a scene may be silent for some.
 /// Beats, not time: a client that was suspended reads what waits for it before it gives its server up.
@@ -70,7 +69,7 @@ Result<std::unique_ptr<ClientThread>> ClientThread::start(const ClientOptions& o
 }
 
 ClientThread::ClientThread(const ClientOptions& options)
-    : options_(options), mailbox_(steady_s()), frame_drawn_ns_(now_ns()), routing_id_(make_routing_id()) {}
+    : options_(options), frame_drawn_ns_(now_ns()), routing_id_(make_routing_id()) {}
 
 ClientThread::~ClientThread() {
   mailbox_.leave();
@@ -169,6 +168,7 @@ void ClientThread::read_messages() {
 
 void ClientThread::beat() {
   const double now_s = steady_s();
+  mailbox_.put_beat();
   if (!socket_.is_open() && !open_socket()) return;
   if (!session_.is_welcomed()) {
     if (now_s - hello_s_ >= kHelloAgain_s) send_hello(now_s);
