@@ -92,7 +92,7 @@ struct HandTarget {
   std::uint32_t buttons = 0;
   bool is_held = true;
   bool is_rigid = false;
-  bool is_placed = false;
+  bool is_placed = false;  ///< Put there now, at rest; the insertion begins anew there, through the safe start.
 };
 
 struct Goodbye {};

@@ -81,7 +81,7 @@ Servo::Sensed Servo::sense(const ServoInput& input) noexcept {
     sensed.reading.X_DS = last_.X_DS;
     return sensed;
   }
-  if (has_read_) {
+  if (has_read_ && !was_placed_) {
     if (const GateFault stuck = watch_encoder(now, input.dt_s); stuck != GateFault::kNone) sensed.fault = stuck;
     sensed.v_D = (now.X_DS.p() - last_.X_DS.p()) / since_fresh_s;
     sensed.w_D = rotation_vector(now.X_DS.R() * last_.X_DS.R().transpose()) / since_fresh_s;
@@ -155,19 +155,23 @@ void Servo::note_gate(const GateOutput& output, const ServoInput& input, TickSam
   sample.device_f_n = R_PD * output.wrench.force_n;
 }
 
+void Servo::begin_anew() noexcept {
+  tick_ = {};
+  if (gate_.fault == GateFault::kNone) gate_.mode = GateMode::kOff;  // through the safe start
+}
+
 ServoRecord Servo::step(const ServoInput& input) noexcept {
   ServoRecord record;
   record.tick = ticks_++;
   record.silence_s = input.silence_s;
   if (input.scene != nullptr && input.scene->number != scene_number_) {
-    if (!input.scene->continues) {
-      tick_ = {};
-      if (gate_.fault == GateFault::kNone) gate_.mode = GateMode::kOff;  // another scene: through the safe start
-    }
+    if (!input.scene->continues) begin_anew();
     scene_number_ = input.scene->number;
   }
 
   const Sensed sensed = sense(input);
+  if (was_placed_) begin_anew();  // where it was before is no part of its way, and makes no channel
+  was_placed_ = input.hand && input.hand->is_placed;
   if (input.hand && input.scene != nullptr) {
     const HapticScene& scene = *input.scene->scene;
     R_WS_told_ = (scene.X_PD.inverse() * input.hand->X_PN * scene.X_SN.inverse()).R();

@@ -81,6 +81,8 @@ class Servo {
   };
   Sensed sense(const ServoInput& input) noexcept;
   GateFault watch_encoder(const DeviceReading& reading, double dt_s) noexcept;
+  /// The tool begins where it is now: another scene, or somebody has put it there.
+  void begin_anew() noexcept;
   Wanted feel(const Sensed& sensed, const ServoInput& input, TickSample& sample) noexcept;
   DeviceHand hand_in_device(const HandTarget& target, const HapticScene& scene) const noexcept;
   void note_gate(const GateOutput& output, const ServoInput& input, TickSample& sample) noexcept;
@@ -94,6 +96,7 @@ class Servo {
   std::uint64_t scene_number_ = 0;
   std::uint64_t ticks_ = 0;
   bool has_read_ = false;
+  bool was_placed_ = false;            ///< In the last period.
   DeviceReading last_;                 ///< The last reading whose pose can be used.
   Mat3 R_WS_told_ = Mat3::Identity();  ///< Of a device that senses no rotation: the hand's, or the scene's.
   double unread_s_ = 0.0;

@@ -180,6 +180,29 @@ TEST(Servo, GoesThroughTheSafeStartWithAnotherScene) {
   EXPECT_LT(rig.largest_rise_n, 0.2);
 }
 
+/// Without forces a stylus sags across the needle's channel. The needle begins where it is put, not where it sagged.
+TEST(Servo, BeginsAnewWhereTheNeedleIsPut) {
+  ServoRig rig;
+  rig.input.is_wanted = false;
+  const Pose X_DS_put = testing::needle_at_depth(20.0);
+  rig.device.reading.X_DS = Pose(X_DS_put.R(), X_DS_put.p() + Vec3(3.0, 0.0, 0.0));
+  for (int i = 0; i < 100; ++i) rig.step();
+  HandTarget put;
+  put.X_PN = rig.scene.scene->X_PD * X_DS_put * rig.scene.scene->X_SN;
+  put.is_placed = put.is_rigid = true;
+  rig.input.hand = put;
+  rig.step();
+  rig.device.reading.X_DS = X_DS_put;
+  for (int i = 0; i < 100; ++i) rig.step();
+  rig.input.is_wanted = true;
+  std::vector<ServoRecord> records;
+  for (int i = 0; i < 1000; ++i) records.push_back(rig.step());
+  EXPECT_EQ(rig.servo.mode(), GateMode::kOn);
+  EXPECT_EQ(records.back().fault, GateFault::kNone);
+  EXPECT_LT(records.back().sample.f_constraint_n.norm(), 0.05);
+  EXPECT_NEAR(records.back().sample.depth_mm, 20.0, 0.1);
+}
+
 TEST(Servo, ScalesForcesForAWeakDeviceAndStaysWithinItsLimits) {
   ServoRig strong, weak("omni");
   for (ServoRig* rig : {&strong, &weak}) {
