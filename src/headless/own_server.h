@@ -29,6 +29,8 @@ class OwnServer {
   int pid() const { return process_->pid(); }
   /// Error: it has ended; what it said was wrong, else how it ended and the last line of its log.
   Status check();
+  /// See ServerProcess.
+  bool is_held_up() { return process_ && process_->is_held_up(); }
   /// A new process on the same socket; ends the old one where it still runs.
   Status restart();
 

@@ -13,12 +13,15 @@ namespace {
 using State = ServerSeat::State;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPlaceAgain{20};
+constexpr milliseconds kPlaceAgain{20}, kResetAgain{200};
+constexpr double kLongestLook_s = 0.05;  // a longer hole between two looks is this program's own
+/// A client that went away without a word keeps control for so long.
+constexpr double kControlPatience_s = kControlLost_s + 1.0;
 constexpr double kSagging_mm =
     10.0;  // without forces the hand alone bears the stylus' weight: 0.5 N at 0.6 N/mm, tilted
 constexpr double kSettled_mm = 0.5;
-constexpr double kSettledAxis = 0.02;        // rad
-constexpr milliseconds kMostSettling{1000};  // inside tissue it comes to rest elsewhere
+constexpr double kSettledAxis = 0.02;    // rad
+constexpr double kMostSettling_s = 1.0;  // inside tissue it comes to rest elsewhere
 
 Vec3 axis_of(const TickSample& sample) noexcept {
   const auto& [w, x, y, z] = sample.device_rotation_wxyz;
@@ -37,7 +40,7 @@ Result<ServerSeat> ServerSeat::connect(const ClientOptions& options, millisecond
 }
 
 ServerSeat::ServerSeat(HapticClient client, std::string endpoint, milliseconds patience)
-    : client_(std::move(client)), endpoint_(std::move(endpoint)), patience_(patience), entered_(Clock::now()) {}
+    : client_(std::move(client)), endpoint_(std::move(endpoint)), patience_(patience), looked_(Clock::now()) {}
 
 void ServerSeat::hold(const SeatRequest& request) {
   request_ = request;
@@ -52,17 +55,25 @@ void ServerSeat::place_at(const Pose& X_PN) {
 
 void ServerSeat::enter(State state) {
   state_ = state;
-  entered_ = Clock::now();
+  in_state_s_ = without_control_s_ = 0.0;
+  was_placed_ = false;
+}
+
+void ServerSeat::count_time() {
+  const Clock::time_point now = Clock::now();
+  in_state_s_ += std::min(std::chrono::duration<double>(now - looked_).count(), kLongestLook_s);
+  looked_ = now;
 }
 
 Status ServerSeat::check_time(const char* what, const char* advice) const {
-  if (Clock::now() - entered_ < patience_) return {};
+  if (in_state_s_ < std::chrono::duration<double>(patience_).count()) return {};
   return fail(fmt::format("{} within {:.1f} s", what, std::chrono::duration<double>(patience_).count()), endpoint_,
               advice);
 }
 
 Result<State> ServerSeat::look() {
   view_ = client_.view();
+  count_time();
   if (view_.silent_s > std::chrono::duration<double>(patience_).count()) {
     const bool was_heard = view_.welcome.session != 0;
     return fail(fmt::format("{} for {:.1f} s", was_heard ? "the server is gone, silent" : "no server answers, tried",
@@ -101,23 +112,42 @@ Result<State> ServerSeat::look() {
       break;
   }
   const bool is_ours = state_ != State::kConnecting && view_.is_connected;
-  if (is_ours && has_fault(view_.status))
+  if (is_ours && is_stall_to_forgive()) {
+    ++stalls_;
+    enter(State::kConnecting);
+  } else if (is_ours && has_fault(view_.status)) {
     return fail(fmt::format("the safety gate has latched a fault: {}", view_.status.fault), endpoint_,
                 "the server's flight record tells what came before; start the server again");
+  }
   return state_;
+}
+
+/// The motors of a device in a person's hand are not turned on again behind their back.
+bool ServerSeat::is_stall_to_forgive() const {
+  return request_ && !request_->is_in_real_hand && view_.status.fault == to_string(GateFault::kLoopStalled);
+}
+
+Status ServerSeat::wait_for_control() {
+  if (without_control_s_ == 0.0) without_control_s_ = in_state_s_;
+  if (in_state_s_ - without_control_s_ < kControlPatience_s) return {};
+  return fail("another client has this server", endpoint_, "end it, or name another server");
+}
+
+Status ServerSeat::reset_fault() {
+  if (Clock::now() - reset_ > kResetAgain) {
+    client_.send(ServerCommand::kStop);  // forces come on when the tool is in its place
+    client_.send(ServerCommand::kResetFault);
+    reset_ = Clock::now();
+  }
+  return check_time("the fault of the safety gate did not go away", "look at the server's log");
 }
 
 Status ServerSeat::connecting() {
   const bool has_all = view_.is_connected && view_.welcome.session != 0 && view_.status.loop.wanted_hz > 0.0;
   if (!has_all) return {};
-  if (!view_.welcome.has_control)
-    return fail("another client has this server", endpoint_, "end it, or name another server");
-  if (has_fault(view_.status) && request_ && request_->resets_fault) {
-    if (!has_reset_) client_.send(ServerCommand::kResetFault);
-    has_reset_ = true;
-    return check_time("the fault of the safety gate did not go away", "look at the server's log");
-  }
-  has_reset_ = false;
+  if (!view_.welcome.has_control) return wait_for_control();
+  const bool is_forgiven = request_ && (request_->resets_fault || is_stall_to_forgive());
+  if (has_fault(view_.status) && is_forgiven) return reset_fault();
   session_ = view_.welcome.session;
   client_.take_replies();
   enter(State::kReady);
@@ -159,7 +189,7 @@ Status ServerSeat::placing() {
     enter(State::kStarting);
     return {};
   }
-  if (placed_ > entered_ && newest->time_s != placed_newest_s_ && is_near(*newest, kSagging_mm)) {
+  if (was_placed_ && newest->time_s != placed_newest_s_ && is_near(*newest, kSagging_mm)) {
     client_.set_hand(place);
     asked_ = client_.send(ServerCommand::kStart);
     started_server_s_ = 0.0;
@@ -167,6 +197,7 @@ Status ServerSeat::placing() {
   } else if (Clock::now() - placed_ > kPlaceAgain) {
     place.is_placed = true;
     client_.set_hand(place);
+    was_placed_ = true;
     placed_ = Clock::now();
     placed_newest_s_ = newest->time_s;
   }
@@ -192,7 +223,7 @@ void ServerSeat::settling() {
   const bool is_settled =
       request_->is_in_real_hand || (newest && is_near(*newest, kSettled_mm) &&
                                     (axis_of(*newest) - request_->place.X_PN.R().col(2)).norm() < kSettledAxis);
-  if (!is_settled && Clock::now() - entered_ < kMostSettling) return;
+  if (!is_settled && in_state_s_ < kMostSettling_s) return;
   client_.take_samples();
   last_tick_.reset();
   enter(State::kOn);
@@ -231,7 +262,7 @@ ServerFigures ServerSeat::figures() const {
   figures.loop = view_.status.loop;
   figures.ticks_received = view_.ticks_received;
   figures.ticks_missing = view_.ticks_missing;
-  figures.returns = returns_;
+  figures.returns = returns_ + stalls_;
   return figures;
 }
 

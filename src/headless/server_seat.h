@@ -23,7 +23,9 @@ struct SeatRequest {
 
 /// One haptic server as an attempt sees it. It connects, has the scene loaded, puts the hand in its place, turns the
 /// forces on; from then on the attempt moves the hand. A server that went away and came back goes through all of it
-/// again. Nothing here waits: look() is called every millisecond or so.
+/// again, and so does one whose loop stood still for want of a processor: its fault is reset, unless a person's hand
+/// holds the device. Nothing here waits: look() is called every millisecond or so, and time in which it was not called
+/// is nobody's delay.
 class ServerSeat {
  public:
   enum class State { kConnecting, kReady, kLoading, kPlacing, kStarting, kSettling, kOn };
@@ -54,7 +56,8 @@ class ServerSeat {
 
   const ClientView& view() const noexcept { return view_; }
   const std::string& endpoint() const noexcept { return endpoint_; }
-  int returns() const noexcept { return returns_; }
+  int returns() const noexcept { return returns_; }  ///< Of a server that went away,
+  int stalls() const noexcept { return stalls_; }    ///< or that had stood still.
   ServerFigures figures() const;
 
  private:
@@ -62,6 +65,10 @@ class ServerSeat {
 
   ServerSeat(HapticClient client, std::string endpoint, std::chrono::milliseconds patience);
   void enter(State state);
+  void count_time();
+  bool is_stall_to_forgive() const;
+  Status wait_for_control();
+  Status reset_fault();
   /// The reply to the command that was sent last; none yet: empty.
   Result<bool> is_answered();
   Status check_time(const char* what, const char* advice) const;
@@ -78,16 +85,19 @@ class ServerSeat {
   std::optional<SeatRequest> request_;
   ClientView view_;
   State state_ = State::kConnecting;
-  Clock::time_point entered_;
+  Clock::time_point looked_;
+  double in_state_s_ = 0.0;  ///< As far as look() was called meanwhile.
+  bool was_placed_ = false;  ///< In this state.
   Clock::time_point placed_;
+  Clock::time_point reset_;
   std::uint64_t session_ = 0;  ///< Of the server that holds our scene.
   std::optional<std::uint64_t> last_tick_;
   std::uint64_t missing_ = 0;
   std::uint32_t asked_ = 0;
   double placed_newest_s_ = 0.0;   ///< Time of the newest tick when the hand was placed.
   double started_server_s_ = 0.0;  ///< Server's time when it said that it would start.
-  int returns_ = 0;
-  bool has_reset_ = false;
+  int returns_ = 0, stalls_ = 0;
+  double without_control_s_ = 0.0;  ///< Of in_state_s_, when the server first said so; 0: it did not.
 };
 
 }  // namespace trocar

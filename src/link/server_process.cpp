@@ -9,6 +9,8 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <string_view>
@@ -27,6 +29,15 @@ constexpr std::chrono::seconds kPatience(2);  ///< From SIGTERM to SIGKILL.
 bool is_program(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0;
+}
+
+/// "R" runs or wants to, "D" waits for a disk, "T" and "t" are stopped; after the name in brackets (proc(5)).
+bool is_held_up_thread(const fs::path& thread) {
+  std::ifstream file(thread / "stat");
+  const std::string stat{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::size_t end = stat.rfind(") ");
+  return end != std::string::npos && end + 2 < stat.size() &&
+         std::string_view("RDTt").find(stat[end + 2]) != std::string_view::npos;
 }
 
 std::string told(int status) {
@@ -124,6 +135,16 @@ int ServerProcess::pid() const {
 bool ServerProcess::is_running() {
   const std::lock_guard lock(impl_->mutex);
   return !impl_->end_status;
+}
+
+bool ServerProcess::is_held_up() {
+  if (!is_running()) return false;
+  std::error_code ignored;
+  for (fs::directory_iterator thread("/proc/" + std::to_string(pid()) + "/task", ignored), end; thread != end;
+       thread.increment(ignored)) {
+    if (is_held_up_thread(thread->path())) return true;
+  }
+  return false;
 }
 
 std::string ServerProcess::how_it_ended() {

@@ -23,6 +23,9 @@ class ServerProcess {
 
   int pid() const;
   bool is_running();
+  /// It cannot be blamed for its silence now: it is stopped, or one of its threads runs, waits for a processor or for a
+  /// disk. False when all of it sleeps, and when it has ended.
+  bool is_held_up();
   /// "ended with exit status 1", "was killed by signal 9"; empty while it runs.
   std::string how_it_ended();
   void stop();

@@ -14,7 +14,7 @@ enum class AttemptPhase : std::uint8_t {
   kStarting,    ///< Servers come up and load; `progress` says how far.
   kReady,       ///< Forces are on, the needle is outside the skin.
   kInBody,      ///< The skin was pierced, the needle is inside.
-  kServerLost,  ///< The needle's server is away and is being brought back; `banner` says what is being done.
+  kServerLost,  ///< There is no news of the needle: its server is away or slow, or this machine is; see `banner`.
   kStopped,     ///< Forces were stopped by the trainee; resume_forces() goes on.
   kFinishing,   ///< Being scored.
   kFinished,    ///< result() has the score.
@@ -84,6 +84,10 @@ struct AttemptView {
   bool is_performing = false;      ///< A scripted operator moves the needle.
   std::vector<std::string> notes;  ///< What went wrong on the way, in order.
 };
+
+/// The view as it must be taken when it was made so long ago: of a needle in motion that nobody has looked after for
+/// 250 ms nothing is known.
+AttemptView aged(AttemptView view, double age_s);
 
 /// A point of the force plot.
 struct ForcePoint {

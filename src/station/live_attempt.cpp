@@ -62,7 +62,8 @@ LiveAttempt::~LiveAttempt() = default;
 
 AttemptView LiveAttempt::view() const {
   const std::lock_guard lock(impl_->desk.mutex);
-  return impl_->desk.news.view;
+  const AttemptNews& news = impl_->desk.news;
+  return aged(news.view, std::chrono::duration<double>(std::chrono::steady_clock::now() - news.told).count());
 }
 
 std::vector<ForcePoint> LiveAttempt::take_forces() {

@@ -32,9 +32,10 @@ struct AttemptOptions {
   bool is_guided = false;        ///< Hints are given.
   bool waits_for_begin = false;  ///< Recording starts at begin(): a briefing may go before it. Else when all is ready.
   bool has_probe = true;         ///< false: one server alone.
-  std::optional<Pose> X_PN_start;            ///< Empty: 20 mm before the entry on the planned path.
-  std::optional<Pose> X_PT_start;            ///< Empty: the case's.
-  std::chrono::milliseconds patience{8000};  ///< How long a server may be silent before it is started again.
+  std::optional<Pose> X_PN_start;  ///< Empty: 20 mm before the entry on the planned path.
+  std::optional<Pose> X_PT_start;  ///< Empty: the case's.
+  /// How long a server may be silent before it is started again; one that has no processor, four times as long.
+  std::chrono::milliseconds patience{8000};
 };
 
 /// Whether set_hand() moves a device of that name; else it moves itself, or a person does.
@@ -82,7 +83,8 @@ class LiveAttempt {
   /// The window has drawn a picture. Once called, the servers are told how old the last one is.
   void frame_drawn();
   /// Where the hand wants the tool, and how fast it moves there (mm/s of the tip or face, rad/s). A hand that is not
-  /// told anything for 50 ms stands still; one that jumps is slowed down to what a hand does.
+  /// told anything for 50 ms stands still; one that jumps is slowed down to what a hand does. While there is no news of
+  /// the needle (kServerLost) its hand is not heard: it is where it was when there is.
   void set_hand(HandTool tool, const Pose& X_PTool, const Vec3& v_P = Vec3::Zero(), const Vec3& w_P = Vec3::Zero());
   /// Clamped: the tool stays where its hand is, whatever set_hand says.
   void hold(HandTool tool, bool is_clamped);

@@ -75,6 +75,17 @@ TEST(ServerProcess, StopsASuspendedChild) {
   EXPECT_EQ(process.how_it_ended(), "was killed by signal 15");
 }
 
+TEST(ServerProcess, IsHeldUpWhileItIsStoppedOrBusyAndNotWhileItSleeps) {
+  ServerProcess sleeper = started("/bin/sleep", {"1000"});
+  EXPECT_TRUE(eventually([&] { return !sleeper.is_held_up(); }));
+  ::kill(sleeper.pid(), SIGSTOP);
+  EXPECT_TRUE(eventually([&] { return sleeper.is_held_up(); }));
+  sleeper.stop();
+  EXPECT_FALSE(sleeper.is_held_up());
+  ServerProcess busy = started("/bin/sh", {"-c", "while :; do :; done"});
+  EXPECT_TRUE(eventually([&] { return busy.is_held_up(); }));
+}
+
 TEST(ServerProcess, EndsItsChildWhenDestroyed) {
   int pid = 0;
   {

@@ -156,7 +156,8 @@ void AttemptLoop::lead_hands(const AttemptWishes& wishes) {
   LedHand& needle = steering_->hand();
   if (wishes.needle_clamped) needle.clamp(*wishes.needle_clamped);
   if (wishes.probe_clamped) probe_hand_.clamp(*wishes.probe_clamped);
-  if (wishes.needle && !steering_->is_performing())
+  // Who does not see where the needle is does not move it: what the hand did meanwhile is nothing.
+  if (wishes.needle && needle_->is_on() && !steering_->is_performing())
     needle.lead(wishes.needle->X_P, wishes.needle->v_P, wishes.needle->w_P);
   if (wishes.probe) probe_hand_.lead(wishes.probe->X_P, wishes.probe->v_P, wishes.probe->w_P);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -34,6 +35,7 @@ struct AttemptWishes {
 /// What goes from the attempt's thread to the window.
 struct AttemptNews {
   AttemptView view;
+  std::chrono::steady_clock::time_point told;  ///< When the view was made.
   std::vector<ForcePoint> forces;
   std::vector<AttemptEvent> events;
   std::optional<Result<RunResult>> result;

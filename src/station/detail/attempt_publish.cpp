@@ -28,6 +28,16 @@ const char* to_string(AttemptPhase phase) noexcept {
   return "?";
 }
 
+AttemptView aged(AttemptView view, double age_s) {
+  constexpr double kFresh_s = 0.25;
+  const bool moves = view.phase == AttemptPhase::kReady || view.phase == AttemptPhase::kInBody;
+  if (!moves || age_s < kFresh_s) return view;
+  view.phase = AttemptPhase::kServerLost;
+  view.banner = "The puncture stands still: this machine is too busy";
+  view.hint.clear();
+  return view;
+}
+
 AttemptPhase AttemptLoop::phase_now() const {
   if (is_stopped_) return AttemptPhase::kStopped;
   if (!has_ever_been_on_) return AttemptPhase::kStarting;
@@ -94,6 +104,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   AttemptNews& news = desk_.news;
   view.is_performing = view.is_performing || desk_.wishes.performer != nullptr;
   news.view = std::move(view);
+  news.told = std::chrono::steady_clock::now();
   news.servers = servers_;
   if (news.forces.size() < kMostKept) news.forces.insert(news.forces.end(), forces.begin(), forces.end());
   if (news.events.size() < kMostKept) news.events.insert(news.events.end(), events_.begin(), events_.end());

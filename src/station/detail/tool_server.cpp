@@ -14,6 +14,9 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kMostReturns = 6;  ///< In a minute; more often, something is wrong with the machine. [assumed]
 constexpr auto kAskAgain = 1s;           ///< Whether a device is back.
+constexpr auto kFresh = 250ms;           ///< An older tick does not tell where the tool is.
+constexpr auto kAsleep = 500ms;          ///< A silent process that sleeps for so long does not work any more. [assumed]
+constexpr double kMostPatience = 4.0;    ///< Of one that is busy: it may turn in a circle. [assumed]
 
 std::string words_of(const std::string& device) {
   if (device == "spacemouse") return "SpaceMouse";
@@ -42,6 +45,7 @@ void ToolServer::connect() {
   if (seat_) missing_before_ += seat_->ticks_missing();
   seat_.reset();  // says goodbye before the next one asks for control
   was_on_ = false;
+  stalls_ = 0;
   lost_device_.reset();
   before_.clear();
   ClientOptions options;
@@ -133,35 +137,21 @@ std::string ToolServer::look() {
   }
   const Result<State> state = seat_->look();
   was_ever_heard_ = was_ever_heard_ || seat_->view().welcome.session != 0;
-  if (!state) {
-    const bool is_heard = seat_->view().is_connected;
-    if (lost_device_ && is_heard) return open_device_again();
-    if (is_device_lost() && !is_stopped_ && !is_real_hand_) {
-      was_on_ = false;
-      lost_device_.emplace();
-      return banner_ = fmt::format(
-                 "The {} is gone. Plug it in again and the puncture goes on where it is; or end the attempt.",
-                 device_words());
-    }
-    if (is_stopped_ || (is_real_hand_ && is_heard)) {
-      was_on_ = false;
-      waits_for_resume_ = !is_stopped_;
-      banner_ = state.error().what + "; resume when you are ready";
-      return banner_;
-    }
-    // A server that answers has a fault, which the next seat resets; one that does not is ended.
-    return bring_back(state.error().what, !is_heard);
-  }
+  if (seat_->view().is_connected || process_->is_held_up()) held_up_ = Clock::now();
+  if (!state) return cannot_go_on(state.error());
   if (*state == State::kOn && !was_on_) {
     was_on_ = true;
+    ticked_ = Clock::now();
     banner_.clear();
     send_settings();
   }
-  if (was_on_ && *state != State::kOn) was_on_ = false;
+  if (was_on_ && *state != State::kOn) return note_interruption();
   if (!was_on_) return {};
   if (!seat_->view().is_connected) {
-    banner_ = fmt::format("The server of the {} does not answer", tool_);
-  } else if (!is_stopped_) {
+    banner_ = fmt::format("The server of the {} does not answer. It is waited for", tool_);
+  } else if (Clock::now() - ticked_ > kFresh) {
+    banner_ = fmt::format("There is no news of the {}: this machine is too busy", tool_);
+  } else {
     banner_.clear();
   }
   for (const Reply& reply : seat_->take_replies()) {
@@ -174,8 +164,49 @@ std::string ToolServer::look() {
   return {};
 }
 
+/// The server came back, or stood still; the seat has it hold the tool where it was.
+std::string ToolServer::note_interruption() {
+  was_on_ = false;
+  before_.clear();
+  const bool is_stall = seat_->stalls() > stalls_;
+  stalls_ = seat_->stalls();
+  const char* const what = is_stall ? "stood still: this machine is too busy" : "was away";
+  if (is_stopped_) return banner_ = fmt::format("The server of the {} {}; resume when you are ready", tool_, what);
+  return banner_ = fmt::format("The server of the {} {}. Its forces come back where the {} is", tool_, what, tool_);
+}
+
+/// Whether a silent server only wants a processor.
+bool ToolServer::is_slow() const {
+  return Clock::now() - held_up_ < kAsleep &&
+         seat_->view().silent_s < kMostPatience * std::chrono::duration<double>(patience_).count();
+}
+
+std::string ToolServer::cannot_go_on(const Error& why) {
+  const bool is_heard = seat_->view().is_connected;
+  if (lost_device_ && is_heard) return open_device_again();
+  if (is_device_lost() && !is_stopped_ && !is_real_hand_) {
+    was_on_ = false;
+    lost_device_.emplace();
+    return banner_ =
+               fmt::format("The {} is gone. Plug it in again and the puncture goes on where it is; or end the attempt.",
+                           device_words());
+  }
+  if (is_stopped_ || (is_real_hand_ && is_heard)) {
+    was_on_ = false;
+    waits_for_resume_ = !is_stopped_;
+    return banner_ = why.what + "; resume when you are ready";
+  }
+  if (!is_heard && is_slow()) {
+    banner_ = fmt::format("The server of the {} does not answer: it gets no processor. It is waited for", tool_);
+    return {};
+  }
+  // A server that answers has a fault, which the next seat resets; one that does not is ended.
+  return bring_back(why.what, !is_heard);
+}
+
 bool ToolServer::is_on() const noexcept {
-  return seat_ && was_on_ && !has_given_up_ && seat_->state() == State::kOn && seat_->view().is_connected;
+  return seat_ && was_on_ && !has_given_up_ && seat_->state() == State::kOn && seat_->view().is_connected &&
+         Clock::now() - ticked_ < kFresh;
 }
 
 std::string ToolServer::doing() const {
@@ -196,7 +227,10 @@ std::string ToolServer::doing() const {
 }
 
 std::vector<NumberedSample> ToolServer::take_samples() {
-  return seat_ && was_on_ ? seat_->take_samples() : std::vector<NumberedSample>{};
+  if (!seat_ || !was_on_) return {};
+  std::vector<NumberedSample> samples = seat_->take_samples();
+  if (!samples.empty()) ticked_ = Clock::now();
+  return samples;
 }
 
 void ToolServer::set_hand(const HandTarget& target) {
@@ -248,7 +282,8 @@ void ToolServer::resume_forces() {
     lost_device_.emplace();  // the next look opens it again
     return;
   }
-  bring_back("resumed", !is_alive);
+  const bool is_heard = seat_ && seat_->view().is_connected;
+  bring_back("resumed", !is_alive || !is_heard);
 }
 
 void ToolServer::frame_drawn() {
@@ -293,7 +328,7 @@ ServerFigures ToolServer::figures() const {
   ServerFigures figures;
   if (seat_) figures = seat_->figures();
   figures.tool = tool_;
-  figures.returns = restarts_;
+  figures.returns = restarts_ + (seat_ ? seat_->returns() + seat_->stalls() : 0);
   return figures;
 }
 

@@ -22,8 +22,9 @@ enum class DeviceHold {
 DeviceHold device_hold(const std::string& device_spec);
 
 /// One tool's haptic server, process and seat: brought up, and brought back when it ends, falls silent or latches a
-/// fault. A device that was unplugged is opened again as soon as it is back. A device in a real hand gets no forces
-/// again by itself after a fault: somebody must resume. Nothing waits.
+/// fault. A server that is only slow is waited for: as long as its process is stopped or wants a processor, up to
+/// kMostPatience times the patience. A device that was unplugged is opened again as soon as it is back. A device in a
+/// real hand gets no forces again by itself after a fault: somebody must resume. Nothing waits.
 class ToolServer {
  public:
   /// The process must outlive it.
@@ -33,7 +34,9 @@ class ToolServer {
   void place_at(const Pose& X_PN);  ///< Where it is put when it comes back.
   /// One step. Gives what happened that is worth a note; empty: nothing.
   std::string look();
-  bool is_on() const noexcept;  ///< Seated, forces on (unless stopped), and heard within the last 250 ms.
+  /// Seated, forces on (unless stopped), and a tick was taken within the last 250 ms: else nobody knows where the tool
+  /// is now.
+  bool is_on() const noexcept;
   bool has_given_up() const noexcept { return has_given_up_; }
   const Error& failure() const noexcept { return failure_; }  ///< Why it has given up.
   const std::string& banner() const noexcept { return banner_; }
@@ -63,6 +66,9 @@ class ToolServer {
   std::string give_up(Error why);
   std::string bring_back(const std::string& what, bool is_new_process);
   bool is_device_lost() const;
+  bool is_slow() const;
+  std::string cannot_go_on(const Error& why);
+  std::string note_interruption();
   std::string open_device_again();
   std::string device_words() const;  ///< "gamepad"
   void send_settings();
@@ -85,6 +91,9 @@ class ToolServer {
   std::map<std::uint32_t, Settings> before_;  ///< What held before a message that is not answered yet.
   std::vector<std::string> messages_;
   std::deque<Clock::time_point> returns_;  ///< Of the last minute.
+  Clock::time_point ticked_;               ///< When a tick was last taken.
+  Clock::time_point held_up_;              ///< When it was last heard, or its process had no processor.
+  int stalls_ = 0;                         ///< Of the seat, as far as they were told.
   int restarts_ = 0;
   std::uint64_t missing_before_ = 0;  ///< By seats that were given up.
   bool was_on_ = false;               ///< Since the seat was taken.
