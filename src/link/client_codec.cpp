@@ -9,8 +9,6 @@ namespace trocar {
 namespace {
 using namespace detail;
 
-constexpr std::size_t kMostSettings = 256;  ///< In one SetParameters; the trainer has some dozens. [assumed]
-
 // Beyond what the scene takes (NeedleGeometry, hands): it says itself what it does not like. [assumed]
 constexpr Range kNeedleLengths_mm = {0.0, 1e4};
 constexpr Range kNeedleRadii_mm = {0.0, 1e3};
@@ -41,7 +39,8 @@ CommandMember build_what(Builder& b, const LoadScene& scene) {
 
 CommandMember build_what(Builder& b, const SetParameters& parameters) {
   const auto settings = b.CreateVectorOfStrings(parameters.settings);
-  return {wire::What::SetParameters, wire::CreateSetParameters(b, settings).Union()};
+  const Text tissues = b.CreateString(parameters.tissues_toml);
+  return {wire::What::SetParameters, wire::CreateSetParameters(b, settings, tissues).Union()};
 }
 
 CommandMember build_what(Builder& b, ServerCommand command) {
@@ -110,17 +109,7 @@ LoadScene read(const wire::LoadScene& table, Inspection& in) {
 }
 
 SetParameters read(const wire::SetParameters& table, Inspection& in) {
-  SetParameters parameters;
-  if (table.settings() == nullptr) return parameters;
-  if (table.settings()->size() > kMostSettings) {
-    in.refuse("more settings than a message may have", "settings");
-    return parameters;
-  }
-  for (const flatbuffers::String* setting : *table.settings()) {
-    parameters.settings.push_back(in.text(setting, "settings"));
-    if (!in.is_good()) break;
-  }
-  return parameters;
+  return {in.texts(table.settings(), "settings"), in.text(table.tissues_toml(), "tissues_toml", Layout::kLines)};
 }
 
 Command read(const wire::Command& table, Inspection& in) {

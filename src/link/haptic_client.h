@@ -46,6 +46,7 @@ struct ClientView {
 struct NumberedSample {
   std::uint64_t tick = 0;
   TickSample sample;
+  std::uint64_t scene = 0;  ///< Number of the scene that made it, see Reply::scene; 0: none.
 };
 
 /// The client's side of the link, in a thread of its own that beats at 100 Hz whatever the caller does. Connects by

@@ -13,7 +13,7 @@
 
 namespace trocar {
 
-inline constexpr std::uint32_t kLinkVersion = 1;  ///< Both sides must have the same.
+inline constexpr std::uint32_t kLinkVersion = 2;  ///< Both sides must have the same.
 
 // From a client.
 
@@ -53,9 +53,10 @@ struct LoadScene {
 
 /// While it runs: "liver.k=0.5", "coupling.stiffness=0.8", "force_model=proxy". The scene is built anew and swapped in;
 /// the insertion goes on. Numbers of tissues are all that differ from the loaded table: they replace those of the last
-/// message that named any; no settings at all: as loaded.
+/// message that named any; no settings at all: as loaded. A `tissues_toml` that is not empty replaces the loaded table.
 struct SetParameters {
   std::vector<std::string> settings;
+  std::string tissues_toml = {};
 };
 
 enum class ServerCommand : std::uint8_t {
@@ -123,6 +124,11 @@ struct Reply {
   std::uint32_t request = 0;
   bool is_done = false;
   std::string text;  ///< What was wrong, as Error::text, or what was done.
+  /// Of a command that made a scene (LoadScene, SetParameters): its number, and the parameters in force with it. A
+  /// scene is felt from the first tick whose batch has its number; that batch may arrive before this reply.
+  std::uint64_t scene = 0;                ///< 0: made none. Rises while the server runs.
+  std::vector<std::string> options = {};  ///< "coupling.stiffness=0.8", see haptics/scene_options.h.
+  std::string tissues_toml = {};          ///< The whole table.
 };
 
 struct Pong {
@@ -150,11 +156,13 @@ struct ServerStatus {
   bool has_controller = false;
 };
 
-/// Consecutive ticks: number of the first, and at most kMostSamples of them. The status comes with the newest.
+/// Consecutive ticks of one scene: number of the first, and at most kMostSamples of them. The status comes with the
+/// newest.
 struct StateBatch {
   std::uint64_t first_tick = 0;
   std::vector<TickSample> samples;
   std::optional<ServerStatus> status;  ///< Now and then: at least at 20 Hz.
+  std::uint64_t scene = 0;             ///< See Reply::scene; 0: none.
 };
 inline constexpr std::size_t kMostSamples = 512;
 

@@ -52,12 +52,15 @@ ServerMember build_body(Builder& b, const StateBatch& batch) {
                                                                                batch.samples.size(), detail::to_wire);
   flatbuffers::Offset<wire::ServerStatus> status;
   if (batch.status) status = build_status(b, *batch.status);
-  return {wire::ServerBody::StateBatch, wire::CreateStateBatch(b, batch.first_tick, samples, status).Union()};
+  return {wire::ServerBody::StateBatch,
+          wire::CreateStateBatch(b, batch.first_tick, samples, status, batch.scene).Union()};
 }
 
 ServerMember build_body(Builder& b, const Reply& reply) {
-  const Text text = b.CreateString(reply.text);
-  return {wire::ServerBody::Reply, wire::CreateReply(b, reply.request, reply.is_done, text).Union()};
+  const Text text = b.CreateString(reply.text), tissues = b.CreateString(reply.tissues_toml);
+  const auto options = b.CreateVectorOfStrings(reply.options);
+  const auto table = wire::CreateReply(b, reply.request, reply.is_done, text, reply.scene, options, tissues);
+  return {wire::ServerBody::Reply, table.Union()};
 }
 
 ServerMember build_body(Builder& b, const Pong& pong) {
@@ -147,13 +150,17 @@ void read_samples(const flatbuffers::Vector<const wire::Sample*>& samples, Inspe
 StateBatch read(const wire::StateBatch& table, Inspection& in) {
   StateBatch batch;
   batch.first_tick = table.first_tick();
+  batch.scene = table.scene();
   if (table.samples() != nullptr) read_samples(*table.samples(), in, batch.samples);
   if (table.status() != nullptr) batch.status = read(*table.status(), in);
   return batch;
 }
 
 Reply read(const wire::Reply& table, Inspection& in) {
-  return {table.request(), table.is_done(), in.text(table.text(), "text")};
+  Reply reply{table.request(), table.is_done(), in.text(table.text(), "text"), table.scene()};
+  reply.options = in.texts(table.options(), "options");
+  reply.tissues_toml = in.text(table.tissues_toml(), "tissues_toml", Layout::kLines);
+  return reply;
 }
 
 Pong read(const wire::Pong& table, Inspection& in) {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/log.h"
+#include "haptics/scene_options.h"
 #include "server/flight_recorder.h"
 
 namespace trocar {
@@ -51,10 +52,20 @@ void Control::run() {
     } else {
       log_warning("{}", done.error().text());
     }
-    if (job.session != 0)
-      shared_.door.answer({job.session, {job.request, done.has_value(), done ? *done : done.error().text()}});
+    if (job.session != 0) shared_.door.answer({job.session, make_reply(job, done)});
     shared_.scene.collect();
   }
+}
+
+Reply Control::make_reply(const ControlJob& job, const Result<std::string>& done) const {
+  Reply reply{job.request, done.has_value(), done ? *done : done.error().text()};
+  const bool makes_scene =
+      std::holds_alternative<LoadScene>(job.what) || std::holds_alternative<SetParameters>(job.what);
+  if (!done || !makes_scene || scene_ == nullptr) return reply;
+  reply.scene = scene_->number;
+  reply.options = option_texts(*scene_->scene);
+  reply.tissues_toml = builder_.tissues().to_toml();
+  return reply;
 }
 
 Result<std::string> Control::perform(const ControlJob& job) {
@@ -62,7 +73,8 @@ Result<std::string> Control::perform(const ControlJob& job) {
 }
 
 void Control::publish(const ServoScene& scene) {
-  shared_.scene.publish(std::make_shared<const ServoScene>(scene));
+  scene_ = std::make_shared<const ServoScene>(scene);
+  shared_.scene.publish(scene_);
   const LoadScene& request = builder_.request();
   shared_.door.update([&](ControlStatus& status) {
     status.has_scene = true;

@@ -54,9 +54,11 @@ void LinkThread::run() {
 void LinkThread::drain() {
   ServoRecord record;
   while (shared_.records.pop(record)) {
-    // A gap ends a batch: its ticks are numbered from the first.
-    if (!batch_.samples.empty() && record.tick != batch_.first_tick + batch_.samples.size()) flush();
+    // A gap ends a batch, because its ticks are numbered from the first; so does another scene.
+    const bool is_next = record.tick == batch_.first_tick + batch_.samples.size() && record.scene == batch_.scene;
+    if (!batch_.samples.empty() && !is_next) flush();
     if (batch_.samples.empty()) batch_.first_tick = record.tick;
+    batch_.scene = record.scene;
     batch_.samples.push_back(record.sample);
     if (batch_.samples.size() >= kSendAt) flush();
     if (record.drop_n > 0.0) {

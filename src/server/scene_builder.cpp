@@ -122,8 +122,11 @@ Result<ServoScene> SceneBuilder::load(const LoadScene& request, const Progress& 
 Result<ServoScene> SceneBuilder::change(const SetParameters& request) {
   if (patient_ == nullptr) return fail("there is no scene whose numbers could be changed", "", "load one first");
   Parts parts = parts_;
+  if (!request.tissues_toml.empty()) {
+    TROCAR_TRY(parts.loaded, parse_tissue_table(request.tissues_toml, "the client's tissue table"));
+  }
   TissueTable tissues = parts.loaded;
-  bool has_tissues = request.settings.empty();
+  bool has_tissues = request.settings.empty() || !request.tissues_toml.empty();
   for (const std::string& setting : request.settings) {
     TROCAR_TRY(const bool is_option, apply_option(setting, parts.options));
     if (is_option) continue;

@@ -28,11 +28,13 @@ class SceneBuilder {
   /// The last scene with other numbers: "liver.k=0.5", "coupling.stiffness=0.8", "coupling.damping=0.002",
   /// "force_model=proxy", "bending=0". All of them or none. Numbers of tissues replace those of earlier changes: what
   /// is not named is again as it was loaded (no settings at all: every tissue), so that a change that was undone or a
-  /// message that was lost leaves nothing behind; a change that names no tissue leaves them. Errors: no scene yet, an
-  /// unknown name, a number out of range.
+  /// message that was lost leaves nothing behind; a change that names no tissue leaves them. A tissue table in the
+  /// request replaces the loaded one first. Errors: no scene yet, an unknown name, a number out of range.
   Result<ServoScene> change(const SetParameters& request);
 
   const LoadScene& request() const noexcept { return request_; }
+  /// In force with the last scene.
+  const TissueTable& tissues() const noexcept { return parts_.tissues; }
   const VirtualPatient* patient() const noexcept { return patient_.get(); }
 
  private:

@@ -163,6 +163,7 @@ void Servo::begin_anew() noexcept {
 ServoRecord Servo::step(const ServoInput& input) noexcept {
   ServoRecord record;
   record.tick = ticks_++;
+  record.scene = input.scene == nullptr ? 0 : input.scene->number;
   record.silence_s = input.silence_s;
   if (input.scene != nullptr && input.scene->number != scene_number_) {
     if (!input.scene->continues) begin_anew();

@@ -48,7 +48,8 @@ struct ServoInput {
 /// What a period made: for clients, recorder and flight recorder. Fixed size.
 struct ServoRecord {
   std::uint64_t tick = 0;
-  TickSample sample;  ///< device_f_n is what the gate wrote, turned into P.
+  std::uint64_t scene = 0;  ///< Number of the scene that made it; 0: none.
+  TickSample sample;        ///< device_f_n is what the gate wrote, turned into P.
   DeviceStatus status = DeviceStatus::kFresh;
   GateMode mode = GateMode::kOff;
   GateFault fault = GateFault::kNone;

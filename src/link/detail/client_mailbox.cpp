@@ -52,7 +52,7 @@ std::vector<NumberedSample> ClientMailbox::take_samples() {
   samples.reserve(count);
   for (const StateBatch& batch : batches) {
     std::uint64_t tick = batch.first_tick;
-    for (const TickSample& sample : batch.samples) samples.push_back({tick++, sample});
+    for (const TickSample& sample : batch.samples) samples.push_back({tick++, sample, batch.scene});
   }
   return samples;
 }

@@ -42,6 +42,22 @@ std::string Inspection::text(const flatbuffers::String* text, const char* field,
   return {};
 }
 
+std::vector<std::string> Inspection::texts(const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>* list,
+                                           const char* field) {
+  std::vector<std::string> lines;
+  if (list == nullptr || complaint_) return lines;
+  if (list->size() > kMostSettings) {
+    refuse(fmt::format("more settings than a message may have: {}, {} are allowed", list->size(), kMostSettings),
+           field);
+    return lines;
+  }
+  for (const flatbuffers::String* line : *list) {
+    lines.push_back(text(line, field));
+    if (complaint_) return {};
+  }
+  return lines;
+}
+
 double Inspection::number(double value, Range range, const char* field) {
   if (value >= range.low && value <= range.high) return value;  // false for NaN
   refuse(fmt::format("{} is not a number in {:g} to {:g}", value, range.low, range.high), field);

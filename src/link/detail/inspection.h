@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "geometry/pose.h"
@@ -22,7 +23,8 @@ inline constexpr double kMostPosition_mm = 1e5;
 inline constexpr double kMostTime_s = 1e10;  ///< 300 years of a steady clock.
 inline constexpr Range kTimes_s = {-kMostTime_s, kMostTime_s};
 inline constexpr Range kDurations_s = {0.0, kMostTime_s};
-inline constexpr Range kMagnitudes = {0.0, 1e9};  ///< Of what is only shown.
+inline constexpr std::size_t kMostSettings = 256;  ///< In one list; the trainer has some dozens. [assumed]
+inline constexpr Range kMagnitudes = {0.0, 1e9};   ///< Of what is only shown.
 
 /// Takes values out of a verified message of strangers and keeps the first complaint. After a complaint values are
 /// empty or zero; no value leaves it unchecked.
@@ -33,6 +35,9 @@ class Inspection {
 
   /// UTF-8 without control characters, at most kMostTextBytes; absent is empty.
   std::string text(const flatbuffers::String* text, const char* field, Layout layout = Layout::kLine);
+  /// A list of at most kMostSettings lines; absent is empty.
+  std::vector<std::string> texts(const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>* list,
+                                 const char* field);
   double number(double value, Range range, const char* field);
   int whole_number(std::int32_t value, int low, int high, const char* field);
   /// Finite, and no longer than `longest`.

@@ -39,6 +39,15 @@ std::string find_broken_invariant(Envelope<Body> message) {
                              check_text(scene.patient, false);
                              expect(scene.X_PW.is_finite(), "room not finite");
                            },
+                           [&](SetParameters& parameters) {
+                             for (const std::string& setting : parameters.settings) check_text(setting, false);
+                             check_text(parameters.tissues_toml, true);
+                           },
+                           [&](Reply& reply) {
+                             check_text(reply.text, false);
+                             for (const std::string& option : reply.options) check_text(option, false);
+                             check_text(reply.tissues_toml, true);
+                           },
                            [&](TickSample& sample) {
                              expect(std::isfinite(sample.time_s), "tick without a time");
                              expect(is_near(sample.tip_mm) && is_near(sample.device_mm), "tick far away");

@@ -22,8 +22,8 @@ void each_field(T& value, Visit&& visit) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = value;
     all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
   } else if constexpr (std::is_same_v<Plain, SetParameters>) {
-    auto& [a] = value;
-    all(a);
+    auto& [a, b] = value;
+    all(a, b);
   } else if constexpr (std::is_same_v<Plain, Command>) {
     auto& [a, b] = value;
     all(a, b);
@@ -37,8 +37,8 @@ void each_field(T& value, Visit&& visit) {
     auto& [a, b, c, d, e] = value;
     all(a, b, c, d, e);
   } else if constexpr (std::is_same_v<Plain, Reply>) {
-    auto& [a, b, c] = value;
-    all(a, b, c);
+    auto& [a, b, c, d, e, f] = value;
+    all(a, b, c, d, e, f);
   } else if constexpr (std::is_same_v<Plain, Pong>) {
     auto& [a, b] = value;
     all(a, b);
@@ -58,8 +58,8 @@ void each_field(T& value, Visit&& visit) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y] = value;
     all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y);
   } else if constexpr (std::is_same_v<Plain, StateBatch>) {
-    auto& [a, b, c] = value;
-    all(a, b, c);
+    auto& [a, b, c, d] = value;
+    all(a, b, c, d);
   } else {
     static_assert(std::is_same_v<Plain, Goodbye>);
   }

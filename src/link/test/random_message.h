@@ -74,6 +74,14 @@ class RandomMessages {
     each_field(scene, [this](auto& field) { fill(field); });
     scene.tissues_toml += "\r\n\tk = 0.5\n";
   }
+  void fill(SetParameters& parameters) {
+    each_field(parameters, [this](auto& field) { fill(field); });
+    parameters.tissues_toml += "\n";
+  }
+  void fill(Reply& reply) {
+    each_field(reply, [this](auto& field) { fill(field); });
+    reply.tissues_toml += "\n";
+  }
   void fill(TickSample& sample) {
     each_field(sample, [this](auto& field) { fill(field); });
     using Limits = std::numeric_limits<double>;

@@ -15,18 +15,21 @@ class Control {
   void run();
 
  private:
+  /// What a reply says of a job that was done, in words.
   Result<std::string> perform(const ControlJob& job);
   Result<std::string> perform(const LoadScene& request);
   Result<std::string> perform(const SetParameters& request);
   Result<std::string> perform(ServerCommand command);
   Result<std::string> perform(const WriteFlight& flight);
   void publish(const ServoScene& scene);
+  Reply make_reply(const ControlJob& job, const Result<std::string>& done) const;
 
   Shared& shared_;
   HapticDevice& device_;
   SceneBuilder builder_;
   std::string tool_;
   std::filesystem::path flight_folder_;
+  std::shared_ptr<const ServoScene> scene_;  ///< The one published last.
 };
 
 }  // namespace trocar

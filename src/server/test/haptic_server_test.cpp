@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <thread>
@@ -95,6 +96,39 @@ TEST(HapticServer, SendsEveryTickOrCountsIt) {
   });
   EXPECT_TRUE(is_enough);
   EXPECT_EQ(gaps, client.view().ticks_missing);
+}
+
+/// The reply to a command, when it comes.
+Reply reply_to(HapticClient& client, std::uint32_t request) {
+  Reply found;
+  EXPECT_TRUE(wait_for([&] {
+    for (Reply& reply : client.take_replies())
+      if (reply.request == request) found = std::move(reply);
+    return found.request == request;
+  }));
+  return found;
+}
+
+TEST(HapticServer, NumbersTheTicksOfAScene) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  const Reply loaded = reply_to(client, client.send(testing::layered_request()));
+  ASSERT_TRUE(loaded.is_done) << loaded.text;
+  ASSERT_GT(loaded.scene, 0U);
+  const Reply changed = reply_to(client, client.send(SetParameters{{"skin.fp=6", "coupling.stiffness=0.5"}}));
+  ASSERT_TRUE(changed.is_done) << changed.text;
+  EXPECT_GT(changed.scene, loaded.scene);
+  const auto table = parse_tissue_table(changed.tissues_toml, "reply");
+  ASSERT_TRUE(table) << table.error().text();
+  EXPECT_EQ(table->layers[*table->find_layer("skin")].puncture_force_n, 6.0);
+  EXPECT_NE(std::ranges::find(changed.options, "coupling.stiffness=0.5"), changed.options.end());
+  std::vector<std::uint64_t> scenes;  // every number once, in the order of the ticks
+  EXPECT_TRUE(wait_for([&] {
+    for (const NumberedSample& numbered : client.take_samples())
+      if (scenes.empty() || scenes.back() != numbered.scene) scenes.push_back(numbered.scene);
+    return !scenes.empty() && scenes.back() == changed.scene;
+  }));
+  EXPECT_TRUE(std::ranges::is_sorted(scenes));
 }
 
 TEST(HapticServer, RefusesToStartWithoutAScene) {

@@ -43,6 +43,18 @@ TEST(SceneBuilder, SaysWhatIsWrongAndKeepsTheLastScene) {
   EXPECT_TRUE(builder.change({{"liver.k=0.5"}}));
 }
 
+TEST(SceneBuilder, ReplacesTheLoadedTable) {
+  SceneBuilder builder = make_builder();
+  ASSERT_TRUE(builder.load(layered_request()));
+  TissueTable other = builder.tissues();
+  ASSERT_TRUE(apply_override(other, "skin.fp=6"));
+  ASSERT_TRUE(builder.change({{"liver.mu=0.2"}, other.to_toml()}));
+  EXPECT_EQ(builder.tissues().layers[*other.find_layer("skin")].puncture_force_n, 6.0);
+  ASSERT_TRUE(builder.change({}));
+  EXPECT_EQ(builder.tissues().to_toml(), other.to_toml());
+  EXPECT_FALSE(builder.change({{}, "[tissues"}));
+}
+
 TEST(SceneBuilder, ChangesAllNumbersOrNone) {
   SceneBuilder builder = make_builder();
   const auto before = builder.load(layered_request());

@@ -1,0 +1,83 @@
+#include "haptics/scene_options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <type_traits>
+
+namespace trocar {
+namespace {
+
+constexpr std::string_view kForceModel = "force_model";
+
+/// The one list of options and device numbers: calls visit(name, field) for each; a field is a double or a bool.
+template <class Options, class Device, class Visitor>
+void visit_numbers(Options& options, Device& device, Visitor&& visit) {
+  visit("coupling.stiffness", options.coupling.stiffness_n_per_mm);
+  visit("coupling.damping", options.coupling.damping_ns_per_mm);
+  visit("constraint.force", options.constraint.force_n);
+  visit("constraint.distance", options.constraint.linear_mm);
+  visit("constraint.torque", options.constraint.torque_nmm);
+  visit("constraint.angle", options.constraint.linear_rad);
+  visit("stick", options.has_stick);
+  visit("weight_compensation", options.has_weight_compensation);
+  visit("bending", options.has_bending);
+  visit("device.peak_force", device.peak_force_n);
+  visit("device.peak_torque", device.peak_torque_nmm);
+  visit("device.stiffness", device.max_stiffness_n_per_mm);
+  visit("device.weight", device.stylus_weight_n);
+  visit("device.lever", device.stylus_lever_mm);
+}
+
+Result<double> parse_number(std::string_view name, std::string_view text) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(number)) return number;
+  return fail_usage(fmt::format("\"{}\" is not a finite number", text), std::string(name));
+}
+
+Status restore_option(std::string_view name, std::string_view value, HapticOptions& options, DeviceCapability& device) {
+  if (name == kForceModel) {
+    TROCAR_TRY(options.force_model, parse_force_model(value));
+    return {};
+  }
+  TROCAR_TRY(const double number, parse_number(name, value));
+  bool is_known = false;
+  visit_numbers(options, device, [&](std::string_view known, auto& field) {
+    if (known != name) return;
+    is_known = true;
+    if constexpr (std::is_same_v<std::remove_reference_t<decltype(field)>, bool>)
+      field = number != 0.0;
+    else
+      field = number;
+  });
+  if (is_known) return {};
+  return fail_usage("unknown option of a scene", std::string(name), "use a version of the program that knows it");
+}
+
+}  // namespace
+
+std::vector<std::string> option_texts(const HapticScene& scene) {
+  std::vector<std::string> texts{fmt::format("{}={}", kForceModel, to_string(scene.options.force_model))};
+  visit_numbers(scene.options, scene.device, [&](const char* name, const auto& field) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, bool>)
+      texts.push_back(fmt::format("{}={:d}", name, field));
+    else
+      texts.push_back(fmt::format("{}={}", name, field));
+  });
+  return texts;
+}
+
+Status restore_options(std::span<const std::string> texts, HapticOptions& options, DeviceCapability& device) {
+  for (const std::string& text : texts) {
+    const std::string_view view = text;
+    const std::size_t at = view.find('=');
+    if (at == std::string_view::npos) return fail_usage("an option of a scene is NAME=VALUE", text);
+    TROCAR_TRY_STATUS(restore_option(view.substr(0, at), view.substr(at + 1), options, device));
+  }
+  return {};
+}
+
+}  // namespace trocar
