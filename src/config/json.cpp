@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/atomic_file.h"
+#include "core/input_file.h"
 
 namespace trocar {
 namespace {
@@ -47,7 +47,7 @@ Result<Json> parse_json(std::string_view text, const std::string& name) {
 }
 
 Result<Json> load_json(const std::filesystem::path& path) {
-  TROCAR_TRY(const std::string text, read_file(path));
+  TROCAR_TRY(const std::string text, read_input(path, FileKind::kJson));
   return parse_json(text, path.string());
 }
 

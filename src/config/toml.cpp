@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "config/detail/toml_text.h"
-#include "core/atomic_file.h"
+#include "core/input_file.h"
 
 namespace {
 /// Out of line, so that toml++'s noexcept functions may name it without a warning.
@@ -222,7 +222,7 @@ Result<TomlTable> parse_toml(std::string_view text, const std::string& name) {
 }
 
 Result<TomlTable> load_toml(const std::filesystem::path& path) {
-  TROCAR_TRY(const std::string text, read_file(path));
+  TROCAR_TRY(const std::string text, read_input(path, FileKind::kToml));
   return parse_toml(text, path.string());
 }
 

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/input_file.h"
+
 namespace trocar {
 namespace fs = std::filesystem;
 namespace {
@@ -93,16 +95,10 @@ Status write_folder_atomically(const fs::path& target, const std::function<Statu
 }
 
 Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
-  std::error_code error;
-  if (!fs::exists(path, error)) return fail("no such file", path.string(), "check the path");
-  if (fs::is_directory(path, error)) return fail("is a folder, not a file", path.string(), "name a file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return fail("cannot be read", path.string(), "check the permissions");
-  const auto size = fs::file_size(path, error);
-  if (!error && size > max_bytes) return fail(fmt::format("is larger than {} bytes", max_bytes), path.string());
-  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (file.bad() || bytes.size() > max_bytes) return fail("cannot be read", path.string(), "check the file");
-  return bytes;
+  FileLimit limit = limit_of(FileKind::kOther);
+  limit.max_bytes = max_bytes;
+  TROCAR_TRY(const InputFile file, InputFile::open(path, limit));
+  return file.read_all();
 }
 
 }  // namespace trocar

@@ -27,7 +27,7 @@ Status check_fields(const ImageFields& fields, const fs::path& path) {
   for (const auto& [key, value] : fields) {
     const bool is_good_key = !key.empty() && !is_own_note(key) && std::all_of(key.begin(), key.end(), is_key);
     if (!is_good_key || !std::all_of(value.begin(), value.end(), is_text))
-      return fail_usage("is no field for an image's header: " + key, path.string());
+      return fail_usage("not a field for an image's header: " + key, path.string());
   }
   return {};
 }
@@ -88,8 +88,8 @@ Result<ImageFields> read_image_fields(const fs::path& path) {
   if (fs::is_directory(path, error)) return ImageFields{};
   TROCAR_TRY(const auto format, detail::find_image_format(path));
   if (format != detail::ImageFormat::kNrrd) return ImageFields{};
-  TROCAR_TRY_STATUS(detail::check_image_file(path, format, detail::Check::kSize));
-  TROCAR_TRY(const auto all, detail::read_fields_with_itk(path, format));
+  TROCAR_TRY(const auto checked, detail::open_image_file(path, format, detail::Check::kSize));
+  TROCAR_TRY(const auto all, detail::read_fields_with_itk(checked, format));
   ImageFields fields;
   for (const auto& [key, value] : all)
     if (!is_own_note(key)) fields.insert_or_assign(key, value);

@@ -7,6 +7,7 @@
 
 #include "config/json.h"
 #include "core/atomic_file.h"
+#include "core/input_file.h"
 
 namespace trocar {
 namespace fs = std::filesystem;
@@ -47,7 +48,7 @@ Result<Vec3> position_of(const Json& point, const std::string& where) {
 }
 
 Result<Markup> markup_of(const Json& json, const std::string& where) {
-  if (!json.is_object()) return fail("a markup is no object", where, "save the markups again in 3D Slicer");
+  if (!json.is_object()) return fail("a markup is not an object", where, "save the markups again in 3D Slicer");
   Markup markup{text_of(json, "type"), text_of(json, "name"), {}};
   const std::string system = text_of(json, "coordinateSystem", "LPS");
   if (system != "LPS" && system != "RAS")
@@ -58,9 +59,11 @@ Result<Markup> markup_of(const Json& json, const std::string& where) {
   if (!is_mm) return fail("the coordinates are not in mm", where, "save the markups in mm");
   const auto points = json.find("controlPoints");
   if (points == json.end()) return markup;
-  if (!points->is_array()) return fail("the control points are no list", where, "save the markups again in 3D Slicer");
+  if (!points->is_array())
+    return fail("the control points are not a list", where, "save the markups again in 3D Slicer");
   for (const Json& point : *points) {
-    if (!point.is_object()) return fail("a control point is no object", where, "save the markups again in 3D Slicer");
+    if (!point.is_object())
+      return fail("a control point is not an object", where, "save the markups again in 3D Slicer");
     // 3D Slicer keeps points that were never placed.
     if (text_of(point, "positionStatus", "defined") != "defined") continue;
     TROCAR_TRY(Vec3 p, position_of(point, where));
@@ -70,12 +73,13 @@ Result<Markup> markup_of(const Json& json, const std::string& where) {
   return markup;
 }
 
-Result<std::vector<Markup>> read_markups(const fs::path& path) {
+Result<std::vector<Markup>> read_markups(const fs::path& path, const fs::path& inside) {
   const std::string where = path.string();
-  TROCAR_TRY(const Json json, load_json(path));
+  TROCAR_TRY(const std::string text, read_input(path, FileKind::kMarkups, inside));
+  TROCAR_TRY(const Json json, parse_json(text, where));
   const auto list = json.is_object() ? json.find("markups") : json.end();
   if (!json.is_object() || list == json.end() || !list->is_array())
-    return fail("is no markups file", where, "save fiducials or lines in 3D Slicer as .mrk.json");
+    return fail("not a markups file", where, "save fiducials or lines in 3D Slicer as .mrk.json");
   std::vector<Markup> markups;
   for (const Json& item : *list) {
     TROCAR_TRY(Markup markup, markup_of(item, where));
@@ -112,7 +116,7 @@ Status write_markups(const std::vector<Markup>& markups, const fs::path& path) {
   for (const Markup& markup : markups)
     for (const ControlPoint& point : markup.points)
       if (!point.p_P.allFinite())
-        return fail(fmt::format("point \"{}\" has a position that is no number", point.label), path.string());
+        return fail(fmt::format("point \"{}\" has a position that is not a number", point.label), path.string());
   Json list = Json::array();
   for (const Markup& markup : markups) list.push_back(markup_json(markup));
   return write_file_atomically(path, json_text({{"@schema", kSchema}, {"markups", list}}) + "\n");
@@ -120,8 +124,8 @@ Status write_markups(const std::vector<Markup>& markups, const fs::path& path) {
 
 }  // namespace
 
-Result<std::vector<Landmark>> read_landmarks(const fs::path& path) {
-  TROCAR_TRY(const std::vector<Markup> markups, read_markups(path));
+Result<std::vector<Landmark>> read_landmarks(const fs::path& path, const fs::path& inside) {
+  TROCAR_TRY(const std::vector<Markup> markups, read_markups(path, inside));
   std::vector<Landmark> landmarks;
   for (const Markup& markup : markups)
     if (markup.type == "Fiducial")
@@ -135,8 +139,8 @@ Status write_landmarks(const std::vector<Landmark>& landmarks, const fs::path& p
   return write_markups({markup}, path);
 }
 
-Result<std::vector<NeedlePath>> read_paths(const fs::path& path) {
-  TROCAR_TRY(const std::vector<Markup> markups, read_markups(path));
+Result<std::vector<NeedlePath>> read_paths(const fs::path& path, const fs::path& inside) {
+  TROCAR_TRY(const std::vector<Markup> markups, read_markups(path, inside));
   std::vector<NeedlePath> paths;
   for (const Markup& markup : markups) {
     if (markup.type != "Line") continue;

@@ -12,12 +12,16 @@
 
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <string>
+#include <string_view>
 
 #include "core/atomic_file.h"
+#include "core/input_file.h"
 #include "io/detail/quiet.h"
 
 namespace trocar {
@@ -25,6 +29,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kExportAgain = "export the surface again";
+constexpr std::uint64_t kMaxVertices = 50'000'000;  ///< Assumed: far above any surface of an organ.
 
 enum class MeshFormat { kVtp, kStl };
 
@@ -33,22 +38,40 @@ Result<MeshFormat> find_mesh_format(const fs::path& path) {
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (ending == ".vtp") return MeshFormat::kVtp;
   if (ending == ".stl") return MeshFormat::kStl;
-  return fail("is no surface file of a known kind", path.string(), "give a .vtp or .stl file");
+  return fail("not a surface file of a known kind", path.string(), "give a .vtp or .stl file");
 }
 
 /// VTK's STL reader trusts the triangle count of a binary file.
 Status check_stl(const std::string& bytes, const std::string& where) {
   if (bytes.starts_with("solid") && bytes.find("facet") != std::string::npos) return {};
-  if (bytes.size() < 84) return fail("is no STL surface", where, kExportAgain);
+  if (bytes.size() < 84) return fail("not an STL surface", where, kExportAgain);
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data() + 80, sizeof count);
   if (bytes.size() >= 84 + std::uint64_t{50} * count) return {};
   return fail("the surface ends before its last triangle", where, kExportAgain);
 }
 
+/// VTK allocates what a .vtp file declares. Points and polygons take more bytes than they are many, even packed.
+Status check_vtp(std::string_view text, const std::string& where) {
+  constexpr std::uint64_t kMaxPackRatio = 1'032;  ///< Of deflate.
+  if (text.find("<VTKFile") == std::string_view::npos || text.find("PolyData") == std::string_view::npos)
+    return fail("not a VTK surface", where, kExportAgain);
+  if (text.find("<!DOCTYPE") != std::string_view::npos || text.find("<!ENTITY") != std::string_view::npos)
+    return fail("has a document type of its own", where, kExportAgain);
+  constexpr std::string_view kNumberOf = "NumberOf";
+  for (auto at = text.find(kNumberOf); at != std::string_view::npos; at = text.find(kNumberOf, at + 1)) {
+    const auto quote = text.find_first_of("\"'<>", at);
+    if (quote == std::string_view::npos || text[quote] == '<' || text[quote] == '>') continue;
+    std::uint64_t count = 0;
+    std::from_chars(text.data() + quote + 1, text.data() + text.size(), count);
+    if (count > kMaxVertices || count > text.size() * kMaxPackRatio)
+      return fail("the surface declares more points than its file can hold", where, kExportAgain);
+  }
+  return {};
+}
+
 template <class Reader>
-bool run_reader(Reader& reader, const fs::path& path) {
-  reader.SetFileName(path.c_str());
+bool run_reader(Reader& reader) {
   reader.Update();
   return reader.GetErrorCode() == 0 && reader.GetOutput() != nullptr;
 }
@@ -58,7 +81,7 @@ Result<TriangleMesh> mesh_of(vtkPolyData& data, const std::string& where) {
   mesh.vertices.reserve(static_cast<std::size_t>(data.GetNumberOfPoints()));
   for (vtkIdType n = 0; n < data.GetNumberOfPoints(); ++n) {
     const Vec3f vertex = Vec3(data.GetPoint(n)).cast<float>();
-    if (!vertex.allFinite()) return fail("the surface has a vertex that is no number", where, kExportAgain);
+    if (!vertex.allFinite()) return fail("the surface has a vertex that is not a number", where, kExportAgain);
     mesh.vertices.push_back(vertex);
   }
   vtkNew<vtkIdList> cell;
@@ -75,16 +98,20 @@ Result<TriangleMesh> mesh_of(vtkPolyData& data, const std::string& where) {
   return mesh;
 }
 
-Result<TriangleMesh> read_throwing(const fs::path& path, MeshFormat format) {
-  const auto bad = [&] { return fail("is damaged or no surface", path.string(), kExportAgain); };
+Result<TriangleMesh> read_throwing(const InputFile& file, const std::string& bytes, MeshFormat format) {
+  const std::string where = file.path().string();
+  const auto bad = [&] { return fail("damaged or not a surface", where, kExportAgain); };
   if (format == MeshFormat::kStl) {
     vtkNew<vtkSTLReader> reader;
-    if (!run_reader(*reader, path)) return bad();
-    return mesh_of(*reader->GetOutput(), path.string());
+    reader->SetFileName(file.pinned_path().c_str());
+    if (!run_reader(*reader)) return bad();
+    return mesh_of(*reader->GetOutput(), where);
   }
   vtkNew<vtkXMLPolyDataReader> reader;
-  if (reader->CanReadFile(path.c_str()) == 0 || !run_reader(*reader, path)) return bad();
-  return mesh_of(*reader->GetOutput(), path.string());
+  reader->ReadFromInputStringOn();
+  reader->SetInputString(bytes);
+  if (!run_reader(*reader)) return bad();
+  return mesh_of(*reader->GetOutput(), where);
 }
 
 vtkNew<vtkPolyData> poly_data_of(const TriangleMesh& mesh) {
@@ -125,15 +152,18 @@ bool write_throwing(const TriangleMesh& mesh, const fs::path& path, MeshFormat f
 
 }  // namespace
 
-Result<TriangleMesh> read_mesh(const fs::path& path) {
+Result<TriangleMesh> read_mesh(const fs::path& path, const fs::path& inside) {
   detail::silence_libraries();
   TROCAR_TRY(const MeshFormat format, find_mesh_format(path));
-  TROCAR_TRY(const std::string bytes, read_file(path));
-  if (format == MeshFormat::kStl) TROCAR_TRY_STATUS(check_stl(bytes, path.string()));
+  TROCAR_TRY(const InputFile file, InputFile::open(path, FileKind::kMesh, inside));
+  TROCAR_TRY(const std::string bytes, file.read_all());
+  TROCAR_TRY_STATUS(format == MeshFormat::kStl ? check_stl(bytes, path.string()) : check_vtp(bytes, path.string()));
   try {
-    return read_throwing(path, format);
+    return read_throwing(file, bytes, format);
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory to read the surface", path.string(), "close other programs");
   } catch (const std::exception&) {
-    return fail("is damaged or no surface", path.string(), kExportAgain);
+    return fail("damaged or not a surface", path.string(), kExportAgain);
   }
 }
 

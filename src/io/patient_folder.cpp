@@ -127,23 +127,23 @@ Result<detail::PatientDescription> load_description(const fs::path& folder) {
   if (!fs::is_directory(folder, error))
     return fail("no such patient folder", folder.string(), "build one with trocar patient build");
   if (!fs::exists(folder / kDescriptionFile, error))
-    return fail("is no patient folder: it has no patient.toml", folder.string(), "build one with trocar patient build");
-  return detail::load_patient_toml(folder / kDescriptionFile);
+    return fail("not a patient folder: it has no patient.toml", folder.string(), "build one with trocar patient build");
+  return detail::load_patient_toml(folder / kDescriptionFile, folder);
 }
 
-/// The content hash tells afterwards whether CT and labels are whole.
 template <class T>
-Result<Grid<T>> read_hashed(const fs::path& path) {
-  return detail::read_grid<T>(path, detail::convert_voxels, detail::Check::kSize);
+Result<Grid<T>> read_volume(const fs::path& folder, const char* name, detail::Check check) {
+  return detail::read_grid<T>(folder / name, detail::convert_voxels, check, folder);
 }
 
 Status load_volumes(const fs::path& folder, VirtualPatient& patient) {
   Result<CtGrid> ct, distance;
   Result<LabelGrid> labels;
-  parallel_invoke([&] { ct = read_hashed<std::int16_t>(folder / kCtFile); },
-                  [&] { labels = read_hashed<std::uint8_t>(folder / kLabelFile); },
+  using detail::Check;  // The content hash shows afterwards whether CT and labels are whole.
+  parallel_invoke([&] { ct = read_volume<std::int16_t>(folder, kCtFile, Check::kSize); },
+                  [&] { labels = read_volume<std::uint8_t>(folder, kLabelFile, Check::kSize); },
                   [&] {
-                    distance = read_ct(folder / kDistanceFile);
+                    distance = read_volume<std::int16_t>(folder, kDistanceFile, Check::kUnpack);
                     if (distance) patient.skin_distance_mm = from_hundredths(*distance);
                   });
   if (!ct) return tl::unexpected(ct.error());
@@ -180,8 +180,8 @@ Result<VirtualPatient> load_patient(const fs::path& folder) {
   TROCAR_TRY_STATUS(load_volumes(folder, patient));
   TROCAR_TRY_STATUS(check_geometry(patient, folder.string()));
   TROCAR_TRY_STATUS(check_label_ids(patient, folder.string()));
-  TROCAR_TRY(patient.landmarks, read_landmarks(folder / kLandmarkFile));
-  TROCAR_TRY(patient.paths, read_paths(folder / kPathFile));
+  TROCAR_TRY(patient.landmarks, read_landmarks(folder / kLandmarkFile, folder));
+  TROCAR_TRY(patient.paths, read_paths(folder / kPathFile, folder));
   patient.content_hash = hash_patient(patient);
   log_info("loaded {}: {} labels, {:.1f} Mvoxel", folder.string(), patient.label_table.labels.size(),
            1e-6 * static_cast<double>(patient.labels.voxels.size()));
@@ -193,7 +193,7 @@ Result<std::vector<NamedMesh>> load_patient_meshes(const fs::path& folder) {
   TROCAR_TRY(const detail::PatientDescription description, load_description(folder));
   std::vector<NamedMesh> meshes;
   for (const detail::PatientMeshEntry& entry : description.meshes) {
-    TROCAR_TRY(TriangleMesh mesh_P, read_mesh(folder / entry.file));
+    TROCAR_TRY(TriangleMesh mesh_P, read_mesh(folder / entry.file, folder));
     meshes.push_back({entry.name, std::move(mesh_P)});
   }
   return meshes;

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/atomic_file.h"
+#include "core/input_file.h"
 #include "io/detail/number_text.h"
 #include "io/detail/xml_elements.h"
 
@@ -19,8 +19,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using detail::XmlElement;
-
-constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 
 std::optional<std::string_view> find_attribute(const XmlElement& element, std::string_view name) {
   const auto found = element.attributes.find(name);
@@ -177,7 +175,7 @@ Result<PlusConfig> config_of(const std::vector<XmlElement>& elements) {
 
 Result<PlusConfig> read_plus_config(const fs::path& path) {
   constexpr const char* kNeeded = "give the PlusDeviceSet_....xml of the calibrated probe";
-  TROCAR_TRY(const std::string text, read_file(path, kMaxBytes));
+  TROCAR_TRY(const std::string text, read_input(path, FileKind::kXml));
   auto elements = detail::parse_xml(text);
   if (!elements) return fail(elements.error().what, path.string(), kNeeded);
   auto config = config_of(*elements);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/atomic_file.h"
+#include "io/detail/header_payload.h"
 #include "io/detail/sequence_header.h"
 #include "io/detail/sequence_pixels.h"
 
@@ -48,8 +49,12 @@ Status check(const TrackedSequence& sequence) {
 }  // namespace
 
 Result<TrackedSequence> read_sequence(const fs::path& path) {
-  TROCAR_TRY(detail::SequenceHeader header, detail::read_sequence_header(path));
-  TROCAR_TRY(header.sequence.pixels, detail::read_pixels(header, path.string()));
+  TROCAR_TRY(InputFile file, InputFile::open(path, FileKind::kSequence));
+  TROCAR_TRY(detail::SequenceHeader header, detail::read_sequence_header(file));
+  if (!header.data_file.empty()) {
+    TROCAR_TRY(file, detail::open_data_file(path, header.data_file, FileKind::kSequence));
+  }
+  TROCAR_TRY(header.sequence.pixels, detail::read_pixels(header, file, path.string()));
   turn_pictures(header, header.sequence);
   return std::move(header.sequence);
 }

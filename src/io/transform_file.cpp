@@ -1,64 +1,88 @@
 #include "io/transform_file.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/SVD>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
 
 #include "core/atomic_file.h"
+#include "core/input_file.h"
 #include "io/detail/itk_transform.h"
 
 namespace trocar {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMaxDeviation = 1e-4;      ///< Of R^T R from identity.
-constexpr std::size_t kMaxBytes = 1 << 20;  ///< A linear transform takes some hundred bytes.
+constexpr double kMaxDeviation = 1e-4;  ///< Of R^T R from identity.
+constexpr const char* kSaveAgain = "save a linear transform as .tfm, for example in 3D Slicer";
 
-/// True for "1 -2.5 3e4": finite numbers, at least one.
-bool are_numbers(std::string_view text) {
-  bool any = false;
-  while (true) {
+/// How many numbers stand in "1 -2.5 3e4"; nothing where a word is not a finite number.
+std::optional<std::size_t> count_numbers(std::string_view text) {
+  for (std::size_t count = 0;; ++count) {
     const auto first = text.find_first_not_of(" \t\r");
-    if (first == std::string_view::npos) return any;
+    if (first == std::string_view::npos) return count;
     text.remove_prefix(first);
     const std::string_view word = text.substr(0, text.find_first_of(" \t\r"));
     double number = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number)) return false;
+    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number)) return std::nullopt;
     text.remove_prefix(word.size());
-    any = true;
   }
 }
 
-/// ITK's reader trusts its input and takes what it cannot read for the identity.
-Status check_text(const std::string& text, const std::string& where) {
-  const auto bad = [&](const char* what) {
-    return fail(what, where, "save a linear transform as .tfm, for example in 3D Slicer");
-  };
-  if (!text.starts_with("#Insight Transform File")) return bad("is no ITK transform file");
+/// Numbers in a transform file, nothing where its line is missing.
+struct ParameterCounts {
+  std::optional<std::size_t> parameters;
+  std::optional<std::size_t> fixed_parameters;
+};
+
+/// ITK's reader reports no missing line, no missing number and no file that was cut: it returns the identity or zeros.
+Result<ParameterCounts> count_parameters(const std::string& text, const std::string& where) {
+  if (!text.starts_with("#Insight Transform File")) return fail("not an ITK transform file", where, kSaveAgain);
+  // A file that was cut within its last number has as many numbers as a whole one.
+  if (!text.ends_with('\n'))
+    return fail("the last line has no line break: the file may be cut", where,
+                "copy the file again, or end its last line with a line break");
+  ParameterCounts counts;
   std::istringstream lines(text);
-  bool has_parameters = false;
   for (std::string line; std::getline(lines, line);) {
-    const auto colon = line.find(':');
-    if (colon == std::string::npos || (!line.starts_with("Parameters:") && !line.starts_with("FixedParameters:")))
-      continue;
-    if (!are_numbers(std::string_view(line).substr(colon + 1)))
-      return bad("the transform has a parameter that is no number");
-    has_parameters = has_parameters || line.starts_with("Parameters:");
+    const bool is_fixed = line.starts_with("FixedParameters:");
+    if (!is_fixed && !line.starts_with("Parameters:")) continue;
+    const auto count = count_numbers(std::string_view(line).substr(line.find(':') + 1));
+    if (!count) return fail("the transform has a parameter that is not a number", where, kSaveAgain);
+    (is_fixed ? counts.fixed_parameters : counts.parameters) = *count;
   }
-  if (!has_parameters) return bad("the transform has no parameters");
-  return {};
+  if (!counts.parameters || *counts.parameters == 0) return fail("the transform has no parameters", where, kSaveAgain);
+  if (!counts.fixed_parameters)
+    return fail("the transform has no fixed parameters: the file may be cut", where, kSaveAgain);
+  return counts;
+}
+
+Status check_counts(const ParameterCounts& counts, const detail::AffineMap& map, const std::string& where) {
+  const auto check = [&](const char* name, std::size_t found, std::size_t needed) -> Status {
+    if (found == needed) return {};
+    return fail(fmt::format("the transform has {} {}, its type needs {}: the file may be cut", found, name, needed),
+                where, kSaveAgain);
+  };
+  TROCAR_TRY_STATUS(check("parameters", *counts.parameters, map.parameters));
+  // Euler3DTransform of ITK 4 wrote the centre of rotation without the order of rotations.
+  if (*counts.fixed_parameters == 3 && map.fixed_parameters == 4) return {};
+  return check("fixed parameters", *counts.fixed_parameters, map.fixed_parameters);
 }
 
 }  // namespace
 
 Result<Pose> read_transform(const fs::path& path) {
-  TROCAR_TRY(const std::string text, read_file(path, kMaxBytes));
-  TROCAR_TRY_STATUS(check_text(text, path.string()));
-  TROCAR_TRY(const detail::AffineMap map, detail::read_transform_with_itk(path));
+  TROCAR_TRY(const InputFile file, InputFile::open(path, FileKind::kTransform));
+  TROCAR_TRY(const std::string text, file.read_all());
+  TROCAR_TRY(const ParameterCounts counts, count_parameters(text, path.string()));
+  TROCAR_TRY(const detail::AffineMap map, detail::read_transform_with_itk(file));
+  TROCAR_TRY_STATUS(check_counts(counts, map, path.string()));
   Mat3 matrix;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
@@ -73,7 +97,7 @@ Result<Pose> read_transform(const fs::path& path) {
 }
 
 Status write_transform(const Pose& X_AB, const fs::path& path) {
-  if (!X_AB.is_finite()) return fail("the pose has a value that is no number", path.string());
+  if (!X_AB.is_finite()) return fail("the pose has a value that is not a number", path.string());
   detail::AffineMap map;
   for (int row = 0; row < 3; ++row) {
     const auto r = static_cast<std::size_t>(row);

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "core/atomic_file.h"
+#include "core/input_file.h"
 
 namespace trocar::detail {
 namespace fs = std::filesystem;
@@ -14,8 +14,6 @@ namespace {
 
 constexpr std::size_t kPreamble = 128;
 constexpr std::size_t kMaxKept = 4096;  ///< Longer elements are not header text.
-constexpr std::size_t kMaxBytes = std::size_t{1}
-                                  << 30;  ///< One slice is half a megabyte, a big series of frames some hundred.
 constexpr std::uint32_t kUndefined = 0xffffffff;
 constexpr int kMaxDepth = 32;
 constexpr std::uint32_t kItem = dicom_tag(0xfffe, 0xe000);
@@ -42,9 +40,9 @@ bool is_long_vr(std::string_view vr) {
 }
 
 /// The first bytes, enough to tell a DICOM file: with its mark, or starting straight with group 2 or 8.
-bool may_be_dicom(const fs::path& path) {
+bool may_be_dicom(const InputFile& input) {
   std::array<char, kPreamble + 4> start{};
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file(input.pinned_path(), std::ios::binary);
   file.read(start.data(), start.size());
   const auto count = static_cast<std::size_t>(file.gcount());
   if (count == start.size() && std::string_view(start.data() + kPreamble, 4) == "DICM") return true;
@@ -189,9 +187,10 @@ class DicomWalk {
 };
 
 Result<std::optional<DicomHeader>> DicomHeader::read(const fs::path& path) {
-  if (!may_be_dicom(path)) return std::optional<DicomHeader>();
+  TROCAR_TRY(const InputFile file, InputFile::open(path, FileKind::kDicom));
+  if (!may_be_dicom(file)) return std::optional<DicomHeader>();
   DicomHeader header;
-  TROCAR_TRY(header.bytes_, read_file(path, kMaxBytes));
+  TROCAR_TRY(header.bytes_, file.read_all());
   if (!DicomWalk(header).run())
     return fail("the DICOM file is damaged or ends too early", path.string(), "copy or export it again");
   return std::optional(std::move(header));

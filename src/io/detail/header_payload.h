@@ -5,22 +5,28 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "core/input_file.h"
 
 namespace trocar::detail {
 
 inline constexpr const char* kExportAgain = "copy or export the file again";
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
 
-/// What a header promises about its voxels.
+/// What a header declares about its voxels.
 struct Payload {
-  std::filesystem::path file;  ///< The file that has the voxels.
-  std::uint64_t offset = 0;    ///< Where the voxels, or their compressed stream, start.
-  std::uint64_t bytes = 0;     ///< Bytes after unpacking.
-  std::uint64_t packed = 0;    ///< Length of the compressed stream, 0 where the header does not say.
-  bool is_compressed = false;  ///< gzip or zlib.
-  bool is_text = false;        ///< Numbers written as text; their count is left to the reader.
+  std::uint64_t offset = 0;           ///< Where the voxels, or their compressed stream, start.
+  std::uint64_t bytes = 0;            ///< Bytes after unpacking.
+  std::uint64_t packed = 0;           ///< Length of the compressed stream, 0 where the header does not declare it.
+  bool is_compressed = false;         ///< gzip or zlib.
+  bool is_text = false;               ///< Numbers written as text.
+  std::uint64_t least_bytes = 0;      ///< Of the file: no encoding of the voxels is shorter. Text only.
+  std::filesystem::path data_file{};  ///< The file with the voxels, relative to the header; empty: the header's own.
 };
+
+/// Opens the file that a header names for its voxels. Errors: an absolute path, one that leaves the header's folder
+/// (".." or a symbolic link), and those of InputFile.
+Result<InputFile> open_data_file(const std::filesystem::path& header, const std::filesystem::path& data_file,
+                                 FileKind kind);
 
 /// Bytes of one volume with these sides; extra axes must be one long. Errors: fewer axes, empty, 4D, impossible, a
 /// single slice.
@@ -29,6 +35,6 @@ Result<std::uint64_t> volume_bytes(const std::vector<std::int64_t>& sizes, std::
 
 /// Looks at a NIfTI-1 or -2 header in either byte order. Errors: none, header and voxels in two files, a place in doubt
 /// (no qform and no sform, sheared, not in mm), NaN or infinite voxels.
-Result<Payload> nifti_payload(const std::filesystem::path& path);
+Result<Payload> nifti_payload(const InputFile& file);
 
 }  // namespace trocar::detail

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "core/available_memory.h"
 #include "io/detail/quiet.h"
 
 namespace trocar::detail {
@@ -86,14 +87,14 @@ void take_whole_region(itk::ImageIOBase& io) {
 }
 
 /// May throw what ITK throws.
-Result<ItkImage> read_throwing(itk::ImageIOBase& io, const fs::path& path, ImageFormat format) {
-  const std::string where = path.string();
-  io.SetFileName(where);
+Result<ItkImage> read_throwing(itk::ImageIOBase& io, const CheckedImage& checked, ImageFormat format) {
+  const std::string where = checked.file.path().string();
+  io.SetFileName(checked.library_path.string());
   {
     const MutedStandardError muted;
     io.ReadImageInformation();
   }
-  if (io.GetNumberOfDimensions() < 3) return fail("is no 3D image", where, "give a volume, not a picture");
+  if (io.GetNumberOfDimensions() < 3) return fail("not a 3D image", where, "give a volume, not a picture");
   for (unsigned axis = 3; axis < io.GetNumberOfDimensions(); ++axis)
     if (io.GetDimensions(axis) > 1) return fail("is a 4D image", where, "extract one volume and give that");
   const auto type = find_voxel_type(io.GetComponentType());
@@ -105,7 +106,9 @@ Result<ItkImage> read_throwing(itk::ImageIOBase& io, const fs::path& path, Image
   image.components = static_cast<int>(io.GetNumberOfComponents());
   image.fields = text_fields(io);
   take_whole_region(io);
-  image.bytes = std::make_unique_for_overwrite<std::byte[]>(static_cast<std::size_t>(io.GetImageSizeInBytes()));
+  const auto bytes = static_cast<std::size_t>(io.GetImageSizeInBytes());
+  TROCAR_TRY_STATUS(check_memory_for_image(bytes, available_memory_bytes(), where));
+  image.bytes = std::make_unique_for_overwrite<std::byte[]>(bytes);
   std::optional<MutedStandardError> muted;
   if (format == ImageFormat::kMeta) muted.emplace();
   io.Read(image.bytes.get());
@@ -148,28 +151,29 @@ void write_throwing(itk::ImageIOBase& io, const ItkImage& image, std::span<const
 
 }  // namespace
 
-Result<ItkImage> read_with_itk(const fs::path& path, ImageFormat format) {
+Result<ItkImage> read_with_itk(const CheckedImage& checked, ImageFormat format) {
+  const std::string where = checked.file.path().string();
   silence_libraries();
   try {
-    return read_throwing(*make_image_io(format), path, format);
+    return read_throwing(*make_image_io(format), checked, format);
   } catch (const std::bad_alloc&) {
-    return fail("not enough memory for the image", path.string(), "close other programs or crop the image");
+    return fail("not enough memory to read the image", where, "close other programs or crop the image");
   } catch (const std::exception&) {
-    // ITK's own words speak of source files and line numbers.
-    return fail("cannot be read as an image", path.string(), "open it in 3D Slicer and save it as .nrrd");
+    // ITK's own messages name source files and line numbers.
+    return fail("cannot be read as an image", where, "open it in 3D Slicer and save it as .nrrd");
   }
 }
 
-Result<TextFields> read_fields_with_itk(const fs::path& path, ImageFormat format) {
+Result<TextFields> read_fields_with_itk(const CheckedImage& checked, ImageFormat format) {
   silence_libraries();
   try {
     const auto io = make_image_io(format);
-    io->SetFileName(path.string());
+    io->SetFileName(checked.library_path.string());
     const MutedStandardError muted;
     io->ReadImageInformation();
     return text_fields(*io);
   } catch (const std::exception&) {
-    return fail("the header cannot be read", path.string(), "open it in 3D Slicer and save it as .nrrd");
+    return fail("the header cannot be read", checked.file.path().string(), "open it in 3D Slicer and save it as .nrrd");
   }
 }
 

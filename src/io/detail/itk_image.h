@@ -32,11 +32,11 @@ struct ItkImage {
   TextFields fields;  ///< NRRD only.
 };
 
-/// Reads through ITK; never throws, prints nothing. The file was checked by check_image_file().
-Result<ItkImage> read_with_itk(const std::filesystem::path& path, ImageFormat format);
+/// Reads through ITK; never throws, prints nothing.
+Result<ItkImage> read_with_itk(const CheckedImage& checked, ImageFormat format);
 
 /// The fields of the header alone, with ITK's own notes ("NRRD_...", "ITK_...") among them.
-Result<TextFields> read_fields_with_itk(const std::filesystem::path& path, ImageFormat format);
+Result<TextFields> read_fields_with_itk(const CheckedImage& checked, ImageFormat format);
 
 enum class Packing { kCompressed, kPlain };
 

@@ -27,23 +27,31 @@ void register_transforms() {
 }
 
 /// May throw what ITK throws.
-Result<AffineMap> read_throwing(const fs::path& path) {
+Result<AffineMap> read_throwing(const InputFile& file) {
+  const std::string where = file.path().string();
   register_transforms();
   const auto reader = itk::TransformFileReaderTemplate<double>::New();
-  reader->SetFileName(path.string());
+  reader->SetFileName(file.pinned_path().string());
   reader->SetTransformIO(itk::TxtTransformIOTemplate<double>::New());
   reader->Update();
   const auto& transforms = *reader->GetModifiableTransformList();
   if (transforms.size() != 1)
-    return fail("holds several transforms, not one", path.string(), "harden them into one linear transform");
+    return fail("holds several transforms, not one", where, "harden them into one linear transform");
   const auto* linear = dynamic_cast<const Linear*>(transforms.front().GetPointer());
   if (linear == nullptr)
-    return fail("is no linear transform", path.string(), "give a rigid transform (rotation and translation)");
+    return fail("not a linear transform", where, "give a rigid transform (rotation and translation)");
   AffineMap map;
   for (unsigned row = 0; row < 3; ++row) {
     for (unsigned column = 0; column < 3; ++column) map.matrix[row][column] = linear->GetMatrix()(row, column);
     map.offset_mm[row] = linear->GetOffset()[row];
   }
+  // What was read has as many as the file gave; a new one of the type has as many as it needs.
+  const itk::LightObject::Pointer another = linear->CreateAnother();
+  const auto* fresh = dynamic_cast<const Linear*>(another.GetPointer());
+  if (fresh == nullptr)
+    return fail("not a linear transform", where, "give a rigid transform (rotation and translation)");
+  map.parameters = fresh->GetNumberOfParameters();
+  map.fixed_parameters = fresh->GetNumberOfFixedParameters();
   return map;
 }
 
@@ -67,12 +75,13 @@ void write_throwing(const AffineMap& map, const fs::path& path) {
 
 }  // namespace
 
-Result<AffineMap> read_transform_with_itk(const fs::path& path) {
+Result<AffineMap> read_transform_with_itk(const InputFile& file) {
   silence_libraries();
   try {
-    return read_throwing(path);
+    return read_throwing(file);
   } catch (const std::exception&) {
-    return fail("is no ITK transform file", path.string(), "save a linear transform as .tfm, for example in 3D Slicer");
+    return fail("not an ITK transform file", file.path().string(),
+                "save a linear transform as .tfm, for example in 3D Slicer");
   }
 }
 

@@ -13,7 +13,6 @@
 #include "io/detail/raw_volume.h"
 
 namespace trocar::detail {
-namespace fs = std::filesystem;
 namespace {
 
 /// Fixed-offset fields of a NIfTI header in either byte order.
@@ -76,9 +75,9 @@ class NiftiHeader {
 /// instead.
 Status check_place(const NiftiHeader& header, const std::string& where) {
   if (!header.has_sform() && !header.has_qform())
-    return fail("does not say how it lies in the patient (no qform, no sform)", where,
+    return fail("no orientation in the header (qform and sform codes are both 0)", where,
                 "export it again with its orientation");
-  if (!header.is_in_mm()) return fail("its lengths are not in mm", where, "export it again in mm");
+  if (!header.is_in_mm()) return fail("its spatial unit is not mm", where, "export it again in mm");
   if (!header.has_sform()) return {};
   const Mat3 axes = header.sform_axes();
   const Vec3 lengths = axes.colwise().norm().transpose();
@@ -120,11 +119,11 @@ Status check_finite(gzFile file, const NiftiHeader& header, std::uint64_t offset
 
 }  // namespace
 
-Result<Payload> nifti_payload(const fs::path& path) {
-  const std::string where = path.string();
+Result<Payload> nifti_payload(const InputFile& input) {
+  const std::string where = input.path().string();
   std::array<unsigned char, 540> bytes{};
   // gzread passes plain files through.
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(input.pinned_path().c_str(), "rb"), gzclose);
   const int count = file ? gzread(file.get(), bytes.data(), bytes.size()) : -1;
   std::int32_t header_size = 0;
   std::memcpy(&header_size, bytes.data(), sizeof header_size);
@@ -133,7 +132,7 @@ Result<Payload> nifti_payload(const fs::path& path) {
   const bool is_2 = header_size == 540 || swapped == 540;
   const auto magic = std::string_view(reinterpret_cast<const char*>(bytes.data()) + (is_2 ? 4 : 344), 3);
   if (count < 348 || (is_2 && count < 540) || !(is_1 || is_2) || (magic != "n+1" && magic != "n+2"))
-    return fail("is no NIfTI image", where, "give a .nii or .nii.gz file with header and voxels in one");
+    return fail("not a NIfTI image", where, "give a .nii or .nii.gz file with header and voxels in one");
 
   const NiftiHeader header(bytes.data(), header_size != 348 && header_size != 540, is_2);
   const int bits = header.bits_per_voxel();
@@ -148,8 +147,8 @@ Result<Payload> nifti_payload(const fs::path& path) {
   const bool is_compressed = gzdirect(file.get()) == 0;
   const auto skipped = static_cast<std::uint64_t>(std::max(offset, static_cast<double>(is_2 ? 540 : 348)));
   TROCAR_TRY_STATUS(check_finite(file.get(), header, skipped, voxels, where));
-  if (is_compressed) return Payload{path, 0, voxels + skipped, 0, true, false};
-  return Payload{path, skipped, voxels, 0, false, false};
+  if (is_compressed) return Payload{.bytes = voxels + skipped, .is_compressed = true};
+  return Payload{.offset = skipped, .bytes = voxels};
 }
 
 }  // namespace trocar::detail

@@ -7,6 +7,7 @@
 
 #include "config/toml.h"
 #include "config/toml_quoted.h"
+#include "core/input_file.h"
 #include "io/patient_folder.h"
 
 namespace trocar::detail {
@@ -80,8 +81,9 @@ std::string to_toml(const PatientDescription& patient) {
   return text;
 }
 
-Result<PatientDescription> load_patient_toml(const fs::path& path) {
-  TROCAR_TRY(const TomlTable file, load_toml(path));
+Result<PatientDescription> load_patient_toml(const fs::path& path, const fs::path& folder) {
+  TROCAR_TRY(const std::string text, read_input(path, FileKind::kToml, folder));
+  TROCAR_TRY(const TomlTable file, parse_toml(text, path.string()));
   TROCAR_TRY_STATUS(check_version(file, path));
   TROCAR_TRY_STATUS(
       file.check_keys({"format_version", "name", "description", "provenance", "content_hash", "labels", "meshes"}));

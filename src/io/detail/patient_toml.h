@@ -28,7 +28,7 @@ struct PatientDescription {
 std::string to_toml(const PatientDescription& patient);
 
 /// Reads patient.toml. Errors: missing, of a newer version, an unknown key, label ids or names that are not unique, a
-/// mesh file outside of meshes/.
-Result<PatientDescription> load_patient_toml(const std::filesystem::path& path);
+/// mesh file outside of meshes/, a link that leads out of the folder.
+Result<PatientDescription> load_patient_toml(const std::filesystem::path& path, const std::filesystem::path& folder);
 
 }  // namespace trocar::detail

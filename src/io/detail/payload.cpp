@@ -86,20 +86,16 @@ bool is_sound_stream(std::ifstream& file, std::uint64_t packed, std::uint64_t by
   }
 }
 
-Status check_payload(const Payload& payload, Check check, const std::string& where) {
-  std::error_code error;
-  const std::uint64_t size = fs::file_size(payload.file, error);
-  if (error)
-    return fail("the file with the voxels is missing: " + payload.file.filename().string(), where,
-                "keep header and data together");
-  const std::uint64_t available = size > payload.offset ? size - payload.offset : 0;
-  if (payload.is_text) return {};
+Status check_payload(const Payload& payload, const InputFile& input, Check check, const std::string& where) {
+  const std::uint64_t available = input.size() > payload.offset ? input.size() - payload.offset : 0;
+  if (payload.is_text && available >= payload.least_bytes) return {};
+  if (payload.is_text) return fail("the image ends before its last voxel", where, kExportAgain);
   if (!payload.is_compressed) {
     if (available >= payload.bytes) return {};
     return fail(fmt::format("the image ends before its last voxel ({} of {} bytes)", available, payload.bytes), where,
                 kExportAgain);
   }
-  std::ifstream file(payload.file, std::ios::binary);
+  std::ifstream file(input.pinned_path(), std::ios::binary);
   file.seekg(static_cast<std::streamoff>(payload.offset));
   const std::uint64_t packed = payload.packed > 0 ? payload.packed : available;
   const bool could_be_enough = packed <= available && available > 0 && payload.bytes / kMaxDeflateRatio <= available;
@@ -119,19 +115,31 @@ struct TextHeader {
   }
 };
 
-/// Reads "key<separator>value" lines up to an empty line or one that begins with `last_key`.
-std::optional<TextHeader> read_text_header(const fs::path& path, char separator, std::string_view last_key) {
-  std::ifstream file(path, std::ios::binary);
+/// The libraries and this program must see the same lines: no control characters, and no line of blanks, which ends
+/// the header for one reader and not for the other.
+bool is_plain_line(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  const bool has_control =
+      std::any_of(line.begin(), line.end(), [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
+  return !has_control && (line.empty() || !trim(line).empty());
+}
+
+/// Reads "key<separator>value" lines up to an empty line or one that begins with `last_key`. Nothing: no such line, or
+/// one that readers could understand differently.
+std::optional<TextHeader> read_text_header(const InputFile& input, char separator, std::string_view last_key) {
+  std::ifstream file(input.pinned_path(), std::ios::binary);
   TextHeader header;
   std::string line;
   while (header.end < kMaxHeaderBytes && std::getline(file, line)) {
     header.end += line.size() + (file.eof() ? 0 : 1);
+    if (!is_plain_line(line)) return std::nullopt;
     if (trim(line).empty()) return header;
     const auto at = line.find(separator);
     if (at == std::string::npos) continue;
     const std::string key = lower(trim(std::string_view(line).substr(0, at)));
     header.fields.emplace(key, trim(std::string_view(line).substr(at + 1)));
-    if (key == last_key) return header;
+    // The library takes this key in this spelling only, and would read on.
+    if (key == lower(std::string(last_key))) return line.starts_with(last_key) ? std::optional(header) : std::nullopt;
   }
   return header.fields.empty() ? std::nullopt : std::optional(header);
 }
@@ -153,13 +161,23 @@ std::uint64_t take_list_axis(std::vector<std::int64_t>& sizes, const std::string
   return count;
 }
 
-Result<Payload> nrrd_payload(const fs::path& path) {
-  const std::string where = path.string();
-  std::ifstream file(path, std::ios::binary);
+/// Notes the file that a header names for its voxels.
+Status take_data_file(const std::string& data_file, const std::string& where, Payload& payload) {
+  if (data_file.empty()) return {};
+  if (data_file.starts_with("LIST") || data_file.find('%') != std::string::npos)
+    return fail("the voxels are in several files", where, "convert the image to one file (.nrrd or .mha)");
+  payload.data_file = data_file;
+  payload.offset = 0;
+  return {};
+}
+
+Result<Payload> nrrd_payload(const InputFile& input) {
+  const std::string where = input.path().string();
+  std::ifstream file(input.pinned_path(), std::ios::binary);
   std::array<char, 4> magic{};
   file.read(magic.data(), magic.size());
-  const auto header = read_text_header(path, ':', {});
-  if (std::string_view(magic.data(), 4) != "NRRD" || !header) return fail("is no NRRD image", where, kExportAgain);
+  const auto header = read_text_header(input, ':', {});
+  if (std::string_view(magic.data(), 4) != "NRRD" || !header) return fail("not a NRRD image", where, kExportAgain);
 
   const auto type_bytes = nrrd_type_bytes(lower(header->get("type")));
   if (!type_bytes) return fail("has no known voxel type", where, "convert it to 16-bit integers");
@@ -168,15 +186,13 @@ Result<Payload> nrrd_payload(const fs::path& path) {
   TROCAR_TRY(const std::uint64_t bytes, volume_bytes(sizes, *type_bytes * layers, where));
 
   const std::string encoding = lower(header->get("encoding"));
-  Payload payload{path, header->end, bytes, 0, encoding == "gzip" || encoding == "gz", false};
-  payload.is_text = encoding != "raw" && !payload.is_compressed;
-  const std::string data_file = header->get("data file", header->get("datafile"));
-  if (!data_file.empty()) {
-    if (data_file.starts_with("LIST") || data_file.find('%') != std::string::npos)
-      return fail("is spread over several files", where, "convert it to one .nrrd file");
-    payload.file = path.parent_path() / data_file;
-    payload.offset = 0;
-  }
+  Payload payload{.offset = header->end, .bytes = bytes};
+  payload.is_compressed = encoding == "gzip" || encoding == "gz";
+  payload.is_text = encoding == "ascii" || encoding == "text" || encoding == "txt" || encoding == "hex";
+  if (encoding != "raw" && !payload.is_compressed && !payload.is_text)
+    return fail(fmt::format("the encoding \"{}\" is not supported", encoding), where, "save it with encoding gzip");
+  payload.least_bytes = encoding == "hex" ? 2 * bytes : 2 * (bytes / *type_bytes) - 1;
+  TROCAR_TRY_STATUS(take_data_file(header->get("data file", header->get("datafile")), where, payload));
   return payload;
 }
 
@@ -189,11 +205,11 @@ std::optional<std::uint64_t> meta_type_bytes(const std::string& type) {
   return std::nullopt;
 }
 
-Result<Payload> meta_payload(const fs::path& path) {
-  const std::string where = path.string();
-  const auto header = read_text_header(path, '=', "elementdatafile");
+Result<Payload> meta_payload(const InputFile& input) {
+  const std::string where = input.path().string();
+  const auto header = read_text_header(input, '=', "ElementDataFile");
   if (!header || header->get("dimsize").empty() || header->get("elementdatafile").empty())
-    return fail("is no MetaImage", where, kExportAgain);
+    return fail("not a MetaImage", where, kExportAgain);
   const auto type_bytes = meta_type_bytes(header->get("elementtype"));
   if (!type_bytes) return fail("has no known voxel type", where, "convert it to 16-bit integers");
   const std::vector<std::int64_t> channels = whole_numbers(header->get("elementnumberofchannels", "1"));
@@ -201,16 +217,14 @@ Result<Payload> meta_payload(const fs::path& path) {
     return fail("has several values in each voxel", where, "give an image of one value a voxel");
   TROCAR_TRY(const std::uint64_t bytes, volume_bytes(whole_numbers(header->get("dimsize")), *type_bytes, where));
 
-  Payload payload{path, header->end, bytes, 0, lower(header->get("compresseddata")).starts_with('t'), false};
+  Payload payload{.offset = header->end, .bytes = bytes};
+  payload.is_compressed = lower(header->get("compresseddata")).starts_with('t');
   const std::vector<std::int64_t> packed = whole_numbers(header->get("compresseddatasize"));
   if (packed.size() == 1 && packed[0] > 0) payload.packed = static_cast<std::uint64_t>(packed[0]);
   payload.is_text = lower(header->get("binarydata", "true")).starts_with('f');
+  payload.least_bytes = 2 * (bytes / *type_bytes) - 1;
   const std::string data_file = header->get("elementdatafile");
-  if (lower(data_file) == "local") return payload;
-  if (data_file.starts_with("LIST") || data_file.find('%') != std::string::npos)
-    return fail("is spread over several files", where, "convert it to one .mha file");
-  payload.file = path.parent_path() / data_file;
-  payload.offset = 0;
+  if (lower(data_file) != "local") TROCAR_TRY_STATUS(take_data_file(data_file, where, payload));
   return payload;
 }
 
@@ -218,7 +232,7 @@ Result<Payload> meta_payload(const fs::path& path) {
 
 Result<std::uint64_t> volume_bytes(const std::vector<std::int64_t>& sizes, std::uint64_t bytes_per_voxel,
                                    const std::string& where) {
-  if (sizes.size() < 3) return fail("is no 3D image", where, "give a volume, not a picture");
+  if (sizes.size() < 3) return fail("not a 3D image", where, "give a volume, not a picture");
   std::uint64_t voxels = 1;
   for (std::size_t axis = 0; axis < sizes.size(); ++axis) {
     if (sizes[axis] < 1) return fail("the image is empty", where, kExportAgain);
@@ -237,16 +251,37 @@ Result<ImageFormat> find_image_format(const fs::path& path) {
   if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return ImageFormat::kNifti;
   if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return ImageFormat::kNrrd;
   if (name.ends_with(".mha") || name.ends_with(".mhd")) return ImageFormat::kMeta;
-  return fail("is no image file of a known kind", path.string(),
+  return fail("not an image file of a known kind", path.string(),
               "give a .nii, .nii.gz, .nrrd, .seg.nrrd, .mha or .mhd file, or the folder of a DICOM series");
 }
 
-Status check_image_file(const fs::path& path, ImageFormat format, Check check) {
-  const auto payload = format == ImageFormat::kNifti  ? nifti_payload(path)
-                       : format == ImageFormat::kNrrd ? nrrd_payload(path)
-                                                      : meta_payload(path);
-  if (!payload) return tl::unexpected(payload.error());
-  return check_payload(*payload, check, path.string());
+Result<InputFile> open_data_file(const fs::path& header, const fs::path& data_file, FileKind kind) {
+  const std::string where = header.string();
+  if (data_file.is_absolute() || std::find(data_file.begin(), data_file.end(), "..") != data_file.end())
+    return fail(fmt::format("the header names a data file outside of its folder: {}", data_file.string()), where,
+                "keep header and data together, and name the data file without a folder");
+  const fs::path folder = header.has_parent_path() ? header.parent_path() : fs::path(".");
+  auto file = InputFile::open(folder / data_file, kind, folder);
+  if (file) return file;
+  return fail(fmt::format("the data file \"{}\" of the header: {}", data_file.string(), file.error().what), where,
+              "keep header and data together");
+}
+
+Result<CheckedImage> open_image_file(const fs::path& path, ImageFormat format, Check check, const fs::path& inside) {
+  TROCAR_TRY(InputFile file, InputFile::open(path, FileKind::kVolume, inside));
+  TROCAR_TRY(const Payload payload, format == ImageFormat::kNifti  ? nifti_payload(file)
+                                    : format == ImageFormat::kNrrd ? nrrd_payload(file)
+                                                                   : meta_payload(file));
+  if (!payload.data_file.empty()) {
+    if (!inside.empty()) return fail("the voxels are in another file", path.string(), "build the patient again");
+    TROCAR_TRY(const InputFile data, open_data_file(path, payload.data_file, FileKind::kVolume));
+    TROCAR_TRY_STATUS(check_payload(payload, data, check, path.string()));
+    return CheckedImage{std::move(file), path};
+  }
+  TROCAR_TRY_STATUS(check_payload(payload, file, check, path.string()));
+  // The NIfTI library opens by the ending.
+  fs::path library_path = format == ImageFormat::kNifti ? path : file.pinned_path();
+  return CheckedImage{std::move(file), std::move(library_path)};
 }
 
 }  // namespace trocar::detail

@@ -11,7 +11,8 @@ Status check_image_path(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) return fail("no such file or folder", path.string(), "check the path");
   if (fs::is_directory(path, error)) return {};
-  if (!fs::is_regular_file(path, error)) return fail("is no file", path.string(), "check the path");
+  if (!fs::is_regular_file(path, error))
+    return fail("not a regular file", path.string(), "name a file, not a pipe, socket or device");
   if (fs::file_size(path, error) == 0) return fail("the file is empty", path.string(), "copy or export it again");
   const auto format = find_image_format(path);
   if (format) return {};

@@ -16,7 +16,6 @@
 #include "io/detail/number_text.h"
 
 namespace trocar::detail {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
@@ -54,10 +53,9 @@ std::optional<FrameKey> find_frame_key(std::string_view key) {
 }
 
 /// The lines "key = value" up to ElementDataFile. Errors: none such, too long.
-Result<HeaderText> read_text(const fs::path& path) {
-  const std::string where = path.string();
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return fail("no such file", where, "check the path");
+Result<HeaderText> read_text(const InputFile& input) {
+  const std::string where = input.path().string();
+  std::ifstream file(input.pinned_path(), std::ios::binary);
   HeaderText text;
   const auto line = std::make_unique_for_overwrite<char[]>(kMaxLineBytes);
   while (file.getline(line.get(), static_cast<std::streamsize>(kMaxLineBytes))) {
@@ -76,7 +74,7 @@ Result<HeaderText> read_text(const fs::path& path) {
   }
   if (text.fields.contains("NDims") || text.fields.contains("ObjectType"))
     return fail("the header ends before ElementDataFile", where, kExportAgain);
-  return fail("is no tracked sequence", where, kNeeded);
+  return fail("not a tracked sequence", where, kNeeded);
 }
 
 bool is_true(const Fields& fields, std::string_view key) {
@@ -89,8 +87,8 @@ std::string value_of(const Fields& fields, std::string_view key, std::string_vie
   return found == fields.end() ? std::string(fallback) : found->second;
 }
 
-Status take_size(const Fields& fields, const std::string& where, TrackedSequence& sequence) {
-  const auto sizes = find_numbers(value_of(fields, "DimSize"), 4);
+Status take_size(const HeaderText& text, const std::string& where, TrackedSequence& sequence) {
+  const auto sizes = find_numbers(value_of(text.fields, "DimSize"), 4);
   if (!sizes || sizes->size() < 3)
     return fail("the field DimSize does not give columns, rows and frames", where, kNeeded);
   // PLUS writes depth 1 between rows and frames in some versions.
@@ -101,6 +99,11 @@ Status take_size(const Fields& fields, const std::string& where, TrackedSequence
     if (size < 1.0 || size != std::floor(size)) return fail("the field DimSize is damaged", where, kExportAgain);
   if (columns > kMaxSide || rows > kMaxSide || frames > kMaxFrames || columns * rows * frames > kMaxPixels)
     return fail("the header claims an impossible size", where, kExportAgain);
+  if (text.frames.empty()) return fail("has no fields of tracked frames (Seq_Frame...)", where, kNeeded);
+  if (text.frames.size() != static_cast<std::size_t>(frames) || text.frames.rbegin()->first >= text.frames.size())
+    return fail(fmt::format("has {} pictures, but the fields of {} frames up to number {}", frames, text.frames.size(),
+                            text.frames.rbegin()->first),
+                where, "record or save it again: each picture needs its Seq_Frame fields");
   sequence.columns = static_cast<int>(columns);
   sequence.rows = static_cast<int>(rows);
   sequence.frames.resize(static_cast<std::size_t>(frames));
@@ -132,21 +135,20 @@ Status take_orientation(const Fields& fields, const std::string& where, Sequence
   return {};
 }
 
-Status take_place_of_pixels(const HeaderText& text, const fs::path& path, SequenceHeader& header) {
+Status take_place_of_pixels(const HeaderText& text, const std::string& where, SequenceHeader& header) {
   header.is_compressed = is_true(text.fields, "CompressedData");
   const auto packed = find_numbers(value_of(text.fields, "CompressedDataSize", "0"), 1);
   if (!packed || packed->size() != 1 || packed->front() < 0.0 || packed->front() > 1e15)
-    return fail("the field CompressedDataSize is damaged", path.string(), kExportAgain);
+    return fail("the field CompressedDataSize is damaged", where, kExportAgain);
   header.packed_bytes = static_cast<std::uint64_t>(packed->front());
   const std::string data_file = value_of(text.fields, "ElementDataFile");
   if (data_file == "LOCAL" || data_file == "Local" || data_file == "local") {
-    header.pixel_file = path;
     header.pixel_offset = text.end;
     return {};
   }
   if (data_file.empty() || data_file.starts_with("LIST") || data_file.find('%') != std::string::npos)
-    return fail("is spread over several files", path.string(), "save it as one .igs.mha file");
-  header.pixel_file = path.parent_path() / data_file;
+    return fail("the pictures are in several files", where, "save it as one .igs.mha file");
+  header.data_file = data_file;
   return {};
 }
 
@@ -157,7 +159,7 @@ Status take_field(const Fields& fields, const std::string& name, const std::stri
     frame.is_valid = value == "OK";
   } else if (name == "Timestamp") {
     const auto time_s = find_numbers(value, 1);
-    if (!time_s || time_s->empty()) return fail("is no time in seconds");
+    if (!time_s || time_s->empty()) return fail("is not a time in seconds");
     frame.time_s = time_s->front();
   } else if (name.ends_with(kTransform) && name.size() > kTransform.size()) {
     if (value_of(fields, name + std::string(kStatus), "OK") != "OK") return {};
@@ -168,12 +170,6 @@ Status take_field(const Fields& fields, const std::string& name, const std::stri
 }
 
 Status take_frames(const HeaderText& text, const std::string& where, TrackedSequence& sequence) {
-  if (text.frames.empty()) return fail("has no fields of tracked frames (Seq_Frame...)", where, kNeeded);
-  const std::size_t last = text.frames.rbegin()->first;
-  if (last >= sequence.frames.size() || text.frames.size() != sequence.frames.size())
-    return fail(fmt::format("has {} pictures, but the fields of {} frames up to number {}", sequence.frames.size(),
-                            text.frames.size(), last),
-                where, "record or save it again: each picture needs its Seq_Frame fields");
   for (const auto& [number, fields] : text.frames) {
     for (const auto& [name, value] : fields) {
       const Status taken = take_field(fields, name, value, sequence.frames[number]);
@@ -187,17 +183,14 @@ Status take_frames(const HeaderText& text, const std::string& where, TrackedSequ
 
 }  // namespace
 
-Result<SequenceHeader> read_sequence_header(const fs::path& path) {
-  const std::string where = path.string();
-  std::error_code error;
-  if (!fs::exists(path, error)) return fail("no such file", where, "check the path");
-  if (!fs::is_regular_file(path, error)) return fail("is no file", where, kNeeded);
-  TROCAR_TRY(const HeaderText text, read_text(path));
+Result<SequenceHeader> read_sequence_header(const InputFile& file) {
+  const std::string where = file.path().string();
+  TROCAR_TRY(const HeaderText text, read_text(file));
   SequenceHeader header;
-  TROCAR_TRY_STATUS(take_size(text.fields, where, header.sequence));
+  TROCAR_TRY_STATUS(take_size(text, where, header.sequence));
   TROCAR_TRY_STATUS(check_pixel_type(text.fields, where));
   TROCAR_TRY_STATUS(take_orientation(text.fields, where, header));
-  TROCAR_TRY_STATUS(take_place_of_pixels(text, path, header));
+  TROCAR_TRY_STATUS(take_place_of_pixels(text, where, header));
   TROCAR_TRY_STATUS(take_frames(text, where, header.sequence));
   return header;
 }

@@ -10,7 +10,6 @@
 #include "io/detail/header_payload.h"
 
 namespace trocar::detail {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t kMaxDeflateRatio = 1'032;     ///< Deflate cannot pack tighter.
@@ -45,13 +44,10 @@ bool unpack(std::ifstream& file, std::uint64_t packed, std::span<std::uint8_t> o
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> read_pixels(const SequenceHeader& header, const std::string& where) {
+Result<std::vector<std::uint8_t>> read_pixels(const SequenceHeader& header, const InputFile& input,
+                                              const std::string& where) {
   const std::uint64_t bytes = header.sequence.frame_pixels() * header.sequence.frames.size();
-  std::error_code error;
-  const std::uint64_t size = fs::file_size(header.pixel_file, error);
-  if (error)
-    return fail("the file with the pixels is missing: " + header.pixel_file.filename().string(), where,
-                "keep header and data together");
+  const std::uint64_t size = input.size();
   const std::uint64_t available = size > header.pixel_offset ? size - header.pixel_offset : 0;
   if (!header.is_compressed && available < bytes)
     return fail(fmt::format("the pictures end before the last pixel ({} of {} bytes)", available, bytes), where,
@@ -61,7 +57,7 @@ Result<std::vector<std::uint8_t>> read_pixels(const SequenceHeader& header, cons
     return fail("the compressed pixels end too early", where, kExportAgain);
 
   std::vector<std::uint8_t> pixels(bytes);
-  std::ifstream file(header.pixel_file, std::ios::binary);
+  std::ifstream file(input.pinned_path(), std::ios::binary);
   file.seekg(static_cast<std::streamoff>(header.pixel_offset));
   if (header.is_compressed) {
     if (unpack(file, packed, pixels)) return pixels;

@@ -10,9 +10,10 @@
 
 namespace trocar::detail {
 
-/// The pixels of all frames as the file has them; errors name the file `where`. Nothing is allocated for pixels that
-/// the file cannot hold.
-Result<std::vector<std::uint8_t>> read_pixels(const SequenceHeader& header, const std::string& where);
+/// The pixels of all frames as the file that has them stores them; errors name the file `where`. Nothing is allocated
+/// for pixels that the file cannot hold.
+Result<std::vector<std::uint8_t>> read_pixels(const SequenceHeader& header, const InputFile& file,
+                                              const std::string& where);
 
 /// A zlib stream of the bytes.
 Result<std::string> pack(std::span<const std::uint8_t> bytes);

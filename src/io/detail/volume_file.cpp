@@ -27,10 +27,10 @@ Status reserve_space(const fs::path& path, std::uint64_t bytes) {
 
 }  // namespace
 
-Result<RawVolume> read_volume_file(const fs::path& path, Check check) {
+Result<RawVolume> read_volume_file(const fs::path& path, Check check, const fs::path& inside) {
   TROCAR_TRY(const ImageFormat format, find_image_format(path));
-  TROCAR_TRY_STATUS(check_image_file(path, format, check));
-  TROCAR_TRY(ItkImage image, read_with_itk(path, format));
+  TROCAR_TRY(const CheckedImage checked, open_image_file(path, format, check, inside));
+  TROCAR_TRY(ItkImage image, read_with_itk(checked, format));
   RawVolume volume;
   volume.geometry.size = image.size;
   for (int axis = 0; axis < 3; ++axis) {
@@ -61,7 +61,7 @@ Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, 
   image.type = voxels.type;
   image.fields = std::move(fields);
   TROCAR_TRY_STATUS(write_with_itk(image, voxels.bytes, path, format, packing));
-  if (check_image_file(path, format)) return {};
+  if (open_image_file(path, format)) return {};
   return fail("the image was not written whole", path.string(), "check the disk space");
 }
 

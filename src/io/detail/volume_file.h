@@ -8,8 +8,9 @@
 
 namespace trocar::detail {
 
-/// Reads a NIfTI, NRRD or MetaImage file as it is, place in LPS mm.
-Result<RawVolume> read_volume_file(const std::filesystem::path& path, Check check = Check::kUnpack);
+/// Reads a NIfTI, NRRD or MetaImage file as it is, place in LPS mm. Errors of open_image_file().
+Result<RawVolume> read_volume_file(const std::filesystem::path& path, Check check = Check::kUnpack,
+                                   const std::filesystem::path& inside = {});
 
 /// Writes a volume (one number a voxel) by the path's ending, compressed where asked and the format can, and checks
 /// that it is all there: the libraries do not report a full disk. Writes straight to `path`; the caller makes it

@@ -199,9 +199,9 @@ TEST(Nifti, RefusesSizesThatCannotBe) {
     std::initializer_list<int> sizes;
     const char* what;
   };
-  for (const Case& c :
-       {Case{{30'000, 30'000, 30'000}, "impossible"}, Case{{1000, 1000, 1000}, "ends before"}, Case{{3, 2, 2, 5}, "4D"},
-        Case{{3, 0, 2}, "empty"}, Case{{3, -4, 2}, "empty"}, Case{{3, 2}, "no 3D"}, Case{{3, 4, 1}, "single slice"}}) {
+  for (const Case& c : {Case{{30'000, 30'000, 30'000}, "impossible"}, Case{{1000, 1000, 1000}, "ends before"},
+                        Case{{3, 2, 2, 5}, "4D"}, Case{{3, 0, 2}, "empty"}, Case{{3, -4, 2}, "empty"},
+                        Case{{3, 2}, "not a 3D"}, Case{{3, 4, 1}, "single slice"}}) {
     HandMadeNifti nifti = small_nifti(kNiftiInt16, numbers(60));
     nifti.put_sizes(c.sizes);
     write_bytes(folder / "ct.nii", nifti.bytes);

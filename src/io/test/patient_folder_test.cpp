@@ -114,7 +114,7 @@ TEST_F(PatientFolder, WithAMissingFileIsRefused) {
     write_bytes(path_ / name, bytes);
   }
   std::filesystem::remove(path_ / "patient.toml");
-  EXPECT_NE(load_error().find("no patient folder"), std::string::npos);
+  EXPECT_NE(load_error().find("not a patient folder"), std::string::npos);
   EXPECT_FALSE(load_patient(folder_ / "nowhere"));
 }
 

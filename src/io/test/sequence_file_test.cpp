@@ -95,9 +95,9 @@ TEST_F(SequenceFile, RefusesDamageWithOneLine) {
   };
   const std::string digits(400, '9');
   const std::vector<Case> cases = {
-      {"", "is no tracked sequence"},
-      {std::string(5'000'000, 'x'), "is no tracked sequence"},
-      {std::string("NRRD0004\ntype: uchar\n"), "is no tracked sequence"},
+      {"", "not a tracked sequence"},
+      {std::string(5'000'000, 'x'), "not a tracked sequence"},
+      {std::string("NRRD0004\ntype: uchar\n"), "not a tracked sequence"},
       {header().substr(0, 300), "ends before ElementDataFile"},
       {header("DimSize = 3 2 2", "DimSize = 3 2") + kPixels, "DimSize"},
       {header("DimSize = 3 2 2", "DimSize = 3 -2 2") + kPixels, "DimSize"},
@@ -115,7 +115,7 @@ TEST_F(SequenceFile, RefusesDamageWithOneLine) {
       {header("= 1 0 0 10", "= 1 inf 0 10") + kPixels, "16 finite numbers"},
       {header("= 1 0 0 10", "= 0 0 10") + kPixels, "16 finite numbers"},
       {header("30 0 0 0 1", "30 0 0 0 2") + kPixels, "last row"},
-      {header("= 1.5", "= soon") + kPixels, "Timestamp is no time"},
+      {header("= 1.5", "= soon") + kPixels, "Timestamp is not a time"},
       {header() + kPixels.substr(1), "end before the last pixel (11 of 12 bytes)"},
       {header("CompressedData = False", "CompressedData = True") + kPixels, "compressed pixels are damaged"},
       {header("CompressedData = False", "CompressedData = True\nCompressedDataSize = 99") + kPixels, "too early"},

@@ -79,6 +79,20 @@ TEST(TransformFile, RefusesWhatIsNoTransform) {
   EXPECT_FALSE(read_transform("/nowhere/x.tfm"));
 }
 
+TEST(TransformFile, RefusesEveryTruncatedFile) {
+  const std::string whole = tfm("Euler3DTransform_double_3_3", "0.1 0.2 0.3 10.25 -20.5 30.75", "1.5 2.5 3.5 0");
+  ASSERT_TRUE(read_text(whole));
+  for (std::size_t bytes = 0; bytes < whole.size(); ++bytes)
+    EXPECT_FALSE(read_text(whole.substr(0, bytes))) << whole.substr(0, bytes);
+}
+
+TEST(TransformFile, RefusesAWrongNumberOfParameters) {
+  const char* type = "AffineTransform_double_3_3";
+  EXPECT_FALSE(read_text(tfm(type, "1 0 0 0 1 0 0 0 1 5 6", "0 0 0")));
+  EXPECT_FALSE(read_text(tfm(type, "1 0 0 0 1 0 0 0 1 5 6 7 8", "0 0 0")));
+  EXPECT_FALSE(read_text(tfm(type, "1 0 0 0 1 0 0 0 1 5 6 7", "0 0")));
+}
+
 TEST(TransformFile, RefusesToWriteAPoseThatIsNoNumber) {
   TemporaryFolder folder;
   EXPECT_FALSE(write_transform(Pose::translation({std::nan(""), 0, 0}), folder / "x.tfm"));

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/result.h"
+
+namespace trocar {
+
+/// Memory that new allocations may take without swapping (MemAvailable of /proc/meminfo). Where the system does not
+/// state it: the largest number.
+std::uint64_t available_memory_bytes();
+
+/// An error at `where` if an image of `bytes` and a converted copy of it do not fit into `available_bytes`. Asked for
+/// before the allocation: Linux grants more memory than there is and ends a program when it is used.
+Status check_memory_for_image(std::uint64_t bytes, std::uint64_t available_bytes, const std::string& where);
+
+}  // namespace trocar

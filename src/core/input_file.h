@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace trocar {
+
+/// Kinds of files that the programs read. Each kind has one limit of size.
+enum class FileKind { kToml, kJson, kMarkups, kTransform, kXml, kMesh, kVolume, kDicom, kSequence, kSession, kOther };
+
+struct FileLimit {
+  FileKind kind;
+  std::string_view name;    ///< For messages: "TOML file".
+  std::uint64_t max_bytes;  ///< A larger file is refused before anything of it is read.
+};
+
+/// The one table of size limits; docs/user_guide.md lists the same numbers.
+std::span<const FileLimit> file_limits() noexcept;
+const FileLimit& limit_of(FileKind kind) noexcept;
+
+/// An open regular file. Opening never waits and never has a side effect on what the path names: a FIFO, socket, device
+/// or folder is refused, whether named directly or through a symbolic link.
+class InputFile {
+ public:
+  /// With `inside`, the file must lie in that folder or below it after all symbolic links are resolved. This is checked
+  /// on the open file, so that a path which changes meanwhile cannot pass. Errors: no such file, not a regular file,
+  /// no permission, above the limit of size, outside of the folder.
+  static Result<InputFile> open(const std::filesystem::path& path, FileKind kind,
+                                const std::filesystem::path& inside = {});
+  static Result<InputFile> open(const std::filesystem::path& path, const FileLimit& limit,
+                                const std::filesystem::path& inside = {});
+
+  InputFile(InputFile&& other) noexcept;
+  InputFile& operator=(InputFile&& other) noexcept;
+  ~InputFile();
+
+  const std::filesystem::path& path() const noexcept { return path_; }  ///< As it was named, for messages.
+  std::uint64_t size() const noexcept { return size_; }                 ///< In bytes, when it was opened.
+
+  /// A path that leads to this very file as long as this object lives, whatever the name leads to by then
+  /// ("/proc/self/fd/5"): for libraries that open files by name. It has no ending.
+  std::filesystem::path pinned_path() const;
+
+  /// The whole file. Errors: it cannot be read, it has grown above the limit.
+  Result<std::string> read_all() const;
+
+ private:
+  InputFile(std::filesystem::path path, int descriptor, FileLimit limit);
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+  FileLimit limit_;
+};
+
+/// The whole file of a kind; errors of InputFile.
+Result<std::string> read_input(const std::filesystem::path& path, FileKind kind,
+                               const std::filesystem::path& inside = {});
+
+}  // namespace trocar
