@@ -40,7 +40,7 @@ struct NeedleView {
 };
 
 /// What the transducer does, as felt. Frame P.
-struct ProbeView {
+struct TransducerView {
   bool is_known = false;
   Pose X_PT;                ///< Felt: it does not pass through the skin.
   Pose X_PT_hand;           ///< Where the hand wants it.
@@ -75,7 +75,7 @@ struct AttemptView {
   std::string message;             ///< What came of the last set_parameters(), or of a command.
   std::string hint;                ///< What to do now; guided attempts alone; empty: nothing to say.
   NeedleView needle;
-  ProbeView probe;
+  TransducerView probe;
   bool has_probe = false;
   std::array<ServerView, 2> servers;  ///< Needle, probe.
   double session_s = 0.0;             ///< Recorded so far.

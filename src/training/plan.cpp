@@ -21,7 +21,7 @@ using detail::PathCandidate;
 using detail::PathFindings;
 using detail::PlanningMap;
 using detail::PlanTargets;
-using detail::Verdict;
+using Verdict = detail::PathVerdict;
 
 constexpr std::size_t kMinLines = 65536;  ///< Lines that are tried: at 100 mm depth 1.4 mm apart on the skin.
 constexpr std::size_t kLinesPerTarget = 2048;

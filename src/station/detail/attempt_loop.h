@@ -76,7 +76,7 @@ class AttemptLoop {
 
   AttemptPhase phase_now() const;
   NeedleView needle_now() const;
-  ProbeView probe_now() const;
+  TransducerView probe_now() const;
   void publish(AttemptPhase phase, std::optional<Result<RunResult>> result = {});
 
   std::shared_ptr<const OpenCase> open_case_;

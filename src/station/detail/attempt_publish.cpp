@@ -60,8 +60,8 @@ NeedleView AttemptLoop::needle_now() const {
   return view;
 }
 
-ProbeView AttemptLoop::probe_now() const {
-  ProbeView view;
+TransducerView AttemptLoop::probe_now() const {
+  TransducerView view;
   view.X_PT_hand = view.X_PT = probe_hand_.X_P();
   view.is_clamped = probe_hand_.is_clamped();
   if (!last_probe_) return view;

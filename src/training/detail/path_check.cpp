@@ -31,19 +31,19 @@ bool is_near_border(const GridGeometry& geometry, const Vec3& p_P, double margin
 
 /// Distance along `outward` to the skin; negative: not found before `reach_mm` or the volume's end.
 double distance_to_skin(const FloatGrid& skin_distance, const Vec3& start_P, const Vec3& outward, double reach_mm,
-                        Verdict& verdict) {
+                        PathVerdict& verdict) {
   double s = 0.0;
   double inside = 0.0;
   while (true) {
     const Vec3 p = start_P + s * outward;
     if (is_near_border(skin_distance.geometry, p, 0.0)) {
-      verdict = Verdict::kCutFace;
+      verdict = PathVerdict::kCutFace;
       return -1.0;
     }
     const double distance = sample_linear(skin_distance, p);
     if (distance >= 0.0) break;
     if (s > reach_mm) {
-      verdict = Verdict::kTooLong;
+      verdict = PathVerdict::kTooLong;
       return -1.0;
     }
     inside = s;
@@ -99,7 +99,7 @@ void measure_margins(const PlanningMap& map, const Segment& way, PathFindings& f
     if (bound > findings.smallest_margin_mm) break;
     look_around(map, piece, findings);
     if (findings.smallest_margin_mm < 0.0) {
-      findings.verdict = Verdict::kMargin;
+      findings.verdict = PathVerdict::kMargin;
       return;
     }
   }
@@ -113,7 +113,7 @@ class Walk {
   /// One step of the needle at arc length s; false ends the walk.
   bool step(double s, const Vec3& p_P) {
     const Role role = map_.role_at(p_P);
-    if (role == Role::kForbidden) return stop(Verdict::kCrosses, p_P);
+    if (role == Role::kForbidden) return stop(PathVerdict::kCrosses, p_P);
     const bool is_organ = role == Role::kOrgan || role == Role::kTarget;
     has_organ_ |= is_organ;
     if (!has_organ_ && role == Role::kMuscle) muscle_mm_ += kWalkStep_mm;
@@ -121,9 +121,9 @@ class Walk {
     has_target_ |= role == Role::kTarget;
     if (role == Role::kOrgan && !has_target_ && s < tip_mm_) organ_mm_ += kWalkStep_mm;
     // Oblique voxel borders may show the organ's surface twice within a voxel.
-    if (outside_mm_ > map_.patient.labels.geometry.spacing_mm.norm()) return stop(Verdict::kLeavesOrgan, p_P);
+    if (outside_mm_ > map_.patient.labels.geometry.spacing_mm.norm()) return stop(PathVerdict::kLeavesOrgan, p_P);
     if (s > 1.0 && sample_linear(map_.patient.skin_distance_mm, p_P) > kSkinTolerance_mm)
-      return stop(Verdict::kGlancing, p_P);
+      return stop(PathVerdict::kGlancing, p_P);
     return true;
   }
 
@@ -132,14 +132,14 @@ class Walk {
     findings.organ_path_mm = organ_mm_;
     findings.verdict = verdict_;
     findings.where_P = where_P_;
-    if (verdict_ != Verdict::kFree) return findings;
-    if (muscle_mm_ < kMinMuscle_mm) findings.verdict = Verdict::kNoMuscle;
-    if (organ_mm_ < map_.task.min_organ_path_mm) findings.verdict = Verdict::kOrganPath;
+    if (verdict_ != PathVerdict::kFree) return findings;
+    if (muscle_mm_ < kMinMuscle_mm) findings.verdict = PathVerdict::kNoMuscle;
+    if (organ_mm_ < map_.task.min_organ_path_mm) findings.verdict = PathVerdict::kOrganPath;
     return findings;
   }
 
  private:
-  bool stop(Verdict verdict, const Vec3& p_P) {
+  bool stop(PathVerdict verdict, const Vec3& p_P) {
     verdict_ = verdict;
     where_P_ = p_P;
     return false;
@@ -152,7 +152,7 @@ class Walk {
   double outside_mm_ = 0.0;
   bool has_organ_ = false;
   bool has_target_ = false;
-  Verdict verdict_ = Verdict::kFree;
+  PathVerdict verdict_ = PathVerdict::kFree;
   Vec3 where_P_ = Vec3::Zero();
 };
 
@@ -190,25 +190,25 @@ PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec
   if (to_skin < 0.0) return path;
   path.line_P = {target_P + to_skin * outward, target_P + ahead * outward};
   path.length_mm = to_skin - ahead;
-  const auto reject = [&](Verdict verdict) {
+  const auto reject = [&](PathVerdict verdict) {
     path.verdict = verdict;
     return path;
   };
-  if (path.length_mm > longest) return reject(Verdict::kTooLong);
-  if (path.length_mm < map.task.min_organ_path_mm + kMinMuscle_mm) return reject(Verdict::kOrganPath);
-  if (is_near_border(skin_distance.geometry, path.line_P.a, kBorder_mm)) return reject(Verdict::kCutFace);
+  if (path.length_mm > longest) return reject(PathVerdict::kTooLong);
+  if (path.length_mm < map.task.min_organ_path_mm + kMinMuscle_mm) return reject(PathVerdict::kOrganPath);
+  if (is_near_border(skin_distance.geometry, path.line_P.a, kBorder_mm)) return reject(PathVerdict::kCutFace);
   if (map.task.entry_zone && map.task.entry_zone->distance_outside_mm(path.line_P.a) > 0.0)
-    return reject(Verdict::kOutsideZone);
+    return reject(PathVerdict::kOutsideZone);
   const Vec3 normal = skin_normal(skin_distance, path.line_P.a);
-  if (normal.y() > std::sin(map.task.max_posterior_deg * kDegree)) return reject(Verdict::kOutOfReach);  // +y: back
-  if (normal.dot(outward) < std::cos(map.task.max_entry_angle_deg * kDegree)) return reject(Verdict::kGlancing);
+  if (normal.y() > std::sin(map.task.max_posterior_deg * kDegree)) return reject(PathVerdict::kOutOfReach);  // +y: back
+  if (normal.dot(outward) < std::cos(map.task.max_entry_angle_deg * kDegree)) return reject(PathVerdict::kGlancing);
 
   const double whole = path.length_mm + needle.throw_mm;
   for (double s = 0.0; s <= whole; s += kScreenStep_mm) {
     const Vec3 p = path.line_P.a - s * outward;
     path.where_P = p;
-    if (map.role_at(p) == Role::kForbidden) return reject(Verdict::kCrosses);
-    if (sample_linear(map.clearance_mm, p) < -map.slack_mm) return reject(Verdict::kMargin);
+    if (map.role_at(p) == Role::kForbidden) return reject(PathVerdict::kCrosses);
+    if (sample_linear(map.clearance_mm, p) < -map.slack_mm) return reject(PathVerdict::kMargin);
   }
   return path;
 }
@@ -221,7 +221,8 @@ PathFindings check_path(const PlanningMap& map, const Needle& needle, const Path
   for (int n = 0; n <= steps; ++n)
     if (const double s = n * kWalkStep_mm; !walk.step(s, path.line_P.a + s * axis)) break;
   PathFindings findings = walk.finish();
-  if (findings.verdict == Verdict::kFree) measure_margins(map, {path.line_P.a, path.line_P.a + whole * axis}, findings);
+  if (findings.verdict == PathVerdict::kFree)
+    measure_margins(map, {path.line_P.a, path.line_P.a + whole * axis}, findings);
   return findings;
 }
 

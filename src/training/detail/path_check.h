@@ -8,7 +8,7 @@
 namespace trocar::detail {
 
 /// Why a line is no path. The first ones have to do with the skin alone.
-enum class Verdict : std::uint8_t {
+enum class PathVerdict : std::uint8_t {
   kFree,
   kTooLong,
   kCutFace,
@@ -26,7 +26,7 @@ enum class Verdict : std::uint8_t {
 struct PathCandidate {
   Segment line_P{Vec3::Zero(), Vec3::Zero()};  ///< Skin -> tip.
   double length_mm = 0.0;
-  Verdict verdict = Verdict::kFree;
+  PathVerdict verdict = PathVerdict::kFree;
   Vec3 where_P = Vec3::Zero();  ///< Where a kCrosses was found.
 };
 
@@ -42,7 +42,7 @@ double segment_box_distance_mm(const Segment& segment, const GridGeometry& geome
 
 /// What an exact look at a path finds.
 struct PathFindings {
-  Verdict verdict = Verdict::kFree;
+  PathVerdict verdict = PathVerdict::kFree;
   Vec3 where_P = Vec3::Zero();
   double organ_path_mm = 0.0;
   double smallest_margin_mm = 0.0;

@@ -103,11 +103,11 @@ inline double envelope(const BasebandFrame& frame, int line, int sample) {
   return std::hypot(static_cast<double>(frame.re[at]), static_cast<double>(frame.im[at]));
 }
 
-struct Peak {
+struct LinePeak {
   double depth_mm = 0.0, level_db = -1e9;
 };
 /// The brightest sample of a scanline between two depths, its place refined by a parabola.
-inline Peak peak_of(const BasebandFrame& frame, int line, double from_mm = 2.0, double to_mm = 99.0) {
+inline LinePeak peak_of(const BasebandFrame& frame, int line, double from_mm = 2.0, double to_mm = 99.0) {
   const double mm = frame.geometry.sample_mm();
   int best = static_cast<int>(from_mm / mm);
   for (int s = best; s < static_cast<int>(to_mm / mm); ++s)

@@ -58,7 +58,7 @@ TEST(NeedleImage, ShowsALineWhereTheShaftLies) {
       const double at_mm = crossing_mm(frame.geometry, line, shaft[0], shaft[1]);
       if (at_mm < 10.0 || at_mm > 95.0) continue;
       ++met;
-      const Peak peak = peak_of(frame, line);
+      const LinePeak peak = peak_of(frame, line);
       EXPECT_GT(peak.level_db, 0.0) << angle_deg << " line " << line;
       // A tilted line's middle is as broad as the lateral point spread times the slope.
       EXPECT_NEAR(peak.depth_mm, at_mm, angle_deg > 80.0 ? 0.25 : 2.5) << angle_deg << " line " << line;
@@ -127,7 +127,7 @@ TEST(NeedleImage, IsADotAcrossThePlane) {
   const Vec2 at = engine.plan.geometry.to_cartesian({static_cast<double>(middle), 60.0});
   const auto shaft = shaft_to({at.x(), at.y(), 40.0}, Vec3::UnitZ(), 80.0);
   const BasebandFrame frame = seen(engine, needle_of(shaft));
-  const Peak peak = peak_of(frame, middle);
+  const LinePeak peak = peak_of(frame, middle);
   EXPECT_NEAR(peak.depth_mm, 60.0, 0.2);
   EXPECT_NEAR(peak.level_db, kShaftSmooth_db, 1.5);
   int bright = 0;
@@ -166,10 +166,10 @@ TEST(NeedleImage, RepeatsEchoesAtTheBoresSpacing) {
   const double spacing_mm = repeat_spacing_mm(needle);
   EXPECT_NEAR(spacing_mm, 1.540 * (0.6 / 5.79 + 2.4 / 1.48), 1e-9);
   const BasebandFrame frame = seen(engine, needle);
-  const Peak first = peak_of(frame, 64, 58.0, 61.0);
+  const LinePeak first = peak_of(frame, 64, 58.0, 61.0);
   for (int k = 1; k <= 3; ++k) {
     const double at_mm = first.depth_mm + k * spacing_mm;
-    const Peak again = peak_of(frame, 64, at_mm - 0.8, at_mm + 0.8);
+    const LinePeak again = peak_of(frame, 64, at_mm - 0.8, at_mm + 0.8);
     EXPECT_NEAR(again.depth_mm, at_mm, 0.15) << k;
     EXPECT_NEAR(again.level_db, first.level_db + k * db(kRepeatShare), 1.5) << k;
   }
@@ -190,7 +190,7 @@ TEST(NeedleImage, FollowsABentShaft) {
   for (std::size_t n = 4; n + 4 < shaft.size(); ++n) {
     const Vec3 p = 0.5 * (shaft[n] + shaft[n + 1]);
     const Polar at = frame.geometry.to_polar({p.x(), p.y()});
-    const Peak peak = peak_of(frame, static_cast<int>(std::lround(at.line)));
+    const LinePeak peak = peak_of(frame, static_cast<int>(std::lround(at.line)));
     EXPECT_NEAR(peak.depth_mm, at.depth_mm, 0.6) << n;
     EXPECT_GT(peak.level_db, 10.0) << n;
   }
