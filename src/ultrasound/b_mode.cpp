@@ -183,6 +183,7 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   ScanPlan& plan = impl.plan;
   FrameState& frame = impl.frame;
   frame.X_PT = input.X_PT;
+  forget_borders(frame);
   find_contact(impl.scene->skin_distance_mm, plan.geometry, input.X_PT, frame.contact);
   const double reach_mm = find_dent_reach_mm(*impl.scene, plan.geometry, input.X_PT);
   frame.dent_reach = static_cast<float>(reach_mm / plan.geometry.sample_mm());

@@ -49,6 +49,7 @@ struct PictureMaker::Impl {
   std::array<std::optional<Scanner>, kScanDetails> scanners;
   std::optional<Scanner> kept_scanner;  ///< Of what the loop shows.
   std::optional<ScanDetail> last_detail;
+  bool had_colour = false;  ///< The last picture.
   std::optional<CineLoop> cine;
   std::vector<Companion> companions;  ///< Of the loop's slots, by pushes.
   std::size_t pushes = 0;
@@ -135,10 +136,13 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
   const ScanRequest request = within_ranges(asked, impl.transducer);
   Stage& stage = impl.stage(request.acquisition, detail);
   Scanner& scanner = impl.scanner(impl.scanners[static_cast<std::size_t>(detail)], request);
-  // What persisted at this detail is from before the others were shown.
-  if (impl.last_detail != detail) scanner.reset();
-  if (impl.last_detail != detail && stage.doppler) stage.doppler->reset();
+  // A frame persists into the next one of its kind: not over pictures of another detail or without colour.
+  const bool is_other_detail = impl.last_detail != detail;
+  const bool has_colour = request.has_doppler && impl.flow;
+  if (is_other_detail) scanner.reset();
+  if (stage.doppler && (is_other_detail || !impl.had_colour)) stage.doppler->reset();
   impl.last_detail = detail;
+  impl.had_colour = has_colour;
 
   std::vector<NeedleEcho> needles;
   if (request.needle_shaft_P.size() >= 2) {
@@ -168,7 +172,7 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
   picture.dent_reach_mm = find_dent_reach_mm(*impl.scene, echoes.geometry, request.X_PT);
 
   Companion companion{detail, picture.coupled_share, picture.pressed_mm, picture.dent_reach_mm, false, {}, {}, {}};
-  if (request.has_doppler && impl.flow) impl.add_colour(request, stage, echoes, seed, picture, companion);
+  if (has_colour) impl.add_colour(request, stage, echoes, seed, picture, companion);
   if (!impl.cine || !impl.cine->is_frozen()) impl.keep(request, picture, std::move(companion));
   return picture;
 }

@@ -53,8 +53,8 @@ struct Line {
 
 }  // namespace
 
-SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane, int line,
-                       const Border& border) noexcept {
+SurfaceFit fit_in_plane(const ScanPlan& plan, const FrameState& frame, int plane, int line,
+                        const Border& border) noexcept {
   const double depth_mm = (static_cast<double>(border.walk) + 0.5) * static_cast<double>(plan.sample_mm);
   const auto spacing_mm = static_cast<float>(plan.geometry.line_spacing_mm(std::max(depth_mm, 0.1)));
   const int stride = std::max(1, static_cast<int>(kReach_mm / (kMostSteps * static_cast<double>(spacing_mm))));
@@ -73,6 +73,16 @@ SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane,
       along_face.add(static_cast<float>(side * k) * spacing_mm, walk);
     }
   }
+  SurfaceFit fit;
+  fit.neighbours = static_cast<int>(along_face.n) - 1;
+  fit.walk = fit.neighbours >= 2 ? along_face.at_zero() : border.walk;
+  fit.lateral = along_face.slope() * plan.sample_mm;
+  return fit;
+}
+
+SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane, int line,
+                       const Border& border) noexcept {
+  const std::uint16_t tissues = tissues_of(border);
   Line across;
   const auto at = static_cast<std::size_t>(std::clamp(static_cast<int>(border.walk), 0, plan.samples - 1));
   const float plane_mm = plan.plane_step * plan.elevation_sigma_mm[at];
@@ -84,10 +94,7 @@ SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane,
     else if (const BorderKey* next = find_near(borders_of(plan, frame, other, line), tissues, border.walk, reach))
       across.add(z_mm, next->walk);
   }
-  SurfaceFit fit;
-  fit.neighbours = static_cast<int>(along_face.n) - 1;
-  fit.walk = fit.neighbours >= 2 ? along_face.at_zero() : border.walk;
-  fit.lateral = along_face.slope() * plan.sample_mm;
+  SurfaceFit fit = fit_in_plane(plan, frame, plane, line, border);
   fit.elevation = across.slope() * plan.sample_mm;
   return fit;
 }

@@ -1,5 +1,7 @@
 #include "ultrasound/detail/frame_state.h"
 
+#include <algorithm>
+
 namespace trocar::detail {
 
 FrameState make_frame_state(const AcousticScene& scene) {
@@ -27,6 +29,10 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   frame.way_gain.assign(lines * samples + 16, 0.0F);
   frame.gain.assign(static_cast<std::size_t>(plan.planes) * lines * samples + 2, 0);
   for (auto* echoes : {&frame.re, &frame.im}) echoes->assign(plan.echo_row(plan.lines + plan.lateral_reach), 0.0F);
+}
+
+void forget_borders(FrameState& frame) noexcept {
+  std::fill(frame.border_counts.begin(), frame.border_counts.end(), std::uint8_t{0});
 }
 
 }  // namespace trocar::detail

@@ -36,7 +36,7 @@ float slope_across(const ScanPlan& plan, const FrameState& frame, int line) noex
 void set_mirror(const ScanPlan& plan, FrameState& frame, int l) noexcept {
   LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
   const Border& border = frame.gas[static_cast<std::size_t>(l)].border;
-  const SurfaceFit fit = fit_surface(plan, frame, plan.planes / 2, l, border);
+  const SurfaceFit fit = fit_in_plane(plan, frame, plan.planes / 2, l, border);
   const Vec3 spacing = frame.scene->geometry.spacing_mm;
   const auto in_mm = [&](const std::array<float, 3>& v) { return Vec3(Vec3(v[0], v[1], v[2]).cwiseProduct(spacing)); };
   const Vec3 along = in_mm(line.along), lateral = in_mm(line.lateral), elevation = in_mm(frame.elevation);
@@ -180,7 +180,8 @@ void soften_shadows(const ScanPlan& plan, FrameState& frame) noexcept {
 }
 
 /// Edge shadows: a scanline that grazes a border between tissues of different speed is turned by (n - 1) tan(tilt), and
-/// what is turned by more than the beam's opening does not come back. Adds to focus_log, behind the border.
+/// what is turned by more than the beam's opening does not come back. The tilt is that in the image plane: the other
+/// planes are not walked yet. Adds to focus_log, behind the border.
 void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
   constexpr float kOpening_rad = 0.13F;  // assumed, about 1 / (2 f-number)
   constexpr float kMostTangent = 3.0F, kMostLoss = 2.3F, kBendable = 0.15F;
@@ -195,8 +196,8 @@ void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
       const Border& border = frame.borders[first * kMaxBorders + b];
       const float before = plan.slowness[border.before & 127U], behind = plan.slowness[border.behind & 127U];
       if (std::abs(before) > kBendable || std::abs(behind) > kBendable || std::abs(before - behind) < 2e-3F) continue;
-      const SurfaceFit fit = fit_surface(plan, frame, central, line, border);
-      const float tangent = std::min(std::hypot(fit.lateral, fit.elevation), kMostTangent);
+      const SurfaceFit fit = fit_in_plane(plan, frame, central, line, border);
+      const float tangent = std::min(std::abs(fit.lateral), kMostTangent);
       const float turned = (before - behind) * tangent / kOpening_rad;
       for (const auto end = static_cast<std::size_t>(std::max(border.walk, 0.0F)) / kCoarse; c <= end && c < coarse;
            ++c)
