@@ -86,10 +86,10 @@ bool restore(GateState& state) noexcept {
                          std::isfinite(state.energy_mj) && state.force_heat >= 0.0 && std::isfinite(state.force_heat) &&
                          state.torque_heat >= 0.0 && std::isfinite(state.torque_heat) && is_sound(state.runaway_s) &&
                          is_sound(state.quiet_s) && is_sound(state.drop_from_n) && is_sound(state.drop_s) &&
-                         state.mode <= GateMode::kFault && state.fault <= GateFault::kRequested &&
+                         state.mode <= GateMode::kFault && state.fault <= kLastGateFault &&
                          (state.mode == GateMode::kFault) == (state.fault != GateFault::kNone);
   if (is_usable) return true;
-  const GateFault fault = state.fault <= GateFault::kRequested ? state.fault : GateFault::kNotFinite;
+  const GateFault fault = state.fault <= kLastGateFault ? state.fault : GateFault::kNotFinite;
   state = GateState{};
   state.fault = fault;
   state.mode = fault == GateFault::kNone ? GateMode::kOff : GateMode::kFault;

@@ -51,7 +51,7 @@ void count_runaway(GateState& state, bool is_braking, double rise_s) noexcept {
 /// Why the force must go in this period. The caller's word comes first: it names the cause.
 GateFault find_cause(const GateState& state, const GateInput& input, const GateParams& params,
                      bool is_usable) noexcept {
-  if (input.device_fault > GateFault::kRequested) return GateFault::kNotFinite;
+  if (input.device_fault > kLastGateFault) return GateFault::kNotFinite;
   if (input.device_fault != GateFault::kNone) return input.device_fault;
   if (!is_usable) return GateFault::kNotFinite;
   if (!(input.unread_s <= params.max_unread_s)) return GateFault::kDeviceSilent;
@@ -158,52 +158,13 @@ std::uint16_t mode_actions(GateMode mode) noexcept {
       return kGateFault;
     case GateMode::kOn:
     case GateMode::kFading:
+    case GateMode::kAbsent:
       break;
   }
   return 0;
 }
 
 }  // namespace
-
-const char* to_string(GateFault fault) noexcept {
-  switch (fault) {
-    case GateFault::kNone:
-      return "none";
-    case GateFault::kNotFinite:
-      return "not_finite";
-    case GateFault::kDeviceLost:
-      return "device_lost";
-    case GateFault::kDeviceSilent:
-      return "device_silent";
-    case GateFault::kRunaway:
-      return "runaway";
-    case GateFault::kEncoderStuck:
-      return "encoder_stuck";
-    case GateFault::kLoopStalled:
-      return "loop_stalled";
-    case GateFault::kRequested:
-      return "requested";
-  }
-  return "unknown";
-}
-
-const char* to_string(GateMode mode) noexcept {
-  switch (mode) {
-    case GateMode::kOff:
-      return "off";
-    case GateMode::kWaiting:
-      return "waiting";
-    case GateMode::kRising:
-      return "rising";
-    case GateMode::kOn:
-      return "on";
-    case GateMode::kFading:
-      return "fading";
-    case GateMode::kFault:
-      return "fault";
-  }
-  return "unknown";
-}
 
 GateOutput step_gate(GateState& state, const GateInput& input, const GateParams& given) noexcept {
   const GateParams params = detail::made_safe(given);

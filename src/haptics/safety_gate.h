@@ -4,32 +4,9 @@
 
 #include "core/result.h"
 #include "haptics/path_constraint.h"  // Wrench
+#include "telemetry/gate_state.h"
 
 namespace trocar {
-
-/// Why the gate is at zero until somebody resets it. The first one stays.
-enum class GateFault : std::uint8_t {
-  kNone,
-  kNotFinite,     ///< The wrench, or what the device told, was NaN, infinite or beyond all reason.
-  kDeviceLost,    ///< Unplugged, or refused what was written.
-  kDeviceSilent,  ///< No fresh reading for longer than max_unread_s.
-  kRunaway,       ///< Faster than brake_mm_per_s for longer than max_runaway_s.
-  kEncoderStuck,  ///< Force without motion of a single count, for longer than the caller allows.
-  kLoopStalled,   ///< The loop itself had a hole longer than the caller allows.
-  kRequested,     ///< Somebody pressed the stop button.
-};
-const char* to_string(GateFault fault) noexcept;
-
-/// Where the gate is on its way to full force.
-enum class GateMode : std::uint8_t {
-  kOff,      ///< Nobody asked for forces: zero.
-  kWaiting,  ///< For a small commanded force: zero.
-  kRising,   ///< Ramps up.
-  kOn,
-  kFading,  ///< The client is silent: ramps to zero, or is there.
-  kFault,   ///< Latched; ramps to zero within fault_ramp_s, then zero.
-};
-const char* to_string(GateMode mode) noexcept;
 
 /// What the gate did to the wrench in this period; bits.
 enum GateAction : std::uint16_t {

@@ -15,6 +15,7 @@ HapticOutput reject(const HapticState& state, const HapticInput& input) noexcept
   output.sample = state.last;
   output.sample.time_s = input.time_s;
   output.sample.f_total_n = output.sample.device_f_n = output.sample.tau_nmm = Vec3::Zero();
+  output.sample.device_tau_nmm = Vec3::Zero();
   output.sample.events = {};
   output.sample.limited = true;
   EventList(output.sample).add(LimitReason::kInputRejected);

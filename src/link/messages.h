@@ -154,6 +154,7 @@ struct ServerStatus {
   double drop_n = 0.0, drop_s = 0.0;  ///< The last fall of the force.
   bool is_device_connected = true;
   bool has_controller = false;
+  double coupling_share = 1.0;  ///< The smallest since the last status, 0..1; below 1: the loop is slow.
 };
 
 /// Consecutive ticks of one scene: number of the first, and at most kMostSamples of them. The status comes with the

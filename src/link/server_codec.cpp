@@ -43,7 +43,7 @@ flatbuffers::Offset<wire::ServerStatus> build_status(Builder& b, const ServerSta
   return wire::CreateServerStatus(b, status.server_time_s, state, gate_mode, fault, warning, grant, patient, hash,
                                   force_model, task, status.loading, &loop, status.ticks, status.ticks_dropped,
                                   status.messages_refused, status.gate_actions, status.drop_n, status.drop_s,
-                                  status.is_device_connected, status.has_controller);
+                                  status.is_device_connected, status.has_controller, status.coupling_share);
 }
 
 ServerMember build_body(Builder& b, const StateBatch& batch) {
@@ -129,6 +129,7 @@ ServerStatus read(const wire::ServerStatus& table, Inspection& in) {
   status.drop_s = in.number(table.drop_s(), kDurations_s, "drop_s");
   status.is_device_connected = table.is_device_connected();
   status.has_controller = table.has_controller();
+  status.coupling_share = in.number(table.coupling_share(), {0.0, 1.0}, "coupling_share");
   return status;
 }
 

@@ -150,9 +150,13 @@ void Servo::note_gate(const GateOutput& output, const ServoInput& input, TickSam
     if ((begun & event.action) != 0) add_event(sample, event.reason);
   }
   if (output.actions != 0) sample.limited = true;
+  sample.gate_mode = gate_.mode;
+  sample.gate_fault = gate_.fault;
+  sample.gate_scale = gate_.scale;
   if (input.scene == nullptr) return;
   const Mat3 R_PD = input.scene->scene->X_PD.R() * workspace_.X_WD_now.R();
   sample.device_f_n = R_PD * output.wrench.force_n;
+  sample.device_tau_nmm = R_PD * output.wrench.torque_nmm;
 }
 
 void Servo::begin_anew() noexcept {

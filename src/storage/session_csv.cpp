@@ -53,7 +53,8 @@ void append_row(std::string& out, const SessionInfo& info, const TickSample& sam
       append_number(out, field);
     else if constexpr (std::is_same_v<Field, std::uint8_t>)
       append_text(out, name_of(info.tissue_names, field));
-    else if constexpr (std::is_same_v<Field, InsertionPhase>)
+    else if constexpr (std::is_same_v<Field, InsertionPhase> || std::is_same_v<Field, GateMode> ||
+                       std::is_same_v<Field, GateFault>)
       out += to_string(field);
     else if constexpr (std::is_same_v<Field, bool>)
       out += field ? '1' : '0';

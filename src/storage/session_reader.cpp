@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <set>
 
 #include "storage/detail/columns.h"
 #include "storage/detail/database.h"
@@ -58,6 +59,14 @@ void set_field(InsertionPhase& field, int value) {
     throw soci::soci_error("a phase is out of range");
   field = static_cast<InsertionPhase>(value);
 }
+void set_field(GateMode& field, int value) {
+  if (value < 0 || value > static_cast<int>(kLastGateMode)) throw soci::soci_error("a gate mode is out of range");
+  field = static_cast<GateMode>(value);
+}
+void set_field(GateFault& field, int value) {
+  if (value < 0 || value > static_cast<int>(kLastGateFault)) throw soci::soci_error("a gate fault is out of range");
+  field = static_cast<GateFault>(value);
+}
 void set_field(bool& field, int value) {
   field = value != 0;
 }
@@ -92,12 +101,33 @@ struct TickColumns {
   }
 };
 
+/// The columns that this session's `ticks` has: a session of an older program lacks the newer ones.
+std::set<std::string> present_columns(soci::session& database) {
+  std::set<std::string> present;
+  std::string name;
+  soci::statement select = (database.prepare << "SELECT name FROM pragma_table_info('ticks')", soci::into(name));
+  select.execute();
+  while (select.fetch()) present.insert(name);
+  return present;
+}
+
+/// Text of a column in the SELECT: its name, or the value of a sample that was never filled where it is missing.
+template <class Field>
+std::string column_text(const std::set<std::string>& present, const char* name, const Field& unfilled) {
+  if (present.contains(name)) return name;
+  if constexpr (kIsReal<Field>)
+    return fmt::format("{:.1f} AS {}", unfilled, name);
+  else
+    return fmt::format("{} AS {}", static_cast<int>(unfilled), name);
+}
+
 std::vector<TickSample> read_ticks(soci::session& database) {
+  const std::set<std::string> present = present_columns(database);
   std::string names = "tick";
   TickColumns columns;
   const TickSample sample;
   visit_stored_columns(sample, [&](const char* name, const auto& field) {
-    names += fmt::format(", {}", name);
+    names += ", " + column_text(present, name, field);
     if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>)
       columns.reals.emplace_back();
     else

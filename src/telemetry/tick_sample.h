@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "geometry/vec.h"
+#include "telemetry/gate_state.h"
 
 namespace trocar {
 
@@ -69,6 +70,11 @@ struct TickSample {
   std::array<double, 4> device_rotation_wxyz{1, 0, 0, 0};
   /// PX_p of paper A: from the first contact with the skin to where it gave way; zero before. Stored, not in the CSV.
   Vec3 contact_to_puncture_mm = Vec3::Zero();
+  Vec3 device_tau_nmm = Vec3::Zero();      ///< Torque that went to the device, about S; zero where it has no motors.
+  GateMode gate_mode = GateMode::kAbsent;  ///< Of the server's safety gate after this tick.
+  GateFault gate_fault = GateFault::kNone;
+  double gate_scale = 1.0;      ///< 0..1, of safe start, fading and faults (physics.md G7); 1 without a gate.
+  double coupling_share = 1.0;  ///< 0..1, share of the coupling that the loop's period permits (physics.md G11).
 };
 
 /// Resistance (N) along the needle of tip and shaft together, whatever force model made it: positive pushes the needle

@@ -55,7 +55,9 @@ inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, EventL
 
   const Mat3 R_DP = scene.X_PD.R().transpose();
   output.f_D = R_DP * sample.device_f_n;
-  output.tau_D = has_torque ? Vec3(R_DP * torque_P) : Vec3::Zero();
+  if (!has_torque) torque_P.setZero();
+  sample.device_tau_nmm = torque_P;
+  output.tau_D = R_DP * torque_P;
   output.weight_D.force_n = R_DP * weight_P.force_n;
   if (has_torque) output.weight_D.torque_nmm = R_DP * weight_P.torque_nmm;
 }

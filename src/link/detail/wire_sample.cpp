@@ -35,10 +35,15 @@ wire::Sample to_wire(const TickSample& s) {
           to_wire(s.device_f_n),
           flatbuffers::span<const double, 4>(s.device_rotation_wxyz.data(), 4),
           to_wire(s.contact_to_puncture_mm),
+          to_wire(s.device_tau_nmm),
+          s.gate_scale,
+          s.coupling_share,
           flatbuffers::span<const wire::Event, kEvents>(events.data(), kEvents),
           s.tissue,
           static_cast<std::uint8_t>(s.phase),
-          s.limited};
+          s.limited,
+          static_cast<std::uint8_t>(s.gate_mode),
+          static_cast<std::uint8_t>(s.gate_fault)};
 }
 
 TickSample read_sample(const wire::Sample& w, Inspection& inspection) {
@@ -71,6 +76,11 @@ TickSample read_sample(const wire::Sample& w, Inspection& inspection) {
   s.device_f_n = from_wire(w.device_f_n());
   for (flatbuffers::uoffset_t i = 0; i < 4; ++i) s.device_rotation_wxyz[i] = w.device_rotation_wxyz()->Get(i);
   s.contact_to_puncture_mm = from_wire(w.contact_to_puncture_mm());
+  s.device_tau_nmm = from_wire(w.device_tau_nmm());
+  s.gate_scale = w.gate_scale();
+  s.coupling_share = w.coupling_share();
+  s.gate_mode = inspection.enumerator(w.gate_mode(), kLastGateMode, "gate_mode of a tick");
+  s.gate_fault = inspection.enumerator(w.gate_fault(), kLastGateFault, "gate_fault of a tick");
   return s;
 }
 

@@ -49,14 +49,14 @@ void each_field(T& value, Visit&& visit) {
     auto& [a, b, c, d, e, f, g] = value;
     all(a, b, c, d, e, f, g);
   } else if constexpr (std::is_same_v<Plain, ServerStatus>) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t] = value;
-    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u] = value;
+    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u);
   } else if constexpr (std::is_same_v<Plain, TickEvent>) {
     auto& [a, b] = value;
     all(a, b);
   } else if constexpr (std::is_same_v<Plain, TickSample>) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y] = value;
-    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, aa, ab, ac, ad] = value;
+    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, aa, ab, ac, ad);
   } else if constexpr (std::is_same_v<Plain, StateBatch>) {
     auto& [a, b, c, d] = value;
     all(a, b, c, d);

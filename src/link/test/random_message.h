@@ -57,6 +57,8 @@ class RandomMessages {
   void fill(std::uint32_t& value) { value = static_cast<std::uint32_t>(random_.next()); }
   void fill(std::uint64_t& value) { value = random_.next(); }
   void fill(InsertionPhase& value) { value = static_cast<InsertionPhase>(below(4)); }
+  void fill(GateMode& value) { value = static_cast<GateMode>(below(static_cast<std::size_t>(kLastGateMode) + 1)); }
+  void fill(GateFault& value) { value = static_cast<GateFault>(below(static_cast<std::size_t>(kLastGateFault) + 1)); }
   void fill(EventKind& value) { value = static_cast<EventKind>(below(4)); }
   void fill(ServerCommand& value) {
     value = static_cast<ServerCommand>(below(static_cast<std::size_t>(kLastServerCommand) + 1));

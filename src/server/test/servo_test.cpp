@@ -34,7 +34,12 @@ TEST(Servo, LetsTheHandFeelTheSkinAndItsGivingWay) {
   EXPECT_NE(drop, records.end()) << "the gate reports the fall of the force";
   for (const ServoRecord& record : records) {
     const Vec3 written_P = testing::layered_request().X_PW.R() * record.written_D.force_n;
+    const Vec3 turned_P = testing::layered_request().X_PW.R() * record.written_D.torque_nmm;
     ASSERT_NEAR((written_P - record.sample.device_f_n).norm(), 0.0, 1e-12) << "what is recorded is what was written";
+    ASSERT_NEAR((turned_P - record.sample.device_tau_nmm).norm(), 0.0, 1e-12);
+    ASSERT_EQ(record.sample.gate_mode, record.mode);
+    ASSERT_EQ(record.sample.gate_fault, record.fault);
+    ASSERT_EQ(record.sample.gate_scale, record.scale);
   }
 }
 

@@ -8,7 +8,7 @@ namespace trocar::storage_detail {
 
 /// The one ordered list of what a session keeps of a tick: calls visit(name, field) for every column of
 /// `trocar session export --csv`, in its order. Fields are double, std::uint8_t (the tissue), InsertionPhase, bool
-/// (limited) or the array of events. `Sample` is TickSample or const TickSample.
+/// (limited), GateMode, GateFault or the array of events. `Sample` is TickSample or const TickSample.
 template <class Sample, class Visitor>
 void visit_columns(Sample& s, Visitor&& visit) {
   static_assert(std::is_same_v<std::remove_const_t<Sample>, TickSample>);
@@ -53,6 +53,13 @@ void visit_columns(Sample& s, Visitor&& visit) {
   visit("device_f_x_n", s.device_f_n[0]);
   visit("device_f_y_n", s.device_f_n[1]);
   visit("device_f_z_n", s.device_f_n[2]);
+  visit("device_tau_x_nmm", s.device_tau_nmm[0]);
+  visit("device_tau_y_nmm", s.device_tau_nmm[1]);
+  visit("device_tau_z_nmm", s.device_tau_nmm[2]);
+  visit("gate_mode", s.gate_mode);
+  visit("gate_fault", s.gate_fault);
+  visit("gate_scale", s.gate_scale);
+  visit("coupling_share", s.coupling_share);
 }
 
 /// The columns of the `ticks` table: those above but the events, which have a table of their own, and the rotation of

@@ -9,6 +9,15 @@
 namespace trocar::storage_detail {
 namespace {
 
+/// The enumerators' words in place of their numbers.
+template <class Enum>
+std::string words_of(const char* column, Enum last) {
+  std::string text = fmt::format("CASE t.{}", column);
+  for (int i = 0; i <= static_cast<int>(last); ++i)
+    text += fmt::format(" WHEN {} THEN '{}'", i, to_string(static_cast<Enum>(i)));
+  return text + fmt::format(" END AS {}", column);
+}
+
 /// Columns of the view, which shows names where the table has numbers.
 std::string view_columns() {
   std::string list;
@@ -20,6 +29,10 @@ std::string view_columns() {
       list += fmt::format("(SELECT name FROM tissues WHERE id = t.{0}) AS {0}", name);
     else if constexpr (std::is_same_v<Field, InsertionPhase>)
       list += fmt::format("(SELECT name FROM phases WHERE id = t.{0}) AS {0}", name);
+    else if constexpr (std::is_same_v<Field, GateMode>)
+      list += words_of(name, kLastGateMode);
+    else if constexpr (std::is_same_v<Field, GateFault>)
+      list += words_of(name, kLastGateFault);
     else if constexpr (std::is_same_v<Field, std::array<TickEvent, 4>>)
       list += fmt::format(
           "coalesce((SELECT group_concat(text, ';') FROM (SELECT text FROM events e WHERE e.tick = t.tick"

@@ -67,6 +67,11 @@ inline TickSample example_sample(std::size_t n) {
   s.device_f_n = vector();
   s.device_rotation_wxyz = {number(), number(), number(), number()};
   s.contact_to_puncture_mm = {number(), number(), number()};
+  s.device_tau_nmm = vector();
+  s.gate_mode = static_cast<GateMode>(n % 7);
+  s.gate_fault = static_cast<GateFault>(n % 11);
+  s.gate_scale = random.uniform();
+  s.coupling_share = random.uniform();
   return s;
 }
 

@@ -22,7 +22,8 @@ constexpr const char* kHeader =
     "layer_displacement_mm,f_prepuncture_n,f_friction_n,f_cutting_n,f_constraint_x_n,f_constraint_y_n,f_constraint_z_n,"
     "f_weight_x_n,f_weight_y_n,f_weight_z_n,f_total_x_n,f_total_y_n,f_total_z_n,tau_x_nmm,tau_y_nmm,tau_z_nmm,event,"
     "limited,breathing,f_tip_proxy_x_n,f_tip_proxy_y_n,f_tip_proxy_z_n,f_body_axial_n,f_stick_n,device_x_mm,"
-    "device_y_mm,device_z_mm,device_f_x_n,device_f_y_n,device_f_z_n";
+    "device_y_mm,device_z_mm,device_f_x_n,device_f_y_n,device_f_z_n,device_tau_x_nmm,device_tau_y_nmm,device_tau_z_nmm,"
+    "gate_mode,gate_fault,gate_scale,coupling_share";
 
 Session example_session(std::size_t ticks) {
   Session session;
@@ -87,6 +88,11 @@ TEST(SessionCsv, PutsEachFieldUnderItsName) {
   EXPECT_EQ(number("f_stick_n"), s.f_stick_n);
   EXPECT_EQ(number("device_y_mm"), s.device_mm.y());
   EXPECT_EQ(number("device_f_z_n"), s.device_f_n.z());
+  EXPECT_EQ(number("device_tau_x_nmm"), s.device_tau_nmm.x());
+  EXPECT_EQ(field("gate_mode"), "on");
+  EXPECT_EQ(field("gate_fault"), "device_silent");
+  EXPECT_EQ(number("gate_scale"), s.gate_scale);
+  EXPECT_EQ(number("coupling_share"), s.coupling_share);
 }
 
 TEST(SessionCsv, WritesNumbersThatReadBackToTheSameValue) {

@@ -277,6 +277,26 @@ TEST(SessionFile, RefusesIdsOutOfRange) {
   }
 }
 
+TEST(SessionFile, SessionsOfOlderProgramsLackTheGateAndOpen) {
+  const TemporaryFolder folder;
+  write_session(folder / "s.trocar", 10);
+  {
+    soci::session database;
+    storage_detail::open_database(database, folder / "s.trocar");
+    database << "DROP VIEW session_rows";
+    for (const char* column : {"device_tau_x_nmm", "device_tau_y_nmm", "device_tau_z_nmm", "gate_mode", "gate_fault",
+                               "gate_scale", "coupling_share"})
+      database << std::string("ALTER TABLE ticks DROP COLUMN ") + column;
+  }
+  const auto session = load_session(folder / "s.trocar");
+  ASSERT_TRUE(session) << session.error().text();
+  ASSERT_EQ(session->samples.size(), 10u);
+  EXPECT_EQ(session->samples[7].device_f_n, example_sample(7).device_f_n);
+  EXPECT_EQ(session->samples[7].device_tau_nmm, Vec3(Vec3::Zero()));
+  EXPECT_EQ(session->samples[7].gate_mode, GateMode::kAbsent);
+  EXPECT_EQ(session->samples[7].coupling_share, 1.0);
+}
+
 TEST(SessionFile, ShowsNamesInItsView) {
   const TemporaryFolder folder;
   write_session(folder / "s.trocar", 10);
@@ -285,8 +305,10 @@ TEST(SessionFile, ShowsNamesInItsView) {
   std::string tissue;
   std::string phase;
   std::string event;
-  database << "SELECT tissue, phase, event FROM session_rows LIMIT 1 OFFSET 3", soci::into(tissue), soci::into(phase),
-      soci::into(event);
+  std::string gate;
+  database << "SELECT tissue, phase, event, gate_mode FROM session_rows LIMIT 1 OFFSET 3", soci::into(tissue),
+      soci::into(phase), soci::into(event), soci::into(gate);
+  EXPECT_EQ(gate, "on");
   EXPECT_EQ(tissue, "muscle");
   EXPECT_EQ(phase, "retracting");
   EXPECT_EQ(event, "puncture:liver_capsule;enter:liver;limit:torque");

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+
+namespace trocar {
+
+/// The reason why the safety gate gives zero force until a reset. The first fault stays latched.
+enum class GateFault : std::uint8_t {
+  kNone,
+  kNotFinite,         ///< The wrench or the device's reading was NaN, infinite or beyond all limits.
+  kDeviceLost,        ///< Unplugged, or a write was refused.
+  kDeviceSilent,      ///< No fresh reading for longer than max_unread_s.
+  kRunaway,           ///< Faster than brake_mm_per_s for longer than max_runaway_s.
+  kEncoderStuck,      ///< Force without motion of a single count, for longer than the caller allows.
+  kLoopStalled,       ///< One period was longer than the caller allows.
+  kRequested,         ///< The stop button was pressed.
+  kLoopSlow,          ///< The periods were longer than the coupling allows, for max_slow_s together.
+  kImpossibleMotion,  ///< The reading moved further in one period than a hand can.
+  kVibration,         ///< The device vibrated under the gate's force.
+};
+inline constexpr GateFault kLastGateFault = GateFault::kVibration;
+const char* to_string(GateFault fault) noexcept;
+
+/// The state of the safety gate on its way to full force.
+enum class GateMode : std::uint8_t {
+  kOff,      ///< No client asked for forces: zero.
+  kWaiting,  ///< Waits for a small wanted force: zero.
+  kRising,   ///< Ramps up.
+  kOn,
+  kFading,  ///< The client is silent, or forces are no longer wanted: ramps to zero, or is at zero.
+  kFault,   ///< Latched; ramps to zero within fault_ramp_s, then zero.
+  kAbsent,  ///< There is no gate: an attempt without a server. Never a mode of the gate itself.
+};
+inline constexpr GateMode kLastGateMode = GateMode::kAbsent;
+const char* to_string(GateMode mode) noexcept;
+
+}  // namespace trocar
