@@ -17,6 +17,8 @@ Result<std::vector<CaseResult>> run_session_benchmark();
 Result<std::vector<CaseResult>> run_insertion_benchmark();
 /// Partly against fully segmented data along planned paths: the study of the Luebeck group.
 Result<std::vector<CaseResult>> run_paths_benchmark(const Options& options);
+/// Novices with many seeds on the embedded patient and on the real CTs: scores, and the path constraint tick by tick.
+Result<std::vector<CaseResult>> run_cohort_benchmark(const Options& options);
 /// Force along one needle path as a curve, by each force model.
 Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options);
 /// Every tissue, force model, device and holder in closed loop: comes to rest, gives no energy.

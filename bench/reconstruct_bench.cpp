@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <cstdlib>
 
 #include "bench/benchmarks.h"
+#include "bench/real_data.h"
 #include "core/data_dir.h"
 #include "core/random.h"
 #include "io/image_file.h"
@@ -37,11 +37,6 @@ TrackedSequence made_sweep() {
     sequence.frames[n].transforms.emplace("ImageToReference", T_PI.matrix());
   }
   return sequence;
-}
-
-fs::path real_data() {
-  const char* named = std::getenv("TROCAR_TEST_DATA");
-  return named != nullptr ? fs::path(named) : data_dir() / ".." / ".." / "shared" / "data";
 }
 
 std::string note_of(const FreehandVolume& volume) {

@@ -1,21 +1,16 @@
 // A whole attempt faster than real time: the closed loop with its recording, and the whole process.
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
 #include "bench/harness.h"
+#include "bench/real_data.h"
 #include "core/temporary_folder.h"
 #include "headless/run_session.h"
 #include "io/patient_folder.h"
-
-extern char** environ;
 
 namespace trocar::bench {
 namespace {
@@ -25,22 +20,9 @@ constexpr double kSimulated_s = 30.0;
 constexpr double kOutside_mm = 10.0;  // where make_constant_velocity starts and ends
 
 /// Runs this program again with other arguments and waits for it.
-Status run_self(const std::vector<std::string>& arguments) {
-  const std::string self = fs::read_symlink("/proc/self/exe").string();
-  std::vector<char*> argv{const_cast<char*>(self.c_str())};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t quiet;
-  posix_spawn_file_actions_init(&quiet);
-  posix_spawn_file_actions_addopen(&quiet, 1, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&quiet, 2, "/dev/null", O_WRONLY, 0);
-  pid_t child = 0;
-  const int failed = ::posix_spawn(&child, self.c_str(), &quiet, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&quiet);
-  int status = 0;
-  if (failed != 0 || ::waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    return fail("trocar run failed", "bench session");
-  return {};
+Status run_self(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), fs::read_symlink("/proc/self/exe").string());
+  return run_quietly(arguments);
 }
 
 /// Times work that can fail, in ms.
