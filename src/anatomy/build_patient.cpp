@@ -12,6 +12,7 @@
 #include "anatomy/plausible_hu.h"
 #include "volume/distance.h"
 #include "volume/morphology.h"
+#include "volume/orientation.h"
 
 namespace trocar {
 namespace {
@@ -84,16 +85,17 @@ Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> 
   patient.name = options.name;
   patient.provenance = options.provenance;
 
+  // Slices are axial from here on, whatever the order in which the CT was stored.
+  patient.ct = along_P(ct);
   report(progress, "labels", 0.0);
-  TROCAR_TRY(detail::MergedLabels merged, detail::merge_sources(std::move(sources), ct.geometry, warnings));
+  TROCAR_TRY(detail::MergedLabels merged, detail::merge_sources(std::move(sources), patient.ct.geometry, warnings));
   report(progress, "body", 0.2);
-  TROCAR_TRY(const MaskGrid body, find_checked_body(ct, merged.body_hint));
+  TROCAR_TRY(const MaskGrid body, find_checked_body(patient.ct, merged.body_hint));
   merged.body_hint = {};
   clear_outside(body, merged.labels, merged.table, warnings);
 
   report(progress, "distance to the skin", 0.4);
   patient.skin_distance_mm = signed_distance_mm(body);
-  patient.ct = ct;
   patient.labels = std::move(merged.labels);
   patient.label_table = std::move(merged.table);
 

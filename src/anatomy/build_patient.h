@@ -23,13 +23,15 @@ struct BuildOptions {
 };
 
 /// A patient from a CT and segmentations: the body without table and clothing, labels resampled onto the CT's grid with
-/// priorities where they overlap, fat and muscle from HU inside the body, signed distance to the skin.
+/// priorities where they overlap, fat and muscle from HU inside the body, signed distance to the skin. The patient's
+/// volumes have their axes in the order of P (volume/orientation.h), whatever the order in the files.
 /// Errors: a segmentation that does not overlap the CT, an unknown structure name, no body in the CT, all masks empty.
 /// Warnings (an empty mask, a structure cut by the volume's border) are appended to `warnings`.
 Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> sources, const BuildOptions& options,
                                      std::vector<std::string>& warnings, const Progress& progress = {});
 
-/// The body in a CT: skin contour filled, CT table, clothes and air removed.
+/// The body in a CT: skin contour filled, CT table, clothes and air removed. Cavities that leave the scan at the head
+/// or the feet are closed in axial slices: k must run along the body (volume/orientation.h, checked).
 MaskGrid find_body(const CtGrid& ct);
 
 /// One line for each label: voxels, volume, extent; used by `patient show` and `patient check`.

@@ -1,8 +1,10 @@
 #include <algorithm>
 
 #include "anatomy/build_patient.h"
+#include "core/check.h"
 #include "core/parallel.h"
 #include "volume/morphology.h"
+#include "volume/orientation.h"
 #include "volume/resample.h"
 
 namespace trocar {
@@ -82,6 +84,7 @@ MaskGrid find_coarse_body(const CtGrid& ct) {
 }  // namespace
 
 MaskGrid find_body(const CtGrid& ct) {
+  TROCAR_CHECK(order_along_P(ct.geometry).is_identity());
   const CtGrid coarse_ct = resample_linear(ct, isotropic_geometry(ct.geometry, kCoarseMm), -1000);
   MaskGrid zones = find_coarse_body(coarse_ct);
   {  // 0 away from the body, 1 where the fine contour decides, 2 deep inside

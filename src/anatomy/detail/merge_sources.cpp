@@ -7,6 +7,7 @@
 #include <array>
 
 #include "core/parallel.h"
+#include "volume/orientation.h"
 #include "volume/resample.h"
 
 namespace trocar::detail {
@@ -48,9 +49,9 @@ class Merger {
   explicit Merger(const GridGeometry& grid) { merged_.labels = LabelGrid(grid); }
 
   Status add(LabelSource source, std::vector<std::string>& empty_masks) {
-    const LabelGrid labels = source.labels.geometry.matches(merged_.labels.geometry)
-                                 ? std::move(source.labels)
-                                 : resample_nearest(source.labels, merged_.labels.geometry, 0);
+    LabelGrid labels = along_P(std::move(source.labels));
+    if (!labels.geometry.matches(merged_.labels.geometry))
+      labels = resample_nearest(labels, merged_.labels.geometry, 0);
     const auto counts = count_values(labels);
     std::array<std::uint8_t, 256> id_of{};
     std::array<bool, 256> is_named{};

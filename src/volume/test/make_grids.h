@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+
 #include "core/random.h"
 #include "geometry/pose.h"
 #include "volume/grid.h"
@@ -35,6 +38,41 @@ inline GridGeometry plain_geometry(const Index3& size, const Vec3& spacing_mm = 
   geometry.size = size;
   geometry.spacing_mm = spacing_mm;
   return geometry;
+}
+
+/// The same voxels at the same places, stored in another order: axis n of the result is `axis[n]` of the source, from
+/// its far end where `is_turned[n]`.
+template <class T>
+Grid<T> stored_in_order(const Grid<T>& grid, const std::array<std::size_t, 3>& axis,
+                        const std::array<bool, 3>& is_turned) {
+  GridGeometry geometry = grid.geometry;
+  Vec3 corner = Vec3::Zero();
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto to = static_cast<Eigen::Index>(n);
+    const auto from = static_cast<Eigen::Index>(axis[n]);
+    geometry.size[n] = grid.geometry.size[axis[n]];
+    geometry.spacing_mm[to] = grid.geometry.spacing_mm[from];
+    geometry.R_PV.col(to) = (is_turned[n] ? -1.0 : 1.0) * grid.geometry.R_PV.col(from);
+    if (is_turned[n]) corner[from] = static_cast<double>(grid.geometry.size[axis[n]] - 1);
+  }
+  geometry.origin_P = grid.geometry.to_mm(corner);
+  Grid<T> result(geometry);
+  for (std::size_t n = 0; n < result.voxels.size(); ++n) {
+    const Index3 to = geometry.index_of(n);
+    Index3 from{};
+    for (std::size_t a = 0; a < 3; ++a) from[axis[a]] = is_turned[a] ? geometry.size[a] - 1 - to[a] : to[a];
+    result.voxels[n] = grid[from];
+  }
+  return result;
+}
+
+/// Calls visit(axis, is_turned) for the 48 orders in which a volume can be stored.
+void for_each_storage_order(const auto& visit) {
+  std::array<std::size_t, 3> axis{0, 1, 2};
+  do {
+    for (int turns = 0; turns < 8; ++turns)
+      visit(axis, std::array<bool, 3>{(turns & 1) != 0, (turns & 2) != 0, (turns & 4) != 0});
+  } while (std::next_permutation(axis.begin(), axis.end()));
 }
 
 /// Every voxel different from its neighbours, over the whole range of CT values.
