@@ -31,6 +31,7 @@ Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& devic
   TROCAR_TRY_STATUS(check_range(constraint.linear_mm, 0.5, 20.0, "path constraint d0 (mm)"));
   TROCAR_TRY_STATUS(check_range(constraint.linear_rad, 0.01, 1.0, "path constraint theta0 (rad)"));
   TROCAR_TRY_STATUS(check_range(constraint.torque_nmm, 0.0, 500.0, "path constraint n0 (N mm)"));
+  TROCAR_TRY_STATUS(check_range(constraint.fade_mm, 5.0, 100.0, "path constraint s0 (mm)"));
   TROCAR_TRY_STATUS(check_range(options.coupling.damping_ns_per_mm, 0.0, 1.0, "coupling damping (N s/mm)"));
   TROCAR_TRY_STATUS(check_range(options.coupling.stiffness_n_per_mm, 0.01, device.max_stiffness_n_per_mm,
                                 "coupling stiffness (N/mm, at most the device's)"));
@@ -147,6 +148,10 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
   scene->needle = needle;
   scene->device = device;
   scene->options = options;
+  if (device.has_torque())
+    scene->options.constraint = renderable(options.constraint, needle.length_mm);
+  else
+    scene->options.constraint.torque_nmm = 0.0;
   scene->beam_with_stylet = make_needle_beam(needle, true);
   scene->beam_without_stylet = make_needle_beam(needle, false);
   scene->face = make_face(options.tool);

@@ -35,6 +35,8 @@ struct DeviceCapability {
   double max_stiffness_n_per_mm = 3.5;  ///< Range 0.1..20. Source: vendor's nominal figure, references.md.
   double stylus_weight_n = 0.5;         ///< Weight that links and stylus put on the hand. Range 0..5. [assumed]
   double stylus_lever_mm = 20.0;        ///< Centre of that weight behind the stylus origin, along -z of S. [assumed]
+
+  bool has_torque() const noexcept { return peak_torque_nmm > 0.0; }
 };
 
 /// Spring and damper between device and virtual needle (physics.md V1). Range: stiffness at most the device's. Values:

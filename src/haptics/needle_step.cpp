@@ -34,12 +34,32 @@ Pose pose_ahead(NeedleState& state, const Pose& X_PN, double ahead_s, double dt_
   return {rotation_between(axis, ahead) * X_PN.R(), X_PN.p() + ahead_s * state.tip_velocity_P};
 }
 
-/// Paper A: path constraint, only while the needle is in the skin (docs/physics.md C3).
-Wrench path_constraint_wrench(const InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
-  if (!path.is_open || !(path.rest_mm > 0.0)) return {};
-  const Channel& line = path.channel;
-  if (line.direction_P.dot(X_PN.p() - line.origin_P) <= 0.0) return {};
-  return path_constraint(line.origin_P, line.direction_P, X_PN.p(), X_PN.R().col(2), scene.options.constraint);
+/// Way (mm) along the needle from the stylus origin S to the point that the path constraint pulls at: the tip where the
+/// device gives torque, else S itself (physics.md C3).
+double constraint_lever_mm(const HapticScene& scene) noexcept {
+  return scene.device.has_torque() ? scene.needle.length_mm : 0.0;
+}
+
+NeedleAtPath at_path(const PathLine& line, const HapticScene& scene, const Pose& X_PN) noexcept {
+  const Vec3 axis_P = X_PN.R().col(2);
+  const double behind_tip_mm = scene.needle.length_mm - constraint_lever_mm(scene);
+  return {line.direction_P.dot(X_PN.p() - line.origin_P), X_PN.p() - behind_tip_mm * axis_P, axis_P};
+}
+
+/// Paper A: path constraint while the skin is open, about S.
+Wrench path_constraint_wrench(const InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
+                              const Pose& X_PN_ahead) noexcept {
+  if (!path.is_open) return {};
+  const PathLine line{path.channel.origin_P, path.channel.direction_P};
+  Wrench wrench =
+      path_constraint(line, at_path(line, scene, X_PN), at_path(line, scene, X_PN_ahead), scene.options.constraint);
+  wrench.torque_nmm += Vec3(constraint_lever_mm(scene) * X_PN.R().col(2)).cross(wrench.force_n);
+  return wrench;
+}
+
+/// Torque about S of resistances along the path: they act at the tip, by whose way they are found (physics.md T1).
+Vec3 axial_torque_nmm(const HapticScene& scene, const Pose& X_PN, const Vec3& direction_P, double along_n) noexcept {
+  return -along_n * Vec3(scene.needle.length_mm * X_PN.R().col(2)).cross(direction_P);
 }
 
 /// What the body proxies hold across the path, the shape it bends the needle to, and the torque about the grip of all
@@ -56,8 +76,7 @@ void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ah
   state.shape = reaction.needle;
   step.held_P = reaction.wrench_P;
   const double along_n = on_tip_n + axial.body_axial_n + axial.stick_n;
-  const Vec3 lever_P = scene.needle.length_mm * X_PN_ahead.R().col(2);
-  step.held_P.torque_nmm -= along_n * lever_P.cross(axial.axis_P);
+  step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN_ahead, axial.axis_P, along_n);
 }
 
 /// Model B's part along the path of the combined model: the shaft's friction, and the tip in unlabelled tissue, of
@@ -79,7 +98,10 @@ ProxyShare proxy_share(const InsertionPath& path, const HapticScene& scene) noex
 void step_insertion_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
                           double dt_s, NeedleStep& step) noexcept {
   step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s);
-  step.held_P = path_constraint_wrench(state.path, scene, X_PN_ahead);
+  step.held_P = path_constraint_wrench(state.path, scene, X_PN, X_PN_ahead);
+  const InsertionStep& axial = step.axial;
+  const double along_n = axial.prepuncture_n + axial.friction_n + axial.cutting_n + axial.stick_n;
+  step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN, axial.axis_P, along_n);
   state.shape = straight_needle(X_PN, scene);
 }
 

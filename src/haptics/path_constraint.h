@@ -11,7 +11,16 @@ struct PathConstraintParams {
   double linear_mm = 3.0;    ///< d0: below it the force grows linearly. Range 0.5..20. [assumed]
   double torque_nmm = 80.0;  ///< n0: torque beyond theta0. Range 0..500. [assumed]
   double linear_rad = 0.1;   ///< theta0. Range 0.01..1. [assumed]
+  double fade_mm = 20.0;     ///< s0: depth of the tip from which the constraint acts in full. Range 5..100. [assumed]
 };
+
+/// Largest stiffness (N mm/rad) against turning about the stylus origin that the path constraint may show.
+/// physics.md C3: the loop with a light stylus rings beyond it. [assumed]
+inline constexpr double kMostPathTurning_nmm_per_rad = 3000.0;
+
+/// The parameters with d0 and theta0 enlarged until the constraint turns a stylus, whose origin lies `lever_mm` behind
+/// the point that the force acts at, with at most kMostPathTurning_nmm_per_rad. m0 and n0 stay as they are.
+PathConstraintParams renderable(PathConstraintParams params, double lever_mm) noexcept;
 
 /// A pull on the needle in P.
 struct Wrench {
@@ -19,10 +28,30 @@ struct Wrench {
   Vec3 torque_nmm = Vec3::Zero();
 };
 
-/// F = m(d) (u |PX'| - PX'), m = m0 / max(d, d0); Q = n(theta) theta (axis x u)/|axis x u|, n = n0 / max(theta,
-/// theta0). `origin_P`: contact point P on the skin; `direction_P`: unit u of the path; `tip_P`: X', the device's tip;
-/// `axis_P`: unit axis of the device's needle. Zero at d = 0 and theta = 0. Real-time safe.
-Wrench path_constraint(const Vec3& origin_P, const Vec3& direction_P, const Vec3& tip_P, const Vec3& axis_P,
+/// The path: P on the resting skin, and the unit direction u.
+struct PathLine {
+  Vec3 origin_P = Vec3::Zero();
+  Vec3 direction_P = Vec3::UnitZ();
+};
+
+/// The device's needle as the path constraint reads it.
+struct NeedleAtPath {
+  double depth_mm = 0.0;        ///< Of the tip along the path: s = u.PX of the tip.
+  Vec3 held_P = Vec3::Zero();   ///< X', the point that the force acts at.
+  Vec3 axis_P = Vec3::UnitZ();  ///< a, unit.
+};
+
+/// Fade of the constraint with depth, 0 at the skin and 1 from s0 on: t^2 (3 - 2t), t = s/s0.
+double path_fade(double depth_mm, const PathConstraintParams& params) noexcept;
+
+/// Energy (N mm) stored at `now`: V = f(s) (U(d) + W(theta)), d = |X_i - X'|, X_i = P + u (u.PX').
+double path_energy_nmm(const PathLine& line, const NeedleAtPath& now, const PathConstraintParams& params) noexcept;
+
+/// Minus the gradient of V. Across the path F = f m(d) (X_i - X'), m = m0 / max(d, d0); along it -f' (U + W) u, which
+/// is zero but in the fade and never points into the body; Q = f n(theta) theta (a x u)/|a x u|, n = n0 / max(theta,
+/// theta0). Force and torque are about X'. The parts across the path and the torque are taken at the pose `ahead`,
+/// which damps them; depth and energy at `now`. Real-time safe.
+Wrench path_constraint(const PathLine& line, const NeedleAtPath& now, const NeedleAtPath& ahead,
                        const PathConstraintParams& params) noexcept;
 
 }  // namespace trocar

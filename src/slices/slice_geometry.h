@@ -22,7 +22,7 @@ struct SliceAxes {
 enum class SliceOrientation { kAxial, kCoronal, kSagittal };
 SliceAxes slice_axes(SliceOrientation orientation) noexcept;
 
-/// Planes that hold or cross a needle's axis, square to each other (paper B, section 2.3).
+/// Planes that hold or cross a needle's axis, square to each other (paper B, section 2.2).
 enum class NeedlePlane {
   kAlong,        ///< Through the axis, as near to an axial slice as goes.
   kAlongTurned,  ///< Through the axis, a quarter turn from it: the one nearest to the long axis of the body.

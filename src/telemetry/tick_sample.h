@@ -59,8 +59,8 @@ struct TickSample {
   Vec3 f_total_n = Vec3::Zero();      ///< axis*(pre + friction + cutting + body) + constraint + tip proxy + weight.
   Vec3 tau_nmm = Vec3::Zero();        ///< About the stylus origin S.
   std::array<TickEvent, 4> events{};  ///< Filled from the front.
-  bool limited = false;               ///< The safety gate changed the wrench.
-  double breathing = 0.0;             ///< Phase 0..1, 0 = end-expiration.
+  bool limited = false;    ///< The tick (device limits, rejected input) or the safety gate changed the wrench.
+  double breathing = 0.0;  ///< Phase 0..1, 0 = end-expiration.
   Vec3 f_tip_proxy_n = Vec3::Zero();  ///< Volume proxy of paper B; zero with the insertion model.
   double f_body_axial_n = 0.0;        ///< Shaft friction of the body proxies; zero with the insertion model.
   double f_stick_n = 0.0;             ///< Karnopp holding force along the axis, apart from the paper's terms.

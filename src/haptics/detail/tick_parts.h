@@ -47,7 +47,7 @@ inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, EventL
   TickSample& sample = output.sample;
   Vec3 torque_P = sample.tau_nmm;
   const bool force_limited = clamp_norm(sample.device_f_n, scene.device.peak_force_n);
-  const bool has_torque = scene.device.peak_torque_nmm > 0.0;
+  const bool has_torque = scene.device.has_torque();
   const bool torque_limited = has_torque && clamp_norm(torque_P, scene.device.peak_torque_nmm);
   if (force_limited) events.add(LimitReason::kForceClamped);
   if (torque_limited) events.add(LimitReason::kTorqueClamped);

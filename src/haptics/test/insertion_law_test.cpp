@@ -13,14 +13,19 @@ constexpr LoadingLaw kSkin{0.46, 0.02, 0.1};
 constexpr LoadingLaw kMuscle{0.19, 0.03, 0.11};
 constexpr LoadingLaw kLiver{0.42, 0.02, 0.12};
 
-TEST(PrepunctureForce, IsTheSumOfVoigtElementsAtTheirThresholds) {
-  // At x = n dx the incremental model has n + 1 elements stretched by x, x - dx, …; its continuous form is the
-  // integral-corrected cubic that the paper prints. Check the printed polynomial term by term.
-  for (const double x : {0.05, 0.2, 0.62, 1.5}) {
-    for (const double v : {0.0, 2.0, 50.0}) {
-      const double elastic = kSkin.stiffness_n_per_mm * (x * x * x / (6 * 0.1 * 0.1) + x * x / (2 * 0.1) + x / 3.0);
-      const double viscous = kSkin.viscosity_ns_per_mm * v * x / 0.1;
-      EXPECT_NEAR(prepuncture_force_n(x, v, kSkin), elastic + viscous, 1e-12);
+TEST(PrepunctureForce, IsTheSumOfVoigtElementsWhereOneIsAdded) {
+  // Paper A: it starts with one Voigt element, and one is added whenever x exceeds a multiple of dx. Element i is i
+  // times as stiff as the first and stretched by x - (i - 1) dx; every element has the same damper. At x = n dx the
+  // printed cubic is the sum over these n elements.
+  for (const LoadingLaw& law : {kSkin, kMuscle, kLiver}) {
+    for (int n = 1; n <= 20; ++n) {
+      const double x = n * law.delta_x_mm;
+      for (const double v : {0.0, 2.0, 50.0}) {
+        double sum_n = 0.0;
+        for (int i = 1; i <= n; ++i)
+          sum_n += i * law.stiffness_n_per_mm * (x - (i - 1) * law.delta_x_mm) + law.viscosity_ns_per_mm * v;
+        EXPECT_NEAR(prepuncture_force_n(x, v, law), sum_n, 1e-12 * (1.0 + sum_n)) << n << " elements";
+      }
     }
   }
 }

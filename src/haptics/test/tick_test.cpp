@@ -36,14 +36,58 @@ TEST(AllocationGuard, SeesAnAllocation) {
   EXPECT_GT(guard.count(), 0u);
 }
 
-TEST(Tick, ComposesTheTotalFromItsParts) {
-  Driver driver(make_scene(liver_way()));
-  for (const TickSample& s : driver.move(50.0, 10.0)) {
-    const Vec3 expected =
-        s.axis * (s.f_prepuncture_n + s.f_friction_n + s.f_cutting_n) + s.f_constraint_n + s.f_weight_n;
-    EXPECT_LT((s.f_total_n - expected).norm(), 1e-12);
-    EXPECT_LT((s.device_f_n - s.f_total_n - s.axis * s.f_stick_n).norm(), 1e-12);
+/// In 20 mm deep, aside there, on to 45 mm and out again: every term of the model acts at some tick.
+std::vector<TickSample> in_aside_and_out(ForceModel model) {
+  Driver driver(make_scene(liver_way(), model));
+  std::vector<TickSample> samples = driver.move(20.0, 10.0);
+  for (int i = 1; i <= 200; ++i) samples.push_back(driver.to({0.01 * i, 0.0, 20.0}));
+  for (int i = 1; i <= 2500; ++i) samples.push_back(driver.to({2.0, 0.0, 20.0 + 0.01 * i}));
+  for (int i = 1; i <= 5000; ++i) samples.push_back(driver.to({2.0, 0.0, 45.0 - 0.01 * i}));
+  return samples;
+}
+
+TEST(Tick, ComposesTheTotalFromAllItsParts) {
+  for (const ForceModel model : {ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined}) {
+    double most_axial_n = 0.0;
+    double most_proxy_n = 0.0;
+    double most_constraint_n = 0.0;
+    for (const TickSample& s : in_aside_and_out(model)) {
+      const double axial_n = s.f_prepuncture_n + s.f_friction_n + s.f_cutting_n + s.f_body_axial_n;
+      const Vec3 expected = s.axis * axial_n + s.f_constraint_n + s.f_tip_proxy_n + s.f_weight_n;
+      ASSERT_LT((s.f_total_n - expected).norm(), 1e-12);
+      ASSERT_LT((s.device_f_n - s.f_total_n - s.axis * s.f_stick_n).norm(), 1e-12);
+      most_axial_n = std::max(most_axial_n, std::abs(axial_n));
+      most_proxy_n = std::max(most_proxy_n, s.f_tip_proxy_n.norm());
+      most_constraint_n = std::max(most_constraint_n, s.f_constraint_n.norm());
+    }
+    EXPECT_GT(most_axial_n, 0.1) << to_string(model);
+    EXPECT_GT(most_constraint_n, 0.01) << to_string(model);
+    EXPECT_EQ(most_proxy_n > 0.1, model == ForceModel::kProxy) << to_string(model);
   }
+}
+
+TEST(Tick, GivesTheDeviceTheForceOfTheCoupling) {
+  // physics.md V1: along the path the device is pushed back by k_c (s_D - s) + b_c (v_D - v), which balances all
+  // resistances. Here from the recorded places alone, without the recorded terms.
+  const CouplingParams coupling;
+  constexpr double kDt_s = 0.001;
+  Driver driver(make_scene(liver_way()));
+  const std::vector<TickSample> samples = driver.move(50.0, 10.0);
+  int checked = 0;
+  for (std::size_t i = 2; i < samples.size(); ++i) {
+    const auto has_event = [](const TickSample& s) { return s.events[0].kind == EventKind::kPuncture; };
+    if (has_event(samples[i]) || has_event(samples[i - 1])) continue;  // these ticks are shorter and longer
+    const auto way = [&](const Vec3 TickSample::*place) {
+      return std::pair((samples[i].*place).z(), ((samples[i].*place) - (samples[i - 1].*place)).z() / kDt_s);
+    };
+    const auto [s_device, v_device] = way(&TickSample::device_mm);
+    const auto [s_needle, v_needle] = way(&TickSample::tip_mm);
+    const double coupling_n =
+        coupling.stiffness_n_per_mm * (s_device - s_needle) + coupling.damping_ns_per_mm * (v_device - v_needle);
+    ASSERT_NEAR((samples[i].device_f_n - samples[i].f_weight_n).z(), -coupling_n, 1e-6) << samples[i].depth_mm;
+    checked += coupling_n > 0.1 ? 1 : 0;
+  }
+  EXPECT_GT(checked, 1000);
 }
 
 TEST(Tick, CompensatesTheWeightUpwards) {
