@@ -35,7 +35,7 @@ void print_plan(const std::vector<PlannedPath>& paths, bool is_json) {
                       {"target_mm", to_json(p.line_P.b)},
                       {"length_mm", p.length_mm},
                       {"organ_path_mm", p.organ_path_mm},
-                      {"smallest_margin_mm", p.smallest_margin_mm},
+                      {"spare_margin_mm", p.spare_margin_mm},
                       {"nearest_risk", p.nearest_risk}});
     }
     print_json({{"paths", list}});
@@ -45,7 +45,7 @@ void print_plan(const std::vector<PlannedPath>& paths, bool is_json) {
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const PlannedPath& p = paths[i];
     fmt::print("{:>4} {:>7.1f} mm {:>11.1f} mm {:>11.1f} mm  {}\n", i + 1, p.length_mm, p.organ_path_mm,
-               p.smallest_margin_mm, p.nearest_risk);
+               p.spare_margin_mm, p.nearest_risk);
   }
 }
 

@@ -1,8 +1,10 @@
 // trocar run: an attempt by a scripted operator.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 
+#include "anatomy/structure_words.h"
 #include "commands.h"
 #include "headless/realtime_session.h"
 #include "io/patient_source.h"
@@ -110,6 +112,15 @@ Json result_json(const Arguments& arguments, const Case& the_case, const RunResu
   return json;
 }
 
+void print_part(const ScorePart& part) {
+  if (is_deduction(part)) {
+    fmt::print("  {:<44} {:>13} {:>6.1f} points\n", part.title, "", part.points);
+  } else {
+    fmt::print("  {:<44} {:>8.2f} {:<4} {:>6.1f} of {:.0f} points\n", part.title, part.value, part.unit, part.points,
+               part.max_points);
+  }
+}
+
 void print_result(const Arguments& arguments, const Case& the_case, const RunResult& result) {
   const Outcome& outcome = result.outcome;
   fmt::print("{} on {} by {}: {:.1f} s, {} ticks\n", the_case.task.title, the_case.patient->name,
@@ -125,10 +136,12 @@ void print_result(const Arguments& arguments, const Case& the_case, const RunRes
                core.organ_mm, core.vessel_mm, core.other_mm);
   }
   fmt::print("score {:.0f} of 100, target {}\n", outcome.score, outcome.target_reached ? "reached" : "missed");
-  for (const ScorePart& part : outcome.parts) {
-    fmt::print("  {:<44} {:>8.2f} {:<4} {:>6.1f} of {:.0f} points\n", part.title, part.value, part.unit, part.points,
-               part.max_points);
+  if (!outcome.risks_touched.empty()) {
+    std::vector<std::string> names;
+    for (const std::string& name : outcome.risks_touched) names.push_back(structure_words(name));
+    fmt::print("structures at risk touched: {}\n", fmt::join(names, ", "));
   }
+  for (const ScorePart& part : outcome.parts) print_part(part);
   for (const std::string& hint : outcome.hints) fmt::print("hint: {}\n", hint);
   for (const ServerFigures& server : result.servers) print_server(server);
 }

@@ -195,7 +195,7 @@ class Checks {
                     assessment.path.nearest_risk.empty()
                         ? std::string("nothing at risk is near")
                         : fmt::format("{} is {:.1f} mm beyond its margin", assessment.path.nearest_risk,
-                                      assessment.path.smallest_margin_mm)),
+                                      assessment.path.spare_margin_mm)),
         path->line_P.a);
   }
 

@@ -71,7 +71,7 @@ Result<Case> prepare_case(std::shared_ptr<const VirtualPatient> patient, const C
     made.plan = paths.front();
   }
   log_info("expert path: {:.1f} mm, {:.1f} mm of it in the organ, {:.1f} mm to spare from {}", made.plan.length_mm,
-           made.plan.organ_path_mm, made.plan.smallest_margin_mm, made.plan.nearest_risk);
+           made.plan.organ_path_mm, made.plan.spare_margin_mm, made.plan.nearest_risk);
   made.patient = std::move(patient);
   return made;
 }

@@ -2,14 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include "anatomy/structure_words.h"
 
 namespace trocar {
-
-std::string in_words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
 
 std::optional<AttemptEvent> describe_event(const SessionInfo& info, const TickSample& sample, const TickEvent& event) {
   AttemptEvent told{sample.time_s, sample.depth_mm, event.kind, {}, {}};
@@ -21,11 +16,11 @@ std::optional<AttemptEvent> describe_event(const SessionInfo& info, const TickSa
       return std::nullopt;
     case EventKind::kPuncture:
       told.name = name_in(info.layer_names);
-      told.text = fmt::format("through the {} at {:.1f}\u00a0N", in_words(told.name), tip_load_n(sample));
+      told.text = fmt::format("through the {} at {:.1f}\u00a0N", structure_words(told.name), tip_load_n(sample));
       return told;
     case EventKind::kEnter:
       told.name = name_in(info.label_names);
-      told.text = fmt::format("into the {}", in_words(told.name));
+      told.text = fmt::format("into the {}", structure_words(told.name));
       return told;
     case EventKind::kLimit:
       break;

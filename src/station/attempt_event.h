@@ -8,8 +8,6 @@
 
 namespace trocar {
 
-/// "liver_capsule" -> "liver capsule".
-std::string in_words(std::string name);
 /// An event of a tick for people: punctures, tissue that is entered, a needle that was resumed inside. Nothing for
 /// what else the record keeps.
 std::optional<AttemptEvent> describe_event(const SessionInfo& info, const TickSample& sample, const TickEvent& event);

@@ -4,16 +4,12 @@
 
 #include <algorithm>
 
+#include "anatomy/structure_words.h"
 #include "geometry/segment.h"
 #include "station/needle_shaft.h"
 
 namespace trocar {
 namespace {
-
-std::string words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
 
 /// The label behind an event, by its id in the session.
 const Label* find_entered(const OpenCase& open, const TickEvent& event) {
@@ -79,13 +75,15 @@ void AttemptReplay::find_moments() {
     for (const TickEvent& event : sample.events) {
       if (event.kind == EventKind::kPuncture) {
         const std::string text = event_text(session_.info, event);
-        moments_.push_back({sample.time_s, Kind::kPuncture, "through the " + words(text.substr(text.find(':') + 1))});
+        moments_.push_back(
+            {sample.time_s, Kind::kPuncture, "through the " + structure_words(text.substr(text.find(':') + 1))});
       }
       const Label* label = find_entered(*open_, event);
       if (label == nullptr) continue;
       const bool is_risk = find_risk(open_->the_case.task, *label) != nullptr;
-      moments_.push_back({sample.time_s, is_risk ? Kind::kRisk : Kind::kEnter,
-                          is_risk ? "touched: " + words(label->name) : "into the " + words(label->name)});
+      moments_.push_back(
+          {sample.time_s, is_risk ? Kind::kRisk : Kind::kEnter,
+           is_risk ? "touched: " + structure_words(label->name) : "into the " + structure_words(label->name)});
     }
   }
   if (session_.fired) moments_.push_back({session_.samples[*session_.fired].time_s, Kind::kFired, "the gun was fired"});

@@ -1,6 +1,6 @@
 #include "station/needle_view.h"
 
-#include "station/attempt_event.h"
+#include "anatomy/structure_words.h"
 #include "station/needle_shaft.h"
 #include "telemetry/tick_pose.h"
 
@@ -21,7 +21,7 @@ NeedleView needle_view(const Case& the_case, const TickSample& sample, const Pos
   view.phase = sample.phase;
   if (sample.tissue == 0 || sample.tissue >= the_case.tissues.tissues.size()) return view;
   const Label* label = sample.tissue == the_case.tissues.skin ? nullptr : find_label(*the_case.patient, sample.tip_mm);
-  view.tissue = in_words(label != nullptr ? label->name : the_case.tissues.tissues[sample.tissue].name);
+  view.tissue = structure_words(label != nullptr ? label->name : the_case.tissues.tissues[sample.tissue].name);
   return view;
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "station/attempt_event.h"
+#include "anatomy/structure_words.h"
 
 namespace trocar {
 namespace {
@@ -33,9 +33,9 @@ std::string danger_ahead(const Case& the_case, const TickSample& sample) {
     if (label == nullptr) continue;
     const bool is_bone = label->tissue == "bone";
     if (!is_bone && find_risk(the_case.task, *label) == nullptr) continue;
-    if (ahead_mm == 0.0) return fmt::format("The tip is in the {}: pull back", in_words(label->name));
-    return fmt::format("{} {:.0f} mm ahead: stop, {}", is_bone ? "Bone" : in_words(label->name), std::ceil(ahead_mm),
-                       sample.depth_mm > 0.0 ? "pull back and tilt" : "aim anew");
+    if (ahead_mm == 0.0) return fmt::format("The tip is in the {}: pull back", structure_words(label->name));
+    return fmt::format("{} {:.0f} mm ahead: stop, {}", is_bone ? "Bone" : structure_words(label->name),
+                       std::ceil(ahead_mm), sample.depth_mm > 0.0 ? "pull back and tilt" : "aim anew");
   }
   return {};
 }

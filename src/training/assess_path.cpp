@@ -147,13 +147,13 @@ class Assessor {
     for (int n = 0; n < count; ++n)
       look_around({way.at(static_cast<double>(n) / count), way.at(static_cast<double>(n + 1) / count)}, radius_mm,
                   nearest);
-    made_.path.smallest_margin_mm = detail::kReportedMargin_mm;
+    made_.path.spare_margin_mm = detail::kReportedMargin_mm;
     for (const Label& label : patient_.label_table.labels) {
       const RiskStructure* risk = map_.risks[label.id];
       if (risk == nullptr) continue;
       const double away_mm = is_crossed_[label.id] ? 0.0 : nearest[label.id].distance_mm;
-      if (away_mm - risk->margin_mm < made_.path.smallest_margin_mm) {
-        made_.path.smallest_margin_mm = away_mm - risk->margin_mm;
+      if (away_mm - risk->margin_mm < made_.path.spare_margin_mm) {
+        made_.path.spare_margin_mm = away_mm - risk->margin_mm;
         made_.path.nearest_risk = label.name;
       }
       if (is_crossed_[label.id] || away_mm >= risk->margin_mm) continue;

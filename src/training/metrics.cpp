@@ -171,6 +171,8 @@ AttemptMetrics measure_attempt(const Task& task, const VirtualPatient& patient, 
   metrics.tip_P = last.tip_mm;
   metrics.target_offset_P = last.tip_mm - plan.line_P.b;
   metrics.travel_mm = inward_travel_mm(samples.first(*end + 1));
+  for (const TickSample& sample : samples.first(*end + 1))
+    if (is_usable(sample)) metrics.deepest_mm = std::max(metrics.deepest_mm, sample.depth_mm);
   metrics.time_s = std::max(0.0, last.time_s - touch->time_s);
   metrics.risks = find_risks(task, patient, samples, *end);
   return metrics;

@@ -32,6 +32,7 @@ struct AttemptMetrics {
   Vec3 target_offset_P = Vec3::Zero();
   double travel_mm = 0.0;        ///< Way of the tip inward inside the body, pulled back and pushed again
                                  ///< included; to and fro of less than 1 mm is tremor and not counted.
+  double deepest_mm = 0.0;       ///< Depth of the tip below the skin, the largest up to the end.
   double time_s = 0.0;           ///< From the first contact with the skin to the end.
   std::vector<RiskTouch> risks;  ///< By tip and shaft, the whole attempt, one entry a label.
 };

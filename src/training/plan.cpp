@@ -135,7 +135,7 @@ class Selection {
     path.line_P = line(n).line_P;
     path.length_mm = line(n).length_mm;
     path.organ_path_mm = found.organ_path_mm;
-    path.smallest_margin_mm = found.smallest_margin_mm;
+    path.spare_margin_mm = found.spare_margin_mm;
     if (const Label* label = map_.patient.label_table.find(found.nearest_risk)) path.nearest_risk = label->name;
     return path;
   }

@@ -19,8 +19,9 @@ struct PlannedPath {
   Segment line_P{Vec3::Zero(), Vec3::Zero()};
   double length_mm = 0.0;
   double organ_path_mm = 0.0;  ///< Length inside the organ before the lesion or the tip, what comes first.
-  double smallest_margin_mm =
-      0.0;                   ///< Clearance to the nearest risk structure, beyond the required margin; at most 10.
+  /// Smallest clearance to a risk structure minus the margin that the task requires for it; at most 10. The clearance
+  /// itself is this value plus the margin of nearest_risk.
+  double spare_margin_mm = 0.0;
   std::string nearest_risk;  ///< Label name; empty: none within 10 mm beyond its margin.
 };
 

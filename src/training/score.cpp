@@ -19,9 +19,17 @@ constexpr Weights kPuncture{50, 0, 20, 10, 10, 5, 5};
 
 constexpr double kEnoughCore = 0.5;  // share of what was possible that counts as having reached the target
 
-/// Share of a part's points left at a deviation: 1 at none, 0 from the tolerance on.
-double share_left(double deviation, double tolerance) noexcept {
-  const double ratio = tolerance > 0.0 ? deviation / tolerance : 1.0;
+constexpr double kLesionReach = 2.0;  // a core of lesion counts as reached up to this multiple of the target tolerance
+
+/// Share of a part's points at a deviation: 1 at 0, 1/2 at the tolerance, falling without end (docs/physics.md, S1).
+double share_at(double deviation, double tolerance) noexcept {
+  const double ratio = tolerance > 0.0 ? deviation / tolerance : HUGE_VAL;
+  return deviation > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 1.0;
+}
+
+/// Share of a part's points for an expense: 1 at 0, 0 from the limit on.
+double share_below(double expense, double limit) noexcept {
+  const double ratio = limit > 0.0 ? expense / limit : 1.0;
   return std::max(0.0, 1.0 - ratio * ratio);
 }
 
@@ -58,19 +66,19 @@ Worth worth_of(const Task& task, const Needle& needle, const PlannedPath& plan, 
   const double length_mm = plan.line_P.length_mm();
   const bool is_finished = core || !needle.is_biopsy;
   Worth worth;
-  worth.target = share_left(metrics.target_offset_P.norm(), task.target_tolerance_mm);
+  worth.target = share_at(metrics.target_offset_P.norm(), task.target_tolerance_mm);
   worth.core = core ? core_share(*core, possible_mm) : 0.0;
-  worth.entry = share_left(entry_miss_mm(task, plan, metrics), task.entry_tolerance_mm);
-  worth.angle = share_left(metrics.angle_deg, task.angle_tolerance_deg);
-  worth.length = share_left(std::max(0.0, metrics.travel_mm - length_mm), length_mm);
-  worth.time = is_finished ? share_left(metrics.time_s, task.time_limit_s) : 0.0;
+  worth.entry = share_at(entry_miss_mm(task, plan, metrics), task.entry_tolerance_mm);
+  worth.angle = share_at(metrics.angle_deg, task.angle_tolerance_deg);
+  worth.length = share_below(std::max(0.0, metrics.travel_mm - length_mm), length_mm);
+  worth.time = is_finished ? share_below(metrics.time_s, task.time_limit_s) : 0.0;
   return worth;
 }
 
 std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, const AttemptMetrics& metrics,
                                 double entry_mm, const std::optional<BiopsyCore>& core, std::size_t risks,
                                 bool is_biopsy) {
-  const double safe = metrics.has_entered ? weights.risk - worth.risk_penalty : 0.0;
+  const double safe = metrics.has_entered ? std::max(0.0, weights.risk - worth.risk_penalty) : 0.0;
   const double scale = metrics.has_entered ? 1.0 : 0.0;
   const auto part = [&](const char* name, const char* title, double value, const char* unit, double share, double max) {
     return ScorePart{name, title, value, unit, scale * share * max, max};
@@ -85,7 +93,19 @@ std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, cons
   if (is_biopsy)
     parts.push_back(
         part("core", "Target tissue in the core", core ? core->target_mm : 0.0, "mm", worth.core, weights.core));
+  if (const double beyond = worth.risk_penalty - weights.risk; metrics.has_entered && beyond > 0.0)
+    parts.push_back({"deduction", "Deduction for structures at risk", worth.risk_penalty, "points", -beyond, 0.0});
   return parts;
+}
+
+/// A biopsy reaches its target with a core taken near the planned point, or with a core that holds lesion from somewhat
+/// further off, since a lesion has a size. Healthy organ is everywhere: a core of it proves nothing about the place.
+bool has_reached_target(const Task& task, const Needle& needle, const AttemptMetrics& metrics,
+                        const std::optional<BiopsyCore>& core, double core_share, bool is_parenchymal) noexcept {
+  if (!metrics.has_entered || (needle.is_biopsy && !core)) return false;
+  const double off_mm = metrics.target_offset_P.norm();
+  if (off_mm <= task.target_tolerance_mm) return true;
+  return core && !is_parenchymal && core_share >= kEnoughCore && off_mm <= kLesionReach * task.target_tolerance_mm;
 }
 
 }  // namespace
@@ -117,8 +137,7 @@ Outcome score_attempt(const Task& task, const VirtualPatient& patient, const Tis
   for (const ScorePart& part : outcome.parts) outcome.score += part.points;
   outcome.score = std::clamp(outcome.score, 0.0, 100.0);
 
-  const bool is_near = metrics.has_entered && metrics.target_offset_P.norm() <= task.target_tolerance_mm;
-  outcome.target_reached = needle.is_biopsy ? outcome.core && (is_near || worth.core >= kEnoughCore) : is_near;
+  outcome.target_reached = has_reached_target(task, needle, metrics, outcome.core, worth.core, labels.is_parenchymal());
   outcome.hints = make_hints(
       {task, needle, plan, metrics, outcome.core, stylet_risks, possible_mm, labels.is_parenchymal(), outcome.parts});
   return outcome;

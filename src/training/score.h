@@ -35,20 +35,27 @@ struct BiopsyCore {
 };
 
 struct ScorePart {
-  std::string name;   ///< "target", "entry", "angle", "risk", "length", "time", "core".
+  std::string name;   ///< "target", "entry", "angle", "risk", "length", "time", "core", "deduction".
   std::string title;  ///< In words.
   double value = 0.0;
   std::string unit;
-  double points = 0.0;  ///< The risk part falls below 0 where the penalties of what was touched exceed its worth.
-  double max_points = 0.0;
+  double points = 0.0;      ///< 0..max_points; of a deduction negative.
+  double max_points = 0.0;  ///< 0 of a deduction.
 };
+/// Penalties beyond what the part "risk" is worth are a part of their own, which exists only then.
+inline bool is_deduction(const ScorePart& part) noexcept {
+  return part.max_points <= 0.0;
+}
 
-/// What an attempt is told at its end. A deviation d in a part with tolerance t is worth max_points*(1 - (d/t)^2),
-/// nothing from t on: small errors cost little, closer is never worse. The parts' points add up to the score, within
-/// 0..100. An entry inside the task's entry zone is whole; outside, its deviation counts from the zone's edge. Without
-/// a puncture of the skin it is 0. How much each part is worth is teaching policy [assumed].
+/// Result of an attempt. A deviation d (target, entry, angle) with tolerance t is worth max_points/(1 + (d/t)^2); an
+/// expense e (length, time) with limit l is worth max_points*(1 - (e/l)^2), 0 from l on; docs/physics.md, S1. Smaller
+/// is never worse. The parts' points add up to the score, within 0..100. An entry inside the task's entry zone is worth
+/// all points; outside, its deviation counts from the zone's edge. Without a puncture of the skin the score is 0. How
+/// much each part is worth is teaching policy [assumed].
 struct Outcome {
   double score = 0.0;  ///< 0..100.
+  /// The tip ended within the target tolerance, for a biopsy with a core taken; or within twice the tolerance with a
+  /// core that holds at least half of the lesion tissue that was possible. Touched risks are told apart from it.
   bool target_reached = false;
   std::vector<ScorePart> parts;
   std::vector<std::string> hints;  ///< What to do better, most important first.

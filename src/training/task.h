@@ -49,7 +49,7 @@ struct Task {
   double max_path_mm = 150.0;           ///< Skin to the tip when it is at the target. Range 10..300.
   double max_entry_angle_deg = 60.0;    ///< Between the needle and the skin's normal. Range 5..85.
   double max_posterior_deg = 30.0;      ///< Supine patient: how far the skin's normal may look down. Range 0..90.
-  // Scoring: the deviation at which a part is worth nothing.
+  // Scoring: the deviation at which a part is worth half, and the time at which it is worth nothing.
   double target_tolerance_mm = 5.0;
   double entry_tolerance_mm = 10.0;
   double angle_tolerance_deg = 10.0;

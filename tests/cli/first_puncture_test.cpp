@@ -92,7 +92,7 @@ TEST_F(FirstPuncture, PlanWritesAMarkupsFile) {
   double last_mm = 0.0;
   for (const Json& path : json["paths"]) {
     EXPECT_GE(path["organ_path_mm"], 10.0);
-    EXPECT_GE(path["smallest_margin_mm"], 0.0);
+    EXPECT_GE(path["spare_margin_mm"], 0.0);
     EXPECT_GE(path["length_mm"], last_mm);
     last_mm = path["length_mm"];
   }

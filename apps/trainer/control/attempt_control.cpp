@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "anatomy/structure_words.h"
 #include "control/force_bands.h"
 #include "desk/desk.h"
 #include "pages/work_page.h"
@@ -206,7 +207,7 @@ void AttemptControl::advance(double dt_s) {
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(to_qt(event.text)),
                                is_risk(open_->the_case, event));
     if (event.kind == EventKind::kPuncture)
-      plot.add_event(event.depth_mm, event.time_s, to_qt(event.name).replace('_', ' '));
+      plot.add_event(event.depth_mm, event.time_s, to_qt(structure_words(event.name)));
   }
   said_s_ -= dt_s;
   show_tools(dt_s);

@@ -1,5 +1,6 @@
 #include "control/force_bands.h"
 
+#include "anatomy/structure_words.h"
 #include "shell/parts.h"
 
 namespace trocar::trainer {
@@ -16,8 +17,7 @@ QColor color_of(const OpenCase& open, const PathPiece& piece) {
 std::vector<ForcePlot::Band> force_bands(const OpenCase& open) {
   std::vector<ForcePlot::Band> bands;
   for (const PathPiece& piece : open.pieces) {
-    QString name = to_qt(piece.name);
-    bands.push_back({piece.from_mm, piece.to_mm, name.replace('_', ' '), color_of(open, piece)});
+    bands.push_back({piece.from_mm, piece.to_mm, to_qt(structure_words(piece.name)), color_of(open, piece)});
   }
   return bands;
 }

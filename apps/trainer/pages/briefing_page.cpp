@@ -63,8 +63,8 @@ QString risks_text(const Task& task) {
 
 QString counts_text(const Task& task) {
   return BriefingPage::tr(
-             "Tip at the target (worth nothing beyond %1 mm), entry (%2 mm) and angle (%3°) as the expert's, a core of "
-             "the target, a short way, %4 s. Not to be touched: %5.")
+             "Tip at the target (half of the points at %1 mm), entry (half at %2 mm) and angle (half at %3°) as the "
+             "expert's, a core of the target, a short path, less than %4 s. Not to be touched: %5.")
       .arg(task.target_tolerance_mm, 0, 'f', 0)
       .arg(task.entry_tolerance_mm, 0, 'f', 0)
       .arg(task.angle_tolerance_deg, 0, 'f', 0)

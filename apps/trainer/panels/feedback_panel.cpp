@@ -115,9 +115,13 @@ void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_mo
     auto* value =
         make_label(tr("%1 %2").arg(part.value, 0, 'f', part.value < 100.0 ? 1 : 0).arg(to_qt(part.unit)), "dim");
     value->setAlignment(Qt::AlignRight | Qt::AlignBottom);
+    value->setVisible(!is_deduction(part));
     parts_->addWidget(value, row, 1);
-    parts_->addWidget(new PointsBar(part.points, part.max_points), row + 1, 0);
-    auto* points = make_label(tr("%1 / %2").arg(part.points, 0, 'f', 0).arg(part.max_points, 0, 'f', 0), "dim");
+    if (!is_deduction(part)) parts_->addWidget(new PointsBar(part.points, part.max_points), row + 1, 0);
+    auto* points =
+        make_label(is_deduction(part) ? tr("%1").arg(part.points, 0, 'f', 0)
+                                      : tr("%1 / %2").arg(part.points, 0, 'f', 0).arg(part.max_points, 0, 'f', 0),
+                   "dim");
     points->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
     parts_->addWidget(points, row + 1, 1);
     row += 2;

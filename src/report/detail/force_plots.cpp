@@ -176,10 +176,9 @@ std::string force_time_figure(const Session& session) {
                 [](const TickSample& s) { return s.f_constraint_n.norm(); }),
       over_time(session, "to the device", "c-device", [](const TickSample& s) { return s.device_f_n.norm(); })};
   return "<figure>" + to_svg(axial) + "</figure>" +
-         figure(
-             to_svg(norms) + phase_key(),
-             "Above: positive pushes the needle out. Dotted lines: punctures and the shot of the biopsy gun. Stick is "
-             "the hold of a resting needle, apart from paper A's terms.");
+         figure(to_svg(norms) + phase_key(),
+                "Above: positive pushes the needle out. Dotted lines: punctures and the shot of the biopsy gun. Stick: "
+                "static friction while the needle is at rest (not part of paper A's model).");
 }
 
 std::string motion_figure(const Session& session) {

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "anatomy/structure_words.h"
 
 namespace trocar::report_detail {
 
@@ -46,9 +49,8 @@ std::string number_text(double value, int decimals) {
 }
 
 std::string words(std::string_view name) {
-  std::string out(name);
-  for (char& c : out)
-    if (c == '_' || c == '-') c = ' ';
+  std::string out = structure_words(name);
+  std::replace(out.begin(), out.end(), '-', ' ');
   return out;
 }
 

@@ -11,7 +11,7 @@ std::string escape(std::string_view text);
 /// A number with fixed decimals and a real minus sign; "–" when it is not finite.
 std::string number_text(double value, int decimals);
 
-/// A name of a table in words: "liver_capsule" -> "liver capsule".
+/// A name of a table in words: "liver-biopsy" -> "liver biopsy", "rib_right_10" -> "right rib 10".
 std::string words(std::string_view name);
 /// The same with a capital first letter.
 std::string title_words(std::string_view name);

@@ -181,7 +181,7 @@ std::string path_key() {
 
 std::string path_figure(const Session& session, const VirtualPatient* patient) {
   if (patient == nullptr || patient->ct.empty())
-    return fmt::format("<p>The patient “{}” is not at hand: the path cannot be shown in its CT.</p>",
+    return fmt::format("<p>Patient folder “{}” not found: the path cannot be shown in its CT.</p>",
                        escape(session.info.patient_name));
   std::string out;
   if (patient->content_hash != session.info.patient_hash)

@@ -56,6 +56,9 @@ std::string with_unit(double value, const std::string& unit) {
 }
 
 std::string part_row(const ScorePart& part) {
+  if (is_deduction(part))
+    return fmt::format("<tr><td>{}</td><td></td><td></td><td class=\"number\"><b>{}</b></td></tr>", escape(part.title),
+                       number_text(part.points, std::abs(part.points - std::round(part.points)) < 0.05 ? 0 : 1));
   const double share =
       part.max_points > 0.0 && std::isfinite(part.points) ? std::clamp(part.points / part.max_points, 0.0, 1.0) : 0.0;
   return fmt::format(
@@ -116,17 +119,18 @@ std::string page_header(const Session& session) {
 std::string result_section(const Session& session) {
   if (!session.outcome)
     return "<p class=\"warning\"><b>This session is incomplete.</b> The program ended before the attempt did: there is "
-           "no "
-           "score. What was recorded until then is shown below.</p>";
+           "no score. The ticks recorded until then are shown below.</p>";
   const Outcome& outcome = *session.outcome;
   std::string out = fmt::format(
-      "<section class=\"together\"><h2>Result</h2><div class=\"result\"><div class=\"ring\">{}<div class=\"verdict\">{}"
-      "</div></div><table class=\"parts\"><tbody>",
-      score_ring(outcome.score), outcome.target_reached ? "Target reached" : "Target missed");
+                                               "<section class=\"together\"><h2>Result</h2><div class=\"result\"><div "
+                                               "class=\"ring\">{}<div class=\"verdict\">{}"
+                                               "</div></div><table class=\"parts\"><tbody>",
+                                               score_ring(outcome.score),
+                                               outcome.target_reached ? "Target reached" : "Target missed");
   for (const ScorePart& part : outcome.parts) out += part_row(part);
   out += "</tbody></table></div>";
   if (!outcome.risks_touched.empty())
-    out += fmt::format("<p class=\"warning\">Touched on the way: <b>{}</b>.</p>", join(outcome.risks_touched));
+    out += fmt::format("<p class=\"warning\">Structures at risk touched: <b>{}</b>.</p>", join(outcome.risks_touched));
   return out + "</section>";
 }
 
@@ -147,7 +151,7 @@ std::string core_section(const Session& session) {
                         number_text(core.target_mm, 1), number_text(core.organ_mm, 1), number_text(core.vessel_mm, 1),
                         number_text(core.other_mm, 1));
   if (!core.risks_in_throw.empty())
-    out += fmt::format("<p class=\"warning\">The shot went through: <b>{}</b>.</p>", join(core.risks_in_throw));
+    out += fmt::format("<p class=\"warning\">The shot hit: <b>{}</b>.</p>", join(core.risks_in_throw));
   return out + "</section>";
 }
 

@@ -6,22 +6,20 @@
 #include <array>
 #include <cmath>
 
+#include "anatomy/structure_words.h"
+
 namespace trocar {
 namespace {
 
-constexpr double kMatters = 0.1;   // share of a part's points that must be lost before it is spoken of
-constexpr double kSecond = 0.4;    // a second direction is named from this share of the first
-constexpr double kNameable = 0.5;  // rounds to 1 mm or degree
+constexpr double kMatters = 0.1;          // share of a part's points that must be lost before it is spoken of
+constexpr double kSecond = 0.4;           // a second direction is named from this share of the first
+constexpr double kNameable = 0.5;         // rounds to 1 mm or degree
+constexpr double kRepeatedTravel = 0.25;  // share of the excess travel from which retractions are spoken of
 
 struct Hint {
   double lost_points;
   std::string text;
 };
-
-std::string spoken(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
 
 const ScorePart* find_part(std::span<const ScorePart> parts, std::string_view name) {
   const auto found = std::find_if(parts.begin(), parts.end(), [&](const ScorePart& part) { return part.name == name; });
@@ -36,7 +34,7 @@ double lost(const HintSubject& subject, std::string_view name) {
 }
 
 std::string target_name(const HintSubject& subject) {
-  return subject.is_parenchymal ? spoken(subject.task.organ) + " tissue" : "lesion";
+  return subject.is_parenchymal ? structure_words(subject.task.organ) + " tissue" : "lesion";
 }
 
 /// "5 mm short of it and 4 mm too far towards the feet", and what to do about it.
@@ -51,7 +49,8 @@ Correction correct(const Vec3& offset_P, const Vec3& path_direction_P) {
   std::vector<std::string> deviations;
   std::vector<std::string> advice;
   if (std::abs(deeper_mm) >= least_mm) {
-    deviations.push_back(fmt::format("{:.0f} mm {}", std::abs(deeper_mm), deeper_mm < 0.0 ? "short" : "too deep"));
+    deviations.push_back(
+        fmt::format("{:.0f} mm {}", std::abs(deeper_mm), deeper_mm < 0.0 ? "short of the target" : "too deep"));
     advice.push_back(deeper_mm < 0.0 ? fmt::format("advance {:.0f} mm further", -deeper_mm)
                                      : fmt::format("stop {:.0f} mm earlier", deeper_mm));
   }
@@ -68,13 +67,14 @@ void add_target_hint(const HintSubject& subject, std::vector<Hint>& hints) {
   const double lost_target = lost(subject, "target");
   if (subject.needle.is_biopsy && !subject.core) {
     const Correction correction = correct(subject.metrics.target_offset_P, path_P);
-    const std::string where = lost_target > 0.0 ? fmt::format(" The tip came to lie {}.", correction.deviation) : "";
+    const std::string where = lost_target > 0.0 ? fmt::format(" The tip stopped {}.", correction.deviation) : "";
     hints.push_back({lost_core + lost_target,
                      "No core was taken: bring the tip to the target, hold it still and fire the gun." + where});
   } else if (subject.core && subject.core->pieces.empty()) {  // going deeper would be the wrong advice
-    hints.push_back({lost_core + lost_target,
-                     "No tissue came out, for bone stopped the stylet: choose an insertion point and a direction that "
-                     "pass beside it."});
+    hints.push_back(
+        {lost_core + lost_target,
+         "No tissue was taken: the stylet hit bone. Choose an insertion point and a direction that pass beside "
+         "it."});
   } else if (lost_core > 0.0) {
     const BiopsyCore& core = *subject.core;
     const double middle_mm = subject.needle.throw_mm - subject.needle.dead_space_mm - subject.needle.notch_mm / 2.0;
@@ -91,7 +91,7 @@ void add_target_hint(const HintSubject& subject, std::vector<Hint>& hints) {
   } else if (lost_target > 0.0) {
     const Correction correction = correct(subject.metrics.target_offset_P, path_P);
     hints.push_back(
-        {lost_target, fmt::format("The tip ended {:.0f} mm from the target, {}: {}.",
+        {lost_target, fmt::format("The tip missed the target by {:.0f} mm, {}: {}.",
                                   subject.metrics.target_offset_P.norm(), correction.deviation, correction.advice)});
   }
 }
@@ -114,24 +114,33 @@ void add_risk_hints(const HintSubject& subject, std::vector<Hint>& hints) {
   for (const RiskTouch& touch : subject.metrics.risks)
     hints.push_back({touch.penalty, fmt::format("The needle touched a structure at risk, {}, {:.0f} mm below the skin: "
                                                 "find it in the image and keep clear of it.",
-                                                spoken(touch.label), touch.depth_mm)});
+                                                structure_words(touch.label), touch.depth_mm)});
   for (const RiskTouch& touch : subject.stylet_risks)
     hints.push_back(
         {touch.penalty, fmt::format("The stylet shot into a structure at risk, {}: look {:.0f} mm beyond the "
                                     "tip before you fire.",
-                                    spoken(touch.label), subject.needle.throw_mm)});
+                                    structure_words(touch.label), subject.needle.throw_mm)});
+}
+
+/// Travel beyond the path's length is either repeated after a retraction or lies beyond the target.
+std::string travel_hint(const AttemptMetrics& metrics, double path_mm) {
+  const double repeated_mm = metrics.travel_mm - metrics.deepest_mm;
+  if (repeated_mm < kRepeatedTravel * (metrics.travel_mm - path_mm))
+    return fmt::format(
+        "The needle went {:.0f} mm deep for a path of {:.0f} mm: follow the tip in the image and stop at "
+        "the target.",
+        metrics.deepest_mm, path_mm);
+  const std::string entries = metrics.entries > 1 ? fmt::format(" and pierced the skin {} times", metrics.entries) : "";
+  return fmt::format(
+      "The needle travelled {:.0f} mm inside the body{} for a path of {:.0f} mm, {:.0f} mm of it after "
+      "pulling back: set its direction before you insert it and pull back less.",
+      metrics.travel_mm, entries, path_mm, repeated_mm);
 }
 
 void add_economy_hints(const HintSubject& subject, std::vector<Hint>& hints) {
   const AttemptMetrics& metrics = subject.metrics;
-  if (const double points = lost(subject, "length"); points > 0.0) {
-    const std::string entries =
-        metrics.entries > 1 ? fmt::format(" and pierced the skin {} times", metrics.entries) : "";
-    hints.push_back(
-        {points, fmt::format("The needle travelled {:.0f} mm inside the body{} for a path of {:.0f} mm: set "
-                             "its direction before you insert it and pull back less.",
-                             metrics.travel_mm, entries, subject.plan.line_P.length_mm())});
-  }
+  if (const double points = lost(subject, "length"); points > 0.0)
+    hints.push_back({points, travel_hint(metrics, subject.plan.line_P.length_mm())});
   const bool is_finished = subject.core || !subject.needle.is_biopsy;
   if (const double points = lost(subject, "time"); points > 0.0 && is_finished)
     hints.push_back({points, fmt::format("It took {:.0f} s from the skin to the target: plan the path first, then go "

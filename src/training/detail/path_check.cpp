@@ -61,7 +61,7 @@ double distance_to_skin(const FloatGrid& skin_distance, const Vec3& start_P, con
 void look_around(const PlanningMap& map, const Segment& piece, PathFindings& findings) {
   const GridGeometry& geometry = map.patient.labels.geometry;
   const double half_voxel = 0.5 * geometry.spacing_mm.norm();
-  const double radius = map.largest_margin_mm + findings.smallest_margin_mm + half_voxel;
+  const double radius = map.largest_margin_mm + findings.spare_margin_mm + half_voxel;
   const IndexBox box =
       clipped(united(box_around(geometry, piece.a, radius), box_around(geometry, piece.b, radius)), geometry);
   for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k)
@@ -71,10 +71,10 @@ void look_around(const PlanningMap& map, const Segment& piece, PathFindings& fin
         const RiskStructure* risk = map.risks[id];
         if (!risk) continue;
         const Vec3 centre = geometry.to_mm({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
-        if (distance_mm(piece, centre) - half_voxel - risk->margin_mm > findings.smallest_margin_mm) continue;
+        if (distance_mm(piece, centre) - half_voxel - risk->margin_mm > findings.spare_margin_mm) continue;
         const double clearance = segment_box_distance_mm(piece, geometry, centre) - risk->margin_mm;
-        if (clearance > findings.smallest_margin_mm) continue;
-        findings.smallest_margin_mm = clearance;
+        if (clearance > findings.spare_margin_mm) continue;
+        findings.spare_margin_mm = clearance;
         findings.nearest_risk = id;
         findings.where_P = centre;
         if (clearance < 0.0) return;
@@ -86,19 +86,19 @@ void measure_margins(const PlanningMap& map, const Segment& way, PathFindings& f
   const int count = static_cast<int>(std::ceil(way.length_mm() / kChunk_mm));
   const double error =
       2.0 * map.slack_mm;  // half a cell each for interpolation and for where the voxel lies in its cell
-  findings.smallest_margin_mm = kReportedMargin_mm;
+  findings.spare_margin_mm = kReportedMargin_mm;
   std::vector<std::pair<double, Segment>> pieces;
   for (int n = 0; n < count; ++n) {
     const Segment piece{way.at(static_cast<double>(n) / count), way.at(static_cast<double>(n + 1) / count)};
     const double coarse = sample_linear(map.clearance_mm, piece.at(0.5));
     pieces.emplace_back(coarse - 0.5 * piece.length_mm() - error, piece);
-    findings.smallest_margin_mm = std::min(findings.smallest_margin_mm, std::max(0.0, coarse + error));
+    findings.spare_margin_mm = std::min(findings.spare_margin_mm, std::max(0.0, coarse + error));
   }
   std::stable_sort(pieces.begin(), pieces.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [bound, piece] : pieces) {
-    if (bound > findings.smallest_margin_mm) break;
+    if (bound > findings.spare_margin_mm) break;
     look_around(map, piece, findings);
-    if (findings.smallest_margin_mm < 0.0) {
+    if (findings.spare_margin_mm < 0.0) {
       findings.verdict = PathVerdict::kMargin;
       return;
     }

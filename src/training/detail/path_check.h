@@ -45,11 +45,11 @@ struct PathFindings {
   PathVerdict verdict = PathVerdict::kFree;
   Vec3 where_P = Vec3::Zero();
   double organ_path_mm = 0.0;
-  double smallest_margin_mm = 0.0;
+  double spare_margin_mm = 0.0;   ///< Clearance beyond the required margin, at most kReportedMargin_mm.
   std::uint8_t nearest_risk = 0;  ///< Label id; 0: none within kReportedMargin_mm.
 };
 inline constexpr double kHubReserve_mm = 10.0;      ///< Of the needle stays outside.
-inline constexpr double kReportedMargin_mm = 10.0;  ///< A larger clearance is told as this.
+inline constexpr double kReportedMargin_mm = 10.0;  ///< Upper bound of spare_margin_mm.
 
 /// Walks the path and the throw beyond it voxel by voxel: layers in order, organ passed, margins to the risk voxels.
 PathFindings check_path(const PlanningMap& map, const Needle& needle, const PathCandidate& path);

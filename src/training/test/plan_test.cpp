@@ -87,7 +87,7 @@ TEST(Plan, ShortestPathGoesStraightDownWhereNothingIsInTheWay) {
   // Liver from 22 mm below the skin to the tip, which comes to rest before the lesion's border; voxels are 2 mm.
   EXPECT_NEAR(path.organ_path_mm, path.length_mm - 22.0, 1.5);
   EXPECT_EQ(path.nearest_risk, "");
-  EXPECT_EQ(path.smallest_margin_mm, 10.0);
+  EXPECT_EQ(path.spare_margin_mm, 10.0);
 }
 
 TEST(Plan, NeedleThatIsNotFiredIsPutIntoTheTarget) {
@@ -117,7 +117,7 @@ TEST(Plan, ShortestPathPassesARibAtItsMargin) {
   EXPECT_GE(paths->front().length_mm, best_mm - 0.02);
   EXPECT_LE(paths->front().length_mm, best_mm + 0.3);  // lines are about 1 mm apart
   EXPECT_EQ(paths->front().nearest_risk, "rib");
-  EXPECT_LT(paths->front().smallest_margin_mm, 1.0);
+  EXPECT_LT(paths->front().spare_margin_mm, 1.0);
 }
 
 TEST(Plan, EveryPathKeepsEveryMarginOverTheWholeThrow) {
@@ -129,8 +129,8 @@ TEST(Plan, EveryPathKeepsEveryMarginOverTheWholeThrow) {
   for (const PlannedPath& path : *paths) {
     const double smallest = smallest_clearance(task, patient, path, needle());
     EXPECT_GE(smallest, -0.02);
-    EXPECT_NEAR(path.smallest_margin_mm, std::min(smallest, 10.0), 0.05);
-    EXPECT_EQ(path.nearest_risk.empty(), path.smallest_margin_mm >= 10.0);
+    EXPECT_NEAR(path.spare_margin_mm, std::min(smallest, 10.0), 0.05);
+    EXPECT_EQ(path.nearest_risk.empty(), path.spare_margin_mm >= 10.0);
   }
 }
 

@@ -83,10 +83,10 @@ TEST(Score, CloserIsNeverWorse) {
 
 TEST(Score, EachPartFallsWithItsOwnDeviationOnly) {
   const Outcome off_entry = score({{54.0, 0.0, 50.0}, {50.0, 51.0, 50.0}});
-  EXPECT_NEAR(part(off_entry, "entry").points, 10.0 * (1.0 - 0.16), 0.01);
+  EXPECT_NEAR(part(off_entry, "entry").points, 10.0 / (1.0 + 0.16), 0.01);
   EXPECT_NEAR(part(off_entry, "target").points, 25.0, 1e-6);
   const Outcome shallow = score({{50.0, 0.0, 50.0}, {50.0, 48.0, 50.0}});
-  EXPECT_NEAR(part(shallow, "target").points, 25.0 * (1.0 - 0.36), 1e-6);
+  EXPECT_NEAR(part(shallow, "target").points, 25.0 / (1.0 + 0.36), 1e-6);
   EXPECT_NEAR(part(shallow, "entry").points, 10.0, 0.01);
 }
 
@@ -94,7 +94,7 @@ TEST(Score, TouchedRisksCostTheirPenalty) {
   const Outcome rib = score({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
   EXPECT_EQ(rib.risks_touched, std::vector<std::string>{"rib_right_9"});
   EXPECT_NEAR(part(rib, "risk").points, 20.0 - 15.0, 1e-9);
-  EXPECT_TRUE(has_hint(rib, "rib right 9")) << rib.hints[0];
+  EXPECT_TRUE(has_hint(rib, "right rib 9")) << rib.hints[0];
   // The stylet alone reaches the vessel.
   const Outcome throw_only = score({{50.0, 0.0, 20.0}, {39.0, 30.0, 20.0}});
   ASSERT_TRUE(throw_only.core.has_value());
@@ -103,6 +103,60 @@ TEST(Score, TouchedRisksCostTheirPenalty) {
   EXPECT_EQ(vessel.risks_touched, std::vector<std::string>{"portal_vein"});
   EXPECT_NEAR(part(vessel, "risk").points, 0.0, 1e-9);
   EXPECT_TRUE(has_hint(vessel, "stylet shot into a structure at risk, portal vein"));
+}
+
+TEST(Score, TargetPointsFallWithEveryMillimetre) {
+  // Beyond the tolerance (5 mm), too: short of the target along the path, so that nothing else changes the part.
+  const auto points_at = [](double short_mm) {
+    return part(score({{50.0, 0.0, 50.0}, {50.0, 51.0 - short_mm, 50.0}}), "target").points;
+  };
+  double before = points_at(0.0);
+  EXPECT_NEAR(before, 25.0, 1e-6);
+  EXPECT_NEAR(points_at(5.0), 12.5, 1e-6);
+  EXPECT_GT(points_at(5.0), points_at(14.0) + 5.0);
+  for (double short_mm = 1.0; short_mm <= 30.0; short_mm += 1.0) {
+    const double now = points_at(short_mm);
+    EXPECT_LT(now, before - 0.04) << short_mm;
+    before = now;
+  }
+}
+
+TEST(Score, PenaltiesBeyondTheRiskPartAreADeduction) {
+  Task task = make_box_task();
+  for (RiskStructure& risk : task.risks) risk.penalty = 25.0;
+  const Attempt attempt = make_attempt({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
+  const Outcome outcome =
+      score_attempt(task, patient(), make_box_tissues(), make_gun(), make_box_plan(), attempt.samples, attempt.fired);
+  EXPECT_EQ(part(outcome, "risk").points, 0.0);
+  EXPECT_NEAR(part(outcome, "deduction").points, -5.0, 1e-9);
+  EXPECT_EQ(part(outcome, "deduction").max_points, 0.0);
+  double points = 0.0;
+  for (const ScorePart& one : outcome.parts) {
+    points += one.points;
+    EXPECT_TRUE(is_deduction(one) || one.points >= 0.0) << one.name;
+  }
+  EXPECT_NEAR(points, outcome.score, 1e-9);
+}
+
+TEST(Score, ATargetFarOffIsNotReached) {
+  // 12 and 19 mm short of a long lesion: the core is full of lesion, and yet the tip is not at the planned point.
+  VirtualPatient long_lesion = make_box_patient();
+  for (std::size_t i = 0; i < long_lesion.labels.voxels.size(); ++i)
+    if (long_lesion.labels.voxels[i] == 3) long_lesion.labels.voxels[i] = 4;
+  const VirtualPatient healthy = make_box_patient(false);
+  const auto is_reached = [](const VirtualPatient& who, double short_mm) {
+    const Attempt attempt = make_attempt({{50.0, 0.0, 50.0}, {50.0, 51.0 - short_mm, 50.0}});
+    const Outcome outcome = score_attempt(make_box_task(), who, make_box_tissues(), make_gun(), make_box_plan(),
+                                          attempt.samples, attempt.fired);
+    EXPECT_GT(outcome.core.value().target_mm, 16.0) << short_mm;
+    return outcome.target_reached;
+  };
+  EXPECT_TRUE(is_reached(long_lesion, 4.0));
+  EXPECT_TRUE(is_reached(long_lesion, 9.0));
+  EXPECT_FALSE(is_reached(long_lesion, 12.0));
+  EXPECT_FALSE(is_reached(long_lesion, 19.0));
+  EXPECT_TRUE(is_reached(healthy, 4.0));
+  EXPECT_FALSE(is_reached(healthy, 9.0));  // liver is all around: a core of it does not tell the place
 }
 
 TEST(Score, EveryNoviceIsWorseThanTheExpert) {
@@ -172,8 +226,36 @@ TEST(Hints, TellTheCostliestErrorFirst) {
 
 TEST(Hints, DoNotSendTheNeedleThroughBone) {
   const Outcome outcome = score({{50.0, 0.0, 75.0}, {50.0, 10.5, 75.0}});
-  EXPECT_TRUE(has_hint(outcome, "bone stopped the stylet"));
+  EXPECT_TRUE(has_hint(outcome, "No tissue was taken: the stylet hit bone"));
   EXPECT_FALSE(has_hint(outcome, "advance"));
+}
+
+TEST(Hints, AnOvershootIsNoRetraction) {
+  const Outcome deep = score({{50.0, 0.0, 50.0}, {50.0, 73.0, 50.0}});
+  EXPECT_TRUE(has_hint(deep, "The needle went 73 mm deep for a path of 51 mm")) << deep.hints.back();
+  EXPECT_FALSE(has_hint(deep, "pull back less"));
+
+  // In to 45 mm, out to 5 mm, in to the target: 40 mm are travelled twice.
+  Attempt attempt = make_attempt(make_box_plan().line_P);
+  const auto sample_at = [&](double depth_mm) {
+    TickSample sample = attempt.samples[attempt.fired];
+    sample.depth_mm = depth_mm;
+    sample.tip_mm.y() = depth_mm;
+    return sample;
+  };
+  std::vector<TickSample> samples(attempt.samples.begin(),
+                                  attempt.samples.begin() + static_cast<std::ptrdiff_t>(attempt.fired));
+  for (double depth_mm = 45.0; depth_mm > 5.0; depth_mm -= 0.1) samples.push_back(sample_at(depth_mm));
+  for (double depth_mm = 5.0; depth_mm < 51.0; depth_mm += 0.1) samples.push_back(sample_at(depth_mm));
+  samples.push_back(sample_at(51.0));
+  const Outcome repeated = score(samples, samples.size() - 1);
+  EXPECT_TRUE(has_hint(repeated, "46 mm of it after pulling back")) << repeated.hints.back();
+  EXPECT_TRUE(has_hint(repeated, "pull back less"));
+}
+
+TEST(Hints, SayHowFarShortTheTipStopped) {
+  Attempt attempt = make_attempt({{50.0, 0.0, 50.0}, {50.0, 30.0, 50.0}});
+  EXPECT_TRUE(has_hint(score(attempt.samples, {}), "The tip stopped 21 mm short of the target."));
 }
 
 TEST(Hints, SpeakOfWhatMattersOnly) {
