@@ -13,6 +13,7 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 find_library(SOCI_CORE soci_core REQUIRED)
 find_library(SOCI_SQLITE3 soci_sqlite3 REQUIRED)
+find_library(SQLITE3 sqlite3 REQUIRED)
 find_path(SOCI_INCLUDE soci/soci.h REQUIRED)
 find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel FiltersCore FiltersGeneral IOXML IOGeometry
   ImagingCore RenderingCore RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2 RenderingFreeType)
@@ -49,7 +50,7 @@ target_link_libraries(trocar_boost INTERFACE Threads::Threads)
 
 add_library(trocar_soci INTERFACE)
 target_include_directories(trocar_soci SYSTEM INTERFACE ${SOCI_INCLUDE})
-target_link_libraries(trocar_soci INTERFACE ${SOCI_CORE} ${SOCI_SQLITE3})
+target_link_libraries(trocar_soci INTERFACE ${SOCI_CORE} ${SOCI_SQLITE3} ${SQLITE3})
 
 # ITK's own use file adds a non-system include path to all later targets.
 add_library(trocar_itk INTERFACE)

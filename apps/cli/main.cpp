@@ -2,6 +2,7 @@
 #include <exception>
 
 #include "commands.h"
+#include "core/interruption.h"
 #include "core/log.h"
 #include "core/version.h"
 
@@ -67,6 +68,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   // Our code does not throw; memory can still run out.
+  trocar::handle_interruptions();
   try {
     return run(argc, argv);
   } catch (const std::exception& exception) {

@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "core/data_dir.h"
+#include "core/output_check.h"
 
 namespace trocar::cli {
 namespace fs = std::filesystem;
@@ -68,12 +69,12 @@ Progress ProgressPrinter::callback() const {
   return [state = state_.get()](std::string_view step, double fraction) { state->show(step, fraction); };
 }
 
-Status check_new(const fs::path& out) {
+Status check_new(const fs::path& out, const char* option) {
+  if (out.empty()) return fail_usage(std::string(option) + " is empty", option, "give it a name");
   std::error_code ignored;
-  if (fs::exists(out, ignored)) {
-    return fail_usage("the output is already there", out.string(), "choose another name or remove it");
-  }
-  return {};
+  if (fs::exists(fs::symlink_status(out, ignored)))
+    return fail_usage("output already exists", out.string(), "choose another name or delete it");
+  return check_can_write(out);
 }
 
 Result<fs::path> find_data(std::string_view name) {

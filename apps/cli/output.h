@@ -37,8 +37,8 @@ class ProgressPrinter {
   std::unique_ptr<State> state_;
 };
 
-/// Before long work: nothing may lie at `out` yet (exit status 2).
-Status check_new(const std::filesystem::path& out);
+/// Before long work: `out` is not empty, nothing lies there yet (exit status 2 both), and it can be written.
+Status check_new(const std::filesystem::path& out, const char* option = "--out");
 
 /// A shipped table: "tasks", "needles.toml". An error where the data folder is missing.
 Result<std::filesystem::path> find_data(std::string_view name);

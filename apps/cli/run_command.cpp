@@ -168,9 +168,22 @@ Status check_servers(Arguments& a) {
   return check_realtime(a.realtime);
 }
 
+/// The session can be made: nothing is there but what an interrupted run has left, which is kept under another name.
+Status make_room(const std::filesystem::path& session) {
+  TROCAR_TRY(const auto kept_as, set_aside_incomplete_session(session));
+  if (kept_as)
+    print_warning(fmt::format("{} is the incomplete session of an interrupted run — kept as {}", session.string(),
+                              kept_as->string()));
+  const std::filesystem::path folder = session.parent_path();
+  std::error_code ignored;
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+    return fail("no such folder", folder.string(), "make it first");
+  return check_new(session);
+}
+
 Status run(Arguments& arguments) {
   RunOptions& run = arguments.run;
-  TROCAR_TRY_STATUS(check_new(run.session));
+  TROCAR_TRY_STATUS(make_room(run.session));
   run.patient_source = arguments.source.folder_or_name;
   run.patient_seed = arguments.source.seed;
   run.seed = arguments.source.seed;

@@ -12,10 +12,25 @@
 namespace trocar::cli {
 namespace {
 
+/// What a reader of the session must be told, beside its damage.
+void warn_of(const Session& session, const std::string& file) {
+  if (session.is_incomplete)
+    print_warning(
+        fmt::format("incomplete session: the program ended before the attempt did, {} ticks were recorded "
+                    "and there is no score — {}",
+                    session.samples.size(), file));
+  if (!session.has_checksums)
+    print_warning(fmt::format("no checksums in a session of an older program: damage may pass unnoticed — {}", file));
+}
+
 Status export_session(const std::string& session_file, const std::string& csv) {
-  TROCAR_TRY_STATUS(check_new(csv));
-  TROCAR_TRY(const Session session, load_session(session_file));
-  return export_csv(session, csv);
+  TROCAR_TRY_STATUS(check_new(csv, "--csv"));
+  TROCAR_TRY(const Session session, salvage_session(session_file));
+  warn_of(session, session_file);
+  TROCAR_TRY_STATUS(export_csv(session, csv));
+  if (session.damage.empty()) return {};
+  return tl::unexpected(damage_error(session, session_file,
+                                     "the rest was exported; behind a gap the event column says damaged:FIRST-LAST"));
 }
 
 struct ReportArguments {
@@ -26,17 +41,23 @@ struct ReportArguments {
 
 /// The session's patient, or nothing with a warning where it is gone or has changed since.
 std::optional<VirtualPatient> find_patient(const SessionInfo& info, const std::string& wanted,
-                                           const Progress& progress) {
-  const std::string where = wanted.empty() ? info.patient_source : wanted;
+                                           const std::filesystem::path& session, const Progress& progress) {
+  const Result<std::string> found =
+      wanted.empty() ? find_recorded_patient(info.patient_source, info.patient_hash, session.parent_path())
+                     : Result<std::string>(wanted);
+  if (!found) {
+    print_warning("the report has no CT slices: " + found.error().text());
+    return std::nullopt;
+  }
+  const std::string& where = *found;
   auto patient = open_patient({where, info.patient_seed}, progress);
   if (!patient) {
-    print_warning(
-        fmt::format("the report has no CT slices — {} — name the patient with --patient", patient.error().text()));
+    print_warning("the report has no CT slices: " + patient.error().text());
     return std::nullopt;
   }
   if (patient->content_hash != info.patient_hash) {
     print_warning(
-        fmt::format("the report has no CT slices — {} is not the patient of the session — name it with "
+        fmt::format("the report has no CT slices: this is not the patient of the session — {} — name it with "
                     "--patient",
                     where));
     return std::nullopt;
@@ -46,10 +67,13 @@ std::optional<VirtualPatient> find_patient(const SessionInfo& info, const std::s
 
 Status write_report(const ReportArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
-  TROCAR_TRY(const Session session, load_session(arguments.session));
+  TROCAR_TRY(const Session session, salvage_session(arguments.session));
+  warn_of(session, arguments.session);
   const ProgressPrinter printer;
-  const auto patient = find_patient(session.info, arguments.patient, printer.callback());
-  return write_file_atomically(arguments.out, html_report(session, patient ? &*patient : nullptr));
+  const auto patient = find_patient(session.info, arguments.patient, arguments.session, printer.callback());
+  TROCAR_TRY_STATUS(write_file_atomically(arguments.out, html_report(session, patient ? &*patient : nullptr)));
+  if (session.damage.empty()) return {};
+  return tl::unexpected(damage_error(session, arguments.session, "the report shows the rest"));
 }
 
 }  // namespace

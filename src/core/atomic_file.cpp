@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/input_file.h"
+#include "core/unfinished_output.h"
 
 namespace trocar {
 namespace fs = std::filesystem;
@@ -52,15 +53,14 @@ Status flush_to_disk(const fs::path& path) {
 Status write_atomically(const fs::path& target, const std::function<Status(const fs::path&)>& write) {
   TROCAR_TRY_STATUS(make_parent(target));
   const fs::path temporary = temporary_beside(target);
+  UnfinishedOutput unfinished({temporary});
+  TROCAR_TRY_STATUS(write(temporary));
+  TROCAR_TRY_STATUS(flush_to_disk(temporary));
   std::error_code error;
-  Status status = write(temporary);
-  if (status) status = flush_to_disk(temporary);
-  if (status) {
-    fs::rename(temporary, target, error);
-    if (error) status = fail("cannot be written: " + error.message(), target.string(), "choose another place");
-  }
-  if (!status) fs::remove(temporary, error);
-  return status;
+  fs::rename(temporary, target, error);
+  if (error) return fail("cannot write: " + error.message(), target.string(), "choose another folder");
+  unfinished.keep();
+  return {};
 }
 
 Status write_file_atomically(const fs::path& target, std::string_view bytes) {
@@ -82,16 +82,15 @@ Status write_folder_atomically(const fs::path& target, const std::function<Statu
     return fail_usage("exists already", target.string(), "choose another name or remove it first");
   TROCAR_TRY_STATUS(make_parent(target));
   const fs::path temporary = temporary_beside(target);
+  UnfinishedOutput unfinished({temporary});
   fs::remove_all(temporary, error);
   fs::create_directories(temporary, error);
   if (error) return fail("cannot make the folder: " + error.message(), temporary.string(), "choose another place");
-  Status status = write(temporary);
-  if (status) {
-    fs::rename(temporary, target, error);
-    if (error) status = fail("cannot be written: " + error.message(), target.string(), "choose another place");
-  }
-  if (!status) fs::remove_all(temporary, error);
-  return status;
+  TROCAR_TRY_STATUS(write(temporary));
+  fs::rename(temporary, target, error);
+  if (error) return fail("cannot write: " + error.message(), target.string(), "choose another folder");
+  unfinished.keep();
+  return {};
 }
 
 Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {

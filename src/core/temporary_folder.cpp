@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/check.h"
+#include "core/unfinished_output.h"
 
 namespace trocar {
 namespace fs = std::filesystem;
@@ -14,11 +15,13 @@ TemporaryFolder::TemporaryFolder() {
   std::string pattern = (fs::temp_directory_path() / "trocar-XXXXXX").string();
   TROCAR_CHECK(::mkdtemp(pattern.data()) != nullptr);
   path_ = pattern;
+  register_unfinished_output(path_);
 }
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
+  unregister_unfinished_output(path_);
 }
 
 }  // namespace trocar

@@ -8,6 +8,7 @@
 
 #include "core/version.h"
 #include "headless/performer.h"
+#include "io/patient_source.h"
 
 namespace trocar {
 namespace {
@@ -18,7 +19,7 @@ SessionInfo describe(const Case& the_case, const RunOptions& options, const Atte
   info.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
   info.task = the_case.task.name;
   info.patient_name = the_case.patient->name;
-  info.patient_source = options.patient_source;
+  info.patient_source = absolute_source(options.patient_source);
   info.patient_hash = the_case.patient->content_hash;
   info.patient_seed = options.patient_seed;
   info.operator_name = options.operator_name;

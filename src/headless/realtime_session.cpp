@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <thread>
 
+#include "core/interruption.h"
 #include "headless/detail/own_servers.h"
 #include "headless/live_operator.h"
 #include "headless/probe_hand.h"
 #include "headless/scene_request.h"
 #include "headless/server_seat.h"
+#include "io/patient_source.h"
 #include "link/endpoint.h"
 
 namespace trocar {
@@ -23,6 +26,10 @@ constexpr double kSameRate_hz = 0.5;
 /// Ticks that are older when they come were not answered in time: a server's hand stands still when it hears nothing
 /// for so long, and the operator's must not have moved on meanwhile.
 constexpr double kAnswered_s = 0.05;
+
+Status check_interruption() {
+  return is_interrupted() ? tl::unexpected(interruption_error("trocar run")) : Status{};
+}
 
 /// The servers of an attempt: the needle's, and perhaps the probe's.
 class LiveServers {
@@ -71,6 +78,7 @@ Result<LiveServers> LiveServers::connect(const RunOptions& options, const Realti
   }
   const auto is_ready = [](const ServerSeat& seat) { return seat.state() == State::kReady; };
   while (!std::all_of(seats.begin(), seats.end(), is_ready)) {
+    TROCAR_TRY_STATUS(check_interruption());
     report(progress, "waiting for the haptic servers", 0.0);
     for (const char* tool : {"needle", "probe"})
       if (servers.own_) TROCAR_TRY_STATUS(servers.own_->check(tool));
@@ -98,6 +106,7 @@ void LiveServers::hold(const SeatRequest& needle, const SeatRequest& probe) {
 
 Status LiveServers::wait_for(State state, const Progress& progress) {
   while (true) {
+    TROCAR_TRY_STATUS(check_interruption());
     TROCAR_TRY(const State of_needle, look());
     if (of_needle == state && (!has_probe() || probe_.front().state() == state)) return {};
     double loading = needle_.front().loading();
@@ -164,17 +173,11 @@ SeatRequest probe_request(const Case& the_case, SceneChoice choice, const ProbeH
   return request;
 }
 
-/// The server opens it itself: from its own working folder.
-std::string as_server_sees(const std::string& patient) {
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(patient, ignored)) return patient;
-  return std::filesystem::absolute(patient, ignored).lexically_normal().string();
-}
-
 /// The closed loop through the servers, until the operator is done.
 Status perform(LiveServers& servers, LiveOperator& live, const ProbeHand& probe_hand, const Progress& progress) {
   bool was_on = false;
   while (true) {
+    TROCAR_TRY_STATUS(check_interruption());
     // Ticks first: when a look finds the server changed, all of the old one's are already taken.
     ServerSeat& needle = servers.needle();
     const std::vector<NumberedSample> samples = needle.take_samples();
@@ -245,6 +248,7 @@ Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& o
   TROCAR_TRY_STATUS(check_run(options));
   TROCAR_TRY_STATUS(check_realtime(realtime));
   TROCAR_TRY(Performer performer, make_performer(the_case, options));
+  const InterruptibleWork interruptible;
   TROCAR_TRY(LiveServers servers, LiveServers::connect(options, realtime, performer.rate_hz, progress));
   const ClientView welcome = servers.needle().view();
   const double rate_hz = welcome.status.loop.wanted_hz;
@@ -259,7 +263,7 @@ Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& o
   const HandCommand first = performer.the_operator->next(before);
   SceneChoice choice;
   choice.force_model = performer.force_model;
-  choice.patient_source = as_server_sees(options.patient_source);
+  choice.patient_source = absolute_source(options.patient_source);
   choice.patient_seed = options.patient_seed;
   choice.seed = options.seed;
   const ProbeHand probe_hand(*the_case.patient, the_case.plan.line_P);
@@ -272,8 +276,12 @@ Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& o
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, options, facts));
   LiveOperator live(performer, record, first);
   servers.needle().take_samples();  // at rest, while the probe's server was still busy
-  TROCAR_TRY_STATUS(perform(servers, live, probe_hand, progress));
+  const Status performed = perform(servers, live, probe_hand, progress);
   servers.stop();
+  if (!performed && is_interrupted())
+    return fail("interrupted: the session is kept as an incomplete one", options.session.string(),
+                "run the command again; it is kept under another name then");
+  TROCAR_TRY_STATUS(performed);
   TROCAR_TRY(RunResult result, record.finish());
   servers.tell(result);
   warn_of_gaps(live, result);

@@ -31,7 +31,8 @@ Status find_servers(const RealtimeOptions& options);
 /// way are counted. A transducer is held on the skin beside the entry meanwhile; where it was is recorded, too.
 /// A needle's server that goes away and comes back within the patience gets scene and hand again, and the attempt goes
 /// on from where the needle was. Errors: no server, another client in control, what a server refuses, a fault of the
-/// needle's gate, a needle's server that stays away; the session file then holds everything up to there.
+/// needle's gate, a needle's server that stays away, an interruption; the session file then holds everything up to
+/// there and is incomplete.
 Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& options, const RealtimeOptions& realtime,
                                        const Progress& progress = {});
 

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 
 #include "core/data_dir.h"
+#include "core/interruption.h"
 #include "core/log.h"
+#include "core/unfinished_output.h"
 #include "haptics/device_preset.h"
 #include "haptics/simulation/virtual_device.h"
 #include "haptics/tick.h"
@@ -53,6 +56,7 @@ Result<std::size_t> perform(const Performer& performer, const HapticScene& scene
   view.dt_s = dt_s;
   for (std::size_t i = 0; i < most_ticks; ++i) {
     view.time_s = static_cast<double>(i) * dt_s;
+    if (is_interrupted()) return tl::unexpected(interruption_error("trocar run"));
     const HandCommand command = performer.the_operator->next(view);
     if (command.is_done) return i;
     if (i == 0) device.X_PN = command.X_PN;
@@ -93,12 +97,17 @@ Result<RunResult> run_session(const Case& the_case, const RunOptions& options, c
 
   const AttemptFacts facts{fmt::format("{}, simulated: {}", device.name, device.title), performer.rate_hz,
                            to_string(haptics.force_model)};
+  const InterruptibleWork interruptible;
+  std::optional<UnfinishedOutput> unfinished;  // ends after the record, which still writes when it ends
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, options, facts));
+  unfinished.emplace(session_files(options.session));
   const auto start = std::chrono::steady_clock::now();
   TROCAR_TRY(const std::size_t ticks, perform(performer, *scene, device.apparent_mass_kg, record, progress));
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   log_info("{} ticks performed and recorded in {:.0f} ms", ticks, took.count());
-  return record.finish();
+  TROCAR_TRY(RunResult result, record.finish());
+  unfinished->keep();
+  return result;
 }
 
 }  // namespace trocar

@@ -27,7 +27,8 @@ struct RunOptions {
 Status check_run(const RunOptions& options);
 
 /// Performs an attempt in one thread, faster than real time: operator, hand, device, tick, recording, score.
-/// Every tick is in the session file; a failure on the way leaves what was recorded, which opens again.
+/// Every tick is in the session file. A failure or an interruption on the way leaves no file: the same options make the
+/// same ticks again.
 Result<RunResult> run_session(const Case& the_case, const RunOptions& options, const Progress& progress = {});
 
 }  // namespace trocar

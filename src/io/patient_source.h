@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,15 @@ struct PatientSource {
   std::string folder_or_name;
   std::uint64_t seed = 1;  ///< Of an embedded patient.
 };
+
+/// A folder by its absolute path, so that it is found from another working folder, too; a name as it is.
+std::string absolute_source(const std::string& folder_or_name);
+
+/// Where a recorded patient lies now: the folder that was recorded, the same path from `beside` (the folder of the
+/// record), or a folder in `beside`; the first whose content hash is `hash`. A recorded folder with another hash is
+/// given where there is no better one; an embedded patient's name is given as it is. Error: nothing of these is there.
+Result<std::string> find_recorded_patient(const std::string& recorded, const std::string& hash,
+                                          const std::filesystem::path& beside);
 
 /// The patient behind a source. A folder wins over an embedded patient of the same name; a name that is neither is an
 /// error that lists the embedded patients (exit status 2).

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <map>
 
 #include "core/atomic_file.h"
 #include "storage/detail/columns.h"
@@ -30,6 +32,10 @@ void append_text(std::string& out, const std::string& text) {
   out += '"';
 }
 
+std::string joined(const std::string& events, const std::string& mark) {
+  return events.empty() || mark.empty() ? events + mark : events + ';' + mark;
+}
+
 /// The shortest digits that read back to the same double, whatever the locale.
 void append_number(std::string& out, double value) {
   char digits[32];
@@ -46,7 +52,23 @@ void append_header(std::string& out) {
   out.back() = '\n';
 }
 
-void append_row(std::string& out, const SessionInfo& info, const TickSample& sample) {
+/// Marks by sample: what the event column says beside the events.
+std::map<std::size_t, std::string> marks_of(const Session& session) {
+  std::map<std::size_t, std::string> marks;
+  if (session.samples.empty()) return marks;
+  const std::size_t last = session.samples.size() - 1;
+  const auto mark = [&](std::size_t sample, const std::string& text) {
+    std::string& all = marks[std::min(sample, last)];
+    all += (all.empty() ? "" : ";") + text;
+  };
+  for (const SessionDamage& damage : session.damage)
+    if (damage.ticks > 0)
+      mark(damage.sample, fmt::format("damaged:{}-{}", damage.first_tick, damage.first_tick + damage.ticks - 1));
+  if (session.is_incomplete) mark(last, "incomplete");
+  return marks;
+}
+
+void append_row(std::string& out, const SessionInfo& info, const TickSample& sample, const std::string& mark) {
   visit_columns(sample, [&](const char*, const auto& field) {
     using Field = std::remove_cvref_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, double>)
@@ -59,7 +81,7 @@ void append_row(std::string& out, const SessionInfo& info, const TickSample& sam
     else if constexpr (std::is_same_v<Field, bool>)
       out += field ? '1' : '0';
     else
-      append_text(out, event_text(info, sample));
+      append_text(out, joined(event_text(info, sample), mark));
     out += ',';
   });
   out.back() = '\n';
@@ -95,7 +117,11 @@ Status export_csv(const Session& session, const std::filesystem::path& path) {
   std::string text;
   text.reserve((session.samples.size() + 2) * kBytesATick);
   append_header(text);
-  for (const TickSample& sample : session.samples) append_row(text, session.info, sample);
+  const std::map<std::size_t, std::string> marks = marks_of(session);
+  for (std::size_t n = 0; n < session.samples.size(); ++n) {
+    const auto mark = marks.find(n);
+    append_row(text, session.info, session.samples[n], mark != marks.end() ? mark->second : std::string());
+  }
   return write_file_atomically(path, text);
 }
 

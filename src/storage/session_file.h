@@ -51,7 +51,8 @@ struct TransducerSample {
 /// Writes a session as it happens: one SQLite file in WAL mode. Killed at any moment it loses at most the last half
 /// second of ticks and opens again: ticks are buffered and committed every 0.5 s of session time, and after as many as
 /// 0.5 s hold at the session's rate. After the first failure it writes no more and returns that failure again.
-/// Not real-time safe; one thread. Without finish() what is buffered is written and the session stays incomplete.
+/// Not real-time safe; one thread. Without finish() what is buffered is written and the session stays incomplete, in
+/// one file. Every commit has a checksum of its ticks and events, the other tables have one each.
 class SessionWriter {
  public:
   /// An existing file is refused (exit status 2). A file that could not be set up is removed again.
@@ -73,24 +74,48 @@ class SessionWriter {
   std::unique_ptr<Impl> impl_;
 };
 
+/// A part of a session that cannot be read or does not fit its checksum, and is left out.
+struct SessionDamage {
+  std::string part;            ///< In words: "ticks 500 to 999".
+  std::size_t first_tick = 0;  ///< Of damaged ticks.
+  std::size_t ticks = 0;       ///< 0: another part than ticks.
+  std::size_t sample = 0;      ///< Of damaged ticks: index in `samples` of the first one behind them.
+};
+
 struct Session {
   SessionInfo info;
   std::vector<TickSample> samples;
   std::vector<TransducerSample> transducer;  ///< By time; empty: there was none, or an older program recorded it.
   std::optional<Outcome> outcome;            ///< Missing when the program was killed before the end.
   std::optional<std::size_t> fired;          ///< Sample at which the biopsy gun was fired.
+  bool is_incomplete = false;                ///< The program ended before the attempt did.
+  bool has_checksums = false;                ///< Missing in sessions of older programs: damage may pass unnoticed.
+  std::vector<SessionDamage> damage;         ///< In the order of ticks; empty in what load_session gives.
 };
 /// Reads a finished or a killed session (its -wal file beside it). NaN comes back as NaN, -0.0 as 0.0; other values bit
 /// by bit. Errors, one line each: no such file, a folder, empty, not a session, damaged, of a newer version, a killed
-/// session where nothing can be written.
+/// session where nothing can be written. A hostile file costs bounded time and memory.
 Result<Session> load_session(const std::filesystem::path& path);
+/// The same of a damaged session: what is left of it, and the damage. An error where nothing is left.
+Result<Session> salvage_session(const std::filesystem::path& path);
+/// "the session is damaged: ticks 500 to 999".
+Error damage_error(const Session& session, const std::filesystem::path& path, const std::string& advice);
+
+/// The files that a session consists of while it is written: itself and SQLite's companions.
+std::vector<std::filesystem::path> session_files(const std::filesystem::path& path);
+/// Renames an incomplete session that an interrupted program left at `path` (first.session ->
+/// first.incomplete.session), so that a new one can be made there; gives its new name. Nothing where there is no such
+/// session. Errors: another program is still writing it, or it cannot be renamed.
+Result<std::optional<std::filesystem::path>> set_aside_incomplete_session(const std::filesystem::path& path);
 
 /// An event in words, "puncture:skin"; empty for kNone. An id without a name is "#id".
 std::string event_text(const SessionInfo& info, const TickEvent& event);
 /// The events of a sample in words: "puncture:skin;enter:liver".
 std::string event_text(const SessionInfo& info, const TickSample& sample);
 /// One row a tick under a header, comma separated; numbers in the shortest form that reads back to the same value, nan
-/// and inf as words. Columns: docs and `trocar session export --help`. Written whole or not at all.
+/// and inf as words. Columns: docs and `trocar session export --help`. Written whole or not at all. Of an incomplete
+/// session the last row has the event "incomplete"; behind a gap of damaged ticks the next row (or the last one) has
+/// the event "damaged:FIRST-LAST".
 Status export_csv(const Session& session, const std::filesystem::path& path);
 
 }  // namespace trocar

@@ -9,6 +9,7 @@
 
 #include "core/check.h"
 #include "core/log.h"
+#include "storage/detail/checksums.h"
 #include "storage/detail/columns.h"
 #include "storage/detail/database.h"
 #include "storage/detail/info_table.h"
@@ -23,26 +24,33 @@ namespace {
 
 constexpr double kBatchSeconds = 0.5;         ///< Session time between two commits.
 constexpr double kMaxBatchTicks = 100'000.0;  ///< Bound of the buffer whatever the rate says.
-constexpr const char* kWriteAdvice = "free some disk space or choose another place";
+constexpr const char* kWriteAdvice = "free some disk space or choose another folder";
+constexpr const char* kPlaceAdvice = "choose another folder";
 
 /// Takes the name: an existing file is never touched.
 Status claim(const fs::path& path) {
   const int file = ::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
   if (file < 0 && errno == EEXIST)
-    return fail_usage("exists already", path.string(), "choose another name or remove it first");
-  if (file < 0) return fail(fmt::format("cannot be made: {}", std::strerror(errno)), path.string(), kWriteAdvice);
+    return fail_usage("output already exists", path.string(), "choose another name or delete it");
+  if (file < 0) return fail(fmt::format("cannot write: {}", std::strerror(errno)), path.string(), kPlaceAdvice);
   ::close(file);
+  // Companions of a session that is gone would be read as a part of the new one.
+  const std::vector<fs::path> files = session_files(path);
+  for (std::size_t n = 1; n < files.size(); ++n) {
+    std::error_code ignored;
+    fs::remove(files[n], ignored);
+  }
   return {};
 }
 
-void remove_with_companions(const fs::path& path) {
+void remove_all(const std::vector<fs::path>& files) {
   std::error_code ignored;
-  for (const char* suffix : {"-wal", "-shm", "-journal", ""}) fs::remove(path.string() + suffix, ignored);
+  for (const fs::path& file : files) fs::remove(file, ignored);
 }
 
 }  // namespace
 
-/// Invariant: every buffered column is as long as `times` of `ticks`.
+/// Invariant: every buffered column is as long as `samples`.
 struct SessionWriter::Impl {
   fs::path path;
   SessionInfo info;
@@ -53,6 +61,7 @@ struct SessionWriter::Impl {
   bool is_finished = false;
 
   // Buffered columns, to which the statements are bound.
+  std::vector<TickSample> samples;
   std::vector<int> tick_column;
   std::vector<std::vector<double>> real_columns;
   std::vector<std::vector<soci::indicator>> real_indicators;
@@ -70,6 +79,7 @@ struct SessionWriter::Impl {
     if (!is_finished && !failure) static_cast<void>(flush());
     insert_events.reset();
     insert_ticks.reset();
+    if (!is_finished) static_cast<void>(make_single_file());  // an incomplete session is one file, too
   }
 
   void set_up();
@@ -78,6 +88,7 @@ struct SessionWriter::Impl {
   void buffer(const TickSample& sample);
   Status flush();
   void clear();
+  Status make_single_file();
 };
 
 void SessionWriter::Impl::set_up() {
@@ -88,6 +99,8 @@ void SessionWriter::Impl::set_up() {
   database << "BEGIN IMMEDIATE";
   for (const std::string& statement : schema_statements()) database << statement;
   write_info(database, info);
+  write_checksum(database, kInfoRows);
+  write_checksum(database, kNameRows);
   database << "COMMIT";
   prepare_insert_ticks();
   prepare_insert_events();
@@ -137,6 +150,7 @@ void SessionWriter::Impl::prepare_insert_events() {
 }
 
 void SessionWriter::Impl::buffer(const TickSample& sample) {
+  samples.push_back(sample);
   tick_column.push_back(next_tick);
   std::size_t real = 0;
   std::size_t integer = 0;
@@ -165,7 +179,10 @@ Status SessionWriter::Impl::flush() {
   if (tick_column.empty() && transducer.is_empty()) return {};
   Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
     database << "BEGIN IMMEDIATE";
-    if (!tick_column.empty()) insert_ticks->execute(true);
+    if (!tick_column.empty()) {
+      insert_ticks->execute(true);
+      write_block(database, {static_cast<std::size_t>(tick_column.front()), samples.size(), digest_of(samples)});
+    }
     if (!events.tick.empty()) insert_events->execute(true);
     transducer.write(database);
     database << "COMMIT";
@@ -176,6 +193,7 @@ Status SessionWriter::Impl::flush() {
 }
 
 void SessionWriter::Impl::clear() {
+  samples.clear();
   tick_column.clear();
   for (auto& column : real_columns) column.clear();
   for (auto& column : real_indicators) column.clear();
@@ -183,6 +201,18 @@ void SessionWriter::Impl::clear() {
   for (auto* column : {&events.tick, &events.slot, &events.kind, &events.id}) column->clear();
   events.text.clear();
   transducer.clear();
+}
+
+/// All is committed, so another reader of the session, which keeps the -wal file alive, is no failure; a full disk is.
+Status SessionWriter::Impl::make_single_file() {
+  const Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
+    std::string mode;
+    database << "PRAGMA journal_mode = DELETE", soci::into(mode);
+  });
+  const bool is_locked = !status && status.error().what.find("is locked") != std::string::npos;
+  if (!is_locked) return status;
+  log_warning("{} stays in two files: another program is reading it", path.string());
+  return {};
 }
 
 SessionWriter::SessionWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -199,7 +229,7 @@ Result<SessionWriter> SessionWriter::create(const fs::path& path, const SessionI
   const Status status = guarded("the session cannot be made", path, kWriteAdvice, [&] { impl->set_up(); });
   if (!status) {
     impl.reset();
-    remove_with_companions(path);
+    remove_all(session_files(path));
     return tl::unexpected(status.error());
   }
   return SessionWriter(std::move(impl));
@@ -234,22 +264,19 @@ Status SessionWriter::finish(const Outcome& outcome, std::optional<std::size_t> 
     int fired_tick = fired ? static_cast<int>(*fired) : 0;
     soci::indicator fired_indicator = fired ? soci::i_ok : soci::i_null;
     std::string json = outcome_to_json(outcome);
+    impl_->database << "BEGIN IMMEDIATE";
     impl_->database << "INSERT INTO outcome (score, target_reached, fired_tick, json) VALUES (:s, :t, :f, :j)",
         soci::use(score, score_indicator), soci::use(target_reached), soci::use(fired_tick, fired_indicator),
         soci::use(json);
+    for (const CheckedRows& rows : {kTransducerRows, kOutcomeRows, kBlockRows}) write_checksum(impl_->database, rows);
+    impl_->database << "COMMIT";
   });
   if (!status) impl_->failure = status.error();
   TROCAR_TRY_STATUS(status);
   impl_->is_finished = true;
   impl_->insert_events.reset();
   impl_->insert_ticks.reset();
-  // All is committed: that somebody looks on, so that the -wal file must stay a while, is no failure.
-  const Status single = guarded("stays in two files", impl_->path, "", [&] {
-    std::string mode;
-    impl_->database << "PRAGMA journal_mode = DELETE", soci::into(mode);
-  });
-  if (!single) log_warning("{}", single.error().text());
-  return {};
+  return impl_->make_single_file();
 }
 
 }  // namespace trocar

@@ -1,12 +1,17 @@
 // The whole line on the embedded patient: plan, perform, record, score, report.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 
 #include "anatomy/phantom/phantom.h"
 #include "attempt.h"
 #include "core/atomic_file.h"
+#include "core/interruption.h"
 #include "haptics/insertion_law.h"
 #include "report/html_report.h"
 
@@ -129,6 +134,54 @@ TEST_F(EmbeddedBiopsy, SessionExportsOneRowATick) {
   const auto text = read_file(folder.path() / "ticks.csv");
   ASSERT_TRUE(text.has_value());
   EXPECT_EQ(static_cast<std::size_t>(std::count(text->begin(), text->end(), '\n')), expert->session.samples.size() + 1);
+}
+
+/// Runs an attempt in a process of its own that meets trouble at the `moment`-th progress step; gives its exit status.
+int run_in_child(const Case& the_case, const std::filesystem::path& session, int moment, void (*trouble)()) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    handle_interruptions();
+    RunOptions options;
+    options.patient_source = the_case.patient->name;
+    options.session = session;
+    int step = 0;
+    const auto result = run_session(the_case, options, [&](std::string_view, double) {
+      if (step++ == moment) trouble();
+    });
+    ::_exit(result ? 0 : result.error().exit_status);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+TEST_F(EmbeddedBiopsy, AnInterruptionOrAFullDiskLeavesNothing) {
+  constexpr int kEarly = 0, kRecording = 2, kLate = 7;  // a step is 2 s of an attempt of about 17 s
+  for (const int moment : {kEarly, kRecording, kLate}) {
+    for (void (*const trouble)() : {+[] { ::raise(SIGINT); }, +[] { ::raise(SIGTERM); },
+                                    +[] {
+                                      const rlimit limit{100'000, 100'000};
+                                      ::setrlimit(RLIMIT_FSIZE, &limit);
+                                    }}) {
+      const TemporaryFolder folder;
+      EXPECT_EQ(run_in_child(*the_case, folder / "a.session", moment, trouble), 1) << "step " << moment;
+      EXPECT_TRUE(folder.is_empty()) << "step " << moment;
+    }
+  }
+}
+
+TEST_F(EmbeddedBiopsy, AKilledAttemptIsKeptAsIncompleteAndTheRetryWorks) {
+  const TemporaryFolder folder;
+  const std::filesystem::path session = folder / "a.session";
+  EXPECT_EQ(run_in_child(*the_case, session, 3, [] { ::kill(::getpid(), SIGKILL); }), 128 + SIGKILL);
+  const auto kept_as = set_aside_incomplete_session(session);
+  ASSERT_TRUE(kept_as.has_value() && kept_as->has_value());
+  EXPECT_EQ(run_in_child(*the_case, session, -1, [] {}), 0);
+  const auto incomplete = load_session(**kept_as);
+  ASSERT_TRUE(incomplete.has_value()) << incomplete.error().text();
+  EXPECT_TRUE(incomplete->is_incomplete);
+  EXPECT_GT(incomplete->samples.size(), 4000u);
+  EXPECT_FALSE(load_session(session)->is_incomplete);
 }
 
 }  // namespace

@@ -116,12 +116,21 @@ std::string page_header(const Session& session) {
       fact("Trocar", escape(info.program_version)));
 }
 
+/// The damaged parts, and that they are left out; empty where all is whole.
+std::string damage_note(const Session& session) {
+  if (session.damage.empty()) return {};
+  std::string parts;
+  for (const SessionDamage& damage : session.damage) parts += (parts.empty() ? "" : ", ") + escape(damage.part);
+  return "<p class=\"warning\"><b>This session is damaged.</b> Left out: " + parts + ".</p>";
+}
+
 std::string result_section(const Session& session) {
+  if (!session.outcome && !session.damage.empty()) return damage_note(session);
   if (!session.outcome)
     return "<p class=\"warning\"><b>This session is incomplete.</b> The program ended before the attempt did: there is "
            "no score. The ticks recorded until then are shown below.</p>";
   const Outcome& outcome = *session.outcome;
-  std::string out = fmt::format(
+  std::string out = damage_note(session) + fmt::format(
                                                "<section class=\"together\"><h2>Result</h2><div class=\"result\"><div "
                                                "class=\"ring\">{}<div class=\"verdict\">{}"
                                                "</div></div><table class=\"parts\"><tbody>",

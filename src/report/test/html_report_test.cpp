@@ -65,6 +65,21 @@ TEST(HtmlReport, TellsScorePartsHintsAndCore) {
     EXPECT_NE(html.find(text), std::string::npos) << text;
 }
 
+TEST(HtmlReport, NamesDamagedPartsAndDeductions) {
+  Session session = example_attempt();
+  session.damage = {{"ticks 500 to 999", 500, 500, 500}};
+  session.outcome->parts.push_back({"deduction", "Deduction for structures at risk", 25.0, "points", -5.0, 0.0});
+  session.outcome->risks_touched = {"rib_right_10"};
+  const std::string html = html_report(session, nullptr);
+  for (const char* text : {"This session is damaged.", "Left out: ticks 500 to 999", "<b>\u22125</b></td></tr>",
+                           "Structures at risk touched: <b>right rib 10</b>"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  session.outcome.reset();
+  const std::string without = html_report(session, nullptr);
+  EXPECT_NE(without.find("This session is damaged."), std::string::npos);
+  EXPECT_EQ(without.find("This session is incomplete."), std::string::npos);
+}
+
 TEST(HtmlReport, IsOneFileThatLoadsNothing) {
   const VirtualPatient patient = example_patient();
   const std::string html = html_report(example_attempt(), &patient);

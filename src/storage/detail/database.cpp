@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "storage/detail/checksums.h"
 #include "storage/detail/columns.h"
 #include "storage/detail/transducer_table.h"
 #include "storage/session_file.h"
@@ -69,6 +70,7 @@ std::vector<std::string> schema_statements() {
       "CREATE TABLE events (tick INTEGER NOT NULL, slot INTEGER NOT NULL, kind INTEGER NOT NULL, id INTEGER NOT NULL, "
       "text TEXT NOT NULL, PRIMARY KEY (tick, slot)) WITHOUT ROWID");
   statements.push_back(transducer_schema());
+  for (std::string& statement : checksum_schema()) statements.push_back(std::move(statement));
   statements.emplace_back(
       "CREATE TABLE outcome (score REAL, target_reached INTEGER NOT NULL, fired_tick INTEGER, json TEXT NOT NULL)");
   statements.push_back(

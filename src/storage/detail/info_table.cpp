@@ -5,6 +5,8 @@
 #include <charconv>
 #include <map>
 
+#include "storage/detail/guarded_database.h"
+
 namespace trocar::storage_detail {
 namespace {
 
@@ -60,7 +62,10 @@ std::vector<std::string> read_names(soci::session& database, const std::string& 
   std::string name;
   soci::statement select = (database.prepare << "SELECT name FROM " + table + " ORDER BY id", soci::into(name));
   select.execute();
-  while (select.fetch()) names.push_back(name);
+  while (select.fetch()) {
+    if (names.size() >= kMaxNames || name.size() > kMaxNameBytes) throw soci::soci_error("the names are too long");
+    names.push_back(name);
+  }
   return names;
 }
 
@@ -96,7 +101,12 @@ SessionInfo read_info(soci::session& database) {
     std::string value;
     soci::statement select = (database.prepare << "SELECT key, value FROM info", soci::into(key), soci::into(value));
     select.execute();
-    while (select.fetch()) values[key] = value;
+    std::size_t bytes = 0;
+    while (select.fetch()) {
+      bytes += key.size() + value.size();
+      if (values.size() >= kMaxInfoRows || bytes > kMaxInfoBytes) throw soci::soci_error("the texts are too long");
+      values[key] = value;
+    }
   }
   SessionInfo info;
   visit_info(info, [&](const char* name, auto& field) {

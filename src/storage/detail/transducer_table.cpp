@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "storage/detail/guarded_database.h"
+
 namespace trocar::storage_detail {
 namespace {
 
@@ -80,6 +82,7 @@ std::vector<TransducerSample> read_transducer(soci::session& database) {
   select.define_and_bind();
   select.execute();
   while (select.fetch()) {
+    if (samples.size() > kMaxTransducerRows) throw soci::soci_error("too many poses of the transducer");
     for (std::size_t i = 0; i < columns[0].size(); ++i) {
       Row row;
       for (std::size_t c = 0; c < row.size(); ++c) row[c] = columns[c][i];

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <bit>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/random.h"
 #include "core/temporary_folder.h"
+#include "storage/detail/columns.h"
 #include "storage/session_file.h"
 
 namespace trocar::test {
@@ -93,6 +98,36 @@ inline Outcome example_outcome() {
   outcome.core = core;
   outcome.risks_touched = {"rib_right_9"};
   return outcome;
+}
+
+/// Writes a session of `ticks` samples, finished, with the transducer at every tenth; the gun was fired at sample 5.
+inline void write_example(const std::filesystem::path& path, std::size_t ticks) {
+  auto writer = SessionWriter::create(path, example_info());
+  ASSERT_TRUE(writer) << writer.error().text();
+  for (std::size_t n = 0; n < ticks; ++n) {
+    const TickSample sample = example_sample(n);
+    ASSERT_TRUE(writer->append(sample));
+    if (n % 10 != 0) continue;
+    ASSERT_TRUE(writer->append(TransducerSample{sample.time_s, Pose(), 0.5}));
+  }
+  const Status status = writer->finish(example_outcome(), ticks > 5 ? std::optional<std::size_t>(5) : std::nullopt);
+  ASSERT_TRUE(status) << status.error().text();
+}
+
+/// All fields of a sample, bit by bit.
+inline std::vector<std::uint64_t> bits_of(const TickSample& sample) {
+  std::vector<std::uint64_t> bits;
+  storage_detail::visit_stored_columns(sample, [&](const char*, const auto& field) {
+    if constexpr (storage_detail::kIsReal<std::remove_cvref_t<decltype(field)>>)
+      bits.push_back(std::bit_cast<std::uint64_t>(field));
+    else
+      bits.push_back(static_cast<std::uint64_t>(field));
+  });
+  for (const TickEvent& event : sample.events) {
+    bits.push_back(static_cast<std::uint64_t>(event.kind));
+    bits.push_back(event.id);
+  }
+  return bits;
 }
 
 }  // namespace trocar::test

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <csignal>
+#include <fstream>
 
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"
@@ -171,6 +172,63 @@ TEST(SessionCrash, SaysWhatToDoWhereAKilledSessionCannotBeRecovered) {
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
   EXPECT_TRUE(load_session(path));
+}
+
+TEST(IncompleteSession, IsSetAsideForANewOne) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "s.session";
+  for (const char* kept : {"s.incomplete.session", "s.incomplete-2.session"}) {
+    in_child([&] { write_and_die(path, 1200, 0.001, 1000.0); });
+    EXPECT_FALSE(SessionWriter::create(path, example_info()));
+    const auto name = set_aside_incomplete_session(path);
+    ASSERT_TRUE(name) << name.error().text();
+    ASSERT_TRUE(*name);
+    EXPECT_EQ(**name, folder / kept);
+    for (const fs::path& file : session_files(path)) EXPECT_FALSE(fs::exists(file)) << file;
+    const auto session = load_session(folder / kept);
+    ASSERT_TRUE(session) << session.error().text();
+    EXPECT_TRUE(session->is_incomplete);
+    EXPECT_EQ(session->samples.size(), 1000u);
+  }
+  EXPECT_TRUE(SessionWriter::create(path, example_info()));
+}
+
+TEST(IncompleteSession, NothingElseIsSetAside) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "s.session";
+  EXPECT_FALSE(set_aside_incomplete_session(path).value());  // nothing there
+  test::write_example(path, 600);
+  EXPECT_FALSE(set_aside_incomplete_session(path).value());  // finished
+  EXPECT_TRUE(load_session(path));
+  std::ofstream(folder / "text") << "not a session";
+  EXPECT_FALSE(set_aside_incomplete_session(folder / "text").value());
+  EXPECT_FALSE(set_aside_incomplete_session(folder.path()).value());
+
+  auto writer = SessionWriter::create(folder / "busy", example_info());
+  ASSERT_TRUE(writer);
+  ASSERT_TRUE(writer->append(example_sample(0)));
+  const auto busy = set_aside_incomplete_session(folder / "busy");
+  ASSERT_FALSE(busy);
+  EXPECT_NE(busy.error().text().find("another program is writing"), std::string::npos) << busy.error().text();
+  EXPECT_TRUE(writer->finish(example_outcome(), {}));
+}
+
+TEST(SessionCrash, ADiskThatIsFullAtTheEndIsAnError) {
+  // The limit lies between what the -wal file takes and what the finished file takes: all is written but the end.
+  const TemporaryFolder folder;
+  const fs::path path = folder / "s.trocar";
+  const int status = in_child([&] {
+    std::signal(SIGXFSZ, SIG_IGN);
+    auto writer = SessionWriter::create(path, example_info());
+    for (std::size_t n = 0; writer && n < 700; ++n)
+      if (!writer->append(example_sample(n))) ::_exit(3);
+    const rlim_t bytes = fs::file_size(path) + 4096;
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    ::_exit(writer->finish(example_outcome(), {}) ? 1 : 0);
+  });
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 }  // namespace

@@ -1,0 +1,125 @@
+#include "core/interruption.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/atomic_file.h"
+#include "core/temporary_folder.h"
+#include "core/unfinished_output.h"
+
+namespace trocar {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr int kFailed = 1, kEndedByItself = 7;
+
+/// Runs `work` in a process that handles interruptions; gives its exit status, 128 + signal when it was killed.
+template <class Work>
+int interrupted(const Work& work) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    handle_interruptions();
+    work();
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+[[noreturn]] void wait_for_the_end() {
+  while (true) ::pause();
+}
+
+TEST(Interruption, LeavesNoHalfWrittenFileOrFolder) {
+  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(interrupted([&] {
+                static_cast<void>(write_atomically(folder / "file", [&](const fs::path& temporary) -> Status {
+                  std::ofstream(temporary) << "half";
+                  ::raise(signal_number);
+                  wait_for_the_end();
+                }));
+              }),
+              kFailed);
+    EXPECT_EQ(interrupted([&] {
+                static_cast<void>(write_folder_atomically(folder / "new", [&](const fs::path& temporary) -> Status {
+                  fs::create_directories(temporary / "inside");
+                  std::ofstream(temporary / "inside" / "file") << "half";
+                  ::raise(signal_number);
+                  wait_for_the_end();
+                }));
+              }),
+              kFailed);
+    EXPECT_TRUE(folder.is_empty()) << "signal " << signal_number;
+  }
+}
+
+TEST(Interruption, RemovesTemporaryFolders) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(interrupted([&] {
+              ::setenv("TMPDIR", folder.path().c_str(), 1);
+              const TemporaryFolder own;
+              std::ofstream(own / "socket") << "x";
+              ::raise(SIGTERM);
+              wait_for_the_end();
+            }),
+            kFailed);
+  EXPECT_TRUE(folder.is_empty());
+}
+
+TEST(Interruption, LetsWorkEndByItself) {
+  EXPECT_EQ(interrupted([] {
+              const InterruptibleWork work;
+              EXPECT_FALSE(is_interrupted());
+              ::raise(SIGINT);
+              while (!is_interrupted()) ::usleep(1000);
+              ::_exit(kEndedByItself);
+            }),
+            kEndedByItself);
+}
+
+TEST(Interruption, TheSecondSignalEndsAtOnce) {
+  EXPECT_EQ(interrupted([] {
+              const InterruptibleWork work;
+              ::raise(SIGINT);
+              ::raise(SIGINT);
+              wait_for_the_end();
+            }),
+            kFailed);
+}
+
+TEST(Interruption, LeavesAnIgnoredSignalIgnored) {
+  EXPECT_EQ(interrupted([] { ::_exit(0); }), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGHUP, SIG_IGN);
+    handle_interruptions();
+    ::raise(SIGHUP);
+    ::_exit(is_interrupted() ? 1 : 0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+TEST(UnfinishedOutput, IsRemovedUnlessItIsKept) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "kept") << "x";
+  std::ofstream(folder / "failed") << "x";
+  {
+    UnfinishedOutput kept({folder / "kept"});
+    const UnfinishedOutput failed({folder / "failed", folder / "never-made"});
+    kept.keep();
+  }
+  EXPECT_TRUE(fs::exists(folder / "kept"));
+  EXPECT_FALSE(fs::exists(folder / "failed"));
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "storage/detail/database.h"
+
+namespace trocar::storage_detail {
+
+/// Longest text or row that is read from a session; a longer one is an error before it is loaded.
+inline constexpr int kMaxTextBytes = 4 << 20;
+/// Most text in all that is read from the table `info`.
+inline constexpr std::size_t kMaxInfoBytes = std::size_t{16} << 20;
+inline constexpr std::size_t kMaxInfoRows = 1024;
+inline constexpr std::size_t kMaxNames = 1024;  ///< Of tissues, layers, labels.
+inline constexpr std::size_t kMaxNameBytes = 4096;
+inline constexpr std::size_t kMaxTransducerRows = 1'000'000;  ///< 2.8 hours at 100 Hz.
+inline constexpr std::size_t kMaxBlocks = 50'000;             ///< Of ticks; 7 hours of half seconds.
+
+/// A session that is opened to be read, without trust in what it holds: nothing can be changed, views, triggers and the
+/// schema's own functions are off, texts are bounded by kMaxTextBytes, and the work in all by a number of SQLite's
+/// virtual machine steps that grows with the size of the file. Beyond them a statement fails.
+class GuardedDatabase {
+ public:
+  /// Throws soci::soci_error.
+  explicit GuardedDatabase(const std::filesystem::path& path);
+  GuardedDatabase(const GuardedDatabase&) = delete;
+  GuardedDatabase& operator=(const GuardedDatabase&) = delete;
+
+  soci::session& session() noexcept { return session_; }
+  /// Throws unless the name is an ordinary table: no view, no virtual table, no computed column.
+  void require_table(const std::string& name);
+  bool has_table(const std::string& name);
+  bool is_exhausted() const noexcept { return steps_left_ <= 0; }  ///< The bound of work was hit.
+
+ private:
+  static int count_steps(void* self) noexcept;
+
+  std::int64_t steps_left_;
+  soci::session session_;
+};
+
+}  // namespace trocar::storage_detail

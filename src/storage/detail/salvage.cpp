@@ -1,0 +1,184 @@
+#include "storage/detail/salvage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "storage/detail/checksums.h"
+#include "storage/detail/info_table.h"
+#include "storage/detail/tick_reader.h"
+#include "storage/detail/transducer_table.h"
+
+namespace trocar::storage_detail {
+namespace {
+
+constexpr std::size_t kUncheckedBlockTicks = 500;  // a session without checksums is read in blocks, too
+
+// Parts of a session as messages name them.
+constexpr const char* kInfoPart = "facts of the case (table info)";
+constexpr const char* kNamesPart = "names of tissues, layers, labels or phases";
+constexpr const char* kBlocksPart = "list of tick blocks (table tick_blocks)";
+constexpr const char* kTransducerPart = "poses of the transducer";
+constexpr const char* kOutcomePart = "outcome (score and hints)";
+
+class Salvage {
+ public:
+  Salvage(GuardedDatabase& database, Session& session) : database_(database), session_(session) {}
+
+  std::string read() {
+    check_tables();
+    session_.has_checksums = database_.has_table("tick_blocks") || database_.has_table("checksums");
+    is_finished_ = has_outcome();
+    if (attempt(kInfoPart, [&] { session_.info = read_info(database_.session()); })) {
+      check(kInfoPart, kInfoRows, true);
+      check(kNamesPart, kNameRows, true);
+    }
+    read_samples();
+    const bool is_read = attempt(kTransducerPart, [&] { session_.transducer = read_transducer(database_.session()); });
+    if (!is_read || !check(kTransducerPart, kTransducerRows, is_finished_)) session_.transducer.clear();
+    session_.is_incomplete = !is_finished_ && !has_part(kOutcomePart);
+    return read_outcome();
+  }
+
+ private:
+  void check_tables() {
+    for (const char* table : {"info", "tissues", "layers", "labels", "phases", "ticks", "events", "outcome"})
+      database_.require_table(table);
+    for (const char* table : {"transducer", "tick_blocks", "checksums"})
+      if (database_.has_table(table)) database_.require_table(table);
+  }
+
+  /// A finished session has an outcome, and a checksum of it.
+  bool has_outcome() {
+    int rows = 0;
+    std::optional<RowsDigest> written;
+    attempt(kOutcomePart, [&] {
+      database_.session() << "SELECT count(*) FROM outcome", soci::into(rows);
+      if (session_.has_checksums) written = read_checksum(database_.session(), kOutcomeRows);
+    });
+    return rows > 0 || written.has_value();
+  }
+
+  /// Notes damage where the work throws.
+  template <class Work>
+  bool attempt(const char* part, const Work& work) {
+    try {
+      work();
+      return true;
+    } catch (const std::exception&) {
+      note(part);
+      return false;
+    }
+  }
+
+  /// Whether rows fit their checksum. One that is missing is damage where it must be there.
+  bool check(const char* part, const CheckedRows& rows, bool is_required) {
+    if (!session_.has_checksums) return true;
+    if (has_part(part)) return false;
+    bool is_good = false;
+    attempt(part, [&] {
+      const auto written = read_checksum(database_.session(), rows);
+      is_good = written ? digest_of_rows(database_.session(), rows.query) == *written : !is_required;
+    });
+    if (!is_good) note(part);
+    return is_good;
+  }
+
+  bool has_part(const std::string& part) const {
+    return std::any_of(session_.damage.begin(), session_.damage.end(),
+                       [&](const SessionDamage& damage) { return damage.part == part; });
+  }
+  void note(const std::string& part) {
+    if (!has_part(part)) session_.damage.push_back({part});
+  }
+
+  void note_ticks(std::size_t first_tick, std::size_t ticks) {
+    SessionDamage* last = session_.damage.empty() ? nullptr : &session_.damage.back();
+    if (last != nullptr && last->ticks > 0 && last->first_tick + last->ticks == first_tick) {
+      last->ticks += ticks;
+    } else {
+      session_.damage.push_back({{}, first_tick, ticks, session_.samples.size()});
+      last = &session_.damage.back();
+    }
+    last->part = fmt::format("ticks {} to {}", last->first_tick, last->first_tick + last->ticks - 1);
+  }
+
+  /// How many ticks the table says it has; 0 where it cannot be read.
+  std::size_t ticks_in_table() {
+    int last = -1;
+    soci::indicator indicator = soci::i_null;
+    attempt(session_.has_checksums ? kBlocksPart : "ticks",
+            [&] { database_.session() << "SELECT max(tick) FROM ticks", soci::into(last, indicator); });
+    return indicator == soci::i_ok && last >= 0 ? static_cast<std::size_t>(last) + 1 : 0;
+  }
+
+  std::vector<TickBlock> find_blocks(std::size_t ticks) {
+    std::vector<TickBlock> blocks;
+    if (session_.has_checksums) {
+      attempt(kBlocksPart, [&] { read_blocks(database_.session(), blocks); });
+      check(kBlocksPart, kBlockRows, is_finished_);
+      return blocks;
+    }
+    for (std::size_t first = 0; first < ticks; first += kUncheckedBlockTicks)
+      blocks.push_back({first, std::min(kUncheckedBlockTicks, ticks - first), {}});
+    return blocks;
+  }
+
+  void read_samples() {
+    const std::size_t ticks = ticks_in_table();
+    std::size_t next_tick = 0;
+    TickReader reader(database_.session());
+    for (const TickBlock& block : find_blocks(ticks)) {
+      if (database_.is_exhausted()) return;
+      if (block.first_tick > next_tick) note_ticks(next_tick, block.first_tick - next_tick);
+      next_tick = block.first_tick + block.ticks;
+      try {
+        const std::vector<TickSample> samples = reader.read(block);
+        session_.samples.insert(session_.samples.end(), samples.begin(), samples.end());
+      } catch (const std::exception&) {
+        note_ticks(block.first_tick, block.ticks);
+      }
+    }
+    if (ticks > next_tick) note_ticks(next_tick, ticks - next_tick);
+  }
+
+  /// The sample of a tick, where it was read.
+  std::optional<std::size_t> sample_of(std::size_t tick) const {
+    std::size_t missing = 0;
+    for (const SessionDamage& damage : session_.damage) {
+      if (damage.ticks == 0 || damage.first_tick > tick) continue;
+      if (tick < damage.first_tick + damage.ticks) return std::nullopt;
+      missing += damage.ticks;
+    }
+    const std::size_t sample = tick - missing;
+    if (sample >= session_.samples.size()) throw soci::soci_error("the fired tick is out of range");
+    return sample;
+  }
+
+  std::string read_outcome() {
+    std::string json;
+    const bool is_read = attempt(kOutcomePart, [&] {
+      int fired = 0;
+      soci::indicator indicator = soci::i_null;
+      database_.session() << "SELECT fired_tick, json FROM outcome", soci::into(fired, indicator), soci::into(json);
+      if (json.empty() || indicator != soci::i_ok) return;
+      if (fired < 0) throw soci::soci_error("the fired tick is out of range");
+      session_.fired = sample_of(static_cast<std::size_t>(fired));
+    });
+    if (is_read && check(kOutcomePart, kOutcomeRows, is_finished_)) return json;
+    session_.fired.reset();
+    return {};
+  }
+
+  GuardedDatabase& database_;
+  Session& session_;
+  bool is_finished_ = false;
+};
+
+}  // namespace
+
+std::string salvage(GuardedDatabase& database, Session& session) {
+  return Salvage(database, session).read();
+}
+
+}  // namespace trocar::storage_detail

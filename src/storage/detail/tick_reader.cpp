@@ -1,0 +1,163 @@
+#include "storage/detail/tick_reader.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "storage/detail/columns.h"
+
+namespace trocar::storage_detail {
+namespace {
+
+constexpr std::size_t kRowsAFetch = 4096;
+
+void set_field(std::uint8_t& field, int value) {
+  if (value < 0 || value > 255) throw soci::soci_error("a tissue is out of range");
+  field = static_cast<std::uint8_t>(value);
+}
+void set_field(InsertionPhase& field, int value) {
+  if (value < 0 || value > static_cast<int>(InsertionPhase::kRetracting))
+    throw soci::soci_error("a phase is out of range");
+  field = static_cast<InsertionPhase>(value);
+}
+void set_field(GateMode& field, int value) {
+  if (value < 0 || value > static_cast<int>(kLastGateMode)) throw soci::soci_error("a gate mode is out of range");
+  field = static_cast<GateMode>(value);
+}
+void set_field(GateFault& field, int value) {
+  if (value < 0 || value > static_cast<int>(kLastGateFault)) throw soci::soci_error("a gate fault is out of range");
+  field = static_cast<GateFault>(value);
+}
+void set_field(bool& field, int value) {
+  if (value < 0 || value > 1) throw soci::soci_error("a truth value is out of range");
+  field = value != 0;
+}
+
+/// The columns of one fetch.
+struct TickColumns {
+  std::vector<int> tick;
+  std::vector<std::vector<double>> reals;
+  std::vector<std::vector<soci::indicator>> indicators;
+  std::vector<std::vector<int>> integers;
+
+  void resize(std::size_t rows) {
+    tick.resize(rows);
+    for (auto& column : reals) column.resize(rows);
+    for (auto& column : indicators) column.resize(rows);
+    for (auto& column : integers) column.resize(rows);
+  }
+  TickSample row(std::size_t index) const {
+    TickSample sample;
+    std::size_t real = 0;
+    std::size_t integer = 0;
+    visit_stored_columns(sample, [&](const char*, auto& field) {
+      if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>) {
+        const bool is_null = indicators[real][index] == soci::i_null;
+        field = is_null ? std::numeric_limits<double>::quiet_NaN() : reals[real][index];
+        ++real;
+      } else {
+        set_field(field, integers[integer++][index]);
+      }
+    });
+    return sample;
+  }
+};
+
+/// The columns that this session's `ticks` has.
+std::set<std::string> present_columns(soci::session& database) {
+  std::set<std::string> present;
+  std::string name;
+  soci::statement select = (database.prepare << "SELECT name FROM pragma_table_info('ticks')", soci::into(name));
+  select.execute();
+  while (select.fetch()) present.insert(name);
+  return present;
+}
+
+/// Text of a column in the SELECT: its name, or the value of a sample that was never filled where it is missing.
+template <class Field>
+std::string column_text(const std::set<std::string>& present, const char* name, const Field& unfilled) {
+  if (present.contains(name)) return name;
+  if constexpr (kIsReal<Field>)
+    return fmt::format("{:.1f} AS {}", unfilled, name);
+  else
+    return fmt::format("{} AS {}", static_cast<int>(unfilled), name);
+}
+
+/// Binds the columns to a statement and gives their texts.
+std::string bind(soci::statement& select, TickColumns& columns, const std::set<std::string>& present) {
+  std::string names = "tick";
+  const TickSample sample;
+  visit_stored_columns(sample, [&](const char* name, const auto& field) {
+    names += ", " + column_text(present, name, field);
+    if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>)
+      columns.reals.emplace_back();
+    else
+      columns.integers.emplace_back();
+  });
+  columns.indicators.resize(columns.reals.size());
+  columns.resize(kRowsAFetch);
+
+  select.exchange(soci::into(columns.tick));
+  std::size_t real = 0;
+  std::size_t integer = 0;
+  visit_stored_columns(sample, [&](const char*, const auto& field) {
+    if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>) {
+      select.exchange(soci::into(columns.reals[real], columns.indicators[real]));
+      ++real;
+    } else {
+      select.exchange(soci::into(columns.integers[integer++]));
+    }
+  });
+  return names;
+}
+
+std::string where_ticks(const TickBlock& block) {
+  return fmt::format("WHERE tick BETWEEN {} AND {}", block.first_tick, block.first_tick + block.ticks - 1);
+}
+
+void read_events(soci::session& database, const TickBlock& block, std::vector<TickSample>& samples) {
+  int tick = 0;
+  int slot = 0;
+  int kind = 0;
+  int id = 0;
+  soci::statement select = (database.prepare << "SELECT tick, slot, kind, id FROM events " + where_ticks(block),
+                            soci::into(tick), soci::into(slot), soci::into(kind), soci::into(id));
+  select.execute();
+  while (select.fetch()) {
+    const bool is_good = tick >= 0 && slot >= 0 && static_cast<std::size_t>(slot) < TickSample{}.events.size() &&
+                         id >= 0 && id <= 255 && kind > 0 && kind <= static_cast<int>(EventKind::kLimit) &&
+                         static_cast<std::size_t>(tick) - block.first_tick < samples.size();
+    if (!is_good) throw soci::soci_error("an event is out of range");
+    samples[static_cast<std::size_t>(tick) - block.first_tick].events[static_cast<std::size_t>(slot)] = {
+        static_cast<EventKind>(kind), static_cast<std::uint8_t>(id)};
+  }
+}
+
+}  // namespace
+
+std::vector<TickSample> TickReader::read(const TickBlock& block) {
+  if (present_.empty()) present_ = present_columns(*database_);
+  TickColumns columns;
+  soci::statement select(*database_);
+  const std::string names = bind(select, columns, present_);
+  select.alloc();
+  select.prepare(fmt::format("SELECT {} FROM ticks {} ORDER BY tick", names, where_ticks(block)));
+  select.define_and_bind();
+  select.execute();
+
+  std::vector<TickSample> samples;
+  while (select.fetch()) {
+    for (std::size_t i = 0; i < columns.tick.size(); ++i) {
+      if (columns.tick[i] != static_cast<int>(block.first_tick + samples.size()))
+        throw soci::soci_error("a tick is missing");
+      samples.push_back(columns.row(i));
+    }
+    columns.resize(kRowsAFetch);
+  }
+  if (samples.size() != block.ticks) throw soci::soci_error("ticks are missing");
+  read_events(*database_, block, samples);
+  if (!block.digest.empty() && digest_of(samples, &present_) != block.digest) throw soci::soci_error("the checksum is another");
+  return samples;
+}
+
+}  // namespace trocar::storage_detail
