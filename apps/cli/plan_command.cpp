@@ -8,6 +8,8 @@
 #include "headless/prepare_case.h"
 #include "io/markups_file.h"
 #include "io/patient_source.h"
+#include "number_option.h"
+#include "patient_option.h"
 #include "training/plan.h"
 
 namespace trocar::cli {
@@ -36,7 +38,8 @@ void print_plan(const std::vector<PlannedPath>& paths, bool is_json) {
                       {"length_mm", p.length_mm},
                       {"organ_path_mm", p.organ_path_mm},
                       {"spare_margin_mm", p.spare_margin_mm},
-                      {"nearest_risk", p.nearest_risk}});
+                      {"nearest_risk", p.nearest_risk},
+                      {"cost_mm", p.cost_mm}});
     }
     print_json({{"paths", list}});
     return;
@@ -79,11 +82,12 @@ void add_plan_command(CLI::App& program, Action& action) {
                       "Task: see trocar task list, or a task file (.toml); the patient's own when left out");
   command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name")
       ->required();
-  command->add_option("--count", a->options.count, "How many paths, each from its own entry")
-      ->check(CLI::Range(1, 100000))
+  whole_number_within(command->add_option("--count", a->options.count, "Number of paths, each with its own entry"), 1,
+                      100000)
       ->capture_default_str();
   command->add_option("--needle", a->needle, "Needle of data/needles.toml; the task's own when left out");
-  command->add_option("--seed", a->source.seed, "Seed of an embedded patient")->capture_default_str();
+  seed_number(command->add_option("--seed", a->source.seed, "Seed of an embedded patient"))->capture_default_str();
+  add_cache_option(*command, a->source);
   command->add_option("--out", a->out, "3D Slicer markups file to write (.mrk.json)")->required();
   command->add_flag("--json", a->is_json, "Print one JSON object");
   command->footer("Example:\n  trocar plan liver-biopsy --patient abdomen --count 5 --out paths.mrk.json\n");

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "core/parallel.h"
 #include "core/random.h"
@@ -30,6 +32,8 @@ constexpr std::size_t kMaxLines = std::size_t{1} << 22;
 constexpr std::size_t kBlock = 64;            ///< Paths that are checked side by side.
 constexpr std::size_t kMaxSpreadCount = 500;  ///< More paths than this are not spread: they lie close anyway.
 constexpr double kFirstSpread_mm = 16.0;
+/// Length that a path may have more to keep the whole reported margin instead of none [assumed].
+constexpr double kMarginWorth_mm = 20.0;
 
 /// Direction n of a low-discrepancy sequence on the sphere (Roberts' R2 sequence, shifted by the seed).
 Vec3 direction(std::uint64_t seed, std::size_t n) {
@@ -73,21 +77,22 @@ std::vector<PathCandidate> trace_lines(const PlanningMap& map, const Needle& nee
   return lines;
 }
 
-/// Candidates that were not yet looked at exactly, shortest first, and what the look found.
+/// Candidates in the order of the least cost that they can have, and the findings of their exact checks.
 class Selection {
  public:
   Selection(const PlanningMap& map, const Needle& needle, std::vector<PathCandidate>& lines)
       : map_(map), needle_(needle), lines_(lines) {
     for (std::size_t n = 0; n < lines.size(); ++n)
-      if (lines[n].verdict == Verdict::kFree) order_.push_back(n);
+      if (lines[n].verdict == PathVerdict::kFree) order_.push_back(n);
     std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-      return std::pair(lines[a].length_mm, a) < std::pair(lines[b].length_mm, b);
+      return std::pair(least_cost_mm(lines[a]), a) < std::pair(least_cost_mm(lines[b]), b);
     });
     findings_.resize(order_.size());
     is_checked_.assign(order_.size(), false);
   }
 
-  /// The shortest `count` paths whose entries or tips are at least `spread_mm` apart.
+  /// The `count` paths of lowest cost whose entries are at least `spread_mm` apart. A checked path is taken once its
+  /// cost is not above the least cost of every path that is not checked yet.
   std::vector<PlannedPath> choose(std::size_t count, double spread_mm, const Progress& progress) {
     std::vector<std::size_t> chosen;
     const auto is_apart = [&](std::size_t n) {
@@ -95,13 +100,20 @@ class Selection {
                return (line(n).line_P.a - line(other).line_P.a).norm() < spread_mm;
              });
     };
-    for (std::size_t next = 0; next < order_.size() && chosen.size() < count;) {
+    std::set<std::pair<double, std::size_t>> waiting;  // checked and free, by cost
+    for (std::size_t next = 0; chosen.size() < count && (next < order_.size() || !waiting.empty());) {
       std::vector<std::size_t> block;
       for (; next < order_.size() && block.size() < kBlock; ++next)
         if (is_apart(next)) block.push_back(next);
       check(block);
       for (const std::size_t n : block)
-        if (chosen.size() < count && findings_[n].verdict == Verdict::kFree && is_apart(n)) chosen.push_back(n);
+        if (findings_[n].verdict == PathVerdict::kFree) waiting.emplace(cost_mm(n), n);
+      const double bound_mm =
+          next < order_.size() ? least_cost_mm(line(next)) : std::numeric_limits<double>::infinity();
+      while (!waiting.empty() && waiting.begin()->first <= bound_mm && chosen.size() < count) {
+        const std::size_t n = waiting.extract(waiting.begin()).value().second;
+        if (is_apart(n)) chosen.push_back(n);
+      }
       report(progress, "choosing paths", static_cast<double>(chosen.size()) / static_cast<double>(count));
     }
     std::vector<PlannedPath> paths;
@@ -119,7 +131,11 @@ class Selection {
   }
 
  private:
+  static double least_cost_mm(const PathCandidate& line) {
+    return path_cost_mm(line.length_mm, line.largest_margin_mm);
+  }
   const PathCandidate& line(std::size_t n) const { return lines_[order_[n]]; }
+  double cost_mm(std::size_t n) const { return path_cost_mm(line(n).length_mm, findings_[n].spare_margin_mm); }
 
   void check(const std::vector<std::size_t>& block) {
     parallel_for(block.size(), 1, [&](std::size_t first, std::size_t last) {
@@ -136,6 +152,7 @@ class Selection {
     path.length_mm = line(n).length_mm;
     path.organ_path_mm = found.organ_path_mm;
     path.spare_margin_mm = found.spare_margin_mm;
+    path.cost_mm = cost_mm(n);
     if (const Label* label = map_.patient.label_table.find(found.nearest_risk)) path.nearest_risk = label->name;
     return path;
   }
@@ -174,39 +191,39 @@ const Label* nearest_risk(const PlanningMap& map, const Vec3& p_P) {
 std::string reason_of(const PlanningMap& map, const Needle& needle, const PathCandidate& line) {
   const Task& task = map.task;
   switch (line.verdict) {
-    case Verdict::kTooLong:
+    case PathVerdict::kTooLong:
       return fmt::format("are longer than {} mm", std::min(task.max_path_mm, needle.length_mm));
-    case Verdict::kCutFace:
+    case PathVerdict::kCutFace:
       return "leave the volume before the skin";
-    case Verdict::kOutOfReach:
+    case PathVerdict::kOutOfReach:
       return "start at the back, out of reach";
-    case Verdict::kOutsideZone:
+    case PathVerdict::kOutsideZone:
       return "start outside the entry zone";
-    case Verdict::kGlancing:
+    case PathVerdict::kGlancing:
       return fmt::format("meet the skin at more than {} degrees", task.max_entry_angle_deg);
-    case Verdict::kNoMuscle:
+    case PathVerdict::kNoMuscle:
       return "do not pass muscle";
-    case Verdict::kLeavesOrgan:
+    case PathVerdict::kLeavesOrgan:
       return fmt::format("leave the {} again before the needle's end", task.organ);
-    case Verdict::kOrganPath:
+    case PathVerdict::kOrganPath:
       return fmt::format("pass less than {} mm of {} before the target", task.min_organ_path_mm, task.organ);
-    case Verdict::kCrosses:
-    case Verdict::kMargin: {
+    case PathVerdict::kCrosses:
+    case PathVerdict::kMargin: {
       const Label* label = find_label(map.patient, line.where_P);
-      if (line.verdict == Verdict::kMargin && !(label && map.risks[label->id])) label = nearest_risk(map, line.where_P);
+      if (line.verdict == PathVerdict::kMargin && !(label && map.risks[label->id])) label = nearest_risk(map, line.where_P);
       if (!label) return "come too near to a risk structure";
       if (!map.risks[label->id]) return fmt::format("cross {}", label->tissue);
       return fmt::format("keep less than the margin of {} mm to {}", map.risks[label->id]->margin_mm, label->tissue);
     }
-    case Verdict::kFree:
+    case PathVerdict::kFree:
       break;
   }
   return "are free";
 }
 
-bool is_about_skin(Verdict verdict) {
-  return verdict == Verdict::kTooLong || verdict == Verdict::kCutFace || verdict == Verdict::kOutOfReach ||
-         verdict == Verdict::kOutsideZone || verdict == Verdict::kGlancing;
+bool is_about_skin(PathVerdict verdict) {
+  return verdict == PathVerdict::kTooLong || verdict == PathVerdict::kCutFace || verdict == PathVerdict::kOutOfReach ||
+         verdict == PathVerdict::kOutsideZone || verdict == PathVerdict::kGlancing;
 }
 
 /// Names what ruled out the most lines; the lines that do not even start at a usable place of the skin (half of a body
@@ -234,10 +251,16 @@ tl::unexpected<Error> no_path(const PlanningMap& map, const Needle& needle, cons
 
 }  // namespace
 
+double path_cost_mm(double length_mm, double spare_margin_mm) noexcept {
+  const double missing = 1.0 - std::clamp(spare_margin_mm / detail::kReportedMargin_mm, 0.0, 1.0);
+  return length_mm + kMarginWorth_mm * missing * missing;
+}
+
 Result<std::vector<PlannedPath>> plan_paths(const Task& task, const VirtualPatient& patient, const Needle& needle,
                                             const PlanOptions& options, const Progress& progress) {
   if (options.count < 1 || options.count > 100000)
-    return fail_usage("the number of paths must be from 1 to 100000", fmt::format("{}", options.count));
+    return fail_usage("the number of paths must be from 1 to 100000", fmt::format("{}", options.count),
+                      "choose a number in this range");
   if (patient.labels.empty() || patient.skin_distance_mm.empty())
     return fail("has no labels or no skin", patient.name, "build the patient again");
   report(progress, "finding targets", 0.0);

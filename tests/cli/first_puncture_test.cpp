@@ -93,8 +93,8 @@ TEST_F(FirstPuncture, PlanWritesAMarkupsFile) {
   for (const Json& path : json["paths"]) {
     EXPECT_GE(path["organ_path_mm"], 10.0);
     EXPECT_GE(path["spare_margin_mm"], 0.0);
-    EXPECT_GE(path["length_mm"], last_mm);
-    last_mm = path["length_mm"];
+    EXPECT_GE(path["cost_mm"], last_mm);
+    last_mm = path["cost_mm"];
   }
   EXPECT_TRUE(parse_json(read(file), file));
 }

@@ -81,11 +81,16 @@ void look_around(const PlanningMap& map, const Segment& piece, PathFindings& fin
       }
 }
 
+/// Bound of the error of an interpolated coarse clearance: half a cell for the interpolation, and half a cell for the
+/// position of the voxel within its cell.
+double coarse_error_mm(const PlanningMap& map) {
+  return 2.0 * map.slack_mm;
+}
+
 /// Exact clearance of the whole way: pieces in order of their coarse clearance, until none can be nearer.
 void measure_margins(const PlanningMap& map, const Segment& way, PathFindings& findings) {
   const int count = static_cast<int>(std::ceil(way.length_mm() / kChunk_mm));
-  const double error =
-      2.0 * map.slack_mm;  // half a cell each for interpolation and for where the voxel lies in its cell
+  const double error = coarse_error_mm(map);
   findings.spare_margin_mm = kReportedMargin_mm;
   std::vector<std::pair<double, Segment>> pieces;
   for (int n = 0; n < count; ++n) {
@@ -204,12 +209,16 @@ PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec
   if (normal.dot(outward) < std::cos(map.task.max_entry_angle_deg * kDegree)) return reject(PathVerdict::kGlancing);
 
   const double whole = path.length_mm + needle.throw_mm;
+  double smallest_mm = kReportedMargin_mm;
   for (double s = 0.0; s <= whole; s += kScreenStep_mm) {
     const Vec3 p = path.line_P.a - s * outward;
     path.where_P = p;
     if (map.role_at(p) == Role::kForbidden) return reject(PathVerdict::kCrosses);
-    if (sample_linear(map.clearance_mm, p) < -map.slack_mm) return reject(PathVerdict::kMargin);
+    const double coarse_mm = sample_linear(map.clearance_mm, p);
+    if (coarse_mm < -map.slack_mm) return reject(PathVerdict::kMargin);
+    smallest_mm = std::min(smallest_mm, coarse_mm + coarse_error_mm(map));
   }
+  path.largest_margin_mm = std::max(0.0, smallest_mm);
   return path;
 }
 

@@ -26,6 +26,7 @@ enum class PathVerdict : std::uint8_t {
 struct PathCandidate {
   Segment line_P{Vec3::Zero(), Vec3::Zero()};  ///< Skin -> tip.
   double length_mm = 0.0;
+  double largest_margin_mm = 0.0;  ///< The exact spare margin of a kFree line is at most this.
   PathVerdict verdict = PathVerdict::kFree;
   Vec3 where_P = Vec3::Zero();  ///< Where a kCrosses was found.
 };
