@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ultrasound/bitmap_font.h"
+#include "volume/bitmap_font.h"
 
 namespace trocar {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
-#include "ultrasound/bitmap_font.h"
+#include "volume/bitmap_font.h"
 
 namespace trocar {
 namespace {

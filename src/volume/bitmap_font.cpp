@@ -1,4 +1,4 @@
-#include "ultrasound/bitmap_font.h"
+#include "volume/bitmap_font.h"
 
 #include <array>
 #include <cstdint>
