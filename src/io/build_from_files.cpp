@@ -25,7 +25,7 @@ std::string last_name(const std::filesystem::path& path) {
 Result<VirtualPatient> build_from_files(const PatientFiles& files, std::vector<std::string>& warnings,
                                         const Progress& progress, const std::stop_token& stop) {
   report(progress, "reading the CT", 0.0);
-  TROCAR_TRY(const CtGrid ct, read_ct(files.ct));
+  TROCAR_TRY(const CtGrid ct, read_ct(files.ct, files.series));
   TROCAR_TRY_STATUS(check_stop(stop, files));
   report(progress, "reading the labels", 0.2);
   TROCAR_TRY(auto sources, read_label_sources(files.labels, files.label_map));

@@ -13,10 +13,11 @@ namespace trocar {
 
 /// The files of which a patient is made.
 struct PatientFiles {
-  std::filesystem::path ct;                    ///< NIfTI, NRRD, MHA, or the folder of one DICOM series.
+  std::filesystem::path ct;                    ///< NIfTI, NRRD, MHA, or a folder of DICOM files.
   std::vector<std::filesystem::path> labels;   ///< Label volumes, masks, folders of masks or of DICOM mask series.
   std::string label_map = "totalsegmentator";  ///< See read_label_sources.
   std::string name;                            ///< Of the patient.
+  std::string series;                          ///< Of several DICOM series, see read_ct.
 };
 
 /// Reads the files and builds the patient; it says in its provenance of what, without paths of this machine. Between

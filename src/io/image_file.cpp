@@ -46,7 +46,13 @@ Status write_grid(const Grid<T>& grid, detail::VoxelType type, const fs::path& p
 
 }  // namespace
 
-Result<CtGrid> read_ct(const fs::path& path) {
+Result<CtGrid> read_ct(const fs::path& path, const std::string& series) {
+  if (!series.empty()) {
+    std::error_code error;
+    if (!fs::is_directory(path, error))
+      return fail_usage("a series can only be chosen in a folder of DICOM files", path.string(), "omit --series");
+    return detail::read_dicom_folder<std::int16_t>(path, detail::convert_voxels, series);
+  }
   return detail::read_grid<std::int16_t>(path, detail::convert_voxels);
 }
 

@@ -9,14 +9,15 @@
 
 namespace trocar {
 
-/// Reads a 3D CT: NIfTI, NRRD, MHA/MHD, or one DICOM series given by its folder (uncompressed, RLE, JPEG, JPEG-LS, JPEG
-/// 2000; the slice step comes from the positions; files that are no DICOM image are ignored). Result in LPS mm, HU
-/// rounded to int16; RAS files are turned, mirrored grids re-ordered along k; values below -32768 are padding and
-/// become -32768. Refused with a clear message: no image, truncated, damaged or of an impossible size, a single slice,
-/// 4D, NaN or infinite voxels, values above 32767, sheared axes; in a folder more than one series, uneven slice steps,
-/// two slices in one place, gantry tilt above 0.3 degrees, multi-frame, colour or deflated files; one DICOM file by
-/// itself.
-Result<CtGrid> read_ct(const std::filesystem::path& path);
+/// Reads a 3D CT: NIfTI, NRRD, MHA/MHD, or one DICOM series of a folder and its sub-folders (uncompressed, RLE, JPEG,
+/// JPEG-LS, JPEG 2000; the slice step comes from the positions; files that are no DICOM image are ignored). Result in
+/// LPS mm, HU rounded to int16; RAS files are turned, mirrored grids re-ordered along k; values below -32768 are
+/// padding and become -32768. Refused with a clear message: no image, truncated, damaged or of an impossible size, a
+/// single slice, 4D, NaN or infinite voxels, values above 32767, sheared axes; in a folder more than one CT series,
+/// uneven slice steps, two slices in one place, gantry tilt above 0.3 degrees, multi-frame, colour or deflated files;
+/// one DICOM file by itself. `series` chooses among several DICOM series by number (list_dicom_series) or UID; when it
+/// is empty, the only series or the only CT series with more than one image is taken. Giving it for a file is an error.
+Result<CtGrid> read_ct(const std::filesystem::path& path, const std::string& series = {});
 
 /// Reads a label volume or a mask: the same formats, .seg.nrrd without overlaps and DICOM mask series included. Values
 /// are whole numbers 0..255, anything else is refused.

@@ -10,6 +10,7 @@
 #include "anatomy/label_table.h"
 #include "config/toml.h"
 #include "core/parallel.h"
+#include "io/detail/find_series.h"
 #include "io/detail/payload.h"
 #include "io/detail/read_grid.h"
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "core/parallel.h"
+#include "io/detail/find_series.h"
 
 namespace trocar::detail {
 namespace fs = std::filesystem;
@@ -18,57 +18,7 @@ constexpr double kMaxTilt_deg = 0.3;
 constexpr double kMaxStepDeviation = 0.05;     ///< Fraction of the step.
 constexpr double kMaxStepDeviation_mm = 0.06;  ///< And this much where the step is small.
 constexpr double kSamePlace_mm = 1e-3;
-constexpr const char* kNameOneSeries = "put one series into a folder of its own and name that";
-
-std::vector<fs::path> files_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (entry->is_regular_file(error)) files.push_back(entry->path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-Result<std::vector<DicomSlice>> slices_in(const fs::path& folder) {
-  const std::vector<fs::path> files = files_in(folder);
-  std::vector<Result<std::optional<DicomSlice>>> found(files.size());
-  parallel_for(files.size(), 8, [&](std::size_t first, std::size_t last) {
-    for (std::size_t n = first; n < last; ++n) found[n] = find_dicom_slice(files[n]);
-  });
-  std::vector<DicomSlice> slices;
-  for (auto& result : found) {
-    TROCAR_TRY(std::optional<DicomSlice> slice, std::move(result));
-    if (slice) slices.push_back(std::move(*slice));
-  }
-  return slices;
-}
-
-/// A folder above the series: the message names one sub-folder that has images.
-std::string no_images_advice(const fs::path& folder) {
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (entry->is_directory(error) && has_dicom_images(entry->path()))
-      return "name a folder with one series, for example " + entry->path().string();
-  return "name the folder that holds the slices of one series";
-}
-
-/// "'Abdomen 3.0' (119 images), 'Topogram' (1 image)" where there is more than one series.
-std::optional<std::string> list_series(const std::vector<DicomSlice>& slices) {
-  std::map<std::string, std::pair<std::string, int>> series;
-  for (const DicomSlice& slice : slices) {
-    auto& [name, count] = series[slice.series_uid];
-    name = slice.series_description.empty() ? slice.file.filename().string() : slice.series_description;
-    ++count;
-  }
-  if (series.size() < 2) return std::nullopt;
-  std::string list;
-  for (const auto& [uid, entry] : series) {
-    if (list.size() > 200) return list + ", …";
-    if (!list.empty()) list += ", ";
-    list += fmt::format("'{}' ({} {})", entry.first, entry.second, entry.second == 1 ? "image" : "images");
-  }
-  return list;
-}
+constexpr const char* kNameOneSeries = "name the folder that holds the slices of one series";
 
 bool is_alike(const DicomSlice& a, const DicomSlice& b) {
   if (a.rows != b.rows || a.columns != b.columns) return false;
@@ -82,9 +32,7 @@ bool is_alike(const DicomSlice& a, const DicomSlice& b) {
 
 /// What makes slices unusable one by one.
 Status check_slices(const std::vector<DicomSlice>& slices, const fs::path& folder) {
-  if (slices.empty()) return fail("no DICOM image in the folder", folder.string(), no_images_advice(folder));
-  if (const auto list = list_series(slices))
-    return fail("the folder holds more than one DICOM series: " + *list, folder.string(), kNameOneSeries);
+  if (slices.empty()) return fail("no DICOM image", folder.string(), kNameOneSeries);
   for (const DicomSlice& slice : slices) {
     const std::string where = slice.file.string();
     if (slice.frames > 1)
@@ -159,8 +107,9 @@ Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const fs::path&
 }
 
 template <class T>
-Result<Grid<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert) {
-  TROCAR_TRY(std::vector<DicomSlice> slices, slices_in(folder));
+Result<Grid<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert, const std::string& wanted) {
+  TROCAR_TRY(std::vector<SeriesImages> found, find_series(folder));
+  TROCAR_TRY(SeriesImages slices, choose_series(std::move(found), folder, wanted));
   TROCAR_TRY(const DicomSeries series, order_slices(std::move(slices), folder));
   Grid<T> grid(series.geometry);
   const auto pixels = static_cast<std::size_t>(series.geometry.size[0] * series.geometry.size[1]);
@@ -176,14 +125,8 @@ Result<Grid<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert) 
   return grid;
 }
 
-template Result<Grid<std::int16_t>> read_dicom_folder(const fs::path&, Converter<std::int16_t>);
-template Result<Grid<std::uint8_t>> read_dicom_folder(const fs::path&, Converter<std::uint8_t>);
-template Result<Grid<float>> read_dicom_folder(const fs::path&, Converter<float>);
-
-bool has_dicom_images(const fs::path& folder) {
-  for (const fs::path& file : files_in(folder))
-    if (const auto slice = find_dicom_slice(file); !slice || *slice) return true;
-  return false;
-}
+template Result<Grid<std::int16_t>> read_dicom_folder(const fs::path&, Converter<std::int16_t>, const std::string&);
+template Result<Grid<std::uint8_t>> read_dicom_folder(const fs::path&, Converter<std::uint8_t>, const std::string&);
+template Result<Grid<float>> read_dicom_folder(const fs::path&, Converter<float>, const std::string&);
 
 }  // namespace trocar::detail

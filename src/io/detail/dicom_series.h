@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/result.h"
@@ -16,16 +17,15 @@ struct DicomSeries {
   std::vector<DicomSlice> slices;  ///< k = 0, 1, 2 …
 };
 
-/// Orders slices and finds their geometry; the slice step comes from the positions. Errors: no slice or only one, more
-/// than one series, several frames, colour, slices of different size or direction, no position, two slices in one
-/// place, uneven steps, gantry tilt (the stack leans by more than 0.3 degrees against the slices' normal).
+/// Orders slices and finds their geometry; the slice step comes from the positions. Errors: no slice or only one,
+/// several frames, colour, slices of different size or direction, no position, two slices in one place, uneven steps,
+/// gantry tilt (the stack leans by more than 0.3 degrees against the slices' normal).
 Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const std::filesystem::path& folder);
 
-/// Reads the one DICOM series of a folder; files that are no DICOM images are ignored.
+/// Reads one DICOM series of a folder and its sub-folders; files that are no DICOM images are ignored. `wanted`: see
+/// choose_series.
 template <class T>
-Result<Grid<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert);
-
-/// True where a folder holds at least one DICOM image, be it damaged.
-bool has_dicom_images(const std::filesystem::path& folder);
+Result<Grid<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert,
+                                  const std::string& wanted = {});
 
 }  // namespace trocar::detail

@@ -44,6 +44,7 @@ DicomSlice slice_of(const DicomHeader& header) {
   DicomSlice slice;
   slice.series_uid = header.text(dicom_tag(0x0020, 0x000e));
   slice.series_description = header.text(dicom_tag(0x0008, 0x103e));
+  slice.modality = header.text(dicom_tag(0x0008, 0x0060));
   slice.rows = header.number(dicom_tag(0x0028, 0x0010)).value_or(0);
   slice.columns = header.number(dicom_tag(0x0028, 0x0011)).value_or(0);
   slice.samples_per_pixel = header.number(dicom_tag(0x0028, 0x0002)).value_or(1);

@@ -17,6 +17,7 @@ struct DicomSlice {
   std::filesystem::path file;
   std::string series_uid;
   std::string series_description;
+  std::string modality;  ///< "CT".
   int columns = 0;
   int rows = 0;
   int frames = 1;
