@@ -90,5 +90,5 @@ function(trocar_add_test name library)
   endif()
   add_test(NAME ${name} COMMAND ${launcher} $<TARGET_FILE:${name}_test>)
   set_tests_properties(${name} PROPERTIES TIMEOUT 600
-    ENVIRONMENT "GTEST_BRIEF=1;TROCAR_DATA_DIR=${PROJECT_SOURCE_DIR}/data;TROCAR_BIN_DIR=${CMAKE_BINARY_DIR}/bin")
+    ENVIRONMENT "GTEST_BRIEF=1;TROCAR_DATA_DIR=${PROJECT_SOURCE_DIR}/data;TROCAR_BIN_DIR=${CMAKE_BINARY_DIR}/bin;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/tests/cache")
 endfunction()

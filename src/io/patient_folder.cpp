@@ -156,6 +156,10 @@ Status load_volumes(const fs::path& folder, VirtualPatient& patient) {
 
 }  // namespace
 
+void round_skin_distance(VirtualPatient& patient) {
+  patient.skin_distance_mm = from_hundredths(to_hundredths(patient.skin_distance_mm));
+}
+
 Status save_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes, const fs::path& folder,
                     const Progress& progress, const std::vector<PatientExtra>& extras) {
   TROCAR_TRY_STATUS(check_geometry(patient, folder.string()));

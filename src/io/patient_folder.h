@@ -27,6 +27,8 @@ Status save_patient(const VirtualPatient& patient, const std::vector<NamedMesh>&
 /// Reads it back without the meshes; volumes side by side. Errors: no patient folder, a newer version, a missing or
 /// damaged file, volumes on different grids, a label without a name, a content hash that does not fit.
 Result<VirtualPatient> load_patient(const std::filesystem::path& folder);
+/// Rounds the skin distance as a patient folder keeps it, so that a patient and its saved copy give the same results.
+void round_skin_distance(VirtualPatient& patient);
 Result<std::vector<NamedMesh>> load_patient_meshes(const std::filesystem::path& folder);
 
 }  // namespace trocar

@@ -4,7 +4,9 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
+#include "core/log.h"
 #include "io/detail/patient_toml.h"
+#include "io/patient_cache.h"
 #include "io/patient_folder.h"
 #include "surface/extract_surface.h"
 
@@ -44,6 +46,11 @@ std::vector<fs::path> candidates(const fs::path& recorded, const fs::path& besid
   return folders;
 }
 
+/// A cache that cannot be written costs time, not the command.
+void log_if_failed(const Result<fs::path>& kept) {
+  if (!kept) log_info("the patient is not cached: {}", kept.error().text());
+}
+
 }  // namespace
 
 std::string absolute_source(const std::string& folder_or_name) {
@@ -66,13 +73,26 @@ Result<std::string> find_recorded_patient(const std::string& recorded, const std
 
 Result<VirtualPatient> open_patient(const PatientSource& source, const Progress& progress) {
   if (is_path(source.folder_or_name)) return load_patient(source.folder_or_name);
-  return generate_phantom(source.folder_or_name, source.seed, {}, progress);
+  const PatientCache cache(source.cache_folder);
+  if (const auto kept = cache.find_volumes(source)) {
+    if (auto patient = load_patient(*kept)) return patient;
+    cache.forget(source);
+  }
+  TROCAR_TRY(VirtualPatient patient, generate_phantom(source.folder_or_name, source.seed, {}, progress));
+  round_skin_distance(patient);
+  if (!source.cache_folder.empty()) log_if_failed(cache.keep(source, patient, {}));
+  return patient;
 }
 
 Result<std::vector<NamedMesh>> open_meshes(const PatientSource& source, const VirtualPatient& patient,
                                            const Progress& progress) {
   if (is_path(source.folder_or_name)) return load_patient_meshes(source.folder_or_name);
-  return extract_surfaces(patient, {}, progress);
+  const PatientCache cache(source.cache_folder);
+  if (const auto kept = cache.find(source))
+    if (auto meshes = load_patient_meshes(*kept)) return meshes;
+  auto meshes = extract_surfaces(patient, {}, progress);
+  if (!source.cache_folder.empty()) log_if_failed(cache.keep(source, patient, meshes));
+  return meshes;
 }
 
 }  // namespace trocar

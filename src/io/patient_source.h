@@ -15,6 +15,8 @@ namespace trocar {
 struct PatientSource {
   std::string folder_or_name;
   std::uint64_t seed = 1;  ///< Of an embedded patient.
+  /// Embedded patients are kept there (PatientCache); empty: they are generated each time.
+  std::filesystem::path cache_folder = {};
 };
 
 /// A folder by its absolute path, so that it is found from another working folder, too; a name as it is.
@@ -27,7 +29,8 @@ Result<std::string> find_recorded_patient(const std::string& recorded, const std
                                           const std::filesystem::path& beside);
 
 /// The patient behind a source. A folder wins over an embedded patient of the same name; a name that is neither is an
-/// error that lists the embedded patients (exit status 2).
+/// error that lists the embedded patients (exit status 2). A patient is the same whether it comes from the cache or
+/// not.
 Result<VirtualPatient> open_patient(const PatientSource& source, const Progress& progress = {});
 /// Its surfaces: read from the folder, extracted from the labels of an embedded patient.
 Result<std::vector<NamedMesh>> open_meshes(const PatientSource& source, const VirtualPatient& patient,

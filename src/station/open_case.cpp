@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "headless/needle_geometry.h"
 #include "io/patient_source.h"
-#include "station/patient_cache.h"
+#include "io/patient_cache.h"
 #include "station/probe_start.h"
 
 namespace trocar {

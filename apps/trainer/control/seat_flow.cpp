@@ -22,7 +22,7 @@
 #include "shell/parts.h"
 #include "shell/status_strip.h"
 #include "shell/trainer_application.h"
-#include "station/user_folders.h"
+#include "core/user_folders.h"
 #include "views/patient_view.h"
 #include "views/time_line.h"
 #include "views/ultrasound_view.h"

@@ -16,7 +16,7 @@
 #include "panels/parameter_profiles.h"
 #include "shell/parts.h"
 #include "shell/theme.h"
-#include "station/user_folders.h"
+#include "core/user_folders.h"
 
 namespace trocar::trainer {
 namespace {

@@ -1,4 +1,4 @@
-#include "station/user_folders.h"
+#include "core/user_folders.h"
 
 #include <cstdlib>
 
