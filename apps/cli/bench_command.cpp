@@ -8,6 +8,8 @@
 #include "bench/harness.h"
 #include "commands.h"
 #include "io/patient_source.h"
+#include "number_option.h"
+#include "patient_option.h"
 
 namespace trocar::cli {
 namespace {
@@ -51,7 +53,7 @@ Result<std::vector<const bench::Benchmark*>> choose(const std::vector<std::strin
   }
   for (const std::string& name : names) {
     const auto found = std::find_if(all.begin(), all.end(), [&](const bench::Benchmark& b) { return b.name == name; });
-    if (found == all.end()) return fail_usage("there is no benchmark of that name", name, "see trocar bench --list");
+    if (found == all.end()) return fail_usage("unknown benchmark", name, "see trocar bench --list");
     chosen.push_back(&*found);
   }
   return chosen;
@@ -91,9 +93,18 @@ Result<std::vector<bench::CaseResult>> measure(const bench::Benchmark& benchmark
   return benchmark.run(options);
 }
 
+void list_benchmarks(bool is_json) {
+  Json list = Json::array();
+  for (const bench::Benchmark& b : bench::all_benchmarks()) {
+    if (!is_json) fmt::print("{:<12} {}\n", b.name, b.description);
+    list.push_back({{"name", b.name}, {"description", b.description}, {"options", b.options}});
+  }
+  if (is_json) print_json({{"benchmarks", list}});
+}
+
 Status run_benchmarks(Arguments& arguments) {
   if (arguments.is_list) {
-    for (const bench::Benchmark& b : bench::all_benchmarks()) fmt::print("{:<12} {}\n", b.name, b.description);
+    list_benchmarks(arguments.is_json);
     return {};
   }
   TROCAR_TRY(const auto chosen, choose(arguments.names));
@@ -116,26 +127,27 @@ Status run_benchmarks(Arguments& arguments) {
 
 void add_bench_command(CLI::App& program, Action& action) {
   const auto a = std::make_shared<Arguments>();
-  CLI::App* command = program.add_subcommand("bench", "Measure the kernels, peers beside them where installed");
+  CLI::App* command =
+      program.add_subcommand("bench", "Measure the speed of the kernels, beside other libraries where installed");
   command->add_option("NAME", a->names, "Benchmarks to run; all when left out");
   command->add_flag("--list", a->is_list, "List the benchmarks");
   command->add_flag("--json", a->is_json, "Print one JSON object; with several benchmarks a list under \"benches\"");
   command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
+  add_cache_option(*command, a->source);
   command->add_option("--task", a->options.task, "Task whose paths are planned")->capture_default_str();
-  command->add_option("--paths", a->options.paths, "How many planned paths")
-      ->check(CLI::Range(1, 100000))
+  whole_number_within(command->add_option("--paths", a->options.paths, "Number of planned paths"), 1, 100000)
       ->capture_default_str();
-  command->add_option("--force-model", a->force_model, "How forces are made: insertion, proxy or combined");
-  command->add_option("--seed", a->options.seed, "Of the choice of paths and the motion along them")
+  command->add_option("--force-model", a->force_model, "Force model: insertion, proxy or combined");
+  seed_number(command->add_option("--seed", a->options.seed, "Random seed for the choice of paths and the motion"))
       ->capture_default_str();
-  command->add_option("--seconds", a->options.seconds, "How long live servers are watched")
-      ->check(CLI::Range(1.0, 86400.0))
+  number_within(command->add_option("--seconds", a->options.seconds, "Measuring time of live servers"), 1.0, 86400.0,
+                "s")
       ->capture_default_str();
-  command->add_option("--rate", a->options.rates_hz, "Of live servers, Hz; several may be given")
-      ->check(CLI::Range(250.0, 4000.0))
+  number_within(command->add_option("--rate", a->options.rates_hz, "Rate of live servers; several may be given"), 250.0,
+                4000.0, "Hz")
       ->capture_default_str();
-  command->add_option("--sequence", a->options.sequence, "Recorded ultrasound (.igs.mha) to hold pictures against");
-  command->add_option("--out", a->options.out, "Folder to create, for the benchmark's files");
+  command->add_option("--sequence", a->options.sequence, "Recorded ultrasound (.igs.mha) to compare pictures with");
+  command->add_option("--out", a->options.out, "Folder to create for the benchmark's files");
   command->footer("Examples:\n  trocar bench slice --json\n  trocar bench paths --patient my_patient --paths 2000\n");
   command->callback([&action, a, command] {
     for (const char* option : kForSome)

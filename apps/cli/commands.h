@@ -22,5 +22,7 @@ void add_ultrasound_sweep_command(CLI::App& ultrasound, Action& action);
 void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action);
 void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action);
 void add_bench_command(CLI::App& program, Action& action);
+/// Describes all commands of `program`, which must outlive `action`.
+void add_completion_command(CLI::App& program, Action& action);
 
 }  // namespace trocar::cli

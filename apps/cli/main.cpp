@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
-#include <exception>
 
 #include "commands.h"
 #include "core/interruption.h"
 #include "core/log.h"
 #include "core/version.h"
+#include "program_end.h"
 
 namespace {
 
@@ -28,9 +28,9 @@ int report_usage(const CLI::App& program, const CLI::ParseError& error) {
   std::string what = error.what();
   if (command.get_require_subcommand_min() > 0) {
     const auto rest = command.remaining();
-    what = rest.empty() ? "a command is missing" : "there is no command \"" + rest.front() + "\"";
+    what = rest.empty() ? "a command is missing" : "unknown command \"" + rest.front() + "\"";
   }
-  return report_error({what, name, "see " + name + " --help", 2});
+  return trocar::report_error({what, name, "see " + name + " --help", 2});
 }
 
 int run(int argc, char** argv) {
@@ -38,7 +38,7 @@ int run(int argc, char** argv) {
   program.name("trocar");
   program.set_version_flag("--version", std::string("trocar ") + trocar::kVersion, "Print the version and exit");
   bool is_verbose = false;
-  program.add_flag("-v,--verbose", is_verbose, "Tell on standard error what is done and how long it takes");
+  program.add_flag("-v,--verbose", is_verbose, "Print details to stderr");
   program.require_subcommand(1);
   program.footer("Example:\n  trocar run liver-biopsy --patient abdomen --operator expert --out first.session\n");
   Action action;
@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   add_link_commands(program, action);
   add_ultrasound_commands(program, action);
   add_bench_command(program, action);
+  add_completion_command(program, action);
 
   try {
     program.parse(argc, argv);
@@ -61,17 +62,12 @@ int run(int argc, char** argv) {
   }
   if (is_verbose) trocar::set_log_level(trocar::LogLevel::kInfo);
   const trocar::Status done = action();
-  return done ? 0 : report_error(done.error());
+  return done ? 0 : trocar::report_error(done.error());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Our code does not throw; memory can still run out.
   trocar::handle_interruptions();
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& exception) {
-    return report_error({std::string("unexpected: ") + exception.what(), "trocar", "", 1});
-  }
+  return trocar::run_program([&] { return run(argc, argv); }, "trocar");
 }

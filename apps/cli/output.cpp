@@ -14,11 +14,6 @@
 namespace trocar::cli {
 namespace fs = std::filesystem;
 
-int report_error(const Error& error) {
-  fmt::print(stderr, "error: {}\n", error.text());
-  return error.exit_status;
-}
-
 void print_warning(std::string_view text) {
   fmt::print(stderr, "warning: {}\n", text);
 }

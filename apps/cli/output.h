@@ -16,8 +16,6 @@ namespace trocar::cli {
 /// What the command line asks for, bound to its arguments: set while it is parsed, called by main.
 using Action = std::function<Status()>;
 
-/// Prints "error: what — where — what to do" on standard error; returns the exit status.
-int report_error(const Error& error);
 void print_warning(std::string_view text);
 /// Results go to standard output, as one JSON object.
 void print_json(const Json& json);

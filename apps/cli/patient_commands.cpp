@@ -9,7 +9,10 @@
 #include "commands.h"
 #include "core/part_of_progress.h"
 #include "io/build_from_files.h"
+#include "io/dicom_folder.h"
 #include "io/patient_folder.h"
+#include "number_option.h"
+#include "patient_summary.h"
 #include "surface/extract_surface.h"
 
 namespace trocar::cli {
@@ -40,9 +43,12 @@ Status list_patients(bool is_json) {
   return {};
 }
 
-Status save_with_surfaces(const VirtualPatient& patient, const fs::path& out, const Progress& progress) {
-  const auto meshes = extract_surfaces(patient, {}, part_of(progress, 0.0, 0.6));
-  return save_patient(patient, meshes, out, part_of(progress, 0.6, 1.0));
+/// Writes the folder and returns the surfaces in it.
+Result<std::vector<NamedMesh>> save_with_surfaces(const VirtualPatient& patient, const fs::path& out,
+                                                  const Progress& progress) {
+  auto meshes = extract_surfaces(patient, {}, part_of(progress, 0.0, 0.6));
+  TROCAR_TRY_STATUS(save_patient(patient, meshes, out, part_of(progress, 0.6, 1.0)));
+  return meshes;
 }
 
 Status generate_patient(const std::string& name, std::uint64_t seed, const fs::path& out) {
@@ -50,7 +56,8 @@ Status generate_patient(const std::string& name, std::uint64_t seed, const fs::p
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
   TROCAR_TRY(const VirtualPatient patient, generate_phantom(name, seed, {}, part_of(progress, 0.0, 0.5)));
-  return save_with_surfaces(patient, out, part_of(progress, 0.5, 1.0));
+  TROCAR_TRY_STATUS(save_with_surfaces(patient, out, part_of(progress, 0.5, 1.0)).map([](const auto&) {}));
+  return {};
 }
 
 struct BuildArguments {
@@ -58,26 +65,69 @@ struct BuildArguments {
   std::vector<std::string> labels;
   std::string label_map = "totalsegmentator";
   std::string name;
+  std::string series;
   std::string out;
+  bool is_json = false;
 };
 
 Status build(const BuildArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
-  const ProgressPrinter printer;
-  const Progress progress = printer.callback();
-  PatientFiles files{arguments.ct, {arguments.labels.begin(), arguments.labels.end()}, arguments.label_map, {}};
+  TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
+  TROCAR_TRY(const auto tasks, load_tasks(tasks_folder));
+  PatientFiles files;
+  files.ct = arguments.ct;
+  files.labels.assign(arguments.labels.begin(), arguments.labels.end());
+  files.label_map = arguments.label_map;
+  files.series = arguments.series;
   files.name = arguments.name.empty() ? last_name(arguments.out) : arguments.name;
   std::vector<std::string> warnings;
-  TROCAR_TRY(const VirtualPatient patient, build_from_files(files, warnings, part_of(progress, 0.0, 0.5)));
-  TROCAR_TRY_STATUS(save_with_surfaces(patient, arguments.out, part_of(progress, 0.5, 1.0)));
+  std::vector<NamedMesh> meshes;
+  VirtualPatient patient;
+  {
+    const ProgressPrinter printer;
+    const Progress progress = printer.callback();
+    TROCAR_TRY(patient, build_from_files(files, warnings, part_of(progress, 0.0, 0.5)));
+    TROCAR_TRY(meshes, save_with_surfaces(patient, arguments.out, part_of(progress, 0.5, 1.0)));
+  }
   for (const std::string& warning : warnings) print_warning(warning);
+  const BuildSummary summary = summarize_build(patient, tasks, std::move(warnings), arguments.out);
+  if (arguments.is_json) {
+    print_json(to_json(summary, patient, meshes));
+  } else {
+    print_summary(summary, patient, meshes);
+  }
+  return {};
+}
+
+struct SeriesArguments {
+  std::string folder;
+  bool is_json = false;
+};
+
+Status list_series(const SeriesArguments& arguments) {
+  TROCAR_TRY(const auto series, list_dicom_series(arguments.folder));
+  Json list = Json::array();
+  if (!arguments.is_json)
+    fmt::print("{:>6} {:<8} {:>6}  {:<32} {}\n", "number", "modality", "images", "description", "UID");
+  for (std::size_t n = 0; n < series.size(); ++n) {
+    const DicomSeriesInfo& s = series[n];
+    if (!arguments.is_json)
+      fmt::print("{:>6} {:<8} {:>6}  {:<32} {}\n", n + 1, s.modality, s.images, s.description, s.uid);
+    list.push_back({{"number", n + 1},
+                    {"uid", s.uid},
+                    {"description", s.description},
+                    {"modality", s.modality},
+                    {"images", s.images},
+                    {"folder", s.folder.string()}});
+  }
+  if (arguments.is_json) print_json({{"series", list}});
   return {};
 }
 
 }  // namespace
 
 void add_patient_commands(CLI::App& program, Action& action) {
-  CLI::App* patient = program.add_subcommand("patient", "Make, look at and check virtual patients");
+  CLI::App* patient = program.add_subcommand("patient", "Make, show and check virtual patients");
   patient->require_subcommand(1);
   patient->footer("Example:\n  trocar patient generate abdomen --out my_patient\n");
 
@@ -97,15 +147,21 @@ void add_patient_commands(CLI::App& program, Action& action) {
   const auto g = std::make_shared<GenerateArguments>();
   generate->add_option("NAME", g->name, "Embedded patient: see trocar patient list")->required();
   generate->add_option("--out", g->out, "Folder to create")->required();
-  generate->add_option("--seed", g->seed, "Another seed, another individual")->capture_default_str();
+  seed_number(generate->add_option("--seed", g->seed, "Random seed; each seed gives another individual"))
+      ->capture_default_str();
   generate->callback([&action, g] { action = [g] { return generate_patient(g->name, g->seed, g->out); }; });
 
   CLI::App* build_command = patient->add_subcommand("build", "Build a patient from a CT and its segmentation");
   build_command->footer(
       "Examples:\n  trocar patient build --ct ct.nii.gz --labels segmentation.nii.gz --out case_1\n"
-      "  trocar patient build --ct dicom_folder --labels masks_folder --label-map names.toml --out case_2\n");
+      "  trocar patient build --ct dicom_folder --labels masks_folder --label-map names.toml --out case_2\n"
+      "  trocar patient build --ct dicom_disc --series 2 --labels segmentation.nii.gz --out case_3\n");
   const auto b = std::make_shared<BuildArguments>();
-  build_command->add_option("--ct", b->ct, "CT: NIfTI, NRRD, MHA, or the folder of one DICOM series")->required();
+  build_command->add_option("--ct", b->ct, "CT: NIfTI, NRRD, MHA, or a folder of DICOM files with its sub-folders")
+      ->required();
+  build_command->add_option("--series", b->series,
+                            "Number or UID of the DICOM series of the CT, see trocar patient series; needed where the "
+                            "folder holds several CT series");
   build_command
       ->add_option("--labels", b->labels, "Label volumes, single masks, folders of masks or of DICOM mask series")
       ->required();
@@ -115,7 +171,15 @@ void add_patient_commands(CLI::App& program, Action& action) {
       ->capture_default_str();
   build_command->add_option("--name", b->name, "Name of the patient; the folder's name when left out");
   build_command->add_option("--out", b->out, "Folder to create")->required();
+  build_command->add_flag("--json", b->is_json, "Print the summary as one JSON object");
   build_command->callback([&action, b] { action = [b] { return build(*b); }; });
+
+  CLI::App* series_command = patient->add_subcommand("series", "List the DICOM series of a folder and its sub-folders");
+  series_command->footer("Example:\n  trocar patient series dicom_disc\n");
+  const auto s = std::make_shared<SeriesArguments>();
+  series_command->add_option("FOLDER", s->folder, "Folder of DICOM files")->required();
+  series_command->add_flag("--json", s->is_json, "Print one JSON object");
+  series_command->callback([&action, s] { action = [s] { return list_series(*s); }; });
 
   add_patient_report_commands(*patient, action);
 }

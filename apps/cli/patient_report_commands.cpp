@@ -14,8 +14,11 @@
 #include "io/markups_file.h"
 #include "io/patient_source.h"
 #include "io/png.h"
+#include "number_option.h"
+#include "patient_option.h"
+#include "patient_summary.h"
 #include "scene/render_patient.h"
-#include "slices/slice_picture.h"
+#include "slices/slice_legend.h"
 #include "training/task.h"
 
 namespace trocar::cli {
@@ -32,43 +35,11 @@ struct Arguments {
 constexpr double kMm2PerCm2 = 100.0;
 constexpr double kMm3PerMl = 1000.0;
 
-Json to_json(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
-Json grid_json(const GridGeometry& g) {
-  Json direction = Json::array();
-  for (int axis = 0; axis < 3; ++axis) direction.push_back(to_json(g.R_PV.col(axis)));
-  return {{"frame", "P: LPS, mm"},
-          {"size_voxels", {g.size[0], g.size[1], g.size[2]}},
-          {"spacing_mm", to_json(g.spacing_mm)},
-          {"origin_mm", to_json(g.origin_P)},
-          {"direction_of_ijk", direction}};
-}
-
-Json label_json(const VirtualPatient& patient, const LabelStatistics& s) {
-  const Label* label = patient.label_table.find(s.id);
-  return {{"id", s.id},
-          {"name", label != nullptr ? label->name : ""},
-          {"tissue", label != nullptr ? label->tissue : ""},
-          {"volume_ml", s.volume_ml},
-          {"mean_hu", s.mean_hu},
-          {"voxels", s.voxels},
-          {"centroid_mm", to_json(s.centroid_P)},
-          {"touches_border", s.touches_border}};
-}
-
 Json patient_json(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes) {
   Json labels = Json::array();
   for (const LabelStatistics& s : label_statistics(patient)) labels.push_back(label_json(patient, s));
   Json surfaces = Json::array();
-  for (const NamedMesh& m : meshes) {
-    surfaces.push_back({{"name", m.name},
-                        {"vertices", m.mesh_P.vertices.size()},
-                        {"triangles", m.mesh_P.triangles.size()},
-                        {"area_cm2", area_mm2(m.mesh_P) / kMm2PerCm2},
-                        {"volume_ml", enclosed_volume_mm3(m.mesh_P) / kMm3PerMl}});
-  }
+  for (const NamedMesh& m : meshes) surfaces.push_back(mesh_json(m));
   Json landmarks = Json::array();
   for (const Landmark& l : patient.landmarks) landmarks.push_back({{"name", l.name}, {"position_mm", to_json(l.p_P)}});
   Json paths = Json::array();
@@ -144,11 +115,7 @@ Status check(const Arguments& arguments) {
   if (arguments.is_json) {
     Json list = Json::array();
     for (const Task& task : tasks) {
-      const TaskReadiness readiness = check_task(task, patient);
-      list.push_back({{"task", task.name},
-                      {"possible", readiness.is_possible},
-                      {"parenchymal", readiness.is_parenchymal},
-                      {"reasons", readiness.reasons}});
+      list.push_back(readiness_json(task, check_task(task, patient)));
     }
     print_json({{"name", patient.name}, {"tasks", list}, {"doubtful", doubts}});
     return {};
@@ -186,14 +153,15 @@ Status write_slices(const VirtualPatient& patient, const fs::path& folder) {
        {SliceOrientation::kCoronal, "coronal"},
        {SliceOrientation::kSagittal, "sagittal"}}};
   const Vec3 through_P = point_of_interest(patient);
+  SliceOptions plain;
+  plain.label_opacity = 0.0;
+  plain.has_outlines = false;
   for (const auto& [orientation, name] : kOrientations) {
-    SliceOptions plain;
-    plain.label_opacity = 0.0;
-    plain.has_outlines = false;
-    TROCAR_TRY_STATUS(write_png(make_slice_picture(patient, orientation, through_P, plain).image,
-                                folder / fmt::format("slice_{}.png", name)));
-    TROCAR_TRY_STATUS(write_png(make_slice_picture(patient, orientation, through_P).image,
-                                folder / fmt::format("slice_{}_labels.png", name)));
+    for (const auto& [options, ending] : {std::pair{plain, ""}, std::pair{SliceOptions{}, "_labels"}}) {
+      SlicePicture picture = make_slice_picture(patient, orientation, through_P, options);
+      draw_slice_legend(picture);
+      TROCAR_TRY_STATUS(write_png(picture.image, folder / fmt::format("slice_{}{}.png", name, ending)));
+    }
   }
   return {};
 }
@@ -246,7 +214,9 @@ CLI::App* add_command(CLI::App& patient, Action& action, const char* name, const
   CLI::App* command = patient.add_subcommand(name, description);
   command->add_option("PATIENT", arguments->source.folder_or_name, "Patient folder, or an embedded patient's name")
       ->required();
-  command->add_option("--seed", arguments->source.seed, "Seed of an embedded patient")->capture_default_str();
+  seed_number(command->add_option("--seed", arguments->source.seed, "Seed of an embedded patient"))
+      ->capture_default_str();
+  add_cache_option(*command, arguments->source);
   command->callback([&action, arguments, work] { action = [arguments, work] { return work(*arguments); }; });
   return command;
 }

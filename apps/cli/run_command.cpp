@@ -8,6 +8,8 @@
 #include "commands.h"
 #include "headless/realtime_session.h"
 #include "io/patient_source.h"
+#include "number_option.h"
+#include "patient_option.h"
 
 namespace trocar::cli {
 namespace {
@@ -150,14 +152,14 @@ void print_result(const Arguments& arguments, const Case& the_case, const RunRes
 Status check_servers(Arguments& a) {
   const bool names_servers = !a.realtime.endpoints.empty() || !a.key_file.empty() || !a.server_key_file.empty();
   if (names_servers && !a.is_realtime)
-    return fail_usage("servers are of an attempt in real time", "--endpoint, --keys, --server-key", "add --realtime");
+    return fail_usage("these options need --realtime", "--endpoint, --keys, --server-key", "add --realtime");
   if (!a.is_realtime) return {};
   if (a.key_file.empty() != a.server_key_file.empty())
-    return fail_usage("one's own keys and the server's belong together", "--keys, --server-key",
-                      "see trocar link keygen");
+    return fail_usage("--keys and --server-key must be given together", "--keys, --server-key",
+                      "give both; trocar link keygen makes them");
   if (!a.realtime.endpoints.empty() && (a.has_device || a.has_rate))
-    return fail_usage("running servers have their device and their rate", "--device, --rate",
-                      "name them to trocar-hapticd");
+    return fail_usage("device and rate of running servers are set when they start", "--device, --rate",
+                      "give them to trocar-hapticd instead");
   if (!a.key_file.empty()) {
     ClientSecurity security;
     TROCAR_TRY(security.keys, load_curve_keys(a.key_file));
@@ -220,10 +222,10 @@ void add_server_options(CLI::App& command, Arguments& a) {
       .add_option("--endpoint", a.realtime.endpoints,
                   "A running trocar-hapticd: ipc://PATH or tcp://HOST:PORT; again for a second one, in any order")
       ->allow_extra_args(false);
-  command.add_option("--keys", a.key_file, "One's own key file, for servers of other machines (trocar link keygen)");
+  command.add_option("--keys", a.key_file, "Your private key file, for servers on other machines (trocar link keygen)");
   command.add_option("--server-key", a.server_key_file, "The servers' public key");
-  command.add_option("--patience", a.patience_s, "How long a server may be silent, in s")
-      ->check(CLI::Range(0.1, 600.0))
+  number_within(command.add_option("--patience", a.patience_s, "Time without messages until a server counts as lost"),
+                0.1, 600.0, "s")
       ->capture_default_str();
 }
 
@@ -253,10 +255,14 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");
   command->add_option("--set", a->the_case.overrides, "Change numbers of the tissue table: liver.k=0.5")
       ->allow_extra_args(false);
-  command->add_option("--seed", a->source.seed, "Of operator, friction, plan and embedded patient")
+  seed_number(
+      command->add_option("--seed", a->source.seed,
+                          "Random seed for operator, friction, path choice and (embedded patients) the anatomy"))
       ->capture_default_str();
   CLI::Option* rate =
-      command->add_option("--rate", a->run.rate_hz, "Ticks a second, in Hz, 250 to 4000")->capture_default_str();
+      number_within(command->add_option("--rate", a->run.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
+          ->capture_default_str();
+  add_cache_option(*command, a->source);
   add_server_options(*command, *a);
   command->add_flag("--json", a->is_json, "Print one JSON object");
   command->footer(

@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "io/patient_source.h"
+#include "patient_option.h"
 #include "report/html_report.h"
 #include "storage/session_file.h"
 
@@ -35,22 +36,23 @@ Status export_session(const std::string& session_file, const std::string& csv) {
 
 struct ReportArguments {
   std::string session;
-  std::string patient;  ///< Empty: where the session says.
+  PatientSource patient;  ///< Without a name: where the session says.
   std::string out;
 };
 
 /// The session's patient, or nothing with a warning where it is gone or has changed since.
-std::optional<VirtualPatient> find_patient(const SessionInfo& info, const std::string& wanted,
+std::optional<VirtualPatient> find_patient(const SessionInfo& info, PatientSource source,
                                            const std::filesystem::path& session, const Progress& progress) {
-  const Result<std::string> found =
-      wanted.empty() ? find_recorded_patient(info.patient_source, info.patient_hash, session.parent_path())
-                     : Result<std::string>(wanted);
-  if (!found) {
-    print_warning("the report has no CT slices: " + found.error().text());
-    return std::nullopt;
+  if (source.folder_or_name.empty()) {
+    auto found = find_recorded_patient(info.patient_source, info.patient_hash, session.parent_path());
+    if (!found) {
+      print_warning("the report has no CT slices: " + found.error().text());
+      return std::nullopt;
+    }
+    source.folder_or_name = *std::move(found);
   }
-  const std::string& where = *found;
-  auto patient = open_patient({where, info.patient_seed}, progress);
+  source.seed = info.patient_seed;
+  auto patient = open_patient(source, progress);
   if (!patient) {
     print_warning("the report has no CT slices: " + patient.error().text());
     return std::nullopt;
@@ -59,7 +61,7 @@ std::optional<VirtualPatient> find_patient(const SessionInfo& info, const std::s
     print_warning(
         fmt::format("the report has no CT slices: this is not the patient of the session — {} — name it with "
                     "--patient",
-                    where));
+                    source.folder_or_name));
     return std::nullopt;
   }
   return *std::move(patient);
@@ -87,7 +89,7 @@ void add_session_commands(CLI::App& program, Action& action) {
     std::string session;
     std::string csv;
   };
-  CLI::App* export_command = session->add_subcommand("export", "Write one row a haptic tick");
+  CLI::App* export_command = session->add_subcommand("export", "Export as CSV, one row per tick");
   const auto e = std::make_shared<ExportArguments>();
   export_command->add_option("SESSION", e->session, "Session file of trocar run")->required();
   export_command->add_option("--csv", e->csv, "CSV file to write")->required();
@@ -96,10 +98,12 @@ void add_session_commands(CLI::App& program, Action& action) {
       "Example:\n  trocar session export first.session --csv first.csv\n");
   export_command->callback([&action, e] { action = [e] { return export_session(e->session, e->csv); }; });
 
-  CLI::App* report_command = session->add_subcommand("report", "Write a page with score, hints, forces and slices");
+  CLI::App* report_command =
+      session->add_subcommand("report", "Write an HTML report with score, hints, forces and slices");
   const auto r = std::make_shared<ReportArguments>();
   report_command->add_option("SESSION", r->session, "Session file of trocar run")->required();
-  report_command->add_option("--patient", r->patient, "Where the patient lies now, if it was moved");
+  report_command->add_option("--patient", r->patient.folder_or_name, "Patient folder, if it was moved since");
+  add_cache_option(*report_command, r->patient);
   report_command->add_option("--out", r->out, "HTML file to write")->required();
   report_command->footer("Example:\n  trocar session report first.session --out first.html\n");
   report_command->callback([&action, r] { action = [r] { return write_report(*r); }; });

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "number_option.h"
+
 namespace trocar::cli {
 namespace {
 
@@ -21,21 +23,30 @@ constexpr int kBarColumns = 10;
 
 void add_doppler_options(CLI::App& command, DopplerArguments& a) {
   DopplerSettings& s = a.settings;
-  command.add_flag("--doppler", a.is_wanted, "Flow of the labelled vessels in colour");
-  command.add_option("--doppler-scale", s.scale_cm_per_s, "Velocity at the ends of the colour bar, cm/s, 2..200")
+  command.add_flag("--doppler", a.is_wanted, "Show flow in the labelled vessels as colour Doppler");
+  number_within(command.add_option("--doppler-scale", s.scale_cm_per_s, "Velocity at the ends of the colour bar"), 2.0,
+                200.0, "cm/s")
       ->capture_default_str();
-  command.add_option("--doppler-box", a.box, "Part of width and depth, percent: first,last,near,far; 20,80,20,90")
+  number_within(command.add_option("--doppler-box", a.box,
+                                   "Colour box in percent of width and depth: first,last,near,far, as 20,80,20,90"),
+                0.0, 100.0, "%")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command.add_option("--doppler-gain-db", s.gain_db, "-40..40")->capture_default_str();
-  command.add_option("--doppler-filter", s.wall_filter, "Wall filter, part of the scale, 0..0.6")
+  number_within(command.add_option("--doppler-gain-db", s.gain_db, "Colour gain"), -40.0, 40.0, "dB")
       ->capture_default_str();
-  command.add_option("--doppler-mhz", s.frequency_mhz, "Frequency of the colour's pulses")->capture_default_str();
-  command
-      .add_option("--doppler-baseline", s.baseline, "Shift of the colour bar's middle, part of the scale, -0.9..0.9")
+  number_within(command.add_option("--doppler-filter", s.wall_filter, "Wall filter cutoff, as a fraction of the scale"),
+                0.0, 0.6, "")
       ->capture_default_str();
-  command.add_flag("--doppler-invert", s.is_inverted, "Blue towards the transducer");
-  command.add_option("--time-s", a.time_s, "Of heart and breath, since an R wave")->capture_default_str();
+  number_within(command.add_option("--doppler-mhz", s.frequency_mhz, "Frequency of the Doppler pulses"), 1.0, 15.0,
+                "MHz")
+      ->capture_default_str();
+  number_within(command.add_option("--doppler-baseline", s.baseline, "Baseline shift, as a fraction of the scale"),
+                -0.9, 0.9, "")
+      ->capture_default_str();
+  command.add_flag("--doppler-invert", s.is_inverted, "Invert the colours: blue is flow towards the transducer");
+  number_within(command.add_option("--time-s", a.time_s, "Seconds since the last R wave (cardiac phase for Doppler)"),
+                0.0, 3600.0, "s")
+      ->capture_default_str();
 }
 
 Result<DopplerSettings> gather_doppler(const DopplerArguments& a) {

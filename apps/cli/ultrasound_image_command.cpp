@@ -15,6 +15,7 @@
 #include "io/image_file.h"
 #include "io/png.h"
 #include "io/transform_file.h"
+#include "number_option.h"
 #include "ultrasound/freehand_sweep.h"
 #include "ultrasound/scan_annotation.h"
 #include "ultrasound/scanner.h"
@@ -27,6 +28,8 @@ namespace fs = std::filesystem;
 
 constexpr double kNeedleLength_mm = 200.0;
 constexpr int kMostFrames = 100000;
+/// Needles with a diameter below.
+constexpr int kThickestGauge = 14, kThinnestGauge = 25;
 /// So many pictures persist to within a gray value or two.
 constexpr int kPersistingPictures = 40;
 
@@ -45,14 +48,11 @@ struct Arguments {
 };
 
 /// Outer diameter of a needle, mm (needle gauge comparison chart, Birmingham wire gauge).
-Result<double> diameter_of_gauge(int gauge) {
-  constexpr int kFirst = 14;
+double diameter_of_gauge(int gauge) {
   constexpr std::array kDiameters_mm = {2.108, 1.829, 1.651, 1.473, 1.270, 1.067,
                                         0.908, 0.819, 0.718, 0.642, 0.566, 0.515};
-  const int last = kFirst + static_cast<int>(kDiameters_mm.size()) - 1;
-  if (gauge < kFirst || gauge > last)
-    return fail_usage(fmt::format("--needle-gauge is not within {}..{}", kFirst, last), fmt::format("{}", gauge));
-  return kDiameters_mm[static_cast<std::size_t>(gauge - kFirst)];
+  static_assert(kDiameters_mm.size() == kThinnestGauge - kThickestGauge + 1);
+  return kDiameters_mm[static_cast<std::size_t>(gauge - kThickestGauge)];
 }
 
 struct Size {
@@ -64,7 +64,7 @@ Result<Size> parse_size(const std::string& text) {
   const bool is_read = std::sscanf(text.c_str(), "%5dx%5d%n", &size.columns, &size.rows, &read) == 2 &&
                        static_cast<std::size_t>(read) == text.size();
   if (!is_read || size.columns < 16 || size.rows < 16 || size.columns > 4096 || size.rows > 4096)
-    return fail_usage("--size is not COLUMNSxROWS within 16..4096", text, "640x480 for example");
+    return fail_usage("--size is not COLUMNSxROWS from 16 to 4096", text, "write it as 640x480");
   return size;
 }
 
@@ -75,7 +75,7 @@ struct Needle {
 };
 Result<Needle> load_needle(const Arguments& arguments) {
   Needle needle;
-  TROCAR_TRY(needle.diameter_mm, diameter_of_gauge(arguments.needle_gauge));
+  needle.diameter_mm = diameter_of_gauge(arguments.needle_gauge);
   if (arguments.needle.empty()) return needle;
   TROCAR_TRY(const Pose X_PN, read_transform(arguments.needle));
   needle.shaft_P = {X_PN * Vec3(0.0, 0.0, -kNeedleLength_mm), X_PN.p()};
@@ -90,19 +90,17 @@ struct Request {
 };
 Result<Request> check_arguments(const Arguments& arguments) {
   if (arguments.engine == "panorama")
-    return fail_usage("pictures from stitched volumes come later", "--engine panorama", "leave it out, or raycast");
+    return fail_usage("the engine panorama is not implemented yet", "--engine panorama", "use --engine raycast");
   const std::string ending = fs::path(arguments.out).extension().string();
   if (ending != ".png" && ending != ".nrrd")
-    return fail_usage("the picture is written as .png or .nrrd", arguments.out, "let the name end in one of them");
-  if (arguments.frames < 0 || arguments.frames > kMostFrames)
-    return fail_usage(fmt::format("--frames is not within 1..{}", kMostFrames), fmt::format("{}", arguments.frames));
+    return fail_usage("the file name must end in .png or .nrrd", arguments.out, "rename the output");
   TROCAR_TRY_STATUS(check_outputs({arguments.out, arguments.scan.save_pose}));
   Request request;
   TROCAR_TRY(request.size, parse_size(arguments.size));
   TROCAR_TRY(request.needle, load_needle(arguments));
   TROCAR_TRY(request.doppler, gather_doppler(arguments.doppler));
   if (arguments.doppler.is_wanted && ending != ".png")
-    return fail_usage("a volume has no colours", arguments.out, "let the name end in .png, or leave --doppler out");
+    return fail_usage("colour Doppler cannot be written as .nrrd", arguments.out, "write a .png, or omit --doppler");
   return request;
 }
 
@@ -255,18 +253,23 @@ void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
   const auto a = std::make_shared<Arguments>();
   add_scan_options(*command, a->scan);
   add_doppler_options(*command, a->doppler);
-  command->add_option("--persistence", a->scan.display.persistence, "Part of the last picture that stays, 0..0.95")
+  number_within(command->add_option("--persistence", a->scan.display.persistence, "Weight of the previous picture"),
+                0.0, 0.95, "")
       ->capture_default_str();
   command->add_option("--needle", a->needle,
                       "X_PN: points of the needle, tip at 0 and +z to it, to the patient's (.tfm)");
-  command->add_option("--needle-gauge", a->needle_gauge, "14..25")->capture_default_str();
+  whole_number_within(command->add_option("--needle-gauge", a->needle_gauge, "Outer diameter of the needle, gauge"),
+                      kThickestGauge, kThinnestGauge)
+      ->capture_default_str();
   command->add_option("--engine", a->engine, "raycast (from CT and labels) or panorama (from stitched volumes: later)")
       ->check(CLI::IsMember({"raycast", "panorama"}))
       ->capture_default_str();
   command->add_option("--out", a->out, "Picture: .png, or .nrrd as a thin slab where its plane lies in the patient")
       ->required();
-  command->add_option("--size", a->size, "Of the picture, COLUMNSxROWS")->capture_default_str();
-  command->add_option("--frames", a->frames, "Time so many more frames while the transducer moves");
+  command->add_option("--size", a->size, "Size of the picture, COLUMNSxROWS, 16 to 4096 each")->capture_default_str();
+  whole_number_within(
+      command->add_option("--frames", a->frames, "Benchmark: render N more frames with a moving transducer"), 1,
+      kMostFrames);
   command->add_flag("--plain", a->is_plain, "No scale, marker and settings around the picture");
   command->add_flag("--unmirrored", a->is_unmirrored,
                     "+x of the transducer (head, or the patient's right) to the right");

@@ -7,6 +7,8 @@
 
 #include "commands.h"
 #include "io/patient_source.h"
+#include "number_option.h"
+#include "patient_option.h"
 #include "ultrasound/probe_view.h"
 #include "ultrasound/transducer.h"
 
@@ -128,7 +130,9 @@ void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action) {
   const auto a = std::make_shared<Arguments>();  // one command runs: they share it
   CLI::App* views = ultrasound.add_subcommand("views", "Standard views, and which of them a patient has");
   views->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
-  views->add_option("--patient-seed", a->source.seed, "Of an embedded patient")->capture_default_str();
+  seed_number(views->add_option("--patient-seed", a->source.seed, "Seed of an embedded patient"))
+      ->capture_default_str();
+  add_cache_option(*views, a->source);
   views->add_flag("--json", a->is_json, "Print one JSON object");
   views->footer("Example:\n  trocar ultrasound views --patient abdomen\n");
   views->callback([&action, a] { action = [a] { return list_views(*a); }; });

@@ -11,6 +11,7 @@
 #include "io/image_file.h"
 #include "io/plus_config.h"
 #include "io/sequence_file.h"
+#include "number_option.h"
 #include "ultrasound/freehand.h"
 
 namespace trocar::cli {
@@ -96,7 +97,7 @@ void print_summary(const FreehandVolume& volume, const FreehandOptions& options,
   const GridGeometry& grid = volume.gray.geometry;
   fmt::print("{} voxels of {:g} x {:g} x {:g} mm from {} frames in {:.2f} s\n", fmt::join(grid.size, " x "),
              grid.spacing_mm[0], grid.spacing_mm[1], grid.spacing_mm[2], volume.frames_used, seconds);
-  fmt::print("{} voxels met by a pixel, {} holes filled\n", volume.voxels_met, volume.holes_filled);
+  fmt::print("{} voxels filled from image pixels, {} holes filled\n", volume.voxels_met, volume.holes_filled);
   fmt::print("axes of the frame {}, stored as LPS\n", options.reference_frame);
 }
 
@@ -142,8 +143,9 @@ void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action) {
   command->add_option("SEQUENCE", a->sequence, "Tracked pictures of PLUS or 3D Slicer: .igs.mha")->required();
   command->add_option("--calibration", a->calibration,
                       "PLUS configuration (XML) with ImageToProbe; its <VolumeReconstruction> gives the defaults");
-  command->add_option("--spacing", a->spacing_mm, "Edge of a voxel, mm; 1 or the calibration file's when left out")
-      ->check(CLI::Range(0.01, 100.0));
+  number_within(
+      command->add_option("--spacing", a->spacing_mm, "Voxel size; the calibration file's or 1 mm when left out"), 0.01,
+      100.0, "mm");
   command->add_option("--out", a->out, "Volume to write: .nrrd, one byte a voxel, LPS axes of the reference")
       ->required();
   command->add_option("--reference", a->reference, "Tracked frame that the volume stands in; Reference when left out");

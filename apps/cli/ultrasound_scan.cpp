@@ -9,6 +9,8 @@
 #include <set>
 
 #include "io/transform_file.h"
+#include "number_option.h"
+#include "patient_option.h"
 #include "ultrasound/probe_placement.h"
 
 namespace trocar::cli {
@@ -17,23 +19,19 @@ namespace fs = std::filesystem;
 
 constexpr double kLeastDepth_mm = 20.0;
 constexpr double kLeastFocus_mm = 5.0;
+/// No transducer sees deeper; its own limit is checked once it is known.
+constexpr double kMostDepth_mm = 300.0;
 /// Where the user says a depth and no focus, the focus stays within the picture.
 constexpr double kDeepestFocus = 0.75;
 
-/// Also false for what is no number, which CLI::Range lets through.
-template <class Number>
-Status check_range(const char* option, Number value, Number low, Number high) {
-  if (value >= low && value <= high) return {};
-  return fail_usage(
-      fmt::format("{} is not within {:g}..{:g}", option, static_cast<double>(low), static_cast<double>(high)),
-      fmt::format("{}", value));
-}
-
-template <class Number>
-Status take(const char* option, const std::optional<Number>& asked, Number low, Number high, Number& value) {
+/// Takes a number that was given, within what the transducer can do.
+Status take(const char* option, const std::optional<double>& asked, double low, double high, const char* unit,
+            double& value) {
   if (!asked) return {};
   value = *asked;
-  return check_range(option, value, low, high);
+  if (value >= low && value <= high) return {};
+  return fail_usage(fmt::format("{} is out of the transducer's range", option), fmt::format("{}", value),
+                    fmt::format("give {:g} to {:g} {}", low, high, unit));
 }
 
 Result<Acquisition> gather_acquisition(const ScanArguments& a, const Transducer& transducer,
@@ -43,17 +41,19 @@ Result<Acquisition> gather_acquisition(const ScanArguments& a, const Transducer&
   if (view && view->frequency_mhz)
     acquisition.frequency_mhz = std::clamp(*view->frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz);
   if (view && view->focus_mm) acquisition.focus_mm = *view->focus_mm;
-  TROCAR_TRY_STATUS(take("--depth-mm", a.depth_mm, kLeastDepth_mm, transducer.greatest_depth_mm, acquisition.depth_mm));
-  TROCAR_TRY_STATUS(take("--frequency-mhz", a.frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz,
+  TROCAR_TRY_STATUS(
+      take("--depth-mm", a.depth_mm, kLeastDepth_mm, transducer.greatest_depth_mm, "mm", acquisition.depth_mm));
+  TROCAR_TRY_STATUS(take("--frequency-mhz", a.frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz, "MHz",
                          acquisition.frequency_mhz));
   acquisition.focus_mm = std::min(acquisition.focus_mm, kDeepestFocus * acquisition.depth_mm);
-  TROCAR_TRY_STATUS(take("--focus-mm", a.focus_mm, kLeastFocus_mm, transducer.greatest_depth_mm, acquisition.focus_mm));
-  TROCAR_TRY_STATUS(take("--lines", a.lines, 2, 1024, acquisition.lines));
-  TROCAR_TRY_STATUS(take("--samples", a.samples, 16, 4096, acquisition.samples));
-  TROCAR_TRY_STATUS(take("--looks", a.looks, 1, 5, acquisition.looks));
-  TROCAR_TRY_STATUS(take("--planes", a.planes, 1, 9, acquisition.planes));
+  TROCAR_TRY_STATUS(
+      take("--focus-mm", a.focus_mm, kLeastFocus_mm, transducer.greatest_depth_mm, "mm", acquisition.focus_mm));
+  acquisition.lines = a.lines.value_or(acquisition.lines);
+  acquisition.samples = a.samples.value_or(acquisition.samples);
+  acquisition.looks = a.looks.value_or(acquisition.looks);
+  acquisition.planes = a.planes.value_or(acquisition.planes);
   if (acquisition.planes % 2 == 0)
-    return fail_usage("--planes is not odd", fmt::format("{}", acquisition.planes), "choose 1, 3, 5, 7 or 9");
+    return fail_usage("--planes must be odd", fmt::format("{}", acquisition.planes), "give 1, 3, 5, 7 or 9");
   for (const std::string& name : a.off) TROCAR_TRY_STATUS(switch_off(acquisition.artefacts, name));
   return acquisition;
 }
@@ -65,7 +65,8 @@ Result<DisplaySettings> gather_display(const ScanArguments& a) {
   }
   if (!a.tgc_db.empty()) {
     if (a.tgc_db.size() != display.tgc_db.size())
-      return fail_usage("--tgc wants eight numbers, from near to far", fmt::format("{}", fmt::join(a.tgc_db, ",")));
+      return fail_usage(fmt::format("--tgc has {} numbers", a.tgc_db.size()),
+                        fmt::format("{}", fmt::join(a.tgc_db, ",")), "give eight, from near to far");
     std::copy(a.tgc_db.begin(), a.tgc_db.end(), display.tgc_db.begin());
   }
   TROCAR_TRY_STATUS(check(display));
@@ -85,7 +86,9 @@ Result<std::optional<ProbeView>> find_view(const std::vector<ProbeView>& views, 
 
 void add_scan_options(CLI::App& command, ScanArguments& a) {
   command.add_option("--patient", a.source.folder_or_name, "Patient folder, or an embedded patient's name")->required();
-  command.add_option("--patient-seed", a.source.seed, "Of an embedded patient")->capture_default_str();
+  seed_number(command.add_option("--patient-seed", a.source.seed, "Seed of an embedded patient"))
+      ->capture_default_str();
+  add_cache_option(command, a.source);
   CLI::Option* pose = command.add_option("--pose", a.pose, "X_PT: points of the transducer to the patient's (.tfm)");
   CLI::Option* view =
       command.add_option("--view", a.view, "Place the transducer in a standard view: trocar ultrasound views");
@@ -93,30 +96,39 @@ void add_scan_options(CLI::App& command, ScanArguments& a) {
   command.add_option("--save-pose", a.save_pose, "Write X_PT as a .tfm");
   command.add_option("--transducer", a.transducer,
                      "One of trocar ultrasound transducers; when left out the view's, or a fitting one");
-  command.add_option("--depth-mm", a.depth_mm, "Of the picture, below the face");
-  command.add_option("--frequency-mhz", a.frequency_mhz, "Within the transducer's band");
-  command.add_option("--focus-mm", a.focus_mm, "Depth of the transmit focus");
-  command.add_option("--gain-db", a.display.gain_db, "-40..40")->capture_default_str();
-  command.add_option("--tgc", a.tgc_db, "Eight sliders from near to far, dB, -20..20: 0,0,0,0,0,0,0,0")
+  number_within(command.add_option("--depth-mm", a.depth_mm, "Image depth below the face"), kLeastDepth_mm,
+                kMostDepth_mm, "mm");
+  number_within(command.add_option("--frequency-mhz", a.frequency_mhz, "Frequency, within the transducer's band"), 0.5,
+                50.0, "MHz");
+  number_within(command.add_option("--focus-mm", a.focus_mm, "Depth of the transmit focus"), kLeastFocus_mm,
+                kMostDepth_mm, "mm");
+  number_within(command.add_option("--gain-db", a.display.gain_db, "Gain"), -40.0, 40.0, "dB")->capture_default_str();
+  number_within(command.add_option("--tgc", a.tgc_db, "Eight TGC sliders from near to far, as 0,0,0,0,0,0,0,0"), -20.0,
+                20.0, "dB")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command.add_option("--dynamic-range-db", a.display.dynamic_range_db, "20..100")->capture_default_str();
+  number_within(command.add_option("--dynamic-range-db", a.display.dynamic_range_db, "Dynamic range"), 20.0, 100.0,
+                "dB")
+      ->capture_default_str();
   command.add_option("--gray-map", a.gray_map, "linear, soft or high-contrast; soft when left out");
-  command.add_option("--lines", a.lines, "Scanlines, 2..1024");
-  command.add_option("--samples", a.samples, "A scanline, 16..4096; 1024 when left out");
-  command.add_option("--planes", a.planes, "Across the beam's thickness: 1, 3, 5, 7 or 9; 5 when left out");
-  command.add_option("--looks", a.looks, "That are compounded, 1..5; 3 when left out, 1 gives full speckle");
+  whole_number_within(command.add_option("--lines", a.lines, "Number of scanlines"), 2, 1024);
+  whole_number_within(command.add_option("--samples", a.samples, "Samples per scanline; 1024 when left out"), 16, 4096);
+  whole_number_within(
+      command.add_option("--planes", a.planes, "Number of elevation planes, an odd number; 5 when left out"), 1, 9);
+  whole_number_within(
+      command.add_option("--looks", a.looks, "Number of compounding angles; 3 when left out, 1 gives full speckle"), 1,
+      5);
   command
       .add_option("--off", a.off,
                   fmt::format("Artefacts to switch off, with commas: {}, all", fmt::join(artefact_names(), ", ")))
       ->delimiter(',')
       ->allow_extra_args(false);
-  command.add_option("--seed", a.seed, "Of the receiver's noise")->capture_default_str();
+  seed_number(command.add_option("--seed", a.seed, "Random seed of the receiver noise"))->capture_default_str();
 }
 
 Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_transducer, const Progress& progress) {
   if (a.pose.empty() && a.view.empty())
-    return fail_usage("the transducer's place is missing", {}, "give --pose FILE.tfm or --view NAME");
+    return fail_usage("the transducer has no position", "--pose, --view", "give --pose FILE.tfm or --view NAME");
   Scan scan;
   TROCAR_TRY(const fs::path views_file, find_data("views.toml"));
   TROCAR_TRY(const auto views, load_probe_views(views_file));
@@ -157,8 +169,9 @@ Status check_outputs(const std::vector<std::string>& outputs) {
     std::error_code ignored;
     const fs::path path = fs::absolute(out, ignored).lexically_normal();
     if (!fs::is_directory(path.parent_path(), ignored))
-      return fail("there is no folder to write into", path.parent_path().string(), "make it first");
-    if (!paths.insert(path).second) return fail_usage("two outputs have the same name", out);
+      return fail("the output folder does not exist", path.parent_path().string(), "create it first");
+    if (!paths.insert(path).second)
+      return fail_usage("two outputs have the same name", out, "give each output its own name");
   }
   return {};
 }

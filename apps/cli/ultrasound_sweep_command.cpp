@@ -11,6 +11,7 @@
 #include "io/image_file.h"
 #include "io/sequence_file.h"
 #include "io/transform_file.h"
+#include "number_option.h"
 #include "ultrasound/freehand_sweep.h"
 #include "ultrasound/mechanical_sweep.h"
 #include "ultrasound_scan.h"
@@ -145,24 +146,14 @@ Status sweep_by_hand(const Arguments& arguments, const Scan& scan, const Progres
   return {};
 }
 
-/// Also refuses what is no number, which CLI::Range lets through.
-Status check_number(const char* option, double value, double low, double high) {
-  if (value >= low && value <= high) return {};
-  return fail_usage(fmt::format("{} is not within {:g}..{:g}", option, low, high), fmt::format("{:g}", value));
-}
-
 Status check_arguments(const Arguments& arguments) {
   if (arguments.out.empty() == arguments.tracked.empty())
-    return fail_usage("what to write is not said", {}, "give either --out VOLUME.nrrd or --tracked SEQUENCE.igs.mha");
+    return fail_usage("exactly one of --out and --tracked is needed", "--out, --tracked",
+                      "give --out VOLUME.nrrd or --tracked SEQUENCE.igs.mha");
   if (!arguments.out.empty() && fs::path(arguments.out).extension() != ".nrrd")
-    return fail_usage("the volume is written as .nrrd", arguments.out, "let the name end in .nrrd");
+    return fail_usage("the file name must end in .nrrd", arguments.out, "rename the output");
   if (!arguments.tracked.empty() && fs::path(arguments.tracked).extension() != ".mha")
-    return fail_usage("the sequence is written as .igs.mha", arguments.tracked, "let the name end in .igs.mha");
-  if (arguments.angle_deg != 0.0) TROCAR_TRY_STATUS(check_number("--angle-deg", arguments.angle_deg, 1.0, 90.0));
-  TROCAR_TRY_STATUS(check_number("--step-deg", arguments.step_deg, 0.1, 10.0));
-  TROCAR_TRY_STATUS(check_number("--spacing", arguments.spacing_mm, 0.2, 5.0));
-  TROCAR_TRY_STATUS(check_number("--length-mm", arguments.length_mm, 1.0, 300.0));
-  if (arguments.frames != 0) TROCAR_TRY_STATUS(check_number("--frames", arguments.frames, 2.0, 1000.0));
+    return fail_usage("the file name must end in .igs.mha", arguments.tracked, "rename the output");
   return check_outputs({arguments.out, arguments.tracked, arguments.scan.save_pose});
 }
 
@@ -187,16 +178,22 @@ void add_ultrasound_sweep_command(CLI::App& ultrasound, Action& action) {
   const auto a = std::make_shared<Arguments>();
   add_scan_options(*command, a->scan);
   command->add_option("--out", a->out, "Volume of a mechanical 3D transducer: .nrrd, one byte a voxel, with its fan");
-  command->add_option("--tracked", a->tracked, "Instead: pictures of a sweep by hand with their places, .igs.mha");
-  command->add_option(
-      "--angle-deg", a->angle_deg,
-      "Whole angle of the sweep, 1..90; the transducer's own when left out. By hand: tilt, do not slide");
-  command->add_option("--step-deg", a->step_deg, "Between frames")->capture_default_str();
-  command->add_option("--spacing", a->spacing_mm, "Edge of a voxel, mm")->capture_default_str();
+  command->add_option("--tracked", a->tracked, "Instead: tracked pictures of a freehand sweep, .igs.mha");
+  number_within(command->add_option(
+                    "--angle-deg", a->angle_deg,
+                    "Total angle of the sweep; the transducer's own when left out. Freehand sweep: tilt, no slide"),
+                1.0, 90.0, "degrees");
+  number_within(command->add_option("--step-deg", a->step_deg, "Angle between frames"), 0.1, 10.0, "degrees")
+      ->capture_default_str();
+  number_within(command->add_option("--spacing", a->spacing_mm, "Voxel size"), 0.2, 5.0, "mm")->capture_default_str();
   command->add_flag("--in-patient", a->is_in_patient,
-                    "Axes and place of the patient; when left out those of the transducer in mid sweep, as a scanner");
-  command->add_option("--length-mm", a->length_mm, "By hand: way over the skin")->capture_default_str();
-  command->add_option("--frames", a->frames, "By hand: how many; one a mm, or a step of the angle, when left out");
+                    "Write the volume in the patient's frame; when left out in the transducer's frame at mid sweep");
+  number_within(command->add_option("--length-mm", a->length_mm, "Freehand sweep: distance along the skin"), 1.0, 300.0,
+                "mm")
+      ->capture_default_str();
+  whole_number_within(command->add_option("--frames", a->frames,
+                                          "Freehand sweep: number of frames; one per mm or angle step when left out"),
+                      2, 1000);
   command->add_flag("--json", a->is_json, "Print one JSON object");
   command->callback([&action, a] { action = [a] { return sweep(*a); }; });
 }

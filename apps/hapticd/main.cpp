@@ -3,7 +3,6 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
-#include <exception>
 
 #include "core/data_dir.h"
 #include "core/log.h"
@@ -11,6 +10,8 @@
 #include "devices/device_spec.h"
 #include "headless/scene_request.h"
 #include "io/patient_source.h"
+#include "number_option.h"
+#include "program_end.h"
 #include "server/haptic_server.h"
 #include "storage/session_file.h"
 
@@ -61,7 +62,7 @@ Result<std::vector<Pose>> replayed_poses(const Session& session, double needle_l
     const Mat3 R_PN = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
     poses.push_back(X_WP * Pose(R_PN, sample.device_mm) * X_NS);
   }
-  if (poses.empty()) return fail("the session has no ticks to replay");
+  if (poses.empty()) return fail("the session has no ticks to replay", "replay", "give a recorded session");
   return poses;
 }
 
@@ -175,17 +176,19 @@ void add_options(CLI::App& program, Arguments& a) {
   program.add_option("--preset", a.preset, "Row of data/devices.toml instead of the device's own");
   program.add_option("--tool", a.tool, "What the device stands for: needle, probe or finger")->capture_default_str();
   program.add_option("--patient", a.patient.folder_or_name, "Patient to load at once; without it a client sends one");
-  program.add_option("--patient-seed", a.patient.seed, "Of an embedded patient")->capture_default_str();
+  seed_number(program.add_option("--patient-seed", a.patient.seed, "Seed of an embedded patient"))
+      ->capture_default_str();
   program.add_option("--task", a.the_case.task, "Task that places the patient in the room")->capture_default_str();
   program.add_option("--needle", a.the_case.needle, "Needle of data/needles.toml; the task's own when left out");
   program.add_option("--force-model", a.force_model, "insertion, proxy or combined; the task's own when left out");
-  program.add_option("--rate", a.rate_hz, "Ticks a second, in Hz, 250 to 4000")->capture_default_str();
+  number_within(program.add_option("--rate", a.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
+      ->capture_default_str();
   program.add_option("--endpoint", a.endpoint,
                      "ipc://PATH or tcp://HOST:PORT; beyond this machine only with --keys and --allow");
   program.add_option("--keys", a.key_file, "The server's key file (trocar link keygen)");
   program.add_option("--allow", a.allow_file, "Public keys of the clients that may connect");
-  program.add_option("--priority", a.priority, "Of SCHED_FIFO, 1 to 99; 0: ordinary scheduling")
-      ->check(CLI::Range(0, 99))
+  whole_number_within(
+      program.add_option("--priority", a.priority, "Priority under SCHED_FIFO; 0 selects ordinary scheduling"), 0, 99)
       ->capture_default_str();
   program.add_option("--flight-records", a.flight_folder, "Folder for the last 2 s before a fault")
       ->capture_default_str();
@@ -195,17 +198,12 @@ void add_options(CLI::App& program, Arguments& a) {
           "Break the device on schedule, to see what happens: KIND[:AMOUNT]@FROM_S[+FOR_S], as nan@2+0.5; kinds "
           "jitter, dropped, nan, stuck, jump, disconnect, slow_write, slow_read")
       ->allow_extra_args(false);
-  program.add_flag("-v,--verbose", a.is_verbose, "Tell on standard error what is done");
+  program.add_flag("-v,--verbose", a.is_verbose, "Print details to stderr");
   program.footer(
       "It runs until it is interrupted, keeps its device safe whatever its clients do, and gives no force before a "
       "client asks "
       "for it.\nExamples:\n  trocar-hapticd --device virtual --tool needle --patient abdomen\n"
       "  trocar-hapticd --device openhaptics --tool probe --endpoint tcp://127.0.0.1:5571\n");
-}
-
-int report_error(const Error& error) {
-  fmt::print(stderr, "error: {}\n", error.text());
-  return error.exit_status;
 }
 
 int run(int argc, char** argv) {
@@ -238,11 +236,9 @@ void block_signals() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Our code does not throw; memory can still run out.
-  try {
+  const auto program = [&] {
     block_signals();
     return run(argc, argv);
-  } catch (const std::exception& exception) {
-    return report_error({std::string("unexpected: ") + exception.what(), "trocar-hapticd", "", 1});
-  }
+  };
+  return trocar::run_program(program, "trocar-hapticd");
 }

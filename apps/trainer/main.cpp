@@ -13,6 +13,7 @@
 #include "core/data_dir.h"
 #include "core/version.h"
 #include "pages/start_page.h"
+#include "program_end.h"
 #include "scene/render_patient.h"
 #include "script/benchmark.h"
 #include "script/script_player.h"
@@ -20,7 +21,7 @@
 #include "shell/parts.h"
 #include "shell/theme.h"
 #include "shell/trainer_application.h"
-#include "station/user_folders.h"
+#include "core/user_folders.h"
 #include "training/task.h"
 
 namespace {
@@ -51,11 +52,6 @@ void add_options(CLI::App& app, Arguments& arguments) {
       "Steps of a script: click, drag, wheel, key, choose, set, wait-for, expect, screenshot … (docs/user_guide.md)");
 }
 
-int complain(const Error& error) {
-  fmt::print(stderr, "error: {}\n", error.text());
-  return error.exit_status;
-}
-
 /// What the arguments choose, before there is a window: an unknown name is told, not passed over.
 Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments) {
   if (arguments.task) {
@@ -71,7 +67,7 @@ Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments)
                          [&](const PhantomInfo& info) { return info.name == *arguments.patient; })) {
     choice.patient = *arguments.patient;
   } else {
-    return fail_usage("there is no such patient", *arguments.patient,
+    return fail_usage("no such patient", *arguments.patient,
                       "name a patient folder or an embedded patient (trocar patient list)");
   }
   return choice;
@@ -79,7 +75,7 @@ Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments)
 
 void save_window(MainWindow& window, const std::string& file) {
   const bool is_saved = window.grab().save(to_qt(file), "PNG");
-  if (!is_saved) complain(Error{"the picture cannot be written", file, "check the folder"});
+  if (!is_saved) report_error(Error{"the picture cannot be written", file, "check the folder"});
   QCoreApplication::exit(is_saved ? 0 : 1);
 }
 
@@ -107,20 +103,20 @@ Status play(const Arguments& arguments, MainWindow& window) {
   return {};
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app("The desktop that a trainee sits at: ultrasound, slices, 3D, forces and a score.", "trocar-trainer");
   Arguments arguments;
   add_options(app, arguments);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_text) {
+    return app.exit(asked_for_text);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return report_error({error.what(), "trocar-trainer", "see trocar-trainer --help", 2});
   }
   if (!can_render())
-    return complain(Error{"the window needs an X server that can draw, and there is none", "DISPLAY",
-                          "start it from a desktop, or under xvfb-run"});
+    return report_error(Error{"the window needs an X server that can draw, and there is none", "DISPLAY",
+                              "start it from a desktop, or under xvfb-run"});
 
 #if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
   QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
@@ -132,9 +128,15 @@ int main(int argc, char** argv) {
   apply_theme(application);
   MainWindow window(arguments.state_folder.empty() ? user_state_folder() : fs::path(arguments.state_folder));
   const Result<SeatChoice> choice = with_arguments(window.start().choice(), arguments);
-  if (!choice) return complain(choice.error());
+  if (!choice) return report_error(choice.error());
   window.start().choose(*choice);
   window.show();
-  if (const Status status = play(arguments, window); !status) return complain(status.error());
+  if (const Status status = play(arguments, window); !status) return report_error(status.error());
   return QApplication::exec();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return trocar::run_program([&] { return run(argc, argv); }, "trocar-trainer");
 }

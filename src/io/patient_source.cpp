@@ -24,7 +24,7 @@ constexpr std::size_t kMostFolders = 256;  // looked into beside a record
 bool has_hash(const fs::path& folder, const std::string& hash) {
   std::error_code ignored;
   if (!fs::is_regular_file(folder / "patient.toml", ignored)) return false;
-  const auto description = detail::load_patient_toml(folder / "patient.toml");
+  const auto description = detail::load_patient_toml(folder / "patient.toml", folder);
   return description && description->content_hash == hash;
 }
 

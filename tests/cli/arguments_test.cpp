@@ -24,7 +24,7 @@ INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
                                          "device", "device list", "link", "link keygen", "run", "session",
                                          "session export", "session report", "ultrasound", "ultrasound image",
                                          "ultrasound sweep", "ultrasound reconstruct", "ultrasound views",
-                                         "ultrasound transducers", "bench"));
+                                         "ultrasound transducers", "bench", "completion", "completion bash"));
 
 class Mistake : public testing::TestWithParam<const char*> {};
 

@@ -13,16 +13,23 @@ namespace trocar::cli_test {
 namespace fs = std::filesystem;
 
 Outcome trocar(const std::string& arguments, const std::string& before) {
+  return run_program("trocar", arguments, before);
+}
+
+Outcome run_program(const std::string& program, const std::string& arguments, const std::string& before) {
   const char* folder = std::getenv("TROCAR_BIN_DIR");
   if (folder == nullptr) {
     ADD_FAILURE() << "TROCAR_BIN_DIR is not set: run the test through ctest";
     return {};
   }
+  return run_shell(before + " '" + folder + "/" + program + "' " + arguments);
+}
+
+Outcome run_shell(const std::string& line) {
   const TemporaryFolder temporary;
   const std::string err_file = temporary / "err";
-  const std::string line = before + " '" + folder + "/trocar' " + arguments + " 2>'" + err_file + "'";
   Outcome outcome;
-  FILE* pipe = popen(line.c_str(), "r");
+  FILE* pipe = popen((line + " 2>'" + err_file + "'").c_str(), "r");
   if (pipe == nullptr) return outcome;
   char buffer[4096];
   for (std::size_t got = 0; (got = fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.out.append(buffer, got);

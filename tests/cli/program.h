@@ -18,6 +18,12 @@ struct Outcome {
 /// Runs `trocar ARGUMENTS` (a shell line); `before` stands in front of it ("env -u DISPLAY").
 Outcome trocar(const std::string& arguments, const std::string& before = {});
 
+/// The same for another program of the build: trocar-hapticd.
+Outcome run_program(const std::string& program, const std::string& arguments, const std::string& before = {});
+
+/// Runs a line of the shell.
+Outcome run_shell(const std::string& line);
+
 /// Standard output as JSON; a test failure and null where it is none.
 Json json_of(const Outcome& outcome);
 

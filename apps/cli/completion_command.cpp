@@ -1,0 +1,163 @@
+// trocar completion bash: a completion script made from the commands and options of this program.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+
+#include "anatomy/phantom/phantom.h"
+#include "commands.h"
+#include "haptics/device_preset.h"
+#include "training/task.h"
+#include "ultrasound/probe_view.h"
+#include "ultrasound/transducer.h"
+
+namespace trocar::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// Values of options that name something of this program, by the option's or argument's name.
+using Values = std::map<std::string, Words>;
+
+template <class Things, class Name>
+Words names_of(const Things& things, Name name) {
+  Words names;
+  for (const auto& thing : things) names.push_back(thing.*name);
+  return names;
+}
+
+Result<Values> known_values() {
+  Values values;
+  values["--patient"] = values["PATIENT"] = names_of(embedded_patients(), &PhantomInfo::name);
+  values["--operator"] = {"expert", "novice", "constant-velocity:", "replay:"};
+  values["--force-model"] = {"insertion", "proxy", "combined"};
+  TROCAR_TRY(const auto tasks_folder, find_data("tasks"));
+  TROCAR_TRY(const auto tasks, load_tasks(tasks_folder));
+  values["--task"] = names_of(tasks, &Task::name);
+  TROCAR_TRY(const auto devices_file, find_data("devices.toml"));
+  TROCAR_TRY(const auto devices, load_device_presets(devices_file));
+  values["--device"] = names_of(devices, &DevicePreset::name);
+  TROCAR_TRY(const auto views_file, find_data("views.toml"));
+  TROCAR_TRY(const auto views, load_probe_views(views_file));
+  values["--view"] = names_of(views, &ProbeView::name);
+  TROCAR_TRY(const auto transducers_file, find_data("transducers.toml"));
+  TROCAR_TRY(const auto transducers, load_transducers(transducers_file));
+  values["--transducer"] = names_of(transducers, &Transducer::name);
+  return values;
+}
+
+/// The choices of an option that takes one of a few words: CLI11 writes them as "TEXT:{a,b}".
+Words choices_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const auto open = type.find('{');
+  const auto close = type.find('}', open);
+  if (open == std::string::npos || close == std::string::npos) return {};
+  Words words(1);
+  for (const char c : type.substr(open + 1, close - open - 1)) {
+    if (c == ',') {
+      words.emplace_back();
+    } else {
+      words.back() += c;
+    }
+  }
+  return words;
+}
+
+Words values_of(const CLI::Option& option, const Values& known) {
+  Words names;
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  if (option.get_positional()) names.push_back(option.get_name(true));
+  for (const std::string& name : names)
+    if (const auto found = known.find(name); found != known.end()) return found->second;
+  return choices_of(option);
+}
+
+std::string quoted(const Words& words) {
+  return fmt::format("'{}'", fmt::join(words, " "));
+}
+
+/// The lines of the script about one command and those below it. `path`: "patient build"; empty for the program.
+class CommandLines {
+ public:
+  explicit CommandLines(const Values& known) : known_(known) {}
+
+  void add(const CLI::App& command, const std::string& path) {
+    Words words;
+    for (const CLI::App* below : command.get_subcommands({})) {
+      const std::string name = path.empty() ? below->get_name() : path + " " + below->get_name();
+      words.push_back(below->get_name());
+      commands_ += fmt::format("      '{}') command='{}' ;;\n", name, name);
+      add(*below, name);
+    }
+    for (const CLI::Option* option : command.get_options()) add(*option, path, words);
+    words_ += fmt::format("    '{}') words={} ;;\n", path, quoted(words));
+  }
+
+  const std::string& commands() const { return commands_; }
+  const std::string& words() const { return words_; }
+  const std::string& values() const { return values_; }
+
+ private:
+  void add(const CLI::Option& option, const std::string& path, Words& words) {
+    const Words values = values_of(option, known_);
+    Words patterns;
+    for (const std::string& name : option.get_lnames()) {
+      words.push_back("--" + name);
+      patterns.push_back(fmt::format("'{} --{}'", path, name));
+    }
+    for (const std::string& name : option.get_snames()) words.push_back("-" + name);
+    if (option.get_positional()) words.insert(words.end(), values.begin(), values.end());
+    if (option.get_items_expected_max() == 0 || patterns.empty()) return;  // a flag, or an argument without a name
+    values_ += fmt::format("    {}) values={} ;;\n", fmt::join(patterns, "|"), quoted(values));
+  }
+
+  const Values& known_;
+  std::string commands_, words_, values_;
+};
+
+// Names of files complete everywhere where no word fits: outputs, folders and sessions are files.
+constexpr const char* kScript = R"(# Bash completion of trocar. Load it with: source <(trocar completion bash)
+_trocar() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}}
+  local command='' word words='' values='none'
+  for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
+    case "${{command:+$command }}$word" in
+{}    esac
+  done
+  case "$command $previous" in
+{}  esac
+  if [[ $values != none ]]; then
+    COMPREPLY=($(compgen -W "$values" -- "$current"))
+    return
+  fi
+  case "$command" in
+{}  esac
+  COMPREPLY=($(compgen -W "$words" -- "$current"))
+}}
+complete -o bashdefault -o default -F _trocar trocar
+)";
+
+Status print_completion(const CLI::App& program) {
+  TROCAR_TRY(const Values known, known_values());
+  CommandLines lines(known);
+  lines.add(program, {});
+  fmt::print(fmt::runtime(kScript), lines.commands(), lines.values(), lines.words());
+  return {};
+}
+
+}  // namespace
+
+void add_completion_command(CLI::App& program, Action& action) {
+  CLI::App* completion = program.add_subcommand("completion", "Print a completion script for a shell");
+  completion->require_subcommand(1);
+  completion->footer("Example:\n  source <(trocar completion bash)\n");
+  CLI::App* bash = completion->add_subcommand("bash", "Commands, options and names for bash");
+  bash->footer(
+      "Examples:\n  source <(trocar completion bash)\n"
+      "  trocar completion bash > ~/.local/share/bash-completion/completions/trocar\n");
+  bash->callback([&action, &program] { action = [&program] { return print_completion(program); }; });
+}
+
+}  // namespace trocar::cli

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "io/patient_source.h"
+
+namespace trocar::cli {
+
+/// Adds --no-cache; without it `source` uses the user's cache folder for embedded patients. `source` lives as long as
+/// the command.
+void add_cache_option(CLI::App& command, PatientSource& source);
+
+}  // namespace trocar::cli

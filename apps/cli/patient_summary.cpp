@@ -1,0 +1,125 @@
+#include "patient_summary.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "anatomy/patient_doubts.h"
+#include "geometry/triangle_mesh.h"
+
+namespace trocar::cli {
+namespace {
+
+constexpr double kMm2PerCm2 = 100.0;
+constexpr double kMm3PerMl = 1000.0;
+
+double body_volume_ml(const FloatGrid& skin_distance_mm) {
+  const auto inside = std::count_if(skin_distance_mm.voxels.begin(), skin_distance_mm.voxels.end(),
+                                    [](float distance_mm) { return distance_mm < 0.0F; });
+  return static_cast<double>(inside) * skin_distance_mm.geometry.spacing_mm.prod() / kMm3PerMl;
+}
+
+std::size_t triangle_count(const std::vector<NamedMesh>& meshes) {
+  std::size_t count = 0;
+  for (const NamedMesh& mesh : meshes) count += mesh.mesh_P.triangles.size();
+  return count;
+}
+
+}  // namespace
+
+Json to_json(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+Json grid_json(const GridGeometry& g) {
+  Json direction = Json::array();
+  for (int axis = 0; axis < 3; ++axis) direction.push_back(to_json(Vec3(g.R_PV.col(axis))));
+  return {{"frame", "P: LPS, mm"},
+          {"size_voxels", {g.size[0], g.size[1], g.size[2]}},
+          {"spacing_mm", to_json(g.spacing_mm)},
+          {"origin_mm", to_json(g.origin_P)},
+          {"direction_of_ijk", direction}};
+}
+
+Json label_json(const VirtualPatient& patient, const LabelStatistics& s) {
+  const Label* label = patient.label_table.find(s.id);
+  return {{"id", s.id},
+          {"name", label != nullptr ? label->name : ""},
+          {"tissue", label != nullptr ? label->tissue : ""},
+          {"volume_ml", s.volume_ml},
+          {"mean_hu", s.mean_hu},
+          {"voxels", s.voxels},
+          {"centroid_mm", to_json(s.centroid_P)},
+          {"touches_border", s.touches_border}};
+}
+
+Json mesh_json(const NamedMesh& mesh) {
+  return {{"name", mesh.name},
+          {"vertices", mesh.mesh_P.vertices.size()},
+          {"triangles", mesh.mesh_P.triangles.size()},
+          {"area_cm2", area_mm2(mesh.mesh_P) / kMm2PerCm2},
+          {"volume_ml", enclosed_volume_mm3(mesh.mesh_P) / kMm3PerMl}};
+}
+
+Json readiness_json(const Task& task, const TaskReadiness& readiness) {
+  return {{"task", task.name},
+          {"possible", readiness.is_possible},
+          {"parenchymal", readiness.is_parenchymal},
+          {"reasons", readiness.reasons}};
+}
+
+BuildSummary summarize_build(const VirtualPatient& patient, const std::vector<Task>& tasks,
+                             std::vector<std::string> warnings, const std::string& folder) {
+  BuildSummary summary;
+  summary.folder = folder;
+  summary.labels = label_statistics(patient);
+  summary.body_ml = body_volume_ml(patient.skin_distance_mm);
+  summary.warnings = std::move(warnings);
+  summary.doubts = find_doubts(patient, summary.labels);
+  summary.tasks = tasks;
+  for (const Task& task : tasks) summary.readiness.push_back(check_task(task, patient));
+  return summary;
+}
+
+Json to_json(const BuildSummary& summary, const VirtualPatient& patient, const std::vector<NamedMesh>& meshes) {
+  Json labels = Json::array();
+  for (const LabelStatistics& s : summary.labels) labels.push_back(label_json(patient, s));
+  Json surfaces = Json::array();
+  for (const NamedMesh& mesh : meshes) surfaces.push_back(mesh_json(mesh));
+  Json tasks = Json::array();
+  for (std::size_t n = 0; n < summary.tasks.size(); ++n)
+    tasks.push_back(readiness_json(summary.tasks[n], summary.readiness[n]));
+  return {{"folder", summary.folder},
+          {"name", patient.name},
+          {"content_hash", patient.content_hash},
+          {"volume", grid_json(patient.ct.geometry)},
+          {"body_ml", summary.body_ml},
+          {"labels", labels},
+          {"meshes", surfaces},
+          {"tasks", tasks},
+          {"doubtful", summary.doubts},
+          {"warnings", summary.warnings}};
+}
+
+void print_summary(const BuildSummary& summary, const VirtualPatient& patient, const std::vector<NamedMesh>& meshes) {
+  const GridGeometry& g = patient.ct.geometry;
+  fmt::print("{} in {}\n", patient.name, summary.folder);
+  fmt::print("volume    {} x {} x {} voxels of {:.3f} x {:.3f} x {:.3f} mm\n", g.size[0], g.size[1], g.size[2],
+             g.spacing_mm.x(), g.spacing_mm.y(), g.spacing_mm.z());
+  fmt::print("body      {:.1f} l\n", summary.body_ml / 1000.0);
+  fmt::print("surfaces  {}, {} triangles\n", meshes.size(), triangle_count(meshes));
+  fmt::print("labels    {}\n", summary.labels.size());
+  for (const LabelStatistics& s : summary.labels)
+    if (const Label* label = patient.label_table.find(s.id))
+      fmt::print("  {:<30} {:>9.1f} ml {:>6.0f} HU\n", label->name, s.volume_ml, s.mean_hu);
+  std::vector<std::string> possible;
+  for (std::size_t n = 0; n < summary.tasks.size(); ++n)
+    if (summary.readiness[n].is_possible) possible.push_back(summary.tasks[n].name);
+  fmt::print("tasks     {}\n",
+             possible.empty() ? "none; see trocar patient check" : fmt::format("{}", fmt::join(possible, ", ")));
+  if (!summary.doubts.empty()) fmt::print("doubtful\n");
+  for (const std::string& doubt : summary.doubts) fmt::print("  {}\n", doubt);
+}
+
+}  // namespace trocar::cli
