@@ -65,7 +65,7 @@ Progress ProgressPrinter::callback() const {
 }
 
 Status check_new(const fs::path& out, const char* option) {
-  if (out.empty()) return fail_usage(std::string(option) + " is empty", option, "give it a name");
+  if (out.empty()) return fail_usage(std::string(option) + " is empty", option, "name a file or folder to create");
   std::error_code ignored;
   if (fs::exists(fs::symlink_status(out, ignored)))
     return fail_usage("output already exists", out.string(), "choose another name or delete it");

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
+#include "anatomy/phantom/phantom.h"
 #include "core/data_dir.h"
 #include "core/log.h"
 #include "training/assess_path.h"
@@ -17,7 +20,14 @@ Result<Task> find_task(const CaseOptions& options, const fs::path& tasks_folder)
   if (is_file) return load_task_file(options.task, tasks_folder);
   if (has_own_task(options.patient_folder))
     return load_task_file(fs::path(options.patient_folder) / kOwnTaskFile, tasks_folder);
-  return fail_usage("the patient has no task of its own", options.patient_folder, "name one: see trocar task list");
+  std::error_code ignored;
+  const auto& embedded = embedded_patients();
+  const bool is_known = options.patient_folder.empty() || fs::exists(options.patient_folder, ignored) ||
+                        std::any_of(embedded.begin(), embedded.end(),
+                                    [&](const PhantomInfo& info) { return info.name == options.patient_folder; });
+  if (!is_known)
+    return fail_usage("no such patient", options.patient_folder, "name a patient folder, or see trocar patient list");
+  return fail_usage("the patient has no task of its own", options.patient_folder, "name a task, see trocar task list");
 }
 
 /// The path that the task names, measured as a planned one. What is wrong with it is told and stays the author's

@@ -12,7 +12,7 @@ namespace trocar {
 namespace {
 
 Status check_stop(const std::stop_token& stop, const PatientFiles& files) {
-  if (stop.stop_requested()) return fail("stopped", files.ct.string());
+  if (stop.stop_requested()) return fail("stopped", files.ct.string(), "start the build again");
   return {};
 }
 

@@ -27,14 +27,15 @@ Status check_fields(const ImageFields& fields, const fs::path& path) {
   for (const auto& [key, value] : fields) {
     const bool is_good_key = !key.empty() && !is_own_note(key) && std::all_of(key.begin(), key.end(), is_key);
     if (!is_good_key || !std::all_of(value.begin(), value.end(), is_text))
-      return fail_usage("not a field for an image's header: " + key, path.string());
+      return fail_usage("not a field for an image's header: " + key, path.string(),
+                        "use letters, digits, _, - and . in keys and one line of printable text as value");
   }
   return {};
 }
 
 template <class T>
 Status write_grid(const Grid<T>& grid, detail::VoxelType type, const fs::path& path, const ImageFields& fields = {}) {
-  if (grid.empty()) return fail("there is no image to write", path.string());
+  if (grid.empty()) return fail("there is no image to write", path.string(), "make an image first");
   TROCAR_TRY_STATUS(check_fields(fields, path));
   return write_atomically(path, [&](const fs::path& temporary) -> Status {
     auto status = detail::write_volume_file({type, std::as_bytes(std::span(grid.voxels))}, grid.geometry, temporary,

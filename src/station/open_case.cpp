@@ -10,8 +10,8 @@
 #include "core/data_dir.h"
 #include "core/parallel.h"
 #include "headless/needle_geometry.h"
-#include "io/patient_source.h"
 #include "io/patient_cache.h"
+#include "io/patient_source.h"
 #include "station/probe_start.h"
 
 namespace trocar {
@@ -158,7 +158,7 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
     TROCAR_TRY_STATUS(add_case(*made, patient, shared.part(0.8)));
   } else {
     TROCAR_TRY(patient, patient_of(*made, cache, shared.part(0.3)));
-    if (stop.stop_requested()) return fail("the case was not opened: cancelled");
+    if (stop.stop_requested()) return fail("the case was not opened: cancelled", "case", "open it again");
     std::array<Status, 3> done;
     const Progress of_case = shared.part(0.2), of_surfaces = shared.part(0.2), of_acoustics = shared.part(0.25);
     OpenCase acoustics;
@@ -171,7 +171,7 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
     made->flow = std::move(acoustics.flow);
     made->notes.insert(made->notes.end(), acoustics.notes.begin(), acoustics.notes.end());
   }
-  if (stop.stop_requested()) return fail("the case was not opened: cancelled");
+  if (stop.stop_requested()) return fail("the case was not opened: cancelled", "case", "open it again");
   report(progress, "predicting the force", 0.95);
   TROCAR_TRY_STATUS(add_prediction(*made));
   made->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -20,11 +20,12 @@ TEST_P(Help, ExitsZeroWithAnExample) {
 
 INSTANTIATE_TEST_SUITE_P(EveryCommand, Help,
                          testing::Values("", "patient", "patient list", "patient generate", "patient build",
-                                         "patient show", "patient check", "patient render", "plan", "task", "task list",
-                                         "device", "device list", "link", "link keygen", "run", "session",
-                                         "session export", "session report", "ultrasound", "ultrasound image",
-                                         "ultrasound sweep", "ultrasound reconstruct", "ultrasound views",
-                                         "ultrasound transducers", "bench", "completion", "completion bash"));
+                                         "patient series", "patient show", "patient check", "patient render", "plan",
+                                         "task", "task list", "device", "device list", "link", "link keygen", "run",
+                                         "session", "session export", "session report", "ultrasound",
+                                         "ultrasound image", "ultrasound sweep", "ultrasound reconstruct",
+                                         "ultrasound views", "ultrasound transducers", "bench", "completion",
+                                         "completion bash"));
 
 class Mistake : public testing::TestWithParam<const char*> {};
 
@@ -43,7 +44,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         "", "nonsense", "patient", "patient nonsense", "patient show", "patient list --nonsense",
         "patient generate abdomen", "patient generate nobody --out x", "patient generate abdomen --seed many --out x",
-        "patient build --ct a.nii", "plan liver-biopsy --patient abdomen --count 0 --out x.mrk.json",
+        "patient build --ct a.nii", "patient series", "patient build --ct a.nii --labels a.nii --out ''",
+        "plan liver-biopsy --patient abdomen --out ''", "run liver-biopsy --patient abdomen --operator expert --out ''",
+        "plan liver-biopsy --patient abdomen --count 0 --out x.mrk.json",
         "plan nonsense --patient abdomen --out x.mrk.json", "run nonsense --patient abdomen --operator expert --out x",
         "run liver-biopsy --patient nobody --operator expert --out x",
         "run liver-biopsy --patient abdomen --operator nobody --out x",
