@@ -76,7 +76,8 @@ Result<PathCurves> curves_of(std::shared_ptr<const VirtualPatient> patient, cons
   const std::string needle_name = needle_for(patient->name);
   const auto needle = std::find_if(tables.needles.begin(), tables.needles.end(),
                                    [&](const Needle& candidate) { return candidate.name == needle_name; });
-  if (needle == tables.needles.end()) return fail("there is no needle of that name", needle_name);
+  if (needle == tables.needles.end())
+    return fail("there is no needle of that name", needle_name, "use a needle of data/needles.toml");
 
   PrescribedMotion motion;
   motion.line_P = patient->paths.front().line_P;

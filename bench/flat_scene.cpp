@@ -32,7 +32,8 @@ double typical_hu(std::string_view tissue) noexcept {
 }
 
 Result<std::shared_ptr<const VirtualPatient>> make_flat_patient(const std::vector<FlatLayer>& layers) {
-  if (layers.size() > 255) return fail(fmt::format("{} layers are too many", layers.size()), "flat patient");
+  if (layers.size() > 255)
+    return fail(fmt::format("{} layers are too many", layers.size()), "flat patient", "use fewer layers");
   auto patient = std::make_shared<VirtualPatient>();
   patient->name = "flat";
   constexpr double kAbove_mm = 20.0;

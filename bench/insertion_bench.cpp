@@ -120,7 +120,7 @@ Result<std::vector<CaseResult>> run_insertion_benchmark() {
     options.profile = profile;
     TROCAR_TRY(const Case the_case, prepare_case(patient, options));
     const auto scene = make_scene(the_case);
-    if (!scene) return fail("the scene could not be built", "bench insertion");
+    if (!scene) return fail("the scene could not be built", "bench insertion", "check data/tissues.toml");
     for (const double speed : {2.0, 10.0, 50.0}) {
       HapticState state;
       const auto samples = drive(state, *scene, the_case.plan.line_P, -10.0, the_case.plan.length_mm, speed);

@@ -145,7 +145,7 @@ Status add_tumour(std::vector<CaseResult>& results, const TissueTable& table) {
   TissueTable tissues = table;
   const auto soft = tissues.find_tissue("liver");
   const auto hard = tissues.find_tissue("liver_lesion");
-  if (!soft || !hard) return fail("has no liver or liver_lesion", "tissue table");
+  if (!soft || !hard) return fail("has no liver or liver_lesion", "tissue table", "add both tissues");
   tissues.tissues[*soft].young_kpa = 5.0;
   tissues.tissues[*hard].young_kpa = 60.0;
   tissues.tissues[tissues.skin].young_kpa = 5.0;

@@ -96,7 +96,8 @@ Status check_agreement(const std::vector<float>& ours, const short* peers, std::
   for (std::size_t n = 0; n < ours.size(); ++n)
     worst = std::max(worst, std::abs(static_cast<double>(ours[n]) - static_cast<double>(peers[n])));
   if (worst <= kRoundingHu) return {};
-  return fail(fmt::format("our slice and VTK's differ by {:.2f} HU", worst), std::string(name));
+  return fail(fmt::format("our slice and VTK's differ by {:.2f} HU", worst), std::string(name),
+              "report this: the kernel is wrong");
 }
 
 Result<CaseResult> race(const CtGrid& ct, std::string name, const SlicePlane& plane) {

@@ -138,7 +138,9 @@ Status apply_profile_part(const TomlTable& profile, std::string_view kind, std::
     TROCAR_TRY(const TomlTable row, rows.table(name));
     TROCAR_TRY_STATUS(row.check_keys(field_names<T>(fields)));
     const auto index = find_named(entries, name);
-    if (!index) return fail(fmt::format("changes {}.{}, which is not in the table", kind, name), row.where());
+    if (!index)
+      return fail(fmt::format("changes {}.{}, which is not in the table", kind, name), row.where(),
+                  "remove the row, or correct its name");
     TROCAR_TRY_STATUS(read_fields<T>(row, fields, fmt::format("{}.{}", kind, name), false, entries[*index], table));
   }
   return {};
@@ -149,7 +151,7 @@ Status apply_profile(const TomlTable& document, std::string_view wanted, TissueT
   if (!applied.empty()) {
     if (!wanted.empty() && wanted != applied)
       return fail_usage(fmt::format("the table was stored with the profile \"{}\", not \"{}\"", applied, wanted),
-                        document.where());
+                        document.where(), "omit the profile");
     table.profile = applied;
     return {};
   }
@@ -174,7 +176,7 @@ Result<TissueTable> read_table(const TomlTable& document, std::string_view profi
   TROCAR_TRY_STATUS(read_layers(document, table));
   TROCAR_TRY_STATUS(read_tissues(document, table));
   if (table.layers.size() > kMaxEntries || table.tissues.size() > kMaxEntries)
-    return fail(fmt::format("more than {} tissues or layers", kMaxEntries), document.where());
+    return fail(fmt::format("more than {} tissues or layers", kMaxEntries), document.where(), "remove rows");
   const auto skin_index = table.find_tissue("skin");
   if (!skin_index || !table.tissues[*skin_index].layer)
     return fail("a tissue \"skin\" with a layer is needed", document.where(), "add [tissues.skin]");

@@ -30,7 +30,7 @@ Status check_in_volume(const CaseDraft& draft, const Vec3& p_P, const char* what
 Result<Label*> find_label(CaseDraft& draft, std::uint8_t id) {
   for (Label& label : draft.label_table.labels)
     if (label.id == id) return &label;
-  return fail(fmt::format("there is no label {}", id));
+  return fail(fmt::format("there is no label {}", id), "label table", "choose a label of this case");
 }
 
 std::vector<Landmark>::iterator find_landmark(CaseDraft& draft, const std::string& name) {
@@ -99,9 +99,9 @@ Result<CaseDraft> set_risk(CaseDraft draft, const RiskStructure& risk) {
   if (risk.tissue.empty() == risk.label.empty())
     return fail("a risk structure is named by its tissue or its label", {}, "give one of the two");
   if (!(risk.margin_mm >= 0.0 && risk.margin_mm <= 50.0))
-    return fail("a margin is from 0 to 50 mm", fmt::format("{}", risk.margin_mm));
+    return fail("a margin is from 0 to 50 mm", fmt::format("{}", risk.margin_mm), "give a number in this range");
   if (!(risk.penalty >= 0.0 && risk.penalty <= 100.0))
-    return fail("a penalty is from 0 to 100 points", fmt::format("{}", risk.penalty));
+    return fail("a penalty is from 0 to 100 points", fmt::format("{}", risk.penalty), "give a number in this range");
   auto& risks = draft.task.risks;
   const auto found = std::find_if(risks.begin(), risks.end(),
                                   [&](const RiskStructure& other) { return is_same_structure(other, risk); });
@@ -114,7 +114,8 @@ Result<CaseDraft> set_risk(CaseDraft draft, const RiskStructure& risk) {
 }
 
 Result<CaseDraft> remove_risk(CaseDraft draft, std::size_t row) {
-  if (row >= draft.task.risks.size()) return fail("there is no such risk structure");
+  if (row >= draft.task.risks.size())
+    return fail("there is no such risk structure", "risk structures", "choose a risk structure of the list");
   draft.task.risks.erase(draft.task.risks.begin() + static_cast<std::ptrdiff_t>(row));
   return draft;
 }
@@ -122,7 +123,8 @@ Result<CaseDraft> remove_risk(CaseDraft draft, std::size_t row) {
 Result<CaseDraft> set_entry_zone(CaseDraft draft, const Vec3& near_P, double radius_mm) {
   TROCAR_TRY_STATUS(check_imported(draft));
   if (!(radius_mm >= 1.0 && radius_mm <= 200.0))
-    return fail("the radius of an entry zone is from 1 to 200 mm", fmt::format("{}", radius_mm));
+    return fail("the radius of an entry zone is from 1 to 200 mm", fmt::format("{}", radius_mm),
+                "give a number in this range");
   const auto centre_P = find_nearest_skin(draft.imported->patient, near_P);
   if (!centre_P) return fail("there is no skin near this place", {}, "click on the patient's skin");
   draft.task.entry_zone = EntryZone{*centre_P, radius_mm};
@@ -168,7 +170,8 @@ Result<CaseDraft> set_landmark(CaseDraft draft, const std::string& name, const V
 }
 
 Result<CaseDraft> rename_landmark(CaseDraft draft, std::size_t row, const std::string& name) {
-  if (row >= draft.landmarks.size()) return fail("there is no such landmark");
+  if (row >= draft.landmarks.size())
+    return fail("there is no such landmark", "landmarks", "choose a landmark of the list");
   Landmark& landmark = draft.landmarks[row];
   if (name.empty()) return fail("a landmark needs a name", landmark.name, "type one");
   if (name != landmark.name && find_landmark(draft, name) != draft.landmarks.end())
@@ -178,7 +181,8 @@ Result<CaseDraft> rename_landmark(CaseDraft draft, std::size_t row, const std::s
 }
 
 Result<CaseDraft> remove_landmark(CaseDraft draft, std::size_t row) {
-  if (row >= draft.landmarks.size()) return fail("there is no such landmark");
+  if (row >= draft.landmarks.size())
+    return fail("there is no such landmark", "landmarks", "choose a landmark of the list");
   draft.landmarks.erase(draft.landmarks.begin() + static_cast<std::ptrdiff_t>(row));
   return draft;
 }

@@ -62,7 +62,7 @@ Result<CaseDraft> import_case(const ImportRequest& request, const Progress& prog
   auto imported = std::make_shared<ImportedPatient>();
   imported->source = request.ct;
   TROCAR_TRY(imported->patient, read_patient(request, imported->warnings, part_of(progress, 0.0, kVolumesPart), stop));
-  if (stop.stop_requested()) return fail("stopped", request.ct);
+  if (stop.stop_requested()) return fail("stopped", request.ct, "start the import again");
   const Progress surfaces = part_of(progress, kVolumesPart, 1.0);
   if (is_patient_folder(request.ct)) {
     TROCAR_TRY(imported->meshes, open_meshes({request.ct, 1}, imported->patient, surfaces));

@@ -48,7 +48,7 @@ struct TomlNodes {
     return fail(fmt::format("missing: {}", expected), place(key), "add the key");
   }
   tl::unexpected<Error> wrong(std::string_view key, std::string_view expected) const {
-    return fail(fmt::format("must be {}", expected), place(key));
+    return fail(fmt::format("must be {}", expected), place(key), "correct the value");
   }
 
   TomlTable child(const toml::table& node, std::string path) const {

@@ -35,7 +35,7 @@ Result<double> parse_number(std::string_view name, std::string_view text) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc() && end == text.data() + text.size() && std::isfinite(number)) return number;
-  return fail_usage(fmt::format("\"{}\" is not a finite number", text), std::string(name));
+  return fail_usage(fmt::format("\"{}\" is not a finite number", text), std::string(name), "give a decimal number");
 }
 
 Status restore_option(std::string_view name, std::string_view value, HapticOptions& options, DeviceCapability& device) {
@@ -74,7 +74,8 @@ Status restore_options(std::span<const std::string> texts, HapticOptions& option
   for (const std::string& text : texts) {
     const std::string_view view = text;
     const std::size_t at = view.find('=');
-    if (at == std::string_view::npos) return fail_usage("an option of a scene is NAME=VALUE", text);
+    if (at == std::string_view::npos)
+      return fail_usage("an option of a scene is NAME=VALUE", text, "write it with one '='");
     TROCAR_TRY_STATUS(restore_option(view.substr(0, at), view.substr(at + 1), options, device));
   }
   return {};

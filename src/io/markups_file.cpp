@@ -116,7 +116,8 @@ Status write_markups(const std::vector<Markup>& markups, const fs::path& path) {
   for (const Markup& markup : markups)
     for (const ControlPoint& point : markup.points)
       if (!point.p_P.allFinite())
-        return fail(fmt::format("point \"{}\" has a position that is not a number", point.label), path.string());
+        return fail(fmt::format("point \"{}\" has a position that is not a number", point.label), path.string(),
+                    "correct the point in the file");
   Json list = Json::array();
   for (const Markup& markup : markups) list.push_back(markup_json(markup));
   return write_file_atomically(path, json_text({{"@schema", kSchema}, {"markups", list}}) + "\n");

@@ -54,7 +54,8 @@ Result<std::optional<std::array<double, N>>> numbers_of(const XmlElement& elemen
   if (!text) return std::nullopt;
   const auto numbers = detail::find_numbers(*text, N);
   if (!numbers || numbers->size() != N)
-    return fail(fmt::format("{} {}=\"{}\" does not give {} numbers", element.path, name, *text, N));
+    return fail(fmt::format("{} {}=\"{}\" does not give {} numbers", element.path, name, *text, N), std::string(name),
+                "correct the attribute");
   std::array<double, N> values{};
   std::copy(numbers->begin(), numbers->end(), values.begin());
   return values;
@@ -70,7 +71,8 @@ Status take_whole_number(const XmlElement& element, std::string_view name, int& 
   double number = value;
   TROCAR_TRY_STATUS(take_number(element, name, number));
   if (std::abs(number) > 1e6 || number != std::floor(number))
-    return fail(fmt::format("{} {}=\"{}\" is no whole number", element.path, name, number));
+    return fail(fmt::format("{} {}=\"{}\" is not a whole number", element.path, name, number), std::string(name),
+                "correct the attribute");
   value = static_cast<int>(number);
   return {};
 }
@@ -78,10 +80,13 @@ Status take_whole_number(const XmlElement& element, std::string_view name, int& 
 Status take_transform(const XmlElement& element, TrackedSequence::Transforms& transforms) {
   const auto from = find_attribute(element, "From"), to = find_attribute(element, "To");
   const auto matrix = find_attribute(element, "Matrix");
-  if (!from || !to || !matrix || from->empty() || to->empty()) return fail("a <Transform> lacks From, To or Matrix");
+  if (!from || !to || !matrix || from->empty() || to->empty())
+    return fail("a <Transform> lacks From, To or Matrix", "CoordinateDefinitions", "add the attribute");
   const std::string name = fmt::format("{}To{}", *from, *to);
   const auto parsed = detail::parse_matrix(*matrix);
-  if (!parsed) return fail(fmt::format("the matrix of {} {}", name, parsed.error().what));
+  if (!parsed)
+    return fail(fmt::format("the matrix of {} {}", name, parsed.error().what), "CoordinateDefinitions",
+                "give 16 numbers with the last row 0 0 0 1");
   transforms.insert_or_assign(name, *parsed);
   return {};
 }
@@ -156,7 +161,8 @@ Status take_hole_filling(const XmlElement& element, PlusConfig& config) {
 }
 
 Result<PlusConfig> config_of(const std::vector<XmlElement>& elements) {
-  if (elements.front().path != "PlusConfiguration") return fail("is no PLUS configuration");
+  if (elements.front().path != "PlusConfiguration")
+    return fail("is not a PLUS configuration", "root element", "give a PlusDeviceSet XML file");
   PlusConfig config;
   bool is_filling = false;
   for (const XmlElement& element : elements) {

@@ -34,13 +34,17 @@ bool is_transform_name(const std::string& name) {
 
 Status check(const TrackedSequence& sequence) {
   const bool is_whole = sequence.pixels.size() == sequence.frame_pixels() * sequence.frames.size();
-  if (sequence.pixels.empty() || !is_whole) return fail("there is no sequence to write");
+  if (sequence.pixels.empty() || !is_whole)
+    return fail("there is no sequence to write", "sequence", "record at least one frame");
   for (const auto& frame : sequence.frames) {
-    if (!std::isfinite(frame.time_s)) return fail("a time of the sequence is no number");
+    if (!std::isfinite(frame.time_s))
+      return fail("a time of the sequence is not a number", "sequence", "give a finite time for every frame");
     for (const auto& [name, matrix] : frame.transforms) {
-      if (!is_transform_name(name)) return fail("is no name of a transform, such as ProbeToTracker", name);
+      if (!is_transform_name(name))
+        return fail("is not a transform name, such as ProbeToTracker", name, "name it as FromToTo");
       if (!matrix.allFinite() || matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-        return fail("is no affine transform of finite numbers", name);
+        return fail("is not an affine transform of finite numbers", name,
+                    "give a finite matrix with the last row 0 0 0 1");
     }
   }
   return {};

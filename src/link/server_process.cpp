@@ -103,7 +103,8 @@ void ServerProcess::Impl::stop() {
 
 Result<ServerProcess> ServerProcess::start(const fs::path& program, const std::vector<std::string>& arguments,
                                            const fs::path& log) {
-  if (!is_program(program)) return fail("there is no such program", program.string());
+  if (!is_program(program))
+    return fail("there is no such program", program.string(), "install trocar-hapticd beside trocar");
   auto impl = std::make_unique<Impl>();
   try {
     impl->thread =

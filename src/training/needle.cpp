@@ -34,7 +34,7 @@ Result<Needle> read_needle(const TomlTable& row, const std::string& name) {
     return fail("inner_diameter_mm leaves no wall", row.where(), "give at most 0.95 of the outer diameter");
   TROCAR_TRY_STATUS(read_value(row, "stylet_diameter_mm", {0.0, 5.0}, needle.stylet_diameter_mm));
   if (needle.stylet_diameter_mm > needle.inner_diameter_mm)
-    return fail("stylet_diameter_mm is wider than the bore", row.where());
+    return fail("stylet_diameter_mm is wider than the bore", row.where(), "make it smaller than the inner diameter");
   TROCAR_TRY_STATUS(read_value(row, "length_mm", {20.0, 300.0}, needle.length_mm));
   TROCAR_TRY_STATUS(read_value(row, "bevel_deg", {5.0, 90.0}, needle.bevel_deg));
   TROCAR_TRY_STATUS(read_value(row, "bevel_share", {0.0, 1.0}, needle.bevel_share));
@@ -43,7 +43,7 @@ Result<Needle> read_needle(const TomlTable& row, const std::string& name) {
     TROCAR_TRY_STATUS(read_value(row, "notch_mm", {3.0, 40.0}, needle.notch_mm));
     TROCAR_TRY_STATUS(read_value(row, "dead_space_mm", {0.0, 15.0}, needle.dead_space_mm));
     if (needle.notch_mm + needle.dead_space_mm > needle.throw_mm)
-      return fail("notch and dead space are longer than the throw", row.where());
+      return fail("notch and dead space are longer than the throw", row.where(), "shorten the notch or the dead space");
   }
   return needle;
 }

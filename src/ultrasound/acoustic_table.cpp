@@ -71,9 +71,10 @@ Result<AcousticTable> load_acoustic_table(const std::filesystem::path& path) {
   TROCAR_TRY_STATUS(document.check_keys({"tissues"}));
   TROCAR_TRY(const TomlTable rows, document.table("tissues"));
   const std::vector<std::string> names = rows.keys();
-  if (names.empty() || names.front() != "air") return fail("the first tissue must be air", rows.where());
+  if (names.empty() || names.front() != "air")
+    return fail("the first tissue must be air", rows.where(), "move air to the top of the table");
   if (names.size() > kMostTissues)
-    return fail(fmt::format("{} tissues, at most {} fit", names.size(), kMostTissues), rows.where());
+    return fail(fmt::format("{} tissues, at most {} fit", names.size(), kMostTissues), rows.where(), "remove tissues");
   AcousticTable table;
   for (const std::string& name : names) {
     TROCAR_TRY(const TomlTable row, rows.table(name));

@@ -56,8 +56,9 @@ Result<FlowRule> read_rule(const TomlTable& row, const std::string& name, const 
     TROCAR_TRY(const std::size_t at, read_word(row, "at", {"head", "feet"}));
     rule.at = at == 0 ? FlowRule::At::kHead : FlowRule::At::kFeet;
   }
-  if (rule.labels.empty()) return fail("no labels", row.where());
-  if (rule.near.empty() && rule.at == FlowRule::At::kNowhere) return fail("neither near nor at", row.where());
+  if (rule.labels.empty()) return fail("no labels", row.where(), "add labels = [...]");
+  if (rule.near.empty() && rule.at == FlowRule::At::kNowhere)
+    return fail("neither near nor at", row.where(), "add near or at");
   TROCAR_TRY(rule.waveform, read_word(row, "waveform", waveforms));
   TROCAR_TRY(rule.peak_cm_per_s, read_number(row, "peak_cm_per_s", {1.0, 300.0}));
   TROCAR_TRY(rule.profile_exponent, read_number(row, "profile_exponent", {1.0, 20.0}));

@@ -22,13 +22,21 @@ bool is_within(double value, double low, double high) {
 }
 
 Status check_holes(const HoleFilling& way) {
-  if (!is_within(way.stick_length_limit, 3, 65)) return fail_usage("the stick length limit is not within 3..65 voxels");
-  if (!is_within(way.sticks, 1, 13)) return fail_usage("the number of sticks is not within 1..13");
+  if (!is_within(way.stick_length_limit, 3, 65))
+    return fail_usage("the stick length limit is not within 3..65 voxels", "StickLengthLimit",
+                      "choose a number in this range");
+  if (!is_within(way.sticks, 1, 13))
+    return fail_usage("the number of sticks is not within 1..13", "NumberOfSticksToUse",
+                      "choose a number in this range");
   if (!is_within(way.size, 3, 33) || way.size % 2 == 0)
-    return fail_usage("the size of a hole filling cube is not odd within 3..33 voxels");
+    return fail_usage("the size of a hole filling cube is not odd within 3..33 voxels", "Size",
+                      "choose an odd number in this range");
   if (!is_within(way.sigma_voxels, 0.1, 16.0))
-    return fail_usage("the deviation of a hole filling Gaussian is not within 0.1..16 voxels");
-  if (!is_within(way.least_share, 0.0, 1.0)) return fail_usage("a share of known voxels is not within 0..1");
+    return fail_usage("the deviation of a hole filling Gaussian is not within 0.1..16 voxels", "Stdev",
+                      "choose a number in this range");
+  if (!is_within(way.least_share, 0.0, 1.0))
+    return fail_usage("a share of known voxels is not within 0..1", "MinimumKnownVoxelsRatio",
+                      "choose a number in this range");
   return {};
 }
 
@@ -36,7 +44,8 @@ Status check(const TrackedSequence& sequence, const FreehandOptions& options) {
   TROCAR_CHECK(sequence.pixels.size() == sequence.frame_pixels() * sequence.frames.size());
   for (int axis = 0; axis < 3; ++axis)
     if (!is_within(options.spacing_mm[axis], 0.01, 100.0))
-      return fail_usage(fmt::format("a spacing of {} mm is not within 0.01..100", options.spacing_mm[axis]));
+      return fail_usage(fmt::format("a spacing of {} mm is not within 0.01..100", options.spacing_mm[axis]), "spacing",
+                        "choose a spacing in this range");
   for (const HoleFilling& way : options.holes) TROCAR_TRY_STATUS(check_holes(way));
   return {};
 }

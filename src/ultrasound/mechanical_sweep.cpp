@@ -116,7 +116,8 @@ Result<SweepGeometry> plan_sweep(const Transducer& transducer, const MechanicalS
   geometry.radius_mm = transducer.sweep_radius_mm;
   geometry.sweep_rad = options.sweep_rad == 0.0 ? transducer.sweep_rad : options.sweep_rad;
   if (!is_within(geometry.sweep_rad, kLeastSweep_rad, std::numbers::pi / 2.0))
-    return fail_usage("the sweep's angle is not within 0.6..90 degrees", transducer.name);
+    return fail_usage("the sweep's angle is not within 0.6..90 degrees", transducer.name,
+                      "give an angle in this range");
   const double steps = std::ceil(geometry.sweep_rad / options.step_rad);
   if (!is_within(steps, 1.0, kMostFrames - 1))
     return fail_usage(fmt::format("the sweep would have {:.0f} frames", steps + 1.0), transducer.name,
@@ -131,7 +132,8 @@ Result<SweepGeometry> plan_sweep(const Transducer& transducer, const MechanicalS
 /// A grid of T in which a plane of voxels lies in the middle frame.
 Result<GridGeometry> lay_grid(const SweepGeometry& geometry, double spacing_mm) {
   if (!is_within(spacing_mm, 0.2, 5.0))
-    return fail_usage(fmt::format("a spacing of {} mm is not within 0.2..5", spacing_mm));
+    return fail_usage(fmt::format("a spacing of {} mm is not within 0.2..5", spacing_mm), "spacing",
+                      "give a spacing in this range");
   const SweepGeometry::Extent extent = geometry.extent();
   GridGeometry grid;
   grid.spacing_mm = Vec3::Constant(spacing_mm);

@@ -43,7 +43,8 @@ class Reader {
     TROCAR_TRY_STATUS(value(key, range, number));
     count = static_cast<int>(number);
     if (static_cast<double>(count) == number) return {};
-    return fail(fmt::format("{} is {}, must be a whole number", key, number), row_.where());
+    return fail(fmt::format("{} is {}, must be a whole number", key, number), row_.where(),
+                "correct it in the transducer table");
   }
   Status finish() { return row_.check_keys(known_); }
 

@@ -63,7 +63,9 @@ bool ParameterEdits::is_changed(const TissueParameterGroup& group) const {
 
 Status ParameterEdits::set(const std::string& setting, double value, bool joins) {
   const TissueParameter* parameter = find(setting);
-  if (parameter == nullptr) return fail_usage(fmt::format("there is no number \"{}\"", setting), "tissue parameters");
+  if (parameter == nullptr)
+    return fail_usage(fmt::format("there is no number \"{}\"", setting), "tissue parameters",
+                      "choose a number of the list");
   Values values = now().values;
   if (value == parameter->value) {
     values.erase(setting);

@@ -246,7 +246,8 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
   const double share = share_near(image, QColor(a[1]), a[2].toInt());
   if (share >= a[3].toDouble()) return Progress::kDone;
   if (seconds() >= patience_of(a, stage_.look_s))
-    return fail(fmt::format("only {:.2f} % of its pixels are near {}", 100.0 * share, to_std(a[1])), to_std(a[0]));
+    return fail(fmt::format("only {:.2f} % of its pixels are near {}", 100.0 * share, to_std(a[1])), to_std(a[0]),
+                "look at the picture, or correct the step");
   return Progress::kAgain;
 }
 

@@ -126,7 +126,7 @@ Result<VirtualPatient> make_layered_scene(std::string_view name, std::uint64_t s
                                           const PhantomResolution& resolution) {
   const auto& scenes = layered_scenes();
   const auto info = std::find_if(scenes.begin(), scenes.end(), [&](const PhantomInfo& i) { return i.name == name; });
-  if (info == scenes.end()) return fail_usage("no layered scene is called \"" + std::string(name) + "\"");
+  if (info == scenes.end()) return fail_usage("unknown layered scene", std::string(name), "see trocar patient list");
   const LayerScene scene = name == "layers-lumbar"    ? lumbar_scene()
                            : name == "layers-ascites" ? ascites_scene()
                                                       : liver_scene();

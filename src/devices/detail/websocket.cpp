@@ -142,7 +142,8 @@ Result<std::unique_ptr<WebSocket>> WebSocket::connect(const WebSocketAddress& ad
   } catch (const std::exception& exception) {
     reason = exception.what();
   }
-  return fail(fmt::format("no WebSocket connection: {}", reason), address.text());
+  return fail(fmt::format("no WebSocket connection: {}", reason), address.text(),
+              "start the service of the device, or correct the address");
 }
 
 WebSocket::Received WebSocket::receive(std::string& message, std::chrono::milliseconds limit) {

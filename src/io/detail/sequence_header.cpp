@@ -159,7 +159,7 @@ Status take_field(const Fields& fields, const std::string& name, const std::stri
     frame.is_valid = value == "OK";
   } else if (name == "Timestamp") {
     const auto time_s = find_numbers(value, 1);
-    if (!time_s || time_s->empty()) return fail("is not a time in seconds");
+    if (!time_s || time_s->empty()) return fail("is not a time in seconds", "Timestamp", "record the sequence again");
     frame.time_s = time_s->front();
   } else if (name.ends_with(kTransform) && name.size() > kTransform.size()) {
     if (value_of(fields, name + std::string(kStatus), "OK") != "OK") return {};

@@ -58,9 +58,12 @@ Result<std::vector<XmlElement>> parse_xml(std::string_view text) {
   silence_libraries();
   const auto parser = vtkSmartPointer<Collector>::New();
   const int is_parsed = parser->Parse(text.data(), static_cast<unsigned>(text.size()));
-  if (parser->is_too_much) return fail("is nested too deeply or has too many elements");
-  if (parser->error_byte) return fail(fmt::format("is no well-formed XML at byte {}", *parser->error_byte));
-  if (is_parsed == 0 || parser->elements.empty()) return fail("is no XML document");
+  if (parser->is_too_much)
+    return fail("is nested too deeply or has too many elements", "XML",
+                "reduce the file to the elements that Trocar reads");
+  if (parser->error_byte)
+    return fail(fmt::format("is not well-formed XML at byte {}", *parser->error_byte), "XML", "correct the XML there");
+  if (is_parsed == 0 || parser->elements.empty()) return fail("is not an XML document", "XML", "give an XML file");
   return std::move(parser->elements);
 }
 

@@ -96,14 +96,14 @@ TEST_F(PlusConfigFile, RefusesDamageWithOneLine) {
   for (int n = 0; n < 50'000; ++n) deep += "<a>";
   const std::vector<Case> cases = {
       {"", "is no"},
-      {"[toml]\n", "is no well-formed XML at byte"},
-      {"<PlusConfiguration><Coord", "is no well-formed XML"},
-      {"<PlusConfiguration></Other>", "is no well-formed XML"},
-      {"<svg/>", "is no PLUS configuration"},
+      {"[toml]\n", "is not well-formed XML at byte"},
+      {"<PlusConfiguration><Coord", "is not well-formed XML"},
+      {"<PlusConfiguration></Other>", "is not well-formed XML"},
+      {"<svg/>", "is not a PLUS configuration"},
       {deep, "nested too deeply"},
       {"<!DOCTYPE a [<!ENTITY b \"c\">]><PlusConfiguration/>", "document type"},
-      {std::string("<Plus\0Configuration/>", 21), "is no well-formed XML"},
-      {transform("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0"), "ImageToProbe is no matrix of 16"},
+      {std::string("<Plus\0Configuration/>", 21), "is not well-formed XML"},
+      {transform("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0"), "ImageToProbe is not a matrix of 16"},
       {transform("nan 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"), "16 finite numbers"},
       {transform("1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1"), "last row"},
       {"<PlusConfiguration><CoordinateDefinitions><Transform From=\"Image\"/></CoordinateDefinitions>"

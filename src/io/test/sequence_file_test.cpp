@@ -111,7 +111,7 @@ TEST_F(SequenceFile, RefusesDamageWithOneLine) {
       {header("MET_UCHAR", "MET_SHORT") + kPixels, "pixels of type MET_SHORT"},
       {header("ElementType = MET_UCHAR\n", "") + kPixels, "ElementType is missing"},
       {header("Kinds", "ElementNumberOfChannels = 3\nKinds") + kPixels, "several values a pixel"},
-      {header("= 1 0 0 10", "= 1 nan 0 10") + kPixels, "Seq_Frame0000_ProbeToTrackerTransform is no matrix"},
+      {header("= 1 0 0 10", "= 1 nan 0 10") + kPixels, "Seq_Frame0000_ProbeToTrackerTransform is not a matrix"},
       {header("= 1 0 0 10", "= 1 inf 0 10") + kPixels, "16 finite numbers"},
       {header("= 1 0 0 10", "= 0 0 10") + kPixels, "16 finite numbers"},
       {header("30 0 0 0 1", "30 0 0 0 2") + kPixels, "last row"},

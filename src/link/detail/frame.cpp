@@ -24,9 +24,10 @@ flatbuffers::Verifier make_verifier(const AlignedBytes& bytes) {
 }
 
 Status check_size(std::size_t bytes) {
-  if (bytes == 0) return fail("an empty message", "link");
+  if (bytes == 0) return fail("an empty message", "link", "check the program on the other side");
   if (bytes > kMostMessageBytes) {
-    return fail(fmt::format("a message of {} bytes, {} are allowed", bytes, kMostMessageBytes), "link");
+    return fail(fmt::format("a message of {} bytes, {} are allowed", bytes, kMostMessageBytes), "link",
+                "send smaller messages");
   }
   return {};
 }
@@ -35,7 +36,8 @@ Status check_frame(const AlignedBytes& bytes, const char* identifier) {
   flatbuffers::Verifier verifier = make_verifier(bytes);
   if (!verifier.VerifyBuffer<wire::Prelude>(identifier)) {
     const bool is_client = std::strcmp(identifier, kClientIdentifier) == 0;
-    return fail(fmt::format("not a message of a {}, or a damaged one", is_client ? "client" : "server"), "link");
+    return fail(fmt::format("not a message of a {}, or a damaged one", is_client ? "client" : "server"), "link",
+                "check that the other side is a Trocar program");
   }
   const std::uint32_t version = flatbuffers::GetRoot<wire::Prelude>(bytes.data())->version();
   if (version != kLinkVersion) {

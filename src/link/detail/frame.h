@@ -37,7 +37,8 @@ template <class Root>
 Result<const Root*> find_root(const AlignedBytes& bytes, const char* identifier) {
   TROCAR_TRY_STATUS(check_frame(bytes, identifier));
   flatbuffers::Verifier verifier = make_verifier(bytes);
-  if (!verifier.VerifyBuffer<Root>(identifier)) return fail("a message that is cut or damaged", "link");
+  if (!verifier.VerifyBuffer<Root>(identifier))
+    return fail("a message that is cut or damaged", "link", "check the program on the other side");
   return flatbuffers::GetRoot<Root>(bytes.data());
 }
 

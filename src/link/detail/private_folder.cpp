@@ -17,7 +17,8 @@ constexpr mode_t kOthers = 0077;
 
 Status check_private_folder(const std::filesystem::path& folder) {
   struct stat status {};
-  if (::lstat(folder.c_str(), &status) != 0) return fail(std::strerror(errno), folder.string());
+  if (::lstat(folder.c_str(), &status) != 0)
+    return fail(std::strerror(errno), folder.string(), "set XDG_RUNTIME_DIR to a folder of your own");
   if (!S_ISDIR(status.st_mode)) return fail("is no folder", folder.string(), "remove it");
   if (status.st_uid != ::geteuid()) return fail("belongs to another user", folder.string(), "set XDG_RUNTIME_DIR");
   if ((status.st_mode & kOthers) != 0) {
@@ -28,7 +29,8 @@ Status check_private_folder(const std::filesystem::path& folder) {
 
 Status make_private_folder(const std::filesystem::path& folder) {
   if (::mkdir(folder.c_str(), kUserAlone) != 0 && errno != EEXIST) {
-    return fail(std::string("cannot be made: ") + std::strerror(errno), folder.string());
+    return fail(std::string("cannot be made: ") + std::strerror(errno), folder.string(),
+                "set XDG_RUNTIME_DIR to a folder of your own");
   }
   return check_private_folder(folder);
 }

@@ -109,11 +109,13 @@ Result<TissueCodes> make_codes(const LabelTable& labels, const AcousticTable& ta
 
 Result<BodyWindow> find_body_window(const VirtualPatient& patient, double margin_mm) {
   const GridGeometry& grid = patient.labels.geometry;
-  if (patient.labels.empty()) return fail("the patient has no voxels", patient.name);
+  if (patient.labels.empty()) return fail("the patient has no voxels", patient.name, "build the patient again");
   Bounds box = body_bounds(patient.skin_distance_mm);
-  if (box.high[0] < 0) return fail("the patient has no body: no voxel lies inside his skin", patient.name);
+  if (box.high[0] < 0)
+    return fail("the patient has no body: no voxel lies inside the skin", patient.name, "build the patient again");
   if (!std::isfinite(patient.skin_distance_mm[box.low]))
-    return fail("no skin is in the patient's volume", patient.name);
+    return fail("no skin is in the patient's volume", patient.name,
+                "build the patient from a CT that shows air around the body");
   for (std::size_t a = 0; a < 3; ++a) {
     const auto margin = static_cast<std::int64_t>(std::ceil(margin_mm / grid.spacing_mm[static_cast<Eigen::Index>(a)]));
     box.low[a] = std::max<std::int64_t>(box.low[a] - margin, 0);
