@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "anatomy/structure_words.h"
+#include "geometry/pose.h"
 
 namespace trocar {
 namespace {

@@ -84,7 +84,7 @@ std::string column_text(const std::set<std::string>& present, const char* name, 
 }
 
 /// Binds the columns to a statement and gives their texts.
-std::string bind(soci::statement& select, TickColumns& columns, const std::set<std::string>& present) {
+std::string bind_columns(soci::statement& select, TickColumns& columns, const std::set<std::string>& present) {
   std::string names = "tick";
   const TickSample sample;
   visit_stored_columns(sample, [&](const char* name, const auto& field) {
@@ -139,7 +139,7 @@ std::vector<TickSample> TickReader::read(const TickBlock& block) {
   if (present_.empty()) present_ = present_columns(*database_);
   TickColumns columns;
   soci::statement select(*database_);
-  const std::string names = bind(select, columns, present_);
+  const std::string names = bind_columns(select, columns, present_);
   select.alloc();
   select.prepare(fmt::format("SELECT {} FROM ticks {} ORDER BY tick", names, where_ticks(block)));
   select.define_and_bind();
@@ -156,7 +156,8 @@ std::vector<TickSample> TickReader::read(const TickBlock& block) {
   }
   if (samples.size() != block.ticks) throw soci::soci_error("ticks are missing");
   read_events(*database_, block, samples);
-  if (!block.digest.empty() && digest_of(samples, &present_) != block.digest) throw soci::soci_error("the checksum is another");
+  if (!block.digest.empty() && digest_of(samples, &present_) != block.digest)
+    throw soci::soci_error("the checksum is another");
   return samples;
 }
 
