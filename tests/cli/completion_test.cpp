@@ -56,7 +56,7 @@ TEST(Completion, OffersNamesOfThisProgram) {
   EXPECT_EQ(completions("run liver-b"), Offered{"liver-biopsy"});
   EXPECT_TRUE(has(completions("run --operator ''"), "novice"));
   EXPECT_EQ(completions("ultrasound reconstruct --holes st"), Offered{"stick"});
-  EXPECT_EQ(completions("ultrasound image --view aor"), Offered{"aorta"});
+  EXPECT_EQ(completions("ultrasound image --view gall"), Offered{"gallbladder"});
 }
 
 TEST(Completion, OffersNoWordWhereAFileOrANumberIsDue) {
