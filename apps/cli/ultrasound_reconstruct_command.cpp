@@ -103,8 +103,7 @@ void print_summary(const FreehandVolume& volume, const FreehandOptions& options,
 
 Status reconstruct(const Arguments& arguments) {
   const std::string extension = fs::path(arguments.out).extension().string();
-  if (extension != ".nrrd")
-    return fail_usage("the volume is written as .nrrd", arguments.out, "let the name end in .nrrd");
+  if (extension != ".nrrd") return fail_usage("the file name must end in .nrrd", arguments.out, "rename the output");
   TROCAR_TRY_STATUS(check_new(arguments.out));
   TROCAR_TRY(const PlusConfig config, gather(arguments));
   const ProgressPrinter printer;
@@ -153,7 +152,7 @@ void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action) {
       ->check(CLI::IsMember(names_of(interpolations())));
   command
       ->add_option("--compounding", a->compounding,
-                   "Of pixels in one voxel: mean, maximum or latest; mean when left out")
+                   "How pixels in one voxel are combined: mean, maximum or latest; mean when left out")
       ->check(CLI::IsMember(names_of(compoundings())));
   auto holes = names_of(hole_fillings());
   holes.emplace_back("none");

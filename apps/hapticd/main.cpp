@@ -90,7 +90,7 @@ Result<std::unique_ptr<HapticDevice>> open_named_device(const Arguments& argumen
 Result<std::optional<ServerSecurity>> load_security(const Arguments& arguments) {
   if (arguments.key_file.empty() && arguments.allow_file.empty()) return std::nullopt;
   if (arguments.key_file.empty() || arguments.allow_file.empty())
-    return fail_usage("a key file and an allow-list belong together", "--keys, --allow", "see trocar link keygen");
+    return fail_usage("--keys and --allow must be given together", "--keys, --allow", "see trocar link keygen");
   ServerSecurity security;
   TROCAR_TRY(security.keys, load_curve_keys(arguments.key_file));
   TROCAR_TRY(security.allowed, load_allow_list(arguments.allow_file));

@@ -112,7 +112,7 @@ Status read_tissues(const TomlTable& document, TissueTable& table) {
   const bool is_stored = document.has("applied_profile");
   for (const std::string& name : rows.keys()) {
     TROCAR_TRY(const TomlTable row, rows.table(name));
-    if (name == "air") return fail("air is implied and feels like nothing", row.where(), "remove it");
+    if (name == "air") return fail("air is built in and gives no force", row.where(), "remove it");
     TROCAR_TRY_STATUS(row.check_keys(known));
     TissueParams tissue;
     tissue.name = name;

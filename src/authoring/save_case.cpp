@@ -21,14 +21,14 @@ VirtualPatient patient_of(const CaseDraft& draft, DraftPatient& patients) {
 
 Status check_target(const SaveOptions& options) {
   const fs::path& folder = options.folder;
-  if (folder.empty()) return fail_usage("no folder was named", {}, "choose where the case is to lie");
+  if (folder.empty()) return fail_usage("no folder was named", {}, "choose a folder for the case");
   std::error_code ignored;
   if (!fs::exists(folder, ignored) || fs::is_empty(folder, ignored)) return {};
   if (!fs::exists(folder / "patient.toml", ignored))
-    return fail_usage("something that is no patient lies there", folder.string(), "choose another folder");
+    return fail_usage("the folder holds something other than a patient", folder.string(), "choose another folder");
   if (!options.overwrites)
-    return fail_usage("a case lies there already", folder.string(),
-                      "choose another folder, or say that it is replaced");
+    return fail_usage("a case already exists there", folder.string(),
+                      "choose another folder, or confirm that it is replaced");
   return {};
 }
 

@@ -98,7 +98,7 @@ class TaskReader {
   static Result<Vec3> point(const TomlTable& table, const char* key) {
     TROCAR_TRY(const std::vector<double> numbers, table.numbers(key, kCoordinate_mm));
     if (numbers.size() == 3) return Vec3(numbers[0], numbers[1], numbers[2]);
-    return fail(fmt::format("{} is no point", key), table.where(), "write [x, y, z] in mm (LPS)");
+    return fail(fmt::format("{} is not a point", key), table.where(), "write [x, y, z] in mm (LPS)");
   }
 
   Status read_target(Task& task) const {

@@ -41,7 +41,7 @@ Result<WebSocketAddress> parse_websocket_address(std::string_view text) {
   WebSocketAddress address;
   std::string_view rest = text;
   if (!rest.starts_with(kScheme)) {
-    return fail_usage("this is no WebSocket address", std::string(text), "write ws://localhost:10001");
+    return fail_usage("not a WebSocket address", std::string(text), "write ws://localhost:10001");
   }
   rest.remove_prefix(kScheme.size());
   const std::size_t slash = rest.find('/');
@@ -55,7 +55,7 @@ Result<WebSocketAddress> parse_websocket_address(std::string_view text) {
   const bool has_plain_path =
       std::all_of(address.path.begin(), address.path.end(), [](unsigned char c) { return std::isgraph(c) != 0; });
   if (!is_host(address.host) || !is_port(address.port) || !has_plain_path) {
-    return fail_usage("this is no WebSocket address", std::string(text), "write ws://localhost:10001");
+    return fail_usage("not a WebSocket address", std::string(text), "write ws://localhost:10001");
   }
   return address;
 }
