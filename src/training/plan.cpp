@@ -83,7 +83,7 @@ class Selection {
   Selection(const PlanningMap& map, const Needle& needle, std::vector<PathCandidate>& lines)
       : map_(map), needle_(needle), lines_(lines) {
     for (std::size_t n = 0; n < lines.size(); ++n)
-      if (lines[n].verdict == PathVerdict::kFree) order_.push_back(n);
+      if (lines[n].verdict == Verdict::kFree) order_.push_back(n);
     std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
       return std::pair(least_cost_mm(lines[a]), a) < std::pair(least_cost_mm(lines[b]), b);
     });
@@ -107,7 +107,7 @@ class Selection {
         if (is_apart(next)) block.push_back(next);
       check(block);
       for (const std::size_t n : block)
-        if (findings_[n].verdict == PathVerdict::kFree) waiting.emplace(cost_mm(n), n);
+        if (findings_[n].verdict == Verdict::kFree) waiting.emplace(cost_mm(n), n);
       const double bound_mm =
           next < order_.size() ? least_cost_mm(line(next)) : std::numeric_limits<double>::infinity();
       while (!waiting.empty() && waiting.begin()->first <= bound_mm && chosen.size() < count) {
@@ -191,39 +191,39 @@ const Label* nearest_risk(const PlanningMap& map, const Vec3& p_P) {
 std::string reason_of(const PlanningMap& map, const Needle& needle, const PathCandidate& line) {
   const Task& task = map.task;
   switch (line.verdict) {
-    case PathVerdict::kTooLong:
+    case Verdict::kTooLong:
       return fmt::format("are longer than {} mm", std::min(task.max_path_mm, needle.length_mm));
-    case PathVerdict::kCutFace:
+    case Verdict::kCutFace:
       return "leave the volume before the skin";
-    case PathVerdict::kOutOfReach:
+    case Verdict::kOutOfReach:
       return "start at the back, out of reach";
-    case PathVerdict::kOutsideZone:
+    case Verdict::kOutsideZone:
       return "start outside the entry zone";
-    case PathVerdict::kGlancing:
+    case Verdict::kGlancing:
       return fmt::format("meet the skin at more than {} degrees", task.max_entry_angle_deg);
-    case PathVerdict::kNoMuscle:
+    case Verdict::kNoMuscle:
       return "do not pass muscle";
-    case PathVerdict::kLeavesOrgan:
+    case Verdict::kLeavesOrgan:
       return fmt::format("leave the {} again before the needle's end", task.organ);
-    case PathVerdict::kOrganPath:
+    case Verdict::kOrganPath:
       return fmt::format("pass less than {} mm of {} before the target", task.min_organ_path_mm, task.organ);
-    case PathVerdict::kCrosses:
-    case PathVerdict::kMargin: {
+    case Verdict::kCrosses:
+    case Verdict::kMargin: {
       const Label* label = find_label(map.patient, line.where_P);
-      if (line.verdict == PathVerdict::kMargin && !(label && map.risks[label->id])) label = nearest_risk(map, line.where_P);
+      if (line.verdict == Verdict::kMargin && !(label && map.risks[label->id])) label = nearest_risk(map, line.where_P);
       if (!label) return "come too near to a risk structure";
       if (!map.risks[label->id]) return fmt::format("cross {}", label->tissue);
       return fmt::format("keep less than the margin of {} mm to {}", map.risks[label->id]->margin_mm, label->tissue);
     }
-    case PathVerdict::kFree:
+    case Verdict::kFree:
       break;
   }
   return "are free";
 }
 
-bool is_about_skin(PathVerdict verdict) {
-  return verdict == PathVerdict::kTooLong || verdict == PathVerdict::kCutFace || verdict == PathVerdict::kOutOfReach ||
-         verdict == PathVerdict::kOutsideZone || verdict == PathVerdict::kGlancing;
+bool is_about_skin(Verdict verdict) {
+  return verdict == Verdict::kTooLong || verdict == Verdict::kCutFace || verdict == Verdict::kOutOfReach ||
+         verdict == Verdict::kOutsideZone || verdict == Verdict::kGlancing;
 }
 
 /// Names what ruled out the most lines; the lines that do not even start at a usable place of the skin (half of a body
