@@ -52,7 +52,9 @@ void expect_same(const Case& axial, const Attempt& expected, const Volumes& volu
   EXPECT_LT(largest_n, kRounding_n);
 }
 
-TEST(StorageOrder, DoesNotMatterInAnyOf48) {
+// All 48 orders give the same patient: anatomy_test, BuildPatient. Here one of each order of the axes goes on to the
+// forces.
+TEST(StorageOrder, DoesNotMatterForPathAndForces) {
   const CtGrid ct = Torso().ct(Torso::grid({6, 5, 8}));
   const LabelSource liver{"liver.nii.gz", Torso::mask(Torso::grid({6, 5, 8}), Torso::is_liver), {{1, "liver"}}};
   const Volumes volumes{ct, {liver}};
@@ -78,10 +80,8 @@ TEST(StorageOrder, DoesNotMatterForARealCt) {
     if (axial->patient->label_table.find(statistics.id)->tissue == "lung") lung_ml += statistics.volume_ml;
   EXPECT_GT(lung_ml, 60.0);  // the scan shows the lower lobes
   const Attempt expected = perform(*axial, "constant-velocity:50");
-  // Coronal from the back, sagittal head first, and a left-handed order.
-  expect_same(*axial, expected, volumes.stored({0, 2, 1}, {false, true, false}));
-  expect_same(*axial, expected, volumes.stored({2, 1, 0}, {true, false, true}));
-  expect_same(*axial, expected, volumes.stored({1, 2, 0}, {false, false, false}));
+  expect_same(*axial, expected, volumes.stored({0, 2, 1}, {false, true, false}));  // coronal
+  expect_same(*axial, expected, volumes.stored({1, 2, 0}, {false, false, true}));  // sagittal, left-handed
 }
 
 }  // namespace

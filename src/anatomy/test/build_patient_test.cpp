@@ -151,8 +151,9 @@ TEST(BuildPatient, AHollowMaskOfTheBodyStillHoldsItsLung) {
 
 TEST(BuildPatient, IsTheSameInWhateverOrderTheVolumesAreStored) {
   // Table and sheet, a lung that leaves the scan at both ends, a mask on its own finer grid.
-  const CtGrid ct = Torso().ct(Torso::grid({6, 5, 8}));
-  const LabelSource mask = liver({3, 4, 4});
+  constexpr double kLength_mm = 48.0;  // short: 49 patients
+  const CtGrid ct = Torso().ct(Torso::grid({6, 5, 8}, kLength_mm));
+  const LabelSource mask = source("liver", Torso::mask(Torso::grid({4, 5, 6}, kLength_mm), Torso::is_liver));
   const auto build_stored = [&](const auto& axis, const auto& is_turned) {
     LabelSource stored = mask;
     stored.labels = stored_in_order(mask.labels, axis, is_turned);
@@ -160,12 +161,12 @@ TEST(BuildPatient, IsTheSameInWhateverOrderTheVolumesAreStored) {
     return *build_patient(stored_in_order(ct, axis, is_turned), {stored}, {"test", {"made"}}, warnings);
   };
   const VirtualPatient axial = build_stored(std::array<std::size_t, 3>{0, 1, 2}, std::array<bool, 3>{});
-  EXPECT_EQ(name_at(axial, {60, 20, -50}), "lung");  // the end of the lung's channel
-  EXPECT_LT(sample_linear(axial.skin_distance_mm, {60, 20, -50}), -20.0);
+  EXPECT_EQ(name_at(axial, {60, 20, -20}), "lung");  // the end of the lung's channel
+  EXPECT_LT(sample_linear(axial.skin_distance_mm, {60, 20, -20}), -20.0);
   for_each_storage_order([&](const auto& axis, const auto& is_turned) {
     const VirtualPatient patient = build_stored(axis, is_turned);
-    EXPECT_EQ(name_at(patient, {60, 20, -50}), "lung") << axis[0] << axis[1] << axis[2];
-    EXPECT_LT(sample_linear(patient.skin_distance_mm, {60, 20, -50}), -20.0);
+    EXPECT_EQ(name_at(patient, {60, 20, -20}), "lung") << axis[0] << axis[1] << axis[2];
+    EXPECT_LT(sample_linear(patient.skin_distance_mm, {60, 20, -20}), -20.0);
     ASSERT_TRUE(patient.ct.geometry.matches(axial.ct.geometry));
     EXPECT_EQ(patient.ct.voxels, axial.ct.voxels);
     EXPECT_EQ(patient.labels.voxels, axial.labels.voxels) << axis[0] << axis[1] << axis[2];
