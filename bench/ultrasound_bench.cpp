@@ -140,7 +140,8 @@ Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options)
   const double scene_us = time_us([&] {
     if (auto made = make_acoustic_scene(patient, std::move(table))) scene = *std::move(made);
   });
-  if (scene == nullptr) return fail("the embedded patient has no acoustic scene");
+  if (scene == nullptr)
+    return fail("the embedded patient has no acoustic scene", "bench ultrasound", "check data/acoustics.toml");
   Figures scene_ms;
   scene_ms.median = scene_us / kMsPerS;
   results.push_back({"raycast/scene", "ms", scene_ms, {}, "once for a patient of 512x512x119 voxels"});

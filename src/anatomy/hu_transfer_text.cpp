@@ -23,7 +23,8 @@ Status read_knots(const TomlTable& section, HuTransfer& transfer) {
                 fmt::format("give 2 to {}", HuTransfer::kMaxKnots));
   for (std::size_t n = 1; n < knots.size(); ++n)
     if (!(knots[n] > knots[n - 1]))
-      return fail(fmt::format("hu must rise, {} follows {}", knots[n], knots[n - 1]), section.where());
+      return fail(fmt::format("hu must rise, {} follows {}", knots[n], knots[n - 1]), section.where(),
+                  "order the knots by HU");
   std::copy(knots.begin(), knots.end(), transfer.hu.begin());
   transfer.knot_count = knots.size();
   return {};
@@ -46,7 +47,8 @@ Status read_curve(const TomlTable& section, const TissueField<HuLaw>& field, Tis
   if (entry.has(kFactors)) {
     TROCAR_TRY(const std::vector<double> factors, entry.numbers(kFactors, kFactorRange));
     if (factors.size() != 2 || factors[0] > 1.0 || factors[1] < 1.0)
-      return fail("factors must be [low, high] around 1", entry.where());
+      return fail("factors must be [low, high] around 1", entry.where(),
+                  "give a low factor of at most 1 and a high factor of at least 1");
     provenance.low = factors[0];
     provenance.high = factors[1];
   } else if (provenance.source.starts_with("assumed")) {
@@ -81,7 +83,8 @@ Status read_hu_transfer(const TomlTable& document, TissueTable& table) {
   for (const auto& field : kHuLawFields) TROCAR_TRY_STATUS(read_curve(section, field, table));
   for (const auto& field : kGradientFields) TROCAR_TRY_STATUS(read_gradient_number(section, field, table));
   if (!(table.transfer.gradient_full_hu_per_mm > table.transfer.gradient_none_hu_per_mm))
-    return fail("gradient_full_hu_per_mm must be above gradient_none_hu_per_mm", section.where());
+    return fail("gradient_full_hu_per_mm must be above gradient_none_hu_per_mm", section.where(),
+                "raise gradient_full_hu_per_mm");
   return {};
 }
 

@@ -31,7 +31,7 @@ struct Assignment {
 
 Result<Assignment> parse_assignment(std::string_view text) {
   const auto malformed = [&] {
-    return fail_usage("an override is NAME.KEY=VALUE", std::string(text), "for example liver.k=0.5");
+    return fail_usage("--set needs NAME.KEY=NUMBER (finite)", std::string(text), "for example liver.k=0.5");
   };
   const std::size_t equals = text.find('=');
   const std::size_t dot = text.substr(0, equals).rfind('.');
@@ -51,7 +51,8 @@ Result<Assignment> parse_assignment(std::string_view text) {
 Status check_range(const Assignment& assignment, std::string_view field, Range range, std::string_view text) {
   const bool is_never = std::isinf(assignment.value) && field == kPunctureForce;
   if (is_never || (assignment.value >= range.low && assignment.value <= range.high)) return {};
-  return fail_usage(fmt::format("{} must be a number from {} to {}", field, range.low, range.high), std::string(text));
+  return fail_usage(fmt::format("{} must be a number from {} to {}", field, range.low, range.high), std::string(text),
+                    "give a number in this range");
 }
 
 /// Sets the fields that an override reaches; knows nothing of text.
@@ -70,8 +71,9 @@ class Override {
     const auto tissue = table_.find_tissue(assignment_.name);
     const auto layer = table_.find_layer(assignment_.name);
     if (!tissue && !layer)
-      return fail_usage(fmt::format("there is no tissue or layer \"{}\"", assignment_.name), std::string(text_));
-    if (tissue && *tissue == 0) return fail_usage("air feels like nothing", std::string(text_));
+      return fail_usage(fmt::format("there is no tissue or layer \"{}\"", assignment_.name), std::string(text_),
+                        "use a name of the tissue table");
+    if (tissue && *tissue == 0) return fail_usage("air has no parameters", std::string(text_), "name another tissue");
     if (layer && assignment_.key == kWall) return set_wall(table_.layers[*layer]);
     const auto* tissue_field = find_field<TissueParams>(kTissueFields, assignment_.key);
     const auto* layer_field = find_field<LayerParams>(kLayerFields, assignment_.key);
@@ -106,10 +108,12 @@ class Override {
     const std::string_view name = assignment_.name.substr(kind.size());
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const T& entry) { return entry.name == name; });
     if (row == rows.end() || name == table_.tissues.front().name)
-      return fail_usage(fmt::format("there is no \"{}\"", assignment_.name), std::string(text_));
+      return fail_usage(fmt::format("there is no \"{}\"", assignment_.name), std::string(text_),
+                        "use a row of the tissue table");
     const TissueField<T>* field = find_field<T>(fields, assignment_.key);
     if (!field)
-      return fail_usage(fmt::format("\"{}\" has no \"{}\"", assignment_.name, assignment_.key), std::string(text_));
+      return fail_usage(fmt::format("\"{}\" has no \"{}\"", assignment_.name, assignment_.key), std::string(text_),
+                        "use a column of this row");
     return set(*row, *field, kind.substr(0, kind.size() - 1));
   }
 
@@ -126,12 +130,14 @@ class Override {
       return fail_usage(fmt::format("{} has no \"{}\" that can be set", kTransfer, assignment_.key), std::string(text_),
                         "known are: gradient_scale_mm, gradient_none_hu_per_mm, gradient_full_hu_per_mm");
     if (table_.transfer.knot_count == 0)
-      return fail_usage("the tissue table has no transfer functions", std::string(text_));
+      return fail_usage("the tissue table has no transfer functions", std::string(text_),
+                        "use a tissue table with [hu_transfer]");
     TROCAR_TRY_STATUS(check_range(assignment_, field->name, field->range, text_));
     HuTransfer changed = table_.transfer;
     changed.*field->member = assignment_.value;
     if (!(changed.gradient_full_hu_per_mm > changed.gradient_none_hu_per_mm))
-      return fail_usage("gradient_full_hu_per_mm must be above gradient_none_hu_per_mm", std::string(text_));
+      return fail_usage("gradient_full_hu_per_mm must be above gradient_none_hu_per_mm", std::string(text_),
+                        "raise gradient_full_hu_per_mm or lower the other");
     table_.transfer = changed;
     table_.provenance[fmt::format("{}.{}", kTransfer, field->name)] = {std::string(kOverrideSource), {}, {}};
     return {};
@@ -144,7 +150,8 @@ class Override {
       return fail_usage(fmt::format("{} has no curve \"{}\"", kTransfer, key), std::string(text_),
                         "known are: k, tn, tt, r0, c, shaft, nu, young, each with _factor behind it");
     if (table_.transfer.knot_count == 0)
-      return fail_usage("the tissue table has no transfer functions", std::string(text_));
+      return fail_usage("the tissue table has no transfer functions", std::string(text_),
+                        "use a tissue table with [hu_transfer]");
     TROCAR_TRY_STATUS(check_range(assignment_, assignment_.key, kCurveFactorRange, text_));
     for (std::size_t n = 0; n < table_.transfer.knot_count; ++n) {
       double& value = table_.transfer.laws[n].*field->member;
@@ -156,7 +163,7 @@ class Override {
 
   Status set_wall(LayerParams& layer) {
     if (assignment_.value != 0.0 && assignment_.value != 1.0)
-      return fail_usage("wall must be 0 or 1", std::string(text_));
+      return fail_usage("wall must be 0 or 1", std::string(text_), "give 0 (no) or 1 (yes)");
     layer.is_wall = assignment_.value == 1.0;
     return {};
   }

@@ -39,7 +39,9 @@ Status make_parent(const fs::path& target) {
 
 Status flush_to_disk(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return fail(fmt::format("was not written: {}", std::strerror(errno)), path.string());
+  if (file < 0)
+    return fail(fmt::format("was not written: {}", std::strerror(errno)), path.string(),
+                "free disk space or choose another folder");
   const int status = ::fsync(file);
   const int reason = errno;
   ::close(file);

@@ -36,7 +36,9 @@ Status read_given(const TomlTable& row, std::string_view key, Range range, doubl
 Result<Vec3> read_vec3(const TomlTable& row, std::string_view key, Range range) {
   if (!row.has(key)) return Vec3(Vec3::Zero());
   TROCAR_TRY(const std::vector<double> numbers, row.numbers(key, range));
-  if (numbers.size() != 3) return fail(fmt::format("{} has {} numbers, must be 3", key, numbers.size()), row.where());
+  if (numbers.size() != 3)
+    return fail(fmt::format("{} has {} numbers, must be 3", key, numbers.size()), row.where(),
+                "give three numbers: x, y, z");
   return Vec3(numbers[0], numbers[1], numbers[2]);
 }
 
@@ -44,7 +46,8 @@ Result<int> read_dof(const TomlTable& row, std::string_view key, bool may_be_non
   TROCAR_TRY(const std::int64_t dof, row.integer(key, {0, 6}));
   const bool is_known = dof == 3 || dof == 6 || (dof == 0 && may_be_none);
   if (is_known) return static_cast<int>(dof);
-  return fail(fmt::format("{} is {}, must be {}3 or 6", key, dof, may_be_none ? "0, " : ""), row.where());
+  return fail(fmt::format("{} is {}, must be {}3 or 6", key, dof, may_be_none ? "0, " : ""), row.where(),
+              "correct it in the device table");
 }
 
 Status read_motion(const TomlTable& row, DevicePreset& preset) {

@@ -11,7 +11,8 @@ namespace {
 
 Status check_range(double value, double low, double high, const char* name) {
   if (std::isfinite(value) && value >= low && value <= high) return {};
-  return fail_usage(fmt::format("{} is {}, allowed is {} to {}", name, value, low, high));
+  return fail_usage(fmt::format("{} is {}, allowed is {} to {}", name, value, low, high), "haptic scene",
+                    "choose a value in the allowed range");
 }
 
 Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& device, const HapticOptions& options) {
@@ -47,7 +48,8 @@ double indentation_stiffness(const LoadingLaw& law, double puncture_force_n) noe
 
 Status fill_laws(HapticScene& scene, const TissueTable& table) {
   if (table.tissues.size() > kMaxTissues || table.layers.size() > kMaxLayers)
-    return fail(fmt::format("more than {} tissues or {} layers", kMaxTissues, kMaxLayers), "tissue table");
+    return fail(fmt::format("more than {} tissues or {} layers", kMaxTissues, kMaxLayers), "tissue table",
+                "remove rows that the patient does not use");
   scene.tissue_count = static_cast<int>(table.tissues.size());
   scene.layer_count = static_cast<int>(table.layers.size());
   for (std::size_t i = 0; i < table.layers.size(); ++i) {
@@ -56,7 +58,8 @@ Status fill_laws(HapticScene& scene, const TissueTable& table) {
     scene.layers[i] = {loading, layer.puncture_force_n, indentation_stiffness(loading, layer.puncture_force_n),
                        layer.is_wall};
     if (!(layer.delta_x_mm > 0.0) || !(layer.puncture_force_n > 0.0))
-      return fail_usage(fmt::format("layer {} needs positive dx and puncture force", layer.name), "tissue table");
+      return fail_usage(fmt::format("layer {} needs positive dx and puncture force", layer.name), "tissue table",
+                        "set delta_x_mm and fp above 0");
   }
   for (std::size_t i = 0; i < table.tissues.size(); ++i) {
     const TissueParams& tissue = table.tissues[i];
@@ -100,7 +103,7 @@ Status check_palpable(const VirtualPatient& patient, const TissueTable& tissues)
 
 Status check_patient(const VirtualPatient* patient, const TissueTable& tissues, const HapticOptions& options) {
   const ForceModel model = options.force_model;
-  if (!patient) return fail("there is no patient", "haptic scene");
+  if (!patient) return fail("there is no patient", "haptic scene", "load a patient first");
   if (patient->skin_distance_mm.empty()) return fail("the patient has no skin", patient->name, "build it again");
   if (options.tool != Tool::kNeedle) return check_palpable(*patient, tissues);
   if (model == ForceModel::kInsertion && patient->labels.empty())

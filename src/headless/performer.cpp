@@ -19,7 +19,8 @@ Result<double> parse_speed(std::string_view text) {
   double speed = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), speed);
   if (error == std::errc() && end == text.data() + text.size() && speed >= 0.1 && speed <= 500.0) return speed;
-  return fail_usage(fmt::format("speed {} is not a number from 0.1 to 500 mm/s", text), "--operator constant-velocity");
+  return fail_usage(fmt::format("speed {} is not a number from 0.1 to 500 mm/s", text), "--operator constant-velocity",
+                    "write it as constant-velocity:10");
 }
 
 Result<OperatorChoice> parse_operator(std::string_view name) {

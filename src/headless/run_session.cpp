@@ -78,7 +78,8 @@ Result<std::size_t> perform(const Performer& performer, const HapticScene& scene
 Status check_run(const RunOptions& options) {
   if (!options.force_model.empty()) TROCAR_TRY_STATUS(parse_force_model(options.force_model));
   if (!(options.rate_hz >= 250.0 && options.rate_hz <= 4000.0))
-    return fail_usage(fmt::format("rate {} Hz is not between 250 and 4000", options.rate_hz), "--rate");
+    return fail_usage(fmt::format("rate {} Hz is not between 250 and 4000", options.rate_hz), "--rate",
+                      "choose a rate in this range");
   TROCAR_TRY_STATUS(find_device(options));
   return check_operator(options.operator_name);
 }

@@ -160,7 +160,8 @@ Result<bool> ServerSeat::is_answered() {
     if (reply.is_done) return true;
     // A command that found the server gone is no refusal: when it is back it will be asked again.
     const ClientView now = client_.view();
-    if (now.is_connected && now.welcome.session == session_) return fail(reply.text, endpoint_);
+    if (now.is_connected && now.welcome.session == session_)
+      return fail(reply.text, endpoint_, "see the log of the server");
     return false;
   }
   return false;

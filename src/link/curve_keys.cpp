@@ -96,7 +96,9 @@ Status check_for_user_alone(const fs::path& file) {
 /// A new file that nobody else could read at any time.
 Status write_secret(const fs::path& file, std::string_view text) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUserMayReadAndWrite);
-  if (descriptor < 0) return fail(std::string("cannot be made: ") + std::strerror(errno), file.string());
+  if (descriptor < 0)
+    return fail(std::string("cannot be made: ") + std::strerror(errno), file.string(),
+                "choose a folder that you may write to");
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
@@ -134,7 +136,9 @@ Status write_key_folder(const fs::path& folder) {
   return write_folder_atomically(folder, [](const fs::path& temporary) -> Status {
     std::error_code error;
     fs::permissions(temporary, fs::perms::owner_all, error);
-    if (error) return fail("cannot be closed to others: " + error.message(), temporary.string());
+    if (error)
+      return fail("cannot be closed to others: " + error.message(), temporary.string(),
+                  "choose a folder on a file system with permissions");
     TROCAR_TRY_STATUS(write_pair(temporary, "server"));
     TROCAR_TRY(const CurveKeys client, write_pair(temporary, "client"));
     return write_file_atomically(

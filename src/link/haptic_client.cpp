@@ -79,7 +79,7 @@ Result<std::string> HapticClient::ask(decltype(Command::what) what, milliseconds
   if (!reply) {
     return fail(fmt::format("the server did not answer within {} ms", patience.count()), endpoint, "look at its log");
   }
-  if (!reply->is_done) return fail(reply->text, endpoint);
+  if (!reply->is_done) return fail(reply->text, endpoint, "see the log of the server");
   return reply->text;
 }
 

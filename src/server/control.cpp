@@ -110,7 +110,9 @@ Result<std::string> Control::perform(const SetParameters& request) {
 
 Result<std::string> Control::perform(ServerCommand) {
   const DevicePause pause(shared_);
-  if (!pause.is_granted()) return fail("the real-time thread does not let go of the device", device_.name());
+  if (!pause.is_granted())
+    return fail("the real-time thread does not let go of the device", device_.name(),
+                "try again; restart trocar-hapticd if it stays so");
   TROCAR_TRY_STATUS(device_.reconnect());
   return fmt::format("{} is open again; reset the fault to go on", device_.name());
 }

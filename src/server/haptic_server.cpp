@@ -92,8 +92,8 @@ Result<HapticServer> HapticServer::start(const ServerOptions& options, std::uniq
   constexpr double kSlowest_hz = 250.0, kFastest_hz = 4000.0;
   if (!(options.rate_hz >= kSlowest_hz && options.rate_hz <= kFastest_hz))
     return fail_usage(
-        fmt::format("rate {} Hz is not between {:.0f} and {:.0f}", options.rate_hz, kSlowest_hz, kFastest_hz),
-        "--rate");
+        fmt::format("rate {} Hz is not between {:.0f} and {:.0f}", options.rate_hz, kSlowest_hz, kFastest_hz), "--rate",
+        "choose a rate in this range");
   TROCAR_TRY_STATUS(parse_tool(options.tool));
   TROCAR_TRY(ServerSocket socket, ServerSocket::bind(options.endpoint, options.security));
   return HapticServer(std::make_unique<Impl>(options, std::move(device), std::move(open_patient), std::move(socket)));

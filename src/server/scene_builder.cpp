@@ -19,7 +19,8 @@ Result<double> parse_number(const Setting& setting) {
   const char* end = setting.value.data() + setting.value.size();
   const auto [stop, error] = std::from_chars(setting.value.data(), end, number);
   if (error == std::errc() && stop == end && std::isfinite(number)) return number;
-  return fail_usage(fmt::format("\"{}\" is not a number", setting.value), std::string(setting.name));
+  return fail_usage(fmt::format("\"{}\" is not a number", setting.value), std::string(setting.name),
+                    "send a decimal number");
 }
 
 NeedleGeometry needle_of(const LoadScene& request) noexcept {

@@ -206,7 +206,8 @@ Result<ProbeStart> find_probe_start(const VirtualPatient& patient, const Segment
     std::string title;
     const auto X_PT = standard_view(patient, views, start.transducer, title);
     if (!X_PT && !std::isfinite(place.cost))
-      return fail("the transducer finds no place on the skin beside the entry", patient.name);
+      return fail("the transducer finds no place on the skin beside the entry", patient.name,
+                  "place the transducer by hand");
     if (X_PT) start.X_PT = *X_PT;
     deepest_mm = (path_P.b - start.X_PT.p()).norm();
     start.note = X_PT

@@ -56,7 +56,9 @@ Status save_profile(const TissueProfile& profile, const TissueTable& table, cons
   if (!may_replace && std::filesystem::exists(file, error))
     return fail_usage("there is a profile of that name already", file.string(), "choose another name, or replace it");
   std::filesystem::create_directories(folder, error);
-  if (error) return fail("the folder cannot be made: " + error.message(), folder.string());
+  if (error)
+    return fail("the folder cannot be made: " + error.message(), folder.string(),
+                "check the permissions of the folder above it");
   return write_file_atomically(file, to_toml(profile));
 }
 
@@ -76,7 +78,9 @@ Result<TissueProfile> load_profile(const std::filesystem::path& file) {
 Status delete_profile(const TissueProfile& profile) {
   std::error_code error;
   std::filesystem::remove(profile.file, error);
-  if (error) return fail("the profile cannot be deleted: " + error.message(), profile.file.string());
+  if (error)
+    return fail("the profile cannot be deleted: " + error.message(), profile.file.string(),
+                "check the permissions of its folder");
   return {};
 }
 

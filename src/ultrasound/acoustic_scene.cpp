@@ -227,7 +227,7 @@ Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const VirtualPa
   const auto skin_tissue = table.find("skin");
   const auto inner_tissue = table.find("adipose");
   if (!skin_tissue || !inner_tissue)
-    return fail("the acoustic table has no tissue \"skin\" or \"adipose\"", "acoustic table");
+    return fail("the acoustic table has no tissue \"skin\" or \"adipose\"", "acoustic table", "add it to the table");
 
   report(progress, "acoustic tissues", 0.0);
   TROCAR_TRY(const detail::BodyWindow window, detail::find_body_window(patient, kMargin_mm));

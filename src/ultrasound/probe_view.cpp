@@ -69,7 +69,7 @@ Result<ProbeView> read_view(const TomlTable& row, const std::string& name) {
     return fail("point = \"facing\" needs what it faces", row.where(), "name labels in through");
   TROCAR_TRY(view.offset_mm, read_vector(row, "offset_mm", {-200.0, 200.0}, view.offset_mm));
   TROCAR_TRY(const Vec3 direction, read_vector(row, "direction", {-1.0, 1.0}, view.direction_P));
-  if (direction.norm() < 0.1) return fail("direction has no length", row.where());
+  if (direction.norm() < 0.1) return fail("direction has no length", row.where(), "give a direction that is not zero");
   view.direction_P = direction.normalized();
   TROCAR_TRY(const double angle_deg, row.number_or("angle_deg", {-180.0, 180.0}, 0.0));
   view.angle_rad = angle_deg * std::numbers::pi / 180.0;

@@ -29,7 +29,8 @@ Status check_names(const LabelSource& source) {
 }
 
 Status check_overlap(const LabelSource& source, const GridGeometry& grid) {
-  if (source.labels.empty()) return fail("the segmentation has no voxels", source.file);
+  if (source.labels.empty())
+    return fail("the segmentation has no voxels", source.file, "export the segmentation again");
   const double overlap =
       std::max(overlap_fraction(source.labels.geometry, grid), overlap_fraction(grid, source.labels.geometry));
   if (overlap >= kMinOverlap) return {};
@@ -57,7 +58,8 @@ class Merger {
     std::array<bool, 256> is_named{};
     for (const auto& [value, name] : source.names) {
       if (value < 0 || value > 255)
-        return fail(fmt::format("label value {} of \"{}\" is not in 0..255", value, name), source.file);
+        return fail(fmt::format("label value {} of \"{}\" is not in 0..255", value, name), source.file,
+                    "number the labels from 0 to 255");
       const auto v = static_cast<std::uint8_t>(value);
       is_named[v] = true;
       if (v == 0) continue;

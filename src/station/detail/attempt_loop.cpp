@@ -275,7 +275,7 @@ Status AttemptLoop::step_probe() {
 Result<RunResult> AttemptLoop::score(const Status& status) {
   if (!status) return tl::unexpected(status.error());
   if (!record_ || record_->samples().empty())
-    return fail("the attempt was ended before anything was recorded", options_.session.string());
+    return fail("the attempt was ended before anything was recorded", options_.session.string(), "start a new attempt");
   TROCAR_TRY(RunResult result, record_->finish());
   for (const std::optional<ToolServer>* server : {&needle_, &probe_})
     if (*server) result.servers.push_back((*server)->figures());
