@@ -131,7 +131,7 @@ class Override {
                         "known are: gradient_scale_mm, gradient_none_hu_per_mm, gradient_full_hu_per_mm");
     if (table_.transfer.knot_count == 0)
       return fail_usage("the tissue table has no transfer functions", std::string(text_),
-                        "use a tissue table with [hu_transfer]");
+                        "use a tissue table with [transfer]");
     TROCAR_TRY_STATUS(check_range(assignment_, field->name, field->range, text_));
     HuTransfer changed = table_.transfer;
     changed.*field->member = assignment_.value;
@@ -151,7 +151,7 @@ class Override {
                         "known are: k, tn, tt, r0, c, shaft, nu, young, each with _factor behind it");
     if (table_.transfer.knot_count == 0)
       return fail_usage("the tissue table has no transfer functions", std::string(text_),
-                        "use a tissue table with [hu_transfer]");
+                        "use a tissue table with [transfer]");
     TROCAR_TRY_STATUS(check_range(assignment_, assignment_.key, kCurveFactorRange, text_));
     for (std::size_t n = 0; n < table_.transfer.knot_count; ++n) {
       double& value = table_.transfer.laws[n].*field->member;
