@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "config/sourced_number.h"
+#include "config/toml_quoted.h"
 
 namespace trocar {
 namespace {
@@ -98,7 +99,7 @@ void append_hu_transfer(std::string& out, const TissueTable& table) {
     for (std::size_t n = 0; n < transfer.knot_count; ++n) values.push_back(transfer.laws[n].*field.member);
     const Provenance source = find_provenance(table.provenance, path_of(field.name));
     out += fmt::format("{} = {{values = [{}], source = {}", field.name, fmt::join(values, ", "),
-                       toml_string(source.source));
+                       toml_quoted(source.source));
     if (source.low && source.high) out += fmt::format(", {} = [{}, {}]", kFactors, *source.low, *source.high);
     out += "}\n";
   }

@@ -41,6 +41,9 @@ inline constexpr std::array<TissueField<TissueParams>, 6> kTissueFields{{
 inline constexpr std::string_view kSkinThickness = "thickness_mm";
 inline constexpr Range kSkinThicknessRange{0.5, 6.0};
 
+/// Source of a number that apply_override has set.
+inline constexpr std::string_view kOverrideSource = "set by the user";
+
 inline constexpr std::string_view kDefaultProfile = "paper-a";
 
 /// The field of that long or short name, nullptr when there is none.
@@ -53,8 +56,6 @@ const TissueField<T>* find_field(std::span<const TissueField<T>> fields, std::st
 
 // Text of a table, for the units that write one.
 
-/// TOML basic string.
-std::string toml_string(std::string_view text);
 /// Of a number that has none: "set by the user".
 Provenance find_provenance(const std::map<std::string, Provenance>& provenance, const std::string& path);
 /// Appends KEY = {value = 0.46, source = "…", range = [low, high]}; an infinite value is written as never = true.

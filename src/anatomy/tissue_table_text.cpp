@@ -8,11 +8,11 @@
 #include "anatomy/hu_transfer_text.h"
 #include "anatomy/tissue_fields.h"
 #include "anatomy/tissue_table.h"
+#include "config/toml_quoted.h"
 
 namespace trocar {
 namespace {
 
-constexpr std::string_view kOverrideSource = "set by the user";
 constexpr std::string_view kOfLayers = "layers.", kOfTissues = "tissues.";
 
 template <class T>
@@ -184,15 +184,6 @@ class Override {
 
 }  // namespace
 
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return out + '"';
-}
-
 Provenance find_provenance(const std::map<std::string, Provenance>& provenance, const std::string& path) {
   const auto it = provenance.find(path);
   return it != provenance.end() ? it->second : Provenance{std::string(kOverrideSource), {}, {}};
@@ -204,23 +195,23 @@ void append_number(std::string& out, std::string_view key, double value, const s
   out += fmt::format("{} = {{", key);
   // The shortest digits that read back to the same bits.
   out += std::isinf(value) ? "never = true" : fmt::format("value = {}", value);
-  out += ", source = " + toml_string(source.source);
+  out += ", source = " + toml_quoted(source.source);
   if (source.low && source.high) out += fmt::format(", range = [{}, {}]", *source.low, *source.high);
   out += "}\n";
 }
 
 std::string TissueTable::to_toml() const {
-  std::string out = fmt::format("applied_profile = {}\n\n[skin]\n", toml_string(profile));
+  std::string out = fmt::format("applied_profile = {}\n\n[skin]\n", toml_quoted(profile));
   append_number(out, kSkinThickness, skin_thickness_mm, "skin.thickness_mm", provenance);
   for (const LayerParams& layer : layers) {
-    out += fmt::format("\n[layers.{}]\n", toml_string(layer.name));
+    out += fmt::format("\n[layers.{}]\n", toml_quoted(layer.name));
     if (layer.is_wall) out += fmt::format("{} = true\n", kWall);
     append_fields<LayerParams>(out, layer, kLayerFields, "layers", provenance);
   }
   for (std::size_t n = 1; n < tissues.size(); ++n) {
     const TissueParams& tissue = tissues[n];
-    out += fmt::format("\n[tissues.{}]\n", toml_string(tissue.name));
-    if (tissue.layer) out += fmt::format("layer = {}\n", toml_string(layers[*tissue.layer].name));
+    out += fmt::format("\n[tissues.{}]\n", toml_quoted(tissue.name));
+    if (tissue.layer) out += fmt::format("layer = {}\n", toml_quoted(layers[*tissue.layer].name));
     append_fields<TissueParams>(out, tissue, kTissueFields, "tissues", provenance);
   }
   append_hu_transfer(out, *this);

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "config/json.h"
 #include "config/toml.h"
+#include "config/toml_quoted.h"
 #include "core/atomic_file.h"
 
 namespace trocar {
@@ -13,26 +13,32 @@ namespace {
 
 constexpr std::size_t kLongestName = 80;
 
-/// A TOML basic string: JSON's escapes are among TOML's.
-std::string quoted(const std::string& text) {
-  return json_text(Json(text), -1);
+/// C0 controls and DEL. `char` may be signed or not: bytes of UTF-8 beyond ASCII are neither.
+bool is_control(char c) noexcept {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte < 0x20 || byte == 0x7f;
+}
+
+bool is_ascii(char c) noexcept {
+  return static_cast<unsigned char>(c) < 0x80;
 }
 
 Status check_name(const std::string& name) {
   const bool is_blank = std::all_of(name.begin(), name.end(), [](char c) { return c == ' '; });
-  const bool has_control = std::any_of(name.begin(), name.end(), [](char c) { return c >= 0 && c < ' '; });
+  const bool has_control = std::any_of(name.begin(), name.end(), is_control);
   if (name.size() <= kLongestName && !is_blank && !has_control) return {};
-  return fail_usage("a profile's name has 1 to 80 characters", quoted(name), "give it another name");
+  return fail_usage("a profile's name has 1 to 80 characters and no control characters", toml_quoted(name),
+                    "give it another name");
 }
 
 std::string to_toml(const TissueProfile& profile) {
   std::string text =
       "# Numbers of tissues that differ from the table's (trocar run --set KEY=VALUE takes them, too).\n";
-  text += fmt::format("name = {}\n", quoted(profile.name));
-  if (!profile.note.empty()) text += fmt::format("note = {}\n", quoted(profile.note));
-  if (!profile.force_model.empty()) text += fmt::format("force_model = {}\n", quoted(profile.force_model));
+  text += fmt::format("name = {}\n", toml_quoted(profile.name));
+  if (!profile.note.empty()) text += fmt::format("note = {}\n", toml_quoted(profile.note));
+  if (!profile.force_model.empty()) text += fmt::format("force_model = {}\n", toml_quoted(profile.force_model));
   text += "overrides = [\n";
-  for (const std::string& assignment : profile.overrides) text += fmt::format("  {},\n", quoted(assignment));
+  for (const std::string& assignment : profile.overrides) text += fmt::format("  {},\n", toml_quoted(assignment));
   return text + "]\n";
 }
 
@@ -41,7 +47,7 @@ std::string to_toml(const TissueProfile& profile) {
 std::filesystem::path profile_file(const std::filesystem::path& folder, const std::string& name) {
   std::string file = name;
   for (char& c : file) {
-    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c < 0;
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || !is_ascii(c);
     if (!is_plain) c = '-';
   }
   return folder / (file + ".toml");

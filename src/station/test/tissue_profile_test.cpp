@@ -36,6 +36,15 @@ TEST_F(Profiles, ComeBackAsTheyWereSaved) {
   EXPECT_EQ(fitted->layers[*fitted->find_layer("skin")].puncture_force_n, 4.5);
 }
 
+TEST_F(Profiles, KeepEveryCharacterOfANote) {
+  TissueProfile odd = soft;
+  odd.note = "tab\t, DEL\x7f, quote\", backslash\\, line\nend, \xc3\xa4";
+  ASSERT_TRUE(save_profile(odd, table, folder.path(), false));
+  const auto loaded = load_profile(profile_file(folder.path(), odd.name));
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_EQ(loaded->note, odd.note);
+}
+
 TEST_F(Profiles, AreReplacedOnlyWhenThatIsMeant) {
   ASSERT_TRUE(save_profile(soft, table, folder.path(), false));
   TissueProfile other = soft;
@@ -73,7 +82,9 @@ TEST_F(Profiles, WithNumbersThatTheTableDoesNotTakeAreNotWritten) {
 
 TEST_F(Profiles, CannotLeaveTheirFolderOrBeNameless) {
   EXPECT_EQ(profile_file(folder.path(), "../../etc/passwd").parent_path(), folder.path());
-  for (const std::string& name : {std::string(), std::string("   "), std::string(200, 'x'), std::string("a\nb")}) {
+  for (const std::string& name : {std::string(), std::string("   "), std::string(200, 'x'), std::string("a\nb"),
+                                  std::string("a\x7f"
+                                              "b")}) {
     TissueProfile profile = soft;
     profile.name = name;
     EXPECT_FALSE(save_profile(profile, table, folder.path(), true)) << name;
