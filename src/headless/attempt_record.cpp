@@ -3,9 +3,11 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
+#include "anatomy/tissue_settings.h"
 #include "core/version.h"
 #include "headless/performer.h"
 #include "io/patient_source.h"
@@ -18,6 +20,7 @@ SessionInfo describe(const Case& the_case, const RunOptions& options, const Atte
   info.program_version = kVersion;
   info.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
   info.task = the_case.task.name;
+  info.task_toml = the_case.task_toml;
   info.patient_name = the_case.patient->name;
   info.patient_source = absolute_source(options.patient_source);
   info.patient_hash = the_case.patient->content_hash;
@@ -28,7 +31,9 @@ SessionInfo describe(const Case& the_case, const RunOptions& options, const Atte
   info.rate_hz = facts.rate_hz;
   info.needle = the_case.needle.name;
   info.device = facts.device;
-  info.tissue_table_toml = the_case.tissues.to_toml();
+  info.device_preset = facts.device_preset;
+  const std::string& table = facts.parameters.tissue_table_toml;
+  info.tissue_table_toml = table.empty() ? the_case.tissues.to_toml() : table;
   info.plan_P = {the_case.task.name + " plan", the_case.plan.line_P};
   info.is_parenchymal = the_case.is_parenchymal;
   for (const TissueParams& tissue : the_case.tissues.tissues) info.tissue_names.push_back(tissue.name);
@@ -38,7 +43,28 @@ SessionInfo describe(const Case& the_case, const RunOptions& options, const Atte
   return info;
 }
 
+/// What differs from `before`: numbers of tissues, then options.
+std::vector<std::string> changed(const TissueTable& before, const std::vector<std::string>& options_before,
+                                 const TissueTable& now, const std::vector<std::string>& options) {
+  std::vector<std::string> settings = changed_settings(before, now);
+  for (const std::string& option : options)
+    if (std::ranges::find(options_before, option) == options_before.end()) settings.push_back(option);
+  return settings;
+}
+
+std::string force_model_of(const SceneParameters& parameters, const std::string& otherwise) {
+  constexpr std::string_view kForceModel = "force_model=";
+  for (const std::string& option : parameters.options)
+    if (option.starts_with(kForceModel)) return option.substr(kForceModel.size());
+  return otherwise;
+}
+
 }  // namespace
+
+std::string preset_of_device(std::string_view device_name) {
+  constexpr std::string_view kVirtual = "virtual:";
+  return device_name.starts_with(kVirtual) ? std::string(device_name.substr(kVirtual.size())) : std::string();
+}
 
 AttemptRecord::AttemptRecord(const Case& the_case, SessionInfo info, SessionWriter writer, std::size_t expected_ticks)
     : the_case_(&the_case), info_(std::move(info)), writer_(std::move(writer)) {
@@ -62,6 +88,49 @@ Status AttemptRecord::append(const TickSample& sample) {
   return writer_.append(sample);
 }
 
+Status AttemptRecord::note_parameters(const SceneParameters& parameters) {
+  return record(samples_.size() - 1, parameters);
+}
+
+Status AttemptRecord::note_scene(std::uint64_t number, const KnownScenes& known) {
+  while (!unknown_.empty()) {
+    const SceneParameters* told = known.find(unknown_.front().number);
+    if (told == nullptr) break;
+    TROCAR_TRY_STATUS(record(unknown_.front().tick, *told));
+    unknown_.erase(unknown_.begin());
+  }
+  if (number == scene_) return {};
+  scene_ = number;
+  const SceneParameters* told = known.find(number);
+  if (told != nullptr && unknown_.empty()) return note_parameters(*told);
+  unknown_.push_back({samples_.size() - 1, number});
+  return {};
+}
+
+void AttemptRecord::forget_scenes() noexcept {
+  has_lost_scene_ = has_lost_scene_ || !unknown_.empty();
+  unknown_.clear();
+  scene_ = 0;
+}
+
+Status AttemptRecord::record(std::size_t tick, const SceneParameters& parameters) {
+  const bool is_same = tissues_ && parameters.options == parameters_.options &&
+                       parameters.tissue_table_toml == parameters_.tissue_table_toml;
+  if (is_same) return {};
+  TROCAR_TRY(TissueTable table, parse_tissue_table(parameters.tissue_table_toml, "the parameters in force"));
+  SessionParameters row{tick, samples_[tick].time_s, {}, parameters.options, parameters.tissue_table_toml};
+  row.settings = tissues_ ? changed(*tissues_, parameters_.options, table, parameters.options) : user_settings(table);
+  if (!tissues_) info_.force_model = force_model_of(parameters, info_.force_model);
+  tissues_ = std::move(table);
+  parameters_ = parameters;
+  return writer_.append(row);
+}
+
+Status AttemptRecord::append(const Interruption& interruption) {
+  interruptions_.push_back(interruption);
+  return writer_.append(interruption);
+}
+
 Status AttemptRecord::append(const TransducerSample& sample) {
   if (transducer_s_ && sample.time_s < *transducer_s_ + kTransducerEvery_s) return {};
   transducer_s_ = sample.time_s;
@@ -71,11 +140,15 @@ Status AttemptRecord::append(const TransducerSample& sample) {
 Result<RunResult> AttemptRecord::finish() {
   RunResult result;
   result.outcome = score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,
-                                 the_case_->plan, samples_, fired_);
+                                 the_case_->plan, samples_, fired_, interruptions_);
   TROCAR_TRY_STATUS(writer_.finish(result.outcome, fired_));
   result.punctures = find_punctures(info_, samples_);
+  result.force_model = info_.force_model;
   result.ticks = samples_.size();
   result.simulated_s = samples_.empty() ? 0.0 : samples_.back().time_s;
+  result.active_s = active_time_s(0.0, result.simulated_s, interruptions_);
+  if (has_lost_scene_ || !unknown_.empty())
+    result.warnings.push_back("the server did not tell the parameters of some ticks: the session lacks a change");
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "headless/live_operator.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "telemetry/tick_pose.h"
 #include "training/hand.h"
@@ -8,6 +9,7 @@
 namespace trocar {
 namespace {
 
+constexpr double kLongestGap_s = 0.1;    // between two ticks: a longer one is time in which nobody could act
 constexpr double kLongestStep_s = 0.02;  // of a hand: a longer gap between ticks is a pause, not a motion
 
 /// The server resumed the needle while the hand was being placed, in ticks that are not recorded.
@@ -47,19 +49,37 @@ LiveOperator::LiveOperator(const Performer& performer, AttemptRecord& record, co
   record.note(first);
 }
 
-void LiveOperator::begin(double clock_offset_s) noexcept {
+void LiveOperator::begin(double clock_offset_s, bool is_placed_anew) noexcept {
   offset_s_ = clock_offset_s;
   is_seated_anew_ = true;
+  is_placed_anew_ = is_placed_anew;
+  if (is_placed_anew) record_->forget_scenes();
 }
 
-Result<double> LiveOperator::record(const TickSample& tick) {
+Status LiveOperator::note_interruption(double step_s, bool is_seen) {
+  const bool was_away = is_seated_anew_ && step_s > period_s_;
+  const bool can_act = is_seen && !was_away && step_s <= kLongestGap_s;
+  if (!can_act && !idle_) {
+    const char* const reason = !is_seen ? "the program did not run" : "ticks were lost";
+    idle_ = Interruption{std::min(time_s_, time_s_ - step_s + period_s_), 0.0, reason};
+  }
+  if (idle_ && was_away) idle_->reason = is_placed_anew_ ? kServerWasAway : "no tick came";
+  if (!idle_ || !is_seen) return {};
+  idle_->to_s = time_s_;
+  const Interruption ended = *std::exchange(idle_, std::nullopt);
+  interrupted_s_ += ended.to_s - ended.from_s;
+  return record_->append(ended);
+}
+
+Result<double> LiveOperator::record(const TickSample& tick, bool is_seen) {
   server_time_s_ = tick.time_s;
   if (!has_begun_) origin_s_ = tick.time_s - offset_s_;
   view_.last = tick;
-  if (has_begun_ && is_seated_anew_) note_resumption(view_.last);
+  if (has_begun_ && is_seated_anew_ && is_placed_anew_) note_resumption(view_.last);
   double step_s = has_begun_ ? std::max(0.0, tick.time_s - offset_s_ - origin_s_ - time_s_) : 0.0;
-  has_begun_ = true;
   time_s_ += step_s;
+  if (has_begun_) TROCAR_TRY_STATUS(note_interruption(step_s, is_seen));
+  has_begun_ = true;
   if (is_seated_anew_) {
     paused_s_ += std::max(0.0, step_s - period_s_);
     step_s = period_s_;
@@ -72,17 +92,17 @@ Result<double> LiveOperator::record(const TickSample& tick) {
 }
 
 Result<bool> LiveOperator::take(const TickSample& tick) {
-  TROCAR_TRY(const double step_s, record(tick));
+  TROCAR_TRY(const double step_s, record(tick, true));
   view_.time_s += step_s;
   view_.dt_s = std::min(step_s, kLongestStep_s);
   command_ = performer_->the_operator->next(view_);
-  if (command_.is_done || time_s_ > longest_s_) return false;
+  if (command_.is_done || active_s() > longest_s_) return false;
   record_->note(command_);
   return true;
 }
 
 Status LiveOperator::take_unseen(const TickSample& tick) {
-  TROCAR_TRY(const double step_s, record(tick));
+  TROCAR_TRY(const double step_s, record(tick, false));
   unseen_s_ += step_s;
   return {};
 }

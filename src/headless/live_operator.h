@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "headless/attempt_record.h"
@@ -14,12 +15,13 @@ namespace trocar {
 class LiveOperator {
  public:
   /// Performer and record must outlive it. The operator's first command, made by the caller, placed the hand.
-  /// After `longest_s` of the session it is done, whatever it says.
+  /// After `longest_s` of active time it is done, whatever it says.
   LiveOperator(const Performer& performer, AttemptRecord& record, const HandCommand& first,
                double longest_s = kLongestAttempt_s);
 
-  /// The server was just seated, for the first time or again. `clock_offset_s`: its clock minus ours.
-  void begin(double clock_offset_s) noexcept;
+  /// Ticks come for the first time, or again after none came. `clock_offset_s`: the server's clock minus ours.
+  /// `is_placed_anew`: the server was seated meanwhile and its insertion began anew; else it only was not heard.
+  void begin(double clock_offset_s, bool is_placed_anew = true) noexcept;
   /// A tick of the server; its time becomes the session's. false: the operator is done.
   Result<bool> take(const TickSample& tick);
   /// A tick that comes too late to be answered, because this program stood still: recorded; the operator does not see
@@ -31,7 +33,9 @@ class LiveOperator {
   /// The answer to the last tick.
   HandTarget hand() const noexcept;
 
-  double time_s() const noexcept { return time_s_; }      ///< Of the session.
+  double time_s() const noexcept { return time_s_; }  ///< Of the session.
+  /// Of it, without interruptions: servers that were away, ticks that were lost or came too late to be answered.
+  double active_s() const noexcept { return time_s_ - interrupted_s_; }
   double paused_s() const noexcept { return paused_s_; }  ///< Of it, while there was no server; and
   double unseen_s() const noexcept { return unseen_s_; }  ///< while the operator did not look.
   /// Where the needle is put again when its server comes back: as it was felt, which is in its channel. The device's
@@ -41,8 +45,10 @@ class LiveOperator {
   const HandCommand& command() const noexcept { return command_; }  ///< The answer to it.
 
  private:
-  /// Records a tick; gives the time since the last one.
-  Result<double> record(const TickSample& tick);
+  /// Records a tick; gives the time since the last one. Unseen: the operator does not answer it.
+  Result<double> record(const TickSample& tick, bool is_seen);
+  /// Records an interruption that ends with the tick under way.
+  Status note_interruption(double step_s, bool is_seen);
 
   const Performer* performer_;
   AttemptRecord* record_;
@@ -55,9 +61,11 @@ class LiveOperator {
   double time_s_ = 0.0;
   double paused_s_ = 0.0;
   double unseen_s_ = 0.0;
+  double interrupted_s_ = 0.0;
+  std::optional<Interruption> idle_;  ///< Under way.
   double server_time_s_ = 0.0;
   bool has_begun_ = false;
-  bool is_seated_anew_ = false;
+  bool is_seated_anew_ = false, is_placed_anew_ = false;
 };
 
 /// A command as a server's hand takes it: the in-process hand (training/hand.h), which holds the tip. `server_time_s`:

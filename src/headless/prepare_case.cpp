@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "anatomy/phantom/phantom.h"
+#include "core/atomic_file.h"
 #include "core/data_dir.h"
 #include "core/log.h"
 #include "training/assess_path.h"
@@ -14,12 +15,20 @@ namespace trocar {
 namespace {
 namespace fs = std::filesystem;
 
-Result<Task> find_task(const CaseOptions& options, const fs::path& tasks_folder) {
-  const bool is_file = options.task.ends_with(".toml");
-  if (!is_file && !options.task.empty()) return load_task(tasks_folder, options.task);
-  if (is_file) return load_task_file(options.task, tasks_folder);
+Status read_task_file(Case& made, const fs::path& file, const fs::path& tasks_folder) {
+  TROCAR_TRY(made.task, load_task_file(file, tasks_folder));
+  TROCAR_TRY(made.task_toml, read_file(file));
+  return {};
+}
+
+Status find_task(Case& made, const CaseOptions& options, const fs::path& tasks_folder) {
+  if (options.task.ends_with(".toml")) return read_task_file(made, options.task, tasks_folder);
+  if (!options.task.empty()) {
+    TROCAR_TRY(made.task, load_task(tasks_folder, options.task));
+    return {};
+  }
   if (has_own_task(options.patient_folder))
-    return load_task_file(fs::path(options.patient_folder) / kOwnTaskFile, tasks_folder);
+    return read_task_file(made, fs::path(options.patient_folder) / kOwnTaskFile, tasks_folder);
   std::error_code ignored;
   const auto& embedded = embedded_patients();
   const bool is_known = options.patient_folder.empty() || fs::exists(options.patient_folder, ignored) ||
@@ -55,7 +64,7 @@ Result<Case> load_tables(const CaseOptions& options) {
   const std::filesystem::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
   Case made;
-  TROCAR_TRY(made.task, find_task(options, data / "tasks"));
+  TROCAR_TRY_STATUS(find_task(made, options, data / "tasks"));
   const std::string needle = options.needle.empty() ? made.task.needle : options.needle;
   TROCAR_TRY(made.needle, load_needle(data / "needles.toml", needle));
   const std::filesystem::path tissues =

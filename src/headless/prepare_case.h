@@ -30,6 +30,7 @@ struct CaseOptions {
 struct Case {
   std::shared_ptr<const VirtualPatient> patient;
   Task task;
+  std::string task_toml;  ///< Text of the file that the task is from; empty: a task of the data folder.
   Needle needle;
   TissueTable tissues;
   PlannedPath plan;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <thread>
 
 #include "core/interruption.h"
@@ -159,12 +160,15 @@ void LiveServers::tell(RunResult& result) {
     for (const ServerSeat& seat : *seats) result.servers.push_back(seat.figures());
   result.servers.insert(result.servers.end(), lost_.begin(), lost_.end());
   result.ticks_missing = needle_.front().ticks_missing();
-  result.warnings = warnings_;
+  result.warnings.insert(result.warnings.begin(), warnings_.begin(), warnings_.end());
 }
 
 /// Where the needle's hand begins, and the transducer's.
-SeatRequest needle_request(const Case& the_case, const SceneChoice& choice, const HandCommand& first) {
-  return {scene_request(the_case, choice), hand_target(first, 0.0)};
+SeatRequest needle_request(const Case& the_case, const SceneChoice& choice, const HandCommand& first,
+                           const Performer& performer) {
+  SeatRequest request{scene_request(the_case, choice), hand_target(first, 0.0)};
+  if (!performer.parameters.empty()) request.parameters = as_command(performer.parameters.front());
+  return request;
 }
 SeatRequest probe_request(const Case& the_case, SceneChoice choice, const ProbeHand& hand) {
   choice.tool = "probe";
@@ -173,8 +177,33 @@ SeatRequest probe_request(const Case& the_case, SceneChoice choice, const ProbeH
   return request;
 }
 
+SceneParameters parameters_of(const ServerSeat& needle) {
+  const SceneParameters* const newest = needle.scenes().newest();
+  return newest == nullptr ? SceneParameters{} : *newest;
+}
+
+/// The changes of parameters of a replayed session, sent when as many ticks were made as before them. The server says
+/// from which tick on it felt them.
+class ReplayedChanges {
+ public:
+  explicit ReplayedChanges(const Performer& performer) : parameters_(performer.parameters) {}
+
+  void send(ServerSeat& needle, std::size_t ticks) {
+    while (next_ < parameters_.size() && parameters_[next_].tick <= ticks) {
+      const SetParameters command = as_command(parameters_[next_++]);
+      needle.adjust(command);
+      needle.send(command);
+    }
+  }
+
+ private:
+  std::span<const SessionParameters> parameters_;
+  std::size_t next_ = 1;  ///< The first ones are the scene's.
+};
+
 /// The closed loop through the servers, until the operator is done.
-Status perform(LiveServers& servers, LiveOperator& live, const ProbeHand& probe_hand, const Progress& progress) {
+Status perform(LiveServers& servers, LiveOperator& live, AttemptRecord& record, ReplayedChanges changes,
+               const ProbeHand& probe_hand, const Progress& progress) {
   bool was_on = false;
   while (true) {
     TROCAR_TRY_STATUS(check_interruption());
@@ -184,16 +213,20 @@ Status perform(LiveServers& servers, LiveOperator& live, const ProbeHand& probe_
     if (!samples.empty() && !was_on) live.begin(needle.view().clock_offset_s);
     was_on = needle.state() == State::kOn && (was_on || !samples.empty());
     for (const NumberedSample& sample : samples) {
+      bool goes_on = true;
       if (sample.sample.time_s < samples.back().sample.time_s - kAnswered_s) {
         TROCAR_TRY_STATUS(live.take_unseen(sample.sample));
-        continue;
+      } else {
+        TROCAR_TRY(goes_on, live.take(sample.sample));
       }
-      TROCAR_TRY(const bool goes_on, live.take(sample.sample));
+      TROCAR_TRY_STATUS(record.note_scene(sample.scene, needle.scenes()));
       if (!goes_on) return {};
     }
     if (!samples.empty()) {
       needle.set_hand(live.hand());
       needle.place_at(live.X_PN_to_resume());
+      changes.send(needle, record.samples().size());
+      needle.take_replies();  // they describe the scenes
     }
     TROCAR_TRY_STATUS(servers.move_probe(probe_hand, live));
     report(progress, was_on ? "performing" : "waiting for the needle's server", live.time_s() / kLongestAttempt_s);
@@ -243,11 +276,12 @@ Status find_servers(const RealtimeOptions& options) {
   return {};
 }
 
-Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& options, const RealtimeOptions& realtime,
+Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& given, const RealtimeOptions& realtime,
                                        const Progress& progress) {
-  TROCAR_TRY_STATUS(check_run(options));
+  TROCAR_TRY_STATUS(check_run(given));
   TROCAR_TRY_STATUS(check_realtime(realtime));
-  TROCAR_TRY(Performer performer, make_performer(the_case, options));
+  TROCAR_TRY(Performer performer, make_performer(the_case, given));
+  const RunOptions options = options_of(performer, given);
   const InterruptibleWork interruptible;
   TROCAR_TRY(LiveServers servers, LiveServers::connect(options, realtime, performer.rate_hz, progress));
   const ClientView welcome = servers.needle().view();
@@ -267,16 +301,17 @@ Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& o
   choice.patient_seed = options.patient_seed;
   choice.seed = options.seed;
   const ProbeHand probe_hand(*the_case.patient, the_case.plan.line_P);
-  servers.hold(needle_request(the_case, choice, first), probe_request(the_case, choice, probe_hand));
+  servers.hold(needle_request(the_case, choice, first, performer), probe_request(the_case, choice, probe_hand));
   TROCAR_TRY_STATUS(servers.wait_for(State::kOn, progress));
 
   const AttemptFacts facts{fmt::format("{}, {}, through {}", welcome.welcome.device.name, welcome.welcome.device.title,
                                        welcome.welcome.server),
-                           rate_hz, performer.force_model};
+                           rate_hz, performer.force_model, preset_of_device(welcome.welcome.device.name),
+                           parameters_of(servers.needle())};
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, options, facts));
   LiveOperator live(performer, record, first);
   servers.needle().take_samples();  // at rest, while the probe's server was still busy
-  const Status performed = perform(servers, live, probe_hand, progress);
+  const Status performed = perform(servers, live, record, ReplayedChanges(performer), probe_hand, progress);
   servers.stop();
   if (!performed && is_interrupted())
     return fail("interrupted: the session is kept as an incomplete one", options.session.string(),

@@ -33,8 +33,10 @@ struct ServerFigures {
 struct RunResult {
   Outcome outcome;
   std::vector<PunctureRecord> punctures;
+  std::string force_model;  ///< At the first tick.
   std::size_t ticks = 0;
   double simulated_s = 0.0;            ///< Of the last tick; through live servers their time, gaps included.
+  double active_s = 0.0;               ///< Of it without interruptions: the trainee could act.
   std::uint64_t ticks_missing = 0;     ///< Of the session: ticks that a live server made and nobody received.
   std::vector<ServerFigures> servers;  ///< Of an attempt through live servers: the needle's first.
   std::vector<std::string> warnings;

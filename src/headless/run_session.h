@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "core/progress.h"
 #include "core/result.h"
 #include "headless/prepare_case.h"
+#include "headless/replay.h"
 #include "headless/run_result.h"
 
 namespace trocar {
@@ -17,10 +19,14 @@ struct RunOptions {
   std::string force_model;  ///< insertion | proxy | combined; empty: the task's, or that of the replayed session.
   std::string device = "premium";  ///< Of data/devices.toml: its limits and coupling, simulated.
   double rate_hz = 1000.0;         ///< 250..4000. A replay takes its session's rate.
-  std::uint64_t seed = 1;          ///< Of operator and friction.
+  std::uint64_t seed = 1;          ///< Of operator, friction and plan.
   std::string patient_source;      ///< As the user named it: a folder, or an embedded patient's name.
   std::uint64_t patient_seed = 1;
   std::filesystem::path session;  ///< Written here; must not exist.
+  // Of a replay alone. Seeds, rate and device are its session's, whatever stands above.
+  std::shared_ptr<const Session> replayed;  ///< What the operator's name names, where it is loaded already.
+  ReplayChanges replay_changes;
+  bool is_other_patient_meant = false;  ///< A patient with another content hash is not refused.
 };
 
 /// What can be said of the options before there is a patient (exit status 2); run_session asks it, too.

@@ -53,8 +53,19 @@ void ServerSeat::place_at(const Pose& X_PN) {
   if (request_) request_->place.X_PN = X_PN;
 }
 
+void ServerSeat::adjust(const SetParameters& parameters) {
+  if (request_) request_->parameters = parameters;
+}
+
+std::vector<Reply> ServerSeat::take_replies() {
+  std::vector<Reply> replies = client_.take_replies();
+  for (const Reply& reply : replies) scenes_.learn(reply);
+  return replies;
+}
+
 void ServerSeat::enter(State state) {
   state_ = state;
+  is_adjusting_ = false;
   in_state_s_ = without_control_s_ = 0.0;
   was_placed_ = false;
 }
@@ -148,14 +159,16 @@ Status ServerSeat::connecting() {
   if (!view_.welcome.has_control) return wait_for_control();
   const bool is_forgiven = request_ && (request_->resets_fault || is_stall_to_forgive());
   if (has_fault(view_.status) && is_forgiven) return reset_fault();
+  const bool is_another = session_ != view_.welcome.session;
   session_ = view_.welcome.session;
-  client_.take_replies();
+  take_replies();
+  if (is_another) scenes_.clear();
   enter(State::kReady);
   return {};
 }
 
 Result<bool> ServerSeat::is_answered() {
-  for (const Reply& reply : client_.take_replies()) {
+  for (const Reply& reply : take_replies()) {
     if (reply.request != asked_) continue;
     if (reply.is_done) return true;
     // A command that found the server gone is no refusal: when it is back it will be asked again.
@@ -168,9 +181,28 @@ Result<bool> ServerSeat::is_answered() {
 }
 
 Status ServerSeat::loading_scene() {
+  if (is_adjusting_) {
+    const Result<bool> is_taken = is_answered();
+    if (!is_taken) {
+      refusal_ = is_taken.error().what;
+      request_->parameters = {};
+    }
+    if (!is_taken || *is_taken) enter(State::kPlacing);
+    return {};
+  }
   TROCAR_TRY(const bool is_loaded, is_answered());
-  if (is_loaded) enter(State::kPlacing);
+  if (is_loaded) load_parameters();
   return {};
+}
+
+void ServerSeat::load_parameters() {
+  adjusted_ = request_->parameters;
+  if (adjusted_.settings.empty() && adjusted_.tissues_toml.empty()) {
+    enter(State::kPlacing);
+    return;
+  }
+  asked_ = client_.send(adjusted_);
+  is_adjusting_ = true;
 }
 
 bool ServerSeat::is_near(const TickSample& sample, double most_mm) const {

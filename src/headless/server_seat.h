@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/progress.h"
+#include "headless/known_scenes.h"
 #include "headless/run_result.h"
 #include "link/haptic_client.h"
 
@@ -19,6 +21,8 @@ struct SeatRequest {
   /// A person's hand holds the device: it is not put anywhere, the forces come on where it is.
   bool is_in_real_hand = false;
   bool resets_fault = false;  ///< A fault that the gate has latched before we came is forgotten.
+  /// What differs from the scene's numbers; in force before the forces come on. Nothing in it: not sent.
+  SetParameters parameters = {};
 };
 
 /// One haptic server as an attempt sees it. It connects, has the scene loaded, puts the hand in its place, turns the
@@ -35,6 +39,12 @@ class ServerSeat {
   /// What to hold from now on; until then a connected server stays in kReady. Where the hand begins may be told anew.
   void hold(const SeatRequest& request);
   void place_at(const Pose& X_PN);
+  /// What SeatRequest::parameters is from now on, for the next time that the scene is loaded; sends nothing.
+  void adjust(const SetParameters& parameters);
+  /// What was last sent with the scene.
+  const SetParameters& adjusted() const noexcept { return adjusted_; }
+  /// What the server said where it refused them: the seat goes on without. Once.
+  std::optional<std::string> take_refusal() { return std::exchange(refusal_, std::nullopt); }
 
   /// Goes one step further where it can. Errors: silent for longer than the patience, a refusal, a fault.
   Result<State> look();
@@ -49,8 +59,9 @@ class ServerSeat {
   void stop();
   /// Only in kOn, and when a seat is given up: a command beside those of the seat itself. Gives its number.
   std::uint32_t send(decltype(Command::what) what) { return client_.send(std::move(what)); }
-  std::vector<Reply> take_replies() { return client_.take_replies(); }  ///< Only in kOn.
-  void frame_drawn() { client_.frame_drawn(); }                         ///< See HapticClient.
+  std::vector<Reply> take_replies();                              ///< Only in kOn.
+  const KnownScenes& scenes() const noexcept { return scenes_; }  ///< Of the server that is there now.
+  void frame_drawn() { client_.frame_drawn(); }                   ///< See HapticClient.
   /// The newest tick, whatever the state: where the device is while it is not ours.
   std::optional<TickSample> newest() const { return client_.newest(); }
 
@@ -74,6 +85,7 @@ class ServerSeat {
   Status check_time(const char* what, const char* advice) const;
   Status connecting();
   Status loading_scene();
+  void load_parameters();
   Status placing();
   Status starting();
   void settling();
@@ -96,6 +108,10 @@ class ServerSeat {
   std::uint32_t asked_ = 0;
   double placed_newest_s_ = 0.0;   ///< Time of the newest tick when the hand was placed.
   double started_server_s_ = 0.0;  ///< Server's time when it said that it would start.
+  KnownScenes scenes_;
+  SetParameters adjusted_;
+  bool is_adjusting_ = false;  ///< In kLoading: the scene is there, its parameters are asked for.
+  std::optional<std::string> refusal_;
   int returns_ = 0, stalls_ = 0;
   double without_control_s_ = 0.0;  ///< Of in_state_s_, when the server first said so; 0: it did not.
 };

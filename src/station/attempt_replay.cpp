@@ -1,6 +1,7 @@
 #include "station/attempt_replay.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -31,7 +32,7 @@ Result<AttemptReplay> AttemptReplay::load(const std::filesystem::path& path, std
   if (was_cut_off) {
     const Case& the_case = open->the_case;
     session.outcome = score_attempt(the_case.task, *the_case.patient, the_case.tissues, the_case.needle, the_case.plan,
-                                    session.samples, session.fired);
+                                    session.samples, session.fired, session.interruptions);
   }
   return AttemptReplay(std::move(session), std::move(open), was_cut_off);
 }
@@ -86,6 +87,13 @@ void AttemptReplay::find_moments() {
            is_risk ? "touched: " + structure_words(label->name) : "into the " + structure_words(label->name)});
     }
   }
+  for (const SessionParameters& change : session_.parameters)
+    if (change.tick > 0)
+      moments_.push_back(
+          {change.time_s, Kind::kChange, fmt::format("parameters: {}", fmt::join(change.settings, ", "))});
+  for (const Interruption& gap : session_.interruptions)
+    moments_.push_back({gap.to_s, Kind::kInterruption,
+                        fmt::format("interrupted for {:.1f} s: {}", gap.to_s - gap.from_s, gap.reason)});
   if (session_.fired) moments_.push_back({session_.samples[*session_.fired].time_s, Kind::kFired, "the gun was fired"});
 }
 

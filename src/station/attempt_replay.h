@@ -14,7 +14,7 @@ namespace trocar {
 
 /// A moment of a recorded attempt that is worth a look.
 struct ReplayMoment {
-  enum class Kind { kPuncture, kEnter, kRisk, kFired, kWorst };
+  enum class Kind { kPuncture, kEnter, kRisk, kFired, kChange, kInterruption, kWorst };
   double time_s = 0.0;
   Kind kind = Kind::kPuncture;
   std::string text;  ///< "through the liver capsule", "the lung was touched"

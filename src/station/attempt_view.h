@@ -78,8 +78,8 @@ struct AttemptView {
   TransducerView probe;
   bool has_probe = false;
   std::array<ServerView, 2> servers;  ///< Needle, probe.
-  double session_s = 0.0;             ///< Recorded so far.
-  double since_contact_s = 0.0;       ///< Since the needle first touched the skin; 0 before.
+  double session_s = 0.0;             ///< Recorded so far, without interruptions.
+  double since_contact_s = 0.0;       ///< Since the needle first touched the skin, likewise; 0 before.
   bool has_fired = false;
   bool is_performing = false;      ///< A scripted operator moves the needle.
   std::vector<std::string> notes;  ///< What went wrong on the way, in order.

@@ -68,7 +68,33 @@ std::map<std::size_t, std::string> marks_of(const Session& session) {
   return marks;
 }
 
-void append_row(std::string& out, const SessionInfo& info, const TickSample& sample, const std::string& mark) {
+/// What the tables beside the ticks say of a tick, by its index.
+using TickNotes = std::map<std::size_t, std::string>;
+
+void add_note(TickNotes& notes, std::size_t tick, const std::string& text) {
+  if (text.empty()) return;
+  std::string& note = notes[tick];
+  note += (note.empty() ? "" : ";") + text;
+}
+
+TickNotes notes_of(const Session& session) {
+  TickNotes notes;
+  const auto& samples = session.samples;
+  for (const Interruption& gap : session.interruptions) {
+    const auto after = std::lower_bound(samples.begin(), samples.end(), gap.to_s,
+                                        [](const TickSample& sample, double t) { return sample.time_s < t; });
+    if (after != samples.end()) add_note(notes, static_cast<std::size_t>(after - samples.begin()), event_text(gap));
+  }
+  for (const SessionParameters& change : session.parameters) add_note(notes, change.tick, event_text(change));
+  return notes;
+}
+
+/// What the event column says: notes of what came before the tick, its events, marks of the record.
+struct EventColumn {
+  std::string note, mark;
+};
+
+void append_row(std::string& out, const SessionInfo& info, const TickSample& sample, const EventColumn& beside) {
   visit_columns(sample, [&](const char*, const auto& field) {
     using Field = std::remove_cvref_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, double>)
@@ -81,7 +107,7 @@ void append_row(std::string& out, const SessionInfo& info, const TickSample& sam
     else if constexpr (std::is_same_v<Field, bool>)
       out += field ? '1' : '0';
     else
-      append_text(out, joined(event_text(info, sample), mark));
+      append_text(out, joined(joined(beside.note, event_text(info, sample)), beside.mark));
     out += ',';
   });
   out.back() = '\n';
@@ -113,15 +139,27 @@ std::string event_text(const SessionInfo& info, const TickSample& sample) {
   return text;
 }
 
+std::string event_text(const SessionParameters& parameters) {
+  std::string text;
+  for (const std::string& setting : parameters.settings) text += (text.empty() ? "set:" : ";set:") + setting;
+  return text;
+}
+
+std::string event_text(const Interruption& interruption) {
+  return fmt::format("interruption:{:.3f}", interruption.to_s - interruption.from_s);
+}
+
 Status export_csv(const Session& session, const std::filesystem::path& path) {
   std::string text;
   text.reserve((session.samples.size() + 2) * kBytesATick);
   append_header(text);
-  const std::map<std::size_t, std::string> marks = marks_of(session);
-  for (std::size_t n = 0; n < session.samples.size(); ++n) {
-    const auto mark = marks.find(n);
-    append_row(text, session.info, session.samples[n], mark != marks.end() ? mark->second : std::string());
-  }
+  const std::map<std::size_t, std::string> notes = notes_of(session), marks = marks_of(session);
+  const auto text_at = [](const std::map<std::size_t, std::string>& texts, std::size_t n) {
+    const auto found = texts.find(n);
+    return found == texts.end() ? std::string() : found->second;
+  };
+  for (std::size_t n = 0; n < session.samples.size(); ++n)
+    append_row(text, session.info, session.samples[n], {text_at(notes, n), text_at(marks, n)});
   return write_file_atomically(path, text);
 }
 

@@ -11,6 +11,7 @@
 #include "core/result.h"
 #include "geometry/pose.h"
 #include "telemetry/tick_sample.h"
+#include "training/active_time.h"
 #include "training/score.h"
 
 namespace trocar {
@@ -22,6 +23,7 @@ struct SessionInfo {
   std::string program_version;
   std::string started_utc;  ///< ISO 8601.
   std::string task;
+  std::string task_toml;  ///< Of a task from a file, its text; empty: a task of the data folder, or an older program.
   std::string patient_name;
   std::string patient_source;  ///< As given on the command line: a folder, or an embedded patient's name.
   std::string patient_hash;
@@ -31,8 +33,9 @@ struct SessionInfo {
   std::uint64_t seed = 1;
   double rate_hz = 1000.0;
   std::string needle;
-  std::string device;
-  std::string tissue_table_toml;
+  std::string device;             ///< In words.
+  std::string device_preset;      ///< Of data/devices.toml; empty: an older program.
+  std::string tissue_table_toml;  ///< As in force at the first tick.
   NeedlePath plan_P;
   bool is_parenchymal = false;
   /// Names behind the ids in the samples, by id.
@@ -46,6 +49,16 @@ struct TransducerSample {
   double time_s = 0.0;     ///< As the ticks' time.
   Pose X_PT;               ///< As felt: it does not pass through the skin.
   double contact_n = 0.0;  ///< Of skin and face.
+};
+
+/// Parameters in force from a tick on.
+struct SessionParameters {
+  std::size_t tick = 0;  ///< Index of the first sample that was made with them.
+  double time_s = 0.0;   ///< Of that sample.
+  /// What differs from the parameters before; of the first ones, what a user had set in the tissue table: "skin.fp=6".
+  std::vector<std::string> settings;
+  std::vector<std::string> options;  ///< Force model, coupling …: all of them; see haptics/scene_options.h.
+  std::string tissue_table_toml;     ///< The whole table.
 };
 
 /// Writes a session as it happens: one SQLite file in WAL mode. Killed at any moment it loses at most the last half
@@ -64,6 +77,10 @@ class SessionWriter {
   Status append(const TickSample& sample);
   /// In the order of time. One that is not later than the last one, or not finite, is left out.
   Status append(const TransducerSample& sample);
+  /// Of a sample that was appended already, in the order of ticks, one a tick.
+  Status append(const SessionParameters& parameters);
+  /// In the order of time.
+  Status append(const Interruption& interruption);
   /// Writes what is buffered, then the outcome, and makes it a single file again. `fired` is a sample's index. Nothing
   /// can be appended afterwards.
   Status finish(const Outcome& outcome, std::optional<std::size_t> fired);
@@ -85,12 +102,14 @@ struct SessionDamage {
 struct Session {
   SessionInfo info;
   std::vector<TickSample> samples;
-  std::vector<TransducerSample> transducer;  ///< By time; empty: there was none, or an older program recorded it.
-  std::optional<Outcome> outcome;            ///< Missing when the program was killed before the end.
-  std::optional<std::size_t> fired;          ///< Sample at which the biopsy gun was fired.
-  bool is_incomplete = false;                ///< The program ended before the attempt did.
-  bool has_checksums = false;                ///< Missing in sessions of older programs: damage may pass unnoticed.
-  std::vector<SessionDamage> damage;         ///< In the order of ticks; empty in what load_session gives.
+  std::vector<TransducerSample> transducer;   ///< By time; empty: there was none, or an older program recorded it.
+  std::vector<SessionParameters> parameters;  ///< By tick; empty: an older program wrote the session.
+  std::vector<Interruption> interruptions;    ///< By time.
+  std::optional<Outcome> outcome;             ///< Missing when the program was killed before the end.
+  std::optional<std::size_t> fired;           ///< Sample at which the biopsy gun was fired.
+  bool is_incomplete = false;                 ///< The program ended before the attempt did.
+  bool has_checksums = false;                 ///< Missing in sessions of older programs: damage may pass unnoticed.
+  std::vector<SessionDamage> damage;          ///< In the order of ticks; empty in what load_session gives.
 };
 /// Reads a finished or a killed session (its -wal file beside it). NaN comes back as NaN, -0.0 as 0.0; other values bit
 /// by bit. Errors, one line each: no such file, a folder, empty, not a session, damaged, of a newer version, a killed
@@ -112,6 +131,9 @@ Result<std::optional<std::filesystem::path>> set_aside_incomplete_session(const 
 std::string event_text(const SessionInfo& info, const TickEvent& event);
 /// The events of a sample in words: "puncture:skin;enter:liver".
 std::string event_text(const SessionInfo& info, const TickSample& sample);
+/// What the CSV says of them: "set:skin.fp=6;set:liver.k=0.5", "interruption:39.000" (seconds). Empty: nothing.
+std::string event_text(const SessionParameters& parameters);
+std::string event_text(const Interruption& interruption);
 /// One row a tick under a header, comma separated; numbers in the shortest form that reads back to the same value, nan
 /// and inf as words. Columns: docs and `trocar session export --help`. Written whole or not at all. Of an incomplete
 /// session the last row has the event "incomplete"; behind a gap of damaged ticks the next row (or the last one) has

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 
 #include "storage/detail/guarded_database.h"
 #include "storage/detail/outcome_json.h"
@@ -44,6 +45,13 @@ Status check_identity(soci::session& database, const fs::path& path) {
                 path.string(), "use a newer program");
   if (version < 1) return fail(fmt::format("the session has the unknown format {}", version), path.string(), kAdvice);
   return {};
+}
+
+void apply(const SessionParameters& first, SessionInfo& info) {
+  constexpr std::string_view kForceModel = "force_model=";
+  info.tissue_table_toml = first.tissue_table_toml;
+  for (const std::string& option : first.options)
+    if (option.starts_with(kForceModel)) info.force_model = option.substr(kForceModel.size());
 }
 
 /// A killed session needs its folder: SQLite makes an index of the -wal file there.
@@ -94,6 +102,9 @@ Result<Session> salvage_session(const fs::path& path) {
   TROCAR_TRY_STATUS(identity);
   if (!session.damage.empty() && session.samples.empty())
     return tl::unexpected(damage_error(session, path, "nothing can be read; if it was copied, copy it again"));
+  // The info was written before the first tick; the server says at that tick what was in force.
+  if (!session.parameters.empty() && session.parameters.front().tick == 0)
+    apply(session.parameters.front(), session.info);
   if (!outcome_json.empty()) {
     TROCAR_TRY(session.outcome, outcome_from_json(outcome_json, path.string()));
   }

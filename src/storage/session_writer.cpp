@@ -14,6 +14,7 @@
 #include "storage/detail/database.h"
 #include "storage/detail/info_table.h"
 #include "storage/detail/outcome_json.h"
+#include "storage/detail/parameters_table.h"
 #include "storage/detail/transducer_table.h"
 #include "storage/session_file.h"
 
@@ -71,6 +72,7 @@ struct SessionWriter::Impl {
     std::vector<std::string> text;
   } events;
   TransducerBuffer transducer;
+  ParametersBuffer parameters;
 
   soci::session database;
   std::optional<soci::statement> insert_ticks, insert_events;
@@ -176,7 +178,7 @@ void SessionWriter::Impl::buffer(const TickSample& sample) {
 }
 
 Status SessionWriter::Impl::flush() {
-  if (tick_column.empty() && transducer.is_empty()) return {};
+  if (tick_column.empty() && transducer.is_empty() && parameters.is_empty()) return {};
   Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
     database << "BEGIN IMMEDIATE";
     if (!tick_column.empty()) {
@@ -185,6 +187,7 @@ Status SessionWriter::Impl::flush() {
     }
     if (!events.tick.empty()) insert_events->execute(true);
     transducer.write(database);
+    parameters.write(database);
     database << "COMMIT";
   });
   if (!status) failure = status.error();
@@ -201,6 +204,7 @@ void SessionWriter::Impl::clear() {
   for (auto* column : {&events.tick, &events.slot, &events.kind, &events.id}) column->clear();
   events.text.clear();
   transducer.clear();
+  parameters.clear();
 }
 
 /// All is committed, so another reader of the session, which keeps the -wal file alive, is no failure; a full disk is.
@@ -252,6 +256,21 @@ Status SessionWriter::append(const TransducerSample& sample) {
   return impl_->transducer.span_s() >= kBatchSeconds ? impl_->flush() : Status{};  // it moves on without the needle
 }
 
+Status SessionWriter::append(const SessionParameters& parameters) {
+  TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
+  TROCAR_CHECK(parameters.tick < static_cast<std::size_t>(impl_->next_tick));
+  if (impl_->failure) return tl::unexpected(*impl_->failure);
+  impl_->parameters.add(parameters);
+  return {};
+}
+
+Status SessionWriter::append(const Interruption& interruption) {
+  TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
+  if (impl_->failure) return tl::unexpected(*impl_->failure);
+  impl_->parameters.add(interruption, static_cast<std::size_t>(impl_->next_tick));
+  return {};
+}
+
 Status SessionWriter::finish(const Outcome& outcome, std::optional<std::size_t> fired) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   TROCAR_CHECK(!fired || *fired < static_cast<std::size_t>(impl_->next_tick));
@@ -268,7 +287,8 @@ Status SessionWriter::finish(const Outcome& outcome, std::optional<std::size_t> 
     impl_->database << "INSERT INTO outcome (score, target_reached, fired_tick, json) VALUES (:s, :t, :f, :j)",
         soci::use(score, score_indicator), soci::use(target_reached), soci::use(fired_tick, fired_indicator),
         soci::use(json);
-    for (const CheckedRows& rows : {kTransducerRows, kOutcomeRows, kBlockRows}) write_checksum(impl_->database, rows);
+    for (const CheckedRows& rows : {kTransducerRows, kParameterRows, kInterruptionRows, kOutcomeRows, kBlockRows})
+      write_checksum(impl_->database, rows);
     impl_->database << "COMMIT";
   });
   if (!status) impl_->failure = status.error();

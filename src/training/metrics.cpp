@@ -150,7 +150,7 @@ Entry find_entry(std::span<const TickSample> samples, std::size_t end, std::opti
 
 AttemptMetrics measure_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues,
                                const PlannedPath& plan, std::span<const TickSample> samples,
-                               std::optional<std::size_t> fired) {
+                               std::optional<std::size_t> fired, std::span<const Interruption> interruptions) {
   AttemptMetrics metrics;
   const auto touch = std::find_if(samples.begin(), samples.end(), [](const TickSample& sample) {
     return is_usable(sample) && (sample.phase != InsertionPhase::kOutside || sample.depth_mm > 0.0);
@@ -173,7 +173,7 @@ AttemptMetrics measure_attempt(const Task& task, const VirtualPatient& patient, 
   metrics.travel_mm = inward_travel_mm(samples.first(*end + 1));
   for (const TickSample& sample : samples.first(*end + 1))
     if (is_usable(sample)) metrics.deepest_mm = std::max(metrics.deepest_mm, sample.depth_mm);
-  metrics.time_s = std::max(0.0, last.time_s - touch->time_s);
+  metrics.time_s = active_time_s(touch->time_s, last.time_s, interruptions);
   metrics.risks = find_risks(task, patient, samples, *end);
   return metrics;
 }

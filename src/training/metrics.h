@@ -8,6 +8,7 @@
 #include "anatomy/patient.h"
 #include "anatomy/tissue_table.h"
 #include "telemetry/tick_sample.h"
+#include "training/active_time.h"
 #include "training/plan.h"
 #include "training/task.h"
 
@@ -33,7 +34,7 @@ struct AttemptMetrics {
   double travel_mm = 0.0;        ///< Way of the tip inward inside the body, pulled back and pushed again
                                  ///< included; to and fro of less than 1 mm is tremor and not counted.
   double deepest_mm = 0.0;       ///< Depth of the tip below the skin, the largest up to the end.
-  double time_s = 0.0;           ///< From the first contact with the skin to the end.
+  double time_s = 0.0;           ///< From the first contact with the skin to the end, without interruptions.
   std::vector<RiskTouch> risks;  ///< By tip and shaft, the whole attempt, one entry a label.
 };
 
@@ -41,6 +42,6 @@ struct AttemptMetrics {
 /// all, or with values that are not finite are measured as far as they go.
 AttemptMetrics measure_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues,
                                const PlannedPath& plan, std::span<const TickSample> samples,
-                               std::optional<std::size_t> fired);
+                               std::optional<std::size_t> fired, std::span<const Interruption> interruptions = {});
 
 }  // namespace trocar

@@ -111,9 +111,10 @@ bool has_reached_target(const Task& task, const Needle& needle, const AttemptMet
 }  // namespace
 
 Outcome score_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues, const Needle& needle,
-                      const PlannedPath& plan, std::span<const TickSample> samples, std::optional<std::size_t> fired) {
+                      const PlannedPath& plan, std::span<const TickSample> samples, std::optional<std::size_t> fired,
+                      std::span<const Interruption> interruptions) {
   if (fired && *fired >= samples.size()) fired.reset();
-  const AttemptMetrics metrics = measure_attempt(task, patient, tissues, plan, samples, fired);
+  const AttemptMetrics metrics = measure_attempt(task, patient, tissues, plan, samples, fired, interruptions);
 
   Outcome outcome;
   double possible_mm = 0.0;

@@ -8,6 +8,7 @@
 #include "anatomy/patient.h"
 #include "anatomy/tissue_table.h"
 #include "telemetry/tick_sample.h"
+#include "training/active_time.h"
 #include "training/needle.h"
 #include "training/plan.h"
 #include "training/task.h"
@@ -68,8 +69,10 @@ struct Outcome {
 BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
                      const Vec3& axis_P);
 
-/// Scores a whole attempt. `fired` is the index of the sample at which the biopsy gun was fired.
+/// Scores a whole attempt. `fired` is the index of the sample at which the biopsy gun was fired. Time in an
+/// interruption is not counted.
 Outcome score_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues, const Needle& needle,
-                      const PlannedPath& plan, std::span<const TickSample> samples, std::optional<std::size_t> fired);
+                      const PlannedPath& plan, std::span<const TickSample> samples, std::optional<std::size_t> fired,
+                      std::span<const Interruption> interruptions = {});
 
 }  // namespace trocar

@@ -65,6 +65,10 @@ Result<Task> load_task(const std::filesystem::path& tasks_folder, std::string_vi
 /// A task of a file: a whole one, or one with `base = "liver-biopsy"`, a task of the folder, and below it only what
 /// differs from that; a list of [[risks]] replaces the base's. With a base the task keeps the base's name.
 Result<Task> load_task_file(const std::filesystem::path& file, const std::filesystem::path& tasks_folder);
+/// The same of such a file's text; `name`: of a whole task, as its file is called without `.toml`. `where`: for
+/// messages.
+Result<Task> parse_task(std::string_view text, const std::string& name, const std::string& where,
+                        const std::filesystem::path& tasks_folder);
 /// The text of such a file: what `task` has that `base` has not.
 std::string task_to_toml(const Task& task, const Task& base);
 

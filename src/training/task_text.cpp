@@ -127,13 +127,25 @@ class TaskReader {
   bool is_whole_;
 };
 
+Result<Task> read_whole_task(const TomlTable& document, const std::string& name) {
+  Task task;
+  task.name = name;
+  TROCAR_TRY_STATUS(TaskReader(document, true).read(task));
+  return task;
+}
+
 Result<Task> read_whole_task(const fs::path& path) {
   TROCAR_TRY(const TomlTable document, load_toml(path));
   if (document.has("base"))
     return fail("a task of this folder has no base", path.string(), "write the whole task, or put it to a patient");
-  Task task;
-  task.name = path.stem().string();
-  TROCAR_TRY_STATUS(TaskReader(document, true).read(task));
+  return read_whole_task(document, path.stem().string());
+}
+
+Result<Task> read_task(const TomlTable& document, const std::string& name, const fs::path& tasks_folder) {
+  if (!document.has("base")) return read_whole_task(document, name);
+  TROCAR_TRY(const std::string base, document.string("base"));
+  TROCAR_TRY(Task task, load_task(tasks_folder, base));
+  TROCAR_TRY_STATUS(TaskReader(document, false).read(task));
   return task;
 }
 
@@ -208,11 +220,13 @@ Result<Task> load_task(const fs::path& tasks_folder, std::string_view name) {
 
 Result<Task> load_task_file(const fs::path& file, const fs::path& tasks_folder) {
   TROCAR_TRY(const TomlTable document, load_toml(file));
-  if (!document.has("base")) return read_whole_task(file);
-  TROCAR_TRY(const std::string base, document.string("base"));
-  TROCAR_TRY(Task task, load_task(tasks_folder, base));
-  TROCAR_TRY_STATUS(TaskReader(document, false).read(task));
-  return task;
+  return read_task(document, file.stem().string(), tasks_folder);
+}
+
+Result<Task> parse_task(std::string_view text, const std::string& name, const std::string& where,
+                        const fs::path& tasks_folder) {
+  TROCAR_TRY(const TomlTable document, parse_toml(text, where));
+  return read_task(document, name, tasks_folder);
 }
 
 std::string task_to_toml(const Task& task, const Task& base) {

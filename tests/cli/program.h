@@ -28,6 +28,8 @@ Outcome run_shell(const std::string& line);
 Json json_of(const Outcome& outcome);
 
 int line_count(const std::string& text);
+/// A file's text; empty where it cannot be read.
+std::string read_text(const std::string& file);
 
 /// A folder of its own, removed at the end, that names its files as text for command lines.
 class TemporaryFolder {

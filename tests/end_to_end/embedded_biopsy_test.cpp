@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 
@@ -120,6 +121,69 @@ TEST_F(EmbeddedBiopsy, ReplayGivesTheSameForces) {
     worst_n = std::max(worst_n, (replay.session.samples[i].f_total_n - expert->session.samples[i].f_total_n).norm());
   EXPECT_LT(worst_n, 1e-6);  // the pose is stored as a quaternion: rounding of the last digits
   EXPECT_NEAR(replay.result.outcome.score, expert->result.outcome.score, 1e-6);
+}
+
+TEST_F(EmbeddedBiopsy, ReplayAppliesChangesAtTheirTick) {
+  // The expert's motion, but the skin was made tougher while the needle came near: as a trainer's session tells it.
+  const TemporaryFolder folder;
+  const auto touch = std::ranges::find(expert->session.samples, InsertionPhase::kLoading, &TickSample::phase);
+  const auto change = static_cast<std::size_t>(touch - expert->session.samples.begin()) - 100;
+  TissueTable tougher = the_case->tissues;
+  ASSERT_TRUE(apply_override(tougher, "skin.fp=6"));
+  const std::filesystem::path file = folder / "changed.trocar";
+  {
+    auto writer = SessionWriter::create(file, expert->session.info);
+    ASSERT_TRUE(writer) << writer.error().text();
+    for (const TickSample& sample : expert->session.samples) ASSERT_TRUE(writer->append(sample));
+    SessionParameters parameters = expert->session.parameters.at(0);
+    ASSERT_TRUE(writer->append(parameters));
+    parameters.tick = change;
+    parameters.time_s = expert->session.samples[change].time_s;
+    parameters.settings = {"skin.fp=6"};
+    parameters.tissue_table_toml = tougher.to_toml();
+    ASSERT_TRUE(writer->append(parameters));
+    ASSERT_TRUE(writer->finish(expert->result.outcome, expert->session.fired));
+  }
+  const Attempt replay = perform(*the_case, "replay:" + file.string());
+  ASSERT_FALSE(replay.result.punctures.empty());
+  EXPECT_NEAR(expert->result.punctures[0].peak_n, 2.8, 0.028);
+  EXPECT_NEAR(replay.result.punctures[0].peak_n, 6.0, 0.06);
+  ASSERT_EQ(replay.session.parameters.size(), 2u);
+  EXPECT_EQ(replay.session.parameters[1].tick, change);
+  EXPECT_EQ(replay.session.parameters[1].settings, std::vector<std::string>{"skin.fp=6"});
+  // A replay of the replay makes the same forces.
+  RunOptions options;
+  options.operator_name = "replay:" + file.string();
+  options.session = folder / "again.trocar";
+  ASSERT_TRUE(run_session(*the_case, options));
+  const Attempt third = perform(*the_case, "replay:" + options.session.string());
+  ASSERT_EQ(third.session.samples.size(), replay.session.samples.size());
+  for (std::size_t n = 0; n < third.session.samples.size(); ++n)
+    ASSERT_LT((third.session.samples[n].f_total_n - replay.session.samples[n].f_total_n).norm(), 1e-6) << n;
+}
+
+TEST_F(EmbeddedBiopsy, ReplayKeepsItsSeedsAndRefusesAnotherPatient) {
+  const TemporaryFolder folder;
+  RunOptions options;
+  options.seed = 42;
+  options.session = folder / "seeded.trocar";
+  const auto first = run_session(*the_case, options);
+  ASSERT_TRUE(first) << first.error().text();
+  const Attempt replay = perform(*the_case, "replay:" + options.session.string());
+  EXPECT_EQ(replay.session.info.seed, 42u);
+  EXPECT_NEAR(replay.result.outcome.score, first->outcome.score, 1e-6);
+
+  Case other = *the_case;
+  auto changed = std::make_shared<VirtualPatient>(*the_case->patient);
+  changed->content_hash = "another";
+  other.patient = changed;
+  options.operator_name = "replay:" + options.session.string();
+  options.session = folder / "other.trocar";
+  const auto refused = run_session(other, options);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().exit_status, 2);
+  options.is_other_patient_meant = true;
+  EXPECT_TRUE(run_session(other, options));
 }
 
 TEST_F(EmbeddedBiopsy, ReportShowsThePeaksByName) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "core/temporary_folder.h"
+#include "headless/run_session.h"
 #include "servers/live_attempt_lab.h"
 #include "station/attempt_replay.h"
 #include "station/hand_motion.h"
@@ -172,7 +173,82 @@ TEST_F(LiveAttemptTest, ParametersReachTheServerWhileItRuns) {
   attempt->finish();
   const RunResult result = finished();
   EXPECT_EQ(result.punctures.size(), 0u);
-  EXPECT_NE(result.warnings.back().find("skin.fp=9 liver.mu=0.2"), std::string::npos);
+  const auto session = load_session(options().session);
+  ASSERT_TRUE(session) << session.error().text();
+  using Settings = std::vector<std::string>;
+  std::vector<Settings> changes;
+  for (const SessionParameters& change : session->parameters) changes.push_back(change.settings);
+  EXPECT_EQ(changes, (std::vector<Settings>{{}, {"skin.fp=9"}, {"liver.mu=0.2"}}));
+}
+
+/// The peak of the skin in a record.
+double skin_peak_n(const std::vector<PunctureRecord>& punctures) {
+  const auto skin = std::ranges::find(punctures, "skin", &PunctureRecord::layer);
+  return skin == punctures.end() ? 0.0 : skin->peak_n;
+}
+
+TEST_F(LiveAttemptTest, RecordsTheTissuesThatWereFeltAndReplaysThem) {
+  AttemptOptions chosen = options();
+  chosen.waits_for_begin = true;
+  start(chosen);
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  attempt->set_parameters({"skin.fp=4"});  // before anything is recorded
+  ASSERT_TRUE(wait_for([&] { return !attempt->view().message.empty(); }));
+  attempt->begin();
+  ASSERT_TRUE(wait_for([&] { return attempt->view().session_s > 0.1; }));
+  attempt->set_parameters({"skin.fp=6"});
+  attempt->perform(expert());
+  ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
+  attempt->finish();
+  const RunResult felt = finished();
+  EXPECT_NEAR(skin_peak_n(felt.punctures), 6.0, 0.01);
+
+  const auto session = load_session(chosen.session);
+  ASSERT_TRUE(session) << session.error().text();
+  ASSERT_EQ(session->parameters.size(), 2u);
+  EXPECT_EQ(session->parameters[0].settings, std::vector<std::string>{"skin.fp=4"});
+  EXPECT_EQ(session->parameters[1].settings, std::vector<std::string>{"skin.fp=6"});
+  EXPECT_GT(session->parameters[1].tick, 0u);
+
+  RunOptions replay;
+  replay.operator_name = "replay:" + chosen.session.string();
+  replay.session = folder_ / "again.trocar";
+  const auto again = run_session(open->the_case, replay);
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_NEAR(skin_peak_n(again->punctures), 6.0, 0.01);
+  EXPECT_EQ(again->punctures.size(), felt.punctures.size());
+  EXPECT_NEAR(again->outcome.score, felt.outcome.score, 0.5);
+  const auto repeated = load_session(replay.session);
+  ASSERT_TRUE(repeated) << repeated.error().text();
+  ASSERT_EQ(repeated->parameters.size(), 2u);
+  EXPECT_EQ(repeated->parameters[1].tick, session->parameters[1].tick);
+  double worst_n = 0.0;
+  for (std::size_t n = 0; n < session->samples.size(); ++n)
+    worst_n =
+        std::max(worst_n, std::abs(axial_resistance_n(session->samples[n]) - axial_resistance_n(repeated->samples[n])));
+  EXPECT_LT(worst_n, 0.05);  // the server's first ticks, before the record, are not in it
+}
+
+TEST_F(LiveAttemptTest, ChangedTissuesOutliveTheirServer) {
+  start(options());
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  attempt->set_parameters({"skin.fp=6"});
+  ASSERT_TRUE(wait_for([&] { return !attempt->view().message.empty(); }));
+  ASSERT_TRUE(wait_for([&] { return attempt->view().session_s > 0.1; }));
+  const int pid = attempt->view().servers[0].pid;
+  ::kill(pid, SIGKILL);
+  ASSERT_TRUE(wait_phase(AttemptPhase::kServerLost)) << where();
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  const double back_s = attempt->view().session_s;
+  ASSERT_TRUE(wait_for([&] { return attempt->view().session_s > back_s + 0.1; }));
+  attempt->finish();
+  const RunResult result = finished();
+  EXPECT_LT(result.active_s, result.simulated_s);
+  const auto session = load_session(options().session);
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_EQ(session->interruptions.size(), 1u);
+  ASSERT_EQ(session->parameters.size(), 2u) << "there is no tick with the shipped numbers after the server's return";
+  EXPECT_EQ(session->parameters[1].settings, std::vector<std::string>{"skin.fp=6"});
 }
 
 TEST_F(LiveAttemptTest, NextAttemptTakesTheServersOver) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "anatomy/phantom/phantom.h"
 #include "core/temporary_folder.h"
 
@@ -38,7 +40,7 @@ class LiveOperatorTest : public testing::Test {
     performer_.the_operator = std::move(witness);
     RunOptions options;
     options.session = folder_ / "attempt.session";
-    auto record = AttemptRecord::create(the_case_, options, {"a device", performer_.rate_hz, "insertion"});
+    auto record = AttemptRecord::create(the_case_, options, {"a device", performer_.rate_hz, "insertion", "", {}});
     ASSERT_TRUE(record.has_value()) << record.error().text();
     record_.emplace(*std::move(record));
     live_.emplace(performer_, *record_, HandCommand{});
@@ -115,6 +117,93 @@ TEST_F(LiveOperatorTest, StandsStillWhileTheServerIsAwayThoughTimeGoesOn) {
   EXPECT_NEAR(session.samples[2].time_s, 2.001, kTolerance_s);
   EXPECT_EQ(session.samples[1].events[0].kind, EventKind::kNone);
   EXPECT_EQ(session.samples[2].events[0].id, static_cast<std::uint8_t>(LimitReason::kResumedInside));
+}
+
+TEST_F(LiveOperatorTest, CountsNoOutageAsTheTraineesTime) {
+  // 51 s of puncture, an outage of 39 s in the midst of it: the report says 51 s, not 90.
+  constexpr double kActive_s = 51.0, kOutage_s = 39.0, kBefore_s = 20.0;
+  the_case_.plan.line_P = {Vec3::Zero(), Vec3(0.0, 50.0, 0.0)};
+  live_->begin(0.0);
+  const auto deeper = [&](double server_s, double depth_mm) {
+    TickSample sample = tick(kServer_s + server_s, InsertionPhase::kInserted);
+    sample.depth_mm = depth_mm;
+    sample.axis = Vec3::UnitY();
+    sample.tip_mm = {0.0, depth_mm, 0.0};
+    ASSERT_TRUE(live_->take(sample));
+  };
+  constexpr double kStep_s = 0.01;
+  for (int n = 0; n * kStep_s <= kBefore_s; ++n) deeper(n * kStep_s, 1.0 + n * kStep_s);
+  live_->begin(0.0);
+  for (int n = 1; kBefore_s + n * kStep_s <= kActive_s; ++n)
+    deeper(kBefore_s + kOutage_s + n * kStep_s, 1.0 + kBefore_s + n * kStep_s);
+  EXPECT_NEAR(live_->active_s(), kActive_s, kStep_s + kTolerance_s);
+  EXPECT_NEAR(live_->time_s(), kActive_s + kOutage_s, kStep_s + kTolerance_s);
+  const auto result = record_->finish();
+  ASSERT_TRUE(result) << result.error().text();
+  EXPECT_NEAR(result->active_s, kActive_s, 2.0 * kStep_s);
+  const auto part = std::ranges::find(result->outcome.parts, "time", &ScorePart::name);
+  ASSERT_NE(part, result->outcome.parts.end());
+  EXPECT_NEAR(part->value, kActive_s, 2.0 * kStep_s);
+  const auto session = load_session(folder_ / "attempt.session");
+  ASSERT_TRUE(session) << session.error().text();
+  ASSERT_EQ(session->interruptions.size(), 1u);
+  EXPECT_NEAR(session->interruptions[0].to_s - session->interruptions[0].from_s, kOutage_s, 2.0 * kStep_s);
+  EXPECT_EQ(session->interruptions[0].reason, kServerWasAway);
+}
+
+TEST_F(LiveOperatorTest, CountsTicksThatCouldNotBeAnsweredAsAnInterruption) {
+  live_->begin(0.0);
+  take(kServer_s);
+  for (int n = 1; n <= 2000; ++n) ASSERT_TRUE(live_->take_unseen(tick(kServer_s + 0.001 * n)));
+  take(kServer_s + 2.001);
+  take(kServer_s + 2.002);
+  EXPECT_NEAR(live_->active_s(), 0.002, kTolerance_s);
+  take(kServer_s + 3.002);  // a second of ticks was lost on the way
+  EXPECT_NEAR(live_->active_s(), 0.003, kTolerance_s);
+  const Session session = recorded();
+  ASSERT_EQ(session.interruptions.size(), 2u);
+  EXPECT_NEAR(session.interruptions[0].from_s, 0.001, kTolerance_s);
+  EXPECT_NEAR(session.interruptions[0].to_s, 2.001, kTolerance_s);
+  EXPECT_NEAR(session.interruptions[1].to_s, 3.002, kTolerance_s);
+}
+
+/// A server's reply to a command that made a scene.
+Reply scene_reply(std::uint64_t number, const TissueTable& tissues, const char* option) {
+  return {1, true, "", number, {option}, tissues.to_toml()};
+}
+
+TEST_F(LiveOperatorTest, RecordsFromWhichTickOnParametersWereInForce) {
+  TissueTable changed = the_case_.tissues;
+  ASSERT_TRUE(apply_override(changed, "skin.fp=6"));
+  KnownScenes known;
+  known.learn(scene_reply(3, the_case_.tissues, "bending=1"));
+  live_->begin(0.0);
+  std::uint64_t scene = 3;
+  for (int n = 0; n < 10; ++n) {
+    if (n == 4) scene = 4;
+    if (n == 6) known.learn(scene_reply(4, changed, "bending=0"));  // the reply may come after the ticks
+    if (n == 8) scene = 5;
+    if (n == 8) known.learn(scene_reply(5, changed, "bending=0"));  // another scene with the same numbers
+    take(kServer_s + 0.001 * n);
+    ASSERT_TRUE(record_->note_scene(scene, known));
+  }
+  const Session session = recorded();
+  ASSERT_EQ(session.parameters.size(), 2u);
+  EXPECT_EQ(session.parameters[0].tick, 0u);
+  EXPECT_TRUE(session.parameters[0].settings.empty());
+  EXPECT_EQ(session.parameters[1].tick, 4u);
+  EXPECT_NEAR(session.parameters[1].time_s, 0.004, kTolerance_s);
+  EXPECT_EQ(session.parameters[1].settings, (std::vector<std::string>{"skin.fp=6", "bending=0"}));
+  EXPECT_EQ(session.parameters[1].tissue_table_toml, changed.to_toml());
+}
+
+TEST_F(LiveOperatorTest, SaysThatAServerNeverToldItsParameters) {
+  live_->begin(0.0);
+  take(kServer_s);
+  ASSERT_TRUE(record_->note_scene(3, KnownScenes{}));
+  const auto result = record_->finish();
+  ASSERT_TRUE(result) << result.error().text();
+  ASSERT_EQ(result->warnings.size(), 1u);
 }
 
 TEST_F(LiveOperatorTest, RecordsWhatTheOperatorCouldNotAnswer) {

@@ -104,6 +104,42 @@ std::string case_row(const char* name, const std::string& value) {
   return value.empty() ? std::string() : fmt::format("<tr><th>{}</th><td>{}</td></tr>", name, escape(value));
 }
 
+/// What changed while the attempt was performed, and when; what a user had set before it began.
+std::string changes_rows(const Session& session) {
+  std::string rows;
+  for (const SessionParameters& change : session.parameters) {
+    if (change.settings.empty()) continue;
+    std::string list;
+    for (const std::string& setting : change.settings) list += (list.empty() ? "" : ", ") + setting;
+    rows += case_row(change.tick == 0 ? "Set before the start" : "Parameters changed",
+                     change.tick == 0 ? list : fmt::format("at {} s: {}", number_text(change.time_s, 2), list));
+  }
+  return rows;
+}
+
+std::string interruption_rows(const Session& session) {
+  std::string rows;
+  for (const Interruption& gap : session.interruptions)
+    rows += case_row("Interruption", fmt::format("at {} s: {} s, {}", number_text(gap.from_s, 2),
+                                                 number_text(gap.to_s - gap.from_s, 2), gap.reason));
+  return rows;
+}
+
+/// The tables in force, each under the time from which on it was.
+std::string tissue_tables(const Session& session) {
+  const auto details = [](const std::string& title, const std::string& table) {
+    return fmt::format("<details><summary>{}</summary><pre>{}</pre></details>", escape(title), escape(table));
+  };
+  const std::string* before = &session.info.tissue_table_toml;
+  std::string out = before->empty() ? std::string() : details("Tissue table", *before);
+  for (const SessionParameters& change : session.parameters) {
+    if (change.tissue_table_toml == *before) continue;
+    before = &change.tissue_table_toml;
+    out += details(fmt::format("Tissue table from {} s", number_text(change.time_s, 2)), *before);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string page_header(const Session& session) {
@@ -181,11 +217,13 @@ std::string case_section(const Session& session) {
   out += case_row("Device", info.device);
   out += case_row("Recorded", fmt::format("{} ticks, {} s at {:g} Hz", session.samples.size(),
                                           number_text(duration_s, 1), info.rate_hz));
+  if (!session.interruptions.empty())
+    out += case_row("Active time", fmt::format("{} s without interruptions",
+                                               number_text(active_time_s(0.0, duration_s, session.interruptions), 1)));
+  out += interruption_rows(session);
+  out += changes_rows(session);
   out += case_row("Program", "Trocar " + info.program_version);
-  out += "</tbody></table>";
-  if (!info.tissue_table_toml.empty())
-    out +=
-        fmt::format("<details><summary>Tissue table</summary><pre>{}</pre></details>", escape(info.tissue_table_toml));
+  out += "</tbody></table>" + tissue_tables(session);
   return out + "</section>";
 }
 

@@ -1,7 +1,6 @@
 #include "station/detail/attempt_loop.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -142,7 +141,6 @@ Status AttemptLoop::take_wishes() {
   for (const std::vector<std::string>& settings : wishes.settings) {
     needle_->set_parameters(settings);
     if (probe_) probe_->set_parameters(settings);
-    if (record_) changed_.push_back(fmt::format("{}", fmt::join(settings, " ")));
   }
   if (wishes.has_drawn) {
     needle_->frame_drawn();
@@ -179,8 +177,13 @@ Status AttemptLoop::start_recording() {
   run.rate_hz = performer_.rate_hz = needle_->wanted_hz() > 0.0 ? needle_->wanted_hz() : options_.rate_hz;
   run.session = options_.session;
   const Welcome& welcome = needle_->client().welcome;
-  const AttemptFacts facts{fmt::format("{}, {}, through {}", welcome.device.name, welcome.device.title, welcome.server),
-                           performer_.rate_hz, performer_.force_model};
+  AttemptFacts facts{fmt::format("{}, {}, through {}", welcome.device.name, welcome.device.title, welcome.server),
+                     performer_.rate_hz,
+                     performer_.force_model,
+                     preset_of_device(welcome.device.name),
+                     {}};
+  if (const KnownScenes* known = needle_->scenes(); known != nullptr && known->newest() != nullptr)
+    facts.parameters = *known->newest();
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(open_case_->the_case, run, facts));
   record_.emplace(std::move(record));
   live_.emplace(performer_, *record_, command_, kLongestPersons_s);
@@ -197,7 +200,8 @@ Status AttemptLoop::step_needle() {
   }
   if (samples.empty()) return {};
   if (!was_needle_on_) {
-    if (live_) live_->begin(needle_->clock_offset_s());
+    if (live_) live_->begin(needle_->clock_offset_s(), needle_->seatings() != seatings_);
+    seatings_ = needle_->seatings();
     if (has_ever_been_on_) steering_->resume_at(device_pose(samples.front().sample));
     needle_time_s_ = samples.front().sample.time_s;
   }
@@ -234,6 +238,7 @@ Status AttemptLoop::record(const std::vector<NumberedSample>& samples) {
       TROCAR_TRY(const bool goes_on, live_->take(numbered.sample));
       finishes_ = finishes_ || !goes_on;
     }
+    if (const KnownScenes* known = needle_->scenes()) TROCAR_TRY_STATUS(record_->note_scene(numbered.scene, *known));
     note_tick(live_->last());
   }
   command_ = live_->command();
@@ -280,11 +285,7 @@ Result<RunResult> AttemptLoop::score(const Status& status) {
   for (const std::optional<ToolServer>* server : {&needle_, &probe_})
     if (*server) result.servers.push_back((*server)->figures());
   result.ticks_missing = needle_->view().ticks_missing;
-  result.warnings = notes_;
-  if (!changed_.empty())
-    result.warnings.push_back(
-        fmt::format("tissues were changed during the attempt, which the session's table does not tell: {}",
-                    fmt::join(changed_, "; ")));
+  result.warnings.insert(result.warnings.begin(), notes_.begin(), notes_.end());
   if (result.ticks_missing > 0)
     result.warnings.push_back(
         fmt::format("{} ticks of the needle did not arrive: the session has gaps there", result.ticks_missing));

@@ -92,14 +92,15 @@ class AttemptLoop {
   HandCommand command_;  ///< Of the needle's hand.
   std::optional<TickSample> last_needle_, last_probe_;
   double probe_time_s_ = 0.0, needle_time_s_ = 0.0;  ///< Of the servers' last ticks.
+  int seatings_ = 0;                                 ///< Of the needle's server, when its ticks last began to come.
   bool was_needle_on_ = false, was_probe_on_ = false;
   bool begins_ = false, finishes_ = false, is_stopped_ = false;
   bool has_ever_been_on_ = false;
   std::optional<double> contact_s_;
+  double session_s_ = 0.0, since_contact_s_ = 0.0;  ///< Active time: kept for the view after the record is closed.
   ForceTrace trace_;
   std::vector<AttemptEvent> events_;
   std::vector<std::string> notes_;
-  std::vector<std::string> changed_;
   std::string message_, progress_;
   double progress_fraction_ = 0.0;
 };

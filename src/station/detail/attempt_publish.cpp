@@ -92,8 +92,11 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   }
   if (is_stopped_ && view.banner.empty()) view.banner = "Forces are stopped. Resume to go on.";
   if (last_needle_) {
-    view.session_s = last_needle_->time_s;
-    view.since_contact_s = contact_s_ ? last_needle_->time_s - *contact_s_ : 0.0;
+    if (live_) session_s_ = live_->active_s();
+    if (contact_s_ && record_)
+      since_contact_s_ = active_time_s(*contact_s_, last_needle_->time_s, record_->interruptions());
+    view.session_s = session_s_;
+    view.since_contact_s = since_contact_s_;
     const bool is_moving = phase == AttemptPhase::kReady || phase == AttemptPhase::kInBody;
     if (options_.is_guided && is_moving) view.hint = guide_puncture(open_case_->the_case, *last_needle_);
   }

@@ -58,13 +58,16 @@ void ToolServer::connect() {
     return;
   }
   seat_.emplace(*std::move(seat));
-  if (request_) seat_->hold(*request_);
+  if (!request_) return;
+  request_->parameters = parameters();
+  seat_->hold(*request_);
 }
 
 void ToolServer::hold(const SeatRequest& request) {
   request_ = request;
   request_->is_in_real_hand = is_real_hand_;
   request_->resets_fault = true;
+  request_->parameters = parameters();
   if (seat_) seat_->hold(*request_);
 }
 
@@ -138,12 +141,18 @@ std::string ToolServer::look() {
   const Result<State> state = seat_->look();
   was_ever_heard_ = was_ever_heard_ || seat_->view().welcome.session != 0;
   if (seat_->view().is_connected || process_->is_held_up()) held_up_ = Clock::now();
+  if (std::optional<std::string> refusal = seat_->take_refusal()) {
+    settings_ = {};
+    messages_.push_back(*std::move(refusal));
+  }
   if (!state) return cannot_go_on(state.error());
   if (*state == State::kOn && !was_on_) {
     was_on_ = true;
+    ++seatings_;
     ticked_ = Clock::now();
     banner_.clear();
-    send_settings();
+    const SetParameters now = parameters();  // set while the forces were coming on
+    if (now.settings != seat_->adjusted().settings) before_[seat_->send(now)] = settings_;
   }
   if (was_on_ && *state != State::kOn) return note_interruption();
   if (!was_on_) return {};
@@ -154,14 +163,19 @@ std::string ToolServer::look() {
   } else {
     banner_.clear();
   }
+  note_replies();
+  return {};
+}
+
+void ToolServer::note_replies() {
   for (const Reply& reply : seat_->take_replies()) {
     const auto before = before_.find(reply.request);
     if (before == before_.end()) continue;
     if (!reply.is_done) settings_ = before->second;  // all of a message or nothing
     messages_.push_back(reply.text);
     before_.erase(before);
+    seat_->adjust(parameters());
   }
-  return {};
 }
 
 /// The server came back, or stood still; the seat has it hold the tool where it was.
@@ -237,10 +251,10 @@ void ToolServer::set_hand(const HandTarget& target) {
   if (is_on()) seat_->set_hand(target);
 }
 
-void ToolServer::send_settings() {
+SetParameters ToolServer::parameters() const {
   std::vector<std::string> all = settings_.tissues;
   for (const auto& [key, setting] : settings_.other) all.push_back(setting);
-  if (!all.empty()) seat_->send(SetParameters{std::move(all)});
+  return {std::move(all)};
 }
 
 void ToolServer::set_parameters(const std::vector<std::string>& settings) {
@@ -256,6 +270,7 @@ void ToolServer::set_parameters(const std::vector<std::string>& settings) {
     }
   }
   if (!tissues.empty() || settings.empty()) settings_.tissues = std::move(tissues);
+  if (seat_) seat_->adjust(parameters());
   if (is_on()) before_[seat_->send(SetParameters{settings})] = before;
 }
 

@@ -44,9 +44,12 @@ class ToolServer {
   std::string doing() const;  ///< "loading the patient", for a progress line.
 
   std::vector<NumberedSample> take_samples();
+  /// The scenes of the ticks that take_samples() gives; null while there is no seat.
+  const KnownScenes* scenes() const noexcept { return seat_ ? &seat_->scenes() : nullptr; }
+  int seatings() const noexcept { return seatings_; }  ///< How often its forces came on, the tool put to its place.
   void set_hand(const HandTarget& target);
-  /// As SetParameters means them. Sent now, and what holds then again whenever the server comes back. What is said of
-  /// them comes by take_messages().
+  /// As SetParameters means them. Sent now, and what holds then again whenever the server comes back, before its forces
+  /// do. What is said of them comes by take_messages().
   void set_parameters(const std::vector<std::string>& settings);
   std::vector<std::string> take_messages();
   void stop_forces();
@@ -71,7 +74,9 @@ class ToolServer {
   std::string note_interruption();
   std::string open_device_again();
   std::string device_words() const;  ///< "gamepad"
-  void send_settings();
+  /// All that was set since the scene was loaded.
+  SetParameters parameters() const;
+  void note_replies();
 
   OwnServer* process_;
   std::chrono::milliseconds patience_;
@@ -94,7 +99,7 @@ class ToolServer {
   Clock::time_point ticked_;               ///< When a tick was last taken.
   Clock::time_point held_up_;              ///< When it was last heard, or its process had no processor.
   int stalls_ = 0;                         ///< Of the seat, as far as they were told.
-  int restarts_ = 0;
+  int restarts_ = 0, seatings_ = 0;
   std::uint64_t missing_before_ = 0;  ///< By seats that were given up.
   bool was_on_ = false;               ///< Since the seat was taken.
   bool was_ever_heard_ = false;

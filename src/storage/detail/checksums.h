@@ -50,6 +50,8 @@ inline constexpr CheckedRows kNameRows{
     "SELECT 1, id, name FROM tissues UNION ALL SELECT 2, id, name FROM layers UNION ALL "
     "SELECT 3, id, name FROM labels UNION ALL SELECT 4, id, name FROM phases ORDER BY 1, 2"};
 inline constexpr CheckedRows kTransducerRows{"transducer", "SELECT * FROM transducer ORDER BY time_s"};
+inline constexpr CheckedRows kParameterRows{"parameters", "SELECT * FROM parameters ORDER BY tick"};
+inline constexpr CheckedRows kInterruptionRows{"interruptions", "SELECT * FROM interruptions ORDER BY tick, from_s"};
 inline constexpr CheckedRows kOutcomeRows{"outcome", "SELECT * FROM outcome LIMIT 2"};
 inline constexpr CheckedRows kBlockRows{"tick_blocks", "SELECT * FROM tick_blocks ORDER BY first_tick"};
 

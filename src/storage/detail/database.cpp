@@ -4,6 +4,7 @@
 
 #include "storage/detail/checksums.h"
 #include "storage/detail/columns.h"
+#include "storage/detail/parameters_table.h"
 #include "storage/detail/transducer_table.h"
 #include "storage/session_file.h"
 
@@ -36,9 +37,9 @@ std::string view_columns() {
       list += words_of(name, kLastGateFault);
     else if constexpr (std::is_same_v<Field, std::array<TickEvent, 4>>)
       list += fmt::format(
-          "coalesce((SELECT group_concat(text, ';') FROM (SELECT text FROM events e WHERE e.tick = t.tick"
-          " ORDER BY slot)), '') AS {}",
-          name);
+          "coalesce((SELECT group_concat(text, ';') FROM ({} UNION ALL SELECT text FROM (SELECT text FROM events e"
+          " WHERE e.tick = t.tick ORDER BY slot))), '') AS {}",
+          parameters_events_sql(), name);
     else
       list += fmt::format("t.{}", name);
   });
@@ -71,6 +72,7 @@ std::vector<std::string> schema_statements() {
       "text TEXT NOT NULL, PRIMARY KEY (tick, slot)) WITHOUT ROWID");
   statements.push_back(transducer_schema());
   for (std::string& statement : checksum_schema()) statements.push_back(std::move(statement));
+  for (std::string& statement : parameters_schema()) statements.push_back(std::move(statement));
   statements.emplace_back(
       "CREATE TABLE outcome (score REAL, target_reached INTEGER NOT NULL, fired_tick INTEGER, json TEXT NOT NULL)");
   statements.push_back(

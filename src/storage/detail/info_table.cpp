@@ -37,6 +37,13 @@ void visit_info(Info& info, Visitor&& visit) {
   visit("is_parenchymal", info.is_parenchymal);
 }
 
+/// Likewise; sessions of older programs do not have them.
+template <class Info, class Visitor>
+void visit_added_info(Info& info, Visitor&& visit) {
+  visit("task_toml", info.task_toml);
+  visit("device_preset", info.device_preset);
+}
+
 template <class Field>
 Field parse_number(const std::string& key, const std::string& text) {
   Field value{};
@@ -84,6 +91,11 @@ void write_info(soci::session& database, const SessionInfo& info) {
       value = fmt::format("{}", field);
     insert.execute(true);
   });
+  visit_added_info(info, [&](const char* name, const std::string& field) {
+    key = name;
+    value = field;
+    insert.execute(true);
+  });
   write_names(database, "tissues", info.tissue_names);
   write_names(database, "layers", info.layer_names);
   write_names(database, "labels", info.label_names);
@@ -119,6 +131,9 @@ SessionInfo read_info(soci::session& database) {
       field = found->second == "1";
     else
       field = parse_number<Field>(name, found->second);
+  });
+  visit_added_info(info, [&](const char* name, std::string& field) {
+    if (const auto found = values.find(name); found != values.end()) field = found->second;
   });
   info.tissue_names = read_names(database, "tissues");
   info.layer_names = read_names(database, "layers");

@@ -6,6 +6,7 @@
 
 #include "storage/detail/checksums.h"
 #include "storage/detail/info_table.h"
+#include "storage/detail/parameters_table.h"
 #include "storage/detail/tick_reader.h"
 #include "storage/detail/transducer_table.h"
 
@@ -19,6 +20,8 @@ constexpr const char* kInfoPart = "facts of the case (table info)";
 constexpr const char* kNamesPart = "names of tissues, layers, labels or phases";
 constexpr const char* kBlocksPart = "list of tick blocks (table tick_blocks)";
 constexpr const char* kTransducerPart = "poses of the transducer";
+constexpr const char* kParametersPart = "changes of parameters";
+constexpr const char* kInterruptionsPart = "interruptions";
 constexpr const char* kOutcomePart = "outcome (score and hints)";
 
 class Salvage {
@@ -36,6 +39,7 @@ class Salvage {
     read_samples();
     const bool is_read = attempt(kTransducerPart, [&] { session_.transducer = read_transducer(database_.session()); });
     if (!is_read || !check(kTransducerPart, kTransducerRows, is_finished_)) session_.transducer.clear();
+    read_parameters_and_interruptions();
     session_.is_incomplete = !is_finished_ && !has_part(kOutcomePart);
     return read_outcome();
   }
@@ -44,7 +48,7 @@ class Salvage {
   void check_tables() {
     for (const char* table : {"info", "tissues", "layers", "labels", "phases", "ticks", "events", "outcome"})
       database_.require_table(table);
-    for (const char* table : {"transducer", "tick_blocks", "checksums"})
+    for (const char* table : {"transducer", "parameters", "interruptions", "tick_blocks", "checksums"})
       if (database_.has_table(table)) database_.require_table(table);
   }
 
@@ -122,6 +126,31 @@ class Salvage {
     for (std::size_t first = 0; first < ticks; first += kUncheckedBlockTicks)
       blocks.push_back({first, std::min(kUncheckedBlockTicks, ticks - first), {}});
     return blocks;
+  }
+
+  void read_parameters_and_interruptions() {
+    if (database_.has_table("parameters")) {
+      const bool is_read = attempt(
+          kParametersPart, [&] { session_.parameters = read_parameters(database_.session(), ticks_in_table()); });
+      if (!is_read || !check(kParametersPart, kParameterRows, is_finished_)) session_.parameters.clear();
+    }
+    if (database_.has_table("interruptions")) {
+      const bool is_read =
+          attempt(kInterruptionsPart, [&] { session_.interruptions = read_interruptions(database_.session()); });
+      if (!is_read || !check(kInterruptionsPart, kInterruptionRows, is_finished_)) session_.interruptions.clear();
+    }
+    move_parameters_to_samples();
+  }
+
+  /// Where ticks are missing, parameters are those of the first sample behind their tick.
+  void move_parameters_to_samples() {
+    const auto& samples = session_.samples;
+    if (session_.damage.empty()) return;
+    for (SessionParameters& parameters : session_.parameters) {
+      const auto behind = std::find_if(samples.begin(), samples.end(),
+                                       [&](const TickSample& sample) { return sample.time_s >= parameters.time_s; });
+      parameters.tick = static_cast<std::size_t>(behind - samples.begin());
+    }
   }
 
   void read_samples() {

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "link/messages.h"
+
+namespace trocar {
+
+/// The parameters of a scene.
+struct SceneParameters {
+  std::vector<std::string> options;  ///< See haptics/scene_options.h.
+  std::string tissue_table_toml;
+};
+
+/// The scenes that a client has asked of a server, by number, as the server's replies describe them.
+class KnownScenes {
+ public:
+  void learn(const Reply& reply) {
+    if (!reply.is_done || reply.scene == 0) return;
+    newest_ = reply.scene;
+    scenes_[newest_] = {reply.options, reply.tissues_toml};
+  }
+  /// The server was started again and numbers its scenes from 1.
+  void clear() noexcept {
+    scenes_.clear();
+    newest_ = 0;
+  }
+  /// Null: its reply has not come yet.
+  const SceneParameters* find(std::uint64_t number) const {
+    const auto found = scenes_.find(number);
+    return found == scenes_.end() ? nullptr : &found->second;
+  }
+  const SceneParameters* newest() const { return find(newest_); }
+
+ private:
+  std::map<std::uint64_t, SceneParameters> scenes_;
+  std::uint64_t newest_ = 0;
+};
+
+}  // namespace trocar

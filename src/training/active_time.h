@@ -1,0 +1,27 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <string>
+
+namespace trocar {
+
+/// A time in which the trainee could not act: a haptic server was away, or no tick was answered. Times of the session;
+/// `to_s` is the time of the first tick after it.
+struct Interruption {
+  double from_s = 0.0;
+  double to_s = 0.0;
+  std::string reason;  ///< kServerWasAway, or other words.
+};
+/// After it the insertion began anew where the needle was.
+inline constexpr const char* kServerWasAway = "the needle's server was away";
+
+/// Time from `from_s` to `to_s` in which the trainee could act. Interruptions do not overlap.
+inline double active_time_s(double from_s, double to_s, std::span<const Interruption> interruptions) noexcept {
+  double time_s = std::max(0.0, to_s - from_s);
+  for (const Interruption& gap : interruptions)
+    time_s -= std::max(0.0, std::min(to_s, gap.to_s) - std::max(from_s, gap.from_s));
+  return std::max(0.0, time_s);
+}
+
+}  // namespace trocar

@@ -1,0 +1,105 @@
+// A replay takes everything from its session.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "program.h"
+
+namespace trocar::cli_test {
+namespace {
+
+/// An expert's attempt whose every argument is another one than the usual.
+class ReplayCommand : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    session_ = *folder_ / "first.session";
+    recorded_ =
+        json_of(trocar("run liver-biopsy --patient layers-liver --patient-seed 3 --seed 42 --device omni "
+                       "--needle biopsy-18g --rate 500 --profile tented --set skin.fp=4 --force-model combined "
+                       "--operator expert --json --out '" +
+                       session_ + "'"));
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+  static Outcome replay(const std::string& arguments, const std::string& out) {
+    return trocar("run --operator 'replay:" + session_ + "' --json --out '" + (*folder_ / out) + "' " + arguments);
+  }
+
+  static inline std::unique_ptr<TemporaryFolder> folder_;
+  static inline std::string session_;
+  static inline Json recorded_;
+};
+
+TEST_F(ReplayCommand, RestoresAllFromTheSession) {
+  ASSERT_FALSE(recorded_.is_null());
+  const Json again = json_of(replay("", "again.session"));
+  for (const char* same : {"task", "patient", "patient_hash", "patient_seed", "seed", "device", "force_model", "needle",
+                           "ticks", "target_reached", "risks_touched", "hints"})
+    EXPECT_EQ(again[same], recorded_[same]) << same;
+  EXPECT_EQ(again["seed"], 42);
+  EXPECT_EQ(again["patient_seed"], 3);
+  EXPECT_EQ(again["device"], "omni");
+  EXPECT_NEAR(again["score"].get<double>(), recorded_["score"].get<double>(), 1e-6);
+  ASSERT_EQ(again["punctures"].size(), recorded_["punctures"].size());
+  for (std::size_t n = 0; n < again["punctures"].size(); ++n)
+    EXPECT_NEAR(again["punctures"][n]["peak_n"].get<double>(), recorded_["punctures"][n]["peak_n"].get<double>(), 1e-6);
+}
+
+TEST_F(ReplayCommand, RefusesWhatContradictsTheSession) {
+  for (const std::string contradiction :
+       {"--seed 7", "--patient-seed 9", "--device premium", "--rate 1000", "--needle nobody", "lumbar",
+        "--patient layers-ascites", "--patient-seed 9 --patient layers-liver"}) {
+    const Outcome outcome = replay(contradiction, "none.session");
+    EXPECT_EQ(outcome.exit_status, 2) << contradiction << outcome.err;
+    EXPECT_NE(outcome.err.find("session"), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(
+      replay("liver-biopsy --seed 42 --patient-seed 3 --patient layers-liver --device omni --rate 500", "same.session")
+          .exit_status,
+      0)
+      << "what is the same is no contradiction";
+}
+
+TEST_F(ReplayCommand, GoesIntoAnotherPatientOnlyWhenThatIsMeant) {
+  const Outcome meant = replay("--other-patient --patient-seed 4", "other.session");
+  const Json other = json_of(meant);
+  EXPECT_NE(other["patient_hash"], recorded_["patient_hash"]);
+  EXPECT_EQ(other["patient_seed"], 4);
+  const Outcome pointless = trocar("run liver-biopsy --patient layers-liver --operator expert --other-patient --out '" +
+                                   (*folder_ / "pointless.session") + "'");
+  EXPECT_EQ(pointless.exit_status, 2);
+}
+
+TEST_F(ReplayCommand, SaysWhenTissuesAreChangedOnPurpose) {
+  const Outcome outcome = replay("--set skin.fp=5", "stiffer.session");
+  const Json stiffer = json_of(outcome);
+  EXPECT_NE(outcome.err.find("warning: "), std::string::npos) << outcome.err;
+  EXPECT_NEAR(stiffer["punctures"][0]["peak_n"].get<double>(), 5.0, 0.05);
+  EXPECT_NEAR(recorded_["punctures"][0]["peak_n"].get<double>(), 4.0, 0.04);
+}
+
+TEST_F(ReplayCommand, NamesTheNumbersThatWereSetInCsvAndReport) {
+  const std::string csv = *folder_ / "first.csv", html = *folder_ / "first.html";
+  ASSERT_EQ(trocar("session export '" + session_ + "' --csv '" + csv + "'").exit_status, 0);
+  ASSERT_EQ(trocar("session report '" + session_ + "' --out '" + html + "'").exit_status, 0);
+  EXPECT_NE(read_text(csv).find("set:skin.fp=4"), std::string::npos);
+  EXPECT_NE(read_text(html).find("skin.fp=4"), std::string::npos);
+}
+
+TEST(Seeds, OfTheOperatorDoNotChangeTheAnatomy) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string& arguments, const std::string& out) {
+    return json_of(trocar("run liver-biopsy --patient layers-liver --operator novice --json --out '" + (folder / out) +
+                          "' " + arguments));
+  };
+  const Json first = run("", "first"), other_hand = run("--seed 2", "hand"),
+             other_body = run("--patient-seed 2", "body");
+  EXPECT_EQ(first["patient_seed"], 1);
+  EXPECT_EQ(first["patient_hash"], other_hand["patient_hash"]);
+  EXPECT_NE(first["score"], other_hand["score"]);
+  EXPECT_NE(first["patient_hash"], other_body["patient_hash"]);
+  EXPECT_EQ(other_body["seed"], 1);
+}
+
+}  // namespace
+}  // namespace trocar::cli_test
