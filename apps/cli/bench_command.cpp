@@ -25,8 +25,8 @@ struct Arguments {
 };
 
 /// Options that only some benchmarks can use.
-constexpr const char* kForSome[] = {"--patient", "--task",    "--paths", "--force-model", "--seed",
-                                    "--out",     "--seconds", "--rate",  "--sequence"};
+constexpr const char* kForSome[] = {"--patient", "--patient-seed", "--task",    "--paths", "--force-model",
+                                    "--seed",    "--out",          "--seconds", "--rate",  "--sequence"};
 
 std::string cell(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : "-";
@@ -133,6 +133,9 @@ void add_bench_command(CLI::App& program, Action& action) {
   command->add_flag("--list", a->is_list, "List the benchmarks");
   command->add_flag("--json", a->is_json, "Print one JSON object; with several benchmarks a list under \"benches\"");
   command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
+  seed_number(
+      command->add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient"))
+      ->capture_default_str();
   add_cache_option(*command, a->source);
   command->add_option("--task", a->options.task, "Task whose paths are planned")->capture_default_str();
   whole_number_within(command->add_option("--paths", a->options.paths, "Number of planned paths"), 1, 100000)

@@ -86,7 +86,11 @@ void add_plan_command(CLI::App& program, Action& action) {
                       100000)
       ->capture_default_str();
   command->add_option("--needle", a->needle, "Needle of data/needles.toml; the task's own when left out");
-  seed_number(command->add_option("--seed", a->source.seed, "Seed of an embedded patient"))->capture_default_str();
+  seed_number(command->add_option("--seed", a->options.seed, "Random seed for the choice among paths"))
+      ->capture_default_str();
+  seed_number(
+      command->add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient"))
+      ->capture_default_str();
   add_cache_option(*command, a->source);
   command->add_option("--out", a->out, "3D Slicer markups file to write (.mrk.json)")->required();
   command->add_flag("--json", a->is_json, "Print one JSON object");

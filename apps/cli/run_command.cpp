@@ -10,6 +10,7 @@
 #include "io/patient_source.h"
 #include "number_option.h"
 #include "patient_option.h"
+#include "replay_arguments.h"
 
 namespace trocar::cli {
 namespace {
@@ -23,7 +24,7 @@ struct Arguments {
   RealtimeOptions realtime;
   std::string key_file, server_key_file;
   double patience_s = 5.0;
-  bool has_device = false, has_rate = false;  ///< Named on the command line.
+  NamedOptions named;
 };
 
 Json core_json(const BiopsyCore& core) {
@@ -94,10 +95,16 @@ Json result_json(const Arguments& arguments, const Case& the_case, const RunResu
   Json json = {{"session", arguments.run.session.string()},
                {"task", the_case.task.name},
                {"patient", the_case.patient->name},
+               {"patient_hash", the_case.patient->content_hash},
+               {"patient_seed", arguments.run.patient_seed},
+               {"seed", arguments.run.seed},
+               {"needle", the_case.needle.name},
+               {"force_model", result.force_model},
                {"operator", arguments.run.operator_name},
                {"device", arguments.run.device},
                {"parenchymal", the_case.is_parenchymal},
                {"simulated_s", result.simulated_s},
+               {"active_s", result.active_s},
                {"ticks", result.ticks},
                {"score", outcome.score},
                {"target_reached", outcome.target_reached},
@@ -109,8 +116,8 @@ Json result_json(const Arguments& arguments, const Case& the_case, const RunResu
   if (arguments.is_realtime) {
     json["ticks_missing"] = result.ticks_missing;
     json["servers"] = servers_json(result.servers);
-    json["warnings"] = result.warnings;
   }
+  json["warnings"] = result.warnings;
   return json;
 }
 
@@ -157,7 +164,7 @@ Status check_servers(Arguments& a) {
   if (a.key_file.empty() != a.server_key_file.empty())
     return fail_usage("--keys and --server-key must be given together", "--keys, --server-key",
                       "give both; trocar link keygen makes them");
-  if (!a.realtime.endpoints.empty() && (a.has_device || a.has_rate))
+  if (!a.realtime.endpoints.empty() && (a.named.has("--device") || a.named.has("--rate")))
     return fail_usage("device and rate of running servers are set when they start", "--device, --rate",
                       "give them to trocar-hapticd instead");
   if (!a.key_file.empty()) {
@@ -183,25 +190,47 @@ Status make_room(const std::filesystem::path& session) {
   return check_new(session);
 }
 
+/// What can be wrong with the case before there is a patient.
+Status check_case(const Arguments& arguments) {
+  const RunOptions& run = arguments.run;
+  if (run.replayed == nullptr) {
+    TROCAR_TRY_STATUS(load_tables(arguments.the_case));
+    return {};
+  }
+  TROCAR_TRY_STATUS(replay_parameters(*run.replayed, run.replay_changes));
+  if (run.replay_changes.is_any())
+    print_warning(
+        "the replay has other tissues or another force model than the session: its forces are not the "
+        "recorded ones");
+  return {};
+}
+
+Result<Case> make_case(const Arguments& arguments, VirtualPatient opened, const Progress& progress) {
+  auto patient = std::make_shared<const VirtualPatient>(std::move(opened));
+  const RunOptions& run = arguments.run;
+  if (run.replayed == nullptr) return prepare_case(std::move(patient), arguments.the_case, progress);
+  TROCAR_TRY(const auto parameters, replay_parameters(*run.replayed, run.replay_changes));
+  return restore_case(std::move(patient), *run.replayed, parameters.front(), run.is_other_patient_meant);
+}
+
 Status run(Arguments& arguments) {
   RunOptions& run = arguments.run;
+  TROCAR_TRY_STATUS(check_run(run));
+  TROCAR_TRY_STATUS(restore_arguments(arguments.named, arguments.the_case, run, arguments.source));
   TROCAR_TRY_STATUS(make_room(run.session));
   run.patient_source = arguments.source.folder_or_name;
   run.patient_seed = arguments.source.seed;
-  run.seed = arguments.source.seed;
-  arguments.the_case.seed = arguments.source.seed;
+  arguments.the_case.seed = run.seed;
   arguments.the_case.patient_folder = arguments.source.folder_or_name;
-  TROCAR_TRY_STATUS(check_run(run));
   TROCAR_TRY_STATUS(check_servers(arguments));
-  TROCAR_TRY_STATUS(load_tables(arguments.the_case));
+  TROCAR_TRY_STATUS(check_case(arguments));
   if (arguments.is_realtime) TROCAR_TRY_STATUS(find_servers(arguments.realtime));
   Case the_case;
   RunResult result;
   {
     const ProgressPrinter printer;
     TROCAR_TRY(VirtualPatient patient, open_patient(arguments.source, printer.callback()));
-    TROCAR_TRY(the_case, prepare_case(std::make_shared<const VirtualPatient>(std::move(patient)), arguments.the_case,
-                                      printer.callback()));
+    TROCAR_TRY(the_case, make_case(arguments, std::move(patient), printer.callback()));
     TROCAR_TRY(result, arguments.is_realtime
                            ? run_realtime_session(the_case, run, arguments.realtime, printer.callback())
                            : run_session(the_case, run, printer.callback()));
@@ -237,8 +266,8 @@ void add_run_command(CLI::App& program, Action& action) {
   a->the_case.task.clear();
   command->add_option("TASK,--task", a->the_case.task,
                       "Task: see trocar task list, or a task file (.toml); the patient's own when left out");
-  command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name")
-      ->required();
+  command->add_option("--patient", a->source.folder_or_name,
+                      "Patient folder, or an embedded patient's name; a replay has its session's");
   command
       ->add_option("--operator", a->run.operator_name, "expert, novice, constant-velocity:MM_PER_S or replay:SESSION")
       ->required();
@@ -246,22 +275,22 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option(
       "--force-model", a->run.force_model,
       "How forces are made: insertion (paper A), proxy (paper B) or combined; the task's own when left out");
-  CLI::Option* device =
-      command
-          ->add_option("--device", a->run.device, "Simulated device: its limits and coupling; see trocar device list")
-          ->capture_default_str();
+  command->add_option("--device", a->run.device, "Simulated device: its limits and coupling; see trocar device list")
+      ->capture_default_str();
   command->add_option("--needle", a->the_case.needle, "Needle of data/needles.toml; the task's own when left out");
   command->add_option("--tissues", a->the_case.tissue_file, "Tissue table (TOML) instead of data/tissues.toml");
   command->add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");
   command->add_option("--set", a->the_case.overrides, "Change numbers of the tissue table: liver.k=0.5")
       ->allow_extra_args(false);
-  seed_number(
-      command->add_option("--seed", a->source.seed,
-                          "Random seed for operator, friction, path choice and (embedded patients) the anatomy"))
+  seed_number(command->add_option("--seed", a->run.seed, "Random seed for operator, friction and path choice"))
       ->capture_default_str();
-  CLI::Option* rate =
-      number_within(command->add_option("--rate", a->run.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
-          ->capture_default_str();
+  seed_number(
+      command->add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient"))
+      ->capture_default_str();
+  number_within(command->add_option("--rate", a->run.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
+      ->capture_default_str();
+  command->add_flag("--other-patient", a->run.is_other_patient_meant,
+                    "Replay in another patient than the session's, as --patient names it");
   add_cache_option(*command, a->source);
   add_server_options(*command, *a);
   command->add_flag("--json", a->is_json, "Print one JSON object");
@@ -270,12 +299,12 @@ void add_run_command(CLI::App& program, Action& action) {
       "  trocar run liver-biopsy --patient my_patient --operator novice --set liver.k=0.5 --seed 4 --out "
       "second.session\n"
       "  trocar run --patient my_case --operator expert --out own_task.session\n"
+      "  trocar run --operator replay:first.session --out again.session\n"
       "  trocar run liver-biopsy --patient abdomen --operator expert --realtime --out live.session\n"
       "  trocar run liver-biopsy --patient abdomen --operator expert --realtime --endpoint ipc:///tmp/needle "
       "--endpoint ipc:///tmp/probe --out live.session\n");
-  command->callback([&action, a, device, rate] {
-    a->has_device = device->count() > 0;
-    a->has_rate = rate->count() > 0;
+  command->callback([&action, a, command] {
+    a->named.note(*command);
     action = [a] { return run(*a); };
   });
 }

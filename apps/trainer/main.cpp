@@ -11,7 +11,9 @@
 #include "anatomy/phantom/phantom.h"
 #include "control/seat_flow.h"
 #include "core/data_dir.h"
+#include "core/user_folders.h"
 #include "core/version.h"
+#include "number_option.h"
 #include "pages/start_page.h"
 #include "program_end.h"
 #include "scene/render_patient.h"
@@ -21,7 +23,6 @@
 #include "shell/parts.h"
 #include "shell/theme.h"
 #include "shell/trainer_application.h"
-#include "core/user_folders.h"
 #include "training/task.h"
 
 namespace {
@@ -32,6 +33,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::optional<std::string> task, patient;
+  std::optional<std::uint64_t> patient_seed;
   std::string script, screenshot, state_folder;
   bool is_benchmark = false;
 };
@@ -39,6 +41,8 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--task", arguments.task, "Task that is chosen at the start");
   app.add_option("--patient", arguments.patient, "Patient folder, or an embedded patient's name");
+  seed_number(app.add_option("--patient-seed", arguments.patient_seed,
+                             "Random seed for the anatomy of an embedded patient [1]"));
   app.add_option("--script", arguments.script, "Plays a user's steps, then ends; exit status 1 where one fails")
       ->check(CLI::ExistingFile);
   app.add_option("--screenshot", arguments.screenshot,
@@ -58,6 +62,7 @@ Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments)
     TROCAR_TRY(const Task task, load_task(data_dir() / "tasks", *arguments.task));
     choice.task = task.name;
   }
+  if (arguments.patient_seed) choice.patient_seed = *arguments.patient_seed;
   if (!arguments.patient) return choice;
   const auto& embedded = embedded_patients();
   std::error_code error;

@@ -31,6 +31,9 @@ TimeMark kind_of(const ReplayMoment& moment) {
       return TimeMark::kFire;
     case ReplayMoment::Kind::kWorst:
       return TimeMark::kWorst;
+    case ReplayMoment::Kind::kChange:
+    case ReplayMoment::Kind::kInterruption:
+      break;
   }
   return TimeMark::kOther;
 }
@@ -49,15 +52,33 @@ QColor phase_color(InsertionPhase phase) {
   return theme().line;
 }
 
+/// Warnings, what was set before the start, and what changed or interrupted the attempt.
+QStringList notes_of(const AttemptReplay& replay, const std::vector<std::string>& warnings) {
+  QStringList notes;
+  for (const std::string& warning : warnings) notes << to_qt(warning);
+  const auto& parameters = replay.session().parameters;
+  if (!parameters.empty() && parameters.front().tick == 0 && !parameters.front().settings.empty()) {
+    QStringList settings;
+    for (const std::string& setting : parameters.front().settings) settings << to_qt(setting);
+    notes << ReplayControl::tr("set before the start: %1").arg(settings.join(QStringLiteral(", ")));
+  }
+  for (const ReplayMoment& moment : replay.moments())
+    if (kind_of(moment) == TimeMark::kOther)
+      notes << ReplayControl::tr("at %1 s, %2").arg(moment.time_s, 0, 'f', 1).arg(to_qt(moment.text));
+  return notes;
+}
+
 }  // namespace
 
-ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCase> open, WorkPage& page)
+ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCase> open, WorkPage& page,
+                             const std::vector<std::string>& warnings)
     : replay_(std::move(replay)), open_(std::move(open)), page_(page) {
   fill_plot();
   fill_time_line();
   const ReplayMoment& worst = replay_.worst();
   page_.feedback().show_outcome(replay_.outcome(),
                                 tr("Worst moment: %1, after %2 s").arg(to_qt(worst.text)).arg(worst.time_s, 0, 'f', 1));
+  page_.feedback().show_notes(notes_of(replay_, warnings));
   page_.desk().show_help(Difficulty::kGuided);  // afterwards everybody may see the expert's path
   connect(&page_.feedback(), &FeedbackPanel::worst_wanted, this, &ReplayControl::go_to_worst);
   show_at(replay_.duration_s(), false);
@@ -148,6 +169,7 @@ QVariantMap ReplayControl::facts() const {
   facts[QStringLiteral("worst_s")] = replay_.worst().time_s;
   facts[QStringLiteral("probe_from_plan_mm")] = (transducer_at(shown_s_).p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("was_cut_off")] = replay_.was_cut_off();
+  facts[QStringLiteral("parameter_changes")] = static_cast<int>(replay_.session().parameters.size());
   return facts;
 }
 

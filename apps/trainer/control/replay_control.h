@@ -18,7 +18,9 @@ class ReplayControl : public QObject {
   Q_OBJECT
 
  public:
-  ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCase> open, WorkPage& page);
+  /// `warnings`: of the attempt that has just ended, see RunResult.
+  ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCase> open, WorkPage& page,
+                const std::vector<std::string>& warnings = {});
 
   /// Once a frame.
   void advance(double dt_s);

@@ -8,6 +8,7 @@
 
 #include "control/attempt_control.h"
 #include "control/replay_control.h"
+#include "core/user_folders.h"
 #include "desk/desk.h"
 #include "pages/briefing_page.h"
 #include "pages/case_page.h"
@@ -22,7 +23,6 @@
 #include "shell/parts.h"
 #include "shell/status_strip.h"
 #include "shell/trainer_application.h"
-#include "core/user_folders.h"
 #include "views/patient_view.h"
 #include "views/time_line.h"
 #include "views/ultrasound_view.h"
@@ -250,6 +250,7 @@ void SeatFlow::look_at_attempt() {
                         to_qt(result->error().text()));
     return window_.show_page(QStringLiteral("briefing"));
   }
+  warnings_ = (*result)->warnings;
   load_replay(session);
 }
 
@@ -263,7 +264,7 @@ void SeatFlow::look_at_replay() {
   if (!loaded) return;
   loading_ = {};
   if (!*loaded) return window_.show_banner(to_qt(loaded->error().text()), true);
-  replay_ = std::make_unique<ReplayControl>(std::move(**loaded), open_, window_.work());
+  replay_ = std::make_unique<ReplayControl>(std::move(**loaded), open_, window_.work(), std::exchange(warnings_, {}));
   window_.work().show_feedback();
   window_.show_page(QStringLiteral("feedback"));
   window_.work().time_line().setFocus();

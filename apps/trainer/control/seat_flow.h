@@ -72,6 +72,7 @@ class SeatFlow : public QObject {
   std::shared_ptr<SeatServers> servers_;  ///< Kept from one attempt to the next.
   std::unique_ptr<AttemptControl> attempt_;
   std::unique_ptr<ReplayControl> replay_;
+  std::vector<std::string> warnings_;  ///< Of the attempt whose replay is being loaded.
   QTimer timer_;
   QElapsedTimer clock_;
   std::deque<double> frames_s_;  ///< When the last frames were drawn.

@@ -75,6 +75,11 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   worst_ = make_label({}, "dim");
   worst_->setWordWrap(true);
   content->addWidget(worst_);
+  notes_ = make_label({}, "dim");
+  notes_->setObjectName(QStringLiteral("attempt-notes"));
+  notes_->setWordWrap(true);
+  notes_->hide();
+  content->addWidget(notes_);
   content->addStretch();
   scroll->setWidget(inside);
   outer->addWidget(scroll, 1);
@@ -133,6 +138,11 @@ void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_mo
   core_->setVisible(outcome.core.has_value());
   worst_->setText(worst_moment);
   worst_->setVisible(!worst_moment.isEmpty());
+}
+
+void FeedbackPanel::show_notes(const QStringList& notes) {
+  notes_->setText(tr("Notes on the recording:") + QStringLiteral("\n•  ") + notes.join(QStringLiteral("\n•  ")));
+  notes_->setVisible(!notes.isEmpty());
 }
 
 }  // namespace trocar::trainer

@@ -21,6 +21,8 @@ class FeedbackPanel : public QWidget {
   explicit FeedbackPanel(QWidget* parent = nullptr);
 
   void show_outcome(const Outcome& outcome, const QString& worst_moment);
+  /// What happened to the attempt beside the trainee: warnings, interruptions, changed parameters. A line each.
+  void show_notes(const QStringList& notes);
 
  Q_SIGNALS:
   void again_wanted();
@@ -37,6 +39,7 @@ class FeedbackPanel : public QWidget {
   QLabel* hints_ = nullptr;
   QLabel* core_ = nullptr;
   QLabel* worst_ = nullptr;
+  QLabel* notes_ = nullptr;
 };
 
 }  // namespace trocar::trainer

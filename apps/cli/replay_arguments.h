@@ -1,0 +1,28 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <initializer_list>
+#include <set>
+#include <string>
+
+#include "headless/performer.h"
+#include "io/patient_source.h"
+
+namespace trocar::cli {
+
+/// The options of a command that were named on the command line, "--seed".
+class NamedOptions {
+ public:
+  void note(const CLI::App& command);
+  bool has(const std::string& option) const { return names_.contains(option); }
+
+ private:
+  std::set<std::string> names_;
+};
+
+/// Fills the arguments of `trocar run` from the session that `--operator replay:SESSION` names, and refuses (exit
+/// status 2) those that contradict it. --set, --profile, --tissues and --force-model change the replay on purpose.
+/// Nothing for another operator, which needs a patient.
+Status restore_arguments(const NamedOptions& named, CaseOptions& the_case, RunOptions& run, PatientSource& source);
+
+}  // namespace trocar::cli
