@@ -129,17 +129,23 @@ class Salvage {
   }
 
   void read_parameters_and_interruptions() {
-    if (database_.has_table("parameters")) {
-      const bool is_read = attempt(
-          kParametersPart, [&] { session_.parameters = read_parameters(database_.session(), ticks_in_table()); });
-      if (!is_read || !check(kParametersPart, kParameterRows, is_finished_)) session_.parameters.clear();
-    }
-    if (database_.has_table("interruptions")) {
-      const bool is_read =
-          attempt(kInterruptionsPart, [&] { session_.interruptions = read_interruptions(database_.session()); });
-      if (!is_read || !check(kInterruptionsPart, kInterruptionRows, is_finished_)) session_.interruptions.clear();
-    }
+    auto& parameters = session_.parameters;
+    read_added(kParametersPart, kParameterRows, parameters,
+               [&] { parameters = read_parameters(database_.session(), ticks_in_table()); });
+    auto& interruptions = session_.interruptions;
+    read_added(kInterruptionsPart, kInterruptionRows, interruptions,
+               [&] { interruptions = read_interruptions(database_.session()); });
     move_parameters_to_samples();
+  }
+
+  /// A table that sessions of older programs lack; one that is missing but has a checksum is damage.
+  template <class Rows, class Work>
+  void read_added(const char* part, const CheckedRows& checked, Rows& rows, const Work& work) {
+    bool was_written = database_.has_table(checked.name);
+    if (!was_written && session_.has_checksums)
+      attempt(part, [&] { was_written = read_checksum(database_.session(), checked).has_value(); });
+    if (!was_written) return;
+    if (!attempt(part, work) || !check(part, checked, is_finished_)) rows.clear();
   }
 
   /// Where ticks are missing, parameters are those of the first sample behind their tick.

@@ -128,5 +128,20 @@ TEST(SessionParametersFile, RefusesAChangeBeyondTheTicks) {
   EXPECT_NE(session.error().what.find("changes of parameters"), std::string::npos) << session.error().text();
 }
 
+TEST(SessionParametersFile, MissesNoChangeUnnoticed) {
+  for (const char* statement : {"DROP TABLE parameters", "DELETE FROM parameters WHERE tick = 7",
+                                "UPDATE parameters SET settings = '' WHERE tick = 7", "DROP TABLE interruptions"}) {
+    const TemporaryFolder folder;
+    write_session(folder / "s.trocar");
+    {
+      soci::session database;
+      storage_detail::open_database(database, folder / "s.trocar");
+      database << "DROP VIEW session_rows";
+      database << statement;
+    }
+    EXPECT_FALSE(load_session(folder / "s.trocar")) << statement;
+  }
+}
+
 }  // namespace
 }  // namespace trocar
