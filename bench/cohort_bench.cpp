@@ -42,10 +42,10 @@ ConstraintFigures constraint_figures(const std::vector<TickSample>& samples) {
   return figures;
 }
 
-Result<CohortPatient> build(const std::string& name, const PatientFiles& files, const Options& options) {
+Result<CohortPatient> build(const PatientFiles& files, const Options& options) {
   std::vector<std::string> warnings;
   TROCAR_TRY(VirtualPatient patient, build_from_files(files, warnings, options.progress));
-  return CohortPatient{name, std::make_shared<const VirtualPatient>(std::move(patient))};
+  return CohortPatient{files.name, std::make_shared<const VirtualPatient>(std::move(patient))};
 }
 
 /// Adds the patients of the real CTs that are there; says which are not.
@@ -53,14 +53,13 @@ Status add_real_patients(std::vector<CohortPatient>& patients, const Options& op
   const auto say_missing = [&](const fs::path& path) {
     if (options.print) options.print(fmt::format("left out, there is no {}\n", path.string()));
   };
+  PatientFiles files;
   const fs::path torso = real_data() / "ct-torso";
   if (fs::exists(torso)) {
-    TROCAR_TRY(CohortPatient built, build("ct-torso",
-                                          {torso / "example_ct.nii.gz",
-                                           {torso / "example_seg_fast_force_split.nii.gz"},
-                                           "totalsegmentator",
-                                           "ct-torso"},
-                                          options));
+    files.ct = torso / "example_ct.nii.gz";
+    files.labels = {torso / "example_seg_fast_force_split.nii.gz"};
+    files.name = "ct-torso";
+    TROCAR_TRY(CohortPatient built, build(files, options));
     patients.push_back(std::move(built));
   } else {
     say_missing(torso);
@@ -72,8 +71,11 @@ Status add_real_patients(std::vector<CohortPatient>& patients, const Options& op
   }
   const TemporaryFolder folder;
   TROCAR_TRY_STATUS(run_quietly({"tar", "-xJf", archive.string(), "-C", folder.path().string()}));
-  TROCAR_TRY(CohortPatient built,
-             build("ct-liver", {folder / "PATIENT_DICOM", {folder / "MASKS_DICOM"}, "", "ct-liver"}, options));
+  files.ct = folder / "PATIENT_DICOM";
+  files.labels = {folder / "MASKS_DICOM"};
+  files.label_map.clear();
+  files.name = "ct-liver";
+  TROCAR_TRY(CohortPatient built, build(files, options));
   patients.push_back(std::move(built));
   return {};
 }
