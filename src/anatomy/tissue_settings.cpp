@@ -68,7 +68,7 @@ void append_curve_change(std::vector<std::string>& settings, const HuTransfer& f
   }
   if (!is_changed) return;
   settings.push_back(is_one_factor && factor
-                         ? fmt::format("{}.{}{}={}", kTransfer, field.short_name, kFactorEnding, *factor)
+                         ? fmt::format("{}.{}{}={:.12g}", kTransfer, field.short_name, kFactorEnding, *factor)
                          : fmt::format("{}.{}=replaced", kTransfer, field.short_name));
 }
 
