@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "anatomy/phantom/phantom.h"
 #include "commands.h"
@@ -66,9 +68,22 @@ struct BuildArguments {
   std::string label_map = "totalsegmentator";
   std::string name;
   std::string series;
+  std::string rescale;  ///< "SLOPE,INTERCEPT", or empty.
   std::string out;
   bool is_json = false;
 };
+
+Result<std::optional<Rescale>> parse_rescale(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  Rescale rescale;
+  const char* end = text.data() + text.size();
+  const auto slope = std::from_chars(text.data(), end, rescale.slope);
+  if (slope.ec == std::errc{} && slope.ptr != end && *slope.ptr == ',') {
+    const auto intercept = std::from_chars(slope.ptr + 1, end, rescale.intercept);
+    if (intercept.ec == std::errc{} && intercept.ptr == end) return rescale;
+  }
+  return fail_usage("--rescale needs two numbers", text, "write SLOPE,INTERCEPT such as 1,-1024");
+}
 
 Status build(const BuildArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
@@ -79,6 +94,7 @@ Status build(const BuildArguments& arguments) {
   files.labels.assign(arguments.labels.begin(), arguments.labels.end());
   files.label_map = arguments.label_map;
   files.series = arguments.series;
+  TROCAR_TRY(files.rescale, parse_rescale(arguments.rescale));
   files.name = arguments.name.empty() ? last_name(arguments.out) : arguments.name;
   std::vector<std::string> warnings;
   std::vector<NamedMesh> meshes;
@@ -167,8 +183,10 @@ void add_patient_commands(CLI::App& program, Action& action) {
       ->required();
   build_command
       ->add_option("--label-map", b->label_map,
-                   "Names of label numbers: totalsegmentator, or a TOML file with a [labels] table")
+                   "Names of labels: totalsegmentator, or a TOML file with [labels] and ignore (see the user guide)")
       ->capture_default_str();
+  build_command->add_option("--rescale", b->rescale,
+                            "SLOPE,INTERCEPT of a CT whose file lacks them: HU = SLOPE * stored number + INTERCEPT");
   build_command->add_option("--name", b->name, "Name of the patient; the folder's name when left out");
   build_command->add_option("--out", b->out, "Folder to create")->required();
   build_command->add_flag("--json", b->is_json, "Print the summary as one JSON object");

@@ -11,6 +11,7 @@
 #include "anatomy/patient_doubts.h"
 #include "commands.h"
 #include "core/atomic_file.h"
+#include "headless/prepare_case.h"
 #include "io/markups_file.h"
 #include "io/patient_source.h"
 #include "io/png.h"
@@ -19,6 +20,8 @@
 #include "patient_summary.h"
 #include "scene/render_patient.h"
 #include "slices/slice_legend.h"
+#include "training/needle.h"
+#include "training/readiness.h"
 #include "training/task.h"
 
 namespace trocar::cli {
@@ -105,23 +108,47 @@ Status show(const Arguments& arguments) {
   return {};
 }
 
+struct CheckedTask {
+  Task task;
+  TaskReadiness readiness;
+};
+
+/// The tasks of the data folder and the patient's own, each with its needle.
+Result<std::vector<CheckedTask>> checked_tasks(const Arguments& arguments, const VirtualPatient& patient,
+                                               const Progress& progress) {
+  TROCAR_TRY(const fs::path folder, find_data("tasks"));
+  TROCAR_TRY(const fs::path needles, find_data("needles.toml"));
+  TROCAR_TRY(const auto tasks, load_tasks(folder));
+  std::vector<CheckedTask> checked;
+  const auto check = [&](const Task& task) -> Status {
+    TROCAR_TRY(const Needle needle, load_needle(needles, task.needle));
+    checked.push_back({task, check_task_and_paths(task, patient, needle, progress)});
+    return {};
+  };
+  for (const Task& task : tasks) TROCAR_TRY_STATUS(check(task));
+  if (has_own_task(arguments.source.folder_or_name)) {
+    TROCAR_TRY(Task task, load_task_file(fs::path(arguments.source.folder_or_name) / kOwnTaskFile, folder));
+    task.name += fmt::format(" ({})", kOwnTaskFile);
+    TROCAR_TRY_STATUS(check(task));
+  }
+  return checked;
+}
+
 Status check(const Arguments& arguments) {
   const ProgressPrinter printer;
   TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, printer.callback()));
-  TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
-  TROCAR_TRY(const auto tasks, load_tasks(tasks_folder));
+  TROCAR_TRY(const auto tasks, checked_tasks(arguments, patient, printer.callback()));
   auto doubts = find_doubts(patient, label_statistics(patient));
   if (patient.paths.empty()) doubts.push_back("no expert path is stored; trocar run plans one");
   if (arguments.is_json) {
     Json list = Json::array();
-    for (const Task& task : tasks) {
-      list.push_back(readiness_json(task, check_task(task, patient)));
+    for (const auto& [task, readiness] : tasks) {
+      list.push_back(readiness_json(task, readiness));
     }
     print_json({{"name", patient.name}, {"tasks", list}, {"doubtful", doubts}});
     return {};
   }
-  for (const Task& task : tasks) {
-    const TaskReadiness readiness = check_task(task, patient);
+  for (const auto& [task, readiness] : tasks) {
     fmt::print("{:<16} {}{}\n", task.name, readiness.is_possible ? "possible" : "not possible",
                readiness.is_parenchymal ? " (parenchymal: no lesion)" : "");
     for (const std::string& reason : readiness.reasons) fmt::print("  {}\n", reason);

@@ -6,7 +6,10 @@
 #include <algorithm>
 
 #include "anatomy/patient_doubts.h"
+#include "core/data_dir.h"
 #include "geometry/triangle_mesh.h"
+#include "training/needle.h"
+#include "training/readiness.h"
 
 namespace trocar::cli {
 namespace {
@@ -78,7 +81,10 @@ BuildSummary summarize_build(const VirtualPatient& patient, const std::vector<Ta
   summary.warnings = std::move(warnings);
   summary.doubts = find_doubts(patient, summary.labels);
   summary.tasks = tasks;
-  for (const Task& task : tasks) summary.readiness.push_back(check_task(task, patient));
+  for (const Task& task : tasks) {
+    const auto needle = load_needle(data_dir() / "needles.toml", task.needle);
+    summary.readiness.push_back(needle ? check_task_and_paths(task, patient, *needle) : check_task(task, patient));
+  }
   return summary;
 }
 

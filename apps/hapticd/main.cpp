@@ -3,6 +3,11 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
+#include <condition_variable>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <thread>
 
 #include "core/data_dir.h"
 #include "core/log.h"
@@ -111,14 +116,47 @@ Result<LoadScene> first_scene(const Arguments& arguments, Patients& patients) {
   return scene_request(the_case, choice);
 }
 
-void wait_for_the_end() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  int signal = 0;
-  sigwait(&signals, &signal);
-}
+/// Waits for the signals that end the server, on a thread of its own. As long as no device is held, the program ends at
+/// once: loading the first patient takes seconds.
+class EndSignal {
+ public:
+  EndSignal() : state_(std::make_shared<State>()) {
+    std::thread([state = state_] {
+      sigset_t signals;
+      sigemptyset(&signals);
+      sigaddset(&signals, SIGINT);
+      sigaddset(&signals, SIGTERM);
+      int signal = 0;
+      sigwait(&signals, &signal);
+      const std::lock_guard lock(state->mutex);
+      if (!state->holds_device) {
+        fmt::print(stderr, "error: stopped before the server had started\n");
+        std::fflush(nullptr);
+        std::_Exit(1);
+      }
+      state->has_come = true;
+      state->wake.notify_all();
+    }).detach();
+  }
+  /// From now on wait() is how the program ends.
+  void hold_device() {
+    const std::lock_guard lock(state_->mutex);
+    state_->holds_device = true;
+  }
+  void wait() {
+    std::unique_lock lock(state_->mutex);
+    state_->wake.wait(lock, [&] { return state_->has_come; });
+  }
+
+ private:
+  struct State {
+    std::mutex mutex;
+    std::condition_variable wake;
+    bool holds_device = false;
+    bool has_come = false;
+  };
+  std::shared_ptr<State> state_;
+};
 
 void print_report(const ServerReport& report) {
   const LoopSummary& loop = report.loop;
@@ -148,11 +186,13 @@ Status serve(Arguments& arguments) {
   options.tissues_file = data_dir() / "tissues.toml";
   options.flight_folder = arguments.flight_folder;
 
+  EndSignal end;
   Patients patients;
   std::optional<LoadScene> scene;
   if (!arguments.patient.folder_or_name.empty()) {
     TROCAR_TRY(scene, first_scene(arguments, patients));
   }
+  end.hold_device();
   TROCAR_TRY(std::unique_ptr<HapticDevice> device, open_named_device(arguments));
   const std::string name = device->name();
   const auto opener = [&patients](const std::string& patient, std::uint64_t seed, const Progress& progress) {
@@ -162,8 +202,13 @@ Status serve(Arguments& arguments) {
   if (scene) server.load(*scene);
   fmt::print("{} for the {} at {}, {:.0f} Hz\n", name, arguments.tool, server.url(), arguments.rate_hz);
   std::fflush(stdout);
-  wait_for_the_end();
-  print_report(server.stop());
+  end.wait();
+  const ServerReport report = server.stop();
+  print_report(report);
+  if (report.is_loading) {
+    std::fflush(nullptr);
+    std::_Exit(0);
+  }
   return {};
 }
 

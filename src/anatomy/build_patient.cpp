@@ -9,6 +9,7 @@
 
 #include "anatomy/detail/fill_unlabelled.h"
 #include "anatomy/detail/merge_sources.h"
+#include "anatomy/hounsfield.h"
 #include "anatomy/plausible_hu.h"
 #include "volume/distance.h"
 #include "volume/morphology.h"
@@ -81,6 +82,7 @@ void warn_of_doubtful_structures(const VirtualPatient& patient, std::size_t know
 Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> sources, const BuildOptions& options,
                                      std::vector<std::string>& warnings, const Progress& progress) {
   if (ct.empty()) return fail("the CT has no voxels");
+  TROCAR_TRY_STATUS(check_hounsfield(ct));
   VirtualPatient patient;
   patient.name = options.name;
   patient.provenance = options.provenance;

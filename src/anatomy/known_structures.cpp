@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <numeric>
 
@@ -280,13 +281,22 @@ std::optional<KnownStructure> find_known_structure(std::string_view name) {
   return std::nullopt;
 }
 
+bool is_background_name(std::string_view name) {
+  constexpr std::array<std::string_view, 13> kBackground = {
+      "background", "air",  "clearlabel", "clear",      "exterior",   "outside",        "none",
+      "empty",      "null", "unlabeled",  "unlabelled", "unassigned", "backgroundlabel"};
+  return std::find(kBackground.begin(), kBackground.end(), plain(name)) != kBackground.end();
+}
+
 std::vector<std::string> similar_structure_names(std::string_view name, std::size_t count) {
   const std::string wanted = plain(name);
   std::vector<std::pair<std::size_t, std::string>> candidates;
   const auto consider = [&](std::string_view known) {
-    const std::size_t distance = edit_distance(wanted, plain(known));
-    // More than half of the letters changed is another word.
-    if (2 * distance <= std::max(wanted.size(), known.size())) candidates.emplace_back(distance, known);
+    const std::string spelled = plain(known);
+    const std::size_t distance = edit_distance(wanted, spelled);
+    // More changed letters are another word, not a misspelling: "my_roi" is no "thyroid".
+    const std::size_t allowed = std::max<std::size_t>(1, (std::max(wanted.size(), spelled.size()) + 1) / 4);
+    if (distance <= allowed) candidates.emplace_back(distance, known);
   };
   for (int number = 1; const auto known = totalsegmentator_name(number); ++number) consider(*known);
   for (const Row& row : kRows) {

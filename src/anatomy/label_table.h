@@ -42,7 +42,12 @@ struct KnownStructure {
 };
 std::optional<KnownStructure> find_known_structure(std::string_view name);
 
-/// The known names most like an unknown one (edit distance), best first; only such that could be meant.
+/// Names of what is no structure: "background", "air", "Clear Label", "exterior", "unlabeled" and the like. Case and
+/// separators are not looked at.
+bool is_background_name(std::string_view name);
+
+/// The known names most like an unknown one, best first; only those within a few letters of it (edit distance at most a
+/// quarter of the longer name).
 std::vector<std::string> similar_structure_names(std::string_view name, std::size_t count = 3);
 
 /// TotalSegmentator v2, task "total": name of a label number (1..117).

@@ -37,8 +37,8 @@ std::vector<std::string> find_implausible_hu(const VirtualPatient& patient,
     if (range == kRanges.end()) continue;
     ++judged;
     if (s.mean_hu >= range->low && s.mean_hu <= range->high) continue;
-    doubts.push_back(fmt::format("{} has {:.0f} HU in the mean, {} has {:.0f} to {:.0f}", label->name, s.mean_hu,
-                                 label->tissue, range->low, range->high));
+    doubts.push_back(
+        fmt::format("{}: mean {:.0f} HU, expected {:.0f} to {:.0f}", label->name, s.mean_hu, range->low, range->high));
   }
   constexpr std::size_t kMany = 4;
   if (doubts.size() >= kMany && doubts.size() * 5 >= judged) {

@@ -1,9 +1,13 @@
 #include "haptics/haptic_scene.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "core/log.h"
 #include "volume/sampling.h"
 
 namespace trocar {
@@ -81,14 +85,15 @@ Status fill_label_tissues(HapticScene& scene, const TissueTable& table) {
   const auto unlabelled = table.find_tissue("soft_tissue");
   if (!unlabelled) return fail("has no tissue named soft_tissue", "tissue table", "add it");
   scene.tissue_of_label.fill(*unlabelled);
+  std::vector<std::string> unknown;
   for (const Label& label : scene.patient->label_table.labels) {
     const auto tissue = table.find_tissue(label.tissue);
-    if (!tissue)
-      return fail(
-          fmt::format("label {} is of tissue {}, which the tissue table does not know", label.name, label.tissue),
-          scene.patient->name, "add the tissue to the table or change the label's tissue");
-    scene.tissue_of_label[label.id] = *tissue;
+    scene.tissue_of_label[label.id] = tissue.value_or(*unlabelled);
+    if (!tissue) unknown.push_back(fmt::format("{} ({})", label.name, label.tissue));
   }
+  if (!unknown.empty())
+    log_warning("{}: not in the tissue table, so they have the numbers of soft_tissue: {}", scene.patient->name,
+                fmt::join(unknown, ", "));
   return {};
 }
 

@@ -104,9 +104,9 @@ struct HapticScene {
 };
 
 /// Checks every number and builds the scene. Errors: coupling or constraint stiffer than the device, numbers out of
-/// range, too many tissues, a label whose tissue the table does not know; a patient without skin distance, without
-/// labels (insertion), without CT or a table without transfer functions (proxy, combined);
-/// a transducer or a finger needs labels, or a CT and transfer functions, whatever the force model.
+/// range, too many tissues; a patient without skin distance, without labels (insertion), without CT or a table without
+/// transfer functions (proxy, combined). A label of a tissue that the table lacks counts as soft_tissue, with a
+/// warning; a transducer or a finger needs labels, or a CT and transfer functions, whatever the force model.
 Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const VirtualPatient> patient,
                                                              const TissueTable& tissues, const NeedleGeometry& needle,
                                                              const DeviceCapability& device = {},

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "anatomy/hounsfield.h"
 #include "anatomy/patient.h"
 #include "core/progress.h"
 #include "core/result.h"
@@ -18,6 +20,7 @@ struct PatientFiles {
   std::string label_map = "totalsegmentator";  ///< See read_label_sources.
   std::string name;                            ///< Of the patient.
   std::string series;                          ///< Of several DICOM series, see read_ct.
+  std::optional<Rescale> rescale;              ///< For a CT whose file lacks the scale of its numbers.
 };
 
 /// Reads the files and builds the patient; it says in its provenance of what, without paths of this machine. Between

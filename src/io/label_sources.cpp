@@ -8,11 +8,11 @@
 #include <map>
 
 #include "anatomy/label_table.h"
-#include "config/toml.h"
 #include "core/parallel.h"
 #include "io/detail/find_series.h"
 #include "io/detail/payload.h"
 #include "io/detail/read_grid.h"
+#include "io/label_map.h"
 
 namespace trocar {
 namespace fs = std::filesystem;
@@ -20,31 +20,6 @@ namespace {
 
 constexpr int kMaxLabel = 255;
 constexpr std::size_t kFilesAtOnce = 8;  ///< Masks unpacked at a time: bounds the memory.
-
-using LabelNames = std::map<int, std::string>;  ///< Value in a file -> structure name.
-
-/// Names given by the user for label numbers.
-Result<LabelNames> load_label_map(const std::string& label_map) {
-  LabelNames names;
-  if (label_map.empty()) return names;
-  if (label_map == "totalsegmentator") {
-    for (int number = 1; number <= kMaxLabel; ++number)
-      if (const auto name = totalsegmentator_name(number)) names.emplace(number, *name);
-    return names;
-  }
-  TROCAR_TRY(const TomlTable file, load_toml(label_map));
-  TROCAR_TRY(const TomlTable table, file.table("labels"));
-  for (const std::string& key : table.keys()) {
-    int number = 0;
-    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
-    if (error != std::errc{} || end != key.data() + key.size() || number < 1 || number > kMaxLabel)
-      return fail(fmt::format("\"{}\" is no label number from 1 to {}", key, kMaxLabel), table.where(),
-                  "write lines such as 5 = \"liver\"");
-    TROCAR_TRY(const std::string name, table.string(key));
-    names.emplace(number, name);
-  }
-  return names;
-}
 
 /// File name without the endings of image files: "liver.nii.gz" -> "liver".
 std::string stem_of(const fs::path& path) {
@@ -68,29 +43,25 @@ enum class Place { kNamedByUser, kInFolder };
 
 /// A file of one value is a mask and named after its file. Given by itself it may also be a segmentation that happens
 /// to show one structure: so it is where only the label map knows a name.
-bool is_mask(const std::vector<int>& values, const std::string& stem, const LabelNames& map, Place place) {
+bool is_mask(const std::vector<int>& values, const std::string& stem, const LabelMap& map, Place place) {
   if (values.size() != 1) return values.empty();
-  return place == Place::kInFolder || find_known_structure(stem) || !map.contains(values.front());
+  return place == Place::kInFolder || find_known_structure(stem) || !map.has_number(values.front());
 }
 
-Result<LabelSource> name_labels(LabelGrid labels, const fs::path& path, const LabelNames& map, Place place) {
+/// Values without a name are left to build_patient, which lists those of all files.
+Result<LabelSource> name_labels(LabelGrid labels, const fs::path& path, const LabelMap& map, Place place) {
   LabelSource source{path.string(), std::move(labels), {}};
   const std::vector<int> values = values_in(source.labels);
   const std::string stem = stem_of(path);
   if (is_mask(values, stem, map, place)) {
-    source.names = {{values.empty() ? 1 : values.front(), stem}};
+    source.names = {{values.empty() ? 1 : values.front(), map.name_of(stem)}};
     return source;
   }
-  if (map.empty())
+  if (map.is_empty())
     return fail(fmt::format("has {} label values but no names for them", values.size()), path.string(),
                 "name them: --label-map totalsegmentator, or a TOML file with [labels] 1 = \"liver\" …");
-  for (const int value : values) {
-    const auto found = map.find(value);
-    if (found == map.end())
-      return fail(fmt::format("label value {} has no name in the label map", value), path.string(),
-                  "add it to the label map");
-    source.names.emplace_back(value, found->second);
-  }
+  for (const int value : values)
+    if (auto name = map.name_of(value)) source.names.emplace_back(value, std::move(*name));
   return source;
 }
 
@@ -123,7 +94,8 @@ std::vector<Segment3dSlicer> segments_in(const detail::RawVolume& raw) {
 
 /// One source a layer: segments that overlap lie in different layers.
 Result<std::vector<LabelSource>> read_segments(const detail::RawVolume& raw,
-                                               const std::vector<Segment3dSlicer>& segments, const fs::path& path) {
+                                               const std::vector<Segment3dSlicer>& segments, const LabelMap& map,
+                                               const fs::path& path) {
   const auto count = static_cast<std::size_t>(raw.components);
   const std::size_t voxel_bytes = detail::bytes_per_voxel(raw.type);
   std::vector<LabelSource> sources;
@@ -138,7 +110,7 @@ Result<std::vector<LabelSource>> read_segments(const detail::RawVolume& raw,
     LabelSource source{path.string(), {}, {}};
     TROCAR_TRY(source.labels, detail::to_grid<std::uint8_t>(single, path.string(), detail::convert_voxels));
     for (const Segment3dSlicer& segment : segments)
-      if (segment.layer == static_cast<int>(layer)) source.names.emplace_back(segment.value, segment.name);
+      if (segment.layer == static_cast<int>(layer)) source.names.emplace_back(segment.value, map.name_of(segment.name));
     for (const int value : values_in(source.labels))
       if (std::none_of(source.names.begin(), source.names.end(), [&](const auto& n) { return n.first == value; }))
         return fail(fmt::format("label value {} belongs to no segment", value), path.string(),
@@ -148,10 +120,10 @@ Result<std::vector<LabelSource>> read_segments(const detail::RawVolume& raw,
   return sources;
 }
 
-Result<std::vector<LabelSource>> read_label_file(const fs::path& path, const LabelNames& map, Place place) {
+Result<std::vector<LabelSource>> read_label_file(const fs::path& path, const LabelMap& map, Place place) {
   TROCAR_TRY_STATUS(detail::check_image_path(path));
   TROCAR_TRY(const detail::RawVolume raw, detail::read_volume_file(path));
-  if (const auto segments = segments_in(raw); !segments.empty()) return read_segments(raw, segments, path);
+  if (const auto segments = segments_in(raw); !segments.empty()) return read_segments(raw, segments, map, path);
   TROCAR_TRY(LabelGrid labels, detail::to_grid<std::uint8_t>(raw, path.string(), detail::convert_voxels));
   TROCAR_TRY(LabelSource source, name_labels(std::move(labels), path, map, place));
   std::vector<LabelSource> sources;
@@ -192,6 +164,7 @@ bool try_join(const LabelSource& mask, LabelSource& into) {
 class MaskFolder {
  public:
   void add(LabelSource source) {
+    if (source.names.size() == 1 && source.names.front().second == kIgnoredStructure) return;
     if (source.names.size() != 1) {
       others_.push_back(std::move(source));
       return;
@@ -229,7 +202,7 @@ std::vector<fs::path> sorted_entries(const fs::path& folder, bool want_folders) 
   return paths;
 }
 
-Result<std::vector<LabelSource>> read_mask_files(const std::vector<fs::path>& files, const LabelNames& map) {
+Result<std::vector<LabelSource>> read_mask_files(const std::vector<fs::path>& files, const LabelMap& map) {
   MaskFolder folder;
   for (std::size_t begin = 0; begin < files.size(); begin += kFilesAtOnce) {
     const std::size_t count = std::min(kFilesAtOnce, files.size() - begin);
@@ -245,12 +218,12 @@ Result<std::vector<LabelSource>> read_mask_files(const std::vector<fs::path>& fi
   return folder.take();
 }
 
-Result<LabelSource> read_dicom_mask(const fs::path& folder) {
+Result<LabelSource> read_dicom_mask(const fs::path& folder, const LabelMap& map) {
   TROCAR_TRY(MaskGrid mask, detail::read_dicom_folder<std::uint8_t>(folder, detail::convert_mask));
-  return LabelSource{folder.string(), std::move(mask), {{1, folder.filename().string()}}};
+  return LabelSource{folder.string(), std::move(mask), {{1, map.name_of(folder.filename().string())}}};
 }
 
-Result<std::vector<LabelSource>> read_label_folder(const fs::path& folder, const LabelNames& map) {
+Result<std::vector<LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map) {
   std::vector<fs::path> files = sorted_entries(folder, false);
   std::erase_if(files, [](const fs::path& file) { return !detail::find_image_format(file); });
   if (!files.empty()) return read_mask_files(files, map);
@@ -259,14 +232,14 @@ Result<std::vector<LabelSource>> read_label_folder(const fs::path& folder, const
   // A path with a slash at its end has no file name.
   const fs::path self = fs::absolute(folder / ".").lexically_normal().parent_path();
   if (detail::has_dicom_images(self)) {
-    TROCAR_TRY(LabelSource mask, read_dicom_mask(self));
+    TROCAR_TRY(LabelSource mask, read_dicom_mask(self, map));
     masks.add(std::move(mask));
     return masks.take();
   }
   bool any = false;
   for (const fs::path& series : sorted_entries(folder, true)) {
     if (!detail::has_dicom_images(series)) continue;
-    TROCAR_TRY(LabelSource mask, read_dicom_mask(series));
+    TROCAR_TRY(LabelSource mask, read_dicom_mask(series, map));
     masks.add(std::move(mask));
     any = true;
   }
@@ -278,7 +251,7 @@ Result<std::vector<LabelSource>> read_label_folder(const fs::path& folder, const
 }  // namespace
 
 Result<std::vector<LabelSource>> read_label_sources(const std::vector<fs::path>& paths, const std::string& label_map) {
-  TROCAR_TRY(const LabelNames map, load_label_map(label_map));
+  TROCAR_TRY(const LabelMap map, LabelMap::load(label_map));
   std::vector<LabelSource> all;
   for (const fs::path& path : paths) {
     std::error_code error;
@@ -287,6 +260,8 @@ Result<std::vector<LabelSource>> read_label_sources(const std::vector<fs::path>&
                                                      : read_label_file(path, map, Place::kNamedByUser));
     std::move(sources.begin(), sources.end(), std::back_inserter(all));
   }
+  if (all.empty() && !paths.empty())
+    return fail("the label map leaves out every label", label_map, "name at least one structure in [labels]");
   return all;
 }
 

@@ -92,8 +92,8 @@ Result<std::string> Control::perform(const LoadScene& request) {
   const auto tell = [this](double done) { shared_.door.update([&](ControlStatus& status) { status.loading = done; }); };
   constexpr double kBegun = 0.01;
   tell(kBegun);
-  const Result<ServoScene> scene =
-      builder_.load(request, [&](std::string_view, double fraction) { tell(std::max(kBegun, fraction)); });
+  const Result<ServoScene> scene = builder_.load(
+      request, [&](std::string_view, double fraction) { tell(std::max(kBegun, fraction)); }, shared_.door.stop_token());
   tell(0.0);
   if (!scene) return tl::unexpected(scene.error());
   publish(*scene);

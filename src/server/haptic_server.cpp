@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <future>
 #include <thread>
 
 #include "core/log.h"
@@ -14,6 +15,7 @@ namespace trocar {
 namespace {
 
 constexpr double kNsPerS = 1e9;
+constexpr std::chrono::milliseconds kLoadPatience{300};  ///< At the end of the server, for a step of loading.
 
 Welcome make_welcome(const HapticDevice& device, const std::string& tool, double force_scale) {
   const DevicePreset& preset = device.preset();
@@ -47,11 +49,17 @@ struct HapticServer::Impl {
                 options.tool, options.flight_folder),
         link(shared, socket, make_welcome(*device, options.tool, params.workspace.force_scale),
              options.priority > 0 ? kLinkPriority : 0) {
-    control_thread = std::thread([this] { control.run(); });
+    control_thread = std::thread([this] {
+      control.run();
+      control_end.set_value();
+    });
     link_thread = std::thread([this] { link.run(); });
     servo_thread = std::thread([this, priority = options.priority] { run_servo_thread(shared, servo, priority); });
   }
-  ~Impl() { stop(); }
+  ~Impl() {
+    stop();
+    if (control_thread.joinable()) control_thread.join();
+  }
 
   ServerReport stop() {
     if (shared.is_stopping) return {};
@@ -62,8 +70,13 @@ struct HapticServer::Impl {
     servo_thread.join();
     link_thread.join();
     shared.door.close();
-    control_thread.join();
-    return {shared.statistics.newest().summary(),
+    const bool has_ended = control_end.get_future().wait_for(kLoadPatience) == std::future_status::ready;
+    if (has_ended) control_thread.join();
+    // Loading a scene does not touch the device; opening it anew does.
+    const bool is_loading = !has_ended && shared.door.status().loading > 0.0;
+    if (is_loading) device.reset();
+    return {is_loading,
+            shared.statistics.newest().summary(),
             shared.grant,
             link.ticks(),
             shared.records_dropped,
@@ -79,6 +92,7 @@ struct HapticServer::Impl {
   Servo servo;
   Control control;
   LinkThread link;
+  std::promise<void> control_end;
   std::thread control_thread, link_thread, servo_thread;
 };
 

@@ -28,6 +28,9 @@ inline constexpr int kLinkPriority = 20;
 
 /// How a server did, for people and benchmarks.
 struct ServerReport {
+  /// A scene was still being loaded. Threads and device are at rest all the same, but destroying the server waits for
+  /// the loading to end: a program that ends calls std::_Exit instead.
+  bool is_loading = false;
   LoopSummary loop;
   RealTimeGrant grant;
   std::uint64_t ticks = 0, ticks_dropped = 0;
@@ -49,7 +52,7 @@ class HapticServer {
   /// Loads a scene as a client's message would, without a client.
   void load(const LoadScene& request);
   std::string url() const;
-  /// Fades the forces, then ends the threads. Once.
+  /// Fades the forces, then ends the threads; waits 0.3 s at most for a scene that is being loaded. Once.
   ServerReport stop();
 
  private:

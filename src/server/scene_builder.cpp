@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <new>
 
 namespace trocar {
 namespace {
@@ -52,6 +53,16 @@ Result<bool> apply_option(std::string_view text, HapticOptions& options) {
     return false;
   }
   return true;
+}
+
+/// Memory may run out in any step: the scene is refused, and the loop with the last one goes on.
+template <class Step>
+Result<ServoScene> with_memory_checked(const std::string& patient, const Step& step) {
+  try {
+    return step();
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory to load the scene", patient, "close other programs or load a smaller patient");
+  }
 }
 
 }  // namespace
@@ -112,15 +123,30 @@ Result<ServoScene> SceneBuilder::build(const LoadScene& request, std::shared_ptr
   return ServoScene{std::move(scene), ++number_, continues};
 }
 
-Result<ServoScene> SceneBuilder::load(const LoadScene& request, const Progress& progress) {
+Result<ServoScene> SceneBuilder::load(const LoadScene& request, const Progress& progress, const std::stop_token& stop) {
+  return with_memory_checked(request.patient, [&] { return load_throwing(request, progress, stop); });
+}
+
+Result<ServoScene> SceneBuilder::load_throwing(const LoadScene& request, const Progress& progress,
+                                               const std::stop_token& stop) {
+  const auto check_stop = [&]() -> Status {
+    if (!stop.stop_requested()) return {};
+    return fail("loading was stopped: a newer scene was sent or the server ends", request.patient);
+  };
+  TROCAR_TRY_STATUS(check_stop());
   report(progress, "checking the scene", 0.0);
   TROCAR_TRY(Parts parts, parts_for(request));
   TROCAR_TRY(auto patient, patient_for(request, progress));
+  TROCAR_TRY_STATUS(check_stop());
   report(progress, "building the scene", 0.9);
   return build(request, std::move(patient), std::move(parts), false);
 }
 
 Result<ServoScene> SceneBuilder::change(const SetParameters& request) {
+  return with_memory_checked(request_.patient, [&] { return change_throwing(request); });
+}
+
+Result<ServoScene> SceneBuilder::change_throwing(const SetParameters& request) {
   if (patient_ == nullptr) return fail("there is no scene whose numbers could be changed", "", "load one first");
   Parts parts = parts_;
   if (!request.tissues_toml.empty()) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "anatomy/patient.h"
@@ -23,8 +24,9 @@ class SceneBuilder {
  public:
   SceneBuilder(PatientOpener open_patient, std::filesystem::path tissues_file, DevicePreset device);
 
-  /// Everything anew. Errors: what is wrong with patient, tissues, needle or options; the last scene stays.
-  Result<ServoScene> load(const LoadScene& request, const Progress& progress = {});
+  /// Everything anew. Errors: what is wrong with patient, tissues, needle or options, not enough memory, a stop that
+  /// was requested (looked at between the steps: tables, patient, scene); the last scene stays.
+  Result<ServoScene> load(const LoadScene& request, const Progress& progress = {}, const std::stop_token& stop = {});
   /// The last scene with other numbers: "liver.k=0.5", "coupling.stiffness=0.8", "coupling.damping=0.002",
   /// "force_model=proxy", "bending=0". All of them or none. Numbers of tissues replace those of earlier changes: what
   /// is not named is again as it was loaded (no settings at all: every tissue), so that a change that was undone or a
@@ -43,6 +45,8 @@ class SceneBuilder {
     TissueTable tissues;  ///< and with changed numbers.
     HapticOptions options;
   };
+  Result<ServoScene> load_throwing(const LoadScene& request, const Progress& progress, const std::stop_token& stop);
+  Result<ServoScene> change_throwing(const SetParameters& request);
   Result<std::shared_ptr<const VirtualPatient>> patient_for(const LoadScene& request, const Progress& progress);
   Result<Parts> parts_for(const LoadScene& request) const;
   Result<ServoScene> build(const LoadScene& request, std::shared_ptr<const VirtualPatient> patient, Parts parts,

@@ -14,6 +14,8 @@ namespace {
 // Assumed: a large structure sampled more finely only costs triangles that are decimated again.
 constexpr std::size_t kManyVoxels = 300'000;
 constexpr double kCoarseMm = 1.5;
+// Assumed: the skin of a whole trunk has a third of this at 1.5 mm, noise in a whole CT a hundred times as many.
+constexpr std::size_t kMaxFaces = 1'000'000;
 
 /// The voxels of one structure and the box around them.
 struct Box {
@@ -98,7 +100,8 @@ MaskGrid body_mask(const FloatGrid& skin_distance_mm) {
 TriangleMesh extract_surface(const MaskGrid& mask, const SurfaceOptions& options) {
   const auto voxels = static_cast<std::size_t>(std::count(mask.voxels.begin(), mask.voxels.end(), 1));
   if (voxels == 0) return {};
-  const Grid<std::uint8_t> occupancy = detail::occupancy(mask, voxels > kManyVoxels ? kCoarseMm : 0.0);
+  const Grid<std::uint8_t> occupancy =
+      detail::bounded_occupancy(mask, voxels > kManyVoxels ? kCoarseMm : 0.0, kMaxFaces);
   TriangleMesh mesh = detail::contour(occupancy, options);
   detail::restore_volume(mesh, static_cast<double>(voxels) * mask.geometry.voxel_volume_mm3(),
                          0.5 * mask.geometry.spacing_mm.maxCoeff());

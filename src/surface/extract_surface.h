@@ -21,7 +21,7 @@ struct SurfaceOptions {
 std::vector<NamedMesh> extract_surfaces(const VirtualPatient& patient, const SurfaceOptions& options = {},
                                         const Progress& progress = {});
 /// Surface of one mask, closed also where the grid cuts the mask; empty for an empty mask. It encloses the volume of
-/// the mask's voxels.
+/// the mask's voxels. A mask of more than a million faces is made coarser first.
 TriangleMesh extract_surface(const MaskGrid& mask, const SurfaceOptions& options = {});
 
 }  // namespace trocar

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "core/parallel.h"
 #include "volume/orientation.h"
@@ -17,15 +18,53 @@ constexpr double kMinOverlap = 0.05;         // of the smaller grid; below, the 
 constexpr std::size_t kMaxStructures = 245;  // of 255 label values, the rest is for what is found from HU
 constexpr std::size_t kBlock = 1 << 16;
 
-Status check_names(const LabelSource& source) {
-  for (const auto& [value, name] : source.names) {
-    if (find_known_structure(name)) continue;
-    const std::vector<std::string> similar = similar_structure_names(name);
-    return fail(fmt::format("unknown structure \"{}\" (label {})", name, value), source.file,
-                similar.empty() ? "give it a name of TotalSegmentator with a label map (--label-map FILE.toml)"
-                                : fmt::format("did you mean {}?", fmt::join(similar, ", ")));
+std::array<std::size_t, 256> count_values(const LabelGrid& labels) {
+  std::array<std::size_t, 256> counts{};
+  for (const std::uint8_t value : labels.voxels) ++counts[value];
+  return counts;
+}
+
+bool is_left_out(std::string_view name) {
+  return name == kIgnoredStructure || is_background_name(name);
+}
+
+/// "my_roi" (label 3), "livr" (label 5, perhaps liver); label values 7, 9 without a name.
+struct UnknownLabels {
+  std::vector<std::string> names, files;
+  std::vector<int> values;
+
+  void add(const LabelSource& source) {
+    const std::size_t before = names.size() + values.size();
+    std::array<bool, 256> is_named{};
+    for (const auto& [value, name] : source.names) {
+      if (value >= 0 && value <= 255) is_named[static_cast<std::size_t>(value)] = true;
+      if (is_left_out(name) || find_known_structure(name)) continue;
+      const std::vector<std::string> similar = similar_structure_names(name);
+      names.push_back(similar.empty() ? fmt::format("\"{}\" (label {})", name, value)
+                                      : fmt::format("\"{}\" (label {}, perhaps {})", name, value, similar.front()));
+    }
+    const auto counts = count_values(source.labels);
+    for (std::size_t value = 1; value < counts.size(); ++value)
+      if (counts[value] > 0 && !is_named[value]) values.push_back(static_cast<int>(value));
+    if (names.size() + values.size() > before) files.push_back(source.file);
   }
-  return {};
+
+  Status status() const {
+    if (files.empty()) return {};
+    std::string what;
+    if (!names.empty()) what = fmt::format("not known as names of structures: {}", fmt::join(names, ", "));
+    if (!values.empty())
+      what += fmt::format("{}label values without a name: {}", what.empty() ? "" : "; ", fmt::join(values, ", "));
+    return fail(
+        what, fmt::format("{}", fmt::join(files, ", ")),
+        "give them names of TotalSegmentator, or leave them out with ignore = [...], in a label map (--label-map)");
+  }
+};
+
+Status check_names(const std::vector<LabelSource>& sources) {
+  UnknownLabels unknown;
+  for (const LabelSource& source : sources) unknown.add(source);
+  return unknown.status();
 }
 
 Status check_overlap(const LabelSource& source, const GridGeometry& grid) {
@@ -36,12 +75,6 @@ Status check_overlap(const LabelSource& source, const GridGeometry& grid) {
   if (overlap >= kMinOverlap) return {};
   return fail(fmt::format("the segmentation does not overlap the CT ({:.1f} % common)", 100.0 * overlap), source.file,
               "give the segmentation that was made from this CT");
-}
-
-std::array<std::size_t, 256> count_values(const LabelGrid& labels) {
-  std::array<std::size_t, 256> counts{};
-  for (const std::uint8_t value : labels.voxels) ++counts[value];
-  return counts;
 }
 
 /// Merges one source after the other.
@@ -55,14 +88,12 @@ class Merger {
       labels = resample_nearest(labels, merged_.labels.geometry, 0);
     const auto counts = count_values(labels);
     std::array<std::uint8_t, 256> id_of{};
-    std::array<bool, 256> is_named{};
     for (const auto& [value, name] : source.names) {
       if (value < 0 || value > 255)
         return fail(fmt::format("label value {} of \"{}\" is not in 0..255", value, name), source.file,
                     "number the labels from 0 to 255");
       const auto v = static_cast<std::uint8_t>(value);
-      is_named[v] = true;
-      if (v == 0) continue;
+      if (v == 0 || is_left_out(name)) continue;
       if (counts[v] == 0) {
         // A label map names more than a scan shows; a file of its own that is empty is worth a word.
         if (source.names.size() == 1) empty_masks.push_back(name);
@@ -75,11 +106,6 @@ class Merger {
       if (merged_.table.labels.size() == kMaxStructures)
         return fail(fmt::format("more than {} structures", kMaxStructures), source.file, "leave some out");
       id_of[v] = find_or_add(name);
-    }
-    for (std::size_t value = 1; value < counts.size(); ++value) {
-      if (counts[value] > 0 && !is_named[value])
-        return fail(fmt::format("label value {} has no name", value), source.file,
-                    "name it in the label map (--label-map)");
     }
     paint(labels, id_of);
     return {};
@@ -121,10 +147,8 @@ class Merger {
 Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const GridGeometry& grid,
                                    std::vector<std::string>& warnings) {
   if (sources.empty()) return fail_usage("no segmentation given", "--labels", "give at least one label file");
-  for (const LabelSource& source : sources) {
-    TROCAR_TRY_STATUS(check_names(source));
-    TROCAR_TRY_STATUS(check_overlap(source, grid));
-  }
+  TROCAR_TRY_STATUS(check_names(sources));
+  for (const LabelSource& source : sources) TROCAR_TRY_STATUS(check_overlap(source, grid));
   const std::string where = sources.size() == 1 ? sources.front().file : fmt::format("{} files", sources.size());
   Merger merger(grid);
   std::vector<std::string> empty_masks;

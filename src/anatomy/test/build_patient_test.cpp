@@ -200,7 +200,35 @@ TEST(BuildPatient, AValueWithoutANameIsRefused) {
   wrong.labels.voxels[0] = 9;
   const Built built = build({wrong});
   ASSERT_FALSE(built.patient);
-  EXPECT_NE(built.patient.error().text().find("label value 9 has no name"), std::string::npos);
+  EXPECT_NE(built.patient.error().text().find("label values without a name: 9"), std::string::npos);
+}
+
+TEST(BuildPatient, EveryUnknownLabelOfEveryFileIsListed) {
+  LabelSource first = liver();
+  first.names = {{1, "my_roi"}, {2, "livr"}};
+  first.labels.voxels[0] = 2;
+  first.labels.voxels[1] = 7;
+  LabelSource second = source("plan_2", LabelGrid(Torso::grid(kSpacingMm), 1));
+  const Built built = build({first, liver(), second});
+  ASSERT_FALSE(built.patient);
+  const std::string text = built.patient.error().text();
+  for (const char* part : {"\"my_roi\" (label 1)", "\"livr\" (label 2, perhaps liver)", "\"plan_2\" (label 1)",
+                           "without a name: 7", "plan_2.nii.gz", "ignore"})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  EXPECT_EQ(text.find("thyroid"), std::string::npos) << text;
+}
+
+TEST(BuildPatient, IgnoredAndBackgroundLabelsAreLeftOut) {
+  LabelSource organs = liver();
+  organs.labels.voxels[0] = 2;
+  organs.labels.voxels[1] = 3;
+  organs.names = {{1, "liver"}, {2, "Clear Label"}, {3, std::string(kIgnoredStructure)}};
+  const LabelSource background = source("background", LabelGrid(Torso::grid(kSpacingMm), 1));
+  const Built built = build({organs, background});
+  ASSERT_TRUE(built.patient) << built.patient.error().text();
+  EXPECT_EQ(name_at(*built.patient, {-50.0, -10.0, 0.0}), "liver");
+  for (const Label& label : built.patient->label_table.labels)
+    EXPECT_TRUE(find_known_structure(label.name)) << label.name;
 }
 
 TEST(BuildPatient, EmptyMasksAreWarningsUnlessAllAre) {

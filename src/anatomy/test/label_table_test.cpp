@@ -137,12 +137,20 @@ TEST(KnownStructure, WhatLiesInsideAnotherWins) {
   EXPECT_GT(priority("kidney_cyst_left"), priority("kidney_left"));
 }
 
+TEST(KnownStructure, BackgroundHasManyNames) {
+  for (const char* name : {"background", "Background", "air", "Clear Label", "clear_label", "exterior", "unlabeled"})
+    EXPECT_TRUE(is_background_name(name)) << name;
+  for (const char* name : {"liver", "airway", "lung", "clear cell carcinoma", ""})
+    EXPECT_FALSE(is_background_name(name)) << name;
+}
+
 TEST(KnownStructure, ATypingErrorFindsTheNameMeant) {
   EXPECT_EQ(similar_structure_names("livr", 1), std::vector<std::string>{"liver"});
   EXPECT_EQ(similar_structure_names("vertebra_L6", 1).at(0).substr(0, 9), "vertebrae");
   EXPECT_EQ(similar_structure_names("kidny_left", 1), std::vector<std::string>{"kidney_left"});
   EXPECT_LE(similar_structure_names("liver_tumour", 3).size(), 3u);
-  EXPECT_TRUE(similar_structure_names("qqqqqqqqqqqq").empty());
+  for (const char* far : {"qqqqqqqqqqqq", "my_roi", "roi", "foo", "label_1", "PTV", "contour"})
+    EXPECT_TRUE(similar_structure_names(far).empty()) << far << ": " << similar_structure_names(far).front();
 }
 
 }  // namespace

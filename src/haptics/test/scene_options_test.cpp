@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "haptics/test/layered_patient.h"
+
 namespace trocar {
 namespace {
 
@@ -38,6 +40,21 @@ TEST(SceneOptions, RefuseWhatTheyDoNotKnow) {
     ASSERT_FALSE(status) << bad;
     EXPECT_EQ(status.error().exit_status, 2);
   }
+}
+
+TEST(HapticScene, LabelsOfUnknownTissuesCountAsSoftTissueAndAreAllNamed) {
+  auto patient = testing::layered_patient(testing::liver_way());
+  patient->label_table.labels[0].tissue = "blubber";
+  patient->label_table.labels[3].tissue = "horn";
+  const TissueTable tissues = testing::paper_tissues();
+  ::testing::internal::CaptureStderr();
+  const auto scene = make_haptic_scene(patient, tissues, {}, {}, {});
+  const std::string warning = ::testing::internal::GetCapturedStderr();
+  ASSERT_TRUE(scene) << scene.error().text();
+  for (const char* part : {"fat (blubber)", "rib (horn)", "soft_tissue"})
+    EXPECT_NE(warning.find(part), std::string::npos) << warning;
+  EXPECT_EQ((*scene)->tissue_of_label[testing::kFat], *tissues.find_tissue("soft_tissue"));
+  EXPECT_EQ((*scene)->tissue_of_label[testing::kLiver], *tissues.find_tissue("liver"));
 }
 
 }  // namespace

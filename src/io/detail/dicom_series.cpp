@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
+#include "core/available_memory.h"
 #include "core/parallel.h"
 #include "io/detail/find_series.h"
 
@@ -38,9 +40,19 @@ Status check_slices(const std::vector<DicomSlice>& slices, const fs::path& folde
     if (slice.frames > 1)
       return fail(fmt::format("is a DICOM file with {} frames", slice.frames), where,
                   "convert it to .nrrd or .nii.gz, for example with 3D Slicer");
+    if (slice.is_cut) return fail("the DICOM image ends before its last pixel", where, "copy or export it again");
+    if (slice.slope == 0.0)
+      return fail("RescaleSlope is 0: every pixel would have one value", where, "export the series again");
+    if (slice.patient_id != slices.front().patient_id)
+      return fail("the slices are of two patients (PatientID differs)", where, kNameOneSeries);
+    if (slice.frame_of_reference != slices.front().frame_of_reference)
+      return fail("the slices have two frames of reference (FrameOfReferenceUID differs)", where, kNameOneSeries);
+    if (slice.modality != slices.front().modality)
+      return fail(fmt::format("the slices are of two modalities: {} and {}", slices.front().modality, slice.modality),
+                  where, kNameOneSeries);
     if (slice.samples_per_pixel != 1) return fail("is a colour image", where, "give a CT series or a mask series");
     if (!slice.position_P || !slice.directions_P || !slice.spacing_mm)
-      return fail("does not say where the slice lies (position, orientation or pixel spacing is missing)", where,
+      return fail("no place in the header (position, orientation or pixel spacing is missing)", where,
                   "export the series with its geometry");
     if (!is_alike(slices.front(), slice))
       return fail("the slices differ in size, spacing or direction", where, kNameOneSeries);
@@ -81,6 +93,13 @@ Status check_tilt(const Vec3& stack_P, const Vec3& normal_P, const fs::path& fol
               folder.string(), "resample it onto a straight grid, for example with 3D Slicer");
 }
 
+/// HU are of CTs. Other kinds that volumes in HU come as: cone-beam CT of a C-arm (XA), converted files (OT).
+Status check_modality(const DicomSlice& slice, const fs::path& folder) {
+  for (const char* modality : {"", "CT", "XA", "OT"})
+    if (slice.modality == modality) return {};
+  return fail(fmt::format("Modality is {}, not CT", slice.modality), folder.string(), "give the series of a CT");
+}
+
 }  // namespace
 
 Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const fs::path& folder) {
@@ -111,6 +130,9 @@ Result<Grid<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert, 
   TROCAR_TRY(std::vector<SeriesImages> found, find_series(folder));
   TROCAR_TRY(SeriesImages slices, choose_series(std::move(found), folder, wanted));
   TROCAR_TRY(const DicomSeries series, order_slices(std::move(slices), folder));
+  if constexpr (std::is_same_v<T, std::int16_t>) TROCAR_TRY_STATUS(check_modality(series.slices.front(), folder));
+  const std::uint64_t bytes = series.geometry.voxel_count() * sizeof(T);
+  TROCAR_TRY_STATUS(check_memory_for_image(bytes, available_memory_bytes(), folder.string()));
   Grid<T> grid(series.geometry);
   const auto pixels = static_cast<std::size_t>(series.geometry.size[0] * series.geometry.size[1]);
   std::vector<Status> statuses(series.slices.size());

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <new>
 #include <string_view>
 #include <vector>
 
@@ -45,6 +46,8 @@ DicomSlice slice_of(const DicomHeader& header) {
   slice.series_uid = header.text(dicom_tag(0x0020, 0x000e));
   slice.series_description = header.text(dicom_tag(0x0008, 0x103e));
   slice.modality = header.text(dicom_tag(0x0008, 0x0060));
+  slice.patient_id = header.text(dicom_tag(0x0010, 0x0020));
+  slice.frame_of_reference = header.text(dicom_tag(0x0020, 0x0052));
   slice.rows = header.number(dicom_tag(0x0028, 0x0010)).value_or(0);
   slice.columns = header.number(dicom_tag(0x0028, 0x0011)).value_or(0);
   slice.samples_per_pixel = header.number(dicom_tag(0x0028, 0x0002)).value_or(1);
@@ -58,6 +61,11 @@ DicomSlice slice_of(const DicomHeader& header) {
   if (const auto s = decimals_of<2>(header, dicom_tag(0x0028, 0x0030))) slice.spacing_mm = {(*s)[1], (*s)[0]};
   if (const auto slope = decimals_of<1>(header, dicom_tag(0x0028, 0x1053))) slice.slope = (*slope)[0];
   if (const auto intercept = decimals_of<1>(header, dicom_tag(0x0028, 0x1052))) slice.intercept = (*intercept)[0];
+  const auto bytes_per_pixel = static_cast<std::size_t>(header.number(dicom_tag(0x0028, 0x0100)).value_or(16) / 8);
+  slice.declared_bytes = static_cast<std::size_t>(slice.columns) * static_cast<std::size_t>(slice.rows) *
+                         static_cast<std::size_t>(std::max(slice.samples_per_pixel, 1)) * bytes_per_pixel;
+  const auto pixels = header.pixels();
+  slice.is_cut = !header.is_compressed() && (pixels.empty() || pixels.front().size() < slice.declared_bytes);
   return slice;
 }
 
@@ -185,7 +193,7 @@ bool unpack_compressed(const DicomHeader& header, const DicomSlice& slice, const
 Status decode_throwing(const DicomSlice& slice, const std::function<Status(const RawVoxels&)>& use) {
   const std::string where = slice.file.string();
   TROCAR_TRY(const std::optional<DicomHeader> header, DicomHeader::read(slice.file));
-  if (!header) return fail("is no DICOM image any more", where, kExportAgain);
+  if (!header) return fail("not a DICOM image any more", where, kExportAgain);
   TROCAR_TRY(const PixelLayout layout, layout_of(*header, slice));
   const auto pieces = header->pixels();
   if (pieces.empty()) return fail("has no pixels that could be read", where, kExportAgain);
@@ -209,7 +217,8 @@ Result<std::optional<DicomSlice>> find_dicom_slice(const fs::path& path) {
   TROCAR_TRY(const std::optional<DicomHeader> header, DicomHeader::read(path));
   if (!header) return std::optional<DicomSlice>();
   // Its elements cannot be seen: a slice that is left out in silence would shift the others.
-  if (header->transfer_syntax() == kDeflated) return fail("is a deflated DICOM file", path.string(), kExportAgain);
+  if (header->transfer_syntax() == kDeflated)
+    return fail("deflated DICOM is not supported", path.string(), kExportAgain);
   DicomSlice slice = slice_of(*header);
   slice.file = path;
   return slice.rows > 0 && slice.columns > 0 ? std::optional(slice) : std::nullopt;
@@ -219,6 +228,8 @@ Status decode_slice(const DicomSlice& slice, const std::function<Status(const Ra
   silence_libraries();
   try {
     return decode_throwing(slice, use);
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory to read the image", slice.file.string(), "close other programs");
   } catch (const std::exception&) {
     return fail("the DICOM image is damaged", slice.file.string(), kExportAgain);
   }

@@ -17,7 +17,9 @@ struct DicomSlice {
   std::filesystem::path file;
   std::string series_uid;
   std::string series_description;
-  std::string modality;  ///< "CT".
+  std::string modality;            ///< "CT", "MR" …; empty where the file has none.
+  std::string patient_id;          ///< Compared among slices, never shown.
+  std::string frame_of_reference;  ///< UID; slices of another frame lie elsewhere.
   int columns = 0;
   int rows = 0;
   int frames = 1;
@@ -25,6 +27,8 @@ struct DicomSlice {
   std::optional<Vec3> position_P;                   ///< Centre of the first pixel.
   std::optional<std::array<Vec3, 2>> directions_P;  ///< Along a row (growing column), along a column.
   std::optional<std::array<double, 2>> spacing_mm;  ///< Between columns, between rows.
+  std::size_t declared_bytes = 0;                   ///< Of the unpacked pixels.
+  bool is_cut = false;                              ///< Pixels that are not compressed, and fewer than declared.
   double slope = 1.0;
   double intercept = 0.0;
 };

@@ -99,6 +99,27 @@ TEST(DicomSeries, RefusesWhatIsNoStackOfGreySlices) {
   EXPECT_NE(error_of({}), "ordered");
 }
 
+TEST(DicomSeries, RefusesSlicesThatDoNotBelongTogether) {
+  const auto error_with = [](const std::function<void(DicomSlice&)>& change) {
+    auto slices = series(5, 2.0);
+    for (DicomSlice& slice : slices) {
+      slice.modality = "CT";
+      slice.patient_id = "one";
+      slice.frame_of_reference = "1.2.3.4";
+    }
+    change(slices[3]);
+    return error_of(slices);
+  };
+  EXPECT_EQ(error_with([](DicomSlice&) {}), "ordered");
+  EXPECT_NE(error_with([](DicomSlice& s) { s.patient_id = "two"; }).find("PatientID"), std::string::npos);
+  EXPECT_EQ(error_with([](DicomSlice& s) { s.patient_id = "two"; }).find("one"), std::string::npos);
+  EXPECT_NE(error_with([](DicomSlice& s) { s.frame_of_reference = "1.2.3.5"; }).find("FrameOfReferenceUID"),
+            std::string::npos);
+  EXPECT_NE(error_with([](DicomSlice& s) { s.modality = "MR"; }).find("CT and MR"), std::string::npos);
+  EXPECT_NE(error_with([](DicomSlice& s) { s.slope = 0.0; }).find("RescaleSlope is 0"), std::string::npos);
+  EXPECT_NE(error_with([](DicomSlice& s) { s.is_cut = true; }).find("ends before its last pixel"), std::string::npos);
+}
+
 TEST(DicomSeries, RefusesDirectionsThatAreNone) {
   auto slices = series(5, 2.0);
   for (DicomSlice& slice : slices) slice.directions_P = {Vec3(1, 0, 0), Vec3(0.2, 1, 0)};

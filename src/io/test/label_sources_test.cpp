@@ -72,14 +72,17 @@ TEST(LabelSources, NumbersWithoutNamesAreAnError) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_image(labels_with({5, 2, 200}), folder / "seg.nii.gz"));
   EXPECT_NE(error_of(read_label_sources({folder / "seg.nii.gz"}, "")).find("--label-map"), std::string::npos);
-  EXPECT_NE(error_of(read_label_sources({folder / "seg.nii.gz"}, "totalsegmentator")).find("200"), std::string::npos);
+  // What the map lacks comes without a name: build_patient lists it with that of other files.
+  const auto sources = read_label_sources({folder / "seg.nii.gz"}, "totalsegmentator");
+  ASSERT_TRUE(sources) << error_of(sources);
+  EXPECT_EQ((*sources)[0].names, (Names{{2, "kidney_right"}, {5, "liver"}}));
 }
 
 TEST(LabelSources, BadMapsAreNamed) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_image(labels_with({1, 2}), folder / "seg.nii.gz"));
-  for (const char* text : {"[labels]\n300 = \"liver\"\n", "[labels]\nliver = \"liver\"\n", "[labels]\n1 = 2\n",
-                           "[structures]\n1 = \"liver\"\n", "not toml"}) {
+  for (const char* text : {"[labels]\n300 = \"liver\"\n", "[labels]\n1 = 2\n", "[structures]\n1 = \"liver\"\n",
+                           "not toml", "ignore = [300]\n", "ignore = 3\n", "base = \"other\"\n"}) {
     write_bytes(folder / "map.toml", text);
     EXPECT_NE(error_of(read_label_sources({folder / "seg.nii.gz"}, (folder / "map.toml").string())).find("map.toml"),
               std::string::npos)
@@ -87,6 +90,42 @@ TEST(LabelSources, BadMapsAreNamed) {
   }
   EXPECT_NE(error_of(read_label_sources({folder / "seg.nii.gz"}, "totalsegmentor")).find("totalsegmentor"),
             std::string::npos);
+}
+
+TEST(LabelSources, AMapIgnoresRenamesAndTakesTheRest) {
+  TemporaryFolder folder;
+  ASSERT_TRUE(write_image(labels_with({1, 2, 3, 5, 200}), folder / "seg.nii.gz"));
+  const auto names = [&](const std::string& map, const std::string& file) -> Names {
+    write_bytes(folder / "map.toml", map);
+    const auto sources = read_label_sources({folder / file}, (folder / "map.toml").string());
+    if (!sources || sources->size() != 1) return {{-1, error_of(sources)}};
+    return (*sources)[0].names;
+  };
+  EXPECT_EQ(names("[labels]\n1 = \"liver\"\n2 = \"ignore\"\n\"*\" = \"fat\"\n", "seg.nii.gz"),
+            (Names{{1, "liver"}, {2, "ignore"}, {3, "fat"}, {5, "fat"}, {200, "fat"}}));
+  EXPECT_EQ(names("ignore = [1, 2, 3, 200]\nbase = \"totalsegmentator\"\n", "seg.nii.gz"),
+            (Names{{1, "ignore"}, {2, "ignore"}, {3, "ignore"}, {5, "liver"}, {200, "ignore"}}));
+  // Names that files bring: of a mask, or of a segment.
+  ASSERT_TRUE(write_image(labels_with({4, 4}), folder / "my_roi.nii.gz"));
+  EXPECT_EQ(names("[labels]\nmy_roi = \"liver_tumor\"\n", "my_roi.nii.gz"), (Names{{4, "liver_tumor"}}));
+  EXPECT_EQ(names("[labels]\n\"*\" = \"ignore\"\n", "my_roi.nii.gz"), (Names{{4, "ignore"}}));
+  EXPECT_EQ(names("ignore = [\"my_roi\", \"3\"]\n", "my_roi.nii.gz"), (Names{{4, "ignore"}}));
+  ASSERT_TRUE(write_image(labels_with({4, 4}), folder / "liver.nii.gz"));
+  EXPECT_EQ(names("[labels]\n\"*\" = \"ignore\"\n", "liver.nii.gz"), (Names{{4, "liver"}}));
+}
+
+TEST(LabelSources, AFolderMayHaveIgnoredMasks) {
+  TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "masks");
+  ASSERT_TRUE(write_image(labels_with({1}), folder / "masks" / "my_roi.nii.gz"));
+  write_bytes(folder / "map.toml", "ignore = [\"my_roi\"]\n");
+  const std::string map = (folder / "map.toml").string();
+  EXPECT_NE(error_of(read_label_sources({folder / "masks"}, map)).find("leaves out every label"), std::string::npos);
+  ASSERT_TRUE(write_image(labels_with({0, 1}), folder / "masks" / "liver.nii.gz"));
+  const auto sources = read_label_sources({folder / "masks"}, map);
+  ASSERT_TRUE(sources) << error_of(sources);
+  EXPECT_EQ(voxels_of(*sources, "liver"), (std::vector<std::size_t>{1}));
+  EXPECT_TRUE(voxels_of(*sources, "my_roi").empty());
 }
 
 TEST(LabelSources, MasksThatDoNotOverlapShareAVolume) {

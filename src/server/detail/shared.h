@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <variant>
@@ -45,9 +47,11 @@ struct ControlStatus {
 /// The door between link and control thread: both may wait, neither is the real-time thread.
 class ControlDoor {
  public:
+  /// A newer scene stops the loading of an older one.
   void post(ControlJob job) {
     {
       const std::lock_guard lock(mutex_);
+      if (std::holds_alternative<LoadScene>(job.what)) running_.request_stop();
       jobs_.push_back(std::move(job));
     }
     wake_.notify_one();
@@ -59,12 +63,21 @@ class ControlDoor {
     if (is_closed_) return false;
     job = std::move(jobs_.front());
     jobs_.pop_front();
+    running_ = std::stop_source();
+    const auto is_scene = [](const ControlJob& later) { return std::holds_alternative<LoadScene>(later.what); };
+    if (std::any_of(jobs_.begin(), jobs_.end(), is_scene)) running_.request_stop();
     return true;
+  }
+  /// Asks the job that wait() returned last to end early: a newer scene has come, or the door was closed.
+  std::stop_token stop_token() const {
+    const std::lock_guard lock(mutex_);
+    return running_.get_token();
   }
   void close() {
     {
       const std::lock_guard lock(mutex_);
       is_closed_ = true;
+      running_.request_stop();
     }
     wake_.notify_all();
   }
@@ -90,6 +103,7 @@ class ControlDoor {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<ControlJob> jobs_;
+  std::stop_source running_;
   std::vector<AddressedReply> replies_;
   ControlStatus status_;
   bool is_closed_ = false;

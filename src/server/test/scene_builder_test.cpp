@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
+
 #include "server/test/servo_rig.h"
 
 namespace trocar {
@@ -41,6 +43,41 @@ TEST(SceneBuilder, SaysWhatIsWrongAndKeepsTheLastScene) {
   }
   EXPECT_EQ(builder.request().patient, "layers");
   EXPECT_TRUE(builder.change({{"liver.k=0.5"}}));
+}
+
+TEST(SceneBuilder, StopsBetweenItsStepsAndKeepsTheLastScene) {
+  std::stop_source source;
+  bool is_stopping = false;
+  const PatientOpener opener = [&](const std::string& name, std::uint64_t seed, const Progress& progress) {
+    if (is_stopping) source.request_stop();
+    return layered_opener()(name, seed, progress);
+  };
+  SceneBuilder builder(opener, data_file("tissues.toml"), device_preset("premium"));
+  ASSERT_TRUE(builder.load(layered_request(), {}, source.get_token()));
+  is_stopping = true;
+  LoadScene other = layered_request("proxy");
+  other.patient_seed = 2;
+  const auto stopped = builder.load(other, {}, source.get_token());
+  ASSERT_FALSE(stopped);
+  EXPECT_NE(stopped.error().what.find("stopped"), std::string::npos);
+  EXPECT_EQ(builder.request().patient_seed, layered_request().patient_seed);
+}
+
+TEST(SceneBuilder, RefusesAPatientThatMemoryDoesNotHold) {
+  bool is_short = false;
+  const PatientOpener opener = [&](const std::string& name, std::uint64_t seed, const Progress& progress) {
+    if (is_short) throw std::bad_alloc();
+    return layered_opener()(name, seed, progress);
+  };
+  SceneBuilder builder(opener, data_file("tissues.toml"), device_preset("premium"));
+  ASSERT_TRUE(builder.load(layered_request()));
+  is_short = true;
+  LoadScene other = layered_request();
+  other.patient_seed = 2;
+  const auto refused = builder.load(other);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("not enough memory"), std::string::npos);
+  EXPECT_TRUE(builder.change({{"liver.k=0.5"}})) << "the last scene is still there";
 }
 
 TEST(SceneBuilder, ReplacesTheLoadedTable) {

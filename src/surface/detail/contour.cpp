@@ -141,6 +141,32 @@ Grid<std::uint8_t> occupancy(const MaskGrid& mask, double spacing_mm) {
   return filled;
 }
 
+std::size_t count_faces(const Grid<std::uint8_t>& occupancy) {
+  const auto& size = occupancy.geometry.size;
+  const std::array<std::int64_t, 3> step{1, size[0], size[0] * size[1]};
+  const auto is_filled = [&](std::int64_t n) { return 2 * occupancy.voxels[static_cast<std::size_t>(n)] > kFull; };
+  std::size_t faces = 0;
+  std::int64_t n = 0;
+  for (Index3 ijk{0, 0, 0}; ijk[2] < size[2]; ++ijk[2])
+    for (ijk[1] = 0; ijk[1] < size[1]; ++ijk[1])
+      for (ijk[0] = 0; ijk[0] < size[0]; ++ijk[0], ++n)
+        for (std::size_t a = 0; a < 3; ++a) {
+          const bool next = ijk[a] + 1 < size[a] && is_filled(n + step[a]);
+          faces += is_filled(n) != next ? 1 : 0;
+          faces += ijk[a] == 0 && is_filled(n) ? 1 : 0;
+        }
+  return faces;
+}
+
+Grid<std::uint8_t> bounded_occupancy(const MaskGrid& mask, double spacing_mm, std::size_t max_faces) {
+  Grid<std::uint8_t> grid = occupancy(mask, spacing_mm);
+  while (count_faces(grid) > max_faces) {
+    const double finest_mm = grid.geometry.spacing_mm.minCoeff();
+    grid = occupancy(mask, 2.0 * finest_mm);
+  }
+  return grid;
+}
+
 TriangleMesh contour(const Grid<std::uint8_t>& occupancy, const SurfaceOptions& options) {
   vtkNew<vtkFlyingEdges3D> edges;
   edges->SetInputData(to_vtk(occupancy));

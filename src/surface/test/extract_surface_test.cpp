@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/random.h"
+#include "surface/detail/contour.h"
 
 namespace trocar {
 namespace {
@@ -127,6 +128,26 @@ TEST(ExtractSurface, ALargeStructureIsCoarserAndKeepsItsVolume) {
     const double inner_mm = std::abs((r - Vec3(10, 0, 0)).norm() - 8.0);
     EXPECT_LT(std::min(outer_mm, inner_mm), 1.5);  // a coarse voxel
   }
+}
+
+TEST(BoundedOccupancy, CountsTheFacesOfABlock) {
+  const GridGeometry grid = cube(8, {1, 1, 1});
+  EXPECT_EQ(detail::count_faces(detail::occupancy(MaskGrid(grid, 1), 0.0)), 6u * 64u);
+  const MaskGrid corner = fill(grid, [](const Vec3& p) { return p.maxCoeff() < 1.5; });
+  EXPECT_EQ(detail::count_faces(detail::occupancy(corner, 0.0)), 24u);
+  EXPECT_EQ(detail::count_faces(detail::occupancy(MaskGrid(grid), 0.0)), 0u);
+}
+
+TEST(BoundedOccupancy, NoiseIsMadeCoarserUntilItsSurfaceIsBounded) {
+  const GridGeometry grid = cube(64, {0.7, 0.7, 2.0});
+  std::uint64_t n = 0;
+  const MaskGrid noise = fill(grid, [&](const Vec3&) { return uniform01(7, n++) < 0.5; });
+  ASSERT_GT(detail::count_faces(detail::occupancy(noise, 0.0)), 300'000u);
+  for (const std::size_t most : {100'000u, 10'000u, 100u})
+    EXPECT_LE(detail::count_faces(detail::bounded_occupancy(noise, 0.0, most)), most);
+  // An organ is left as it is.
+  const MaskGrid organ = ball(grid, {22, 22, 60}, 18.0);
+  EXPECT_EQ(detail::bounded_occupancy(organ, 0.0, 100'000u).voxels, detail::occupancy(organ, 0.0).voxels);
 }
 
 TEST(ExtractSurface, SmoothingDoesNotStretch) {

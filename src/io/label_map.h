@@ -1,0 +1,40 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace trocar {
+
+/// Names that a user gives to the labels of segmentations.
+///   base = "totalsegmentator"     names of numbers that [labels] does not have
+///   ignore = [13, 14]             or ignore = ["13", "my_roi"]: labels that are left out
+///   [labels]
+///   1 = "liver"                   a number in a file
+///   my_roi = "liver_tumor"        the name of a mask file or segment
+///   2 = "ignore"
+///   "*" = "ignore"                every label that is not named otherwise
+class LabelMap {
+ public:
+  /// "totalsegmentator", a TOML file, or empty: no names.
+  static Result<LabelMap> load(const std::string& label_map);
+
+  bool is_empty() const noexcept { return by_number_.empty() && !rest_; }
+  /// The number has a name of its own here, not only by "*".
+  bool has_number(int number) const { return by_number_.contains(number); }
+  /// Structure of a number in a file, or kIgnoredStructure; nothing: no name.
+  std::optional<std::string> name_of(int number) const;
+  /// Structure of a name that a file brings: itself, unless the map says otherwise.
+  std::string name_of(const std::string& name) const;
+
+ private:
+  Status read_entry(const std::string& key, std::string name, const std::string& where);
+  std::map<int, std::string> by_number_;
+  std::map<std::string, std::string, std::less<>> by_name_;
+  std::optional<std::string> rest_;
+};
+
+}  // namespace trocar
