@@ -93,8 +93,10 @@ Result<double> LiveOperator::record(const TickSample& tick, bool is_seen) {
 
 Result<bool> LiveOperator::take(const TickSample& tick) {
   TROCAR_TRY(const double step_s, record(tick, true));
-  view_.time_s += step_s;
+  // Ticks that never arrived, because this program did not read them, were not seen either.
   view_.dt_s = std::min(step_s, kLongestStep_s);
+  view_.time_s += view_.dt_s;
+  unseen_s_ += step_s - view_.dt_s;
   command_ = performer_->the_operator->next(view_);
   if (command_.is_done || active_s() > longest_s_) return false;
   record_->note(command_);

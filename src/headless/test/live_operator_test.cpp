@@ -206,6 +206,17 @@ TEST_F(LiveOperatorTest, SaysThatAServerNeverToldItsParameters) {
   ASSERT_EQ(result->warnings.size(), 1u);
 }
 
+TEST_F(LiveOperatorTest, CountsTheTicksThatAStoppedProgramNeverReadAsUnseen) {
+  live_->begin(0.0);
+  take(kServer_s);
+  for (int i = 1; i <= 1100; ++i) ASSERT_TRUE(live_->take_unseen(tick(kServer_s + 0.001 * i)));
+  take(kServer_s + 6.0);  // the server dropped what was between
+  constexpr double kStep_s = 0.02;
+  EXPECT_NEAR(live_->unseen_s(), 6.0 - kStep_s, kTolerance_s);
+  EXPECT_NEAR(live_->time_s(), 6.0, kTolerance_s);
+  EXPECT_NEAR(witness_->views[1].time_s, kStep_s, kTolerance_s);
+}
+
 TEST_F(LiveOperatorTest, RecordsWhatTheOperatorCouldNotAnswer) {
   live_->begin(0.0);
   take(kServer_s);
