@@ -249,7 +249,8 @@ void add_server_options(CLI::App& command, Arguments& a) {
                    "In real time through live haptic servers; without --endpoint two are started, needle and probe");
   command
       .add_option("--endpoint", a.realtime.endpoints,
-                  "A running trocar-hapticd: ipc://PATH or tcp://HOST:PORT; again for a second one, in any order")
+                  "A running trocar-hapticd: ipc://PATH, or tcp://ADDRESS:PORT with --keys; again for a second one, in "
+                  "any order")
       ->allow_extra_args(false);
   command.add_option("--keys", a.key_file, "Your private key file, for servers on other machines (trocar link keygen)");
   command.add_option("--server-key", a.server_key_file, "The servers' public key");

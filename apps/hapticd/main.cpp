@@ -229,7 +229,7 @@ void add_options(CLI::App& program, Arguments& a) {
   number_within(program.add_option("--rate", a.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
       ->capture_default_str();
   program.add_option("--endpoint", a.endpoint,
-                     "ipc://PATH or tcp://HOST:PORT; beyond this machine only with --keys and --allow");
+                     "ipc://PATH (for this user), or tcp://ADDRESS:PORT with --keys and --allow");
   program.add_option("--keys", a.key_file, "The server's key file (trocar link keygen)");
   program.add_option("--allow", a.allow_file, "Public keys of the clients that may connect");
   whole_number_within(
@@ -248,7 +248,7 @@ void add_options(CLI::App& program, Arguments& a) {
       "It runs until it is interrupted, keeps its device safe whatever its clients do, and gives no force before a "
       "client asks "
       "for it.\nExamples:\n  trocar-hapticd --device virtual --tool needle --patient abdomen\n"
-      "  trocar-hapticd --device openhaptics --tool probe --endpoint tcp://127.0.0.1:5571\n");
+      "  trocar-hapticd --device openhaptics --tool probe --endpoint ipc:///tmp/probe\n");
 }
 
 int run(int argc, char** argv) {

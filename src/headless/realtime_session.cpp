@@ -255,8 +255,8 @@ Status check_realtime(const RealtimeOptions& options) {
     return fail_usage("an attempt has two servers at most", "--endpoint", "name the needle's and the probe's");
   for (const std::string& text : options.endpoints) {
     TROCAR_TRY(const Endpoint endpoint, parse_endpoint(text));
-    if (!endpoint.is_loopback && !options.security)
-      return fail_usage("a server on another machine needs keys", text, "give --keys and --server-key");
+    if (endpoint.needs_keys && !options.security)
+      return fail_usage("a server on tcp:// needs keys", text, "give --keys and --server-key, or use ipc://");
   }
   if (options.endpoints.size() == 2 && options.endpoints[0] == options.endpoints[1])
     return fail_usage("the same server twice", options.endpoints[0], "name the needle's and the probe's");

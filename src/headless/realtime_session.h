@@ -15,7 +15,7 @@ struct RealtimeOptions {
   /// Of running servers, in any order: the needle's, and perhaps the probe's. None: two are started for the attempt and
   /// end with it.
   std::vector<std::string> endpoints;
-  std::optional<ClientSecurity> security;  ///< For servers beyond this machine.
+  std::optional<ClientSecurity> security;  ///< For servers on tcp.
   /// How long a server may be silent, or keep from doing what it was asked (loading a scene excepted).
   std::chrono::milliseconds patience{5000};
 };

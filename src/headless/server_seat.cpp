@@ -87,8 +87,9 @@ Result<State> ServerSeat::look() {
   count_time();
   if (view_.silent_s > std::chrono::duration<double>(patience_).count()) {
     const bool was_heard = view_.welcome.session != 0;
-    return fail(fmt::format("{} for {:.1f} s", was_heard ? "the server is gone, silent" : "no server answers, tried",
-                            view_.silent_s),
+    const std::string why = view_.refusal.empty() ? "" : ": " + view_.refusal;
+    return fail(fmt::format("{} for {:.1f} s{}", was_heard ? "the server is gone, silent" : "no server answers, tried",
+                            view_.silent_s, why),
                 endpoint_,
                 was_heard ? "look at its log; it may be started again within --patience"
                           : "start trocar-hapticd there; with keys, both sides must know each other's");

@@ -1,4 +1,6 @@
 // The client's half of codec.h: what clients say.
+#include <fmt/format.h>
+
 #include <array>
 
 #include "link/codec.h"
@@ -8,6 +10,35 @@
 namespace trocar {
 namespace {
 using namespace detail;
+
+// docs/link.md gives these numbers to other implementations by the schema.
+template <class Enum>
+constexpr bool is_number(Enum value, std::size_t number) {
+  return static_cast<std::size_t>(value) == number;
+}
+static_assert(is_number(wire::Version::Current, kLinkVersion));
+static_assert(is_number(wire::SimpleCommandNumber::Start, static_cast<std::size_t>(ServerCommand::kStart)));
+static_assert(is_number(wire::SimpleCommandNumber::RestartStatistics, static_cast<std::size_t>(kLastServerCommand)));
+static_assert(is_number(wire::MessageBytes::BeforeHello, kMostBytesBeforeHello));
+static_assert(is_number(wire::MessageBytes::Most, kMostMessageBytes));
+static_assert(is_number(wire::TextBytes::ClientName, kMostNameBytes));
+static_assert(is_number(wire::TextBytes::Most, kMostTextBytes));
+static_assert(is_number(wire::MostItems::Settings, kMostSettings));
+static_assert(is_number(wire::MostItems::Samples, kMostSamples));
+static_assert(is_number(wire::MostClients::Controllers, kMostControllers));
+static_assert(is_number(wire::MostClients::Watchers, kMostWatchers));
+static_assert(is_number(wire::MostClients::ConnectionsBeforeHello, kMostStrangers));
+static_assert(is_number(wire::RateLimit::MessagesAtOnce, static_cast<std::size_t>(kMostMessagesAtOnce)));
+static_assert(is_number(wire::RateLimit::MessagesPerS, static_cast<std::size_t>(kMostMessagesPerS)));
+static_assert(is_number(wire::RateLimit::BytesPerS, static_cast<std::size_t>(kMostBytesPerS)));
+static_assert(is_number(wire::Period::ControlLost, static_cast<std::size_t>(1e3 * kControlLost_s)));
+static_assert(is_number(wire::Period::HelloPatience, static_cast<std::size_t>(1e3 * kHelloPatience_s)));
+static_assert(is_number(wire::EventKind::Limit, static_cast<std::size_t>(EventKind::kLimit)));
+static_assert(is_number(wire::InsertionPhase::Retracting, static_cast<std::size_t>(InsertionPhase::kRetracting)));
+static_assert(is_number(wire::GateMode::Absent, static_cast<std::size_t>(kLastGateMode)));
+static_assert(is_number(wire::GateFault::Vibration, static_cast<std::size_t>(kLastGateFault)));
+static_assert(is_number(wire::LimitReason::Jumped, static_cast<std::size_t>(LimitReason::kJumped)));
+static_assert(is_number(wire::LimitReason::Fault, static_cast<std::size_t>(LimitReason::kFault)));
 
 // Beyond what the scene takes (NeedleGeometry, hands): it says itself what it does not like. [assumed]
 constexpr Range kNeedleLengths_mm = {0.0, 1e4};
@@ -78,7 +109,10 @@ ClientMember build_body(Builder& b, const Goodbye&) {
 // From bytes.
 
 Hello read(const wire::Hello& table, Inspection& in) {
-  return {in.text(table.client(), "client"), table.wants_control()};
+  Hello hello{in.text(table.client(), "client"), table.wants_control()};
+  if (hello.client.size() > kMostNameBytes)
+    in.refuse(fmt::format("a name of {} bytes, {} are allowed", hello.client.size(), kMostNameBytes), "client");
+  return hello;
 }
 
 Heartbeat read(const wire::Heartbeat& table, Inspection& in) {
@@ -177,6 +211,14 @@ Result<ClientMessage> decode_client_message(std::span<const std::byte> bytes) {
   ClientMessage message{root->session(), root->sequence(), read(*root, inspection)};
   if (!inspection.is_good()) return tl::unexpected(*inspection.complaint());
   return message;
+}
+
+std::optional<CommandNumber> find_command(std::span<const std::byte> bytes) {
+  if (!check_size(bytes.size())) return {};
+  const AlignedBytes aligned(bytes);
+  const auto root = find_root<wire::ClientMessage>(aligned, kClientIdentifier);
+  if (!root || (*root)->body_as_Command() == nullptr) return {};
+  return CommandNumber{(*root)->session(), (*root)->sequence(), (*root)->body_as_Command()->request()};
 }
 
 }  // namespace trocar

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +23,12 @@ Bytes encode(const ServerMessage& message);
 /// the bytes. Of a tick the time, tip, axis and device position must be finite; its forces and the rest arrive bit for
 /// bit, NaN too, for the record of a fault must show it.
 Result<ClientMessage> decode_client_message(std::span<const std::byte> bytes);
+/// Of a command whose numbers or texts were refused though its frame is sound: what a reply needs.
+struct CommandNumber {
+  std::uint64_t session = 0, sequence = 0;
+  std::uint32_t request = 0;
+};
+std::optional<CommandNumber> find_command(std::span<const std::byte> bytes);
 Result<ServerMessage> decode_server_message(std::span<const std::byte> bytes);
 
 }  // namespace trocar

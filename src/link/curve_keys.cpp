@@ -23,6 +23,7 @@ constexpr std::size_t kMostKeyFileBytes = 4096;
 constexpr std::size_t kMostAllowListBytes = 1 << 20;
 constexpr mode_t kUserMayReadAndWrite = 0600;
 constexpr mode_t kOthers = 0077;
+constexpr mode_t kOthersMayWrite = 0022;
 constexpr std::string_view kPublicWord = "public";
 constexpr std::string_view kSecretWord = "secret";
 
@@ -91,6 +92,18 @@ Status check_for_user_alone(const fs::path& file) {
   if ((status.st_mode & kOthers) == 0) return {};
   return fail("a secret key that other users can read", file.string(),
               fmt::format("chmod 600 {}, or make new keys", file.string()));
+}
+
+/// Who can write to such a file decides whom this program trusts.
+Status check_written_by_user_alone(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return fail("no such file", file.string(), "check the path");
+  if ((status.st_mode & kOthersMayWrite) != 0) {
+    return fail("a file of keys that other users can write", file.string(),
+                fmt::format("chmod go-w {}", file.string()));
+  }
+  if (status.st_uid == ::geteuid() || status.st_uid == 0) return {};
+  return fail("a file of keys that belongs to another user", file.string(), "copy it: cp FILE COPY");
 }
 
 /// A new file that nobody else could read at any time.
@@ -168,12 +181,14 @@ Result<CurveKeys> load_curve_keys(const fs::path& file) {
 }
 
 Result<std::string> load_public_key(const fs::path& file) {
+  TROCAR_TRY_STATUS(check_written_by_user_alone(file));
   TROCAR_TRY(const auto keys, read_public_keys(file, kMostKeyFileBytes));
   if (keys.size() == 1) return *keys.begin();
   return fail(fmt::format("has {} public keys, not one", keys.size()), file.string(), "name a .pub file");
 }
 
 Result<std::set<std::string>> load_allow_list(const fs::path& file) {
+  TROCAR_TRY_STATUS(check_written_by_user_alone(file));
   return read_public_keys(file, kMostAllowListBytes);
 }
 

@@ -4,7 +4,6 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
@@ -13,16 +12,16 @@
 #include "core/log.h"
 #include "link/detail/clean_text.h"
 #include "link/detail/private_folder.h"
+#include "link/detail/tcp_address.h"
 
 namespace trocar {
 namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostPathBytes = sizeof(sockaddr_un::sun_path) - 1;
-constexpr std::size_t kMostHostBytes = 253;  ///< Of a DNS name.
 constexpr std::string_view kIpc = "ipc://";
 constexpr std::string_view kTcp = "tcp://";
-constexpr std::string_view kAdvice = "write ipc:///PATH, or tcp://HOST:PORT as in tcp://127.0.0.1:5571";
+constexpr std::string_view kAdvice = "write ipc:///PATH, or tcp://ADDRESS:PORT as in tcp://127.0.0.1:5571";
 
 /// A whole number of 0 to `most`, in digits alone.
 std::optional<unsigned> parse_number(std::string_view digits, unsigned most) {
@@ -33,34 +32,6 @@ std::optional<unsigned> parse_number(std::string_view digits, unsigned most) {
   return is_number ? std::optional(value) : std::nullopt;
 }
 
-/// 127.0.0.0/8 in four numbers: a name that begins with 127 is none.
-bool is_ipv4_loopback(std::string_view host) {
-  constexpr unsigned kMostOctet = 255;
-  for (int octet = 0; octet < 4; ++octet) {
-    const std::size_t dot = host.find('.');
-    if ((dot == std::string_view::npos) != (octet == 3)) return false;
-    const auto value = parse_number(host.substr(0, dot), kMostOctet);
-    if (!value || (octet == 0 && *value != 127)) return false;
-    host.remove_prefix(dot == std::string_view::npos ? host.size() : dot + 1);
-  }
-  return true;
-}
-
-bool is_one_of(char c, std::string_view others) {
-  const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-  return is_letter || (c >= '0' && c <= '9') || others.find(c) != std::string_view::npos;
-}
-
-/// "*", a name or address, or an address of version 6 in brackets.
-bool is_host(std::string_view host) {
-  if (host == "*") return true;
-  const bool is_bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
-  if (is_bracketed) host = host.substr(1, host.size() - 2);
-  const std::string_view others = is_bracketed ? ":.%" : ".-_";
-  return !host.empty() && host.size() <= kMostHostBytes &&
-         std::all_of(host.begin(), host.end(), [&](char c) { return is_one_of(c, others); });
-}
-
 Result<Endpoint> parse_ipc(std::string_view path) {
   const std::string where = fmt::format("{}{}", kIpc, path);
   if (!path.starts_with('/')) return fail_usage("the socket's path is not absolute", where, std::string(kAdvice));
@@ -69,7 +40,7 @@ Result<Endpoint> parse_ipc(std::string_view path) {
     return fail_usage(fmt::format("the socket's path has {} bytes, {} are possible", path.size(), kMostPathBytes),
                       where, "choose a shorter one");
   }
-  return Endpoint{where, true};
+  return Endpoint{where, false};
 }
 
 Result<Endpoint> parse_tcp(std::string_view address) {
@@ -80,9 +51,13 @@ Result<Endpoint> parse_tcp(std::string_view address) {
   std::string_view host = address.substr(0, colon);
   const auto port = parse_number(address.substr(colon + 1), kMostPort);
   if (!port) return fail_usage(fmt::format("the port is not a number of 0 to {}", kMostPort), where);
-  if (!is_host(host)) return fail_usage("this is no host", where, std::string(kAdvice));
   if (host == "localhost") host = "127.0.0.1";  // sockets are not bound to names
-  return Endpoint{fmt::format("{}{}:{}", kTcp, host, *port), host == "[::1]" || is_ipv4_loopback(host)};
+  const auto parsed = detail::parse_tcp_address(host, *port);
+  if (!parsed) {
+    return fail_usage("not an IP address (names are not looked up)", where,
+                      "write the address in numbers, as in tcp://192.168.1.7:5571 or tcp://[::1]:5571");
+  }
+  return Endpoint{parsed->url(), true};
 }
 
 }  // namespace

@@ -18,7 +18,11 @@ milliseconds left_of(milliseconds patience, Clock::time_point begin) {
   return spent < patience ? patience - spent : milliseconds(0);
 }
 
-tl::unexpected<Error> no_server(const std::string& endpoint, milliseconds patience) {
+tl::unexpected<Error> no_server(const std::string& endpoint, milliseconds patience, const std::string& refusal) {
+  if (!refusal.empty()) {
+    return fail(fmt::format("no session within {} ms: {}", patience.count(), refusal), endpoint,
+                "look at the log of trocar-hapticd");
+  }
   return fail(fmt::format("no server was heard within {} ms", patience.count()), endpoint,
               "start trocar-hapticd there, or look at its log");
 }
@@ -32,9 +36,8 @@ struct HapticClient::Impl {
 
 Result<HapticClient> HapticClient::connect(const ClientOptions& options) {
   TROCAR_TRY(const Endpoint endpoint, parse_endpoint(options.endpoint));
-  if (!endpoint.is_loopback && !options.security) {
-    return fail_usage("a server on another machine needs keys", options.endpoint,
-                      "give this client's key and the server's public key");
+  if (endpoint.needs_keys && !options.security) {
+    return fail_usage("tcp:// needs keys", options.endpoint, "give this client's key and the server's public key");
   }
   TROCAR_TRY(auto thread, detail::ClientThread::start(options));
   auto impl = std::make_unique<Impl>();
@@ -94,7 +97,7 @@ void HapticClient::frame_drawn() {
 
 Status HapticClient::wait_connected(milliseconds patience) {
   if (impl_->thread->mailbox().wait_heard(patience)) return {};
-  return no_server(impl_->thread->options().endpoint, patience);
+  return no_server(impl_->thread->options().endpoint, patience, view().refusal);
 }
 
 }  // namespace trocar

@@ -39,6 +39,7 @@ struct ClientView {
   std::uint64_t ticks_received = 0;
   std::uint64_t ticks_missing = 0;  ///< Gaps in the numbers: dropped on the way, or by the server.
   std::uint64_t messages_refused = 0;
+  std::string refusal;         ///< The newest reason why the server does not talk to us; empty: none in this session.
   std::uint64_t welcomes = 0;  ///< Sessions so far: above 1 the server was lost and found again.
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/pose.h"
+#include "link/limits.h"
 #include "realtime/loop_statistics.h"
 #include "telemetry/tick_sample.h"
 
@@ -167,7 +168,12 @@ struct StateBatch {
 };
 inline constexpr std::size_t kMostSamples = 512;
 
-using ServerBody = std::variant<Welcome, StateBatch, Reply, Pong>;
+/// Why the server did not take a message. To a client without a session it comes with session 0 and sequence 0.
+struct Refusal {
+  std::string text;  ///< As Error::text.
+};
+
+using ServerBody = std::variant<Welcome, StateBatch, Reply, Pong, Refusal>;
 
 /// What goes over the wire.
 template <class Body>
@@ -179,8 +185,6 @@ struct Envelope {
 using ClientMessage = Envelope<ClientBody>;
 using ServerMessage = Envelope<ServerBody>;
 
-inline constexpr std::size_t kMostMessageBytes = 1 << 20;  ///< Larger ones are dropped unread.
-inline constexpr std::size_t kMostTextBytes = 256 * 1024;  ///< Of one string (a tissue table is the longest).
 inline constexpr double kControlLost_s = 2.0;
 
 }  // namespace trocar

@@ -67,6 +67,11 @@ ServerMember build_body(Builder& b, const Pong& pong) {
   return {wire::ServerBody::Pong, wire::CreatePong(b, pong.client_time_s, pong.server_time_s).Union()};
 }
 
+ServerMember build_body(Builder& b, const Refusal& refusal) {
+  const Text text = b.CreateString(refusal.text);
+  return {wire::ServerBody::Refusal, wire::CreateRefusal(b, text).Union()};
+}
+
 /// What the builder will need, so that it allocates once.
 std::size_t expected_bytes(const ServerMessage& message) {
   const auto* batch = std::get_if<StateBatch>(&message.body);
@@ -169,11 +174,16 @@ Pong read(const wire::Pong& table, Inspection& in) {
           in.number(table.server_time_s(), kTimes_s, "server_time_s")};
 }
 
+Refusal read(const wire::Refusal& table, Inspection& in) {
+  return {in.text(table.text(), "text")};
+}
+
 ServerBody read(const wire::ServerMessage& table, Inspection& in) {
   if (const auto* welcome = table.body_as_Welcome()) return read(*welcome, in);
   if (const auto* batch = table.body_as_StateBatch()) return read(*batch, in);
   if (const auto* reply = table.body_as_Reply()) return read(*reply, in);
   if (const auto* pong = table.body_as_Pong()) return read(*pong, in);
+  if (const auto* refusal = table.body_as_Refusal()) return read(*refusal, in);
   in.refuse("no body, or an unknown one", "body");
   return Pong{};
 }

@@ -22,6 +22,7 @@ struct ServerSecurity {
 /// What was dropped, and why.
 struct RefusedMessages {
   std::uint64_t malformed = 0, oversized = 0, replayed = 0, unknown_session = 0, not_in_control = 0;
+  std::uint64_t connections = 0;  ///< Closed for what they sent; not a message.
   std::uint64_t total() const noexcept { return malformed + oversized + replayed + unknown_session + not_in_control; }
 };
 
@@ -32,12 +33,12 @@ struct Received {
   ClientBody body;
 };
 
-/// The server's side of the link: one ROUTER socket for up to kMostPeers clients. Used by one thread. Never blocks on a
-/// client: what a client does not take is counted and dropped.
+/// The server's side of the link: a ZMTP 3 ROUTER of its own, for kMostControllers clients that want control and
+/// kMostWatchers that do not. Used by one thread. Never blocks on a client: batches that a client does not take are
+/// counted and dropped. Memory, connections and rates are bounded (link/limits.h), whatever clients send.
 class ServerSocket {
  public:
-  /// Binds. Errors: an endpoint beyond loopback without security (refused, exit status 2), address in use, no such
-  /// folder.
+  /// Binds. Errors: tcp:// without security (refused, exit status 2), address in use, no such folder.
   static Result<ServerSocket> bind(const Endpoint& endpoint, std::optional<ServerSecurity> security = {});
   ServerSocket(ServerSocket&&) noexcept;
   ServerSocket& operator=(ServerSocket&&) noexcept;
@@ -49,7 +50,7 @@ class ServerSocket {
   /// To every peer; batches a slow peer cannot take are dropped for it and counted.
   void send_batch(const StateBatch& batch);
   void send_reply(std::uint64_t session, const Reply& reply);
-  /// Forgets peers that were silent for long.
+  /// Forgets peers that were silent for long, and closes connections that never said Hello.
   void drop_silent(double now_s);
 
   /// When the client in control was last heard (steady clock, s); none: there is no such client.
@@ -58,8 +59,7 @@ class ServerSocket {
   std::string bound_url() const;
   RefusedMessages refused() const;
   std::uint64_t batches_not_taken() const;
-
-  static constexpr int kMostPeers = 8;
+  std::size_t connections() const;  ///< Open now.
 
  private:
   struct Impl;

@@ -35,6 +35,18 @@ class DevicePause {
 
 }  // namespace
 
+std::size_t text_bytes(const ControlJob& job) {
+  if (const auto* scene = std::get_if<LoadScene>(&job.what)) {
+    return scene->task.size() + scene->patient.size() + scene->patient_hash.size() + scene->tool.size() +
+           scene->force_model.size() + scene->tissues_toml.size();
+  }
+  std::size_t bytes = 0;
+  if (const auto* parameters = std::get_if<SetParameters>(&job.what)) {
+    for (const std::string& setting : parameters->settings) bytes += setting.size() + sizeof setting;
+  }
+  return bytes;
+}
+
 Control::Control(Shared& shared, HapticDevice& device, SceneBuilder builder, std::string tool,
                  std::filesystem::path flight_folder)
     : shared_(shared),
@@ -44,6 +56,7 @@ Control::Control(Shared& shared, HapticDevice& device, SceneBuilder builder, std
       flight_folder_(std::move(flight_folder)) {}
 
 void Control::run() {
+  const CrashStack stack;
   ControlJob job;
   while (shared_.door.wait(job)) {
     const Result<std::string> done = perform(job);

@@ -41,6 +41,7 @@ struct HapticServer::Impl {
        ServerSocket the_socket)
       : params(servo_params(the_device->preset())),
         device(std::move(the_device)),
+        last_chance(*device),
         socket(std::move(the_socket)),
         url(socket.bound_url()),
         shared(static_cast<std::int64_t>(kNsPerS / options.rate_hz)),
@@ -49,6 +50,7 @@ struct HapticServer::Impl {
                 options.tool, options.flight_folder),
         link(shared, socket, make_welcome(*device, options.tool, params.workspace.force_scale),
              options.priority > 0 ? kLinkPriority : 0) {
+    shared.last_chance = &last_chance;
     control_thread = std::thread([this] {
       control.run();
       control_end.set_value();
@@ -86,6 +88,7 @@ struct HapticServer::Impl {
 
   ServoParams params;
   std::unique_ptr<HapticDevice> device;
+  LastChance last_chance;
   ServerSocket socket;
   std::string url;
   Shared shared;

@@ -12,7 +12,9 @@ constexpr double kBatch_s = 0.005;
 constexpr double kStatus_s = 0.05;
 constexpr std::size_t kSendAt = 128;  // samples: a batch is sent before its time
 constexpr int kWait_ms = 1;
-constexpr double kStalled_s = 1.0;  // a window without a picture for so long is told of
+constexpr int kMostMessagesARound = 64;    // between two looks at the ring of records
+constexpr double kLongestRound_s = 0.003;  // the same, beside one message's own time
+constexpr double kStalled_s = 1.0;         // a window without a picture for so long is told of
 
 }  // namespace
 
@@ -24,15 +26,12 @@ LinkThread::LinkThread(Shared& shared, ServerSocket& socket, Welcome welcome, in
       recorder_(1e9 / static_cast<double>(shared.period_ns)) {}
 
 void LinkThread::run() {
+  const CrashStack stack;
   const RealTimeGrant grant = request_real_time(priority_);
   log_info("link thread: {}", grant.text());
   while (!shared_.is_stopping.load(std::memory_order_relaxed)) {
-    double now_s = seconds(now_ns());
-    for (int wait_ms = kWait_ms; const auto received = socket_.receive(wait_ms, welcome_, now_s); wait_ms = 0) {
-      take(*received);
-      now_s = seconds(now_ns());
-    }
-    now_s = seconds(now_ns());
+    receive_round();
+    const double now_s = seconds(now_ns());
     socket_.drop_silent(now_s);
     const std::optional<double> heard_s = socket_.controller_heard_s();
     shared_.heard_ns.store(heard_s ? static_cast<std::int64_t>(*heard_s * 1e9) : 0, std::memory_order_relaxed);
@@ -51,6 +50,18 @@ void LinkThread::run() {
   flush();
 }
 
+/// Bounded in messages and in time: batches go out whatever clients send.
+void LinkThread::receive_round() {
+  const double begin_s = seconds(now_ns());
+  double now_s = begin_s;
+  for (int taken = 0; taken < kMostMessagesARound && now_s - begin_s < kLongestRound_s; ++taken) {
+    const auto received = socket_.receive(taken == 0 ? kWait_ms : 0, welcome_, now_s);
+    if (!received) return;
+    take(*received);
+    now_s = seconds(now_ns());
+  }
+}
+
 void LinkThread::drain() {
   ServoRecord record;
   while (shared_.records.pop(record)) {
@@ -67,7 +78,10 @@ void LinkThread::drain() {
     }
     actions_ |= record.actions;
     ticks_ = record.tick + 1;
-    if (auto flight = recorder_.add(record)) shared_.door.post({0, 0, WriteFlight{std::move(*flight)}});
+    if (auto flight = recorder_.add(record)) {
+      const bool is_taken = shared_.door.post({0, 0, WriteFlight{std::move(*flight)}});
+      if (!is_taken) log_warning("a flight record was dropped: too many jobs wait");
+    }
     newest_ = record;
   }
 }
@@ -105,7 +119,8 @@ void LinkThread::take(const Received& received, const Command& command) {
   if (simple == nullptr || *simple == ServerCommand::kReconnect) {
     ControlJob job{received.session, command.request, ServerCommand::kReconnect};
     std::visit([&](const auto& what) { job.what = what; }, command.what);
-    shared_.door.post(std::move(job));
+    if (!shared_.door.post(std::move(job)))
+      reply(received, command.request, false, "busy: other jobs of the server wait — send it again when they are done");
     return;
   }
   if (*simple == ServerCommand::kStart && !shared_.door.status().has_scene) {

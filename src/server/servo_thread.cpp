@@ -46,6 +46,8 @@ void obey(Shared& shared, Switches& switches, LoopStatistics& statistics) noexce
 }  // namespace
 
 void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
+  const CrashStack stack;
+  if (shared.last_chance != nullptr) shared.last_chance->adopt_thread();
   shared.grant = request_real_time(priority);
   shared.has_grant.store(true, std::memory_order_release);
   LoopStatistics statistics(shared.period_ns);
@@ -55,6 +57,7 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
                [&](const Period& period, const LoopStatistics& so_far) {
                  const bool is_paused = shared.pause_wanted.load(std::memory_order_acquire);
                  shared.is_paused.store(is_paused, std::memory_order_release);
+                 if (shared.last_chance != nullptr && shared.last_chance->takes_over(is_paused)) return;
                  if (is_paused) return;  // commands wait: a reset must not get lost
 
                  obey(shared, switches, statistics);

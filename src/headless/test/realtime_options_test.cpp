@@ -14,13 +14,14 @@ Status check(const std::vector<std::string>& endpoints) {
 TEST(RealtimeOptions, TakesNoneOneOrTwoServers) {
   EXPECT_TRUE(check({}));
   EXPECT_TRUE(check({"ipc:///tmp/a"}));
-  EXPECT_TRUE(check({"ipc:///tmp/a", "tcp://127.0.0.1:5571"}));
+  EXPECT_TRUE(check({"ipc:///tmp/a", "ipc:///tmp/b"}));
 }
 
 TEST(RealtimeOptions, RefusesWhatIsNoPairOfServersAsUsage) {
   const std::vector<std::vector<std::string>> wrong{{"ipc:///tmp/a", "ipc:///tmp/b", "ipc:///tmp/c"},
                                                     {"ipc:///tmp/a", "ipc:///tmp/a"},
                                                     {"http://127.0.0.1"},
+                                                    {"tcp://127.0.0.1:5571"},
                                                     {"tcp://192.0.2.1:5571"}};
   for (const auto& endpoints : wrong) {
     const Status status = check(endpoints);

@@ -96,6 +96,7 @@ void ClientMailbox::put_welcome(const Welcome& welcome, bool is_new) {
   view_.welcome = welcome;
   if (is_new) {
     ++view_.welcomes;
+    view_.refusal.clear();
     view_.status = {};  // what the last one said is not so of this one
     newest_.reset();
   }
@@ -118,6 +119,11 @@ void ClientMailbox::put_heard() {
 void ClientMailbox::put_refused(std::uint64_t messages_refused) {
   const std::lock_guard lock(mutex_);
   view_.messages_refused = messages_refused;
+}
+
+void ClientMailbox::put_refusal(std::string text) {
+  const std::lock_guard lock(mutex_);
+  view_.refusal = std::move(text);
 }
 
 void ClientMailbox::put_clock(double offset_s, double round_trip_s) {

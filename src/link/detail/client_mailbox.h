@@ -5,6 +5,7 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "link/haptic_client.h"
@@ -47,6 +48,8 @@ class ClientMailbox {
   void put_reply(Reply reply);
   void put_lost();
   void put_refused(std::uint64_t messages_refused);
+  /// Why the server does not talk to us, or did not take a message.
+  void put_refusal(std::string text);
 
  private:
   bool is_connected() const;  ///< With the lock.

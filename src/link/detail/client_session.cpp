@@ -6,6 +6,12 @@
 namespace trocar::detail {
 
 bool ClientSession::take(ServerMessage message, double now_s) {
+  if (const auto* refusal = std::get_if<Refusal>(&message.body); refusal != nullptr && message.session == 0) {
+    // The server does not know us, or no longer: greet it again.
+    mailbox_.put_refusal(refusal->text);
+    if (is_welcomed()) lose();
+    return false;
+  }
   const auto* welcome = std::get_if<Welcome>(&message.body);
   const bool is_new = welcome != nullptr && welcome->session != 0 && welcome->session != session_;
   const bool is_mine = is_new ? message.session == welcome->session : is_welcomed() && message.session == session_;
@@ -75,6 +81,11 @@ bool ClientSession::take_body(const Pong& pong, double now_s) {
   if (!clock_.add(pong.client_time_s, pong.server_time_s, now_s)) return false;
   const auto best = clock_.best();
   mailbox_.put_clock(best->offset_s, best->round_trip_s);
+  return true;
+}
+
+bool ClientSession::take_body(const Refusal& refusal, double) {
+  mailbox_.put_refusal(refusal.text);
   return true;
 }
 

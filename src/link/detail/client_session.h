@@ -34,6 +34,7 @@ class ClientSession {
   bool take_body(StateBatch& batch, double now_s);
   bool take_body(Reply& reply, double now_s);
   bool take_body(const Pong& pong, double now_s);
+  bool take_body(const Refusal& refusal, double now_s);
 
   ClientMailbox& mailbox_;
   std::uint64_t session_ = 0;

@@ -107,6 +107,7 @@ Status ClientThread::open_socket() {
   if (options_.security && !has_keys_set(socket_, *options_.security)) {
     return fail_usage("these are no CURVE keys", options_.endpoint, "make new ones with `trocar link keygen`");
   }
+  handshakes_.watch(context_, socket_);
   if (zmq_connect(socket_.get(), options_.endpoint.c_str()) != 0) {
     return fail("the endpoint cannot be used", options_.endpoint, zmq_strerror(zmq_errno()));
   }
@@ -127,6 +128,7 @@ void ClientThread::frame_drawn() noexcept {
 
 void ClientThread::run() {
   while (true) {
+    // Handshakes are looked at with every beat.
     std::array<zmq_pollitem_t, 3> items{
         {{socket_.get(), 0, ZMQ_POLLIN, 0}, {nullptr, clock_, ZMQ_POLLIN, 0}, {nullptr, wake_, ZMQ_POLLIN, 0}}};
     // A socket that could not be opened is tried again at the next beat.
@@ -160,6 +162,7 @@ void ClientThread::read_messages() {
     auto message = decode_server_message(frame.bytes());
     if (!message) {
       session_.refuse();
+      mailbox_.put_refusal(message.error().text());
     } else if (session_.take(std::move(*message), steady_s())) {
       silent_beats_ = 0;
     }
@@ -169,6 +172,7 @@ void ClientThread::read_messages() {
 void ClientThread::beat() {
   const double now_s = steady_s();
   mailbox_.put_beat();
+  if (const auto failure = handshakes_.take()) mailbox_.put_refusal(*failure);
   if (!socket_.is_open() && !open_socket()) return;
   if (!session_.is_welcomed()) {
     if (now_s - hello_s_ >= kHelloAgain_s) send_hello(now_s);

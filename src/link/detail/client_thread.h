@@ -9,6 +9,7 @@
 #include "core/result.h"
 #include "link/detail/client_mailbox.h"
 #include "link/detail/client_session.h"
+#include "link/detail/handshake_monitor.h"
 #include "link/detail/zmq_handles.h"
 #include "link/haptic_client.h"
 
@@ -51,6 +52,7 @@ class ClientThread {
   // The thread's own.
   std::string routing_id_;  ///< Kept over connections, so that the server knows us again.
   ZmqSocket socket_;
+  HandshakeMonitor handshakes_;
   ClientSession session_{mailbox_};
   double hello_s_ = 0.0;  ///< When the last Hello went out; 0: none on this connection.
   int silent_beats_ = 0;  ///< Since the server was last heard.

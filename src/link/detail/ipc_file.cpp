@@ -18,17 +18,6 @@ namespace {
 constexpr mode_t kForUserAlone = 0600;
 constexpr int kWaitingConnections = 64;
 
-/// A descriptor, closed at the end.
-struct Descriptor {
-  explicit Descriptor(int opened) noexcept : number(opened) {}
-  ~Descriptor() {
-    if (number >= 0) ::close(number);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number;
-};
-
 std::optional<sockaddr_un> socket_name(const fs::path& path) {
   sockaddr_un name{};
   name.sun_family = AF_UNIX;
@@ -44,7 +33,7 @@ const sockaddr* as_address(const sockaddr_un& name) {
 /// Somebody listens, or may: only a refused connection proves a dead server.
 bool is_alive(const sockaddr_un& name) {
   const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  return ::connect(probe.number, as_address(name), sizeof name) == 0 || (errno != ECONNREFUSED && errno != ENOENT);
+  return ::connect(probe.get(), as_address(name), sizeof name) == 0 || (errno != ECONNREFUSED && errno != ENOENT);
 }
 
 /// Removes what a dead server left.
@@ -73,22 +62,22 @@ Result<IpcFile> IpcFile::listen(const fs::path& path) {
   // keeps must not keep us.
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const Descriptor turn(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (turn.number < 0) return fail("the folder of the socket cannot be opened", folder.string(), std::strerror(errno));
-  ::flock(turn.number, LOCK_EX | LOCK_NB);
+  if (!turn.is_open()) return fail("the folder of the socket cannot be opened", folder.string(), std::strerror(errno));
+  ::flock(turn.get(), LOCK_EX | LOCK_NB);
 
   TROCAR_TRY_STATUS(clear_place(path, *name));
   Descriptor listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   // The mode of the descriptor becomes the file's: there is no moment at which others could connect.
   struct stat made {};
-  if (listener.number < 0 || ::fchmod(listener.number, kForUserAlone) != 0 ||
-      ::bind(listener.number, as_address(*name), sizeof *name) != 0 ||
-      ::listen(listener.number, kWaitingConnections) != 0 || ::lstat(path.c_str(), &made) != 0) {
+  if (!listener.is_open() || ::fchmod(listener.get(), kForUserAlone) != 0 ||
+      ::bind(listener.get(), as_address(*name), sizeof *name) != 0 ||
+      ::listen(listener.get(), kWaitingConnections) != 0 || ::lstat(path.c_str(), &made) != 0) {
     if (errno == EADDRINUSE) return fail("the endpoint is in use by another server", path.string());
     return fail("the socket cannot be made", path.string(), std::strerror(errno));
   }
   IpcFile file;
   file.path_ = path;
-  file.descriptor_ = std::exchange(listener.number, -1);
+  file.socket_ = std::move(listener);
   file.device_ = made.st_dev;
   file.inode_ = made.st_ino;
   return file;
@@ -96,7 +85,7 @@ Result<IpcFile> IpcFile::listen(const fs::path& path) {
 
 IpcFile::IpcFile(IpcFile&& other) noexcept
     : path_(std::exchange(other.path_, {})),
-      descriptor_(std::exchange(other.descriptor_, -1)),
+      socket_(std::move(other.socket_)),
       device_(other.device_),
       inode_(other.inode_) {}
 
@@ -104,7 +93,7 @@ IpcFile& IpcFile::operator=(IpcFile&& other) noexcept {
   if (this != &other) {
     remove();
     path_ = std::exchange(other.path_, {});
-    descriptor_ = std::exchange(other.descriptor_, -1);
+    socket_ = std::move(other.socket_);
     device_ = other.device_;
     inode_ = other.inode_;
   }
@@ -112,7 +101,7 @@ IpcFile& IpcFile::operator=(IpcFile&& other) noexcept {
 }
 
 void IpcFile::remove() noexcept {
-  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  socket_.close();
   if (path_.empty()) return;
   struct stat found {};
   if (::lstat(path_.c_str(), &found) == 0 && found.st_dev == device_ && found.st_ino == inode_) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/result.h"
+#include "link/detail/descriptor.h"
 
 namespace trocar::detail {
 
@@ -20,14 +21,14 @@ class IpcFile {
   IpcFile& operator=(IpcFile&& other) noexcept;
   ~IpcFile() { remove(); }
 
-  /// The listening descriptor; from now on the caller's.
-  int release() noexcept { return std::exchange(descriptor_, -1); }
+  /// The listening socket.
+  int get() const noexcept { return socket_.get(); }
 
  private:
   void remove() noexcept;
 
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  Descriptor socket_;
   dev_t device_ = 0;
   ino_t inode_ = 0;
 };

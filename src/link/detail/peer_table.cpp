@@ -6,9 +6,12 @@ namespace trocar::detail {
 
 Peer* PeerTable::greet(std::string_view routing_id, const Hello& hello, std::uint64_t new_session, double now_s) {
   Peer* peer = find(routing_id);
+  if (!has_place(peer, hello.wants_control)) {
+    forget_silent(now_s, kControlLost_s);
+    peer = find(routing_id);
+    if (!has_place(peer, hello.wants_control)) return nullptr;
+  }
   if (peer == nullptr) {
-    if (peers_.size() >= most_peers_) forget_silent(now_s, kControlLost_s);
-    if (peers_.size() >= most_peers_) return nullptr;
     peer = &peers_.emplace_back();
     peer->routing_id = routing_id;
     peer->session = new_session;
@@ -23,6 +26,13 @@ Peer* PeerTable::greet(std::string_view routing_id, const Hello& hello, std::uin
   peer->wants_control = hello.wants_control;
   if (!peer->wants_control && has_control(*peer)) controller_ = 0;
   return peer;
+}
+
+/// `peer` or, where it is null, a new one.
+bool PeerTable::has_place(const Peer* peer, bool wants_control) const {
+  const auto others = std::ranges::count_if(
+      peers_, [&](const Peer& other) { return &other != peer && other.wants_control == wants_control; });
+  return static_cast<std::size_t>(others) < (wants_control ? most_controllers_ : most_watchers_);
 }
 
 Peer* PeerTable::find(std::string_view routing_id) {

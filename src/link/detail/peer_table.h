@@ -27,10 +27,12 @@ enum class Verdict { kGood, kUnknownSession, kReplayed };
 /// Pointers to a peer hold until the next greet() or forget.
 class PeerTable {
  public:
-  explicit PeerTable(std::size_t most_peers) : most_peers_(most_peers) {}
+  PeerTable(std::size_t most_controllers, std::size_t most_watchers)
+      : most_controllers_(most_controllers), most_watchers_(most_watchers) {}
 
   /// A Hello came. The peer has `new_session`, and keeps the one it has where the Hello is only a repetition: none of
-  /// its messages has come yet. Nothing when there are too many peers and none of them is silent.
+  /// its messages has come yet. Nothing when there are too many peers of its kind (those that want control, those that
+  /// watch) and none of them is silent: watchers never take a controller's place.
   Peer* greet(std::string_view routing_id, const Hello& hello, std::uint64_t new_session, double now_s);
   Peer* find(std::string_view routing_id);
   Peer* find_session(std::uint64_t session);
@@ -45,7 +47,9 @@ class PeerTable {
   std::vector<Peer>& all() { return peers_; }
 
  private:
-  std::size_t most_peers_;
+  bool has_place(const Peer* peer, bool wants_control) const;
+
+  std::size_t most_controllers_, most_watchers_;
   std::vector<Peer> peers_;
   std::uint64_t controller_ = 0;  ///< Session; 0: nobody.
 };

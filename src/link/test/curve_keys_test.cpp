@@ -128,6 +128,18 @@ TEST(AllowList, MayBeEmpty) {
   EXPECT_TRUE(load_allow_list(write_file(folder, "# nobody\n")).value().empty());
 }
 
+TEST(AllowList, FileThatOthersCanWriteIsRefused) {
+  const TemporaryFolder folder;
+  const std::string line = std::string(kPublic) + "\n";
+  for (const mode_t mode : {0660u, 0666u, 0622u, 0602u}) {
+    const auto allowed = load_allow_list(write_file(folder, line, mode));
+    ASSERT_FALSE(allowed);
+    EXPECT_NE(allowed.error().text().find("chmod go-w"), std::string::npos) << allowed.error().text();
+    EXPECT_FALSE(load_public_key(write_file(folder, line, mode)));
+  }
+  EXPECT_TRUE(load_allow_list(write_file(folder, line, 0644)));
+}
+
 TEST(PublicKey, IsOneAlone) {
   const TemporaryFolder folder;
   const std::string other = make_curve_keys()->public_key;

@@ -25,7 +25,7 @@ HapticClient connected(const std::string& url, bool wants_control = true) {
 
 TEST(HapticClient, FindsAServerThatIsThere) {
   const TemporaryFolder folder;
-  for (const Endpoint& endpoint : {any_port(), ipc_endpoint(folder)}) {
+  for (const Endpoint& endpoint : {any_endpoint(), ipc_endpoint(folder)}) {
     RunningServer server(endpoint);
     const HapticClient client = connected(server.url());
     ASSERT_TRUE(HapticClient(connected(server.url(), false)).wait_connected(kPatience));
@@ -56,7 +56,7 @@ TEST(HapticClient, TwoServersAndTwoClientsInAnyOrder) {
 }
 
 TEST(HapticClient, AskGivesTheReplyOrItsError) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   EXPECT_EQ(client.ask(ServerCommand::kStart, kPatience).value_or("nothing"), "done");
   const auto refused = client.ask(SetParameters{{"liver.k=0.5"}}, kPatience);
@@ -66,7 +66,7 @@ TEST(HapticClient, AskGivesTheReplyOrItsError) {
 }
 
 TEST(HapticClient, CommandsHaveTheirOwnNumbersAndReplies) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
   const std::uint32_t one = client.send(ServerCommand::kStart), two = client.send(ServerCommand::kStop);
@@ -93,7 +93,7 @@ TEST(HapticClient, CommandWithoutServerIsAnsweredSoAndNotKept) {
 }
 
 TEST(HapticClient, BeatsAndKnowsTheServersClock) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   EXPECT_TRUE(eventually([&] { return server.received<Heartbeat>().size() > 20; }));
   for (const Heartbeat& beat : server.received<Heartbeat>()) EXPECT_EQ(beat.window_age_s, 0.0);
@@ -104,7 +104,7 @@ TEST(HapticClient, BeatsAndKnowsTheServersClock) {
 }
 
 TEST(HapticClient, TellsTheAgeOfItsWindowsPicture) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   ClientOptions options;
   options.endpoint = server.url();
   options.has_window = true;
@@ -122,7 +122,7 @@ TEST(HapticClient, TellsTheAgeOfItsWindowsPicture) {
 }
 
 TEST(HapticClient, ReceivesEveryTickInOrderAndTheNewestStatus) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
   EXPECT_FALSE(client.newest());
@@ -147,7 +147,7 @@ TEST(HapticClient, ReceivesEveryTickInOrderAndTheNewestStatus) {
 }
 
 TEST(HapticClient, CountsGapsInTheTicks) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
   server.send(test_batch(1000, 10));  // a client that joins late misses nothing of its own
@@ -161,7 +161,7 @@ TEST(HapticClient, CountsGapsInTheTicks) {
 }
 
 TEST(HapticClient, KeepsAMinuteOfTicksAndCountsTheOlderAsMissing) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
   constexpr std::uint64_t kMinute = 60 * 4000;
@@ -179,7 +179,7 @@ TEST(HapticClient, KeepsAMinuteOfTicksAndCountsTheOlderAsMissing) {
 }
 
 TEST(HapticClient, SendsTheNewestHand) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
   HandTarget hand;
@@ -196,7 +196,7 @@ TEST(HapticClient, SendsTheNewestHand) {
 }
 
 TEST(HapticClient, SecondClientWatchesAndTakesOverWhenTheFirstLeaves) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   auto first = std::make_unique<HapticClient>(connected(server.url()));
   ASSERT_TRUE(first->wait_connected(kPatience));
   HapticClient second = connected(server.url());
@@ -233,7 +233,7 @@ TEST(HapticClient, NoticesThatTheServerIsGoneAndFindsItAgain) {
 }
 
 TEST(HapticClient, ServerThatForgotItWelcomesItAgainWithControl) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
   server.with_socket([](ServerSocket& socket) { socket.drop_silent(1e18); });
@@ -242,7 +242,7 @@ TEST(HapticClient, ServerThatForgotItWelcomesItAgainWithControl) {
 }
 
 TEST(HapticClient, KeepsControlOverAServerThatStoodStill) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
   constexpr double kLongerThanItWaits_s = 3.0;
@@ -261,7 +261,7 @@ class RawServer {
     socket_.set(ZMQ_LINGER, 0);
     socket_.set(ZMQ_ROUTER_HANDOVER, 1);
     socket_.set(ZMQ_RCVTIMEO, static_cast<int>(std::chrono::milliseconds(kPatience).count()));
-    zmq_bind(socket_.get(), "tcp://127.0.0.1:0");
+    zmq_bind(socket_.get(), any_endpoint().url.c_str());
   }
   std::string url() const { return socket_.last_endpoint(); }
   std::optional<ClientMessage> receive() {
@@ -285,6 +285,36 @@ class RawServer {
   detail::ZmqSocket socket_;
   std::string client_;
 };
+
+TEST(HapticClient, SaysThatItsServerHasAnotherVersion) {
+  RawServer server;
+  HapticClient client = connected(server.url());
+  ASSERT_TRUE(server.receive());
+  Bytes other = encode(ServerMessage{0, 0, Refusal{"no"}});
+  set_version(other, kLinkVersion + 1);
+  server.send(other);
+  ASSERT_TRUE(eventually([&] { return !client.view().refusal.empty(); }));
+  const Status connected = client.wait_connected(std::chrono::milliseconds(1));
+  ASSERT_FALSE(connected);
+  EXPECT_NE(connected.error().text().find("version"), std::string::npos) << connected.error().text();
+}
+
+TEST(HapticClient, GreetsAServerAgainThatHasForgottenIt) {
+  RawServer server;
+  HapticClient client = connected(server.url());
+  ASSERT_TRUE(server.receive());
+  Welcome welcome;
+  welcome.session = 7;
+  server.send(7, 1, welcome);
+  ASSERT_TRUE(eventually([&] { return client.view().welcomes == 1; }));
+  server.send(0, 0, Refusal{"no session: say Hello first"});
+  std::optional<ClientMessage> message;
+  do {
+    message = server.receive();
+    ASSERT_TRUE(message);
+  } while (!std::holds_alternative<Hello>(message->body));
+  EXPECT_EQ(client.view().refusal, "no session: say Hello first");
+}
 
 TEST(HapticClient, CountsWhatIsNoMessageOfItsServer) {
   RawServer server;
@@ -347,7 +377,7 @@ TEST(HapticClient, EndsThoughNobodyAnswers) {
 }
 
 TEST(HapticClient, CanBeMoved) {
-  RunningServer server(any_port());
+  RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   HapticClient other = connected(server.url(), false);
   other = std::move(client);
@@ -356,7 +386,7 @@ TEST(HapticClient, CanBeMoved) {
 
 TEST(HapticClient, AllowedKeyIsWelcomedAndOthersAreNot) {
   const CurveKeys server_keys = *make_curve_keys(), allowed = *make_curve_keys(), unknown = *make_curve_keys();
-  RunningServer server(any_port(), ServerSecurity{server_keys, {allowed.public_key}});
+  RunningServer server(any_endpoint(), ServerSecurity{server_keys, {allowed.public_key}});
   ClientOptions options;
   options.endpoint = server.url();
   auto keyless = HapticClient::connect(options);
@@ -369,6 +399,16 @@ TEST(HapticClient, AllowedKeyIsWelcomedAndOthersAreNot) {
   auto good = HapticClient::connect(options);
   ASSERT_TRUE(keyless && stranger && misled && good);
   EXPECT_TRUE(good->ask(ServerCommand::kStart, kPatience));
+  // Each of the others says what is wrong.
+  const auto refusal_of = [](const HapticClient& client) {
+    EXPECT_TRUE(eventually([&] { return !client.view().refusal.empty(); }));
+    return client.view().refusal;
+  };
+  EXPECT_NE(refusal_of(*keyless).find("one side has keys"), std::string::npos) << refusal_of(*keyless);
+  EXPECT_NE(refusal_of(*stranger).find("refused the keys"), std::string::npos) << refusal_of(*stranger);
+  EXPECT_NE(refusal_of(*misled).find("refused the keys"), std::string::npos) << refusal_of(*misled);
+  EXPECT_NE(stranger->wait_connected(std::chrono::milliseconds(1)).error().text().find("refused the keys"),
+            std::string::npos);
   for (const Hello& hello : server.received<Hello>()) EXPECT_EQ(hello.client, "the allowed one");
   for (const HapticClient* other : {&*keyless, &*stranger, &*misled}) {
     EXPECT_FALSE(other->view().is_connected);

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstring>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -32,7 +33,13 @@ inline bool eventually(const std::function<bool()>& is_so) {
 }
 
 inline Endpoint ipc_endpoint(const TemporaryFolder& folder) {
-  return {"ipc://" + (folder / "socket").string(), true};
+  return {"ipc://" + (folder / "socket").string(), false};
+}
+/// One that nobody else has, while the program runs.
+inline Endpoint any_endpoint() {
+  static const TemporaryFolder folder;
+  static std::atomic<int> count = 0;
+  return {"ipc://" + (folder / std::to_string(++count)).string(), false};
 }
 inline Endpoint any_port() {
   return {"tcp://127.0.0.1:0", true};
@@ -44,6 +51,21 @@ inline Welcome test_welcome() {
   welcome.tool = "needle";
   welcome.device.name = "virtual";
   return welcome;
+}
+
+/// Writes another version into an encoded message.
+inline void set_version(Bytes& bytes, std::uint32_t version) {
+  const auto at = [&](std::size_t offset) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    return value;
+  };
+  // The root's table begins with the distance back to its vtable, whose third number is the first field's place.
+  const std::size_t table = at(0);
+  const std::size_t vtable = table - at(table);
+  std::uint16_t field = 0;
+  std::memcpy(&field, bytes.data() + vtable + 4, sizeof field);
+  std::memcpy(bytes.data() + table + field, &version, sizeof version);
 }
 
 /// Consecutive ticks whose time is their number.

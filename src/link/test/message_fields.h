@@ -39,6 +39,9 @@ void each_field(T& value, Visit&& visit) {
   } else if constexpr (std::is_same_v<Plain, Reply>) {
     auto& [a, b, c, d, e, f] = value;
     all(a, b, c, d, e, f);
+  } else if constexpr (std::is_same_v<Plain, Refusal>) {
+    auto& [a] = value;
+    all(a);
   } else if constexpr (std::is_same_v<Plain, Pong>) {
     auto& [a, b] = value;
     all(a, b);

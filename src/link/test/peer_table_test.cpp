@@ -18,7 +18,7 @@ Peer& joined(PeerTable& peers, const char* id, std::uint64_t session, const Hell
 }
 
 TEST(PeerTable, SequenceMustRiseButMayLeaveGaps) {
-  PeerTable peers(2);
+  PeerTable peers(2, 2);
   Peer& peer = joined(peers, "a", 7, kDriver);
   EXPECT_EQ(PeerTable::judge(peer, 7, 0, kNow_s), Verdict::kReplayed);
   EXPECT_EQ(PeerTable::judge(peer, 7, 1, kNow_s), Verdict::kGood);
@@ -29,7 +29,7 @@ TEST(PeerTable, SequenceMustRiseButMayLeaveGaps) {
 }
 
 TEST(PeerTable, OnlyAGoodMessageIsASignOfLife) {
-  PeerTable peers(2);
+  PeerTable peers(2, 2);
   Peer& peer = joined(peers, "a", 7, kDriver);
   PeerTable::judge(peer, 8, 1, kNow_s + 1.0);
   PeerTable::judge(peer, 7, 0, kNow_s + 1.0);
@@ -39,7 +39,7 @@ TEST(PeerTable, OnlyAGoodMessageIsASignOfLife) {
 }
 
 TEST(PeerTable, ControlPassesOnOnlyAfterTheFullSilence) {
-  PeerTable peers(2);
+  PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
   joined(peers, "b", 2, kDriver);
   peers.offer_control(*peers.find("b"), kNow_s + kControlLost_s);
@@ -49,7 +49,7 @@ TEST(PeerTable, ControlPassesOnOnlyAfterTheFullSilence) {
 }
 
 TEST(PeerTable, SilentControllerKeepsControlWhenNobodyWantedIt) {
-  PeerTable peers(2);
+  PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
   joined(peers, "b", 2, kWatcher);
   peers.offer_control(*peers.find("b"), kNow_s + 2.0 * kControlLost_s);
@@ -57,7 +57,7 @@ TEST(PeerTable, SilentControllerKeepsControlWhenNobodyWantedIt) {
 }
 
 TEST(PeerTable, FreshSessionKeepsControlUnlessItIsNoLongerWanted) {
-  PeerTable peers(2);
+  PeerTable peers(2, 2);
   Peer& peer = joined(peers, "a", 1, kDriver);
   PeerTable::judge(peer, 1, 1, kNow_s);
   EXPECT_EQ(peers.greet("a", kDriver, 2, kNow_s)->session, 2u);
@@ -69,14 +69,14 @@ TEST(PeerTable, FreshSessionKeepsControlUnlessItIsNoLongerWanted) {
 }
 
 TEST(PeerTable, HelloOfAnUnusedSessionIsARepetition) {
-  PeerTable peers(2);
+  PeerTable peers(2, 2);
   EXPECT_EQ(peers.greet("a", kDriver, 1, kNow_s)->session, 1u);
   EXPECT_EQ(peers.greet("a", kDriver, 2, kNow_s)->session, 1u);
   EXPECT_EQ(peers.all().size(), 1u);
 }
 
 TEST(PeerTable, FullTableTakesANewPeerForASilentOne) {
-  PeerTable peers(2);
+  PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
   joined(peers, "b", 2, kDriver, kNow_s + 1.0);
   EXPECT_EQ(peers.greet("c", kDriver, 3, kNow_s + kControlLost_s), nullptr);
@@ -86,7 +86,7 @@ TEST(PeerTable, FullTableTakesANewPeerForASilentOne) {
 }
 
 TEST(PeerTable, ForgottenControllerLeavesControlFree) {
-  PeerTable peers(2);
+  PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
   peers.forget_silent(kNow_s + 5.0, 5.0);
   EXPECT_NE(peers.controller(), nullptr);
@@ -95,6 +95,14 @@ TEST(PeerTable, ForgottenControllerLeavesControlFree) {
   EXPECT_TRUE(peers.has_control(joined(peers, "b", 2, kDriver)));
   peers.forget(2);
   EXPECT_EQ(peers.controller(), nullptr);
+}
+
+TEST(PeerTable, ChangingItsWishDoesNotOpenAFullTable) {
+  PeerTable table(1, 1);
+  ASSERT_NE(table.greet("controller", {"", true}, 1, 0.0), nullptr);
+  ASSERT_NE(table.greet("watcher", {"", false}, 2, 0.0), nullptr);
+  EXPECT_EQ(table.greet("watcher", {"", true}, 3, 0.0), nullptr);
+  EXPECT_NE(table.greet("controller", {"", true}, 4, 0.0), nullptr);
 }
 
 }  // namespace

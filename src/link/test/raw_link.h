@@ -63,7 +63,7 @@ class RawClient {
 inline constexpr double kNow_s = 100.0;
 inline constexpr double kLongAfter_s = 1000.0;
 
-inline ServerSocket bound(const Endpoint& endpoint = any_port()) {
+inline ServerSocket bound(const Endpoint& endpoint = any_endpoint()) {
   auto server = ServerSocket::bind(endpoint);
   EXPECT_TRUE(server) << server.error().text();
   return *std::move(server);
@@ -71,6 +71,19 @@ inline ServerSocket bound(const Endpoint& endpoint = any_port()) {
 
 inline std::optional<Received> serve(ServerSocket& server, double now_s = kNow_s) {
   return server.receive(kPatience_ms, test_welcome(), now_s);
+}
+
+/// The next message of a kind while the server sends what waits; what clients say meanwhile is dropped.
+template <class Body>
+std::optional<Body> next_while_served(ServerSocket& server, RawClient& client) {
+  std::optional<Body> body;
+  eventually([&] {
+    server.receive(0, test_welcome(), kNow_s);
+    const auto message = client.receive(ZMQ_DONTWAIT);
+    if (message && std::holds_alternative<Body>(message->body)) body = std::get<Body>(message->body);
+    return body.has_value();
+  });
+  return body;
 }
 
 /// Connects a client and gets it its session.

@@ -66,7 +66,7 @@ TEST(ServerSocket, SendsEveryTickToEveryClient) {
   for (std::uint64_t i = 0; i < 20; ++i) server.send_batch(test_batch(i * 25, 25));
   for (RawClient* client : {&one, &two}) {
     for (std::uint64_t i = 0; i < 20; ++i) {
-      const auto batch = client->next<StateBatch>();
+      const auto batch = next_while_served<StateBatch>(server, *client);
       ASSERT_TRUE(batch);
       EXPECT_EQ(batch->first_tick, i * 25);
       ASSERT_EQ(batch->samples.size(), 25u);
@@ -86,7 +86,7 @@ TEST(ServerSocket, CountsEveryBatchThatASlowClientDoesNotTake) {
   while (server.batches_not_taken() < 50) {
     ASSERT_LT(sent, 20'000u);
     server.send_batch(test_batch(sent * kMostSamples, kMostSamples));
-    const auto batch = quick.next<StateBatch>();
+    const auto batch = next_while_served<StateBatch>(server, quick);
     ASSERT_TRUE(batch);
     ASSERT_EQ(batch->first_tick, sent * kMostSamples);
     ++sent;
@@ -94,8 +94,13 @@ TEST(ServerSocket, CountsEveryBatchThatASlowClientDoesNotTake) {
   const std::uint64_t taken = sent - server.batches_not_taken();
   std::uint64_t sequence = 0;
   for (std::uint64_t i = 0; i < taken; ++i) {
-    const auto message = slow.receive();
-    ASSERT_TRUE(message) << "batch " << i << " of " << taken;
+    std::optional<ServerMessage> message;
+    ASSERT_TRUE(eventually([&] {
+      EXPECT_FALSE(server.receive(0, test_welcome(), kNow_s));  // it sends what waits
+      message = slow.receive(ZMQ_DONTWAIT);
+      return message.has_value();
+    })) << "batch "
+        << i << " of " << taken;
     ASSERT_TRUE(std::holds_alternative<StateBatch>(message->body));
     EXPECT_GT(message->sequence, sequence);
     sequence = message->sequence;
@@ -288,23 +293,114 @@ TEST(ServerSocket, ForeignConnectionCannotUseAnothersSession) {
   EXPECT_TRUE(beat(server, victim)->has_control);
 }
 
-TEST(ServerSocket, NinthClientIsNotWelcomeUntilOneIsSilent) {
+TEST(ServerSocket, OneWatcherTooManyIsNotWelcomeUntilOneIsSilent) {
   ServerSocket server = bound();
   std::vector<std::unique_ptr<RawClient>> clients;
-  for (int i = 0; i < ServerSocket::kMostPeers; ++i) {
+  for (std::size_t i = 0; i < kMostWatchers; ++i) {
     clients.push_back(std::make_unique<RawClient>(server.bound_url()));
-    join(server, *clients.back());
+    join(server, *clients.back(), false);
   }
   RawClient late(server.bound_url());
   late.connect();
-  late.hello();
+  late.hello("late", false);
   EXPECT_TRUE(eventually([&] {
     EXPECT_FALSE(server.receive(1, test_welcome(), kNow_s));
     return server.refused().unknown_session == 1;
   }));
-  late.hello();
+  const auto refusal = late.next<Refusal>();
+  ASSERT_TRUE(refusal);
+  EXPECT_NE(refusal->text.find("too many"), std::string::npos) << refusal->text;
+  late.hello("late", false);
   ASSERT_TRUE(serve(server, kLongAfter_s));
   EXPECT_TRUE(late.next<Welcome>());
+}
+
+TEST(ServerSocket, WatchersNeverLockAControllerOut) {
+  ServerSocket server = bound();
+  std::vector<std::unique_ptr<RawClient>> watchers;
+  for (std::size_t i = 0; i < kMostWatchers; ++i) {
+    watchers.push_back(std::make_unique<RawClient>(server.bound_url()));
+    join(server, *watchers.back(), false);
+  }
+  RawClient controller(server.bound_url());
+  join(server, controller);
+  EXPECT_TRUE(beat(server, controller)->has_control);
+}
+
+TEST(ServerSocket, CommandWithAWrongNumberIsAnsweredWithWhatIsWrong) {
+  ServerSocket server = bound();
+  RawClient client(server.bound_url());
+  join(server, client);
+  LoadScene scene;
+  scene.needle_bevel_share = 2.0;
+  client.send(Command{41, scene});
+  client.send(Command{42, static_cast<ServerCommand>(200)});
+  ASSERT_TRUE(beat(server, client));
+  for (const auto& [request, word] : {std::pair(41u, "needle_bevel_share"), std::pair(42u, "command")}) {
+    const auto reply = client.next<Reply>();
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->request, request);
+    EXPECT_FALSE(reply->is_done);
+    EXPECT_NE(reply->text.find(word), std::string::npos) << reply->text;
+  }
+}
+
+TEST(ServerSocket, ClientOfAnotherVersionIsTold) {
+  ServerSocket server = bound();
+  RawClient client(server.bound_url());
+  client.connect();
+  Bytes hello = encode(ClientMessage{0, 0, Hello{}});
+  set_version(hello, kLinkVersion + 1);
+  client.send(hello);
+  EXPECT_TRUE(eventually([&] {
+    EXPECT_FALSE(server.receive(1, test_welcome(), kNow_s));
+    return server.refused().malformed == 1;
+  }));
+  const auto refusal = client.next<Refusal>();
+  ASSERT_TRUE(refusal);
+  EXPECT_NE(refusal->text.find("version"), std::string::npos) << refusal->text;
+}
+
+TEST(ServerSocket, LongNameInHelloIsRefused) {
+  ServerSocket server = bound();
+  RawClient client(server.bound_url());
+  client.connect();
+  client.hello(std::string(kMostNameBytes + 1, 'n'));
+  EXPECT_TRUE(eventually([&] {
+    EXPECT_FALSE(server.receive(1, test_welcome(), kNow_s));
+    return server.refused().malformed == 1;
+  }));
+  client.hello(std::string(kMostNameBytes, 'n'));
+  EXPECT_TRUE(serve(server));
+}
+
+TEST(ServerSocket, KeepsFewConnectionsWhateverIsOpened) {
+  ServerSocket server = bound();
+  // Each round: many connections, whose clients say Hello and are silent afterwards.
+  double now_s = kNow_s;
+  const auto receive = [&] {
+    now_s += 0.005;
+    return server.receive(1, test_welcome(), now_s);
+  };
+  for (int round = 0; round < 4; ++round, now_s += 2.0 * kControlLost_s) {
+    std::vector<std::unique_ptr<RawClient>> many;
+    for (int i = 0; i < 40; ++i) {
+      many.push_back(std::make_unique<RawClient>(server.bound_url()));
+      many.back()->connect();
+      many.back()->hello("many", i % 2 == 0);
+    }
+    for (int i = 0; i < 500; ++i) receive();
+    EXPECT_LE(server.connections(), kMostStrangers + kMostControllers + kMostWatchers);
+    EXPECT_GT(server.connections(), 0u);
+  }
+  RawClient good(server.bound_url());
+  good.connect();
+  good.hello();
+  EXPECT_TRUE(eventually([&] {
+    const auto received = receive();
+    const auto* hello = received ? std::get_if<Hello>(&received->body) : nullptr;
+    return hello != nullptr && hello->client == "raw";
+  }));
 }
 
 TEST(ServerSocket, SilentPeersAreForgotten) {

@@ -14,6 +14,7 @@ class LinkThread {
   std::uint64_t ticks() const noexcept { return ticks_; }  ///< After run() has ended.
 
  private:
+  void receive_round();
   void take(const Received& received);
   void take(const Received& received, const Command& command);
   void reply(const Received& received, std::uint32_t request, bool is_done, std::string text);

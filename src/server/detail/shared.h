@@ -18,6 +18,7 @@
 #include "realtime/real_time_grant.h"
 #include "realtime/spsc_ring.h"
 #include "realtime/triple_buffer.h"
+#include "server/last_chance.h"
 #include "server/servo.h"
 
 /// What the three threads of a haptic server share. Private to `server`.
@@ -32,6 +33,9 @@ struct ControlJob {
   std::uint32_t request = 0;
   std::variant<LoadScene, SetParameters, ServerCommand, WriteFlight> what;
 };
+/// Bytes of the texts that a client sent with it.
+std::size_t text_bytes(const ControlJob& job);
+
 struct AddressedReply {
   std::uint64_t session = 0;
   Reply reply;
@@ -44,17 +48,26 @@ struct ControlStatus {
   double loading = 0.0;  ///< 0: nothing is being loaded.
 };
 
-/// The door between link and control thread: both may wait, neither is the real-time thread.
+/// Jobs of clients that may wait for the control thread, and the bytes of their texts. [assumed]
+inline constexpr std::size_t kMostJobs = 16;
+inline constexpr std::size_t kMostJobBytes = 4 << 20;
+
+/// The door between link and control thread: both may wait, neither is the real-time thread. What waits is bounded.
 class ControlDoor {
  public:
-  /// A newer scene stops the loading of an older one.
-  void post(ControlJob job) {
+  /// False: kMostJobs or kMostJobBytes would be exceeded, and the job was not taken. A newer scene stops the loading of
+  /// an older one.
+  bool post(ControlJob job) {
     {
       const std::lock_guard lock(mutex_);
+      const std::size_t bytes = text_bytes(job);
+      if (jobs_.size() >= kMostJobs || bytes_ + bytes > kMostJobBytes) return false;
+      bytes_ += bytes;
       if (std::holds_alternative<LoadScene>(job.what)) running_.request_stop();
       jobs_.push_back(std::move(job));
     }
     wake_.notify_one();
+    return true;
   }
   /// The next job; false: closed.
   bool wait(ControlJob& job) {
@@ -63,6 +76,7 @@ class ControlDoor {
     if (is_closed_) return false;
     job = std::move(jobs_.front());
     jobs_.pop_front();
+    bytes_ -= text_bytes(job);
     running_ = std::stop_source();
     const auto is_scene = [](const ControlJob& later) { return std::holds_alternative<LoadScene>(later.what); };
     if (std::any_of(jobs_.begin(), jobs_.end(), is_scene)) running_.request_stop();
@@ -104,6 +118,7 @@ class ControlDoor {
   std::condition_variable wake_;
   std::deque<ControlJob> jobs_;
   std::stop_source running_;
+  std::size_t bytes_ = 0;  ///< Of the texts in jobs_.
   std::vector<AddressedReply> replies_;
   ControlStatus status_;
   bool is_closed_ = false;
@@ -119,6 +134,7 @@ struct Shared {
   explicit Shared(std::int64_t period) : period_ns(period), statistics(LoopStatistics(period)) {}
 
   const std::int64_t period_ns;
+  LastChance* last_chance = nullptr;  ///< Of the device; outlives the threads.
   std::atomic<bool> is_stopping{false};
   std::atomic<bool> is_fading{false};  ///< The server is about to stop: forces off.
 

@@ -44,5 +44,38 @@ TEST(ControlDoor, ClosingStopsTheRunningJob) {
   EXPECT_FALSE(door.wait(job));
 }
 
+ControlJob parameters_of(std::size_t bytes) {
+  SetParameters parameters;
+  parameters.settings.emplace_back(bytes, 'x');
+  return {1, 2, parameters};
+}
+
+TEST(ControlDoor, TakesAtMostSoManyJobs) {
+  ControlDoor door;
+  for (std::size_t i = 0; i < kMostJobs; ++i) EXPECT_TRUE(door.post({1, 2, ServerCommand::kReconnect}));
+  EXPECT_FALSE(door.post({1, 2, ServerCommand::kReconnect}));
+  ControlJob job;
+  ASSERT_TRUE(door.wait(job));
+  EXPECT_TRUE(door.post({1, 2, ServerCommand::kReconnect}));
+}
+
+TEST(ControlDoor, TakesAtMostSoManyBytesOfText) {
+  constexpr std::size_t kLarge = 600'000;
+  ControlDoor door;
+  std::size_t taken = 0;
+  while (door.post(parameters_of(kLarge))) ASSERT_LT(++taken, 100u);
+  EXPECT_LE(taken * kLarge, kMostJobBytes);
+  EXPECT_GT(taken, 0u);
+  LoadScene scene;
+  scene.tissues_toml.assign(kLarge, 'x');
+  EXPECT_FALSE(door.post({1, 2, scene}));
+  EXPECT_TRUE(door.post({1, 2, ServerCommand::kReconnect})) << "a small job still has its place";
+  // What is done makes room again, to the last byte.
+  ControlJob job;
+  for (std::size_t i = 0; i <= taken; ++i) ASSERT_TRUE(door.wait(job));
+  for (std::size_t i = 0; i < taken; ++i) EXPECT_TRUE(door.post(parameters_of(kLarge)));
+  EXPECT_FALSE(door.post(parameters_of(kLarge)));
+}
+
 }  // namespace
 }  // namespace trocar

@@ -207,11 +207,11 @@ TEST(HapticServer, CountsBadMessagesAndKeepsItsForcesMeanwhile) {
     stranger.send(std::span(good).first(random.next() % good.size()));  // truncated
     stranger.send(good);                                                // of no session
   }
-  stranger.send(Bytes(kMostMessageBytes + 1));
   ASSERT_TRUE(stranger.hello("stranger"));
   const auto welcome = stranger.next<Welcome>();
   ASSERT_TRUE(welcome);
   EXPECT_FALSE(welcome->has_control);
+  stranger.send(Bytes(kMostMessageBytes + 1));
   stranger.send(welcome->session, 5, Heartbeat{});
   stranger.send(welcome->session, 5, Heartbeat{});                       // replayed
   stranger.send(welcome->session, 6, Command{1, ServerCommand::kStop});  // not in control

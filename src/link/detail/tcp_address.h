@@ -1,0 +1,30 @@
+#pragma once
+
+#include <sys/socket.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+#include "link/detail/descriptor.h"
+
+namespace trocar::detail {
+
+/// The number of an interface and a port: "127.0.0.1:5571", "[::1]:5571". Names are not looked up.
+struct TcpAddress {
+  sockaddr_storage storage{};
+  socklen_t size = 0;
+
+  std::string url() const;  ///< "tcp://[::1]:5571"
+};
+/// By inet_pton: four decimal octets without leading zeros, or an address of version 6 in brackets.
+std::optional<TcpAddress> parse_tcp_address(std::string_view host, unsigned port);
+/// A listening socket that does not block, and where it listens (port 0: any free one).
+struct TcpListener {
+  Descriptor socket;
+  std::string url;
+};
+Result<TcpListener> listen_tcp(const std::string& url);
+
+}  // namespace trocar::detail
