@@ -31,8 +31,19 @@ class FlightRecorder {
   std::deque<ServoRecord> records_;
 };
 
+/// What a folder may hold of flight records.
+struct FlightQuota {
+  std::size_t files = 20;              ///< Range 1 and up.
+  std::uintmax_t bytes = 64ULL << 20;  ///< Of all together; a flight at 4 kHz has about 3 MB.
+};
+
+/// Removes the oldest flight records, by the time in their names, until the folder is within its quota. `newest` stays.
+/// Only regular files named flight-UTC-FAULT.csv are counted and removed. Gives how many were removed.
+std::size_t keep_quota(const std::filesystem::path& folder, const std::filesystem::path& newest,
+                       const FlightQuota& quota = {});
+
 /// Writes FOLDER/flight-UTC-FAULT.csv, one row a period: time, pose, buttons, wanted and written wrench, what the gate
-/// did. Gives its path.
+/// did. Older records make room for it (keep_quota). Gives its path.
 Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, const std::string& utc,
                                            const std::vector<ServoRecord>& flight);
 

@@ -1,5 +1,6 @@
 #include "server/flight_recorder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,6 +58,38 @@ TEST(WriteFlight, WritesARowAPeriodUnderAHeader) {
   const std::size_t second_end = text->find('\n', first_end + 1);
   EXPECT_EQ(commas(std::string_view(*text).substr(0, first_end)),
             commas(std::string_view(*text).substr(first_end, second_end - first_end)));
+}
+
+TEST(WriteFlight, KeepsTheNewestFilesOfItsFolderOnly) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder / "flight-notes.csv", "somebody's own"));
+  ASSERT_TRUE(write_file_atomically(folder / "session.csv", "somebody's own"));
+  const std::size_t kept = FlightQuota{}.files;
+  for (std::size_t i = 0; i < kept + 5; ++i) {
+    const std::string utc = fmt::format("20260101T0000{:02}Z", i);
+    ASSERT_TRUE(write_flight(folder.path(), utc, {record_at(1, GateFault::kDeviceLost)}));
+  }
+  std::size_t flights = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    flights += entry.path().filename().string().ends_with("device_lost.csv") ? 1 : 0;
+  EXPECT_EQ(flights, kept);
+  EXPECT_FALSE(std::filesystem::exists(folder / "flight-20260101T000004Z-device_lost.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "flight-20260101T000005Z-device_lost.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "flight-notes.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "session.csv"));
+}
+
+TEST(WriteFlight, KeepsWithinItsBytesButAlwaysTheNewest) {
+  const TemporaryFolder folder;
+  std::vector<std::filesystem::path> paths;
+  for (int i = 0; i < 4; ++i) {
+    paths.push_back(folder / fmt::format("flight-20260101T00000{}Z-runaway.csv", i));
+    ASSERT_TRUE(write_file_atomically(paths.back(), std::string(1000, 'x')));
+  }
+  EXPECT_EQ(keep_quota(folder.path(), paths[3], {10, 2500}), 2U);
+  EXPECT_TRUE(std::filesystem::exists(paths[2]));
+  EXPECT_EQ(keep_quota(folder.path(), paths[3], {10, 10}), 1U);
+  EXPECT_TRUE(std::filesystem::exists(paths[3])) << "the newest stays even if it is larger than the quota";
 }
 
 TEST(WriteFlight, SaysThatAFolderCannotBeWritten) {
