@@ -25,6 +25,8 @@ Result<std::vector<CaseResult>> run_curves_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options);
 /// A hand pushes the needle on bone and through the ligamentum flavum, by device and force model.
 Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options);
+/// Slow loops on every simulated device with a moving hand: time to zero force, force, travel.
+Result<std::vector<CaseResult>> run_faults_benchmark(const Options& options);
 /// Fingertip and transducer on the embedded patient: newtons a place, and what a tick costs.
 Result<std::vector<CaseResult>> run_palpation_benchmark();
 /// Two live servers, a drawing client and a busy process: rate, lateness, ticks, missed deadlines.

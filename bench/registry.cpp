@@ -31,6 +31,8 @@ const std::vector<Benchmark>& all_benchmarks() {
        "bone and the loss of resistance behind the ligamentum flavum, by device and force model",
        run_contact_benchmark,
        {"--force-model", "--seed"}},
+      {"faults", "loops of 1 to 1000 ms on every simulated device with a moving hand, in simulated time",
+       run_faults_benchmark},
       {"reconstruct", "volumes from tracked freehand sweeps; real ones against PLUS' own", run_reconstruct_benchmark},
       {"ultrasound", "B-mode frames of the embedded patient while the transducer moves, and what they allocate",
        run_ultrasound_benchmark},

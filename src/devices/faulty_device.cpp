@@ -12,7 +12,7 @@ namespace trocar {
 namespace {
 
 /// Once, and whatever wakes it: bounded.
-void sleep_ms(double wait_ms) noexcept {
+void sleep_ms(void*, double wait_ms) noexcept {
   constexpr double kMsPerS = 1e3;
   constexpr double kNsPerMs = 1e6;
   const double whole_s = std::floor(wait_ms / kMsPerS);
@@ -26,7 +26,10 @@ void sleep_ms(double wait_ms) noexcept {
 
 FaultyDevice::FaultyDevice(std::unique_ptr<HapticDevice> device, std::vector<ScheduledFault> faults, std::uint64_t seed,
                            Wait wait)
-    : device_(std::move(device)), faults_(std::move(faults)), seed_(seed), wait_(wait != nullptr ? wait : sleep_ms) {}
+    : device_(std::move(device)),
+      faults_(std::move(faults)),
+      seed_(seed),
+      wait_(wait.wait != nullptr ? wait : Wait{sleep_ms, nullptr}) {}
 
 const ScheduledFault* FaultyDevice::find_active(DeviceFault fault) const noexcept {
   for (const ScheduledFault& scheduled : faults_) {
@@ -37,7 +40,8 @@ const ScheduledFault* FaultyDevice::find_active(DeviceFault fault) const noexcep
 }
 
 void FaultyDevice::wait_for(DeviceFault fault) const noexcept {
-  if (const ScheduledFault* slow = find_active(fault)) wait_(std::clamp(slow->amount, 0.0, kMaxSlow_ms));
+  if (const ScheduledFault* slow = find_active(fault))
+    wait_.wait(wait_.context, std::clamp(slow->amount, 0.0, kMaxSlow_ms));
 }
 
 void FaultyDevice::shake(Pose& X_DS) noexcept {

@@ -15,11 +15,14 @@ namespace trocar {
 /// same reads give the same poses.
 class FaultyDevice final : public HapticDevice {
  public:
-  /// Waits for so many ms; nanosleep unless a test counts instead.
-  using Wait = void (*)(double wait_ms) noexcept;
+  /// Waits for so many ms; nanosleep unless a simulation counts instead.
+  struct Wait {
+    void (*wait)(void* context, double wait_ms) noexcept;
+    void* context;
+  };
 
   FaultyDevice(std::unique_ptr<HapticDevice> device, std::vector<ScheduledFault> faults, std::uint64_t seed,
-               Wait wait = nullptr);
+               Wait wait = {});
 
   const DevicePreset& preset() const noexcept override { return device_->preset(); }
   std::string name() const override { return "faulty:" + device_->name(); }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "config/sourced_number.h"
+#include "haptics/coupling_limits.h"
 
 namespace trocar {
 namespace {
@@ -78,6 +79,8 @@ Status read_forces(const TomlTable& row, DevicePreset& preset) {
                                preset.coupling.stiffness_n_per_mm));
   TROCAR_TRY_STATUS(read_value(row, "coupling_damping_ns_per_mm", {0.0, 1.0}, preset.coupling.damping_ns_per_mm));
   TROCAR_TRY_STATUS(read_given(row, "max_damping_ns_per_mm", {0.0, 0.1}, preset.max_damping_ns_per_mm));
+  if (const Status fits = check(preset.coupling, limits_of(preset)); !fits)
+    return fail(fits.error().what, row.where(), fits.error().advice);
   capability.peak_torque_nmm = 0.0;
   if (preset.actuated_dof != 6) return {};
   TROCAR_TRY_STATUS(read_value(row, "peak_torque_nmm", {1.0, 5000.0}, capability.peak_torque_nmm));

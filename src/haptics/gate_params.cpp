@@ -17,7 +17,7 @@ struct FieldRange {
   double careful;
 };
 
-constexpr std::array<FieldRange, 23> kRanges{{
+constexpr std::array<FieldRange, 33> kRanges{{
     {"peak_force_n", &GateParams::peak_force_n, 0.1, 200.0, 0.0},
     {"peak_torque_nmm", &GateParams::peak_torque_nmm, 0.0, 5000.0, 0.0},
     {"continuous_force_n", &GateParams::continuous_force_n, 0.05, 200.0, 0.0},
@@ -41,6 +41,16 @@ constexpr std::array<FieldRange, 23> kRanges{{
     {"brake_ns_per_mm", &GateParams::brake_ns_per_mm, 0.0, 0.1, 0.0},
     {"max_runaway_s", &GateParams::max_runaway_s, 0.001, 1.0, 0.001},
     {"max_unread_s", &GateParams::max_unread_s, 0.002, 1.0, 0.002},
+    {"period_s", &GateParams::period_s, 1e-4, 0.01, 1e-4},
+    {"physical_damping_ns_per_mm", &GateParams::physical_damping_ns_per_mm, 1e-4, 0.05, 1e-4},
+    {"max_slow_s", &GateParams::max_slow_s, 0.01, 5.0, 0.01},
+    {"jump_mm", &GateParams::jump_mm, 1.0, 100.0, 1.0},
+    {"kick_mm", &GateParams::kick_mm, 0.5, 50.0, 0.5},
+    {"thrust_mm_per_s2", &GateParams::thrust_mm_per_s2, 1e4, 1e8, 1e4},
+    {"hand_mm_per_s", &GateParams::hand_mm_per_s, 1000.0, 1e4, 1000.0},
+    {"turn_rad", &GateParams::turn_rad, 0.2, 3.0, 0.2},
+    {"hand_rad_per_s", &GateParams::hand_rad_per_s, 10.0, 500.0, 10.0},
+    {"max_vibration_mw", &GateParams::max_vibration_mw, 1.0, 1e6, 1.0},
 }};
 static_assert(sizeof(GateParams) == kRanges.size() * sizeof(double), "every field of GateParams has a range");
 

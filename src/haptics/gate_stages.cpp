@@ -74,7 +74,8 @@ bool is_sound(const Wrench& wrench) noexcept {
 
 bool is_sound(const GateInput& input) noexcept {
   return is_sound(input.wanted) && is_sound(input.weight) && is_sound(input.axis) && is_sound(input.v_mm_per_s) &&
-         is_sound(input.w_rad_per_s) && is_sound(input.dt_s) && input.dt_s > 0.0;
+         is_sound(input.w_rad_per_s) && is_sound(input.dt_s) && input.dt_s > 0.0 && is_sound(input.busy_s) &&
+         is_sound(input.coupling.stiffness_n_per_mm) && is_sound(input.coupling.damping_ns_per_mm);
 }
 
 bool is_small(const Wrench& wrench, const GateParams& params) noexcept {
@@ -82,11 +83,18 @@ bool is_small(const Wrench& wrench, const GateParams& params) noexcept {
 }
 
 bool restore(GateState& state) noexcept {
-  const bool is_usable = is_sound(state.last) && is_sound(state.watched) && state.scale >= 0.0 && state.scale <= 1.0 &&
-                         std::isfinite(state.energy_mj) && state.force_heat >= 0.0 && std::isfinite(state.force_heat) &&
-                         state.torque_heat >= 0.0 && std::isfinite(state.torque_heat) && is_sound(state.runaway_s) &&
-                         is_sound(state.quiet_s) && is_sound(state.drop_from_n) && is_sound(state.drop_s) &&
-                         state.mode <= GateMode::kFault && state.fault <= kLastGateFault &&
+  const bool is_watch_usable =
+      state.slow_s >= 0.0 && is_sound(state.slow_s) && state.since_late_s >= 0.0 && is_sound(state.since_late_s) &&
+      state.slow_period_s >= 0.0 && is_sound(state.slow_period_s) && state.coupling_share >= 0.0 &&
+      state.coupling_share <= 1.0 && is_sound(state.slow_f_n) && is_sound(state.slow_tau_nmm) &&
+      is_sound(state.slow_v_mm_per_s) && is_sound(state.slow_w_rad_per_s) && is_sound(state.last_v_mm_per_s) &&
+      std::isfinite(state.vibration_mw) && is_sound(state.vibration_s);
+  const bool is_usable = is_watch_usable && is_sound(state.last) && is_sound(state.watched) && state.scale >= 0.0 &&
+                         state.scale <= 1.0 && std::isfinite(state.energy_mj) && state.force_heat >= 0.0 &&
+                         std::isfinite(state.force_heat) && state.torque_heat >= 0.0 &&
+                         std::isfinite(state.torque_heat) && is_sound(state.runaway_s) && is_sound(state.quiet_s) &&
+                         is_sound(state.drop_from_n) && is_sound(state.drop_s) && state.mode <= GateMode::kFault &&
+                         state.fault <= kLastGateFault &&
                          (state.mode == GateMode::kFault) == (state.fault != GateFault::kNone);
   if (is_usable) return true;
   const GateFault fault = state.fault <= kLastGateFault ? state.fault : GateFault::kNotFinite;

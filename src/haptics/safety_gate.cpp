@@ -55,7 +55,11 @@ GateFault find_cause(const GateState& state, const GateInput& input, const GateP
   if (input.device_fault != GateFault::kNone) return input.device_fault;
   if (!is_usable) return GateFault::kNotFinite;
   if (!(input.unread_s <= params.max_unread_s)) return GateFault::kDeviceSilent;
+  if (state.mode != GateMode::kOff && detail::is_motion_impossible(state, input, params))
+    return GateFault::kImpossibleMotion;
   if (state.runaway_s > params.max_runaway_s + kSum_s) return GateFault::kRunaway;
+  if (detail::is_loop_slow(state, params)) return GateFault::kLoopSlow;
+  if (detail::is_vibrating(state)) return GateFault::kVibration;
   if (state.fault == GateFault::kRunaway && is_too_fast(input, params)) return GateFault::kRunaway;
   return GateFault::kNone;
 }
@@ -103,7 +107,15 @@ void release(GateState& state) noexcept {
   state.fault = GateFault::kNone;
   state.mode = GateMode::kOff;
   state.scale = 0.0;
-  state.runaway_s = 0.0;
+  state.runaway_s = state.vibration_s = 0.0;
+}
+
+/// The period's input with the tissue's wrench weakened to what the loop's period permits (physics.md G11).
+GateInput weakened(const GateInput& input, double share) noexcept {
+  GateInput weak = input;
+  weak.wanted.force_n *= share;
+  weak.wanted.torque_nmm *= share;
+  return weak;
 }
 
 /// The stages of a period without a fault, up to the slew limit.
@@ -166,6 +178,16 @@ std::uint16_t mode_actions(GateMode mode) noexcept {
 
 }  // namespace
 
+void restart_gate(GateState& state) noexcept {
+  GateState fresh;
+  fresh.fault = state.fault;
+  fresh.mode = state.fault == GateFault::kNone ? GateMode::kOff : GateMode::kFault;
+  fresh.force_heat = state.force_heat;
+  fresh.torque_heat = state.torque_heat;
+  fresh.slow_s = state.fault == GateFault::kLoopSlow ? state.slow_s : 0.0;
+  state = fresh;
+}
+
 GateOutput step_gate(GateState& state, const GateInput& input, const GateParams& given) noexcept {
   const GateParams params = detail::made_safe(given);
   const Period period = make_period(input.dt_s);
@@ -173,7 +195,12 @@ GateOutput step_gate(GateState& state, const GateInput& input, const GateParams&
   const bool is_usable = detail::restore(state) && is_input_sound;
   const bool is_braking =
       is_input_sound && state.scale > 0.0 && state.fault == GateFault::kNone && is_too_fast(input, params);
-  if (is_input_sound) detail::observe_energy(state, input, period.dt_s, params);
+  if (is_input_sound) {
+    detail::watch_loop(state, input, period.rise_s, params);
+    detail::watch_vibration(state, input, period.dt_s, params);
+  }
+  const GateInput given_input = weakened(input, state.coupling_share);
+  if (is_input_sound) detail::observe_energy(state, given_input, period.dt_s, params);
   count_runaway(state, is_braking, period.rise_s);
 
   const GateFault cause = find_cause(state, input, params, is_usable);
@@ -186,13 +213,15 @@ GateOutput step_gate(GateState& state, const GateInput& input, const GateParams&
     out = fault_wrench(state, params, period);
   } else {
     step_mode(state, input, params, period);
-    out = pass_stages(state, input, params, period, is_braking, output.actions);
+    out = pass_stages(state, given_input, params, period, is_braking, output.actions);
+    if (state.coupling_share < 1.0) output.actions |= kGateSlowLoop;
   }
   output.wrench = detail::limited(out, Vec3::Zero(), params.peak_force_n, params.peak_torque_nmm);
   output.actions |= mode_actions(state.mode);
   if (is_client_silent(input, params)) output.actions |= kGateStale;
   follow_drop(state, output.wrench.force_n.norm(), period.dt_s, output);
   state.last = output.wrench;
+  state.last_v_mm_per_s = is_input_sound ? input.v_mm_per_s : Vec3(Vec3::Zero());
   detail::warm(state, period.dt_s, params);
   return output;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/result.h"
+#include "haptics/haptic_scene.h"     // CouplingParams
 #include "haptics/path_constraint.h"  // Wrench
 #include "telemetry/gate_state.h"
 
@@ -19,6 +20,7 @@ enum GateAction : std::uint16_t {
   kGateStart = 1 << 6,       ///< Safe start: waiting or rising.
   kGateFault = 1 << 7,
   kGateOff = 1 << 8,
+  kGateSlowLoop = 1 << 9,  ///< Weakened the coupling: the loop's period is too long for it.
 };
 
 /// Limits of a device and of the gate. Where no source is named a number is assumed. Ranges: gate_params.cpp.
@@ -46,6 +48,17 @@ struct GateParams {
   double brake_ns_per_mm = 0.005;  ///< Of the brake, at most max_damping_ns_per_mm.
   double max_runaway_s = 0.05;
   double max_unread_s = 0.02;  ///< Range 0.002..1.
+  double period_s = 0.001;     ///< Of the loop, as it should be. Range 0.0001..0.01.
+  /// Of the device's joints and of a loose hand: what may cover a spring's delay. Range 0.0001..0.05.
+  double physical_damping_ns_per_mm = 0.0035;
+  double max_slow_s = 0.05;  ///< Late periods together before a fault (physics.md G11). Range 0.01..5.
+  double jump_mm = 5.0;      ///< A step beyond jump_mm + hand_mm_per_s * dt is impossible. Range 1..100.
+  double kick_mm = 2.5;      ///< A step off its way beyond kick_mm + thrust_mm_per_s2 * dt^2 likewise. Range 0.5..50.
+  double thrust_mm_per_s2 = 4e5;    ///< No hand or motor accelerates a device more. Range 1e4..1e8.
+  double hand_mm_per_s = 3000.0;    ///< No hand is faster. Range 1000..1e4.
+  double turn_rad = 1.0;            ///< The same of a turn. Range 0.2..3.
+  double hand_rad_per_s = 60.0;     ///< Range 10..500.
+  double max_vibration_mw = 100.0;  ///< Power given above 30 Hz before a fault (physics.md G13). Range 1..1e6.
 };
 
 /// Errors: the first field that is out of its range, a continuous limit above its peak. step_gate() takes any bits: a
@@ -61,9 +74,11 @@ struct GateInput {
   Vec3 v_mm_per_s = Vec3::Zero();  ///< Of the stylus, the mean since the last period (its way over dt); and
   Vec3 w_rad_per_s = Vec3::Zero();
   double dt_s = 0.001;
-  double silence_s = 0.0;  ///< Since the client was last heard.
-  double unread_s = 0.0;   ///< Since the device's last fresh reading.
-  bool is_wanted = false;  ///< Somebody asked for forces.
+  double silence_s = 0.0;   ///< Since the client was last heard.
+  double unread_s = 0.0;    ///< Since the device's last fresh reading.
+  double busy_s = 0.0;      ///< Part of dt_s that reading, tick and writing of the last period took.
+  CouplingParams coupling;  ///< As the device sees it; stiffness 0: nothing to watch.
+  bool is_wanted = false;   ///< Somebody asked for forces.
   GateFault device_fault =
       GateFault::kNone;   ///< What the caller saw (kDeviceLost, kEncoderStuck, kLoopStalled, kRequested).
   bool is_reset = false;  ///< Explicit reset of a fault; without effect while its cause lasts.
@@ -83,6 +98,15 @@ struct GateState {
   double runaway_s = 0.0;
   double drop_from_n = 0.0;  ///< Of the fall that is going on.
   double drop_s = 0.0;
+  double slow_s = 0.0;         ///< Late periods together; drains in good ones.
+  double since_late_s = 1.0;   ///< Since the last late period.
+  double slow_period_s = 0.0;  ///< Period of a slow loop; 0: the loop is not slow.
+  double coupling_share = 1.0;
+  Vec3 slow_f_n = Vec3::Zero(), slow_tau_nmm = Vec3::Zero();  ///< Low-pass of what went out, and
+  Vec3 slow_v_mm_per_s = Vec3::Zero(), slow_w_rad_per_s = Vec3::Zero();
+  double vibration_mw = 0.0;  ///< Mean power that went into fast motion.
+  double vibration_s = 0.0;   ///< Time above the limit.
+  Vec3 last_v_mm_per_s = Vec3::Zero();
 };
 
 struct GateOutput {
@@ -92,12 +116,16 @@ struct GateOutput {
   double drop_s = 0.0;        ///< and how long it took. Zero otherwise.
 };
 
-/// The last step before the motors and the only one that writes to them (physics.md G1-G9): finite check, faults,
-/// passivity control (Hannaford and Ryu's observer and controller), velocity brake, continuous-force limit, scale of
-/// safe start and staleness, slew limit on rises only, norm clamp last. When a force saturates the lateral part and the
-/// torque are scaled by one factor and the axial part is kept (to 2 %: it leaves room for a lateral fifth of the
-/// limit). Any fault fades to zero within fault_ramp_s and latches. A pure function of its arguments; real-time safe;
-/// total: any bits in, a wrench within the limits out.
+/// The device was in other hands and has given nothing meanwhile: what went out last is zero, no energy, speed or drop
+/// is remembered, and forces come back through the safe start. A fault and the motors' warmth stay.
+void restart_gate(GateState& state) noexcept;
+
+/// The last step before the motors and the only one that writes to them (physics.md G1-G9, G11-G13): finite check,
+/// faults, share of the coupling that the loop's period permits, passivity control (Hannaford and Ryu's observer and
+/// controller), velocity brake, continuous-force limit, scale of safe start and staleness, slew limit on rises only,
+/// norm clamp last. When a force saturates the lateral part and the torque are scaled by one factor and the axial part
+/// is kept (to 2 %: it leaves room for a lateral fifth of the limit). Any fault fades to zero within fault_ramp_s and
+/// latches. A pure function of its arguments; real-time safe; total: any bits in, a wrench within the limits out.
 GateOutput step_gate(GateState& state, const GateInput& input, const GateParams& params) noexcept;
 
 }  // namespace trocar

@@ -136,7 +136,9 @@ Result<State> ServerSeat::look() {
 
 /// The motors of a device in a person's hand are not turned on again behind their back.
 bool ServerSeat::is_stall_to_forgive() const {
-  return request_ && !request_->is_in_real_hand && view_.status.fault == to_string(GateFault::kLoopStalled);
+  const std::string& fault = view_.status.fault;
+  const bool is_stall = fault == to_string(GateFault::kLoopStalled) || fault == to_string(GateFault::kLoopSlow);
+  return request_ && !request_->is_in_real_hand && is_stall;
 }
 
 Status ServerSeat::wait_for_control() {

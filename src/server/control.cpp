@@ -13,24 +13,24 @@
 namespace trocar {
 namespace {
 
-constexpr std::chrono::milliseconds kPausePatience{500};
+constexpr std::chrono::milliseconds kPausePatience{2000};  // the forces fade first, in 0.2 s
 
-/// Has the real-time thread leave the device alone while it lives.
+/// Has the real-time thread fade the forces and leave the device alone while it lives.
 class DevicePause {
  public:
-  explicit DevicePause(Shared& shared) : shared_(shared) {
-    shared.pause_wanted.store(true, std::memory_order_release);
+  explicit DevicePause(Shared& shared) : shared_(shared), ticket_(shared.loan.ask()) {
     const auto end = std::chrono::steady_clock::now() + kPausePatience;
     while (!is_granted() && std::chrono::steady_clock::now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  ~DevicePause() { shared_.pause_wanted.store(false, std::memory_order_release); }
+  ~DevicePause() { shared_.loan.give_back(ticket_); }
   DevicePause(const DevicePause&) = delete;
   DevicePause& operator=(const DevicePause&) = delete;
-  bool is_granted() const { return shared_.is_paused.load(std::memory_order_acquire); }
+  bool is_granted() const { return shared_.loan.is_lent(ticket_); }
 
  private:
   Shared& shared_;
+  std::uint64_t ticket_;
 };
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <future>
+#include <optional>
+#include <system_error>
 #include <thread>
 
 #include "core/log.h"
@@ -39,9 +41,9 @@ Welcome make_welcome(const HapticDevice& device, const std::string& tool, double
 struct HapticServer::Impl {
   Impl(const ServerOptions& options, std::unique_ptr<HapticDevice> the_device, PatientOpener open_patient,
        ServerSocket the_socket)
-      : params(servo_params(the_device->preset())),
+      : params(servo_params(the_device->preset(), options.rate_hz)),
         device(std::move(the_device)),
-        last_chance(*device),
+        last_chance(std::in_place, *device),
         socket(std::move(the_socket)),
         url(socket.bound_url()),
         shared(static_cast<std::int64_t>(kNsPerS / options.rate_hz)),
@@ -50,33 +52,49 @@ struct HapticServer::Impl {
                 options.tool, options.flight_folder),
         link(shared, socket, make_welcome(*device, options.tool, params.workspace.force_scale),
              options.priority > 0 ? kLinkPriority : 0) {
-    shared.last_chance = &last_chance;
-    control_thread = std::thread([this] {
-      control.run();
-      control_end.set_value();
-    });
-    link_thread = std::thread([this] { link.run(); });
-    servo_thread = std::thread([this, priority = options.priority] { run_servo_thread(shared, servo, priority); });
+    shared.last_chance = &*last_chance;
   }
   ~Impl() {
     stop();
     if (control_thread.joinable()) control_thread.join();
   }
 
+  /// After an error the destructor ends those threads that have started.
+  Status start_threads(const ThreadStarter& starter, int priority) {
+    TROCAR_TRY(control_thread, starter("control", [this] {
+                 control.run();
+                 control_end.set_value();
+               }));
+    TROCAR_TRY(link_thread, starter("link", [this] { link.run(); }));
+    TROCAR_TRY(servo_thread, starter("real-time", [this, priority] { run_servo_thread(shared, servo, priority); }));
+    return {};
+  }
+
+  /// False: the control thread still runs after kLoadPatience.
+  bool wait_for_control() {
+    if (!control_thread.joinable()) return true;
+    if (control_end.get_future().wait_for(kLoadPatience) != std::future_status::ready) return false;
+    control_thread.join();
+    return true;
+  }
+
   ServerReport stop() {
     if (shared.is_stopping) return {};
     shared.is_fading = true;
     constexpr double kMargin_s = 0.05;
-    std::this_thread::sleep_for(std::chrono::duration<double>(params.gate.fade_s + kMargin_s));
+    if (servo_thread.joinable())
+      std::this_thread::sleep_for(std::chrono::duration<double>(params.gate.fade_s + kMargin_s));
     shared.is_stopping = true;
-    servo_thread.join();
-    link_thread.join();
+    if (servo_thread.joinable()) servo_thread.join();
+    if (link_thread.joinable()) link_thread.join();
     shared.door.close();
-    const bool has_ended = control_end.get_future().wait_for(kLoadPatience) == std::future_status::ready;
-    if (has_ended) control_thread.join();
+    const bool has_ended = wait_for_control();
     // Loading a scene does not touch the device; opening it anew does.
     const bool is_loading = !has_ended && shared.door.status().loading > 0.0;
-    if (is_loading) device.reset();
+    if (is_loading) {
+      last_chance.reset();
+      device.reset();
+    }
     return {is_loading,
             shared.statistics.newest().summary(),
             shared.grant,
@@ -88,7 +106,7 @@ struct HapticServer::Impl {
 
   ServoParams params;
   std::unique_ptr<HapticDevice> device;
-  LastChance last_chance;
+  std::optional<LastChance> last_chance;
   ServerSocket socket;
   std::string url;
   Shared shared;
@@ -99,13 +117,22 @@ struct HapticServer::Impl {
   std::thread control_thread, link_thread, servo_thread;
 };
 
+Result<std::thread> start_thread(const char* name, std::function<void()> body) {
+  try {
+    return std::thread(std::move(body));
+  } catch (const std::system_error& error) {
+    return fail(fmt::format("the {} thread does not start: {}", name, error.what()), "haptic server",
+                "end other programs, or raise the limit on threads (ulimit -u)");
+  }
+}
+
 HapticServer::HapticServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 HapticServer::HapticServer(HapticServer&&) noexcept = default;
 HapticServer& HapticServer::operator=(HapticServer&&) noexcept = default;
 HapticServer::~HapticServer() = default;
 
 Result<HapticServer> HapticServer::start(const ServerOptions& options, std::unique_ptr<HapticDevice> device,
-                                         PatientOpener open_patient) {
+                                         PatientOpener open_patient, const ThreadStarter& starter) {
   constexpr double kSlowest_hz = 250.0, kFastest_hz = 4000.0;
   if (!(options.rate_hz >= kSlowest_hz && options.rate_hz <= kFastest_hz))
     return fail_usage(
@@ -113,7 +140,9 @@ Result<HapticServer> HapticServer::start(const ServerOptions& options, std::uniq
         "choose a rate in this range");
   TROCAR_TRY_STATUS(parse_tool(options.tool));
   TROCAR_TRY(ServerSocket socket, ServerSocket::bind(options.endpoint, options.security));
-  return HapticServer(std::make_unique<Impl>(options, std::move(device), std::move(open_patient), std::move(socket)));
+  auto impl = std::make_unique<Impl>(options, std::move(device), std::move(open_patient), std::move(socket));
+  TROCAR_TRY_STATUS(impl->start_threads(starter, options.priority));
+  return HapticServer(std::move(impl));
 }
 
 void HapticServer::load(const LoadScene& request) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "core/result.h"
 #include "devices/haptic_device.h"
@@ -26,6 +28,10 @@ struct ServerOptions {
 };
 inline constexpr int kLinkPriority = 20;
 
+/// Starts a thread. An argument, so that a test can let one fail. Errors: the system has no thread left.
+using ThreadStarter = std::function<Result<std::thread>(const char* name, std::function<void()> body)>;
+Result<std::thread> start_thread(const char* name, std::function<void()> body);
+
 /// How a server did, for people and benchmarks.
 struct ServerReport {
   /// A scene was still being loaded. Threads and device are at rest all the same, but destroying the server waits for
@@ -42,9 +48,10 @@ struct ServerReport {
 /// (scenes, files, opening the device again). Starts when it is made and stops, forces faded, when it is destroyed.
 class HapticServer {
  public:
-  /// Errors: the endpoint (see ServerSocket::bind), a rate out of range.
+  /// Errors: the endpoint (see ServerSocket::bind), a rate out of range, a thread that does not start (those that had
+  /// started have ended then).
   static Result<HapticServer> start(const ServerOptions& options, std::unique_ptr<HapticDevice> device,
-                                    PatientOpener open_patient);
+                                    PatientOpener open_patient, const ThreadStarter& starter = start_thread);
   HapticServer(HapticServer&&) noexcept;
   HapticServer& operator=(HapticServer&&) noexcept;
   ~HapticServer();

@@ -80,10 +80,10 @@ void LastChance::adopt_thread() noexcept {
   thread_.store(::gettid(), std::memory_order_release);
 }
 
-bool LastChance::takes_over(bool is_paused) noexcept {
+bool LastChance::takes_over(bool is_lent) noexcept {
   if (!is_wanted_.load(std::memory_order_acquire)) return false;
   if (!is_done_.load(std::memory_order_acquire)) {
-    if (!is_paused) device_.write(Wrench{});
+    if (!is_lent) device_.write(Wrench{});
     is_done_.store(true, std::memory_order_release);
   }
   return true;

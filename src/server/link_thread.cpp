@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/log.h"
 #include "realtime/periodic_loop.h"
 
@@ -77,6 +79,7 @@ void LinkThread::drain() {
       drop_s_ = record.drop_s;
     }
     actions_ |= record.actions;
+    coupling_share_ = std::min(coupling_share_, record.sample.coupling_share);
     ticks_ = record.tick + 1;
     if (auto flight = recorder_.add(record)) {
       const bool is_taken = shared_.door.post({0, 0, WriteFlight{std::move(*flight)}});
@@ -155,6 +158,7 @@ ServerStatus LinkThread::make_status(double now_s) {
   status.ticks_dropped = shared_.records_dropped.load(std::memory_order_relaxed);
   status.messages_refused = socket_.refused().total();
   status.gate_actions = std::exchange(actions_, 0);
+  status.coupling_share = std::exchange(coupling_share_, 1.0);
   status.drop_n = drop_n_;
   status.drop_s = drop_s_;
   status.is_device_connected = newest_.status != DeviceStatus::kDisconnected;

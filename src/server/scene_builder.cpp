@@ -7,6 +7,8 @@
 #include <cmath>
 #include <new>
 
+#include "haptics/coupling_limits.h"
+
 namespace trocar {
 namespace {
 
@@ -98,6 +100,7 @@ Result<SceneBuilder::Parts> SceneBuilder::parts_for(const LoadScene& request) co
   }
   parts.tissues = parts.loaded;
   apply_device_preset(device_, parts.options);
+  parts.options.coupling = within(parts.options.coupling, limits_of(device_));  // its scales may want a softer one
   TROCAR_TRY(parts.options.tool, parse_tool(request.tool));
   TROCAR_TRY(parts.options.force_model, parse_force_model(request.force_model));
   parts.options.seed = request.seed;
@@ -110,7 +113,7 @@ Result<ServoScene> SceneBuilder::build(const LoadScene& request, std::shared_ptr
   // The tick works in the patient's newtons and mm; the gate holds the device's own limits, after the scales.
   const DeviceCapability capability = scene_capability(device_);
   const double stiffest = capability.max_stiffness_n_per_mm;
-  options.coupling.stiffness_n_per_mm = std::min(options.coupling.stiffness_n_per_mm, stiffest);
+  TROCAR_TRY_STATUS(check(options.coupling, limits_of(device_)));
   options.constraint.force_n = std::min(options.constraint.force_n, stiffest * options.constraint.linear_mm);
   TROCAR_TRY(auto built, make_haptic_scene(patient, parts.tissues, needle_of(request), capability, options));
   auto scene = std::make_shared<HapticScene>(*built);

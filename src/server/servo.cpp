@@ -41,10 +41,19 @@ std::optional<Vec3> to_entry_W(const HapticState& state, const HapticScene& scen
 
 }  // namespace
 
-ServoParams servo_params(const DevicePreset& preset) noexcept {
+/// The spring and damper that the device feels: none where it feels no force.
+CouplingParams Servo::coupling_in_device(const ServoScene* scene) const noexcept {
+  if (scene == nullptr || !device_.preset().has_force()) return {0.0, 0.0};
+  const double scale = params_.workspace.force_scale * params_.workspace.motion_scale;
+  const CouplingParams& coupling = scene->scene->options.coupling;
+  return {scale * coupling.stiffness_n_per_mm, scale * coupling.damping_ns_per_mm};
+}
+
+ServoParams servo_params(const DevicePreset& preset, double rate_hz) noexcept {
   constexpr double kStuckShare = 0.15;
   ServoParams params;
   params.gate = gate_params(preset);
+  params.gate.period_s = 1.0 / rate_hz;
   params.stuck_n = kStuckShare * params.gate.continuous_force_n;
   params.workspace = workspace_params(preset);
   return params;
@@ -153,6 +162,7 @@ void Servo::note_gate(const GateOutput& output, const ServoInput& input, TickSam
   sample.gate_mode = gate_.mode;
   sample.gate_fault = gate_.fault;
   sample.gate_scale = gate_.scale;
+  sample.coupling_share = gate_.coupling_share;
   if (input.scene == nullptr) return;
   const Mat3 R_PD = input.scene->scene->X_PD.R() * workspace_.X_WD_now.R();
   sample.device_f_n = R_PD * output.wrench.force_n;
@@ -162,6 +172,17 @@ void Servo::note_gate(const GateOutput& output, const ServoInput& input, TickSam
 void Servo::begin_anew() noexcept {
   tick_ = {};
   if (gate_.fault == GateFault::kNone) gate_.mode = GateMode::kOff;  // through the safe start
+}
+
+bool Servo::gives_force() const noexcept {
+  return gate_.last.force_n != Vec3::Zero() || gate_.last.torque_nmm != Vec3::Zero();
+}
+
+void Servo::resume() noexcept {
+  begin_anew();
+  restart_gate(gate_);
+  has_read_ = was_placed_ = has_refused_ = false;
+  unread_s_ = unmoved_s_ = 0.0;
 }
 
 ServoRecord Servo::step(const ServoInput& input) noexcept {
@@ -193,6 +214,8 @@ ServoRecord Servo::step(const ServoInput& input) noexcept {
   gate.dt_s = input.dt_s;
   gate.silence_s = input.silence_s;
   gate.unread_s = unread_s_;
+  gate.busy_s = input.busy_s;
+  gate.coupling = coupling_in_device(input.scene);
   gate.is_wanted = input.is_wanted && input.scene != nullptr;
   gate.device_fault = sensed.fault;
   gate.is_reset = input.is_reset;

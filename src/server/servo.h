@@ -31,12 +31,13 @@ struct ServoParams {
 
 /// Gate, calibration and scales of a device's preset; a stuck encoder is looked for above 0.15 of its continuous force
 /// [assumed].
-ServoParams servo_params(const DevicePreset& preset) noexcept;
+ServoParams servo_params(const DevicePreset& preset, double rate_hz = 1000.0) noexcept;
 
 /// What the other threads tell a period.
 struct ServoInput {
   double now_s = 0.0;
   double dt_s = 0.001;
+  double busy_s = 0.0;                ///< Part of dt_s that the last period's own work took.
   const ServoScene* scene = nullptr;  ///< None: no forces.
   std::optional<HandTarget> hand;     ///< When a new one came.
   double silence_s = 0.0;             ///< Since the client in control was heard.
@@ -69,6 +70,11 @@ class Servo {
   Servo(HapticDevice& device, const ServoParams& params) noexcept;
   ServoRecord step(const ServoInput& input) noexcept;
   GateMode mode() const noexcept { return gate_.mode; }
+  /// Something else than zero was written last.
+  bool gives_force() const noexcept;
+  /// After the device was in other hands: nothing read, written or felt before counts, and forces come back through the
+  /// safe start. A fault stays.
+  void resume() noexcept;
 
  private:
   struct Wanted {
@@ -86,6 +92,7 @@ class Servo {
   void begin_anew() noexcept;
   Wanted feel(const Sensed& sensed, const ServoInput& input, TickSample& sample) noexcept;
   DeviceHand hand_in_device(const HandTarget& target, const HapticScene& scene) const noexcept;
+  CouplingParams coupling_in_device(const ServoScene* scene) const noexcept;
   void note_gate(const GateOutput& output, const ServoInput& input, TickSample& sample) noexcept;
 
   HapticDevice& device_;

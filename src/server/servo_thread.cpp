@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "realtime/periodic_loop.h"
 #include "server/detail/shared.h"
 
@@ -53,13 +55,24 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
   LoopStatistics statistics(shared.period_ns);
   Switches switches;
   double told_s = 0.0;
+  bool is_lent = false;
+  std::int64_t busy_ns = 0;
   run_periodic(shared.period_ns, shared.is_stopping, statistics,
                [&](const Period& period, const LoopStatistics& so_far) {
-                 const bool is_paused = shared.pause_wanted.load(std::memory_order_acquire);
-                 shared.is_paused.store(is_paused, std::memory_order_release);
-                 if (shared.last_chance != nullptr && shared.last_chance->takes_over(is_paused)) return;
-                 if (is_paused) return;  // commands wait: a reset must not get lost
+                 const DeviceLoan::Request request = shared.loan.look();
+                 if (shared.last_chance != nullptr && shared.last_chance->takes_over(is_lent && request.is_open))
+                   return;
+                 if (request.is_open && (is_lent || !servo.gives_force())) {
+                   is_lent = true;
+                   shared.loan.lend(request);
+                   return;  // commands wait: a reset must not get lost
+                 }
+                 if (std::exchange(is_lent, false)) {
+                   servo.resume();
+                   busy_ns = 0;
+                 }
 
+                 const std::int64_t begun_ns = now_ns();
                  obey(shared, switches, statistics);
                  if (shared.is_fading.load(std::memory_order_relaxed)) switches.is_wanted = false;
                  shared.is_wanted.store(switches.is_wanted, std::memory_order_relaxed);
@@ -71,11 +84,13 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
                  if (shared.hand.update()) input.hand = shared.hand.value();
                  const std::int64_t heard_ns = shared.heard_ns.load(std::memory_order_relaxed);
                  input.silence_s = heard_ns == 0 ? kNeverHeard_s : seconds(period.begin_ns - heard_ns);
-                 input.is_wanted = switches.is_wanted;
+                 input.is_wanted = switches.is_wanted && !request.is_open;  // asked for: faded before it is lent
                  input.is_stylet_in = switches.is_stylet_in;
                  input.is_reset = switches.is_reset;
+                 input.busy_s = seconds(busy_ns);
                  if (!shared.records.push(servo.step(input)))
                    shared.records_dropped.fetch_add(1, std::memory_order_relaxed);
+                 busy_ns = now_ns() - begun_ns;
 
                  if (period.now_s - told_s < kStatistics_s) return;
                  told_s = period.now_s;

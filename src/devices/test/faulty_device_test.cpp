@@ -49,7 +49,7 @@ class Mover final : public HapticDevice {
 struct Broken {
   Mover* mover;
   FaultyDevice device;
-  explicit Broken(std::vector<ScheduledFault> faults, FaultyDevice::Wait wait = nullptr)
+  explicit Broken(std::vector<ScheduledFault> faults, FaultyDevice::Wait wait = {})
       : Broken(std::make_unique<Mover>(), std::move(faults), wait) {}
 
  private:
@@ -157,12 +157,11 @@ TEST(FaultyDevice, DeviceThatIsReallyGoneIsOpenedAgain) {
   EXPECT_EQ(broken.device.read(2.0).status, DeviceStatus::kFresh);
 }
 
-thread_local double waited_ms = 0.0;
-
 TEST(FaultyDevice, SlowReadsAndWritesWaitThatLongAndNoLonger) {
-  const auto count = [](double wait_ms) noexcept { waited_ms += wait_ms; };
-  waited_ms = 0.0;
-  Broken broken({{DeviceFault::kSlowRead, 1.0, 1.0, 3.0}, {DeviceFault::kSlowWrite, 2.0, 1.0, 1e9}}, count);
+  double waited_ms = 0.0;
+  const auto count = [](void* sum, double wait_ms) noexcept { *static_cast<double*>(sum) += wait_ms; };
+  Broken broken({{DeviceFault::kSlowRead, 1.0, 1.0, 3.0}, {DeviceFault::kSlowWrite, 2.0, 1.0, 1e9}},
+                {count, &waited_ms});
   broken.device.read(0.0);
   EXPECT_TRUE(broken.device.write({}));
   EXPECT_EQ(waited_ms, 0.0);

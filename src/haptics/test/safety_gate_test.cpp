@@ -197,7 +197,9 @@ TEST(SafetyGate, StaysWithinItsLimitsOverAMillionRandomPeriods) {
       if (random.uniform() < 0.05) input.wanted = {};
       if (random.uniform() < 0.1) input.weight = {any_vector(random, 5.0), any_vector(random, 100.0)};
       if (random.uniform() < 0.1) input.axis = any_vector(random, 1.0).normalized();
-      input.v_mm_per_s = any_vector(random, params.brake_mm_per_s);
+      // Steps of the speed that a device can make; now and then one that it cannot.
+      const double agility_mm_per_s = random.uniform() < 0.001 ? 2.0 * params.brake_mm_per_s : 300.0;
+      input.v_mm_per_s += any_vector(random, agility_mm_per_s) - 0.1 * input.v_mm_per_s;
       input.w_rad_per_s = any_vector(random, 20.0);
       input.dt_s = random.uniform() < 0.02 ? random.uniform(0.0001, 0.3) : kDt_s;
       input.silence_s = random.uniform() < 0.01 ? 2.0 : 0.0;

@@ -35,6 +35,7 @@ class LinkThread {
   double window_age_s_ = 0.0;
   std::uint32_t actions_ = 0;
   double drop_n_ = 0.0, drop_s_ = 0.0;
+  double coupling_share_ = 1.0;  ///< The smallest since the last status.
   double sent_s_ = 0.0, told_s_ = 0.0;
 };
 

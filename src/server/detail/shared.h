@@ -18,6 +18,7 @@
 #include "realtime/real_time_grant.h"
 #include "realtime/spsc_ring.h"
 #include "realtime/triple_buffer.h"
+#include "server/detail/device_loan.h"
 #include "server/last_chance.h"
 #include "server/servo.h"
 
@@ -153,8 +154,7 @@ struct Shared {
 
   // Control <-> real time.
   Handover<ServoScene> scene;
-  std::atomic<bool> pause_wanted{false};  ///< The control thread wants the device for itself...
-  std::atomic<bool> is_paused{false};     ///< ...and has it.
+  DeviceLoan loan;  ///< Of the device, to the control thread.
 
   // Link <-> control.
   ControlDoor door;

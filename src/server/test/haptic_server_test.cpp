@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <thread>
 
@@ -220,6 +222,91 @@ TEST(HapticServer, CountsBadMessagesAndKeepsItsForcesMeanwhile) {
       << client.view().status.messages_refused;
   EXPECT_EQ(client.view().status.gate_mode, to_string(GateMode::kOn));
   EXPECT_EQ(client.view().status.state, "running");
+}
+
+TEST(HapticServer, EndsWhatHasStartedWhereAThreadDoesNotStart) {
+  for (const char* failing : {"control", "link", "real-time"}) {
+    const TemporaryFolder folder;
+    ServerOptions options;
+    options.endpoint = *parse_endpoint("ipc://" + (folder / "needle").string());
+    options.priority = 0;
+    const auto starter = [&](const char* name, std::function<void()> body) -> Result<std::thread> {
+      if (name == std::string_view(failing)) return fail("the thread does not start", name, "test");
+      return start_thread(name, std::move(body));
+    };
+    const auto server = HapticServer::start(options, std::make_unique<ScriptedDevice>(testing::device_preset()),
+                                            testing::layered_opener(), starter);
+    ASSERT_FALSE(server) << failing;
+    EXPECT_NE(server.error().text().find(failing), std::string::npos) << server.error().text();
+  }
+}
+
+/// A healthy device is opened again under force: its motors are off then, whoever opens it.
+class ReopenedDevice final : public HapticDevice {
+ public:
+  struct Log {
+    std::atomic<double> depth_mm{-10.0};
+    std::atomic<int> reconnects{0};
+    std::atomic<double> held_n{-1.0};  ///< Force on the motors when it was opened again.
+    std::atomic<double> largest_rise_n{0.0};
+  };
+  explicit ReopenedDevice(Log& log) : preset_(testing::device_preset()), log_(log) {}
+  const DevicePreset& preset() const noexcept override { return preset_; }
+  std::string name() const override { return "reopened"; }
+  DeviceReading read(double now_s) noexcept override {
+    DeviceReading reading;
+    reading.X_DS = testing::needle_at_depth(log_.depth_mm + 0.01 * std::sin(30.0 * now_s));
+    return reading;
+  }
+  bool write(const Wrench& wrench_D) noexcept override {
+    const double written_n = wrench_D.force_n.norm();
+    log_.largest_rise_n = std::max(log_.largest_rise_n.load(), written_n - last_n_);
+    last_n_ = written_n;
+    return true;
+  }
+  Status reconnect() override {
+    log_.held_n = last_n_;
+    last_n_ = 0.0;
+    ++log_.reconnects;
+    return {};
+  }
+
+ private:
+  DevicePreset preset_;
+  Log& log_;
+  double last_n_ = 0.0;
+};
+
+TEST(HapticServer, FadesBeforeADeviceIsOpenedAgainAndComesBackSoftly) {
+  const TemporaryFolder folder;
+  ServerOptions options;
+  options.endpoint = *parse_endpoint("ipc://" + (folder / "needle").string());
+  options.priority = 0;
+  options.tissues_file = testing::data_file("tissues.toml");
+  ReopenedDevice::Log log;
+  auto server = HapticServer::start(options, std::make_unique<ReopenedDevice>(log), testing::layered_opener());
+  ASSERT_TRUE(server) << server.error().text();
+  ClientOptions client_options;
+  client_options.endpoint = server->url();
+  auto client = HapticClient::connect(client_options);
+  ASSERT_TRUE(client && client->wait_connected(kPatience));
+  ASSERT_TRUE(client->ask(testing::layered_request(), kPatience));
+  ASSERT_TRUE(client->ask(ServerCommand::kStart, kPatience));
+  ASSERT_TRUE(wait_for([&] { return client->view().status.gate_mode == to_string(GateMode::kOn); }));
+  // Pressed slowly, until something is felt; a busy machine may have latched a fault meanwhile.
+  ASSERT_TRUE(wait_for([&] {
+    if (log.depth_mm < 3.0) log.depth_mm = log.depth_mm + 0.01;
+    const auto newest = client->newest();
+    return newest && (newest->device_f_n.norm() > 1.0 || newest->gate_fault != GateFault::kNone);
+  }));
+  log.largest_rise_n = 0.0;
+  ASSERT_TRUE(client->ask(ServerCommand::kReconnect, kPatience));
+  EXPECT_EQ(log.reconnects, 1);
+  EXPECT_EQ(log.held_n, 0.0) << "the forces have faded before";
+  const std::uint64_t ticks = client->view().status.ticks;
+  EXPECT_TRUE(wait_for([&] { return client->view().status.ticks > ticks + 1500; }));
+  server->stop();
+  EXPECT_LT(log.largest_rise_n, 0.5) << "N in one period";
 }
 
 TEST(HapticServer, RefusesARateItCannotKeep) {

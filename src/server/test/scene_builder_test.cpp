@@ -1,9 +1,11 @@
 #include "server/scene_builder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <new>
 
+#include "haptics/coupling_limits.h"
 #include "server/test/servo_rig.h"
 
 namespace trocar {
@@ -144,9 +146,29 @@ TEST(SceneBuilder, ClipsTheCouplingToTheDeviceOverTheWorkspaceScale) {
   ASSERT_TRUE(scene) << scene.error().text();
   const double most = preset.capability.max_stiffness_n_per_mm / 5.0;
   EXPECT_LE(scene->scene->options.coupling.stiffness_n_per_mm, most + 1e-12);
-  const auto stiffer = builder.change({{"coupling.stiffness=3.0"}});
-  ASSERT_TRUE(stiffer);
-  EXPECT_NEAR(stiffer->scene->options.coupling.stiffness_n_per_mm, most, 1e-12);
+}
+
+TEST(SceneBuilder, RefusesACouplingThatTheDeviceDoesNotBear) {
+  for (const char* device : {"premium", "omni", "omega7", "falcon", "mouse"}) {
+    const DevicePreset preset = device_preset(device);
+    SceneBuilder builder = make_builder(device);
+    const auto before = builder.load(layered_request());
+    ASSERT_TRUE(before) << before.error().text();
+    for (const char* bad : {"coupling.damping=1", "coupling.damping=0.2", "coupling.damping=-0.001",
+                            "coupling.stiffness=19", "coupling.stiffness=0.001", "coupling.stiffness=-1"}) {
+      const auto scene = builder.change({{bad}});
+      ASSERT_FALSE(scene) << device << ' ' << bad;
+      const std::string text = scene.error().text();
+      EXPECT_NE(text.find(std::string(bad).substr(0, 13)), std::string::npos) << text;
+      EXPECT_NE(text.find("give a number from"), std::string::npos) << text;
+      EXPECT_EQ(text.find('\n'), std::string::npos);
+    }
+    const CouplingLimits limits = limits_of(preset);
+    EXPECT_TRUE(builder.change({{fmt::format("coupling.stiffness={}", limits.most_n_per_mm)}})) << device;
+    EXPECT_FALSE(builder.change({{fmt::format("coupling.stiffness={}", 1.01 * limits.most_n_per_mm)}})) << device;
+    EXPECT_TRUE(builder.change({{fmt::format("coupling.damping={}", limits.most_ns_per_mm)}})) << device;
+    EXPECT_FALSE(builder.change({{fmt::format("coupling.damping={}", 1.01 * limits.most_ns_per_mm)}})) << device;
+  }
 }
 
 TEST(SceneBuilder, OpensAPatientOnceForManyScenes) {
