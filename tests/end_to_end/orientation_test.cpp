@@ -52,8 +52,6 @@ void expect_same(const Case& axial, const Attempt& expected, const Volumes& volu
   EXPECT_LT(largest_n, kRounding_n);
 }
 
-// All 48 orders give the same patient: anatomy_test, BuildPatient. Here one of each order of the axes goes on to the
-// forces.
 TEST(StorageOrder, DoesNotMatterForPathAndForces) {
   const CtGrid ct = Torso().ct(Torso::grid({6, 5, 8}));
   const LabelSource liver{"liver.nii.gz", Torso::mask(Torso::grid({6, 5, 8}), Torso::is_liver), {{1, "liver"}}};
