@@ -81,7 +81,7 @@ void warn_of_doubtful_structures(const VirtualPatient& patient, std::size_t know
 
 Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> sources, const BuildOptions& options,
                                      std::vector<std::string>& warnings, const Progress& progress) {
-  if (ct.empty()) return fail("the CT has no voxels");
+  if (ct.empty()) return fail("the CT has no voxels", "CT", "give a CT volume with image data");
   TROCAR_TRY_STATUS(check_hounsfield(ct));
   VirtualPatient patient;
   patient.name = options.name;

@@ -50,7 +50,9 @@ Result<Endpoint> parse_tcp(std::string_view address) {
   if (colon == std::string_view::npos) return fail_usage("the port is missing", where, std::string(kAdvice));
   std::string_view host = address.substr(0, colon);
   const auto port = parse_number(address.substr(colon + 1), kMostPort);
-  if (!port) return fail_usage(fmt::format("the port is not a number of 0 to {}", kMostPort), where);
+  if (!port)
+    return fail_usage(fmt::format("the port is not a number of 0 to {}", kMostPort), where,
+                      "write it as tcp://127.0.0.1:5571");
   if (host == "localhost") host = "127.0.0.1";  // sockets are not bound to names
   const auto parsed = detail::parse_tcp_address(host, *port);
   if (!parsed) {

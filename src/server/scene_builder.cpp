@@ -134,7 +134,7 @@ Result<ServoScene> SceneBuilder::load_throwing(const LoadScene& request, const P
                                                const std::stop_token& stop) {
   const auto check_stop = [&]() -> Status {
     if (!stop.stop_requested()) return {};
-    return fail("loading was stopped: a newer scene was sent or the server ends", request.patient);
+    return fail("loading was stopped: a newer scene was sent or the server ends", request.patient, "load it again");
   };
   TROCAR_TRY_STATUS(check_stop());
   report(progress, "checking the scene", 0.0);

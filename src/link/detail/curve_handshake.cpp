@@ -94,7 +94,7 @@ bool decode_key(const std::string& text, CurveKey& key) {
 }
 
 tl::unexpected<Error> damaged(const char* command) {
-  return fail(fmt::format("a damaged {} of CURVE", command), "link");
+  return fail(fmt::format("a damaged {} of CURVE", command), "link", "check the program on the other side");
 }
 
 }  // namespace
@@ -107,7 +107,8 @@ Result<CurveIdentity> CurveIdentity::make(const CurveKeys& keys, const std::set<
   if (!are_keys) return fail_usage("the server's keys are not CURVE keys", {}, "make new ones: trocar link keygen");
   for (const std::string& text : allowed) {
     CurveKey key;
-    if (!decode_key(text, key)) return fail_usage("an allowed client's key is not a CURVE key", text);
+    if (!decode_key(text, key))
+      return fail_usage("an allowed client's key is not a CURVE key", text, "make keys with trocar link keygen");
     identity.allowed_.insert(key);
   }
   return identity;
@@ -116,7 +117,7 @@ Result<CurveIdentity> CurveIdentity::make(const CurveKeys& keys, const std::set<
 Result<CurveHandshake::Answer> CurveHandshake::answer(std::span<const std::byte> command) {
   if (step_ == Step::kHello && is_command(command, kHello)) return answer_hello(command);
   if (step_ == Step::kInitiate && is_command(command, kInitiate)) return answer_initiate(command);
-  return fail("an unexpected command during the CURVE handshake", "link");
+  return fail("an unexpected command during the CURVE handshake", "link", "check the program on the other side");
 }
 
 Result<CurveHandshake::Answer> CurveHandshake::answer_hello(std::span<const std::byte> command) {

@@ -56,7 +56,7 @@ Status clear_place(const fs::path& path, const sockaddr_un& name) {
 
 Result<IpcFile> IpcFile::listen(const fs::path& path) {
   const auto name = socket_name(path);
-  if (!name) return fail_usage("the name of the socket is empty or too long", path.string());
+  if (!name) return fail_usage("the name of the socket is empty or too long", path.string(), "choose a shorter path");
 
   // Two servers that start at once take turns, so that none removes the other's fresh socket. A lock that somebody else
   // keeps must not keep us.
@@ -72,7 +72,9 @@ Result<IpcFile> IpcFile::listen(const fs::path& path) {
   if (!listener.is_open() || ::fchmod(listener.get(), kForUserAlone) != 0 ||
       ::bind(listener.get(), as_address(*name), sizeof *name) != 0 ||
       ::listen(listener.get(), kWaitingConnections) != 0 || ::lstat(path.c_str(), &made) != 0) {
-    if (errno == EADDRINUSE) return fail("the endpoint is in use by another server", path.string());
+    if (errno == EADDRINUSE)
+      return fail("the endpoint is in use by another server", path.string(),
+                  "stop that server, or choose another endpoint");
     return fail("the socket cannot be made", path.string(), std::strerror(errno));
   }
   IpcFile file;
