@@ -262,7 +262,7 @@ TEST(BuildPatient, ACtWithoutABodyIsRefused) {
   std::vector<std::string> warnings;
   const auto patient = build_patient(CtGrid(Torso::grid(kSpacingMm), -1000), {liver()}, {"air", {}}, warnings);
   ASSERT_FALSE(patient);
-  EXPECT_NE(patient.error().text().find("no body"), std::string::npos);
+  EXPECT_NE(patient.error().text().find("too little fat and soft tissue"), std::string::npos);
 }
 
 TEST(BuildPatient, IslandsOfNoiseTakeTheTissueAroundThem) {
