@@ -37,8 +37,9 @@ std::vector<std::string> parameters_schema() {
 }
 
 std::string parameters_events_sql() {
-  return "SELECT printf('interruption:%.3f', to_s - from_s) FROM interruptions i WHERE i.tick = t.tick UNION ALL "
-         "SELECT 'set:' || replace(settings, ';', ';set:') FROM parameters p WHERE p.tick = t.tick AND settings <> ''";
+  return "SELECT printf('interruption:%.3f', to_s - from_s) AS text FROM interruptions i WHERE i.tick = t.tick "
+         "UNION ALL SELECT 'set:' || replace(settings, ';', ';set:') FROM parameters p WHERE p.tick = t.tick AND "
+         "settings <> ''";
 }
 
 void ParametersBuffer::write(soci::session& database) {
