@@ -19,8 +19,8 @@ struct PatientFiles {
   std::vector<std::filesystem::path> labels;   ///< Label volumes, masks, folders of masks or of DICOM mask series.
   std::string label_map = "totalsegmentator";  ///< See read_label_sources.
   std::string name;                            ///< Of the patient.
-  std::string series;                          ///< Of several DICOM series, see read_ct.
-  std::optional<Rescale> rescale;              ///< For a CT whose file lacks the scale of its numbers.
+  std::string series{};                        ///< Of several DICOM series, see read_ct.
+  std::optional<Rescale> rescale{};            ///< For a CT whose file lacks the scale of its numbers.
 };
 
 /// Reads the files and builds the patient; it says in its provenance of what, without paths of this machine. Between
