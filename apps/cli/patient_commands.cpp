@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -80,9 +81,11 @@ Result<std::optional<Rescale>> parse_rescale(const std::string& text) {
   const auto slope = std::from_chars(text.data(), end, rescale.slope);
   if (slope.ec == std::errc{} && slope.ptr != end && *slope.ptr == ',') {
     const auto intercept = std::from_chars(slope.ptr + 1, end, rescale.intercept);
-    if (intercept.ec == std::errc{} && intercept.ptr == end) return rescale;
+    const bool is_usable = std::isfinite(rescale.slope) && rescale.slope != 0.0 && std::isfinite(rescale.intercept);
+    if (intercept.ec == std::errc{} && intercept.ptr == end && is_usable) return rescale;
   }
-  return fail_usage("--rescale needs two numbers", text, "write SLOPE,INTERCEPT such as 1,-1024");
+  return fail_usage("--rescale needs two finite numbers, the first not 0", text,
+                    "write SLOPE,INTERCEPT such as 1,-1024");
 }
 
 Status build(const BuildArguments& arguments) {
