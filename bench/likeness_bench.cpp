@@ -78,13 +78,13 @@ Result<Pictures> simulated(const VirtualPatient& patient, const Transducer& tran
   BMode engine(scene, transducer, default_acquisition(transducer));
   TROCAR_TRY(const auto views, load_probe_views(data_dir() / "views.toml"));
   TROCAR_TRY(const ProbeView chosen, choose_view(patient, views, kView));
-  TROCAR_TRY(const Pose view, place_probe(patient, chosen, transducer));
+  TROCAR_TRY(const ProbePlacement placed, place_probe(patient, chosen, transducer));
   Scanner scanner(kColumns, kRows);
   PictureStatistics statistics;
   Pictures pictures;
   for (int frame = 0; frame < kSimulated; ++frame) {
     const double along_mm = kSweep_mm * (static_cast<double>(frame) / (kSimulated - 1) - 0.5);
-    const Pose X_PT = view * Pose::translation(Vec3(0.0, 0.0, along_mm));
+    const Pose X_PT = placed.X_PT * Pose::translation(Vec3(0.0, 0.0, along_mm));
     const GrayImage& shown = scanner.show(engine.render({X_PT, {}, 0.0}), static_cast<std::uint64_t>(frame));
     statistics.add({scanner.raster(), engine.geometry(), shown.pixels});
     if (frame == kSimulated / 2) pictures.shown = rgb_of(shown.pixels, shown.columns, shown.rows);

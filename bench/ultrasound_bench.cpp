@@ -155,7 +155,8 @@ Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options)
     report(options.progress, setting.name, fraction);
     fraction += 0.2;
     TROCAR_TRY(const Transducer transducer, load_transducer(data_dir() / "transducers.toml", setting.transducer));
-    TROCAR_TRY(const Pose X_PT, place_probe(patient, view, transducer));
+    TROCAR_TRY(const ProbePlacement placed, place_probe(patient, view, transducer));
+    const Pose& X_PT = placed.X_PT;
     Acquisition acquisition = default_acquisition(transducer);
     acquisition.looks = setting.looks;
     const Best best = measure(scene, transducer, X_PT, acquisition);

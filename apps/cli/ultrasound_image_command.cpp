@@ -176,11 +176,13 @@ Status write_picture(const Arguments& arguments, const Scan& scan, const GrayIma
     return write_image(as_slab(gray, raster, scan.X_PT), arguments.out);
   RgbImage picture = colour ? colour->image : to_rgb(gray);
   if (!arguments.is_plain) {
+    hatch_unscanned(picture, raster, geometry, scan.X_PT, scan.scene->ends);
     ScanCaption caption;
     caption.transducer = scan.transducer.name;
     caption.frequency_mhz = scan.acquisition.frequency_mhz;
     caption.focus_mm = scan.acquisition.focus_mm;
     caption.settings = scan.display;
+    if (scan.unscanned_share > 0.0) caption.remarks.emplace_back("Hatched: outside CT");
     draw_annotation(picture, make_scan_annotation(raster, geometry, caption));
     if (colour) draw_colour_bar(picture, *colour);
   }
@@ -219,9 +221,10 @@ Status make_image(const Arguments& arguments) {
   if (arguments.frames > 0)
     timing = time_frames(engine, scanner, scan, needles, arguments.frames, arguments.scan.seed, printer.callback());
   TROCAR_TRY_STATUS(write_picture(arguments, scan, picture, raster, engine.geometry(), colour));
-  if (!arguments.scan.save_pose.empty()) TROCAR_TRY_STATUS(write_transform(scan.X_PT, arguments.scan.save_pose));
+  if (!arguments.scan.save_pose.empty()) TROCAR_TRY_STATUS(save_pose(scan, arguments.scan.save_pose));
 
   warn_of_contact(coupled);
+  warn_of_visibility(scan);
   if (arguments.is_json) {
     Json json = to_json(scan);
     json["out"] = arguments.out;

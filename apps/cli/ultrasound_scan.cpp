@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -23,6 +25,12 @@ constexpr double kLeastFocus_mm = 5.0;
 constexpr double kMostDepth_mm = 300.0;
 /// Where the user says a depth and no focus, the focus stays within the picture.
 constexpr double kDeepestFocus = 0.75;
+constexpr double kWorthSaying = 0.1;  ///< Share of a picture outside the CT that a warning mentions.
+/// Settings that a saved pose keeps.
+constexpr const char* kTransducerNote = "transducer";
+constexpr const char* kDepthNote = "depth_mm";
+constexpr const char* kFrequencyNote = "frequency_mhz";
+constexpr const char* kFocusNote = "focus_mm";
 
 /// Takes a number that was given, within what the transducer can do.
 Status take(const char* option, const std::optional<double>& asked, double low, double high, const char* unit,
@@ -34,13 +42,40 @@ Status take(const char* option, const std::optional<double>& asked, double low, 
                     fmt::format("give {:g} to {:g} {}", low, high, unit));
 }
 
+/// A setting that a pose was saved with; `value` stays where the file has none. Held in the transducer's range.
+Status take_note(const TransformNotes& notes, const char* key, double low, double high, double& value,
+                 const std::string& where) {
+  const auto note = notes.find(key);
+  if (note == notes.end()) return {};
+  const auto& text = note->second;
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number))
+    return fail(fmt::format("{} is not a number: \"{}\"", key, text), where, "correct or delete the comment line");
+  value = std::clamp(number, low, high);
+  return {};
+}
+
+/// The settings of the saved pose, for the transducer that it was saved with.
+Status take_notes(const TransformNotes& notes, const Transducer& transducer, const std::string& where,
+                  Acquisition& acquisition) {
+  const auto name = notes.find(kTransducerNote);
+  if (name == notes.end() || name->second != transducer.name) return {};
+  TROCAR_TRY_STATUS(
+      take_note(notes, kDepthNote, kLeastDepth_mm, transducer.greatest_depth_mm, acquisition.depth_mm, where));
+  TROCAR_TRY_STATUS(take_note(notes, kFrequencyNote, transducer.lowest_mhz, transducer.highest_mhz,
+                              acquisition.frequency_mhz, where));
+  return take_note(notes, kFocusNote, kLeastFocus_mm, transducer.greatest_depth_mm, acquisition.focus_mm, where);
+}
+
 Result<Acquisition> gather_acquisition(const ScanArguments& a, const Transducer& transducer,
-                                       const std::optional<ProbeView>& view) {
+                                       const std::optional<ProbeView>& view, const TransformNotes& notes) {
   Acquisition acquisition = default_acquisition(transducer);
   if (view) acquisition.depth_mm = std::min(view->depth_mm, transducer.greatest_depth_mm);
   if (view && view->frequency_mhz)
     acquisition.frequency_mhz = std::clamp(*view->frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz);
   if (view && view->focus_mm) acquisition.focus_mm = *view->focus_mm;
+  TROCAR_TRY_STATUS(take_notes(notes, transducer, a.pose, acquisition));
   TROCAR_TRY_STATUS(
       take("--depth-mm", a.depth_mm, kLeastDepth_mm, transducer.greatest_depth_mm, "mm", acquisition.depth_mm));
   TROCAR_TRY_STATUS(take("--frequency-mhz", a.frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz, "MHz",
@@ -93,7 +128,8 @@ void add_scan_options(CLI::App& command, ScanArguments& a) {
   CLI::Option* view =
       command.add_option("--view", a.view, "Place the transducer in a standard view: trocar ultrasound views");
   pose->excludes(view);
-  command.add_option("--save-pose", a.save_pose, "Write X_PT as a .tfm");
+  command.add_option("--save-pose", a.save_pose,
+                     "Write X_PT as a .tfm, with transducer, depth, frequency and focus as comments that --pose reads");
   command.add_option("--transducer", a.transducer,
                      "One of trocar ultrasound transducers; when left out the view's, or a fitting one");
   number_within(command.add_option("--depth-mm", a.depth_mm, "Image depth below the face"), kLeastDepth_mm,
@@ -133,15 +169,19 @@ Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_tra
   TROCAR_TRY(const fs::path views_file, find_data("views.toml"));
   TROCAR_TRY(const auto views, load_probe_views(views_file));
   TROCAR_TRY(scan.view, find_view(views, a.view));
-  const std::string fitting = scan.view && default_transducer.empty() ? scan.view->transducer : default_transducer;
+  TransformNotes notes;
+  if (!a.pose.empty()) {
+    TROCAR_TRY(scan.X_PT, read_transform(a.pose));
+    TROCAR_TRY(notes, read_transform_notes(a.pose));
+  }
+  std::string fitting = default_transducer;
+  if (fitting.empty() && scan.view) fitting = scan.view->transducer;
+  if (fitting.empty() && notes.contains(kTransducerNote)) fitting = notes.at(kTransducerNote);
   const std::string& name = !a.transducer.empty() ? a.transducer : fitting.empty() ? std::string("C5-2") : fitting;
   TROCAR_TRY(const fs::path transducers_file, find_data("transducers.toml"));
   TROCAR_TRY(scan.transducer, load_transducer(transducers_file, name));
-  TROCAR_TRY(scan.acquisition, gather_acquisition(a, scan.transducer, scan.view));
+  TROCAR_TRY(scan.acquisition, gather_acquisition(a, scan.transducer, scan.view, notes));
   TROCAR_TRY(scan.display, gather_display(a));
-  if (!a.pose.empty()) {
-    TROCAR_TRY(scan.X_PT, read_transform(a.pose));
-  }
   TROCAR_TRY(const fs::path acoustics_file, find_data("acoustics.toml"));
   TROCAR_TRY(AcousticTable table, load_acoustic_table(acoustics_file));
 
@@ -150,9 +190,14 @@ Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_tra
   if (scan.view) {
     TROCAR_TRY(scan.view, choose_view(patient, views, a.view));
     report(progress, "placing the transducer", 0.0);
-    TROCAR_TRY(scan.X_PT, place_probe(patient, *scan.view, scan.transducer));
+    TROCAR_TRY(const ProbePlacement placed, place_probe(patient, *scan.view, scan.transducer));
+    scan.X_PT = placed.X_PT;
+    scan.visibility = placed.visibility;
   }
   TROCAR_TRY(scan.scene, make_acoustic_scene(patient, std::move(table), {}, progress));
+  const Acquisition& a_scan = scan.acquisition;
+  scan.unscanned_share = unscanned_share(
+      scan.scene->ends, scan.X_PT, make_scan_geometry(scan.transducer, a_scan.depth_mm, a_scan.lines, a_scan.samples));
   if (a.needs_flow) {
     TROCAR_TRY(const fs::path flow_file, find_data("flow.toml"));
     TROCAR_TRY(FlowTable flow_table, load_flow_table(flow_file));
@@ -186,6 +231,28 @@ void warn_of_contact(double coupled) {
   }
 }
 
+void warn_of_visibility(const Scan& scan) {
+  if (scan.view && scan.visibility && scan.visibility->visible < kEnoughVisible)
+    print_warning(
+        fmt::format("view \"{}\": {:.0f} % of the subject is visible ({}): choose another view, or place the "
+                    "transducer with --pose",
+                    scan.view->name, 100.0 * scan.visibility->visible, hidden_causes(*scan.visibility)));
+  if (scan.unscanned_share > kWorthSaying)
+    print_warning(
+        fmt::format("{:.0f} % of the picture lies outside the CT (hatched) and shows no echoes: use a CT that "
+                    "reaches further, or another view",
+                    100.0 * scan.unscanned_share));
+}
+
+Status save_pose(const Scan& scan, const std::string& path) {
+  const Acquisition& a = scan.acquisition;
+  return write_transform(scan.X_PT, path,
+                         {{kTransducerNote, scan.transducer.name},
+                          {kDepthNote, fmt::format("{}", a.depth_mm)},
+                          {kFrequencyNote, fmt::format("{}", a.frequency_mhz)},
+                          {kFocusNote, fmt::format("{}", a.focus_mm)}});
+}
+
 Json to_json(const Pose& X) {
   Json rows = Json::array();
   for (int row = 0; row < 3; ++row) rows.push_back({X.R()(row, 0), X.R()(row, 1), X.R()(row, 2), X.p()[row]});
@@ -198,6 +265,8 @@ Json to_json(const Scan& scan) {
   return {{"patient", scan.patient_name},
           {"transducer", scan.transducer.name},
           {"view", scan.view ? Json(scan.view->name) : Json(nullptr)},
+          {"visible", scan.visibility ? Json(scan.visibility->visible) : Json(nullptr)},
+          {"outside_ct", scan.unscanned_share},
           {"X_PT", to_json(scan.X_PT)},
           {"depth_mm", a.depth_mm},
           {"frequency_mhz", a.frequency_mhz},

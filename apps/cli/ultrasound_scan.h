@@ -12,6 +12,7 @@
 #include "ultrasound/display_settings.h"
 #include "ultrasound/probe_view.h"
 #include "ultrasound/vessel_flow.h"
+#include "ultrasound/view_visibility.h"
 
 namespace trocar::cli {
 
@@ -40,6 +41,8 @@ struct Scan {
   DisplaySettings display;
   std::optional<ProbeView> view;
   Pose X_PT;
+  std::optional<ViewVisibility> visibility;  ///< Of the view's subject.
+  double unscanned_share = 0.0;              ///< Of the picture, beyond the ends of the CT.
   std::string patient_name;
   std::shared_ptr<const AcousticScene> scene;
   std::shared_ptr<const VesselFlow> flow;  ///< Where it was asked for.
@@ -56,6 +59,12 @@ Status check_outputs(const std::vector<std::string>& outputs);
 
 /// Warns where a face or a part of it hears nothing. `coupled`: the share of scanlines on the skin, 0..1.
 void warn_of_contact(double coupled);
+
+/// Warns where the view shows little of its subject, and where the picture reaches beyond the CT.
+void warn_of_visibility(const Scan& scan);
+
+/// Writes X_PT with the settings that --pose reads again.
+Status save_pose(const Scan& scan, const std::string& path);
 
 Json to_json(const Pose& X);
 Json to_json(const Scan& scan);

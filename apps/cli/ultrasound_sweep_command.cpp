@@ -95,6 +95,7 @@ Status sweep_by_motor(const Arguments& arguments, const Scan& scan, const Progre
   const ImageFields fields = fan_fields(scan, volume, is_in_patient);
   TROCAR_TRY_STATUS(write_image(is_in_patient ? in_patient(volume, scan.X_PT) : volume.gray, arguments.out, fields));
   warn_of_contact(volume.mean_contact);
+  warn_of_visibility(scan);
 
   const auto& size = volume.gray.geometry.size;
   Json json = to_json(scan);
@@ -135,6 +136,7 @@ Status sweep_by_hand(const Arguments& arguments, const Scan& scan, const Progres
   const double seconds = seconds_since(start);
   TROCAR_TRY_STATUS(write_sequence(sweep.sequence, arguments.tracked));
   warn_of_contact(sweep.mean_contact);
+  warn_of_visibility(scan);
   Json json = to_json(scan);
   json["out"] = arguments.tracked;
   json["frames"] = poses.size();
@@ -164,7 +166,7 @@ Status sweep(const Arguments& arguments) {
   TROCAR_TRY(const Scan scan, prepare_scan(arguments.scan, is_by_motor ? "4DC7-3" : "", printer.callback()));
   TROCAR_TRY_STATUS(is_by_motor ? sweep_by_motor(arguments, scan, printer.callback())
                                 : sweep_by_hand(arguments, scan, printer.callback()));
-  return arguments.scan.save_pose.empty() ? Status{} : write_transform(scan.X_PT, arguments.scan.save_pose);
+  return arguments.scan.save_pose.empty() ? Status{} : save_pose(scan, arguments.scan.save_pose);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -19,6 +20,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMaxDeviation = 1e-4;  ///< Of R^T R from identity.
+constexpr const char* kNote = "# trocar ";
+constexpr const char* kNoteEquals = " = ";
 constexpr const char* kSaveAgain = "save a linear transform as .tfm, for example in 3D Slicer";
 
 /// How many numbers stand in "1 -2.5 3e4"; nothing where a word is not a finite number.
@@ -96,7 +99,21 @@ Result<Pose> read_transform(const fs::path& path) {
   return Pose(svd.matrixU() * svd.matrixV().transpose(), offset);
 }
 
-Status write_transform(const Pose& X_AB, const fs::path& path) {
+Result<TransformNotes> read_transform_notes(const fs::path& path) {
+  TROCAR_TRY(const std::string text, read_input(path, FileKind::kTransform));
+  TransformNotes notes;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.ends_with('\r')) line.pop_back();
+    const auto equals = line.find(kNoteEquals);
+    if (!line.starts_with(kNote) || equals == std::string::npos) continue;
+    const std::size_t name = std::string_view(kNote).size();
+    notes[line.substr(name, equals - name)] = line.substr(equals + std::string_view(kNoteEquals).size());
+  }
+  return notes;
+}
+
+Status write_transform(const Pose& X_AB, const fs::path& path, const TransformNotes& notes) {
   if (!X_AB.is_finite()) return fail("the pose has a value that is not a number", path.string());
   detail::AffineMap map;
   for (int row = 0; row < 3; ++row) {
@@ -104,8 +121,14 @@ Status write_transform(const Pose& X_AB, const fs::path& path) {
     for (int column = 0; column < 3; ++column) map.matrix[r][static_cast<std::size_t>(column)] = X_AB.R()(row, column);
     map.offset_mm[r] = X_AB.p()[row];
   }
-  return write_atomically(path,
-                          [&](const fs::path& temporary) { return detail::write_transform_with_itk(map, temporary); });
+  return write_atomically(path, [&](const fs::path& temporary) -> Status {
+    TROCAR_TRY_STATUS(detail::write_transform_with_itk(map, temporary));
+    std::ofstream file(temporary, std::ios::app | std::ios::binary);
+    for (const auto& [name, value] : notes) file << kNote << name << kNoteEquals << value << '\n';
+    file.flush();
+    if (!file) return fail("the comments cannot be written", path.string(), "free some disk space");
+    return {};
+  });
 }
 
 }  // namespace trocar

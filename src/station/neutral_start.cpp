@@ -178,8 +178,10 @@ class NeutralProbe {
       if (name == kLesionView || std::find(possible.begin(), possible.end(), name) == possible.end()) continue;
       const auto view = choose_view(*case_.patient, views, name);
       if (!view) continue;
-      const auto X_PT = place_probe(*case_.patient, *view, transducer_);
-      if (X_PT && is_neutral(X_PT->p()) && skin_.is_on_side(-X_PT->R().col(1))) return std::pair(*X_PT, view->depth_mm);
+      const auto placed = place_probe(*case_.patient, *view, transducer_);
+      if (!placed || placed->visibility.visible < kEnoughVisible) continue;
+      const Pose& X_PT = placed->X_PT;
+      if (is_neutral(X_PT.p()) && skin_.is_on_side(-X_PT.R().col(1))) return std::pair(X_PT, view->depth_mm);
     }
     return std::nullopt;
   }

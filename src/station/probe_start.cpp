@@ -184,9 +184,9 @@ std::optional<Pose> standard_view(const VirtualPatient& patient, const std::vect
   for (const std::string& name : names) {
     const auto view = choose_view(patient, views, name);
     if (!view) continue;
-    if (const auto X_PT = place_probe(patient, *view, transducer)) {
+    if (const auto placed = place_probe(patient, *view, transducer)) {
       title = view->title;
-      return *X_PT;
+      return placed->X_PT;
     }
   }
   return std::nullopt;

@@ -9,6 +9,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 #include "ultrasound/acoustic_table.h"
+#include "ultrasound/scan_ends.h"
 
 namespace trocar {
 
@@ -31,6 +32,7 @@ struct AcousticScene {
   std::vector<std::int8_t> texture;
   FloatGrid skin_distance_mm;  ///< Negative inside.
   AcousticTable table;
+  std::vector<ScanEnd> ends;          ///< Where the CT ends within the body; empty: nowhere.
   std::vector<AcousticPoint> points;  ///< Beside the tissue's scatterers; they do not shadow.
 };
 

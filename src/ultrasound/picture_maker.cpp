@@ -39,6 +39,11 @@ std::array<Vec3, 3> corners_P(const RasterGeometry& raster, const Pose& X_PT) no
   return {corner(-0.5, -0.5), corner(right, -0.5), corner(-0.5, bottom)};
 }
 
+void set_unscanned(const AcousticScene& scene, ScanPicture& picture) {
+  picture.unscanned_share = unscanned_share(scene.ends, picture.X_PT, picture.scan);
+  picture.scanned_T = scanned_polygon_T(scene.ends, picture.X_PT, picture.scan);
+}
+
 }  // namespace
 
 struct PictureMaker::Impl {
@@ -167,6 +172,7 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
   picture.display = request.display;
   picture.detail = detail;
   picture.coupled_share = trocar::coupled_share(echoes);
+  set_unscanned(*impl.scene, picture);
   for (int line = 0; line < echoes.geometry.lines; ++line)
     picture.pressed_mm.push_back(stage.engine.sound_way(line).pressed_mm);
   picture.dent_reach_mm = find_dent_reach_mm(*impl.scene, echoes.geometry, request.X_PT);
@@ -204,6 +210,7 @@ ScanPicture PictureMaker::show_kept(const ScanRequest& asked) {
   picture.display.tgc_db = frame.settings.tgc_db;
   picture.detail = companion.detail;
   picture.coupled_share = companion.coupled_share;
+  set_unscanned(*impl.scene, picture);
   picture.pressed_mm = companion.pressed_mm;
   picture.dent_reach_mm = companion.dent_reach_mm;
   picture.is_frozen = true;

@@ -106,9 +106,17 @@ const Label* find_counted(const LabelTable& table, const std::array<std::size_t,
   return nullptr;
 }
 
-bool is_possible(const LabelTable& table, const std::array<std::size_t, 256>& voxels, const ProbeView& view) {
-  if (find_counted(table, voxels, view.targets) == nullptr) return false;
-  return view.point != TargetPoint::kFacing || find_counted(table, voxels, view.through) != nullptr;
+/// The patterns of which the patient needs one and has none; nullptr: nothing is missing.
+const std::vector<std::string>* find_missing(const LabelTable& table, const std::array<std::size_t, 256>& voxels,
+                                             const ProbeView& view) {
+  if (find_counted(table, voxels, view.targets) == nullptr) return &view.targets;
+  const bool needs_through = view.point == TargetPoint::kFacing;
+  return needs_through && find_counted(table, voxels, view.through) == nullptr ? &view.through : nullptr;
+}
+
+std::string missing_text(const ProbeView& view, const std::vector<std::string>& missing) {
+  return fmt::format("view \"{}\" needs a label \"{}\", which this patient lacks", view.name,
+                     fmt::join(missing, "\" or \""));
 }
 
 }  // namespace
@@ -130,11 +138,17 @@ const Label* find_target(const VirtualPatient& patient, std::span<const std::str
   return find_counted(patient.label_table, count_voxels(patient.labels), patterns);
 }
 
+Status check_view(const VirtualPatient& patient, const ProbeView& view) {
+  const auto* missing = find_missing(patient.label_table, count_voxels(patient.labels), view);
+  if (missing == nullptr) return {};
+  return fail_usage(missing_text(view, *missing), patient.name, "choose another view");
+}
+
 std::vector<std::string> possible_views(const VirtualPatient& patient, std::span<const ProbeView> views) {
   const auto voxels = count_voxels(patient.labels);
   std::vector<std::string> names;
   for (const ProbeView& view : views) {
-    if (is_possible(patient.label_table, voxels, view)) names.push_back(view.name);
+    if (find_missing(patient.label_table, voxels, view) == nullptr) names.push_back(view.name);
   }
   return names;
 }
@@ -147,11 +161,12 @@ Result<ProbeView> choose_view(const VirtualPatient& patient, std::span<const Pro
     return fail_usage(fmt::format("there is no view \"{}\"", name), {},
                       fmt::format("known are: {}", fmt::join(names, ", ")));
   }
-  if (is_possible(patient.label_table, count_voxels(patient.labels), *it)) return *it;
+  const auto* missing = find_missing(patient.label_table, count_voxels(patient.labels), *it);
+  if (missing == nullptr) return *it;
   const std::vector<std::string> possible = possible_views(patient, views);
-  return fail_usage(
-      fmt::format("the patient has nothing to see for the view \"{}\": no {}", name, fmt::join(it->targets, ", ")),
-      patient.name, possible.empty() ? "none of the views fits" : fmt::format("he has: {}", fmt::join(possible, ", ")));
+  return fail_usage(missing_text(*it, *missing), patient.name,
+                    possible.empty() ? "no standard view fits this patient: give --pose FILE.tfm"
+                                     : fmt::format("available views: {}", fmt::join(possible, ", ")));
 }
 
 }  // namespace trocar

@@ -57,6 +57,9 @@ Result<std::vector<ProbeView>> load_probe_views(const std::filesystem::path& pat
 /// than 8 voxels do not count. Case and separators do not matter.
 const Label* find_target(const VirtualPatient& patient, std::span<const std::string> patterns);
 
+/// Error (exit status 2): the patient lacks a label that the view needs; it names the label.
+Status check_view(const VirtualPatient& patient, const ProbeView& view);
+
 /// Names of the views whose targets a patient has.
 std::vector<std::string> possible_views(const VirtualPatient& patient, std::span<const ProbeView> views);
 

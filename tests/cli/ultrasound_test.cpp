@@ -100,6 +100,31 @@ TEST(UltrasoundImage, NeedleAndSwitchedArtefactsChangeThePicture) {
   EXPECT_NE(pictures[0], pictures[2]);
 }
 
+TEST(UltrasoundImage, SavedPoseKeepsTransducerDepthFrequencyAndFocus) {
+  const TemporaryFolder folder;
+  const std::string line = "ultrasound image" + kScene + " --lines 32 --samples 128 --planes 1 --looks 1 --json";
+  const std::string saved = folder / "saved.tfm";
+  const Json first = json_of(trocar(line + " --pose " + place_on_scene(folder) +
+                                    " --transducer P4-2 --depth-mm 47 --frequency-mhz 2.5" +
+                                    " --focus-mm 21 --save-pose " + saved + " --out " + (folder / "a.png")));
+  const Json again = json_of(trocar(line + " --pose " + saved + " --out " + (folder / "b.png")));
+  for (const char* key : {"transducer", "depth_mm", "frequency_mhz", "focus_mm", "X_PT"})
+    EXPECT_EQ(again[key], first[key]) << key;
+  EXPECT_EQ(again["depth_mm"], 47.0);
+  const Json deeper = json_of(trocar(line + " --pose " + saved + " --depth-mm 60 --out " + (folder / "c.png")));
+  EXPECT_EQ(deeper["depth_mm"], 60.0) << "an option counts more than the file";
+  EXPECT_EQ(deeper["frequency_mhz"], 2.5);
+}
+
+TEST(UltrasoundImage, PictureBeyondTheCtIsWarnedOf) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      trocar("ultrasound image" + kScene + " --lines 32 --samples 128 --planes 1 --looks 1" +
+             " --depth-mm 200 --pose " + place_on_scene(folder) + " --out " + (folder / "deep.png"));
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("outside the CT"), std::string::npos) << outcome.err;
+}
+
 TEST(UltrasoundImage, FaceBesideTheBodyIsWarnedOf) {
   const TemporaryFolder folder;
   const Outcome outcome = trocar("ultrasound image" + kScene + kQuick + " --pose " +

@@ -48,7 +48,8 @@ Result<SweptPatient> sweep_gallbladder() {
   TROCAR_TRY(const auto views, load_probe_views(data_dir() / "views.toml"));
   TROCAR_TRY(const ProbeView view, choose_view(swept.patient, views, "gallbladder"));
   TROCAR_TRY(const Transducer transducer, load_transducer(data_dir() / "transducers.toml", view.transducer));
-  TROCAR_TRY(swept.X_PT, place_probe(swept.patient, view, transducer));
+  TROCAR_TRY(const ProbePlacement placed, place_probe(swept.patient, view, transducer));
+  swept.X_PT = placed.X_PT;
   TROCAR_TRY(AcousticTable table, load_acoustic_table(data_dir() / "acoustics.toml"));
   TROCAR_TRY(const auto scene, make_acoustic_scene(swept.patient, std::move(table)));
   FreehandSweepOptions options;

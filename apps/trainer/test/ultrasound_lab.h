@@ -57,7 +57,7 @@ inline Place place(const std::string& name, const Transducer& probe) {
   const bool is_portal = name == "portal-vein";
   ProbeView view = choose_view(*abdomen().patient, views, is_portal ? "liver-lesion" : name).value();
   if (is_portal) view.targets = {"portal_vein*"};
-  return {place_probe(*abdomen().patient, view, probe).value(), view.depth_mm};
+  return {place_probe(*abdomen().patient, view, probe).value().X_PT, view.depth_mm};
 }
 
 /// Views of the embedded patient, with a frame loop, a mouse and keys; knobs are kept in a folder of the test's own.

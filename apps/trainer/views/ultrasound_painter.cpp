@@ -20,6 +20,7 @@ const QColor kFocusInk(0xf0, 0xc8, 0x50);
 const QColor kCaliperInk(0xf4, 0xe0, 0x6a);
 
 constexpr double kHardlyAny = 0.02, kMost = 0.75;  ///< Of the face on the skin, as the command line warns.
+constexpr double kUnscanned = 0.01;                ///< Of the picture outside the CT, from which a caption says so.
 constexpr double kWedge_px = 8.0, kBarGap_px = 12.0, kColourBar_px = 10.0;
 /// The needle's axis is shown where it lies so near to the plane: about half the beam's thickness.
 constexpr double kNearPlane_mm = 3.0;
@@ -84,6 +85,7 @@ std::vector<CaptionLine> caption_of(const ScanPicture& picture, const CaptionFac
   } else if (picture.coupled_share < kMost) {
     lines.push_back({QStringLiteral("Poor contact"), Kind::kWarning});
   }
+  if (picture.unscanned_share > kUnscanned) lines.push_back({QStringLiteral("Hatched: outside CT"), Kind::kWarning});
   int number = 1;
   for (const Measurement& measurement : facts.measurements) {
     const std::vector<std::string> texts = results(measurement);

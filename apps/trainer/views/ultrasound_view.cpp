@@ -47,6 +47,17 @@ QPainterPath outline_of(const ScanGeometry& scan, const PictureMap& map) {
   return path;
 }
 
+/// Hatches all but a polygon of the image plane: what the CT does not reach.
+void hatch_unscanned(QPainter& painter, const PictureMap& map, const std::vector<Vec2>& scanned_T) {
+  QPolygonF scanned;
+  for (const Vec2& corner_T : scanned_T) scanned << map.to_view(corner_T);
+  QPainterPath hatched, seen;
+  hatched.addRect(map.rect());
+  seen.addPolygon(scanned);
+  seen.closeSubpath();
+  painter.fillPath(hatched.subtracted(seen), QBrush(QColor(58, 66, 78), Qt::BDiagPattern));
+}
+
 }  // namespace
 
 UltrasoundView::UltrasoundView(QWidget* parent) : QWidget(parent) {
@@ -246,6 +257,7 @@ UltrasoundRoom UltrasoundView::room() const {
       return line.kind == CaptionLine::Kind::kWarning || line.kind == CaptionLine::Kind::kFrozen;
     });
     lines.push_back({QStringLiteral("Poor contact"), CaptionLine::Kind::kWarning});
+    lines.push_back({QStringLiteral("Hatched: outside CT"), CaptionLine::Kind::kWarning});
     if (!is_small && picture_->is_frozen) lines.push_back({QStringLiteral("8"), CaptionLine::Kind::kPlain});
     room.caption = caption_size(lines, font);
   }
@@ -311,6 +323,7 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
 
   painter.save();
   painter.setClipPath(outline_of(picture_->scan, map));
+  if (picture_->unscanned_share > 0.0) hatch_unscanned(painter, map, picture_->scanned_T);
   const bool has_guide = is_guide_visible_ && is_guide_offered_;
   if (has_guide && settings_.guide.is_shown) draw_guide(painter, map, guide_line_T());
   if (has_guide) draw_needle_axis(painter, map, *picture_, needle_shaft_P_);

@@ -32,6 +32,20 @@ TEST(TransformFile, ComesBackAsItWas) {
   EXPECT_TRUE(read_bytes(folder / "probe.tfm").starts_with("#Insight Transform File V1.0"));
 }
 
+TEST(TransformFile, KeepsNotesAsComments) {
+  TemporaryFolder folder;
+  const Pose X_PT((Eigen::AngleAxisd(0.3, Vec3::UnitZ())).toRotationMatrix(), {1.0, 2.0, 3.0});
+  const TransformNotes notes = {{"depth_mm", "112.5"}, {"transducer", "C5-2"}};
+  ASSERT_TRUE(write_transform(X_PT, folder / "probe.tfm", notes));
+  const auto read = read_transform(folder / "probe.tfm");
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_LT((read->p() - X_PT.p()).norm(), 1e-12);
+  EXPECT_EQ(read_transform_notes(folder / "probe.tfm").value(), notes);
+  write_bytes(folder / "other.tfm", tfm("AffineTransform_double_3_3", "1 0 0 0 1 0 0 0 1 0 0 0", "0 0 0"));
+  EXPECT_TRUE(read_transform_notes(folder / "other.tfm").value().empty());
+  EXPECT_FALSE(read_transform_notes(folder / "missing.tfm"));
+}
+
 TEST(TransformFile, ReadsAffineRowByRow) {
   // A quarter turn about z: x goes to y.
   const auto pose = read_text(tfm("AffineTransform_double_3_3", "0 -1 0 1 0 0 0 0 1 10 20 30", "0 0 0"));

@@ -30,6 +30,7 @@ struct Placed {
   ProbeView view;
   ScanGeometry scan;
   Pose X_PT;
+  ViewVisibility visibility;
 };
 
 Placed place(const VirtualPatient& patient, std::string_view name) {
@@ -37,9 +38,9 @@ Placed place(const VirtualPatient& patient, std::string_view name) {
   EXPECT_TRUE(view.has_value()) << view.error().text();
   const auto transducer = load_transducer(data_dir() / "transducers.toml", view->transducer);
   EXPECT_TRUE(transducer.has_value()) << transducer.error().text();
-  const auto X_PT = place_probe(patient, *view, *transducer);
-  EXPECT_TRUE(X_PT.has_value()) << X_PT.error().text();
-  return {*view, make_scan_geometry(*transducer, view->depth_mm, 65, 64), *X_PT};
+  const auto placed = place_probe(patient, *view, *transducer);
+  EXPECT_TRUE(placed.has_value()) << placed.error().text();
+  return {*view, make_scan_geometry(*transducer, view->depth_mm, 65, 64), placed->X_PT, placed->visibility};
 }
 
 Vec3 at(const Placed& placed, double line, double depth_mm) {
@@ -105,6 +106,7 @@ TEST(ProbePlacement, EveryViewOfTheAbdomenTouchesTheSkinAndShowsItsTarget) {
     const Placed placed = place(abdomen(), name);
     expect_on_skin(abdomen(), placed);
     expect_target_in_picture(abdomen(), placed);
+    EXPECT_GE(placed.visibility.visible, kEnoughVisible) << name << ": " << hidden_causes(placed.visibility);
   }
 }
 
@@ -187,8 +189,8 @@ TEST(ProbePlacement, AngleTurnsThePlaneAboutTheBeam) {
   const auto turned = place_probe(abdomen(), view, *transducer);
   ASSERT_TRUE(straight.has_value() && turned.has_value());
   // Right-handed about y, which points to the back: from the head to the patient's left.
-  EXPECT_GT(turned->R().col(0).x(), 0.9);
-  EXPECT_GT(straight->R().col(0).z(), 0.9);
+  EXPECT_GT(turned->X_PT.R().col(0).x(), 0.9);
+  EXPECT_GT(straight->X_PT.R().col(0).z(), 0.9);
 }
 
 TEST(ProbePlacement, SaysWhatThePatientLacksAndWhatHeHas) {
@@ -196,7 +198,7 @@ TEST(ProbePlacement, SaysWhatThePatientLacksAndWhatHeHas) {
   ASSERT_FALSE(lacking.has_value());
   EXPECT_EQ(lacking.error().exit_status, 2);
   EXPECT_NE(lacking.error().text().find("liver-right-kidney"), std::string::npos) << lacking.error().text();
-  EXPECT_EQ(lacking.error().text().find("he has: ascites"), std::string::npos);
+  EXPECT_EQ(lacking.error().text().find("available views: ascites"), std::string::npos);
   const auto unknown = choose_view(abdomen(), views(), "toe");
   ASSERT_FALSE(unknown.has_value());
   EXPECT_NE(unknown.error().text().find("ascites"), std::string::npos) << unknown.error().text();
