@@ -16,7 +16,7 @@ struct PathConstraintParams {
 
 /// Largest stiffness (N mm/rad) against turning about the stylus origin that the path constraint may show.
 /// physics.md C3: the loop with a light stylus rings beyond it. [assumed]
-inline constexpr double kMostPathTurning_nmm_per_rad = 3000.0;
+inline constexpr double kMostPathTurning_nmm_per_rad = 1500.0;
 
 /// The parameters with d0 and theta0 enlarged until the constraint turns a stylus, whose origin lies `lever_mm` behind
 /// the point that the force acts at, with at most kMostPathTurning_nmm_per_rad. m0 and n0 stay as they are.

@@ -54,6 +54,19 @@ TEST(Rest, ComesToABareMassOnThePath) {
   }
 }
 
+class RestOnThePath : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(RestOnThePath, ComesToABareMassOnADeviceWithTorque) {
+  const DevicePreset preset = device(GetParam());
+  ASSERT_TRUE(preset.has_torque());
+  const auto scene = scene_for(preset, liver_way());
+  for (const Holder holder : {Holder::kBare45g, Holder::kBare150g}) {
+    const StabilityOutcome outcome = run_stability_trial(scene, preset, holder, {40.0, 6.0});
+    EXPECT_TRUE(outcome.is_stable()) << outcome.force_n << " N, " << outcome.growth_mj << " mJ";
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Devices, RestOnThePath, ::testing::Values("premium", "sigma7", "delta6"));
+
 TEST(ClosedSkin, GivesWayToTheProxyWhateverCountTheTipComesInBy) {
   const auto presets = load_device_presets(data_dir() / "devices.toml");
   const auto table = load_tissue_table(data_dir() / "tissues.toml");
