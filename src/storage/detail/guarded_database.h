@@ -14,8 +14,10 @@ inline constexpr std::size_t kMaxInfoBytes = std::size_t{16} << 20;
 inline constexpr std::size_t kMaxInfoRows = 1024;
 inline constexpr std::size_t kMaxNames = 1024;  ///< Of tissues, layers, labels.
 inline constexpr std::size_t kMaxNameBytes = 4096;
-inline constexpr std::size_t kMaxTransducerRows = 1'000'000;  ///< 2.8 hours at 100 Hz.
-inline constexpr std::size_t kMaxBlocks = 50'000;             ///< Of ticks; 7 hours of half seconds.
+inline constexpr std::size_t kMaxTransducerRows = 1'000'000;               ///< 2.8 hours at 100 Hz.
+inline constexpr std::size_t kMaxParameterBytes = std::size_t{256} << 20;  ///< Each change holds a tissue table.
+inline constexpr std::size_t kMaxChanges = 100'000;                        ///< Of parameters, and interruptions.
+inline constexpr std::size_t kMaxBlocks = 50'000;                          ///< Of ticks; 7 hours of half seconds.
 
 /// A session that is opened to be read, without trust in what it holds: nothing can be changed, views, triggers and the
 /// schema's own functions are off, texts are bounded by kMaxTextBytes, and the work in all by a number of SQLite's

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "storage/detail/guarded_database.h"
+
 namespace trocar::storage_detail {
 namespace {
 
@@ -75,7 +77,11 @@ std::vector<SessionParameters> read_parameters(soci::session& database, std::siz
        soci::into(tick), soci::into(row.time_s), soci::into(settings), soci::into(options),
        soci::into(row.tissue_table_toml));
   select.execute();
+  std::size_t bytes = 0;
   while (select.fetch()) {
+    bytes += settings.size() + options.size() + row.tissue_table_toml.size();
+    if (bytes > kMaxParameterBytes || all.size() >= kMaxChanges)
+      throw soci::soci_error("the changes of parameters are too long");
     if (tick < 0 || static_cast<std::size_t>(tick) >= tick_count || !std::isfinite(row.time_s))
       throw soci::soci_error("a change of parameters is out of range");
     row.tick = static_cast<std::size_t>(tick);
@@ -94,7 +100,8 @@ std::vector<Interruption> read_interruptions(soci::session& database) {
                             soci::into(row.from_s), soci::into(row.to_s), soci::into(row.reason));
   select.execute();
   while (select.fetch()) {
-    if (!std::isfinite(row.from_s) || !(row.to_s >= row.from_s))
+    if (!std::isfinite(row.from_s) || !(row.to_s >= row.from_s) || row.reason.size() > kMaxNameBytes ||
+        all.size() >= kMaxChanges)
       throw soci::soci_error("an interruption is out of range");
     all.push_back(row);
   }

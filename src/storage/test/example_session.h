@@ -107,6 +107,9 @@ inline void write_example(const std::filesystem::path& path, std::size_t ticks) 
   for (std::size_t n = 0; n < ticks; ++n) {
     const TickSample sample = example_sample(n);
     ASSERT_TRUE(writer->append(sample));
+    if (n == 3) {
+      ASSERT_TRUE(writer->append(SessionParameters{3, sample.time_s, {"skin.fp=6"}, {}, "[tissues]\n"}));
+    }
     if (n % 10 != 0) continue;
     ASSERT_TRUE(writer->append(TransducerSample{sample.time_s, Pose(), 0.5}));
   }

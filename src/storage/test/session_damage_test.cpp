@@ -36,6 +36,9 @@ void expect_same_case(const Session& session) {
   EXPECT_EQ(session.outcome->score, example_outcome().score);
   EXPECT_EQ(session.outcome->hints, example_outcome().hints);
   EXPECT_EQ(session.fired, 5u);
+  if (!session.has_checksums) return;
+  ASSERT_EQ(session.parameters.size(), 1u);
+  EXPECT_EQ(session.parameters[0].settings, std::vector<std::string>{"skin.fp=6"});
 }
 
 /// Every sample is the one of its tick; ticks of the damaged ranges alone are missing.
@@ -160,6 +163,9 @@ TEST(SessionDamage, NamesOtherParts) {
       {"DELETE FROM info WHERE key = 'task'", "facts of the case"},
       {"UPDATE tissues SET name = 'bone' WHERE id = 1", "names of tissues"},
       {"UPDATE transducer SET contact_n = 7 WHERE time_s = 0", "poses of the transducer"},
+      {"UPDATE parameters SET settings = 'skin.fp=2.8'", "changes of parameters"},
+      {"DROP TABLE parameters", "changes of parameters"},
+      {"INSERT INTO interruptions (tick, from_s, to_s, reason) VALUES (5, 1, 2, 'x')", "interruptions"},
       {"UPDATE outcome SET score = 99", "outcome"},
       {"DELETE FROM outcome", "outcome"},
       {"DELETE FROM tick_blocks WHERE first_tick = 500", "tick_blocks"},
