@@ -156,7 +156,7 @@ class Watch:
 
 
 def run_attack(name, server):
-    command = [sys.executable, os.path.abspath(__file__), "--schema", arguments.schema, "--attack", name, "--socket",
+    command = [sys.executable, "-B", os.path.abspath(__file__), "--schema", arguments.schema, "--attack", name, "--socket",
                server.path, "--seconds", str(arguments.seconds)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=arguments.seconds + PATIENCE_S)
     expect(done.returncode == 0, f"{name}: {done.stderr}")
