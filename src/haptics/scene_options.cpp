@@ -11,6 +11,7 @@ namespace trocar {
 namespace {
 
 constexpr std::string_view kForceModel = "force_model";
+constexpr std::string_view kOfConstraint = "constraint.";
 
 /// The one list of options and device numbers: calls visit(name, field) for each; a field is a double or a bool.
 template <class Options, class Device, class Visitor>
@@ -21,6 +22,7 @@ void visit_numbers(Options& options, Device& device, Visitor&& visit) {
   visit("constraint.distance", options.constraint.linear_mm);
   visit("constraint.torque", options.constraint.torque_nmm);
   visit("constraint.angle", options.constraint.linear_rad);
+  visit("constraint.fade", options.constraint.fade_mm);
   visit("stick", options.has_stick);
   visit("weight_compensation", options.has_weight_compensation);
   visit("bending", options.has_bending);
@@ -48,6 +50,7 @@ Status restore_option(std::string_view name, std::string_view value, HapticOptio
   visit_numbers(options, device, [&](std::string_view known, auto& field) {
     if (known != name) return;
     is_known = true;
+    if (name.starts_with(kOfConstraint)) return;
     if constexpr (std::is_same_v<std::remove_reference_t<decltype(field)>, bool>)
       field = number != 0.0;
     else

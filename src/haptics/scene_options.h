@@ -14,8 +14,9 @@ namespace trocar {
 /// back to the same value. The seed, the tool, the needle and the tissues are not among them.
 std::vector<std::string> option_texts(const HapticScene& scene);
 
-/// Reads them back, in any order; what is not named stays as it is. Errors (exit status 2): an unknown name, not a
-/// finite number. Ranges are checked by make_haptic_scene.
+/// Reads them back, in any order; what is not named stays as it is. The path constraint stays as it is, too: the
+/// scene's is the one that the device can render, which make_haptic_scene derives from the preset's, device and needle.
+/// Errors (exit status 2): an unknown name, not a finite number. Ranges are checked by make_haptic_scene.
 Status restore_options(std::span<const std::string> texts, HapticOptions& options, DeviceCapability& device);
 
 }  // namespace trocar

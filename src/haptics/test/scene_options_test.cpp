@@ -11,7 +11,6 @@ TEST(SceneOptions, ReadBackToTheSameValues) {
   HapticScene scene;
   scene.options.force_model = ForceModel::kCombined;
   scene.options.coupling = {0.1 + 0.2, 1.0 / 3.0};
-  scene.options.constraint.force_n = 2.7;
   scene.options.has_bending = false;
   scene.device.peak_force_n = 7.9;
   scene.device.stylus_lever_mm = -12.5;
