@@ -114,7 +114,7 @@ Result<TransformNotes> read_transform_notes(const fs::path& path) {
 }
 
 Status write_transform(const Pose& X_AB, const fs::path& path, const TransformNotes& notes) {
-  if (!X_AB.is_finite()) return fail("the pose has a value that is not a number", path.string());
+  if (!X_AB.is_finite()) return fail("the pose has a value that is not a number", path.string(), "give finite numbers");
   detail::AffineMap map;
   for (int row = 0; row < 3; ++row) {
     const auto r = static_cast<std::size_t>(row);

@@ -244,7 +244,7 @@ class Placer {
 }  // namespace
 
 Result<ProbePlacement> place_probe(const VirtualPatient& patient, const ProbeView& view, const Transducer& transducer) {
-  if (patient.labels.empty()) return fail("the patient has no voxels", patient.name);
+  if (patient.labels.empty()) return fail("the patient has no voxels", patient.name, "build the patient again");
   TROCAR_TRY(const Vec3 target_P, detail::find_target_point(patient, view));
   const ViewGround ground(patient, view);
   const Placer placer(ground, view, transducer, target_P);

@@ -89,7 +89,8 @@ bool is_system(std::string_view header) {
                                                    "sched.h",     "signal.h", "spawn.h",    "strings.h", "unistd.h",
                                                    "semaphore.h", "time.h",   "immintrin.h"};
   const bool is_standard = header.find_first_of("/.") == std::string_view::npos;
-  return is_standard || header.starts_with("sys/") || posix.contains(header);
+  return is_standard || header.starts_with("sys/") || header.starts_with("netinet/") || header.starts_with("arpa/") ||
+         posix.contains(header);
 }
 
 /// Qt's classes and its bridge to VTK.
