@@ -3,14 +3,12 @@
 #include <numbers>
 
 #include "haptics/detail/gate_stages.h"
+#include "haptics/loop_limits.h"
 
 /// Watches of the safety gate: the loop's period, impossible motion, vibration (physics.md G11-G13).
 namespace trocar::detail {
 namespace {
 
-constexpr double kDelayPeriods = 1.5;      // of a wrench: held for a period, one period late (physics.md H2)
-constexpr double kLongestFull_s = 0.01;    // a loop below 100 Hz is slow for any coupling [assumed]
-constexpr double kLeastLate = 1.5;         // periods; a shorter delay of one period is rounding of the grid [assumed]
 constexpr double kOwnShare = 0.5;          // of a late period, spent in the loop's own calls: it will be late again
 constexpr double kMemory_s = 0.05;         // one hole within it is excused [assumed]
 constexpr double kCutoff_hz = 30.0;        // hands stay below: tremor ends at 12 Hz [assumed]
@@ -25,23 +23,6 @@ Vec3 high_passed(Vec3& slow, const Vec3& value, double share) noexcept {
 }
 
 }  // namespace
-
-double permitted_share(const CouplingParams& coupling, double period_s, const GateParams& params) noexcept {
-  if (!(coupling.stiffness_n_per_mm > 0.0)) return 1.0;
-  const double made_ns_per_mm =
-      kDelayPeriods * coupling.stiffness_n_per_mm * period_s - std::max(0.0, coupling.damping_ns_per_mm);
-  if (made_ns_per_mm <= params.physical_damping_ns_per_mm) return 1.0;
-  return params.physical_damping_ns_per_mm / made_ns_per_mm;
-}
-
-double longest_period_s(const CouplingParams& coupling, const GateParams& params) noexcept {
-  double longest_s = kLongestFull_s;
-  if (coupling.stiffness_n_per_mm > 0.0) {
-    const double covered_ns_per_mm = params.physical_damping_ns_per_mm + std::max(0.0, coupling.damping_ns_per_mm);
-    longest_s = std::min(longest_s, covered_ns_per_mm / (kDelayPeriods * coupling.stiffness_n_per_mm));
-  }
-  return std::max(longest_s, kLeastLate * params.period_s);
-}
 
 void watch_loop(GateState& state, const GateInput& input, double rise_s, const GateParams& params) noexcept {
   const bool is_late = input.dt_s > longest_period_s(input.coupling, params);

@@ -37,10 +37,6 @@ Wrench damp_energy(const GateState& state, const GateInput& input, double dt_s, 
 /// What the brake puts in the place of every other force (physics.md G4).
 Wrench brake_wrench(const GateInput& input, const GateParams& params) noexcept;
 
-/// Longest period at which this coupling may stay whole (physics.md G11).
-double longest_period_s(const CouplingParams& coupling, const GateParams& params) noexcept;
-/// Share of a coupling's force that may be given where the loop's period is `period_s`, 0..1.
-double permitted_share(const CouplingParams& coupling, double period_s, const GateParams& params) noexcept;
 /// Counts late periods and moves the share of the coupling: down at once, up slowly.
 void watch_loop(GateState& state, const GateInput& input, double rise_s, const GateParams& params) noexcept;
 bool is_loop_slow(const GateState& state, const GateParams& params) noexcept;

@@ -9,6 +9,7 @@
 #include "core/random.h"
 #include "haptics/detail/gate_stages.h"
 #include "haptics/device_gate.h"
+#include "haptics/loop_limits.h"
 
 namespace trocar {
 namespace {
@@ -66,8 +67,8 @@ TEST(GateLoop, AWeakenedCouplingComesToRestAtAnyPeriod) {
     const double held = params.physical_damping_ns_per_mm + 0.001;
     for (int period_ms = 1; period_ms <= 1000; period_ms += period_ms < 60 ? 1 : 47) {
       const double period_s = 1e-3 * period_ms;
-      const bool is_late = period_s > detail::longest_period_s(coupling, params);
-      const double share = is_late ? detail::permitted_share(coupling, period_s, params) : 1.0;
+      const bool is_late = period_s > longest_period_s(coupling, params);
+      const double share = is_late ? permitted_share(coupling, period_s, params) : 1.0;
       weakened += share < 1.0 ? 1 : 0;
       for (const double mass : {0.7, 1.0, 2.5}) {
         const double growth = growth_a_period(coupling, share, period_s, 1e-3 * mass * preset.apparent_mass_kg, held);
@@ -88,17 +89,17 @@ TEST(GateLoop, TheFullCouplingOfTheSameLoopsSwingsUp) {
 TEST(GateLoop, TheShareIsWholeUpToTheLongestPeriodAndFallsContinuously) {
   const GateParams params;
   for (const CouplingParams& coupling : {CouplingParams{}, CouplingParams{0.5, 0.0015}, CouplingParams{1.0, 0.0}}) {
-    const double longest_s = detail::longest_period_s(coupling, params);
-    EXPECT_NEAR(detail::permitted_share(coupling, longest_s, params), 1.0, longest_s < 0.01 ? 1e-9 : 1.0);
+    const double longest_s = longest_period_s(coupling, params);
+    EXPECT_NEAR(permitted_share(coupling, longest_s, params), 1.0, longest_s < 0.01 ? 1e-9 : 1.0);
     double before = 1.0;
     for (double period_s = 0.001; period_s < 1.0; period_s *= 1.02) {
-      const double share = detail::permitted_share(coupling, period_s, params);
+      const double share = permitted_share(coupling, period_s, params);
       EXPECT_LE(share, before);
       EXPECT_GT(share, 0.85 * before);
       before = share;
     }
   }
-  EXPECT_EQ(detail::permitted_share({0.0, 0.0}, 10.0, params), 1.0) << "no spring, no harm";
+  EXPECT_EQ(permitted_share({0.0, 0.0}, 10.0, params), 1.0) << "no spring, no harm";
 }
 
 TEST(GateLoop, FallsAtOnceAndComesBackWithinTheSafeStartsTime) {
@@ -108,7 +109,7 @@ TEST(GateLoop, FallsAtOnceAndComesBackWithinTheSafeStartsTime) {
   input.dt_s = 0.012;
   input.busy_s = 0.011;
   GateOutput output = step_gate(state, input, {});
-  const double share = detail::permitted_share(input.coupling, 0.012, {});
+  const double share = permitted_share(input.coupling, 0.012, {});
   EXPECT_NEAR(output.wrench.force_n.z(), 3.0 * share, 1e-9);
   EXPECT_TRUE(output.actions & kGateSlowLoop);
   input.dt_s = kDt_s;

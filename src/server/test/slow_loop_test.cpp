@@ -1,8 +1,8 @@
 // A loop of 1 to 1000 ms on every simulated device while a hand moves it in tissue.
 #include <gtest/gtest.h>
 
-#include "haptics/detail/gate_stages.h"
 #include "haptics/device_gate.h"
+#include "haptics/loop_limits.h"
 #include "server/simulation/slow_loop_trial.h"
 #include "server/test/servo_rig.h"
 
@@ -30,9 +30,9 @@ class SlowLoop : public ::testing::TestWithParam<std::string> {
     const double scale = preset.force_scale * preset.motion_scale;
     return {scale * preset.coupling.stiffness_n_per_mm, scale * preset.coupling.damping_ns_per_mm};
   }
-  double longest_period_s() const { return detail::longest_period_s(coupling(), gate_params(preset)); }
+  double longest_period_s() const { return trocar::longest_period_s(coupling(), gate_params(preset)); }
   double permitted_share(double period_s) const {
-    return detail::permitted_share(coupling(), period_s, gate_params(preset));
+    return trocar::permitted_share(coupling(), period_s, gate_params(preset));
   }
 
   DevicePreset preset;
