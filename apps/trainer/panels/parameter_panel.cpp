@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/user_folders.h"
 #include "panels/force_preview.h"
 #include "panels/parameter_list.h"
 #include "panels/parameter_profiles.h"
 #include "shell/parts.h"
 #include "shell/theme.h"
-#include "core/user_folders.h"
 
 namespace trocar::trainer {
 namespace {

@@ -73,7 +73,8 @@ TEST(OwnTask, DamagedFileIsRefusedWithItsPlace) {
   };
   EXPECT_EQ(error_of("base = \"liver-biopsy\"\n"), "no error");
   EXPECT_NE(error_of("base = \"lever-biopsy\"\n").find("known are"), std::string::npos);
-  EXPECT_NE(error_of("base = \"liver-biopsy\"\n[target]\npoint_mm = [1, 2]\n").find("is not a point"), std::string::npos);
+  EXPECT_NE(error_of("base = \"liver-biopsy\"\n[target]\npoint_mm = [1, 2]\n").find("is not a point"),
+            std::string::npos);
   EXPECT_NE(error_of("base = \"liver-biopsy\"\n[entry_zone]\ncentre_mm = [1, 2, 3]\n").find("radius_mm"),
             std::string::npos);
   EXPECT_NE(error_of("base = \"liver-biopsy\"\n[target]\npiont_mm = [1, 2, 3]\n").find("did you mean"),
