@@ -77,8 +77,9 @@ TEST(Toml, AnEmptyTableHasNoKeys) {
 TEST(Toml, ErrorsNameFileLineKeyAndRange) {
   const TomlTable liver = *example().table("tissues")->table("liver");
   EXPECT_EQ(error_of(liver.number("count", {0.5, 2})),
-            "must be a number from 0.5 to 2, it is 3 — tissues.toml, line 5: tissues.liver.count");
-  EXPECT_EQ(error_of(liver.string("count")), "must be a text in quotes — tissues.toml, line 5: tissues.liver.count");
+            "must be a number from 0.5 to 2, it is 3 — tissues.toml, line 5: tissues.liver.count — correct the value");
+  EXPECT_EQ(error_of(liver.string("count")),
+            "must be a text in quotes — tissues.toml, line 5: tissues.liver.count — correct the value");
   EXPECT_EQ(error_of(liver.number("mu", {0, 2})),
             "missing: a number from 0 to 2 — tissues.toml: tissues.liver.mu — add the key");
   EXPECT_NE(error_of(liver.strings("count")).find("a list of texts"), std::string::npos);
@@ -88,7 +89,7 @@ TEST(Toml, ErrorsNameFileLineKeyAndRange) {
   EXPECT_NE(error_of(liver.integer("viscosity", {0, 1})).find("a whole number"), std::string::npos);
   EXPECT_NE(error_of(liver.boolean_or("count", true)).find("true or false"), std::string::npos);
   EXPECT_EQ(error_of((*example().tables("needles"))[1].number("gauge", {1, 20})),
-            "must be a number from 1 to 20, it is 22.5 — tissues.toml, line 12: needles[1].gauge");
+            "must be a number from 1 to 20, it is 22.5 — tissues.toml, line 12: needles[1].gauge — correct the value");
 }
 
 TEST(Toml, SyntaxErrorNamesLineAndColumn) {
