@@ -25,6 +25,11 @@ class PunctureGuide : public ::testing::Test {
     sample.phase = depth_mm > 0.0 ? InsertionPhase::kInserted : InsertionPhase::kOutside;
     return sample;
   }
+  /// Towards the head, square to the path.
+  static Vec3 headward() {
+    const Vec3 axis = the_case.plan.line_P.direction();
+    return (Vec3::UnitZ() - axis.z() * axis).normalized();
+  }
   static bool says(const TickSample& sample, const std::string& words) {
     return guide_puncture(the_case, sample).find(words) != std::string::npos;
   }
@@ -42,7 +47,7 @@ TEST_F(PunctureGuide, SaysAdvanceOnThePathAndFireAtItsEnd) {
 
 TEST_F(PunctureGuide, SaysWhereTheEntryIs) {
   TickSample sample = on_path(-15.0);
-  sample.tip_mm += 40.0 * Vec3::UnitZ();
+  sample.tip_mm += 40.0 * headward();
   EXPECT_TRUE(says(sample, "40 mm to the patient's feet")) << guide_puncture(the_case, sample);
   sample = on_path(-15.0);
   sample.tip_mm += 4.0 * Vec3::UnitX();
@@ -61,7 +66,7 @@ TEST_F(PunctureGuide, FollowingItsWordsBringsTheNeedleBack) {
   EXPECT_NE(said.find(way.x() > 0.0 ? "left" : "right"), std::string::npos) << said;
 
   TickSample inside = on_path(20.0);
-  inside.tip_mm += 3.0 * Vec3::UnitZ();
+  inside.tip_mm += 3.0 * headward();
   EXPECT_TRUE(says(inside, "3.0 mm beside the path: tilt the tip to the patient's feet"))
       << guide_puncture(the_case, inside);
 }
