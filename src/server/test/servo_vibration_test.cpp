@@ -88,18 +88,20 @@ ServoScene with_damping(const ServoScene& scene, double damping_ns_per_mm) {
   return {changed, scene.number, scene.continues};
 }
 
+// 1 N s/mm is 200 times what the device bears. In the insertion model the needle slides along with the device and
+// nothing vibrates; the proxy holds it.
 TEST(ServoVibration, ADamperThatTheDeviceDoesNotBearIsAFault) {
   const DevicePreset preset = testing::device_preset();
   SceneBuilder builder = builder_for(preset);
-  const ServoScene good = load(builder, "insertion");
-  for (const double damping : {1.0, 0.3, 0.1}) {
-    SCOPED_TRACE(damping);
-    const ServoScene bad = with_damping(good, damping);
-    const Motion swing = [](double t) {
-      return at({0.2 * std::sin(50.0 * t), 0.2 * std::sin(60.0 * t), 10.0 - 20.0 * std::cos(3.14 * t)});
-    };
-    EXPECT_EQ(run(good, preset, swing, 6.0).fault, GateFault::kNone);
-    const Outcome outcome = run(bad, preset, swing, 6.0);
+  const ServoScene good = load(builder, "proxy");
+  const ServoScene bad = with_damping(good, 1.0);
+  const Motion hold = [](double t) { return at({0.0, 0.0, std::min(20.0, -10.0 + 20.0 * t)}); };
+  const Motion swing = [](double t) {
+    return at({0.0, 0.0, std::min(10.0 + 10.0 * std::sin(3.0 * t), -10.0 + 20.0 * t)});
+  };
+  for (const Motion* motion : {&hold, &swing}) {
+    EXPECT_EQ(run(good, preset, *motion, 4.0).fault, GateFault::kNone);
+    const Outcome outcome = run(bad, preset, *motion, 4.0);
     EXPECT_EQ(outcome.fault, GateFault::kVibration) << to_string(outcome.fault) << ' ' << outcome.speed_rms << " mm/s";
     EXPECT_EQ(outcome.after_n, 0.0);
   }
