@@ -182,7 +182,7 @@ Status write_picture(const Arguments& arguments, const Scan& scan, const GrayIma
     caption.frequency_mhz = scan.acquisition.frequency_mhz;
     caption.focus_mm = scan.acquisition.focus_mm;
     caption.settings = scan.display;
-    if (scan.unscanned_share > 0.0) caption.remarks.emplace_back("Hatched: outside CT");
+    if (scan.unscanned_share > 0.0) caption.remarks.emplace_back("Outside CT");
     draw_annotation(picture, make_scan_annotation(raster, geometry, caption));
     if (colour) draw_colour_bar(picture, *colour);
   }

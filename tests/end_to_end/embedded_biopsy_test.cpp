@@ -220,7 +220,7 @@ int run_in_child(const Case& the_case, const std::filesystem::path& session, int
 }
 
 TEST_F(EmbeddedBiopsy, AnInterruptionOrAFullDiskLeavesNothing) {
-  constexpr int kEarly = 0, kRecording = 2, kLate = 7;  // a step is 2 s of an attempt of about 17 s
+  constexpr int kEarly = 0, kRecording = 2, kLate = 5;  // a step is 2 s of an attempt
   for (const int moment : {kEarly, kRecording, kLate}) {
     for (void (*const trouble)() : {+[] { ::raise(SIGINT); }, +[] { ::raise(SIGTERM); },
                                     +[] {

@@ -85,7 +85,7 @@ std::vector<CaptionLine> caption_of(const ScanPicture& picture, const CaptionFac
   } else if (picture.coupled_share < kMost) {
     lines.push_back({QStringLiteral("Poor contact"), Kind::kWarning});
   }
-  if (picture.unscanned_share > kUnscanned) lines.push_back({QStringLiteral("Hatched: outside CT"), Kind::kWarning});
+  if (picture.unscanned_share > kUnscanned) lines.push_back({QStringLiteral("Outside CT"), Kind::kWarning});
   int number = 1;
   for (const Measurement& measurement : facts.measurements) {
     const std::vector<std::string> texts = results(measurement);

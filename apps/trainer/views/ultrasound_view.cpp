@@ -257,7 +257,7 @@ UltrasoundRoom UltrasoundView::room() const {
       return line.kind == CaptionLine::Kind::kWarning || line.kind == CaptionLine::Kind::kFrozen;
     });
     lines.push_back({QStringLiteral("Poor contact"), CaptionLine::Kind::kWarning});
-    lines.push_back({QStringLiteral("Hatched: outside CT"), CaptionLine::Kind::kWarning});
+    lines.push_back({QStringLiteral("Outside CT"), CaptionLine::Kind::kWarning});
     if (!is_small && picture_->is_frozen) lines.push_back({QStringLiteral("8"), CaptionLine::Kind::kPlain});
     room.caption = caption_size(lines, font);
   }
