@@ -157,7 +157,7 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
   scene->device = device;
   scene->options = options;
   if (device.has_torque())
-    scene->options.constraint = renderable(options.constraint, needle.length_mm);
+    scene->options.constraint = renderable(options.constraint);
   else
     scene->options.constraint.torque_nmm = 0.0;
   scene->beam_with_stylet = make_needle_beam(needle, true);

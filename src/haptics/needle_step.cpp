@@ -34,16 +34,9 @@ Pose pose_ahead(NeedleState& state, const Pose& X_PN, double ahead_s, double dt_
   return {rotation_between(axis, ahead) * X_PN.R(), X_PN.p() + ahead_s * state.tip_velocity_P};
 }
 
-/// Way (mm) along the needle from the stylus origin S to the point that the path constraint pulls at: the tip where the
-/// device gives torque, else S itself (physics.md C3).
-double constraint_lever_mm(const HapticScene& scene) noexcept {
-  return scene.device.has_torque() ? scene.needle.length_mm : 0.0;
-}
-
-NeedleAtPath at_path(const PathLine& line, const HapticScene& scene, const Pose& X_PN) noexcept {
+NeedleAtPath at_path(const HapticScene& scene, const Pose& X_PN) noexcept {
   const Vec3 axis_P = X_PN.R().col(2);
-  const double behind_tip_mm = scene.needle.length_mm - constraint_lever_mm(scene);
-  return {line.direction_P.dot(X_PN.p() - line.origin_P), X_PN.p() - behind_tip_mm * axis_P, axis_P};
+  return {X_PN.p() - scene.needle.length_mm * axis_P, axis_P, scene.needle.length_mm};
 }
 
 /// Paper A: path constraint while the skin is open, about S.
@@ -51,10 +44,7 @@ Wrench path_constraint_wrench(const InsertionPath& path, const HapticScene& scen
                               const Pose& X_PN_ahead) noexcept {
   if (!path.is_open) return {};
   const PathLine line{path.channel.origin_P, path.channel.direction_P};
-  Wrench wrench =
-      path_constraint(line, at_path(line, scene, X_PN), at_path(line, scene, X_PN_ahead), scene.options.constraint);
-  wrench.torque_nmm += Vec3(constraint_lever_mm(scene) * X_PN.R().col(2)).cross(wrench.force_n);
-  return wrench;
+  return path_constraint(line, at_path(scene, X_PN), at_path(scene, X_PN_ahead), scene.options.constraint);
 }
 
 /// Torque about S of resistances along the path: they act at the tip, by whose way they are found (physics.md T1).

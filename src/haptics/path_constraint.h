@@ -14,13 +14,12 @@ struct PathConstraintParams {
   double fade_mm = 20.0;     ///< s0: depth of the tip from which the constraint acts in full. Range 5..100. [assumed]
 };
 
-/// Largest stiffness (N mm/rad) against turning about the stylus origin that the path constraint may show.
-/// physics.md C3: the loop with a light stylus rings beyond it. [assumed]
+/// Largest stiffness n0/theta0 (N mm/rad) against turning about the stylus origin. physics.md C3: the loop with a light
+/// stylus rings beyond it. [assumed]
 inline constexpr double kMostPathTurning_nmm_per_rad = 1500.0;
 
-/// The parameters with d0 and theta0 enlarged until the constraint turns a stylus, whose origin lies `lever_mm` behind
-/// the point that the force acts at, with at most kMostPathTurning_nmm_per_rad. m0 and n0 stay as they are.
-PathConstraintParams renderable(PathConstraintParams params, double lever_mm) noexcept;
+/// The parameters with theta0 enlarged until n0/theta0 is at most kMostPathTurning_nmm_per_rad; n0 stays as it is.
+PathConstraintParams renderable(PathConstraintParams params) noexcept;
 
 /// A pull on the needle in P.
 struct Wrench {
@@ -36,10 +35,13 @@ struct PathLine {
 
 /// The device's needle as the path constraint reads it.
 struct NeedleAtPath {
-  double depth_mm = 0.0;        ///< Of the tip along the path: s = u.PX of the tip.
-  Vec3 held_P = Vec3::Zero();   ///< X', the point that the force acts at.
-  Vec3 axis_P = Vec3::UnitZ();  ///< a, unit.
+  Vec3 stylus_P = Vec3::Zero();  ///< X' = S, the point that the device holds and the force acts at.
+  Vec3 axis_P = Vec3::UnitZ();   ///< a, unit: the tip is at S + l a.
+  double length_mm = 0.0;        ///< l.
 };
+
+/// Depth of the tip along the path: s = u.(PS + l a).
+double tip_depth_mm(const PathLine& line, const NeedleAtPath& needle) noexcept;
 
 /// Fade of the constraint with depth, 0 at the skin and 1 from s0 on: t^2 (3 - 2t), t = s/s0.
 double path_fade(double depth_mm, const PathConstraintParams& params) noexcept;
@@ -47,9 +49,9 @@ double path_fade(double depth_mm, const PathConstraintParams& params) noexcept;
 /// Energy (N mm) stored at `now`: V = f(s) (U(d) + W(theta)), d = |X_i - X'|, X_i = P + u (u.PX').
 double path_energy_nmm(const PathLine& line, const NeedleAtPath& now, const PathConstraintParams& params) noexcept;
 
-/// Minus the gradient of V. Across the path F = f m(d) (X_i - X'), m = m0 / max(d, d0); along it -f' (U + W) u, which
-/// is zero but in the fade and never points into the body; Q = f n(theta) theta (a x u)/|a x u|, n = n0 / max(theta,
-/// theta0). Force and torque are about X'. The parts across the path and the torque are taken at the pose `ahead`,
+/// Minus the gradient of V, force and torque about S. Across the path F = f m(d) (X_i - X'), m = m0 / max(d, d0);
+/// Q = f n(theta) theta (a x u)/|a x u|, n = n0 / max(theta, theta0); along the path -f' (U + W) u at the tip, which is
+/// zero but in the fade and never points into the body. The parts across the path and Q are taken at the pose `ahead`,
 /// which damps them; depth and energy at `now`. Real-time safe.
 Wrench path_constraint(const PathLine& line, const NeedleAtPath& now, const NeedleAtPath& ahead,
                        const PathConstraintParams& params) noexcept;

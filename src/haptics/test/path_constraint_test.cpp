@@ -14,9 +14,12 @@ namespace {
 const PathLine kLine{{3.0, -2.0, 10.0}, Vec3(0.2, 0.5, 1.0).normalized()};
 const PathConstraintParams kParams;
 
-/// A needle on the path's side, `depth_mm` deep.
+constexpr double kLength_mm = 150.0;
+
+/// A needle with its stylus origin `aside_P` (across the path) beside the path and its tip `depth_mm` deep.
 NeedleAtPath beside(double depth_mm, const Vec3& aside_P = Vec3::Zero(), const Vec3& axis_P = kLine.direction_P) {
-  return {depth_mm, kLine.origin_P + depth_mm * kLine.direction_P + aside_P, axis_P};
+  const double stylus_mm = depth_mm - kLength_mm * axis_P.dot(kLine.direction_P);
+  return {kLine.origin_P + stylus_mm * kLine.direction_P + aside_P, axis_P, kLength_mm};
 }
 
 Wrench at_rest(const NeedleAtPath& needle, const PathConstraintParams& params = kParams) {
@@ -84,13 +87,6 @@ TEST(PathConstraint, TurnsTheNeedleBackOntoThePath) {
   }
 }
 
-/// A stylus at S whose needle, `kLever_mm` long, is the constraint's.
-constexpr double kLever_mm = 150.0;
-NeedleAtPath needle_of(const Vec3& stylus_P, const Mat3& R) {
-  const Vec3 tip_P = stylus_P + kLever_mm * R.col(2);
-  return {kLine.direction_P.dot(tip_P - kLine.origin_P), tip_P, R.col(2)};
-}
-
 TEST(PathConstraint, ForceAndTorqueAboutTheStylusAreTheGradientOfOneEnergy) {
   Random random(9);
   const auto within = [&](double a) {
@@ -99,15 +95,14 @@ TEST(PathConstraint, ForceAndTorqueAboutTheStylusAreTheGradientOfOneEnergy) {
   for (int i = 0; i < 300; ++i) {
     const Vec3 tip_P = kLine.origin_P + random.uniform(0.5, 40.0) * kLine.direction_P + within(5.0);
     const Mat3 R = needle_pose(tip_P, (kLine.direction_P + within(0.2)).normalized()).R();
-    const Vec3 stylus_P = tip_P - kLever_mm * R.col(2);
-    Wrench wrench = at_rest(needle_of(stylus_P, R));
-    wrench.torque_nmm += Vec3(kLever_mm * R.col(2)).cross(wrench.force_n);
+    const Vec3 stylus_P = tip_P - kLength_mm * R.col(2);
+    const Wrench wrench = at_rest({stylus_P, R.col(2), kLength_mm});
     constexpr double kMove_mm = 1e-4;
     constexpr double kTurn_rad = 1e-6;
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 e = Vec3::Unit(axis);
       const auto energy = [&](double move, double turn) {
-        return path_energy_nmm(kLine, needle_of(stylus_P + move * e, Mat3(Eigen::AngleAxisd(turn, e)) * R), kParams);
+        return path_energy_nmm(kLine, {stylus_P + move * e, Eigen::AngleAxisd(turn, e) * R.col(2), kLength_mm}, kParams);
       };
       EXPECT_NEAR((energy(kMove_mm, 0) - energy(-kMove_mm, 0)) / (2 * kMove_mm), -wrench.force_n[axis], 1e-4);
       EXPECT_NEAR((energy(0, kTurn_rad) - energy(0, -kTurn_rad)) / (2 * kTurn_rad), -wrench.torque_nmm[axis], 1e-2);
@@ -123,27 +118,24 @@ TEST(PathConstraint, APoseAheadDampsAndNeverDrives) {
   for (int i = 0; i < 500; ++i) {
     const NeedleAtPath now = beside(random.uniform(0.0, 40.0), within(6.0));
     const Vec3 way_P = within(1.0);
-    const NeedleAtPath ahead{now.depth_mm + kLine.direction_P.dot(way_P), now.held_P + way_P, now.axis_P};
+    const NeedleAtPath ahead{now.stylus_P + way_P, now.axis_P, now.length_mm};
     const Vec3 damping_n = path_constraint(kLine, now, ahead, kParams).force_n - at_rest(now).force_n;
     EXPECT_LE(damping_n.dot(way_P), 1e-12);
   }
 }
 
 TEST(Renderable, KeepsTheForcesAndBoundsTheTurning) {
-  for (const double lever : {1.0, 20.0, 90.0, 150.0, 300.0}) {
-    for (const double linear_rad : {0.01, 0.1, 1.0}) {
-      PathConstraintParams wanted = kParams;
-      wanted.linear_rad = linear_rad;
-      const PathConstraintParams params = renderable(wanted, lever);
-      EXPECT_EQ(params.force_n, wanted.force_n);
-      EXPECT_EQ(params.torque_nmm, wanted.torque_nmm);
-      EXPECT_GE(params.linear_mm, wanted.linear_mm);
-      EXPECT_GE(params.linear_rad, wanted.linear_rad);
-      const double turning = params.force_n / params.linear_mm * lever * lever + params.torque_nmm / params.linear_rad;
-      EXPECT_LE(turning, kMostPathTurning_nmm_per_rad * (1.0 + 1e-12));
-    }
+  for (const double linear_rad : {0.01, 0.1, 1.0}) {
+    PathConstraintParams wanted = kParams;
+    wanted.linear_rad = linear_rad;
+    const PathConstraintParams params = renderable(wanted);
+    EXPECT_EQ(params.force_n, wanted.force_n);
+    EXPECT_EQ(params.linear_mm, wanted.linear_mm);
+    EXPECT_EQ(params.torque_nmm, wanted.torque_nmm);
+    EXPECT_GE(params.linear_rad, wanted.linear_rad);
+    EXPECT_LE(params.torque_nmm / params.linear_rad, kMostPathTurning_nmm_per_rad * (1.0 + 1e-12));
   }
-  EXPECT_EQ(renderable(kParams, 20.0).linear_mm, kParams.linear_mm);  // a short needle is no burden
+  EXPECT_EQ(renderable(kParams).linear_rad, kParams.linear_rad);
 }
 
 }  // namespace
