@@ -135,14 +135,24 @@ void stand_mirrors(const ScanPlan& plan, FrameState& frame) noexcept {
 
 namespace {
 
+double depth_mm_of(const ScanPlan& plan, std::size_t c) noexcept {
+  return static_cast<double>(c) * kCoarse * static_cast<double>(plan.sample_mm);
+}
+
+/// Distance of neighbouring scanlines. Those of a phased array leave one point: there it counts as kLeast_mm, for what is
+/// nearer together than that says nothing of how the tissue differs to either side.
+double spacing_mm(const ScanPlan& plan, std::size_t c) noexcept {
+  constexpr double kLeast_mm = 0.02;
+  return std::max(plan.geometry.line_spacing_mm(depth_mm_of(plan, c)), kLeast_mm);
+}
+
 /// A beam is as wide as its aperture near the face and narrow at its focus: what is smaller than that hardly bends or
 /// shades it. Scanlines to either side over which a depth is averaged; `share` of the beam's width there.
 int half_width(const ScanPlan& plan, std::size_t c, double share) noexcept {
-  const double depth_mm = static_cast<double>(c) * kCoarse * static_cast<double>(plan.sample_mm);
+  const double depth_mm = depth_mm_of(plan, c);
   const double width_mm = share * plan.beam.aperture_mm * std::abs(1.0 - depth_mm / plan.beam.focus_mm);
   constexpr double kLeast_mm = 1.2, kMost_mm = 10.0;
-  const double spacing_mm = plan.geometry.line_spacing_mm(depth_mm);
-  return std::clamp(static_cast<int>(std::clamp(width_mm, kLeast_mm, kMost_mm) / spacing_mm), 1, 64);
+  return std::clamp(static_cast<int>(std::clamp(width_mm, kLeast_mm, kMost_mm) / spacing_mm(plan, c)), 1, 64);
 }
 constexpr double kBendingShare = 0.5;
 constexpr double kShadingShare = 0.2;  // the echo's own aperture is apodised (assumed)
@@ -229,8 +239,7 @@ void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept {
   // bend_mm first.
   for (std::size_t c = 0; c < coarse; ++c) {
     const int half = half_width(plan, c, kBendingShare);
-    const auto spacing =
-        static_cast<float>(plan.geometry.line_spacing_mm(static_cast<double>(c) * static_cast<double>(step_mm)));
+    const auto spacing = static_cast<float>(spacing_mm(plan, c));
     const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
     average_lines(
         plan, half, [&](int l) { return frame.slowness[at(l)]; },
@@ -246,17 +255,17 @@ void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept {
   for (std::size_t l = 0; l < lines; ++l) {
     float slope = 0.0F, bend = 0.0F;
     for (std::size_t c = 0; c < coarse; ++c) {
-      const auto spacing = static_cast<float>(plan.geometry.line_spacing_mm(static_cast<double>(c) * step_mm));
+      const auto spacing = static_cast<float>(spacing_mm(plan, c));
       slope = std::clamp(slope + frame.bend_mm[l * coarse + c], -0.15F, 0.15F);
       bend += slope * step_mm;
       frame.bend_mm[l * coarse + c] = bend;
-      frame.widest_warp = std::max(frame.widest_warp, std::abs(bend) / std::max(spacing, 0.02F));
+      frame.widest_warp = std::max(frame.widest_warp, std::abs(bend) / spacing);
     }
   }
   for (std::size_t l = 0; l < lines; ++l) {
     const std::size_t low = l >= 2 ? l - 2 : 0, high = std::min(l + 2, lines - 1);
     for (std::size_t c = 0; c < coarse; ++c) {
-      const auto spacing = static_cast<float>(plan.geometry.line_spacing_mm(static_cast<double>(c) * step_mm));
+      const auto spacing = static_cast<float>(spacing_mm(plan, c));
       const float parting = (frame.bend_mm[high * coarse + c] - frame.bend_mm[low * coarse + c]) /
                             (static_cast<float>(high - low) * spacing);
       // Intensity goes with the inverse of the width of the tube of rays, there and back.

@@ -150,6 +150,25 @@ TEST(Refraction, DarkensBehindTheEdgesOfACylinder) {
   }
 }
 
+/// Scanlines of a phased array leave one point: what divides by their distance must not lose the picture.
+TEST(Refraction, LeavesThePictureOfEveryKindOfTransducer) {
+  for (const char* name : {"C5-2", "L14-5", "P4-2", "liver-sweep", "4DC7-3"}) {
+    const Transducer transducer = shipped(name);
+    const TestRod rods[] = {{0.0, 12.0, 5.0, TestTissue::kSlow}};
+    Acquisition bent = plain(transducer, only(&Artefacts::refraction));
+    bent.depth_mm = 40.0;
+    const ScenePtr scene = rods_scene(box_for(transducer, bent.depth_mm), TestTissue::kTissue, rods);
+    Acquisition straight = bent;
+    straight.artefacts.refraction = false;
+    BMode bending(scene, transducer, bent), straight_on(scene, transducer, straight);
+    const BasebandFrame& frame = bending.render({});
+    for (const auto* samples : {&frame.re, &frame.im})
+      EXPECT_TRUE(std::all_of(samples->begin(), samples->end(), [](float v) { return std::isfinite(v); })) << name;
+    const double level = level_db(patch_at(frame, 0.0, 8.0, 25.0, 35.0));
+    EXPECT_NEAR(level, level_db(patch_at(straight_on.render({}), 0.0, 8.0, 25.0, 35.0)), 6.0) << name;
+  }
+}
+
 TEST(SideLobes, SurroundAStrongPoint) {
   const Transducer transducer = convex();
   const ScenePtr scene =
