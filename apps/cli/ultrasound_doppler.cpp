@@ -1,6 +1,7 @@
 #include "ultrasound_doppler.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -52,8 +53,9 @@ void add_doppler_options(CLI::App& command, DopplerArguments& a) {
 Result<DopplerSettings> gather_doppler(const DopplerArguments& a) {
   DopplerSettings settings = a.settings;
   if (!a.box.empty()) {
-    if (a.box.size() != 4)
-      return fail_usage(fmt::format("--doppler-box has {} numbers", a.box.size()), {}, "give first,last,near,far");
+    if (a.box.size() != 4 || !(a.box[0] < a.box[1] && a.box[2] < a.box[3]))
+      return fail_usage(fmt::format("--doppler-box is {}", fmt::join(a.box, ",")), {},
+                        "give first,last,near,far in percent, first below last and near below far, as 20,80,20,90");
     settings.box = {kPercent * a.box[0], kPercent * a.box[1], kPercent * a.box[2], kPercent * a.box[3]};
   }
   TROCAR_TRY_STATUS(check(settings));

@@ -58,10 +58,8 @@ Status write_atomically(const fs::path& target, const std::function<Status(const
   UnfinishedOutput unfinished({temporary});
   TROCAR_TRY_STATUS(write(temporary));
   TROCAR_TRY_STATUS(flush_to_disk(temporary));
-  std::error_code error;
-  fs::rename(temporary, target, error);
-  if (error) return fail("cannot write: " + error.message(), target.string(), "choose another folder");
-  unfinished.keep();
+  if (const std::error_code error = unfinished.rename_to(target))
+    return fail("cannot write: " + error.message(), target.string(), "choose another folder");
   return {};
 }
 
@@ -89,9 +87,8 @@ Status write_folder_atomically(const fs::path& target, const std::function<Statu
   fs::create_directories(temporary, error);
   if (error) return fail("cannot make the folder: " + error.message(), temporary.string(), "choose another place");
   TROCAR_TRY_STATUS(write(temporary));
-  fs::rename(temporary, target, error);
-  if (error) return fail("cannot write: " + error.message(), target.string(), "choose another folder");
-  unfinished.keep();
+  if (const std::error_code not_renamed = unfinished.rename_to(target))
+    return fail("cannot write: " + not_renamed.message(), target.string(), "choose another folder");
   return {};
 }
 

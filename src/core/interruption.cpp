@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <cerrno>
-#include <cstdio>
 #include <ctime>
 #include <thread>
 
@@ -43,10 +42,12 @@ void wait_for_end() {
 
 void watch() {
   wait_for_end();
-  remove_unfinished_outputs();
-  std::fprintf(stderr, "error: %s\n", interruption_error("trocar").text().c_str());
-  remove_unfinished_outputs();  // a thread that was still writing may have made a folder anew
-  ::_exit(kFailed);
+  end_without_unfinished_outputs([](const std::filesystem::path& output) {
+    const Error error = output.empty() ? interruption_error("trocar")
+                                       : Error{"interrupted, but the output is complete", output.string(),
+                                               "remove it before you run the command again", kFailed};
+    return "error: " + error.text();
+  });
 }
 
 void handle(int signal_number) {

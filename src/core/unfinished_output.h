@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <system_error>
 #include <vector>
 
 namespace trocar {
 
 /// Files and folders that must not outlive a failure or an interruption. They are removed at the end unless keep() was
-/// called, and by remove_unfinished_outputs(). Thread-safe.
+/// called, and by end_without_unfinished_outputs(). Thread-safe.
 class UnfinishedOutput {
  public:
   explicit UnfinishedOutput(std::vector<std::filesystem::path> paths);
@@ -14,7 +16,10 @@ class UnfinishedOutput {
   UnfinishedOutput(const UnfinishedOutput&) = delete;
   UnfinishedOutput& operator=(const UnfinishedOutput&) = delete;
 
+  /// The first of the paths is a finished output from here on.
   void keep();
+  /// Renames the only path to `target`, which is then a finished output. An interruption comes before or after it.
+  std::error_code rename_to(const std::filesystem::path& target);
 
  private:
   std::vector<std::filesystem::path> paths_;
@@ -23,7 +28,11 @@ class UnfinishedOutput {
 /// Adds a path to the process-wide list of unfinished outputs, or takes it off without touching it.
 void register_unfinished_output(const std::filesystem::path& path);
 void unregister_unfinished_output(const std::filesystem::path& path);
-/// Removes all unfinished outputs of the process: an interrupted program calls it before it ends.
-void remove_unfinished_outputs();
+/// A finished output that nobody asked for, such as a cached patient: an interruption does not name it.
+void forget_finished_output(const std::filesystem::path& path);
+
+/// Ends the process with status 1, its unfinished outputs removed. `say_why(output)` gives the line for standard error;
+/// `output` is the last one that was finished, empty: none. Other threads end first, so that none makes a file anew.
+[[noreturn]] void end_without_unfinished_outputs(std::string (*say_why)(const std::filesystem::path& output));
 
 }  // namespace trocar

@@ -35,6 +35,7 @@ Result<OperatorChoice> parse_operator(std::string_view name) {
     return OperatorChoice{Kind::kConstantVelocity, speed, {}};
   }
   constexpr std::string_view kReplay = "replay:";
+  if (name == kReplay) return fail_usage("replay: names no session", "--operator", "write replay:SESSION");
   if (name.starts_with(kReplay)) return OperatorChoice{Kind::kReplay, 0.0, std::string(name.substr(kReplay.size()))};
   return fail_usage(fmt::format("no operator named {}", name), "--operator",
                     "use expert, novice, constant-velocity:MM_PER_S or replay:SESSION");

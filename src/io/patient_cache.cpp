@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.h"
 #include "core/hash.h"
+#include "core/unfinished_output.h"
 #include "io/patient_folder.h"
 
 namespace trocar {
@@ -96,6 +97,7 @@ Result<fs::path> PatientCache::keep(const PatientSource& source, const VirtualPa
                 "check the permissions of the folder above it");
   fs::path entry = folder_of(source, !meshes.empty());
   TROCAR_TRY_STATUS(save_patient(patient, meshes, entry));
+  forget_finished_output(entry);
   if (!meshes.empty()) fs::remove_all(folder_of(source, false), error);
   drop_oldest(folder_);
   return entry;

@@ -35,7 +35,7 @@ Status switch_off(Artefacts& artefacts, std::string_view name) {
     if (known == name) return {};
   }
   if (name == "all") return {};
-  return fail_usage(fmt::format("there is no artefact \"{}\"", name), {},
+  return fail_usage(fmt::format("there is no artefact \"{}\"", name), "--off",
                     fmt::format("known are: {}, all", fmt::join(artefact_names(), ", ")));
 }
 

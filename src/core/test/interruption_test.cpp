@@ -7,6 +7,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
 
 #include "core/atomic_file.h"
 #include "core/temporary_folder.h"
@@ -58,6 +61,64 @@ TEST(Interruption, LeavesNoHalfWrittenFileOrFolder) {
               kFailed);
     EXPECT_TRUE(folder.is_empty()) << "signal " << signal_number;
   }
+}
+
+TEST(Interruption, LeavesNothingOfWorkThatMakesItsFoldersAgainAndAgain) {
+  for (int round = 0; round < 20; ++round) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(interrupted([&] {
+                static_cast<void>(write_folder_atomically(folder / "new", [&](const fs::path& temporary) -> Status {
+                  ::kill(::getpid(), SIGTERM);
+                  for (int i = 0;; ++i) {
+                    std::error_code ignored;
+                    fs::create_directories(temporary / "inside", ignored);
+                    std::ofstream(temporary / "inside" / std::to_string(i % 100)) << "half";
+                  }
+                }));
+              }),
+              kFailed);
+    EXPECT_TRUE(folder.is_empty()) << round;
+  }
+}
+
+/// An interruption comes before an output is in place, and nothing is there, or after it, and all is there.
+TEST(Interruption, LeavesAnOutputWholeOrNotAtAll) {
+  int whole = 0;
+  for (int delay_us = 0; delay_us < 4000; delay_us += 100) {
+    const TemporaryFolder folder;
+    static_cast<void>(interrupted([&] {
+      std::thread([&] {
+        ::usleep(static_cast<useconds_t>(delay_us));
+        ::kill(::getpid(), SIGTERM);
+      }).detach();
+      static_cast<void>(write_folder_atomically(folder / "new", [&](const fs::path& temporary) -> Status {
+        for (int i = 0; i < 20; ++i) std::ofstream(temporary / std::to_string(i)) << "one of them";
+        return {};
+      }));
+      wait_for_the_end();
+    }));
+    if (folder.is_empty()) continue;
+    ++whole;
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder / "new"), {}), 20) << delay_us;
+  }
+  EXPECT_GT(whole, 0);
+}
+
+TEST(Interruption, SaysThatAnOutputIsComplete) {
+  const TemporaryFolder folder;
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(interrupted([&] {
+              static_cast<void>(write_file_atomically(folder / "cached", "x"));
+              static_cast<void>(write_file_atomically(folder / "picture", "x"));
+              forget_finished_output(folder / "cached");
+              ::raise(SIGTERM);
+              wait_for_the_end();
+            }),
+            kFailed);
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("the output is complete — " + (folder / "picture").string()), std::string::npos) << said;
+  EXPECT_TRUE(fs::exists(folder / "picture"));
 }
 
 TEST(Interruption, RemovesTemporaryFolders) {

@@ -1,6 +1,7 @@
 #include "io/detail/raw_volume.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <set>
 
 #include "core/parallel.h"
 
@@ -42,6 +44,23 @@ auto with_type(VoxelType type, Use&& use) {
       break;
   }
   return use(double{});
+}
+
+/// The numbers above 255 among whole numbers, at most 8 of them, sorted; empty: others are there, too.
+std::vector<int> labels_above_255(const RawVoxels& in, std::size_t voxels) {
+  return with_type(in.type, [&]<class S>(S) {
+    constexpr std::size_t kMost = 8;
+    std::set<int> above;
+    for (std::size_t n = 0; n < voxels; ++n) {
+      S stored;
+      std::memcpy(&stored, in.bytes.data() + n * sizeof(S), sizeof(S));
+      const double value = static_cast<double>(stored) * in.slope + in.intercept;
+      const bool is_label = value >= 0.0 && value < 1e6 && value == std::round(value);
+      if (!is_label) return std::vector<int>();
+      if (value > 255.0 && above.size() < kMost) above.insert(static_cast<int>(value));
+    }
+    return std::vector<int>(above.begin(), above.end());
+  });
 }
 
 /// Converts all numbers in parallel with convert(value, out&) -> bool; gives one value that could not be converted.
@@ -161,6 +180,9 @@ Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out) {
     return std::abs(value - whole) <= 1e-3;
   });
   if (!bad) return {};
+  if (const std::vector<int> above = labels_above_255(in, out.size()); !above.empty())
+    return fail(fmt::format("the segmentation has label numbers above 255: {}", fmt::join(above, ", ")), {},
+                "give its structures numbers from 1 to 255");
   return fail(fmt::format("the image has a value of {:g}, no label (whole numbers 0 to 255)", *bad), {},
               "give a segmentation, not an image of intensities");
 }

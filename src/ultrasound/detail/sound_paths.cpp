@@ -139,8 +139,8 @@ double depth_mm_of(const ScanPlan& plan, std::size_t c) noexcept {
   return static_cast<double>(c) * kCoarse * static_cast<double>(plan.sample_mm);
 }
 
-/// Distance of neighbouring scanlines. Those of a phased array leave one point: there it counts as kLeast_mm, for what is
-/// nearer together than that says nothing of how the tissue differs to either side.
+/// Distance of neighbouring scanlines. Those of a phased array leave one point: there it counts as kLeast_mm, for what
+/// is nearer together than that says nothing of how the tissue differs to either side.
 double spacing_mm(const ScanPlan& plan, std::size_t c) noexcept {
   constexpr double kLeast_mm = 0.02;
   return std::max(plan.geometry.line_spacing_mm(depth_mm_of(plan, c)), kLeast_mm);
