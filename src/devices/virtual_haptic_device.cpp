@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kMaxGap_s = 0.1;    ///< Beyond it the device stood still: a debugger, a suspended machine.
 constexpr double kMaxStep_s = 1e-3;  ///< physics.md H2 holds at 1 kHz.
-constexpr double kMmPerM = 1000.0;
 /// Twice the stiffest hand of physics.md H1, and that at the end of a 30 mm grip. A stiffer one would swing for ever.
 constexpr double kStiffestHand_n_per_mm = 10.0;
 constexpr double kStiffestTurn_nmm_per_rad = 1e4;
@@ -28,13 +27,6 @@ void push_front(std::array<T, n>& values, const T& value) noexcept {
   values[0] = value;
 }
 
-/// The part of a mean velocity that dry friction leaves. `drag`: force a unit of mean velocity, so that `drag * v` is
-/// what drives it.
-double kept_by_friction(double speed, double drag, double friction) noexcept {
-  const double drive = drag * speed;
-  return drive > friction ? 1.0 - friction / drive : 0.0;
-}
-
 }  // namespace
 
 VirtualHapticDevice::VirtualHapticDevice(DevicePreset preset, const SimulatedDeviceParams& params) noexcept
@@ -43,37 +35,20 @@ VirtualHapticDevice::VirtualHapticDevice(DevicePreset preset, const SimulatedDev
   params_.reading_delay = std::clamp(params_.reading_delay, 0, kMaxDelay);
 }
 
-Pose VirtualHapticDevice::X_DS() const noexcept {
-  return held_.X_PS * Pose::translation({0.0, 0.0, -point_mm_});
-}
-
-Vec3 VirtualHapticDevice::v_D() const noexcept {
-  return held_.v_P - held_.w_P.cross(held_.X_PS.R().col(2) * point_mm_);
-}
-
-void VirtualHapticDevice::grip_at(double point_mm) noexcept {
-  const Vec3 way_D = held_.X_PS.R().col(2) * (point_mm - point_mm_);
-  held_.X_PS = Pose(held_.X_PS.R(), held_.X_PS.p() + way_D);
-  held_.v_P += held_.w_P.cross(way_D);
-  point_mm_ = point_mm;
-}
-
 void VirtualHapticDevice::hold(const DeviceHand& hand) noexcept {
   if (!is_usable(hand)) return;
   hand_ = hand;
   hand_.stiffness_n_per_mm = std::min(hand.stiffness_n_per_mm, kStiffestHand_n_per_mm);
   hand_.turning_nmm_per_rad = std::min(hand.turning_nmm_per_rad, kStiffestTurn_nmm_per_rad);
-  const double point_mm = hand.is_held ? hand.point_mm : 0.0;
-  if (point_mm != point_mm_) grip_at(point_mm);
   if (hand.is_placed && (!was_ever_held_ || hand.time_s != placed_s_)) {
-    held_ = {};
-    held_.X_PS = hand.X_DS * Pose::translation({0.0, 0.0, point_mm_});
+    stylus_ = {};
+    stylus_.X_PS = hand.X_DS;
     placed_s_ = hand.time_s;
     was_ever_held_ = true;
   }
   if (hand.is_held && !was_ever_held_) {  // taken out of its holder: it is where the hand is
-    held_ = {};
-    held_.X_PS = hand_at(hand, last_s_).X_DS * Pose::translation({0.0, 0.0, point_mm_});
+    stylus_ = {};
+    stylus_.X_PS = hand_at(hand, last_s_).X_DS;
     was_ever_held_ = true;
   }
 }
@@ -126,74 +101,51 @@ Vec3 VirtualHapticDevice::wall_n() const noexcept {
   if (!(beyond_mm > 0.0)) return Vec3::Zero();
   const Vec3 outwards = p_D.normalized();
   const double k = params_.wall_stiffness_n_per_mm;
+  constexpr double kMmPerM = 1000.0;
   const double damping = std::sqrt(k * preset_.apparent_mass_kg / kMmPerM);
   const double speed = std::max(0.0, v_D().dot(outwards));
   return -(k * beyond_mm + damping * speed) * outwards;
 }
 
-/// The hand's spring where it holds, and the damping of the joints against rest.
 StylusHold VirtualHapticDevice::grip(const HandNow& hand) const noexcept {
   StylusHold hold;
-  hold.damping_ns_per_mm = preset_.viscosity_ns_per_mm;
-  hold.turning_damping_nmms_per_rad = params_.gimbal_viscosity_nmms;
   if (!hand_.is_held) return hold;
   hold.X_PS = hand.X_DS;
+  hold.velocity_P = hand.v_D;
+  hold.angular_velocity_P = hand.w_D;
+  hold.point_mm = hand_.point_mm;
   hold.stiffness_n_per_mm = hand_.stiffness_n_per_mm;
-  hold.damping_ns_per_mm += hand_.damping_ns_per_mm;
+  hold.damping_ns_per_mm = hand_.damping_ns_per_mm;
   hold.mass_kg = hand_.mass_kg;
   hold.turning_nmm_per_rad = hand_.turning_nmm_per_rad;
-  hold.turning_damping_nmms_per_rad += hand_.turning_damping_nmms_per_rad;
+  hold.turning_damping_nmms_per_rad = hand_.turning_damping_nmms_per_rad;
   hold.inertia_kg_mm2 = hand_.inertia_kg_mm2;
-  // One damper against the mean of two velocities, weighted, is two dampers.
-  if (hold.damping_ns_per_mm > 0.0) hold.velocity_P = hand.v_D * (hand_.damping_ns_per_mm / hold.damping_ns_per_mm);
-  if (hold.turning_damping_nmms_per_rad > 0.0) {
-    hold.angular_velocity_P = hand.w_D * (hand_.turning_damping_nmms_per_rad / hold.turning_damping_nmms_per_rad);
-  }
   return hold;
 }
 
-void VirtualHapticDevice::step(double time_s, double dt_s) noexcept {
-  if (!was_ever_held_) return;
-  HandNow hand = hand_at(hand_, time_s);  // and of the point where it holds
-  const Vec3 reach_D = hand.X_DS.R().col(2) * point_mm_;
-  hand.X_DS = Pose(hand.X_DS.R(), hand.X_DS.p() + reach_D);
-  hand.v_D += hand.w_D.cross(reach_D);
-  if (hand_.is_held && hand_.is_rigid) {
-    held_ = {hand.X_DS, hand.v_D, hand.w_D};
-    return;
-  }
-  // Everything that pulls at S, moved to the point where it is held.
-  Wrench push{acting_D_.force_n + wall_n(), acting_D_.torque_nmm};
-  push.torque_nmm -= (held_.X_PS.R().col(2) * point_mm_).cross(push.force_n);
-  rub(grip(hand), push, dt_s);
-}
-
-/// A step with dry friction in arm and gimbal: the mean velocity of the step without it says what force drives the
-/// motion; friction takes its part of that, or all of it and the joint stands.
-void VirtualHapticDevice::rub(const StylusHold& hold, const Wrench& push, double dt_s) noexcept {
-  const VirtualStylusState before = held_;
+VirtualStylusParams VirtualHapticDevice::stylus_params() const noexcept {
   VirtualStylusParams params;
   params.mass_kg = preset_.apparent_mass_kg;
   params.inertia_kg_mm2 = params_.inertia_kg_mm2;
   params.weight_n = preset_.capability.stylus_weight_n;
   // A gimbal without motors carries no lever: it is balanced, and the weight hangs on S.
-  params.weight_lever_mm = point_mm_ + (preset_.has_torque() ? preset_.capability.stylus_lever_mm : 0.0);
-  const StylusMotion free = step_stylus(held_, params, hold, push, -Vec3::UnitZ(), dt_s);
+  params.weight_lever_mm = preset_.has_torque() ? preset_.capability.stylus_lever_mm : 0.0;
+  params.viscosity_ns_per_mm = preset_.viscosity_ns_per_mm;
+  params.turning_viscosity_nmms = params_.gimbal_viscosity_nmms;
+  params.friction_n = preset_.friction_n;
+  params.turning_friction_nmm = params_.gimbal_friction_nmm;
+  return params;
+}
 
-  const double half_s = 0.5 * dt_s;
-  const double mass = (params.mass_kg + hold.mass_kg) / kMmPerM;
-  const double inertia = (params.inertia_kg_mm2 + hold.inertia_kg_mm2) / kMmPerM;
-  const double drag = mass / half_s + hold.damping_ns_per_mm + half_s * hold.stiffness_n_per_mm;
-  const double turning_drag = inertia / half_s + hold.turning_damping_nmms_per_rad + half_s * hold.turning_nmm_per_rad;
-  const double kept = kept_by_friction(free.v_P.norm(), drag, preset_.friction_n);
-  const double kept_turning = kept_by_friction(free.w_P.norm(), turning_drag, params_.gimbal_friction_nmm);
-
-  const Vec3 v = kept * free.v_P;
-  const Vec3 w = kept_turning * free.w_P;
-  const Eigen::Quaterniond turned(rotation_from_vector(dt_s * w) * before.X_PS.R());
-  held_.X_PS = Pose(turned.normalized().toRotationMatrix(), before.X_PS.p() + dt_s * v);
-  held_.v_P = kept > 0.0 ? Vec3(2.0 * v - before.v_P) : Vec3::Zero();
-  held_.w_P = kept_turning > 0.0 ? Vec3(2.0 * w - before.w_P) : Vec3::Zero();
+void VirtualHapticDevice::step(double time_s, double dt_s) noexcept {
+  if (!was_ever_held_) return;
+  const HandNow hand = hand_at(hand_, time_s);
+  if (hand_.is_held && hand_.is_rigid) {
+    stylus_ = {hand.X_DS, hand.v_D, hand.w_D};
+    return;
+  }
+  const Wrench push{acting_D_.force_n + wall_n(), acting_D_.torque_nmm};
+  step_stylus(stylus_, stylus_params(), grip(hand), push, -Vec3::UnitZ(), dt_s);
 }
 
 OpenedDevice open_virtual(const DeviceSpec& spec, const DeviceOptions& options) {

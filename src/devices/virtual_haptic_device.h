@@ -40,14 +40,13 @@ class VirtualHapticDevice final : public HapticDevice {
   Status reconnect() override { return {}; }
 
   /// What the encoders do not tell: the stylus itself.
-  Pose X_DS() const noexcept;
-  Vec3 v_D() const noexcept;
+  const Pose& X_DS() const noexcept { return stylus_.X_PS; }
+  const Vec3& v_D() const noexcept { return stylus_.v_P; }
 
  private:
   void step(double time_s, double dt_s) noexcept;
-  void rub(const StylusHold& hold, const Wrench& push, double dt_s) noexcept;
-  void grip_at(double point_mm) noexcept;
   StylusHold grip(const HandNow& hand) const noexcept;
+  VirtualStylusParams stylus_params() const noexcept;
   Vec3 wall_n() const noexcept;
   DeviceReading tell() noexcept;
 
@@ -57,8 +56,7 @@ class VirtualHapticDevice final : public HapticDevice {
   bool was_ever_held_ = false;
   double placed_s_ = 0.0;  ///< Time of the target that was last put in place.
 
-  VirtualStylusState held_;  ///< Of the point where the hand holds it, point_mm_ before S. Its frame P is D.
-  double point_mm_ = 0.0;
+  VirtualStylusState stylus_;  ///< Its frame P is D.
 
   double last_s_ = 0.0;
   bool is_started_ = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "haptics/simulation/closed_loop.h"
 #include "telemetry/tick_pose.h"
 #include "training/hand.h"
 
@@ -34,6 +35,9 @@ HandTarget hand_target(const HandCommand& command, double server_time_s) noexcep
   target.damping_ns_per_mm = spring.damping_ns_per_mm;
   target.mass_kg = spring.mass_kg;
   target.holds_tip = true;
+  const StylusHold guiding = make_guiding_hand(0.0);  // the server knows where the tip is
+  target.turning_nmm_per_rad = guiding.turning_nmm_per_rad;
+  target.turning_damping_nmms_per_rad = guiding.turning_damping_nmms_per_rad;
   target.is_rigid = command.is_rigid;
   return target;
 }

@@ -6,6 +6,8 @@ const char* to_string(Holder holder) noexcept {
   switch (holder) {
     case Holder::kHand:
       return "hand";
+    case Holder::kGuidingHand:
+      return "at the tip";
     case Holder::kBare45g:
       return "bare 45 g";
     case Holder::kBare150g:
@@ -22,6 +24,15 @@ StylusHold make_hand() noexcept {
   hand.turning_nmm_per_rad = 300.0;
   hand.turning_damping_nmms_per_rad = 8.0;
   hand.inertia_kg_mm2 = 50.0;
+  return hand;
+}
+
+StylusHold make_guiding_hand(double tip_mm) noexcept {
+  StylusHold hand = make_hand();
+  hand.point_mm = tip_mm;
+  // 0.1 kg at the stylus, 150 mm away: follows with the 0.08 s of H1 and does not swing.
+  hand.turning_nmm_per_rad = 1500.0;
+  hand.turning_damping_nmms_per_rad = 120.0;
   return hand;
 }
 

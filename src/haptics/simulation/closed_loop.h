@@ -11,13 +11,15 @@
 namespace trocar {
 
 /// Who holds the simulated device.
-enum class Holder { kHand, kBare45g, kBare150g };
-inline constexpr std::array kAllHolders{Holder::kHand, Holder::kBare45g, Holder::kBare150g};
+enum class Holder { kHand, kGuidingHand, kBare45g, kBare150g };
+inline constexpr std::array kAllHolders{Holder::kHand, Holder::kGuidingHand, Holder::kBare45g, Holder::kBare150g};
 const char* to_string(Holder holder) noexcept;
 
 /// The hand of physics.md H1, and how it holds the orientation. The springs about the grip are [assumed]: a pen grip of
 /// two fingers 30 mm apart with the hand's stiffness between them. Range 50..1000 N mm/rad.
 StylusHold make_hand() noexcept;
+/// The same hand where it guides the needle at its tip, `tip_mm` before S (physics.md H6).
+StylusHold make_guiding_hand(double tip_mm) noexcept;
 
 /// A simulated device in closed loop with the tick. The pose is told in counts of the device's encoders; the wrench
 /// that comes of it is held for a tick and acts one whole tick late (1.5 ticks of delay in all at 1 kHz: sampled,

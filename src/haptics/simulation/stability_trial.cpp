@@ -32,9 +32,10 @@ void carry_in(ClosedLoop& loop, double depth_mm) noexcept {
 }
 
 /// A hand that wants to stay here, or nobody.
-StylusHold hold_here(const ClosedLoop& loop, Holder holder) noexcept {
+StylusHold hold_here(const ClosedLoop& loop, Holder holder, double needle_mm) noexcept {
   StylusHold hold;
   if (holder == Holder::kHand) hold = make_hand();
+  if (holder == Holder::kGuidingHand) hold = make_guiding_hand(needle_mm);
   hold.X_PS = loop.stylus().X_PS;
   return hold;
 }
@@ -56,7 +57,7 @@ StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, c
                                      Holder holder, const StabilityTrial& trial) {
   const auto loop = std::make_unique<ClosedLoop>(scene, preset, holder);
   carry_in(*loop, trial.depth_mm);
-  const StylusHold hold = hold_here(*loop, holder);
+  const StylusHold hold = hold_here(*loop, holder, scene->needle.length_mm);
   // Nothing holds a needle across the skin before it is open.
   const bool is_open =
       loop->last().phase != InsertionPhase::kOutside && loop->last().contact_to_puncture_mm != Vec3::Zero();
@@ -64,7 +65,7 @@ StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, c
   if (is_open && preset.has_torque()) loop->stylus().w_P += Vec3(0.0, trial.tap_rad_per_s, 0.0);
 
   StabilityOutcome outcome;
-  outcome.must_rest = holder == Holder::kHand;
+  outcome.must_rest = holder == Holder::kHand || holder == Holder::kGuidingHand;
   Extent position;
   Extent force;
   const auto ticks = static_cast<int>(trial.seconds / loop->dt_s());

@@ -34,13 +34,16 @@ class RestInTheHand : public ::testing::TestWithParam<const char*> {};
 TEST_P(RestInTheHand, ComesAndTakesNoEnergy) {
   const DevicePreset preset = device(GetParam());
   const auto scene = scene_for(preset, liver_way());
-  for (const double depth_mm : {0.5, 8.0, 12.5, 24.5, 50.0}) {
-    StabilityTrial trial;
-    trial.depth_mm = depth_mm;
-    trial.seconds = 6.0;
-    const StabilityOutcome outcome = run_stability_trial(scene, preset, Holder::kHand, trial);
-    EXPECT_TRUE(outcome.is_bounded()) << depth_mm << ": " << outcome.position_mm << " mm, " << outcome.force_n << " N";
-    EXPECT_TRUE(outcome.is_passive()) << depth_mm << ": " << outcome.growth_mj << " mJ";
+  for (const Holder holder : {Holder::kHand, Holder::kGuidingHand}) {
+    for (const double depth_mm : {0.5, 8.0, 12.5, 24.5, 50.0}) {
+      SCOPED_TRACE(::testing::Message() << to_string(holder) << " " << depth_mm << " mm");
+      StabilityTrial trial;
+      trial.depth_mm = depth_mm;
+      trial.seconds = 6.0;
+      const StabilityOutcome outcome = run_stability_trial(scene, preset, holder, trial);
+      EXPECT_TRUE(outcome.is_bounded()) << outcome.position_mm << " mm, " << outcome.force_n << " N";
+      EXPECT_TRUE(outcome.is_passive()) << outcome.growth_mj << " mJ";
+    }
   }
 }
 INSTANTIATE_TEST_SUITE_P(Devices, RestInTheHand, ::testing::Values("premium", "omni", "omega6", "sigma7", "falcon"));

@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
+#include "haptics/simulation/closed_loop.h"
 #include "haptics/simulation/encoder.h"
 #include "haptics/simulation/passivity_observer.h"
 #include "haptics/simulation/rotation.h"
@@ -86,6 +87,80 @@ TEST(VirtualStylus, SwingsWithThePeriodOfItsSprings) {
       },
       10000, kFine_s);
   EXPECT_NEAR(turning, 2.0 * std::numbers::pi * std::sqrt(0.05 / 300.0), 1e-4);
+}
+
+/// A stylus held at a point far from its mass, without weight.
+StylusHold held_at(double point_mm) {
+  StylusHold hold;
+  hold.point_mm = point_mm;
+  hold.stiffness_n_per_mm = 1000.0;
+  return hold;
+}
+VirtualStylusParams weightless() {
+  VirtualStylusParams params;
+  params.weight_n = 0.0;
+  return params;
+}
+
+TEST(VirtualStylus, SwingsAboutThePointWhereItIsHeldWithItsMassAtS) {
+  constexpr double kFine_s = 1e-4;
+  constexpr double kPoint_mm = 150.0;
+  StylusHold hold = held_at(kPoint_mm);
+  hold.turning_nmm_per_rad = 1500.0;
+  VirtualStylusState state;
+  const Mat3 turned = rotation_from_vector({0.0, 0.02, 0.0});
+  state.X_PS = Pose(turned, Vec3(0.0, 0.0, kPoint_mm) - kPoint_mm * turned.col(2));
+  const double period = period_s(
+      [&] {
+        step_stylus(state, weightless(), hold, {}, Vec3::UnitY(), kFine_s);
+        EXPECT_LT((state.X_PS * Vec3(0.0, 0.0, kPoint_mm) - Vec3(0.0, 0.0, kPoint_mm)).norm(), 0.01);
+        return rotation_vector(state.X_PS.R()).y();
+      },
+      20000, kFine_s);
+  const double inertia = 0.05 + 0.1 / 1000.0 * kPoint_mm * kPoint_mm;  // N mm s^2: of the stylus, and of its mass
+  EXPECT_NEAR(period, 2.0 * std::numbers::pi * std::sqrt(inertia / 1500.0), 1e-3);
+}
+
+TEST(VirtualStylus, HeldAtAPointKeepsItsEnergyAndMomentum) {
+  constexpr double kFine_s = 1e-5;
+  StylusHold hold;  // a lump at the tip, with no spring: stylus and lump fly as a dumb-bell
+  hold.point_mm = 100.0;
+  hold.mass_kg = 0.1;
+  VirtualStylusState state;
+  state.v_P = Vec3(-100.0, 0.0, 20.0);
+  state.w_P = Vec3(0.0, 2.0, 0.0);
+  const auto velocity_of_lump = [&] {
+    const Vec3 r = hold.point_mm * state.X_PS.R().col(2);
+    return Vec3(state.v_P + state.w_P.cross(r));
+  };
+  const auto momentum = [&] { return Vec3(0.1 * (state.v_P + velocity_of_lump())); };
+  const auto energy = [&] {
+    return 0.05 * (state.v_P.squaredNorm() + velocity_of_lump().squaredNorm()) + 0.5 * 50.0 * state.w_P.squaredNorm();
+  };
+  const Vec3 momentum_before = momentum();
+  const double energy_before = energy();
+  for (int i = 0; i < 100000; ++i) step_stylus(state, weightless(), hold, {}, Vec3::UnitY(), kFine_s);
+  EXPECT_GT(rotation_vector(state.X_PS.R()).norm(), 1.9);  // two radians on
+  EXPECT_LT((momentum() - momentum_before).norm(), 2e-3 * momentum_before.norm());
+  EXPECT_NEAR(energy() / energy_before, 1.0, 2e-3);
+}
+
+TEST(VirtualStylus, FrictionStopsAPushBelowItAtAnyPointOfHold) {
+  VirtualStylusParams params = weightless();
+  params.friction_n = 0.2;
+  params.turning_friction_nmm = 0.5;
+  for (const double point_mm : {0.0, 150.0}) {
+    StylusHold hold = make_guiding_hand(point_mm);
+    VirtualStylusState state;
+    hold.X_PS = state.X_PS;
+    for (int i = 0; i < 200; ++i)
+      step_stylus(state, params, hold, {{0.19, 0.0, 0.0}, Vec3::Zero()}, Vec3::UnitY(), kDt_s);
+    EXPECT_EQ(state.X_PS.p().norm(), 0.0) << point_mm;
+    EXPECT_EQ(state.v_P.norm(), 0.0) << point_mm;
+    for (int i = 0; i < 2000; ++i)
+      step_stylus(state, params, hold, {{0.5, 0.0, 0.0}, Vec3::Zero()}, Vec3::UnitY(), kDt_s);
+    EXPECT_GT(state.X_PS.p().x(), 0.1) << point_mm;
+  }
 }
 
 TEST(VirtualStylus, HoldIsStableForAnyStep) {
