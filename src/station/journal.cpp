@@ -4,6 +4,7 @@
 #include "core/atomic_file.h"
 
 namespace trocar {
+namespace fs = std::filesystem;
 namespace {
 
 constexpr int kVersion = 1;
@@ -51,25 +52,66 @@ std::optional<SeatState> from_json(const Json& json) {
   return state;
 }
 
+std::optional<SeatState> load_state(const fs::path& file) {
+  const Result<Json> json = load_json(file);
+  return json ? from_json(*json) : std::nullopt;
+}
+
+/// Nothing where another trainer holds the lock, or it cannot be had.
+std::optional<FileLock> lock_of(fs::path file) {
+  auto lock = FileLock::try_lock(file.replace_extension(".lock"));
+  return lock ? *std::move(lock) : std::nullopt;
+}
+
+fs::path file_of(const fs::path& folder, const SeatState& state) {
+  return folder / (state.session.stem().string() + ".json");
+}
+
 }  // namespace
 
-Status Journal::begin(const SeatState& state) const {
-  return write_file_atomically(path_, json_text(to_json(state)));
+Status Journal::begin(const SeatState& state) {
+  clear();
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) return fail("cannot make the folder: " + error.message(), folder_.string(), "choose another folder");
+  file_ = file_of(folder_, state);
+  TROCAR_TRY(lock_, FileLock::try_lock(fs::path(file_).replace_extension(".lock")));
+  if (!lock_) return fail("the attempt runs in another trainer", file_.string(), "choose another name");
+  return write_file_atomically(file_, json_text(to_json(state)));
 }
 
-void Journal::clear() const noexcept {
-  std::error_code error;
-  std::filesystem::remove(path_, error);
+void Journal::clear() noexcept {
+  if (!lock_) return;
+  std::error_code ignored;
+  fs::remove(file_, ignored);
+  lock_->remove();
+  lock_.reset();
 }
 
-std::optional<SeatState> Journal::recover() const {
+std::optional<SeatState> Journal::find_cut_off() const {
+  std::optional<SeatState> newest;
+  fs::file_time_type newest_time;
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path_, error)) return std::nullopt;
-  const Result<Json> json = load_json(path_);
-  if (!json) return std::nullopt;
-  auto state = from_json(*json);
-  if (!state || !std::filesystem::is_regular_file(state->session, error)) return std::nullopt;
-  return state;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
+    if (entry.path().extension() != ".json") continue;
+    std::optional<SeatState> state = load_state(entry.path());
+    if (!state || !fs::is_regular_file(state->session, error) || !lock_of(entry.path())) continue;
+    const fs::file_time_type time = fs::last_write_time(entry.path(), error);
+    if (newest && time < newest_time) continue;
+    newest = std::move(state);
+    newest_time = time;
+  }
+  return newest;
+}
+
+bool Journal::forget(const SeatState& state) const noexcept {
+  const fs::path file = file_of(folder_, state);
+  std::optional<FileLock> lock = lock_of(file);
+  if (!lock) return false;
+  std::error_code error;
+  const bool was_there = fs::remove(file, error);
+  lock->remove();
+  return was_there;
 }
 
 }  // namespace trocar

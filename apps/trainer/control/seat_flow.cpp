@@ -94,7 +94,8 @@ SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
   connect(stop_, &QShortcut::activated, this, [this] {
     if (attempt_) attempt_->toggle_forces();
   });
-  if (const auto cut_off = journal_.recover(); cut_off && !cut_off->session.empty())
+  offered_ = journal_.find_cut_off();
+  if (offered_)
     window_.start().offer_recovery(
         tr("The last attempt was cut off. What was recorded is kept: it can be scored and seen again."));
   clock_.start();
@@ -110,7 +111,9 @@ SeatFlow::~SeatFlow() = default;
 void SeatFlow::connect_pages() {
   connect(&window_.start(), &StartPage::start_wanted, this, &SeatFlow::open);
   connect(&window_.start(), &StartPage::recovery_wanted, this, &SeatFlow::recover);
-  connect(&window_.start(), &StartPage::recovery_declined, this, [this] { journal_.clear(); });
+  connect(&window_.start(), &StartPage::recovery_declined, this, [this] {
+    if (offered_) journal_.forget(*std::exchange(offered_, {}));
+  });
   connect(&window_.briefing(), &BriefingPage::back_wanted, this, &SeatFlow::go_to_start);
   connect(&window_.briefing(), &BriefingPage::begin_wanted, this, &SeatFlow::begin_attempt);
   FeedbackPanel& feedback = window_.work().feedback();
@@ -272,10 +275,13 @@ void SeatFlow::look_at_replay() {
 
 /// Opens the case of the attempt that was cut off; its replay follows when that is there.
 void SeatFlow::recover() {
-  cut_off_ = journal_.recover();
-  journal_.clear();
   window_.start().offer_recovery({});
-  if (!cut_off_) return;
+  if (!offered_) return;
+  cut_off_ = std::exchange(offered_, {});
+  if (!journal_.forget(*cut_off_)) {
+    cut_off_.reset();
+    return window_.show_banner(tr("The attempt was opened in another trainer meanwhile."), false);
+  }
   SeatChoice choice = window_.start().choice();
   choice.task = cut_off_->choice.options.task;
   choice.patient = cut_off_->choice.patient_source;

@@ -66,7 +66,8 @@ class SeatFlow : public QObject {
   BackgroundJob<std::shared_ptr<const OpenCase>> opening_;
   BackgroundJob<AttemptReplay> loading_;
   RetiredJobs retired_;
-  std::optional<SeatState> cut_off_;
+  std::optional<SeatState> offered_;  ///< Was cut off; offered on the start page.
+  std::optional<SeatState> cut_off_;  ///< Being opened, to be scored and shown.
   std::shared_ptr<const OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
   std::shared_ptr<const OpenCase> open_;
   std::shared_ptr<SeatServers> servers_;  ///< Kept from one attempt to the next.
