@@ -106,7 +106,8 @@ Json result_json(const Arguments& arguments, const Case& the_case, const RunResu
                {"simulated_s", result.simulated_s},
                {"active_s", result.active_s},
                {"ticks", result.ticks},
-               {"score", outcome.score},
+               {"score", outcome.is_scored() ? Json(outcome.score) : Json(nullptr)},
+               {"not_scored", outcome.is_scored() ? Json(nullptr) : Json(outcome.not_scored)},
                {"target_reached", outcome.target_reached},
                {"parts", parts},
                {"punctures", punctures},
@@ -144,7 +145,11 @@ void print_result(const Arguments& arguments, const Case& the_case, const RunRes
     fmt::print("  core: {:.1f} mm target, {:.1f} mm organ, {:.1f} mm vessel, {:.1f} mm other\n", core.target_mm,
                core.organ_mm, core.vessel_mm, core.other_mm);
   }
-  fmt::print("score {:.0f} of 100, target {}\n", outcome.score, outcome.target_reached ? "reached" : "missed");
+  if (outcome.is_scored()) {
+    fmt::print("score {:.0f} of 100, target {}\n", outcome.score, outcome.target_reached ? "reached" : "missed");
+  } else {
+    fmt::print("not scored: {}\n", outcome.not_scored);
+  }
   if (!outcome.risks_touched.empty()) {
     std::vector<std::string> names;
     for (const std::string& name : outcome.risks_touched) names.push_back(structure_words(name));

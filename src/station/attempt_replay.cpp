@@ -24,10 +24,15 @@ const Label* find_entered(const OpenCase& open, const TickEvent& event) {
 
 Result<AttemptReplay> AttemptReplay::load(const std::filesystem::path& path, std::shared_ptr<const OpenCase> open) {
   TROCAR_TRY(Session session, load_session(path));
-  if (session.samples.empty())
-    return fail("the attempt was cut off before its first tick", path.string(), "start another one");
+  Result<AttemptReplay> replay = of(std::move(session), std::move(open));
+  if (!replay) replay.error().where = path.string();
+  return replay;
+}
+
+Result<AttemptReplay> AttemptReplay::of(Session session, std::shared_ptr<const OpenCase> open) {
+  if (session.samples.empty()) return fail("the attempt was cut off before its first tick", {}, "start another one");
   if (session.info.patient_hash != open->the_case.patient->content_hash)
-    return fail("the session is of another patient than the case", path.string(), "open that patient first");
+    return fail("the session is of another patient than the case", {}, "open that patient first");
   const bool was_cut_off = !session.outcome.has_value();
   if (was_cut_off) {
     const Case& the_case = open->the_case;
@@ -41,7 +46,7 @@ AttemptReplay::AttemptReplay(Session session, std::shared_ptr<const OpenCase> op
     : session_(std::move(session)), open_(std::move(open)), was_cut_off_(was_cut_off) {
   find_moments();
   find_worst();
-  moments_.push_back(worst_);
+  if (worst_) moments_.push_back(*worst_);
   std::stable_sort(moments_.begin(), moments_.end(),
                    [](const ReplayMoment& a, const ReplayMoment& b) { return a.time_s < b.time_s; });
 }
@@ -98,36 +103,37 @@ void AttemptReplay::find_moments() {
 }
 
 /// What was at risk comes first; then where the needle was farthest beside the path in the body; then the greatest
-/// force.
+/// force. A needle that met nothing has no worst moment.
 void AttemptReplay::find_worst() {
   const auto risk = std::find_if(moments_.begin(), moments_.end(),
                                  [](const ReplayMoment& m) { return m.kind == ReplayMoment::Kind::kRisk; });
-  worst_.kind = ReplayMoment::Kind::kWorst;
   if (risk != moments_.end()) {
-    worst_.time_s = risk->time_s;
-    worst_.text = risk->text;
+    worst_ = {risk->time_s, ReplayMoment::Kind::kWorst, risk->text};
     return;
   }
   constexpr double kInside_mm = 1.0;
   const Segment& plan_P = session_.info.plan_P.line_P;
   const Vec3 direction_P = plan_P.direction();
   double farthest_mm = -1.0;
+  double farthest_s = 0.0;
   for (const TickSample& sample : session_.samples) {
     if (sample.depth_mm < kInside_mm) continue;
     const double beside_mm = distance_to_line_mm(plan_P.a, direction_P, sample.tip_mm);
     if (beside_mm <= farthest_mm) continue;
     farthest_mm = beside_mm;
-    worst_.time_s = sample.time_s;
+    farthest_s = sample.time_s;
   }
   if (farthest_mm >= 0.0) {
-    worst_.text = fmt::format("{:.1f} mm beside the planned path", farthest_mm);
+    worst_ = {farthest_s, ReplayMoment::Kind::kWorst, fmt::format("{:.1f} mm beside the planned path", farthest_mm)};
     return;
   }
+  constexpr double kFelt_n = 0.05;  // rounds to 0.1 N
   const auto strongest = std::max_element(
       session_.samples.begin(), session_.samples.end(),
       [](const TickSample& a, const TickSample& b) { return axial_resistance_n(a) < axial_resistance_n(b); });
-  worst_.time_s = strongest->time_s;
-  worst_.text = fmt::format("{:.1f} N, and the skin was not pierced", axial_resistance_n(*strongest));
+  if (axial_resistance_n(*strongest) < kFelt_n) return;
+  worst_ = {strongest->time_s, ReplayMoment::Kind::kWorst,
+            fmt::format("{:.1f} N, and the skin was not pierced", axial_resistance_n(*strongest))};
 }
 
 }  // namespace trocar

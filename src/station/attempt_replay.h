@@ -27,6 +27,9 @@ class AttemptReplay {
   /// session of another patient; no ticks.
   static Result<AttemptReplay> load(const std::filesystem::path& session, std::shared_ptr<const OpenCase> open);
 
+  /// The same of a session in memory, whose file could not be written to the end.
+  static Result<AttemptReplay> of(Session session, std::shared_ptr<const OpenCase> open);
+
   const Session& session() const noexcept { return session_; }
   const Outcome& outcome() const noexcept { return *session_.outcome; }
   bool was_cut_off() const noexcept { return was_cut_off_; }
@@ -39,9 +42,10 @@ class AttemptReplay {
   std::optional<Pose> transducer_at(double time_s) const noexcept;
   static constexpr double kTransducerGap_s = 0.1;
 
-  /// By time, the worst among them.
+  /// By time, the worst among them where there is one.
   const std::vector<ReplayMoment>& moments() const noexcept { return moments_; }
-  const ReplayMoment& worst() const noexcept { return worst_; }
+  /// Empty: the needle met nothing.
+  const std::optional<ReplayMoment>& worst() const noexcept { return worst_; }
 
  private:
   AttemptReplay(Session session, std::shared_ptr<const OpenCase> open, bool was_cut_off);
@@ -52,7 +56,7 @@ class AttemptReplay {
   std::shared_ptr<const OpenCase> open_;
   bool was_cut_off_;
   std::vector<ReplayMoment> moments_;
-  ReplayMoment worst_;
+  std::optional<ReplayMoment> worst_;
 };
 
 }  // namespace trocar

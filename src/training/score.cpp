@@ -108,6 +108,14 @@ bool has_reached_target(const Task& task, const Needle& needle, const AttemptMet
   return core && !is_parenchymal && core_share >= kEnoughCore && off_mm <= kLesionReach * task.target_tolerance_mm;
 }
 
+/// Empty: it can be judged.
+std::string why_not_scored(const Needle& needle, const AttemptMetrics& metrics, bool has_fired) {
+  if (!metrics.has_touched_skin) return "the needle never touched the skin";
+  if (!metrics.has_entered) return "the needle did not pierce the skin";
+  if (needle.is_biopsy && !has_fired) return "the gun was not fired";
+  return {};
+}
+
 }  // namespace
 
 Outcome score_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues, const Needle& needle,
@@ -117,6 +125,7 @@ Outcome score_attempt(const Task& task, const VirtualPatient& patient, const Tis
   const AttemptMetrics metrics = measure_attempt(task, patient, tissues, plan, samples, fired, interruptions);
 
   Outcome outcome;
+  outcome.not_scored = why_not_scored(needle, metrics, fired.has_value());
   double possible_mm = 0.0;
   if (needle.is_biopsy) {
     possible_mm = take_core(task, patient, needle, plan.line_P.b, plan.line_P.direction()).target_mm;
@@ -135,12 +144,14 @@ Outcome score_attempt(const Task& task, const VirtualPatient& patient, const Tis
   outcome.parts = parts_of(worth, needle.is_biopsy ? kBiopsy : kPuncture, metrics,
                            metrics.has_entered ? entry_miss_mm(task, plan, metrics) : 0.0, outcome.core,
                            outcome.risks_touched.size(), needle.is_biopsy);
-  for (const ScorePart& part : outcome.parts) outcome.score += part.points;
+  if (outcome.is_scored())
+    for (const ScorePart& part : outcome.parts) outcome.score += part.points;
   outcome.score = std::clamp(outcome.score, 0.0, 100.0);
 
   outcome.target_reached = has_reached_target(task, needle, metrics, outcome.core, worth.core, labels.is_parenchymal());
   outcome.hints = make_hints(
       {task, needle, plan, metrics, outcome.core, stylet_risks, possible_mm, labels.is_parenchymal(), outcome.parts});
+  if (!outcome.is_scored()) outcome.parts.clear();  // a hint may still speak of them
   return outcome;
 }
 

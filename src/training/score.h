@@ -51,10 +51,12 @@ inline bool is_deduction(const ScorePart& part) noexcept {
 /// Result of an attempt. A deviation d (target, entry, angle) with tolerance t is worth max_points/(1 + (d/t)^2); an
 /// expense e (length, time) with limit l is worth max_points*(1 - (e/l)^2), 0 from l on; docs/physics.md, S1. Smaller
 /// is never worse. The parts' points add up to the score, within 0..100. An entry inside the task's entry zone is worth
-/// all points; outside, its deviation counts from the zone's edge. Without a puncture of the skin the score is 0. How
-/// much each part is worth is teaching policy [assumed].
+/// all points; outside, its deviation counts from the zone's edge. An attempt that never pierced the skin, and a biopsy
+/// without a shot, have no end to be judged: they are not scored. How much each part is worth is teaching policy
+/// [assumed].
 struct Outcome {
-  double score = 0.0;  ///< 0..100.
+  std::string not_scored;  ///< Why it is not scored; then the score is 0 and there are no parts. Empty: it is scored.
+  double score = 0.0;      ///< 0..100.
   /// The tip ended within the target tolerance, for a biopsy with a core taken; or within twice the tolerance with a
   /// core that holds at least half of the lesion tissue that was possible. Touched risks are told apart from it.
   bool target_reached = false;
@@ -62,6 +64,8 @@ struct Outcome {
   std::vector<std::string> hints;  ///< What to do better, most important first.
   std::optional<BiopsyCore> core;
   std::vector<std::string> risks_touched;
+
+  bool is_scored() const noexcept { return not_scored.empty(); }
 };
 
 /// Takes the core at a fired tick. The stylet goes straight on from the tip; bone stops it, and what then stays of the

@@ -75,9 +75,10 @@ ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCas
     : replay_(std::move(replay)), open_(std::move(open)), page_(page) {
   fill_plot();
   fill_time_line();
-  const ReplayMoment& worst = replay_.worst();
-  page_.feedback().show_outcome(replay_.outcome(),
-                                tr("Worst moment: %1, after %2 s").arg(to_qt(worst.text)).arg(worst.time_s, 0, 'f', 1));
+  QString worst;
+  if (const auto& moment = replay_.worst())
+    worst = tr("Worst moment: %1, after %2 s").arg(to_qt(moment->text)).arg(moment->time_s, 0, 'f', 1);
+  page_.feedback().show_outcome(replay_.outcome(), worst);
   page_.feedback().show_notes(notes_of(replay_, warnings));
   page_.desk().show_help(Difficulty::kGuided);  // afterwards everybody may see the expert's path
   connect(&page_.feedback(), &FeedbackPanel::worst_wanted, this, &ReplayControl::go_to_worst);
@@ -163,10 +164,11 @@ Status ReplayControl::save_report(const std::filesystem::path& file) const {
 QVariantMap ReplayControl::facts() const {
   QVariantMap facts;
   facts[QStringLiteral("score")] = replay_.outcome().score;
+  facts[QStringLiteral("not_scored")] = to_qt(replay_.outcome().not_scored);
   facts[QStringLiteral("target_reached")] = replay_.outcome().target_reached;
   facts[QStringLiteral("replay_s")] = shown_s_;
   facts[QStringLiteral("duration_s")] = replay_.duration_s();
-  facts[QStringLiteral("worst_s")] = replay_.worst().time_s;
+  facts[QStringLiteral("worst_s")] = replay_.worst() ? replay_.worst()->time_s : 0.0;
   facts[QStringLiteral("probe_from_plan_mm")] = (transducer_at(shown_s_).p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("was_cut_off")] = replay_.was_cut_off();
   facts[QStringLiteral("parameter_changes")] = static_cast<int>(replay_.session().parameters.size());

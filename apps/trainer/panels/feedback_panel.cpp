@@ -4,6 +4,7 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QScrollArea>
+#include <QScrollBar>
 #include <QVBoxLayout>
 #include <algorithm>
 
@@ -16,6 +17,7 @@ namespace {
 
 QString verdict_of(const Outcome& outcome) {
   constexpr double kExcellent = 90.0, kGood = 75.0, kFair = 50.0;
+  if (!outcome.is_scored()) return FeedbackPanel::tr("Not scored: %1").arg(to_qt(outcome.not_scored));
   if (!outcome.risks_touched.empty()) return FeedbackPanel::tr("A structure at risk was touched");
   if (!outcome.target_reached) return FeedbackPanel::tr("The target was missed");
   if (outcome.score >= kExcellent) return FeedbackPanel::tr("Excellent");
@@ -45,9 +47,9 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   setObjectName(QStringLiteral("feedback-panel"));
   auto* outer = new QVBoxLayout(this);
   outer->setContentsMargins(0, 0, 0, 0);
-  auto* scroll = new QScrollArea;
-  scroll->setWidgetResizable(true);
-  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  scroll_ = new QScrollArea;
+  scroll_->setWidgetResizable(true);
+  scroll_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   auto* inside = new QWidget;
   auto* content = new QVBoxLayout(inside);
   content->setContentsMargins(16, 12, 16, 12);
@@ -81,8 +83,8 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   notes_->hide();
   content->addWidget(notes_);
   content->addStretch();
-  scroll->setWidget(inside);
-  outer->addWidget(scroll, 1);
+  scroll_->setWidget(inside);
+  outer->addWidget(scroll_, 1);
   outer->addWidget(make_buttons());
 }
 
@@ -93,27 +95,25 @@ QWidget* FeedbackPanel::make_buttons() {
   grid->setSpacing(8);
   auto* again = make_button("try-again", tr("Try again"), tr("The same case once more"), QStringLiteral("Ctrl+R"));
   again->setProperty("role", "primary");
-  auto* worst = make_button("worst-moment", tr("Worst moment"), tr("Goes to it in the replay (W)"));
+  worst_button_ = make_button("worst-moment", tr("Worst moment"), tr("Goes to it in the replay (W)"));
   auto* other = make_button("other-case", tr("Other case"), tr("Back to the start page"), QStringLiteral("Ctrl+N"));
   auto* report =
       make_button("open-report", tr("Report"), tr("The attempt as a page to keep"), QStringLiteral("Ctrl+P"));
   grid->addWidget(again, 0, 0, 1, 2);
-  grid->addWidget(worst, 1, 0, 1, 2);
+  grid->addWidget(worst_button_, 1, 0, 1, 2);
   grid->addWidget(report, 2, 0);
   grid->addWidget(other, 2, 1);
   connect(again, &QPushButton::clicked, this, &FeedbackPanel::again_wanted);
-  connect(worst, &QPushButton::clicked, this, &FeedbackPanel::worst_wanted);
+  connect(worst_button_, &QPushButton::clicked, this, &FeedbackPanel::worst_wanted);
   connect(other, &QPushButton::clicked, this, &FeedbackPanel::other_case_wanted);
   connect(report, &QPushButton::clicked, this, &FeedbackPanel::report_wanted);
   return bar;
 }
 
-void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_moment) {
-  dial_->set_score(outcome.score);
-  verdict_->setText(verdict_of(outcome));
+void FeedbackPanel::show_parts(const std::vector<ScorePart>& parts) {
   clear(*parts_);
   int row = 0;
-  for (const ScorePart& part : outcome.parts) {
+  for (const ScorePart& part : parts) {
     auto* title = make_label(to_qt(part.title));
     title->setWordWrap(true);
     parts_->addWidget(title, row, 0);
@@ -131,6 +131,13 @@ void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_mo
     parts_->addWidget(points, row + 1, 1);
     row += 2;
   }
+}
+
+void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_moment) {
+  dial_->setVisible(outcome.is_scored());
+  dial_->set_score(outcome.score);
+  verdict_->setText(verdict_of(outcome));
+  show_parts(outcome.parts);
   QStringList hints;
   for (const std::string& hint : outcome.hints) hints << QStringLiteral("•  ") + to_qt(hint);
   hints_->setText(hints.isEmpty() ? tr("Nothing: as the expert does it.") : hints.join(QStringLiteral("\n\n")));
@@ -138,6 +145,8 @@ void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_mo
   core_->setVisible(outcome.core.has_value());
   worst_->setText(worst_moment);
   worst_->setVisible(!worst_moment.isEmpty());
+  worst_button_->setEnabled(!worst_moment.isEmpty());
+  scroll_->verticalScrollBar()->setValue(0);
 }
 
 void FeedbackPanel::show_notes(const QStringList& notes) {

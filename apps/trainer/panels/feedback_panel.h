@@ -6,6 +6,8 @@
 
 class QGridLayout;
 class QLabel;
+class QPushButton;
+class QScrollArea;
 class QVBoxLayout;
 
 namespace trocar::trainer {
@@ -20,6 +22,7 @@ class FeedbackPanel : public QWidget {
  public:
   explicit FeedbackPanel(QWidget* parent = nullptr);
 
+  /// From the top. `worst_moment`: empty where there is none.
   void show_outcome(const Outcome& outcome, const QString& worst_moment);
   /// What happened to the attempt beside the trainee: warnings, interruptions, changed parameters. A line each.
   void show_notes(const QStringList& notes);
@@ -32,7 +35,10 @@ class FeedbackPanel : public QWidget {
 
  private:
   QWidget* make_buttons();
+  void show_parts(const std::vector<ScorePart>& parts);
 
+  QScrollArea* scroll_ = nullptr;
+  QPushButton* worst_button_ = nullptr;
   ScoreDial* dial_ = nullptr;
   QLabel* verdict_ = nullptr;
   QGridLayout* parts_ = nullptr;

@@ -160,18 +160,23 @@ std::string damage_note(const Session& session) {
   return "<p class=\"warning\"><b>This session is damaged.</b> Left out: " + parts + ".</p>";
 }
 
+std::string verdict_of(const Outcome& outcome) {
+  if (!outcome.is_scored()) return "Not scored: " + escape(outcome.not_scored);
+  return outcome.target_reached ? "Target reached" : "Target missed";
+}
+
 std::string result_section(const Session& session) {
   if (!session.outcome && !session.damage.empty()) return damage_note(session);
   if (!session.outcome)
     return "<p class=\"warning\"><b>This session is incomplete.</b> The program ended before the attempt did: there is "
            "no score. The ticks recorded until then are shown below.</p>";
   const Outcome& outcome = *session.outcome;
-  std::string out = damage_note(session) + fmt::format(
-                                               "<section class=\"together\"><h2>Result</h2><div class=\"result\"><div "
-                                               "class=\"ring\">{}<div class=\"verdict\">{}"
-                                               "</div></div><table class=\"parts\"><tbody>",
-                                               score_ring(outcome.score),
-                                               outcome.target_reached ? "Target reached" : "Target missed");
+  std::string out =
+      damage_note(session) + fmt::format(
+                                 "<section class=\"together\"><h2>Result</h2><div class=\"result\"><div "
+                                 "class=\"ring\">{}<div class=\"verdict\">{}"
+                                 "</div></div><table class=\"parts\"><tbody>",
+                                 outcome.is_scored() ? score_ring(outcome.score) : std::string(), verdict_of(outcome));
   for (const ScorePart& part : outcome.parts) out += part_row(part);
   out += "</tbody></table></div>";
   if (!outcome.risks_touched.empty())

@@ -56,7 +56,8 @@ TEST(AttemptReplay, NamesWhatHappenedInOrder) {
   EXPECT_NE(kinds.find("through the skin"), std::string::npos) << kinds;
   EXPECT_NE(kinds.find("through the liver capsule"), std::string::npos) << kinds;
   EXPECT_NE(kinds.find("the gun was fired"), std::string::npos) << kinds;
-  EXPECT_NE(replay->worst().text.find("mm beside"), std::string::npos) << replay->worst().text;
+  ASSERT_TRUE(replay->worst());
+  EXPECT_NE(replay->worst()->text.find("mm beside"), std::string::npos) << replay->worst()->text;
 }
 
 /// A session of two ticks in which the transducer is moved, and one without.
@@ -95,6 +96,23 @@ TEST(AttemptReplay, TellsNoTransducerThatWasNotRecorded) {
   const auto replay = AttemptReplay::load(short_session(folder, {}), recorded().open);
   ASSERT_TRUE(replay) << replay.error().text();
   EXPECT_FALSE(replay->transducer_at(0.5));
+}
+
+TEST(AttemptReplay, ANeedleThatMetNothingHasNoScoreAndNoWorstMoment) {
+  const TemporaryFolder folder;
+  const auto replay = AttemptReplay::load(short_session(folder, {}), recorded().open);  // two ticks in the air
+  ASSERT_TRUE(replay) << replay.error().text();
+  EXPECT_EQ(replay->outcome().not_scored, "the needle never touched the skin");
+  EXPECT_FALSE(replay->worst());
+}
+
+TEST(AttemptReplay, ASessionInMemoryIsSeenLikeOneOfAFile) {
+  auto session = load_session(recorded().session);
+  ASSERT_TRUE(session);
+  const double score = session->outcome->score;
+  const auto replay = AttemptReplay::of(*std::move(session), recorded().open);
+  ASSERT_TRUE(replay) << replay.error().text();
+  EXPECT_EQ(replay->outcome().score, score);
 }
 
 TEST(AttemptReplay, ASessionOfAnotherPatientIsRefused) {

@@ -109,6 +109,7 @@ std::string outcome_to_json(const Outcome& outcome) {
               {"parts", std::move(parts)},
               {"hints", outcome.hints},
               {"risks_touched", outcome.risks_touched}};
+  if (!outcome.is_scored()) object["not_scored"] = outcome.not_scored;
   if (outcome.core) object["core"] = core_json(*outcome.core);
   return object.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -127,6 +128,7 @@ Result<Outcome> outcome_from_json(std::string_view text, const std::string& wher
   }
   outcome.hints = reader.texts("hints");
   outcome.risks_touched = reader.texts("risks_touched");
+  if (object.contains("not_scored")) outcome.not_scored = reader.text("not_scored");
   if (const auto core = object.find("core"); core != object.end()) outcome.core = read_core(*core, is_good);
   if (!is_good) return fail("the session's outcome is damaged", where, "record the session again");
   return outcome;

@@ -179,23 +179,40 @@ TEST(Score, EveryNoviceIsWorseThanTheExpert) {
 
 TEST(Score, ScoresWhatThereIsOfAnUnfinishedAttempt) {
   EXPECT_EQ(score(std::vector<TickSample>{}, {}).score, 0.0);
+  EXPECT_EQ(score(std::vector<TickSample>{}, {}).not_scored, "the needle never touched the skin");
   EXPECT_TRUE(has_hint(score(std::vector<TickSample>{}, {}), "never reached the skin"));
 
   const std::vector<TickSample> whole = make_attempt(make_box_plan().line_P).samples;
   const std::vector<TickSample> loading(whole.begin(), whole.begin() + 270);
   EXPECT_EQ(score(loading, {}).score, 0.0);
+  EXPECT_EQ(score(loading, {}).not_scored, "the needle did not pierce the skin");
   EXPECT_TRUE(has_hint(score(loading, {}), "skin was not pierced"));
 
   for (const std::size_t ticks : {400u, 1000u, 2000u, 2700u}) {  // killed on the way in
     const std::vector<TickSample> killed(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(ticks));
     const Outcome outcome = score(killed, {});
-    EXPECT_TRUE(std::isfinite(outcome.score));
+    EXPECT_EQ(outcome.not_scored, "the gun was not fired");
+    EXPECT_EQ(outcome.score, 0.0);
+    EXPECT_TRUE(outcome.parts.empty());
     EXPECT_FALSE(outcome.target_reached);
     EXPECT_FALSE(outcome.core.has_value());
-    EXPECT_LT(outcome.score, 75.0);
     EXPECT_TRUE(has_hint(outcome, "No core was taken"));
   }
   EXPECT_FALSE(score(whole, whole.size() + 5).core.has_value());
+}
+
+TEST(Score, ADeepAttemptWithoutAShotIsNotScoredButAPunctureWithoutAGunIs) {
+  const Attempt attempt = make_attempt({{50.0, 0.0, 50.0}, {50.0, 25.0, 50.0}});
+  const Outcome unfired = score(attempt.samples, {});
+  EXPECT_EQ(unfired.not_scored, "the gun was not fired");
+  EXPECT_TRUE(has_hint(unfired, "No core was taken"));
+  EXPECT_TRUE(score(attempt.samples, attempt.fired).is_scored());
+  Needle needle = make_gun();
+  needle.is_biopsy = false;
+  const Outcome puncture =
+      score_attempt(make_box_task(), patient(), make_box_tissues(), needle, make_box_plan(), attempt.samples, {});
+  EXPECT_TRUE(puncture.is_scored());
+  EXPECT_GT(puncture.score, 0.0);
 }
 
 TEST(Hints, TellDirectionsInThePatientsTerms) {
