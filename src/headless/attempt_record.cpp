@@ -85,7 +85,12 @@ void AttemptRecord::note(const HandCommand& command) noexcept {
 
 Status AttemptRecord::append(const TickSample& sample) {
   samples_.push_back(sample);
-  return writer_.append(sample);
+  return written(writer_.append(sample));
+}
+
+Status AttemptRecord::written(Status status) {
+  if (!status && !write_failure_) write_failure_ = status.error();
+  return status;
 }
 
 Status AttemptRecord::note_parameters(const SceneParameters& parameters) {
@@ -123,25 +128,25 @@ Status AttemptRecord::record(std::size_t tick, const SceneParameters& parameters
   if (!tissues_) info_.force_model = force_model_of(parameters, info_.force_model);
   tissues_ = std::move(table);
   parameters_ = parameters;
-  return writer_.append(row);
+  parameter_rows_.push_back(std::move(row));
+  return written(writer_.append(parameter_rows_.back()));
 }
 
 Status AttemptRecord::append(const Interruption& interruption) {
   interruptions_.push_back(interruption);
-  return writer_.append(interruption);
+  return written(writer_.append(interruption));
 }
 
 Status AttemptRecord::append(const TransducerSample& sample) {
-  if (transducer_s_ && sample.time_s < *transducer_s_ + kTransducerEvery_s) return {};
-  transducer_s_ = sample.time_s;
-  return writer_.append(sample);
+  if (!transducer_.empty() && sample.time_s < transducer_.back().time_s + kTransducerEvery_s) return {};
+  transducer_.push_back(sample);
+  return written(writer_.append(sample));
 }
 
-Result<RunResult> AttemptRecord::finish() {
+RunResult AttemptRecord::score() {
   RunResult result;
   result.outcome = score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,
                                  the_case_->plan, samples_, fired_, interruptions_);
-  TROCAR_TRY_STATUS(writer_.finish(result.outcome, fired_));
   result.punctures = find_punctures(info_, samples_);
   result.force_model = info_.force_model;
   result.ticks = samples_.size();
@@ -149,6 +154,34 @@ Result<RunResult> AttemptRecord::finish() {
   result.active_s = active_time_s(0.0, result.simulated_s, interruptions_);
   if (has_lost_scene_ || !unknown_.empty())
     result.warnings.push_back("the server did not tell the parameters of some ticks: the session lacks a change");
+  return result;
+}
+
+Result<RunResult> AttemptRecord::finish() {
+  RunResult result = score();
+  TROCAR_TRY_STATUS(written(writer_.finish(result.outcome, fired_)));
+  return result;
+}
+
+RunResult AttemptRecord::finish_unsaved() {
+  RunResult result = score();
+  const std::size_t saved = std::min(writer_.saved_ticks(), samples_.size());
+  const double saved_s = saved > 0 ? samples_[saved - 1].time_s : 0.0;
+  const Error failure = write_failure_.value_or(Error{});
+  result.cut_short = fmt::format(
+      "The recording ended after {:.1f} s: {} ({}). The score counts all of it; the file holds the first "
+      "{:.1f} s and no score",
+      result.simulated_s, failure.what, failure.where, saved_s);
+  result.warnings.push_back(result.cut_short);
+  Session& session = result.unsaved.emplace();
+  session.info = std::move(info_);
+  session.samples = std::move(samples_);
+  session.transducer = std::move(transducer_);
+  session.parameters = std::move(parameter_rows_);
+  session.interruptions = interruptions_;
+  session.outcome = result.outcome;
+  session.fired = fired_;
+  session.is_incomplete = true;
   return result;
 }
 

@@ -52,6 +52,10 @@ class AttemptRecord {
   const std::vector<TickSample>& samples() const noexcept { return samples_; }  ///< So far.
   /// Scores, and closes the session file.
   Result<RunResult> finish();
+  /// The first failure to write the session file; empty: all is well.
+  const std::optional<Error>& write_failure() const noexcept { return write_failure_; }
+  /// After such a failure: scores what was recorded, and says how much of it the file lacks.
+  RunResult finish_unsaved();
 
  private:
   /// A sample whose scene is not known yet.
@@ -60,6 +64,8 @@ class AttemptRecord {
     std::uint64_t number;
   };
   Status record(std::size_t tick, const SceneParameters& parameters);
+  Status written(Status status);
+  RunResult score();
 
   AttemptRecord(const Case& the_case, SessionInfo info, SessionWriter writer, std::size_t expected_ticks);
 
@@ -68,7 +74,9 @@ class AttemptRecord {
   SessionWriter writer_;
   std::vector<TickSample> samples_;
   std::optional<std::size_t> fired_;
-  std::optional<double> transducer_s_;  ///< Of the last one kept.
+  std::vector<TransducerSample> transducer_;  ///< Those that were kept.
+  std::vector<SessionParameters> parameter_rows_;
+  std::optional<Error> write_failure_;
   SceneParameters parameters_;          ///< Recorded last.
   std::optional<TissueTable> tissues_;  ///< Their table; none: nothing was recorded yet.
   std::uint64_t scene_ = 0;             ///< Of the last sample.

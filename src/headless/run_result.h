@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ struct RunResult {
   std::uint64_t ticks_missing = 0;     ///< Of the session: ticks that a live server made and nobody received.
   std::vector<ServerFigures> servers;  ///< Of an attempt through live servers: the needle's first.
   std::vector<std::string> warnings;
+  std::string cut_short;  ///< Why the attempt was ended before the operator ended it; empty: it was not.
+  /// All that was recorded, where the file could not take it to the end: the file lacks the last of it and the score.
+  std::optional<Session> unsaved;
 };
 
 /// What went through the skin, in order.

@@ -72,6 +72,8 @@ struct AttemptView {
   std::string progress;            ///< What is being done in kStarting and kFinishing.
   double progress_fraction = 0.0;  ///< 0..1
   std::string banner;              ///< One line that must be seen; empty: all is well.
+  std::string recovered;           ///< What the last recovery of a server was, in a sentence.
+  int recoveries = 0;              ///< How often forces came back after a server had ended or was away.
   std::string message;             ///< What came of the last set_parameters(), or of a command.
   std::string hint;                ///< What to do now; guided attempts alone; empty: nothing to say.
   NeedleView needle;

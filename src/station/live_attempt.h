@@ -2,11 +2,13 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/disk_space.h"
 #include "headless/own_server.h"
 #include "headless/run_result.h"
 #include "station/attempt_view.h"
@@ -36,6 +38,8 @@ struct AttemptOptions {
   std::optional<Pose> X_PT_start;  ///< Empty: the case's.
   /// How long a server may be silent before it is started again; one that has no processor, four times as long.
   std::chrono::milliseconds patience{8000};
+  /// Asked about the session's folder once a second while it is recorded; tests put another disk in its place.
+  std::function<std::optional<std::uintmax_t>(const std::filesystem::path&)> free_bytes = find_free_bytes;
 };
 
 /// Whether set_hand() moves a device of that name; else it moves itself, or a person does.

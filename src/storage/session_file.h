@@ -84,6 +84,7 @@ class SessionWriter {
   /// Writes what is buffered, then the outcome, and makes it a single file again. `fired` is a sample's index. Nothing
   /// can be appended afterwards.
   Status finish(const Outcome& outcome, std::optional<std::size_t> fired);
+  std::size_t saved_ticks() const noexcept;  ///< Committed so far.
 
  private:
   struct Impl;

@@ -57,6 +57,7 @@ struct SessionWriter::Impl {
   SessionInfo info;
   std::size_t batch_ticks = 1;
   int next_tick = 0;
+  std::size_t saved_ticks = 0;
   double batch_start_s = 0.0;
   std::optional<Error> failure;
   bool is_finished = false;
@@ -191,6 +192,7 @@ Status SessionWriter::Impl::flush() {
     database << "COMMIT";
   });
   if (!status) failure = status.error();
+  if (status) saved_ticks += samples.size();
   clear();
   return status;
 }
@@ -271,6 +273,10 @@ Status SessionWriter::append(const Interruption& interruption) {
   return {};
 }
 
+std::size_t SessionWriter::saved_ticks() const noexcept {
+  return impl_->saved_ticks;
+}
+
 Status SessionWriter::finish(const Outcome& outcome, std::optional<std::size_t> fired) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   TROCAR_CHECK(!fired || *fired < static_cast<std::size_t>(impl_->next_tick));
@@ -278,7 +284,7 @@ Status SessionWriter::finish(const Outcome& outcome, std::optional<std::size_t> 
   TROCAR_TRY_STATUS(impl_->flush());
   const Status status = guarded("the session's outcome cannot be written", impl_->path, kWriteAdvice, [&] {
     double score = outcome.score;
-    soci::indicator score_indicator = std::isnan(score) ? soci::i_null : soci::i_ok;
+    soci::indicator score_indicator = std::isnan(score) || !outcome.is_scored() ? soci::i_null : soci::i_ok;
     int target_reached = outcome.target_reached ? 1 : 0;
     int fired_tick = fired ? static_cast<int>(*fired) : 0;
     soci::indicator fired_indicator = fired ? soci::i_ok : soci::i_null;

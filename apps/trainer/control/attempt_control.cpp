@@ -95,7 +95,9 @@ void AttemptControl::connect_panel() {
   connect(&panel, &PuncturePanel::clamp_wanted, this, &AttemptControl::toggle_clamp);
   connect(&panel, &PuncturePanel::aim_wanted, this, &AttemptControl::aim);
   connect(&panel, &PuncturePanel::fire_wanted, this, [this] { attempt_.fire(); });
-  connect(&panel, &PuncturePanel::end_wanted, this, [this] { attempt_.finish(); });
+  connect(&panel, &PuncturePanel::end_wanted, this, &AttemptControl::ask_to_end);
+  connect(&panel, &PuncturePanel::confirmed, this,
+          [this] { question_ == Question::kEnd ? attempt_.finish() : Q_EMIT close_confirmed(); });
   connect(&gestures_, &ToolGestures::gestured, this, &AttemptControl::gesture);
   connect(&gestures_, &ToolGestures::key_struck, this, &AttemptControl::strike);
   connect(&gestures_, &ToolGestures::taken, &panel, &PuncturePanel::show_hand);
@@ -113,8 +115,21 @@ void AttemptControl::take(ToolInHand tool) {
 void AttemptControl::strike(int key) {
   if (key == Qt::Key_H) aim();
   if (key == Qt::Key_X) toggle_clamp();
-  if (key == Qt::Key_E) attempt_.finish();
+  if (key == Qt::Key_E) ask_to_end();
   if (key == Qt::Key_Return || key == Qt::Key_Enter) attempt_.fire();
+}
+
+void AttemptControl::ask_to_end() {
+  question_ = Question::kEnd;
+  page_.puncture().ask(tr("End the attempt and score it? Until then it goes on."), tr("End and score (Enter)"));
+}
+
+void AttemptControl::ask_to_close() {
+  question_ = Question::kClose;
+  page_.puncture().ask(
+      tr("Close the trainer? The attempt ends here. Its recording is kept, and the next start offers to "
+         "score it."),
+      tr("Close (Enter)"));
 }
 
 ViewScale AttemptControl::scale_of_3d() const {
@@ -277,6 +292,7 @@ QVariantMap AttemptControl::facts() const {
   facts[QStringLiteral("probe_pressed_mm")] = view_.probe.pressed_mm;
   facts[QStringLiteral("probe_force_n")] = view_.probe.contact_n;
   facts[QStringLiteral("probe_from_plan_mm")] = (view_.probe.X_PT.p() - open_->X_PT_start.p()).norm();
+  facts[QStringLiteral("is_asking")] = page_.puncture().is_asking();
   facts[QStringLiteral("restarts")] = view_.servers[0].restarts;
   facts[QStringLiteral("session")] = to_qt(attempt_.session_path().string());
   return facts;

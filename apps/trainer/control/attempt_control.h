@@ -28,10 +28,18 @@ class AttemptControl : public QObject {
   const AttemptView& view() const noexcept { return view_; }  ///< Of the last frame.
   LiveAttempt& attempt() noexcept { return attempt_; }
   void toggle_forces();
+  /// Asks whether to end and score the attempt, which goes on meanwhile.
+  void ask_to_end();
+  /// Asks whether to close the program; close_confirmed says yes.
+  void ask_to_close();
   void end_server(const QString& tool);
   QVariantMap facts() const;
 
+ Q_SIGNALS:
+  void close_confirmed();
+
  private:
+  enum class Question { kEnd, kClose };
   void connect_panel();
   void gesture(const Gesture& gesture);
   void strike(int key);
@@ -60,6 +68,7 @@ class AttemptControl : public QObject {
   bool is_clamped_[2] = {false, false};  ///< By HandTool.
   AttemptView view_;
   double still_s_ = 0.0;
+  Question question_ = Question::kEnd;  ///< Asked last.
   QString said_;
   double said_s_ = 0.0;  ///< So long it is still shown.
   std::size_t frame_ = 0;

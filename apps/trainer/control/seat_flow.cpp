@@ -8,6 +8,7 @@
 
 #include "control/attempt_control.h"
 #include "control/replay_control.h"
+#include "core/disk_space.h"
 #include "core/user_folders.h"
 #include "desk/desk.h"
 #include "pages/briefing_page.h"
@@ -23,6 +24,7 @@
 #include "shell/parts.h"
 #include "shell/status_strip.h"
 #include "shell/trainer_application.h"
+#include "station/recording_room.h"
 #include "views/patient_view.h"
 #include "views/time_line.h"
 #include "views/ultrasound_view.h"
@@ -60,9 +62,10 @@ ServerLine line_of(const ServerView& server, const QString& tool) {
   return line;
 }
 
-/// "No gamepad is connected: plug one in." Where it was is for the tooltip.
+/// "No gamepad is connected: plug one in."; a file or folder is named: "Cannot write (/disk/a): choose another folder."
 QString sentence_of(const Error& error) {
   QString text = to_qt(error.what);
+  if (error.where.starts_with('/')) text += QStringLiteral(" (%1)").arg(to_qt(error.where));
   if (!error.advice.empty()) text += QStringLiteral(": ") + to_qt(error.advice);
   if (!text.isEmpty()) text[0] = text[0].toUpper();
   return text.endsWith('.') ? text : text + '.';
@@ -85,9 +88,6 @@ std::vector<std::string> texts(const QStringList& list) {
 
 SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
     : QObject(&window), window_(window), state_folder_(std::move(state_folder)), journal_(state_folder_) {
-  std::error_code error;
-  std::filesystem::create_directories(state_folder_ / "sessions", error);
-  if (error) window_.show_banner(tr("Sessions cannot be kept in %1").arg(to_qt(state_folder_.string())), true);
   connect_pages();
   stop_ = new QShortcut(QKeySequence(Qt::Key_Space), &window_);
   stop_->setEnabled(false);  // elsewhere the key belongs to buttons and the time line
@@ -98,6 +98,7 @@ SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
   if (offered_)
     window_.start().offer_recovery(
         tr("The last attempt was cut off. What was recorded is kept: it can be scored and seen again."));
+  can_record();
   clock_.start();
   timer_.setTimerType(Qt::PreciseTimer);
   timer_.setInterval(kFrame_ms);
@@ -147,12 +148,13 @@ void SeatFlow::go_to_start() {
   stop_->setEnabled(false);
   window_.strip().show_forces(false, false);
   window_.strip().show_servers({});
-  window_.show_banner({}, false);
+  window_.show_banner({});
   window_.show_page(QStringLiteral("start"));
+  can_record();
 }
 
 void SeatFlow::go_to_case_builder() {
-  if (attempt_) return window_.show_banner(tr("End the attempt first (E)."), false);
+  if (attempt_) return window_.tell(tr("End the attempt first (E)."), BannerKind::kWarning);
   window_.show_page(QStringLiteral("case-builder"));
 }
 
@@ -199,8 +201,25 @@ void SeatFlow::show_opened() {
   if (cut_off_) load_replay(std::exchange(cut_off_, {})->session);
 }
 
+/// Whether sessions can be kept; what is wrong, or will be soon, is shown.
+bool SeatFlow::can_record() {
+  const std::filesystem::path folder = state_folder_ / "sessions";
+  if (const Status made = make_writable_folder(folder); !made) {
+    window_.show_banner(tr("No attempt can be recorded in %1: %2. Start trocar-trainer with --state and a folder that "
+                           "you can write to.")
+                            .arg(to_qt(folder.string()), to_qt(made.error().what)),
+                        BannerKind::kError);
+    return false;
+  }
+  const RecordingRoom room(folder, find_free_bytes(folder));
+  const Status start = room.check_start();
+  if (!start) window_.show_banner(sentence_of(start.error()), BannerKind::kError);
+  if (start && !room.start_warning().empty()) window_.show_banner(to_qt(room.start_warning()));
+  return start.has_value();
+}
+
 void SeatFlow::begin_attempt() {
-  if (!open_) return;
+  if (!open_ || !can_record()) return;
   AttemptOptions options;
   const QString name = QDateTime::currentDateTime().toString(QStringLiteral("yyyy-MM-dd_HH-mm-ss-zzz"));
   options.session = state_folder_ / "sessions" / to_std(name + QStringLiteral(".trocar"));
@@ -213,12 +232,20 @@ void SeatFlow::begin_attempt() {
     options.X_PN_start = open_->neutral.X_PN;
     options.X_PT_start = open_->neutral.X_PT;
   }
-  replay_.reset();
   if (const Status kept = journal_.begin({case_choice(choice_), options.session}); !kept)
-    window_.show_banner(to_qt(kept.error().text()), true);
+    return window_.show_banner(sentence_of(kept.error()), BannerKind::kError);
+  replay_.reset();
+  recoveries_ = 0;
   window_.work().show_puncture();
   window_.show_page(QStringLiteral("puncture"));
   attempt_ = std::make_unique<AttemptControl>(open_, choice_, std::move(options), servers_, window_.work());
+  connect(
+      attempt_.get(), &AttemptControl::close_confirmed, this,
+      [this] {
+        is_close_confirmed_ = true;
+        window_.close();
+      },
+      Qt::QueuedConnection);
   if (const QStringList changed = window_.work().parameters().settings(); !changed.isEmpty())
     attempt_->attempt().set_parameters(texts(changed));
 }
@@ -231,7 +258,9 @@ void SeatFlow::try_again() {
 void SeatFlow::look_at_attempt() {
   if (!attempt_) return;
   const AttemptView& view = attempt_->view();
-  window_.show_banner(to_qt(view.banner), view.phase == AttemptPhase::kFailed);
+  window_.show_banner(to_qt(view.banner),
+                      view.phase == AttemptPhase::kFailed ? BannerKind::kError : BannerKind::kWarning);
+  tell_of_servers(view);
   std::vector<ServerLine> servers{line_of(view.servers[0], tr("Needle"))};
   if (view.has_probe) servers.push_back(line_of(view.servers[1], tr("Transducer")));
   window_.strip().show_servers(servers);
@@ -249,12 +278,23 @@ void SeatFlow::look_at_attempt() {
   journal_.clear();
   if (!*result) {
     window_.strip().show_servers({});
-    window_.show_banner(sentence_of(result->error()) + tr(" Begin tries again; Back leads to the start page."), true,
-                        to_qt(result->error().text()));
+    window_.show_banner(sentence_of(result->error()) + tr(" Begin tries again; Back leads to the start page."),
+                        BannerKind::kError);
     return window_.show_page(QStringLiteral("briefing"));
   }
   warnings_ = (*result)->warnings;
-  load_replay(session);
+  cut_short_ = (*result)->cut_short;
+  if ((*result)->unsaved) {
+    show_replay(AttemptReplay::of(*std::move((*result)->unsaved), open_));
+  } else {
+    load_replay(session);
+  }
+}
+
+void SeatFlow::tell_of_servers(const AttemptView& view) {
+  if (view.recoveries == recoveries_) return;
+  recoveries_ = view.recoveries;
+  window_.tell(to_qt(view.recovered), BannerKind::kSuccess);
 }
 
 void SeatFlow::load_replay(const std::filesystem::path& session) {
@@ -266,8 +306,13 @@ void SeatFlow::look_at_replay() {
   auto loaded = loading_.take();
   if (!loaded) return;
   loading_ = {};
-  if (!*loaded) return window_.show_banner(to_qt(loaded->error().text()), true);
-  replay_ = std::make_unique<ReplayControl>(std::move(**loaded), open_, window_.work(), std::exchange(warnings_, {}));
+  show_replay(*std::move(loaded));
+}
+
+void SeatFlow::show_replay(Result<AttemptReplay> replay) {
+  if (!replay) return window_.show_banner(sentence_of(replay.error()), BannerKind::kError);
+  window_.show_banner(to_qt(std::exchange(cut_short_, {})));
+  replay_ = std::make_unique<ReplayControl>(*std::move(replay), open_, window_.work(), std::exchange(warnings_, {}));
   window_.work().show_feedback();
   window_.show_page(QStringLiteral("feedback"));
   window_.work().time_line().setFocus();
@@ -280,7 +325,7 @@ void SeatFlow::recover() {
   cut_off_ = std::exchange(offered_, {});
   if (!journal_.forget(*cut_off_)) {
     cut_off_.reset();
-    return window_.show_banner(tr("The attempt was opened in another trainer meanwhile."), false);
+    return window_.tell(tr("The attempt was opened in another trainer meanwhile."), BannerKind::kWarning);
   }
   SeatChoice choice = window_.start().choice();
   choice.task = cut_off_->choice.options.task;
@@ -297,7 +342,8 @@ void SeatFlow::save_report() {
                                                     QStringLiteral("report.html"), tr("Pages (*.html)"));
   if (file.isEmpty()) return;
   const Status status = replay_->save_report(to_std(file));
-  window_.show_banner(status ? tr("The report is in %1").arg(file) : to_qt(status.error().text()), !status);
+  if (!status) return window_.show_banner(sentence_of(status.error()), BannerKind::kError);
+  window_.tell(tr("The report is in %1").arg(file), BannerKind::kSuccess);
 }
 
 void SeatFlow::frame() {
@@ -327,6 +373,12 @@ void SeatFlow::measure_frame(double now) {
   while (frames_s_.size() > 2 && now - frames_s_.front() > kFramesOver_s) frames_s_.pop_front();
   const double span_s = frames_s_.back() - frames_s_.front();
   if (span_s > 0.5) window_.strip().show_frames(static_cast<double>(frames_s_.size() - 1) / span_s, late_frames_);
+}
+
+bool SeatFlow::may_close() {
+  if (!attempt_ || is_close_confirmed_ || attempt_->view().phase == AttemptPhase::kStarting) return true;
+  attempt_->ask_to_close();
+  return false;
 }
 
 void SeatFlow::close() {

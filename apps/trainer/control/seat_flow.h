@@ -40,6 +40,8 @@ class SeatFlow : public QObject {
   void begin_attempt();
   void try_again();
   void save_report();
+  /// False: an attempt runs; the trainee is asked, and the window is closed when the answer is yes.
+  bool may_close();
   void close();
   QVariantMap facts() const;
   /// Kills a haptic server, for scripts that try what happens.
@@ -52,7 +54,10 @@ class SeatFlow : public QObject {
   void frame();
   void look_at_opening();
   void show_opened();
+  bool can_record();
   void look_at_attempt();
+  void tell_of_servers(const AttemptView& view);
+  void show_replay(Result<AttemptReplay> replay);
   void look_at_replay();
   void load_replay(const std::filesystem::path& session);
   void recover();
@@ -66,13 +71,16 @@ class SeatFlow : public QObject {
   BackgroundJob<std::shared_ptr<const OpenCase>> opening_;
   BackgroundJob<AttemptReplay> loading_;
   RetiredJobs retired_;
-  std::optional<SeatState> offered_;  ///< Was cut off; offered on the start page.
-  std::optional<SeatState> cut_off_;  ///< Being opened, to be scored and shown.
+  std::optional<SeatState> offered_;        ///< Was cut off; offered on the start page.
+  std::optional<SeatState> cut_off_;        ///< Being opened, to be scored and shown.
   std::shared_ptr<const OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
   std::shared_ptr<const OpenCase> open_;
   std::shared_ptr<SeatServers> servers_;  ///< Kept from one attempt to the next.
   std::unique_ptr<AttemptControl> attempt_;
   std::unique_ptr<ReplayControl> replay_;
+  bool is_close_confirmed_ = false;
+  int recoveries_ = 0;                 ///< Of the attempt's servers, as far as they were told.
+  std::string cut_short_;              ///< See RunResult; of the same attempt.
   std::vector<std::string> warnings_;  ///< Of the attempt whose replay is being loaded.
   QTimer timer_;
   QElapsedTimer clock_;

@@ -41,6 +41,12 @@ void clear(QGridLayout& grid) {
   }
 }
 
+/// Names of files can be wrapped, too.
+QString breakable(QString text) {
+  for (const char mark : {'/', '_', '-'}) text.replace(QLatin1Char(mark), QString(QLatin1Char(mark)) + QChar(0x200b));
+  return text;
+}
+
 }  // namespace
 
 FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
@@ -150,7 +156,8 @@ void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_mo
 }
 
 void FeedbackPanel::show_notes(const QStringList& notes) {
-  notes_->setText(tr("Notes on the recording:") + QStringLiteral("\n•  ") + notes.join(QStringLiteral("\n•  ")));
+  const QString text = tr("Notes on the recording:") + QStringLiteral("\n•  ") + notes.join(QStringLiteral("\n•  "));
+  notes_->setText(breakable(text));
   notes_->setVisible(!notes.isEmpty());
 }
 

@@ -5,6 +5,7 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
+#include <QShortcut>
 #include <QVBoxLayout>
 
 #include "panels/wrapped_rows.h"
@@ -55,12 +56,13 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   fire_ = make_button("fire", tr("Fire the gun"), tr("Takes the core (Enter)"));
   fire_->setProperty("role", "primary");
   fire_->setFocusPolicy(Qt::NoFocus);
-  auto* end = make_button("end-attempt", tr("End the attempt"), tr("Scores what was done (E)"));
-  end->setFocusPolicy(Qt::NoFocus);
+  end_ = make_button("end-attempt", tr("End the attempt"), tr("Asks, then scores what was done (E)"));
+  end_->setFocusPolicy(Qt::NoFocus);
   content->addWidget(fire_);
-  content->addWidget(end);
+  content->addWidget(end_);
+  content->addWidget(make_question());
   connect(fire_, &QPushButton::clicked, this, &PuncturePanel::fire_wanted);
-  connect(end, &QPushButton::clicked, this, &PuncturePanel::end_wanted);
+  connect(end_, &QPushButton::clicked, this, &PuncturePanel::end_wanted);
 }
 
 QWidget* PuncturePanel::make_hand() {
@@ -94,6 +96,55 @@ QWidget* PuncturePanel::make_hand() {
   return box;
 }
 
+QWidget* PuncturePanel::make_question() {
+  question_ = new QFrame;
+  question_->setObjectName(QStringLiteral("question"));
+  question_->setProperty("role", "card");
+  auto* rows = new QVBoxLayout(question_);
+  rows->setContentsMargins(10, 8, 10, 10);
+  rows->setSpacing(6);
+  question_text_ = make_label({});
+  question_text_->setWordWrap(true);
+  yes_ = make_button("question-yes", {}, tr("Enter"));
+  yes_->setProperty("role", "primary");
+  auto* no = make_button("question-no", tr("Go on (Esc)"), tr("The attempt goes on"));
+  for (QPushButton* button : {yes_, no}) button->setFocusPolicy(Qt::NoFocus);
+  rows->addWidget(question_text_);
+  rows->addWidget(yes_);
+  rows->addWidget(no);
+  question_->hide();
+  connect(yes_, &QPushButton::clicked, this, [this] { answer(true); });
+  connect(no, &QPushButton::clicked, this, [this] { answer(false); });
+  for (const int key : {Qt::Key_Return, Qt::Key_Enter, Qt::Key_Escape}) {
+    auto* shortcut = new QShortcut(QKeySequence(key), this);
+    shortcut->setEnabled(false);
+    shortcut->setAutoRepeat(false);
+    connect(shortcut, &QShortcut::activated, this, [this, key] { answer(key != Qt::Key_Escape); });
+    answers_.push_back(shortcut);
+  }
+  return question_;
+}
+
+void PuncturePanel::ask(const QString& question, const QString& yes) {
+  question_text_->setText(question);
+  yes_->setText(yes);
+  yes_->setAccessibleName(yes);
+  for (QWidget* covered : {fire_, end_}) covered->hide();
+  question_->show();
+  for (QShortcut* shortcut : answers_) shortcut->setEnabled(true);
+}
+
+bool PuncturePanel::is_asking() const {
+  return !question_->isHidden();
+}
+
+void PuncturePanel::answer(bool is_yes) {
+  for (QShortcut* shortcut : answers_) shortcut->setEnabled(false);
+  question_->hide();
+  for (QWidget* covered : {fire_, end_}) covered->show();
+  if (is_yes) Q_EMIT confirmed();
+}
+
 QWidget* PuncturePanel::make_figures() {
   auto* box = new QWidget;
   auto* grid = new QGridLayout(box);
@@ -114,6 +165,7 @@ void PuncturePanel::begin(double most_force_n, bool can_aim) {
                            : tr("Where the plan has the tools is told in guided attempts alone"));
   events_->clear();
   force_->clear();
+  answer(false);
   constexpr double kFullLag_mm = 15.0;
   force_->set_scale(most_force_n, kFullLag_mm);
   show_figures({});

@@ -2,11 +2,14 @@
 
 #include <QWidget>
 #include <optional>
+#include <vector>
 
 class QButtonGroup;
+class QFrame;
 class QLabel;
 class QListWidget;
 class QPushButton;
+class QShortcut;
 
 namespace trocar::trainer {
 
@@ -30,7 +33,8 @@ struct PunctureFigures {
 };
 
 /// Beside the views while the puncture goes on: tool in hand, where the needle is, what it meets, what to do now. Keys:
-/// A and S take a tool, V none, X clamps the one in hand, Enter fires, E ends.
+/// A and S take a tool, V none, X clamps the one in hand, Enter fires, E ends. A question lies in the place of the last
+/// two buttons and stops nothing; Enter and Escape answer it.
 class PuncturePanel : public QWidget {
   Q_OBJECT
 
@@ -43,6 +47,9 @@ class PuncturePanel : public QWidget {
   void show_hand(ToolInHand tool);
   /// A bad one is in the colour of what is wrong.
   void add_event(const QString& text, bool is_bad = false);
+  /// Asks whether the attempt is to be ended. One question at a time: a second one replaces the first.
+  void ask(const QString& question, const QString& yes);
+  bool is_asking() const;
 
  Q_SIGNALS:
   void hand_wanted(trocar::trainer::ToolInHand tool);
@@ -50,8 +57,12 @@ class PuncturePanel : public QWidget {
   void aim_wanted();
   void fire_wanted();
   void end_wanted();
+  /// The question was answered with yes.
+  void confirmed();
 
  private:
+  QWidget* make_question();
+  void answer(bool is_yes);
   QWidget* make_hand();
   QWidget* make_figures();
 
@@ -67,6 +78,11 @@ class PuncturePanel : public QWidget {
   ForceBar* force_ = nullptr;
   QListWidget* events_ = nullptr;
   QPushButton* fire_ = nullptr;
+  QPushButton* end_ = nullptr;
+  QFrame* question_ = nullptr;
+  QLabel* question_text_ = nullptr;
+  QPushButton* yes_ = nullptr;
+  std::vector<QShortcut*> answers_;  ///< Keys, while a question is open.
 };
 
 }  // namespace trocar::trainer

@@ -35,6 +35,7 @@ struct ScriptStep {
 ///   resize COLUMNS ROWS
 ///   screenshot FILE [NAME]      of the window or a widget
 ///   end-server needle|probe     kills it, to see what happens
+///   close-window                as its user closes it
 ///   end-window                  kills the program itself: what it leaves must be found again
 ///   reset-watch
 ///   print FACT…

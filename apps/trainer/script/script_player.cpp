@@ -146,6 +146,10 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
     return Progress::kDone;
   }
   if (verb == QLatin1String("end-window")) ::raise(SIGKILL);
+  if (verb == QLatin1String("close-window")) {
+    stage_.window->close();
+    return Progress::kDone;
+  }
   if (verb == QLatin1String("reset-watch")) {
     stage_.reset_watch();
     return Progress::kDone;

@@ -46,17 +46,12 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* paren
   work_ = new WorkPage;
   case_ = new CasePage;
   for (QWidget* page : std::initializer_list<QWidget*>{start_, briefing_, work_, case_}) pages_->addWidget(page);
-  banner_ = make_label({});
-  banner_->setObjectName(QStringLiteral("banner"));
-  banner_->setAlignment(Qt::AlignCenter);
-  banner_->setWordWrap(true);
-  banner_->hide();
   strip_ = new StatusStrip;
   column->addWidget(make_top_bar());
-  column->addWidget(banner_);
   column->addWidget(pages_, 1);
   column->addWidget(strip_);
   setCentralWidget(central);
+  banner_ = new Banner(*central);
   add_shortcuts();
   flow_ = new SeatFlow(*this, state_folder);
   resize(1280, 800);
@@ -122,19 +117,15 @@ void MainWindow::show_page(const QString& name) {
                                 : QString());
   }
   page->setFocus();
+  banner_->place();
 }
 
-void MainWindow::show_banner(const QString& text, bool is_bad, const QString& details) {
-  if (text.isEmpty()) {
-    banner_->hide();
-    return;
-  }
-  banner_->setText(text);
-  banner_->setToolTip(details);
-  const QColor& color = is_bad ? theme().bad : theme().warning;
-  banner_->setStyleSheet(QStringLiteral("background: %1; color: %2; font-weight: 600; padding: 6px;")
-                             .arg(color.name(), theme().ground.name()));
-  banner_->show();
+void MainWindow::show_banner(const QString& text, BannerKind kind) {
+  banner_->set_state(text, kind);
+}
+
+void MainWindow::tell(const QString& text, BannerKind kind) {
+  banner_->tell(text, kind);
 }
 
 QVariantMap MainWindow::facts() const {
@@ -148,6 +139,7 @@ QVariantMap MainWindow::facts() const {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
+  if (!flow_->may_close()) return event->ignore();
   QSettings().setValue(QStringLiteral("window/geometry"), saveGeometry());
   work_->desk().save_layout();
   flow_->close();

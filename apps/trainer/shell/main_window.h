@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "shell/banner.h"
+
 class QLabel;
 class QStackedWidget;
 
@@ -36,8 +38,10 @@ class MainWindow : public QMainWindow {
   /// "start", "briefing", "puncture", "feedback", "case-builder".
   void show_page(const QString& name);
   QString page() const { return page_; }
-  /// A line across the window until it is empty again; its tooltip has the details.
-  void show_banner(const QString& text, bool is_bad, const QString& details = {});
+  /// Over the pages, until it is empty again or replaced.
+  void show_banner(const QString& text, BannerKind kind = BannerKind::kWarning);
+  /// Likewise for some seconds.
+  void tell(const QString& text, BannerKind kind);
   /// What the window shows and knows, for scripts.
   QVariantMap facts() const;
 
@@ -54,7 +58,7 @@ class MainWindow : public QMainWindow {
   WorkPage* work_ = nullptr;
   CasePage* case_ = nullptr;
   StatusStrip* strip_ = nullptr;
-  QLabel* banner_ = nullptr;
+  Banner* banner_ = nullptr;
   std::vector<QLabel*> steps_;
   SeatFlow* flow_ = nullptr;
   QString page_;

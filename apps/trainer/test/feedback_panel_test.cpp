@@ -47,6 +47,17 @@ TEST(FeedbackPanelTest, OpensAtTheTopEachTime) {
   }
 }
 
+TEST(FeedbackPanelTest, AFilesNameInANoteCutsNothingOff) {
+  FeedbackPanel panel;
+  panel.resize(238, 700);
+  panel.show_outcome(long_outcome(), {});
+  panel.show_notes({QStringLiteral("The recording ended: disk full (/disk/sessions/2026-11-22_20-50-14-025.trocar)")});
+  panel.show();
+  QCoreApplication::processEvents();
+  const QScrollArea& area = *panel.findChild<QScrollArea*>();
+  EXPECT_LE(area.widget()->width(), area.viewport()->width());
+}
+
 TEST(FeedbackPanelTest, SaysWhyAnAttemptIsNotScored) {
   FeedbackPanel panel;
   Outcome outcome;

@@ -66,5 +66,34 @@ TEST(PuncturePanel, AimsOnlyWhereThePlanMayBeTold) {
   EXPECT_TRUE(aim->toolTip().contains(QStringLiteral("guided attempts alone")));
 }
 
+TEST(PuncturePanel, AsksInThePlaceOfItsButtonsAndStaysAsHigh) {
+  Shown shown;
+  auto& question = *shown.panel.findChild<QWidget*>(QStringLiteral("question"));
+  auto& end = *shown.panel.findChild<QPushButton*>(QStringLiteral("end-attempt"));
+  int yes = 0;
+  QObject::connect(&shown.panel, &PuncturePanel::confirmed, [&] { ++yes; });
+  const auto open = [&] {
+    shown.panel.ask(QStringLiteral("End the attempt and score it?"), QStringLiteral("End and score (Enter)"));
+    QCoreApplication::processEvents();
+    EXPECT_TRUE(shown.panel.is_asking());
+    EXPECT_FALSE(end.isVisible());
+    EXPECT_TRUE(shown.panel.rect().contains(question.geometry()));
+  };
+  open();
+  save(shown.panel, "puncture_panel_question.png");
+  shown.panel.findChild<QPushButton*>(QStringLiteral("question-no"))->click();
+  EXPECT_FALSE(shown.panel.is_asking());
+  EXPECT_TRUE(end.isVisible());
+  EXPECT_EQ(yes, 0);
+  open();
+  shown.panel.findChild<QPushButton*>(QStringLiteral("question-yes"))->click();
+  EXPECT_FALSE(shown.panel.is_asking());
+  EXPECT_EQ(yes, 1);
+  open();
+  shown.panel.begin(8.0, true);  // another attempt
+  EXPECT_FALSE(shown.panel.is_asking());
+  EXPECT_EQ(yes, 1);
+}
+
 }  // namespace
 }  // namespace trocar::trainer

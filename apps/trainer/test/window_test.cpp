@@ -102,6 +102,19 @@ TEST_F(WindowTest, ForcesAreStoppedAndTurnedOnAgain) {
   expect_played(play("forces_stopped.txt"));
 }
 
+TEST_F(WindowTest, AnAttemptIsNotEndedUnasked) {
+  expect_played(play("end_asked.txt"));
+}
+
+TEST_F(WindowTest, AFolderThatCannotBeWrittenIsNamedAndNothingBegins) {
+  const QString script = write("unwritable.txt",
+                               "expect banner has \"/dev/null/state/sessions\"\nexpect banner has \"--state\"\n"
+                               "click start\nwait-for is_open is true within 300\nclick begin\nwait 1\n"
+                               "expect page is briefing\nexpect banner has \"/dev/null/state/sessions\"\n");
+  expect_played(
+      run({QStringLiteral("--state"), QStringLiteral("/dev/null/state"), QStringLiteral("--script"), script}));
+}
+
 TEST_F(WindowTest, EveryLayoutShowsWhatItNames) {
   expect_played(play("layouts.txt"));
 }

@@ -8,6 +8,7 @@
 
 #include "headless/scene_request.h"
 #include "station/attempt_event.h"
+#include "station/recording_room.h"
 #include "telemetry/tick_pose.h"
 
 namespace trocar {
@@ -61,6 +62,7 @@ void AttemptLoop::run(const std::stop_token& stop) {
   Status status = start();
   while (status && !stop.stop_requested() && !finishes_) {
     status = step();
+    watch_disk();
     publish(phase_now());
     std::this_thread::sleep_for(kBetweenLooks);
   }
@@ -98,6 +100,10 @@ Status AttemptLoop::start() {
 void AttemptLoop::look_at(ToolServer& server) {
   const std::string happened = server.look();
   if (!happened.empty()) notes_.push_back(happened);
+  if (std::string recovery = server.take_recovery(); !recovery.empty()) {
+    recovered_ = std::move(recovery);
+    ++recoveries_;
+  }
   for (std::string& message : server.take_messages()) message_ = std::move(message);
 }
 
@@ -127,6 +133,22 @@ Status AttemptLoop::step() {
   return {};
 }
 
+/// Ends the attempt in order while there is still room to close its session.
+void AttemptLoop::watch_disk() {
+  constexpr auto kEvery = std::chrono::seconds(1);
+  const auto now = std::chrono::steady_clock::now();
+  if (!record_ || !options_.free_bytes || now - disk_looked_at_ < kEvery) return;
+  disk_looked_at_ = now;
+  const std::filesystem::path folder = options_.session.parent_path();
+  const RecordingRoom room(folder, options_.free_bytes(folder), performer_.rate_hz);
+  disk_banner_ = room.banner();
+  if (!room.is_full() || finishes_) return;
+  finishes_ = true;
+  cut_short_ = fmt::format("The disk is full ({}): the recording ended after {:.1f} s. Nothing of it is lost",
+                           folder.string(), live_->active_s());
+  notes_.push_back(cut_short_);
+}
+
 Status AttemptLoop::take_wishes() {
   AttemptWishes wishes;
   {
@@ -146,7 +168,7 @@ Status AttemptLoop::take_wishes() {
     needle_->frame_drawn();
     if (probe_) probe_->frame_drawn();
   }
-  finishes_ = wishes.finishes;
+  finishes_ = finishes_ || wishes.finishes;
   return {};
 }
 
@@ -278,10 +300,18 @@ Status AttemptLoop::step_probe() {
 }
 
 Result<RunResult> AttemptLoop::score(const Status& status) {
-  if (!status) return tl::unexpected(status.error());
-  if (!record_ || record_->samples().empty())
+  const bool is_recorded = record_ && !record_->samples().empty();
+  if (!status && !(is_recorded && record_->write_failure())) return tl::unexpected(status.error());
+  if (!is_recorded)
     return fail("the attempt was ended before anything was recorded", options_.session.string(), "start a new attempt");
-  TROCAR_TRY(RunResult result, record_->finish());
+  RunResult result;
+  if (!record_->write_failure()) {
+    Result<RunResult> finished = record_->finish();
+    if (!finished && !record_->write_failure()) return finished;
+    if (finished) result = *std::move(finished);
+  }
+  if (record_->write_failure()) result = record_->finish_unsaved();
+  if (result.cut_short.empty()) result.cut_short = cut_short_;
   for (const std::optional<ToolServer>* server : {&needle_, &probe_})
     if (*server) result.servers.push_back((*server)->figures());
   result.ticks_missing = needle_->view().ticks_missing;

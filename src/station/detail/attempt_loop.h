@@ -71,6 +71,7 @@ class AttemptLoop {
   Status step_probe();
   void look_at(ToolServer& server);
   Status check_start();
+  void watch_disk();
   void conclude(Status status);
   Result<RunResult> score(const Status& status);
 
@@ -99,9 +100,12 @@ class AttemptLoop {
   std::optional<double> contact_s_;
   double session_s_ = 0.0, since_contact_s_ = 0.0;  ///< Active time: kept for the view after the record is closed.
   ForceTrace trace_;
+  std::chrono::steady_clock::time_point disk_looked_at_;
+  std::string disk_banner_, cut_short_;
   std::vector<AttemptEvent> events_;
   std::vector<std::string> notes_;
-  std::string message_, progress_;
+  std::string message_, progress_, recovered_;
+  int recoveries_ = 0;
   double progress_fraction_ = 0.0;
 };
 

@@ -79,6 +79,8 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   view.progress = progress_;
   view.progress_fraction = progress_fraction_;
   view.message = message_;
+  view.recovered = recovered_;
+  view.recoveries = recoveries_;
   view.needle = needle_now();
   view.probe = probe_now();
   view.has_probe = probe_.has_value();
@@ -90,6 +92,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
     view.servers[server == &needle_ ? 0 : 1] = (*server)->view();
     if (!(*server)->banner().empty()) view.banner = (*server)->banner();
   }
+  if (view.banner.empty()) view.banner = disk_banner_;
   if (is_stopped_ && view.banner.empty()) view.banner = "Forces are stopped. Resume to go on.";
   if (last_needle_) {
     if (live_) session_s_ = live_->active_s();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "haptics/safety_gate.h"
 
@@ -21,6 +22,11 @@ constexpr double kMostPatience = 4.0;    ///< Of one that is busy: it may turn i
 std::string words_of(const std::string& device) {
   if (device == "spacemouse") return "SpaceMouse";
   return device.empty() ? "device" : device.substr(0, device.find(':'));
+}
+
+std::string sentence(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 }  // namespace
@@ -90,6 +96,18 @@ std::string ToolServer::bring_back(const std::string& what, bool is_new_process)
     return give_up(
         {fmt::format("The server of the {} does not stay: {}. Resume to try again, or finish.", tool_, what), {}, {}});
   }
+  was_on_ = false;
+  interrupted_by_ = is_new_process ? what + " and was started again" : what;
+  banner_ = is_new_process ? fmt::format("{}. It is started again, and the forces come back where the {} is",
+                                         sentence(what), tool_)
+                           : fmt::format("{}. The forces come back where the {} is", sentence(what), tool_);
+  // Starting a process takes a while: the banner is to be seen before.
+  is_restart_due_ = is_new_process;
+  return is_new_process ? banner_ : seat_again(false);
+}
+
+std::string ToolServer::seat_again(bool is_new_process) {
+  is_restart_due_ = false;
   ++restarts_;
   if (is_new_process) {
     if (const Status started = process_->restart(); !started) {
@@ -97,8 +115,7 @@ std::string ToolServer::bring_back(const std::string& what, bool is_new_process)
     }
   }
   connect();
-  banner_ = fmt::format("The server of the {} is being brought back where it was: {}", tool_, what);
-  return banner_;
+  return is_new_process ? std::string() : banner_;
 }
 
 bool ToolServer::is_device_lost() const {
@@ -128,6 +145,7 @@ std::string ToolServer::open_device_again() {
 std::string ToolServer::look() {
   if (has_given_up_ || waits_for_resume_ || !seat_) return {};
   if (is_stopped_ && !was_on_) return {};  // seating it would turn forces on
+  if (is_restart_due_) return seat_again(true);
   if (const Status alive = process_->check(); !alive) {
     if (!was_ever_heard_) {
       // It cannot come up: a device that is not there, a wrong name.
@@ -151,6 +169,9 @@ std::string ToolServer::look() {
     ++seatings_;
     ticked_ = Clock::now();
     banner_.clear();
+    if (!interrupted_by_.empty())
+      recovery_ = fmt::format("{}. The forces are back and the puncture goes on", sentence(interrupted_by_));
+    interrupted_by_.clear();
     const SetParameters now = parameters();  // set while the forces were coming on
     if (now.settings != seat_->adjusted().settings) before_[seat_->send(now)] = settings_;
   }
@@ -185,6 +206,7 @@ std::string ToolServer::note_interruption() {
   const bool is_stall = seat_->stalls() > stalls_;
   stalls_ = seat_->stalls();
   const char* const what = is_stall ? "stood still: this machine is too busy" : "was away";
+  interrupted_by_ = fmt::format("the server of the {} {}", tool_, what);
   if (is_stopped_) return banner_ = fmt::format("The server of the {} {}; resume when you are ready", tool_, what);
   return banner_ = fmt::format("The server of the {} {}. Its forces come back where the {} is", tool_, what, tool_);
 }
@@ -287,7 +309,8 @@ void ToolServer::resume_forces() {
   is_stopped_ = false;
   waits_for_resume_ = false;
   if (has_given_up_) returns_.clear();
-  const bool is_alive = process_->check().has_value();
+  const Status alive = process_->check();
+  const bool is_alive = alive.has_value();
   if (is_on() && is_alive) {
     seat_->send(ServerCommand::kStart);
     return;
@@ -298,7 +321,10 @@ void ToolServer::resume_forces() {
     return;
   }
   const bool is_heard = seat_ && seat_->view().is_connected;
-  bring_back("resumed", !is_alive || !is_heard);
+  const std::string what =
+      is_alive ? fmt::format("the server of the {} {}", tool_, is_heard ? "is resumed" : "does not answer")
+               : alive.error().what;
+  bring_back(what, !is_alive || !is_heard);
 }
 
 void ToolServer::frame_drawn() {

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "headless/own_server.h"
@@ -40,6 +41,8 @@ class ToolServer {
   bool has_given_up() const noexcept { return has_given_up_; }
   const Error& failure() const noexcept { return failure_; }  ///< Why it has given up.
   const std::string& banner() const noexcept { return banner_; }
+  /// Once, when the forces are back after an interruption: a sentence that says after which. Empty: nothing new.
+  std::string take_recovery() { return std::exchange(recovery_, {}); }
   double loading() const noexcept { return seat_ ? seat_->loading() : 0.0; }
   std::string doing() const;  ///< "loading the patient", for a progress line.
 
@@ -68,6 +71,7 @@ class ToolServer {
   void connect();
   std::string give_up(Error why);
   std::string bring_back(const std::string& what, bool is_new_process);
+  std::string seat_again(bool is_new_process);
   bool is_device_lost() const;
   bool is_slow() const;
   std::string cannot_go_on(const Error& why);
@@ -86,6 +90,9 @@ class ToolServer {
   std::optional<ServerSeat> seat_;
   std::optional<SeatRequest> request_;
   std::string banner_;
+  std::string recovery_;
+  std::string interrupted_by_;   ///< Since the forces were last on; empty: nothing.
+  bool is_restart_due_ = false;  ///< Announced; the next look starts the process.
   Error failure_;
   /// What was set since the scene was loaded.
   struct Settings {

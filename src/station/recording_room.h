@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/result.h"
+
+namespace trocar {
+
+/// How long an attempt can still be recorded on a disk. A session takes 11 MB a minute at 1000 ticks a second.
+class RecordingRoom {
+ public:
+  /// `free_bytes`: of the file system of `folder`; empty: not known, and then nothing is said.
+  RecordingRoom(std::filesystem::path folder, std::optional<std::uintmax_t> free_bytes, double rate_hz = 1000.0);
+
+  /// Nothing more can be recorded: what is left is needed to close the session with its score.
+  bool is_full() const noexcept;
+  /// Until it is full.
+  double left_s() const noexcept;
+  /// That an attempt cannot begin: with the folder, what is free and what to do. Fine where 10 s can be recorded.
+  Status check_start() const;
+  /// Before an attempt: less than kAmple_s left. Empty: enough.
+  std::string start_warning() const;
+  /// While it is recorded: less than kScarce_s left. Empty: enough.
+  std::string banner() const;
+
+  /// SQLite's log of at most 1000 pages of 4 KiB, its copy in the session file, and the outcome.
+  static constexpr double kClosing_bytes = 9e6;
+  static constexpr double kAmple_s = 600.0;   ///< Longer than most attempts. [assumed]
+  static constexpr double kScarce_s = 120.0;  ///< Time to end an attempt without haste. [assumed]
+
+ private:
+  std::filesystem::path folder_;
+  std::optional<double> free_bytes_;
+  double bytes_a_second_;
+};
+
+}  // namespace trocar

@@ -1,0 +1,85 @@
+// The disk fills up while a trainee's attempt is recorded.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <atomic>
+
+#include "servers/live_attempt_lab.h"
+#include "station/attempt_replay.h"
+#include "station/live_attempt.h"
+#include "station/recording_room.h"
+#include "storage/session_file.h"
+
+namespace trocar::servers_test {
+namespace {
+
+/// No file of this process grows beyond so many bytes, as on a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(LiveAttemptTest, WarnsOfAFullDiskThenEndsInOrderWithAWholeSession) {
+  const auto free_MB = std::make_shared<std::atomic<int>>(10'000);
+  AttemptOptions watched = options();
+  watched.free_bytes = [free_MB](const std::filesystem::path&) {
+    return std::optional<std::uintmax_t>(*free_MB * 1'000'000ull);
+  };
+  start(watched);
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  attempt->perform(expert());
+  ASSERT_TRUE(wait_deeper(5.0)) << where();
+  EXPECT_EQ(attempt->view().banner, "");
+  *free_MB = 20;
+  ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("can still be recorded") != std::string::npos; }))
+      << where();
+  ASSERT_TRUE(wait_for([&] { return attempt->view().has_fired; })) << where();
+  *free_MB = 1;
+  const RunResult result = finished();
+  EXPECT_NE(result.cut_short.find("The disk is full"), std::string::npos) << result.cut_short;
+  EXPECT_FALSE(result.unsaved);
+  EXPECT_TRUE(result.outcome.is_scored());
+  const auto session = load_session(options().session);
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_FALSE(session->is_incomplete);
+  EXPECT_EQ(session->samples.size(), result.ticks);
+  EXPECT_EQ(session->outcome->score, result.outcome.score);
+}
+
+TEST_F(LiveAttemptTest, ADiskThatIsFullAtOnceLosesNoScoreAndSaysWhatTheFileLacks) {
+  start(options());
+  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  attempt->perform(expert());
+  ASSERT_TRUE(wait_for([&] { return attempt->view().has_fired; })) << where();
+  std::optional<RunResult> result;
+  {
+    const FullDisk full(100'000);
+    result = finished();  // nobody ends it
+  }
+  EXPECT_NE(result->cut_short.find("cannot be written"), std::string::npos) << result->cut_short;
+  EXPECT_NE(result->cut_short.find(options().session.string()), std::string::npos) << result->cut_short;
+  EXPECT_TRUE(result->outcome.is_scored());
+  ASSERT_TRUE(result->unsaved);
+  EXPECT_EQ(result->unsaved->samples.size(), result->ticks);
+  EXPECT_FALSE(result->unsaved->transducer.empty());
+  const auto replay = AttemptReplay::of(*std::move(result->unsaved), open);
+  ASSERT_TRUE(replay) << replay.error().text();
+  EXPECT_EQ(replay->outcome().score, result->outcome.score);
+  const auto session = load_session(options().session);
+  ASSERT_TRUE(session) << session.error().text();
+  EXPECT_TRUE(session->is_incomplete);
+  EXPECT_GT(session->samples.size(), 500u);
+}
+
+}  // namespace
+}  // namespace trocar::servers_test
