@@ -50,6 +50,8 @@ class AttemptRecord {
   Status append(const TransducerSample& sample);
   const SessionInfo& info() const noexcept { return info_; }
   const std::vector<TickSample>& samples() const noexcept { return samples_; }  ///< So far.
+  /// The sample at which the gun was fired; it may be still to come.
+  const std::optional<std::size_t>& fired() const noexcept { return fired_; }
   /// Scores, and closes the session file.
   Result<RunResult> finish();
   /// The first failure to write the session file; empty: all is well.

@@ -283,6 +283,10 @@ void PatientScene::set_hand(const std::optional<Segment>& ghost_P) {
   if (impl_->tools.set_hand(ghost_P)) impl_->has_changed = true;
 }
 
+void PatientScene::set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P) {
+  if (impl_->tools.set_shot(stylet_P, core_P)) impl_->has_changed = true;
+}
+
 void PatientScene::set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face) {
   if (impl_->tools.set_transducer(X_PT, face)) impl_->has_changed = true;
 }

@@ -58,6 +58,8 @@ class PatientScene {
   /// Fewer than two points: no needle.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
   void set_hand(const std::optional<Segment>& ghost_P);
+  /// A gun's stylet ahead of the needle, and the place that a core was taken from.
+  void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   void set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
   /// A picture in space; corners of its outline: top left, top right, bottom left. `alpha`, one byte a pixel or empty
   /// (all shown), is 0 where nothing is to be seen.

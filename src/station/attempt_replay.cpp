@@ -44,6 +44,7 @@ Result<AttemptReplay> AttemptReplay::of(Session session, std::shared_ptr<const O
 
 AttemptReplay::AttemptReplay(Session session, std::shared_ptr<const OpenCase> open, bool was_cut_off)
     : session_(std::move(session)), open_(std::move(open)), was_cut_off_(was_cut_off) {
+  if (session_.fired) shot_ = make_gun_shot(open_->the_case, session_.samples[*session_.fired]);
   find_moments();
   find_worst();
   if (worst_) moments_.push_back(*worst_);
@@ -99,7 +100,7 @@ void AttemptReplay::find_moments() {
   for (const Interruption& gap : session_.interruptions)
     moments_.push_back({gap.to_s, Kind::kInterruption,
                         fmt::format("interrupted for {:.1f} s: {}", gap.to_s - gap.from_s, gap.reason)});
-  if (session_.fired) moments_.push_back({session_.samples[*session_.fired].time_s, Kind::kFired, "the gun was fired"});
+  if (shot_) moments_.push_back({shot_->time_s, Kind::kFired, shot_words(*shot_)});
 }
 
 /// What was at risk comes first; then where the needle was farthest beside the path in the body; then the greatest

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "station/gun_shot.h"
 #include "station/open_case.h"
 #include "storage/session_file.h"
 
@@ -42,6 +43,8 @@ class AttemptReplay {
   std::optional<Pose> transducer_at(double time_s) const noexcept;
   static constexpr double kTransducerGap_s = 0.1;
 
+  /// The gun's; empty: it was not fired.
+  const std::optional<GunShot>& shot() const noexcept { return shot_; }
   /// By time, the worst among them where there is one.
   const std::vector<ReplayMoment>& moments() const noexcept { return moments_; }
   /// Empty: the needle met nothing.
@@ -55,6 +58,7 @@ class AttemptReplay {
   Session session_;
   std::shared_ptr<const OpenCase> open_;
   bool was_cut_off_;
+  std::optional<GunShot> shot_;
   std::vector<ReplayMoment> moments_;
   std::optional<ReplayMoment> worst_;
 };

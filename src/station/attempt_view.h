@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "telemetry/tick_sample.h"
 
 namespace trocar {
+
+struct GunShot;
 
 enum class AttemptPhase : std::uint8_t {
   kStarting,    ///< Servers come up and load; `progress` says how far.
@@ -83,6 +86,8 @@ struct AttemptView {
   double session_s = 0.0;             ///< Recorded so far, without interruptions.
   double since_contact_s = 0.0;       ///< Since the needle first touched the skin, likewise; 0 before.
   bool has_fired = false;
+  std::shared_ptr<const GunShot> shot;  ///< With the first tick after it.
+  double since_shot_s = 0.0;       ///< In the session's time; it stands still while there is no news of the needle.
   bool is_performing = false;      ///< A scripted operator moves the needle.
   std::vector<std::string> notes;  ///< What went wrong on the way, in order.
 };

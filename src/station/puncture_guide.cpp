@@ -75,8 +75,11 @@ std::string guide_inside(const Case& the_case, const TickSample& sample) {
 
 }  // namespace
 
-std::string guide_puncture(const Case& the_case, const TickSample& sample) {
+std::string guide_puncture(const Case& the_case, const TickSample& sample, bool has_fired) {
   if (!sample.tip_mm.allFinite() || !(std::abs(sample.axis.norm() - 1.0) < 1e-3)) return {};
+  if (has_fired)
+    return sample.phase == InsertionPhase::kOutside ? "The needle is out: end the attempt"
+                                                    : "The gun was fired: withdraw the needle";
   std::string danger = danger_ahead(the_case, sample);
   if (!danger.empty()) return danger;
   const bool is_inside = sample.phase == InsertionPhase::kInserted || sample.phase == InsertionPhase::kRetracting ||

@@ -1,3 +1,5 @@
+#include "training/core_sample.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -50,7 +52,6 @@ void add_to_sums(BiopsyCore& core, TaskLabels::Part part, double length_mm) {
   }
 }
 
-/// How far the stylet gets: bone stops it.
 double shot_mm(const TaskLabels& labels, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
                const Vec3& axis_P) {
   double shot = needle.throw_mm;
@@ -62,6 +63,27 @@ double shot_mm(const TaskLabels& labels, const VirtualPatient& patient, const Ne
 }
 
 }  // namespace
+
+CorePart part_of(const Task& task, const VirtualPatient& patient, const CorePiece& piece) {
+  const Label* label = patient.label_table.find(std::string_view(piece.label));
+  if (label == nullptr) return CorePart::kOther;
+  switch (TaskLabels(task, patient).part(label->id)) {
+    case TaskLabels::Part::kTarget:
+      return CorePart::kTarget;
+    case TaskLabels::Part::kOrgan:
+      return CorePart::kOrgan;
+    case TaskLabels::Part::kVessel:
+      return CorePart::kVessel;
+    case TaskLabels::Part::kOther:
+      break;
+  }
+  return CorePart::kOther;
+}
+
+double stylet_throw_mm(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
+                       const Vec3& axis_P) {
+  return shot_mm(TaskLabels(task, patient), patient, needle, tip_P, axis_P);
+}
 
 BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
                      const Vec3& axis_P) {

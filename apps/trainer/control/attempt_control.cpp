@@ -7,9 +7,11 @@
 #include "anatomy/structure_words.h"
 #include "control/force_bands.h"
 #include "desk/desk.h"
+#include "desk/shot_display.h"
 #include "pages/work_page.h"
 #include "panels/puncture_panel.h"
 #include "shell/parts.h"
+#include "station/gun_shot.h"
 #include "views/force_plot.h"
 #include "views/patient_view.h"
 #include "views/ultrasound_view.h"
@@ -121,7 +123,7 @@ void AttemptControl::strike(int key) {
 
 void AttemptControl::ask_to_end() {
   question_ = Question::kEnd;
-  page_.puncture().ask(tr("End the attempt and score it? Until then it goes on."), tr("End and score (Enter)"));
+  page_.puncture().ask(tr("End the attempt and score it? Until then it goes on."), tr("End (Enter)"));
 }
 
 void AttemptControl::ask_to_close() {
@@ -224,9 +226,18 @@ void AttemptControl::advance(double dt_s) {
     if (event.kind == EventKind::kPuncture)
       plot.add_event(event.depth_mm, event.time_s, to_qt(structure_words(event.name)));
   }
+  look_at_shot();
   said_s_ -= dt_s;
   show_tools(dt_s);
   show_panel();
+}
+
+void AttemptControl::look_at_shot() {
+  if (!view_.shot || has_shown_shot_) return;
+  has_shown_shot_ = true;
+  if (!is_exam()) page_.puncture().show_core(*view_.shot);  // in an exam its composition is the solution
+  page_.desk().forces().add_event(view_.shot->depth_mm, view_.shot->time_s, tr("shot"));
+  Q_EMIT gun_fired();
 }
 
 void AttemptControl::show_tools(double dt_s) {
@@ -249,6 +260,7 @@ void AttemptControl::show_tools(double dt_s) {
   const bool is_moving = std::abs(needle.speed_mm_s) > kMoving_mm_s || tools.hand_P.has_value();
   still_s_ = is_moving ? 0.0 : still_s_ + dt_s;
   tools.are_moving = still_s_ < kStill_s;
+  if (view_.shot) show_shot(tools, *view_.shot, view_.since_shot_s, needle.depth_mm);
   page_.desk().show_tools(tools);
 }
 
@@ -289,6 +301,7 @@ QVariantMap AttemptControl::facts() const {
   facts[QStringLiteral("tissue")] = to_qt(view_.needle.tissue);
   facts[QStringLiteral("hint")] = hint();
   facts[QStringLiteral("has_fired")] = view_.has_fired;
+  facts[QStringLiteral("core_target_mm")] = view_.shot ? view_.shot->core.target_mm : 0.0;
   facts[QStringLiteral("probe_pressed_mm")] = view_.probe.pressed_mm;
   facts[QStringLiteral("probe_force_n")] = view_.probe.contact_n;
   facts[QStringLiteral("probe_from_plan_mm")] = (view_.probe.X_PT.p() - open_->X_PT_start.p()).norm();

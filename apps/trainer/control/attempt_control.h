@@ -37,6 +37,7 @@ class AttemptControl : public QObject {
 
  Q_SIGNALS:
   void close_confirmed();
+  void gun_fired();
 
  private:
   enum class Question { kEnd, kClose };
@@ -51,6 +52,7 @@ class AttemptControl : public QObject {
   QString hint() const;
   void show_tools(double dt_s);
   void show_panel();
+  void look_at_shot();
   bool is_free(HandTool tool) const;
   bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
   ViewScale scale_of_3d() const;
@@ -67,6 +69,7 @@ class AttemptControl : public QObject {
   bool is_led_;                          ///< The needle is moved by mouse and keys; else its device moves itself.
   bool is_clamped_[2] = {false, false};  ///< By HandTool.
   AttemptView view_;
+  bool has_shown_shot_ = false;
   double still_s_ = 0.0;
   Question question_ = Question::kEnd;  ///< Asked last.
   QString said_;

@@ -5,6 +5,7 @@
 #include "control/force_bands.h"
 #include "core/atomic_file.h"
 #include "desk/desk.h"
+#include "desk/shot_display.h"
 #include "pages/work_page.h"
 #include "panels/feedback_panel.h"
 #include "report/html_report.h"
@@ -79,6 +80,7 @@ ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCas
   if (const auto& moment = replay_.worst())
     worst = tr("Worst moment: %1, after %2 s").arg(to_qt(moment->text)).arg(moment->time_s, 0, 'f', 1);
   page_.feedback().show_outcome(replay_.outcome(), worst);
+  page_.feedback().show_core(replay_.shot() ? &*replay_.shot() : nullptr);
   page_.feedback().show_notes(notes_of(replay_, warnings));
   page_.desk().show_help(Difficulty::kGuided);  // afterwards everybody may see the expert's path
   connect(&page_.feedback(), &FeedbackPanel::worst_wanted, this, &ReplayControl::go_to_worst);
@@ -148,6 +150,8 @@ void ReplayControl::show_at(double time_s, bool is_moving) {
   tools.focus_P = sample.depth_mm > 0.0 ? sample.tip_mm : open_->the_case.plan.line_P.b;
   tools.X_PT = transducer_at(time_s);
   tools.are_moving = is_moving;
+  if (const auto& shot = replay_.shot(); shot && time_s >= shot->time_s)
+    show_shot(tools, *shot, time_s - shot->time_s, sample.depth_mm);
   page_.desk().show_tools(tools);
   page_.desk().forces().set_cursor(time_s);
   shown_s_ = time_s;

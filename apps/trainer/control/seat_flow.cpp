@@ -8,6 +8,7 @@
 
 #include "control/attempt_control.h"
 #include "control/replay_control.h"
+#include "control/seat_words.h"
 #include "core/disk_space.h"
 #include "core/user_folders.h"
 #include "desk/desk.h"
@@ -46,29 +47,6 @@ CaseChoice case_choice(const SeatChoice& choice) {
   result.patient_seed = choice.patient_seed;
   result.force_model = choice.force_model;
   return result;
-}
-
-ServerLine line_of(const ServerView& server, const QString& tool) {
-  ServerLine line;
-  line.tool = tool;
-  line.is_connected = server.is_connected;
-  line.rate_hz = server.rate_hz;
-  line.served = server.wanted_hz > 0.0 ? std::min(1.0, server.rate_hz / server.wanted_hz) : 1.0;
-  line.lateness_p99_us = server.p99_us;
-  line.ticks_missing = server.ticks_missing;
-  line.fault = to_qt(server.fault);
-  line.grant = to_qt(server.grant);
-  line.is_real_time = server.grant.find("SCHED_FIFO") != std::string::npos;
-  return line;
-}
-
-/// "No gamepad is connected: plug one in."; a file or folder is named: "Cannot write (/disk/a): choose another folder."
-QString sentence_of(const Error& error) {
-  QString text = to_qt(error.what);
-  if (error.where.starts_with('/')) text += QStringLiteral(" (%1)").arg(to_qt(error.where));
-  if (!error.advice.empty()) text += QStringLiteral(": ") + to_qt(error.advice);
-  if (!text.isEmpty()) text[0] = text[0].toUpper();
-  return text.endsWith('.') ? text : text + '.';
 }
 
 double quantile(std::vector<double> values, double share) {
@@ -246,6 +224,9 @@ void SeatFlow::begin_attempt() {
         window_.close();
       },
       Qt::QueuedConnection);
+  connect(attempt_.get(), &AttemptControl::gun_fired, this, [this] {
+    if (window_.has_sound()) speaker_.play(gun_click_);
+  });
   if (const QStringList changed = window_.work().parameters().settings(); !changed.isEmpty())
     attempt_->attempt().set_parameters(texts(changed));
 }

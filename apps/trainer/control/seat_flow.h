@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/background_job.h"
+#include "devices/speaker.h"
 #include "shell/seat_choice.h"
 #include "station/attempt_replay.h"
 #include "station/journal.h"
@@ -71,6 +72,8 @@ class SeatFlow : public QObject {
   BackgroundJob<std::shared_ptr<const OpenCase>> opening_;
   BackgroundJob<AttemptReplay> loading_;
   RetiredJobs retired_;
+  Speaker speaker_;
+  std::vector<float> gun_click_ = make_gun_click();
   std::optional<SeatState> offered_;        ///< Was cut off; offered on the start page.
   std::optional<SeatState> cut_off_;        ///< Being opened, to be scored and shown.
   std::shared_ptr<const OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.

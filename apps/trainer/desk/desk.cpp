@@ -18,6 +18,7 @@
 #include "ultrasound/scan_annotation.h"
 #include "views/force_plot.h"
 #include "views/patient_view.h"
+#include "views/slice_marks.h"
 #include "views/slice_view.h"
 #include "views/ultrasound_controls.h"
 #include "views/ultrasound_view.h"
@@ -81,13 +82,15 @@ bool are_near(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
                                             [](const Vec3& p, const Vec3& q) { return (p - q).norm() < kUnseen_mm; });
 }
 
+bool are_same(const std::optional<Segment>& s, const std::optional<Segment>& t) {
+  if (!s || !t) return !s && !t;
+  return (s->a - t->a).norm() < kUnseen_mm && (s->b - t->b).norm() < kUnseen_mm;
+}
+
 bool are_same(const ToolsShown& a, const ToolsShown& b) {
-  const auto same_ends = [](const Segment& s, const Segment& t) {
-    return (s.a - t.a).norm() < kUnseen_mm && (s.b - t.b).norm() < kUnseen_mm;
-  };
   return are_near(a.shaft_P, b.shaft_P) && are_near(a.X_PN, b.X_PN) && a.X_PT.has_value() == b.X_PT.has_value() &&
-         (!a.X_PT || are_near(*a.X_PT, *b.X_PT)) && a.hand_P.has_value() == b.hand_P.has_value() &&
-         (!a.hand_P || same_ends(*a.hand_P, *b.hand_P)) && a.focus_P.has_value() == b.focus_P.has_value() &&
+         (!a.X_PT || are_near(*a.X_PT, *b.X_PT)) && are_same(a.hand_P, b.hand_P) && are_same(a.stylet_P, b.stylet_P) &&
+         are_same(a.core_P, b.core_P) && a.focus_P.has_value() == b.focus_P.has_value() &&
          (!a.focus_P || (*a.focus_P - *b.focus_P).norm() < kUnseen_mm);
 }
 
@@ -114,6 +117,7 @@ Desk::Desk(QWidget* parent) : QMainWindow(parent) {
   for (const SliceKind kind : {SliceKind::kAxial, SliceKind::kCoronal, SliceKind::kSagittal, SliceKind::kAlongNeedle,
                                SliceKind::kAcrossNeedle})
     slices_.push_back(new SliceView(kind));
+  for (SliceView* slice : slices_) marks_.push_back(new SliceMarks(slice));
   auto* scanner = new QWidget;
   auto* row = new QHBoxLayout(scanner);
   row->setContentsMargins(0, 0, 0, 0);
@@ -354,9 +358,13 @@ void Desk::show_tools(const ToolsShown& tools) {
   for (PatientView* view : {view_3d_, side_}) {
     view->set_needle(tools.shaft_P, needle.outer_diameter_mm, model_of(needle));
     view->set_hand(tools.hand_P);
+    view->set_shot(tools.stylet_P, tools.core_P);
   }
+  for (SliceMarks* marks : marks_) marks->set_shot(tools.stylet_P, tools.core_P);
   stale_slices_ = (1U << slices_.size()) - 1U;
-  ultrasound_->set_needle(tools.shaft_P, needle.outer_diameter_mm);
+  std::vector<Vec3> metal_P = tools.shaft_P;  // the stylet echoes, too
+  if (tools.stylet_P) metal_P.push_back(tools.stylet_P->b);
+  ultrasound_->set_needle(metal_P, needle.outer_diameter_mm);
   if (tools.X_PT) ultrasound_->set_transducer_pose(*tools.X_PT);
 }
 

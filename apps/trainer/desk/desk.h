@@ -20,6 +20,7 @@ namespace trocar::trainer {
 class ForcePlot;
 struct LayoutColumn;
 class PatientView;
+class SliceMarks;
 class SliceView;
 class StructurePanel;
 class UltrasoundControls;
@@ -27,11 +28,13 @@ class UltrasoundView;
 
 /// Where the tools are in one frame. Frame P.
 struct ToolsShown {
-  std::vector<Vec3> shaft_P;      ///< Hub to tip; empty: no needle.
-  Pose X_PN;                      ///< Of the needle's tip.
-  std::optional<Segment> hand_P;  ///< Where the hand holds the needle, when it is ahead of it.
-  std::optional<Pose> X_PT;       ///< Transducer.
-  std::optional<Vec3> focus_P;    ///< What the slices go through.
+  std::vector<Vec3> shaft_P;        ///< Hub to tip; empty: no needle.
+  Pose X_PN;                        ///< Of the needle's tip.
+  std::optional<Segment> hand_P;    ///< Where the hand holds the needle, when it is ahead of it.
+  std::optional<Segment> stylet_P;  ///< Of a gun, ahead of its cannula.
+  std::optional<Segment> core_P;    ///< Where a core was taken.
+  std::optional<Pose> X_PT;         ///< Transducer.
+  std::optional<Vec3> focus_P;      ///< What the slices go through.
   bool are_moving = false;
 };
 
@@ -80,6 +83,7 @@ class Desk : public QMainWindow {
   PatientView* view_3d_ = nullptr;
   PatientView* side_ = nullptr;
   std::vector<SliceView*> slices_;  ///< Axial, coronal, sagittal, along, across the needle.
+  std::vector<SliceMarks*> marks_;  ///< Over them.
   StructurePanel* structures_ = nullptr;
   UltrasoundView* ultrasound_ = nullptr;
   UltrasoundControls* ultrasound_controls_ = nullptr;

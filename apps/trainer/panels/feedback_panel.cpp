@@ -8,6 +8,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "panels/core_picture.h"
 #include "panels/score_dial.h"
 #include "shell/parts.h"
 #include "shell/theme.h"
@@ -72,6 +73,9 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   parts_->setVerticalSpacing(3);
   parts_->setColumnStretch(0, 1);
   content->addLayout(parts_);
+  core_picture_ = new CorePicture;
+  core_picture_->hide();
+  content->addWidget(core_picture_);
   core_ = make_label({}, "dim");
   core_->setWordWrap(true);
   content->addWidget(core_);
@@ -153,6 +157,11 @@ void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_mo
   worst_->setVisible(!worst_moment.isEmpty());
   worst_button_->setEnabled(!worst_moment.isEmpty());
   scroll_->verticalScrollBar()->setValue(0);
+}
+
+void FeedbackPanel::show_core(const GunShot* shot) {
+  core_picture_->setVisible(shot != nullptr);
+  if (shot != nullptr) core_picture_->set_shot(*shot);
 }
 
 void FeedbackPanel::show_notes(const QStringList& notes) {

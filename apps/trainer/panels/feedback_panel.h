@@ -10,8 +10,13 @@ class QPushButton;
 class QScrollArea;
 class QVBoxLayout;
 
+namespace trocar {
+struct GunShot;
+}
+
 namespace trocar::trainer {
 
+class CorePicture;
 class ScoreDial;
 
 /// What an attempt is told at its end: the score, its parts, what to do better. Keys: Ctrl+R tries again, W shows the
@@ -24,6 +29,8 @@ class FeedbackPanel : public QWidget {
 
   /// From the top. `worst_moment`: empty where there is none.
   void show_outcome(const Outcome& outcome, const QString& worst_moment);
+  /// Its picture; null: the gun was not fired.
+  void show_core(const GunShot* shot);
   /// What happened to the attempt beside the trainee: warnings, interruptions, changed parameters. A line each.
   void show_notes(const QStringList& notes);
 
@@ -44,6 +51,7 @@ class FeedbackPanel : public QWidget {
   QGridLayout* parts_ = nullptr;
   QLabel* hints_ = nullptr;
   QLabel* core_ = nullptr;
+  CorePicture* core_picture_ = nullptr;
   QLabel* worst_ = nullptr;
   QLabel* notes_ = nullptr;
 };

@@ -5,9 +5,11 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
+#include <QScrollBar>
 #include <QShortcut>
 #include <QVBoxLayout>
 
+#include "panels/core_picture.h"
 #include "panels/wrapped_rows.h"
 #include "shell/parts.h"
 #include "shell/theme.h"
@@ -47,12 +49,16 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   force_ = new ForceBar(Qt::Horizontal);
   force_->setObjectName(QStringLiteral("force-bar"));
   content->addWidget(force_);
+  core_ = new CorePicture;
+  core_->hide();
+  content->addWidget(core_);
   events_ = new QListWidget;
   events_->setObjectName(QStringLiteral("events"));
   events_->setFocusPolicy(Qt::NoFocus);
   wrap_rows(*events_);
   events_->setSelectionMode(QAbstractItemView::NoSelection);
   content->addWidget(events_, 1);
+  connect(events_->verticalScrollBar(), &QScrollBar::rangeChanged, events_, &QListWidget::scrollToBottom);
   fire_ = make_button("fire", tr("Fire the gun"), tr("Takes the core (Enter)"));
   fire_->setProperty("role", "primary");
   fire_->setFocusPolicy(Qt::NoFocus);
@@ -125,6 +131,11 @@ QWidget* PuncturePanel::make_question() {
   return question_;
 }
 
+void PuncturePanel::show_core(const GunShot& shot) {
+  core_->set_shot(shot);
+  core_->show();
+}
+
 void PuncturePanel::ask(const QString& question, const QString& yes) {
   question_text_->setText(question);
   yes_->setText(yes);
@@ -165,6 +176,7 @@ void PuncturePanel::begin(double most_force_n, bool can_aim) {
                            : tr("Where the plan has the tools is told in guided attempts alone"));
   events_->clear();
   force_->clear();
+  core_->hide();
   answer(false);
   constexpr double kFullLag_mm = 15.0;
   force_->set_scale(most_force_n, kFullLag_mm);

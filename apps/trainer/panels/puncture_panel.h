@@ -11,8 +11,13 @@ class QListWidget;
 class QPushButton;
 class QShortcut;
 
+namespace trocar {
+struct GunShot;
+}
+
 namespace trocar::trainer {
 
+class CorePicture;
 class ForceBar;
 
 enum class ToolInHand { kNone, kNeedle, kTransducer };
@@ -47,6 +52,8 @@ class PuncturePanel : public QWidget {
   void show_hand(ToolInHand tool);
   /// A bad one is in the colour of what is wrong.
   void add_event(const QString& text, bool is_bad = false);
+  /// The core that the gun took, until the next begin().
+  void show_core(const GunShot& shot);
   /// Asks whether the attempt is to be ended. One question at a time: a second one replaces the first.
   void ask(const QString& question, const QString& yes);
   bool is_asking() const;
@@ -76,6 +83,7 @@ class PuncturePanel : public QWidget {
   QLabel* time_ = nullptr;
   QLabel* hint_ = nullptr;
   ForceBar* force_ = nullptr;
+  CorePicture* core_ = nullptr;
   QListWidget* events_ = nullptr;
   QPushButton* fire_ = nullptr;
   QPushButton* end_ = nullptr;

@@ -83,6 +83,7 @@ QWidget* MainWindow::make_top_bar() {
   auto* views = make_tool_button("views-menu", tr("Views"), tr("Layouts, and which views are shown"));
   auto* menu = new QMenu(views);
   work_->desk().fill_menu(*menu);
+  add_sound(*menu);
   views->setMenu(menu);
   views->setPopupMode(QToolButton::InstantPopup);
   auto* tissues = make_tool_button("open-parameters", tr("Tissues"), tr("Tissue parameters and the predicted force"),
@@ -96,6 +97,20 @@ QWidget* MainWindow::make_top_bar() {
           [this] { page_ == QLatin1String("case-builder") ? flow_->go_to_start() : flow_->go_to_case_builder(); });
   connect(keys, &QToolButton::clicked, this, [this] { show_keys(this); });
   return bar;
+}
+
+void MainWindow::add_sound(QMenu& menu) {
+  const QString key = QStringLiteral("sound/is_on");
+  menu.addSeparator();
+  sound_ = menu.addAction(tr("Sound of the gun"));
+  sound_->setObjectName(QStringLiteral("sound"));
+  sound_->setCheckable(true);
+  sound_->setChecked(QSettings().value(key, true).toBool());
+  connect(sound_, &QAction::toggled, this, [key](bool is_on) { QSettings().setValue(key, is_on); });
+}
+
+bool MainWindow::has_sound() const {
+  return sound_->isChecked();
 }
 
 void MainWindow::add_shortcuts() {

@@ -7,7 +7,9 @@
 
 #include "shell/banner.h"
 
+class QAction;
 class QLabel;
+class QMenu;
 class QStackedWidget;
 
 namespace trocar::trainer {
@@ -42,6 +44,7 @@ class MainWindow : public QMainWindow {
   void show_banner(const QString& text, BannerKind kind = BannerKind::kWarning);
   /// Likewise for some seconds.
   void tell(const QString& text, BannerKind kind);
+  bool has_sound() const;  ///< As the user has set it; on at first.
   /// What the window shows and knows, for scripts.
   QVariantMap facts() const;
 
@@ -50,6 +53,7 @@ class MainWindow : public QMainWindow {
 
  private:
   QWidget* make_top_bar();
+  void add_sound(QMenu& menu);
   void add_shortcuts();
 
   QStackedWidget* pages_ = nullptr;
@@ -58,6 +62,7 @@ class MainWindow : public QMainWindow {
   WorkPage* work_ = nullptr;
   CasePage* case_ = nullptr;
   StatusStrip* strip_ = nullptr;
+  QAction* sound_ = nullptr;
   Banner* banner_ = nullptr;
   std::vector<QLabel*> steps_;
   SeatFlow* flow_ = nullptr;

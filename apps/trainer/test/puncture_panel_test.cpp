@@ -7,6 +7,7 @@
 #include <QPushButton>
 #include <cmath>
 
+#include "station/gun_shot.h"
 #include "test/widget_actions.h"
 
 namespace trocar::trainer {
@@ -66,6 +67,20 @@ TEST(PuncturePanel, AimsOnlyWhereThePlanMayBeTold) {
   EXPECT_TRUE(aim->toolTip().contains(QStringLiteral("guided attempts alone")));
 }
 
+TEST(PuncturePanel, TheNewestEventStaysInSightWhenTheCoreIsShown) {
+  Shown shown;
+  for (int n = 0; n < 12; ++n)
+    shown.panel.add_event(QStringLiteral("%1.0 s  through the liver capsule at 1.5 N").arg(n));
+  shown.panel.add_event(QStringLiteral("12.0 s  the gun was fired at 52 mm"));
+  QCoreApplication::processEvents();
+  GunShot shot;
+  shot.depth_mm = 52.0;
+  shot.pieces = {{CorePart::kOrgan, "liver", 0.0, 4.0}, {CorePart::kTarget, "liver_lesion", 4.0, 18.0}};
+  shown.panel.show_core(shot);
+  QCoreApplication::processEvents();
+  EXPECT_TRUE(shown.events().viewport()->rect().contains(shown.place_of(12)));
+}
+
 TEST(PuncturePanel, AsksInThePlaceOfItsButtonsAndStaysAsHigh) {
   Shown shown;
   auto& question = *shown.panel.findChild<QWidget*>(QStringLiteral("question"));
@@ -73,11 +88,13 @@ TEST(PuncturePanel, AsksInThePlaceOfItsButtonsAndStaysAsHigh) {
   int yes = 0;
   QObject::connect(&shown.panel, &PuncturePanel::confirmed, [&] { ++yes; });
   const auto open = [&] {
-    shown.panel.ask(QStringLiteral("End the attempt and score it?"), QStringLiteral("End and score (Enter)"));
+    shown.panel.ask(QStringLiteral("End the attempt and score it?"), QStringLiteral("End (Enter)"));
     QCoreApplication::processEvents();
     EXPECT_TRUE(shown.panel.is_asking());
     EXPECT_FALSE(end.isVisible());
     EXPECT_TRUE(shown.panel.rect().contains(question.geometry()));
+    const auto& yes_button = *shown.panel.findChild<QPushButton*>(QStringLiteral("question-yes"));
+    EXPECT_GE(yes_button.width(), yes_button.sizeHint().width()) << "its text is cut off";
   };
   open();
   save(shown.panel, "puncture_panel_question.png");

@@ -119,6 +119,10 @@ void PatientView::set_hand(const std::optional<Segment>& ghost_P) {
   impl_->scene->set_hand(ghost_P);
 }
 
+void PatientView::set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P) {
+  impl_->scene->set_shot(stylet_P, core_P);
+}
+
 void PatientView::set_transducer(const std::optional<Pose>& X_PT, const ScanGeometry& scan) {
   impl_->X_PT = X_PT;
   impl_->scan = scan;

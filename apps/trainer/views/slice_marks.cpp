@@ -3,6 +3,7 @@
 #include <QEvent>
 #include <QPainter>
 #include <QPen>
+#include <algorithm>
 #include <cmath>
 
 #include "shell/parts.h"
@@ -40,6 +41,20 @@ void SliceMarks::set_landmarks(const std::vector<Landmark>& landmarks) {
   update();
 }
 
+void SliceMarks::set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P) {
+  stylet_P_ = stylet_P;
+  core_P_ = core_P;
+  update();
+}
+
+void SliceMarks::draw_piece(QPainter& painter, const Segment& piece_P, const QColor& color, double width) const {
+  const bool is_near = std::max(away_mm(piece_P.a), away_mm(piece_P.b)) < kNear_mm;
+  QColor shown = color;
+  shown.setAlphaF(is_near ? 1.0F : 0.45F);
+  painter.setPen(QPen(shown, width, Qt::SolidLine, Qt::FlatCap));
+  painter.drawLine(view_->position_of(piece_P.a), view_->position_of(piece_P.b));
+}
+
 double SliceMarks::away_mm(const Vec3& p_P) const {
   return std::abs((p_P - view_->geometry().center_P).dot(view_->geometry().axes.normal_P()));
 }
@@ -52,6 +67,9 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
     color.setAlphaF(is_near ? 1.0F : 0.45F);
     return QPen(color, width, is_near ? Qt::SolidLine : Qt::DashLine);
   };
+  constexpr double kStylet_px = 2.0, kCore_px = 4.0;
+  if (stylet_P_) draw_piece(painter, *stylet_P_, theme().needle, kStylet_px);
+  if (core_P_) draw_piece(painter, *core_P_, theme().target, kCore_px);
   for (const Landmark& landmark : landmarks_) {
     const double away = away_mm(landmark.p_P);
     if (away > kNear_mm) continue;

@@ -22,6 +22,10 @@ constexpr double kGhostRadius_mm = 1.2;
 constexpr double kGhostHubRadius_mm = 4.0;
 constexpr double kGhostHub_mm = 22.0;
 constexpr Rgb kGhostColor = {150, 205, 255};
+constexpr double kStyletRadius_mm = 0.8;  // thicker than it is, as the needle: to be seen
+constexpr Rgb kStyletColor = {236, 240, 246};
+constexpr double kCoreRadius_mm = 1.6;  // about the needle
+constexpr Rgb kCoreColor = {255, 138, 61};
 /// A change of the least thickness below this share rebuilds nothing.
 constexpr double kThicknessStep = 0.15;
 
@@ -51,6 +55,11 @@ bool are_close(std::span<const Vec3> a, std::span<const Vec3> b) {
                                             [](const Vec3& p, const Vec3& q) { return (p - q).norm() < kUnseen_mm; });
 }
 
+bool are_same(const std::optional<Segment>& a, const std::optional<Segment>& b) {
+  if (!a || !b) return !a && !b;
+  return (a->a - b->a).norm() < kUnseen_mm && (a->b - b->b).norm() < kUnseen_mm;
+}
+
 void set_data(vtkActor& actor, vtkPolyData* data) {
   static_cast<vtkPolyDataMapper*>(actor.GetMapper())->SetInputData(data);
 }
@@ -73,7 +82,10 @@ vtkSmartPointer<vtkPolyData> to_colored_polydata(std::span<const ShapePart> part
 }
 
 ToolLayer::ToolLayer(vtkRenderer& renderer)
-    : needle_(make_tool(renderer)), ghost_(make_tool(renderer)), transducer_(make_tool(renderer)) {
+    : needle_(make_tool(renderer)),
+      ghost_(make_tool(renderer)),
+      shot_(make_tool(renderer)),
+      transducer_(make_tool(renderer)) {
   ghost_->GetProperty()->SetOpacity(kGhostOpacity);
   ghost_->GetProperty()->BackfaceCullingOn();
   blend_at_once(*ghost_);
@@ -104,10 +116,7 @@ void ToolLayer::set_least_thickness(double least_mm) {
 }
 
 bool ToolLayer::set_hand(const std::optional<Segment>& ghost_P) {
-  if (!ghost_P && !ghost_P_) return false;
-  if (ghost_P && ghost_P_ && (ghost_P->a - ghost_P_->a).norm() < kUnseen_mm &&
-      (ghost_P->b - ghost_P_->b).norm() < kUnseen_mm)
-    return false;
+  if (are_same(ghost_P, ghost_P_)) return false;
   ghost_P_ = ghost_P;
   ghost_->SetVisibility(ghost_P.has_value());
   if (!ghost_P) return true;
@@ -117,6 +126,23 @@ bool ToolLayer::set_hand(const std::optional<Segment>& ghost_P) {
   const ShapePart parts[2] = {{make_tube(shaft_P, kGhostRadius_mm), kGhostColor},
                               {make_tube(hub_P, kGhostHubRadius_mm), kGhostColor}};
   set_data(*ghost_, to_colored_polydata(parts));
+  return true;
+}
+
+bool ToolLayer::set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P) {
+  if (are_same(stylet_P, stylet_P_) && are_same(core_P, core_P_)) return false;
+  stylet_P_ = stylet_P;
+  core_P_ = core_P;
+  shot_->SetVisibility(stylet_P || core_P);
+  std::vector<ShapePart> parts;
+  const auto add = [&](const std::optional<Segment>& piece_P, double radius_mm, const Rgb& color) {
+    if (!piece_P || piece_P->length_mm() < kUnseen_mm) return;
+    const Vec3 ends_P[2] = {piece_P->a, piece_P->b};
+    parts.push_back({make_tube(ends_P, radius_mm), color});
+  };
+  add(stylet_P, kStyletRadius_mm, kStyletColor);
+  add(core_P, kCoreRadius_mm, kCoreColor);
+  set_data(*shot_, to_colored_polydata(parts));
   return true;
 }
 

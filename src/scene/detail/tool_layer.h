@@ -21,6 +21,7 @@ class ToolLayer {
   // Each tells whether it changed the picture.
   bool set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
   bool set_hand(const std::optional<Segment>& ghost_P);
+  bool set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   bool set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
   /// What stands behind the transducer is seen through it.
   void set_transducer_glassy(bool is_glassy);
@@ -39,11 +40,12 @@ class ToolLayer {
   double diameter_mm_ = 1.0;
   NeedleModel model_ = NeedleModel::kChiba;
   double least_mm_ = 0.0;
-  std::optional<Segment> ghost_P_;
+  std::optional<Segment> ghost_P_, stylet_P_, core_P_;
   std::optional<Pose> X_PT_;
   std::optional<TransducerFace> face_;
   vtkSmartPointer<vtkActor> needle_;
   vtkSmartPointer<vtkActor> ghost_;
+  vtkSmartPointer<vtkActor> shot_;
   vtkSmartPointer<vtkActor> transducer_;
   PictureQuad ultrasound_;
 };

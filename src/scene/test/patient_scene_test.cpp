@@ -51,6 +51,9 @@ bool is_bright(const Rgb& c) {
 bool is_teal(const Rgb& c) {
   return c[1] > 150 && c[2] > 140 && c[0] < 130;
 }
+bool is_orange(const Rgb& c) {
+  return c[0] > 130 && c[0] > c[1] + 50 && c[1] > c[2] + 10 && c[1] > 60;
+}
 bool is_magenta(const Rgb& c) {
   return c[0] > 200 && c[2] > 200 && c[1] < 60;
 }
@@ -93,6 +96,17 @@ TEST_F(PatientSceneTest, NeedleIsSeenWhereItIs) {
   EXPECT_EQ(count_of(draw(), is_bright), 0);
 }
 
+TEST_F(PatientSceneTest, AShotIsSeenUntilThereIsNone) {
+  scene->apply_preset(StructurePreset::kBones);
+  const int before = count_of(draw(), is_orange);
+  scene->set_shot(Segment{{-60, 0, -50}, {0, 0, -50}}, Segment{{10, 0, -50}, {60, 0, -50}});
+  const RgbImage image = draw();
+  EXPECT_GT(count_of(image, is_orange), before + 20);
+  EXPECT_GT(count_of(image, is_bright), 20);
+  scene->set_shot({}, {});
+  EXPECT_EQ(count_of(draw(), is_orange), before);
+}
+
 TEST_F(PatientSceneTest, ThinNeedleIsStillSeenFromAfar) {
   scene->apply_preset(StructurePreset::kBones);
   const Vec3 shaft_P[2] = {{-60, 0, -50}, {60, 0, -50}};
@@ -122,10 +136,6 @@ TEST_F(PatientSceneTest, GuidanceIsShownAndHidden) {
   EXPECT_GT(count_of(draw(), is_teal), 30);
   scene->set_guidance_visible(false);
   EXPECT_EQ(count_of(draw(), is_teal), 0);
-}
-
-bool is_orange(const Rgb& c) {
-  return c[0] > 130 && c[0] > c[1] + 50 && c[1] > c[2] + 10 && c[1] > 60;
 }
 
 TEST_F(PatientSceneTest, GuidanceWithoutThePathIsTargetAndEntryZone) {

@@ -8,6 +8,7 @@
 
 #include "headless/scene_request.h"
 #include "station/attempt_event.h"
+#include "station/gun_shot.h"
 #include "station/recording_room.h"
 #include "telemetry/tick_pose.h"
 
@@ -263,6 +264,7 @@ Status AttemptLoop::record(const std::vector<NumberedSample>& samples) {
     if (const KnownScenes* known = needle_->scenes()) TROCAR_TRY_STATUS(record_->note_scene(numbered.scene, *known));
     note_tick(live_->last());
   }
+  note_shot();
   command_ = live_->command();
   last_needle_ = live_->last();
   return {};
@@ -275,6 +277,15 @@ void AttemptLoop::note_tick(const TickSample& sample) {
     if (event.kind == EventKind::kNone) break;
     if (auto told = describe_event(record_->info(), sample, event)) events_.push_back(*std::move(told));
   }
+}
+
+void AttemptLoop::note_shot() {
+  const std::optional<std::size_t>& fired = record_->fired();
+  if (shot_ || !fired || *fired >= record_->samples().size()) return;
+  shot_ = std::make_shared<const GunShot>(make_gun_shot(open_case_->the_case, record_->samples()[*fired]));
+  // The composition of the core stands beside its picture.
+  events_.push_back({shot_->time_s, shot_->depth_mm, EventKind::kNone, "shot",
+                     fmt::format("the gun was fired at {:.0f}\u00a0mm", shot_->depth_mm)});
 }
 
 Status AttemptLoop::step_probe() {

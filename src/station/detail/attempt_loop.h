@@ -68,6 +68,7 @@ class AttemptLoop {
   void answer_unrecorded(const std::vector<NumberedSample>& samples);
   Status record(const std::vector<NumberedSample>& samples);
   void note_tick(const TickSample& sample);
+  void note_shot();
   Status step_probe();
   void look_at(ToolServer& server);
   Status check_start();
@@ -103,6 +104,7 @@ class AttemptLoop {
   std::chrono::steady_clock::time_point disk_looked_at_;
   std::string disk_banner_, cut_short_;
   std::vector<AttemptEvent> events_;
+  std::shared_ptr<const GunShot> shot_;
   std::vector<std::string> notes_;
   std::string message_, progress_, recovered_;
   int recoveries_ = 0;

@@ -1,5 +1,6 @@
 // What the window sees of an attempt.
 #include "station/detail/attempt_loop.h"
+#include "station/gun_shot.h"
 #include "station/needle_view.h"
 #include "station/puncture_guide.h"
 #include "telemetry/tick_pose.h"
@@ -99,9 +100,12 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
     if (contact_s_ && record_)
       since_contact_s_ = active_time_s(*contact_s_, last_needle_->time_s, record_->interruptions());
     view.session_s = session_s_;
+    view.shot = shot_;
+    if (shot_) view.since_shot_s = last_needle_->time_s - shot_->time_s;
     view.since_contact_s = since_contact_s_;
     const bool is_moving = phase == AttemptPhase::kReady || phase == AttemptPhase::kInBody;
-    if (options_.is_guided && is_moving) view.hint = guide_puncture(open_case_->the_case, *last_needle_);
+    if (options_.is_guided && is_moving)
+      view.hint = guide_puncture(open_case_->the_case, *last_needle_, view.has_fired);
   }
   std::vector<ForcePoint> forces = trace_.take();
   constexpr std::size_t kMostKept = 100'000;  // by a window that takes none

@@ -56,6 +56,9 @@ TEST(AttemptReplay, NamesWhatHappenedInOrder) {
   EXPECT_NE(kinds.find("through the skin"), std::string::npos) << kinds;
   EXPECT_NE(kinds.find("through the liver capsule"), std::string::npos) << kinds;
   EXPECT_NE(kinds.find("the gun was fired"), std::string::npos) << kinds;
+  ASSERT_TRUE(replay->shot());
+  EXPECT_GT(replay->shot()->core.target_mm, 0.0);
+  EXPECT_NEAR(replay->shot()->core.target_mm, replay->outcome().core->target_mm, 1e-9);
   ASSERT_TRUE(replay->worst());
   EXPECT_NE(replay->worst()->text.find("mm beside"), std::string::npos) << replay->worst()->text;
 }

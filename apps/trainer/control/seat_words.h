@@ -1,0 +1,16 @@
+#pragma once
+
+#include <QString>
+
+#include "core/result.h"
+#include "shell/status_strip.h"
+#include "station/attempt_view.h"
+
+namespace trocar::trainer {
+
+/// A haptic server as the status strip shows it.
+ServerLine line_of(const ServerView& server, const QString& tool);
+/// "No gamepad is connected: plug one in."; a file or folder is named: "Cannot write (/disk/a): choose another folder."
+QString sentence_of(const Error& error);
+
+}  // namespace trocar::trainer

@@ -1,0 +1,96 @@
+#include "panels/core_picture.h"
+
+#include <QPainter>
+
+#include "shell/theme.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr CorePart kParts[] = {CorePart::kTarget, CorePart::kOrgan, CorePart::kVessel, CorePart::kOther};
+
+QString title_of(CorePart part) {
+  switch (part) {
+    case CorePart::kTarget:
+      return CorePicture::tr("target tissue");
+    case CorePart::kOrgan:
+      return CorePicture::tr("organ");
+    case CorePart::kVessel:
+      return CorePicture::tr("vessel");
+    case CorePart::kOther:
+      break;
+  }
+  return CorePicture::tr("other tissue");
+}
+
+}  // namespace
+
+QColor CorePicture::color_of(CorePart part) {
+  switch (part) {
+    case CorePart::kTarget:
+      return theme().target;
+    case CorePart::kOrgan:
+      return {0xb5, 0x6a, 0x55};
+    case CorePart::kVessel:
+      return {0x5b, 0x8d, 0xef};
+    case CorePart::kOther:
+      break;
+  }
+  return {0xd9, 0xc7, 0x8a};
+}
+
+CorePicture::CorePicture(QWidget* parent) : QWidget(parent) {
+  setObjectName(QStringLiteral("core-picture"));
+  setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+}
+
+void CorePicture::set_shot(const GunShot& shot) {
+  pieces_ = shot.pieces;
+  legend_.clear();
+  for (const CorePart part : kParts) {
+    double length_mm = 0.0;
+    for (const ShotPiece& piece : pieces_)
+      if (piece.part == part) length_mm += piece.to_mm - piece.from_mm;
+    if (length_mm > 0.0) legend_.push_back({part, tr("%1 mm %2").arg(length_mm, 0, 'f', 1).arg(title_of(part))});
+  }
+  if (legend_.empty()) legend_.push_back({CorePart::kOther, tr("The notch is empty")});
+  QStringList texts;
+  for (const Entry& entry : legend_) texts << entry.text;
+  setAccessibleName(tr("Core: %1").arg(texts.join(QStringLiteral(", "))));
+  updateGeometry();
+  update();
+}
+
+int CorePicture::bar_height() const {
+  return fontMetrics().height();
+}
+
+QSize CorePicture::sizeHint() const {
+  const int rows = std::max(1, static_cast<int>(legend_.size()));
+  return {fontMetrics().averageCharWidth() * 24, bar_height() + 6 + rows * fontMetrics().lineSpacing()};
+}
+
+void CorePicture::paintEvent(QPaintEvent* /*event*/) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  const QRectF bar(0.5, 0.5, width() - 1.0, bar_height() - 1.0);
+  const double whole_mm = pieces_.empty() ? 0.0 : pieces_.back().to_mm;
+  for (const ShotPiece& piece : pieces_) {
+    const double from = bar.left() + bar.width() * piece.from_mm / whole_mm;
+    const double to = bar.left() + bar.width() * piece.to_mm / whole_mm;
+    painter.fillRect(QRectF(from, bar.top(), to - from, bar.height()), color_of(piece.part));
+  }
+  painter.setPen(theme().line);
+  painter.drawRect(bar);
+  int top = bar_height() + 6;
+  const int line = fontMetrics().lineSpacing();
+  for (const Entry& entry : legend_) {
+    const int side = line * 2 / 3;
+    if (!pieces_.empty()) painter.fillRect(QRect(0, top + (line - side) / 2, side, side), color_of(entry.part));
+    painter.setPen(theme().dim);
+    painter.drawText(QRect(pieces_.empty() ? 0 : line, top, width() - line, line), Qt::AlignVCenter, entry.text);
+    top += line;
+  }
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <QWidget>
+#include <vector>
+
+#include "station/gun_shot.h"
+
+namespace trocar::trainer {
+
+/// The core that a shot took, to scale: target tissue, organ, vessel and other tissue by colour, with their lengths.
+class CorePicture : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit CorePicture(QWidget* parent = nullptr);
+  void set_shot(const GunShot& shot);
+
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override { return sizeHint(); }
+
+  static QColor color_of(CorePart part);
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  struct Entry {
+    CorePart part;
+    QString text;
+  };
+  int bar_height() const;
+
+  std::vector<ShotPiece> pieces_;
+  std::vector<Entry> legend_;  ///< Of the parts that the core has.
+};
+
+}  // namespace trocar::trainer
