@@ -68,6 +68,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  trocar::handle_interruptions();
+  const bool has_command = argc > 1 && argv[1][0] != '-';
+  trocar::handle_interruptions(has_command ? std::string("trocar ") + argv[1] : "trocar");
   return trocar::run_program([&] { return run(argc, argv); }, "trocar");
 }

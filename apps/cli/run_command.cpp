@@ -188,10 +188,6 @@ Status make_room(const std::filesystem::path& session) {
   if (kept_as)
     print_warning(fmt::format("{} is the incomplete session of an interrupted run — kept as {}", session.string(),
                               kept_as->string()));
-  const std::filesystem::path folder = session.parent_path();
-  std::error_code ignored;
-  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
-    return fail("no such folder", folder.string(), "make it first");
   return check_new(session);
 }
 

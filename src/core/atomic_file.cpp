@@ -28,15 +28,6 @@ fs::path temporary_beside(const fs::path& target) {
                                               name.ends_with(".nii.gz") ? ".nii.gz" : absolute.extension().string());
 }
 
-/// Makes the parent folder where it is missing, so that --out may name a new place.
-Status make_parent(const fs::path& target) {
-  std::error_code error;
-  const fs::path parent = plain(target).parent_path();
-  fs::create_directories(parent, error);
-  if (error) return fail("cannot make the folder: " + error.message(), parent.string(), "choose another place");
-  return {};
-}
-
 Status flush_to_disk(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0)
@@ -52,8 +43,16 @@ Status flush_to_disk(const fs::path& path) {
 
 }  // namespace
 
+Status make_parent_folder(const fs::path& target) {
+  std::error_code error;
+  const fs::path parent = plain(target).parent_path();
+  fs::create_directories(parent, error);
+  if (error) return fail("cannot make the folder: " + error.message(), parent.string(), "choose another place");
+  return {};
+}
+
 Status write_atomically(const fs::path& target, const std::function<Status(const fs::path&)>& write) {
-  TROCAR_TRY_STATUS(make_parent(target));
+  TROCAR_TRY_STATUS(make_parent_folder(target));
   const fs::path temporary = temporary_beside(target);
   UnfinishedOutput unfinished({temporary});
   TROCAR_TRY_STATUS(write(temporary));
@@ -80,7 +79,7 @@ Status write_folder_atomically(const fs::path& target, const std::function<Statu
   const bool is_empty_folder = fs::is_directory(target, error) && fs::is_empty(target, error);
   if (fs::exists(target, error) && !is_empty_folder)
     return fail_usage("exists already", target.string(), "choose another name or remove it first");
-  TROCAR_TRY_STATUS(make_parent(target));
+  TROCAR_TRY_STATUS(make_parent_folder(target));
   const fs::path temporary = temporary_beside(target);
   UnfinishedOutput unfinished({temporary});
   fs::remove_all(temporary, error);

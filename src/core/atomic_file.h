@@ -21,6 +21,9 @@ Status write_file_atomically(const std::filesystem::path& target, std::string_vi
 Status write_folder_atomically(const std::filesystem::path& target,
                                const std::function<Status(const std::filesystem::path& temporary)>& write);
 
+/// Makes the folder that `target` will lie in, where it is missing.
+Status make_parent_folder(const std::filesystem::path& target);
+
 /// The whole file, at most `max_bytes` long.
 Result<std::string> read_file(const std::filesystem::path& path, std::size_t max_bytes = std::size_t{1} << 30);
 

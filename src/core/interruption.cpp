@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <ctime>
 #include <thread>
+#include <utility>
 
 #include "core/unfinished_output.h"
 
@@ -20,6 +21,12 @@ constexpr int kFailed = 1;  // exit status
 std::atomic<bool> was_signalled{false};
 std::atomic<int> work_that_ends_by_itself{0};
 sem_t signals;  // posted once a signal: sem_post is allowed in a handler
+
+/// Never freed: the thread that waits for signals outlives main.
+std::string& command_name() {
+  static auto* const name = new std::string;
+  return *name;
+}
 
 extern "C" void note_signal(int) {
   const int error = errno;
@@ -43,7 +50,7 @@ void wait_for_end() {
 void watch() {
   wait_for_end();
   end_without_unfinished_outputs([](const std::filesystem::path& output) {
-    const Error error = output.empty() ? interruption_error("trocar")
+    const Error error = output.empty() ? interruption_error(command_name())
                                        : Error{"interrupted, but the output is complete", output.string(),
                                                "remove it before you run the command again", kFailed};
     return "error: " + error.text();
@@ -62,7 +69,8 @@ void handle(int signal_number) {
 
 }  // namespace
 
-void handle_interruptions() {
+void handle_interruptions(std::string command) {
+  command_name() = std::move(command);
   if (::sem_init(&signals, 0, 0) != 0) return;
   std::thread(watch).detach();
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) handle(signal_number);

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <string>
+
 #include "core/result.h"
 
 namespace trocar {
 
 /// From now on SIGINT, SIGTERM and SIGHUP end the program in order: unfinished outputs are removed, one line on
-/// standard error says so, the exit status is 1. A signal that the parent process ignores stays ignored. Call it once,
-/// in main.
-void handle_interruptions();
+/// standard error says so with the name of the command, the exit status is 1. A signal that the parent process ignores
+/// stays ignored. Call it once, in main.
+void handle_interruptions(std::string command);
 
 /// Whether such a signal has come. Real-time safe.
 bool is_interrupted() noexcept;

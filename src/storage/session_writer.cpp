@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/atomic_file.h"
 #include "core/check.h"
 #include "core/log.h"
 #include "storage/detail/checksums.h"
@@ -28,8 +29,9 @@ constexpr double kMaxBatchTicks = 100'000.0;  ///< Bound of the buffer whatever 
 constexpr const char* kWriteAdvice = "free some disk space or choose another folder";
 constexpr const char* kPlaceAdvice = "choose another folder";
 
-/// Takes the name: an existing file is never touched.
+/// Takes the name: an existing file is never touched. A missing folder is made.
 Status claim(const fs::path& path) {
+  TROCAR_TRY_STATUS(make_parent_folder(path));
   const int file = ::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
   if (file < 0 && errno == EEXIST)
     return fail_usage("output already exists", path.string(), "choose another name or delete it");

@@ -204,7 +204,7 @@ TEST_F(EmbeddedBiopsy, SessionExportsOneRowATick) {
 int run_in_child(const Case& the_case, const std::filesystem::path& session, int moment, void (*trouble)()) {
   const pid_t child = ::fork();
   if (child == 0) {
-    handle_interruptions();
+    handle_interruptions("trocar run");
     RunOptions options;
     options.patient_source = the_case.patient->name;
     options.session = session;

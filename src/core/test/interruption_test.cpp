@@ -26,7 +26,7 @@ template <class Work>
 int interrupted(const Work& work) {
   const pid_t child = ::fork();
   if (child == 0) {
-    handle_interruptions();
+    handle_interruptions("trocar test");
     work();
     ::_exit(0);
   }
@@ -160,7 +160,7 @@ TEST(Interruption, LeavesAnIgnoredSignalIgnored) {
   const pid_t child = ::fork();
   if (child == 0) {
     ::signal(SIGHUP, SIG_IGN);
-    handle_interruptions();
+    handle_interruptions("trocar test");
     ::raise(SIGHUP);
     ::_exit(is_interrupted() ? 1 : 0);
   }

@@ -170,9 +170,13 @@ TEST(SessionFile, NeverTouchesAnExistingFile) {
   EXPECT_EQ(*read_file(folder / "mine.txt"), "my text");
 }
 
-TEST(SessionFile, RefusesAFolderThatIsNotThere) {
+TEST(SessionFile, MakesAFolderThatIsNotThere) {
   const TemporaryFolder folder;
-  const auto writer = SessionWriter::create(folder.path() / "no" / "s.trocar", example_info());
+  const fs::path path = folder.path() / "new" / "place" / "s.trocar";
+  ASSERT_TRUE(SessionWriter::create(path, example_info()));
+  EXPECT_TRUE(fs::exists(path));
+  write_bytes(folder / "file", "no folder");
+  const auto writer = SessionWriter::create(folder.path() / "file" / "s.trocar", example_info());
   ASSERT_FALSE(writer);
   EXPECT_EQ(writer.error().exit_status, 1);
 }
