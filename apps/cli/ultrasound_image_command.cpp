@@ -195,7 +195,7 @@ Status make_image(const Arguments& arguments) {
   ScanArguments wanted = arguments.scan;
   wanted.needs_flow = arguments.doppler.is_wanted;
   TROCAR_TRY(Scan scan, prepare_scan(wanted, {}, printer.callback()));
-  scan.display.is_mirrored = !arguments.is_unmirrored;
+  if (arguments.is_unmirrored) scan.display.is_mirrored = false;
 
   BMode engine(scan.scene, scan.transducer, scan.acquisition);
   Scanner scanner(request.size.columns, request.size.rows);

@@ -28,7 +28,9 @@ struct DisplaySettings {
   double dynamic_range_db = 60.0;  ///< Range 20..100.
   double persistence = 0.0;        ///< Part of the last picture that stays. Range 0..0.95.
   GrayMap gray_map = GrayMap::kSoft;
-  bool is_mirrored = false;  ///< Left and right swapped, as the orientation marker says.
+  /// +x of the transducer, its marked side, on the left, as is usual: in a transverse view the patient's right is then
+  /// on the left, as in an axial slice. The orientation marker shows the side.
+  bool is_mirrored = true;
 
   bool operator==(const DisplaySettings&) const = default;
 };

@@ -23,6 +23,7 @@ constexpr int kLabelColumns = 2 * kGlyphAdvance;  ///< Room for two digits right
 constexpr int kWedgeColumns = 8;
 constexpr int kTriangle = 4;
 constexpr int kMarkerDistance = 9;
+constexpr double kMarkerRadius = 3.0;
 /// Pictures of so many columns are written with one pixel a dot, twice as many with two.
 constexpr int kColumnsPerScale = 640;
 
@@ -108,7 +109,11 @@ ScanAnnotation make_scan_annotation(const RasterGeometry& raster, const ScanGeom
   annotation.focus_row = raster.to_pixel({0.0, caption.focus_mm}).y();
   const Vec2 end_pixel = raster.to_pixel(scan.line_origin(scan.lines - 1));
   const double outwards = raster.is_mirrored ? -1.0 : 1.0;
-  annotation.marker_pixel = end_pixel + Vec2(outwards * kMarkerDistance * annotation.text_scale, 0.0);
+  const Vec2 marker = end_pixel + Vec2(outwards * kMarkerDistance * annotation.text_scale, 0.0);
+  // A linear array may fill the picture: the whole marker is in it.
+  const double radius = kMarkerRadius * annotation.text_scale;
+  const Vec2 last(raster.columns - 1, raster.rows - 1);
+  annotation.marker_pixel = marker.cwiseMin(last - Vec2(radius, radius)).cwiseMax(Vec2(radius, radius));
   return annotation;
 }
 
@@ -128,7 +133,7 @@ void draw_annotation(RgbImage& image, const ScanAnnotation& annotation) {
   }
   const int focus_row = static_cast<int>(std::lround(annotation.focus_row));
   draw_triangle(image, annotation.scale_column - (kLongTick + 2) * dot, focus_row, kTriangle * dot, kFocusInk);
-  draw_disc(image, annotation.marker_pixel, 3.0 * dot, kMarkerInk);
+  draw_disc(image, annotation.marker_pixel, kMarkerRadius * dot, kMarkerInk);
   for (std::size_t r = 0; r < annotation.wedge.gray.size(); ++r) {
     const std::uint8_t gray = annotation.wedge.gray[r];
     draw_box(image, annotation.wedge.column, annotation.wedge.row + static_cast<int>(r), annotation.wedge.columns, 1,

@@ -53,6 +53,14 @@ TEST_F(UltrasoundControlsTest, ControlsAndViewShowTheSame) {
   EXPECT_EQ(view.transducer().name, "L14-5");
   EXPECT_EQ(view.settings().acquisition.depth_mm, 40.0);
   EXPECT_EQ(find<QComboBox>(controls, "ultrasound-transducer").currentText(), QStringLiteral("L14-5"));
+  // A preset's name does not stay beside another transducer.
+  auto& transducers = find<QComboBox>(controls, "ultrasound-transducer");
+  transducers.setCurrentIndex(transducers.findText(QStringLiteral("C5-2")));
+  Q_EMIT transducers.activated(transducers.currentIndex());
+  EXPECT_EQ(view.transducer().name, "C5-2");
+  EXPECT_EQ(presets.currentIndex(), 0) << presets.currentText().toStdString();
+  transducers.setCurrentIndex(transducers.findText(QStringLiteral("L14-5")));
+  Q_EMIT transducers.activated(transducers.currentIndex());
   find<QPushButton>(controls, "ultrasound-reset").click();
   EXPECT_EQ(view.settings(), default_settings(transducer("L14-5")));
 }

@@ -4,6 +4,9 @@
 #include <numbers>
 
 #include "test/ultrasound_lab.h"
+#include "views/slice_view.h"
+#include "views/ultrasound_layout.h"
+#include "views/ultrasound_painter.h"
 
 namespace trocar::trainer {
 namespace {
@@ -79,6 +82,40 @@ TEST_F(UltrasoundViewTest, NeedleIsSeenInThePlaneAlone) {
   view.set_needle(needle_in_plane(X_PT_, 15.0), 1.27);
   ASSERT_TRUE(settle(view));
   EXPECT_LT(brightness_along(look(view, "needle_beside"), view, within), without + 8.0);
+}
+
+/// Where the needle changes the picture, as a share of its width.
+double column_of_change(const QImage& before, const QImage& after, const QRect& within) {
+  double sum = 0.0, weighted = 0.0;
+  for (int y = within.top(); y <= within.bottom(); ++y)
+    for (int x = within.left(); x <= within.right(); ++x) {
+      constexpr int kSpeckle = 60;
+      const double change = std::max(0, qGray(after.pixel(x, y)) - qGray(before.pixel(x, y)) - kSpeckle);
+      sum += change;
+      weighted += change * (x - within.left());
+    }
+  return weighted / (sum * within.width());
+}
+
+TEST_F(UltrasoundViewTest, TransverseViewHasThePatientsRightOnTheLeftLikeAnAxialSlice) {
+  UltrasoundView view;
+  open(view, "aorta-transverse", {900, 700});
+  ASSERT_LT(X_PT_.R().col(0).x(), -0.9);  // transverse, the marked side towards the patient's right
+  ASSERT_TRUE(settle(view));
+  const QImage before = look(view, "transverse");
+  const std::vector<Vec3> shaft_P = needle_in_plane(X_PT_, 0.0);  // from the marked side
+  ASSERT_LT(shaft_P[0].x(), shaft_P[1].x());
+  view.set_needle(shaft_P, 1.27);
+  ASSERT_TRUE(settle(view));
+  const QImage after = look(view, "transverse_needle");
+  EXPECT_LT(column_of_change(before, after, map_of(view).rect().toRect()), 0.45);
+  EXPECT_LT(view.picture()->corners_P[0].x(), view.picture()->corners_P[1].x());
+
+  SliceView slice(SliceKind::kAxial);
+  slice.resize(400, 360);
+  slice.show_patient(abdomen().patient);
+  slice.set_focus(X_PT_.p());
+  EXPECT_LT(slice.position_of(shaft_P[0]).x(), slice.position_of(shaft_P[1]).x());
 }
 
 TEST_F(UltrasoundViewTest, GuideShowsWhereTheNeedleGoes) {
@@ -327,6 +364,25 @@ TEST_F(UltrasoundViewTest, NothingLiesOnTheScan) {
           ASSERT_GE(at.x(), 0.0);
         }
     }
+}
+
+TEST_F(UltrasoundViewTest, TheWholeMarkerIsInTheView) {
+  for (const char* probe : {"L14-5", "P4-2", "C5-2"})
+    for (const QSize size : {QSize(480, 420), QSize(240, 180), QSize(300, 800)})
+      for (const bool is_mirrored : {true, false}) {
+        UltrasoundView view;
+        open(view, "aorta", size, probe);
+        view.change_settings([&](UltrasoundSettings& s) { s.display.is_mirrored = is_mirrored; });
+        ASSERT_TRUE(run_until(view, [&](const ScanPicture& p) { return p.display == view.settings().display; }));
+        look(view, qPrintable(QStringLiteral("marker_%1_%2").arg(probe).arg(size.width())));
+        const PictureMap map = map_of(view);
+        const ScanPicture& picture = *view.picture();
+        const QPointF marker = marker_place(map, make_scan_annotation(picture.raster, picture.scan, {}));
+        EXPECT_GE(marker.x(), kMarker_px) << probe << " " << size.width() << is_mirrored;
+        EXPECT_GE(marker.y(), kMarker_px) << probe << " " << size.width() << is_mirrored;
+        EXPECT_LE(marker.x(), size.width() - kMarker_px) << probe << " " << size.width() << is_mirrored;
+        EXPECT_EQ(marker.x() < map.rect().center().x(), is_mirrored) << probe << " " << size.width();
+      }
 }
 
 TEST_F(UltrasoundViewTest, KnobsAreKeptForEachTransducer) {

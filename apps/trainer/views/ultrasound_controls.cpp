@@ -234,7 +234,8 @@ QWidget* UltrasoundControls::make_picture() {
   grid->addWidget(make_label(tr("Gray map")), row, 0);
   grid->addWidget(gray_map_, row, 1, 1, 2);
   box->addLayout(grid);
-  add_check(*box, "ultrasound-mirror", tr("Swap left and right"), tr("The green dot goes to the other side"),
+  add_check(*box, "ultrasound-mirror", tr("Marked side on the left"),
+            tr("Off: left and right are swapped; the green dot goes to the other side"),
             [](S& s) -> bool& { return s.display.is_mirrored; });
   return widget;
 }
@@ -365,6 +366,10 @@ void UltrasoundControls::show_view() {
   for (Check& check : checks_) check.box->setChecked(check.flag(settings));
   gray_map_->setCurrentIndex(gray_map_->findText(to_qt(name_of(settings.display.gray_map))));
   transducer_->setCurrentIndex(transducer_->findText(to_qt(view_.transducer().name)));
+  // A preset is of a transducer.
+  const int preset = preset_->currentIndex();
+  if (preset > 0 && presets_[static_cast<std::size_t>(preset - 1)].transducer != view_.transducer().name)
+    preset_->setCurrentIndex(0);
   const CineState cine = view_.cine();
   freeze_->setChecked(cine.is_frozen);
   freeze_->setText(cine.is_frozen ? tr("Frozen") : tr("Freeze"));

@@ -37,12 +37,14 @@ UltrasoundLayout lay_out(const QSizeF& view, const ScanGeometry& scan, const Ult
   layout.bars = QRectF(QPointF(layout.scale_x - 2.0 * room.margin - room.bars.width(), 3.5 * room.margin), room.bars);
   const double left_most = room.caption.isEmpty() ? 0.0 : room.caption.width() + 1.5 * room.margin;
   const double right_most = room.bars.isEmpty() ? 0.0 : room.bars.width() + 1.5 * room.margin;
+  const double marker = scan.is_fan ? 0.0 : room.marker;
   double best_mm_per_pixel = 1e30;
   for (int l = 0; l <= kSteps; ++l)
     for (int r = 0; r <= kSteps; ++r) {
       const double left = left_most * l / kSteps, right = right_most * r / kSteps;
-      const QRectF picture(left, 0.0, std::max(16.0, layout.scale_x - room.margin - left - right),
-                           std::max(16.0, view.height()));
+      const QRectF picture(left + marker, marker,
+                           std::max(16.0, layout.scale_x - room.margin - left - right - 2.0 * marker),
+                           std::max(16.0, view.height() - marker));
       const RasterGeometry raster =
           fit_raster(scan, static_cast<int>(picture.width()), static_cast<int>(picture.height()));
       // Among equals the one that moves the picture the least.

@@ -14,6 +14,7 @@ struct UltrasoundRoom {
   QSizeF bars;                ///< At the right, below the orientation marker; beside the depth scale.
   double scale_width = 34.0;  ///< Depth scale and its numbers, at the right edge.
   double margin = 8.0;
+  double marker = 14.0;  ///< Margin of a linear array's picture above and at both sides, for its marker.
 };
 
 /// Where things stand in an ultrasound view, so that nothing lies on the scan: the picture is as large as fits beside

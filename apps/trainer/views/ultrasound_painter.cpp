@@ -27,6 +27,7 @@ constexpr double kNearPlane_mm = 3.0;
 constexpr double kAhead_mm = 250.0, kAxisStep_mm = 1.0;
 constexpr int kOutlinePoints = 72;
 constexpr double kCross_px = 5.0;
+constexpr double kMarkerBeside_px = 8.0;  ///< Largest distance of the marker from the raster.
 
 double line_height(const QFont& font) {
   return std::ceil(QFontMetricsF(font).height() * 1.05);
@@ -131,6 +132,13 @@ void draw_caption(QPainter& painter, const QRectF& place, const std::vector<Capt
   }
 }
 
+QPointF marker_place(const PictureMap& map, const ScanAnnotation& annotation) {
+  // A coarse raster's pixels are larger than the widget's and would move the marker out of the view.
+  const QPointF marker = map.pixel_to_view(annotation.marker_pixel);
+  const QRectF room = map.rect().adjusted(-kMarkerBeside_px, -kMarkerBeside_px, kMarkerBeside_px, kMarkerBeside_px);
+  return {std::clamp(marker.x(), room.left(), room.right()), std::clamp(marker.y(), room.top(), room.bottom())};
+}
+
 void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x, const ScanAnnotation& annotation,
                       const QFont& font) {
   const QFontMetricsF metrics(font);
@@ -156,8 +164,7 @@ void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x, 
   painter.drawPolygon(
       QPolygonF({QPointF(tip_x, focus_y), QPointF(tip_x - 7.0, focus_y - 5.0), QPointF(tip_x - 7.0, focus_y + 5.0)}));
   painter.setBrush(kMarkerInk);
-  const QPointF marker = map.pixel_to_view(annotation.marker_pixel);
-  painter.drawEllipse(marker, 4.0, 4.0);
+  painter.drawEllipse(marker_place(map, annotation), kMarker_px, kMarker_px);
   painter.setBrush(Qt::NoBrush);
 }
 

@@ -39,6 +39,11 @@ QSizeF caption_size(const std::vector<CaptionLine>& lines, const QFont& font);
 QSizeF bars_size(const QFont& font, double view_height, bool has_doppler);
 
 void draw_caption(QPainter& painter, const QRectF& place, const std::vector<CaptionLine>& lines, const QFont& font);
+/// Radius of the orientation marker.
+inline constexpr double kMarker_px = 4.0;
+/// Middle of the orientation marker: beside the face's marked end, and never farther from the picture than the layout
+/// has room for.
+QPointF marker_place(const PictureMap& map, const ScanAnnotation& annotation);
 /// Depth ticks and numbers, focus, orientation marker.
 void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x, const ScanAnnotation& annotation,
                       const QFont& font);

@@ -21,7 +21,7 @@ void visit(UltrasoundSettings& s, const Visitor& knob) {
     knob(QStringLiteral("tgc_db/%1").arg(n + 1).toLatin1().constData(), s.display.tgc_db[n]);
   knob("dynamic_range_db", s.display.dynamic_range_db);
   knob("persistence", s.display.persistence);
-  knob("is_mirrored", s.display.is_mirrored);
+  knob("is_marker_left", s.display.is_mirrored);
   knob("doppler/scale_cm_per_s", s.doppler.scale_cm_per_s);
   knob("doppler/gain_db", s.doppler.gain_db);
   knob("doppler/baseline", s.doppler.baseline);

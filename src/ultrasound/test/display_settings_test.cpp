@@ -27,6 +27,10 @@ TEST(DisplaySettings, DefaultsAreInRange) {
   EXPECT_TRUE(check(DisplaySettings{}));
 }
 
+TEST(DisplaySettings, TheMarkedSideIsOnTheLeftByDefault) {
+  EXPECT_TRUE(DisplaySettings{}.is_mirrored);
+}
+
 TEST(DisplaySettings, ErrorNamesTheWrongKnob) {
   DisplaySettings settings;
   settings.dynamic_range_db = 10.0;

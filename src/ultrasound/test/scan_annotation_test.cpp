@@ -59,6 +59,23 @@ TEST(ScanAnnotation, MarkerStaysWithTheMarkedEndWhenThePictureIsMirrored) {
   }
 }
 
+TEST(ScanAnnotation, TheWholeMarkerIsInThePictureOfALinearArray) {
+  ScanGeometry scan;
+  scan.is_fan = false;
+  scan.lines = 128;
+  scan.line_step = 0.3;
+  scan.depth_mm = 40.0;
+  constexpr double kRadius = 3.0;
+  for (const bool is_mirrored : {false, true}) {
+    const RasterGeometry raster = fit_raster(scan, 200, 300, is_mirrored);  // the array fills its width
+    const ScanAnnotation annotation = make_scan_annotation(raster, scan, caption());
+    EXPECT_GE(annotation.marker_pixel.x(), kRadius);
+    EXPECT_LE(annotation.marker_pixel.x(), 199.0 - kRadius);
+    EXPECT_GE(annotation.marker_pixel.y(), kRadius);
+    EXPECT_EQ(annotation.marker_pixel.x() < 100.0, is_mirrored);
+  }
+}
+
 TEST(ScanAnnotation, WedgeShowsTheGrayMap) {
   const ScanGeometry scan = fan(160.0);
   ScanCaption louder = caption();

@@ -241,6 +241,7 @@ TEST(Scanner, GeometryFollowsTheFrame) {
 TEST(Scanner, MirrorSwapsLeftAndRight) {
   Scanner scanner = make_scanner(false, false);
   const BasebandFrame frame = liver_frame(7);
+  scanner.settings.is_mirrored = false;
   const GrayImage straight = scanner.show(frame, 1);
   scanner.settings.is_mirrored = true;
   const GrayImage& mirrored = scanner.show(frame, 1);
