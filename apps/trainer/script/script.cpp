@@ -20,7 +20,7 @@ const std::map<QString, Arity>& verbs() {
       {"type", {1, 1}},        {"choose", {2, 2}},       {"set", {2, 2}},           {"wait", {1, 1}},
       {"wait-for", {3, 5}},    {"expect", {3, 5}},       {"expect-pixels", {4, 6}}, {"resize", {2, 2}},
       {"screenshot", {1, 2}},  {"end-server", {1, 1}},   {"end-window", {0, 0}},    {"close-window", {0, 0}},
-      {"reset-watch", {0, 0}}, {"print", {1, 16}},
+      {"reset-watch", {0, 0}}, {"print", {1, 16}},       {"expect-whole", {0, 0}},
   };
   return all;
 }

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "script/cut_off.h"
 #include "script/widget_events.h"
 #include "shell/parts.h"
 
@@ -21,7 +22,8 @@ namespace {
 constexpr int kBetweenSteps_ms = 15;
 constexpr double kPatience_s = 30.0;
 constexpr double kDrag_s = 0.4;
-constexpr int kMostAtOnce = 2;  ///< Events of a step that goes on until something holds.
+constexpr double kSettled_s = 1.0;  ///< After that a layout is as it stays.
+constexpr int kMostAtOnce = 2;      ///< Events of a step that goes on until something holds.
 
 QPointF place_of(const QStringList& arguments, int first) {
   if (arguments.size() < first + 2) return {0.5, 0.5};
@@ -236,6 +238,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
     std::fflush(stdout);
     return Progress::kDone;
   }
+  if (step.verb == QLatin1String("expect-whole")) return expect_whole();
   if (step.verb == QLatin1String("expect")) return wait_until_holds(a, patience_of(a, stage_.look_s));
   TROCAR_TRY(QWidget* const widget,
              find(step.verb == QLatin1String("screenshot") && a.size() < 2 ? QStringLiteral("window")
@@ -253,6 +256,18 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
     return fail(fmt::format("only {:.2f} % of its pixels are near {}", 100.0 * share, to_std(a[1])), to_std(a[0]),
                 "look at the picture, or correct the step");
   return Progress::kAgain;
+}
+
+/// The force stop and every text on the page.
+Result<ScriptPlayer::Progress> ScriptPlayer::expect_whole() const {
+  const auto* stop = stage_.window->findChild<QWidget*>(QStringLiteral("force-stop"));
+  QStringList faults = find_cut_off(*stage_.window);
+  if (stop == nullptr || !is_wholly_visible(*stop)) faults.prepend(QStringLiteral("force-stop: not wholly visible"));
+  if (faults.isEmpty()) return Progress::kDone;
+  if (seconds() < kSettled_s) return Progress::kAgain;
+  const QSize size = stage_.window->size();
+  return fail(to_std(faults.join(QStringLiteral("; "))), fmt::format("{}x{}", size.width(), size.height()),
+              "give it room, or let it be scrolled");
 }
 
 }  // namespace trocar::trainer

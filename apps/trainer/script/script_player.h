@@ -45,6 +45,7 @@ class ScriptPlayer : public QObject {
   /// Acts so often a second until the fact is there.
   Result<Progress> play_until(const ScriptStep& step, const std::function<Status()>& act);
   Result<Progress> play_waiting(const ScriptStep& step);
+  Result<Progress> expect_whole() const;
   Result<Progress> play_looking(const ScriptStep& step);
   /// Null: not to be seen yet.
   Result<QWidget*> find(const QString& name) const;
