@@ -66,6 +66,7 @@ struct ServerView {
   std::string fault;                      ///< Of the safety gate; empty: none.
   std::string grant;                      ///< What real time the system granted.
   std::string warning;                    ///< The server's own.
+  bool waits_for_resume = false;          ///< It has no forces until resume_forces(), though nobody stopped them.
   int restarts = 0;                       ///< How often it was started again or seated again.
 };
 
@@ -85,6 +86,7 @@ struct AttemptView {
   std::array<ServerView, 2> servers;  ///< Needle, probe.
   double session_s = 0.0;             ///< Recorded so far, without interruptions.
   double since_contact_s = 0.0;       ///< Since the needle first touched the skin, likewise; 0 before.
+  bool are_forces_stopped = false;    ///< By stop_forces(), or a server waits: resume_forces() turns them on again.
   bool has_fired = false;
   std::shared_ptr<const GunShot> shot;  ///< With the first tick after it.
   double since_shot_s = 0.0;       ///< In the session's time; it stands still while there is no news of the needle.

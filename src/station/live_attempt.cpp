@@ -63,7 +63,11 @@ LiveAttempt::~LiveAttempt() = default;
 AttemptView LiveAttempt::view() const {
   const std::lock_guard lock(impl_->desk.mutex);
   const AttemptNews& news = impl_->desk.news;
-  return aged(news.view, std::chrono::duration<double>(std::chrono::steady_clock::now() - news.told).count());
+  AttemptView view =
+      aged(news.view, std::chrono::duration<double>(std::chrono::steady_clock::now() - news.told).count());
+  // A second press acts against the first, even where the thread has not taken that one yet.
+  view.are_forces_stopped = impl_->desk.wishes.stopped.value_or(view.are_forces_stopped);
+  return view;
 }
 
 std::vector<ForcePoint> LiveAttempt::take_forces() {

@@ -2,6 +2,7 @@
 
 #include <signal.h>
 
+#include <QKeyEvent>
 #include <algorithm>
 
 #include "anatomy/structure_words.h"
@@ -68,7 +69,8 @@ AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatC
       attempt_(open_, std::move(options), std::move(servers)),
       needle_(*open_->the_case.patient, open_->the_case.plan.line_P, open_->the_case.needle.length_mm),
       probe_(*open_->the_case.patient, attempt_.options().X_PT_start.value_or(open_->X_PT_start)),
-      is_led_(is_moved_by_hand_targets(choice.needle_device)) {
+      is_led_(is_moved_by_hand_targets(choice.needle_device)),
+      keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
   connect_panel();
   ForcePlot& plot = page_.desk().forces();
@@ -106,12 +108,19 @@ void AttemptControl::connect_panel() {
   Desk& desk = page_.desk();
   gestures_.watch(desk.view_3d(), [this] { return scale_of_3d(); });
   gestures_.watch(desk.ultrasound(), [this] { return scale_of_ultrasound(); });
-  gestures_.watch_keys(*page_.window());
 }
 
 void AttemptControl::take(ToolInHand tool) {
   if (gestures_.in_hand() != tool) gestures_.take(tool);
   page_.puncture().show_hand(tool);
+}
+
+bool AttemptControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
+  if (key.key() != Qt::Key_Space || key.modifiers() != Qt::NoModifier) return gestures_.strike(key, place);
+  // Space in a text field stops the forces; it must not turn them on.
+  if (place.is_text && attempt_.view().are_forces_stopped) return false;
+  if (!key.isAutoRepeat()) toggle_forces();
+  return true;
 }
 
 void AttemptControl::strike(int key) {
@@ -195,7 +204,7 @@ void AttemptControl::toggle_clamp() {
 }
 
 void AttemptControl::toggle_forces() {
-  view_.phase == AttemptPhase::kStopped ? attempt_.resume_forces() : attempt_.stop_forces();
+  attempt_.view().are_forces_stopped ? attempt_.resume_forces() : attempt_.stop_forces();
 }
 
 void AttemptControl::end_server(const QString& tool) {

@@ -4,6 +4,7 @@
 #include <QVariantMap>
 #include <memory>
 
+#include "control/page_keys.h"
 #include "control/tool_gestures.h"
 #include "shell/seat_choice.h"
 #include "station/live_attempt.h"
@@ -27,6 +28,7 @@ class AttemptControl : public QObject {
   void advance(double dt_s);
   const AttemptView& view() const noexcept { return view_; }  ///< Of the last frame.
   LiveAttempt& attempt() noexcept { return attempt_; }
+  /// Stops the forces, or turns stopped ones on again; at any time, also while a server is silent or starts.
   void toggle_forces();
   /// Asks whether to end and score the attempt, which goes on meanwhile.
   void ask_to_end();
@@ -43,6 +45,7 @@ class AttemptControl : public QObject {
   enum class Question { kEnd, kClose };
   void connect_panel();
   void gesture(const Gesture& gesture);
+  bool take_key(const QKeyEvent& key, const KeyPlace& place);
   void strike(int key);
   void take(ToolInHand tool);
   void aim();
@@ -66,7 +69,8 @@ class AttemptControl : public QObject {
   ToolGestures gestures_;
   PointerNeedle needle_;
   PointerProbe probe_;
-  bool is_led_;                          ///< The needle is moved by mouse and keys; else its device moves itself.
+  bool is_led_;  ///< The needle is moved by mouse and keys; else its device moves itself.
+  PageKeys keys_;
   bool is_clamped_[2] = {false, false};  ///< By HandTool.
   AttemptView view_;
   bool has_shown_shot_ = false;

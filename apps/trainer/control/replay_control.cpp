@@ -1,5 +1,6 @@
 #include "control/replay_control.h"
 
+#include <QKeyEvent>
 #include <algorithm>
 
 #include "control/force_bands.h"
@@ -14,6 +15,7 @@
 #include "telemetry/tick_pose.h"
 #include "views/force_plot.h"
 #include "views/time_line.h"
+#include "views/ultrasound_view.h"
 
 namespace trocar::trainer {
 namespace {
@@ -73,7 +75,10 @@ QStringList notes_of(const AttemptReplay& replay, const std::vector<std::string>
 
 ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCase> open, WorkPage& page,
                              const std::vector<std::string>& warnings)
-    : replay_(std::move(replay)), open_(std::move(open)), page_(page) {
+    : replay_(std::move(replay)),
+      open_(std::move(open)),
+      page_(page),
+      keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
   fill_plot();
   fill_time_line();
   QString worst;
@@ -85,6 +90,32 @@ ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCas
   page_.desk().show_help(Difficulty::kGuided);  // afterwards everybody may see the expert's path
   connect(&page_.feedback(), &FeedbackPanel::worst_wanted, this, &ReplayControl::go_to_worst);
   show_at(replay_.duration_s(), false);
+}
+
+/// The time line's letters and Space, wherever the focus is.
+bool ReplayControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
+  if ((key.modifiers() & ~Qt::KeypadModifier) != Qt::NoModifier || place.is_text || place.is_aside) return false;
+  if (!page_.time_line().isVisible()) return false;
+  TimeLine& line = page_.time_line();
+  const UltrasoundView& ultrasound = page_.desk().ultrasound();
+  switch (key.key()) {
+    case Qt::Key_Space:
+      if (place.takes_space) return false;
+      line.set_playing(!line.is_playing());
+      return true;
+    case Qt::Key_N:
+      line.go_to_next_event();
+      return true;
+    case Qt::Key_P:
+      if (ultrasound.hasFocus() && ultrasound.is_frozen()) return false;  // plays the cine loop
+      line.go_to_previous_event();
+      return true;
+    case Qt::Key_W:
+      line.go_to_worst();
+      return true;
+    default:
+      return false;
+  }
 }
 
 void ReplayControl::fill_plot() {

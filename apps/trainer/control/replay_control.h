@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "control/page_keys.h"
 #include "shell/seat_choice.h"
 #include "station/attempt_replay.h"
 #include "station/open_case.h"
@@ -29,6 +30,7 @@ class ReplayControl : public QObject {
   QVariantMap facts() const;
 
  private:
+  bool take_key(const QKeyEvent& key, const KeyPlace& place);
   void fill_plot();
   void fill_time_line();
   void show_at(double time_s, bool is_moving);
@@ -37,6 +39,7 @@ class ReplayControl : public QObject {
   AttemptReplay replay_;
   std::shared_ptr<const OpenCase> open_;
   WorkPage& page_;
+  PageKeys keys_;
   double shown_s_ = -1.0;
   double still_s_ = 1.0;  ///< Since the time last changed.
 };

@@ -3,7 +3,6 @@
 #include <QDateTime>
 #include <QDir>
 #include <QFileDialog>
-#include <QShortcut>
 #include <algorithm>
 
 #include "control/attempt_control.h"
@@ -67,11 +66,6 @@ std::vector<std::string> texts(const QStringList& list) {
 SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
     : QObject(&window), window_(window), state_folder_(std::move(state_folder)), journal_(state_folder_) {
   connect_pages();
-  stop_ = new QShortcut(QKeySequence(Qt::Key_Space), &window_);
-  stop_->setEnabled(false);  // elsewhere the key belongs to buttons and the time line
-  connect(stop_, &QShortcut::activated, this, [this] {
-    if (attempt_) attempt_->toggle_forces();
-  });
   offered_ = journal_.find_cut_off();
   if (offered_)
     window_.start().offer_recovery(
@@ -103,11 +97,8 @@ void SeatFlow::connect_pages() {
     window_.start().add_patient(folder);
     go_to_start();
   });
-  connect(&window_.strip(), &StatusStrip::stop_wanted, this, [this] {
-    if (attempt_) attempt_->attempt().stop_forces();
-  });
-  connect(&window_.strip(), &StatusStrip::resume_wanted, this, [this] {
-    if (attempt_) attempt_->attempt().resume_forces();
+  connect(&window_.strip(), &StatusStrip::toggle_wanted, this, [this] {
+    if (attempt_) attempt_->toggle_forces();
   });
   ParameterPanel& parameters = window_.work().parameters();
   connect(&parameters, &ParameterPanel::parameters_changed, this, [this](const QStringList& changed) {
@@ -123,7 +114,6 @@ void SeatFlow::go_to_start() {
   opened_.reset();
   attempt_.reset();
   replay_.reset();
-  stop_->setEnabled(false);
   window_.strip().show_forces(false, false);
   window_.strip().show_servers({});
   window_.show_banner({});
@@ -245,17 +235,15 @@ void SeatFlow::look_at_attempt() {
   std::vector<ServerLine> servers{line_of(view.servers[0], tr("Needle"))};
   if (view.has_probe) servers.push_back(line_of(view.servers[1], tr("Transducer")));
   window_.strip().show_servers(servers);
-  const bool are_on = view.phase == AttemptPhase::kReady || view.phase == AttemptPhase::kInBody;
-  stop_->setEnabled(are_on || view.phase == AttemptPhase::kStopped);
-  window_.strip().show_forces(are_on || view.phase == AttemptPhase::kStopped, are_on);
+  window_.strip().show_forces(view.phase != AttemptPhase::kFinishing, view.are_forces_stopped);
   auto result = attempt_->attempt().take_result();
   if (!result) return;
   const std::filesystem::path session = attempt_->attempt().session_path();
   servers_ = attempt_->attempt().servers();
   attempt_.reset();
-  stop_->setEnabled(false);
   window_.strip().show_forces(false, false);
   window_.strip().show_servers({});  // they wait for the next attempt; what they did is no longer so
+  window_.show_banner({});
   journal_.clear();
   if (!*result) {
     window_.strip().show_servers({});

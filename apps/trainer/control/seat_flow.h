@@ -18,8 +18,6 @@
 #include "station/live_attempt.h"
 #include "station/open_case.h"
 
-class QShortcut;
-
 namespace trocar::trainer {
 
 class AttemptControl;
@@ -90,7 +88,6 @@ class SeatFlow : public QObject {
   std::deque<double> frames_s_;  ///< When the last frames were drawn.
   std::uint64_t late_frames_ = 0;
   std::vector<double> frame_ms_;  ///< Since the last reset, of an attempt or replay; kMostFrames at most.
-  QShortcut* stop_ = nullptr;
 };
 
 }  // namespace trocar::trainer

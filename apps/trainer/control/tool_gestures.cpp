@@ -1,10 +1,12 @@
 #include "control/tool_gestures.h"
 
+#include <QAbstractButton>
 #include <QApplication>
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QWheelEvent>
 #include <QWidget>
+#include <algorithm>
 #include <cmath>
 
 namespace trocar::trainer {
@@ -33,14 +35,7 @@ void ToolGestures::watch(QWidget& view, std::function<ViewScale()> scale) {
   for (QWidget* inside : view.findChildren<QWidget*>()) inside->installEventFilter(this);
 }
 
-void ToolGestures::watch_keys(QWidget& page) {
-  page_ = &page;
-  page.installEventFilter(this);
-}
-
 void ToolGestures::unwatch() {
-  if (page_ != nullptr) page_->removeEventFilter(this);
-  page_ = nullptr;
   for (const Watched& watched : watched_) {
     watched.view->removeEventFilter(this);
     for (QWidget* inside : watched.view->findChildren<QWidget*>()) inside->removeEventFilter(this);
@@ -63,8 +58,6 @@ const ToolGestures::Watched* ToolGestures::find(const QObject* object) const {
 }
 
 bool ToolGestures::eventFilter(QObject* object, QEvent* event) {
-  if (event->type() == QEvent::KeyPress && (object == page_ || find(object) != nullptr))
-    return strike(static_cast<const QKeyEvent&>(*event));
   const Watched* watched = find(object);
   if (watched == nullptr) return false;
   const bool is_view = in_hand_ == ToolInHand::kNone || (QApplication::keyboardModifiers() & Qt::ControlModifier) ||
@@ -115,31 +108,35 @@ bool ToolGestures::turn(const Watched& watched, const QWheelEvent& event) {
   return true;
 }
 
-bool ToolGestures::strike(const QKeyEvent& event) {
-  if (event.modifiers() & (Qt::ControlModifier | Qt::AltModifier)) return false;
+/// Whether a watched view has the focus: arrows and page keys move the tool then.
+bool ToolGestures::has_focus() const {
+  return std::any_of(watched_.begin(), watched_.end(), [](const Watched& watched) {
+    const QWidget* focus = watched.view->window()->focusWidget();
+    return focus == watched.view || (focus != nullptr && watched.view->isAncestorOf(focus));
+  });
+}
+
+/// The focus goes to a view, so that arrows move the tool and no choice or slider.
+bool ToolGestures::take_by_key(ToolInHand tool) {
+  take(tool);
+  if (!watched_.empty() && !has_focus()) watched_.front().view->setFocus(Qt::ShortcutFocusReason);
+  return true;
+}
+
+bool ToolGestures::move_by_key(const QKeyEvent& event) {
+  if (in_hand_ == ToolInHand::kNone) return false;
   const bool is_tilt = event.modifiers() & Qt::ShiftModifier;
   const ViewScale view = watched_.empty() ? ViewScale{} : watched_.front().scale();
   const auto step = [&](double right, double down) {
-    if (in_hand_ == ToolInHand::kNone) return false;
     const double size = is_tilt ? kKeyTilt_rad : kKeyGlide_mm;
     Q_EMIT gestured({is_tilt ? Gesture::Kind::kTilt : Gesture::Kind::kGlide, size * right, size * down, view});
     return true;
   };
   const auto push = [&](double sign) {
-    if (in_hand_ == ToolInHand::kNone) return false;
     Q_EMIT gestured({Gesture::Kind::kPush, sign * (is_tilt ? kFineNotch_mm : kNotch_mm), 0.0, view});
     return true;
   };
   switch (event.key()) {
-    case Qt::Key_A:
-      take(ToolInHand::kNeedle);
-      return true;
-    case Qt::Key_S:
-      take(ToolInHand::kTransducer);
-      return true;
-    case Qt::Key_V:
-      take(ToolInHand::kNone);
-      return true;
     case Qt::Key_Left:
       return step(-1.0, 0.0);
     case Qt::Key_Right:
@@ -152,15 +149,37 @@ bool ToolGestures::strike(const QKeyEvent& event) {
       return push(1.0);
     case Qt::Key_PageDown:
       return push(-1.0);
+    default:
+      return false;
+  }
+}
+
+bool ToolGestures::strike(const QKeyEvent& event, const KeyPlace& place) {
+  if ((event.modifiers() & (Qt::ControlModifier | Qt::AltModifier)) || place.is_text || place.is_aside) return false;
+  switch (event.key()) {
+    case Qt::Key_A:
+      return take_by_key(ToolInHand::kNeedle);
+    case Qt::Key_S:
+      return take_by_key(ToolInHand::kTransducer);
+    case Qt::Key_V:
+      return take_by_key(ToolInHand::kNone);
     case Qt::Key_H:
     case Qt::Key_X:
     case Qt::Key_E:
+      Q_EMIT key_struck(event.key());
+      return true;
     case Qt::Key_Return:
     case Qt::Key_Enter:
+      // Space stops the forces, so that Enter presses a button.
+      if (place.button != nullptr) {
+        place.button->click();
+        return true;
+      }
       Q_EMIT key_struck(event.key());
       return true;
     default:
-      return false;
+      // Arrows also move sliders, lists and slices.
+      return (place.is_unclaimed || has_focus()) && move_by_key(event);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "control/page_keys.h"
 #include "geometry/vec.h"
 #include "panels/puncture_panel.h"
 
@@ -35,7 +36,7 @@ struct Gesture {
   ViewScale view;
 };
 
-/// Hears mouse, wheel and keys on views and says what they mean for the tool in hand. With no tool in hand, and with
+/// Takes mouse and wheel on views, and keys, for the tool in hand. With no tool in hand, and with
 /// Ctrl held, the views keep their mouse.
 class ToolGestures : public QObject {
   Q_OBJECT
@@ -45,9 +46,10 @@ class ToolGestures : public QObject {
 
   /// Also of the widgets within. Keys take the first view's directions.
   void watch(QWidget& view, std::function<ViewScale()> scale);
-  /// Keys that nobody within the page has taken.
-  void watch_keys(QWidget& page);
   void unwatch();
+  /// A, S and V take a tool, arrows and page keys move it, H, X, E and Enter are signalled. False: the key is none of
+  /// these, or the widget with the focus uses it.
+  bool strike(const QKeyEvent& event, const KeyPlace& place);
   ToolInHand in_hand() const noexcept { return in_hand_; }
   void take(ToolInHand tool);
 
@@ -68,10 +70,11 @@ class ToolGestures : public QObject {
   bool press(const QMouseEvent& event);
   bool move(const Watched& watched, const QMouseEvent& event);
   bool turn(const Watched& watched, const QWheelEvent& event);
-  bool strike(const QKeyEvent& event);
+  bool take_by_key(ToolInHand tool);
+  bool move_by_key(const QKeyEvent& event);
+  bool has_focus() const;
 
   std::vector<Watched> watched_;
-  QWidget* page_ = nullptr;
   ToolInHand in_hand_ = ToolInHand::kNone;
   std::optional<QPointF> from_px_;
 };

@@ -1,5 +1,6 @@
 #include "shell/status_strip.h"
 
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPushButton>
@@ -17,16 +18,22 @@ QString colored(const QString& text, const QColor& color) {
   return QStringLiteral("<span style='color:%1'>%2</span>").arg(color.name(), text.toHtmlEscaped());
 }
 
-QString line_text(const ServerLine& line) {
+/// Figures of a server, from few to all.
+enum Detail { kShare, kRate, kAll };
+
+QString line_text(const ServerLine& line, int detail) {
   const Theme& t = theme();
   const QString name = QStringLiteral("<b>%1</b> ").arg(line.tool.toHtmlEscaped());
   if (!line.is_connected) return name + colored(StatusStrip::tr("not connected"), t.warning);
-  if (!line.fault.isEmpty()) return name + colored(StatusStrip::tr("fault: %1").arg(line.fault), t.bad);
+  if (!line.fault.isEmpty())
+    return name +
+           colored(detail == kAll ? StatusStrip::tr("fault: %1").arg(line.fault) : StatusStrip::tr("fault"), t.bad);
   const QColor served = line.served >= kServedWell ? t.good : line.served >= kServedBadly ? t.warning : t.bad;
-  QString text = name + colored(StatusStrip::tr("%1 Hz, %2 % in time")
-                                    .arg(line.rate_hz, 0, 'f', 0)
-                                    .arg(100.0 * line.served, 0, 'f', line.served >= kServedBadly ? 2 : 1),
-                                served);
+  const QString share =
+      StatusStrip::tr("%1 % in time").arg(100.0 * line.served, 0, 'f', line.served >= kServedBadly ? 2 : 1);
+  if (detail == kShare) return name + colored(share, served);
+  QString text = name + colored(StatusStrip::tr("%1 Hz, %2").arg(line.rate_hz, 0, 'f', 0).arg(share), served);
+  if (detail == kRate) return text;
   text += colored(StatusStrip::tr(" · late by %1 µs").arg(line.lateness_p99_us, 0, 'f', 0), t.dim);
   if (line.ticks_missing > 0) text += colored(StatusStrip::tr(" · %1 ticks lost").arg(line.ticks_missing), t.warning);
   if (!line.is_real_time) text += colored(StatusStrip::tr(" · no real-time permission"), t.warning);
@@ -55,32 +62,62 @@ StatusStrip::StatusStrip(QWidget* parent) : QFrame(parent) {
   stop_->setProperty("role", "stop");
   stop_->setFocusPolicy(Qt::NoFocus);
   row->addWidget(stop_);
-  connect(stop_, &QPushButton::clicked, this, [this] { are_on_ ? Q_EMIT stop_wanted() : Q_EMIT resume_wanted(); });
+  for (QLabel* label : {needle_, probe_, frames_}) label->setMinimumWidth(1);  // the button never gives way
+  connect(stop_, &QPushButton::clicked, this, &StatusStrip::toggle_wanted);
   show_forces(false, false);
 }
 
 void StatusStrip::show_servers(const std::vector<ServerLine>& servers) {
   if (servers == shown_) return;
   shown_ = servers;
-  QLabel* labels[] = {needle_, probe_};
-  for (std::size_t s = 0; s < 2; ++s) {
-    labels[s]->setText(s < servers.size() ? line_text(servers[s]) : QString());
-    labels[s]->setToolTip(s < servers.size() ? tr("Granted by the system: %1").arg(servers[s].grant) : QString());
-  }
-  if (servers.empty()) needle_->setText(tr("No attempt is running: no forces"));
+  fit_texts();
 }
 
 void StatusStrip::show_frames(double frames_per_s, std::uint64_t dropped) {
   QString text = tr("%1 frames/s").arg(frames_per_s, 0, 'f', 0);
   if (dropped > 0) text += tr(" · %1 late").arg(dropped);
-  if (frames_->text() != text) frames_->setText(text);
+  if (frames_->text() == text) return;
+  frames_->setText(text);
+  fit_texts();
 }
 
-void StatusStrip::show_forces(bool are_possible, bool are_on) {
-  are_on_ = are_on;
-  stop_->setEnabled(are_possible);
-  const QString text = !are_possible || are_on ? tr("STOP FORCES") : tr("FORCES ON AGAIN");
-  if (stop_->text() != text) stop_->setText(text);
+void StatusStrip::set_texts(int detail) {
+  QLabel* labels[] = {needle_, probe_};
+  for (std::size_t s = 0; s < 2; ++s) {
+    const bool is_there = s < shown_.size();
+    labels[s]->setText(is_there ? line_text(shown_[s], detail) : QString());
+    labels[s]->setToolTip(is_there ? line_text(shown_[s], kAll) +
+                                         tr("<br>Granted by the system: %1").arg(shown_[s].grant.toHtmlEscaped())
+                                   : QString());
+  }
+  if (shown_.empty()) needle_->setText(tr("No attempt is running: no forces"));
+}
+
+void StatusStrip::fit_texts() {
+  frames_->show();
+  for (int detail = kAll; detail >= kShare; --detail) {
+    set_texts(detail);
+    if (layout()->sizeHint().width() <= width()) return;
+  }
+  frames_->hide();
+}
+
+void StatusStrip::resizeEvent(QResizeEvent* event) {
+  QFrame::resizeEvent(event);
+  fit_texts();
+}
+
+void StatusStrip::changeEvent(QEvent* event) {
+  QFrame::changeEvent(event);
+  if (event->type() == QEvent::FontChange || event->type() == QEvent::StyleChange) fit_texts();
+}
+
+void StatusStrip::show_forces(bool is_attempt, bool are_stopped) {
+  if (stop_->isEnabled() != is_attempt) stop_->setEnabled(is_attempt);
+  const QString text = is_attempt && are_stopped ? tr("FORCES ON AGAIN") : tr("STOP FORCES");
+  if (stop_->text() == text) return;
+  stop_->setText(text);
+  fit_texts();
 }
 
 }  // namespace trocar::trainer

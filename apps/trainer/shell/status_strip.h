@@ -25,7 +25,8 @@ struct ServerLine {
   bool operator==(const ServerLine&) const = default;
 };
 
-/// The strip at the foot of the window: what the servers and the window really do, and the force stop, always in sight.
+/// The strip at the foot of the window: figures of the haptic servers and of the window, and the force stop, always in
+/// sight. A narrow window has fewer figures; tooltips have all of them.
 class StatusStrip : public QFrame {
   Q_OBJECT
 
@@ -35,20 +36,27 @@ class StatusStrip : public QFrame {
   void show_servers(const std::vector<ServerLine>& servers);
   /// Of the window: frames drawn a second, and frames that came too late for the eye.
   void show_frames(double frames_per_s, std::uint64_t dropped);
-  /// Whether forces are on; the button turns them off or on again.
-  void show_forces(bool are_possible, bool are_on);
+  /// Whether an attempt goes on, and whether its forces are stopped; the button stops them or turns them on again.
+  void show_forces(bool is_attempt, bool are_stopped);
 
  Q_SIGNALS:
-  void stop_wanted();
-  void resume_wanted();
+  /// The button was pressed; Space acts alike.
+  void toggle_wanted();
+
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+  void changeEvent(QEvent* event) override;
 
  private:
+  /// The most detail that has room beside the button.
+  void fit_texts();
+  void set_texts(int detail);
+
   QLabel* needle_ = nullptr;
   QLabel* probe_ = nullptr;
   QLabel* frames_ = nullptr;
   QPushButton* stop_ = nullptr;
   std::vector<ServerLine> shown_;
-  bool are_on_ = false;
 };
 
 }  // namespace trocar::trainer

@@ -88,9 +88,12 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   view.is_performing = steering_->is_performing();
   view.has_fired = steering_->has_fired();
   view.notes = notes_;
+  view.are_forces_stopped = is_stopped_;
   for (const std::optional<ToolServer>* server : {&probe_, &needle_}) {  // the needle's banner counts more
     if (!*server) continue;
-    view.servers[server == &needle_ ? 0 : 1] = (*server)->view();
+    ServerView& shown = view.servers[server == &needle_ ? 0 : 1];
+    shown = (*server)->view();
+    view.are_forces_stopped = view.are_forces_stopped || shown.waits_for_resume;
     if (!(*server)->banner().empty()) view.banner = (*server)->banner();
   }
   if (view.banner.empty()) view.banner = disk_banner_;

@@ -362,6 +362,7 @@ ServerView ToolServer::view() const {
   view.grant = status.grant;
   view.warning = status.warning;
   view.restarts = restarts_;
+  view.waits_for_resume = waits_for_resume_ || has_given_up_;
   return view;
 }
 

@@ -1,0 +1,58 @@
+#include "control/page_keys.h"
+
+#include <QAbstractButton>
+#include <QAbstractItemView>
+#include <QAbstractSpinBox>
+#include <QApplication>
+#include <QComboBox>
+#include <QKeyEvent>
+#include <QLineEdit>
+#include <QPlainTextEdit>
+#include <QTextEdit>
+
+namespace trocar::trainer {
+namespace {
+
+bool is_text_field(const QWidget* widget) {
+  if (const auto* line = qobject_cast<const QLineEdit*>(widget)) return !line->isReadOnly();
+  if (const auto* box = qobject_cast<const QComboBox*>(widget)) return box->isEditable();
+  if (const auto* text = qobject_cast<const QTextEdit*>(widget)) return !text->isReadOnly();
+  if (const auto* text = qobject_cast<const QPlainTextEdit*>(widget)) return !text->isReadOnly();
+  return qobject_cast<const QAbstractSpinBox*>(widget) != nullptr;
+}
+
+/// A floating view is a window whose parent belongs to the main window.
+const QWidget* main_window_of(const QWidget& widget) {
+  const QWidget* window = widget.window();
+  while (window->parentWidget() != nullptr) window = window->parentWidget()->window();
+  return window;
+}
+
+KeyPlace place_of(const QWidget& receiver, const QWidget& window) {
+  QWidget* focus = receiver.window()->focusWidget();
+  KeyPlace place;
+  place.is_text = is_text_field(&receiver) || is_text_field(focus);
+  place.is_aside = QApplication::activePopupWidget() != nullptr || QApplication::activeModalWidget() != nullptr;
+  place.button = qobject_cast<QAbstractButton*>(focus);
+  place.takes_space = place.button != nullptr || qobject_cast<const QAbstractItemView*>(focus) != nullptr ||
+                      qobject_cast<const QComboBox*>(focus) != nullptr;
+  place.is_unclaimed = &receiver == &window;
+  return place;
+}
+
+}  // namespace
+
+PageKeys::PageKeys(QWidget& page, Take take) : page_(page), take_(std::move(take)) {
+  QCoreApplication::instance()->installEventFilter(this);
+}
+
+PageKeys::~PageKeys() = default;
+
+bool PageKeys::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() != QEvent::KeyPress) return false;
+  const auto* receiver = qobject_cast<const QWidget*>(watched);
+  if (receiver == nullptr || main_window_of(*receiver) != main_window_of(page_)) return false;
+  return take_(static_cast<const QKeyEvent&>(*event), place_of(*receiver, *receiver->window()));
+}
+
+}  // namespace trocar::trainer

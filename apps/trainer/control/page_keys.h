@@ -1,0 +1,40 @@
+#pragma once
+
+#include <QObject>
+#include <functional>
+
+class QAbstractButton;
+class QKeyEvent;
+class QWidget;
+
+namespace trocar::trainer {
+
+/// The widget with the focus when a key is pressed.
+struct KeyPlace {
+  bool is_text = false;               ///< A text field or a number.
+  bool is_aside = false;              ///< A menu, an open list or a dialog.
+  bool takes_space = false;           ///< A button, a list or a choice.
+  bool is_unclaimed = false;          ///< No widget has used the key.
+  QAbstractButton* button = nullptr;  ///< Null where it is none.
+};
+
+/// Gets each key of a window, and of its floating views, before the widget with the focus, so that the keys of a page
+/// act wherever the focus is. `take` returns whether it used the key; it is called again, with is_unclaimed, for a key
+/// that no widget has used.
+class PageKeys : public QObject {
+  Q_OBJECT
+
+ public:
+  using Take = std::function<bool(const QKeyEvent& key, const KeyPlace& place)>;
+
+  PageKeys(QWidget& page, Take take);
+  ~PageKeys() override;
+
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private:
+  QWidget& page_;
+  Take take_;
+};
+
+}  // namespace trocar::trainer

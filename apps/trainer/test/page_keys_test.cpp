@@ -1,0 +1,121 @@
+#include "control/page_keys.h"
+
+#include <gtest/gtest.h>
+
+#include <QComboBox>
+#include <QCoreApplication>
+#include <QKeyEvent>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPushButton>
+#include <QRadioButton>
+#include <QSlider>
+#include <QSpinBox>
+#include <QVBoxLayout>
+
+#include "control/tool_gestures.h"
+#include "test/widget_actions.h"
+
+namespace trocar::trainer {
+namespace {
+
+/// A window with a view and controls of every kind.
+struct KeysTest : testing::Test {
+  KeysTest() {
+    auto* column = new QVBoxLayout(&window);
+    choice->addItems({QStringLiteral("aorta"), QStringLiteral("spleen"), QStringLiteral("vena cava")});
+    list->addItems({QStringLiteral("aorta"), QStringLiteral("spleen")});
+    view->setFocusPolicy(Qt::StrongFocus);
+    for (QWidget* widget : std::initializer_list<QWidget*>{view, choice, list, radio, button, slider, text, number})
+      column->addWidget(widget);
+    window.show();
+    QCoreApplication::processEvents();
+  }
+  void strike(QWidget& widget, int key) {
+    widget.setFocus();
+    press_key(widget, key);
+  }
+
+  QWidget window;
+  QWidget* view = new QWidget;
+  QComboBox* choice = new QComboBox;
+  QListWidget* list = new QListWidget;
+  QRadioButton* radio = new QRadioButton;
+  QPushButton* button = new QPushButton;
+  QSlider* slider = new QSlider(Qt::Horizontal);
+  QLineEdit* text = new QLineEdit;
+  QSpinBox* number = new QSpinBox;
+};
+
+TEST_F(KeysTest, AreSeenBeforeEveryControlOfTheWindow) {
+  int seen = 0;
+  PageKeys keys(window,
+                [&](const QKeyEvent& key, const KeyPlace&) { return key.key() == Qt::Key_Space && ++seen > 0; });
+  for (QWidget* widget : std::initializer_list<QWidget*>{view, choice, list, radio, button, slider, text, number})
+    strike(*widget, Qt::Key_Space);
+  EXPECT_EQ(seen, 8);
+  EXPECT_FALSE(radio->isChecked());
+  EXPECT_TRUE(text->text().isEmpty());
+  QWidget other;
+  press_key(other, Qt::Key_Space);
+  EXPECT_EQ(seen, 8);
+  QWidget floating(&window, Qt::Window);
+  press_key(floating, Qt::Key_Space);
+  EXPECT_EQ(seen, 9);
+}
+
+TEST_F(KeysTest, KnowWhereTheyAreStruck) {
+  KeyPlace place;
+  PageKeys keys(window, [&](const QKeyEvent&, const KeyPlace& p) {
+    place = p;
+    return true;
+  });
+  strike(*text, Qt::Key_A);
+  EXPECT_TRUE(place.is_text);
+  strike(*number, Qt::Key_A);
+  EXPECT_TRUE(place.is_text);
+  strike(*choice, Qt::Key_A);
+  EXPECT_FALSE(place.is_text);
+  EXPECT_TRUE(place.takes_space);
+  strike(*button, Qt::Key_A);
+  EXPECT_EQ(place.button, button);
+  EXPECT_FALSE(place.is_unclaimed);
+}
+
+TEST_F(KeysTest, ToolsAreTakenWhereverTheFocusIsAndArrowsThenMoveThem) {
+  ToolGestures gestures;
+  gestures.watch(*view, [] { return ViewScale{}; });
+  PageKeys keys(window, [&](const QKeyEvent& key, const KeyPlace& place) { return gestures.strike(key, place); });
+  int moved = 0, fired = 0, clicked = 0;
+  QObject::connect(&gestures, &ToolGestures::gestured, [&] { ++moved; });
+  QObject::connect(&gestures, &ToolGestures::key_struck, [&] { ++fired; });
+  QObject::connect(button, &QPushButton::clicked, [&] { ++clicked; });
+  for (QWidget* widget : std::initializer_list<QWidget*>{choice, list, radio, button, slider}) {
+    strike(*widget, Qt::Key_S);
+    EXPECT_EQ(gestures.in_hand(), ToolInHand::kTransducer) << widget->metaObject()->className();
+    EXPECT_EQ(choice->currentText(), QStringLiteral("aorta"));
+    press_key(*window.focusWidget(), Qt::Key_PageUp);
+    strike(*widget, Qt::Key_A);
+    EXPECT_EQ(gestures.in_hand(), ToolInHand::kNeedle) << widget->metaObject()->className();
+  }
+  EXPECT_EQ(moved, 5);
+  // Arrows belong to the control that has the focus.
+  choice->setCurrentIndex(0);
+  strike(*choice, Qt::Key_Down);
+  EXPECT_EQ(choice->currentIndex(), 1);
+  slider->setValue(10);
+  strike(*slider, Qt::Key_Right);
+  EXPECT_EQ(slider->value(), 11);
+  EXPECT_EQ(moved, 5);
+  strike(*text, Qt::Key_S);
+  strike(*number, Qt::Key_S);
+  EXPECT_EQ(gestures.in_hand(), ToolInHand::kNeedle);
+  strike(*button, Qt::Key_Return);
+  EXPECT_EQ(clicked, 1);
+  EXPECT_EQ(fired, 0);
+  strike(*view, Qt::Key_Return);
+  EXPECT_EQ(fired, 1);
+}
+
+}  // namespace
+}  // namespace trocar::trainer
