@@ -260,9 +260,9 @@ void StructurePanel::add_toggles(QBoxLayout& layout) {
   auto* marks = new QHBoxLayout;
   marks->setSpacing(kGap / 2);
   guidance_ = make_toggle("show-guidance", tr("Guidance"),
-                          tr("Path, entry zone and target, as far as the help goes (G)"), view_.is_guidance_visible());
+                          tr("Path, entry zone and target, as far as the help goes (O)"), view_.is_guidance_visible());
   landmarks_ =
-      make_toggle("show-landmarks", tr("Landmarks"), tr("Landmarks with names (M)"), view_.are_landmarks_visible());
+      make_toggle("show-landmarks", tr("Landmarks"), tr("Landmarks with names (I)"), view_.are_landmarks_visible());
   connect(guidance_, &QToolButton::toggled, this, [this](bool is_on) { view_.set_guidance_visible(is_on); });
   connect(landmarks_, &QToolButton::toggled, this, [this](bool is_on) { view_.set_landmarks_visible(is_on); });
   for (QToolButton* button : {guidance_, landmarks_}) {
@@ -307,9 +307,9 @@ void StructurePanel::fill_camera_menu(QMenu& menu) {
   menu.addSeparator();
   const std::tuple<QString, const char*, FollowMode> modes[] = {
       {tr("Stay\tHome"), "follow-free", FollowMode::kFree},
-      {tr("Follow the tip\tF"), "follow-tip", FollowMode::kTip},
+      {tr("Follow the tip\tT"), "follow-tip", FollowMode::kTip},
       {tr("Look along the needle\tL"), "follow-along", FollowMode::kAlongNeedle},
-      {tr("Side view at the tip\tN"), "follow-side", FollowMode::kSide},
+      {tr("Side view at the tip\tB"), "follow-side", FollowMode::kSide},
   };
   for (const auto& [text, name, mode] : modes) {
     QAction* action = menu.addAction(text, this, [this, m = mode] {

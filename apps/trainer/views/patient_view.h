@@ -22,8 +22,8 @@ namespace trocar::trainer {
 /// OpenGL draws on makes Qt put the whole window together by OpenGL, which costs a processor more than the patient.
 ///
 /// Mouse: left drag turns, middle drag or Shift + left drag moves, right drag or wheel zooms, double click picks.
-/// Keys: 1..6 views (anterior, oblique, right, left, posterior, cranial), F follow the needle's tip, L look along the
-/// needle, N side view near the needle, Home resets, arrows turn, + and - zoom, G guidance, M landmarks.
+/// Keys: 1..6 views (anterior, oblique, right, left, posterior, cranial), T follow the needle's tip, L look along the
+/// needle, B beside the needle, Home resets, arrows turn, + and - zoom, O guidance, I landmarks.
 class PatientView : public QWidget {
   Q_OBJECT
 
@@ -37,7 +37,7 @@ class PatientView : public QWidget {
   bool is_ready() const;
 
   void set_path(const std::optional<Segment>& line_P, double entry_radius_mm);
-  /// What the guidance consists of; set_guidance_visible and the key G show and hide that.
+  /// What the guidance consists of; set_guidance_visible and the key O show and hide that.
   void set_guidance(Guidance guidance);
   void set_guidance_visible(bool is_visible);
   bool is_guidance_visible() const noexcept { return is_guidance_visible_; }

@@ -38,11 +38,11 @@ Act act_of(int key) {
       {Qt::Key_4, [](PatientView& v) { v.set_camera(CameraPreset::kLeft); }},
       {Qt::Key_5, [](PatientView& v) { v.set_camera(CameraPreset::kPosterior); }},
       {Qt::Key_6, [](PatientView& v) { v.set_camera(CameraPreset::kCranial); }},
-      {Qt::Key_F, [](PatientView& v) { toggle(v, FollowMode::kTip); }},
+      {Qt::Key_T, [](PatientView& v) { toggle(v, FollowMode::kTip); }},
       {Qt::Key_L, [](PatientView& v) { toggle(v, FollowMode::kAlongNeedle); }},
-      {Qt::Key_N, [](PatientView& v) { toggle(v, FollowMode::kSide); }},
-      {Qt::Key_G, [](PatientView& v) { v.set_guidance_visible(!v.is_guidance_visible()); }},
-      {Qt::Key_M, [](PatientView& v) { v.set_landmarks_visible(!v.are_landmarks_visible()); }},
+      {Qt::Key_B, [](PatientView& v) { toggle(v, FollowMode::kSide); }},
+      {Qt::Key_O, [](PatientView& v) { v.set_guidance_visible(!v.is_guidance_visible()); }},
+      {Qt::Key_I, [](PatientView& v) { v.set_landmarks_visible(!v.are_landmarks_visible()); }},
       {Qt::Key_Home, [](PatientView& v) { v.reset_camera(); }},
       {Qt::Key_Left, [](PatientView& v) { turn(v, -kKeyOrbit_rad, 0.0); }},
       {Qt::Key_Right, [](PatientView& v) { turn(v, kKeyOrbit_rad, 0.0); }},
@@ -103,7 +103,7 @@ void PatientView::keyPressEvent(QKeyEvent* event) {
   Q_EMIT changed();
 }
 
-/// With the focus here its keys are its own: some are short cuts of the window, too (the scanner's gain is G).
+/// With the focus here its keys are its own, also against shortcuts of the window.
 bool PatientView::event(QEvent* event) {
   if (event->type() == QEvent::ShortcutOverride) {
     const auto* key = static_cast<QKeyEvent*>(event);
