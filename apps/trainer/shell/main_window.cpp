@@ -1,5 +1,6 @@
 #include "shell/main_window.h"
 
+#include <QApplication>
 #include <QCloseEvent>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -20,6 +21,7 @@
 #include "shell/parts.h"
 #include "shell/status_strip.h"
 #include "shell/theme.h"
+#include "shell/wheel_guard.h"
 
 namespace trocar::trainer {
 namespace {
@@ -35,6 +37,7 @@ constexpr Step kSteps[] = {
 
 MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* parent) : QMainWindow(parent) {
   setObjectName(QStringLiteral("main-window"));
+  qApp->installEventFilter(new WheelGuard(this));  // before any control is made
   setWindowTitle(tr("Trocar"));
   auto* central = new QWidget;
   auto* column = new QVBoxLayout(central);

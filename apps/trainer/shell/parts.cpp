@@ -3,6 +3,7 @@
 #include <QFrame>
 #include <QLabel>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QStyle>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -45,6 +46,15 @@ QFrame* make_card(const QString& heading, QBoxLayout*& content) {
   content->setSpacing(10);
   if (!heading.isEmpty()) content->addWidget(make_label(heading, "heading"));
   return card;
+}
+
+QScrollArea* make_scrolled(QWidget& content) {
+  auto* area = new QScrollArea;
+  area->setFrameShape(QFrame::NoFrame);
+  area->setWidgetResizable(true);
+  area->setFocusPolicy(Qt::NoFocus);
+  area->setWidget(&content);
+  return area;
 }
 
 void set_look(QWidget& widget, const char* property, const QVariant& value) {

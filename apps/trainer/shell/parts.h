@@ -9,6 +9,7 @@ class QBoxLayout;
 class QFrame;
 class QLabel;
 class QPushButton;
+class QScrollArea;
 class QToolButton;
 class QWidget;
 
@@ -24,6 +25,8 @@ QToolButton* make_tool_button(const char* name, const QString& text, const QStri
                               const QString& shortcut = {});
 /// A rounded panel with a heading.
 QFrame* make_card(const QString& heading, QBoxLayout*& content);
+/// The content in a frameless scroll area that scrolls it where there is less room than it needs.
+QScrollArea* make_scrolled(QWidget& content);
 /// Sets a property that the style sheet looks at, and has the look made anew.
 void set_look(QWidget& widget, const char* property, const QVariant& value);
 
