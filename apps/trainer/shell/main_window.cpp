@@ -17,6 +17,7 @@
 #include "pages/case_page.h"
 #include "pages/start_page.h"
 #include "pages/work_page.h"
+#include "shell/focus_ring.h"
 #include "shell/keys_dialog.h"
 #include "shell/parts.h"
 #include "shell/status_strip.h"
@@ -56,6 +57,7 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* paren
   setCentralWidget(central);
   banner_ = new Banner(*central);
   add_shortcuts();
+  new FocusRing(this);
   flow_ = new SeatFlow(*this, state_folder);
   resize(1280, 800);
   restoreGeometry(QSettings().value(QStringLiteral("window/geometry")).toByteArray());

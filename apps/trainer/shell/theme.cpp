@@ -40,7 +40,7 @@ QLineEdit:focus, QSpinBox:focus, QDoubleSpinBox:focus, QComboBox:focus { border-
 QSpinBox::up-button, QSpinBox::down-button, QDoubleSpinBox::up-button, QDoubleSpinBox::down-button { width: 0; border: none; }
 QComboBox::drop-down { border: none; background: transparent; width: 22px; }
 QComboBox QAbstractItemView { background: @raised; border: 1px solid @line; padding: 2px; }
-QCheckBox, QRadioButton { spacing: 8px; }
+QCheckBox, QRadioButton { spacing: 8px; padding: 3px 5px; }
 QCheckBox::indicator, QRadioButton::indicator { width: 15px; height: 15px; background: @raised; border: 1px solid @line; border-radius: 4px; }
 QRadioButton::indicator { border-radius: 8px; }
 QCheckBox::indicator:checked, QRadioButton::indicator:checked { background: @accent; border-color: @accent; }
