@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <QPixmap>
+#include <QSettings>
+#include <QTemporaryDir>
 #include <QTimer>
 #include <algorithm>
 #include <filesystem>
@@ -130,6 +132,9 @@ int run(int argc, char** argv) {
   QCoreApplication::setOrganizationName(QStringLiteral("trocar"));
   QCoreApplication::setApplicationName(QStringLiteral("trocar-trainer"));
   TrainerApplication application(argc, argv);
+  // A benchmark is of the built-in layouts, and leaves no trace in the user's settings.
+  const QTemporaryDir own_settings;
+  if (arguments.is_benchmark) QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, own_settings.path());
   apply_theme(application);
   MainWindow window(arguments.state_folder.empty() ? user_state_folder() : fs::path(arguments.state_folder));
   const Result<SeatChoice> choice = with_arguments(window.start().choice(), arguments);

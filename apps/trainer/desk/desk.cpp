@@ -4,8 +4,8 @@
 #include <QDockWidget>
 #include <QHBoxLayout>
 #include <QLabel>
-#include <QMenu>
 #include <QSettings>
+#include <QTimer>
 #include <QToolButton>
 #include <algorithm>
 
@@ -18,6 +18,7 @@
 #include "ultrasound/scan_annotation.h"
 #include "views/force_plot.h"
 #include "views/patient_view.h"
+#include "views/scanner_view.h"
 #include "views/slice_marks.h"
 #include "views/slice_view.h"
 #include "views/ultrasound_controls.h"
@@ -28,6 +29,8 @@ namespace trocar::trainer {
 namespace {
 
 constexpr double kEntryZone_mm = 10.0;
+/// So that all layouts fit beside the tissues on a screen of 1024x768.
+constexpr QSize kLeastView(130, 100);
 /// What the 3D views may take of a frame while tools move, so that with slices, ultrasound and curves 15 a second
 /// remain.
 constexpr double kFrameOfOne_ms = 32.0, kFrameOfTwo_ms = 20.0;
@@ -63,11 +66,6 @@ QWidget* make_title(QDockWidget& dock, QWidget& line) {
   QObject::connect(add(QStringLiteral("✕"), Desk::tr("Hides it; the menu Views shows it again")), &QToolButton::clicked,
                    &dock, &QDockWidget::hide);
   return bar;
-}
-
-/// What is kept is of so many views: with more or fewer of them it no longer fits and is not taken.
-QString settings_key(const QString& layout) {
-  return QStringLiteral("desk/") + layout;
 }
 
 /// Less than the eye sees: a tool at rest trembles by the servo's noise, and each change costs a frame.
@@ -118,21 +116,15 @@ Desk::Desk(QWidget* parent) : QMainWindow(parent) {
                                SliceKind::kAcrossNeedle})
     slices_.push_back(new SliceView(kind));
   for (SliceView* slice : slices_) marks_.push_back(new SliceMarks(slice));
-  auto* scanner = new QWidget;
-  auto* row = new QHBoxLayout(scanner);
-  row->setContentsMargins(0, 0, 0, 0);
-  row->setSpacing(0);
-  row->addWidget(ultrasound_, 1);
-  row->addWidget(ultrasound_controls_);
-  ultrasound_controls_->hide();
+  auto* scanner = new ScannerView(*ultrasound_, *ultrasound_controls_);
 
   add_view("3d", tr("3D"), *view_3d_);
-  add_view("side", tr("Beside the needle"), *side_);
+  add_view("side", tr("Side view"), *side_);
   add_view("ultrasound", tr("Ultrasound"), *scanner);
   add_knobs_button();
   add_view("forces", tr("Force"), *forces_, &forces_->strip());
   structures_ = new StructurePanel(*view_3d_);
-  add_view("structures", tr("What the 3D view shows"), *structures_);
+  add_view("structures", tr("Structures"), *structures_);
   const std::pair<const char*, QString> slices[] = {{"axial", tr("Axial")},
                                                     {"coronal", tr("Coronal")},
                                                     {"sagittal", tr("Sagittal")},
@@ -155,11 +147,14 @@ void Desk::add_view(const char* name, const QString& title, QWidget& view, QWidg
     strip->setContentsMargins(8, 1, 0, 1);
   }
   dock->setTitleBarWidget(make_title(*dock, *strip));
-  view.setMinimumSize(200, 140);
+  if (&view != structures_) view.setMinimumSize(kLeastView);  // a panel of controls needs its own
   dock->setWidget(&view);
   addDockWidget(Qt::LeftDockWidgetArea, dock);
   dock->hide();  // a layout shows it
   docks_[QString::fromLatin1(name)] = dock;
+  const auto note = [this] { QTimer::singleShot(0, this, &Desk::note_shares); };
+  connect(dock, &QDockWidget::dockLocationChanged, this, note);
+  connect(dock, &QDockWidget::topLevelChanged, this, note);
 }
 
 /// In the title of the ultrasound view, where it covers nothing of the picture.
@@ -182,105 +177,6 @@ void Desk::connect_views() {
     connect(slice, &SliceView::window_changed, this, [this](double centre_hu, double width_hu) {
       for (SliceView* other : slices_) other->set_window(centre_hu, width_hu);
     });
-  }
-}
-
-const std::vector<QString>& Desk::layouts() {
-  static const std::vector<QString> names = [] {
-    std::vector<QString> all;
-    for (const Layout& layout : built_in_layouts()) all.push_back(layout.name);
-    return all;
-  }();
-  return names;
-}
-
-void Desk::choose_layout(const QString& name) {
-  if (std::find(layouts().begin(), layouts().end(), name) == layouts().end()) return choose_layout(layouts().front());
-  if (!layout_.isEmpty()) save_layout();
-  layout_ = name;
-  QSettings settings;
-  settings.setValue(QStringLiteral("desk/layout"), name);
-  const QByteArray kept = settings.value(settings_key(name)).toByteArray();
-  // First: views of both layouts together would widen the window.
-  for (const auto& [view, dock] : docks_) dock->hide();
-  if (kept.isEmpty() || !restoreState(kept, static_cast<int>(docks_.size()))) arrange(name);
-}
-
-void Desk::save_layout() const {
-  QSettings().setValue(settings_key(layout_), saveState(static_cast<int>(docks_.size())));
-}
-
-void Desk::reset_layout() {
-  QSettings().remove(settings_key(layout_));
-  arrange(layout_);
-}
-
-void Desk::arrange(const QString& name) {
-  const auto layout = std::find_if(built_in_layouts().begin(), built_in_layouts().end(),
-                                   [&](const Layout& l) { return l.name == name; });
-  // All views, hidden, in a column on the right: there the menu shows one that the layout does not have, and what is
-  // kept of the layout knows that it was hidden.
-  for (const auto& [view, dock] : docks_) {
-    dock->hide();
-    dock->setFloating(false);
-    addDockWidget(Qt::RightDockWidgetArea, dock);
-  }
-  QList<QDockWidget*> column_tops;
-  QList<int> widths;
-  const int width_px = std::max(width(), 640);
-  int all_columns = 0;
-  for (const LayoutColumn& column : layout->columns) all_columns += column.share;
-  // Columns first, so that they reach from top to bottom; then each is cut into its rows.
-  for (const LayoutColumn& column : layout->columns) {
-    QDockWidget* top = docks_.at(column.cells.front().views.front());
-    if (column_tops.isEmpty())
-      addDockWidget(Qt::LeftDockWidgetArea, top);
-    else
-      splitDockWidget(column_tops.last(), top, Qt::Horizontal);
-    top->show();
-    column_tops << top;
-    widths << width_px * column.share / all_columns;
-  }
-  for (const LayoutColumn& column : layout->columns) arrange_rows(column);
-  resizeDocks(column_tops, widths, Qt::Horizontal);
-}
-
-void Desk::arrange_rows(const LayoutColumn& column) {
-  const int height_px = std::max(height(), 400);
-  QList<QDockWidget*> rows;
-  QList<int> heights;
-  int all_cells = 0;
-  for (const LayoutCell& cell : column.cells) all_cells += cell.share;
-  for (const LayoutCell& cell : column.cells) {
-    QDockWidget* first = docks_.at(cell.views.front());
-    if (!rows.isEmpty()) splitDockWidget(rows.last(), first, Qt::Vertical);
-    first->show();
-    rows << first;
-    heights << height_px * cell.share / all_cells;
-  }
-  for (const LayoutCell& cell : column.cells) {
-    for (std::size_t v = 1; v < cell.views.size(); ++v) {
-      splitDockWidget(docks_.at(cell.views[v - 1]), docks_.at(cell.views[v]), Qt::Horizontal);
-      docks_.at(cell.views[v])->show();
-    }
-  }
-  resizeDocks(rows, heights, Qt::Vertical);
-}
-
-void Desk::fill_menu(QMenu& menu) {
-  int number = 0;
-  for (const QString& name : layouts()) {
-    QAction* action = menu.addAction(tr("Layout: %1").arg(name));
-    action->setShortcut(QKeySequence(QStringLiteral("Ctrl+%1").arg(++number)));
-    connect(action, &QAction::triggered, this, [this, name] { choose_layout(name); });
-  }
-  QAction* reset = menu.addAction(tr("Layout as it was made"));
-  connect(reset, &QAction::triggered, this, &Desk::reset_layout);
-  menu.addSeparator();
-  for (const auto& [name, dock] : docks_) {
-    QAction* action = dock->toggleViewAction();
-    action->setText(dock->windowTitle());
-    menu.addAction(action);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QMainWindow>
+#include <QSizeF>
 #include <map>
 #include <memory>
 #include <optional>
@@ -66,12 +67,24 @@ class Desk : public QMainWindow {
   void save_layout() const;
   /// Layouts and views to show or hide.
   void fill_menu(QMenu& menu);
+  /// Least width (pixels) of the views that are shown.
+  int needed_width() const;
+
+ Q_SIGNALS:
+  void layout_chosen();
+
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+  bool event(QEvent* event) override;
 
  private:
   /// A view that has a strip of its own lends it to the title.
   void add_view(const char* name, const QString& title, QWidget& view, QWidget* strip = nullptr);
   void arrange(const QString& layout);
-  void arrange_rows(const LayoutColumn& column);
+  void arrange_rows(const LayoutColumn& column, double width_share);
+  void note_shares();
+  void fit_to_shares();
+  void add_to_menu(QMenu& menu, const QString& name, QDockWidget& dock);
   void add_knobs_button();
   void connect_views();
   void show_in_space(PatientView& view);
@@ -90,6 +103,8 @@ class Desk : public QMainWindow {
   ForcePlot* forces_ = nullptr;
   std::map<QString, QDockWidget*> docks_;
   QString layout_;
+  std::map<QString, QSizeF> shares_;  ///< Of the desk's size, by view; of a hidden view the last one.
+  bool is_arranging_ = false;         ///< The program moves the docks, not a person.
   std::shared_ptr<const OpenCase> open_;
   ToolsShown shown_;
   std::uint64_t picture_number_ = 0;  ///< Of the one in the 3D views.

@@ -3,6 +3,7 @@
 #include <QActionGroup>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QMenu>
@@ -102,8 +103,10 @@ void StructurePanel::add_presets(QBoxLayout& layout) {
       {"preset-vessels", tr("Vessels"), tr("Vessels and target in faint bones"), StructurePreset::kVessels},
       {"preset-target", tr("Target"), tr("The target and the organ around it"), StructurePreset::kTarget},
   };
-  auto* row = new QHBoxLayout;
-  row->setSpacing(kGap / 2);
+  auto* rows = new QGridLayout;
+  rows->setSpacing(kGap / 2);
+  constexpr int kInRow = 3;
+  int place = 0;
   for (const Choice& choice : choices) {
     QToolButton* button = make_tool_button(choice.name, choice.text, choice.tooltip);
     button->setAccessibleName(choice.tooltip);
@@ -113,9 +116,20 @@ void StructurePanel::add_presets(QBoxLayout& layout) {
     });
     button->setStyleSheet(QString::fromLatin1(kSlim));
     button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    row->addWidget(button);
+    rows->addWidget(button, place / kInRow, place % kInRow);
+    ++place;
   }
-  layout.addLayout(row);
+  auto* steps = new QHBoxLayout;
+  steps->setSpacing(kGap / 2);
+  const auto walk = [this](void (StepHistory<Opacities>::*way)()) {
+    (steps_.*way)();
+    show_step();
+  };
+  undo_buttons_.emplace(
+      "structure", *this, [=] { walk(&StepHistory<Opacities>::undo); }, [=] { walk(&StepHistory<Opacities>::redo); });
+  undo_buttons_->add_to(*steps);
+  rows->addLayout(steps, place / kInRow, place % kInRow);
+  layout.addLayout(rows);
 }
 
 void StructurePanel::rebuild() {
@@ -171,6 +185,7 @@ void StructurePanel::add_row(const StructureInfo& info) {
   auto* label = make_label(name, "", line);
   label->setToolTip(name);
   label->setMinimumWidth(60);
+  label->setWordWrap(true);
   row.slider->setObjectName(widget_name("structure-opacity-", info.name));
   row.slider->setRange(0, 100);
   row.slider->setValue(qRound(100.0 * info.opacity));
@@ -220,17 +235,7 @@ void StructurePanel::add_volume(QBoxLayout& layout) {
       {tr("Surfaces"), tr("CT: bone"), tr("CT: soft tissue"), tr("CT: vessels"), tr("CT: skin and bone")});
   connect(volume_, qOverload<int>(&QComboBox::currentIndexChanged), this,
           [this](int index) { view_.set_volume_preset(static_cast<VolumePreset>(index)); });
-  auto* row = new QHBoxLayout;
-  row->setSpacing(kGap / 2);
-  row->addWidget(volume_, 1);
-  const auto walk = [this](void (StepHistory<Opacities>::*way)()) {
-    (steps_.*way)();
-    show_step();
-  };
-  undo_buttons_.emplace(
-      "structure", *this, [=] { walk(&StepHistory<Opacities>::undo); }, [=] { walk(&StepHistory<Opacities>::redo); });
-  undo_buttons_->add_to(*row);
-  layout.addLayout(row);
+  layout.addWidget(volume_);
 }
 
 void StructurePanel::add_toggles(QBoxLayout& layout) {
@@ -246,10 +251,9 @@ void StructurePanel::add_toggles(QBoxLayout& layout) {
     });
     row.addWidget(button);
   };
+  layout.addWidget(make_label(tr("CT planes"), "dim", this));
   auto* planes = new QHBoxLayout;
   planes->setSpacing(kGap / 2);
-  planes->addWidget(make_label(tr("CT planes"), "dim", this));
-  planes->addStretch(1);
   add_plane(*planes, "plane-long", tr("Along"), tr("CT plane along the needle"), &MprOptions::has_long_plane);
   add_plane(*planes, "plane-cross", tr("Turned"), tr("CT plane along the needle, turned by 90°"),
             &MprOptions::has_cross_plane);

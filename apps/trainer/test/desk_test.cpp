@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <QAction>
 #include <QCoreApplication>
+#include <QDockWidget>
+#include <QMenu>
+#include <QSettings>
 #include <QToolButton>
 
 #include "script/widget_events.h"
@@ -51,6 +55,97 @@ TEST(Desk, ShowsOfThePlanWhatTheHelpAllows) {
     EXPECT_LT(path, last_path) << title_of(e.difficulty);
     last_path = path;
   }
+}
+
+using Sizes = std::map<QString, QSize>;
+
+/// Of the views that are shown.
+Sizes sizes_of(const Desk& desk) {
+  Sizes sizes;
+  for (const QDockWidget* dock : desk.findChildren<QDockWidget*>())
+    if (dock->isVisible()) sizes[dock->objectName()] = dock->size();
+  return sizes;
+}
+
+void settle() {
+  for (int n = 0; n < 5; ++n) QCoreApplication::processEvents();
+}
+
+void expect_same(const Sizes& now, const Sizes& before, const std::string& after) {
+  ASSERT_EQ(now.size(), before.size()) << after;
+  for (const auto& [view, size] : before) {
+    const QSize moved = now.at(view) - size;
+    // Whole pixels.
+    EXPECT_LE(std::abs(moved.width()), 2) << view.toStdString() << " after " << after;
+    EXPECT_LE(std::abs(moved.height()), 2) << view.toStdString() << " after " << after;
+  }
+}
+
+struct DeskLayoutTest : testing::Test {
+  DeskLayoutTest() {
+    QSettings().clear();
+    desk.resize(1000, 700);
+    desk.show();
+    desk.choose_layout(QStringLiteral("Puncture"));
+    settle();
+  }
+  Desk desk;
+};
+
+TEST_F(DeskLayoutTest, ViewsKeepTheirSizesOverRounds) {
+  const Sizes before = sizes_of(desk);
+  for (int round = 0; round < 5; ++round) {
+    // As a time line below and a panel beside come and go, and pages change.
+    desk.resize(760, 640);
+    settle();
+    desk.hide();
+    desk.resize(1000, 700);
+    desk.show();
+    settle();
+    expect_same(sizes_of(desk), before, "round " + std::to_string(round));
+  }
+}
+
+TEST_F(DeskLayoutTest, LayoutsComeBackAsTheyWereLeft) {
+  const Sizes before = sizes_of(desk);
+  for (const QString& layout : Desk::layouts()) {
+    desk.choose_layout(layout);
+    settle();
+  }
+  desk.choose_layout(QStringLiteral("Puncture"));
+  settle();
+  expect_same(sizes_of(desk), before, "all layouts");
+}
+
+TEST_F(DeskLayoutTest, EveryLayoutFitsBesideTheTissuesOfASmallScreen) {
+  for (const QString& layout : Desk::layouts()) {
+    desk.choose_layout(layout);
+    settle();
+    EXPECT_LE(desk.needed_width(), 680) << layout.toStdString();
+    EXPECT_LE(desk.minimumSizeHint().height(), 560) << layout.toStdString();
+  }
+}
+
+TEST_F(DeskLayoutTest, TheMenuBringsAViewForwardFromBehindAnothersTab) {
+  QMenu menu;
+  desk.fill_menu(menu);
+  auto* ultrasound = desk.findChild<QDockWidget*>(QStringLiteral("dock-ultrasound"));
+  auto* space = desk.findChild<QDockWidget*>(QStringLiteral("dock-3d"));
+  ASSERT_NE(ultrasound, nullptr);
+  ASSERT_NE(space, nullptr);
+  desk.tabifyDockWidget(ultrasound, space);
+  space->raise();
+  settle();
+  ASSERT_TRUE(ultrasound->visibleRegion().isEmpty());
+  auto* action = menu.findChild<QAction*>(QStringLiteral("show-ultrasound"));
+  ASSERT_NE(action, nullptr);
+  action->trigger();
+  settle();
+  EXPECT_FALSE(ultrasound->visibleRegion().isEmpty());
+  EXPECT_FALSE(ultrasound->isHidden());
+  action->trigger();  // in sight: hidden
+  settle();
+  EXPECT_TRUE(ultrasound->isHidden());
 }
 
 }  // namespace
