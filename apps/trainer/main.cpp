@@ -23,6 +23,7 @@
 #include "script/script_player.h"
 #include "shell/main_window.h"
 #include "shell/parts.h"
+#include "shell/screen_scale.h"
 #include "shell/theme.h"
 #include "shell/trainer_application.h"
 #include "training/task.h"
@@ -126,16 +127,16 @@ int run(int argc, char** argv) {
                               "start it from a desktop, or under xvfb-run"});
 
 #if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
-  QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
   QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
 #endif
+  follow_screen(argc, argv);
   QCoreApplication::setOrganizationName(QStringLiteral("trocar"));
   QCoreApplication::setApplicationName(QStringLiteral("trocar-trainer"));
   TrainerApplication application(argc, argv);
   // A benchmark is of the built-in layouts, and leaves no trace in the user's settings.
   const QTemporaryDir own_settings;
   if (arguments.is_benchmark) QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, own_settings.path());
-  apply_theme(application);
+  apply_theme(application, kept_text_percent());
   MainWindow window(arguments.state_folder.empty() ? user_state_folder() : fs::path(arguments.state_folder));
   const Result<SeatChoice> choice = with_arguments(window.start().choice(), arguments);
   if (!choice) return report_error(choice.error());

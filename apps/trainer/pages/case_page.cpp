@@ -8,6 +8,7 @@
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
@@ -133,7 +134,9 @@ QWidget* CasePage::make_steps() {
 
 void CasePage::add_panel(CasePanel* panel, const QString& title) {
   panel->setProperty("title", title);
-  stack_->addWidget(panel);
+  auto* scroll = make_scrolled(*panel);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  stack_->addWidget(scroll);
   panels_.push_back(panel);
   connect(panel, &CasePanel::click_wanted, this, &CasePage::set_click);
   connect(panel, &CasePanel::click_name_changed, this, &CasePage::show_hint);
@@ -207,7 +210,7 @@ QWidget* CasePage::make_foot() {
 void CasePage::go_to(int step) {
   steps_[static_cast<std::size_t>(step)]->setChecked(true);
   stack_->setCurrentIndex(step);
-  step_title_->setText(stack_->currentWidget()->property("title").toString());
+  step_title_->setText(panels_[static_cast<std::size_t>(step)]->property("title").toString());
   set_click(CaseClick::kLook);
 }
 

@@ -1,8 +1,10 @@
 #include "pages/work_page.h"
 
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QStackedWidget>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include "desk/desk.h"
 #include "panels/feedback_panel.h"
@@ -13,7 +15,8 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kSideColumns = 34;  // average characters
+constexpr int kSideColumns = 34;    ///< Average characters.
+constexpr int kLeastDesk_px = 640;  ///< Two columns of views.
 
 }  // namespace
 
@@ -28,7 +31,6 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
   side_ = new QStackedWidget;
   side_->addWidget(puncture_);
   side_->addWidget(feedback_);
-  side_->setFixedWidth(fontMetrics().averageCharWidth() * kSideColumns);
   desk_ = new Desk;
   time_line_ = new TimeLine;
   time_line_->setObjectName(QStringLiteral("time-line"));
@@ -42,6 +44,30 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
   row->addWidget(side_);
   row->addLayout(column, 1);
   row->addWidget(parameters_);
+  connect(desk_, &Desk::layout_chosen, this, &WorkPage::fit);
+  connect(puncture_, &PuncturePanel::asked, this, [this] {
+    if (side_->isHidden()) toggle_parameters();  // its question must be seen
+  });
+  fit();
+}
+
+/// In a narrow window the tissues stand in the place of the side panel, so that the pictures keep their size.
+void WorkPage::fit() {
+  const int side_px = fontMetrics().averageCharWidth() * kSideColumns;
+  if (side_->maximumWidth() != side_px) side_->setFixedWidth(side_px);
+  const bool has_room = !are_parameters_shown() || width() >= side_px + std::max(kLeastDesk_px, desk_->needed_width()) +
+                                                                  parameters_->sizeHint().width();
+  if (side_->isHidden() == has_room) side_->setVisible(has_room);
+}
+
+void WorkPage::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  fit();
+}
+
+void WorkPage::changeEvent(QEvent* event) {
+  QWidget::changeEvent(event);
+  if (event->type() == QEvent::FontChange) fit();
 }
 
 void WorkPage::show_puncture() {
@@ -55,11 +81,12 @@ void WorkPage::show_feedback() {
 }
 
 void WorkPage::toggle_parameters() {
-  parameters_->setVisible(!parameters_->isVisible());
+  parameters_->setVisible(!are_parameters_shown());
+  fit();
 }
 
 bool WorkPage::are_parameters_shown() const {
-  return parameters_->isVisible();
+  return !parameters_->isHidden();
 }
 
 }  // namespace trocar::trainer

@@ -31,8 +31,16 @@ class WorkPage : public QWidget {
   void show_feedback();
   void toggle_parameters();
   bool are_parameters_shown() const;
+  /// False: a wrapped text in a panel must not claim height from the bars above and below the page.
+  bool hasHeightForWidth() const override { return false; }
+
+ protected:
+  void resizeEvent(QResizeEvent* event) override;
+  void changeEvent(QEvent* event) override;
 
  private:
+  void fit();
+
   Desk* desk_ = nullptr;
   QStackedWidget* side_ = nullptr;
   PuncturePanel* puncture_ = nullptr;

@@ -117,6 +117,7 @@ void ParameterRow::make_parts(const QString& name) {
   reset_ = new QToolButton;
   reset_->setObjectName(name + QStringLiteral("-reset"));
   reset_->setText(QStringLiteral("↺"));
+  reset_->setStyleSheet(QStringLiteral("padding: 2px 6px"));  // no higher than the field beside it
   reset_->setAccessibleName(tr("Reset %1").arg(plain));
   reset_->setToolTip(tr("Back to the default, %1").arg(number_text(parameter_.value)));
   slider_ = new MarkedSlider;

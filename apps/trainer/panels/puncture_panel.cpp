@@ -5,6 +5,7 @@
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QScrollBar>
 #include <QShortcut>
 #include <QVBoxLayout>
@@ -35,8 +36,9 @@ QLabel* make_figure(QGridLayout& grid, int row, const QString& title, const char
 
 PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   setObjectName(QStringLiteral("puncture-panel"));
-  auto* content = new QVBoxLayout(this);
-  content->setContentsMargins(12, 12, 12, 12);
+  auto* inside = new QWidget;
+  auto* content = new QVBoxLayout(inside);
+  content->setContentsMargins(12, 12, 12, 4);
   content->setSpacing(10);
   content->addWidget(make_hand());
   content->addWidget(make_figures());
@@ -64,9 +66,19 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   fire_->setFocusPolicy(Qt::NoFocus);
   end_ = make_button("end-attempt", tr("End the attempt"), tr("Asks, then scores what was done (E)"));
   end_->setFocusPolicy(Qt::NoFocus);
-  content->addWidget(fire_);
-  content->addWidget(end_);
-  content->addWidget(make_question());
+  auto* scroll = make_scrolled(*inside);
+  scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->setSpacing(0);
+  column->addWidget(scroll, 1);
+  auto* buttons = new QVBoxLayout;  // always in sight
+  buttons->setContentsMargins(12, 8, 12, 12);
+  buttons->setSpacing(8);
+  buttons->addWidget(fire_);
+  buttons->addWidget(end_);
+  buttons->addWidget(make_question());
+  column->addLayout(buttons);
   connect(fire_, &QPushButton::clicked, this, &PuncturePanel::fire_wanted);
   connect(end_, &QPushButton::clicked, this, &PuncturePanel::end_wanted);
 }
@@ -143,6 +155,7 @@ void PuncturePanel::ask(const QString& question, const QString& yes) {
   for (QWidget* covered : {fire_, end_}) covered->hide();
   question_->show();
   for (QShortcut* shortcut : answers_) shortcut->setEnabled(true);
+  Q_EMIT asked();
 }
 
 bool PuncturePanel::is_asking() const {

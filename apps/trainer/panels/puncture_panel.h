@@ -64,6 +64,7 @@ class PuncturePanel : public QWidget {
   void aim_wanted();
   void fire_wanted();
   void end_wanted();
+  void asked();
   /// The question was answered with yes.
   void confirmed();
 

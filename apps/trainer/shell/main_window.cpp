@@ -1,10 +1,13 @@
 #include "shell/main_window.h"
 
+#include <QActionGroup>
 #include <QApplication>
 #include <QCloseEvent>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QMenu>
+#include <QScreen>
+#include <QScrollArea>
 #include <QSettings>
 #include <QShortcut>
 #include <QStackedWidget>
@@ -34,6 +37,9 @@ struct Step {
 constexpr Step kSteps[] = {
     {"start", "Choose"}, {"briefing", "Briefing"}, {"puncture", "Puncture"}, {"feedback", "Feedback"}};
 
+/// Fits a screen of 1024x768 beside a desktop's own bars.
+constexpr QSize kLeastSize(960, 640);
+
 }  // namespace
 
 MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* parent) : QMainWindow(parent) {
@@ -49,17 +55,22 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* paren
   briefing_ = new BriefingPage;
   work_ = new WorkPage;
   case_ = new CasePage;
-  for (QWidget* page : std::initializer_list<QWidget*>{start_, briefing_, work_, case_}) pages_->addWidget(page);
+  for (QWidget* page : std::initializer_list<QWidget*>{start_, briefing_, case_})
+    pages_->addWidget(make_scrolled(*page));
+  pages_->addWidget(work_);
   strip_ = new StatusStrip;
   column->addWidget(make_top_bar());
   column->addWidget(pages_, 1);
   column->addWidget(strip_);
+  pages_->setMinimumSize(1, 1);  // no page pushes the strip off the window
   setCentralWidget(central);
   banner_ = new Banner(*central);
   add_shortcuts();
   new FocusRing(this);
   flow_ = new SeatFlow(*this, state_folder);
-  resize(1280, 800);
+  // A page that needs more room is scrolled, so that the strip at the foot is always on the screen.
+  setMinimumSize(kLeastSize);
+  resize(QSize(1280, 800).boundedTo(screen()->availableSize()));
   restoreGeometry(QSettings().value(QStringLiteral("window/geometry")).toByteArray());
   show_page(QStringLiteral("start"));
 }
@@ -74,10 +85,8 @@ QWidget* MainWindow::make_top_bar() {
   auto* row = new QHBoxLayout(bar);
   row->setContentsMargins(16, 6, 8, 6);
   row->setSpacing(8);
-  auto* name = make_label(QStringLiteral("Trocar"));
-  name->setFont(scaled_font(1.35, true));
-  row->addWidget(name);
-  row->addSpacing(24);
+  row->addWidget(make_label(QStringLiteral("Trocar"), "brand"));
+  row->addSpacing(12);
   for (const Step& step : kSteps) {
     auto* label = make_label(tr(step.title), "badge");
     label->setObjectName(QStringLiteral("step-") + QString::fromLatin1(step.page));
@@ -88,6 +97,7 @@ QWidget* MainWindow::make_top_bar() {
   auto* views = make_tool_button("views-menu", tr("Views"), tr("Layouts, and which views are shown"));
   auto* menu = new QMenu(views);
   work_->desk().fill_menu(*menu);
+  fill_text_menu(*menu->addMenu(tr("Text size")));
   add_sound(*menu);
   views->setMenu(menu);
   views->setPopupMode(QToolButton::InstantPopup);
@@ -118,6 +128,31 @@ bool MainWindow::has_sound() const {
   return sound_->isChecked();
 }
 
+void MainWindow::fill_text_menu(QMenu& menu) {
+  auto* sizes = new QActionGroup(&menu);
+  for (const int percent : kTextPercents) {
+    QAction* action = sizes->addAction(tr("%1 %").arg(percent));
+    action->setObjectName(QStringLiteral("text-size-%1").arg(percent));
+    action->setCheckable(true);
+    action->setChecked(percent == kept_text_percent());
+    menu.addAction(action);
+    connect(action, &QAction::triggered, this, [percent] { choose_text_percent(percent); });
+  }
+  const auto step = [sizes](int by) {
+    const auto actions = sizes->actions();
+    const auto next = actions.indexOf(sizes->checkedAction()) + by;
+    if (next >= 0 && next < actions.size()) actions[next]->trigger();
+  };
+  menu.addSeparator();
+  const auto add = [&](const QString& text, const QKeySequence& key, int by) {
+    QAction* action = menu.addAction(text);
+    action->setShortcut(key);
+    connect(action, &QAction::triggered, this, [step, by] { step(by); });
+  };
+  add(tr("Larger"), QKeySequence(QStringLiteral("Ctrl++")), 1);
+  add(tr("Smaller"), QKeySequence(QStringLiteral("Ctrl+-")), -1);
+}
+
 void MainWindow::add_shortcuts() {
   auto* full_screen = new QShortcut(QKeySequence(QStringLiteral("F11")), this);
   connect(full_screen, &QShortcut::activated, this, [this] { isFullScreen() ? showNormal() : showFullScreen(); });
@@ -129,7 +164,8 @@ void MainWindow::show_page(const QString& name) {
   if (name == QLatin1String("briefing")) page = briefing_;
   if (name == QLatin1String("puncture") || name == QLatin1String("feedback")) page = work_;
   if (name == QLatin1String("case-builder")) page = case_;
-  pages_->setCurrentWidget(page);
+  for (int n = 0; n < pages_->count(); ++n)
+    if (pages_->widget(n) == page || pages_->widget(n)->isAncestorOf(page)) pages_->setCurrentIndex(n);
   for (QLabel* step : steps_) {
     const bool is_here = step->objectName() == QStringLiteral("step-") + name;
     step->setStyleSheet(is_here ? QStringLiteral("background: %1; color: %2; font-weight: 600;")

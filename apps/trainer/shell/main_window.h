@@ -54,6 +54,7 @@ class MainWindow : public QMainWindow {
  private:
   QWidget* make_top_bar();
   void add_sound(QMenu& menu);
+  void fill_text_menu(QMenu& menu);
   void add_shortcuts();
 
   QStackedWidget* pages_ = nullptr;

@@ -2,20 +2,26 @@
 
 #include <QApplication>
 #include <QPalette>
+#include <QRegularExpression>
+#include <QSettings>
 #include <QString>
 #include <QStyleFactory>
+#include <algorithm>
 
 namespace trocar::trainer {
 namespace {
 
-/// The style sheet with @names for colours.
+constexpr const char* kTextSizeKey = "window/text_percent";
+
+/// The style sheet with @names for colours, and @ before sizes that follow the chosen size of text.
 constexpr const char* kSheet = R"(
 * { outline: none; }
 QWidget { color: @text; background: transparent; selection-background-color: @accent; selection-color: @ground; }
 QMainWindow, QDialog, QStackedWidget, QMessageBox { background: @ground; }
 QToolTip { background: @raised; color: @text; border: 1px solid @line; padding: 4px 6px; }
-QLabel[role="title"] { font-size: 22pt; font-weight: 600; }
-QLabel[role="heading"] { font-size: 13pt; font-weight: 600; }
+QLabel[role="title"] { font-size: @22pt; font-weight: 600; }
+QLabel[role="heading"] { font-size: @13pt; font-weight: 600; }
+QLabel[role="brand"] { font-size: @12pt; font-weight: 700; }
 QLabel[role="dim"] { color: @dim; }
 QLabel[role="badge"] { background: @raised; border-radius: 9px; padding: 2px 10px; color: @dim; }
 QFrame[role="card"] { background: @panel; border: 1px solid @line; border-radius: 8px; }
@@ -83,8 +89,17 @@ QColor mixed(const QColor& a, const QColor& b, double share_of_b) {
   return {mix(a.red(), b.red()), mix(a.green(), b.green()), mix(a.blue(), b.blue())};
 }
 
-QString style_sheet(const Theme& t) {
-  QString sheet = QString::fromLatin1(kSheet);
+/// The point sizes that the sheet names, for that size of text.
+QString with_text_size(QString sheet, int text_percent) {
+  static const QRegularExpression points(QStringLiteral("@(\\d+)pt"));
+  for (auto found = points.match(sheet); found.hasMatch(); found = points.match(sheet))
+    sheet.replace(found.capturedStart(), found.capturedLength(),
+                  QStringLiteral("%1pt").arg(0.01 * text_percent * found.captured(1).toInt(), 0, 'f', 1));
+  return sheet;
+}
+
+QString style_sheet(const Theme& t, int text_percent) {
+  QString sheet = with_text_size(QString::fromLatin1(kSheet), text_percent);
   const std::pair<const char*, QColor> names[] = {
       {"@ground", t.ground},
       {"@panel", t.panel},
@@ -110,8 +125,12 @@ const Theme& theme() noexcept {
   return the_theme;
 }
 
-void apply_theme(QApplication& application) {
+void apply_theme(QApplication& application, int text_percent) {
   const Theme& t = theme();
+  static const QFont system_font = QApplication::font();
+  QFont font = system_font;
+  font.setPointSizeF(0.01 * text_percent * system_font.pointSizeF());
+  QApplication::setFont(font);
   QApplication::setStyle(QStyleFactory::create(QStringLiteral("Fusion")));
   QPalette palette;
   palette.setColor(QPalette::Window, t.ground);
@@ -125,7 +144,19 @@ void apply_theme(QApplication& application) {
   palette.setColor(QPalette::PlaceholderText, t.dim);
   palette.setColor(QPalette::Link, t.accent);
   QApplication::setPalette(palette);
-  application.setStyleSheet(style_sheet(t));
+  application.setStyleSheet(style_sheet(t, text_percent));
+}
+
+int kept_text_percent() {
+  const int kept = QSettings().value(QString::fromLatin1(kTextSizeKey), kPlainText_percent).toInt();
+  return std::find(std::begin(kTextPercents), std::end(kTextPercents), kept) != std::end(kTextPercents)
+             ? kept
+             : kPlainText_percent;
+}
+
+void choose_text_percent(int percent) {
+  QSettings().setValue(QString::fromLatin1(kTextSizeKey), percent);
+  apply_theme(*qApp, percent);
 }
 
 QFont scaled_font(double factor, bool is_bold) {

@@ -34,8 +34,16 @@ struct Theme {
 };
 const Theme& theme() noexcept;
 
-/// Sets style, palette, font and style sheet of the program.
-void apply_theme(QApplication& application);
+/// Sizes of text that are offered, in percent of the system's font.
+inline constexpr int kTextPercents[] = {90, 100, 115, 130, 150};
+inline constexpr int kPlainText_percent = 100;
+
+/// Sets style, palette, font and style sheet of the program; again for another size of text.
+void apply_theme(QApplication& application, int text_percent = kPlainText_percent);
+/// As chosen last in the window, else 100.
+int kept_text_percent();
+/// Sets it for the whole program and keeps it for the next start.
+void choose_text_percent(int percent);
 /// The program's font, larger or smaller by a factor.
 QFont scaled_font(double factor, bool is_bold = false);
 

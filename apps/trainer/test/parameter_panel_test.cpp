@@ -13,6 +13,7 @@
 
 #include "panels/force_preview.h"
 #include "panels/parameter_scale.h"
+#include "script/cut_off.h"
 #include "script/widget_events.h"
 #include "test/parameter_lab.h"
 
@@ -20,6 +21,14 @@ namespace trocar::trainer {
 namespace {
 
 using ParameterPanelTest = ParameterLab;
+
+TEST_F(ParameterPanelTest, EveryTextHasRoom) {
+  for (const int width : {320, 340, 420}) {
+    panel.resize(width, 900);
+    settle();
+    EXPECT_TRUE(find_cut_off(panel).isEmpty()) << width << ": " << find_cut_off(panel).join(';').toStdString();
+  }
+}
 
 TEST_F(ParameterPanelTest, TissuesOnThePathComeFirst) {
   std::vector<std::string> on_path;

@@ -5,6 +5,7 @@
 #include <QFile>
 #include <QImage>
 #include <QProcess>
+#include <QRegularExpression>
 #include <QTemporaryDir>
 #include <atomic>
 #include <cstdlib>
@@ -119,6 +120,30 @@ TEST_F(WindowTest, EveryLayoutShowsWhatItNames) {
   expect_played(play("layouts.txt"));
 }
 
+/// The script of every page, in a window of that size; pictures are not waited for.
+QByteArray all_pages(int columns, int rows) {
+  QFile script(script_named("all_pages.txt"));
+  EXPECT_TRUE(script.open(QIODevice::ReadOnly));
+  static const QRegularExpression pause(QStringLiteral("^wait [0-9.]+$"), QRegularExpression::MultilineOption);
+  return QStringLiteral("resize %1 %2\n%3")
+      .arg(columns)
+      .arg(rows)
+      .arg(QString::fromUtf8(script.readAll()).replace(pause, QStringLiteral("wait 0.2")))
+      .toUtf8();
+}
+
+TEST_F(WindowTest, EveryPageIsWholeOnASmallScreen) {
+  expect_played(run({QStringLiteral("--script"), write("small.txt", all_pages(1024, 768).constData())}));
+}
+
+TEST_F(WindowTest, TheQuestionOfTheEndIsSeenBesideTheTissues) {
+  expect_played(play("end_asked_narrow.txt"));
+}
+
+TEST_F(WindowTest, EveryPageIsWholeOnAUsualScreen) {
+  expect_played(run({QStringLiteral("--script"), write("usual.txt", all_pages(1280, 800).constData())}));
+}
+
 TEST_F(WindowTest, TheReplayMovesTheTransducerAsItWasMoved) {
   expect_played(play("transducer.txt"));
 }
@@ -164,6 +189,18 @@ TEST_F(WindowTest, AnAttemptThatACrashCutOffCanBeSeenAgain) {
                               "click recover\nwait-for page is feedback within 300\nexpect was_cut_off is true\n"
                               "expect duration_s > 1\n");
   expect_played(run({QStringLiteral("--script"), again}));
+}
+
+TEST_F(WindowTest, ABenchmarkLeavesTheSettingsAlone) {
+  const QByteArray kept("[desk]\nlayout=Slices\n");
+  ASSERT_TRUE(QDir(folder.path()).mkpath(QStringLiteral("config/trocar")));
+  QFile settings(folder.filePath(QStringLiteral("config/trocar/trocar-trainer.conf")));
+  ASSERT_TRUE(settings.open(QIODevice::WriteOnly));
+  settings.write(kept);
+  settings.close();
+  expect_played(run({QStringLiteral("--benchmark")}));
+  ASSERT_TRUE(settings.open(QIODevice::ReadOnly));
+  EXPECT_EQ(settings.readAll(), kept);
 }
 
 TEST_F(WindowTest, AScriptThatFailsSaysWhere) {
