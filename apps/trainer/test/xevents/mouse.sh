@@ -1,0 +1,48 @@
+# The mouse alone. Places are pixels of the window at 1280x800.
+drag() { xdotool mousemove "$1" "$2" mousedown 1 && sleep 0.2 && xdotool mousemove "$3" "$4" && sleep 0.2 && xdotool mouseup 1; }
+
+shot start
+click 240 183 # the task
+click 640 183 # the patient
+click 955 186 # guided
+shot chosen
+click 1194 711 # Start
+seen 1-briefing
+shot briefing
+click 1199 711 # Begin
+seen 2-ready
+shot ready
+
+drag 500 260 540 280 # the needle glides over the skin
+shot glided
+click 122 172 # To the planned entry
+click 1164 55 # Knobs
+shot knobs
+move 1060 336 # over the choice of the transducer: nothing is chosen, the knobs scroll
+wheel down 1
+move 1066 431 # over a slider: its value stays
+wheel down 1
+shot knobs-scrolled
+click 1164 55
+
+into_the_body() { move 500 260 && wheel up 2; }
+until_seen 3-inside into_the_body
+click 1197 777 # STOP FORCES
+seen 4-stopped
+shot stopped
+click 1197 777 # FORCES ON AGAIN
+seen 5-on-again
+move 500 260
+until_seen 6-near wheel up 1
+slow_push() { wheel up 1 && sleep 0.5; }
+until_seen 7-at-target slow_push
+click 122 683 # Fire the gun
+seen 8-fired
+shot fired
+move 500 260
+until_seen 9-out wheel down 2
+click 122 724 # End the attempt
+shot asked
+click 122 680 # End
+seen 10-feedback
+shot feedback
