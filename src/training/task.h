@@ -54,6 +54,7 @@ struct Task {
   double entry_tolerance_mm = 10.0;
   double angle_tolerance_deg = 10.0;
   double time_limit_s = 120.0;
+  bool exam_shows_needle = false;  ///< In an exam slices and 3D show the needle inside the body, too.
 };
 
 inline constexpr const char* kOwnTaskFile = "task.toml";  ///< Of a patient's folder: the task that was made for it.

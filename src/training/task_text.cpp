@@ -19,8 +19,9 @@ class TaskReader {
   TaskReader(const TomlTable& document, bool is_whole) : document_(document), is_whole_(is_whole) {}
 
   Status read(Task& task) const {
-    TROCAR_TRY_STATUS(document_.check_keys({"base", "title", "organ", "target_tissues", "needle", "force_model", "path",
-                                            "parenchymal", "scoring", "risks", "target", "entry_zone", "expert_path"}));
+    TROCAR_TRY_STATUS(
+        document_.check_keys({"base", "title", "organ", "target_tissues", "needle", "force_model", "path",
+                              "parenchymal", "scoring", "risks", "target", "entry_zone", "expert_path", "exam"}));
     TROCAR_TRY_STATUS(text(document_, "title", task.title));
     TROCAR_TRY_STATUS(text(document_, "organ", task.organ));
     TROCAR_TRY_STATUS(text(document_, "needle", task.needle));
@@ -33,6 +34,7 @@ class TaskReader {
     TROCAR_TRY_STATUS(read_scoring(task));
     TROCAR_TRY_STATUS(read_risks(task));
     TROCAR_TRY_STATUS(read_target(task));
+    TROCAR_TRY_STATUS(read_exam(task));
     return read_entry_zone(task);
   }
 
@@ -109,6 +111,14 @@ class TaskReader {
     if (target.has("point_mm")) {
       TROCAR_TRY(task.target_P, point(target, "point_mm"));
     }
+    return {};
+  }
+
+  Status read_exam(Task& task) const {
+    if (!document_.has("exam")) return {};
+    TROCAR_TRY(const TomlTable exam, document_.table("exam"));
+    TROCAR_TRY_STATUS(exam.check_keys({"shows_needle"}));
+    TROCAR_TRY(task.exam_shows_needle, exam.boolean_or("shows_needle", task.exam_shows_needle));
     return {};
   }
 
@@ -260,6 +270,9 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.number("angle_tolerance_deg", task.angle_tolerance_deg, base.angle_tolerance_deg);
   keys.number("time_limit_s", task.time_limit_s, base.time_limit_s);
   keys.close(document, "scoring");
+  if (task.exam_shows_needle != base.exam_shows_needle)
+    keys.line(fmt::format("shows_needle = {}", task.exam_shows_needle));
+  keys.close(document, "exam");
   keys.text("label", task.target_label, base.target_label);
   if (task.target_P) keys.point("point_mm", *task.target_P);
   keys.close(document, "target");

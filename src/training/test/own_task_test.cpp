@@ -35,6 +35,7 @@ Task changed_task() {
   task.target_P = Vec3(-30.1, -15.2, 1.0 / 3.0);
   task.entry_zone = EntryZone{{-100.0, 0.0, 0.0}, 25.0};
   task.expert_path = "expert";
+  task.exam_shows_needle = true;
   return task;
 }
 
@@ -50,6 +51,8 @@ TEST(OwnTask, FileSaysWhatDiffersAndGivesTheTaskBack) {
   EXPECT_EQ(task_to_toml(*read, Task{}), task_to_toml(task, Task{}));
   EXPECT_EQ(read->name, "liver-biopsy");
   EXPECT_EQ(read->max_path_mm, task.max_path_mm);
+  EXPECT_FALSE(liver_biopsy().exam_shows_needle);
+  EXPECT_TRUE(read->exam_shows_needle);
   ASSERT_TRUE(read->target_P);
   EXPECT_EQ(*read->target_P, *task.target_P);
 }
