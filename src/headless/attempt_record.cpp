@@ -32,6 +32,7 @@ SessionInfo describe(const Case& the_case, const RunOptions& options, const Atte
   info.needle = the_case.needle.name;
   info.device = facts.device;
   info.device_preset = facts.device_preset;
+  info.level = facts.level;
   const std::string& table = facts.parameters.tissue_table_toml;
   info.tissue_table_toml = table.empty() ? the_case.tissues.to_toml() : table;
   info.plan_P = {the_case.task.name + " plan", the_case.plan.line_P};

@@ -18,6 +18,7 @@ struct AttemptFacts {
   std::string force_model;
   std::string device_preset;   ///< Of data/devices.toml; empty: none of them.
   SceneParameters parameters;  ///< In force when it begins, as far as known; no table: the case's.
+  std::string level = {};      ///< See SessionInfo.
 };
 
 /// The preset of a server's device: "premium" of "virtual:premium"; empty: it is none of data/devices.toml.

@@ -31,6 +31,7 @@ struct AttemptOptions {
   int priority = 80;        ///< Of the servers' real-time threads; 0: ordinary scheduling.
   std::string force_model;  ///< Empty: the case's.
   std::uint64_t seed = 1;
+  std::string level;             ///< Of help, recorded: "guided", "assisted", "exam".
   bool is_guided = false;        ///< Hints are given.
   bool waits_for_begin = false;  ///< Recording starts at begin(): a briefing may go before it. Else when all is ready.
   bool has_probe = true;         ///< false: one server alone.

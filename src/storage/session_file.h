@@ -32,6 +32,7 @@ struct SessionInfo {
   std::string force_model = "insertion";
   std::uint64_t seed = 1;
   double rate_hz = 1000.0;
+  std::string level;  ///< Of help in the trainer: "guided", "assisted", "exam"; empty: no window, or an older program.
   std::string needle;
   std::string device;             ///< In words.
   std::string device_preset;      ///< Of data/devices.toml; empty: an older program.

@@ -145,11 +145,11 @@ std::string tissue_tables(const Session& session) {
 std::string page_header(const Session& session) {
   const SessionInfo& info = session.info;
   return fmt::format(
-      "<header><h1>{}: session report</h1><dl class=\"facts\">{}{}{}{}</dl>"
+      "<header><h1>{}: session report</h1><dl class=\"facts\">{}{}{}{}{}</dl>"
       "<p class=\"note\">Trocar is a training simulator, not a medical device.</p></header>",
       escape(title_words(info.task)), fact("Patient", escape(info.patient_name)),
-      fact("Operator", escape(info.operator_name)), fact("Date", date_text(info.started_utc)),
-      fact("Trocar", escape(info.program_version)));
+      fact("Operator", escape(info.operator_name)), fact("Level", escape(title_words(info.level))),
+      fact("Date", date_text(info.started_utc)), fact("Trocar", escape(info.program_version)));
 }
 
 /// The damaged parts, and that they are left out; empty where all is whole.
@@ -160,9 +160,14 @@ std::string damage_note(const Session& session) {
   return "<p class=\"warning\"><b>This session is damaged.</b> Left out: " + parts + ".</p>";
 }
 
-std::string verdict_of(const Outcome& outcome) {
-  if (!outcome.is_scored()) return "Not scored: " + escape(outcome.not_scored);
-  return outcome.target_reached ? "Target reached" : "Target missed";
+/// "Target reached", with the level of help that the score was reached at.
+std::string verdict_of(const Session& session) {
+  const Outcome& outcome = *session.outcome;
+  std::string verdict = outcome.target_reached ? "Target reached" : "Target missed";
+  if (!outcome.is_scored()) verdict = "Not scored: " + escape(outcome.not_scored);
+  if (!session.info.level.empty())
+    verdict += "<div class=\"level\">" + escape(title_words(session.info.level)) + "</div>";
+  return verdict;
 }
 
 std::string result_section(const Session& session) {
@@ -176,7 +181,7 @@ std::string result_section(const Session& session) {
                                  "<section class=\"together\"><h2>Result</h2><div class=\"result\"><div "
                                  "class=\"ring\">{}<div class=\"verdict\">{}"
                                  "</div></div><table class=\"parts\"><tbody>",
-                                 outcome.is_scored() ? score_ring(outcome.score) : std::string(), verdict_of(outcome));
+                                 outcome.is_scored() ? score_ring(outcome.score) : std::string(), verdict_of(session));
   for (const ScorePart& part : outcome.parts) out += part_row(part);
   out += "</tbody></table></div>";
   if (!outcome.risks_touched.empty())
@@ -217,6 +222,7 @@ std::string case_section(const Session& session) {
   // An embedded patient is named as it is called; a folder has no seed.
   if (info.patient_source == info.patient_name) out += case_row("Patient's seed", fmt::format("{}", info.patient_seed));
   out += case_row("Operator, seed", fmt::format("{}, {}", info.operator_name, info.seed));
+  out += case_row("Level of help", info.level);
   out += case_row("Force model", info.force_model);
   out += case_row("Needle", info.needle);
   out += case_row("Device", info.device);

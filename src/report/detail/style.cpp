@@ -22,6 +22,7 @@ p { margin: 6px 0; }
 .result { display: flex; gap: 34px; align-items: center; }
 .ring { flex: 0 0 188px; text-align: center; }
 .ring svg { width: 172px; display: block; margin: 0 auto; }
+.ring .level { font-weight: 400; color: #5a6875; }
 .ring .verdict { font-weight: 600; margin-top: 4px; }
 .parts { flex: 1; border-collapse: collapse; width: 100%; }
 .parts td { padding: 4px 8px 4px 0; vertical-align: middle; }

@@ -57,6 +57,16 @@ TEST(HtmlReport, NamesTheThreePeaks) {
     EXPECT_NE(html.find(label), std::string::npos) << label;
 }
 
+TEST(HtmlReport, TellsTheLevelBesideTheScore) {
+  Session session = example_attempt();
+  EXPECT_EQ(html_report(session, nullptr).find("<dt>Level</dt>"), std::string::npos);
+  session.info.level = "exam";
+  const std::string html = html_report(session, nullptr);
+  EXPECT_NE(html.find("<dt>Level</dt><dd>Exam</dd>"), std::string::npos);
+  EXPECT_NE(html.find("<div class=\"level\">Exam</div>"), std::string::npos);
+  EXPECT_EQ(first_unbalanced(html), "");
+}
+
 TEST(HtmlReport, TellsScorePartsHintsAndCore) {
   const std::string html = html_report(example_attempt(), nullptr);
   for (const char* text : {">83</text>", "Distance to the target", "Hold the needle flatter", "Target tissue 11.0 mm",

@@ -204,7 +204,8 @@ Status AttemptLoop::start_recording() {
                      performer_.rate_hz,
                      performer_.force_model,
                      preset_of_device(welcome.device.name),
-                     {}};
+                     {},
+                     options_.level};
   if (const KnownScenes* known = needle_->scenes(); known != nullptr && known->newest() != nullptr)
     facts.parameters = *known->newest();
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(open_case_->the_case, run, facts));

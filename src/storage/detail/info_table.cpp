@@ -42,6 +42,7 @@ template <class Info, class Visitor>
 void visit_added_info(Info& info, Visitor&& visit) {
   visit("task_toml", info.task_toml);
   visit("device_preset", info.device_preset);
+  visit("level", info.level);
 }
 
 template <class Field>

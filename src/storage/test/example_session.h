@@ -27,6 +27,7 @@ inline SessionInfo example_info() {
   info.force_model = "insertion";
   info.seed = 0x8000000000000001ULL;
   info.rate_hz = 1000.0;
+  info.level = "exam";
   info.needle = "biopsy-18g";
   info.device = "virtual";
   info.tissue_table_toml = "[tissues]\nliver = 1\n";

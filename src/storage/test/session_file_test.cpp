@@ -67,6 +67,7 @@ TEST(SessionFile, GivesTheCaseBack) {
   EXPECT_EQ(info.force_model, expected.force_model);
   EXPECT_EQ(info.seed, expected.seed);
   EXPECT_EQ(info.rate_hz, expected.rate_hz);
+  EXPECT_EQ(info.level, expected.level);
   EXPECT_EQ(info.needle, expected.needle);
   EXPECT_EQ(info.device, expected.device);
   EXPECT_EQ(info.tissue_table_toml, expected.tissue_table_toml);
