@@ -36,4 +36,20 @@ std::vector<Vec3> needle_shaft(const TickSample& sample, double length_mm) {
   return points;
 }
 
+std::vector<Vec3> shaft_outside(std::vector<Vec3> shaft_P, double inside_mm) {
+  if (!(inside_mm > 0.0)) return shaft_P;
+  while (shaft_P.size() >= 2) {
+    const Vec3 tip_P = shaft_P.back();
+    shaft_P.pop_back();
+    const Vec3 piece_P = tip_P - shaft_P.back();
+    const double length_mm = piece_P.norm();
+    if (inside_mm < length_mm) {
+      shaft_P.push_back(tip_P - inside_mm / length_mm * piece_P);
+      return shaft_P;
+    }
+    inside_mm -= length_mm;
+  }
+  return {};
+}
+
 }  // namespace trocar

@@ -13,4 +13,7 @@ namespace trocar {
 std::vector<Vec3> needle_shaft(const TickSample& sample, double length_mm);
 inline constexpr double kShaftBends_mm = 0.05;
 
+/// The shaft without its last `inside_mm`, what is in the body; empty: all of it is.
+std::vector<Vec3> shaft_outside(std::vector<Vec3> shaft_P, double inside_mm);
+
 }  // namespace trocar

@@ -72,6 +72,8 @@ AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatC
       is_led_(is_moved_by_hand_targets(choice.needle_device)),
       keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
+  page_.desk().show_help(choice_.difficulty);  // the replay of the last attempt showed all
+  page_.desk().set_tip_hidden(is_tip_hidden());
   connect_panel();
   ForcePlot& plot = page_.desk().forces();
   plot.clear();
@@ -90,6 +92,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatC
 
 AttemptControl::~AttemptControl() {
   page_.desk().view_3d().set_interrupt({});
+  page_.desk().set_tip_hidden(false);
   gestures_.unwatch();
 }
 
@@ -228,17 +231,24 @@ void AttemptControl::advance(double dt_s) {
       points.push_back({point.time_s, point.depth_mm, point.force_n});
     plot.append(points);
   }
-  for (const AttemptEvent& event : attempt_.take_events()) {
-    if (is_exam() && event.kind == EventKind::kEnter) continue;  // of the segmentation, not felt
-    page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(to_qt(event.text)),
-                               is_risk(open_->the_case, event));
-    if (event.kind == EventKind::kPuncture)
-      plot.add_event(event.depth_mm, event.time_s, to_qt(structure_words(event.name)));
-  }
+  look_at_events();
   look_at_shot();
   said_s_ -= dt_s;
   show_tools(dt_s);
   show_panel();
+}
+
+/// In an exam the hand feels layers give way; their names, and what the segmentation says, would be the solution.
+void AttemptControl::look_at_events() {
+  for (const AttemptEvent& event : attempt_.take_events()) {
+    const bool is_shot = event.kind == EventKind::kNone;
+    if (is_exam() && !is_shot) continue;
+    const QString text = is_exam() ? tr("the gun was fired") : to_qt(event.text);
+    page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(text),
+                               is_risk(open_->the_case, event));
+    if (event.kind == EventKind::kPuncture)
+      page_.desk().forces().add_event(event.depth_mm, event.time_s, to_qt(structure_words(event.name)));
+  }
 }
 
 void AttemptControl::look_at_shot() {
@@ -255,6 +265,7 @@ void AttemptControl::show_tools(double dt_s) {
   if (needle.is_known) {
     tools.shaft_P = needle.shaft_P;
     tools.X_PN = needle.X_PN;
+    tools.inside_mm = needle.depth_mm;
     // Before the skin the slices show what the needle looks at.
     constexpr double kAhead_mm = 40.0;
     tools.focus_P =
@@ -287,7 +298,7 @@ void AttemptControl::show_panel() {
   figures.tissue = is_exam() ? QStringLiteral("–") : to_qt(view_.needle.tissue);
   const bool is_starting = view_.phase == AttemptPhase::kStarting || view_.phase == AttemptPhase::kFinishing;
   figures.hint = is_starting ? to_qt(view_.progress) : hint();
-  figures.depth_mm = view_.needle.depth_mm;
+  if (!is_tip_hidden()) figures.depth_mm = view_.needle.depth_mm;
   if (choice_.difficulty == Difficulty::kGuided && view_.needle.is_known) figures.to_target_mm = distance_mm();
   figures.force_n = std::abs(view_.needle.resistance_n);
   figures.lag_mm = std::abs(view_.needle.lag_mm);
@@ -299,21 +310,29 @@ void AttemptControl::show_panel() {
   page_.puncture().show_figures(figures);
 }
 
-QVariantMap AttemptControl::facts() const {
+/// Where tools are against tissue and plan: an exam tells scripts no more of it than the window shows.
+QVariantMap AttemptControl::solution_facts() const {
   QVariantMap facts;
-  facts[QStringLiteral("phase")] = QString::fromLatin1(to_string(view_.phase));
   facts[QStringLiteral("depth_mm")] = view_.needle.depth_mm;
   facts[QStringLiteral("distance_mm")] = distance_mm();
   facts[QStringLiteral("entry_from_plan_mm")] = (needle_.entry_P() - open_->the_case.plan.line_P.a).norm();
+  facts[QStringLiteral("probe_from_plan_mm")] = (view_.probe.X_PT.p() - open_->X_PT_start.p()).norm();
+  facts[QStringLiteral("tissue")] = to_qt(view_.needle.tissue);
+  facts[QStringLiteral("core_target_mm")] = view_.shot ? view_.shot->core.target_mm : 0.0;
+  return facts;
+}
+
+QVariantMap AttemptControl::facts() const {
+  QVariantMap facts;
+  if (!is_exam()) facts = solution_facts();
+  facts[QStringLiteral("phase")] = QString::fromLatin1(to_string(view_.phase));
+  facts[QStringLiteral("level")] = QString::fromLatin1(name_of(choice_.difficulty));
   facts[QStringLiteral("force_n")] = view_.needle.resistance_n;
   facts[QStringLiteral("lag_mm")] = view_.needle.lag_mm;
-  facts[QStringLiteral("tissue")] = to_qt(view_.needle.tissue);
   facts[QStringLiteral("hint")] = hint();
   facts[QStringLiteral("has_fired")] = view_.has_fired;
-  facts[QStringLiteral("core_target_mm")] = view_.shot ? view_.shot->core.target_mm : 0.0;
   facts[QStringLiteral("probe_pressed_mm")] = view_.probe.pressed_mm;
   facts[QStringLiteral("probe_force_n")] = view_.probe.contact_n;
-  facts[QStringLiteral("probe_from_plan_mm")] = (view_.probe.X_PT.p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("is_asking")] = page_.puncture().is_asking();
   facts[QStringLiteral("restarts")] = view_.servers[0].restarts;
   facts[QStringLiteral("session")] = to_qt(attempt_.session_path().string());

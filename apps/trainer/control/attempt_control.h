@@ -55,11 +55,15 @@ class AttemptControl : public QObject {
   QString hint() const;
   void show_tools(double dt_s);
   void show_panel();
+  void look_at_events();
   void look_at_shot();
   bool is_free(HandTool tool) const;
+  /// The needle in the body is to be found by ultrasound and feel: nothing tells where its tip is.
+  bool is_tip_hidden() const noexcept { return is_exam() && !open_->the_case.task.exam_shows_needle; }
   bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
   ViewScale scale_of_3d() const;
   ViewScale scale_of_ultrasound() const;
+  QVariantMap solution_facts() const;
   double distance_mm() const;
 
   std::shared_ptr<const OpenCase> open_;

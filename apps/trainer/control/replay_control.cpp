@@ -71,6 +71,12 @@ QStringList notes_of(const AttemptReplay& replay, const std::vector<std::string>
   return notes;
 }
 
+QString level_title(const std::string& name) {
+  for (const Difficulty level : {Difficulty::kGuided, Difficulty::kAssisted, Difficulty::kExam})
+    if (name == name_of(level)) return ReplayControl::tr(title_of(level));
+  return {};
+}
+
 }  // namespace
 
 ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCase> open, WorkPage& page,
@@ -85,6 +91,7 @@ ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCas
   if (const auto& moment = replay_.worst())
     worst = tr("Worst moment: %1, after %2 s").arg(to_qt(moment->text)).arg(moment->time_s, 0, 'f', 1);
   page_.feedback().show_outcome(replay_.outcome(), worst);
+  page_.feedback().show_level(level_title(replay_.session().info.level));
   page_.feedback().show_core(replay_.shot() ? &*replay_.shot() : nullptr);
   page_.feedback().show_notes(notes_of(replay_, warnings));
   page_.desk().show_help(Difficulty::kGuided);  // afterwards everybody may see the expert's path
@@ -198,6 +205,7 @@ Status ReplayControl::save_report(const std::filesystem::path& file) const {
 
 QVariantMap ReplayControl::facts() const {
   QVariantMap facts;
+  facts[QStringLiteral("level")] = to_qt(replay_.session().info.level);
   facts[QStringLiteral("score")] = replay_.outcome().score;
   facts[QStringLiteral("not_scored")] = to_qt(replay_.outcome().not_scored);
   facts[QStringLiteral("target_reached")] = replay_.outcome().target_reached;

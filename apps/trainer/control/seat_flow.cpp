@@ -102,10 +102,10 @@ void SeatFlow::connect_pages() {
   });
   ParameterPanel& parameters = window_.work().parameters();
   connect(&parameters, &ParameterPanel::parameters_changed, this, [this](const QStringList& changed) {
-    if (attempt_) attempt_->attempt().set_parameters(texts(changed));
+    if (attempt_ && !is_exam()) attempt_->attempt().set_parameters(texts(changed));
   });
   connect(&parameters, &ParameterPanel::model_changed, this, [this](const QString& model) {
-    if (attempt_) attempt_->attempt().set_parameters({"force_model=" + to_std(model)});
+    if (attempt_ && !is_exam()) attempt_->attempt().set_parameters({"force_model=" + to_std(model)});
   });
 }
 
@@ -116,6 +116,7 @@ void SeatFlow::go_to_start() {
   replay_.reset();
   window_.strip().show_forces(false, false);
   window_.strip().show_servers({});
+  window_.work().set_parameters_locked(false);
   window_.show_banner({});
   window_.show_page(QStringLiteral("start"));
   can_record();
@@ -128,6 +129,8 @@ void SeatFlow::go_to_case_builder() {
 
 void SeatFlow::open(const SeatChoice& choice) {
   choice_ = choice;
+  // What a cut-off exam was is seen again, not sat again.
+  window_.work().set_parameters_locked(is_exam() && !cut_off_);
   opened_.reset();
   retired_.retire(
       std::exchange(opening_, open_case(case_choice(choice), OpenOptions{open_, user_cache_folder() / "patients"})));
@@ -193,7 +196,8 @@ void SeatFlow::begin_attempt() {
   options.session = state_folder_ / "sessions" / to_std(name + QStringLiteral(".trocar"));
   options.device_needle = choice_.needle_device;
   options.device_probe = "mouse";  // of the simulated devices the one with room for a whole body
-  options.force_model = to_std(window_.work().parameters().preview().model());
+  options.level = name_of(choice_.difficulty);
+  if (!is_exam()) options.force_model = to_std(window_.work().parameters().preview().model());
   options.is_guided = choice_.difficulty != Difficulty::kExam;
   if (choice_.difficulty != Difficulty::kGuided) {
     // Where the plan begins would be the solution.
@@ -204,6 +208,7 @@ void SeatFlow::begin_attempt() {
     return window_.show_banner(sentence_of(kept.error()), BannerKind::kError);
   replay_.reset();
   recoveries_ = 0;
+  window_.work().set_parameters_locked(is_exam());
   window_.work().show_puncture();
   window_.show_page(QStringLiteral("puncture"));
   attempt_ = std::make_unique<AttemptControl>(open_, choice_, std::move(options), servers_, window_.work());
@@ -217,7 +222,7 @@ void SeatFlow::begin_attempt() {
   connect(attempt_.get(), &AttemptControl::gun_fired, this, [this] {
     if (window_.has_sound()) speaker_.play(gun_click_);
   });
-  if (const QStringList changed = window_.work().parameters().settings(); !changed.isEmpty())
+  if (const QStringList changed = window_.work().parameters().settings(); !changed.isEmpty() && !is_exam())
     attempt_->attempt().set_parameters(texts(changed));
 }
 
@@ -282,6 +287,7 @@ void SeatFlow::show_replay(Result<AttemptReplay> replay) {
   if (!replay) return window_.show_banner(sentence_of(replay.error()), BannerKind::kError);
   window_.show_banner(to_qt(std::exchange(cut_short_, {})));
   replay_ = std::make_unique<ReplayControl>(*std::move(replay), open_, window_.work(), std::exchange(warnings_, {}));
+  window_.work().set_parameters_locked(false);
   window_.work().show_feedback();
   window_.show_page(QStringLiteral("feedback"));
   window_.work().time_line().setFocus();
@@ -370,7 +376,8 @@ QVariantMap SeatFlow::facts() const {
   if (attempt_) facts.insert(attempt_->facts());
   if (replay_) facts.insert(replay_->facts());
   // What the ultrasound picture on the screen was made at.
-  if (const auto picture = window_.work().desk().ultrasound().picture(); picture && open_)
+  const bool tells_plan = !attempt_ || !is_exam();
+  if (const auto picture = window_.work().desk().ultrasound().picture(); picture && open_ && tells_plan)
     facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("frame_p50_ms")] = quantile(frame_ms_, 0.5);
   facts[QStringLiteral("frame_p99_ms")] = quantile(frame_ms_, 0.99);

@@ -53,6 +53,7 @@ class SeatFlow : public QObject {
   void frame();
   void look_at_opening();
   void show_opened();
+  bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
   bool can_record();
   void look_at_attempt();
   void tell_of_servers(const AttemptView& view);

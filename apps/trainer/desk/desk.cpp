@@ -15,6 +15,7 @@
 #include "shell/theme.h"
 #include "shell/trainer_application.h"
 #include "slices/slice_geometry.h"
+#include "station/needle_shaft.h"
 #include "ultrasound/scan_annotation.h"
 #include "views/force_plot.h"
 #include "views/patient_view.h"
@@ -90,6 +91,17 @@ bool are_same(const ToolsShown& a, const ToolsShown& b) {
          (!a.X_PT || are_near(*a.X_PT, *b.X_PT)) && are_same(a.hand_P, b.hand_P) && are_same(a.stylet_P, b.stylet_P) &&
          are_same(a.core_P, b.core_P) && a.focus_P.has_value() == b.focus_P.has_value() &&
          (!a.focus_P || (*a.focus_P - *b.focus_P).norm() < kUnseen_mm);
+}
+
+/// What an eye beside the patient sees of the tools: the needle up to the skin.
+ToolsShown seen_from_outside(ToolsShown tools) {
+  tools.shaft_P = shaft_outside(std::move(tools.shaft_P), tools.inside_mm);
+  if (!tools.shaft_P.empty()) tools.X_PN = Pose(tools.X_PN.R(), tools.shaft_P.back());
+  if (tools.inside_mm > 0.0) tools.hand_P.reset();
+  tools.stylet_P.reset();
+  tools.core_P.reset();
+  tools.focus_P.reset();
+  return tools;
 }
 
 NeedleModel model_of(const Needle& needle) {
@@ -197,6 +209,7 @@ void Desk::begin_case(std::shared_ptr<const OpenCase> open) {
   open_ = std::move(open);
   has_side_patient_ = false;
   picture_number_ = 0;
+  tools_.reset();
   shown_ = {};
   parts_shown_ = 0;
 }
@@ -244,19 +257,31 @@ void Desk::show_help(Difficulty difficulty) {
   structures_->refresh();
 }
 
+void Desk::set_tip_hidden(bool is_hidden) {
+  is_tip_hidden_ = is_hidden;
+  tools_.reset();
+  forces_->set_depth_shown(!is_hidden);
+  for (SliceView* slice : slices_) {
+    slice->set_frame_at_skin(is_hidden);
+    slice->set_needle({});
+    if (is_hidden) slice->set_focus(body_box(*open_->the_case.patient).center());
+  }
+}
+
 void Desk::show_tools(const ToolsShown& tools) {
   for (PatientView* view : {view_3d_, side_}) view->set_tools_moving(tools.are_moving);
   are_moving_ = tools.are_moving;
-  if (are_same(tools, shown_)) return;
-  shown_ = tools;
+  if (tools_ && are_same(tools, *tools_)) return;
+  tools_ = tools;
+  shown_ = is_tip_hidden_ ? seen_from_outside(tools) : tools;
   has_whole_picture_ = false;
   const Needle& needle = open_->the_case.needle;
   for (PatientView* view : {view_3d_, side_}) {
-    view->set_needle(tools.shaft_P, needle.outer_diameter_mm, model_of(needle));
-    view->set_hand(tools.hand_P);
-    view->set_shot(tools.stylet_P, tools.core_P);
+    view->set_needle(shown_.shaft_P, needle.outer_diameter_mm, model_of(needle));
+    view->set_hand(shown_.hand_P);
+    view->set_shot(shown_.stylet_P, shown_.core_P);
   }
-  for (SliceMarks* marks : marks_) marks->set_shot(tools.stylet_P, tools.core_P);
+  for (SliceMarks* marks : marks_) marks->set_shot(shown_.stylet_P, shown_.core_P);
   stale_slices_ = (1U << slices_.size()) - 1U;
   std::vector<Vec3> metal_P = tools.shaft_P;  // the stylet echoes, too
   if (tools.stylet_P) metal_P.push_back(tools.stylet_P->b);
@@ -295,10 +320,8 @@ void Desk::follow_with_slices() {
     const unsigned bit = 1U << s;
     if ((stale_slices_ & bit) == 0 || (are_moving_ && (frame_ + s) % 2 != 0)) continue;
     stale_slices_ &= ~bit;
-    if (!shown_.shaft_P.empty()) {
-      slices_[s]->set_needle(shown_.shaft_P);
-      slices_[s]->set_needle_frame(shown_.X_PN);
-    }
+    slices_[s]->set_needle(shown_.shaft_P);
+    if (!shown_.shaft_P.empty()) slices_[s]->set_needle_frame(shown_.X_PN);
     if (shown_.focus_P) slices_[s]->set_focus(*shown_.focus_P);
   }
 }

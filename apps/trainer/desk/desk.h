@@ -36,6 +36,7 @@ struct ToolsShown {
   std::optional<Segment> core_P;    ///< Where a core was taken.
   std::optional<Pose> X_PT;         ///< Transducer.
   std::optional<Vec3> focus_P;      ///< What the slices go through.
+  double inside_mm = 0.0;           ///< Length of the needle in the body.
   bool are_moving = false;
 };
 
@@ -52,6 +53,9 @@ class Desk : public QMainWindow {
   bool show_part();
   /// Of the plan, in all views; the structure panel and the keys of the views show no more than that.
   void show_help(Difficulty difficulty);
+  /// Hidden: slices and 3D show the needle up to the skin alone, slices do not follow it, and the plot tells no depth.
+  /// The ultrasound shows what a scanner shows. The cross-hairs are put into the middle of the body.
+  void set_tip_hidden(bool is_hidden);
   void show_tools(const ToolsShown& tools);
   /// Draws what has changed; once a frame. `now_s`: any steady clock.
   void draw(double now_s);
@@ -106,7 +110,9 @@ class Desk : public QMainWindow {
   std::map<QString, QSizeF> shares_;  ///< Of the desk's size, by view; of a hidden view the last one.
   bool is_arranging_ = false;         ///< The program moves the docks, not a person.
   std::shared_ptr<const OpenCase> open_;
-  ToolsShown shown_;
+  bool is_tip_hidden_ = false;
+  std::optional<ToolsShown> tools_;   ///< Of the last frame.
+  ToolsShown shown_;                  ///< What slices and 3D may show of them.
   std::uint64_t picture_number_ = 0;  ///< Of the one in the 3D views.
   bool has_whole_picture_ = false;    ///< It is in full detail.
   bool are_moving_ = false;

@@ -181,8 +181,18 @@ QWidget* StartPage::make_help_choice() {
   for (const DeviceChoice& device : kDevices)
     device_->addItem(QString::fromUtf8(device.title), QString::fromLatin1(device.spec));
   content->addLayout(form);
+  connect(difficulty_, QOverload<int, bool>::of(&QButtonGroup::buttonToggled), this, [this] { lock_for_exam(); });
   content->addStretch();
   return card;
+}
+
+void StartPage::lock_for_exam() {
+  const bool is_exam = difficulty_->checkedId() == static_cast<int>(Difficulty::kExam);
+  for (QComboBox* box : {needle_, model_}) {
+    box->setEnabled(!is_exam);
+    box->setToolTip(is_exam ? tr("An exam takes the task's own") : QString());
+    if (is_exam) box->setCurrentIndex(0);
+  }
 }
 
 QWidget* StartPage::make_recovery() {
@@ -272,16 +282,19 @@ void StartPage::choose(const SeatChoice& choice) {
   select(*needle_, choice.needle);
   select(*model_, choice.force_model);
   select(*device_, choice.needle_device);
+  lock_for_exam();
 }
 
 SeatChoice StartPage::choice() const {
   SeatChoice choice;
   if (const auto* task = tasks_->currentItem()) choice.task = to_std(task->data(kSource).toString());
   if (const auto* patient = patients_->currentItem()) choice.patient = to_std(patient->data(kSource).toString());
-  choice.needle = to_std(needle_->currentData().toString());
-  choice.force_model = to_std(model_->currentData().toString());
-  choice.needle_device = to_std(device_->currentData().toString());
   choice.difficulty = static_cast<Difficulty>(difficulty_->checkedId());
+  if (choice.difficulty != Difficulty::kExam) {  // an exam takes the task's own
+    choice.needle = to_std(needle_->currentData().toString());
+    choice.force_model = to_std(model_->currentData().toString());
+  }
+  choice.needle_device = to_std(device_->currentData().toString());
   return choice;
 }
 

@@ -38,6 +38,7 @@ class StartPage : public QWidget {
   QWidget* make_patients();
   QWidget* make_help_choice();
   QWidget* make_recovery();
+  void lock_for_exam();
   void fill_patients();
   void open_folder();
   void tell_patient();

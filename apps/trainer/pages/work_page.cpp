@@ -80,9 +80,17 @@ void WorkPage::show_feedback() {
   time_line_->show();
 }
 
-void WorkPage::toggle_parameters() {
-  parameters_->setVisible(!are_parameters_shown());
+void WorkPage::set_parameters_locked(bool are_locked) {
+  are_parameters_locked_ = are_locked;
+  parameters_->setEnabled(!are_locked);
+  if (are_locked) parameters_->hide();
   fit();
+}
+
+bool WorkPage::toggle_parameters() {
+  if (!are_parameters_locked_) parameters_->setVisible(!are_parameters_shown());
+  fit();
+  return !are_parameters_locked_;
 }
 
 bool WorkPage::are_parameters_shown() const {

@@ -29,8 +29,12 @@ class WorkPage : public QWidget {
 
   void show_puncture();
   void show_feedback();
-  void toggle_parameters();
+  /// Locked: the parameter panel is closed and stays so, and changes nothing.
+  void set_parameters_locked(bool are_locked);
+  /// False: it is locked.
+  bool toggle_parameters();
   bool are_parameters_shown() const;
+  bool are_parameters_locked() const noexcept { return are_parameters_locked_; }
   /// False: a wrapped text in a panel must not claim height from the bars above and below the page.
   bool hasHeightForWidth() const override { return false; }
 
@@ -46,6 +50,7 @@ class WorkPage : public QWidget {
   PuncturePanel* puncture_ = nullptr;
   FeedbackPanel* feedback_ = nullptr;
   ParameterPanel* parameters_ = nullptr;
+  bool are_parameters_locked_ = false;
   TimeLine* time_line_ = nullptr;
 };
 

@@ -63,6 +63,10 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   content->setSpacing(10);
   dial_ = new ScoreDial;
   content->addWidget(dial_, 0, Qt::AlignHCenter);
+  level_ = make_label({}, "badge");
+  level_->setObjectName(QStringLiteral("level"));
+  level_->hide();
+  content->addWidget(level_, 0, Qt::AlignHCenter);
   verdict_ = make_label({}, "heading");
   verdict_->setObjectName(QStringLiteral("verdict"));
   verdict_->setAlignment(Qt::AlignHCenter);
@@ -157,6 +161,11 @@ void FeedbackPanel::show_outcome(const Outcome& outcome, const QString& worst_mo
   worst_->setVisible(!worst_moment.isEmpty());
   worst_button_->setEnabled(!worst_moment.isEmpty());
   scroll_->verticalScrollBar()->setValue(0);
+}
+
+void FeedbackPanel::show_level(const QString& level) {
+  level_->setText(level);
+  level_->setVisible(!level.isEmpty());
 }
 
 void FeedbackPanel::show_core(const GunShot* shot) {

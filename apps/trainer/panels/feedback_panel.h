@@ -29,6 +29,8 @@ class FeedbackPanel : public QWidget {
 
   /// From the top. `worst_moment`: empty where there is none.
   void show_outcome(const Outcome& outcome, const QString& worst_moment);
+  /// The level of help that it was made at, beside the score; empty: not known.
+  void show_level(const QString& level);
   /// Its picture; null: the gun was not fired.
   void show_core(const GunShot* shot);
   /// What happened to the attempt beside the trainee: warnings, interruptions, changed parameters. A line each.
@@ -47,6 +49,7 @@ class FeedbackPanel : public QWidget {
   QScrollArea* scroll_ = nullptr;
   QPushButton* worst_button_ = nullptr;
   ScoreDial* dial_ = nullptr;
+  QLabel* level_ = nullptr;
   QLabel* verdict_ = nullptr;
   QGridLayout* parts_ = nullptr;
   QLabel* hints_ = nullptr;

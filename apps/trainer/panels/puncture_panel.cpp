@@ -199,7 +199,7 @@ void PuncturePanel::begin(double most_force_n, bool can_aim) {
 void PuncturePanel::show_figures(const PunctureFigures& figures) {
   set_text(*phase_, figures.phase);
   set_text(*tissue_, figures.tissue);
-  set_text(*depth_, tr("%1 mm").arg(figures.depth_mm, 0, 'f', 1));
+  set_text(*depth_, figures.depth_mm ? tr("%1 mm").arg(*figures.depth_mm, 0, 'f', 1) : QStringLiteral("–"));
   set_text(*target_, figures.to_target_mm ? tr("%1 mm").arg(*figures.to_target_mm, 0, 'f', 1) : QStringLiteral("–"));
   set_text(*time_, tr("%1 s").arg(figures.since_contact_s, 0, 'f', 0));
   set_text(*hint_, figures.hint);

@@ -27,7 +27,7 @@ struct PunctureFigures {
   QString phase;
   QString tissue;
   QString hint;
-  double depth_mm = 0.0;
+  std::optional<double> depth_mm;      ///< Nothing: not to be told.
   std::optional<double> to_target_mm;  ///< Only where help is given.
   double force_n = 0.0;
   double lag_mm = 0.0;           ///< Of the tool behind the hand.

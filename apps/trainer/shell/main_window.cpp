@@ -107,7 +107,11 @@ QWidget* MainWindow::make_top_bar() {
                                    QStringLiteral("Ctrl+B"));
   auto* keys = make_tool_button("open-keys", tr("Keys"), tr("All keys and mouse actions"), QStringLiteral("F1"));
   for (QToolButton* button : {views, tissues, builder, keys}) row->addWidget(button);
-  connect(tissues, &QToolButton::clicked, this, [this] { work_->toggle_parameters(); });
+  connect(tissues, &QToolButton::clicked, this, [this] {
+    if (!work_->toggle_parameters())
+      tell(tr("The Tissues panel is closed in an exam: it tells path, depths and forces, and changes the task."),
+           BannerKind::kWarning);
+  });
   connect(builder, &QToolButton::clicked, this,
           [this] { page_ == QLatin1String("case-builder") ? flow_->go_to_start() : flow_->go_to_case_builder(); });
   connect(keys, &QToolButton::clicked, this, [this] { show_keys(this); });
@@ -188,6 +192,7 @@ QVariantMap MainWindow::facts() const {
   QVariantMap facts = flow_->facts();
   facts[QStringLiteral("page")] = page_;
   facts[QStringLiteral("banner")] = banner_->isVisible() ? banner_->text() : QString();
+  facts[QStringLiteral("is_tissues_open")] = work_->are_parameters_shown();
   facts[QStringLiteral("layout")] = work_->desk().layout_name();
   facts[QStringLiteral("columns")] = width();
   facts[QStringLiteral("rows")] = height();

@@ -2,6 +2,11 @@
 
 namespace trocar::trainer {
 
+const char* name_of(Difficulty difficulty) noexcept {
+  constexpr std::array kNames{"guided", "assisted", "exam"};
+  return kNames[static_cast<std::size_t>(difficulty)];
+}
+
 const char* title_of(Difficulty difficulty) noexcept {
   constexpr std::array kTitles{"Guided", "Assisted", "Exam"};
   return kTitles[static_cast<std::size_t>(difficulty)];

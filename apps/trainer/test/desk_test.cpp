@@ -148,5 +148,52 @@ TEST_F(DeskLayoutTest, TheMenuBringsAViewForwardFromBehindAnothersTab) {
   EXPECT_TRUE(ultrasound->isHidden());
 }
 
+/// A straight needle on the planned path, so deep.
+ToolsShown needle_at(double inside_mm) {
+  const Segment& path_P = open_abdomen()->the_case.plan.line_P;
+  ToolsShown tools;
+  const Vec3 tip_P = path_P.a + inside_mm * path_P.direction();
+  tools.X_PN = needle_pose(tip_P, path_P.direction());
+  tools.shaft_P = {path_P.a - 100.0 * path_P.direction(), tip_P};
+  tools.focus_P = tip_P;
+  tools.inside_mm = inside_mm;
+  return tools;
+}
+
+TEST(Desk, WithTheTipHiddenSlicesTellNothingOfItsDepth) {
+  Desk desk;
+  desk.resize(1000, 700);
+  desk.choose_layout(QStringLiteral("Slices"));
+  desk.show();
+  desk.show_case(open_abdomen());
+  desk.show_help(Difficulty::kExam);
+  QCoreApplication::processEvents();
+  auto* axial = desk.findChild<SliceView*>(QStringLiteral("slice-axial"));
+  const Vec3 entry_P = open_abdomen()->the_case.plan.line_P.a;
+  const auto show = [&](double inside_mm) {
+    desk.show_tools(needle_at(inside_mm));
+    desk.draw(0.0);
+  };
+  desk.set_tip_hidden(true);
+  const Vec3 middle_P = axial->focus();
+  for (const char* name : {"slice-axial", "slice-along-needle", "slice-across-needle"}) {
+    auto* slice = desk.findChild<SliceView*>(QString::fromLatin1(name));
+    show(20.0);
+    axial->set_focus(entry_P);  // where the needle is
+    const QImage shallow = slice->grab().toImage();
+    desk.show_tools(needle_at(50.0));
+    desk.draw(0.0);
+    EXPECT_EQ(slice->grab().toImage(), shallow) << name;
+    axial->set_focus(middle_P);
+  }
+  EXPECT_EQ(axial->focus(), middle_P);
+  desk.set_tip_hidden(false);
+  show(20.0);
+  const QImage shallow = axial->grab().toImage();
+  show(50.0);
+  EXPECT_NE(axial->grab().toImage(), shallow);
+  EXPECT_EQ(axial->focus(), *needle_at(50.0).focus_P);
+}
+
 }  // namespace
 }  // namespace trocar::trainer

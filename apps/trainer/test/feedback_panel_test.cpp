@@ -58,6 +58,16 @@ TEST(FeedbackPanelTest, AFilesNameInANoteCutsNothingOff) {
   EXPECT_LE(area.widget()->width(), area.viewport()->width());
 }
 
+TEST(FeedbackPanelTest, TheLevelStandsBesideTheScore) {
+  FeedbackPanel panel;
+  panel.show_level(QStringLiteral("Exam"));
+  auto* level = panel.findChild<QLabel*>(QStringLiteral("level"));
+  EXPECT_EQ(level->text(), QStringLiteral("Exam"));
+  EXPECT_FALSE(level->isHidden());
+  panel.show_level({});
+  EXPECT_TRUE(level->isHidden());
+}
+
 TEST(FeedbackPanelTest, SaysWhyAnAttemptIsNotScored) {
   FeedbackPanel panel;
   Outcome outcome;

@@ -206,5 +206,25 @@ TEST(ForcePlot, CanBeLookedAt) {
   for (const auto& plot : plots) EXPECT_EQ(image.pixelColor(plot->pos() + QPoint(1, 1)), theme().panel);
 }
 
+TEST(ForcePlot, TellsNoDepthWhereItIsNotShown) {
+  Shown shown;
+  shown.plot.append(insertion(5.0));
+  shown.plot.add_event(20.0, 2.0, QStringLiteral("shot"));
+  EXPECT_TRUE(shown.plot.figures_text().contains(QStringLiteral("mm")));
+  shown.plot.set_depth_shown(false);
+  EXPECT_EQ(shown.plot.axis(), ForcePlot::Axis::kTime);
+  EXPECT_FALSE(shown.plot.figures_text().contains(QStringLiteral("mm")));
+  press_key(shown.plot, Qt::Key_T);
+  shown.plot.findChild<QToolButton*>(QStringLiteral("force-plot-axis"))->click();
+  shown.plot.set_axis(ForcePlot::Axis::kDepth);
+  EXPECT_EQ(shown.plot.axis(), ForcePlot::Axis::kTime);
+  const QRectF area = shown.plot.frame().area;
+  const QPointF at = shown.plot.frame().to_point({2.0, 0.0});
+  EXPECT_FALSE(shown.plot.text_at(at.toPoint()).contains(QStringLiteral("mm")));
+  EXPECT_FALSE(shown.plot.text_at(area.center().toPoint()).contains(QStringLiteral("mm")));
+  shown.plot.set_depth_shown(true);
+  EXPECT_EQ(shown.plot.axis(), ForcePlot::Axis::kDepth);
+}
+
 }  // namespace
 }  // namespace trocar::trainer

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <QAbstractButton>
 #include <QListWidget>
 #include <QPushButton>
 #include <QSettings>
@@ -31,7 +32,7 @@ TEST_F(StartPageTest, BeginsWithTheLiverBiopsyOfTheEmbeddedPatient) {
 
 TEST_F(StartPageTest, RemembersWhatWasStarted) {
   SeatChoice wanted;
-  wanted.difficulty = Difficulty::kExam;
+  wanted.difficulty = Difficulty::kAssisted;
   wanted.force_model = "proxy";
   wanted.needle_device = "gamepad";
   {
@@ -40,9 +41,24 @@ TEST_F(StartPageTest, RemembersWhatWasStarted) {
     page.findChild<QPushButton*>(QStringLiteral("start"))->click();
   }
   const StartPage again;
-  EXPECT_EQ(again.choice().difficulty, Difficulty::kExam);
+  EXPECT_EQ(again.choice().difficulty, Difficulty::kAssisted);
   EXPECT_EQ(again.choice().force_model, "proxy");
   EXPECT_EQ(again.choice().needle_device, "gamepad");
+}
+
+TEST_F(StartPageTest, AnExamTakesTheTasksOwnNeedleAndForces) {
+  SeatChoice wanted;
+  wanted.needle = "biopsy-16g";
+  wanted.force_model = "proxy";
+  StartPage page;
+  page.choose(wanted);
+  page.findChild<QAbstractButton*>(QStringLiteral("difficulty-exam"))->click();
+  EXPECT_FALSE(page.findChild<QWidget*>(QStringLiteral("needle"))->isEnabled());
+  EXPECT_FALSE(page.findChild<QWidget*>(QStringLiteral("force-model"))->isEnabled());
+  EXPECT_EQ(page.choice().needle, "");
+  EXPECT_EQ(page.choice().force_model, "");
+  page.findChild<QAbstractButton*>(QStringLiteral("difficulty-guided"))->click();
+  EXPECT_TRUE(page.findChild<QWidget*>(QStringLiteral("force-model"))->isEnabled());
 }
 
 TEST_F(StartPageTest, OpenedFoldersStayInTheList) {

@@ -107,6 +107,13 @@ TEST_F(WindowTest, AnAttemptIsNotEndedUnasked) {
   expect_played(play("end_asked.txt"));
 }
 
+TEST_F(WindowTest, AnExamTellsNothingAndIsNotAltered) {
+  const Played played = play("exam.txt");
+  expect_played(played);
+  for (const char* fact : {"depth_mm: ", "distance_mm: ", "tissue: ", "picture_from_plan_mm: ", "entry_from_plan_mm: "})
+    EXPECT_TRUE(played.output.contains(QString::fromLatin1(fact) + QLatin1Char('\n'))) << fact;
+}
+
 TEST_F(WindowTest, AFolderThatCannotBeWrittenIsNamedAndNothingBegins) {
   const QString script = write("unwritable.txt",
                                "expect banner has \"/dev/null/state/sessions\"\nexpect banner has \"--state\"\n"

@@ -118,7 +118,16 @@ void ForcePlot::set_cursor(std::optional<double> time_s) {
   update();
 }
 
+void ForcePlot::set_depth_shown(bool is_shown) {
+  if (is_shown == is_depth_shown_) return;
+  is_depth_shown_ = is_shown;
+  axis_button_->setEnabled(is_shown);
+  axis_button_->setToolTip(is_shown ? tr("Against depth or time (T)") : tr("The depth is not shown in an exam"));
+  set_axis(is_shown ? Axis::kDepth : Axis::kTime);
+}
+
 void ForcePlot::set_axis(Axis axis) {
+  if (axis == Axis::kDepth && !is_depth_shown_) return;
   axis_ = axis;
   axis_button_->setText(axis == Axis::kDepth ? tr("depth") : tr("time"));
   change_ground();
@@ -291,9 +300,13 @@ QString ForcePlot::force_text() const {
   return now ? QStringLiteral("%1 N").arg(now->resistance_n, 0, 'f', 2) : QString();
 }
 
+QString ForcePlot::figures_text() const {
+  return is_depth_shown_ ? force_text() + QStringLiteral(" · ") + depth_text() : force_text();
+}
+
 QString ForcePlot::depth_text() const {
   const auto now = current();
-  return now ? QStringLiteral("%1 mm").arg(now->depth_mm, 0, 'f', 0) : QString();
+  return now && is_depth_shown_ ? QStringLiteral("%1 mm").arg(now->depth_mm, 0, 'f', 0) : QString();
 }
 
 void ForcePlot::paint_strip(QPainter& painter, QRectF room) const {
@@ -308,8 +321,7 @@ void ForcePlot::paint_strip(QPainter& painter, QRectF room) const {
     return true;
   };
   put(tr("Resistance"), true, t.text, false);
-  if (current() && !put(force_text() + QStringLiteral(" · ") + depth_text(), true, t.accent, true))
-    put(force_text(), true, t.accent, true);
+  if (current() && !put(figures_text(), true, t.accent, true)) put(force_text(), true, t.accent, true);
   if (axis_ == Axis::kTime) return;
   if (!reference_.empty()) put(QStringLiteral("— ") + reference_name_, false, t.path, true);
   if (!predicted_.empty()) put(QStringLiteral("- - ") + predicted_name_, false, t.dim, true);
@@ -332,11 +344,10 @@ QString ForcePlot::text_at(const QPoint& position) const {
   const PlotFrame plot = frame();
   if (!plot.area.adjusted(0.0, 0.0, 0.0, band_height()).contains(position)) return toolTip();
   for (const Event& event : events_)
-    if (std::abs(plot.to_point({place_of(event), 0.0}).x() - position.x()) < kNear)
-      return QStringLiteral("%1 · %2 mm · %3 s")
-          .arg(event.text)
-          .arg(event.depth_mm, 0, 'f', 1)
-          .arg(event.time_s, 0, 'f', 1);
+    if (std::abs(plot.to_point({place_of(event), 0.0}).x() - position.x()) < kNear) {
+      const QString depth = is_depth_shown_ ? QStringLiteral("%1 mm · ").arg(event.depth_mm, 0, 'f', 1) : QString();
+      return QStringLiteral("%1 · %2%3 s").arg(event.text, depth).arg(event.time_s, 0, 'f', 1);
+    }
   const QPointF value = plot.to_value(position);
   const QString place = QStringLiteral("%1 %2").arg(value.x(), 0, 'f', 1).arg(axis_ == Axis::kDepth ? "mm" : "s");
   if (axis_ == Axis::kDepth)

@@ -56,15 +56,22 @@ class ForcePlot : public QWidget {
   /// Replay: the curve up to this time is bright, the rest faint. Nothing: the newest point is the current one.
   void set_cursor(std::optional<double> time_s);
   void set_axis(Axis axis);
+  /// Without the depth there is the axis of time alone, and nothing tells how deep the tip is.
+  void set_depth_shown(bool is_shown);
 
   Axis axis() const noexcept { return axis_; }
   /// Where values lie in the widget now.
   PlotFrame frame() const;
+  /// Force, and depth where that is shown; as in the strip.
+  QString figures_text() const;
   /// The point that the mark stands on.
   std::optional<ForcePoint> current() const;
 
   /// Name, force and axis; a dock may take it into its title.
   ViewStrip& strip() noexcept { return *strip_; }
+
+  /// What the tool tip says at a place.
+  QString text_at(const QPoint& position) const;
 
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override;
@@ -96,8 +103,8 @@ class ForcePlot : public QWidget {
   void paint_strip(QPainter& painter, QRectF room) const;
   QString force_text() const;
   QString depth_text() const;
-  QString text_at(const QPoint& position) const;
 
+  bool is_depth_shown_ = true;
   Axis axis_ = Axis::kDepth;
   std::vector<Band> bands_;
   std::vector<QPointF> predicted_, reference_;

@@ -305,6 +305,11 @@ void SliceView::paint_overlay(QPainter& painter) const {
   painter.restore();
 }
 
+void SliceView::set_frame_at_skin(bool is_at_skin) {
+  is_frame_at_skin_ = is_at_skin;
+  update();
+}
+
 QString SliceView::place_text() const {
   // Signs of P as letters: LPS counts to the left, to the back and to the head.
   const auto beyond = [](double mm, const char* positive, const char* negative) {
@@ -319,7 +324,8 @@ QString SliceView::place_text() const {
     case SliceKind::kSagittal:
       return beyond(focus_P_.x(), "L", "R");
     default:
-      return offset_mm_ == 0.0 ? tr("at the tip") : beyond(offset_mm_, "+", "−");
+      if (offset_mm_ == 0.0) return is_frame_at_skin_ ? tr("at the skin") : tr("at the tip");
+      return beyond(offset_mm_, "+", "−");
   }
 }
 

@@ -49,6 +49,8 @@ class SliceView : public QWidget {
   void set_needle(std::span<const Vec3> shaft_P);
   /// The pose that a needle's planes are aligned with.
   void set_needle_frame(const Pose& X_PN);
+  /// Whether that frame is the tip's, or that of the needle at the skin; said in the strip.
+  void set_frame_at_skin(bool is_at_skin);
   /// The expert path, from the skin to the target.
   void set_path(const std::optional<Segment>& path_P);
   void set_entry_zone(const std::optional<EntryZone>& zone);
@@ -132,6 +134,7 @@ class SliceView : public QWidget {
   Box body_P_;
   Vec3 focus_P_ = Vec3::Zero();
   Pose X_PN_;
+  bool is_frame_at_skin_ = false;
   double offset_mm_ = 0.0;  ///< Of a needle's plane from the tip, along the plane's normal.
   std::vector<Vec3> shaft_P_;
   std::optional<Segment> path_P_;

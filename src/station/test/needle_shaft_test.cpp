@@ -26,6 +26,18 @@ double length_of(const std::vector<Vec3>& points) {
 
 const Pose kHeld = needle_pose({10.0, 20.0, 30.0}, Vec3(0.3, 1.0, -0.2).normalized());
 
+TEST(NeedleShaft, OutsideIsWhatIsLeftOfItsLength) {
+  const std::vector<Vec3> shaft_P{Vec3(0, 0, 0), Vec3(0, 0, 100), Vec3(0, 30, 140)};
+  EXPECT_EQ(shaft_outside(shaft_P, 0.0), shaft_P);
+  const std::vector<Vec3> bent_P = shaft_outside(shaft_P, 25.0);
+  ASSERT_EQ(bent_P.size(), 3u);
+  EXPECT_NEAR((bent_P.back() - Vec3(0, 15, 120)).norm(), 0.0, 1e-9);
+  const std::vector<Vec3> straight_P = shaft_outside(shaft_P, 90.0);
+  ASSERT_EQ(straight_P.size(), 2u);
+  EXPECT_NEAR((straight_P.back() - Vec3(0, 0, 60)).norm(), 0.0, 1e-9);
+  EXPECT_TRUE(shaft_outside(shaft_P, 150.0).empty());
+}
+
 TEST(NeedleShaft, IsStraightFromHubToTipWhileNothingBendsIt) {
   const std::vector<Vec3> shaft = needle_shaft(sample_at(kHeld), kLength_mm);
   ASSERT_EQ(shaft.size(), 2u);
