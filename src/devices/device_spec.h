@@ -31,6 +31,9 @@ struct DeviceOptions {
   std::vector<Pose> replay;
   double replay_rate_hz = 1000.0;
   bool has_weight_compensation = true;
+  /// Somebody holds the device where its calibration wants it (stylus in the inkwell, arm in the reset position): it is
+  /// calibrated there while it is opened. Of "openhaptics" alone; the others calibrate themselves.
+  bool is_calibrating = false;
 };
 
 /// Opens the device. Errors say what is missing and how to get it: no vendor library, no device, no service.

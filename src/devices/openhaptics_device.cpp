@@ -90,7 +90,7 @@ class OpenHapticsDevice final : public HapticDevice {
   Status reconnect() override {
     const std::string cause = connection_ ? connection_->last_error() : std::string();
     connection_.reset();
-    auto opened = hd::Connection::open(options_.device, options_.clock_s);
+    auto opened = hd::Connection::open(options_.device, options_.clock_s, false);
     if (!opened) {
       Error error = std::move(opened).error();
       if (!cause.empty()) error.what += fmt::format("; it was lost by: {}", cause);
@@ -117,7 +117,8 @@ class OpenHapticsDevice final : public HapticDevice {
 Result<std::unique_ptr<HapticDevice>> open_openhaptics_device(const OpenHapticsOptions& wanted) {
   OpenHapticsOptions options = wanted;
   if (options.clock_s == nullptr) options.clock_s = &steady_s;
-  TROCAR_TRY(std::unique_ptr<hd::Connection> connection, hd::Connection::open(options.device, options.clock_s));
+  TROCAR_TRY(std::unique_ptr<hd::Connection> connection,
+             hd::Connection::open(options.device, options.clock_s, options.is_calibrating));
   const hd::Description& said = connection->description();
   if (options.preset.empty()) {
     TROCAR_TRY(options.preset, preset_of_model(said.model));
@@ -132,6 +133,7 @@ OpenedDevice open_openhaptics(const DeviceSpec& spec, const DeviceOptions& optio
   own.device = spec.argument;
   own.devices_file = options.devices_file;
   own.preset = options.preset;
+  own.is_calibrating = options.is_calibrating;
   return open_openhaptics_device(own);
 }
 

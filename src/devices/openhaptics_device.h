@@ -13,6 +13,8 @@ struct OpenHapticsOptions {
   std::string device;                  ///< Its name in the vendor's settings ("Left Device"); empty: the default one.
   std::filesystem::path devices_file;  ///< data/devices.toml
   std::string preset;                  ///< Row of it; empty: by the model that the device says.
+  /// Somebody holds it where its calibration wants it: calibrated anew while it is opened, encoder reset included.
+  bool is_calibrating = false;
   double (*clock_s)() noexcept = nullptr;  ///< Steady clock of the callback; nullptr: the system's.
 };
 

@@ -41,7 +41,8 @@ Mat3 R_HS() noexcept {
   return Vec3(1, -1, -1).asDiagonal();
 }
 
-Result<std::unique_ptr<Connection>> Connection::open(const std::string& device, double (*clock_s)() noexcept) {
+Result<std::unique_ptr<Connection>> Connection::open(const std::string& device, double (*clock_s)() noexcept,
+                                                     bool is_calibrating) {
   TROCAR_TRY(const Api api, load_api());
   if (is_in_use.exchange(true)) {
     return fail("OpenHaptics is in use in this program already", device, "give each device a server of its own");
@@ -50,11 +51,11 @@ Result<std::unique_ptr<Connection>> Connection::open(const std::string& device, 
   const ErrorInfo error = api.get_error();
   if (handle == kInvalidHandle || error.code != kSuccess) {
     is_in_use.store(false);
-    return fail(fmt::format("no OpenHaptics device: {}", words_of(api, error.code)),
-                device.empty() ? "default device" : device,
+    const std::string name = device.empty() ? "default device" : device;
+    return fail(fmt::format("no OpenHaptics device \"{}\": {}", name, words_of(api, error.code)), name,
                 "connect it, switch it on, and set it up under this name with the vendor's setup program");
   }
-  auto connection = std::unique_ptr<Connection>(new Connection(api, handle, clock_s));
+  auto connection = std::unique_ptr<Connection>(new Connection(api, handle, clock_s, is_calibrating));
   TROCAR_TRY_STATUS(connection->start());
   return connection;
 }
@@ -74,22 +75,24 @@ Status Connection::start() {
   return {};
 }
 
-/// Where the device can do it alone. An encoder reset is left to the vendor's program: it is only right while somebody
-/// holds the arm in its reset position.
+/// Where the device can do it alone, or somebody holds it where it must be for that: an encoder reset is only right
+/// while the arm is in its reset position.
 Status Connection::calibrate() {
   api_.get_integerv(kCalibrationStyle, &calibration_style_);
   api_.schedule_synchronous(&on_first_period, this, kHighestPriority);
   const bool can_update = (calibration_style_ & (kStyleAuto | kStyleInkwell)) != 0;
-  if (calibration_ == kCalibrationNeedsUpdate && can_update) {
+  if (is_calibrating_ || (calibration_ == kCalibrationNeedsUpdate && can_update)) {
     api_.schedule_synchronous(&on_calibration_update, this, kHighestPriority);
     api_.schedule_synchronous(&on_first_period, this, kHighestPriority);
   }
   TROCAR_TRY_STATUS(check("the device does not answer"));
   if (calibration_ == kCalibrationOk) return {};
-  return fail("the device is not calibrated", description_.model,
-              (calibration_style_ & kStyleInkwell) != 0
-                  ? "put the stylus into its inkwell, then open the device again"
-                  : "calibrate it with the vendor's diagnostic program, then open the device again");
+  return fail(
+      "the device is not calibrated", description_.model,
+      (calibration_style_ & kStyleInkwell) != 0
+          ? "put the stylus into its inkwell, then open the device again"
+          : "hold its arm in the reset position and calibrate it there (trocar-hapticd --test --calibrate, or Test "
+            "on the trainer's start page), or with the vendor's diagnostic program");
 }
 
 void Connection::describe() {
@@ -175,8 +178,11 @@ unsigned int Connection::on_first_period(void* connection) {
 
 unsigned int Connection::on_calibration_update(void* connection) {
   auto& self = *static_cast<Connection*>(connection);
-  const int style = (self.calibration_style_ & kStyleAuto) != 0 ? kStyleAuto : kStyleInkwell;
-  self.api_.update_calibration(static_cast<Enum>(style));
+  for (const int style : {kStyleAuto, kStyleInkwell, kStyleEncoderReset}) {
+    if ((self.calibration_style_ & style) == 0) continue;
+    self.api_.update_calibration(static_cast<Enum>(style));
+    break;
+  }
   return kCallbackDone;
 }
 

@@ -27,7 +27,9 @@ Mat3 R_HS() noexcept;
 /// answered with `handle_`; its end leaves the motors at zero and the device disabled.
 class Connection {
  public:
-  static Result<std::unique_ptr<Connection>> open(const std::string& device, double (*clock_s)() noexcept);
+  /// `is_calibrating`: somebody holds the device where its calibration wants it; see OpenHapticsOptions.
+  static Result<std::unique_ptr<Connection>> open(const std::string& device, double (*clock_s)() noexcept,
+                                                  bool is_calibrating);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -38,8 +40,8 @@ class Connection {
   std::string last_error() const;
 
  private:
-  Connection(const Api& api, Handle handle, double (*clock_s)() noexcept)
-      : api_(api), handle_(handle), clock_s_(clock_s) {}
+  Connection(const Api& api, Handle handle, double (*clock_s)() noexcept, bool is_calibrating)
+      : api_(api), handle_(handle), clock_s_(clock_s), is_calibrating_(is_calibrating) {}
   Status start();
   Status calibrate();
   void describe();
@@ -58,6 +60,7 @@ class Connection {
   const Api api_;
   const Handle handle_;
   double (*const clock_s_)() noexcept;
+  const bool is_calibrating_;
   Description description_;
   ServoSample first_;
   Enum calibration_ = kCalibrationOk;

@@ -41,8 +41,9 @@ class OpenHaptics : public ::testing::Test {
     vendor->reset();
   }
 
-  Status open() {
+  Status open(bool is_calibrating = false) {
     OpenHapticsOptions options;
+    options.is_calibrating = is_calibrating;
     options.devices_file = testing::source_dir() / "data/devices.toml";
     options.clock_s = &callback_clock_s;
     auto opened = open_openhaptics_device(options);
@@ -316,7 +317,7 @@ TEST_F(OpenHaptics, MissingDeviceIsOneClearError) {
   vendor->set_present(false);
   const Status status = open();
   ASSERT_FALSE(status);
-  EXPECT_NE(status.error().text().find("no OpenHaptics device"), std::string::npos);
+  EXPECT_NE(status.error().text().find("no OpenHaptics device \"default device\""), std::string::npos);
   EXPECT_NE(status.error().text().find("connect"), std::string::npos);
 }
 
@@ -331,6 +332,15 @@ TEST_F(OpenHaptics, UncalibratedDeviceIsToldAndNotMoved) {
   EXPECT_NE(status.error().text().find("diagnostic"), std::string::npos) << status.error().text();
   vendor->set_calibration(hd::kCalibrationNeedsUpdate, hd::kStyleInkwell);
   open_or_fail();
+}
+
+TEST_F(OpenHaptics, CalibratesWhereSomebodyHoldsTheArmForIt) {
+  vendor->set_calibration(hd::kCalibrationNeedsManualInput, hd::kStyleEncoderReset);
+  ASSERT_FALSE(open());
+  vendor->hold_in_reset_position(true);
+  const Status status = open(true);
+  EXPECT_TRUE(status) << status.error().text();
+  EXPECT_EQ(vendor->violations(), "");
 }
 
 TEST_F(OpenHaptics, SecondDeviceInOneProgramIsRefused) {

@@ -1,7 +1,12 @@
 #include "devices/test/standin/hd_simulated_device.h"
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <limits>
 
 namespace trocar::testing {
@@ -15,7 +20,12 @@ constexpr double kPeriod_s = 0.001;
 hd::Handle HdSimulatedDevice::init(const char* name) {
   const std::lock_guard lock(mutex_);
   violations_.require(!state_.is_open, "hdInitDevice of a device that is open");
-  const bool is_known = name == nullptr || std::string(name) == "Default Device" || std::string(name) == "Left Device";
+  bool is_known = name == nullptr || std::string(name) == "Default Device" || std::string(name) == "Left Device";
+  if (std::getenv(kHdVariable) != nullptr) {
+    controls_ = find_controls(name == nullptr ? "Default Device" : name);
+    is_known = controls_ != nullptr;
+    if (is_known) take_controls();
+  }
   if (!state_.is_present || !is_known) {
     state_.errors.push_back(hd::kCommError);
     return hd::kInvalidHandle;
@@ -23,6 +33,40 @@ hd::Handle HdSimulatedDevice::init(const char* name) {
   state_.is_open = true;
   state_.errors.clear();
   return kHandle;
+}
+
+HdControls* HdSimulatedDevice::find_controls(const char* name) {
+  const std::string path = std::string(std::getenv(kHdVariable)) + "/" + name;
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0) return nullptr;
+  void* memory = ::mmap(nullptr, sizeof(HdControls), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  ::close(file);
+  if (memory == MAP_FAILED) return nullptr;
+  auto* controls = static_cast<HdControls*>(memory);
+  ++controls->openings;
+  state_.model = controls->model.data();
+  state_.output_dof = controls->output_dof;
+  state_.force_n = controls->force_n;
+  state_.continuous_n = controls->continuous_n;
+  state_.stiffness_n_per_mm = controls->stiffness_n_per_mm;
+  state_.calibration = controls->calibration;
+  state_.calibration_style = controls->calibration_style;
+  state_.is_free = true;
+  return controls;
+}
+
+/// The hand and the cable as the test has them now, and what the motors did.
+void HdSimulatedDevice::take_controls() {
+  state_.is_present = controls_->is_present != 0;
+  if (!state_.is_present) cut_motors();
+  state_.is_in_reset_position = controls_->is_in_reset_position != 0;
+  state_.buttons = controls_->buttons;
+  controls_->calibration = state_.calibration;
+  SimulatedArm& arm = state_.arm;
+  if (arm.force_n.norm() > controls_->strongest_n) controls_->strongest_n = arm.force_n.norm();
+  arm.v_mm_per_s.setZero();
+  for (int i = 0; i < 3; ++i) arm.p_mm[i] = controls_->p_mm[static_cast<std::size_t>(i)];
+  for (int i = 0; i < 9; ++i) arm.R(i / 3, i % 3) = controls_->R[static_cast<std::size_t>(i)];
 }
 
 void HdSimulatedDevice::disable_device(hd::Handle handle) {
@@ -165,8 +209,9 @@ void HdSimulatedDevice::update_calibration(hd::Enum style) {
   const std::lock_guard lock(mutex_);
   violations_.require(state_.is_open && is_on_scheduler(), "hdUpdateCalibration outside the scheduler's thread");
   violations_.require((static_cast<int>(style) & state_.calibration_style) != 0, "an unknown style of calibration");
-  violations_.require(style != hd::kStyleEncoderReset, "an encoder reset that nobody asked for");
-  if (state_.calibration == hd::kCalibrationNeedsUpdate) state_.calibration = hd::kCalibrationOk;
+  const bool is_reset = style == hd::kStyleEncoderReset;
+  violations_.require(!is_reset || state_.is_in_reset_position, "an encoder reset that nobody asked for");
+  if (state_.calibration == hd::kCalibrationNeedsUpdate || is_reset) state_.calibration = hd::kCalibrationOk;
 }
 
 void HdSimulatedDevice::start() {
@@ -254,6 +299,7 @@ void HdSimulatedDevice::run_period(std::unique_lock<std::mutex>& lock) {
     }
   }
   state_.arm.advance(kPeriod_s);
+  if (controls_ != nullptr) take_controls();
 }
 
 }  // namespace trocar::testing

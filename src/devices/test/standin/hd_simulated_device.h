@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "devices/detail/hd_api.h"
+#include "devices/test/hd_stand_ins.h"
 #include "devices/test/standin/hd_stand_in.h"
 #include "devices/test/standin/violations.h"
 
@@ -48,6 +49,10 @@ class HdSimulatedDevice final : public HdStandIn {
     const std::lock_guard lock(mutex_);
     state_.calibration = status;
     state_.calibration_style = style;
+  }
+  void hold_in_reset_position(bool is_held) override {
+    const std::lock_guard lock(mutex_);
+    state_.is_in_reset_position = is_held;
   }
   void set_present(bool is_present) override {
     const std::lock_guard lock(mutex_);
@@ -134,6 +139,7 @@ class HdSimulatedDevice final : public HdStandIn {
     unsigned calibration = hd::kCalibrationOk;
     int calibration_style = hd::kStyleInkwell;
     int buttons = 0;
+    bool is_in_reset_position = false;
     bool is_present = true;
     bool is_open = false;
     bool is_nan = false;
@@ -152,6 +158,9 @@ class HdSimulatedDevice final : public HdStandIn {
     state_.arm.force_n.setZero();
     state_.arm.torque_nmm.setZero();
   }
+  /// Of the device with that name, where a test beside this program has made some; null: there are none such.
+  HdControls* find_controls(const char* name);
+  void take_controls();
   bool is_on_scheduler() const { return std::this_thread::get_id() == thread_id_; }
   void require_frame(const char* rule) {
     violations_.require(state_.is_open && state_.is_in_frame && is_on_scheduler(), rule);
@@ -164,6 +173,7 @@ class HdSimulatedDevice final : public HdStandIn {
   std::vector<HdJob> jobs_;
   std::thread thread_;
   std::thread::id thread_id_;
+  HdControls* controls_ = nullptr;
   bool is_running_ = false;
   int granted_ = 0;
   hd::SchedulerHandle next_handle_ = 1;

@@ -18,6 +18,8 @@ class HdStandIn {
   virtual void set_nominal(double force_n, double continuous_n, double stiffness_n_per_mm, double torque_nmm) = 0;
   virtual void set_workspace(const Vec3& least_mm, const Vec3& greatest_mm) = 0;
   virtual void set_calibration(unsigned status, int style) = 0;
+  /// Somebody holds the arm in its reset position: an encoder reset is right now.
+  virtual void hold_in_reset_position(bool is_held) = 0;
   virtual void set_present(bool is_present) = 0;  ///< false: unplugged, before or while it is open.
   virtual void set_pose(const Mat3& R, const Vec3& p_mm) = 0;
   virtual void set_buttons(int bits) = 0;
