@@ -19,6 +19,7 @@
 #include "program_end.h"
 #include "server/haptic_server.h"
 #include "storage/session_file.h"
+#include "test_mode.h"
 
 namespace {
 
@@ -33,7 +34,7 @@ struct Arguments {
   double rate_hz = 1000.0;
   int priority = 80;
   std::string key_file, allow_file, flight_folder = ".";
-  bool is_verbose = false;
+  bool is_verbose = false, is_test = false, is_calibrating = false;
 };
 
 /// Patients for the server; one that was opened here already is not opened twice.
@@ -76,6 +77,7 @@ Result<std::unique_ptr<HapticDevice>> open_named_device(const Arguments& argumen
   DeviceOptions options;
   options.devices_file = data_dir() / "devices.toml";
   options.preset = arguments.preset;
+  options.is_calibrating = arguments.is_calibrating;
   for (const std::string& text : arguments.faults) {
     TROCAR_TRY(const ScheduledFault fault, parse_fault(text));
     options.faults.push_back(fault);
@@ -176,6 +178,11 @@ void print_report(const ServerReport& report) {
 
 Status serve(Arguments& arguments) {
   if (data_dir().empty()) return fail("the data folder was not found", "data/", "set TROCAR_DATA_DIR to it");
+  if (arguments.is_test) {
+    TROCAR_TRY(const std::unique_ptr<HapticDevice> device, open_named_device(arguments));
+    test_device(*device, arguments.rate_hz);
+    return {};
+  }
   ServerOptions options;
   TROCAR_TRY(options.endpoint,
              parse_endpoint(arguments.endpoint.empty() ? default_endpoint(arguments.tool) : arguments.endpoint));
@@ -243,6 +250,12 @@ void add_options(CLI::App& program, Arguments& a) {
           "Break the device on schedule, to see what happens: KIND[:AMOUNT]@FROM_S[+FOR_S], as nan@2+0.5; kinds "
           "jitter, dropped, nan, stuck, jump, disconnect, slow_write, slow_read")
       ->allow_extra_args(false);
+  program.add_flag(
+      "--test", a.is_test,
+      "Serve nobody: print the device's pose 30 times a second; the line \"push\" on standard input gives a "
+      "small force upwards, its end ends the test");
+  program.add_flag("--calibrate", a.is_calibrating,
+                   "OpenHaptics: calibrate first; hold the stylus in its inkwell, or the arm in its reset position");
   program.add_flag("-v,--verbose", a.is_verbose, "Print details to stderr");
   program.footer(
       "It runs until it is interrupted, keeps its device safe whatever its clients do, and gives no force before a "

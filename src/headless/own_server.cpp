@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <optional>
-#include <string_view>
 
 namespace trocar {
 namespace {
@@ -19,8 +17,9 @@ std::string last_line(const std::filesystem::path& log) {
   return last;
 }
 
-/// What the server itself says is wrong, where its last line is an error: "error: what — where — what to do".
-std::optional<Error> own_error(std::string_view line) {
+}  // namespace
+
+std::optional<Error> error_of_line(std::string_view line) {
   constexpr std::string_view kMark = "error: ", kBetween = " — ";
   if (!line.starts_with(kMark)) return std::nullopt;
   line.remove_prefix(kMark.size());
@@ -30,8 +29,6 @@ std::optional<Error> own_error(std::string_view line) {
   const std::size_t begin = first + kBetween.size();
   return Error{what, first == last ? std::string() : std::string(line.substr(begin, last - begin)), advice};
 }
-
-}  // namespace
 
 Result<OwnServer> OwnServer::start(const OwnServerOptions& options) {
   OwnServer server;
@@ -60,7 +57,7 @@ Status OwnServer::restart() {
 Status OwnServer::check() {
   if (process_ && process_->is_running()) return {};
   const std::string last = last_line(*folder_ / kLog);
-  if (auto told = own_error(last)) return tl::unexpected(*std::move(told));
+  if (auto told = error_of_line(last)) return tl::unexpected(*std::move(told));
   return fail(fmt::format("the server of the {} {}", options_.tool,
                           process_ ? process_->how_it_ended() : "could not be started again"),
               "trocar-hapticd", last);

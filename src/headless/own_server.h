@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/temporary_folder.h"
 #include "link/server_process.h"
@@ -17,6 +19,10 @@ struct OwnServerOptions {
   int priority = 80;  ///< Of SCHED_FIFO; 0: ordinary scheduling.
   std::filesystem::path flight_folder = ".";
 };
+
+/// The error that a server's last line says, as a program ends with one ("error: what — where — what to do"); none:
+/// the line is no error.
+std::optional<Error> error_of_line(std::string_view line);
 
 /// A haptic server of our own, on a socket in a folder of its own. Ends with this.
 class OwnServer {
