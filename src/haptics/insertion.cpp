@@ -274,8 +274,10 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   state.device_velocity_mm_per_s = balance.v_device_mm_per_s;
   state.device_tip_P = device_tip_P;
   update_contact(state, path, ahead);
-  if (path.is_open)
-    step.entered = move_tip(path, std::max(0.0, state.loading != kNoLayer ? std::min(s_mm, state.surface_mm) : s_mm));
+  if (path.is_open) {
+    const double rest_mm = state.loading != kNoLayer ? std::min(s_mm, state.surface_mm) : s_mm;
+    step.entered = move_tip(path, scene, std::max(0.0, rest_mm), state.loading);
+  }
   state.phase = next_phase(state, path);
 
   step.phase = state.phase;

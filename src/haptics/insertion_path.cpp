@@ -42,8 +42,11 @@ void open_path(InsertionPath& path, std::uint8_t skin_layer) noexcept {
   path.channel.forget_bins();  // the line may have turned while the skin was loaded
 }
 
-EnteredLabels move_tip(InsertionPath& path, double rest_mm) noexcept {
+EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double rest_mm, std::uint8_t loading) noexcept {
   EnteredLabels entered;
+  const auto is_held_back = [&](std::size_t bin) {
+    return loading != kNoLayer && scene.tissues[path.channel.tissue[bin]].layer == loading;
+  };
   std::size_t count = 0;
   const double low = std::min(path.rest_mm, rest_mm);
   const double high = std::max(path.rest_mm, rest_mm);
@@ -57,14 +60,16 @@ EnteredLabels move_tip(InsertionPath& path, double rest_mm) noexcept {
       inserted = std::max(0.0, is_forward ? inserted + length : inserted - length);
     }
     const std::uint8_t label = path.channel.label[index];
-    if (!is_forward || label == path.label) continue;
+    // A tip that rests on a bin's border is not in the bin beyond it.
+    if (!is_forward || length <= 0.0 || label == path.label || is_held_back(index)) continue;
     path.label = label;
     if (label != 0 && count < entered.labels.size())
       entered.labels[count++] = label;
     else if (label != 0)
       entered.is_overflown = true;
   }
-  if (!is_forward) path.label = path.channel.label[static_cast<std::size_t>(bin_of(rest_mm))];
+  const auto last = static_cast<std::size_t>(bin_of(rest_mm));
+  if (rest_mm < path.rest_mm && !is_held_back(last)) path.label = path.channel.label[last];
   path.travel_mm += high - low;
   path.rest_mm = rest_mm;
   path.channel.cut_to_mm = std::max(path.channel.cut_to_mm, rest_mm);
@@ -109,7 +114,7 @@ bool resume_inside(InsertionPath& path, const HapticScene& scene, const Vec3& ti
     const std::uint8_t layer = scene.tissues[path.channel.tissue[static_cast<std::size_t>(bin)]].layer;
     if (layer != kNoLayer) path.channel.pierce(layer);
   }
-  move_tip(path, depth_mm);
+  move_tip(path, scene, depth_mm, kNoLayer);
   return true;
 }
 

@@ -38,8 +38,10 @@ void start_channel(InsertionPath& path, const Vec3& origin_P, const Vec3& direct
 /// Opens the path at the skin, on the channel's line. Real-time safe.
 void open_path(InsertionPath& path, std::uint8_t skin_layer) noexcept;
 
-/// Moves the tip in the resting anatomy: shaft lengths, labels entered, depth cut. Real-time safe.
-EnteredLabels move_tip(InsertionPath& path, double rest_mm) noexcept;
+/// Moves the tip in the resting anatomy: shaft lengths, labels entered, depth cut. A label is entered when the tip is
+/// beyond its border and `loading`, the layer that the tip indents (kNoLayer: none), is not the one over it: a liver is
+/// entered after its capsule gave way. Real-time safe.
+EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double rest_mm, std::uint8_t loading) noexcept;
 
 /// The needle is out: the hole is remembered, the path closed. Real-time safe.
 void leave_body(InsertionPath& path) noexcept;

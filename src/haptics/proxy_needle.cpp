@@ -242,7 +242,7 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
   axial.velocity_mm_per_s = state.velocity_mm_per_s = (moved.balance.needle_mm - state.needle_mm) / dt_s;
   state.needle_mm = moved.balance.needle_mm;
   if (is_at_wall) axial.displacement_mm = std::max(0.0, on_tip_n) / state.tissue_n_per_mm;
-  axial.entered = move_tip(path, std::max(0.0, moved.front_mm));
+  axial.entered = move_tip(path, scene, std::max(0.0, moved.front_mm), state.wall);
   axial.depth_mm = std::max(0.0, state.needle_mm);
   axial.tissue = path.rest_mm > 0.0 ? path.channel.tissue[static_cast<std::size_t>(bin_of(path.rest_mm))] : 0;
   axial.phase = state.phase = next_phase(state, is_at_wall);

@@ -40,6 +40,25 @@ INSTANTIATE_TEST_SUITE_P(Speeds, PuncturePeaks,
                          ::testing::Values(Drive{2, 1000}, Drive{10, 1000}, Drive{50, 1000}, Drive{10, 4000},
                                            Drive{50, 4000}, Drive{10, 250}));
 
+TEST(Insertion, TissueIsEnteredAfterItsLayerGaveWay) {
+  using enum EventKind;
+  const std::vector<std::pair<EventKind, int>> in_order{{kPuncture, 0},    {kEnter, kFat}, {kPuncture, 1},
+                                                        {kEnter, kMuscle}, {kPuncture, 2}, {kEnter, kLiver}};
+  for (const double speed_mm_per_s : {2.0, 10.0, 50.0}) {
+    Driver driver(make_scene(liver_way()));
+    EXPECT_EQ(ways_in(driver.move(60.0, speed_mm_per_s)), in_order);
+  }
+  // A muscle so near below the skin that the needle has passed its resting surface when the skin gives way.
+  Driver driver(make_scene({{0, kFat}, {3, kMuscle}, {24, kLiver}}));
+  EXPECT_EQ(ways_in(driver.move(60.0, 10.0)), in_order);
+  // Pulled back a little before the capsule gives way, then on.
+  Driver again(make_scene(liver_way()));
+  auto samples = again.move(25.0, 10.0);
+  EXPECT_EQ(ways_in(samples).size(), 4U);
+  samples = joined(joined(samples, again.move(20.0, 10.0)), again.move(60.0, 10.0));
+  EXPECT_EQ(ways_in(samples), in_order);
+}
+
 TEST(Insertion, PeaksAreExactForATremblingHand) {
   for (const double phase : {0.0, 0.7, 1.4, 2.1, 2.8}) {
     Driver driver(make_scene(liver_way()));

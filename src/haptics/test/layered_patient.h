@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -156,6 +157,18 @@ inline std::vector<int> punctures(const std::vector<TickSample>& samples) {
     }
   }
   return layers;
+}
+
+/// Layers that gave way and labels that were entered, in order.
+inline std::vector<std::pair<EventKind, int>> ways_in(const std::vector<TickSample>& samples) {
+  std::vector<std::pair<EventKind, int>> ways;
+  for (const TickSample& sample : samples) {
+    for (const TickEvent& event : sample.events) {
+      if (event.kind == EventKind::kPuncture || event.kind == EventKind::kEnter)
+        ways.emplace_back(event.kind, event.id);
+    }
+  }
+  return ways;
 }
 
 inline std::vector<TickSample> joined(std::vector<TickSample> a, const std::vector<TickSample>& b) {

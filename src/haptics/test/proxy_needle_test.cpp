@@ -43,6 +43,15 @@ TEST_P(ProxySpeeds, WallsGiveWayAtTheirPunctureForceAndInOrder) {
   }
 }
 
+TEST(ProxyNeedle, TissueIsEnteredAfterItsWallGaveWay) {
+  using enum EventKind;
+  Driver driver(make_scene(liver_way(), ForceModel::kProxy));
+  EXPECT_EQ(
+      ways_in(driver.move(60.0, 10.0)),
+      (std::vector<std::pair<EventKind, int>>{
+          {kPuncture, kSkinLayer}, {kEnter, kFat}, {kEnter, kMuscle}, {kPuncture, kCapsuleLayer}, {kEnter, kLiver}}));
+}
+
 TEST(ProxyNeedle, DropsToTheResistanceInsideAfterAWall) {
   Driver driver(make_scene(liver_way(), ForceModel::kProxy));
   const auto samples = driver.move(60.0, 5.0);
