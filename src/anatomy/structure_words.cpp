@@ -1,8 +1,31 @@
 #include "anatomy/structure_words.h"
 
 #include <algorithm>
+#include <array>
 
 namespace trocar {
+namespace {
+
+struct LayerWords {
+  std::string_view layer, words;
+};
+constexpr std::array kLayers{LayerWords{"muscle", "muscle fascia"}, LayerWords{"vessel", "vessel wall"},
+                             LayerWords{"bowel", "bowel wall"}, LayerWords{"bile_duct", "bile duct wall"}};
+
+bool is_digit(char c) noexcept {
+  return c >= '0' && c <= '9';
+}
+
+/// Takes the number at the front off, its leading zeros left out.
+std::string_view take_number(std::string_view& text) noexcept {
+  const auto end = static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), is_digit) - text.begin());
+  std::string_view number = text.substr(0, end);
+  text.remove_prefix(end);
+  number.remove_prefix(std::min(number.find_first_not_of('0'), number.size()));
+  return number;
+}
+
+}  // namespace
 
 std::string structure_words(std::string_view name) {
   std::string side;
@@ -18,6 +41,29 @@ std::string structure_words(std::string_view name) {
   }
   if (side.empty() || rest.empty()) return side + rest;
   return side + ' ' + rest;
+}
+
+std::string layer_words(std::string_view layer) {
+  for (const LayerWords& known : kLayers)
+    if (known.layer == layer) return std::string(known.words);
+  return structure_words(layer);
+}
+
+bool is_name_before(std::string_view a, std::string_view b) noexcept {
+  const std::string_view whole_a = a, whole_b = b;
+  while (!a.empty() && !b.empty()) {
+    if (is_digit(a[0]) && is_digit(b[0])) {
+      const std::string_view n = take_number(a), m = take_number(b);
+      if (n.size() != m.size()) return n.size() < m.size();
+      if (n != m) return n < m;
+    } else {
+      if (a[0] != b[0]) return a[0] < b[0];
+      a.remove_prefix(1);
+      b.remove_prefix(1);
+    }
+  }
+  if (a.empty() != b.empty()) return a.empty();
+  return whole_a < whole_b;  // "rib_05" and "rib_5"
 }
 
 }  // namespace trocar

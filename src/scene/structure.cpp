@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <tuple>
 
+#include "anatomy/structure_words.h"
 #include "scene/detail/appearance.h"
 
 namespace trocar {
@@ -84,8 +84,8 @@ std::vector<StructureInfo> describe_structures(const LabelTable& table, const st
     structures.push_back(std::move(info));
   }
   std::sort(structures.begin(), structures.end(), [](const StructureInfo& a, const StructureInfo& b) {
-    return std::tuple(order_of(a.kind), std::string_view(a.name)) <
-           std::tuple(order_of(b.kind), std::string_view(b.name));
+    if (a.kind != b.kind) return order_of(a.kind) < order_of(b.kind);
+    return is_name_before(a.name, b.name);
   });
   return structures;
 }

@@ -16,7 +16,7 @@ std::optional<AttemptEvent> describe_event(const SessionInfo& info, const TickSa
       return std::nullopt;
     case EventKind::kPuncture:
       told.name = name_in(info.layer_names);
-      told.text = fmt::format("through the {} at {:.1f}\u00a0N", structure_words(told.name), tip_load_n(sample));
+      told.text = fmt::format("through the {} at {:.1f}\u00a0N", layer_words(told.name), tip_load_n(sample));
       return told;
     case EventKind::kEnter:
       told.name = name_in(info.label_names);

@@ -83,7 +83,7 @@ void AttemptReplay::find_moments() {
       if (event.kind == EventKind::kPuncture) {
         const std::string text = event_text(session_.info, event);
         moments_.push_back(
-            {sample.time_s, Kind::kPuncture, "through the " + structure_words(text.substr(text.find(':') + 1))});
+            {sample.time_s, Kind::kPuncture, "through the " + layer_words(text.substr(text.find(':') + 1))});
       }
       const Label* label = find_entered(*open_, event);
       if (label == nullptr) continue;

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "anatomy/direction_words.h"
 #include "anatomy/structure_words.h"
 #include "geometry/pose.h"
 
@@ -16,16 +16,6 @@ namespace {
 constexpr double kFarFromEntry_mm = 15.0;
 constexpr double kLookStep_mm = 0.5;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-/// Where a direction leads, as people say it beside a patient (LPS).
-const char* direction_word(const Vec3& way_P) {
-  int axis = 0;
-  way_P.cwiseAbs().maxCoeff(&axis);
-  constexpr std::array<std::array<const char*, 2>, 3> kWords{{{"to the patient's right", "to the patient's left"},
-                                                              {"to the patient's front", "to the patient's back"},
-                                                              {"to the patient's feet", "to the patient's head"}}};
-  return kWords[static_cast<std::size_t>(axis)][way_P[axis] > 0.0 ? 1 : 0];
-}
 
 /// What must not be touched, ahead of the tip.
 std::string danger_ahead(const Case& the_case, const TickSample& sample) {
@@ -45,13 +35,12 @@ std::string guide_outside(const Segment& path_P, const TickSample& sample) {
   const Vec3 to_entry = path_P.a - sample.tip_mm;
   const Vec3 axis = path_P.direction();
   const Vec3 across = to_entry - to_entry.dot(axis) * axis;
-  if (across.norm() > kFarFromEntry_mm)
-    return fmt::format("The entry is {:.0f} mm {}", across.norm(), direction_word(across));
+  if (across.norm() > kFarFromEntry_mm) return "The entry is " + direction_words(across, " mm");
   if (across.norm() > kGuideBeside_mm)
-    return fmt::format("{:.1f} mm beside the entry: move the tip {}", across.norm(), direction_word(across));
+    return fmt::format("{:.1f} mm beside the entry: move the tip {}", across.norm(), direction_words(across));
   const double angle_deg = kDegPerRad * angle_between_rad(sample.axis, axis);
   if (angle_deg > kGuideTilt_deg)
-    return fmt::format("{:.0f} degrees off the path: tilt the hub {}", angle_deg, direction_word(sample.axis - axis));
+    return fmt::format("{:.0f} degrees off the path: tilt the hub {}", angle_deg, direction_words(sample.axis - axis));
   return "On the path: advance";
 }
 
@@ -68,7 +57,7 @@ std::string guide_inside(const Case& the_case, const TickSample& sample) {
   if (beside_mm > kGuideBeside_mm) {
     const double turn_deg = kDegPerRad * angle_between_rad(sample.axis, to_target);
     return fmt::format("{:.1f} mm beside the path: tilt the tip {} by {:.0f} degrees", beside_mm,
-                       direction_word(across), std::min(turn_deg, 90.0));
+                       direction_words(across), std::min(turn_deg, 90.0));
   }
   return fmt::format("{:.0f} mm to the target", left_mm);
 }

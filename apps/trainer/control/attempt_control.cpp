@@ -247,7 +247,7 @@ void AttemptControl::look_at_events() {
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(text),
                                is_risk(open_->the_case, event));
     if (event.kind == EventKind::kPuncture)
-      page_.desk().forces().add_event(event.depth_mm, event.time_s, to_qt(structure_words(event.name)));
+      page_.desk().forces().add_event(event.depth_mm, event.time_s, to_qt(layer_words(event.name)));
   }
 }
 

@@ -83,14 +83,16 @@ void WorkPage::show_feedback() {
 void WorkPage::set_parameters_locked(bool are_locked) {
   are_parameters_locked_ = are_locked;
   parameters_->setEnabled(!are_locked);
-  if (are_locked) parameters_->hide();
+  if (!are_locked || !are_parameters_shown()) return;
+  parameters_->hide();
   fit();
 }
 
 bool WorkPage::toggle_parameters() {
-  if (!are_parameters_locked_) parameters_->setVisible(!are_parameters_shown());
+  if (are_parameters_locked_) return false;
+  parameters_->setVisible(!are_parameters_shown());
   fit();
-  return !are_parameters_locked_;
+  return true;
 }
 
 bool WorkPage::are_parameters_shown() const {

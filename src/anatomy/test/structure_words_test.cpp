@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 namespace trocar {
 namespace {
 
@@ -14,6 +18,24 @@ TEST(StructureWords, PutTheSideInFront) {
   EXPECT_EQ(structure_words("right"), "right");
   EXPECT_EQ(structure_words("a__b_"), "a b");
   EXPECT_EQ(structure_words(""), "");
+}
+
+TEST(StructureWords, SayWhatGivesWay) {
+  EXPECT_EQ(layer_words("muscle"), "muscle fascia");
+  EXPECT_EQ(layer_words("vessel"), "vessel wall");
+  EXPECT_EQ(layer_words("skin"), "skin");
+  EXPECT_EQ(layer_words("liver_capsule"), "liver capsule");
+}
+
+TEST(StructureWords, NumbersInNamesAreOrderedByTheirValue) {
+  std::vector<std::string> names{"rib_left_12",   "vertebrae_T9", "rib_left_5",
+                                 "rib",           "rib_left_10",  "rib_left_05",
+                                 "vertebrae_T10", "vertebrae_L1", "rib_left_99999999999999999999"};
+  std::sort(names.begin(), names.end(), is_name_before);
+  EXPECT_EQ(names, (std::vector<std::string>{"rib", "rib_left_05", "rib_left_5", "rib_left_10", "rib_left_12",
+                                             "rib_left_99999999999999999999", "vertebrae_L1", "vertebrae_T9",
+                                             "vertebrae_T10"}));
+  for (const std::string& a : names) EXPECT_FALSE(is_name_before(a, a)) << a;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "anatomy/structure_words.h"
 #include "report/detail/html.h"
 #include "report/session_analysis.h"
 #include "report/svg_plot.h"
@@ -55,7 +56,7 @@ std::vector<PlotBand> phase_bands(const Session& session) {
 std::vector<PlotLine> event_lines(const Session& session, bool are_named) {
   std::vector<PlotLine> lines;
   for (const Puncture& puncture : find_punctures(session))
-    lines.push_back({puncture.time_s, are_named ? words(puncture.layer) : std::string()});
+    lines.push_back({puncture.time_s, are_named ? words(layer_words(puncture.layer)) : std::string()});
   if (session.fired && *session.fired < session.samples.size())
     lines.push_back({session.samples[*session.fired].time_s, are_named ? "fired" : ""});
   std::sort(lines.begin(), lines.end(), [](const PlotLine& a, const PlotLine& b) { return a.x < b.x; });
@@ -129,7 +130,8 @@ std::string force_depth_figure(const Session& session) {
   for (const Puncture& puncture : punctures) {
     const Point2 peak(puncture.depth_mm, puncture.resistance_n);
     if (!peak.allFinite()) continue;
-    plot.markers.push_back({peak, fmt::format("{} {} N", words(puncture.layer), number_text(peak.y(), 2))});
+    plot.markers.push_back(
+        {peak, fmt::format("{} {} N", words(layer_words(puncture.layer)), number_text(peak.y(), 2))});
   }
   return figure(to_svg(plot),
                 "What tip and shaft meet along the needle on the way in; positive pushes the needle out. Each marked "
@@ -144,7 +146,7 @@ std::string puncture_table(const Session& session) {
       "<th>Resistance (N)</th><th>Drop (N)</th></tr></thead><tbody>";
   for (const Puncture& puncture : punctures)
     out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
-                       escape(words(puncture.layer)), number_text(puncture.time_s, 2),
+                       escape(words(layer_words(puncture.layer))), number_text(puncture.time_s, 2),
                        number_text(puncture.depth_mm, 1), number_text(puncture.layer_force_n, 2),
                        number_text(puncture.resistance_n, 2), number_text(puncture.drop_n, 2));
   return out + "</tbody></table>";

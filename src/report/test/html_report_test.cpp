@@ -53,7 +53,7 @@ TEST(HtmlReport, NamesTheThreePeaks) {
   const std::string html = html_report(session, nullptr);
   EXPECT_EQ(count_of(html, "class=\"mark\""), 3u);
   EXPECT_EQ(count_of(html, "class=\"marklabel\""), 3u);
-  for (const char* label : {">skin 2.80 N<", ">muscle 2.60 N<", ">liver capsule 1.80 N<"})
+  for (const char* label : {">skin 2.80 N<", ">muscle fascia 2.60 N<", ">liver capsule 1.80 N<"})
     EXPECT_NE(html.find(label), std::string::npos) << label;
 }
 

@@ -48,7 +48,14 @@ TEST_F(PunctureGuide, SaysAdvanceOnThePathAndFireAtItsEnd) {
 TEST_F(PunctureGuide, SaysWhereTheEntryIs) {
   TickSample sample = on_path(-15.0);
   sample.tip_mm += 40.0 * headward();
-  EXPECT_TRUE(says(sample, "40 mm to the patient's feet")) << guide_puncture(the_case, sample);
+  EXPECT_TRUE(says(sample, "towards the feet")) << guide_puncture(the_case, sample);
+  // An entry that lies lateral and further back is not called to be on the patient's back.
+  const Vec3 sideways = the_case.plan.line_P.direction().cross(headward());
+  sample = on_path(-15.0);
+  sample.tip_mm += 90.0 * headward() + 120.0 * sideways;
+  EXPECT_TRUE(says(sample, " mm towards the feet")) << guide_puncture(the_case, sample);
+  EXPECT_TRUE(says(sample, sideways.x() > 0.0 ? "to the patient's right and" : "to the patient's left and"))
+      << guide_puncture(the_case, sample) << sideways.transpose();
   sample = on_path(-15.0);
   sample.tip_mm += 4.0 * Vec3::UnitX();
   EXPECT_TRUE(says(sample, "to the patient's right")) << guide_puncture(the_case, sample);
@@ -67,7 +74,7 @@ TEST_F(PunctureGuide, FollowingItsWordsBringsTheNeedleBack) {
 
   TickSample inside = on_path(20.0);
   inside.tip_mm += 3.0 * headward();
-  EXPECT_TRUE(says(inside, "3.0 mm beside the path: tilt the tip to the patient's feet"))
+  EXPECT_TRUE(says(inside, "3.0 mm beside the path: tilt the tip towards the feet"))
       << guide_puncture(the_case, inside);
 }
 

@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "anatomy/direction_words.h"
 #include "anatomy/structure_words.h"
 
 namespace trocar {
 namespace {
 
 constexpr double kMatters = 0.1;          // share of a part's points that must be lost before it is spoken of
-constexpr double kSecond = 0.4;           // a second direction is named from this share of the first
 constexpr double kNameable = 0.5;         // rounds to 1 mm or degree
 constexpr double kRepeatedTravel = 0.25;  // share of the excess travel from which retractions are spoken of
 
@@ -45,7 +44,7 @@ struct Correction {
 Correction correct(const Vec3& offset_P, const Vec3& path_direction_P) {
   const double deeper_mm = offset_P.dot(path_direction_P);
   const Vec3 sideways_P = offset_P - deeper_mm * path_direction_P;
-  const double least_mm = std::max(kNameable, kSecond * std::max(std::abs(deeper_mm), sideways_P.norm()));
+  const double least_mm = std::max(kNameable, kSecondDirection * std::max(std::abs(deeper_mm), sideways_P.norm()));
   std::vector<std::string> deviations;
   std::vector<std::string> advice;
   if (std::abs(deeper_mm) >= least_mm) {
@@ -156,22 +155,6 @@ std::string praise(const HintSubject& subject) {
 }
 
 }  // namespace
-
-std::string direction_words(const Vec3& offset_P, const char* unit) {
-  constexpr std::array<std::array<const char*, 2>, 3> kWays{{{"to the patient's right", "to the patient's left"},
-                                                             {"towards the front", "towards the back"},
-                                                             {"towards the feet", "towards the head"}}};
-  std::array<Eigen::Index, 3> order{0, 1, 2};
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return std::abs(offset_P[a]) > std::abs(offset_P[b]); });
-  const auto word = [&](Eigen::Index axis) {
-    const auto way = static_cast<std::size_t>(offset_P[axis] > 0.0);
-    return fmt::format("{:.0f}{} {}", std::abs(offset_P[axis]), unit, kWays[static_cast<std::size_t>(axis)][way]);
-  };
-  const double second = std::abs(offset_P[order[1]]);
-  const bool has_second = second >= kNameable && second >= kSecond * std::abs(offset_P[order[0]]);
-  return has_second ? word(order[0]) + " and " + word(order[1]) : word(order[0]);
-}
 
 std::vector<std::string> make_hints(const HintSubject& subject) {
   if (!subject.metrics.has_touched_skin)

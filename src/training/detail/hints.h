@@ -26,8 +26,4 @@ struct HintSubject {
 /// What to do better, as an instructor would say it, the costliest first; praise where nothing matters.
 std::vector<std::string> make_hints(const HintSubject& subject);
 
-/// A deviation in words of the patient: "6 mm towards the head and 4 mm to the patient's left"; the two largest
-/// directions, the second where it is at least 0.4 of the first.
-std::string direction_words(const Vec3& offset_P, const char* unit);
-
 }  // namespace trocar

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "training/detail/hints.h"
 #include "training/test/attempt_patient.h"
 #include "training/test/layered_body.h"
 
@@ -213,13 +212,6 @@ TEST(Score, ADeepAttemptWithoutAShotIsNotScoredButAPunctureWithoutAGunIs) {
       score_attempt(make_box_task(), patient(), make_box_tissues(), needle, make_box_plan(), attempt.samples, {});
   EXPECT_TRUE(puncture.is_scored());
   EXPECT_GT(puncture.score, 0.0);
-}
-
-TEST(Hints, TellDirectionsInThePatientsTerms) {
-  EXPECT_EQ(direction_words({0.0, 0.0, 6.0}, " mm"), "6 mm towards the head");
-  EXPECT_EQ(direction_words({-3.0, 0.2, -4.0}, " mm"), "4 mm towards the feet and 3 mm to the patient's right");
-  EXPECT_EQ(direction_words({5.0, -1.0, 0.0}, "°"), "5° to the patient's left");
-  EXPECT_EQ(direction_words({0.0, 8.0, 0.0}, " mm"), "8 mm towards the back");
 }
 
 TEST(Hints, TellWhereTheInsertionPointWasOff) {
