@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/check.h"
 #include "scene/detail/solids.h"
@@ -186,6 +187,16 @@ void add_notch(std::vector<ShapePart>& parts, const Pose& X_AEnd, double diamete
 }
 
 }  // namespace
+
+NeedleModel needle_model(std::string_view name) noexcept {
+  constexpr std::pair<std::string_view, NeedleModel> kModels[] = {{"tuohy", NeedleModel::kTuohy},
+                                                                  {"quincke", NeedleModel::kQuincke},
+                                                                  {"biopsy-gun", NeedleModel::kBiopsyGun},
+                                                                  {"trocar", NeedleModel::kTrocar}};
+  for (const auto& [known, model] : kModels)
+    if (name == known) return model;
+  return NeedleModel::kChiba;
+}
 
 std::vector<ShapePart> make_needle_shape(std::span<const Vec3> shaft, double diameter_mm, NeedleModel model,
                                          double least_diameter_mm) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "geometry/triangle_mesh.h"
@@ -16,6 +17,9 @@ enum class NeedleModel {
   kBiopsyGun,  ///< Box with a cocking slide; bevelled stylet with the specimen notch behind its tip.
   kTrocar,     ///< Ball handle, stout cannula with a collar, three-sided point.
 };
+
+/// By its name in data/needles.toml ("trocar"); a name that is none is a Chiba needle.
+NeedleModel needle_model(std::string_view name) noexcept;
 
 /// A closed part of a tool with its own colour, in the frame of the points it was made from.
 struct ShapePart {

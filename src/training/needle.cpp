@@ -3,12 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
+#include <span>
 
 #include "config/sourced_number.h"
 
 namespace trocar {
 namespace {
 
+constexpr std::array<std::string_view, 5> kUses{"biopsy", "aspiration", "spinal", "epidural", "ascites"};
+constexpr std::array<std::string_view, 5> kModels{"chiba", "tuohy", "quincke", "biopsy-gun", "trocar"};
 constexpr double kThinnestWall = 0.95;  ///< Largest bore as a share of the outer diameter.
 
 Status read_value(const TomlTable& row, std::string_view key, Range range, double& value) {
@@ -17,15 +22,33 @@ Status read_value(const TomlTable& row, std::string_view key, Range range, doubl
   return {};
 }
 
+Status read_word(const TomlTable& row, std::string_view key, std::span<const std::string_view> known,
+                 std::string& word) {
+  TROCAR_TRY(word, row.string(key));
+  if (std::find(known.begin(), known.end(), word) != known.end()) return {};
+  return fail(fmt::format("unknown {} \"{}\"", key, word), row.where(),
+              fmt::format("known are: {}", fmt::join(known, ", ")));
+}
+
 Result<Needle> read_needle(const TomlTable& row, const std::string& name) {
   Needle needle;
   needle.name = name;
   TROCAR_TRY(needle.title, row.string("title"));
+  TROCAR_TRY_STATUS(read_word(row, "use", kUses, needle.use));
+  TROCAR_TRY_STATUS(read_word(row, "model", kModels, needle.model));
   TROCAR_TRY(needle.gauge, row.number("gauge", {7.0, 34.0}));
   TROCAR_TRY(needle.is_biopsy, row.boolean_or("is_biopsy", false));
-  std::vector<std::string_view> known = {
-      "title",     "gauge",     "is_biopsy",  "outer_diameter_mm", "inner_diameter_mm", "stylet_diameter_mm",
-      "length_mm", "bevel_deg", "bevel_share"};
+  std::vector<std::string_view> known = {"title",
+                                         "use",
+                                         "model",
+                                         "gauge",
+                                         "is_biopsy",
+                                         "outer_diameter_mm",
+                                         "inner_diameter_mm",
+                                         "stylet_diameter_mm",
+                                         "length_mm",
+                                         "bevel_deg",
+                                         "bevel_share"};
   if (needle.is_biopsy) known.insert(known.end(), {"throw_mm", "notch_mm", "dead_space_mm"});
   TROCAR_TRY_STATUS(row.check_keys(known));
   TROCAR_TRY_STATUS(read_value(row, "outer_diameter_mm", {0.2, 5.0}, needle.outer_diameter_mm));
@@ -61,6 +84,15 @@ Result<std::vector<Needle>> load_needles(const std::filesystem::path& path) {
     needles.push_back(std::move(needle));
   }
   return needles;
+}
+
+std::vector<Needle> needles_like(const std::vector<Needle>& needles, std::string_view name) {
+  const auto own = std::find_if(needles.begin(), needles.end(), [&](const Needle& n) { return n.name == name; });
+  std::vector<Needle> alike;
+  if (own == needles.end()) return alike;
+  std::copy_if(needles.begin(), needles.end(), std::back_inserter(alike),
+               [&](const Needle& n) { return n.use == own->use; });
+  return alike;
 }
 
 Result<Needle> load_needle(const std::filesystem::path& path, std::string_view name) {

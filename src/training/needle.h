@@ -13,6 +13,8 @@ namespace trocar {
 struct Needle {
   std::string name;
   std::string title;
+  std::string use;                   ///< What it is made for: "biopsy", "aspiration", "spinal", "epidural", "ascites".
+  std::string model = "chiba";       ///< How it looks: chiba, tuohy, quincke, biopsy-gun or trocar.
   double gauge = 18.0;               ///< Range 7..34.
   double outer_diameter_mm = 1.27;   ///< Range 0.2..5.
   double inner_diameter_mm = 0.838;  ///< Of the bore. Range 0..5, below the outer one; 0: solid.
@@ -31,6 +33,9 @@ struct Needle {
 
 /// All needles of the file, in its order. Errors name file, line and key.
 Result<std::vector<Needle>> load_needles(const std::filesystem::path& path);
+/// Those that can take the place of the needle with that name, itself among them: made for the same use. Empty where
+/// the list lacks it.
+std::vector<Needle> needles_like(const std::vector<Needle>& needles, std::string_view name);
 /// Unknown name: exit status 2, the message lists the names.
 Result<Needle> load_needle(const std::filesystem::path& path, std::string_view name);
 

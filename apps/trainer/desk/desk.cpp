@@ -104,15 +104,6 @@ ToolsShown seen_from_outside(ToolsShown tools) {
   return tools;
 }
 
-NeedleModel model_of(const Needle& needle) {
-  const auto has = [&](const char* part) { return needle.name.find(part) != std::string::npos; };
-  if (needle.is_biopsy) return NeedleModel::kBiopsyGun;
-  if (has("tuohy")) return NeedleModel::kTuohy;
-  if (has("quincke")) return NeedleModel::kQuincke;
-  if (has("trocar")) return NeedleModel::kTrocar;
-  return NeedleModel::kChiba;
-}
-
 }  // namespace
 
 Desk::Desk(QWidget* parent) : QMainWindow(parent) {
@@ -277,7 +268,7 @@ void Desk::show_tools(const ToolsShown& tools) {
   has_whole_picture_ = false;
   const Needle& needle = open_->the_case.needle;
   for (PatientView* view : {view_3d_, side_}) {
-    view->set_needle(shown_.shaft_P, needle.outer_diameter_mm, model_of(needle));
+    view->set_needle(shown_.shaft_P, needle.outer_diameter_mm, needle_model(needle.model));
     view->set_hand(shown_.hand_P);
     view->set_shot(shown_.stylet_P, shown_.core_P);
   }

@@ -89,7 +89,10 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
     save();
     Q_EMIT start_wanted(choice());
   });
-  connect(tasks_, &QListWidget::currentRowChanged, this, [this] { fill_patients(); });
+  connect(tasks_, &QListWidget::currentRowChanged, this, [this] {
+    fill_patients();
+    fill_needles();
+  });
   connect(patients_, &QListWidget::currentRowChanged, this, [this] { tell_patient(); });
 
   const QSettings settings;
@@ -169,9 +172,6 @@ QWidget* StartPage::make_help_choice() {
     return box;
   };
   needle_ = add(tr("Needle"), "needle");
-  needle_->addItem(tr("The task's own"), QString());
-  if (const auto needles = load_needles(data_dir() / "needles.toml"))
-    for (const Needle& needle : *needles) needle_->addItem(to_qt(needle.title), to_qt(needle.name));
   model_ = add(tr("Forces"), "force-model");
   model_->addItem(tr("The task's own"), QString());
   model_->addItem(tr("Insertion model"), QStringLiteral("insertion"));
@@ -218,6 +218,23 @@ QWidget* StartPage::make_recovery() {
 void StartPage::offer_recovery(const QString& text) {
   recovery_text_->setText(text);
   recovery_->setVisible(!text.isEmpty());
+}
+
+/// Needles that are made for what the chosen task does; the one that was chosen stays where it is among them.
+void StartPage::fill_needles() {
+  const QString chosen = needle_->currentData().toString();
+  needle_->clear();
+  needle_->addItem(tr("The task's own"), QString());
+  const QListWidgetItem* item = tasks_->currentItem();
+  const auto tasks = load_tasks(data_dir() / "tasks");
+  const auto needles = load_needles(data_dir() / "needles.toml");
+  if (item == nullptr || !tasks || !needles) return;
+  const std::string name = to_std(item->data(kSource).toString());
+  const auto task = std::find_if(tasks->begin(), tasks->end(), [&](const Task& t) { return t.name == name; });
+  if (task == tasks->end()) return;
+  for (const Needle& needle : needles_like(*needles, task->needle))
+    needle_->addItem(to_qt(needle.title), to_qt(needle.name));
+  needle_->setCurrentIndex(std::max(0, needle_->findData(chosen)));
 }
 
 /// Embedded patients that serve the chosen task, and folders that were opened before.
@@ -269,6 +286,7 @@ void StartPage::choose(const SeatChoice& choice) {
   QListWidgetItem* task = find_item(*tasks_, to_qt(choice.task));
   tasks_->setCurrentItem(task != nullptr ? task : tasks_->item(0));
   fill_patients();
+  fill_needles();
   QListWidgetItem* patient = find_item(*patients_, to_qt(choice.patient));
   if (patient == nullptr && choice.patient.find('/') != std::string::npos) {
     add_item(*patients_, to_qt(choice.patient).section('/', -1), to_qt(choice.patient), to_qt(choice.patient));

@@ -40,6 +40,7 @@ class StartPage : public QWidget {
   QWidget* make_recovery();
   void lock_for_exam();
   void fill_patients();
+  void fill_needles();
   void open_folder();
   void tell_patient();
   void save() const;

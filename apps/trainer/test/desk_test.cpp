@@ -8,10 +8,14 @@
 #include <QMenu>
 #include <QSettings>
 #include <QToolButton>
+#include <map>
 
+#include "core/data_dir.h"
+#include "scene/needle_shape.h"
 #include "script/widget_events.h"
 #include "shell/theme.h"
 #include "test/open_abdomen.h"
+#include "training/needle.h"
 #include "views/patient_view.h"
 #include "views/slice_view.h"
 #include "views/ultrasound_view.h"
@@ -193,6 +197,18 @@ TEST(Desk, WithTheTipHiddenSlicesTellNothingOfItsDepth) {
   show(50.0);
   EXPECT_NE(axial->grab().toImage(), shallow);
   EXPECT_EQ(axial->focus(), *needle_at(50.0).focus_P);
+}
+
+TEST(NeedleModels, OfTheListAreAllDrawn) {
+  const auto needles = load_needles(data_dir() / "needles.toml");
+  ASSERT_TRUE(needles) << needles.error().text();
+  std::map<std::string, NeedleModel> models;
+  for (const Needle& needle : *needles) models[needle.name] = needle_model(needle.model);
+  EXPECT_EQ(models.at("paracentesis-14g"), NeedleModel::kTrocar);
+  EXPECT_EQ(models.at("biopsy-16g"), NeedleModel::kBiopsyGun);
+  EXPECT_EQ(models.at("tuohy-17g"), NeedleModel::kTuohy);
+  EXPECT_EQ(models.at("quincke-22g"), NeedleModel::kQuincke);
+  EXPECT_EQ(models.at("chiba-22g"), NeedleModel::kChiba);
 }
 
 }  // namespace

@@ -39,6 +39,21 @@ TEST(Needle, NotchAndDeadSpaceFitIntoTheThrow) {
   EXPECT_EQ(load_needle(kFile, "chiba-22g")->notch_middle_mm(), 0.0);
 }
 
+TEST(Needle, OnlyNeedlesOfTheSameUseTakeItsPlace) {
+  const auto needles = load_needles(kFile);
+  ASSERT_TRUE(needles);
+  std::vector<std::string> names;
+  for (const Needle& needle : needles_like(*needles, "biopsy-18g")) names.push_back(needle.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"biopsy-18g", "biopsy-16g"}));
+  EXPECT_TRUE(needles_like(*needles, "unheard-of").empty());
+  for (const Needle& needle : *needles) EXPECT_EQ(needle.is_biopsy, needle.use == "biopsy") << needle.name;
+}
+
+TEST(Needle, TheStoutNeedleOfAscitesLooksLikeATrocar) {
+  EXPECT_EQ(load_needle(kFile, "paracentesis-14g")->model, "trocar");
+  EXPECT_EQ(load_needle(kFile, "chiba-22g")->model, "chiba");
+}
+
 TEST(Needle, UnknownNameListsTheKnownOnes) {
   const auto needle = load_needle(kFile, "chiba-23g");
   ASSERT_FALSE(needle);
@@ -66,6 +81,8 @@ TEST(Needle, ImpossibleNeedleIsRefused) {
                  "stylet_diameter_mm = {value = 0.85, source = \"mine\""));
   EXPECT_TRUE(is_refused("bevel_share = {value = 0.1", "bevel_share = {value = 1.1"));
   EXPECT_TRUE(is_refused("is_biopsy = true", "is_biopsy = 1"));
+  EXPECT_TRUE(is_refused("model = \"trocar\"", "model = \"trokar\""));
+  EXPECT_TRUE(is_refused("use = \"spinal\"", "use = \"spine\""));
 }
 
 }  // namespace
