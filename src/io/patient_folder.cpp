@@ -174,6 +174,11 @@ Status save_patient(const VirtualPatient& patient, const std::vector<NamedMesh>&
   });
 }
 
+Result<PatientTitle> load_patient_title(const fs::path& folder) {
+  TROCAR_TRY(const detail::PatientDescription description, load_description(folder));
+  return PatientTitle{description.name, description.description};
+}
+
 Result<VirtualPatient> load_patient(const fs::path& folder) {
   TROCAR_TRY(detail::PatientDescription description, load_description(folder));
   VirtualPatient patient;

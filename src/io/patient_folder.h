@@ -27,6 +27,11 @@ Status save_patient(const VirtualPatient& patient, const std::vector<NamedMesh>&
 /// Reads it back without the meshes; volumes side by side. Errors: no patient folder, a newer version, a missing or
 /// damaged file, volumes on different grids, a label without a name, a content hash that does not fit.
 Result<VirtualPatient> load_patient(const std::filesystem::path& folder);
+/// What a list of patients shows; without the volumes. Errors: no patient folder, a newer version, a damaged file.
+struct PatientTitle {
+  std::string name, description;
+};
+Result<PatientTitle> load_patient_title(const std::filesystem::path& folder);
 /// Rounds the skin distance as a patient folder keeps it, so that a patient and its saved copy give the same results.
 void round_skin_distance(VirtualPatient& patient);
 Result<std::vector<NamedMesh>> load_patient_meshes(const std::filesystem::path& folder);

@@ -297,7 +297,7 @@ void AttemptControl::show_panel() {
   figures.phase = phase_text(view_);
   figures.tissue = is_exam() ? QStringLiteral("–") : to_qt(view_.needle.tissue);
   const bool is_starting = view_.phase == AttemptPhase::kStarting || view_.phase == AttemptPhase::kFinishing;
-  figures.hint = is_starting ? to_qt(view_.progress) : hint();
+  figures.hint = is_starting && said_s_ <= 0.0 ? to_qt(view_.progress) : hint();
   if (!is_tip_hidden()) figures.depth_mm = view_.needle.depth_mm;
   if (choice_.difficulty == Difficulty::kGuided && view_.needle.is_known) figures.to_target_mm = distance_mm();
   figures.force_n = std::abs(view_.needle.resistance_n);

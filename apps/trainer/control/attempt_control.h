@@ -35,6 +35,8 @@ class AttemptControl : public QObject {
   /// Asks whether to close the program; close_confirmed says yes.
   void ask_to_close();
   void end_server(const QString& tool);
+  /// In the hint's place, for some seconds.
+  void say(const QString& text);
   QVariantMap facts() const;
 
  Q_SIGNALS:
@@ -50,8 +52,6 @@ class AttemptControl : public QObject {
   void take(ToolInHand tool);
   void aim();
   void toggle_clamp();
-  /// In the hint's place, for some seconds.
-  void say(const QString& text);
   QString hint() const;
   void show_tools(double dt_s);
   void show_panel();

@@ -123,7 +123,12 @@ void SeatFlow::go_to_start() {
 }
 
 void SeatFlow::go_to_case_builder() {
-  if (attempt_) return window_.tell(tr("End the attempt first (E)."), BannerKind::kWarning);
+  const QString is_scored = tr("The attempt is being scored. The case builder opens after that.");
+  if (attempt_) {
+    const bool is_ending = attempt_->view().phase == AttemptPhase::kFinishing;
+    return attempt_->say(is_ending ? is_scored : tr("The case builder is closed during an attempt. End it first (E)."));
+  }
+  if (loading_.has_work()) return window_.tell(is_scored, BannerKind::kWarning);
   window_.show_page(QStringLiteral("case-builder"));
 }
 

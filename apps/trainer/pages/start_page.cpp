@@ -15,6 +15,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "core/data_dir.h"
+#include "io/patient_folder.h"
 #include "shell/parts.h"
 #include "training/needle.h"
 #include "training/task.h"
@@ -53,6 +54,14 @@ void add_item(QListWidget& list, const QString& title, const QString& source, co
   item->setData(kSource, source);
   item->setData(kText, text);
   item->setToolTip(text);
+}
+
+/// A patient folder by the name that its maker gave it.
+void add_folder(QListWidget& list, const QString& folder) {
+  const auto title = load_patient_title(to_std(folder));
+  if (!title) return add_item(list, folder.section('/', -1), folder, folder);
+  const QString text = to_qt(title->description);
+  add_item(list, to_qt(title->name), folder, text.isEmpty() ? folder : text + QLatin1Char('\n') + folder);
 }
 
 QListWidget* make_list(const char* name, const QString& title) {
@@ -252,7 +261,7 @@ void StartPage::fill_patients() {
     }
     const QSettings settings;
     for (const QString& folder : settings.value(QStringLiteral("start/folders")).toStringList())
-      add_item(*patients_, folder.section('/', -1), folder, folder);
+      add_folder(*patients_, folder);
     QListWidgetItem* again = find_item(*patients_, chosen);
     patients_->setCurrentItem(again != nullptr ? again : patients_->item(0));
   }
@@ -289,7 +298,7 @@ void StartPage::choose(const SeatChoice& choice) {
   fill_needles();
   QListWidgetItem* patient = find_item(*patients_, to_qt(choice.patient));
   if (patient == nullptr && choice.patient.find('/') != std::string::npos) {
-    add_item(*patients_, to_qt(choice.patient).section('/', -1), to_qt(choice.patient), to_qt(choice.patient));
+    add_folder(*patients_, to_qt(choice.patient));
     patient = patients_->item(patients_->count() - 1);
   }
   if (patient != nullptr) patients_->setCurrentItem(patient);

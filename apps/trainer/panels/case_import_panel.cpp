@@ -57,7 +57,11 @@ class ImportPanel final : public CasePanel {
   void refresh() override {
     const bool is_importing = desk_.work() == CaseDesk::Work::kImporting;
     start_->setEnabled(!is_importing);
-    if (was_importing_ && !is_importing && desk_.has_patient() && !desk_.is_error()) fill_recent();
+    if (was_importing_ && !is_importing) {
+      has_failed_ = desk_.is_error();
+      if (desk_.draft().imported != before_) remember();  // neither failed nor cancelled
+      fill_recent();
+    }
     was_importing_ = is_importing;
   }
 
@@ -100,7 +104,9 @@ class ImportPanel final : public CasePanel {
     content()->addLayout(row);
     const auto add = [this](const QString& path) {
       if (path.isEmpty()) return;
-      const QString before = labels_->text().trimmed();
+      // Labels that could not be imported are replaced, others are added to.
+      const QString before = has_failed_ ? QString() : labels_->text().trimmed();
+      has_failed_ = false;
       labels_->setText(before.isEmpty() ? path : before + QStringLiteral(";") + path);
     };
     connect(files, &QPushButton::clicked, this, [this, add] {
@@ -124,18 +130,19 @@ class ImportPanel final : public CasePanel {
       if (!path.trimmed().isEmpty()) request.labels.push_back(to_std(path.trimmed()));
     request.label_map = to_std(map_->currentText().trimmed());
     if (desk_.has_patient()) request.task = desk_.draft().base.name;
-    remember();
+    imported_ =
+        QStringList{ct_->text().trimmed(), labels_->text().trimmed(), map_->currentText()}.join(QLatin1Char('\n'));
+    has_failed_ = false;
+    before_ = desk_.draft().imported;
     desk_.import_patient(std::move(request));
   }
 
-  /// An entry is the three fields, a line each.
+  /// Keeps what was imported.
   void remember() const {
     QSettings settings;
     QStringList recent = settings.value(QString::fromLatin1(kRecentKey)).toStringList();
-    const QString entry =
-        QStringList{ct_->text().trimmed(), labels_->text().trimmed(), map_->currentText()}.join(QLatin1Char('\n'));
-    recent.removeAll(entry);
-    recent.prepend(entry);
+    recent.removeAll(imported_);
+    recent.prepend(imported_);
     while (recent.size() > kMostRecent) recent.removeLast();
     settings.setValue(QString::fromLatin1(kRecentKey), recent);
   }
@@ -162,7 +169,10 @@ class ImportPanel final : public CasePanel {
   QComboBox* map_ = nullptr;
   QPushButton* start_ = nullptr;
   QListWidget* recent_ = nullptr;
+  QString imported_;                               ///< The three fields of the last import, a line each.
+  std::shared_ptr<const ImportedPatient> before_;  ///< What the draft had when that began.
   bool was_importing_ = false;
+  bool has_failed_ = false;  ///< The last import; its files are not added to.
 };
 
 }  // namespace

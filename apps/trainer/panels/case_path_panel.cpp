@@ -79,7 +79,8 @@ class PathPanel final : public CasePanel {
     row->addWidget(zone_);
     row->addWidget(radius_);
     content()->addLayout(row);
-    no_zone_ = make_button("case-zone-clear", tr("No entry zone"), tr("Takes the entry zone away"));
+    no_zone_ =
+        make_button("case-zone-clear", tr("Remove entry zone"), tr("Entries are held against the expert's path alone"));
     content()->addWidget(no_zone_);
     connect(radius_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double radius_mm) {
       const auto& zone = desk_.draft().task.entry_zone;
@@ -87,7 +88,7 @@ class PathPanel final : public CasePanel {
       desk_.edit(set_entry_zone(desk_.draft(), zone->centre_P, radius_mm), "change the entry zone", "zone radius");
     });
     connect(no_zone_, &QPushButton::clicked, this,
-            [this] { desk_.edit(clear_entry_zone(desk_.draft()), "take the entry zone away"); });
+            [this] { desk_.edit(clear_entry_zone(desk_.draft()), "remove the entry zone"); });
   }
 
   void add_path() {
@@ -105,12 +106,11 @@ class PathPanel final : public CasePanel {
     row->addWidget(entry_);
     row->addWidget(tip_);
     content()->addLayout(row);
-    no_path_ =
-        make_button("case-path-clear", tr("No path of my own"), tr("The path is planned when the case is opened"));
+    no_path_ = make_button("case-path-clear", tr("Remove path"), tr("The path is planned whenever the case is opened"));
     content()->addWidget(no_path_);
     connect(plan_, &QPushButton::clicked, this, [this] { desk_.plan_path(); });
     connect(no_path_, &QPushButton::clicked, this,
-            [this] { desk_.edit(clear_expert_path(desk_.draft()), "take the path away"); });
+            [this] { desk_.edit(clear_expert_path(desk_.draft()), "remove the path"); });
   }
 
   QPushButton* zone_ = nullptr;

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <QApplication>
 #include <QComboBox>
 #include <QCoreApplication>
 #include <QElapsedTimer>
+#include <QFileDialog>
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
@@ -15,6 +17,7 @@
 #include <QTabWidget>
 #include <QTableWidget>
 #include <QThread>
+#include <QTimer>
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -268,6 +271,51 @@ TEST_F(CasePageTest, BrokenImportSaysOneLineAndLeavesTheDraft) {
   EXPECT_FALSE(text.isEmpty());
   EXPECT_FALSE(text.contains(QLatin1Char('\n')));
   EXPECT_TRUE(is_same_draft(page_.desk().draft(), before));
+}
+
+TEST_F(CasePageTest, OnlyImportsThatSucceededAreRecent) {
+  const auto& recent = find<QListWidget>("case-recent");
+  const int before = recent.count();
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_file_atomically(folder / "broken.nrrd", "NRRD0004\nno volume"));
+  import((folder / "broken.nrrd").string(), (folder / "broken.nrrd").string(), "totalsegmentator");
+  ASSERT_TRUE(wait_for_work());
+  EXPECT_TRUE(page_.desk().is_error());
+  EXPECT_EQ(recent.count(), before);
+  for (int row = 0; row < recent.count(); ++row)
+    EXPECT_FALSE(recent.item(row)->toolTip().contains(QStringLiteral("broken")));
+  import("layers-liver", "", "totalsegmentator");
+  ASSERT_TRUE(wait_for_work());
+  ASSERT_GE(recent.count(), 1);
+  EXPECT_EQ(recent.item(0)->toolTip(), QStringLiteral("layers-liver"));
+}
+
+TEST_F(CasePageTest, FilesThatAreChosenAfterAFailureReplaceTheFailedOnes) {
+  auto& labels = find<QLineEdit>("case-labels");
+  const auto choose = [&](const fs::path& file) {
+    QTimer::singleShot(0, &page_, [&] {
+      auto* dialog = qobject_cast<QFileDialog*>(QApplication::activeModalWidget());
+      ASSERT_NE(dialog, nullptr);
+      dialog->selectFile(to_qt(file.string()));
+      QMetaObject::invokeMethod(dialog, "accept");
+    });
+    press("case-labels-files");
+  };
+  const TemporaryFolder folder;
+  for (const char* name : {"one.nrrd", "two.nrrd"}) ASSERT_TRUE(write_file_atomically(folder / name, "none"));
+  choose(folder / "one.nrrd");
+  choose(folder / "two.nrrd");
+  EXPECT_EQ(labels.text().count(QLatin1Char(';')), 1) << "several are added up";
+  import("layers-liver", "/nowhere/labels.nrrd", "totalsegmentator");
+  ASSERT_TRUE(wait_for_work());
+  ASSERT_TRUE(page_.desk().is_error());
+  choose(folder / "one.nrrd");
+  EXPECT_EQ(labels.text(), to_qt((folder / "one.nrrd").string()));
+}
+
+TEST_F(CasePageTest, ButtonsThatRemoveSaySo) {
+  EXPECT_EQ(find<QPushButton>("case-zone-clear").text(), QStringLiteral("Remove entry zone"));
+  EXPECT_EQ(find<QPushButton>("case-path-clear").text(), QStringLiteral("Remove path"));
 }
 
 TEST_F(CasePageTest, CancelledImportLeavesThePageAsItWas) {

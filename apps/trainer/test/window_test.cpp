@@ -159,6 +159,10 @@ TEST_F(WindowTest, ABiopsyIsPerformedByKeysAlone) {
   expect_played(play("keyboard.txt"));
 }
 
+TEST_F(WindowTest, TheCaseBuilderSaysWhyItIsClosedAndStaysWhereItWasOpened) {
+  expect_played(play("case_builder.txt"));
+}
+
 TEST_F(WindowTest, OnlyAGuidedAttemptBeginsWhereThePlanHasTheTools) {
   expect_played(play("help_levels.txt"));
 }
