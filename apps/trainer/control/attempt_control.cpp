@@ -69,7 +69,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatC
       attempt_(open_, std::move(options), std::move(servers)),
       needle_(*open_->the_case.patient, open_->the_case.plan.line_P, open_->the_case.needle.length_mm),
       probe_(*open_->the_case.patient, attempt_.options().X_PT_start.value_or(open_->X_PT_start)),
-      is_led_(is_moved_by_hand_targets(choice.needle_device)),
+      is_led_{is_moved_by_hand_targets(choice.needle_device), is_moved_by_hand_targets(choice.probe_device)},
       keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
   page_.desk().show_help(choice_.difficulty);  // the replay of the last attempt showed all
@@ -180,15 +180,15 @@ void AttemptControl::gesture(const Gesture& gesture) {
 }
 
 bool AttemptControl::is_free(HandTool tool) const {
-  if (tool == HandTool::kNeedle && !is_led_) return false;
-  return !is_clamped_[static_cast<std::size_t>(tool)] && !view_.is_performing;
+  const auto t = static_cast<std::size_t>(tool);
+  return is_led_[t] && !is_clamped_[t] && !view_.is_performing;
 }
 
 void AttemptControl::aim() {
   if (choice_.difficulty != Difficulty::kGuided)
     return say(tr("Where the plan has the tools is told in guided attempts alone."));
-  if (gestures_.in_hand() == ToolInHand::kTransducer) probe_.put(open_->X_PT_start);
-  if (gestures_.in_hand() == ToolInHand::kNeedle && is_led_ && !needle_.is_past_skin())
+  if (gestures_.in_hand() == ToolInHand::kTransducer && is_led_[1]) probe_.put(open_->X_PT_start);
+  if (gestures_.in_hand() == ToolInHand::kNeedle && is_led_[0] && !needle_.is_past_skin())
     needle_.aim_at(open_->the_case.plan.line_P);
 }
 
@@ -218,10 +218,11 @@ void AttemptControl::end_server(const QString& tool) {
 void AttemptControl::advance(double dt_s) {
   view_ = attempt_.view();
   const bool are_on = view_.phase == AttemptPhase::kReady || view_.phase == AttemptPhase::kInBody;
-  if ((!are_on || !is_led_) && view_.needle.is_known && view_.phase != AttemptPhase::kFinishing) {
+  if ((!are_on || !is_led_[0]) && view_.needle.is_known && view_.phase != AttemptPhase::kFinishing) {
     // The hands wait where the tools are, so that nothing jumps when the forces come back.
     needle_.put(view_.needle.X_PN);
   }
+  if (!is_led_[1] && view_.probe.is_known) probe_.put(view_.probe.X_PT);
   attempt_.set_hand(HandTool::kNeedle, needle_.X_PN());
   attempt_.set_hand(HandTool::kProbe, probe_.X_PT());
   ForcePlot& plot = page_.desk().forces();
@@ -333,6 +334,7 @@ QVariantMap AttemptControl::facts() const {
   facts[QStringLiteral("has_fired")] = view_.has_fired;
   facts[QStringLiteral("probe_pressed_mm")] = view_.probe.pressed_mm;
   facts[QStringLiteral("probe_force_n")] = view_.probe.contact_n;
+  facts[QStringLiteral("probe_up_mm")] = -view_.probe.X_PT.p().y();
   facts[QStringLiteral("is_asking")] = page_.puncture().is_asking();
   facts[QStringLiteral("restarts")] = view_.servers[0].restarts;
   facts[QStringLiteral("session")] = to_qt(attempt_.session_path().string());

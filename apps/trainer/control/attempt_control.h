@@ -73,7 +73,7 @@ class AttemptControl : public QObject {
   ToolGestures gestures_;
   PointerNeedle needle_;
   PointerProbe probe_;
-  bool is_led_;  ///< The needle is moved by mouse and keys; else its device moves itself.
+  bool is_led_[2];  ///< By HandTool: moved by mouse and keys; else its device moves itself.
   PageKeys keys_;
   bool is_clamped_[2] = {false, false};  ///< By HandTool.
   AttemptView view_;

@@ -200,7 +200,7 @@ void SeatFlow::begin_attempt() {
   const QString name = QDateTime::currentDateTime().toString(QStringLiteral("yyyy-MM-dd_HH-mm-ss-zzz"));
   options.session = state_folder_ / "sessions" / to_std(name + QStringLiteral(".trocar"));
   options.device_needle = choice_.needle_device;
-  options.device_probe = "mouse";  // of the simulated devices the one with room for a whole body
+  options.device_probe = choice_.probe_device;
   options.level = name_of(choice_.difficulty);
   if (!is_exam()) options.force_model = to_std(window_.work().parameters().preview().model());
   options.is_guided = choice_.difficulty != Difficulty::kExam;

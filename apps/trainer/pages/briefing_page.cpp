@@ -10,6 +10,7 @@
 #include "shell/parts.h"
 #include "shell/theme.h"
 #include "station/live_attempt.h"
+#include "station/seat_devices.h"
 #include "views/briefing_picture.h"
 
 namespace trocar::trainer {
@@ -21,35 +22,53 @@ struct Control {
   const char* with;
   const char* does;
 };
-constexpr Control kWithMouse[] = {{"A / S", "take the needle / the transducer"},
+constexpr Control kTakeMouse[] = {{"A / S", "take the needle / the transducer"},
                                   {"drag", "glide over the skin; right button: tilt"},
                                   {"wheel", "push in and pull out; Shift: finely"},
-                                  {"H", "put the needle to the planned entry (guided)"}};
-constexpr Control kWithGamepad[] = {{"left stick", "moves the needle; cross: lifts and lowers it"},
-                                    {"right stick", "swings the tip to where it points"},
-                                    {"triggers", "right: push in, left: pull out; rumble: resistance"},
-                                    {"shoulders", "turn the bevel"},
-                                    {"S, mouse", "drag and wheel move the transducer"}};
-constexpr Control kWithSpaceMouse[] = {{"cap", "push and turn it: the needle moves and turns that way"},
-                                       {"S, mouse", "drag and wheel move the transducer"}};
-constexpr Control kWithStylus[] = {{"stylus", "is the needle"}, {"S, mouse", "drag and wheel move the transducer"}};
+                                  {"H", "put the tool in hand where the plan has it (guided)"}};
+constexpr Control kNeedleByGamepad[] = {{"left stick", "moves the needle; cross: lifts and lowers it"},
+                                        {"right stick", "swings the tip to where it points"},
+                                        {"triggers", "right: push in, left: pull out; rumble: resistance"},
+                                        {"shoulders", "turn the bevel"}};
+constexpr Control kProbeByGamepad[] = {{"left stick", "moves the transducer; cross: lifts and lowers it"},
+                                       {"right stick", "tilts it"},
+                                       {"shoulders", "turn it"}};
+constexpr Control kProbeByMouse[] = {{"S, mouse", "drag and wheel move the transducer"}};
+constexpr Control kNeedleByMouse[] = {{"A, mouse", "drag and wheel move the needle; Shift: finely"}};
 constexpr Control kAlways[] = {
     {"Enter", "fire the biopsy gun"}, {"E", "end the attempt"}, {"Space", "stop all forces"}, {"F1", "all keys"}};
 
-std::span<const Control> controls_of(const std::string& device) {
-  if (is_moved_by_hand_targets(device)) return kWithMouse;
-  if (device == "gamepad") return kWithGamepad;
-  if (device == "spacemouse") return kWithSpaceMouse;
-  return kWithStylus;
+QString row(const QString& with, const QString& does) {
+  return QStringLiteral("<tr><td><b>%1</b></td><td>%2</td></tr>").arg(with.toHtmlEscaped(), does);
 }
 
-QString controls_text(const std::string& device) {
-  QString rows;
-  for (const std::span<const Control> part : {controls_of(device), std::span<const Control>(kAlways)})
-    for (const Control& control : part)
-      rows += QStringLiteral("<tr><td><b>%1</b></td><td>%2</td></tr>")
-                  .arg(BriefingPage::tr(control.with), BriefingPage::tr(control.does));
-  return QStringLiteral("<table cellspacing='0' cellpadding='3'>") + rows + QStringLiteral("</table>");
+QString rows(std::span<const Control> controls) {
+  QString all;
+  for (const Control& control : controls) all += row(BriefingPage::tr(control.with), BriefingPage::tr(control.does));
+  return all;
+}
+
+/// Of a device that is no mouse.
+QString device_rows(const std::string& device, bool is_needle) {
+  if (device == "gamepad") return is_needle ? rows(kNeedleByGamepad) : rows(kProbeByGamepad);
+  const QString tool = is_needle ? BriefingPage::tr("needle") : BriefingPage::tr("transducer");
+  if (device == "spacemouse")
+    return row(BriefingPage::tr("cap"),
+               BriefingPage::tr("push and turn it: the %1 moves and turns that way").arg(tool));
+  return row(to_qt(seat_device_title(device)), BriefingPage::tr("its stylus is the %1").arg(tool));
+}
+
+QString controls_text(const SeatChoice& choice) {
+  const bool is_needle_led = is_moved_by_hand_targets(choice.needle_device);
+  const bool is_probe_led = is_moved_by_hand_targets(choice.probe_device);
+  QString all;
+  if (is_needle_led && is_probe_led) {
+    all = rows(kTakeMouse);
+  } else {
+    all += is_needle_led ? rows(kNeedleByMouse) : device_rows(choice.needle_device, true);
+    all += is_probe_led ? rows(kProbeByMouse) : device_rows(choice.probe_device, false);
+  }
+  return QStringLiteral("<table cellspacing='0' cellpadding='3'>") + all + rows(kAlways) + QStringLiteral("</table>");
 }
 
 QString risks_text(const Task& task) {
@@ -170,7 +189,7 @@ void BriefingPage::show_opening(const SeatChoice& choice) {
   const QString patient = to_qt(choice.patient).section('/', -1);
   title_->setText(tr("Briefing"));
   subtitle_->setText(tr("Patient %1").arg(patient));
-  controls_->setText(controls_text(choice.needle_device));
+  controls_->setText(controls_text(choice));
   goal_->clear();
   counts_->clear();
   axial_->clear();

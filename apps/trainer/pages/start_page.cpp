@@ -16,6 +16,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "core/data_dir.h"
 #include "io/patient_folder.h"
+#include "panels/device_choice.h"
 #include "shell/parts.h"
 #include "training/needle.h"
 #include "training/task.h"
@@ -31,16 +32,6 @@ constexpr std::pair<Difficulty, const char*> kHelpLevels[] = {
     {Difficulty::kGuided, "difficulty-guided"},
     {Difficulty::kAssisted, "difficulty-assisted"},
     {Difficulty::kExam, "difficulty-exam"},
-};
-
-struct DeviceChoice {
-  const char* spec;
-  const char* title;
-};
-constexpr DeviceChoice kDevices[] = {
-    {"mouse", "Mouse and keyboard"},       {"gamepad", "Gamepad"},
-    {"spacemouse", "SpaceMouse"},          {"openhaptics", "3D Systems Touch (OpenHaptics)"},
-    {"forcedimension", "Force Dimension"}, {"haply", "Haply Inverse3"},
 };
 
 QListWidgetItem* find_item(const QListWidget& list, const QString& source) {
@@ -114,6 +105,7 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   last.needle = text("start/needle", {});
   last.force_model = text("start/model", {});
   last.needle_device = text("start/device", last.needle_device);
+  last.probe_device = text("start/device-probe", last.probe_device);
   last.difficulty =
       static_cast<Difficulty>(std::clamp(settings.value(QStringLiteral("start/difficulty")).toInt(), 0, 2));
   choose(last);
@@ -186,11 +178,10 @@ QWidget* StartPage::make_help_choice() {
   model_->addItem(tr("Insertion model"), QStringLiteral("insertion"));
   model_->addItem(tr("Volume proxy"), QStringLiteral("proxy"));
   model_->addItem(tr("Both combined"), QStringLiteral("combined"));
-  device_ = add(tr("Device"), "device");
-  for (const DeviceChoice& device : kDevices)
-    device_->addItem(QString::fromUtf8(device.title), QString::fromLatin1(device.spec));
   content->addLayout(form);
   connect(difficulty_, QOverload<int, bool>::of(&QButtonGroup::buttonToggled), this, [this] { lock_for_exam(); });
+  devices_ = new DeviceChoice;
+  content->addWidget(devices_);
   content->addStretch();
   return card;
 }
@@ -308,7 +299,7 @@ void StartPage::choose(const SeatChoice& choice) {
   };
   select(*needle_, choice.needle);
   select(*model_, choice.force_model);
-  select(*device_, choice.needle_device);
+  devices_->choose(choice.needle_device, choice.probe_device);
   lock_for_exam();
 }
 
@@ -316,12 +307,13 @@ SeatChoice StartPage::choice() const {
   SeatChoice choice;
   if (const auto* task = tasks_->currentItem()) choice.task = to_std(task->data(kSource).toString());
   if (const auto* patient = patients_->currentItem()) choice.patient = to_std(patient->data(kSource).toString());
+  choice.needle_device = devices_->needle();
+  choice.probe_device = devices_->probe();
   choice.difficulty = static_cast<Difficulty>(difficulty_->checkedId());
   if (choice.difficulty != Difficulty::kExam) {  // an exam takes the task's own
     choice.needle = to_std(needle_->currentData().toString());
     choice.force_model = to_std(model_->currentData().toString());
   }
-  choice.needle_device = to_std(device_->currentData().toString());
   return choice;
 }
 
@@ -333,6 +325,7 @@ void StartPage::save() const {
   settings.setValue(QStringLiteral("start/needle"), to_qt(now.needle));
   settings.setValue(QStringLiteral("start/model"), to_qt(now.force_model));
   settings.setValue(QStringLiteral("start/device"), to_qt(now.needle_device));
+  settings.setValue(QStringLiteral("start/device-probe"), to_qt(now.probe_device));
   settings.setValue(QStringLiteral("start/difficulty"), static_cast<int>(now.difficulty));
 }
 

@@ -13,8 +13,10 @@ class QPushButton;
 
 namespace trocar::trainer {
 
-/// Where a trainee begins: task, patient, how much help, with which device. Keys: Enter starts, Ctrl+O opens a patient
-/// folder. What was chosen last is chosen again at the next start.
+class DeviceChoice;
+
+/// Where a trainee begins: task, patient, how much help, which device moves which tool. Keys: Enter starts, Ctrl+O
+/// opens a patient folder. What was chosen last is chosen again at the next start.
 class StartPage : public QWidget {
   Q_OBJECT
 
@@ -49,7 +51,7 @@ class StartPage : public QWidget {
   QListWidget* patients_ = nullptr;
   QLabel* patient_text_ = nullptr;
   QButtonGroup* difficulty_ = nullptr;
-  QComboBox* device_ = nullptr;
+  DeviceChoice* devices_ = nullptr;
   QComboBox* needle_ = nullptr;
   QComboBox* model_ = nullptr;
   QPushButton* start_ = nullptr;

@@ -20,6 +20,7 @@
 #include "pages/case_page.h"
 #include "pages/start_page.h"
 #include "pages/work_page.h"
+#include "panels/device_test_dialog.h"
 #include "shell/focus_ring.h"
 #include "shell/keys_dialog.h"
 #include "shell/parts.h"
@@ -190,6 +191,7 @@ void MainWindow::tell(const QString& text, BannerKind kind) {
 
 QVariantMap MainWindow::facts() const {
   QVariantMap facts = flow_->facts();
+  if (const auto* test = findChild<DeviceTestDialog*>()) facts.insert(test->facts());
   facts[QStringLiteral("page")] = page_;
   facts[QStringLiteral("banner")] = banner_->isVisible() ? banner_->text() : QString();
   facts[QStringLiteral("is_tissues_open")] = work_->are_parameters_shown();

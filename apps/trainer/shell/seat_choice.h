@@ -32,7 +32,8 @@ struct SeatChoice {
   std::string needle;       ///< Empty: the task's own.
   std::string force_model;  ///< Empty: the task's own.
   Difficulty difficulty = Difficulty::kGuided;
-  std::string needle_device = "mouse";  ///< As trocar-hapticd --device takes it.
+  std::string needle_device = "mouse";  ///< As trocar-hapticd --device takes it; likewise of the transducer. "mouse"
+  std::string probe_device = "mouse";   ///< is the simulated device with room for a whole body.
 };
 
 }  // namespace trocar::trainer

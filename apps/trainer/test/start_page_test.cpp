@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <QAbstractButton>
+#include <QComboBox>
 #include <QListWidget>
 #include <QPushButton>
 #include <QSettings>
 #include <QTemporaryDir>
 
+#include "anatomy/phantom/phantom.h"
+#include "core/temporary_folder.h"
+#include "io/patient_folder.h"
 #include "shell/parts.h"
 
 namespace trocar::trainer {
@@ -59,6 +63,47 @@ TEST_F(StartPageTest, AnExamTakesTheTasksOwnNeedleAndForces) {
   EXPECT_EQ(page.choice().force_model, "");
   page.findChild<QAbstractButton*>(QStringLiteral("difficulty-guided"))->click();
   EXPECT_TRUE(page.findChild<QWidget*>(QStringLiteral("force-model"))->isEnabled());
+}
+
+TEST_F(StartPageTest, RemembersADeviceForEachTool) {
+  SeatChoice wanted;
+  wanted.needle_device = "openhaptics:Left Device";
+  wanted.probe_device = "openhaptics:Right Device";
+  {
+    StartPage page;
+    page.choose(wanted);
+    page.findChild<QPushButton*>(QStringLiteral("start"))->click();
+  }
+  const StartPage again;
+  EXPECT_EQ(again.choice().needle_device, wanted.needle_device);
+  EXPECT_EQ(again.choice().probe_device, wanted.probe_device);
+}
+
+TEST_F(StartPageTest, OffersNeedlesThatFitTheTask) {
+  const StartPage page;
+  const auto* box = page.findChild<QComboBox*>(QStringLiteral("needle"));
+  ASSERT_EQ(box->count(), 3);
+  EXPECT_TRUE(box->itemText(0).contains(QStringLiteral("own")));
+  for (int row = 1; row < box->count(); ++row)
+    EXPECT_TRUE(box->itemText(row).contains(QStringLiteral("biopsy"))) << box->itemText(row).toStdString();
+}
+
+TEST_F(StartPageTest, AFolderIsListedByTheNameOfItsCase) {
+  const trocar::TemporaryFolder cases;
+  const auto patient = generate_phantom("layers-liver", 1);
+  ASSERT_TRUE(patient) << patient.error().text();
+  VirtualPatient named = *patient;
+  named.name = "A lesion under the ribs";
+  named.description = "Seen at night.";
+  const auto at = cases / "case-7";
+  ASSERT_TRUE(save_patient(named, {}, at));
+  StartPage page;
+  page.add_patient(to_qt(at.string()));
+  const auto* item = page.findChild<QListWidget*>(QStringLiteral("patients"))->currentItem();
+  ASSERT_NE(item, nullptr);
+  EXPECT_EQ(item->text(), QStringLiteral("A lesion under the ribs"));
+  EXPECT_TRUE(item->toolTip().contains(QStringLiteral("Seen at night.")));
+  EXPECT_EQ(page.choice().patient, at.string());
 }
 
 TEST_F(StartPageTest, OpenedFoldersStayInTheList) {

@@ -15,6 +15,7 @@
 
 #include "core/testing/source_dir.h"
 #include "devices/test/gamepad_stand_in.h"
+#include "devices/test/hd_stand_ins.h"
 
 namespace trocar::trainer {
 namespace {
@@ -187,6 +188,36 @@ TEST_F(WindowTest, AGamepadDrivesTheNeedleAndMayBeUnpluggedMeanwhile) {
   expect_played(run({QStringLiteral("--script"), write("gamepad.txt", here.toUtf8().constData())}));
   EXPECT_TRUE(hand.has_done_all());
   EXPECT_GT(pad.strongest_rumble(), 0);
+}
+
+TEST_F(WindowTest, TwoHapticDevicesAreNamedTestedAndMoveATool) {
+  trocar::testing::HdStandIns devices;
+  trocar::testing::HdControls& premium = devices.add_premium("Left Device");
+  trocar::testing::HdControls& omni = devices.add_omni("Right Device");
+  place(premium, {0.0, 50.0, 80.0});  // beside the patient's right flank, at the height of the planned entry
+  place(omni, {0.0, 40.0, 0.0});
+  const auto at_picture = [&](const char* name) { return QFile::exists(folder.filePath(QString::fromUtf8(name))); };
+  Hand hand({{[&] { return at_picture("needle.png"); },
+              [&] {
+                glide(premium, {20.0, 50.0, 80.0}, 40.0);
+                glide(premium, {0.0, 50.0, 80.0}, 40.0);
+              }},
+             {[&] { return at_picture("ready.png"); },
+              [&] {
+                glide(premium, {0.0, 50.0, 0.0}, 15.0);
+              }},
+             {[&] { return at_picture("inside.png"); },
+              [&] {
+                glide(omni, {0.0, 20.0, 0.0}, 20.0);
+              }},
+             {[&] { return at_picture("unplug.png"); }, [&] { omni.is_present = 0; }},
+             {[&] { return at_picture("plug.png"); }, [&] { omni.is_present = 1; }}});
+  QFile script(script_named("two_devices.txt"));
+  ASSERT_TRUE(script.open(QIODevice::ReadOnly));
+  const QString here = QString::fromUtf8(script.readAll()).replace(QStringLiteral("FOLDER"), folder.path());
+  expect_played(run({QStringLiteral("--script"), write("two_devices.txt", here.toUtf8().constData())}));
+  EXPECT_TRUE(hand.has_done_all());
+  EXPECT_GT(premium.strongest_n, 0.3) << "the tissue was felt";
 }
 
 TEST_F(WindowTest, AnAttemptThatACrashCutOffCanBeSeenAgain) {

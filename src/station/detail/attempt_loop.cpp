@@ -112,6 +112,9 @@ void AttemptLoop::look_at(ToolServer& server) {
 Status AttemptLoop::check_start() {
   if (has_ever_been_on_) return {};
   if (needle_->has_given_up()) return tl::unexpected(needle_->failure());
+  // A transducer in a hand was asked for; without a simulated one the attempt goes on.
+  const bool is_probe_in_hand = device_hold(options_.device_probe) != DeviceHold::kOurHand;
+  if (probe_ && is_probe_in_hand && probe_->has_given_up()) return tl::unexpected(probe_->failure());
   progress_ = needle_->is_on() && probe_ ? probe_->doing() : needle_->doing();
   progress_fraction_ = needle_->loading();
   if (probe_) progress_fraction_ = 0.5 * (progress_fraction_ + probe_->loading());

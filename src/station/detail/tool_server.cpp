@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "haptics/safety_gate.h"
+#include "station/seat_devices.h"
 
 namespace trocar {
 namespace {
@@ -21,6 +22,7 @@ constexpr double kMostPatience = 4.0;    ///< Of one that is busy: it may turn i
 
 std::string words_of(const std::string& device) {
   if (device == "spacemouse") return "SpaceMouse";
+  if (device.find(':') != std::string::npos) return seat_device_title(device);
   return device.empty() ? "device" : device.substr(0, device.find(':'));
 }
 
@@ -230,6 +232,10 @@ std::string ToolServer::cannot_go_on(const Error& why) {
   if (is_stopped_ || (is_real_hand_ && is_heard)) {
     was_on_ = false;
     waits_for_resume_ = !is_stopped_;
+    if (is_device_lost())
+      return banner_ = fmt::format(
+                 "{}, which moves the {}, is gone. Plug it in again, then stop and resume the forces (Space twice).",
+                 device_words(), tool_ == "probe" ? "transducer" : tool_);
     return banner_ = why.what + "; resume when you are ready";
   }
   if (!is_heard && is_slow()) {

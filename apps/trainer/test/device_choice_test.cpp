@@ -1,0 +1,113 @@
+#include "panels/device_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <QComboBox>
+#include <QCoreApplication>
+#include <QElapsedTimer>
+#include <QLabel>
+#include <QPushButton>
+#include <QStandardItemModel>
+
+#include "devices/test/hd_stand_ins.h"
+#include "panels/device_test_dialog.h"
+
+namespace trocar::trainer {
+namespace {
+
+struct DeviceChoiceTest : ::testing::Test {
+  DeviceChoiceTest() {
+    premium = &devices.add_premium("Left Device");
+    omni = &devices.add_omni("Right Device");
+  }
+  trocar::testing::HdStandIns devices;
+  trocar::testing::HdControls* premium = nullptr;
+  trocar::testing::HdControls* omni = nullptr;
+};
+
+QComboBox& box_of(DeviceChoice& choice, const char* name) {
+  return *choice.findChild<QComboBox*>(QString::fromLatin1(name));
+}
+
+bool can_choose(QComboBox& box, const char* spec) {
+  return qobject_cast<QStandardItemModel*>(box.model())->item(box.findData(QString::fromLatin1(spec)))->isEnabled();
+}
+
+/// The text of a label of the dialog, when it has come about; empty: it has not within 20 s.
+QString text_when(const DeviceTestDialog& dialog, const char* name, const QString& part) {
+  const auto* label = dialog.findChild<QLabel*>(QString::fromLatin1(name));
+  QElapsedTimer timer;
+  for (timer.start(); timer.elapsed() < 20'000; QCoreApplication::processEvents(QEventLoop::AllEvents, 20))
+    if (label->text().contains(part)) return label->text();
+  ADD_FAILURE() << name << ": " << label->text().toStdString();
+  return {};
+}
+
+TEST_F(DeviceChoiceTest, NamesTheDevicesAndKeepsThemApart) {
+  DeviceChoice choice;
+  choice.choose("openhaptics:Left Device", "openhaptics:Right Device");
+  EXPECT_EQ(choice.needle(), "openhaptics:Left Device");
+  EXPECT_EQ(choice.probe(), "openhaptics:Right Device");
+  EXPECT_TRUE(box_of(choice, "device").currentText().contains(QStringLiteral("Left Device")));
+  EXPECT_FALSE(can_choose(box_of(choice, "device"), "openhaptics:Right Device"));
+  EXPECT_FALSE(can_choose(box_of(choice, "device-probe"), "openhaptics:Left Device"));
+  EXPECT_TRUE(can_choose(box_of(choice, "device-probe"), "mouse"));
+}
+
+TEST_F(DeviceChoiceTest, OneDeviceCannotBeBothTools) {
+  DeviceChoice choice;
+  choice.choose("gamepad", "gamepad");
+  EXPECT_EQ(choice.needle(), "gamepad");
+  EXPECT_EQ(choice.probe(), "mouse");
+  choice.choose("mouse", "openhaptics:Left Device");
+  box_of(choice, "device")
+      .setCurrentIndex(box_of(choice, "device").findData(QStringLiteral("openhaptics:Left Device")));
+  EXPECT_EQ(choice.probe(), "mouse") << "the transducer gives way";
+}
+
+TEST_F(DeviceChoiceTest, ADeviceOfLastTimeThatIsNotListedIsKept) {
+  DeviceChoice choice;
+  choice.choose("openhaptics:Old Device", "mouse");
+  EXPECT_EQ(choice.needle(), "openhaptics:Old Device");
+}
+
+TEST_F(DeviceChoiceTest, TheTestSaysWhetherADeviceAnswersMovesAndPushes) {
+  DeviceTestDialog dialog(QStringLiteral("openhaptics:Left Device"), QStringLiteral("Left Device"));
+  EXPECT_TRUE(
+      text_when(dialog, "device-answer", QStringLiteral("Premium")).startsWith(QStringLiteral("The device an")));
+  text_when(dialog, "device-pose", QStringLiteral("Move it"));
+  trocar::testing::place(*premium, {30.0, 10.0, 0.0});
+  text_when(dialog, "device-pose", QStringLiteral("Right 30"));
+  text_when(dialog, "device-pose", QStringLiteral("It moves"));
+  EXPECT_EQ(premium->strongest_n, 0.0) << "nobody asked for a force";
+  dialog.findChild<QPushButton*>(QStringLiteral("device-push"))->click();
+  text_when(dialog, "device-force", QStringLiteral("Was it felt"));
+  EXPECT_GT(premium->strongest_n, 0.5);
+  EXPECT_LT(premium->strongest_n, 1.1);
+  EXPECT_EQ(omni->openings, 0);
+}
+
+TEST_F(DeviceChoiceTest, MissingAndUnpluggedDevicesAreToldInOneLine) {
+  omni->is_present = 0;
+  DeviceTestDialog dialog(QStringLiteral("openhaptics:Right Device"), QStringLiteral("Right Device"));
+  const QString missing = text_when(dialog, "device-answer", QStringLiteral("does not answer."));
+  EXPECT_TRUE(missing.contains(QStringLiteral("Right Device"))) << missing.toStdString();
+  EXPECT_FALSE(missing.contains(QLatin1Char('\n')));
+  omni->is_present = 1;
+  dialog.findChild<QPushButton*>(QStringLiteral("device-again"))->click();
+  text_when(dialog, "device-answer", QStringLiteral("The device answers"));
+  omni->is_present = 0;
+  text_when(dialog, "device-answer", QStringLiteral("unplugged"));
+}
+
+TEST_F(DeviceChoiceTest, APremiumIsCalibratedWhereItsArmIsHeldForIt) {
+  premium->calibration = 0x5002;  // HD_CALIBRATION_NEEDS_MANUAL_INPUT
+  DeviceTestDialog dialog(QStringLiteral("openhaptics:Left Device"), QStringLiteral("Left Device"));
+  text_when(dialog, "device-answer", QStringLiteral("not calibrated"));
+  premium->is_in_reset_position = 1;
+  dialog.findChild<QPushButton*>(QStringLiteral("device-calibrate"))->click();
+  text_when(dialog, "device-answer", QStringLiteral("Calibrated. The device answers"));
+}
+
+}  // namespace
+}  // namespace trocar::trainer
