@@ -6,11 +6,13 @@
 #include <algorithm>
 
 #include "control/attempt_control.h"
+#include "control/mirror_station.h"
 #include "control/replay_control.h"
 #include "control/seat_words.h"
 #include "core/disk_space.h"
 #include "core/user_folders.h"
 #include "desk/desk.h"
+#include "headless/scene_request.h"
 #include "pages/briefing_page.h"
 #include "pages/case_page.h"
 #include "pages/start_page.h"
@@ -339,6 +341,9 @@ void SeatFlow::frame() {
   if (window_.page() == QLatin1String("case-builder")) window_.case_builder().advance();
   if (attempt_ || replay_) {
     window_.work().parameters().advance();
+    const Case& the_case = open_->the_case;
+    window_.mirror().lead_camera(window_.work().desk().view_3d(),
+                                 room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
     window_.work().desk().draw(now);
   }
   if (attempt_) attempt_->attempt().frame_drawn();

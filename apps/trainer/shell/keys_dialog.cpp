@@ -42,6 +42,7 @@ constexpr Key kViews[] = {{"Ctrl+1 … 4", "layouts"},
                           {"Ctrl+T", "tissue parameters"},
                           {"Ctrl+B", "case builder"},
                           {"F1", "these keys"},
+                          {"F8", "mirrors the window, or turns it back"},
                           {"F11", "full screen"}};
 
 void add_keys(QGridLayout& grid, int column, const QString& title, std::span<const Key> keys) {

@@ -14,6 +14,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include "control/mirror_station.h"
 #include "control/seat_flow.h"
 #include "desk/desk.h"
 #include "pages/briefing_page.h"
@@ -68,6 +69,8 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* paren
   banner_ = new Banner(*central);
   add_shortcuts();
   new FocusRing(this);
+  mirror_ = new MirrorStation(*this);
+  mirror_->fill_menu(*views_menu_);
   flow_ = new SeatFlow(*this, state_folder);
   // A page that needs more room is scrolled, so that the strip at the foot is always on the screen.
   setMinimumSize(kLeastSize);
@@ -96,11 +99,12 @@ QWidget* MainWindow::make_top_bar() {
   }
   row->addStretch();
   auto* views = make_tool_button("views-menu", tr("Views"), tr("Layouts, and which views are shown"));
-  auto* menu = new QMenu(views);
-  work_->desk().fill_menu(*menu);
-  fill_text_menu(*menu->addMenu(tr("Text size")));
-  add_sound(*menu);
-  views->setMenu(menu);
+  views_menu_ = new QMenu(views);
+  work_->desk().fill_menu(*views_menu_);
+  fill_text_menu(*views_menu_->addMenu(tr("Text size")));
+  add_sound(*views_menu_);
+  views_menu_->addSeparator();
+  views->setMenu(views_menu_);
   views->setPopupMode(QToolButton::InstantPopup);
   auto* tissues = make_tool_button("open-parameters", tr("Tissues"), tr("Tissue parameters and the predicted force"),
                                    QStringLiteral("Ctrl+T"));
@@ -196,6 +200,7 @@ QVariantMap MainWindow::facts() const {
   facts[QStringLiteral("banner")] = banner_->isVisible() ? banner_->text() : QString();
   facts[QStringLiteral("is_tissues_open")] = work_->are_parameters_shown();
   facts[QStringLiteral("layout")] = work_->desk().layout_name();
+  facts[QStringLiteral("mirror")] = static_cast<int>(mirror_->settings().axis);
   facts[QStringLiteral("columns")] = width();
   facts[QStringLiteral("rows")] = height();
   return facts;

@@ -16,6 +16,7 @@ namespace trocar::trainer {
 
 class BriefingPage;
 class CasePage;
+class MirrorStation;
 class SeatFlow;
 class StartPage;
 class StatusStrip;
@@ -36,6 +37,7 @@ class MainWindow : public QMainWindow {
   CasePage& case_builder() noexcept { return *case_; }
   StatusStrip& strip() noexcept { return *strip_; }
   SeatFlow& flow() noexcept { return *flow_; }
+  MirrorStation& mirror() noexcept { return *mirror_; }
 
   /// "start", "briefing", "puncture", "feedback", "case-builder".
   void show_page(const QString& name);
@@ -65,8 +67,10 @@ class MainWindow : public QMainWindow {
   StatusStrip* strip_ = nullptr;
   QAction* sound_ = nullptr;
   Banner* banner_ = nullptr;
+  QMenu* views_menu_ = nullptr;
   std::vector<QLabel*> steps_;
   SeatFlow* flow_ = nullptr;
+  MirrorStation* mirror_ = nullptr;
   QString page_;
 };
 

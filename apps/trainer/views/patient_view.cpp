@@ -60,6 +60,7 @@ struct PatientView::Impl {
   InputWatch watch;
   Clock::time_point last_watch{};
   std::function<bool()> interrupt;
+  std::function<int(int)> row_on_screen;
   ScanMask scan_mask;
   std::optional<Pose> X_PT;
   ScanGeometry scan;
@@ -204,6 +205,10 @@ void PatientView::set_stereo(const StereoOptions& options) {
   if (v.shutter_cover != nullptr) v.shutter_cover->setVisible(has_shutter);
 }
 
+void PatientView::set_row_on_screen(std::function<int(int)> row_on_screen) {
+  impl_->row_on_screen = std::move(row_on_screen);
+}
+
 const StereoOptions& PatientView::stereo() const {
   return impl_->scene->stereo();
 }
@@ -329,7 +334,9 @@ void PatientView::draw() {
     note_motion();
   } else {
     v.scene->poll();
-    v.scene->set_first_row(qRound(mapToGlobal(QPoint(0, 0)).y() * devicePixelRatioF()));
+    const int global_row = mapToGlobal(QPoint(0, 0)).y();
+    const int row = v.row_on_screen ? v.row_on_screen(global_row) : global_row;
+    v.scene->set_first_row(qRound(row * devicePixelRatioF()));
     const bool has_changed = v.scene->has_changed() || v.drawn_size != size();
     if (has_changed || v.are_tools_moving) v.policy->note_motion(now);
     const Detail detail = v.policy->next(now);

@@ -73,6 +73,9 @@ class PatientView : public QWidget {
 
   void set_stereo(const StereoOptions& options);
   const StereoOptions& stereo() const;
+  /// Which row of the screen a global row is drawn at; for pictures of interlaced rows in a window that is turned over.
+  /// Without it: the same.
+  void set_row_on_screen(std::function<int(int)> row_on_screen);
   /// Whether the screen can show quad-buffer stereo.
   static bool has_quad_buffer();
 

@@ -1,0 +1,93 @@
+#include "panels/mirror_dialog.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFormLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+#include "shell/parts.h"
+
+namespace trocar::trainer {
+
+MirrorDialog::MirrorDialog(const MirrorSettings& settings, QWidget* parent) : QDialog(parent) {
+  setObjectName(QStringLiteral("mirror-settings"));
+  setWindowTitle(tr("Mirror workstation"));
+  setAttribute(Qt::WA_DeleteOnClose);
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(20, 16, 20, 16);
+  column->setSpacing(10);
+  QLabel* text = make_label(tr("For a monitor that is seen in a mirror, with the hands behind the mirror."), "dim");
+  text->setWordWrap(true);
+  column->addWidget(text);
+  auto* form = new QFormLayout;
+  form->setSpacing(8);
+  column->addLayout(form);
+  axis_ = new QComboBox;
+  axis_->setObjectName(QStringLiteral("mirror-axis"));
+  axis_->addItems({tr("Off"), tr("Left and right"), tr("Up and down")});
+  axis_->setCurrentIndex(static_cast<int>(settings.axis));
+  axis_->setToolTip(tr("Turns over the whole window with its menus and dialogs; F8 turns it back"));
+  form->addRow(tr("Turn the window over"), axis_);
+  fixed_ = new QCheckBox(tr("Camera fixed to the device: the tool is seen where the hand is"));
+  fixed_->setObjectName(QStringLiteral("mirror-fixed"));
+  fixed_->setChecked(settings.is_camera_fixed);
+  column->addWidget(fixed_);
+  QLabel* place =
+      make_label(tr("Where the picture stands in the mirror, from the middle of the device's workspace:"), "dim");
+  place->setWordWrap(true);
+  column->addWidget(place);
+  auto* numbers = new QFormLayout;
+  numbers->setSpacing(8);
+  column->addLayout(numbers);
+  const QString mm = tr(" mm");
+  const Vec3& p = settings.picture_W;
+  right_ = add(*numbers, "mirror-right", tr("To the right"), tr("Of the window's middle"), mm, -500, 500, p.x());
+  away_ = add(*numbers, "mirror-away", tr("Away from you"), tr("Of the window's middle"), mm, -500, 500, p.y());
+  up_ = add(*numbers, "mirror-up", tr("Up"), tr("Of the window's middle"), mm, -500, 500, p.z());
+  tilt_ = add(*numbers, "mirror-tilt", tr("Tilt"), tr("0°: upright before you; 90°: lying, seen from above"), tr("°"),
+              0, 90, settings.tilt_deg);
+  width_ = add(*numbers, "mirror-width", tr("Width of the screen"), tr("Of its picture in the mirror: the scale"), mm,
+               100, 2000, settings.screen_width_mm);
+  eye_ = add(*numbers, "mirror-eye", tr("From your eye"), tr("From the eye to the picture"), mm, 200, 2000,
+             settings.eye_distance_mm);
+  auto* close = make_button("mirror-close", tr("Close"), tr("The settings are kept"));
+  column->addWidget(close, 0, Qt::AlignRight);
+  connect(close, &QPushButton::clicked, this, &QDialog::close);
+  connect(axis_, qOverload<int>(&QComboBox::currentIndexChanged), this, &MirrorDialog::tell);
+  connect(fixed_, &QCheckBox::toggled, this, &MirrorDialog::tell);
+}
+
+QDoubleSpinBox* MirrorDialog::add(QFormLayout& form, const char* name, const QString& title, const QString& tooltip,
+                                  const QString& unit, double least, double most, double value) {
+  auto* box = new QDoubleSpinBox;
+  box->setObjectName(QString::fromLatin1(name));
+  box->setAccessibleName(title);
+  box->setToolTip(tooltip);
+  box->setRange(least, most);
+  box->setDecimals(0);
+  box->setSuffix(unit);
+  box->setValue(value);
+  form.addRow(make_label(title, "dim"), box);
+  connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &MirrorDialog::tell);
+  return box;
+}
+
+MirrorSettings MirrorDialog::settings() const {
+  MirrorSettings settings;
+  settings.axis = static_cast<MirrorAxis>(axis_->currentIndex());
+  settings.is_camera_fixed = fixed_->isChecked();
+  settings.picture_W = {right_->value(), away_->value(), up_->value()};
+  settings.tilt_deg = tilt_->value();
+  settings.screen_width_mm = width_->value();
+  settings.eye_distance_mm = eye_->value();
+  return settings;
+}
+
+void MirrorDialog::tell() {
+  Q_EMIT changed(settings());
+}
+
+}  // namespace trocar::trainer
