@@ -35,8 +35,6 @@ namespace trocar::trainer {
 namespace {
 
 constexpr int kFrame_ms = 16;
-constexpr double kLateFrame_s = 0.1;
-constexpr double kFramesOver_s = 1.0;
 constexpr std::size_t kMostFrames = 200'000;  // an hour
 
 CaseChoice case_choice(const SeatChoice& choice) {
@@ -218,6 +216,7 @@ void SeatFlow::begin_attempt() {
   window_.work().set_parameters_locked(is_exam());
   window_.work().show_puncture();
   window_.show_page(QStringLiteral("puncture"));
+  frames_.restart();
   attempt_ = std::make_unique<AttemptControl>(open_, choice_, std::move(options), servers_, window_.work());
   connect(
       attempt_.get(), &AttemptControl::close_confirmed, this,
@@ -335,7 +334,7 @@ void SeatFlow::frame() {
   look_at_opening();
   look_at_attempt();
   look_at_replay();
-  const double dt_s = frames_s_.empty() ? 0.0 : now - frames_s_.back();
+  const double dt_s = frames_.since_last_s(now);
   if (attempt_) attempt_->advance(dt_s);
   if (replay_) replay_->advance(dt_s);
   if (window_.page() == QLatin1String("case-builder")) window_.case_builder().advance();
@@ -351,13 +350,10 @@ void SeatFlow::frame() {
 }
 
 void SeatFlow::measure_frame(double now) {
-  if (!frames_s_.empty() && (attempt_ || replay_) && frame_ms_.size() < kMostFrames)
-    frame_ms_.push_back(1e3 * (now - frames_s_.back()));
-  if (!frames_s_.empty() && attempt_ && now - frames_s_.back() > kLateFrame_s) ++late_frames_;
-  frames_s_.push_back(now);
-  while (frames_s_.size() > 2 && now - frames_s_.front() > kFramesOver_s) frames_s_.pop_front();
-  const double span_s = frames_s_.back() - frames_s_.front();
-  if (span_s > 0.5) window_.strip().show_frames(static_cast<double>(frames_s_.size() - 1) / span_s, late_frames_);
+  const double frame_s = frames_.since_last_s(now);
+  if (frame_s > 0.0 && (attempt_ || replay_) && frame_ms_.size() < kMostFrames) frame_ms_.push_back(1e3 * frame_s);
+  frames_.add(now, attempt_ != nullptr);
+  if (const auto figures = frames_.figures()) window_.strip().show_frames(*figures);
 }
 
 bool SeatFlow::may_close() {
@@ -382,7 +378,7 @@ QVariantMap SeatFlow::facts() const {
   QVariantMap facts;
   facts[QStringLiteral("case")] = open_ ? to_qt(open_->the_case.patient->name) : QString();
   facts[QStringLiteral("is_open")] = open_ != nullptr && !opening_.has_work() && !opened_;
-  facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(late_frames_);
+  facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(frames_.late());
   if (attempt_) facts.insert(attempt_->facts());
   if (replay_) facts.insert(replay_->facts());
   // What the ultrasound picture on the screen was made at.

@@ -4,7 +4,6 @@
 #include <QObject>
 #include <QTimer>
 #include <QVariantMap>
-#include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "core/background_job.h"
 #include "devices/speaker.h"
+#include "shell/frame_count.h"
 #include "shell/seat_choice.h"
 #include "station/attempt_replay.h"
 #include "station/journal.h"
@@ -86,8 +86,7 @@ class SeatFlow : public QObject {
   std::vector<std::string> warnings_;  ///< Of the attempt whose replay is being loaded.
   QTimer timer_;
   QElapsedTimer clock_;
-  std::deque<double> frames_s_;  ///< When the last frames were drawn.
-  std::uint64_t late_frames_ = 0;
+  FrameCount frames_;
   std::vector<double> frame_ms_;  ///< Since the last reset, of an attempt or replay; kMostFrames at most.
 };
 

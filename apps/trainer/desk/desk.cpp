@@ -125,7 +125,7 @@ Desk::Desk(QWidget* parent) : QMainWindow(parent) {
   add_view("side", tr("Side view"), *side_);
   add_view("ultrasound", tr("Ultrasound"), *scanner);
   add_knobs_button();
-  add_view("forces", tr("Force"), *forces_, &forces_->strip());
+  add_view("forces", tr("Resistance"), *forces_, &forces_->strip());
   structures_ = new StructurePanel(*view_3d_);
   add_view("structures", tr("Structures"), *structures_);
   const std::pair<const char*, QString> slices[] = {{"axial", tr("Axial")},

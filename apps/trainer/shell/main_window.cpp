@@ -92,8 +92,10 @@ QWidget* MainWindow::make_top_bar() {
   row->addWidget(make_label(QStringLiteral("Trocar"), "brand"));
   row->addSpacing(12);
   for (const Step& step : kSteps) {
-    auto* label = make_label(tr(step.title), "badge");
+    if (!steps_.empty()) row->addWidget(make_label(QStringLiteral("›"), "dim"));
+    auto* label = make_label(tr(step.title), "dim");
     label->setObjectName(QStringLiteral("step-") + QString::fromLatin1(step.page));
+    label->setToolTip(tr("Where you are on the way from the choice to the feedback"));
     steps_.push_back(label);
     row->addWidget(label);
   }
@@ -177,9 +179,7 @@ void MainWindow::show_page(const QString& name) {
     if (pages_->widget(n) == page || pages_->widget(n)->isAncestorOf(page)) pages_->setCurrentIndex(n);
   for (QLabel* step : steps_) {
     const bool is_here = step->objectName() == QStringLiteral("step-") + name;
-    step->setStyleSheet(is_here ? QStringLiteral("background: %1; color: %2; font-weight: 600;")
-                                      .arg(theme().accent.name(), theme().ground.name())
-                                : QString());
+    step->setStyleSheet(is_here ? QStringLiteral("color: %1; font-weight: 600;").arg(theme().text.name()) : QString());
   }
   page->setFocus();
   banner_->place();

@@ -54,10 +54,13 @@ StatusStrip::StatusStrip(QWidget* parent) : QFrame(parent) {
   needle_->setObjectName(QStringLiteral("status-needle"));
   probe_->setObjectName(QStringLiteral("status-probe"));
   frames_->setObjectName(QStringLiteral("status-frames"));
+  frames_->setToolTip(tr("Frames of the last second and the slowest of them; late: of this attempt, over %1 ms")
+                          .arg(1e3 * FrameCount::kLate_s, 0, 'f', 0));
   row->addWidget(needle_);
   row->addWidget(probe_);
-  row->addStretch();
-  row->addWidget(frames_);
+  frames_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  frames_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // it gives way to the button
+  row->addWidget(frames_, 1);
   stop_ = make_button("force-stop", tr("STOP FORCES"), tr("Turns all forces off at once; again: on (Space)"));
   stop_->setProperty("role", "stop");
   stop_->setFocusPolicy(Qt::NoFocus);
@@ -73,9 +76,9 @@ void StatusStrip::show_servers(const std::vector<ServerLine>& servers) {
   fit_texts();
 }
 
-void StatusStrip::show_frames(double frames_per_s, std::uint64_t dropped) {
-  QString text = tr("%1 frames/s").arg(frames_per_s, 0, 'f', 0);
-  if (dropped > 0) text += tr(" · %1 late").arg(dropped);
+void StatusStrip::show_frames(const FrameFigures& frames) {
+  QString text = tr("%1 frames/s, slowest %2 ms").arg(frames.per_s, 0, 'f', 0).arg(frames.slowest_ms, 0, 'f', 0);
+  if (frames.late > 0) text += tr(" · %1 of %2 late").arg(frames.late).arg(frames.judged);
   if (frames_->text() == text) return;
   frames_->setText(text);
   fit_texts();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "headless/run_result.h"
+#include "shell/frame_count.h"
 
 class QLabel;
 class QPushButton;
@@ -34,8 +35,8 @@ class StatusStrip : public QFrame {
   explicit StatusStrip(QWidget* parent = nullptr);
 
   void show_servers(const std::vector<ServerLine>& servers);
-  /// Of the window: frames drawn a second, and frames that came too late for the eye.
-  void show_frames(double frames_per_s, std::uint64_t dropped);
+  /// Of the window.
+  void show_frames(const FrameFigures& frames);
   /// Whether an attempt goes on, and whether its forces are stopped; the button stops them or turns them on again.
   void show_forces(bool is_attempt, bool are_stopped);
 

@@ -32,14 +32,31 @@ double text_width(const QString& text) {
   return std::ceil(QFontMetricsF(scaled_font(0.85)).horizontalAdvance(text));
 }
 
+QString force_title() {
+  return ForceBar::tr("Resistance");
+}
+
+QString lag_title() {
+  return ForceBar::tr("Lag");
+}
+
+/// Room beside lying bars for their titles and for their values.
+double titles_width() {
+  return std::max(text_width(force_title()), text_width(lag_title())) + kGap;
+}
+
+double values_width() {
+  return text_width(QStringLiteral("00.0 mm")) + kGap;
+}
+
 }  // namespace
 
 ForceBar::ForceBar(Qt::Orientation orientation, QWidget* parent) : QWidget(parent) {
   setObjectName(QStringLiteral("force-bar"));
-  setAccessibleName(tr("Force and lag"));
+  setAccessibleName(tr("Resistance and lag"));
   setToolTip(
-      tr("Wide: force now, of what the device can give; the line holds the peak.\n"
-         "Thin: how far the tool lags behind the hand."));
+      tr("Resistance: of the tissue now, of what the device can give; the line holds the peak.\n"
+         "Lag: how far the tool stays behind the hand."));
   set_orientation(orientation);
 }
 
@@ -90,17 +107,17 @@ void ForceBar::clear() {
 QRectF ForceBar::force_rect() const {
   if (orientation_ == Qt::Vertical) {
     const double left = 0.5 * (width() - kForceThick - kGap - kLagThick);
-    return {left, text_height() + 4.0, kForceThick, height() - 2.0 * text_height() - 8.0};
+    return {left, 2.0 * text_height() + 4.0, kForceThick, height() - 4.0 * text_height() - 8.0};
   }
-  const double left = text_width(QStringLiteral("00.00 N")) + 8.0;
-  const double top = 0.5 * (height() - kForceThick - 0.5 * kGap - kLagThick);
-  return {left, top, width() - left - text_width(QStringLiteral("00.0 mm")) - 8.0, kForceThick};
+  const double top = 0.5 * (height() - text_height() - kForceThick);  // two lines of text, a bar in the middle of each
+  return {titles_width(), top, width() - titles_width() - values_width(), kForceThick};
 }
 
 QRectF ForceBar::lag_rect() const {
   const QRectF bar = force_rect();
   if (orientation_ == Qt::Vertical) return {bar.right() + kGap, bar.top(), kLagThick, bar.height()};
-  return {bar.left(), bar.bottom() + 0.5 * kGap, bar.width(), kLagThick};
+  const double middle = bar.bottom() + 0.5 * text_height();
+  return {bar.left(), middle - 0.5 * kLagThick, bar.width(), kLagThick};
 }
 
 QRectF ForceBar::part_of(const QRectF& bar, double from_share, double to_share) const {
@@ -131,29 +148,43 @@ void ForceBar::paintEvent(QPaintEvent* /*event*/) {
     painter.drawLine(at.topLeft(), at.bottomRight());
   }
 
+  paint_text(painter);
+}
+
+void ForceBar::paint_text(QPainter& painter) const {
+  const Theme& t = theme();
   painter.setFont(scaled_font(0.85));
   const QString force = QStringLiteral("%1 N").arg(force_n_, 0, 'f', full_n_ < 10.0 ? 2 : 1);
   const QString distance = QStringLiteral("%1 mm").arg(lag_mm_, 0, 'f', lag_mm_ < 10.0 ? 1 : 0);
   const double high = text_height();
-  painter.setPen(t.text);
+  const auto put = [&](const QRectF& room, int alignment, const QString& text, const QColor& color) {
+    painter.setPen(color);
+    painter.drawText(room, alignment, text);
+  };
   if (orientation_ == Qt::Vertical) {
-    painter.drawText(QRectF(0.0, 0.0, width(), high), Qt::AlignCenter, force);
-    painter.setPen(t.accent);
-    painter.drawText(QRectF(0.0, height() - high, width(), high), Qt::AlignCenter, distance);
+    put({0.0, 0.0, 1.0 * width(), high}, Qt::AlignCenter, force_title(), t.dim);
+    put({0.0, high, 1.0 * width(), high}, Qt::AlignCenter, force, t.text);
+    put({0.0, height() - 2.0 * high, 1.0 * width(), high}, Qt::AlignCenter, distance, t.accent);
+    put({0.0, height() - high, 1.0 * width(), high}, Qt::AlignCenter, lag_title(), t.dim);
     return;
   }
-  painter.drawText(QRectF(0.0, 0.0, bar.left() - 8.0, height()), Qt::AlignRight | Qt::AlignVCenter, force);
-  painter.setPen(t.accent);
-  painter.drawText(QRectF(bar.right() + 8.0, 0.0, width() - bar.right() - 8.0, height()),
-                   Qt::AlignLeft | Qt::AlignVCenter, distance);
+  for (const bool is_force : {true, false}) {
+    const QRectF bar = is_force ? force_rect() : lag_rect();
+    const double top = bar.center().y() - 0.5 * high;
+    put({0.0, top, bar.left(), high}, Qt::AlignLeft | Qt::AlignVCenter, is_force ? force_title() : lag_title(), t.dim);
+    put({bar.right(), top, width() - bar.right(), high}, Qt::AlignRight | Qt::AlignVCenter, is_force ? force : distance,
+        is_force ? t.text : t.accent);
+  }
 }
 
 QSize ForceBar::sizeHint() const {
-  return orientation_ == Qt::Vertical ? QSize(64, 200) : QSize(320, 36);
+  if (orientation_ == Qt::Vertical) return {std::max(64, static_cast<int>(text_width(force_title())) + 4), 200};
+  return {320, static_cast<int>(2.0 * text_height()) + 4};
 }
 
 QSize ForceBar::minimumSizeHint() const {
-  return orientation_ == Qt::Vertical ? QSize(60, 100) : QSize(200, 32);
+  if (orientation_ == Qt::Vertical) return {sizeHint().width(), 140};
+  return {200, sizeHint().height()};
 }
 
 }  // namespace trocar::trainer

@@ -4,9 +4,10 @@
 
 namespace trocar::trainer {
 
-/// The force now as a bar against what the device can give, with the peak of the last seconds held as a line; beside
-/// it, thinner, how far the tool lags behind the hand: the cue of resistance for hands that feel no force. Stands
-/// upright or lies. It follows setters only; time comes with the force. Object name: force-bar.
+/// The tissue's resistance now as a bar against what the device can give, with the peak of the last seconds held as a
+/// line; beside it, thinner, how far the tool lags behind the hand: the cue of resistance for hands that feel no force.
+/// Both have their names and values beside them. Stands upright or lies. It follows setters only; time comes with the
+/// force. Object name: force-bar.
 class ForceBar : public QWidget {
   Q_OBJECT
 
@@ -37,6 +38,7 @@ class ForceBar : public QWidget {
   void paintEvent(QPaintEvent* event) override;
 
  private:
+  void paint_text(QPainter& painter) const;
   QRectF part_of(const QRectF& bar, double from_share, double to_share) const;
 
   Qt::Orientation orientation_;

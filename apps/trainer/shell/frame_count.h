@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+namespace trocar::trainer {
+
+/// How the window's frames came, as the strip says it. A mean over a second hides a stall: the slowest frame of that
+/// second and the late frames of the whole attempt stand beside it.
+struct FrameFigures {
+  double per_s = 0.0;
+  double slowest_ms = 0.0;
+  std::uint64_t late = 0;  ///< Of `judged`, those that took more than kLate_s.
+  std::uint64_t judged = 0;
+
+  bool operator==(const FrameFigures&) const = default;
+};
+
+class FrameCount {
+ public:
+  static constexpr double kLate_s = 0.1;  ///< A jump that the eye notices. [assumed]
+  static constexpr double kOver_s = 1.0;
+
+  /// Late frames are counted from here on.
+  void restart() noexcept { late_ = judged_ = 0; }
+  /// A frame was drawn; `is_judged`: during an attempt.
+  void add(double now_s, bool is_judged);
+  /// Since the last frame; 0 before there is one.
+  double since_last_s(double now_s) const noexcept { return drawn_s_.empty() ? 0.0 : now_s - drawn_s_.back(); }
+  /// Nothing within the first half second.
+  std::optional<FrameFigures> figures() const;
+  std::uint64_t late() const noexcept { return late_; }
+
+ private:
+  std::deque<double> drawn_s_;  ///< When the frames of the last second were drawn.
+  std::uint64_t late_ = 0;
+  std::uint64_t judged_ = 0;
+};
+
+}  // namespace trocar::trainer
