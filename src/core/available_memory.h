@@ -11,6 +11,13 @@ namespace trocar {
 /// state it: the largest number.
 std::uint64_t available_memory_bytes();
 
+/// Memory of this process that is in the machine's memory now (VmRSS of /proc/self/status); 0 where the system does not
+/// state it.
+std::uint64_t resident_memory_bytes();
+/// Gives memory that was freed back to the system. The allocator keeps what it got for volumes of tens of megabytes on
+/// several threads: call it when something that large is gone. Takes some milliseconds; not real-time safe.
+void release_freed_memory();
+
 /// An error at `where` if an image of `bytes` and a converted copy of it do not fit into `available_bytes`. Asked for
 /// before the allocation: Linux grants more memory than there is and ends a program when it is used.
 Status check_memory_for_image(std::uint64_t bytes, std::uint64_t available_bytes, const std::string& where);

@@ -9,6 +9,7 @@
 #include "control/mirror_station.h"
 #include "control/replay_control.h"
 #include "control/seat_words.h"
+#include "core/available_memory.h"
 #include "core/disk_space.h"
 #include "core/user_folders.h"
 #include "desk/desk.h"
@@ -120,6 +121,7 @@ void SeatFlow::go_to_start() {
   window_.show_banner({});
   window_.show_page(QStringLiteral("start"));
   can_record();
+  release_freed_memory();  // a replay holds every tick
 }
 
 void SeatFlow::go_to_case_builder() {
@@ -167,6 +169,7 @@ void SeatFlow::show_opened() {
     return;
   }
   opened_.reset();
+  release_freed_memory();  // of the case before, and of what opening took
   Desk& desk = window_.work().desk();
   desk.show_help(choice_.difficulty);
   // How deep the target lies is of the plan, too.
@@ -378,6 +381,8 @@ QVariantMap SeatFlow::facts() const {
   QVariantMap facts;
   facts[QStringLiteral("case")] = open_ ? to_qt(open_->the_case.patient->name) : QString();
   facts[QStringLiteral("is_open")] = open_ != nullptr && !opening_.has_work() && !opened_;
+  constexpr double kBytesPerMiB = 1024.0 * 1024.0;
+  facts[QStringLiteral("memory_mb")] = static_cast<double>(resident_memory_bytes()) / kBytesPerMiB;
   facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(frames_.late());
   if (attempt_) facts.insert(attempt_->facts());
   if (replay_) facts.insert(replay_->facts());

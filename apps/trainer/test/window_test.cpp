@@ -6,9 +6,11 @@
 #include <QImage>
 #include <QProcess>
 #include <QRegularExpression>
+#include <QSettings>
 #include <QTemporaryDir>
 #include <atomic>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <thread>
 #include <vector>
@@ -58,6 +60,26 @@ struct WindowTest : ::testing::Test {
     EXPECT_TRUE(file.open(QIODevice::WriteOnly));
     file.write(text);
     return file.fileName();
+  }
+
+  /// The embedded patient as the cache keeps it, as a patient folder of that name in the start page's list.
+  void copy_kept_patient(const QString& name) const {
+    const QDir cache(QString::fromUtf8(std::getenv("TROCAR_BIN_DIR")) +
+                     QStringLiteral("/../test-cache/trocar/patients"));
+    const QStringList kept = cache.entryList({QStringLiteral("abdomen-1-*")}, QDir::Dirs, QDir::Time);
+    ASSERT_FALSE(kept.isEmpty());
+    const QString to = folder.filePath(name);
+    std::filesystem::copy(cache.filePath(kept.first()).toStdString(), to.toStdString(),
+                          std::filesystem::copy_options::recursive);
+    QFile file(to + QStringLiteral("/patient.toml"));
+    ASSERT_TRUE(file.open(QIODevice::ReadOnly));
+    const QByteArray text = file.readAll().replace("name = \"abdomen\"", "name = \"" + name.toUtf8() + "\"");
+    file.close();
+    ASSERT_TRUE(file.open(QIODevice::WriteOnly));
+    file.write(text);
+    QSettings settings(folder.filePath(QStringLiteral("config/trocar/trocar-trainer.conf")), QSettings::IniFormat);
+    const QString key = QStringLiteral("start/folders");
+    settings.setValue(key, settings.value(key).toStringList() << to);
   }
 
   QTemporaryDir folder;
@@ -243,6 +265,27 @@ TEST_F(WindowTest, ABenchmarkLeavesTheSettingsAlone) {
   expect_played(run({QStringLiteral("--benchmark")}));
   ASSERT_TRUE(settings.open(QIODevice::ReadOnly));
   EXPECT_EQ(settings.readAll(), kept);
+}
+
+TEST_F(WindowTest, MemoryDoesNotGrowFromCaseToCase) {
+  expect_played(
+      run({QStringLiteral("--script"), write("open.txt", "click start\nwait-for is_open is true within 300\n")}));
+  copy_kept_patient(QStringLiteral("case A"));
+  copy_kept_patient(QStringLiteral("case B"));
+  QByteArray steps;
+  for (const char* name : {"A", "B", "A", "B", "A"})
+    steps += QByteArray("choose patients \"case ") + name +
+             "\"\nclick start\nwait-for is_open is true within 300\nclick begin\nwait-for phase is ready within 120\n"
+             "wheel-until view-3d 10 depth_mm > 15 within 60\nkey E\nkey Return\nwait-for page is feedback within 120\n"
+             "key Ctrl+N\nwait-for page is start within 20\nprint memory_mb\n";
+  const Played played = run({QStringLiteral("--script"), write("cases.txt", steps.constData())});
+  expect_played(played);
+  std::vector<double> memory_mb;
+  for (const QString& line : played.output.split(QLatin1Char('\n')))
+    if (line.startsWith(QLatin1String("memory_mb: "))) memory_mb.push_back(line.mid(11).toDouble());
+  ASSERT_EQ(memory_mb.size(), 5U) << played.output.toStdString();
+  constexpr double kScatter_mb = 200.0;  // a case of this patient that is kept takes some 400 MB
+  EXPECT_LT(memory_mb[4], memory_mb[1] + kScatter_mb) << played.output.toStdString();
 }
 
 TEST_F(WindowTest, AScriptThatFailsSaysWhere) {
