@@ -58,9 +58,8 @@ StatusStrip::StatusStrip(QWidget* parent) : QFrame(parent) {
                           .arg(1e3 * FrameCount::kLate_s, 0, 'f', 0));
   row->addWidget(needle_);
   row->addWidget(probe_);
-  frames_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
-  frames_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);  // it gives way to the button
-  row->addWidget(frames_, 1);
+  row->addStretch();
+  row->addWidget(frames_);
   stop_ = make_button("force-stop", tr("STOP FORCES"), tr("Turns all forces off at once; again: on (Space)"));
   stop_->setProperty("role", "stop");
   stop_->setFocusPolicy(Qt::NoFocus);
