@@ -179,7 +179,8 @@ QWidget* StartPage::make_help_choice() {
   model_->addItem(tr("Volume proxy"), QStringLiteral("proxy"));
   model_->addItem(tr("Both combined"), QStringLiteral("combined"));
   content->addLayout(form);
-  connect(difficulty_, QOverload<int, bool>::of(&QButtonGroup::buttonToggled), this, [this] { lock_for_exam(); });
+  connect(difficulty_, QOverload<QAbstractButton*, bool>::of(&QButtonGroup::buttonToggled), this,
+          [this] { lock_for_exam(); });
   devices_ = new DeviceChoice;
   content->addWidget(devices_);
   content->addStretch();

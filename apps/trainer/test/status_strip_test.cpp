@@ -28,7 +28,7 @@ TEST(StatusStrip, TheForceStopIsWholeAtEveryWidth) {
   auto* stop = strip.findChild<QPushButton*>(QStringLiteral("force-stop"));
   ASSERT_NE(stop, nullptr);
   strip.show_servers({line("Needle"), line("Transducer")});
-  strip.show_frames(60.0, 12345);
+  strip.show_frames({60.0, 1234.0, 12345, 123456});
   for (const int width : {1500, 1280, 1024, 960, 700}) {
     for (const bool are_stopped : {false, true}) {
       strip.show_forces(true, are_stopped);
