@@ -102,7 +102,8 @@ TEST(PathConstraint, ForceAndTorqueAboutTheStylusAreTheGradientOfOneEnergy) {
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 e = Vec3::Unit(axis);
       const auto energy = [&](double move, double turn) {
-        return path_energy_nmm(kLine, {stylus_P + move * e, Eigen::AngleAxisd(turn, e) * R.col(2), kLength_mm}, kParams);
+        return path_energy_nmm(kLine, {stylus_P + move * e, Eigen::AngleAxisd(turn, e) * R.col(2), kLength_mm},
+                               kParams);
       };
       EXPECT_NEAR((energy(kMove_mm, 0) - energy(-kMove_mm, 0)) / (2 * kMove_mm), -wrench.force_n[axis], 1e-4);
       EXPECT_NEAR((energy(0, kTurn_rad) - energy(0, -kTurn_rad)) / (2 * kTurn_rad), -wrench.torque_nmm[axis], 1e-2);
