@@ -203,12 +203,12 @@ Status AttemptLoop::start_recording() {
   run.rate_hz = performer_.rate_hz = needle_->wanted_hz() > 0.0 ? needle_->wanted_hz() : options_.rate_hz;
   run.session = options_.session;
   const Welcome& welcome = needle_->client().welcome;
-  AttemptFacts facts{fmt::format("{}, {}, through {}", welcome.device.name, welcome.device.title, welcome.server),
-                     performer_.rate_hz,
-                     performer_.force_model,
-                     preset_of_device(welcome.device.name),
-                     {},
-                     options_.level};
+  AttemptFacts facts;
+  facts.device = fmt::format("{}, {}, through {}", welcome.device.name, welcome.device.title, welcome.server);
+  facts.rate_hz = performer_.rate_hz;
+  facts.force_model = performer_.force_model;
+  facts.device_preset = preset_of_device(welcome.device.name);
+  facts.level = options_.level;
   if (const KnownScenes* known = needle_->scenes(); known != nullptr && known->newest() != nullptr)
     facts.parameters = *known->newest();
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(open_case_->the_case, run, facts));
