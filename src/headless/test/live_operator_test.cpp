@@ -120,10 +120,10 @@ TEST_F(LiveOperatorTest, StandsStillWhileTheServerIsAwayThoughTimeGoesOn) {
 }
 
 TEST_F(LiveOperatorTest, CountsNoOutageAsTheTraineesTime) {
-  // 51 s of puncture, an outage of 39 s in the midst of it: the report says 51 s, not 90.
-  constexpr double kActive_s = 51.0, kOutage_s = 39.0, kBefore_s = 20.0;
+  // 51 s of puncture, an outage of 39 s in the midst of it: the report says 51 s, not 90. The gun's time is active
+  // time, too.
+  constexpr double kActive_s = 51.0, kOutage_s = 39.0, kBefore_s = 20.0, kFired_s = 45.0;
   the_case_.plan.line_P = {Vec3::Zero(), Vec3(0.0, 50.0, 0.0)};
-  live_->begin(0.0);
   const auto deeper = [&](double server_s, double depth_mm) {
     TickSample sample = tick(kServer_s + server_s, InsertionPhase::kInserted);
     sample.depth_mm = depth_mm;
@@ -132,6 +132,8 @@ TEST_F(LiveOperatorTest, CountsNoOutageAsTheTraineesTime) {
     ASSERT_TRUE(live_->take(sample));
   };
   constexpr double kStep_s = 0.01;
+  witness_->fires_at = static_cast<std::size_t>(kFired_s / kStep_s);  // a biopsy that was not fired has no score
+  live_->begin(0.0);
   for (int n = 0; n * kStep_s <= kBefore_s; ++n) deeper(n * kStep_s, 1.0 + n * kStep_s);
   live_->begin(0.0);
   for (int n = 1; kBefore_s + n * kStep_s <= kActive_s; ++n)
@@ -143,7 +145,7 @@ TEST_F(LiveOperatorTest, CountsNoOutageAsTheTraineesTime) {
   EXPECT_NEAR(result->active_s, kActive_s, 2.0 * kStep_s);
   const auto part = std::ranges::find(result->outcome.parts, "time", &ScorePart::name);
   ASSERT_NE(part, result->outcome.parts.end());
-  EXPECT_NEAR(part->value, kActive_s, 2.0 * kStep_s);
+  EXPECT_NEAR(part->value, kFired_s, 2.0 * kStep_s);
   const auto session = load_session(folder_ / "attempt.session");
   ASSERT_TRUE(session) << session.error().text();
   ASSERT_EQ(session->interruptions.size(), 1u);

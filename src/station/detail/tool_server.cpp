@@ -233,9 +233,8 @@ std::string ToolServer::cannot_go_on(const Error& why) {
     was_on_ = false;
     waits_for_resume_ = !is_stopped_;
     if (is_device_lost())
-      return banner_ = fmt::format(
-                 "{}, which moves the {}, is gone. Plug it in again, then stop and resume the forces (Space twice).",
-                 device_words(), tool_ == "probe" ? "transducer" : tool_);
+      return banner_ = fmt::format("{}, which moves the {}, is gone. Plug it in again, then resume the forces (Space).",
+                                   device_words(), tool_ == "probe" ? "transducer" : tool_);
     return banner_ = why.what + "; resume when you are ready";
   }
   if (!is_heard && is_slow()) {
