@@ -120,8 +120,10 @@ Result<ScriptPlayer::Progress> ScriptPlayer::wait_until_holds(const QStringList&
   const QVariantMap facts = stage_.facts();
   if (!facts.contains(fact))
     return fail("there is no fact \"" + to_std(fact) + "\"", {}, "known: " + to_std(facts.keys().join(' ')));
+  const QString banner = facts.value(QStringLiteral("banner")).toString();
   return fail("it did not come about: " + to_std(fact_op_value.mid(0, 3).join(' ')),
-              to_std(fact + " is " + facts.value(fact).toString()), "give it longer: within SECONDS");
+              to_std(fact + " is " + facts.value(fact).toString()),
+              banner.isEmpty() ? "give it longer: within SECONDS" : "the window says: " + to_std(banner));
 }
 
 Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {

@@ -232,9 +232,12 @@ std::string ToolServer::cannot_go_on(const Error& why) {
   if (is_stopped_ || (is_real_hand_ && is_heard)) {
     was_on_ = false;
     waits_for_resume_ = !is_stopped_;
-    if (is_device_lost())
-      return banner_ = fmt::format("{}, which moves the {}, is gone. Plug it in again, then resume the forces (Space).",
-                                   device_words(), tool_ == "probe" ? "transducer" : tool_);
+    if (is_device_lost()) {
+      const bool is_gone = seat_->view().status.fault == to_string(GateFault::kDeviceLost);
+      return banner_ = fmt::format("{}, which moves the {}, {}, then resume the forces (Space).", device_words(),
+                                   tool_ == "probe" ? "transducer" : tool_,
+                                   is_gone ? "is gone. Plug it in again" : "is silent. Look after its cable");
+    }
     return banner_ = why.what + "; resume when you are ready";
   }
   if (!is_heard && is_slow()) {
