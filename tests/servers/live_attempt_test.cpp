@@ -161,13 +161,13 @@ TEST_F(LiveAttemptTest, TheReplayMovesTheTransducerAsItWasMoved) {
 TEST_F(LiveAttemptTest, ParametersReachTheServerWhileItRuns) {
   start(options());
   ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
-  attempt->set_parameters({"skin.fp=9"});
+  attempt->set_parameters({"skin.fp=30"});
   ASSERT_TRUE(wait_for([&] { return attempt->view().message.find("other numbers") != std::string::npos; }));
   attempt->set_parameters({"skin.colour=9"});
   ASSERT_TRUE(wait_for([&] { return attempt->view().message.find("colour") != std::string::npos; }))
       << attempt->view().message;
   // What was refused changed nothing, and a message replaces the one before it.
-  attempt->set_parameters({"skin.fp=9", "liver.mu=0.2"});
+  attempt->set_parameters({"skin.fp=30", "liver.mu=0.2"});
   attempt->perform(expert());  // gives up at a skin that does not give way
   ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
   attempt->finish();
@@ -178,7 +178,7 @@ TEST_F(LiveAttemptTest, ParametersReachTheServerWhileItRuns) {
   using Settings = std::vector<std::string>;
   std::vector<Settings> changes;
   for (const SessionParameters& change : session->parameters) changes.push_back(change.settings);
-  EXPECT_EQ(changes, (std::vector<Settings>{{}, {"skin.fp=9"}, {"liver.mu=0.2"}}));
+  EXPECT_EQ(changes, (std::vector<Settings>{{}, {"skin.fp=30"}, {"liver.mu=0.2"}}));
 }
 
 /// The peak of the skin in a record.
