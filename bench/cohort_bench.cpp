@@ -8,9 +8,9 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "bench/real_data.h"
-#include "core/temporary_folder.h"
-#include "headless/run_session.h"
-#include "io/build_from_files.h"
+#include "core/files/temporary_folder.h"
+#include "attempt/offline/run_session.h"
+#include "io/patient/build_from_files.h"
 
 namespace trocar::bench {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "bench/benchmarks.h"
 #include "bench/flat_scene.h"
-#include "core/data_dir.h"
-#include "haptics/simulation/push_trial.h"
+#include "core/files/data_dir.h"
+#include "haptics/closed_loop/push_trial.h"
 
 namespace trocar::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "headless/force_curve.h"
+#include "attempt/offline/force_curve.h"
 
 namespace trocar::bench {
 

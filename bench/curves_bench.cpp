@@ -9,10 +9,10 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "bench/curve_output.h"
-#include "core/atomic_file.h"
-#include "core/data_dir.h"
-#include "headless/needle_geometry.h"
-#include "training/needle.h"
+#include "core/files/atomic_file.h"
+#include "core/files/data_dir.h"
+#include "attempt/guide/needle_geometry.h"
+#include "tasks/needle.h"
 
 namespace trocar::bench {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "bench/benchmarks.h"
 #include "bench/flat_scene.h"
-#include "core/data_dir.h"
+#include "core/files/data_dir.h"
 #include "server/scene_builder.h"
 #include "server/simulation/slow_loop_trial.h"
 

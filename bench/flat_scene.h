@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "anatomy/tissue_table.h"
+#include "anatomy/tissue/tissue_table.h"
 #include "core/result.h"
 
 namespace trocar::bench {

@@ -12,8 +12,8 @@
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
 #include "haptics/tick.h"
-#include "headless/needle_geometry.h"
-#include "headless/prepare_case.h"
+#include "attempt/guide/needle_geometry.h"
+#include "attempt/case/prepare_case.h"
 
 namespace trocar::bench {
 namespace {

@@ -9,8 +9,8 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/harness.h"
 #include "haptics/tick.h"
-#include "headless/needle_geometry.h"
-#include "headless/prepare_case.h"
+#include "attempt/guide/needle_geometry.h"
+#include "attempt/case/prepare_case.h"
 
 namespace trocar::bench {
 namespace {

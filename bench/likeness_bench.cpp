@@ -9,13 +9,13 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
-#include "core/data_dir.h"
-#include "io/png.h"
-#include "io/sequence_file.h"
-#include "ultrasound/b_mode.h"
-#include "ultrasound/picture_figures.h"
-#include "ultrasound/probe_placement.h"
-#include "ultrasound/scanner.h"
+#include "core/files/data_dir.h"
+#include "io/image/png.h"
+#include "io/sequence/sequence_file.h"
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/figures/picture_figures.h"
+#include "ultrasound/probe/probe_placement.h"
+#include "ultrasound/scanner/scanner.h"
 
 namespace trocar::bench {
 namespace {

@@ -13,7 +13,7 @@
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
 #include "haptics/tick.h"
-#include "headless/prepare_case.h"
+#include "attempt/case/prepare_case.h"
 #include "volume/sampling.h"
 
 namespace trocar::bench {

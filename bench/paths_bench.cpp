@@ -10,10 +10,10 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "bench/curve_output.h"
-#include "core/atomic_file.h"
-#include "headless/needle_geometry.h"
-#include "headless/prepare_case.h"
-#include "headless/segmentation_study.h"
+#include "core/files/atomic_file.h"
+#include "attempt/guide/needle_geometry.h"
+#include "attempt/case/prepare_case.h"
+#include "attempt/offline/segmentation_study.h"
 
 namespace trocar::bench {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <cstdlib>
 
-#include "core/data_dir.h"
+#include "core/files/data_dir.h"
 
 extern char** environ;
 

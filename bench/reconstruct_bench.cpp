@@ -7,12 +7,12 @@
 
 #include "bench/benchmarks.h"
 #include "bench/real_data.h"
-#include "core/data_dir.h"
+#include "core/files/data_dir.h"
 #include "core/random.h"
-#include "io/image_file.h"
-#include "io/plus_config.h"
-#include "io/sequence_file.h"
-#include "ultrasound/freehand.h"
+#include "io/image/image_file.h"
+#include "io/sequence/plus_config.h"
+#include "io/sequence/sequence_file.h"
+#include "ultrasound/sweep/freehand.h"
 #include "volume/correlation.h"
 
 namespace trocar::bench {

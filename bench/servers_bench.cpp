@@ -17,11 +17,11 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
-#include "core/temporary_folder.h"
-#include "headless/probe_hand.h"
-#include "headless/scene_request.h"
-#include "link/haptic_client.h"
-#include "link/server_process.h"
+#include "core/files/temporary_folder.h"
+#include "attempt/hands/probe_hand.h"
+#include "attempt/case/scene_request.h"
+#include "link/client/haptic_client.h"
+#include "link/client/server_process.h"
 #include "realtime/periodic_loop.h"
 #include "volume/sampling.h"
 

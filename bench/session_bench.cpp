@@ -8,9 +8,9 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/harness.h"
 #include "bench/real_data.h"
-#include "core/temporary_folder.h"
-#include "headless/run_session.h"
-#include "io/patient_folder.h"
+#include "core/files/temporary_folder.h"
+#include "attempt/offline/run_session.h"
+#include "io/patient/patient_folder.h"
 
 namespace trocar::bench {
 namespace {

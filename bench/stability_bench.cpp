@@ -10,9 +10,9 @@
 
 #include "bench/benchmarks.h"
 #include "bench/flat_scene.h"
-#include "core/data_dir.h"
+#include "core/files/data_dir.h"
 #include "core/parallel.h"
-#include "haptics/simulation/stability_trial.h"
+#include "haptics/closed_loop/stability_trial.h"
 
 namespace trocar::bench {
 namespace {

@@ -9,11 +9,11 @@
 #include "bench/allocation_count.h"
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
-#include "core/data_dir.h"
-#include "ultrasound/b_mode.h"
-#include "ultrasound/freehand_sweep.h"
-#include "ultrasound/probe_placement.h"
-#include "ultrasound/scanner.h"
+#include "core/files/data_dir.h"
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/sweep/freehand_sweep.h"
+#include "ultrasound/probe/probe_placement.h"
+#include "ultrasound/scanner/scanner.h"
 
 namespace trocar::bench {
 namespace {

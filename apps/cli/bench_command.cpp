@@ -7,7 +7,7 @@
 
 #include "bench/harness.h"
 #include "commands.h"
-#include "io/patient_source.h"
+#include "io/patient/patient_source.h"
 #include "number_option.h"
 #include "patient_option.h"
 

@@ -8,10 +8,10 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "commands.h"
-#include "haptics/device_preset.h"
-#include "training/task.h"
-#include "ultrasound/probe_view.h"
-#include "ultrasound/transducer.h"
+#include "haptics/coupling/device_preset.h"
+#include "tasks/task.h"
+#include "ultrasound/probe/probe_view.h"
+#include "ultrasound/probe/transducer.h"
 
 namespace trocar::cli {
 namespace {

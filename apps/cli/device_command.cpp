@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "commands.h"
-#include "haptics/device_preset.h"
-#include "haptics/simulation/rotation.h"
+#include "haptics/coupling/device_preset.h"
+#include "haptics/closed_loop/rotation.h"
 
 namespace trocar::cli {
 namespace {

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <mutex>
 
-#include "core/data_dir.h"
-#include "core/output_check.h"
+#include "core/files/data_dir.h"
+#include "core/files/output_check.h"
 
 namespace trocar::cli {
 namespace fs = std::filesystem;

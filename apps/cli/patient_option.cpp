@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/user_folders.h"
+#include "core/files/user_folders.h"
 
 namespace trocar::cli {
 

@@ -2,7 +2,7 @@
 
 #include <CLI/App.hpp>
 
-#include "io/patient_source.h"
+#include "io/patient/patient_source.h"
 
 namespace trocar::cli {
 

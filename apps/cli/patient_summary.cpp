@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "anatomy/patient_doubts.h"
-#include "core/data_dir.h"
+#include "core/files/data_dir.h"
 #include "geometry/triangle_mesh.h"
-#include "training/needle.h"
-#include "training/readiness.h"
+#include "tasks/needle.h"
+#include "tasks/readiness.h"
 
 namespace trocar::cli {
 namespace {

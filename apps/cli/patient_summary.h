@@ -6,7 +6,7 @@
 #include "anatomy/build_patient.h"
 #include "anatomy/patient.h"
 #include "output.h"
-#include "training/task.h"
+#include "tasks/task.h"
 
 namespace trocar::cli {
 

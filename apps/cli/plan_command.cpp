@@ -5,12 +5,12 @@
 #include <filesystem>
 
 #include "commands.h"
-#include "headless/prepare_case.h"
+#include "attempt/case/prepare_case.h"
 #include "io/markups_file.h"
-#include "io/patient_source.h"
+#include "io/patient/patient_source.h"
 #include "number_option.h"
 #include "patient_option.h"
-#include "training/plan.h"
+#include "tasks/plan.h"
 
 namespace trocar::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "headless/performer.h"
-#include "io/patient_source.h"
+#include "attempt/live/performer.h"
+#include "io/patient/patient_source.h"
 
 namespace trocar::cli {
 

@@ -6,8 +6,8 @@
 
 #include "anatomy/structure_words.h"
 #include "commands.h"
-#include "headless/realtime_session.h"
-#include "io/patient_source.h"
+#include "attempt/live/realtime_session.h"
+#include "io/patient/patient_source.h"
 #include "number_option.h"
 #include "patient_option.h"
 #include "replay_arguments.h"

@@ -4,8 +4,8 @@
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
-#include "core/atomic_file.h"
-#include "io/patient_source.h"
+#include "core/files/atomic_file.h"
+#include "io/patient/patient_source.h"
 #include "patient_option.h"
 #include "report/html_report.h"
 #include "storage/session_file.h"

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
-#include "training/task.h"
+#include "tasks/task.h"
 
 namespace trocar::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "output.h"
-#include "ultrasound/b_mode.h"
-#include "ultrasound/colour_doppler.h"
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/doppler/colour_doppler.h"
 
 namespace trocar::cli {
 

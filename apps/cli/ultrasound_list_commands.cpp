@@ -6,11 +6,11 @@
 #include <numbers>
 
 #include "commands.h"
-#include "io/patient_source.h"
+#include "io/patient/patient_source.h"
 #include "number_option.h"
 #include "patient_option.h"
-#include "ultrasound/probe_view.h"
-#include "ultrasound/transducer.h"
+#include "ultrasound/probe/probe_view.h"
+#include "ultrasound/probe/transducer.h"
 
 namespace trocar::cli {
 namespace {

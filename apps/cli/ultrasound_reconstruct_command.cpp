@@ -8,11 +8,11 @@
 #include <map>
 
 #include "commands.h"
-#include "io/image_file.h"
-#include "io/plus_config.h"
-#include "io/sequence_file.h"
+#include "io/image/image_file.h"
+#include "io/sequence/plus_config.h"
+#include "io/sequence/sequence_file.h"
 #include "number_option.h"
-#include "ultrasound/freehand.h"
+#include "ultrasound/sweep/freehand.h"
 
 namespace trocar::cli {
 namespace {

@@ -10,10 +10,10 @@
 #include <filesystem>
 #include <set>
 
-#include "io/transform_file.h"
+#include "io/sequence/transform_file.h"
 #include "number_option.h"
 #include "patient_option.h"
-#include "ultrasound/probe_placement.h"
+#include "ultrasound/probe/probe_placement.h"
 
 namespace trocar::cli {
 namespace {

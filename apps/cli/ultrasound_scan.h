@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "io/patient_source.h"
+#include "io/patient/patient_source.h"
 #include "output.h"
-#include "ultrasound/b_mode.h"
-#include "ultrasound/display_settings.h"
-#include "ultrasound/probe_view.h"
-#include "ultrasound/vessel_flow.h"
-#include "ultrasound/view_visibility.h"
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/scanner/display_settings.h"
+#include "ultrasound/probe/probe_view.h"
+#include "ultrasound/doppler/vessel_flow.h"
+#include "ultrasound/probe/view_visibility.h"
 
 namespace trocar::cli {
 

@@ -8,12 +8,12 @@
 #include <numbers>
 
 #include "commands.h"
-#include "io/image_file.h"
-#include "io/sequence_file.h"
-#include "io/transform_file.h"
+#include "io/image/image_file.h"
+#include "io/sequence/sequence_file.h"
+#include "io/sequence/transform_file.h"
 #include "number_option.h"
-#include "ultrasound/freehand_sweep.h"
-#include "ultrasound/mechanical_sweep.h"
+#include "ultrasound/sweep/freehand_sweep.h"
+#include "ultrasound/sweep/mechanical_sweep.h"
 #include "ultrasound_scan.h"
 
 namespace trocar::cli {

@@ -9,12 +9,12 @@
 #include <mutex>
 #include <thread>
 
-#include "core/data_dir.h"
+#include "core/files/data_dir.h"
 #include "core/log.h"
 #include "core/version.h"
 #include "devices/device_spec.h"
-#include "headless/scene_request.h"
-#include "io/patient_source.h"
+#include "attempt/case/scene_request.h"
+#include "io/patient/patient_source.h"
 #include "number_option.h"
 #include "program_end.h"
 #include "server/haptic_server.h"

@@ -12,8 +12,8 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "control/seat_flow.h"
-#include "core/data_dir.h"
-#include "core/user_folders.h"
+#include "core/files/data_dir.h"
+#include "core/files/user_folders.h"
 #include "core/version.h"
 #include "number_option.h"
 #include "pages/start_page.h"
@@ -22,11 +22,11 @@
 #include "script/benchmark.h"
 #include "script/script_player.h"
 #include "shell/main_window.h"
-#include "shell/parts.h"
-#include "shell/screen_scale.h"
-#include "shell/theme.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/screen_scale.h"
+#include "ui_kit/theme.h"
 #include "shell/trainer_application.h"
-#include "training/task.h"
+#include "tasks/task.h"
 
 namespace {
 

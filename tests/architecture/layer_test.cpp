@@ -31,8 +31,10 @@ Modules modules_of(std::string_view text) {
 const Modules& small_tree() {
   static const Modules modules = modules_of(
       "# a comment\n"
+      "[low]\n"
       "core :  : expected\n"
       "volume : core : highway\n"
+      "[high]\n"
       "io : volume : itk vtk-io\n"
       "scene : volume : vtk-rendering\n");
   return modules;
@@ -50,8 +52,8 @@ TEST(ModuleList, NamesUsesAndLibrariesAreRead) {
 
 TEST(ModuleList, MalformedAndDoubleLinesAreTold) {
   std::vector<std::string> complaints;
-  parse_modules("core : :\ncore : :\nvolume core\n", complaints);
-  EXPECT_EQ(complaints.size(), 2u) << joined(complaints);
+  parse_modules("above : :\n[low]\ncore : :\ncore : :\nvolume core\n[low]\n", complaints);
+  EXPECT_EQ(complaints.size(), 4u) << joined(complaints);
 }
 
 TEST(Arrows, ReachWhatDependenciesReach) {
@@ -61,12 +63,17 @@ TEST(Arrows, ReachWhatDependenciesReach) {
 
 TEST(Arrows, CycleIsFound) {
   EXPECT_EQ(check_arrows(small_tree()).size(), 0u);
-  EXPECT_EQ(check_arrows(modules_of("a : b :\nb : c :\nc : a :\n")).size(), 3u);
-  EXPECT_EQ(check_arrows(modules_of("a : a :\n")).size(), 1u);
+  EXPECT_EQ(check_arrows(modules_of("[one]\na : b :\nb : c :\nc : a :\n")).size(), 3u);
+  EXPECT_EQ(check_arrows(modules_of("[one]\na : a :\n")).size(), 1u);
+}
+
+TEST(Arrows, ArrowToAHigherTierIsFound) {
+  EXPECT_EQ(check_arrows(modules_of("[low]\na : :\n[high]\nb : a :\n")).size(), 0u);
+  EXPECT_EQ(check_arrows(modules_of("[low]\na : b :\n[high]\nb : :\n")).size(), 1u);
 }
 
 TEST(Arrows, UnlistedDependencyIsFound) {
-  EXPECT_EQ(check_arrows(modules_of("a : b :\n")).size(), 1u);
+  EXPECT_EQ(check_arrows(modules_of("[one]\na : b :\n")).size(), 1u);
 }
 
 TEST(Includes, AreReadWithTheirLines) {
@@ -81,39 +88,44 @@ TEST(Includes, AreReadWithTheirLines) {
 }
 
 TEST(Includes, DownwardArrowIsAllowed) {
-  EXPECT_EQ(verdict("src/io/a.cpp", "#include \"core/a.h\"\n#include \"io/detail/b.h\"\n#include <vector>\n"), "");
+  EXPECT_EQ(verdict("src/high/io/a.cpp", "#include \"core/a.h\"\n#include \"io/detail/b.h\"\n#include <vector>\n"), "");
   EXPECT_EQ(verdict("apps/cli/a.cpp", "#include \"io/a.h\"\n#include \"output.h\"\n#include <CLI/CLI.hpp>\n"), "");
 }
 
 TEST(Includes, UpwardOrSidewardArrowIsRefused) {
-  EXPECT_NE(verdict("src/core/a.cpp", "#include \"volume/grid.h\"\n"), "");
-  EXPECT_NE(verdict("src/io/a.cpp", "#include \"scene/view.h\"\n"), "");
-  EXPECT_NE(verdict("src/io/a.cpp", "#include \"bench/harness.h\"\n"), "");
+  EXPECT_NE(verdict("src/low/core/a.cpp", "#include \"volume/grid.h\"\n"), "");
+  EXPECT_NE(verdict("src/high/io/a.cpp", "#include \"scene/view.h\"\n"), "");
+  EXPECT_NE(verdict("src/high/io/a.cpp", "#include \"bench/harness.h\"\n"), "");
 }
 
 TEST(Includes, HeaderWithoutItsModuleIsForTestsAlone) {
-  EXPECT_EQ(verdict("src/io/test/a_test.cpp", "#include \"make_grids.h\"\n"), "");
-  EXPECT_NE(verdict("src/io/a.cpp", "#include \"make_grids.h\"\n"), "");
+  EXPECT_EQ(verdict("src/high/io/test/a_test.cpp", "#include \"make_grids.h\"\n"), "");
+  EXPECT_NE(verdict("src/high/io/a.cpp", "#include \"make_grids.h\"\n"), "");
+}
+
+TEST(Includes, ModuleInAnotherTiersFolderIsRefused) {
+  EXPECT_NE(verdict("src/low/io/a.cpp", ""), "");
+  EXPECT_NE(verdict("src/io.cpp", ""), "");
 }
 
 TEST(Includes, FolderOutsideTheListIsRefused) {
-  EXPECT_NE(verdict("src/other/a.cpp", ""), "");
+  EXPECT_NE(verdict("src/high/other/a.cpp", ""), "");
 }
 
 TEST(Includes, PrivateHeaderOfAnotherModuleIsRefused) {
-  EXPECT_NE(verdict("src/io/a.cpp", "#include \"volume/detail/rows.h\"\n"), "");
+  EXPECT_NE(verdict("src/high/io/a.cpp", "#include \"volume/detail/rows.h\"\n"), "");
   EXPECT_NE(verdict("apps/cli/a.cpp", "#include \"volume/detail/rows.h\"\n"), "");
 }
 
 TEST(Includes, LibraryBelongsToTheModuleThatListsIt) {
   EXPECT_EQ(
-      verdict("src/io/a.cpp", "#include <itkImage.h>\n#include <vtkXMLPolyDataReader.h>\n#include <vtkPolyData.h>\n"),
+      verdict("src/high/io/a.cpp", "#include <itkImage.h>\n#include <vtkXMLPolyDataReader.h>\n#include <vtkPolyData.h>\n"),
       "");
-  EXPECT_NE(verdict("src/volume/a.cpp", "#include <itkImage.h>\n"), "");
-  EXPECT_NE(verdict("src/io/a.cpp", "#include <hwy/highway.h>\n"), "");
-  EXPECT_NE(verdict("src/io/a.cpp", "#include <vtkRenderer.h>\n"), "");
-  EXPECT_NE(verdict("src/scene/a.cpp", "#include <vtkXMLPolyDataReader.h>\n"), "");
-  EXPECT_NE(verdict("src/volume/a.cpp", "#include <CLI/CLI.hpp>\n"), "");
+  EXPECT_NE(verdict("src/low/volume/a.cpp", "#include <itkImage.h>\n"), "");
+  EXPECT_NE(verdict("src/high/io/a.cpp", "#include <hwy/highway.h>\n"), "");
+  EXPECT_NE(verdict("src/high/io/a.cpp", "#include <vtkRenderer.h>\n"), "");
+  EXPECT_NE(verdict("src/high/scene/a.cpp", "#include <vtkXMLPolyDataReader.h>\n"), "");
+  EXPECT_NE(verdict("src/low/volume/a.cpp", "#include <CLI/CLI.hpp>\n"), "");
   EXPECT_NE(verdict("apps/cli/a.cpp", "#include <soci/soci.h>\n"), "");
 }
 
@@ -122,7 +134,7 @@ TEST(Includes, QtBelongsToTheTrainerAlone) {
   EXPECT_NE(verdict("apps/trainer/views/a.cpp", "#include <QVTKOpenGLNativeWidget.h>\n"), "");
   EXPECT_NE(verdict("apps/trainer/views/a.cpp", "#include <vtkRenderWindow.h>\n"), "");
   EXPECT_NE(verdict("apps/cli/a.cpp", "#include <QString>\n"), "");
-  EXPECT_NE(verdict("src/scene/a.cpp", "#include <QWidget>\n"), "");
+  EXPECT_NE(verdict("src/high/scene/a.cpp", "#include <QWidget>\n"), "");
 }
 
 TEST(Includes, RoomsOfTheTrainerSeeEachOther) {
@@ -131,12 +143,12 @@ TEST(Includes, RoomsOfTheTrainerSeeEachOther) {
 }
 
 TEST(Includes, UnknownLibraryIsRefused) {
-  EXPECT_NE(verdict("src/io/a.cpp", "#include <boost/any.hpp>\n"), "");
+  EXPECT_NE(verdict("src/high/io/a.cpp", "#include <boost/any.hpp>\n"), "");
 }
 
 TEST(Includes, TestFrameworkStaysInTests) {
-  EXPECT_EQ(verdict("src/io/test/a_test.cpp", "#include <gtest/gtest.h>\n"), "");
-  EXPECT_NE(verdict("src/io/a.cpp", "#include <gtest/gtest.h>\n"), "");
+  EXPECT_EQ(verdict("src/high/io/test/a_test.cpp", "#include <gtest/gtest.h>\n"), "");
+  EXPECT_NE(verdict("src/high/io/a.cpp", "#include <gtest/gtest.h>\n"), "");
 }
 
 TEST(ModuleReadme, HasTenToTwentyFiveLines) {
@@ -174,11 +186,13 @@ TEST_F(Repository, EveryIncludeFollowsTheModuleList) {
 
 TEST_F(Repository, EveryFolderIsAModuleAndEveryModuleAFolder) {
   std::set<std::string> folders;
-  for (const auto& entry : fs::directory_iterator(kTop / "src")) {
-    if (entry.is_directory()) folders.insert(entry.path().filename().string());
+  for (const auto& tier : fs::directory_iterator(kTop / "src")) {
+    if (!tier.is_directory()) continue;
+    for (const auto& entry : fs::directory_iterator(tier.path()))
+      folders.insert(fs::relative(entry.path(), kTop / "src").generic_string());
   }
   std::set<std::string> listed;
-  for (const auto& [name, module] : modules_) listed.insert(name);
+  for (const auto& [name, module] : modules_) listed.insert(module.tier + "/" + name);
   EXPECT_EQ(folders, listed);
 }
 
@@ -186,7 +200,7 @@ TEST_F(Repository, EveryModuleIsDescribed) {
   const std::string architecture = read(kTop / "ARCHITECTURE.md");
   std::vector<std::string> complaints;
   for (const auto& [name, module] : modules_) {
-    const auto found = check_module_readme(name, read(kTop / "src" / name / "README.md"));
+    const auto found = check_module_readme(name, read(kTop / "src" / module.tier / name / "README.md"));
     complaints.insert(complaints.end(), found.begin(), found.end());
     if (architecture.find("`" + name + "`") == std::string::npos) {
       complaints.push_back("ARCHITECTURE.md does not name `" + name + "`");

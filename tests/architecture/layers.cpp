@@ -123,9 +123,12 @@ std::optional<Place> find_place(const Modules& modules, const std::string& path)
   place.is_program = path.starts_with("apps/");
   place.has_window = path.starts_with("apps/trainer/");
   if (path.starts_with("src/")) {
-    place.module = path.substr(4, path.find('/', 4) - 4);
+    const std::size_t behind_tier = path.find('/', 4);
+    if (behind_tier == std::string::npos) return std::nullopt;
+    const std::size_t begin = behind_tier + 1;
+    place.module = path.substr(begin, path.find('/', begin) - begin);
     const auto found = modules.find(place.module);
-    if (found == modules.end()) return std::nullopt;
+    if (found == modules.end() || found->second.tier != path.substr(4, behind_tier - 4)) return std::nullopt;
     place.modules = reachable(modules, place.module);
     place.libraries = found->second.libraries;
     return place;
@@ -176,18 +179,26 @@ std::optional<std::string> complaint_about_theirs(const Place& place, const std:
 
 Modules parse_modules(std::string_view text, std::vector<std::string>& complaints) {
   Modules modules;
+  std::string tier;
+  std::set<std::string> tiers;
   for (const std::string& line : lines(text)) {
     if (line.empty() || line.front() == '#') continue;
+    if (line.front() == '[' && line.back() == ']') {
+      tier = line.substr(1, line.size() - 2);
+      if (!tiers.insert(tier).second) complaints.push_back("src/modules.txt: [" + tier + "] is listed twice");
+      continue;
+    }
     std::vector<std::string> fields;
     std::istringstream stream(line + " ");
     for (std::string field; std::getline(stream, field, ':');) fields.push_back(field);
     const std::set<std::string> names = fields.empty() ? std::set<std::string>{} : words(fields[0]);
-    if (fields.size() != 3 || names.size() != 1) {
-      complaints.push_back("src/modules.txt: not \"name : uses : libraries\": " + line);
+    if (fields.size() != 3 || names.size() != 1 || tier.empty()) {
+      complaints.push_back("src/modules.txt: not \"name : uses : libraries\" below a [tier]: " + line);
       continue;
     }
     const std::string& name = *names.begin();
-    if (!modules.emplace(name, Module{name, words(fields[1]), words(fields[2])}).second) {
+    const int level = static_cast<int>(tiers.size());
+    if (!modules.emplace(name, Module{tier, level, name, words(fields[1]), words(fields[2])}).second) {
       complaints.push_back("src/modules.txt: " + name + " is listed twice");
     }
   }
@@ -216,6 +227,9 @@ std::vector<std::string> check_arrows(const Modules& modules) {
         complaints.push_back(name + " uses " + use + ", which is not listed");
       } else if (reachable(modules, use).contains(name)) {
         complaints.push_back(name + " uses " + use + ", which uses " + name + ": a cycle");
+      } else if (modules.at(use).level > module.level) {
+        complaints.push_back(name + " in " + module.tier + " uses " + use + " of the higher tier " +
+                             modules.at(use).tier);
       }
     }
   }

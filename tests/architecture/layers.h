@@ -10,19 +10,21 @@ namespace trocar::architecture {
 
 /// A line of src/modules.txt.
 struct Module {
+  std::string tier;  ///< Folder in src/ that it lies in.
+  int level = 0;     ///< Of its tier, counted from the lowest.
   std::string name;
   std::set<std::string> uses;       ///< Modules it may include directly.
   std::set<std::string> libraries;  ///< Third-party libraries it may include.
 };
 using Modules = std::map<std::string, Module>;
 
-/// Reads "name : uses : libraries" lines; what is malformed or named twice is told in `complaints`.
+/// Reads "[tier]" and "name : uses : libraries" lines; what is malformed or named twice is told in `complaints`.
 Modules parse_modules(std::string_view text, std::vector<std::string>& complaints);
 
 /// Modules that `name` may include: itself and all that its dependencies may use. Ends also where there is a cycle.
 std::set<std::string> reachable(const Modules& modules, const std::string& name);
 
-/// Unknown dependencies and cycles, one line each; empty when the arrows only go down.
+/// Unknown dependencies, cycles and arrows to a higher tier, one line each; empty when the arrows only go down.
 std::vector<std::string> check_arrows(const Modules& modules);
 
 struct Include {
@@ -33,7 +35,7 @@ struct Include {
 std::vector<Include> parse_includes(std::string_view source);
 
 /// Includes of one file that its place does not allow, one line each. `path` is relative to the repository:
-/// src/MODULE/..., apps/NAME/..., bench/... or tests/....
+/// src/TIER/MODULE/..., apps/NAME/..., bench/... or tests/....
 std::vector<std::string> check_includes(const Modules& modules, const std::string& path, std::string_view source);
 
 /// What is wrong with a module's README.md: it has 10 to 25 lines.

@@ -3,7 +3,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "cli/program.h"
-#include "io/image_file.h"
+#include "io/image/image_file.h"
 
 namespace trocar::cli_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/program.h"
-#include "core/atomic_file.h"
+#include "core/files/atomic_file.h"
 
 namespace trocar::cli_test {
 namespace {

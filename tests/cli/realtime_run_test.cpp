@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "cli/program.h"
-#include "link/server_process.h"
+#include "link/client/server_process.h"
 #include "storage/session_file.h"
 
 namespace trocar::cli_test {

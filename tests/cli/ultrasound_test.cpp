@@ -5,10 +5,10 @@
 #include <fstream>
 
 #include "cli/program.h"
-#include "core/atomic_file.h"
+#include "core/files/atomic_file.h"
 #include "geometry/pose.h"
-#include "io/image_file.h"
-#include "io/transform_file.h"
+#include "io/image/image_file.h"
+#include "io/sequence/transform_file.h"
 #include "volume/correlation.h"
 #include "volume/sampling.h"
 

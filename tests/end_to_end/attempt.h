@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/temporary_folder.h"
-#include "headless/run_session.h"
+#include "core/files/temporary_folder.h"
+#include "attempt/offline/run_session.h"
 
 namespace trocar::testing {
 

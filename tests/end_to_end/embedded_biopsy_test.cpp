@@ -11,9 +11,9 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "attempt.h"
-#include "core/atomic_file.h"
+#include "core/files/atomic_file.h"
 #include "core/interruption.h"
-#include "haptics/insertion_law.h"
+#include "haptics/insertion/insertion_law.h"
 #include "report/html_report.h"
 
 namespace trocar::testing {

@@ -1,13 +1,13 @@
 // Freehand reconstruction of real sweeps, where the test data lies beside the checkout.
 
-#include "ultrasound/freehand.h"
+#include "ultrasound/sweep/freehand.h"
 
 #include <gtest/gtest.h>
 
 #include "core/testing/test_data.h"
-#include "io/image_file.h"
-#include "io/plus_config.h"
-#include "io/sequence_file.h"
+#include "io/image/image_file.h"
+#include "io/sequence/plus_config.h"
+#include "io/sequence/sequence_file.h"
 #include "volume/correlation.h"
 
 namespace trocar::testing {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "core/data_dir.h"
-#include "core/temporary_folder.h"
+#include "core/files/data_dir.h"
+#include "core/files/temporary_folder.h"
 #include "devices/device_spec.h"
-#include "headless/prepare_case.h"
+#include "attempt/case/prepare_case.h"
 #include "server/haptic_server.h"
 
 namespace trocar::testing {

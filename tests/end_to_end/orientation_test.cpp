@@ -6,8 +6,8 @@
 #include "anatomy/test/make_torso.h"
 #include "attempt.h"
 #include "core/testing/test_data.h"
-#include "io/image_file.h"
-#include "io/label_sources.h"
+#include "io/image/image_file.h"
+#include "io/patient/label_sources.h"
 #include "volume/test/make_grids.h"
 
 namespace trocar::testing {

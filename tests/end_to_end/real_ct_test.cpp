@@ -8,8 +8,8 @@
 #include "anatomy/build_patient.h"
 #include "attempt.h"
 #include "core/testing/test_data.h"
-#include "io/image_file.h"
-#include "io/label_sources.h"
+#include "io/image/image_file.h"
+#include "io/patient/label_sources.h"
 
 namespace trocar::testing {
 namespace {

@@ -1,6 +1,6 @@
 // An attempt through live servers: the same as in-process, and whole up to where a server went away.
 
-#include "headless/realtime_session.h"
+#include "attempt/live/realtime_session.h"
 
 #include <gtest/gtest.h>
 

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/data_dir.h"
-#include "ultrasound/freehand.h"
-#include "ultrasound/freehand_sweep.h"
-#include "ultrasound/probe_placement.h"
-#include "ultrasound/probe_view.h"
+#include "core/files/data_dir.h"
+#include "ultrasound/sweep/freehand.h"
+#include "ultrasound/sweep/freehand_sweep.h"
+#include "ultrasound/probe/probe_placement.h"
+#include "ultrasound/probe/probe_view.h"
 #include "volume/sampling.h"
 
 namespace trocar::testing {

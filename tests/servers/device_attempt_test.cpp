@@ -4,11 +4,11 @@
 #include <atomic>
 #include <thread>
 
-#include "core/temporary_folder.h"
-#include "devices/test/gamepad_stand_in.h"
-#include "devices/test/spacenav_daemon.h"
+#include "core/files/temporary_folder.h"
+#include "devices/pointer/test/gamepad_stand_in.h"
+#include "devices/pointer/test/spacenav_daemon.h"
 #include "servers/live_server.h"
-#include "station/live_attempt.h"
+#include "attempt/live/live_attempt.h"
 
 namespace trocar::servers_test {
 namespace {

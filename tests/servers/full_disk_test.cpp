@@ -6,9 +6,9 @@
 #include <atomic>
 
 #include "servers/live_attempt_lab.h"
-#include "station/attempt_replay.h"
-#include "station/live_attempt.h"
-#include "station/recording_room.h"
+#include "attempt/record/attempt_replay.h"
+#include "attempt/live/live_attempt.h"
+#include "attempt/record/recording_room.h"
 #include "storage/session_file.h"
 
 namespace trocar::servers_test {

@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
-#include "core/temporary_folder.h"
+#include "core/files/temporary_folder.h"
 #include "servers/live_server.h"
-#include "station/live_attempt.h"
-#include "station/open_case.h"
+#include "attempt/live/live_attempt.h"
+#include "attempt/case/open_case.h"
 
 namespace trocar::servers_test {
 

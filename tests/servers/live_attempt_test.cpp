@@ -1,16 +1,16 @@
 // A trainee's attempt through servers that it starts and looks after itself.
-#include "station/live_attempt.h"
+#include "attempt/live/live_attempt.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
 
 #include <algorithm>
 
-#include "core/temporary_folder.h"
-#include "headless/run_session.h"
+#include "core/files/temporary_folder.h"
+#include "attempt/offline/run_session.h"
 #include "servers/live_attempt_lab.h"
-#include "station/attempt_replay.h"
-#include "station/hand_motion.h"
+#include "attempt/record/attempt_replay.h"
+#include "attempt/hands/hand_motion.h"
 #include "storage/session_file.h"
 
 namespace trocar::servers_test {

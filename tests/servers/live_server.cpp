@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "headless/scene_request.h"
+#include "attempt/case/scene_request.h"
 
 namespace trocar::servers_test {
 namespace {

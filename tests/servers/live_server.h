@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/temporary_folder.h"
-#include "link/haptic_client.h"
-#include "link/server_process.h"
+#include "core/files/temporary_folder.h"
+#include "link/client/haptic_client.h"
+#include "link/client/server_process.h"
 
 namespace trocar::servers_test {
 

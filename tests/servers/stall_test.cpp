@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <future>
 
-#include "headless/prepare_case.h"
-#include "headless/realtime_session.h"
-#include "headless/server_seat.h"
+#include "attempt/case/prepare_case.h"
+#include "attempt/live/realtime_session.h"
+#include "attempt/servers/server_seat.h"
 #include "servers/live_attempt_lab.h"
 #include "storage/session_file.h"
 

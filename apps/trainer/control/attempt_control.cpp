@@ -7,15 +7,15 @@
 
 #include "anatomy/structure_words.h"
 #include "control/force_bands.h"
-#include "desk/desk.h"
-#include "desk/shot_display.h"
+#include "workspace/desk.h"
+#include "workspace/shot_display.h"
 #include "pages/work_page.h"
 #include "panels/puncture_panel.h"
-#include "shell/parts.h"
-#include "station/gun_shot.h"
-#include "views/force_plot.h"
-#include "views/patient_view.h"
-#include "views/ultrasound_view.h"
+#include "ui_kit/parts.h"
+#include "attempt/guide/gun_shot.h"
+#include "views/plots/force_plot.h"
+#include "views/patient/patient_view.h"
+#include "views/ultrasound/ultrasound_view.h"
 
 namespace trocar::trainer {
 namespace {

@@ -7,9 +7,9 @@
 #include "control/page_keys.h"
 #include "control/tool_gestures.h"
 #include "shell/seat_choice.h"
-#include "station/live_attempt.h"
-#include "station/open_case.h"
-#include "station/pointer_hand.h"
+#include "attempt/live/live_attempt.h"
+#include "attempt/case/open_case.h"
+#include "attempt/hands/pointer_hand.h"
 
 namespace trocar::trainer {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "control/seat_words.h"
-#include "headless/own_server.h"
-#include "link/server_process.h"
-#include "shell/parts.h"
+#include "attempt/servers/own_server.h"
+#include "link/client/server_process.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {

@@ -1,7 +1,7 @@
 #include "control/force_bands.h"
 
 #include "anatomy/structure_words.h"
-#include "shell/parts.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {

@@ -3,8 +3,8 @@
 #include <QPointF>
 #include <vector>
 
-#include "station/open_case.h"
-#include "views/force_plot.h"
+#include "attempt/case/open_case.h"
+#include "views/plots/force_plot.h"
 
 namespace trocar::trainer {
 

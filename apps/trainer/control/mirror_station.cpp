@@ -7,7 +7,7 @@
 #include <QShortcut>
 
 #include "panels/mirror_dialog.h"
-#include "views/patient_view.h"
+#include "views/patient/patient_view.h"
 
 namespace trocar::trainer {
 namespace {

@@ -4,18 +4,18 @@
 #include <algorithm>
 
 #include "control/force_bands.h"
-#include "core/atomic_file.h"
-#include "desk/desk.h"
-#include "desk/shot_display.h"
+#include "core/files/atomic_file.h"
+#include "workspace/desk.h"
+#include "workspace/shot_display.h"
 #include "pages/work_page.h"
 #include "panels/feedback_panel.h"
 #include "report/html_report.h"
-#include "shell/parts.h"
-#include "shell/theme.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
 #include "telemetry/tick_pose.h"
-#include "views/force_plot.h"
-#include "views/time_line.h"
-#include "views/ultrasound_view.h"
+#include "views/plots/force_plot.h"
+#include "views/plots/time_line.h"
+#include "views/ultrasound/ultrasound_view.h"
 
 namespace trocar::trainer {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "control/page_keys.h"
 #include "shell/seat_choice.h"
-#include "station/attempt_replay.h"
-#include "station/open_case.h"
+#include "attempt/record/attempt_replay.h"
+#include "attempt/case/open_case.h"
 
 namespace trocar::trainer {
 

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "core/background_job.h"
-#include "devices/speaker.h"
-#include "shell/frame_count.h"
+#include "devices/pointer/speaker.h"
+#include "ui_kit/frame_count.h"
 #include "shell/seat_choice.h"
-#include "station/attempt_replay.h"
-#include "station/journal.h"
-#include "station/live_attempt.h"
-#include "station/open_case.h"
+#include "attempt/record/attempt_replay.h"
+#include "attempt/record/journal.h"
+#include "attempt/live/live_attempt.h"
+#include "attempt/case/open_case.h"
 
 namespace trocar::trainer {
 

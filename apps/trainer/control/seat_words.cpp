@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shell/parts.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 

@@ -4,7 +4,7 @@
 
 #include "core/result.h"
 #include "shell/status_strip.h"
-#include "station/attempt_view.h"
+#include "attempt/live/attempt_view.h"
 
 namespace trocar::trainer {
 

@@ -7,11 +7,11 @@
 #include <QVBoxLayout>
 #include <span>
 
-#include "shell/parts.h"
-#include "shell/theme.h"
-#include "station/live_attempt.h"
-#include "station/seat_devices.h"
-#include "views/briefing_picture.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
+#include "attempt/live/live_attempt.h"
+#include "attempt/servers/seat_devices.h"
+#include "views/slices/briefing_picture.h"
 
 namespace trocar::trainer {
 namespace {

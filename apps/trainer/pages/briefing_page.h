@@ -3,7 +3,7 @@
 #include <QWidget>
 
 #include "shell/seat_choice.h"
-#include "station/open_case.h"
+#include "attempt/case/open_case.h"
 
 class QBoxLayout;
 class QLabel;

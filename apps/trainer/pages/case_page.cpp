@@ -12,14 +12,14 @@
 #include <QStackedWidget>
 #include <QVBoxLayout>
 
-#include "authoring/case_edits.h"
-#include "panels/check_list.h"
-#include "shell/parts.h"
-#include "shell/theme.h"
-#include "training/assess_path.h"
-#include "views/patient_view.h"
-#include "views/slice_marks.h"
-#include "views/slice_view.h"
+#include "case_builder/case_edits.h"
+#include "ui_kit/check_list.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
+#include "tasks/assess_path.h"
+#include "views/patient/patient_view.h"
+#include "views/slices/slice_marks.h"
+#include "views/slices/slice_view.h"
 
 namespace trocar::trainer {
 namespace {

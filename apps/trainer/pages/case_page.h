@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "authoring/case_desk.h"
-#include "panels/case_panel.h"
+#include "case_builder/case_desk.h"
+#include "case_panels/case_panel.h"
 
 class QLabel;
 class QProgressBar;

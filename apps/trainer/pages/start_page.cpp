@@ -14,12 +14,12 @@
 #include <algorithm>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/data_dir.h"
-#include "io/patient_folder.h"
+#include "core/files/data_dir.h"
+#include "io/patient/patient_folder.h"
 #include "panels/device_choice.h"
-#include "shell/parts.h"
-#include "training/needle.h"
-#include "training/task.h"
+#include "ui_kit/parts.h"
+#include "tasks/needle.h"
+#include "tasks/task.h"
 
 namespace trocar::trainer {
 namespace {

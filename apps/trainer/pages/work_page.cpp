@@ -6,11 +6,11 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "desk/desk.h"
+#include "workspace/desk.h"
 #include "panels/feedback_panel.h"
-#include "panels/parameter_panel.h"
+#include "parameters/parameter_panel.h"
 #include "panels/puncture_panel.h"
-#include "views/time_line.h"
+#include "views/plots/time_line.h"
 
 namespace trocar::trainer {
 namespace {

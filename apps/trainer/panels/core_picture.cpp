@@ -2,7 +2,7 @@
 
 #include <QPainter>
 
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {

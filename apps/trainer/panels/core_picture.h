@@ -3,7 +3,7 @@
 #include <QWidget>
 #include <vector>
 
-#include "station/gun_shot.h"
+#include "attempt/guide/gun_shot.h"
 
 namespace trocar::trainer {
 

@@ -11,8 +11,8 @@
 #include <algorithm>
 
 #include "panels/device_test_dialog.h"
-#include "shell/parts.h"
-#include "station/seat_devices.h"
+#include "ui_kit/parts.h"
+#include "attempt/servers/seat_devices.h"
 
 namespace trocar::trainer {
 namespace {

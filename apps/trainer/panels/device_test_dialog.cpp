@@ -6,9 +6,9 @@
 #include <QVBoxLayout>
 
 #include "control/device_check.h"
-#include "shell/parts.h"
-#include "shell/theme.h"
-#include "views/pose_picture.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
+#include "views/ultrasound/pose_picture.h"
 
 namespace trocar::trainer {
 namespace {

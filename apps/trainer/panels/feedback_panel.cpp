@@ -10,8 +10,8 @@
 
 #include "panels/core_picture.h"
 #include "panels/score_dial.h"
-#include "shell/parts.h"
-#include "shell/theme.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {

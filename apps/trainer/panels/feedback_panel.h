@@ -2,7 +2,7 @@
 
 #include <QWidget>
 
-#include "training/score.h"
+#include "tasks/score.h"
 
 class QGridLayout;
 class QLabel;

@@ -11,10 +11,10 @@
 #include <QVBoxLayout>
 
 #include "panels/core_picture.h"
-#include "panels/wrapped_rows.h"
-#include "shell/parts.h"
-#include "shell/theme.h"
-#include "views/force_bar.h"
+#include "ui_kit/wrapped_rows.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
+#include "views/plots/force_bar.h"
 
 namespace trocar::trainer {
 namespace {

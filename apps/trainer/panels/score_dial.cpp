@@ -3,7 +3,7 @@
 #include <QPainter>
 #include <algorithm>
 
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 

@@ -15,8 +15,8 @@
 #include <QVBoxLayout>
 #include <QWidgetAction>
 
-#include "shell/parts.h"
-#include "views/patient_view.h"
+#include "ui_kit/parts.h"
+#include "views/patient/patient_view.h"
 
 namespace trocar::trainer {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/step_history.h"
-#include "panels/undo_buttons.h"
+#include "ui_kit/undo_buttons.h"
 #include "scene/structure.h"
 
 class QBoxLayout;

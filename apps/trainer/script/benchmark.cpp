@@ -1,6 +1,6 @@
 #include "script/benchmark.h"
 
-#include "desk/desk.h"
+#include "workspace/desk.h"
 
 namespace trocar::trainer {
 

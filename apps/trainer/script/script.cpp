@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "shell/parts.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "script/cut_off.h"
 #include "script/widget_events.h"
-#include "shell/parts.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {

@@ -20,7 +20,7 @@
 #include <QWidget>
 #include <cstdlib>
 
-#include "shell/parts.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {

@@ -6,7 +6,7 @@
 #include <QPushButton>
 #include <span>
 
-#include "shell/parts.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "shell/banner.h"
+#include "ui_kit/banner.h"
 
 class QAction;
 class QLabel;

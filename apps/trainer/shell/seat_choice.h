@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "headless/prepare_case.h"
+#include "attempt/case/prepare_case.h"
 #include "scene/guidance.h"
 
 namespace trocar::trainer {

@@ -5,8 +5,8 @@
 #include <QLabel>
 #include <QPushButton>
 
-#include "shell/parts.h"
-#include "shell/theme.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {

@@ -3,8 +3,8 @@
 #include <QFrame>
 #include <vector>
 
-#include "headless/run_result.h"
-#include "shell/frame_count.h"
+#include "attempt/record/run_result.h"
+#include "ui_kit/frame_count.h"
 
 class QLabel;
 class QPushButton;

@@ -11,7 +11,7 @@
 #include <QWindow>
 #include <algorithm>
 
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {

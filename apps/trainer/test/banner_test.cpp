@@ -1,4 +1,4 @@
-#include "shell/banner.h"
+#include "ui_kit/banner.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <QVBoxLayout>
 
 #include "pages/start_page.h"
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 #include "test/widget_actions.h"
 
 namespace trocar::trainer {

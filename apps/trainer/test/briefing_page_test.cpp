@@ -8,10 +8,10 @@
 #include <algorithm>
 
 #include "script/widget_events.h"
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 #include "test/open_abdomen.h"
 #include "test/widget_actions.h"
-#include "views/briefing_picture.h"
+#include "views/slices/briefing_picture.h"
 
 namespace trocar::trainer {
 namespace {

@@ -23,16 +23,16 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
-#include "authoring/case_edits.h"
-#include "core/atomic_file.h"
-#include "core/temporary_folder.h"
+#include "case_builder/case_edits.h"
+#include "core/files/atomic_file.h"
+#include "core/files/temporary_folder.h"
 #include "core/testing/test_data.h"
-#include "headless/prepare_case.h"
-#include "io/image_file.h"
-#include "io/patient_folder.h"
-#include "shell/parts.h"
+#include "attempt/case/prepare_case.h"
+#include "io/image/image_file.h"
+#include "io/patient/patient_folder.h"
+#include "ui_kit/parts.h"
 #include "test/widget_actions.h"
-#include "views/slice_view.h"
+#include "views/slices/slice_view.h"
 
 namespace trocar::trainer {
 namespace {

@@ -1,4 +1,4 @@
-#include "desk/desk.h"
+#include "workspace/desk.h"
 
 #include <gtest/gtest.h>
 
@@ -10,15 +10,15 @@
 #include <QToolButton>
 #include <map>
 
-#include "core/data_dir.h"
+#include "core/files/data_dir.h"
 #include "scene/needle_shape.h"
 #include "script/widget_events.h"
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 #include "test/open_abdomen.h"
-#include "training/needle.h"
-#include "views/patient_view.h"
-#include "views/slice_view.h"
-#include "views/ultrasound_view.h"
+#include "tasks/needle.h"
+#include "views/patient/patient_view.h"
+#include "views/slices/slice_view.h"
+#include "views/ultrasound/ultrasound_view.h"
 
 namespace trocar::trainer {
 namespace {

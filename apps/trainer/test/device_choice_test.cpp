@@ -9,7 +9,7 @@
 #include <QPushButton>
 #include <QStandardItemModel>
 
-#include "devices/test/hd_stand_ins.h"
+#include "devices/vendor/test/hd_stand_ins.h"
 #include "panels/device_test_dialog.h"
 
 namespace trocar::trainer {

@@ -1,4 +1,4 @@
-#include "shell/focus_ring.h"
+#include "ui_kit/focus_ring.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <QVBoxLayout>
 
 #include "script/widget_events.h"
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {

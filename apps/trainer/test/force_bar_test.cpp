@@ -1,10 +1,10 @@
-#include "views/force_bar.h"
+#include "views/plots/force_bar.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 #include "test/widget_actions.h"
 
 namespace trocar::trainer {

@@ -1,4 +1,4 @@
-#include "views/force_plot.h"
+#include "views/plots/force_plot.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 #include "test/widget_actions.h"
 
 namespace trocar::trainer {

@@ -1,4 +1,4 @@
-#include "shell/frame_count.h"
+#include "ui_kit/frame_count.h"
 
 #include <gtest/gtest.h>
 

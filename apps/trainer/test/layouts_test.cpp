@@ -1,4 +1,4 @@
-#include "desk/layouts.h"
+#include "workspace/layouts.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <QSettings>
 #include <set>
 
-#include "desk/desk.h"
+#include "workspace/desk.h"
 
 namespace trocar::trainer {
 namespace {

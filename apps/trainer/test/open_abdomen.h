@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "station/open_case.h"
+#include "attempt/case/open_case.h"
 
 namespace trocar::trainer {
 

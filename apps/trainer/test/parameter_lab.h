@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "core/temporary_folder.h"
-#include "panels/force_preview.h"
-#include "panels/parameter_panel.h"
+#include "core/files/temporary_folder.h"
+#include "case_panels/force_preview.h"
+#include "parameters/parameter_panel.h"
 #include "test/open_abdomen.h"
 
 namespace trocar::trainer {

@@ -1,4 +1,4 @@
-#include "panels/parameter_panel.h"
+#include "parameters/parameter_panel.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <QToolButton>
 #include <algorithm>
 
-#include "panels/force_preview.h"
-#include "panels/parameter_scale.h"
+#include "case_panels/force_preview.h"
+#include "parameters/parameter_scale.h"
 #include "script/cut_off.h"
 #include "script/widget_events.h"
 #include "test/parameter_lab.h"

@@ -1,4 +1,4 @@
-#include "panels/parameter_profiles.h"
+#include "parameters/parameter_profiles.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "views/patient_view.h"
+#include "views/patient/patient_view.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <QWheelEvent>
 
 #include "test/open_abdomen.h"
-#include "views/stereo_output.h"
+#include "views/patient/stereo_output.h"
 #include "volume/sampling.h"
 
 namespace trocar::trainer {

@@ -7,7 +7,7 @@
 #include <QPushButton>
 #include <cmath>
 
-#include "station/gun_shot.h"
+#include "attempt/guide/gun_shot.h"
 #include "test/widget_actions.h"
 
 namespace trocar::trainer {

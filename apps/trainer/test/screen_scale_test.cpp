@@ -1,4 +1,4 @@
-#include "shell/screen_scale.h"
+#include "ui_kit/screen_scale.h"
 
 #include <gtest/gtest.h>
 

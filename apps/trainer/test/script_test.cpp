@@ -14,7 +14,7 @@
 
 #include "script/script_player.h"
 #include "script/widget_events.h"
-#include "shell/parts.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {

@@ -1,4 +1,4 @@
-#include "views/slice_view.h"
+#include "views/slices/slice_view.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "anatomy/phantom/phantom.h"
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 #include "test/widget_actions.h"
 
 namespace trocar::trainer {

@@ -10,9 +10,9 @@
 #include <QTemporaryDir>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/temporary_folder.h"
-#include "io/patient_folder.h"
-#include "shell/parts.h"
+#include "core/files/temporary_folder.h"
+#include "io/patient/patient_folder.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "script/widget_events.h"
 #include "test/widget_actions.h"
-#include "views/patient_view.h"
+#include "views/patient/patient_view.h"
 
 namespace trocar::trainer {
 namespace {

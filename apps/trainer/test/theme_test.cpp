@@ -1,4 +1,4 @@
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "views/time_line.h"
+#include "views/plots/time_line.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <QToolButton>
 #include <cmath>
 
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 #include "test/widget_actions.h"
 
 namespace trocar::trainer {

@@ -1,4 +1,4 @@
-#include "views/ultrasound_controls.h"
+#include "views/ultrasound/ultrasound_controls.h"
 
 #include <QCheckBox>
 #include <QComboBox>

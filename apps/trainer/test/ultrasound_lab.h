@@ -11,10 +11,10 @@
 #include <QThread>
 #include <cstdlib>
 
-#include "core/data_dir.h"
+#include "core/files/data_dir.h"
 #include "test/open_abdomen.h"
-#include "ultrasound/probe_placement.h"
-#include "views/ultrasound_view.h"
+#include "ultrasound/probe/probe_placement.h"
+#include "views/ultrasound/ultrasound_view.h"
 
 namespace trocar::trainer {
 

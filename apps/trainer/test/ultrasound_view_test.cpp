@@ -1,12 +1,12 @@
-#include "views/ultrasound_view.h"
+#include "views/ultrasound/ultrasound_view.h"
 
 #include <cmath>
 #include <numbers>
 
 #include "test/ultrasound_lab.h"
-#include "views/slice_view.h"
-#include "views/ultrasound_layout.h"
-#include "views/ultrasound_painter.h"
+#include "views/slices/slice_view.h"
+#include "views/ultrasound/ultrasound_layout.h"
+#include "views/ultrasound/ultrasound_painter.h"
 
 namespace trocar::trainer {
 namespace {

@@ -1,4 +1,4 @@
-#include "shell/wheel_guard.h"
+#include "ui_kit/wheel_guard.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <QWheelEvent>
 #include <memory>
 
-#include "shell/parts.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "core/testing/source_dir.h"
-#include "devices/test/gamepad_stand_in.h"
-#include "devices/test/hd_stand_ins.h"
+#include "devices/pointer/test/gamepad_stand_in.h"
+#include "devices/vendor/test/hd_stand_ins.h"
 
 namespace trocar::trainer {
 namespace {

@@ -4,7 +4,7 @@
 #include <QPainter>
 #include <cmath>
 
-#include "shell/theme.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {

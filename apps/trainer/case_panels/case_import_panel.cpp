@@ -1,0 +1,184 @@
+// Step 1 of the case builder: which files a case is made of.
+#include <QComboBox>
+#include <QFileDialog>
+#include <QLabel>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QSettings>
+#include <QVBoxLayout>
+
+#include "case_panels/case_panel.h"
+#include "ui_kit/parts.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr int kMostRecent = 6;
+const char* const kRecentKey = "case/recent";
+
+QString first_line(const QString& entry) {
+  return entry.section(QLatin1Char('\n'), 0, 0);
+}
+
+class ImportPanel final : public CasePanel {
+ public:
+  ImportPanel(CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+    content()->addWidget(make_label(tr("CT, or a patient that is whole already"), "dim"));
+    ct_ = add_field("case-ct", tr("CT"), tr("Path of a CT: NIfTI, NRRD, MHA, a DICOM folder; or a patient folder"));
+    add_choosers();
+    content()->addWidget(make_label(tr("Labels (several: separated by ;)"), "dim"));
+    labels_ =
+        add_field("case-labels", tr("Labels"), tr("Paths of label volumes, masks, .seg.nrrd, or folders of masks"));
+    add_label_choosers();
+    content()->addWidget(make_label(tr("Names of label numbers"), "dim"));
+    map_ = new QComboBox;
+    map_->setObjectName(QStringLiteral("case-label-map"));
+    map_->setAccessibleName(tr("Names of label numbers"));
+    map_->setToolTip(tr("TotalSegmentator's numbers, or a TOML file with a [labels] table"));
+    map_->setEditable(true);
+    map_->addItem(QStringLiteral("totalsegmentator"));
+    content()->addWidget(map_);
+    add_actions();
+    content()->addWidget(make_label(tr("Recent"), "dim"));
+    recent_ = new QListWidget;
+    recent_->setObjectName(QStringLiteral("case-recent"));
+    recent_->setAccessibleName(tr("Recent imports"));
+    recent_->setToolTip(tr("Double click or Enter fills the fields"));
+    recent_->setMaximumHeight(132);
+    content()->addWidget(recent_);
+    content()->addStretch();
+    fill_recent();
+    connect(recent_, &QListWidget::itemActivated, this, [this](const QListWidgetItem* item) { use(*item); });
+    connect(recent_, &QListWidget::itemClicked, this, [this](const QListWidgetItem* item) { use(*item); });
+  }
+
+  void refresh() override {
+    const bool is_importing = desk_.work() == CaseDesk::Work::kImporting;
+    start_->setEnabled(!is_importing);
+    if (was_importing_ && !is_importing) {
+      has_failed_ = desk_.is_error();
+      if (desk_.draft().imported != before_) remember();  // neither failed nor cancelled
+      fill_recent();
+    }
+    was_importing_ = is_importing;
+  }
+
+ private:
+  QLineEdit* add_field(const char* name, const QString& title, const QString& tooltip) {
+    auto* field = new QLineEdit;
+    field->setObjectName(QString::fromLatin1(name));
+    field->setAccessibleName(title);
+    field->setToolTip(tooltip + tr("  (Enter imports)"));
+    field->setClearButtonEnabled(true);
+    content()->addWidget(field);
+    connect(field, &QLineEdit::returnPressed, this, [this] { import(); });
+    return field;
+  }
+
+  void add_choosers() {
+    auto* row = new QHBoxLayout;
+    QPushButton* file = make_button("case-ct-file", tr("File…"), tr("Choose a CT file"));
+    QPushButton* folder = make_button("case-ct-folder", tr("Folder…"), tr("Choose a DICOM series or a patient folder"));
+    row->addWidget(file);
+    row->addWidget(folder);
+    content()->addLayout(row);
+    connect(file, &QPushButton::clicked, this, [this] {
+      const QString path = QFileDialog::getOpenFileName(
+          this, tr("CT"), {}, tr("Volumes (*.nii *.gz *.nrrd *.nhdr *.mha *.mhd);;All files (*)"));
+      if (!path.isEmpty()) ct_->setText(path);
+    });
+    connect(folder, &QPushButton::clicked, this, [this] {
+      const QString path = QFileDialog::getExistingDirectory(this, tr("DICOM series or patient folder"));
+      if (!path.isEmpty()) ct_->setText(path);
+    });
+  }
+
+  void add_label_choosers() {
+    auto* row = new QHBoxLayout;
+    QPushButton* files = make_button("case-labels-files", tr("Files…"), tr("Add label files"));
+    QPushButton* folder = make_button("case-labels-folder", tr("Folder…"), tr("Add a folder of masks"));
+    row->addWidget(files);
+    row->addWidget(folder);
+    content()->addLayout(row);
+    const auto add = [this](const QString& path) {
+      if (path.isEmpty()) return;
+      // Labels that could not be imported are replaced, others are added to.
+      const QString before = has_failed_ ? QString() : labels_->text().trimmed();
+      has_failed_ = false;
+      labels_->setText(before.isEmpty() ? path : before + QStringLiteral(";") + path);
+    };
+    connect(files, &QPushButton::clicked, this, [this, add] {
+      for (const QString& path : QFileDialog::getOpenFileNames(this, tr("Labels"))) add(path);
+    });
+    connect(folder, &QPushButton::clicked, this,
+            [this, add] { add(QFileDialog::getExistingDirectory(this, tr("Folder of masks"))); });
+  }
+
+  void add_actions() {
+    start_ = make_button("case-import", tr("Import"), tr("Reads the files and builds the patient"));
+    start_->setProperty("role", "primary");
+    content()->addWidget(start_);
+    connect(start_, &QPushButton::clicked, this, [this] { import(); });
+  }
+
+  void import() {
+    ImportRequest request;
+    request.ct = to_std(ct_->text().trimmed());
+    for (const QString& path : labels_->text().split(QLatin1Char(';')))
+      if (!path.trimmed().isEmpty()) request.labels.push_back(to_std(path.trimmed()));
+    request.label_map = to_std(map_->currentText().trimmed());
+    if (desk_.has_patient()) request.task = desk_.draft().base.name;
+    imported_ =
+        QStringList{ct_->text().trimmed(), labels_->text().trimmed(), map_->currentText()}.join(QLatin1Char('\n'));
+    has_failed_ = false;
+    before_ = desk_.draft().imported;
+    desk_.import_patient(std::move(request));
+  }
+
+  /// Keeps what was imported.
+  void remember() const {
+    QSettings settings;
+    QStringList recent = settings.value(QString::fromLatin1(kRecentKey)).toStringList();
+    recent.removeAll(imported_);
+    recent.prepend(imported_);
+    while (recent.size() > kMostRecent) recent.removeLast();
+    settings.setValue(QString::fromLatin1(kRecentKey), recent);
+  }
+
+  void fill_recent() {
+    recent_->clear();
+    for (const QString& entry : QSettings().value(QString::fromLatin1(kRecentKey)).toStringList()) {
+      auto* item = new QListWidgetItem(first_line(entry).section(QLatin1Char('/'), -2), recent_);
+      item->setData(Qt::UserRole, entry);
+      item->setToolTip(first_line(entry));
+    }
+  }
+
+  void use(const QListWidgetItem& item) {
+    const QStringList fields = item.data(Qt::UserRole).toString().split(QLatin1Char('\n'));
+    if (fields.size() != 3) return;
+    ct_->setText(fields[0]);
+    labels_->setText(fields[1]);
+    map_->setCurrentText(fields[2]);
+  }
+
+  QLineEdit* ct_ = nullptr;
+  QLineEdit* labels_ = nullptr;
+  QComboBox* map_ = nullptr;
+  QPushButton* start_ = nullptr;
+  QListWidget* recent_ = nullptr;
+  QString imported_;                               ///< The three fields of the last import, a line each.
+  std::shared_ptr<const ImportedPatient> before_;  ///< What the draft had when that began.
+  bool was_importing_ = false;
+  bool has_failed_ = false;  ///< The last import; its files are not added to.
+};
+
+}  // namespace
+
+CasePanel* make_import_panel(CaseDesk& desk, QWidget* parent) {
+  return new ImportPanel(desk, parent);
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <QWidget>
+#include <string>
+
+#include "case_builder/case_desk.h"
+#include "geometry/pose.h"
+
+class QComboBox;
+class QListWidget;
+class QPushButton;
+
+namespace trocar::trainer {
+
+/// The landmarks of a case: a name of the field's or any other, a tool that places it by a click, and the list of those
+/// that are there. Object names: case-landmark-name, case-landmark-pick, case-landmarks, case-landmark-rename,
+/// case-landmark-remove. Keys: Ctrl+L the tool; in the list F2 renames, Delete removes, Enter jumps to the place.
+class CaseLandmarks : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit CaseLandmarks(CaseDesk& desk, QWidget* parent = nullptr);
+
+  void refresh();
+  void show_picking(bool is_on);
+  /// Of what the tool places.
+  std::string name() const;
+
+ Q_SIGNALS:
+  void picking_wanted(bool is_on);
+  /// The name that the tool places is another one.
+  void name_changed();
+  void place_wanted(const trocar::Vec3& p_P);
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private:
+  void add_naming();
+  void add_list();
+  void add_buttons();
+  void rename(int row);
+  void remove_current();
+
+  CaseDesk& desk_;
+  QComboBox* name_ = nullptr;
+  QPushButton* pick_ = nullptr;
+  QListWidget* list_ = nullptr;
+  QPushButton* rename_ = nullptr;
+  QPushButton* remove_ = nullptr;
+  bool is_refreshing_ = false;
+};
+
+}  // namespace trocar::trainer

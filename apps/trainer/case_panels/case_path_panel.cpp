@@ -1,0 +1,133 @@
+// Step 4 of the case builder: where the needle may enter, and how an expert goes.
+#include <QDoubleSpinBox>
+#include <QLabel>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+#include "case_builder/case_edits.h"
+#include "case_panels/case_panel.h"
+#include "ui_kit/parts.h"
+
+namespace trocar::trainer {
+namespace {
+
+class PathPanel final : public CasePanel {
+ public:
+  PathPanel(CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+    content()->addWidget(make_label(tr("Entry zone"), "heading"));
+    add_zone();
+    content()->addSpacing(8);
+    content()->addWidget(make_label(tr("Expert's path"), "heading"));
+    add_path();
+    content()->addStretch();
+  }
+
+  void refresh() override {
+    is_refreshing_ = true;
+    const Task& task = desk_.draft().task;
+    zone_text_->setText(task.entry_zone
+                            ? tr("Entries within %1 mm are as good as the expert's.").arg(task.entry_zone->radius_mm)
+                            : tr("No zone: entries are held against the expert's."));
+    if (task.entry_zone && !radius_->hasFocus()) radius_->setValue(task.entry_zone->radius_mm);
+    no_zone_->setEnabled(task.entry_zone.has_value());
+    const NeedlePath* path = find_expert_path(desk_.draft());
+    no_path_->setEnabled(path != nullptr);
+    path_text_->setText(
+        path != nullptr ? tr("%1 mm from the skin to where the tip is put.").arg(path->line_P.length_mm(), 0, 'f', 0)
+                        : tr("None: it is planned whenever the case is opened."));
+    plan_->setEnabled(desk_.has_patient() && desk_.work() == CaseDesk::Work::kNone);
+    is_refreshing_ = false;
+  }
+
+  void show_click(CaseClick click) override {
+    zone_->setChecked(click == CaseClick::kZone);
+    entry_->setChecked(click == CaseClick::kEntry);
+    tip_->setChecked(click == CaseClick::kTip);
+  }
+
+ private:
+  QPushButton* make_pick(const char* name, const QString& text, const QString& tooltip, const QString& keys,
+                         CaseClick click) {
+    QPushButton* button = make_button(name, text, tooltip, keys);
+    button->setCheckable(true);
+    connect(button, &QPushButton::clicked, this,
+            [this, click](bool is_on) { Q_EMIT click_wanted(is_on ? click : CaseClick::kLook); });
+    return button;
+  }
+
+  QLabel* add_text(const char* name) {
+    QLabel* label = make_label({}, "dim");
+    label->setObjectName(QString::fromLatin1(name));
+    label->setWordWrap(true);
+    content()->addWidget(label);
+    return label;
+  }
+
+  void add_zone() {
+    zone_text_ = add_text("case-zone-text");
+    auto* row = new QHBoxLayout;
+    zone_ = make_pick("case-zone-pick", tr("Click the skin"), tr("Click the zone's middle on the skin"),
+                      QStringLiteral("Ctrl+E"), CaseClick::kZone);
+    radius_ = new QDoubleSpinBox;
+    radius_->setObjectName(QStringLiteral("case-zone-radius"));
+    radius_->setAccessibleName(tr("Radius of the entry zone"));
+    radius_->setToolTip(tr("Radius of the entry zone  (up and down keys)"));
+    radius_->setRange(1.0, 200.0);
+    radius_->setDecimals(0);
+    radius_->setValue(20.0);
+    radius_->setSuffix(tr(" mm"));
+    row->addWidget(zone_);
+    row->addWidget(radius_);
+    content()->addLayout(row);
+    no_zone_ =
+        make_button("case-zone-clear", tr("Remove entry zone"), tr("Entries are held against the expert's path alone"));
+    content()->addWidget(no_zone_);
+    connect(radius_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double radius_mm) {
+      const auto& zone = desk_.draft().task.entry_zone;
+      if (is_refreshing_ || !zone) return;
+      desk_.edit(set_entry_zone(desk_.draft(), zone->centre_P, radius_mm), "change the entry zone", "zone radius");
+    });
+    connect(no_zone_, &QPushButton::clicked, this,
+            [this] { desk_.edit(clear_entry_zone(desk_.draft()), "remove the entry zone"); });
+  }
+
+  void add_path() {
+    path_text_ = add_text("case-path-text");
+    plan_ = make_button("case-plan", tr("Plan for me"),
+                        tr("The shortest path that keeps every margin, from the entry zone to the target"),
+                        QStringLiteral("Ctrl+P"));
+    plan_->setProperty("role", "primary");
+    content()->addWidget(plan_);
+    auto* row = new QHBoxLayout;
+    entry_ = make_pick("case-entry-pick", tr("Set entry"), tr("Click the entry; drag to move it"),
+                       QStringLiteral("Ctrl+1"), CaseClick::kEntry);
+    tip_ = make_pick("case-tip-pick", tr("Set tip"), tr("Click where the tip is put; drag to move it"),
+                     QStringLiteral("Ctrl+2"), CaseClick::kTip);
+    row->addWidget(entry_);
+    row->addWidget(tip_);
+    content()->addLayout(row);
+    no_path_ = make_button("case-path-clear", tr("Remove path"), tr("The path is planned whenever the case is opened"));
+    content()->addWidget(no_path_);
+    connect(plan_, &QPushButton::clicked, this, [this] { desk_.plan_path(); });
+    connect(no_path_, &QPushButton::clicked, this,
+            [this] { desk_.edit(clear_expert_path(desk_.draft()), "remove the path"); });
+  }
+
+  QPushButton* zone_ = nullptr;
+  QDoubleSpinBox* radius_ = nullptr;
+  QPushButton* no_zone_ = nullptr;
+  QLabel* zone_text_ = nullptr;
+  QLabel* path_text_ = nullptr;
+  QPushButton* plan_ = nullptr;
+  QPushButton* entry_ = nullptr;
+  QPushButton* tip_ = nullptr;
+  QPushButton* no_path_ = nullptr;
+};
+
+}  // namespace
+
+CasePanel* make_path_panel(CaseDesk& desk, QWidget* parent) {
+  return new PathPanel(desk, parent);
+}
+
+}  // namespace trocar::trainer

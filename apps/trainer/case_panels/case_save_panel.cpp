@@ -1,0 +1,132 @@
+// Step 6 of the case builder: name, words, and where it is written.
+#include <QCheckBox>
+#include <QDir>
+#include <QFileDialog>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+#include "case_panels/case_panel.h"
+#include "ui_kit/parts.h"
+
+namespace trocar::trainer {
+namespace {
+
+class SavePanel final : public CasePanel {
+ public:
+  SavePanel(CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+    name_ = add_line("case-name", tr("Name"), tr("What trainees choose the case by"));
+    connect(name_, &QLineEdit::textEdited, this, [this](const QString& text) {
+      CaseDraft next = desk_.draft();
+      next.name = to_std(text);
+      desk_.edit(std::move(next), "name the case", "name");
+    });
+    description_ = add_text("case-description", tr("Description"), tr("What trainees read before they begin"));
+    connect(description_, &QPlainTextEdit::textChanged, this, [this] {
+      if (is_refreshing_) return;
+      CaseDraft next = desk_.draft();
+      next.description = to_std(description_->toPlainText());
+      desk_.edit(std::move(next), "describe the case", "description");
+    });
+    provenance_ = add_text("case-provenance", tr("Where it comes from, a line each"),
+                           tr("Data set, licence, who made the labels"));
+    connect(provenance_, &QPlainTextEdit::textChanged, this, [this] {
+      if (is_refreshing_) return;
+      CaseDraft next = desk_.draft();
+      next.provenance.clear();
+      for (const QString& line : provenance_->toPlainText().split(QLatin1Char('\n')))
+        if (!line.trimmed().isEmpty()) next.provenance.push_back(to_std(line.trimmed()));
+      desk_.edit(std::move(next), "say where it comes from", "provenance");
+    });
+    add_folder();
+    content()->addStretch();
+  }
+
+  void refresh() override {
+    is_refreshing_ = true;
+    const CaseDraft& draft = desk_.draft();
+    if (!name_->hasFocus()) name_->setText(to_qt(draft.name));
+    if (!description_->hasFocus() && description_->toPlainText() != to_qt(draft.description))
+      description_->setPlainText(to_qt(draft.description));
+    QStringList lines;
+    for (const std::string& line : draft.provenance) lines << to_qt(line);
+    if (!provenance_->hasFocus() && provenance_->toPlainText() != lines.join(QLatin1Char('\n')))
+      provenance_->setPlainText(lines.join(QLatin1Char('\n')));
+    save_->setEnabled(desk_.has_patient() && desk_.work() == CaseDesk::Work::kNone);
+    open_->setEnabled(desk_.is_saved());
+    is_refreshing_ = false;
+  }
+
+ private:
+  QLineEdit* add_line(const char* name, const QString& title, const QString& tooltip) {
+    content()->addWidget(make_label(title, "dim"));
+    auto* field = new QLineEdit;
+    field->setObjectName(QString::fromLatin1(name));
+    field->setAccessibleName(title);
+    field->setToolTip(tooltip);
+    content()->addWidget(field);
+    return field;
+  }
+
+  QPlainTextEdit* add_text(const char* name, const QString& title, const QString& tooltip) {
+    content()->addWidget(make_label(title, "dim"));
+    auto* field = new QPlainTextEdit;
+    field->setObjectName(QString::fromLatin1(name));
+    field->setAccessibleName(title);
+    field->setToolTip(tooltip + tr("  (Tab goes on)"));
+    field->setTabChangesFocus(true);
+    field->setMaximumHeight(72);
+    content()->addWidget(field);
+    return field;
+  }
+
+  void add_folder() {
+    folder_ = add_line("case-folder", tr("Folder to create"), tr("The case is written here  (Enter saves)"));
+    folder_->setText(QDir::home().filePath(QStringLiteral("trocar-cases/my-case")));
+    QPushButton* choose =
+        make_button("case-folder-choose", tr("Choose…"), tr("Choose the folder in which the case's folder is made"));
+    replaces_ = new QCheckBox(tr("Replace the case that lies there"));
+    replaces_->setObjectName(QStringLiteral("case-replace"));
+    replaces_->setToolTip(tr("Without this nothing is ever overwritten"));
+    save_ = make_button("case-save", tr("Save"), tr("Writes the case, whole or not at all"), QStringLiteral("Ctrl+S"));
+    save_->setProperty("role", "primary");
+    open_ = make_button("case-open", tr("Open this case"), tr("Begins an attempt with the saved case"));
+    content()->addWidget(choose);
+    content()->addWidget(replaces_);
+    content()->addWidget(save_);
+    content()->addWidget(open_);
+    connect(choose, &QPushButton::clicked, this, [this] {
+      const QString parent = QFileDialog::getExistingDirectory(this, tr("Where the case's folder is made"));
+      if (!parent.isEmpty())
+        folder_->setText(QDir(parent).filePath(name_->text().trimmed().replace(QLatin1Char(' '), QLatin1Char('-'))));
+    });
+    connect(save_, &QPushButton::clicked, this, [this] { save(); });
+    connect(folder_, &QLineEdit::returnPressed, this, [this] { save(); });
+    connect(open_, &QPushButton::clicked, this, [this] { Q_EMIT case_opened(to_qt(desk_.saved_folder().string())); });
+  }
+
+  void save() {
+    SaveOptions options;
+    options.folder = to_std(folder_->text().trimmed());
+    options.overwrites = replaces_->isChecked();
+    desk_.save(std::move(options));
+  }
+
+  QLineEdit* name_ = nullptr;
+  QPlainTextEdit* description_ = nullptr;
+  QPlainTextEdit* provenance_ = nullptr;
+  QLineEdit* folder_ = nullptr;
+  QCheckBox* replaces_ = nullptr;
+  QPushButton* save_ = nullptr;
+  QPushButton* open_ = nullptr;
+};
+
+}  // namespace
+
+CasePanel* make_save_panel(CaseDesk& desk, QWidget* parent) {
+  return new SavePanel(desk, parent);
+}
+
+}  // namespace trocar::trainer

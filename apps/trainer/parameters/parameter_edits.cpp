@@ -1,0 +1,224 @@
+#include "parameters/parameter_edits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace trocar::trainer {
+namespace {
+
+constexpr std::string_view kNone = "transfer.none", kFull = "transfer.full";
+
+std::string text_of(double value) {
+  return std::isinf(value) ? "never" : fmt::format("{}", value);  // the shortest digits that read back
+}
+
+/// The number behind the "=" of a setting; apply_override says what is wrong with one that is none.
+double number_in(std::string_view text) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  if (text == "never") return std::numeric_limits<double>::infinity();
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+}  // namespace
+
+void ParameterEdits::start(TissueTable defaults, std::string model) {
+  defaults_ = std::move(defaults);
+  default_model_ = std::move(model);
+  groups_ = tissue_parameters(defaults_);
+  Step step = now();
+  for (Values* values : {&step.values, &step.base}) {
+    std::erase_if(*values, [&](const auto& change) {
+      const TissueParameter* parameter = find(change.first);
+      return parameter == nullptr || parameter->value == change.second;
+    });
+    if (!check(*values)) values->clear();
+  }
+  step.model = default_model_;
+  if (step.profile.empty()) step.base_model = default_model_;
+  steps_.begin(std::move(step));
+}
+
+const TissueParameter* ParameterEdits::find(std::string_view setting) const noexcept {
+  for (const TissueParameterGroup& group : groups_)
+    for (const TissueParameter& parameter : group.parameters)
+      if (parameter.setting == setting) return &parameter;
+  return nullptr;
+}
+
+double ParameterEdits::value_of(const TissueParameter& parameter) const {
+  const auto changed = now().values.find(parameter.setting);
+  return changed != now().values.end() ? changed->second : parameter.value;
+}
+
+bool ParameterEdits::is_changed(const TissueParameterGroup& group) const {
+  return std::any_of(group.parameters.begin(), group.parameters.end(),
+                     [&](const TissueParameter& parameter) { return is_changed(parameter); });
+}
+
+Status ParameterEdits::set(const std::string& setting, double value, bool joins) {
+  const TissueParameter* parameter = find(setting);
+  if (parameter == nullptr)
+    return fail_usage(fmt::format("there is no number \"{}\"", setting), "tissue parameters",
+                      "choose a number of the list");
+  Values values = now().values;
+  if (value == parameter->value) {
+    values.erase(setting);
+  } else {
+    values[setting] = value;
+  }
+  TROCAR_TRY_STATUS(check(values));
+  keep(std::move(values), joins);
+  return {};
+}
+
+void ParameterEdits::reset(const std::string& setting) {
+  Values values = now().values;
+  values.erase(setting);
+  if (check(values)) keep(std::move(values));
+}
+
+void ParameterEdits::reset(const TissueParameterGroup& group) {
+  Values values = now().values;
+  for (const TissueParameter& parameter : group.parameters) values.erase(parameter.setting);
+  if (check(values)) keep(std::move(values));
+}
+
+void ParameterEdits::reset_all() {
+  keep({{}, now().model, {}, {}, default_model_});
+}
+
+void ParameterEdits::set_model(const std::string& model) {
+  Step step = now();
+  step.model = model;
+  keep(std::move(step));
+}
+
+Status ParameterEdits::replace(const std::vector<std::string>& settings) {
+  TROCAR_TRY(Values values, read(settings));
+  TROCAR_TRY_STATUS(check(values));
+  keep(std::move(values));
+  return {};
+}
+
+Status ParameterEdits::choose_profile(const std::string& profile, const std::vector<std::string>& settings,
+                                      const std::string& model) {
+  TROCAR_TRY(const Values values, read(settings));
+  TROCAR_TRY_STATUS(check(values));
+  keep({values, model, profile, values, model});
+  return {};
+}
+
+void ParameterEdits::call_profile(const std::string& profile) {
+  Step called = now();
+  called.profile = profile;
+  steps_.put(called);
+  steps_.change_all([&](Step& step) {
+    if (step.profile != profile) return;
+    step.base = called.values;
+    step.base_model = called.model;
+  });
+}
+
+void ParameterEdits::forget_profile(const std::string& profile) {
+  steps_.change_all([&](Step& step) {
+    if (step.profile != profile) return;
+    step.profile.clear();
+    step.base.clear();
+    step.base_model = default_model_;
+  });
+}
+
+/// Profiles may be written by hand, with other names of the same numbers ("liver_capsule.stiffness_n_per_mm=0.5"): what
+/// such a setting does to the table tells which number is meant.
+Result<ParameterEdits::Values> ParameterEdits::read(const std::vector<std::string>& settings) const {
+  Values values;
+  TissueTable table = defaults_;
+  for (const std::string& text : settings) {
+    TROCAR_TRY_STATUS(apply_override(table, text));
+    const std::string_view all = text;
+    const std::size_t equals = all.find('=');
+    const TissueParameter* named = find(all.substr(0, equals));
+    const bool is_new = named != nullptr && !values.contains(named->setting);
+    if (named != nullptr) {
+      values[named->setting] = number_in(all.substr(equals + 1));
+    } else {
+      read_from(table, values);
+    }
+    if (!is_new && !gives(values, table))
+      return fail_usage("this setting changes what the panel cannot adjust", text,
+                        "write it as the panel saves it, or use it with --set");
+  }
+  std::erase_if(values, [&](const auto& change) { return find(change.first)->value == change.second; });
+  return values;
+}
+
+/// Numbers that differ between the table and the defaults. A factor is relative to the curve as it stands, so no table
+/// tells it.
+void ParameterEdits::read_from(const TissueTable& table, Values& values) const {
+  for (const TissueParameterGroup& group : tissue_parameters(table))
+    for (const TissueParameter& is : group.parameters) {
+      const TissueParameter* was = find(is.setting);
+      if (was == nullptr || is.setting.ends_with("_factor")) continue;
+      if (is.value != was->value) {
+        values[is.setting] = is.value;
+      } else {
+        values.erase(is.setting);
+      }
+    }
+}
+
+/// Whether these numbers make this table out of the defaults; where they come from does not matter.
+bool ParameterEdits::gives(const Values& values, TissueTable table) const {
+  TissueTable made = defaults_;
+  for (const std::string& setting : settings_of(values))
+    if (!apply_override(made, setting)) return false;
+  made.provenance.clear();
+  table.provenance.clear();
+  return made.to_toml() == table.to_toml();
+}
+
+void ParameterEdits::keep(Values values, bool joins) {
+  Step step = now();
+  step.values = std::move(values);
+  keep(std::move(step), joins);
+}
+
+void ParameterEdits::keep(Step step, bool joins) {
+  // Another name alone is nothing that anybody would undo.
+  if (step.values == now().values && step.model == now().model) return steps_.put(std::move(step));
+  steps_.step_to(std::move(step), joins);
+}
+
+std::vector<std::string> ParameterEdits::settings_of(const Values& values) const {
+  std::vector<std::string> settings;
+  const auto add = [&](std::string_view setting) {
+    const auto change = values.find(setting);
+    std::string text = change != values.end() ? fmt::format("{}={}", setting, text_of(change->second)) : "";
+    // Tissues under one surface name the same number.
+    if (!text.empty() && std::find(settings.begin(), settings.end(), text) == settings.end())
+      settings.push_back(std::move(text));
+  };
+  // The lower of two thresholds is never above the higher one on the way: a raised upper one comes first.
+  const TissueParameter* full = find(kFull);
+  const bool is_full_first = full != nullptr && values.contains(kFull) && values.find(kFull)->second > full->value;
+  for (const TissueParameterGroup& group : groups_)
+    for (const TissueParameter& parameter : group.parameters) {
+      if (parameter.setting == kNone && is_full_first) add(kFull);
+      add(parameter.setting);
+    }
+  return settings;
+}
+
+Status ParameterEdits::check(const Values& values) const {
+  TissueTable table = defaults_;
+  for (const std::string& setting : settings_of(values)) TROCAR_TRY_STATUS(apply_override(table, setting));
+  return {};
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <QString>
+#include <QStringList>
+#include <QWidget>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "parameters/parameter_edits.h"
+#include "ui_kit/undo_buttons.h"
+#include "attempt/case/open_case.h"
+#include "attempt/case/tissue_profile.h"
+
+class QLabel;
+class QScrollArea;
+class QToolButton;
+
+namespace trocar::trainer {
+
+class ForcePreview;
+class ParameterList;
+class ParameterProfiles;
+
+/// Fits the mechanical numbers of the tissues to the patient (paper A: "an interface to facilitate users in adaptively
+/// adjusting these parameters"), both force models, with the predicted force beside them. The defaults are the case's
+/// own numbers; what is changed stays changed when another case with the same tissues is shown.
+///
+/// Keys while the focus is in the panel: Ctrl+Z undo, Ctrl+Shift+Z redo. Object names: parameter-panel, parameter-undo,
+/// parameter-redo, parameter-reset-all; of its parts see ForcePreview, ParameterList, ParameterRow, ParameterProfiles.
+class ParameterPanel : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit ParameterPanel(QWidget* parent = nullptr);
+
+  /// Null: nothing to adjust.
+  void show_case(std::shared_ptr<const OpenCase> open_case);
+  /// Where profiles are kept; else in the user's folder of settings.
+  void set_profile_folder(const std::filesystem::path& folder);
+  /// Once a frame: sends what has changed, looks at the work in the background.
+  void advance();
+
+  /// What differs from the case's numbers now: "liver.k=0.5".
+  QStringList settings() const;
+  /// All changes at once, as one step of undo. Errors: a name that the tissues have not, a number out of range.
+  Status apply_settings(const QStringList& settings);
+  const ForcePreview& preview() const noexcept { return *preview_; }
+  /// Every change has been sent and predicted.
+  bool is_settled() const noexcept;
+
+  QSize sizeHint() const override;
+
+ Q_SIGNALS:
+  /// All that differs from the case's numbers, a moment after the last change; empty when all are as they were.
+  void parameters_changed(QStringList settings);
+  void model_changed(QString model);
+
+ private:
+  QWidget* make_head();
+  void edit(const std::string& setting, double value, bool joins);
+  void undo();
+  void redo();
+  /// Shows the numbers as they are now; what differs is sent a moment later.
+  void show_changes();
+  void show_values();
+  void show_model();
+  void choose_profile(const std::string& file);
+  void save_profile_as(TissueProfile profile, bool may_replace);
+  void scroll_to_opened();
+
+  std::shared_ptr<const OpenCase> case_;
+  ParameterEdits edits_;
+  QStringList sent_;
+  std::optional<std::chrono::steady_clock::time_point> changed_at_;  ///< Of a change that is not sent yet.
+  std::optional<UndoButtons> undo_buttons_;
+  QToolButton* reset_ = nullptr;
+  QLabel* empty_;
+  QWidget* body_;
+  ParameterProfiles* profiles_;
+  ForcePreview* preview_;
+  QScrollArea* scroll_;
+  ParameterList* list_;
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <QIcon>
+#include <QListWidget>
+#include <optional>
+#include <vector>
+
+#include "case_builder/checks.h"
+
+namespace trocar::trainer {
+
+/// A tick, an exclamation mark or a cross in the level's colour; nothing: not looked at yet.
+QIcon level_icon(std::optional<CheckLevel> level);
+
+/// What is right, doubtful and wrong with a case, worst first. A click or Enter jumps to the place and the step.
+/// Object name: case-checks.
+class CheckList : public QListWidget {
+  Q_OBJECT
+
+ public:
+  explicit CheckList(QWidget* parent = nullptr);
+  void show_checks(const std::vector<CaseCheck>& checks);
+
+ Q_SIGNALS:
+  void check_chosen(const trocar::CaseCheck& check);
+
+ private:
+  std::vector<CaseCheck> checks_;
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,354 @@
+#include "views/patient/patient_view.h"
+
+#include <QPainter>
+
+#include "core/check.h"
+#include "scene/input_watch.h"
+#include "ui_kit/theme.h"
+#include "views/ultrasound/scan_mask.h"
+#include "views/patient/stereo_output.h"
+
+namespace trocar::trainer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kFirstSize_px = 64;  ///< Before the widget has one.
+/// The user's hand is asked for at most so often while a picture is drawn.
+constexpr std::chrono::milliseconds kWatchEvery{4};
+
+TransducerFace face_of(const ScanGeometry& scan) {
+  TransducerFace face;
+  face.is_convex = scan.is_fan;
+  face.radius_mm = scan.radius_mm;
+  const double span = scan.line_step * (scan.lines - 1);
+  if (scan.is_fan) {
+    face.field_of_view_rad = span;
+  } else {
+    face.width_mm = span;
+  }
+  return face;
+}
+
+double in_ms(Clock::duration time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
+
+}  // namespace
+
+struct PatientView::Impl {
+  void note_watch(Clock::time_point now) {
+    unwatched_times.add(in_ms(now - last_watch));
+    last_watch = now;
+  }
+
+  std::unique_ptr<PatientScene> scene;
+  QImage image;                     ///< Of the last whole frame; of the left eye with shutter glasses.
+  StereoOutput* shutter = nullptr;  ///< Made when shutter glasses are chosen.
+  QWidget* shutter_cover = nullptr;
+  DetailPolicyParams params;
+  std::unique_ptr<DetailPolicy> policy;  ///< Made when it is known what draws.
+  Detail drawn;                          ///< Of the last whole frame.
+  bool has_drawn = false;
+  bool are_tools_moving = false;
+  bool is_drawing = false;
+  QSize drawn_size;  ///< Of the widget in the last whole frame.
+  FrameTimes moving_times;
+  FrameTimes still_times;
+  FrameTimes unwatched_times;
+  int broken_frames = 0;
+  InputWatch watch;
+  Clock::time_point last_watch{};
+  std::function<bool()> interrupt;
+  std::function<int(int)> row_on_screen;
+  ScanMask scan_mask;
+  std::optional<Pose> X_PT;
+  ScanGeometry scan;
+};
+
+PatientView::PatientView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<Impl>()) {
+  Result<std::unique_ptr<PatientScene>> scene = PatientScene::make(kFirstSize_px, kFirstSize_px);
+  TROCAR_CHECK(scene);  // main() has asked can_render()
+  impl_->scene = std::move(*scene);
+  setAttribute(Qt::WA_OpaquePaintEvent);
+  setFocusPolicy(Qt::StrongFocus);
+  setObjectName(QStringLiteral("patient-view"));
+  setAccessibleName(tr("3D view of the patient"));
+  setToolTip(
+      tr("Drag: turn · Shift+drag: move · wheel: zoom · 1–6: views · F follow · L along the needle · N side view"));
+}
+
+PatientView::~PatientView() = default;
+
+void PatientView::note_motion() {
+  if (impl_->policy) impl_->policy->note_motion(Clock::now());
+}
+
+void PatientView::show_patient(std::shared_ptr<const VirtualPatient> patient,
+                               std::shared_ptr<const std::vector<NamedMesh>> meshes,
+                               const std::optional<Vec3>& target_P) {
+  impl_->scene->show_patient(std::move(patient), std::move(meshes), target_P);
+}
+
+bool PatientView::is_ready() const {
+  return impl_->scene->is_ready();
+}
+
+void PatientView::set_path(const std::optional<Segment>& line_P, double entry_radius_mm) {
+  impl_->scene->set_path(line_P, entry_radius_mm);
+}
+
+void PatientView::set_guidance(Guidance guidance) {
+  impl_->scene->set_guidance(guidance);
+}
+
+void PatientView::set_guidance_visible(bool is_visible) {
+  is_guidance_visible_ = is_visible;
+  impl_->scene->set_guidance_visible(is_visible);
+}
+
+void PatientView::set_landmarks_visible(bool are_visible) {
+  are_landmarks_visible_ = are_visible;
+  impl_->scene->set_landmarks_visible(are_visible);
+}
+
+void PatientView::set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model) {
+  impl_->scene->set_needle(shaft_P, diameter_mm, model);
+}
+
+void PatientView::set_hand(const std::optional<Segment>& ghost_P) {
+  impl_->scene->set_hand(ghost_P);
+}
+
+void PatientView::set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P) {
+  impl_->scene->set_shot(stylet_P, core_P);
+}
+
+void PatientView::set_transducer(const std::optional<Pose>& X_PT, const ScanGeometry& scan) {
+  impl_->X_PT = X_PT;
+  impl_->scan = scan;
+  impl_->scene->set_transducer(X_PT, face_of(scan));
+}
+
+void PatientView::set_ultrasound(const RgbImage& picture, const std::array<Vec3, 3>& corners_P) {
+  if (!impl_->X_PT || picture.pixels.empty()) return impl_->scene->set_ultrasound(picture, {}, corners_P);
+  impl_->scene->set_ultrasound(
+      picture, impl_->scan_mask.of(picture.columns, picture.rows, corners_P, *impl_->X_PT, impl_->scan), corners_P);
+}
+
+void PatientView::hide_ultrasound() {
+  impl_->scene->hide_ultrasound();
+}
+
+std::vector<StructureInfo> PatientView::structures() const {
+  return impl_->scene->structures();
+}
+
+void PatientView::set_opacity(std::string_view name, double opacity) {
+  impl_->scene->set_opacity(name, opacity);
+}
+
+void PatientView::apply_preset(StructurePreset preset) {
+  impl_->scene->apply_preset(preset);
+}
+
+void PatientView::set_volume_preset(VolumePreset preset) {
+  impl_->scene->set_volume_preset(preset);
+}
+
+VolumePreset PatientView::volume_preset() const {
+  return impl_->scene->volume_preset();
+}
+
+void PatientView::set_mpr(const MprOptions& options) {
+  impl_->scene->set_mpr(options);
+}
+
+MprOptions PatientView::mpr() const {
+  return impl_->scene->mpr();
+}
+
+void PatientView::set_camera(CameraPreset preset) {
+  impl_->scene->set_camera(preset);
+}
+
+void PatientView::set_view(const CameraView& view) {
+  impl_->scene->set_view(view);
+}
+
+const CameraView& PatientView::view() const {
+  return impl_->scene->view();
+}
+
+void PatientView::set_follow(FollowMode mode) {
+  impl_->scene->set_follow(mode);
+}
+
+FollowMode PatientView::follow() const {
+  return impl_->scene->follow();
+}
+
+void PatientView::reset_camera() {
+  set_camera(CameraPreset::kRightAnteriorOblique);
+}
+
+void PatientView::set_stereo(const StereoOptions& options) {
+  Impl& v = *impl_;
+  v.scene->set_stereo(options);
+  const bool has_shutter = options.mode == StereoMode::kQuadBuffer;
+  if (has_shutter && v.shutter == nullptr) {
+    v.shutter = new StereoOutput(*this);
+    v.shutter_cover = QWidget::createWindowContainer(v.shutter, this);
+    v.shutter_cover->setFocusProxy(this);
+    v.shutter_cover->setGeometry(rect());
+  }
+  if (v.shutter_cover != nullptr) v.shutter_cover->setVisible(has_shutter);
+}
+
+void PatientView::set_row_on_screen(std::function<int(int)> row_on_screen) {
+  impl_->row_on_screen = std::move(row_on_screen);
+}
+
+const StereoOptions& PatientView::stereo() const {
+  return impl_->scene->stereo();
+}
+
+bool PatientView::has_quad_buffer() {
+  return StereoOutput::is_offered();
+}
+
+void PatientView::set_tools_moving(bool are_moving) {
+  impl_->are_tools_moving = are_moving;
+}
+
+void PatientView::set_frame_target(double target_ms) {
+  impl_->params.target_ms = target_ms;
+  if (impl_->policy) impl_->policy->set_target(target_ms);
+}
+
+void PatientView::set_interrupt(std::function<bool()> wants_break) {
+  impl_->interrupt = std::move(wants_break);
+}
+
+const FrameTimes& PatientView::moving_frame_times() const noexcept {
+  return impl_->moving_times;
+}
+
+const FrameTimes& PatientView::still_frame_times() const noexcept {
+  return impl_->still_times;
+}
+
+const FrameTimes& PatientView::unwatched_times() const noexcept {
+  return impl_->unwatched_times;
+}
+
+void PatientView::clear_frame_times() noexcept {
+  impl_->unwatched_times.clear();
+  impl_->moving_times.clear();
+  impl_->still_times.clear();
+}
+
+bool PatientView::is_still() const noexcept {
+  return impl_->has_drawn && impl_->drawn == DetailPolicy::full();
+}
+
+int PatientView::broken_frames() const noexcept {
+  return impl_->broken_frames;
+}
+
+PatientScene& PatientView::scene() noexcept {
+  return *impl_->scene;
+}
+
+QSize PatientView::picture_size(const Detail& detail) const {
+  // Rows that are drawn smaller and stretched would mix the eyes.
+  const double share = stereo().mode == StereoMode::kInterlaced ? 1.0 : detail.resolution;
+  return (QSizeF(size()) * devicePixelRatioF() * share).toSize().expandedTo({1, 1});
+}
+
+bool PatientView::render_eye(const Detail& detail, bool may_break, Eye eye, QImage& image) {
+  Impl& v = *impl_;
+  const auto wants_break = [&v] {
+    const auto now = Clock::now();
+    if (now - v.last_watch < kWatchEvery) return false;
+    v.note_watch(now);
+    return v.watch.has_happened() || (v.interrupt && v.interrupt());
+  };
+  if (!v.scene->render(detail, may_break ? std::function<bool()>(wants_break) : nullptr, eye)) return false;
+  const QSize size = picture_size(detail);
+  if (image.size() != size) image = QImage(size, QImage::Format_RGB32);
+  v.scene->copy_picture({reinterpret_cast<std::uint32_t*>(image.bits()),
+                         static_cast<std::size_t>(size.width()) * static_cast<std::size_t>(size.height())});
+  return true;
+}
+
+void PatientView::render(const Detail& detail, bool may_break) {
+  Impl& v = *impl_;
+  const auto start = Clock::now();
+  if (may_break) v.watch.start();
+  v.last_watch = start;
+  const QSize size = picture_size(detail);
+  v.scene->set_size(size.width(), size.height());
+  v.scene->set_text_scale(static_cast<double>(size.height()) / std::max(1, height()));
+  const bool has_shutter = v.scene->stereo().mode == StereoMode::kQuadBuffer;
+  QImage right;
+  const bool is_whole = render_eye(detail, may_break, Eye::kLeft, v.image) &&
+                        (!has_shutter || render_eye(detail, may_break, Eye::kRight, right));
+  const auto end = Clock::now();
+  if (may_break) v.note_watch(end);
+  const double frame_ms = in_ms(end - start);
+  if (!v.policy) v.policy = std::make_unique<DetailPolicy>(v.scene->has_gpu(), v.params);
+  if (!is_whole) {
+    ++v.broken_frames;
+    v.policy->note_motion(end);
+    return render(v.policy->next(end), false);
+  }
+  v.policy->note_frame(detail, frame_ms, end);
+  (detail == DetailPolicy::full() ? v.still_times : v.moving_times).add(frame_ms);
+  v.drawn = detail;
+  v.has_drawn = true;
+  v.drawn_size = this->size();
+  if (has_shutter) v.shutter->show_eyes(v.image, right);
+  update();
+}
+
+void PatientView::paintEvent(QPaintEvent* /*event*/) {
+  QPainter painter(this);
+  if (impl_->image.isNull()) return painter.fillRect(rect(), theme().view);
+  painter.setRenderHint(QPainter::SmoothPixmapTransform);
+  painter.drawImage(rect(), impl_->image);
+}
+
+void PatientView::resizeEvent(QResizeEvent* /*event*/) {
+  if (impl_->shutter_cover != nullptr) impl_->shutter_cover->setGeometry(rect());
+}
+
+void PatientView::draw() {
+  Impl& v = *impl_;
+  if (v.is_drawing || !isVisible()) return;
+  v.is_drawing = true;
+  const auto now = Clock::now();
+  // What draws is only known after a frame: the first one is a cheap one.
+  if (!v.policy) {
+    render(DetailPolicy::moving(DetailPolicy::kMovingLevels - 1), false);
+    note_motion();
+  } else {
+    v.scene->poll();
+    const int global_row = mapToGlobal(QPoint(0, 0)).y();
+    const int row = v.row_on_screen ? v.row_on_screen(global_row) : global_row;
+    v.scene->set_first_row(qRound(row * devicePixelRatioF()));
+    const bool has_changed = v.scene->has_changed() || v.drawn_size != size();
+    if (has_changed || v.are_tools_moving) v.policy->note_motion(now);
+    const Detail detail = v.policy->next(now);
+    const bool rises = v.drawn != detail && detail == DetailPolicy::full();
+    if (has_changed || rises) render(detail, rises && !v.scene->has_gpu());
+  }
+  v.is_drawing = false;
+}
+
+void PatientView::draw_whole() {
+  impl_->scene->finish_loading();
+  render(DetailPolicy::full(), false);
+}
+
+}  // namespace trocar::trainer

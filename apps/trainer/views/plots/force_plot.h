@@ -1,0 +1,122 @@
+#pragma once
+
+#include <QColor>
+#include <QPixmap>
+#include <QString>
+#include <QWidget>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "views/plots/curve_trace.h"
+#include "views/plots/plot_frame.h"
+
+class QToolButton;
+
+namespace trocar::trainer {
+
+class ViewStrip;
+
+struct ForcePoint {
+  double time_s = 0.0;
+  double depth_mm = 0.0;  ///< Of the tip; 0 at the skin.
+  double resistance_n = 0.0;
+};
+
+/// Resistance against the depth of the tip, as it is felt (paper A, figure 4b), or against time: the live curve, the
+/// predicted and the expert's curve behind it, the tissues along the expert path as coloured bands, punctures as marked
+/// lines. Axes have round numbers and only grow, so that nothing jitters. Object name: force-plot.
+/// Key: T depth or time (button: force-plot-axis).
+class ForcePlot : public QWidget {
+  Q_OBJECT
+
+ public:
+  enum class Axis { kDepth, kTime };
+  struct Band {
+    double from_mm = 0.0;
+    double to_mm = 0.0;
+    QString name;
+    QColor color;
+  };
+
+  explicit ForcePlot(QWidget* parent = nullptr);
+
+  /// Tissues along the expert path, from the skin on; the depth axis reaches to the last one's end.
+  void set_bands(std::vector<Band> bands);
+  /// Depth (mm) and resistance (N) by rising depth; empty hides the curve.
+  void set_predicted(std::vector<QPointF> curve);
+  void set_reference(std::vector<QPointF> curve);
+  /// What the two are called in the picture; "predicted" and "expert" if nothing is said.
+  void set_curve_names(const QString& predicted, const QString& reference);
+  /// By rising time. Points that are not finite are left out.
+  void append(std::span<const ForcePoint> points);
+  void add_event(double depth_mm, double time_s, const QString& text);
+  /// Forgets curve and events, and lets the axes shrink again; bands and the other curves stay.
+  void clear();
+  /// Replay: the curve up to this time is bright, the rest faint. Nothing: the newest point is the current one.
+  void set_cursor(std::optional<double> time_s);
+  void set_axis(Axis axis);
+  /// Without the depth there is the axis of time alone, and nothing tells how deep the tip is.
+  void set_depth_shown(bool is_shown);
+
+  Axis axis() const noexcept { return axis_; }
+  /// Where values lie in the widget now.
+  PlotFrame frame() const;
+  /// Force, and depth where that is shown; as in the strip.
+  QString figures_text() const;
+  /// The point that the mark stands on.
+  std::optional<ForcePoint> current() const;
+
+  /// Name, force and axis; a dock may take it into its title.
+  ViewStrip& strip() noexcept { return *strip_; }
+
+  /// What the tool tip says at a place.
+  QString text_at(const QPoint& position) const;
+
+  QSize sizeHint() const override;
+  QSize minimumSizeHint() const override;
+
+ protected:
+  bool event(QEvent* event) override;
+  void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+
+ private:
+  struct Event {
+    double depth_mm, time_s;
+    QString text;
+  };
+
+  double band_height() const;
+  /// How many of the points lie before the cursor.
+  std::size_t shown_count() const;
+  QPointF value_at(std::size_t index) const;
+  double place_of(const Event& event) const { return axis_ == Axis::kDepth ? event.depth_mm : event.time_s; }
+  void widen_for(const QPointF& depth_and_force);
+  void widen_for_curves();
+  void change_ground();
+  void redraw_ground(const PlotFrame& frame);
+  void paint_bands(QPainter& painter, const PlotFrame& frame) const;
+  void paint_curve(QPainter& painter, const PlotFrame& frame);
+  void paint_events(QPainter& painter, const PlotFrame& frame) const;
+  void paint_strip(QPainter& painter, QRectF room) const;
+  QString force_text() const;
+  QString depth_text() const;
+
+  bool is_depth_shown_ = true;
+  Axis axis_ = Axis::kDepth;
+  std::vector<Band> bands_;
+  std::vector<QPointF> predicted_, reference_;
+  QString predicted_name_ = tr("predicted"), reference_name_ = tr("expert");
+  CurveTrace by_depth_, by_time_;
+  std::vector<Event> events_;
+  std::optional<double> cursor_s_;
+  double far_mm_, low_n_, high_n_;  ///< What the axes must hold.
+  QPixmap ground_;                  ///< All that stands still: axes, bands, curves behind.
+  AxisRange ground_x_, ground_y_;
+  QToolButton* axis_button_;
+  ViewStrip* strip_;
+};
+
+}  // namespace trocar::trainer

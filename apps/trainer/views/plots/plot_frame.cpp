@@ -1,0 +1,69 @@
+#include "views/plots/plot_frame.h"
+
+#include <algorithm>
+
+#include "ui_kit/theme.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr double kTickRoom_x = 52.0;  ///< Points that a number needs along its axis.
+constexpr double kTickRoom_y = 30.0;
+
+int steps_in(double points, double room) {
+  return std::max(1, static_cast<int>(points / room));
+}
+
+QString number(double value, double step) {
+  return QString::fromStdString(tick_text(value, step));
+}
+
+}  // namespace
+
+QPointF PlotFrame::to_point(const QPointF& value) const noexcept {
+  return {area.left() + area.width() * (value.x() - x.low) / (x.high - x.low),
+          area.bottom() - area.height() * (value.y() - y.low) / (y.high - y.low)};
+}
+
+QPointF PlotFrame::to_value(const QPointF& point) const noexcept {
+  return {x.low + (x.high - x.low) * (point.x() - area.left()) / area.width(),
+          y.low + (y.high - y.low) * (area.bottom() - point.y()) / area.height()};
+}
+
+void PlotFrame::draw_axes(QPainter& painter, const QString& x_unit, const QString& y_unit, double below) const {
+  const Theme& t = theme();
+  painter.setFont(scaled_font(0.82));
+  const QFontMetricsF metrics(painter.font());
+  const double high = metrics.height();
+  const double step_x = nice_step(x, steps_in(area.width(), kTickRoom_x));
+  const double step_y = nice_step(y, steps_in(area.height(), kTickRoom_y));
+  for (const double value : ticks_in(y, step_y)) {
+    const double at = to_point({x.low, value}).y();
+    painter.setPen(QPen(value == 0.0 ? t.dim : t.line, 1.0));
+    painter.drawLine(QPointF(area.left(), at), QPointF(area.right(), at));
+    painter.setPen(t.dim);
+    painter.drawText(QRectF(0.0, at - 0.5 * high, area.left() - 6.0, high), Qt::AlignRight | Qt::AlignVCenter,
+                     number(value, step_y));
+  }
+  const double unit_wide = metrics.horizontalAdvance(x_unit) + 8.0;
+  const double top = area.bottom() + below + 2.0;
+  for (const double value : ticks_in(x, step_x)) {
+    const double at = to_point({value, y.low}).x();
+    painter.setPen(QPen(t.line, 1.0));
+    painter.drawLine(QPointF(at, area.top()), QPointF(at, area.bottom()));
+    const QString text = number(value, step_x);
+    const double wide = metrics.horizontalAdvance(text);
+    if (at + 0.5 * wide > area.right() - unit_wide) continue;  // the unit stands there
+    painter.setPen(t.dim);
+    painter.drawText(QPointF(at - 0.5 * wide, top + metrics.ascent()), text);
+  }
+  painter.setPen(t.dim);
+  painter.drawText(QPointF(area.right() - metrics.horizontalAdvance(x_unit), top + metrics.ascent()), x_unit);
+  painter.drawText(QPointF(area.left() + 5.0, area.top() + metrics.ascent()), y_unit);
+}
+
+AxisRange rounded_out(const AxisRange& range, int at_most) {
+  return nice_range(range, nice_step(range, at_most));
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,93 @@
+#include "views/slices/slice_marks.h"
+
+#include <QEvent>
+#include <QPainter>
+#include <QPen>
+#include <algorithm>
+#include <cmath>
+
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
+#include "views/slices/slice_canvas.h"
+#include "views/slices/slice_view.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr double kNear_mm = 15.0;  ///< A landmark farther from the slice is not drawn.
+
+}  // namespace
+
+SliceMarks::SliceMarks(SliceView* view) : QWidget(view), view_(view) {
+  setAttribute(Qt::WA_TransparentForMouseEvents);
+  setFocusPolicy(Qt::NoFocus);
+  resize(view->size());
+  view->installEventFilter(this);
+}
+
+bool SliceMarks::eventFilter(QObject* watched, QEvent* event) {
+  if (watched == view_ && event->type() == QEvent::Resize) resize(view_->size());
+  return QWidget::eventFilter(watched, event);
+}
+
+void SliceMarks::set_target(const std::optional<Vec3>& p_P) {
+  if (p_P == target_P_) return;
+  target_P_ = p_P;
+  update();
+}
+
+void SliceMarks::set_landmarks(const std::vector<Landmark>& landmarks) {
+  landmarks_ = landmarks;
+  update();
+}
+
+void SliceMarks::set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P) {
+  stylet_P_ = stylet_P;
+  core_P_ = core_P;
+  update();
+}
+
+void SliceMarks::draw_piece(QPainter& painter, const Segment& piece_P, const QColor& color, double width) const {
+  const bool is_near = std::max(away_mm(piece_P.a), away_mm(piece_P.b)) < kNear_mm;
+  QColor shown = color;
+  shown.setAlphaF(is_near ? 1.0F : 0.45F);
+  painter.setPen(QPen(shown, width, Qt::SolidLine, Qt::FlatCap));
+  painter.drawLine(view_->position_of(piece_P.a), view_->position_of(piece_P.b));
+}
+
+double SliceMarks::away_mm(const Vec3& p_P) const {
+  return std::abs((p_P - view_->geometry().center_P).dot(view_->geometry().axes.normal_P()));
+}
+
+void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
+  QPainter painter(this);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.setClipRect(view_->picture_rect());
+  const auto pen_of = [](QColor color, double width, bool is_near) {
+    color.setAlphaF(is_near ? 1.0F : 0.45F);
+    return QPen(color, width, is_near ? Qt::SolidLine : Qt::DashLine);
+  };
+  constexpr double kStylet_px = 2.0, kCore_px = 4.0;
+  if (stylet_P_) draw_piece(painter, *stylet_P_, theme().needle, kStylet_px);
+  if (core_P_) draw_piece(painter, *core_P_, theme().target, kCore_px);
+  for (const Landmark& landmark : landmarks_) {
+    const double away = away_mm(landmark.p_P);
+    if (away > kNear_mm) continue;
+    const QPointF at = view_->position_of(landmark.p_P);
+    painter.setPen(pen_of(theme().warning, 1.5, away < kInPlane_mm));
+    painter.drawLine(at - QPointF(4, 4), at + QPointF(4, 4));
+    painter.drawLine(at - QPointF(4, -4), at + QPointF(4, -4));
+    draw_text(painter, at + QPointF(7, 4), to_qt(landmark.name), painter.pen().color());
+  }
+  if (target_P_) {
+    const QPointF at = view_->position_of(*target_P_);
+    painter.setPen(pen_of(theme().target, 2.0, away_mm(*target_P_) < kInPlane_mm));
+    painter.drawEllipse(at, 7.0, 7.0);
+    painter.drawLine(at - QPointF(11, 0), at - QPointF(4, 0));
+    painter.drawLine(at + QPointF(4, 0), at + QPointF(11, 0));
+    painter.drawLine(at - QPointF(0, 11), at - QPointF(0, 4));
+    painter.drawLine(at + QPointF(0, 4), at + QPointF(0, 11));
+  }
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,190 @@
+// Mouse, wheel and keys of the slice viewer.
+#include <QHelpEvent>
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QWheelEvent>
+#include <algorithm>
+#include <cmath>
+
+#include "views/slices/slice_view.h"
+#include "views/view_strip.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr double kClick = 4.0;        ///< Points that a click may move.
+constexpr double kWheelStep = 120.0;  ///< Of angleDelta; finer wheels send parts of it.
+constexpr double kZoomStep = 1.15;
+constexpr double kNearest_mm = 0.02;  ///< Of a device pixel.
+constexpr double kFarthest_mm = 10.0;
+constexpr double kPanStep = 16.0;  ///< Points an arrow key.
+
+}  // namespace
+
+bool SliceView::event(QEvent* event) {
+  // Over the picture a help text would hide what is being looked at.
+  if (event->type() == QEvent::ToolTip && static_cast<QHelpEvent*>(event)->pos().y() > picture_rect().top())
+    return true;
+  return QWidget::event(event);
+}
+
+void SliceView::changeEvent(QEvent* event) {
+  if (event->type() == QEvent::FontChange || event->type() == QEvent::StyleChange) update();
+  QWidget::changeEvent(event);
+}
+
+void SliceView::resizeEvent(QResizeEvent* /*event*/) {
+  strip_->follow_view();
+  update_size();
+}
+
+void SliceView::move_focus(const Vec3& p_P) {
+  if (p_P == focus_P_) return;
+  focus_P_ = p_P;
+  if (!follows_needle()) move_plane_to_anchor();
+  update();
+  Q_EMIT focus_moved(p_P);
+}
+
+void SliceView::pan_by(const QPointF& points) {
+  is_fitted_ = false;
+  const double mm = geometry_.mm_per_px * device_pixel_ratio_;
+  geometry_.center_P -= mm * (points.x() * geometry_.axes.u_P + points.y() * geometry_.axes.v_P);
+  is_stale_ = true;
+  update();
+}
+
+void SliceView::zoom_at(const QPointF& position, double factor) {
+  is_fitted_ = false;
+  geometry_.zoom_at(to_pixel(position), std::clamp(geometry_.mm_per_px / factor, kNearest_mm, kFarthest_mm));
+  is_stale_ = true;
+  update();
+}
+
+double SliceView::slice_step_mm() const {
+  if (!patient_) return 1.0;
+  const GridGeometry& grid = patient_->ct.geometry;
+  const Vec3 voxels_per_mm = (grid.R_PV.transpose() * geometry_.axes.normal_P()).cwiseQuotient(grid.spacing_mm);
+  return 1.0 / voxels_per_mm.cwiseAbs().maxCoeff();
+}
+
+void SliceView::scroll(double slices) {
+  const double way_mm = slices * slice_step_mm();
+  if (!follows_needle()) return move_focus(focus_P_ + way_mm * geometry_.axes.normal_P());
+  offset_mm_ += way_mm;
+  if (std::abs(offset_mm_) < 1e-6) offset_mm_ = 0.0;  // back at the tip, whatever the sum was rounded to
+  move_plane_to_anchor();
+  update();
+}
+
+void SliceView::change_window(const Window& window) {
+  const Window before = style_.window;
+  set_window(window.center_hu, window.width_hu);
+  if (!(style_.window == before)) Q_EMIT window_changed(style_.window.center_hu, style_.window.width_hu);
+}
+
+void SliceView::mousePressEvent(QMouseEvent* event) {
+  const QPointF position = event->pos();
+  if (!patient_ || drag_ != Drag::kNone || !picture_rect().contains(position)) return;
+  const bool has_shift = event->modifiers().testFlag(Qt::ShiftModifier);
+  if (event->button() == Qt::MiddleButton || (event->button() == Qt::LeftButton && has_shift))
+    drag_ = Drag::kPan;
+  else if (event->button() == Qt::LeftButton)
+    drag_ = Drag::kFocus;
+  else if (event->button() == Qt::RightButton)
+    drag_ = Drag::kWindow;
+  pressed_at_ = dragged_to_ = position;
+  is_click_ = drag_ == Drag::kFocus;
+  if (drag_ == Drag::kFocus) move_focus(point_at(position));
+  if (drag_ == Drag::kPan) setCursor(Qt::ClosedHandCursor);
+}
+
+void SliceView::mouseMoveEvent(QMouseEvent* event) {
+  const QPointF position = event->pos();
+  const QPointF moved = position - dragged_to_;
+  dragged_to_ = position;
+  const QPointF from_press = position - pressed_at_;
+  if (std::hypot(from_press.x(), from_press.y()) > kClick) is_click_ = false;
+  switch (drag_) {
+    case Drag::kNone:
+      return;
+    case Drag::kFocus:
+      return move_focus(point_at(position));
+    case Drag::kPan:
+      return pan_by(moved);
+    case Drag::kWindow:
+      break;
+  }
+  // Wide windows change fast, narrow ones finely.
+  const double hu_per_point = std::max(1.0, style_.window.width_hu / 200.0);
+  change_window({style_.window.center_hu + hu_per_point * moved.y(),
+                 std::max(1.0, style_.window.width_hu + hu_per_point * moved.x())});
+}
+
+void SliceView::mouseReleaseEvent(QMouseEvent* event) {
+  if (drag_ == Drag::kNone) return;
+  // Another button may have been pressed and released in the middle of the drag.
+  const Qt::MouseButtons needed = drag_ == Drag::kFocus    ? Qt::MouseButtons(Qt::LeftButton)
+                                  : drag_ == Drag::kWindow ? Qt::MouseButtons(Qt::RightButton)
+                                                           : Qt::LeftButton | Qt::MiddleButton;
+  if ((event->buttons() & needed) != 0) return;
+  drag_ = Drag::kNone;
+  setCursor(Qt::CrossCursor);
+  if (std::exchange(is_click_, false)) Q_EMIT clicked(point_at(pressed_at_));
+}
+
+void SliceView::mouseDoubleClickEvent(QMouseEvent* event) {
+  if (!patient_ || event->button() != Qt::LeftButton || !picture_rect().contains(event->pos())) return;
+  pan_by(picture_rect().center() - QPointF(event->pos()));
+}
+
+void SliceView::wheelEvent(QWheelEvent* event) {
+  if (!patient_) return;
+  const double steps = event->angleDelta().y() / kWheelStep;
+  if (event->modifiers().testFlag(Qt::ControlModifier))
+    zoom_at(event->position(), std::pow(kZoomStep, steps));
+  else
+    scroll(steps);
+  event->accept();
+}
+
+void SliceView::keyPressEvent(QKeyEvent* event) {
+  if (!patient_) return QWidget::keyPressEvent(event);
+  const double way_mm = event->modifiers().testFlag(Qt::ShiftModifier) ? 10.0 : 1.0;
+  const auto arrow = [&](double right, double down) {
+    if (follows_needle()) return pan_by(-kPanStep * QPointF(right, down));
+    const SliceAxes& axes = geometry_.axes;
+    move_focus(focus_P_ + way_mm * (right * axes.u_P + down * axes.v_P));
+    follow_anchor();
+  };
+  const int key = event->key();
+  if (key >= Qt::Key_1 && key < Qt::Key_1 + static_cast<int>(kWindowPresets.size()))
+    return change_window(kWindowPresets[static_cast<std::size_t>(key - Qt::Key_1)].window);
+  switch (key) {
+    case Qt::Key_Left:
+      return arrow(-1.0, 0.0);
+    case Qt::Key_Right:
+      return arrow(1.0, 0.0);
+    case Qt::Key_Up:
+      return arrow(0.0, -1.0);
+    case Qt::Key_Down:
+      return arrow(0.0, 1.0);
+    case Qt::Key_PageUp:
+      return scroll(1.0);
+    case Qt::Key_PageDown:
+      return scroll(-1.0);
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+      return zoom_at(position_of(anchor_P()), kZoomStep);
+    case Qt::Key_Minus:
+      return zoom_at(position_of(anchor_P()), 1.0 / kZoomStep);
+    case Qt::Key_R:
+      return reset();
+    case Qt::Key_L:
+      return set_labels_visible(!has_labels_);
+    default:
+      QWidget::keyPressEvent(event);
+  }
+}
+
+}  // namespace trocar::trainer

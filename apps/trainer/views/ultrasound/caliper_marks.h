@@ -1,0 +1,22 @@
+#pragma once
+
+#include <QPointF>
+#include <optional>
+#include <span>
+
+#include "ultrasound/scanner/measurements.h"
+#include "views/ultrasound/ultrasound_layout.h"
+
+namespace trocar::trainer {
+
+/// One mark of one measurement, by their numbers.
+struct CaliperMark {
+  std::size_t item = 0;
+  std::size_t mark = 0;
+};
+
+/// The nearest mark within 8 points of a place of the view.
+std::optional<CaliperMark> find_mark(const PictureMap& map, std::span<const Measurement> measurements,
+                                     const QPointF& place);
+
+}  // namespace trocar::trainer

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "ultrasound/probe/scan_geometry.h"
+
+namespace trocar::trainer {
+
+/// One byte a pixel of an ultrasound picture in space: 255 within the scan (scanlines and depths that are sampled), 0
+/// outside. Keeps its last answers, each until size, scan or the picture's place against the transducer change: a live
+/// scanner goes back and forth between a few numbers of scanlines.
+class ScanMask {
+ public:
+  const std::vector<std::uint8_t>& of(int columns, int rows, const std::array<Vec3, 3>& corners_P, const Pose& X_PT,
+                                      const ScanGeometry& scan);
+
+ private:
+  struct Key {
+    int columns = 0;
+    int rows = 0;
+    Vec2 corner_T{0, 0};
+    Vec2 right_T{0, 0};
+    Vec2 down_T{0, 0};
+    std::array<double, 5> scan{};
+  };
+  struct Answer {
+    Key key;
+    std::vector<std::uint8_t> alpha;
+  };
+  static constexpr std::size_t kMostAnswers = 6;
+  static bool are_near(const Key& a, const Key& b);
+  static std::vector<std::uint8_t> painted(const Key& key, const ScanGeometry& scan);
+  std::deque<Answer> answers_;  ///< The newest in front.
+};
+
+}  // namespace trocar::trainer

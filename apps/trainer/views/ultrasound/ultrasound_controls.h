@@ -1,0 +1,87 @@
+#pragma once
+
+#include <QWidget>
+#include <functional>
+#include <vector>
+
+#include "ultrasound/scanner/scan_preset.h"
+#include "views/ultrasound/ultrasound_view.h"
+
+class QBoxLayout;
+class QCheckBox;
+class QComboBox;
+class QGridLayout;
+class QLabel;
+class QPushButton;
+class QSlider;
+
+namespace trocar::trainer {
+
+/// The knobs of an ultrasound view, for its side: transducer and preset, freeze and cine loop, picture, TGC, measuring,
+/// needle guide, Doppler. Shows what the view has, whoever changed it. Scrolls where it is higher than its place.
+class UltrasoundControls : public QWidget {
+  Q_OBJECT
+ public:
+  explicit UltrasoundControls(UltrasoundView& view, QWidget* parent = nullptr);
+
+  QSize sizeHint() const override { return {288, 640}; }
+
+ private:
+  /// A slider over one number of the settings.
+  struct Knob {
+    QSlider* slider = nullptr;
+    QLabel* value = nullptr;
+    double step = 1.0;
+    std::function<double&(UltrasoundSettings&)> number;
+    std::function<QString(double)> text;
+  };
+  struct Check {
+    QCheckBox* box = nullptr;
+    std::function<bool&(UltrasoundSettings&)> flag;
+  };
+  struct KnobSpec {
+    const char* name;
+    QString label, tooltip;
+    double low, high, step;
+    std::function<double&(UltrasoundSettings&)> number;
+    std::function<QString(double)> text;
+  };
+
+  void load_tables();
+  QWidget* make_source();
+  QWidget* make_freeze();
+  QWidget* make_picture();
+  QWidget* make_tgc();
+  QWidget* make_measuring();
+  QWidget* make_guide();
+  QWidget* make_doppler();
+  void add_knob(QGridLayout& grid, const KnobSpec& spec);
+  QCheckBox* add_check(QBoxLayout& box, const char* name, const QString& text, const QString& tooltip,
+                       std::function<bool&(UltrasoundSettings&)> flag);
+  void apply_preset(int index);
+  void set_ranges();
+  void show_view();
+
+  UltrasoundView& view_;
+  std::vector<Transducer> transducers_;
+  std::vector<ScanPreset> presets_;
+  std::vector<Knob> knobs_;
+  std::vector<Check> checks_;
+  QComboBox* transducer_ = nullptr;
+  QComboBox* preset_ = nullptr;
+  QComboBox* gray_map_ = nullptr;
+  QPushButton* freeze_ = nullptr;
+  QSlider* cine_ = nullptr;
+  QWidget* cine_row_ = nullptr;
+  QPushButton* play_ = nullptr;
+  std::vector<QPushButton*> tools_;
+  QPushButton* undo_ = nullptr;
+  QPushButton* remove_ = nullptr;
+  QPushButton* clear_ = nullptr;
+  QWidget* guide_ = nullptr;
+  QCheckBox* axis_ = nullptr;
+  QWidget* doppler_knobs_ = nullptr;
+  QCheckBox* doppler_ = nullptr;
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,80 @@
+#include "views/ultrasound/ultrasound_layout.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace trocar::trainer {
+namespace {
+
+/// Fineness of looking for the largest picture, and of looking whether a box touches the scan.
+constexpr int kSteps = 12;
+constexpr double kStep_px = 5.0;
+constexpr double kClearance_px = 4.0;
+
+bool touches(const QRectF& box, const QRectF& picture, const RasterGeometry& raster, const ScanGeometry& scan) {
+  if (box.isEmpty()) return false;
+  const QRectF wide = box.adjusted(-kClearance_px, -kClearance_px, kClearance_px, kClearance_px);
+  const int columns = std::max(2, static_cast<int>(std::ceil(wide.width() / kStep_px)));
+  const int rows = std::max(2, static_cast<int>(std::ceil(wide.height() / kStep_px)));
+  for (int r = 0; r <= rows; ++r)
+    for (int c = 0; c <= columns; ++c) {
+      const double x = wide.left() + wide.width() * c / columns - picture.left();
+      const double y = wide.top() + wide.height() * r / rows - picture.top();
+      const Polar at = scan.to_polar(raster.to_T(x - 0.5, y - 0.5));
+      if (at.line >= 0.0 && at.line <= scan.lines - 1 && at.depth_mm >= 0.0 && at.depth_mm <= scan.depth_mm)
+        return true;
+    }
+  return false;
+}
+
+}  // namespace
+
+UltrasoundLayout lay_out(const QSizeF& view, const ScanGeometry& scan, const UltrasoundRoom& room) {
+  UltrasoundLayout layout;
+  layout.scale_x = view.width() - room.scale_width;
+  layout.caption = QRectF(QPointF(room.margin, room.margin), room.caption);
+  layout.bars = QRectF(QPointF(layout.scale_x - 2.0 * room.margin - room.bars.width(), 3.5 * room.margin), room.bars);
+  const double left_most = room.caption.isEmpty() ? 0.0 : room.caption.width() + 1.5 * room.margin;
+  const double right_most = room.bars.isEmpty() ? 0.0 : room.bars.width() + 1.5 * room.margin;
+  const double marker = scan.is_fan ? 0.0 : room.marker;
+  double best_mm_per_pixel = 1e30;
+  for (int l = 0; l <= kSteps; ++l)
+    for (int r = 0; r <= kSteps; ++r) {
+      const double left = left_most * l / kSteps, right = right_most * r / kSteps;
+      const QRectF picture(left + marker, marker,
+                           std::max(16.0, layout.scale_x - room.margin - left - right - 2.0 * marker),
+                           std::max(16.0, view.height() - marker));
+      const RasterGeometry raster =
+          fit_raster(scan, static_cast<int>(picture.width()), static_cast<int>(picture.height()));
+      // Among equals the one that moves the picture the least.
+      const double moved = 1.0 + 1e-4 * (std::abs(l - r) + l + r);
+      if (raster.mm_per_pixel * moved >= best_mm_per_pixel) continue;
+      if (l < kSteps && touches(layout.caption, picture, raster, scan)) continue;
+      if (r < kSteps && touches(layout.bars, picture, raster, scan)) continue;
+      best_mm_per_pixel = raster.mm_per_pixel * moved;
+      layout.picture = picture;
+    }
+  return layout;
+}
+
+PictureMap::PictureMap(const QRectF& target, const RasterGeometry& raster) noexcept : raster_(raster) {
+  scale_ = std::min(target.width() / raster.columns, target.height() / raster.rows);
+  const QSizeF size(scale_ * raster.columns, scale_ * raster.rows);
+  rect_ = QRectF(target.center() - QPointF(0.5 * size.width(), 0.5 * size.height()), size);
+}
+
+QPointF PictureMap::pixel_to_view(const Vec2& pixel) const noexcept {
+  return rect_.topLeft() + scale_ * QPointF(pixel.x() + 0.5, pixel.y() + 0.5);
+}
+
+QPointF PictureMap::to_view(const Vec2& p_T) const noexcept {
+  return pixel_to_view(raster_.to_pixel(p_T));
+}
+
+Vec2 PictureMap::to_T(const QPointF& place) const noexcept {
+  const QPointF pixel = (place - rect_.topLeft()) / scale_;
+  return raster_.to_T(pixel.x() - 0.5, pixel.y() - 0.5);
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,313 @@
+#include "views/ultrasound/ultrasound_painter.h"
+
+#include <QFontMetricsF>
+#include <QImage>
+#include <QPainter>
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
+#include "ultrasound/doppler/colour_doppler.h"
+
+namespace trocar::trainer {
+namespace {
+
+const QColor kInk(0xc8, 0xce, 0xd6);
+const QColor kMarkerInk(0x5a, 0xc8, 0x78);
+const QColor kFocusInk(0xf0, 0xc8, 0x50);
+const QColor kCaliperInk(0xf4, 0xe0, 0x6a);
+
+constexpr double kHardlyAny = 0.02, kMost = 0.75;  ///< Of the face on the skin, as the command line warns.
+constexpr double kUnscanned = 0.01;                ///< Of the picture outside the CT, from which a caption says so.
+constexpr double kWedge_px = 8.0, kBarGap_px = 12.0, kColourBar_px = 10.0;
+/// The needle's axis is shown where it lies so near to the plane: about half the beam's thickness.
+constexpr double kNearPlane_mm = 3.0;
+constexpr double kAhead_mm = 250.0, kAxisStep_mm = 1.0;
+constexpr int kOutlinePoints = 72;
+constexpr double kCross_px = 5.0;
+constexpr double kMarkerBeside_px = 8.0;  ///< Largest distance of the marker from the raster.
+
+double line_height(const QFont& font) {
+  return std::ceil(QFontMetricsF(font).height() * 1.05);
+}
+
+QFont bold(QFont font) {
+  font.setBold(true);
+  return font;
+}
+
+void draw_cross(QPainter& painter, const QPointF& at, double size) {
+  painter.drawLine(at - QPointF(size, 0), at + QPointF(size, 0));
+  painter.drawLine(at - QPointF(0, size), at + QPointF(0, size));
+}
+
+/// Text beside a mark, with a dark rim so that it can be read on bright tissue.
+void draw_tag(QPainter& painter, const QPointF& at, const QString& text) {
+  const QPen ink = painter.pen();
+  painter.setPen(QColor(0, 0, 0, 200));
+  for (const QPointF& d : {QPointF(-1, 0), QPointF(1, 0), QPointF(0, -1), QPointF(0, 1)})
+    painter.drawText(at + d, text);
+  painter.setPen(ink);
+  painter.drawText(at, text);
+}
+
+QPen dotted(const QColor& color, double width) {
+  QPen pen(color, width, Qt::CustomDashLine, Qt::RoundCap);
+  pen.setDashPattern({0.1, 3.0});
+  return pen;
+}
+
+}  // namespace
+
+std::vector<CaptionLine> caption_of(const ScanPicture& picture, const CaptionFacts& facts) {
+  using Kind = CaptionLine::Kind;
+  ScanCaption caption;
+  caption.transducer = to_std(facts.transducer);
+  caption.frequency_mhz = picture.acquisition.frequency_mhz;
+  caption.focus_mm = picture.acquisition.focus_mm;
+  caption.settings = picture.display;
+  const ScanAnnotation annotation = make_scan_annotation(picture.raster, picture.scan, caption);
+  std::vector<CaptionLine> lines;
+  for (const ScanAnnotation::Text& text : annotation.texts)
+    if (text.column < annotation.scale_column) lines.push_back({to_qt(text.text), Kind::kPlain});
+  if (!lines.empty()) lines.front().kind = Kind::kName;
+  if (facts.is_small) lines.resize(std::min<std::size_t>(lines.size(), 1));
+  if (picture.is_frozen) {
+    const QString state = facts.cine.is_playing ? QStringLiteral("Cine") : QStringLiteral("Frozen");
+    lines.push_back(
+        {QStringLiteral("%1 %2/%3").arg(state).arg(facts.cine.position + 1).arg(facts.cine.size), Kind::kFrozen});
+  } else if (!facts.is_small) {
+    lines.push_back({QStringLiteral("%1 Hz").arg(facts.frames_per_s, 0, 'f', 0), Kind::kPlain});
+  }
+  if (picture.coupled_share < kHardlyAny) {
+    lines.push_back({QStringLiteral("No contact"), Kind::kWarning});
+  } else if (picture.coupled_share < kMost) {
+    lines.push_back({QStringLiteral("Poor contact"), Kind::kWarning});
+  }
+  if (picture.unscanned_share > kUnscanned) lines.push_back({QStringLiteral("Outside CT"), Kind::kWarning});
+  int number = 1;
+  for (const Measurement& measurement : facts.measurements) {
+    const std::vector<std::string> texts = results(measurement);
+    for (std::size_t n = 0; n < texts.size(); ++n)
+      lines.push_back(
+          {(n == 0 ? QStringLiteral("%1  ").arg(number) : QStringLiteral("    ")) + to_qt(texts[n]), Kind::kResult});
+    ++number;
+  }
+  return lines;
+}
+
+QFont caption_font(bool is_small) {
+  return scaled_font(is_small ? 0.85 : 0.95);
+}
+
+QSizeF caption_size(const std::vector<CaptionLine>& lines, const QFont& font) {
+  const QFontMetricsF metrics(bold(font));
+  double width = 0.0;
+  for (const CaptionLine& line : lines) width = std::max(width, metrics.horizontalAdvance(line.text));
+  return {std::ceil(width), line_height(font) * static_cast<double>(lines.size())};
+}
+
+QSizeF bars_size(const QFont& font, double view_height, bool has_doppler) {
+  const double height = std::clamp(0.24 * view_height, 48.0, 200.0);
+  if (!has_doppler) return {kWedge_px, height};
+  const double label = QFontMetricsF(font).horizontalAdvance(QStringLiteral("+100"));
+  return {kWedge_px + kBarGap_px + std::max(label, kColourBar_px), height + 3.0 * line_height(font)};
+}
+
+void draw_caption(QPainter& painter, const QRectF& place, const std::vector<CaptionLine>& lines, const QFont& font) {
+  using Kind = CaptionLine::Kind;
+  double y = place.top() + QFontMetricsF(font).ascent();
+  for (const CaptionLine& line : lines) {
+    QColor ink = kInk;
+    if (line.kind == Kind::kWarning) ink = theme().warning;
+    if (line.kind == Kind::kResult) ink = kCaliperInk;
+    if (line.kind == Kind::kFrozen) ink = theme().accent;
+    if (line.kind == Kind::kName) ink = theme().text;
+    painter.setFont(line.kind == Kind::kPlain || line.kind == Kind::kResult ? font : bold(font));
+    painter.setPen(ink);
+    painter.drawText(QPointF(place.left(), y), line.text);
+    y += line_height(font);
+  }
+}
+
+QPointF marker_place(const PictureMap& map, const ScanAnnotation& annotation) {
+  // A coarse raster's pixels are larger than the widget's and would move the marker out of the view.
+  const QPointF marker = map.pixel_to_view(annotation.marker_pixel);
+  const QRectF room = map.rect().adjusted(-kMarkerBeside_px, -kMarkerBeside_px, kMarkerBeside_px, kMarkerBeside_px);
+  return {std::clamp(marker.x(), room.left(), room.right()), std::clamp(marker.y(), room.top(), room.bottom())};
+}
+
+void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x, const ScanAnnotation& annotation,
+                      const QFont& font) {
+  const QFontMetricsF metrics(font);
+  painter.setFont(font);
+  int longest = 1;
+  for (const auto& tick : annotation.ticks) longest = std::max(longest, tick.length_px);
+  const auto y_of = [&](double row) { return map.pixel_to_view({0.0, row}).y(); };
+  const auto lowest = static_cast<double>(painter.viewport().height()) / painter.device()->devicePixelRatioF();
+  for (const auto& tick : annotation.ticks) {
+    const double y = y_of(tick.row);
+    const bool is_long = tick.length_px == longest;
+    painter.setPen(QPen(kInk, 1.0));
+    painter.drawLine(QPointF(scale_x - (is_long ? 8.0 : 4.0), y), QPointF(scale_x, y));
+    if (!is_long) continue;
+    const QString label = QString::number(std::lround(tick.depth_mm / 10.0));
+    const double base = std::clamp(y + 0.5 * metrics.capHeight(), metrics.ascent(), lowest - metrics.descent());
+    painter.drawText(QPointF(scale_x + 5.0, base), label);
+  }
+  const double focus_y = y_of(annotation.focus_row);
+  painter.setPen(Qt::NoPen);
+  painter.setBrush(kFocusInk);
+  const double tip_x = scale_x - 10.0;
+  painter.drawPolygon(
+      QPolygonF({QPointF(tip_x, focus_y), QPointF(tip_x - 7.0, focus_y - 5.0), QPointF(tip_x - 7.0, focus_y + 5.0)}));
+  painter.setBrush(kMarkerInk);
+  painter.drawEllipse(marker_place(map, annotation), kMarker_px, kMarker_px);
+  painter.setBrush(Qt::NoBrush);
+}
+
+void draw_bars(QPainter& painter, const QRectF& place, const ScanAnnotation& annotation, const ScanPicture& picture,
+               const QFont& font) {
+  const bool has_doppler = picture.doppler_scale_cm_per_s > 0.0;
+  const double above = has_doppler ? line_height(font) : 0.0;
+  const double below = has_doppler ? 2.0 * line_height(font) : 0.0;
+  const QRectF wedge(place.right() - kWedge_px, place.top() + above, kWedge_px, place.height() - above - below);
+  const auto& gray = annotation.wedge.gray;
+  const int levels = static_cast<int>(gray.size());
+  if (levels > 0) {
+    const QImage image(gray.data(), 1, levels, 1, QImage::Format_Grayscale8);
+    painter.drawImage(wedge, image);
+  }
+  if (!has_doppler) return;
+  const QRectF bar(place.left(), wedge.top(), kColourBar_px, wedge.height());
+  constexpr int kRows = 128;
+  QImage colours(1, kRows, QImage::Format_RGB32);
+  const double b = picture.doppler.baseline;
+  for (int r = 0; r < kRows; ++r) {
+    const Rgb c = doppler_colour(b + 1.0 - 2.0 * (r + 0.5) / kRows, picture.doppler);
+    colours.setPixelColor(0, r, QColor(c[0], c[1], c[2]));
+  }
+  painter.drawImage(bar, colours);
+  painter.setFont(font);
+  painter.setPen(kInk);
+  const auto label = [&](double share) {
+    const double value = share * picture.doppler_scale_cm_per_s;
+    return QStringLiteral("%1%2").arg(value > 0.0 ? QStringLiteral("+") : QString()).arg(value, 0, 'f', 0);
+  };
+  const QFontMetricsF metrics(font);
+  painter.drawText(QPointF(bar.left(), bar.top() - 0.5 * metrics.descent() - 2.0), label(b + 1.0));
+  painter.drawText(QPointF(bar.left(), bar.bottom() + metrics.ascent()), label(b - 1.0));
+  painter.drawText(QPointF(bar.left(), bar.bottom() + metrics.ascent() + line_height(font)), QStringLiteral("cm/s"));
+}
+
+namespace {
+
+void draw_line(QPainter& painter, const QPointF& a, const QPointF& b, const QPen& line) {
+  const QPen ink = painter.pen();
+  painter.setPen(line);
+  painter.drawLine(a, b);
+  painter.setPen(ink);
+}
+
+void draw_outline(QPainter& painter, const PictureMap& map, const EllipseCaliper& ellipse, const QPen& line) {
+  QPolygonF outline;
+  for (const Vec2& p_T : ellipse.outline_T(kOutlinePoints)) outline << map.to_view(p_T);
+  const QPen ink = painter.pen();
+  painter.setPen(line);
+  painter.drawPolygon(outline);
+  painter.setPen(ink);
+}
+
+}  // namespace
+
+void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const Measurement> measurements,
+                       std::optional<std::size_t> chosen) {
+  painter.setBrush(Qt::NoBrush);
+  painter.setFont(caption_font(false));
+  for (std::size_t n = 0; n < measurements.size(); ++n) {
+    const Measurement& measurement = measurements[n];
+    const bool is_chosen = chosen == n;
+    const QPen line = dotted(kCaliperInk, is_chosen ? 1.8 : 1.2);
+    painter.setPen(QPen(kCaliperInk, is_chosen ? 1.8 : 1.2));
+    std::vector<QPointF> marks;
+    for (const Vec2& mark_T : marks_T(measurement)) marks.push_back(map.to_view(mark_T));
+    if (const auto* ellipse = std::get_if<EllipseCaliper>(&measurement)) {
+      draw_outline(painter, map, *ellipse, line);
+    } else {
+      for (std::size_t end = 1; end < marks.size(); ++end) draw_line(painter, marks[0], marks[end], line);
+    }
+    for (const QPointF& mark : marks) draw_cross(painter, mark, kCross_px);
+    if (is_chosen)
+      for (const QPointF& mark : marks) painter.drawEllipse(mark, kCross_px + 3.0, kCross_px + 3.0);
+    const QPointF& last = marks[std::holds_alternative<AngleCaliper>(measurement) ? 2 : 1];
+    draw_tag(painter, last + QPointF(kCross_px + (is_chosen ? 6.0 : 3.0), -3.0), QString::number(n + 1));
+  }
+}
+
+void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const Vec2> marks_T, const Vec2& hover_T,
+                     bool is_ellipse, bool is_angle) {
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(QPen(kCaliperInk, 1.2));
+  const QPen line = dotted(kCaliperInk, 1.2);
+  const QPointF hover = map.to_view(hover_T);
+  for (const Vec2& mark_T : marks_T) draw_cross(painter, map.to_view(mark_T), kCross_px);
+  draw_cross(painter, hover, kCross_px);
+  if (marks_T.empty()) return;
+  if (is_ellipse && marks_T.size() == 2) {
+    EllipseCaliper ellipse{marks_T[0], marks_T[1], 0.0};
+    ellipse.half_width_mm = ellipse.distance_to_axis_mm(hover_T);
+    draw_outline(painter, map, ellipse, line);
+    return;
+  }
+  if (is_angle && marks_T.size() == 2) draw_line(painter, map.to_view(marks_T[0]), map.to_view(marks_T[1]), line);
+  draw_line(painter, is_angle ? map.to_view(marks_T[0]) : map.to_view(marks_T.back()), hover, line);
+}
+
+void draw_guide(QPainter& painter, const PictureMap& map, std::span<const Vec2> line_T) {
+  painter.setBrush(theme().path);
+  painter.setPen(Qt::NoPen);
+  double along_mm = 0.0, next_mm = 0.0;
+  constexpr double kDot_mm = 2.5;
+  constexpr int kDotsPerCm = 4;
+  int dots = 0;
+  for (std::size_t n = 1; n < line_T.size(); ++n) {
+    const double length_mm = (line_T[n] - line_T[n - 1]).norm();
+    for (; length_mm > 0.0 && next_mm <= along_mm + length_mm; next_mm += kDot_mm, ++dots) {
+      const Vec2 at_T = line_T[n - 1] + (next_mm - along_mm) / length_mm * (line_T[n] - line_T[n - 1]);
+      painter.drawEllipse(map.to_view(at_T), dots % kDotsPerCm == 0 ? 2.2 : 1.0, dots % kDotsPerCm == 0 ? 2.2 : 1.0);
+    }
+    along_mm += length_mm;
+  }
+  painter.setBrush(Qt::NoBrush);
+}
+
+void draw_needle_axis(QPainter& painter, const PictureMap& map, const ScanPicture& picture,
+                      std::span<const Vec3> shaft_P) {
+  if (shaft_P.size() < 2) return;
+  const Vec3 tip_P = shaft_P.back();
+  const Vec3 along_P = (tip_P - shaft_P[shaft_P.size() - 2]).normalized();
+  if (!along_P.allFinite()) return;
+  const Pose X_TP = picture.X_PT.inverse();
+  const Vec3 tip_T = X_TP * tip_P;
+  const Vec3 along_T = X_TP.R() * along_P;
+  QPolygonF near;
+  for (double s = 0.0; s <= kAhead_mm; s += kAxisStep_mm)
+    if (std::abs(tip_T.z() + s * along_T.z()) <= kNearPlane_mm)
+      near << map.to_view(shown_place_T(picture, tip_P + s * along_P));
+  painter.setBrush(Qt::NoBrush);
+  painter.setPen(dotted(theme().path, 2.0));
+  painter.drawPolyline(near);
+  // An axis that stays in the plane pierces it nowhere in particular.
+  constexpr double kLeastSlope = 0.05;
+  if (std::abs(along_T.z()) < kLeastSlope) return;
+  const double pierce_mm = -tip_T.z() / along_T.z();
+  const QPointF at = map.to_view(shown_place_T(picture, tip_P + pierce_mm * along_P));
+  painter.setPen(QPen(QColor(0, 0, 0, 200), 4.0));
+  draw_cross(painter, at, 8.0);
+  painter.setPen(QPen(theme().path, 2.0));
+  draw_cross(painter, at, 8.0);
+}
+
+}  // namespace trocar::trainer

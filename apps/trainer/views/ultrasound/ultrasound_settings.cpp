@@ -1,0 +1,83 @@
+#include "views/ultrasound/ultrasound_settings.h"
+
+#include <QSettings>
+#include <algorithm>
+#include <cmath>
+
+#include "ui_kit/parts.h"
+#include "ultrasound/live/scan_request.h"
+
+namespace trocar::trainer {
+namespace {
+
+/// Reads or writes every knob that is kept, so that both have the same names.
+template <class Visitor>
+void visit(UltrasoundSettings& s, const Visitor& knob) {
+  knob("depth_mm", s.acquisition.depth_mm);
+  knob("frequency_mhz", s.acquisition.frequency_mhz);
+  knob("focus_mm", s.acquisition.focus_mm);
+  knob("gain_db", s.display.gain_db);
+  for (std::size_t n = 0; n < s.display.tgc_db.size(); ++n)
+    knob(QStringLiteral("tgc_db/%1").arg(n + 1).toLatin1().constData(), s.display.tgc_db[n]);
+  knob("dynamic_range_db", s.display.dynamic_range_db);
+  knob("persistence", s.display.persistence);
+  knob("is_marker_left", s.display.is_mirrored);
+  knob("doppler/scale_cm_per_s", s.doppler.scale_cm_per_s);
+  knob("doppler/gain_db", s.doppler.gain_db);
+  knob("doppler/baseline", s.doppler.baseline);
+  knob("doppler/is_inverted", s.doppler.is_inverted);
+  knob("guide/is_shown", s.guide.is_shown);
+  knob("guide/angle_deg", s.guide.angle_deg);
+  knob("guide/is_on_marked_side", s.guide.is_on_marked_side);
+}
+
+QString group(const Transducer& transducer) {
+  return QStringLiteral("ultrasound/") + to_qt(transducer.name);
+}
+
+}  // namespace
+
+UltrasoundSettings default_settings(const Transducer& transducer) {
+  UltrasoundSettings settings;
+  settings.acquisition = default_acquisition(transducer);
+  settings.doppler.frequency_mhz = std::max(transducer.lowest_mhz, 0.8 * transducer.frequency_mhz);
+  return settings;
+}
+
+UltrasoundSettings within_ranges(const UltrasoundSettings& settings, const Transducer& transducer) {
+  ScanRequest request;
+  request.acquisition = settings.acquisition;
+  request.display = settings.display;
+  request.doppler = settings.doppler;
+  request = trocar::within_ranges(request, transducer);
+  UltrasoundSettings held = settings;
+  held.acquisition = request.acquisition;
+  held.display = request.display;
+  held.doppler = request.doppler;
+  const double angle_deg = settings.guide.angle_deg;
+  held.guide.angle_deg = std::isfinite(angle_deg) ? std::clamp(angle_deg, 10.0, 80.0) : NeedleGuide().angle_deg;
+  return held;
+}
+
+UltrasoundSettings load_settings(const Transducer& transducer) {
+  UltrasoundSettings settings = default_settings(transducer);
+  QSettings store;
+  store.beginGroup(group(transducer));
+  visit(settings, [&](const char* name, auto& value) {
+    const QVariant kept = store.value(QString::fromLatin1(name));
+    if (kept.canConvert<std::decay_t<decltype(value)>>()) value = kept.value<std::decay_t<decltype(value)>>();
+  });
+  const auto map = parse_gray_map(to_std(store.value(QStringLiteral("gray_map")).toString()));
+  if (map) settings.display.gray_map = *map;
+  return within_ranges(settings, transducer);
+}
+
+void save_settings(const Transducer& transducer, const UltrasoundSettings& settings) {
+  QSettings store;
+  store.beginGroup(group(transducer));
+  UltrasoundSettings kept = settings;
+  visit(kept, [&](const char* name, auto& value) { store.setValue(QString::fromLatin1(name), value); });
+  store.setValue(QStringLiteral("gray_map"), to_qt(name_of(settings.display.gray_map)));
+}
+
+}  // namespace trocar::trainer

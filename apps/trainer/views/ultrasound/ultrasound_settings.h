@@ -1,0 +1,38 @@
+#pragma once
+
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/scanner/display_settings.h"
+#include "ultrasound/doppler/doppler_settings.h"
+
+namespace trocar::trainer {
+
+/// A bracket on the transducer that leads a needle into the picture's plane.
+struct NeedleGuide {
+  bool is_shown = false;
+  double angle_deg = 45.0;  ///< Between the guide and the middle of the beam. Range 10..80.
+  bool is_on_marked_side = true;
+
+  bool operator==(const NeedleGuide&) const = default;
+};
+
+/// All knobs of the ultrasound view.
+struct UltrasoundSettings {
+  Acquisition acquisition;
+  DisplaySettings display;
+  bool has_doppler = false;
+  DopplerSettings doppler;
+  NeedleGuide guide;
+
+  bool operator==(const UltrasoundSettings&) const = default;
+};
+
+UltrasoundSettings default_settings(const Transducer& transducer);
+/// Every knob in its range.
+UltrasoundSettings within_ranges(const UltrasoundSettings& settings, const Transducer& transducer);
+
+/// As they were left for that transducer (QSettings, group "ultrasound"); the defaults where nothing was kept. Doppler
+/// begins switched off.
+UltrasoundSettings load_settings(const Transducer& transducer);
+void save_settings(const Transducer& transducer, const UltrasoundSettings& settings);
+
+}  // namespace trocar::trainer

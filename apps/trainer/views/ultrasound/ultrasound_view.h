@@ -1,0 +1,180 @@
+#pragma once
+
+#include <QImage>
+#include <QWidget>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ultrasound/live/live_scanner.h"
+#include "ultrasound/scanner/measurements.h"
+#include "views/ultrasound/caliper_marks.h"
+#include "views/ultrasound/ultrasound_box.h"
+#include "views/ultrasound/ultrasound_layout.h"
+#include "views/ultrasound/ultrasound_settings.h"
+
+namespace trocar::trainer {
+
+enum class MeasuringTool { kNone, kDistance, kEllipse, kAngle };
+
+/// An ultrasound scanner's screen: the picture with depth scale, focus, orientation marker, gray wedge, colour bar and
+/// captions, calipers and needle guide. Pictures come from a thread of their own; nothing here waits.
+///
+/// Keys, in the whole window: F freezes, G / Shift+G gain, D / Shift+D depth, C colour Doppler, M measures a distance.
+/// With the focus here: Esc leaves the tool, Delete takes the chosen measurement away, else the last, Ctrl+Z and
+/// Ctrl+Shift+Z undo and redo; of a frozen loop Left and Right step, P plays. Mouse: clicks set marks, a drag sets two;
+/// without a tool a mark is picked up and moved, which chooses its measurement, and the Doppler box is dragged, or
+/// sized by its edges; the wheel steps the frozen loop.
+class UltrasoundView : public QWidget {
+  Q_OBJECT
+ public:
+  explicit UltrasoundView(QWidget* parent = nullptr);
+  ~UltrasoundView() override;
+
+  /// Begins with another patient; `flow` may be nullptr. The knobs are those that were kept for the transducer.
+  void show_patient(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow,
+                    const Transducer& transducer);
+  void set_transducer_pose(const Pose& X_PT);
+  /// From the hub to the tip; empty: none. `bore_share` and `tip_shift_mm` as in ScanRequest.
+  void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, double bore_share = 0.0,
+                  double tip_shift_mm = 0.0);
+  /// Once a frame: asks for a picture of now, takes the newest, repaints where something is new. now_s: any steady
+  /// time; the heart beats by it.
+  void advance(double now_s);
+  /// The newest; nullptr before the first.
+  std::shared_ptr<const ScanPicture> picture() const { return picture_; }
+
+  /// Whether there is a guide at all; none is shown, whatever is set, where it is not offered.
+  void set_guide_offered(bool is_offered);
+  bool is_guide_offered() const noexcept { return is_guide_offered_; }
+  /// Where the needle's axis goes in the picture, and the bracket's line if it is mounted.
+  void set_guide_visible(bool is_visible);
+  bool is_guide_visible() const noexcept { return is_guide_visible_; }
+
+  bool has_patient() const noexcept { return scene_ != nullptr; }
+  bool has_flow() const noexcept { return flow_ != nullptr; }
+  const Transducer& transducer() const noexcept { return transducer_; }
+  /// Another array on the same patient, with its own knobs; the patient's view begins anew.
+  void choose_transducer(const Transducer& transducer);
+
+  const UltrasoundSettings& settings() const noexcept { return settings_; }
+  /// Knobs beyond their range are held in it. Kept for the next time.
+  void set_settings(const UltrasoundSettings& settings);
+  void change_settings(const std::function<void(UltrasoundSettings&)>& change);
+  void reset_settings();
+
+  void set_frozen(bool is_frozen);
+  bool is_frozen() const { return scanner_.cine().is_frozen; }
+  CineState cine() const { return scanner_.cine(); }
+  void step_cine(int frames);
+  void show_cine(int index);
+  void play_cine(bool is_playing);
+
+  void start_measuring(MeasuringTool tool);
+  MeasuringTool measuring_tool() const noexcept { return tool_; }
+  const Measurements& measurements() const noexcept { return measurements_; }
+  void undo_measurement();
+  void redo_measurement();
+  /// The one whose mark was picked up last; nothing after a click beside all marks.
+  std::optional<std::size_t> chosen_measurement() const noexcept { return chosen_; }
+  /// The pointer can pick up a mark, or holds one.
+  bool is_over_mark() const noexcept { return is_over_mark_ || grip_.has_value(); }
+  /// The chosen one, else the last.
+  void remove_measurement();
+  void clear_measurements();
+
+  /// Between the image plane and the widget, for the newest picture.
+  std::optional<PictureMap> picture_map() const;
+  double frames_per_s() const noexcept { return frames_per_s_; }
+  QSize sizeHint() const override { return {640, 560}; }
+  QSize minimumSizeHint() const override { return {240, 180}; }
+
+ Q_SIGNALS:
+  /// Knobs, tool, measurements, freezing or the transducer are not what they were.
+  void changed();
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void wheelEvent(QWheelEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+  bool event(QEvent* event) override;
+
+ private:
+  /// A colour box between the mouse's press and its release.
+  struct BoxDrag {
+    BoxPart part = BoxPart::kWhole;
+    DopplerBox begun;
+    Vec2 from{0.0, 0.0};
+  };
+
+  /// A mark between the mouse's press and its release.
+  struct Grip {
+    CaliperMark mark;
+    Vec2 beside_T{0.0, 0.0};  ///< Of the mark from where it was picked up.
+    bool has_moved = false;
+  };
+
+  void make_shortcuts();
+  ScanRequest make_request(double now_s);
+  void take_picture(double now_s);
+  void count_picture(double now_s, bool is_live);
+  void save_now();
+
+  ScanGeometry wished_scan() const;
+  UltrasoundRoom room() const;
+  const UltrasoundLayout& layout_for(const ScanGeometry& scan) const;
+  std::vector<Vec2> guide_line_T() const;
+  void set_mark(const Vec2& p_T);
+  bool begin_grip(const QPointF& place);
+  void move_grip(const Vec2& to_T);
+  void forget_choice();
+  bool begin_box_drag(const QPointF& place);
+  void show_cursor(const QPointF& place);
+  bool handle_key(int key, Qt::KeyboardModifiers modifiers, bool is_rehearsal);
+  void leave_tool();
+  void measurements_changed();
+
+  LiveScanner scanner_;
+  std::shared_ptr<const AcousticScene> scene_;
+  std::shared_ptr<const VesselFlow> flow_;
+  Transducer transducer_;
+  UltrasoundSettings settings_;
+  bool is_saving_wanted_ = false;
+  double changed_s_ = 0.0, now_s_ = 0.0;
+
+  std::optional<Pose> X_PT_;
+  std::vector<Vec3> needle_shaft_P_;
+  double needle_diameter_mm_ = 1.2, needle_bore_share_ = 0.0, tip_shift_mm_ = 0.0;
+  bool is_guide_visible_ = false, is_guide_offered_ = true;
+
+  std::shared_ptr<const ScanPicture> picture_;
+  QImage image_;  ///< Of the picture's pixels, which it does not own.
+  double frames_per_s_ = 0.0, counting_since_s_ = -1.0;
+  int counted_ = 0;
+  CineState shown_cine_;
+
+  MeasuringTool tool_ = MeasuringTool::kNone;
+  Measurements measurements_;
+  std::vector<Vec2> marks_T_;  ///< Of a measurement in the making.
+  Vec2 hover_T_{0.0, 0.0};
+  QPointF pressed_at_;
+  bool is_pressed_ = false;
+  std::optional<BoxDrag> box_drag_;
+  std::optional<Grip> grip_;
+  std::optional<std::size_t> chosen_;
+  bool is_over_mark_ = false;
+
+  struct LayoutKey {
+    QSizeF view, caption, bars;
+    ScanGeometry scan;
+  };
+  mutable std::optional<LayoutKey> layout_key_;
+  mutable UltrasoundLayout layout_;
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,274 @@
+// Keys and mouse of the ultrasound view.
+#include <QKeyEvent>
+#include <QMouseEvent>
+#include <QShortcut>
+#include <QWheelEvent>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "views/ultrasound/ultrasound_view.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr double kGainStep_db = 2.0;
+constexpr double kDepthStep_mm = 10.0;
+/// A mouse that moves farther with its button down draws a line instead of setting a mark.
+constexpr double kDrag_px = 6.0;
+
+std::size_t marks_of(MeasuringTool tool) noexcept {
+  return tool == MeasuringTool::kDistance ? 2 : 3;
+}
+
+double turned(const QWheelEvent& event) noexcept {
+  constexpr double kNotch = 120.0;
+  return event.angleDelta().y() / kNotch;
+}
+
+/// The third mark of an ellipse is beside its axis.
+Measurement finished(MeasuringTool tool, const std::vector<Vec2>& m) {
+  if (tool == MeasuringTool::kDistance) return DistanceCaliper{m[0], m[1]};
+  if (tool == MeasuringTool::kAngle) return AngleCaliper{m[0], m[1], m[2]};
+  EllipseCaliper ellipse{m[0], m[1], 0.0};
+  ellipse.half_width_mm = ellipse.distance_to_axis_mm(m[2]);
+  return ellipse;
+}
+
+}  // namespace
+
+void UltrasoundView::make_shortcuts() {
+  const auto bind = [this](const char* keys, auto act) {
+    auto* shortcut = new QShortcut(QKeySequence(QString::fromLatin1(keys)), this);
+    connect(shortcut, &QShortcut::activated, this, act);
+  };
+  const auto gain = [this](double by_db) {
+    change_settings([=](UltrasoundSettings& s) { s.display.gain_db += by_db; });
+  };
+  const auto depth = [this](double by_mm) {
+    change_settings([=](UltrasoundSettings& s) { s.acquisition.depth_mm += by_mm; });
+  };
+  bind("F", [this] { set_frozen(!is_frozen()); });
+  bind("G", [=] { gain(kGainStep_db); });
+  bind("Shift+G", [=] { gain(-kGainStep_db); });
+  bind("D", [=] { depth(kDepthStep_mm); });
+  bind("Shift+D", [=] { depth(-kDepthStep_mm); });
+  bind("C", [this] { change_settings([](UltrasoundSettings& s) { s.has_doppler = !s.has_doppler; }); });
+  bind("M", [this] { start_measuring(MeasuringTool::kDistance); });
+}
+
+void UltrasoundView::start_measuring(MeasuringTool tool) {
+  tool_ = picture_ ? tool : MeasuringTool::kNone;
+  marks_T_.clear();
+  forget_choice();
+  is_pressed_ = false;
+  if (tool_ != MeasuringTool::kNone) setFocus();
+  setCursor(tool_ != MeasuringTool::kNone ? Qt::CrossCursor : Qt::ArrowCursor);
+  update();
+  Q_EMIT changed();
+}
+
+void UltrasoundView::leave_tool() {
+  // The first press of Esc takes the marks back, the next one leaves the tool.
+  if (marks_T_.empty()) {
+    start_measuring(MeasuringTool::kNone);
+  } else {
+    marks_T_.clear();
+    update();
+  }
+}
+
+void UltrasoundView::measurements_changed() {
+  update();
+  Q_EMIT changed();
+}
+
+void UltrasoundView::undo_measurement() {
+  measurements_.undo();
+  forget_choice();
+  measurements_changed();
+}
+
+void UltrasoundView::redo_measurement() {
+  measurements_.redo();
+  forget_choice();
+  measurements_changed();
+}
+
+void UltrasoundView::remove_measurement() {
+  if (chosen_) {
+    measurements_.remove(*chosen_);
+  } else {
+    measurements_.remove_last();
+  }
+  forget_choice();
+  measurements_changed();
+}
+
+void UltrasoundView::clear_measurements() {
+  measurements_.clear();
+  forget_choice();
+  measurements_changed();
+}
+
+/// The numbers of measurements are not what they were, or nobody means one of them any more.
+void UltrasoundView::forget_choice() {
+  chosen_.reset();
+  grip_.reset();
+  is_over_mark_ = false;
+}
+
+bool UltrasoundView::begin_grip(const QPointF& place) {
+  const auto map = picture_map();
+  const auto found = map ? find_mark(*map, measurements_.items(), place) : std::nullopt;
+  if (!found) {
+    if (std::exchange(chosen_, std::nullopt)) measurements_changed();
+    return false;
+  }
+  const Vec2 mark_T = marks_T(measurements_.items()[found->item])[found->mark];
+  grip_ = Grip{*found, mark_T - map->to_T(place), false};
+  chosen_ = found->item;
+  setFocus();
+  measurements_changed();
+  return true;
+}
+
+void UltrasoundView::move_grip(const Vec2& to_T) {
+  const Measurement& held = measurements_.items()[grip_->mark.item];
+  measurements_.put(grip_->mark.item, with_mark(held, grip_->mark.mark, to_T + grip_->beside_T), grip_->has_moved);
+  grip_->has_moved = true;
+  measurements_changed();
+}
+
+void UltrasoundView::set_mark(const Vec2& p_T) {
+  marks_T_.push_back(p_T);
+  if (marks_T_.size() == marks_of(tool_)) {
+    measurements_.add(finished(tool_, marks_T_));
+    start_measuring(MeasuringTool::kNone);
+  }
+  update();
+}
+
+bool UltrasoundView::begin_box_drag(const QPointF& place) {
+  const auto map = picture_map();
+  if (!map || !settings_.has_doppler || picture_->colour.pixels.empty() || picture_->is_frozen) return false;
+  const Vec2 at = box_place(picture_->scan, map->to_T(place));
+  const auto part = find_box_part(settings_.doppler.box, at);
+  if (!part) return false;
+  box_drag_ = BoxDrag{*part, settings_.doppler.box, at};
+  return true;
+}
+
+void UltrasoundView::show_cursor(const QPointF& place) {
+  if (tool_ != MeasuringTool::kNone) return;
+  Qt::CursorShape shape = Qt::ArrowCursor;
+  const auto map = picture_map();
+  is_over_mark_ = map && find_mark(*map, measurements_.items(), place);
+  if (is_over_mark_) {
+    shape = Qt::PointingHandCursor;
+  } else if (map && settings_.has_doppler && !picture_->colour.pixels.empty() && !picture_->is_frozen) {
+    const auto part = find_box_part(settings_.doppler.box, box_place(picture_->scan, map->to_T(place)));
+    if (part == BoxPart::kWhole) shape = Qt::SizeAllCursor;
+    if (part == BoxPart::kFirst || part == BoxPart::kLast) shape = Qt::SizeHorCursor;
+    if (part == BoxPart::kNear || part == BoxPart::kFar) shape = Qt::SizeVerCursor;
+  }
+  if (cursor().shape() != shape) setCursor(shape);
+}
+
+void UltrasoundView::mousePressEvent(QMouseEvent* event) {
+  const auto map = picture_map();
+  if (event->button() != Qt::LeftButton || !map) {
+    event->ignore();
+    return;
+  }
+  if (tool_ != MeasuringTool::kNone) {
+    is_pressed_ = true;
+    pressed_at_ = event->pos();
+    hover_T_ = map->to_T(event->pos());
+    set_mark(hover_T_);
+    return;
+  }
+  if (!begin_grip(event->pos()) && !begin_box_drag(event->pos())) event->ignore();
+}
+
+void UltrasoundView::mouseMoveEvent(QMouseEvent* event) {
+  const auto map = picture_map();
+  if (!map) return;
+  if (grip_) return move_grip(map->to_T(event->pos()));
+  if (box_drag_) {
+    const Vec2 by = box_place(picture_->scan, map->to_T(event->pos())) - box_drag_->from;
+    change_settings([&](UltrasoundSettings& s) { s.doppler.box = moved_box(box_drag_->begun, box_drag_->part, by); });
+    return;
+  }
+  if (tool_ != MeasuringTool::kNone) {
+    hover_T_ = map->to_T(event->pos());
+    update();
+  }
+  show_cursor(event->pos());
+}
+
+void UltrasoundView::mouseReleaseEvent(QMouseEvent* event) {
+  if (event->button() != Qt::LeftButton) return;
+  box_drag_.reset();
+  grip_.reset();
+  if (!std::exchange(is_pressed_, false) || tool_ == MeasuringTool::kNone || marks_T_.empty()) return;
+  const QPointF moved = event->pos() - pressed_at_;
+  const auto map = picture_map();
+  if (map && std::hypot(moved.x(), moved.y()) > kDrag_px) set_mark(map->to_T(event->pos()));
+}
+
+void UltrasoundView::wheelEvent(QWheelEvent* event) {
+  if (!is_frozen()) {
+    event->ignore();
+    return;
+  }
+  const double notches = turned(*event);
+  step_cine(notches < 0.0 ? -1 : 1);
+}
+
+/// True where the key means something here now; a rehearsal does nothing.
+bool UltrasoundView::handle_key(int key, Qt::KeyboardModifiers modifiers, bool is_rehearsal) {
+  const auto act = [&](bool is_meant, auto what) {
+    if (is_meant && !is_rehearsal) what();
+    return is_meant;
+  };
+  const bool has_items = !measurements_.items().empty();
+  if (key == Qt::Key_Z && modifiers == Qt::ControlModifier)
+    return act(measurements_.can_undo(), [this] { undo_measurement(); });
+  if (key == Qt::Key_Z && modifiers == (Qt::ControlModifier | Qt::ShiftModifier))
+    return act(measurements_.can_redo(), [this] { redo_measurement(); });
+  if (modifiers != Qt::NoModifier) return false;
+  switch (key) {
+    case Qt::Key_Escape:
+      return act(tool_ != MeasuringTool::kNone, [this] { leave_tool(); });
+    case Qt::Key_Delete:
+    case Qt::Key_Backspace:
+      return act(has_items, [this] { remove_measurement(); });
+    case Qt::Key_Left:
+      return act(is_frozen(), [this] { step_cine(-1); });
+    case Qt::Key_Right:
+      return act(is_frozen(), [this] { step_cine(1); });
+    case Qt::Key_P:
+      return act(is_frozen(), [this] { play_cine(!cine().is_playing); });
+    default:
+      return false;
+  }
+}
+
+void UltrasoundView::keyPressEvent(QKeyEvent* event) {
+  const auto modifiers = event->modifiers() & ~Qt::KeypadModifier;
+  if (!handle_key(event->key(), modifiers, false)) QWidget::keyPressEvent(event);
+}
+
+bool UltrasoundView::event(QEvent* event) {
+  if (event->type() == QEvent::ShortcutOverride) {
+    const auto* key = static_cast<QKeyEvent*>(event);
+    if (handle_key(key->key(), key->modifiers() & ~Qt::KeypadModifier, true)) {
+      event->accept();
+      return true;
+    }
+  }
+  return QWidget::event(event);
+}
+
+}  // namespace trocar::trainer

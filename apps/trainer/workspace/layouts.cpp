@@ -1,0 +1,34 @@
+#include "workspace/layouts.h"
+
+namespace trocar::trainer {
+namespace {
+
+LayoutCell cell(std::initializer_list<const char*> views, int share) {
+  LayoutCell result;
+  for (const char* view : views) result.views.push_back(QString::fromLatin1(view));
+  result.share = share;
+  return result;
+}
+
+}  // namespace
+
+const std::vector<Layout>& built_in_layouts() {
+  static const std::vector<Layout> layouts = {
+      {QStringLiteral("Puncture"),
+       {{{cell({"3d"}, 62), cell({"axial", "sagittal"}, 38)}, 56},
+        {{cell({"ultrasound"}, 62), cell({"forces"}, 38)}, 44}}},
+      {QStringLiteral("Ultrasound"),
+       {{{cell({"ultrasound"}, 1)}, 62}, {{cell({"3d"}, 40), cell({"along"}, 32), cell({"forces"}, 28)}, 38}}},
+      {QStringLiteral("Navigation"),
+       {{{cell({"3d"}, 66), cell({"side", "forces"}, 34)}, 46},
+        {{cell({"structures"}, 1)}, 27},
+        {{cell({"axial"}, 1), cell({"coronal"}, 1), cell({"sagittal"}, 1)}, 27}}},
+      {QStringLiteral("Slices"),
+       {{{cell({"axial"}, 1), cell({"along"}, 1)}, 1},
+        {{cell({"coronal"}, 1), cell({"across"}, 1)}, 1},
+        {{cell({"sagittal"}, 1), cell({"3d"}, 1)}, 1}}},
+  };
+  return layouts;
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "devices/pointer/polled_pointer.h"
+
+namespace trocar {
+
+/// How the cap of a SpaceMouse is pushed and turned, as spacenavd tells it: x, y, z, rx, ry, rz in counts; x to the
+/// right, y up, z away, turns counted left-handed with them (libspnav, src/util.c, spnav_posrot_moveobj).
+struct SpaceMouseAxes {
+  std::array<int, 6> counts{};
+};
+
+inline constexpr double kCapFull_counts = 350.0;  ///< 3Dconnexion's devices at sensitivity 1. Range 100..500. [assumed]
+inline constexpr double kCapDeadZone_counts = 15.0;   ///< What a cap at rest still tells. [assumed]
+inline constexpr double kCapExponent = 1.5;           ///< As kStickExponent. [assumed]
+inline constexpr double kCapSpeed_mm_per_s = 60.0;    ///< Range 10..200. [assumed]
+inline constexpr double kCapTurning_rad_per_s = 0.8;  ///< Range 0.1..3. [assumed]
+/// A cap that is held tells so many times a second; silent for so long, it counts as let go. [assumed]
+inline constexpr std::int64_t kCapSilence_ns = 500'000'000;
+
+/// The cap is the grip: it moves and turns as the cap is pushed and turned. Real-time safe.
+PointerMotion spacemouse_motion(const SpaceMouseAxes& axes, std::uint32_t buttons) noexcept;
+
+/// The SpaceMouse of spacenavd ($SPNAV_SOCKET, else the socket of /etc/spnavrc, else /var/run/spnav.sock). libspnav
+/// keeps one connection a process.
+std::unique_ptr<PointerSource> make_spacemouse_source();
+
+}  // namespace trocar

@@ -1,0 +1,92 @@
+#include "devices/pointer/speaker.h"
+
+#include <SDL.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <numbers>
+#include <string>
+#include <thread>
+
+#include "core/random.h"
+
+namespace trocar {
+namespace {
+
+/// Whether there may be an output: libraries that look for one in vain write to standard error.
+bool has_output() {
+  namespace fs = std::filesystem;
+  if (std::getenv("SDL_AUDIODRIVER") != nullptr || std::getenv("PULSE_SERVER") != nullptr) return true;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator("/dev/snd", error))
+    if (entry.path().filename().string().starts_with("pcm")) return true;
+  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+  return runtime != nullptr && fs::exists(fs::path(runtime) / "pulse" / "native", error);
+}
+
+SDL_AudioDeviceID open_output() {
+  if (!has_output() || SDL_InitSubSystem(SDL_INIT_AUDIO) != 0) return 0;
+  SDL_AudioSpec wanted{};
+  wanted.freq = Speaker::kRate_hz;
+  wanted.format = AUDIO_F32SYS;
+  wanted.channels = 1;
+  wanted.samples = 512;
+  const SDL_AudioDeviceID device = SDL_OpenAudioDevice(nullptr, 0, &wanted, nullptr, 0);
+  if (device != 0) SDL_PauseAudioDevice(device, 0);
+  return device;
+}
+
+/// Two ringing parts and noise, as a light metal part that stops.
+double click_at(double time_s, double noise) {
+  constexpr double kTwoPi = 2.0 * std::numbers::pi;
+  constexpr double kRing_hz = 2300.0, kHiss_s = 0.004, kRing_s = 0.008, kBody_hz = 190.0, kBody_s = 0.03;
+  if (time_s < 0.0) return 0.0;
+  return 0.5 * noise * std::exp(-time_s / kHiss_s) +
+         0.3 * std::sin(kTwoPi * kRing_hz * time_s) * std::exp(-time_s / kRing_s) +
+         0.2 * std::sin(kTwoPi * kBody_hz * time_s) * std::exp(-time_s / kBody_s);
+}
+
+}  // namespace
+
+struct Speaker::Impl {
+  std::atomic<SDL_AudioDeviceID> device{0};
+  std::jthread opening;
+};
+
+Speaker::Speaker() : impl_(std::make_unique<Impl>()) {
+  impl_->opening = std::jthread([device = &impl_->device] { *device = open_output(); });
+}
+
+Speaker::~Speaker() {
+  impl_->opening.join();
+  if (const SDL_AudioDeviceID device = impl_->device) SDL_CloseAudioDevice(device);
+}
+
+void Speaker::play(std::span<const float> samples) {
+  const SDL_AudioDeviceID device = impl_->device;
+  if (device == 0) return;
+  SDL_ClearQueuedAudio(device);
+  SDL_QueueAudio(device, samples.data(), static_cast<Uint32>(samples.size_bytes()));
+}
+
+bool Speaker::is_open() const noexcept {
+  return impl_->device != 0;
+}
+
+std::vector<float> make_gun_click() {
+  constexpr double kCannulaAfter_s = 0.06, kWhole_s = 0.25, kCannula = 0.7, kVolume = 0.6;
+  Random random(1);
+  std::vector<float> samples(static_cast<std::size_t>(kWhole_s * Speaker::kRate_hz));
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const double time_s = static_cast<double>(n) / Speaker::kRate_hz;
+    const double noise = 2.0 * random.uniform() - 1.0;
+    const double sound = click_at(time_s, noise) + kCannula * click_at(time_s - kCannulaAfter_s, noise);
+    samples[n] = static_cast<float>(std::clamp(kVolume * sound, -1.0, 1.0));
+  }
+  return samples;
+}
+
+}  // namespace trocar

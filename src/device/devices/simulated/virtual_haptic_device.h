@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+
+#include "devices/simulated/detail/hand_motion.h"
+#include "devices/haptic_device.h"
+#include "haptics/closed_loop/virtual_stylus.h"
+
+namespace trocar {
+
+/// How a device is simulated, beside what its preset says.
+struct SimulatedDeviceParams {
+  /// Whole periods that a written wrench waits before it acts for one period: with 1 the loop has the 1.5 periods of
+  /// physics.md H2. Range 0..8.
+  int force_delay = 1;
+  int reading_delay = 0;                 ///< Whole periods that a reading is old. Range 0..8.
+  double inertia_kg_mm2 = 50.0;          ///< Of stylus and gimbal about S, as in VirtualStylusParams.
+  double gimbal_friction_nmm = 0.5;      ///< Coulomb friction of the gimbal. Range 0..20. [assumed]
+  double gimbal_viscosity_nmms = 0.02;   ///< Range 0..1. [assumed]
+  double wall_stiffness_n_per_mm = 5.0;  ///< Of the arm's end stops, met at the workspace's radius. [assumed]
+};
+
+/// A simulated device in a simulated hand: a rigid stylus with the mass, weight, friction, encoders and limits of a
+/// preset, at rest in its holder until a hand first takes it. D with gravity along -z. Real-time safe once made.
+class VirtualHapticDevice final : public HapticDevice {
+ public:
+  static constexpr int kMaxDelay = 8;
+
+  VirtualHapticDevice(DevicePreset preset, const SimulatedDeviceParams& params) noexcept;
+
+  const DevicePreset& preset() const noexcept override { return preset_; }
+  std::string name() const override { return "virtual:" + preset_.name; }
+  /// Moves the stylus on to `now_s`, in steps of at most 1 ms; a gap counts as 0.1 s at most.
+  DeviceReading read(double now_s) noexcept override;
+  /// Cut to the preset's peaks; torque is ignored where there is no motor for it. Not taken: what is no sane wrench.
+  bool write(const Wrench& wrench_D) noexcept override;
+  /// Ignored where it is not finite.
+  void hold(const DeviceHand& hand) noexcept override;
+  bool is_in_real_hand() const noexcept override { return false; }
+  Status reconnect() override { return {}; }
+
+  /// What the encoders do not tell: the stylus itself.
+  const Pose& X_DS() const noexcept { return stylus_.X_PS; }
+  const Vec3& v_D() const noexcept { return stylus_.v_P; }
+
+ private:
+  void step(double time_s, double dt_s) noexcept;
+  StylusHold grip(const HandNow& hand) const noexcept;
+  VirtualStylusParams stylus_params() const noexcept;
+  Vec3 wall_n() const noexcept;
+  DeviceReading tell() noexcept;
+
+  DevicePreset preset_;
+  SimulatedDeviceParams params_;
+  DeviceHand hand_;
+  bool was_ever_held_ = false;
+  double placed_s_ = 0.0;  ///< Time of the target that was last put in place.
+
+  VirtualStylusState stylus_;  ///< Its frame P is D.
+
+  double last_s_ = 0.0;
+  bool is_started_ = false;
+  Wrench acting_D_;                                      ///< About S.
+  Wrench commanded_D_;                                   ///< About S: last written; and
+  std::array<Wrench, kMaxDelay + 1> written_{};          ///< what was so at the last reads, the newest first.
+  std::array<DeviceReading, kMaxDelay + 1> readings_{};  ///< The newest first.
+};
+
+}  // namespace trocar

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "devices/vendor/servo_pace.h"
+
+namespace trocar::testing {
+
+/// A servo loop that runs as many periods as the test asks for, at the test's time.
+class SteppedPace final : public ServoPace {
+ public:
+  void run(const std::atomic<bool>& is_stopping, ServoBody& body) noexcept override {
+    std::unique_lock lock(mutex_);
+    while (!is_stopping.load()) {
+      if (granted_ == 0 && !is_free_) {
+        changed_.wait(lock);
+        continue;
+      }
+      const double now_s = now_s_;
+      lock.unlock();
+      body.serve(now_s);
+      if (is_free_) std::this_thread::yield();
+      lock.lock();
+      if (granted_ > 0) --granted_;
+      changed_.notify_all();
+    }
+  }
+  void wake() noexcept override {
+    const std::lock_guard lock(mutex_);
+    changed_.notify_all();
+  }
+
+  /// Waits until they are done.
+  void step(int periods) {
+    std::unique_lock lock(mutex_);
+    granted_ = periods;
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return granted_ == 0; });
+  }
+  void run_freely() {
+    is_free_ = true;
+    wake();
+  }
+  void advance(double time_s) {
+    const std::lock_guard lock(mutex_);
+    now_s_ += time_s;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int granted_ = 0;
+  std::atomic<bool> is_free_{false};
+  double now_s_ = 1000.0;
+};
+
+}  // namespace trocar::testing

@@ -1,0 +1,92 @@
+#include "link/client/detail/client_session.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace trocar::detail {
+
+bool ClientSession::take(ServerMessage message, double now_s) {
+  if (const auto* refusal = std::get_if<Refusal>(&message.body); refusal != nullptr && message.session == 0) {
+    // The server does not know us, or no longer: greet it again.
+    mailbox_.put_refusal(refusal->text);
+    if (is_welcomed()) lose();
+    return false;
+  }
+  const auto* welcome = std::get_if<Welcome>(&message.body);
+  const bool is_new = welcome != nullptr && welcome->session != 0 && welcome->session != session_;
+  const bool is_mine = is_new ? message.session == welcome->session : is_welcomed() && message.session == session_;
+  if (!is_mine || (!is_new && message.sequence <= last_received_)) {
+    refuse();
+    return false;
+  }
+  if (is_new) {
+    lose();
+    session_ = message.session;
+  }
+  last_received_ = message.sequence;
+  if (!std::visit([&](auto& body) { return take_body(body, now_s); }, message.body)) {
+    refuse();
+    return false;
+  }
+  if (welcome != nullptr) mailbox_.put_welcome(*welcome, is_new);
+  mailbox_.put_heard();
+  return true;
+}
+
+void ClientSession::refuse() {
+  mailbox_.put_refused(++refused_);
+}
+
+ClientMessage ClientSession::message(ClientBody body) {
+  return {session_, ++last_sent_, std::move(body)};
+}
+
+void ClientSession::lose() {
+  for (const std::uint32_t request : std::exchange(waiting_, {})) {
+    mailbox_.put_reply({request, false, "the server went away before it answered"});
+  }
+  session_ = 0;
+  last_sent_ = last_received_ = 0;
+  knows_next_tick_ = false;  // a server that was started again counts from 0
+  clock_.clear();
+  mailbox_.put_lost();
+}
+
+bool ClientSession::take_body(const Welcome& welcome, double) {
+  return welcome.session == session_;
+}
+
+bool ClientSession::take_body(StateBatch& batch, double) {
+  std::uint64_t missing = 0;
+  if (!batch.samples.empty()) {
+    if (knows_next_tick_ && batch.first_tick < next_tick_) return false;
+    if (knows_next_tick_) missing = batch.first_tick - next_tick_;
+    next_tick_ = batch.first_tick + batch.samples.size();
+    knows_next_tick_ = true;
+    ticks_received_ += batch.samples.size();
+  }
+  mailbox_.put_batch(std::move(batch), missing);
+  return true;
+}
+
+bool ClientSession::take_body(Reply& reply, double) {
+  const auto found = std::ranges::find(waiting_, reply.request);
+  if (found == waiting_.end()) return false;
+  waiting_.erase(found);
+  mailbox_.put_reply(std::move(reply));
+  return true;
+}
+
+bool ClientSession::take_body(const Pong& pong, double now_s) {
+  if (!clock_.add(pong.client_time_s, pong.server_time_s, now_s)) return false;
+  const auto best = clock_.best();
+  mailbox_.put_clock(best->offset_s, best->round_trip_s);
+  return true;
+}
+
+bool ClientSession::take_body(const Refusal& refusal, double) {
+  mailbox_.put_refusal(refusal.text);
+  return true;
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "core/result.h"
+#include "link/client/detail/client_mailbox.h"
+#include "link/client/detail/client_session.h"
+#include "link/zmtp/detail/handshake_monitor.h"
+#include "link/client/detail/zmq_handles.h"
+#include "link/client/haptic_client.h"
+
+namespace trocar::detail {
+
+/// The thread of a HapticClient: owns its socket, beats on absolute times, greets, and greets anew after silence.
+/// Sleeps until its clock, its socket or wake() ends that.
+class ClientThread {
+ public:
+  static Result<std::unique_ptr<ClientThread>> start(const ClientOptions& options);
+  ~ClientThread();  ///< Says goodbye and joins.
+  ClientThread(const ClientThread&) = delete;
+  ClientThread& operator=(const ClientThread&) = delete;
+
+  ClientMailbox& mailbox() { return mailbox_; }
+  const ClientOptions& options() const { return options_; }
+  /// There is something in the mailbox.
+  void wake() noexcept;
+  void frame_drawn() noexcept;
+
+ private:
+  explicit ClientThread(const ClientOptions& options);
+  Status open();
+  Status open_socket();
+  void run();
+  void read_messages();
+  void beat();
+  void send_hello(double now_s);
+  void send_outgoing(Outgoing outgoing);
+  bool send(ClientBody body);
+  void say_goodbye();
+
+  const ClientOptions options_;
+  ClientMailbox mailbox_;
+  std::atomic<std::int64_t> frame_drawn_ns_;
+  int wake_ = -1;   ///< eventfd
+  int clock_ = -1;  ///< timerfd
+  ZmqContext context_;
+
+  // The thread's own.
+  std::string routing_id_;  ///< Kept over connections, so that the server knows us again.
+  ZmqSocket socket_;
+  HandshakeMonitor handshakes_;
+  ClientSession session_{mailbox_};
+  double hello_s_ = 0.0;  ///< When the last Hello went out; 0: none on this connection.
+  int silent_beats_ = 0;  ///< Since the server was last heard.
+
+  std::thread thread_;
+};
+
+}  // namespace trocar::detail

@@ -1,0 +1,179 @@
+#include "link/client/server_process.h"
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <thread>
+
+#include "link/client/detail/start_program.h"
+
+namespace trocar {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kProgram = "trocar-hapticd";
+constexpr std::chrono::seconds kPatience(2);  ///< From SIGTERM to SIGKILL.
+
+bool is_program(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0;
+}
+
+/// "R" runs or wants to, "D" waits for a disk, "T" and "t" are stopped; after the name in brackets (proc(5)).
+bool is_held_up_thread(const fs::path& thread) {
+  std::ifstream file(thread / "stat");
+  const std::string stat{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::size_t end = stat.rfind(") ");
+  return end != std::string::npos && end + 2 < stat.size() &&
+         std::string_view("RDTt").find(stat[end + 2]) != std::string_view::npos;
+}
+
+std::string told(int status) {
+  if (WIFSIGNALED(status)) return "was killed by signal " + std::to_string(WTERMSIG(status));
+  return "ended with exit status " + std::to_string(WEXITSTATUS(status));
+}
+
+}  // namespace
+
+/// The child belongs to the thread: the kernel ends a child when the thread that started it ends, not the process, so
+/// the caller's own thread will not do.
+struct ServerProcess::Impl {
+  std::mutex mutex;
+  std::condition_variable news;
+  std::optional<Result<int>> started;  ///< Process id.
+  std::optional<int> end_status;       ///< As waitpid tells it; until then the id is the child's and may be signalled.
+  std::thread thread;
+
+  void live(const detail::Program& program);
+  void signal(int number);
+  void stop();
+  ~Impl() { stop(); }
+};
+
+void ServerProcess::Impl::live(const detail::Program& program) {
+  Result<int> child = detail::start_program(program);
+  {
+    const std::lock_guard lock(mutex);
+    started = child;
+  }
+  news.notify_all();
+  if (!child) return;
+  // The id stays the child's until it is reaped, under the lock.
+  siginfo_t info{};
+  while (::waitid(P_PID, static_cast<id_t>(*child), &info, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
+  }
+  {
+    const std::lock_guard lock(mutex);
+    int status = 0;
+    ::waitpid(*child, &status, 0);
+    end_status = status;
+  }
+  news.notify_all();
+}
+
+void ServerProcess::Impl::signal(int number) {
+  const std::lock_guard lock(mutex);
+  if (started && *started && !end_status) ::kill(**started, number);
+}
+
+void ServerProcess::Impl::stop() {
+  if (!thread.joinable()) return;
+  signal(SIGTERM);
+  // A child that is stopped takes no SIGTERM until it goes on.
+  signal(SIGCONT);
+  {
+    std::unique_lock lock(mutex);
+    news.wait_for(lock, kPatience, [&] { return end_status || !*started; });
+  }
+  signal(SIGKILL);
+  thread.join();
+}
+
+Result<ServerProcess> ServerProcess::start(const fs::path& program, const std::vector<std::string>& arguments,
+                                           const fs::path& log) {
+  if (!is_program(program))
+    return fail("there is no such program", program.string(), "install trocar-hapticd beside trocar");
+  auto impl = std::make_unique<Impl>();
+  try {
+    impl->thread =
+        std::thread([self = impl.get(), what = detail::Program{program, arguments, log}] { self->live(what); });
+  } catch (const std::system_error& error) {
+    return fail("no thread for the server's process", program.string(), error.what());
+  }
+  std::unique_lock lock(impl->mutex);
+  impl->news.wait(lock, [&] { return impl->started.has_value(); });
+  if (!*impl->started) {
+    const Error error = impl->started->error();
+    lock.unlock();
+    return tl::unexpected(error);
+  }
+  lock.unlock();
+  return ServerProcess(std::move(impl));
+}
+
+ServerProcess::ServerProcess(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+ServerProcess::ServerProcess(ServerProcess&&) noexcept = default;
+ServerProcess& ServerProcess::operator=(ServerProcess&&) noexcept = default;
+ServerProcess::~ServerProcess() = default;
+
+int ServerProcess::pid() const {
+  const std::lock_guard lock(impl_->mutex);
+  return **impl_->started;
+}
+
+bool ServerProcess::is_running() {
+  const std::lock_guard lock(impl_->mutex);
+  return !impl_->end_status;
+}
+
+bool ServerProcess::is_held_up() {
+  if (!is_running()) return false;
+  std::error_code ignored;
+  for (fs::directory_iterator thread("/proc/" + std::to_string(pid()) + "/task", ignored), end; thread != end;
+       thread.increment(ignored)) {
+    if (is_held_up_thread(thread->path())) return true;
+  }
+  return false;
+}
+
+std::string ServerProcess::how_it_ended() {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->end_status ? told(*impl_->end_status) : std::string();
+}
+
+void ServerProcess::stop() {
+  impl_->stop();
+}
+
+Result<fs::path> find_server_program() {
+  std::error_code ignored;
+  const fs::path self = fs::read_symlink("/proc/self/exe", ignored);
+  if (const fs::path beside = self.parent_path() / kProgram; is_program(beside)) return beside;
+  if (const char* folder = std::getenv("TROCAR_BIN_DIR");
+      folder != nullptr && is_program(fs::path(folder) / kProgram)) {
+    return fs::path(folder) / kProgram;
+  }
+  const char* path = std::getenv("PATH");
+  std::string_view rest = path == nullptr ? "" : path;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(':'), rest.size());
+    const fs::path folder(rest.substr(0, end));
+    if (!folder.empty() && is_program(folder / kProgram)) return folder / kProgram;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return fail("the haptic server's program was not found", kProgram, "install it beside this program or on PATH");
+}
+
+}  // namespace trocar

@@ -1,0 +1,195 @@
+#include "link/curve_keys.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zmq.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <sstream>
+
+#include "core/files/atomic_file.h"
+
+namespace trocar {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr std::size_t kKeyCharacters = 40;  ///< 32 bytes in Z85.
+constexpr std::size_t kKeyBytes = 32;
+constexpr std::size_t kMostKeyFileBytes = 4096;
+constexpr std::size_t kMostAllowListBytes = 1 << 20;
+constexpr mode_t kUserMayReadAndWrite = 0600;
+constexpr mode_t kOthers = 0077;
+constexpr mode_t kOthersMayWrite = 0022;
+constexpr std::string_view kPublicWord = "public";
+constexpr std::string_view kSecretWord = "secret";
+
+using KeyBuffer = std::array<char, kKeyCharacters + 1>;  ///< As libzmq wants it: with a NUL at the end.
+
+bool is_key(const std::string& text) {
+  std::array<std::uint8_t, kKeyBytes> bytes;
+  return text.size() == kKeyCharacters && ::zmq_z85_decode(bytes.data(), text.c_str()) != nullptr;
+}
+
+/// The first two words of a line, without its comment.
+struct Words {
+  std::string first, second;
+  bool has_more = false;
+};
+
+/// A word that begins with # begins a comment. No key does: # is in Z85's alphabet, but five characters from it on are
+/// more than 32 bits.
+Words split(const std::string& line) {
+  std::istringstream stream(line);
+  Words words;
+  for (std::string word; stream >> word;) {
+    if (word.starts_with('#')) break;
+    if (words.first.empty()) {
+      words.first = word;
+    } else if (words.second.empty()) {
+      words.second = word;
+    } else {
+      words.has_more = true;
+    }
+  }
+  return words;
+}
+
+/// Calls `take` with the words and the number of every line that has some, until it says that one is wrong.
+template <class Take>
+Status read_lines(const fs::path& file, std::size_t most_bytes, Take&& take) {
+  TROCAR_TRY(const std::string text, read_file(file, most_bytes));
+  std::istringstream stream(text);
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    const Words words = split(line);
+    if (words.first.empty()) continue;
+    if (words.has_more || !take(words)) {
+      return fail("not a key of 40 characters in Z85", fmt::format("{}, line {}", file.string(), number),
+                  "write keys with: trocar link keygen --out DIR");
+    }
+  }
+  return {};
+}
+
+Result<std::set<std::string>> read_public_keys(const fs::path& file, std::size_t most_bytes) {
+  std::set<std::string> keys;
+  TROCAR_TRY_STATUS(read_lines(file, most_bytes, [&](const Words& words) {
+    if (!is_key(words.first) || !words.second.empty()) return false;
+    keys.insert(words.first);
+    return true;
+  }));
+  return keys;
+}
+
+Status check_for_user_alone(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return fail("no such file", file.string(), "check the path");
+  if ((status.st_mode & kOthers) == 0) return {};
+  return fail("a secret key that other users can read", file.string(),
+              fmt::format("chmod 600 {}, or make new keys", file.string()));
+}
+
+/// Who can write to such a file decides whom this program trusts.
+Status check_written_by_user_alone(const fs::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return fail("no such file", file.string(), "check the path");
+  if ((status.st_mode & kOthersMayWrite) != 0) {
+    return fail("a file of keys that other users can write", file.string(),
+                fmt::format("chmod go-w {}", file.string()));
+  }
+  if (status.st_uid == ::geteuid() || status.st_uid == 0) return {};
+  return fail("a file of keys that belongs to another user", file.string(), "copy it: cp FILE COPY");
+}
+
+/// A new file that nobody else could read at any time.
+Status write_secret(const fs::path& file, std::string_view text) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUserMayReadAndWrite);
+  if (descriptor < 0)
+    return fail(std::string("cannot be made: ") + std::strerror(errno), file.string(),
+                "choose a folder that you may write to");
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) break;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  const bool is_flushed = ::fsync(descriptor) == 0;
+  const bool is_closed = ::close(descriptor) == 0;
+  if (text.empty() && is_flushed && is_closed) return {};
+  return fail("cannot be written", file.string(), "free some disk space");
+}
+
+/// NAME.key and NAME.pub in a folder.
+Result<CurveKeys> write_pair(const fs::path& folder, std::string_view name) {
+  TROCAR_TRY(CurveKeys keys, make_curve_keys());
+  TROCAR_TRY_STATUS(write_secret(folder / fmt::format("{}.key", name),
+                                 fmt::format("# Key pair of a Trocar {}: keep it secret.\n{} {}\n{} {}\n", name,
+                                             kPublicWord, keys.public_key, kSecretWord, keys.secret_key)));
+  TROCAR_TRY_STATUS(write_file_atomically(folder / fmt::format("{}.pub", name),
+                                          fmt::format("# Public key of a Trocar {}.\n{}\n", name, keys.public_key)));
+  return keys;
+}
+
+}  // namespace
+
+Result<CurveKeys> make_curve_keys() {
+  KeyBuffer public_key{}, secret_key{};
+  if (::zmq_curve_keypair(public_key.data(), secret_key.data()) != 0) {
+    return fail(std::string("cannot make keys: ") + ::zmq_strerror(errno), "libzmq", "install a libzmq with CURVE");
+  }
+  return CurveKeys{public_key.data(), secret_key.data()};
+}
+
+Status write_key_folder(const fs::path& folder) {
+  return write_folder_atomically(folder, [](const fs::path& temporary) -> Status {
+    std::error_code error;
+    fs::permissions(temporary, fs::perms::owner_all, error);
+    if (error)
+      return fail("cannot be closed to others: " + error.message(), temporary.string(),
+                  "choose a folder on a file system with permissions");
+    TROCAR_TRY_STATUS(write_pair(temporary, "server"));
+    TROCAR_TRY(const CurveKeys client, write_pair(temporary, "client"));
+    return write_file_atomically(
+        temporary / "allowed",
+        fmt::format("# Public keys of the clients that may connect, one a line.\n{}  # client\n", client.public_key));
+  });
+}
+
+Result<CurveKeys> load_curve_keys(const fs::path& file) {
+  TROCAR_TRY_STATUS(check_for_user_alone(file));
+  CurveKeys keys;
+  TROCAR_TRY_STATUS(read_lines(file, kMostKeyFileBytes, [&](const Words& words) {
+    const bool is_public = words.first == kPublicWord;
+    std::string& key = is_public ? keys.public_key : keys.secret_key;
+    if ((!is_public && words.first != kSecretWord) || !key.empty() || !is_key(words.second)) return false;
+    key = words.second;
+    return true;
+  }));
+  if (keys.public_key.empty() || keys.secret_key.empty()) {
+    return fail("has not both keys", file.string(), "name a .key file of: trocar link keygen --out DIR");
+  }
+  KeyBuffer derived{};
+  if (::zmq_curve_public(derived.data(), keys.secret_key.c_str()) != 0 || keys.public_key != derived.data()) {
+    return fail("the public key is not that of the secret one", file.string(), "make new keys");
+  }
+  return keys;
+}
+
+Result<std::string> load_public_key(const fs::path& file) {
+  TROCAR_TRY_STATUS(check_written_by_user_alone(file));
+  TROCAR_TRY(const auto keys, read_public_keys(file, kMostKeyFileBytes));
+  if (keys.size() == 1) return *keys.begin();
+  return fail(fmt::format("has {} public keys, not one", keys.size()), file.string(), "name a .pub file");
+}
+
+Result<std::set<std::string>> load_allow_list(const fs::path& file) {
+  TROCAR_TRY_STATUS(check_written_by_user_alone(file));
+  return read_public_keys(file, kMostAllowListBytes);
+}
+
+}  // namespace trocar

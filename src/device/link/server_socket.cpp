@@ -1,0 +1,239 @@
+#include "link/server_socket.h"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include <string_view>
+#include <utility>
+
+#include "link/codec.h"
+#include "link/zmtp/detail/curve_handshake.h"
+#include "link/zmtp/detail/peer_table.h"
+#include "link/zmtp/detail/server_connections.h"
+#include "realtime/periodic_loop.h"
+
+namespace trocar {
+namespace {
+
+using detail::Peer;
+using detail::ServerConnections;
+using detail::Verdict;
+using Event = detail::ZmtpConnection::Event;
+
+/// A peer is forgotten when it was silent for so long [assumed: far above what a suspended client needs].
+constexpr double kForgotten_s = 10.0;
+/// Bad messages that one receive() drops before it gives its caller the turn [assumed].
+constexpr int kMostDroppedAtOnce = 64;
+
+/// Not to be guessed, and never 0.
+std::uint64_t make_session() {
+  std::uint64_t session = 0;
+  while (session == 0) {
+    if (::getrandom(&session, sizeof session, 0) != sizeof session) session = 0;
+  }
+  return session;
+}
+
+}  // namespace
+
+struct ServerSocket::Impl {
+  explicit Impl(ServerConnections listening) : connections(std::move(listening)) {
+    connections.set_known([this](std::string_view routing_id) { return peers.find(routing_id) != nullptr; });
+  }
+
+  ServerConnections connections;
+  detail::PeerTable peers{kMostControllers, kMostWatchers};
+  RefusedMessages refused;
+  std::uint64_t batches_not_taken = 0;
+
+  std::optional<Received> take(const ServerConnections::Incoming& incoming, const Welcome& welcome, double now_s);
+  void explain(const ServerConnections::Incoming& incoming, const Error& error, double now_s);
+  void refuse(std::string_view routing_id, std::string text, double now_s);
+  void greet(Peer& peer, const Welcome& welcome);
+  bool is_permitted(Peer& peer, const ClientBody& body);
+  bool send(Peer& peer, ServerMessage& message);
+};
+
+Result<ServerSocket> ServerSocket::bind(const Endpoint& endpoint, std::optional<ServerSecurity> security) {
+  if (endpoint.needs_keys && !security) {
+    return fail_usage("tcp:// needs keys: every user of this machine can connect to it", endpoint.url,
+                      "make them with `trocar link keygen`, or use ipc://");
+  }
+  std::optional<detail::CurveIdentity> identity;
+  if (security) {
+    TROCAR_TRY(identity, detail::CurveIdentity::make(security->keys, security->allowed));
+  }
+  TROCAR_TRY(ServerConnections connections, ServerConnections::listen(endpoint, std::move(identity)));
+  return ServerSocket(std::make_unique<Impl>(std::move(connections)));
+}
+
+ServerSocket::ServerSocket(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+ServerSocket::ServerSocket(ServerSocket&&) noexcept = default;
+ServerSocket& ServerSocket::operator=(ServerSocket&&) noexcept = default;
+ServerSocket::~ServerSocket() = default;
+
+std::optional<Received> ServerSocket::receive(int wait_ms, const Welcome& welcome, double now_s) {
+  constexpr std::int64_t kNsPerMs = 1'000'000;
+  const std::int64_t begin_ns = now_ns();
+  for (int dropped = 0; dropped < kMostDroppedAtOnce;) {
+    // The caller's time is of before the wait.
+    const double heard_s = now_s + seconds(now_ns() - begin_ns);
+    const auto incoming = impl_->connections.next(heard_s);
+    if (!incoming) {
+      const std::int64_t left_ms = wait_ms - (now_ns() - begin_ns) / kNsPerMs;
+      if (left_ms <= 0 || !impl_->connections.wait(static_cast<int>(left_ms), heard_s)) return {};
+      continue;
+    }
+    if (auto received = impl_->take(*incoming, welcome, heard_s)) return received;
+    ++dropped;
+  }
+  return {};
+}
+
+std::optional<Received> ServerSocket::Impl::take(const ServerConnections::Incoming& incoming, const Welcome& welcome,
+                                                 double now_s) {
+  const bool is_large = incoming.event == Event::kTooLarge || incoming.message.size() > kMostMessageBytes;
+  if (incoming.event != Event::kMessage || is_large) {
+    ++(is_large ? refused.oversized : refused.malformed);
+    refuse(incoming.routing_id,
+           is_large ? fmt::format("a message of more than {} bytes", kMostMessageBytes)
+                    : std::string("a message of several frames: send one frame"),
+           now_s);
+    return {};
+  }
+  auto message = decode_client_message(incoming.message);
+  if (!message) {
+    ++refused.malformed;
+    explain(incoming, message.error(), now_s);
+    return {};
+  }
+  const Hello* hello = std::get_if<Hello>(&message->body);
+  Peer* peer = hello != nullptr ? peers.greet(incoming.routing_id, *hello, make_session(), now_s)
+                                : peers.find(incoming.routing_id);
+  if (hello != nullptr) connections.refresh(now_s);
+  const Verdict verdict = peer == nullptr    ? Verdict::kUnknownSession
+                          : hello != nullptr ? Verdict::kGood
+                                             : peers.judge(*peer, message->session, message->sequence, now_s);
+  if (verdict != Verdict::kGood) {
+    ++(verdict == Verdict::kReplayed ? refused.replayed : refused.unknown_session);
+    if (peer == nullptr) {
+      refuse(incoming.routing_id, hello == nullptr ? "no session: say Hello first" : "the server has too many clients",
+             now_s);
+    }
+    return {};
+  }
+  const bool is_leaving = std::holds_alternative<Goodbye>(message->body);
+  if (!is_leaving) peers.offer_control(*peer, now_s);
+  Received received{peer->session, peers.has_control(*peer), std::move(message->body)};
+  if (is_leaving) {
+    peers.forget(received.session);
+    connections.refresh(now_s);
+    return received;
+  }
+  if (hello != nullptr || received.has_control != peer->was_told_control) greet(*peer, welcome);
+  if (!is_permitted(*peer, received.body)) return {};
+  if (const auto* beat = std::get_if<Heartbeat>(&received.body)) {
+    ServerMessage pong{0, 0, Pong{beat->client_time_s, now_s}};
+    send(*peer, pong);
+  }
+  return received;
+}
+
+/// A message that cannot be decoded: a command of a known peer gets its reply, all else a refusal.
+void ServerSocket::Impl::explain(const ServerConnections::Incoming& incoming, const Error& error, double now_s) {
+  connections.report(fmt::format("a message was refused: {}", error.text()), now_s);
+  Peer* peer = peers.find(incoming.routing_id);
+  const auto command = peer == nullptr ? std::nullopt : find_command(incoming.message);
+  if (!command || peers.judge(*peer, command->session, command->sequence, now_s) != Verdict::kGood) {
+    refuse(incoming.routing_id, error.text(), now_s);
+    return;
+  }
+  ServerMessage reply{0, 0, Reply{command->request, false, error.text()}};
+  send(*peer, reply);
+}
+
+void ServerSocket::Impl::refuse(std::string_view routing_id, std::string text, double now_s) {
+  if (!connections.may_refuse(routing_id, now_s)) return;
+  ServerMessage message{0, 0, Refusal{std::move(text)}};
+  if (Peer* peer = peers.find(routing_id)) {
+    send(*peer, message);
+  } else {
+    connections.send(routing_id, encode(message));
+  }
+}
+
+/// Tells a peer who it is, and whether it has control.
+void ServerSocket::Impl::greet(Peer& peer, const Welcome& welcome) {
+  Welcome mine = welcome;
+  mine.session = peer.session;
+  mine.has_control = peers.has_control(peer);
+  ServerMessage message{0, 0, std::move(mine)};
+  if (send(peer, message)) peer.was_told_control = peers.has_control(peer);
+}
+
+/// Watchers may not move anything.
+bool ServerSocket::Impl::is_permitted(Peer& peer, const ClientBody& body) {
+  const auto* command = std::get_if<Command>(&body);
+  if (command == nullptr && !std::holds_alternative<HandTarget>(body)) return true;
+  if (peers.has_control(peer)) return true;
+  ++refused.not_in_control;
+  if (command != nullptr) {
+    ServerMessage reply{0, 0, Reply{command->request, false, "another client has control of this server"}};
+    send(peer, reply);
+  }
+  return false;
+}
+
+/// Gives the message the peer's session and next number. False: the peer takes no more, or is not there.
+bool ServerSocket::Impl::send(Peer& peer, ServerMessage& message) {
+  message.session = peer.session;
+  message.sequence = peer.last_sent + 1;
+  if (!connections.send(peer.routing_id, encode(message))) return false;
+  ++peer.last_sent;
+  return true;
+}
+
+void ServerSocket::send_batch(const StateBatch& batch) {
+  if (impl_->peers.all().empty()) return;
+  ServerMessage message{0, 0, batch};
+  for (Peer& peer : impl_->peers.all()) {
+    if (!impl_->send(peer, message)) ++impl_->batches_not_taken;
+  }
+}
+
+void ServerSocket::send_reply(std::uint64_t session, const Reply& reply) {
+  Peer* peer = impl_->peers.find_session(session);
+  if (peer == nullptr) return;
+  ServerMessage message{0, 0, reply};
+  impl_->send(*peer, message);
+}
+
+void ServerSocket::drop_silent(double now_s) {
+  impl_->peers.forget_silent(now_s, kForgotten_s);
+  impl_->connections.drop_strangers(now_s);
+}
+
+std::optional<double> ServerSocket::controller_heard_s() const {
+  const Peer* controller = impl_->peers.controller();
+  return controller == nullptr ? std::optional<double>() : controller->heard_s;
+}
+
+std::string ServerSocket::bound_url() const {
+  return impl_->connections.url();
+}
+
+RefusedMessages ServerSocket::refused() const {
+  RefusedMessages refused = impl_->refused;
+  refused.connections = impl_->connections.refused();
+  return refused;
+}
+
+std::uint64_t ServerSocket::batches_not_taken() const {
+  return impl_->batches_not_taken;
+}
+
+std::size_t ServerSocket::connections() const {
+  return impl_->connections.count();
+}
+
+}  // namespace trocar

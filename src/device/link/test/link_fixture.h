@@ -1,0 +1,155 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "core/files/temporary_folder.h"
+#include "link/codec.h"
+#include "link/endpoint.h"
+#include "link/server_socket.h"
+#include "realtime/periodic_loop.h"
+
+namespace trocar::testing {
+
+/// How long a test waits for what must come; it never waits so long where all is well.
+inline constexpr std::chrono::seconds kPatience(30);
+inline constexpr int kPatience_ms = 30'000;
+
+/// Looks again and again until it is so. False: not within kPatience.
+inline bool eventually(const std::function<bool()>& is_so) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!is_so()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+inline Endpoint ipc_endpoint(const TemporaryFolder& folder) {
+  return {"ipc://" + (folder / "socket").string(), false};
+}
+/// One that nobody else has, while the program runs.
+inline Endpoint any_endpoint() {
+  static const TemporaryFolder folder;
+  static std::atomic<int> count = 0;
+  return {"ipc://" + (folder / std::to_string(++count)).string(), false};
+}
+inline Endpoint any_port() {
+  return {"tcp://127.0.0.1:0", true};
+}
+
+inline Welcome test_welcome() {
+  Welcome welcome;
+  welcome.server = "a server";
+  welcome.tool = "needle";
+  welcome.device.name = "virtual";
+  return welcome;
+}
+
+/// Writes another version into an encoded message.
+inline void set_version(Bytes& bytes, std::uint32_t version) {
+  const auto at = [&](std::size_t offset) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    return value;
+  };
+  // The root's table begins with the distance back to its vtable, whose third number is the first field's place.
+  const std::size_t table = at(0);
+  const std::size_t vtable = table - at(table);
+  std::uint16_t field = 0;
+  std::memcpy(&field, bytes.data() + vtable + 4, sizeof field);
+  std::memcpy(bytes.data() + table + field, &version, sizeof version);
+}
+
+/// Consecutive ticks whose time is their number.
+inline StateBatch test_batch(std::uint64_t first, std::size_t count) {
+  StateBatch batch;
+  batch.first_tick = first;
+  for (std::size_t i = 0; i < count; ++i) {
+    TickSample sample;
+    sample.time_s = static_cast<double>(first + i);
+    batch.samples.push_back(sample);
+  }
+  return batch;
+}
+
+/// A server in a thread: answers commands, remembers what it got, and does what a test asks for in between.
+class RunningServer {
+ public:
+  explicit RunningServer(const Endpoint& endpoint, std::optional<ServerSecurity> security = {}) {
+    auto socket = ServerSocket::bind(endpoint, std::move(security));
+    if (!socket) {
+      error_ = socket.error().text();
+      return;
+    }
+    url_ = socket->bound_url();
+    thread_ = std::thread([this, server = std::move(*socket)]() mutable { run(server); });
+  }
+  ~RunningServer() {
+    is_stopping_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  const std::string& url() const { return url_; }
+  const std::string& error() const { return error_; }
+
+  /// Calls it in the server's thread, and waits until it was.
+  void with_socket(const std::function<void(ServerSocket&)>& call) {
+    std::atomic<bool> is_done = false;
+    {
+      const std::lock_guard lock(mutex_);
+      calls_.push_back([&](ServerSocket& socket) {
+        call(socket);
+        is_done = true;
+      });
+    }
+    eventually([&] { return is_done.load(); });
+  }
+  void send(const StateBatch& batch) {
+    with_socket([&](ServerSocket& socket) { socket.send_batch(batch); });
+  }
+  template <class Body>
+  std::vector<Body> received() {
+    const std::lock_guard lock(mutex_);
+    std::vector<Body> bodies;
+    for (const Received& one : received_) {
+      if (const auto* body = std::get_if<Body>(&one.body)) bodies.push_back(*body);
+    }
+    return bodies;
+  }
+
+ private:
+  void run(ServerSocket& server) {
+    const Welcome welcome = test_welcome();
+    while (!is_stopping_) {
+      auto got = server.receive(1, welcome, seconds(now_ns()));
+      std::vector<std::function<void(ServerSocket&)>> calls;
+      {
+        const std::lock_guard lock(mutex_);
+        if (got) received_.push_back(*got);
+        calls.swap(calls_);
+      }
+      for (const auto& call : calls) call(server);
+      if (!got) continue;
+      if (const auto* command = std::get_if<Command>(&got->body)) {
+        const bool is_done = std::holds_alternative<ServerCommand>(command->what);
+        server.send_reply(got->session, {command->request, is_done, is_done ? "done" : "this server only obeys"});
+      }
+    }
+  }
+
+  std::string url_, error_;
+  std::mutex mutex_;
+  std::vector<Received> received_;
+  std::vector<std::function<void(ServerSocket&)>> calls_;
+  std::atomic<bool> is_stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace trocar::testing

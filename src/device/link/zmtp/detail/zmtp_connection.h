@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "link/zmtp/detail/curve_handshake.h"
+#include "link/zmtp/detail/token_bucket.h"
+#include "link/zmtp/detail/zmtp_frames.h"
+
+namespace trocar::detail {
+
+/// The server's side of one ZMTP 3 connection, without its socket: bytes in, messages and bytes out. What it holds of a
+/// peer is bounded in bytes, frames and rate, whatever the peer sends. Mechanisms: NULL, or CURVE with an identity.
+class ZmtpConnection {
+ public:
+  /// `identity` outlives the connection; null: the mechanism is NULL.
+  explicit ZmtpConnection(const CurveIdentity* identity);
+
+  enum class Event {
+    kNone,       ///< Nothing whole is there, or the rate limit holds it back.
+    kReady,      ///< The handshake is done: identity() is known.
+    kMessage,    ///< One message of one frame.
+    kMultipart,  ///< The begin of a message of several frames: it is skipped.
+    kTooLarge,   ///< A message beyond the limit: it is skipped.
+    kBroken,     ///< The connection cannot go on: why().
+  };
+  struct Incoming {
+    Event event = Event::kNone;
+    std::span<const std::byte> message;  ///< Until the next call.
+  };
+
+  /// How many bytes may be read from the socket now; 0: the rate limit, or a full output, holds the peer back.
+  std::size_t room(double now_s);
+  void append(std::span<const std::byte> bytes);
+  Incoming next(double now_s);
+
+  /// A peer that has said Hello may send kMostMessageBytes, another kMostBytesBeforeHello.
+  void set_greeted(bool is_greeted) { is_greeted_ = is_greeted; }
+  bool is_greeted() const { return is_greeted_; }
+  /// The peer's routing id, with its key in front where it has one. Empty before the handshake is done, or not given.
+  const std::string& identity() const { return identity_; }
+  bool is_ready() const { return state_ == State::kTraffic; }
+  const std::string& why() const { return why_; }
+
+  /// Queues a message. False: the peer has not taken what was sent before, or the handshake is not done.
+  bool put(std::span<const std::byte> message);
+  std::span<const std::byte> outgoing() const { return std::span<const std::byte>(out_).subspan(out_sent_); }
+  void note_sent(std::size_t bytes);
+
+ private:
+  enum class State { kGreeting, kHandshake, kTraffic, kBroken };
+  bool read_greeting();
+  void take_handshake(std::span<const std::byte> command);
+  void take_metadata(std::span<const std::byte> metadata);
+  void put_error();
+  Incoming take_frame(const FrameReader::Frame& frame);
+  Incoming take_part(std::uint8_t flags, std::span<const std::byte> payload);
+  void answer_command(std::span<const std::byte> command);
+  Incoming break_off(std::string why);
+
+  State state_ = State::kGreeting;
+  std::optional<CurveHandshake> curve_;
+  std::string_view mechanism_;
+  FrameReader in_;
+  TokenBucket bytes_, frames_;
+  std::vector<std::byte> out_, opened_;
+  std::size_t out_sent_ = 0;
+  std::size_t multipart_bytes_ = 0;
+  int multipart_frames_ = 0;  ///< Of the message that is skipped; 0: none.
+  bool is_greeted_ = false;
+  std::string identity_, why_;
+};
+
+}  // namespace trocar::detail

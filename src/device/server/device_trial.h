@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+
+#include "devices/haptic_device.h"
+#include "haptics/gate/safety_gate.h"
+
+namespace trocar {
+
+/// What a period of a trial made.
+struct DeviceTrialRecord {
+  DeviceReading reading;
+  Wrench written_D;
+  GateFault fault = GateFault::kNone;
+  bool is_pushing = false;
+};
+
+/// A device tried out by itself, without a patient: its pose is read, and a small force is given where somebody asks
+/// for one. One period: read, gate, write; the gate's output is all that is written. Time is an argument; real-time
+/// safe.
+class DeviceTrial {
+ public:
+  DeviceTrial(HapticDevice& device, double rate_hz) noexcept;
+
+  DeviceTrialRecord step(double now_s, double dt_s) noexcept;
+  /// A force upwards (+z of D) rises to push_n() and falls again, within kPush_s after the gate's safe start. Resets a
+  /// fault of the push before.
+  void push() noexcept;
+  /// Size of the push: 0.6 of the continuous force, 1 N at most; of a device that only shows forces (rumble), 3 N.
+  double push_n() const noexcept { return push_n_; }
+
+  static constexpr double kPush_s = 1.5;
+
+ private:
+  HapticDevice& device_;
+  const GateParams gate_;
+  const double push_n_;
+  GateState state_;
+  std::optional<double> pushing_s_;  ///< Since push().
+  std::optional<Pose> last_X_DS_;
+  double unread_s_ = 0.0;
+  bool is_reset_ = false;
+  bool has_refused_ = false;  ///< The device did not take the last wrench.
+};
+
+}  // namespace trocar

@@ -1,0 +1,171 @@
+#include "server/scene_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <new>
+
+#include "haptics/coupling/coupling_limits.h"
+
+namespace trocar {
+namespace {
+
+/// "NAME=VALUE" in two.
+struct Setting {
+  std::string_view name, value;
+};
+
+Result<double> parse_number(const Setting& setting) {
+  double number = 0.0;
+  const char* end = setting.value.data() + setting.value.size();
+  const auto [stop, error] = std::from_chars(setting.value.data(), end, number);
+  if (error == std::errc() && stop == end && std::isfinite(number)) return number;
+  return fail_usage(fmt::format("\"{}\" is not a number", setting.value), std::string(setting.name),
+                    "send a decimal number");
+}
+
+NeedleGeometry needle_of(const LoadScene& request) noexcept {
+  NeedleGeometry needle;
+  needle.length_mm = request.needle_length_mm;
+  needle.radius_mm = request.needle_radius_mm;
+  needle.inner_radius_mm = request.needle_inner_radius_mm;
+  needle.stylet_radius_mm = request.needle_stylet_radius_mm;
+  needle.young_gpa = request.needle_young_gpa;
+  needle.bevel_rad = request.needle_bevel_rad;
+  needle.bevel_share = request.needle_bevel_share;
+  return needle;
+}
+
+/// Of a scene's option; nothing where the text is not one of them.
+Result<bool> apply_option(std::string_view text, HapticOptions& options) {
+  const std::size_t at = text.find('=');
+  const Setting setting{text.substr(0, at), at == std::string_view::npos ? "" : text.substr(at + 1)};
+  if (setting.name == "force_model") {
+    TROCAR_TRY(options.force_model, parse_force_model(setting.value));
+  } else if (setting.name == "coupling.stiffness") {
+    TROCAR_TRY(options.coupling.stiffness_n_per_mm, parse_number(setting));
+  } else if (setting.name == "coupling.damping") {
+    TROCAR_TRY(options.coupling.damping_ns_per_mm, parse_number(setting));
+  } else if (setting.name == "bending") {
+    TROCAR_TRY(const double bending, parse_number(setting));
+    options.has_bending = bending != 0.0;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// Memory may run out in any step: the scene is refused, and the loop with the last one goes on.
+template <class Step>
+Result<ServoScene> with_memory_checked(const std::string& patient, const Step& step) {
+  try {
+    return step();
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory to load the scene", patient, "close other programs or load a smaller patient");
+  }
+}
+
+}  // namespace
+
+SceneBuilder::SceneBuilder(PatientOpener open_patient, std::filesystem::path tissues_file, DevicePreset device)
+    : open_patient_(std::move(open_patient)), tissues_file_(std::move(tissues_file)), device_(std::move(device)) {}
+
+Result<std::shared_ptr<const VirtualPatient>> SceneBuilder::patient_for(const LoadScene& request,
+                                                                        const Progress& progress) {
+  const bool is_known =
+      patient_ != nullptr && request.patient == request_.patient && request.patient_seed == request_.patient_seed;
+  std::shared_ptr<const VirtualPatient> patient = patient_;
+  if (!is_known) {
+    TROCAR_TRY(patient, open_patient_(request.patient, request.patient_seed, progress));
+  }
+  if (!request.patient_hash.empty() && patient->content_hash != request.patient_hash) {
+    if (is_known) {  // a folder may have been built anew meanwhile
+      TROCAR_TRY(patient, open_patient_(request.patient, request.patient_seed, progress));
+    }
+    if (patient->content_hash != request.patient_hash)
+      return fail("the server's patient is not the client's: another content hash", request.patient,
+                  "give both the same folder and version");
+  }
+  return patient;
+}
+
+Result<SceneBuilder::Parts> SceneBuilder::parts_for(const LoadScene& request) const {
+  Parts parts;
+  if (request.tissues_toml.empty()) {
+    TROCAR_TRY(parts.loaded, load_tissue_table(tissues_file_));
+  } else {
+    TROCAR_TRY(parts.loaded, parse_tissue_table(request.tissues_toml, "the client's tissue table"));
+  }
+  parts.tissues = parts.loaded;
+  apply_device_preset(device_, parts.options);
+  parts.options.coupling = within(parts.options.coupling, limits_of(device_));  // its scales may want a softer one
+  TROCAR_TRY(parts.options.tool, parse_tool(request.tool));
+  TROCAR_TRY(parts.options.force_model, parse_force_model(request.force_model));
+  parts.options.seed = request.seed;
+  return parts;
+}
+
+Result<ServoScene> SceneBuilder::build(const LoadScene& request, std::shared_ptr<const VirtualPatient> patient,
+                                       Parts parts, bool continues) {
+  HapticOptions options = parts.options;
+  // The tick works in the patient's newtons and mm; the gate holds the device's own limits, after the scales.
+  const DeviceCapability capability = scene_capability(device_);
+  const double stiffest = capability.max_stiffness_n_per_mm;
+  TROCAR_TRY_STATUS(check(options.coupling, limits_of(device_)));
+  options.constraint.force_n = std::min(options.constraint.force_n, stiffest * options.constraint.linear_mm);
+  TROCAR_TRY(auto built, make_haptic_scene(patient, parts.tissues, needle_of(request), capability, options));
+  auto scene = std::make_shared<HapticScene>(*built);
+  scene->X_PD = request.X_PW;
+  scene->gravity_P = -request.X_PW.R().col(2);  // down in the room
+
+  request_ = request;
+  patient_ = std::move(patient);
+  parts_ = std::move(parts);
+  return ServoScene{std::move(scene), ++number_, continues};
+}
+
+Result<ServoScene> SceneBuilder::load(const LoadScene& request, const Progress& progress, const std::stop_token& stop) {
+  return with_memory_checked(request.patient, [&] { return load_throwing(request, progress, stop); });
+}
+
+Result<ServoScene> SceneBuilder::load_throwing(const LoadScene& request, const Progress& progress,
+                                               const std::stop_token& stop) {
+  const auto check_stop = [&]() -> Status {
+    if (!stop.stop_requested()) return {};
+    return fail("loading was stopped: a newer scene was sent or the server ends", request.patient, "load it again");
+  };
+  TROCAR_TRY_STATUS(check_stop());
+  report(progress, "checking the scene", 0.0);
+  TROCAR_TRY(Parts parts, parts_for(request));
+  TROCAR_TRY(auto patient, patient_for(request, progress));
+  TROCAR_TRY_STATUS(check_stop());
+  report(progress, "building the scene", 0.9);
+  return build(request, std::move(patient), std::move(parts), false);
+}
+
+Result<ServoScene> SceneBuilder::change(const SetParameters& request) {
+  return with_memory_checked(request_.patient, [&] { return change_throwing(request); });
+}
+
+Result<ServoScene> SceneBuilder::change_throwing(const SetParameters& request) {
+  if (patient_ == nullptr) return fail("there is no scene whose numbers could be changed", "", "load one first");
+  Parts parts = parts_;
+  if (!request.tissues_toml.empty()) {
+    TROCAR_TRY(parts.loaded, parse_tissue_table(request.tissues_toml, "the client's tissue table"));
+  }
+  TissueTable tissues = parts.loaded;
+  bool has_tissues = request.settings.empty() || !request.tissues_toml.empty();
+  for (const std::string& setting : request.settings) {
+    TROCAR_TRY(const bool is_option, apply_option(setting, parts.options));
+    if (is_option) continue;
+    TROCAR_TRY_STATUS(apply_override(tissues, setting));
+    has_tissues = true;
+  }
+  if (has_tissues) parts.tissues = std::move(tissues);
+  const bool continues = parts.options.force_model == parts_.options.force_model;
+  return build(request_, patient_, std::move(parts), continues);
+}
+
+}  // namespace trocar

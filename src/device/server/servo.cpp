@@ -1,0 +1,241 @@
+#include "server/servo.h"
+
+#include <algorithm>
+
+#include "devices/device_wrench.h"
+#include "haptics/gate/device_gate.h"
+#include "haptics/closed_loop/rotation.h"
+
+namespace trocar {
+namespace {
+
+/// Which event tells that the gate began to act.
+struct GateEvent {
+  std::uint16_t action;
+  LimitReason reason;
+};
+constexpr std::array kGateEvents{
+    GateEvent{kGateFault, LimitReason::kFault},
+    GateEvent{kGateBrake, LimitReason::kBrake},
+    GateEvent{kGateStale, LimitReason::kStale},
+    GateEvent{kGateStart, LimitReason::kSafeStart},
+    GateEvent{kGateContinuous, LimitReason::kContinuous},
+    GateEvent{kGatePassivity, LimitReason::kPassivity},
+    GateEvent{kGateSlew, LimitReason::kSlew},
+};
+
+/// Into the first free place; an event too many is left out: `limited` says it anyway.
+void add_event(TickSample& sample, LimitReason reason) noexcept {
+  for (TickEvent& event : sample.events) {
+    if (event.kind != EventKind::kNone) continue;
+    event = {EventKind::kLimit, static_cast<std::uint8_t>(reason)};
+    return;
+  }
+}
+
+/// From S to where the needle goes through the skin, in the room; none outside the body.
+std::optional<Vec3> to_entry_W(const HapticState& state, const HapticScene& scene, const Pose& X_WS) noexcept {
+  if (scene.options.tool != Tool::kNeedle || !state.needle.path.is_open) return std::nullopt;
+  return scene.X_PD.inverse() * state.needle.path.channel.origin_P - X_WS.p();
+}
+
+}  // namespace
+
+/// The spring and damper that the device feels: none where it feels no force.
+CouplingParams Servo::coupling_in_device(const ServoScene* scene) const noexcept {
+  if (scene == nullptr || !device_.preset().has_force()) return {0.0, 0.0};
+  const double scale = params_.workspace.force_scale * params_.workspace.motion_scale;
+  const CouplingParams& coupling = scene->scene->options.coupling;
+  return {scale * coupling.stiffness_n_per_mm, scale * coupling.damping_ns_per_mm};
+}
+
+ServoParams servo_params(const DevicePreset& preset, double rate_hz) noexcept {
+  constexpr double kStuckShare = 0.15;
+  ServoParams params;
+  params.gate = gate_params(preset);
+  params.gate.period_s = 1.0 / rate_hz;
+  params.stuck_n = kStuckShare * params.gate.continuous_force_n;
+  params.workspace = workspace_params(preset);
+  return params;
+}
+
+Servo::Servo(HapticDevice& device, const ServoParams& params) noexcept
+    : device_(device),
+      params_(params),
+      has_torque_(device.preset().has_torque()),
+      senses_rotation_(device.preset().sensed_dof == 6),
+      is_watched_(device.preset().has_force() && device.is_in_real_hand()) {
+  workspace_.X_WD_now = params.workspace.X_WD;
+  R_WS_told_ = rotation_between(Vec3::UnitZ(), -Vec3::UnitZ());  // the tool hangs down until somebody says otherwise
+}
+
+GateFault Servo::watch_encoder(const DeviceReading& reading, double dt_s) noexcept {
+  const bool is_same = reading.X_DS.p() == last_.X_DS.p() && reading.X_DS.R() == last_.X_DS.R();
+  const bool is_pushing = gate_.watched.force_n.norm() > params_.stuck_n;
+  unmoved_s_ = is_watched_ && is_same && is_pushing && reading.status == DeviceStatus::kFresh ? unmoved_s_ + dt_s : 0.0;
+  return unmoved_s_ > params_.stuck_s ? GateFault::kEncoderStuck : GateFault::kNone;
+}
+
+Servo::Sensed Servo::sense(const ServoInput& input) noexcept {
+  Sensed sensed;
+  sensed.reading = device_.read(input.now_s);
+  const DeviceReading& now = sensed.reading;
+  const double since_fresh_s = unread_s_ + input.dt_s;
+  unread_s_ = now.status == DeviceStatus::kFresh ? 0.0 : since_fresh_s;
+  if (now.status == DeviceStatus::kDisconnected || has_refused_) sensed.fault = GateFault::kDeviceLost;
+  const bool is_good = now.X_DS.is_finite() && now.X_DS.p().norm() < kFarAway_mm;
+  if (!is_good) sensed.fault = GateFault::kNotFinite;
+  if (has_read_ && input.dt_s > params_.max_hole_s) sensed.fault = GateFault::kLoopStalled;
+  if (now.status != DeviceStatus::kFresh || !is_good) {
+    sensed.reading.X_DS = last_.X_DS;
+    return sensed;
+  }
+  if (has_read_ && !was_placed_) {
+    if (const GateFault stuck = watch_encoder(now, input.dt_s); stuck != GateFault::kNone) sensed.fault = stuck;
+    sensed.v_D = (now.X_DS.p() - last_.X_DS.p()) / since_fresh_s;
+    sensed.w_D = rotation_vector(now.X_DS.R() * last_.X_DS.R().transpose()) / since_fresh_s;
+  }
+  last_ = now;
+  has_read_ = true;
+  return sensed;
+}
+
+DeviceHand Servo::hand_in_device(const HandTarget& target, const HapticScene& scene) const noexcept {
+  const Pose X_WS = scene.X_PD.inverse() * target.X_PN * scene.X_SN.inverse();
+  const Mat3 R_DP = (scene.X_PD.R() * workspace_.X_WD_now.R()).transpose();
+  const double scale = params_.workspace.motion_scale;
+  DeviceHand hand;
+  hand.X_DS = map_from_room(workspace_, params_.workspace, X_WS);
+  hand.v_D = R_DP * target.v_P / scale;
+  hand.w_D = R_DP * target.w_P;
+  hand.time_s = target.server_time_s;
+  hand.stiffness_n_per_mm = target.stiffness_n_per_mm;
+  hand.damping_ns_per_mm = target.damping_ns_per_mm;
+  hand.mass_kg = target.mass_kg;
+  hand.turning_nmm_per_rad = target.turning_nmm_per_rad;
+  hand.turning_damping_nmms_per_rad = target.turning_damping_nmms_per_rad;
+  hand.inertia_kg_mm2 = target.inertia_kg_mm2;
+  hand.point_mm = target.holds_tip ? scene.X_SN.p().z() : 0.0;
+  hand.buttons = target.buttons;
+  hand.is_held = target.is_held;
+  hand.is_rigid = target.is_rigid;
+  hand.is_placed = target.is_placed;
+  return hand;
+}
+
+Servo::Wanted Servo::feel(const Sensed& sensed, const ServoInput& input, TickSample& sample) noexcept {
+  Wanted wanted;
+  Pose X_WS = map_to_room(workspace_, params_.workspace, sensed.reading.X_DS, sensed.reading.buttons);
+  if (!senses_rotation_) X_WS = Pose(R_WS_told_, X_WS.p());
+  if (input.scene == nullptr) {
+    sample = {};
+    sample.time_s = input.now_s;
+    return wanted;
+  }
+  const HapticScene& scene = *input.scene->scene;
+  const HapticOutput output =
+      tick(tick_, {input.now_s, std::min(input.dt_s, kMaxDt_s), X_WS, input.is_stylet_in}, scene);
+  sample = output.sample;
+
+  const Vec3 axis_W = X_WS.R() * scene.X_SN.R().col(scene.options.tool == Tool::kNeedle ? 2 : 1);
+  Wrench tissue_W{output.f_D - output.weight_D.force_n, output.tau_D - output.weight_D.torque_nmm};
+  if (!has_torque_) {
+    const Mat3 R_WP = scene.X_PD.R().transpose();
+    tissue_W.torque_nmm = R_WP * output.sample.tau_nmm;
+    tissue_W = without_torque(tissue_W, axis_W, to_entry_W(tick_, scene, X_WS));
+  }
+  wanted.wrench_D = map_to_device(workspace_, params_.workspace, tissue_W);
+  // The weight is carried while the clutch is pressed, too.
+  const Mat3 R_DW = params_.workspace.force_scale * workspace_.X_WD_now.R().transpose();
+  wanted.weight_D = {R_DW * output.weight_D.force_n, R_DW * output.weight_D.torque_nmm};
+  wanted.axis_D = workspace_.X_WD_now.R().transpose() * axis_W;
+  return wanted;
+}
+
+void Servo::note_gate(const GateOutput& output, const ServoInput& input, TickSample& sample) noexcept {
+  const auto begun = static_cast<std::uint16_t>(output.actions & ~actions_before_);
+  actions_before_ = output.actions;
+  for (const GateEvent& event : kGateEvents) {
+    if ((begun & event.action) != 0) add_event(sample, event.reason);
+  }
+  if (output.actions != 0) sample.limited = true;
+  sample.gate_mode = gate_.mode;
+  sample.gate_fault = gate_.fault;
+  sample.gate_scale = gate_.scale;
+  sample.coupling_share = gate_.coupling_share;
+  if (input.scene == nullptr) return;
+  const Mat3 R_PD = input.scene->scene->X_PD.R() * workspace_.X_WD_now.R();
+  sample.device_f_n = R_PD * output.wrench.force_n;
+  sample.device_tau_nmm = R_PD * output.wrench.torque_nmm;
+}
+
+void Servo::begin_anew() noexcept {
+  tick_ = {};
+  if (gate_.fault == GateFault::kNone) gate_.mode = GateMode::kOff;  // through the safe start
+}
+
+bool Servo::gives_force() const noexcept {
+  return gate_.last.force_n != Vec3::Zero() || gate_.last.torque_nmm != Vec3::Zero();
+}
+
+void Servo::resume() noexcept {
+  begin_anew();
+  restart_gate(gate_);
+  has_read_ = was_placed_ = has_refused_ = false;
+  unread_s_ = unmoved_s_ = 0.0;
+}
+
+ServoRecord Servo::step(const ServoInput& input) noexcept {
+  ServoRecord record;
+  record.tick = ticks_++;
+  record.scene = input.scene == nullptr ? 0 : input.scene->number;
+  record.silence_s = input.silence_s;
+  if (input.scene != nullptr && input.scene->number != scene_number_) {
+    if (!input.scene->continues) begin_anew();
+    scene_number_ = input.scene->number;
+  }
+
+  const Sensed sensed = sense(input);
+  if (was_placed_) begin_anew();  // where it was before is no part of its way, and makes no channel
+  was_placed_ = input.hand && input.hand->is_placed;
+  if (input.hand && input.scene != nullptr) {
+    const HapticScene& scene = *input.scene->scene;
+    R_WS_told_ = (scene.X_PD.inverse() * input.hand->X_PN * scene.X_SN.inverse()).R();
+    device_.hold(hand_in_device(*input.hand, scene));
+  }
+  const Wanted wanted = feel(sensed, input, record.sample);
+
+  GateInput gate;
+  gate.wanted = wanted.wrench_D;
+  gate.weight = wanted.weight_D;
+  gate.axis = wanted.axis_D;
+  gate.v_mm_per_s = sensed.v_D;
+  gate.w_rad_per_s = sensed.w_D;
+  gate.dt_s = input.dt_s;
+  gate.silence_s = input.silence_s;
+  gate.unread_s = unread_s_;
+  gate.busy_s = input.busy_s;
+  gate.coupling = coupling_in_device(input.scene);
+  gate.is_wanted = input.is_wanted && input.scene != nullptr;
+  gate.device_fault = sensed.fault;
+  gate.is_reset = input.is_reset;
+  const GateOutput output = step_gate(gate_, gate, params_.gate);
+  has_refused_ = !device_.write(output.wrench);
+  if (input.is_reset) unmoved_s_ = 0.0;
+
+  note_gate(output, input, record.sample);
+  record.status = sensed.reading.status;
+  record.mode = gate_.mode;
+  record.fault = gate_.fault;
+  record.actions = output.actions;
+  record.scale = gate_.scale;
+  record.drop_n = output.drop_n;
+  record.drop_s = output.drop_s;
+  record.wanted_D = {gate.wanted.force_n + gate.weight.force_n, gate.wanted.torque_nmm + gate.weight.torque_nmm};
+  record.written_D = output.wrench;
+  record.X_DS = sensed.reading.X_DS;
+  record.buttons = sensed.reading.buttons;
+  return record;
+}
+
+}  // namespace trocar

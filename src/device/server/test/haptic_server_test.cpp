@@ -1,0 +1,324 @@
+#include "server/haptic_server.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <thread>
+
+#include "core/random.h"
+#include "core/files/temporary_folder.h"
+#include "link/codec.h"
+#include "link/client/haptic_client.h"
+#include "link/test/raw_link.h"
+#include "server/test/servo_rig.h"
+
+namespace trocar {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ScriptedDevice;
+
+/// Long enough for a loaded machine; nothing is measured by it.
+constexpr auto kPatience = 20s;
+
+bool wait_for(const std::function<bool()>& is_so) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!is_so()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
+/// A server with a scripted device on an endpoint of its own, and a client.
+class ServerRig {
+ public:
+  ServerRig() : server_(start()) {}
+
+  HapticServer start() {
+    ServerOptions options;
+    options.endpoint = *parse_endpoint("ipc://" + (folder_ / "needle").string());
+    options.priority = 0;
+    options.tissues_file = testing::data_file("tissues.toml");
+    options.flight_folder = folder_.path();
+    auto device = std::make_unique<ScriptedDevice>(testing::device_preset());
+    device->reading.X_DS = testing::needle_at_depth(-10.0);
+    device_ = device.get();
+    auto server = HapticServer::start(options, std::move(device), testing::layered_opener());
+    TROCAR_CHECK(server.has_value());
+    return std::move(*server);
+  }
+  HapticClient connect(bool wants_control = true) {
+    ClientOptions options;
+    options.endpoint = server_.url();
+    options.wants_control = wants_control;
+    auto client = HapticClient::connect(options);
+    TROCAR_CHECK(client.has_value());
+    TROCAR_CHECK(client->wait_connected(kPatience).has_value());
+    return std::move(*client);
+  }
+  HapticServer& server() { return server_; }
+  const TemporaryFolder& folder() const { return folder_; }
+
+ private:
+  TemporaryFolder folder_;
+  ScriptedDevice* device_ = nullptr;
+  HapticServer server_;
+};
+
+TEST(HapticServer, LoadsASceneAndRuns) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  const auto loaded = client.ask(testing::layered_request(), kPatience);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.gate_mode == to_string(GateMode::kOn); }));
+  EXPECT_EQ(client.view().status.patient, "layers");
+  EXPECT_FALSE(client.view().status.grant.empty());
+  EXPECT_TRUE(client.ask(ServerCommand::kStop, kPatience));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.state == "ready"; }));
+}
+
+TEST(HapticServer, SendsEveryTickOrCountsIt) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  std::uint64_t expected = 0, seen = 0, gaps = 0;
+  const bool is_enough = wait_for([&] {
+    for (const NumberedSample& numbered : client.take_samples()) {
+      if (seen > 0) gaps += numbered.tick - expected;
+      expected = numbered.tick + 1;
+      ++seen;
+    }
+    return seen >= 1000;
+  });
+  EXPECT_TRUE(is_enough);
+  EXPECT_EQ(gaps, client.view().ticks_missing);
+}
+
+/// The reply to a command, when it comes.
+Reply reply_to(HapticClient& client, std::uint32_t request) {
+  Reply found;
+  EXPECT_TRUE(wait_for([&] {
+    for (Reply& reply : client.take_replies())
+      if (reply.request == request) found = std::move(reply);
+    return found.request == request;
+  }));
+  return found;
+}
+
+TEST(HapticServer, NumbersTheTicksOfAScene) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  const Reply loaded = reply_to(client, client.send(testing::layered_request()));
+  ASSERT_TRUE(loaded.is_done) << loaded.text;
+  ASSERT_GT(loaded.scene, 0U);
+  const Reply changed = reply_to(client, client.send(SetParameters{{"skin.fp=6", "coupling.stiffness=0.5"}}));
+  ASSERT_TRUE(changed.is_done) << changed.text;
+  EXPECT_GT(changed.scene, loaded.scene);
+  const auto table = parse_tissue_table(changed.tissues_toml, "reply");
+  ASSERT_TRUE(table) << table.error().text();
+  EXPECT_EQ(table->layers[*table->find_layer("skin")].puncture_force_n, 6.0);
+  EXPECT_NE(std::ranges::find(changed.options, "coupling.stiffness=0.5"), changed.options.end());
+  std::vector<std::uint64_t> scenes;  // every number once, in the order of the ticks
+  EXPECT_TRUE(wait_for([&] {
+    for (const NumberedSample& numbered : client.take_samples())
+      if (scenes.empty() || scenes.back() != numbered.scene) scenes.push_back(numbered.scene);
+    return !scenes.empty() && scenes.back() == changed.scene;
+  }));
+  EXPECT_TRUE(std::ranges::is_sorted(scenes));
+}
+
+TEST(HapticServer, RefusesToStartWithoutAScene) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  const auto started = client.ask(ServerCommand::kStart, kPatience);
+  ASSERT_FALSE(started);
+  EXPECT_NE(started.error().text().find("scene"), std::string::npos);
+}
+
+TEST(HapticServer, TellsWhatIsWrongWithAScene) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  LoadScene request = testing::layered_request();
+  request.patient = "nobody";
+  const auto loaded = client.ask(request, kPatience);
+  ASSERT_FALSE(loaded);
+  EXPECT_NE(loaded.error().text().find("nobody"), std::string::npos);
+  request = testing::layered_request();
+  request.tool = "probe";
+  EXPECT_FALSE(client.ask(request, kPatience)) << "this server holds the needle";
+}
+
+TEST(HapticServer, LetsAWatcherSeeButNotCommand) {
+  ServerRig rig;
+  HapticClient master = rig.connect();
+  ASSERT_TRUE(master.ask(testing::layered_request(), kPatience));
+  HapticClient watcher = rig.connect(false);
+  EXPECT_FALSE(watcher.ask(ServerCommand::kStart, kPatience));
+  EXPECT_TRUE(wait_for([&] { return watcher.newest().has_value(); }));
+}
+
+TEST(HapticServer, TakesForcesBackWhenTheClientInControlLeaves) {
+  ServerRig rig;
+  {
+    HapticClient client = rig.connect();
+    ASSERT_TRUE(client.ask(testing::layered_request(), kPatience));
+    ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+    EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
+  }
+  HapticClient next = rig.connect();
+  EXPECT_TRUE(wait_for([&] { return next.view().status.state == "ready"; }));
+}
+
+TEST(HapticServer, WarnsOfAClientsWindowThatStandsStill) {
+  ServerRig rig;
+  ClientOptions options;
+  options.endpoint = rig.server().url();
+  options.has_window = true;
+  auto client = HapticClient::connect(options);
+  ASSERT_TRUE(client);
+  client->frame_drawn();
+  EXPECT_TRUE(wait_for([&] { return client->view().status.warning.find("window") != std::string::npos; }));
+  EXPECT_TRUE(wait_for([&] {
+    client->frame_drawn();
+    return client->view().status.warning.empty();
+  }));
+}
+
+TEST(HapticServer, CountsBadMessagesAndKeepsItsForcesMeanwhile) {
+  ServerRig rig;
+  HapticClient client = rig.connect();
+  ASSERT_TRUE(client.ask(testing::layered_request(), kPatience));
+  ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+  ASSERT_TRUE(wait_for([&] { return client.view().status.gate_mode == to_string(GateMode::kOn); }));
+
+  testing::RawClient stranger(rig.server().url());
+  stranger.connect();
+  const Bytes good = encode(ClientMessage{1, 1, Heartbeat{}});
+  Random random(3);
+  constexpr int kRounds = 50;
+  for (int i = 0; i < kRounds; ++i) {
+    Bytes noise(1 + random.next() % 4000);
+    for (std::byte& byte : noise) byte = static_cast<std::byte>(random.next());
+    stranger.send(noise);
+    stranger.send(std::span(good).first(random.next() % good.size()));  // truncated
+    stranger.send(good);                                                // of no session
+  }
+  ASSERT_TRUE(stranger.hello("stranger"));
+  const auto welcome = stranger.next<Welcome>();
+  ASSERT_TRUE(welcome);
+  EXPECT_FALSE(welcome->has_control);
+  stranger.send(Bytes(kMostMessageBytes + 1));
+  stranger.send(welcome->session, 5, Heartbeat{});
+  stranger.send(welcome->session, 5, Heartbeat{});                       // replayed
+  stranger.send(welcome->session, 6, Command{1, ServerCommand::kStop});  // not in control
+
+  EXPECT_TRUE(wait_for([&] { return client.view().status.messages_refused >= 3 * kRounds + 3; }))
+      << client.view().status.messages_refused;
+  EXPECT_EQ(client.view().status.gate_mode, to_string(GateMode::kOn));
+  EXPECT_EQ(client.view().status.state, "running");
+}
+
+TEST(HapticServer, EndsWhatHasStartedWhereAThreadDoesNotStart) {
+  for (const char* failing : {"control", "link", "real-time"}) {
+    const TemporaryFolder folder;
+    ServerOptions options;
+    options.endpoint = *parse_endpoint("ipc://" + (folder / "needle").string());
+    options.priority = 0;
+    const auto starter = [&](const char* name, std::function<void()> body) -> Result<std::thread> {
+      if (name == std::string_view(failing)) return fail("the thread does not start", name, "test");
+      return start_thread(name, std::move(body));
+    };
+    const auto server = HapticServer::start(options, std::make_unique<ScriptedDevice>(testing::device_preset()),
+                                            testing::layered_opener(), starter);
+    ASSERT_FALSE(server) << failing;
+    EXPECT_NE(server.error().text().find(failing), std::string::npos) << server.error().text();
+  }
+}
+
+/// A healthy device is opened again under force: its motors are off then, whoever opens it.
+class ReopenedDevice final : public HapticDevice {
+ public:
+  struct Log {
+    std::atomic<double> depth_mm{-10.0};
+    std::atomic<int> reconnects{0};
+    std::atomic<double> held_n{-1.0};  ///< Force on the motors when it was opened again.
+    std::atomic<double> largest_rise_n{0.0};
+  };
+  explicit ReopenedDevice(Log& log) : preset_(testing::device_preset()), log_(log) {}
+  const DevicePreset& preset() const noexcept override { return preset_; }
+  std::string name() const override { return "reopened"; }
+  DeviceReading read(double now_s) noexcept override {
+    DeviceReading reading;
+    reading.X_DS = testing::needle_at_depth(log_.depth_mm + 0.01 * std::sin(30.0 * now_s));
+    return reading;
+  }
+  bool write(const Wrench& wrench_D) noexcept override {
+    const double written_n = wrench_D.force_n.norm();
+    log_.largest_rise_n = std::max(log_.largest_rise_n.load(), written_n - last_n_);
+    last_n_ = written_n;
+    return true;
+  }
+  Status reconnect() override {
+    log_.held_n = last_n_;
+    last_n_ = 0.0;
+    ++log_.reconnects;
+    return {};
+  }
+
+ private:
+  DevicePreset preset_;
+  Log& log_;
+  double last_n_ = 0.0;
+};
+
+TEST(HapticServer, FadesBeforeADeviceIsOpenedAgainAndComesBackSoftly) {
+  const TemporaryFolder folder;
+  ServerOptions options;
+  options.endpoint = *parse_endpoint("ipc://" + (folder / "needle").string());
+  options.priority = 0;
+  options.tissues_file = testing::data_file("tissues.toml");
+  ReopenedDevice::Log log;
+  auto server = HapticServer::start(options, std::make_unique<ReopenedDevice>(log), testing::layered_opener());
+  ASSERT_TRUE(server) << server.error().text();
+  ClientOptions client_options;
+  client_options.endpoint = server->url();
+  auto client = HapticClient::connect(client_options);
+  ASSERT_TRUE(client && client->wait_connected(kPatience));
+  ASSERT_TRUE(client->ask(testing::layered_request(), kPatience));
+  ASSERT_TRUE(client->ask(ServerCommand::kStart, kPatience));
+  ASSERT_TRUE(wait_for([&] { return client->view().status.gate_mode == to_string(GateMode::kOn); }));
+  // Pressed slowly, until something is felt; a busy machine may have latched a fault meanwhile.
+  ASSERT_TRUE(wait_for([&] {
+    if (log.depth_mm < 3.0) log.depth_mm = log.depth_mm + 0.01;
+    const auto newest = client->newest();
+    return newest && (newest->device_f_n.norm() > 1.0 || newest->gate_fault != GateFault::kNone);
+  }));
+  log.largest_rise_n = 0.0;
+  ASSERT_TRUE(client->ask(ServerCommand::kReconnect, kPatience));
+  EXPECT_EQ(log.reconnects, 1);
+  EXPECT_EQ(log.held_n, 0.0) << "the forces have faded before";
+  const std::uint64_t ticks = client->view().status.ticks;
+  EXPECT_TRUE(wait_for([&] { return client->view().status.ticks > ticks + 1500; }));
+  server->stop();
+  EXPECT_LT(log.largest_rise_n, 0.5) << "N in one period";
+}
+
+TEST(HapticServer, RefusesARateItCannotKeep) {
+  const TemporaryFolder folder;
+  ServerOptions options;
+  options.endpoint = *parse_endpoint("ipc://" + (folder / "needle").string());
+  options.rate_hz = 100'000.0;
+  const auto server = HapticServer::start(options, std::make_unique<ScriptedDevice>(testing::device_preset()),
+                                          testing::layered_opener());
+  ASSERT_FALSE(server);
+  EXPECT_EQ(server.error().exit_status, 2);
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,187 @@
+#include "server/scene_builder.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <new>
+
+#include "haptics/coupling/coupling_limits.h"
+#include "server/test/servo_rig.h"
+
+namespace trocar {
+namespace {
+
+using testing::data_file;
+using testing::device_preset;
+using testing::layered_opener;
+using testing::layered_request;
+
+SceneBuilder make_builder(const char* device = "premium") {
+  return {layered_opener(), data_file("tissues.toml"), device_preset(device)};
+}
+
+TEST(SceneBuilder, BuildsWhatIsAskedFor) {
+  SceneBuilder builder = make_builder();
+  const auto scene = builder.load(layered_request("proxy"));
+  ASSERT_TRUE(scene) << scene.error().text();
+  EXPECT_EQ(scene->scene->options.force_model, ForceModel::kProxy);
+  EXPECT_FALSE(scene->continues);
+  EXPECT_LT((scene->scene->gravity_P - Vec3::UnitZ()).norm(), 1e-12) << "down in the room is into the layers";
+}
+
+TEST(SceneBuilder, SaysWhatIsWrongAndKeepsTheLastScene) {
+  SceneBuilder builder = make_builder();
+  EXPECT_FALSE(builder.change({{"liver.k=0.5"}})) << "there is none yet";
+  ASSERT_TRUE(builder.load(layered_request()));
+  for (const auto& spoil : std::vector<std::function<void(LoadScene&)>>{
+           [](LoadScene& r) { r.patient = "nobody"; }, [](LoadScene& r) { r.tool = "spoon"; },
+           [](LoadScene& r) { r.force_model = "magic"; }, [](LoadScene& r) { r.tissues_toml = "[tissues"; },
+           [](LoadScene& r) { r.needle_radius_mm = 9.0; }, [](LoadScene& r) { r.patient_hash = "another"; }}) {
+    LoadScene request = layered_request();
+    spoil(request);
+    const auto scene = builder.load(request);
+    ASSERT_FALSE(scene);
+    EXPECT_FALSE(scene.error().what.empty());
+  }
+  EXPECT_EQ(builder.request().patient, "layers");
+  EXPECT_TRUE(builder.change({{"liver.k=0.5"}}));
+}
+
+TEST(SceneBuilder, StopsBetweenItsStepsAndKeepsTheLastScene) {
+  std::stop_source source;
+  bool is_stopping = false;
+  const PatientOpener opener = [&](const std::string& name, std::uint64_t seed, const Progress& progress) {
+    if (is_stopping) source.request_stop();
+    return layered_opener()(name, seed, progress);
+  };
+  SceneBuilder builder(opener, data_file("tissues.toml"), device_preset("premium"));
+  ASSERT_TRUE(builder.load(layered_request(), {}, source.get_token()));
+  is_stopping = true;
+  LoadScene other = layered_request("proxy");
+  other.patient_seed = 2;
+  const auto stopped = builder.load(other, {}, source.get_token());
+  ASSERT_FALSE(stopped);
+  EXPECT_NE(stopped.error().what.find("stopped"), std::string::npos);
+  EXPECT_EQ(builder.request().patient_seed, layered_request().patient_seed);
+}
+
+TEST(SceneBuilder, RefusesAPatientThatMemoryDoesNotHold) {
+  bool is_short = false;
+  const PatientOpener opener = [&](const std::string& name, std::uint64_t seed, const Progress& progress) {
+    if (is_short) throw std::bad_alloc();
+    return layered_opener()(name, seed, progress);
+  };
+  SceneBuilder builder(opener, data_file("tissues.toml"), device_preset("premium"));
+  ASSERT_TRUE(builder.load(layered_request()));
+  is_short = true;
+  LoadScene other = layered_request();
+  other.patient_seed = 2;
+  const auto refused = builder.load(other);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("not enough memory"), std::string::npos);
+  EXPECT_TRUE(builder.change({{"liver.k=0.5"}})) << "the last scene is still there";
+}
+
+TEST(SceneBuilder, ReplacesTheLoadedTable) {
+  SceneBuilder builder = make_builder();
+  ASSERT_TRUE(builder.load(layered_request()));
+  TissueTable other = builder.tissues();
+  ASSERT_TRUE(apply_override(other, "skin.fp=6"));
+  ASSERT_TRUE(builder.change({{"liver.mu=0.2"}, other.to_toml()}));
+  EXPECT_EQ(builder.tissues().layers[*other.find_layer("skin")].puncture_force_n, 6.0);
+  ASSERT_TRUE(builder.change({}));
+  EXPECT_EQ(builder.tissues().to_toml(), other.to_toml());
+  EXPECT_FALSE(builder.change({{}, "[tissues"}));
+}
+
+TEST(SceneBuilder, ChangesAllNumbersOrNone) {
+  SceneBuilder builder = make_builder();
+  const auto before = builder.load(layered_request());
+  ASSERT_TRUE(before);
+  EXPECT_FALSE(builder.change({{"coupling.stiffness=0.5", "liver.nonsense=1"}}));
+  const auto after = builder.change({{"liver.mu=0.2"}});
+  ASSERT_TRUE(after) << after.error().text();
+  EXPECT_TRUE(after->continues);
+  EXPECT_GT(after->number, before->number);
+  EXPECT_EQ(after->scene->options.coupling.stiffness_n_per_mm, before->scene->options.coupling.stiffness_n_per_mm);
+  for (const char* bad :
+       {"coupling.stiffness=much", "coupling.stiffness=nan", "liver.mu=1e9", "force_model=none", ""}) {
+    EXPECT_FALSE(builder.change({{bad}})) << bad;
+  }
+}
+
+TEST(SceneBuilder, NumbersOfTissuesReplaceThoseOfEarlierChanges) {
+  SceneBuilder builder = make_builder();
+  const auto loaded = builder.load(layered_request());
+  ASSERT_TRUE(loaded);
+  const TissueTable table = load_tissue_table(data_file("tissues.toml")).value();
+  const std::uint8_t liver = *table.find_tissue("liver"), capsule = *table.find_layer("liver_capsule");
+  const auto cutting_n = [&](const auto& scene) { return scene->scene->tissues[liver].cutting_n; };
+  const auto fp_n = [&](const auto& scene) { return scene->scene->layers[capsule].puncture_force_n; };
+  EXPECT_EQ(cutting_n(builder.change({{"liver.fc=2"}})), 2.0);
+  EXPECT_EQ(cutting_n(builder.change({{"coupling.stiffness=0.5"}})), 2.0) << "names no tissue";
+  const auto other = builder.change({{"liver.fp=3"}});
+  EXPECT_EQ(fp_n(other), 3.0);
+  EXPECT_EQ(cutting_n(other), cutting_n(loaded)) << "is not named any more";
+  EXPECT_FALSE(builder.change({{"liver.fc=99"}}));
+  EXPECT_EQ(fp_n(builder.change({{"bending=1"}})), 3.0) << "a refused change changes nothing";
+  const auto reset = builder.change({});
+  ASSERT_TRUE(reset);
+  EXPECT_EQ(fp_n(reset), fp_n(loaded));
+}
+
+TEST(SceneBuilder, StartsAnewWithAnotherForceModel) {
+  SceneBuilder builder = make_builder();
+  ASSERT_TRUE(builder.load(layered_request()));
+  const auto scene = builder.change({{"force_model=combined"}});
+  ASSERT_TRUE(scene);
+  EXPECT_FALSE(scene->continues);
+}
+
+TEST(SceneBuilder, ClipsTheCouplingToTheDeviceOverTheWorkspaceScale) {
+  DevicePreset preset = device_preset("premium");
+  preset.motion_scale = 5.0;
+  SceneBuilder builder(layered_opener(), data_file("tissues.toml"), preset);
+  const auto scene = builder.load(layered_request());
+  ASSERT_TRUE(scene) << scene.error().text();
+  const double most = preset.capability.max_stiffness_n_per_mm / 5.0;
+  EXPECT_LE(scene->scene->options.coupling.stiffness_n_per_mm, most + 1e-12);
+}
+
+TEST(SceneBuilder, RefusesACouplingThatTheDeviceDoesNotBear) {
+  for (const char* device : {"premium", "omni", "omega7", "falcon", "mouse"}) {
+    const DevicePreset preset = device_preset(device);
+    SceneBuilder builder = make_builder(device);
+    const auto before = builder.load(layered_request());
+    ASSERT_TRUE(before) << before.error().text();
+    for (const char* bad : {"coupling.damping=1", "coupling.damping=0.2", "coupling.damping=-0.001",
+                            "coupling.stiffness=19", "coupling.stiffness=0.001", "coupling.stiffness=-1"}) {
+      const auto scene = builder.change({{bad}});
+      ASSERT_FALSE(scene) << device << ' ' << bad;
+      const std::string text = scene.error().text();
+      EXPECT_NE(text.find(std::string(bad).substr(0, 13)), std::string::npos) << text;
+      EXPECT_NE(text.find("give a number from"), std::string::npos) << text;
+      EXPECT_EQ(text.find('\n'), std::string::npos);
+    }
+    const CouplingLimits limits = limits_of(preset);
+    EXPECT_TRUE(builder.change({{fmt::format("coupling.stiffness={}", limits.most_n_per_mm)}})) << device;
+    EXPECT_FALSE(builder.change({{fmt::format("coupling.stiffness={}", 1.01 * limits.most_n_per_mm)}})) << device;
+    EXPECT_TRUE(builder.change({{fmt::format("coupling.damping={}", limits.most_ns_per_mm)}})) << device;
+    EXPECT_FALSE(builder.change({{fmt::format("coupling.damping={}", 1.01 * limits.most_ns_per_mm)}})) << device;
+  }
+}
+
+TEST(SceneBuilder, OpensAPatientOnceForManyScenes) {
+  int opened = 0;
+  const auto counting = [&](const std::string& name, std::uint64_t seed, const Progress& progress) {
+    ++opened;
+    return layered_opener()(name, seed, progress);
+  };
+  SceneBuilder builder(counting, data_file("tissues.toml"), device_preset());
+  ASSERT_TRUE(builder.load(layered_request()));
+  ASSERT_TRUE(builder.load(layered_request("proxy")));
+  EXPECT_EQ(opened, 1);
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+#include "ultrasound/sweep/tracked_sequence.h"
+
+namespace trocar::detail {
+
+std::string_view trimmed(std::string_view text);
+
+/// Finite numbers between white space, at most `most` of them; nothing where the text holds anything else.
+std::optional<std::vector<double>> find_numbers(std::string_view text, std::size_t most);
+
+/// An affine matrix written row by row. The error (without a place) says what is wrong with it.
+Result<TrackedSequence::Matrix4> parse_matrix(std::string_view text);
+
+}  // namespace trocar::detail

@@ -1,0 +1,108 @@
+#include "io/dicom/detail/find_series.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "core/parallel.h"
+
+namespace trocar::detail {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kMaxDepth = 16;  ///< Of sub-folders; DICOM media have four (patient, study, series, image).
+constexpr std::size_t kMaxListed = 12;
+
+template <class Iterator>
+std::vector<fs::path> regular_files(Iterator entry) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (; entry != Iterator(); entry.increment(error)) {
+    if (error) break;
+    if constexpr (std::is_same_v<Iterator, fs::recursive_directory_iterator>)
+      if (entry.depth() >= kMaxDepth) entry.disable_recursion_pending();
+    if (entry->is_regular_file(error)) files.push_back(entry->path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+constexpr auto kSkip = fs::directory_options::skip_permission_denied;
+
+/// "1: 'Abdomen 3.0' CT, 119 images, UID 1.2.3; 2: 'Topogram' CT, 1 image, UID 1.2.4".
+std::string list_of(const std::vector<SeriesImages>& series) {
+  std::string list;
+  for (std::size_t n = 0; n < series.size(); ++n) {
+    if (n == kMaxListed) return list + fmt::format("; and {} more", series.size() - n);
+    const DicomSlice& first = series[n].front();
+    list += fmt::format("{}{}: '{}' {}, {} {}, UID {}", n == 0 ? "" : "; ", n + 1, first.series_description,
+                        first.modality, series[n].size(), series[n].size() == 1 ? "image" : "images", first.series_uid);
+  }
+  return list;
+}
+
+bool is_ct_volume(const SeriesImages& images) {
+  return images.front().modality == "CT" && images.size() > 1;
+}
+
+/// Index of the series that `wanted` names: a number from 1, or a UID.
+std::optional<std::size_t> find_wanted(const std::vector<SeriesImages>& series, const std::string& wanted) {
+  std::size_t number = 0;
+  const char* end = wanted.data() + wanted.size();
+  const auto [stop, error] = std::from_chars(wanted.data(), end, number);
+  if (error == std::errc() && stop == end && number >= 1 && number <= series.size()) return number - 1;
+  const auto found = std::find_if(series.begin(), series.end(), [&](const SeriesImages& images) {
+    return !wanted.empty() && images.front().series_uid == wanted;
+  });
+  if (found == series.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - series.begin());
+}
+
+}  // namespace
+
+bool has_dicom_images(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::path& file : regular_files(fs::directory_iterator(folder, kSkip, error)))
+    if (const auto slice = find_dicom_slice(file); !slice || *slice) return true;
+  return false;
+}
+
+Result<std::vector<SeriesImages>> find_series(const fs::path& folder) {
+  std::error_code error;
+  const std::vector<fs::path> files = regular_files(fs::recursive_directory_iterator(folder, kSkip, error));
+  std::vector<Result<std::optional<DicomSlice>>> found(files.size());
+  parallel_for(files.size(), 8, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) found[n] = find_dicom_slice(files[n]);
+  });
+  std::vector<SeriesImages> series;
+  std::map<std::string, std::size_t> index_of_uid;
+  for (auto& result : found) {
+    TROCAR_TRY(std::optional<DicomSlice> slice, std::move(result));
+    if (!slice) continue;
+    const auto [entry, is_new] = index_of_uid.emplace(slice->series_uid, series.size());
+    if (is_new) series.emplace_back();
+    series[entry->second].push_back(std::move(*slice));
+  }
+  if (series.empty())
+    return fail("no DICOM image in the folder or its sub-folders", folder.string(),
+                "name the folder that holds the slices of the series");
+  return series;
+}
+
+Result<SeriesImages> choose_series(std::vector<SeriesImages> series, const fs::path& folder,
+                                   const std::string& wanted) {
+  if (!wanted.empty()) {
+    if (const auto index = find_wanted(series, wanted)) return std::move(series[*index]);
+    return fail_usage(fmt::format("there is no DICOM series \"{}\"; found are {}", wanted, list_of(series)),
+                      folder.string(), "choose one by its number or UID");
+  }
+  if (series.size() == 1) return std::move(series.front());
+  if (std::count_if(series.begin(), series.end(), is_ct_volume) == 1)
+    return std::move(*std::find_if(series.begin(), series.end(), is_ct_volume));
+  return fail_usage(fmt::format("the folder holds {} DICOM series: {}", series.size(), list_of(series)),
+                    folder.string(), "name the folder of one series, or choose it with --series NUMBER or UID");
+}
+
+}  // namespace trocar::detail

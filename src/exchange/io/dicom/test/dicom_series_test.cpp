@@ -1,0 +1,237 @@
+#include "io/dicom/detail/dicom_series.h"
+
+#include <cmath>
+#include <numeric>
+
+#include "io/image/image_file.h"
+#include "io/test/test_support.h"
+
+namespace trocar {
+namespace {
+
+using detail::DicomSlice;
+using detail::order_slices;
+using testing::test_data;
+
+constexpr double kDegree = M_PI / 180.0;
+
+/// Headers of a series: `count` slices a step apart along the slices' normal, leaning by `tilt_deg`.
+std::vector<DicomSlice> series(int count, double step_mm, double tilt_deg = 0.0, const Mat3& R = Mat3::Identity()) {
+  std::vector<DicomSlice> slices;
+  for (int n = 0; n < count; ++n) {
+    DicomSlice slice;
+    slice.file = "slice" + std::to_string(n);
+    slice.series_uid = "1.2.3";
+    slice.columns = 6;
+    slice.rows = 4;
+    slice.position_P = Vec3(10, 20, 30) + R * Vec3(0, std::tan(tilt_deg * kDegree), 1) * (n * step_mm);
+    slice.directions_P = {R.col(0), R.col(1)};
+    slice.spacing_mm = {0.5, 0.75};
+    slices.push_back(slice);
+  }
+  return slices;
+}
+
+std::string error_of(std::vector<DicomSlice> slices) {
+  const auto ordered = order_slices(std::move(slices), "folder");
+  return ordered ? "ordered" : ordered.error().text();
+}
+
+TEST(DicomSeries, OrdersByPositionAndTakesTheStepFromIt) {
+  const Mat3 R = (Eigen::AngleAxisd(0.3, Vec3::UnitX()) * Eigen::AngleAxisd(0.5, Vec3::UnitZ())).toRotationMatrix();
+  auto slices = series(5, 2.0, 0.0, R);
+  std::swap(slices[0], slices[3]);
+  std::swap(slices[1], slices[4]);
+  const auto ordered = order_slices(slices, "folder");
+  ASSERT_TRUE(ordered) << ordered.error().text();
+  for (std::size_t n = 0; n < 5; ++n) EXPECT_EQ(ordered->slices[n].file, "slice" + std::to_string(n));
+  const GridGeometry& g = ordered->geometry;
+  EXPECT_EQ(g.size, (std::array<std::int64_t, 3>{6, 4, 5}));
+  EXPECT_LT((g.spacing_mm - Vec3(0.5, 0.75, 2.0)).norm(), 1e-9);
+  EXPECT_LT((g.R_PV - R).norm(), 1e-9);
+  EXPECT_LT((g.to_mm({1, 2, 3}) - (Vec3(10, 20, 30) + R * Vec3(0.5, 1.5, 6.0))).norm(), 1e-9);
+}
+
+TEST(DicomSeries, ToleratesPositionsRoundedToATenth) {
+  auto slices = series(40, 1.25);
+  for (DicomSlice& slice : slices) slice.position_P->z() = std::round(slice.position_P->z() * 10.0) / 10.0;
+  EXPECT_EQ(error_of(slices), "ordered");
+}
+
+TEST(DicomSeries, RefusesAMissingSlice) {
+  for (const std::size_t missing : {1U, 7U, 18U}) {
+    auto slices = series(20, 2.0);
+    slices.erase(slices.begin() + static_cast<std::ptrdiff_t>(missing));
+    const std::string error = error_of(slices);
+    EXPECT_NE(error.find("missing: 4 mm between slice" + std::to_string(missing - 1)), std::string::npos) << error;
+  }
+}
+
+TEST(DicomSeries, RefusesTwoSlicesInOnePlace) {
+  auto slices = series(10, 2.0);
+  slices.push_back(slices[4]);
+  slices.back().file = "again";
+  EXPECT_NE(error_of(slices).find("same place: slice4 and again"), std::string::npos) << error_of(slices);
+}
+
+TEST(DicomSeries, RefusesGantryTilt) {
+  EXPECT_EQ(error_of(series(10, 2.0, 0.2)), "ordered");
+  EXPECT_NE(error_of(series(10, 2.0, 0.5)).find("gantry tilt"), std::string::npos);
+  EXPECT_NE(error_of(series(10, 2.0, -15.0)).find("15.0 degrees"), std::string::npos);
+}
+
+TEST(DicomSeries, RefusesWhatIsNoStackOfGreySlices) {
+  const auto refused = [](const std::function<void(DicomSlice&)>& change) {
+    auto slices = series(5, 2.0);
+    change(slices[2]);
+    return error_of(slices) != "ordered";
+  };
+  EXPECT_TRUE(refused([](DicomSlice& s) { s.frames = 2; }));
+  EXPECT_TRUE(refused([](DicomSlice& s) { s.samples_per_pixel = 3; }));
+  EXPECT_TRUE(refused([](DicomSlice& s) { s.rows = 5; }));
+  EXPECT_TRUE(refused([](DicomSlice& s) { s.position_P.reset(); }));
+  EXPECT_TRUE(refused([](DicomSlice& s) { s.directions_P.reset(); }));
+  EXPECT_TRUE(refused([](DicomSlice& s) { s.spacing_mm.reset(); }));
+  EXPECT_TRUE(refused([](DicomSlice& s) { (*s.spacing_mm)[0] = 0.6; }));
+  EXPECT_TRUE(refused([](DicomSlice& s) { s.directions_P = {Vec3::UnitY(), Vec3::UnitX()}; }));
+  EXPECT_FALSE(refused([](DicomSlice&) {}));
+  EXPECT_NE(error_of(series(1, 2.0)), "ordered");
+  EXPECT_NE(error_of({}), "ordered");
+}
+
+TEST(DicomSeries, RefusesSlicesThatDoNotBelongTogether) {
+  const auto error_with = [](const std::function<void(DicomSlice&)>& change) {
+    auto slices = series(5, 2.0);
+    for (DicomSlice& slice : slices) {
+      slice.modality = "CT";
+      slice.patient_id = "PAT-0001";
+      slice.frame_of_reference = "1.2.3.4";
+    }
+    change(slices[3]);
+    return error_of(slices);
+  };
+  EXPECT_EQ(error_with([](DicomSlice&) {}), "ordered");
+  EXPECT_NE(error_with([](DicomSlice& s) { s.patient_id = "two"; }).find("PatientID"), std::string::npos);
+  EXPECT_EQ(error_with([](DicomSlice& s) { s.patient_id = "two"; }).find("PAT-0001"), std::string::npos);
+  EXPECT_NE(error_with([](DicomSlice& s) { s.frame_of_reference = "1.2.3.5"; }).find("FrameOfReferenceUID"),
+            std::string::npos);
+  EXPECT_NE(error_with([](DicomSlice& s) { s.modality = "MR"; }).find("CT and MR"), std::string::npos);
+  EXPECT_NE(error_with([](DicomSlice& s) { s.slope = 0.0; }).find("RescaleSlope is 0"), std::string::npos);
+  EXPECT_NE(error_with([](DicomSlice& s) { s.is_cut = true; }).find("ends before its last pixel"), std::string::npos);
+}
+
+TEST(DicomSeries, RefusesDirectionsThatAreNone) {
+  auto slices = series(5, 2.0);
+  for (DicomSlice& slice : slices) slice.directions_P = {Vec3(1, 0, 0), Vec3(0.2, 1, 0)};
+  EXPECT_NE(error_of(slices), "ordered");
+  slices = series(5, 2.0);
+  for (DicomSlice& slice : slices) slice.directions_P = {Vec3::Zero(), Vec3::Zero()};
+  EXPECT_NE(error_of(slices), "ordered");
+  slices = series(5, 2.0);
+  for (DicomSlice& slice : slices) slice.spacing_mm = {0.0, 0.75};
+  EXPECT_NE(error_of(slices), "ordered");
+}
+
+class RealSlice : public ::testing::TestWithParam<const char*> {};
+
+/// Mean of the pixels, NaN where they cannot be unpacked.
+double mean_of(const std::filesystem::path& file) {
+  const auto slice = detail::find_dicom_slice(file);
+  double mean = std::nan("");
+  if (!slice || !*slice) return mean;
+  (void)detail::decode_slice(**slice, [&](const detail::RawVoxels& voxels) -> Status {
+    std::vector<float> pixels(voxels.bytes.size() / detail::bytes_per_voxel(voxels.type));
+    TROCAR_TRY_STATUS(detail::convert_voxels(voxels, std::span(pixels)));
+    mean = std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(pixels.size());
+    return {};
+  });
+  return mean;
+}
+
+TEST_P(RealSlice, IsUnpackedInSilence) {
+  const auto file = test_data() / "bad-input/dicom" / GetParam();
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real data at " << file;
+  ::testing::internal::CaptureStderr();
+  const double mean = mean_of(file);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_TRUE(std::isfinite(mean));
+}
+
+INSTANTIATE_TEST_SUITE_P(Compressions, RealSlice,
+                         ::testing::Values("CT_small.dcm", "MR_small_RLE.dcm", "MR_small_jpeg_ls_lossless.dcm",
+                                           "JPEG-lossy.dcm", "pydata_JPEG-LL.dcm", "JPEG2000.dcm", "693_J2KI.dcm"));
+
+TEST(RealSlices, RunLengthAndJpegLsKeepTheSamePixels) {
+  // Both were made without loss from the same image.
+  const auto data = test_data() / "bad-input/dicom";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real data at " << data;
+  EXPECT_EQ(mean_of(data / "MR_small_RLE.dcm"), mean_of(data / "MR_small_jpeg_ls_lossless.dcm"));
+  EXPECT_NEAR(mean_of(data / "693_J2KI.dcm") / mean_of(data / "pydata_693_UNCR.dcm"), 1.0, 0.01);
+}
+
+class RealSeries : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(data_)) GTEST_SKIP() << "no real data at " << data_;
+  }
+  void copy(int from, int to) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(data_)) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (int n = from; n < to; ++n) {
+      const auto& file = files[static_cast<std::size_t>(n)];
+      std::filesystem::copy_file(file, folder_ / file.filename().string());
+    }
+  }
+  std::filesystem::path data_ = test_data() / "ct-torso/example_ct_dicom";
+  TemporaryFolder folder_;
+};
+
+TEST_F(RealSeries, OfJpeg2000SlicesIsReadWithItsStep) {
+  const auto ct = read_ct(data_);
+  ASSERT_TRUE(ct) << ct.error().text();
+  EXPECT_EQ(ct->geometry.size, (std::array<std::int64_t, 3>{512, 512, 20}));
+  EXPECT_LT((ct->geometry.spacing_mm - Vec3(0.9765625, 0.9765625, 2.0)).norm(), 1e-9);  // thickness is 3 mm
+  const auto [low, high] = std::minmax_element(ct->voxels.begin(), ct->voxels.end());
+  EXPECT_EQ(*low, -1024);
+  EXPECT_GT(*high, 1000);
+}
+
+TEST_F(RealSeries, AmongOtherFilesIsRead) {
+  copy(0, 4);
+  testing::write_bytes(folder_ / "LICENSE", "Apache License");
+  testing::write_bytes(folder_ / "README.txt", std::string(20'000, 'x'));
+  testing::write_bytes(folder_ / "empty", "");
+  const auto ct = read_ct(folder_.path());
+  ASSERT_TRUE(ct) << ct.error().text();
+  EXPECT_EQ(ct->geometry.size[2], 4);
+}
+
+TEST_F(RealSeries, GivenByAFolderAboveIsRead) {
+  const auto above = read_ct(data_.parent_path());
+  ASSERT_TRUE(above) << above.error().text();
+  EXPECT_EQ(above->geometry.size[2], 20);
+}
+
+TEST_F(RealSeries, GivenByOneFileIsRefusedWithAdvice) {
+  const auto one = read_ct(std::filesystem::directory_iterator(data_)->path());
+  ASSERT_FALSE(one);
+  EXPECT_NE(one.error().advice.find("folder"), std::string::npos) << one.error().text();
+}
+
+TEST_F(RealSeries, WithATruncatedSliceIsRefusedInSilence) {
+  copy(0, 3);
+  const auto victim = std::filesystem::directory_iterator(folder_.path())->path();
+  const std::string whole = testing::read_bytes(victim);
+  ::testing::internal::CaptureStderr();
+  for (const double part : {0.5, 0.9, 0.995}) {
+    testing::write_bytes(victim, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
+    const auto ct = read_ct(folder_.path());
+    ASSERT_FALSE(ct) << part;
+    EXPECT_NE(ct.error().where.find(victim.filename().string()), std::string::npos) << ct.error().text();
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+#include "io/image/detail/payload.h"
+#include "io/image/detail/voxel_type.h"
+
+namespace trocar::detail {
+
+/// Key and value texts of a header.
+using TextFields = std::vector<std::pair<std::string, std::string>>;
+
+/// A 3D image as ITK gives it, LPS mm. Plain data: ITK brings an Eigen of its own that must not meet ours, so nothing
+/// that ITK's headers reach includes Eigen.
+struct ItkImage {
+  std::array<std::int64_t, 3> size{};
+  std::array<double, 3> spacing_mm{};
+  std::array<double, 3> origin_P{};
+  std::array<std::array<double, 3>, 3> axes_P{};  ///< Directions of i, j, k.
+  VoxelType type = VoxelType::kUInt8;
+  int components = 1;  ///< Numbers per voxel, running fastest.
+  std::unique_ptr<std::byte[]> bytes;
+  TextFields fields;  ///< NRRD only.
+};
+
+/// Reads through ITK; never throws, prints nothing.
+Result<ItkImage> read_with_itk(const CheckedImage& checked, ImageFormat format);
+
+/// The fields of the header alone, with ITK's own notes ("NRRD_...", "ITK_...") among them.
+Result<TextFields> read_fields_with_itk(const CheckedImage& checked, ImageFormat format);
+
+enum class Packing { kCompressed, kPlain };
+
+/// Writes through ITK one number a voxel (int16, uint8 or float), compressed where asked and the format can. A full
+/// disk is not always noticed by the libraries: check the file afterwards.
+Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, const std::filesystem::path& path,
+                      ImageFormat format, Packing packing);
+
+}  // namespace trocar::detail

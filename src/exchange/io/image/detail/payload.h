@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "core/files/input_file.h"
+
+namespace trocar::detail {
+
+/// The image formats, told by the file's ending.
+enum class ImageFormat { kNifti, kNrrd, kMeta };
+
+/// Format of a path by its ending (.nii .nii.gz .nrrd .nhdr .mha .mhd, any case). Errors: another ending.
+Result<ImageFormat> find_image_format(const std::filesystem::path& path);
+
+/// How closely compressed voxels are looked at before they are read.
+enum class Check {
+  kUnpack,  ///< Unpacked once, check sums included.
+  kSize     ///< Only whether they could be enough: for files whose content hash is compared afterwards.
+};
+
+/// An image file whose header was compared with its size.
+struct CheckedImage {
+  InputFile file;  ///< Header and, unless the header names another file, voxels.
+  /// Where a library that opens by name may read it. InputFile::pinned_path() where the library does not look at the
+  /// ending and the voxels are in the same file; else the path itself, which could be replaced between the check and
+  /// the library's opening.
+  std::filesystem::path library_path;
+};
+
+/// Compares a header with its file before anything is allocated: a header of the format, one 3D volume of possible
+/// size, and as many bytes as it declares. The libraries behind ITK do not all do this. With `inside`
+/// (a patient's folder), header and voxels must be one file in that folder. Errors name what is wrong and the file.
+Result<CheckedImage> open_image_file(const std::filesystem::path& path, ImageFormat format,
+                                     Check check = Check::kUnpack, const std::filesystem::path& inside = {});
+
+}  // namespace trocar::detail

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+#include "io/image/detail/voxel_type.h"
+#include "volume/grid.h"
+
+namespace trocar::detail {
+
+/// Numbers as a file stores them, in this machine's byte order.
+struct RawVoxels {
+  VoxelType type = VoxelType::kUInt8;
+  std::span<const std::byte> bytes;
+  double slope = 1.0;  ///< Value = stored number * slope + intercept.
+  double intercept = 0.0;
+};
+
+/// A volume as its file has it.
+struct RawVolume {
+  GridGeometry geometry;  ///< R_PV may still be mirrored or slightly off: see tidy_geometry().
+  VoxelType type = VoxelType::kUInt8;
+  int components = 1;  ///< Numbers per voxel, running fastest.
+  std::unique_ptr<std::byte[]> bytes;
+  std::vector<std::pair<std::string, std::string>> fields;  ///< Key and value texts of the header (NRRD).
+
+  std::size_t byte_count() const noexcept {
+    return geometry.voxel_count() * static_cast<std::size_t>(components) * bytes_per_voxel(type);
+  }
+};
+
+/// Largest deviation of R^T R from identity that passes as rounding in a file: 1e-3, 0.06 degrees.
+inline constexpr double kMaxShear = 1e-3;
+
+/// Checks a geometry as read and makes its direction exactly orthonormal. Errors (without a place): a spacing that is
+/// zero or no number, a sheared direction. A mirrored direction is kept.
+Status tidy_geometry(GridGeometry& geometry);
+
+/// One of the functions below: turns stored numbers into voxels.
+template <class T>
+using Converter = Status (*)(const RawVoxels&, std::span<T>);
+
+/// The volume as a grid that keeps GridGeometry's invariant. Errors, at `where`: what tidy_geometry() and the converter
+/// refuse, more than one number a voxel.
+template <class T>
+Result<Grid<T>> to_grid(const RawVolume& raw, const std::string& where, Converter<T> convert);
+
+/// Re-orders a mirrored grid (determinant < 0) by reversing its k axis, so that R_PV is a rotation. No voxel moves in
+/// P.
+template <class T>
+void make_right_handed(Grid<T>& grid);
+
+/// Converts numbers of a file; `out` has one element for each stored number. The error says what is wrong with the
+/// values, without a place.
+/// CT: rounded to int16; below -32768 is padding and becomes -32768; NaN, infinity and values above 32767 are errors.
+Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out);
+/// Labels: whole numbers 0..255, anything else is an error.
+Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out);
+/// Floats: NaN and infinity are errors.
+Status convert_voxels(const RawVoxels& in, std::span<float> out);
+/// A mask: 1 where the value is above zero. NaN is an error.
+Status convert_mask(const RawVoxels& in, std::span<std::uint8_t> out);
+
+}  // namespace trocar::detail

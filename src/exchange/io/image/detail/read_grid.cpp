@@ -1,0 +1,28 @@
+#include "io/image/detail/read_grid.h"
+
+#include <fmt/format.h>
+
+#include "io/image/detail/payload.h"
+
+namespace trocar::detail {
+namespace fs = std::filesystem;
+
+Status check_image_path(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return fail("no such file or folder", path.string(), "check the path");
+  if (fs::is_directory(path, error)) return {};
+  if (!fs::is_regular_file(path, error))
+    return fail("not a regular file", path.string(), "name a file, not a pipe, socket or device");
+  if (fs::file_size(path, error) == 0) return fail("the file is empty", path.string(), "copy or export it again");
+  const auto format = find_image_format(path);
+  if (format) return {};
+  // Without a known ending it may be one slice of a DICOM series.
+  TROCAR_TRY(const std::optional<DicomSlice> slice, find_dicom_slice(path));
+  if (!slice) return tl::unexpected(format.error());
+  if (slice->frames > 1)
+    return fail(fmt::format("is a DICOM file with {} frames", slice->frames), path.string(),
+                "convert it to .nrrd or .nii.gz, for example with 3D Slicer");
+  return fail("is one DICOM image, not a volume", path.string(), "name the folder of its series instead");
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/result.h"
+#include "io/dicom/detail/dicom_series.h"
+#include "io/image/detail/raw_volume.h"
+#include "io/image/detail/volume_file.h"
+
+namespace trocar::detail {
+
+/// A path that must name an image file or a folder; a single DICOM file is refused with advice.
+Status check_image_path(const std::filesystem::path& path);
+
+/// Any image the project reads: a file or the folder of a DICOM series. With `inside`: a file of that folder.
+template <class T>
+Result<Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> convert, Check check = Check::kUnpack,
+                          const std::filesystem::path& inside = {}) {
+  TROCAR_TRY_STATUS(check_image_path(path));
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return read_dicom_folder<T>(path, convert);
+  TROCAR_TRY(const RawVolume raw, read_volume_file(path, check, inside));
+  return to_grid<T>(raw, path.string(), convert);
+}
+
+}  // namespace trocar::detail

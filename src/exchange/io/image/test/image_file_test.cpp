@@ -1,0 +1,201 @@
+#include "io/image/image_file.h"
+
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstring>
+#include <limits>
+
+#include "core/random.h"
+#include "io/test/test_support.h"
+
+namespace trocar {
+namespace {
+
+using testing::expect_same_place;
+using testing::numbered_grid;
+using testing::oblique_geometry;
+using testing::read_bytes;
+using testing::write_bytes;
+
+// NIfTI keeps the place in single precision; the other formats in decimal text of full precision.
+constexpr double kSinglePrecision_mm = 1e-4;
+
+std::vector<std::int16_t> numbers(std::size_t count) {
+  std::vector<std::int16_t> values(count);
+  for (std::size_t n = 0; n < count; ++n) values[n] = static_cast<std::int16_t>(n);
+  return values;
+}
+
+class EveryFormat : public ::testing::TestWithParam<const char*> {
+ protected:
+  TemporaryFolder folder_;
+};
+
+TEST_P(EveryFormat, KeepsObliqueCt) {
+  CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
+  ct.voxels[3] = -32768;
+  ct.voxels[4] = 32767;
+  const auto path = folder_ / (std::string("ct") + GetParam());
+  ASSERT_TRUE(write_image(ct, path));
+  const auto read = read_ct(path);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->voxels, ct.voxels);
+  expect_same_place(read->geometry, ct.geometry, kSinglePrecision_mm);
+  EXPECT_TRUE(read->geometry.matches(ct.geometry));
+}
+
+TEST_P(EveryFormat, KeepsLabels) {
+  const LabelGrid labels = numbered_grid<std::uint8_t>(oblique_geometry());
+  const auto path = folder_ / (std::string("labels") + GetParam());
+  ASSERT_TRUE(write_image(labels, path));
+  const auto read = read_labels(path);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->voxels, labels.voxels);
+  EXPECT_TRUE(read->geometry.matches(labels.geometry));
+}
+
+TEST_P(EveryFormat, KeepsFloats) {
+  FloatGrid distance = numbered_grid<float>(oblique_geometry());
+  distance.voxels[5] = -12.375F;
+  const auto path = folder_ / (std::string("distance") + GetParam());
+  ASSERT_TRUE(write_image(distance, path));
+  const auto read = read_float(path);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->voxels, distance.voxels);
+}
+
+TEST_P(EveryFormat, RefusesEveryTruncation) {
+  const CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
+  const std::string name = std::string("ct") + GetParam();
+  ASSERT_TRUE(write_image(ct, folder_ / name));
+  const std::string whole = read_bytes(folder_ / name);
+  for (const double part : {0.0, 0.01, 0.1, 0.3, 0.5, 0.8, 0.95}) {
+    const auto length = static_cast<std::size_t>(part * static_cast<double>(whole.size()));
+    write_bytes(folder_ / ("cut" + name), whole.substr(0, length));
+    EXPECT_FALSE(read_ct(folder_ / ("cut" + name))) << part;
+  }
+  write_bytes(folder_ / ("cut" + name), whole.substr(0, whole.size() - 1));
+  EXPECT_FALSE(read_ct(folder_ / ("cut" + name)));
+}
+
+TEST_P(EveryFormat, SaysNothingOnTheTerminal) {
+  const CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
+  const std::string name = std::string("ct") + GetParam();
+  ASSERT_TRUE(write_image(ct, folder_ / name));
+  const std::string whole = read_bytes(folder_ / name);
+  ::testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
+  for (std::size_t length = 0; length < whole.size(); length += 37) {
+    write_bytes(folder_ / ("cut" + name), whole.substr(0, length));
+    (void)read_ct(folder_ / ("cut" + name));
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+}
+
+TEST_P(EveryFormat, SurvivesDamagedHeadersInSilence) {
+  const CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
+  const std::string name = std::string("ct") + GetParam();
+  ASSERT_TRUE(write_image(ct, folder_ / name));
+  const std::string whole = read_bytes(folder_ / name);
+  Random random(7);
+  ::testing::internal::CaptureStderr();
+  for (int round = 0; round < 200; ++round) {
+    std::string damaged = whole;
+    for (int change = 0; change < 3; ++change)
+      damaged[random.next() % std::min<std::size_t>(whole.size(), 400)] = static_cast<char>(random.next());
+    write_bytes(folder_ / ("damaged" + name), damaged);
+    const auto read = read_ct(folder_ / ("damaged" + name));
+    const bool is_whole = read && read->voxels.size() == read->geometry.voxel_count();
+    EXPECT_TRUE(is_whole || (!read && !read.error().advice.empty())) << round;
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_P(EveryFormat, LeavesNothingWhenTheDiskIsFull) {
+  GridGeometry g = oblique_geometry();
+  g.size = {64, 64, 32};
+  CtGrid noise(g);
+  std::uint32_t state = 1;
+  for (auto& voxel : noise.voxels) voxel = static_cast<std::int16_t>((state = state * 1664525U + 1013904223U) >> 16);
+  const auto path = folder_ / (std::string("ct") + GetParam());
+
+  // A limit on the file size fails like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{20'000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  ::testing::internal::CaptureStderr();
+  const Status status = write_image(noise, path);
+  const std::string printed = ::testing::internal::GetCapturedStderr();
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, SIG_DFL);
+
+  EXPECT_FALSE(status);
+  EXPECT_EQ(printed, "");
+  EXPECT_TRUE(folder_.is_empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat, ::testing::Values(".nii", ".nii.gz", ".nrrd", ".mha"));
+
+TEST(ImageFile, ReadsRasNrrd) {
+  TemporaryFolder folder;
+  std::string text =
+      "NRRD0004\ntype: short\ndimension: 3\nspace: right-anterior-superior\nsizes: 3 2 2\n"
+      "space directions: (2,0,0) (0,3,0) (0,0,4)\nkinds: domain domain domain\nendian: little\nencoding: raw\n"
+      "space origin: (10,20,30)\n\n";
+  const auto values = numbers(12);
+  text.append(reinterpret_cast<const char*>(values.data()), 24);
+  write_bytes(folder / "ct.nrrd", text);
+  const auto ct = read_ct(folder / "ct.nrrd");
+  ASSERT_TRUE(ct) << ct.error().text();
+  const Vec3 index = ct->geometry.to_index({-14, -20, 34});
+  EXPECT_EQ((*ct)[(Index3{std::lround(index[0]), std::lround(index[1]), std::lround(index[2])})], 8);
+}
+
+TEST(ImageFile, ReadsHeaderWithVoxelsBeside) {
+  TemporaryFolder folder;
+  write_bytes(folder / "ct.mhd",
+              "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+              "TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 1 2 3\nElementSpacing = 2 3 4\nDimSize = 3 2 2\n"
+              "ElementType = MET_SHORT\nElementDataFile = ct.raw\n");
+  const auto missing = read_ct(folder / "ct.mhd");
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().what.find("no such file"), std::string::npos) << missing.error().text();
+
+  const auto values = numbers(12);
+  write_bytes(folder / "ct.raw", {reinterpret_cast<const char*>(values.data()), 24});
+  const auto ct = read_ct(folder / "ct.mhd");
+  ASSERT_TRUE(ct) << ct.error().text();
+  EXPECT_EQ(ct->voxels, values);
+  EXPECT_LT((ct->geometry.to_mm({1, 1, 1}) - Vec3(3, 5, 7)).norm(), 1e-12);
+}
+
+TEST(ImageFile, NamesWhatIsNoImage) {
+  TemporaryFolder folder;
+  write_bytes(folder / "notes.txt", "hello");
+  write_bytes(folder / "fake.nii.gz", "hello");
+  write_bytes(folder / "fake.nrrd", "hello");
+  write_bytes(folder / "fake.mha", "hello");
+  write_bytes(folder / "empty.nii", "");
+  for (const char* name : {"notes.txt", "fake.nii.gz", "fake.nrrd", "fake.mha", "empty.nii", "missing.nii"}) {
+    const auto ct = read_ct(folder / name);
+    ASSERT_FALSE(ct) << name;
+    EXPECT_NE(ct.error().where.find(name), std::string::npos);
+    EXPECT_FALSE(ct.error().advice.empty());
+  }
+  const auto none = read_ct(folder.path());
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().what.find("no DICOM"), std::string::npos);
+}
+
+TEST(ImageFile, RefusesToWriteAnUnknownEnding) {
+  TemporaryFolder folder;
+  EXPECT_FALSE(write_image(numbered_grid<std::int16_t>(oblique_geometry()), folder / "ct.jpg"));
+  EXPECT_TRUE(folder.is_empty());
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,97 @@
+#include "io/patient/label_map.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "anatomy/build_patient.h"
+#include "anatomy/label_table.h"
+#include "config/toml.h"
+
+namespace trocar {
+namespace {
+
+constexpr int kMaxLabel = 255;
+constexpr std::string_view kTotalSegmentator = "totalsegmentator";
+constexpr std::string_view kRest = "*";
+
+std::map<int, std::string> totalsegmentator_names() {
+  std::map<int, std::string> names;
+  for (int number = 1; number <= kMaxLabel; ++number)
+    if (const auto name = totalsegmentator_name(number)) names.emplace(number, *name);
+  return names;
+}
+
+/// Nothing: not a whole number.
+std::optional<int> number_of(std::string_view key) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
+  if (error != std::errc{} || end != key.data() + key.size()) return std::nullopt;
+  return number;
+}
+
+/// The list as texts; TOML may have numbers or texts in it.
+Result<std::vector<std::string>> ignored_labels(const TomlTable& file) {
+  if (!file.has("ignore")) return std::vector<std::string>{};
+  if (auto names = file.strings("ignore")) return names;
+  const auto numbers = file.numbers("ignore", {1, kMaxLabel});
+  if (!numbers)
+    return fail(fmt::format("must be a list of numbers from 1 to {}, or of texts in quotes", kMaxLabel),
+                file.where() + ": ignore", "write ignore = [3, 4] or ignore = [\"3\", \"my_roi\"]");
+  std::vector<std::string> names;
+  for (const double number : *numbers) names.push_back(fmt::format("{}", number));
+  return names;
+}
+
+}  // namespace
+
+Status LabelMap::read_entry(const std::string& key, std::string name, const std::string& where) {
+  if (key == kRest) {
+    rest_ = std::move(name);
+    return {};
+  }
+  const std::optional<int> number = number_of(key);
+  if (number && (*number < 1 || *number > kMaxLabel))
+    return fail(fmt::format("\"{}\" is not a label number from 1 to {}", key, kMaxLabel), where,
+                "write lines such as 5 = \"liver\"");
+  if (number) by_number_.insert_or_assign(*number, name);
+  by_name_.insert_or_assign(key, std::move(name));
+  return {};
+}
+
+Result<LabelMap> LabelMap::load(const std::string& label_map) {
+  LabelMap map;
+  if (label_map.empty()) return map;
+  if (label_map == kTotalSegmentator) {
+    map.by_number_ = totalsegmentator_names();
+    return map;
+  }
+  TROCAR_TRY(const TomlTable file, load_toml(label_map));
+  TROCAR_TRY_STATUS(file.check_keys({"base", "ignore", "labels"}));
+  TROCAR_TRY(const std::string base, file.string_or("base", ""));
+  if (!base.empty() && base != kTotalSegmentator)
+    return fail(fmt::format("unknown base \"{}\"", base), file.where(), "write base = \"totalsegmentator\"");
+  if (!base.empty()) map.by_number_ = totalsegmentator_names();
+  TROCAR_TRY(const std::vector<std::string> ignored, ignored_labels(file));
+  for (const std::string& key : ignored)
+    TROCAR_TRY_STATUS(map.read_entry(key, std::string(kIgnoredStructure), file.where() + ": ignore"));
+  if (!file.has("labels") && (!base.empty() || !ignored.empty())) return map;
+  TROCAR_TRY(const TomlTable table, file.table("labels"));
+  for (const std::string& key : table.keys()) {
+    TROCAR_TRY(std::string name, table.string(key));
+    TROCAR_TRY_STATUS(map.read_entry(key, std::move(name), table.where()));
+  }
+  return map;
+}
+
+std::optional<std::string> LabelMap::name_of(int number) const {
+  const auto found = by_number_.find(number);
+  return found != by_number_.end() ? std::optional(found->second) : rest_;
+}
+
+std::string LabelMap::name_of(const std::string& name) const {
+  if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
+  return rest_ && !find_known_structure(name) && !is_background_name(name) ? *rest_ : name;
+}
+
+}  // namespace trocar

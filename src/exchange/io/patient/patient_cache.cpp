@@ -1,0 +1,112 @@
+#include "io/patient/patient_cache.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "core/files/atomic_file.h"
+#include "core/hash.h"
+#include "core/files/unfinished_output.h"
+#include "io/patient/patient_folder.h"
+
+namespace trocar {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Hash of the running program; empty where it cannot be read.
+const std::string& build_hash() {
+  static const std::string kHash = [] {
+    const auto program = read_file("/proc/self/exe");
+    if (!program) return std::string();
+    ContentHash hash;
+    hash.add(std::as_bytes(std::span(*program)));
+    return hash.digest();
+  }();
+  return kHash;
+}
+
+bool is_embedded(const PatientSource& source) {
+  std::error_code ignored;
+  const std::string& name = source.folder_or_name;
+  return !name.empty() && name.find('/') == std::string::npos && !fs::exists(name, ignored);
+}
+
+std::uintmax_t bytes_of(const fs::path& folder) {
+  std::uintmax_t bytes = 0;
+  std::error_code ignored;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored))
+    if (entry.is_regular_file(ignored)) bytes += entry.file_size(ignored);
+  return bytes;
+}
+
+/// Removes the least recently used entries beyond the limits; the newest one stays.
+void drop_oldest(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<std::pair<fs::file_time_type, fs::path>> entries;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (entry.is_directory(ignored)) entries.emplace_back(entry.last_write_time(ignored), entry.path());
+  std::sort(entries.rbegin(), entries.rend());
+  std::uintmax_t bytes = 0;
+  for (std::size_t n = 0; n < entries.size(); ++n) {
+    bytes += bytes_of(entries[n].second);
+    if (n > 0 && (n >= PatientCache::kMostKept || bytes > PatientCache::kMostBytes))
+      fs::remove_all(entries[n].second, ignored);
+  }
+}
+
+/// The entry where it is whole; it counts as used now.
+std::optional<fs::path> use(const fs::path& entry) {
+  std::error_code ignored;
+  if (!fs::exists(entry / "patient.toml", ignored)) return std::nullopt;
+  fs::last_write_time(entry, fs::file_time_type::clock::now(), ignored);
+  return entry;
+}
+
+}  // namespace
+
+PatientCache::PatientCache(fs::path folder) : folder_(std::move(folder)) {}
+
+bool PatientCache::is_usable(const PatientSource& source) const {
+  return !folder_.empty() && !build_hash().empty() && is_embedded(source);
+}
+
+fs::path PatientCache::folder_of(const PatientSource& source, bool has_surfaces) const {
+  return folder_ /
+         fmt::format("{}-{}-{}{}", source.folder_or_name, source.seed, build_hash(), has_surfaces ? "" : "-volumes");
+}
+
+std::optional<fs::path> PatientCache::find(const PatientSource& source) const {
+  return is_usable(source) ? use(folder_of(source, true)) : std::nullopt;
+}
+
+std::optional<fs::path> PatientCache::find_volumes(const PatientSource& source) const {
+  if (auto entry = find(source)) return entry;
+  return is_usable(source) ? use(folder_of(source, false)) : std::nullopt;
+}
+
+Result<fs::path> PatientCache::keep(const PatientSource& source, const VirtualPatient& patient,
+                                    const std::vector<NamedMesh>& meshes) const {
+  if (!is_usable(source))
+    return fail("the patient is not cached", source.folder_or_name, "name an embedded patient and a cache folder");
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error)
+    return fail("cannot create the cache folder: " + error.message(), folder_.string(),
+                "check the permissions of the folder above it");
+  fs::path entry = folder_of(source, !meshes.empty());
+  TROCAR_TRY_STATUS(save_patient(patient, meshes, entry));
+  forget_finished_output(entry);
+  if (!meshes.empty()) fs::remove_all(folder_of(source, false), error);
+  drop_oldest(folder_);
+  return entry;
+}
+
+void PatientCache::forget(const PatientSource& source) const noexcept {
+  if (!is_usable(source)) return;
+  std::error_code ignored;
+  for (const bool has_surfaces : {true, false}) fs::remove_all(folder_of(source, has_surfaces), ignored);
+}
+
+}  // namespace trocar

@@ -1,0 +1,98 @@
+#include "io/patient/patient_source.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "anatomy/phantom/phantom.h"
+#include "core/log.h"
+#include "io/patient/detail/patient_toml.h"
+#include "io/patient/patient_cache.h"
+#include "io/patient/patient_folder.h"
+#include "surface/extract_surface.h"
+
+namespace trocar {
+namespace {
+namespace fs = std::filesystem;
+
+bool is_path(const std::string& folder_or_name) {
+  std::error_code ignored;
+  return folder_or_name.find('/') != std::string::npos || fs::exists(folder_or_name, ignored);
+}
+
+constexpr std::size_t kMostFolders = 256;  // looked into beside a record
+
+bool has_hash(const fs::path& folder, const std::string& hash) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(folder / "patient.toml", ignored)) return false;
+  const auto description = detail::load_patient_toml(folder / "patient.toml", folder);
+  return description && description->content_hash == hash;
+}
+
+/// The recorded path and those that it may have become, best first.
+std::vector<fs::path> candidates(const fs::path& recorded, const fs::path& beside) {
+  std::vector<fs::path> folders{recorded};
+  if (recorded.is_relative()) folders.push_back(beside / recorded);
+  const fs::path name = recorded.has_filename() ? recorded.filename() : recorded.parent_path().filename();
+  folders.push_back(beside / name);
+  std::error_code error;
+  std::vector<fs::path> neighbours;
+  for (fs::directory_iterator entry(beside, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_directory(ignored)) neighbours.push_back(entry->path());
+    if (neighbours.size() >= kMostFolders) break;
+  }
+  std::sort(neighbours.begin(), neighbours.end());
+  folders.insert(folders.end(), neighbours.begin(), neighbours.end());
+  return folders;
+}
+
+/// A cache that cannot be written costs time, not the command.
+void log_if_failed(const Result<fs::path>& kept) {
+  if (!kept) log_info("the patient is not cached: {}", kept.error().text());
+}
+
+}  // namespace
+
+std::string absolute_source(const std::string& folder_or_name) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder_or_name, ignored)) return folder_or_name;
+  return fs::absolute(folder_or_name, ignored).lexically_normal().string();
+}
+
+Result<std::string> find_recorded_patient(const std::string& recorded, const std::string& hash,
+                                          const fs::path& beside) {
+  if (recorded.empty()) return fail("the record does not name its patient", beside.string(), "name it with --patient");
+  const fs::path folder = beside.empty() ? fs::path(".") : beside;
+  for (const fs::path& candidate : candidates(recorded, folder))
+    if (has_hash(candidate, hash)) return absolute_source(candidate.string());
+  std::error_code ignored;
+  if (recorded.find('/') == std::string::npos || fs::is_directory(recorded, ignored)) return recorded;
+  return fail("patient folder not found, nor one with its content beside the session", recorded,
+              "name it with --patient");
+}
+
+Result<VirtualPatient> open_patient(const PatientSource& source, const Progress& progress) {
+  if (is_path(source.folder_or_name)) return load_patient(source.folder_or_name);
+  const PatientCache cache(source.cache_folder);
+  if (const auto kept = cache.find_volumes(source)) {
+    if (auto patient = load_patient(*kept)) return patient;
+    cache.forget(source);
+  }
+  TROCAR_TRY(VirtualPatient patient, generate_phantom(source.folder_or_name, source.seed, {}, progress));
+  round_skin_distance(patient);
+  if (!source.cache_folder.empty()) log_if_failed(cache.keep(source, patient, {}));
+  return patient;
+}
+
+Result<std::vector<NamedMesh>> open_meshes(const PatientSource& source, const VirtualPatient& patient,
+                                           const Progress& progress) {
+  if (is_path(source.folder_or_name)) return load_patient_meshes(source.folder_or_name);
+  const PatientCache cache(source.cache_folder);
+  if (const auto kept = cache.find(source))
+    if (auto meshes = load_patient_meshes(*kept)) return meshes;
+  auto meshes = extract_surfaces(patient, {}, progress);
+  if (!source.cache_folder.empty()) log_if_failed(cache.keep(source, patient, meshes));
+  return meshes;
+}
+
+}  // namespace trocar

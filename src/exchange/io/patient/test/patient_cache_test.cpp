@@ -1,0 +1,110 @@
+#include "io/patient/patient_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "anatomy/phantom/phantom.h"
+#include "core/files/temporary_folder.h"
+#include "io/patient/patient_folder.h"
+
+namespace trocar {
+namespace {
+namespace fs = std::filesystem;
+
+/// An embedded patient, coarse enough for a test.
+VirtualPatient coarse(std::uint64_t seed) {
+  auto patient = generate_phantom("abdomen", seed, {{40, 32, 36}});
+  EXPECT_TRUE(patient) << patient.error().text();
+  return *std::move(patient);
+}
+
+std::size_t entries_in(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(PatientCache, FindsWhatItKeptAndNothingElse) {
+  const TemporaryFolder folder;
+  const PatientCache cache(folder / "patients");
+  EXPECT_FALSE(cache.find_volumes({"abdomen", 3}));
+  const VirtualPatient patient = coarse(3);
+  const auto kept = cache.keep({"abdomen", 3}, patient, {});
+  ASSERT_TRUE(kept) << kept.error().text();
+  EXPECT_EQ(cache.find_volumes({"abdomen", 3}), *kept);
+  EXPECT_FALSE(cache.find({"abdomen", 3}));  // it has no surfaces
+  EXPECT_FALSE(cache.find_volumes({"abdomen", 4}));
+  EXPECT_FALSE(cache.find_volumes({"lumbar", 3}));
+  const auto loaded = load_patient(*kept);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_EQ(loaded->content_hash, patient.content_hash);
+}
+
+TEST(PatientCache, KeptPatientIsThePatientWithARoundedSkinDistance) {
+  const TemporaryFolder folder;
+  VirtualPatient patient = coarse(3);
+  const auto kept = PatientCache(folder / "patients").keep({"abdomen", 3}, patient, {});
+  ASSERT_TRUE(kept) << kept.error().text();
+  const auto loaded = load_patient(*kept);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_NE(loaded->skin_distance_mm.voxels, patient.skin_distance_mm.voxels);
+  round_skin_distance(patient);
+  EXPECT_EQ(loaded->skin_distance_mm.voxels, patient.skin_distance_mm.voxels);
+  EXPECT_EQ(loaded->ct.voxels, patient.ct.voxels);
+  EXPECT_EQ(loaded->labels.voxels, patient.labels.voxels);
+}
+
+TEST(PatientCache, EntryWithSurfacesReplacesTheOneWithout) {
+  const TemporaryFolder folder;
+  const PatientCache cache(folder / "patients");
+  const VirtualPatient patient = coarse(3);
+  ASSERT_TRUE(cache.keep({"abdomen", 3}, patient, {}));
+  const TriangleMesh triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  const auto kept = cache.keep({"abdomen", 3}, patient, {{"skin", triangle}});
+  ASSERT_TRUE(kept) << kept.error().text();
+  EXPECT_EQ(cache.find({"abdomen", 3}), *kept);
+  EXPECT_EQ(cache.find_volumes({"abdomen", 3}), *kept);
+  EXPECT_EQ(entries_in(folder / "patients"), 1u);
+}
+
+TEST(PatientCache, LeastRecentlyUsedEntriesGo) {
+  const TemporaryFolder folder;
+  const PatientCache cache(folder / "patients");
+  const VirtualPatient patient = coarse(1);
+  const auto set_age = [&](std::uint64_t seed, int hours) {
+    const auto entry = cache.find_volumes({"abdomen", seed});
+    ASSERT_TRUE(entry);
+    fs::last_write_time(*entry, fs::file_time_type::clock::now() - std::chrono::hours(hours));
+  };
+  for (std::uint64_t seed = 1; seed <= PatientCache::kMostKept; ++seed) {
+    ASSERT_TRUE(cache.keep({"abdomen", seed}, patient, {}));
+    set_age(seed, 100 - static_cast<int>(seed));
+  }
+  ASSERT_TRUE(cache.find_volumes({"abdomen", 1}));  // the oldest is used again
+  ASSERT_TRUE(cache.keep({"abdomen", 99}, patient, {}));
+  EXPECT_EQ(entries_in(folder / "patients"), PatientCache::kMostKept);
+  EXPECT_TRUE(cache.find_volumes({"abdomen", 1}));
+  EXPECT_FALSE(cache.find_volumes({"abdomen", 2}));
+  EXPECT_TRUE(cache.find_volumes({"abdomen", 99}));
+}
+
+TEST(PatientCache, FoldersOfTheUserAreNotCached) {
+  const TemporaryFolder folder;
+  const PatientCache cache(folder / "patients");
+  EXPECT_FALSE(cache.keep({folder.path().string(), 1}, coarse(1), {}));
+  EXPECT_FALSE(PatientCache({}).keep({"abdomen", 1}, coarse(1), {}));
+  EXPECT_FALSE(fs::exists(folder / "patients"));
+}
+
+TEST(PatientCache, DamagedEntryIsForgotten) {
+  const TemporaryFolder folder;
+  const PatientCache cache(folder / "patients");
+  const auto kept = cache.keep({"abdomen", 3}, coarse(3), {});
+  ASSERT_TRUE(kept) << kept.error().text();
+  std::ofstream(*kept / "ct.nrrd") << "damaged";
+  EXPECT_FALSE(load_patient(*kept));
+  cache.forget({"abdomen", 3});
+  EXPECT_FALSE(cache.find_volumes({"abdomen", 3}));
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,58 @@
+#include "config/json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/files/input_file.h"
+
+namespace trocar {
+namespace {
+
+constexpr int kMaxDepth = 64;  ///< Documents of ours nest less than 10 deep; whoever walks one may recurse.
+
+/// Deepest nesting of arrays and objects; brackets inside strings do not count.
+int nesting_depth(std::string_view text) {
+  int depth = 0;
+  int deepest = 0;
+  bool in_string = false;
+  for (std::size_t n = 0; n < text.size(); ++n) {
+    const char c = text[n];
+    if (in_string) {
+      if (c == '\\') ++n;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '[' || c == '{') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+}  // namespace
+
+Result<Json> parse_json(std::string_view text, const std::string& name) {
+  if (nesting_depth(text) > kMaxDepth)
+    return fail(fmt::format("the JSON is nested more than {} deep", kMaxDepth), name, "is this the right file?");
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    return fail("not valid JSON", fmt::format("{}, byte {}", name, error.byte), "export or download the file again");
+  } catch (const std::exception& error) {
+    return fail(fmt::format("the JSON cannot be read: {}", error.what()), name, "export or download the file again");
+  }
+}
+
+Result<Json> load_json(const std::filesystem::path& path) {
+  TROCAR_TRY(const std::string text, read_input(path, FileKind::kJson));
+  return parse_json(text, path.string());
+}
+
+std::string json_text(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace trocar

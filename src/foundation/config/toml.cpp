@@ -1,0 +1,229 @@
+#include "config/toml.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "config/detail/toml_text.h"
+#include "core/files/input_file.h"
+
+namespace {
+/// Out of line, so that toml++'s noexcept functions may name it without a warning.
+[[noreturn]] void give_up(const char* condition) {
+  throw std::logic_error(condition);
+}
+}  // namespace
+
+// toml++ asserts what hostile text can violate ("[ ="): here an assertion is one more parse error, in every build type.
+#pragma push_macro("NDEBUG")
+#undef NDEBUG
+#define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : give_up(#condition))
+#define TOML_HEADER_ONLY 1
+#include <toml++/toml.h>
+#pragma pop_macro("NDEBUG")
+
+namespace trocar {
+
+/// What toml++ knows of a table's keys, for the getters and their messages.
+struct TomlNodes {
+  const TomlTable& table;
+
+  const toml::node* find(std::string_view key) const { return table.table_ ? table.table_->get(key) : nullptr; }
+
+  std::string path_of(std::string_view key) const {
+    return table.path_.empty() ? std::string(key) : fmt::format("{}.{}", table.path_, key);
+  }
+
+  /// "tissues.toml, line 12: layers.skin.delta_x_mm"
+  std::string place(std::string_view key) const {
+    const toml::node* node = find(key);
+    const auto line = node ? node->source().begin.line : 0;
+    return line > 0 ? fmt::format("{}, line {}: {}", table.file_, line, path_of(key))
+                    : fmt::format("{}: {}", table.file_, path_of(key));
+  }
+
+  tl::unexpected<Error> missing(std::string_view key, std::string_view expected) const {
+    return fail(fmt::format("missing: {}", expected), place(key), "add the key");
+  }
+  tl::unexpected<Error> wrong(std::string_view key, std::string_view expected) const {
+    return fail(fmt::format("must be {}", expected), place(key), "correct the value");
+  }
+
+  TomlTable child(const toml::table& node, std::string path) const {
+    TomlTable child = table;
+    child.table_ = &node;
+    child.path_ = std::move(path);
+    return child;
+  }
+};
+
+namespace {
+
+std::string number_words(Range range) {
+  return fmt::format("a number from {} to {}", range.low, range.high);
+}
+
+bool is_inside(double value, Range range) {
+  return std::isfinite(value) && value >= range.low && value <= range.high;
+}
+
+}  // namespace
+
+std::vector<std::string> TomlTable::keys() const {
+  struct Entry {
+    toml::source_position position;
+    std::string key;
+  };
+  std::vector<Entry> entries;
+  if (table_)
+    for (const auto& [key, node] : *table_) entries.push_back({key.source().begin, std::string(key.str())});
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::pair(a.position.line, a.position.column) < std::pair(b.position.line, b.position.column);
+  });
+  std::vector<std::string> keys;
+  for (Entry& entry : entries) keys.push_back(std::move(entry.key));
+  return keys;
+}
+
+bool TomlTable::has(std::string_view key) const {
+  return TomlNodes{*this}.find(key) != nullptr;
+}
+
+Status TomlTable::check_keys(const std::vector<std::string_view>& known) const {
+  for (const std::string& key : keys()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    const std::string_view nearest = detail::nearest_word(key, known);
+    return fail("unknown key", TomlNodes{*this}.place(key),
+                nearest.empty() ? fmt::format("known are: {}", fmt::join(known, ", "))
+                                : fmt::format("did you mean \"{}\"?", nearest));
+  }
+  return {};
+}
+
+Result<double> TomlTable::number(std::string_view key, Range range) const {
+  const TomlNodes nodes{*this};
+  const toml::node* node = nodes.find(key);
+  if (!node) return nodes.missing(key, number_words(range));
+  if (!node->is_number()) return nodes.wrong(key, number_words(range));
+  const double value = node->value<double>().value_or(std::nan(""));
+  if (!is_inside(value, range)) return nodes.wrong(key, fmt::format("{}, it is {}", number_words(range), value));
+  return value;
+}
+
+Result<double> TomlTable::number_or(std::string_view key, Range range, double fallback) const {
+  if (!has(key)) return fallback;
+  return number(key, range);
+}
+
+Result<std::int64_t> TomlTable::integer(std::string_view key, Range range) const {
+  const TomlNodes nodes{*this};
+  const std::string expected = fmt::format("a whole number from {} to {}", range.low, range.high);
+  const toml::node* node = nodes.find(key);
+  if (!node) return nodes.missing(key, expected);
+  if (!node->is_integer()) return nodes.wrong(key, expected);
+  const std::int64_t value = node->value<std::int64_t>().value_or(0);
+  if (!is_inside(static_cast<double>(value), range))
+    return nodes.wrong(key, fmt::format("{}, it is {}", expected, value));
+  return value;
+}
+
+Result<bool> TomlTable::boolean_or(std::string_view key, bool fallback) const {
+  const TomlNodes nodes{*this};
+  const toml::node* node = nodes.find(key);
+  if (!node) return fallback;
+  if (!node->is_boolean()) return nodes.wrong(key, "true or false");
+  return node->value<bool>().value_or(fallback);
+}
+
+Result<std::string> TomlTable::string(std::string_view key) const {
+  const TomlNodes nodes{*this};
+  const toml::node* node = nodes.find(key);
+  if (!node) return nodes.missing(key, "a text in quotes");
+  if (!node->is_string()) return nodes.wrong(key, "a text in quotes");
+  return std::string(node->as_string()->get());
+}
+
+Result<std::string> TomlTable::string_or(std::string_view key, std::string fallback) const {
+  if (!has(key)) return fallback;
+  return string(key);
+}
+
+Result<std::vector<std::string>> TomlTable::strings(std::string_view key) const {
+  const TomlNodes nodes{*this};
+  std::vector<std::string> values;
+  const toml::node* node = nodes.find(key);
+  if (!node) return values;
+  if (!node->is_array()) return nodes.wrong(key, "a list of texts in quotes");
+  for (const toml::node& element : *node->as_array()) {
+    if (!element.is_string()) return nodes.wrong(key, "a list of texts in quotes");
+    values.emplace_back(element.as_string()->get());
+  }
+  return values;
+}
+
+Result<std::vector<double>> TomlTable::numbers(std::string_view key, Range range) const {
+  const TomlNodes nodes{*this};
+  const std::string expected = fmt::format("a list, each {}", number_words(range));
+  const toml::node* node = nodes.find(key);
+  if (!node) return nodes.missing(key, expected);
+  if (!node->is_array()) return nodes.wrong(key, expected);
+  std::vector<double> values;
+  for (const toml::node& element : *node->as_array()) {
+    const double value = element.is_number() ? element.value<double>().value_or(std::nan("")) : std::nan("");
+    if (!is_inside(value, range)) return nodes.wrong(key, expected);
+    values.push_back(value);
+  }
+  return values;
+}
+
+Result<TomlTable> TomlTable::table(std::string_view key) const {
+  const TomlNodes nodes{*this};
+  const toml::node* node = nodes.find(key);
+  if (!node) return nodes.missing(key, "a table");
+  if (!node->is_table()) return nodes.wrong(key, "a table");
+  return nodes.child(*node->as_table(), nodes.path_of(key));
+}
+
+Result<std::vector<TomlTable>> TomlTable::tables(std::string_view key) const {
+  const TomlNodes nodes{*this};
+  std::vector<TomlTable> children;
+  const toml::node* node = nodes.find(key);
+  if (!node) return children;
+  if (!node->is_array()) return nodes.wrong(key, "a list of tables ([[...]])");
+  for (const toml::node& element : *node->as_array()) {
+    if (!element.is_table()) return nodes.wrong(key, "a list of tables ([[...]])");
+    children.push_back(nodes.child(*element.as_table(), fmt::format("{}[{}]", nodes.path_of(key), children.size())));
+  }
+  return children;
+}
+
+std::string TomlTable::where() const {
+  return path_.empty() ? file_ : fmt::format("{}: {}", file_, path_);
+}
+
+Result<TomlTable> parse_toml(std::string_view text, const std::string& name) {
+  TROCAR_TRY_STATUS(detail::check_toml_text(text, name));
+  try {
+    const auto document = std::make_shared<const toml::table>(toml::parse(text));
+    TomlTable table;
+    table.document_ = document;
+    table.table_ = document.get();
+    table.file_ = name;
+    return table;
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    return fail(fmt::format("not valid TOML: {}", error.description()),
+                fmt::format("{}, line {}, column {}", name, at.line, at.column), "correct the file");
+  } catch (const std::exception& error) {
+    return fail(fmt::format("not valid TOML: {}", error.what()), name, "correct the file");
+  }
+}
+
+Result<TomlTable> load_toml(const std::filesystem::path& path) {
+  TROCAR_TRY(const std::string text, read_input(path, FileKind::kToml));
+  return parse_toml(text, path.string());
+}
+
+}  // namespace trocar

@@ -1,0 +1,20 @@
+#include "core/files/data_dir.h"
+
+#include <cstdlib>
+
+namespace trocar {
+namespace fs = std::filesystem;
+
+fs::path data_dir() {
+  if (const char* named = std::getenv("TROCAR_DATA_DIR"); named != nullptr && *named != '\0') return named;
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  for (fs::path folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
+    for (const fs::path& candidate : {folder / "data", folder / "share" / "trocar"}) {
+      if (fs::exists(candidate / "tissues.toml", ignored)) return candidate;
+    }
+  }
+  return {};
+}
+
+}  // namespace trocar

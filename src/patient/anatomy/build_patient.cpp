@@ -1,0 +1,113 @@
+#include "anatomy/build_patient.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "anatomy/detail/fill_unlabelled.h"
+#include "anatomy/detail/merge_sources.h"
+#include "anatomy/tissue/hounsfield.h"
+#include "anatomy/tissue/plausible_hu.h"
+#include "volume/distance.h"
+#include "volume/morphology.h"
+#include "volume/orientation.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kMinBodyMl = 100.0;       // assumed: less is no part of a person
+constexpr double kHintAgreement = 0.9;     // Dice coefficient from which a given body mask is believed
+constexpr double kMaxShareOutside = 0.02;  // of a structure that may lie outside the body without a word
+
+/// A given mask of the whole body, filled, cuts away what it excludes, where it is much like the one found.
+MaskGrid apply_body_hint(MaskGrid body, const MaskGrid& given) {
+  const MaskGrid hint = fill_holes_in_slices(given);
+  std::size_t both = 0;
+  std::size_t sum = 0;
+  for (std::size_t n = 0; n < hint.voxels.size(); ++n) {
+    both += hint.voxels[n] & body.voxels[n];
+    sum += static_cast<std::size_t>(hint.voxels[n]) + body.voxels[n];
+  }
+  if (2.0 * static_cast<double>(both) < kHintAgreement * static_cast<double>(sum)) return body;
+  for (std::size_t n = 0; n < hint.voxels.size(); ++n) body.voxels[n] &= hint.voxels[n];
+  return largest_component(body);
+}
+
+Result<MaskGrid> find_checked_body(const CtGrid& ct, const MaskGrid& hint) {
+  MaskGrid body = find_body(ct);
+  if (!hint.empty()) body = apply_body_hint(std::move(body), hint);
+  const auto voxels = static_cast<double>(std::count(body.voxels.begin(), body.voxels.end(), 1));
+  if (voxels * ct.geometry.voxel_volume_mm3() / 1000.0 < kMinBodyMl)
+    return fail("no body found in the CT", {}, "check that it is a CT in Hounsfield units and shows a patient");
+  return body;
+}
+
+/// Clears labels outside the body; a structure that loses more than a rim is named.
+void clear_outside(const MaskGrid& body, LabelGrid& labels, const LabelTable& table,
+                   std::vector<std::string>& warnings) {
+  std::array<std::size_t, 256> all{};
+  std::array<std::size_t, 256> outside{};
+  for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
+    std::uint8_t& id = labels.voxels[n];
+    ++all[id];
+    if (body.voxels[n]) continue;
+    ++outside[id];
+    id = 0;
+  }
+  for (const Label& label : table.labels) {
+    const double share =
+        static_cast<double>(outside[label.id]) / static_cast<double>(std::max<std::size_t>(all[label.id], 1));
+    if (share > kMaxShareOutside)
+      warnings.push_back(
+          fmt::format("{:.0f} % of \"{}\" lies outside the body and was left out", 100.0 * share, label.name));
+  }
+}
+
+void warn_of_doubtful_structures(const VirtualPatient& patient, std::size_t known_count,
+                                 std::vector<std::string>& warnings) {
+  const auto statistics = label_statistics(patient);
+  for (std::string& doubt : find_implausible_hu(patient, statistics)) warnings.push_back(std::move(doubt));
+  std::vector<std::string> cut;
+  for (const LabelStatistics& label : statistics) {
+    if (label.touches_border && label.id <= known_count) cut.push_back(patient.label_table.find(label.id)->name);
+  }
+  if (!cut.empty()) warnings.push_back(fmt::format("cut by the border of the CT: {}", fmt::join(cut, ", ")));
+}
+
+}  // namespace
+
+Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> sources, const BuildOptions& options,
+                                     std::vector<std::string>& warnings, const Progress& progress) {
+  if (ct.empty()) return fail("the CT has no voxels", "CT", "give a CT volume with image data");
+  TROCAR_TRY_STATUS(check_hounsfield(ct));
+  VirtualPatient patient;
+  patient.name = options.name;
+  patient.provenance = options.provenance;
+
+  // Slices are axial from here on, whatever the order in which the CT was stored.
+  patient.ct = along_P(ct);
+  report(progress, "labels", 0.0);
+  TROCAR_TRY(detail::MergedLabels merged, detail::merge_sources(std::move(sources), patient.ct.geometry, warnings));
+  report(progress, "body", 0.2);
+  TROCAR_TRY(const MaskGrid body, find_checked_body(patient.ct, merged.body_hint));
+  merged.body_hint = {};
+  clear_outside(body, merged.labels, merged.table, warnings);
+
+  report(progress, "distance to the skin", 0.4);
+  patient.skin_distance_mm = signed_distance_mm(body);
+  patient.labels = std::move(merged.labels);
+  patient.label_table = std::move(merged.table);
+
+  report(progress, "fat and muscle", 0.7);
+  const std::size_t known_count = patient.label_table.labels.size();
+  detail::fill_unlabelled(patient.ct, patient.skin_distance_mm, patient.labels, patient.label_table);
+  warn_of_doubtful_structures(patient, known_count, warnings);
+  patient.content_hash = hash_patient(patient);
+  report(progress, "patient", 1.0);
+  return patient;
+}
+
+}  // namespace trocar

@@ -1,0 +1,148 @@
+#include "anatomy/detail/body_fields.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/tissue/detail/tissue_ranges.h"
+#include "volume/distance.h"
+#include "volume/morphology.h"
+#include "volume/resample.h"
+#include "volume/sampling.h"
+
+namespace trocar::detail {
+namespace {
+
+// Assumed lengths.
+constexpr double kCoarseMm = 3.0;
+constexpr double kWallReachMm = 25.0;   // abdominal wall or intercostal muscles below the subcutaneous fat
+constexpr double kSpineReachMm = 35.0;  // erector spinae and psoas around the spine
+constexpr double kThickBoneMm = 8.0;    // radius that fits into a vertebral body or the pelvis, not into a rib
+constexpr double kDiscMm = 7.0;         // half the height of the widest disc
+constexpr double kFatSheetMm = 5.0;     // radius of what is too thin to be the subcutaneous layer
+constexpr double kStepMm = 1.5 * kCoarseMm;
+constexpr double kLungVesselMm = 6.0;  // vessels up to this radius belong to the lung
+constexpr double kMinLungMl = 20.0;
+constexpr double kLungAboveHu = -940.0;  // mean of aerated lung -700..-900, of bowel gas below
+
+/// What the fields are found from, on the coarse grid.
+struct Coarse {
+  CtGrid ct;
+  MaskGrid body;
+  MaskGrid unlabelled;  ///< Body without a label.
+  MaskGrid skin_shell;  ///< The first millimetres below the skin.
+  MaskGrid bone;        ///< Labelled, or dense without a label.
+  MaskGrid lung;        ///< Labelled.
+};
+
+Vec3 to_vec3(const Index3& ijk) {
+  return {static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])};
+}
+
+std::array<bool, 256> ids_of_tissue(const LabelTable& table, std::string_view tissue) {
+  std::array<bool, 256> ids{};
+  for (const Label& label : table.labels) ids[label.id] = label.tissue == tissue;
+  return ids;
+}
+
+Coarse make_coarse(const CtGrid& ct, const LabelGrid& labels, const LabelTable& table,
+                   const FloatGrid& skin_distance_mm) {
+  const GridGeometry grid = isotropic_geometry(ct.geometry, kCoarseMm);
+  const MaskGrid none(grid);
+  Coarse coarse{resample_linear(ct, grid, -1000), none, none, none, none, none};
+  const LabelGrid coarse_labels = resample_nearest(labels, grid, 0);
+  const auto is_bone = ids_of_tissue(table, "bone");
+  const auto is_lung = ids_of_tissue(table, "lung");
+  for (std::size_t n = 0; n < coarse.body.voxels.size(); ++n) {
+    const float distance_mm = sample_nearest(skin_distance_mm, grid.to_mm(to_vec3(grid.index_of(n))), 1.0F);
+    const std::uint8_t id = coarse_labels.voxels[n];
+    const bool inside = distance_mm < 0.0F;
+    coarse.body.voxels[n] = inside;
+    coarse.unlabelled.voxels[n] = inside && id == 0;
+    coarse.skin_shell.voxels[n] = inside && distance_mm > -kSubcutisMm;
+    coarse.bone.voxels[n] = is_bone[id] || (inside && id == 0 && coarse.ct.voxels[n] > kBoneAboveHu);
+    coarse.lung.voxels[n] = is_lung[id];
+  }
+  return coarse;
+}
+
+MaskGrid select(const GridGeometry& grid, const auto& is_wanted) {
+  MaskGrid mask(grid);
+  for (std::size_t n = 0; n < mask.voxels.size(); ++n) mask.voxels[n] = is_wanted(n) ? 1 : 0;
+  return mask;
+}
+
+MaskGrid opened(const MaskGrid& mask, double radius_mm) {
+  return dilate(erode(mask, radius_mm), radius_mm);
+}
+MaskGrid closed(const MaskGrid& mask, double radius_mm) {
+  return erode(dilate(mask, radius_mm), radius_mm);
+}
+
+/// Fat below the skin: all that the straight way to the nearest skin leads through is fat too. (Connectedness would
+/// lead around the muscles into the visceral fat.) Thin shadows behind gaps between muscles are cut off.
+MaskGrid subcutaneous_fat(const Coarse& coarse, const FloatGrid& skin_distance_mm) {
+  const GridGeometry& grid = coarse.ct.geometry;
+  std::vector<std::pair<float, std::size_t>> by_depth;
+  for (std::size_t n = 0; n < coarse.unlabelled.voxels.size(); ++n) {
+    const std::int16_t hu = coarse.ct.voxels[n];
+    if (coarse.unlabelled.voxels[n] && !coarse.skin_shell.voxels[n] && hu > kFatAboveHu && hu <= kFatUpToHu)
+      by_depth.emplace_back(-sample_nearest(skin_distance_mm, grid.to_mm(to_vec3(grid.index_of(n))), 0.0F), n);
+  }
+  std::sort(by_depth.begin(), by_depth.end());
+  MaskGrid fat = coarse.skin_shell;
+  for (const auto& [depth_mm, n] : by_depth) {
+    const Vec3 p_P = grid.to_mm(to_vec3(grid.index_of(n)));
+    const Vec3 outward_P = gradient_per_mm(skin_distance_mm, p_P).normalized();
+    fat.voxels[n] = sample_nearest<std::uint8_t>(fat, p_P + kStepMm * outward_P, 0);
+  }
+  const MaskGrid core = erode(fat, kFatSheetMm);
+  return select(grid, [&](std::size_t n) { return core.voxels[n] || coarse.skin_shell.voxels[n]; });
+}
+
+FloatGrid find_wall(const Coarse& coarse, const FloatGrid& skin_distance_mm) {
+  // Closed first: some segmentations leave the marrow out.
+  const MaskGrid spine = opened(closed(coarse.bone, kThickBoneMm), kThickBoneMm);
+  const MaskGrid spine_with_discs = closed(spine, kDiscMm);
+  const FloatGrid to_spine_mm = distance_to_mask_mm(spine);
+  FloatGrid wall = distance_to_mask_mm(subcutaneous_fat(coarse, skin_distance_mm));
+  for (std::size_t n = 0; n < wall.voxels.size(); ++n) {
+    // The fat's mask was shrunk: its border lies that much farther out.
+    const auto from_fat_mm = static_cast<float>(wall.voxels[n] - kFatSheetMm - kWallReachMm);
+    const auto from_spine_mm = static_cast<float>(to_spine_mm.voxels[n] - kSpineReachMm);
+    const bool in_spine = spine_with_discs.voxels[n] != 0;  // disc, canal, marrow: no muscle
+    wall.voxels[n] = in_spine ? static_cast<float>(kCoarseMm) : std::min(from_fat_mm, from_spine_mm);
+  }
+  return wall;
+}
+
+/// Large parts of air inside the body that are not as empty as bowel gas, and the lungs that have a label.
+MaskGrid aerated_lung(const Coarse& coarse) {
+  const GridGeometry& grid = coarse.ct.geometry;
+  const MaskGrid air = select(grid, [&](std::size_t n) {
+    return coarse.lung.voxels[n] || (coarse.unlabelled.voxels[n] && coarse.ct.voxels[n] < kGasBelowHu);
+  });
+  const Components parts = connected_components(air);
+  std::vector<double> sum_hu(parts.voxel_counts.size() + 1, 0.0);
+  for (std::size_t n = 0; n < air.voxels.size(); ++n)
+    sum_hu[static_cast<std::size_t>(parts.ids.voxels[n])] += coarse.ct.voxels[n];
+  const auto is_lung = [&](std::size_t part) {
+    if (part == 0) return false;
+    const auto voxels = static_cast<double>(parts.voxel_counts[part - 1]);
+    return voxels * grid.voxel_volume_mm3() >= 1000.0 * kMinLungMl && sum_hu[part] > kLungAboveHu * voxels;
+  };
+  return select(grid, [&](std::size_t n) {
+    return coarse.lung.voxels[n] || is_lung(static_cast<std::size_t>(parts.ids.voxels[n]));
+  });
+}
+
+}  // namespace
+
+BodyFields find_body_fields(const CtGrid& smooth_ct, const LabelGrid& labels, const LabelTable& table,
+                            const FloatGrid& skin_distance_mm) {
+  const Coarse coarse = make_coarse(smooth_ct, labels, table, skin_distance_mm);
+  return {find_wall(coarse, skin_distance_mm), signed_distance_mm(closed(aerated_lung(coarse), kLungVesselMm))};
+}
+
+}  // namespace trocar::detail

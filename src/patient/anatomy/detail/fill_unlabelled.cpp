@@ -1,0 +1,176 @@
+#include "anatomy/detail/fill_unlabelled.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/detail/body_fields.h"
+#include "anatomy/detail/merge_small_parts.h"
+#include "anatomy/tissue/detail/smooth_hu.h"
+#include "anatomy/tissue/detail/tissue_ranges.h"
+#include "core/parallel.h"
+#include "volume/morphology.h"
+#include "volume/sampling.h"
+
+namespace trocar::detail {
+namespace {
+
+constexpr double kMinPartMm3 = 100.0;  // assumed: smaller islands are noise and partial volume
+constexpr double kLungRimMm = 3.0;     // assumed: the coarse lung's border is good to this
+constexpr double kThickSkinMm = 8.0;   // assumed: skin is nowhere on the trunk thicker
+constexpr double kBeneathSkinMm = 4.0;
+constexpr double kAirWallMm =
+    2.0;  // assumed: what looks like fat this close to air is wall seen through partial volume
+
+/// The labels that are found from CT values.
+constexpr std::array<std::string_view, 6> kFillNames = {"fat", "muscle", "bone_other", "gas", "lung", "soft_tissue"};
+
+/// The ids they have in this patient.
+struct FillIds {
+  std::uint8_t fat, muscle, bone, gas, lung, soft_tissue;
+  std::array<std::uint8_t, 6> all() const { return {fat, muscle, bone, gas, lung, soft_tissue}; }  ///< As kFillNames.
+};
+
+/// The id of a name in the table, else the next free one.
+FillIds choose_ids(const LabelTable& table) {
+  std::uint8_t next = table.labels.empty() ? 1 : static_cast<std::uint8_t>(table.labels.back().id + 1);
+  std::array<std::uint8_t, 6> ids{};
+  for (std::size_t n = 0; n < ids.size(); ++n) {
+    const Label* label = table.find(kFillNames[n]);
+    ids[n] = label != nullptr ? label->id : next++;
+  }
+  return {ids[0], ids[1], ids[2], ids[3], ids[4], ids[5]};
+}
+
+/// Where a voxel lies that has no label.
+struct Place {
+  bool in_wall = true;
+  bool in_lung = false;
+  bool at_lung = false;
+};
+
+std::uint8_t classify(int hu, const Place& place, const FillIds& ids) {
+  if (place.in_lung) return ids.lung;
+  if (hu < kGasBelowHu) return place.at_lung ? ids.lung : ids.gas;
+  if (hu <= kFatAboveHu) return ids.soft_tissue;
+  if (hu <= kFatUpToHu) return ids.fat;
+  if (hu > kBoneAboveHu) return ids.bone;
+  return hu <= kMuscleUpToHu && place.in_wall ? ids.muscle : ids.soft_tissue;
+}
+
+/// Samples the coarse fields at the voxels of a finer grid that covers the same box.
+class FieldSampler {
+ public:
+  FieldSampler(const BodyFields& fields, const GridGeometry& grid) : fields_(fields) {
+    const GridGeometry& coarse = fields.wall_mm.geometry;
+    scale_ = grid.spacing_mm.cwiseQuotient(coarse.spacing_mm);
+    offset_ = coarse.to_index(grid.origin_P);
+  }
+
+  Place at(const Index3& ijk) const {
+    const Vec3 index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
+    const Vec3 coarse_index = offset_ + scale_.cwiseProduct(index);
+    const double lung_mm = sample_linear_at_index(fields_.lung_mm, coarse_index);
+    return {sample_linear_at_index(fields_.wall_mm, coarse_index) < 0.0, lung_mm < -kLungRimMm, lung_mm < kLungRimMm};
+  }
+
+ private:
+  const BodyFields& fields_;
+  Vec3 scale_;
+  Vec3 offset_;
+};
+
+void classify_all(const CtGrid& smooth, const FloatGrid& skin_distance_mm, const BodyFields& fields, const FillIds& ids,
+                  LabelGrid& labels) {
+  const FieldSampler sampler(fields, labels.geometry);
+  parallel_for(labels.voxels.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      const float distance_mm = skin_distance_mm.voxels[n];
+      if (labels.voxels[n] != 0 || !(distance_mm < 0.0F)) continue;
+      labels.voxels[n] = distance_mm > -kSubcutisMm
+                             ? ids.fat
+                             : classify(smooth.voxels[n], sampler.at(labels.geometry.index_of(n)), ids);
+    }
+  });
+}
+
+/// Lean tissue just below the surface with fat beneath it is skin, thicker than elsewhere: it joins the subcutis.
+void remove_thick_skin(const FloatGrid& skin_distance_mm, const FillIds& ids, LabelGrid& labels) {
+  std::vector<std::size_t> skin;
+  for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
+    if (labels.voxels[n] != ids.muscle || skin_distance_mm.voxels[n] < -kThickSkinMm) continue;
+    const Index3 ijk = labels.geometry.index_of(n);
+    const Vec3 p_P = labels.geometry.to_mm(
+        Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 inward_P = -gradient_per_mm(skin_distance_mm, p_P).normalized();
+    if (sample_nearest<std::uint8_t>(labels, p_P + kBeneathSkinMm * inward_P, 0) == ids.fat) skin.push_back(n);
+  }
+  for (const std::size_t n : skin) labels.voxels[n] = ids.fat;
+}
+
+/// Dense parts without a truly dense voxel: contrast agent.
+void demote_faint_bone(const CtGrid& ct, const FillIds& ids, LabelGrid& labels) {
+  MaskGrid dense(labels.geometry);
+  for (std::size_t n = 0; n < dense.voxels.size(); ++n) dense.voxels[n] = labels.voxels[n] == ids.bone ? 1 : 0;
+  const Components parts = connected_components(dense);
+  std::vector<bool> is_bone(parts.voxel_counts.size() + 1, false);
+  for (std::size_t n = 0; n < dense.voxels.size(); ++n) {
+    if (ct.voxels[n] >= kBonePeakHu) is_bone[static_cast<std::size_t>(parts.ids.voxels[n])] = true;
+  }
+  for (std::size_t n = 0; n < dense.voxels.size(); ++n) {
+    if (dense.voxels[n] && !is_bone[static_cast<std::size_t>(parts.ids.voxels[n])]) labels.voxels[n] = ids.soft_tissue;
+  }
+}
+
+/// Turns fat that is seen between air and the tissue around it into soft tissue: pleura or the wall of a bowel.
+void restore_air_walls(const LabelTable& table, const FillIds& ids, LabelGrid& labels) {
+  std::array<bool, 256> is_air{};
+  for (const Label& label : table.labels) is_air[label.id] = label.tissue == "lung";
+  is_air[ids.gas] = is_air[ids.lung] = true;
+  const GridGeometry& geometry = labels.geometry;
+  const auto is_near_air = [&](const Index3& ijk) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto reach = static_cast<std::int64_t>(kAirWallMm / geometry.spacing_mm[static_cast<Eigen::Index>(a)]);
+      for (std::int64_t step = -reach; step <= reach; ++step) {
+        Index3 beside = ijk;
+        beside[a] += step;
+        if (geometry.contains(beside) && is_air[labels[beside]]) return true;
+      }
+    }
+    return false;
+  };
+  std::vector<std::size_t> walls;
+  for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
+    if (labels.voxels[n] == ids.fat && is_near_air(geometry.index_of(n))) walls.push_back(n);
+  }
+  for (const std::size_t n : walls) labels.voxels[n] = ids.soft_tissue;
+}
+
+void add_used(const FillIds& ids, const LabelGrid& labels, LabelTable& table) {
+  std::array<bool, 256> used{};
+  for (const std::uint8_t id : labels.voxels) used[id] = true;
+  for (std::size_t n = 0; n < kFillNames.size(); ++n) {
+    const std::uint8_t id = ids.all()[n];
+    if (!used[id] || table.find(id) != nullptr) continue;
+    const KnownStructure known = *find_known_structure(kFillNames[n]);
+    table.labels.push_back({id, std::string(kFillNames[n]), std::string(known.tissue), known.color});
+  }
+}
+
+}  // namespace
+
+void fill_unlabelled(const CtGrid& ct, const FloatGrid& skin_distance_mm, LabelGrid& labels, LabelTable& table) {
+  const FillIds ids = choose_ids(table);
+  const CtGrid smooth = smooth_hu(ct);
+  classify_all(smooth, skin_distance_mm, find_body_fields(smooth, labels, table, skin_distance_mm), ids, labels);
+  remove_thick_skin(skin_distance_mm, ids, labels);
+  restore_air_walls(table, ids, labels);
+  demote_faint_bone(ct, ids, labels);
+  const auto min_voxels = static_cast<std::size_t>(std::ceil(kMinPartMm3 / ct.geometry.voxel_volume_mm3()));
+  merge_small_parts(labels, ids.all(), min_voxels);
+  add_used(ids, labels, table);
+}
+
+}  // namespace trocar::detail

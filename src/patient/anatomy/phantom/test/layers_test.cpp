@@ -1,0 +1,142 @@
+#include "anatomy/phantom/layers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "anatomy/build_patient.h"
+#include "anatomy/tissue/plausible_hu.h"
+#include "volume/sampling.h"
+
+namespace trocar::phantom {
+namespace {
+
+const VirtualPatient& scene(const std::string& name) {
+  static std::map<std::string, VirtualPatient> scenes;
+  auto it = scenes.find(name);
+  if (it == scenes.end()) {
+    auto patient = generate_phantom(name);
+    EXPECT_TRUE(patient) << patient.error().text();
+    it = scenes.emplace(name, patient ? *std::move(patient) : VirtualPatient{}).first;
+  }
+  return it->second;
+}
+
+/// Label and the depth at which it begins, along the expert path and 50 mm beyond.
+std::vector<std::pair<std::string, double>> layers_on_path(const VirtualPatient& patient) {
+  const Segment& line = patient.paths.at(0).line_P;
+  std::vector<std::pair<std::string, double>> layers;
+  for (double depth = 0.05; depth < line.length_mm() + 50.0; depth += 0.05) {
+    const Label* label = find_label(patient, line.a + depth * line.direction());
+    const std::string name = label == nullptr ? "nothing" : label->name;
+    if (layers.empty() || layers.back().first != name) layers.emplace_back(name, depth);
+  }
+  return layers;
+}
+
+void expect_layers(const std::string& name, const std::vector<std::pair<std::string, float>>& expected) {
+  const auto layers = layers_on_path(scene(name));
+  ASSERT_GE(layers.size(), expected.size());
+  for (std::size_t n = 0; n < expected.size(); ++n) {
+    EXPECT_EQ(layers[n].first, expected[n].first) << name << " " << n;
+    // A border falls between two voxel centres, 0.8 mm apart.
+    EXPECT_NEAR(layers[n].second, static_cast<double>(expected[n].second), 0.5) << name << " " << expected[n].first;
+  }
+}
+
+TEST(LayeredScene, LumbarPathMeetsLigamentsEpiduralFatAndFluidAtTheirDepths) {
+  expect_layers("layers-lumbar", {{"fat", 0.0F},
+                                  {"supraspinous_ligament", lumbar::kSupraspinous},
+                                  {"interspinous_ligament", lumbar::kInterspinous},
+                                  {"ligamentum_flavum", lumbar::kFlavum},
+                                  {"epidural_fat", lumbar::kEpidural},
+                                  {"csf", lumbar::kDura},
+                                  {"epidural_fat", lumbar::kSacEnd}});
+}
+
+TEST(LayeredScene, AscitesPathMeetsWallFluidAndBowelAtTheMeasuredDepths) {
+  expect_layers("layers-ascites", {{"fat", 0.0F},
+                                   {"muscle", ascites::kMuscle},
+                                   {"fat", ascites::kMuscleEnd},
+                                   {"ascites", ascites::kPeritoneum},
+                                   {"small_bowel", ascites::kBowel}});
+}
+
+TEST(LayeredScene, LiverPathMeetsWallCapsuleDuctAndVein) {
+  expect_layers("layers-liver", {{"fat", 0.0F},
+                                 {"muscle", liver::kMuscle},
+                                 {"peritoneum", liver::kPeritoneum},
+                                 {"liver", liver::kCapsule},
+                                 {"bile_duct", liver::kDuct - liver::kDuctRadius},
+                                 {"liver", liver::kDuct + liver::kDuctRadius},
+                                 {"portal_vein", liver::kVein - liver::kVeinRadius},
+                                 {"liver", liver::kVein + liver::kVeinRadius}});
+}
+
+TEST(LayeredScene, PathRunsFromTheSkinInwardsFromTheSideOfItsPuncture) {
+  for (const PhantomInfo& info : layered_scenes()) {
+    const VirtualPatient& patient = scene(info.name);
+    ASSERT_EQ(patient.paths.size(), 1u);
+    const Segment& line = patient.paths[0].line_P;
+    EXPECT_NEAR(sample_linear(patient.skin_distance_mm, line.a), 0.0, 1e-4) << info.name;
+    EXPECT_NEAR(sample_linear(patient.skin_distance_mm, line.b), -line.length_mm(), 1e-3) << info.name;
+    EXPECT_EQ(line.direction().y() < 0.0, info.name == "layers-lumbar") << info.name;
+    EXPECT_EQ(patient.description.substr(0, 18), "layered test scene");
+  }
+}
+
+TEST(LayeredScene, BoneLiesBesideTheLumbarPathAndNotOnIt) {
+  const VirtualPatient& patient = scene("layers-lumbar");
+  const Segment& line = patient.paths[0].line_P;
+  double nearest_mm = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
+    const Label* label = patient.label_table.find(patient.labels.voxels[n]);
+    if (label == nullptr || label->tissue != "bone") continue;
+    const Index3 ijk = patient.labels.geometry.index_of(n);
+    const Vec3 p = patient.labels.geometry.to_mm(
+        Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    nearest_mm = std::min(nearest_mm, distance_mm(line, p));
+  }
+  EXPECT_GT(nearest_mm, 5.0);
+  EXPECT_LT(nearest_mm, 9.0);
+}
+
+TEST(LayeredScene, HounsfieldUnitsFitTheLabels) {
+  for (const PhantomInfo& info : layered_scenes()) {
+    const VirtualPatient& patient = scene(info.name);
+    EXPECT_EQ(find_implausible_hu(patient, label_statistics(patient)), std::vector<std::string>{}) << info.name;
+  }
+  // The flavum does not show against the interspinous ligament, the dura does.
+  const VirtualPatient& lumbar_patient = scene("layers-lumbar");
+  std::map<std::string, double> mean;
+  for (const LabelStatistics& s : label_statistics(lumbar_patient))
+    mean[lumbar_patient.label_table.find(s.id)->name] = s.mean_hu;
+  EXPECT_LT(std::abs(mean["ligamentum_flavum"] - mean["interspinous_ligament"]), 60.0);
+  EXPECT_GT(mean["csf"] - mean["epidural_fat"], 60.0);
+}
+
+TEST(LayeredScene, SeedChangesTextureAndNoiseAlone) {
+  const PhantomResolution coarse{{40, 70, 40}};
+  const VirtualPatient first = *generate_phantom("layers-liver", 3, coarse);
+  const VirtualPatient again = *generate_phantom("layers-liver", 3, coarse);
+  const VirtualPatient other = *generate_phantom("layers-liver", 4, coarse);
+  EXPECT_EQ(first.content_hash, again.content_hash);
+  EXPECT_NE(first.ct.voxels, other.ct.voxels);
+  EXPECT_EQ(first.labels.voxels, other.labels.voxels);
+  EXPECT_EQ(first.skin_distance_mm.voxels, other.skin_distance_mm.voxels);
+}
+
+TEST(LayeredScene, UnknownNameIsAUsageErrorThatListsThem) {
+  const auto patient = generate_phantom("layers-knee");
+  ASSERT_FALSE(patient);
+  EXPECT_EQ(patient.error().exit_status, 2);
+  EXPECT_NE(patient.error().advice.find("abdomen, layers-lumbar, layers-ascites, layers-liver"), std::string::npos);
+  EXPECT_FALSE(make_layered_scene("abdomen", 1));
+}
+
+}  // namespace
+}  // namespace trocar::phantom

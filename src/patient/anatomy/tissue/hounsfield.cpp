@@ -1,0 +1,85 @@
+#include "anatomy/tissue/hounsfield.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace trocar {
+namespace {
+
+// All numbers are assumed: far from what CTs of a trunk show (a fifth and more of the voxels is air, nine tenths of the
+// rest soft tissue) and from what other numbers show (next to none).
+constexpr int kAirFrom = -1200, kAirBelow = -300;
+constexpr int kSoftFrom = -250, kSoftBelow = 300;
+constexpr double kLeastAir = 0.001;  ///< Of all voxels.
+constexpr double kLeastSoft = 0.4;   ///< Of the voxels above air,
+constexpr double kLeastBody = 0.02;  ///< and of all voxels.
+
+constexpr const char* kAdvice =
+    "give a CT in Hounsfield units that shows the skin and air around it, or the missing scale with --rescale "
+    "SLOPE,INTERCEPT (often 1,-1024)";
+
+class Histogram {
+ public:
+  explicit Histogram(const CtGrid& ct) : counts_(std::size_t{1} << 16) {
+    for (const std::int16_t value : ct.voxels) ++counts_[at(value)];
+  }
+  /// Voxels from `low` to below `high`.
+  double count(int low, int high) const {
+    std::size_t sum = 0;
+    for (int value = std::max(low, kLowest); value < std::min(high, kHighest + 1); ++value) sum += counts_[at(value)];
+    return static_cast<double>(sum);
+  }
+  int lowest() const {
+    const auto found = std::find_if(counts_.begin(), counts_.end(), [](std::size_t count) { return count > 0; });
+    return kLowest + static_cast<int>(found - counts_.begin());
+  }
+  int highest() const {
+    const auto found = std::find_if(counts_.rbegin(), counts_.rend(), [](std::size_t count) { return count > 0; });
+    return kHighest - static_cast<int>(found - counts_.rbegin());
+  }
+
+ private:
+  static constexpr int kLowest = std::numeric_limits<std::int16_t>::min();
+  static constexpr int kHighest = std::numeric_limits<std::int16_t>::max();
+  static std::size_t at(int value) { return static_cast<std::size_t>(value - kLowest); }
+  std::vector<std::size_t> counts_;
+};
+
+}  // namespace
+
+Status apply_rescale(const Rescale& rescale, CtGrid& ct) {
+  constexpr double kMaxSlope = 1e4, kMaxIntercept = 1e6;
+  const double slope = std::abs(rescale.slope);
+  if (!(slope >= 1.0 / kMaxSlope && slope <= kMaxSlope) || !(std::abs(rescale.intercept) <= kMaxIntercept))
+    return fail_usage("the scale is not usable", fmt::format("--rescale {},{}", rescale.slope, rescale.intercept),
+                      "give SLOPE,INTERCEPT such as 1,-1024");
+  for (std::int16_t& voxel : ct.voxels) {
+    const double hu = rescale.slope * voxel + rescale.intercept;
+    if (hu >= 32767.5)
+      return fail_usage(fmt::format("the scale makes {:.0f} HU of the stored number {}", hu, voxel),
+                        fmt::format("--rescale {},{}", rescale.slope, rescale.intercept), "check slope and intercept");
+    voxel = static_cast<std::int16_t>(std::lround(std::max(hu, -32768.0)));
+  }
+  return {};
+}
+
+Status check_hounsfield(const CtGrid& ct) {
+  const Histogram histogram(ct);
+  const std::string range = fmt::format("its values are {} to {}", histogram.lowest(), histogram.highest());
+  const auto all = static_cast<double>(ct.voxels.size());
+  if (histogram.count(kAirFrom, kAirBelow) < kLeastAir * all)
+    return fail(fmt::format("the CT shows no air ({} to {} HU): {}", kAirFrom, kAirBelow, range), {}, kAdvice);
+  const double solid = histogram.count(kAirBelow, std::numeric_limits<std::int16_t>::max() + 1);
+  if (histogram.count(kSoftFrom, kSoftBelow) < std::max(kLeastSoft * solid, kLeastBody * all))
+    return fail(
+        fmt::format("the CT shows too little fat and soft tissue ({} to {} HU): {}", kSoftFrom, kSoftBelow, range), {},
+        kAdvice);
+  return {};
+}
+
+}  // namespace trocar

@@ -1,0 +1,46 @@
+#include "anatomy/tissue/plausible_hu.h"
+
+#include <gtest/gtest.h>
+
+namespace trocar {
+namespace {
+
+/// A patient of labels of one tissue each and what was measured in them.
+std::vector<std::string> doubts_of(const std::vector<std::pair<std::string, double>>& tissue_hu,
+                                   double volume_ml = 50.0) {
+  VirtualPatient patient;
+  std::vector<LabelStatistics> statistics;
+  for (const auto& [tissue, hu] : tissue_hu) {
+    const auto id = static_cast<std::uint8_t>(patient.label_table.labels.size() + 1);
+    patient.label_table.labels.push_back({id, tissue + std::to_string(id), tissue});
+    LabelStatistics s;
+    s.id = id;
+    s.volume_ml = volume_ml;
+    s.mean_hu = hu;
+    statistics.push_back(s);
+  }
+  return find_implausible_hu(patient, statistics);
+}
+
+TEST(ImplausibleHu, IsQuietAboutAnOrdinaryPatient) {
+  EXPECT_TRUE(doubts_of({{"bone", 350}, {"liver", 105}, {"lung", -840}, {"kidney", 180}, {"bowel", -200}}).empty());
+}
+
+TEST(ImplausibleHu, NamesTheLabelThatCannotBe) {
+  const auto doubts = doubts_of({{"bone", 20}, {"liver", 105}});
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_NE(doubts[0].find("bone1"), std::string::npos);
+}
+
+TEST(ImplausibleHu, AsksWhetherTheSegmentationBelongsToTheCt) {
+  const auto doubts = doubts_of({{"bone", 20}, {"liver", -300}, {"lung", 40}, {"spleen", -100}, {"kidney", 30}});
+  ASSERT_EQ(doubts.size(), 5u);
+  EXPECT_NE(doubts[0].find("belong to this CT"), std::string::npos);
+}
+
+TEST(ImplausibleHu, DoesNotJudgeCrumbs) {
+  EXPECT_TRUE(doubts_of({{"bone", 20}}, 0.2).empty());
+}
+
+}  // namespace
+}  // namespace trocar

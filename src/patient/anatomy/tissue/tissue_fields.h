@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "anatomy/tissue/tissue_table.h"
+#include "config/toml.h"
+
+namespace trocar {
+
+/// A number of a tissue or layer as files and overrides name it. Private to the tissue table's units.
+template <class T>
+struct TissueField {
+  std::string_view name;
+  std::string_view short_name;
+  double T::*member;
+  Range range;
+};
+
+inline constexpr std::string_view kPunctureForce = "puncture_force_n";
+inline constexpr std::string_view kYoung = "young_kpa";
+inline constexpr std::string_view kWall = "wall";
+
+inline constexpr std::array<TissueField<LayerParams>, 4> kLayerFields{{
+    {"stiffness_n_per_mm", "k", &LayerParams::stiffness_n_per_mm, {0.001, 50.0}},
+    {"viscosity_ns_per_mm", "nu", &LayerParams::viscosity_ns_per_mm, {0.0, 1.0}},
+    {"delta_x_mm", "dx", &LayerParams::delta_x_mm, {0.01, 20.0}},
+    {kPunctureForce, "fp", &LayerParams::puncture_force_n, {0.01, 100.0}},
+}};
+
+inline constexpr std::array<TissueField<TissueParams>, 6> kTissueFields{{
+    {"viscosity_ns_per_mm", "nu", &TissueParams::viscosity_ns_per_mm, {0.0, 1.0}},
+    {"friction_mu", "mu", &TissueParams::friction_mu, {0.0, 2.0}},
+    {"roughness_n", "delta", &TissueParams::roughness_n, {0.0, 5.0}},
+    {"stick_n_per_mm", "stick", &TissueParams::stick_n_per_mm, {0.0, 0.1}},
+    {"cutting_n", "fc", &TissueParams::cutting_n, {0.0, 10.0}},
+    {kYoung, "young", &TissueParams::young_kpa, {0.0, 1e6}},
+}};
+
+inline constexpr std::string_view kSkinThickness = "thickness_mm";
+inline constexpr Range kSkinThicknessRange{0.5, 6.0};
+
+/// Source of a number that apply_override has set.
+inline constexpr std::string_view kOverrideSource = "set by the user";
+
+inline constexpr std::string_view kDefaultProfile = "paper-a";
+
+/// The field of that long or short name, nullptr when there is none.
+template <class T>
+const TissueField<T>* find_field(std::span<const TissueField<T>> fields, std::string_view key) noexcept {
+  for (const TissueField<T>& field : fields)
+    if (key == field.name || key == field.short_name) return &field;
+  return nullptr;
+}
+
+// Text of a table, for the units that write one.
+
+/// Of a number that has none: "set by the user".
+Provenance find_provenance(const std::map<std::string, Provenance>& provenance, const std::string& path);
+/// Appends KEY = {value = 0.46, source = "…", range = [low, high]}; an infinite value is written as never = true.
+void append_number(std::string& out, std::string_view key, double value, const std::string& path,
+                   const std::map<std::string, Provenance>& provenance);
+
+}  // namespace trocar

@@ -1,0 +1,103 @@
+#include "anatomy/tissue/tissue_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "anatomy/tissue/hu_transfer_text.h"
+#include "anatomy/tissue/tissue_fields.h"
+
+namespace trocar {
+namespace {
+
+constexpr std::string_view kViscosity = "nu";  // of layers and of tissues
+
+/// A number of a table under the name by which apply_override reaches it and nothing else.
+struct NamedNumber {
+  std::string setting;
+  std::string path;  ///< In the table's provenance.
+  double value = 0.0;
+};
+
+template <class T>
+void append_numbers(std::vector<NamedNumber>& numbers, const std::vector<T>& rows,
+                    std::span<const TissueField<T>> fields, std::string_view kind) {
+  for (const T& row : rows) {
+    for (const TissueField<T>& field : fields) {
+      const std::string short_name = fmt::format("{}.{}", row.name, field.short_name);
+      numbers.push_back({field.short_name == kViscosity ? fmt::format("{}.{}", kind, short_name) : short_name,
+                         fmt::format("{}.{}.{}", kind, row.name, field.name), row.*field.member});
+    }
+  }
+}
+
+std::vector<NamedNumber> numbers_of(const TissueTable& table) {
+  std::vector<NamedNumber> numbers;
+  append_numbers<LayerParams>(numbers, table.layers, kLayerFields, "layers");
+  for (const LayerParams& layer : table.layers)
+    numbers.push_back({fmt::format("{}.{}", layer.name, kWall), fmt::format("layers.{}.{}", layer.name, kWall),
+                       layer.is_wall ? 1.0 : 0.0});
+  append_numbers<TissueParams>(numbers, table.tissues, kTissueFields, "tissues");
+  const std::string thickness = fmt::format("skin.{}", kSkinThickness);
+  numbers.push_back({thickness, thickness, table.skin_thickness_mm});
+  for (const auto& field : kGradientFields) {
+    const std::string setting = fmt::format("{}.{}", kTransfer, field.name);
+    numbers.push_back({setting, setting, table.transfer.*field.member});
+  }
+  return numbers;
+}
+
+std::string setting_text(const NamedNumber& number) {
+  if (std::isinf(number.value)) return number.setting + "=never";
+  return fmt::format("{}={}", number.setting, number.value);
+}
+
+void append_curve_change(std::vector<std::string>& settings, const HuTransfer& from, const HuTransfer& to,
+                         const TissueField<HuLaw>& field) {
+  constexpr double kSameFactor = 1e-12;  // relative: the rounding of one multiplication
+  std::optional<double> factor;
+  bool is_one_factor = from.knot_count == to.knot_count;
+  bool is_changed = !is_one_factor;
+  for (std::size_t n = 0; n < std::min(from.knot_count, to.knot_count); ++n) {
+    const double before = from.laws[n].*field.member, after = to.laws[n].*field.member;
+    if (before == after && before == 0.0) continue;
+    is_changed = is_changed || before != after;
+    if (!factor) factor = after / before;
+    is_one_factor = is_one_factor && std::abs(after - *factor * before) <= kSameFactor * std::abs(after);
+  }
+  if (!is_changed) return;
+  settings.push_back(is_one_factor && factor
+                         ? fmt::format("{}.{}{}={:.12g}", kTransfer, field.short_name, kFactorEnding, *factor)
+                         : fmt::format("{}.{}=replaced", kTransfer, field.short_name));
+}
+
+}  // namespace
+
+std::vector<std::string> user_settings(const TissueTable& table) {
+  std::vector<std::string> settings;
+  for (const NamedNumber& number : numbers_of(table)) {
+    const auto found = table.provenance.find(number.path);
+    if (found != table.provenance.end() && found->second.source == kOverrideSource)
+      settings.push_back(setting_text(number));
+  }
+  for (const auto& field : kHuLawFields) {
+    const auto found = table.provenance.find(fmt::format("{}.{}", kTransfer, field.name));
+    if (found != table.provenance.end() && found->second.source == kOverrideSource)
+      settings.push_back(fmt::format("{}.{}=replaced", kTransfer, field.short_name));
+  }
+  return settings;
+}
+
+std::vector<std::string> changed_settings(const TissueTable& from, const TissueTable& to) {
+  const std::vector<NamedNumber> before = numbers_of(from), after = numbers_of(to);
+  const auto is_same_name = [](const NamedNumber& a, const NamedNumber& b) { return a.setting == b.setting; };
+  if (!std::ranges::equal(before, after, is_same_name)) return {"tissues=replaced"};
+  std::vector<std::string> settings;
+  for (std::size_t n = 0; n < after.size(); ++n)
+    if (before[n].value != after[n].value) settings.push_back(setting_text(after[n]));
+  for (const auto& field : kHuLawFields) append_curve_change(settings, from.transfer, to.transfer, field);
+  return settings;
+}
+
+}  // namespace trocar

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "anatomy/tissue/tissue_table.h"
+
+namespace trocar {
+
+/// The numbers that a user has set in a table (apply_override), as settings: "skin.fp=6", "tissues.liver.nu=0.01".
+std::vector<std::string> user_settings(const TissueTable& table);
+
+/// The settings that make `to` of `from`; both have the same tissues and layers, else "tissues=replaced" alone. A curve
+/// of the transfer functions that was multiplied is "transfer.tn_factor=1.2"; one that changed otherwise is
+/// "transfer.tn=replaced".
+std::vector<std::string> changed_settings(const TissueTable& from, const TissueTable& to);
+
+}  // namespace trocar

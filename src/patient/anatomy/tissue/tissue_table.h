@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/tissue/hu_transfer.h"
+#include "core/result.h"
+
+namespace trocar {
+
+/// A membrane or organ surface that indents under the tip until it gives way (paper A, pre-puncture force; physics.md
+/// P1).
+struct LayerParams {
+  std::string name;                  ///< As in puncture events: skin, muscle, liver_capsule, vessel, bowel, pleura …
+  double stiffness_n_per_mm = 0.0;   ///< k. Range 0.001..50.
+  double viscosity_ns_per_mm = 0.0;  ///< nu of the loading law. Range 0..1.
+  double delta_x_mm = 0.1;           ///< Displacement after which a Voigt element is added. Range 0.01..20.
+  double puncture_force_n =
+      std::numeric_limits<double>::infinity();  ///< Gives way at this force. Range 0.01..100; infinite: never (bone).
+  bool is_wall = false;  ///< Volume proxy: must be pierced at a label's border, because the CT does not show it.
+};
+
+/// What the needle's shaft and tip feel inside a tissue (paper A, friction and cutting force; physics.md F1, C1).
+struct TissueParams {
+  std::string name;                   ///< "liver", "adipose", "bone" …; index 0 is "air".
+  double viscosity_ns_per_mm = 0.0;   ///< nu of the friction law. Range 0..1.
+  double friction_mu = 0.0;           ///< Coefficient of kinetic friction mu. Range 0..2.
+  double roughness_n = 0.0;           ///< delta: the friction fluctuates within +-delta*mu. Range 0..5.
+  double stick_n_per_mm = 0.0;        ///< Karnopp holding force a mm of inserted shaft. Range 0..0.1.
+  double cutting_n = 0.0;             ///< F_c while fresh tissue is cut. Range 0..10.
+  std::optional<std::uint8_t> layer;  ///< Index into TissueTable::layers of the surface to pierce before this tissue.
+  double young_kpa = 10.0;            ///< Young's modulus under slow load: bed of the shaft, palpation. Range 0..1e6.
+};
+
+/// Where a number comes from.
+struct Provenance {
+  std::string source;               ///< "paper A, Table 1", a DOI, or "assumed".
+  std::optional<double> low, high;  ///< Range of an assumed or measured value.
+};
+
+/// Mechanical properties of all tissues (data/tissues.toml), after a profile and overrides.
+struct TissueTable {
+  std::string profile;  ///< "paper-a", "tented" …
+  std::vector<LayerParams> layers;
+  std::vector<TissueParams> tissues;             ///< [0] is air: all zero.
+  std::map<std::string, Provenance> provenance;  ///< "tissues.liver.friction_mu", "layers.skin.delta_x_mm" -> source.
+  double skin_thickness_mm = 2.0;  ///< The skin is a shell of the distance field, not voxels. Range 0.5..6.
+  std::uint8_t skin = 0;           ///< Tissue index of the skin.
+  HuTransfer transfer;             ///< Of unlabelled tissue, over HU.
+
+  std::optional<std::uint8_t> find_tissue(std::string_view name) const noexcept;
+  std::optional<std::uint8_t> find_layer(std::string_view name) const noexcept;
+  /// The table as TOML text that load_tissue_table reads back to the same values; stored in every session.
+  std::string to_toml() const;
+};
+
+/// Reads a tissue file and applies one of its profiles ("paper-a" when empty). A table that to_toml wrote has its
+/// profile in it already. Errors name the line: a number out of range or without source, an unknown key, layer or
+/// profile.
+Result<TissueTable> load_tissue_table(const std::filesystem::path& path, std::string_view profile = {});
+Result<TissueTable> parse_tissue_table(std::string_view toml_text, const std::string& name,
+                                       std::string_view profile = {});
+/// Profiles that a tissue file offers.
+Result<std::vector<std::string>> tissue_profiles(const std::filesystem::path& path);
+
+/// Applies one override "liver.k=0.5": TISSUE.KEY=VALUE or LAYER.KEY=VALUE, KEY a field name or its short form (k, nu,
+/// mu, dx, delta, stick, fc, fp, young); fp may be "never"; skin.thickness_mm is the shell's; LAYER.wall is 0 or 1;
+/// transfer.gradient_scale_mm, _none_hu_per_mm and _full_hu_per_mm (scale, none, full) are the transfer functions'. A
+/// layer's key given on a tissue changes that tissue's layer. nu given on the first tissue that carries a layer changes
+/// the layer too: paper A's table has one nu for both laws. tissues.NAME.KEY and layers.NAME.KEY mean that row alone.
+/// transfer.tn_factor=1.2 (k, tn, tt, r0, c, shaft, nu, young) multiplies the whole curve over HU as it stands by
+/// 0.1..10, each value kept in its field's range. Out of range or unknown: exit status 2, the table stays as it was.
+Status apply_override(TissueTable& table, std::string_view assignment);
+
+}  // namespace trocar

@@ -1,0 +1,226 @@
+// The tissue table as people write it: overrides on the command line, and the text that a session stores.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "anatomy/tissue/hu_transfer_text.h"
+#include "anatomy/tissue/tissue_fields.h"
+#include "anatomy/tissue/tissue_table.h"
+#include "config/toml_quoted.h"
+
+namespace trocar {
+namespace {
+
+constexpr std::string_view kOfLayers = "layers.", kOfTissues = "tissues.";
+
+template <class T>
+void append_fields(std::string& out, const T& entry, std::span<const TissueField<T>> fields, std::string_view kind,
+                   const std::map<std::string, Provenance>& provenance) {
+  for (const TissueField<T>& field : fields)
+    append_number(out, field.name, entry.*field.member, fmt::format("{}.{}.{}", kind, entry.name, field.name),
+                  provenance);
+}
+
+struct Assignment {
+  std::string_view name;
+  std::string_view key;
+  double value = 0.0;
+};
+
+Result<Assignment> parse_assignment(std::string_view text) {
+  const auto malformed = [&] {
+    return fail_usage("--set needs NAME.KEY=NUMBER (finite)", std::string(text), "for example liver.k=0.5");
+  };
+  const std::size_t equals = text.find('=');
+  const std::size_t dot = text.substr(0, equals).rfind('.');
+  if (equals == std::string_view::npos || dot == std::string_view::npos) return malformed();
+  Assignment assignment{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), 0.0};
+  const std::string_view value = text.substr(equals + 1);
+  if (value == "never") {
+    assignment.value = std::numeric_limits<double>::infinity();
+    return assignment;
+  }
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), assignment.value);
+  if (error != std::errc() || end != value.data() + value.size() || !std::isfinite(assignment.value))
+    return malformed();
+  return assignment;
+}
+
+Status check_range(const Assignment& assignment, std::string_view field, Range range, std::string_view text) {
+  const bool is_never = std::isinf(assignment.value) && field == kPunctureForce;
+  if (is_never || (assignment.value >= range.low && assignment.value <= range.high)) return {};
+  return fail_usage(fmt::format("{} must be a number from {} to {}", field, range.low, range.high), std::string(text),
+                    "give a number in this range");
+}
+
+/// Sets the fields that an override reaches; knows nothing of text.
+class Override {
+ public:
+  Override(TissueTable& table, const Assignment& assignment, std::string_view text)
+      : table_(table), assignment_(assignment), text_(text) {}
+
+  Status apply() {
+    if (assignment_.name == "skin" && (assignment_.key == kSkinThickness)) return set_skin_thickness();
+    if (assignment_.name == kTransfer)
+      return assignment_.key.ends_with(kFactorEnding) ? scale_curve() : set_gradient_number();
+    if (assignment_.name.starts_with(kOfLayers)) return set_row<LayerParams>(table_.layers, kLayerFields, kOfLayers);
+    if (assignment_.name.starts_with(kOfTissues))
+      return set_row<TissueParams>(table_.tissues, kTissueFields, kOfTissues);
+    const auto tissue = table_.find_tissue(assignment_.name);
+    const auto layer = table_.find_layer(assignment_.name);
+    if (!tissue && !layer)
+      return fail_usage(fmt::format("there is no tissue or layer \"{}\"", assignment_.name), std::string(text_),
+                        "use a name of the tissue table");
+    if (tissue && *tissue == 0) return fail_usage("air has no parameters", std::string(text_), "name another tissue");
+    if (layer && assignment_.key == kWall) return set_wall(table_.layers[*layer]);
+    const auto* tissue_field = find_field<TissueParams>(kTissueFields, assignment_.key);
+    const auto* layer_field = find_field<LayerParams>(kLayerFields, assignment_.key);
+    if (tissue && tissue_field) {
+      TROCAR_TRY_STATUS(set(table_.tissues[*tissue], *tissue_field, "tissues"));
+      const auto own_layer = table_.tissues[*tissue].layer;
+      const bool is_shared_number = layer_field && own_layer && is_first_with_layer(*tissue);
+      return is_shared_number ? set(table_.layers[*own_layer], *layer_field, "layers") : Status{};
+    }
+    if (!layer_field || (tissue && !layer && !table_.tissues[*tissue].layer)) return unknown_key(tissue.has_value());
+    return set(table_.layers[layer ? *layer : *table_.tissues[*tissue].layer], *layer_field, "layers");
+  }
+
+ private:
+  bool is_first_with_layer(std::uint8_t tissue) const {
+    for (std::uint8_t n = 0; n < tissue; ++n)
+      if (table_.tissues[n].layer == table_.tissues[tissue].layer) return false;
+    return true;
+  }
+
+  template <class T>
+  Status set(T& entry, const TissueField<T>& field, std::string_view kind) {
+    TROCAR_TRY_STATUS(check_range(assignment_, field.name, field.range, text_));
+    entry.*field.member = assignment_.value;
+    table_.provenance[fmt::format("{}.{}.{}", kind, entry.name, field.name)] = {std::string(kOverrideSource), {}, {}};
+    return {};
+  }
+
+  /// tissues.NAME.KEY, layers.NAME.KEY: that row alone. `kind` ends in its dot.
+  template <class T>
+  Status set_row(std::vector<T>& rows, std::span<const TissueField<T>> fields, std::string_view kind) {
+    const std::string_view name = assignment_.name.substr(kind.size());
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const T& entry) { return entry.name == name; });
+    if (row == rows.end() || name == table_.tissues.front().name)
+      return fail_usage(fmt::format("there is no \"{}\"", assignment_.name), std::string(text_),
+                        "use a row of the tissue table");
+    const TissueField<T>* field = find_field<T>(fields, assignment_.key);
+    if (!field)
+      return fail_usage(fmt::format("\"{}\" has no \"{}\"", assignment_.name, assignment_.key), std::string(text_),
+                        "use a column of this row");
+    return set(*row, *field, kind.substr(0, kind.size() - 1));
+  }
+
+  Status set_skin_thickness() {
+    TROCAR_TRY_STATUS(check_range(assignment_, kSkinThickness, kSkinThicknessRange, text_));
+    table_.skin_thickness_mm = assignment_.value;
+    table_.provenance["skin.thickness_mm"] = {std::string(kOverrideSource), {}, {}};
+    return {};
+  }
+
+  Status set_gradient_number() {
+    const auto* field = find_field<HuTransfer>(kGradientFields, assignment_.key);
+    if (!field)
+      return fail_usage(fmt::format("{} has no \"{}\" that can be set", kTransfer, assignment_.key), std::string(text_),
+                        "known are: gradient_scale_mm, gradient_none_hu_per_mm, gradient_full_hu_per_mm");
+    if (table_.transfer.knot_count == 0)
+      return fail_usage("the tissue table has no transfer functions", std::string(text_),
+                        "use a tissue table with [transfer]");
+    TROCAR_TRY_STATUS(check_range(assignment_, field->name, field->range, text_));
+    HuTransfer changed = table_.transfer;
+    changed.*field->member = assignment_.value;
+    if (!(changed.gradient_full_hu_per_mm > changed.gradient_none_hu_per_mm))
+      return fail_usage("gradient_full_hu_per_mm must be above gradient_none_hu_per_mm", std::string(text_),
+                        "raise gradient_full_hu_per_mm or lower the other");
+    table_.transfer = changed;
+    table_.provenance[fmt::format("{}.{}", kTransfer, field->name)] = {std::string(kOverrideSource), {}, {}};
+    return {};
+  }
+
+  Status scale_curve() {
+    const std::string_view key = assignment_.key.substr(0, assignment_.key.size() - kFactorEnding.size());
+    const auto* field = find_field<HuLaw>(kHuLawFields, key);
+    if (!field)
+      return fail_usage(fmt::format("{} has no curve \"{}\"", kTransfer, key), std::string(text_),
+                        "known are: k, tn, tt, r0, c, shaft, nu, young, each with _factor behind it");
+    if (table_.transfer.knot_count == 0)
+      return fail_usage("the tissue table has no transfer functions", std::string(text_),
+                        "use a tissue table with [transfer]");
+    TROCAR_TRY_STATUS(check_range(assignment_, assignment_.key, kCurveFactorRange, text_));
+    for (std::size_t n = 0; n < table_.transfer.knot_count; ++n) {
+      double& value = table_.transfer.laws[n].*field->member;
+      value = std::clamp(value * assignment_.value, field->range.low, field->range.high);
+    }
+    table_.provenance[fmt::format("{}.{}", kTransfer, field->name)] = {std::string(kOverrideSource), {}, {}};
+    return {};
+  }
+
+  Status set_wall(LayerParams& layer) {
+    if (assignment_.value != 0.0 && assignment_.value != 1.0)
+      return fail_usage("wall must be 0 or 1", std::string(text_), "give 0 (no) or 1 (yes)");
+    layer.is_wall = assignment_.value == 1.0;
+    return {};
+  }
+
+  Status unknown_key(bool is_tissue) const {
+    std::vector<std::string_view> known;
+    if (is_tissue)
+      for (const auto& field : kTissueFields) known.push_back(field.short_name);
+    for (const auto& field : kLayerFields) known.push_back(field.short_name);
+    return fail_usage(fmt::format("\"{}\" has no \"{}\"", assignment_.name, assignment_.key), std::string(text_),
+                      fmt::format("known are: {}", fmt::join(known, ", ")));
+  }
+
+  TissueTable& table_;
+  const Assignment& assignment_;
+  std::string_view text_;
+};
+
+}  // namespace
+
+Provenance find_provenance(const std::map<std::string, Provenance>& provenance, const std::string& path) {
+  const auto it = provenance.find(path);
+  return it != provenance.end() ? it->second : Provenance{std::string(kOverrideSource), {}, {}};
+}
+
+void append_number(std::string& out, std::string_view key, double value, const std::string& path,
+                   const std::map<std::string, Provenance>& provenance) {
+  const Provenance source = find_provenance(provenance, path);
+  out += fmt::format("{} = {{", key);
+  // The shortest digits that read back to the same bits.
+  out += std::isinf(value) ? "never = true" : fmt::format("value = {}", value);
+  out += ", source = " + toml_quoted(source.source);
+  if (source.low && source.high) out += fmt::format(", range = [{}, {}]", *source.low, *source.high);
+  out += "}\n";
+}
+
+std::string TissueTable::to_toml() const {
+  std::string out = fmt::format("applied_profile = {}\n\n[skin]\n", toml_quoted(profile));
+  append_number(out, kSkinThickness, skin_thickness_mm, "skin.thickness_mm", provenance);
+  for (const LayerParams& layer : layers) {
+    out += fmt::format("\n[layers.{}]\n", toml_quoted(layer.name));
+    if (layer.is_wall) out += fmt::format("{} = true\n", kWall);
+    append_fields<LayerParams>(out, layer, kLayerFields, "layers", provenance);
+  }
+  for (std::size_t n = 1; n < tissues.size(); ++n) {
+    const TissueParams& tissue = tissues[n];
+    out += fmt::format("\n[tissues.{}]\n", toml_quoted(tissue.name));
+    if (tissue.layer) out += fmt::format("layer = {}\n", toml_quoted(layers[*tissue.layer].name));
+    append_fields<TissueParams>(out, tissue, kTissueFields, "tissues", provenance);
+  }
+  append_hu_transfer(out, *this);
+  return out;
+}
+
+Status apply_override(TissueTable& table, std::string_view assignment) {
+  TROCAR_TRY(const Assignment parsed, parse_assignment(assignment));
+  return Override(table, parsed, assignment).apply();
+}
+
+}  // namespace trocar

@@ -1,0 +1,81 @@
+#include "haptics/closed_loop/closed_loop.h"
+
+namespace trocar {
+
+const char* to_string(Holder holder) noexcept {
+  switch (holder) {
+    case Holder::kHand:
+      return "hand";
+    case Holder::kGuidingHand:
+      return "at the tip";
+    case Holder::kBare45g:
+      return "bare 45 g";
+    case Holder::kBare150g:
+      return "bare 150 g";
+  }
+  return "";
+}
+
+StylusHold make_hand() noexcept {
+  StylusHold hand;
+  hand.stiffness_n_per_mm = 0.6;
+  hand.damping_ns_per_mm = 0.012;
+  hand.mass_kg = 0.15;
+  hand.turning_nmm_per_rad = 300.0;
+  hand.turning_damping_nmms_per_rad = 8.0;
+  hand.inertia_kg_mm2 = 50.0;
+  return hand;
+}
+
+StylusHold make_guiding_hand(double tip_mm) noexcept {
+  StylusHold hand = make_hand();
+  hand.point_mm = tip_mm;
+  // 0.1 kg at the stylus, 150 mm away: follows with the 0.08 s of H1 and does not swing.
+  hand.turning_nmm_per_rad = 1500.0;
+  hand.turning_damping_nmms_per_rad = 120.0;
+  return hand;
+}
+
+ClosedLoop::ClosedLoop(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset, Holder holder, double dt_s)
+    : scene_(std::move(scene)), encoder_(preset.encoder), senses_rotation_(preset.sensed_dof == 6), dt_s_(dt_s) {
+  constexpr double kLight_kg = 0.045;
+  constexpr double kHeavy_kg = 0.15;
+  params_.mass_kg = preset.apparent_mass_kg;
+  if (holder == Holder::kBare45g) params_.mass_kg = kLight_kg;
+  if (holder == Holder::kBare150g) params_.mass_kg = kHeavy_kg;
+  params_.weight_n = preset.capability.stylus_weight_n;
+  // Without torque nothing can carry a lever: such a gimbal is balanced.
+  params_.weight_lever_mm = preset.has_torque() ? preset.capability.stylus_lever_mm : 0.0;
+}
+
+const TickSample& ClosedLoop::carry(const Vec3& tip_P, const Vec3& axis_P) noexcept {
+  const Pose X_PS = needle_pose(tip_P, axis_P) * scene_->X_SN.inverse();
+  stylus_.v_P = time_s_ > 0.0 ? Vec3((X_PS.p() - stylus_.X_PS.p()) / dt_s_) : Vec3::Zero();
+  stylus_.w_P = Vec3::Zero();
+  stylus_.X_PS = X_PS;
+  R_PS_told_ = X_PS.R();
+  return sense();
+}
+
+const TickSample& ClosedLoop::run(const StylusHold& hold) noexcept {
+  const StylusMotion motion = step_stylus(stylus_, params_, hold, acting_P_, scene_->gravity_P, dt_s_);
+  observer_.add(acting_P_, motion.v_P, motion.w_P, dt_s_);
+  return sense();
+}
+
+const TickSample& ClosedLoop::sense() noexcept {
+  time_s_ += dt_s_;
+  Pose X_DS = quantise(scene_->X_PD.inverse() * stylus_.X_PS, encoder_);
+  if (!senses_rotation_) X_DS = Pose(scene_->X_PD.R().transpose() * R_PS_told_, X_DS.p());
+  HapticInput input;
+  input.time_s = time_s_;
+  input.dt_s = dt_s_;
+  input.X_DS = X_DS;
+  const HapticOutput output = tick(state_, input, *scene_);
+  sample_ = output.sample;
+  acting_P_ = wrench_P_;
+  wrench_P_ = {scene_->X_PD.R() * output.f_D, scene_->X_PD.R() * output.tau_D};
+  return sample_;
+}
+
+}  // namespace trocar

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "haptics/coupling/device_preset.h"
+#include "haptics/closed_loop/passivity_observer.h"
+#include "haptics/closed_loop/virtual_stylus.h"
+#include "haptics/tick.h"
+
+namespace trocar {
+
+/// Who holds the simulated device.
+enum class Holder { kHand, kGuidingHand, kBare45g, kBare150g };
+inline constexpr std::array kAllHolders{Holder::kHand, Holder::kGuidingHand, Holder::kBare45g, Holder::kBare150g};
+const char* to_string(Holder holder) noexcept;
+
+/// The hand of physics.md H1, and how it holds the orientation. The springs about the grip are [assumed]: a pen grip of
+/// two fingers 30 mm apart with the hand's stiffness between them. Range 50..1000 N mm/rad.
+StylusHold make_hand() noexcept;
+/// The same hand where it guides the needle at its tip, `tip_mm` before S (physics.md H6).
+StylusHold make_guiding_hand(double tip_mm) noexcept;
+
+/// A simulated device in closed loop with the tick. The pose is told in counts of the device's encoders; the wrench
+/// that comes of it is held for a tick and acts one whole tick late (1.5 ticks of delay in all at 1 kHz: sampled,
+/// computed, held). Heap: one object; then real-time safe. Frame P: the device's base is the scene's.
+class ClosedLoop {
+ public:
+  ClosedLoop(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset, Holder holder, double dt_s = 0.001);
+
+  /// The device is carried along a prescribed way: a tick with the needle's tip and axis there.
+  const TickSample& carry(const Vec3& tip_P, const Vec3& axis_P) noexcept;
+  /// One tick of the device on its own under `hold`.
+  const TickSample& run(const StylusHold& hold) noexcept;
+
+  const VirtualStylusState& stylus() const noexcept { return stylus_; }
+  VirtualStylusState& stylus() noexcept { return stylus_; }
+  Vec3 tip_P() const noexcept { return (stylus_.X_PS * scene_->X_SN).p(); }
+  const TickSample& last() const noexcept { return sample_; }
+  const Wrench& wrench_P() const noexcept { return wrench_P_; }
+  const PassivityObserver& observer() const noexcept { return observer_; }
+  void restart_observer() noexcept { observer_ = {}; }
+  double time_s() const noexcept { return time_s_; }
+  double dt_s() const noexcept { return dt_s_; }
+
+ private:
+  const TickSample& sense() noexcept;
+
+  std::shared_ptr<const HapticScene> scene_;
+  EncoderParams encoder_;
+  bool senses_rotation_;
+  VirtualStylusParams params_;
+  double dt_s_;
+  double time_s_ = 0.0;
+  VirtualStylusState stylus_;
+  Mat3 R_PS_told_ = Mat3::Identity();  ///< Of a device that senses no rotation.
+  Wrench wrench_P_;                    ///< About S: of the last tick, acts during the one after the next.
+  Wrench acting_P_;                    ///< About S: acts during the next tick.
+  HapticState state_;
+  TickSample sample_;
+  PassivityObserver observer_;
+};
+
+}  // namespace trocar

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <algorithm>
+
+#include "geometry/vec.h"
+#include "haptics/insertion/path_constraint.h"
+
+namespace trocar {
+
+/// Keeps account of the energy that the haptic side gives to a device: E = sum (f.v + tau.w) dt (physics.md H5). Tissue
+/// can only give back what was put in: while nobody works on the device E must not grow. After Hannaford and Ryu's time
+/// domain observer. Real-time safe.
+class PassivityObserver {
+ public:
+  /// One tick: the wrench that acted on the device and its mean velocities meanwhile (mm/s, rad/s), all in one frame
+  /// and about one point.
+  void add(const Wrench& wrench, const Vec3& v, const Vec3& w, double dt_s) noexcept {
+    energy_mj_ += (wrench.force_n.dot(v) + wrench.torque_nmm.dot(w)) * dt_s;
+    lowest_mj_ = std::min(lowest_mj_, energy_mj_);
+    growth_mj_ = std::max(growth_mj_, energy_mj_ - lowest_mj_);
+  }
+
+  /// Given to the device since the start; negative: taken from it.
+  double energy_mj() const noexcept { return energy_mj_; }
+  /// The largest rise from any earlier moment: what a passive side keeps below what it had stored.
+  double growth_mj() const noexcept { return growth_mj_; }
+
+ private:
+  double energy_mj_ = 0.0;  // N mm
+  double lowest_mj_ = 0.0;
+  double growth_mj_ = 0.0;
+};
+
+}  // namespace trocar

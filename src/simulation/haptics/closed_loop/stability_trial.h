@@ -1,0 +1,37 @@
+#pragma once
+
+#include "haptics/closed_loop/closed_loop.h"
+
+namespace trocar {
+
+/// A needle is carried straight down (+z) into a flat scene whose skin is at z = 0, held there until the forces have
+/// settled, given a tap and let go; then nobody moves it. A hand wants to stay there and must come to rest. Without a
+/// hand only its weight is carried: what was pressed pushes it back, and where nothing holds it it may float on, but
+/// neither buzz nor gain energy (docs/validation.md, Stability).
+struct StabilityTrial {
+  double depth_mm = 40.0;     ///< Of the device's tip when it is let go.
+  double seconds = 60.0;      ///< After that. Range 2..600.
+  double tap_mm_per_s = 5.0;  ///< Sideways; a device with torques is also turned, by tap_rad_per_s.
+  double tap_rad_per_s = 0.05;
+};
+
+struct StabilityOutcome {
+  double position_mm = 0.0;  ///< Peak to peak of the needle's tip in the last sixth, the worst axis.
+  double force_n = 0.0;      ///< Of the force on the device, likewise.
+  double growth_mj = 0.0;    ///< Largest rise of the energy given to the device after the first sixth.
+  double allowed_mm = 0.0;   ///< Limits, from the device's counts.
+  double allowed_mj = 0.0;
+  bool is_finite = true;
+  bool must_rest = true;  ///< A hand holds it.
+
+  bool is_at_rest() const noexcept { return is_finite && position_mm <= allowed_mm; }
+  bool is_bounded() const noexcept { return is_finite && force_n <= kAllowed_n && (is_at_rest() || !must_rest); }
+  bool is_passive() const noexcept { return is_finite && growth_mj <= allowed_mj; }
+  bool is_stable() const noexcept { return is_bounded() && is_passive(); }
+  static constexpr double kAllowed_n = 0.3;
+};
+
+StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset,
+                                     Holder holder, const StabilityTrial& trial);
+
+}  // namespace trocar

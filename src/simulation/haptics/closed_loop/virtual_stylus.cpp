@@ -1,0 +1,122 @@
+#include "haptics/closed_loop/virtual_stylus.h"
+
+#include <Eigen/Cholesky>
+
+#include "haptics/closed_loop/rotation.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kMmPerM = 1000.0;
+
+/// Velocities (v of S, w) and what acts along them, and matrices between the two.
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+using PointVelocity = Eigen::Matrix<double, 3, 6>;
+
+Vec6 stacked(const Vec3& upper, const Vec3& lower) noexcept {
+  Vec6 both;
+  both << upper, lower;
+  return both;
+}
+
+Mat6 diagonal(double linear, double turning) noexcept {
+  return stacked(Vec3::Constant(linear), Vec3::Constant(turning)).asDiagonal();
+}
+
+/// Velocity of the point S + r of a body: v + w x r.
+PointVelocity velocity_at(const Vec3& r) noexcept {
+  PointVelocity J;
+  J << 1, 0, 0, 0, r.z(), -r.y(),  //
+      0, 1, 0, -r.z(), 0, r.x(),   //
+      0, 0, 1, r.y(), -r.x(), 0;
+  return J;
+}
+
+/// The stylus and the hand on it as one body for a tick: A x = b, x the mean velocities. Trapezoidal rule: the springs
+/// pull as they do half-way, M (x_end - x_start) = dt (push - B x - K (dt/2) x).
+struct MovingBody {
+  Mat6 A;
+  Vec6 b;
+};
+
+MovingBody moving_body(const VirtualStylusState& state, const VirtualStylusParams& params, const StylusHold& hold,
+                       const Wrench& wrench_P, const Vec3& gravity_P, double dt_s) noexcept {
+  const double half_s = 0.5 * dt_s;
+  const Vec3 z_P = state.X_PS.R().col(2);
+  const Vec3 r_SH = hold.point_mm * z_P;
+  const PointVelocity J = velocity_at(r_SH);
+  const Mat6 at_H = J.transpose() * J;
+
+  const double inertia = (params.inertia_kg_mm2 + hold.inertia_kg_mm2) / kMmPerM;  // N mm s^2/rad
+  const Mat6 mass = diagonal(params.mass_kg / kMmPerM, inertia) + hold.mass_kg / kMmPerM * at_H;
+  const Mat6 damping =
+      diagonal(params.viscosity_ns_per_mm, params.turning_viscosity_nmms + hold.turning_damping_nmms_per_rad) +
+      hold.damping_ns_per_mm * at_H;
+  const Mat6 stiffness = diagonal(0.0, hold.turning_nmm_per_rad) + hold.stiffness_n_per_mm * at_H;
+
+  const Vec3 way = hold.X_PS * Vec3(0.0, 0.0, hold.point_mm) - (state.X_PS.p() + r_SH);
+  const Vec3 anchor_velocity = hold.velocity_P + hold.angular_velocity_P.cross(hold.point_mm * hold.X_PS.R().col(2));
+  const Vec3 to_centre = state.w_P.cross(state.w_P.cross(r_SH));  // acceleration of H that no velocity tells
+  const Vec3 on_H = hold.stiffness_n_per_mm * way + hold.damping_ns_per_mm * anchor_velocity + hold.push_n -
+                    hold.mass_kg / kMmPerM * to_centre;
+  const Vec3 weight = gravity_P * params.weight_n;
+  Vec3 turn = wrench_P.torque_nmm - params.weight_lever_mm * z_P.cross(weight) +
+              hold.turning_damping_nmms_per_rad * hold.angular_velocity_P;
+  if (hold.turning_nmm_per_rad > 0.0) {
+    turn += hold.turning_nmm_per_rad * rotation_vector(hold.X_PS.R() * state.X_PS.R().transpose());
+  }
+  const Vec6 push = stacked(wrench_P.force_n + weight, turn) + J.transpose() * on_H;
+  return {mass + half_s * (damping + half_s * stiffness), mass * stacked(state.v_P, state.w_P) + half_s * push};
+}
+
+/// Dry friction on three of the six velocities. `impulse`: what it gives.
+struct DryFriction {
+  int first = 0;      ///< 0: v, 3: w.
+  double most = 0.0;  ///< Impulse at which it slides.
+  Vec3 impulse = Vec3::Zero();
+  bool stands = false;
+};
+
+/// The friction that stops its joint, or the most it can against the motion. `mobility`: velocity by impulse.
+void rub(DryFriction& friction, const Mat6& mobility, Vec6& velocities) noexcept {
+  if (!(friction.most > 0.0)) return;
+  const Mat3 own = mobility.block<3, 3>(friction.first, friction.first);
+  const Vec3 without = velocities.segment<3>(friction.first) - own * friction.impulse;
+  Vec3 impulse = -own.ldlt().solve(without);
+  const double norm = impulse.norm();
+  friction.stands = norm <= friction.most;
+  if (!friction.stands) impulse *= friction.most / norm;
+  velocities += mobility.middleCols<3>(friction.first) * (impulse - friction.impulse);
+  friction.impulse = impulse;
+}
+
+}  // namespace
+
+StylusMotion step_stylus(VirtualStylusState& state, const VirtualStylusParams& params, const StylusHold& hold,
+                         const Wrench& wrench_P, const Vec3& gravity_P, double dt_s) noexcept {
+  const double half_s = 0.5 * dt_s;
+  const MovingBody body = moving_body(state, params, hold, wrench_P, gravity_P, dt_s);
+  const Eigen::LDLT<Mat6> factors(body.A);
+  Vec6 mean = factors.solve(body.b);
+
+  DryFriction arm{0, half_s * params.friction_n};
+  DryFriction gimbal{3, half_s * params.turning_friction_nmm};
+  if (arm.most > 0.0 || gimbal.most > 0.0) {
+    constexpr int kRounds = 4;  // each knows what the other gave before
+    const Mat6 mobility = factors.solve(Mat6::Identity());
+    for (int i = 0; i < kRounds; ++i) {
+      rub(arm, mobility, mean);
+      rub(gimbal, mobility, mean);
+    }
+  }
+  const Vec3 v = arm.stands ? Vec3::Zero() : Vec3(mean.head<3>());
+  const Vec3 w = gimbal.stands ? Vec3::Zero() : Vec3(mean.tail<3>());
+  const Eigen::Quaterniond turned(rotation_from_vector(dt_s * w) * state.X_PS.R());
+  state.X_PS = Pose(turned.normalized().toRotationMatrix(), state.X_PS.p() + dt_s * v);
+  state.v_P = arm.stands ? Vec3::Zero() : Vec3(2.0 * v - state.v_P);
+  state.w_P = gimbal.stands ? Vec3::Zero() : Vec3(2.0 * w - state.w_P);
+  return {v, w};
+}
+
+}  // namespace trocar

@@ -1,0 +1,187 @@
+#include "haptics/contact/contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "haptics/contact/contact_balance.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kNear_mm = 1.0;           // points further from the skin cost one look at the distance
+constexpr double kJump_mm = 5.0;           // no hand does this between two ticks, whatever their time ...
+constexpr double kJump_mm_per_s = 5000.0;  // ... or is this fast
+constexpr double kJump_rad = 0.5;
+
+Mat3 rotation_of(const Vec3& turn) noexcept {
+  const double angle = turn.norm();
+  constexpr double kNone_rad = 1e-12;
+  if (!(angle > kNone_rad)) return Mat3::Identity();
+  return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+}
+
+struct SkinHere {
+  double distance_mm;
+  Vec3 normal_P;  ///< Unit, outwards.
+};
+
+/// The signed distance to the skin with its gradient in the cell of voxels around a point.
+class SkinField {
+ public:
+  explicit SkinField(const VirtualPatient& patient) noexcept
+      : distance_(patient.skin_distance_mm),
+        per_mm_(distance_.geometry.spacing_mm.cwiseInverse()),
+        row_(static_cast<std::size_t>(distance_.geometry.size[0])),
+        plane_(row_ * static_cast<std::size_t>(distance_.geometry.size[1])) {}
+
+  /// Nothing outside the volume or without a gradient.
+  std::optional<SkinHere> at(const Vec3& p_P) const noexcept {
+    const GridGeometry& g = distance_.geometry;
+    const Vec3 index = (g.R_PV.transpose() * (p_P - g.origin_P)).cwiseProduct(per_mm_);
+    std::int64_t low[3];
+    double f[3];
+    for (int a = 0; a < 3; ++a) {
+      const auto last = static_cast<double>(g.size[static_cast<std::size_t>(a)] - 1);
+      if (!(index[a] >= 0.0 && index[a] < last)) return {};  // also NaN
+      low[a] = static_cast<std::int64_t>(index[a]);
+      f[a] = index[a] - static_cast<double>(low[a]);
+    }
+    const float* v = distance_.voxels.data() + g.offset({low[0], low[1], low[2]});
+    const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
+    const auto step_i = [&](std::size_t at) { return static_cast<double>(v[at + 1]) - static_cast<double>(v[at]); };
+    const double s00 = step_i(0);
+    const double s10 = step_i(row_);
+    const double s01 = step_i(plane_);
+    const double s11 = step_i(plane_ + row_);
+    const double v00 = v[0] + f[0] * s00;
+    const double v10 = v[row_] + f[0] * s10;
+    const double v01 = v[plane_] + f[0] * s01;
+    const double v11 = v[plane_ + row_] + f[0] * s11;
+    const double v0 = mix(v00, v10, f[1]);
+    const double v1 = mix(v01, v11, f[1]);
+    const Vec3 slope_V(mix(mix(s00, s10, f[1]), mix(s01, s11, f[1]), f[2]), mix(v10 - v00, v11 - v01, f[2]), v1 - v0);
+    const Vec3 gradient_P = g.R_PV * slope_V.cwiseProduct(per_mm_);
+    const double norm = gradient_P.norm();
+    constexpr double kNoDirection = 0.1;
+    if (!(norm > kNoDirection)) return {};
+    return SkinHere{mix(v0, v1, f[2]), gradient_P / norm};
+  }
+
+ private:
+  const FloatGrid& distance_;
+  Vec3 per_mm_;
+  std::size_t row_;
+  std::size_t plane_;
+};
+
+TissueColumn blend(const TissueColumn& from, const TissueColumn& to, double share) noexcept {
+  const auto mix = [share](double a, double b) { return a + share * (b - a); };
+  return {mix(from.stiffness_n_per_mm3, to.stiffness_n_per_mm3), mix(from.length_mm, to.length_mm),
+          mix(from.stiffening_per_mm, to.stiffening_per_mm)};
+}
+
+/// The points of the face at the skin, with the tool at `X_PT`; `index` says which they are.
+void find_points(ContactBalance& balance, std::array<std::uint8_t, kMaxContactPoints>& index, const ContactState& state,
+                 const HapticScene& scene, const Pose& X_PT, const Pose& X_PT_before) noexcept {
+  const ContactFace& face = scene.face;
+  const SkinField field(*scene.patient);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(std::min(face.count, kMaxContactPoints)); ++i) {
+    const Vec3 p_PQ = X_PT * face.point_T[i];
+    const auto skin = field.at(p_PQ);
+    if (!skin || !(skin->distance_mm < kNear_mm)) continue;
+    const double facing = -skin->normal_P.dot(X_PT.R() * face.normal_T[i]);
+    if (!(facing > 0.0)) continue;
+    const auto n = static_cast<std::size_t>(balance.count++);
+    index[n] = static_cast<std::uint8_t>(i);
+    PressedPoint& point = balance.points[n];
+    point.arm_P = p_PQ - X_PT.p();
+    point.normal_P = skin->normal_P;
+    point.depth_mm = -skin->distance_mm;
+    point.depth_before_mm = state.depth_mm[i];
+    point.area_mm2 = facing * face.area_mm2[i];
+    point.column = tissue_column(scene, p_PQ - skin->distance_mm * skin->normal_P, -skin->normal_P);
+    if (state.depth_mm[i] > 0.0)
+      point.column = blend(state.column[i], point.column, balance.dt_s / (balance.dt_s + kColumnBlend_s));
+    const auto across = [&](const Vec3& v) -> Vec3 { return v - skin->normal_P * skin->normal_P.dot(v); };
+    point.stretch_before_P = across(state.stretch_P[i]);
+    point.stretch_P = state.depth_mm[i] > 0.0 ? across(state.stretch_P[i] + p_PQ - X_PT_before * face.point_T[i])
+                                              : Vec3(Vec3::Zero());
+  }
+}
+
+bool has_jumped(const ContactState& state, const Pose& X_PT, double dt_s) noexcept {
+  const double way_mm = (X_PT.p() - state.X_PT_device.p()).norm();
+  const double cosine = 0.5 * ((state.X_PT_device.R().transpose() * X_PT.R()).trace() - 1.0);
+  return !(way_mm <= kJump_mm + kJump_mm_per_s * dt_s) || !(cosine > std::cos(kJump_rad));
+}
+
+/// The tool where the device has it: outside the body at once, inside it with forces that grow from zero.
+bool start(ContactState& state, const HapticScene& scene, const Pose& X_PT) noexcept {
+  state = {};
+  state.is_started = true;
+  state.X_PT_device = state.X_PT = X_PT;
+  const SkinField field(*scene.patient);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(std::min(scene.face.count, kMaxContactPoints)); ++i) {
+    const auto skin = field.at(X_PT * scene.face.point_T[i]);
+    if (!skin || !(skin->distance_mm < 0.0)) continue;
+    state.depth_mm[i] = -skin->distance_mm;
+    state.column[i] =
+        tissue_column(scene, X_PT * scene.face.point_T[i] - skin->distance_mm * skin->normal_P, -skin->normal_P);
+    state.engagement = 0.0;
+  }
+  return state.engagement == 0.0;
+}
+
+}  // namespace
+
+ContactStep step_contact(ContactState& state, const HapticScene& scene, const Pose& X_PT, double dt_s) noexcept {
+  ContactStep step;
+  step.has_jumped = state.is_started && has_jumped(state, X_PT, dt_s);
+  if (!state.is_started || step.has_jumped) step.started_inside = start(state, scene, X_PT);
+
+  // The tool as it was shown, carried along by the device.
+  ContactBalance balance;
+  balance.offset_P = state.offset_P;
+  balance.tilt_P = state.tilt_P;
+  balance.coupling = scene.options.coupling;
+  balance.lever_mm = scene.face.lever_mm;
+  balance.friction_mu = scene.face.friction_mu;
+  balance.engagement = state.engagement;
+  balance.dt_s = dt_s;
+  const Pose X_PT_carried(rotation_of(state.tilt_P) * X_PT.R(), X_PT.p() + state.offset_P);
+  std::array<std::uint8_t, kMaxContactPoints> index{};
+  find_points(balance, index, state, scene, X_PT_carried, state.X_PT);
+
+  const ContactSolution solution = solve(balance);
+  const Vec3 offset_P = state.offset_P + solution.move_P;
+  const Vec3 tilt_P = state.tilt_P + solution.turn_P;
+  if (!offset_P.allFinite() || !tilt_P.allFinite()) {
+    state = {};
+    step.is_bound = true;
+    return step;
+  }
+
+  state.depth_mm.fill(0.0);
+  state.stretch_P.fill(Vec3::Zero());
+  for (std::size_t n = 0; n < static_cast<std::size_t>(balance.count); ++n) {
+    if (!(solution.depth_mm[n] > 0.0)) continue;
+    state.depth_mm[index[n]] = solution.depth_mm[n];
+    state.stretch_P[index[n]] = solution.stretch_P[n];
+    state.column[index[n]] = balance.points[n].column;
+    ++step.points_in_contact;
+    step.depth_mm = std::max(step.depth_mm, solution.depth_mm[n]);
+    step.normal_n += solution.normal_n[n];
+    step.friction_n += solution.friction_P[n].norm();
+  }
+  state.engagement = step.points_in_contact > 0 ? std::min(1.0, state.engagement + dt_s / kEngage_s) : 1.0;
+  state.offset_P = offset_P;
+  state.tilt_P = tilt_P;
+  state.X_PT_device = X_PT;
+  state.X_PT = Pose(rotation_of(tilt_P) * X_PT.R(), X_PT.p() + offset_P);
+  step.wrench_P = solution.wrench_P;
+  step.is_bound = solution.hit_bound;
+  return step;
+}
+
+}  // namespace trocar

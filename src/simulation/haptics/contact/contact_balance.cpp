@@ -1,0 +1,184 @@
+#include "haptics/contact/contact_balance.h"
+
+#include <cmath>
+
+namespace trocar {
+namespace {
+
+constexpr int kSweeps = 2;
+constexpr int kPressSteps = 30;
+constexpr double kForceTolerance_n = 1e-9;
+constexpr double kShare = 1.0 / (2.0 * (1.0 + kPoisson));  // shear modulus over Young's modulus
+constexpr double kMaxTurn_rad = 0.05;
+
+/// The balance while it is being solved.
+class Solver {
+ public:
+  explicit Solver(const ContactBalance& balance) noexcept
+      : b_(balance),
+        count_(static_cast<std::size_t>(balance.count)),
+        stiffness_(balance.coupling.stiffness_n_per_mm),
+        rate_(balance.coupling.damping_ns_per_mm / balance.dt_s),
+        ahead_(rate_ / stiffness_),
+        lever2_(balance.lever_mm * balance.lever_mm) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const PressedPoint& point = b_.points[i];
+      shear_n_per_mm_[i] = b_.engagement * kShare * point.area_mm2 * point.column.stiffness_n_per_mm3;
+      lever_P_[i] = point.arm_P.cross(point.normal_P);
+    }
+  }
+
+  ContactSolution run() noexcept {
+    normal_ = mean_normal();
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      press();
+      evaluate();
+      const Vec3 slide = slide_step();
+      out_.turn_P += turn_step();
+      out_.move_P += slide;
+    }
+    press();
+    evaluate();
+    out_.wrench_P.force_n = coupling_n();
+    out_.wrench_P.torque_nmm = coupling_nmm();
+    return out_;
+  }
+
+ private:
+  Vec3 coupling_n() const noexcept { return stiffness_ * (b_.offset_P + out_.move_P) + rate_ * out_.move_P; }
+  Vec3 coupling_nmm() const noexcept {
+    return lever2_ * (stiffness_ * (b_.tilt_P + out_.turn_P) + rate_ * out_.turn_P);
+  }
+  Vec3 motion(const PressedPoint& point) const noexcept { return out_.move_P + out_.turn_P.cross(point.arm_P); }
+  double depth_mm(const PressedPoint& point) const noexcept {
+    return point.depth_mm - point.normal_P.dot(motion(point));
+  }
+  /// Tissue is a spring and a damper with the coupling's time constant: it answers the indentation that far ahead.
+  ColumnResponse respond_ahead(const PressedPoint& point, double depth) const noexcept {
+    if (!(depth > 0.0)) return {};
+    const ColumnResponse response = respond(point.column, depth + ahead_ * (depth - point.depth_before_mm));
+    const double area = b_.engagement * point.area_mm2;
+    return {area * response.pressure, area * (1.0 + ahead_) * response.tangent};
+  }
+  Vec3 mean_normal() const noexcept {
+    Vec3 pressed = Vec3::Zero();
+    Vec3 near = Vec3::Zero();
+    for (std::size_t i = 0; i < count_; ++i) {
+      const PressedPoint& point = b_.points[i];
+      pressed += respond_ahead(point, point.depth_mm).pressure * point.normal_P;
+      near += point.normal_P;
+    }
+    const Vec3& sum = pressed.norm() > 0.0 ? pressed : near;
+    return sum.norm() > 0.0 ? Vec3(sum.normalized()) : Vec3(Vec3::UnitZ());
+  }
+
+  /// Moves the tool along the mean normal into balance. Contact minus coupling is convex and falls with s: a Newton
+  /// step ends left of the root wherever it began, from there on the steps only shrink.
+  void press() noexcept {
+    std::array<double, kMaxContactPoints> share;
+    std::array<double, kMaxContactPoints> depth;
+    for (std::size_t i = 0; i < count_; ++i) {
+      share[i] = b_.points[i].normal_P.dot(normal_);
+      depth[i] = depth_mm(b_.points[i]);
+    }
+    const double coupling = coupling_n().dot(normal_);
+    double s = 0.0;
+    out_.hit_bound = true;
+    for (int i = 0; i < kPressSteps && out_.hit_bound; ++i) {
+      double force = -coupling - (stiffness_ + rate_) * s;
+      double slope = stiffness_ + rate_;
+      for (std::size_t n = 0; n < count_; ++n) {
+        const ColumnResponse response = respond_ahead(b_.points[n], depth[n] - share[n] * s);
+        force += share[n] * response.pressure;
+        slope += share[n] * share[n] * response.tangent;
+      }
+      out_.hit_bound = !(std::abs(force) < kForceTolerance_n);
+      s += force / slope;
+    }
+    out_.move_P += s * normal_;
+  }
+
+  /// Friction of a point: the spring of the skin under it, at most mu times the normal force. True while it sticks.
+  bool rub(std::size_t i) noexcept {
+    const PressedPoint& point = b_.points[i];
+    const double k = shear_n_per_mm_[i];
+    const double limit_n = b_.friction_mu * out_.normal_n[i];
+    if (!(k > 0.0) || !(limit_n > 0.0)) {
+      out_.friction_P[i] = out_.stretch_P[i] = Vec3::Zero();
+      return false;
+    }
+    const Vec3 step = motion(point);
+    const Vec3 stretch = point.stretch_P + step - point.normal_P * point.normal_P.dot(step);
+    const Vec3 ahead = stretch + ahead_ * (stretch - point.stretch_before_P);
+    const double norm = ahead.norm();
+    if (!(k * norm > limit_n)) {
+      out_.friction_P[i] = -k * ahead;
+      out_.stretch_P[i] = stretch;
+      return true;
+    }
+    const double share = limit_n / (k * norm);  // the rest slides
+    out_.friction_P[i] = -k * share * ahead;
+    out_.stretch_P[i] = (ahead_ * point.stretch_before_P + share * ahead) / (1.0 + ahead_);
+    return false;
+  }
+
+  /// All forces where the tool is now, and how they grow when it slides or turns.
+  void evaluate() noexcept {
+    out_.contact_P = {};
+    slide_n_per_mm_ = stiffness_ + rate_;
+    turn_nmm_per_rad_ = Mat3::Identity() * (slide_n_per_mm_ * lever2_);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const PressedPoint& point = b_.points[i];
+      out_.depth_mm[i] = depth_mm(point);
+      const ColumnResponse response = respond_ahead(point, out_.depth_mm[i]);
+      out_.normal_n[i] = response.pressure;
+      const bool sticks = rub(i);
+      if (!(response.tangent > 0.0)) continue;
+      const Vec3& arm = point.arm_P;
+      const Vec3 force = out_.normal_n[i] * point.normal_P + out_.friction_P[i];
+      out_.contact_P.force_n += force;
+      out_.contact_P.torque_nmm += arm.cross(force);
+      const Vec3& lever = lever_P_[i];
+      const Vec3 weighted = response.tangent * lever;
+      turn_nmm_per_rad_ += weighted * lever.transpose();
+      if (!sticks) continue;
+      const double shear = (1.0 + ahead_) * shear_n_per_mm_[i];
+      slide_n_per_mm_ += shear;
+      turn_nmm_per_rad_ -= shear * (lever * lever.transpose() + arm * arm.transpose());
+      turn_nmm_per_rad_.diagonal().array() += shear * arm.squaredNorm();
+    }
+  }
+
+  /// Step of the tool across the mean normal towards the balance of friction and coupling.
+  Vec3 slide_step() const noexcept {
+    const Vec3 rest = out_.contact_P.force_n - coupling_n();
+    return (rest - normal_ * normal_.dot(rest)) / slide_n_per_mm_;
+  }
+  /// The same for the turn and the torques.
+  Vec3 turn_step() const noexcept {
+    const Vec3 step = turn_nmm_per_rad_.inverse() * (out_.contact_P.torque_nmm - coupling_nmm());
+    const double angle = step.norm();
+    return angle > kMaxTurn_rad ? Vec3(step * (kMaxTurn_rad / angle)) : step;
+  }
+
+  const ContactBalance& b_;
+  std::size_t count_;
+  double stiffness_;
+  double rate_;   // N/mm: damping over dt
+  double ahead_;  // ticks that the tissue's damping looks ahead
+  double lever2_;
+  std::array<double, kMaxContactPoints> shear_n_per_mm_;
+  std::array<Vec3, kMaxContactPoints> lever_P_;  // turns the tool: arm x normal
+  Vec3 normal_ = Vec3::UnitZ();
+  double slide_n_per_mm_ = 0.0;
+  Mat3 turn_nmm_per_rad_ = Mat3::Zero();
+  ContactSolution out_;
+};
+
+}  // namespace
+
+ContactSolution solve(const ContactBalance& balance) noexcept {
+  return Solver(balance).run();
+}
+
+}  // namespace trocar

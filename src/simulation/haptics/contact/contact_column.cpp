@@ -1,0 +1,122 @@
+#include "haptics/contact/contact_column.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar {
+namespace {
+
+constexpr double kTiny_mm = 1e-9;
+constexpr double kLeastLength_mm = 0.5;
+constexpr double kNPerMm2PerKpa = 1e-3;
+
+/// Young's modulus over HU: HuTransfer::at for this one number.
+double young_of_hu(const HuTransfer& transfer, double hu) noexcept {
+  if (!(hu > transfer.hu[0])) return transfer.laws[0].young_kpa;
+  for (std::size_t i = 1; i < transfer.knot_count; ++i) {
+    if (!(hu < transfer.hu[i])) continue;
+    const double t = (hu - transfer.hu[i - 1]) / (transfer.hu[i] - transfer.hu[i - 1]);
+    const double below = transfer.laws[i - 1].young_kpa;
+    return below + t * (transfer.laws[i].young_kpa - below);
+  }
+  return transfer.laws[transfer.knot_count - 1].young_kpa;
+}
+
+/// Reads moduli along a ray in voxel indices. Beyond the volume its edge continues.
+class Ray {
+ public:
+  Ray(const HapticScene& scene, const Vec3& from_P, const Vec3& direction_P) noexcept
+      : scene_(scene),
+        geometry_(scene.patient->skin_distance_mm.geometry),
+        from_(geometry_.to_index(from_P) + Vec3::Constant(0.5)),
+        step_((geometry_.R_PV.transpose() * direction_P).cwiseQuotient(geometry_.spacing_mm)),
+        is_inside_(holds(from_) && holds(from_ + kColumn_mm * step_)) {}
+
+  double soft_kpa(double depth_mm) const noexcept { return std::max(young_kpa(depth_mm), kSoftest_kpa); }
+
+ private:
+  double young_kpa(double depth_mm) const noexcept {
+    if (depth_mm < scene_.skin_thickness_mm) return scene_.tissues[scene_.skin].young_kpa;
+    const std::size_t voxel = voxel_at(depth_mm);
+    const VirtualPatient& patient = *scene_.patient;
+    const std::uint8_t label = patient.labels.empty() ? std::uint8_t{0} : patient.labels.voxels[voxel];
+    if (label == 0 && scene_.transfer.knot_count > 0 && !patient.ct.empty())
+      return young_of_hu(scene_.transfer, patient.ct.voxels[voxel]);
+    return scene_.tissues[scene_.tissue_of_label[label]].young_kpa;
+  }
+
+  bool holds(const Vec3& index) const noexcept {
+    return index.x() >= 0.0 && index.y() >= 0.0 && index.z() >= 0.0 &&
+           index.x() < static_cast<double>(geometry_.size[0]) && index.y() < static_cast<double>(geometry_.size[1]) &&
+           index.z() < static_cast<double>(geometry_.size[2]);
+  }
+  std::size_t voxel_at(double depth_mm) const noexcept {
+    const Vec3 index = from_ + depth_mm * step_;
+    if (is_inside_) {
+      return geometry_.offset({static_cast<std::int64_t>(index.x()), static_cast<std::int64_t>(index.y()),
+                               static_cast<std::int64_t>(index.z())});
+    }
+    Index3 ijk;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto last = static_cast<double>(geometry_.size[a] - 1);
+      const double v = index[static_cast<int>(a)];
+      ijk[a] = static_cast<std::int64_t>(v > 0.0 ? std::min(v, last) : 0.0);  // NaN becomes 0
+    }
+    return geometry_.offset(ijk);
+  }
+
+  const HapticScene& scene_;
+  const GridGeometry& geometry_;
+  Vec3 from_;
+  Vec3 step_;
+  bool is_inside_;
+};
+
+/// Where between two depths the tissue becomes rigid.
+double rigid_from_mm(const Ray& ray, double soft_mm, double rigid_mm) noexcept {
+  constexpr int kHalvings = 4;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (soft_mm + rigid_mm);
+    (ray.soft_kpa(middle) >= kRigid_kpa ? rigid_mm : soft_mm) = middle;
+  }
+  return 0.5 * (soft_mm + rigid_mm);
+}
+
+}  // namespace
+
+TissueColumn tissue_column(const HapticScene& scene, const Vec3& skin_point_P, const Vec3& inward_P) noexcept {
+  constexpr double kPlaneStrain = 1.0 - kPoisson * kPoisson;
+  const Ray ray(scene, skin_point_P, inward_P);
+  const ContactFace& face = scene.face;
+  TissueColumn column;
+  double yields = 0.0;   // mm/kPa, of layers in series
+  double squares = 0.0;  // mm/kPa^2
+  double young = ray.soft_kpa(0.0);
+  double yield = 1.0 / young;
+  double above_mm = 0.0;
+  const auto add = [&](double settlement, double thickness_mm) {
+    const double yielding = settlement * yield;
+    yields += yielding;
+    squares += yielding * yielding / thickness_mm;
+  };
+  for (std::size_t cell = 0; cell < kColumnCells; ++cell) {
+    const double middle_mm = 0.5 * (kCellBorder_mm[cell] + kCellBorder_mm[cell + 1]);
+    const double here = ray.soft_kpa(middle_mm);
+    if (here >= kRigid_kpa) {
+      column.length_mm = std::max(rigid_from_mm(ray, above_mm, middle_mm), kLeastLength_mm);
+      // The bone may begin on either side of the cell's border.
+      const double more_mm = column.length_mm - kCellBorder_mm[cell];
+      if (std::abs(more_mm) > kTiny_mm)
+        add(settlement_mm(column.length_mm, face.spread_mm) - face.settlement_mm[cell], more_mm);
+      break;
+    }
+    if (here != young) yield = 1.0 / (young = here);
+    add(face.settlement_mm[cell + 1] - face.settlement_mm[cell], kCellBorder_mm[cell + 1] - kCellBorder_mm[cell]);
+    above_mm = middle_mm;
+  }
+  column.stiffening_per_mm = std::max(squares / (yields * yields) - 1.0 / column.length_mm, 0.0);
+  column.stiffness_n_per_mm3 = kNPerMm2PerKpa / (kPlaneStrain * yields);
+  return column;
+}
+
+}  // namespace trocar

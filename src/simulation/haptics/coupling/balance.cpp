@@ -1,0 +1,71 @@
+#include "haptics/coupling/balance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar {
+
+double AxialBalance::prepuncture_n(double s_mm) const noexcept {
+  return prepuncture_force_n(displacement(s_mm), velocity(s_mm), loading);
+}
+
+double AxialBalance::friction_n(double s_mm) const noexcept {
+  const double v = velocity(s_mm);
+  return viscous_ns_per_mm * v + noise_n + std::copysign(dry_n * motion_fade(v), v);
+}
+
+double AxialBalance::cutting_force_n(double s_mm) const noexcept {
+  const double v = velocity(s_mm);
+  return s_mm > cut_to_mm && v > 0.0 ? cutting_n * motion_fade(v) : 0.0;
+}
+
+double AxialBalance::coupling_n(double s_mm) const noexcept {
+  return coupling.stiffness_n_per_mm * (s_device_mm - s_mm) +
+         coupling.damping_ns_per_mm * (v_device_mm_per_s - velocity(s_mm));
+}
+
+double AxialBalance::unbalance_n(double s_mm) const noexcept {
+  return prepuncture_n(s_mm) + friction_n(s_mm) + cutting_force_n(s_mm) - coupling_n(s_mm);
+}
+
+AxialSolution solve(const AxialBalance& balance) noexcept {
+  // Bracket: without resistance the needle would go to the device; resistance and damping only shorten the way.
+  double low = std::min(balance.s_previous_mm, balance.s_device_mm);
+  double high = std::max(balance.s_previous_mm, balance.s_device_mm);
+  double f_low = balance.unbalance_n(low);
+  double f_high = balance.unbalance_n(high);
+  double reach = 0.01;
+  constexpr int kMaxBracket = 40;
+  int steps = 0;
+  for (; f_low > 0.0 && steps < kMaxBracket; ++steps, reach *= 2.0) f_low = balance.unbalance_n(low -= reach);
+  for (reach = 0.01; f_high < 0.0 && steps < kMaxBracket; ++steps, reach *= 2.0)
+    f_high = balance.unbalance_n(high += reach);
+  if (!(f_low <= 0.0) || !(f_high >= 0.0)) return {balance.s_previous_mm, true};
+
+  // Illinois variant of the false position: safe like bisection, nearly as fast as the secant.
+  constexpr double kForceTolerance_n = 1e-10;
+  constexpr double kWidth_mm = 1e-12;
+  constexpr int kMaxSteps = 100;
+  int side = 0;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    if (high - low < kWidth_mm) return {0.5 * (low + high), false};
+    const double secant = (low * f_high - high * f_low) / (f_high - f_low);
+    const double s = (i % 8 == 7 || !(secant > low && secant < high)) ? 0.5 * (low + high) : secant;
+    const double f = balance.unbalance_n(s);
+    if (std::abs(f) < kForceTolerance_n) return {s, false};
+    if (f < 0.0) {
+      low = s;
+      f_low = f;
+      if (side == -1) f_high *= 0.5;
+      side = -1;
+    } else {
+      high = s;
+      f_high = f;
+      if (side == 1) f_low *= 0.5;
+      side = 1;
+    }
+  }
+  return {0.5 * (low + high), true};
+}
+
+}  // namespace trocar

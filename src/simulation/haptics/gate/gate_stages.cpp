@@ -1,0 +1,185 @@
+#include "haptics/gate/detail/gate_stages.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::detail {
+namespace {
+
+constexpr double kBeyondReason = 1e6;       // of any unit: a force, a speed, a position of no device [assumed]
+constexpr double kDampingLever_mm = 20.0;   // turns damping of a force into that of a torque, b l^2 [assumed, 10..40]
+constexpr double kLeastSpeed_mm_per_s = 1;  // below it damping takes nothing worth the noise [assumed, 0.1..5]
+constexpr double kMostExcess_mj = 100.0;    // remembered beyond the margin [assumed, 20..500]
+constexpr double kFriction_n = 0.05;        // that every device has in its joints [assumed, 0.02..0.2]
+constexpr double kQuiet_s = 0.25;           // without force, after which an excess is over [assumed, 0.1..1]
+constexpr double kCool = 0.8;               // share of the continuous heat up to which the peak is allowed [assumed]
+constexpr double kLateralShare = 0.2;  // of the force's limit that an axial force leaves to a lateral one [assumed]
+constexpr double kLeastAxis = 1e-6;    // length below which an axis has no direction
+constexpr double kRounding = 1e-12;    // by which a limited norm stays below its limit, relative
+
+bool is_sound(const Vec3& value) noexcept {
+  return detail::is_sound(value.x()) && detail::is_sound(value.y()) && detail::is_sound(value.z());
+}
+
+Vec3 clipped(const Vec3& value, double limit) noexcept {
+  const double norm = value.norm();
+  if (norm <= limit * (1.0 - kRounding)) return value;
+  return norm > 0.0 ? Vec3(value * (limit * (1.0 - kRounding) / norm)) : Vec3(Vec3::Zero());
+}
+
+/// What a spring holds that wants `wanted` and gives at most `limit`.
+double spring_energy_mj(double wanted, double limit, double stiffness) noexcept {
+  const double given = std::min(wanted, limit);
+  return given * (wanted - 0.5 * given) / stiffness;
+}
+
+/// Work of a pull on a way told in counts: `before` acted, for the last count of the way perhaps already `now`; that
+/// doubt is worth at most the device's friction.
+double work_mj(const Vec3& before, const Vec3& now, const Vec3& way, double count, double friction) noexcept {
+  const double length = way.norm();
+  if (length <= 0.0) return 0.0;
+  const double doubt = 0.5 * std::min(1.0, count / length) * (now - before).dot(way);
+  return before.dot(way) + std::clamp(doubt, -friction * length, friction * length);
+}
+
+double damping_lever_mm(const GateParams& params) noexcept {
+  return params.peak_torque_nmm > 0.0 ? kDampingLever_mm : 0.0;
+}
+
+Wrench damping(double b_ns_per_mm, const GateInput& input, const GateParams& params) noexcept {
+  const double lever_mm = damping_lever_mm(params);
+  return {-b_ns_per_mm * input.v_mm_per_s, -b_ns_per_mm * lever_mm * lever_mm * input.w_rad_per_s};
+}
+
+double warm_limit(double heat, double peak, double continuous) noexcept {
+  const double t = std::clamp((heat - kCool) / (1.0 - kCool), 0.0, 1.0);
+  return peak + (continuous - peak) * (t * t * (3.0 - 2.0 * t));
+}
+
+double warmed(double heat, double norm, double continuous, double share) noexcept {
+  if (continuous <= 0.0) return heat * (1.0 - share);
+  const double ratio = norm / continuous;
+  return heat + share * (ratio * ratio - heat);
+}
+
+}  // namespace
+
+bool is_sound(double value) noexcept {
+  return std::abs(value) <= kBeyondReason;  // false for NaN
+}
+
+bool is_sound(const Wrench& wrench) noexcept {
+  return is_sound(wrench.force_n) && is_sound(wrench.torque_nmm);
+}
+
+bool is_sound(const GateInput& input) noexcept {
+  return is_sound(input.wanted) && is_sound(input.weight) && is_sound(input.axis) && is_sound(input.v_mm_per_s) &&
+         is_sound(input.w_rad_per_s) && is_sound(input.dt_s) && input.dt_s > 0.0 && is_sound(input.busy_s) &&
+         is_sound(input.coupling.stiffness_n_per_mm) && is_sound(input.coupling.damping_ns_per_mm);
+}
+
+bool is_small(const Wrench& wrench, const GateParams& params) noexcept {
+  return wrench.force_n.norm() < params.small_force_n && wrench.torque_nmm.norm() < params.small_torque_nmm;
+}
+
+bool restore(GateState& state) noexcept {
+  const bool is_watch_usable =
+      state.slow_s >= 0.0 && is_sound(state.slow_s) && state.since_late_s >= 0.0 && is_sound(state.since_late_s) &&
+      state.slow_period_s >= 0.0 && is_sound(state.slow_period_s) && state.coupling_share >= 0.0 &&
+      state.coupling_share <= 1.0 && is_sound(state.slow_f_n) && is_sound(state.slow_tau_nmm) &&
+      is_sound(state.slow_v_mm_per_s) && is_sound(state.slow_w_rad_per_s) && is_sound(state.last_v_mm_per_s) &&
+      std::isfinite(state.vibration_mw) && is_sound(state.vibration_s);
+  const bool is_usable = is_watch_usable && is_sound(state.last) && is_sound(state.watched) && state.scale >= 0.0 &&
+                         state.scale <= 1.0 && std::isfinite(state.energy_mj) && state.force_heat >= 0.0 &&
+                         std::isfinite(state.force_heat) && state.torque_heat >= 0.0 &&
+                         std::isfinite(state.torque_heat) && is_sound(state.runaway_s) && is_sound(state.quiet_s) &&
+                         is_sound(state.drop_from_n) && is_sound(state.drop_s) && state.mode <= GateMode::kFault &&
+                         state.fault <= kLastGateFault &&
+                         (state.mode == GateMode::kFault) == (state.fault != GateFault::kNone);
+  if (is_usable) return true;
+  const GateFault fault = state.fault <= kLastGateFault ? state.fault : GateFault::kNotFinite;
+  state = GateState{};
+  state.fault = fault;
+  state.mode = fault == GateFault::kNone ? GateMode::kOff : GateMode::kFault;
+  state.force_heat = state.torque_heat = 1.0;  // how warm is not known: as warm as may be
+  return false;
+}
+
+void observe_energy(GateState& state, const GateInput& input, double dt_s, const GateParams& params) noexcept {
+  const Wrench now = limited(input.wanted, input.axis, params.peak_force_n, params.peak_torque_nmm);
+  state.energy_mj +=
+      work_mj(state.watched.force_n, state.scale * now.force_n, dt_s * input.v_mm_per_s, params.count_mm, kFriction_n) +
+      work_mj(state.watched.torque_nmm, state.scale * now.torque_nmm, dt_s * input.w_rad_per_s, params.count_rad,
+              kFriction_n * kDampingLever_mm);
+  state.quiet_s = is_small(input.wanted, params) ? std::min(state.quiet_s + dt_s, kQuiet_s) : 0.0;
+  if (state.quiet_s >= kQuiet_s) state.energy_mj = std::min(state.energy_mj, 0.0);
+  const double stored_mj =
+      spring_energy_mj(input.wanted.force_n.norm(), params.peak_force_n, params.softest_n_per_mm) +
+      spring_energy_mj(input.wanted.torque_nmm.norm(), params.peak_torque_nmm, params.softest_nmm_per_rad);
+  state.energy_mj =
+      std::clamp(state.energy_mj, -params.passivity_margin_mj - stored_mj, params.passivity_margin_mj + kMostExcess_mj);
+}
+
+Wrench damp_energy(const GateState& state, const GateInput& input, double dt_s, const GateLimits& limits,
+                   const GateParams& params, std::uint16_t& actions) noexcept {
+  const Wrench given = limited(input.wanted, input.axis, limits.force_n, limits.torque_nmm);
+  const double power = given.force_n.dot(input.v_mm_per_s) + given.torque_nmm.dot(input.w_rad_per_s);
+  const double excess_mj = state.energy_mj + state.scale * power * dt_s - params.passivity_margin_mj;
+  const double speed = std::hypot(input.v_mm_per_s.norm(), damping_lever_mm(params) * input.w_rad_per_s.norm());
+  if (!(excess_mj > 0.0) || speed < kLeastSpeed_mm_per_s || params.max_damping_ns_per_mm <= 0.0) return input.wanted;
+  actions |= kGatePassivity;
+  const Wrench brake =
+      damping(std::min(excess_mj / (speed * speed * dt_s), params.max_damping_ns_per_mm), input, params);
+  return {given.force_n + brake.force_n, given.torque_nmm + brake.torque_nmm};
+}
+
+Wrench brake_wrench(const GateInput& input, const GateParams& params) noexcept {
+  return damping(params.brake_ns_per_mm, input, params);
+}
+
+GateLimits warm_limits(const GateState& state, const GateParams& params) noexcept {
+  GateLimits limits;
+  limits.force_n = warm_limit(state.force_heat, params.peak_force_n, params.continuous_force_n);
+  limits.torque_nmm = warm_limit(state.torque_heat, params.peak_torque_nmm, params.continuous_torque_nmm);
+  limits.is_force_warm = limits.force_n < params.peak_force_n;
+  limits.is_torque_warm = limits.torque_nmm < params.peak_torque_nmm;
+  return limits;
+}
+
+void warm(GateState& state, double dt_s, const GateParams& params) noexcept {
+  const double share = -std::expm1(-dt_s / params.thermal_time_s);
+  state.force_heat = warmed(state.force_heat, state.last.force_n.norm(), params.continuous_force_n, share);
+  state.torque_heat = warmed(state.torque_heat, state.last.torque_nmm.norm(), params.continuous_torque_nmm, share);
+}
+
+Vec3 slew_limited(const Vec3& last, const Vec3& target, double most) noexcept {
+  const double norm = last.norm();
+  Vec3 kept = Vec3::Zero();
+  if (norm > 0.0) {
+    const Vec3 direction = last / norm;
+    kept = std::clamp(target.dot(direction), 0.0, norm) * direction;
+  }
+  const Vec3 rise = target - kept;
+  return rise.norm() <= most ? target : Vec3(kept + clipped(rise, most));
+}
+
+Wrench limited(const Wrench& wrench, const Vec3& axis, double force_n, double torque_nmm) noexcept {
+  Wrench result = wrench;
+  const double norm = wrench.force_n.norm();
+  const double length = axis.norm();
+  if (norm > force_n) {
+    const Vec3 along = length > kLeastAxis ? Vec3(axis / length) : Vec3(Vec3::Zero());
+    const double axial_n = wrench.force_n.dot(along);
+    const Vec3 lateral_n = wrench.force_n - axial_n * along;
+    const double across_n = lateral_n.norm();
+    const double room_n = std::max(std::sqrt(std::max(0.0, force_n * force_n - axial_n * axial_n)),
+                                   std::min(across_n, kLateralShare * force_n));
+    const double factor = across_n > room_n ? room_n / across_n : 1.0;
+    const double left_n = std::sqrt(std::max(0.0, force_n * force_n - factor * across_n * factor * across_n));
+    result.force_n = std::clamp(axial_n, -left_n, left_n) * along + factor * lateral_n;
+    result.torque_nmm = factor * wrench.torque_nmm;
+  }
+  return {clipped(result.force_n, force_n), clipped(result.torque_nmm, torque_nmm)};
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/result.h"
+#include "haptics/haptic_scene.h"     // CouplingParams
+#include "haptics/insertion/path_constraint.h"  // Wrench
+#include "telemetry/gate_state.h"
+
+namespace trocar {
+
+/// What the gate did to the wrench in this period; bits.
+enum GateAction : std::uint16_t {
+  kGatePassivity = 1 << 0,   ///< Took out energy that was made.
+  kGateContinuous = 1 << 1,  ///< Held below the peak: the motors are warm.
+  kGateSlew = 1 << 2,        ///< Held back a rise.
+  kGateStale = 1 << 3,       ///< The client is silent.
+  kGateClamp = 1 << 4,       ///< At the device's peak force or torque.
+  kGateBrake = 1 << 5,       ///< Brakes a device that is too fast.
+  kGateStart = 1 << 6,       ///< Safe start: waiting or rising.
+  kGateFault = 1 << 7,
+  kGateOff = 1 << 8,
+  kGateSlowLoop = 1 << 9,  ///< Weakened the coupling: the loop's period is too long for it.
+};
+
+/// Limits of a device and of the gate. Where no source is named a number is assumed. Ranges: gate_params.cpp.
+struct GateParams {
+  double peak_force_n = 37.5;    ///< Range 0.1..200.
+  double peak_torque_nmm = 515;  ///< 0: the device gives no torque.
+  double continuous_force_n = 6.2;
+  double continuous_torque_nmm = 188;
+  double thermal_time_s = 10.0;         ///< Of the motors' first-order warming. Range 0.5..600.
+  double max_damping_ns_per_mm = 0.01;  ///< That the passivity control may add, what the device shows at 1 kHz.
+  double passivity_margin_mj = 2.0;  ///< Energy that may be given before it is taken out: counts, delay. Range 0..50.
+  double softest_n_per_mm = 0.2;     ///< Softest spring whose energy may come back. Range 0.01..5.
+  double softest_nmm_per_rad = 100;  ///< The same of a turn. Range 5..1e4.
+  double count_mm = 0.0295;      ///< Of the device's encoders: motion within it has no moment. Range 0..1; 0: exact.
+  double count_rad = 4.0e-5;     ///< Range 0..0.1.
+  double slew_n_per_s = 4000.0;  ///< Rises only. Range 50..1e5.
+  double slew_nmm_per_s = 8e4;
+  double stale_s = 0.25;       ///< Silence of the client before the force fades.
+  double fade_s = 0.2;         ///< From full force to zero.
+  double rise_s = 0.5;         ///< Safe start and resume: from zero to full force.
+  double small_force_n = 0.3;  ///< Safe start begins below it.
+  double small_torque_nmm = 20.0;
+  double fault_ramp_s = 0.02;
+  double brake_mm_per_s = 1000.0;  ///< A hand with a needle stays below. Range 100..5000.
+  double brake_ns_per_mm = 0.005;  ///< Of the brake, at most max_damping_ns_per_mm.
+  double max_runaway_s = 0.05;
+  double max_unread_s = 0.02;  ///< Range 0.002..1.
+  double period_s = 0.001;     ///< Of the loop, as it should be. Range 0.0001..0.01.
+  /// Of the device's joints and of a loose hand: what may cover a spring's delay. Range 0.0001..0.05.
+  double physical_damping_ns_per_mm = 0.0035;
+  double max_slow_s = 0.05;  ///< Late periods together before a fault (physics.md G11). Range 0.01..5.
+  double jump_mm = 5.0;      ///< A step beyond jump_mm + hand_mm_per_s * dt is impossible. Range 1..100.
+  double kick_mm = 2.5;      ///< A step off its way beyond kick_mm + thrust_mm_per_s2 * dt^2 likewise. Range 0.5..50.
+  double thrust_mm_per_s2 = 4e5;    ///< No hand or motor accelerates a device more. Range 1e4..1e8.
+  double hand_mm_per_s = 3000.0;    ///< No hand is faster. Range 1000..1e4.
+  double turn_rad = 1.0;            ///< The same of a turn. Range 0.2..3.
+  double hand_rad_per_s = 60.0;     ///< Range 10..500.
+  double max_vibration_mw = 100.0;  ///< Power given above 30 Hz before a fault (physics.md G13). Range 1..1e6.
+};
+
+/// Errors: the first field that is out of its range, a continuous limit above its peak. step_gate() takes any bits: a
+/// field out of its range is there what gives the least force.
+Status check(const GateParams& params);
+
+/// What a period gives the gate: the wrench that the tick wants (about S, in any frame at rest, all in the same one),
+/// and what is known of the device and of the client.
+struct GateInput {
+  Wrench wanted;                   ///< Without the weight: what tissue and path do.
+  Wrench weight;                   ///< Compensation of the stylus' weight; conservative, not watched for energy.
+  Vec3 axis = Vec3::UnitZ();       ///< Unit, along the needle: the part of a force that is kept when it saturates.
+  Vec3 v_mm_per_s = Vec3::Zero();  ///< Of the stylus, the mean since the last period (its way over dt); and
+  Vec3 w_rad_per_s = Vec3::Zero();
+  double dt_s = 0.001;
+  double silence_s = 0.0;   ///< Since the client was last heard.
+  double unread_s = 0.0;    ///< Since the device's last fresh reading.
+  double busy_s = 0.0;      ///< Part of dt_s that reading, tick and writing of the last period took.
+  CouplingParams coupling;  ///< As the device sees it; stiffness 0: nothing to watch.
+  bool is_wanted = false;   ///< Somebody asked for forces.
+  GateFault device_fault =
+      GateFault::kNone;   ///< What the caller saw (kDeviceLost, kEncoderStuck, kLoopStalled, kRequested).
+  bool is_reset = false;  ///< Explicit reset of a fault; without effect while its cause lasts.
+};
+
+/// Fixed size, copyable.
+struct GateState {
+  GateMode mode = GateMode::kOff;
+  GateFault fault = GateFault::kNone;
+  Wrench last;              ///< What went out; and
+  Wrench watched;           ///< the same without the weight's share, whose energy is watched.
+  double scale = 0.0;       ///< Of safe start, fading and a fault's ramp, 0..1.
+  double energy_mj = 0.0;   ///< Given to the device, less what was taken out; at least what springs may store (G2).
+  double quiet_s = 0.0;     ///< Since more than a small force was wanted.
+  double force_heat = 0.0;  ///< Mean square of the force over the continuous one's square: 1 = warm.
+  double torque_heat = 0.0;
+  double runaway_s = 0.0;
+  double drop_from_n = 0.0;  ///< Of the fall that is going on.
+  double drop_s = 0.0;
+  double slow_s = 0.0;         ///< Late periods together; drains in good ones.
+  double since_late_s = 1.0;   ///< Since the last late period.
+  double slow_period_s = 0.0;  ///< Period of a slow loop; 0: the loop is not slow.
+  double coupling_share = 1.0;
+  Vec3 slow_f_n = Vec3::Zero(), slow_tau_nmm = Vec3::Zero();  ///< Low-pass of what went out, and
+  Vec3 slow_v_mm_per_s = Vec3::Zero(), slow_w_rad_per_s = Vec3::Zero();
+  double vibration_mw = 0.0;  ///< Mean power that went into fast motion.
+  double vibration_s = 0.0;   ///< Time above the limit.
+  Vec3 last_v_mm_per_s = Vec3::Zero();
+};
+
+struct GateOutput {
+  Wrench wrench;              ///< For the device. Always finite, always within its limits.
+  std::uint16_t actions = 0;  ///< GateAction bits.
+  double drop_n = 0.0;        ///< A fall of the force that ended in this period: by how much,
+  double drop_s = 0.0;        ///< and how long it took. Zero otherwise.
+};
+
+/// The device was in other hands and has given nothing meanwhile: what went out last is zero, no energy, speed or drop
+/// is remembered, and forces come back through the safe start. A fault and the motors' warmth stay.
+void restart_gate(GateState& state) noexcept;
+
+/// The last step before the motors and the only one that writes to them (physics.md G1-G9, G11-G13): finite check,
+/// faults, share of the coupling that the loop's period permits, passivity control (Hannaford and Ryu's observer and
+/// controller), velocity brake, continuous-force limit, scale of safe start and staleness, slew limit on rises only,
+/// norm clamp last. When a force saturates the lateral part and the torque are scaled by one factor and the axial part
+/// is kept (to 2 %: it leaves room for a lateral fifth of the limit). Any fault fades to zero within fault_ramp_s and
+/// latches. A pure function of its arguments; real-time safe; total: any bits in, a wrench within the limits out.
+GateOutput step_gate(GateState& state, const GateInput& input, const GateParams& params) noexcept;
+
+}  // namespace trocar

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string_view>
+
+#include "anatomy/patient.h"
+#include "anatomy/tissue/tissue_table.h"
+#include "core/result.h"
+#include "geometry/pose.h"
+#include "haptics/contact/contact_face.h"
+#include "haptics/insertion/insertion_law.h"
+#include "haptics/proxy/needle_beam.h"
+#include "haptics/needle_geometry.h"
+#include "haptics/insertion/path_constraint.h"
+
+namespace trocar {
+
+/// Which law makes the force (docs/physics.md T1, T2).
+enum class ForceModel : std::uint8_t {
+  kInsertion,  ///< Paper A: layers that load and give way, friction, cutting, path constraint.
+  kProxy,      ///< Paper B: tip proxy on CT and labels, body proxies on the path, bending.
+  kCombined,   ///< A's loading and cutting where a tissue has parameters, B elsewhere and for the shaft.
+};
+const char* to_string(ForceModel model) noexcept;
+/// "insertion", "proxy", "combined"; else exit status 2.
+Result<ForceModel> parse_force_model(std::string_view name);
+
+/// What a device senses and can bear. Defaults: PHANTOM Premium 1.5 High Force 6DOF (paper B, section 2.1).
+struct DeviceCapability {
+  double peak_force_n = 37.5;
+  double peak_torque_nmm = 515.0;       ///< 0: senses rotation, gives no torque.
+  double max_stiffness_n_per_mm = 3.5;  ///< Range 0.1..20. Source: vendor's nominal figure, references.md.
+  double stylus_weight_n = 0.5;         ///< Weight that links and stylus put on the hand. Range 0..5. [assumed]
+  double stylus_lever_mm = 20.0;        ///< Centre of that weight behind the stylus origin, along -z of S. [assumed]
+
+  bool has_torque() const noexcept { return peak_torque_nmm > 0.0; }
+};
+
+/// Spring and damper between device and virtual needle (physics.md V1). Range: stiffness at most the device's. Values:
+/// references.md, steady within 0.3 N on a bare 45-150 g mass.
+struct CouplingParams {
+  double stiffness_n_per_mm = 1.0;
+  double damping_ns_per_mm = 0.003;
+};
+
+/// Whose weight is compensated, and switches for study.
+struct HapticOptions {
+  Tool tool = Tool::kNeedle;
+  ForceModel force_model = ForceModel::kInsertion;
+  CouplingParams coupling;
+  PathConstraintParams constraint;
+  bool has_stick = true;  ///< Karnopp holding force (physics.md F3).
+  bool has_weight_compensation = true;
+  bool has_bending = true;  ///< Proxy and combined: false keeps the shaft straight.
+  std::uint64_t seed = 1;   ///< Of the friction's fluctuation.
+};
+
+inline constexpr int kMaxTissues = 32;
+inline constexpr int kMaxLayers = 16;
+inline constexpr std::uint8_t kNoLayer = 0xff;
+
+/// Tissue and layer numbers as the tick reads them: no text, fixed size.
+struct TissueLaw {
+  double viscosity_ns_per_mm = 0.0;
+  double noise_n = 0.0;  ///< delta * mu
+  double stick_n_per_mm = 0.0;
+  double cutting_n = 0.0;
+  double young_kpa = 0.0;
+  double friction_mu = 0.0;
+  std::uint8_t layer = kNoLayer;
+};
+struct LayerLaw {
+  LoadingLaw loading;
+  double puncture_force_n = std::numeric_limits<double>::infinity();
+  double indent_n_per_mm = 1.0;  ///< Puncture force over the static indentation at it; bone: its stiffness.
+  bool is_wall = false;          ///< Proxy models: gives way at a label's border.
+};
+
+/// Everything the tick reads and never changes. Built off-line, shared, read by many threads.
+struct HapticScene {
+  std::shared_ptr<const VirtualPatient> patient;
+  std::array<TissueLaw, kMaxTissues> tissues{};
+  std::array<LayerLaw, kMaxLayers> layers{};
+  int tissue_count = 0;
+  int layer_count = 0;
+  std::array<std::uint8_t, 256> tissue_of_label{};  ///< By label id.
+  std::uint8_t skin = 0;
+  double skin_thickness_mm = 2.0;
+  HuTransfer transfer;  ///< Unlabelled tissue, proxy and combined.
+  NeedleGeometry needle;
+  ContactFace face;  ///< Of a transducer or a finger.
+  NeedleBeam beam_with_stylet;
+  NeedleBeam beam_without_stylet;
+  DeviceCapability device;
+  HapticOptions options;
+  Pose X_PD;  ///< Device base in the patient.
+  /// Needle in the stylus: tip at +z, length_mm from the stylus origin. For a transducer or a finger X_ST: y of T
+  /// along +z of S, face.reach_mm from the stylus origin.
+  Pose X_SN;
+  Vec3 gravity_P = Vec3::UnitY();  ///< Unit, downwards: a supine patient lies on +y.
+};
+
+/// Checks every number and builds the scene. Errors: coupling or constraint stiffer than the device, numbers out of
+/// range, too many tissues; a patient without skin distance, without labels (insertion), without CT or a table without
+/// transfer functions (proxy, combined). A label of a tissue that the table lacks counts as soft_tissue, with a
+/// warning; a transducer or a finger needs labels, or a CT and transfer functions, whatever the force model.
+Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const VirtualPatient> patient,
+                                                             const TissueTable& tissues, const NeedleGeometry& needle,
+                                                             const DeviceCapability& device = {},
+                                                             const HapticOptions& options = {});
+
+/// What lies at a point of the resting anatomy. Real-time safe.
+struct TissueAt {
+  std::uint8_t tissue = 0;  ///< 0: air.
+  std::uint8_t label = 0;
+};
+TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept;
+
+}  // namespace trocar

@@ -1,0 +1,296 @@
+#include "haptics/insertion/insertion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "haptics/coupling/balance.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kLook_mm = 10.0;  // Past the tip and the device: more than a tick can jump.
+constexpr double kContactHysteresis_mm = 0.1;
+constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the tip is this far out.
+constexpr double kSpeedSmoothing_s = 0.02;
+
+/// Needle and device on the line of this step, before and now.
+struct LineStep {
+  double s_previous_mm;
+  double s_device_previous_mm;
+  double s_device_mm;
+};
+
+void stop_loading(InsertionState& state) noexcept {
+  state.loading = kNoLayer;
+  state.is_stuck = false;
+  state.pending_s = 0.0;
+}
+
+/// Places needle and device on the line of this step: the path once the skin is open, before that the needle's own axis
+/// from where it meets the skin. Nothing: no skin ahead.
+std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path, const HapticScene& scene,
+                                      const Vec3& tip_P, const Vec3& axis_P) noexcept {
+  if (!path.is_open) {
+    const auto to_skin = distance_to_skin_along(scene, tip_P, axis_P);
+    if (!to_skin) return std::nullopt;
+    const Vec3 entry_P = tip_P + *to_skin * axis_P;
+    if (const Channel* hole =
+            state.loading == kNoLayer && *to_skin < 0.0 ? path.memory.find(entry_P, axis_P) : nullptr) {
+      path.channel = *hole;
+      path.is_open = true;
+    } else if (state.loading == kNoLayer) {
+      start_channel(path, entry_P, axis_P);
+    } else {  // sliding and turning on the skin
+      path.channel.origin_P = entry_P;
+      path.channel.direction_P = axis_P;
+    }
+    if (state.loading == kNoLayer) {  // nothing touched yet: needle and device were in one place
+      state.s_mm = state.s_device_mm = path.channel.direction_P.dot(state.device_tip_P - path.channel.origin_P);
+    }
+  }
+  const Channel& line = path.channel;
+  return LineStep{state.s_mm, state.s_device_mm, line.direction_P.dot(tip_P - line.origin_P)};
+}
+
+/// The layer under load, or the one that the tip will meet next.
+LayerAhead layer_in_front(InsertionState& state, InsertionPath& path, const HapticScene& scene) noexcept {
+  if (state.loading != kNoLayer) return {state.loading, state.surface_mm};
+  if (!path.is_open) return {scene.tissues[scene.skin].layer, 0.0};  // s is counted from the resting skin
+  look_ahead(path.channel, scene, std::max(state.s_mm, 0.0), kLook_mm);
+  // From the resting tip on: a layer that gave way may have lain over the next one.
+  LayerAhead ahead = next_layer(path.channel, scene, path.rest_mm, std::max(state.s_mm, 0.0) + kLook_mm);
+  ahead.surface_mm = std::max(ahead.surface_mm, state.s_mm);
+  return ahead;
+}
+
+/// Friction of paper A: every tissue by the shaft length in it, and its fluctuation.
+void add_friction(AxialBalance& balance, const InsertionState& state, const InsertionPath& path,
+                  const HapticScene& scene) noexcept {
+  const double fade = motion_fade(state.velocity_mm_per_s);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(scene.tissue_count); ++i) {
+    if (path.inserted_mm[i] <= 0.0) continue;
+    balance.viscous_ns_per_mm +=
+        scene.tissues[i].viscosity_ns_per_mm * contact_area_cm2(scene.needle.radius_mm, path.inserted_mm[i]);
+    balance.noise_n += fade * scene.tissues[i].noise_n *
+                       friction_noise(scene.options.seed, static_cast<std::uint32_t>(i), path.travel_mm);
+  }
+}
+
+AxialBalance make_balance(const InsertionState& state, const InsertionPath& path, const HapticScene& scene,
+                          const LineStep& line, double dt_s, const LayerAhead& ahead,
+                          const ProxyShare* share) noexcept {
+  AxialBalance balance;
+  balance.s_previous_mm = line.s_previous_mm;
+  balance.s_device_mm = line.s_device_mm;
+  balance.v_device_mm_per_s = (line.s_device_mm - line.s_device_previous_mm) / dt_s;
+  balance.dt_s = dt_s;
+  balance.coupling = scene.options.coupling;
+  if (ahead.layer != kNoLayer) {
+    balance.loading = scene.layers[ahead.layer].loading;
+    balance.surface_mm = ahead.surface_mm;
+  }
+  const bool is_cutting = path.is_open && state.loading == kNoLayer;
+  if (is_cutting) {
+    const auto tip_bin = static_cast<std::size_t>(bin_of(path.rest_mm));
+    balance.cutting_n = scene.tissues[path.channel.tissue[tip_bin]].cutting_n;
+    balance.cut_to_mm = path.channel.cut_to_mm;
+  }
+  if (share == nullptr) {
+    add_friction(balance, state, path, scene);
+    return balance;
+  }
+  balance.viscous_ns_per_mm = share->shaft.viscous_ns_per_mm;
+  balance.dry_n = share->shaft.dry_n;
+  if (is_cutting && share->tip_n > 0.0) balance.cutting_n = share->tip_n;
+  if (is_cutting) balance.viscous_ns_per_mm += share->tip_viscous_ns_per_mm;
+  return balance;
+}
+
+double holding_force_n(const InsertionPath& path, const HapticScene& scene, const AxialBalance& balance) noexcept {
+  if (scene.options.force_model == ForceModel::kCombined) return balance.dry_n;
+  double force = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(scene.tissue_count); ++i)
+    force += scene.tissues[i].stick_n_per_mm * std::max(0.0, path.inserted_mm[i]);
+  return force;
+}
+
+/// Karnopp: a needle at rest stays there while the forces on it are below the holding force.
+bool is_held(const InsertionState& state, const InsertionPath& path, const HapticScene& scene,
+             const AxialBalance& balance) noexcept {
+  if (!scene.options.has_stick || !path.is_open) return false;
+  const bool at_rest = state.is_stuck || (std::abs(state.velocity_mm_per_s) <= kRestSpeed_mm_per_s &&
+                                          state.device_speed_mm_per_s <= kRestSpeed_mm_per_s);
+  if (!at_rest) return false;
+  const double s = balance.s_previous_mm;
+  const double push = balance.coupling_n(s) - balance.prepuncture_n(s);
+  const double holding = holding_force_n(path, scene, balance);
+  const double uncut = s >= balance.cut_to_mm ? balance.cutting_n : 0.0;  // fresh tissue holds until it is cut
+  return push <= holding + uncut && push >= -holding;
+}
+
+/// The part of the step after which the layer carries its puncture force.
+struct Puncture {
+  double fraction;
+  AxialBalance balance;
+  double s_mm;
+};
+Puncture find_puncture(const AxialBalance& whole, const LineStep& line, double v_device_before_mm_per_s,
+                       double puncture_force_n) noexcept {
+  constexpr int kMaxSteps = 40;
+  constexpr double kTolerance = 1e-4;
+  double low = 1e-3;
+  double high = 1.0;
+  Puncture puncture{1.0, whole, 0.0};
+  for (int i = 0; i < kMaxSteps; ++i) {
+    puncture.fraction = 0.5 * (low + high);
+    puncture.balance.dt_s = whole.dt_s * puncture.fraction;
+    puncture.balance.s_device_mm = std::lerp(line.s_device_previous_mm, line.s_device_mm, puncture.fraction);
+    // The device's speed changes over the tick, not at its start: the force is continuous between ticks.
+    puncture.balance.v_device_mm_per_s =
+        std::lerp(v_device_before_mm_per_s, whole.v_device_mm_per_s, puncture.fraction);
+    puncture.s_mm = solve(puncture.balance).s_mm;
+    const double force = puncture.balance.prepuncture_n(puncture.s_mm);
+    if (std::abs(force - puncture_force_n) < kTolerance * puncture_force_n) break;
+    (force < puncture_force_n ? low : high) = puncture.fraction;
+  }
+  return puncture;
+}
+
+InsertionPhase next_phase(const InsertionState& state, const InsertionPath& path) noexcept {
+  if (state.loading != kNoLayer) return InsertionPhase::kLoading;
+  if (!path.is_open) return InsertionPhase::kOutside;
+  if (state.velocity_mm_per_s < -kRestSpeed_mm_per_s) return InsertionPhase::kRetracting;
+  if (state.velocity_mm_per_s > kRestSpeed_mm_per_s) return InsertionPhase::kInserted;
+  return state.phase == InsertionPhase::kRetracting ? InsertionPhase::kRetracting : InsertionPhase::kInserted;
+}
+
+/// Contact with hysteresis: begins at the resting surface, ends a little above it.
+void update_contact(InsertionState& state, const InsertionPath& path, const LayerAhead& ahead) noexcept {
+  if (ahead.layer == kNoLayer) return;
+  if (state.s_mm > ahead.surface_mm) {
+    if (!path.is_open && state.loading == kNoLayer) state.contact_P = path.channel.origin_P;
+    state.loading = ahead.layer;
+    state.surface_mm = ahead.surface_mm;
+  } else if (state.s_mm < ahead.surface_mm - kContactHysteresis_mm) {
+    state.loading = kNoLayer;
+  }
+}
+
+/// The layer under load gives way; behind the skin this opens the path.
+void give_way(InsertionState& state, InsertionPath& path, std::uint8_t layer) noexcept {
+  state.loading = kNoLayer;
+  if (path.is_open) {
+    path.channel.pierce(layer);
+    return;
+  }
+  open_path(path, layer);
+  path.contact_to_puncture_P = path.channel.origin_P + state.s_mm * path.channel.direction_P - state.contact_P;
+}
+
+/// No skin ahead: the virtual needle is where the device is.
+InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const Vec3& tip_P, const Vec3& axis_P,
+                          double dt_s) noexcept {
+  leave_body(path);
+  stop_loading(state);
+  InsertionStep step;
+  step.tip_P = tip_P;
+  step.axis_P = axis_P;
+  step.velocity_mm_per_s = (tip_P - state.device_tip_P).dot(axis_P) / dt_s;
+  state.velocity_mm_per_s = state.device_velocity_mm_per_s = step.velocity_mm_per_s;
+  state.device_tip_P = tip_P;
+  state.phase = InsertionPhase::kOutside;
+  return step;
+}
+
+/// The values of the laws at the end of the step, as recorded.
+void record_forces(const AxialBalance& balance, double s_mm, bool is_stuck, const ProxyShare* share,
+                   InsertionStep& step) noexcept {
+  step.velocity_mm_per_s = is_stuck ? 0.0 : balance.velocity(s_mm);
+  step.displacement_mm = balance.displacement(s_mm);
+  step.prepuncture_n = balance.prepuncture_n(s_mm);
+  if (is_stuck) {
+    step.stick_n = balance.coupling_n(s_mm) - step.prepuncture_n;
+    return;
+  }
+  const double friction_n = balance.friction_n(s_mm);
+  const double cutting_n = balance.cutting_force_n(s_mm);
+  (share != nullptr ? step.body_axial_n : step.friction_n) = friction_n;
+  (share != nullptr && share->tip_n > 0.0 ? step.tip_proxy_n : step.cutting_n) = cutting_n;
+}
+
+std::uint8_t tissue_at_tip(const InsertionState& state, const InsertionPath& path, const HapticScene& scene) noexcept {
+  if (!path.is_open) return state.loading != kNoLayer ? scene.skin : std::uint8_t{0};
+  return path.rest_mm > 0.0 ? path.channel.tissue[static_cast<std::size_t>(bin_of(path.rest_mm))] : std::uint8_t{0};
+}
+
+/// Balance over the step, cut short where a layer gives way. Returns s of the virtual needle.
+double solve_step(InsertionState& state, const HapticScene& scene, const LineStep& line, const LayerAhead& ahead,
+                  AxialBalance& balance, InsertionStep& step) noexcept {
+  state.pending_s = 0.0;
+  if (state.is_stuck) return line.s_previous_mm;
+  const AxialSolution solution = solve(balance);
+  step.hit_solver_bound = solution.hit_bound;
+  if (ahead.layer == kNoLayer) return solution.s_mm;
+  const double puncture_force_n = scene.layers[ahead.layer].puncture_force_n;
+  if (balance.prepuncture_n(solution.s_mm) < puncture_force_n) return solution.s_mm;
+  const Puncture puncture = find_puncture(balance, line, state.device_velocity_mm_per_s, puncture_force_n);
+  state.pending_s = (1.0 - puncture.fraction) * balance.dt_s;
+  balance = puncture.balance;
+  step.punctured = ahead.layer;
+  return puncture.s_mm;
+}
+
+}  // namespace
+
+void start_insertion(InsertionState& state, const InsertionPath& path, const Vec3& device_tip_P) noexcept {
+  state = {};
+  state.device_tip_P = device_tip_P;
+  if (!path.is_open) return;
+  state.s_mm = state.s_device_mm = path.channel.direction_P.dot(device_tip_P - path.channel.origin_P);
+  state.phase = InsertionPhase::kInserted;
+}
+
+InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const HapticScene& scene,
+                             const Vec3& device_tip_P, const Vec3& device_axis_P, double dt_s,
+                             const ProxyShare* share) noexcept {
+  const auto line = place_on_line(state, path, scene, device_tip_P, device_axis_P);
+  if (!line) return step_in_air(state, path, device_tip_P, device_axis_P, dt_s);
+
+  // Balance of the virtual needle, over the tick and what the last puncture left of the one before.
+  const LayerAhead ahead = layer_in_front(state, path, scene);
+  AxialBalance balance = make_balance(state, path, scene, *line, dt_s + state.pending_s, ahead, share);
+  const double smoothing = dt_s / (dt_s + kSpeedSmoothing_s);
+  state.device_speed_mm_per_s += smoothing * (std::abs(balance.v_device_mm_per_s) - state.device_speed_mm_per_s);
+  state.is_stuck = is_held(state, path, scene, balance);
+  InsertionStep step;
+  const double s_mm = solve_step(state, scene, *line, ahead, balance, step);
+  record_forces(balance, s_mm, state.is_stuck, share, step);
+
+  // The tip stays at the resting surface of the layer that it indents until that gives way.
+  state.s_mm = s_mm;
+  state.s_device_mm = balance.s_device_mm;
+  state.velocity_mm_per_s = step.velocity_mm_per_s;
+  state.device_velocity_mm_per_s = balance.v_device_mm_per_s;
+  state.device_tip_P = device_tip_P;
+  update_contact(state, path, ahead);
+  if (path.is_open) {
+    const double rest_mm = state.loading != kNoLayer ? std::min(s_mm, state.surface_mm) : s_mm;
+    step.entered = move_tip(path, scene, std::max(0.0, rest_mm), state.loading);
+  }
+  state.phase = next_phase(state, path);
+
+  step.phase = state.phase;
+  step.tissue = tissue_at_tip(state, path, scene);
+  step.axis_P = path.channel.direction_P;
+  step.tip_P = path.channel.origin_P + s_mm * step.axis_P;
+  step.depth_mm = path.is_open || state.loading != kNoLayer ? std::max(0.0, s_mm) : 0.0;
+  if (step.punctured != kNoLayer) give_way(state, path, step.punctured);
+  if (path.is_open && s_mm < -kLeaveSkin_mm) {
+    leave_body(path);
+    stop_loading(state);
+  }
+  return step;
+}
+
+}  // namespace trocar

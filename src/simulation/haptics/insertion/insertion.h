@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "haptics/proxy/body_proxies.h"
+#include "haptics/haptic_scene.h"
+#include "haptics/insertion/insertion_path.h"
+#include "telemetry/tick_sample.h"
+
+namespace trocar {
+
+/// The needle in its insertion (paper A, section 4.1): what must be known from one tick to the next. Fixed size.
+struct InsertionState {
+  Vec3 device_tip_P = Vec3::Zero();  ///< Device tip at the last tick.
+  double s_device_mm = 0.0;          ///< Device tip along the path at the last solution.
+  double s_mm = 0.0;                 ///< Virtual needle's tip along the path.
+  double velocity_mm_per_s = 0.0;
+  double device_velocity_mm_per_s = 0.0;  ///< Axial, of the last step.
+  double device_speed_mm_per_s = 0.0;     ///< Smoothed |axial velocity| of the device.
+  double pending_s = 0.0;                 ///< Rest of the tick in which a layer gave way.
+
+  Vec3 contact_P = Vec3::Zero();  ///< P: where the needle first touched the skin.
+
+  std::uint8_t loading = kNoLayer;  ///< Layer under load.
+  double surface_mm = 0.0;          ///< s of its resting surface.
+  bool is_stuck = false;
+  InsertionPhase phase = InsertionPhase::kOutside;
+};
+
+/// What one step gives: the very values put into the laws, forces as resistances (positive pushes the needle out).
+struct InsertionStep {
+  Vec3 tip_P = Vec3::Zero();
+  Vec3 axis_P = Vec3::UnitZ();
+  double velocity_mm_per_s = 0.0;
+  double depth_mm = 0.0;
+  double displacement_mm = 0.0;  ///< x of the layer under load.
+  double prepuncture_n = 0.0;
+  double friction_n = 0.0;
+  double cutting_n = 0.0;
+  double stick_n = 0.0;
+  double tip_proxy_n = 0.0;   ///< Combined: the tip in tissue that no layer or cutting force describes.
+  double body_axial_n = 0.0;  ///< Combined: friction of the body proxies, in place of friction_n.
+  std::uint8_t tissue = 0;
+  InsertionPhase phase = InsertionPhase::kOutside;
+  std::uint8_t punctured = kNoLayer;  ///< Layer that gave way in this step.
+  EnteredLabels entered;
+  bool hit_solver_bound = false;
+};
+
+/// What the proxies of paper B feel along the path, in place of the friction of paper A (combined model; physics.md
+/// T2).
+struct ProxyShare {
+  ShaftResistance shaft;
+  double tip_n = 0.0;  ///< Threshold of the tip in fresh tissue without parameters of A.
+  double tip_viscous_ns_per_mm = 0.0;
+};
+
+/// Takes needle and device to be where the device is: no force. Real-time safe.
+void start_insertion(InsertionState& state, const InsertionPath& path, const Vec3& device_tip_P) noexcept;
+
+/// One step of the needle: device tip and unit axis in P, dt > 0. A layer that gives way within the step ends it there
+/// (force = puncture force); the rest of the time is added to the next step. `share`: nullptr for the insertion model
+/// alone. Real-time safe.
+InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const HapticScene& scene,
+                             const Vec3& device_tip_P, const Vec3& device_axis_P, double dt_s,
+                             const ProxyShare* share = nullptr) noexcept;
+
+}  // namespace trocar

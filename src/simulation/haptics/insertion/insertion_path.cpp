@@ -1,0 +1,121 @@
+#include "haptics/insertion/insertion_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/sampling.h"
+
+namespace trocar {
+
+std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
+  const FloatGrid& distance = scene.patient->skin_distance_mm;
+  constexpr double kReach_mm = 30.0;
+  constexpr double kGrazing = 0.17;  // cosine of 80 degrees
+  constexpr int kMaxSteps = 12;
+  double t = 0.0;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const Vec3 here_P = tip_P + t * axis_P;
+    const double d = sample_linear(distance, here_P);
+    if (!(std::abs(d) < kReach_mm)) return std::nullopt;
+    if (std::abs(d) < 1e-6) return t;
+    const double slope = gradient_per_mm(distance, here_P).dot(axis_P);
+    if (slope > -kGrazing) return std::nullopt;
+    t -= d / slope;
+    if (std::abs(t) > kReach_mm) return std::nullopt;
+  }
+  return t;
+}
+
+void start_channel(InsertionPath& path, const Vec3& origin_P, const Vec3& direction_P) noexcept {
+  path.channel.is_used = true;
+  path.channel.origin_P = origin_P;
+  path.channel.direction_P = direction_P;
+  path.channel.pierced = 0;
+  path.channel.cut_to_mm = 0.0;
+  path.channel.forget_bins();
+}
+
+void open_path(InsertionPath& path, std::uint8_t skin_layer) noexcept {
+  path.is_open = true;
+  if (skin_layer != kNoLayer) path.channel.pierce(skin_layer);
+  path.rest_mm = 0.0;
+  path.channel.forget_bins();  // the line may have turned while the skin was loaded
+}
+
+EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double rest_mm, std::uint8_t loading) noexcept {
+  EnteredLabels entered;
+  const auto is_held_back = [&](std::size_t bin) {
+    return loading != kNoLayer && scene.tissues[path.channel.tissue[bin]].layer == loading;
+  };
+  std::size_t count = 0;
+  const double low = std::min(path.rest_mm, rest_mm);
+  const double high = std::max(path.rest_mm, rest_mm);
+  const bool is_forward = rest_mm > path.rest_mm;
+  const int end = bin_of(high);
+  for (int bin = bin_of(low); bin <= end && high > low; ++bin) {
+    const auto index = static_cast<std::size_t>(bin);
+    const double length = std::min(high, (bin + 1) * Channel::kBin_mm) - std::max(low, bin * Channel::kBin_mm);
+    if (length > 0.0) {
+      double& inserted = path.inserted_mm[path.channel.tissue[index]];
+      inserted = std::max(0.0, is_forward ? inserted + length : inserted - length);
+    }
+    const std::uint8_t label = path.channel.label[index];
+    // A tip that rests on a bin's border is not in the bin beyond it.
+    if (!is_forward || length <= 0.0 || label == path.label || is_held_back(index)) continue;
+    path.label = label;
+    if (label != 0 && count < entered.labels.size())
+      entered.labels[count++] = label;
+    else if (label != 0)
+      entered.is_overflown = true;
+  }
+  const auto last = static_cast<std::size_t>(bin_of(rest_mm));
+  if (rest_mm < path.rest_mm && !is_held_back(last)) path.label = path.channel.label[last];
+  path.travel_mm += high - low;
+  path.rest_mm = rest_mm;
+  path.channel.cut_to_mm = std::max(path.channel.cut_to_mm, rest_mm);
+  return entered;
+}
+
+void leave_body(InsertionPath& path) noexcept {
+  if (path.is_open) path.memory.remember(path.channel);
+  path.is_open = false;
+  path.contact_to_puncture_P = Vec3::Zero();
+  path.rest_mm = 0.0;
+  path.label = 0;
+  path.inserted_mm.fill(0.0);
+}
+
+namespace {
+
+/// Way (mm) back along the axis from a tip inside the body to the skin; the longest needle's length where none is met.
+double way_to_skin_back(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
+  constexpr double kStep_mm = 1.0;
+  constexpr double kLongest_mm = (Channel::kBins - 1) * Channel::kBin_mm;
+  const FloatGrid& distance = scene.patient->skin_distance_mm;
+  double inside = -sample_linear(distance, tip_P);
+  for (double back = kStep_mm; back < kLongest_mm; back += kStep_mm) {
+    const double next = -sample_linear(distance, tip_P - back * axis_P);
+    if (next <= 0.0) return back - kStep_mm * (-next) / (inside - next);
+    inside = next;
+  }
+  return kLongest_mm;
+}
+
+}  // namespace
+
+bool resume_inside(InsertionPath& path, const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
+  if (!(sample_linear(scene.patient->skin_distance_mm, tip_P) < 0.0)) return false;
+  const double depth_mm = way_to_skin_back(scene, tip_P, axis_P);
+  start_channel(path, tip_P - depth_mm * axis_P, axis_P);
+  open_path(path, scene.tissues[scene.skin].layer);
+  const int end = bin_of(depth_mm);
+  while (path.channel.known_bins <= end) look_ahead(path.channel, scene, depth_mm, 0.0);
+  for (int bin = 0; bin <= end; ++bin) {
+    const std::uint8_t layer = scene.tissues[path.channel.tissue[static_cast<std::size_t>(bin)]].layer;
+    if (layer != kNoLayer) path.channel.pierce(layer);
+  }
+  move_tip(path, scene, depth_mm, kNoLayer);
+  return true;
+}
+
+}  // namespace trocar

@@ -1,0 +1,143 @@
+#include "haptics/insertion/needle_step.h"
+
+#include <algorithm>
+
+#include "haptics/proxy/tip_law.h"
+
+namespace trocar {
+namespace {
+
+/// A hand moves a needle by less than this in a tick.
+constexpr double kJump_mm = 5.0;
+constexpr double kJump_mm_per_s = 3000.0;
+
+/// Starts where the needle is: outside, or inside with everything down to the tip pierced.
+void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, NeedleStep& step) noexcept {
+  step.has_jumped = state.is_started;
+  leave_body(state.path);
+  step.has_resumed = resume_inside(state.path, scene, X_PN.p(), X_PN.R().col(2));
+  start_insertion(state.insertion, state.path, X_PN.p());
+  start_proxy_needle(state.proxy, state.path, X_PN.p());
+  state.X_PN = X_PN;
+  state.tip_velocity_P = state.axis_rate_P = Vec3::Zero();
+  state.is_started = true;
+}
+
+/// The pose a damping time ahead: springs that act on it damp in proportion to their stiffness (physics.md B7).
+Pose pose_ahead(NeedleState& state, const Pose& X_PN, double ahead_s, double dt_s) noexcept {
+  constexpr double kSmoothing_s = 0.002;
+  const double share = dt_s / (dt_s + kSmoothing_s);
+  const Vec3 axis = X_PN.R().col(2);
+  state.tip_velocity_P += share * ((X_PN.p() - state.X_PN.p()) / dt_s - state.tip_velocity_P);
+  state.axis_rate_P += share * ((axis - state.X_PN.R().col(2)) / dt_s - state.axis_rate_P);
+  const Vec3 ahead = (axis + ahead_s * state.axis_rate_P).normalized();
+  return {rotation_between(axis, ahead) * X_PN.R(), X_PN.p() + ahead_s * state.tip_velocity_P};
+}
+
+NeedleAtPath at_path(const HapticScene& scene, const Pose& X_PN) noexcept {
+  const Vec3 axis_P = X_PN.R().col(2);
+  return {X_PN.p() - scene.needle.length_mm * axis_P, axis_P, scene.needle.length_mm};
+}
+
+/// Paper A: path constraint while the skin is open, about S.
+Wrench path_constraint_wrench(const InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
+                              const Pose& X_PN_ahead) noexcept {
+  if (!path.is_open) return {};
+  const PathLine line{path.channel.origin_P, path.channel.direction_P};
+  return path_constraint(line, at_path(scene, X_PN), at_path(scene, X_PN_ahead), scene.options.constraint);
+}
+
+/// Torque about S of resistances along the path: they act at the tip, by whose way they are found (physics.md T1).
+Vec3 axial_torque_nmm(const HapticScene& scene, const Pose& X_PN, const Vec3& direction_P, double along_n) noexcept {
+  return -along_n * Vec3(scene.needle.length_mm * X_PN.R().col(2)).cross(direction_P);
+}
+
+/// What the body proxies hold across the path, the shape it bends the needle to, and the torque about the grip of all
+/// forces (paper B, eq. 6): those along the path act at the tip, by whose way they are found.
+void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ahead, bool is_stylet_in,
+               double cutting_mm_per_s, NeedleStep& step) noexcept {
+  if (!state.path.is_open) return;
+  const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
+  const InsertionStep& axial = step.axial;
+  const double on_tip_n = axial.prepuncture_n + axial.cutting_n - step.tip_proxy_P.dot(axial.axis_P);
+  // The bevel pushes aside what it cuts: at rest it does not, or it would be a force without a potential.
+  const double cuts = cutting_mm_per_s > 0.0 ? motion_fade(cutting_mm_per_s) : 0.0;
+  const ShaftReaction reaction = react(shaft, scene, bevel_force_P(scene.needle, X_PN_ahead, cuts * on_tip_n));
+  state.shape = reaction.needle;
+  step.held_P = reaction.wrench_P;
+  const double along_n = on_tip_n + axial.body_axial_n + axial.stick_n;
+  step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN_ahead, axial.axis_P, along_n);
+}
+
+/// Model B's part along the path of the combined model: the shaft's friction, and the tip in unlabelled tissue, of
+/// which model A knows nothing.
+ProxyShare proxy_share(const InsertionPath& path, const HapticScene& scene) noexcept {
+  ProxyShare share;
+  if (!path.is_open) return share;
+  share.shaft = shaft_resistance(path.channel, scene, path.rest_mm);
+  const auto bin = static_cast<std::size_t>(bin_of(path.rest_mm));
+  const TissueAt here{path.channel.tissue[bin], path.channel.label[bin]};
+  if (!(path.rest_mm > 0.0) || here.label != 0 || here.tissue == scene.skin) return share;
+  const Vec3& u = path.channel.direction_P;
+  const TipLaw law = tip_law_at(scene, path.channel.origin_P + path.rest_mm * u, here);
+  share.tip_n = threshold_along_n(law, u);
+  share.tip_viscous_ns_per_mm = (1.0 - law.border) * law.law.viscosity_ns_per_mm;
+  return share;
+}
+
+void step_insertion_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
+                          double dt_s, NeedleStep& step) noexcept {
+  step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s);
+  step.held_P = path_constraint_wrench(state.path, scene, X_PN, X_PN_ahead);
+  const InsertionStep& axial = step.axial;
+  const double along_n = axial.prepuncture_n + axial.friction_n + axial.cutting_n + axial.stick_n;
+  step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN, axial.axis_P, along_n);
+  state.shape = straight_needle(X_PN, scene);
+}
+
+void step_proxy_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
+                      bool is_stylet_in, double dt_s, NeedleStep& step) noexcept {
+  state.shape = straight_needle(X_PN, scene);
+  const Vec3 proxy_before_P = state.proxy.proxy_P;
+  const ProxyNeedleStep moved = step_proxy_needle(state.proxy, state.path, scene, X_PN, X_PN_ahead, dt_s);
+  step.axial = moved.axial;
+  step.tip_proxy_P = moved.tip_force_P;
+  const double cutting_mm_per_s = (state.proxy.proxy_P - proxy_before_P).dot(step.axial.axis_P) / dt_s;
+  hold_body(state, scene, X_PN_ahead, is_stylet_in, cutting_mm_per_s, step);
+}
+
+void step_combined_model(NeedleState& state, const HapticScene& scene, const Pose& X_PN, const Pose& X_PN_ahead,
+                         bool is_stylet_in, double dt_s, NeedleStep& step) noexcept {
+  state.shape = straight_needle(X_PN, scene);
+  const ProxyShare share = proxy_share(state.path, scene);
+  step.axial = step_insertion(state.insertion, state.path, scene, X_PN.p(), X_PN.R().col(2), dt_s, &share);
+  step.tip_proxy_P = -step.axial.tip_proxy_n * step.axial.axis_P;
+  hold_body(state, scene, X_PN_ahead, is_stylet_in, step.axial.velocity_mm_per_s, step);
+}
+
+}  // namespace
+
+NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose& X_PN, bool is_stylet_in,
+                       double dt_s) noexcept {
+  NeedleStep step;
+  const double way_mm = (X_PN.p() - state.X_PN.p()).norm();
+  if (!state.is_started || way_mm > kJump_mm + kJump_mm_per_s * dt_s) start(state, scene, X_PN, step);
+  const CouplingParams& coupling = scene.options.coupling;
+  const double ahead_s = coupling.damping_ns_per_mm / coupling.stiffness_n_per_mm;
+  const Pose X_PN_ahead = pose_ahead(state, X_PN, ahead_s, dt_s);
+  switch (scene.options.force_model) {
+    case ForceModel::kInsertion:
+      step_insertion_model(state, scene, X_PN, X_PN_ahead, dt_s, step);
+      break;
+    case ForceModel::kProxy:
+      step_proxy_model(state, scene, X_PN, X_PN_ahead, is_stylet_in, dt_s, step);
+      break;
+    case ForceModel::kCombined:
+      step_combined_model(state, scene, X_PN, X_PN_ahead, is_stylet_in, dt_s, step);
+      break;
+  }
+  state.X_PN = X_PN;
+  return step;
+}
+
+}  // namespace trocar

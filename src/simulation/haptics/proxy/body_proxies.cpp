@@ -1,0 +1,223 @@
+#include "haptics/proxy/body_proxies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "haptics/insertion/insertion_law.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kTissuePoisson = 0.5;  // Soft tissue keeps its volume.
+constexpr double kNPerMm2PerKpa = 0.001;
+constexpr double kMostTipForce_n = 1000.0;  // Far beyond any device: keeps the numbers finite.
+
+/// A vector, cut to a length; zero where it is not a number.
+Vec3 within(const Vec3& v, double most) noexcept {
+  const double length = v.stableNorm();
+  if (!std::isfinite(length)) return Vec3::Zero();
+  return length > most ? Vec3(v * (most / length)) : v;
+}
+
+Vec3 across(const Vec3& v, const Vec3& axis) noexcept {
+  return v - axis * axis.dot(v);
+}
+
+/// What the shaft feels in one cell of the channel.
+struct ShaftTissue {
+  double dry_n_per_mm = 0.0;
+  double viscosity_ns_per_mm = 0.0;
+  double young_kpa = 0.0;
+};
+
+ShaftTissue tissue_at_bin(const Channel& channel, const HapticScene& scene, std::size_t bin) noexcept {
+  const std::uint8_t tissue = channel.tissue[bin];
+  if (tissue == 0) return {};  // Outside the body.
+  if (channel.label[bin] == 0 && tissue != scene.skin && scene.transfer.knot_count > 0) {
+    const HuLaw law = scene.transfer.at(channel.hu[bin]);
+    return {law.shaft_n_per_mm, law.shaft_viscosity_ns_per_mm, law.young_kpa};
+  }
+  const TissueLaw& law = scene.tissues[tissue];
+  return {law.stick_n_per_mm, law.viscosity_ns_per_mm, law.young_kpa};
+}
+
+/// Part of the channel that a proxy stands for, within the body.
+struct Piece {
+  double from_mm = 0.0;
+  double to_mm = 0.0;
+
+  double length_mm() const noexcept { return to_mm - from_mm; }
+};
+
+Piece piece_of(const NeedleBeam& beam, int node, double tip_mm) noexcept {
+  const double deepest_mm = std::min(tip_mm, Channel::kBins * Channel::kBin_mm);
+  const double middle_mm = deepest_mm - beam.spacing_mm * (beam.node_count - 1 - node);
+  const double from_mm = std::max(0.0, middle_mm - 0.5 * beam.spacing_mm);
+  const double to_mm = std::min(deepest_mm, middle_mm + 0.5 * beam.spacing_mm);
+  return to_mm > from_mm ? Piece{from_mm, to_mm} : Piece{};
+}
+
+/// Adds up over the cells of a piece: `add(tissue, length_mm)`. Cells stand still in the channel, so that a sum changes
+/// continuously as the needle slides.
+template <class Add>
+void for_each_cell(const Channel& channel, const HapticScene& scene, const Piece& piece, const Add& add) noexcept {
+  if (channel.known_bins <= 0 || !(piece.to_mm > piece.from_mm)) return;
+  const int first = static_cast<int>(piece.from_mm / kShaftCell_mm);
+  const int last = static_cast<int>(piece.to_mm / kShaftCell_mm);
+  for (int cell = first; cell <= last; ++cell) {
+    const double begin_mm = cell * kShaftCell_mm;
+    const double length_mm = std::min(piece.to_mm, begin_mm + kShaftCell_mm) - std::max(piece.from_mm, begin_mm);
+    if (!(length_mm > 0.0)) continue;
+    const int bin = std::min(bin_of(begin_mm + 0.5 * kShaftCell_mm), channel.known_bins - 1);
+    add(tissue_at_bin(channel, scene, static_cast<std::size_t>(bin)), length_mm);
+  }
+}
+
+/// Stiffness of the tissue around a unit of shaft (Vesic 1961), and the tissue that has a given one.
+struct BedLaw {
+  double diameter_mm;
+  double bending_stiffness_n_mm2;
+
+  double factor() const noexcept { return 0.65 * kNPerMm2PerKpa / (1.0 - kTissuePoisson * kTissuePoisson); }
+  double slenderness_per_kpa() const noexcept {
+    const double d2 = diameter_mm * diameter_mm;
+    return kNPerMm2PerKpa * d2 * d2 / bending_stiffness_n_mm2;
+  }
+  double stiffness_n_per_mm2(double young_kpa) const noexcept {
+    return factor() * young_kpa * std::cbrt(std::sqrt(std::sqrt(slenderness_per_kpa() * young_kpa)));
+  }
+  double young_kpa_of(double stiffness) const noexcept {
+    return std::pow(stiffness / factor(), 12.0 / 13.0) * std::pow(slenderness_per_kpa(), -1.0 / 13.0);
+  }
+};
+
+const NeedleBeam& beam_of(const HapticScene& scene, bool is_stylet_in) noexcept {
+  return is_stylet_in ? scene.beam_with_stylet : scene.beam_without_stylet;
+}
+
+/// Springs of the bed, no stiffer in sum than what the device can show.
+void fill_stiffness(BeamBed& bed, const Channel& channel, const HapticScene& scene, const NeedleBeam& beam,
+                    double tip_mm) noexcept {
+  const BedLaw law{2.0 * scene.needle.radius_mm, beam.bending_stiffness_n_mm2};
+  const double most_kpa = law.young_kpa_of(scene.options.coupling.stiffness_n_per_mm / beam.spacing_mm);
+  double sum_n_per_mm = 0.0;
+  for (int i = 0; i < beam.node_count; ++i) {
+    const Piece piece = piece_of(beam, i, tip_mm);
+    if (!(piece.length_mm() > 0.0)) continue;
+    double young_kpa_mm = 0.0;
+    for_each_cell(channel, scene, piece, [&](const ShaftTissue& tissue, double length_mm) {
+      young_kpa_mm += std::min(tissue.young_kpa, most_kpa) * length_mm;
+    });
+    const double length_mm = piece.length_mm();
+    const double k = law.stiffness_n_per_mm2(young_kpa_mm / length_mm) * length_mm;
+    bed.stiffness_n_per_mm[static_cast<std::size_t>(i)] = k;
+    sum_n_per_mm += k;
+  }
+  const double most_n_per_mm = 0.5 * scene.device.max_stiffness_n_per_mm;
+  if (!(sum_n_per_mm > most_n_per_mm)) return;
+  for (double& k : bed.stiffness_n_per_mm) k *= most_n_per_mm / sum_n_per_mm;
+}
+
+}  // namespace
+
+ShaftResistance shaft_resistance(const Channel& channel, const HapticScene& scene, double tip_mm) noexcept {
+  ShaftResistance resistance;
+  const NeedleBeam& beam = scene.beam_with_stylet;
+  for (int i = 0; i < beam.node_count; ++i) {
+    const Piece piece = piece_of(beam, i, tip_mm);
+    for_each_cell(channel, scene, piece, [&](const ShaftTissue& tissue, double length_mm) {
+      resistance.dry_n += tissue.dry_n_per_mm * length_mm;
+      resistance.viscous_ns_per_mm += tissue.viscosity_ns_per_mm * contact_area_cm2(scene.needle.radius_mm, length_mm);
+    });
+  }
+  return resistance;
+}
+
+HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,
+                     bool is_stylet_in) noexcept {
+  NeedleBeam beam = beam_of(scene, is_stylet_in);
+  HeldShaft shaft;
+  shaft.beam.node_count = beam.node_count;
+  if (!X_PN.is_finite()) {
+    shaft.beam.is_bound = true;
+    return shaft;
+  }
+  shaft.X_PN = X_PN;
+  fill_stiffness(shaft.bed, channel, scene, beam, tip_mm);
+  const Vec3 axis_P = X_PN.R().col(2);
+  const double most_mm = kMaxDeflection * scene.needle.length_mm;
+  bool is_far = false;
+  for (int i = 0; i < beam.node_count; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    if (!(shaft.bed.stiffness_n_per_mm[index] > 0.0)) continue;
+    const Vec3 node_P = X_PN.p() - axis_P * (beam.spacing_mm * (beam.node_count - 1 - i));
+    const Vec3 to_line_P = across(channel.origin_P - node_P, channel.direction_P);
+    const Vec3 offset_P = across(to_line_P, axis_P);
+    shaft.bed.offset_mm[index] = within(offset_P, most_mm);
+    is_far = is_far || shaft.bed.offset_mm[index] != offset_P;
+  }
+  if (scene.options.has_bending)
+    shaft.beam = solve_beam(beam, shaft.bed);
+  else
+    beam.bending_stiffness_n_mm2 = std::numeric_limits<double>::infinity();
+  const double turning = grip_stiffness(beam, shaft.bed).turning_nmm_per_rad;
+  if (turning > kMostTurning_nmm_per_rad) shaft.share = kMostTurning_nmm_per_rad / turning;
+  shaft.beam.is_bound = shaft.beam.is_bound || is_far;
+  return shaft;
+}
+
+ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3& tip_force_P) noexcept {
+  const Vec3 axis_P = shaft.X_PN.R().col(2);
+  const Vec3 tip_P = within(across(within(tip_force_P, kMostTipForce_n), axis_P), kMostTipForce_n);
+  const double spacing_mm = scene.beam_with_stylet.spacing_mm;
+  const double most_mm = kMaxDeflection * scene.needle.length_mm;
+  const Vec3 grip_P = shaft.X_PN.p() - axis_P * scene.needle.length_mm;
+  ShaftReaction reaction;
+  const int nodes = shaft.beam.node_count;
+  std::array<Vec3, kMaxBeamNodes> deflection_P;
+  double largest_mm = 0.0;
+  for (int i = 0; i < nodes; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    deflection_P[index] = shaft.beam.deflection_mm[index] + shaft.beam.per_tip_force_mm_n[index] * tip_P;
+    largest_mm = std::max(largest_mm, deflection_P[index].norm());
+  }
+  const double scale = largest_mm > most_mm ? most_mm / largest_mm : 1.0;
+  reaction.needle.count = nodes + 1;
+  reaction.needle.points_P[0] = grip_P;
+  Vec3 before_P = Vec3::Zero();
+  for (int i = 0; i < nodes; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    const Vec3 bent_P = scale * deflection_P[index];
+    const Vec3 lever_P = axis_P * (spacing_mm * (i + 1));
+    Vec3 force_P = shaft.bed.stiffness_n_per_mm[index] * (shaft.bed.offset_mm[index] - bent_P);
+    if (i == nodes - 1) force_P += tip_P;
+    force_P *= shaft.share;
+    reaction.wrench_P.force_n += force_P;
+    reaction.wrench_P.torque_nmm += lever_P.cross(force_P);
+    // Steel does not stretch: spans keep their length and take their direction from the beam.
+    const Vec3 span_P = axis_P * spacing_mm + bent_P - before_P;
+    const double drawn_mm = span_P.stableNorm();
+    const double kept = drawn_mm > 0.0 ? spacing_mm / drawn_mm : 0.0;
+    reaction.needle.points_P[index + 1] = reaction.needle.points_P[index] + span_P * kept;
+    before_P = bent_P;
+  }
+  return reaction;
+}
+
+Vec3 bevel_force_P(const NeedleGeometry& needle, const Pose& X_PN, double axial_resistance_n) noexcept {
+  if (!std::isfinite(axial_resistance_n) || !X_PN.is_finite()) return Vec3::Zero();
+  const double sideways_n = needle.bevel_share * std::max(0.0, axial_resistance_n);
+  return -std::min(sideways_n, kMostTipForce_n) * X_PN.R().col(1);
+}
+
+BentNeedle straight_needle(const Pose& X_PN, const HapticScene& scene) noexcept {
+  const NeedleBeam& beam = scene.beam_with_stylet;
+  BentNeedle needle;
+  needle.count = beam.node_count + 1;
+  for (int i = 0; i < needle.count; ++i)
+    needle.points_P[static_cast<std::size_t>(i)] = X_PN * Vec3(0.0, 0.0, beam.spacing_mm * (i - beam.node_count));
+  return needle;
+}
+
+}  // namespace trocar

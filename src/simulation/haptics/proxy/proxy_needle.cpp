@@ -1,0 +1,287 @@
+#include "haptics/proxy/proxy_needle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptics/proxy/tip_proxy.h"
+#include "volume/sampling.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kLook_mm = 10.0;
+constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the proxy is this far out.
+constexpr double kGrazing = 0.17;      // cosine of 80 degrees: a flatter needle does not pierce
+constexpr double kTipGrip = 2.0;       // A sharp tip pricks: it slides only beyond 63 degrees. [assumed]
+constexpr double kAtWall_mm = 1e-6;
+constexpr double kHole_mm = 0.2;  // Less than this behind the deepest place is still its end.
+
+double in_series(double a, double b) noexcept {
+  return a * b / (a + b);
+}
+
+double damping_s(const HapticScene& scene) noexcept {
+  return scene.options.coupling.damping_ns_per_mm / scene.options.coupling.stiffness_n_per_mm;
+}
+
+double skin_distance(const HapticScene& scene, const Vec3& p_P) noexcept {
+  return sample_linear(scene.patient->skin_distance_mm, p_P);
+}
+
+/// Where the way from a point outside to one inside meets the skin.
+Vec3 meet_skin(const HapticScene& scene, const Vec3& outside_P, const Vec3& inside_P) noexcept {
+  double low = 0.0;
+  double high = 1.0;
+  for (int i = 0; i < 30; ++i) {
+    const double t = 0.5 * (low + high);
+    (skin_distance(scene, outside_P + t * (inside_P - outside_P)) > 0.0 ? low : high) = t;
+  }
+  return outside_P + low * (inside_P - outside_P);
+}
+
+/// The needle in its tissue during one step, and what the step has found.
+struct TipStep {
+  NeedleBalance balance;
+  double moved_mm = 0.0;  ///< By the proxy.
+  double front_mm = 0.0;  ///< Tip on the path in the resting anatomy.
+  std::uint8_t punctured = kNoLayer;
+  bool hit_bound = false;
+};
+
+ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose& X_PN, double dt_s) noexcept {
+  if (path.is_open) leave_body(path);
+  ProxyNeedleStep step;
+  step.axial.tip_P = X_PN.p();
+  step.axial.axis_P = X_PN.R().col(2);
+  step.axial.velocity_mm_per_s = (X_PN.p() - state.proxy_P).dot(step.axial.axis_P) / dt_s;
+  state.proxy_P = X_PN.p();
+  state.tissue_n_per_mm = 0.0;
+  state.wall = kNoLayer;
+  state.is_on_skin = false;
+  state.phase = InsertionPhase::kOutside;
+  return step;
+}
+
+/// The tip on closed skin: it slides with friction, indents, and breaks through at the skin's puncture force.
+ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
+                        const Pose& X_PN_ahead, double dt_s) noexcept {
+  const Vec3 axis_P = X_PN.R().col(2);
+  const Vec3 inward_P = -gradient_per_mm(scene.patient->skin_distance_mm, state.proxy_P).normalized();
+  const std::uint8_t layer = scene.tissues[scene.skin].layer;
+  const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
+  const double k = in_series(scene.options.coupling.stiffness_n_per_mm, tissue_n_per_mm);
+  const TipSpring spring = free_spring(k, damping_s(scene), X_PN_ahead.p(), state.proxy_P, Vec3::Zero(), dt_s);
+  Vec3 f = spring.force_P;
+  double f_normal = f.dot(inward_P);
+  if (!(f_normal > 0.0)) {  // a count back in the skin is no parting from it: the surface stays where it was
+    if (!(skin_distance(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
+    f = Vec3::Zero();
+    f_normal = 0.0;
+  }
+
+  ProxyNeedleStep step;
+  const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
+  const bool gives_way = axis_P.dot(inward_P) > kGrazing && f.dot(axis_P) >= puncture_n;
+  if (gives_way) {  // the skin bore its puncture force along the needle and no more
+    f *= puncture_n / f.dot(axis_P);
+  } else {
+    TipLaw skin;  // equations (3) and (4): closed along the normal, Coulomb friction across it
+    skin.normal_P = inward_P;
+    skin.border = 1.0;
+    skin.law.normal_n = f_normal;
+    skin.law.tangential_n = kTipGrip * f_normal;
+    state.proxy_P += proxy_motion(spring, skin, Vec3::Zero());
+    state.proxy_P += skin_distance(scene, state.proxy_P) * inward_P;  // back to the surface
+    f -= residual_force(f, skin, 0.0);
+  }
+  step.tip_force_P = -f;
+  step.axial.tip_P = state.proxy_P + f / tissue_n_per_mm;
+  step.axial.axis_P = axis_P;
+  step.axial.displacement_mm = step.axial.depth_mm = f.dot(inward_P) / tissue_n_per_mm;
+  step.axial.tissue = scene.skin;
+  step.axial.phase = state.phase = InsertionPhase::kLoading;
+  if (gives_way) {
+    start_channel(path, state.proxy_P, axis_P);
+    open_path(path, layer);
+    path.contact_to_puncture_P = step.axial.tip_P - state.contact_P;
+    state.needle_mm = step.axial.depth_mm;
+    state.tissue_n_per_mm = tissue_n_per_mm;
+    step.axial.punctured = layer;
+    state.is_on_skin = false;
+  }
+  return step;
+}
+
+/// Reads the tissue's stiffness where the tip is now. Where it grows, or a wall is met, the proxy shifts so that the
+/// force of the tip stays what it was: a stiffness that is read anew must not be felt as a blow.
+void set_stiffness(ProxyNeedleState& state, const NeedleDrive& drive, const Channel& channel, double tissue_n_per_mm,
+                   bool meets_wall) noexcept {
+  const double before = state.tissue_n_per_mm;
+  state.tissue_n_per_mm = tissue_n_per_mm;
+  if (!(before > 0.0) || !(meets_wall || tissue_n_per_mm > before)) return;
+  const Vec3& u = channel.direction_P;
+  const NeedleBalance old = balance_needle(drive, before, u.dot(state.proxy_P - channel.origin_P));
+  if (old.on_tip_n > 0.0) state.proxy_P += old.on_tip_n * (1.0 / before - 1.0 / tissue_n_per_mm) * u;
+}
+
+/// The tip presses on a wall, which bears it or gives way.
+void press_wall(TipStep& step, ProxyNeedleState& state, Channel& channel, const HapticScene& scene) noexcept {
+  if (step.balance.on_tip_n < scene.layers[state.wall].puncture_force_n) return;
+  step.punctured = state.wall;
+  state.wall = kNoLayer;
+  step.front_mm = channel.cut_to_mm = state.wall_mm + 0.5 * Channel::kBin_mm;
+}
+
+/// How far the proxy moves on along the path (physics.md B3): against the greatest force that its tissue bears there.
+double motion_along(const TipStep& step, const TipLaw& law, const Vec3& u_P, double dt_s) noexcept {
+  const double load_n = step.balance.on_tip_n;
+  const double c = (1.0 - law.border) * law.law.viscosity_ns_per_mm;
+  const double borne_n = threshold_along_n(law, load_n < 0.0 ? Vec3(-u_P) : u_P) + c * std::abs(step.moved_mm) / dt_s;
+  const double way_mm = std::max(0.0, std::abs(load_n) - borne_n) / (step.balance.tip_n_per_mm + c / dt_s);
+  return std::copysign(way_mm, load_n);
+}
+
+/// The tissue, or the wall, that the front of the tip is at.
+struct Front {
+  TipLaw law;
+  double tissue_n_per_mm = 1.0;
+  double mm = 0.0;
+  bool meets_wall = false;
+};
+Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticScene& scene,
+                 const LayerAhead& ahead) noexcept {
+  Front front;
+  const double s_mm = channel.direction_P.dot(state.proxy_P - channel.origin_P);
+  if (state.wall != kNoLayer && s_mm < state.wall_anchor_mm - kAtWall_mm) state.wall = kNoLayer;  // back from it
+  front.meets_wall = state.wall == kNoLayer && ahead.layer != kNoLayer && s_mm >= ahead.surface_mm - kAtWall_mm;
+  if (front.meets_wall) {
+    state.wall = ahead.layer;
+    state.wall_mm = ahead.surface_mm;
+  }
+  front.mm = state.wall != kNoLayer ? state.wall_mm : s_mm;
+  const auto bin = static_cast<std::size_t>(bin_of(front.mm));
+  const TissueAt here = front.mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
+  front.law = tip_law_at(scene, state.proxy_P, here);
+  if (front.mm < channel.cut_to_mm - kHole_mm) {  // in its own hole the tip cuts nothing and meets no border
+    front.law.border = 0.0;
+    front.law.law.resistance_n = 0.0;
+  }
+  front.tissue_n_per_mm =
+      state.wall != kNoLayer ? scene.layers[state.wall].indent_n_per_mm : front.law.law.stiffness_n_per_mm;
+  return front;
+}
+
+/// Moves the proxy along the path until it rests, meets a wall or the bound of sub-steps.
+TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
+                   const NeedleDrive& drive) noexcept {
+  Channel& channel = path.channel;
+  const Vec3& u = channel.direction_P;
+  const auto along = [&] { return u.dot(state.proxy_P - channel.origin_P); };
+  TipStep step;
+  look_ahead(channel, scene, std::max(0.0, along()), kLook_mm);
+  const LayerAhead ahead = next_wall(channel, channel.cut_to_mm, along() + kLook_mm);
+  for (int i = 0; i < kMaxProxySteps; ++i) {
+    const Front front = find_front(state, channel, scene, ahead);
+    step.front_mm = front.mm;
+    set_stiffness(state, drive, channel, front.tissue_n_per_mm, front.meets_wall);
+    if (front.meets_wall) state.wall_anchor_mm = along();
+    step.balance = balance_needle(drive, front.tissue_n_per_mm, along());
+    if (state.wall != kNoLayer && step.balance.on_tip_n > 0.0) {
+      press_wall(step, state, channel, scene);
+      return step;
+    }
+    double motion_mm = motion_along(step, front.law, u, drive.dt_s);
+    const bool is_long = std::abs(motion_mm) > kProxyStep_mm;
+    if (is_long) motion_mm = std::copysign(kProxyStep_mm, motion_mm);
+    const bool reaches_wall =
+        state.wall == kNoLayer && ahead.layer != kNoLayer && front.mm + motion_mm > ahead.surface_mm;
+    if (reaches_wall) motion_mm = std::max(0.0, ahead.surface_mm - front.mm);
+    state.proxy_P += motion_mm * u;
+    step.moved_mm += motion_mm;
+    step.front_mm = state.wall != kNoLayer ? front.mm : along();
+    step.balance = balance_needle(drive, front.tissue_n_per_mm, along());
+    if (!is_long && !reaches_wall) return step;
+  }
+  step.hit_bound = true;
+  return step;
+}
+
+InsertionPhase next_phase(const ProxyNeedleState& state, bool is_loading) noexcept {
+  if (is_loading) return InsertionPhase::kLoading;
+  if (state.velocity_mm_per_s < -kRestSpeed_mm_per_s) return InsertionPhase::kRetracting;
+  if (state.velocity_mm_per_s > kRestSpeed_mm_per_s) return InsertionPhase::kInserted;
+  return state.phase == InsertionPhase::kRetracting ? InsertionPhase::kRetracting : InsertionPhase::kInserted;
+}
+
+/// The tip on its path through the body.
+ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN_ahead,
+                        double dt_s) noexcept {
+  const Vec3 u = path.channel.direction_P;
+  const ShaftResistance resistance = shaft_resistance(path.channel, scene, path.rest_mm);
+  const NeedleDrive drive{scene.options.coupling,
+                          {resistance.dry_n, resistance.viscous_ns_per_mm},
+                          u.dot(X_PN_ahead.p() - path.channel.origin_P),
+                          state.needle_mm,
+                          dt_s};
+  const Vec3 origin_P = path.channel.origin_P;
+  state.proxy_P = origin_P + u.dot(state.proxy_P - origin_P) * u;  // the path holds the tip, too
+  const TipStep moved = move_proxy(state, path, scene, drive);
+  const bool is_at_wall = moved.punctured != kNoLayer || state.wall != kNoLayer;
+  // A wall that gives way bore its puncture force and no more.
+  const double on_tip_n =
+      moved.punctured != kNoLayer ? scene.layers[moved.punctured].puncture_force_n : moved.balance.on_tip_n;
+
+  ProxyNeedleStep step;
+  step.tip_force_P = -on_tip_n * u;
+  InsertionStep& axial = step.axial;
+  axial.body_axial_n = moved.balance.on_shaft_n;
+  axial.punctured = moved.punctured;
+  axial.hit_solver_bound = moved.hit_bound;
+  axial.axis_P = u;
+  axial.tip_P = origin_P + moved.balance.needle_mm * u;
+  axial.velocity_mm_per_s = state.velocity_mm_per_s = (moved.balance.needle_mm - state.needle_mm) / dt_s;
+  state.needle_mm = moved.balance.needle_mm;
+  if (is_at_wall) axial.displacement_mm = std::max(0.0, on_tip_n) / state.tissue_n_per_mm;
+  axial.entered = move_tip(path, scene, std::max(0.0, moved.front_mm), state.wall);
+  axial.depth_mm = std::max(0.0, state.needle_mm);
+  axial.tissue = path.rest_mm > 0.0 ? path.channel.tissue[static_cast<std::size_t>(bin_of(path.rest_mm))] : 0;
+  axial.phase = state.phase = next_phase(state, is_at_wall);
+  if (moved.front_mm < -kLeaveSkin_mm) leave_body(path);
+  return step;
+}
+
+/// A tip that comes from outside: where it meets the skin, and the open hole it may fall into.
+void meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
+  state.proxy_P = skin_distance(scene, state.proxy_P) >= 0.0 ? meet_skin(scene, state.proxy_P, X_PN.p()) : X_PN.p();
+  state.contact_P = state.proxy_P;
+  state.is_on_skin = true;
+  if (const Channel* hole = path.memory.find(state.proxy_P, X_PN.R().col(2))) {
+    path.channel = *hole;
+    path.is_open = true;
+    path.rest_mm = 0.0;
+    state.needle_mm = path.channel.direction_P.dot(state.proxy_P - path.channel.origin_P);
+    state.is_on_skin = false;
+  }
+}
+
+}  // namespace
+
+void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, const Vec3& tip_P) noexcept {
+  state = {};
+  state.proxy_P = tip_P;
+  if (!path.is_open) return;
+  state.needle_mm = path.channel.direction_P.dot(tip_P - path.channel.origin_P);
+  state.phase = InsertionPhase::kInserted;
+}
+
+ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
+                                  const Pose& X_PN, const Pose& X_PN_ahead, double dt_s) noexcept {
+  if (!path.is_open && !state.is_on_skin) {
+    if (!(skin_distance(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
+    meet(state, path, scene, X_PN);
+  }
+  if (!path.is_open) return on_skin(state, path, scene, X_PN, X_PN_ahead, dt_s);
+  return in_body(state, path, scene, X_PN_ahead, dt_s);
+}
+
+}  // namespace trocar

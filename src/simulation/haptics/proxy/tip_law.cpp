@@ -1,0 +1,74 @@
+#include "haptics/proxy/tip_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/sampling.h"
+
+namespace trocar {
+namespace {
+
+/// Gradient (HU/mm in P) by central differences of `scale_mm` to each side along the axes of P.
+Vec3 gradient_at_scale(const CtGrid& ct, const Vec3& p_P, double scale_mm) noexcept {
+  const Vec3 index = ct.geometry.to_index(p_P);
+  Vec3 slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = (ct.geometry.R_PV.row(axis).transpose() * scale_mm).cwiseQuotient(ct.geometry.spacing_mm);
+    slope[axis] =
+        (sample_linear_at_index(ct, index + step) - sample_linear_at_index(ct, index - step)) / (2.0 * scale_mm);
+  }
+  return slope;
+}
+
+std::uint8_t wall_of(const HapticScene& scene, const Vec3& p_P) noexcept {
+  const TissueAt there = tissue_at(scene, p_P);
+  const std::uint8_t layer = scene.tissues[there.tissue].layer;
+  return layer != kNoLayer && scene.layers[layer].is_wall ? layer : kNoLayer;
+}
+
+/// Whether the air outside, as blurred as a CT shows it, reaches into the gradient at a point.
+bool is_under_skin(const HapticScene& scene, const Vec3& p_P) noexcept {
+  constexpr double kBlur_mm = 2.0;
+  return sample_linear(scene.patient->skin_distance_mm, p_P) > -(scene.transfer.gradient_scale_mm + kBlur_mm);
+}
+
+/// Whether the border at a point is that of a walled structure, which has a threshold of its own.
+bool is_wall_border(const HapticScene& scene, const Vec3& p_P, const Vec3& normal_P) noexcept {
+  const double reach_mm = 2.0 * scene.transfer.gradient_scale_mm;
+  return wall_of(scene, p_P + reach_mm * normal_P) != wall_of(scene, p_P - reach_mm * normal_P);
+}
+
+}  // namespace
+
+TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& here) noexcept {
+  TipLaw tip;
+  if (here.tissue == 0) {
+    tip.law = {};
+    return tip;
+  }
+  tip.law = scene.transfer.at(sample_linear(scene.patient->ct, p_P));
+  const bool is_labelled = here.label != 0 || here.tissue == scene.skin;
+  if (is_labelled) tip.law.resistance_n = scene.tissues[here.tissue].cutting_n;
+  if (here.tissue == scene.skin) return tip;  // its border is the body's surface
+
+  const HuTransfer& transfer = scene.transfer;
+  const Vec3 gradient = gradient_at_scale(scene.patient->ct, p_P, transfer.gradient_scale_mm);
+  const double strength = gradient.norm();
+  if (!(strength > transfer.gradient_none_hu_per_mm)) return tip;
+  const Vec3 normal_P = gradient / strength;
+  if (is_under_skin(scene, p_P) || is_wall_border(scene, p_P, normal_P)) return tip;
+  const double t = std::min(1.0, (strength - transfer.gradient_none_hu_per_mm) /
+                                     (transfer.gradient_full_hu_per_mm - transfer.gradient_none_hu_per_mm));
+  tip.normal_P = normal_P;
+  tip.border = t * t * (3.0 - 2.0 * t);
+  return tip;
+}
+
+double threshold_along_n(const TipLaw& tip, const Vec3& u_P) noexcept {
+  const double along = tip.normal_P.dot(u_P);
+  const double across = std::sqrt(std::max(0.0, 1.0 - along * along));
+  const double border_n = tip.law.normal_n * std::max(0.0, along) + tip.law.tangential_n * across;
+  return tip.border * border_n + (1.0 - tip.border) * tip.law.resistance_n;
+}
+
+}  // namespace trocar

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "anatomy/resting_anatomy.h"
+#include "haptics/contact/contact.h"
+#include "haptics/haptic_scene.h"
+#include "haptics/insertion/needle_step.h"
+#include "telemetry/tick_sample.h"
+
+namespace trocar {
+
+/// What the device gives a tick.
+struct HapticInput {
+  double time_s = 0.0;
+  double dt_s = 0.001;  ///< Since the last tick; 0 < dt <= kMaxDt_s.
+  Pose X_DS;            ///< Stylus in the device base.
+  bool is_stylet_in = true;
+  RestingAnatomy resting{};  ///< The patient's motion now.
+};
+
+/// All that a tick carries to the next one. Fixed size, copyable: recorded inputs replay to the same bits.
+struct HapticState {
+  NeedleState needle;
+  ContactState contact;  ///< Of a transducer or a finger.
+  TickSample last;
+};
+
+/// What a tick gives: the wrench for the device (in D, about the stylus origin) and its record.
+struct HapticOutput {
+  Vec3 f_D = Vec3::Zero();
+  Vec3 tau_D = Vec3::Zero();
+  Wrench weight_D;  ///< The part of it that carries the weight of links and stylus (before the device's limits).
+  TickSample sample;
+};
+
+inline constexpr double kMaxDt_s = 0.1;
+inline constexpr double kFarAway_mm = 5000.0;  ///< No device reaches that far.
+
+/// One haptic tick: pose into P and into the resting anatomy, force model of the scene, weight compensation,
+/// composition (paper A, force composition; physics.md T1, T2), limits of the device. Pure: a function of its arguments
+/// only. Input that is not finite, further than kFarAway_mm or with an impossible dt gives zero force and a limit
+/// event, and leaves the state as it was. A start inside the body and a jump give no force step and say so. Real-time
+/// safe.
+HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept;
+
+}  // namespace trocar

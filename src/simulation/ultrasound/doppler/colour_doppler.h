@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "ultrasound/engine/beam.h"
+#include "ultrasound/doppler/doppler_settings.h"
+#include "ultrasound/probe/scan_geometry.h"
+#include "ultrasound/scanner/scanner.h"
+#include "ultrasound/doppler/vessel_flow.h"
+#include "volume/image.h"
+
+namespace trocar {
+
+class BMode;
+
+/// What one colour frame is made of.
+struct DopplerInput {
+  Pose X_PT;  ///< Transducer in the (resting) patient.
+  ScanGeometry geometry;
+  Beam beam;
+  double time_s = 0.0;     ///< Of heart and breath.
+  std::uint64_t seed = 0;  ///< Of the noise; another for each frame.
+  /// The engine that has rendered this very frame: what sound loses on the way, and the dent under the face. nullptr:
+  /// no loss but kPlainLoss_db_per_cm_mhz, no dent.
+  const BMode* engine = nullptr;
+};
+inline constexpr double kPlainLoss_db_per_cm_mhz = 0.5;
+
+/// Where colour has been measured: cells on scanlines, gate runs fastest.
+struct DopplerFrame {
+  double first_line = 0.0;  ///< Scanline of the picture, of the first line of cells.
+  double line_step = 2.0;
+  int lines = 0;
+  double first_mm = 0.0;  ///< Depth of the first gate's middle.
+  double gate_mm = 0.6;
+  int gates = 0;
+  double scale_cm_per_s = 30.0;  ///< Nyquist velocity in use.
+  /// Velocity along the beam, towards the transducer positive, as estimated: aliased into +-scale. 0 where no flow is.
+  std::vector<float> velocity_cm_per_s;
+  std::vector<std::uint8_t> has_flow;  ///< 0 or 1: shown.
+  std::vector<float> re, im;           ///< Autocorrelation over one pulse interval, in units of the noise's power.
+
+  std::size_t at(int line, int gate) const noexcept {
+    return static_cast<std::size_t>(line) * static_cast<std::size_t>(gates) + static_cast<std::size_t>(gate);
+  }
+};
+
+/// Colour Doppler of the vessels' flow (docs/physics.md U15): velocity along the beam from the phase of the
+/// autocorrelation of blood's echoes between pulses, with aliasing, wall filter, noise and persistence. Buffers are
+/// taken for a geometry and box; while these stay nothing is allocated. The same whatever the number of threads.
+class ColourDoppler {
+ public:
+  explicit ColourDoppler(std::shared_ptr<const VesselFlow> flow);
+  ~ColourDoppler();
+  ColourDoppler(ColourDoppler&&) noexcept;
+  ColourDoppler& operator=(ColourDoppler&&) noexcept;
+
+  DopplerSettings settings;  ///< Knobs beyond their range are held in it.
+
+  /// Valid until the next call.
+  const DopplerFrame& render(const DopplerInput& input) noexcept;
+  /// The last frame's colours over the picture of the same scan, with the box's outline. Valid until the next call.
+  const RgbImage& overlay(const GrayImage& image, const RasterGeometry& raster) noexcept;
+  /// Forgets what persists.
+  void reset() noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Colour of a velocity in parts of the scale (-1..1), after inversion and shift of the baseline: red over orange to
+/// yellow towards the transducer, blue to cyan away from it; dark near the baseline. Real-time safe.
+Rgb doppler_colour(double share, const DopplerSettings& settings) noexcept;
+/// Draws the colour bar with +-scale (cm/s) at its ends; its top left at (column, row).
+void draw_colour_bar(RgbImage& image, int column, int row, int columns, int rows, double scale_cm_per_s,
+                     const DopplerSettings& settings);
+
+}  // namespace trocar

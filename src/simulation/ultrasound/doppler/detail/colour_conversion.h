@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ultrasound/doppler/colour_doppler.h"
+
+namespace trocar::detail {
+
+bool is_same_scan(const ScanGeometry& a, const ScanGeometry& b) noexcept;
+
+/// Colours of cells over the gray picture's pixels. Between cells the autocorrelation is interpolated, not the
+/// velocity, so that aliasing turns from red to blue at once. Tables are taken for a geometry.
+class ColourConversion {
+ public:
+  ColourConversion() : image_() {}
+  /// The tables no longer fit.
+  void forget() noexcept { is_made_ = false; }
+  const RgbImage& convert(const GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
+                          const DopplerFrame& frame, const DopplerSettings& settings) noexcept;
+
+ private:
+  /// A pixel within the box: its cell (lower line and gate), and how far it is to the next ones, of 255.
+  struct Place {
+    std::int32_t pixel;
+    std::int32_t cell;
+    std::uint8_t across, along;
+  };
+  static constexpr std::size_t kColours = 512;
+
+  void make_tables(const GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
+                   const DopplerFrame& frame);
+  void set_colours(const DopplerSettings& settings) noexcept;
+
+  bool is_made_ = false;
+  RasterGeometry raster_;
+  RgbImage image_;
+  std::vector<Place> places_;
+  std::vector<std::int32_t> outline_;
+  std::array<Rgb, kColours> colours_{};  ///< From -1 to 1 in parts of the scale.
+};
+
+}  // namespace trocar::detail

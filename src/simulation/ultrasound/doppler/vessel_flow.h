@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "core/progress.h"
+#include "core/result.h"
+#include "ultrasound/doppler/flow_table.h"
+
+namespace trocar {
+
+/// A place on a vessel's middle line.
+struct VesselPoint {
+  Vec3 p_P = Vec3::Zero();
+  Vec3 flow_P = Vec3::UnitZ();  ///< Unit; where blood goes while the waveform is positive.
+  double radius_mm = 0.0;
+  double peak_mm_per_s = 0.0;  ///< In the middle, at the waveform's 1.
+  bool is_in_own_tube = true;  ///< Else within the vessel that this one leaves.
+};
+
+/// A stretch of a vessel between two ends or forks, in the order in which it was found (not of flow).
+struct VesselBranch {
+  std::uint8_t label = 0;
+  std::string rule;          ///< Row of the flow table.
+  std::size_t waveform = 0;  ///< Index into the table's waveforms.
+  double profile_exponent = 2.0;
+  std::vector<VesselPoint> points;
+};
+
+/// How finely flow is made.
+struct VesselFlowOptions {
+  double spacing_mm = 0.8;          ///< Of the velocity's grid. Range 0.3..3.
+  double least_vessel_mm3 = 100.0;  ///< Smaller pieces of a label have no flow. Range 10..10000.
+};
+
+/// Blood flow in the labelled vessels of a patient at rest: along the middle lines, with a profile across the lumen and
+/// a waveform over the heartbeat (docs/physics.md U15). Immutable once made; frame P. Not in it: vortices, helices,
+/// jets, the pulse's travel time, walls that move.
+class VesselFlow {
+ public:
+  /// Blood at a place: velocity (mm/s, P) and how much of the place is lumen, 0..1.
+  struct Blood {
+    Vec3f velocity_P = Vec3f::Zero();
+    float share = 0.0F;
+  };
+  /// What all places share at one time: each waveform's value.
+  using Moment = std::array<float, 32>;
+
+  Moment moment(double time_s) const noexcept;
+  /// Real-time safe; nothing beyond the vessels, or where a point is no number.
+  Blood at(const Vec3f& p_P, const Moment& moment) const noexcept;
+  /// mm/s; 0 outside vessels. Real-time safe.
+  Vec3 velocity_P(const Vec3& p_P, double time_s) const noexcept;
+
+  std::span<const VesselBranch> branches() const noexcept { return branches_; }
+  const FlowTable& table() const noexcept { return table_; }
+  /// Labels that have a vessel's tissue but no row in the table, or no piece large enough.
+  std::span<const std::string> without_flow() const noexcept { return without_flow_; }
+  std::size_t bytes() const noexcept { return cells_.size() * sizeof(Cell) + bricks_.size() * sizeof(std::int32_t); }
+
+ private:
+  friend class VesselFlowMaker;
+  /// Speeds are in steps of kSpeedStep_mm_per_s.
+  struct Cell {
+    std::array<std::int16_t, 3> velocity_P{};
+    std::uint8_t share = 0;  ///< Of 255.
+    std::uint8_t waveform = 0;
+  };
+
+  GridGeometry geometry_;
+  std::array<std::array<float, 3>, 3> index_of_P_{};  ///< Rows: index along an axis for each mm of P.
+  std::array<float, 3> index_of_origin_{};
+  std::array<std::int32_t, 3> brick_count_{};
+  std::vector<std::int32_t> bricks_;  ///< First cell of each brick, or -1: no blood.
+  std::vector<Cell> cells_;           ///< A brick: 9³, of which the last of each row is the next brick's first.
+  std::vector<VesselBranch> branches_;
+  FlowTable table_;
+  std::vector<std::string> without_flow_;
+};
+
+/// Errors: no vessel of the patient has flow (with the labels that could).
+Result<std::shared_ptr<const VesselFlow>> make_vessel_flow(const VirtualPatient& patient, FlowTable table,
+                                                           const VesselFlowOptions& options = {},
+                                                           const Progress& progress = {});
+
+}  // namespace trocar

@@ -1,0 +1,220 @@
+#include "ultrasound/engine/b_mode.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "core/check.h"
+#include "core/parallel.h"
+#include "ultrasound/engine/detail/frame_state.h"
+#include "ultrasound/engine/detail/multiple_echoes.h"
+#include "ultrasound/engine/detail/needle_image.h"
+#include "ultrasound/engine/detail/point_echo.h"
+#include "ultrasound/engine/detail/point_spread.h"
+#include "ultrasound/engine/detail/scan_plan.h"
+#include "ultrasound/engine/detail/scatterer_echo.h"
+#include "ultrasound/engine/detail/sound_paths.h"
+#include "ultrasound/engine/detail/surface_echo.h"
+#include "ultrasound/engine/detail/tissue_texture.h"
+#include "ultrasound/engine/detail/tissue_walk.h"
+
+namespace trocar {
+namespace {
+
+using namespace detail;
+
+/// What one task needs beside the frame.
+struct Scratch {
+  WalkResult walk;
+  Texture texture;
+  ScattererField scatterers;
+  LookRows rows;
+};
+
+}  // namespace
+
+struct BMode::Impl {
+  std::shared_ptr<const AcousticScene> scene;
+  Transducer transducer;
+  ScanPlan plan;
+  FrameState frame;
+  BasebandFrame out;
+  NeedleImage needles;
+  std::vector<Brick> bricks = make_brick_library();
+  std::vector<Scratch> scratch;  ///< One a group of scanlines.
+
+  int groups() const noexcept { return (plan.lines + kGroup - 1) / kGroup; }
+
+  template <class Body>
+  void for_groups(const Body& body) noexcept {
+    const auto part = [&](std::size_t first, std::size_t last) {
+      for (std::size_t g = first; g < last; ++g) {
+        const int begin = static_cast<int>(g) * kGroup;
+        body(static_cast<int>(g), begin, std::min(begin + kGroup, plan.lines));
+      }
+    };
+    parallel_for(static_cast<std::size_t>(groups()), 1, std::ref(part));
+  }
+
+  void walk(int group, int first, int last) noexcept;
+  /// After all scanlines were walked: a scanline hears what lies between it and the next.
+  void echo(int group, int first, int last) noexcept;
+  /// After all echoes are there: the frame's own samples.
+  void spread(int group, int first, int last) noexcept;
+};
+
+void BMode::Impl::walk(int group, int first, int last) noexcept {
+  Scratch& s = scratch[static_cast<std::size_t>(group)];
+  const auto samples = static_cast<std::size_t>(plan.samples);
+  const auto row = static_cast<std::ptrdiff_t>(plan.echo_row(first) - kPad);
+  for (auto* echoes : {&frame.re, &frame.im}) std::fill_n(echoes->begin() + row, (last - first) * plan.stride, 0.0F);
+  const int central = plan.planes / 2;
+  for (int line = first; line < last; ++line) {
+    const LineWalk& path = frame.walks[static_cast<std::size_t>(line)];
+    const float* bend = frame.bend_mm.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
+    for (int n = 0; n < plan.samples; n += kCoarse) {
+      const auto c = static_cast<std::size_t>(n / kCoarse);
+      const float step = (bend[c + 1] - bend[c]) / kCoarse;
+      for (int part = 0; part < kCoarse; ++part)
+        s.walk.sideways_mm[static_cast<std::size_t>(n + part)] = bend[c] + static_cast<float>(part) * step;
+    }
+    int& audible = frame.audible[static_cast<std::size_t>(line)];
+    audible = 0;
+    for (int order = 0; order < plan.planes; ++order) {
+      // The central plane first: the others take its layers and delays.
+      const int plane = order == 0 ? central : (order <= central ? order - 1 : order);
+      const float zeta = static_cast<float>(plane - central) * plan.plane_step;
+      float* delay = plane == central ? frame.delay.data() + static_cast<std::size_t>(line) * samples : nullptr;
+      walk_line(plan, frame, path, zeta, s.walk, delay);
+      make_texture(plan, frame, s.walk, line, plane == central, s.texture);
+      const std::size_t at =
+          (static_cast<std::size_t>(plane) * static_cast<std::size_t>(plan.lines) + static_cast<std::size_t>(line)) *
+          samples;
+      pack_gains(s.walk.log_gain.data(), s.texture.added.data(), s.walk.share.data(), plan.samples,
+                 frame.gain.data() + at);
+      if (plane == central) {
+        std::fill_n(s.texture.added.begin(), samples, 0.0F);
+        to_gain(s.walk.log_way.data(), s.texture.added.data(), plan.samples,
+                frame.way_gain.data() + static_cast<std::size_t>(line) * samples);
+      }
+      audible = std::max(audible, s.walk.audible);
+      keep_borders(plan, frame, s.walk, plane, line);
+    }
+  }
+}
+
+void BMode::Impl::echo(int group, int first, int last) noexcept {
+  for (int line = first; line < last; ++line) {
+    for (int plane = 0; plane < plan.planes; ++plane) add_surface_echoes(plan, frame, line, plane);
+    if (plan.acquisition.artefacts.reverberation) add_ring_down(plan, frame, line);
+  }
+  add_needles(plan, frame, needles, first, last);
+  add_scatterers(plan, bricks, frame, first, last, scratch[static_cast<std::size_t>(group)].scatterers);
+}
+
+void BMode::Impl::spread(int group, int first, int last) noexcept {
+  for (int line = first; line < last; ++line) {
+    spread_echoes(plan, frame, line, scratch[static_cast<std::size_t>(group)].rows, out);
+    if (!plan.acquisition.artefacts.reverberation) continue;
+    for (int look = 0; look < plan.looks; ++look) add_reverberation(plan, frame, look, line, out);
+  }
+}
+
+Acquisition default_acquisition(const Transducer& transducer) {
+  Acquisition acquisition;
+  acquisition.depth_mm = transducer.depth_mm;
+  acquisition.frequency_mhz = transducer.frequency_mhz;
+  acquisition.focus_mm = transducer.focus_mm;
+  acquisition.lines = transducer.scanlines;
+  return acquisition;
+}
+
+double coupled_share(const BasebandFrame& frame) noexcept {
+  constexpr float kMost = 0.5F;
+  const auto coupled =
+      std::count_if(frame.contact.begin(), frame.contact.end(), [](float part) { return part > kMost; });
+  return static_cast<double>(coupled) / static_cast<double>(frame.contact.size());
+}
+
+BMode::BMode(std::shared_ptr<const AcousticScene> scene, Transducer transducer, const Acquisition& acquisition)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->scene = std::move(scene);
+  impl_->transducer = std::move(transducer);
+  impl_->frame = make_frame_state(*impl_->scene);
+  set_acquisition(acquisition);
+}
+BMode::~BMode() = default;
+BMode::BMode(BMode&&) noexcept = default;
+BMode& BMode::operator=(BMode&&) noexcept = default;
+
+void BMode::set_acquisition(const Acquisition& acquisition) {
+  Impl& impl = *impl_;
+  TROCAR_CHECK(acquisition.samples >= 16 && acquisition.samples <= kMaxSamples && acquisition.lines >= 2);
+  TROCAR_CHECK(acquisition.looks >= 1 && acquisition.looks <= 5);
+  TROCAR_CHECK(acquisition.planes >= 1 && acquisition.planes <= kMaxPlanes && acquisition.planes % 2 == 1);
+  impl.plan = make_scan_plan(*impl.scene, impl.transducer, acquisition);
+  fit_frame(impl.frame, impl.plan);
+  impl.needles = make_needle_image(impl.plan);
+  impl.scratch.resize(static_cast<std::size_t>(impl.groups()));
+  for (Scratch& scratch : impl.scratch) {
+    scratch.scatterers = make_scatterer_field(impl.plan);
+    scratch.rows = LookRows(impl.plan);
+  }
+  impl.out.geometry = impl.plan.geometry;
+  impl.out.beam = impl.plan.beam;
+  const auto lines = static_cast<std::size_t>(impl.plan.lines);
+  impl.out.looks = impl.plan.looks;
+  impl.out.re.assign(static_cast<std::size_t>(impl.plan.looks) * lines * static_cast<std::size_t>(impl.plan.samples),
+                     0.0F);
+  impl.out.im = impl.out.re;
+  impl.out.contact.assign(lines, 1.0F);
+}
+
+const Acquisition& BMode::acquisition() const noexcept {
+  return impl_->plan.acquisition;
+}
+const ScanGeometry& BMode::geometry() const noexcept {
+  return impl_->plan.geometry;
+}
+
+const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
+  Impl& impl = *impl_;
+  ScanPlan& plan = impl.plan;
+  FrameState& frame = impl.frame;
+  frame.X_PT = input.X_PT;
+  forget_borders(frame);
+  find_contact(impl.scene->skin_distance_mm, plan.geometry, input.X_PT, frame.contact);
+  const double reach_mm = find_dent_reach_mm(*impl.scene, plan.geometry, input.X_PT);
+  frame.dent_reach = static_cast<float>(reach_mm / plan.geometry.sample_mm());
+  for (std::size_t s = 0; s < static_cast<std::size_t>(plan.samples); ++s)
+    frame.contact_shape[s] =
+        static_cast<float>(dent_share((static_cast<double>(s) + 0.5) * plan.geometry.sample_mm(), reach_mm));
+  aim_lines(plan, frame);
+  impl.for_groups([&](int group, int first, int last) {
+    probe_lines(plan, frame, impl.scratch[static_cast<std::size_t>(group)].walk, first, last);
+  });
+  stand_mirrors(plan, frame);
+  bend_lines(plan, frame);
+  lay_needles(plan, frame, input.needles, impl.needles);
+  impl.for_groups([&](int group, int first, int last) { impl.walk(group, first, last); });
+  impl.for_groups([&](int group, int first, int last) { impl.echo(group, first, last); });
+  add_points(plan, frame);
+  impl.for_groups([&](int group, int first, int last) { impl.spread(group, first, last); });
+  for (std::size_t line = 0; line < frame.contact.size(); ++line) impl.out.contact[line] = frame.walks[line].coupling;
+  return impl.out;
+}
+
+SoundWay BMode::sound_way(int line) const noexcept {
+  const Impl& impl = *impl_;
+  TROCAR_CHECK(line >= 0 && line < impl.plan.lines);
+  const auto samples = static_cast<std::size_t>(impl.plan.samples);
+  const auto at = static_cast<std::size_t>(line);
+  const LineWalk& walk = impl.frame.walks[at];
+  return {{impl.frame.way_gain.data() + at * samples, samples},
+          walk.pressed_mm,
+          {impl.frame.contact_shape.data(), samples},
+          walk.mirror_depth_mm};
+}
+
+}  // namespace trocar

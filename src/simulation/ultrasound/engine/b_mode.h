@@ -1,0 +1,86 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "ultrasound/tissue/acoustic_scene.h"
+#include "ultrasound/engine/artefacts.h"
+#include "ultrasound/engine/beam.h"
+#include "ultrasound/engine/needle_echo.h"
+#include "ultrasound/probe/scan_geometry.h"
+#include "ultrasound/probe/transducer.h"
+
+namespace trocar {
+
+/// How the transducer listens: what a scanner's knobs change before the echoes are there.
+struct Acquisition {
+  double depth_mm = 160.0;
+  double frequency_mhz = 3.5;
+  double focus_mm = 80.0;
+  int lines = 256;     ///< Range 2..1024.
+  int samples = 1024;  ///< A scanline. Range 16..4096.
+  int looks = 3;   ///< Of a compound picture: sub-apertures whose pictures are averaged. Range 1..5; 1: full speckle.
+  int planes = 5;  ///< Across the beam's thickness. 1, 3, 5, 7 or 9.
+  Artefacts artefacts;
+
+  bool operator==(const Acquisition&) const = default;
+};
+/// The transducer's own defaults.
+Acquisition default_acquisition(const Transducer& transducer);
+
+/// What one frame is made of.
+struct BModeInput {
+  Pose X_PT;  ///< Transducer in the (resting) patient.
+  std::span<const NeedleEcho> needles;
+  double time_s = 0.0;
+};
+
+/// Echoes of one frame, beamformed, demodulated and not yet amplified: complex baseband, scanline by scanline (sample
+/// runs fastest), look after look. 1.0 is the root mean square of liver's speckle without attenuation.
+struct BasebandFrame {
+  ScanGeometry geometry;
+  Beam beam;
+  int looks = 1;
+  std::vector<float> re, im;   ///< looks * lines * samples.
+  std::vector<float> contact;  ///< A scanline: 1 where the face is coupled to the skin, 0 in air.
+};
+
+/// Share of the scanlines that are coupled to the skin, 0..1.
+double coupled_share(const BasebandFrame& frame) noexcept;
+
+/// What the last frame's sound met on the way along one scanline; for Doppler.
+struct SoundWay {
+  std::span<const float> gain;  ///< A sample: amplitude left of an echo from there, without its own strength.
+  /// A sample at depth r shows what rests at r - pressed_mm * dent_share.
+  float pressed_mm = 0.0F;
+  std::span<const float> dent_share;
+  float mirror_depth_mm = 1e30F;  ///< Deeper samples show a mirror image.
+};
+
+/// Ultrasound from an acoustic scene (docs/physics.md U1–U9). Buffers are taken once; render allocates nothing. The
+/// result is the same whatever the number of threads.
+class BMode {
+ public:
+  BMode(std::shared_ptr<const AcousticScene> scene, Transducer transducer, const Acquisition& acquisition);
+  ~BMode();
+  BMode(BMode&&) noexcept;
+  BMode& operator=(BMode&&) noexcept;
+
+  /// New settings; takes buffers anew.
+  void set_acquisition(const Acquisition& acquisition);
+  const Acquisition& acquisition() const noexcept;
+  const ScanGeometry& geometry() const noexcept;
+
+  /// The echoes from that pose. The frame stays valid until the next call.
+  const BasebandFrame& render(const BModeInput& input) noexcept;
+  /// Of a scanline of that frame; valid as long. 0 <= line < lines.
+  SoundWay sound_way(int line) const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace trocar

@@ -1,0 +1,38 @@
+#include "ultrasound/engine/detail/frame_state.h"
+
+#include <algorithm>
+
+namespace trocar::detail {
+
+FrameState make_frame_state(const AcousticScene& scene) {
+  FrameState frame;
+  frame.scene = &scene;
+  frame.tiles = TiledTissue(scene);
+  return frame;
+}
+
+void fit_frame(FrameState& frame, const ScanPlan& plan) {
+  const auto lines = static_cast<std::size_t>(plan.lines), samples = static_cast<std::size_t>(plan.samples);
+  frame.contact.resize(lines);
+  frame.walks.resize(lines);
+  frame.audible.assign(lines, plan.samples);
+  frame.pressed_samples.assign(lines, 0.0F);
+  frame.reflectors.resize(lines);
+  frame.gas.resize(lines);
+  frame.borders.resize(static_cast<std::size_t>(plan.planes) * lines * kMaxBorders);
+  frame.border_keys.resize(frame.borders.size());
+  frame.border_counts.assign(static_cast<std::size_t>(plan.planes) * lines, 0);
+  frame.contact_shape.assign(samples + 16, 0.0F);
+  for (auto* coarse : {&frame.bend_mm, &frame.focus_log, &frame.slowness, &frame.smooth_slowness, &frame.probed_way})
+    coarse->assign(lines * plan.coarse_samples(), 0.0F);
+  frame.delay.assign(lines * samples + 16, 0.0F);
+  frame.way_gain.assign(lines * samples + 16, 0.0F);
+  frame.gain.assign(static_cast<std::size_t>(plan.planes) * lines * samples + 2, 0);
+  for (auto* echoes : {&frame.re, &frame.im}) echoes->assign(plan.echo_row(plan.lines + plan.lateral_reach), 0.0F);
+}
+
+void forget_borders(FrameState& frame) noexcept {
+  std::fill(frame.border_counts.begin(), frame.border_counts.end(), std::uint8_t{0});
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,64 @@
+#include "ultrasound/engine/detail/multiple_echoes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/random.h"
+
+namespace trocar::detail {
+namespace {
+
+/// What the face of the array and the skin give back of an echo that returns to them (assumed, range 0.05..0.4).
+constexpr float kFaceReflection = 0.2F;
+/// Reflectors that give back less make no second echo worth a loop.
+constexpr float kLeastReverberation = 0.003F;
+
+/// Bubbles that ring: how loud at first, against liver's speckle, and how fast they fade (assumed).
+constexpr float kRingLevel = 1.6F;
+constexpr float kRingFade_mm = 28.0F;
+
+}  // namespace
+
+void add_ring_down(const ScanPlan& plan, FrameState& frame, int line) noexcept {
+  const Reflector& reflector = frame.reflectors[static_cast<std::size_t>(line)];
+  if (!reflector.is_gas || reflector.rough_amplitude <= 1e-4F) return;
+  const std::uint64_t key = mix64(reflector.key);
+  // Some bubbles ring, most only shadow.
+  constexpr float kSilentShare = 0.8F;
+  const float loud =
+      std::max(0.0F, static_cast<float>(key & 0xffffU) / 65535.0F - kSilentShare) / (1.0F - kSilentShare);
+  const float level = kRingLevel * loud * loud * reflector.rough_amplitude;
+  const auto begin = static_cast<int>(reflector.shown);
+  // Bands: the pulse goes round within a cluster of bubbles.
+  const float band_mm = 1.2F + 1.6F * static_cast<float>((key >> 16) & 0xffU) / 255.0F;
+  const float fade = std::exp(-plan.sample_mm / kRingFade_mm);
+  float amplitude =
+      level / std::sqrt(plan.surface_scale[static_cast<std::size_t>(std::clamp(begin, 0, plan.samples - 1))]);
+  const std::size_t row = plan.echo_row(line);
+  for (int s = std::max(begin, 0); s < plan.samples; ++s) {
+    amplitude *= fade;
+    const float phase = 2.0F * std::numbers::pi_v<float> * static_cast<float>(s - begin) * plan.sample_mm / band_mm;
+    const std::uint64_t bits = mix64(key + static_cast<std::uint64_t>(s - begin));
+    const float a = static_cast<float>(bits & 0xffffU) / 32767.5F - 1.0F;
+    const float b = static_cast<float>((bits >> 16) & 0xffffU) / 32767.5F - 1.0F;
+    const float envelope = amplitude * (0.55F + 0.45F * std::cos(phase));
+    frame.re[row + static_cast<std::size_t>(s)] += envelope * a;
+    frame.im[row + static_cast<std::size_t>(s)] += envelope * b;
+  }
+}
+
+void add_reverberation(const ScanPlan& plan, const FrameState& frame, int look, int line, BasebandFrame& out) noexcept {
+  const Reflector& reflector = frame.reflectors[static_cast<std::size_t>(line)];
+  const float again = kFaceReflection * reflector.amplitude;
+  const auto lag = static_cast<int>(reflector.shown + 0.5F);
+  if (again < kLeastReverberation || lag < 8) return;
+  const std::size_t row = static_cast<std::size_t>(look * plan.lines + line) * static_cast<std::size_t>(plan.samples);
+  // From near to far, so that what came again comes again: A-lines at 2, 3, 4 … times the depth.
+  for (int s = lag; s < plan.samples; ++s) {
+    out.re[row + static_cast<std::size_t>(s)] += again * out.re[row + static_cast<std::size_t>(s - lag)];
+    out.im[row + static_cast<std::size_t>(s)] += again * out.im[row + static_cast<std::size_t>(s - lag)];
+  }
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,68 @@
+#include "ultrasound/engine/detail/point_echo.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ultrasound/probe/probe_contact.h"
+
+namespace trocar::detail {
+namespace {
+
+/// The point's place among scanlines and samples of `walk`, and in elevation; line < -1: not heard.
+struct Heard {
+  double line = -10.0, walk = 0.0, zeta = 0.0;
+};
+
+Heard hear_point(const ScanPlan& plan, const FrameState& frame, const Vec3& p_T) noexcept {
+  const Polar at = plan.geometry.to_polar(Vec2(p_T.x(), p_T.y()));
+  const auto nearest = [&](double line) {
+    return static_cast<std::size_t>(std::clamp(std::lround(line), 0L, plan.lines - 1L));
+  };
+  if (at.line < -1.0 || at.line > plan.lines || at.depth_mm < -static_cast<double>(frame.deepest_dent_mm)) return {};
+  const double sample_mm = plan.geometry.sample_mm();
+  const double pressed = static_cast<double>(frame.pressed_samples[nearest(at.line)]);
+  const double walk = pressed_depth_mm(at.depth_mm / sample_mm, pressed, static_cast<double>(frame.dent_reach)) - 0.5;
+  if (!(walk >= 0.0 && walk <= plan.samples - 1)) return {};
+  const auto s = static_cast<std::size_t>(walk);
+  // The scanline that hears it is the one whose bent ray comes by.
+  const double spacing_mm = plan.geometry.line_spacing_mm((walk + 0.5) * sample_mm);
+  double line = at.line;
+  for (int round = 0; round < 3; ++round)
+    line =
+        at.line - static_cast<double>(frame.bend_mm[nearest(line) * plan.coarse_samples() + s / kCoarse]) / spacing_mm;
+  return {line, walk, p_T.z() * static_cast<double>(plan.inverse_elevation_sigma[s])};
+}
+
+}  // namespace
+
+void add_points(const ScanPlan& plan, FrameState& frame) noexcept {
+  const Pose X_TP = frame.X_PT.inverse();
+  const double thickest_mm = static_cast<double>(
+      kBeamEdge * *std::max_element(plan.elevation_sigma_mm.begin(), plan.elevation_sigma_mm.end()));
+  for (const AcousticPoint& point : frame.scene->points) {
+    if (std::abs(X_TP.R().row(2).dot(point.p_P) + X_TP.p().z()) > thickest_mm) continue;
+    const Heard heard = hear_point(plan, frame, X_TP * point.p_P);
+    if (heard.line < -1.0 || std::abs(heard.zeta) > static_cast<double>(kBeamEdge)) continue;
+    const auto line = static_cast<int>(std::floor(heard.line));
+    const auto nearest = std::clamp(static_cast<int>(std::lround(heard.line)), 0, plan.lines - 1);
+    const std::size_t place = static_cast<std::size_t>(nearest) * static_cast<std::size_t>(plan.samples) +
+                              static_cast<std::size_t>(heard.walk);
+    // Its own strength and the way's loss, not the backscatter of the tissue.
+    const double amplitude = std::pow(10.0, point.amplitude_db / 20.0) * std::exp(-0.5 * heard.zeta * heard.zeta) *
+                             static_cast<double>(frame.way_gain[place]);
+    const double shown = heard.walk + static_cast<double>(frame.delay[place]);
+    const auto sample = static_cast<std::ptrdiff_t>(std::lround(shown));
+    if (sample < 0 || sample >= plan.samples) continue;
+    const double turn = 2.0 * std::numbers::pi * shown * static_cast<double>(plan.cycles_per_sample);
+    for (int side = 0; side < 2; ++side) {
+      if (line + side < 0 || line + side >= plan.lines) continue;
+      const double part = side == 0 ? 1.0 - (heard.line - line) : heard.line - line;
+      const auto to = plan.echo_row(line + side) + static_cast<std::size_t>(sample);
+      frame.re[to] += static_cast<float>(part * amplitude * std::cos(turn));
+      frame.im[to] -= static_cast<float>(part * amplitude * std::sin(turn));
+    }
+  }
+}
+
+}  // namespace trocar::detail

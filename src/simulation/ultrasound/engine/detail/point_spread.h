@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/engine/detail/frame_state.h"
+#include "ultrasound/engine/detail/scan_plan.h"
+
+namespace trocar::detail {
+
+/// One scanline of all looks on its way through spread_echoes; a task has its own.
+class LookRows {
+ public:
+  LookRows() = default;
+  explicit LookRows(const ScanPlan& plan);
+
+  /// Samples of a look, with silence before and behind them.
+  float* re(std::size_t look) noexcept { return values_.data() + 2 * look * stride_ + kPad; }
+  float* im(std::size_t look) noexcept { return re(look) + stride_; }
+  /// Vectors write beyond the last sample: makes that silence again.
+  void silence_behind() noexcept;
+
+ private:
+  std::size_t stride_ = 0, samples_ = 0, looks_ = 1;
+  std::vector<float> values_;
+};
+
+/// Spreads the echoes `re` and `im` of all scanlines, laterally and along the pulse, to one scanline's samples of every
+/// look.
+void spread_echoes(const ScanPlan& plan, const FrameState& frame, int line, LookRows& rows,
+                   BasebandFrame& out) noexcept;
+
+/// gain[s] = exp(log_gain[s] + added[s]), 0 where that is nothing. Both inputs reach 16 floats beyond n.
+void to_gain(const float* log_gain, const float* added, int n, float* gain) noexcept;
+
+}  // namespace trocar::detail

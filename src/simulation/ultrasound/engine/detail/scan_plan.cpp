@@ -1,0 +1,186 @@
+#include "ultrasound/engine/detail/scan_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ultrasound/engine/detail/scatterer_bricks.h"
+#include "ultrasound/engine/detail/scatterer_gain.h"
+
+namespace trocar::detail {
+namespace {
+
+constexpr double kNeperPerDb = std::numbers::ln10 / 20.0;
+constexpr double kGelSpeed_m_per_s = 1540.0;
+constexpr float kSilent = -60.0F;  // neper: nothing
+
+void fill_rows(ScanPlan& plan, const AcousticTable& table) {
+  const double mhz = plan.acquisition.frequency_mhz;
+  const double assumed_m_per_s = 1000.0 * kScannerSpeed_mm_per_us;
+  plan.rows.fill({0.0F, 0.0F, kSilent, 0.0F});
+  for (std::size_t t = 0; t < table.tissues.size(); ++t) {
+    const AcousticTissue& tissue = table.tissues[t];
+    const double loss_db_per_mm =
+        plan.acquisition.artefacts.attenuation ? tissue.attenuation_db_per_cm(mhz) / 10.0 : 0.0;
+    const double share = std::max(static_cast<double>(kShares[share_class(tissue.scatterer_share)]), 1.0 / 255.0);
+    TissueRow& row = plan.rows[t];
+    row.log_z = static_cast<float>(std::log(tissue.impedance_mrayl()));
+    row.loss = static_cast<float>(2.0 * loss_db_per_mm * kNeperPerDb * plan.sample_mm);
+    row.log_b = static_cast<float>(tissue.backscatter_db * kNeperPerDb - 0.5 * std::log(share));
+    plan.slowness[t] = static_cast<float>(assumed_m_per_s / std::clamp(tissue.speed_m_per_s, 1300.0, 4500.0) - 1.0);
+    row.delay = plan.acquisition.artefacts.range_distortion ? plan.slowness[t] : 0.0F;
+    for (int step = -128; step < 128; ++step)
+      plan.texture_gain[t][static_cast<std::size_t>(step + 128)] =
+          static_cast<float>(tissue.texture_db(step * kTextureStep_hu) * kNeperPerDb);
+    plan.has_texture[t] = tissue.texture_db_per_hu != 0.0 || tissue.texture_below_db_per_hu != 0.0 ? 1 : 0;
+    plan.fibre_gain[t] = static_cast<float>(tissue.fibre_db * kNeperPerDb);
+    plan.roughness[t] = static_cast<float>(tissue.roughness);
+    plan.share[t] = share_class(tissue.scatterer_share);
+  }
+  plan.share[kNoData] = share_class(0.0);
+  plan.entry_rows = plan.rows;
+  const auto skin = table.find("skin");
+  plan.entry_rows[0] = {skin ? plan.rows[*skin].log_z : static_cast<float>(std::log(1e-3 * kGelSpeed_m_per_s)), 0.0F,
+                        kSilent, 0.0F};
+}
+
+void fill_planes(ScanPlan& plan) {
+  plan.plane_step = plan.planes > 1 ? 2.0F * kOutermostPlane / static_cast<float>(plan.planes - 1) : 1.0F;
+  float sum = 0.0F;
+  for (int p = 0; p < plan.planes; ++p) {
+    const float zeta = static_cast<float>(p - plan.planes / 2) * plan.plane_step;
+    sum += plan.plane_weight[static_cast<std::size_t>(p)] = std::exp(-0.5F * zeta * zeta);
+  }
+  for (float& weight : plan.plane_weight) weight /= sum;
+}
+
+/// Scatterers are shared out among two scanlines, which widens the beam by itself.
+constexpr double kSharingVariance = 1.0 / 6.0;
+
+/// Looks of a compound listen from the sides: the same beam on a tilted wave front. `sigma` of the beam, scanlines.
+void fill_looks(ScanPlan& plan, const std::vector<double>& sigma) {
+  constexpr double kLookTurn = 1.7;  // rad a sigma: with it their speckle's correlation with the middle look's is 0.24
+  constexpr double kMostTurn = 0.45 * std::numbers::pi;
+  plan.looks = plan.acquisition.looks;
+  plan.main_lobe_reach = *std::max_element(plan.main_lobe_reach_at.begin(), plan.main_lobe_reach_at.end());
+  const auto sides = static_cast<std::size_t>(plan.looks / 2);
+  plan.side_cosine.assign(plan.side_row(sides, 1) + 16, 0.0F);
+  plan.side_sine = plan.side_cosine;
+  for (std::size_t side = 0; side < sides; ++side) {
+    for (int k = 1; k <= plan.main_lobe_reach; ++k) {
+      for (std::size_t s = 0; s < sigma.size(); ++s) {
+        const double turn = static_cast<double>(side + 1) * k * std::min(kLookTurn / sigma[s], kMostTurn);
+        const auto weight = static_cast<double>(plan.lateral[static_cast<std::size_t>(k) * sigma.size() + s]);
+        plan.side_cosine[plan.side_row(side, k) + s] = static_cast<float>(weight * std::cos(turn));
+        plan.side_sine[plan.side_row(side, k) + s] = static_cast<float>(weight * std::sin(turn));
+      }
+    }
+  }
+}
+
+void fill_lateral(ScanPlan& plan) {
+  const auto n = static_cast<std::size_t>(plan.samples);
+  double widest = 0.0;
+  std::vector<double> kernel_sigma(n), sigma(n);  // in scanlines
+  for (std::size_t s = 0; s < n; ++s) {
+    const double depth_mm = (static_cast<double>(s) + 0.5) * plan.sample_mm;
+    sigma[s] = plan.beam.lateral_sigma_mm(depth_mm) / plan.geometry.line_spacing_mm(depth_mm);
+    kernel_sigma[s] = std::sqrt(std::max(sigma[s] * sigma[s] - kSharingVariance, 0.1));
+    widest = std::max(widest, kernel_sigma[s]);
+  }
+  // Side lobes: of an aperture with moderate apodisation, alternating in sign (docs/physics.md U6).
+  constexpr double kFirstLobe_sigma = 3.6, kLastLobe_sigma = 10.0, kLobeSpacing_sigma = 1.7;
+  const double lobe = plan.acquisition.artefacts.side_lobes ? std::pow(10.0, -40.0 / 20.0) : 0.0;
+  const double reach_sigma = lobe > 0.0 ? kLastLobe_sigma : 3.3;
+  plan.lateral_reach = std::clamp(static_cast<int>(std::ceil(reach_sigma * widest)), 1, std::min(48, plan.lines - 1));
+  plan.lateral.assign((static_cast<std::size_t>(plan.lateral_reach) + 1) * n + 16, 0.0F);
+  plan.surface_scale.assign(n, 0.0F);
+  plan.lateral_reach_at.assign(n / 16 + 1, 0);
+  plan.main_lobe_reach_at = plan.lateral_reach_at;
+  for (std::size_t s = 0; s < n; ++s) {
+    const double height = sigma[s] / kernel_sigma[s];
+    double sum = 0.0;
+    for (int k = 0; k <= plan.lateral_reach; ++k) {
+      const double x = k / kernel_sigma[s];
+      double weight = height * std::exp(-0.5 * x * x);
+      if (x > kFirstLobe_sigma - 1.0 && x < kLastLobe_sigma)
+        weight += lobe * std::sin(std::numbers::pi * x / kLobeSpacing_sigma) * std::sqrt(kFirstLobe_sigma / x) *
+                  std::min(1.0, x - kFirstLobe_sigma + 1.0);
+      plan.lateral[static_cast<std::size_t>(k) * n + s] = static_cast<float>(weight);
+      sum += (k == 0 ? 1.0 : 2.0) * std::abs(height * std::exp(-0.5 * x * x));
+    }
+    plan.surface_scale[s] = static_cast<float>(1.0 / sum);
+    const int narrow = std::clamp(static_cast<int>(std::ceil(3.0 * kernel_sigma[s])), 1, plan.lateral_reach);
+    plan.main_lobe_reach_at[s / 16] = std::max(plan.main_lobe_reach_at[s / 16], narrow);
+    const int reach = std::clamp(static_cast<int>(std::ceil(reach_sigma * kernel_sigma[s])), 1, plan.lateral_reach);
+    plan.lateral_reach_at[s / 16] = std::max(plan.lateral_reach_at[s / 16], reach);
+  }
+  fill_looks(plan, sigma);
+}
+
+void fill_axial(ScanPlan& plan) {
+  const double sigma = plan.beam.axial_sigma_mm / plan.sample_mm;
+  plan.axial_reach = std::clamp(static_cast<int>(std::ceil(3.5 * sigma)), 1, kPad);
+  plan.axial.clear();
+  for (int k = 0; k <= plan.axial_reach; ++k)
+    plan.axial.push_back(static_cast<float>(std::exp(-0.5 * k * k / (sigma * sigma))));
+}
+
+/// As many scatterers as the smallest resolution cell needs for fully developed speckle, and the factor that makes its
+/// mean independent of the cell's size: n E[a^2] pi^1.5 sx sy sz is the mean intensity of a Gaussian point spread.
+void fill_scatterers(ScanPlan& plan) {
+  constexpr double kWantedPerCell = 4.0;
+  constexpr double kEffectiveVolume = 15.75;  // (2 pi)^1.5, of sx sy sz: (sum w^2)^2 / sum w^4
+  const auto n = static_cast<std::size_t>(plan.samples);
+  std::vector<double> volume_mm3(n);
+  for (std::size_t s = 0; s < n; ++s) {
+    const double depth_mm = (static_cast<double>(s) + 0.5) * plan.sample_mm;
+    const double lateral_mm = plan.beam.lateral_sigma_mm(depth_mm);
+    volume_mm3[s] = plan.beam.axial_sigma_mm * lateral_mm * plan.elevation_sigma_mm[s];
+  }
+  const double smallest_mm3 = *std::min_element(volume_mm3.begin(), volume_mm3.end());
+  const double per_mm3 = kWantedPerCell / (kEffectiveVolume * smallest_mm3);
+  plan.brick_mm = static_cast<float>(std::cbrt(kBrickScatterers / per_mm3));
+  plan.speckle_scale.resize(n);
+  plan.most_rank.resize(n);
+  for (std::size_t s = 0; s < n; ++s) {
+    // A small part of a stratified brick is less even than the whole: the fewer, the more of them in a resolution cell.
+    const double share = std::clamp(1.6 * std::pow(smallest_mm3 / volume_mm3[s], 0.7), 0.1, 1.0);
+    plan.most_rank[s] = static_cast<float>(share);
+    const double mean = share * per_mm3 * kMeanSquareScatterer * std::pow(std::numbers::pi, 1.5) * volume_mm3[s];
+    plan.speckle_scale[s] = static_cast<float>(1.0 / std::sqrt(mean));
+  }
+}
+
+}  // namespace
+
+ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer, const Acquisition& acquisition) {
+  ScanPlan plan;
+  plan.acquisition = acquisition;
+  plan.geometry = make_scan_geometry(transducer, acquisition.depth_mm, acquisition.lines, acquisition.samples);
+  plan.beam = make_beam(transducer, acquisition.frequency_mhz, acquisition.focus_mm);
+  plan.lines = acquisition.lines;
+  plan.samples = acquisition.samples;
+  plan.planes = acquisition.planes;
+  plan.stride = (plan.samples + 15) / 16 * 16 + 2 * kPad;
+  plan.sample_mm = static_cast<float>(plan.geometry.sample_mm());
+  plan.cycles_per_sample = static_cast<float>(2.0 * plan.geometry.sample_mm() / plan.beam.wavelength_mm);
+
+  const auto n = static_cast<std::size_t>(plan.samples);
+  for (std::size_t s = 0; s < n; ++s) {
+    const double depth_mm = (static_cast<double>(s) + 0.5) * plan.sample_mm;
+    const double sigma_mm = plan.beam.elevation_sigma_mm(depth_mm);
+    plan.elevation_sigma_mm.push_back(static_cast<float>(sigma_mm));
+    plan.inverse_elevation_sigma.push_back(static_cast<float>(1.0 / sigma_mm));
+  }
+  // Kernels read whole vectors.
+  plan.elevation_sigma_mm.resize(n + 16, plan.elevation_sigma_mm.back());
+  fill_rows(plan, scene.table);
+  fill_planes(plan);
+  fill_lateral(plan);
+  fill_axial(plan);
+  fill_scatterers(plan);
+  return plan;
+}
+
+}  // namespace trocar::detail

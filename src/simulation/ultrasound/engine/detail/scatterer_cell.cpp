@@ -1,0 +1,147 @@
+#include "ultrasound/engine/detail/scatterer_cell.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar::detail {
+namespace {
+
+std::size_t sample_near(const ScanPlan& plan, float s) noexcept {
+  return static_cast<std::size_t>(std::clamp(s, 0.0F, static_cast<float>(plan.samples - 1)));
+}
+
+/// Through the values at both ends and the middle between them.
+void fit_parabola(const std::vector<float>& values, std::size_t first, std::size_t last,
+                  float (&parabola)[3]) noexcept {
+  const std::size_t middle = (first + last) / 2;
+  const auto a = static_cast<float>(first), b = static_cast<float>(middle), c = static_cast<float>(last);
+  const float slope = middle > first ? (values[middle] - values[first]) / (b - a) : 0.0F;
+  const float next_slope = last > middle ? (values[last] - values[middle]) / (c - b) : slope;
+  parabola[2] = last > first ? (next_slope - slope) / (c - a) : 0.0F;
+  parabola[1] = slope - parabola[2] * (a + b);
+  parabola[0] = values[first] - (parabola[1] + parabola[2] * a) * a;
+}
+
+void set_lines(const ScanPlan& plan, const FrameState& frame, std::size_t near, std::size_t far, Cell& cell) noexcept {
+  float least = 0.0F, most = 0.0F;
+  if (frame.widest_warp > 0.0F) {
+    for (int line = std::max(cell.first_line - 1, 0); line <= std::min(cell.last_line, plan.lines - 1); ++line) {
+      const float* bend = frame.bend_mm.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
+      for (std::size_t c = near / kCoarse; c <= far / kCoarse + 1; ++c) {
+        least = std::min(least, bend[c]);
+        most = std::max(most, bend[c]);
+      }
+    }
+  }
+  const double depth_mm = (static_cast<double>(near) + 0.5) * plan.geometry.sample_mm();
+  const double spacing_mm = std::max(plan.geometry.line_spacing_mm(depth_mm), 0.02);
+  cell.low_line = cell.first_line - 1.0 + static_cast<double>(least) / spacing_mm;
+  cell.high_line = cell.last_line + 1.0 + static_cast<double>(most) / spacing_mm;
+}
+
+}  // namespace
+
+Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int last, float first_rest,
+               float last_rest) noexcept {
+  Cell cell{};
+  cell.first_line = first;
+  cell.last_line = last;
+  cell.first_rest = first_rest;
+  cell.last_rest = last_rest;
+  const std::size_t near = sample_near(plan, first_rest), far = sample_near(plan, last_rest);
+  cell.half_thickness_mm = kBeamEdge * std::max(plan.elevation_sigma_mm[near], plan.elevation_sigma_mm[far]);
+  cell.most_rank = std::max(plan.most_rank[near], plan.most_rank[far]);
+  cell.yields = frame.deepest_dent_mm > 0.0F && first_rest < frame.dent_reach;
+  fit_parabola(plan.speckle_scale, near, far, cell.speckle_scale);
+  fit_parabola(plan.most_rank, near, far, cell.rank);
+  fit_parabola(plan.inverse_elevation_sigma, near, far, cell.inverse_elevation_sigma);
+  const ScanGeometry& g = plan.geometry;
+  set_lines(plan, frame, near, far, cell);
+  const double low_mm = (static_cast<double>(first_rest) + 0.4) * g.sample_mm(),
+               high_mm = (static_cast<double>(last_rest) + 0.6) * g.sample_mm();
+  const double lines[2] = {cell.low_line, cell.high_line};
+  for (int side = 0; side < 2; ++side) {
+    const double outwards = side == 0 ? -1.0 : 1.0;
+    const double angle = (lines[side] - g.middle_line()) * g.line_step;
+    cell.side_x[side] = static_cast<float>(outwards * (g.is_fan ? std::cos(angle) : 1.0));
+    cell.side_y[side] = static_cast<float>(outwards * (g.is_fan ? -std::sin(angle) : 0.0));
+    cell.side_d[side] = static_cast<float>(g.is_fan ? 0.0 : -outwards * angle);
+  }
+  const auto bound = [&](double mm) {
+    return static_cast<float>(g.is_fan ? std::pow(std::max(g.radius_mm + mm, 0.0), 2) : mm);
+  };
+  cell.low = bound(low_mm);
+  cell.high = bound(high_mm);
+  cell.near_mm = g.is_fan ? std::sqrt(cell.low) : cell.low;
+  cell.far_mm = g.is_fan ? std::sqrt(cell.high) : cell.high;
+  return cell;
+}
+
+CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept {
+  CellBox box{};
+  Vec3 low = Vec3::Constant(1e30), high = Vec3::Constant(-1e30);
+  for (const double line : {cell.low_line, 0.5 * (cell.low_line + cell.high_line), cell.high_line}) {
+    for (const float rest : {cell.first_rest, cell.last_rest}) {
+      const Vec2 p = plan.geometry.to_cartesian({line, (static_cast<double>(rest) + 0.5) * plan.geometry.sample_mm()});
+      for (const float z : {-cell.half_thickness_mm, cell.half_thickness_mm}) {
+        const Vec3 p_P = frame.X_PT * Vec3(p.x(), p.y(), static_cast<double>(z));
+        low = low.cwiseMin(p_P);
+        high = high.cwiseMax(p_P);
+      }
+    }
+  }
+  const double reach_mm = frame.drag.reach_mm > 0.0F ? static_cast<double>(frame.drag.shift_T.norm()) : 0.0;
+  const auto brick_of = [&](double mm) {
+    return static_cast<std::int32_t>(std::floor(mm / static_cast<double>(plan.brick_mm)));
+  };
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    box.low[a] = brick_of(low[axis] - reach_mm);
+    box.high[a] = brick_of(high[axis] + reach_mm);
+  }
+  return box;
+}
+
+namespace {
+
+/// Narrows first..last to the steps n for which start + step * n <= most.
+void stay_below(float start, float step, float most, int& first, int& last) noexcept {
+  constexpr float kLevel = 1e-4F;
+  if (std::abs(step) < kLevel) {
+    if (start > most) last = first - 1;
+    return;
+  }
+  const float end = std::clamp((most - start) / step, -1e6F, 1e6F);
+  if (step > 0.0F)
+    last = std::min(last, static_cast<int>(std::floor(end)));
+  else
+    first = std::max(first, static_cast<int>(std::ceil(end)));
+}
+
+float from_apex(const ScanPlan& plan, float y) noexcept {
+  return y + (plan.geometry.is_fan ? static_cast<float>(plan.geometry.radius_mm) : 0.0F);
+}
+
+}  // namespace
+
+void stay_in_cell(const ScanPlan& plan, const Cell& cell, const Vec3f& start_T, const Vec3f& step_T, float radius_mm,
+                  int& first, int& last) noexcept {
+  const float half_mm = cell.half_thickness_mm + radius_mm;
+  stay_below(start_T.z(), step_T.z(), half_mm, first, last);
+  stay_below(-start_T.z(), -step_T.z(), half_mm, first, last);
+  const float y = from_apex(plan, start_T.y());
+  for (int side = 0; side < 2; ++side) {
+    stay_below(start_T.x() * cell.side_x[side] + y * cell.side_y[side] + cell.side_d[side],
+               step_T.x() * cell.side_x[side] + step_T.y() * cell.side_y[side], radius_mm, first, last);
+  }
+}
+
+bool is_at_depth(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T, float radius_mm) noexcept {
+  const float y = from_apex(plan, middle_T.y());
+  const float low = cell.near_mm - radius_mm, high = cell.far_mm + radius_mm;
+  if (!plan.geometry.is_fan) return y > low && y < high;
+  const float far2 = middle_T.x() * middle_T.x() + y * y;
+  return (low < 0.0F || far2 > low * low) && far2 < high * high;
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "ultrasound/engine/detail/scatterer_bricks.h"
+
+namespace trocar::detail {
+
+/// What a task's scatterers add up to, before it is added to the scanlines: complex, a row of scanlines for each
+/// sample, so that an echo's two scanlines lie side by side. Begins kBeforeFace samples before the face, and one
+/// scanline before the task's first.
+using ScattererField = std::vector<float>;
+inline constexpr int kBeforeFace = kPad / 2;
+inline constexpr int kFieldRow = 2 * (kGroup + 2);
+ScattererField make_scatterer_field(const ScanPlan& plan);
+
+/// Adds the echoes of all scatterers that scanlines [first, last) hear, at most kGroup of them. Each task writes to its
+/// own scanlines; `field` is its own room to work in.
+void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, FrameState& frame, int first, int last,
+                    ScattererField& field) noexcept;
+
+}  // namespace trocar::detail

@@ -1,0 +1,279 @@
+#include "ultrasound/engine/detail/sound_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ultrasound/engine/detail/border_fit.h"
+
+namespace trocar::detail {
+namespace {
+
+/// A border that reflects more than this (amplitude) from a tissue far lighter than water is gas: it can mirror.
+constexpr float kMirrorReflection = 0.6F;
+/// What a mirror gives back of what falls on it, twice over a surface that is never quite smooth (assumed).
+constexpr float kMirrorShare = 0.5F;
+
+std::array<float, 3> floats(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+/// Slope of a surface across the image, mean over scanlines about `line`: only the central plane was probed, and the
+/// volume's gradient on one scanline has the voxels' steps in it.
+float slope_across(const ScanPlan& plan, const FrameState& frame, int line) noexcept {
+  constexpr int kReach = 8;
+  float sum = 0.0F;
+  int count = 0;
+  for (int l = std::max(0, line - kReach); l <= std::min(plan.lines - 1, line + kReach); ++l) {
+    const GasBorder& gas = frame.gas[static_cast<std::size_t>(l)];
+    if (!gas.is_there) continue;
+    sum += gas.slope_across;
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<float>(count) : 0.0F;
+}
+
+/// The mirror that stands where a scanline meets gas; its side away from the transducer shows what lies before it.
+void set_mirror(const ScanPlan& plan, FrameState& frame, int l) noexcept {
+  LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
+  const Border& border = frame.gas[static_cast<std::size_t>(l)].border;
+  const SurfaceFit fit = fit_in_plane(plan, frame, plan.planes / 2, l, border);
+  const Vec3 spacing = frame.scene->geometry.spacing_mm;
+  const auto in_mm = [&](const std::array<float, 3>& v) { return Vec3(Vec3(v[0], v[1], v[2]).cwiseProduct(spacing)); };
+  const Vec3 along = in_mm(line.along), lateral = in_mm(line.lateral), elevation = in_mm(frame.elevation);
+  const Vec3 normal = (along - static_cast<double>(fit.lateral) * lateral -
+                       static_cast<double>(slope_across(plan, frame, l)) * elevation)
+                          .normalized();
+  constexpr double kLeastFacing = 0.35;
+  if (!(normal.dot(along) > kLeastFacing)) return;
+  const double walk_mm = (static_cast<double>(fit.walk) + 0.5) * static_cast<double>(plan.sample_mm);
+  const auto at = static_cast<std::size_t>(std::clamp(fit.walk, 0.0F, static_cast<float>(plan.samples - 1)));
+  const Vec3 place =
+      in_mm(line.origin) + (walk_mm - static_cast<double>(line.pressed_mm * frame.contact_shape[at])) * along;
+  line.mirror = {static_cast<float>((in_mm(line.origin) - place).dot(normal)), static_cast<float>(along.dot(normal)),
+                 static_cast<float>(elevation.dot(normal)), static_cast<float>(lateral.dot(normal))};
+  line.mirror_normal = floats(2.0 * normal.cwiseQuotient(spacing));
+  line.mirror_depth_mm = static_cast<float>(walk_mm);
+  line.mirror_reflection = border.reflection;
+  line.mirror_before = border.before;
+  line.mirror_behind = border.behind;
+  line.mirror_gain = kMirrorShare * (1.0F - plan.roughness[border.behind]) * std::abs(border.reflection);
+}
+
+/// Notes the first gas that a scanline meets.
+void note_gas(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, int line) noexcept {
+  GasBorder& gas = frame.gas[static_cast<std::size_t>(line)];
+  gas = {};
+  for (int b = 0; b < walk.border_count; ++b) {
+    const Border& border = walk.borders[static_cast<std::size_t>(b)];
+    if (border.reflection > -kMirrorReflection) continue;
+    gas.is_there = true;
+    gas.border = border;
+    const Vec3 spacing = frame.scene->geometry.spacing_mm;
+    const LineWalk& path = frame.walks[static_cast<std::size_t>(line)];
+    const auto in_mm = [&](const std::array<float, 3>& v) {
+      return Vec3(Vec3(v[0], v[1], v[2]).cwiseProduct(spacing));
+    };
+    const Vec3 slope = impedance_slope(frame, plan.rows, Vec3(border.index[0], border.index[1], border.index[2]));
+    const double towards = slope.dot(in_mm(path.along));
+    constexpr double kMostSlope = 2.0;
+    if (std::abs(towards) > 1e-9)
+      gas.slope_across =
+          static_cast<float>(std::clamp(-slope.dot(in_mm(frame.elevation)) / towards, -kMostSlope, kMostSlope));
+    return;
+  }
+}
+
+}  // namespace
+
+void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept {
+  const GridGeometry& grid = frame.scene->geometry;
+  const Mat3 index_of_T = grid.spacing_mm.cwiseInverse().asDiagonal() * Mat3(grid.R_PV.transpose() * frame.X_PT.R());
+  const Vec3 index_of_origin = grid.to_index(frame.X_PT.p());
+  frame.elevation = floats(index_of_T.col(2));
+  frame.deepest_dent_mm = 0.0F;
+  for (int l = 0; l < plan.lines; ++l) {
+    const Vec2 origin = plan.geometry.line_origin(l), along = plan.geometry.line_direction(l);
+    const auto at = static_cast<std::size_t>(l);
+    const LineContact& contact = frame.contact[at];
+    LineWalk line;
+    line.origin = floats(index_of_origin + index_of_T * Vec3(origin.x(), origin.y(), 0.0));
+    line.along = floats(index_of_T * Vec3(along.x(), along.y(), 0.0));
+    line.lateral = floats(index_of_T * Vec3(along.y(), -along.x(), 0.0));
+    line.pressed_mm = contact.pressed_mm;
+    line.coupling = plan.acquisition.artefacts.contact_loss ? contact.coupling : 1.0F;
+    frame.walks[at] = line;
+    frame.pressed_samples[at] = contact.pressed_mm / plan.sample_mm;
+    frame.deepest_dent_mm = std::max(frame.deepest_dent_mm, contact.pressed_mm);
+  }
+}
+
+void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept {
+  const auto coarse = plan.coarse_samples();
+  std::fill_n(scratch.sideways_mm.begin(), plan.samples + kCoarse, 0.0F);
+  for (int l = first; l < last; ++l) {
+    LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
+    walk_line(plan, frame, line, 0.0F, scratch, frame.delay.data() + static_cast<std::ptrdiff_t>(l) * plan.samples);
+    float* way = frame.probed_way.data() + static_cast<std::size_t>(l) * coarse;
+    float* slowness = frame.slowness.data() + static_cast<std::size_t>(l) * coarse;
+    for (std::size_t c = 0; c < coarse; ++c) {
+      const std::size_t s = std::min(c * kCoarse, static_cast<std::size_t>(plan.samples - 1));
+      constexpr float kBendable = 0.15F;  // gas and bone let nothing through that could be seen
+      way[c] = scratch.log_way[s];
+      const float slow = plan.slowness[scratch.tissue[s]];
+      slowness[c] = std::abs(slow) < kBendable ? slow : 0.0F;
+    }
+    keep_borders(plan, frame, scratch, plan.planes / 2, l);
+    note_gas(plan, frame, scratch, l);
+  }
+}
+
+void stand_mirrors(const ScanPlan& plan, FrameState& frame) noexcept {
+  if (!plan.acquisition.artefacts.mirror) return;
+  for (int l = 0; l < plan.lines; ++l)
+    if (frame.gas[static_cast<std::size_t>(l)].is_there) set_mirror(plan, frame, l);
+}
+
+namespace {
+
+double depth_mm_of(const ScanPlan& plan, std::size_t c) noexcept {
+  return static_cast<double>(c) * kCoarse * static_cast<double>(plan.sample_mm);
+}
+
+/// Distance of neighbouring scanlines. Those of a phased array leave one point: there it counts as kLeast_mm, for what
+/// is nearer together than that says nothing of how the tissue differs to either side.
+double spacing_mm(const ScanPlan& plan, std::size_t c) noexcept {
+  constexpr double kLeast_mm = 0.02;
+  return std::max(plan.geometry.line_spacing_mm(depth_mm_of(plan, c)), kLeast_mm);
+}
+
+/// A beam is as wide as its aperture near the face and narrow at its focus: what is smaller than that hardly bends or
+/// shades it. Scanlines to either side over which a depth is averaged; `share` of the beam's width there.
+int half_width(const ScanPlan& plan, std::size_t c, double share) noexcept {
+  const double depth_mm = depth_mm_of(plan, c);
+  const double width_mm = share * plan.beam.aperture_mm * std::abs(1.0 - depth_mm / plan.beam.focus_mm);
+  constexpr double kLeast_mm = 1.2, kMost_mm = 10.0;
+  return std::clamp(static_cast<int>(std::clamp(width_mm, kLeast_mm, kMost_mm) / spacing_mm(plan, c)), 1, 64);
+}
+constexpr double kBendingShare = 0.5;
+constexpr double kShadingShare = 0.2;  // the echo's own aperture is apodised (assumed)
+
+/// Means over scanlines l - half .. l + half at one depth, from running sums.
+template <class Value, class Take>
+void average_lines(const ScanPlan& plan, int half, const Value& value, const Take& take) noexcept {
+  const int lines = plan.lines;
+  float sum = 0.0F;
+  for (int l = 0; l < std::min(half, lines); ++l) sum += value(l);
+  for (int l = 0; l < lines; ++l) {
+    if (l + half < lines) sum += value(l + half);
+    if (l - half - 1 >= 0) sum -= value(l - half - 1);
+    const int count = std::min(l + half, lines - 1) - std::max(l - half, 0) + 1;
+    take(l, sum / static_cast<float>(count));
+  }
+}
+
+/// Shadows have soft edges: sound comes past a small obstacle. Adds to focus_log.
+void soften_shadows(const ScanPlan& plan, FrameState& frame) noexcept {
+  const auto coarse = plan.coarse_samples();
+  constexpr float kMostChange = 1.5F;  // neper
+  for (std::size_t c = 0; c < coarse; ++c) {
+    const auto way = [&](int l) { return frame.probed_way[static_cast<std::size_t>(l) * coarse + c]; };
+    average_lines(
+        plan, half_width(plan, c, kShadingShare), [&](int l) { return std::exp(std::max(way(l), -40.0F)); },
+        [&](int l, float mean) {
+          const LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
+          const float depth_mm = static_cast<float>(c) * kCoarse * plan.sample_mm;
+          if (depth_mm > line.mirror_depth_mm) return;
+          const float change = std::log(std::max(mean, 1e-18F)) - std::max(way(l), -40.0F);
+          frame.focus_log[static_cast<std::size_t>(l) * coarse + c] += std::clamp(change, -kMostChange, kMostChange);
+        });
+  }
+}
+
+/// Edge shadows: a scanline that grazes a border between tissues of different speed is turned by (n - 1) tan(tilt), and
+/// what is turned by more than the beam's opening does not come back. The tilt is that in the image plane: the other
+/// planes are not walked yet. Adds to focus_log, behind the border.
+void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
+  constexpr float kOpening_rad = 0.13F;  // assumed, about 1 / (2 f-number)
+  constexpr float kMostTangent = 3.0F, kMostLoss = 2.3F, kBendable = 0.15F;
+  const auto coarse = plan.coarse_samples();
+  const int central = plan.planes / 2;
+  for (int line = 0; line < plan.lines; ++line) {
+    const auto first = static_cast<std::size_t>(central * plan.lines + line);
+    float loss = 0.0F;
+    std::size_t c = 0;
+    float* losses = frame.smooth_slowness.data() + static_cast<std::size_t>(line) * coarse;  // free until later
+    for (std::size_t b = 0; b < frame.border_counts[first]; ++b) {
+      const Border& border = frame.borders[first * kMaxBorders + b];
+      const float before = plan.slowness[border.before & 127U], behind = plan.slowness[border.behind & 127U];
+      if (std::abs(before) > kBendable || std::abs(behind) > kBendable || std::abs(before - behind) < 2e-3F) continue;
+      const SurfaceFit fit = fit_in_plane(plan, frame, central, line, border);
+      const float tangent = std::min(std::abs(fit.lateral), kMostTangent);
+      const float turned = (before - behind) * tangent / kOpening_rad;
+      for (const auto end = static_cast<std::size_t>(std::max(border.walk, 0.0F)) / kCoarse; c <= end && c < coarse;
+           ++c)
+        losses[c] = loss;
+      loss = std::min(loss + turned * turned, kMostLoss);  // half of its square, there and back
+    }
+    for (; c < coarse; ++c) losses[c] = loss;
+  }
+  for (std::size_t c = 0; c < coarse; ++c)
+    average_lines(
+        plan, half_width(plan, c, kShadingShare),
+        [&](int l) { return frame.smooth_slowness[static_cast<std::size_t>(l) * coarse + c]; },
+        [&](int l, float mean) { frame.focus_log[static_cast<std::size_t>(l) * coarse + c] -= mean; });
+}
+
+}  // namespace
+
+void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept {
+  const auto coarse = plan.coarse_samples();
+  const auto lines = static_cast<std::size_t>(plan.lines);
+  frame.widest_warp = 0.0F;
+  std::fill(frame.bend_mm.begin(), frame.bend_mm.end(), 0.0F);
+  std::fill(frame.focus_log.begin(), frame.focus_log.end(), 0.0F);
+  if (plan.acquisition.artefacts.attenuation) soften_shadows(plan, frame);
+  if (!plan.acquisition.artefacts.refraction) return;
+  shade_edges(plan, frame);
+  const float step_mm = kCoarse * plan.sample_mm;
+  // A ray turns towards the slower side: slope += -d(ln c)/dx * dr; ln c = -ln(1 + slowness). The change is kept in
+  // bend_mm first.
+  for (std::size_t c = 0; c < coarse; ++c) {
+    const int half = half_width(plan, c, kBendingShare);
+    const auto spacing = static_cast<float>(spacing_mm(plan, c));
+    const auto at = [&](int l) { return static_cast<std::size_t>(l) * coarse + c; };
+    average_lines(
+        plan, half, [&](int l) { return frame.slowness[at(l)]; },
+        [&](int l, float mean) { frame.smooth_slowness[at(l)] = mean; });
+    float before = 0.0F;
+    average_lines(
+        plan, half, [&](int l) { return frame.smooth_slowness[at(l)]; },
+        [&](int l, float mean) {
+          frame.bend_mm[at(l)] = l > 0 ? (mean - before) / spacing * step_mm : 0.0F;
+          before = mean;
+        });
+  }
+  for (std::size_t l = 0; l < lines; ++l) {
+    float slope = 0.0F, bend = 0.0F;
+    for (std::size_t c = 0; c < coarse; ++c) {
+      const auto spacing = static_cast<float>(spacing_mm(plan, c));
+      slope = std::clamp(slope + frame.bend_mm[l * coarse + c], -0.15F, 0.15F);
+      bend += slope * step_mm;
+      frame.bend_mm[l * coarse + c] = bend;
+      frame.widest_warp = std::max(frame.widest_warp, std::abs(bend) / spacing);
+    }
+  }
+  for (std::size_t l = 0; l < lines; ++l) {
+    const std::size_t low = l >= 2 ? l - 2 : 0, high = std::min(l + 2, lines - 1);
+    for (std::size_t c = 0; c < coarse; ++c) {
+      const auto spacing = static_cast<float>(spacing_mm(plan, c));
+      const float parting = (frame.bend_mm[high * coarse + c] - frame.bend_mm[low * coarse + c]) /
+                            (static_cast<float>(high - low) * spacing);
+      // Intensity goes with the inverse of the width of the tube of rays, there and back.
+      frame.focus_log[l * coarse + c] -= std::log(std::clamp(1.0F + parting, 0.4F, 2.5F));
+    }
+  }
+  constexpr float kMostLines = 12.0F;
+  frame.widest_warp = std::min(frame.widest_warp, kMostLines);
+}
+
+}  // namespace trocar::detail

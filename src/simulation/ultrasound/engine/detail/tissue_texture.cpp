@@ -1,0 +1,138 @@
+#include "ultrasound/engine/detail/tissue_texture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/random.h"
+#include "volume/sampling.h"
+
+namespace trocar::detail {
+namespace {
+
+/// Layers of muscle and septa of fat lie along the skin, about so far apart (assumed, range 1..4 mm), waving over …
+constexpr float kLayer_mm = 2.2F;
+/// … this distance.
+constexpr float kWave_mm = 9.0F;
+
+float value_at(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
+  auto h = static_cast<std::uint32_t>(x) * 0x9e3779b1U ^ static_cast<std::uint32_t>(y) * 0x85ebca77U ^
+           static_cast<std::uint32_t>(z) * 0xc2b2ae3dU;
+  h = (h ^ (h >> 15)) * 0x2c1b3c6dU;
+  h = (h ^ (h >> 12)) * 0x297a2d39U;
+  return static_cast<float>((h ^ (h >> 15)) & 0xffffU) / 32767.5F - 1.0F;
+}
+
+float ease(float t) noexcept {
+  return t * t * (3.0F - 2.0F * t);
+}
+
+/// Smooth noise, -1..1, a lattice unit wide.
+float noise(float x, float y, float z) noexcept {
+  const float fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
+  const auto i = static_cast<std::int32_t>(fx), j = static_cast<std::int32_t>(fy), k = static_cast<std::int32_t>(fz);
+  const float u = ease(x - fx), v = ease(y - fy), w = ease(z - fz);
+  const auto row = [&](std::int32_t b, std::int32_t c) {
+    return std::lerp(value_at(i, b, c), value_at(i + 1, b, c), u);
+  };
+  return std::lerp(std::lerp(row(j, k), row(j + 1, k), v), std::lerp(row(j, k + 1), row(j + 1, k + 1), v), w);
+}
+
+/// Where in the layers a place is, and how strong they are there.
+struct Layering {
+  float phase = 0.0F;
+  float strength = 0.0F;
+};
+
+Layering layering_at(float below_skin_mm, const Vec3& p_mm) noexcept {
+  const auto x = static_cast<float>(p_mm.x()), y = static_cast<float>(p_mm.y()), z = static_cast<float>(p_mm.z());
+  const float wave = noise(x / kWave_mm, y / kWave_mm, z / kWave_mm);
+  return {below_skin_mm / kLayer_mm + 0.9F * wave, 0.6F + 0.4F * noise(x / 5.0F + 31.0F, y / 5.0F, z / 5.0F)};
+}
+
+/// Profile of the layers along their phase: -0.5 between them, up to 1 on a bright sheet; sheets come unevenly.
+class LayerProfile {
+ public:
+  LayerProfile() {
+    for (std::size_t n = 0; n < steps; ++n) {
+      const float part = noise(static_cast<float>(n) / stepsAUnit, 7.3F, 0.0F);
+      values_[n] = std::exp(-part * part / 0.03F);
+    }
+  }
+  float at(float phase, float strength) const noexcept {
+    constexpr float kTurns = 64.0F;  // depths below the skin stay below that many periods of the profile: no floor
+    const auto n = static_cast<std::size_t>(static_cast<std::int32_t>(phase * stepsAUnit + kTurns * steps)) % steps;
+    return 1.5F * values_[n] * strength - 0.5F;
+  }
+
+ private:
+  static constexpr std::size_t steps = 4096;
+  static constexpr float stepsAUnit = 32.0F;
+  std::array<float, steps> values_;
+};
+
+/// Layers along the central plane: their place in coarse steps, the sheets themselves sample by sample.
+void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, Texture& texture) noexcept {
+  static const LayerProfile profile;
+  constexpr int kLayering = 2 * kCoarse;  // samples; what is found there waves over centimetres
+  const AcousticScene& scene = *frame.scene;
+  Layering last;
+  bool was_in = false;
+  for (int begin = 0; begin < plan.samples; begin += kLayering) {
+    const auto at = static_cast<std::size_t>(std::min(begin + kLayering, plan.samples - 1));
+    const bool is_in = plan.fibre_gain[walk.tissue[at]] > 0.0F && walk.cell[at] >= 0;
+    Layering next;
+    if (is_in) {
+      const Vec3 p_mm =
+          Vec3(walk.index[0][at], walk.index[1][at], walk.index[2][at]).cwiseProduct(scene.geometry.spacing_mm);
+      const Vec3 p_P = scene.geometry.origin_P + scene.geometry.R_PV * p_mm;
+      const double skin_mm = scene.skin_distance_mm.empty() ? -p_mm.y() : sample_linear(scene.skin_distance_mm, p_P);
+      next = layering_at(static_cast<float>(-skin_mm), p_mm);
+    }
+    if (is_in && !was_in) last = next;
+    if (!is_in && was_in) next = last;
+    float* const fibres = texture.fibres.data() + begin;
+    if (is_in || was_in) {
+      const float phase_step = (next.phase - last.phase) / kLayering;
+      const float strength_step = (next.strength - last.strength) / kLayering;
+      for (int n = 0; n < kLayering; ++n) {
+        const float gain = plan.fibre_gain[walk.tissue[static_cast<std::size_t>(begin + n)]];
+        const auto part = static_cast<float>(n);
+        fibres[n] = gain * profile.at(last.phase + part * phase_step, last.strength + part * strength_step);
+      }
+    } else {
+      std::fill_n(fibres, kLayering, 0.0F);
+    }
+    last = next;
+    was_in = is_in;
+  }
+}
+
+}  // namespace
+
+void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line, bool is_central,
+                  Texture& texture) noexcept {
+  if (is_central) make_fibres(plan, frame, walk, texture);
+  const float* focus = frame.focus_log.data() + static_cast<std::size_t>(line) * plan.coarse_samples();
+  // The CT's texture is smoothed over more than a millimetre.
+  constexpr float kTextureStep_mm = 1.5F;
+  const int step = plan.sample_mm * kCoarse < kTextureStep_mm ? kCoarse : kCoarse / 2;
+  const auto value_at = [&](int s) {
+    const float log_focus =
+        (s % kCoarse) == 0 ? focus[s / kCoarse] : 0.5F * (focus[s / kCoarse] + focus[s / kCoarse + 1]);
+    const auto at = static_cast<std::size_t>(std::min(s, plan.samples - 1));
+    const std::uint8_t tissue = walk.tissue[at];
+    if (walk.cell[at] < 0 || plan.has_texture[tissue] == 0 || !frame.tiles.has_texture()) return log_focus;
+    return log_focus + plan.texture_gain[tissue][static_cast<std::size_t>(frame.tiles.texture(walk.cell[at]) + 128)];
+  };
+  float last = value_at(0);
+  for (int begin = 0; begin < plan.samples; begin += step) {
+    const float next = value_at(begin + step), slope = (next - last) / static_cast<float>(step);
+    for (int n = 0; n < step; ++n) {
+      const auto s = static_cast<std::size_t>(begin + n);
+      texture.added[s] = last + slope * static_cast<float>(n) + texture.fibres[s];
+    }
+    last = next;
+  }
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "ultrasound/engine/detail/frame_state.h"
+#include "ultrasound/engine/detail/scan_plan.h"
+#include "ultrasound/engine/detail/tissue_walk.h"
+
+/// How bright the scatterers of one tissue are from place to place (docs/physics.md U5).
+namespace trocar::detail {
+
+/// What is added to a walk's log_gain, neper a sample: the CT's texture, layers of muscle and fat, focusing by
+/// refraction. `fibres` is made on the central plane and read on the others.
+struct alignas(64) Texture {
+  std::array<float, kMaxSamples + 16> added;
+  std::array<float, kMaxSamples + 16> fibres;
+};
+void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line, bool is_central,
+                  Texture& texture) noexcept;
+
+}  // namespace trocar::detail

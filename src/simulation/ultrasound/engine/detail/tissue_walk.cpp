@@ -1,0 +1,406 @@
+#include "ultrasound/engine/detail/tissue_walk.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "ultrasound/detail/tissue_walk.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which sets the instruction set that this header compiles for.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace trocar::detail {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = hn::ScalableTag<float>;
+using I = hn::RebindToSigned<F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+
+void place_samples(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
+                   WalkResult& result) {
+  const F f;
+  const I d;
+  const GridGeometry& grid = frame.scene->geometry;
+  // Offset among the tiles: (index / 4) * stride + (index % 4) * step, an axis.
+  const std::int32_t stride[3] = {TiledTissue::kTile, frame.tiles.row(), frame.tiles.slab()};
+  const std::int32_t step[3] = {1, 4, 16};
+  const VF zeta_v = hn::Set(f, zeta);
+  const VF pressed = hn::Set(f, -line.pressed_mm);
+  const VF mm = hn::Set(f, plan.sample_mm);
+  const bool has_mirror = line.mirror[0] > -1e29F || line.mirror[1] != 0.0F;
+  for (int s = 0; s < plan.samples; s += static_cast<int>(hn::Lanes(f))) {
+    const VF at = hn::Iota(f, static_cast<float>(s) + 0.5F);
+    const VF along = hn::MulAdd(pressed, hn::LoadU(f, frame.contact_shape.data() + s), hn::Mul(at, mm));
+    const VF elevation = hn::Mul(zeta_v, hn::LoadU(f, plan.elevation_sigma_mm.data() + s));
+    const VF sideways = hn::Load(f, result.sideways_mm.data() + s);
+    VF behind = hn::Zero(f);
+    if (has_mirror) {
+      behind = hn::MulAdd(along, hn::Set(f, line.mirror[1]), hn::Set(f, line.mirror[0]));
+      behind = hn::MulAdd(elevation, hn::Set(f, line.mirror[2]), behind);
+      behind = hn::Max(hn::MulAdd(sideways, hn::Set(f, line.mirror[3]), behind), hn::Zero(f));
+    }
+    VI cell = hn::Zero(d);
+    auto inside = hn::FirstN(f, hn::Lanes(f));
+    for (std::size_t a = 0; a < 3; ++a) {
+      VF index = hn::MulAdd(along, hn::Set(f, line.along[a]), hn::Set(f, line.origin[a]));
+      index = hn::MulAdd(elevation, hn::Set(f, frame.elevation[a]), index);
+      index = hn::MulAdd(sideways, hn::Set(f, line.lateral[a]), index);
+      index = hn::NegMulAdd(behind, hn::Set(f, line.mirror_normal[a]), index);
+      const float last = static_cast<float>(grid.size[a] - 1);
+      inside = hn::And(inside, hn::And(hn::Gt(index, hn::Set(f, -0.5F)), hn::Lt(index, hn::Set(f, last + 0.5F))));
+      const VF clamped = hn::Min(hn::Max(index, hn::Zero(f)), hn::Set(f, last - 1e-3F));
+      hn::Store(clamped, f, result.index[a].data() + s);
+      const VI voxel = hn::ConvertTo(d, clamped);
+      cell = hn::Add(cell, hn::Mul(hn::ShiftRight<2>(voxel), hn::Set(d, stride[a])));
+      cell = hn::Add(cell, hn::Mul(hn::And(voxel, hn::Set(d, 3)), hn::Set(d, step[a])));
+    }
+    hn::Store(hn::IfThenElse(hn::RebindMask(d, inside), cell, hn::Set(d, -1)), d, result.cell.data() + s);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace trocar::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace trocar::detail {
+
+HWY_EXPORT(place_samples);
+
+void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
+                WalkResult& result) noexcept {
+  HWY_DYNAMIC_DISPATCH(place_samples)(plan, frame, line, zeta, result);
+}
+
+Blend blend_at(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, float i, float j,
+               float k) noexcept {
+  const auto& size = frame.scene->geometry.size;
+  const auto within = [](float v, std::int64_t n) { return std::clamp(v, 0.0F, static_cast<float>(n - 1) - 1e-3F); };
+  const CellCorners corners = corners_at(frame.tiles, within(i, size[0]), within(j, size[1]), within(k, size[2]));
+  using Row = Eigen::Array4f;
+  static_assert(sizeof(TissueRow) == sizeof(Row));
+  Row sum = Row::Zero();
+  for (std::size_t n = 0; n < 8; ++n) {
+    const auto tissue = static_cast<std::size_t>(frame.tiles.tissue(corners.offset[n]) & ~kMixedCell);
+    sum += corners.weight[n] * Eigen::Map<const Row, Eigen::Aligned16>(&rows[tissue].log_z);
+  }
+  Blend blend{};
+  Eigen::Map<Row, Eigen::Aligned16>(&blend.row.log_z) = sum;
+  blend.tissue = static_cast<std::uint8_t>(frame.tiles.tissue(corners.offset[corners.nearest]) & ~kMixedCell);
+  return blend;
+}
+
+Vec3 impedance_slope(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept {
+  // The corners of a tetrahedron: four samples instead of six.
+  constexpr double kReach = 0.87;  // voxels along each axis, 1.5 from the middle
+  const Vec3 corners[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  Vec3 slope = Vec3::Zero();
+  for (const Vec3& corner : corners) {
+    const Vec3f p = (index + kReach * corner).cast<float>();
+    slope += static_cast<double>(blend_at(frame, rows, p.x(), p.y(), p.z()).row.log_z) * corner;
+  }
+  return (slope / (4.0 * kReach)).cwiseQuotient(frame.scene->geometry.spacing_mm);
+}
+
+namespace {
+
+constexpr int kBlock = 16;
+/// Middles of a block's samples.
+constexpr std::array<float, kBlock> kSteps{0.5F, 1.5F, 2.5F,  3.5F,  4.5F,  5.5F,  6.5F,  7.5F,
+                                           8.5F, 9.5F, 10.5F, 11.5F, 12.5F, 13.5F, 14.5F, 15.5F};
+/// 131 dB: from there even a perfect reflector, 48 dB above liver's speckle, is 20 dB below the receiver's noise (-63
+/// dB).
+constexpr float kInaudible = -15.1F;
+constexpr float kSilence = -60.0F;  // neper
+/// Organs are wrapped: a border reflects at least so much, even between tissues of one impedance (assumed).
+constexpr float kWrapping = 0.03F;
+/// Tissue so near to the face is still met through coupling gel where the volume shows air.
+constexpr float kEntry_mm = 5.0F;
+
+/// Amplitude reflected where the impedance's logarithm rises so much: tanh(rise / 2). Few borders need more than a
+/// series.
+float reflection_of(float rise) noexcept {
+  constexpr float kSmall = 0.1F;
+  const float half = 0.5F * rise;
+  return std::abs(half) < kSmall ? half * (1.0F - half * half / 3.0F) : std::tanh(half);
+}
+
+/// What is reflected does not go on: 1 - R^2 of the intensity passes, there and back; its logarithm.
+float log_passed(float reflection) noexcept {
+  constexpr float kSmall = 0.01F;
+  const float lost = reflection * reflection;
+  return lost < kSmall ? -lost * (1.0F + 0.5F * lost) : std::log(std::max(1.0F - lost, 1e-4F));
+}
+
+/// The walk in the making.
+class Walk {
+ public:
+  Walk(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
+       float* delay) noexcept
+      : plan_(plan), frame_(frame), line_(line), result_(result), delay_(delay) {
+    log_gain_ = 2.0F * std::log(std::max(line.coupling, 1e-6F));
+    entry_samples_ = static_cast<int>(kEntry_mm / plan.sample_mm);
+    if (line.mirror_depth_mm < 1e29F) stand_mirror(zeta);
+  }
+
+  void run() noexcept {
+    result_.border_count = 0;
+    result_.audible = plan_.samples;
+    int s = 0;
+    while (s < plan_.samples) {
+      if (log_gain_ < kInaudible && s >= entry_samples_) return fall_silent(s);
+      const int same = s >= entry_samples_ ? same_tissue(s) : 0;
+      if (same == kBlock) {
+        step_same<kBlock>(s, kBlock);
+      } else if (same > 0) {
+        step_same<Eigen::Dynamic>(s, same);
+      } else {
+        step(s);
+      }
+      s += std::max(same, 1);
+    }
+    finish_ramp();
+  }
+
+ private:
+  /// Nothing more will be heard: the rest of the scanline lies in shadow.
+  void fall_silent(int s) noexcept {
+    const auto left = static_cast<std::size_t>(plan_.samples - s);
+    std::fill_n(result_.log_gain.begin() + s, left, kSilence);
+    std::fill_n(result_.tissue.begin() + s, left, kNoData);
+    std::fill_n(result_.share.begin() + s, left, plan_.share[kNoData]);
+    if (delay_ != nullptr) {
+      std::fill_n(result_.log_way.begin() + s, left, kSilence);
+      std::fill_n(delay_ + s, left, late_);
+    }
+    result_.audible = s;
+  }
+
+  /// Samples about the mirror on this plane, where the walk turns back within the mixed cells of the border.
+  void stand_mirror(float zeta) noexcept {
+    const auto near = static_cast<std::size_t>(
+        std::clamp(line_.mirror_depth_mm / plan_.sample_mm, 0.0F, static_cast<float>(plan_.samples - 1)));
+    const float elevation_mm = zeta * plan_.elevation_sigma_mm[near];
+    const float along_mm =
+        -(line_.mirror[0] + line_.mirror[2] * elevation_mm + line_.mirror[3] * result_.sideways_mm[near]) /
+        line_.mirror[1];
+    const float walk = (along_mm + line_.pressed_mm * frame_.contact_shape[near]) / plan_.sample_mm - 0.5F;
+    const auto spacing_mm = static_cast<float>(frame_.scene->geometry.spacing_mm.maxCoeff());
+    const float reach = 1.8F * spacing_mm / line_.mirror[1] / plan_.sample_mm;
+    mirror_from_ = static_cast<int>(walk - reach);
+    mirror_at_ = static_cast<int>(walk);
+    mirror_to_ = static_cast<int>(walk + reach) + 1;
+  }
+
+  /// Near the mirror: the tissue before it, and at its middle the mirror itself.
+  void step_at_mirror(int s) noexcept {
+    if (is_in_ramp_) finish_ramp();
+    const std::uint8_t tissue = settled_ == kNoData ? line_.mirror_before : settled_;
+    const TissueRow& row = plan_.rows[tissue];
+    pass(s, tissue, row);
+    tissue_ = settled_ = tissue;
+    log_z_ = row.log_z;
+    if (s != mirror_at_) return;
+    if (result_.border_count < kMaxBorders)
+      result_.borders[static_cast<std::size_t>(result_.border_count++)] = {
+          static_cast<float>(s), line_.mirror_reflection, log_gain_, place_of(static_cast<float>(s)), tissue,
+          line_.mirror_behind};
+    log_gain_ += std::log(std::max(line_.mirror_gain, 1e-6F));
+  }
+
+  /// How many of the next samples, at most a block, lie in whole cells of the tissue that the walk is in.
+  int same_tissue(int s) const noexcept {
+    if (is_in_ramp_ || tissue_ == kNoData) return 0;
+    const int most = std::min(kBlock, (s < mirror_from_ ? std::min(mirror_from_, plan_.samples) : plan_.samples) - s);
+    if (s >= mirror_from_ && s < mirror_to_) return 0;
+    // Tiles are several blocks' samples wide: mostly one of a single tissue holds the whole block.
+    static_assert(kBlock == 16);
+    const std::int32_t* cells = result_.cell.data() + s;
+    const auto is_whole = [&](int n) { return cells[n] >= 0 && frame_.tiles.tile_tissue(cells[n]) == tissue_; };
+    if (most == kBlock && is_whole(0) && is_whole(5) && is_whole(10) && is_whole(15)) return kBlock;
+    int n = 0;
+    while (n < most && cells[n] >= 0 && frame_.tiles.tissue(cells[n]) == tissue_) ++n;
+    return n;
+  }
+
+  /// `n` samples of the tissue that the walk is in; `kCount` is the same, or Eigen::Dynamic.
+  template <int kCount>
+  void step_same(int s, int n) noexcept {
+    using Samples = Eigen::Array<float, kCount, 1>;
+    const TissueRow& row = plan_.rows[tissue_];
+    const auto at = static_cast<std::size_t>(s);
+    const auto steps = Eigen::Map<const Samples>(kSteps.data(), n);
+    const float way = log_gain_;
+    Eigen::Map<Samples>(result_.log_gain.data() + at, n) = (way + row.log_b) - row.loss * steps;
+    std::fill_n(result_.tissue.begin() + s, n, tissue_);
+    std::fill_n(result_.share.begin() + s, n, plan_.share[tissue_]);
+    log_gain_ -= row.loss * static_cast<float>(n);
+    if (delay_ == nullptr) return;
+    Eigen::Map<Samples>(result_.log_way.data() + at, n) = way - row.loss * steps;
+    Eigen::Map<Samples>(delay_ + s, n) = late_ + row.delay * steps;
+    late_ += row.delay * static_cast<float>(n);
+  }
+
+  /// One sample of a tissue, or of a blend.
+  void pass(int s, std::uint8_t tissue, const TissueRow& row) noexcept {
+    const auto at = static_cast<std::size_t>(s);
+    const float way = log_gain_ - 0.5F * row.loss;
+    result_.tissue[at] = tissue;
+    result_.share[at] = plan_.share[tissue];
+    result_.log_gain[at] = row.log_b + way;
+    log_gain_ -= row.loss;
+    if (delay_ == nullptr) return;
+    result_.log_way[at] = way;
+    delay_[s] = late_ + 0.5F * row.delay;
+    late_ += row.delay;
+  }
+
+  void step(int s) noexcept {
+    if (s >= mirror_from_ && s < mirror_to_) return step_at_mirror(s);
+    const auto at = static_cast<std::size_t>(s);
+    const auto& rows = s < entry_samples_ && !is_entered_ ? plan_.entry_rows : plan_.rows;
+    const std::int32_t cell = result_.cell[at];
+    std::uint8_t tissue = kNoData;
+    TissueRow row = rows[kNoData];
+    bool is_mixed = false;
+    if (cell >= 0) {
+      const std::uint8_t voxel = frame_.tiles.tissue(cell);
+      if ((voxel & kMixedCell) == 0) {
+        tissue = voxel;
+        row = rows[tissue];
+      } else {
+        // A voxel is several samples long: every other one is enough within a border.
+        if (!was_blended_ || (s & 1) == 0)
+          blend_ = blend_at(frame_, rows, result_.index[0][at], result_.index[1][at], result_.index[2][at]);
+        tissue = blend_.tissue;
+        row = blend_.row;
+        is_mixed = true;
+      }
+    }
+    was_blended_ = is_mixed;
+    if (tissue != 0 && !is_mixed) is_entered_ = true;
+    meet(s, tissue, row, is_mixed);
+    pass(s, tissue, row);
+  }
+
+  /// Borders are ramps of the impedance over a voxel or two; each becomes one border at its middle.
+  void meet(int s, std::uint8_t tissue, const TissueRow& row, bool is_mixed) noexcept {
+    if (tissue == kNoData || tissue_ == kNoData) {
+      is_in_ramp_ = false;
+      tissue_ = tissue;
+      log_z_ = row.log_z;
+      if (!is_mixed) settled_ = tissue;
+      return;
+    }
+    const float rise = row.log_z - log_z_;
+    if (rise != 0.0F || is_mixed) {
+      if (!is_in_ramp_) begin_ramp(s);
+      const float size = std::abs(rise);
+      if (rise > 0.0F) {
+        up_ += rise;
+        up_at_ += size * (static_cast<float>(s) - 0.5F);
+      } else {
+        down_ += rise;
+        down_at_ += size * (static_cast<float>(s) - 0.5F);
+      }
+      ramp_end_ = s;
+      most_ = std::max(most_, size);
+    }
+    log_z_ = row.log_z;
+    tissue_ = tissue;
+    if (!is_mixed) {
+      behind_ = tissue;
+      finish_ramp();
+      settled_ = tissue;
+    }
+  }
+
+  void begin_ramp(int s) noexcept {
+    is_in_ramp_ = true;
+    ramp_begin_ = s;
+    up_ = down_ = up_at_ = down_at_ = most_ = 0.0F;
+    behind_ = settled_;
+    // A border's echo has the losses of the tissue before it, not those of an absorber within its own ramp.
+    ramp_log_gain_ = log_gain_;
+  }
+
+  void finish_ramp() noexcept {
+    if (!is_in_ramp_) return;
+    is_in_ramp_ = false;
+    constexpr float kNothing = 2e-3F;
+    const bool has_up = up_ > kNothing, has_down = -down_ > kNothing;
+    const float up_at = has_up ? up_at_ / up_ : 0.0F, down_at = has_down ? down_at_ / -down_ : 0.0F;
+    if (has_up && has_down && up_at < down_at) {
+      add_border(up_at, reflection_of(up_));
+      add_border(down_at, reflection_of(down_));
+    } else {
+      if (has_down) add_border(down_at, reflection_of(down_));
+      if (has_up) add_border(up_at, reflection_of(up_));
+    }
+    if (!has_up && !has_down && behind_ != settled_)
+      add_border(0.5F * static_cast<float>(ramp_begin_ + ramp_end_), kWrapping);
+  }
+
+  void add_border(float walk, float reflection) noexcept {
+    if (result_.border_count < kMaxBorders) {
+      const float size = std::max(std::abs(reflection), behind_ != settled_ ? kWrapping : 0.0F);
+      result_.borders[static_cast<std::size_t>(result_.border_count++)] = {
+          walk, std::copysign(size, reflection), ramp_log_gain_, place_of(walk), settled_, behind_};
+    }
+    const float passed = log_passed(reflection);
+    ramp_log_gain_ += passed;
+    if (plan_.acquisition.artefacts.attenuation) log_gain_ += passed;
+  }
+
+  std::array<float, 3> place_of(float walk) const noexcept {
+    const auto at = static_cast<std::size_t>(std::clamp(walk, 0.0F, static_cast<float>(plan_.samples - 1)));
+    return {result_.index[0][at], result_.index[1][at], result_.index[2][at]};
+  }
+
+  const ScanPlan& plan_;
+  const FrameState& frame_;
+  const LineWalk& line_;
+  WalkResult& result_;
+  float* delay_;
+  float log_gain_ = 0.0F;
+  int mirror_from_ = kMaxSamples * 4, mirror_at_ = -1, mirror_to_ = -1;
+  float late_ = 0.0F;
+  int entry_samples_ = 0;
+  bool is_entered_ = false;
+  bool was_blended_ = false;
+  Blend blend_{};
+
+  std::uint8_t tissue_ = kNoData;   ///< Of the last sample.
+  std::uint8_t settled_ = kNoData;  ///< The last one that a whole cell was made of.
+  std::uint8_t behind_ = kNoData;
+  float log_z_ = 0.0F;
+  bool is_in_ramp_ = false;
+  int ramp_begin_ = 0, ramp_end_ = 0;
+  float ramp_log_gain_ = 0.0F;
+  float up_ = 0.0F, down_ = 0.0F, up_at_ = 0.0F, down_at_ = 0.0F, most_ = 0.0F;
+};
+
+}  // namespace
+
+void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
+               float* delay) noexcept {
+  place_line(plan, frame, line, zeta, result);
+  Walk(plan, frame, line, zeta, result, delay).run();
+}
+
+void keep_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept {
+  const auto at = static_cast<std::size_t>(plane * plan.lines + line);
+  for (std::size_t b = 0; b < static_cast<std::size_t>(result.border_count); ++b) {
+    const Border& border = result.borders[b];
+    frame.borders[at * kMaxBorders + b] = border;
+    frame.border_keys[at * kMaxBorders + b] = {border.walk, tissues_of(border)};
+  }
+  frame.border_counts[at] = static_cast<std::uint8_t>(result.border_count);
+}
+
+}  // namespace trocar::detail
+#endif

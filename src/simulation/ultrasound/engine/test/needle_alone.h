@@ -1,0 +1,122 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/engine/detail/needle_image.h"
+#include "ultrasound/engine/detail/point_spread.h"
+#include "ultrasound/phantom/test_scenes.h"
+
+/// Needles in pictures, for tests.
+namespace trocar::testing {
+
+using namespace detail;  // NOLINT: tests only
+
+inline constexpr double kPi = std::numbers::pi;
+
+inline Transducer convex() {
+  Transducer transducer;
+  transducer.name = "convex";
+  return transducer;
+}
+
+inline Acquisition shallow(int lines = 128, int samples = 640) {
+  Acquisition acquisition;
+  acquisition.depth_mm = 100.0;
+  acquisition.focus_mm = 60.0;
+  acquisition.lines = lines;
+  acquisition.samples = samples;
+  acquisition.looks = 1;
+  return acquisition;
+}
+
+inline BMode engine_in(TestTissue tissue) {
+  return {homogeneous_scene(box_for(convex(), 100.0, 2.0), tissue), convex(), shallow()};
+}
+
+/// Hears needles and nothing else: as the engine, in a medium without loss and scatterers.
+class NeedleAlone {
+ public:
+  explicit NeedleAlone(const Acquisition& acquisition = shallow())
+      : scene(homogeneous_scene(box_for(convex(), 100.0, 3.0), TestTissue::kWater)),
+        plan(make_scan_plan(*scene, convex(), acquisition)),
+        frame(make_frame_state(*scene)),
+        image(make_needle_image(plan)),
+        rows(plan) {
+    fit_frame(frame, plan);
+    out.geometry = plan.geometry;
+    out.beam = plan.beam;
+    out.re.resize(static_cast<std::size_t>(plan.lines * plan.samples));
+    out.im = out.re;
+  }
+
+  const BasebandFrame& render(const BModeInput& input) {
+    std::fill(frame.re.begin(), frame.re.end(), 0.0F);
+    std::fill(frame.im.begin(), frame.im.end(), 0.0F);
+    std::fill(frame.way_gain.begin(), frame.way_gain.end(), 1.0F);
+    lay_needles(plan, frame, input.needles, image);
+    for (int first = 0; first < plan.lines; first += kGroup)
+      add_needles(plan, frame, image, first, std::min(first + kGroup, plan.lines));
+    for (int line = 0; line < plan.lines; ++line) spread_echoes(plan, frame, line, rows, out);
+    return out;
+  }
+
+  ScenePtr scene;
+  ScanPlan plan;
+  FrameState frame;
+  NeedleImage image;
+  LookRows rows;
+  BasebandFrame out;
+};
+
+/// A straight shaft that ends at `tip`.
+inline std::vector<Vec3> shaft_to(const Vec3& tip, const Vec3& direction, double length_mm = 120.0) {
+  return {tip - length_mm * direction.normalized(), tip};
+}
+/// In the picture's plane, at that angle to the middle scanline.
+inline Vec3 in_plane(double angle_rad) {
+  return {std::sin(angle_rad), std::cos(angle_rad), 0.0};
+}
+
+inline NeedleEcho needle_of(const std::vector<Vec3>& shaft) {
+  NeedleEcho needle;
+  needle.shaft_P = shaft;
+  return needle;
+}
+
+template <class Engine>
+inline BasebandFrame seen(Engine& engine, const NeedleEcho& needle) {
+  BModeInput input;
+  input.needles = {&needle, 1};
+  return engine.render(input);
+}
+
+inline double db(double amplitude) {
+  return 20.0 * std::log10(std::max(amplitude, 1e-9));
+}
+
+inline double envelope(const BasebandFrame& frame, int line, int sample) {
+  const auto at = static_cast<std::size_t>(line * frame.geometry.samples + sample);
+  return std::hypot(static_cast<double>(frame.re[at]), static_cast<double>(frame.im[at]));
+}
+
+struct LinePeak {
+  double depth_mm = 0.0, level_db = -1e9;
+};
+/// The brightest sample of a scanline between two depths, its place refined by a parabola.
+inline LinePeak peak_of(const BasebandFrame& frame, int line, double from_mm = 2.0, double to_mm = 99.0) {
+  const double mm = frame.geometry.sample_mm();
+  int best = static_cast<int>(from_mm / mm);
+  for (int s = best; s < static_cast<int>(to_mm / mm); ++s)
+    if (envelope(frame, line, s) > envelope(frame, line, best)) best = s;
+  const double a = db(envelope(frame, line, best - 1)), b = db(envelope(frame, line, best)),
+               c = db(envelope(frame, line, best + 1));
+  const double bow = a - 2.0 * b + c;
+  const double shift = bow < -1e-6 ? 0.5 * (a - c) / bow : 0.0;
+  return {(best + 0.5 + shift) * mm, b - 0.25 * (a - c) * shift};
+}
+
+}  // namespace trocar::testing

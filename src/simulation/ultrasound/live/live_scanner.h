@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+
+#include "ultrasound/live/scan_picture.h"
+#include "ultrasound/doppler/vessel_flow.h"
+
+namespace trocar {
+
+/// How a live scanner shares the machine with those who must be on time.
+struct LiveScannerOptions {
+  int threads = 1;  ///< That a frame uses. Range 1..64.
+  int nice = 5;     ///< Added to the worker's niceness where the system has one. Range 0..19.
+  ScanPace pace;
+};
+/// One thread on small machines; more where two servers, the window and the drawing still have a core each.
+LiveScannerOptions default_live_scanner_options();
+
+/// Of the cine loop, at the newest picture.
+struct CineState {
+  bool is_frozen = false;
+  bool is_playing = false;
+  int position = -1;  ///< That is looked at; frames count from the oldest, 0.
+  int size = 0;
+};
+
+/// A scanner at work: a thread makes pictures of the newest request (what came before it is forgotten), as fine as the
+/// pace allows, and keeps them in a cine loop. It only works when requests come, and renders when something in them has
+/// changed or a refresh is due (ScanSchedule). All calls are for one thread, e.g. the window's; none waits for a frame
+/// but the destructor.
+class LiveScanner {
+ public:
+  explicit LiveScanner(const LiveScannerOptions& options = default_live_scanner_options());
+  ~LiveScanner();
+  LiveScanner(const LiveScanner&) = delete;
+  LiveScanner& operator=(const LiveScanner&) = delete;
+
+  /// Another patient or transducer: pictures, requests and the cine loop are forgotten, the scanner runs. `flow` may be
+  /// nullptr: no colour.
+  void open(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow, Transducer transducer);
+
+  /// A request with a pose or a needle that is no number is left out. Knobs are held in their ranges.
+  void request(ScanRequest request);
+  /// nullptr before the first.
+  std::shared_ptr<const ScanPicture> newest() const;
+
+  /// Frozen, the picture stays whatever is requested, but for gain, dynamic range, gray map, mirroring and size. Depth,
+  /// frequency and TGC wait until it runs. Before the first picture nothing can be frozen.
+  void set_frozen(bool is_frozen);
+  /// Of the frozen loop. Stepping and showing stop a playing loop.
+  void step_cine(int frames);
+  void show_cine(int index);
+  void play_cine(bool is_playing);
+  CineState cine() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace trocar

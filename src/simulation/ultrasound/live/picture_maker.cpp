@@ -1,0 +1,231 @@
+#include "ultrasound/live/picture_maker.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/check.h"
+#include "ultrasound/doppler/colour_doppler.h"
+#include "ultrasound/doppler/detail/colour_conversion.h"
+#include "ultrasound/probe/probe_contact.h"
+
+namespace trocar {
+namespace {
+
+/// What renders one detail.
+struct Stage {
+  BMode engine;
+  std::optional<ColourDoppler> doppler;
+};
+
+/// What a kept picture has beside its levels.
+struct Companion {
+  ScanDetail detail = ScanDetail::kFull;
+  double coupled_share = 1.0;
+  std::vector<float> pressed_mm;
+  double dent_reach_mm = 0.0;
+  bool has_doppler = false;
+  ScanGeometry doppler_scan;
+  DopplerFrame doppler;
+  DopplerSettings doppler_settings;
+};
+
+std::array<Vec3, 3> corners_P(const RasterGeometry& raster, const Pose& X_PT) noexcept {
+  const auto corner = [&](double column, double row) -> Vec3 {
+    const Vec2 p_T = raster.to_T(column, row);
+    return X_PT * Vec3(p_T.x(), p_T.y(), 0.0);
+  };
+  const double right = raster.columns - 0.5, bottom = raster.rows - 0.5;
+  return {corner(-0.5, -0.5), corner(right, -0.5), corner(-0.5, bottom)};
+}
+
+void set_unscanned(const AcousticScene& scene, ScanPicture& picture) {
+  picture.unscanned_share = unscanned_share(scene.ends, picture.X_PT, picture.scan);
+  picture.scanned_T = scanned_polygon_T(scene.ends, picture.X_PT, picture.scan);
+}
+
+}  // namespace
+
+struct PictureMaker::Impl {
+  std::shared_ptr<const AcousticScene> scene;
+  std::shared_ptr<const VesselFlow> flow;
+  Transducer transducer;
+  std::array<std::optional<Stage>, kScanDetails> stages;
+  std::array<std::optional<Scanner>, kScanDetails> scanners;
+  std::optional<Scanner> kept_scanner;  ///< Of what the loop shows.
+  std::optional<ScanDetail> last_detail;
+  bool had_colour = false;  ///< The last picture.
+  std::optional<CineLoop> cine;
+  std::vector<Companion> companions;  ///< Of the loop's slots, by pushes.
+  std::size_t pushes = 0;
+  std::vector<std::uint8_t> full_levels;
+  detail::ColourConversion kept_colours;
+
+  Stage& stage(const Acquisition& full, ScanDetail detail);
+  Scanner& scanner(std::optional<Scanner>& place, const ScanRequest& request);
+  void add_colour(const ScanRequest& request, Stage& stage, const BasebandFrame& echoes, std::uint64_t seed,
+                  ScanPicture& picture, Companion& companion);
+  void keep(const ScanRequest& request, const ScanPicture& picture, Companion companion);
+  const Companion& companion(int index) const noexcept {
+    return companions[(pushes - static_cast<std::size_t>(cine->size()) + static_cast<std::size_t>(index)) %
+                      companions.size()];
+  }
+};
+
+Stage& PictureMaker::Impl::stage(const Acquisition& full, ScanDetail detail) {
+  std::optional<Stage>& place = stages[static_cast<std::size_t>(detail)];
+  const Acquisition wanted = with_detail(full, detail);
+  if (!place) {
+    place.emplace(Stage{BMode(scene, transducer, wanted), std::nullopt});
+  } else if (!(place->engine.acquisition() == wanted)) {
+    place->engine.set_acquisition(wanted);
+  }
+  return *place;
+}
+
+Scanner& PictureMaker::Impl::scanner(std::optional<Scanner>& place, const ScanRequest& request) {
+  const bool fits = place && place->raster().columns == request.columns && place->raster().rows == request.rows;
+  if (!fits) place.emplace(request.columns, request.rows);
+  place->settings = request.display;
+  place->artefacts = request.acquisition.artefacts;
+  return *place;
+}
+
+void PictureMaker::Impl::add_colour(const ScanRequest& request, Stage& stage, const BasebandFrame& echoes,
+                                    std::uint64_t seed, ScanPicture& picture, Companion& companion) {
+  if (!stage.doppler) stage.doppler.emplace(flow);
+  stage.doppler->settings = request.doppler;
+  companion.has_doppler = true;
+  companion.doppler_scan = echoes.geometry;
+  companion.doppler_settings = request.doppler;
+  companion.doppler =
+      stage.doppler->render({request.X_PT, echoes.geometry, echoes.beam, request.time_s, seed, &stage.engine});
+  picture.colour = stage.doppler->overlay(picture.gray, picture.raster);
+  picture.doppler = request.doppler;
+  picture.doppler_scale_cm_per_s = companion.doppler.scale_cm_per_s;
+}
+
+void PictureMaker::Impl::keep(const ScanRequest& request, const ScanPicture& picture, Companion companion) {
+  const Acquisition& a = request.acquisition;
+  const ScanGeometry full = make_scan_geometry(transducer, a.depth_mm, a.lines, a.samples);
+  if (!cine || !detail::is_same_scan(cine->scan(), full)) {
+    const std::size_t frame_bytes = static_cast<std::size_t>(full.lines) * static_cast<std::size_t>(full.samples);
+    const auto capacity = static_cast<int>(std::clamp<std::size_t>(kCineBytes / frame_bytes, 1, kCineFrames));
+    cine.emplace(full, capacity);
+    companions.assign(static_cast<std::size_t>(capacity), {});
+    pushes = 0;
+  }
+  resample_levels(picture.levels, picture.scan, full, full_levels);
+  cine->push(full_levels, request.X_PT, request.time_s, request.display);
+  companions[pushes++ % companions.size()] = std::move(companion);
+}
+
+PictureMaker::PictureMaker(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow,
+                           Transducer transducer)
+    : impl_(std::make_unique<Impl>()) {
+  TROCAR_CHECK(scene != nullptr);
+  impl_->scene = std::move(scene);
+  impl_->flow = std::move(flow);
+  impl_->transducer = std::move(transducer);
+}
+PictureMaker::~PictureMaker() = default;
+PictureMaker::PictureMaker(PictureMaker&&) noexcept = default;
+PictureMaker& PictureMaker::operator=(PictureMaker&&) noexcept = default;
+
+const Transducer& PictureMaker::transducer() const noexcept {
+  return impl_->transducer;
+}
+
+ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std::uint64_t seed) {
+  Impl& impl = *impl_;
+  const ScanRequest request = within_ranges(asked, impl.transducer);
+  Stage& stage = impl.stage(request.acquisition, detail);
+  Scanner& scanner = impl.scanner(impl.scanners[static_cast<std::size_t>(detail)], request);
+  // A frame persists into the next one of its kind: not over pictures of another detail or without colour.
+  const bool is_other_detail = impl.last_detail != detail;
+  const bool has_colour = request.has_doppler && impl.flow;
+  if (is_other_detail) scanner.reset();
+  if (stage.doppler && (is_other_detail || !impl.had_colour)) stage.doppler->reset();
+  impl.last_detail = detail;
+  impl.had_colour = has_colour;
+
+  std::vector<NeedleEcho> needles;
+  if (request.needle_shaft_P.size() >= 2) {
+    NeedleEcho needle;
+    needle.shaft_P = request.needle_shaft_P;
+    needle.diameter_mm = request.needle_diameter_mm;
+    needle.displacement_mm = request.tip_shift_mm;
+    needle.bore_share = request.needle_bore_share;
+    needles.push_back(needle);
+  }
+  const BasebandFrame& echoes = stage.engine.render({request.X_PT, needles, request.time_s});
+
+  ScanPicture picture;
+  picture.gray = scanner.show(echoes, seed);
+  picture.raster = scanner.raster();
+  picture.levels = scanner.levels();
+  picture.scan = echoes.geometry;
+  picture.X_PT = request.X_PT;
+  picture.time_s = request.time_s;
+  picture.corners_P = corners_P(picture.raster, picture.X_PT);
+  picture.acquisition = request.acquisition;
+  picture.display = request.display;
+  picture.detail = detail;
+  picture.coupled_share = trocar::coupled_share(echoes);
+  set_unscanned(*impl.scene, picture);
+  for (int line = 0; line < echoes.geometry.lines; ++line)
+    picture.pressed_mm.push_back(stage.engine.sound_way(line).pressed_mm);
+  picture.dent_reach_mm = find_dent_reach_mm(*impl.scene, echoes.geometry, request.X_PT);
+
+  Companion companion{detail, picture.coupled_share, picture.pressed_mm, picture.dent_reach_mm, false, {}, {}, {}};
+  if (has_colour) impl.add_colour(request, stage, echoes, seed, picture, companion);
+  if (!impl.cine || !impl.cine->is_frozen()) impl.keep(request, picture, std::move(companion));
+  return picture;
+}
+
+CineLoop* PictureMaker::cine() noexcept {
+  return impl_->cine ? &*impl_->cine : nullptr;
+}
+
+ScanPicture PictureMaker::show_kept(const ScanRequest& asked) {
+  Impl& impl = *impl_;
+  TROCAR_CHECK(impl.cine && impl.cine->size() > 0);
+  ScanRequest request = within_ranges(asked, impl.transducer);
+  const int position = impl.cine->position();
+  const CineFrame frame = impl.cine->frame(position);
+  const Companion& companion = impl.companion(position);
+  Scanner& scanner = impl.scanner(impl.kept_scanner, request);
+
+  ScanPicture picture;
+  picture.gray = scanner.show_levels(frame.levels, impl.cine->scan());
+  picture.raster = scanner.raster();
+  picture.scan = impl.cine->scan();
+  picture.levels.assign(frame.levels.begin(), frame.levels.end());
+  picture.X_PT = frame.X_PT;
+  picture.time_s = frame.time_s;
+  picture.corners_P = corners_P(picture.raster, picture.X_PT);
+  picture.acquisition = request.acquisition;
+  picture.acquisition.depth_mm = picture.scan.depth_mm;
+  picture.display = request.display;
+  picture.display.tgc_db = frame.settings.tgc_db;
+  picture.detail = companion.detail;
+  picture.coupled_share = companion.coupled_share;
+  set_unscanned(*impl.scene, picture);
+  picture.pressed_mm = companion.pressed_mm;
+  picture.dent_reach_mm = companion.dent_reach_mm;
+  picture.is_frozen = true;
+  if (companion.has_doppler && request.has_doppler) {
+    picture.doppler = companion.doppler_settings;
+    // Of a colour frame these knobs can still be turned.
+    picture.doppler.baseline = request.doppler.baseline;
+    picture.doppler.is_inverted = request.doppler.is_inverted;
+    picture.doppler.write_priority = request.doppler.write_priority;
+    picture.doppler_scale_cm_per_s = companion.doppler.scale_cm_per_s;
+    impl.kept_colours.forget();
+    picture.colour = impl.kept_colours.convert(picture.gray, picture.raster, companion.doppler_scan, companion.doppler,
+                                               picture.doppler);
+  }
+  return picture;
+}
+
+}  // namespace trocar

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "ultrasound/scanner/cine_loop.h"
+#include "ultrasound/live/scan_picture.h"
+#include "ultrasound/doppler/vessel_flow.h"
+
+namespace trocar {
+
+/// Engine, receiver, colour and cine loop of one transducer on one patient, worked by a single thread: makes a picture
+/// of a request and keeps it in the loop, or shows one that was kept. Buffers of each detail are taken when it is first
+/// used.
+class PictureMaker {
+ public:
+  /// Without `flow` no request has colour.
+  PictureMaker(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow,
+               Transducer transducer);
+  ~PictureMaker();
+  PictureMaker(PictureMaker&&) noexcept;
+  PictureMaker& operator=(PictureMaker&&) noexcept;
+
+  const Transducer& transducer() const noexcept;
+
+  /// A picture of now, kept in the loop unless that is frozen; `seed` makes the noise. The request is held to its
+  /// ranges.
+  ScanPicture make(const ScanRequest& request, ScanDetail detail, std::uint64_t seed);
+
+  /// The loop at full detail: at most kCineFrames and kCineBytes. Another depth begins a new one. Nothing before the
+  /// first picture.
+  CineLoop* cine() noexcept;
+  /// The loop's frame that is looked at with the request's gain, dynamic range, gray map, mirroring and size. Needs a
+  /// loop with a frame.
+  ScanPicture show_kept(const ScanRequest& request);
+
+  static constexpr int kCineFrames = 200;
+  static constexpr std::size_t kCineBytes = std::size_t{48} << 20;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace trocar

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "geometry/pose.h"
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/scanner/display_settings.h"
+#include "ultrasound/doppler/doppler_settings.h"
+#include "ultrasound/probe/transducer.h"
+
+namespace trocar {
+
+/// What a live scanner is to show: where transducer and needle are now, and how its knobs stand.
+struct ScanRequest {
+  Pose X_PT;                         ///< Transducer in the (resting) patient.
+  std::vector<Vec3> needle_shaft_P;  ///< From the hub to the tip; fewer than two points: no needle.
+  double needle_diameter_mm = 1.2;   ///< Range 0.2..5.
+  double needle_bore_share = 0.0;    ///< As NeedleEcho::bore_share.
+  double tip_shift_mm = 0.0;         ///< As NeedleEcho::displacement_mm.
+  Acquisition acquisition;           ///< At full detail.
+  DisplaySettings display;
+  bool has_doppler = false;
+  DopplerSettings doppler;
+  double time_s = 0.0;  ///< Of heart and breath; does not decrease while one patient is scanned.
+  int columns = 640;    ///< Of the picture. Range 16..2048, as `rows`.
+  int rows = 480;
+};
+
+/// The same request with every number in its range; what is no number gets the transducer's or the type's default. A
+/// focus lies within the picture.
+ScanRequest within_ranges(const ScanRequest& request, const Transducer& transducer);
+
+/// True where a frame of `a` also serves `b`: the same place but for a hand's tremor (the transducer's corners and the
+/// needle within `tolerance_mm`), the same knobs and size. Time does not count.
+bool is_as_good(const ScanRequest& a, const ScanRequest& b, double tolerance_mm) noexcept;
+/// The knobs of it alone.
+bool has_same_settings(const ScanRequest& a, const ScanRequest& b) noexcept;
+
+}  // namespace trocar

@@ -1,0 +1,21 @@
+#include "ultrasound/probe/detail/label_pattern.h"
+
+#include <cctype>
+
+namespace trocar::detail {
+
+std::string plain_name(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    const auto u = static_cast<unsigned char>(c);
+    if (std::isalnum(u) || c == '*') text += static_cast<char>(std::tolower(u));
+  }
+  return text;
+}
+
+bool matches_pattern(std::string_view pattern, std::string_view name) noexcept {
+  if (pattern.ends_with('*')) return name.starts_with(pattern.substr(0, pattern.size() - 1));
+  return pattern == name;
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "anatomy/patient.h"
+#include "core/result.h"
+#include "geometry/pose.h"
+#include "ultrasound/probe/probe_view.h"
+#include "ultrasound/probe/transducer.h"
+#include "ultrasound/probe/view_visibility.h"
+
+namespace trocar {
+
+/// A transducer in a standard view.
+struct ProbePlacement {
+  Pose X_PT;
+  ViewVisibility visibility;  ///< Of the view's subject.
+};
+
+/// Places a transducer in a standard view: the middle of the face on the skin, y towards the target, the plane as the
+/// view says. Of the places within view.search_mm the one is taken that shows the most of the subject, with the least
+/// bone, gas and lung on the way. Where that shows less than kEnoughVisible, the search goes on over the skin up to 60
+/// degrees about the view's direction, the plane turned by up to 60 degrees, for views with search_mm > 0. The face is
+/// tilted by at most 15 degrees in its plane and pressed in by at least view.pressed_mm, at most 15 mm, so that it
+/// touches along its width. Errors: a patient without the target, no skin on any way out that the view allows.
+Result<ProbePlacement> place_probe(const VirtualPatient& patient, const ProbeView& view, const Transducer& transducer);
+
+}  // namespace trocar

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "ultrasound/scanner/display_settings.h"
+#include "ultrasound/probe/scan_geometry.h"
+
+namespace trocar {
+
+/// One kept picture: what Scanner::show_levels needs, and where and when it was taken.
+struct CineFrame {
+  Pose X_PT;
+  double time_s = 0.0;
+  DisplaySettings settings;  ///< As they were; TGC is in the levels already.
+  std::span<const std::uint8_t> levels;
+};
+
+/// The last pictures of a scan, in memory that is taken once. While it is frozen nothing is added, and one frame of a
+/// range is looked at. One geometry: a change of depth or transducer begins a new loop. Frames count from the oldest,
+/// 0.
+class CineLoop {
+ public:
+  /// capacity >= 1; lines and samples of `scan` for each frame, a byte a sample.
+  CineLoop(const ScanGeometry& scan, int capacity);
+
+  const ScanGeometry& scan() const noexcept { return scan_; }
+  int capacity() const noexcept { return static_cast<int>(moments_.size()); }
+  int size() const noexcept { return size_; }
+  bool is_frozen() const noexcept { return is_frozen_; }
+
+  /// Adds the newest frame (Scanner::levels()), in place of the oldest when full; does nothing while frozen. time_s
+  /// does not decrease. Real-time safe.
+  void push(std::span<const std::uint8_t> levels, const Pose& X_PT, double time_s,
+            const DisplaySettings& settings) noexcept;
+  /// Forgets all frames and runs. Real-time safe.
+  void restart() noexcept;
+
+  /// Stops at the newest frame, with the range over all. Nothing can be frozen while there is no frame.
+  void freeze() noexcept;
+  /// Runs again after a freeze; what is kept stays until it is replaced.
+  void thaw() noexcept { is_frozen_ = false; }
+
+  /// Of the frozen loop: frames that stepping and playing stay within, held to what there is; first <= last.
+  void set_range(int first, int last) noexcept;
+  int first() const noexcept { return first_; }
+  int last() const noexcept { return last_; }
+  /// The frame that is looked at; the newest while running, -1 without any.
+  int position() const noexcept { return is_frozen_ ? position_ : size_ - 1; }
+  /// So many frames on (negative: back), to the end of the range at most. Frozen only.
+  void step(int frames) noexcept;
+  /// On by a time as it was recorded; behind the range's last frame comes its first again. Frozen only; elapsed_s >= 0.
+  void play(double elapsed_s) noexcept;
+
+  /// Frame 0..size()-1. Valid until the next push or restart.
+  CineFrame frame(int index) const noexcept;
+
+ private:
+  struct Moment {
+    Pose X_PT;
+    double time_s = 0.0;
+    DisplaySettings settings;
+  };
+  std::size_t slot(int index) const noexcept;
+  double time_s(int index) const noexcept { return moments_[slot(index)].time_s; }
+
+  ScanGeometry scan_;
+  std::size_t frame_bytes_;
+  std::vector<Moment> moments_;
+  std::vector<std::uint8_t> levels_;
+  int oldest_ = 0;  ///< Slot of frame 0.
+  int size_ = 0;
+  bool is_frozen_ = false;
+  int first_ = 0, last_ = 0, position_ = 0;
+  double played_s_ = 0.0;  ///< Time shown beyond that of the frame looked at.
+};
+
+}  // namespace trocar

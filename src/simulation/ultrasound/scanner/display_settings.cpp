@@ -1,0 +1,144 @@
+#include "ultrasound/scanner/display_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace trocar {
+namespace {
+
+struct Range {
+  double low, high;
+  bool holds(double value) const noexcept { return value >= low && value <= high; }  // false for NaN
+};
+constexpr Range kGain_db{-40.0, 40.0};
+constexpr Range kTgc_db{-20.0, 20.0};
+constexpr Range kAutomaticTgc_db_per_cm_mhz{0.0, 1.5};
+constexpr Range kAutomaticTgcLimit_db{0.0, 120.0};
+constexpr Range kDynamicRange_db{20.0, 100.0};
+constexpr Range kPersistence{0.0, 0.95};
+
+constexpr std::array<std::pair<GrayMap, std::string_view>, 3> kNames = {
+    {{GrayMap::kLinear, "linear"}, {GrayMap::kSoft, "soft"}, {GrayMap::kHighContrast, "high-contrast"}}};
+
+/// How sharply the automatic TGC bends into its limit. Assumed, range 1..6.
+constexpr double kLimitBend_db = 3.0;
+
+/// Gray maps, fitted to the sweep of docs/validation.md: liver's mean and spread, and the gray of what does not echo.
+constexpr double kSoftSteepness = 4.5;  ///< Gray grows by e that often over the dynamic range.
+constexpr double kSoftFloor = 8.0 / 255.0;
+constexpr double kSoftFloorRise = 0.04;  ///< Part of the dynamic range over which the floor is reached.
+constexpr double kHighContrastSteepness = 6.0;
+
+Status in_range(double value, Range range, std::string_view knob, std::string_view unit) {
+  if (range.holds(value)) return {};
+  return fail_usage(fmt::format("{} of {} {} cannot be set", knob, value, unit), {},
+                    fmt::format("choose {} to {}", range.low, range.high));
+}
+
+double held(double value, Range range, double fallback) noexcept {
+  return std::isnan(value) ? fallback : std::clamp(value, range.low, range.high);
+}
+
+double automatic_db(const DisplaySettings& settings, double depth_mm, double frequency_mhz) noexcept {
+  const double loss_db = 2.0 * settings.automatic_tgc_db_per_cm_mhz * frequency_mhz * 0.1 * std::max(depth_mm, 0.0);
+  const double beyond = (loss_db - settings.automatic_tgc_limit_db) / kLimitBend_db;
+  if (beyond > 30.0) return settings.automatic_tgc_limit_db;  // where the exponential would grow out of hand
+  return loss_db - kLimitBend_db * std::log1p(std::exp(beyond));
+}
+
+/// Slope of the slider curve at a slider, dB a slider. Zero at a hill or hollow and the harmonic mean elsewhere, so
+/// that the cubic does not overshoot (Fritsch and Butland 1984).
+double slope_at(const std::array<double, kTgcSliders>& tgc_db, int slider) noexcept {
+  if (slider <= 0 || slider >= kTgcSliders - 1) return 0.0;
+  const auto i = static_cast<std::size_t>(slider);
+  const double before = tgc_db[i] - tgc_db[i - 1];
+  const double after = tgc_db[i + 1] - tgc_db[i];
+  return before * after <= 0.0 ? 0.0 : 2.0 * before * after / (before + after);
+}
+
+double sliders_db(const std::array<double, kTgcSliders>& tgc_db, double place) noexcept {
+  const double clamped = std::clamp(place, 0.0, static_cast<double>(kTgcSliders - 1));
+  const int first = std::min(static_cast<int>(clamped), kTgcSliders - 2);
+  const double t = clamped - first;
+  const double a = tgc_db[static_cast<std::size_t>(first)];
+  const double b = tgc_db[static_cast<std::size_t>(first) + 1];
+  const double s = 1.0 - t;
+  return a * s * s * (1.0 + 2.0 * t) + b * t * t * (1.0 + 2.0 * s) + slope_at(tgc_db, first) * t * s * s -
+         slope_at(tgc_db, first + 1) * t * t * s;
+}
+
+/// 0..1 to 0..1, `steepness` times e over the whole.
+double exponential(double x, double steepness) noexcept {
+  return std::expm1(steepness * x) / std::expm1(steepness);
+}
+
+double mapped(GrayMap map, double x) noexcept {
+  switch (map) {
+    case GrayMap::kLinear:
+      return x;
+    case GrayMap::kSoft:
+      return -kSoftFloor * std::expm1(-x / kSoftFloorRise) + (1.0 - kSoftFloor) * exponential(x, kSoftSteepness);
+    case GrayMap::kHighContrast:
+      return exponential(x, kHighContrastSteepness);
+  }
+  return x;
+}
+
+}  // namespace
+
+Status check(const DisplaySettings& settings) {
+  TROCAR_TRY_STATUS(in_range(settings.gain_db, kGain_db, "a gain", "dB"));
+  for (std::size_t i = 0; i < settings.tgc_db.size(); ++i) {
+    TROCAR_TRY_STATUS(in_range(settings.tgc_db[i], kTgc_db, fmt::format("TGC slider {}", i + 1), "dB"));
+  }
+  TROCAR_TRY_STATUS(
+      in_range(settings.automatic_tgc_db_per_cm_mhz, kAutomaticTgc_db_per_cm_mhz, "an automatic TGC", "dB/cm/MHz"));
+  TROCAR_TRY_STATUS(in_range(settings.automatic_tgc_limit_db, kAutomaticTgcLimit_db, "a limit of automatic TGC", "dB"));
+  TROCAR_TRY_STATUS(in_range(settings.dynamic_range_db, kDynamicRange_db, "a dynamic range", "dB"));
+  TROCAR_TRY_STATUS(in_range(settings.persistence, kPersistence, "a persistence", "(part of the last picture)"));
+  return {};
+}
+
+DisplaySettings within_ranges(const DisplaySettings& settings) noexcept {
+  const DisplaySettings fallback;
+  DisplaySettings result = settings;
+  result.gain_db = held(settings.gain_db, kGain_db, fallback.gain_db);
+  for (double& slider_db : result.tgc_db) slider_db = held(slider_db, kTgc_db, 0.0);
+  result.automatic_tgc_db_per_cm_mhz =
+      held(settings.automatic_tgc_db_per_cm_mhz, kAutomaticTgc_db_per_cm_mhz, fallback.automatic_tgc_db_per_cm_mhz);
+  result.automatic_tgc_limit_db =
+      held(settings.automatic_tgc_limit_db, kAutomaticTgcLimit_db, fallback.automatic_tgc_limit_db);
+  result.dynamic_range_db = held(settings.dynamic_range_db, kDynamicRange_db, fallback.dynamic_range_db);
+  result.persistence = held(settings.persistence, kPersistence, fallback.persistence);
+  return result;
+}
+
+Result<GrayMap> parse_gray_map(std::string_view name) {
+  for (const auto& [map, map_name] : kNames) {
+    if (map_name == name) return map;
+  }
+  return fail_usage(fmt::format("there is no gray map '{}'", name), {}, "choose linear, soft or high-contrast");
+}
+
+std::string_view name_of(GrayMap map) noexcept {
+  for (const auto& [known, map_name] : kNames) {
+    if (known == map) return map_name;
+  }
+  return "unknown";
+}
+
+double tgc_gain_db(const DisplaySettings& settings, double depth_mm, double scan_depth_mm,
+                   double frequency_mhz) noexcept {
+  const double place = depth_mm / scan_depth_mm * kTgcSliders - 0.5;
+  return automatic_db(settings, depth_mm, frequency_mhz) + sliders_db(settings.tgc_db, place);
+}
+
+std::uint8_t gray_of_level(double level_db, const DisplaySettings& settings) noexcept {
+  const double below_white_db = kWhite_db - level_db - settings.gain_db;
+  const double x = std::clamp(1.0 - below_white_db / settings.dynamic_range_db, 0.0, 1.0);
+  return static_cast<std::uint8_t>(std::lround(255.0 * mapped(settings.gray_map, x)));
+}
+
+}  // namespace trocar

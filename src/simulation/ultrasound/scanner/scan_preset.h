@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/scanner/display_settings.h"
+#include "ultrasound/doppler/doppler_settings.h"
+
+namespace trocar {
+
+/// How a scanner's knobs stand for a kind of examination (data/scan_presets.toml).
+struct ScanPreset {
+  std::string name;                                         ///< "liver-biopsy".
+  std::string title;                                        ///< "Liver biopsy".
+  std::string transducer;                                   ///< A name of data/transducers.toml.
+  std::optional<double> depth_mm, frequency_mhz, focus_mm;  ///< Nothing: the transducer's own.
+  DisplaySettings display;
+  bool has_doppler = false;
+  double doppler_scale_cm_per_s = 30.0;
+};
+
+/// All of a file. Errors name file, preset and key: unknown key, out of range.
+Result<std::vector<ScanPreset>> load_scan_presets(const std::filesystem::path& path);
+/// The transducer's acquisition with what the preset says.
+Acquisition acquisition_of(const ScanPreset& preset, const Transducer& transducer);
+
+}  // namespace trocar

@@ -1,0 +1,47 @@
+#include "ultrasound/scanner/scan_preset.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/files/data_dir.h"
+#include "core/files/temporary_folder.h"
+#include "ultrasound/live/scan_request.h"
+
+namespace trocar {
+namespace {
+
+TEST(ScanPreset, ThoseThatShipFitTheirTransducers) {
+  const auto presets = load_scan_presets(data_dir() / "scan_presets.toml");
+  ASSERT_TRUE(presets) << presets.error().text();
+  EXPECT_GE(presets->size(), 3U);
+  for (const ScanPreset& preset : *presets) {
+    const auto transducer = load_transducer(data_dir() / "transducers.toml", preset.transducer);
+    ASSERT_TRUE(transducer) << preset.name;
+    ScanRequest request;
+    request.acquisition = acquisition_of(preset, *transducer);
+    EXPECT_EQ(within_ranges(request, *transducer).acquisition, request.acquisition) << preset.name;
+    EXPECT_TRUE(check(preset.display)) << preset.name;
+  }
+}
+
+TEST(ScanPreset, WhatIsWrongIsNamed) {
+  const struct {
+    const char* row;
+    const char* says;
+  } kBad[] = {{"title = 'x'\ntransducer = 'y'\ndepth_mm = 900", "depth_mm"},
+              {"title = 'x'\ntransducer = 'y'\nflavour = 3", "flavour"},
+              {"title = 'x'\ntransducer = 'y'\ngray_map = 'pink'", "pink"},
+              {"title = 'x'", "transducer"}};
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "presets.toml";
+  for (const auto& bad : kBad) {
+    std::ofstream(path) << "[presets.p]\n" << bad.row << "\n";
+    const auto presets = load_scan_presets(path);
+    ASSERT_FALSE(presets) << bad.row;
+    EXPECT_NE(presets.error().text().find(bad.says), std::string::npos) << presets.error().text();
+  }
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,215 @@
+#include "ultrasound/sweep/mechanical_sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/check.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "ultrasound/scanner/scanner.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kMaxVoxels = 256e6;
+constexpr double kMaxSamples = 1e9;  ///< A byte each.
+constexpr double kLeastSweep_rad = 0.01;
+constexpr int kMostFrames = 1000;
+/// The scanner's picture is not used, only its gray levels a scanline.
+constexpr int kNoColumns = 16;
+
+bool is_within(double value, double low, double high) {
+  return value >= low && value <= high;  // false for NaN
+}
+
+/// Frames one after another, scanline by scanline.
+struct Frames {
+  std::vector<std::uint8_t> gray;
+  double mean_contact = 0.0;
+};
+
+/// Samples are finer than voxels: a voxel shows the mean of those that it is long, not one by chance.
+void average_along_lines(const std::vector<std::uint8_t>& polar, int samples, int half_length, std::uint8_t* out) {
+  const std::size_t n = static_cast<std::size_t>(samples);
+  for (std::size_t line = 0; line < polar.size() / n; ++line) {
+    const std::uint8_t* const in = polar.data() + line * n;
+    for (int s = 0; s < samples; ++s) {
+      const int first = std::max(s - half_length, 0), last = std::min(s + half_length, samples - 1);
+      int sum = 0;
+      for (int at = first; at <= last; ++at) sum += in[at];
+      const int count = last - first + 1;
+      out[line * n + static_cast<std::size_t>(s)] = static_cast<std::uint8_t>((sum + count / 2) / count);
+    }
+  }
+}
+
+Frames take_frames(const std::shared_ptr<const AcousticScene>& scene, const Transducer& transducer, const Pose& X_PT,
+                   const SweepGeometry& geometry, const MechanicalSweepOptions& options, const Progress& progress) {
+  BMode engine(scene, transducer, options.acquisition);
+  Scanner scanner(kNoColumns, 1);
+  scanner.settings = options.display;
+  scanner.settings.persistence = 0.0;
+  scanner.artefacts = options.acquisition.artefacts;
+  Frames frames;
+  const std::size_t frame_size =
+      static_cast<std::size_t>(geometry.scan.lines) * static_cast<std::size_t>(geometry.scan.samples);
+  const auto half_length = static_cast<int>(std::lround(0.5 * options.spacing_mm / geometry.scan.sample_mm() - 0.5));
+  frames.gray.resize(frame_size * static_cast<std::size_t>(geometry.frames));
+  for (int n = 0; n < geometry.frames; ++n) {
+    report(progress, "swinging the array", 0.8 * n / geometry.frames);
+    const BasebandFrame& echoes = engine.render({X_PT * geometry.frame_pose(n), {}, 0.0});
+    frames.mean_contact += coupled_share(echoes) / geometry.frames;
+    scanner.show(echoes, mix64(mix64(options.seed) ^ static_cast<std::uint64_t>(n)));
+    average_along_lines(scanner.polar(), geometry.scan.samples, half_length,
+                        frames.gray.data() + frame_size * static_cast<std::size_t>(n));
+  }
+  return frames;
+}
+
+/// Lower neighbour and the part of the upper one; nothing beyond half a sample outside.
+struct Between {
+  std::size_t lower = 0;
+  std::size_t step = 0;  ///< To the upper one; 0 at the end.
+  float part = 0.0F;
+};
+bool find_between(double at, int count, Between& between) {
+  if (!(at > -0.5 && at < count - 0.5)) return false;
+  const double held = std::clamp(at, 0.0, static_cast<double>(count - 1));
+  const int lower = std::min(static_cast<int>(held), std::max(count - 2, 0));
+  between = {static_cast<std::size_t>(lower), count > 1 ? std::size_t{1} : std::size_t{0},
+             static_cast<float>(held - lower)};
+  return true;
+}
+
+/// Trilinear between frames, scanlines and samples.
+std::uint8_t gray_at(const Frames& frames, const SweepGeometry& geometry, const Vec3& p_T) {
+  const SweepGeometry::Place place = geometry.to_place(p_T);
+  Between frame, line, sample;
+  const double depth_samples = place.polar.depth_mm / geometry.scan.sample_mm() - 0.5;
+  if (!find_between(place.frame, geometry.frames, frame) ||
+      !find_between(place.polar.line, geometry.scan.lines, line) ||
+      !find_between(depth_samples, geometry.scan.samples, sample))
+    return 0;
+  const auto samples = static_cast<std::size_t>(geometry.scan.samples);
+  const auto lines = static_cast<std::size_t>(geometry.scan.lines);
+  const std::uint8_t* corner = frames.gray.data() + (frame.lower * lines + line.lower) * samples + sample.lower;
+  const auto along_sample = [&](const std::uint8_t* gray) {
+    return std::lerp(static_cast<float>(gray[0]), static_cast<float>(gray[sample.step]), sample.part);
+  };
+  const auto along_line = [&](const std::uint8_t* gray) {
+    return std::lerp(along_sample(gray), along_sample(gray + line.step * samples), line.part);
+  };
+  const float value = std::lerp(along_line(corner), along_line(corner + frame.step * lines * samples), frame.part);
+  return static_cast<std::uint8_t>(std::lround(value));
+}
+
+Result<SweepGeometry> plan_sweep(const Transducer& transducer, const MechanicalSweepOptions& options) {
+  if (transducer.kind != TransducerKind::kMechanicalConvex)
+    return fail_usage("the transducer has no motor that swings it", transducer.name, "choose a mechanical one");
+  SweepGeometry geometry;
+  const Acquisition& acquisition = options.acquisition;
+  geometry.scan = make_scan_geometry(transducer, acquisition.depth_mm, acquisition.lines, acquisition.samples);
+  geometry.radius_mm = transducer.sweep_radius_mm;
+  geometry.sweep_rad = options.sweep_rad == 0.0 ? transducer.sweep_rad : options.sweep_rad;
+  if (!is_within(geometry.sweep_rad, kLeastSweep_rad, std::numbers::pi / 2.0))
+    return fail_usage("the sweep's angle is not within 0.6..90 degrees", transducer.name,
+                      "give an angle in this range");
+  const double steps = std::ceil(geometry.sweep_rad / options.step_rad);
+  if (!is_within(steps, 1.0, kMostFrames - 1))
+    return fail_usage(fmt::format("the sweep would have {:.0f} frames", steps + 1.0), transducer.name,
+                      fmt::format("choose a step with at most {}", kMostFrames));
+  geometry.frames = std::max(2, static_cast<int>(steps) + 1);
+  if (static_cast<double>(geometry.frames) * acquisition.lines * acquisition.samples > kMaxSamples)
+    return fail_usage("the frames would have more than a thousand million samples", transducer.name,
+                      "choose fewer scanlines or samples");
+  return geometry;
+}
+
+/// A grid of T in which a plane of voxels lies in the middle frame.
+Result<GridGeometry> lay_grid(const SweepGeometry& geometry, double spacing_mm) {
+  if (!is_within(spacing_mm, 0.2, 5.0))
+    return fail_usage(fmt::format("a spacing of {} mm is not within 0.2..5", spacing_mm), "spacing",
+                      "give a spacing in this range");
+  const SweepGeometry::Extent extent = geometry.extent();
+  GridGeometry grid;
+  grid.spacing_mm = Vec3::Constant(spacing_mm);
+  double voxels = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double first = std::floor(extent.first_T[axis] / spacing_mm);
+    const double count = std::ceil(extent.last_T[axis] / spacing_mm) - first + 1.0;
+    grid.origin_P[axis] = first * spacing_mm;
+    grid.size[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(count);
+    voxels *= count;
+  }
+  if (voxels > kMaxVoxels)
+    return fail_usage(fmt::format("the volume would have {:.0f} million voxels", voxels * 1e-6), {},
+                      "choose a larger spacing");
+  return grid;
+}
+
+}  // namespace
+
+Pose SweepGeometry::frame_pose(double frame) const noexcept {
+  const double angle_rad = frame_angle_rad(frame);
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  Mat3 R;
+  R << 1, 0, 0, 0, c, -s, 0, s, c;
+  return {R, {0.0, radius_mm * (c - 1.0), radius_mm * s}};
+}
+
+Vec3 SweepGeometry::to_cartesian(const Place& place) const noexcept {
+  const Vec2 p = scan.to_cartesian(place.polar);
+  return frame_pose(place.frame) * Vec3(p.x(), p.y(), 0.0);
+}
+
+SweepGeometry::Place SweepGeometry::to_place(const Vec3& p_T) const noexcept {
+  const double above_axis = p_T.y() + radius_mm;
+  const double angle_rad = std::atan2(p_T.z(), above_axis);
+  const double y = std::hypot(above_axis, p_T.z()) - radius_mm;
+  return {(angle_rad / sweep_rad + 0.5) * (frames - 1), scan.to_polar({p_T.x(), y})};
+}
+
+SweepGeometry::Extent SweepGeometry::extent() const noexcept {
+  const ScanGeometry::Extent plane = scan.extent();
+  const double half = 0.5 * sweep_rad;
+  const double far_mm = plane.y1 + radius_mm;
+  const double near_mm = plane.y0 + radius_mm;  // may be behind the axis where the face is strongly curved
+  const double lowest = std::min(near_mm * std::cos(half), near_mm) - radius_mm;
+  const double widest = std::max(far_mm, std::abs(near_mm)) * std::sin(half);
+  return {{plane.x0, lowest, -widest}, {plane.x1, plane.y1, widest}};
+}
+
+Result<SweepVolume> make_mechanical_sweep(const std::shared_ptr<const AcousticScene>& scene,
+                                          const Transducer& transducer, const Pose& X_PT,
+                                          const MechanicalSweepOptions& options, const Progress& progress) {
+  SweepVolume volume;
+  TROCAR_TRY(volume.geometry, plan_sweep(transducer, options));
+  TROCAR_TRY(const GridGeometry grid, lay_grid(volume.geometry, options.spacing_mm));
+  const Frames frames = take_frames(scene, transducer, X_PT, volume.geometry, options, progress);
+  volume.mean_contact = frames.mean_contact;
+  report(progress, "laying the frames into a volume", 0.8);
+  volume.gray = LabelGrid(grid);
+  const auto row = static_cast<std::size_t>(grid.size[0]);
+  parallel_for(volume.gray.voxels.size() / row, 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first * row; n < last * row; ++n) {
+      const Index3 ijk = grid.index_of(n);
+      const Vec3 index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
+      volume.gray.voxels[n] = gray_at(frames, volume.geometry, grid.to_mm(index));
+    }
+  });
+  report(progress, "done", 1.0);
+  return volume;
+}
+
+LabelGrid in_patient(const SweepVolume& volume, const Pose& X_PT) {
+  LabelGrid grid = volume.gray;
+  grid.geometry.origin_P = X_PT * volume.gray.geometry.origin_P;
+  grid.geometry.R_PV = X_PT.R() * volume.gray.geometry.R_PV;
+  return grid;
+}
+
+}  // namespace trocar

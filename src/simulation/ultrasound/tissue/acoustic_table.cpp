@@ -1,0 +1,91 @@
+#include "ultrasound/tissue/acoustic_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/sourced_number.h"
+
+namespace trocar {
+namespace {
+
+constexpr std::size_t kMostTissues = 127;  // AcousticScene keeps them in seven bits
+
+struct Field {
+  std::string_view key;
+  Range range;
+  double AcousticTissue::*value;
+};
+constexpr Field kFields[] = {
+    {"speed_m_per_s", {300.0, 4500.0}, &AcousticTissue::speed_m_per_s},
+    {"density_kg_per_m3", {1.0, 2500.0}, &AcousticTissue::density_kg_per_m3},
+    {"attenuation_db_per_cm_mhz", {0.0, 100.0}, &AcousticTissue::attenuation_db_per_cm_mhz},
+    {"attenuation_exponent", {0.5, 2.0}, &AcousticTissue::attenuation_exponent},
+    {"backscatter_db", {-80.0, 30.0}, &AcousticTissue::backscatter_db},
+    {"scatterer_share", {0.0, 1.0}, &AcousticTissue::scatterer_share},
+    {"texture_db_per_hu", {-1.0, 1.0}, &AcousticTissue::texture_db_per_hu},
+    {"texture_below_db_per_hu", {-1.0, 1.0}, &AcousticTissue::texture_below_db_per_hu},
+    {"roughness", {0.0, 1.0}, &AcousticTissue::roughness},
+    {"fibre_db", {0.0, 20.0}, &AcousticTissue::fibre_db},
+};
+
+Result<AcousticTissue> read_tissue(const TomlTable& row, const std::string& name) {
+  AcousticTissue tissue;
+  tissue.name = name;
+  std::vector<std::string_view> known;
+  for (const Field& field : kFields) {
+    TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, field.key, field.range));
+    tissue.*field.value = number.value;
+    known.push_back(field.key);
+  }
+  constexpr std::string_view kStrands = "strands_per_ml";  // most tissues have none
+  known.push_back(kStrands);
+  if (row.has(kStrands)) {
+    TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, kStrands, {0.0, 20.0}));
+    tissue.strands_per_ml = number.value;
+  }
+  TROCAR_TRY_STATUS(row.check_keys(known));
+  return tissue;
+}
+
+}  // namespace
+
+double AcousticTissue::attenuation_db_per_cm(double frequency_mhz) const noexcept {
+  return attenuation_db_per_cm_mhz * std::pow(frequency_mhz, attenuation_exponent);
+}
+
+double AcousticTissue::texture_db(double deviation_hu) const noexcept {
+  const double db = deviation_hu * (deviation_hu > 0.0 ? texture_db_per_hu : texture_below_db_per_hu);
+  return std::clamp(db, -kMostTexture_db, kMostTexture_db);
+}
+
+std::optional<std::uint8_t> AcousticTable::find(std::string_view name) const noexcept {
+  const auto it = std::find_if(tissues.begin(), tissues.end(), [&](const AcousticTissue& t) { return t.name == name; });
+  if (it == tissues.end()) return std::nullopt;
+  return static_cast<std::uint8_t>(it - tissues.begin());
+}
+
+Result<AcousticTable> load_acoustic_table(const std::filesystem::path& path) {
+  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY_STATUS(document.check_keys({"tissues"}));
+  TROCAR_TRY(const TomlTable rows, document.table("tissues"));
+  const std::vector<std::string> names = rows.keys();
+  if (names.empty() || names.front() != "air")
+    return fail("the first tissue must be air", rows.where(), "move air to the top of the table");
+  if (names.size() > kMostTissues)
+    return fail(fmt::format("{} tissues, at most {} fit", names.size(), kMostTissues), rows.where(), "remove tissues");
+  AcousticTable table;
+  for (const std::string& name : names) {
+    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(AcousticTissue tissue, read_tissue(row, name));
+    table.tissues.push_back(std::move(tissue));
+  }
+  return table;
+}
+
+double reflection(double z1_mrayl, double z2_mrayl) noexcept {
+  return (z2_mrayl - z1_mrayl) / (z2_mrayl + z1_mrayl);
+}
+
+}  // namespace trocar

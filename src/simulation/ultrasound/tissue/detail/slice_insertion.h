@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ultrasound/sweep/freehand_options.h"
+#include "volume/grid.h"
+#include "ultrasound/sweep/tracked_sequence.h"
+
+namespace trocar::detail {
+
+/// Pixels first..last of a row that count.
+struct PixelRun {
+  int row, first, last;
+};
+
+/// The pixels of a picture that the options let count, row by row.
+std::vector<PixelRun> pixel_runs(const TrackedSequence& sequence, const FreehandOptions& options);
+
+/// A picture and its place: column, row, 0, 1 to mm of the volume's P.
+struct PlacedFrame {
+  std::size_t frame;
+  TrackedSequence::Matrix4 T_PI;
+};
+
+/// The part of a picture that the volume must hold: the clip rectangle as far as it lies in the picture, without one
+/// the pixels that count. At least one pixel.
+ClipRectangle box_of(const TrackedSequence& sequence, const std::vector<PixelRun>& runs,
+                     const FreehandOptions& options);
+
+/// The smallest box along the axes of P that holds the centres of a rectangle's pixels in all frames.
+struct Extent {
+  Vec3 first_P, last_P;
+};
+Extent extent_of(const std::vector<PlacedFrame>& frames, const ClipRectangle& box);
+
+/// What has met a voxel: gray times weight in the lower 36 bits, weight above; 256 is a whole pixel. A voxel takes a
+/// million whole pixels and then no more.
+using Cell = std::uint64_t;
+inline constexpr int kWeightShift = 36;
+inline constexpr Cell kWholePixel = 256;
+
+/// Puts the pixels of all frames into cells (one a voxel of `grid`), frame after frame in each voxel.
+void insert_frames(const TrackedSequence& sequence, const std::vector<PlacedFrame>& frames,
+                   const std::vector<PixelRun>& runs, const FreehandOptions& options, const GridGeometry& grid,
+                   std::vector<Cell>& cells);
+
+/// Rounded gray of a cell; nothing has met it: 0.
+inline std::uint8_t gray_of(Cell cell) noexcept {
+  const Cell weight = cell >> kWeightShift;
+  const Cell sum = cell & ((Cell{1} << kWeightShift) - 1);
+  return weight == 0 ? std::uint8_t{0} : static_cast<std::uint8_t>((sum + weight / 2) / weight);
+}
+
+}  // namespace trocar::detail

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "ultrasound/tissue/acoustic_table.h"
+
+namespace trocar::testing {
+
+/// A tissue's label and CT value at a point of P.
+struct BlockVoxel {
+  std::uint8_t label = 0;
+  std::int16_t hu = 0;
+};
+
+/// Labels of a block: 1 liver, 2 kidney, 3 vessel, 4 muscle, 5 bone, 6 lung, 7 bowel, 8 fat.
+inline constexpr std::uint8_t kLiver = 1, kKidney = 2, kVessel = 3, kMuscle = 4, kBone = 5, kLung = 6, kBowel = 7,
+                              kFat = 8;
+
+/// A patient made by hand: a block of tissue behind a flat skin at y = 0 (the body where y > 0), centred on x = z = 0,
+/// with 12 mm of air in front.
+inline VirtualPatient make_block(const Vec3& extent_mm, const Vec3& spacing_mm,
+                                 const std::function<BlockVoxel(const Vec3&)>& voxel) {
+  constexpr double kAir_mm = 12.0;
+  VirtualPatient patient;
+  patient.name = "block";
+  GridGeometry geometry;
+  geometry.spacing_mm = spacing_mm;
+  for (std::size_t a = 0; a < 3; ++a)
+    geometry.size[a] = std::llround(extent_mm[static_cast<Eigen::Index>(a)] / spacing_mm[static_cast<Eigen::Index>(a)]);
+  const Vec3 size(static_cast<double>(geometry.size[0]), static_cast<double>(geometry.size[1]),
+                  static_cast<double>(geometry.size[2]));
+  geometry.origin_P = -0.5 * (size - Vec3::Ones()).cwiseProduct(spacing_mm);
+  geometry.origin_P.y() = 0.5 * spacing_mm.y() - kAir_mm;
+  patient.ct = CtGrid(geometry, -1000);
+  patient.labels = LabelGrid(geometry);
+  patient.skin_distance_mm = FloatGrid(geometry);
+  for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
+    const Index3 ijk = geometry.index_of(n);
+    const Vec3 p_P =
+        geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    patient.skin_distance_mm.voxels[n] = static_cast<float>(-p_P.y());
+    if (p_P.y() <= 0.0) continue;
+    const BlockVoxel made = voxel(p_P);
+    patient.labels.voxels[n] = made.label;
+    patient.ct.voxels[n] = made.hu;
+  }
+  const char* const names[] = {"liver", "kidney", "vessel", "muscle", "bone", "lung", "bowel", "adipose"};
+  for (std::uint8_t id = 1; id <= 8; ++id)
+    patient.label_table.labels.push_back({id, "the " + std::string(names[id - 1]), names[id - 1], {}});
+  return patient;
+}
+
+/// A table of all tissues that a block may hold, without acoustic sense.
+inline AcousticTable make_block_table() {
+  AcousticTable table;
+  for (const char* name : {"air", "skin", "adipose", "gas", "soft_tissue", "liver", "kidney", "vessel", "muscle",
+                           "bone", "lung", "bowel"}) {
+    AcousticTissue tissue;
+    tissue.name = name;
+    table.tissues.push_back(tissue);
+  }
+  return table;
+}
+
+}  // namespace trocar::testing

@@ -1,0 +1,98 @@
+#include "attempt/guide/gun_shot.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "attempt/case/open_case.h"
+#include "attempt/guide/puncture_guide.h"
+
+namespace trocar {
+namespace {
+
+const OpenCase& liver() {
+  static const std::shared_ptr<const OpenCase> open = [] {
+    CaseChoice choice;
+    choice.patient_source = "layers-liver";
+    return *make_open_case(choice);
+  }();
+  return *open;
+}
+
+TickSample at_target() {
+  const Segment& plan_P = liver().the_case.plan.line_P;
+  TickSample sample;
+  sample.time_s = 12.0;
+  sample.tip_mm = plan_P.b;
+  sample.axis = plan_P.direction();
+  sample.depth_mm = plan_P.length_mm();
+  sample.phase = InsertionPhase::kInserted;
+  return sample;
+}
+
+TEST(GunShot, TakesACoreWhereTheNotchWas) {
+  const Case& the_case = liver().the_case;
+  const GunShot shot = make_gun_shot(the_case, at_target());
+  EXPECT_EQ(shot.throw_mm, the_case.needle.throw_mm);
+  EXPECT_NEAR((shot.core_P.b - at_target().tip_mm).norm(), shot.throw_mm - the_case.needle.dead_space_mm, 1e-9);
+  EXPECT_NEAR(shot.core_P.length_mm(), the_case.needle.notch_mm, 1e-9);
+  ASSERT_FALSE(shot.pieces.empty());
+  double target_mm = 0.0;
+  for (const ShotPiece& piece : shot.pieces)
+    if (piece.part == CorePart::kTarget) target_mm += piece.to_mm - piece.from_mm;
+  EXPECT_NEAR(target_mm, shot.core.target_mm, 1e-9);
+  EXPECT_GT(target_mm, 5.0);
+  EXPECT_NE(shot_words(shot).find("target tissue"), std::string::npos) << shot_words(shot);
+}
+
+TEST(GunShot, OutsideOfTheBodyTakesNothing) {
+  TickSample outside = at_target();
+  outside.depth_mm = 0.0;
+  const GunShot shot = make_gun_shot(liver().the_case, outside);
+  EXPECT_TRUE(shot.pieces.empty());
+  EXPECT_NE(shot_words(shot).find("outside of the body"), std::string::npos);
+}
+
+TEST(GunShot, StyletGoesFirstThenTheCannulaAndBothStay) {
+  const GunShot shot = make_gun_shot(liver().the_case, at_target());
+  EXPECT_EQ(throw_at(shot, 0.0, shot.depth_mm).stylet_mm, 0.0);
+  const GunThrow half = throw_at(shot, 0.5 * kStyletMoves_s, shot.depth_mm);
+  EXPECT_NEAR(half.stylet_mm, 0.5 * shot.throw_mm, 1e-9);
+  EXPECT_EQ(half.cannula_mm, 0.0);
+  const GunThrow open = throw_at(shot, kStyletMoves_s, shot.depth_mm);
+  EXPECT_EQ(open.stylet_mm, shot.throw_mm);
+  EXPECT_EQ(open.cannula_mm, 0.0);
+  const GunThrow end = throw_at(shot, 60.0, shot.depth_mm);
+  EXPECT_EQ(end.stylet_mm, shot.throw_mm);
+  EXPECT_EQ(end.cannula_mm, shot.throw_mm);
+}
+
+TEST(GunShot, TheNeedleIsOutWhereItIsFeltToBeOut) {
+  GunShot shot = make_gun_shot(liver().the_case, at_target());
+  EXPECT_NEAR(throw_at(shot, 60.0, 0.5 * shot.depth_mm).cannula_mm, 0.5 * shot.throw_mm, 1e-9);
+  EXPECT_EQ(throw_at(shot, 60.0, 0.0).cannula_mm, 0.0);
+  EXPECT_EQ(throw_at(shot, 60.0, 0.0).stylet_mm, 0.0);
+  shot.depth_mm = 0.0;  // fired outside
+  EXPECT_EQ(throw_at(shot, 60.0, 0.0).stylet_mm, 0.0);
+}
+
+TEST(GunShot, AThrownShaftIsLongerByTheThrowAlongItsEnd) {
+  const std::vector<Vec3> shaft_P{Vec3(0, 0, 0), Vec3(0, 0, 10), Vec3(3, 0, 14)};
+  const std::vector<Vec3> thrown_P = thrown_shaft(shaft_P, 5.0);
+  ASSERT_EQ(thrown_P.size(), 4u);
+  EXPECT_NEAR((thrown_P.back() - Vec3(6, 0, 18)).norm(), 0.0, 1e-9);
+  EXPECT_EQ(thrown_shaft(shaft_P, 0.0).size(), 3u);
+  EXPECT_TRUE(thrown_shaft({}, 5.0).empty());
+}
+
+TEST(GunShot, TheHintGoesOnToWithdrawing) {
+  TickSample sample = at_target();
+  EXPECT_NE(guide_puncture(liver().the_case, sample).find("fire"), std::string::npos);
+  EXPECT_NE(guide_puncture(liver().the_case, sample, true).find("withdraw the needle"), std::string::npos);
+  sample.depth_mm = 0.0;
+  sample.phase = InsertionPhase::kOutside;
+  EXPECT_NE(guide_puncture(liver().the_case, sample, true).find("end the attempt"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,71 @@
+#include "attempt/guide/needle_shaft.h"
+
+#include <gtest/gtest.h>
+
+#include "geometry/pose.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kLength_mm = 150.0;
+
+TickSample sample_at(const Pose& X_PN) {
+  TickSample sample;
+  sample.tip_mm = sample.device_mm = X_PN.p();
+  sample.axis = X_PN.R().col(2);
+  const Eigen::Quaterniond q(X_PN.R());
+  sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
+  return sample;
+}
+
+double length_of(const std::vector<Vec3>& points) {
+  double length_mm = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) length_mm += (points[i] - points[i - 1]).norm();
+  return length_mm;
+}
+
+const Pose kHeld = needle_pose({10.0, 20.0, 30.0}, Vec3(0.3, 1.0, -0.2).normalized());
+
+TEST(NeedleShaft, OutsideIsWhatIsLeftOfItsLength) {
+  const std::vector<Vec3> shaft_P{Vec3(0, 0, 0), Vec3(0, 0, 100), Vec3(0, 30, 140)};
+  EXPECT_EQ(shaft_outside(shaft_P, 0.0), shaft_P);
+  const std::vector<Vec3> bent_P = shaft_outside(shaft_P, 25.0);
+  ASSERT_EQ(bent_P.size(), 3u);
+  EXPECT_NEAR((bent_P.back() - Vec3(0, 15, 120)).norm(), 0.0, 1e-9);
+  const std::vector<Vec3> straight_P = shaft_outside(shaft_P, 90.0);
+  ASSERT_EQ(straight_P.size(), 2u);
+  EXPECT_NEAR((straight_P.back() - Vec3(0, 0, 60)).norm(), 0.0, 1e-9);
+  EXPECT_TRUE(shaft_outside(shaft_P, 150.0).empty());
+}
+
+TEST(NeedleShaft, IsStraightFromHubToTipWhileNothingBendsIt) {
+  const std::vector<Vec3> shaft = needle_shaft(sample_at(kHeld), kLength_mm);
+  ASSERT_EQ(shaft.size(), 2u);
+  EXPECT_EQ(shaft.back(), kHeld.p());
+  EXPECT_NEAR((shaft.front() - (kHeld.p() - kLength_mm * kHeld.R().col(2))).norm(), 0.0, 1e-9);
+}
+
+TEST(NeedleShaft, KeepsItsLengthWhenTheTipLagsBehindTheHand) {
+  TickSample sample = sample_at(kHeld);
+  sample.tip_mm -= 5.0 * sample.axis;
+  const std::vector<Vec3> shaft = needle_shaft(sample, kLength_mm);
+  EXPECT_NEAR(length_of(shaft), kLength_mm, 1e-9);
+  EXPECT_EQ(shaft.back(), sample.tip_mm);
+}
+
+TEST(NeedleShaft, BendsFromTheGripsDirectionToTheTips) {
+  TickSample sample = sample_at(kHeld);
+  const Vec3 aside = sample.axis.unitOrthogonal();
+  sample.tip_mm += 6.0 * aside;
+  sample.axis = (sample.axis + 0.1 * aside).normalized();
+  const std::vector<Vec3> shaft = needle_shaft(sample, kLength_mm);
+  ASSERT_GT(shaft.size(), 8u);
+  EXPECT_EQ(shaft.back(), sample.tip_mm);
+  EXPECT_NEAR(length_of(shaft), kLength_mm, 1.0);
+  const Vec3 first = (shaft[1] - shaft[0]).normalized(), last = (shaft.back() - shaft[shaft.size() - 2]).normalized();
+  EXPECT_LT(angle_between_rad(first, kHeld.R().col(2)), 0.02);
+  EXPECT_LT(angle_between_rad(last, sample.axis), 0.02);
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,165 @@
+#include "attempt/hands/pointer_hand.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "volume/sampling.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kLongestStep_mm = 20.0;  ///< Of one gesture: what is longer is a slip of the pointer.
+
+Vec3 bounded(const Vec3& shift_P) {
+  if (!shift_P.allFinite()) return Vec3::Zero();
+  const double size = shift_P.norm();
+  return size > kLongestStep_mm ? Vec3(kLongestStep_mm / size * shift_P) : shift_P;
+}
+
+/// A point moved along the skin: the shift's tangential part, then back onto the skin.
+Vec3 moved_on_skin(const VirtualPatient& patient, const Vec3& skin_P, const Vec3& shift_P) {
+  const Vec3 inward_P = skin_inward(patient, skin_P);
+  return nearest_skin_point(patient, skin_P + shift_P - inward_P.dot(shift_P) * inward_P);
+}
+
+/// The direction, bent towards the skin's normal where it is flatter than allowed.
+Vec3 steep_enough(const Vec3& axis_P, const Vec3& inward_P, double flattest_rad) {
+  const double angle = angle_between_rad(axis_P, inward_P);
+  if (angle <= flattest_rad) return axis_P;
+  const Vec3 hinge = inward_P.cross(axis_P);
+  if (hinge.norm() < 1e-9) return inward_P;
+  return Eigen::AngleAxisd(flattest_rad, hinge.normalized()) * inward_P;
+}
+
+/// A handle at the far end leans to the right and down: so turns what it holds.
+Vec3 leaned(const Vec3& axis_P, const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad) {
+  const Vec3 handle_P = -axis_P + std::tan(std::clamp(right_rad, -0.5, 0.5)) * right_P +
+                        std::tan(std::clamp(down_rad, -0.5, 0.5)) * down_P;
+  return -handle_P.normalized();
+}
+
+}  // namespace
+
+Vec3 nearest_skin_point(const VirtualPatient& patient, const Vec3& p_P) noexcept {
+  Vec3 q_P = p_P;
+  constexpr int kSteps = 8;
+  for (int step = 0; step < kSteps; ++step) {
+    const double distance_mm = sample_linear(patient.skin_distance_mm, q_P);
+    if (std::abs(distance_mm) < 1e-3) break;
+    q_P += distance_mm * skin_inward(patient, q_P);
+  }
+  return q_P;
+}
+
+Vec3 skin_inward(const VirtualPatient& patient, const Vec3& p_P) noexcept {
+  const Vec3 outward_P = gradient_per_mm(patient.skin_distance_mm, p_P);
+  const double size = outward_P.norm();
+  return size > 1e-6 ? Vec3(-outward_P / size) : Vec3(0.0, 1.0, 0.0);
+}
+
+PointerNeedle::PointerNeedle(const VirtualPatient& patient, const Segment& path_P, double length_mm)
+    : patient_(&patient), length_mm_(length_mm), entry_P_(path_P.a), axis_P_(path_P.direction()) {
+  aim_at(path_P);
+}
+
+void PointerNeedle::aim_at(const Segment& path_P) {
+  entry_P_ = path_P.a;
+  axis_P_ = path_P.direction();
+  past_mm_ = -kAbove_mm;
+  update();
+}
+
+void PointerNeedle::put(const Pose& X_PN) {
+  if (!X_PN.is_finite()) return;
+  axis_P_ = X_PN.R().col(2).normalized();
+  // Back along the axis to the skin.
+  double back_mm = 0.0;
+  constexpr int kSteps = 12;
+  for (int step = 0; step < kSteps; ++step) {
+    const Vec3 at_P = X_PN.p() - back_mm * axis_P_;
+    const double distance_mm = sample_linear(patient_->skin_distance_mm, at_P);
+    const double steepness = std::max(0.2, axis_P_.dot(skin_inward(*patient_, at_P)));
+    back_mm -= distance_mm / steepness;
+    back_mm = std::clamp(back_mm, -kFarthest_mm, length_mm_);
+  }
+  entry_P_ = X_PN.p() - back_mm * axis_P_;
+  past_mm_ = back_mm;
+  const Mat3 R_unrolled = needle_pose(Vec3::Zero(), axis_P_).R();
+  const Mat3 R_roll = R_unrolled.transpose() * X_PN.R();
+  roll_rad_ = std::atan2(R_roll(1, 0), R_roll(0, 0));
+  update();
+}
+
+void PointerNeedle::glide(const Vec3& shift_P) {
+  const Vec3 shift = bounded(shift_P);
+  if (!is_past_skin()) {
+    entry_P_ = moved_on_skin(*patient_, entry_P_, shift);
+    return lean(axis_P_);
+  }
+  const double outside_mm = std::max(10.0, length_mm_ - past_mm_);
+  lean((axis_P_ * outside_mm - (shift - axis_P_.dot(shift) * axis_P_)).normalized());
+}
+
+void PointerNeedle::tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad) {
+  if (std::isfinite(right_rad) && std::isfinite(down_rad)) lean(leaned(axis_P_, right_P, down_P, right_rad, down_rad));
+}
+
+void PointerNeedle::turn(double rad) {
+  if (std::isfinite(rad)) roll_rad_ = std::remainder(roll_rad_ + rad, 2.0 * M_PI);
+  update();
+}
+
+void PointerNeedle::push(double mm) {
+  if (std::isfinite(mm)) past_mm_ = std::clamp(past_mm_ + mm, -kFarthest_mm, length_mm_ - 5.0);
+  update();
+}
+
+void PointerNeedle::lean(const Vec3& axis_P) {
+  axis_P_ = steep_enough(axis_P, skin_inward(*patient_, entry_P_), kFlattest_rad).normalized();
+  update();
+}
+
+void PointerNeedle::update() {
+  const Pose X_unrolled = needle_pose(entry_P_ + past_mm_ * axis_P_, axis_P_);
+  X_PN_ = {X_unrolled.R() * Eigen::AngleAxisd(roll_rad_, Vec3::UnitZ()).toRotationMatrix(), X_unrolled.p()};
+}
+
+PointerProbe::PointerProbe(const VirtualPatient& patient, const Pose& X_PT) : patient_(&patient) {
+  put(X_PT);
+}
+
+void PointerProbe::put(const Pose& X_PT) {
+  if (!X_PT.is_finite()) return;
+  R_PT_ = X_PT.R();
+  skin_P_ = nearest_skin_point(*patient_, X_PT.p());
+  pressed_mm_ = std::clamp((X_PT.p() - skin_P_).dot(R_PT_.col(1)), -kFarthest_mm, kDeepest_mm);
+}
+
+Pose PointerProbe::X_PT() const noexcept {
+  return {R_PT_, skin_P_ + pressed_mm_ * R_PT_.col(1)};
+}
+
+void PointerProbe::glide(const Vec3& shift_P) {
+  const Vec3 before_P = skin_inward(*patient_, skin_P_);
+  skin_P_ = moved_on_skin(*patient_, skin_P_, bounded(shift_P));
+  R_PT_ = rotation_between(before_P, skin_inward(*patient_, skin_P_)) * R_PT_;
+}
+
+void PointerProbe::tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad) {
+  if (!std::isfinite(right_rad) || !std::isfinite(down_rad)) return;
+  const Vec3 beam_P = R_PT_.col(1);
+  const Vec3 leaned_P = steep_enough(leaned(beam_P, right_P, down_P, right_rad, down_rad),
+                                     skin_inward(*patient_, skin_P_), kFlattest_rad);
+  R_PT_ = rotation_between(beam_P, leaned_P.normalized()) * R_PT_;
+}
+
+void PointerProbe::turn(double rad) {
+  if (std::isfinite(rad)) R_PT_ = R_PT_ * Eigen::AngleAxisd(rad, Vec3::UnitY()).toRotationMatrix();
+}
+
+void PointerProbe::push(double mm) {
+  if (std::isfinite(mm)) pressed_mm_ = std::clamp(pressed_mm_ + mm, -kFarthest_mm, kDeepest_mm);
+}
+
+}  // namespace trocar

@@ -1,0 +1,124 @@
+#include "attempt/hands/pointer_hand.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "anatomy/phantom/phantom.h"
+#include "core/random.h"
+#include "volume/sampling.h"
+
+namespace trocar {
+namespace {
+
+const VirtualPatient& patient() {
+  static const VirtualPatient the_patient = *generate_phantom("layers-liver");
+  return the_patient;
+}
+
+/// From the front, through the middle of the skin.
+Segment path() {
+  const GridGeometry& grid = patient().skin_distance_mm.geometry;
+  const Vec3 middle_P =
+      grid.to_mm(Vec3(0.5 * static_cast<double>(grid.size[0]), 0.5 * static_cast<double>(grid.size[1]),
+                      0.5 * static_cast<double>(grid.size[2])));
+  const Vec3 entry_P = nearest_skin_point(patient(), middle_P);
+  return {entry_P, entry_P + 60.0 * skin_inward(patient(), entry_P)};
+}
+
+PointerNeedle needle() {
+  return {patient(), path(), 150.0};
+}
+
+TEST(PointerNeedle, AimsAlongThePathBeforeTheSkin) {
+  const PointerNeedle hand = needle();
+  EXPECT_FALSE(hand.is_past_skin());
+  EXPECT_NEAR((hand.X_PN().p() - (path().a - PointerNeedle::kAbove_mm * path().direction())).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(hand.X_PN().R().col(2).dot(path().direction()), 1.0, 1e-12);
+}
+
+TEST(PointerNeedle, GlidesOverTheSkinAndKeepsItsHeight) {
+  PointerNeedle hand = needle();
+  for (int step = 0; step < 20; ++step) hand.glide({1.0, 3.0, 0.5});
+  EXPECT_NEAR(sample_linear(patient().skin_distance_mm, hand.entry_P()), 0.0, 0.1);
+  EXPECT_NEAR((hand.X_PN().p() - hand.entry_P()).norm(), PointerNeedle::kAbove_mm, 1e-9);
+  EXPECT_GT((hand.entry_P() - path().a).norm(), 10.0);
+}
+
+TEST(PointerNeedle, TurnsAboutItsEntryInTheBody) {
+  PointerNeedle hand = needle();
+  hand.push(PointerNeedle::kAbove_mm + 40.0);
+  const Vec3 entry_P = hand.entry_P(), tip_P = hand.X_PN().p();
+  hand.glide({5.0, 0.0, 0.0});
+  EXPECT_EQ(hand.entry_P(), entry_P);
+  EXPECT_NEAR((hand.X_PN().p() - entry_P).norm(), 40.0, 1e-9);
+  // The hub goes with the hand, the tip the other way.
+  EXPECT_LT(hand.X_PN().p().x(), tip_P.x() - 1.0);
+}
+
+TEST(PointerNeedle, PushesAlongItsAxisWithinBounds) {
+  PointerNeedle hand = needle();
+  hand.push(1.5);
+  EXPECT_NEAR(hand.past_mm(), 1.5 - PointerNeedle::kAbove_mm, 1e-12);
+  for (int step = 0; step < 100; ++step) hand.push(10.0);
+  EXPECT_DOUBLE_EQ(hand.past_mm(), 145.0);
+  for (int step = 0; step < 100; ++step) hand.push(-10.0);
+  EXPECT_DOUBLE_EQ(hand.past_mm(), -PointerNeedle::kFarthest_mm);
+}
+
+TEST(PointerNeedle, TakesOverFromAnotherHand) {
+  PointerNeedle first = needle();
+  first.tilt({1, 0, 0}, {0, 0, -1}, 0.3, -0.2);
+  first.turn(0.7);
+  first.push(50.0);
+  PointerNeedle second = needle();
+  second.put(first.X_PN());
+  EXPECT_NEAR((second.X_PN().p() - first.X_PN().p()).norm(), 0.0, 1e-6);
+  EXPECT_NEAR((second.X_PN().R() - first.X_PN().R()).norm(), 0.0, 1e-6);
+  EXPECT_NEAR((second.entry_P() - first.entry_P()).norm(), 0.0, 0.2);
+}
+
+TEST(PointerNeedle, StaysSaneWhateverItIsTold) {
+  Random rng(7);
+  PointerNeedle hand = needle();
+  const double odd[] = {0.0, 1e9, -1e9, std::numeric_limits<double>::quiet_NaN(), 0.2, -3.0};
+  for (int step = 0; step < 500; ++step) {
+    const auto pick = [&] { return odd[static_cast<std::size_t>(rng.uniform(0.0, 5.999))]; };
+    hand.glide({pick(), pick(), pick()});
+    hand.tilt({1, 0, 0}, {0, 0, -1}, pick(), pick());
+    hand.push(pick());
+    hand.turn(pick());
+    ASSERT_TRUE(hand.X_PN().is_finite());
+    ASSERT_LE(angle_between_rad(hand.X_PN().R().col(2), skin_inward(patient(), hand.entry_P())),
+              PointerNeedle::kFlattest_rad + 1e-6);
+  }
+}
+
+TEST(PointerProbe, StaysOnTheSkinAndFacesInward) {
+  const Segment line = path();
+  Mat3 R_PT;
+  R_PT.col(1) = line.direction();
+  R_PT.col(0) = Vec3(0, 0, 1).cross(line.direction()).normalized();
+  R_PT.col(2) = R_PT.col(0).cross(R_PT.col(1));
+  PointerProbe hand(patient(), {R_PT, line.a});
+  for (int step = 0; step < 20; ++step) hand.glide({2.0, 1.0, 1.0});
+  hand.push(3.0);
+  EXPECT_NEAR(hand.pressed_mm(), 3.0, 0.2);
+  EXPECT_NEAR(sample_linear(patient().skin_distance_mm, hand.X_PT().p()), -3.0, 0.5);
+  EXPECT_GT(hand.X_PT().R().col(1).dot(skin_inward(patient(), hand.X_PT().p())), 0.98);
+  EXPECT_NEAR(hand.X_PT().R().determinant(), 1.0, 1e-9);
+}
+
+TEST(PointerProbe, TurnsAboutItsBeamAndPressesNoDeeperThanItMay) {
+  const Segment line = path();
+  PointerProbe hand(patient(), needle_pose(line.a, line.direction()));
+  const Vec3 beam_P = hand.X_PT().R().col(1);
+  hand.turn(0.5);
+  EXPECT_NEAR((hand.X_PT().R().col(1) - beam_P).norm(), 0.0, 1e-12);
+  hand.push(100.0);
+  EXPECT_DOUBLE_EQ(hand.pressed_mm(), PointerProbe::kDeepest_mm);
+}
+
+}  // namespace
+}  // namespace trocar

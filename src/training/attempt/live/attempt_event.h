@@ -1,0 +1,15 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "attempt/live/attempt_view.h"
+#include "storage/session_file.h"
+
+namespace trocar {
+
+/// An event of a tick for people: punctures, tissue that is entered, a needle that was resumed inside. Nothing for
+/// what else the record keeps.
+std::optional<AttemptEvent> describe_event(const SessionInfo& info, const TickSample& sample, const TickEvent& event);
+
+}  // namespace trocar

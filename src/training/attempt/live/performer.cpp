@@ -1,0 +1,120 @@
+#include "attempt/live/performer.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "attempt/record/attempt_record.h"
+
+namespace trocar {
+namespace {
+
+/// An operator as it was named: the text after the colon, if any, is its speed or its session.
+struct OperatorChoice {
+  enum class Kind { kExpert, kNovice, kConstantVelocity, kReplay };
+  Kind kind = Kind::kExpert;
+  double speed_mm_per_s = 0.0;
+  std::string session;
+};
+
+Result<double> parse_speed(std::string_view text) {
+  double speed = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), speed);
+  if (error == std::errc() && end == text.data() + text.size() && speed >= 0.1 && speed <= 500.0) return speed;
+  return fail_usage(fmt::format("speed {} is not a number from 0.1 to 500 mm/s", text), "--operator constant-velocity",
+                    "write it as constant-velocity:10");
+}
+
+Result<OperatorChoice> parse_operator(std::string_view name) {
+  using Kind = OperatorChoice::Kind;
+  if (name == "expert") return OperatorChoice{Kind::kExpert, 0.0, {}};
+  if (name == "novice") return OperatorChoice{Kind::kNovice, 0.0, {}};
+  constexpr std::string_view kConstant = "constant-velocity:";
+  if (name.starts_with(kConstant)) {
+    TROCAR_TRY(const double speed, parse_speed(name.substr(kConstant.size())));
+    return OperatorChoice{Kind::kConstantVelocity, speed, {}};
+  }
+  constexpr std::string_view kReplay = "replay:";
+  if (name == kReplay) return fail_usage("replay: names no session", "--operator", "write replay:SESSION");
+  if (name.starts_with(kReplay)) return OperatorChoice{Kind::kReplay, 0.0, std::string(name.substr(kReplay.size()))};
+  return fail_usage(fmt::format("no operator named {}", name), "--operator",
+                    "use expert, novice, constant-velocity:MM_PER_S or replay:SESSION");
+}
+
+Result<Performer> make_replayer(const Case& the_case, const RunOptions& options) {
+  std::shared_ptr<const Session> session = options.replayed;
+  if (session == nullptr) {
+    TROCAR_TRY(session, load_replayed(options.operator_name));
+  }
+  if (!options.is_other_patient_meant) TROCAR_TRY_STATUS(check_patient(*session, *the_case.patient));
+  ReplayChanges changes = options.replay_changes;
+  if (changes.force_model.empty()) changes.force_model = options.force_model;
+  Performer performer;
+  TROCAR_TRY(performer.parameters, replay_parameters(*session, changes));
+  performer.the_operator = make_replay(session->samples, session->fired);
+  performer.rate_hz = session->info.rate_hz;
+  performer.has_own_rate = true;
+  performer.force_model = session->info.force_model;
+  performer.replayed = std::move(session);
+  return performer;
+}
+
+Result<Performer> make_named(const Case& the_case, const RunOptions& options) {
+  const OperatorCase what{the_case.plan.line_P, the_case.needle.is_biopsy, options.seed};
+  const std::string& force_model = the_case.task.force_model;
+  TROCAR_TRY(const OperatorChoice choice, parse_operator(options.operator_name));
+  switch (choice.kind) {
+    case OperatorChoice::Kind::kExpert:
+      return Performer{make_expert(what), options.rate_hz, false, force_model};
+    case OperatorChoice::Kind::kNovice:
+      return Performer{make_novice(what), options.rate_hz, false, force_model};
+    case OperatorChoice::Kind::kConstantVelocity:
+      return Performer{make_constant_velocity(what, choice.speed_mm_per_s), options.rate_hz, false, force_model};
+    case OperatorChoice::Kind::kReplay:
+      break;
+  }
+  return make_replayer(the_case, options);
+}
+
+}  // namespace
+
+Status check_operator(std::string_view name) {
+  TROCAR_TRY_STATUS(parse_operator(name));
+  return {};
+}
+
+Result<Performer> make_performer(const Case& the_case, const RunOptions& options) {
+  TROCAR_TRY(Performer performer, make_named(the_case, options));
+  if (!options.force_model.empty()) performer.force_model = options.force_model;
+  return performer;
+}
+
+Result<std::shared_ptr<const Session>> load_replayed(std::string_view operator_name) {
+  TROCAR_TRY(const OperatorChoice choice, parse_operator(operator_name));
+  if (choice.kind != OperatorChoice::Kind::kReplay) return std::shared_ptr<const Session>();
+  TROCAR_TRY(Session session, load_session(choice.session));
+  if (session.samples.empty())
+    return fail("the session was cut off before its first tick", choice.session, "name another one");
+  return std::make_shared<const Session>(std::move(session));
+}
+
+std::string recorded_preset(const SessionInfo& info) {
+  if (!info.device_preset.empty()) return info.device_preset;
+  // An older program kept the words alone: "premium, simulated: …" or "virtual:premium, …, through trocar-hapticd …".
+  constexpr std::string_view kSimulated = ", simulated: ";
+  const std::string name = info.device.substr(0, info.device.find(','));
+  if (std::string preset = preset_of_device(name); !preset.empty()) return preset;
+  return info.device.find(kSimulated) == name.size() ? name : std::string();
+}
+
+RunOptions options_of(const Performer& performer, RunOptions options) {
+  if (performer.replayed == nullptr) return options;
+  const SessionInfo& info = performer.replayed->info;
+  options.seed = info.seed;
+  options.rate_hz = info.rate_hz;
+  if (!options.is_other_patient_meant) options.patient_seed = info.patient_seed;
+  if (std::string preset = recorded_preset(info); !preset.empty()) options.device = std::move(preset);
+  return options;
+}
+
+}  // namespace trocar

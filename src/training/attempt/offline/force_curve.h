@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "anatomy/tissue/tissue_table.h"
+#include "haptics/haptic_scene.h"
+#include "attempt/hands/prescribed_motion.h"
+
+namespace trocar {
+
+/// What a device that is led along a path feels of the needle, at one tick.
+struct CurvePoint {
+  double time_s = 0.0;
+  double way_mm = 0.0;   ///< Device's tip past the resting skin, along the path.
+  double tip_mm = 0.0;   ///< Depth of the virtual needle's tip: behind the device's by what tissue and coupling yield.
+  double force_n = 0.0;  ///< On the device along the path; positive pushes the needle out.
+  std::uint8_t tissue = 0;        ///< At the needle's tip.
+  std::uint8_t layer = kNoLayer;  ///< That gave way at this tick.
+};
+
+/// A layer that gave way, as the hand feels it.
+struct CurveEvent {
+  std::string layer;
+  std::size_t at = 0;      ///< Point of the peak.
+  double way_mm = 0.0;     ///< Of the device.
+  double peak_n = 0.0;     ///< Largest force just before it gave way.
+  double highest_n = 0.0;  ///< From then to the lowest: above the peak where the force goes on rising, which is wrong.
+  double after_n = 0.0;    ///< Lowest within kAfter_s, and before the next layer gives way.
+  double fall_ms = 0.0;    ///< From the peak through nine tenths of the drop; 0 where nothing drops.
+
+  double drop_n() const noexcept { return peak_n - after_n; }
+};
+inline constexpr double kAfter_s = 0.2;
+
+/// Tissue along a path in the resting anatomy, pieces joined; by name of the label, else of the tissue.
+struct PathPiece {
+  double from_mm = 0.0, to_mm = 0.0;
+  std::string name;    ///< "ligamentum_flavum"; the skin's shell is "skin".
+  std::string tissue;  ///< Of the tissue table.
+};
+
+/// Leads the device along the path, and on past its end (after_mm) until the needle's tip has arrived there, too: the
+/// tip lags behind the device by what tissue and coupling yield. Without the stylus' weight where the scene leaves it
+/// out.
+std::vector<CurvePoint> force_curve(const HapticScene& scene, const PrescribedMotion& motion);
+/// The layers that gave way, in order.
+std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, const TissueTable& tissues);
+/// From the skin to the path's end.
+std::vector<PathPiece> pieces_along(const HapticScene& scene, const TissueTable& tissues, const Segment& line_P);
+
+}  // namespace trocar

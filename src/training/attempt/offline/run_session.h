@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/progress.h"
+#include "core/result.h"
+#include "attempt/case/prepare_case.h"
+#include "attempt/record/replay.h"
+#include "attempt/record/run_result.h"
+
+namespace trocar {
+
+/// Who performs the attempt, how, and where it is written.
+struct RunOptions {
+  std::string operator_name = "expert";  ///< expert | novice | constant-velocity:MM_PER_S | replay:SESSION
+  std::string force_model;  ///< insertion | proxy | combined; empty: the task's, or that of the replayed session.
+  std::string device = "premium";  ///< Of data/devices.toml: its limits and coupling, simulated.
+  double rate_hz = 1000.0;         ///< 250..4000. A replay takes its session's rate.
+  std::uint64_t seed = 1;          ///< Of operator, friction and plan.
+  std::string patient_source;      ///< As the user named it: a folder, or an embedded patient's name.
+  std::uint64_t patient_seed = 1;
+  std::filesystem::path session;  ///< Written here; must not exist.
+  // Of a replay alone. Seeds, rate and device are its session's, whatever stands above.
+  std::shared_ptr<const Session> replayed;  ///< What the operator's name names, where it is loaded already.
+  ReplayChanges replay_changes;
+  bool is_other_patient_meant = false;  ///< A patient with another content hash is not refused.
+};
+
+/// What can be said of the options before there is a patient (exit status 2); run_session asks it, too.
+Status check_run(const RunOptions& options);
+
+/// Performs an attempt in one thread, faster than real time: operator, hand, device, tick, recording, score.
+/// Every tick is in the session file. A failure or an interruption on the way leaves no file: the same options make the
+/// same ticks again.
+Result<RunResult> run_session(const Case& the_case, const RunOptions& options, const Progress& progress = {});
+
+}  // namespace trocar

@@ -1,0 +1,189 @@
+#include "attempt/record/attempt_record.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "anatomy/tissue/tissue_settings.h"
+#include "core/version.h"
+#include "attempt/live/performer.h"
+#include "io/patient/patient_source.h"
+
+namespace trocar {
+namespace {
+
+SessionInfo describe(const Case& the_case, const RunOptions& options, const AttemptFacts& facts) {
+  SessionInfo info;
+  info.program_version = kVersion;
+  info.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
+  info.task = the_case.task.name;
+  info.task_toml = the_case.task_toml;
+  info.patient_name = the_case.patient->name;
+  info.patient_source = absolute_source(options.patient_source);
+  info.patient_hash = the_case.patient->content_hash;
+  info.patient_seed = options.patient_seed;
+  info.operator_name = options.operator_name;
+  info.force_model = facts.force_model;
+  info.seed = options.seed;
+  info.rate_hz = facts.rate_hz;
+  info.needle = the_case.needle.name;
+  info.device = facts.device;
+  info.device_preset = facts.device_preset;
+  info.level = facts.level;
+  const std::string& table = facts.parameters.tissue_table_toml;
+  info.tissue_table_toml = table.empty() ? the_case.tissues.to_toml() : table;
+  info.plan_P = {the_case.task.name + " plan", the_case.plan.line_P};
+  info.is_parenchymal = the_case.is_parenchymal;
+  for (const TissueParams& tissue : the_case.tissues.tissues) info.tissue_names.push_back(tissue.name);
+  for (const LayerParams& layer : the_case.tissues.layers) info.layer_names.push_back(layer.name);
+  info.label_names.resize(256);
+  for (const Label& label : the_case.patient->label_table.labels) info.label_names[label.id] = label.name;
+  return info;
+}
+
+/// What differs from `before`: numbers of tissues, then options.
+std::vector<std::string> changed(const TissueTable& before, const std::vector<std::string>& options_before,
+                                 const TissueTable& now, const std::vector<std::string>& options) {
+  std::vector<std::string> settings = changed_settings(before, now);
+  for (const std::string& option : options)
+    if (std::ranges::find(options_before, option) == options_before.end()) settings.push_back(option);
+  return settings;
+}
+
+std::string force_model_of(const SceneParameters& parameters, const std::string& otherwise) {
+  constexpr std::string_view kForceModel = "force_model=";
+  for (const std::string& option : parameters.options)
+    if (option.starts_with(kForceModel)) return option.substr(kForceModel.size());
+  return otherwise;
+}
+
+}  // namespace
+
+std::string preset_of_device(std::string_view device_name) {
+  constexpr std::string_view kVirtual = "virtual:";
+  return device_name.starts_with(kVirtual) ? std::string(device_name.substr(kVirtual.size())) : std::string();
+}
+
+AttemptRecord::AttemptRecord(const Case& the_case, SessionInfo info, SessionWriter writer, std::size_t expected_ticks)
+    : the_case_(&the_case), info_(std::move(info)), writer_(std::move(writer)) {
+  samples_.reserve(expected_ticks);
+}
+
+Result<AttemptRecord> AttemptRecord::create(const Case& the_case, const RunOptions& options,
+                                            const AttemptFacts& facts) {
+  SessionInfo info = describe(the_case, options, facts);
+  TROCAR_TRY(SessionWriter writer, SessionWriter::create(options.session, info));
+  const auto expected_ticks = static_cast<std::size_t>(0.25 * kLongestAttempt_s * facts.rate_hz);
+  return AttemptRecord(the_case, std::move(info), std::move(writer), expected_ticks);
+}
+
+void AttemptRecord::note(const HandCommand& command) noexcept {
+  if (command.has_fired && !fired_) fired_ = samples_.size();
+}
+
+Status AttemptRecord::append(const TickSample& sample) {
+  samples_.push_back(sample);
+  return written(writer_.append(sample));
+}
+
+Status AttemptRecord::written(Status status) {
+  if (!status && !write_failure_) write_failure_ = status.error();
+  return status;
+}
+
+Status AttemptRecord::note_parameters(const SceneParameters& parameters) {
+  return record(samples_.size() - 1, parameters);
+}
+
+Status AttemptRecord::note_scene(std::uint64_t number, const KnownScenes& known) {
+  while (!unknown_.empty()) {
+    const SceneParameters* told = known.find(unknown_.front().number);
+    if (told == nullptr) break;
+    TROCAR_TRY_STATUS(record(unknown_.front().tick, *told));
+    unknown_.erase(unknown_.begin());
+  }
+  if (number == scene_) return {};
+  scene_ = number;
+  const SceneParameters* told = known.find(number);
+  if (told != nullptr && unknown_.empty()) return note_parameters(*told);
+  unknown_.push_back({samples_.size() - 1, number});
+  return {};
+}
+
+void AttemptRecord::forget_scenes() noexcept {
+  has_lost_scene_ = has_lost_scene_ || !unknown_.empty();
+  unknown_.clear();
+  scene_ = 0;
+}
+
+Status AttemptRecord::record(std::size_t tick, const SceneParameters& parameters) {
+  const bool is_same = tissues_ && parameters.options == parameters_.options &&
+                       parameters.tissue_table_toml == parameters_.tissue_table_toml;
+  if (is_same) return {};
+  TROCAR_TRY(TissueTable table, parse_tissue_table(parameters.tissue_table_toml, "the parameters in force"));
+  SessionParameters row{tick, samples_[tick].time_s, {}, parameters.options, parameters.tissue_table_toml};
+  row.settings = tissues_ ? changed(*tissues_, parameters_.options, table, parameters.options) : user_settings(table);
+  if (!tissues_) info_.force_model = force_model_of(parameters, info_.force_model);
+  tissues_ = std::move(table);
+  parameters_ = parameters;
+  parameter_rows_.push_back(std::move(row));
+  return written(writer_.append(parameter_rows_.back()));
+}
+
+Status AttemptRecord::append(const Interruption& interruption) {
+  interruptions_.push_back(interruption);
+  return written(writer_.append(interruption));
+}
+
+Status AttemptRecord::append(const TransducerSample& sample) {
+  if (!transducer_.empty() && sample.time_s < transducer_.back().time_s + kTransducerEvery_s) return {};
+  transducer_.push_back(sample);
+  return written(writer_.append(sample));
+}
+
+RunResult AttemptRecord::score() {
+  RunResult result;
+  result.outcome = score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,
+                                 the_case_->plan, samples_, fired_, interruptions_);
+  result.punctures = find_punctures(info_, samples_);
+  result.force_model = info_.force_model;
+  result.ticks = samples_.size();
+  result.simulated_s = samples_.empty() ? 0.0 : samples_.back().time_s;
+  result.active_s = active_time_s(0.0, result.simulated_s, interruptions_);
+  if (has_lost_scene_ || !unknown_.empty())
+    result.warnings.push_back("the server did not tell the parameters of some ticks: the session lacks a change");
+  return result;
+}
+
+Result<RunResult> AttemptRecord::finish() {
+  RunResult result = score();
+  TROCAR_TRY_STATUS(written(writer_.finish(result.outcome, fired_)));
+  return result;
+}
+
+RunResult AttemptRecord::finish_unsaved() {
+  RunResult result = score();
+  const std::size_t saved = std::min(writer_.saved_ticks(), samples_.size());
+  const double saved_s = saved > 0 ? samples_[saved - 1].time_s : 0.0;
+  const Error failure = write_failure_.value_or(Error{});
+  result.cut_short = fmt::format(
+      "The recording ended after {:.1f} s: {} ({}). The score counts all of it; the file holds the first "
+      "{:.1f} s and no score",
+      result.simulated_s, failure.what, failure.where, saved_s);
+  result.warnings.push_back(result.cut_short);
+  Session& session = result.unsaved.emplace();
+  session.info = std::move(info_);
+  session.samples = std::move(samples_);
+  session.transducer = std::move(transducer_);
+  session.parameters = std::move(parameter_rows_);
+  session.interruptions = interruptions_;
+  session.outcome = result.outcome;
+  session.fired = fired_;
+  session.is_incomplete = true;
+  return result;
+}
+
+}  // namespace trocar

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "attempt/guide/gun_shot.h"
+#include "attempt/case/open_case.h"
+#include "storage/session_file.h"
+
+namespace trocar {
+
+/// A moment of a recorded attempt that is worth a look.
+struct ReplayMoment {
+  enum class Kind { kPuncture, kEnter, kRisk, kFired, kChange, kInterruption, kWorst };
+  double time_s = 0.0;
+  Kind kind = Kind::kPuncture;
+  std::string text;  ///< "through the liver capsule", "the lung was touched"
+};
+
+/// A recorded attempt to be seen again. Immutable. Frame P.
+class AttemptReplay {
+ public:
+  /// Reads a session and, where a crash has kept it from its score, scores it against the case. Errors: the file; a
+  /// session of another patient; no ticks.
+  static Result<AttemptReplay> load(const std::filesystem::path& session, std::shared_ptr<const OpenCase> open);
+
+  /// The same of a session in memory, whose file could not be written to the end.
+  static Result<AttemptReplay> of(Session session, std::shared_ptr<const OpenCase> open);
+
+  const Session& session() const noexcept { return session_; }
+  const Outcome& outcome() const noexcept { return *session_.outcome; }
+  bool was_cut_off() const noexcept { return was_cut_off_; }
+  double duration_s() const noexcept { return session_.samples.back().time_s; }
+  /// The tick under way at a time; the ends beyond them.
+  const TickSample& at(double time_s) const noexcept;
+  std::vector<Vec3> shaft_at(double time_s) const;
+  /// X_PT between the recorded moments; across a gap of more than kTransducerGap_s it stays where it was. Empty: the
+  /// session tells nothing of a transducer.
+  std::optional<Pose> transducer_at(double time_s) const noexcept;
+  static constexpr double kTransducerGap_s = 0.1;
+
+  /// The gun's; empty: it was not fired.
+  const std::optional<GunShot>& shot() const noexcept { return shot_; }
+  /// By time, the worst among them where there is one.
+  const std::vector<ReplayMoment>& moments() const noexcept { return moments_; }
+  /// Empty: the needle met nothing.
+  const std::optional<ReplayMoment>& worst() const noexcept { return worst_; }
+
+ private:
+  AttemptReplay(Session session, std::shared_ptr<const OpenCase> open, bool was_cut_off);
+  void find_moments();
+  void find_worst();
+
+  Session session_;
+  std::shared_ptr<const OpenCase> open_;
+  bool was_cut_off_;
+  std::optional<GunShot> shot_;
+  std::vector<ReplayMoment> moments_;
+  std::optional<ReplayMoment> worst_;
+};
+
+}  // namespace trocar

@@ -1,0 +1,117 @@
+#include "attempt/record/journal.h"
+
+#include "config/json.h"
+#include "core/files/atomic_file.h"
+
+namespace trocar {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kVersion = 1;
+
+Json to_json(const SeatState& state) {
+  const CaseOptions& options = state.choice.options;
+  return {{"version", kVersion},
+          {"session", state.session.string()},
+          {"patient", state.choice.patient_source},
+          {"patient_seed", state.choice.patient_seed},
+          {"force_model", state.choice.force_model},
+          {"task", options.task},
+          {"needle", options.needle},
+          {"tissue_file", options.tissue_file},
+          {"profile", options.profile},
+          {"overrides", options.overrides},
+          {"seed", options.seed}};
+}
+
+/// Nothing where a field is missing or of another kind.
+std::optional<SeatState> from_json(const Json& json) {
+  const auto text = [&](const char* key) -> std::optional<std::string> {
+    return json.contains(key) && json[key].is_string() ? std::optional(json[key].get<std::string>()) : std::nullopt;
+  };
+  const auto number = [&](const char* key) -> std::uint64_t {
+    return json.contains(key) && json[key].is_number_unsigned() ? json[key].get<std::uint64_t>() : 1;
+  };
+  if (!json.is_object() || !json.contains("version") || json["version"] != kVersion) return std::nullopt;
+  const auto session = text("session"), patient = text("patient"), task = text("task");
+  if (!session || !patient || !task) return std::nullopt;
+  SeatState state;
+  state.session = *session;
+  state.choice.patient_source = *patient;
+  state.choice.patient_seed = number("patient_seed");
+  state.choice.force_model = text("force_model").value_or("");
+  CaseOptions& options = state.choice.options;
+  options.task = *task;
+  options.needle = text("needle").value_or("");
+  options.tissue_file = text("tissue_file").value_or("");
+  options.profile = text("profile").value_or("");
+  options.seed = number("seed");
+  if (json.contains("overrides") && json["overrides"].is_array())
+    for (const Json& one : json["overrides"])
+      if (one.is_string()) options.overrides.push_back(one.get<std::string>());
+  return state;
+}
+
+std::optional<SeatState> load_state(const fs::path& file) {
+  const Result<Json> json = load_json(file);
+  return json ? from_json(*json) : std::nullopt;
+}
+
+/// Nothing where another trainer holds the lock, or it cannot be had.
+std::optional<FileLock> lock_of(fs::path file) {
+  auto lock = FileLock::try_lock(file.replace_extension(".lock"));
+  return lock ? *std::move(lock) : std::nullopt;
+}
+
+fs::path file_of(const fs::path& folder, const SeatState& state) {
+  return folder / (state.session.stem().string() + ".json");
+}
+
+}  // namespace
+
+Status Journal::begin(const SeatState& state) {
+  clear();
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) return fail("cannot make the folder: " + error.message(), folder_.string(), "choose another folder");
+  file_ = file_of(folder_, state);
+  TROCAR_TRY(lock_, FileLock::try_lock(fs::path(file_).replace_extension(".lock")));
+  if (!lock_) return fail("the attempt runs in another trainer", file_.string(), "choose another name");
+  return write_file_atomically(file_, json_text(to_json(state)));
+}
+
+void Journal::clear() noexcept {
+  if (!lock_) return;
+  std::error_code ignored;
+  fs::remove(file_, ignored);
+  lock_->remove();
+  lock_.reset();
+}
+
+std::optional<SeatState> Journal::find_cut_off() const {
+  std::optional<SeatState> newest;
+  fs::file_time_type newest_time;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error)) {
+    if (entry.path().extension() != ".json") continue;
+    std::optional<SeatState> state = load_state(entry.path());
+    if (!state || !fs::is_regular_file(state->session, error) || !lock_of(entry.path())) continue;
+    const fs::file_time_type time = fs::last_write_time(entry.path(), error);
+    if (newest && time < newest_time) continue;
+    newest = std::move(state);
+    newest_time = time;
+  }
+  return newest;
+}
+
+bool Journal::forget(const SeatState& state) const noexcept {
+  const fs::path file = file_of(folder_, state);
+  std::optional<FileLock> lock = lock_of(file);
+  if (!lock) return false;
+  std::error_code error;
+  const bool was_there = fs::remove(file, error);
+  lock->remove();
+  return was_there;
+}
+
+}  // namespace trocar

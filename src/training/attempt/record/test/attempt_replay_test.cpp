@@ -1,0 +1,132 @@
+#include "attempt/record/attempt_replay.h"
+
+#include <gtest/gtest.h>
+
+#include "core/files/temporary_folder.h"
+#include "attempt/offline/run_session.h"
+
+namespace trocar {
+namespace {
+
+/// The expert's liver biopsy, performed once.
+struct Recorded {
+  std::shared_ptr<const OpenCase> open;
+  std::unique_ptr<TemporaryFolder> folder;
+  std::filesystem::path session;
+};
+
+const Recorded& recorded() {
+  static const Recorded the_one = [] {
+    Recorded r;
+    r.open = *make_open_case({});
+    r.folder = std::make_unique<TemporaryFolder>();
+    r.session = r.folder->path() / "expert.trocar";
+    RunOptions options;
+    options.session = r.session;
+    options.patient_source = "abdomen";
+    EXPECT_TRUE(run_session(r.open->the_case, options));
+    return r;
+  }();
+  return the_one;
+}
+
+TEST(AttemptReplay, GivesTheTickOfATime) {
+  const auto replay = AttemptReplay::load(recorded().session, recorded().open);
+  ASSERT_TRUE(replay) << replay.error().text();
+  EXPECT_FALSE(replay->was_cut_off());
+  EXPECT_GT(replay->outcome().score, 50.0);
+  EXPECT_GT(replay->duration_s(), 5.0);
+  EXPECT_EQ(replay->at(-1.0).time_s, replay->session().samples.front().time_s);
+  EXPECT_EQ(replay->at(1e9).time_s, replay->duration_s());
+  EXPECT_NEAR(replay->at(3.0).time_s, 3.0, 0.0011);
+  EXPECT_LE(replay->at(3.0).time_s, 3.0);
+  EXPECT_EQ(replay->shaft_at(3.0).back(), replay->at(3.0).tip_mm);
+}
+
+TEST(AttemptReplay, NamesWhatHappenedInOrder) {
+  const auto replay = AttemptReplay::load(recorded().session, recorded().open);
+  ASSERT_TRUE(replay);
+  std::string kinds;
+  double last_s = 0.0;
+  for (const ReplayMoment& moment : replay->moments()) {
+    EXPECT_GE(moment.time_s, last_s);
+    last_s = moment.time_s;
+    kinds += moment.text + ";";
+  }
+  EXPECT_NE(kinds.find("through the skin"), std::string::npos) << kinds;
+  EXPECT_NE(kinds.find("through the liver capsule"), std::string::npos) << kinds;
+  EXPECT_NE(kinds.find("the gun was fired"), std::string::npos) << kinds;
+  ASSERT_TRUE(replay->shot());
+  EXPECT_GT(replay->shot()->core.target_mm, 0.0);
+  EXPECT_NEAR(replay->shot()->core.target_mm, replay->outcome().core->target_mm, 1e-9);
+  ASSERT_TRUE(replay->worst());
+  EXPECT_NE(replay->worst()->text.find("mm beside"), std::string::npos) << replay->worst()->text;
+}
+
+/// A session of two ticks in which the transducer is moved, and one without.
+std::filesystem::path short_session(const TemporaryFolder& folder, const std::vector<TransducerSample>& moments) {
+  const std::filesystem::path path = folder / "short.trocar";
+  const auto from = load_session(recorded().session);
+  EXPECT_TRUE(from);
+  auto writer = SessionWriter::create(path, from->info);
+  EXPECT_TRUE(writer);
+  for (std::size_t n = 0; n < 2; ++n) EXPECT_TRUE(writer->append(from->samples[n]));
+  for (const TransducerSample& moment : moments) EXPECT_TRUE(writer->append(moment));
+  return path;
+}
+
+TEST(AttemptReplay, MovesTheTransducerBetweenItsRecordedMoments) {
+  const TemporaryFolder folder;
+  const Pose from = needle_pose({1.0, 2.0, 3.0}, Vec3::UnitY());
+  const Mat3 turned = Eigen::AngleAxisd(0.2, Vec3::UnitX()).toRotationMatrix();
+  const Pose to(turned * from.R(), from.p() + Vec3(4.0, 0.0, 0.0));
+  const Pose later(to.R(), to.p() + Vec3(0.0, 0.0, 50.0));
+  const auto replay = AttemptReplay::load(short_session(folder, {{1.0, from, 0.0}, {1.01, to, 2.0}, {3.0, later, 0.0}}),
+                                          recorded().open);
+  ASSERT_TRUE(replay) << replay.error().text();
+  const auto at = [&](double time_s) { return replay->transducer_at(time_s).value(); };
+  EXPECT_EQ(at(0.0).p(), from.p());
+  EXPECT_NEAR((at(1.005).p() - Vec3(3.0, 2.0, 3.0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(Eigen::AngleAxisd(Mat3(at(1.005).R() * from.R().transpose())).angle(), 0.1, 1e-9);
+  EXPECT_EQ(at(1.01).p(), to.p());
+  EXPECT_EQ(at(2.9).p(), to.p());  // its server was away: it does not drift
+  EXPECT_EQ(at(3.0).p(), later.p());
+  EXPECT_EQ(at(9.0).p(), later.p());
+}
+
+TEST(AttemptReplay, TellsNoTransducerThatWasNotRecorded) {
+  const TemporaryFolder folder;
+  const auto replay = AttemptReplay::load(short_session(folder, {}), recorded().open);
+  ASSERT_TRUE(replay) << replay.error().text();
+  EXPECT_FALSE(replay->transducer_at(0.5));
+}
+
+TEST(AttemptReplay, ANeedleThatMetNothingHasNoScoreAndNoWorstMoment) {
+  const TemporaryFolder folder;
+  const auto replay = AttemptReplay::load(short_session(folder, {}), recorded().open);  // two ticks in the air
+  ASSERT_TRUE(replay) << replay.error().text();
+  EXPECT_EQ(replay->outcome().not_scored, "the needle never touched the skin");
+  EXPECT_FALSE(replay->worst());
+}
+
+TEST(AttemptReplay, ASessionInMemoryIsSeenLikeOneOfAFile) {
+  auto session = load_session(recorded().session);
+  ASSERT_TRUE(session);
+  const double score = session->outcome->score;
+  const auto replay = AttemptReplay::of(*std::move(session), recorded().open);
+  ASSERT_TRUE(replay) << replay.error().text();
+  EXPECT_EQ(replay->outcome().score, score);
+}
+
+TEST(AttemptReplay, ASessionOfAnotherPatientIsRefused) {
+  auto other = std::make_shared<OpenCase>(*recorded().open);
+  auto patient = std::make_shared<VirtualPatient>(*other->the_case.patient);
+  patient->content_hash = "another";
+  other->the_case.patient = patient;
+  const auto replay = AttemptReplay::load(recorded().session, other);
+  ASSERT_FALSE(replay);
+  EXPECT_NE(replay.error().text().find("another patient"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,42 @@
+#include "attempt/record/recording_room.h"
+
+#include <gtest/gtest.h>
+
+namespace trocar {
+namespace {
+
+constexpr std::uintmax_t kMB = 1'000'000;
+
+TEST(RecordingRoom, SaysNothingWhereThereIsEnoughOrNothingIsKnown) {
+  for (const RecordingRoom& room : {RecordingRoom("/disk", 1000 * kMB), RecordingRoom("/disk", std::nullopt)}) {
+    EXPECT_FALSE(room.is_full());
+    EXPECT_TRUE(room.check_start());
+    EXPECT_EQ(room.start_warning(), "");
+    EXPECT_EQ(room.banner(), "");
+  }
+}
+
+TEST(RecordingRoom, WarnsBeforeTheStartWithFolderSpaceAndTime) {
+  const RecordingRoom room("/disk", 64 * kMB);  // 55 MB to record at 11 MB a minute
+  EXPECT_TRUE(room.check_start());
+  EXPECT_EQ(room.start_warning(), "The disk is almost full: 64 MB are free in /disk, enough to record 5 minutes.");
+  EXPECT_EQ(room.banner(), "");
+  EXPECT_EQ(RecordingRoom("/disk", 64 * kMB, 4000.0).left_s(), 0.25 * room.left_s());
+}
+
+TEST(RecordingRoom, WarnsWhileRecordingAndEndsBeforeTheSessionCannotBeClosed) {
+  const RecordingRoom scarce("/disk", 20 * kMB);
+  EXPECT_FALSE(scarce.is_full());
+  EXPECT_NE(scarce.banner().find("60 s can still be recorded in /disk"), std::string::npos) << scarce.banner();
+  EXPECT_TRUE(RecordingRoom("/disk", 8 * kMB).is_full());
+}
+
+TEST(RecordingRoom, RefusesAStartThatWouldEndAtOnce) {
+  const Status start = RecordingRoom("/disk", 3 * kMB).check_start();
+  ASSERT_FALSE(start);
+  EXPECT_NE(start.error().what.find("3.0 MB are free in /disk"), std::string::npos) << start.error().what;
+  EXPECT_NE(start.error().advice.find("--state"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,66 @@
+#include "attempt/servers/own_server.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace trocar {
+namespace {
+
+constexpr const char* kLog = "log";
+
+std::string last_line(const std::filesystem::path& log) {
+  std::ifstream file(log);
+  std::string last;
+  for (std::string line; std::getline(file, line);)
+    if (!line.empty()) last = line;
+  return last;
+}
+
+}  // namespace
+
+std::optional<Error> error_of_line(std::string_view line) {
+  constexpr std::string_view kMark = "error: ", kBetween = " — ";
+  if (!line.starts_with(kMark)) return std::nullopt;
+  line.remove_prefix(kMark.size());
+  const std::size_t first = line.find(kBetween), last = line.rfind(kBetween);
+  if (first == std::string_view::npos) return Error{std::string(line), {}, {}};
+  const std::string what(line.substr(0, first)), advice(line.substr(last + kBetween.size()));
+  const std::size_t begin = first + kBetween.size();
+  return Error{what, first == last ? std::string() : std::string(line.substr(begin, last - begin)), advice};
+}
+
+Result<OwnServer> OwnServer::start(const OwnServerOptions& options) {
+  OwnServer server;
+  server.options_ = options;
+  server.folder_ = std::make_unique<TemporaryFolder>();
+  server.endpoint_ = "ipc://" + (*server.folder_ / options.tool).string();
+  TROCAR_TRY_STATUS(server.restart());
+  return server;
+}
+
+Status OwnServer::restart() {
+  TROCAR_TRY(const std::filesystem::path program, find_server_program());
+  const std::string flights = options_.flight_folder.empty() ? "." : options_.flight_folder.string();
+  const std::vector<std::string> arguments{"--device",         options_.device,
+                                           "--tool",           options_.tool,
+                                           "--rate",           fmt::format("{}", options_.rate_hz),
+                                           "--priority",       fmt::format("{}", options_.priority),
+                                           "--endpoint",       endpoint_,
+                                           "--flight-records", flights};
+  process_.reset();
+  TROCAR_TRY(ServerProcess process, ServerProcess::start(program, arguments, *folder_ / kLog));
+  process_ = std::make_unique<ServerProcess>(std::move(process));
+  return {};
+}
+
+Status OwnServer::check() {
+  if (process_ && process_->is_running()) return {};
+  const std::string last = last_line(*folder_ / kLog);
+  if (auto told = error_of_line(last)) return tl::unexpected(*std::move(told));
+  return fail(fmt::format("the server of the {} {}", options_.tool,
+                          process_ ? process_->how_it_ended() : "could not be started again"),
+              "trocar-hapticd", last);
+}
+
+}  // namespace trocar

@@ -1,0 +1,76 @@
+#include "attempt/servers/seat_devices.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+
+#include "attempt/live/live_attempt.h"
+
+namespace trocar {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DeviceTitle {
+  std::string_view spec;
+  std::string_view title;
+};
+constexpr std::string_view kOpenHaptics = "openhaptics";
+constexpr std::string_view kDefaultName = "Default Device";  // what the vendor's library takes where none is named
+constexpr std::array kPointers{DeviceTitle{"mouse", "Mouse and keyboard"}, DeviceTitle{"gamepad", "Gamepad"},
+                               DeviceTitle{"spacemouse", "SpaceMouse"}};
+constexpr std::array kOthers{DeviceTitle{"forcedimension", "Force Dimension"}, DeviceTitle{"haply", "Haply Inverse3"}};
+
+/// Names that the vendor's setup program has given, in order.
+std::vector<std::string> openhaptics_names() {
+  const char* home = std::getenv("GTDD_HOME");
+  const fs::path folder = fs::path(home != nullptr && *home != '\0' ? home : "/usr/share/3DSystems") / "config";
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == ".config") names.push_back(it->path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The hardware that a spec means.
+std::string hardware_of(const std::string& spec) {
+  return spec == kOpenHaptics ? spec + ":" + std::string(kDefaultName) : spec;
+}
+
+}  // namespace
+
+std::vector<SeatDevice> seat_devices() {
+  std::vector<SeatDevice> devices;
+  for (const DeviceTitle& pointer : kPointers)
+    devices.push_back({std::string(pointer.spec), std::string(pointer.title)});
+  const std::vector<std::string> names = openhaptics_names();
+  if (names.empty()) devices.push_back({std::string(kOpenHaptics), seat_device_title(std::string(kOpenHaptics))});
+  for (const std::string& name : names) {
+    const std::string spec = std::string(kOpenHaptics) + ":" + name;
+    devices.push_back({spec, seat_device_title(spec)});
+  }
+  for (const DeviceTitle& other : kOthers) devices.push_back({std::string(other.spec), std::string(other.title)});
+  return devices;
+}
+
+std::string seat_device_title(const std::string& spec) {
+  if (spec == kOpenHaptics) return "3D Systems Touch (OpenHaptics)";
+  for (const auto& titles :
+       {std::vector(kPointers.begin(), kPointers.end()), std::vector(kOthers.begin(), kOthers.end())})
+    for (const DeviceTitle& device : titles)
+      if (device.spec == spec) return std::string(device.title);
+  const std::size_t colon = spec.find(':');
+  if (colon == std::string::npos) return spec;
+  const std::string kind = spec.substr(0, colon), name = spec.substr(colon + 1);
+  return name + (kind == kOpenHaptics ? " (OpenHaptics)" : " (" + seat_device_title(kind) + ")");
+}
+
+bool can_share_seat(const std::string& needle_spec, const std::string& probe_spec) {
+  if (is_moved_by_hand_targets(needle_spec) || is_moved_by_hand_targets(probe_spec)) return true;
+  return hardware_of(needle_spec) != hardware_of(probe_spec);
+}
+
+}  // namespace trocar

@@ -1,0 +1,190 @@
+#include "case_builder/case_edits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tasks/assess_path.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kShortestPath_mm = 5.0;
+
+Status check_imported(const CaseDraft& draft) {
+  if (draft.imported) return {};
+  return fail("there is no patient yet", {}, "import a CT with its labels first");
+}
+
+Status check_in_volume(const CaseDraft& draft, const Vec3& p_P, const char* what) {
+  TROCAR_TRY_STATUS(check_imported(draft));
+  const GridGeometry& geometry = draft.imported->patient.labels.geometry;
+  const Vec3 index = geometry.to_index(p_P);
+  for (int a = 0; a < 3; ++a)
+    if (!(index[a] >= -0.5 && index[a] <= static_cast<double>(geometry.size[static_cast<std::size_t>(a)]) - 0.5))
+      return fail(fmt::format("the {} lies outside the volume", what),
+                  fmt::format("({:.0f}, {:.0f}, {:.0f}) mm", p_P.x(), p_P.y(), p_P.z()), "put it into the patient");
+  return {};
+}
+
+Result<Label*> find_label(CaseDraft& draft, std::uint8_t id) {
+  for (Label& label : draft.label_table.labels)
+    if (label.id == id) return &label;
+  return fail(fmt::format("there is no label {}", id), "label table", "choose a label of this case");
+}
+
+std::vector<Landmark>::iterator find_landmark(CaseDraft& draft, const std::string& name) {
+  return std::find_if(draft.landmarks.begin(), draft.landmarks.end(),
+                      [&](const Landmark& landmark) { return landmark.name == name; });
+}
+
+bool is_same_structure(const RiskStructure& a, const RiskStructure& b) {
+  return a.tissue == b.tissue && a.label == b.label;
+}
+
+}  // namespace
+
+Result<CaseDraft> rename_label(CaseDraft draft, std::uint8_t id, const std::string& name) {
+  TROCAR_TRY(Label * label, find_label(draft, id));
+  if (name.empty()) return fail("a label needs a name", label->name, "type one");
+  const Label* other = draft.label_table.find(std::string_view(name));
+  if (other != nullptr && other->id != id)
+    return fail(fmt::format("another label is called \"{}\" already", name), label->name, "choose another name");
+  for (RiskStructure& risk : draft.task.risks)
+    if (!risk.label.empty() && risk.label == label->name) risk.label = name;
+  if (draft.task.target_label == label->name) draft.task.target_label = name;
+  label->name = name;
+  return draft;
+}
+
+Result<CaseDraft> set_label_tissue(CaseDraft draft, std::uint8_t id, const std::string& tissue) {
+  TROCAR_TRY(Label * label, find_label(draft, id));
+  if (tissue.empty()) return fail("a label needs a tissue", label->name, "choose one of the list");
+  label->tissue = tissue;
+  return draft;
+}
+
+Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const Rgb& color) {
+  TROCAR_TRY(Label * label, find_label(draft, id));
+  label->color = color;
+  return draft;
+}
+
+CaseDraft use_template(CaseDraft draft, const Task& base) {
+  Task task = base;
+  task.target_label = draft.task.target_label;
+  task.target_P = draft.task.target_P;
+  task.entry_zone = draft.task.entry_zone;
+  task.expert_path = draft.task.expert_path;
+  draft.base = base;
+  draft.task = std::move(task);
+  return draft;
+}
+
+Result<CaseDraft> set_target_point(CaseDraft draft, const Vec3& p_P) {
+  TROCAR_TRY_STATUS(check_in_volume(draft, p_P, "target"));
+  draft.task.target_P = p_P;
+  return draft;
+}
+
+Result<CaseDraft> set_target_label(CaseDraft draft, const std::string& name) {
+  if (!name.empty() && draft.label_table.find(std::string_view(name)) == nullptr)
+    return fail(fmt::format("there is no label \"{}\"", name), {}, "choose one of the list");
+  draft.task.target_label = name;
+  draft.task.target_P.reset();
+  return draft;
+}
+
+Result<CaseDraft> set_risk(CaseDraft draft, const RiskStructure& risk) {
+  if (risk.tissue.empty() == risk.label.empty())
+    return fail("a risk structure is named by its tissue or its label", {}, "give one of the two");
+  if (!(risk.margin_mm >= 0.0 && risk.margin_mm <= 50.0))
+    return fail("a margin is from 0 to 50 mm", fmt::format("{}", risk.margin_mm), "give a number in this range");
+  if (!(risk.penalty >= 0.0 && risk.penalty <= 100.0))
+    return fail("a penalty is from 0 to 100 points", fmt::format("{}", risk.penalty), "give a number in this range");
+  auto& risks = draft.task.risks;
+  const auto found = std::find_if(risks.begin(), risks.end(),
+                                  [&](const RiskStructure& other) { return is_same_structure(other, risk); });
+  if (found != risks.end()) {
+    *found = risk;
+  } else {
+    risks.push_back(risk);
+  }
+  return draft;
+}
+
+Result<CaseDraft> remove_risk(CaseDraft draft, std::size_t row) {
+  if (row >= draft.task.risks.size())
+    return fail("there is no such risk structure", "risk structures", "choose a risk structure of the list");
+  draft.task.risks.erase(draft.task.risks.begin() + static_cast<std::ptrdiff_t>(row));
+  return draft;
+}
+
+Result<CaseDraft> set_entry_zone(CaseDraft draft, const Vec3& near_P, double radius_mm) {
+  TROCAR_TRY_STATUS(check_imported(draft));
+  if (!(radius_mm >= 1.0 && radius_mm <= 200.0))
+    return fail("the radius of an entry zone is from 1 to 200 mm", fmt::format("{}", radius_mm),
+                "give a number in this range");
+  const auto centre_P = find_nearest_skin(draft.imported->patient, near_P);
+  if (!centre_P) return fail("there is no skin near this place", {}, "click on the patient's skin");
+  draft.task.entry_zone = EntryZone{*centre_P, radius_mm};
+  return draft;
+}
+
+CaseDraft clear_entry_zone(CaseDraft draft) {
+  draft.task.entry_zone.reset();
+  return draft;
+}
+
+Result<CaseDraft> set_expert_path(CaseDraft draft, const Segment& line_P) {
+  TROCAR_TRY_STATUS(check_in_volume(draft, line_P.a, "entry"));
+  TROCAR_TRY_STATUS(check_in_volume(draft, line_P.b, "path's end"));
+  if (!(line_P.length_mm() >= kShortestPath_mm))
+    return fail(fmt::format("a path is at least {:.0f} mm long", kShortestPath_mm), {}, "move its ends apart");
+  if (draft.task.expert_path.empty()) draft.task.expert_path = kExpertPath;
+  for (NeedlePath& path : draft.paths) {
+    if (path.name != draft.task.expert_path) continue;
+    path.line_P = line_P;
+    return draft;
+  }
+  draft.paths.insert(draft.paths.begin(), {draft.task.expert_path, line_P});
+  return draft;
+}
+
+CaseDraft clear_expert_path(CaseDraft draft) {
+  std::erase_if(draft.paths, [&](const NeedlePath& path) { return path.name == draft.task.expert_path; });
+  draft.task.expert_path.clear();
+  return draft;
+}
+
+Result<CaseDraft> set_landmark(CaseDraft draft, const std::string& name, const Vec3& p_P) {
+  TROCAR_TRY_STATUS(check_in_volume(draft, p_P, "landmark"));
+  if (name.empty()) return fail("a landmark needs a name", {}, "choose or type one");
+  const auto found = find_landmark(draft, name);
+  if (found != draft.landmarks.end()) {
+    found->p_P = p_P;
+  } else {
+    draft.landmarks.push_back({name, p_P});
+  }
+  return draft;
+}
+
+Result<CaseDraft> rename_landmark(CaseDraft draft, std::size_t row, const std::string& name) {
+  if (row >= draft.landmarks.size())
+    return fail("there is no such landmark", "landmarks", "choose a landmark of the list");
+  Landmark& landmark = draft.landmarks[row];
+  if (name.empty()) return fail("a landmark needs a name", landmark.name, "type one");
+  if (name != landmark.name && find_landmark(draft, name) != draft.landmarks.end())
+    return fail(fmt::format("another landmark is called \"{}\" already", name), landmark.name, "choose another name");
+  landmark.name = name;
+  return draft;
+}
+
+Result<CaseDraft> remove_landmark(CaseDraft draft, std::size_t row) {
+  if (row >= draft.landmarks.size())
+    return fail("there is no such landmark", "landmarks", "choose a landmark of the list");
+  draft.landmarks.erase(draft.landmarks.begin() + static_cast<std::ptrdiff_t>(row));
+  return draft;
+}
+
+}  // namespace trocar

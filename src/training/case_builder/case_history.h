@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "case_builder/case_draft.h"
+#include "core/step_history.h"
+
+namespace trocar {
+
+/// The draft with its steps back and forth. At most kMaxSteps are kept, some kilobytes each; the volumes of the import
+/// are shared. A new import begins a new history, so that no more than one import is held.
+class CaseHistory {
+ public:
+  static constexpr std::size_t kMaxSteps = 200;
+
+  const CaseDraft& draft() const noexcept { return steps_.now().draft; }
+  /// Counts every change of the draft, undo and redo included.
+  std::uint64_t version() const noexcept { return version_; }
+
+  /// Forgets all steps.
+  void begin(CaseDraft draft);
+  /// One step. `what` in words, for the buttons. Steps that follow each other with the same `gesture` (a drag, a number
+  /// that is turned) are one; empty: a step of its own. A draft that says the same is no step.
+  void apply(CaseDraft next, std::string what, const std::string& gesture = {});
+
+  bool can_undo() const noexcept { return steps_.can_undo(); }
+  bool can_redo() const noexcept { return steps_.can_redo(); }
+  std::string undo_text() const { return can_undo() ? steps_.now().what : std::string(); }
+  std::string redo_text() const { return can_redo() ? steps_.next().what : std::string(); }
+  void undo();  ///< Nothing where there is nothing to undo.
+  void redo();
+
+ private:
+  struct Step {
+    CaseDraft draft;
+    std::string what;  ///< Led to it.
+  };
+  StepHistory<Step> steps_{kMaxSteps};
+  std::string gesture_;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace trocar

@@ -1,0 +1,230 @@
+#include "case_builder/checks.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "anatomy/patient_doubts.h"
+#include "tasks/assess_path.h"
+#include "volume/sampling.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kOutside_mm = 2.0;     ///< Beyond the skin: more than the edge of a voxel.
+constexpr double kShareOutside = 0.02;  ///< Of a label that may lie there without a word, as in build_patient.
+
+/// Plausible volumes (ml) of adult organs, wide: half and twice the ends of what is seen. [assumed]
+struct OrganVolume {
+  const char* tissue;
+  double least_ml, most_ml;
+};
+constexpr OrganVolume kOrganVolumes[] = {{"liver", 500.0, 5000.0},
+                                         {"spleen", 30.0, 2000.0},
+                                         {"kidney", 40.0, 600.0},
+                                         {"gallbladder", 1.0, 300.0},
+                                         {"liver_lesion", 0.03, 2000.0}};
+
+/// Lines of checks, gathered step by step.
+class Checks {
+ public:
+  Checks(const CaseDraft& draft, const VirtualPatient& patient, const Needle& needle, const TissueTable& tissues)
+      : draft_(draft), patient_(patient), needle_(needle), tissues_(tissues), statistics_(label_statistics(patient)) {}
+
+  std::vector<CaseCheck> run() {
+    look_at_labels();
+    look_at_task();
+    look_at_target();
+    look_at_risks();
+    look_at_zone();
+    look_at_path();
+    look_at_texts();
+    std::stable_sort(lines_.begin(), lines_.end(), [](const CaseCheck& a, const CaseCheck& b) {
+      return std::pair(a.step, -static_cast<int>(a.level)) < std::pair(b.step, -static_cast<int>(b.level));
+    });
+    return std::move(lines_);
+  }
+
+ private:
+  void add(CheckLevel level, CaseStep step, std::string text, std::optional<Vec3> where_P = {}) {
+    lines_.push_back({level, step, std::move(text), where_P});
+  }
+  void warn(CaseStep step, std::string text, std::optional<Vec3> where_P = {}) {
+    add(CheckLevel::kWarning, step, std::move(text), where_P);
+  }
+  void refuse(CaseStep step, std::string text, std::optional<Vec3> where_P = {}) {
+    add(CheckLevel::kError, step, std::move(text), where_P);
+  }
+  bool is_silent(CaseStep step) const {
+    return std::none_of(lines_.begin(), lines_.end(), [&](const CaseCheck& line) { return line.step == step; });
+  }
+
+  void look_at_labels() {
+    const std::vector<std::string> doubts = find_doubts(patient_, statistics_);
+    for (const std::string& doubt : doubts) warn(CaseStep::kLabels, doubt);
+    for (const std::string& warning : draft_.imported->warnings) {
+      const bool is_told = std::find(doubts.begin(), doubts.end(), warning) != doubts.end() ||
+                           warning.starts_with("cut by the border of the CT");  // a doubt in other words
+      if (!is_told) warn(CaseStep::kImport, warning);
+    }
+    look_outside();
+    for (const LabelStatistics& s : statistics_) {
+      const Label& label = *patient_.label_table.find(s.id);
+      if (!tissues_.find_tissue(label.tissue))
+        refuse(CaseStep::kLabels, fmt::format("{}: there is no tissue \"{}\" to feel", label.name, label.tissue),
+               s.voxels > 0 ? std::optional(s.centroid_P) : std::nullopt);
+      look_at_volume(label, s);
+    }
+    if (is_silent(CaseStep::kLabels))
+      add(CheckLevel::kOk, CaseStep::kLabels,
+          fmt::format("{} labels, all inside the body and plausible", statistics_.size()));
+    if (is_silent(CaseStep::kImport))
+      add(CheckLevel::kOk, CaseStep::kImport, fmt::format("{} is imported", draft_.imported->source));
+  }
+
+  void look_outside() {
+    std::array<std::size_t, 256> all{}, outside{};
+    std::array<std::size_t, 256> first{};
+    for (std::size_t n = 0; n < patient_.labels.voxels.size(); ++n) {
+      const std::uint8_t id = patient_.labels.voxels[n];
+      ++all[id];
+      if (id == 0 || static_cast<double>(patient_.skin_distance_mm.voxels[n]) <= kOutside_mm) continue;
+      if (outside[id]++ == 0) first[id] = n;
+    }
+    for (const Label& label : patient_.label_table.labels) {
+      const double share =
+          static_cast<double>(outside[label.id]) / static_cast<double>(std::max<std::size_t>(all[label.id], 1));
+      if (share <= kShareOutside) continue;
+      const Index3 ijk = patient_.labels.geometry.index_of(first[label.id]);
+      refuse(CaseStep::kLabels,
+             fmt::format("{:.0f} % of {} lies outside the body: does the segmentation belong to this CT?",
+                         100.0 * share, label.name),
+             patient_.labels.geometry.to_mm(
+                 {static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])}));
+    }
+  }
+
+  void look_at_volume(const Label& label, const LabelStatistics& s) {
+    if (s.voxels == 0) return;
+    for (const OrganVolume& organ : kOrganVolumes) {
+      if (label.tissue != organ.tissue) continue;
+      if (s.volume_ml > organ.most_ml)
+        warn(CaseStep::kLabels,
+             fmt::format("{} has {:.0f} ml; more than {:.0f} ml is not plausible", label.name, s.volume_ml,
+                         organ.most_ml),
+             s.centroid_P);
+      if (s.volume_ml < organ.least_ml && !s.touches_border)
+        warn(CaseStep::kLabels,
+             fmt::format("{} has {:.2f} ml; less than {} ml is not plausible", label.name, s.volume_ml, organ.least_ml),
+             s.centroid_P);
+    }
+  }
+
+  void look_at_task() {
+    const TaskReadiness readiness = check_task(draft_.task, patient_);
+    for (const std::string& reason : readiness.reasons)
+      add(readiness.is_possible ? CheckLevel::kWarning : CheckLevel::kError, CaseStep::kTarget, reason);
+  }
+
+  void look_at_target() {
+    const Task& task = draft_.task;
+    if (!task.target_label.empty()) {
+      const Label* label = patient_.label_table.find(std::string_view(task.target_label));
+      const bool is_there = label != nullptr && std::any_of(statistics_.begin(), statistics_.end(), [&](const auto& s) {
+                              return s.id == label->id && s.voxels > 0;
+                            });
+      if (!is_there)
+        refuse(CaseStep::kTarget, fmt::format("the target \"{}\" has no voxel", task.target_label));
+      else if (find_risk(task, *label) != nullptr)
+        refuse(CaseStep::kTarget, fmt::format("the target {} is a risk structure, too", label->name));
+    }
+    const std::optional<Vec3> target_P = find_target_point(draft_);
+    if (!target_P) return;
+    const double skin_mm = sample_linear(patient_.skin_distance_mm, *target_P);
+    if (skin_mm > 0.0) {
+      refuse(CaseStep::kTarget, fmt::format("the target lies {:.0f} mm outside the body", skin_mm), target_P);
+      return;
+    }
+    const Label* label = find_label(patient_, *target_P);
+    const bool is_wanted = label != nullptr && (is_target(task, *label) || is_organ(task, *label));
+    const std::string place =
+        label != nullptr ? fmt::format("{} ({})", label->name, label->tissue) : "nothing labelled";
+    if (!is_wanted && label != nullptr && find_risk(task, *label) != nullptr)
+      refuse(CaseStep::kTarget, fmt::format("the target lies in {}, a risk structure", place), target_P);
+    else if (!is_wanted && task.target_P)
+      refuse(CaseStep::kTarget, fmt::format("the target lies in {}, not in the {}", place, task.organ), target_P);
+    else
+      add(CheckLevel::kOk, CaseStep::kTarget,
+          fmt::format("the target lies in {}, {:.0f} mm below the skin", place, -skin_mm), target_P);
+  }
+
+  void look_at_risks() {
+    if (draft_.task.risks.empty())
+      warn(CaseStep::kTarget, "no risk structures: nothing costs points when it is touched");
+    for (const RiskStructure& risk : draft_.task.risks) {
+      if (risk.label.empty()) continue;
+      if (patient_.label_table.find(std::string_view(risk.label)) == nullptr)
+        warn(CaseStep::kTarget, fmt::format("the risk structure \"{}\" is not labelled", risk.label));
+    }
+  }
+
+  void look_at_zone() {
+    if (!draft_.task.entry_zone) return;
+    const EntryZone& zone = *draft_.task.entry_zone;
+    const double skin_mm = sample_linear(patient_.skin_distance_mm, zone.centre_P);
+    if (std::abs(skin_mm) > kOutside_mm)
+      refuse(CaseStep::kPath, fmt::format("the entry zone's centre lies {:.0f} mm off the skin", std::abs(skin_mm)),
+             zone.centre_P);
+  }
+
+  void look_at_path() {
+    const NeedlePath* path = find_expert_path(draft_);
+    if (path == nullptr) {
+      warn(CaseStep::kPath, "no expert path is drawn: one is planned whenever the case is opened");
+      return;
+    }
+    const PathAssessment assessment = assess_path(draft_.task, patient_, needle_, path->line_P);
+    for (const PathFinding& finding : assessment.findings) refuse(CaseStep::kPath, finding.text, finding.where_P);
+    if (!assessment.findings.empty()) return;
+    add(CheckLevel::kOk, CaseStep::kPath,
+        fmt::format("the path is {:.0f} mm long, {:.0f} mm of it in the {}, {:.0f}° off the skin's normal; {}",
+                    assessment.path.length_mm, assessment.path.organ_path_mm, draft_.task.organ,
+                    assessment.entry_angle_deg,
+                    assessment.path.nearest_risk.empty()
+                        ? std::string("nothing at risk is near")
+                        : fmt::format("{} is {:.1f} mm beyond its margin", assessment.path.nearest_risk,
+                                      assessment.path.spare_margin_mm)),
+        path->line_P.a);
+  }
+
+  void look_at_texts() {
+    if (draft_.name.empty()) refuse(CaseStep::kSave, "the case has no name");
+    if (draft_.description.empty()) warn(CaseStep::kSave, "no description: trainees see only the name");
+    if (draft_.provenance.empty()) warn(CaseStep::kSave, "it is not said where the patient comes from");
+  }
+
+  const CaseDraft& draft_;
+  const VirtualPatient& patient_;
+  const Needle& needle_;
+  const TissueTable& tissues_;
+  std::vector<LabelStatistics> statistics_;
+  std::vector<CaseCheck> lines_;
+};
+
+}  // namespace
+
+std::vector<CaseCheck> check_draft(const CaseDraft& draft, const VirtualPatient& patient, const Needle& needle,
+                                   const TissueTable& tissues) {
+  return Checks(draft, patient, needle, tissues).run();
+}
+
+CheckLevel worst_level(const std::vector<CaseCheck>& checks, CaseStep step) noexcept {
+  CheckLevel worst = CheckLevel::kOk;
+  for (const CaseCheck& check : checks)
+    if (check.step == step) worst = std::max(worst, check.level);
+  return worst;
+}
+
+}  // namespace trocar

@@ -1,0 +1,95 @@
+#include "case_builder/import_case.h"
+
+#include <filesystem>
+
+#include "anatomy/phantom/phantom.h"
+#include "core/files/data_dir.h"
+#include "core/part_of_progress.h"
+#include "attempt/case/prepare_case.h"
+#include "io/patient/build_from_files.h"
+#include "io/patient/patient_source.h"
+#include "surface/extract_surface.h"
+
+namespace trocar {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr double kVolumesPart = 0.55;  // of the time that an import takes; the surfaces take the rest
+
+bool is_patient_folder(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(fs::path(path) / "patient.toml", ignored);
+}
+
+Status check_request(const ImportRequest& request) {
+  if (request.ct.empty())
+    return fail_usage("no CT was named", {}, "choose a file, a DICOM folder, or a patient folder");
+  if (is_whole_patient(request)) {
+    if (request.labels.empty()) return {};
+    return fail_usage("this patient has its labels already", request.ct, "leave the labels out");
+  }
+  if (request.labels.empty())
+    return fail_usage("no labels were named", request.ct,
+                      "choose a segmentation of this CT: a case needs its structures");
+  return {};
+}
+
+Result<VirtualPatient> read_patient(const ImportRequest& request, std::vector<std::string>& warnings,
+                                    const Progress& progress, const std::stop_token& stop) {
+  if (is_whole_patient(request)) return open_patient({request.ct, 1}, progress);
+  const PatientFiles files{request.ct,
+                           {request.labels.begin(), request.labels.end()},
+                           request.label_map,
+                           fs::path(last_name(request.ct)).stem().stem().string()};
+  return build_from_files(files, warnings, progress, stop);
+}
+
+}  // namespace
+
+bool is_whole_patient(const ImportRequest& request) {
+  if (is_patient_folder(request.ct)) return true;
+  for (const PhantomInfo& info : embedded_patients())
+    if (info.name == request.ct) return true;
+  return false;
+}
+
+Result<CaseDraft> import_case(const ImportRequest& request, const Progress& progress, const std::stop_token& stop) {
+  TROCAR_TRY_STATUS(check_request(request));
+  CaseOptions options;
+  options.task = request.task;
+  TROCAR_TRY(const Case tables, load_tables(options));
+
+  auto imported = std::make_shared<ImportedPatient>();
+  imported->source = request.ct;
+  TROCAR_TRY(imported->patient, read_patient(request, imported->warnings, part_of(progress, 0.0, kVolumesPart), stop));
+  if (stop.stop_requested()) return fail("stopped", request.ct, "start the import again");
+  const Progress surfaces = part_of(progress, kVolumesPart, 1.0);
+  if (is_patient_folder(request.ct)) {
+    TROCAR_TRY(imported->meshes, open_meshes({request.ct, 1}, imported->patient, surfaces));
+  } else {
+    imported->meshes = extract_surfaces(imported->patient, {}, surfaces);
+  }
+  imported->statistics = label_statistics(imported->patient);
+
+  CaseDraft draft;
+  draft.name = imported->patient.name;
+  draft.description = imported->patient.description;
+  draft.provenance = imported->patient.provenance;
+  draft.label_table = imported->patient.label_table;
+  draft.landmarks = imported->patient.landmarks;
+  draft.paths = imported->patient.paths;
+  draft.base = draft.task = tables.task;
+  if (has_own_task(request.ct)) {
+    options.task.clear();
+    options.patient_folder = request.ct;
+    TROCAR_TRY(const Case own, load_tables(options));
+    draft.task = own.task;
+    options.task = own.task.name;
+    TROCAR_TRY(const Case base, load_tables(options));
+    draft.base = base.task;
+  }
+  draft.imported = std::move(imported);
+  return draft;
+}
+
+}  // namespace trocar

@@ -1,0 +1,72 @@
+#include "case_builder/save_case.h"
+
+#include <fmt/format.h>
+
+#include "io/patient/patient_folder.h"
+
+namespace trocar {
+namespace {
+namespace fs = std::filesystem;
+
+/// The patient as it is written. One copy of the volumes, for the time of the saving.
+VirtualPatient patient_of(const CaseDraft& draft, DraftPatient& patients) {
+  VirtualPatient patient = *patients.of(draft);
+  patient.name = draft.name;
+  patient.description = draft.description;
+  patient.provenance = draft.provenance;
+  patient.landmarks = draft.landmarks;
+  patient.paths = draft.paths;
+  return patient;
+}
+
+Status check_target(const SaveOptions& options) {
+  const fs::path& folder = options.folder;
+  if (folder.empty()) return fail_usage("no folder was named", {}, "choose a folder for the case");
+  std::error_code ignored;
+  if (!fs::exists(folder, ignored) || fs::is_empty(folder, ignored)) return {};
+  if (!fs::exists(folder / "patient.toml", ignored))
+    return fail_usage("the folder holds something other than a patient", folder.string(), "choose another folder");
+  if (!options.overwrites)
+    return fail_usage("a case already exists there", folder.string(),
+                      "choose another folder, or confirm that it is replaced");
+  return {};
+}
+
+/// Puts the new folder in the place of the old one, which comes back where that fails.
+Status replace(const fs::path& fresh, const fs::path& folder) {
+  const fs::path old = folder.parent_path() / fmt::format(".{}.old", folder.filename().string());
+  std::error_code error;
+  fs::remove_all(old, error);
+  fs::rename(folder, old, error);
+  if (!error) fs::rename(fresh, folder, error);
+  if (error) {
+    std::error_code ignored;
+    if (!fs::exists(folder, ignored)) fs::rename(old, folder, ignored);
+    fs::remove_all(fresh, ignored);
+    return fail("the case cannot be replaced: " + error.message(), folder.string(), "choose another folder");
+  }
+  fs::remove_all(old, error);
+  return {};
+}
+
+}  // namespace
+
+Status save_case(const CaseDraft& draft, DraftPatient& patients, const SaveOptions& options, const Progress& progress) {
+  if (!draft.imported) return fail_usage("there is nothing to save", {}, "import a CT with its labels first");
+  if (draft.name.empty()) return fail_usage("the case has no name", {}, "give it one");
+  TROCAR_TRY_STATUS(check_target(options));
+  const VirtualPatient patient = patient_of(draft, patients);
+  const std::vector<PatientExtra> extras{{kOwnTaskFile, task_to_toml(draft.task, draft.base)}};
+  const fs::path folder = fs::absolute(options.folder).lexically_normal();
+  const fs::path target = folder.has_filename() ? folder : folder.parent_path();
+  std::error_code ignored;
+  fs::create_directories(target.parent_path(), ignored);  // where that fails, writing says so
+  if (!fs::exists(target / "patient.toml", ignored))
+    return save_patient(patient, *draft_meshes(draft), target, progress, extras);
+  const fs::path fresh = target.parent_path() / fmt::format(".{}.new", target.filename().string());
+  fs::remove_all(fresh, ignored);
+  TROCAR_TRY_STATUS(save_patient(patient, *draft_meshes(draft), fresh, progress, extras));
+  return replace(fresh, target);
+}
+
+}  // namespace trocar

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+#include "tasks/score.h"
+
+namespace trocar::storage_detail {
+
+/// An outcome as one JSON object. Numbers that are not finite become null, and NaN when read.
+std::string outcome_to_json(const Outcome& outcome);
+/// Reads it back; `where` is for the message.
+Result<Outcome> outcome_from_json(std::string_view text, const std::string& where);
+
+}  // namespace trocar::storage_detail

@@ -1,0 +1,115 @@
+#include "tasks/core_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tasks/detail/task_labels.h"
+#include "tasks/score.h"
+#include "volume/sampling.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kStep_mm = 0.25;
+
+std::uint8_t label_id(const VirtualPatient& patient, const Vec3& p_P) noexcept {
+  return sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
+}
+
+/// Calls visit(middle_mm, length_mm) for each step of a stretch; not at all where there is none.
+template <class Visit>
+void walk(double from_mm, double to_mm, Visit visit) {
+  if (!(to_mm > from_mm)) return;
+  const int steps = static_cast<int>(std::ceil((to_mm - from_mm) / kStep_mm));
+  const double length_mm = (to_mm - from_mm) / steps;
+  for (int step = 0; step < steps; ++step) visit(from_mm + (step + 0.5) * length_mm, length_mm);
+}
+
+void add_to_pieces(std::vector<CorePiece>& pieces, const Label* label, double length_mm) {
+  const std::string name = label != nullptr ? label->name : "unlabelled";
+  const double from_mm = pieces.empty() ? 0.0 : pieces.back().to_mm;
+  if (!pieces.empty() && pieces.back().label == name) {
+    pieces.back().to_mm += length_mm;
+  } else {
+    pieces.push_back({name, label != nullptr ? label->tissue : "", from_mm, from_mm + length_mm});
+  }
+}
+
+void add_to_sums(BiopsyCore& core, TaskLabels::Part part, double length_mm) {
+  switch (part) {
+    case TaskLabels::Part::kTarget:
+      core.target_mm += length_mm;
+      break;
+    case TaskLabels::Part::kOrgan:
+      core.organ_mm += length_mm;
+      break;
+    case TaskLabels::Part::kVessel:
+      core.vessel_mm += length_mm;
+      break;
+    case TaskLabels::Part::kOther:
+      core.other_mm += length_mm;
+      break;
+  }
+}
+
+double shot_mm(const TaskLabels& labels, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
+               const Vec3& axis_P) {
+  double shot = needle.throw_mm;
+  walk(0.0, needle.throw_mm, [&](double beyond_tip_mm, double length_mm) {
+    if (labels.is_bone(label_id(patient, tip_P + beyond_tip_mm * axis_P)))
+      shot = std::min(shot, beyond_tip_mm - length_mm / 2.0);
+  });
+  return shot;
+}
+
+}  // namespace
+
+CorePart part_of(const Task& task, const VirtualPatient& patient, const CorePiece& piece) {
+  const Label* label = patient.label_table.find(std::string_view(piece.label));
+  if (label == nullptr) return CorePart::kOther;
+  switch (TaskLabels(task, patient).part(label->id)) {
+    case TaskLabels::Part::kTarget:
+      return CorePart::kTarget;
+    case TaskLabels::Part::kOrgan:
+      return CorePart::kOrgan;
+    case TaskLabels::Part::kVessel:
+      return CorePart::kVessel;
+    case TaskLabels::Part::kOther:
+      break;
+  }
+  return CorePart::kOther;
+}
+
+double stylet_throw_mm(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
+                       const Vec3& axis_P) {
+  return shot_mm(TaskLabels(task, patient), patient, needle, tip_P, axis_P);
+}
+
+BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
+                     const Vec3& axis_P) {
+  const TaskLabels labels(task, patient);
+  BiopsyCore core;
+  core.tip_P = tip_P;
+  core.axis_P = axis_P;
+
+  const double shot = shot_mm(labels, patient, needle, tip_P, axis_P);
+  const double notch_end_mm = shot - needle.dead_space_mm;
+  const double notch_begin_mm =
+      std::max(0.0, notch_end_mm - needle.notch_mm);  // what stays in the cannula takes nothing
+  walk(notch_begin_mm, notch_end_mm, [&](double beyond_tip_mm, double length_mm) {
+    const std::uint8_t id = label_id(patient, tip_P + beyond_tip_mm * axis_P);
+    add_to_pieces(core.pieces, patient.label_table.find(id), length_mm);
+    add_to_sums(core, labels.part(id), length_mm);
+  });
+
+  walk(0.0, std::min(shot + kStep_mm, needle.throw_mm), [&](double beyond_tip_mm, double) {  // the bone that stopped it
+    const std::uint8_t id = label_id(patient, tip_P + beyond_tip_mm * axis_P);
+    if (labels.risk(id) == nullptr) return;
+    const std::string& name = patient.label_table.find(id)->name;
+    auto& found = core.risks_in_throw;
+    if (std::find(found.begin(), found.end(), name) == found.end()) found.push_back(name);
+  });
+  return core;
+}
+
+}  // namespace trocar

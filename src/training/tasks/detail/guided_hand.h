@@ -1,0 +1,89 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "geometry/segment.h"
+#include "tasks/operator.h"
+
+namespace trocar {
+
+/// Involuntary movement of the hand: a few sines in the physiological band on each axis, a function of time alone.
+class Tremor {
+ public:
+  /// rms_mm: across the needle, each axis; along the needle a tenth of it.
+  Tremor(double rms_mm, std::uint64_t seed) noexcept;
+  Vec3 offset_N(double time_s) const noexcept;    ///< mm, in needle axes.
+  Vec3 velocity_N(double time_s) const noexcept;  ///< mm/s.
+
+ private:
+  struct Sine {
+    double amplitude_mm;
+    double angular_rad_s;
+    double phase_rad;
+  };
+  static constexpr std::size_t kSines = 3;
+  std::array<std::array<Sine, kSines>, 3> axes_;
+};
+
+/// What expert and novice share: a hand that moves its wanted pose along a straight line with smooth speed, looks at
+/// the tip and feels the push of the device. Positions along the line are mm from its start, positive inward.
+class GuidedHand {
+ public:
+  GuidedHand(const Segment& line_P, double start_mm, const Tremor& tremor) noexcept;
+
+  /// Looks and feels; call once a tick, first.
+  void sense(const OperatorView& view) noexcept;
+  /// Moves the wanted pose with a speed that follows `speed_mm_s` smoothly, pushing no further ahead of the device than
+  /// the hand is willing to.
+  void move(double speed_mm_s, double dt_s) noexcept;
+  HandCommand command() const noexcept;
+
+  double elapsed_s() const noexcept { return elapsed_s_; }
+  double wanted_mm() const noexcept { return wanted_mm_; }
+  double tip_mm() const noexcept { return tip_mm_; }  ///< Of the needle as seen, along the line.
+  double push_n() const noexcept { return push_n_; }  ///< Felt against the insertion, smoothed as a hand does.
+  bool is_touching() const noexcept { return is_touching_; }
+  /// The resistance has just given way: a drop of the felt force. True for one tick.
+  bool has_felt_drop() const noexcept { return has_felt_drop_; }
+
+ private:
+  Vec3 start_P_;
+  Vec3 axis_P_;
+  Mat3 R_PN_;
+  Tremor tremor_;
+  double wanted_mm_;
+  double speed_mm_s_ = 0.0;
+  double speed_ahead_mm_s_ = 0.0;  // first of two smoothing stages
+  double start_time_s_ = 0.0;
+  double elapsed_s_ = 0.0;
+  double device_mm_;
+  double tip_mm_;
+  double push_n_ = 0.0;
+  double peak_push_n_ = 0.0;
+  bool is_first_ = true;
+  bool is_touching_ = false;
+  bool has_felt_drop_ = false;
+};
+
+/// Notices that a needle gains no ground.
+class StallWatch {
+ public:
+  /// Seconds since the tip last gained a millimetre, or since `from_s` where that is later.
+  double stalled_s(const GuidedHand& hand, double from_s) noexcept {
+    constexpr double kGain_mm = 1.0;
+    if (hand.tip_mm() > deepest_mm_ + kGain_mm) {
+      deepest_mm_ = hand.tip_mm();
+      gained_s_ = hand.elapsed_s();
+    }
+    return hand.elapsed_s() - std::max(gained_s_, from_s);
+  }
+
+ private:
+  double deepest_mm_ = -std::numeric_limits<double>::infinity();
+  double gained_s_ = 0.0;
+};
+
+}  // namespace trocar

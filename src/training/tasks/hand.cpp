@@ -1,0 +1,22 @@
+#include "tasks/hand.h"
+
+#include <cmath>
+
+namespace trocar {
+
+HandSpring hand_spring(const HandParams& hand, const HandCommand& command) noexcept {
+  return {command.X_PN.p(), command.v_P, hand.stiffness_n_per_mm, hand.damping_ns_per_mm, hand.mass_kg};
+}
+
+Vec3 hand_force_n(const HandParams& hand, const HandCommand& command, const Pose& X_PN_device,
+                  const Vec3& v_P) noexcept {
+  return hand.stiffness_n_per_mm * (command.X_PN.p() - X_PN_device.p()) + hand.damping_ns_per_mm * (command.v_P - v_P);
+}
+
+Mat3 follow_rotation(const HandParams& hand, const Mat3& R_PN, const Mat3& R_PN_wanted, double dt_s) noexcept {
+  const double fraction = 1.0 - std::exp(-dt_s / hand.turning_time_constant_s);
+  const Eigen::Quaterniond now(R_PN);
+  return now.slerp(fraction, Eigen::Quaterniond(R_PN_wanted)).normalized().toRotationMatrix();
+}
+
+}  // namespace trocar

@@ -1,0 +1,181 @@
+#include "tasks/metrics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/pose.h"
+#include "tasks/detail/task_labels.h"
+#include "volume/sampling.h"
+
+namespace trocar {
+namespace {
+
+constexpr double kStep_mm = 0.5;         // between places tested for risk structures
+constexpr double kTremor_mm = 1.0;       // to and fro below this is not counted as travel
+constexpr double kSkinSearch_mm = 40.0;  // from the tip that pierced the skin back to the resting skin
+
+bool is_usable(const TickSample& sample) noexcept {
+  return sample.tip_mm.allFinite() && sample.axis.allFinite() && std::isfinite(sample.depth_mm) &&
+         std::isfinite(sample.time_s);
+}
+
+bool has_punctured(const TickSample& sample, std::optional<std::uint8_t> layer) noexcept {
+  return std::any_of(sample.events.begin(), sample.events.end(),
+                     [&](const TickEvent& event) { return event.kind == EventKind::kPuncture && event.id == layer; });
+}
+
+/// Where the line through a tip crosses the resting skin: skin that gives way has been pressed in.
+Vec3 skin_crossing(const VirtualPatient& patient, const Vec3& tip_P, const Vec3& axis_P) noexcept {
+  if (patient.skin_distance_mm.empty()) return tip_P;
+  const auto outside_mm = [&](double back_mm) {
+    return sample_linear(patient.skin_distance_mm, tip_P - back_mm * axis_P);
+  };
+  double before_mm = outside_mm(0.0);
+  const double step_mm = before_mm < 0.0 ? kStep_mm : -kStep_mm;
+  for (double back_mm = step_mm; std::abs(back_mm) <= kSkinSearch_mm; back_mm += step_mm) {
+    const double now_mm = outside_mm(back_mm);
+    if ((now_mm < 0.0) != (before_mm < 0.0)) {
+      const double crossing_mm = back_mm - step_mm * now_mm / (now_mm - before_mm);
+      return tip_P - crossing_mm * axis_P;
+    }
+    before_mm = now_mm;
+  }
+  return tip_P;
+}
+
+/// Collects risk structures, each label once.
+class RiskFinder {
+ public:
+  RiskFinder(const Task& task, const VirtualPatient& patient) : patient_(patient), labels_(task, patient) {}
+
+  void test(const Vec3& p_P, double depth_mm) {
+    const std::uint8_t id = sample_nearest<std::uint8_t>(patient_.labels, p_P, 0);
+    const RiskStructure* risk = labels_.risk(id);
+    if (risk == nullptr || is_found_[id]) return;
+    is_found_[id] = true;
+    found.push_back({patient_.label_table.find(id)->name, depth_mm, risk->penalty});
+  }
+  /// Tests from p_P to q_P, p_P left out.
+  void test_way(const Vec3& p_P, const Vec3& q_P, double depth_mm) {
+    const int steps = std::max(1, static_cast<int>(std::ceil(std::min((q_P - p_P).norm(), 1000.0) / kStep_mm)));
+    for (int step = 1; step <= steps; ++step) test(p_P + (q_P - p_P) * step / steps, depth_mm);
+  }
+
+  std::vector<RiskTouch> found;
+
+ private:
+  const VirtualPatient& patient_;
+  TaskLabels labels_;
+  std::array<bool, 256> is_found_{};
+};
+
+std::vector<RiskTouch> find_risks(const Task& task, const VirtualPatient& patient, std::span<const TickSample> samples,
+                                  std::size_t end) {
+  RiskFinder finder(task, patient);
+  const TickSample* before = nullptr;  // the last sample inside the body
+  for (const TickSample& sample : samples) {
+    if (!is_usable(sample)) continue;
+    if (sample.depth_mm <= 0.0) {
+      before = nullptr;
+      continue;
+    }
+    finder.test_way(before != nullptr ? before->tip_mm : sample.tip_mm, sample.tip_mm, sample.depth_mm);
+    before = &sample;
+  }
+  const TickSample& last = samples[end];
+  const int steps = static_cast<int>(std::min(last.depth_mm, 1000.0) / kStep_mm);
+  for (int step = steps; step >= 1; --step)  // from the skin down: the first touch of the shaft comes first
+    finder.test(last.tip_mm - step * kStep_mm * last.axis, last.depth_mm - step * kStep_mm);
+  return std::move(finder.found);
+}
+
+/// Inward way of the tip, counted between turning points that lie further apart than a tremor.
+double inward_travel_mm(std::span<const TickSample> samples) noexcept {
+  double travel_mm = 0.0;
+  double turn_mm = 0.0;  // the deepest point while going in, the shallowest while coming out
+  bool is_going_in = true;
+  for (const TickSample& sample : samples) {
+    if (!is_usable(sample)) continue;
+    const double depth_mm = std::max(0.0, sample.depth_mm);
+    if (is_going_in) {
+      travel_mm += std::max(0.0, depth_mm - turn_mm);
+      is_going_in = depth_mm > turn_mm - kTremor_mm;
+      turn_mm = is_going_in ? std::max(turn_mm, depth_mm) : depth_mm;
+    } else {
+      is_going_in = depth_mm > turn_mm + kTremor_mm;
+      if (is_going_in) travel_mm += depth_mm - turn_mm;
+      turn_mm = is_going_in ? depth_mm : std::min(turn_mm, depth_mm);
+    }
+  }
+  return travel_mm;
+}
+
+std::optional<std::size_t> end_of_attempt(std::span<const TickSample> samples, std::optional<std::size_t> fired) {
+  if (fired && *fired < samples.size() && is_usable(samples[*fired])) return fired;
+  std::optional<std::size_t> deepest;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!is_usable(samples[i])) continue;
+    if (!deepest || samples[i].depth_mm > samples[*deepest].depth_mm) deepest = i;
+  }
+  return deepest;
+}
+
+/// The last place before `end` at which the skin was pierced, and how many there were. A model without puncture events
+/// enters where the depth turns positive.
+struct Entry {
+  std::optional<std::size_t> sample;
+  int count = 0;
+};
+Entry find_entry(std::span<const TickSample> samples, std::size_t end, std::optional<std::uint8_t> skin_layer) {
+  Entry entry;
+  for (std::size_t i = 0; i <= end; ++i)
+    if (is_usable(samples[i]) && has_punctured(samples[i], skin_layer)) entry = {i, entry.count + 1};
+  if (entry.sample) return entry;
+  bool is_inside = false;
+  for (std::size_t i = 0; i <= end; ++i) {
+    if (!is_usable(samples[i])) continue;
+    if (samples[i].depth_mm <= 0.0) {
+      is_inside = false;
+    } else if (!is_inside && samples[i].phase != InsertionPhase::kLoading) {
+      is_inside = true;
+      entry = {i, entry.count + 1};
+    }
+  }
+  return entry;
+}
+
+}  // namespace
+
+AttemptMetrics measure_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues,
+                               const PlannedPath& plan, std::span<const TickSample> samples,
+                               std::optional<std::size_t> fired, std::span<const Interruption> interruptions) {
+  AttemptMetrics metrics;
+  const auto touch = std::find_if(samples.begin(), samples.end(), [](const TickSample& sample) {
+    return is_usable(sample) && (sample.phase != InsertionPhase::kOutside || sample.depth_mm > 0.0);
+  });
+  metrics.has_touched_skin = touch != samples.end();
+  const std::optional<std::size_t> end = end_of_attempt(samples, fired);
+  if (!metrics.has_touched_skin || !end) return metrics;
+  const Entry entry = find_entry(samples, *end, tissues.find_layer("skin"));
+  if (!entry.sample) return metrics;
+
+  metrics.has_entered = true;
+  metrics.entries = entry.count;
+  const TickSample& entered = samples[*entry.sample];
+  metrics.entry_offset_P = skin_crossing(patient, entered.tip_mm, entered.axis) - plan.line_P.a;
+  const TickSample& last = samples[*end];
+  metrics.axis_P = last.axis;
+  metrics.angle_deg = angle_between_rad(last.axis, plan.line_P.b - plan.line_P.a) * 180.0 / std::numbers::pi;
+  metrics.tip_P = last.tip_mm;
+  metrics.target_offset_P = last.tip_mm - plan.line_P.b;
+  metrics.travel_mm = inward_travel_mm(samples.first(*end + 1));
+  for (const TickSample& sample : samples.first(*end + 1))
+    if (is_usable(sample)) metrics.deepest_mm = std::max(metrics.deepest_mm, sample.depth_mm);
+  metrics.time_s = active_time_s(touch->time_s, last.time_s, interruptions);
+  metrics.risks = find_risks(task, patient, samples, *end);
+  return metrics;
+}
+
+}  // namespace trocar

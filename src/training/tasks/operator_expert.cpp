@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tasks/detail/guided_hand.h"
+#include "tasks/operator.h"
+
+namespace trocar {
+namespace {
+
+// How an expert moves; all assumed, but for the tremor.
+constexpr double kTremor_mm = 0.05;  // rms while holding still: Riviere, Rader, Khosla 1997, eye surgeons, 49 um
+constexpr double kStart_mm = -20.0;
+constexpr double kApproach_mm_s = 20.0;
+constexpr double kTouching_mm_s = 5.0;
+constexpr double kSkinPause_s = 0.5;
+constexpr double kCruise_mm_s = 18.0;
+constexpr double kPressing_mm_s = 9.0;   // against a resisting layer
+constexpr double kUnfelt_n = 0.3;        // resistance that changes nothing
+constexpr double kFirm_n = 1.2;          // resistance at which the speed is down to pressing
+constexpr double kAfterDrop_mm_s = 4.0;  // after something gave way
+constexpr double kReaction_s = 0.15;     // from the drop to the slower hand
+constexpr double kCaution_s = 0.35;      // how long it stays slow
+constexpr double kFineZone_mm = 10.0;    // before the target
+constexpr double kFine_mm_s = 5.0;
+constexpr double kHoming_per_s = 2.0;  // the last millimetres: speed per distance left
+constexpr double kArrived_mm = 0.3;
+constexpr double kCreepBack_mm_s = 3.0;  // gives way when the relaxing tissue lets the tip creep past the target
+constexpr double kHold_s = 0.5;
+constexpr double kAfterFire_s = 0.5;
+constexpr double kWithdraw_mm_s = 30.0;
+constexpr double kStuck_s = 4.0;  // without a millimetre gained: give up
+constexpr double kGiveUp_s = 45.0;
+constexpr double kOutOfTime_s = 58.0;
+
+class Expert final : public Operator {
+ public:
+  explicit Expert(const OperatorCase& the_case) noexcept
+      : hand_(the_case.path_P, kStart_mm, Tremor(kTremor_mm, the_case.seed)),
+        target_mm_(the_case.path_P.length_mm()),
+        fires_biopsy_(the_case.fires_biopsy) {}
+
+  HandCommand next(const OperatorView& view) noexcept override {
+    hand_.sense(view);
+    bool fires = false;
+    double speed_mm_s = 0.0;
+    switch (step_) {
+      case Step::kApproach:
+        speed_mm_s = hand_.wanted_mm() < -kTouching_mm_s ? kApproach_mm_s : kTouching_mm_s;
+        if (hand_.is_touching() || target_left_mm() < kFineZone_mm) enter(Step::kPause);
+        break;
+      case Step::kPause:
+        if (in_step_s() > kSkinPause_s) enter(Step::kInsert);
+        break;
+      case Step::kInsert:
+        speed_mm_s = insertion_speed_mm_s();
+        if (target_left_mm() < kArrived_mm) enter(Step::kHold);
+        if (is_stuck()) enter(Step::kWithdraw);
+        break;
+      case Step::kHold:
+        speed_mm_s = holding_speed_mm_s();
+        if (in_step_s() > kHold_s) {
+          fires = fires_biopsy_;
+          enter(Step::kAfterFire);
+        }
+        break;
+      case Step::kAfterFire:
+        speed_mm_s = holding_speed_mm_s();
+        if (in_step_s() > kAfterFire_s) enter(Step::kWithdraw);
+        break;
+      case Step::kWithdraw:
+        speed_mm_s = hand_.wanted_mm() > kStart_mm ? -kWithdraw_mm_s : 0.0;
+        if (hand_.tip_mm() < kStart_mm + 2.0 || hand_.elapsed_s() > kOutOfTime_s) enter(Step::kDone);
+        break;
+      case Step::kDone:
+        break;
+    }
+    if (hand_.elapsed_s() > kGiveUp_s && step_ < Step::kWithdraw) enter(Step::kWithdraw);
+    hand_.move(speed_mm_s, view.dt_s);
+    HandCommand command = hand_.command();
+    command.has_fired = fires;
+    command.is_done = step_ == Step::kDone;
+    return command;
+  }
+
+ private:
+  enum class Step { kApproach, kPause, kInsert, kHold, kAfterFire, kWithdraw, kDone };
+
+  void enter(Step step) noexcept {
+    step_ = step;
+    step_start_s_ = hand_.elapsed_s();
+  }
+  double in_step_s() const noexcept { return hand_.elapsed_s() - step_start_s_; }
+  double target_left_mm() const noexcept { return target_mm_ - hand_.tip_mm(); }
+
+  /// Slower the more it feels, for a moment after something gave way, and towards the target.
+  double insertion_speed_mm_s() noexcept {
+    if (hand_.has_felt_drop()) drop_s_ = hand_.elapsed_s();
+    const double since_drop_s = hand_.elapsed_s() - drop_s_;
+    const double firmness = std::clamp((hand_.push_n() - kUnfelt_n) / (kFirm_n - kUnfelt_n), 0.0, 1.0);
+    double speed_mm_s = std::lerp(kCruise_mm_s, kPressing_mm_s, firmness);
+    if (since_drop_s > kReaction_s && since_drop_s < kReaction_s + kCaution_s) speed_mm_s = kAfterDrop_mm_s;
+    const double braking_mm_s = kFine_mm_s + std::max(0.0, target_left_mm() - kFineZone_mm);
+    return std::min({speed_mm_s, braking_mm_s, kHoming_per_s * std::max(0.0, target_left_mm())});
+  }
+
+  double holding_speed_mm_s() const noexcept {
+    return target_left_mm() < -kArrived_mm ? std::max(-kCreepBack_mm_s, kHoming_per_s * target_left_mm()) : 0.0;
+  }
+
+  bool is_stuck() noexcept { return stall_.stalled_s(hand_, step_start_s_) > kStuck_s; }
+
+  GuidedHand hand_;
+  double target_mm_;
+  bool fires_biopsy_;
+  Step step_ = Step::kApproach;
+  double step_start_s_ = 0.0;
+  double drop_s_ = -10.0;
+  StallWatch stall_;
+};
+
+}  // namespace
+
+std::unique_ptr<Operator> make_expert(const OperatorCase& the_case) {
+  return std::make_unique<Expert>(the_case);
+}
+
+}  // namespace trocar

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/random.h"
+#include "tasks/detail/guided_hand.h"
+#include "tasks/operator.h"
+
+namespace trocar {
+namespace {
+
+// How far a novice is off; assumed, where nothing else is said.
+constexpr double kTremor_mm = 0.2;  // rms a lateral axis: PMC3032442 figure 4, 0.17 and 0.25 mm without visual feedback
+constexpr double kEntryError_mm[] = {3.0, 8.0};
+constexpr double kAngleError_deg[] = {2.0, 6.0};  // CT-guided with a frame: median 1.1, range 0..6.6 (doi
+                                                  // 10.3109/10929088.2011.578367)
+constexpr double kStopError_mm[] = {3.0, 8.0};
+constexpr double kStart_mm[] = {-26.0, -18.0};
+constexpr double kSpeed_mm_s[] = {20.0, 35.0};
+constexpr double kUnevenness = 0.5;
+constexpr double kRhythm_hz[] = {0.4, 1.2};
+constexpr double kHesitation_s[] = {0.8, 2.5};
+constexpr double kPullback_mm[] = {6.0, 15.0};
+constexpr double kPullbackChance = 0.6;  // residents: 2.4 pullbacks a biopsy, staff 1.2 (Hakime, freehand liver biopsy)
+constexpr double kPullback_mm_s = 15.0;
+constexpr double kBeforeFire_s[] = {0.3, 1.5};
+constexpr double kAfterFire_s = 0.5;
+constexpr double kWithdraw_mm_s = 50.0;
+constexpr double kStuck_s = 3.0;
+constexpr double kStop_s = 40.0;  // whatever happens: fire and withdraw
+constexpr double kOutOfTime_s = 58.0;
+
+double draw(Random& random, const double (&range)[2]) noexcept {
+  return random.uniform(range[0], range[1]);
+}
+
+/// The line the novice really takes: entry and angle off in directions of their own.
+Segment miss(const Segment& path_P, Random& random) noexcept {
+  const Mat3 R_PN = needle_pose(path_P.a, path_P.direction()).R();
+  const auto sideways_P = [&] {
+    const double angle_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
+    return Vec3(R_PN * Vec3(std::cos(angle_rad), std::sin(angle_rad), 0.0));
+  };
+  const Vec3 entry_P = path_P.a + draw(random, kEntryError_mm) * sideways_P();
+  const double tilt_rad = draw(random, kAngleError_deg) * std::numbers::pi / 180.0;
+  const Vec3 axis_P = std::cos(tilt_rad) * path_P.direction() + std::sin(tilt_rad) * sideways_P();
+  return {entry_P, entry_P + path_P.length_mm() * axis_P};
+}
+
+class Novice final : public Operator {
+ public:
+  explicit Novice(const OperatorCase& the_case) noexcept : Novice(the_case, Random(mix64(the_case.seed))) {}
+
+  HandCommand next(const OperatorView& view) noexcept override {
+    hand_.sense(view);
+    bool fires = false;
+    double speed_mm_s = 0.0;
+    switch (step_) {
+      case Step::kAdvance:
+        speed_mm_s = advance_speed_mm_s();
+        if (next_doubt_ < doubts_.size() && hand_.tip_mm() > doubts_[next_doubt_].depth_mm) enter(Step::kHesitate);
+        if (hand_.tip_mm() > stop_mm_ || is_stuck() || hand_.elapsed_s() > kStop_s) enter(Step::kAim);
+        break;
+      case Step::kHesitate:
+        if (in_step_s() > doubts_[next_doubt_].pause_s) enter(Step::kPullBack);
+        break;
+      case Step::kPullBack:
+        speed_mm_s = -kPullback_mm_s;
+        if (in_step_s() * kPullback_mm_s > doubts_[next_doubt_].pullback_mm) {
+          ++next_doubt_;
+          enter(Step::kAdvance);
+        }
+        break;
+      case Step::kAim:
+        if (in_step_s() > before_fire_s_) {
+          fires = fires_biopsy_;
+          enter(Step::kAfterFire);
+        }
+        break;
+      case Step::kAfterFire:
+        if (in_step_s() > kAfterFire_s) enter(Step::kWithdraw);
+        break;
+      case Step::kWithdraw:
+        speed_mm_s = hand_.wanted_mm() > start_mm_ ? -kWithdraw_mm_s : 0.0;
+        if (hand_.tip_mm() < start_mm_ + 2.0 || hand_.elapsed_s() > kOutOfTime_s) enter(Step::kDone);
+        break;
+      case Step::kDone:
+        break;
+    }
+    hand_.move(speed_mm_s, view.dt_s);
+    HandCommand command = hand_.command();
+    command.has_fired = fires;
+    command.is_done = step_ == Step::kDone;
+    return command;
+  }
+
+ private:
+  enum class Step { kAdvance, kHesitate, kPullBack, kAim, kAfterFire, kWithdraw, kDone };
+  struct Doubt {
+    double depth_mm;
+    double pause_s;
+    double pullback_mm;
+  };
+
+  Novice(const OperatorCase& the_case, Random random) noexcept
+      : start_mm_(draw(random, kStart_mm)),
+        hand_(miss(the_case.path_P, random), start_mm_, Tremor(kTremor_mm, mix64(the_case.seed + 1))),
+        fires_biopsy_(the_case.fires_biopsy) {
+    const double length_mm = the_case.path_P.length_mm();
+    stop_mm_ = length_mm + (random.uniform() < 0.5 ? -1.0 : 1.0) * draw(random, kStopError_mm);
+    speed_mm_s_ = draw(random, kSpeed_mm_s);
+    rhythm_rad_s_ = 2.0 * std::numbers::pi * draw(random, kRhythm_hz);
+    before_fire_s_ = draw(random, kBeforeFire_s);
+    double depth = 0.0;
+    for (Doubt& doubt : doubts_) {
+      depth += random.uniform(0.15, 0.45);
+      doubt = {depth * length_mm, draw(random, kHesitation_s),
+               random.uniform() < kPullbackChance ? draw(random, kPullback_mm) : 0.0};
+    }
+  }
+
+  void enter(Step step) noexcept {
+    step_ = step;
+    step_start_s_ = hand_.elapsed_s();
+  }
+  double in_step_s() const noexcept { return hand_.elapsed_s() - step_start_s_; }
+
+  double advance_speed_mm_s() const noexcept {
+    return speed_mm_s_ * (1.0 + kUnevenness * std::sin(rhythm_rad_s_ * hand_.elapsed_s()));
+  }
+
+  bool is_stuck() noexcept { return stall_.stalled_s(hand_, step_start_s_) > kStuck_s; }
+
+  double start_mm_;
+  GuidedHand hand_;
+  bool fires_biopsy_;
+  double stop_mm_ = 0.0;
+  double speed_mm_s_ = 0.0;
+  double rhythm_rad_s_ = 0.0;
+  double before_fire_s_ = 0.0;
+  std::array<Doubt, 3> doubts_{};
+  std::size_t next_doubt_ = 0;
+  Step step_ = Step::kAdvance;
+  double step_start_s_ = 0.0;
+  StallWatch stall_;
+};
+
+}  // namespace
+
+std::unique_ptr<Operator> make_novice(const OperatorCase& the_case) {
+  return std::make_unique<Novice>(the_case);
+}
+
+}  // namespace trocar

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "core/progress.h"
+#include "core/result.h"
+#include "tasks/needle.h"
+#include "tasks/task.h"
+
+namespace trocar {
+
+/// A path that keeps every margin of its task, over the throw of a biopsy needle too.
+struct PlannedPath {
+  /// Entry on the skin -> where the tip is put: at the target, or for a biopsy needle so far before it that the middle
+  /// of the notch comes to lie in the target when it is fired.
+  Segment line_P{Vec3::Zero(), Vec3::Zero()};
+  double length_mm = 0.0;
+  double organ_path_mm = 0.0;  ///< Length inside the organ before the lesion or the tip, what comes first.
+  /// Smallest clearance to a risk structure minus the margin that the task requires for it; at most 10. The clearance
+  /// itself is this value plus the margin of nearest_risk.
+  double spare_margin_mm = 0.0;
+  std::string nearest_risk;  ///< Label name; empty: none within 10 mm beyond its margin.
+  double cost_mm = 0.0;      ///< See path_cost_mm; of planned paths.
+};
+
+/// What paths are ranked by: the length plus a penalty for spare margin below 10 mm,
+/// length + 20 mm (1 - spare / 10 mm)^2. The first millimetre of spare margin is worth 3.8 mm of length, the fifth
+/// 2.2 mm, the tenth 0.2 mm. src/training/README.md.
+double path_cost_mm(double length_mm, double spare_margin_mm) noexcept;
+
+struct PlanOptions {
+  int count = 1;  ///< How many paths, different entries or targets. Range 1..100000.
+  std::uint64_t seed = 1;
+};
+
+/// Safe paths, lowest cost (path_cost_mm) first; each passes skin, muscle and organ surface, in this order and nothing
+/// else with a surface. More than one path have entries as far apart as they can (16 mm and less); fewer than `count`
+/// come where the patient has no more. The same paths for the same seed, whatever the number of threads. The error says
+/// which constraint left no path.
+Result<std::vector<PlannedPath>> plan_paths(const Task& task, const VirtualPatient& patient, const Needle& needle,
+                                            const PlanOptions& options = {}, const Progress& progress = {});
+
+}  // namespace trocar

@@ -1,0 +1,18 @@
+#include "tasks/readiness.h"
+
+#include "tasks/plan.h"
+
+namespace trocar {
+
+TaskReadiness check_task_and_paths(const Task& task, const VirtualPatient& patient, const Needle& needle,
+                                   const Progress& progress) {
+  TaskReadiness readiness = check_task(task, patient);
+  if (!readiness.is_possible) return readiness;
+  const auto paths = plan_paths(task, patient, needle, {}, progress);
+  if (paths) return readiness;
+  readiness.is_possible = false;
+  readiness.reasons.push_back(paths.error().what);
+  return readiness;
+}
+
+}  // namespace trocar

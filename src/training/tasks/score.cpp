@@ -1,0 +1,158 @@
+#include "tasks/score.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tasks/detail/hints.h"
+#include "tasks/detail/task_labels.h"
+#include "tasks/metrics.h"
+
+namespace trocar {
+namespace {
+
+// What each part is worth; they add up to 100.
+struct Weights {
+  double target, core, risk, entry, angle, length, time;
+};
+constexpr Weights kBiopsy{25, 25, 20, 10, 10, 5, 5};
+constexpr Weights kPuncture{50, 0, 20, 10, 10, 5, 5};
+
+constexpr double kEnoughCore = 0.5;  // share of what was possible that counts as having reached the target
+
+constexpr double kLesionReach = 2.0;  // a core of lesion counts as reached up to this multiple of the target tolerance
+
+/// Share of a part's points at a deviation: 1 at 0, 1/2 at the tolerance, falling without end (docs/physics.md, S1).
+double share_at(double deviation, double tolerance) noexcept {
+  const double ratio = tolerance > 0.0 ? deviation / tolerance : HUGE_VAL;
+  return deviation > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 1.0;
+}
+
+/// Share of a part's points for an expense: 1 at 0, 0 from the limit on.
+double share_below(double expense, double limit) noexcept {
+  const double ratio = limit > 0.0 ? expense / limit : 1.0;
+  return std::max(0.0, 1.0 - ratio * ratio);
+}
+
+double core_share(const BiopsyCore& core, double possible_mm) noexcept {
+  return possible_mm > 0.0 ? std::min(1.0, core.target_mm / possible_mm) : 0.0;
+}
+
+/// What the stylet touched and the needle had not.
+std::vector<RiskTouch> find_stylet_risks(const TaskLabels& labels, const VirtualPatient& patient,
+                                         const AttemptMetrics& metrics, const std::optional<BiopsyCore>& core) {
+  std::vector<RiskTouch> touches;
+  if (!core) return touches;
+  for (const std::string& name : core->risks_in_throw) {
+    const bool is_known = std::any_of(metrics.risks.begin(), metrics.risks.end(),
+                                      [&](const RiskTouch& touch) { return touch.label == name; });
+    if (!is_known) touches.push_back({name, 0.0, labels.risk(patient.label_table.find(name)->id)->penalty});
+  }
+  return touches;
+}
+
+/// How far the entry is from where it should be: from the zone's edge, or without a zone from the expert's entry.
+double entry_miss_mm(const Task& task, const PlannedPath& plan, const AttemptMetrics& metrics) noexcept {
+  if (task.entry_zone) return task.entry_zone->distance_outside_mm(plan.line_P.a + metrics.entry_offset_P);
+  return metrics.entry_offset_P.norm();
+}
+
+struct Worth {
+  double target = 0.0, core = 0.0, entry = 0.0, angle = 0.0, length = 0.0, time = 0.0;  // shares 0..1
+  double risk_penalty = 0.0;
+};
+
+Worth worth_of(const Task& task, const Needle& needle, const PlannedPath& plan, const AttemptMetrics& metrics,
+               const std::optional<BiopsyCore>& core, double possible_mm) noexcept {
+  const double length_mm = plan.line_P.length_mm();
+  const bool is_finished = core || !needle.is_biopsy;
+  Worth worth;
+  worth.target = share_at(metrics.target_offset_P.norm(), task.target_tolerance_mm);
+  worth.core = core ? core_share(*core, possible_mm) : 0.0;
+  worth.entry = share_at(entry_miss_mm(task, plan, metrics), task.entry_tolerance_mm);
+  worth.angle = share_at(metrics.angle_deg, task.angle_tolerance_deg);
+  worth.length = share_below(std::max(0.0, metrics.travel_mm - length_mm), length_mm);
+  worth.time = is_finished ? share_below(metrics.time_s, task.time_limit_s) : 0.0;
+  return worth;
+}
+
+std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, const AttemptMetrics& metrics,
+                                double entry_mm, const std::optional<BiopsyCore>& core, std::size_t risks,
+                                bool is_biopsy) {
+  const double safe = metrics.has_entered ? std::max(0.0, weights.risk - worth.risk_penalty) : 0.0;
+  const double scale = metrics.has_entered ? 1.0 : 0.0;
+  const auto part = [&](const char* name, const char* title, double value, const char* unit, double share, double max) {
+    return ScorePart{name, title, value, unit, scale * share * max, max};
+  };
+  std::vector<ScorePart> parts{
+      part("target", "Distance to the target", metrics.target_offset_P.norm(), "mm", worth.target, weights.target),
+      part("entry", "Insertion point", entry_mm, "mm", worth.entry, weights.entry),
+      part("angle", "Needle direction", metrics.angle_deg, "°", worth.angle, weights.angle),
+      ScorePart{"risk", "Structures at risk touched", static_cast<double>(risks), "", safe, weights.risk},
+      part("length", "Needle travel inside the body", metrics.travel_mm, "mm", worth.length, weights.length),
+      part("time", "Time from the skin to the target", metrics.time_s, "s", worth.time, weights.time)};
+  if (is_biopsy)
+    parts.push_back(
+        part("core", "Target tissue in the core", core ? core->target_mm : 0.0, "mm", worth.core, weights.core));
+  if (const double beyond = worth.risk_penalty - weights.risk; metrics.has_entered && beyond > 0.0)
+    parts.push_back({"deduction", "Deduction for structures at risk", worth.risk_penalty, "points", -beyond, 0.0});
+  return parts;
+}
+
+/// A biopsy reaches its target with a core taken near the planned point, or with a core that holds lesion from somewhat
+/// further off, since a lesion has a size. Healthy organ is everywhere: a core of it proves nothing about the place.
+bool has_reached_target(const Task& task, const Needle& needle, const AttemptMetrics& metrics,
+                        const std::optional<BiopsyCore>& core, double core_share, bool is_parenchymal) noexcept {
+  if (!metrics.has_entered || (needle.is_biopsy && !core)) return false;
+  const double off_mm = metrics.target_offset_P.norm();
+  if (off_mm <= task.target_tolerance_mm) return true;
+  return core && !is_parenchymal && core_share >= kEnoughCore && off_mm <= kLesionReach * task.target_tolerance_mm;
+}
+
+/// Empty: it can be judged.
+std::string why_not_scored(const Needle& needle, const AttemptMetrics& metrics, bool has_fired) {
+  if (!metrics.has_touched_skin) return "the needle never touched the skin";
+  if (!metrics.has_entered) return "the needle did not pierce the skin";
+  if (needle.is_biopsy && !has_fired) return "the gun was not fired";
+  return {};
+}
+
+}  // namespace
+
+Outcome score_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues, const Needle& needle,
+                      const PlannedPath& plan, std::span<const TickSample> samples, std::optional<std::size_t> fired,
+                      std::span<const Interruption> interruptions) {
+  if (fired && *fired >= samples.size()) fired.reset();
+  const AttemptMetrics metrics = measure_attempt(task, patient, tissues, plan, samples, fired, interruptions);
+
+  Outcome outcome;
+  outcome.not_scored = why_not_scored(needle, metrics, fired.has_value());
+  double possible_mm = 0.0;
+  if (needle.is_biopsy) {
+    possible_mm = take_core(task, patient, needle, plan.line_P.b, plan.line_P.direction()).target_mm;
+    if (possible_mm <= 0.0) possible_mm = needle.notch_mm;  // a plan that takes nothing is no measure
+    if (fired && metrics.has_entered) outcome.core = take_core(task, patient, needle, metrics.tip_P, metrics.axis_P);
+  }
+
+  Worth worth = worth_of(task, needle, plan, metrics, outcome.core, possible_mm);
+  const TaskLabels labels(task, patient);
+  const std::vector<RiskTouch> stylet_risks = find_stylet_risks(labels, patient, metrics, outcome.core);
+  for (const auto* touches : {&metrics.risks, &stylet_risks})
+    for (const RiskTouch& touch : *touches) {
+      outcome.risks_touched.push_back(touch.label);
+      worth.risk_penalty += touch.penalty;
+    }
+  outcome.parts = parts_of(worth, needle.is_biopsy ? kBiopsy : kPuncture, metrics,
+                           metrics.has_entered ? entry_miss_mm(task, plan, metrics) : 0.0, outcome.core,
+                           outcome.risks_touched.size(), needle.is_biopsy);
+  if (outcome.is_scored())
+    for (const ScorePart& part : outcome.parts) outcome.score += part.points;
+  outcome.score = std::clamp(outcome.score, 0.0, 100.0);
+
+  outcome.target_reached = has_reached_target(task, needle, metrics, outcome.core, worth.core, labels.is_parenchymal());
+  outcome.hints = make_hints(
+      {task, needle, plan, metrics, outcome.core, stylet_risks, possible_mm, labels.is_parenchymal(), outcome.parts});
+  if (!outcome.is_scored()) outcome.parts.clear();  // a hint may still speak of them
+  return outcome;
+}
+
+}  // namespace trocar

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "anatomy/tissue/tissue_table.h"
+#include "telemetry/tick_sample.h"
+#include "tasks/active_time.h"
+#include "tasks/needle.h"
+#include "tasks/plan.h"
+#include "tasks/task.h"
+
+namespace trocar {
+
+/// Tissue along one stretch of the specimen notch.
+struct CorePiece {
+  std::string label;     ///< Label name.
+  std::string tissue;    ///< Tissue class.
+  double from_mm = 0.0;  ///< From the open notch's proximal end.
+  double to_mm = 0.0;
+};
+
+/// What the biopsy gun brought out.
+struct BiopsyCore {
+  Vec3 tip_P = Vec3::Zero();  ///< Needle tip when fired.
+  Vec3 axis_P = Vec3::UnitZ();
+  std::vector<CorePiece> pieces;
+  double target_mm = 0.0;  ///< Of the target tissue (the lesion, or the organ in a parenchymal biopsy).
+  double organ_mm = 0.0;   ///< Of the organ around the target; the four lengths add up to the open notch.
+  double vessel_mm = 0.0;
+  double other_mm = 0.0;
+  std::vector<std::string> risks_in_throw;  ///< Risk structures over the whole throw, by label name.
+};
+
+struct ScorePart {
+  std::string name;   ///< "target", "entry", "angle", "risk", "length", "time", "core", "deduction".
+  std::string title;  ///< In words.
+  double value = 0.0;
+  std::string unit;
+  double points = 0.0;      ///< 0..max_points; of a deduction negative.
+  double max_points = 0.0;  ///< 0 of a deduction.
+};
+/// Penalties beyond what the part "risk" is worth are a part of their own, which exists only then.
+inline bool is_deduction(const ScorePart& part) noexcept {
+  return part.max_points <= 0.0;
+}
+
+/// Result of an attempt. A deviation d (target, entry, angle) with tolerance t is worth max_points/(1 + (d/t)^2); an
+/// expense e (length, time) with limit l is worth max_points*(1 - (e/l)^2), 0 from l on; docs/physics.md, S1. Smaller
+/// is never worse. The parts' points add up to the score, within 0..100. An entry inside the task's entry zone is worth
+/// all points; outside, its deviation counts from the zone's edge. An attempt that never pierced the skin, and a biopsy
+/// without a shot, have no end to be judged: they are not scored. How much each part is worth is teaching policy
+/// [assumed].
+struct Outcome {
+  std::string not_scored;  ///< Why it is not scored; then the score is 0 and there are no parts. Empty: it is scored.
+  double score = 0.0;      ///< 0..100.
+  /// The tip ended within the target tolerance, for a biopsy with a core taken; or within twice the tolerance with a
+  /// core that holds at least half of the lesion tissue that was possible. Touched risks are told apart from it.
+  bool target_reached = false;
+  std::vector<ScorePart> parts;
+  std::vector<std::string> hints;  ///< What to do better, most important first.
+  std::optional<BiopsyCore> core;
+  std::vector<std::string> risks_touched;
+
+  bool is_scored() const noexcept { return not_scored.empty(); }
+};
+
+/// Takes the core at a fired tick. The stylet goes straight on from the tip; bone stops it, and what then stays of the
+/// notch inside the cannula takes nothing.
+BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
+                     const Vec3& axis_P);
+
+/// Scores a whole attempt. `fired` is the index of the sample at which the biopsy gun was fired. Time in an
+/// interruption is not counted.
+Outcome score_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues, const Needle& needle,
+                      const PlannedPath& plan, std::span<const TickSample> samples, std::optional<std::size_t> fired,
+                      std::span<const Interruption> interruptions = {});
+
+}  // namespace trocar

@@ -1,0 +1,135 @@
+#include "tasks/task.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace trocar {
+namespace {
+
+/// How often each label occurs, and which labels lie on the border of the volume.
+struct LabelCounts {
+  std::array<std::size_t, 256> voxels{};
+  std::array<bool, 256> touches_border{};
+};
+
+LabelCounts count_labels(const LabelGrid& labels) {
+  LabelCounts counts;
+  const Index3 size = labels.geometry.size;
+  std::size_t n = 0;
+  for (std::int64_t k = 0; k < size[2]; ++k)
+    for (std::int64_t j = 0; j < size[1]; ++j) {
+      const bool is_border_row = k == 0 || j == 0 || k == size[2] - 1 || j == size[1] - 1;
+      for (std::int64_t i = 0; i < size[0]; ++i, ++n) {
+        const std::uint8_t id = labels.voxels[n];
+        ++counts.voxels[id];
+        if (is_border_row || i == 0 || i == size[0] - 1) counts.touches_border[id] = true;
+      }
+    }
+  return counts;
+}
+
+/// What a patient has of a task's structures.
+struct Inventory {
+  bool has_organ = false;
+  bool has_target = false;
+  bool has_muscle = false;
+  bool has_vessel = false;
+  bool is_organ_cut = false;
+};
+
+Inventory take_inventory(const Task& task, const VirtualPatient& patient, const LabelCounts& counts) {
+  Inventory found;
+  for (const Label& label : patient.label_table.labels) {
+    if (counts.voxels[label.id] == 0) continue;
+    found.has_organ |= is_organ(task, label);
+    found.has_target |= is_target(task, label);
+    found.has_muscle |= label.tissue == "muscle";
+    found.has_vessel |= label.tissue == "vessel";
+    found.is_organ_cut |= is_organ(task, label) && counts.touches_border[label.id];
+  }
+  return found;
+}
+
+/// Risk structures of the task that the patient does not show.
+std::vector<std::string> unlabelled_risks(const Task& task, const VirtualPatient& patient, const LabelCounts& counts) {
+  std::vector<std::string> missing;
+  for (const RiskStructure& risk : task.risks) {
+    const bool is_there =
+        std::any_of(patient.label_table.labels.begin(), patient.label_table.labels.end(), [&](const Label& label) {
+          return counts.voxels[label.id] > 0 &&
+                 (risk.tissue.empty() ? label.name == risk.label : label.tissue == risk.tissue);
+        });
+    if (!is_there) missing.push_back(risk.tissue.empty() ? risk.label : risk.tissue);
+  }
+  return missing;
+}
+
+}  // namespace
+
+double EntryZone::distance_outside_mm(const Vec3& p_P) const noexcept {
+  return std::max(0.0, (p_P - centre_P).norm() - radius_mm);
+}
+
+bool is_organ(const Task& task, const Label& label) noexcept {
+  return label.tissue == task.organ || label.name == task.organ;
+}
+
+bool is_target(const Task& task, const Label& label) noexcept {
+  if (!task.target_label.empty()) return label.name == task.target_label;
+  return std::find(task.target_tissues.begin(), task.target_tissues.end(), label.tissue) != task.target_tissues.end();
+}
+
+const RiskStructure* find_risk(const Task& task, const Label& label) noexcept {
+  const auto it = std::find_if(task.risks.begin(), task.risks.end(), [&](const RiskStructure& risk) {
+    return risk.tissue.empty() ? label.name == risk.label : label.tissue == risk.tissue;
+  });
+  return it != task.risks.end() ? &*it : nullptr;
+}
+
+bool is_parenchymal(const Task& task, const VirtualPatient& patient) {
+  if (task.target_P) {
+    const Label* label = find_label(patient, *task.target_P);
+    return label == nullptr || !is_target(task, *label);
+  }
+  const auto& voxels = patient.labels.voxels;
+  const auto& labels = patient.label_table.labels;
+  return std::none_of(labels.begin(), labels.end(), [&](const Label& label) {
+    return is_target(task, label) && !voxels.empty() && std::memchr(voxels.data(), label.id, voxels.size()) != nullptr;
+  });
+}
+
+TaskReadiness check_task(const Task& task, const VirtualPatient& patient) {
+  const LabelCounts counts = count_labels(patient.labels);
+  const Inventory found = take_inventory(task, patient, counts);
+  TaskReadiness readiness;
+  const auto note = [&](bool is_true, std::string text) {
+    if (is_true) readiness.reasons.push_back(std::move(text));
+  };
+  const bool has_skin = std::any_of(patient.skin_distance_mm.voxels.begin(), patient.skin_distance_mm.voxels.end(),
+                                    [](float distance) { return distance > 0.0F; });
+  readiness.is_possible = found.has_organ && found.has_muscle && has_skin;
+  note(!found.has_organ, fmt::format("no {} is labelled", task.organ));
+  note(!found.has_muscle, "no muscle between skin and organ is labelled");
+  note(!has_skin, "the skin's surface is not inside the volume");
+  if (!readiness.is_possible) return readiness;
+
+  readiness.is_parenchymal = is_parenchymal(task, patient);
+  note(!task.target_label.empty() && !found.has_target,
+       fmt::format("the target \"{}\" is not labelled", task.target_label));
+  note(readiness.is_parenchymal && !task.target_P && task.target_label.empty(),
+       fmt::format(
+           "no lesion is labelled: the target lies in healthy {}, at least {} mm below its surface and {} mm from "
+           "vessels",
+           task.organ, task.parenchymal_depth_mm, task.parenchymal_vessel_mm));
+  note(found.is_organ_cut, fmt::format("the {} is cut by the border of the volume", task.organ));
+  note(!found.has_vessel, "doubtful: no vessels are labelled, so none are avoided");
+  std::vector<std::string> missing = unlabelled_risks(task, patient, counts);
+  std::erase(missing, "vessel");
+  note(!missing.empty(), fmt::format("not labelled, so not avoided: {}", fmt::join(missing, ", ")));
+  return readiness;
+}
+
+}  // namespace trocar

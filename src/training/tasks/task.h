@@ -1,0 +1,92 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "anatomy/tissue/tissue_table.h"
+#include "core/result.h"
+
+namespace trocar {
+
+/// A structure that must not be touched, and how far a planned path stays away from it.
+struct RiskStructure {
+  std::string tissue;      ///< Tissue class ("vessel", "bowel", "lung", "bone" …), or
+  std::string label;       ///< a label's name when tissue is empty.
+  double margin_mm = 5.0;  ///< Range 0..50.
+  double penalty = 20.0;   ///< Points lost when touched. Range 0..100.
+};
+
+/// Where a needle may enter: the skin within a ball about one of its points.
+struct EntryZone {
+  Vec3 centre_P = Vec3::Zero();  ///< On the skin.
+  double radius_mm = 20.0;       ///< Range 1..200.
+
+  /// How far a point lies outside the zone, mm; 0 inside.
+  double distance_outside_mm(const Vec3& p_P) const noexcept;
+};
+
+/// A training task as data (data/tasks/NAME.toml, or task.toml in a patient's folder).
+struct Task {
+  std::string name;  ///< "liver-biopsy".
+  std::string title;
+  std::string organ;                        ///< Label or tissue that holds the target: "liver".
+  std::vector<std::string> target_tissues;  ///< "liver_lesion"; where the patient has none: parenchyma of the organ.
+  std::string needle;                       ///< Name in data/needles.toml.
+  std::string force_model = "insertion";    ///< insertion, proxy or combined; see docs/physics.md T2.
+  std::vector<RiskStructure> risks;
+  // What only a patient's own task says: it names places and structures of this one patient.
+  std::string target_label;             ///< The one label that is the target; empty: all of target_tissues.
+  std::optional<Vec3> target_P;         ///< The point to be reached; else the middle of a target's label.
+  std::optional<EntryZone> entry_zone;  ///< Planned inside it; an entry inside it is as good as the expert's.
+  std::string expert_path;              ///< Which of the patient's paths is the expert's; empty: it is planned.
+  double min_organ_path_mm = 10.0;      ///< Organ passed before the target. Range 0..50.
+  double parenchymal_depth_mm = 20.0;   ///< Target at least this deep below the organ's surface without a lesion.
+  double parenchymal_vessel_mm = 10.0;  ///< ... and this far from large vessels.
+  double max_path_mm = 150.0;           ///< Skin to the tip when it is at the target. Range 10..300.
+  double max_entry_angle_deg = 60.0;    ///< Between the needle and the skin's normal. Range 5..85.
+  double max_posterior_deg = 30.0;      ///< Supine patient: how far the skin's normal may look down. Range 0..90.
+  // Scoring: the deviation at which a part is worth half, and the time at which it is worth nothing.
+  double target_tolerance_mm = 5.0;
+  double entry_tolerance_mm = 10.0;
+  double angle_tolerance_deg = 10.0;
+  double time_limit_s = 120.0;
+  bool exam_shows_needle = false;  ///< In an exam slices and 3D show the needle inside the body, too.
+};
+
+inline constexpr const char* kOwnTaskFile = "task.toml";  ///< Of a patient's folder: the task that was made for it.
+
+/// All tasks of a folder, ordered by name. Errors name file, line and key.
+Result<std::vector<Task>> load_tasks(const std::filesystem::path& tasks_folder);
+/// Unknown name: exit status 2, the message lists the names.
+Result<Task> load_task(const std::filesystem::path& tasks_folder, std::string_view name);
+/// A task of a file: a whole one, or one with `base = "liver-biopsy"`, a task of the folder, and below it only what
+/// differs from that; a list of [[risks]] replaces the base's. With a base the task keeps the base's name.
+Result<Task> load_task_file(const std::filesystem::path& file, const std::filesystem::path& tasks_folder);
+/// The same of such a file's text; `name`: of a whole task, as its file is called without `.toml`. `where`: for
+/// messages.
+Result<Task> parse_task(std::string_view text, const std::string& name, const std::string& where,
+                        const std::filesystem::path& tasks_folder);
+/// The text of such a file: what `task` has that `base` has not.
+std::string task_to_toml(const Task& task, const Task& base);
+
+/// Whether a label is the task's organ, target, or one of its risk structures (nullptr: none).
+bool is_organ(const Task& task, const Label& label) noexcept;
+bool is_target(const Task& task, const Label& label) noexcept;
+const RiskStructure* find_risk(const Task& task, const Label& label) noexcept;
+
+/// The target lies in the organ's healthy tissue: no label of the patient is a target, or the task's point is in none.
+bool is_parenchymal(const Task& task, const VirtualPatient& patient);
+
+/// Whether a patient can serve a task, and what is missing or doubtful, in words.
+struct TaskReadiness {
+  bool is_possible = false;
+  bool is_parenchymal = false;       ///< No lesion: the target lies in the organ's healthy tissue.
+  std::vector<std::string> reasons;  ///< Why not, or what is doubtful.
+};
+TaskReadiness check_task(const Task& task, const VirtualPatient& patient);
+
+}  // namespace trocar

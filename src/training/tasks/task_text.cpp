@@ -1,0 +1,287 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "config/toml.h"
+#include "config/toml_quoted.h"
+#include "tasks/task.h"
+
+namespace trocar {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr Range kCoordinate_mm{-1e5, 1e5};
+
+/// Reads the keys of a task file. A whole task must have them all; one with a base has those that differ.
+class TaskReader {
+ public:
+  TaskReader(const TomlTable& document, bool is_whole) : document_(document), is_whole_(is_whole) {}
+
+  Status read(Task& task) const {
+    TROCAR_TRY_STATUS(
+        document_.check_keys({"base", "title", "organ", "target_tissues", "needle", "force_model", "path",
+                              "parenchymal", "scoring", "risks", "target", "entry_zone", "expert_path", "exam"}));
+    TROCAR_TRY_STATUS(text(document_, "title", task.title));
+    TROCAR_TRY_STATUS(text(document_, "organ", task.organ));
+    TROCAR_TRY_STATUS(text(document_, "needle", task.needle));
+    TROCAR_TRY(task.force_model, document_.string_or("force_model", task.force_model));
+    TROCAR_TRY(task.expert_path, document_.string_or("expert_path", task.expert_path));
+    if (is_whole_ || document_.has("target_tissues")) {
+      TROCAR_TRY(task.target_tissues, document_.strings("target_tissues"));
+    }
+    TROCAR_TRY_STATUS(read_path(task));
+    TROCAR_TRY_STATUS(read_scoring(task));
+    TROCAR_TRY_STATUS(read_risks(task));
+    TROCAR_TRY_STATUS(read_target(task));
+    TROCAR_TRY_STATUS(read_exam(task));
+    return read_entry_zone(task);
+  }
+
+ private:
+  Status text(const TomlTable& table, const char* key, std::string& value) const {
+    if (!is_whole_ && !table.has(key)) return {};
+    TROCAR_TRY(value, table.string(key));
+    return {};
+  }
+  Status number(const TomlTable& table, const char* key, Range range, double& value) const {
+    if (!is_whole_ && !table.has(key)) return {};
+    TROCAR_TRY(value, table.number(key, range));
+    return {};
+  }
+  bool lacks(const char* key) const { return !is_whole_ && !document_.has(key); }
+
+  Status read_path(Task& task) const {
+    if (!lacks("path")) {
+      TROCAR_TRY(const TomlTable path, document_.table("path"));
+      TROCAR_TRY_STATUS(
+          path.check_keys({"min_organ_path_mm", "max_path_mm", "max_entry_angle_deg", "max_posterior_deg"}));
+      TROCAR_TRY_STATUS(number(path, "min_organ_path_mm", {0.0, 50.0}, task.min_organ_path_mm));
+      TROCAR_TRY_STATUS(number(path, "max_path_mm", {10.0, 300.0}, task.max_path_mm));
+      TROCAR_TRY_STATUS(number(path, "max_entry_angle_deg", {5.0, 85.0}, task.max_entry_angle_deg));
+      TROCAR_TRY_STATUS(number(path, "max_posterior_deg", {0.0, 90.0}, task.max_posterior_deg));
+    }
+    if (lacks("parenchymal")) return {};
+    TROCAR_TRY(const TomlTable parenchymal, document_.table("parenchymal"));
+    TROCAR_TRY_STATUS(parenchymal.check_keys({"depth_mm", "vessel_mm"}));
+    TROCAR_TRY_STATUS(number(parenchymal, "depth_mm", {0.0, 100.0}, task.parenchymal_depth_mm));
+    return number(parenchymal, "vessel_mm", {0.0, 50.0}, task.parenchymal_vessel_mm);
+  }
+
+  Status read_scoring(Task& task) const {
+    if (lacks("scoring")) return {};
+    TROCAR_TRY(const TomlTable scoring, document_.table("scoring"));
+    TROCAR_TRY_STATUS(
+        scoring.check_keys({"target_tolerance_mm", "entry_tolerance_mm", "angle_tolerance_deg", "time_limit_s"}));
+    TROCAR_TRY_STATUS(number(scoring, "target_tolerance_mm", {0.1, 100.0}, task.target_tolerance_mm));
+    TROCAR_TRY_STATUS(number(scoring, "entry_tolerance_mm", {0.1, 200.0}, task.entry_tolerance_mm));
+    TROCAR_TRY_STATUS(number(scoring, "angle_tolerance_deg", {0.1, 90.0}, task.angle_tolerance_deg));
+    return number(scoring, "time_limit_s", {1.0, 3600.0}, task.time_limit_s);
+  }
+
+  Status read_risks(Task& task) const {
+    if (!document_.has("risks")) return {};
+    TROCAR_TRY(const std::vector<TomlTable> rows, document_.tables("risks"));
+    task.risks.clear();
+    for (const TomlTable& row : rows) {
+      TROCAR_TRY_STATUS(row.check_keys({"tissue", "label", "margin_mm", "penalty"}));
+      RiskStructure risk;
+      TROCAR_TRY(risk.tissue, row.string_or("tissue", ""));
+      TROCAR_TRY(risk.label, row.string_or("label", ""));
+      if (risk.tissue.empty() == risk.label.empty())
+        return fail("a risk structure is named by its tissue or its label", row.where(), "give one of the two");
+      TROCAR_TRY(risk.margin_mm, row.number("margin_mm", {0.0, 50.0}));
+      TROCAR_TRY(risk.penalty, row.number("penalty", {0.0, 100.0}));
+      task.risks.push_back(std::move(risk));
+    }
+    return {};
+  }
+
+  static Result<Vec3> point(const TomlTable& table, const char* key) {
+    TROCAR_TRY(const std::vector<double> numbers, table.numbers(key, kCoordinate_mm));
+    if (numbers.size() == 3) return Vec3(numbers[0], numbers[1], numbers[2]);
+    return fail(fmt::format("{} is not a point", key), table.where(), "write [x, y, z] in mm (LPS)");
+  }
+
+  Status read_target(Task& task) const {
+    if (!document_.has("target")) return {};
+    TROCAR_TRY(const TomlTable target, document_.table("target"));
+    TROCAR_TRY_STATUS(target.check_keys({"label", "point_mm"}));
+    TROCAR_TRY(task.target_label, target.string_or("label", ""));
+    if (target.has("point_mm")) {
+      TROCAR_TRY(task.target_P, point(target, "point_mm"));
+    }
+    return {};
+  }
+
+  Status read_exam(Task& task) const {
+    if (!document_.has("exam")) return {};
+    TROCAR_TRY(const TomlTable exam, document_.table("exam"));
+    TROCAR_TRY_STATUS(exam.check_keys({"shows_needle"}));
+    TROCAR_TRY(task.exam_shows_needle, exam.boolean_or("shows_needle", task.exam_shows_needle));
+    return {};
+  }
+
+  Status read_entry_zone(Task& task) const {
+    if (!document_.has("entry_zone")) return {};
+    TROCAR_TRY(const TomlTable table, document_.table("entry_zone"));
+    TROCAR_TRY_STATUS(table.check_keys({"centre_mm", "radius_mm"}));
+    EntryZone zone;
+    TROCAR_TRY(zone.centre_P, point(table, "centre_mm"));
+    TROCAR_TRY(zone.radius_mm, table.number("radius_mm", {1.0, 200.0}));
+    task.entry_zone = zone;
+    return {};
+  }
+
+  const TomlTable& document_;
+  bool is_whole_;
+};
+
+Result<Task> read_whole_task(const TomlTable& document, const std::string& name) {
+  Task task;
+  task.name = name;
+  TROCAR_TRY_STATUS(TaskReader(document, true).read(task));
+  return task;
+}
+
+Result<Task> read_whole_task(const fs::path& path) {
+  TROCAR_TRY(const TomlTable document, load_toml(path));
+  if (document.has("base"))
+    return fail("a task of this folder has no base", path.string(), "write the whole task, or put it to a patient");
+  return read_whole_task(document, path.stem().string());
+}
+
+Result<Task> read_task(const TomlTable& document, const std::string& name, const fs::path& tasks_folder) {
+  if (!document.has("base")) return read_whole_task(document, name);
+  TROCAR_TRY(const std::string base, document.string("base"));
+  TROCAR_TRY(Task task, load_task(tasks_folder, base));
+  TROCAR_TRY_STATUS(TaskReader(document, false).read(task));
+  return task;
+}
+
+Result<std::vector<fs::path>> task_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == ".toml") files.push_back(it->path());
+  if (error)
+    return fail("the tasks cannot be listed: " + error.message(), folder.string(),
+                "set TROCAR_DATA_DIR to the folder data");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Writes the keys of which two tasks have different values.
+class DifferenceWriter {
+ public:
+  void text(const char* key, const std::string& value, const std::string& base) {
+    if (value != base) text_ += fmt::format("{} = {}\n", key, toml_quoted(value));
+  }
+  void number(const char* key, double value, double base) {
+    if (value != base) text_ += fmt::format("{} = {}\n", key, value);
+  }
+  void point(const char* key, const Vec3& p) { text_ += fmt::format("{} = [{}, {}, {}]\n", key, p.x(), p.y(), p.z()); }
+  void line(const std::string& line) { text_ += line + "\n"; }
+  /// Ends a table: its title stands before it where it has keys.
+  void close(std::string& document, const std::string& title) {
+    if (!text_.empty()) document += (title.empty() ? "" : fmt::format("\n[{}]\n", title)) + text_;
+    text_.clear();
+  }
+
+ private:
+  std::string text_;
+};
+
+bool is_same(const RiskStructure& a, const RiskStructure& b) {
+  return a.tissue == b.tissue && a.label == b.label && a.margin_mm == b.margin_mm && a.penalty == b.penalty;
+}
+
+std::string risks_text(const std::vector<RiskStructure>& risks) {
+  std::string text;
+  for (const RiskStructure& risk : risks)
+    text +=
+        fmt::format("\n[[risks]]\n{} = {}\nmargin_mm = {}\npenalty = {}\n", risk.tissue.empty() ? "label" : "tissue",
+                    toml_quoted(risk.tissue.empty() ? risk.label : risk.tissue), risk.margin_mm, risk.penalty);
+  return text;
+}
+
+}  // namespace
+
+Result<std::vector<Task>> load_tasks(const fs::path& tasks_folder) {
+  TROCAR_TRY(const std::vector<fs::path> files, task_files(tasks_folder));
+  std::vector<Task> tasks;
+  for (const fs::path& file : files) {
+    TROCAR_TRY(Task task, read_whole_task(file));
+    tasks.push_back(std::move(task));
+  }
+  return tasks;
+}
+
+Result<Task> load_task(const fs::path& tasks_folder, std::string_view name) {
+  TROCAR_TRY(const std::vector<fs::path> files, task_files(tasks_folder));
+  std::vector<std::string> names;
+  for (const fs::path& file : files) {
+    if (file.stem().string() == name) return read_whole_task(file);
+    names.push_back(file.stem().string());
+  }
+  return fail_usage(fmt::format("there is no task \"{}\"", name), tasks_folder.string(),
+                    fmt::format("known are: {}", fmt::join(names, ", ")));
+}
+
+Result<Task> load_task_file(const fs::path& file, const fs::path& tasks_folder) {
+  TROCAR_TRY(const TomlTable document, load_toml(file));
+  return read_task(document, file.stem().string(), tasks_folder);
+}
+
+Result<Task> parse_task(std::string_view text, const std::string& name, const std::string& where,
+                        const fs::path& tasks_folder) {
+  TROCAR_TRY(const TomlTable document, parse_toml(text, where));
+  return read_task(document, name, tasks_folder);
+}
+
+std::string task_to_toml(const Task& task, const Task& base) {
+  std::string document =
+      fmt::format("# A task made for one patient: what differs from its base.\nbase = {}\n", toml_quoted(base.name));
+  DifferenceWriter keys;
+  keys.text("title", task.title, base.title);
+  keys.text("organ", task.organ, base.organ);
+  keys.text("needle", task.needle, base.needle);
+  keys.text("force_model", task.force_model, base.force_model);
+  keys.text("expert_path", task.expert_path, base.expert_path);
+  if (task.target_tissues != base.target_tissues) {
+    std::vector<std::string> quoted;
+    for (const std::string& tissue : task.target_tissues) quoted.push_back(toml_quoted(tissue));
+    keys.line(fmt::format("target_tissues = [{}]", fmt::join(quoted, ", ")));
+  }
+  const bool has_same_risks =
+      std::equal(task.risks.begin(), task.risks.end(), base.risks.begin(), base.risks.end(), is_same);
+  if (!has_same_risks && task.risks.empty()) keys.line("risks = []");
+  keys.close(document, "");
+  keys.number("min_organ_path_mm", task.min_organ_path_mm, base.min_organ_path_mm);
+  keys.number("max_path_mm", task.max_path_mm, base.max_path_mm);
+  keys.number("max_entry_angle_deg", task.max_entry_angle_deg, base.max_entry_angle_deg);
+  keys.number("max_posterior_deg", task.max_posterior_deg, base.max_posterior_deg);
+  keys.close(document, "path");
+  keys.number("depth_mm", task.parenchymal_depth_mm, base.parenchymal_depth_mm);
+  keys.number("vessel_mm", task.parenchymal_vessel_mm, base.parenchymal_vessel_mm);
+  keys.close(document, "parenchymal");
+  keys.number("target_tolerance_mm", task.target_tolerance_mm, base.target_tolerance_mm);
+  keys.number("entry_tolerance_mm", task.entry_tolerance_mm, base.entry_tolerance_mm);
+  keys.number("angle_tolerance_deg", task.angle_tolerance_deg, base.angle_tolerance_deg);
+  keys.number("time_limit_s", task.time_limit_s, base.time_limit_s);
+  keys.close(document, "scoring");
+  if (task.exam_shows_needle != base.exam_shows_needle)
+    keys.line(fmt::format("shows_needle = {}", task.exam_shows_needle));
+  keys.close(document, "exam");
+  keys.text("label", task.target_label, base.target_label);
+  if (task.target_P) keys.point("point_mm", *task.target_P);
+  keys.close(document, "target");
+  if (task.entry_zone) {
+    keys.point("centre_mm", task.entry_zone->centre_P);
+    keys.line(fmt::format("radius_mm = {}", task.entry_zone->radius_mm));
+  }
+  keys.close(document, "entry_zone");
+  return has_same_risks ? document : document + risks_text(task.risks);
+}
+
+}  // namespace trocar

@@ -1,0 +1,116 @@
+#include "tasks/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tasks/test/attempt_patient.h"
+
+namespace trocar {
+namespace {
+
+using namespace testing;
+
+AttemptMetrics measure(const std::vector<TickSample>& samples, std::optional<std::size_t> fired) {
+  static const VirtualPatient patient = make_box_patient();
+  return measure_attempt(make_box_task(), patient, make_box_tissues(), make_box_plan(), samples, fired);
+}
+
+TEST(Metrics, APlannedAttemptHasNoDeviations) {
+  for (const double dent_mm : {0.6, 4.5}) {  // skin that gives way late is no error of the entry
+    const Attempt attempt = make_attempt(make_box_plan().line_P, dent_mm);
+    const AttemptMetrics metrics = measure(attempt.samples, attempt.fired);
+    ASSERT_TRUE(metrics.has_entered);
+    EXPECT_EQ(metrics.entries, 1);
+    EXPECT_LT(metrics.entry_offset_P.norm(), 1e-3) << dent_mm;
+    EXPECT_LT(metrics.target_offset_P.norm(), 1e-9);
+    EXPECT_LT(metrics.angle_deg, 1e-5);
+    EXPECT_NEAR(metrics.travel_mm, 51.0, 1e-9);
+    EXPECT_NEAR(metrics.time_s, 51.0 / 20.0, 0.002);
+    EXPECT_TRUE(metrics.risks.empty());
+  }
+}
+
+TEST(Metrics, OffsetsAreWhereTheNeedleWasMinusWhereItWasPlanned) {
+  const double angle = 5.0 * std::numbers::pi / 180.0;
+  const Vec3 entry_P(53.0, 0.0, 46.0);
+  const Attempt attempt = make_attempt({entry_P, entry_P + 40.0 * Vec3(std::sin(angle), std::cos(angle), 0.0)});
+  const AttemptMetrics metrics = measure(attempt.samples, attempt.fired);
+  EXPECT_LT((metrics.entry_offset_P - Vec3(3.0, 0.0, -4.0)).norm(), 1e-3);
+  EXPECT_NEAR(metrics.angle_deg, 5.0, 1e-6);
+  EXPECT_LT((metrics.target_offset_P - Vec3(3.0 + 40.0 * std::sin(angle), 40.0 * std::cos(angle) - 51.0, -4.0)).norm(),
+            1e-6);
+}
+
+TEST(Metrics, CountsPullingBackButNotTremorAsTravel) {
+  std::vector<TickSample> samples = make_attempt({{50.0, 0.0, 50.0}, {50.0, 40.0, 50.0}}).samples;
+  samples.resize(45 * 50);  // up to a depth of 40 mm
+  const auto add = [&](double depth_mm) {
+    TickSample sample = samples.back();
+    sample.time_s += 0.001;
+    sample.depth_mm = depth_mm;
+    sample.tip_mm.y() = depth_mm;
+    samples.push_back(sample);
+  };
+  for (int i = 0; i < 5000; ++i) add(40.0 - 0.4 + 0.4 * std::cos(0.1 * i));
+  EXPECT_NEAR(measure(samples, {}).travel_mm, 40.0, 0.1);
+  for (double depth_mm = 40.0; depth_mm > 25.0; depth_mm -= 0.05) add(depth_mm);
+  for (double depth_mm = 25.0; depth_mm < 45.0; depth_mm += 0.05) add(depth_mm);
+  EXPECT_NEAR(measure(samples, {}).travel_mm, 40.0 + 20.0, 0.2);
+}
+
+TEST(Metrics, FindsRisksByTheTipWithTheirDepth) {
+  // Towards the feet through the rib's place: z falls from 75 by 0.2 mm a mm, so the rib is met at once behind the fat.
+  const Attempt attempt = make_attempt({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
+  const AttemptMetrics metrics = measure(attempt.samples, {});
+  ASSERT_EQ(metrics.risks.size(), 1u);
+  EXPECT_EQ(metrics.risks[0].label, "rib_right_9");
+  EXPECT_NEAR(metrics.risks[0].depth_mm, 10.0, 1.0);
+  EXPECT_EQ(metrics.risks[0].penalty, 15.0);
+}
+
+TEST(Metrics, FindsRisksBetweenSamplesThatLieFarApart) {
+  std::vector<TickSample> samples = make_attempt({{35.0, 0.0, 50.0}, {35.0, 40.0, 50.0}}).samples;
+  samples.resize(45 * 50);
+  TickSample jump = samples.back();
+  jump.tip_mm.x() = 10.0;  // over the vessel between two ticks
+  samples.push_back(jump);
+  const AttemptMetrics metrics = measure(samples, {});
+  ASSERT_EQ(metrics.risks.size(), 1u);
+  EXPECT_EQ(metrics.risks[0].label, "portal_vein");
+}
+
+TEST(Metrics, WithoutPunctureEventsEntersWhereTheDepthBegins) {
+  Attempt attempt = make_attempt(make_box_plan().line_P);
+  for (TickSample& sample : attempt.samples) sample.events = {};
+  const AttemptMetrics metrics = measure(attempt.samples, attempt.fired);
+  EXPECT_TRUE(metrics.has_entered);
+  EXPECT_EQ(metrics.entries, 1);
+  EXPECT_LT(metrics.entry_offset_P.norm(), 1e-3);
+}
+
+TEST(Metrics, TellsSkinNeverTouchedFromSkinNeverPierced) {
+  EXPECT_FALSE(measure({}, {}).has_touched_skin);
+  const std::vector<TickSample> whole = make_attempt(make_box_plan().line_P).samples;
+  const std::vector<TickSample> outside(whole.begin(), whole.begin() + 200);
+  EXPECT_FALSE(measure(outside, {}).has_touched_skin);
+  const std::vector<TickSample> loading(whole.begin(), whole.begin() + 270);
+  EXPECT_TRUE(measure(loading, {}).has_touched_skin);
+  EXPECT_FALSE(measure(loading, {}).has_entered);
+}
+
+TEST(Metrics, SkipsSamplesThatAreNotFinite) {
+  Attempt attempt = make_attempt(make_box_plan().line_P);
+  const AttemptMetrics clean = measure(attempt.samples, attempt.fired);
+  for (std::size_t i = 3; i < attempt.samples.size(); i += 7)
+    if (i != attempt.fired && attempt.samples[i].events[0].kind == EventKind::kNone)
+      attempt.samples[i].tip_mm.x() = attempt.samples[i].depth_mm = std::numeric_limits<double>::quiet_NaN();
+  const AttemptMetrics metrics = measure(attempt.samples, attempt.fired);
+  EXPECT_EQ(metrics.target_offset_P, clean.target_offset_P);
+  EXPECT_NEAR(metrics.travel_mm, clean.travel_mm, 1e-9);
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,206 @@
+#include "tasks/operator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/testing/allocation_guard.inc.h"
+#include "tasks/test/layered_body.h"
+
+namespace trocar {
+namespace {
+
+using testing::bone_below_skin;
+using testing::LayeredBody;
+using testing::skin_muscle_capsule;
+
+OperatorCase case_of_length(double length_mm, std::uint64_t seed = 1) {
+  const Vec3 axis_P = Vec3(0.3, 0.8, -0.5).normalized();
+  const Vec3 entry_P(-20.0, -100.0, 40.0);
+  return {{entry_P, entry_P + length_mm * axis_P}, true, seed};
+}
+
+double deepest_mm(const LayeredBody& body) {
+  double deepest = -1e9;
+  for (const TickSample& sample : body.samples) deepest = std::max(deepest, body.depth_mm(sample));
+  return deepest;
+}
+
+TEST(Expert, StopsAtTheTargetFiresOnceAndLeavesAtAnyRate) {
+  for (const double dt_s : {0.004, 0.001, 0.00025}) {
+    const OperatorCase the_case = case_of_length(75.0);
+    LayeredBody body(the_case.path_P, skin_muscle_capsule(), dt_s);
+    body.run(*make_expert(the_case), 60.0);
+    ASSERT_TRUE(body.is_done) << dt_s;
+    EXPECT_EQ(body.punctured, 3u);
+    ASSERT_EQ(body.fired.size(), 1u);
+    EXPECT_LT((body.samples[body.fired[0]].tip_mm - the_case.path_P.b).norm(), 0.8) << dt_s;
+    EXPECT_LT(deepest_mm(body), 75.0 + 1.0);
+    EXPECT_GT(body.last().time_s, 12.0);
+    EXPECT_LT(body.last().time_s, 30.0);
+    EXPECT_LT(body.depth_mm(body.last()), -15.0);
+  }
+}
+
+TEST(Expert, NeverOvershootsOnPathsOfAnyLength) {
+  for (double length_mm = 42.0; length_mm <= 150.0; length_mm += 12.0) {
+    const OperatorCase the_case = case_of_length(length_mm, static_cast<std::uint64_t>(length_mm));
+    LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
+    body.run(*make_expert(the_case), 60.0);
+    ASSERT_EQ(body.fired.size(), 1u) << length_mm;
+    EXPECT_LT(deepest_mm(body), length_mm + 1.0);
+    EXPECT_NEAR(body.depth_mm(body.samples[body.fired[0]]), length_mm, 0.8);
+    EXPECT_LT(body.last().time_s, 30.0);
+  }
+}
+
+TEST(Expert, PausesAtTheSkinAndHoldsStillBeforeItFires) {
+  const OperatorCase the_case = case_of_length(75.0);
+  LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
+  body.run(*make_expert(the_case), 60.0);
+  const auto speed_mm_s = [&](std::size_t from, std::size_t to) {
+    return (body.depth_mm(body.samples[to]) - body.depth_mm(body.samples[from])) /
+           (body.samples[to].time_s - body.samples[from].time_s);
+  };
+  const auto touch = static_cast<std::size_t>(
+      std::find_if(body.samples.begin(), body.samples.end(),
+                   [](const TickSample& sample) { return (sample.device_f_n - sample.f_weight_n).norm() > 0.15; }) -
+      body.samples.begin());
+  EXPECT_LT(std::abs(speed_mm_s(touch + 250, touch + 450)), 1.0);
+  EXPECT_LT(std::abs(speed_mm_s(body.fired[0] - 200, body.fired[0])), 1.0);
+}
+
+TEST(Expert, GivesUpWithoutFiringWhereBoneIsInTheWay) {
+  const OperatorCase the_case = case_of_length(75.0);
+  LayeredBody body(the_case.path_P, bone_below_skin(), 0.001);
+  body.run(*make_expert(the_case), 60.0);
+  EXPECT_TRUE(body.is_done);
+  EXPECT_TRUE(body.fired.empty());
+  EXPECT_LT(body.depth_mm(body.last()), -15.0);
+}
+
+TEST(Novice, FiresAndEndsWithinAMinuteForEverySeed) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    for (const auto& layers : {skin_muscle_capsule(), bone_below_skin()}) {
+      const OperatorCase the_case = case_of_length(90.0, seed);
+      LayeredBody body(the_case.path_P, layers, 0.001);
+      body.run(*make_novice(the_case), 60.0);
+      EXPECT_TRUE(body.is_done) << seed;
+      EXPECT_EQ(body.fired.size(), 1u) << seed;
+      EXPECT_LT(body.depth_mm(body.last()), -10.0) << seed;
+    }
+}
+
+TEST(Novice, MissesEntryAngleAndTarget) {
+  double miss_mm = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const OperatorCase the_case = case_of_length(90.0, seed);
+    LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
+    body.run(*make_novice(the_case), 60.0);
+    const auto skin = std::find_if(body.samples.begin(), body.samples.end(),
+                                   [&](const TickSample& sample) { return body.depth_mm(sample) > 0.0; });
+    ASSERT_NE(skin, body.samples.end());
+    const double entry_error_mm = (skin->tip_mm - the_case.path_P.a).norm();
+    EXPECT_GT(entry_error_mm, 2.0) << seed;  // 3..8 mm and the tremor's 0.6 mm
+    EXPECT_LT(entry_error_mm, 9.0) << seed;
+    ASSERT_EQ(body.fired.size(), 1u);
+    const TickSample& fired = body.samples[body.fired[0]];
+    const double angle_deg = angle_between_rad(fired.axis, the_case.path_P.direction()) * 180.0 / std::numbers::pi;
+    EXPECT_GT(angle_deg, 1.9) << seed;
+    EXPECT_LT(angle_deg, 6.1) << seed;
+    EXPECT_GT((fired.tip_mm - the_case.path_P.b).norm(), 0.8) << seed;  // worse than the expert's worst
+    miss_mm += (fired.tip_mm - the_case.path_P.b).norm() / 20.0;
+  }
+  EXPECT_GT(miss_mm, 5.0);
+}
+
+TEST(Novice, IsTheSameForTheSameSeedOnly) {
+  const auto run = [](std::uint64_t seed) {
+    const OperatorCase the_case = case_of_length(70.0, seed);
+    LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
+    body.run(*make_novice(the_case), 60.0);
+    return body.samples;
+  };
+  const auto a = run(3);
+  const auto b = run(3);
+  const auto c = run(4);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i].tip_mm, b[i].tip_mm);
+  EXPECT_NE(a[1000].tip_mm, c[1000].tip_mm);
+}
+
+TEST(ConstantVelocity, MovesTheDeviceItselfInAndOut) {
+  const OperatorCase the_case = case_of_length(40.0);
+  const double speed_mm_s = 10.0;
+  LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
+  body.run(*make_constant_velocity(the_case, speed_mm_s), 60.0);
+  ASSERT_TRUE(body.is_done);
+  EXPECT_NEAR(body.last().time_s, 10.0, 0.002);  // 50 mm in, 50 mm out
+  ASSERT_EQ(body.fired.size(), 1u);
+  EXPECT_NEAR(body.samples[body.fired[0]].time_s, 5.0, 0.002);
+  for (const TickSample& sample : body.samples) {
+    const double expected_mm = std::max(-10.0, 40.0 - speed_mm_s * std::abs(5.0 - sample.time_s));
+    EXPECT_LT((sample.device_mm - (the_case.path_P.a + expected_mm * the_case.path_P.direction())).norm(), 1e-6);
+  }
+}
+
+TEST(Replay, GivesTheRecordedDevicePosesTickByTick) {
+  const OperatorCase the_case = case_of_length(60.0, 7);
+  LayeredBody recorded(the_case.path_P, skin_muscle_capsule(), 0.001);
+  recorded.run(*make_novice(the_case), 60.0);
+  for (TickSample& sample : recorded.samples) {
+    const Eigen::Quaterniond q(needle_pose(sample.device_mm, sample.axis).R());
+    sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
+  }
+  LayeredBody replayed(the_case.path_P, skin_muscle_capsule(), 0.001);
+  replayed.run(*make_replay(recorded.samples, recorded.fired.at(0)), 60.0);
+  ASSERT_TRUE(replayed.is_done);
+  EXPECT_EQ(replayed.fired, recorded.fired);
+  ASSERT_GE(replayed.samples.size(), recorded.samples.size());
+  for (std::size_t i = 0; i < recorded.samples.size(); ++i) {
+    ASSERT_EQ(replayed.samples[i].device_mm, recorded.samples[i].device_mm) << i;
+    ASSERT_LT((replayed.samples[i].axis - recorded.samples[i].axis).norm(), 1e-9) << i;
+  }
+}
+
+TEST(Replay, OfNothingIsDoneWhereTheDeviceIs) {
+  OperatorView view;
+  view.X_PN_device = Pose::translation({1.0, 2.0, 3.0});
+  const HandCommand command = make_replay({})->next(view);
+  EXPECT_TRUE(command.is_done);
+  EXPECT_EQ(command.X_PN.p(), view.X_PN_device.p());
+}
+
+TEST(Operators, AllocateNothingInATick) {
+  const OperatorCase the_case = case_of_length(60.0);
+  const std::unique_ptr<Operator> operators[] = {make_expert(the_case), make_novice(the_case),
+                                                 make_constant_velocity(the_case, 10.0),
+                                                 make_replay(std::vector<TickSample>(500))};
+  OperatorView view;
+  const testing::AllocationGuard guard;
+  for (int tick = 0; tick < 1000; ++tick) {
+    view.time_s = 0.001 * tick;
+    for (const auto& the_operator : operators) view.X_PN_device = the_operator->next(view).X_PN;
+  }
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+TEST(Operators, KeepTheirCommandsFiniteWhateverTheySee) {
+  const OperatorCase the_case = case_of_length(60.0);
+  for (const auto& the_operator : {make_expert, make_novice}) {
+    const auto one = the_operator(the_case);
+    OperatorView view;
+    for (int tick = 0; tick < 2000; ++tick) {
+      view.time_s = 0.001 * tick;
+      view.last.device_f_n = Vec3::Constant(tick % 2 == 0 ? 1e9 : -1e9);
+      view.last.tip_mm = Vec3::Constant(tick % 3 == 0 ? 1e9 : 0.0);
+      const HandCommand command = one->next(view);
+      ASSERT_TRUE(command.X_PN.is_finite() && command.v_P.allFinite());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,209 @@
+// A task that was made for one patient: its file, its target, its entry zone, its expert path.
+#include <gtest/gtest.h>
+
+#include "core/files/atomic_file.h"
+#include "core/files/data_dir.h"
+#include "core/files/temporary_folder.h"
+#include "tasks/assess_path.h"
+#include "tasks/plan.h"
+#include "tasks/score.h"
+#include "tasks/test/attempt_patient.h"
+#include "tasks/test/box_patient.h"
+#include "tasks/test/layered_body.h"
+
+namespace trocar {
+namespace {
+
+using testing::BoxPatient;
+
+const std::filesystem::path kTasks = data_dir() / "tasks";
+
+Task liver_biopsy() {
+  return *load_task(kTasks, "liver-biopsy");
+}
+Needle gun() {
+  return *load_needle(data_dir() / "needles.toml", "biopsy-18g");
+}
+
+Task changed_task() {
+  Task task = liver_biopsy();
+  task.title = "A \"hard\" case";
+  task.max_path_mm = 123.456789012345;
+  task.time_limit_s = 60.0;
+  task.risks = {{"", "rib_right_9", 4.0, 12.5}, {"vessel", "", 2.0, 30.0}};
+  task.target_label = "lesion";
+  task.target_P = Vec3(-30.1, -15.2, 1.0 / 3.0);
+  task.entry_zone = EntryZone{{-100.0, 0.0, 0.0}, 25.0};
+  task.expert_path = "expert";
+  task.exam_shows_needle = true;
+  return task;
+}
+
+TEST(OwnTask, FileSaysWhatDiffersAndGivesTheTaskBack) {
+  const TemporaryFolder folder;
+  const Task task = changed_task();
+  const std::string text = task_to_toml(task, liver_biopsy());
+  EXPECT_EQ(text.find("organ"), std::string::npos) << text;
+  EXPECT_EQ(text.find("max_posterior_deg"), std::string::npos) << text;
+  ASSERT_TRUE(write_file_atomically(folder / kOwnTaskFile, text));
+  const auto read = load_task_file(folder / kOwnTaskFile, kTasks);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(task_to_toml(*read, Task{}), task_to_toml(task, Task{}));
+  EXPECT_EQ(read->name, "liver-biopsy");
+  EXPECT_EQ(read->max_path_mm, task.max_path_mm);
+  EXPECT_FALSE(liver_biopsy().exam_shows_needle);
+  EXPECT_TRUE(read->exam_shows_needle);
+  ASSERT_TRUE(read->target_P);
+  EXPECT_EQ(*read->target_P, *task.target_P);
+}
+
+TEST(OwnTask, NoRisksAtAllAreKept) {
+  const TemporaryFolder folder;
+  Task task = liver_biopsy();
+  task.risks.clear();
+  ASSERT_TRUE(write_file_atomically(folder / kOwnTaskFile, task_to_toml(task, liver_biopsy())));
+  const auto read = load_task_file(folder / kOwnTaskFile, kTasks);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_TRUE(read->risks.empty());
+}
+
+TEST(OwnTask, DamagedFileIsRefusedWithItsPlace) {
+  const TemporaryFolder folder;
+  const auto error_of = [&](const std::string& text) {
+    EXPECT_TRUE(write_file_atomically(folder / kOwnTaskFile, text));
+    const auto task = load_task_file(folder / kOwnTaskFile, kTasks);
+    return task ? std::string("no error") : task.error().text();
+  };
+  EXPECT_EQ(error_of("base = \"liver-biopsy\"\n"), "no error");
+  EXPECT_NE(error_of("base = \"lever-biopsy\"\n").find("known are"), std::string::npos);
+  EXPECT_NE(error_of("base = \"liver-biopsy\"\n[target]\npoint_mm = [1, 2]\n").find("is not a point"),
+            std::string::npos);
+  EXPECT_NE(error_of("base = \"liver-biopsy\"\n[entry_zone]\ncentre_mm = [1, 2, 3]\n").find("radius_mm"),
+            std::string::npos);
+  EXPECT_NE(error_of("base = \"liver-biopsy\"\n[target]\npiont_mm = [1, 2, 3]\n").find("did you mean"),
+            std::string::npos);
+}
+
+TEST(OwnTask, PathsArePlannedToThePointAndFromTheZone) {
+  const VirtualPatient patient = BoxPatient{}.make();
+  Task task = liver_biopsy();
+  task.target_P = Vec3(-45.0, 10.0, 5.0);
+  task.entry_zone = EntryZone{{-100.0, 5.0, 5.0}, 12.0};
+  const auto paths = plan_paths(task, patient, gun(), {3, 1});
+  ASSERT_TRUE(paths) << paths.error().text();
+  for (const PlannedPath& path : *paths) {
+    EXPECT_LE((path.line_P.a - task.entry_zone->centre_P).norm(), 12.0);
+    const Vec3 notch_P = path.line_P.b + gun().notch_middle_mm() * path.line_P.direction();
+    EXPECT_LT((notch_P - *task.target_P).norm(), 1e-6);
+    const PathAssessment assessment = assess_path(task, patient, gun(), path.line_P);
+    EXPECT_TRUE(assessment.findings.empty()) << assessment.findings.front().text;
+    EXPECT_NEAR(assessment.path.organ_path_mm, path.organ_path_mm, 0.3);
+    EXPECT_NEAR(assessment.path.spare_margin_mm, path.spare_margin_mm, 1e-6);
+  }
+}
+
+TEST(OwnTask, ZoneWithoutAPathIsNamed) {
+  Task task = liver_biopsy();
+  task.entry_zone = EntryZone{{-30.0, 70.0, 0.0}, 10.0};  // on the back
+  const auto paths = plan_paths(task, BoxPatient{}.make(), gun(), {});
+  ASSERT_FALSE(paths);
+  EXPECT_NE(paths.error().text().find("no safe path"), std::string::npos) << paths.error().text();
+}
+
+TEST(OwnTask, TargetPointOutsideTheOrganIsRefused) {
+  Task task = liver_biopsy();
+  task.target_P = Vec3(60.0, 0.0, 0.0);
+  const auto paths = plan_paths(task, BoxPatient{}.make(), gun(), {});
+  ASSERT_FALSE(paths);
+  EXPECT_NE(paths.error().text().find("target point"), std::string::npos) << paths.error().text();
+}
+
+TEST(OwnTask, PointInHealthyTissueIsParenchymal) {
+  const VirtualPatient patient = BoxPatient{}.make();
+  Task task = liver_biopsy();
+  EXPECT_FALSE(is_parenchymal(task, patient));
+  task.target_P = BoxPatient{}.lesion_centre_P;
+  EXPECT_FALSE(is_parenchymal(task, patient));
+  task.target_P = Vec3(-60.0, 10.0, 0.0);
+  EXPECT_TRUE(is_parenchymal(task, patient));
+}
+
+TEST(OwnTask, EntryInsideTheZoneIsWhole) {
+  using namespace testing;
+  const VirtualPatient patient = make_box_patient();
+  const Segment plan_P = make_box_plan().line_P;
+  const Segment beside_P{plan_P.a + Vec3(4.0, 0.0, 0.0), plan_P.b + Vec3(4.0, 0.0, 0.0)};
+  const Attempt attempt = make_attempt(beside_P);
+  const auto entry_points = [&](const Task& task) {
+    const Outcome outcome =
+        score_attempt(task, patient, make_box_tissues(), make_gun(), make_box_plan(), attempt.samples, attempt.fired);
+    for (const ScorePart& part : outcome.parts)
+      if (part.name == "entry") return part.points / part.max_points;
+    return -1.0;
+  };
+  Task task = make_box_task();
+  EXPECT_LT(entry_points(task), 0.95);
+  task.entry_zone = EntryZone{plan_P.a, 6.0};
+  EXPECT_EQ(entry_points(task), 1.0);
+  task.entry_zone = EntryZone{plan_P.a - Vec3(20.0, 0.0, 0.0), 6.0};  // 18 mm outside
+  EXPECT_NEAR(entry_points(task), 1.0 / (1.0 + 1.8 * 1.8), 0.01);
+}
+
+bool has(const PathAssessment& assessment, PathFault fault, const std::string& label = {}) {
+  for (const PathFinding& finding : assessment.findings)
+    if (finding.fault == fault && finding.label == label) return true;
+  return false;
+}
+
+TEST(AssessPath, NamesEveryFaultOfADrawnPath) {
+  BoxPatient box;
+  box.special = [](const Vec3& p) -> std::string {
+    if (std::abs(p.x() + 85.0) < 3.0 && std::abs(p.y()) < 6.0) return "bone";
+    if (std::abs(p.x() + 60.0) < 3.0 && p.y() > 8.0 && p.y() < 14.0) return "vessel";
+    return "";
+  };
+  const VirtualPatient patient = box.make();
+  Task task = liver_biopsy();
+  const Segment through_bone{{-100.0, 0.0, 0.0}, {-45.0, 0.0, 0.0}};
+  PathAssessment assessment = assess_path(task, patient, gun(), through_bone);
+  EXPECT_TRUE(has(assessment, PathFault::kCrosses, "rib"));
+  EXPECT_TRUE(has(assessment, PathFault::kOffTarget));
+  EXPECT_FALSE(has(assessment, PathFault::kGlancing));
+  EXPECT_NEAR(assessment.entry_angle_deg, 0.0, 1.0);
+
+  const Segment past_vessel{{-100.0, 7.0, 0.0}, {-45.0, 7.0, 0.0}};
+  task.risks = {{"vessel", "", 5.0, 10.0}};
+  assessment = assess_path(task, patient, gun(), past_vessel);
+  ASSERT_TRUE(has(assessment, PathFault::kMargin, "vessel"));
+  for (const PathFinding& finding : assessment.findings) {
+    if (finding.fault != PathFault::kMargin) continue;
+    EXPECT_GT(finding.clearance_mm, 0.0);
+    EXPECT_LT(finding.clearance_mm, 3.1);  // the voxels are 2 mm
+    EXPECT_NEAR(finding.where_P.x(), -60.0, 4.0);
+    EXPECT_NEAR(finding.depth_mm, 40.0, 5.0);
+  }
+
+  task.max_path_mm = 40.0;
+  task.entry_zone = EntryZone{{0.0, -70.0, 0.0}, 10.0};
+  assessment = assess_path(task, patient, gun(), {{-100.0, 40.0, 0.0}, {-80.0, -20.0, 0.0}});
+  EXPECT_TRUE(has(assessment, PathFault::kTooLong));
+  EXPECT_TRUE(has(assessment, PathFault::kGlancing));
+  EXPECT_TRUE(has(assessment, PathFault::kOutsideZone));
+  assessment = assess_path(task, patient, gun(), {{-80.0, 0.0, 0.0}, {-75.0, 0.0, 0.0}});
+  EXPECT_TRUE(has(assessment, PathFault::kNotOnSkin));
+  EXPECT_TRUE(has(assessment, PathFault::kOrganPath));
+}
+
+TEST(AssessPath, FindsTheSkinAlongALineAndNextToAPoint) {
+  const VirtualPatient patient = BoxPatient{}.make();
+  const auto entry = find_skin_entry(patient, {-30.0, 0.0, 0.0}, {-50.0, 0.0, 0.0});
+  ASSERT_TRUE(entry);
+  EXPECT_NEAR(entry->x(), -100.0, 0.1);
+  const auto nearest = find_nearest_skin(patient, {-90.0, 10.0, 5.0});
+  ASSERT_TRUE(nearest);
+  EXPECT_NEAR((*nearest - Vec3(-100.0, 10.0, 5.0)).norm(), 0.0, 0.5);
+  EXPECT_FALSE(find_skin_entry(patient, {-30.0, 0.0, 0.0}, {-30.0, 0.0, 1.0}));  // leaves through the cut face
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,277 @@
+#include "tasks/score.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tasks/test/attempt_patient.h"
+#include "tasks/test/layered_body.h"
+
+namespace trocar {
+namespace {
+
+using namespace testing;
+
+const VirtualPatient& patient() {
+  static const VirtualPatient the_patient = make_box_patient();
+  return the_patient;
+}
+
+Outcome score(const std::vector<TickSample>& samples, std::optional<std::size_t> fired) {
+  return score_attempt(make_box_task(), patient(), make_box_tissues(), make_gun(), make_box_plan(), samples, fired);
+}
+Outcome score(const Segment& line_P) {
+  const Attempt attempt = make_attempt(line_P);
+  return score(attempt.samples, attempt.fired);
+}
+const ScorePart& part(const Outcome& outcome, const std::string& name) {
+  return *std::find_if(outcome.parts.begin(), outcome.parts.end(), [&](const ScorePart& p) { return p.name == name; });
+}
+bool has_hint(const Outcome& outcome, const std::string& words) {
+  return std::any_of(outcome.hints.begin(), outcome.hints.end(),
+                     [&](const std::string& hint) { return hint.find(words) != std::string::npos; });
+}
+Segment shifted(const Vec3& by_P) {
+  const Segment line_P = make_box_plan().line_P;
+  return {line_P.a + by_P, line_P.b + by_P};
+}
+
+TEST(Score, ThePlannedAttemptIsWorthAll) {
+  const Outcome outcome = score(make_box_plan().line_P);
+  EXPECT_GT(outcome.score, 99.5);  // 2.5 s of 120 s
+  EXPECT_TRUE(outcome.target_reached);
+  ASSERT_TRUE(outcome.core.has_value());
+  EXPECT_NEAR(outcome.core->target_mm, 17.0, 0.5);
+  ASSERT_EQ(outcome.hints.size(), 1u);
+  EXPECT_EQ(outcome.hints[0].rfind("Well done", 0), 0u) << outcome.hints[0];
+}
+
+TEST(Score, PartsAddUpToAHundredAndToTheScore) {
+  for (const bool is_biopsy : {true, false}) {
+    Needle needle = make_gun();
+    needle.is_biopsy = is_biopsy;
+    const Attempt attempt = make_attempt(shifted({2.0, 0.0, 1.0}));
+    const Outcome outcome = score_attempt(make_box_task(), patient(), make_box_tissues(), needle, make_box_plan(),
+                                          attempt.samples, attempt.fired);
+    double points = 0.0;
+    double max_points = 0.0;
+    for (const ScorePart& one : outcome.parts) {
+      points += one.points;
+      max_points += one.max_points;
+    }
+    EXPECT_NEAR(max_points, 100.0, 1e-9);
+    EXPECT_NEAR(points, outcome.score, 1e-9);
+    EXPECT_EQ(outcome.core.has_value(), is_biopsy);
+  }
+}
+
+TEST(Score, CloserIsNeverWorse) {
+  const Vec3 ways[] = {Vec3::UnitX(), -Vec3::UnitX(), Vec3::UnitZ(), Vec3(0.6, 0.0, -0.8)};
+  for (const Vec3& way_P : ways) {
+    Outcome before = score(make_box_plan().line_P);
+    for (double off_mm = 0.5; off_mm < 16.0; off_mm += 0.5) {
+      const Outcome now = score(shifted(off_mm * way_P));
+      EXPECT_LE(now.score, before.score + 1e-9) << off_mm << " mm towards " << way_P.transpose();
+      EXPECT_GT(now.score, before.score - 15.0) << "a jump at " << off_mm;
+      before = now;
+    }
+  }
+}
+
+TEST(Score, EachPartFallsWithItsOwnDeviationOnly) {
+  const Outcome off_entry = score({{54.0, 0.0, 50.0}, {50.0, 51.0, 50.0}});
+  EXPECT_NEAR(part(off_entry, "entry").points, 10.0 / (1.0 + 0.16), 0.01);
+  EXPECT_NEAR(part(off_entry, "target").points, 25.0, 1e-6);
+  const Outcome shallow = score({{50.0, 0.0, 50.0}, {50.0, 48.0, 50.0}});
+  EXPECT_NEAR(part(shallow, "target").points, 25.0 / (1.0 + 0.36), 1e-6);
+  EXPECT_NEAR(part(shallow, "entry").points, 10.0, 0.01);
+}
+
+TEST(Score, TouchedRisksCostTheirPenalty) {
+  const Outcome rib = score({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
+  EXPECT_EQ(rib.risks_touched, std::vector<std::string>{"rib_right_9"});
+  EXPECT_NEAR(part(rib, "risk").points, 20.0 - 15.0, 1e-9);
+  EXPECT_TRUE(has_hint(rib, "right rib 9")) << rib.hints[0];
+  // The stylet alone reaches the vessel.
+  const Outcome throw_only = score({{50.0, 0.0, 20.0}, {39.0, 30.0, 20.0}});
+  ASSERT_TRUE(throw_only.core.has_value());
+  EXPECT_TRUE(throw_only.risks_touched.empty());
+  const Outcome vessel = score({{50.0, 0.0, 20.0}, {30.0, 30.0, 20.0}});
+  EXPECT_EQ(vessel.risks_touched, std::vector<std::string>{"portal_vein"});
+  EXPECT_NEAR(part(vessel, "risk").points, 0.0, 1e-9);
+  EXPECT_TRUE(has_hint(vessel, "stylet shot into a structure at risk, portal vein"));
+}
+
+TEST(Score, TargetPointsFallWithEveryMillimetre) {
+  // Beyond the tolerance (5 mm), too: short of the target along the path, so that nothing else changes the part.
+  const auto points_at = [](double short_mm) {
+    return part(score({{50.0, 0.0, 50.0}, {50.0, 51.0 - short_mm, 50.0}}), "target").points;
+  };
+  double before = points_at(0.0);
+  EXPECT_NEAR(before, 25.0, 1e-6);
+  EXPECT_NEAR(points_at(5.0), 12.5, 1e-6);
+  EXPECT_GT(points_at(5.0), points_at(14.0) + 5.0);
+  for (double short_mm = 1.0; short_mm <= 30.0; short_mm += 1.0) {
+    const double now = points_at(short_mm);
+    EXPECT_LT(now, before - 0.04) << short_mm;
+    before = now;
+  }
+}
+
+TEST(Score, PenaltiesBeyondTheRiskPartAreADeduction) {
+  Task task = make_box_task();
+  for (RiskStructure& risk : task.risks) risk.penalty = 25.0;
+  const Attempt attempt = make_attempt({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
+  const Outcome outcome =
+      score_attempt(task, patient(), make_box_tissues(), make_gun(), make_box_plan(), attempt.samples, attempt.fired);
+  EXPECT_EQ(part(outcome, "risk").points, 0.0);
+  EXPECT_NEAR(part(outcome, "deduction").points, -5.0, 1e-9);
+  EXPECT_EQ(part(outcome, "deduction").max_points, 0.0);
+  double points = 0.0;
+  for (const ScorePart& one : outcome.parts) {
+    points += one.points;
+    EXPECT_TRUE(is_deduction(one) || one.points >= 0.0) << one.name;
+  }
+  EXPECT_NEAR(points, outcome.score, 1e-9);
+}
+
+TEST(Score, ATargetFarOffIsNotReached) {
+  // 12 and 19 mm short of a long lesion: the core is full of lesion, and yet the tip is not at the planned point.
+  VirtualPatient long_lesion = make_box_patient();
+  for (std::size_t i = 0; i < long_lesion.labels.voxels.size(); ++i)
+    if (long_lesion.labels.voxels[i] == 3) long_lesion.labels.voxels[i] = 4;
+  const VirtualPatient healthy = make_box_patient(false);
+  const auto is_reached = [](const VirtualPatient& who, double short_mm) {
+    const Attempt attempt = make_attempt({{50.0, 0.0, 50.0}, {50.0, 51.0 - short_mm, 50.0}});
+    const Outcome outcome = score_attempt(make_box_task(), who, make_box_tissues(), make_gun(), make_box_plan(),
+                                          attempt.samples, attempt.fired);
+    EXPECT_GT(outcome.core.value().target_mm, 16.0) << short_mm;
+    return outcome.target_reached;
+  };
+  EXPECT_TRUE(is_reached(long_lesion, 4.0));
+  EXPECT_TRUE(is_reached(long_lesion, 9.0));
+  EXPECT_FALSE(is_reached(long_lesion, 12.0));
+  EXPECT_FALSE(is_reached(long_lesion, 19.0));
+  EXPECT_TRUE(is_reached(healthy, 4.0));
+  EXPECT_FALSE(is_reached(healthy, 9.0));  // liver is all around: a core of it does not tell the place
+}
+
+TEST(Score, EveryNoviceIsWorseThanTheExpert) {
+  const auto score_of = [](auto make_operator, std::uint64_t seed) {
+    const OperatorCase the_case{make_box_plan().line_P, true, seed};
+    LayeredBody body(the_case.path_P, {{0.0, 4.5, 2.8}, {10.0, 2.8, 2.5}, {20.0, 2.7, 1.5}}, 0.001);
+    body.run(*make_operator(the_case), 60.0);
+    return score(body.samples, body.fired.empty() ? std::nullopt : std::optional(body.fired[0])).score;
+  };
+  double novices = 0.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const double expert = score_of(make_expert, seed);
+    const double novice = score_of(make_novice, seed);
+    EXPECT_GT(expert, 95.0) << seed;
+    EXPECT_LT(novice, expert - 5.0) << seed;
+    novices += novice / 20.0;
+  }
+  EXPECT_LT(novices, 75.0);
+}
+
+TEST(Score, ScoresWhatThereIsOfAnUnfinishedAttempt) {
+  EXPECT_EQ(score(std::vector<TickSample>{}, {}).score, 0.0);
+  EXPECT_EQ(score(std::vector<TickSample>{}, {}).not_scored, "the needle never touched the skin");
+  EXPECT_TRUE(has_hint(score(std::vector<TickSample>{}, {}), "never reached the skin"));
+
+  const std::vector<TickSample> whole = make_attempt(make_box_plan().line_P).samples;
+  const std::vector<TickSample> loading(whole.begin(), whole.begin() + 270);
+  EXPECT_EQ(score(loading, {}).score, 0.0);
+  EXPECT_EQ(score(loading, {}).not_scored, "the needle did not pierce the skin");
+  EXPECT_TRUE(has_hint(score(loading, {}), "skin was not pierced"));
+
+  for (const std::size_t ticks : {400u, 1000u, 2000u, 2700u}) {  // killed on the way in
+    const std::vector<TickSample> killed(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(ticks));
+    const Outcome outcome = score(killed, {});
+    EXPECT_EQ(outcome.not_scored, "the gun was not fired");
+    EXPECT_EQ(outcome.score, 0.0);
+    EXPECT_TRUE(outcome.parts.empty());
+    EXPECT_FALSE(outcome.target_reached);
+    EXPECT_FALSE(outcome.core.has_value());
+    EXPECT_TRUE(has_hint(outcome, "No core was taken"));
+  }
+  EXPECT_FALSE(score(whole, whole.size() + 5).core.has_value());
+}
+
+TEST(Score, ADeepAttemptWithoutAShotIsNotScoredButAPunctureWithoutAGunIs) {
+  const Attempt attempt = make_attempt({{50.0, 0.0, 50.0}, {50.0, 25.0, 50.0}});
+  const Outcome unfired = score(attempt.samples, {});
+  EXPECT_EQ(unfired.not_scored, "the gun was not fired");
+  EXPECT_TRUE(has_hint(unfired, "No core was taken"));
+  EXPECT_TRUE(score(attempt.samples, attempt.fired).is_scored());
+  Needle needle = make_gun();
+  needle.is_biopsy = false;
+  const Outcome puncture =
+      score_attempt(make_box_task(), patient(), make_box_tissues(), needle, make_box_plan(), attempt.samples, {});
+  EXPECT_TRUE(puncture.is_scored());
+  EXPECT_GT(puncture.score, 0.0);
+}
+
+TEST(Hints, TellWhereTheInsertionPointWasOff) {
+  const Outcome outcome = score({{56.0, 0.0, 50.0}, {50.0, 51.0, 50.0}});
+  EXPECT_TRUE(has_hint(outcome,
+                       "The insertion point was 6 mm too far to the patient's left: move the needle 6 mm to the "
+                       "patient's right before you insert it."));
+  EXPECT_TRUE(has_hint(outcome,
+                       "The needle pointed 7° too far to the patient's right: tilt it so that its tip points 7° "
+                       "further to the patient's left."));
+}
+
+TEST(Hints, TellTheCostliestErrorFirst) {
+  // 5 mm beside the path and 25 mm short: the core is lost, worth far more than the entry.
+  const Outcome outcome = score({{55.0, 0.0, 50.0}, {55.0, 26.0, 50.0}});
+  ASSERT_GE(outcome.hints.size(), 2u);
+  EXPECT_NE(outcome.hints[0].find("The core missed the lesion"), std::string::npos) << outcome.hints[0];
+  EXPECT_NE(outcome.hints[0].find("25 mm short"), std::string::npos) << outcome.hints[0];
+  EXPECT_NE(outcome.hints[0].find("advance 25 mm further"), std::string::npos) << outcome.hints[0];
+}
+
+TEST(Hints, DoNotSendTheNeedleThroughBone) {
+  const Outcome outcome = score({{50.0, 0.0, 75.0}, {50.0, 10.5, 75.0}});
+  EXPECT_TRUE(has_hint(outcome, "No tissue was taken: the stylet hit bone"));
+  EXPECT_FALSE(has_hint(outcome, "advance"));
+}
+
+TEST(Hints, AnOvershootIsNoRetraction) {
+  const Outcome deep = score({{50.0, 0.0, 50.0}, {50.0, 73.0, 50.0}});
+  EXPECT_TRUE(has_hint(deep, "The needle went 73 mm deep for a path of 51 mm")) << deep.hints.back();
+  EXPECT_FALSE(has_hint(deep, "pull back less"));
+
+  // In to 45 mm, out to 5 mm, in to the target: 40 mm are travelled twice.
+  Attempt attempt = make_attempt(make_box_plan().line_P);
+  const auto sample_at = [&](double depth_mm) {
+    TickSample sample = attempt.samples[attempt.fired];
+    sample.depth_mm = depth_mm;
+    sample.tip_mm.y() = depth_mm;
+    return sample;
+  };
+  std::vector<TickSample> samples(attempt.samples.begin(),
+                                  attempt.samples.begin() + static_cast<std::ptrdiff_t>(attempt.fired));
+  for (double depth_mm = 45.0; depth_mm > 5.0; depth_mm -= 0.1) samples.push_back(sample_at(depth_mm));
+  for (double depth_mm = 5.0; depth_mm < 51.0; depth_mm += 0.1) samples.push_back(sample_at(depth_mm));
+  samples.push_back(sample_at(51.0));
+  const Outcome repeated = score(samples, samples.size() - 1);
+  EXPECT_TRUE(has_hint(repeated, "46 mm of it after pulling back")) << repeated.hints.back();
+  EXPECT_TRUE(has_hint(repeated, "pull back less"));
+}
+
+TEST(Hints, SayHowFarShortTheTipStopped) {
+  Attempt attempt = make_attempt({{50.0, 0.0, 50.0}, {50.0, 30.0, 50.0}});
+  EXPECT_TRUE(has_hint(score(attempt.samples, {}), "The tip stopped 21 mm short of the target."));
+}
+
+TEST(Hints, SpeakOfWhatMattersOnly) {
+  const Outcome outcome = score(shifted({1.0, 0.0, 0.5}));
+  EXPECT_FALSE(has_hint(outcome, "insertion point"));
+  EXPECT_FALSE(has_hint(outcome, "pointed"));
+}
+
+}  // namespace
+}  // namespace trocar

@@ -1,0 +1,124 @@
+#include "tasks/task.h"
+
+#include <gtest/gtest.h>
+
+#include "core/files/atomic_file.h"
+#include "core/files/data_dir.h"
+#include "core/files/temporary_folder.h"
+#include "tasks/needle.h"
+#include "tasks/test/box_patient.h"
+
+namespace trocar {
+namespace {
+
+using testing::BoxPatient;
+
+const std::filesystem::path kTasks = data_dir() / "tasks";
+
+Task liver_biopsy() {
+  return *load_task(kTasks, "liver-biopsy");
+}
+
+bool mentions(const TaskReadiness& readiness, std::string_view text) {
+  for (const std::string& reason : readiness.reasons)
+    if (reason.find(text) != std::string::npos) return true;
+  return false;
+}
+
+TEST(Task, ShippedTasksAreReadableAndNameKnownTissuesAndNeedles) {
+  const auto tasks = load_tasks(kTasks);
+  ASSERT_TRUE(tasks) << tasks.error().text();
+  ASSERT_FALSE(tasks->empty());
+  const auto table = load_tissue_table(data_dir() / "tissues.toml");
+  ASSERT_TRUE(table);
+  for (const Task& task : *tasks) {
+    EXPECT_TRUE(load_needle(data_dir() / "needles.toml", task.needle)) << task.name;
+    EXPECT_FALSE(task.title.empty());
+    for (const RiskStructure& risk : task.risks) EXPECT_TRUE(table->find_tissue(risk.tissue)) << risk.tissue;
+    for (const std::string& tissue : task.target_tissues) EXPECT_TRUE(table->find_tissue(tissue)) << tissue;
+  }
+}
+
+TEST(Task, LiverBiopsyPassesTenMillimetresOfLiver) {
+  const Task task = liver_biopsy();
+  EXPECT_EQ(task.name, "liver-biopsy");
+  EXPECT_EQ(task.organ, "liver");
+  EXPECT_EQ(task.min_organ_path_mm, 10.0);
+  EXPECT_EQ(task.parenchymal_depth_mm, 20.0);
+  EXPECT_EQ(task.parenchymal_vessel_mm, 10.0);
+  EXPECT_EQ(task.needle, "biopsy-18g");
+}
+
+TEST(Task, UnknownNameListsTheKnownOnes) {
+  const auto task = load_task(kTasks, "lever-biopsy");
+  ASSERT_FALSE(task);
+  EXPECT_EQ(task.error().exit_status, 2);
+  EXPECT_NE(task.error().advice.find("liver-biopsy"), std::string::npos);
+}
+
+TEST(Task, MissingFolderSaysWhatToDo) {
+  const auto tasks = load_tasks("/nonexistent/tasks");
+  ASSERT_FALSE(tasks);
+  EXPECT_NE(tasks.error().text().find("TROCAR_DATA_DIR"), std::string::npos);
+}
+
+TEST(Task, DamagedTaskIsRefusedWithItsPlace) {
+  const std::string good = *read_file(kTasks / "liver-biopsy.toml");
+  const TemporaryFolder folder;
+  const auto error_of = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    EXPECT_TRUE(write_file_atomically(folder / "liver-biopsy.toml", text));
+    const auto task = load_task(folder.path(), "liver-biopsy");
+    return task ? std::string("no error") : task.error().text();
+  };
+  EXPECT_EQ(error_of("organ", "organ"), "no error");
+  EXPECT_NE(error_of("margin_mm = 3.0", "margin_mm = -3.0").find("risks[0].margin_mm"), std::string::npos);
+  EXPECT_NE(error_of("margin_mm", "margin").find("did you mean \"margin_mm\""), std::string::npos);
+  EXPECT_NE(error_of("tissue = \"bone\"", "penalty = 1").find("liver-biopsy.toml"), std::string::npos);
+  EXPECT_NE(error_of("max_path_mm = 140.0", "max_path_mm = \"long\"").find("a number from 10 to 300"),
+            std::string::npos);
+}
+
+TEST(TaskReadiness, CompletePatientServesTheTask) {
+  const auto readiness = check_task(liver_biopsy(), BoxPatient{}.make());
+  EXPECT_TRUE(readiness.is_possible);
+  EXPECT_FALSE(readiness.is_parenchymal);
+  EXPECT_TRUE(mentions(readiness, "no vessels are labelled"));
+  EXPECT_TRUE(mentions(readiness, "not avoided: bone, cartilage, lung"));
+  EXPECT_FALSE(mentions(readiness, "cut by the border"));
+}
+
+TEST(TaskReadiness, WithoutLesionTheTargetIsParenchymal) {
+  BoxPatient box;
+  box.lesion_radius_mm = 0.0;
+  const auto readiness = check_task(liver_biopsy(), box.make());
+  EXPECT_TRUE(readiness.is_possible);
+  EXPECT_TRUE(readiness.is_parenchymal);
+  EXPECT_TRUE(mentions(readiness, "no lesion is labelled"));
+}
+
+TEST(TaskReadiness, NamesWhatMakesTheTaskImpossible) {
+  BoxPatient no_liver;
+  no_liver.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) <= -22.0 ? "soft_tissue" : ""; };
+  const auto readiness = check_task(liver_biopsy(), no_liver.make());
+  EXPECT_FALSE(readiness.is_possible);
+  EXPECT_TRUE(mentions(readiness, "no liver is labelled"));
+
+  BoxPatient no_muscle;
+  no_muscle.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) > -22.0 ? "adipose" : ""; };
+  EXPECT_TRUE(mentions(check_task(liver_biopsy(), no_muscle.make()), "no muscle"));
+
+  BoxPatient inside_only;  // a volume that nowhere reaches the skin
+  inside_only.half_volume_mm = {60.0, 60.0, 50.0};
+  EXPECT_TRUE(mentions(check_task(liver_biopsy(), inside_only.make()), "skin's surface"));
+}
+
+TEST(TaskReadiness, TellsWhenTheOrganIsCut) {
+  BoxPatient cut;
+  cut.half_volume_mm.z() = 40.0;
+  EXPECT_TRUE(mentions(check_task(liver_biopsy(), cut.make()), "cut by the border"));
+}
+
+}  // namespace
+}  // namespace trocar
