@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "anatomy/phantom/phantom.h"
+#include "attempt/offline/run_session.h"
 #include "bench/benchmarks.h"
 #include "bench/real_data.h"
 #include "core/files/temporary_folder.h"
-#include "attempt/offline/run_session.h"
 #include "io/patient/build_from_files.h"
 
 namespace trocar::bench {
@@ -20,7 +20,7 @@ constexpr int kNovices = 40;
 
 struct CohortPatient {
   std::string name;
-  std::shared_ptr<const VirtualPatient> patient;
+  std::shared_ptr<const anatomy::VirtualPatient> patient;
 };
 
 /// What the path constraint did in one attempt.
@@ -30,10 +30,10 @@ struct ConstraintFigures {
   double largest_n = 0.0;  ///< Largest force.
 };
 
-ConstraintFigures constraint_figures(const std::vector<TickSample>& samples) {
+ConstraintFigures constraint_figures(const std::vector<telemetry::TickSample>& samples) {
   ConstraintFigures figures;
   Vec3 before_n = Vec3::Zero();
-  for (const TickSample& sample : samples) {
+  for (const telemetry::TickSample& sample : samples) {
     figures.inward_n = std::max(figures.inward_n, sample.f_constraint_n.dot(sample.axis));
     figures.step_n = std::max(figures.step_n, (sample.f_constraint_n - before_n).norm());
     figures.largest_n = std::max(figures.largest_n, sample.f_constraint_n.norm());
@@ -42,10 +42,10 @@ ConstraintFigures constraint_figures(const std::vector<TickSample>& samples) {
   return figures;
 }
 
-Result<CohortPatient> build(const PatientFiles& files, const Options& options) {
+Result<CohortPatient> build(const io::PatientFiles& files, const Options& options) {
   std::vector<std::string> warnings;
-  TROCAR_TRY(VirtualPatient patient, build_from_files(files, warnings, options.progress));
-  return CohortPatient{files.name, std::make_shared<const VirtualPatient>(std::move(patient))};
+  TROCAR_TRY(anatomy::VirtualPatient patient, io::build_from_files(files, warnings, options.progress));
+  return CohortPatient{files.name, std::make_shared<const anatomy::VirtualPatient>(std::move(patient))};
 }
 
 /// Adds the patients of the real CTs that are there; says which are not.
@@ -53,7 +53,7 @@ Status add_real_patients(std::vector<CohortPatient>& patients, const Options& op
   const auto say_missing = [&](const fs::path& path) {
     if (options.print) options.print(fmt::format("left out, there is no {}\n", path.string()));
   };
-  PatientFiles files;
+  io::PatientFiles files;
   const fs::path torso = real_data() / "ct-torso";
   if (fs::exists(torso)) {
     files.ct = torso / "example_ct.nii.gz";
@@ -82,26 +82,26 @@ Status add_real_patients(std::vector<CohortPatient>& patients, const Options& op
 
 Result<std::vector<CohortPatient>> cohort_patients(const Options& options) {
   if (options.patient) return std::vector<CohortPatient>{{options.patient->name, options.patient}};
-  TROCAR_TRY(VirtualPatient abdomen, generate_phantom("abdomen", 1, {}, options.progress));
-  std::vector<CohortPatient> patients{{"abdomen", std::make_shared<const VirtualPatient>(std::move(abdomen))}};
+  TROCAR_TRY(anatomy::VirtualPatient abdomen, anatomy::generate_phantom("abdomen", 1, {}, options.progress));
+  std::vector<CohortPatient> patients{{"abdomen", std::make_shared<const anatomy::VirtualPatient>(std::move(abdomen))}};
   TROCAR_TRY_STATUS(add_real_patients(patients, options));
   return patients;
 }
 
 /// All novices on one patient: the same plan, seeds 1 to kNovices of operator and friction.
 Status add_cohort(std::vector<CaseResult>& results, const CohortPatient& on, const Options& options) {
-  TROCAR_TRY(const Case the_case, prepare_case(on.patient, {}, options.progress));
+  TROCAR_TRY(const attempt::Case the_case, attempt::prepare_case(on.patient, {}, options.progress));
   const TemporaryFolder folder;
   std::vector<double> scores, inward_n, step_n, largest_n;
   int reached = 0;
   for (int seed = 1; seed <= kNovices; ++seed) {
-    RunOptions run;
+    attempt::RunOptions run;
     run.operator_name = "novice";
     run.seed = static_cast<std::uint64_t>(seed);
     run.session = folder / fmt::format("novice{}.trocar", seed);
     if (options.force_model) run.force_model = to_string(*options.force_model);
-    TROCAR_TRY(const RunResult result, run_session(the_case, run));
-    TROCAR_TRY(const Session session, load_session(run.session));
+    TROCAR_TRY(const attempt::RunResult result, attempt::run_session(the_case, run));
+    TROCAR_TRY(const storage::Session session, storage::load_session(run.session));
     fs::remove(run.session);
     const ConstraintFigures figures = constraint_figures(session.samples);
     scores.push_back(result.outcome.score);

@@ -13,7 +13,8 @@
 namespace trocar::bench {
 namespace {
 
-constexpr std::array kModels{ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined};
+constexpr std::array kModels{haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
+                             haptics::ForceModel::kCombined};
 constexpr double kBone_mm = 25.0;
 constexpr double kPastBone_mm = 10.0;  // the hand wants the tip this far in
 constexpr double kFlavum_mm = 30.0;
@@ -21,20 +22,22 @@ constexpr double kFlavumThickness_mm = 4.0;  // [assumed] 3..5
 constexpr double kPastFlavum_mm = 25.0;
 
 struct Setting {
-  const TissueTable& table;
-  const DevicePreset& device;
-  ForceModel model;
+  const anatomy::TissueTable& table;
+  const haptics::DevicePreset& device;
+  haptics::ForceModel model;
   std::uint64_t seed;
 };
 
-Result<std::vector<PushSample>> push(const Setting& setting, const std::shared_ptr<const VirtualPatient>& patient,
-                                     const PushTrial& trial) {
-  HapticOptions haptic;
+Result<std::vector<haptics::PushSample>> push(const Setting& setting,
+                                              const std::shared_ptr<const anatomy::VirtualPatient>& patient,
+                                              const haptics::PushTrial& trial) {
+  haptics::HapticOptions haptic;
   haptic.force_model = setting.model;
   haptic.seed = setting.seed;
-  apply_device_preset(setting.device, haptic);
-  TROCAR_TRY(const auto scene, make_haptic_scene(patient, setting.table, {}, setting.device.capability, haptic));
-  return run_push_trial(scene, setting.device, trial);
+  haptics::apply_device_preset(setting.device, haptic);
+  TROCAR_TRY(const auto scene,
+             haptics::make_haptic_scene(patient, setting.table, {}, setting.device.capability, haptic));
+  return haptics::run_push_trial(scene, setting.device, trial);
 }
 
 void add(std::vector<CaseResult>& results, std::string name, const char* unit, double value, std::string note = {}) {
@@ -44,11 +47,12 @@ void add(std::vector<CaseResult>& results, std::string name, const char* unit, d
 }
 
 Status add_bone(std::vector<CaseResult>& results, const Setting& setting,
-                const std::shared_ptr<const VirtualPatient>& patient) {
-  PushTrial trial;
+                const std::shared_ptr<const anatomy::VirtualPatient>& patient) {
+  haptics::PushTrial trial;
   trial.to_mm = kBone_mm + kPastBone_mm;
   TROCAR_TRY(const auto samples, push(setting, patient, trial));
-  const BoneContact contact = judge_bone_contact(samples, trial, kBone_mm, setting.device.capability.peak_force_n);
+  const haptics::BoneContact contact =
+      haptics::judge_bone_contact(samples, trial, kBone_mm, setting.device.capability.peak_force_n);
   const std::string name = fmt::format("contact/bone/{}/{}", setting.device.name, to_string(setting.model));
   add(results, name, "n", contact.peak_n,
       fmt::format("peak; steady {:.2f} N, overshoot {:.0f} %, p-p at rest {:.3f} N{}", contact.steady_n,
@@ -58,11 +62,11 @@ Status add_bone(std::vector<CaseResult>& results, const Setting& setting,
 }
 
 Status add_flavum(std::vector<CaseResult>& results, const Setting& setting,
-                  const std::shared_ptr<const VirtualPatient>& patient, std::uint8_t layer) {
-  PushTrial trial;
+                  const std::shared_ptr<const anatomy::VirtualPatient>& patient, std::uint8_t layer) {
+  haptics::PushTrial trial;
   trial.to_mm = kFlavum_mm + kPastFlavum_mm;
   TROCAR_TRY(const auto samples, push(setting, patient, trial));
-  const LossOfResistance loss = judge_loss_of_resistance(samples, layer);
+  const haptics::LossOfResistance loss = haptics::judge_loss_of_resistance(samples, layer);
   const std::string name = fmt::format("contact/flavum/{}/{}", setting.device.name, to_string(setting.model));
   if (!loss.has_given_way) {
     add(results, name, "n", 0.0, "did not give way");
@@ -80,9 +84,9 @@ Status add_flavum(std::vector<CaseResult>& results, const Setting& setting,
 Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options) {
   const std::filesystem::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
-  TROCAR_TRY(const TissueTable table, load_tissue_table(data / "tissues.toml"));
-  TROCAR_TRY(auto devices, load_device_presets(data / "devices.toml"));
-  std::erase_if(devices, [](const DevicePreset& device) { return !device.has_force(); });
+  TROCAR_TRY(const anatomy::TissueTable table, anatomy::load_tissue_table(data / "tissues.toml"));
+  TROCAR_TRY(auto devices, haptics::load_device_presets(data / "devices.toml"));
+  std::erase_if(devices, [](const haptics::DevicePreset& device) { return !device.has_force(); });
   TROCAR_TRY(const auto bone, make_flat_patient({{0.0, "adipose"}, {10.0, "muscle"}, {kBone_mm, "bone"}}));
   TROCAR_TRY(const auto back, make_flat_patient({{0.0, "adipose"},
                                                  {10.0, "ligament"},
@@ -91,9 +95,9 @@ Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options) {
   const auto flavum = table.find_layer("ligamentum_flavum");
   if (!flavum) return fail("has no layer ligamentum_flavum", "tissue table", "add it");
   std::vector<CaseResult> results;
-  for (const ForceModel model : kModels) {
+  for (const haptics::ForceModel model : kModels) {
     if (options.force_model && *options.force_model != model) continue;
-    for (const DevicePreset& device : devices) {
+    for (const haptics::DevicePreset& device : devices) {
       const Setting setting{table, device, model, options.seed};
       TROCAR_TRY_STATUS(add_bone(results, setting, bone));
       TROCAR_TRY_STATUS(add_flavum(results, setting, back, *flavum));

@@ -4,23 +4,23 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
 #include "attempt/offline/force_curve.h"
+#include "core/result.h"
 
 namespace trocar::bench {
 
 /// One of the curves that are held against each other: of a force model, or of a patient.
 struct NamedCurve {
   std::string name;  ///< "proxy".
-  std::vector<CurvePoint> points;
-  std::vector<CurveEvent> events;
+  std::vector<attempt::CurvePoint> points;
+  std::vector<attempt::CurveEvent> events;
 };
 
 /// One path with its curves: the same motion for each.
 struct PathCurves {
   std::string name;   ///< "lumbar": of files and cases.
   std::string title;  ///< Patient, needle, speed: above the plot.
-  std::vector<PathPiece> pieces;
+  std::vector<attempt::PathPiece> pieces;
   std::vector<NamedCurve> curves;
 };
 
@@ -29,6 +29,6 @@ struct PathCurves {
 std::string curves_text(const PathCurves& path);
 
 /// NAME.csv: a row a tick, NAME.svg: the curves over the layers. The folder is there.
-Status write_curves(const PathCurves& path, const TissueTable& tissues, const std::filesystem::path& folder);
+Status write_curves(const PathCurves& path, const anatomy::TissueTable& tissues, const std::filesystem::path& folder);
 
 }  // namespace trocar::bench

@@ -7,11 +7,11 @@
 #include <map>
 
 #include "anatomy/phantom/phantom.h"
+#include "attempt/guide/needle_geometry.h"
 #include "bench/benchmarks.h"
 #include "bench/curve_output.h"
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
-#include "attempt/guide/needle_geometry.h"
 #include "tasks/needle.h"
 
 namespace trocar::bench {
@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kSpeed_mm_per_s = 5.0;
 constexpr double kAfter_mm = 10.0;  ///< At most, for the tip to arrive.
-constexpr ForceModel kModels[] = {ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined};
+constexpr haptics::ForceModel kModels[] = {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
+                                           haptics::ForceModel::kCombined};
 
 /// A patient and the needle that goes into it.
 struct Way {
@@ -34,8 +35,8 @@ const std::vector<Way>& layered_ways() {
 }
 
 bool is_embedded(const std::string& name) {
-  const auto& all = embedded_patients();
-  return std::any_of(all.begin(), all.end(), [&](const PhantomInfo& info) { return info.name == name; });
+  const auto& all = anatomy::embedded_patients();
+  return std::any_of(all.begin(), all.end(), [&](const anatomy::PhantomInfo& info) { return info.name == name; });
 }
 
 /// "layers-lumbar" -> "lumbar"; other names keep only what a file's name may have.
@@ -56,30 +57,30 @@ std::string needle_for(const std::string& patient) {
 }
 
 struct Tables {
-  TissueTable tissues;
-  std::vector<Needle> needles;
+  anatomy::TissueTable tissues;
+  std::vector<tasks::Needle> needles;
 };
 
 Result<Tables> load_tables_of_curves() {
   const std::filesystem::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
   Tables tables;
-  TROCAR_TRY(tables.tissues, load_tissue_table(data / "tissues.toml"));
-  TROCAR_TRY(tables.needles, load_needles(data / "needles.toml"));
+  TROCAR_TRY(tables.tissues, anatomy::load_tissue_table(data / "tissues.toml"));
+  TROCAR_TRY(tables.needles, tasks::load_needles(data / "needles.toml"));
   return tables;
 }
 
-Result<PathCurves> curves_of(std::shared_ptr<const VirtualPatient> patient, const Tables& tables,
+Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> patient, const Tables& tables,
                              const Options& options) {
   if (patient->paths.empty())
     return fail_usage("the patient has no needle path of its own", patient->name, "use an embedded patient");
   const std::string needle_name = needle_for(patient->name);
   const auto needle = std::find_if(tables.needles.begin(), tables.needles.end(),
-                                   [&](const Needle& candidate) { return candidate.name == needle_name; });
+                                   [&](const tasks::Needle& candidate) { return candidate.name == needle_name; });
   if (needle == tables.needles.end())
     return fail("there is no needle of that name", needle_name, "use a needle of data/needles.toml");
 
-  PrescribedMotion motion;
+  attempt::PrescribedMotion motion;
   motion.line_P = patient->paths.front().line_P;
   motion.speed_mm_per_s = kSpeed_mm_per_s;
   motion.after_mm = kAfter_mm;
@@ -87,16 +88,16 @@ Result<PathCurves> curves_of(std::shared_ptr<const VirtualPatient> patient, cons
   PathCurves path;
   path.name = short_name(patient->name);
   path.title = fmt::format("{}, {}, {:.0f} mm/s", patient->name, needle_name, kSpeed_mm_per_s);
-  for (const ForceModel model : kModels) {
+  for (const haptics::ForceModel model : kModels) {
     if (options.force_model && *options.force_model != model) continue;
-    HapticOptions haptic;
+    haptics::HapticOptions haptic;
     haptic.force_model = model;
     haptic.has_weight_compensation = false;
-    const NeedleGeometry geometry = needle_geometry(*needle);
-    TROCAR_TRY(const auto scene, make_haptic_scene(patient, tables.tissues, geometry, {}, haptic));
-    if (path.pieces.empty()) path.pieces = pieces_along(*scene, tables.tissues, with_rest);
-    NamedCurve curve{to_string(model), force_curve(*scene, motion), {}};
-    curve.events = find_curve_events(curve.points, tables.tissues);
+    const haptics::NeedleGeometry geometry = attempt::needle_geometry(*needle);
+    TROCAR_TRY(const auto scene, haptics::make_haptic_scene(patient, tables.tissues, geometry, {}, haptic));
+    if (path.pieces.empty()) path.pieces = attempt::pieces_along(*scene, tables.tissues, with_rest);
+    NamedCurve curve{to_string(model), attempt::force_curve(*scene, motion), {}};
+    curve.events = attempt::find_curve_events(curve.points, tables.tissues);
     path.curves.push_back(std::move(curve));
   }
   return path;
@@ -113,7 +114,7 @@ Figures single(double value) {
 void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is_for_people) {
   for (const NamedCurve& curve : path.curves) {
     std::map<std::string, int> times;
-    for (const CurveEvent& event : curve.events) {
+    for (const attempt::CurveEvent& event : curve.events) {
       const int number = ++times[event.layer];
       std::string name = fmt::format("curves/{}/{}/{}", path.name, curve.name, event.layer);
       if (number > 1) name += fmt::format("-{}", number);
@@ -131,21 +132,22 @@ void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is
   }
 }
 
-Result<std::vector<std::shared_ptr<const VirtualPatient>>> patients_of(const Options& options) {
-  std::vector<std::shared_ptr<const VirtualPatient>> patients;
+Result<std::vector<std::shared_ptr<const anatomy::VirtualPatient>>> patients_of(const Options& options) {
+  std::vector<std::shared_ptr<const anatomy::VirtualPatient>> patients;
   if (options.patient) return std::vector{options.patient};
   for (const Way& way : layered_ways()) {
     if (!is_embedded(way.patient)) continue;
-    TROCAR_TRY(VirtualPatient generated, generate_phantom(way.patient, 1, {}, options.progress));
-    patients.push_back(std::make_shared<const VirtualPatient>(std::move(generated)));
+    TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom(way.patient, 1, {}, options.progress));
+    patients.push_back(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)));
   }
   if (!patients.empty()) return patients;
-  TROCAR_TRY(VirtualPatient generated, generate_phantom("abdomen", 1, {}, options.progress));
-  patients.push_back(std::make_shared<const VirtualPatient>(std::move(generated)));
+  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, {}, options.progress));
+  patients.push_back(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)));
   return patients;
 }
 
-Status write_all(const std::vector<PathCurves>& paths, const TissueTable& tissues, const std::filesystem::path& out) {
+Status write_all(const std::vector<PathCurves>& paths, const anatomy::TissueTable& tissues,
+                 const std::filesystem::path& out) {
   return write_folder_atomically(out, [&](const std::filesystem::path& folder) -> Status {
     for (const PathCurves& path : paths) TROCAR_TRY_STATUS(write_curves(path, tissues, folder));
     return {};

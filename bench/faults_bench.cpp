@@ -18,8 +18,8 @@ namespace {
 constexpr std::array kSlow_ms{1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 30.0, 50.0, 100.0, 200.0, 240.0, 400.0, 1000.0};
 
 /// The flat patient under the room: z of the room is up, the needle hangs down over the skin.
-LoadScene flat_request() {
-  LoadScene request;
+link::LoadScene flat_request() {
+  link::LoadScene request;
   request.patient = "flat";
   Mat3 R_PW;
   R_PW.col(0) = Vec3::UnitX();
@@ -29,7 +29,7 @@ LoadScene flat_request() {
   return request;
 }
 
-Result<std::shared_ptr<const VirtualPatient>> open_flat(const std::string&, std::uint64_t, const Progress&) {
+Result<std::shared_ptr<const anatomy::VirtualPatient>> open_flat(const std::string&, std::uint64_t, const Progress&) {
   return make_flat_patient({{0.0, "adipose"}, {12.0, "muscle"}, {24.0, "liver"}});
 }
 
@@ -37,50 +37,51 @@ std::string in_ms(double seconds) {
   return std::isfinite(seconds) ? fmt::format("{:.0f}", 1e3 * seconds) : "-";
 }
 
-void print_row(const Options& options, const std::string& device, double slow_ms, const SlowLoopOutcome& slow) {
+void print_row(const Options& options, const std::string& device, double slow_ms, const server::SlowLoopOutcome& slow) {
   if (!options.print) return;
   options.print(fmt::format("{:<10} {:>6} {:>8} {:>7.3f} {:<13} {:>6} {:>6} {:>8.2f} {:>8.1f}\n", device,
                             slow_ms > 0.0 ? fmt::format("{:.0f}", slow_ms) : "healthy", in_ms(slow.longest_period_s),
                             slow.least_share, to_string(slow.fault),
-                            slow.fault == GateFault::kNone ? "-" : in_ms(slow.latch_s), in_ms(slow.zero_s),
+                            slow.fault == telemetry::GateFault::kNone ? "-" : in_ms(slow.latch_s), in_ms(slow.zero_s),
                             slow.after_n, slow.travel_mm));
 }
 
 /// The worst of all slow loops of a device.
 void add_results(std::vector<CaseResult>& results, const std::string& device,
-                 const std::vector<SlowLoopOutcome>& outcomes, const SlowLoopOutcome& healthy) {
+                 const std::vector<server::SlowLoopOutcome>& outcomes, const server::SlowLoopOutcome& healthy) {
   const auto add = [&](const char* what, const char* unit, auto&& value, std::string note) {
     std::vector<double> values;
-    for (const SlowLoopOutcome& outcome : outcomes) {
+    for (const server::SlowLoopOutcome& outcome : outcomes) {
       if (std::isfinite(value(outcome))) values.push_back(value(outcome));
     }
     if (values.empty()) return;
     results.push_back({fmt::format("faults/{}/{}", device, what), unit, figures_of(values), {}, std::move(note)});
   };
-  const auto latched = std::count_if(outcomes.begin(), outcomes.end(),
-                                     [](const SlowLoopOutcome& o) { return o.fault != GateFault::kNone; });
+  const auto latched = std::count_if(outcomes.begin(), outcomes.end(), [](const server::SlowLoopOutcome& o) {
+    return o.fault != telemetry::GateFault::kNone;
+  });
   add(
-      "zero", "ms", [](const SlowLoopOutcome& o) { return 1e3 * o.zero_s; },
+      "zero", "ms", [](const server::SlowLoopOutcome& o) { return 1e3 * o.zero_s; },
       fmt::format("to zero force; {} of {} loops latch a fault", latched, outcomes.size()));
   add(
-      "force", "n", [](const SlowLoopOutcome& o) { return o.after_n; },
+      "force", "n", [](const server::SlowLoopOutcome& o) { return o.after_n; },
       fmt::format("largest; {:.2f} in a healthy loop", healthy.after_n));
   add(
-      "travel", "mm", [](const SlowLoopOutcome& o) { return o.travel_mm; },
+      "travel", "mm", [](const server::SlowLoopOutcome& o) { return o.travel_mm; },
       fmt::format("peak to peak; {:.1f} in a healthy loop", healthy.travel_mm));
 }
 
-Status measure(const DevicePreset& preset, const std::filesystem::path& tissues, const Options& options,
+Status measure(const haptics::DevicePreset& preset, const std::filesystem::path& tissues, const Options& options,
                std::vector<CaseResult>& results) {
-  SceneBuilder builder(open_flat, tissues, preset);
-  TROCAR_TRY(const ServoScene scene, builder.load(flat_request()));
-  const SlowLoopOutcome healthy = run_slow_loop_trial(scene, preset, {});
+  server::SceneBuilder builder(open_flat, tissues, preset);
+  TROCAR_TRY(const server::ServoScene scene, builder.load(flat_request()));
+  const server::SlowLoopOutcome healthy = server::run_slow_loop_trial(scene, preset, {});
   print_row(options, preset.name, 0.0, healthy);
-  std::vector<SlowLoopOutcome> outcomes;
+  std::vector<server::SlowLoopOutcome> outcomes;
   for (const double slow_ms : kSlow_ms) {
-    SlowLoopTrial trial;
+    server::SlowLoopTrial trial;
     trial.slow_ms = slow_ms;
-    outcomes.push_back(run_slow_loop_trial(scene, preset, trial));
+    outcomes.push_back(server::run_slow_loop_trial(scene, preset, trial));
     print_row(options, preset.name, slow_ms, outcomes.back());
   }
   add_results(results, preset.name, outcomes, healthy);
@@ -92,14 +93,14 @@ Status measure(const DevicePreset& preset, const std::filesystem::path& tissues,
 Result<std::vector<CaseResult>> run_faults_benchmark(const Options& options) {
   const std::filesystem::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
-  TROCAR_TRY(const auto presets, load_device_presets(data / "devices.toml"));
+  TROCAR_TRY(const auto presets, haptics::load_device_presets(data / "devices.toml"));
   if (options.print)
     options.print(fmt::format("{:<10} {:>6} {:>8} {:>7} {:<13} {:>6} {:>6} {:>8} {:>8}\n", "device", "read", "period",
                               "share", "fault", "latch", "zero", "force", "travel") +
                   fmt::format("{:<10} {:>6} {:>8} {:>7} {:<13} {:>6} {:>6} {:>8} {:>8}\n", "", "ms", "ms", "least", "",
                               "ms", "ms", "N", "mm"));
   std::vector<CaseResult> results;
-  for (const DevicePreset& preset : presets)
+  for (const haptics::DevicePreset& preset : presets)
     TROCAR_TRY_STATUS(measure(preset, data / "tissues.toml", options, results));
   return results;
 }

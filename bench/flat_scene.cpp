@@ -31,18 +31,18 @@ double typical_hu(std::string_view tissue) noexcept {
   return it != kTypical.end() ? it->hu : 40.0;
 }
 
-Result<std::shared_ptr<const VirtualPatient>> make_flat_patient(const std::vector<FlatLayer>& layers) {
+Result<std::shared_ptr<const anatomy::VirtualPatient>> make_flat_patient(const std::vector<FlatLayer>& layers) {
   if (layers.size() > 255)
     return fail(fmt::format("{} layers are too many", layers.size()), "flat patient", "use fewer layers");
-  auto patient = std::make_shared<VirtualPatient>();
+  auto patient = std::make_shared<anatomy::VirtualPatient>();
   patient->name = "flat";
   constexpr double kAbove_mm = 20.0;
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.size = {41, 41, 121};
   geometry.origin_P = {-20.0, -20.0, -kAbove_mm};
-  patient->ct = CtGrid(geometry, static_cast<std::int16_t>(kAirHu));
-  patient->labels = LabelGrid(geometry, 0);
-  patient->skin_distance_mm = FloatGrid(geometry, 0.0F);
+  patient->ct = volume::CtGrid(geometry, static_cast<std::int16_t>(kAirHu));
+  patient->labels = volume::LabelGrid(geometry, 0);
+  patient->skin_distance_mm = volume::FloatGrid(geometry, 0.0F);
   std::vector<std::int16_t> hu;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     hu.push_back(static_cast<std::int16_t>(typical_hu(layers[i].tissue)));
@@ -58,7 +58,7 @@ Result<std::shared_ptr<const VirtualPatient>> make_flat_patient(const std::vecto
       patient->ct.voxels[n] = hu[i];
     }
   }
-  return std::shared_ptr<const VirtualPatient>(std::move(patient));
+  return std::shared_ptr<const anatomy::VirtualPatient>(std::move(patient));
 }
 
 }  // namespace trocar::bench

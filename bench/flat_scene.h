@@ -18,7 +18,7 @@ struct FlatLayer {
 
 /// A flat patient of layers: skin at z = 0, inside at z > 0, 1 mm voxels, 100 mm deep, CT with a typical HU of every
 /// tissue, everything labelled. Errors: more than 255 layers.
-Result<std::shared_ptr<const VirtualPatient>> make_flat_patient(const std::vector<FlatLayer>& layers);
+Result<std::shared_ptr<const anatomy::VirtualPatient>> make_flat_patient(const std::vector<FlatLayer>& layers);
 
 /// Typical HU of a tissue of the table, plain CT. [assumed] textbook values; unknown: 40.
 double typical_hu(std::string_view tissue) noexcept;

@@ -9,11 +9,11 @@
 #include <memory>
 
 #include "anatomy/phantom/phantom.h"
+#include "attempt/case/prepare_case.h"
+#include "attempt/guide/needle_geometry.h"
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
 #include "haptics/tick.h"
-#include "attempt/guide/needle_geometry.h"
-#include "attempt/case/prepare_case.h"
 
 namespace trocar::bench {
 namespace {
@@ -29,9 +29,9 @@ struct Round {
 
 /// In along the planned path and out again, slightly beside and askew so that the shaft is bent; a calibration after
 /// each tick.
-Round measure_round(const HapticScene& scene, const Segment& path_P) {
+Round measure_round(const haptics::HapticScene& scene, const Segment& path_P) {
   Round round;
-  auto state = std::make_unique<HapticState>();  // some hundred kB
+  auto state = std::make_unique<haptics::HapticState>();  // some hundred kB
   const double length = path_P.length_mm();
   const auto count = static_cast<int>(2.0 * (length + 10.0) / (kSpeed_mm_per_s * kDt_s));
   const Vec3 across = path_P.direction().unitOrthogonal();
@@ -42,7 +42,7 @@ Round measure_round(const HapticScene& scene, const Segment& path_P) {
     const double sway = std::sin(0.002 * i);
     const Vec3 axis = (path_P.direction() + 0.03 * sway * across).normalized();
     const Pose X_PN = needle_pose(path_P.a + depth * path_P.direction() + 1.5 * sway * across, axis);
-    const HapticInput input{i * kDt_s, kDt_s, scene.X_PD.inverse() * X_PN * scene.X_SN.inverse()};
+    const haptics::HapticInput input{i * kDt_s, kDt_s, scene.X_PD.inverse() * X_PN * scene.X_SN.inverse()};
     round.tick_us.push_back(time_us([&] { sink = sink + tick(*state, input, scene).f_D.x(); }));
     round.calibration_us.push_back(time_us([&] { sink = calibration_arithmetic(sink); }));
   }
@@ -54,7 +54,7 @@ struct Best {
   Figures tick, calibration;
   std::size_t calls = 0;
 };
-Best measure(const HapticScene& scene, const Segment& path_P) {
+Best measure(const haptics::HapticScene& scene, const Segment& path_P) {
   Best best;
   for (int i = 0; i < kRounds; ++i) {
     Round round = measure_round(scene, path_P);
@@ -81,21 +81,22 @@ void append_case(std::vector<CaseResult>& results, const std::string& name, cons
 }  // namespace
 
 Result<std::vector<CaseResult>> run_haptics_benchmark() {
-  PhantomResolution resolution;
+  anatomy::PhantomResolution resolution;
   resolution.size = {512, 512, 119};
-  TROCAR_TRY(VirtualPatient generated, generate_phantom("abdomen", 1, resolution));
-  TROCAR_TRY(const Case the_case, prepare_case(std::make_shared<const VirtualPatient>(std::move(generated)), {}));
-  const NeedleGeometry needle = needle_geometry(the_case.needle);
+  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, resolution));
+  TROCAR_TRY(const attempt::Case the_case,
+             attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
+  const haptics::NeedleGeometry needle = attempt::needle_geometry(the_case.needle);
 
   std::vector<CaseResult> results;
-  constexpr std::array<std::pair<ForceModel, const char*>, 3> kCases{
-      {{ForceModel::kProxy, "tick/needle16-bending"},
-       {ForceModel::kCombined, "tick/combined16-bending"},
-       {ForceModel::kInsertion, "tick/insertion"}}};
+  constexpr std::array<std::pair<haptics::ForceModel, const char*>, 3> kCases{
+      {{haptics::ForceModel::kProxy, "tick/needle16-bending"},
+       {haptics::ForceModel::kCombined, "tick/combined16-bending"},
+       {haptics::ForceModel::kInsertion, "tick/insertion"}}};
   for (const auto& [model, name] : kCases) {
-    HapticOptions options;
+    haptics::HapticOptions options;
     options.force_model = model;
-    TROCAR_TRY(const auto scene, make_haptic_scene(the_case.patient, the_case.tissues, needle, {}, options));
+    TROCAR_TRY(const auto scene, haptics::make_haptic_scene(the_case.patient, the_case.tissues, needle, {}, options));
     append_case(results, name, measure(*scene, the_case.plan.line_P));
   }
   return results;

@@ -29,12 +29,12 @@ std::string cpu_name() {
   return {};
 }
 
-Json number_or_null(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
+config::Json number_or_null(const std::optional<double>& value) {
+  return value ? config::Json(*value) : config::Json(nullptr);
 }
 
-Json to_json(const CaseResult& result) {
-  Json json;
+config::Json to_json(const CaseResult& result) {
+  config::Json json;
   json["case"] = result.name;
   json["unit"] = result.unit;
   json["median"] = number_or_null(result.figures.median);
@@ -73,13 +73,13 @@ Figures figures_of(std::vector<double> values) {
   return figures;
 }
 
-Json machine_json() {
+config::Json machine_json() {
 #ifdef NDEBUG
   constexpr const char* kBuild = "release";
 #else
   constexpr const char* kBuild = "debug";
 #endif
-  Json json;
+  config::Json json;
   json["cpu"] = cpu_name();
   json["cores"] = std::thread::hardware_concurrency();
 #ifdef __clang__
@@ -92,11 +92,11 @@ Json machine_json() {
   return json;
 }
 
-Json to_json(std::string_view bench, const std::vector<CaseResult>& results) {
-  Json json;
+config::Json to_json(std::string_view bench, const std::vector<CaseResult>& results) {
+  config::Json json;
   json["bench"] = bench;
   json["machine"] = machine_json();
-  json["results"] = Json::array();
+  json["results"] = config::Json::array();
   for (const CaseResult& result : results) json["results"].push_back(to_json(result));
   return json;
 }

@@ -44,10 +44,10 @@ Figures figures_of(std::vector<double> values);
 
 /// What a user may ask of a benchmark. An option that a benchmark does not name in Benchmark::options is refused.
 struct Options {
-  std::shared_ptr<const VirtualPatient> patient;  ///< Empty: the benchmark's own.
+  std::shared_ptr<const anatomy::VirtualPatient> patient;  ///< Empty: the benchmark's own.
   std::string task = "liver-biopsy";
   int paths = 2000;
-  std::optional<ForceModel> force_model;
+  std::optional<haptics::ForceModel> force_model;
   std::uint64_t seed = 1;
   double seconds = 10.0;  ///< How long live servers are watched.
   std::vector<double> rates_hz{1000.0, 4000.0};
@@ -81,7 +81,7 @@ struct Benchmark {
 const std::vector<Benchmark>& all_benchmarks();
 
 /// CPU, cores, compiler, build: what the figures were taken on.
-Json machine_json();
-Json to_json(std::string_view bench, const std::vector<CaseResult>& results);
+config::Json machine_json();
+config::Json to_json(std::string_view bench, const std::vector<CaseResult>& results);
 
 }  // namespace trocar::bench

@@ -7,41 +7,41 @@
 #include <cmath>
 
 #include "anatomy/phantom/phantom.h"
+#include "attempt/case/prepare_case.h"
+#include "attempt/guide/needle_geometry.h"
 #include "bench/harness.h"
 #include "haptics/tick.h"
-#include "attempt/guide/needle_geometry.h"
-#include "attempt/case/prepare_case.h"
 
 namespace trocar::bench {
 namespace {
 
 constexpr double kDt_s = 0.001;
 
-std::shared_ptr<const HapticScene> make_scene(const Case& the_case) {
-  const NeedleGeometry needle = needle_geometry(the_case.needle);
-  const auto scene = make_haptic_scene(the_case.patient, the_case.tissues, needle);
+std::shared_ptr<const haptics::HapticScene> make_scene(const attempt::Case& the_case) {
+  const haptics::NeedleGeometry needle = attempt::needle_geometry(the_case.needle);
+  const auto scene = haptics::make_haptic_scene(the_case.patient, the_case.tissues, needle);
   return scene ? *scene : nullptr;
 }
 
 /// Drives the device along the planned path from one depth to another at constant speed.
-std::vector<TickSample> drive(HapticState& state, const HapticScene& scene, const Segment& path_P, double from_mm,
-                              double to_mm, double speed_mm_per_s) {
-  std::vector<TickSample> samples;
+std::vector<telemetry::TickSample> drive(haptics::HapticState& state, const haptics::HapticScene& scene,
+                                         const Segment& path_P, double from_mm, double to_mm, double speed_mm_per_s) {
+  std::vector<telemetry::TickSample> samples;
   const double step = std::copysign(speed_mm_per_s * kDt_s, to_mm - from_mm);
   const auto count = static_cast<int>(std::abs((to_mm - from_mm) / step));
   for (int i = 1; i <= count; ++i) {
     const Vec3 tip_P = path_P.a + path_P.direction() * (from_mm + step * i);
     const Pose X_DS = scene.X_PD.inverse() * needle_pose(tip_P, path_P.direction()) * scene.X_SN.inverse();
-    samples.push_back(tick(state, {i * kDt_s, kDt_s, X_DS}, scene).sample);
+    samples.push_back(haptics::tick(state, {i * kDt_s, kDt_s, X_DS}, scene).sample);
   }
   return samples;
 }
 /// Peak at each puncture, and how long the resistance takes to lose half of its drop within the next 0.2 s.
-void add_punctures(std::vector<CaseResult>& results, const TissueTable& tissues, const std::vector<TickSample>& samples,
-                   const std::string& name) {
+void add_punctures(std::vector<CaseResult>& results, const anatomy::TissueTable& tissues,
+                   const std::vector<telemetry::TickSample>& samples, const std::string& name) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const TickEvent event = samples[i].events[0];
-    if (event.kind != EventKind::kPuncture) continue;
+    const telemetry::TickEvent event = samples[i].events[0];
+    if (event.kind != telemetry::EventKind::kPuncture) continue;
     const std::string layer = tissues.layers[event.id].name;
     Figures peak;
     peak.median = -samples[i].f_prepuncture_n;
@@ -67,11 +67,12 @@ void add_punctures(std::vector<CaseResult>& results, const TissueTable& tissues,
   }
 }
 
-double mean_resistance_n(const std::vector<TickSample>& samples, double from_mm, double to_mm) {
+double mean_resistance_n(const std::vector<telemetry::TickSample>& samples, double from_mm, double to_mm) {
   double sum = 0.0;
   int count = 0;
-  for (const TickSample& sample : samples) {
-    if (sample.depth_mm < from_mm || sample.depth_mm > to_mm || sample.phase != InsertionPhase::kInserted) continue;
+  for (const telemetry::TickSample& sample : samples) {
+    if (sample.depth_mm < from_mm || sample.depth_mm > to_mm || sample.phase != telemetry::InsertionPhase::kInserted)
+      continue;
     sum += axial_resistance_n(sample);
     ++count;
   }
@@ -79,17 +80,18 @@ double mean_resistance_n(const std::vector<TickSample>& samples, double from_mm,
 }
 
 /// Depth at which the last layer of a way gave way.
-double last_puncture_mm(const std::vector<TickSample>& samples) {
+double last_puncture_mm(const std::vector<telemetry::TickSample>& samples) {
   double depth = 0.0;
-  for (const TickSample& sample : samples) {
-    if (sample.events[0].kind == EventKind::kPuncture) depth = sample.depth_mm;
+  for (const telemetry::TickSample& sample : samples) {
+    if (sample.events[0].kind == telemetry::EventKind::kPuncture) depth = sample.depth_mm;
   }
   return depth;
 }
 
 /// The same path twice: the mean resistance in the organ, once the coupling has relaxed behind its surface.
-void add_second_insertion(std::vector<CaseResult>& results, const Case& the_case, const HapticScene& scene) {
-  HapticState state;
+void add_second_insertion(std::vector<CaseResult>& results, const attempt::Case& the_case,
+                          const haptics::HapticScene& scene) {
+  haptics::HapticState state;
   const Segment& path = the_case.plan.line_P;
   const double length = path.length_mm();
   const auto first = drive(state, scene, path, -10.0, length, 10.0);
@@ -112,17 +114,17 @@ void add_second_insertion(std::vector<CaseResult>& results, const Case& the_case
 }  // namespace
 
 Result<std::vector<CaseResult>> run_insertion_benchmark() {
-  TROCAR_TRY(VirtualPatient generated, generate_phantom("abdomen"));
-  const auto patient = std::make_shared<const VirtualPatient>(std::move(generated));
+  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen"));
+  const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
   std::vector<CaseResult> results;
   for (const char* profile : {"paper-a", "tented"}) {
-    CaseOptions options;
+    attempt::CaseOptions options;
     options.profile = profile;
-    TROCAR_TRY(const Case the_case, prepare_case(patient, options));
+    TROCAR_TRY(const attempt::Case the_case, attempt::prepare_case(patient, options));
     const auto scene = make_scene(the_case);
     if (!scene) return fail("the scene could not be built", "bench insertion", "check data/tissues.toml");
     for (const double speed : {2.0, 10.0, 50.0}) {
-      HapticState state;
+      haptics::HapticState state;
       const auto samples = drive(state, *scene, the_case.plan.line_P, -10.0, the_case.plan.length_mm, speed);
       add_punctures(results, the_case.tissues, samples, fmt::format("{}-{:.0f}mm_s", profile, speed));
     }

@@ -32,19 +32,19 @@ constexpr int kSimulated = 14;      ///< Frames.
 constexpr double kSweep_mm = 40.0;  ///< Along elevation.
 
 struct Pictures {
-  PictureFigures figures;
-  RgbImage shown;  ///< One of them.
+  ultrasound::PictureFigures figures;
+  volume::RgbImage shown;  ///< One of them.
 };
 
-RgbImage rgb_of(std::span<const std::uint8_t> grays, int columns, int rows) {
-  RgbImage image(columns, rows);
+volume::RgbImage rgb_of(std::span<const std::uint8_t> grays, int columns, int rows) {
+  volume::RgbImage image(columns, rows);
   for (std::size_t i = 0; i < grays.size(); ++i) image.pixels[i] = {grays[i], grays[i], grays[i]};
   return image;
 }
 
-RgbImage side_by_side(const RgbImage& a, const RgbImage& b) {
+volume::RgbImage side_by_side(const volume::RgbImage& a, const volume::RgbImage& b) {
   constexpr int kGap = 8;
-  RgbImage both(a.columns + kGap + b.columns, std::max(a.rows, b.rows), {60, 60, 60});
+  volume::RgbImage both(a.columns + kGap + b.columns, std::max(a.rows, b.rows), {60, 60, 60});
   for (int row = 0; row < a.rows; ++row)
     for (int column = 0; column < a.columns; ++column) both.at(column, row) = a.at(column, row);
   for (int row = 0; row < b.rows; ++row)
@@ -52,16 +52,16 @@ RgbImage side_by_side(const RgbImage& a, const RgbImage& b) {
   return both;
 }
 
-Result<Pictures> recorded(const std::filesystem::path& path, const Transducer& transducer) {
-  TROCAR_TRY(const TrackedSequence sequence, read_sequence(path));
+Result<Pictures> recorded(const std::filesystem::path& path, const ultrasound::Transducer& transducer) {
+  TROCAR_TRY(const ultrasound::TrackedSequence sequence, io::read_sequence(path));
   if (sequence.columns != kColumns || sequence.rows != kRows)
     return fail_usage("the pictures are not those of the public liver sweep", path.string(),
                       fmt::format("expected {} x {} pixels", kColumns, kRows));
-  FanPicture picture;
-  picture.scan = make_scan_geometry(transducer, transducer.depth_mm, transducer.scanlines, 1024);
-  picture.raster = {kColumns, kRows, kPixel_mm, kPixel_mm * Vec2(-kFaceColumn, -kFaceRow), false};
+  ultrasound::FanPicture picture;
+  picture.scan = ultrasound::make_scan_geometry(transducer, transducer.depth_mm, transducer.scanlines, 1024);
+  picture.raster = {kColumns, kRows, kPixel_mm, kPixel_mm * ultrasound::Vec2(-kFaceColumn, -kFaceRow), false};
   const auto size = static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(kRows);
-  PictureStatistics statistics;
+  ultrasound::PictureStatistics statistics;
   Pictures pictures;
   for (std::size_t frame = 0; frame < sequence.frames.size(); frame += kEvery) {
     picture.pixels = std::span(sequence.pixels).subspan(frame * size, size);
@@ -72,20 +72,22 @@ Result<Pictures> recorded(const std::filesystem::path& path, const Transducer& t
   return pictures;
 }
 
-Result<Pictures> simulated(const VirtualPatient& patient, const Transducer& transducer, const Options& options) {
-  TROCAR_TRY(AcousticTable table, load_acoustic_table(data_dir() / "acoustics.toml"));
-  TROCAR_TRY(const auto scene, make_acoustic_scene(patient, std::move(table), {}, options.progress));
-  BMode engine(scene, transducer, default_acquisition(transducer));
-  TROCAR_TRY(const auto views, load_probe_views(data_dir() / "views.toml"));
-  TROCAR_TRY(const ProbeView chosen, choose_view(patient, views, kView));
-  TROCAR_TRY(const ProbePlacement placed, place_probe(patient, chosen, transducer));
-  Scanner scanner(kColumns, kRows);
-  PictureStatistics statistics;
+Result<Pictures> simulated(const anatomy::VirtualPatient& patient, const ultrasound::Transducer& transducer,
+                           const Options& options) {
+  TROCAR_TRY(ultrasound::AcousticTable table, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
+  TROCAR_TRY(const auto scene, ultrasound::make_acoustic_scene(patient, std::move(table), {}, options.progress));
+  ultrasound::BMode engine(scene, transducer, ultrasound::default_acquisition(transducer));
+  TROCAR_TRY(const auto views, ultrasound::load_probe_views(data_dir() / "views.toml"));
+  TROCAR_TRY(const ultrasound::ProbeView chosen, ultrasound::choose_view(patient, views, kView));
+  TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, chosen, transducer));
+  ultrasound::Scanner scanner(kColumns, kRows);
+  ultrasound::PictureStatistics statistics;
   Pictures pictures;
   for (int frame = 0; frame < kSimulated; ++frame) {
     const double along_mm = kSweep_mm * (static_cast<double>(frame) / (kSimulated - 1) - 0.5);
     const Pose X_PT = placed.X_PT * Pose::translation(Vec3(0.0, 0.0, along_mm));
-    const GrayImage& shown = scanner.show(engine.render({X_PT, {}, 0.0}), static_cast<std::uint64_t>(frame));
+    const ultrasound::GrayImage& shown =
+        scanner.show(engine.render({X_PT, {}, 0.0}), static_cast<std::uint64_t>(frame));
     statistics.add({scanner.raster(), engine.geometry(), shown.pixels});
     if (frame == kSimulated / 2) pictures.shown = rgb_of(shown.pixels, shown.columns, shown.rows);
   }
@@ -99,13 +101,13 @@ Figures single(double value) {
   return figures;
 }
 
-void add_cases(std::vector<CaseResult>& results, const std::string& name, const PictureFigures& figures) {
+void add_cases(std::vector<CaseResult>& results, const std::string& name, const ultrasound::PictureFigures& figures) {
   const auto add = [&](const std::string& what, const std::string& unit, double value) {
     results.push_back({fmt::format("likeness/{}/{}", name, what), unit, single(value), {}, ""});
   };
   for (const int percent : {10, 25, 50, 75, 90, 99})
-    add(fmt::format("gray-p{}", percent), "gray", gray_percentile(figures.histogram, percent / 100.0));
-  add("gray-mean", "gray", mean_gray(figures.histogram));
+    add(fmt::format("gray-p{}", percent), "gray", ultrasound::gray_percentile(figures.histogram, percent / 100.0));
+  add("gray-mean", "gray", ultrasound::mean_gray(figures.histogram));
   for (const auto& level : figures.levels) add(fmt::format("level-{:.0f}mm", level.depth_mm), "gray", level.mean);
   for (const auto& speckle : figures.speckle) {
     const auto at = fmt::format("{:.0f}mm", speckle.depth_mm);
@@ -116,22 +118,23 @@ void add_cases(std::vector<CaseResult>& results, const std::string& name, const 
   }
 }
 
-const PictureFigures::Speckle* speckle_at(const PictureFigures& figures, double depth_mm) {
+const ultrasound::PictureFigures::Speckle* speckle_at(const ultrasound::PictureFigures& figures, double depth_mm) {
   for (const auto& speckle : figures.speckle)
     if (std::abs(speckle.depth_mm - depth_mm) < 1.0) return &speckle;
   return nullptr;
 }
 
 /// Recorded and simulated in two columns.
-std::string table_of(const PictureFigures& real, const PictureFigures& simulated) {
+std::string table_of(const ultrasound::PictureFigures& real, const ultrasound::PictureFigures& simulated) {
   std::string text = fmt::format("\ngray percentiles (recorded | simulated)\n");
   for (const int percent : {5, 10, 25, 50, 75, 90, 95, 99})
-    text += fmt::format("  {:>3} % {:>5} | {:>3}\n", percent, gray_percentile(real.histogram, percent / 100.0),
-                        gray_percentile(simulated.histogram, percent / 100.0));
+    text +=
+        fmt::format("  {:>3} % {:>5} | {:>3}\n", percent, ultrasound::gray_percentile(real.histogram, percent / 100.0),
+                    ultrasound::gray_percentile(simulated.histogram, percent / 100.0));
   text += fmt::format("  mean {:.1f} | {:.1f}; moved {:.1f} grays a pixel, Bhattacharyya {:.3f}\n",
-                      mean_gray(real.histogram), mean_gray(simulated.histogram),
-                      earth_mover_distance(real.histogram, simulated.histogram),
-                      bhattacharyya_distance(real.histogram, simulated.histogram));
+                      ultrasound::mean_gray(real.histogram), ultrasound::mean_gray(simulated.histogram),
+                      ultrasound::earth_mover_distance(real.histogram, simulated.histogram),
+                      ultrasound::bhattacharyya_distance(real.histogram, simulated.histogram));
   text += "\ndepth mm: gray mean/median/p99 (recorded | simulated)\n";
   for (std::size_t i = 0; i < std::min(real.levels.size(), simulated.levels.size()); ++i)
     text += fmt::format("  {:>4.0f}  {:>5.1f} {:>3.0f} {:>3.0f} | {:>5.1f} {:>3.0f} {:>3.0f}\n",
@@ -142,7 +145,7 @@ std::string table_of(const PictureFigures& real, const PictureFigures& simulated
     const auto* a = speckle_at(real, depth_mm);
     const auto* b = speckle_at(simulated, depth_mm);
     if (a == nullptr && b == nullptr) continue;
-    const auto cells = [](const PictureFigures::Speckle* s) {
+    const auto cells = [](const ultrasound::PictureFigures::Speckle* s) {
       if (s == nullptr) return fmt::format("{:>32}", "-");
       return fmt::format("{:>5.1f} {:>5.1f} {:>5.2f}  {:>5.2f} {:>5.2f} {:>4}", s->mean, s->standard_deviation,
                          s->skewness, s->axial_fwhm_mm, s->lateral_fwhm_mm, s->patches);
@@ -157,20 +160,21 @@ Status write_pictures(const std::filesystem::path& folder, const std::optional<P
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return fail("the folder could not be made", folder.string(), error.message());
-  const RgbImage image = real ? side_by_side(real->shown, synthetic.shown) : synthetic.shown;
-  return write_png(image, folder / "likeness.png");
+  const volume::RgbImage image = real ? side_by_side(real->shown, synthetic.shown) : synthetic.shown;
+  return io::write_png(image, folder / "likeness.png");
 }
 
-Result<std::shared_ptr<const VirtualPatient>> patient_of(const Options& options) {
+Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(const Options& options) {
   if (options.patient) return options.patient;
-  TROCAR_TRY(VirtualPatient generated, generate_phantom("abdomen", 1, {}, options.progress));
-  return std::make_shared<const VirtualPatient>(std::move(generated));
+  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, {}, options.progress));
+  return std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
 }
 
 }  // namespace
 
 Result<std::vector<CaseResult>> run_likeness_benchmark(const Options& options) {
-  TROCAR_TRY(const Transducer transducer, load_transducer(data_dir() / "transducers.toml", kTransducer));
+  TROCAR_TRY(const ultrasound::Transducer transducer,
+             ultrasound::load_transducer(data_dir() / "transducers.toml", kTransducer));
   std::optional<Pictures> real;
   if (!options.sequence.empty()) {
     TROCAR_TRY(real, recorded(options.sequence, transducer));
@@ -181,7 +185,7 @@ Result<std::vector<CaseResult>> run_likeness_benchmark(const Options& options) {
   if (real) add_cases(results, "recorded", real->figures);
   add_cases(results, patient->name, synthetic.figures);
   if (real) {
-    const double moved = earth_mover_distance(real->figures.histogram, synthetic.figures.histogram);
+    const double moved = ultrasound::earth_mover_distance(real->figures.histogram, synthetic.figures.histogram);
     results.push_back(
         {"likeness/histogram-moved", "gray", single(moved), {}, "gray levels a pixel, earth mover's distance"});
     if (options.print) options.print(table_of(real->figures, synthetic.figures));

@@ -10,10 +10,10 @@
 #include <numbers>
 
 #include "anatomy/phantom/phantom.h"
+#include "attempt/case/prepare_case.h"
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
 #include "haptics/tick.h"
-#include "attempt/case/prepare_case.h"
 #include "volume/sampling.h"
 
 namespace trocar::bench {
@@ -35,12 +35,12 @@ struct Place {
   Vec3 normal_P;
 };
 
-Place on_skin(const VirtualPatient& patient, Vec3 p_P) {
-  const FloatGrid& distance = patient.skin_distance_mm;
-  Vec3 normal = gradient_per_mm(distance, p_P).normalized();
+Place on_skin(const anatomy::VirtualPatient& patient, Vec3 p_P) {
+  const volume::FloatGrid& distance = patient.skin_distance_mm;
+  Vec3 normal = volume::gradient_per_mm(distance, p_P).normalized();
   for (int i = 0; i < 10; ++i) {
-    p_P -= sample_linear(distance, p_P) * normal;
-    normal = gradient_per_mm(distance, p_P).normalized();
+    p_P -= volume::sample_linear(distance, p_P) * normal;
+    normal = volume::gradient_per_mm(distance, p_P).normalized();
   }
   return {p_P, normal};
 }
@@ -63,13 +63,14 @@ struct Press {
 };
 
 /// Presses the device straight in until the shown tool has indented `depth_mm` and bears `force_n`.
-Press press(const HapticScene& scene, const Place& place, double depth_mm, double force_n, double tilt_rad = 0.0) {
+Press press(const haptics::HapticScene& scene, const Place& place, double depth_mm, double force_n,
+            double tilt_rad = 0.0) {
   constexpr double kWay_mm = 60.0;
-  ContactState state;
+  haptics::ContactState state;
   Press result{std::nan(""), std::nan(""), 0.0};
   for (double way = -3.0; way < kWay_mm; way += kPress_mm_per_s * kDt_s) {
     const Pose X_PT = pose_on(place, -way, tilt_rad);
-    const ContactStep step = step_contact(state, scene, X_PT, kDt_s);
+    const haptics::ContactStep step = haptics::step_contact(state, scene, X_PT, kDt_s);
     const double indented = place.normal_P.dot(place.p_P - state.X_PT.p());
     const double force = step.wrench_P.force_n.dot(place.normal_P);
     if (std::isnan(result.at_depth_n) && indented >= depth_mm) {
@@ -96,7 +97,7 @@ CaseResult finger_case(const std::string& name, const Press& pressed, const std:
 }
 
 /// Presses along a line over the skin: the hardest and the softest place, and their ratio.
-void add_line(std::vector<CaseResult>& results, const HapticScene& scene, const Vec3& from_P, const Vec3& to_P,
+void add_line(std::vector<CaseResult>& results, const haptics::HapticScene& scene, const Vec3& from_P, const Vec3& to_P,
               const std::string& hard, const std::string& soft) {
   constexpr double kStep_mm = 2.0;
   const double length = (to_P - from_P).norm();
@@ -128,50 +129,52 @@ void add_line(std::vector<CaseResult>& results, const HapticScene& scene, const 
                      "stiffness at 5 N"});
 }
 
-Vec3 landmark(const VirtualPatient& patient, std::string_view name) {
-  const auto found = std::ranges::find(patient.landmarks, name, &Landmark::name);
+Vec3 landmark(const anatomy::VirtualPatient& patient, std::string_view name) {
+  const auto found = std::ranges::find(patient.landmarks, name, &anatomy::Landmark::name);
   return found != patient.landmarks.end() ? found->p_P : Vec3(Vec3::Zero());
 }
 
-Result<std::shared_ptr<const HapticScene>> scene_for(const std::shared_ptr<const VirtualPatient>& patient,
-                                                     const TissueTable& tissues, Tool tool) {
-  HapticOptions options;
+Result<std::shared_ptr<const haptics::HapticScene>> scene_for(
+    const std::shared_ptr<const anatomy::VirtualPatient>& patient, const anatomy::TissueTable& tissues,
+    haptics::Tool tool) {
+  haptics::HapticOptions options;
   options.tool = tool;
-  return make_haptic_scene(patient, tissues, {}, {}, options);
+  return haptics::make_haptic_scene(patient, tissues, {}, {}, options);
 }
 
 /// A block of soft tissue (5 kPa) with a hard ball (60 kPa) whose top lies 10 mm below the skin.
-Status add_tumour(std::vector<CaseResult>& results, const TissueTable& table) {
-  TissueTable tissues = table;
+Status add_tumour(std::vector<CaseResult>& results, const anatomy::TissueTable& table) {
+  anatomy::TissueTable tissues = table;
   const auto soft = tissues.find_tissue("liver");
   const auto hard = tissues.find_tissue("liver_lesion");
   if (!soft || !hard) return fail("has no liver or liver_lesion", "tissue table", "add both tissues");
   tissues.tissues[*soft].young_kpa = 5.0;
   tissues.tissues[*hard].young_kpa = 60.0;
   tissues.tissues[tissues.skin].young_kpa = 5.0;
-  auto patient = std::make_shared<VirtualPatient>();
+  auto patient = std::make_shared<anatomy::VirtualPatient>();
   patient->name = "tumour";
   patient->label_table.labels = {{1, "soft", "liver"}, {2, "tumour", "liver_lesion"}};
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.size = {121, 71, 61};  // skin at y = 0, as the front of a supine patient
   geometry.origin_P = {-30.0, -10.0, -30.0};
-  patient->labels = LabelGrid(geometry, 0);
-  patient->skin_distance_mm = FloatGrid(geometry, 0.0F);
+  patient->labels = volume::LabelGrid(geometry, 0);
+  patient->skin_distance_mm = volume::FloatGrid(geometry, 0.0F);
   const Vec3 centre(0.0, 20.0, 0.0);
   for (std::size_t n = 0; n < patient->labels.voxels.size(); ++n) {
-    const Index3 ijk = geometry.index_of(n);
+    const volume::Index3 ijk = geometry.index_of(n);
     const Vec3 p =
         geometry.origin_P + Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
     patient->skin_distance_mm.voxels[n] = static_cast<float>(-p.y());
     if (p.y() >= 0.0) patient->labels.voxels[n] = (p - centre).norm() < 10.0 ? 2 : 1;
   }
-  TROCAR_TRY(const auto scene, scene_for(patient, tissues, Tool::kFinger));
+  TROCAR_TRY(const auto scene, scene_for(patient, tissues, haptics::Tool::kFinger));
   add_line(results, *scene, {0.0, 0.0, 0.0}, {60.0, 0.0, 0.0}, "tumour", "beside-tumour");
   return {};
 }
 
 /// Force and torque of the transducer, flat and tilted.
-void add_probe(std::vector<CaseResult>& results, const HapticScene& scene, const Vec3& p_P, const std::string& name) {
+void add_probe(std::vector<CaseResult>& results, const haptics::HapticScene& scene, const Vec3& p_P,
+               const std::string& name) {
   constexpr double kDepth_mm = 10.0;
   constexpr double kTilt_rad = 10.0 * std::numbers::pi / 180.0;
   const Place place = on_skin(*scene.patient, p_P);
@@ -192,10 +195,10 @@ void add_probe(std::vector<CaseResult>& results, const HapticScene& scene, const
 }
 
 /// The tool slides over the skin, pressed in; a calibration after each tick.
-void add_time(std::vector<CaseResult>& results, const HapticScene& scene, const Vec3& from_P, const Vec3& to_P,
+void add_time(std::vector<CaseResult>& results, const haptics::HapticScene& scene, const Vec3& from_P, const Vec3& to_P,
               double depth_mm, const std::string& name) {
   constexpr int kTicks = 5000;
-  const auto state = std::make_unique<HapticState>();
+  const auto state = std::make_unique<haptics::HapticState>();
   volatile double sink = 0.5;
   Figures tick_us;
   Figures calibration_us;
@@ -207,8 +210,8 @@ void add_time(std::vector<CaseResult>& results, const HapticScene& scene, const 
       const double way = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * i / kTicks);
       const Place place = on_skin(*scene.patient, from_P + way * (to_P - from_P));
       const Pose X_DS = scene.X_PD.inverse() * pose_on(place, -depth_mm, 0.0) * scene.X_SN.inverse();
-      const HapticInput input{i * kDt_s, kDt_s, X_DS, true, {}};
-      ticks.push_back(time_us([&] { sink = sink + tick(*state, input, scene).f_D.x(); }));
+      const haptics::HapticInput input{i * kDt_s, kDt_s, X_DS, true, {}};
+      ticks.push_back(time_us([&] { sink = sink + haptics::tick(*state, input, scene).f_D.x(); }));
       calibrations.push_back(time_us([&] { sink = calibration_arithmetic(sink); }));
       if (i == 0)
         points = static_cast<int>(std::ranges::count_if(state->contact.depth_mm, [](double d) { return d > 0.0; }));
@@ -235,11 +238,11 @@ void add_time(std::vector<CaseResult>& results, const HapticScene& scene, const 
 }  // namespace
 
 Result<std::vector<CaseResult>> run_palpation_benchmark() {
-  TROCAR_TRY(const Case tables, load_tables({}));
-  TROCAR_TRY(VirtualPatient generated, generate_phantom("abdomen", 1, {{512, 512, 119}}));
-  const auto patient = std::make_shared<const VirtualPatient>(std::move(generated));
-  TROCAR_TRY(const auto finger, scene_for(patient, tables.tissues, Tool::kFinger));
-  TROCAR_TRY(const auto probe, scene_for(patient, tables.tissues, Tool::kTransducer));
+  TROCAR_TRY(const attempt::Case tables, attempt::load_tables({}));
+  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, {{512, 512, 119}}));
+  const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
+  TROCAR_TRY(const auto finger, scene_for(patient, tables.tissues, haptics::Tool::kFinger));
+  TROCAR_TRY(const auto probe, scene_for(patient, tables.tissues, haptics::Tool::kTransducer));
 
   std::vector<CaseResult> results;
   const Vec3 flank = landmark(*patient, "right mid-axillary line, tenth rib");

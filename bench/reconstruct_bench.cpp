@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 constexpr int kRounds = 5;
 
 /// 100 pictures of 640 by 480 pixels of 0.3 mm in a tilting sweep, full of speckle.
-TrackedSequence made_sweep() {
-  TrackedSequence sequence;
+ultrasound::TrackedSequence made_sweep() {
+  ultrasound::TrackedSequence sequence;
   sequence.columns = 640;
   sequence.rows = 480;
   sequence.frames.resize(100);
@@ -39,40 +39,43 @@ TrackedSequence made_sweep() {
   return sequence;
 }
 
-std::string note_of(const FreehandVolume& volume) {
+std::string note_of(const ultrasound::FreehandVolume& volume) {
   const auto& size = volume.gray.geometry.size;
   return fmt::format("{} frames, {}x{}x{} voxels, {} holes filled", volume.frames_used, size[0], size[1], size[2],
                      volume.holes_filled);
 }
 
 /// Times one reconstruction and gives its volume.
-Result<FreehandVolume> measure(const std::string& name, const TrackedSequence& sequence, const PlusConfig& config,
-                               std::vector<CaseResult>& results) {
-  TROCAR_TRY(FreehandVolume volume, reconstruct_freehand(sequence, config.transforms, config.reconstruction));
-  const Figures figures =
-      time_ms(0, kRounds, [&] { (void)reconstruct_freehand(sequence, config.transforms, config.reconstruction); });
+Result<ultrasound::FreehandVolume> measure(const std::string& name, const ultrasound::TrackedSequence& sequence,
+                                           const io::PlusConfig& config, std::vector<CaseResult>& results) {
+  TROCAR_TRY(ultrasound::FreehandVolume volume,
+             ultrasound::reconstruct_freehand(sequence, config.transforms, config.reconstruction));
+  const Figures figures = time_ms(
+      0, kRounds, [&] { (void)ultrasound::reconstruct_freehand(sequence, config.transforms, config.reconstruction); });
   results.push_back({name, "ms", figures, {}, note_of(volume)});
   return volume;
 }
 
 Status measure_spine_phantom(const fs::path& folder, std::vector<CaseResult>& results) {
-  TROCAR_TRY(const TrackedSequence sequence, read_sequence(folder / "SpinePhantomFreehand.igs.mha"));
-  TROCAR_TRY(PlusConfig config,
-             read_plus_config(folder / "PlusDeviceSet_VolumeReconstructionOnly_SpinePhantom_NN_MEAN.xml"));
-  TROCAR_TRY(const LabelGrid reference, read_labels(folder / "vtkVolumeReconstructorTestNNMEANvolumeRef.mha"));
-  TROCAR_TRY(const FreehandVolume volume, measure("reconstruct/spine-phantom", sequence, config, results));
+  TROCAR_TRY(const ultrasound::TrackedSequence sequence, io::read_sequence(folder / "SpinePhantomFreehand.igs.mha"));
+  TROCAR_TRY(io::PlusConfig config,
+             io::read_plus_config(folder / "PlusDeviceSet_VolumeReconstructionOnly_SpinePhantom_NN_MEAN.xml"));
+  TROCAR_TRY(const volume::LabelGrid reference,
+             io::read_labels(folder / "vtkVolumeReconstructorTestNNMEANvolumeRef.mha"));
+  TROCAR_TRY(const ultrasound::FreehandVolume volume, measure("reconstruct/spine-phantom", sequence, config, results));
   if (!volume.gray.geometry.matches(reference.geometry))
     return fail("the grid is not that of PLUS", folder.string(), "see docs/physics.md U12");
-  const auto add = [&](const char* name, ComparedVoxels voxels, const char* note) {
+  const auto add = [&](const char* name, volume::ComparedVoxels voxels, const char* note) {
     Figures figures;
-    figures.median = correlation(volume.gray.voxels, reference.voxels, voxels);
+    figures.median = volume::correlation(volume.gray.voxels, reference.voxels, voxels);
     results.push_back({name, "ratio", figures, {}, note});
   };
-  add("reconstruct/spine-phantom-ncc", ComparedVoxels::kAll, "with PLUS' volume, all voxels");
-  add("reconstruct/spine-phantom-ncc-both", ComparedVoxels::kBothAboveZero,
+  add("reconstruct/spine-phantom-ncc", volume::ComparedVoxels::kAll, "with PLUS' volume, all voxels");
+  add("reconstruct/spine-phantom-ncc-both", volume::ComparedVoxels::kBothAboveZero,
       "with PLUS' volume, where both have echoes");
-  config.reconstruction.interpolation = FreehandInterpolation::kLinear;
-  TROCAR_TRY(const FreehandVolume linear, measure("reconstruct/spine-phantom-linear", sequence, config, results));
+  config.reconstruction.interpolation = ultrasound::FreehandInterpolation::kLinear;
+  TROCAR_TRY(const ultrasound::FreehandVolume linear,
+             measure("reconstruct/spine-phantom-linear", sequence, config, results));
   return {};
 }
 
@@ -80,17 +83,17 @@ Status measure_spine_phantom(const fs::path& folder, std::vector<CaseResult>& re
 
 Result<std::vector<CaseResult>> run_reconstruct_benchmark() {
   std::vector<CaseResult> results;
-  PlusConfig made;
+  io::PlusConfig made;
   made.reconstruction.spacing_mm = Vec3::Constant(0.7);
   made.reconstruction.is_black_left_out = true;
-  made.reconstruction.holes = {HoleFilling{}};
-  TROCAR_TRY(const FreehandVolume volume, measure("reconstruct/made-sweep", made_sweep(), made, results));
+  made.reconstruction.holes = {ultrasound::HoleFilling{}};
+  TROCAR_TRY(const ultrasound::FreehandVolume volume, measure("reconstruct/made-sweep", made_sweep(), made, results));
   const fs::path spine = real_data() / "us-spine-phantom";
   if (fs::exists(spine)) TROCAR_TRY_STATUS(measure_spine_phantom(spine, results));
   const fs::path liver = real_data() / "us-liver-sweep" / "liver_sweep_decoded.igs.mha";
   if (fs::exists(liver)) {
-    TROCAR_TRY(const TrackedSequence sequence, read_sequence(liver));
-    TROCAR_TRY(const FreehandVolume sweep, measure("reconstruct/liver-sweep", sequence, made, results));
+    TROCAR_TRY(const ultrasound::TrackedSequence sequence, io::read_sequence(liver));
+    TROCAR_TRY(const ultrasound::FreehandVolume sweep, measure("reconstruct/liver-sweep", sequence, made, results));
   }
   return results;
 }

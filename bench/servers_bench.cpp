@@ -16,10 +16,10 @@
 #include <thread>
 
 #include "anatomy/phantom/phantom.h"
+#include "attempt/case/scene_request.h"
+#include "attempt/hands/probe_hand.h"
 #include "bench/benchmarks.h"
 #include "core/files/temporary_folder.h"
-#include "attempt/hands/probe_hand.h"
-#include "attempt/case/scene_request.h"
 #include "link/client/haptic_client.h"
 #include "link/client/server_process.h"
 #include "realtime/periodic_loop.h"
@@ -59,8 +59,8 @@ class BusyProcess {
 /// A server of its own and the client that holds it.
 struct Station {
   std::string tool;
-  ServerProcess process;
-  HapticClient client;
+  link::ServerProcess process;
+  link::HapticClient client;
   double resident_mib = 0.0;  ///< When the measurement began.
 };
 
@@ -72,24 +72,24 @@ Result<Station> open_station(const std::filesystem::path& program, const Tempora
                                            "--rate",           fmt::format("{:.0f}", rate_hz),
                                            "--endpoint",       url,
                                            "--flight-records", folder.path().string()};
-  TROCAR_TRY(ServerProcess process, ServerProcess::start(program, arguments, folder / (tool + ".log")));
-  ClientOptions options;
+  TROCAR_TRY(link::ServerProcess process, link::ServerProcess::start(program, arguments, folder / (tool + ".log")));
+  link::ClientOptions options;
   options.endpoint = url;
   options.name = "trocar bench";
   options.has_window = true;
-  TROCAR_TRY(HapticClient client, HapticClient::connect(options));
+  TROCAR_TRY(link::HapticClient client, link::HapticClient::connect(options));
   TROCAR_TRY_STATUS(client.wait_connected(std::chrono::duration_cast<std::chrono::milliseconds>(kPatience)));
   return Station{tool, std::move(process), std::move(client), 0.0};
 }
 
 /// In and out along the path, 12 s a cycle, with a little tremor.
-HandTarget needle_hand(const Segment& line_P, double time_s) {
+link::HandTarget needle_hand(const Segment& line_P, double time_s) {
   constexpr double kCycle_s = 12.0, kTremor_hz = 9.0, kTremor_mm = 0.1, kOutside_mm = 10.0;
   const double swing = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * time_s / kCycle_s);
   const double way_mm = -kOutside_mm + (line_P.length_mm() + kOutside_mm) * swing;
   const Vec3 u = line_P.direction();
   const Vec3 side = u.unitOrthogonal() * kTremor_mm * std::sin(2.0 * std::numbers::pi * kTremor_hz * time_s);
-  HandTarget hand;
+  link::HandTarget hand;
   hand.X_PN = needle_pose(line_P.a + u * way_mm + side, u);
   hand.holds_tip = true;
   return hand;
@@ -97,7 +97,7 @@ HandTarget needle_hand(const Segment& line_P, double time_s) {
 
 /// Three slices through the tip, as a window with slice viewers draws them. Gives their sum, so that it is not left
 /// out.
-double draw_frame(const CtGrid& ct, const Vec3& tip_P, const Vec3& axis_P) {
+double draw_frame(const volume::CtGrid& ct, const Vec3& tip_P, const Vec3& axis_P) {
   const Vec3 across = axis_P.unitOrthogonal();
   const std::array<std::pair<Vec3, Vec3>, 3> planes{
       std::pair<Vec3, Vec3>{axis_P, across}, {axis_P, axis_P.cross(across)}, {across, axis_P.cross(across)}};
@@ -107,7 +107,7 @@ double draw_frame(const CtGrid& ct, const Vec3& tip_P, const Vec3& axis_P) {
     for (int row = 0; row < kSlicePixels; ++row) {
       const Vec3 start = tip_P + (row - kSlicePixels / 2) * kStep_mm * a - 0.5 * kSlice_mm * b;
       for (int column = 0; column < kSlicePixels; ++column)
-        sum += sample_linear(ct, Vec3(start + column * kStep_mm * b));
+        sum += volume::sample_linear(ct, Vec3(start + column * kStep_mm * b));
     }
   }
   return sum;
@@ -122,7 +122,7 @@ double resident_mib(int pid) {
   return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / kMiB;
 }
 
-CaseResult latency_case(const std::string& name, const LatencySummary& s, std::string note = {}) {
+CaseResult latency_case(const std::string& name, const realtime::LatencySummary& s, std::string note = {}) {
   CaseResult result;
   result.name = name;
   result.unit = "us";
@@ -140,8 +140,8 @@ CaseResult number_case(const std::string& name, const char* unit, double value, 
 }
 
 void add_results(Station& station, double rate_hz, std::vector<CaseResult>& results) {
-  const ClientView view = station.client.view();
-  const LoopSummary& loop = view.status.loop;
+  const link::ClientView view = station.client.view();
+  const realtime::LoopSummary& loop = view.status.loop;
   const std::string name = fmt::format("servers/{}-{:.0f}hz/", station.tool, rate_hz);
   results.push_back(number_case(name + "achieved-hz", "n", loop.achieved_hz, view.status.grant));
   results.push_back(
@@ -159,7 +159,7 @@ void add_results(Station& station, double rate_hz, std::vector<CaseResult>& resu
 
 /// Time that a spinning thread loses in one piece.
 struct Holes {
-  LatencyHistogram histogram;
+  realtime::LatencyHistogram histogram;
   std::int64_t lost_ns = 0;
 };
 constexpr std::int64_t kWatch_ns = 3'000'000'000;
@@ -167,9 +167,9 @@ constexpr std::int64_t kHole_ns = 50'000;  // no tick and no interrupt takes so 
 
 Holes spin() {
   Holes holes;
-  const std::int64_t begin_ns = now_ns();
+  const std::int64_t begin_ns = realtime::now_ns();
   for (std::int64_t last_ns = begin_ns, at_ns = begin_ns; at_ns - begin_ns < kWatch_ns; last_ns = at_ns) {
-    at_ns = now_ns();
+    at_ns = realtime::now_ns();
     if (at_ns - last_ns < kHole_ns) continue;
     holes.histogram.add(at_ns - last_ns);
     holes.lost_ns += at_ns - last_ns;
@@ -183,16 +183,17 @@ CaseResult machine_holes(double rate_hz) {
   std::thread other([] { spin(); });
   const Holes holes = spin();
   other.join();
-  CaseResult result = latency_case(fmt::format("servers/machine-{:.0f}hz/holes", rate_hz), summarise(holes.histogram));
+  CaseResult result =
+      latency_case(fmt::format("servers/machine-{:.0f}hz/holes", rate_hz), realtime::summarise(holes.histogram));
   result.note = fmt::format("before it began: {:.0f} holes a second of 50 us and more, {:.2f} percent of the time",
-                            static_cast<double>(holes.histogram.count()) / seconds(kWatch_ns),
+                            static_cast<double>(holes.histogram.count()) / realtime::seconds(kWatch_ns),
                             100.0 * static_cast<double>(holes.lost_ns) / static_cast<double>(kWatch_ns));
   return result;
 }
 
 /// Draws and moves the hands until the time is over; frames drawn.
-int play(std::array<Station*, 2> stations, const Case& the_case, double seconds, const Progress& progress) {
-  const ProbeHand probe(*the_case.patient, the_case.plan.line_P);
+int play(std::array<Station*, 2> stations, const attempt::Case& the_case, double seconds, const Progress& progress) {
+  const attempt::ProbeHand probe(*the_case.patient, the_case.plan.line_P);
   const Segment& line_P = the_case.plan.line_P;
   const auto start = std::chrono::steady_clock::now();
   const auto time_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
@@ -202,7 +203,7 @@ int play(std::array<Station*, 2> stations, const Case& the_case, double seconds,
     while (!is_done) {
       const double now_s = time_s();
       for (Station* station : stations) {
-        HandTarget hand = station->tool == "needle" ? needle_hand(line_P, now_s) : probe.at(now_s);
+        link::HandTarget hand = station->tool == "needle" ? needle_hand(line_P, now_s) : probe.at(now_s);
         station->client.set_hand(hand);
       }
       std::this_thread::sleep_for(5ms);
@@ -228,32 +229,33 @@ int play(std::array<Station*, 2> stations, const Case& the_case, double seconds,
   return frames;
 }
 
-Status measure(const Case& the_case, const Options& options, double rate_hz, std::vector<CaseResult>& results) {
+Status measure(const attempt::Case& the_case, const Options& options, double rate_hz,
+               std::vector<CaseResult>& results) {
   results.push_back(machine_holes(rate_hz));
-  TROCAR_TRY(const std::filesystem::path program, find_server_program());
+  TROCAR_TRY(const std::filesystem::path program, link::find_server_program());
   const TemporaryFolder folder;
   TROCAR_TRY(Station needle, open_station(program, folder, "needle", rate_hz));
   TROCAR_TRY(Station probe_station, open_station(program, folder, "probe", rate_hz));
-  const ProbeHand probe(*the_case.patient, the_case.plan.line_P);
+  const attempt::ProbeHand probe(*the_case.patient, the_case.plan.line_P);
   const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(kPatience);
   for (Station* station : {&needle, &probe_station}) {
-    SceneChoice choice;
+    attempt::SceneChoice choice;
     choice.tool = station->tool;
-    choice.force_model = to_string(options.force_model.value_or(ForceModel::kProxy));
+    choice.force_model = to_string(options.force_model.value_or(haptics::ForceModel::kProxy));
     choice.patient_source = "abdomen";
-    LoadScene request = scene_request(the_case, choice);
+    link::LoadScene request = attempt::scene_request(the_case, choice);
     request.patient_hash.clear();
     if (station->tool == "probe") request.X_PW = probe.room(request.X_PW);
     TROCAR_TRY_STATUS(station->client.ask(request, patience));
-    HandTarget hand = station->tool == "needle" ? needle_hand(the_case.plan.line_P, 0.0) : probe.at(0.0);
+    link::HandTarget hand = station->tool == "needle" ? needle_hand(the_case.plan.line_P, 0.0) : probe.at(0.0);
     hand.is_placed = true;
     station->client.set_hand(hand);
-    TROCAR_TRY_STATUS(station->client.ask(ServerCommand::kStart, patience));
+    TROCAR_TRY_STATUS(station->client.ask(link::ServerCommand::kStart, patience));
   }
   const BusyProcess busy;
   std::this_thread::sleep_for(1s);  // past the safe start
   for (Station* station : {&needle, &probe_station}) {
-    TROCAR_TRY_STATUS(station->client.ask(ServerCommand::kRestartStatistics, patience));
+    TROCAR_TRY_STATUS(station->client.ask(link::ServerCommand::kRestartStatistics, patience));
     station->resident_mib = resident_mib(station->process.pid());
   }
   const int frames = play({&needle, &probe_station}, the_case, options.seconds, options.progress);
@@ -266,8 +268,9 @@ Status measure(const Case& the_case, const Options& options, double rate_hz, std
 }  // namespace
 
 Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options) {
-  TROCAR_TRY(VirtualPatient abdomen, generate_phantom("abdomen"));
-  TROCAR_TRY(const Case the_case, prepare_case(std::make_shared<const VirtualPatient>(std::move(abdomen)), {}));
+  TROCAR_TRY(anatomy::VirtualPatient abdomen, anatomy::generate_phantom("abdomen"));
+  TROCAR_TRY(const attempt::Case the_case,
+             attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(abdomen)), {}));
   std::vector<CaseResult> results;
   for (const double rate_hz : options.rates_hz) {
     TROCAR_TRY_STATUS(measure(the_case, options, rate_hz, results));

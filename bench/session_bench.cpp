@@ -6,10 +6,10 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
+#include "attempt/offline/run_session.h"
 #include "bench/harness.h"
 #include "bench/real_data.h"
 #include "core/files/temporary_folder.h"
-#include "attempt/offline/run_session.h"
 #include "io/patient/patient_folder.h"
 
 namespace trocar::bench {
@@ -40,20 +40,21 @@ Result<Figures> time_fallible_ms(int rounds, const std::function<Status()>& work
 
 Result<std::vector<CaseResult>> run_session_benchmark() {
   const TemporaryFolder folder;
-  TROCAR_TRY(VirtualPatient generated, generate_phantom("abdomen"));
+  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen"));
   const fs::path patient_folder = folder.path() / "patient";
-  TROCAR_TRY_STATUS(save_patient(generated, {}, patient_folder));
-  TROCAR_TRY(const Case the_case, prepare_case(std::make_shared<const VirtualPatient>(std::move(generated)), {}));
+  TROCAR_TRY_STATUS(io::save_patient(generated, {}, patient_folder));
+  TROCAR_TRY(const attempt::Case the_case,
+             attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
 
   // In and out along the path in just 30 simulated seconds.
   const double speed = 2.0 * (the_case.plan.line_P.length_mm() + kOutside_mm) / kSimulated_s;
-  RunOptions options;
+  attempt::RunOptions options;
   options.operator_name = fmt::format("constant-velocity:{:.6f}", speed);
   int round = 0;
   std::size_t ticks = 0;
   TROCAR_TRY(const Figures loop, time_fallible_ms(7, [&]() -> Status {
                options.session = folder.path() / fmt::format("loop{}.trocar", ++round);
-               TROCAR_TRY(const RunResult result, run_session(the_case, options));
+               TROCAR_TRY(const attempt::RunResult result, attempt::run_session(the_case, options));
                ticks = result.ticks;
                return {};
              }));

@@ -24,20 +24,20 @@ constexpr int kRepeats = 100;  ///< Slices a round.
 constexpr int kPeerThreads = 2;
 constexpr float kOutside = -1024.0F;
 
-CtGrid make_volume() {
-  GridGeometry geometry;
+volume::CtGrid make_volume() {
+  volume::GridGeometry geometry;
   geometry.size = {kSide, kSide, kSide};
-  CtGrid ct(geometry);
+  volume::CtGrid ct(geometry);
   Random random(1);
   for (auto& voxel : ct.voxels) voxel = static_cast<std::int16_t>(static_cast<int>(random.next() % 3000) - 1000);
   return ct;
 }
 
 /// A slice through the middle of the volume that lies inside it, spanned by two directions square to each other.
-SlicePlane plane_through_middle(const Vec3& u_P, const Vec3& v_P) {
+volume::SlicePlane plane_through_middle(const Vec3& u_P, const Vec3& v_P) {
   const double span_mm = 0.7 * kSide;  // a square of this side fits into the cube however it is turned
   const double step_mm = span_mm / (kPixels - 1);
-  SlicePlane plane;
+  volume::SlicePlane plane;
   plane.step_u_P = step_mm * u_P;
   plane.step_v_P = step_mm * v_P;
   plane.origin_P = Vec3::Constant(0.5 * (kSide - 1)) - 0.5 * span_mm * (u_P + v_P);
@@ -45,7 +45,7 @@ SlicePlane plane_through_middle(const Vec3& u_P, const Vec3& v_P) {
   return plane;
 }
 
-SlicePlane oblique_plane() {
+volume::SlicePlane oblique_plane() {
   const Vec3 normal = Vec3(1.0, 2.0, 3.0).normalized();
   const Vec3 u = normal.cross(Vec3(0.2, -1.0, 0.4)).normalized();
   return plane_through_middle(u, normal.cross(u));
@@ -54,7 +54,7 @@ SlicePlane oblique_plane() {
 /// VTK's linear reslice of the same volume and plane.
 class Peer {
  public:
-  Peer(const CtGrid& ct, const SlicePlane& plane) {
+  Peer(const volume::CtGrid& ct, const volume::SlicePlane& plane) {
     vtkNew<vtkShortArray> voxels;
     voxels->SetArray(const_cast<short*>(ct.voxels.data()), static_cast<vtkIdType>(ct.voxels.size()), 1);
     image_->SetDimensions(kSide, kSide, kSide);
@@ -100,13 +100,13 @@ Status check_agreement(const std::vector<float>& ours, const short* peers, std::
               "report this: the kernel is wrong");
 }
 
-Result<CaseResult> race(const CtGrid& ct, std::string name, const SlicePlane& plane) {
+Result<CaseResult> race(const volume::CtGrid& ct, std::string name, const volume::SlicePlane& plane) {
   std::vector<float> ours(static_cast<std::size_t>(kPixels) * kPixels);
   Peer peer(ct, plane);
   Figures best;
   Figures best_peer;
   for (int round = 0; round < kRounds; ++round) {
-    keep_best(best, time_ms(3, kRepeats, [&] { sample_slice(ct, plane, kOutside, ours); }));
+    keep_best(best, time_ms(3, kRepeats, [&] { volume::sample_slice(ct, plane, kOutside, ours); }));
     keep_best(best_peer, time_ms(3, kRepeats / 4, [&] { peer.run(); }));
   }
   TROCAR_TRY_STATUS(check_agreement(ours, peer.run(), name));
@@ -118,8 +118,8 @@ Result<CaseResult> race(const CtGrid& ct, std::string name, const SlicePlane& pl
 }
 
 /// The points of the oblique slice one by one, as a beam or an ultrasound image asks for them.
-CaseResult time_points(const CtGrid& ct) {
-  const SlicePlane plane = oblique_plane();
+CaseResult time_points(const volume::CtGrid& ct) {
+  const volume::SlicePlane plane = oblique_plane();
   std::vector<Vec3f> points_P;
   for (int v = 0; v < plane.rows; ++v)
     for (int u = 0; u < plane.columns; ++u)
@@ -127,39 +127,39 @@ CaseResult time_points(const CtGrid& ct) {
   std::vector<float> values(points_P.size());
   Figures best;
   for (int round = 0; round < kRounds; ++round)
-    keep_best(best, time_ms(3, kRepeats, [&] { sample_points(ct, points_P, kOutside, values); }));
+    keep_best(best, time_ms(3, kRepeats, [&] { volume::sample_points(ct, points_P, kOutside, values); }));
   return {"slice/points-262144", "ms", best, std::nullopt, "the oblique slice as single points, one core"};
 }
 
 /// What a slice viewer does for a new frame: CT, window, labels with outlines.
-CaseResult time_painting(const CtGrid& ct) {
+CaseResult time_painting(const volume::CtGrid& ct) {
   constexpr int kView = 400;  // pixels along each side of a viewer
-  VirtualPatient patient;
+  anatomy::VirtualPatient patient;
   patient.ct = ct;
-  patient.labels = LabelGrid(ct.geometry);
+  patient.labels = volume::LabelGrid(ct.geometry);
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {  // cubes of 16 voxels of eight structures
     const auto [i, j, k] = ct.geometry.index_of(n);
     patient.labels.voxels[n] = static_cast<std::uint8_t>(1 + ((i / 16) + 3 * (j / 16) + 5 * (k / 16)) % 8);
   }
   for (std::uint8_t id = 1; id <= 8; ++id)
     patient.label_table.labels.push_back({id, fmt::format("liver_{}", id), "liver", {200, 20, id}});
-  SlicePlane plane = oblique_plane();
+  volume::SlicePlane plane = oblique_plane();
   plane.step_u_P *= static_cast<double>(kPixels) / kView;
   plane.step_v_P *= static_cast<double>(kPixels) / kView;
   plane.columns = plane.rows = kView;
-  SliceBuffers buffers;
-  RgbImage picture;
+  slices::SliceBuffers buffers;
+  volume::RgbImage picture;
   Figures best;
   for (int round = 0; round < kRounds; ++round)
-    keep_best(best, time_ms(3, kRepeats, [&] { paint_slice(patient, plane, {}, buffers, picture); }));
+    keep_best(best, time_ms(3, kRepeats, [&] { slices::paint_slice(patient, plane, {}, buffers, picture); }));
   return {"slice/paint-400", "ms", best, std::nullopt, "400x400 oblique with labels everywhere, one core"};
 }
 
 }  // namespace
 
 Result<std::vector<CaseResult>> run_slice_benchmark() {
-  const CtGrid ct = make_volume();
-  const std::pair<const char*, SlicePlane> planes[] = {
+  const volume::CtGrid ct = make_volume();
+  const std::pair<const char*, volume::SlicePlane> planes[] = {
       {"slice/512-oblique", oblique_plane()},
       {"slice/512-axial", plane_through_middle(Vec3::UnitX(), Vec3::UnitY())},
       {"slice/512-coronal", plane_through_middle(Vec3::UnitX(), Vec3::UnitZ())},

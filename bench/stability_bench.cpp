@@ -21,21 +21,22 @@ constexpr double kSurface_mm = 10.0;  // adipose tissue above, under the skin
 constexpr double kDeep_mm = 40.0;
 constexpr double kAtWall_mm = 0.5;  // the device's tip under a wall's resting surface: no wall gives way
 constexpr double kIntoBone_mm = 2.0;
-constexpr std::array kModels{ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined};
+constexpr std::array kModels{haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
+                             haptics::ForceModel::kCombined};
 
 struct Trial {
-  std::shared_ptr<const HapticScene> scene;
-  const DevicePreset* device;
-  ForceModel model;
-  Holder holder;
+  std::shared_ptr<const haptics::HapticScene> scene;
+  const haptics::DevicePreset* device;
+  haptics::ForceModel model;
+  haptics::Holder holder;
   std::string tissue;
   bool is_at_wall;
   double depth_mm;
-  StabilityOutcome outcome;
+  haptics::StabilityOutcome outcome;
 };
 
 /// Where the needle is let go: deep in the tissue, and at its wall where it has one.
-std::vector<std::pair<bool, double>> depths(const TissueTable& table, const TissueParams& tissue) {
+std::vector<std::pair<bool, double>> depths(const anatomy::TissueTable& table, const anatomy::TissueParams& tissue) {
   const double surface_mm = tissue.name == "skin" ? 0.0 : kSurface_mm;
   const bool has_wall = tissue.layer.has_value();
   const bool is_closed = has_wall && !std::isfinite(table.layers[*tissue.layer].puncture_force_n);
@@ -44,21 +45,21 @@ std::vector<std::pair<bool, double>> depths(const TissueTable& table, const Tiss
   return depths;
 }
 
-Result<std::vector<Trial>> plan_trials(const TissueTable& table, const std::vector<DevicePreset>& devices,
-                                       const Options& options) {
+Result<std::vector<Trial>> plan_trials(const anatomy::TissueTable& table,
+                                       const std::vector<haptics::DevicePreset>& devices, const Options& options) {
   std::vector<Trial> trials;
   for (std::size_t i = 1; i < table.tissues.size(); ++i) {  // 0 is air
-    const TissueParams& tissue = table.tissues[i];
+    const anatomy::TissueParams& tissue = table.tissues[i];
     TROCAR_TRY(const auto patient, make_flat_patient({{0.0, "adipose"}, {kSurface_mm, tissue.name}}));
-    for (const ForceModel model : kModels) {
+    for (const haptics::ForceModel model : kModels) {
       if (options.force_model && *options.force_model != model) continue;
-      for (const DevicePreset& device : devices) {
-        HapticOptions haptic;
+      for (const haptics::DevicePreset& device : devices) {
+        haptics::HapticOptions haptic;
         haptic.force_model = model;
         haptic.seed = options.seed;
-        apply_device_preset(device, haptic);
-        TROCAR_TRY(const auto scene, make_haptic_scene(patient, table, {}, device.capability, haptic));
-        for (const Holder holder : kAllHolders)
+        haptics::apply_device_preset(device, haptic);
+        TROCAR_TRY(const auto scene, haptics::make_haptic_scene(patient, table, {}, device.capability, haptic));
+        for (const haptics::Holder holder : haptics::kAllHolders)
           for (const auto& [is_at_wall, depth] : depths(table, tissue))
             trials.push_back({scene, &device, model, holder, tissue.name, is_at_wall, depth, {}});
       }
@@ -72,7 +73,7 @@ void run_trials(std::vector<Trial>& trials, const Progress& progress) {
   parallel_for(trials.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       Trial& trial = trials[i];
-      trial.outcome = run_stability_trial(trial.scene, *trial.device, trial.holder, {trial.depth_mm});
+      trial.outcome = haptics::run_stability_trial(trial.scene, *trial.device, trial.holder, {trial.depth_mm});
       const std::size_t count = ++done;
       if (count % 32 == 0)
         report(progress, "letting needles go", static_cast<double>(count) / static_cast<double>(trials.size()));
@@ -85,8 +86,8 @@ std::string name_of(const Trial& trial) {
 }
 
 /// One line a model, device and kind of holder.
-void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& trials, ForceModel model,
-                 const DevicePreset& device) {
+void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& trials, haptics::ForceModel model,
+                 const haptics::DevicePreset& device) {
   std::vector<const Trial*> group;
   for (const Trial& trial : trials)
     if (trial.model == model && trial.device == &device) group.push_back(&trial);
@@ -113,7 +114,8 @@ void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& tri
       fmt::format("worst peak to peak, allowed {:.3f}: {}", group.front()->outcome.allowed_mm,
                   name_of(*worst(position))));
   add("/force", "n", force(*worst(force)),
-      fmt::format("worst peak to peak, allowed {:.2f}: {}", StabilityOutcome::kAllowed_n, name_of(*worst(force))));
+      fmt::format("worst peak to peak, allowed {:.2f}: {}", haptics::StabilityOutcome::kAllowed_n,
+                  name_of(*worst(force))));
   add("/energy", "mj", growth(*worst(growth)),
       fmt::format("worst growth, allowed {:.3f}: {}", group.front()->outcome.allowed_mj, name_of(*worst(growth))));
 }
@@ -134,15 +136,15 @@ void print_failures(const std::vector<Trial>& trials, const Options& options) {
 Result<std::vector<CaseResult>> run_stability_benchmark(const Options& options) {
   const std::filesystem::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
-  TROCAR_TRY(const TissueTable table, load_tissue_table(data / "tissues.toml"));
-  TROCAR_TRY(auto devices, load_device_presets(data / "devices.toml"));
-  std::erase_if(devices, [](const DevicePreset& device) { return !device.has_force(); });
+  TROCAR_TRY(const anatomy::TissueTable table, anatomy::load_tissue_table(data / "tissues.toml"));
+  TROCAR_TRY(auto devices, haptics::load_device_presets(data / "devices.toml"));
+  std::erase_if(devices, [](const haptics::DevicePreset& device) { return !device.has_force(); });
   TROCAR_TRY(auto trials, plan_trials(table, devices, options));
   run_trials(trials, options.progress);
   print_failures(trials, options);
   std::vector<CaseResult> results;
-  for (const ForceModel model : kModels)
-    for (const DevicePreset& device : devices) add_results(results, trials, model, device);
+  for (const haptics::ForceModel model : kModels)
+    for (const haptics::DevicePreset& device : devices) add_results(results, trials, model, device);
   return results;
 }
 

@@ -11,9 +11,9 @@
 #include "bench/calibration.h"
 #include "core/files/data_dir.h"
 #include "ultrasound/engine/b_mode.h"
-#include "ultrasound/sweep/freehand_sweep.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "ultrasound/scanner/scanner.h"
+#include "ultrasound/sweep/freehand_sweep.h"
 
 namespace trocar::bench {
 namespace {
@@ -44,7 +44,7 @@ double cpu_ms() {
   return static_cast<double>(now.tv_sec) * kMsPerS + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
-Round measure_round(BMode& engine, Scanner& scanner, const Pose& X_PT, int first_frame) {
+Round measure_round(ultrasound::BMode& engine, ultrasound::Scanner& scanner, const Pose& X_PT, int first_frame) {
   Round round;
   for (auto* list : {&round.frame_ms, &round.engine_ms, &round.scanner_ms, &round.calibration_us})
     list->reserve(kFrames);
@@ -52,8 +52,8 @@ Round measure_round(BMode& engine, Scanner& scanner, const Pose& X_PT, int first
   const AllocationCount allocations;
   const double cpu_before_ms = cpu_ms();
   for (int n = first_frame; n < first_frame + kFrames; ++n) {
-    const Pose X_PT_now = sway(X_PT, n);
-    const BasebandFrame* echoes = nullptr;
+    const Pose X_PT_now = ultrasound::sway(X_PT, n);
+    const ultrasound::BasebandFrame* echoes = nullptr;
     const double engine_us = time_us([&] { echoes = &engine.render({X_PT_now, {}, n / 60.0}); });
     const double scanner_us = time_us([&] { scanner.show(*echoes, static_cast<std::uint64_t>(n)); });
     round.calibration_us.push_back(time_us([&] { sink = calibration_arithmetic(sink); }));
@@ -72,11 +72,11 @@ struct Best {
   double allocations_a_frame = 0.0;
   double cpu_ms_a_frame = 0.0;  ///< The least.
 };
-Best measure(const std::shared_ptr<const AcousticScene>& scene, const Transducer& transducer, const Pose& X_PT,
-             const Acquisition& acquisition) {
-  BMode engine(scene, transducer, acquisition);
-  Scanner scanner(kColumns, kRows);
-  for (int n = 0; n < kWarmUp; ++n) scanner.show(engine.render({sway(X_PT, -n), {}, 0.0}), 1);
+Best measure(const std::shared_ptr<const ultrasound::AcousticScene>& scene, const ultrasound::Transducer& transducer,
+             const Pose& X_PT, const ultrasound::Acquisition& acquisition) {
+  ultrasound::BMode engine(scene, transducer, acquisition);
+  ultrasound::Scanner scanner(kColumns, kRows);
+  for (int n = 0; n < kWarmUp; ++n) scanner.show(engine.render({ultrasound::sway(X_PT, -n), {}, 0.0}), 1);
   Best best;
   for (int round = 0; round < kRounds; ++round) {
     Round taken = measure_round(engine, scanner, X_PT, round * kFrames);
@@ -130,15 +130,15 @@ void append(const std::string& name, const Best& best, std::vector<CaseResult>& 
 
 Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options) {
   report(options.progress, "patient", 0.0);
-  TROCAR_TRY(const VirtualPatient patient, generate_phantom("abdomen", 1, {{512, 512, 119}}));
-  TROCAR_TRY(AcousticTable table, load_acoustic_table(data_dir() / "acoustics.toml"));
-  TROCAR_TRY(const auto views, load_probe_views(data_dir() / "views.toml"));
-  TROCAR_TRY(const ProbeView view, choose_view(patient, views, "liver-right-kidney"));
+  TROCAR_TRY(const anatomy::VirtualPatient patient, anatomy::generate_phantom("abdomen", 1, {{512, 512, 119}}));
+  TROCAR_TRY(ultrasound::AcousticTable table, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
+  TROCAR_TRY(const auto views, ultrasound::load_probe_views(data_dir() / "views.toml"));
+  TROCAR_TRY(const ultrasound::ProbeView view, ultrasound::choose_view(patient, views, "liver-right-kidney"));
 
   std::vector<CaseResult> results;
-  std::shared_ptr<const AcousticScene> scene;
+  std::shared_ptr<const ultrasound::AcousticScene> scene;
   const double scene_us = time_us([&] {
-    if (auto made = make_acoustic_scene(patient, std::move(table))) scene = *std::move(made);
+    if (auto made = ultrasound::make_acoustic_scene(patient, std::move(table))) scene = *std::move(made);
   });
   if (scene == nullptr)
     return fail("the embedded patient has no acoustic scene", "bench ultrasound", "check data/acoustics.toml");
@@ -154,10 +154,11 @@ Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options)
   for (const Setting& setting : settings) {
     report(options.progress, setting.name, fraction);
     fraction += 0.2;
-    TROCAR_TRY(const Transducer transducer, load_transducer(data_dir() / "transducers.toml", setting.transducer));
-    TROCAR_TRY(const ProbePlacement placed, place_probe(patient, view, transducer));
+    TROCAR_TRY(const ultrasound::Transducer transducer,
+               ultrasound::load_transducer(data_dir() / "transducers.toml", setting.transducer));
+    TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, view, transducer));
     const Pose& X_PT = placed.X_PT;
-    Acquisition acquisition = default_acquisition(transducer);
+    ultrasound::Acquisition acquisition = ultrasound::default_acquisition(transducer);
     acquisition.looks = setting.looks;
     const Best best = measure(scene, transducer, X_PT, acquisition);
     if (&setting == settings)

@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-namespace trocar {
+namespace trocar::arguments {
 namespace {
 
 /// The number that fills the whole text.
@@ -61,4 +61,4 @@ CLI::Option* seed_number(CLI::Option* option) {
   return restrict_to<std::uint64_t>(option, {0, std::numeric_limits<std::uint64_t>::max(), "whole number", {}});
 }
 
-}  // namespace trocar
+}  // namespace trocar::arguments

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string_view>
 
-namespace trocar {
+namespace trocar::arguments {
 
 // Every option that takes a number is made with one of these. Each value of the option must be written in decimal and
 // fill the whole text: "", "nan", "inf", "0x10", "3x" and numbers outside the range are usage errors. The help shows
@@ -18,4 +18,4 @@ CLI::Option* whole_number_within(CLI::Option* option, std::int64_t low, std::int
 /// A random seed: a whole number from 0 to 2^64 - 1.
 CLI::Option* seed_number(CLI::Option* option);
 
-}  // namespace trocar
+}  // namespace trocar::arguments

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <new>
 
-namespace trocar {
+namespace trocar::arguments {
 namespace {
 
 /// Both streams are used: fmt prints with stdio, CLI11 prints help with iostream.
@@ -44,4 +44,4 @@ int run_program(const std::function<int()>& program, const char* name) {
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::arguments

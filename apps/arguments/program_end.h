@@ -4,7 +4,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::arguments {
 
 /// Prints "error: what — where — what to do" on standard error; returns the exit status.
 int report_error(const Error& error);
@@ -13,4 +13,4 @@ int report_error(const Error& error);
 /// At the end standard output is flushed: where it cannot be written (a full disk), a status of 0 becomes 1.
 int run_program(const std::function<int()>& program, const char* name);
 
-}  // namespace trocar
+}  // namespace trocar::arguments

@@ -18,7 +18,7 @@ struct Arguments {
   std::vector<std::string> names;
   bool is_json = false;
   bool is_list = false;
-  PatientSource source;
+  io::PatientSource source;
   std::string force_model;
   bench::Options options;
   std::vector<std::string> given;  ///< Of kForSome.
@@ -75,7 +75,7 @@ Status check_options(const std::vector<const bench::Benchmark*>& chosen, const s
 
 Status prepare(Arguments& arguments) {
   if (!arguments.force_model.empty()) {
-    TROCAR_TRY(arguments.options.force_model, parse_force_model(arguments.force_model));
+    TROCAR_TRY(arguments.options.force_model, haptics::parse_force_model(arguments.force_model));
   }
   if (!arguments.options.out.empty()) TROCAR_TRY_STATUS(check_new(arguments.options.out));
   if (!arguments.is_json) arguments.options.print = [](std::string_view text) { fmt::print("{}", text); };
@@ -87,14 +87,14 @@ Result<std::vector<bench::CaseResult>> measure(const bench::Benchmark& benchmark
   bench::Options options = arguments.options;
   options.progress = printer.callback();
   if (!arguments.source.folder_or_name.empty()) {
-    TROCAR_TRY(VirtualPatient patient, open_patient(arguments.source, printer.callback()));
-    options.patient = std::make_shared<const VirtualPatient>(std::move(patient));
+    TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
+    options.patient = std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
   }
   return benchmark.run(options);
 }
 
 void list_benchmarks(bool is_json) {
-  Json list = Json::array();
+  config::Json list = config::Json::array();
   for (const bench::Benchmark& b : bench::all_benchmarks()) {
     if (!is_json) fmt::print("{:<12} {}\n", b.name, b.description);
     list.push_back({{"name", b.name}, {"description", b.description}, {"options", b.options}});
@@ -110,7 +110,7 @@ Status run_benchmarks(Arguments& arguments) {
   TROCAR_TRY(const auto chosen, choose(arguments.names));
   TROCAR_TRY_STATUS(check_options(chosen, arguments.given));
   TROCAR_TRY_STATUS(prepare(arguments));
-  Json all = Json::array();
+  config::Json all = config::Json::array();
   for (const bench::Benchmark* benchmark : chosen) {
     TROCAR_TRY(const auto results, measure(*benchmark, arguments));
     if (arguments.is_json) {
@@ -119,7 +119,7 @@ Status run_benchmarks(Arguments& arguments) {
       print_table(benchmark->name, results);
     }
   }
-  if (arguments.is_json) print_json(all.size() == 1 ? all.front() : Json{{"benches", all}});
+  if (arguments.is_json) print_json(all.size() == 1 ? all.front() : config::Json{{"benches", all}});
   return {};
 }
 
@@ -133,21 +133,23 @@ void add_bench_command(CLI::App& program, Action& action) {
   command->add_flag("--list", a->is_list, "List the benchmarks");
   command->add_flag("--json", a->is_json, "Print one JSON object; with several benchmarks a list under \"benches\"");
   command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
-  seed_number(
+  arguments::seed_number(
       command->add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient"))
       ->capture_default_str();
   add_cache_option(*command, a->source);
   command->add_option("--task", a->options.task, "Task whose paths are planned")->capture_default_str();
-  whole_number_within(command->add_option("--paths", a->options.paths, "Number of planned paths"), 1, 100000)
+  arguments::whole_number_within(command->add_option("--paths", a->options.paths, "Number of planned paths"), 1, 100000)
       ->capture_default_str();
   command->add_option("--force-model", a->force_model, "Force model: insertion, proxy or combined");
-  seed_number(command->add_option("--seed", a->options.seed, "Random seed for the choice of paths and the motion"))
+  arguments::seed_number(
+      command->add_option("--seed", a->options.seed, "Random seed for the choice of paths and the motion"))
       ->capture_default_str();
-  number_within(command->add_option("--seconds", a->options.seconds, "Measuring time of live servers"), 1.0, 86400.0,
-                "s")
+  arguments::number_within(command->add_option("--seconds", a->options.seconds, "Measuring time of live servers"), 1.0,
+                           86400.0, "s")
       ->capture_default_str();
-  number_within(command->add_option("--rate", a->options.rates_hz, "Rate of live servers; several may be given"), 250.0,
-                4000.0, "Hz")
+  arguments::number_within(
+      command->add_option("--rate", a->options.rates_hz, "Rate of live servers; several may be given"), 250.0, 4000.0,
+      "Hz")
       ->capture_default_str();
   command->add_option("--sequence", a->options.sequence, "Recorded ultrasound (.igs.mha) to compare pictures with");
   command->add_option("--out", a->options.out, "Folder to create for the benchmark's files");

@@ -30,21 +30,21 @@ Words names_of(const Things& things, Name name) {
 
 Result<Values> known_values() {
   Values values;
-  values["--patient"] = values["PATIENT"] = names_of(embedded_patients(), &PhantomInfo::name);
+  values["--patient"] = values["PATIENT"] = names_of(anatomy::embedded_patients(), &anatomy::PhantomInfo::name);
   values["--operator"] = {"expert", "novice", "constant-velocity:", "replay:"};
   values["--force-model"] = {"insertion", "proxy", "combined"};
   TROCAR_TRY(const auto tasks_folder, find_data("tasks"));
-  TROCAR_TRY(const auto tasks, load_tasks(tasks_folder));
-  values["--task"] = names_of(tasks, &Task::name);
+  TROCAR_TRY(const auto tasks, tasks::load_tasks(tasks_folder));
+  values["--task"] = names_of(tasks, &tasks::Task::name);
   TROCAR_TRY(const auto devices_file, find_data("devices.toml"));
-  TROCAR_TRY(const auto devices, load_device_presets(devices_file));
-  values["--device"] = names_of(devices, &DevicePreset::name);
+  TROCAR_TRY(const auto devices, haptics::load_device_presets(devices_file));
+  values["--device"] = names_of(devices, &haptics::DevicePreset::name);
   TROCAR_TRY(const auto views_file, find_data("views.toml"));
-  TROCAR_TRY(const auto views, load_probe_views(views_file));
-  values["--view"] = names_of(views, &ProbeView::name);
+  TROCAR_TRY(const auto views, ultrasound::load_probe_views(views_file));
+  values["--view"] = names_of(views, &ultrasound::ProbeView::name);
   TROCAR_TRY(const auto transducers_file, find_data("transducers.toml"));
-  TROCAR_TRY(const auto transducers, load_transducers(transducers_file));
-  values["--transducer"] = names_of(transducers, &Transducer::name);
+  TROCAR_TRY(const auto transducers, ultrasound::load_transducers(transducers_file));
+  values["--transducer"] = names_of(transducers, &ultrasound::Transducer::name);
   return values;
 }
 

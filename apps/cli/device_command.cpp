@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "commands.h"
-#include "haptics/coupling/device_preset.h"
 #include "haptics/closed_loop/rotation.h"
+#include "haptics/coupling/device_preset.h"
 
 namespace trocar::cli {
 namespace {
@@ -14,16 +14,16 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// An unknown or absent figure is null.
-Json optional_json(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
+config::Json optional_json(const std::optional<double>& value) {
+  return value ? config::Json(*value) : config::Json(nullptr);
 }
 
-Json vector_json(const Vec3& v) {
+config::Json vector_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json preset_json(const DevicePreset& preset) {
-  const DeviceCapability& capability = preset.capability;
+config::Json preset_json(const haptics::DevicePreset& preset) {
+  const haptics::DeviceCapability& capability = preset.capability;
   return {{"name", preset.name},
           {"title", preset.title},
           {"sensed_dof", preset.sensed_dof},
@@ -35,7 +35,8 @@ Json preset_json(const DevicePreset& preset) {
           {"continuous_torque_nmm", optional_json(preset.continuous_torque_nmm)},
           {"max_stiffness_n_per_mm", capability.max_stiffness_n_per_mm},
           {"position_count_mm", preset.encoder.count_mm},
-          {"angle_count_deg", preset.sensed_dof == 6 ? Json(preset.encoder.count_rad * kDegPerRad) : Json(nullptr)},
+          {"angle_count_deg",
+           preset.sensed_dof == 6 ? config::Json(preset.encoder.count_rad * kDegPerRad) : config::Json(nullptr)},
           {"max_damping_ns_per_mm", preset.max_damping_ns_per_mm},
           {"apparent_mass_kg", preset.apparent_mass_kg},
           {"friction_n", preset.friction_n},
@@ -44,14 +45,14 @@ Json preset_json(const DevicePreset& preset) {
           {"motion_scale", preset.motion_scale},
           {"clutch_button", preset.clutch_button},
           {"base_mm", vector_json(preset.X_WD.p())},
-          {"base_turn_deg", vector_json(rotation_vector(preset.X_WD.R()) * kDegPerRad)},
+          {"base_turn_deg", vector_json(haptics::rotation_vector(preset.X_WD.R()) * kDegPerRad)},
           {"stylus_weight_n", capability.stylus_weight_n},
           {"coupling_stiffness_n_per_mm", preset.coupling.stiffness_n_per_mm},
           {"coupling_damping_ns_per_mm", preset.coupling.damping_ns_per_mm}};
 }
 
-void print_preset(const DevicePreset& preset) {
-  const DeviceCapability& capability = preset.capability;
+void print_preset(const haptics::DevicePreset& preset) {
+  const haptics::DeviceCapability& capability = preset.capability;
   const std::string torque = preset.has_torque() ? fmt::format("{:.0f} N mm", capability.peak_torque_nmm) : "none";
   const std::string force = preset.has_force() ? fmt::format("{:.1f} N", capability.peak_force_n) : "shown";
   fmt::print("{:<10} {:>8} {:>9} {:>5.1f} N/mm {:>7.4f} mm {:>5.2f} N/mm  {}\n", preset.name, force, torque,
@@ -61,15 +62,15 @@ void print_preset(const DevicePreset& preset) {
 
 Status list_devices(bool is_json) {
   TROCAR_TRY(const auto file, find_data("devices.toml"));
-  TROCAR_TRY(const auto presets, load_device_presets(file));
+  TROCAR_TRY(const auto presets, haptics::load_device_presets(file));
   if (is_json) {
-    Json list = Json::array();
-    for (const DevicePreset& preset : presets) list.push_back(preset_json(preset));
+    config::Json list = config::Json::array();
+    for (const haptics::DevicePreset& preset : presets) list.push_back(preset_json(preset));
     print_json({{"devices", list}});
     return {};
   }
   fmt::print("{:<10} {:>8} {:>9} {:>10} {:>10} {:>10}\n", "name", "force", "torque", "stiffness", "count", "coupling");
-  for (const DevicePreset& preset : presets) print_preset(preset);
+  for (const haptics::DevicePreset& preset : presets) print_preset(preset);
   return {};
 }
 

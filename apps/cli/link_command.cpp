@@ -16,7 +16,7 @@ struct KeygenArguments {
 
 Status make_keys(const KeygenArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
-  TROCAR_TRY_STATUS(write_key_folder(arguments.out));
+  TROCAR_TRY_STATUS(link::write_key_folder(arguments.out));
   const auto name = [&](const char* file) { return (arguments.out / file).string(); };
   if (arguments.is_json) {
     print_json({{"server", {{"key", name("server.key")}, {"public_key", name("server.pub")}}},

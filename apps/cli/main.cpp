@@ -30,7 +30,7 @@ int report_usage(const CLI::App& program, const CLI::ParseError& error) {
     const auto rest = command.remaining();
     what = rest.empty() ? "a command is missing" : "unknown command \"" + rest.front() + "\"";
   }
-  return trocar::report_error({what, name, "see " + name + " --help", 2});
+  return trocar::arguments::report_error({what, name, "see " + name + " --help", 2});
 }
 
 int run(int argc, char** argv) {
@@ -62,7 +62,7 @@ int run(int argc, char** argv) {
   }
   if (is_verbose) trocar::set_log_level(trocar::LogLevel::kInfo);
   const trocar::Status done = action();
-  return done ? 0 : trocar::report_error(done.error());
+  return done ? 0 : trocar::arguments::report_error(done.error());
 }
 
 }  // namespace
@@ -70,5 +70,5 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   const bool has_command = argc > 1 && argv[1][0] != '-';
   trocar::handle_interruptions(has_command ? std::string("trocar ") + argv[1] : "trocar");
-  return trocar::run_program([&] { return run(argc, argv); }, "trocar");
+  return trocar::arguments::run_program([&] { return run(argc, argv); }, "trocar");
 }

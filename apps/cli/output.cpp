@@ -18,8 +18,8 @@ void print_warning(std::string_view text) {
   fmt::print(stderr, "warning: {}\n", text);
 }
 
-void print_json(const Json& json) {
-  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+void print_json(const config::Json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, config::Json::error_handler_t::replace));
 }
 
 namespace {

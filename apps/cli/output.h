@@ -18,7 +18,7 @@ using Action = std::function<Status()>;
 
 void print_warning(std::string_view text);
 /// Results go to standard output, as one JSON object.
-void print_json(const Json& json);
+void print_json(const config::Json& json);
 
 /// Progress of long work on standard error: a bar on a terminal, one plain line a step otherwise.
 class ProgressPrinter {

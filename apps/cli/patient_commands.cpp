@@ -11,8 +11,8 @@
 #include "anatomy/phantom/phantom.h"
 #include "commands.h"
 #include "core/part_of_progress.h"
-#include "io/patient/build_from_files.h"
 #include "io/dicom/dicom_folder.h"
+#include "io/patient/build_from_files.h"
 #include "io/patient/patient_folder.h"
 #include "number_option.h"
 #include "patient_summary.h"
@@ -24,33 +24,33 @@ namespace fs = std::filesystem;
 
 Status list_patients(bool is_json) {
   if (is_json) {
-    Json patients = Json::array();
-    for (const PhantomInfo& info : embedded_patients()) {
+    config::Json patients = config::Json::array();
+    for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
       patients.push_back({{"name", info.name}, {"description", info.description}, {"tasks", info.tasks}});
     }
     print_json({{"patients", patients}});
     return {};
   }
-  std::map<std::string, std::vector<const PhantomInfo*>> by_task;
-  for (const PhantomInfo& info : embedded_patients()) {
+  std::map<std::string, std::vector<const anatomy::PhantomInfo*>> by_task;
+  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
     for (const std::string& task : info.tasks) by_task[task].push_back(&info);
   }
   for (const auto& [task, patients] : by_task) {
     fmt::print("{}\n", task);
-    for (const PhantomInfo* info : patients) fmt::print("  {:<14} {}\n", info->name, info->description);
+    for (const anatomy::PhantomInfo* info : patients) fmt::print("  {:<14} {}\n", info->name, info->description);
   }
   fmt::print("without a task\n");
-  for (const PhantomInfo& info : embedded_patients()) {
+  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
     if (info.tasks.empty()) fmt::print("  {:<14} {}\n", info.name, info.description);
   }
   return {};
 }
 
 /// Writes the folder and returns the surfaces in it.
-Result<std::vector<NamedMesh>> save_with_surfaces(const VirtualPatient& patient, const fs::path& out,
-                                                  const Progress& progress) {
-  auto meshes = extract_surfaces(patient, {}, part_of(progress, 0.0, 0.6));
-  TROCAR_TRY_STATUS(save_patient(patient, meshes, out, part_of(progress, 0.6, 1.0)));
+Result<std::vector<anatomy::NamedMesh>> save_with_surfaces(const anatomy::VirtualPatient& patient, const fs::path& out,
+                                                           const Progress& progress) {
+  auto meshes = surface::extract_surfaces(patient, {}, part_of(progress, 0.0, 0.6));
+  TROCAR_TRY_STATUS(io::save_patient(patient, meshes, out, part_of(progress, 0.6, 1.0)));
   return meshes;
 }
 
@@ -58,7 +58,8 @@ Status generate_patient(const std::string& name, std::uint64_t seed, const fs::p
   TROCAR_TRY_STATUS(check_new(out));
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
-  TROCAR_TRY(const VirtualPatient patient, generate_phantom(name, seed, {}, part_of(progress, 0.0, 0.5)));
+  TROCAR_TRY(const anatomy::VirtualPatient patient,
+             anatomy::generate_phantom(name, seed, {}, part_of(progress, 0.0, 0.5)));
   TROCAR_TRY_STATUS(save_with_surfaces(patient, out, part_of(progress, 0.5, 1.0)).map([](const auto&) {}));
   return {};
 }
@@ -74,9 +75,9 @@ struct BuildArguments {
   bool is_json = false;
 };
 
-Result<std::optional<Rescale>> parse_rescale(const std::string& text) {
+Result<std::optional<anatomy::Rescale>> parse_rescale(const std::string& text) {
   if (text.empty()) return std::nullopt;
-  Rescale rescale;
+  anatomy::Rescale rescale;
   const char* end = text.data() + text.size();
   const auto slope = std::from_chars(text.data(), end, rescale.slope);
   if (slope.ec == std::errc{} && slope.ptr != end && *slope.ptr == ',') {
@@ -91,21 +92,21 @@ Result<std::optional<Rescale>> parse_rescale(const std::string& text) {
 Status build(const BuildArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
   TROCAR_TRY(const fs::path tasks_folder, find_data("tasks"));
-  TROCAR_TRY(const auto tasks, load_tasks(tasks_folder));
-  PatientFiles files;
+  TROCAR_TRY(const auto tasks, tasks::load_tasks(tasks_folder));
+  io::PatientFiles files;
   files.ct = arguments.ct;
   files.labels.assign(arguments.labels.begin(), arguments.labels.end());
   files.label_map = arguments.label_map;
   files.series = arguments.series;
   TROCAR_TRY(files.rescale, parse_rescale(arguments.rescale));
-  files.name = arguments.name.empty() ? last_name(arguments.out) : arguments.name;
+  files.name = arguments.name.empty() ? io::last_name(arguments.out) : arguments.name;
   std::vector<std::string> warnings;
-  std::vector<NamedMesh> meshes;
-  VirtualPatient patient;
+  std::vector<anatomy::NamedMesh> meshes;
+  anatomy::VirtualPatient patient;
   {
     const ProgressPrinter printer;
     const Progress progress = printer.callback();
-    TROCAR_TRY(patient, build_from_files(files, warnings, part_of(progress, 0.0, 0.5)));
+    TROCAR_TRY(patient, io::build_from_files(files, warnings, part_of(progress, 0.0, 0.5)));
     TROCAR_TRY(meshes, save_with_surfaces(patient, arguments.out, part_of(progress, 0.5, 1.0)));
   }
   for (const std::string& warning : warnings) print_warning(warning);
@@ -124,12 +125,12 @@ struct SeriesArguments {
 };
 
 Status list_series(const SeriesArguments& arguments) {
-  TROCAR_TRY(const auto series, list_dicom_series(arguments.folder));
-  Json list = Json::array();
+  TROCAR_TRY(const auto series, io::list_dicom_series(arguments.folder));
+  config::Json list = config::Json::array();
   if (!arguments.is_json)
     fmt::print("{:>6} {:<8} {:>6}  {:<32} {}\n", "number", "modality", "images", "description", "UID");
   for (std::size_t n = 0; n < series.size(); ++n) {
-    const DicomSeriesInfo& s = series[n];
+    const io::DicomSeriesInfo& s = series[n];
     if (!arguments.is_json)
       fmt::print("{:>6} {:<8} {:>6}  {:<32} {}\n", n + 1, s.modality, s.images, s.description, s.uid);
     list.push_back({{"number", n + 1},
@@ -166,7 +167,7 @@ void add_patient_commands(CLI::App& program, Action& action) {
   const auto g = std::make_shared<GenerateArguments>();
   generate->add_option("NAME", g->name, "Embedded patient: see trocar patient list")->required();
   generate->add_option("--out", g->out, "Folder to create")->required();
-  seed_number(generate->add_option("--seed", g->seed, "Random seed; each seed gives another individual"))
+  arguments::seed_number(generate->add_option("--seed", g->seed, "Random seed; each seed gives another individual"))
       ->capture_default_str();
   generate->callback([&action, g] { action = [g] { return generate_patient(g->name, g->seed, g->out); }; });
 

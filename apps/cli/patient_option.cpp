@@ -6,7 +6,7 @@
 
 namespace trocar::cli {
 
-void add_cache_option(CLI::App& command, PatientSource& source) {
+void add_cache_option(CLI::App& command, io::PatientSource& source) {
   source.cache_folder = user_cache_folder() / "patients";
   command.add_flag_callback(
       "--no-cache", [&source] { source.cache_folder.clear(); },

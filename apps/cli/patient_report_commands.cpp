@@ -9,12 +9,12 @@
 
 #include "anatomy/build_patient.h"
 #include "anatomy/patient_doubts.h"
+#include "attempt/case/prepare_case.h"
 #include "commands.h"
 #include "core/files/atomic_file.h"
-#include "attempt/case/prepare_case.h"
+#include "io/image/png.h"
 #include "io/markups_file.h"
 #include "io/patient/patient_source.h"
-#include "io/image/png.h"
 #include "number_option.h"
 #include "patient_option.h"
 #include "patient_summary.h"
@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  PatientSource source;
+  io::PatientSource source;
   bool is_json = false;
   std::string paths;  ///< Markups file with needle paths to draw; empty: the patient's own.
   std::string out;
@@ -38,15 +38,16 @@ struct Arguments {
 constexpr double kMm2PerCm2 = 100.0;
 constexpr double kMm3PerMl = 1000.0;
 
-Json patient_json(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes) {
-  Json labels = Json::array();
-  for (const LabelStatistics& s : label_statistics(patient)) labels.push_back(label_json(patient, s));
-  Json surfaces = Json::array();
-  for (const NamedMesh& m : meshes) surfaces.push_back(mesh_json(m));
-  Json landmarks = Json::array();
-  for (const Landmark& l : patient.landmarks) landmarks.push_back({{"name", l.name}, {"position_mm", to_json(l.p_P)}});
-  Json paths = Json::array();
-  for (const NeedlePath& p : patient.paths) {
+config::Json patient_json(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes) {
+  config::Json labels = config::Json::array();
+  for (const anatomy::LabelStatistics& s : anatomy::label_statistics(patient)) labels.push_back(label_json(patient, s));
+  config::Json surfaces = config::Json::array();
+  for (const anatomy::NamedMesh& m : meshes) surfaces.push_back(mesh_json(m));
+  config::Json landmarks = config::Json::array();
+  for (const anatomy::Landmark& l : patient.landmarks)
+    landmarks.push_back({{"name", l.name}, {"position_mm", to_json(l.p_P)}});
+  config::Json paths = config::Json::array();
+  for (const anatomy::NeedlePath& p : patient.paths) {
     paths.push_back({{"name", p.name},
                      {"entry_mm", to_json(p.line_P.a)},
                      {"target_mm", to_json(p.line_P.b)},
@@ -63,12 +64,12 @@ Json patient_json(const VirtualPatient& patient, const std::vector<NamedMesh>& m
           {"paths", paths}};
 }
 
-void print_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes) {
+void print_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes) {
   fmt::print("{}{}{}\n", patient.name, patient.description.empty() ? "" : ": ", patient.description);
   for (const std::string& line : patient.provenance) fmt::print("  from {}\n", line);
   fmt::print("  content {}\n\n", patient.content_hash);
 
-  const GridGeometry& g = patient.ct.geometry;
+  const volume::GridGeometry& g = patient.ct.geometry;
   fmt::print("volumes    {} x {} x {} voxels of {:.3f} x {:.3f} x {:.3f} mm, frame P (LPS, mm)\n", g.size[0], g.size[1],
              g.size[2], g.spacing_mm.x(), g.spacing_mm.y(), g.spacing_mm.z());
   fmt::print("           first voxel at ({:.2f}, {:.2f}, {:.2f}) mm\n", g.origin_P.x(), g.origin_P.y(), g.origin_P.z());
@@ -78,28 +79,29 @@ void print_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& 
   }
 
   fmt::print("\n{:>3}  {:<30} {:<16} {:>11} {:>9}\n", "id", "label", "tissue", "volume", "mean");
-  for (const LabelStatistics& s : label_statistics(patient)) {
-    const Label* label = patient.label_table.find(s.id);
+  for (const anatomy::LabelStatistics& s : anatomy::label_statistics(patient)) {
+    const anatomy::Label* label = patient.label_table.find(s.id);
     if (label == nullptr) continue;
     fmt::print("{:>3}  {:<30} {:<16} {:>8.1f} ml {:>6.0f} HU\n", s.id, label->name, label->tissue, s.volume_ml,
                s.mean_hu);
   }
   fmt::print("\n{:<35} {:>10} {:>15} {:>11}\n", "mesh", "triangles", "area", "volume");
-  for (const NamedMesh& m : meshes) {
+  for (const anatomy::NamedMesh& m : meshes) {
     fmt::print("{:<35} {:>10} {:>11.1f} cm2 {:>8.1f} ml\n", m.name, m.mesh_P.triangles.size(),
                area_mm2(m.mesh_P) / kMm2PerCm2, enclosed_volume_mm3(m.mesh_P) / kMm3PerMl);
   }
   if (!patient.landmarks.empty()) fmt::print("\n");
-  for (const Landmark& l : patient.landmarks) {
+  for (const anatomy::Landmark& l : patient.landmarks) {
     fmt::print("landmark {:<26} ({:.1f}, {:.1f}, {:.1f}) mm\n", l.name, l.p_P.x(), l.p_P.y(), l.p_P.z());
   }
-  for (const NeedlePath& p : patient.paths) fmt::print("path {:<30} {:.1f} mm\n", p.name, p.line_P.length_mm());
+  for (const anatomy::NeedlePath& p : patient.paths)
+    fmt::print("path {:<30} {:.1f} mm\n", p.name, p.line_P.length_mm());
 }
 
 Status show(const Arguments& arguments) {
   const ProgressPrinter printer;
-  TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, printer.callback()));
-  TROCAR_TRY(const auto meshes, open_meshes(arguments.source, patient, printer.callback()));
+  TROCAR_TRY(const anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
+  TROCAR_TRY(const auto meshes, io::open_meshes(arguments.source, patient, printer.callback()));
   if (arguments.is_json) {
     print_json(patient_json(patient, meshes));
   } else {
@@ -109,26 +111,27 @@ Status show(const Arguments& arguments) {
 }
 
 struct CheckedTask {
-  Task task;
-  TaskReadiness readiness;
+  tasks::Task task;
+  tasks::TaskReadiness readiness;
 };
 
 /// The tasks of the data folder and the patient's own, each with its needle.
-Result<std::vector<CheckedTask>> checked_tasks(const Arguments& arguments, const VirtualPatient& patient,
+Result<std::vector<CheckedTask>> checked_tasks(const Arguments& arguments, const anatomy::VirtualPatient& patient,
                                                const Progress& progress) {
   TROCAR_TRY(const fs::path folder, find_data("tasks"));
   TROCAR_TRY(const fs::path needles, find_data("needles.toml"));
-  TROCAR_TRY(const auto tasks, load_tasks(folder));
+  TROCAR_TRY(const auto tasks, tasks::load_tasks(folder));
   std::vector<CheckedTask> checked;
-  const auto check = [&](const Task& task) -> Status {
-    TROCAR_TRY(const Needle needle, load_needle(needles, task.needle));
-    checked.push_back({task, check_task_and_paths(task, patient, needle, progress)});
+  const auto check = [&](const tasks::Task& task) -> Status {
+    TROCAR_TRY(const tasks::Needle needle, tasks::load_needle(needles, task.needle));
+    checked.push_back({task, tasks::check_task_and_paths(task, patient, needle, progress)});
     return {};
   };
-  for (const Task& task : tasks) TROCAR_TRY_STATUS(check(task));
-  if (has_own_task(arguments.source.folder_or_name)) {
-    TROCAR_TRY(Task task, load_task_file(fs::path(arguments.source.folder_or_name) / kOwnTaskFile, folder));
-    task.name += fmt::format(" ({})", kOwnTaskFile);
+  for (const tasks::Task& task : tasks) TROCAR_TRY_STATUS(check(task));
+  if (attempt::has_own_task(arguments.source.folder_or_name)) {
+    TROCAR_TRY(tasks::Task task,
+               tasks::load_task_file(fs::path(arguments.source.folder_or_name) / tasks::kOwnTaskFile, folder));
+    task.name += fmt::format(" ({})", tasks::kOwnTaskFile);
     TROCAR_TRY_STATUS(check(task));
   }
   return checked;
@@ -136,12 +139,12 @@ Result<std::vector<CheckedTask>> checked_tasks(const Arguments& arguments, const
 
 Status check(const Arguments& arguments) {
   const ProgressPrinter printer;
-  TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, printer.callback()));
+  TROCAR_TRY(const anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
   TROCAR_TRY(const auto tasks, checked_tasks(arguments, patient, printer.callback()));
-  auto doubts = find_doubts(patient, label_statistics(patient));
+  auto doubts = anatomy::find_doubts(patient, anatomy::label_statistics(patient));
   if (patient.paths.empty()) doubts.push_back("no expert path is stored; trocar run plans one");
   if (arguments.is_json) {
-    Json list = Json::array();
+    config::Json list = config::Json::array();
     for (const auto& [task, readiness] : tasks) {
       list.push_back(readiness_json(task, readiness));
     }
@@ -159,12 +162,12 @@ Status check(const Arguments& arguments) {
 }
 
 /// Where pictures look: the target of the first path, else the first lesion, else the liver, else the middle.
-Vec3 point_of_interest(const VirtualPatient& patient) {
+Vec3 point_of_interest(const anatomy::VirtualPatient& patient) {
   if (!patient.paths.empty()) return patient.paths.front().line_P.b;
-  const auto statistics = label_statistics(patient);
+  const auto statistics = anatomy::label_statistics(patient);
   for (const std::string_view wanted : {"liver_lesion", "liver"}) {
-    const auto found = std::find_if(statistics.begin(), statistics.end(), [&](const LabelStatistics& s) {
-      const Label* label = patient.label_table.find(s.id);
+    const auto found = std::find_if(statistics.begin(), statistics.end(), [&](const anatomy::LabelStatistics& s) {
+      const anatomy::Label* label = patient.label_table.find(s.id);
       return label != nullptr && label->tissue == wanted && s.voxels > 0;
     });
     if (found != statistics.end()) return found->centroid_P;
@@ -174,42 +177,42 @@ Vec3 point_of_interest(const VirtualPatient& patient) {
       0.5 * Vec3(static_cast<double>(size[0] - 1), static_cast<double>(size[1] - 1), static_cast<double>(size[2] - 1)));
 }
 
-Status write_slices(const VirtualPatient& patient, const fs::path& folder) {
-  constexpr std::array<std::pair<SliceOrientation, const char*>, 3> kOrientations = {
-      {{SliceOrientation::kAxial, "axial"},
-       {SliceOrientation::kCoronal, "coronal"},
-       {SliceOrientation::kSagittal, "sagittal"}}};
+Status write_slices(const anatomy::VirtualPatient& patient, const fs::path& folder) {
+  constexpr std::array<std::pair<slices::SliceOrientation, const char*>, 3> kOrientations = {
+      {{slices::SliceOrientation::kAxial, "axial"},
+       {slices::SliceOrientation::kCoronal, "coronal"},
+       {slices::SliceOrientation::kSagittal, "sagittal"}}};
   const Vec3 through_P = point_of_interest(patient);
-  SliceOptions plain;
+  slices::SliceOptions plain;
   plain.label_opacity = 0.0;
   plain.has_outlines = false;
   for (const auto& [orientation, name] : kOrientations) {
-    for (const auto& [options, ending] : {std::pair{plain, ""}, std::pair{SliceOptions{}, "_labels"}}) {
-      SlicePicture picture = make_slice_picture(patient, orientation, through_P, options);
-      draw_slice_legend(picture);
-      TROCAR_TRY_STATUS(write_png(picture.image, folder / fmt::format("slice_{}{}.png", name, ending)));
+    for (const auto& [options, ending] : {std::pair{plain, ""}, std::pair{slices::SliceOptions{}, "_labels"}}) {
+      slices::SlicePicture picture = slices::make_slice_picture(patient, orientation, through_P, options);
+      slices::draw_slice_legend(picture);
+      TROCAR_TRY_STATUS(io::write_png(picture.image, folder / fmt::format("slice_{}{}.png", name, ending)));
     }
   }
   return {};
 }
 
 /// Every camera's picture.
-Status write_views(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes, const fs::path& folder,
-                   const Progress& progress) {
-  constexpr std::array<std::pair<CameraPreset, const char*>, 4> kCameras = {
-      {{CameraPreset::kRightAnteriorOblique, "right_anterior_oblique"},
-       {CameraPreset::kAnterior, "anterior"},
-       {CameraPreset::kRight, "right"},
-       {CameraPreset::kPosterior, "posterior"}}};
+Status write_views(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
+                   const fs::path& folder, const Progress& progress) {
+  constexpr std::array<std::pair<scene::CameraPreset, const char*>, 4> kCameras = {
+      {{scene::CameraPreset::kRightAnteriorOblique, "right_anterior_oblique"},
+       {scene::CameraPreset::kAnterior, "anterior"},
+       {scene::CameraPreset::kRight, "right"},
+       {scene::CameraPreset::kPosterior, "posterior"}}};
   double fraction = 0.5;
   for (const auto& [camera, name] : kCameras) {
     report(progress, "drawing 3D pictures", fraction);
     fraction += 0.1;
-    SceneOptions options;
+    scene::SceneOptions options;
     options.camera = camera;
     options.paths = patient.paths;
-    TROCAR_TRY(const RgbImage picture, render_patient(patient, meshes, options));
-    TROCAR_TRY_STATUS(write_png(picture, folder / fmt::format("view_{}.png", name)));
+    TROCAR_TRY(const volume::RgbImage picture, scene::render_patient(patient, meshes, options));
+    TROCAR_TRY_STATUS(io::write_png(picture, folder / fmt::format("view_{}.png", name)));
   }
   return {};
 }
@@ -218,12 +221,12 @@ Status render(const Arguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
-  TROCAR_TRY(VirtualPatient patient, open_patient(arguments.source, progress));
+  TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(arguments.source, progress));
   if (!arguments.paths.empty()) {
-    TROCAR_TRY(patient.paths, read_paths(arguments.paths));
+    TROCAR_TRY(patient.paths, io::read_paths(arguments.paths));
   }
-  TROCAR_TRY(const auto meshes, open_meshes(arguments.source, patient, progress));
-  const bool can_draw = can_render();
+  TROCAR_TRY(const auto meshes, io::open_meshes(arguments.source, patient, progress));
+  const bool can_draw = scene::can_render();
   const auto draw = [&](const fs::path& folder) -> Status {
     report(progress, "drawing slices", 0.4);
     TROCAR_TRY_STATUS(write_slices(patient, folder));
@@ -241,7 +244,7 @@ CLI::App* add_command(CLI::App& patient, Action& action, const char* name, const
   CLI::App* command = patient.add_subcommand(name, description);
   command->add_option("PATIENT", arguments->source.folder_or_name, "Patient folder, or an embedded patient's name")
       ->required();
-  seed_number(command->add_option("--seed", arguments->source.seed, "Seed of an embedded patient"))
+  arguments::seed_number(command->add_option("--seed", arguments->source.seed, "Seed of an embedded patient"))
       ->capture_default_str();
   add_cache_option(*command, arguments->source);
   command->callback([&action, arguments, work] { action = [arguments, work] { return work(*arguments); }; });

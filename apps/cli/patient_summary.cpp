@@ -17,26 +17,26 @@ namespace {
 constexpr double kMm2PerCm2 = 100.0;
 constexpr double kMm3PerMl = 1000.0;
 
-double body_volume_ml(const FloatGrid& skin_distance_mm) {
+double body_volume_ml(const volume::FloatGrid& skin_distance_mm) {
   const auto inside = std::count_if(skin_distance_mm.voxels.begin(), skin_distance_mm.voxels.end(),
                                     [](float distance_mm) { return distance_mm < 0.0F; });
   return static_cast<double>(inside) * skin_distance_mm.geometry.spacing_mm.prod() / kMm3PerMl;
 }
 
-std::size_t triangle_count(const std::vector<NamedMesh>& meshes) {
+std::size_t triangle_count(const std::vector<anatomy::NamedMesh>& meshes) {
   std::size_t count = 0;
-  for (const NamedMesh& mesh : meshes) count += mesh.mesh_P.triangles.size();
+  for (const anatomy::NamedMesh& mesh : meshes) count += mesh.mesh_P.triangles.size();
   return count;
 }
 
 }  // namespace
 
-Json to_json(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
+config::Json to_json(const Vec3& v) {
+  return config::Json::array({v.x(), v.y(), v.z()});
 }
 
-Json grid_json(const GridGeometry& g) {
-  Json direction = Json::array();
+config::Json grid_json(const volume::GridGeometry& g) {
+  config::Json direction = config::Json::array();
   for (int axis = 0; axis < 3; ++axis) direction.push_back(to_json(Vec3(g.R_PV.col(axis))));
   return {{"frame", "P: LPS, mm"},
           {"size_voxels", {g.size[0], g.size[1], g.size[2]}},
@@ -45,8 +45,8 @@ Json grid_json(const GridGeometry& g) {
           {"direction_of_ijk", direction}};
 }
 
-Json label_json(const VirtualPatient& patient, const LabelStatistics& s) {
-  const Label* label = patient.label_table.find(s.id);
+config::Json label_json(const anatomy::VirtualPatient& patient, const anatomy::LabelStatistics& s) {
+  const anatomy::Label* label = patient.label_table.find(s.id);
   return {{"id", s.id},
           {"name", label != nullptr ? label->name : ""},
           {"tissue", label != nullptr ? label->tissue : ""},
@@ -57,7 +57,7 @@ Json label_json(const VirtualPatient& patient, const LabelStatistics& s) {
           {"touches_border", s.touches_border}};
 }
 
-Json mesh_json(const NamedMesh& mesh) {
+config::Json mesh_json(const anatomy::NamedMesh& mesh) {
   return {{"name", mesh.name},
           {"vertices", mesh.mesh_P.vertices.size()},
           {"triangles", mesh.mesh_P.triangles.size()},
@@ -65,35 +65,37 @@ Json mesh_json(const NamedMesh& mesh) {
           {"volume_ml", enclosed_volume_mm3(mesh.mesh_P) / kMm3PerMl}};
 }
 
-Json readiness_json(const Task& task, const TaskReadiness& readiness) {
+config::Json readiness_json(const tasks::Task& task, const tasks::TaskReadiness& readiness) {
   return {{"task", task.name},
           {"possible", readiness.is_possible},
           {"parenchymal", readiness.is_parenchymal},
           {"reasons", readiness.reasons}};
 }
 
-BuildSummary summarize_build(const VirtualPatient& patient, const std::vector<Task>& tasks,
+BuildSummary summarize_build(const anatomy::VirtualPatient& patient, const std::vector<tasks::Task>& tasks,
                              std::vector<std::string> warnings, const std::string& folder) {
   BuildSummary summary;
   summary.folder = folder;
-  summary.labels = label_statistics(patient);
+  summary.labels = anatomy::label_statistics(patient);
   summary.body_ml = body_volume_ml(patient.skin_distance_mm);
   summary.warnings = std::move(warnings);
-  summary.doubts = find_doubts(patient, summary.labels);
+  summary.doubts = anatomy::find_doubts(patient, summary.labels);
   summary.tasks = tasks;
-  for (const Task& task : tasks) {
-    const auto needle = load_needle(data_dir() / "needles.toml", task.needle);
-    summary.readiness.push_back(needle ? check_task_and_paths(task, patient, *needle) : check_task(task, patient));
+  for (const tasks::Task& task : tasks) {
+    const auto needle = tasks::load_needle(data_dir() / "needles.toml", task.needle);
+    summary.readiness.push_back(needle ? tasks::check_task_and_paths(task, patient, *needle)
+                                       : tasks::check_task(task, patient));
   }
   return summary;
 }
 
-Json to_json(const BuildSummary& summary, const VirtualPatient& patient, const std::vector<NamedMesh>& meshes) {
-  Json labels = Json::array();
-  for (const LabelStatistics& s : summary.labels) labels.push_back(label_json(patient, s));
-  Json surfaces = Json::array();
-  for (const NamedMesh& mesh : meshes) surfaces.push_back(mesh_json(mesh));
-  Json tasks = Json::array();
+config::Json to_json(const BuildSummary& summary, const anatomy::VirtualPatient& patient,
+                     const std::vector<anatomy::NamedMesh>& meshes) {
+  config::Json labels = config::Json::array();
+  for (const anatomy::LabelStatistics& s : summary.labels) labels.push_back(label_json(patient, s));
+  config::Json surfaces = config::Json::array();
+  for (const anatomy::NamedMesh& mesh : meshes) surfaces.push_back(mesh_json(mesh));
+  config::Json tasks = config::Json::array();
   for (std::size_t n = 0; n < summary.tasks.size(); ++n)
     tasks.push_back(readiness_json(summary.tasks[n], summary.readiness[n]));
   return {{"folder", summary.folder},
@@ -108,16 +110,17 @@ Json to_json(const BuildSummary& summary, const VirtualPatient& patient, const s
           {"warnings", summary.warnings}};
 }
 
-void print_summary(const BuildSummary& summary, const VirtualPatient& patient, const std::vector<NamedMesh>& meshes) {
-  const GridGeometry& g = patient.ct.geometry;
+void print_summary(const BuildSummary& summary, const anatomy::VirtualPatient& patient,
+                   const std::vector<anatomy::NamedMesh>& meshes) {
+  const volume::GridGeometry& g = patient.ct.geometry;
   fmt::print("{} in {}\n", patient.name, summary.folder);
   fmt::print("volume    {} x {} x {} voxels of {:.3f} x {:.3f} x {:.3f} mm\n", g.size[0], g.size[1], g.size[2],
              g.spacing_mm.x(), g.spacing_mm.y(), g.spacing_mm.z());
   fmt::print("body      {:.1f} l\n", summary.body_ml / 1000.0);
   fmt::print("surfaces  {}, {} triangles\n", meshes.size(), triangle_count(meshes));
   fmt::print("labels    {}\n", summary.labels.size());
-  for (const LabelStatistics& s : summary.labels)
-    if (const Label* label = patient.label_table.find(s.id))
+  for (const anatomy::LabelStatistics& s : summary.labels)
+    if (const anatomy::Label* label = patient.label_table.find(s.id))
       fmt::print("  {:<30} {:>9.1f} ml {:>6.0f} HU\n", label->name, s.volume_ml, s.mean_hu);
   std::vector<std::string> possible;
   for (std::size_t n = 0; n < summary.tasks.size(); ++n)

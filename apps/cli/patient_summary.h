@@ -11,24 +11,26 @@
 namespace trocar::cli {
 
 // Parts of the JSON that `patient` prints about a patient.
-Json to_json(const Vec3& v);
-Json grid_json(const GridGeometry& geometry);
-Json label_json(const VirtualPatient& patient, const LabelStatistics& statistics);
-Json mesh_json(const NamedMesh& mesh);
-Json readiness_json(const Task& task, const TaskReadiness& readiness);
+config::Json to_json(const Vec3& v);
+config::Json grid_json(const volume::GridGeometry& geometry);
+config::Json label_json(const anatomy::VirtualPatient& patient, const anatomy::LabelStatistics& statistics);
+config::Json mesh_json(const anatomy::NamedMesh& mesh);
+config::Json readiness_json(const tasks::Task& task, const tasks::TaskReadiness& readiness);
 
 /// What `patient build` reports about the patient that it has made.
 struct BuildSummary {
   std::string folder;
-  std::vector<LabelStatistics> labels;
+  std::vector<anatomy::LabelStatistics> labels;
   double body_ml = 0.0;
   std::vector<std::string> warnings, doubts;
-  std::vector<Task> tasks;
-  std::vector<TaskReadiness> readiness;  ///< Of each task.
+  std::vector<tasks::Task> tasks;
+  std::vector<tasks::TaskReadiness> readiness;  ///< Of each task.
 };
-BuildSummary summarize_build(const VirtualPatient& patient, const std::vector<Task>& tasks,
+BuildSummary summarize_build(const anatomy::VirtualPatient& patient, const std::vector<tasks::Task>& tasks,
                              std::vector<std::string> warnings, const std::string& folder);
-Json to_json(const BuildSummary& summary, const VirtualPatient& patient, const std::vector<NamedMesh>& meshes);
-void print_summary(const BuildSummary& summary, const VirtualPatient& patient, const std::vector<NamedMesh>& meshes);
+config::Json to_json(const BuildSummary& summary, const anatomy::VirtualPatient& patient,
+                     const std::vector<anatomy::NamedMesh>& meshes);
+void print_summary(const BuildSummary& summary, const anatomy::VirtualPatient& patient,
+                   const std::vector<anatomy::NamedMesh>& meshes);
 
 }  // namespace trocar::cli

@@ -4,8 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "commands.h"
 #include "attempt/case/prepare_case.h"
+#include "commands.h"
 #include "io/markups_file.h"
 #include "io/patient/patient_source.h"
 #include "number_option.h"
@@ -18,21 +18,21 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::string task;
-  PatientSource source;
+  io::PatientSource source;
   std::string needle;
-  PlanOptions options;
+  tasks::PlanOptions options;
   std::string out;
   bool is_json = false;
 };
 
-Json to_json(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
+config::Json to_json(const Vec3& v) {
+  return config::Json::array({v.x(), v.y(), v.z()});
 }
 
-void print_plan(const std::vector<PlannedPath>& paths, bool is_json) {
+void print_plan(const std::vector<tasks::PlannedPath>& paths, bool is_json) {
   if (is_json) {
-    Json list = Json::array();
-    for (const PlannedPath& p : paths) {
+    config::Json list = config::Json::array();
+    for (const tasks::PlannedPath& p : paths) {
       list.push_back({{"entry_mm", to_json(p.line_P.a)},
                       {"target_mm", to_json(p.line_P.b)},
                       {"length_mm", p.length_mm},
@@ -46,7 +46,7 @@ void print_plan(const std::vector<PlannedPath>& paths, bool is_json) {
   }
   fmt::print("{:>4} {:>10} {:>14} {:>14}  {}\n", "path", "length", "in the organ", "spare margin", "nearest risk");
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    const PlannedPath& p = paths[i];
+    const tasks::PlannedPath& p = paths[i];
     fmt::print("{:>4} {:>7.1f} mm {:>11.1f} mm {:>11.1f} mm  {}\n", i + 1, p.length_mm, p.organ_path_mm,
                p.spare_margin_mm, p.nearest_risk);
   }
@@ -54,21 +54,21 @@ void print_plan(const std::vector<PlannedPath>& paths, bool is_json) {
 
 Status plan(const Arguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
-  CaseOptions options;
+  attempt::CaseOptions options;
   options.task = arguments.task;
   options.needle = arguments.needle;
   options.patient_folder = arguments.source.folder_or_name;
-  TROCAR_TRY(const Case tables, load_tables(options));
-  std::vector<PlannedPath> paths;
+  TROCAR_TRY(const attempt::Case tables, attempt::load_tables(options));
+  std::vector<tasks::PlannedPath> paths;
   {
     const ProgressPrinter printer;
-    TROCAR_TRY(const VirtualPatient patient, open_patient(arguments.source, printer.callback()));
-    TROCAR_TRY(paths, plan_paths(tables.task, patient, tables.needle, arguments.options, printer.callback()));
+    TROCAR_TRY(const anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
+    TROCAR_TRY(paths, tasks::plan_paths(tables.task, patient, tables.needle, arguments.options, printer.callback()));
   }
-  std::vector<NeedlePath> named;
-  for (const PlannedPath& p : paths)
+  std::vector<anatomy::NeedlePath> named;
+  for (const tasks::PlannedPath& p : paths)
     named.push_back({fmt::format("{}-{}", tables.task.name, named.size() + 1), p.line_P});
-  TROCAR_TRY_STATUS(write_paths(named, arguments.out));
+  TROCAR_TRY_STATUS(io::write_paths(named, arguments.out));
   print_plan(paths, arguments.is_json);
   return {};
 }
@@ -82,13 +82,13 @@ void add_plan_command(CLI::App& program, Action& action) {
                       "Task: see trocar task list, or a task file (.toml); the patient's own when left out");
   command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name")
       ->required();
-  whole_number_within(command->add_option("--count", a->options.count, "Number of paths, each with its own entry"), 1,
-                      100000)
+  arguments::whole_number_within(
+      command->add_option("--count", a->options.count, "Number of paths, each with its own entry"), 1, 100000)
       ->capture_default_str();
   command->add_option("--needle", a->needle, "Needle of data/needles.toml; the task's own when left out");
-  seed_number(command->add_option("--seed", a->options.seed, "Random seed for the choice among paths"))
+  arguments::seed_number(command->add_option("--seed", a->options.seed, "Random seed for the choice among paths"))
       ->capture_default_str();
-  seed_number(
+  arguments::seed_number(
       command->add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient"))
       ->capture_default_str();
   add_cache_option(*command, a->source);

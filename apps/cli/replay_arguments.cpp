@@ -15,14 +15,14 @@ Status check_same(const NamedOptions& named, const char* option, const Value& va
                     "leave it out: a replay takes it from the session");
 }
 
-Status check_contradictions(const NamedOptions& named, const CaseOptions& the_case, const RunOptions& run,
-                            const PatientSource& source) {
-  const SessionInfo& info = run.replayed->info;
+Status check_contradictions(const NamedOptions& named, const attempt::CaseOptions& the_case,
+                            const attempt::RunOptions& run, const io::PatientSource& source) {
+  const storage::SessionInfo& info = run.replayed->info;
   TROCAR_TRY_STATUS(check_same(named, kTask, the_case.task, info.task));
   TROCAR_TRY_STATUS(check_same(named, "--needle", the_case.needle, info.needle));
   TROCAR_TRY_STATUS(check_same(named, "--seed", run.seed, info.seed));
   TROCAR_TRY_STATUS(check_same(named, "--rate", run.rate_hz, info.rate_hz));
-  const std::string preset = recorded_preset(info);
+  const std::string preset = attempt::recorded_preset(info);
   if (!preset.empty()) TROCAR_TRY_STATUS(check_same(named, "--device", run.device, preset));
   if (run.is_other_patient_meant) return {};
   return check_same(named, "--patient-seed", source.seed, info.patient_seed);
@@ -37,8 +37,9 @@ void NamedOptions::note(const CLI::App& command) {
   }
 }
 
-Status restore_arguments(const NamedOptions& named, CaseOptions& the_case, RunOptions& run, PatientSource& source) {
-  TROCAR_TRY(run.replayed, load_replayed(run.operator_name));
+Status restore_arguments(const NamedOptions& named, attempt::CaseOptions& the_case, attempt::RunOptions& run,
+                         io::PatientSource& source) {
+  TROCAR_TRY(run.replayed, attempt::load_replayed(run.operator_name));
   if (run.replayed == nullptr) {
     if (run.is_other_patient_meant)
       return fail_usage("only a replay has a recorded patient", "--other-patient", "leave it out");
@@ -47,14 +48,14 @@ Status restore_arguments(const NamedOptions& named, CaseOptions& the_case, RunOp
     return {};
   }
   TROCAR_TRY_STATUS(check_contradictions(named, the_case, run, source));
-  const SessionInfo& info = run.replayed->info;
+  const storage::SessionInfo& info = run.replayed->info;
   if (!named.has("--patient")) source.folder_or_name = info.patient_source;
   if (!named.has("--patient-seed")) source.seed = info.patient_seed;
   the_case.task = info.task;
   the_case.needle = info.needle;
   run.seed = info.seed;
   run.rate_hz = info.rate_hz;
-  if (std::string preset = recorded_preset(info); !preset.empty()) run.device = std::move(preset);
+  if (std::string preset = attempt::recorded_preset(info); !preset.empty()) run.device = std::move(preset);
   run.replay_changes = {the_case.overrides, the_case.tissue_file, the_case.profile, run.force_model};
   return {};
 }

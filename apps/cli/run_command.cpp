@@ -5,8 +5,8 @@
 #include <CLI/CLI.hpp>
 
 #include "anatomy/structure_words.h"
-#include "commands.h"
 #include "attempt/live/realtime_session.h"
+#include "commands.h"
 #include "io/patient/patient_source.h"
 #include "number_option.h"
 #include "patient_option.h"
@@ -16,20 +16,20 @@ namespace trocar::cli {
 namespace {
 
 struct Arguments {
-  CaseOptions the_case;
-  RunOptions run;
-  PatientSource source;
+  attempt::CaseOptions the_case;
+  attempt::RunOptions run;
+  io::PatientSource source;
   bool is_json = false;
   bool is_realtime = false;
-  RealtimeOptions realtime;
+  attempt::RealtimeOptions realtime;
   std::string key_file, server_key_file;
   double patience_s = 5.0;
   NamedOptions named;
 };
 
-Json core_json(const BiopsyCore& core) {
-  Json pieces = Json::array();
-  for (const CorePiece& piece : core.pieces) {
+config::Json core_json(const tasks::BiopsyCore& core) {
+  config::Json pieces = config::Json::array();
+  for (const tasks::CorePiece& piece : core.pieces) {
     pieces.push_back(
         {{"label", piece.label}, {"tissue", piece.tissue}, {"from_mm", piece.from_mm}, {"to_mm", piece.to_mm}});
   }
@@ -38,14 +38,14 @@ Json core_json(const BiopsyCore& core) {
           {"risks_in_throw", core.risks_in_throw}, {"pieces", pieces}};
 }
 
-Json latency_json(const LatencySummary& latency) {
+config::Json latency_json(const realtime::LatencySummary& latency) {
   return {
       {"p50_us", latency.p50_us}, {"p99_us", latency.p99_us}, {"p999_us", latency.p999_us}, {"max_us", latency.max_us}};
 }
 
-Json servers_json(const std::vector<ServerFigures>& servers) {
-  Json all = Json::array();
-  for (const ServerFigures& server : servers) {
+config::Json servers_json(const std::vector<attempt::ServerFigures>& servers) {
+  config::Json all = config::Json::array();
+  for (const attempt::ServerFigures& server : servers) {
     all.push_back({{"tool", server.tool},
                    {"endpoint", server.endpoint},
                    {"server", server.server},
@@ -65,8 +65,8 @@ Json servers_json(const std::vector<ServerFigures>& servers) {
   return all;
 }
 
-void print_server(const ServerFigures& server) {
-  const LoopSummary& loop = server.loop;
+void print_server(const attempt::ServerFigures& server) {
+  const realtime::LoopSummary& loop = server.loop;
   fmt::print("server of the {}: {}, {}, {}\n", server.tool, server.server, server.device, server.endpoint);
   fmt::print("  {:.1f} of {:.0f} Hz, {:.3f} % of {} periods served; lateness p99 {:.0f} us, tick p99 {:.0f} us\n",
              loop.achieved_hz, loop.wanted_hz, 100.0 * loop.served(), loop.periods, loop.lateness.p99_us,
@@ -74,10 +74,10 @@ void print_server(const ServerFigures& server) {
   fmt::print("  {} ticks received, {} missing; {}\n", server.ticks_received, server.ticks_missing, server.grant);
 }
 
-Json result_json(const Arguments& arguments, const Case& the_case, const RunResult& result) {
-  const Outcome& outcome = result.outcome;
-  Json parts = Json::array();
-  for (const ScorePart& part : outcome.parts) {
+config::Json result_json(const Arguments& arguments, const attempt::Case& the_case, const attempt::RunResult& result) {
+  const tasks::Outcome& outcome = result.outcome;
+  config::Json parts = config::Json::array();
+  for (const tasks::ScorePart& part : outcome.parts) {
     parts.push_back({{"name", part.name},
                      {"title", part.title},
                      {"value", part.value},
@@ -85,35 +85,35 @@ Json result_json(const Arguments& arguments, const Case& the_case, const RunResu
                      {"points", part.points},
                      {"max_points", part.max_points}});
   }
-  Json punctures = Json::array();
-  for (const PunctureRecord& puncture : result.punctures) {
+  config::Json punctures = config::Json::array();
+  for (const attempt::PunctureRecord& puncture : result.punctures) {
     punctures.push_back({{"layer", puncture.layer},
                          {"time_s", puncture.time_s},
                          {"depth_mm", puncture.depth_mm},
                          {"peak_n", puncture.peak_n}});
   }
-  Json json = {{"session", arguments.run.session.string()},
-               {"task", the_case.task.name},
-               {"patient", the_case.patient->name},
-               {"patient_hash", the_case.patient->content_hash},
-               {"patient_seed", arguments.run.patient_seed},
-               {"seed", arguments.run.seed},
-               {"needle", the_case.needle.name},
-               {"force_model", result.force_model},
-               {"operator", arguments.run.operator_name},
-               {"device", arguments.run.device},
-               {"parenchymal", the_case.is_parenchymal},
-               {"simulated_s", result.simulated_s},
-               {"active_s", result.active_s},
-               {"ticks", result.ticks},
-               {"score", outcome.is_scored() ? Json(outcome.score) : Json(nullptr)},
-               {"not_scored", outcome.is_scored() ? Json(nullptr) : Json(outcome.not_scored)},
-               {"target_reached", outcome.target_reached},
-               {"parts", parts},
-               {"punctures", punctures},
-               {"risks_touched", outcome.risks_touched},
-               {"core", outcome.core ? core_json(*outcome.core) : Json(nullptr)},
-               {"hints", outcome.hints}};
+  config::Json json = {{"session", arguments.run.session.string()},
+                       {"task", the_case.task.name},
+                       {"patient", the_case.patient->name},
+                       {"patient_hash", the_case.patient->content_hash},
+                       {"patient_seed", arguments.run.patient_seed},
+                       {"seed", arguments.run.seed},
+                       {"needle", the_case.needle.name},
+                       {"force_model", result.force_model},
+                       {"operator", arguments.run.operator_name},
+                       {"device", arguments.run.device},
+                       {"parenchymal", the_case.is_parenchymal},
+                       {"simulated_s", result.simulated_s},
+                       {"active_s", result.active_s},
+                       {"ticks", result.ticks},
+                       {"score", outcome.is_scored() ? config::Json(outcome.score) : config::Json(nullptr)},
+                       {"not_scored", outcome.is_scored() ? config::Json(nullptr) : config::Json(outcome.not_scored)},
+                       {"target_reached", outcome.target_reached},
+                       {"parts", parts},
+                       {"punctures", punctures},
+                       {"risks_touched", outcome.risks_touched},
+                       {"core", outcome.core ? core_json(*outcome.core) : config::Json(nullptr)},
+                       {"hints", outcome.hints}};
   if (arguments.is_realtime) {
     json["ticks_missing"] = result.ticks_missing;
     json["servers"] = servers_json(result.servers);
@@ -122,8 +122,8 @@ Json result_json(const Arguments& arguments, const Case& the_case, const RunResu
   return json;
 }
 
-void print_part(const ScorePart& part) {
-  if (is_deduction(part)) {
+void print_part(const tasks::ScorePart& part) {
+  if (tasks::is_deduction(part)) {
     fmt::print("  {:<44} {:>13} {:>6.1f} points\n", part.title, "", part.points);
   } else {
     fmt::print("  {:<44} {:>8.2f} {:<4} {:>6.1f} of {:.0f} points\n", part.title, part.value, part.unit, part.points,
@@ -131,17 +131,17 @@ void print_part(const ScorePart& part) {
   }
 }
 
-void print_result(const Arguments& arguments, const Case& the_case, const RunResult& result) {
-  const Outcome& outcome = result.outcome;
+void print_result(const Arguments& arguments, const attempt::Case& the_case, const attempt::RunResult& result) {
+  const tasks::Outcome& outcome = result.outcome;
   fmt::print("{} on {} by {}: {:.1f} s, {} ticks\n", the_case.task.title, the_case.patient->name,
              arguments.run.operator_name, result.simulated_s, result.ticks);
   if (the_case.is_parenchymal) fmt::print("no lesion in this patient: the target lies in healthy tissue\n");
-  for (const PunctureRecord& p : result.punctures) {
+  for (const attempt::PunctureRecord& p : result.punctures) {
     fmt::print("  puncture of {:<16} at {:6.2f} s, {:5.1f} mm deep, {:.2f} N\n", p.layer, p.time_s, p.depth_mm,
                p.peak_n);
   }
   if (outcome.core) {
-    const BiopsyCore& core = *outcome.core;
+    const tasks::BiopsyCore& core = *outcome.core;
     fmt::print("  core: {:.1f} mm target, {:.1f} mm organ, {:.1f} mm vessel, {:.1f} mm other\n", core.target_mm,
                core.organ_mm, core.vessel_mm, core.other_mm);
   }
@@ -152,12 +152,12 @@ void print_result(const Arguments& arguments, const Case& the_case, const RunRes
   }
   if (!outcome.risks_touched.empty()) {
     std::vector<std::string> names;
-    for (const std::string& name : outcome.risks_touched) names.push_back(structure_words(name));
+    for (const std::string& name : outcome.risks_touched) names.push_back(anatomy::structure_words(name));
     fmt::print("structures at risk touched: {}\n", fmt::join(names, ", "));
   }
-  for (const ScorePart& part : outcome.parts) print_part(part);
+  for (const tasks::ScorePart& part : outcome.parts) print_part(part);
   for (const std::string& hint : outcome.hints) fmt::print("hint: {}\n", hint);
-  for (const ServerFigures& server : result.servers) print_server(server);
+  for (const attempt::ServerFigures& server : result.servers) print_server(server);
 }
 
 /// What belongs to live servers, and what does not.
@@ -173,18 +173,18 @@ Status check_servers(Arguments& a) {
     return fail_usage("device and rate of running servers are set when they start", "--device, --rate",
                       "give them to trocar-hapticd instead");
   if (!a.key_file.empty()) {
-    ClientSecurity security;
-    TROCAR_TRY(security.keys, load_curve_keys(a.key_file));
-    TROCAR_TRY(security.server_key, load_public_key(a.server_key_file));
+    link::ClientSecurity security;
+    TROCAR_TRY(security.keys, link::load_curve_keys(a.key_file));
+    TROCAR_TRY(security.server_key, link::load_public_key(a.server_key_file));
     a.realtime.security = std::move(security);
   }
   a.realtime.patience = std::chrono::milliseconds(static_cast<int>(1000.0 * a.patience_s));
-  return check_realtime(a.realtime);
+  return attempt::check_realtime(a.realtime);
 }
 
 /// The session can be made: nothing is there but what an interrupted run has left, which is kept under another name.
 Status make_room(const std::filesystem::path& session) {
-  TROCAR_TRY(const auto kept_as, set_aside_incomplete_session(session));
+  TROCAR_TRY(const auto kept_as, storage::set_aside_incomplete_session(session));
   if (kept_as)
     print_warning(fmt::format("{} is the incomplete session of an interrupted run — kept as {}", session.string(),
                               kept_as->string()));
@@ -193,12 +193,12 @@ Status make_room(const std::filesystem::path& session) {
 
 /// What can be wrong with the case before there is a patient.
 Status check_case(const Arguments& arguments) {
-  const RunOptions& run = arguments.run;
+  const attempt::RunOptions& run = arguments.run;
   if (run.replayed == nullptr) {
-    TROCAR_TRY_STATUS(load_tables(arguments.the_case));
+    TROCAR_TRY_STATUS(attempt::load_tables(arguments.the_case));
     return {};
   }
-  TROCAR_TRY_STATUS(replay_parameters(*run.replayed, run.replay_changes));
+  TROCAR_TRY_STATUS(attempt::replay_parameters(*run.replayed, run.replay_changes));
   if (run.replay_changes.is_any())
     print_warning(
         "the replay has other tissues or another force model than the session: its forces are not the "
@@ -206,17 +206,17 @@ Status check_case(const Arguments& arguments) {
   return {};
 }
 
-Result<Case> make_case(const Arguments& arguments, VirtualPatient opened, const Progress& progress) {
-  auto patient = std::make_shared<const VirtualPatient>(std::move(opened));
-  const RunOptions& run = arguments.run;
-  if (run.replayed == nullptr) return prepare_case(std::move(patient), arguments.the_case, progress);
-  TROCAR_TRY(const auto parameters, replay_parameters(*run.replayed, run.replay_changes));
-  return restore_case(std::move(patient), *run.replayed, parameters.front(), run.is_other_patient_meant);
+Result<attempt::Case> make_case(const Arguments& arguments, anatomy::VirtualPatient opened, const Progress& progress) {
+  auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
+  const attempt::RunOptions& run = arguments.run;
+  if (run.replayed == nullptr) return attempt::prepare_case(std::move(patient), arguments.the_case, progress);
+  TROCAR_TRY(const auto parameters, attempt::replay_parameters(*run.replayed, run.replay_changes));
+  return attempt::restore_case(std::move(patient), *run.replayed, parameters.front(), run.is_other_patient_meant);
 }
 
 Status run(Arguments& arguments) {
-  RunOptions& run = arguments.run;
-  TROCAR_TRY_STATUS(check_run(run));
+  attempt::RunOptions& run = arguments.run;
+  TROCAR_TRY_STATUS(attempt::check_run(run));
   TROCAR_TRY_STATUS(restore_arguments(arguments.named, arguments.the_case, run, arguments.source));
   TROCAR_TRY_STATUS(make_room(run.session));
   run.patient_source = arguments.source.folder_or_name;
@@ -225,16 +225,16 @@ Status run(Arguments& arguments) {
   arguments.the_case.patient_folder = arguments.source.folder_or_name;
   TROCAR_TRY_STATUS(check_servers(arguments));
   TROCAR_TRY_STATUS(check_case(arguments));
-  if (arguments.is_realtime) TROCAR_TRY_STATUS(find_servers(arguments.realtime));
-  Case the_case;
-  RunResult result;
+  if (arguments.is_realtime) TROCAR_TRY_STATUS(attempt::find_servers(arguments.realtime));
+  attempt::Case the_case;
+  attempt::RunResult result;
   {
     const ProgressPrinter printer;
-    TROCAR_TRY(VirtualPatient patient, open_patient(arguments.source, printer.callback()));
+    TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(arguments.source, printer.callback()));
     TROCAR_TRY(the_case, make_case(arguments, std::move(patient), printer.callback()));
     TROCAR_TRY(result, arguments.is_realtime
-                           ? run_realtime_session(the_case, run, arguments.realtime, printer.callback())
-                           : run_session(the_case, run, printer.callback()));
+                           ? attempt::run_realtime_session(the_case, run, arguments.realtime, printer.callback())
+                           : attempt::run_session(the_case, run, printer.callback()));
   }
   for (const std::string& warning : result.warnings) print_warning(warning);
   if (arguments.is_json) {
@@ -255,8 +255,9 @@ void add_server_options(CLI::App& command, Arguments& a) {
       ->allow_extra_args(false);
   command.add_option("--keys", a.key_file, "Your private key file, for servers on other machines (trocar link keygen)");
   command.add_option("--server-key", a.server_key_file, "The servers' public key");
-  number_within(command.add_option("--patience", a.patience_s, "Time without messages until a server counts as lost"),
-                0.1, 600.0, "s")
+  arguments::number_within(
+      command.add_option("--patience", a.patience_s, "Time without messages until a server counts as lost"), 0.1, 600.0,
+      "s")
       ->capture_default_str();
 }
 
@@ -284,12 +285,13 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");
   command->add_option("--set", a->the_case.overrides, "Change numbers of the tissue table: liver.k=0.5")
       ->allow_extra_args(false);
-  seed_number(command->add_option("--seed", a->run.seed, "Random seed for operator, friction and path choice"))
+  arguments::seed_number(
+      command->add_option("--seed", a->run.seed, "Random seed for operator, friction and path choice"))
       ->capture_default_str();
-  seed_number(
+  arguments::seed_number(
       command->add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient"))
       ->capture_default_str();
-  number_within(command->add_option("--rate", a->run.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
+  arguments::number_within(command->add_option("--rate", a->run.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
       ->capture_default_str();
   command->add_flag("--other-patient", a->run.is_other_patient_meant,
                     "Replay in another patient than the session's, as --patient names it");

@@ -14,7 +14,7 @@ namespace trocar::cli {
 namespace {
 
 /// What a reader of the session must be told, beside its damage.
-void warn_of(const Session& session, const std::string& file) {
+void warn_of(const storage::Session& session, const std::string& file) {
   if (session.is_incomplete)
     print_warning(
         fmt::format("incomplete session: the program ended before the attempt did, {} ticks were recorded "
@@ -26,25 +26,25 @@ void warn_of(const Session& session, const std::string& file) {
 
 Status export_session(const std::string& session_file, const std::string& csv) {
   TROCAR_TRY_STATUS(check_new(csv, "--csv"));
-  TROCAR_TRY(const Session session, salvage_session(session_file));
+  TROCAR_TRY(const storage::Session session, storage::salvage_session(session_file));
   warn_of(session, session_file);
-  TROCAR_TRY_STATUS(export_csv(session, csv));
+  TROCAR_TRY_STATUS(storage::export_csv(session, csv));
   if (session.damage.empty()) return {};
-  return tl::unexpected(damage_error(session, session_file,
-                                     "the rest was exported; behind a gap the event column says damaged:FIRST-LAST"));
+  return tl::unexpected(storage::damage_error(
+      session, session_file, "the rest was exported; behind a gap the event column says damaged:FIRST-LAST"));
 }
 
 struct ReportArguments {
   std::string session;
-  PatientSource patient;  ///< Without a name: where the session says.
+  io::PatientSource patient;  ///< Without a name: where the session says.
   std::string out;
 };
 
 /// The session's patient, or nothing with a warning where it is gone or has changed since.
-std::optional<VirtualPatient> find_patient(const SessionInfo& info, PatientSource source,
-                                           const std::filesystem::path& session, const Progress& progress) {
+std::optional<anatomy::VirtualPatient> find_patient(const storage::SessionInfo& info, io::PatientSource source,
+                                                    const std::filesystem::path& session, const Progress& progress) {
   if (source.folder_or_name.empty()) {
-    auto found = find_recorded_patient(info.patient_source, info.patient_hash, session.parent_path());
+    auto found = io::find_recorded_patient(info.patient_source, info.patient_hash, session.parent_path());
     if (!found) {
       print_warning("the report has no CT slices: " + found.error().text());
       return std::nullopt;
@@ -52,7 +52,7 @@ std::optional<VirtualPatient> find_patient(const SessionInfo& info, PatientSourc
     source.folder_or_name = *std::move(found);
   }
   source.seed = info.patient_seed;
-  auto patient = open_patient(source, progress);
+  auto patient = io::open_patient(source, progress);
   if (!patient) {
     print_warning("the report has no CT slices: " + patient.error().text());
     return std::nullopt;
@@ -69,13 +69,13 @@ std::optional<VirtualPatient> find_patient(const SessionInfo& info, PatientSourc
 
 Status write_report(const ReportArguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
-  TROCAR_TRY(const Session session, salvage_session(arguments.session));
+  TROCAR_TRY(const storage::Session session, storage::salvage_session(arguments.session));
   warn_of(session, arguments.session);
   const ProgressPrinter printer;
   const auto patient = find_patient(session.info, arguments.patient, arguments.session, printer.callback());
-  TROCAR_TRY_STATUS(write_file_atomically(arguments.out, html_report(session, patient ? &*patient : nullptr)));
+  TROCAR_TRY_STATUS(write_file_atomically(arguments.out, report::html_report(session, patient ? &*patient : nullptr)));
   if (session.damage.empty()) return {};
-  return tl::unexpected(damage_error(session, arguments.session, "the report shows the rest"));
+  return tl::unexpected(storage::damage_error(session, arguments.session, "the report shows the rest"));
 }
 
 }  // namespace

@@ -11,13 +11,13 @@ namespace {
 
 Status list_tasks(bool is_json) {
   TROCAR_TRY(const auto folder, find_data("tasks"));
-  TROCAR_TRY(const auto tasks, load_tasks(folder));
+  TROCAR_TRY(const auto tasks, tasks::load_tasks(folder));
   if (!is_json) {
-    for (const Task& task : tasks) fmt::print("{:<16} {} (needle: {})\n", task.name, task.title, task.needle);
+    for (const tasks::Task& task : tasks) fmt::print("{:<16} {} (needle: {})\n", task.name, task.title, task.needle);
     return {};
   }
-  Json list = Json::array();
-  for (const Task& task : tasks) {
+  config::Json list = config::Json::array();
+  for (const tasks::Task& task : tasks) {
     list.push_back({{"name", task.name},
                     {"title", task.title},
                     {"organ", task.organ},

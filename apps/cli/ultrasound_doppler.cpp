@@ -23,35 +23,39 @@ constexpr int kBarColumns = 10;
 }  // namespace
 
 void add_doppler_options(CLI::App& command, DopplerArguments& a) {
-  DopplerSettings& s = a.settings;
+  ultrasound::DopplerSettings& s = a.settings;
   command.add_flag("--doppler", a.is_wanted, "Show flow in the labelled vessels as colour Doppler");
-  number_within(command.add_option("--doppler-scale", s.scale_cm_per_s, "Velocity at the ends of the colour bar"), 2.0,
-                200.0, "cm/s")
+  arguments::number_within(
+      command.add_option("--doppler-scale", s.scale_cm_per_s, "Velocity at the ends of the colour bar"), 2.0, 200.0,
+      "cm/s")
       ->capture_default_str();
-  number_within(command.add_option("--doppler-box", a.box,
-                                   "Colour box in percent of width and depth: first,last,near,far, as 20,80,20,90"),
-                0.0, 100.0, "%")
+  arguments::number_within(
+      command.add_option("--doppler-box", a.box,
+                         "Colour box in percent of width and depth: first,last,near,far, as 20,80,20,90"),
+      0.0, 100.0, "%")
       ->delimiter(',')
       ->allow_extra_args(false);
-  number_within(command.add_option("--doppler-gain-db", s.gain_db, "Colour gain"), -40.0, 40.0, "dB")
+  arguments::number_within(command.add_option("--doppler-gain-db", s.gain_db, "Colour gain"), -40.0, 40.0, "dB")
       ->capture_default_str();
-  number_within(command.add_option("--doppler-filter", s.wall_filter, "Wall filter cutoff, as a fraction of the scale"),
-                0.0, 0.6, "")
+  arguments::number_within(
+      command.add_option("--doppler-filter", s.wall_filter, "Wall filter cutoff, as a fraction of the scale"), 0.0, 0.6,
+      "")
       ->capture_default_str();
-  number_within(command.add_option("--doppler-mhz", s.frequency_mhz, "Frequency of the Doppler pulses"), 1.0, 15.0,
-                "MHz")
+  arguments::number_within(command.add_option("--doppler-mhz", s.frequency_mhz, "Frequency of the Doppler pulses"), 1.0,
+                           15.0, "MHz")
       ->capture_default_str();
-  number_within(command.add_option("--doppler-baseline", s.baseline, "Baseline shift, as a fraction of the scale"),
-                -0.9, 0.9, "")
+  arguments::number_within(
+      command.add_option("--doppler-baseline", s.baseline, "Baseline shift, as a fraction of the scale"), -0.9, 0.9, "")
       ->capture_default_str();
   command.add_flag("--doppler-invert", s.is_inverted, "Invert the colours: blue is flow towards the transducer");
-  number_within(command.add_option("--time-s", a.time_s, "Seconds since the last R wave (cardiac phase for Doppler)"),
-                0.0, 3600.0, "s")
+  arguments::number_within(
+      command.add_option("--time-s", a.time_s, "Seconds since the last R wave (cardiac phase for Doppler)"), 0.0,
+      3600.0, "s")
       ->capture_default_str();
 }
 
-Result<DopplerSettings> gather_doppler(const DopplerArguments& a) {
-  DopplerSettings settings = a.settings;
+Result<ultrasound::DopplerSettings> gather_doppler(const DopplerArguments& a) {
+  ultrasound::DopplerSettings settings = a.settings;
   if (!a.box.empty()) {
     if (a.box.size() != 4 || !(a.box[0] < a.box[1] && a.box[2] < a.box[3]))
       return fail_usage(fmt::format("--doppler-box is {}", fmt::join(a.box, ",")), {},
@@ -62,24 +66,26 @@ Result<DopplerSettings> gather_doppler(const DopplerArguments& a) {
   return settings;
 }
 
-ColourPicture colour_picture(std::shared_ptr<const VesselFlow> flow, const DopplerSettings& settings, double time_s,
-                             const BMode& engine, const BasebandFrame& echoes, const Pose& X_PT,
-                             const GrayImage& picture, const RasterGeometry& raster, std::uint64_t seed) {
-  ColourDoppler doppler(std::move(flow));
+ColourPicture colour_picture(std::shared_ptr<const ultrasound::VesselFlow> flow,
+                             const ultrasound::DopplerSettings& settings, double time_s,
+                             const ultrasound::BMode& engine, const ultrasound::BasebandFrame& echoes, const Pose& X_PT,
+                             const ultrasound::GrayImage& picture, const ultrasound::RasterGeometry& raster,
+                             std::uint64_t seed) {
+  ultrasound::ColourDoppler doppler(std::move(flow));
   doppler.settings = settings;
   ColourPicture colour;
   colour.settings = settings;
-  DopplerInput input{X_PT, echoes.geometry, echoes.beam, time_s, seed, &engine};
+  ultrasound::DopplerInput input{X_PT, echoes.geometry, echoes.beam, time_s, seed, &engine};
   for (int n = 0; n < kPictures; ++n, ++input.seed) colour.scale_cm_per_s = doppler.render(input).scale_cm_per_s;
   colour.image = doppler.overlay(picture, raster);
   return colour;
 }
 
-void draw_colour_bar(RgbImage& image, const ColourPicture& picture) {
+void draw_colour_bar(volume::RgbImage& image, const ColourPicture& picture) {
   constexpr int kColumnsPerScale = 640;
   const int dot = std::max(1, image.columns / kColumnsPerScale);
   const int rows = image.rows / 4;
-  draw_colour_bar(image, kBarColumn * dot, (image.rows - rows) / 2, kBarColumns * dot, rows, picture.scale_cm_per_s,
+  ultrasound::draw_colour_bar(image, kBarColumn * dot, (image.rows - rows) / 2, kBarColumns * dot, rows, picture.scale_cm_per_s,
                   picture.settings);
 }
 

@@ -16,9 +16,9 @@
 #include "io/image/png.h"
 #include "io/sequence/transform_file.h"
 #include "number_option.h"
-#include "ultrasound/sweep/freehand_sweep.h"
 #include "ultrasound/scanner/scan_annotation.h"
 #include "ultrasound/scanner/scanner.h"
+#include "ultrasound/sweep/freehand_sweep.h"
 #include "ultrasound_doppler.h"
 #include "ultrasound_scan.h"
 
@@ -77,7 +77,7 @@ Result<Needle> load_needle(const Arguments& arguments) {
   Needle needle;
   needle.diameter_mm = diameter_of_gauge(arguments.needle_gauge);
   if (arguments.needle.empty()) return needle;
-  TROCAR_TRY(const Pose X_PN, read_transform(arguments.needle));
+  TROCAR_TRY(const Pose X_PN, io::read_transform(arguments.needle));
   needle.shaft_P = {X_PN * Vec3(0.0, 0.0, -kNeedleLength_mm), X_PN.p()};
   return needle;
 }
@@ -86,7 +86,7 @@ Result<Needle> load_needle(const Arguments& arguments) {
 struct Request {
   Size size;
   Needle needle;
-  DopplerSettings doppler;
+  ultrasound::DopplerSettings doppler;
 };
 Result<Request> check_arguments(const Arguments& arguments) {
   if (arguments.engine == "panorama")
@@ -106,17 +106,18 @@ Result<Request> check_arguments(const Arguments& arguments) {
 
 /// The picture as a thin volume where its plane lies in the patient: two equal slices, since a volume of one has no
 /// inside that readers could interpolate in.
-LabelGrid as_slab(const GrayImage& picture, const RasterGeometry& raster, const Pose& X_PT) {
+volume::LabelGrid as_slab(const ultrasound::GrayImage& picture, const ultrasound::RasterGeometry& raster,
+                          const Pose& X_PT) {
   constexpr double kThickness_mm = 1.0;
   const Vec3 along_columns(raster.is_mirrored ? -1.0 : 1.0, 0.0, 0.0);
   Mat3 R_TI;
   R_TI << along_columns, Vec3::UnitY(), along_columns.cross(Vec3::UnitY());
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.size = {picture.columns, picture.rows, 2};
   geometry.spacing_mm = {raster.mm_per_pixel, raster.mm_per_pixel, kThickness_mm};
   geometry.origin_P = X_PT * (Vec3(raster.first_T.x(), raster.first_T.y(), 0.0) - 0.5 * kThickness_mm * R_TI.col(2));
   geometry.R_PV = X_PT.R() * R_TI;
-  LabelGrid slab(geometry);
+  volume::LabelGrid slab(geometry);
   std::copy(picture.pixels.begin(), picture.pixels.end(), slab.voxels.begin());
   std::copy(picture.pixels.begin(), picture.pixels.end(),
             slab.voxels.begin() + static_cast<std::ptrdiff_t>(picture.pixels.size()));
@@ -127,8 +128,9 @@ struct Timing {
   double frames_per_s = 0.0;  ///< Of all frames, one after another.
   bench::Figures frame_ms, engine_ms, scanner_ms;
 };
-Timing time_frames(BMode& engine, Scanner& scanner, const Scan& scan, std::span<const NeedleEcho> needles, int frames,
-                   std::uint64_t seed, const Progress& progress) {
+Timing time_frames(ultrasound::BMode& engine, ultrasound::Scanner& scanner, const Scan& scan,
+                   std::span<const ultrasound::NeedleEcho> needles, int frames, std::uint64_t seed,
+                   const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   const auto ms = [](Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
@@ -138,7 +140,8 @@ Timing time_frames(BMode& engine, Scanner& scanner, const Scan& scan, std::span<
   for (int n = 0; n < frames; ++n) {
     report(progress, "timing frames", static_cast<double>(n) / frames);
     const auto start = Clock::now();
-    const BasebandFrame& echoes = engine.render({sway(scan.X_PT, n), needles, static_cast<double>(n) / 60.0});
+    const ultrasound::BasebandFrame& echoes =
+        engine.render({ultrasound::sway(scan.X_PT, n), needles, static_cast<double>(n) / 60.0});
     const auto heard = Clock::now();
     scanner.show(echoes, seed + static_cast<std::uint64_t>(n));
     const auto shown = Clock::now();
@@ -151,12 +154,14 @@ Timing time_frames(BMode& engine, Scanner& scanner, const Scan& scan, std::span<
           bench::figures_of(scanner_ms)};
 }
 
-Json to_json(const bench::Figures& figures) {
-  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+config::Json to_json(const bench::Figures& figures) {
+  const auto number = [](const std::optional<double>& value) {
+    return value ? config::Json(*value) : config::Json(nullptr);
+  };
   return {{"median", number(figures.median)}, {"p99", number(figures.p99)}, {"max", number(figures.max)}};
 }
 
-Json to_json(const Timing& timing, int frames) {
+config::Json to_json(const Timing& timing, int frames) {
   return {{"count", frames},
           {"frames_per_s", timing.frames_per_s},
           {"frame_ms", to_json(timing.frame_ms)},
@@ -170,23 +175,24 @@ void print_figures(const char* name, const bench::Figures& figures) {
   fmt::print("  {:<8} median {:.2f} ms, {}, max {:.2f}\n", name, *figures.median, tail, *figures.max);
 }
 
-Status write_picture(const Arguments& arguments, const Scan& scan, const GrayImage& gray, const RasterGeometry& raster,
-                     const ScanGeometry& geometry, std::optional<ColourPicture> colour) {
+Status write_picture(const Arguments& arguments, const Scan& scan, const ultrasound::GrayImage& gray,
+                     const ultrasound::RasterGeometry& raster, const ultrasound::ScanGeometry& geometry,
+                     std::optional<ColourPicture> colour) {
   if (fs::path(arguments.out).extension() == ".nrrd")
-    return write_image(as_slab(gray, raster, scan.X_PT), arguments.out);
-  RgbImage picture = colour ? colour->image : to_rgb(gray);
+    return io::write_image(as_slab(gray, raster, scan.X_PT), arguments.out);
+  volume::RgbImage picture = colour ? colour->image : ultrasound::to_rgb(gray);
   if (!arguments.is_plain) {
-    hatch_unscanned(picture, raster, geometry, scan.X_PT, scan.scene->ends);
-    ScanCaption caption;
+    ultrasound::hatch_unscanned(picture, raster, geometry, scan.X_PT, scan.scene->ends);
+    ultrasound::ScanCaption caption;
     caption.transducer = scan.transducer.name;
     caption.frequency_mhz = scan.acquisition.frequency_mhz;
     caption.focus_mm = scan.acquisition.focus_mm;
     caption.settings = scan.display;
     if (scan.unscanned_share > 0.0) caption.remarks.emplace_back("Outside CT");
-    draw_annotation(picture, make_scan_annotation(raster, geometry, caption));
+    ultrasound::draw_annotation(picture, ultrasound::make_scan_annotation(raster, geometry, caption));
     if (colour) draw_colour_bar(picture, *colour);
   }
-  return write_png(picture, arguments.out);
+  return io::write_png(picture, arguments.out);
 }
 
 Status make_image(const Arguments& arguments) {
@@ -197,21 +203,21 @@ Status make_image(const Arguments& arguments) {
   TROCAR_TRY(Scan scan, prepare_scan(wanted, {}, printer.callback()));
   if (arguments.is_unmirrored) scan.display.is_mirrored = false;
 
-  BMode engine(scan.scene, scan.transducer, scan.acquisition);
-  Scanner scanner(request.size.columns, request.size.rows);
+  ultrasound::BMode engine(scan.scene, scan.transducer, scan.acquisition);
+  ultrasound::Scanner scanner(request.size.columns, request.size.rows);
   scanner.settings = scan.display;
   scanner.artefacts = scan.acquisition.artefacts;
-  NeedleEcho needle;
+  ultrasound::NeedleEcho needle;
   needle.shaft_P = request.needle.shaft_P;
   needle.diameter_mm = request.needle.diameter_mm;
-  const std::span<const NeedleEcho> needles(&needle, needle.shaft_P.empty() ? 0 : 1);
-  const BasebandFrame& echoes = engine.render({scan.X_PT, needles, 0.0});
-  const double coupled = coupled_share(echoes);
+  const std::span<const ultrasound::NeedleEcho> needles(&needle, needle.shaft_P.empty() ? 0 : 1);
+  const ultrasound::BasebandFrame& echoes = engine.render({scan.X_PT, needles, 0.0});
+  const double coupled = ultrasound::coupled_share(echoes);
   const int pictures = scan.display.persistence > 0.0 ? kPersistingPictures : 1;
-  GrayImage picture;
+  ultrasound::GrayImage picture;
   for (int n = 0; n < pictures; ++n)
     picture = scanner.show(echoes, arguments.scan.seed + static_cast<std::uint64_t>(n));
-  const RasterGeometry raster = scanner.raster();
+  const ultrasound::RasterGeometry raster = scanner.raster();
   std::optional<ColourPicture> colour;
   if (scan.flow)
     colour = colour_picture(scan.flow, request.doppler, arguments.doppler.time_s, engine, echoes, scan.X_PT, picture,
@@ -226,14 +232,14 @@ Status make_image(const Arguments& arguments) {
   warn_of_contact(coupled);
   warn_of_visibility(scan);
   if (arguments.is_json) {
-    Json json = to_json(scan);
+    config::Json json = to_json(scan);
     json["out"] = arguments.out;
     json["columns"] = picture.columns;
     json["rows"] = picture.rows;
     json["mm_per_pixel"] = raster.mm_per_pixel;
     json["coupled"] = coupled;
-    json["doppler_scale_cm_per_s"] = colour ? Json(colour->scale_cm_per_s) : Json(nullptr);
-    json["frames"] = arguments.frames > 0 ? to_json(timing, arguments.frames) : Json(nullptr);
+    json["doppler_scale_cm_per_s"] = colour ? config::Json(colour->scale_cm_per_s) : config::Json(nullptr);
+    json["frames"] = arguments.frames > 0 ? to_json(timing, arguments.frames) : config::Json(nullptr);
     print_json(json);
   } else if (arguments.frames > 0) {
     fmt::print("{:.1f} frames/s over {} frames, the transducer moving\n", timing.frames_per_s, arguments.frames);
@@ -256,13 +262,15 @@ void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
   const auto a = std::make_shared<Arguments>();
   add_scan_options(*command, a->scan);
   add_doppler_options(*command, a->doppler);
-  number_within(command->add_option("--persistence", a->scan.display.persistence, "Weight of the previous picture"),
-                0.0, 0.95, "")
+  arguments::number_within(
+      command->add_option("--persistence", a->scan.display.persistence, "Weight of the previous picture"), 0.0, 0.95,
+      "")
       ->capture_default_str();
   command->add_option("--needle", a->needle,
                       "X_PN: points of the needle, tip at 0 and +z to it, to the patient's (.tfm)");
-  whole_number_within(command->add_option("--needle-gauge", a->needle_gauge, "Outer diameter of the needle, gauge"),
-                      kThickestGauge, kThinnestGauge)
+  arguments::whole_number_within(
+      command->add_option("--needle-gauge", a->needle_gauge, "Outer diameter of the needle, gauge"), kThickestGauge,
+      kThinnestGauge)
       ->capture_default_str();
   command->add_option("--engine", a->engine, "raycast (from CT and labels) or panorama (from stitched volumes: later)")
       ->check(CLI::IsMember({"raycast", "panorama"}))
@@ -270,7 +278,7 @@ void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
   command->add_option("--out", a->out, "Picture: .png, or .nrrd as a thin slab where its plane lies in the patient")
       ->required();
   command->add_option("--size", a->size, "Size of the picture, COLUMNSxROWS, 16 to 4096 each")->capture_default_str();
-  whole_number_within(
+  arguments::whole_number_within(
       command->add_option("--frames", a->frames, "Benchmark: render N more frames with a moving transducer"), 1,
       kMostFrames);
   command->add_flag("--plain", a->is_plain, "No scale, marker and settings around the picture");

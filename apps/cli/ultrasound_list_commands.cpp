@@ -18,33 +18,34 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 struct Arguments {
-  PatientSource source;
+  io::PatientSource source;
   bool is_json = false;
 };
 
-Json view_json(const ProbeView& view, const std::optional<bool>& is_possible, const Label* target) {
+config::Json view_json(const ultrasound::ProbeView& view, const std::optional<bool>& is_possible,
+                       const anatomy::Label* target) {
   return {{"name", view.name},
           {"title", view.title},
           {"transducer", view.transducer},
           {"depth_mm", view.depth_mm},
-          {"possible", is_possible ? Json(*is_possible) : Json(nullptr)},
-          {"target", target != nullptr ? Json(target->name) : Json(nullptr)}};
+          {"possible", is_possible ? config::Json(*is_possible) : config::Json(nullptr)},
+          {"target", target != nullptr ? config::Json(target->name) : config::Json(nullptr)}};
 }
 
 Status list_views(const Arguments& arguments) {
   TROCAR_TRY(const auto file, find_data("views.toml"));
-  TROCAR_TRY(const auto views, load_probe_views(file));
+  TROCAR_TRY(const auto views, ultrasound::load_probe_views(file));
   const bool has_patient = !arguments.source.folder_or_name.empty();
-  VirtualPatient patient;
+  anatomy::VirtualPatient patient;
   if (has_patient) {
     const ProgressPrinter printer;
-    TROCAR_TRY(patient, open_patient(arguments.source, printer.callback()));
+    TROCAR_TRY(patient, io::open_patient(arguments.source, printer.callback()));
   }
-  const auto possible = has_patient ? possible_views(patient, views) : std::vector<std::string>{};
-  Json list = Json::array();
-  for (const ProbeView& view : views) {
+  const auto possible = has_patient ? ultrasound::possible_views(patient, views) : std::vector<std::string>{};
+  config::Json list = config::Json::array();
+  for (const ultrasound::ProbeView& view : views) {
     const bool is_possible = std::find(possible.begin(), possible.end(), view.name) != possible.end();
-    const Label* target = is_possible ? find_target(patient, view.targets) : nullptr;
+    const anatomy::Label* target = is_possible ? ultrasound::find_target(patient, view.targets) : nullptr;
     if (arguments.is_json) {
       list.push_back(view_json(view, has_patient ? std::optional(is_possible) : std::nullopt, target));
       continue;
@@ -57,25 +58,25 @@ Status list_views(const Arguments& arguments) {
   return {};
 }
 
-const char* name_of(TransducerKind kind) {
+const char* name_of(ultrasound::TransducerKind kind) {
   switch (kind) {
-    case TransducerKind::kConvex:
+    case ultrasound::TransducerKind::kConvex:
       return "convex";
-    case TransducerKind::kLinear:
+    case ultrasound::TransducerKind::kLinear:
       return "linear";
-    case TransducerKind::kPhased:
+    case ultrasound::TransducerKind::kPhased:
       return "phased";
-    case TransducerKind::kMechanicalConvex:
+    case ultrasound::TransducerKind::kMechanicalConvex:
       return "mechanical convex";
   }
   return "";
 }
 
-Json transducer_json(const Transducer& t) {
-  const bool is_fan = t.kind != TransducerKind::kLinear;
-  const bool has_arc = is_fan && t.kind != TransducerKind::kPhased;
-  const bool has_motor = t.kind == TransducerKind::kMechanicalConvex;
-  const auto where = [](bool applies, double value) { return applies ? Json(value) : Json(nullptr); };
+config::Json transducer_json(const ultrasound::Transducer& t) {
+  const bool is_fan = t.kind != ultrasound::TransducerKind::kLinear;
+  const bool has_arc = is_fan && t.kind != ultrasound::TransducerKind::kPhased;
+  const bool has_motor = t.kind == ultrasound::TransducerKind::kMechanicalConvex;
+  const auto where = [](bool applies, double value) { return applies ? config::Json(value) : config::Json(nullptr); };
   return {{"name", t.name},
           {"description", t.description},
           {"kind", name_of(t.kind)},
@@ -95,16 +96,17 @@ Json transducer_json(const Transducer& t) {
           {"sweep_radius_mm", where(has_motor, t.sweep_radius_mm)}};
 }
 
-void print_transducers(const std::vector<Transducer>& transducers) {
+void print_transducers(const std::vector<ultrasound::Transducer>& transducers) {
   fmt::print("{:<12} {:<18} {:>12} {:>9} {:>8} {:>7} {:>8} {:>10}\n", "name", "kind", "MHz", "face", "radius", "fan",
              "depth", "sweep");
-  for (const Transducer& t : transducers) {
-    const bool is_fan = t.kind != TransducerKind::kLinear;
-    const bool has_arc = is_fan && t.kind != TransducerKind::kPhased;
+  for (const ultrasound::Transducer& t : transducers) {
+    const bool is_fan = t.kind != ultrasound::TransducerKind::kLinear;
+    const bool has_arc = is_fan && t.kind != ultrasound::TransducerKind::kPhased;
     const std::string radius = has_arc ? fmt::format("{:.0f} mm", t.radius_mm) : "";
     const std::string fan = is_fan ? fmt::format("{:.0f} deg", t.field_of_view_rad * kDegPerRad) : "";
-    const std::string sweep =
-        t.kind == TransducerKind::kMechanicalConvex ? fmt::format("{:.0f} deg", t.sweep_rad * kDegPerRad) : "";
+    const std::string sweep = t.kind == ultrasound::TransducerKind::kMechanicalConvex
+                                  ? fmt::format("{:.0f} deg", t.sweep_rad * kDegPerRad)
+                                  : "";
     fmt::print("{:<12} {:<18} {:>12} {:>6.0f} mm {:>8} {:>7} {:>5.0f} mm {:>10}  {}\n", t.name, name_of(t.kind),
                fmt::format("{:g} ({:g}-{:g})", t.frequency_mhz, t.lowest_mhz, t.highest_mhz), t.face_width_mm(), radius,
                fan, t.depth_mm, sweep, t.description);
@@ -113,13 +115,13 @@ void print_transducers(const std::vector<Transducer>& transducers) {
 
 Status list_transducers(const Arguments& arguments) {
   TROCAR_TRY(const auto file, find_data("transducers.toml"));
-  TROCAR_TRY(const auto transducers, load_transducers(file));
+  TROCAR_TRY(const auto transducers, ultrasound::load_transducers(file));
   if (!arguments.is_json) {
     print_transducers(transducers);
     return {};
   }
-  Json list = Json::array();
-  for (const Transducer& transducer : transducers) list.push_back(transducer_json(transducer));
+  config::Json list = config::Json::array();
+  for (const ultrasound::Transducer& transducer : transducers) list.push_back(transducer_json(transducer));
   print_json({{"transducers", list}});
   return {};
 }
@@ -130,7 +132,7 @@ void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action) {
   const auto a = std::make_shared<Arguments>();  // one command runs: they share it
   CLI::App* views = ultrasound.add_subcommand("views", "Standard views, and which of them a patient has");
   views->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
-  seed_number(views->add_option("--patient-seed", a->source.seed, "Seed of an embedded patient"))
+  arguments::seed_number(views->add_option("--patient-seed", a->source.seed, "Seed of an embedded patient"))
       ->capture_default_str();
   add_cache_option(*views, a->source);
   views->add_flag("--json", a->is_json, "Print one JSON object");

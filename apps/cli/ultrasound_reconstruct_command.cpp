@@ -28,23 +28,25 @@ struct Arguments {
   bool is_json = false;
 };
 
-const std::map<std::string, FreehandInterpolation>& interpolations() {
-  static const std::map<std::string, FreehandInterpolation> names{{"nearest", FreehandInterpolation::kNearest},
-                                                                  {"linear", FreehandInterpolation::kLinear}};
+const std::map<std::string, ultrasound::FreehandInterpolation>& interpolations() {
+  static const std::map<std::string, ultrasound::FreehandInterpolation> names{
+      {"nearest", ultrasound::FreehandInterpolation::kNearest}, {"linear", ultrasound::FreehandInterpolation::kLinear}};
   return names;
 }
 
-const std::map<std::string, FreehandCompounding>& compoundings() {
-  static const std::map<std::string, FreehandCompounding> names{{"mean", FreehandCompounding::kMean},
-                                                                {"maximum", FreehandCompounding::kMaximum},
-                                                                {"latest", FreehandCompounding::kLatest}};
+const std::map<std::string, ultrasound::FreehandCompounding>& compoundings() {
+  static const std::map<std::string, ultrasound::FreehandCompounding> names{
+      {"mean", ultrasound::FreehandCompounding::kMean},
+      {"maximum", ultrasound::FreehandCompounding::kMaximum},
+      {"latest", ultrasound::FreehandCompounding::kLatest}};
   return names;
 }
 
-const std::map<std::string, HoleFilling::Kind>& hole_fillings() {
-  static const std::map<std::string, HoleFilling::Kind> names{{"stick", HoleFilling::Kind::kStick},
-                                                              {"nearest", HoleFilling::Kind::kNearest},
-                                                              {"gaussian", HoleFilling::Kind::kGaussian}};
+const std::map<std::string, ultrasound::HoleFilling::Kind>& hole_fillings() {
+  static const std::map<std::string, ultrasound::HoleFilling::Kind> names{
+      {"stick", ultrasound::HoleFilling::Kind::kStick},
+      {"nearest", ultrasound::HoleFilling::Kind::kNearest},
+      {"gaussian", ultrasound::HoleFilling::Kind::kGaussian}};
   return names;
 }
 
@@ -56,13 +58,13 @@ std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
 }
 
 /// What the calibration file says, and over it what the command line says.
-Result<PlusConfig> gather(const Arguments& arguments) {
-  PlusConfig config;
+Result<io::PlusConfig> gather(const Arguments& arguments) {
+  io::PlusConfig config;
   if (!arguments.calibration.empty()) {
-    TROCAR_TRY(config, read_plus_config(arguments.calibration));
+    TROCAR_TRY(config, io::read_plus_config(arguments.calibration));
   }
-  FreehandOptions& options = config.reconstruction;
-  if (!config.has_reconstruction) options.holes = {HoleFilling{}};
+  ultrasound::FreehandOptions& options = config.reconstruction;
+  if (!config.has_reconstruction) options.holes = {ultrasound::HoleFilling{}};
   if (arguments.spacing_mm > 0.0) options.spacing_mm = Vec3::Constant(arguments.spacing_mm);
   if (!arguments.interpolation.empty()) options.interpolation = interpolations().at(arguments.interpolation);
   if (!arguments.compounding.empty()) options.compounding = compoundings().at(arguments.compounding);
@@ -70,7 +72,7 @@ Result<PlusConfig> gather(const Arguments& arguments) {
   if (arguments.holes == "none") {
     options.holes.clear();
   } else if (!arguments.holes.empty()) {
-    HoleFilling way;
+    ultrasound::HoleFilling way;
     way.kind = hole_fillings().at(arguments.holes);
     options.holes = {way};
   }
@@ -78,9 +80,10 @@ Result<PlusConfig> gather(const Arguments& arguments) {
   return config;
 }
 
-Json to_json(const FreehandVolume& volume, const FreehandOptions& options, double seconds) {
-  const GridGeometry& grid = volume.gray.geometry;
-  Json json;
+config::Json to_json(const ultrasound::FreehandVolume& volume, const ultrasound::FreehandOptions& options,
+                     double seconds) {
+  const volume::GridGeometry& grid = volume.gray.geometry;
+  config::Json json;
   json["size"] = grid.size;
   json["spacing_mm"] = {grid.spacing_mm[0], grid.spacing_mm[1], grid.spacing_mm[2]};
   json["origin_mm"] = {grid.origin_P[0], grid.origin_P[1], grid.origin_P[2]};
@@ -93,8 +96,9 @@ Json to_json(const FreehandVolume& volume, const FreehandOptions& options, doubl
   return json;
 }
 
-void print_summary(const FreehandVolume& volume, const FreehandOptions& options, double seconds) {
-  const GridGeometry& grid = volume.gray.geometry;
+void print_summary(const ultrasound::FreehandVolume& volume, const ultrasound::FreehandOptions& options,
+                   double seconds) {
+  const volume::GridGeometry& grid = volume.gray.geometry;
   fmt::print("{} voxels of {:g} x {:g} x {:g} mm from {} frames in {:.2f} s\n", fmt::join(grid.size, " x "),
              grid.spacing_mm[0], grid.spacing_mm[1], grid.spacing_mm[2], volume.frames_used, seconds);
   fmt::print("{} voxels filled from image pixels, {} holes filled\n", volume.voxels_met, volume.holes_filled);
@@ -105,19 +109,19 @@ Status reconstruct(const Arguments& arguments) {
   const std::string extension = fs::path(arguments.out).extension().string();
   if (extension != ".nrrd") return fail_usage("the file name must end in .nrrd", arguments.out, "rename the output");
   TROCAR_TRY_STATUS(check_new(arguments.out));
-  TROCAR_TRY(const PlusConfig config, gather(arguments));
+  TROCAR_TRY(const io::PlusConfig config, gather(arguments));
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
   report(progress, "reading the sequence", 0.0);
-  TROCAR_TRY(const TrackedSequence sequence, read_sequence(arguments.sequence));
+  TROCAR_TRY(const ultrasound::TrackedSequence sequence, io::read_sequence(arguments.sequence));
   const auto start = std::chrono::steady_clock::now();
-  auto volume = reconstruct_freehand(
+  auto volume = ultrasound::reconstruct_freehand(
       sequence, config.transforms, config.reconstruction,
       [&](std::string_view step, double fraction) { report(progress, step, 0.4 + 0.4 * fraction); });
   if (!volume) return fail(volume.error().what, arguments.sequence, volume.error().advice);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   report(progress, "writing the volume", 0.8);
-  TROCAR_TRY_STATUS(write_image(volume->gray, arguments.out));
+  TROCAR_TRY_STATUS(io::write_image(volume->gray, arguments.out));
   report(progress, "done", 1.0);
   for (const std::string& what : config.left_aside)
     print_warning(fmt::format("{} of {} is not followed", what, arguments.calibration));
@@ -142,7 +146,7 @@ void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action) {
   command->add_option("SEQUENCE", a->sequence, "Tracked pictures of PLUS or 3D Slicer: .igs.mha")->required();
   command->add_option("--calibration", a->calibration,
                       "PLUS configuration (XML) with ImageToProbe; its <VolumeReconstruction> gives the defaults");
-  number_within(
+  arguments::number_within(
       command->add_option("--spacing", a->spacing_mm, "Voxel size; the calibration file's or 1 mm when left out"), 0.01,
       100.0, "mm");
   command->add_option("--out", a->out, "Volume to write: .nrrd, one byte a voxel, LPS axes of the reference")

@@ -43,7 +43,7 @@ Status take(const char* option, const std::optional<double>& asked, double low, 
 }
 
 /// A setting that a pose was saved with; `value` stays where the file has none. Held in the transducer's range.
-Status take_note(const TransformNotes& notes, const char* key, double low, double high, double& value,
+Status take_note(const io::TransformNotes& notes, const char* key, double low, double high, double& value,
                  const std::string& where) {
   const auto note = notes.find(key);
   if (note == notes.end()) return {};
@@ -57,8 +57,8 @@ Status take_note(const TransformNotes& notes, const char* key, double low, doubl
 }
 
 /// The settings of the saved pose, for the transducer that it was saved with.
-Status take_notes(const TransformNotes& notes, const Transducer& transducer, const std::string& where,
-                  Acquisition& acquisition) {
+Status take_notes(const io::TransformNotes& notes, const ultrasound::Transducer& transducer, const std::string& where,
+                  ultrasound::Acquisition& acquisition) {
   const auto name = notes.find(kTransducerNote);
   if (name == notes.end() || name->second != transducer.name) return {};
   TROCAR_TRY_STATUS(
@@ -68,9 +68,10 @@ Status take_notes(const TransformNotes& notes, const Transducer& transducer, con
   return take_note(notes, kFocusNote, kLeastFocus_mm, transducer.greatest_depth_mm, acquisition.focus_mm, where);
 }
 
-Result<Acquisition> gather_acquisition(const ScanArguments& a, const Transducer& transducer,
-                                       const std::optional<ProbeView>& view, const TransformNotes& notes) {
-  Acquisition acquisition = default_acquisition(transducer);
+Result<ultrasound::Acquisition> gather_acquisition(const ScanArguments& a, const ultrasound::Transducer& transducer,
+                                                   const std::optional<ultrasound::ProbeView>& view,
+                                                   const io::TransformNotes& notes) {
+  ultrasound::Acquisition acquisition = ultrasound::default_acquisition(transducer);
   if (view) acquisition.depth_mm = std::min(view->depth_mm, transducer.greatest_depth_mm);
   if (view && view->frequency_mhz)
     acquisition.frequency_mhz = std::clamp(*view->frequency_mhz, transducer.lowest_mhz, transducer.highest_mhz);
@@ -89,14 +90,14 @@ Result<Acquisition> gather_acquisition(const ScanArguments& a, const Transducer&
   acquisition.planes = a.planes.value_or(acquisition.planes);
   if (acquisition.planes % 2 == 0)
     return fail_usage("--planes must be odd", fmt::format("{}", acquisition.planes), "give 1, 3, 5, 7 or 9");
-  for (const std::string& name : a.off) TROCAR_TRY_STATUS(switch_off(acquisition.artefacts, name));
+  for (const std::string& name : a.off) TROCAR_TRY_STATUS(ultrasound::switch_off(acquisition.artefacts, name));
   return acquisition;
 }
 
-Result<DisplaySettings> gather_display(const ScanArguments& a) {
-  DisplaySettings display = a.display;
+Result<ultrasound::DisplaySettings> gather_display(const ScanArguments& a) {
+  ultrasound::DisplaySettings display = a.display;
   if (!a.gray_map.empty()) {
-    TROCAR_TRY(display.gray_map, parse_gray_map(a.gray_map));
+    TROCAR_TRY(display.gray_map, ultrasound::parse_gray_map(a.gray_map));
   }
   if (!a.tgc_db.empty()) {
     if (a.tgc_db.size() != display.tgc_db.size())
@@ -109,11 +110,13 @@ Result<DisplaySettings> gather_display(const ScanArguments& a) {
 }
 
 /// A view by its name, before there is a patient to hold it against.
-Result<std::optional<ProbeView>> find_view(const std::vector<ProbeView>& views, const std::string& name) {
+Result<std::optional<ultrasound::ProbeView>> find_view(const std::vector<ultrasound::ProbeView>& views,
+                                                       const std::string& name) {
   if (name.empty()) return std::nullopt;
-  const auto found = std::find_if(views.begin(), views.end(), [&](const ProbeView& view) { return view.name == name; });
+  const auto found =
+      std::find_if(views.begin(), views.end(), [&](const ultrasound::ProbeView& view) { return view.name == name; });
   if (found != views.end()) return *found;
-  TROCAR_TRY(ProbeView unknown, choose_view(VirtualPatient{}, views, name));
+  TROCAR_TRY(ultrasound::ProbeView unknown, ultrasound::choose_view(anatomy::VirtualPatient{}, views, name));
   return unknown;
 }
 
@@ -121,7 +124,7 @@ Result<std::optional<ProbeView>> find_view(const std::vector<ProbeView>& views, 
 
 void add_scan_options(CLI::App& command, ScanArguments& a) {
   command.add_option("--patient", a.source.folder_or_name, "Patient folder, or an embedded patient's name")->required();
-  seed_number(command.add_option("--patient-seed", a.source.seed, "Seed of an embedded patient"))
+  arguments::seed_number(command.add_option("--patient-seed", a.source.seed, "Seed of an embedded patient"))
       ->capture_default_str();
   add_cache_option(command, a.source);
   CLI::Option* pose = command.add_option("--pose", a.pose, "X_PT: points of the transducer to the patient's (.tfm)");
@@ -132,34 +135,40 @@ void add_scan_options(CLI::App& command, ScanArguments& a) {
                      "Write X_PT as a .tfm, with transducer, depth, frequency and focus as comments that --pose reads");
   command.add_option("--transducer", a.transducer,
                      "One of trocar ultrasound transducers; when left out the view's, or a fitting one");
-  number_within(command.add_option("--depth-mm", a.depth_mm, "Image depth below the face"), kLeastDepth_mm,
-                kMostDepth_mm, "mm");
-  number_within(command.add_option("--frequency-mhz", a.frequency_mhz, "Frequency, within the transducer's band"), 0.5,
-                50.0, "MHz");
-  number_within(command.add_option("--focus-mm", a.focus_mm, "Depth of the transmit focus"), kLeastFocus_mm,
-                kMostDepth_mm, "mm");
-  number_within(command.add_option("--gain-db", a.display.gain_db, "Gain"), -40.0, 40.0, "dB")->capture_default_str();
-  number_within(command.add_option("--tgc", a.tgc_db, "Eight TGC sliders from near to far, as 0,0,0,0,0,0,0,0"), -20.0,
-                20.0, "dB")
+  arguments::number_within(command.add_option("--depth-mm", a.depth_mm, "Image depth below the face"), kLeastDepth_mm,
+                           kMostDepth_mm, "mm");
+  arguments::number_within(
+      command.add_option("--frequency-mhz", a.frequency_mhz, "Frequency, within the transducer's band"), 0.5, 50.0,
+      "MHz");
+  arguments::number_within(command.add_option("--focus-mm", a.focus_mm, "Depth of the transmit focus"), kLeastFocus_mm,
+                           kMostDepth_mm, "mm");
+  arguments::number_within(command.add_option("--gain-db", a.display.gain_db, "Gain"), -40.0, 40.0, "dB")
+      ->capture_default_str();
+  arguments::number_within(
+      command.add_option("--tgc", a.tgc_db, "Eight TGC sliders from near to far, as 0,0,0,0,0,0,0,0"), -20.0, 20.0,
+      "dB")
       ->delimiter(',')
       ->allow_extra_args(false);
-  number_within(command.add_option("--dynamic-range-db", a.display.dynamic_range_db, "Dynamic range"), 20.0, 100.0,
-                "dB")
+  arguments::number_within(command.add_option("--dynamic-range-db", a.display.dynamic_range_db, "Dynamic range"), 20.0,
+                           100.0, "dB")
       ->capture_default_str();
   command.add_option("--gray-map", a.gray_map, "linear, soft or high-contrast; soft when left out");
-  whole_number_within(command.add_option("--lines", a.lines, "Number of scanlines"), 2, 1024);
-  whole_number_within(command.add_option("--samples", a.samples, "Samples per scanline; 1024 when left out"), 16, 4096);
-  whole_number_within(
+  arguments::whole_number_within(command.add_option("--lines", a.lines, "Number of scanlines"), 2, 1024);
+  arguments::whole_number_within(command.add_option("--samples", a.samples, "Samples per scanline; 1024 when left out"),
+                                 16, 4096);
+  arguments::whole_number_within(
       command.add_option("--planes", a.planes, "Number of elevation planes, an odd number; 5 when left out"), 1, 9);
-  whole_number_within(
+  arguments::whole_number_within(
       command.add_option("--looks", a.looks, "Number of compounding angles; 3 when left out, 1 gives full speckle"), 1,
       5);
   command
-      .add_option("--off", a.off,
-                  fmt::format("Artefacts to switch off, with commas: {}, all", fmt::join(artefact_names(), ", ")))
+      .add_option(
+          "--off", a.off,
+          fmt::format("Artefacts to switch off, with commas: {}, all", fmt::join(ultrasound::artefact_names(), ", ")))
       ->delimiter(',')
       ->allow_extra_args(false);
-  seed_number(command.add_option("--seed", a.seed, "Random seed of the receiver noise"))->capture_default_str();
+  arguments::seed_number(command.add_option("--seed", a.seed, "Random seed of the receiver noise"))
+      ->capture_default_str();
 }
 
 Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_transducer, const Progress& progress) {
@@ -167,41 +176,42 @@ Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_tra
     return fail_usage("the transducer has no position", "--pose, --view", "give --pose FILE.tfm or --view NAME");
   Scan scan;
   TROCAR_TRY(const fs::path views_file, find_data("views.toml"));
-  TROCAR_TRY(const auto views, load_probe_views(views_file));
+  TROCAR_TRY(const auto views, ultrasound::load_probe_views(views_file));
   TROCAR_TRY(scan.view, find_view(views, a.view));
-  TransformNotes notes;
+  io::TransformNotes notes;
   if (!a.pose.empty()) {
-    TROCAR_TRY(scan.X_PT, read_transform(a.pose));
-    TROCAR_TRY(notes, read_transform_notes(a.pose));
+    TROCAR_TRY(scan.X_PT, io::read_transform(a.pose));
+    TROCAR_TRY(notes, io::read_transform_notes(a.pose));
   }
   std::string fitting = default_transducer;
   if (fitting.empty() && scan.view) fitting = scan.view->transducer;
   if (fitting.empty() && notes.contains(kTransducerNote)) fitting = notes.at(kTransducerNote);
   const std::string& name = !a.transducer.empty() ? a.transducer : fitting.empty() ? std::string("C5-2") : fitting;
   TROCAR_TRY(const fs::path transducers_file, find_data("transducers.toml"));
-  TROCAR_TRY(scan.transducer, load_transducer(transducers_file, name));
+  TROCAR_TRY(scan.transducer, ultrasound::load_transducer(transducers_file, name));
   TROCAR_TRY(scan.acquisition, gather_acquisition(a, scan.transducer, scan.view, notes));
   TROCAR_TRY(scan.display, gather_display(a));
   TROCAR_TRY(const fs::path acoustics_file, find_data("acoustics.toml"));
-  TROCAR_TRY(AcousticTable table, load_acoustic_table(acoustics_file));
+  TROCAR_TRY(ultrasound::AcousticTable table, ultrasound::load_acoustic_table(acoustics_file));
 
-  TROCAR_TRY(const VirtualPatient patient, open_patient(a.source, progress));
+  TROCAR_TRY(const anatomy::VirtualPatient patient, io::open_patient(a.source, progress));
   scan.patient_name = patient.name;
   if (scan.view) {
-    TROCAR_TRY(scan.view, choose_view(patient, views, a.view));
+    TROCAR_TRY(scan.view, ultrasound::choose_view(patient, views, a.view));
     report(progress, "placing the transducer", 0.0);
-    TROCAR_TRY(const ProbePlacement placed, place_probe(patient, *scan.view, scan.transducer));
+    TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, *scan.view, scan.transducer));
     scan.X_PT = placed.X_PT;
     scan.visibility = placed.visibility;
   }
-  TROCAR_TRY(scan.scene, make_acoustic_scene(patient, std::move(table), {}, progress));
-  const Acquisition& a_scan = scan.acquisition;
-  scan.unscanned_share = unscanned_share(
-      scan.scene->ends, scan.X_PT, make_scan_geometry(scan.transducer, a_scan.depth_mm, a_scan.lines, a_scan.samples));
+  TROCAR_TRY(scan.scene, ultrasound::make_acoustic_scene(patient, std::move(table), {}, progress));
+  const ultrasound::Acquisition& a_scan = scan.acquisition;
+  scan.unscanned_share =
+      unscanned_share(scan.scene->ends, scan.X_PT,
+                      ultrasound::make_scan_geometry(scan.transducer, a_scan.depth_mm, a_scan.lines, a_scan.samples));
   if (a.needs_flow) {
     TROCAR_TRY(const fs::path flow_file, find_data("flow.toml"));
-    TROCAR_TRY(FlowTable flow_table, load_flow_table(flow_file));
-    TROCAR_TRY(scan.flow, make_vessel_flow(patient, std::move(flow_table), {}, progress));
+    TROCAR_TRY(ultrasound::FlowTable flow_table, ultrasound::load_flow_table(flow_file));
+    TROCAR_TRY(scan.flow, ultrasound::make_vessel_flow(patient, std::move(flow_table), {}, progress));
   }
   return scan;
 }
@@ -232,11 +242,11 @@ void warn_of_contact(double coupled) {
 }
 
 void warn_of_visibility(const Scan& scan) {
-  if (scan.view && scan.visibility && scan.visibility->visible < kEnoughVisible)
+  if (scan.view && scan.visibility && scan.visibility->visible < ultrasound::kEnoughVisible)
     print_warning(
         fmt::format("view \"{}\": {:.0f} % of the subject is visible ({}): choose another view, or place the "
                     "transducer with --pose",
-                    scan.view->name, 100.0 * scan.visibility->visible, hidden_causes(*scan.visibility)));
+                    scan.view->name, 100.0 * scan.visibility->visible, ultrasound::hidden_causes(*scan.visibility)));
   if (scan.unscanned_share > kWorthSaying)
     print_warning(
         fmt::format("{:.0f} % of the picture lies outside the CT (hatched) and shows no echoes: use a CT that "
@@ -245,27 +255,27 @@ void warn_of_visibility(const Scan& scan) {
 }
 
 Status save_pose(const Scan& scan, const std::string& path) {
-  const Acquisition& a = scan.acquisition;
-  return write_transform(scan.X_PT, path,
-                         {{kTransducerNote, scan.transducer.name},
-                          {kDepthNote, fmt::format("{}", a.depth_mm)},
-                          {kFrequencyNote, fmt::format("{}", a.frequency_mhz)},
-                          {kFocusNote, fmt::format("{}", a.focus_mm)}});
+  const ultrasound::Acquisition& a = scan.acquisition;
+  return io::write_transform(scan.X_PT, path,
+                             {{kTransducerNote, scan.transducer.name},
+                              {kDepthNote, fmt::format("{}", a.depth_mm)},
+                              {kFrequencyNote, fmt::format("{}", a.frequency_mhz)},
+                              {kFocusNote, fmt::format("{}", a.focus_mm)}});
 }
 
-Json to_json(const Pose& X) {
-  Json rows = Json::array();
+config::Json to_json(const Pose& X) {
+  config::Json rows = config::Json::array();
   for (int row = 0; row < 3; ++row) rows.push_back({X.R()(row, 0), X.R()(row, 1), X.R()(row, 2), X.p()[row]});
   rows.push_back({0.0, 0.0, 0.0, 1.0});
   return rows;
 }
 
-Json to_json(const Scan& scan) {
-  const Acquisition& a = scan.acquisition;
+config::Json to_json(const Scan& scan) {
+  const ultrasound::Acquisition& a = scan.acquisition;
   return {{"patient", scan.patient_name},
           {"transducer", scan.transducer.name},
-          {"view", scan.view ? Json(scan.view->name) : Json(nullptr)},
-          {"visible", scan.visibility ? Json(scan.visibility->visible) : Json(nullptr)},
+          {"view", scan.view ? config::Json(scan.view->name) : config::Json(nullptr)},
+          {"visible", scan.visibility ? config::Json(scan.visibility->visible) : config::Json(nullptr)},
           {"outside_ct", scan.unscanned_share},
           {"X_PT", to_json(scan.X_PT)},
           {"depth_mm", a.depth_mm},

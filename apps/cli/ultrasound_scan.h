@@ -8,22 +8,22 @@
 
 #include "io/patient/patient_source.h"
 #include "output.h"
-#include "ultrasound/engine/b_mode.h"
-#include "ultrasound/scanner/display_settings.h"
-#include "ultrasound/probe/probe_view.h"
 #include "ultrasound/doppler/vessel_flow.h"
+#include "ultrasound/engine/b_mode.h"
+#include "ultrasound/probe/probe_view.h"
 #include "ultrasound/probe/view_visibility.h"
+#include "ultrasound/scanner/display_settings.h"
 
 namespace trocar::cli {
 
 /// What all commands that scan a patient ask for; what is left out is the transducer's or the view's.
 struct ScanArguments {
-  PatientSource source;
+  io::PatientSource source;
   std::string pose, view, save_pose;
   std::string transducer;
   std::optional<double> depth_mm, frequency_mhz, focus_mm;
   std::optional<int> lines, samples, planes, looks;
-  DisplaySettings display;
+  ultrasound::DisplaySettings display;
   std::vector<double> tgc_db;
   std::string gray_map;
   std::vector<std::string> off;
@@ -36,16 +36,16 @@ void add_scan_options(CLI::App& command, ScanArguments& arguments);
 
 /// Arguments put together and held against their ranges, and the patient as sound meets him.
 struct Scan {
-  Transducer transducer;
-  Acquisition acquisition;
-  DisplaySettings display;
-  std::optional<ProbeView> view;
+  ultrasound::Transducer transducer;
+  ultrasound::Acquisition acquisition;
+  ultrasound::DisplaySettings display;
+  std::optional<ultrasound::ProbeView> view;
   Pose X_PT;
-  std::optional<ViewVisibility> visibility;  ///< Of the view's subject.
-  double unscanned_share = 0.0;              ///< Of the picture, beyond the ends of the CT.
+  std::optional<ultrasound::ViewVisibility> visibility;  ///< Of the view's subject.
+  double unscanned_share = 0.0;                          ///< Of the picture, beyond the ends of the CT.
   std::string patient_name;
-  std::shared_ptr<const AcousticScene> scene;
-  std::shared_ptr<const VesselFlow> flow;  ///< Where it was asked for.
+  std::shared_ptr<const ultrasound::AcousticScene> scene;
+  std::shared_ptr<const ultrasound::VesselFlow> flow;  ///< Where it was asked for.
 };
 
 /// What is wrong in the arguments is said before the patient is opened. `default_transducer`: where neither the
@@ -66,7 +66,7 @@ void warn_of_visibility(const Scan& scan);
 /// Writes X_PT with the settings that --pose reads again.
 Status save_pose(const Scan& scan, const std::string& path);
 
-Json to_json(const Pose& X);
-Json to_json(const Scan& scan);
+config::Json to_json(const Pose& X);
+config::Json to_json(const Scan& scan);
 
 }  // namespace trocar::cli

@@ -46,10 +46,10 @@ std::string text_of(const Pose& X) {
 }
 
 /// The fan for those who stitch or register: the frame of the numbers is the volume's own, T or P.
-ImageFields fan_fields(const Scan& scan, const SweepVolume& volume, bool is_in_patient) {
-  const SweepGeometry& sweep = volume.geometry;
+io::ImageFields fan_fields(const Scan& scan, const ultrasound::SweepVolume& volume, bool is_in_patient) {
+  const ultrasound::SweepGeometry& sweep = volume.geometry;
   const Pose X = is_in_patient ? scan.X_PT : Pose();
-  ImageFields fields = {
+  io::ImageFields fields = {
       {"trocar_apex_mm", text_of(X * Vec3(0.0, -sweep.scan.radius_mm, 0.0))},
       {"trocar_radius_mm", fmt::format("{:.9g}", sweep.scan.radius_mm)},
       {"trocar_depth_mm", fmt::format("{:.9g}", sweep.scan.depth_mm)},
@@ -71,7 +71,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void print_done(const Arguments& arguments, const Json& json, const std::string& line) {
+void print_done(const Arguments& arguments, const config::Json& json, const std::string& line) {
   if (arguments.is_json) {
     print_json(json);
   } else {
@@ -80,7 +80,7 @@ void print_done(const Arguments& arguments, const Json& json, const std::string&
 }
 
 Status sweep_by_motor(const Arguments& arguments, const Scan& scan, const Progress& progress) {
-  MechanicalSweepOptions options;
+  ultrasound::MechanicalSweepOptions options;
   options.acquisition = scan.acquisition;
   options.display = scan.display;
   options.sweep_rad = arguments.angle_deg * kRadPerDeg;
@@ -88,17 +88,18 @@ Status sweep_by_motor(const Arguments& arguments, const Scan& scan, const Progre
   options.spacing_mm = arguments.spacing_mm;
   options.seed = arguments.scan.seed;
   const auto start = std::chrono::steady_clock::now();
-  TROCAR_TRY(const SweepVolume volume,
-             make_mechanical_sweep(scan.scene, scan.transducer, scan.X_PT, options, progress));
+  TROCAR_TRY(const ultrasound::SweepVolume volume,
+             ultrasound::make_mechanical_sweep(scan.scene, scan.transducer, scan.X_PT, options, progress));
   const double seconds = seconds_since(start);
   const bool is_in_patient = arguments.is_in_patient;
-  const ImageFields fields = fan_fields(scan, volume, is_in_patient);
-  TROCAR_TRY_STATUS(write_image(is_in_patient ? in_patient(volume, scan.X_PT) : volume.gray, arguments.out, fields));
+  const io::ImageFields fields = fan_fields(scan, volume, is_in_patient);
+  TROCAR_TRY_STATUS(
+      io::write_image(is_in_patient ? ultrasound::in_patient(volume, scan.X_PT) : volume.gray, arguments.out, fields));
   warn_of_contact(volume.mean_contact);
   warn_of_visibility(scan);
 
   const auto& size = volume.gray.geometry.size;
-  Json json = to_json(scan);
+  config::Json json = to_json(scan);
   json["out"] = arguments.out;
   json["frame"] = is_in_patient ? "P" : "T";
   json["size"] = size;
@@ -119,25 +120,27 @@ std::vector<Pose> hand_poses(const Arguments& arguments, const Scan& scan) {
   if (arguments.angle_deg > 0.0) {
     const int steps = static_cast<int>(std::ceil(arguments.angle_deg / arguments.step_deg));
     const int frames = arguments.frames > 0 ? arguments.frames : std::max(2, steps + 1);
-    return tilt_on_skin(scan.X_PT, arguments.angle_deg * kRadPerDeg, scan.transducer.sweep_radius_mm, frames);
+    return ultrasound::tilt_on_skin(scan.X_PT, arguments.angle_deg * kRadPerDeg, scan.transducer.sweep_radius_mm,
+                                    frames);
   }
   const int frames = arguments.frames > 0 ? arguments.frames : std::max(2, static_cast<int>(arguments.length_mm) + 1);
-  return slide_over_skin(scan.scene->skin_distance_mm, scan.X_PT, arguments.length_mm, frames);
+  return ultrasound::slide_over_skin(scan.scene->skin_distance_mm, scan.X_PT, arguments.length_mm, frames);
 }
 
 Status sweep_by_hand(const Arguments& arguments, const Scan& scan, const Progress& progress) {
-  FreehandSweepOptions options;
+  ultrasound::FreehandSweepOptions options;
   options.acquisition = scan.acquisition;
   options.display = scan.display;
   options.seed = arguments.scan.seed;
   const std::vector<Pose> poses = hand_poses(arguments, scan);
   const auto start = std::chrono::steady_clock::now();
-  const FreehandSweep sweep = make_freehand_sweep(scan.scene, scan.transducer, poses, options, progress);
+  const ultrasound::FreehandSweep sweep =
+      ultrasound::make_freehand_sweep(scan.scene, scan.transducer, poses, options, progress);
   const double seconds = seconds_since(start);
-  TROCAR_TRY_STATUS(write_sequence(sweep.sequence, arguments.tracked));
+  TROCAR_TRY_STATUS(io::write_sequence(sweep.sequence, arguments.tracked));
   warn_of_contact(sweep.mean_contact);
   warn_of_visibility(scan);
-  Json json = to_json(scan);
+  config::Json json = to_json(scan);
   json["out"] = arguments.tracked;
   json["frames"] = poses.size();
   json["coupled"] = sweep.mean_contact;
@@ -181,21 +184,24 @@ void add_ultrasound_sweep_command(CLI::App& ultrasound, Action& action) {
   add_scan_options(*command, a->scan);
   command->add_option("--out", a->out, "Volume of a mechanical 3D transducer: .nrrd, one byte a voxel, with its fan");
   command->add_option("--tracked", a->tracked, "Instead: tracked pictures of a freehand sweep, .igs.mha");
-  number_within(command->add_option(
-                    "--angle-deg", a->angle_deg,
-                    "Total angle of the sweep; the transducer's own when left out. Freehand sweep: tilt, no slide"),
-                1.0, 90.0, "degrees");
-  number_within(command->add_option("--step-deg", a->step_deg, "Angle between frames"), 0.1, 10.0, "degrees")
+  arguments::number_within(
+      command->add_option(
+          "--angle-deg", a->angle_deg,
+          "Total angle of the sweep; the transducer's own when left out. Freehand sweep: tilt, no slide"),
+      1.0, 90.0, "degrees");
+  arguments::number_within(command->add_option("--step-deg", a->step_deg, "Angle between frames"), 0.1, 10.0, "degrees")
       ->capture_default_str();
-  number_within(command->add_option("--spacing", a->spacing_mm, "Voxel size"), 0.2, 5.0, "mm")->capture_default_str();
+  arguments::number_within(command->add_option("--spacing", a->spacing_mm, "Voxel size"), 0.2, 5.0, "mm")
+      ->capture_default_str();
   command->add_flag("--in-patient", a->is_in_patient,
                     "Write the volume in the patient's frame; when left out in the transducer's frame at mid sweep");
-  number_within(command->add_option("--length-mm", a->length_mm, "Freehand sweep: distance along the skin"), 1.0, 300.0,
-                "mm")
+  arguments::number_within(command->add_option("--length-mm", a->length_mm, "Freehand sweep: distance along the skin"),
+                           1.0, 300.0, "mm")
       ->capture_default_str();
-  whole_number_within(command->add_option("--frames", a->frames,
-                                          "Freehand sweep: number of frames; one per mm or angle step when left out"),
-                      2, 1000);
+  arguments::whole_number_within(
+      command->add_option("--frames", a->frames,
+                          "Freehand sweep: number of frames; one per mm or angle step when left out"),
+      2, 1000);
   command->add_flag("--json", a->is_json, "Print one JSON object");
   command->callback([&action, a] { action = [a] { return sweep(*a); }; });
 }

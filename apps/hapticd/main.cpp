@@ -9,11 +9,11 @@
 #include <mutex>
 #include <thread>
 
+#include "attempt/case/scene_request.h"
 #include "core/files/data_dir.h"
 #include "core/log.h"
 #include "core/version.h"
 #include "devices/device_spec.h"
-#include "attempt/case/scene_request.h"
 #include "io/patient/patient_source.h"
 #include "number_option.h"
 #include "program_end.h"
@@ -28,8 +28,8 @@ using namespace trocar;
 struct Arguments {
   std::string device = "virtual", preset, tool = "needle", endpoint, replay_file;
   std::vector<std::string> faults;
-  PatientSource patient;
-  CaseOptions the_case;
+  io::PatientSource patient;
+  attempt::CaseOptions the_case;
   std::string force_model;
   double rate_hz = 1000.0;
   int priority = 80;
@@ -40,30 +40,30 @@ struct Arguments {
 /// Patients for the server; one that was opened here already is not opened twice.
 class Patients {
  public:
-  Result<std::shared_ptr<const VirtualPatient>> open(const std::string& name, std::uint64_t seed,
-                                                     const Progress& progress) {
+  Result<std::shared_ptr<const anatomy::VirtualPatient>> open(const std::string& name, std::uint64_t seed,
+                                                              const Progress& progress) {
     if (patient_ != nullptr && name == source_.folder_or_name && seed == source_.seed)
       return std::exchange(patient_, {});
-    TROCAR_TRY(VirtualPatient patient, open_patient({name, seed}, progress));
-    return std::make_shared<const VirtualPatient>(std::move(patient));
+    TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient({name, seed}, progress));
+    return std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
   }
-  void keep(const PatientSource& source, std::shared_ptr<const VirtualPatient> patient) {
+  void keep(const io::PatientSource& source, std::shared_ptr<const anatomy::VirtualPatient> patient) {
     source_ = source;
     patient_ = std::move(patient);
   }
 
  private:
-  PatientSource source_;
-  std::shared_ptr<const VirtualPatient> patient_;
+  io::PatientSource source_;
+  std::shared_ptr<const anatomy::VirtualPatient> patient_;
 };
 
-Result<std::vector<Pose>> replayed_poses(const Session& session, double needle_length_mm) {
+Result<std::vector<Pose>> replayed_poses(const storage::Session& session, double needle_length_mm) {
   // The room of the replay is that of its own plan; the stylus is the needle's grip.
-  const Pose X_WP = room_in_patient(session.info.plan_P.line_P, needle_length_mm).inverse();
+  const Pose X_WP = attempt::room_in_patient(session.info.plan_P.line_P, needle_length_mm).inverse();
   const Pose X_NS = Pose::translation({0.0, 0.0, -needle_length_mm});
   std::vector<Pose> poses;
   poses.reserve(session.samples.size());
-  for (const TickSample& sample : session.samples) {
+  for (const telemetry::TickSample& sample : session.samples) {
     const auto& q = sample.device_rotation_wxyz;
     const Mat3 R_PN = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
     poses.push_back(X_WP * Pose(R_PN, sample.device_mm) * X_NS);
@@ -72,50 +72,50 @@ Result<std::vector<Pose>> replayed_poses(const Session& session, double needle_l
   return poses;
 }
 
-Result<std::unique_ptr<HapticDevice>> open_named_device(const Arguments& arguments) {
-  TROCAR_TRY(const DeviceSpec spec, parse_device_spec(arguments.device));
-  DeviceOptions options;
+Result<std::unique_ptr<devices::HapticDevice>> open_named_device(const Arguments& arguments) {
+  TROCAR_TRY(const devices::DeviceSpec spec, devices::parse_device_spec(arguments.device));
+  devices::DeviceOptions options;
   options.devices_file = data_dir() / "devices.toml";
   options.preset = arguments.preset;
   options.is_calibrating = arguments.is_calibrating;
   for (const std::string& text : arguments.faults) {
-    TROCAR_TRY(const ScheduledFault fault, parse_fault(text));
+    TROCAR_TRY(const devices::ScheduledFault fault, devices::parse_fault(text));
     options.faults.push_back(fault);
   }
   if (spec.kind == "replay") {
-    TROCAR_TRY(const Session session, load_session(spec.argument));
-    CaseOptions of_session;
+    TROCAR_TRY(const storage::Session session, storage::load_session(spec.argument));
+    attempt::CaseOptions of_session;
     of_session.task = session.info.task;
     of_session.needle = session.info.needle;
-    TROCAR_TRY(const Case tables, load_tables(of_session));
+    TROCAR_TRY(const attempt::Case tables, attempt::load_tables(of_session));
     TROCAR_TRY(options.replay, replayed_poses(session, tables.needle.length_mm));
     options.replay_rate_hz = session.info.rate_hz;
   }
-  return open_device(spec, options);
+  return devices::open_device(spec, options);
 }
 
-Result<std::optional<ServerSecurity>> load_security(const Arguments& arguments) {
+Result<std::optional<link::ServerSecurity>> load_security(const Arguments& arguments) {
   if (arguments.key_file.empty() && arguments.allow_file.empty()) return std::nullopt;
   if (arguments.key_file.empty() || arguments.allow_file.empty())
     return fail_usage("--keys and --allow must be given together", "--keys, --allow", "see trocar link keygen");
-  ServerSecurity security;
-  TROCAR_TRY(security.keys, load_curve_keys(arguments.key_file));
-  TROCAR_TRY(security.allowed, load_allow_list(arguments.allow_file));
+  link::ServerSecurity security;
+  TROCAR_TRY(security.keys, link::load_curve_keys(arguments.key_file));
+  TROCAR_TRY(security.allowed, link::load_allow_list(arguments.allow_file));
   return security;
 }
 
 /// The scene of the command line: the patient is planned as `trocar run` would, so that the room stands at the entry.
-Result<LoadScene> first_scene(const Arguments& arguments, Patients& patients) {
-  TROCAR_TRY(VirtualPatient opened, open_patient(arguments.patient));
-  const auto patient = std::make_shared<const VirtualPatient>(std::move(opened));
-  TROCAR_TRY(const Case the_case, prepare_case(patient, arguments.the_case));
+Result<link::LoadScene> first_scene(const Arguments& arguments, Patients& patients) {
+  TROCAR_TRY(anatomy::VirtualPatient opened, io::open_patient(arguments.patient));
+  const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
+  TROCAR_TRY(const attempt::Case the_case, attempt::prepare_case(patient, arguments.the_case));
   patients.keep(arguments.patient, patient);
-  SceneChoice choice;
+  attempt::SceneChoice choice;
   choice.tool = arguments.tool;
   choice.force_model = arguments.force_model;
   choice.patient_source = arguments.patient.folder_or_name;
   choice.patient_seed = arguments.patient.seed;
-  return scene_request(the_case, choice);
+  return attempt::scene_request(the_case, choice);
 }
 
 /// Waits for the signals that end the server, on a thread of its own. As long as no device is held, the program ends at
@@ -160,11 +160,11 @@ class EndSignal {
   std::shared_ptr<State> state_;
 };
 
-void print_report(const ServerReport& report) {
-  const LoopSummary& loop = report.loop;
+void print_report(const server::ServerReport& report) {
+  const realtime::LoopSummary& loop = report.loop;
   fmt::print("{} ticks at {:.1f} of {:.0f} Hz, {:.4f} % of periods served ({} missed, {} of them skipped)\n",
              report.ticks, loop.achieved_hz, loop.wanted_hz, 100.0 * loop.served(), loop.missed, loop.skipped);
-  const auto line = [](const char* name, const LatencySummary& s) {
+  const auto line = [](const char* name, const realtime::LatencySummary& s) {
     fmt::print("{:<9} p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.0f} us\n", name, s.p50_us, s.p99_us, s.p999_us,
                s.max_us);
   };
@@ -179,13 +179,13 @@ void print_report(const ServerReport& report) {
 Status serve(Arguments& arguments) {
   if (data_dir().empty()) return fail("the data folder was not found", "data/", "set TROCAR_DATA_DIR to it");
   if (arguments.is_test) {
-    TROCAR_TRY(const std::unique_ptr<HapticDevice> device, open_named_device(arguments));
+    TROCAR_TRY(const std::unique_ptr<devices::HapticDevice> device, open_named_device(arguments));
     test_device(*device, arguments.rate_hz);
     return {};
   }
-  ServerOptions options;
-  TROCAR_TRY(options.endpoint,
-             parse_endpoint(arguments.endpoint.empty() ? default_endpoint(arguments.tool) : arguments.endpoint));
+  server::ServerOptions options;
+  TROCAR_TRY(options.endpoint, link::parse_endpoint(arguments.endpoint.empty() ? link::default_endpoint(arguments.tool)
+                                                                               : arguments.endpoint));
   TROCAR_TRY(options.security, load_security(arguments));
   options.rate_hz = arguments.rate_hz;
   options.tool = arguments.tool;
@@ -195,22 +195,22 @@ Status serve(Arguments& arguments) {
 
   EndSignal end;
   Patients patients;
-  std::optional<LoadScene> scene;
+  std::optional<link::LoadScene> scene;
   if (!arguments.patient.folder_or_name.empty()) {
     TROCAR_TRY(scene, first_scene(arguments, patients));
   }
   end.hold_device();
-  TROCAR_TRY(std::unique_ptr<HapticDevice> device, open_named_device(arguments));
+  TROCAR_TRY(std::unique_ptr<devices::HapticDevice> device, open_named_device(arguments));
   const std::string name = device->name();
   const auto opener = [&patients](const std::string& patient, std::uint64_t seed, const Progress& progress) {
     return patients.open(patient, seed, progress);
   };
-  TROCAR_TRY(HapticServer server, HapticServer::start(options, std::move(device), opener));
+  TROCAR_TRY(server::HapticServer server, server::HapticServer::start(options, std::move(device), opener));
   if (scene) server.load(*scene);
   fmt::print("{} for the {} at {}, {:.0f} Hz\n", name, arguments.tool, server.url(), arguments.rate_hz);
   std::fflush(stdout);
   end.wait();
-  const ServerReport report = server.stop();
+  const server::ServerReport report = server.stop();
   print_report(report);
   if (report.is_loading) {
     std::fflush(nullptr);
@@ -228,18 +228,18 @@ void add_options(CLI::App& program, Arguments& a) {
   program.add_option("--preset", a.preset, "Row of data/devices.toml instead of the device's own");
   program.add_option("--tool", a.tool, "What the device stands for: needle, probe or finger")->capture_default_str();
   program.add_option("--patient", a.patient.folder_or_name, "Patient to load at once; without it a client sends one");
-  seed_number(program.add_option("--patient-seed", a.patient.seed, "Seed of an embedded patient"))
+  arguments::seed_number(program.add_option("--patient-seed", a.patient.seed, "Seed of an embedded patient"))
       ->capture_default_str();
   program.add_option("--task", a.the_case.task, "Task that places the patient in the room")->capture_default_str();
   program.add_option("--needle", a.the_case.needle, "Needle of data/needles.toml; the task's own when left out");
   program.add_option("--force-model", a.force_model, "insertion, proxy or combined; the task's own when left out");
-  number_within(program.add_option("--rate", a.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
+  arguments::number_within(program.add_option("--rate", a.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
       ->capture_default_str();
   program.add_option("--endpoint", a.endpoint,
                      "ipc://PATH (for this user), or tcp://ADDRESS:PORT with --keys and --allow");
   program.add_option("--keys", a.key_file, "The server's key file (trocar link keygen)");
   program.add_option("--allow", a.allow_file, "Public keys of the clients that may connect");
-  whole_number_within(
+  arguments::whole_number_within(
       program.add_option("--priority", a.priority, "Priority under SCHED_FIFO; 0 selects ordinary scheduling"), 0, 99)
       ->capture_default_str();
   program.add_option("--flight-records", a.flight_folder, "Folder for the last 2 s before a fault")
@@ -275,11 +275,11 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked_for_text) {
     return program.exit(asked_for_text);
   } catch (const CLI::ParseError& error) {
-    return report_error({error.what(), "trocar-hapticd", "see trocar-hapticd --help", 2});
+    return arguments::report_error({error.what(), "trocar-hapticd", "see trocar-hapticd --help", 2});
   }
   if (arguments.is_verbose) set_log_level(LogLevel::kInfo);
   const Status done = serve(arguments);
-  return done ? 0 : report_error(done.error());
+  return done ? 0 : arguments::report_error(done.error());
 }
 
 /// All threads inherit it: the signals that end the server are waited for, not handled.
@@ -298,5 +298,5 @@ int main(int argc, char** argv) {
     block_signals();
     return run(argc, argv);
   };
-  return trocar::run_program(program, "trocar-hapticd");
+  return trocar::arguments::run_program(program, "trocar-hapticd");
 }

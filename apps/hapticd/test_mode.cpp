@@ -49,10 +49,10 @@ void read_wishes(Wishes& wishes) {
   wishes.ends = true;
 }
 
-void print_state(const DeviceTrialRecord& record, double strongest_n) {
+void print_state(const server::DeviceTrialRecord& record, double strongest_n) {
   const Vec3& p = record.reading.X_DS.p();
   const Vec3 axis = record.reading.X_DS.R().col(2);
-  const bool is_there = record.reading.status != DeviceStatus::kDisconnected;
+  const bool is_there = record.reading.status != devices::DeviceStatus::kDisconnected;
   fmt::print("state\t{:.2f}\t{:.2f}\t{:.2f}\t{:.4f}\t{:.4f}\t{:.4f}\t{}\t{:d}\t{:.2f}\t{}\n", p.x(), p.y(), p.z(),
              axis.x(), axis.y(), axis.z(), record.reading.buttons, is_there, strongest_n, to_string(record.fault));
   std::fflush(stdout);
@@ -60,9 +60,9 @@ void print_state(const DeviceTrialRecord& record, double strongest_n) {
 
 }  // namespace
 
-void test_device(HapticDevice& device, double rate_hz) {
-  DeviceTrial trial(device, rate_hz);
-  const DevicePreset& preset = device.preset();
+void test_device(devices::HapticDevice& device, double rate_hz) {
+  server::DeviceTrial trial(device, rate_hz);
+  const haptics::DevicePreset& preset = device.preset();
   fmt::print("device\t{}\t{}\t{}\t{:.2f}\t{:d}\n", device.name(), preset.title, preset.sensed_dof, trial.push_n(),
              preset.has_force());
   std::fflush(stdout);
@@ -72,15 +72,16 @@ void test_device(HapticDevice& device, double rate_hz) {
   std::uint64_t made = 0;
   double strongest_n = 0.0;
   const auto period_ns = static_cast<std::int64_t>(1e9 / rate_hz);
-  LoopStatistics statistics(period_ns);
-  run_periodic(period_ns, wishes.ends, statistics, [&](const Period& period, const LoopStatistics&) {
-    if (wishes.pushes.exchange(false)) trial.push();
-    const DeviceTrialRecord record = trial.step(period.now_s, period.dt_s);
-    strongest_n = std::max(strongest_n, record.written_D.force_n.norm());
-    if (++made % periods_a_line != 0) return;
-    print_state(record, strongest_n);
-    strongest_n = 0.0;
-  });
+  realtime::LoopStatistics statistics(period_ns);
+  realtime::run_periodic(period_ns, wishes.ends, statistics,
+                         [&](const realtime::Period& period, const realtime::LoopStatistics&) {
+                           if (wishes.pushes.exchange(false)) trial.push();
+                           const server::DeviceTrialRecord record = trial.step(period.now_s, period.dt_s);
+                           strongest_n = std::max(strongest_n, record.written_D.force_n.norm());
+                           if (++made % periods_a_line != 0) return;
+                           print_state(record, strongest_n);
+                           strongest_n = 0.0;
+                         });
 }
 
 }  // namespace trocar

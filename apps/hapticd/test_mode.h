@@ -9,6 +9,6 @@ namespace trocar {
 ///   device NAME TITLE SENSED_DOF PUSH_N HAS_FORCE(0|1)
 ///   state X_MM Y_MM Z_MM AXIS_X AXIS_Y AXIS_Z BUTTONS IS_THERE(0|1) FORCE_N FAULT
 /// Position and axis (+z of the stylus) in D.
-void test_device(HapticDevice& device, double rate_hz);
+void test_device(devices::HapticDevice& device, double rate_hz);
 
 }  // namespace trocar

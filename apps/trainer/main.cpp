@@ -22,11 +22,11 @@
 #include "script/benchmark.h"
 #include "script/script_player.h"
 #include "shell/main_window.h"
+#include "shell/trainer_application.h"
+#include "tasks/task.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/screen_scale.h"
 #include "ui_kit/theme.h"
-#include "shell/trainer_application.h"
-#include "tasks/task.h"
 
 namespace {
 
@@ -44,8 +44,8 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--task", arguments.task, "Task that is chosen at the start");
   app.add_option("--patient", arguments.patient, "Patient folder, or an embedded patient's name");
-  seed_number(app.add_option("--patient-seed", arguments.patient_seed,
-                             "Random seed for the anatomy of an embedded patient [1]"));
+  arguments::seed_number(app.add_option("--patient-seed", arguments.patient_seed,
+                                        "Random seed for the anatomy of an embedded patient [1]"));
   app.add_option("--script", arguments.script, "Plays a user's steps, then ends; exit status 1 where one fails")
       ->check(CLI::ExistingFile);
   app.add_option("--screenshot", arguments.screenshot,
@@ -62,17 +62,17 @@ void add_options(CLI::App& app, Arguments& arguments) {
 /// What the arguments choose, before there is a window: an unknown name is told, not passed over.
 Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments) {
   if (arguments.task) {
-    TROCAR_TRY(const Task task, load_task(data_dir() / "tasks", *arguments.task));
+    TROCAR_TRY(const tasks::Task task, tasks::load_task(data_dir() / "tasks", *arguments.task));
     choice.task = task.name;
   }
   if (arguments.patient_seed) choice.patient_seed = *arguments.patient_seed;
   if (!arguments.patient) return choice;
-  const auto& embedded = embedded_patients();
+  const auto& embedded = anatomy::embedded_patients();
   std::error_code error;
   if (fs::is_directory(*arguments.patient, error)) {
     choice.patient = fs::absolute(*arguments.patient).string();
   } else if (std::any_of(embedded.begin(), embedded.end(),
-                         [&](const PhantomInfo& info) { return info.name == *arguments.patient; })) {
+                         [&](const anatomy::PhantomInfo& info) { return info.name == *arguments.patient; })) {
     choice.patient = *arguments.patient;
   } else {
     return fail_usage("no such patient", *arguments.patient,
@@ -83,7 +83,7 @@ Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments)
 
 void save_window(MainWindow& window, const std::string& file) {
   const bool is_saved = window.grab().save(to_qt(file), "PNG");
-  if (!is_saved) report_error(Error{"the picture cannot be written", file, "check the folder"});
+  if (!is_saved) arguments::report_error(Error{"the picture cannot be written", file, "check the folder"});
   QCoreApplication::exit(is_saved ? 0 : 1);
 }
 
@@ -120,11 +120,11 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked_for_text) {
     return app.exit(asked_for_text);
   } catch (const CLI::ParseError& error) {
-    return report_error({error.what(), "trocar-trainer", "see trocar-trainer --help", 2});
+    return arguments::report_error({error.what(), "trocar-trainer", "see trocar-trainer --help", 2});
   }
-  if (!can_render())
-    return report_error(Error{"the window needs an X server that can draw, and there is none", "DISPLAY",
-                              "start it from a desktop, or under xvfb-run"});
+  if (!scene::can_render())
+    return arguments::report_error(Error{"the window needs an X server that can draw, and there is none", "DISPLAY",
+                                         "start it from a desktop, or under xvfb-run"});
 
 #if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
   QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
@@ -139,15 +139,15 @@ int run(int argc, char** argv) {
   apply_theme(application, kept_text_percent());
   MainWindow window(arguments.state_folder.empty() ? user_state_folder() : fs::path(arguments.state_folder));
   const Result<SeatChoice> choice = with_arguments(window.start().choice(), arguments);
-  if (!choice) return report_error(choice.error());
+  if (!choice) return arguments::report_error(choice.error());
   window.start().choose(*choice);
   window.show();
-  if (const Status status = play(arguments, window); !status) return report_error(status.error());
+  if (const Status status = play(arguments, window); !status) return arguments::report_error(status.error());
   return QApplication::exec();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return trocar::run_program([&] { return run(argc, argv); }, "trocar-trainer");
+  return trocar::arguments::run_program([&] { return run(argc, argv); }, "trocar-trainer");
 }

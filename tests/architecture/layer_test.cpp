@@ -118,9 +118,9 @@ TEST(Includes, PrivateHeaderOfAnotherModuleIsRefused) {
 }
 
 TEST(Includes, LibraryBelongsToTheModuleThatListsIt) {
-  EXPECT_EQ(
-      verdict("src/high/io/a.cpp", "#include <itkImage.h>\n#include <vtkXMLPolyDataReader.h>\n#include <vtkPolyData.h>\n"),
-      "");
+  EXPECT_EQ(verdict("src/high/io/a.cpp",
+                    "#include <itkImage.h>\n#include <vtkXMLPolyDataReader.h>\n#include <vtkPolyData.h>\n"),
+            "");
   EXPECT_NE(verdict("src/low/volume/a.cpp", "#include <itkImage.h>\n"), "");
   EXPECT_NE(verdict("src/high/io/a.cpp", "#include <hwy/highway.h>\n"), "");
   EXPECT_NE(verdict("src/high/io/a.cpp", "#include <vtkRenderer.h>\n"), "");

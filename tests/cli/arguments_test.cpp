@@ -93,10 +93,10 @@ TEST(Arguments, ExistingOutputIsRefusedAndKept) {
 }
 
 TEST(Lists, ArePrintedAsJson) {
-  const Json patients = json_of(trocar("patient list --json"));
+  const config::Json patients = json_of(trocar("patient list --json"));
   ASSERT_FALSE(patients["patients"].empty());
   EXPECT_EQ(patients["patients"][0]["name"], "abdomen");
-  const Json tasks = json_of(trocar("task list --json"));
+  const config::Json tasks = json_of(trocar("task list --json"));
   ASSERT_FALSE(tasks["tasks"].empty());
   EXPECT_NE(trocar("task list").out.find("liver-biopsy"), std::string::npos);
   EXPECT_NE(trocar("bench --list").out.find("slice"), std::string::npos);

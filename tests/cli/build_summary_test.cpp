@@ -12,15 +12,15 @@ namespace {
 class BuildSummary : public testing::Test {
  protected:
   void SetUp() override {
-    const auto patient = generate_phantom("abdomen", 1, {{90, 72, 64}});
+    const auto patient = anatomy::generate_phantom("abdomen", 1, {{90, 72, 64}});
     ASSERT_TRUE(patient) << patient.error().text();
-    ASSERT_TRUE(write_image(patient->ct, folder_ / "ct.nrrd"));
-    LabelGrid liver(patient->labels.geometry, 0);
+    ASSERT_TRUE(io::write_image(patient->ct, folder_ / "ct.nrrd"));
+    volume::LabelGrid liver(patient->labels.geometry, 0);
     for (std::size_t n = 0; n < liver.voxels.size(); ++n) {
-      const Label* label = patient->label_table.find(patient->labels.voxels[n]);
+      const anatomy::Label* label = patient->label_table.find(patient->labels.voxels[n]);
       if (label != nullptr && label->tissue == "liver") liver.voxels[n] = 1;
     }
-    ASSERT_TRUE(write_image(liver, folder_ / "liver.nrrd"));
+    ASSERT_TRUE(io::write_image(liver, folder_ / "liver.nrrd"));
   }
   Outcome build(const std::string& more) {
     return trocar("patient build --ct '" + (folder_ / "ct.nrrd") + "' --labels '" + (folder_ / "liver.nrrd") +
@@ -30,19 +30,19 @@ class BuildSummary : public testing::Test {
 };
 
 TEST_F(BuildSummary, HasSizeVolumesSurfacesAndTasksAsJson) {
-  const Json json = json_of(build("--json"));
-  EXPECT_EQ(json["volume"]["size_voxels"], Json({90, 72, 64}));
+  const config::Json json = json_of(build("--json"));
+  EXPECT_EQ(json["volume"]["size_voxels"], config::Json({90, 72, 64}));
   EXPECT_EQ(json["folder"], folder_ / "made");
   EXPECT_GT(json["body_ml"].get<double>(), 5000.0);
   EXPECT_LT(json["body_ml"].get<double>(), 60000.0);
   double liver_ml = 0.0;
-  for (const Json& label : json["labels"])
+  for (const config::Json& label : json["labels"])
     if (label["name"] == "liver") liver_ml = label["volume_ml"];
   EXPECT_GT(liver_ml, 500.0);
   EXPECT_LT(liver_ml, 3000.0);
   EXPECT_FALSE(json["meshes"].empty());
   bool has_biopsy = false;
-  for (const Json& task : json["tasks"]) has_biopsy |= task["task"] == "liver-biopsy";
+  for (const config::Json& task : json["tasks"]) has_biopsy |= task["task"] == "liver-biopsy";
   EXPECT_TRUE(has_biopsy);
   EXPECT_TRUE(json["doubtful"].is_array());
 }

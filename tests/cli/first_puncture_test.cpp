@@ -65,9 +65,9 @@ class FirstPuncture : public testing::Test {
 };
 
 TEST_F(FirstPuncture, ShowTellsVolumesMeshesAndFrames) {
-  const Json json = json_of(trocar("patient show '" + patient_ + "' --json"));
+  const config::Json json = json_of(trocar("patient show '" + patient_ + "' --json"));
   double liver_ml = 0.0;
-  for (const Json& label : json["labels"]) {
+  for (const config::Json& label : json["labels"]) {
     if (label["name"] == "liver") liver_ml = label["volume_ml"];
   }
   EXPECT_GT(liver_ml, 500.0);
@@ -78,25 +78,26 @@ TEST_F(FirstPuncture, ShowTellsVolumesMeshesAndFrames) {
 }
 
 TEST_F(FirstPuncture, CheckSaysThatABiopsyIsPossible) {
-  const Json json = json_of(trocar("patient check '" + patient_ + "' --json"));
+  const config::Json json = json_of(trocar("patient check '" + patient_ + "' --json"));
   bool is_possible = false;
-  for (const Json& task : json["tasks"]) is_possible |= task["task"] == "liver-biopsy" && task["possible"] == true;
+  for (const config::Json& task : json["tasks"])
+    is_possible |= task["task"] == "liver-biopsy" && task["possible"] == true;
   EXPECT_TRUE(is_possible) << json.dump(1);
 }
 
 TEST_F(FirstPuncture, PlanWritesAMarkupsFile) {
   const std::string file = *folder_ / "paths.mrk.json";
-  const Json json =
+  const config::Json json =
       json_of(trocar("plan liver-biopsy --patient '" + patient_ + "' --count 3 --json --out '" + file + "'"));
   ASSERT_EQ(json["paths"].size(), 3u);
   double last_mm = 0.0;
-  for (const Json& path : json["paths"]) {
+  for (const config::Json& path : json["paths"]) {
     EXPECT_GE(path["organ_path_mm"], 10.0);
     EXPECT_GE(path["spare_margin_mm"], 0.0);
     EXPECT_GE(path["cost_mm"], last_mm);
     last_mm = path["cost_mm"];
   }
-  EXPECT_TRUE(parse_json(read(file), file));
+  EXPECT_TRUE(config::parse_json(read(file), file));
 }
 
 TEST_F(FirstPuncture, ExpertPuncturesSkinMuscleAndCapsuleOnceEachInThisOrder) {
@@ -138,17 +139,18 @@ TEST_F(FirstPuncture, ReportWithoutThePatientWarnsAndHasNoSlices) {
 }
 
 TEST_F(FirstPuncture, NoviceScoresLowerThanTheExpert) {
-  const auto expert = parse_json(run_json_, "run");
+  const auto expert = config::parse_json(run_json_, "run");
   ASSERT_TRUE(expert) << run_json_;
-  const Json novice = json_of(trocar("run liver-biopsy --patient '" + patient_ + "' --operator novice --json --out '" +
-                                     (*folder_ / "novice.session") + "'"));
+  const config::Json novice =
+      json_of(trocar("run liver-biopsy --patient '" + patient_ + "' --operator novice --json --out '" +
+                     (*folder_ / "novice.session") + "'"));
   EXPECT_LT(novice["score"].get<double>(), (*expert)["score"].get<double>());
 }
 
 TEST_F(FirstPuncture, ReplayRepeatsTheRecording) {
   const std::string again = *folder_ / "again.session";
   const Outcome outcome = trocar("run liver-biopsy --patient '" + patient_ + "' --operator 'replay:" + session_ +
-                                 "' --out '" + again + "'");
+                                        "' --out '" + again + "'");
   ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
   const std::string first_csv = *folder_ / "first.csv";
   const std::string again_csv = *folder_ / "again.csv";

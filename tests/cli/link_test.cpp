@@ -25,7 +25,7 @@ TEST(LinkKeygen, MakesAFolderOfKeysForTheUserAlone) {
 
 TEST(LinkKeygen, NamesItsFilesAsJson) {
   const TemporaryFolder folder;
-  const Json json = json_of(trocar("link keygen --json --out '" + (folder / "keys") + "'"));
+  const config::Json json = json_of(trocar("link keygen --json --out '" + (folder / "keys") + "'"));
   EXPECT_EQ(json["server"]["key"], folder / "keys/server.key");
   EXPECT_EQ(json["allowed"], folder / "keys/allowed");
 }

@@ -107,7 +107,7 @@ TEST(StandardOutput, ThatCannotBeWrittenIsAnError) {
 }
 
 TEST(BenchList, IsJsonWhereAsked) {
-  const Json json = json_of(trocar("bench --list --json"));
+  const config::Json json = json_of(trocar("bench --list --json"));
   ASSERT_FALSE(json["benchmarks"].empty());
   EXPECT_EQ(json["benchmarks"][0]["name"], "slice");
   EXPECT_FALSE(json["benchmarks"][0]["description"].empty());

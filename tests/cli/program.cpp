@@ -40,9 +40,9 @@ Outcome run_shell(const std::string& line) {
   return outcome;
 }
 
-Json json_of(const Outcome& outcome) {
+config::Json json_of(const Outcome& outcome) {
   EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
-  auto json = parse_json(outcome.out, "standard output");
+  auto json = config::parse_json(outcome.out, "standard output");
   if (json) return *json;
   ADD_FAILURE() << json.error().text() << "\n" << outcome.out;
   return nullptr;

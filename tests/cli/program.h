@@ -25,7 +25,7 @@ Outcome run_program(const std::string& program, const std::string& arguments, co
 Outcome run_shell(const std::string& line);
 
 /// Standard output as JSON; a test failure and null where it is none.
-Json json_of(const Outcome& outcome);
+config::Json json_of(const Outcome& outcome);
 
 int line_count(const std::string& text);
 /// A file's text; empty where it cannot be read.

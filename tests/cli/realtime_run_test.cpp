@@ -20,28 +20,28 @@ constexpr const char* kRun = "run liver-biopsy --patient abdomen --operator cons
 
 TEST(RealtimeRun, StartsTwoServersOfItsOwnAndTellsHowTheyDid) {
   const TemporaryFolder folder;
-  const Json json = json_of(trocar(kRun + ("--json --out '" + (folder / "live.session") + "'")));
+  const config::Json json = json_of(trocar(kRun + ("--json --out '" + (folder / "live.session") + "'")));
   EXPECT_EQ(json["target_reached"], true);
   ASSERT_EQ(json["punctures"].size(), 3u);
   ASSERT_EQ(json["servers"].size(), 2u);
   EXPECT_EQ(json["servers"][0]["tool"], "needle");
   EXPECT_EQ(json["servers"][1]["tool"], "probe");
-  for (const Json& server : json["servers"]) {
+  for (const config::Json& server : json["servers"]) {
     EXPECT_EQ(server["device"], "virtual:premium");
     EXPECT_EQ(server["wanted_hz"], 1000.0);
     EXPECT_GT(server["ticks_received"], 1000);
     for (const char* name : {"achieved_hz", "periods_served", "lateness", "ticks_missing"})
       EXPECT_TRUE(server.contains(name)) << name;
   }
-  const auto session = load_session(folder / "live.session");
+  const auto session = storage::load_session(folder / "live.session");
   ASSERT_TRUE(session.has_value()) << session.error().text();
   EXPECT_EQ(session->samples.size(), json["ticks"].get<std::size_t>());
 }
 
 TEST(RealtimeRun, SaysWhereNoServerAnswers) {
   const TemporaryFolder folder;
-  const Outcome outcome = trocar(kRun + ("--patience 0.2 --endpoint 'ipc://" + (folder / "nobody") + "' --out '" +
-                                         (folder / "live.session") + "'"));
+  const Outcome outcome = trocar(kRun + ("--patience 0.2 --endpoint 'ipc://" + (folder / "nobody") +
+                                                "' --out '" + (folder / "live.session") + "'"));
   EXPECT_EQ(outcome.exit_status, 1);
   EXPECT_EQ(line_count(outcome.err.substr(outcome.err.find("error: "))), 1) << outcome.err;
   EXPECT_NE(outcome.err.find("start trocar-hapticd"), std::string::npos) << outcome.err;
@@ -80,9 +80,9 @@ TEST(RealtimeRun, KeepsTheSessionWhenTheServerIsKilled) {
   const TemporaryFolder folder;
   const std::string session = folder / "live.session";
   const std::string url = "ipc://" + (folder / "needle");
-  auto server = ServerProcess::start(fs::path(programs) / "trocar-hapticd",
-                                     {"--endpoint", url, "--priority", "0", "--flight-records", folder.path().string()},
-                                     folder / "log");
+  auto server = link::ServerProcess::start(
+      fs::path(programs) / "trocar-hapticd",
+      {"--endpoint", url, "--priority", "0", "--flight-records", folder.path().string()}, folder / "log");
   ASSERT_TRUE(server.has_value()) << server.error().text();
 
   std::atomic<bool> has_ended = false;
@@ -100,7 +100,7 @@ TEST(RealtimeRun, KeepsTheSessionWhenTheServerIsKilled) {
   run.join();
   EXPECT_EQ(outcome.exit_status, 1) << outcome.out;
   EXPECT_NE(outcome.err.find("the server is gone"), std::string::npos) << outcome.err;
-  const auto kept = load_session(session);
+  const auto kept = storage::load_session(session);
   ASSERT_TRUE(kept.has_value()) << kept.error().text();
   EXPECT_GT(kept->samples.size(), 400u);
   EXPECT_FALSE(kept->outcome.has_value());

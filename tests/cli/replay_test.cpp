@@ -27,12 +27,12 @@ class ReplayCommand : public testing::Test {
 
   static inline std::unique_ptr<TemporaryFolder> folder_;
   static inline std::string session_;
-  static inline Json recorded_;
+  static inline config::Json recorded_;
 };
 
 TEST_F(ReplayCommand, RestoresAllFromTheSession) {
   ASSERT_FALSE(recorded_.is_null());
-  const Json again = json_of(replay("", "again.session"));
+  const config::Json again = json_of(replay("", "again.session"));
   for (const char* same : {"task", "patient", "patient_hash", "patient_seed", "seed", "device", "force_model", "needle",
                            "ticks", "target_reached", "risks_touched", "hints"})
     EXPECT_EQ(again[same], recorded_[same]) << same;
@@ -62,17 +62,18 @@ TEST_F(ReplayCommand, RefusesWhatContradictsTheSession) {
 
 TEST_F(ReplayCommand, GoesIntoAnotherPatientOnlyWhenThatIsMeant) {
   const Outcome meant = replay("--other-patient --patient-seed 4", "other.session");
-  const Json other = json_of(meant);
+  const config::Json other = json_of(meant);
   EXPECT_NE(other["patient_hash"], recorded_["patient_hash"]);
   EXPECT_EQ(other["patient_seed"], 4);
-  const Outcome pointless = trocar("run liver-biopsy --patient layers-liver --operator expert --other-patient --out '" +
-                                   (*folder_ / "pointless.session") + "'");
+  const Outcome pointless =
+      trocar("run liver-biopsy --patient layers-liver --operator expert --other-patient --out '" +
+             (*folder_ / "pointless.session") + "'");
   EXPECT_EQ(pointless.exit_status, 2);
 }
 
 TEST_F(ReplayCommand, SaysWhenTissuesAreChangedOnPurpose) {
   const Outcome outcome = replay("--set skin.fp=5", "stiffer.session");
-  const Json stiffer = json_of(outcome);
+  const config::Json stiffer = json_of(outcome);
   EXPECT_NE(outcome.err.find("warning: "), std::string::npos) << outcome.err;
   EXPECT_NEAR(stiffer["punctures"][0]["peak_n"].get<double>(), 5.0, 0.05);
   EXPECT_NEAR(recorded_["punctures"][0]["peak_n"].get<double>(), 4.0, 0.04);
@@ -92,8 +93,8 @@ TEST(Seeds, OfTheOperatorDoNotChangeTheAnatomy) {
     return json_of(trocar("run liver-biopsy --patient layers-liver --operator novice --json --out '" + (folder / out) +
                           "' " + arguments));
   };
-  const Json first = run("", "first"), other_hand = run("--seed 2", "hand"),
-             other_body = run("--patient-seed 2", "body");
+  const config::Json first = run("", "first"), other_hand = run("--seed 2", "hand"),
+                     other_body = run("--patient-seed 2", "body");
   EXPECT_EQ(first["patient_seed"], 1);
   EXPECT_EQ(first["patient_hash"], other_hand["patient_hash"]);
   EXPECT_NE(first["score"], other_hand["score"]);

@@ -23,7 +23,7 @@ std::string place_on_scene(const TemporaryFolder& folder, const Vec3& p_P = {0.0
   Mat3 R_PT;
   R_PT << 0, 0, -1, 0, 1, 0, 1, 0, 0;
   std::string path = folder / ("pose" + std::to_string(static_cast<int>(p_P.y())) + ".tfm");
-  EXPECT_TRUE(write_transform(Pose(R_PT, p_P), path));
+  EXPECT_TRUE(io::write_transform(Pose(R_PT, p_P), path));
   return path;
 }
 
@@ -54,27 +54,27 @@ TEST(UltrasoundImage, IsTheSameForTheSameSeed) {
 TEST(UltrasoundImage, NrrdLiesInThePatientInThePlaneOfTheTransducer) {
   const TemporaryFolder folder;
   const std::string pose = place_on_scene(folder);
-  const Json json = json_of(trocar("ultrasound image" + kScene + kQuick + " --pose " + pose +
-                                   " --size 320x240 --json --out " + (folder / "slab.nrrd")));
+  const config::Json json = json_of(trocar("ultrasound image" + kScene + kQuick + " --pose " + pose +
+                                           " --size 320x240 --json --out " + (folder / "slab.nrrd")));
   EXPECT_EQ(json["columns"], 320);
   EXPECT_EQ(json["frames"], nullptr);
-  const auto slice = read_labels(folder / "slab.nrrd");
+  const auto slice = io::read_labels(folder / "slab.nrrd");
   ASSERT_TRUE(slice) << slice.error().text();
-  EXPECT_EQ(slice->geometry.size, (Index3{320, 240, 2}));
+  EXPECT_EQ(slice->geometry.size, (volume::Index3{320, 240, 2}));
   // Mirrored, as is usual: columns run from the head to the feet, rows to the back.
   EXPECT_LT((slice->geometry.R_PV.col(0) - Vec3(0, 0, -1)).norm(), 1e-9);
   EXPECT_LT((slice->geometry.R_PV.col(1) - Vec3(0, 1, 0)).norm(), 1e-9);
   const Vec3 middle_of_face = slice->geometry.to_index({0.0, 8.0, 0.0});
   EXPECT_NEAR(middle_of_face.x(), 159.5, 1.0);
   EXPECT_NEAR(middle_of_face.z(), 0.5, 1e-6);
-  EXPECT_GT(sample_nearest(*slice, Vec3(0.0, 38.0, 0.0), std::uint8_t{0}), 0);
+  EXPECT_GT(volume::sample_nearest(*slice, Vec3(0.0, 38.0, 0.0), std::uint8_t{0}), 0);
 }
 
 TEST(UltrasoundImage, TimesFramesOfEngineAndScanner) {
   const TemporaryFolder folder;
-  const Json json = json_of(trocar("ultrasound image" + kScene + kQuick + " --frames 5 --json --pose " +
-                                   place_on_scene(folder) + " --out " + (folder / "x.png")));
-  const Json& frames = json["frames"];
+  const config::Json json = json_of(trocar("ultrasound image" + kScene + kQuick + " --frames 5 --json --pose " +
+                                           place_on_scene(folder) + " --out " + (folder / "x.png")));
+  const config::Json& frames = json["frames"];
   EXPECT_EQ(frames["count"], 5);
   EXPECT_GT(frames["frames_per_s"], 0.0);
   for (const char* part : {"frame_ms", "engine_ms", "scanner_ms"}) {
@@ -86,7 +86,7 @@ TEST(UltrasoundImage, TimesFramesOfEngineAndScanner) {
 TEST(UltrasoundImage, NeedleAndSwitchedArtefactsChangeThePicture) {
   const TemporaryFolder folder;
   const std::string needle = folder / "needle.tfm";
-  ASSERT_TRUE(write_transform(needle_pose({0.0, 40.0, 0.0}, Vec3(0.0, 0.5, -0.8).normalized()), needle));
+  ASSERT_TRUE(io::write_transform(needle_pose({0.0, 40.0, 0.0}, Vec3(0.0, 0.5, -0.8).normalized()), needle));
   const std::string line =
       "ultrasound image" + kScene + kQuick + " --plain --pose " + place_on_scene(folder) + " --out ";
   const std::vector<std::pair<std::string, std::string>> asked = {
@@ -105,14 +105,14 @@ TEST(UltrasoundImage, SavedPoseKeepsTransducerDepthFrequencyAndFocus) {
   const TemporaryFolder folder;
   const std::string line = "ultrasound image" + kScene + " --lines 32 --samples 128 --planes 1 --looks 1 --json";
   const std::string saved = folder / "saved.tfm";
-  const Json first = json_of(trocar(line + " --pose " + place_on_scene(folder) +
-                                    " --transducer P4-2 --depth-mm 47 --frequency-mhz 2.5" +
-                                    " --focus-mm 21 --save-pose " + saved + " --out " + (folder / "a.png")));
-  const Json again = json_of(trocar(line + " --pose " + saved + " --out " + (folder / "b.png")));
+  const config::Json first = json_of(trocar(line + " --pose " + place_on_scene(folder) +
+                                            " --transducer P4-2 --depth-mm 47 --frequency-mhz 2.5" +
+                                            " --focus-mm 21 --save-pose " + saved + " --out " + (folder / "a.png")));
+  const config::Json again = json_of(trocar(line + " --pose " + saved + " --out " + (folder / "b.png")));
   for (const char* key : {"transducer", "depth_mm", "frequency_mhz", "focus_mm", "X_PT"})
     EXPECT_EQ(again[key], first[key]) << key;
   EXPECT_EQ(again["depth_mm"], 47.0);
-  const Json deeper = json_of(trocar(line + " --pose " + saved + " --depth-mm 60 --out " + (folder / "c.png")));
+  const config::Json deeper = json_of(trocar(line + " --pose " + saved + " --depth-mm 60 --out " + (folder / "c.png")));
   EXPECT_EQ(deeper["depth_mm"], 60.0) << "an option counts more than the file";
   EXPECT_EQ(deeper["frequency_mhz"], 2.5);
 }
@@ -129,7 +129,7 @@ TEST(UltrasoundImage, PictureBeyondTheCtIsWarnedOf) {
 TEST(UltrasoundImage, FaceBesideTheBodyIsWarnedOf) {
   const TemporaryFolder folder;
   const Outcome outcome = trocar("ultrasound image" + kScene + kQuick + " --pose " +
-                                 place_on_scene(folder, {0.0, -400.0, 0.0}) + " --out " + (folder / "air.png"));
+                                        place_on_scene(folder, {0.0, -400.0, 0.0}) + " --out " + (folder / "air.png"));
   EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("the face does not touch the skin"), std::string::npos) << outcome.err;
 }
@@ -145,27 +145,27 @@ TEST(UltrasoundSweep, VolumeOfTheMotorAndOfAHandAgreeInThePatient) {
   run("sweep" + common + " --in-patient --out " + (folder / "motor.nrrd"));
   run("sweep" + common + " --tracked " + (folder / "hand.igs.mha"));
   run("reconstruct " + (folder / "hand.igs.mha") + " --spacing 0.7 --out " + (folder / "hand.nrrd"));
-  const auto motor = read_labels(folder / "motor.nrrd");
-  const auto hand = read_labels(folder / "hand.nrrd");
+  const auto motor = io::read_labels(folder / "motor.nrrd");
+  const auto hand = io::read_labels(folder / "hand.nrrd");
   ASSERT_TRUE(motor && hand);
   std::vector<std::uint8_t> resampled(motor->voxels.size());
   for (std::size_t n = 0; n < resampled.size(); ++n) {
-    const Index3 ijk = motor->geometry.index_of(n);
+    const volume::Index3 ijk = motor->geometry.index_of(n);
     const Vec3 p_P = motor->geometry.to_mm(
         Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
-    resampled[n] = sample_nearest(*hand, p_P, std::uint8_t{0});
+    resampled[n] = volume::sample_nearest(*hand, p_P, std::uint8_t{0});
   }
-  EXPECT_GT(correlation(motor->voxels, resampled, ComparedVoxels::kBothAboveZero), 0.8);
+  EXPECT_GT(volume::correlation(motor->voxels, resampled, volume::ComparedVoxels::kBothAboveZero), 0.8);
 }
 
 TEST(UltrasoundSweep, VolumeOfAScannerStandsInItsOwnFrameAndCarriesItsFan) {
   const TemporaryFolder folder;
-  const Json json = json_of(trocar("ultrasound sweep" + kScene + kQuick +
-                                   " --angle-deg 20 --step-deg 2 --spacing 1.5 --json --pose " +
-                                   place_on_scene(folder) + " --out " + (folder / "v.nrrd")));
+  const config::Json json = json_of(trocar("ultrasound sweep" + kScene + kQuick +
+                                           " --angle-deg 20 --step-deg 2 --spacing 1.5 --json --pose " +
+                                           place_on_scene(folder) + " --out " + (folder / "v.nrrd")));
   EXPECT_EQ(json["frame"], "T");
   EXPECT_EQ(json["frames"], 11);
-  const auto fields = read_image_fields(folder / "v.nrrd");
+  const auto fields = io::read_image_fields(folder / "v.nrrd");
   ASSERT_TRUE(fields);
   EXPECT_EQ(fields->at("trocar_apex_mm"), "0 -40 0");
   EXPECT_EQ(fields->at("trocar_beam_axis"), "+y");
@@ -173,7 +173,7 @@ TEST(UltrasoundSweep, VolumeOfAScannerStandsInItsOwnFrameAndCarriesItsFan) {
   EXPECT_NEAR(std::stod(fields->at("trocar_sweep_rad")), 0.349066, 1e-5);
   EXPECT_EQ(fields->count("trocar_fov_rad") + fields->count("trocar_radius_mm"), 2U);
   EXPECT_EQ(fields->count("trocar_X_PT"), 0U) << "a scanner's volume does not know the patient";
-  const auto volume = read_labels(folder / "v.nrrd");
+  const auto volume = io::read_labels(folder / "v.nrrd");
   ASSERT_TRUE(volume);
   EXPECT_EQ(volume->geometry.R_PV, Mat3::Identity());
   const Vec3 middle = volume->geometry.to_index({0.0, 30.0, 0.0});
@@ -182,14 +182,14 @@ TEST(UltrasoundSweep, VolumeOfAScannerStandsInItsOwnFrameAndCarriesItsFan) {
 }
 
 TEST(UltrasoundLists, NameViewsAndTransducers) {
-  const Json transducers = json_of(trocar("ultrasound transducers --json"));
+  const config::Json transducers = json_of(trocar("ultrasound transducers --json"));
   EXPECT_GE(transducers["transducers"].size(), 5U);
-  const Json views = json_of(trocar("ultrasound views --json"));
+  const config::Json views = json_of(trocar("ultrasound views --json"));
   EXPECT_EQ(views["views"].front()["possible"], nullptr);  // without a patient nobody knows
-  const Json of_scene = json_of(trocar("ultrasound views --patient layers-ascites --json"));
+  const config::Json of_scene = json_of(trocar("ultrasound views --patient layers-ascites --json"));
   const auto is_possible = [&](const char* name) {
     const auto found = std::find_if(of_scene["views"].begin(), of_scene["views"].end(),
-                                    [&](const Json& view) { return view["name"] == name; });
+                                    [&](const config::Json& view) { return view["name"] == name; });
     return found != of_scene["views"].end() && (*found)["possible"] == true;
   };
   EXPECT_TRUE(is_possible("ascites"));
@@ -256,7 +256,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(UltrasoundSweep, NeedsAMotor) {
   const TemporaryFolder folder;
   const Outcome outcome = trocar("ultrasound sweep --patient layers-liver --transducer C5-2 --pose " +
-                                 place_on_scene(folder) + " --out " + (folder / "x.nrrd"));
+                                        place_on_scene(folder) + " --out " + (folder / "x.nrrd"));
   EXPECT_EQ(outcome.exit_status, 2) << outcome.err;
   EXPECT_NE(outcome.err.find("no motor"), std::string::npos) << outcome.err;
 }

@@ -6,33 +6,33 @@
 #include <string>
 #include <vector>
 
-#include "core/files/temporary_folder.h"
 #include "attempt/offline/run_session.h"
+#include "core/files/temporary_folder.h"
 
 namespace trocar::testing {
 
 /// A finished attempt: what was returned and what was recorded.
 struct Attempt {
-  RunResult result;
-  Session session;
+  attempt::RunResult result;
+  storage::Session session;
 };
 
 /// Performs an attempt and reads its session back; a failure is a failed test with its message.
-inline Attempt perform(const Case& the_case, const std::string& operator_name, std::uint64_t seed = 1,
+inline Attempt perform(const attempt::Case& the_case, const std::string& operator_name, std::uint64_t seed = 1,
                        const std::string& force_model = "") {
   const TemporaryFolder folder;
-  RunOptions options;
+  attempt::RunOptions options;
   options.operator_name = operator_name;
   options.seed = seed;
   options.force_model = force_model;
   options.patient_source = the_case.patient->name;
   options.session = folder.path() / "attempt.trocar";
   Attempt attempt;
-  auto result = run_session(the_case, options);
+  auto result = attempt::run_session(the_case, options);
   EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().text());
   if (!result) return attempt;
   attempt.result = *std::move(result);
-  auto session = load_session(options.session);
+  auto session = storage::load_session(options.session);
   EXPECT_TRUE(session.has_value()) << (session ? "" : session.error().text());
   if (session) attempt.session = *std::move(session);
   return attempt;
@@ -40,7 +40,7 @@ inline Attempt perform(const Case& the_case, const std::string& operator_name, s
 
 inline std::vector<std::string> layers_of(const Attempt& attempt) {
   std::vector<std::string> layers;
-  for (const PunctureRecord& puncture : attempt.result.punctures) layers.push_back(puncture.layer);
+  for (const attempt::PunctureRecord& puncture : attempt.result.punctures) layers.push_back(puncture.layer);
   return layers;
 }
 
@@ -49,9 +49,9 @@ inline double mean_resistance_after_n(const Attempt& attempt, std::size_t punctu
   const double from_s = attempt.result.punctures.at(puncture).time_s + 0.1;  // the spring of the coupling has relaxed
   double sum = 0.0;
   int count = 0;
-  for (const TickSample& sample : attempt.session.samples) {
+  for (const telemetry::TickSample& sample : attempt.session.samples) {
     if (sample.time_s < from_s || sample.axial_velocity_mm_s < 1.0) continue;
-    if (sample.phase != InsertionPhase::kInserted) break;
+    if (sample.phase != telemetry::InsertionPhase::kInserted) break;
     sum += axial_resistance_n(sample);
     ++count;
   }
@@ -63,7 +63,7 @@ inline double mean_resistance_after_n(const Attempt& attempt, std::size_t punctu
 inline void expect_three_peaks(const Attempt& attempt) {
   ASSERT_EQ(layers_of(attempt), (std::vector<std::string>{"skin", "muscle", "liver_capsule"}));
   const auto& samples = attempt.session.samples;
-  for (const PunctureRecord& puncture : attempt.result.punctures) {
+  for (const attempt::PunctureRecord& puncture : attempt.result.punctures) {
     const auto at = static_cast<std::size_t>(puncture.time_s * attempt.session.info.rate_hz + 0.5);
     constexpr std::size_t kSoon = 150;  // ms
     ASSERT_LT(at + kSoon, samples.size());

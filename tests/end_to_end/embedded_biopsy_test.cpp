@@ -22,11 +22,11 @@ namespace {
 class EmbeddedBiopsy : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto patient = generate_phantom("abdomen");
+    auto patient = anatomy::generate_phantom("abdomen");
     ASSERT_TRUE(patient.has_value());
-    auto prepared = prepare_case(std::make_shared<const VirtualPatient>(*std::move(patient)), {});
+    auto prepared = attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
     ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
-    the_case = new Case(*std::move(prepared));
+    the_case = new attempt::Case(*std::move(prepared));
     expert = new Attempt(perform(*the_case, "expert"));
   }
   static void TearDownTestSuite() {
@@ -35,7 +35,7 @@ class EmbeddedBiopsy : public ::testing::Test {
     expert = nullptr;
     the_case = nullptr;
   }
-  static inline Case* the_case = nullptr;
+  static inline attempt::Case* the_case = nullptr;
   static inline Attempt* expert = nullptr;
 };
 
@@ -57,21 +57,21 @@ TEST_F(EmbeddedBiopsy, NoviceScoresLowerThanTheExpert) {
 }
 
 TEST_F(EmbeddedBiopsy, RecordsTheForceLawsOwnValues) {
-  const TissueTable& tissues = the_case->tissues;
+  const anatomy::TissueTable& tissues = the_case->tissues;
   std::size_t layer = 0;
   std::size_t loaded = 0;
-  for (const TickSample& s : expert->session.samples) {
+  for (const telemetry::TickSample& s : expert->session.samples) {
     const double along = s.f_prepuncture_n + s.f_friction_n + s.f_cutting_n;
     ASSERT_LT((s.f_total_n - s.axis * along - s.f_constraint_n - s.f_weight_n).norm(), 1e-9);
     if (s.f_prepuncture_n == 0.0) continue;
     const auto found = tissues.find_layer(expert->result.punctures.at(layer).layer);
-    const LayerParams& law = tissues.layers.at(*found);
+    const anatomy::LayerParams& law = tissues.layers.at(*found);
     ASSERT_NEAR(-s.f_prepuncture_n,
-                prepuncture_force_n(s.layer_displacement_mm, s.axial_velocity_mm_s,
-                                    {law.stiffness_n_per_mm, law.viscosity_ns_per_mm, law.delta_x_mm}),
+                haptics::prepuncture_force_n(s.layer_displacement_mm, s.axial_velocity_mm_s,
+                                             {law.stiffness_n_per_mm, law.viscosity_ns_per_mm, law.delta_x_mm}),
                 1e-9);
     ++loaded;
-    if (s.events[0].kind == EventKind::kPuncture) ++layer;
+    if (s.events[0].kind == telemetry::EventKind::kPuncture) ++layer;
   }
   EXPECT_GT(loaded, 300u);
 }
@@ -86,11 +86,11 @@ TEST_F(EmbeddedBiopsy, EveryForceModelLeadsTheExpertToTheLesion) {
     EXPECT_EQ(layers_of(attempt), layers) << model;
     EXPECT_TRUE(attempt.result.outcome.target_reached) << model;
     EXPECT_GT(attempt.result.outcome.score, 85.0) << model;
-    for (const PunctureRecord& puncture : attempt.result.punctures) {
-      const LayerParams& layer = the_case->tissues.layers.at(*the_case->tissues.find_layer(puncture.layer));
+    for (const attempt::PunctureRecord& puncture : attempt.result.punctures) {
+      const anatomy::LayerParams& layer = the_case->tissues.layers.at(*the_case->tissues.find_layer(puncture.layer));
       EXPECT_NEAR(puncture.peak_n, layer.puncture_force_n, 0.01 * layer.puncture_force_n) << model << puncture.layer;
     }
-    for (const TickSample& s : attempt.session.samples) {
+    for (const telemetry::TickSample& s : attempt.session.samples) {
       const double along = s.f_prepuncture_n + s.f_friction_n + s.f_cutting_n + s.f_body_axial_n;
       ASSERT_LT((s.f_total_n - s.axis * along - s.f_constraint_n - s.f_tip_proxy_n - s.f_weight_n).norm(), 1e-9);
       ASSERT_EQ(s.f_friction_n, 0.0);
@@ -111,9 +111,9 @@ TEST_F(EmbeddedBiopsy, SameSeedGivesTheSameAttempt) {
 
 TEST_F(EmbeddedBiopsy, ReplayGivesTheSameForces) {
   const TemporaryFolder folder;
-  RunOptions options;
+  attempt::RunOptions options;
   options.session = folder.path() / "first.trocar";
-  ASSERT_TRUE(run_session(*the_case, options).has_value());
+  ASSERT_TRUE(attempt::run_session(*the_case, options).has_value());
   const Attempt replay = perform(*the_case, "replay:" + options.session.string());
   ASSERT_EQ(replay.session.samples.size(), expert->session.samples.size());
   double worst_n = 0.0;
@@ -126,16 +126,17 @@ TEST_F(EmbeddedBiopsy, ReplayGivesTheSameForces) {
 TEST_F(EmbeddedBiopsy, ReplayAppliesChangesAtTheirTick) {
   // The expert's motion, but the skin was made tougher while the needle came near: as a trainer's session tells it.
   const TemporaryFolder folder;
-  const auto touch = std::ranges::find(expert->session.samples, InsertionPhase::kLoading, &TickSample::phase);
+  const auto touch =
+      std::ranges::find(expert->session.samples, telemetry::InsertionPhase::kLoading, &telemetry::TickSample::phase);
   const auto change = static_cast<std::size_t>(touch - expert->session.samples.begin()) - 100;
-  TissueTable tougher = the_case->tissues;
-  ASSERT_TRUE(apply_override(tougher, "skin.fp=6"));
+  anatomy::TissueTable tougher = the_case->tissues;
+  ASSERT_TRUE(anatomy::apply_override(tougher, "skin.fp=6"));
   const std::filesystem::path file = folder / "changed.trocar";
   {
-    auto writer = SessionWriter::create(file, expert->session.info);
+    auto writer = storage::SessionWriter::create(file, expert->session.info);
     ASSERT_TRUE(writer) << writer.error().text();
-    for (const TickSample& sample : expert->session.samples) ASSERT_TRUE(writer->append(sample));
-    SessionParameters parameters = expert->session.parameters.at(0);
+    for (const telemetry::TickSample& sample : expert->session.samples) ASSERT_TRUE(writer->append(sample));
+    storage::SessionParameters parameters = expert->session.parameters.at(0);
     ASSERT_TRUE(writer->append(parameters));
     parameters.tick = change;
     parameters.time_s = expert->session.samples[change].time_s;
@@ -152,10 +153,10 @@ TEST_F(EmbeddedBiopsy, ReplayAppliesChangesAtTheirTick) {
   EXPECT_EQ(replay.session.parameters[1].tick, change);
   EXPECT_EQ(replay.session.parameters[1].settings, std::vector<std::string>{"skin.fp=6"});
   // A replay of the replay makes the same forces.
-  RunOptions options;
+  attempt::RunOptions options;
   options.operator_name = "replay:" + file.string();
   options.session = folder / "again.trocar";
-  ASSERT_TRUE(run_session(*the_case, options));
+  ASSERT_TRUE(attempt::run_session(*the_case, options));
   const Attempt third = perform(*the_case, "replay:" + options.session.string());
   ASSERT_EQ(third.session.samples.size(), replay.session.samples.size());
   for (std::size_t n = 0; n < third.session.samples.size(); ++n)
@@ -164,52 +165,52 @@ TEST_F(EmbeddedBiopsy, ReplayAppliesChangesAtTheirTick) {
 
 TEST_F(EmbeddedBiopsy, ReplayKeepsItsSeedsAndRefusesAnotherPatient) {
   const TemporaryFolder folder;
-  RunOptions options;
+  attempt::RunOptions options;
   options.seed = 42;
   options.session = folder / "seeded.trocar";
-  const auto first = run_session(*the_case, options);
+  const auto first = attempt::run_session(*the_case, options);
   ASSERT_TRUE(first) << first.error().text();
   const Attempt replay = perform(*the_case, "replay:" + options.session.string());
   EXPECT_EQ(replay.session.info.seed, 42u);
   EXPECT_NEAR(replay.result.outcome.score, first->outcome.score, 1e-6);
 
-  Case other = *the_case;
-  auto changed = std::make_shared<VirtualPatient>(*the_case->patient);
+  attempt::Case other = *the_case;
+  auto changed = std::make_shared<anatomy::VirtualPatient>(*the_case->patient);
   changed->content_hash = "another";
   other.patient = changed;
   options.operator_name = "replay:" + options.session.string();
   options.session = folder / "other.trocar";
-  const auto refused = run_session(other, options);
+  const auto refused = attempt::run_session(other, options);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().exit_status, 2);
   options.is_other_patient_meant = true;
-  EXPECT_TRUE(run_session(other, options));
+  EXPECT_TRUE(attempt::run_session(other, options));
 }
 
 TEST_F(EmbeddedBiopsy, ReportShowsThePeaksByName) {
-  const std::string page = html_report(expert->session, the_case->patient.get());
+  const std::string page = report::html_report(expert->session, the_case->patient.get());
   for (const char* words : {"skin", "muscle", "liver capsule", "<svg", "data:image/png"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
 }
 
 TEST_F(EmbeddedBiopsy, SessionExportsOneRowATick) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(export_csv(expert->session, folder.path() / "ticks.csv").has_value());
+  ASSERT_TRUE(storage::export_csv(expert->session, folder.path() / "ticks.csv").has_value());
   const auto text = read_file(folder.path() / "ticks.csv");
   ASSERT_TRUE(text.has_value());
   EXPECT_EQ(static_cast<std::size_t>(std::count(text->begin(), text->end(), '\n')), expert->session.samples.size() + 1);
 }
 
 /// Runs an attempt in a process of its own that meets trouble at the `moment`-th progress step; gives its exit status.
-int run_in_child(const Case& the_case, const std::filesystem::path& session, int moment, void (*trouble)()) {
+int run_in_child(const attempt::Case& the_case, const std::filesystem::path& session, int moment, void (*trouble)()) {
   const pid_t child = ::fork();
   if (child == 0) {
     handle_interruptions("trocar run");
-    RunOptions options;
+    attempt::RunOptions options;
     options.patient_source = the_case.patient->name;
     options.session = session;
     int step = 0;
-    const auto result = run_session(the_case, options, [&](std::string_view, double) {
+    const auto result = attempt::run_session(the_case, options, [&](std::string_view, double) {
       if (step++ == moment) trouble();
     });
     ::_exit(result ? 0 : result.error().exit_status);
@@ -238,14 +239,14 @@ TEST_F(EmbeddedBiopsy, AKilledAttemptIsKeptAsIncompleteAndTheRetryWorks) {
   const TemporaryFolder folder;
   const std::filesystem::path session = folder / "a.session";
   EXPECT_EQ(run_in_child(*the_case, session, 3, [] { ::kill(::getpid(), SIGKILL); }), 128 + SIGKILL);
-  const auto kept_as = set_aside_incomplete_session(session);
+  const auto kept_as = storage::set_aside_incomplete_session(session);
   ASSERT_TRUE(kept_as.has_value() && kept_as->has_value());
   EXPECT_EQ(run_in_child(*the_case, session, -1, [] {}), 0);
-  const auto incomplete = load_session(**kept_as);
+  const auto incomplete = storage::load_session(**kept_as);
   ASSERT_TRUE(incomplete.has_value()) << incomplete.error().text();
   EXPECT_TRUE(incomplete->is_incomplete);
   EXPECT_GT(incomplete->samples.size(), 4000u);
-  EXPECT_FALSE(load_session(session)->is_incomplete);
+  EXPECT_FALSE(storage::load_session(session)->is_incomplete);
 }
 
 }  // namespace

@@ -17,17 +17,17 @@ namespace fs = std::filesystem;
 constexpr double kNamesInTheFile_mm = 1e-3;  ///< The reference's origin is written with six digits.
 
 struct SpinePhantom {
-  TrackedSequence sequence;
-  PlusConfig config;
-  LabelGrid reference;  ///< What PLUS made of it.
+  ultrasound::TrackedSequence sequence;
+  io::PlusConfig config;
+  volume::LabelGrid reference;  ///< What PLUS made of it.
 };
 
 Result<SpinePhantom> load_spine_phantom(const fs::path& folder) {
   SpinePhantom phantom;
-  TROCAR_TRY(phantom.sequence, read_sequence(folder / "SpinePhantomFreehand.igs.mha"));
+  TROCAR_TRY(phantom.sequence, io::read_sequence(folder / "SpinePhantomFreehand.igs.mha"));
   TROCAR_TRY(phantom.config,
-             read_plus_config(folder / "PlusDeviceSet_VolumeReconstructionOnly_SpinePhantom_NN_MEAN.xml"));
-  TROCAR_TRY(phantom.reference, read_labels(folder / "vtkVolumeReconstructorTestNNMEANvolumeRef.mha"));
+             io::read_plus_config(folder / "PlusDeviceSet_VolumeReconstructionOnly_SpinePhantom_NN_MEAN.xml"));
+  TROCAR_TRY(phantom.reference, io::read_labels(folder / "vtkVolumeReconstructorTestNNMEANvolumeRef.mha"));
   return phantom;
 }
 
@@ -37,21 +37,22 @@ TEST(RealFreehand, SpinePhantomIsAsPlusReconstructsIt) {
   const auto phantom = load_spine_phantom(folder);
   ASSERT_TRUE(phantom) << phantom.error().text();
   const auto volume =
-      reconstruct_freehand(phantom->sequence, phantom->config.transforms, phantom->config.reconstruction);
+      ultrasound::reconstruct_freehand(phantom->sequence, phantom->config.transforms, phantom->config.reconstruction);
   ASSERT_TRUE(volume) << volume.error().text();
   ASSERT_EQ(volume->gray.geometry.size, phantom->reference.geometry.size);
   EXPECT_LT((volume->gray.geometry.origin_P - phantom->reference.geometry.origin_P).norm(), kNamesInTheFile_mm);
   // Measured: 0.9986 over both sets. What is left is mostly PLUS' running mean, which is cut to whole numbers.
-  EXPECT_GT(correlation(volume->gray.voxels, phantom->reference.voxels), 0.998);
-  EXPECT_GT(correlation(volume->gray.voxels, phantom->reference.voxels, ComparedVoxels::kBothAboveZero), 0.998);
+  EXPECT_GT(volume::correlation(volume->gray.voxels, phantom->reference.voxels), 0.998);
+  EXPECT_GT(volume::correlation(volume->gray.voxels, phantom->reference.voxels, volume::ComparedVoxels::kBothAboveZero),
+            0.998);
 }
 
 TEST(RealFreehand, SpinePhantomWithoutItsCalibrationSaysWhatIsMissing) {
   const fs::path folder = test_data() / "us-spine-phantom";
   if (!fs::exists(folder)) GTEST_SKIP() << "no test data at " << folder;
-  const auto sequence = read_sequence(folder / "SpinePhantomFreehand.igs.mha");
+  const auto sequence = io::read_sequence(folder / "SpinePhantomFreehand.igs.mha");
   ASSERT_TRUE(sequence) << sequence.error().text();
-  const auto volume = reconstruct_freehand(*sequence, {}, {});
+  const auto volume = ultrasound::reconstruct_freehand(*sequence, {}, {});
   ASSERT_FALSE(volume);
   EXPECT_NE(volume.error().what.find("no way from Image to Reference"), std::string::npos);
 }
@@ -59,12 +60,12 @@ TEST(RealFreehand, SpinePhantomWithoutItsCalibrationSaysWhatIsMissing) {
 TEST(RealFreehand, LiverSweepBringsItsOwnPlaces) {
   const fs::path path = test_data() / "us-liver-sweep" / "liver_sweep_decoded.igs.mha";
   if (!fs::exists(path)) GTEST_SKIP() << "no test data at " << path;
-  const auto sequence = read_sequence(path);
+  const auto sequence = io::read_sequence(path);
   ASSERT_TRUE(sequence) << sequence.error().text();
-  FreehandOptions options;
+  ultrasound::FreehandOptions options;
   options.spacing_mm = Vec3::Constant(2.0);
   options.is_black_left_out = true;
-  const auto volume = reconstruct_freehand(*sequence, {}, options);
+  const auto volume = ultrasound::reconstruct_freehand(*sequence, {}, options);
   ASSERT_TRUE(volume) << volume.error().text();
   EXPECT_EQ(volume->frames_used, 140U);
   // The fan is 233 mm wide, 187 mm deep and swept over some tens of degrees: between 1 and 4 litres.

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "attempt/case/prepare_case.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 #include "devices/device_spec.h"
-#include "attempt/case/prepare_case.h"
 #include "server/haptic_server.h"
 
 namespace trocar::testing {
@@ -18,27 +18,27 @@ namespace trocar::testing {
 /// when.
 class LiveServer {
  public:
-  LiveServer(const Case& the_case, const std::string& tool, const TemporaryFolder& folder)
+  LiveServer(const attempt::Case& the_case, const std::string& tool, const TemporaryFolder& folder)
       : patient_(the_case.patient), tool_(tool), url_("ipc://" + (folder / tool).string()) {
     start();
   }
 
   const std::string& url() const { return url_; }
   void start() {
-    auto endpoint = parse_endpoint(url_);
-    DeviceOptions device_options;
+    auto endpoint = link::parse_endpoint(url_);
+    devices::DeviceOptions device_options;
     device_options.devices_file = data_dir() / "devices.toml";
-    auto device = open_device({"virtual", "premium"}, device_options);
+    auto device = devices::open_device({"virtual", "premium"}, device_options);
     ASSERT_TRUE(endpoint.has_value() && device.has_value());
-    ServerOptions options;
+    server::ServerOptions options;
     options.endpoint = *endpoint;
     options.tool = tool_;
     options.priority = 0;
     options.tissues_file = data_dir() / "tissues.toml";
-    auto server = HapticServer::start(
-        options, *std::move(device),
-        [patient = patient_](const std::string&, std::uint64_t,
-                             const Progress&) -> Result<std::shared_ptr<const VirtualPatient>> { return patient; });
+    auto server =
+        server::HapticServer::start(options, *std::move(device),
+                                    [patient = patient_](const std::string&, std::uint64_t, const Progress&)
+                                        -> Result<std::shared_ptr<const anatomy::VirtualPatient>> { return patient; });
     ASSERT_TRUE(server.has_value()) << server.error().text();
     server_.emplace(*std::move(server));
   }
@@ -46,9 +46,9 @@ class LiveServer {
   void end() { server_.reset(); }
 
  private:
-  std::shared_ptr<const VirtualPatient> patient_;
+  std::shared_ptr<const anatomy::VirtualPatient> patient_;
   std::string tool_, url_;
-  std::optional<HapticServer> server_;
+  std::optional<server::HapticServer> server_;
 };
 
 }  // namespace trocar::testing

@@ -16,27 +16,28 @@ namespace fs = std::filesystem;
 
 /// A CT and its segmentation, and the two stored in another order.
 struct Volumes {
-  CtGrid ct;
-  std::vector<LabelSource> sources;
+  volume::CtGrid ct;
+  std::vector<anatomy::LabelSource> sources;
 
   Volumes stored(const std::array<std::size_t, 3>& axis, const std::array<bool, 3>& is_turned) const {
     Volumes other{stored_in_order(ct, axis, is_turned), sources};
-    for (LabelSource& source : other.sources) source.labels = stored_in_order(source.labels, axis, is_turned);
+    for (anatomy::LabelSource& source : other.sources) source.labels = stored_in_order(source.labels, axis, is_turned);
     return other;
   }
 };
 
-Result<Case> case_of(const Volumes& volumes) {
+Result<attempt::Case> case_of(const Volumes& volumes) {
   std::vector<std::string> warnings;
-  TROCAR_TRY(VirtualPatient patient, build_patient(volumes.ct, volumes.sources, {"stored", {"test"}}, warnings));
-  return prepare_case(std::make_shared<const VirtualPatient>(std::move(patient)), {});
+  TROCAR_TRY(anatomy::VirtualPatient patient,
+             anatomy::build_patient(volumes.ct, volumes.sources, {"stored", {"test"}}, warnings));
+  return attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(patient)), {});
 }
 
 constexpr double kRounding_mm = 1e-6;
 constexpr double kRounding_n = 1e-6;
 
 /// The same patient, path and forces as those of the axial volumes. An attempt that led the needle once.
-void expect_same(const Case& axial, const Attempt& expected, const Volumes& volumes) {
+void expect_same(const attempt::Case& axial, const Attempt& expected, const Volumes& volumes) {
   const auto prepared = case_of(volumes);
   ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
   EXPECT_EQ(prepared->patient->labels.voxels, axial.patient->labels.voxels);
@@ -53,28 +54,29 @@ void expect_same(const Case& axial, const Attempt& expected, const Volumes& volu
 }
 
 TEST(StorageOrder, DoesNotMatterForPathAndForces) {
-  const CtGrid ct = Torso().ct(Torso::grid({6, 5, 8}));
-  const LabelSource liver{"liver.nii.gz", Torso::mask(Torso::grid({6, 5, 8}), Torso::is_liver), {{1, "liver"}}};
+  const volume::CtGrid ct = anatomy::Torso().ct(anatomy::Torso::grid({6, 5, 8}));
+  const anatomy::LabelSource liver{
+      "liver.nii.gz", anatomy::Torso::mask(anatomy::Torso::grid({6, 5, 8}), anatomy::Torso::is_liver), {{1, "liver"}}};
   const Volumes volumes{ct, {liver}};
   const auto axial = case_of(volumes);
   ASSERT_TRUE(axial.has_value()) << axial.error().text();
   const Attempt expected = perform(*axial, "constant-velocity:50");
   EXPECT_FALSE(expected.result.punctures.empty());
-  for_each_storage_order(
+  volume::for_each_storage_order(
       [&](const auto& axis, const auto& is_turned) { expect_same(*axial, expected, volumes.stored(axis, is_turned)); });
 }
 
 TEST(StorageOrder, DoesNotMatterForARealCt) {
   const fs::path data = test_data() / "ct-torso";
   if (!fs::exists(data)) GTEST_SKIP() << "no test data at " << data;
-  auto ct = read_ct(data / "example_ct.nii.gz");
-  auto sources = read_label_sources({data / "example_seg_fast_force_split.nii.gz"}, "totalsegmentator");
+  auto ct = io::read_ct(data / "example_ct.nii.gz");
+  auto sources = io::read_label_sources({data / "example_seg_fast_force_split.nii.gz"}, "totalsegmentator");
   ASSERT_TRUE(ct && sources);
   const Volumes volumes{*std::move(ct), *std::move(sources)};
   const auto axial = case_of(volumes);
   ASSERT_TRUE(axial.has_value()) << axial.error().text();
   double lung_ml = 0.0;
-  for (const LabelStatistics& statistics : label_statistics(*axial->patient))
+  for (const anatomy::LabelStatistics& statistics : anatomy::label_statistics(*axial->patient))
     if (axial->patient->label_table.find(statistics.id)->tissue == "lung") lung_ml += statistics.volume_ml;
   EXPECT_GT(lung_ml, 60.0);  // the scan shows the lower lobes
   const Attempt expected = perform(*axial, "constant-velocity:50");

@@ -20,10 +20,10 @@ constexpr const char* kQuickOperator = "constant-velocity:60";
 constexpr milliseconds kShort{700};    // longer than a server takes to be started again, shorter than a test's patience
 constexpr milliseconds kLong{20'000};  // a machine under load
 
-bool has_event(const Session& session, LimitReason reason) {
-  return std::any_of(session.samples.begin(), session.samples.end(), [reason](const TickSample& sample) {
-    return std::any_of(sample.events.begin(), sample.events.end(), [reason](const TickEvent& event) {
-      return event.kind == EventKind::kLimit && event.id == static_cast<std::uint8_t>(reason);
+bool has_event(const storage::Session& session, telemetry::LimitReason reason) {
+  return std::any_of(session.samples.begin(), session.samples.end(), [reason](const telemetry::TickSample& sample) {
+    return std::any_of(sample.events.begin(), sample.events.end(), [reason](const telemetry::TickEvent& event) {
+      return event.kind == telemetry::EventKind::kLimit && event.id == static_cast<std::uint8_t>(reason);
     });
   });
 }
@@ -31,36 +31,36 @@ bool has_event(const Session& session, LimitReason reason) {
 class RealtimeSession : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto patient = generate_phantom("abdomen");
+    auto patient = anatomy::generate_phantom("abdomen");
     ASSERT_TRUE(patient.has_value());
-    auto prepared = prepare_case(std::make_shared<const VirtualPatient>(*std::move(patient)), {});
+    auto prepared = attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
     ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
-    the_case = new Case(*std::move(prepared));
+    the_case = new attempt::Case(*std::move(prepared));
   }
   static void TearDownTestSuite() {
     delete the_case;
     the_case = nullptr;
   }
-  static inline Case* the_case = nullptr;
+  static inline attempt::Case* the_case = nullptr;
 
-  RunOptions run_options(const std::string& operator_name) const {
-    RunOptions options;
+  attempt::RunOptions run_options(const std::string& operator_name) const {
+    attempt::RunOptions options;
     options.operator_name = operator_name;
     options.patient_source = the_case->patient->name;
     options.session = folder_ / "live.session";
     return options;
   }
-  Result<RunResult> perform_live(const std::string& operator_name, const std::vector<std::string>& endpoints,
-                                 milliseconds patience, const Progress& progress = {}) const {
-    RealtimeOptions realtime;
+  Result<attempt::RunResult> perform_live(const std::string& operator_name, const std::vector<std::string>& endpoints,
+                                          milliseconds patience, const Progress& progress = {}) const {
+    attempt::RealtimeOptions realtime;
     realtime.endpoints = endpoints;
     realtime.patience = patience;
-    return run_realtime_session(*the_case, run_options(operator_name), realtime, progress);
+    return attempt::run_realtime_session(*the_case, run_options(operator_name), realtime, progress);
   }
-  Session recorded() const {
-    auto session = load_session(folder_ / "live.session");
+  storage::Session recorded() const {
+    auto session = storage::load_session(folder_ / "live.session");
     EXPECT_TRUE(session.has_value()) << (session ? "" : session.error().text());
-    return session ? *std::move(session) : Session{};
+    return session ? *std::move(session) : storage::Session{};
   }
   bool has_session() const { return std::filesystem::exists(folder_ / "live.session"); }
 
@@ -107,7 +107,7 @@ TEST_F(RealtimeSession, ExpertThroughTwoServersDoesWhatItDoesInProcess) {
   ASSERT_EQ(live->servers.size(), 2u);
   EXPECT_EQ(live->servers[0].tool, "needle");
   EXPECT_EQ(live->servers[1].tool, "probe");
-  for (const ServerFigures& server : live->servers) EXPECT_GT(server.ticks_received, 0u) << server.tool;
+  for (const attempt::ServerFigures& server : live->servers) EXPECT_GT(server.ticks_received, 0u) << server.tool;
 }
 
 TEST_F(RealtimeSession, GoesOnWhereTheNeedleWasWhenItsServerComesBack) {
@@ -119,9 +119,9 @@ TEST_F(RealtimeSession, GoesOnWhereTheNeedleWasWhenItsServerComesBack) {
   ASSERT_TRUE(live.has_value()) << live.error().text();
   EXPECT_GE(live->servers.at(0).returns, 1);  // a busy machine may add one
   EXPECT_FALSE(live->warnings.empty());
-  const Session session = recorded();
+  const storage::Session session = recorded();
   ASSERT_TRUE(session.outcome.has_value());
-  EXPECT_TRUE(has_event(session, LimitReason::kResumedInside));
+  EXPECT_TRUE(has_event(session, telemetry::LimitReason::kResumedInside));
   EXPECT_EQ(layers_of({*live, session}), (std::vector<std::string>{"skin", "muscle", "liver_capsule"}));  // none twice
   double furthest_mm = 0.0;
   for (std::size_t i = 1; i < session.samples.size(); ++i) {
@@ -169,7 +169,7 @@ TEST_F(RealtimeSession, KeepsWhatWasRecordedWhenTheNeedlesServerStaysAway) {
   ASSERT_FALSE(live.has_value());
   EXPECT_EQ(live.error().exit_status, 1);
   EXPECT_NE(live.error().text().find(needle.url()), std::string::npos) << live.error().text();
-  const Session session = recorded();
+  const storage::Session session = recorded();
   EXPECT_FALSE(session.outcome.has_value());
   ASSERT_FALSE(session.samples.empty());
   EXPECT_GT(session.samples.back().time_s, 0.9);

@@ -5,10 +5,10 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "core/files/data_dir.h"
-#include "ultrasound/sweep/freehand.h"
-#include "ultrasound/sweep/freehand_sweep.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "ultrasound/probe/probe_view.h"
+#include "ultrasound/sweep/freehand.h"
+#include "ultrasound/sweep/freehand_sweep.h"
 #include "volume/sampling.h"
 
 namespace trocar::testing {
@@ -21,20 +21,20 @@ struct MeanGray {
 };
 
 struct SweptPatient {
-  VirtualPatient patient;
-  FreehandVolume volume;
+  anatomy::VirtualPatient patient;
+  ultrasound::FreehandVolume volume;
   Pose X_PT;
 
   /// Of a structure's voxels that the sweep has met, were the structure moved by `shift_P`.
   MeanGray gray_of(std::uint8_t label, const Vec3& shift_P) const {
     MeanGray mean;
-    const GridGeometry& grid = volume.gray.geometry;
+    const volume::GridGeometry& grid = volume.gray.geometry;
     for (std::size_t n = 0; n < grid.voxel_count(); ++n) {
       if (volume.gray.voxels[n] == 0) continue;
-      const Index3 ijk = grid.index_of(n);
+      const volume::Index3 ijk = grid.index_of(n);
       const Vec3 p_P =
           grid.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
-      if (sample_nearest(patient.labels, Vec3(p_P - shift_P), std::uint8_t{0}) != label) continue;
+      if (volume::sample_nearest(patient.labels, Vec3(p_P - shift_P), std::uint8_t{0}) != label) continue;
       mean.sum += volume.gray.voxels[n];
       ++mean.voxels;
     }
@@ -44,16 +44,17 @@ struct SweptPatient {
 
 Result<SweptPatient> sweep_gallbladder() {
   SweptPatient swept;
-  TROCAR_TRY(swept.patient, generate_phantom("abdomen"));
-  TROCAR_TRY(const auto views, load_probe_views(data_dir() / "views.toml"));
-  TROCAR_TRY(const ProbeView view, choose_view(swept.patient, views, "gallbladder"));
-  TROCAR_TRY(const Transducer transducer, load_transducer(data_dir() / "transducers.toml", view.transducer));
-  TROCAR_TRY(const ProbePlacement placed, place_probe(swept.patient, view, transducer));
+  TROCAR_TRY(swept.patient, anatomy::generate_phantom("abdomen"));
+  TROCAR_TRY(const auto views, ultrasound::load_probe_views(data_dir() / "views.toml"));
+  TROCAR_TRY(const ultrasound::ProbeView view, ultrasound::choose_view(swept.patient, views, "gallbladder"));
+  TROCAR_TRY(const ultrasound::Transducer transducer,
+             ultrasound::load_transducer(data_dir() / "transducers.toml", view.transducer));
+  TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(swept.patient, view, transducer));
   swept.X_PT = placed.X_PT;
-  TROCAR_TRY(AcousticTable table, load_acoustic_table(data_dir() / "acoustics.toml"));
-  TROCAR_TRY(const auto scene, make_acoustic_scene(swept.patient, std::move(table)));
-  FreehandSweepOptions options;
-  options.acquisition = default_acquisition(transducer);
+  TROCAR_TRY(ultrasound::AcousticTable table, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
+  TROCAR_TRY(const auto scene, ultrasound::make_acoustic_scene(swept.patient, std::move(table)));
+  ultrasound::FreehandSweepOptions options;
+  options.acquisition = ultrasound::default_acquisition(transducer);
   options.acquisition.depth_mm = 110.0;
   options.acquisition.lines = 128;
   options.acquisition.samples = 512;
@@ -62,12 +63,13 @@ Result<SweptPatient> sweep_gallbladder() {
   options.display.gain_db = 12.0;
   options.columns = 320;
   options.rows = 240;
-  const auto poses = slide_over_skin(swept.patient.skin_distance_mm, swept.X_PT, 20.0, 21);
-  FreehandOptions how;
+  const auto poses = ultrasound::slide_over_skin(swept.patient.skin_distance_mm, swept.X_PT, 20.0, 21);
+  ultrasound::FreehandOptions how;
   how.is_black_left_out = true;
-  how.holes = {HoleFilling{}};
-  const TrackedSequence sequence = make_freehand_sweep(scene, transducer, poses, options).sequence;
-  TROCAR_TRY(swept.volume, reconstruct_freehand(sequence, {}, how));
+  how.holes = {ultrasound::HoleFilling{}};
+  const ultrasound::TrackedSequence sequence =
+      ultrasound::make_freehand_sweep(scene, transducer, poses, options).sequence;
+  TROCAR_TRY(swept.volume, ultrasound::reconstruct_freehand(sequence, {}, how));
   return swept;
 }
 
@@ -75,7 +77,7 @@ TEST(SimulatedFreehand, ShowsTheGallbladderWhereThePatientHasIt) {
   const auto swept = sweep_gallbladder();
   ASSERT_TRUE(swept) << swept.error().text();
   const std::string pattern = "gallbladder";
-  const Label* label = find_target(swept->patient, std::span(&pattern, 1));
+  const anatomy::Label* label = ultrasound::find_target(swept->patient, std::span(&pattern, 1));
   ASSERT_NE(label, nullptr);
   const MeanGray here = swept->gray_of(label->id, Vec3::Zero());
   ASSERT_GT(here.voxels, 5000U);

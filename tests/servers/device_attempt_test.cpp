@@ -4,11 +4,11 @@
 #include <atomic>
 #include <thread>
 
+#include "attempt/live/live_attempt.h"
 #include "core/files/temporary_folder.h"
 #include "devices/pointer/test/gamepad_stand_in.h"
 #include "devices/pointer/test/spacenav_daemon.h"
 #include "servers/live_server.h"
-#include "attempt/live/live_attempt.h"
 
 namespace trocar::servers_test {
 namespace {
@@ -16,11 +16,11 @@ namespace {
 using testing::GamepadStandIn;
 using testing::SpacenavDaemon;
 
-std::shared_ptr<const OpenCase> layered_case() {
-  static const std::shared_ptr<const OpenCase> kOpen = [] {
-    CaseChoice choice;
+std::shared_ptr<const attempt::OpenCase> layered_case() {
+  static const std::shared_ptr<const attempt::OpenCase> kOpen = [] {
+    attempt::CaseChoice choice;
     choice.patient_source = "layers-liver";
-    auto made = make_open_case(choice);
+    auto made = attempt::make_open_case(choice);
     EXPECT_TRUE(made) << made.error().text();
     return made ? *made : nullptr;
   }();
@@ -30,18 +30,18 @@ std::shared_ptr<const OpenCase> layered_case() {
 class DeviceAttemptTest : public ::testing::Test {
  protected:
   void start(const char* device) {
-    AttemptOptions options;
+    attempt::AttemptOptions options;
     options.session = folder_ / "attempt.trocar";
     options.priority = 0;  // ordinary scheduling: it takes no core from other tests
     options.patience = std::chrono::seconds(30);
     options.device_needle = device;
     options.has_probe = false;
-    attempt = std::make_unique<LiveAttempt>(layered_case(), options);
+    attempt = std::make_unique<attempt::LiveAttempt>(layered_case(), options);
   }
-  bool wait_phase(AttemptPhase phase) {
+  bool wait_phase(attempt::AttemptPhase phase) {
     return wait_for([&] {
-             const AttemptPhase now = attempt->view().phase;
-             return now == phase || now == AttemptPhase::kFailed;
+             const attempt::AttemptPhase now = attempt->view().phase;
+             return now == phase || now == attempt::AttemptPhase::kFailed;
            }) &&
            attempt->view().phase == phase;
   }
@@ -53,55 +53,55 @@ class DeviceAttemptTest : public ::testing::Test {
     return wait_for([&] { return std::abs(attempt->view().needle.speed_mm_s) < 0.1; });
   }
   Error failure() {
-    EXPECT_TRUE(wait_for([&] { return attempt->view().phase == AttemptPhase::kFailed; }));
+    EXPECT_TRUE(wait_for([&] { return attempt->view().phase == attempt::AttemptPhase::kFailed; }));
     auto result = attempt->take_result();
     return result && !*result ? result->error() : Error{};
   }
   std::string where() const {
-    const AttemptView view = attempt->view();
+    const attempt::AttemptView view = attempt->view();
     return std::string(to_string(view.phase)) + " | " + view.progress + " | " + view.banner;
   }
 
   TemporaryFolder folder_;
-  std::unique_ptr<LiveAttempt> attempt;
+  std::unique_ptr<attempt::LiveAttempt> attempt;
 };
 
 TEST_F(DeviceAttemptTest, AGamepadPushesTheNeedleInAndRumbles) {
   GamepadStandIn pad;
   start("gamepad");
-  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   EXPECT_EQ(attempt->view().servers[0].device, "gamepad");
   const Pose begun = attempt->view().needle.X_PN;
   EXPECT_NEAR((begun.p() - layered_case()->the_case.plan.line_P.a).norm(), 20.0, 1.0);
   // A hand of the window moves nothing.
-  attempt->set_hand(HandTool::kNeedle, begun * Pose::translation({0.0, 0.0, 30.0}));
+  attempt->set_hand(attempt::HandTool::kNeedle, begun * Pose::translation({0.0, 0.0, 30.0}));
   pad.push_left_stick(1.0, 0.0);
   ASSERT_TRUE(wait_for([&] { return (attempt->view().needle.X_PN.p() - begun.p()).norm() > 3.0; })) << where();
   pad.push_left_stick(0.0, 0.0);
-  EXPECT_EQ(attempt->view().phase, AttemptPhase::kReady);
+  EXPECT_EQ(attempt->view().phase, attempt::AttemptPhase::kReady);
   pad.pull_right_trigger(0.8);
   ASSERT_TRUE(wait_deeper(12.0)) << where();
   pad.pull_right_trigger(0.0);
   ASSERT_TRUE(wait_rest()) << where();
   EXPECT_GT(pad.strongest_rumble(), 0);
-  EXPECT_EQ(attempt->view().phase, AttemptPhase::kInBody);
+  EXPECT_EQ(attempt->view().phase, attempt::AttemptPhase::kInBody);
 }
 
 TEST_F(DeviceAttemptTest, AnUnpluggedGamepadIsToldAndThePunctureGoesOnWhenItIsBack) {
   GamepadStandIn pad;
   start("gamepad");
-  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   pad.pull_right_trigger(0.8);
   ASSERT_TRUE(wait_deeper(12.0)) << where();
   pad.pull_right_trigger(0.0);
   ASSERT_TRUE(wait_rest()) << where();
   const double depth_mm = attempt->view().needle.depth_mm;
   pad.plug(false);
-  ASSERT_TRUE(wait_phase(AttemptPhase::kServerLost)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kServerLost)) << where();
   ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("gamepad is gone") != std::string::npos; })) << where();
   const int pid = attempt->view().servers[0].pid;
   pad.plug(true);
-  ASSERT_TRUE(wait_phase(AttemptPhase::kInBody)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kInBody)) << where();
   EXPECT_TRUE(attempt->view().banner.empty()) << attempt->view().banner;
   EXPECT_EQ(attempt->view().servers[0].pid, pid);  // its server is the same
   ASSERT_TRUE(wait_rest()) << where();
@@ -122,7 +122,7 @@ TEST_F(DeviceAttemptTest, SaysInOneLineThatNoGamepadIsThere) {
 TEST_F(DeviceAttemptTest, ASpaceMousePushesTheNeedleInAndMayBeUnplugged) {
   SpacenavDaemon daemon;
   start("spacemouse");
-  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   // The cap repeats itself, as spacenavd does: what is silent counts as let go. The axis of the device along which the
   // needle goes in, in its own order: x right, y up, z away.
   const auto push_until = [&](int counts, const std::function<bool()>& is_so) {
@@ -134,13 +134,13 @@ TEST_F(DeviceAttemptTest, ASpaceMousePushesTheNeedleInAndMayBeUnplugged) {
   };
   const auto is_deeper = [&](double mm) { return [this, mm] { return attempt->view().needle.depth_mm > mm; }; };
   ASSERT_TRUE(push_until(-200, is_deeper(12.0))) << where();
-  EXPECT_EQ(attempt->view().phase, AttemptPhase::kInBody);
+  EXPECT_EQ(attempt->view().phase, attempt::AttemptPhase::kInBody);
   ASSERT_TRUE(wait_rest()) << where();
   daemon.unplug_device();
   ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("SpaceMouse is gone") != std::string::npos; }))
       << where();
   // The daemon still answers, so the device is taken for back.
-  ASSERT_TRUE(wait_phase(AttemptPhase::kInBody)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kInBody)) << where();
   EXPECT_TRUE(push_until(-200, is_deeper(18.0))) << where();
 }
 

@@ -5,10 +5,10 @@
 
 #include <atomic>
 
-#include "servers/live_attempt_lab.h"
-#include "attempt/record/attempt_replay.h"
 #include "attempt/live/live_attempt.h"
+#include "attempt/record/attempt_replay.h"
 #include "attempt/record/recording_room.h"
+#include "servers/live_attempt_lab.h"
 #include "storage/session_file.h"
 
 namespace trocar::servers_test {
@@ -31,12 +31,12 @@ class FullDisk {
 
 TEST_F(LiveAttemptTest, WarnsOfAFullDiskThenEndsInOrderWithAWholeSession) {
   const auto free_MB = std::make_shared<std::atomic<int>>(10'000);
-  AttemptOptions watched = options();
+  attempt::AttemptOptions watched = options();
   watched.free_bytes = [free_MB](const std::filesystem::path&) {
     return std::optional<std::uintmax_t>(*free_MB * 1'000'000ull);
   };
   start(watched);
-  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->perform(expert());
   ASSERT_TRUE(wait_deeper(5.0)) << where();
   EXPECT_EQ(attempt->view().banner, "");
@@ -45,11 +45,11 @@ TEST_F(LiveAttemptTest, WarnsOfAFullDiskThenEndsInOrderWithAWholeSession) {
       << where();
   ASSERT_TRUE(wait_for([&] { return attempt->view().has_fired; })) << where();
   *free_MB = 1;
-  const RunResult result = finished();
+  const attempt::RunResult result = finished();
   EXPECT_NE(result.cut_short.find("The disk is full"), std::string::npos) << result.cut_short;
   EXPECT_FALSE(result.unsaved);
   EXPECT_TRUE(result.outcome.is_scored());
-  const auto session = load_session(options().session);
+  const auto session = storage::load_session(options().session);
   ASSERT_TRUE(session) << session.error().text();
   EXPECT_FALSE(session->is_incomplete);
   EXPECT_EQ(session->samples.size(), result.ticks);
@@ -58,10 +58,10 @@ TEST_F(LiveAttemptTest, WarnsOfAFullDiskThenEndsInOrderWithAWholeSession) {
 
 TEST_F(LiveAttemptTest, ADiskThatIsFullAtOnceLosesNoScoreAndSaysWhatTheFileLacks) {
   start(options());
-  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->perform(expert());
   ASSERT_TRUE(wait_for([&] { return attempt->view().has_fired; })) << where();
-  std::optional<RunResult> result;
+  std::optional<attempt::RunResult> result;
   {
     const FullDisk full(100'000);
     result = finished();  // nobody ends it
@@ -72,10 +72,10 @@ TEST_F(LiveAttemptTest, ADiskThatIsFullAtOnceLosesNoScoreAndSaysWhatTheFileLacks
   ASSERT_TRUE(result->unsaved);
   EXPECT_EQ(result->unsaved->samples.size(), result->ticks);
   EXPECT_FALSE(result->unsaved->transducer.empty());
-  const auto replay = AttemptReplay::of(*std::move(result->unsaved), open);
+  const auto replay = attempt::AttemptReplay::of(*std::move(result->unsaved), open);
   ASSERT_TRUE(replay) << replay.error().text();
   EXPECT_EQ(replay->outcome().score, result->outcome.score);
-  const auto session = load_session(options().session);
+  const auto session = storage::load_session(options().session);
   ASSERT_TRUE(session) << session.error().text();
   EXPECT_TRUE(session->is_incomplete);
   EXPECT_GT(session->samples.size(), 500u);

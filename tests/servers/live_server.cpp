@@ -29,9 +29,9 @@ LiveServer::LiveServer(std::vector<std::string> more) : url_("ipc://" + (folder_
 }
 
 void LiveServer::start() {
-  const auto program = find_server_program();
+  const auto program = link::find_server_program();
   ASSERT_TRUE(program) << program.error().text();
-  auto process = ServerProcess::start(*program, arguments_, folder_ / "log");
+  auto process = link::ServerProcess::start(*program, arguments_, folder_ / "log");
   ASSERT_TRUE(process) << process.error().text();
   process_.emplace(std::move(*process));
 }
@@ -40,26 +40,26 @@ void LiveServer::kill(int signal) {
   ::kill(process_->pid(), signal);
 }
 
-HapticClient connect(const std::string& url, bool wants_control) {
-  ClientOptions options;
+link::HapticClient connect(const std::string& url, bool wants_control) {
+  link::ClientOptions options;
   options.endpoint = url;
   options.wants_control = wants_control;
-  auto client = HapticClient::connect(options);
+  auto client = link::HapticClient::connect(options);
   EXPECT_TRUE(client) << client.error().text();
   const Status connected = client->wait_connected(kPatience);
   EXPECT_TRUE(connected);
   return std::move(*client);
 }
 
-LoadScene layers_scene() {
-  LoadScene scene;
+link::LoadScene layers_scene() {
+  link::LoadScene scene;
   scene.patient = "layers-liver";
-  scene.X_PW = room_in_patient({kEntry_P, kEntry_P + 40.0 * Vec3::UnitY()}, scene.needle_length_mm);
+  scene.X_PW = attempt::room_in_patient({kEntry_P, kEntry_P + 40.0 * Vec3::UnitY()}, scene.needle_length_mm);
   return scene;
 }
 
-HandTarget hand_at_depth(double depth_mm) {
-  HandTarget hand;
+link::HandTarget hand_at_depth(double depth_mm) {
+  link::HandTarget hand;
   hand.X_PN = needle_pose(kEntry_P + depth_mm * Vec3::UnitY(), Vec3::UnitY());
   hand.holds_tip = true;
   return hand;
@@ -68,19 +68,19 @@ HandTarget hand_at_depth(double depth_mm) {
 namespace {
 
 /// A busy machine can make a loop slow: such a fault is reset, as a seat with a simulated device does.
-void reset_slow_loop(HapticClient& client) {
-  if (client.view().status.fault == "loop_slow") client.ask(ServerCommand::kResetFault, kPatience);
+void reset_slow_loop(link::HapticClient& client) {
+  if (client.view().status.fault == "loop_slow") client.ask(link::ServerCommand::kResetFault, kPatience);
 }
 
 }  // namespace
 
-void press_on_skin(HapticClient& client) {
+void press_on_skin(link::HapticClient& client) {
   const auto loaded = client.ask(layers_scene(), kPatience);
   ASSERT_TRUE(loaded) << loaded.error().text();
-  HandTarget hand = hand_at_depth(-5.0);
+  link::HandTarget hand = hand_at_depth(-5.0);
   hand.is_placed = true;
   client.set_hand(hand);
-  ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+  ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
   ASSERT_TRUE(wait_for([&] {
     reset_slow_loop(client);
     return client.view().status.gate_mode == "on";
@@ -97,13 +97,13 @@ void press_on_skin(HapticClient& client) {
   }));
 }
 
-double felt_n(const TickSample& sample) {
+double felt_n(const telemetry::TickSample& sample) {
   return (sample.device_f_n - sample.f_weight_n).norm();
 }
 
-bool has_limit(const TickSample& sample, LimitReason reason) {
-  for (const TickEvent& event : sample.events) {
-    if (event.kind == EventKind::kLimit && event.id == static_cast<std::uint8_t>(reason)) return true;
+bool has_limit(const telemetry::TickSample& sample, telemetry::LimitReason reason) {
+  for (const telemetry::TickEvent& event : sample.events) {
+    if (event.kind == telemetry::EventKind::kLimit && event.id == static_cast<std::uint8_t>(reason)) return true;
   }
   return false;
 }

@@ -23,7 +23,7 @@ class LiveServer {
   explicit LiveServer(std::vector<std::string> more = {});
   void start();
   void kill(int signal);
-  ServerProcess& process() { return *process_; }
+  link::ServerProcess& process() { return *process_; }
   const std::string& url() const { return url_; }
   const TemporaryFolder& folder() const { return folder_; }
 
@@ -31,17 +31,17 @@ class LiveServer {
   TemporaryFolder folder_;
   std::string url_;
   std::vector<std::string> arguments_;
-  std::optional<ServerProcess> process_;
+  std::optional<link::ServerProcess> process_;
 };
 
-HapticClient connect(const std::string& url, bool wants_control = true);
+link::HapticClient connect(const std::string& url, bool wants_control = true);
 /// The layered liver patient, entered straight down; the hand can be told by depth below the skin.
-LoadScene layers_scene();
-HandTarget hand_at_depth(double depth_mm);
+link::LoadScene layers_scene();
+link::HandTarget hand_at_depth(double depth_mm);
 /// Scene, hand pressed on the skin, forces on and past the safe start.
-void press_on_skin(HapticClient& client);
+void press_on_skin(link::HapticClient& client);
 /// Newtons of tissue on the device (without the stylus' weight).
-double felt_n(const TickSample& sample);
-bool has_limit(const TickSample& sample, LimitReason reason);
+double felt_n(const telemetry::TickSample& sample);
+bool has_limit(const telemetry::TickSample& sample, telemetry::LimitReason reason);
 
 }  // namespace trocar::servers_test

@@ -13,9 +13,9 @@ namespace {
 constexpr const char* kHeldUrl = "TROCAR_TEST_HELD_URL";
 
 /// A client in a process of its own: this program again, with the test below.
-ServerProcess start_holder(const std::string& url) {
+link::ServerProcess start_holder(const std::string& url) {
   ::setenv(kHeldUrl, url.c_str(), 1);
-  auto holder = ServerProcess::start(
+  auto holder = link::ServerProcess::start(
       "/proc/self/exe", {"--gtest_also_run_disabled_tests", "--gtest_filter=*HoldsTheServerUntilItIsKilled"});
   ::unsetenv(kHeldUrl);
   EXPECT_TRUE(holder) << holder.error().text();
@@ -27,10 +27,10 @@ struct Fade {
   bool has_begun = false, has_ended = false;
   double began_s = 0.0, ended_s = 0.0;
 };
-void follow(Fade& fade, const std::vector<NumberedSample>& samples) {
-  for (const NumberedSample& numbered : samples) {
-    const TickSample& sample = numbered.sample;
-    if (!fade.has_begun && has_limit(sample, LimitReason::kStale)) {
+void follow(Fade& fade, const std::vector<link::NumberedSample>& samples) {
+  for (const link::NumberedSample& numbered : samples) {
+    const telemetry::TickSample& sample = numbered.sample;
+    if (!fade.has_begun && has_limit(sample, telemetry::LimitReason::kStale)) {
       fade.has_begun = true;
       fade.began_s = sample.time_s;
     }
@@ -41,7 +41,7 @@ void follow(Fade& fade, const std::vector<NumberedSample>& samples) {
   }
 }
 
-Fade watch_fade(HapticClient& watcher) {
+Fade watch_fade(link::HapticClient& watcher) {
   Fade fade;
   wait_for([&] {
     follow(fade, watcher.take_samples());
@@ -51,7 +51,7 @@ Fade watch_fade(HapticClient& watcher) {
 }
 
 /// The holder presses on the skin; what the watcher has seen so far is taken.
-bool wait_until_felt(HapticClient& watcher) {
+bool wait_until_felt(link::HapticClient& watcher) {
   const bool is_felt = wait_for([&] {
     const auto newest = watcher.newest();
     return newest && felt_n(*newest) > 0.5;
@@ -64,15 +64,15 @@ bool wait_until_felt(HapticClient& watcher) {
 TEST(Holder, DISABLED_HoldsTheServerUntilItIsKilled) {
   const char* url = ::getenv(kHeldUrl);
   ASSERT_NE(url, nullptr);
-  HapticClient client = connect(url);
+  link::HapticClient client = connect(url);
   press_on_skin(client);
   for (;;) std::this_thread::sleep_for(std::chrono::seconds(1));
 }
 
 TEST(Liveness, ForceIsGoneInTimeWhenTheClientIsKilled) {
   LiveServer server;
-  ServerProcess holder = start_holder(server.url());
-  HapticClient watcher = connect(server.url(), false);
+  link::ServerProcess holder = start_holder(server.url());
+  link::HapticClient watcher = connect(server.url(), false);
   ASSERT_TRUE(wait_until_felt(watcher));
   ::kill(holder.pid(), SIGKILL);
   const Fade fade = watch_fade(watcher);
@@ -83,17 +83,17 @@ TEST(Liveness, ForceIsGoneInTimeWhenTheClientIsKilled) {
 
 TEST(Liveness, ForceFadesWhileTheClientIsStoppedAndComesBackSmoothly) {
   LiveServer server;
-  ServerProcess holder = start_holder(server.url());
-  HapticClient watcher = connect(server.url(), false);
+  link::ServerProcess holder = start_holder(server.url());
+  link::HapticClient watcher = connect(server.url(), false);
   ASSERT_TRUE(wait_until_felt(watcher));
   ::kill(holder.pid(), SIGSTOP);
   const Fade fade = watch_fade(watcher);
   ASSERT_TRUE(fade.has_ended);
   ::kill(holder.pid(), SIGCONT);
-  std::optional<NumberedSample> last;
+  std::optional<link::NumberedSample> last;
   double largest_rise_n = 0.0;
   ASSERT_TRUE(wait_for([&] {
-    for (const NumberedSample& numbered : watcher.take_samples()) {
+    for (const link::NumberedSample& numbered : watcher.take_samples()) {
       // Of neighbours alone: where the machine skipped periods the force goes on from where it would be.
       if (last && numbered.sample.time_s - last->sample.time_s < 0.0015) {
         const double rise_n = numbered.sample.device_f_n.norm() - last->sample.device_f_n.norm();
@@ -108,13 +108,13 @@ TEST(Liveness, ForceFadesWhileTheClientIsStoppedAndComesBackSmoothly) {
 
 TEST(Liveness, AClientSeesAKilledServerAndItsSuccessor) {
   LiveServer server;
-  HapticClient client = connect(server.url());
+  link::HapticClient client = connect(server.url());
   press_on_skin(client);
   const std::uint64_t first_session = client.view().welcome.session;
   server.kill(SIGKILL);
   EXPECT_TRUE(wait_for([&] { return !client.view().is_connected; }));
   EXPECT_TRUE(wait_for([&] { return !server.process().is_running(); }));
-  EXPECT_FALSE(client.ask(ServerCommand::kStart, std::chrono::milliseconds(100))) << "nobody is there";
+  EXPECT_FALSE(client.ask(link::ServerCommand::kStart, std::chrono::milliseconds(100))) << "nobody is there";
   server.start();
   ASSERT_TRUE(wait_for([&] { return client.view().is_connected && client.view().welcome.session != first_session; }));
   press_on_skin(client);
@@ -122,7 +122,7 @@ TEST(Liveness, AClientSeesAKilledServerAndItsSuccessor) {
 
 TEST(Liveness, AServerThatWasStoppedHasAFaultUntilItIsReset) {
   LiveServer server;
-  HapticClient client = connect(server.url());
+  link::HapticClient client = connect(server.url());
   press_on_skin(client);
   server.kill(SIGSTOP);
   constexpr double kStopped_s = 0.5;  // twice the hole that a loop may have
@@ -136,12 +136,12 @@ TEST(Liveness, AServerThatWasStoppedHasAFaultUntilItIsReset) {
     return newest && newest->device_f_n.norm() == 0.0;
   }));
   EXPECT_TRUE(wait_for(
-      [&] { return client.ask(ServerCommand::kResetFault, kPatience) && client.view().status.fault == "none"; }));
+      [&] { return client.ask(link::ServerCommand::kResetFault, kPatience) && client.view().status.fault == "none"; }));
 }
 
 TEST(Liveness, AFlightRecordTellsOfAFault) {
   LiveServer server({"--fault", "nan@0.1"});
-  HapticClient client = connect(server.url());
+  link::HapticClient client = connect(server.url());
   ASSERT_TRUE(client.ask(layers_scene(), kPatience));
   EXPECT_TRUE(wait_for([&] { return client.view().status.state == "fault"; }));
   EXPECT_TRUE(wait_for([&] { return client.view().status.warning.find("flight-") != std::string::npos; }))
@@ -155,22 +155,22 @@ TEST(Liveness, AFlightRecordTellsOfAFault) {
 
 TEST(Liveness, AnUnpluggedDeviceIsOpenedAgainOnRequest) {
   LiveServer server({"--fault", "disconnect@0.1+0.2"});
-  HapticClient client = connect(server.url());
+  link::HapticClient client = connect(server.url());
   ASSERT_TRUE(client.ask(layers_scene(), kPatience));
   ASSERT_TRUE(wait_for([&] { return client.view().status.fault == "device_lost"; }));
   // The schedule plugs it in again after a while; until then it stays lost.
   ASSERT_TRUE(wait_for([&] {
-    return client.ask(ServerCommand::kReconnect, kPatience) && client.ask(ServerCommand::kResetFault, kPatience) &&
-           client.view().status.fault == "none";
+    return client.ask(link::ServerCommand::kReconnect, kPatience) &&
+           client.ask(link::ServerCommand::kResetFault, kPatience) && client.view().status.fault == "none";
   }));
-  ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+  ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
   EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
 }
 
 TEST(Liveness, EndsOnRequestWithItsFiguresAndExitStatusZero) {
   LiveServer server;
   {
-    HapticClient client = connect(server.url());
+    link::HapticClient client = connect(server.url());
     press_on_skin(client);
   }
   server.kill(SIGTERM);

@@ -43,7 +43,7 @@ class Stall {
 void stall_myself(milliseconds duration) {
   const std::string pid = std::to_string(::getpid());
   const std::string seconds = std::to_string(0.001 * static_cast<double>(duration.count()));
-  auto waker = ServerProcess::start(
+  auto waker = link::ServerProcess::start(
       "/bin/sh", {"-c", "kill -STOP " + pid + "; sleep " + seconds + "; kill -CONT " + pid}, "/dev/null");
   ASSERT_TRUE(waker) << waker.error().text();
   EXPECT_TRUE(wait_for([&] { return !waker->is_running(); }));
@@ -51,8 +51,8 @@ void stall_myself(milliseconds duration) {
 
 class Stalls : public LiveAttemptTest {
  protected:
-  AttemptOptions impatient(const std::string& device) const {
-    AttemptOptions chosen = options();
+  attempt::AttemptOptions impatient(const std::string& device) const {
+    attempt::AttemptOptions chosen = options();
     chosen.device_needle = device;
     chosen.device_probe = "mouse";
     chosen.patience = kImpatient;
@@ -64,8 +64,8 @@ class Stalls : public LiveAttemptTest {
     hand_ = needle_pose(path_P.a + depth_mm * path_P.direction(), path_P.direction());
     double rest_s = 0.0;
     return wait_for([&] {
-      attempt->set_hand(HandTool::kNeedle, hand_);
-      const AttemptView view = attempt->view();
+      attempt->set_hand(attempt::HandTool::kNeedle, hand_);
+      const attempt::AttemptView view = attempt->view();
       const bool is_at_rest = view.needle.depth_mm > 0.5 * depth_mm && std::abs(view.needle.speed_mm_s) < 0.2;
       if (!is_at_rest) rest_s = view.session_s;
       return view.session_s > rest_s + 0.5;
@@ -75,8 +75,9 @@ class Stalls : public LiveAttemptTest {
   bool goes_on() {
     auto since = std::chrono::steady_clock::now();
     return wait_for([&] {
-      const AttemptView view = attempt->view();
-      const bool is_well = view.phase == AttemptPhase::kInBody && view.banner.empty() && view.servers[0].gate == "on";
+      const attempt::AttemptView view = attempt->view();
+      const bool is_well =
+          view.phase == attempt::AttemptPhase::kInBody && view.banner.empty() && view.servers[0].gate == "on";
       const auto now = std::chrono::steady_clock::now();
       if (!is_well) since = now;
       return now - since > milliseconds(300);
@@ -85,14 +86,14 @@ class Stalls : public LiveAttemptTest {
   const Vec3& tip_P() { return (view_ = attempt->view()).needle.X_PN.p(); }
   /// What the session says: the tip never leapt, and after no pause did the force leap.
   void expect_smooth_session() {
-    const auto session = load_session(options().session);
+    const auto session = storage::load_session(options().session);
     ASSERT_TRUE(session) << session.error().text();
     double furthest_mm = 0.0, largest_rise_n = 0.0;
     for (std::size_t i = 1; i < session->samples.size(); ++i) {
-      const TickSample& before = session->samples[i - 1];
-      const TickSample& now = session->samples[i];
+      const telemetry::TickSample& before = session->samples[i - 1];
+      const telemetry::TickSample& now = session->samples[i];
       const double dt_s = now.time_s - before.time_s;
-      if (now.phase == InsertionPhase::kOutside) continue;
+      if (now.phase == telemetry::InsertionPhase::kOutside) continue;
       // A hand makes 60 mm/s.
       if (dt_s > 0.1) furthest_mm = std::max(furthest_mm, (now.tip_mm - before.tip_mm).norm());
       // Of neighbours alone: where the machine skipped periods the force goes on from where it would be.
@@ -103,7 +104,7 @@ class Stalls : public LiveAttemptTest {
   }
 
   Pose hand_;
-  AttemptView view_;
+  attempt::AttemptView view_;
 };
 
 TEST_F(Stalls, AServerThatIsStoppedIsWaitedForAndTheNeedleStays) {
@@ -111,7 +112,7 @@ TEST_F(Stalls, AServerThatIsStoppedIsWaitedForAndTheNeedleStays) {
   for (const char* device : {"mouse", "virtual:premium"}) {
     SCOPED_TRACE(device);
     start(impatient(device));
-    ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+    ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
     ASSERT_TRUE(push_to(20.0)) << where();
     const Vec3 rest_P = tip_P();
     const int pid = attempt->view().servers[0].pid;
@@ -119,7 +120,7 @@ TEST_F(Stalls, AServerThatIsStoppedIsWaitedForAndTheNeedleStays) {
       {
         const Stall stall(pid);
         stall.lasts(duration);
-        EXPECT_EQ(attempt->view().phase, AttemptPhase::kServerLost);
+        EXPECT_EQ(attempt->view().phase, attempt::AttemptPhase::kServerLost);
         EXPECT_NE(attempt->view().banner.find("does not answer"), std::string::npos) << attempt->view().banner;
       }
       ASSERT_TRUE(goes_on()) << where();
@@ -135,7 +136,7 @@ TEST_F(Stalls, AServerThatIsStoppedIsWaitedForAndTheNeedleStays) {
 
 TEST_F(Stalls, AServerThatNeverGoesOnIsReplacedAtLast) {
   start(impatient("mouse"));
-  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   ASSERT_TRUE(push_to(20.0)) << where();
   const Vec3 rest_P = tip_P();
   const int pid = attempt->view().servers[0].pid;
@@ -147,7 +148,7 @@ TEST_F(Stalls, AServerThatNeverGoesOnIsReplacedAtLast) {
 
 TEST_F(Stalls, ServersAreNotBlamedWhenTheSeatItselfStoodStill) {
   start(impatient("mouse"));
-  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   ASSERT_TRUE(push_to(20.0)) << where();
   const Vec3 rest_P = tip_P();
   const int pids[] = {attempt->view().servers[0].pid, attempt->view().servers[1].pid};
@@ -167,7 +168,7 @@ TEST_F(Stalls, ServersAreNotBlamedWhenTheSeatItselfStoodStill) {
 
 TEST_F(Stalls, NoNumberOfStallsIsTooMuch) {
   start(impatient("mouse"));
-  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   ASSERT_TRUE(push_to(20.0)) << where();
   const Vec3 rest_P = tip_P();
   const int pid = attempt->view().servers[0].pid;
@@ -181,7 +182,7 @@ TEST_F(Stalls, NoNumberOfStallsIsTooMuch) {
 
 TEST_F(Stalls, KillsBeforeTheServerIsBackLeaveTheNeedleWhereItWas) {
   start(impatient("mouse"));
-  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   ASSERT_TRUE(push_to(20.0)) << where();
   const Vec3 rest_P = tip_P();
   for (int killed = 0; killed < 3; ++killed) {
@@ -197,13 +198,13 @@ TEST_F(Stalls, KillsBeforeTheServerIsBackLeaveTheNeedleWhereItWas) {
 /// A hand that goes on while nothing answers would find the needle elsewhere when it does.
 TEST_F(Stalls, WhatTheHandDoesMeanwhileIsForgotten) {
   start(impatient("mouse"));
-  ASSERT_TRUE(wait_phase(AttemptPhase::kReady)) << where();
+  ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   ASSERT_TRUE(push_to(20.0)) << where();
   const Vec3 rest_P = tip_P();
   {
     const Stall stall(attempt->view().servers[0].pid);
-    ASSERT_TRUE(wait_phase(AttemptPhase::kServerLost)) << where();
-    attempt->set_hand(HandTool::kNeedle, hand_ * Pose::translation({0.0, 0.0, 15.0}));
+    ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kServerLost)) << where();
+    attempt->set_hand(attempt::HandTool::kNeedle, hand_ * Pose::translation({0.0, 0.0, 15.0}));
     stall.lasts(kShortStall);
   }
   ASSERT_TRUE(goes_on()) << where();
@@ -215,11 +216,11 @@ TEST_F(Stalls, WhatTheHandDoesMeanwhileIsForgotten) {
 /// A client that went away without a word holds its server for a while: the next one waits for that.
 TEST(SeatStalls, ASeatWaitsForControlThatIsNotFreeYet) {
   LiveServer server;
-  auto gone = std::make_unique<HapticClient>(connect(server.url()));
+  auto gone = std::make_unique<link::HapticClient>(connect(server.url()));
   ASSERT_TRUE(wait_for([&] { return gone->view().welcome.has_control; }));
-  ClientOptions options;
+  link::ClientOptions options;
   options.endpoint = server.url();
-  auto seat = ServerSeat::connect(options, kPatience);
+  auto seat = attempt::ServerSeat::connect(options, kPatience);
   ASSERT_TRUE(seat) << seat.error().text();
   ASSERT_TRUE(wait_for([&] {
     const auto looked = seat->look();
@@ -230,27 +231,28 @@ TEST(SeatStalls, ASeatWaitsForControlThatIsNotFreeYet) {
   EXPECT_TRUE(wait_for([&] {
     const auto looked = seat->look();
     EXPECT_TRUE(looked) << looked.error().text();
-    return !looked || *looked == ServerSeat::State::kReady;
+    return !looked || *looked == attempt::ServerSeat::State::kReady;
   }));
-  EXPECT_EQ(seat->state(), ServerSeat::State::kReady);
+  EXPECT_EQ(seat->state(), attempt::ServerSeat::State::kReady);
 }
 
 class RealtimeStalls : public ::testing::Test {
  protected:
   /// `trocar run --realtime` on a thread of its own; a watcher sees how deep its needle is.
   void begin(milliseconds patience) {
-    auto prepared = prepare_case(abdomen_case()->the_case.patient, {});
+    auto prepared = attempt::prepare_case(abdomen_case()->the_case.patient, {});
     ASSERT_TRUE(prepared) << prepared.error().text();
     the_case_.emplace(*std::move(prepared));
-    RunOptions run;
+    attempt::RunOptions run;
     run.operator_name = "expert";
     run.patient_source = "abdomen";
     run.session = folder_ / "live.session";
-    RealtimeOptions realtime;
+    attempt::RealtimeOptions realtime;
     realtime.endpoints = {server_.url()};
     realtime.patience = patience;
-    result_ = std::async(std::launch::async,
-                         [this, run, realtime] { return run_realtime_session(*the_case_, run, realtime, {}); });
+    result_ = std::async(std::launch::async, [this, run, realtime] {
+      return attempt::run_realtime_session(*the_case_, run, realtime, {});
+    });
   }
   bool wait_deeper(double depth_mm) {
     return wait_for([&] {
@@ -259,7 +261,7 @@ class RealtimeStalls : public ::testing::Test {
     });
   }
   double furthest_mm() const {
-    const auto session = load_session(folder_ / "live.session");
+    const auto session = storage::load_session(folder_ / "live.session");
     EXPECT_TRUE(session) << session.error().text();
     double furthest = 0.0;
     for (std::size_t i = 1; session && i < session->samples.size(); ++i)
@@ -269,9 +271,9 @@ class RealtimeStalls : public ::testing::Test {
 
   TemporaryFolder folder_;
   LiveServer server_;
-  HapticClient watcher_ = connect(server_.url(), false);
-  std::optional<Case> the_case_;
-  std::future<Result<RunResult>> result_;
+  link::HapticClient watcher_ = connect(server_.url(), false);
+  std::optional<attempt::Case> the_case_;
+  std::future<Result<attempt::RunResult>> result_;
 };
 
 TEST_F(RealtimeStalls, AnAttemptOutlivesAServerThatStoodStill) {

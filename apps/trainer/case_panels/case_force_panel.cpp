@@ -13,7 +13,7 @@ namespace {
 
 class ForcePanel final : public CasePanel {
  public:
-  ForcePanel(CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  ForcePanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
     text_ = make_label({}, "dim");
     text_->setObjectName(QStringLiteral("case-force-text"));
     text_->setWordWrap(true);
@@ -49,16 +49,16 @@ class ForcePanel final : public CasePanel {
     }
     text_->setText(tr("At 10 mm/s along the path; at most %1 N.").arg(preview->highest_n, 0, 'f', 1));
     std::vector<QPointF> curve;
-    for (const CurvePoint& point : preview->curve)
+    for (const attempt::CurvePoint& point : preview->curve)
       if (curve.empty() || point.tip_mm > curve.back().x()) curve.emplace_back(point.tip_mm, point.force_n);
     plot_->set_predicted(std::move(curve));
     std::vector<ForcePlot::Band> bands;
-    for (const PathPiece& piece : preview->pieces)
+    for (const attempt::PathPiece& piece : preview->pieces)
       bands.push_back({piece.from_mm, piece.to_mm, to_qt(piece.name), color_of(piece.name)});
     plot_->set_bands(std::move(bands));
     table_->setRowCount(static_cast<int>(preview->events.size()));
     for (std::size_t n = 0; n < preview->events.size(); ++n) {
-      const CurveEvent& event = preview->events[n];
+      const attempt::CurveEvent& event = preview->events[n];
       const QStringList texts{to_qt(event.layer).replace(QLatin1Char('_'), QLatin1Char(' ')),
                               QString::number(event.way_mm, 'f', 1), QString::number(event.peak_n, 'f', 2)};
       for (int column = 0; column < 3; ++column) {
@@ -71,12 +71,12 @@ class ForcePanel final : public CasePanel {
 
  private:
   QColor color_of(const std::string& name) const {
-    const Label* label = desk_.draft().label_table.find(std::string_view(name));
+    const anatomy::Label* label = desk_.draft().label_table.find(std::string_view(name));
     return label != nullptr ? QColor(label->color[0], label->color[1], label->color[2]) : QColor(200, 170, 150);
   }
 
   void jump_to(int row) {
-    const NeedlePath* path = find_expert_path(desk_.draft());
+    const anatomy::NeedlePath* path = case_builder::find_expert_path(desk_.draft());
     const auto& preview = desk_.preview();
     if (path == nullptr || !preview || row >= static_cast<int>(preview->events.size())) return;
     Q_EMIT place_wanted(path->line_P.a +
@@ -90,7 +90,7 @@ class ForcePanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_force_panel(CaseDesk& desk, QWidget* parent) {
+CasePanel* make_force_panel(case_builder::CaseDesk& desk, QWidget* parent) {
   return new ForcePanel(desk, parent);
 }
 

@@ -24,7 +24,7 @@ QString first_line(const QString& entry) {
 
 class ImportPanel final : public CasePanel {
  public:
-  ImportPanel(CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  ImportPanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
     content()->addWidget(make_label(tr("CT, or a patient that is whole already"), "dim"));
     ct_ = add_field("case-ct", tr("CT"), tr("Path of a CT: NIfTI, NRRD, MHA, a DICOM folder; or a patient folder"));
     add_choosers();
@@ -55,7 +55,7 @@ class ImportPanel final : public CasePanel {
   }
 
   void refresh() override {
-    const bool is_importing = desk_.work() == CaseDesk::Work::kImporting;
+    const bool is_importing = desk_.work() == case_builder::CaseDesk::Work::kImporting;
     start_->setEnabled(!is_importing);
     if (was_importing_ && !is_importing) {
       has_failed_ = desk_.is_error();
@@ -124,7 +124,7 @@ class ImportPanel final : public CasePanel {
   }
 
   void import() {
-    ImportRequest request;
+    case_builder::ImportRequest request;
     request.ct = to_std(ct_->text().trimmed());
     for (const QString& path : labels_->text().split(QLatin1Char(';')))
       if (!path.trimmed().isEmpty()) request.labels.push_back(to_std(path.trimmed()));
@@ -169,15 +169,15 @@ class ImportPanel final : public CasePanel {
   QComboBox* map_ = nullptr;
   QPushButton* start_ = nullptr;
   QListWidget* recent_ = nullptr;
-  QString imported_;                               ///< The three fields of the last import, a line each.
-  std::shared_ptr<const ImportedPatient> before_;  ///< What the draft had when that began.
+  QString imported_;                                             ///< The three fields of the last import, a line each.
+  std::shared_ptr<const case_builder::ImportedPatient> before_;  ///< What the draft had when that began.
   bool was_importing_ = false;
   bool has_failed_ = false;  ///< The last import; its files are not added to.
 };
 
 }  // namespace
 
-CasePanel* make_import_panel(CaseDesk& desk, QWidget* parent) {
+CasePanel* make_import_panel(case_builder::CaseDesk& desk, QWidget* parent) {
   return new ImportPanel(desk, parent);
 }
 

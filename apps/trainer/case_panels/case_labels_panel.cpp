@@ -22,7 +22,7 @@ enum Column { kName, kTissue, kVolume, kColumns };
 
 class LabelsPanel final : public CasePanel {
  public:
-  LabelsPanel(CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  LabelsPanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
     add_opacity();
     add_table();
     add_editor();
@@ -100,45 +100,48 @@ class LabelsPanel final : public CasePanel {
     tissue_->setObjectName(QStringLiteral("case-label-tissue"));
     tissue_->setAccessibleName(tr("Tissue of the label"));
     tissue_->setToolTip(tr("What the needle feels in the selected label"));
-    for (const TissueParams& tissue : desk_.tissues().tissues)
+    for (const anatomy::TissueParams& tissue : desk_.tissues().tissues)
       if (tissue.name != "air") tissue_->addItem(to_qt(tissue.name));
     content()->addWidget(tissue_);
     connect(name_, &QLineEdit::editingFinished, this, [this] {
-      const Label* label = selected();
+      const anatomy::Label* label = selected();
       if (is_refreshing_ || label == nullptr || name_->text() == to_qt(label->name)) return;
-      if (!desk_.edit(rename_label(desk_.draft(), label->id, to_std(name_->text().trimmed())), "rename a label")) {
+      if (!desk_.edit(case_builder::rename_label(desk_.draft(), label->id, to_std(name_->text().trimmed())),
+                      "rename a label")) {
         name_->setText(to_qt(label->name));
       }
     });
     connect(tissue_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] {
-      const Label* label = selected();
+      const anatomy::Label* label = selected();
       if (is_refreshing_ || label == nullptr || tissue_->currentIndex() < 0) return;
-      desk_.edit(set_label_tissue(desk_.draft(), label->id, to_std(tissue_->currentText())), "change a tissue");
+      desk_.edit(case_builder::set_label_tissue(desk_.draft(), label->id, to_std(tissue_->currentText())),
+                 "change a tissue");
     });
     connect(color_, &QPushButton::clicked, this, [this] { choose_color(); });
   }
 
   void choose_color() {
-    const Label* label = selected();
+    const anatomy::Label* label = selected();
     if (label == nullptr) return;
     const std::uint8_t id = label->id;
     const QColor before(label->color[0], label->color[1], label->color[2]);
     const QColor color = QColorDialog::getColor(before, this, tr("Colour of %1").arg(to_qt(label->name)));
     if (!color.isValid()) return;
-    desk_.edit(set_label_color(desk_.draft(), id,
-                               {static_cast<std::uint8_t>(color.red()), static_cast<std::uint8_t>(color.green()),
-                                static_cast<std::uint8_t>(color.blue())}),
-               "change a colour");
+    desk_.edit(
+        case_builder::set_label_color(desk_.draft(), id,
+                                      {static_cast<std::uint8_t>(color.red()), static_cast<std::uint8_t>(color.green()),
+                                       static_cast<std::uint8_t>(color.blue())}),
+        "change a colour");
   }
 
   void fill_table() {
-    const std::vector<Label>& labels = desk_.draft().label_table.labels;
+    const std::vector<anatomy::Label>& labels = desk_.draft().label_table.labels;
     table_->setRowCount(static_cast<int>(labels.size()));
     std::map<std::uint8_t, double> volumes;
     if (desk_.has_patient())
-      for (const LabelStatistics& s : desk_.draft().imported->statistics) volumes[s.id] = s.volume_ml;
+      for (const anatomy::LabelStatistics& s : desk_.draft().imported->statistics) volumes[s.id] = s.volume_ml;
     for (std::size_t n = 0; n < labels.size(); ++n) {
-      const Label& label = labels[n];
+      const anatomy::Label& label = labels[n];
       const int row = static_cast<int>(n);
       QTableWidgetItem* name = item(row, kName);
       name->setText(to_qt(label.name));
@@ -161,14 +164,14 @@ class LabelsPanel final : public CasePanel {
     return static_cast<std::uint8_t>(table_->item(row, kName)->data(Qt::UserRole).toInt());
   }
 
-  const Label* selected() const {
+  const anatomy::Label* selected() const {
     const int row = table_->currentRow();
     if (row < 0 || table_->item(row, kName) == nullptr) return nullptr;
     return desk_.draft().label_table.find(id_of(row));
   }
 
   void show_selected() {
-    const Label* label = selected();
+    const anatomy::Label* label = selected();
     for (QWidget* widget : std::initializer_list<QWidget*>{name_, tissue_, color_})
       widget->setEnabled(label != nullptr);
     if (label == nullptr) return name_->clear();
@@ -178,7 +181,7 @@ class LabelsPanel final : public CasePanel {
 
   void jump_to(int row) {
     const std::uint8_t id = id_of(row);
-    for (const LabelStatistics& s : desk_.draft().imported->statistics)
+    for (const anatomy::LabelStatistics& s : desk_.draft().imported->statistics)
       if (s.id == id && s.voxels > 0) Q_EMIT place_wanted(s.centroid_P);
   }
 
@@ -191,7 +194,7 @@ class LabelsPanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_labels_panel(CaseDesk& desk, QWidget* parent) {
+CasePanel* make_labels_panel(case_builder::CaseDesk& desk, QWidget* parent) {
   return new LabelsPanel(desk, parent);
 }
 

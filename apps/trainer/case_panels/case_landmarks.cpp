@@ -14,7 +14,7 @@
 
 namespace trocar::trainer {
 
-CaseLandmarks::CaseLandmarks(CaseDesk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
+CaseLandmarks::CaseLandmarks(case_builder::CaseDesk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
   auto* content = new QVBoxLayout(this);
   content->setContentsMargins(0, 8, 0, 0);
   content->setSpacing(8);
@@ -33,7 +33,7 @@ void CaseLandmarks::add_naming() {
   name_->setInsertPolicy(QComboBox::NoInsert);
   name_->setMinimumContentsLength(8);
   name_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  for (const std::string_view name : landmark_names()) name_->addItem(to_qt(name));
+  for (const std::string_view name : case_builder::landmark_names()) name_->addItem(to_qt(name));
   connect(name_, &QComboBox::editTextChanged, this, &CaseLandmarks::name_changed);
   layout()->addWidget(name_);
   pick_ = make_button("case-landmark-pick", tr("Click its place"),
@@ -95,12 +95,13 @@ void CaseLandmarks::rename(int row) {
   const std::string name = to_std(list_->item(row)->text().trimmed());
   const auto at = static_cast<std::size_t>(row);
   if (at >= desk_.draft().landmarks.size() || name == desk_.draft().landmarks[at].name) return refresh();
-  if (!desk_.edit(rename_landmark(desk_.draft(), at, name), "rename a landmark")) refresh();
+  if (!desk_.edit(case_builder::rename_landmark(desk_.draft(), at, name), "rename a landmark")) refresh();
 }
 
 void CaseLandmarks::remove_current() {
   if (list_->currentRow() < 0) return;
-  desk_.edit(remove_landmark(desk_.draft(), static_cast<std::size_t>(list_->currentRow())), "remove a landmark");
+  desk_.edit(case_builder::remove_landmark(desk_.draft(), static_cast<std::size_t>(list_->currentRow())),
+             "remove a landmark");
 }
 
 bool CaseLandmarks::eventFilter(QObject* watched, QEvent* event) {

@@ -19,7 +19,7 @@ class CaseLandmarks : public QWidget {
   Q_OBJECT
 
  public:
-  explicit CaseLandmarks(CaseDesk& desk, QWidget* parent = nullptr);
+  explicit CaseLandmarks(case_builder::CaseDesk& desk, QWidget* parent = nullptr);
 
   void refresh();
   void show_picking(bool is_on);
@@ -42,7 +42,7 @@ class CaseLandmarks : public QWidget {
   void rename(int row);
   void remove_current();
 
-  CaseDesk& desk_;
+  case_builder::CaseDesk& desk_;
   QComboBox* name_ = nullptr;
   QPushButton* pick_ = nullptr;
   QListWidget* list_ = nullptr;

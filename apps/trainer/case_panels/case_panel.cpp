@@ -4,7 +4,8 @@
 
 namespace trocar::trainer {
 
-CasePanel::CasePanel(CaseDesk& desk, QWidget* parent) : QWidget(parent), desk_(desk), content_(new QVBoxLayout(this)) {
+CasePanel::CasePanel(case_builder::CaseDesk& desk, QWidget* parent)
+    : QWidget(parent), desk_(desk), content_(new QVBoxLayout(this)) {
   content_->setContentsMargins(0, 0, 0, 0);
   content_->setSpacing(8);
 }

@@ -17,7 +17,7 @@ class CasePanel : public QWidget {
   Q_OBJECT
 
  public:
-  CasePanel(CaseDesk& desk, QWidget* parent);
+  CasePanel(case_builder::CaseDesk& desk, QWidget* parent);
   /// The desk has something new; fields that a person types in keep their text.
   virtual void refresh() = 0;
   /// The click tool that is on, so that its button shows it.
@@ -39,17 +39,17 @@ class CasePanel : public QWidget {
   QVBoxLayout* content() const noexcept { return content_; }
   /// True while refresh() sets widgets: their signals are no wishes then.
   bool is_refreshing_ = false;
-  CaseDesk& desk_;
+  case_builder::CaseDesk& desk_;
 
  private:
   QVBoxLayout* content_;
 };
 
-CasePanel* make_import_panel(CaseDesk& desk, QWidget* parent);
-CasePanel* make_labels_panel(CaseDesk& desk, QWidget* parent);
-CasePanel* make_target_panel(CaseDesk& desk, QWidget* parent);
-CasePanel* make_path_panel(CaseDesk& desk, QWidget* parent);
-CasePanel* make_force_panel(CaseDesk& desk, QWidget* parent);
-CasePanel* make_save_panel(CaseDesk& desk, QWidget* parent);
+CasePanel* make_import_panel(case_builder::CaseDesk& desk, QWidget* parent);
+CasePanel* make_labels_panel(case_builder::CaseDesk& desk, QWidget* parent);
+CasePanel* make_target_panel(case_builder::CaseDesk& desk, QWidget* parent);
+CasePanel* make_path_panel(case_builder::CaseDesk& desk, QWidget* parent);
+CasePanel* make_force_panel(case_builder::CaseDesk& desk, QWidget* parent);
+CasePanel* make_save_panel(case_builder::CaseDesk& desk, QWidget* parent);
 
 }  // namespace trocar::trainer

@@ -13,7 +13,7 @@ namespace {
 
 class PathPanel final : public CasePanel {
  public:
-  PathPanel(CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  PathPanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
     content()->addWidget(make_label(tr("Entry zone"), "heading"));
     add_zone();
     content()->addSpacing(8);
@@ -24,18 +24,18 @@ class PathPanel final : public CasePanel {
 
   void refresh() override {
     is_refreshing_ = true;
-    const Task& task = desk_.draft().task;
+    const tasks::Task& task = desk_.draft().task;
     zone_text_->setText(task.entry_zone
                             ? tr("Entries within %1 mm are as good as the expert's.").arg(task.entry_zone->radius_mm)
                             : tr("No zone: entries are held against the expert's."));
     if (task.entry_zone && !radius_->hasFocus()) radius_->setValue(task.entry_zone->radius_mm);
     no_zone_->setEnabled(task.entry_zone.has_value());
-    const NeedlePath* path = find_expert_path(desk_.draft());
+    const anatomy::NeedlePath* path = case_builder::find_expert_path(desk_.draft());
     no_path_->setEnabled(path != nullptr);
     path_text_->setText(
         path != nullptr ? tr("%1 mm from the skin to where the tip is put.").arg(path->line_P.length_mm(), 0, 'f', 0)
                         : tr("None: it is planned whenever the case is opened."));
-    plan_->setEnabled(desk_.has_patient() && desk_.work() == CaseDesk::Work::kNone);
+    plan_->setEnabled(desk_.has_patient() && desk_.work() == case_builder::CaseDesk::Work::kNone);
     is_refreshing_ = false;
   }
 
@@ -85,10 +85,11 @@ class PathPanel final : public CasePanel {
     connect(radius_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double radius_mm) {
       const auto& zone = desk_.draft().task.entry_zone;
       if (is_refreshing_ || !zone) return;
-      desk_.edit(set_entry_zone(desk_.draft(), zone->centre_P, radius_mm), "change the entry zone", "zone radius");
+      desk_.edit(case_builder::set_entry_zone(desk_.draft(), zone->centre_P, radius_mm), "change the entry zone",
+                 "zone radius");
     });
     connect(no_zone_, &QPushButton::clicked, this,
-            [this] { desk_.edit(clear_entry_zone(desk_.draft()), "remove the entry zone"); });
+            [this] { desk_.edit(case_builder::clear_entry_zone(desk_.draft()), "remove the entry zone"); });
   }
 
   void add_path() {
@@ -110,7 +111,7 @@ class PathPanel final : public CasePanel {
     content()->addWidget(no_path_);
     connect(plan_, &QPushButton::clicked, this, [this] { desk_.plan_path(); });
     connect(no_path_, &QPushButton::clicked, this,
-            [this] { desk_.edit(clear_expert_path(desk_.draft()), "remove the path"); });
+            [this] { desk_.edit(case_builder::clear_expert_path(desk_.draft()), "remove the path"); });
   }
 
   QPushButton* zone_ = nullptr;
@@ -126,7 +127,7 @@ class PathPanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_path_panel(CaseDesk& desk, QWidget* parent) {
+CasePanel* make_path_panel(case_builder::CaseDesk& desk, QWidget* parent) {
   return new PathPanel(desk, parent);
 }
 

@@ -16,17 +16,17 @@ namespace {
 
 class SavePanel final : public CasePanel {
  public:
-  SavePanel(CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  SavePanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
     name_ = add_line("case-name", tr("Name"), tr("What trainees choose the case by"));
     connect(name_, &QLineEdit::textEdited, this, [this](const QString& text) {
-      CaseDraft next = desk_.draft();
+      case_builder::CaseDraft next = desk_.draft();
       next.name = to_std(text);
       desk_.edit(std::move(next), "name the case", "name");
     });
     description_ = add_text("case-description", tr("Description"), tr("What trainees read before they begin"));
     connect(description_, &QPlainTextEdit::textChanged, this, [this] {
       if (is_refreshing_) return;
-      CaseDraft next = desk_.draft();
+      case_builder::CaseDraft next = desk_.draft();
       next.description = to_std(description_->toPlainText());
       desk_.edit(std::move(next), "describe the case", "description");
     });
@@ -34,7 +34,7 @@ class SavePanel final : public CasePanel {
                            tr("Data set, licence, who made the labels"));
     connect(provenance_, &QPlainTextEdit::textChanged, this, [this] {
       if (is_refreshing_) return;
-      CaseDraft next = desk_.draft();
+      case_builder::CaseDraft next = desk_.draft();
       next.provenance.clear();
       for (const QString& line : provenance_->toPlainText().split(QLatin1Char('\n')))
         if (!line.trimmed().isEmpty()) next.provenance.push_back(to_std(line.trimmed()));
@@ -46,7 +46,7 @@ class SavePanel final : public CasePanel {
 
   void refresh() override {
     is_refreshing_ = true;
-    const CaseDraft& draft = desk_.draft();
+    const case_builder::CaseDraft& draft = desk_.draft();
     if (!name_->hasFocus()) name_->setText(to_qt(draft.name));
     if (!description_->hasFocus() && description_->toPlainText() != to_qt(draft.description))
       description_->setPlainText(to_qt(draft.description));
@@ -54,7 +54,7 @@ class SavePanel final : public CasePanel {
     for (const std::string& line : draft.provenance) lines << to_qt(line);
     if (!provenance_->hasFocus() && provenance_->toPlainText() != lines.join(QLatin1Char('\n')))
       provenance_->setPlainText(lines.join(QLatin1Char('\n')));
-    save_->setEnabled(desk_.has_patient() && desk_.work() == CaseDesk::Work::kNone);
+    save_->setEnabled(desk_.has_patient() && desk_.work() == case_builder::CaseDesk::Work::kNone);
     open_->setEnabled(desk_.is_saved());
     is_refreshing_ = false;
   }
@@ -108,7 +108,7 @@ class SavePanel final : public CasePanel {
   }
 
   void save() {
-    SaveOptions options;
+    case_builder::SaveOptions options;
     options.folder = to_std(folder_->text().trimmed());
     options.overwrites = replaces_->isChecked();
     desk_.save(std::move(options));
@@ -125,7 +125,7 @@ class SavePanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_save_panel(CaseDesk& desk, QWidget* parent) {
+CasePanel* make_save_panel(case_builder::CaseDesk& desk, QWidget* parent) {
   return new SavePanel(desk, parent);
 }
 

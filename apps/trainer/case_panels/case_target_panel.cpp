@@ -18,13 +18,13 @@ namespace {
 
 enum Column { kStructure, kMargin, kPenalty, kColumns };
 
-QString name_of(const RiskStructure& risk) {
+QString name_of(const tasks::RiskStructure& risk) {
   return to_qt(risk.tissue.empty() ? risk.label : risk.tissue);
 }
 
 class TargetPanel final : public CasePanel {
  public:
-  TargetPanel(CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  TargetPanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
     add_template();
     add_target();
     auto* tabs = new QTabWidget;
@@ -36,11 +36,11 @@ class TargetPanel final : public CasePanel {
 
   void refresh() override {
     is_refreshing_ = true;
-    const CaseDraft& draft = desk_.draft();
+    const case_builder::CaseDraft& draft = desk_.draft();
     template_->setCurrentIndex(template_->findData(to_qt(draft.base.name)));
     fill_labels();
     target_->setCurrentIndex(std::max(0, target_->findData(to_qt(draft.task.target_label))));
-    const auto target_P = find_target_point(draft);
+    const auto target_P = case_builder::find_target_point(draft);
     where_->setText(!target_P             ? tr("no target yet")
                     : draft.task.target_P ? tr("point %1").arg(place(*target_P))
                                           : tr("middle of the label, %1").arg(place(*target_P)));
@@ -76,10 +76,11 @@ class TargetPanel final : public CasePanel {
   void add_template() {
     template_ =
         add_box("case-template", tr("Task, as a template"), tr("Limits, scoring and risks begin as in this task"));
-    for (const Task& task : desk_.templates()) template_->addItem(to_qt(task.title), to_qt(task.name));
+    for (const tasks::Task& task : desk_.templates()) template_->addItem(to_qt(task.title), to_qt(task.name));
     connect(template_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int row) {
       if (is_refreshing_ || row < 0) return;
-      desk_.edit(use_template(desk_.draft(), desk_.templates()[static_cast<std::size_t>(row)]), "choose a template");
+      desk_.edit(case_builder::use_template(desk_.draft(), desk_.templates()[static_cast<std::size_t>(row)]),
+                 "choose a template");
     });
   }
 
@@ -87,7 +88,8 @@ class TargetPanel final : public CasePanel {
     target_ = add_box("case-target-label", tr("Target"), tr("The structure that is to be reached"));
     connect(target_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int row) {
       if (is_refreshing_ || row < 0) return;
-      desk_.edit(set_target_label(desk_.draft(), to_std(target_->currentData().toString())), "choose the target");
+      desk_.edit(case_builder::set_target_label(desk_.draft(), to_std(target_->currentData().toString())),
+                 "choose the target");
     });
     pick_ = make_button("case-target-pick", tr("Click a point"),
                         tr("Click the target in a slice, or double click it in 3D"), QStringLiteral("Ctrl+T"));
@@ -172,26 +174,27 @@ class TargetPanel final : public CasePanel {
     connect(add, &QPushButton::clicked, this, [this] { add_risk(); });
     connect(remove, &QPushButton::clicked, this, [this] {
       if (table_->currentRow() >= 0)
-        desk_.edit(remove_risk(desk_.draft(), static_cast<std::size_t>(table_->currentRow())), "remove a risk");
+        desk_.edit(case_builder::remove_risk(desk_.draft(), static_cast<std::size_t>(table_->currentRow())),
+                   "remove a risk");
     });
   }
 
   void add_risk() {
     const std::string name = to_std(structure_->currentData().toString());
     if (name.empty()) return;
-    RiskStructure risk;
+    tasks::RiskStructure risk;
     (desk_.draft().label_table.find(std::string_view(name)) != nullptr ? risk.label : risk.tissue) = name;
-    desk_.edit(set_risk(desk_.draft(), risk), "add a risk");
+    desk_.edit(case_builder::set_risk(desk_.draft(), risk), "add a risk");
   }
 
-  const RiskStructure* selected() const {
+  const tasks::RiskStructure* selected() const {
     const int row = table_->currentRow();
     const auto& risks = desk_.draft().task.risks;
     return row >= 0 && row < static_cast<int>(risks.size()) ? &risks[static_cast<std::size_t>(row)] : nullptr;
   }
 
   void show_selected() {
-    const RiskStructure* risk = selected();
+    const tasks::RiskStructure* risk = selected();
     margin_->setEnabled(risk != nullptr);
     penalty_->setEnabled(risk != nullptr);
     if (risk == nullptr) return;
@@ -203,24 +206,24 @@ class TargetPanel final : public CasePanel {
   }
 
   void change_selected() {
-    const RiskStructure* risk = selected();
+    const tasks::RiskStructure* risk = selected();
     if (is_refreshing_ || risk == nullptr) return;
-    RiskStructure next = *risk;
+    tasks::RiskStructure next = *risk;
     next.margin_mm = margin_->value();
     next.penalty = penalty_->value();
-    desk_.edit(set_risk(desk_.draft(), next), "change a risk", "risk " + risk->tissue + risk->label);
+    desk_.edit(case_builder::set_risk(desk_.draft(), next), "change a risk", "risk " + risk->tissue + risk->label);
   }
 
   /// Labels of the patient; the first entry stands for the template's tissues.
   void fill_labels() {
     QStringList names;
-    for (const Label& label : desk_.draft().label_table.labels) names << to_qt(label.name);
+    for (const anatomy::Label& label : desk_.draft().label_table.labels) names << to_qt(label.name);
     if (names == shown_labels_ && target_->count() > 0) return;
     shown_labels_ = names;
     target_->clear();
     target_->addItem(tr("as the task says"), QString());
     structure_->clear();
-    for (const TissueParams& tissue : desk_.tissues().tissues)
+    for (const anatomy::TissueParams& tissue : desk_.tissues().tissues)
       if (tissue.name != "air" && tissue.name != "skin")
         structure_->addItem(tr("all %1").arg(to_qt(tissue.name)), to_qt(tissue.name));
     for (const QString& name : names) {
@@ -259,7 +262,7 @@ class TargetPanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_target_panel(CaseDesk& desk, QWidget* parent) {
+CasePanel* make_target_panel(case_builder::CaseDesk& desk, QWidget* parent) {
   return new TargetPanel(desk, parent);
 }
 

@@ -6,16 +6,16 @@
 #include <algorithm>
 
 #include "anatomy/structure_words.h"
+#include "attempt/guide/gun_shot.h"
 #include "control/force_bands.h"
-#include "workspace/desk.h"
-#include "workspace/shot_display.h"
 #include "pages/work_page.h"
 #include "panels/puncture_panel.h"
 #include "ui_kit/parts.h"
-#include "attempt/guide/gun_shot.h"
-#include "views/plots/force_plot.h"
 #include "views/patient/patient_view.h"
+#include "views/plots/force_plot.h"
 #include "views/ultrasound/ultrasound_view.h"
+#include "workspace/desk.h"
+#include "workspace/shot_display.h"
 
 namespace trocar::trainer {
 namespace {
@@ -27,49 +27,51 @@ constexpr double kGhost_mm = 1.0;  ///< A hand that is less ahead of the needle 
 /// stays in sight.
 constexpr double kFullForce_n = 8.0;
 
-QString phase_text(const AttemptView& view) {
+QString phase_text(const attempt::AttemptView& view) {
   switch (view.phase) {
-    case AttemptPhase::kStarting:
+    case attempt::AttemptPhase::kStarting:
       return AttemptControl::tr("starting");
-    case AttemptPhase::kServerLost:
+    case attempt::AttemptPhase::kServerLost:
       return AttemptControl::tr("interrupted");
-    case AttemptPhase::kStopped:
+    case attempt::AttemptPhase::kStopped:
       return AttemptControl::tr("forces stopped");
-    case AttemptPhase::kFinishing:
+    case attempt::AttemptPhase::kFinishing:
       return AttemptControl::tr("being scored");
     default:
       break;
   }
   switch (view.needle.phase) {
-    case InsertionPhase::kOutside:
+    case telemetry::InsertionPhase::kOutside:
       return AttemptControl::tr("outside");
-    case InsertionPhase::kLoading:
+    case telemetry::InsertionPhase::kLoading:
       return AttemptControl::tr("pressing");
-    case InsertionPhase::kInserted:
+    case telemetry::InsertionPhase::kInserted:
       return AttemptControl::tr("in the body");
-    case InsertionPhase::kRetracting:
+    case telemetry::InsertionPhase::kRetracting:
       return AttemptControl::tr("pulling back");
   }
   return {};
 }
 
-bool is_risk(const Case& the_case, const AttemptEvent& event) {
-  if (event.kind != EventKind::kEnter) return false;
-  const Label* label = the_case.patient->label_table.find(std::string_view(event.name));
+bool is_risk(const attempt::Case& the_case, const attempt::AttemptEvent& event) {
+  if (event.kind != telemetry::EventKind::kEnter) return false;
+  const anatomy::Label* label = the_case.patient->label_table.find(std::string_view(event.name));
   return label != nullptr && find_risk(the_case.task, *label) != nullptr;
 }
 
 }  // namespace
 
-AttemptControl::AttemptControl(std::shared_ptr<const OpenCase> open, const SeatChoice& choice, AttemptOptions options,
-                               std::shared_ptr<SeatServers> servers, WorkPage& page)
+AttemptControl::AttemptControl(std::shared_ptr<const attempt::OpenCase> open, const SeatChoice& choice,
+                               attempt::AttemptOptions options, std::shared_ptr<attempt::SeatServers> servers,
+                               WorkPage& page)
     : open_(std::move(open)),
       choice_(choice),
       page_(page),
       attempt_(open_, std::move(options), std::move(servers)),
       needle_(*open_->the_case.patient, open_->the_case.plan.line_P, open_->the_case.needle.length_mm),
       probe_(*open_->the_case.patient, attempt_.options().X_PT_start.value_or(open_->X_PT_start)),
-      is_led_{is_moved_by_hand_targets(choice.needle_device), is_moved_by_hand_targets(choice.probe_device)},
+      is_led_{attempt::is_moved_by_hand_targets(choice.needle_device),
+              attempt::is_moved_by_hand_targets(choice.probe_device)},
       keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
   page_.desk().show_help(choice_.difficulty);  // the replay of the last attempt showed all
@@ -148,7 +150,7 @@ void AttemptControl::ask_to_close() {
 
 ViewScale AttemptControl::scale_of_3d() const {
   const PatientView& view = page_.desk().view_3d();
-  const CameraView& camera = view.view();
+  const scene::CameraView& camera = view.view();
   return {camera.right_P(), -camera.up_P, camera.mm_per_pixel(needle_.entry_P(), std::max(1, view.height()))};
 }
 
@@ -175,11 +177,11 @@ void AttemptControl::gesture(const Gesture& gesture) {
         return hand.push(gesture.right);
     }
   };
-  if (gestures_.in_hand() == ToolInHand::kNeedle && is_free(HandTool::kNeedle)) move(needle_);
-  if (gestures_.in_hand() == ToolInHand::kTransducer && is_free(HandTool::kProbe)) move(probe_);
+  if (gestures_.in_hand() == ToolInHand::kNeedle && is_free(attempt::HandTool::kNeedle)) move(needle_);
+  if (gestures_.in_hand() == ToolInHand::kTransducer && is_free(attempt::HandTool::kProbe)) move(probe_);
 }
 
-bool AttemptControl::is_free(HandTool tool) const {
+bool AttemptControl::is_free(attempt::HandTool tool) const {
   const auto t = static_cast<std::size_t>(tool);
   return is_led_[t] && !is_clamped_[t] && !view_.is_performing;
 }
@@ -200,7 +202,8 @@ void AttemptControl::say(const QString& text) {
 
 void AttemptControl::toggle_clamp() {
   if (gestures_.in_hand() == ToolInHand::kNone) return;
-  const HandTool tool = gestures_.in_hand() == ToolInHand::kNeedle ? HandTool::kNeedle : HandTool::kProbe;
+  const attempt::HandTool tool =
+      gestures_.in_hand() == ToolInHand::kNeedle ? attempt::HandTool::kNeedle : attempt::HandTool::kProbe;
   bool& is_clamped = is_clamped_[static_cast<std::size_t>(tool)];
   is_clamped = !is_clamped;
   attempt_.hold(tool, is_clamped);
@@ -211,24 +214,24 @@ void AttemptControl::toggle_forces() {
 }
 
 void AttemptControl::end_server(const QString& tool) {
-  const ServerView& server = view_.servers[tool == QLatin1String("probe") ? 1 : 0];
+  const attempt::ServerView& server = view_.servers[tool == QLatin1String("probe") ? 1 : 0];
   if (server.pid > 0) ::kill(server.pid, SIGKILL);
 }
 
 void AttemptControl::advance(double dt_s) {
   view_ = attempt_.view();
-  const bool are_on = view_.phase == AttemptPhase::kReady || view_.phase == AttemptPhase::kInBody;
-  if ((!are_on || !is_led_[0]) && view_.needle.is_known && view_.phase != AttemptPhase::kFinishing) {
+  const bool are_on = view_.phase == attempt::AttemptPhase::kReady || view_.phase == attempt::AttemptPhase::kInBody;
+  if ((!are_on || !is_led_[0]) && view_.needle.is_known && view_.phase != attempt::AttemptPhase::kFinishing) {
     // The hands wait where the tools are, so that nothing jumps when the forces come back.
     needle_.put(view_.needle.X_PN);
   }
   if (!is_led_[1] && view_.probe.is_known) probe_.put(view_.probe.X_PT);
-  attempt_.set_hand(HandTool::kNeedle, needle_.X_PN());
-  attempt_.set_hand(HandTool::kProbe, probe_.X_PT());
+  attempt_.set_hand(attempt::HandTool::kNeedle, needle_.X_PN());
+  attempt_.set_hand(attempt::HandTool::kProbe, probe_.X_PT());
   ForcePlot& plot = page_.desk().forces();
   if (++frame_ % kFramesAPlot == 0) {
     std::vector<ForcePoint> points;
-    for (const trocar::ForcePoint& point : attempt_.take_forces())
+    for (const trocar::attempt::ForcePoint& point : attempt_.take_forces())
       points.push_back({point.time_s, point.depth_mm, point.force_n});
     plot.append(points);
   }
@@ -241,14 +244,14 @@ void AttemptControl::advance(double dt_s) {
 
 /// In an exam the hand feels layers give way; their names, and what the segmentation says, would be the solution.
 void AttemptControl::look_at_events() {
-  for (const AttemptEvent& event : attempt_.take_events()) {
-    const bool is_shot = event.kind == EventKind::kNone;
+  for (const attempt::AttemptEvent& event : attempt_.take_events()) {
+    const bool is_shot = event.kind == telemetry::EventKind::kNone;
     if (is_exam() && !is_shot) continue;
     const QString text = is_exam() ? tr("the gun was fired") : to_qt(event.text);
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(text),
                                is_risk(open_->the_case, event));
-    if (event.kind == EventKind::kPuncture)
-      page_.desk().forces().add_event(event.depth_mm, event.time_s, to_qt(layer_words(event.name)));
+    if (event.kind == telemetry::EventKind::kPuncture)
+      page_.desk().forces().add_event(event.depth_mm, event.time_s, to_qt(anatomy::layer_words(event.name)));
   }
 }
 
@@ -262,7 +265,7 @@ void AttemptControl::look_at_shot() {
 
 void AttemptControl::show_tools(double dt_s) {
   ToolsShown tools;
-  const NeedleView& needle = view_.needle;
+  const attempt::NeedleView& needle = view_.needle;
   if (needle.is_known) {
     tools.shaft_P = needle.shaft_P;
     tools.X_PN = needle.X_PN;
@@ -297,7 +300,8 @@ void AttemptControl::show_panel() {
   PunctureFigures figures;
   figures.phase = phase_text(view_);
   figures.tissue = is_exam() ? QStringLiteral("–") : to_qt(view_.needle.tissue);
-  const bool is_starting = view_.phase == AttemptPhase::kStarting || view_.phase == AttemptPhase::kFinishing;
+  const bool is_starting =
+      view_.phase == attempt::AttemptPhase::kStarting || view_.phase == attempt::AttemptPhase::kFinishing;
   figures.hint = is_starting && said_s_ <= 0.0 ? to_qt(view_.progress) : hint();
   if (!is_tip_hidden()) figures.depth_mm = view_.needle.depth_mm;
   if (choice_.difficulty == Difficulty::kGuided && view_.needle.is_known) figures.to_target_mm = distance_mm();
@@ -305,7 +309,8 @@ void AttemptControl::show_panel() {
   figures.lag_mm = std::abs(view_.needle.lag_mm);
   figures.time_s = view_.session_s;
   figures.since_contact_s = view_.since_contact_s;
-  figures.can_fire = open_->the_case.needle.is_biopsy && !view_.has_fired && view_.phase == AttemptPhase::kInBody;
+  figures.can_fire =
+      open_->the_case.needle.is_biopsy && !view_.has_fired && view_.phase == attempt::AttemptPhase::kInBody;
   figures.is_clamped[0] = is_clamped_[0];
   figures.is_clamped[1] = is_clamped_[1];
   page_.puncture().show_figures(figures);

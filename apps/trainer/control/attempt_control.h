@@ -4,12 +4,12 @@
 #include <QVariantMap>
 #include <memory>
 
+#include "attempt/case/open_case.h"
+#include "attempt/hands/pointer_hand.h"
+#include "attempt/live/live_attempt.h"
 #include "control/page_keys.h"
 #include "control/tool_gestures.h"
 #include "shell/seat_choice.h"
-#include "attempt/live/live_attempt.h"
-#include "attempt/case/open_case.h"
-#include "attempt/hands/pointer_hand.h"
 
 namespace trocar::trainer {
 
@@ -20,14 +20,14 @@ class AttemptControl : public QObject {
   Q_OBJECT
 
  public:
-  AttemptControl(std::shared_ptr<const OpenCase> open, const SeatChoice& choice, AttemptOptions options,
-                 std::shared_ptr<SeatServers> servers, WorkPage& page);
+  AttemptControl(std::shared_ptr<const attempt::OpenCase> open, const SeatChoice& choice,
+                 attempt::AttemptOptions options, std::shared_ptr<attempt::SeatServers> servers, WorkPage& page);
   ~AttemptControl() override;
 
   /// Once a frame.
   void advance(double dt_s);
-  const AttemptView& view() const noexcept { return view_; }  ///< Of the last frame.
-  LiveAttempt& attempt() noexcept { return attempt_; }
+  const attempt::AttemptView& view() const noexcept { return view_; }  ///< Of the last frame.
+  attempt::LiveAttempt& attempt() noexcept { return attempt_; }
   /// Stops the forces, or turns stopped ones on again; at any time, also while a server is silent or starts.
   void toggle_forces();
   /// Asks whether to end and score the attempt, which goes on meanwhile.
@@ -57,7 +57,7 @@ class AttemptControl : public QObject {
   void show_panel();
   void look_at_events();
   void look_at_shot();
-  bool is_free(HandTool tool) const;
+  bool is_free(attempt::HandTool tool) const;
   /// The needle in the body is to be found by ultrasound and feel: nothing tells where its tip is.
   bool is_tip_hidden() const noexcept { return is_exam() && !open_->the_case.task.exam_shows_needle; }
   bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
@@ -66,17 +66,17 @@ class AttemptControl : public QObject {
   QVariantMap solution_facts() const;
   double distance_mm() const;
 
-  std::shared_ptr<const OpenCase> open_;
+  std::shared_ptr<const attempt::OpenCase> open_;
   SeatChoice choice_;
   WorkPage& page_;
-  LiveAttempt attempt_;
+  attempt::LiveAttempt attempt_;
   ToolGestures gestures_;
-  PointerNeedle needle_;
-  PointerProbe probe_;
+  attempt::PointerNeedle needle_;
+  attempt::PointerProbe probe_;
   bool is_led_[2];  ///< By HandTool: moved by mouse and keys; else its device moves itself.
   PageKeys keys_;
   bool is_clamped_[2] = {false, false};  ///< By HandTool.
-  AttemptView view_;
+  attempt::AttemptView view_;
   bool has_shown_shot_ = false;
   double still_s_ = 0.0;
   Question question_ = Question::kEnd;  ///< Asked last.

@@ -3,8 +3,8 @@
 #include <QStringList>
 #include <algorithm>
 
-#include "control/seat_words.h"
 #include "attempt/servers/own_server.h"
+#include "control/seat_words.h"
 #include "link/client/server_process.h"
 #include "ui_kit/parts.h"
 
@@ -23,7 +23,7 @@ QString last_line(const QByteArray& text) {
 DeviceCheck::DeviceCheck(const QString& spec, bool is_calibrating, QObject* parent) : QObject(parent) {
   connect(&process_, &QProcess::readyReadStandardOutput, this, &DeviceCheck::read_lines);
   connect(&process_, qOverload<int, QProcess::ExitStatus>(&QProcess::finished), this, &DeviceCheck::note_end);
-  const auto program = find_server_program();
+  const auto program = link::find_server_program();
   if (!program) {
     fail_with(sentence_of(program.error()), to_qt(program.error().text()));
     return;
@@ -80,7 +80,7 @@ void DeviceCheck::read_state(const QStringList& fields) {
 
 void DeviceCheck::note_end() {
   const QString line = last_line(process_.readAllStandardError());
-  if (const auto error = error_of_line(to_std(line))) return fail_with(sentence_of(*error), line);
+  if (const auto error = attempt::error_of_line(to_std(line))) return fail_with(sentence_of(*error), line);
   fail_with(tr("The test of the device ended by itself."), line);
 }
 

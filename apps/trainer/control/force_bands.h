@@ -9,8 +9,8 @@
 namespace trocar::trainer {
 
 /// Tissues along the planned path, in their labels' colours.
-std::vector<ForcePlot::Band> force_bands(const OpenCase& open);
+std::vector<ForcePlot::Band> force_bands(const attempt::OpenCase& open);
 /// What the planned path feels like: depth (mm), resistance (N).
-std::vector<QPointF> predicted_curve(const OpenCase& open);
+std::vector<QPointF> predicted_curve(const attempt::OpenCase& open);
 
 }  // namespace trocar::trainer

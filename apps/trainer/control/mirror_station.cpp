@@ -12,7 +12,7 @@
 namespace trocar::trainer {
 namespace {
 
-bool are_same(const CameraView& a, const CameraView& b) {
+bool are_same(const scene::CameraView& a, const scene::CameraView& b) {
   constexpr double kUnseen = 1e-6;
   return (a.eye_P - b.eye_P).norm() < kUnseen && (a.focus_P - b.focus_P).norm() < kUnseen &&
          (a.up_P - b.up_P).norm() < kUnseen && std::abs(a.view_angle_rad - b.view_angle_rad) < kUnseen;
@@ -71,8 +71,8 @@ void MirrorStation::lead_camera(PatientView& view, const Pose& X_PW) const {
   place.down_px = view_middle.y() - middle.y();
   place.rows = view.height();
   place.mm_per_pixel = settings_.screen_width_mm / std::max(1, screen->size().width());
-  const CameraView wanted = moved(X_PW, mirror_camera_W(settings_, place));
-  if (view.follow() != FollowMode::kFree) view.set_follow(FollowMode::kFree);
+  const scene::CameraView wanted = moved(X_PW, mirror_camera_W(settings_, place));
+  if (view.follow() != scene::FollowMode::kFree) view.set_follow(scene::FollowMode::kFree);
   if (!are_same(view.view(), wanted)) view.set_view(wanted);
 }
 

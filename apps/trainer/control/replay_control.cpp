@@ -5,58 +5,58 @@
 
 #include "control/force_bands.h"
 #include "core/files/atomic_file.h"
-#include "workspace/desk.h"
-#include "workspace/shot_display.h"
 #include "pages/work_page.h"
 #include "panels/feedback_panel.h"
 #include "report/html_report.h"
+#include "telemetry/tick_pose.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
-#include "telemetry/tick_pose.h"
 #include "views/plots/force_plot.h"
 #include "views/plots/time_line.h"
 #include "views/ultrasound/ultrasound_view.h"
+#include "workspace/desk.h"
+#include "workspace/shot_display.h"
 
 namespace trocar::trainer {
 namespace {
 
 using Event = TimeLine::Event;
 
-TimeMark kind_of(const ReplayMoment& moment) {
+TimeMark kind_of(const attempt::ReplayMoment& moment) {
   switch (moment.kind) {
-    case ReplayMoment::Kind::kPuncture:
+    case attempt::ReplayMoment::Kind::kPuncture:
       return TimeMark::kPuncture;
-    case ReplayMoment::Kind::kEnter:
+    case attempt::ReplayMoment::Kind::kEnter:
       return TimeMark::kEnter;
-    case ReplayMoment::Kind::kRisk:
+    case attempt::ReplayMoment::Kind::kRisk:
       return TimeMark::kRisk;
-    case ReplayMoment::Kind::kFired:
+    case attempt::ReplayMoment::Kind::kFired:
       return TimeMark::kFire;
-    case ReplayMoment::Kind::kWorst:
+    case attempt::ReplayMoment::Kind::kWorst:
       return TimeMark::kWorst;
-    case ReplayMoment::Kind::kChange:
-    case ReplayMoment::Kind::kInterruption:
+    case attempt::ReplayMoment::Kind::kChange:
+    case attempt::ReplayMoment::Kind::kInterruption:
       break;
   }
   return TimeMark::kOther;
 }
 
-QColor phase_color(InsertionPhase phase) {
+QColor phase_color(telemetry::InsertionPhase phase) {
   switch (phase) {
-    case InsertionPhase::kLoading:
+    case telemetry::InsertionPhase::kLoading:
       return theme().warning;
-    case InsertionPhase::kInserted:
+    case telemetry::InsertionPhase::kInserted:
       return theme().accent;
-    case InsertionPhase::kRetracting:
+    case telemetry::InsertionPhase::kRetracting:
       return theme().good;
-    case InsertionPhase::kOutside:
+    case telemetry::InsertionPhase::kOutside:
       break;
   }
   return theme().line;
 }
 
 /// Warnings, what was set before the start, and what changed or interrupted the attempt.
-QStringList notes_of(const AttemptReplay& replay, const std::vector<std::string>& warnings) {
+QStringList notes_of(const attempt::AttemptReplay& replay, const std::vector<std::string>& warnings) {
   QStringList notes;
   for (const std::string& warning : warnings) notes << to_qt(warning);
   const auto& parameters = replay.session().parameters;
@@ -65,7 +65,7 @@ QStringList notes_of(const AttemptReplay& replay, const std::vector<std::string>
     for (const std::string& setting : parameters.front().settings) settings << to_qt(setting);
     notes << ReplayControl::tr("set before the start: %1").arg(settings.join(QStringLiteral(", ")));
   }
-  for (const ReplayMoment& moment : replay.moments())
+  for (const attempt::ReplayMoment& moment : replay.moments())
     if (kind_of(moment) == TimeMark::kOther)
       notes << ReplayControl::tr("at %1 s, %2").arg(moment.time_s, 0, 'f', 1).arg(to_qt(moment.text));
   return notes;
@@ -79,8 +79,8 @@ QString level_title(const std::string& name) {
 
 }  // namespace
 
-ReplayControl::ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCase> open, WorkPage& page,
-                             const std::vector<std::string>& warnings)
+ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const attempt::OpenCase> open,
+                             WorkPage& page, const std::vector<std::string>& warnings)
     : replay_(std::move(replay)),
       open_(std::move(open)),
       page_(page),
@@ -133,11 +133,11 @@ void ReplayControl::fill_plot() {
   plot.set_reference(predicted_curve(*open_));
   std::vector<ForcePoint> points;
   points.reserve(replay_.session().samples.size());
-  for (const TickSample& sample : replay_.session().samples)
-    points.push_back({sample.time_s, sample.depth_mm, axial_resistance_n(sample)});
+  for (const telemetry::TickSample& sample : replay_.session().samples)
+    points.push_back({sample.time_s, sample.depth_mm, telemetry::axial_resistance_n(sample)});
   plot.append(points);
-  for (const ReplayMoment& moment : replay_.moments())
-    if (moment.kind == ReplayMoment::Kind::kPuncture)
+  for (const attempt::ReplayMoment& moment : replay_.moments())
+    if (moment.kind == attempt::ReplayMoment::Kind::kPuncture)
       plot.add_event(replay_.at(moment.time_s).depth_mm, moment.time_s, to_qt(moment.text));
 }
 
@@ -145,7 +145,7 @@ void ReplayControl::fill_time_line() {
   TimeLine& line = page_.time_line();
   line.set_duration(replay_.duration_s());
   std::vector<Event> events;
-  for (const ReplayMoment& moment : replay_.moments())
+  for (const attempt::ReplayMoment& moment : replay_.moments())
     events.push_back({moment.time_s, to_qt(moment.text), kind_of(moment)});
   line.set_events(std::move(events));
   std::vector<TimeLine::Phase> phases;
@@ -153,7 +153,7 @@ void ReplayControl::fill_time_line() {
   constexpr std::size_t kEvery = 10;
   const auto& samples = replay_.session().samples;
   for (std::size_t s = 0; s < samples.size(); ++s) {
-    if (s % kEvery == 0) curve.emplace_back(samples[s].time_s, axial_resistance_n(samples[s]));
+    if (s % kEvery == 0) curve.emplace_back(samples[s].time_s, telemetry::axial_resistance_n(samples[s]));
     if (s > 0 && samples[s].phase == samples[s - 1].phase) {
       phases.back().to_s = samples[s].time_s;
       continue;
@@ -181,10 +181,10 @@ Pose ReplayControl::transducer_at(double time_s) const {
 }
 
 void ReplayControl::show_at(double time_s, bool is_moving) {
-  const TickSample& sample = replay_.at(time_s);
+  const telemetry::TickSample& sample = replay_.at(time_s);
   ToolsShown tools;
   tools.shaft_P = replay_.shaft_at(time_s);
-  tools.X_PN = felt_needle(sample);
+  tools.X_PN = telemetry::felt_needle(sample);
   tools.focus_P = sample.depth_mm > 0.0 ? sample.tip_mm : open_->the_case.plan.line_P.b;
   tools.X_PT = transducer_at(time_s);
   tools.are_moving = is_moving;
@@ -200,7 +200,7 @@ void ReplayControl::go_to_worst() {
 }
 
 Status ReplayControl::save_report(const std::filesystem::path& file) const {
-  return write_file_atomically(file, html_report(replay_.session(), open_->the_case.patient.get()));
+  return write_file_atomically(file, report::html_report(replay_.session(), open_->the_case.patient.get()));
 }
 
 QVariantMap ReplayControl::facts() const {

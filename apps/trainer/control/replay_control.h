@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "attempt/case/open_case.h"
+#include "attempt/record/attempt_replay.h"
 #include "control/page_keys.h"
 #include "shell/seat_choice.h"
-#include "attempt/record/attempt_replay.h"
-#include "attempt/case/open_case.h"
 
 namespace trocar::trainer {
 
@@ -20,7 +20,7 @@ class ReplayControl : public QObject {
 
  public:
   /// `warnings`: of the attempt that has just ended, see RunResult.
-  ReplayControl(AttemptReplay replay, std::shared_ptr<const OpenCase> open, WorkPage& page,
+  ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const attempt::OpenCase> open, WorkPage& page,
                 const std::vector<std::string>& warnings = {});
 
   /// Once a frame.
@@ -36,8 +36,8 @@ class ReplayControl : public QObject {
   void show_at(double time_s, bool is_moving);
   Pose transducer_at(double time_s) const;
 
-  AttemptReplay replay_;
-  std::shared_ptr<const OpenCase> open_;
+  attempt::AttemptReplay replay_;
+  std::shared_ptr<const attempt::OpenCase> open_;
   WorkPage& page_;
   PageKeys keys_;
   double shown_s_ = -1.0;

@@ -5,6 +5,9 @@
 #include <QFileDialog>
 #include <algorithm>
 
+#include "attempt/case/scene_request.h"
+#include "attempt/record/recording_room.h"
+#include "parameters/force_preview.h"
 #include "control/attempt_control.h"
 #include "control/mirror_station.h"
 #include "control/replay_control.h"
@@ -12,25 +15,22 @@
 #include "core/available_memory.h"
 #include "core/files/disk_space.h"
 #include "core/files/user_folders.h"
-#include "workspace/desk.h"
-#include "attempt/case/scene_request.h"
 #include "pages/briefing_page.h"
 #include "pages/case_page.h"
 #include "pages/start_page.h"
 #include "pages/work_page.h"
 #include "panels/feedback_panel.h"
-#include "case_panels/force_preview.h"
-#include "parameters/parameter_panel.h"
 #include "panels/puncture_panel.h"
+#include "parameters/parameter_panel.h"
 #include "report/html_report.h"
 #include "shell/main_window.h"
-#include "ui_kit/parts.h"
 #include "shell/status_strip.h"
 #include "shell/trainer_application.h"
-#include "attempt/record/recording_room.h"
+#include "ui_kit/parts.h"
 #include "views/patient/patient_view.h"
 #include "views/plots/time_line.h"
 #include "views/ultrasound/ultrasound_view.h"
+#include "workspace/desk.h"
 
 namespace trocar::trainer {
 namespace {
@@ -38,10 +38,10 @@ namespace {
 constexpr int kFrame_ms = 16;
 constexpr std::size_t kMostFrames = 200'000;  // an hour
 
-CaseChoice case_choice(const SeatChoice& choice) {
-  CaseChoice result;
+attempt::CaseChoice case_choice(const SeatChoice& choice) {
+  attempt::CaseChoice result;
   // A patient that the case builder has made brings a task of its own.
-  result.options.task = has_own_task(choice.patient) ? std::string() : choice.task;
+  result.options.task = attempt::has_own_task(choice.patient) ? std::string() : choice.task;
   result.options.needle = choice.needle;
   result.patient_source = choice.patient;
   result.patient_seed = choice.patient_seed;
@@ -127,7 +127,7 @@ void SeatFlow::go_to_start() {
 void SeatFlow::go_to_case_builder() {
   const QString is_scored = tr("The attempt is being scored. The case builder opens after that.");
   if (attempt_) {
-    const bool is_ending = attempt_->view().phase == AttemptPhase::kFinishing;
+    const bool is_ending = attempt_->view().phase == attempt::AttemptPhase::kFinishing;
     return attempt_->say(is_ending ? is_scored : tr("The case builder is closed during an attempt. End it first (E)."));
   }
   if (loading_.has_work()) return window_.tell(is_scored, BannerKind::kWarning);
@@ -139,8 +139,9 @@ void SeatFlow::open(const SeatChoice& choice) {
   // What a cut-off exam was is seen again, not sat again.
   window_.work().set_parameters_locked(is_exam() && !cut_off_);
   opened_.reset();
-  retired_.retire(
-      std::exchange(opening_, open_case(case_choice(choice), OpenOptions{open_, user_cache_folder() / "patients"})));
+  retired_.retire(std::exchange(
+      opening_,
+      attempt::open_case(case_choice(choice), attempt::OpenOptions{open_, user_cache_folder() / "patients"})));
   window_.briefing().show_opening(choice);
   window_.show_page(QStringLiteral("briefing"));
 }
@@ -190,7 +191,7 @@ bool SeatFlow::can_record() {
                         BannerKind::kError);
     return false;
   }
-  const RecordingRoom room(folder, find_free_bytes(folder));
+  const attempt::RecordingRoom room(folder, find_free_bytes(folder));
   const Status start = room.check_start();
   if (!start) window_.show_banner(sentence_of(start.error()), BannerKind::kError);
   if (start && !room.start_warning().empty()) window_.show_banner(to_qt(room.start_warning()));
@@ -199,7 +200,7 @@ bool SeatFlow::can_record() {
 
 void SeatFlow::begin_attempt() {
   if (!open_ || !can_record()) return;
-  AttemptOptions options;
+  attempt::AttemptOptions options;
   const QString name = QDateTime::currentDateTime().toString(QStringLiteral("yyyy-MM-dd_HH-mm-ss-zzz"));
   options.session = state_folder_ / "sessions" / to_std(name + QStringLiteral(".trocar"));
   options.device_needle = choice_.needle_device;
@@ -242,14 +243,14 @@ void SeatFlow::try_again() {
 
 void SeatFlow::look_at_attempt() {
   if (!attempt_) return;
-  const AttemptView& view = attempt_->view();
+  const attempt::AttemptView& view = attempt_->view();
   window_.show_banner(to_qt(view.banner),
-                      view.phase == AttemptPhase::kFailed ? BannerKind::kError : BannerKind::kWarning);
+                      view.phase == attempt::AttemptPhase::kFailed ? BannerKind::kError : BannerKind::kWarning);
   tell_of_servers(view);
   std::vector<ServerLine> servers{line_of(view.servers[0], tr("Needle"))};
   if (view.has_probe) servers.push_back(line_of(view.servers[1], tr("Transducer")));
   window_.strip().show_servers(servers);
-  window_.strip().show_forces(view.phase != AttemptPhase::kFinishing, view.are_forces_stopped);
+  window_.strip().show_forces(view.phase != attempt::AttemptPhase::kFinishing, view.are_forces_stopped);
   auto result = attempt_->attempt().take_result();
   if (!result) return;
   const std::filesystem::path session = attempt_->attempt().session_path();
@@ -268,21 +269,21 @@ void SeatFlow::look_at_attempt() {
   warnings_ = (*result)->warnings;
   cut_short_ = (*result)->cut_short;
   if ((*result)->unsaved) {
-    show_replay(AttemptReplay::of(*std::move((*result)->unsaved), open_));
+    show_replay(attempt::AttemptReplay::of(*std::move((*result)->unsaved), open_));
   } else {
     load_replay(session);
   }
 }
 
-void SeatFlow::tell_of_servers(const AttemptView& view) {
+void SeatFlow::tell_of_servers(const attempt::AttemptView& view) {
   if (view.recoveries == recoveries_) return;
   recoveries_ = view.recoveries;
   window_.tell(to_qt(view.recovered), BannerKind::kSuccess);
 }
 
 void SeatFlow::load_replay(const std::filesystem::path& session) {
-  loading_ = BackgroundJob<AttemptReplay>(
-      [session, open = open_](const Progress&) { return AttemptReplay::load(session, open); });
+  loading_ = BackgroundJob<attempt::AttemptReplay>(
+      [session, open = open_](const Progress&) { return attempt::AttemptReplay::load(session, open); });
 }
 
 void SeatFlow::look_at_replay() {
@@ -292,7 +293,7 @@ void SeatFlow::look_at_replay() {
   show_replay(*std::move(loaded));
 }
 
-void SeatFlow::show_replay(Result<AttemptReplay> replay) {
+void SeatFlow::show_replay(Result<attempt::AttemptReplay> replay) {
   if (!replay) return window_.show_banner(sentence_of(replay.error()), BannerKind::kError);
   window_.show_banner(to_qt(std::exchange(cut_short_, {})));
   replay_ = std::make_unique<ReplayControl>(*std::move(replay), open_, window_.work(), std::exchange(warnings_, {}));
@@ -343,9 +344,9 @@ void SeatFlow::frame() {
   if (window_.page() == QLatin1String("case-builder")) window_.case_builder().advance();
   if (attempt_ || replay_) {
     window_.work().parameters().advance();
-    const Case& the_case = open_->the_case;
+    const attempt::Case& the_case = open_->the_case;
     window_.mirror().lead_camera(window_.work().desk().view_3d(),
-                                 room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
+                                 attempt::room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
     window_.work().desk().draw(now);
   }
   if (attempt_) attempt_->attempt().frame_drawn();
@@ -360,7 +361,7 @@ void SeatFlow::measure_frame(double now) {
 }
 
 bool SeatFlow::may_close() {
-  if (!attempt_ || is_close_confirmed_ || attempt_->view().phase == AttemptPhase::kStarting) return true;
+  if (!attempt_ || is_close_confirmed_ || attempt_->view().phase == attempt::AttemptPhase::kStarting) return true;
   attempt_->ask_to_close();
   return false;
 }
@@ -392,10 +393,10 @@ QVariantMap SeatFlow::facts() const {
     facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("frame_p50_ms")] = quantile(frame_ms_, 0.5);
   facts[QStringLiteral("frame_p99_ms")] = quantile(frame_ms_, 0.99);
-  const FrameTimes& renders = window_.work().desk().view_3d().moving_frame_times();
+  const scene::FrameTimes& renders = window_.work().desk().view_3d().moving_frame_times();
   facts[QStringLiteral("render_p50_ms")] = renders.p50_ms();
   facts[QStringLiteral("render_p99_ms")] = renders.p99_ms();
-  const FrameTimes& stills = window_.work().desk().view_3d().still_frame_times();
+  const scene::FrameTimes& stills = window_.work().desk().view_3d().still_frame_times();
   facts[QStringLiteral("still_p50_ms")] = stills.p50_ms();
   facts[QStringLiteral("unwatched_ms")] = window_.work().desk().view_3d().unwatched_times().percentile_ms(1.0);
   if (const auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) {

@@ -9,14 +9,14 @@
 #include <optional>
 #include <vector>
 
-#include "core/background_job.h"
-#include "devices/pointer/speaker.h"
-#include "ui_kit/frame_count.h"
-#include "shell/seat_choice.h"
+#include "attempt/case/open_case.h"
+#include "attempt/live/live_attempt.h"
 #include "attempt/record/attempt_replay.h"
 #include "attempt/record/journal.h"
-#include "attempt/live/live_attempt.h"
-#include "attempt/case/open_case.h"
+#include "core/background_job.h"
+#include "devices/pointer/speaker.h"
+#include "shell/seat_choice.h"
+#include "ui_kit/frame_count.h"
 
 namespace trocar::trainer {
 
@@ -56,8 +56,8 @@ class SeatFlow : public QObject {
   bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
   bool can_record();
   void look_at_attempt();
-  void tell_of_servers(const AttemptView& view);
-  void show_replay(Result<AttemptReplay> replay);
+  void tell_of_servers(const attempt::AttemptView& view);
+  void show_replay(Result<attempt::AttemptReplay> replay);
   void look_at_replay();
   void load_replay(const std::filesystem::path& session);
   void recover();
@@ -66,18 +66,18 @@ class SeatFlow : public QObject {
 
   MainWindow& window_;
   std::filesystem::path state_folder_;
-  Journal journal_;
+  attempt::Journal journal_;
   SeatChoice choice_;
-  BackgroundJob<std::shared_ptr<const OpenCase>> opening_;
-  BackgroundJob<AttemptReplay> loading_;
+  BackgroundJob<std::shared_ptr<const attempt::OpenCase>> opening_;
+  BackgroundJob<attempt::AttemptReplay> loading_;
   RetiredJobs retired_;
-  Speaker speaker_;
-  std::vector<float> gun_click_ = make_gun_click();
-  std::optional<SeatState> offered_;        ///< Was cut off; offered on the start page.
-  std::optional<SeatState> cut_off_;        ///< Being opened, to be scored and shown.
-  std::shared_ptr<const OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
-  std::shared_ptr<const OpenCase> open_;
-  std::shared_ptr<SeatServers> servers_;  ///< Kept from one attempt to the next.
+  devices::Speaker speaker_;
+  std::vector<float> gun_click_ = devices::make_gun_click();
+  std::optional<attempt::SeatState> offered_;        ///< Was cut off; offered on the start page.
+  std::optional<attempt::SeatState> cut_off_;        ///< Being opened, to be scored and shown.
+  std::shared_ptr<const attempt::OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
+  std::shared_ptr<const attempt::OpenCase> open_;
+  std::shared_ptr<attempt::SeatServers> servers_;  ///< Kept from one attempt to the next.
   std::unique_ptr<AttemptControl> attempt_;
   std::unique_ptr<ReplayControl> replay_;
   bool is_close_confirmed_ = false;

@@ -6,7 +6,7 @@
 
 namespace trocar::trainer {
 
-ServerLine line_of(const ServerView& server, const QString& tool) {
+ServerLine line_of(const attempt::ServerView& server, const QString& tool) {
   ServerLine line;
   line.tool = tool;
   line.is_connected = server.is_connected;

@@ -7,10 +7,10 @@
 #include <QVBoxLayout>
 #include <span>
 
-#include "ui_kit/parts.h"
-#include "ui_kit/theme.h"
 #include "attempt/live/live_attempt.h"
 #include "attempt/servers/seat_devices.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
 #include "views/slices/briefing_picture.h"
 
 namespace trocar::trainer {
@@ -55,12 +55,12 @@ QString device_rows(const std::string& device, bool is_needle) {
   if (device == "spacemouse")
     return row(BriefingPage::tr("cap"),
                BriefingPage::tr("push and turn it: the %1 moves and turns that way").arg(tool));
-  return row(to_qt(seat_device_title(device)), BriefingPage::tr("its stylus is the %1").arg(tool));
+  return row(to_qt(attempt::seat_device_title(device)), BriefingPage::tr("its stylus is the %1").arg(tool));
 }
 
 QString controls_text(const SeatChoice& choice) {
-  const bool is_needle_led = is_moved_by_hand_targets(choice.needle_device);
-  const bool is_probe_led = is_moved_by_hand_targets(choice.probe_device);
+  const bool is_needle_led = attempt::is_moved_by_hand_targets(choice.needle_device);
+  const bool is_probe_led = attempt::is_moved_by_hand_targets(choice.probe_device);
   QString all;
   if (is_needle_led && is_probe_led) {
     all = rows(kTakeMouse);
@@ -71,16 +71,16 @@ QString controls_text(const SeatChoice& choice) {
   return QStringLiteral("<table cellspacing='0' cellpadding='3'>") + all + rows(kAlways) + QStringLiteral("</table>");
 }
 
-QString risks_text(const Task& task) {
+QString risks_text(const tasks::Task& task) {
   QStringList risks;
-  for (const RiskStructure& risk : task.risks)
+  for (const tasks::RiskStructure& risk : task.risks)
     risks << BriefingPage::tr("%1 (−%2)")
                  .arg(to_qt(risk.label.empty() ? risk.tissue : risk.label))
                  .arg(risk.penalty, 0, 'f', 0);
   return risks.join(QStringLiteral(", "));
 }
 
-QString counts_text(const Task& task) {
+QString counts_text(const tasks::Task& task) {
   return BriefingPage::tr(
              "Tip at the target (half of the points at %1 mm), entry (half at %2 mm) and angle (half at %3°) as the "
              "expert's, a core of the target, a short path, less than %4 s. Not to be touched: %5.")
@@ -91,13 +91,13 @@ QString counts_text(const Task& task) {
       .arg(risks_text(task));
 }
 
-QString goal_text(const Case& the_case) {
+QString goal_text(const attempt::Case& the_case) {
   return BriefingPage::tr("Bring the needle's tip to the %1 %2, under ultrasound.")
       .arg(the_case.is_parenchymal ? BriefingPage::tr("healthy tissue of the") : BriefingPage::tr("lesion of the"),
            to_qt(the_case.task.organ));
 }
 
-QString way_text(const Case& the_case) {
+QString way_text(const attempt::Case& the_case) {
   return BriefingPage::tr(" The planned way is %1 mm long, %2 mm of it in the %3; nearest to it lies: %4.")
       .arg(the_case.plan.length_mm, 0, 'f', 0)
       .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
@@ -210,9 +210,9 @@ void BriefingPage::show_error(const QString& text) {
   state_->setWordWrap(true);
 }
 
-void BriefingPage::show_case(const OpenCase& open, Difficulty difficulty) {
-  const Case& the_case = open.the_case;
-  const Guidance guidance = guidance_of(difficulty);
+void BriefingPage::show_case(const attempt::OpenCase& open, Difficulty difficulty) {
+  const attempt::Case& the_case = open.the_case;
+  const scene::Guidance guidance = guidance_of(difficulty);
   title_->setText(to_qt(the_case.task.title));
   subtitle_->setText(tr("Patient %1 · %2 · %3: %4")
                          .arg(to_qt(the_case.patient->name), to_qt(the_case.needle.title), tr(title_of(difficulty)),
@@ -221,7 +221,8 @@ void BriefingPage::show_case(const OpenCase& open, Difficulty difficulty) {
   counts_->setText(counts_text(the_case.task));
   const QSize side(qMax(240, axial_->width()), qMax(160, axial_->height()));
   // A plane along the path would tell where the path lies.
-  const BriefingPlane second = guidance == Guidance::kPath ? BriefingPlane::kAlongPath : BriefingPlane::kSagittal;
+  const BriefingPlane second =
+      guidance == scene::Guidance::kPath ? BriefingPlane::kAlongPath : BriefingPlane::kSagittal;
   axial_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAxial, side, guidance)));
   second_->setPixmap(QPixmap::fromImage(briefing_picture(open, second, side, guidance)));
   progress_->hide();

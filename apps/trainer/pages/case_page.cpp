@@ -13,10 +13,10 @@
 #include <QVBoxLayout>
 
 #include "case_builder/case_edits.h"
+#include "tasks/assess_path.h"
 #include "ui_kit/check_list.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
-#include "tasks/assess_path.h"
 #include "views/patient/patient_view.h"
 #include "views/slices/slice_marks.h"
 #include "views/slices/slice_view.h"
@@ -47,7 +47,7 @@ const char* hint_of(CaseClick click) {
 
 }  // namespace
 
-CasePage::CasePage(QWidget* parent) : QWidget(parent), desk_(std::make_unique<CaseDesk>()) {
+CasePage::CasePage(QWidget* parent) : QWidget(parent), desk_(std::make_unique<case_builder::CaseDesk>()) {
   setObjectName(QStringLiteral("case-page"));
   setFocusPolicy(Qt::StrongFocus);
   auto* page = new QVBoxLayout(this);
@@ -66,7 +66,7 @@ CasePage::CasePage(QWidget* parent) : QWidget(parent), desk_(std::make_unique<Ca
   middle->addLayout(right, 1);
   page->addLayout(middle, 1);
   page->addWidget(make_foot());
-  connect(checks_, &CheckList::check_chosen, this, [this](const CaseCheck& check) {
+  connect(checks_, &CheckList::check_chosen, this, [this](const case_builder::CaseCheck& check) {
     go_to(static_cast<int>(check.step));
     if (check.where_P) show_place(*check.where_P);
   });
@@ -106,7 +106,7 @@ QWidget* CasePage::make_steps() {
   content->addLayout(buttons);
   const QStringList titles{tr("Import"), tr("Labels"), tr("Target"), tr("Path"), tr("Forces"), tr("Save")};
   auto* group = new QButtonGroup(this);
-  for (int step = 0; step < kCaseSteps; ++step) {
+  for (int step = 0; step < case_builder::kCaseSteps; ++step) {
     QPushButton* button = make_button(qPrintable(QStringLiteral("case-step-%1").arg(step + 1)),
                                       QStringLiteral("%1 %2").arg(step + 1).arg(titles[step]), tr("Goes to this step"),
                                       QStringLiteral("Alt+%1").arg(step + 1));
@@ -241,30 +241,30 @@ void CasePage::show_place(const Vec3& p_P) {
   for (SliceView* slice : slices_) slice->set_focus(p_P);
 }
 
-Result<CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
-  const CaseDraft& draft = desk_->draft();
-  const NeedlePath* path = find_expert_path(draft);
+Result<case_builder::CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
+  const case_builder::CaseDraft& draft = desk_->draft();
+  const anatomy::NeedlePath* path = case_builder::find_expert_path(draft);
   switch (click_) {
     case CaseClick::kTarget:
-      return set_target_point(draft, p_P);
+      return case_builder::set_target_point(draft, p_P);
     case CaseClick::kZone:
-      return set_entry_zone(draft, p_P, draft.task.entry_zone ? draft.task.entry_zone->radius_mm : 20.0);
+      return case_builder::set_entry_zone(draft, p_P, draft.task.entry_zone ? draft.task.entry_zone->radius_mm : 20.0);
     case CaseClick::kEntry: {
-      const auto target_P = path != nullptr ? std::optional(path->line_P.b) : find_target_point(draft);
+      const auto target_P = path != nullptr ? std::optional(path->line_P.b) : case_builder::find_target_point(draft);
       if (!target_P) return fail("a path needs a target first", {}, "go to step 3 and choose one");
-      const auto entry_P = find_nearest_skin(*desk_->patient(), p_P);
+      const auto entry_P = tasks::find_nearest_skin(*desk_->patient(), p_P);
       if (!entry_P) return fail("there is no skin near this place", {}, "click on the patient's skin");
       Segment line_P{*entry_P, *target_P};
       // A biopsy needle stops short of the target, so that the notch comes to lie in it.
-      if (const Needle* needle = desk_->needle(); path == nullptr && needle != nullptr)
+      if (const tasks::Needle* needle = desk_->needle(); path == nullptr && needle != nullptr)
         line_P.b -= needle->notch_middle_mm() * line_P.direction();
-      return set_expert_path(draft, line_P);
+      return case_builder::set_expert_path(draft, line_P);
     }
     case CaseClick::kTip:
       if (path == nullptr) return fail("the path has no entry yet", {}, "set the entry first, or have it planned");
-      return set_expert_path(draft, {path->line_P.a, p_P});
+      return case_builder::set_expert_path(draft, {path->line_P.a, p_P});
     case CaseClick::kLandmark:
-      return set_landmark(draft, click_name(), p_P);
+      return case_builder::set_landmark(draft, click_name(), p_P);
     case CaseClick::kLook:
       break;
   }
@@ -287,23 +287,23 @@ void CasePage::refresh_views() {
     shown_meshes_ = desk_->meshes();
     for (SliceView* slice : slices_) slice->show_patient(shown_patient_);
     const bool is_known = placed_import_ == desk_->draft().imported && view_->is_ready();
-    const CameraView before = view_->view();
+    const scene::CameraView before = view_->view();
     if (shown_patient_ && shown_meshes_) view_->show_patient(shown_patient_, shown_meshes_);
     if (is_known) view_->set_view(before);  // another name or tissue is no reason to look from elsewhere
     shown_landmarks_.reset();
   }
-  const CaseDraft& draft = desk_->draft();
-  const auto target_P = find_target_point(draft);
+  const case_builder::CaseDraft& draft = desk_->draft();
+  const auto target_P = case_builder::find_target_point(draft);
   if (placed_import_ != draft.imported && shown_patient_) {
     placed_import_ = draft.imported;
     for (SliceView* slice : slices_) slice->reset();
     if (target_P) show_place(*target_P);
   }
-  const NeedlePath* path = find_expert_path(draft);
+  const anatomy::NeedlePath* path = case_builder::find_expert_path(draft);
   const std::optional<Segment> line_P = path != nullptr ? std::optional(path->line_P) : std::nullopt;
   if (line_P && !shown_path_ && click_ == CaseClick::kLook) show_place(line_P->b);
   shown_path_ = line_P;
-  const std::optional<EntryZone>& zone = draft.task.entry_zone;
+  const std::optional<tasks::EntryZone>& zone = draft.task.entry_zone;
   view_->set_path(line_P, zone ? zone->radius_mm : 0.0);
   view_->scene().set_entry_centre(zone ? std::optional(zone->centre_P) : std::nullopt);
   show_landmarks();
@@ -315,8 +315,10 @@ void CasePage::refresh_views() {
 }
 
 void CasePage::show_landmarks() {
-  const std::vector<Landmark>& landmarks = desk_->draft().landmarks;
-  const auto is_same = [](const Landmark& a, const Landmark& b) { return a.name == b.name && a.p_P == b.p_P; };
+  const std::vector<anatomy::Landmark>& landmarks = desk_->draft().landmarks;
+  const auto is_same = [](const anatomy::Landmark& a, const anatomy::Landmark& b) {
+    return a.name == b.name && a.p_P == b.p_P;
+  };
   if (shown_landmarks_ &&
       std::equal(landmarks.begin(), landmarks.end(), shown_landmarks_->begin(), shown_landmarks_->end(), is_same))
     return;
@@ -326,11 +328,11 @@ void CasePage::show_landmarks() {
 }
 
 void CasePage::refresh_foot() {
-  const bool is_busy = desk_->work() != CaseDesk::Work::kNone;
+  const bool is_busy = desk_->work() != case_builder::CaseDesk::Work::kNone;
   const JobView view = desk_->work_view();
   progress_->setVisible(is_busy);
   progress_->setValue(static_cast<int>(1000.0 * view.fraction));
-  cancel_->setVisible(is_busy && desk_->work() != CaseDesk::Work::kSaving);
+  cancel_->setVisible(is_busy && desk_->work() != case_builder::CaseDesk::Work::kSaving);
   const QString text = is_busy ? to_qt(view.step) : to_qt(desk_->message());
   message_->setText(text);
   message_->setToolTip(text);
@@ -346,13 +348,14 @@ void CasePage::refresh() {
   if (now == shown_) return;
   shown_ = now;
   for (CasePanel* panel : panels_) panel->refresh();
-  for (int step = 0; step < kCaseSteps; ++step) {
-    std::optional<CheckLevel> level;
-    if (desk_->has_patient() && desk_->is_reviewed()) level = worst_level(desk_->checks(), static_cast<CaseStep>(step));
+  for (int step = 0; step < case_builder::kCaseSteps; ++step) {
+    std::optional<case_builder::CheckLevel> level;
+    if (desk_->has_patient() && desk_->is_reviewed())
+      level = case_builder::worst_level(desk_->checks(), static_cast<case_builder::CaseStep>(step));
     steps_[static_cast<std::size_t>(step)]->setIcon(level_icon(level));
   }
   checks_->show_checks(desk_->checks());
-  const CaseHistory& history = desk_->history();
+  const case_builder::CaseHistory& history = desk_->history();
   undo_->setEnabled(history.can_undo());
   redo_->setEnabled(history.can_redo());
   undo_->setToolTip(tr("Undo: %1  (Ctrl+Z)").arg(to_qt(history.undo_text())));

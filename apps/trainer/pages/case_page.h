@@ -37,7 +37,7 @@ class CasePage : public QWidget {
 
   /// Once a frame.
   void advance();
-  CaseDesk& desk() noexcept { return *desk_; }
+  case_builder::CaseDesk& desk() noexcept { return *desk_; }
 
  Q_SIGNALS:
   /// "Open this case" was pressed: the patient folder with its own task.
@@ -62,9 +62,9 @@ class CasePage : public QWidget {
   void show_hint();
   std::string click_name() const;
   void click_at(const Vec3& p_P, bool is_drag);
-  Result<CaseDraft> clicked_draft(const Vec3& p_P) const;
+  Result<case_builder::CaseDraft> clicked_draft(const Vec3& p_P) const;
 
-  std::unique_ptr<CaseDesk> desk_;
+  std::unique_ptr<case_builder::CaseDesk> desk_;
   std::vector<QPushButton*> steps_;
   std::vector<CasePanel*> panels_;
   QStackedWidget* stack_ = nullptr;
@@ -79,21 +79,21 @@ class CasePage : public QWidget {
   std::array<SliceView*, 3> slices_{};
   std::array<SliceMarks*, 3> marks_{};
   PatientView* view_ = nullptr;
-  std::shared_ptr<const VirtualPatient> shown_patient_;
-  std::shared_ptr<const std::vector<NamedMesh>> shown_meshes_;
-  std::shared_ptr<const ImportedPatient> placed_import_;
+  std::shared_ptr<const anatomy::VirtualPatient> shown_patient_;
+  std::shared_ptr<const std::vector<anatomy::NamedMesh>> shown_meshes_;
+  std::shared_ptr<const case_builder::ImportedPatient> placed_import_;
   /// What the panels show; empty at first.
   struct Shown {
     std::uint64_t version = ~std::uint64_t{0};
     bool is_reviewed = false;
-    CaseDesk::Work work = CaseDesk::Work::kNone;
-    const VirtualPatient* patient = nullptr;
+    case_builder::CaseDesk::Work work = case_builder::CaseDesk::Work::kNone;
+    const anatomy::VirtualPatient* patient = nullptr;
     std::string message;
     bool operator==(const Shown&) const = default;
   };
   Shown shown_;
   std::optional<Segment> shown_path_;
-  std::optional<std::vector<Landmark>> shown_landmarks_;
+  std::optional<std::vector<anatomy::Landmark>> shown_landmarks_;
   CaseClick click_ = CaseClick::kLook;
   int clicks_ = 0;
 };

@@ -17,9 +17,9 @@
 #include "core/files/data_dir.h"
 #include "io/patient/patient_folder.h"
 #include "panels/device_choice.h"
-#include "ui_kit/parts.h"
 #include "tasks/needle.h"
 #include "tasks/task.h"
+#include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {
@@ -49,7 +49,7 @@ void add_item(QListWidget& list, const QString& title, const QString& source, co
 
 /// A patient folder by the name that its maker gave it.
 void add_folder(QListWidget& list, const QString& folder) {
-  const auto title = load_patient_title(to_std(folder));
+  const auto title = io::load_patient_title(to_std(folder));
   if (!title) return add_item(list, folder.section('/', -1), folder, folder);
   const QString text = to_qt(title->description);
   add_item(list, to_qt(title->name), folder, text.isEmpty() ? folder : text + QLatin1Char('\n') + folder);
@@ -115,9 +115,9 @@ QWidget* StartPage::make_tasks() {
   QBoxLayout* content = nullptr;
   QFrame* card = make_card(tr("Task"), content);
   tasks_ = make_list("tasks", tr("Task"));
-  const auto tasks = load_tasks(data_dir() / "tasks");
+  const auto tasks = tasks::load_tasks(data_dir() / "tasks");
   if (tasks) {
-    for (const Task& task : *tasks)
+    for (const tasks::Task& task : *tasks)
       add_item(*tasks_, to_qt(task.title), to_qt(task.name), tr("Target organ: %1").arg(to_qt(task.organ)));
   } else {
     content->addWidget(make_label(to_qt(tasks.error().text()), "dim"));
@@ -227,13 +227,13 @@ void StartPage::fill_needles() {
   needle_->clear();
   needle_->addItem(tr("The task's own"), QString());
   const QListWidgetItem* item = tasks_->currentItem();
-  const auto tasks = load_tasks(data_dir() / "tasks");
-  const auto needles = load_needles(data_dir() / "needles.toml");
+  const auto tasks = tasks::load_tasks(data_dir() / "tasks");
+  const auto needles = tasks::load_needles(data_dir() / "needles.toml");
   if (item == nullptr || !tasks || !needles) return;
   const std::string name = to_std(item->data(kSource).toString());
-  const auto task = std::find_if(tasks->begin(), tasks->end(), [&](const Task& t) { return t.name == name; });
+  const auto task = std::find_if(tasks->begin(), tasks->end(), [&](const tasks::Task& t) { return t.name == name; });
   if (task == tasks->end()) return;
-  for (const Needle& needle : needles_like(*needles, task->needle))
+  for (const tasks::Needle& needle : tasks::needles_like(*needles, task->needle))
     needle_->addItem(to_qt(needle.title), to_qt(needle.name));
   needle_->setCurrentIndex(std::max(0, needle_->findData(chosen)));
 }
@@ -247,7 +247,7 @@ void StartPage::fill_patients() {
     const QSignalBlocker blocked(patients_);
     patients_->clear();
     const std::string name = task == nullptr ? std::string() : to_std(task->data(kSource).toString());
-    for (const PhantomInfo& info : embedded_patients()) {
+    for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
       if (std::find(info.tasks.begin(), info.tasks.end(), name) == info.tasks.end()) continue;
       add_item(*patients_, to_qt(info.name) + tr("  · embedded"), to_qt(info.name), to_qt(info.description));
     }

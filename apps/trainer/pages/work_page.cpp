@@ -6,11 +6,11 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "workspace/desk.h"
 #include "panels/feedback_panel.h"
-#include "parameters/parameter_panel.h"
 #include "panels/puncture_panel.h"
+#include "parameters/parameter_panel.h"
 #include "views/plots/time_line.h"
+#include "workspace/desk.h"
 
 namespace trocar::trainer {
 namespace {

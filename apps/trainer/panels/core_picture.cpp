@@ -7,17 +7,18 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr CorePart kParts[] = {CorePart::kTarget, CorePart::kOrgan, CorePart::kVessel, CorePart::kOther};
+constexpr tasks::CorePart kParts[] = {tasks::CorePart::kTarget, tasks::CorePart::kOrgan, tasks::CorePart::kVessel,
+                                      tasks::CorePart::kOther};
 
-QString title_of(CorePart part) {
+QString title_of(tasks::CorePart part) {
   switch (part) {
-    case CorePart::kTarget:
+    case tasks::CorePart::kTarget:
       return CorePicture::tr("target tissue");
-    case CorePart::kOrgan:
+    case tasks::CorePart::kOrgan:
       return CorePicture::tr("organ");
-    case CorePart::kVessel:
+    case tasks::CorePart::kVessel:
       return CorePicture::tr("vessel");
-    case CorePart::kOther:
+    case tasks::CorePart::kOther:
       break;
   }
   return CorePicture::tr("other tissue");
@@ -25,15 +26,15 @@ QString title_of(CorePart part) {
 
 }  // namespace
 
-QColor CorePicture::color_of(CorePart part) {
+QColor CorePicture::color_of(tasks::CorePart part) {
   switch (part) {
-    case CorePart::kTarget:
+    case tasks::CorePart::kTarget:
       return theme().target;
-    case CorePart::kOrgan:
+    case tasks::CorePart::kOrgan:
       return {0xb5, 0x6a, 0x55};
-    case CorePart::kVessel:
+    case tasks::CorePart::kVessel:
       return {0x5b, 0x8d, 0xef};
-    case CorePart::kOther:
+    case tasks::CorePart::kOther:
       break;
   }
   return {0xd9, 0xc7, 0x8a};
@@ -44,16 +45,16 @@ CorePicture::CorePicture(QWidget* parent) : QWidget(parent) {
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
-void CorePicture::set_shot(const GunShot& shot) {
+void CorePicture::set_shot(const attempt::GunShot& shot) {
   pieces_ = shot.pieces;
   legend_.clear();
-  for (const CorePart part : kParts) {
+  for (const tasks::CorePart part : kParts) {
     double length_mm = 0.0;
-    for (const ShotPiece& piece : pieces_)
+    for (const attempt::ShotPiece& piece : pieces_)
       if (piece.part == part) length_mm += piece.to_mm - piece.from_mm;
     if (length_mm > 0.0) legend_.push_back({part, tr("%1 mm %2").arg(length_mm, 0, 'f', 1).arg(title_of(part))});
   }
-  if (legend_.empty()) legend_.push_back({CorePart::kOther, tr("The notch is empty")});
+  if (legend_.empty()) legend_.push_back({tasks::CorePart::kOther, tr("The notch is empty")});
   QStringList texts;
   for (const Entry& entry : legend_) texts << entry.text;
   setAccessibleName(tr("Core: %1").arg(texts.join(QStringLiteral(", "))));
@@ -75,7 +76,7 @@ void CorePicture::paintEvent(QPaintEvent* /*event*/) {
   painter.setRenderHint(QPainter::Antialiasing);
   const QRectF bar(0.5, 0.5, width() - 1.0, bar_height() - 1.0);
   const double whole_mm = pieces_.empty() ? 0.0 : pieces_.back().to_mm;
-  for (const ShotPiece& piece : pieces_) {
+  for (const attempt::ShotPiece& piece : pieces_) {
     const double from = bar.left() + bar.width() * piece.from_mm / whole_mm;
     const double to = bar.left() + bar.width() * piece.to_mm / whole_mm;
     painter.fillRect(QRectF(from, bar.top(), to - from, bar.height()), color_of(piece.part));

@@ -13,24 +13,24 @@ class CorePicture : public QWidget {
 
  public:
   explicit CorePicture(QWidget* parent = nullptr);
-  void set_shot(const GunShot& shot);
+  void set_shot(const attempt::GunShot& shot);
 
   QSize sizeHint() const override;
   QSize minimumSizeHint() const override { return sizeHint(); }
 
-  static QColor color_of(CorePart part);
+  static QColor color_of(tasks::CorePart part);
 
  protected:
   void paintEvent(QPaintEvent* event) override;
 
  private:
   struct Entry {
-    CorePart part;
+    tasks::CorePart part;
     QString text;
   };
   int bar_height() const;
 
-  std::vector<ShotPiece> pieces_;
+  std::vector<attempt::ShotPiece> pieces_;
   std::vector<Entry> legend_;  ///< Of the parts that the core has.
 };
 

@@ -10,9 +10,9 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "attempt/servers/seat_devices.h"
 #include "panels/device_test_dialog.h"
 #include "ui_kit/parts.h"
-#include "attempt/servers/seat_devices.h"
 
 namespace trocar::trainer {
 namespace {
@@ -29,7 +29,7 @@ std::string spec_of(const QComboBox& box) {
 void grey_out(QComboBox& box, const std::string& other) {
   auto* model = qobject_cast<QStandardItemModel*>(box.model());
   for (int row = 0; row < box.count(); ++row) {
-    const bool is_free = can_share_seat(to_std(box.itemData(row).toString()), other);
+    const bool is_free = attempt::can_share_seat(to_std(box.itemData(row).toString()), other);
     QStandardItem* item = model->item(row);
     item->setEnabled(is_free);
     item->setToolTip(is_free ? QString() : DeviceChoice::tr("The other tool has this device"));
@@ -82,18 +82,18 @@ QComboBox* DeviceChoice::add_tool(QBoxLayout& column, const QString& title, cons
 }
 
 void DeviceChoice::fill() {
-  for (const SeatDevice& device : seat_devices()) list(to_qt(device.spec));
+  for (const attempt::SeatDevice& device : attempt::seat_devices()) list(to_qt(device.spec));
   for (const QString& spec : QSettings().value(QString::fromLatin1(kAdded)).toStringList()) list(spec);
 }
 
 void DeviceChoice::list(const QString& spec) {
   for (QComboBox* box : {needle_, probe_})
-    if (box->findData(spec) < 0) box->addItem(to_qt(seat_device_title(to_std(spec))), spec);
+    if (box->findData(spec) < 0) box->addItem(to_qt(attempt::seat_device_title(to_std(spec))), spec);
 }
 
 /// The transducer gives way.
 void DeviceChoice::keep_apart() {
-  if (!can_share_seat(spec_of(*needle_), spec_of(*probe_))) probe_->setCurrentIndex(probe_->findData("mouse"));
+  if (!attempt::can_share_seat(spec_of(*needle_), spec_of(*probe_))) probe_->setCurrentIndex(probe_->findData("mouse"));
   grey_out(*probe_, spec_of(*needle_));
   grey_out(*needle_, spec_of(*probe_));
 }

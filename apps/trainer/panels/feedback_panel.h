@@ -28,11 +28,11 @@ class FeedbackPanel : public QWidget {
   explicit FeedbackPanel(QWidget* parent = nullptr);
 
   /// From the top. `worst_moment`: empty where there is none.
-  void show_outcome(const Outcome& outcome, const QString& worst_moment);
+  void show_outcome(const tasks::Outcome& outcome, const QString& worst_moment);
   /// The level of help that it was made at, beside the score; empty: not known.
   void show_level(const QString& level);
   /// Its picture; null: the gun was not fired.
-  void show_core(const GunShot* shot);
+  void show_core(const attempt::GunShot* shot);
   /// What happened to the attempt beside the trainee: warnings, interruptions, changed parameters. A line each.
   void show_notes(const QStringList& notes);
 
@@ -44,7 +44,7 @@ class FeedbackPanel : public QWidget {
 
  private:
   QWidget* make_buttons();
-  void show_parts(const std::vector<ScorePart>& parts);
+  void show_parts(const std::vector<tasks::ScorePart>& parts);
 
   QScrollArea* scroll_ = nullptr;
   QPushButton* worst_button_ = nullptr;

@@ -11,9 +11,9 @@
 #include <QVBoxLayout>
 
 #include "panels/core_picture.h"
-#include "ui_kit/wrapped_rows.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/wrapped_rows.h"
 #include "views/plots/force_bar.h"
 
 namespace trocar::trainer {
@@ -143,7 +143,7 @@ QWidget* PuncturePanel::make_question() {
   return question_;
 }
 
-void PuncturePanel::show_core(const GunShot& shot) {
+void PuncturePanel::show_core(const attempt::GunShot& shot) {
   core_->set_shot(shot);
   core_->show();
 }

@@ -53,7 +53,7 @@ class PuncturePanel : public QWidget {
   /// A bad one is in the colour of what is wrong.
   void add_event(const QString& text, bool is_bad = false);
   /// The core that the gun took, until the next begin().
-  void show_core(const GunShot& shot);
+  void show_core(const attempt::GunShot& shot);
   /// Asks whether the attempt is to be ended. One question at a time: a second one replaces the first.
   void ask(const QString& question, const QString& yes);
   bool is_asking() const;

@@ -39,7 +39,7 @@ QString shown_name(const std::string& structure) {
 }
 
 /// A round patch of the structure's colour; a ring where it is hidden.
-QIcon swatch(const Rgb& color, double ratio) {
+QIcon swatch(const volume::Rgb& color, double ratio) {
   QIcon icon;
   for (const bool is_shown : {true, false}) {
     QPixmap pixmap(qRound(kSwatch * ratio), qRound(kSwatch * ratio));
@@ -94,14 +94,14 @@ void StructurePanel::add_presets(QBoxLayout& layout) {
     const char* name;
     QString text;
     QString tooltip;
-    StructurePreset preset;
+    scene::StructurePreset preset;
   };
   const Choice choices[] = {
-      {"preset-all", tr("All"), tr("All structures as they begin"), StructurePreset::kAll},
-      {"preset-skin", tr("Skin"), tr("The skin alone"), StructurePreset::kSkinOnly},
-      {"preset-bones", tr("Bones"), tr("Bones and cartilage"), StructurePreset::kBones},
-      {"preset-vessels", tr("Vessels"), tr("Vessels and target in faint bones"), StructurePreset::kVessels},
-      {"preset-target", tr("Target"), tr("The target and the organ around it"), StructurePreset::kTarget},
+      {"preset-all", tr("All"), tr("All structures as they begin"), scene::StructurePreset::kAll},
+      {"preset-skin", tr("Skin"), tr("The skin alone"), scene::StructurePreset::kSkinOnly},
+      {"preset-bones", tr("Bones"), tr("Bones and cartilage"), scene::StructurePreset::kBones},
+      {"preset-vessels", tr("Vessels"), tr("Vessels and target in faint bones"), scene::StructurePreset::kVessels},
+      {"preset-target", tr("Target"), tr("The target and the organ around it"), scene::StructurePreset::kTarget},
   };
   auto* rows = new QGridLayout;
   rows->setSpacing(kGap / 2);
@@ -138,7 +138,7 @@ void StructurePanel::rebuild() {
     delete item;
   }
   rows_.clear();
-  for (const StructureInfo& info : view_.structures()) add_row(info);
+  for (const scene::StructureInfo& info : view_.structures()) add_row(info);
   list_->addStretch(1);
   dragged_ = nullptr;
   steps_.begin(opacities());
@@ -147,7 +147,7 @@ void StructurePanel::rebuild() {
 
 StructurePanel::Opacities StructurePanel::opacities() const {
   Opacities all;
-  for (const StructureInfo& info : view_.structures()) all[info.name] = info.opacity;
+  for (const scene::StructureInfo& info : view_.structures()) all[info.name] = info.opacity;
   return all;
 }
 
@@ -167,7 +167,7 @@ void StructurePanel::show_step() {
   refresh();
 }
 
-void StructurePanel::add_row(const StructureInfo& info) {
+void StructurePanel::add_row(const scene::StructureInfo& info) {
   auto* line = new QWidget(list_->parentWidget());
   auto* layout = new QHBoxLayout(line);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -209,7 +209,7 @@ void StructurePanel::add_row(const StructureInfo& info) {
 }
 
 void StructurePanel::refresh() {
-  const std::vector<StructureInfo> structures = view_.structures();
+  const std::vector<scene::StructureInfo> structures = view_.structures();
   for (std::size_t i = 0; i < rows_.size() && i < structures.size(); ++i) {
     const QSignalBlocker quiet_slider(rows_[i].slider);
     const QSignalBlocker quiet_eye(rows_[i].eye);
@@ -221,7 +221,7 @@ void StructurePanel::refresh() {
   const QSignalBlocker quiet_guidance(guidance_);
   const QSignalBlocker quiet_landmarks(landmarks_);
   // There may be nothing that it could show.
-  guidance_->setEnabled(view_.scene().guidance() != Guidance::kNone);
+  guidance_->setEnabled(view_.scene().guidance() != scene::Guidance::kNone);
   guidance_->setChecked(guidance_->isEnabled() && view_.is_guidance_visible());
   landmarks_->setChecked(view_.are_landmarks_visible());
 }
@@ -234,18 +234,18 @@ void StructurePanel::add_volume(QBoxLayout& layout) {
   volume_->addItems(
       {tr("Surfaces"), tr("CT: bone"), tr("CT: soft tissue"), tr("CT: vessels"), tr("CT: skin and bone")});
   connect(volume_, qOverload<int>(&QComboBox::currentIndexChanged), this,
-          [this](int index) { view_.set_volume_preset(static_cast<VolumePreset>(index)); });
+          [this](int index) { view_.set_volume_preset(static_cast<scene::VolumePreset>(index)); });
   layout.addWidget(volume_);
 }
 
 void StructurePanel::add_toggles(QBoxLayout& layout) {
   const auto add_plane = [this](QBoxLayout& row, const char* name, const QString& text, const QString& tooltip,
-                                bool MprOptions::*plane) {
+                                bool scene::MprOptions::*plane) {
     QToolButton* button = make_toggle(name, text, tooltip, view_.mpr().*plane);
     button->setAccessibleName(tooltip);
     button->setStyleSheet(QString::fromLatin1(kSlim));
     connect(button, &QToolButton::toggled, this, [this, plane](bool is_on) {
-      MprOptions options = view_.mpr();
+      scene::MprOptions options = view_.mpr();
       options.*plane = is_on;
       view_.set_mpr(options);
     });
@@ -254,11 +254,11 @@ void StructurePanel::add_toggles(QBoxLayout& layout) {
   layout.addWidget(make_label(tr("CT planes"), "dim", this));
   auto* planes = new QHBoxLayout;
   planes->setSpacing(kGap / 2);
-  add_plane(*planes, "plane-long", tr("Along"), tr("CT plane along the needle"), &MprOptions::has_long_plane);
+  add_plane(*planes, "plane-long", tr("Along"), tr("CT plane along the needle"), &scene::MprOptions::has_long_plane);
   add_plane(*planes, "plane-cross", tr("Turned"), tr("CT plane along the needle, turned by 90°"),
-            &MprOptions::has_cross_plane);
+            &scene::MprOptions::has_cross_plane);
   add_plane(*planes, "plane-tip", tr("Across"), tr("CT plane across the needle at its tip"),
-            &MprOptions::has_tip_plane);
+            &scene::MprOptions::has_tip_plane);
   layout.addLayout(planes);
 
   auto* marks = new QHBoxLayout;
@@ -296,29 +296,29 @@ void StructurePanel::add_menus(QBoxLayout& layout) {
 }
 
 void StructurePanel::fill_camera_menu(QMenu& menu) {
-  const std::tuple<QString, const char*, CameraPreset> presets[] = {
-      {tr("Anterior\t1"), "camera-anterior", CameraPreset::kAnterior},
-      {tr("Right oblique\t2"), "camera-oblique", CameraPreset::kRightAnteriorOblique},
-      {tr("Right\t3"), "camera-right", CameraPreset::kRight},
-      {tr("Left\t4"), "camera-left", CameraPreset::kLeft},
-      {tr("Posterior\t5"), "camera-posterior", CameraPreset::kPosterior},
-      {tr("Cranial\t6"), "camera-cranial", CameraPreset::kCranial},
+  const std::tuple<QString, const char*, scene::CameraPreset> presets[] = {
+      {tr("Anterior\t1"), "camera-anterior", scene::CameraPreset::kAnterior},
+      {tr("Right oblique\t2"), "camera-oblique", scene::CameraPreset::kRightAnteriorOblique},
+      {tr("Right\t3"), "camera-right", scene::CameraPreset::kRight},
+      {tr("Left\t4"), "camera-left", scene::CameraPreset::kLeft},
+      {tr("Posterior\t5"), "camera-posterior", scene::CameraPreset::kPosterior},
+      {tr("Cranial\t6"), "camera-cranial", scene::CameraPreset::kCranial},
   };
   for (const auto& [text, name, preset] : presets) {
     QAction* action = menu.addAction(text, this, [this, p = preset] { view_.set_camera(p); });
     action->setObjectName(QString::fromLatin1(name));
   }
   menu.addSeparator();
-  const std::tuple<QString, const char*, FollowMode> modes[] = {
-      {tr("Stay\tHome"), "follow-free", FollowMode::kFree},
-      {tr("Follow the tip\tT"), "follow-tip", FollowMode::kTip},
-      {tr("Look along the needle\tL"), "follow-along", FollowMode::kAlongNeedle},
-      {tr("Side view at the tip\tB"), "follow-side", FollowMode::kSide},
+  const std::tuple<QString, const char*, scene::FollowMode> modes[] = {
+      {tr("Stay\tHome"), "follow-free", scene::FollowMode::kFree},
+      {tr("Follow the tip\tT"), "follow-tip", scene::FollowMode::kTip},
+      {tr("Look along the needle\tL"), "follow-along", scene::FollowMode::kAlongNeedle},
+      {tr("Side view at the tip\tB"), "follow-side", scene::FollowMode::kSide},
   };
   for (const auto& [text, name, mode] : modes) {
     QAction* action = menu.addAction(text, this, [this, m = mode] {
       view_.set_follow(m);
-      if (m == FollowMode::kFree) view_.reset_camera();
+      if (m == scene::FollowMode::kFree) view_.reset_camera();
     });
     action->setObjectName(QString::fromLatin1(name));
   }
@@ -326,36 +326,37 @@ void StructurePanel::fill_camera_menu(QMenu& menu) {
 
 void StructurePanel::fill_stereo_menu(QMenu& menu) {
   const auto change = [this](auto&& edit) {
-    StereoOptions options = view_.stereo();
+    scene::StereoOptions options = view_.stereo();
     edit(options);
     view_.set_stereo(options);
   };
   auto* modes = new QActionGroup(&menu);
-  const auto add_mode = [&](const QString& text, const char* name, StereoMode mode) {
-    QAction* action = menu.addAction(text, this, [=] { change([=](StereoOptions& o) { o.mode = mode; }); });
+  const auto add_mode = [&](const QString& text, const char* name, scene::StereoMode mode) {
+    QAction* action = menu.addAction(text, this, [=] { change([=](scene::StereoOptions& o) { o.mode = mode; }); });
     action->setObjectName(QString::fromLatin1(name));
     action->setCheckable(true);
     action->setChecked(view_.stereo().mode == mode);
     modes->addAction(action);
   };
-  add_mode(tr("One picture"), "stereo-off", StereoMode::kOff);
-  add_mode(tr("Red-cyan glasses"), "stereo-anaglyph", StereoMode::kAnaglyph);
-  add_mode(tr("Side by side"), "stereo-side-by-side", StereoMode::kSideBySide);
-  add_mode(tr("Interlaced rows"), "stereo-interlaced", StereoMode::kInterlaced);
-  if (view_.has_quad_buffer()) add_mode(tr("Shutter glasses"), "stereo-shutter", StereoMode::kQuadBuffer);
+  add_mode(tr("One picture"), "stereo-off", scene::StereoMode::kOff);
+  add_mode(tr("Red-cyan glasses"), "stereo-anaglyph", scene::StereoMode::kAnaglyph);
+  add_mode(tr("Side by side"), "stereo-side-by-side", scene::StereoMode::kSideBySide);
+  add_mode(tr("Interlaced rows"), "stereo-interlaced", scene::StereoMode::kInterlaced);
+  if (view_.has_quad_buffer()) add_mode(tr("Shutter glasses"), "stereo-shutter", scene::StereoMode::kQuadBuffer);
   menu.addSeparator();
-  const auto add_switch = [&](const QString& text, const char* name, bool StereoOptions::*field) {
+  const auto add_switch = [&](const QString& text, const char* name, bool scene::StereoOptions::*field) {
     QAction* action = menu.addAction(text);
     action->setObjectName(QString::fromLatin1(name));
     action->setCheckable(true);
     action->setChecked(view_.stereo().*field);
-    connect(action, &QAction::toggled, this, [=](bool is_on) { change([=](StereoOptions& o) { o.*field = is_on; }); });
+    connect(action, &QAction::toggled, this,
+            [=](bool is_on) { change([=](scene::StereoOptions& o) { o.*field = is_on; }); });
   };
-  add_switch(tr("Swap eyes"), "stereo-swap", &StereoOptions::swaps_eyes);
-  add_switch(tr("Mirror left-right"), "mirror-left-right", &StereoOptions::is_mirrored_left_right);
-  add_switch(tr("Mirror up-down"), "mirror-up-down", &StereoOptions::is_mirrored_up_down);
+  add_switch(tr("Swap eyes"), "stereo-swap", &scene::StereoOptions::swaps_eyes);
+  add_switch(tr("Mirror left-right"), "mirror-left-right", &scene::StereoOptions::is_mirrored_left_right);
+  add_switch(tr("Mirror up-down"), "mirror-up-down", &scene::StereoOptions::is_mirrored_up_down);
   const auto add_number = [&](const QString& prefix, const char* name, double low, double high, double step,
-                              double StereoOptions::*field) {
+                              double scene::StereoOptions::*field) {
     auto* box = new QDoubleSpinBox(&menu);
     box->setObjectName(QString::fromLatin1(name));
     box->setAccessibleName(prefix);
@@ -365,13 +366,13 @@ void StructurePanel::fill_stereo_menu(QMenu& menu) {
     box->setSingleStep(step);
     box->setValue(view_.stereo().*field);
     connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
-            [=](double value) { change([=](StereoOptions& o) { o.*field = value; }); });
+            [=](double value) { change([=](scene::StereoOptions& o) { o.*field = value; }); });
     auto* action = new QWidgetAction(&menu);
     action->setDefaultWidget(box);
     menu.addAction(action);
   };
-  add_number(tr("Eye angle, degrees"), "stereo-angle", 0.0, 10.0, 0.5, &StereoOptions::eye_angle_deg);
-  add_number(tr("Focus shift"), "stereo-focus", -0.5, 1.0, 0.05, &StereoOptions::focus_shift);
+  add_number(tr("Eye angle, degrees"), "stereo-angle", 0.0, 10.0, 0.5, &scene::StereoOptions::eye_angle_deg);
+  add_number(tr("Focus shift"), "stereo-focus", -0.5, 1.0, 0.05, &scene::StereoOptions::focus_shift);
 }
 
 }  // namespace trocar::trainer

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/step_history.h"
-#include "ui_kit/undo_buttons.h"
 #include "scene/structure.h"
+#include "ui_kit/undo_buttons.h"
 
 class QBoxLayout;
 class QComboBox;
@@ -43,7 +43,7 @@ class StructurePanel : public QWidget {
 
  private:
   struct Row {
-    StructureInfo info;
+    scene::StructureInfo info;
     QWidget* line = nullptr;
     QToolButton* eye = nullptr;
     QSlider* slider = nullptr;
@@ -56,7 +56,7 @@ class StructurePanel : public QWidget {
   void show_step();
 
   void add_presets(QBoxLayout& layout);
-  void add_row(const StructureInfo& info);
+  void add_row(const scene::StructureInfo& info);
   void add_volume(QBoxLayout& layout);
   void add_toggles(QBoxLayout& layout);
   void add_menus(QBoxLayout& layout);

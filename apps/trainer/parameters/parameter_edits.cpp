@@ -27,14 +27,14 @@ double number_in(std::string_view text) {
 
 }  // namespace
 
-void ParameterEdits::start(TissueTable defaults, std::string model) {
+void ParameterEdits::start(anatomy::TissueTable defaults, std::string model) {
   defaults_ = std::move(defaults);
   default_model_ = std::move(model);
-  groups_ = tissue_parameters(defaults_);
+  groups_ = anatomy::tissue_parameters(defaults_);
   Step step = now();
   for (Values* values : {&step.values, &step.base}) {
     std::erase_if(*values, [&](const auto& change) {
-      const TissueParameter* parameter = find(change.first);
+      const anatomy::TissueParameter* parameter = find(change.first);
       return parameter == nullptr || parameter->value == change.second;
     });
     if (!check(*values)) values->clear();
@@ -44,25 +44,25 @@ void ParameterEdits::start(TissueTable defaults, std::string model) {
   steps_.begin(std::move(step));
 }
 
-const TissueParameter* ParameterEdits::find(std::string_view setting) const noexcept {
-  for (const TissueParameterGroup& group : groups_)
-    for (const TissueParameter& parameter : group.parameters)
+const anatomy::TissueParameter* ParameterEdits::find(std::string_view setting) const noexcept {
+  for (const anatomy::TissueParameterGroup& group : groups_)
+    for (const anatomy::TissueParameter& parameter : group.parameters)
       if (parameter.setting == setting) return &parameter;
   return nullptr;
 }
 
-double ParameterEdits::value_of(const TissueParameter& parameter) const {
+double ParameterEdits::value_of(const anatomy::TissueParameter& parameter) const {
   const auto changed = now().values.find(parameter.setting);
   return changed != now().values.end() ? changed->second : parameter.value;
 }
 
-bool ParameterEdits::is_changed(const TissueParameterGroup& group) const {
+bool ParameterEdits::is_changed(const anatomy::TissueParameterGroup& group) const {
   return std::any_of(group.parameters.begin(), group.parameters.end(),
-                     [&](const TissueParameter& parameter) { return is_changed(parameter); });
+                     [&](const anatomy::TissueParameter& parameter) { return is_changed(parameter); });
 }
 
 Status ParameterEdits::set(const std::string& setting, double value, bool joins) {
-  const TissueParameter* parameter = find(setting);
+  const anatomy::TissueParameter* parameter = find(setting);
   if (parameter == nullptr)
     return fail_usage(fmt::format("there is no number \"{}\"", setting), "tissue parameters",
                       "choose a number of the list");
@@ -83,9 +83,9 @@ void ParameterEdits::reset(const std::string& setting) {
   if (check(values)) keep(std::move(values));
 }
 
-void ParameterEdits::reset(const TissueParameterGroup& group) {
+void ParameterEdits::reset(const anatomy::TissueParameterGroup& group) {
   Values values = now().values;
-  for (const TissueParameter& parameter : group.parameters) values.erase(parameter.setting);
+  for (const anatomy::TissueParameter& parameter : group.parameters) values.erase(parameter.setting);
   if (check(values)) keep(std::move(values));
 }
 
@@ -138,12 +138,12 @@ void ParameterEdits::forget_profile(const std::string& profile) {
 /// such a setting does to the table tells which number is meant.
 Result<ParameterEdits::Values> ParameterEdits::read(const std::vector<std::string>& settings) const {
   Values values;
-  TissueTable table = defaults_;
+  anatomy::TissueTable table = defaults_;
   for (const std::string& text : settings) {
-    TROCAR_TRY_STATUS(apply_override(table, text));
+    TROCAR_TRY_STATUS(anatomy::apply_override(table, text));
     const std::string_view all = text;
     const std::size_t equals = all.find('=');
-    const TissueParameter* named = find(all.substr(0, equals));
+    const anatomy::TissueParameter* named = find(all.substr(0, equals));
     const bool is_new = named != nullptr && !values.contains(named->setting);
     if (named != nullptr) {
       values[named->setting] = number_in(all.substr(equals + 1));
@@ -160,10 +160,10 @@ Result<ParameterEdits::Values> ParameterEdits::read(const std::vector<std::strin
 
 /// Numbers that differ between the table and the defaults. A factor is relative to the curve as it stands, so no table
 /// tells it.
-void ParameterEdits::read_from(const TissueTable& table, Values& values) const {
-  for (const TissueParameterGroup& group : tissue_parameters(table))
-    for (const TissueParameter& is : group.parameters) {
-      const TissueParameter* was = find(is.setting);
+void ParameterEdits::read_from(const anatomy::TissueTable& table, Values& values) const {
+  for (const anatomy::TissueParameterGroup& group : anatomy::tissue_parameters(table))
+    for (const anatomy::TissueParameter& is : group.parameters) {
+      const anatomy::TissueParameter* was = find(is.setting);
       if (was == nullptr || is.setting.ends_with("_factor")) continue;
       if (is.value != was->value) {
         values[is.setting] = is.value;
@@ -174,10 +174,10 @@ void ParameterEdits::read_from(const TissueTable& table, Values& values) const {
 }
 
 /// Whether these numbers make this table out of the defaults; where they come from does not matter.
-bool ParameterEdits::gives(const Values& values, TissueTable table) const {
-  TissueTable made = defaults_;
+bool ParameterEdits::gives(const Values& values, anatomy::TissueTable table) const {
+  anatomy::TissueTable made = defaults_;
   for (const std::string& setting : settings_of(values))
-    if (!apply_override(made, setting)) return false;
+    if (!anatomy::apply_override(made, setting)) return false;
   made.provenance.clear();
   table.provenance.clear();
   return made.to_toml() == table.to_toml();
@@ -205,10 +205,10 @@ std::vector<std::string> ParameterEdits::settings_of(const Values& values) const
       settings.push_back(std::move(text));
   };
   // The lower of two thresholds is never above the higher one on the way: a raised upper one comes first.
-  const TissueParameter* full = find(kFull);
+  const anatomy::TissueParameter* full = find(kFull);
   const bool is_full_first = full != nullptr && values.contains(kFull) && values.find(kFull)->second > full->value;
-  for (const TissueParameterGroup& group : groups_)
-    for (const TissueParameter& parameter : group.parameters) {
+  for (const anatomy::TissueParameterGroup& group : groups_)
+    for (const anatomy::TissueParameter& parameter : group.parameters) {
       if (parameter.setting == kNone && is_full_first) add(kFull);
       add(parameter.setting);
     }
@@ -216,8 +216,8 @@ std::vector<std::string> ParameterEdits::settings_of(const Values& values) const
 }
 
 Status ParameterEdits::check(const Values& values) const {
-  TissueTable table = defaults_;
-  for (const std::string& setting : settings_of(values)) TROCAR_TRY_STATUS(apply_override(table, setting));
+  anatomy::TissueTable table = defaults_;
+  for (const std::string& setting : settings_of(values)) TROCAR_TRY_STATUS(anatomy::apply_override(table, setting));
   return {};
 }
 

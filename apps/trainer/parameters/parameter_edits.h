@@ -19,20 +19,20 @@ class ParameterEdits {
  public:
   /// Another table of defaults with its force model. Changes are kept where they still fit and still differ; what can
   /// be undone is forgotten.
-  void start(TissueTable defaults, std::string model);
+  void start(anatomy::TissueTable defaults, std::string model);
 
-  const std::vector<TissueParameterGroup>& groups() const noexcept { return groups_; }
-  const TissueParameter* find(std::string_view setting) const noexcept;
-  double value_of(const TissueParameter& parameter) const;
-  bool is_changed(const TissueParameter& parameter) const { return now().values.contains(parameter.setting); }
-  bool is_changed(const TissueParameterGroup& group) const;
+  const std::vector<anatomy::TissueParameterGroup>& groups() const noexcept { return groups_; }
+  const anatomy::TissueParameter* find(std::string_view setting) const noexcept;
+  double value_of(const anatomy::TissueParameter& parameter) const;
+  bool is_changed(const anatomy::TissueParameter& parameter) const { return now().values.contains(parameter.setting); }
+  bool is_changed(const anatomy::TissueParameterGroup& group) const;
   bool is_changed() const noexcept { return !now().values.empty(); }
 
   /// `joins`: one step of undo together with the last change (a slider that is still held). Errors: an unknown setting,
   /// a number out of range or against another one; nothing is changed then.
   Status set(const std::string& setting, double value, bool joins = false);
   void reset(const std::string& setting);
-  void reset(const TissueParameterGroup& group);
+  void reset(const anatomy::TissueParameterGroup& group);
   void reset_all();
   /// All changes at once, as a profile has them: "liver.k=0.5". Errors name the setting; nothing is changed then.
   Status replace(const std::vector<std::string>& settings);
@@ -74,12 +74,12 @@ class ParameterEdits {
   void keep(Values values, bool joins = false);
   void keep(Step step, bool joins = false);
   Result<Values> read(const std::vector<std::string>& settings) const;
-  void read_from(const TissueTable& table, Values& values) const;
-  bool gives(const Values& values, TissueTable table) const;
+  void read_from(const anatomy::TissueTable& table, Values& values) const;
+  bool gives(const Values& values, anatomy::TissueTable table) const;
   const Step& now() const noexcept { return steps_.now(); }
 
-  TissueTable defaults_;
-  std::vector<TissueParameterGroup> groups_;
+  anatomy::TissueTable defaults_;
+  std::vector<anatomy::TissueParameterGroup> groups_;
   std::string default_model_;
   StepHistory<Step> steps_;
 };

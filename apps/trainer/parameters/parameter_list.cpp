@@ -19,9 +19,9 @@ QString title_of(const std::string& tissue) {
 }
 
 /// "0–2 mm": where the path is in a tissue; several stretches are named from first to last.
-QString place_of(const std::string& tissue, const std::vector<PathPiece>& pieces) {
+QString place_of(const std::string& tissue, const std::vector<attempt::PathPiece>& pieces) {
   double from = 0.0, to = -1.0;
-  for (const PathPiece& piece : pieces) {
+  for (const attempt::PathPiece& piece : pieces) {
     if (piece.tissue != tissue) continue;
     if (to < 0.0) from = piece.from_mm;
     to = piece.to_mm;
@@ -29,14 +29,14 @@ QString place_of(const std::string& tissue, const std::vector<PathPiece>& pieces
   return to < 0.0 ? QString() : QStringLiteral("%1–%2 mm").arg(from, 0, 'f', 0).arg(to, 0, 'f', 0);
 }
 
-std::vector<std::string> along_path(const std::vector<PathPiece>& pieces) {
+std::vector<std::string> along_path(const std::vector<attempt::PathPiece>& pieces) {
   std::vector<std::string> names;
-  for (const PathPiece& piece : pieces)
+  for (const attempt::PathPiece& piece : pieces)
     if (std::find(names.begin(), names.end(), piece.tissue) == names.end()) names.push_back(piece.tissue);
   return names;
 }
 
-bool is_felt_in(const TissueParameter& parameter, const std::string& model) {
+bool is_felt_in(const anatomy::TissueParameter& parameter, const std::string& model) {
   if (model == "proxy") return parameter.is_proxy;
   return model == "combined" ? parameter.is_combined : parameter.is_insertion;
 }
@@ -48,8 +48,8 @@ ParameterList::ParameterList(QWidget* parent) : QWidget(parent) {
   layout->setContentsMargins(0, 0, 0, 0);
 }
 
-void ParameterList::show_tissues(const std::vector<TissueParameterGroup>& groups,
-                                 const std::vector<PathPiece>& pieces) {
+void ParameterList::show_tissues(const std::vector<anatomy::TissueParameterGroup>& groups,
+                                 const std::vector<attempt::PathPiece>& pieces) {
   sections_.clear();
   rows_.clear();
   body_ = nullptr;
@@ -63,11 +63,11 @@ void ParameterList::show_tissues(const std::vector<TissueParameterGroup>& groups
   all->addWidget(make_label(tr("Along the planned path"), "dim"));
   const std::vector<std::string> first = along_path(pieces);
   for (const std::string& name : first)
-    for (const TissueParameterGroup& group : groups)
+    for (const anatomy::TissueParameterGroup& group : groups)
       if (group.name == name) add_section(group, place_of(name, pieces), *all);
   all->addSpacing(8);
   all->addWidget(make_label(tr("Other tissues"), "dim"));
-  for (const TissueParameterGroup& group : groups)
+  for (const anatomy::TissueParameterGroup& group : groups)
     if (std::find(first.begin(), first.end(), group.name) == first.end()) add_section(group, {}, *all);
   all->addStretch(1);
   layout()->addWidget(page_);
@@ -76,7 +76,7 @@ void ParameterList::show_tissues(const std::vector<TissueParameterGroup>& groups
   choose(is_there || sections_.empty() ? chosen_ : sections_.front().group.name);
 }
 
-void ParameterList::add_section(const TissueParameterGroup& group, const QString& place, QVBoxLayout& into) {
+void ParameterList::add_section(const anatomy::TissueParameterGroup& group, const QString& place, QVBoxLayout& into) {
   Section section{group, title_of(group.name), place, new QPushButton, new QVBoxLayout};
   section.header->setObjectName(QStringLiteral("parameter-tissue-") + to_qt(group.name));
   section.header->setAccessibleName(section.title);
@@ -141,7 +141,7 @@ QRect ParameterList::chosen_rect() const {
   return {};
 }
 
-QWidget* ParameterList::make_rows(const TissueParameterGroup& group) {
+QWidget* ParameterList::make_rows(const anatomy::TissueParameterGroup& group) {
   auto* body = new QWidget;
   auto* layout = new QVBoxLayout(body);
   layout->setContentsMargins(8, 4, 0, 12);
@@ -152,7 +152,7 @@ QWidget* ParameterList::make_rows(const TissueParameterGroup& group) {
     note->setWordWrap(true);
     layout->addWidget(note);
   }
-  for (const TissueParameter& parameter : group.parameters) {
+  for (const anatomy::TissueParameter& parameter : group.parameters) {
     auto* row = new ParameterRow(parameter, name + to_qt(parameter.key));
     connect(row, &ParameterRow::edited, this,
             [this, setting = parameter.setting](double value, bool joins) { Q_EMIT edited(setting, value, joins); });

@@ -24,7 +24,8 @@ class ParameterList : public QWidget {
  public:
   explicit ParameterList(QWidget* parent = nullptr);
   /// Another table; the first tissue on the path is chosen, or the last chosen one where it is still there.
-  void show_tissues(const std::vector<TissueParameterGroup>& groups, const std::vector<PathPiece>& pieces);
+  void show_tissues(const std::vector<anatomy::TissueParameterGroup>& groups,
+                    const std::vector<attempt::PathPiece>& pieces);
   /// Numbers as they are now.
   void show_values(const ParameterEdits& edits);
   void show_model(const QString& force_model);
@@ -45,16 +46,16 @@ class ParameterList : public QWidget {
 
  private:
   struct Section {
-    TissueParameterGroup group;
+    anatomy::TissueParameterGroup group;
     QString title, place;
     QPushButton* header = nullptr;
     QVBoxLayout* content = nullptr;
   };
 
-  void add_section(const TissueParameterGroup& group, const QString& place, QVBoxLayout& into);
+  void add_section(const anatomy::TissueParameterGroup& group, const QString& place, QVBoxLayout& into);
   void fill(Section& section);
   void show_header(Section& section, bool is_changed) const;
-  QWidget* make_rows(const TissueParameterGroup& group);
+  QWidget* make_rows(const anatomy::TissueParameterGroup& group);
 
   std::vector<Section> sections_;
   std::string chosen_, model_;

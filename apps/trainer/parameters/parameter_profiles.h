@@ -34,19 +34,19 @@ class ParameterProfiles : public QWidget {
   /// Looks at the folder again; it may be another program's, too.
   void read_folder();
   /// Nullptr: there is none of that file.
-  const TissueProfile* find(const std::string& file) const noexcept;
+  const attempt::TissueProfile* find(const std::string& file) const noexcept;
   /// The profile of that file stands in the choice; empty: the case's own. A dot says that numbers or model differ.
   void show_chosen(const std::string& file, bool differs);
   /// What went wrong; empty hides it.
   void show_problem(const QString& text);
   /// What was asked to be saved has been saved.
-  void finish_saving(const TissueProfile& saved);
+  void finish_saving(const attempt::TissueProfile& saved);
 
  Q_SIGNALS:
   /// By its file; empty: the case's own.
   void chosen(const std::string& file);
   /// With name and note; the numbers are the listener's.
-  void save_asked(const TissueProfile& profile, bool may_replace);
+  void save_asked(const attempt::TissueProfile& profile, bool may_replace);
   /// Profiles have come or gone.
   void listed();
 
@@ -68,11 +68,11 @@ class ParameterProfiles : public QWidget {
   void list_entries();
   void tell(const QString& text, bool is_problem);
   /// The profile that saving under this name would replace: one of that name, or one in that name's file.
-  const TissueProfile* find_same(const std::string& name) const noexcept;
-  const TissueProfile* current() const noexcept;
+  const attempt::TissueProfile* find_same(const std::string& name) const noexcept;
+  const attempt::TissueProfile* current() const noexcept;
 
   std::filesystem::path folder_;
-  std::vector<TissueProfile> profiles_;
+  std::vector<attempt::TissueProfile> profiles_;
   std::string chosen_;
   bool differs_ = false;
   Question question_ = Question::kNone;

@@ -88,7 +88,7 @@ void NumberField::keyPressEvent(QKeyEvent* event) {
   QLineEdit::keyPressEvent(event);
 }
 
-ParameterRow::ParameterRow(const TissueParameter& parameter, const QString& name, QWidget* parent)
+ParameterRow::ParameterRow(const anatomy::TissueParameter& parameter, const QString& name, QWidget* parent)
     : QWidget(parent), parameter_(parameter), scale_(parameter), value_(parameter.value) {
   setObjectName(name + QStringLiteral("-row"));
   make_parts(name);
@@ -123,7 +123,7 @@ void ParameterRow::make_parts(const QString& name) {
   slider_ = new MarkedSlider;
   slider_->setObjectName(name + QStringLiteral("-slider"));
   slider_->setAccessibleName(plain);
-  const Provenance& source = parameter_.provenance;
+  const anatomy::Provenance& source = parameter_.provenance;
   const bool is_relative = to_qt(parameter_.setting).endsWith(QStringLiteral("_factor"));
   const bool has_range = source.low && source.high && (is_relative || !(*source.high < parameter_.low));
   slider_->set_marks(scale_.position_of(parameter_.value), has_range ? scale_.position_of(*source.low) : 0,
@@ -150,7 +150,7 @@ void ParameterRow::make_parts(const QString& name) {
 }
 
 QString ParameterRow::tooltip() const {
-  const Provenance& source = parameter_.provenance;
+  const anatomy::Provenance& source = parameter_.provenance;
   const QString unit = parameter_.unit.empty() ? QString() : QStringLiteral(" ") + to_qt(parameter_.unit);
   QStringList lines{tr("Default %1%2").arg(number_text(parameter_.value), unit),
                     tr("Source: %1").arg(to_qt(source.source).toHtmlEscaped())};

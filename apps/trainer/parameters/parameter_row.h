@@ -57,8 +57,8 @@ class ParameterRow : public QWidget {
 
  public:
   /// `parameter`: with its default.
-  ParameterRow(const TissueParameter& parameter, const QString& name, QWidget* parent = nullptr);
-  const TissueParameter& parameter() const noexcept { return parameter_; }
+  ParameterRow(const anatomy::TissueParameter& parameter, const QString& name, QWidget* parent = nullptr);
+  const anatomy::TissueParameter& parameter() const noexcept { return parameter_; }
   void show_value(double value);
   /// Dimmed: the chosen force model does not feel it.
   void set_felt(bool is_felt);
@@ -76,7 +76,7 @@ class ParameterRow : public QWidget {
   void take_text();
   void take_slider(int position);
 
-  TissueParameter parameter_;
+  anatomy::TissueParameter parameter_;
   ParameterScale scale_;
   double value_;
   bool is_held_ = false;  ///< The slider has moved since it was pressed.

@@ -20,7 +20,7 @@ double rounded(double value) {
 
 }  // namespace
 
-ParameterScale::ParameterScale(const TissueParameter& parameter)
+ParameterScale::ParameterScale(const anatomy::TissueParameter& parameter)
     : low_(parameter.low), high_(parameter.high), log_from_(parameter.log_from) {}
 
 int ParameterScale::position_of(double value) const noexcept {
@@ -45,7 +45,7 @@ QString number_text(double value) {
   return std::isinf(value) ? QStringLiteral("never") : to_qt(fmt::format("{}", value));
 }
 
-QString range_text(const TissueParameter& parameter) {
+QString range_text(const anatomy::TissueParameter& parameter) {
   QString text = QCoreApplication::translate("ParameterScale", "%1 to %2")
                      .arg(number_text(parameter.low), number_text(parameter.high));
   if (!parameter.unit.empty()) text += QStringLiteral(" ") + to_qt(parameter.unit);
@@ -53,7 +53,7 @@ QString range_text(const TissueParameter& parameter) {
   return text;
 }
 
-bool read_number(const QString& text, const TissueParameter& parameter, double& value) {
+bool read_number(const QString& text, const anatomy::TissueParameter& parameter, double& value) {
   QString plain = text.trimmed();
   if (parameter.may_be_never && plain.compare(QStringLiteral("never"), Qt::CaseInsensitive) == 0) {
     value = std::numeric_limits<double>::infinity();

@@ -12,7 +12,7 @@ class ParameterScale {
  public:
   static constexpr int kSteps = 1000;
 
-  explicit ParameterScale(const TissueParameter& parameter);
+  explicit ParameterScale(const anatomy::TissueParameter& parameter);
   /// Beyond the range, infinite included: the nearest end.
   int position_of(double value) const noexcept;
   /// Three significant digits, inside the range.
@@ -25,8 +25,8 @@ class ParameterScale {
 /// The shortest digits that read back to the same number; infinite: "never".
 QString number_text(double value);
 /// "0.001 to 50 N/mm", and "or never" where that is a value.
-QString range_text(const TissueParameter& parameter);
+QString range_text(const anatomy::TissueParameter& parameter);
 /// What a person has typed; a comma is a point. Nothing but a number in the range (or "never" where it may be).
-bool read_number(const QString& text, const TissueParameter& parameter, double& value);
+bool read_number(const QString& text, const anatomy::TissueParameter& parameter, double& value);
 
 }  // namespace trocar::trainer

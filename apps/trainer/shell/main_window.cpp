@@ -16,18 +16,18 @@
 
 #include "control/mirror_station.h"
 #include "control/seat_flow.h"
-#include "workspace/desk.h"
 #include "pages/briefing_page.h"
 #include "pages/case_page.h"
 #include "pages/start_page.h"
 #include "pages/work_page.h"
 #include "panels/device_test_dialog.h"
-#include "ui_kit/focus_ring.h"
 #include "shell/keys_dialog.h"
-#include "ui_kit/parts.h"
 #include "shell/status_strip.h"
+#include "ui_kit/focus_ring.h"
+#include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "ui_kit/wheel_guard.h"
+#include "workspace/desk.h"
 
 namespace trocar::trainer {
 namespace {

@@ -55,12 +55,12 @@ void save_mirror_settings(const MirrorSettings& mirror) {
   save("eye-mm", mirror.eye_distance_mm);
 }
 
-CameraView mirror_camera_W(const MirrorSettings& settings, const ViewPlace& place) noexcept {
+scene::CameraView mirror_camera_W(const MirrorSettings& settings, const ViewPlace& place) noexcept {
   const double tilt_rad = settings.tilt_deg * std::numbers::pi / 180.0;
   const Vec3 right_W = Vec3::UnitX();
   const Vec3 up_W(0.0, std::sin(tilt_rad), std::cos(tilt_rad));
   const Vec3 towards_eye_W = right_W.cross(up_W);
-  CameraView view;
+  scene::CameraView view;
   view.focus_P = settings.picture_W + place.mm_per_pixel * (place.right_px * right_W - place.down_px * up_W);
   view.eye_P = view.focus_P + settings.eye_distance_mm * towards_eye_W;
   view.up_P = up_W;
@@ -70,8 +70,8 @@ CameraView mirror_camera_W(const MirrorSettings& settings, const ViewPlace& plac
   return view;
 }
 
-CameraView moved(const Pose& X_PW, const CameraView& view_W) noexcept {
-  CameraView view = view_W;
+scene::CameraView moved(const Pose& X_PW, const scene::CameraView& view_W) noexcept {
+  scene::CameraView view = view_W;
   view.eye_P = X_PW * view_W.eye_P;
   view.focus_P = X_PW * view_W.focus_P;
   view.up_P = X_PW.R() * view_W.up_P;

@@ -31,8 +31,8 @@ struct ViewPlace {
 };
 /// The camera (in W, although its fields say P) whose picture, shown there, has every point of the room on the line
 /// from the eye to that point: a tool is seen where it is. The eye lies before the view's middle.
-CameraView mirror_camera_W(const MirrorSettings& settings, const ViewPlace& place) noexcept;
+scene::CameraView mirror_camera_W(const MirrorSettings& settings, const ViewPlace& place) noexcept;
 /// The same camera in P.
-CameraView moved(const Pose& X_PW, const CameraView& view_W) noexcept;
+scene::CameraView moved(const Pose& X_PW, const scene::CameraView& view_W) noexcept;
 
 }  // namespace trocar::trainer

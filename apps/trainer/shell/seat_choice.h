@@ -14,8 +14,8 @@ enum class Difficulty {
   kAssisted,  ///< Entry zone, target, the force to come, and hints; no path, and the tools begin away from it.
   kExam,      ///< Nothing but pictures and forces, of the task as it is; the tools begin away from the plan.
 };
-constexpr Guidance guidance_of(Difficulty difficulty) noexcept {
-  constexpr std::array kOf{Guidance::kPath, Guidance::kTarget, Guidance::kNone};
+constexpr scene::Guidance guidance_of(Difficulty difficulty) noexcept {
+  constexpr std::array kOf{scene::Guidance::kPath, scene::Guidance::kTarget, scene::Guidance::kNone};
   return kOf[static_cast<std::size_t>(difficulty)];
 }
 /// "exam": as a session records it.

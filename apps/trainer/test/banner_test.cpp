@@ -11,8 +11,8 @@
 #include <QVBoxLayout>
 
 #include "pages/start_page.h"
-#include "ui_kit/theme.h"
 #include "test/widget_actions.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {

@@ -8,9 +8,9 @@
 #include <algorithm>
 
 #include "script/widget_events.h"
-#include "ui_kit/theme.h"
 #include "test/open_abdomen.h"
 #include "test/widget_actions.h"
+#include "ui_kit/theme.h"
 #include "views/slices/briefing_picture.h"
 
 namespace trocar::trainer {
@@ -60,19 +60,19 @@ TEST(BriefingPage, TellsNothingOfTheWayInAnExam) {
 
 TEST(BriefingPicture, ShowsThePathInGuidedAttemptsAlone) {
   const QSize size(400, 300);
-  const auto share_of_path = [&](Guidance guidance) {
+  const auto share_of_path = [&](scene::Guidance guidance) {
     return share_near(briefing_picture(*open_abdomen(), BriefingPlane::kAlongPath, size, guidance), theme().path, 12);
   };
-  const double line = share_of_path(Guidance::kPath), entry = share_of_path(Guidance::kTarget);
+  const double line = share_of_path(scene::Guidance::kPath), entry = share_of_path(scene::Guidance::kTarget);
   EXPECT_GT(line, 0.001);
   EXPECT_LT(entry, 0.5 * line);
   EXPECT_GT(entry, 0.0001);  // the ring at the entry
-  EXPECT_EQ(share_of_path(Guidance::kNone), 0.0);
+  EXPECT_EQ(share_of_path(scene::Guidance::kNone), 0.0);
 }
 
 TEST(BriefingPicture, MarksTheTargetInEveryPlane) {
   for (const BriefingPlane plane : {BriefingPlane::kAxial, BriefingPlane::kSagittal, BriefingPlane::kAlongPath}) {
-    const QImage image = briefing_picture(*open_abdomen(), plane, {400, 300}, Guidance::kNone);
+    const QImage image = briefing_picture(*open_abdomen(), plane, {400, 300}, scene::Guidance::kNone);
     EXPECT_GT(share_near(image, theme().target, 12), 0.0001);
   }
 }

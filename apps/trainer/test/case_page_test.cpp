@@ -23,15 +23,15 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
+#include "attempt/case/prepare_case.h"
 #include "case_builder/case_edits.h"
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 #include "core/testing/test_data.h"
-#include "attempt/case/prepare_case.h"
 #include "io/image/image_file.h"
 #include "io/patient/patient_folder.h"
-#include "ui_kit/parts.h"
 #include "test/widget_actions.h"
+#include "ui_kit/parts.h"
 #include "views/slices/slice_view.h"
 
 namespace trocar::trainer {
@@ -40,18 +40,18 @@ namespace fs = std::filesystem;
 
 /// A small made patient as an instructor gets patients: a CT and a segmentation with a list of names.
 void write_files(const fs::path& folder) {
-  const auto patient = generate_phantom("abdomen", 1, {{144, 116, 104}});
+  const auto patient = anatomy::generate_phantom("abdomen", 1, {{144, 116, 104}});
   ASSERT_TRUE(patient) << patient.error().text();
-  LabelGrid labels = patient->labels;
+  volume::LabelGrid labels = patient->labels;
   std::string names = "[labels]\n";
-  for (const Label& label : patient->label_table.labels) {
+  for (const anatomy::Label& label : patient->label_table.labels) {
     const bool is_found_anew = label.tissue == "adipose" || label.tissue == "skin" || label.name == "muscle";
     if (!is_found_anew) names += fmt::format("{} = \"{}\"\n", label.id, label.name);
     if (is_found_anew)
       for (std::uint8_t& id : labels.voxels) id = id == label.id ? std::uint8_t{0} : id;
   }
-  ASSERT_TRUE(write_image(patient->ct, folder / "ct.nrrd"));
-  ASSERT_TRUE(write_image(labels, folder / "labels.nrrd"));
+  ASSERT_TRUE(io::write_image(patient->ct, folder / "ct.nrrd"));
+  ASSERT_TRUE(io::write_image(labels, folder / "labels.nrrd"));
   ASSERT_TRUE(write_file_atomically(folder / "names.toml", names));
 }
 
@@ -93,7 +93,7 @@ class CasePageTest : public ::testing::Test {
     return is_there();
   }
   bool wait_for_work() {
-    return wait_for([&] { return page_.desk().work() == CaseDesk::Work::kNone; });
+    return wait_for([&] { return page_.desk().work() == case_builder::CaseDesk::Work::kNone; });
   }
   bool wait_for_review() {
     return wait_for([&] { return page_.desk().is_reviewed(); });
@@ -142,17 +142,18 @@ class CasePageTest : public ::testing::Test {
       page_.advance();
       QCoreApplication::processEvents(QEventLoop::AllEvents, 20);
     }
-    for (int step = 1; step <= kCaseSteps; ++step) {
+    for (int step = 1; step <= case_builder::kCaseSteps; ++step) {
       press(fmt::format("case-step-{}", step).c_str());
       page_.advance();
       QCoreApplication::processEvents();
       page_.grab().save(to_qt(fmt::format("{}{}_{}.png", std::getenv("TROCAR_SAVE_PICTURES"), name, step)));
     }
   }
-  int errors(CaseStep step) {
-    return static_cast<int>(
-        std::count_if(page_.desk().checks().begin(), page_.desk().checks().end(),
-                      [&](const CaseCheck& check) { return check.step == step && check.level == CheckLevel::kError; }));
+  int errors(case_builder::CaseStep step) {
+    return static_cast<int>(std::count_if(
+        page_.desk().checks().begin(), page_.desk().checks().end(), [&](const case_builder::CaseCheck& check) {
+          return check.step == step && check.level == case_builder::CheckLevel::kError;
+        }));
   }
 
   static std::unique_ptr<TemporaryFolder> files_;
@@ -180,7 +181,7 @@ TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   press("case-step-4");
   press("case-plan");
   ASSERT_TRUE(wait_for_work());
-  const NeedlePath* path = find_expert_path(page_.desk().draft());
+  const anatomy::NeedlePath* path = case_builder::find_expert_path(page_.desk().draft());
   ASSERT_NE(path, nullptr) << page_.desk().message();
   const Segment planned_P = path->line_P;
   press("case-zone-pick");
@@ -192,11 +193,11 @@ TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   press("case-entry-pick");
   axial.set_focus(planned_P.a);
   click(axial, planned_P.a);
-  EXPECT_GT((find_expert_path(page_.desk().draft())->line_P.a - planned_P.a).norm(), 0.0);
-  EXPECT_LT((find_expert_path(page_.desk().draft())->line_P.a - planned_P.a).norm(), 3.0);
+  EXPECT_GT((case_builder::find_expert_path(page_.desk().draft())->line_P.a - planned_P.a).norm(), 0.0);
+  EXPECT_LT((case_builder::find_expert_path(page_.desk().draft())->line_P.a - planned_P.a).norm(), 3.0);
   press("case-undo");  // a planned path may keep its margins just so
   ASSERT_TRUE(wait_for_review());
-  EXPECT_EQ(errors(CaseStep::kPath), 0);
+  EXPECT_EQ(errors(case_builder::CaseStep::kPath), 0);
   press("case-step-5");
   ASSERT_TRUE(page_.desk().preview());
   EXPECT_GE(find<QTableWidget>("case-force-events").rowCount(), 2);
@@ -218,24 +219,25 @@ TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   press("case-open");
   EXPECT_EQ(opened, std::vector<std::string>{case_folder.string()});
 
-  auto patient = load_patient(case_folder);
+  auto patient = io::load_patient(case_folder);
   ASSERT_TRUE(patient) << patient.error().text();
   ASSERT_EQ(patient->landmarks.size(), 2U);
   EXPECT_EQ(patient->landmarks[0].name, "xiphoid process");
   EXPECT_EQ(patient->landmarks[1].name, "where the drain was");
-  CaseOptions options;
+  attempt::CaseOptions options;
   options.task.clear();
   options.patient_folder = case_folder.string();
-  const auto the_case = prepare_case(std::make_shared<const VirtualPatient>(std::move(*patient)), options);
+  const auto the_case =
+      attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(*patient)), options);
   ASSERT_TRUE(the_case) << the_case.error().text();
-  const CaseDraft made = page_.desk().draft();
-  EXPECT_LT((the_case->plan.line_P.a - find_expert_path(made)->line_P.a).norm(), 1e-6);
+  const case_builder::CaseDraft made = page_.desk().draft();
+  EXPECT_LT((the_case->plan.line_P.a - case_builder::find_expert_path(made)->line_P.a).norm(), 1e-6);
 
   import(case_folder.string(), "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
-  CaseDraft again = page_.desk().draft();
+  case_builder::CaseDraft again = page_.desk().draft();
   again.imported = made.imported;
-  EXPECT_TRUE(is_same_draft(again, made));
+  EXPECT_TRUE(case_builder::is_same_draft(again, made));
 }
 
 TEST_F(CasePageTest, RealCtBecomesACase) {
@@ -251,9 +253,9 @@ TEST_F(CasePageTest, RealCtBecomesACase) {
   press("case-step-4");
   press("case-plan");
   ASSERT_TRUE(wait_for_work());
-  ASSERT_NE(find_expert_path(page_.desk().draft()), nullptr) << page_.desk().message();
+  ASSERT_NE(case_builder::find_expert_path(page_.desk().draft()), nullptr) << page_.desk().message();
   ASSERT_TRUE(wait_for_review());
-  EXPECT_EQ(errors(CaseStep::kPath), 0);
+  EXPECT_EQ(errors(case_builder::CaseStep::kPath), 0);
   save_steps("case_torso");
 }
 
@@ -261,7 +263,7 @@ TEST_F(CasePageTest, BrokenImportSaysOneLineAndLeavesTheDraft) {
   import("layers-liver", "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
   ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
-  const CaseDraft before = page_.desk().draft();
+  const case_builder::CaseDraft before = page_.desk().draft();
   const TemporaryFolder folder;
   ASSERT_TRUE(write_file_atomically(folder / "ct.nrrd", "NRRD0004\nno volume"));
   import((folder / "ct.nrrd").string(), (folder / "ct.nrrd").string(), "totalsegmentator");
@@ -270,7 +272,7 @@ TEST_F(CasePageTest, BrokenImportSaysOneLineAndLeavesTheDraft) {
   const QString text = find<QLabel>("case-message").text();
   EXPECT_FALSE(text.isEmpty());
   EXPECT_FALSE(text.contains(QLatin1Char('\n')));
-  EXPECT_TRUE(is_same_draft(page_.desk().draft(), before));
+  EXPECT_TRUE(case_builder::is_same_draft(page_.desk().draft(), before));
 }
 
 TEST_F(CasePageTest, OnlyImportsThatSucceededAreRecent) {
@@ -324,7 +326,7 @@ TEST_F(CasePageTest, CancelledImportLeavesThePageAsItWas) {
   EXPECT_TRUE(find<QPushButton>("case-cancel").isVisible());
   press("case-cancel");
   page_.advance();
-  EXPECT_EQ(page_.desk().work(), CaseDesk::Work::kNone);
+  EXPECT_EQ(page_.desk().work(), case_builder::CaseDesk::Work::kNone);
   EXPECT_FALSE(page_.desk().has_patient());
   EXPECT_FALSE(find<QPushButton>("case-cancel").isVisible());
 }
@@ -364,7 +366,7 @@ TEST_F(CasePageTest, LandmarksArePlacedMovedRenamedAndRemovedWithUndo) {
   import("layers-liver", "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
   press("case-step-3");
-  const auto& landmarks = [&]() -> const std::vector<Landmark>& { return page_.desk().draft().landmarks; };
+  const auto& landmarks = [&]() -> const std::vector<anatomy::Landmark>& { return page_.desk().draft().landmarks; };
   auto& axial = find<SliceView>("slice-axial");
   auto& list = find<QListWidget>("case-landmarks");
   find<QTabWidget>("case-target-tabs").setCurrentIndex(1);
@@ -423,9 +425,9 @@ TEST_F(CasePageTest, CheckJumpsToWhatItMeans) {
   page_.advance();
   const Vec3 target_P = find<SliceView>("slice-axial").focus();  // the middle of the body
   const Vec3 begin_P = target_P - Vec3(0.0, 0.0, 20.0);
-  ASSERT_TRUE(page_.desk().edit(set_expert_path(page_.desk().draft(), {begin_P, target_P}), "path"));
+  ASSERT_TRUE(page_.desk().edit(case_builder::set_expert_path(page_.desk().draft(), {begin_P, target_P}), "path"));
   ASSERT_TRUE(wait_for_review());
-  EXPECT_GT(errors(CaseStep::kPath), 0);
+  EXPECT_GT(errors(case_builder::CaseStep::kPath), 0);
   auto& checks = find<QListWidget>("case-checks");
   for (int row = 0; row < checks.count(); ++row) {
     if (!checks.item(row)->text().contains(QStringLiteral("below the skin"))) continue;

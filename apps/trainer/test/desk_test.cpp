@@ -13,9 +13,9 @@
 #include "core/files/data_dir.h"
 #include "scene/needle_shape.h"
 #include "script/widget_events.h"
-#include "ui_kit/theme.h"
-#include "test/open_abdomen.h"
 #include "tasks/needle.h"
+#include "test/open_abdomen.h"
+#include "ui_kit/theme.h"
 #include "views/patient/patient_view.h"
 #include "views/slices/slice_view.h"
 #include "views/ultrasound/ultrasound_view.h"
@@ -33,25 +33,25 @@ TEST(Desk, ShowsOfThePlanWhatTheHelpAllows) {
   ASSERT_NE(axial, nullptr);
   axial->resize(480, 400);
   const auto share_of = [&](const QColor& color) { return share_near(axial->grab().toImage(), color, 40); };
-  const Rgb& green = open_abdomen()->the_case.patient->label_table.find("liver_lesion_1")->color;
+  const volume::Rgb& green = open_abdomen()->the_case.patient->label_table.find("liver_lesion_1")->color;
   const QColor lesion(green[0], green[1], green[2]);
   auto* lesion_eye = desk.findChild<QToolButton*>(QStringLiteral("structure-eye-liver-lesion-1"));
   ASSERT_NE(lesion_eye, nullptr);
   struct Expected {
     Difficulty difficulty;
-    Guidance in_space;
+    scene::Guidance in_space;
     bool has_target, is_guide_offered, is_guide_shown;
   };
   double last_path = 1.0;
-  for (const Expected& e : {Expected{Difficulty::kGuided, Guidance::kPath, true, true, true},
-                            Expected{Difficulty::kAssisted, Guidance::kTarget, true, true, false},
-                            Expected{Difficulty::kExam, Guidance::kNone, false, false, false}}) {
+  for (const Expected& e : {Expected{Difficulty::kGuided, scene::Guidance::kPath, true, true, true},
+                            Expected{Difficulty::kAssisted, scene::Guidance::kTarget, true, true, false},
+                            Expected{Difficulty::kExam, scene::Guidance::kNone, false, false, false}}) {
     desk.show_help(e.difficulty);
     EXPECT_EQ(desk.view_3d().scene().guidance(), e.in_space);
     EXPECT_EQ(desk.ultrasound().is_guide_offered(), e.is_guide_offered);
     EXPECT_EQ(desk.ultrasound().is_guide_visible(), e.is_guide_shown);
     EXPECT_EQ(desk.findChild<QToolButton*>(QStringLiteral("show-guidance"))->isEnabled(),
-              e.in_space != Guidance::kNone);
+              e.in_space != scene::Guidance::kNone);
     EXPECT_EQ(share_of(theme().target) > 0.0002, e.has_target) << title_of(e.difficulty);
     EXPECT_EQ(share_near(axial->grab().toImage(), lesion, 12) > 0.0001, e.has_target) << title_of(e.difficulty);
     EXPECT_EQ(!lesion_eye->parentWidget()->isHidden(), e.has_target) << title_of(e.difficulty);
@@ -200,15 +200,15 @@ TEST(Desk, WithTheTipHiddenSlicesTellNothingOfItsDepth) {
 }
 
 TEST(NeedleModels, OfTheListAreAllDrawn) {
-  const auto needles = load_needles(data_dir() / "needles.toml");
+  const auto needles = tasks::load_needles(data_dir() / "needles.toml");
   ASSERT_TRUE(needles) << needles.error().text();
-  std::map<std::string, NeedleModel> models;
-  for (const Needle& needle : *needles) models[needle.name] = needle_model(needle.model);
-  EXPECT_EQ(models.at("paracentesis-14g"), NeedleModel::kTrocar);
-  EXPECT_EQ(models.at("biopsy-16g"), NeedleModel::kBiopsyGun);
-  EXPECT_EQ(models.at("tuohy-17g"), NeedleModel::kTuohy);
-  EXPECT_EQ(models.at("quincke-22g"), NeedleModel::kQuincke);
-  EXPECT_EQ(models.at("chiba-22g"), NeedleModel::kChiba);
+  std::map<std::string, scene::NeedleModel> models;
+  for (const tasks::Needle& needle : *needles) models[needle.name] = scene::needle_model(needle.model);
+  EXPECT_EQ(models.at("paracentesis-14g"), scene::NeedleModel::kTrocar);
+  EXPECT_EQ(models.at("biopsy-16g"), scene::NeedleModel::kBiopsyGun);
+  EXPECT_EQ(models.at("tuohy-17g"), scene::NeedleModel::kTuohy);
+  EXPECT_EQ(models.at("quincke-22g"), scene::NeedleModel::kQuincke);
+  EXPECT_EQ(models.at("chiba-22g"), scene::NeedleModel::kChiba);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "ui_kit/theme.h"
 #include "test/widget_actions.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {

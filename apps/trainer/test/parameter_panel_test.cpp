@@ -11,7 +11,7 @@
 #include <QToolButton>
 #include <algorithm>
 
-#include "case_panels/force_preview.h"
+#include "parameters/force_preview.h"
 #include "parameters/parameter_scale.h"
 #include "script/cut_off.h"
 #include "script/widget_events.h"
@@ -32,7 +32,7 @@ TEST_F(ParameterPanelTest, EveryTextHasRoom) {
 
 TEST_F(ParameterPanelTest, TissuesOnThePathComeFirst) {
   std::vector<std::string> on_path;
-  for (const PathPiece& piece : opened->pieces)
+  for (const attempt::PathPiece& piece : opened->pieces)
     if (std::find(on_path.begin(), on_path.end(), piece.tissue) == on_path.end()) on_path.push_back(piece.tissue);
   std::vector<std::pair<int, std::string>> shown;
   for (auto* header : panel.findChildren<QPushButton*>())
@@ -46,20 +46,20 @@ TEST_F(ParameterPanelTest, TissuesOnThePathComeFirst) {
 
 TEST_F(ParameterPanelTest, AStifferCapsuleChangesThePredictedForceAndUndoGivesItBack) {
   open_tissue("parameter-tissue-liver");
-  const double before_mm = way_mm("liver_capsule");
-  const std::vector<CurvePoint> before = panel.preview().changed_curve();
+  const double before_mm = attempt::way_mm("liver_capsule");
+  const std::vector<attempt::CurvePoint> before = panel.preview().changed_curve();
   ASSERT_GT(before_mm, 0.0);
   type("parameter-liver-k", "0.05");
   EXPECT_TRUE(sent.empty()) << "waits for more";
   settle();
   ASSERT_EQ(sent.size(), 1u);
   EXPECT_EQ(sent.back(), QStringList{QStringLiteral("liver.k=0.05")});
-  const auto expected = predict_force(opened->the_case, {"liver.k=0.05"}, "insertion");
+  const auto expected = attempt::predict_force(opened->the_case, {"liver.k=0.05"}, "insertion");
   ASSERT_TRUE(expected);
   const auto& curve = panel.preview().changed_curve();
   ASSERT_EQ(curve.size(), expected->size());
   for (std::size_t n = 0; n < curve.size(); ++n) ASSERT_EQ(curve[n].force_n, (*expected)[n].force_n);
-  EXPECT_GT(way_mm("liver_capsule"), before_mm + 0.2) << "a softer capsule gives way later";
+  EXPECT_GT(attempt::way_mm("liver_capsule"), before_mm + 0.2) << "a softer capsule gives way later";
   keep_picture("parameters_changed.png");
 
   EXPECT_TRUE(strike(panel, QStringLiteral("Ctrl+Z")));
@@ -67,7 +67,7 @@ TEST_F(ParameterPanelTest, AStifferCapsuleChangesThePredictedForceAndUndoGivesIt
   settle();
   EXPECT_EQ(sent.back(), QStringList());
   EXPECT_EQ(panel.preview().changed_curve().size(), before.size());
-  EXPECT_EQ(way_mm("liver_capsule"), before_mm);
+  EXPECT_EQ(attempt::way_mm("liver_capsule"), before_mm);
   EXPECT_TRUE(strike(panel, QStringLiteral("Ctrl+Shift+Z")));
   settle();
   EXPECT_EQ(sent.back(), QStringList{QStringLiteral("liver.k=0.05")});
@@ -116,8 +116,8 @@ TEST_F(ParameterPanelTest, ThresholdsThatWouldCrossAreRefused) {
   const QStringList expected{QStringLiteral("transfer.tn_factor=1.5"), QStringLiteral("transfer.full=100"),
                              QStringLiteral("transfer.none=60")};
   EXPECT_EQ(panel.settings(), expected);
-  TissueTable table = opened->the_case.tissues;
-  for (const QString& setting : panel.settings()) EXPECT_TRUE(apply_override(table, setting.toStdString()));
+  anatomy::TissueTable table = opened->the_case.tissues;
+  for (const QString& setting : panel.settings()) EXPECT_TRUE(anatomy::apply_override(table, setting.toStdString()));
   keep_picture("parameters_transfer.png");
 }
 
@@ -226,9 +226,9 @@ TEST_F(ParameterPanelTest, NothingIsCutOffAt340By700) {
 TEST_F(ParameterPanelTest, AllHeadersFitWhenAllTissuesAreChanged) {
   QStringList all;
   std::vector<std::string> groups;
-  for (const TissueParameterGroup& group : tissue_parameters(opened->the_case.tissues)) {
+  for (const anatomy::TissueParameterGroup& group : anatomy::tissue_parameters(opened->the_case.tissues)) {
     groups.push_back(group.name);
-    for (const TissueParameter& parameter : group.parameters)
+    for (const anatomy::TissueParameter& parameter : group.parameters)
       if (parameter.key == "mu" || parameter.key == "tn")
         all << QString::fromStdString(parameter.setting) + QStringLiteral("=1.2");
   }
@@ -247,7 +247,7 @@ TEST_F(ParameterPanelTest, AllHeadersFitWhenAllTissuesAreChanged) {
 TEST(ParameterScale, PositionsAndNumbersBelongTogether) {
   for (const auto& [low, high, log_from] : {std::tuple(0.001, 50.0, 0.001), std::tuple(0.0, 1.0, 1e-4),
                                             std::tuple(0.0, 2.0, 0.0), std::tuple(0.0, 1e6, 0.1)}) {
-    TissueParameter parameter;
+    anatomy::TissueParameter parameter;
     parameter.low = low;
     parameter.high = high;
     parameter.log_from = log_from;

@@ -66,11 +66,11 @@ TEST_F(PatientViewTest, ShowsBonesAndLiverAndPresetsHideThem) {
   const QImage all = whole_picture();
   EXPECT_GT(count_of(all, is_ivory), 2000);
   EXPECT_GT(count_of(all, is_liver), 1000);
-  view.apply_preset(StructurePreset::kBones);
+  view.apply_preset(scene::StructurePreset::kBones);
   const QImage bones = whole_picture();
   EXPECT_GT(count_of(bones, is_ivory), 2000);
   EXPECT_EQ(count_of(bones, is_liver), 0);
-  view.apply_preset(StructurePreset::kTarget);
+  view.apply_preset(scene::StructurePreset::kTarget);
   const QImage target = whole_picture();
   EXPECT_LT(count_of(target, is_ivory), 50);
   EXPECT_GT(count_of(target, is_liver), 300);
@@ -78,7 +78,7 @@ TEST_F(PatientViewTest, ShowsBonesAndLiverAndPresetsHideThem) {
 
 TEST_F(PatientViewTest, DragTurnsWheelZoomsAndKeysChooseViews) {
   whole_picture();
-  const CameraView before = view.view();
+  const scene::CameraView before = view.view();
   send_mouse(QEvent::MouseButtonPress, {200, 200}, Qt::LeftButton, Qt::LeftButton);
   send_mouse(QEvent::MouseMove, {260, 200}, Qt::NoButton, Qt::LeftButton);
   send_mouse(QEvent::MouseButtonRelease, {260, 200}, Qt::LeftButton, Qt::NoButton);
@@ -125,7 +125,7 @@ TEST_F(PatientViewTest, DoubleClickPicksThePointOnTheSkin) {
   send_mouse(QEvent::MouseButtonDblClick, {240, 180}, Qt::LeftButton, Qt::LeftButton);
   ASSERT_TRUE(picked_P);
   // The skin's surface is smoothed by less than two voxels.
-  EXPECT_NEAR(sample_linear(open_abdomen()->the_case.patient->skin_distance_mm, *picked_P), 0.0, 3.0);
+  EXPECT_NEAR(volume::sample_linear(open_abdomen()->the_case.patient->skin_distance_mm, *picked_P), 0.0, 3.0);
   picked_P.reset();
   send_mouse(QEvent::MouseButtonDblClick, {2, 2}, Qt::LeftButton, Qt::LeftButton);
   EXPECT_FALSE(picked_P);
@@ -175,7 +175,7 @@ TEST_F(PatientViewTest, APointerThatMovesBreaksOffTheWholePicture) {
 
 TEST_F(PatientViewTest, MirroredOutputIsFlippedOnTheScreen) {
   const QImage image = whole_picture();
-  StereoOptions options;
+  scene::StereoOptions options;
   options.is_mirrored_left_right = true;
   options.is_mirrored_up_down = true;
   view.set_stereo(options);
@@ -186,8 +186,8 @@ TEST_F(PatientViewTest, MirroredOutputIsFlippedOnTheScreen) {
 TEST_F(PatientViewTest, ShutterGlassesGetASurfaceOfTheirOwnThatHandsItsEventsOn) {
   whole_picture();
   const QImage mono = view.grab().toImage();
-  StereoOptions options;
-  options.mode = StereoMode::kQuadBuffer;
+  scene::StereoOptions options;
+  options.mode = scene::StereoMode::kQuadBuffer;
   options.eye_angle_deg = 0.0;  // the screen of this test may show the left eye only
   view.set_stereo(options);
   view.draw_whole();

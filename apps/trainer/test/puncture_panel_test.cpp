@@ -73,9 +73,9 @@ TEST(PuncturePanel, TheNewestEventStaysInSightWhenTheCoreIsShown) {
     shown.panel.add_event(QStringLiteral("%1.0 s  through the liver capsule at 1.5 N").arg(n));
   shown.panel.add_event(QStringLiteral("12.0 s  the gun was fired at 52 mm"));
   QCoreApplication::processEvents();
-  GunShot shot;
+  attempt::GunShot shot;
   shot.depth_mm = 52.0;
-  shot.pieces = {{CorePart::kOrgan, "liver", 0.0, 4.0}, {CorePart::kTarget, "liver_lesion", 4.0, 18.0}};
+  shot.pieces = {{tasks::CorePart::kOrgan, "liver", 0.0, 4.0}, {tasks::CorePart::kTarget, "liver_lesion", 4.0, 18.0}};
   shown.panel.show_core(shot);
   QCoreApplication::processEvents();
   EXPECT_TRUE(shown.events().viewport()->rect().contains(shown.place_of(12)));

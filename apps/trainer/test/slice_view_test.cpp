@@ -6,15 +6,15 @@
 #include <cmath>
 
 #include "anatomy/phantom/phantom.h"
-#include "ui_kit/theme.h"
 #include "test/widget_actions.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {
 
-std::shared_ptr<const VirtualPatient> abdomen() {
-  static const auto patient =
-      std::make_shared<const VirtualPatient>(generate_phantom("abdomen", 1, {{180, 144, 128}}).value());
+std::shared_ptr<const anatomy::VirtualPatient> abdomen() {
+  static const auto patient = std::make_shared<const anatomy::VirtualPatient>(
+      anatomy::generate_phantom("abdomen", 1, {{180, 144, 128}}).value());
   return patient;
 }
 
@@ -34,7 +34,7 @@ struct Shown {
 
   SliceView view;
   std::vector<Vec3> moved_P, clicked_P;
-  std::vector<Window> windows;
+  std::vector<slices::Window> windows;
 };
 
 Segment expert_path() {
@@ -62,7 +62,7 @@ TEST(SliceView, ShowsTheLiverInItsColourOnTheLeft) {
   const QPointF target = shown.view.position_of(target_P);
   EXPECT_LT(target.x(), 0.5 * shown.view.width());
   const Vec3 beside_P = target_P + Vec3(-12.0, 3.0, 0.0);  // clear of the cross-hairs
-  const Label* label = find_label(*abdomen(), beside_P);
+  const anatomy::Label* label = anatomy::find_label(*abdomen(), beside_P);
   ASSERT_NE(label, nullptr);
   ASSERT_EQ(label->name, "liver");
   EXPECT_EQ(shown.color_at(shown.view.position_of(beside_P)),
@@ -135,7 +135,7 @@ TEST(SliceView, ChangesTheWindowByDraggingAndByKeys) {
   EXPECT_NEAR(shown.windows[0].width_hu, 400.0, 1e-9);
   EXPECT_GT(shown.color_at(muscle).red(), before);  // brighter
   press_key(shown.view, Qt::Key_3);
-  EXPECT_EQ(window_name(shown.view.window()), "Lung");
+  EXPECT_EQ(slices::window_name(shown.view.window()), "Lung");
   shown.view.set_window(10.0, -5.0);
   EXPECT_EQ(shown.view.window().width_hu, 1.0);
   EXPECT_EQ(shown.windows.size(), 2U);  // A setter does not signal.
@@ -201,10 +201,10 @@ TEST(SliceView, ShowsAsMuchOfThePlanAsGuidanceAllows) {
   const Segment path = expert_path();
   shown.view.set_focus(0.5 * (path.a + path.b) + Vec3(0.0, 40.0, 0.0));  // the cross-hairs beside all that is looked at
   shown.view.grab();
-  shown.view.set_guidance(Guidance::kNone);  // no plan yet; lesions are gone, too
+  shown.view.set_guidance(scene::Guidance::kNone);  // no plan yet; lesions are gone, too
   const QImage none = shown.view.grab().toImage();
   shown.view.set_path(path);
-  shown.view.set_entry_zone(EntryZone{path.a, 15.0});
+  shown.view.set_entry_zone(tasks::EntryZone{path.a, 15.0});
   EXPECT_EQ(shown.view.grab().toImage(), none);
   const auto drawn_at = [&](const Vec3& p_P, double radius) {
     const QImage image = shown.view.grab().toImage();
@@ -216,16 +216,16 @@ TEST(SliceView, ShowsAsMuchOfThePlanAsGuidanceAllows) {
     return drawn;
   };
   const double zone_px = 15.0 / shown.view.geometry().mm_per_px + 3.0;
-  shown.view.set_guidance(Guidance::kTarget);
+  shown.view.set_guidance(scene::Guidance::kTarget);
   EXPECT_GT(drawn_at(path.b, 12.0), 20);
   EXPECT_GT(drawn_at(path.a, zone_px), 20);
   EXPECT_EQ(drawn_at(path.at(0.6), 4.0), 0);
-  shown.view.set_guidance(Guidance::kPath);
+  shown.view.set_guidance(scene::Guidance::kPath);
   EXPECT_GT(drawn_at(path.at(0.6), 4.0), 3);
 }
 
 /// All kinds of views about a path, the right ones as small as views may be.
-void look_at(std::shared_ptr<const VirtualPatient> patient, const Segment& path, const char* name) {
+void look_at(std::shared_ptr<const anatomy::VirtualPatient> patient, const Segment& path, const char* name) {
   QWidget window;
   window.resize(1040, 700);
   const std::vector<Vec3> shaft_P{path.a - 60.0 * path.direction(), path.at(0.5), path.at(0.8)};

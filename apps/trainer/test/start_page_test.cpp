@@ -90,13 +90,13 @@ TEST_F(StartPageTest, OffersNeedlesThatFitTheTask) {
 
 TEST_F(StartPageTest, AFolderIsListedByTheNameOfItsCase) {
   const trocar::TemporaryFolder cases;
-  const auto patient = generate_phantom("layers-liver", 1);
+  const auto patient = anatomy::generate_phantom("layers-liver", 1);
   ASSERT_TRUE(patient) << patient.error().text();
-  VirtualPatient named = *patient;
+  anatomy::VirtualPatient named = *patient;
   named.name = "A lesion under the ribs";
   named.description = "Seen at night.";
   const auto at = cases / "case-7";
-  ASSERT_TRUE(save_patient(named, {}, at));
+  ASSERT_TRUE(io::save_patient(named, {}, at));
   StartPage page;
   page.add_patient(to_qt(at.string()));
   const auto* item = page.findChild<QListWidget*>(QStringLiteral("patients"))->currentItem();

@@ -27,13 +27,13 @@ TriangleMesh tetrahedron(const Vec3f& middle_P, float size_mm) {
 class StructurePanelTest : public testing::Test {
  protected:
   void SetUp() override {
-    VirtualPatient patient;
+    anatomy::VirtualPatient patient;
     patient.label_table.labels = {{1, "kidney_left", "kidney", {200, 40, 40}}, {2, "rib_left_9", "bone", {0, 0, 0}}};
-    std::vector<NamedMesh> meshes = {{"skin", tetrahedron({0, 0, 0}, 100)},
-                                     {"kidney_left", tetrahedron({30, 0, 0}, 10)},
-                                     {"rib_left_9", tetrahedron({0, 0, 40}, 10)}};
-    view.show_patient(std::make_shared<const VirtualPatient>(std::move(patient)),
-                      std::make_shared<const std::vector<NamedMesh>>(std::move(meshes)));
+    std::vector<anatomy::NamedMesh> meshes = {{"skin", tetrahedron({0, 0, 0}, 100)},
+                                              {"kidney_left", tetrahedron({30, 0, 0}, 10)},
+                                              {"rib_left_9", tetrahedron({0, 0, 40}, 10)}};
+    view.show_patient(std::make_shared<const anatomy::VirtualPatient>(std::move(patient)),
+                      std::make_shared<const std::vector<anatomy::NamedMesh>>(std::move(meshes)));
     panel = std::make_unique<StructurePanel>(view);
     panel->resize(300, 600);
     panel->show();
@@ -46,7 +46,7 @@ class StructurePanelTest : public testing::Test {
     return *widget;
   }
   double opacity(const char* name) {
-    for (const StructureInfo& info : view.structures()) {
+    for (const scene::StructureInfo& info : view.structures()) {
       if (info.name == name) return info.opacity;
     }
     return -1.0;
@@ -130,11 +130,11 @@ TEST_F(StructurePanelTest, TogglesReachTheView) {
   EXPECT_TRUE(view.are_landmarks_visible());
   find<QToolButton>("show-guidance").click();
   EXPECT_FALSE(view.is_guidance_visible());
-  view.set_guidance(Guidance::kNone);
+  view.set_guidance(scene::Guidance::kNone);
   panel->refresh();
   EXPECT_FALSE(find<QToolButton>("show-guidance").isEnabled());
   find<QComboBox>("volume-preset").setCurrentIndex(1);
-  EXPECT_EQ(view.volume_preset(), VolumePreset::kBone);
+  EXPECT_EQ(view.volume_preset(), scene::VolumePreset::kBone);
 }
 
 TEST_F(StructurePanelTest, EveryControlHasANameATooltipAndFits) {

@@ -6,8 +6,8 @@
 #include <QToolButton>
 #include <cmath>
 
-#include "ui_kit/theme.h"
 #include "test/widget_actions.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {

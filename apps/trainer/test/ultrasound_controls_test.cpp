@@ -37,14 +37,14 @@ TEST_F(UltrasoundControlsTest, ControlsAndViewShowTheSame) {
   find<QPushButton>(controls, "ultrasound-distance").click();
   EXPECT_EQ(view.measuring_tool(), MeasuringTool::kDistance);
   find<QPushButton>(controls, "ultrasound-freeze").click();
-  ASSERT_TRUE(run_until(view, [](const ScanPicture& p) { return p.is_frozen; }));
+  ASSERT_TRUE(run_until(view, [](const ultrasound::ScanPicture& p) { return p.is_frozen; }));
   EXPECT_TRUE(find<QSlider>(controls, "ultrasound-cine").isVisible());
   if (const char* folder = std::getenv("TROCAR_TEST_PICTURES")) {
     controls.setStyleSheet(QStringLiteral("trocar--trainer--UltrasoundControls { background: #181e27; }"));
     controls.grab().save(QStringLiteral("%1/usview_controls.png").arg(QString::fromUtf8(folder)));
   }
   find<QSlider>(controls, "ultrasound-cine").setValue(0);
-  EXPECT_TRUE(run_until(view, [&](const ScanPicture&) { return view.cine().position == 0; }));
+  EXPECT_TRUE(run_until(view, [&](const ultrasound::ScanPicture&) { return view.cine().position == 0; }));
   find<QPushButton>(controls, "ultrasound-freeze").click();
   EXPECT_FALSE(view.is_frozen());
   auto& presets = find<QComboBox>(controls, "ultrasound-preset");

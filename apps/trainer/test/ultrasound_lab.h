@@ -21,27 +21,27 @@ namespace trocar::trainer {
 inline constexpr double kFrame_s = 1.0 / 60.0;
 
 struct Patient {
-  std::shared_ptr<const VirtualPatient> patient;
-  std::shared_ptr<const AcousticScene> scene;
-  std::shared_ptr<const VesselFlow> flow;
-  std::vector<Transducer> transducers;
+  std::shared_ptr<const anatomy::VirtualPatient> patient;
+  std::shared_ptr<const ultrasound::AcousticScene> scene;
+  std::shared_ptr<const ultrasound::VesselFlow> flow;
+  std::vector<ultrasound::Transducer> transducers;
 };
 
 inline const Patient& abdomen() {
   static const Patient made = [] {
     Patient p;
-    const OpenCase& open = *open_abdomen();
+    const attempt::OpenCase& open = *open_abdomen();
     p.patient = open.the_case.patient;
     p.scene = open.acoustic;
     p.flow = open.flow;
-    p.transducers = load_transducers(data_dir() / "transducers.toml").value();
+    p.transducers = ultrasound::load_transducers(data_dir() / "transducers.toml").value();
     return p;
   }();
   return made;
 }
 
-inline const Transducer& transducer(const std::string& name) {
-  for (const Transducer& t : abdomen().transducers)
+inline const ultrasound::Transducer& transducer(const std::string& name) {
+  for (const ultrasound::Transducer& t : abdomen().transducers)
     if (t.name == name) return t;
   ADD_FAILURE() << name;
   return abdomen().transducers.front();
@@ -52,12 +52,13 @@ struct Place {
   Pose X_PT;
   double depth_mm;
 };
-inline Place place(const std::string& name, const Transducer& probe) {
-  const auto views = load_probe_views(data_dir() / "views.toml").value();
+inline Place place(const std::string& name, const ultrasound::Transducer& probe) {
+  const auto views = ultrasound::load_probe_views(data_dir() / "views.toml").value();
   const bool is_portal = name == "portal-vein";
-  ProbeView view = choose_view(*abdomen().patient, views, is_portal ? "liver-lesion" : name).value();
+  ultrasound::ProbeView view =
+      ultrasound::choose_view(*abdomen().patient, views, is_portal ? "liver-lesion" : name).value();
   if (is_portal) view.targets = {"portal_vein*"};
-  return {place_probe(*abdomen().patient, view, probe).value().X_PT, view.depth_mm};
+  return {ultrasound::place_probe(*abdomen().patient, view, probe).value().X_PT, view.depth_mm};
 }
 
 /// Views of the embedded patient, with a frame loop, a mouse and keys; knobs are kept in a folder of the test's own.
@@ -73,7 +74,7 @@ class UltrasoundViewTest : public testing::Test {
   }
 
   void open(UltrasoundView& view, const char* view_name, QSize size, const char* probe_name = "C5-2") {
-    const Transducer& probe = transducer(probe_name);
+    const ultrasound::Transducer& probe = transducer(probe_name);
     view.resize(size);
     view.show();
     view.show_patient(abdomen().scene, abdomen().flow, probe);
@@ -100,10 +101,11 @@ class UltrasoundViewTest : public testing::Test {
   /// A picture of now at full detail.
   bool settle(UltrasoundView& view) {
     const std::uint64_t before = view.picture() ? view.picture()->number : 0;
-    const Acquisition& a = view.settings().acquisition;
-    return run_until(view, [&](const ScanPicture& p) {
-      return p.detail == ScanDetail::kFull && p.number > before + 1 && p.acquisition.depth_mm == a.depth_mm &&
-             p.display == view.settings().display && (!p.colour.pixels.empty()) == view.settings().has_doppler;
+    const ultrasound::Acquisition& a = view.settings().acquisition;
+    return run_until(view, [&](const ultrasound::ScanPicture& p) {
+      return p.detail == ultrasound::ScanDetail::kFull && p.number > before + 1 &&
+             p.acquisition.depth_mm == a.depth_mm && p.display == view.settings().display &&
+             (!p.colour.pixels.empty()) == view.settings().has_doppler;
     });
   }
 
@@ -135,7 +137,7 @@ class UltrasoundViewTest : public testing::Test {
 };
 
 inline PictureMap map_of(const UltrasoundView& view) {
-  const ScanPicture& p = *view.picture();
+  const ultrasound::ScanPicture& p = *view.picture();
   return view.picture_map().value_or(PictureMap(QRectF(0, 0, 1, 1), p.raster));
 }
 

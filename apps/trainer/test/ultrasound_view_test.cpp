@@ -37,7 +37,7 @@ TEST_F(UltrasoundViewTest, FanIsBrightInTissueAndBlackBeside) {
     ASSERT_TRUE(settle(view));
     const QImage image = look(view, qPrintable(QStringLiteral("liver_%1").arg(size.width())));
     const PictureMap map = map_of(view);
-    const ScanGeometry& scan = view.picture()->scan;
+    const ultrasound::ScanGeometry& scan = view.picture()->scan;
     const double middle = scan.middle_line();
     EXPECT_GT(mean_gray(image, map.to_view(scan.to_cartesian({middle, 50.0})), 12), 25.0);
     for (const double line : {-6.0, scan.lines + 5.0})
@@ -61,7 +61,8 @@ double brightness_along(const QImage& image, const UltrasoundView& view, const s
   constexpr int kPlaces = 20;
   for (int n = 0; n < kPlaces; ++n) {
     const double share = 0.6 + 0.35 * n / kPlaces;
-    const QPointF at = map.to_view(shown_place_T(*view.picture(), shaft_P[0] + share * (shaft_P[1] - shaft_P[0])));
+    const QPointF at =
+        map.to_view(ultrasound::shown_place_T(*view.picture(), shaft_P[0] + share * (shaft_P[1] - shaft_P[0])));
     int most = 0;
     for (int y = -4; y <= 4; ++y) most = std::max(most, qGray(image.pixel(at.toPoint() + QPoint(0, y))));
     sum += most;
@@ -125,7 +126,7 @@ TEST_F(UltrasoundViewTest, GuideShowsWhereTheNeedleGoes) {
   const std::vector<Vec3> shaft = {X_PT_ * (pierce_T - 90.0 * along_T), X_PT_ * (pierce_T - 30.0 * along_T)};
   view.set_needle(shaft, 1.27);
   ASSERT_TRUE(settle(view));
-  const QPointF at = map_of(view).to_view(shown_place_T(*view.picture(), X_PT_ * pierce_T));
+  const QPointF at = map_of(view).to_view(ultrasound::shown_place_T(*view.picture(), X_PT_ * pierce_T));
   const auto is_marked = [&](const QImage& image) {
     const QColor c = image.pixelColor(at.toPoint());
     return c.green() > c.red() + 60;
@@ -143,11 +144,11 @@ TEST_F(UltrasoundViewTest, CaliperGivesTheKnownDistance) {
   open(view, "liver-right-kidney", {900, 700});
   ASSERT_TRUE(settle(view));
   view.set_frozen(true);
-  ASSERT_TRUE(run_until(view, [](const ScanPicture& p) { return p.is_frozen; }));
+  ASSERT_TRUE(run_until(view, [](const ultrasound::ScanPicture& p) { return p.is_frozen; }));
   const PictureMap map = map_of(view);
-  const Vec2 a_T(-20.0, 40.0), b_T(25.0, 100.0);
+  const ultrasound::Vec2 a_T(-20.0, 40.0), b_T(25.0, 100.0);
   view.start_measuring(MeasuringTool::kDistance);
-  for (const Vec2& mark_T : {a_T, b_T}) {
+  for (const ultrasound::Vec2& mark_T : {a_T, b_T}) {
     mouse(view, QEvent::MouseMove, map.to_view(mark_T));
     press(view, map.to_view(mark_T));
     release(view, map.to_view(mark_T));
@@ -156,7 +157,7 @@ TEST_F(UltrasoundViewTest, CaliperGivesTheKnownDistance) {
   EXPECT_EQ(view.measuring_tool(), MeasuringTool::kNone);
   // Marks are set to whole pixels.
   const double pixel_mm = 1.0 / map.pixels_per_mm();
-  EXPECT_NEAR(std::get<DistanceCaliper>(view.measurements().items()[0]).distance_mm(), 75.0, pixel_mm);
+  EXPECT_NEAR(std::get<ultrasound::DistanceCaliper>(view.measurements().items()[0]).distance_mm(), 75.0, pixel_mm);
 
   // The same by dragging; then an ellipse and an angle.
   view.start_measuring(MeasuringTool::kDistance);
@@ -164,10 +165,10 @@ TEST_F(UltrasoundViewTest, CaliperGivesTheKnownDistance) {
   mouse(view, QEvent::MouseMove, map.to_view(b_T));
   release(view, map.to_view(b_T));
   ASSERT_EQ(view.measurements().items().size(), 2U);
-  EXPECT_NEAR(std::get<DistanceCaliper>(view.measurements().items()[1]).distance_mm(), 75.0, pixel_mm);
-  const auto click_all = [&](MeasuringTool tool, std::initializer_list<Vec2> marks_T) {
+  EXPECT_NEAR(std::get<ultrasound::DistanceCaliper>(view.measurements().items()[1]).distance_mm(), 75.0, pixel_mm);
+  const auto click_all = [&](MeasuringTool tool, std::initializer_list<ultrasound::Vec2> marks_T) {
     view.start_measuring(tool);
-    for (const Vec2& mark_T : marks_T) {
+    for (const ultrasound::Vec2& mark_T : marks_T) {
       press(view, map.to_view(mark_T));
       release(view, map.to_view(mark_T));
     }
@@ -175,9 +176,10 @@ TEST_F(UltrasoundViewTest, CaliperGivesTheKnownDistance) {
   click_all(MeasuringTool::kEllipse, {{-10.0, 60.0}, {10.0, 60.0}, {0.0, 68.0}});
   click_all(MeasuringTool::kAngle, {{0.0, 110.0}, {0.0, 80.0}, {30.0, 110.0}});
   ASSERT_EQ(view.measurements().items().size(), 4U);
-  const auto& ellipse = std::get<EllipseCaliper>(view.measurements().items()[2]);
+  const auto& ellipse = std::get<ultrasound::EllipseCaliper>(view.measurements().items()[2]);
   EXPECT_NEAR(ellipse.area_mm2(), std::numbers::pi * 10.0 * 8.0, 8.0);
-  EXPECT_NEAR(std::get<AngleCaliper>(view.measurements().items()[3]).angle_rad(), 0.5 * std::numbers::pi, 0.02);
+  EXPECT_NEAR(std::get<ultrasound::AngleCaliper>(view.measurements().items()[3]).angle_rad(), 0.5 * std::numbers::pi,
+              0.02);
   const QImage image = look(view, "calipers");
   const QColor mark = image.pixelColor(map_of(view).to_view(b_T).toPoint());
   EXPECT_GT(mark.red(), mark.blue() + 60) << "the cross is drawn";
@@ -201,16 +203,16 @@ TEST_F(UltrasoundViewTest, CaliperEndsArePickedUpAndMoved) {
   open(view, "liver-right-kidney", {900, 700});
   ASSERT_TRUE(settle(view));
   view.set_frozen(true);
-  ASSERT_TRUE(run_until(view, [](const ScanPicture& p) { return p.is_frozen; }));
+  ASSERT_TRUE(run_until(view, [](const ultrasound::ScanPicture& p) { return p.is_frozen; }));
   const PictureMap map = map_of(view);
-  const auto measure = [&](const Vec2& a_T, const Vec2& b_T) {
+  const auto measure = [&](const ultrasound::Vec2& a_T, const ultrasound::Vec2& b_T) {
     view.start_measuring(MeasuringTool::kDistance);
     press(view, map.to_view(a_T));
     mouse(view, QEvent::MouseMove, map.to_view(b_T));
     release(view, map.to_view(b_T));
   };
   const auto distance = [&](std::size_t item) {
-    return std::get<DistanceCaliper>(view.measurements().items()[item]).distance_mm();
+    return std::get<ultrasound::DistanceCaliper>(view.measurements().items()[item]).distance_mm();
   };
   measure({-20.0, 40.0}, {25.0, 100.0});
   measure({-30.0, 60.0}, {-30.0, 80.0});
@@ -261,7 +263,7 @@ TEST_F(UltrasoundViewTest, FrozenPictureStaysAndIsStepped) {
   open(view, "liver-right-kidney", {480, 420});
   ASSERT_TRUE(settle(view));
   view.set_frozen(true);
-  ASSERT_TRUE(run_until(view, [](const ScanPicture& p) { return p.is_frozen; }));
+  ASSERT_TRUE(run_until(view, [](const ultrasound::ScanPicture& p) { return p.is_frozen; }));
   view.set_transducer_pose(X_PT_ * Pose::translation({10.0, 0.0, 0.0}));
   for (int n = 0; n < 30; ++n) {
     view.advance(now_s_ += kFrame_s);
@@ -272,10 +274,10 @@ TEST_F(UltrasoundViewTest, FrozenPictureStaysAndIsStepped) {
   const int newest = view.cine().position;
   look(view, "frozen");
   strike(view, Qt::Key_Left);
-  ASSERT_TRUE(run_until(view, [&](const ScanPicture&) { return view.cine().position == newest - 1; }));
+  ASSERT_TRUE(run_until(view, [&](const ultrasound::ScanPicture&) { return view.cine().position == newest - 1; }));
   view.set_frozen(false);
-  EXPECT_TRUE(
-      run_until(view, [&](const ScanPicture& p) { return (p.X_PT.p() - X_PT_.p()).norm() > 9.0 && !p.is_frozen; }));
+  EXPECT_TRUE(run_until(
+      view, [&](const ultrasound::ScanPicture& p) { return (p.X_PT.p() - X_PT_.p()).norm() > 9.0 && !p.is_frozen; }));
 }
 
 TEST_F(UltrasoundViewTest, DopplerColoursTheVessel) {
@@ -285,7 +287,7 @@ TEST_F(UltrasoundViewTest, DopplerColoursTheVessel) {
     ASSERT_TRUE(settle(view));
     const auto within_scan = [&] {
       const PictureMap map = map_of(view);
-      const ScanGeometry& scan = view.picture()->scan;
+      const ultrasound::ScanGeometry& scan = view.picture()->scan;
       const QPointF a = map.to_view(scan.to_cartesian({0.25 * scan.lines, 0.25 * scan.depth_mm}));
       const QPointF b = map.to_view(scan.to_cartesian({0.75 * scan.lines, 0.88 * scan.depth_mm}));
       return QRect(a.toPoint(), b.toPoint()).normalized();
@@ -307,8 +309,8 @@ TEST_F(UltrasoundViewTest, ColourBoxIsDraggedWithTheMouse) {
   open(view, "aorta", {900, 700});
   view.change_settings([](UltrasoundSettings& s) { s.has_doppler = true; });
   ASSERT_TRUE(settle(view));
-  const DopplerBox before = view.settings().doppler.box;
-  const ScanGeometry scan = view.picture()->scan;
+  const ultrasound::DopplerBox before = view.settings().doppler.box;
+  const ultrasound::ScanGeometry scan = view.picture()->scan;
   const PictureMap map = map_of(view);
   const auto at = [&](double across, double along) {
     return map.to_view(scan.to_cartesian({across * (scan.lines - 1), along * scan.depth_mm}));
@@ -316,7 +318,7 @@ TEST_F(UltrasoundViewTest, ColourBoxIsDraggedWithTheMouse) {
   press(view, at(0.5, 0.5));
   mouse(view, QEvent::MouseMove, at(0.4, 0.45));
   release(view, at(0.4, 0.45));
-  const DopplerBox moved = view.settings().doppler.box;
+  const ultrasound::DopplerBox moved = view.settings().doppler.box;
   EXPECT_NEAR(moved.first_line, before.first_line - 0.1, 0.01);
   EXPECT_NEAR(moved.far, before.far - 0.05, 0.01);
   EXPECT_NEAR(moved.last_line - moved.first_line, before.last_line - before.first_line, 1e-9);
@@ -345,15 +347,15 @@ TEST_F(UltrasoundViewTest, SaysWhenTheFaceHasLeftTheSkin) {
 
 TEST_F(UltrasoundViewTest, NothingLiesOnTheScan) {
   // Of every transducer in small and large views: caption, bars and scale are beside it.
-  for (const Transducer& probe : abdomen().transducers)
+  for (const ultrasound::Transducer& probe : abdomen().transducers)
     for (const QSize size : {QSize(240, 180), QSize(480, 420), QSize(900, 700), QSize(700, 300), QSize(300, 800)}) {
-      const ScanGeometry scan = make_scan_geometry(probe, probe.depth_mm, 128, 256);
+      const ultrasound::ScanGeometry scan = ultrasound::make_scan_geometry(probe, probe.depth_mm, 128, 256);
       const bool is_small = size.width() < 300;
       const UltrasoundRoom room{is_small ? QSizeF(75.0, 32.0) : QSizeF(110.0, 130.0),
                                 is_small ? QSizeF() : QSizeF(56.0, 150.0), 34.0, 8.0};
       const UltrasoundLayout layout = lay_out(size, scan, room);
-      const RasterGeometry raster =
-          fit_raster(scan, static_cast<int>(layout.picture.width()), static_cast<int>(layout.picture.height()));
+      const ultrasound::RasterGeometry raster = ultrasound::fit_raster(scan, static_cast<int>(layout.picture.width()),
+                                                                       static_cast<int>(layout.picture.height()));
       const PictureMap map(layout.picture, raster);
       for (double line = 0.0; line < scan.lines; line += 1.0)
         for (double depth_mm = 0.0; depth_mm <= scan.depth_mm; depth_mm += scan.depth_mm / 100.0) {
@@ -373,11 +375,12 @@ TEST_F(UltrasoundViewTest, TheWholeMarkerIsInTheView) {
         UltrasoundView view;
         open(view, "aorta", size, probe);
         view.change_settings([&](UltrasoundSettings& s) { s.display.is_mirrored = is_mirrored; });
-        ASSERT_TRUE(run_until(view, [&](const ScanPicture& p) { return p.display == view.settings().display; }));
+        ASSERT_TRUE(
+            run_until(view, [&](const ultrasound::ScanPicture& p) { return p.display == view.settings().display; }));
         look(view, qPrintable(QStringLiteral("marker_%1_%2").arg(probe).arg(size.width())));
         const PictureMap map = map_of(view);
-        const ScanPicture& picture = *view.picture();
-        const QPointF marker = marker_place(map, make_scan_annotation(picture.raster, picture.scan, {}));
+        const ultrasound::ScanPicture& picture = *view.picture();
+        const QPointF marker = marker_place(map, ultrasound::make_scan_annotation(picture.raster, picture.scan, {}));
         EXPECT_GE(marker.x(), kMarker_px) << probe << " " << size.width() << is_mirrored;
         EXPECT_GE(marker.y(), kMarker_px) << probe << " " << size.width() << is_mirrored;
         EXPECT_LE(marker.x(), size.width() - kMarker_px) << probe << " " << size.width() << is_mirrored;
@@ -393,7 +396,7 @@ TEST_F(UltrasoundViewTest, KnobsAreKeptForEachTransducer) {
       s.display.gain_db = 7.0;
       s.display.tgc_db[3] = -5.0;
       s.acquisition.depth_mm = 110.0;
-      s.display.gray_map = GrayMap::kLinear;
+      s.display.gray_map = ultrasound::GrayMap::kLinear;
     });
     view.choose_transducer(transducer("L14-5"));
     EXPECT_EQ(view.settings().display.gain_db, 0.0);
@@ -404,7 +407,7 @@ TEST_F(UltrasoundViewTest, KnobsAreKeptForEachTransducer) {
   EXPECT_EQ(view.settings().display.gain_db, 7.0);
   EXPECT_EQ(view.settings().display.tgc_db[3], -5.0);
   EXPECT_EQ(view.settings().acquisition.depth_mm, 110.0);
-  EXPECT_EQ(view.settings().display.gray_map, GrayMap::kLinear);
+  EXPECT_EQ(view.settings().display.gray_map, ultrasound::GrayMap::kLinear);
   view.reset_settings();
   EXPECT_EQ(view.settings(), default_settings(transducer("C5-2")));
 }

@@ -101,7 +101,7 @@ TEST_F(WindowMirrorTest, WindowsThatOpenAreTurnedOverAboutTheMiddleOfTheFirst) {
 }
 
 /// Pixel, right and down from the view's middle, at which a camera shows a point.
-QPointF pixel_of(const CameraView& view, const ViewPlace& place, const Vec3& p) {
+QPointF pixel_of(const scene::CameraView& view, const ViewPlace& place, const Vec3& p) {
   const Vec3 from_eye = p - view.eye_P;
   const double ahead = from_eye.dot(view.forward_P());
   const double px = 0.5 * place.rows / std::tan(0.5 * view.view_angle_rad) / ahead;
@@ -116,7 +116,7 @@ TEST(MirrorCamera, ShowsAPointWhereTheEyeSeesItThroughThePicture) {
     settings.picture_W = {10.0, 40.0, -20.0};
     settings.eye_distance_mm = 550.0;
     const ViewPlace place{120.0, -60.0, 700, 0.3};
-    const CameraView view = mirror_camera_W(settings, place);
+    const scene::CameraView view = mirror_camera_W(settings, place);
     EXPECT_NEAR(view.mm_per_pixel(view.focus_P, place.rows), place.mm_per_pixel, 1e-9);
     // The picture's plane is seen at its own pixels, from the window's middle on.
     const double tilt_rad = tilt_deg * std::acos(-1.0) / 180.0;

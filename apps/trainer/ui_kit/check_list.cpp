@@ -4,9 +4,9 @@
 #include <QPixmap>
 #include <algorithm>
 
-#include "ui_kit/wrapped_rows.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/wrapped_rows.h"
 
 namespace trocar::trainer {
 namespace {
@@ -35,22 +35,22 @@ QString shortened(const QString& text) {
 
 }  // namespace
 
-QIcon level_icon(std::optional<CheckLevel> level) {
+QIcon level_icon(std::optional<case_builder::CheckLevel> level) {
   QPixmap pixmap(kIconPixels, kIconPixels);
   pixmap.fill(Qt::transparent);
   QPainter painter(&pixmap);
   painter.setRenderHint(QPainter::Antialiasing);
   const Theme& t = theme();
-  const QColor color = !level                           ? t.line
-                       : *level == CheckLevel::kOk      ? t.good
-                       : *level == CheckLevel::kWarning ? t.warning
-                                                        : t.bad;
+  const QColor color = !level                                         ? t.line
+                       : *level == case_builder::CheckLevel::kOk      ? t.good
+                       : *level == case_builder::CheckLevel::kWarning ? t.warning
+                                                                      : t.bad;
   painter.setPen(QPen(color, 5));
   painter.drawEllipse(QRectF(5, 5, 54, 54));
   painter.setPen(QPen(color, 7, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
-  if (level == CheckLevel::kOk) paint_tick(painter);
-  if (level == CheckLevel::kWarning) paint_exclamation(painter);
-  if (level == CheckLevel::kError) paint_cross(painter);
+  if (level == case_builder::CheckLevel::kOk) paint_tick(painter);
+  if (level == case_builder::CheckLevel::kWarning) paint_exclamation(painter);
+  if (level == case_builder::CheckLevel::kError) paint_cross(painter);
   painter.end();
   return QIcon(pixmap);
 }
@@ -67,23 +67,24 @@ CheckList::CheckList(QWidget* parent) : QListWidget(parent) {
   connect(this, &QListWidget::itemActivated, this, choose);
 }
 
-void CheckList::show_checks(const std::vector<CaseCheck>& checks) {
-  std::vector<CaseCheck> sorted = checks;
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const CaseCheck& a, const CaseCheck& b) { return a.level > b.level; });
+void CheckList::show_checks(const std::vector<case_builder::CaseCheck>& checks) {
+  std::vector<case_builder::CaseCheck> sorted = checks;
+  std::stable_sort(
+      sorted.begin(), sorted.end(),
+      [](const case_builder::CaseCheck& a, const case_builder::CaseCheck& b) { return a.level > b.level; });
   const bool is_same = std::equal(sorted.begin(), sorted.end(), checks_.begin(), checks_.end(),
-                                  [](const CaseCheck& a, const CaseCheck& b) {
+                                  [](const case_builder::CaseCheck& a, const case_builder::CaseCheck& b) {
                                     return a.level == b.level && a.text == b.text && a.where_P == b.where_P;
                                   });
   if (is_same) return;
   checks_ = std::move(sorted);
   clear();
-  for (const CaseCheck& check : checks_) {
+  for (const case_builder::CaseCheck& check : checks_) {
     auto* item = new QListWidgetItem(level_icon(check.level), shortened(to_qt(check.text)), this);
     item->setToolTip(to_qt(check.text));
-    const char* word = check.level == CheckLevel::kOk        ? "in order"
-                       : check.level == CheckLevel::kWarning ? "doubtful"
-                                                             : "wrong";
+    const char* word = check.level == case_builder::CheckLevel::kOk        ? "in order"
+                       : check.level == case_builder::CheckLevel::kWarning ? "doubtful"
+                                                                           : "wrong";
     item->setData(Qt::AccessibleTextRole, QStringLiteral("%1: %2").arg(QString::fromLatin1(word), to_qt(check.text)));
   }
 }

@@ -10,7 +10,7 @@
 namespace trocar::trainer {
 
 /// A tick, an exclamation mark or a cross in the level's colour; nothing: not looked at yet.
-QIcon level_icon(std::optional<CheckLevel> level);
+QIcon level_icon(std::optional<case_builder::CheckLevel> level);
 
 /// What is right, doubtful and wrong with a case, worst first. A click or Enter jumps to the place and the step.
 /// Object name: case-checks.
@@ -19,13 +19,13 @@ class CheckList : public QListWidget {
 
  public:
   explicit CheckList(QWidget* parent = nullptr);
-  void show_checks(const std::vector<CaseCheck>& checks);
+  void show_checks(const std::vector<case_builder::CaseCheck>& checks);
 
  Q_SIGNALS:
-  void check_chosen(const trocar::CaseCheck& check);
+  void check_chosen(const trocar::case_builder::CaseCheck& check);
 
  private:
-  std::vector<CaseCheck> checks_;
+  std::vector<case_builder::CaseCheck> checks_;
 };
 
 }  // namespace trocar::trainer

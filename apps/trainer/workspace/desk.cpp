@@ -9,22 +9,22 @@
 #include <QToolButton>
 #include <algorithm>
 
-#include "workspace/layouts.h"
+#include "attempt/guide/needle_shaft.h"
 #include "panels/structure_panel.h"
-#include "ui_kit/parts.h"
-#include "ui_kit/theme.h"
 #include "shell/trainer_application.h"
 #include "slices/slice_geometry.h"
-#include "attempt/guide/needle_shaft.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/theme.h"
 #include "ultrasound/scanner/scan_annotation.h"
-#include "views/plots/force_plot.h"
 #include "views/patient/patient_view.h"
-#include "views/ultrasound/scanner_view.h"
+#include "views/plots/force_plot.h"
 #include "views/slices/slice_marks.h"
 #include "views/slices/slice_view.h"
+#include "views/ultrasound/scanner_view.h"
 #include "views/ultrasound/ultrasound_controls.h"
 #include "views/ultrasound/ultrasound_view.h"
 #include "views/view_strip.h"
+#include "workspace/layouts.h"
 
 namespace trocar::trainer {
 namespace {
@@ -37,8 +37,8 @@ constexpr QSize kLeastView(130, 100);
 constexpr double kFrameOfOne_ms = 32.0, kFrameOfTwo_ms = 20.0;
 
 /// The task's own, else the skin about the planned entry.
-EntryZone entry_zone_of(const Case& the_case) {
-  return the_case.task.entry_zone.value_or(EntryZone{the_case.plan.line_P.a, kEntryZone_mm});
+tasks::EntryZone entry_zone_of(const attempt::Case& the_case) {
+  return the_case.task.entry_zone.value_or(tasks::EntryZone{the_case.plan.line_P.a, kEntryZone_mm});
 }
 
 /// A slim title with a button to let the view float and one to hide it.
@@ -95,7 +95,7 @@ bool are_same(const ToolsShown& a, const ToolsShown& b) {
 
 /// What an eye beside the patient sees of the tools: the needle up to the skin.
 ToolsShown seen_from_outside(ToolsShown tools) {
-  tools.shaft_P = shaft_outside(std::move(tools.shaft_P), tools.inside_mm);
+  tools.shaft_P = attempt::shaft_outside(std::move(tools.shaft_P), tools.inside_mm);
   if (!tools.shaft_P.empty()) tools.X_PN = Pose(tools.X_PN.R(), tools.shaft_P.back());
   if (tools.inside_mm > 0.0) tools.hand_P.reset();
   tools.stylet_P.reset();
@@ -137,7 +137,7 @@ Desk::Desk(QWidget* parent) : QMainWindow(parent) {
     add_view(slices[s].first, slices[s].second, *slices_[s], &slices_[s]->strip());
   view_3d_->setObjectName(QStringLiteral("view-3d"));
   side_->setObjectName(QStringLiteral("view-side"));
-  side_->set_follow(FollowMode::kSide);
+  side_->set_follow(scene::FollowMode::kSide);
   connect_views();
   choose_layout(QSettings().value(QStringLiteral("desk/layout"), built_in_layouts().front().name).toString());
 }
@@ -185,18 +185,18 @@ void Desk::connect_views() {
 
 void Desk::show_in_space(PatientView& view) {
   view.show_patient(open_->the_case.patient, open_->meshes, open_->the_case.plan.line_P.b);
-  const EntryZone zone = entry_zone_of(open_->the_case);
+  const tasks::EntryZone zone = entry_zone_of(open_->the_case);
   view.set_path(open_->the_case.plan.line_P, zone.radius_mm);
   view.scene().set_entry_centre(zone.centre_P);
 }
 
-void Desk::show_case(std::shared_ptr<const OpenCase> open) {
+void Desk::show_case(std::shared_ptr<const attempt::OpenCase> open) {
   begin_case(std::move(open));
   while (show_part()) {
   }
 }
 
-void Desk::begin_case(std::shared_ptr<const OpenCase> open) {
+void Desk::begin_case(std::shared_ptr<const attempt::OpenCase> open) {
   open_ = std::move(open);
   has_side_patient_ = false;
   picture_number_ = 0;
@@ -226,8 +226,8 @@ bool Desk::show_part() {
 }
 
 void Desk::show_in_slices() {
-  const Case& the_case = open_->the_case;
-  const Box body_P = body_box(*the_case.patient);
+  const attempt::Case& the_case = open_->the_case;
+  const slices::Box body_P = slices::body_box(*the_case.patient);
   for (SliceView* slice : slices_) {
     slice->show_patient(the_case.patient, body_P);
     slice->set_path(the_case.plan.line_P);
@@ -237,14 +237,14 @@ void Desk::show_in_slices() {
 }
 
 void Desk::show_help(Difficulty difficulty) {
-  const Guidance guidance = guidance_of(difficulty);
+  const scene::Guidance guidance = guidance_of(difficulty);
   for (PatientView* view : {view_3d_, side_}) {
     view->set_guidance(guidance);
     view->set_guidance_visible(true);
   }
   for (SliceView* slice : slices_) slice->set_guidance(guidance);
   ultrasound_->set_guide_offered(difficulty != Difficulty::kExam);
-  ultrasound_->set_guide_visible(guidance == Guidance::kPath);
+  ultrasound_->set_guide_visible(guidance == scene::Guidance::kPath);
   structures_->refresh();
 }
 
@@ -255,7 +255,7 @@ void Desk::set_tip_hidden(bool is_hidden) {
   for (SliceView* slice : slices_) {
     slice->set_frame_at_skin(is_hidden);
     slice->set_needle({});
-    if (is_hidden) slice->set_focus(body_box(*open_->the_case.patient).center());
+    if (is_hidden) slice->set_focus(slices::body_box(*open_->the_case.patient).center());
   }
 }
 
@@ -266,9 +266,9 @@ void Desk::show_tools(const ToolsShown& tools) {
   tools_ = tools;
   shown_ = is_tip_hidden_ ? seen_from_outside(tools) : tools;
   has_whole_picture_ = false;
-  const Needle& needle = open_->the_case.needle;
+  const tasks::Needle& needle = open_->the_case.needle;
   for (PatientView* view : {view_3d_, side_}) {
-    view->set_needle(shown_.shaft_P, needle.outer_diameter_mm, needle_model(needle.model));
+    view->set_needle(shown_.shaft_P, needle.outer_diameter_mm, scene::needle_model(needle.model));
     view->set_hand(shown_.hand_P);
     view->set_shot(shown_.stylet_P, shown_.core_P);
   }
@@ -323,8 +323,8 @@ void Desk::show_picture_in_space() {
   const auto picture = ultrasound_->picture();
   if (!picture || picture->number == picture_number_ || (has_whole_picture_ && !are_moving_)) return;
   picture_number_ = picture->number;
-  has_whole_picture_ = picture->detail == ScanDetail::kFull;
-  const RgbImage image = picture->colour.pixels.empty() ? to_rgb(picture->gray) : picture->colour;
+  has_whole_picture_ = picture->detail == ultrasound::ScanDetail::kFull;
+  const volume::RgbImage image = picture->colour.pixels.empty() ? ultrasound::to_rgb(picture->gray) : picture->colour;
   for (PatientView* view : {view_3d_, side_}) {
     if (!view->isVisible()) continue;
     view->set_transducer(picture->X_PT, picture->scan);

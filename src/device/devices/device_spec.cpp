@@ -9,7 +9,7 @@
 #include "devices/detail/factories.h"
 #include "devices/simulated/faulty_device.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 enum class Argument : std::uint8_t { kNone, kOptional, kNeeded };
@@ -78,8 +78,9 @@ Result<std::unique_ptr<HapticDevice>> open_device(const DeviceSpec& spec, const 
   return std::make_unique<FaultyDevice>(std::move(device), options.faults, kFaultSeed);
 }
 
-Result<DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own) {
-  return load_device_preset(options.devices_file, options.preset.empty() ? own : std::string_view(options.preset));
+Result<haptics::DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own) {
+  return haptics::load_device_preset(options.devices_file,
+                                     options.preset.empty() ? own : std::string_view(options.preset));
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/result.h"
-#include "devices/simulated/fault_schedule.h"
 #include "devices/haptic_device.h"
+#include "devices/simulated/fault_schedule.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// A device as a command line names it: "virtual", "virtual:omni", "mouse", "gamepad", "spacemouse", "replay:FILE",
 /// "openhaptics", "openhaptics:NAME", "forcedimension", "haply", "haply:ws://HOST:PORT".
@@ -39,4 +39,4 @@ struct DeviceOptions {
 /// Opens the device. Errors say what is missing and how to get it: no vendor library, no device, no service.
 Result<std::unique_ptr<HapticDevice>> open_device(const DeviceSpec& spec, const DeviceOptions& options);
 
-}  // namespace trocar
+}  // namespace trocar::devices

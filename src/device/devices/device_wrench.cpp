@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::devices {
 
-Wrench without_torque(const Wrench& wrench, const Vec3& axis, const std::optional<Vec3>& p_SE) noexcept {
-  Wrench turned{wrench.force_n, Vec3::Zero()};
+haptics::Wrench without_torque(const haptics::Wrench& wrench, const Vec3& axis,
+                               const std::optional<Vec3>& p_SE) noexcept {
+  haptics::Wrench turned{wrench.force_n, Vec3::Zero()};
   if (!p_SE) return turned;
   // A lateral force g at S has the moment -lever axis x g about the entry point: g = axis x torque / lever makes up for
   // the torque, and nothing can be done about its part along the axis.
@@ -16,4 +17,4 @@ Wrench without_torque(const Wrench& wrench, const Vec3& axis, const std::optiona
   return turned;
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

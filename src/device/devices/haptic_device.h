@@ -8,7 +8,7 @@
 #include "haptics/coupling/device_preset.h"
 #include "haptics/insertion/path_constraint.h"  // Wrench
 
-namespace trocar {
+namespace trocar::devices {
 
 /// How a reading came about.
 enum class DeviceStatus : std::uint8_t {
@@ -57,13 +57,13 @@ class HapticDevice {
   HapticDevice& operator=(const HapticDevice&) = delete;
 
   /// What it senses and can bear: of data/devices.toml, tightened by what the device itself says. Constant while open.
-  virtual const DevicePreset& preset() const noexcept = 0;
+  virtual const haptics::DevicePreset& preset() const noexcept = 0;
   /// "virtual:premium", for people and records.
   virtual std::string name() const = 0;
   /// The pose now, at a time of the steady clock (s). Real-time safe.
   virtual DeviceReading read(double now_s) noexcept = 0;
   /// The wrench for the motors, in D about S. false: it was not taken. Real-time safe.
-  virtual bool write(const Wrench& wrench_D) noexcept = 0;
+  virtual bool write(const haptics::Wrench& wrench_D) noexcept = 0;
   /// For devices that nobody really holds; ignored by all others. Real-time safe.
   virtual void hold(const DeviceHand&) noexcept {}
   /// A person's hand holds it: it never stands quite still. false: a simulated hand, or a recorded one.
@@ -75,4 +75,4 @@ class HapticDevice {
   HapticDevice() = default;
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -2,7 +2,7 @@
 
 #include "devices/haptic_device.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 Pose shown(const WorkspaceState& state, double motion_scale, const Pose& X_DS) noexcept {
@@ -20,7 +20,7 @@ void release(WorkspaceState& state, double motion_scale, const Pose& X_DS) noexc
 
 }  // namespace
 
-WorkspaceParams workspace_params(const DevicePreset& preset) noexcept {
+WorkspaceParams workspace_params(const haptics::DevicePreset& preset) noexcept {
   WorkspaceParams params{preset.X_WD, preset.motion_scale, preset.force_scale, 0};
   if (preset.clutch_button == 1) params.clutch = kButtonMain;
   if (preset.clutch_button == 2) params.clutch = kButtonSecond;
@@ -50,10 +50,11 @@ Pose map_from_room(const WorkspaceState& state, const WorkspaceParams& params, c
           X_WD.inverse() * X_WS.p() / params.motion_scale};
 }
 
-Wrench map_to_device(const WorkspaceState& state, const WorkspaceParams& params, const Wrench& wrench_W) noexcept {
+haptics::Wrench map_to_device(const WorkspaceState& state, const WorkspaceParams& params,
+                              const haptics::Wrench& wrench_W) noexcept {
   if (state.is_clutched) return {};
   const Mat3 R_DW = (state.is_started ? state.X_WD_now : params.X_WD).R().transpose();
   return {R_DW * wrench_W.force_n * params.force_scale, R_DW * wrench_W.torque_nmm * params.force_scale};
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

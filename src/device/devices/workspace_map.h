@@ -6,7 +6,7 @@
 #include "haptics/coupling/device_preset.h"
 #include "haptics/insertion/path_constraint.h"  // Wrench
 
-namespace trocar {
+namespace trocar::devices {
 
 /// How the device stands in the room, and how its motion and force become the patient's.
 struct WorkspaceParams {
@@ -16,7 +16,7 @@ struct WorkspaceParams {
   std::uint32_t clutch = 0;   ///< Button bits that let go of the patient while pressed; 0: none.
 };
 /// What data/devices.toml says of it.
-WorkspaceParams workspace_params(const DevicePreset& preset) noexcept;
+WorkspaceParams workspace_params(const haptics::DevicePreset& preset) noexcept;
 
 /// What the clutch has done so far. It moves the base and turns the tool in the hand, but never turns the base: up
 /// stays up, and a force keeps its direction.
@@ -38,6 +38,7 @@ Pose map_from_room(const WorkspaceState& state, const WorkspaceParams& params, c
 
 /// The wrench in D for one in W about S: rotated, scaled; zero while clutched. The compensation of the device's own
 /// weight is no patient's force and does not go this way. Real-time safe.
-Wrench map_to_device(const WorkspaceState& state, const WorkspaceParams& params, const Wrench& wrench_W) noexcept;
+haptics::Wrench map_to_device(const WorkspaceState& state, const WorkspaceParams& params,
+                              const haptics::Wrench& wrench_W) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::devices

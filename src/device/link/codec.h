@@ -9,7 +9,7 @@
 #include "core/result.h"
 #include "link/messages.h"
 
-namespace trocar {
+namespace trocar::link {
 
 using Bytes = std::vector<std::byte>;
 
@@ -31,4 +31,4 @@ struct CommandNumber {
 std::optional<CommandNumber> find_command(std::span<const std::byte> bytes);
 Result<ServerMessage> decode_server_message(std::span<const std::byte> bytes);
 
-}  // namespace trocar
+}  // namespace trocar::link

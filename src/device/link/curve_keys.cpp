@@ -13,7 +13,7 @@
 
 #include "core/files/atomic_file.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 namespace fs = std::filesystem;
 
@@ -192,4 +192,4 @@ Result<std::set<std::string>> load_allow_list(const fs::path& file) {
   return read_public_keys(file, kMostAllowListBytes);
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::link {
 
 /// A CURVE key pair in Z85, 40 characters each.
 struct CurveKeys {
@@ -26,4 +26,4 @@ Result<std::string> load_public_key(const std::filesystem::path& file);
 /// Public keys of the clients that may connect, one a line, # starts a comment.
 Result<std::set<std::string>> load_allow_list(const std::filesystem::path& file);
 
-}  // namespace trocar
+}  // namespace trocar::link

@@ -14,7 +14,7 @@
 #include "link/detail/private_folder.h"
 #include "link/zmtp/detail/tcp_address.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 namespace fs = std::filesystem;
 
@@ -87,4 +87,4 @@ std::string default_endpoint(std::string_view tool) {
   return fmt::format("{}{}", kIpc, (folder / fmt::format("trocar-{}", tool)).string());
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

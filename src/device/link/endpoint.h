@@ -5,7 +5,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::link {
 
 /// Where a server listens.
 struct Endpoint {
@@ -19,4 +19,4 @@ Result<Endpoint> parse_endpoint(std::string_view text);
 /// made so). Empty, with a warning in the log, where that one is another's: parse_endpoint() refuses it.
 std::string default_endpoint(std::string_view tool);
 
-}  // namespace trocar
+}  // namespace trocar::link

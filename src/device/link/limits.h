@@ -3,7 +3,7 @@
 #include <cstddef>
 
 /// What a server takes from its clients. docs/link.md lists these numbers for other implementations.
-namespace trocar {
+namespace trocar::link {
 
 inline constexpr std::size_t kMostMessageBytes = 1 << 20;  ///< Larger ones are dropped unread.
 inline constexpr std::size_t kMostTextBytes = 256 * 1024;  ///< Of one string (a tissue table is the longest).
@@ -30,4 +30,4 @@ inline constexpr double kMostLogLinesPerS = 1.0 / 6.0;  ///< Of all connections.
 inline constexpr double kMostLogLinesAtOnce = 10.0;
 inline constexpr double kHelloPatience_s = 5.0;  ///< A connection without a good Hello is closed after it.
 
-}  // namespace trocar
+}  // namespace trocar::link

@@ -12,7 +12,7 @@
 #include "realtime/loop_statistics.h"
 #include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::link {
 
 inline constexpr std::uint32_t kLinkVersion = 2;  ///< Both sides must have the same.
 
@@ -147,7 +147,7 @@ struct ServerStatus {
   std::string grant;      ///< RealTimeGrant::text
   std::string patient, patient_hash, force_model, task;
   double loading = 0.0;  ///< 0..1 while a scene is being built.
-  LoopSummary loop;
+  realtime::LoopSummary loop;
   std::uint64_t ticks = 0;          ///< Made.
   std::uint64_t ticks_dropped = 0;  ///< That no batch could take: every gap in the numbers is counted here.
   std::uint64_t messages_refused = 0;
@@ -162,7 +162,7 @@ struct ServerStatus {
 /// newest.
 struct StateBatch {
   std::uint64_t first_tick = 0;
-  std::vector<TickSample> samples;
+  std::vector<telemetry::TickSample> samples;
   std::optional<ServerStatus> status;  ///< Now and then: at least at 20 Hz.
   std::uint64_t scene = 0;             ///< See Reply::scene; 0: none.
 };
@@ -187,4 +187,4 @@ using ServerMessage = Envelope<ServerBody>;
 
 inline constexpr double kControlLost_s = 2.0;
 
-}  // namespace trocar
+}  // namespace trocar::link

@@ -5,7 +5,7 @@
 #include "link/detail/inspection.h"
 #include "link/detail/wire_sample.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 using namespace detail;
 
@@ -27,7 +27,7 @@ ServerMember build_body(Builder& b, const Welcome& welcome) {
   return {wire::ServerBody::Welcome, table.Union()};
 }
 
-wire::Latency to_wire(const LatencySummary& latency) {
+wire::Latency to_wire(const realtime::LatencySummary& latency) {
   return {latency.p50_us, latency.p99_us, latency.p999_us, latency.max_us};
 }
 
@@ -37,7 +37,7 @@ flatbuffers::Offset<wire::ServerStatus> build_status(Builder& b, const ServerSta
   const Text grant = b.CreateString(status.grant), patient = b.CreateString(status.patient);
   const Text hash = b.CreateString(status.patient_hash), force_model = b.CreateString(status.force_model);
   const Text task = b.CreateString(status.task);
-  const LoopSummary& l = status.loop;
+  const realtime::LoopSummary& l = status.loop;
   const wire::Loop loop(l.wanted_hz, l.achieved_hz, l.periods, l.missed, l.skipped, to_wire(l.lateness),
                         to_wire(l.tick));
   return wire::CreateServerStatus(b, status.server_time_s, state, gate_mode, fault, warning, grant, patient, hash,
@@ -48,8 +48,8 @@ flatbuffers::Offset<wire::ServerStatus> build_status(Builder& b, const ServerSta
 
 ServerMember build_body(Builder& b, const StateBatch& batch) {
   TROCAR_CHECK(batch.samples.size() <= kMostSamples);
-  const auto samples = b.CreateVectorOfNativeStructs<wire::Sample, TickSample>(batch.samples.data(),
-                                                                               batch.samples.size(), detail::to_wire);
+  const auto samples = b.CreateVectorOfNativeStructs<wire::Sample, telemetry::TickSample>(
+      batch.samples.data(), batch.samples.size(), detail::to_wire);
   flatbuffers::Offset<wire::ServerStatus> status;
   if (batch.status) status = build_status(b, *batch.status);
   return {wire::ServerBody::StateBatch,
@@ -96,13 +96,13 @@ Welcome read(const wire::Welcome& table, Inspection& in) {
           std::move(device)};
 }
 
-LatencySummary read(const wire::Latency& latency, Inspection& in) {
+realtime::LatencySummary read(const wire::Latency& latency, Inspection& in) {
   const char* const field = "latency of the loop";
   return {in.number(latency.p50_us(), kMagnitudes, field), in.number(latency.p99_us(), kMagnitudes, field),
           in.number(latency.p999_us(), kMagnitudes, field), in.number(latency.max_us(), kMagnitudes, field)};
 }
 
-LoopSummary read(const wire::Loop& loop, Inspection& in) {
+realtime::LoopSummary read(const wire::Loop& loop, Inspection& in) {
   return {in.number(loop.wanted_hz(), kMagnitudes, "wanted_hz"),
           in.number(loop.achieved_hz(), kMagnitudes, "achieved_hz"),
           loop.periods(),
@@ -139,7 +139,7 @@ ServerStatus read(const wire::ServerStatus& table, Inspection& in) {
 }
 
 void read_samples(const flatbuffers::Vector<const wire::Sample*>& samples, Inspection& in,
-                  std::vector<TickSample>& result) {
+                  std::vector<telemetry::TickSample>& result) {
   if (samples.size() == 0) return;  // FlatBuffers aligns only vectors with something in them
   if (samples.size() > kMostSamples) return in.refuse("more ticks than a batch may have", "samples");
   // FlatBuffers verifies that a vector of structs lies within the message, but not that it is aligned.
@@ -210,4 +210,4 @@ Result<ServerMessage> decode_server_message(std::span<const std::byte> bytes) {
   return message;
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

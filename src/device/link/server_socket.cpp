@@ -12,7 +12,7 @@
 #include "link/zmtp/detail/server_connections.h"
 #include "realtime/periodic_loop.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 
 using detail::Peer;
@@ -74,13 +74,13 @@ ServerSocket::~ServerSocket() = default;
 
 std::optional<Received> ServerSocket::receive(int wait_ms, const Welcome& welcome, double now_s) {
   constexpr std::int64_t kNsPerMs = 1'000'000;
-  const std::int64_t begin_ns = now_ns();
+  const std::int64_t begin_ns = realtime::now_ns();
   for (int dropped = 0; dropped < kMostDroppedAtOnce;) {
     // The caller's time is of before the wait.
-    const double heard_s = now_s + seconds(now_ns() - begin_ns);
+    const double heard_s = now_s + realtime::seconds(realtime::now_ns() - begin_ns);
     const auto incoming = impl_->connections.next(heard_s);
     if (!incoming) {
-      const std::int64_t left_ms = wait_ms - (now_ns() - begin_ns) / kNsPerMs;
+      const std::int64_t left_ms = wait_ms - (realtime::now_ns() - begin_ns) / kNsPerMs;
       if (left_ms <= 0 || !impl_->connections.wait(static_cast<int>(left_ms), heard_s)) return {};
       continue;
     }
@@ -236,4 +236,4 @@ std::size_t ServerSocket::connections() const {
   return impl_->connections.count();
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

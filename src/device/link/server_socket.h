@@ -12,7 +12,7 @@
 #include "link/endpoint.h"
 #include "link/messages.h"
 
-namespace trocar {
+namespace trocar::link {
 
 struct ServerSecurity {
   CurveKeys keys;
@@ -67,4 +67,4 @@ class ServerSocket {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::link

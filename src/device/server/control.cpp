@@ -10,7 +10,7 @@
 #include "haptics/scene_options.h"
 #include "server/flight_recorder.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 constexpr std::chrono::milliseconds kPausePatience{2000};  // the forces fade first, in 0.2 s
@@ -36,18 +36,18 @@ class DevicePause {
 }  // namespace
 
 std::size_t text_bytes(const ControlJob& job) {
-  if (const auto* scene = std::get_if<LoadScene>(&job.what)) {
+  if (const auto* scene = std::get_if<link::LoadScene>(&job.what)) {
     return scene->task.size() + scene->patient.size() + scene->patient_hash.size() + scene->tool.size() +
            scene->force_model.size() + scene->tissues_toml.size();
   }
   std::size_t bytes = 0;
-  if (const auto* parameters = std::get_if<SetParameters>(&job.what)) {
+  if (const auto* parameters = std::get_if<link::SetParameters>(&job.what)) {
     for (const std::string& setting : parameters->settings) bytes += setting.size() + sizeof setting;
   }
   return bytes;
 }
 
-Control::Control(Shared& shared, HapticDevice& device, SceneBuilder builder, std::string tool,
+Control::Control(Shared& shared, devices::HapticDevice& device, SceneBuilder builder, std::string tool,
                  std::filesystem::path flight_folder)
     : shared_(shared),
       device_(device),
@@ -70,13 +70,13 @@ void Control::run() {
   }
 }
 
-Reply Control::make_reply(const ControlJob& job, const Result<std::string>& done) const {
-  Reply reply{job.request, done.has_value(), done ? *done : done.error().text()};
+link::Reply Control::make_reply(const ControlJob& job, const Result<std::string>& done) const {
+  link::Reply reply{job.request, done.has_value(), done ? *done : done.error().text()};
   const bool makes_scene =
-      std::holds_alternative<LoadScene>(job.what) || std::holds_alternative<SetParameters>(job.what);
+      std::holds_alternative<link::LoadScene>(job.what) || std::holds_alternative<link::SetParameters>(job.what);
   if (!done || !makes_scene || scene_ == nullptr) return reply;
   reply.scene = scene_->number;
-  reply.options = option_texts(*scene_->scene);
+  reply.options = haptics::option_texts(*scene_->scene);
   reply.tissues_toml = builder_.tissues().to_toml();
   return reply;
 }
@@ -88,7 +88,7 @@ Result<std::string> Control::perform(const ControlJob& job) {
 void Control::publish(const ServoScene& scene) {
   scene_ = std::make_shared<const ServoScene>(scene);
   shared_.scene.publish(scene_);
-  const LoadScene& request = builder_.request();
+  const link::LoadScene& request = builder_.request();
   shared_.door.update([&](ControlStatus& status) {
     status.has_scene = true;
     status.patient = request.patient;
@@ -98,7 +98,7 @@ void Control::publish(const ServoScene& scene) {
   });
 }
 
-Result<std::string> Control::perform(const LoadScene& request) {
+Result<std::string> Control::perform(const link::LoadScene& request) {
   if (request.tool != tool_)
     return fail(fmt::format("this server holds the {}, not the {}", tool_, request.tool), "tool",
                 "send the scene to the other server");
@@ -114,14 +114,14 @@ Result<std::string> Control::perform(const LoadScene& request) {
                      to_string(scene->scene->options.force_model));
 }
 
-Result<std::string> Control::perform(const SetParameters& request) {
+Result<std::string> Control::perform(const link::SetParameters& request) {
   TROCAR_TRY(const ServoScene scene, builder_.change(request));
   publish(scene);
   return fmt::format("scene {} has other numbers; the coupling is {:.3g} N/mm", scene.number,
                      scene.scene->options.coupling.stiffness_n_per_mm);
 }
 
-Result<std::string> Control::perform(ServerCommand) {
+Result<std::string> Control::perform(link::ServerCommand) {
   const DevicePause pause(shared_);
   if (!pause.is_granted())
     return fail("the real-time thread does not let go of the device", device_.name(),
@@ -142,4 +142,4 @@ Result<std::string> Control::perform(const WriteFlight& flight) {
   return text;
 }
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -5,13 +5,13 @@
 #include "devices/haptic_device.h"
 #include "haptics/gate/safety_gate.h"
 
-namespace trocar {
+namespace trocar::server {
 
 /// What a period of a trial made.
 struct DeviceTrialRecord {
-  DeviceReading reading;
-  Wrench written_D;
-  GateFault fault = GateFault::kNone;
+  devices::DeviceReading reading;
+  haptics::Wrench written_D;
+  telemetry::GateFault fault = telemetry::GateFault::kNone;
   bool is_pushing = false;
 };
 
@@ -20,7 +20,7 @@ struct DeviceTrialRecord {
 /// safe.
 class DeviceTrial {
  public:
-  DeviceTrial(HapticDevice& device, double rate_hz) noexcept;
+  DeviceTrial(devices::HapticDevice& device, double rate_hz) noexcept;
 
   DeviceTrialRecord step(double now_s, double dt_s) noexcept;
   /// A force upwards (+z of D) rises to push_n() and falls again, within kPush_s after the gate's safe start. Resets a
@@ -32,10 +32,10 @@ class DeviceTrial {
   static constexpr double kPush_s = 1.5;
 
  private:
-  HapticDevice& device_;
-  const GateParams gate_;
+  devices::HapticDevice& device_;
+  const haptics::GateParams gate_;
   const double push_n_;
-  GateState state_;
+  haptics::GateState state_;
   std::optional<double> pushing_s_;  ///< Since push().
   std::optional<Pose> last_X_DS_;
   double unread_s_ = 0.0;
@@ -43,4 +43,4 @@ class DeviceTrial {
   bool has_refused_ = false;  ///< The device did not take the last wrench.
 };
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -6,7 +6,7 @@
 
 #include "core/files/atomic_file.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace fs = std::filesystem;
 namespace {
 
@@ -78,7 +78,7 @@ FlightRecorder::FlightRecorder(double rate_hz)
 std::optional<std::vector<ServoRecord>> FlightRecorder::add(const ServoRecord& record) {
   records_.push_back(record);
   if (records_.size() > before_ + after_) records_.pop_front();
-  const bool is_new_fault = record.fault != GateFault::kNone && fault_ == GateFault::kNone;
+  const bool is_new_fault = record.fault != telemetry::GateFault::kNone && fault_ == telemetry::GateFault::kNone;
   fault_ = record.fault;
   if (is_new_fault && wanted_ == 0) {
     wanted_ = after_;
@@ -91,10 +91,10 @@ std::optional<std::vector<ServoRecord>> FlightRecorder::add(const ServoRecord& r
 Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, const std::string& utc,
                                            const std::vector<ServoRecord>& flight) {
   std::string text(kHeader);
-  GateFault fault = GateFault::kNone;
+  telemetry::GateFault fault = telemetry::GateFault::kNone;
   for (const ServoRecord& record : flight) {
     text += csv_row(record);
-    if (fault == GateFault::kNone) fault = record.fault;
+    if (fault == telemetry::GateFault::kNone) fault = record.fault;
   }
   const std::filesystem::path path = folder / fmt::format("flight-{}-{}.csv", utc, to_string(fault));
   TROCAR_TRY_STATUS(write_file_atomically(path, text));
@@ -102,4 +102,4 @@ Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, 
   return path;
 }
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -10,7 +10,7 @@
 #include "core/result.h"
 #include "server/servo.h"
 
-namespace trocar {
+namespace trocar::server {
 
 /// Keeps the last periods, and gives them away once a fault has latched and a little more has been seen. Fed by the
 /// link's thread with the records that leave the servo: the servo itself pays nothing for it.
@@ -27,7 +27,7 @@ class FlightRecorder {
  private:
   std::size_t before_, after_;
   std::size_t wanted_ = 0;  ///< Records still to come; 0: no fault is being recorded.
-  GateFault fault_ = GateFault::kNone;
+  telemetry::GateFault fault_ = telemetry::GateFault::kNone;
   std::deque<ServoRecord> records_;
 };
 
@@ -47,4 +47,4 @@ std::size_t keep_quota(const std::filesystem::path& folder, const std::filesyste
 Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, const std::string& utc,
                                            const std::vector<ServoRecord>& flight);
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -13,15 +13,15 @@
 #include "server/detail/control.h"
 #include "server/detail/link_thread.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 constexpr double kNsPerS = 1e9;
 constexpr std::chrono::milliseconds kLoadPatience{300};  ///< At the end of the server, for a step of loading.
 
-Welcome make_welcome(const HapticDevice& device, const std::string& tool, double force_scale) {
-  const DevicePreset& preset = device.preset();
-  Welcome welcome;
+link::Welcome make_welcome(const devices::HapticDevice& device, const std::string& tool, double force_scale) {
+  const haptics::DevicePreset& preset = device.preset();
+  link::Welcome welcome;
   welcome.server = fmt::format("trocar-hapticd {}", kVersion);
   welcome.tool = tool;
   welcome.device = {device.name(),
@@ -39,8 +39,8 @@ Welcome make_welcome(const HapticDevice& device, const std::string& tool, double
 }  // namespace
 
 struct HapticServer::Impl {
-  Impl(const ServerOptions& options, std::unique_ptr<HapticDevice> the_device, PatientOpener open_patient,
-       ServerSocket the_socket)
+  Impl(const ServerOptions& options, std::unique_ptr<devices::HapticDevice> the_device, PatientOpener open_patient,
+       link::ServerSocket the_socket)
       : params(servo_params(the_device->preset(), options.rate_hz)),
         device(std::move(the_device)),
         last_chance(std::in_place, *device),
@@ -105,9 +105,9 @@ struct HapticServer::Impl {
   }
 
   ServoParams params;
-  std::unique_ptr<HapticDevice> device;
+  std::unique_ptr<devices::HapticDevice> device;
   std::optional<LastChance> last_chance;
-  ServerSocket socket;
+  link::ServerSocket socket;
   std::string url;
   Shared shared;
   Servo servo;
@@ -131,21 +131,21 @@ HapticServer::HapticServer(HapticServer&&) noexcept = default;
 HapticServer& HapticServer::operator=(HapticServer&&) noexcept = default;
 HapticServer::~HapticServer() = default;
 
-Result<HapticServer> HapticServer::start(const ServerOptions& options, std::unique_ptr<HapticDevice> device,
+Result<HapticServer> HapticServer::start(const ServerOptions& options, std::unique_ptr<devices::HapticDevice> device,
                                          PatientOpener open_patient, const ThreadStarter& starter) {
   constexpr double kSlowest_hz = 250.0, kFastest_hz = 4000.0;
   if (!(options.rate_hz >= kSlowest_hz && options.rate_hz <= kFastest_hz))
     return fail_usage(
         fmt::format("rate {} Hz is not between {:.0f} and {:.0f}", options.rate_hz, kSlowest_hz, kFastest_hz), "--rate",
         "choose a rate in this range");
-  TROCAR_TRY_STATUS(parse_tool(options.tool));
-  TROCAR_TRY(ServerSocket socket, ServerSocket::bind(options.endpoint, options.security));
+  TROCAR_TRY_STATUS(haptics::parse_tool(options.tool));
+  TROCAR_TRY(link::ServerSocket socket, link::ServerSocket::bind(options.endpoint, options.security));
   auto impl = std::make_unique<Impl>(options, std::move(device), std::move(open_patient), std::move(socket));
   TROCAR_TRY_STATUS(impl->start_threads(starter, options.priority));
   return HapticServer(std::move(impl));
 }
 
-void HapticServer::load(const LoadScene& request) {
+void HapticServer::load(const link::LoadScene& request) {
   impl_->shared.door.post({0, 0, request});
 }
 
@@ -157,4 +157,4 @@ ServerReport HapticServer::stop() {
   return impl_->stop();
 }
 
-}  // namespace trocar
+}  // namespace trocar::server

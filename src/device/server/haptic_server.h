@@ -15,11 +15,11 @@
 #include "realtime/real_time_grant.h"
 #include "server/scene_builder.h"
 
-namespace trocar {
+namespace trocar::server {
 
 struct ServerOptions {
-  Endpoint endpoint;
-  std::optional<ServerSecurity> security;
+  link::Endpoint endpoint;
+  std::optional<link::ServerSecurity> security;
   double rate_hz = 1000.0;      ///< 250..4000
   std::string tool = "needle";  ///< What this server is for: needle | probe | finger. Scenes of others are refused.
   int priority = 80;            ///< Of SCHED_FIFO, for the real-time thread; the link's gets kLinkPriority.
@@ -37,10 +37,10 @@ struct ServerReport {
   /// A scene was still being loaded. Threads and device are at rest all the same, but destroying the server waits for
   /// the loading to end: a program that ends calls std::_Exit instead.
   bool is_loading = false;
-  LoopSummary loop;
-  RealTimeGrant grant;
+  realtime::LoopSummary loop;
+  realtime::RealTimeGrant grant;
   std::uint64_t ticks = 0, ticks_dropped = 0;
-  RefusedMessages refused;
+  link::RefusedMessages refused;
   std::uint64_t batches_not_taken = 0;
 };
 
@@ -50,14 +50,14 @@ class HapticServer {
  public:
   /// Errors: the endpoint (see ServerSocket::bind), a rate out of range, a thread that does not start (those that had
   /// started have ended then).
-  static Result<HapticServer> start(const ServerOptions& options, std::unique_ptr<HapticDevice> device,
+  static Result<HapticServer> start(const ServerOptions& options, std::unique_ptr<devices::HapticDevice> device,
                                     PatientOpener open_patient, const ThreadStarter& starter = start_thread);
   HapticServer(HapticServer&&) noexcept;
   HapticServer& operator=(HapticServer&&) noexcept;
   ~HapticServer();
 
   /// Loads a scene as a client's message would, without a client.
-  void load(const LoadScene& request);
+  void load(const link::LoadScene& request);
   std::string url() const;
   /// Fades the forces, then ends the threads; waits 0.3 s at most for a scene that is being loaded. Once.
   ServerReport stop();
@@ -68,4 +68,4 @@ class HapticServer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 constexpr std::array kSignals{SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGXCPU};
@@ -61,7 +61,7 @@ void install() noexcept {
 
 }  // namespace
 
-LastChance::LastChance(HapticDevice& device) noexcept : device_(device) {
+LastChance::LastChance(devices::HapticDevice& device) noexcept : device_(device) {
   install();
   for (auto& slot : devices) {
     LastChance* none = nullptr;
@@ -83,7 +83,7 @@ void LastChance::adopt_thread() noexcept {
 bool LastChance::takes_over(bool is_lent) noexcept {
   if (!is_wanted_.load(std::memory_order_acquire)) return false;
   if (!is_done_.load(std::memory_order_acquire)) {
-    if (!is_lent) device_.write(Wrench{});
+    if (!is_lent) device_.write(haptics::Wrench{});
     is_done_.store(true, std::memory_order_release);
   }
   return true;
@@ -93,7 +93,7 @@ void LastChance::let_go() noexcept {
   is_wanted_.store(true, std::memory_order_release);
   const bool is_writer = thread_.load(std::memory_order_acquire) == ::gettid();
   for (int i = 0; i < kPatience_ms && !is_writer && !is_done_.load(std::memory_order_acquire); ++i) sleep_ms(1);
-  if (!is_done_.load(std::memory_order_acquire)) device_.write(Wrench{});
+  if (!is_done_.load(std::memory_order_acquire)) device_.write(haptics::Wrench{});
   sleep_ms(kSent_ms);
 }
 
@@ -110,4 +110,4 @@ CrashStack::~CrashStack() {
   ::sigaltstack(&none, nullptr);
 }
 
-}  // namespace trocar
+}  // namespace trocar::server

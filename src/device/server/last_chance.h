@@ -8,7 +8,7 @@
 
 #include "devices/haptic_device.h"
 
-namespace trocar {
+namespace trocar::server {
 
 /// Zero force where the program crashes: SIGABRT (std::terminate, failed checks, libraries), SIGSEGV, SIGBUS, SIGFPE,
 /// SIGILL, SIGSYS, SIGXCPU. The real-time thread is asked to write zero and to write nothing more; where it does not
@@ -18,7 +18,7 @@ class LastChance {
  public:
   static constexpr int kPatience_ms = 20;
 
-  explicit LastChance(HapticDevice& device) noexcept;
+  explicit LastChance(devices::HapticDevice& device) noexcept;
   ~LastChance();
   LastChance(const LastChance&) = delete;
   LastChance& operator=(const LastChance&) = delete;
@@ -33,7 +33,7 @@ class LastChance {
   void let_go() noexcept;
 
  private:
-  HapticDevice& device_;
+  devices::HapticDevice& device_;
   std::atomic<pid_t> thread_{0};
   std::atomic<bool> is_wanted_{false};
   std::atomic<bool> is_done_{false};
@@ -52,4 +52,4 @@ class CrashStack {
   alignas(16) std::array<std::byte, kBytes> bytes_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::server

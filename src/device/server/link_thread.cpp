@@ -7,7 +7,7 @@
 #include "core/log.h"
 #include "realtime/periodic_loop.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 constexpr double kBatch_s = 0.005;
@@ -20,7 +20,7 @@ constexpr double kStalled_s = 1.0;         // a window without a picture for so 
 
 }  // namespace
 
-LinkThread::LinkThread(Shared& shared, ServerSocket& socket, Welcome welcome, int priority)
+LinkThread::LinkThread(Shared& shared, link::ServerSocket& socket, link::Welcome welcome, int priority)
     : shared_(shared),
       socket_(socket),
       welcome_(std::move(welcome)),
@@ -29,11 +29,11 @@ LinkThread::LinkThread(Shared& shared, ServerSocket& socket, Welcome welcome, in
 
 void LinkThread::run() {
   const CrashStack stack;
-  const RealTimeGrant grant = request_real_time(priority_);
+  const realtime::RealTimeGrant grant = realtime::request_real_time(priority_);
   log_info("link thread: {}", grant.text());
   while (!shared_.is_stopping.load(std::memory_order_relaxed)) {
     receive_round();
-    const double now_s = seconds(now_ns());
+    const double now_s = realtime::seconds(realtime::now_ns());
     socket_.drop_silent(now_s);
     const std::optional<double> heard_s = socket_.controller_heard_s();
     shared_.heard_ns.store(heard_s ? static_cast<std::int64_t>(*heard_s * 1e9) : 0, std::memory_order_relaxed);
@@ -54,13 +54,13 @@ void LinkThread::run() {
 
 /// Bounded in messages and in time: batches go out whatever clients send.
 void LinkThread::receive_round() {
-  const double begin_s = seconds(now_ns());
+  const double begin_s = realtime::seconds(realtime::now_ns());
   double now_s = begin_s;
   for (int taken = 0; taken < kMostMessagesARound && now_s - begin_s < kLongestRound_s; ++taken) {
     const auto received = socket_.receive(taken == 0 ? kWait_ms : 0, welcome_, now_s);
     if (!received) return;
     take(*received);
-    now_s = seconds(now_ns());
+    now_s = realtime::seconds(realtime::now_ns());
   }
 }
 
@@ -96,41 +96,42 @@ void LinkThread::flush() {
   batch_.status.reset();
 }
 
-void LinkThread::take(const Received& received) {
-  if (const auto* beat = std::get_if<Heartbeat>(&received.body)) {
+void LinkThread::take(const link::Received& received) {
+  if (const auto* beat = std::get_if<link::Heartbeat>(&received.body)) {
     if (received.has_control) window_age_s_ = beat->window_age_s;
-  } else if (const auto* command = std::get_if<Command>(&received.body)) {
+  } else if (const auto* command = std::get_if<link::Command>(&received.body)) {
     take(received, *command);
-  } else if (const auto* target = std::get_if<HandTarget>(&received.body)) {
+  } else if (const auto* target = std::get_if<link::HandTarget>(&received.body)) {
     shared_.hand.write(*target);
   }
   // Another client took over, or the one in control said goodbye: forces wait to be asked for again.
   const bool has_left = received.session == in_control_ && !received.has_control;
   const bool is_another = received.has_control && received.session != in_control_;
   if (!has_left && !is_another) return;
-  if (in_control_ != 0) shared_.commands.push(ServerCommand::kStop);
+  if (in_control_ != 0) shared_.commands.push(link::ServerCommand::kStop);
   in_control_ = is_another ? received.session : 0;
   window_age_s_ = 0.0;
 }
 
-void LinkThread::reply(const Received& received, std::uint32_t request, bool is_done, std::string text) {
+void LinkThread::reply(const link::Received& received, std::uint32_t request, bool is_done, std::string text) {
   socket_.send_reply(received.session, {request, is_done, std::move(text)});
 }
 
-void LinkThread::take(const Received& received, const Command& command) {
-  const auto* simple = std::get_if<ServerCommand>(&command.what);
-  if (simple == nullptr || *simple == ServerCommand::kReconnect) {
-    ControlJob job{received.session, command.request, ServerCommand::kReconnect};
+void LinkThread::take(const link::Received& received, const link::Command& command) {
+  const auto* simple = std::get_if<link::ServerCommand>(&command.what);
+  if (simple == nullptr || *simple == link::ServerCommand::kReconnect) {
+    ControlJob job{received.session, command.request, link::ServerCommand::kReconnect};
     std::visit([&](const auto& what) { job.what = what; }, command.what);
     if (!shared_.door.post(std::move(job)))
       reply(received, command.request, false, "busy: other jobs of the server wait — send it again when they are done");
     return;
   }
-  if (*simple == ServerCommand::kStart && !shared_.door.status().has_scene) {
+  if (*simple == link::ServerCommand::kStart && !shared_.door.status().has_scene) {
     reply(received, command.request, false, "there is no scene to feel — load one first");
     return;
   }
-  if (*simple == ServerCommand::kResetFault) shared_.door.update([](ControlStatus& status) { status.warning.clear(); });
+  if (*simple == link::ServerCommand::kResetFault)
+    shared_.door.update([](ControlStatus& status) { status.warning.clear(); });
   const bool is_taken = shared_.commands.push(*simple);
   reply(received, command.request, is_taken, is_taken ? "done" : "too many commands at once — send it again");
 }
@@ -140,9 +141,9 @@ std::string LinkThread::warning() const {
   return shared_.door.status().warning;
 }
 
-ServerStatus LinkThread::make_status(double now_s) {
+link::ServerStatus LinkThread::make_status(double now_s) {
   const ControlStatus control = shared_.door.status();
-  ServerStatus status;
+  link::ServerStatus status;
   status.server_time_s = now_s;
   status.gate_mode = to_string(newest_.mode);
   status.fault = to_string(newest_.fault);
@@ -161,9 +162,9 @@ ServerStatus LinkThread::make_status(double now_s) {
   status.coupling_share = std::exchange(coupling_share_, 1.0);
   status.drop_n = drop_n_;
   status.drop_s = drop_s_;
-  status.is_device_connected = newest_.status != DeviceStatus::kDisconnected;
+  status.is_device_connected = newest_.status != devices::DeviceStatus::kDisconnected;
   status.has_controller = in_control_ != 0;
-  status.state = newest_.fault != GateFault::kNone                   ? "fault"
+  status.state = newest_.fault != telemetry::GateFault::kNone        ? "fault"
                  : control.loading > 0.0                             ? "loading"
                  : !control.has_scene                                ? "no scene"
                  : shared_.is_wanted.load(std::memory_order_relaxed) ? "running"
@@ -171,4 +172,4 @@ ServerStatus LinkThread::make_status(double now_s) {
   return status;
 }
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -9,7 +9,7 @@
 
 #include "haptics/coupling/coupling_limits.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 /// "NAME=VALUE" in two.
@@ -26,8 +26,8 @@ Result<double> parse_number(const Setting& setting) {
                     "send a decimal number");
 }
 
-NeedleGeometry needle_of(const LoadScene& request) noexcept {
-  NeedleGeometry needle;
+haptics::NeedleGeometry needle_of(const link::LoadScene& request) noexcept {
+  haptics::NeedleGeometry needle;
   needle.length_mm = request.needle_length_mm;
   needle.radius_mm = request.needle_radius_mm;
   needle.inner_radius_mm = request.needle_inner_radius_mm;
@@ -39,11 +39,11 @@ NeedleGeometry needle_of(const LoadScene& request) noexcept {
 }
 
 /// Of a scene's option; nothing where the text is not one of them.
-Result<bool> apply_option(std::string_view text, HapticOptions& options) {
+Result<bool> apply_option(std::string_view text, haptics::HapticOptions& options) {
   const std::size_t at = text.find('=');
   const Setting setting{text.substr(0, at), at == std::string_view::npos ? "" : text.substr(at + 1)};
   if (setting.name == "force_model") {
-    TROCAR_TRY(options.force_model, parse_force_model(setting.value));
+    TROCAR_TRY(options.force_model, haptics::parse_force_model(setting.value));
   } else if (setting.name == "coupling.stiffness") {
     TROCAR_TRY(options.coupling.stiffness_n_per_mm, parse_number(setting));
   } else if (setting.name == "coupling.damping") {
@@ -69,14 +69,14 @@ Result<ServoScene> with_memory_checked(const std::string& patient, const Step& s
 
 }  // namespace
 
-SceneBuilder::SceneBuilder(PatientOpener open_patient, std::filesystem::path tissues_file, DevicePreset device)
+SceneBuilder::SceneBuilder(PatientOpener open_patient, std::filesystem::path tissues_file, haptics::DevicePreset device)
     : open_patient_(std::move(open_patient)), tissues_file_(std::move(tissues_file)), device_(std::move(device)) {}
 
-Result<std::shared_ptr<const VirtualPatient>> SceneBuilder::patient_for(const LoadScene& request,
-                                                                        const Progress& progress) {
+Result<std::shared_ptr<const anatomy::VirtualPatient>> SceneBuilder::patient_for(const link::LoadScene& request,
+                                                                                 const Progress& progress) {
   const bool is_known =
       patient_ != nullptr && request.patient == request_.patient && request.patient_seed == request_.patient_seed;
-  std::shared_ptr<const VirtualPatient> patient = patient_;
+  std::shared_ptr<const anatomy::VirtualPatient> patient = patient_;
   if (!is_known) {
     TROCAR_TRY(patient, open_patient_(request.patient, request.patient_seed, progress));
   }
@@ -91,32 +91,34 @@ Result<std::shared_ptr<const VirtualPatient>> SceneBuilder::patient_for(const Lo
   return patient;
 }
 
-Result<SceneBuilder::Parts> SceneBuilder::parts_for(const LoadScene& request) const {
+Result<SceneBuilder::Parts> SceneBuilder::parts_for(const link::LoadScene& request) const {
   Parts parts;
   if (request.tissues_toml.empty()) {
-    TROCAR_TRY(parts.loaded, load_tissue_table(tissues_file_));
+    TROCAR_TRY(parts.loaded, anatomy::load_tissue_table(tissues_file_));
   } else {
-    TROCAR_TRY(parts.loaded, parse_tissue_table(request.tissues_toml, "the client's tissue table"));
+    TROCAR_TRY(parts.loaded, anatomy::parse_tissue_table(request.tissues_toml, "the client's tissue table"));
   }
   parts.tissues = parts.loaded;
-  apply_device_preset(device_, parts.options);
-  parts.options.coupling = within(parts.options.coupling, limits_of(device_));  // its scales may want a softer one
-  TROCAR_TRY(parts.options.tool, parse_tool(request.tool));
-  TROCAR_TRY(parts.options.force_model, parse_force_model(request.force_model));
+  haptics::apply_device_preset(device_, parts.options);
+  parts.options.coupling =
+      haptics::within(parts.options.coupling, haptics::limits_of(device_));  // its scales may want a softer one
+  TROCAR_TRY(parts.options.tool, haptics::parse_tool(request.tool));
+  TROCAR_TRY(parts.options.force_model, haptics::parse_force_model(request.force_model));
   parts.options.seed = request.seed;
   return parts;
 }
 
-Result<ServoScene> SceneBuilder::build(const LoadScene& request, std::shared_ptr<const VirtualPatient> patient,
-                                       Parts parts, bool continues) {
-  HapticOptions options = parts.options;
+Result<ServoScene> SceneBuilder::build(const link::LoadScene& request,
+                                       std::shared_ptr<const anatomy::VirtualPatient> patient, Parts parts,
+                                       bool continues) {
+  haptics::HapticOptions options = parts.options;
   // The tick works in the patient's newtons and mm; the gate holds the device's own limits, after the scales.
-  const DeviceCapability capability = scene_capability(device_);
+  const haptics::DeviceCapability capability = haptics::scene_capability(device_);
   const double stiffest = capability.max_stiffness_n_per_mm;
-  TROCAR_TRY_STATUS(check(options.coupling, limits_of(device_)));
+  TROCAR_TRY_STATUS(check(options.coupling, haptics::limits_of(device_)));
   options.constraint.force_n = std::min(options.constraint.force_n, stiffest * options.constraint.linear_mm);
-  TROCAR_TRY(auto built, make_haptic_scene(patient, parts.tissues, needle_of(request), capability, options));
-  auto scene = std::make_shared<HapticScene>(*built);
+  TROCAR_TRY(auto built, haptics::make_haptic_scene(patient, parts.tissues, needle_of(request), capability, options));
+  auto scene = std::make_shared<haptics::HapticScene>(*built);
   scene->X_PD = request.X_PW;
   scene->gravity_P = -request.X_PW.R().col(2);  // down in the room
 
@@ -126,11 +128,12 @@ Result<ServoScene> SceneBuilder::build(const LoadScene& request, std::shared_ptr
   return ServoScene{std::move(scene), ++number_, continues};
 }
 
-Result<ServoScene> SceneBuilder::load(const LoadScene& request, const Progress& progress, const std::stop_token& stop) {
+Result<ServoScene> SceneBuilder::load(const link::LoadScene& request, const Progress& progress,
+                                      const std::stop_token& stop) {
   return with_memory_checked(request.patient, [&] { return load_throwing(request, progress, stop); });
 }
 
-Result<ServoScene> SceneBuilder::load_throwing(const LoadScene& request, const Progress& progress,
+Result<ServoScene> SceneBuilder::load_throwing(const link::LoadScene& request, const Progress& progress,
                                                const std::stop_token& stop) {
   const auto check_stop = [&]() -> Status {
     if (!stop.stop_requested()) return {};
@@ -145,22 +148,22 @@ Result<ServoScene> SceneBuilder::load_throwing(const LoadScene& request, const P
   return build(request, std::move(patient), std::move(parts), false);
 }
 
-Result<ServoScene> SceneBuilder::change(const SetParameters& request) {
+Result<ServoScene> SceneBuilder::change(const link::SetParameters& request) {
   return with_memory_checked(request_.patient, [&] { return change_throwing(request); });
 }
 
-Result<ServoScene> SceneBuilder::change_throwing(const SetParameters& request) {
+Result<ServoScene> SceneBuilder::change_throwing(const link::SetParameters& request) {
   if (patient_ == nullptr) return fail("there is no scene whose numbers could be changed", "", "load one first");
   Parts parts = parts_;
   if (!request.tissues_toml.empty()) {
-    TROCAR_TRY(parts.loaded, parse_tissue_table(request.tissues_toml, "the client's tissue table"));
+    TROCAR_TRY(parts.loaded, anatomy::parse_tissue_table(request.tissues_toml, "the client's tissue table"));
   }
-  TissueTable tissues = parts.loaded;
+  anatomy::TissueTable tissues = parts.loaded;
   bool has_tissues = request.settings.empty() || !request.tissues_toml.empty();
   for (const std::string& setting : request.settings) {
     TROCAR_TRY(const bool is_option, apply_option(setting, parts.options));
     if (is_option) continue;
-    TROCAR_TRY_STATUS(apply_override(tissues, setting));
+    TROCAR_TRY_STATUS(anatomy::apply_override(tissues, setting));
     has_tissues = true;
   }
   if (has_tissues) parts.tissues = std::move(tissues);
@@ -168,4 +171,4 @@ Result<ServoScene> SceneBuilder::change_throwing(const SetParameters& request) {
   return build(request_, patient_, std::move(parts), continues);
 }
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -3,63 +3,64 @@
 #include <algorithm>
 
 #include "devices/device_wrench.h"
-#include "haptics/gate/device_gate.h"
 #include "haptics/closed_loop/rotation.h"
+#include "haptics/gate/device_gate.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 /// Which event tells that the gate began to act.
 struct GateEvent {
   std::uint16_t action;
-  LimitReason reason;
+  telemetry::LimitReason reason;
 };
 constexpr std::array kGateEvents{
-    GateEvent{kGateFault, LimitReason::kFault},
-    GateEvent{kGateBrake, LimitReason::kBrake},
-    GateEvent{kGateStale, LimitReason::kStale},
-    GateEvent{kGateStart, LimitReason::kSafeStart},
-    GateEvent{kGateContinuous, LimitReason::kContinuous},
-    GateEvent{kGatePassivity, LimitReason::kPassivity},
-    GateEvent{kGateSlew, LimitReason::kSlew},
+    GateEvent{haptics::kGateFault, telemetry::LimitReason::kFault},
+    GateEvent{haptics::kGateBrake, telemetry::LimitReason::kBrake},
+    GateEvent{haptics::kGateStale, telemetry::LimitReason::kStale},
+    GateEvent{haptics::kGateStart, telemetry::LimitReason::kSafeStart},
+    GateEvent{haptics::kGateContinuous, telemetry::LimitReason::kContinuous},
+    GateEvent{haptics::kGatePassivity, telemetry::LimitReason::kPassivity},
+    GateEvent{haptics::kGateSlew, telemetry::LimitReason::kSlew},
 };
 
 /// Into the first free place; an event too many is left out: `limited` says it anyway.
-void add_event(TickSample& sample, LimitReason reason) noexcept {
-  for (TickEvent& event : sample.events) {
-    if (event.kind != EventKind::kNone) continue;
-    event = {EventKind::kLimit, static_cast<std::uint8_t>(reason)};
+void add_event(telemetry::TickSample& sample, telemetry::LimitReason reason) noexcept {
+  for (telemetry::TickEvent& event : sample.events) {
+    if (event.kind != telemetry::EventKind::kNone) continue;
+    event = {telemetry::EventKind::kLimit, static_cast<std::uint8_t>(reason)};
     return;
   }
 }
 
 /// From S to where the needle goes through the skin, in the room; none outside the body.
-std::optional<Vec3> to_entry_W(const HapticState& state, const HapticScene& scene, const Pose& X_WS) noexcept {
-  if (scene.options.tool != Tool::kNeedle || !state.needle.path.is_open) return std::nullopt;
+std::optional<Vec3> to_entry_W(const haptics::HapticState& state, const haptics::HapticScene& scene,
+                               const Pose& X_WS) noexcept {
+  if (scene.options.tool != haptics::Tool::kNeedle || !state.needle.path.is_open) return std::nullopt;
   return scene.X_PD.inverse() * state.needle.path.channel.origin_P - X_WS.p();
 }
 
 }  // namespace
 
 /// The spring and damper that the device feels: none where it feels no force.
-CouplingParams Servo::coupling_in_device(const ServoScene* scene) const noexcept {
+haptics::CouplingParams Servo::coupling_in_device(const ServoScene* scene) const noexcept {
   if (scene == nullptr || !device_.preset().has_force()) return {0.0, 0.0};
   const double scale = params_.workspace.force_scale * params_.workspace.motion_scale;
-  const CouplingParams& coupling = scene->scene->options.coupling;
+  const haptics::CouplingParams& coupling = scene->scene->options.coupling;
   return {scale * coupling.stiffness_n_per_mm, scale * coupling.damping_ns_per_mm};
 }
 
-ServoParams servo_params(const DevicePreset& preset, double rate_hz) noexcept {
+ServoParams servo_params(const haptics::DevicePreset& preset, double rate_hz) noexcept {
   constexpr double kStuckShare = 0.15;
   ServoParams params;
-  params.gate = gate_params(preset);
+  params.gate = haptics::gate_params(preset);
   params.gate.period_s = 1.0 / rate_hz;
   params.stuck_n = kStuckShare * params.gate.continuous_force_n;
-  params.workspace = workspace_params(preset);
+  params.workspace = devices::workspace_params(preset);
   return params;
 }
 
-Servo::Servo(HapticDevice& device, const ServoParams& params) noexcept
+Servo::Servo(devices::HapticDevice& device, const ServoParams& params) noexcept
     : device_(device),
       params_(params),
       has_torque_(device.preset().has_torque()),
@@ -69,43 +70,47 @@ Servo::Servo(HapticDevice& device, const ServoParams& params) noexcept
   R_WS_told_ = rotation_between(Vec3::UnitZ(), -Vec3::UnitZ());  // the tool hangs down until somebody says otherwise
 }
 
-GateFault Servo::watch_encoder(const DeviceReading& reading, double dt_s) noexcept {
+telemetry::GateFault Servo::watch_encoder(const devices::DeviceReading& reading, double dt_s) noexcept {
   const bool is_same = reading.X_DS.p() == last_.X_DS.p() && reading.X_DS.R() == last_.X_DS.R();
   const bool is_pushing = gate_.watched.force_n.norm() > params_.stuck_n;
-  unmoved_s_ = is_watched_ && is_same && is_pushing && reading.status == DeviceStatus::kFresh ? unmoved_s_ + dt_s : 0.0;
-  return unmoved_s_ > params_.stuck_s ? GateFault::kEncoderStuck : GateFault::kNone;
+  unmoved_s_ =
+      is_watched_ && is_same && is_pushing && reading.status == devices::DeviceStatus::kFresh ? unmoved_s_ + dt_s : 0.0;
+  return unmoved_s_ > params_.stuck_s ? telemetry::GateFault::kEncoderStuck : telemetry::GateFault::kNone;
 }
 
 Servo::Sensed Servo::sense(const ServoInput& input) noexcept {
   Sensed sensed;
   sensed.reading = device_.read(input.now_s);
-  const DeviceReading& now = sensed.reading;
+  const devices::DeviceReading& now = sensed.reading;
   const double since_fresh_s = unread_s_ + input.dt_s;
-  unread_s_ = now.status == DeviceStatus::kFresh ? 0.0 : since_fresh_s;
-  if (now.status == DeviceStatus::kDisconnected || has_refused_) sensed.fault = GateFault::kDeviceLost;
-  const bool is_good = now.X_DS.is_finite() && now.X_DS.p().norm() < kFarAway_mm;
-  if (!is_good) sensed.fault = GateFault::kNotFinite;
-  if (has_read_ && input.dt_s > params_.max_hole_s) sensed.fault = GateFault::kLoopStalled;
-  if (now.status != DeviceStatus::kFresh || !is_good) {
+  unread_s_ = now.status == devices::DeviceStatus::kFresh ? 0.0 : since_fresh_s;
+  if (now.status == devices::DeviceStatus::kDisconnected || has_refused_)
+    sensed.fault = telemetry::GateFault::kDeviceLost;
+  const bool is_good = now.X_DS.is_finite() && now.X_DS.p().norm() < haptics::kFarAway_mm;
+  if (!is_good) sensed.fault = telemetry::GateFault::kNotFinite;
+  if (has_read_ && input.dt_s > params_.max_hole_s) sensed.fault = telemetry::GateFault::kLoopStalled;
+  if (now.status != devices::DeviceStatus::kFresh || !is_good) {
     sensed.reading.X_DS = last_.X_DS;
     return sensed;
   }
   if (has_read_ && !was_placed_) {
-    if (const GateFault stuck = watch_encoder(now, input.dt_s); stuck != GateFault::kNone) sensed.fault = stuck;
+    if (const telemetry::GateFault stuck = watch_encoder(now, input.dt_s); stuck != telemetry::GateFault::kNone)
+      sensed.fault = stuck;
     sensed.v_D = (now.X_DS.p() - last_.X_DS.p()) / since_fresh_s;
-    sensed.w_D = rotation_vector(now.X_DS.R() * last_.X_DS.R().transpose()) / since_fresh_s;
+    sensed.w_D = haptics::rotation_vector(now.X_DS.R() * last_.X_DS.R().transpose()) / since_fresh_s;
   }
   last_ = now;
   has_read_ = true;
   return sensed;
 }
 
-DeviceHand Servo::hand_in_device(const HandTarget& target, const HapticScene& scene) const noexcept {
+devices::DeviceHand Servo::hand_in_device(const link::HandTarget& target,
+                                          const haptics::HapticScene& scene) const noexcept {
   const Pose X_WS = scene.X_PD.inverse() * target.X_PN * scene.X_SN.inverse();
   const Mat3 R_DP = (scene.X_PD.R() * workspace_.X_WD_now.R()).transpose();
   const double scale = params_.workspace.motion_scale;
-  DeviceHand hand;
-  hand.X_DS = map_from_room(workspace_, params_.workspace, X_WS);
+  devices::DeviceHand hand;
+  hand.X_DS = devices::map_from_room(workspace_, params_.workspace, X_WS);
   hand.v_D = R_DP * target.v_P / scale;
   hand.w_D = R_DP * target.w_P;
   hand.time_s = target.server_time_s;
@@ -123,28 +128,28 @@ DeviceHand Servo::hand_in_device(const HandTarget& target, const HapticScene& sc
   return hand;
 }
 
-Servo::Wanted Servo::feel(const Sensed& sensed, const ServoInput& input, TickSample& sample) noexcept {
+Servo::Wanted Servo::feel(const Sensed& sensed, const ServoInput& input, telemetry::TickSample& sample) noexcept {
   Wanted wanted;
-  Pose X_WS = map_to_room(workspace_, params_.workspace, sensed.reading.X_DS, sensed.reading.buttons);
+  Pose X_WS = devices::map_to_room(workspace_, params_.workspace, sensed.reading.X_DS, sensed.reading.buttons);
   if (!senses_rotation_) X_WS = Pose(R_WS_told_, X_WS.p());
   if (input.scene == nullptr) {
     sample = {};
     sample.time_s = input.now_s;
     return wanted;
   }
-  const HapticScene& scene = *input.scene->scene;
-  const HapticOutput output =
-      tick(tick_, {input.now_s, std::min(input.dt_s, kMaxDt_s), X_WS, input.is_stylet_in}, scene);
+  const haptics::HapticScene& scene = *input.scene->scene;
+  const haptics::HapticOutput output =
+      tick(tick_, {input.now_s, std::min(input.dt_s, haptics::kMaxDt_s), X_WS, input.is_stylet_in}, scene);
   sample = output.sample;
 
-  const Vec3 axis_W = X_WS.R() * scene.X_SN.R().col(scene.options.tool == Tool::kNeedle ? 2 : 1);
-  Wrench tissue_W{output.f_D - output.weight_D.force_n, output.tau_D - output.weight_D.torque_nmm};
+  const Vec3 axis_W = X_WS.R() * scene.X_SN.R().col(scene.options.tool == haptics::Tool::kNeedle ? 2 : 1);
+  haptics::Wrench tissue_W{output.f_D - output.weight_D.force_n, output.tau_D - output.weight_D.torque_nmm};
   if (!has_torque_) {
     const Mat3 R_WP = scene.X_PD.R().transpose();
     tissue_W.torque_nmm = R_WP * output.sample.tau_nmm;
-    tissue_W = without_torque(tissue_W, axis_W, to_entry_W(tick_, scene, X_WS));
+    tissue_W = devices::without_torque(tissue_W, axis_W, to_entry_W(tick_, scene, X_WS));
   }
-  wanted.wrench_D = map_to_device(workspace_, params_.workspace, tissue_W);
+  wanted.wrench_D = devices::map_to_device(workspace_, params_.workspace, tissue_W);
   // The weight is carried while the clutch is pressed, too.
   const Mat3 R_DW = params_.workspace.force_scale * workspace_.X_WD_now.R().transpose();
   wanted.weight_D = {R_DW * output.weight_D.force_n, R_DW * output.weight_D.torque_nmm};
@@ -152,7 +157,8 @@ Servo::Wanted Servo::feel(const Sensed& sensed, const ServoInput& input, TickSam
   return wanted;
 }
 
-void Servo::note_gate(const GateOutput& output, const ServoInput& input, TickSample& sample) noexcept {
+void Servo::note_gate(const haptics::GateOutput& output, const ServoInput& input,
+                      telemetry::TickSample& sample) noexcept {
   const auto begun = static_cast<std::uint16_t>(output.actions & ~actions_before_);
   actions_before_ = output.actions;
   for (const GateEvent& event : kGateEvents) {
@@ -171,7 +177,7 @@ void Servo::note_gate(const GateOutput& output, const ServoInput& input, TickSam
 
 void Servo::begin_anew() noexcept {
   tick_ = {};
-  if (gate_.fault == GateFault::kNone) gate_.mode = GateMode::kOff;  // through the safe start
+  if (gate_.fault == telemetry::GateFault::kNone) gate_.mode = telemetry::GateMode::kOff;  // through the safe start
 }
 
 bool Servo::gives_force() const noexcept {
@@ -180,7 +186,7 @@ bool Servo::gives_force() const noexcept {
 
 void Servo::resume() noexcept {
   begin_anew();
-  restart_gate(gate_);
+  haptics::restart_gate(gate_);
   has_read_ = was_placed_ = has_refused_ = false;
   unread_s_ = unmoved_s_ = 0.0;
 }
@@ -199,13 +205,13 @@ ServoRecord Servo::step(const ServoInput& input) noexcept {
   if (was_placed_) begin_anew();  // where it was before is no part of its way, and makes no channel
   was_placed_ = input.hand && input.hand->is_placed;
   if (input.hand && input.scene != nullptr) {
-    const HapticScene& scene = *input.scene->scene;
+    const haptics::HapticScene& scene = *input.scene->scene;
     R_WS_told_ = (scene.X_PD.inverse() * input.hand->X_PN * scene.X_SN.inverse()).R();
     device_.hold(hand_in_device(*input.hand, scene));
   }
   const Wanted wanted = feel(sensed, input, record.sample);
 
-  GateInput gate;
+  haptics::GateInput gate;
   gate.wanted = wanted.wrench_D;
   gate.weight = wanted.weight_D;
   gate.axis = wanted.axis_D;
@@ -219,7 +225,7 @@ ServoRecord Servo::step(const ServoInput& input) noexcept {
   gate.is_wanted = input.is_wanted && input.scene != nullptr;
   gate.device_fault = sensed.fault;
   gate.is_reset = input.is_reset;
-  const GateOutput output = step_gate(gate_, gate, params_.gate);
+  const haptics::GateOutput output = haptics::step_gate(gate_, gate, params_.gate);
   has_refused_ = !device_.write(output.wrench);
   if (input.is_reset) unmoved_s_ = 0.0;
 
@@ -238,4 +244,4 @@ ServoRecord Servo::step(const ServoInput& input) noexcept {
   return record;
 }
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -10,20 +10,20 @@
 #include "haptics/tick.h"
 #include "link/messages.h"
 
-namespace trocar {
+namespace trocar::server {
 
 /// What the servo works on: made by the control thread, swapped in whole. `scene.X_PD` is X_PW: the tick's device base
 /// is the room.
 struct ServoScene {
-  std::shared_ptr<const HapticScene> scene;
+  std::shared_ptr<const haptics::HapticScene> scene;
   std::uint64_t number = 0;  ///< Rises with every scene.
   bool continues = false;    ///< The insertion goes on: the same patient with other numbers.
 };
 
 /// Of a device, constant while the servo lives.
 struct ServoParams {
-  GateParams gate;
-  WorkspaceParams workspace;
+  haptics::GateParams gate;
+  devices::WorkspaceParams workspace;
   double stuck_s = 5.0;  ///< The same reading for so long under stuck_n: a stuck encoder. A hand trembles. [assumed]
   double stuck_n = 1.0;
   double max_hole_s = 0.25;  ///< A longer period latches a fault, as long as a client may be silent. [assumed]
@@ -31,33 +31,33 @@ struct ServoParams {
 
 /// Gate, calibration and scales of a device's preset; a stuck encoder is looked for above 0.15 of its continuous force
 /// [assumed].
-ServoParams servo_params(const DevicePreset& preset, double rate_hz = 1000.0) noexcept;
+ServoParams servo_params(const haptics::DevicePreset& preset, double rate_hz = 1000.0) noexcept;
 
 /// What the other threads tell a period.
 struct ServoInput {
   double now_s = 0.0;
   double dt_s = 0.001;
-  double busy_s = 0.0;                ///< Part of dt_s that the last period's own work took.
-  const ServoScene* scene = nullptr;  ///< None: no forces.
-  std::optional<HandTarget> hand;     ///< When a new one came.
-  double silence_s = 0.0;             ///< Since the client in control was heard.
-  bool is_wanted = false;             ///< Forces.
-  bool is_reset = false;              ///< Of a fault.
+  double busy_s = 0.0;                   ///< Part of dt_s that the last period's own work took.
+  const ServoScene* scene = nullptr;     ///< None: no forces.
+  std::optional<link::HandTarget> hand;  ///< When a new one came.
+  double silence_s = 0.0;                ///< Since the client in control was heard.
+  bool is_wanted = false;                ///< Forces.
+  bool is_reset = false;                 ///< Of a fault.
   bool is_stylet_in = true;
 };
 
 /// What a period made: for clients, recorder and flight recorder. Fixed size.
 struct ServoRecord {
   std::uint64_t tick = 0;
-  std::uint64_t scene = 0;  ///< Number of the scene that made it; 0: none.
-  TickSample sample;        ///< device_f_n is what the gate wrote, turned into P.
-  DeviceStatus status = DeviceStatus::kFresh;
-  GateMode mode = GateMode::kOff;
-  GateFault fault = GateFault::kNone;
+  std::uint64_t scene = 0;       ///< Number of the scene that made it; 0: none.
+  telemetry::TickSample sample;  ///< device_f_n is what the gate wrote, turned into P.
+  devices::DeviceStatus status = devices::DeviceStatus::kFresh;
+  telemetry::GateMode mode = telemetry::GateMode::kOff;
+  telemetry::GateFault fault = telemetry::GateFault::kNone;
   std::uint16_t actions = 0;
   double scale = 0.0;  ///< Of the gate, 0..1.
   double drop_n = 0.0, drop_s = 0.0;
-  Wrench wanted_D, written_D;
+  haptics::Wrench wanted_D, written_D;
   Pose X_DS;
   std::uint32_t buttons = 0;
   double silence_s = 0.0;
@@ -67,9 +67,9 @@ struct ServoRecord {
 /// allocation: the same readings and inputs give the same records. It alone touches the device while it runs.
 class Servo {
  public:
-  Servo(HapticDevice& device, const ServoParams& params) noexcept;
+  Servo(devices::HapticDevice& device, const ServoParams& params) noexcept;
   ServoRecord step(const ServoInput& input) noexcept;
-  GateMode mode() const noexcept { return gate_.mode; }
+  telemetry::GateMode mode() const noexcept { return gate_.mode; }
   /// Something else than zero was written last.
   bool gives_force() const noexcept;
   /// After the device was in other hands: nothing read, written or felt before counts, and forces come back through the
@@ -78,34 +78,34 @@ class Servo {
 
  private:
   struct Wanted {
-    Wrench wrench_D, weight_D;
+    haptics::Wrench wrench_D, weight_D;
     Vec3 axis_D = Vec3::UnitZ();
   };
   struct Sensed {
-    DeviceReading reading;
+    devices::DeviceReading reading;
     Vec3 v_D = Vec3::Zero(), w_D = Vec3::Zero();
-    GateFault fault = GateFault::kNone;
+    telemetry::GateFault fault = telemetry::GateFault::kNone;
   };
   Sensed sense(const ServoInput& input) noexcept;
-  GateFault watch_encoder(const DeviceReading& reading, double dt_s) noexcept;
+  telemetry::GateFault watch_encoder(const devices::DeviceReading& reading, double dt_s) noexcept;
   /// The tool begins where it is now: another scene, or somebody has put it there.
   void begin_anew() noexcept;
-  Wanted feel(const Sensed& sensed, const ServoInput& input, TickSample& sample) noexcept;
-  DeviceHand hand_in_device(const HandTarget& target, const HapticScene& scene) const noexcept;
-  CouplingParams coupling_in_device(const ServoScene* scene) const noexcept;
-  void note_gate(const GateOutput& output, const ServoInput& input, TickSample& sample) noexcept;
+  Wanted feel(const Sensed& sensed, const ServoInput& input, telemetry::TickSample& sample) noexcept;
+  devices::DeviceHand hand_in_device(const link::HandTarget& target, const haptics::HapticScene& scene) const noexcept;
+  haptics::CouplingParams coupling_in_device(const ServoScene* scene) const noexcept;
+  void note_gate(const haptics::GateOutput& output, const ServoInput& input, telemetry::TickSample& sample) noexcept;
 
-  HapticDevice& device_;
+  devices::HapticDevice& device_;
   ServoParams params_;
   bool has_torque_, senses_rotation_, is_watched_;  ///< Watched: for a stuck encoder.
-  WorkspaceState workspace_;
-  GateState gate_;
-  HapticState tick_;
+  devices::WorkspaceState workspace_;
+  haptics::GateState gate_;
+  haptics::HapticState tick_;
   std::uint64_t scene_number_ = 0;
   std::uint64_t ticks_ = 0;
   bool has_read_ = false;
   bool was_placed_ = false;            ///< In the last period.
-  DeviceReading last_;                 ///< The last reading whose pose can be used.
+  devices::DeviceReading last_;        ///< The last reading whose pose can be used.
   Mat3 R_WS_told_ = Mat3::Identity();  ///< Of a device that senses no rotation: the hand's, or the scene's.
   double unread_s_ = 0.0;
   double unmoved_s_ = 0.0;
@@ -113,4 +113,4 @@ class Servo {
   std::uint16_t actions_before_ = 0;
 };
 
-}  // namespace trocar
+}  // namespace trocar::server

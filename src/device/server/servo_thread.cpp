@@ -3,7 +3,7 @@
 #include "realtime/periodic_loop.h"
 #include "server/detail/shared.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 constexpr double kStatistics_s = 0.05;  // between two copies of the statistics
@@ -16,30 +16,30 @@ struct Switches {
 };
 
 /// Pops a bounded number of commands.
-void obey(Shared& shared, Switches& switches, LoopStatistics& statistics) noexcept {
+void obey(Shared& shared, Switches& switches, realtime::LoopStatistics& statistics) noexcept {
   switches.is_reset = false;
-  ServerCommand command{};
+  link::ServerCommand command{};
   for (int i = 0; i < kMostCommandsAPeriod && shared.commands.pop(command); ++i) {
     switch (command) {
-      case ServerCommand::kStart:
+      case link::ServerCommand::kStart:
         switches.is_wanted = true;
         break;
-      case ServerCommand::kStop:
+      case link::ServerCommand::kStop:
         switches.is_wanted = false;
         break;
-      case ServerCommand::kResetFault:
+      case link::ServerCommand::kResetFault:
         switches.is_reset = true;
         break;
-      case ServerCommand::kStyletOut:
+      case link::ServerCommand::kStyletOut:
         switches.is_stylet_in = false;
         break;
-      case ServerCommand::kStyletIn:
+      case link::ServerCommand::kStyletIn:
         switches.is_stylet_in = true;
         break;
-      case ServerCommand::kRestartStatistics:
-        statistics = LoopStatistics(shared.period_ns);
+      case link::ServerCommand::kRestartStatistics:
+        statistics = realtime::LoopStatistics(shared.period_ns);
         break;
-      case ServerCommand::kReconnect:  // the control thread's
+      case link::ServerCommand::kReconnect:  // the control thread's
         break;
     }
   }
@@ -50,53 +50,52 @@ void obey(Shared& shared, Switches& switches, LoopStatistics& statistics) noexce
 void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
   const CrashStack stack;
   if (shared.last_chance != nullptr) shared.last_chance->adopt_thread();
-  shared.grant = request_real_time(priority);
+  shared.grant = realtime::request_real_time(priority);
   shared.has_grant.store(true, std::memory_order_release);
-  LoopStatistics statistics(shared.period_ns);
+  realtime::LoopStatistics statistics(shared.period_ns);
   Switches switches;
   double told_s = 0.0;
   bool is_lent = false;
   std::int64_t busy_ns = 0;
-  run_periodic(shared.period_ns, shared.is_stopping, statistics,
-               [&](const Period& period, const LoopStatistics& so_far) {
-                 const DeviceLoan::Request request = shared.loan.look();
-                 if (shared.last_chance != nullptr && shared.last_chance->takes_over(is_lent && request.is_open))
-                   return;
-                 if (request.is_open && (is_lent || !servo.gives_force())) {
-                   is_lent = true;
-                   shared.loan.lend(request);
-                   return;  // commands wait: a reset must not get lost
-                 }
-                 if (std::exchange(is_lent, false)) {
-                   servo.resume();
-                   busy_ns = 0;
-                 }
+  realtime::run_periodic(
+      shared.period_ns, shared.is_stopping, statistics,
+      [&](const realtime::Period& period, const realtime::LoopStatistics& so_far) {
+        const DeviceLoan::Request request = shared.loan.look();
+        if (shared.last_chance != nullptr && shared.last_chance->takes_over(is_lent && request.is_open)) return;
+        if (request.is_open && (is_lent || !servo.gives_force())) {
+          is_lent = true;
+          shared.loan.lend(request);
+          return;  // commands wait: a reset must not get lost
+        }
+        if (std::exchange(is_lent, false)) {
+          servo.resume();
+          busy_ns = 0;
+        }
 
-                 const std::int64_t begun_ns = now_ns();
-                 obey(shared, switches, statistics);
-                 if (shared.is_fading.load(std::memory_order_relaxed)) switches.is_wanted = false;
-                 shared.is_wanted.store(switches.is_wanted, std::memory_order_relaxed);
+        const std::int64_t begun_ns = realtime::now_ns();
+        obey(shared, switches, statistics);
+        if (shared.is_fading.load(std::memory_order_relaxed)) switches.is_wanted = false;
+        shared.is_wanted.store(switches.is_wanted, std::memory_order_relaxed);
 
-                 ServoInput input;
-                 input.now_s = period.now_s;
-                 input.dt_s = period.dt_s;
-                 input.scene = shared.scene.acquire();
-                 if (shared.hand.update()) input.hand = shared.hand.value();
-                 const std::int64_t heard_ns = shared.heard_ns.load(std::memory_order_relaxed);
-                 input.silence_s = heard_ns == 0 ? kNeverHeard_s : seconds(period.begin_ns - heard_ns);
-                 input.is_wanted = switches.is_wanted && !request.is_open;  // asked for: faded before it is lent
-                 input.is_stylet_in = switches.is_stylet_in;
-                 input.is_reset = switches.is_reset;
-                 input.busy_s = seconds(busy_ns);
-                 if (!shared.records.push(servo.step(input)))
-                   shared.records_dropped.fetch_add(1, std::memory_order_relaxed);
-                 busy_ns = now_ns() - begun_ns;
+        ServoInput input;
+        input.now_s = period.now_s;
+        input.dt_s = period.dt_s;
+        input.scene = shared.scene.acquire();
+        if (shared.hand.update()) input.hand = shared.hand.value();
+        const std::int64_t heard_ns = shared.heard_ns.load(std::memory_order_relaxed);
+        input.silence_s = heard_ns == 0 ? kNeverHeard_s : realtime::seconds(period.begin_ns - heard_ns);
+        input.is_wanted = switches.is_wanted && !request.is_open;  // asked for: faded before it is lent
+        input.is_stylet_in = switches.is_stylet_in;
+        input.is_reset = switches.is_reset;
+        input.busy_s = realtime::seconds(busy_ns);
+        if (!shared.records.push(servo.step(input))) shared.records_dropped.fetch_add(1, std::memory_order_relaxed);
+        busy_ns = realtime::now_ns() - begun_ns;
 
-                 if (period.now_s - told_s < kStatistics_s) return;
-                 told_s = period.now_s;
-                 shared.statistics.write(so_far);
-               });
+        if (period.now_s - told_s < kStatistics_s) return;
+        told_s = period.now_s;
+        shared.statistics.write(so_far);
+      });
   shared.statistics.write(statistics);
 }
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 constexpr double kMargin = 1.05;
@@ -147,4 +147,4 @@ CameraView following(const CameraView& view, FollowMode mode, const Segment& nee
   return next;
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -5,7 +5,7 @@
 
 #include "geometry/segment.h"
 
-namespace trocar {
+namespace trocar::scene {
 
 /// A camera position around the patient. The head is up; seen from the head or from the feet, the front is up.
 enum class CameraPreset {
@@ -55,4 +55,4 @@ CameraView zoomed(const CameraView& view, double factor) noexcept;
 /// so that it also sets its distance.
 CameraView following(const CameraView& view, FollowMode mode, const Segment& needle_P, bool is_new) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::scene

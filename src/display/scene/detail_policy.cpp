@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 /// One slow frame may be another program's doing; the second is a reason.
@@ -60,4 +60,4 @@ void DetailPolicy::note_frame(const Detail& detail, double frame_ms, Time now) n
   if (level_ > 0) --level_;
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-namespace trocar {
+namespace trocar::scene {
 
 /// How much work goes into a frame.
 struct Detail {
@@ -60,4 +60,4 @@ class DetailPolicy {
   Time no_finer_before_{};
 };
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::scene {
 
 void FrameTimes::add(double frame_ms) noexcept {
   kept_[count_ % kKept] = frame_ms;
@@ -21,4 +21,4 @@ double FrameTimes::percentile_ms(double share) const noexcept {
   return *at;
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-namespace trocar {
+namespace trocar::scene {
 
 /// Frame times of late, ms.
 class FrameTimes {
@@ -25,4 +25,4 @@ class FrameTimes {
   double last_ms_ = 0.0;
 };
 
-}  // namespace trocar
+}  // namespace trocar::scene

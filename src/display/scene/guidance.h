@@ -1,6 +1,6 @@
 #pragma once
 
-namespace trocar {
+namespace trocar::scene {
 
 /// How much of a plan the views of a case give away.
 enum class Guidance {
@@ -9,4 +9,4 @@ enum class Guidance {
   kPath,    ///< The expert's path between them, too.
 };
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -6,7 +6,7 @@
 // Xlib's macros (Status, None, Bool) spoil other headers: it comes last.
 #include <X11/Xlib.h>
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 struct HandState {
@@ -50,4 +50,4 @@ bool InputWatch::has_happened() {
   return impl_->display != nullptr && read_hand(impl_->display) != impl_->at_start;
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

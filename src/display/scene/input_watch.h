@@ -2,7 +2,7 @@
 
 #include <memory>
 
-namespace trocar {
+namespace trocar::scene {
 
 /// Sees the user's hand while a program is busy drawing and reads no events: asks the X server itself whether pointer,
 /// buttons or keys have changed. Without an X server nothing ever happens.
@@ -23,4 +23,4 @@ class InputWatch {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::scene

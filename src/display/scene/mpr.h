@@ -1,6 +1,6 @@
 #pragma once
 
-namespace trocar {
+namespace trocar::scene {
 
 /// CT planes laid along the needle, each shown or not.
 struct MprOptions {
@@ -13,4 +13,4 @@ struct MprOptions {
   bool operator==(const MprOptions&) const = default;
 };
 
-}  // namespace trocar
+}  // namespace trocar::scene

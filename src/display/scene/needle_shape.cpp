@@ -8,19 +8,19 @@
 #include "core/check.h"
 #include "scene/detail/solids.h"
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 using detail::Ring;
 
-constexpr Rgb kSteel = {205, 212, 220};
-constexpr Rgb kDarkSteel = {96, 104, 114};
-constexpr Rgb kHubBlue = {46, 134, 171};
-constexpr Rgb kHubYellow = {226, 186, 60};
-constexpr Rgb kHubBlack = {54, 60, 70};
-constexpr Rgb kGunGreen = {44, 150, 110};
-constexpr Rgb kHandleGrey = {120, 130, 142};
-constexpr Rgb kWhite = {232, 236, 240};
+constexpr volume::Rgb kSteel = {205, 212, 220};
+constexpr volume::Rgb kDarkSteel = {96, 104, 114};
+constexpr volume::Rgb kHubBlue = {46, 134, 171};
+constexpr volume::Rgb kHubYellow = {226, 186, 60};
+constexpr volume::Rgb kHubBlack = {54, 60, 70};
+constexpr volume::Rgb kGunGreen = {44, 150, 110};
+constexpr volume::Rgb kHandleGrey = {120, 130, 142};
+constexpr volume::Rgb kWhite = {232, 236, 240};
 constexpr int kSides = 16;
 
 /// How a needle ends; lengths in shaft diameters.
@@ -113,13 +113,13 @@ TriangleMesh make_shaft(std::span<const Vec3> line, double diameter_mm, const Ti
   return detail::make_loft(rings);
 }
 
-void add_turned(std::vector<ShapePart>& parts, const Pose& X_AL, std::initializer_list<Ring> rings, const Rgb& color,
-                double specular = 0.4) {
+void add_turned(std::vector<ShapePart>& parts, const Pose& X_AL, std::initializer_list<Ring> rings,
+                const volume::Rgb& color, double specular = 0.4) {
   parts.push_back({detail::make_turned(X_AL, std::vector<Ring>(rings)), color, specular});
 }
 
 void add_box(std::vector<ShapePart>& parts, const Pose& X_AL, const Vec3& middle, const Vec3& half_mm, double corner_mm,
-             const Rgb& color) {
+             const volume::Rgb& color) {
   parts.push_back({detail::make_box(X_AL * Pose::translation(middle), half_mm, corner_mm), color, 0.35});
 }
 
@@ -228,4 +228,4 @@ TriangleMesh make_ball(const Vec3& center, double radius_mm) {
   return detail::make_turned(Pose::translation(center), rings);
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

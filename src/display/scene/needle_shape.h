@@ -7,7 +7,7 @@
 #include "geometry/triangle_mesh.h"
 #include "volume/image.h"
 
-namespace trocar {
+namespace trocar::scene {
 
 /// What a needle looks like at both ends.
 enum class NeedleModel {
@@ -24,7 +24,7 @@ NeedleModel needle_model(std::string_view name) noexcept;
 /// A closed part of a tool with its own colour, in the frame of the points it was made from.
 struct ShapePart {
   TriangleMesh mesh;
-  Rgb color{200, 200, 200};
+  volume::Rgb color{200, 200, 200};
   double specular = 0.5;  ///< 0..1
 };
 
@@ -39,4 +39,4 @@ TriangleMesh make_tube(std::span<const Vec3> line, double radius_mm, int sides =
 /// A ball.
 TriangleMesh make_ball(const Vec3& center, double radius_mm);
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -20,7 +20,7 @@
 #include "scene/detail/tool_layer.h"
 #include "scene/detail/volume_layer.h"
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 constexpr int kPeels = 6;
@@ -84,8 +84,9 @@ struct PatientScene::Impl {
   void poll();
   /// The path again, on the skin of the patient that is shown now.
   void lay_path() {
-    static const FloatGrid kNoSkin;
-    const FloatGrid& skin = patient ? patient->skin_distance_mm : kNoSkin;  // not a choice of values: that copies it
+    static const volume::FloatGrid kNoSkin;
+    const volume::FloatGrid& skin =
+        patient ? patient->skin_distance_mm : kNoSkin;  // not a choice of values: that copies it
     const Vec3 begin_P = path_P ? path_P->a : Vec3::Zero();
     guides.set_path(path_P, {entry_centre_P.value_or(begin_P), entry_radius_mm}, skin);
     has_changed = true;
@@ -101,8 +102,8 @@ struct PatientScene::Impl {
   vtkNew<vtkCallbackCommand> abort_check;
   unsigned long abort_tag = 0;
   CallersBreak frame_break;
-  std::shared_ptr<const VirtualPatient> patient;
-  std::shared_ptr<const std::vector<NamedMesh>> meshes;
+  std::shared_ptr<const anatomy::VirtualPatient> patient;
+  std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes;
   std::string around_name;
   std::optional<Segment> path_P;
   double entry_radius_mm = 0.0;
@@ -193,8 +194,9 @@ Result<std::unique_ptr<PatientScene>> PatientScene::make(int columns, int rows) 
   return std::unique_ptr<PatientScene>(new PatientScene(columns, rows));
 }
 
-void PatientScene::show_patient(std::shared_ptr<const VirtualPatient> patient,
-                                std::shared_ptr<const std::vector<NamedMesh>> meshes, std::optional<Vec3> target_P) {
+void PatientScene::show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient,
+                                std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
+                                std::optional<Vec3> target_P) {
   Impl& s = *impl_;
   if (!target_P && !patient->paths.empty()) target_P = patient->paths.front().line_P.b;
   const Aim aim = target_P ? find_aim(*patient, *target_P) : Aim{};
@@ -266,7 +268,7 @@ void PatientScene::set_guidance_visible(bool is_visible) {
   if (impl_->guides.set_guidance_visible(is_visible)) impl_->has_changed = true;
 }
 
-void PatientScene::set_landmarks(const std::vector<Landmark>& landmarks) {
+void PatientScene::set_landmarks(const std::vector<anatomy::Landmark>& landmarks) {
   impl_->guides.set_landmarks(landmarks);
   impl_->has_changed = true;
 }
@@ -291,7 +293,7 @@ void PatientScene::set_transducer(const std::optional<Pose>& X_PT, const Transdu
   if (impl_->tools.set_transducer(X_PT, face)) impl_->has_changed = true;
 }
 
-void PatientScene::set_ultrasound(const RgbImage& picture, std::span<const std::uint8_t> alpha,
+void PatientScene::set_ultrasound(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
                                   const std::array<Vec3, 3>& corners_P) {
   if (picture.pixels.empty()) return hide_ultrasound();
   TROCAR_CHECK(alpha.empty() || alpha.size() == picture.pixels.size());
@@ -409,8 +411,8 @@ std::optional<Vec3> PatientScene::pick(double right, double down) {
   std::optional<double> nearest_mm;
   for (const StructureInfo& structure : s.surfaces.structures()) {
     if (structure.opacity <= 0.0 || structure.is_withheld) continue;
-    const auto mesh =
-        std::find_if(s.meshes->begin(), s.meshes->end(), [&](const NamedMesh& m) { return m.name == structure.name; });
+    const auto mesh = std::find_if(s.meshes->begin(), s.meshes->end(),
+                                   [&](const anatomy::NamedMesh& m) { return m.name == structure.name; });
     const auto hit_mm = detail::first_hit_mm(mesh->mesh_P, view.eye_P, ray_P);
     if (hit_mm && (!nearest_mm || *hit_mm < *nearest_mm)) nearest_mm = hit_mm;
   }
@@ -431,4 +433,4 @@ std::size_t PatientScene::triangle_count(int mesh_level) const {
   return impl_->surfaces.triangle_count(mesh_level);
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -22,7 +22,7 @@
 #include "scene/transducer_shape.h"
 #include "scene/volume_preset.h"
 
-namespace trocar {
+namespace trocar::scene {
 
 /// A patient with tools and guidance, drawn off-screen as often as one likes. Everything is in P (mm). All calls from
 /// one thread; surfaces and volume are prepared on threads of their own and appear when they are ready.
@@ -35,8 +35,8 @@ class PatientScene {
   PatientScene& operator=(const PatientScene&) = delete;
 
   /// `target_P` is what is aimed at; without it the end of the patient's first path is, if there is one.
-  void show_patient(std::shared_ptr<const VirtualPatient> patient, std::shared_ptr<const std::vector<NamedMesh>> meshes,
-                    std::optional<Vec3> target_P = {});
+  void show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient,
+                    std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes, std::optional<Vec3> target_P = {});
   bool is_ready() const noexcept;  ///< The surfaces are there.
   void finish_loading();           ///< Waits for surfaces and volume.
 
@@ -53,7 +53,7 @@ class PatientScene {
   Guidance guidance() const noexcept;
   void set_guidance_visible(bool is_visible);
   /// Others than the patient's own, until another patient is shown.
-  void set_landmarks(const std::vector<Landmark>& landmarks);
+  void set_landmarks(const std::vector<anatomy::Landmark>& landmarks);
   void set_landmarks_visible(bool are_visible);
   /// Fewer than two points: no needle.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
@@ -63,7 +63,7 @@ class PatientScene {
   void set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
   /// A picture in space; corners of its outline: top left, top right, bottom left. `alpha`, one byte a pixel or empty
   /// (all shown), is 0 where nothing is to be seen.
-  void set_ultrasound(const RgbImage& picture, std::span<const std::uint8_t> alpha,
+  void set_ultrasound(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
                       const std::array<Vec3, 3>& corners_P);
   void hide_ultrasound();
   void set_mpr(const MprOptions& options);
@@ -114,4 +114,4 @@ class PatientScene {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::scene

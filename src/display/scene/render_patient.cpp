@@ -14,7 +14,7 @@
 #include "scene/detail/drawing.h"
 #include "scene/needle_shape.h"
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 using detail::Appearance;
@@ -50,8 +50,8 @@ bool can_render() noexcept {
   return detail::has_opengl_display();
 }
 
-Result<RgbImage> render_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes,
-                                const SceneOptions& options) {
+Result<volume::RgbImage> render_patient(const anatomy::VirtualPatient& patient,
+                                        const std::vector<anatomy::NamedMesh>& meshes, const SceneOptions& options) {
   if (std::min(options.columns, options.rows) < kMinPixels || std::max(options.columns, options.rows) > kMaxPixels) {
     return fail_usage(fmt::format("a picture of {} x {} pixels cannot be drawn", options.columns, options.rows), {},
                       fmt::format("choose {}..{}", kMinPixels, kMaxPixels));
@@ -63,14 +63,14 @@ Result<RgbImage> render_patient(const VirtualPatient& patient, const std::vector
   vtkNew<vtkRenderer> renderer;
   detail::add_studio(*renderer);
   std::vector<Vec3> points_P;
-  for (const NamedMesh& mesh : meshes) {
+  for (const anatomy::NamedMesh& mesh : meshes) {
     auto look = detail::find_appearance(patient.label_table, mesh.name);
     if (look && look->kind == StructureKind::kSkin) look->opacity = options.skin_opacity;
     if (!look || look->opacity <= 0.0 || mesh.mesh_P.triangles.empty()) continue;
     add_surface(*renderer, mesh.mesh_P, *look);
     for (const Vec3f& vertex_P : mesh.mesh_P.vertices) points_P.push_back(vertex_P.cast<double>());
   }
-  for (const NeedlePath& path : options.paths) add_needle(*renderer, path.line_P, points_P);
+  for (const anatomy::NeedlePath& path : options.paths) add_needle(*renderer, path.line_P, points_P);
   if (points_P.empty()) return fail("the patient has no surface to draw", patient.name, "see trocar patient check");
   detail::apply(fit_camera(points_P, options.camera, static_cast<double>(options.columns) / options.rows), *renderer);
   renderer->SetUseDepthPeeling(1);
@@ -88,4 +88,4 @@ Result<RgbImage> render_patient(const VirtualPatient& patient, const std::vector
   return detail::read_picture(*window, options.columns, options.rows, kSupersampling);
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

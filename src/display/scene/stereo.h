@@ -1,6 +1,6 @@
 #pragma once
 
-namespace trocar {
+namespace trocar::scene {
 
 enum class StereoMode {
   kOff,
@@ -23,4 +23,4 @@ struct StereoOptions {
   bool operator==(const StereoOptions&) const = default;
 };
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -7,7 +7,7 @@
 #include "anatomy/structure_words.h"
 #include "scene/detail/appearance.h"
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 constexpr double kFaint = 0.15;
@@ -38,7 +38,7 @@ int order_of(StructureKind kind) {
   return 8;
 }
 
-bool fills_space(const Label& label) {
+bool fills_space(const anatomy::Label& label) {
   return label.tissue == "adipose" || label.tissue == "muscle" || label.tissue == "soft_tissue";
 }
 
@@ -56,27 +56,28 @@ std::vector<Vec3> ball_about(const Vec3& middle_P, double radius_mm) {
 }
 
 /// An organ that goes on about the point, not a small structure that is held for one.
-bool is_deep_in_organ(const VirtualPatient& patient, const Vec3& p_P, const Label& organ) {
+bool is_deep_in_organ(const anatomy::VirtualPatient& patient, const Vec3& p_P, const anatomy::Label& organ) {
   const auto look = detail::find_appearance(patient.label_table, organ.name);
   if (!look || look->kind != StructureKind::kOrgan) return false;
   const std::vector<Vec3> ball_P = ball_about(p_P, kDeepRadius_mm);
-  const auto same =
-      std::count_if(ball_P.begin(), ball_P.end(), [&](const Vec3& q_P) { return find_label(patient, q_P) == &organ; });
+  const auto same = std::count_if(ball_P.begin(), ball_P.end(),
+                                  [&](const Vec3& q_P) { return anatomy::find_label(patient, q_P) == &organ; });
   return static_cast<double>(same) > kDeepShare * static_cast<double>(ball_P.size());
 }
 
 }  // namespace
 
-std::vector<StructureInfo> describe_structures(const LabelTable& table, const std::vector<NamedMesh>& meshes,
+std::vector<StructureInfo> describe_structures(const anatomy::LabelTable& table,
+                                               const std::vector<anatomy::NamedMesh>& meshes,
                                                std::string_view target_name, std::string_view around_name) {
-  const std::array<std::uint8_t, 256> organ_of = lesions_as_organs(table);
+  const std::array<std::uint8_t, 256> organ_of = anatomy::lesions_as_organs(table);
   std::vector<StructureInfo> structures;
-  for (const NamedMesh& mesh : meshes) {
+  for (const anatomy::NamedMesh& mesh : meshes) {
     if (mesh.mesh_P.triangles.empty()) continue;
     const auto look = detail::find_appearance(table, mesh.name);
     if (!look) continue;
     StructureInfo info{mesh.name, look->kind, look->color, look->opacity, look->opacity};
-    if (const Label* label = table.find(mesh.name)) info.is_lesion = organ_of[label->id] != label->id;
+    if (const anatomy::Label* label = table.find(mesh.name)) info.is_lesion = organ_of[label->id] != label->id;
     if (mesh.name == target_name) info.kind = StructureKind::kTarget;
     if (mesh.name == around_name && info.opacity > detail::kOrganAroundTargetOpacity) {
       info.opacity = info.default_opacity = detail::kOrganAroundTargetOpacity;
@@ -85,7 +86,7 @@ std::vector<StructureInfo> describe_structures(const LabelTable& table, const st
   }
   std::sort(structures.begin(), structures.end(), [](const StructureInfo& a, const StructureInfo& b) {
     if (a.kind != b.kind) return order_of(a.kind) < order_of(b.kind);
-    return is_name_before(a.name, b.name);
+    return anatomy::is_name_before(a.name, b.name);
   });
   return structures;
 }
@@ -109,13 +110,13 @@ double preset_opacity(const StructureInfo& structure, StructurePreset preset, st
   return structure.default_opacity;
 }
 
-Aim find_aim(const VirtualPatient& patient, const Vec3& target_P) {
-  const Label* inside = find_label(patient, target_P);
+Aim find_aim(const anatomy::VirtualPatient& patient, const Vec3& target_P) {
+  const anatomy::Label* inside = anatomy::find_label(patient, target_P);
   if (inside != nullptr && fills_space(*inside)) inside = nullptr;
   if (inside != nullptr && is_deep_in_organ(patient, target_P, *inside)) return Aim{{}, inside->name};
   std::map<std::string_view, int> votes;
   for (const Vec3& p_P : ball_about(target_P, kAroundRadius_mm)) {
-    const Label* label = find_label(patient, p_P);
+    const anatomy::Label* label = anatomy::find_label(patient, p_P);
     if (label != nullptr && label != inside && !fills_space(*label)) ++votes[label->name];
   }
   const auto best =
@@ -126,4 +127,4 @@ Aim find_aim(const VirtualPatient& patient, const Vec3& target_P) {
   return aim;
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -6,7 +6,7 @@
 
 #include "anatomy/patient.h"
 
-namespace trocar {
+namespace trocar::scene {
 
 /// What a structure counts as when many are shown or hidden together.
 enum class StructureKind { kSkin, kBone, kVessel, kLung, kHollowOrgan, kOrgan, kMuscle, kTarget };
@@ -15,7 +15,7 @@ enum class StructureKind { kSkin, kBone, kVessel, kLung, kHollowOrgan, kOrgan, k
 struct StructureInfo {
   std::string name;  ///< The label's, or "skin".
   StructureKind kind = StructureKind::kOrgan;
-  Rgb color{200, 200, 200};
+  volume::Rgb color{200, 200, 200};
   double opacity = 1.0;          ///< 0 (not drawn) .. 1.
   double default_opacity = 1.0;  ///< That it begins with.
   bool is_lesion = false;        ///< Of an organ (lesions_as_organs).
@@ -33,7 +33,8 @@ enum class StructurePreset {
 
 /// All surfaces with kind, colour and default opacity, skin first, then by kind and name. `target_name` is the
 /// structure that is aimed at (find_aim), `around_name` the organ around it; both may be empty.
-std::vector<StructureInfo> describe_structures(const LabelTable& table, const std::vector<NamedMesh>& meshes,
+std::vector<StructureInfo> describe_structures(const anatomy::LabelTable& table,
+                                               const std::vector<anatomy::NamedMesh>& meshes,
                                                std::string_view target_name, std::string_view around_name);
 /// Opacity of a structure in a preset, 0..1.
 double preset_opacity(const StructureInfo& structure, StructurePreset preset, std::string_view around_name) noexcept;
@@ -48,6 +49,6 @@ struct Aim {
 /// Of a point of P. The target is the structure there, but fat and muscle never are. A place deep in an organ is no
 /// structure of its own: the organ is around it. Else what is around is met most often on a ball of 20 mm that is not
 /// the target, fat or muscle.
-Aim find_aim(const VirtualPatient& patient, const Vec3& target_P);
+Aim find_aim(const anatomy::VirtualPatient& patient, const Vec3& target_P);
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -6,13 +6,13 @@
 
 #include "scene/detail/solids.h"
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
-constexpr Rgb kLensGrey = {92, 100, 112};
-constexpr Rgb kShell = {214, 220, 227};
-constexpr Rgb kHandle = {176, 186, 198};
-constexpr Rgb kMark = {79, 179, 217};
+constexpr volume::Rgb kLensGrey = {92, 100, 112};
+constexpr volume::Rgb kShell = {214, 220, 227};
+constexpr volume::Rgb kHandle = {176, 186, 198};
+constexpr volume::Rgb kMark = {79, 179, 217};
 constexpr int kSides = 40;
 constexpr double kRim_mm = 4.0;            ///< Of the shell around the outermost elements.
 constexpr double kHalfElevation_mm = 9.0;  ///< Half the lens' height.
@@ -84,4 +84,4 @@ std::vector<ShapePart> make_transducer_shape(const TransducerFace& face) {
   return parts;
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -2,7 +2,7 @@
 
 #include "scene/needle_shape.h"
 
-namespace trocar {
+namespace trocar::scene {
 
 /// What of a transducer's scan shows on its outside.
 struct TransducerFace {
@@ -17,4 +17,4 @@ struct TransducerFace {
 /// the cable, with a raised mark on the side of +x. The face's middle is at the origin.
 std::vector<ShapePart> make_transducer_shape(const TransducerFace& face);
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -1,15 +1,15 @@
 #include "scene/volume_preset.h"
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
-constexpr Rgb kSkin = {224, 178, 150};
-constexpr Rgb kFlesh = {176, 84, 66};
-constexpr Rgb kBlood = {206, 44, 36};
-constexpr Rgb kBloodBright = {232, 96, 74};
-constexpr Rgb kMarrow = {216, 172, 138};
-constexpr Rgb kBone = {236, 226, 202};
-constexpr Rgb kBoneWhite = {250, 246, 236};
+constexpr volume::Rgb kSkin = {224, 178, 150};
+constexpr volume::Rgb kFlesh = {176, 84, 66};
+constexpr volume::Rgb kBlood = {206, 44, 36};
+constexpr volume::Rgb kBloodBright = {232, 96, 74};
+constexpr volume::Rgb kMarrow = {216, 172, 138};
+constexpr volume::Rgb kBone = {236, 226, 202};
+constexpr volume::Rgb kBoneWhite = {250, 246, 236};
 
 // Opacities are assumed, tuned by eye on an abdomen in the portal venous phase.
 constexpr TransferPoint kBoneRamp[] = {
@@ -42,4 +42,4 @@ std::span<const TransferPoint> transfer_function(VolumePreset preset) noexcept {
   return {};
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -4,7 +4,7 @@
 
 #include "volume/image.h"
 
-namespace trocar {
+namespace trocar::scene {
 
 /// What of the CT shows as a cloud of colour.
 enum class VolumePreset { kNone, kBone, kSoftTissue, kVessels, kSkinAndBone };
@@ -12,11 +12,11 @@ enum class VolumePreset { kNone, kBone, kSoftTissue, kVessels, kSkinAndBone };
 /// A point of a transfer function; linear between, constant outside.
 struct TransferPoint {
   double hu;
-  Rgb color;
+  volume::Rgb color;
   double opacity;  ///< Of a path of 1 mm, 0..1.
 };
 
 /// By rising HU; empty for kNone.
 std::span<const TransferPoint> transfer_function(VolumePreset preset) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <span>
 
-namespace trocar {
+namespace trocar::slices {
 namespace {
 
 /// Fat and muscle fill the whole body: they are the ground on which structures are drawn.
-bool is_drawn(const Label& label) {
+bool is_drawn(const anatomy::Label& label) {
   return label.tissue != "adipose" && label.tissue != "muscle" && label.tissue != "skin";
 }
 
@@ -19,7 +19,7 @@ struct Ink {
   std::uint32_t gray_share = 256;
 };
 
-Ink ink_of(const Rgb& color, double opacity) {
+Ink ink_of(const volume::Rgb& color, double opacity) {
   Ink ink;
   const auto share = static_cast<std::uint32_t>(std::lround(256.0 * std::clamp(opacity, 0.0, 1.0)));
   ink.gray_share = 256 - share;
@@ -33,9 +33,9 @@ struct Inks {
   std::array<Ink, 256> outline;
 };
 
-Inks inks_of(const LabelTable& table, const SliceStyle& style) {
+Inks inks_of(const anatomy::LabelTable& table, const SliceStyle& style) {
   Inks inks;
-  for (const Label& label : table.labels) {
+  for (const anatomy::Label& label : table.labels) {
     if (!is_drawn(label)) continue;
     inks.is_drawn[label.id] = true;
     inks.fill[label.id] = ink_of(label.color, style.label_opacity);
@@ -44,8 +44,8 @@ Inks inks_of(const LabelTable& table, const SliceStyle& style) {
   return inks;
 }
 
-Rgb lay_over(std::uint8_t gray, const Ink& ink) {
-  Rgb out;
+volume::Rgb lay_over(std::uint8_t gray, const Ink& ink) {
+  volume::Rgb out;
   for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>((gray * ink.gray_share + ink.color[c]) >> 8U);
   return out;
 }
@@ -57,7 +57,7 @@ struct LabelRow {
   const std::uint8_t* below;
 };
 
-void draw_row(const LabelRow& row, const std::uint8_t* gray, const Inks& inks, std::size_t columns, Rgb* out) {
+void draw_row(const LabelRow& row, const std::uint8_t* gray, const Inks& inks, std::size_t columns, volume::Rgb* out) {
   for (std::size_t u = 0; u < columns; ++u) {
     const std::uint8_t id = row.ids[u];
     if (!inks.is_drawn[id]) continue;
@@ -68,18 +68,18 @@ void draw_row(const LabelRow& row, const std::uint8_t* gray, const Inks& inks, s
   }
 }
 
-void hide_lesions(const LabelTable& table, std::span<std::uint8_t> ids) {
-  const std::array<std::uint8_t, 256> shown = lesions_as_organs(table);
+void hide_lesions(const anatomy::LabelTable& table, std::span<std::uint8_t> ids) {
+  const std::array<std::uint8_t, 256> shown = anatomy::lesions_as_organs(table);
   for (std::uint8_t& id : ids) id = shown[id];
 }
 
-void draw_labels(const VirtualPatient& patient, const SlicePlane& plane, const SliceStyle& style, SliceBuffers& buffers,
-                 RgbImage& picture) {
+void draw_labels(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
+                 SliceBuffers& buffers, volume::RgbImage& picture) {
   // A row of "no label" stands before the first and after the last one.
   const auto columns = static_cast<std::size_t>(plane.columns);
   const auto rows = static_cast<std::size_t>(plane.rows);
   buffers.ids.assign((rows + 2) * columns, 0);
-  sample_slice_nearest(patient.labels, plane, 0, std::span(buffers.ids).subspan(columns, rows * columns));
+  volume::sample_slice_nearest(patient.labels, plane, 0, std::span(buffers.ids).subspan(columns, rows * columns));
   if (style.hides_lesions) hide_lesions(patient.label_table, buffers.ids);
   const Inks inks = inks_of(patient.label_table, style);
   for (std::size_t v = 0; v < rows; ++v) {
@@ -91,8 +91,8 @@ void draw_labels(const VirtualPatient& patient, const SlicePlane& plane, const S
 
 }  // namespace
 
-void paint_slice(const VirtualPatient& patient, const SlicePlane& plane, const SliceStyle& style, SliceBuffers& buffers,
-                 RgbImage& picture) {
+void paint_slice(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
+                 SliceBuffers& buffers, volume::RgbImage& picture) {
   constexpr float kAir_hu = -1024.0F;
   const std::size_t count = static_cast<std::size_t>(plane.columns) * static_cast<std::size_t>(plane.rows);
   picture.columns = plane.columns;
@@ -100,11 +100,11 @@ void paint_slice(const VirtualPatient& patient, const SlicePlane& plane, const S
   picture.pixels.resize(count);
   buffers.hu.resize(count);
   buffers.gray.resize(count);
-  sample_slice(patient.ct, plane, kAir_hu, buffers.hu);
+  volume::sample_slice(patient.ct, plane, kAir_hu, buffers.hu);
   apply_window(buffers.hu, style.window, buffers.gray);
   for (std::size_t n = 0; n < count; ++n) picture.pixels[n].fill(buffers.gray[n]);
   const bool shows_labels = style.label_opacity > 0.0 || style.has_outlines;
   if (shows_labels && !patient.labels.empty()) draw_labels(patient, plane, style, buffers, picture);
 }
 
-}  // namespace trocar
+}  // namespace trocar::slices

@@ -8,7 +8,7 @@
 #include "volume/image.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::slices {
 
 struct SliceStyle {
   Window window;
@@ -29,7 +29,7 @@ struct SliceBuffers {
 /// Paints CT on a plane (trilinear, window/level) and over it the labels (nearest) in their colours, filled and
 /// outlined, but for fat, muscle and skin, the ground on which structures lie. Air stands outside the volume. Sets the
 /// picture's size to the plane's. Allocates only where a picture is larger than the ones before it. One thread.
-void paint_slice(const VirtualPatient& patient, const SlicePlane& plane, const SliceStyle& style, SliceBuffers& buffers,
-                 RgbImage& picture);
+void paint_slice(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
+                 SliceBuffers& buffers, volume::RgbImage& picture);
 
-}  // namespace trocar
+}  // namespace trocar::slices

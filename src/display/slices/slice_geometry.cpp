@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace trocar {
+namespace trocar::slices {
 
 SliceAxes slice_axes(SliceOrientation orientation) noexcept {
   switch (orientation) {
@@ -55,8 +55,8 @@ Vec3 SliceGeometry::to_P(const Eigen::Vector2d& pixel) const noexcept {
   return center_P + from_center_mm.x() * axes.u_P + from_center_mm.y() * axes.v_P;
 }
 
-SlicePlane SliceGeometry::plane() const noexcept {
-  SlicePlane plane;
+volume::SlicePlane SliceGeometry::plane() const noexcept {
+  volume::SlicePlane plane;
   plane.origin_P = to_P({0.0, 0.0});
   plane.step_u_P = mm_per_px * axes.u_P;
   plane.step_v_P = mm_per_px * axes.v_P;
@@ -71,7 +71,7 @@ void SliceGeometry::zoom_at(const Eigen::Vector2d& pixel, double new_mm_per_px) 
   center_P += fixed_P - to_P(pixel);
 }
 
-Box volume_box(const GridGeometry& geometry) {
+Box volume_box(const volume::GridGeometry& geometry) {
   Box box;
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 index;
@@ -82,11 +82,11 @@ Box volume_box(const GridGeometry& geometry) {
   return box;
 }
 
-Box body_box(const VirtualPatient& patient) {
+Box body_box(const anatomy::VirtualPatient& patient) {
   constexpr std::int64_t kStride = 4;
   Box box;
-  const FloatGrid& distance = patient.skin_distance_mm;
-  const GridGeometry& geometry = distance.geometry;
+  const volume::FloatGrid& distance = patient.skin_distance_mm;
+  const volume::GridGeometry& geometry = distance.geometry;
   for (std::int64_t k = 0; k < geometry.size[2]; k += kStride)
     for (std::int64_t j = 0; j < geometry.size[1]; j += kStride)
       for (std::int64_t i = 0; i < geometry.size[0]; i += kStride)
@@ -122,4 +122,4 @@ std::string direction_letters(const Vec3& direction_P) {
   return letters;
 }
 
-}  // namespace trocar
+}  // namespace trocar::slices

@@ -6,7 +6,7 @@
 #include "anatomy/patient.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::slices {
 
 /// Directions of a picture in P (LPS): +u to its right, +v down, both of length 1 and square to each other. One looks
 /// along u x v, into the picture.
@@ -49,16 +49,16 @@ struct SliceGeometry {
   /// Height of a point over the plane (mm), positive behind the picture.
   double height_mm(const Vec3& p_P) const noexcept { return axes.normal_P().dot(p_P - center_P); }
   /// The sample points of its picture.
-  SlicePlane plane() const noexcept;
+  volume::SlicePlane plane() const noexcept;
   /// Changes the scale and keeps the point under a pixel where it is.
   void zoom_at(const Eigen::Vector2d& pixel, double new_mm_per_px) noexcept;
 };
 
 using Box = Eigen::AlignedBox3d;  ///< In P, mm.
 /// The box around a volume, voxels' borders included.
-Box volume_box(const GridGeometry& geometry);
+Box volume_box(const volume::GridGeometry& geometry);
 /// The box around the body; around the volume where no distance to the skin is known. Looks at every fourth voxel.
-Box body_box(const VirtualPatient& patient);
+Box body_box(const anatomy::VirtualPatient& patient);
 /// Scale (mm per pixel) at which a box just fits into a picture.
 double fitting_scale(const Box& box, const SliceAxes& axes, int columns, int rows) noexcept;
 
@@ -66,4 +66,4 @@ double fitting_scale(const Box& box, const SliceAxes& axes, int columns, int row
 /// or third where the direction leans to it by more than 20 degrees ("RA"). Nothing for a vector that is no direction.
 std::string direction_letters(const Vec3& direction_P);
 
-}  // namespace trocar
+}  // namespace trocar::slices

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::slices {
 namespace {
 
 struct Extent {
@@ -11,7 +11,7 @@ struct Extent {
 };
 
 /// What is shown along an axis of P: the volume's box (voxel borders, not centres) or the part inside the field.
-Extent extent_mm(const GridGeometry& geometry, const Vec3& direction_P, const SliceOptions& options) {
+Extent extent_mm(const volume::GridGeometry& geometry, const Vec3& direction_P, const SliceOptions& options) {
   const Box volume_P = volume_box(geometry);
   const double ends[2] = {direction_P.dot(volume_P.min()), direction_P.dot(volume_P.max())};
   const Extent box{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])};
@@ -22,14 +22,14 @@ Extent extent_mm(const GridGeometry& geometry, const Vec3& direction_P, const Sl
   return {inside, inside + side};
 }
 
-SlicePlane plane_through(const GridGeometry& geometry, SliceOrientation orientation, const Vec3& through_P,
-                         const SliceOptions& options) {
+volume::SlicePlane plane_through(const volume::GridGeometry& geometry, SliceOrientation orientation,
+                                 const Vec3& through_P, const SliceOptions& options) {
   const SliceAxes axes = slice_axes(orientation);
   const Extent u = extent_mm(geometry, axes.u_P, options);
   const Extent v = extent_mm(geometry, axes.v_P, options);
   const double longer_mm = options.field_mm > 0.0 ? options.field_mm : std::max(u.high - u.low, v.high - v.low);
   const double step_mm = longer_mm / options.size_px;
-  SlicePlane plane;
+  volume::SlicePlane plane;
   plane.columns = std::max(1, static_cast<int>(std::lround((u.high - u.low) / step_mm)));
   plane.rows = std::max(1, static_cast<int>(std::lround((v.high - v.low) / step_mm)));
   plane.step_u_P = step_mm * axes.u_P;
@@ -49,8 +49,8 @@ Eigen::Vector2d SlicePicture::to_pixel(const Vec3& p_P) const noexcept {
           from_origin.dot(plane.step_v_P) / plane.step_v_P.squaredNorm()};
 }
 
-SlicePicture make_slice_picture(const VirtualPatient& patient, SliceOrientation orientation, const Vec3& through_P,
-                                const SliceOptions& options) {
+SlicePicture make_slice_picture(const anatomy::VirtualPatient& patient, SliceOrientation orientation,
+                                const Vec3& through_P, const SliceOptions& options) {
   SlicePicture picture;
   picture.orientation = orientation;
   picture.plane = plane_through(patient.ct.geometry, orientation, through_P, options);
@@ -60,4 +60,4 @@ SlicePicture make_slice_picture(const VirtualPatient& patient, SliceOrientation 
   return picture;
 }
 
-}  // namespace trocar
+}  // namespace trocar::slices

@@ -3,14 +3,14 @@
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
 
-namespace trocar {
+namespace trocar::slices {
 
 /// A CT slice through a point, radiological view (patient's right on the left of the picture; coronal and sagittal with
 /// the head up, the sagittal slice with the front on the left), window/level, square pixels. Labels are filled and
 /// outlined by colour, but for fat, muscle and skin, the ground on which structures lie.
 struct SlicePicture {
-  RgbImage image;
-  SlicePlane plane;  ///< Pixel (u, v) lies at origin + u step_u + v step_v.
+  volume::RgbImage image;
+  volume::SlicePlane plane;  ///< Pixel (u, v) lies at origin + u step_u + v step_v.
   SliceOrientation orientation = SliceOrientation::kAxial;
   /// Where a point of P falls in the picture (pixels; may be outside).
   Eigen::Vector2d to_pixel(const Vec3& p_P) const noexcept;
@@ -24,7 +24,7 @@ struct SliceOptions {
   double field_mm = 0.0;
   Vec3 center_P = Vec3::Zero();
 };
-SlicePicture make_slice_picture(const VirtualPatient& patient, SliceOrientation orientation, const Vec3& through_P,
-                                const SliceOptions& options = {});
+SlicePicture make_slice_picture(const anatomy::VirtualPatient& patient, SliceOrientation orientation,
+                                const Vec3& through_P, const SliceOptions& options = {});
 
-}  // namespace trocar
+}  // namespace trocar::slices

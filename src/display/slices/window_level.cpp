@@ -4,7 +4,7 @@
 
 #include "core/check.h"
 
-namespace trocar {
+namespace trocar::slices {
 
 std::string_view window_name(const Window& window) noexcept {
   constexpr double kSame_hu = 0.5;
@@ -27,4 +27,4 @@ void apply_window(std::span<const float> hu, const Window& window, std::span<std
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::slices

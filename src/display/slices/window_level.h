@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-namespace trocar {
+namespace trocar::slices {
 
 /// Gray values of CT: black at centre - width/2, white at centre + width/2. Width > 0.
 struct Window {
@@ -34,4 +34,4 @@ std::string_view window_name(const Window& window) noexcept;
 /// Gray of HU, rounded to the nearest step; 0 for NaN. `gray` is as long as `hu` (checked).
 void apply_window(std::span<const float> hu, const Window& window, std::span<std::uint8_t> gray) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::slices

@@ -9,7 +9,7 @@
 #include "core/files/atomic_file.h"
 #include "core/files/input_file.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
@@ -31,12 +31,12 @@ struct Markup {
   std::vector<ControlPoint> points;  ///< Placed points only.
 };
 
-std::string text_of(const Json& object, const char* key, std::string fallback = {}) {
+std::string text_of(const config::Json& object, const char* key, std::string fallback = {}) {
   const auto found = object.find(key);
   return found != object.end() && found->is_string() ? found->get<std::string>() : fallback;
 }
 
-Result<Vec3> position_of(const Json& point, const std::string& where) {
+Result<Vec3> position_of(const config::Json& point, const std::string& where) {
   const auto found = point.find("position");
   Vec3 p = Vec3::Constant(std::nan(""));
   if (found != point.end() && found->is_array() && found->size() == 3)
@@ -47,7 +47,7 @@ Result<Vec3> position_of(const Json& point, const std::string& where) {
               "give three numbers in mm");
 }
 
-Result<Markup> markup_of(const Json& json, const std::string& where) {
+Result<Markup> markup_of(const config::Json& json, const std::string& where) {
   if (!json.is_object()) return fail("a markup is not an object", where, "save the markups again in 3D Slicer");
   Markup markup{text_of(json, "type"), text_of(json, "name"), {}};
   const std::string system = text_of(json, "coordinateSystem", "LPS");
@@ -61,7 +61,7 @@ Result<Markup> markup_of(const Json& json, const std::string& where) {
   if (points == json.end()) return markup;
   if (!points->is_array())
     return fail("the control points are not a list", where, "save the markups again in 3D Slicer");
-  for (const Json& point : *points) {
+  for (const config::Json& point : *points) {
     if (!point.is_object())
       return fail("a control point is not an object", where, "save the markups again in 3D Slicer");
     // 3D Slicer keeps points that were never placed.
@@ -76,19 +76,19 @@ Result<Markup> markup_of(const Json& json, const std::string& where) {
 Result<std::vector<Markup>> read_markups(const fs::path& path, const fs::path& inside) {
   const std::string where = path.string();
   TROCAR_TRY(const std::string text, read_input(path, FileKind::kMarkups, inside));
-  TROCAR_TRY(const Json json, parse_json(text, where));
+  TROCAR_TRY(const config::Json json, config::parse_json(text, where));
   const auto list = json.is_object() ? json.find("markups") : json.end();
   if (!json.is_object() || list == json.end() || !list->is_array())
     return fail("not a markups file", where, "save fiducials or lines in 3D Slicer as .mrk.json");
   std::vector<Markup> markups;
-  for (const Json& item : *list) {
+  for (const config::Json& item : *list) {
     TROCAR_TRY(Markup markup, markup_of(item, where));
     markups.push_back(std::move(markup));
   }
   return markups;
 }
 
-Json point_json(int number, const ControlPoint& point) {
+config::Json point_json(int number, const ControlPoint& point) {
   return {{"id", std::to_string(number)},
           {"label", point.label},
           {"position", {point.p_P.x(), point.p_P.y(), point.p_P.z()}},
@@ -98,8 +98,8 @@ Json point_json(int number, const ControlPoint& point) {
           {"positionStatus", "defined"}};
 }
 
-Json markup_json(const Markup& markup) {
-  Json points = Json::array();
+config::Json markup_json(const Markup& markup) {
+  config::Json points = config::Json::array();
   for (const ControlPoint& point : markup.points)
     points.push_back(point_json(static_cast<int>(points.size()) + 1, point));
   return {{"type", markup.type},
@@ -118,31 +118,31 @@ Status write_markups(const std::vector<Markup>& markups, const fs::path& path) {
       if (!point.p_P.allFinite())
         return fail(fmt::format("point \"{}\" has a position that is not a number", point.label), path.string(),
                     "correct the point in the file");
-  Json list = Json::array();
+  config::Json list = config::Json::array();
   for (const Markup& markup : markups) list.push_back(markup_json(markup));
-  return write_file_atomically(path, json_text({{"@schema", kSchema}, {"markups", list}}) + "\n");
+  return write_file_atomically(path, config::json_text({{"@schema", kSchema}, {"markups", list}}) + "\n");
 }
 
 }  // namespace
 
-Result<std::vector<Landmark>> read_landmarks(const fs::path& path, const fs::path& inside) {
+Result<std::vector<anatomy::Landmark>> read_landmarks(const fs::path& path, const fs::path& inside) {
   TROCAR_TRY(const std::vector<Markup> markups, read_markups(path, inside));
-  std::vector<Landmark> landmarks;
+  std::vector<anatomy::Landmark> landmarks;
   for (const Markup& markup : markups)
     if (markup.type == "Fiducial")
       for (const ControlPoint& point : markup.points) landmarks.push_back({point.label, point.p_P});
   return landmarks;
 }
 
-Status write_landmarks(const std::vector<Landmark>& landmarks, const fs::path& path) {
+Status write_landmarks(const std::vector<anatomy::Landmark>& landmarks, const fs::path& path) {
   Markup markup{"Fiducial", "landmarks", {}};
-  for (const Landmark& landmark : landmarks) markup.points.push_back({landmark.name, landmark.p_P});
+  for (const anatomy::Landmark& landmark : landmarks) markup.points.push_back({landmark.name, landmark.p_P});
   return write_markups({markup}, path);
 }
 
-Result<std::vector<NeedlePath>> read_paths(const fs::path& path, const fs::path& inside) {
+Result<std::vector<anatomy::NeedlePath>> read_paths(const fs::path& path, const fs::path& inside) {
   TROCAR_TRY(const std::vector<Markup> markups, read_markups(path, inside));
-  std::vector<NeedlePath> paths;
+  std::vector<anatomy::NeedlePath> paths;
   for (const Markup& markup : markups) {
     if (markup.type != "Line") continue;
     if (markup.points.size() != 2)
@@ -157,11 +157,11 @@ Result<std::vector<NeedlePath>> read_paths(const fs::path& path, const fs::path&
   return paths;
 }
 
-Status write_paths(const std::vector<NeedlePath>& paths, const fs::path& path) {
+Status write_paths(const std::vector<anatomy::NeedlePath>& paths, const fs::path& path) {
   std::vector<Markup> markups;
-  for (const NeedlePath& needle_path : paths)
+  for (const anatomy::NeedlePath& needle_path : paths)
     markups.push_back({"Line", needle_path.name, {{"entry", needle_path.line_P.a}, {"target", needle_path.line_P.b}}});
   return write_markups(markups, path);
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

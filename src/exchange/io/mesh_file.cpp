@@ -24,7 +24,7 @@
 #include "core/files/input_file.h"
 #include "io/image/detail/quiet.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
@@ -180,4 +180,4 @@ Status write_mesh(const TriangleMesh& mesh_P, const fs::path& path) {
   });
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

@@ -6,7 +6,7 @@
 
 #include "core/files/input_file.h"
 
-namespace trocar {
+namespace trocar::config {
 namespace {
 
 constexpr int kMaxDepth = 64;  ///< Documents of ours nest less than 10 deep; whoever walks one may recurse.
@@ -55,4 +55,4 @@ std::string json_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace trocar
+}  // namespace trocar::config

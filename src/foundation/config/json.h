@@ -7,7 +7,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::config {
 
 using Json = nlohmann::ordered_json;
 
@@ -18,4 +18,4 @@ Result<Json> load_json(const std::filesystem::path& path);
 /// The document as text; bytes that are not UTF-8 are replaced instead of thrown at the caller. indent < 0: one line.
 std::string json_text(const Json& json, int indent = 2);
 
-}  // namespace trocar
+}  // namespace trocar::config

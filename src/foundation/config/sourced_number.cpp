@@ -1,6 +1,6 @@
 #include "config/sourced_number.h"
 
-namespace trocar {
+namespace trocar::config {
 
 Result<SourcedNumber> read_sourced_number(const TomlTable& table, std::string_view key, Range allowed) {
   TROCAR_TRY(const TomlTable entry, table.table(key));
@@ -20,4 +20,4 @@ Result<SourcedNumber> read_sourced_number(const TomlTable& table, std::string_vi
   return number;
 }
 
-}  // namespace trocar
+}  // namespace trocar::config

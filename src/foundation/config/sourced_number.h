@@ -5,7 +5,7 @@
 
 #include "config/toml.h"
 
-namespace trocar {
+namespace trocar::config {
 
 /// A number of a data table that says where it comes from: KEY = {value = 0.46, source = "…", range = [low, high]}.
 struct SourcedNumber {
@@ -17,4 +17,4 @@ struct SourcedNumber {
 /// Reads one. Errors: outside of `allowed`, no source, or a source that begins with "assumed" without a range.
 Result<SourcedNumber> read_sourced_number(const TomlTable& table, std::string_view key, Range allowed);
 
-}  // namespace trocar
+}  // namespace trocar::config

@@ -24,7 +24,7 @@ namespace {
 #include <toml++/toml.h>
 #pragma pop_macro("NDEBUG")
 
-namespace trocar {
+namespace trocar::config {
 
 /// What toml++ knows of a table's keys, for the getters and their messages.
 struct TomlNodes {
@@ -226,4 +226,4 @@ Result<TomlTable> load_toml(const std::filesystem::path& path) {
   return parse_toml(text, path.string());
 }
 
-}  // namespace trocar
+}  // namespace trocar::config

@@ -15,7 +15,7 @@ class table;
 }
 }  // namespace toml
 
-namespace trocar {
+namespace trocar::config {
 
 /// The allowed range of a number in a configuration file.
 struct Range {
@@ -64,4 +64,4 @@ class TomlTable {
 Result<TomlTable> parse_toml(std::string_view text, const std::string& name);
 Result<TomlTable> load_toml(const std::filesystem::path& path);
 
-}  // namespace trocar
+}  // namespace trocar::config

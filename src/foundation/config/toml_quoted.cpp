@@ -2,7 +2,7 @@
 
 #include "config/json.h"
 
-namespace trocar {
+namespace trocar::config {
 
 std::string toml_quoted(const std::string& text) {
   std::string quoted;
@@ -15,4 +15,4 @@ std::string toml_quoted(const std::string& text) {
   return quoted;
 }
 
-}  // namespace trocar
+}  // namespace trocar::config

@@ -11,6 +11,7 @@
 #include <string_view>
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 /// Of a line "KEY: NUMBER kB" in a file of /proc.
@@ -46,4 +47,5 @@ Status check_memory_for_image(std::uint64_t bytes, std::uint64_t available_bytes
               where, "close other programs or crop the image");
 }
 
+}  // namespace core
 }  // namespace trocar

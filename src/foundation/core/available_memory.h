@@ -6,6 +6,7 @@
 #include "core/result.h"
 
 namespace trocar {
+inline namespace core {
 
 /// Memory that new allocations may take without swapping (MemAvailable of /proc/meminfo). Where the system does not
 /// state it: the largest number.
@@ -22,4 +23,5 @@ void release_freed_memory();
 /// before the allocation: Linux grants more memory than there is and ends a program when it is used.
 Status check_memory_for_image(std::uint64_t bytes, std::uint64_t available_bytes, const std::string& where);
 
+}  // namespace core
 }  // namespace trocar

@@ -18,6 +18,7 @@
 #include "core/result.h"
 
 namespace trocar {
+inline namespace core {
 
 /// How far work in the background is.
 struct JobView {
@@ -126,4 +127,5 @@ class RetiredJobs {
   std::vector<std::unique_ptr<Any>> jobs_;
 };
 
+}  // namespace core
 }  // namespace trocar

@@ -3,11 +3,15 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace trocar::detail {
+namespace trocar {
+inline namespace core {
+namespace detail {
 
 void check_failed(const char* condition, const char* file, int line) noexcept {
   std::fprintf(stderr, "internal error: %s does not hold — %s:%d — please report this\n", condition, file, line);
   std::abort();
 }
 
-}  // namespace trocar::detail
+}  // namespace detail
+}  // namespace core
+}  // namespace trocar

@@ -1,9 +1,13 @@
 #pragma once
 
-namespace trocar::detail {
+namespace trocar {
+inline namespace core {
+namespace detail {
 /// Prints the failed condition and aborts.
 [[noreturn]] void check_failed(const char* condition, const char* file, int line) noexcept;
-}  // namespace trocar::detail
+}  // namespace detail
+}  // namespace core
+}  // namespace trocar
 
 /// A programmer's error at a module border: always tested, aborts.
 #define TROCAR_CHECK(condition) \

@@ -4,6 +4,7 @@
 #include <xxhash.h>
 
 namespace trocar {
+inline namespace core {
 
 ContentHash::ContentHash() : state_(XXH3_createState()) {
   XXH3_128bits_reset(static_cast<XXH3_state_t*>(state_));
@@ -22,4 +23,5 @@ std::string ContentHash::digest() const {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+}  // namespace core
 }  // namespace trocar

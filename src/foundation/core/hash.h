@@ -5,6 +5,7 @@
 #include <string>
 
 namespace trocar {
+inline namespace core {
 
 /// 128-bit content hash (XXH3) as 32 hexadecimal digits: tells whether two patients or tables are the same.
 /// Not for security.
@@ -22,4 +23,5 @@ class ContentHash {
   void* state_;
 };
 
+}  // namespace core
 }  // namespace trocar

@@ -13,6 +13,7 @@
 #include "core/files/unfinished_output.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 constexpr time_t kGrace_s = 5;
@@ -92,4 +93,5 @@ InterruptibleWork::~InterruptibleWork() {
   --work_that_ends_by_itself;
 }
 
+}  // namespace core
 }  // namespace trocar

@@ -5,6 +5,7 @@
 #include "core/result.h"
 
 namespace trocar {
+inline namespace core {
 
 /// From now on SIGINT, SIGTERM and SIGHUP end the program in order: unfinished outputs are removed, one line on
 /// standard error says so with the name of the command, the exit status is 1. A signal that the parent process ignores
@@ -26,4 +27,5 @@ class InterruptibleWork {
   InterruptibleWork& operator=(const InterruptibleWork&) = delete;
 };
 
+}  // namespace core
 }  // namespace trocar

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 spdlog::level::level_enum spd_level(LogLevel level) {
@@ -40,4 +41,5 @@ void set_log_level(LogLevel level) {
   logger().set_level(spd_level(level));
 }
 
+}  // namespace core
 }  // namespace trocar

@@ -6,6 +6,7 @@
 #include <utility>
 
 namespace trocar {
+inline namespace core {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
@@ -23,4 +24,5 @@ void log_warning(fmt::format_string<Args...> format, Args&&... args) {
   log(LogLevel::kWarning, fmt::format(format, std::forward<Args>(args)...));
 }
 
+}  // namespace core
 }  // namespace trocar

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 namespace trocar {
+inline namespace core {
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
@@ -29,4 +30,5 @@ void parallel_invoke(const std::function<void()>& a, const std::function<void()>
   oneapi::tbb::parallel_invoke(a, b, c);
 }
 
+}  // namespace core
 }  // namespace trocar

@@ -4,6 +4,7 @@
 #include <functional>
 
 namespace trocar {
+inline namespace core {
 
 /// Calls body(first, last) on disjoint parts of [0, count) from several threads; returns when all are done.
 /// Parts are at least `grain` long. Never called from real-time code.
@@ -18,4 +19,5 @@ void run_on_threads(int most, const std::function<void()>& body);
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b);
 void parallel_invoke(const std::function<void()>& a, const std::function<void()>& b, const std::function<void()>& c);
 
+}  // namespace core
 }  // namespace trocar

@@ -4,6 +4,7 @@
 #include <string_view>
 
 namespace trocar {
+inline namespace core {
 
 /// Told by long work how far it is: what it does now and the done fraction in 0..1. May be empty.
 using Progress = std::function<void(std::string_view step, double fraction)>;
@@ -13,4 +14,5 @@ inline void report(const Progress& progress, std::string_view step, double fract
   if (progress) progress(step, fraction);
 }
 
+}  // namespace core
 }  // namespace trocar

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 namespace trocar {
+inline namespace core {
 
 /// Mixes 64 bits (SplitMix64 finaliser): the same on every machine. Real-time safe.
 constexpr std::uint64_t mix64(std::uint64_t x) noexcept {
@@ -31,4 +32,5 @@ class Random {
   std::uint64_t counter_ = 0;
 };
 
+}  // namespace core
 }  // namespace trocar

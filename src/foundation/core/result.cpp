@@ -1,6 +1,7 @@
 #include "core/result.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 void append_part(std::string& line, const std::string& part) {
@@ -27,4 +28,5 @@ tl::unexpected<Error> fail_usage(std::string what, std::string where, std::strin
   return tl::unexpected(Error{std::move(what), std::move(where), std::move(advice), 2});
 }
 
+}  // namespace core
 }  // namespace trocar

@@ -5,6 +5,7 @@
 #include <utility>
 
 namespace trocar {
+inline namespace core {
 
 /// What went wrong with the outside world (a file, a device, the user's words), said so that the user can act.
 /// Printed as "error: what — where — what to do"; empty parts are left out.
@@ -27,6 +28,7 @@ tl::unexpected<Error> fail(std::string what, std::string where = {}, std::string
 /// The same for arguments that cannot be used (exit status 2).
 tl::unexpected<Error> fail_usage(std::string what, std::string where = {}, std::string advice = {});
 
+}  // namespace core
 }  // namespace trocar
 
 /// Returns the error of a Result<T> expression from the enclosing function, else binds its value: TROCAR_TRY(auto ct,

@@ -6,6 +6,7 @@
 #include <vector>
 
 namespace trocar {
+inline namespace core {
 
 /// A value with its steps back and forth. Whole values are kept: they should share what is large.
 template <class State>
@@ -62,4 +63,5 @@ class StepHistory {
   std::vector<State> after_;
 };
 
+}  // namespace core
 }  // namespace trocar

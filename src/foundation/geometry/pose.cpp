@@ -3,6 +3,7 @@
 #include <cmath>
 
 namespace trocar {
+inline namespace geometry {
 
 Mat3 rotation_between(const Vec3& from, const Vec3& to) noexcept {
   return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
@@ -16,4 +17,5 @@ double angle_between_rad(const Vec3& a, const Vec3& b) noexcept {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+}  // namespace geometry
 }  // namespace trocar

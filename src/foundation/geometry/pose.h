@@ -3,6 +3,7 @@
 #include "geometry/vec.h"
 
 namespace trocar {
+inline namespace geometry {
 
 /// Rigid transform X_AB: the pose of frame B in frame A; maps points of B to A. Translation in mm. Real-time safe.
 /// Invariant: the rotation is orthonormal with determinant +1.
@@ -36,4 +37,5 @@ Pose needle_pose(const Vec3& tip_A, const Vec3& axis_A) noexcept;
 /// Angle between two directions, 0..pi rad.
 double angle_between_rad(const Vec3& a, const Vec3& b) noexcept;
 
+}  // namespace geometry
 }  // namespace trocar

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 namespace trocar {
+inline namespace geometry {
 
 double closest_fraction(const Segment& segment, const Vec3& q) noexcept {
   const Vec3 along = segment.b - segment.a;
@@ -18,4 +19,5 @@ double distance_to_line_mm(const Vec3& origin, const Vec3& direction, const Vec3
   return direction.cross(q - origin).norm();
 }
 
+}  // namespace geometry
 }  // namespace trocar

@@ -3,6 +3,7 @@
 #include "geometry/vec.h"
 
 namespace trocar {
+inline namespace geometry {
 
 /// A straight piece from a to b.
 struct Segment {
@@ -20,4 +21,5 @@ double distance_mm(const Segment& segment, const Vec3& q) noexcept;
 /// Distance of q from the infinite line through `origin` along the unit vector `direction`.
 double distance_to_line_mm(const Vec3& origin, const Vec3& direction, const Vec3& q) noexcept;
 
+}  // namespace geometry
 }  // namespace trocar

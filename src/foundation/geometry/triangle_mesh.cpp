@@ -1,6 +1,7 @@
 #include "geometry/triangle_mesh.h"
 
 namespace trocar {
+inline namespace geometry {
 
 double enclosed_volume_mm3(const TriangleMesh& mesh) noexcept {
   double six_volumes = 0.0;
@@ -20,4 +21,5 @@ double area_mm2(const TriangleMesh& mesh) noexcept {
   return twice / 2.0;
 }
 
+}  // namespace geometry
 }  // namespace trocar

@@ -7,6 +7,7 @@
 #include "geometry/vec.h"
 
 namespace trocar {
+inline namespace geometry {
 
 /// A surface: vertices in mm, triangles counter-clockwise seen from outside.
 struct TriangleMesh {
@@ -18,4 +19,5 @@ struct TriangleMesh {
 double enclosed_volume_mm3(const TriangleMesh& mesh) noexcept;
 double area_mm2(const TriangleMesh& mesh) noexcept;
 
+}  // namespace geometry
 }  // namespace trocar

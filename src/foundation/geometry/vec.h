@@ -6,6 +6,7 @@
 #include <cstddef>
 
 namespace trocar {
+inline namespace geometry {
 
 using Vec3 = Eigen::Vector3d;   ///< Point (mm), direction, force (N) or torque (N mm); the name tells frame and kind.
 using Vec3f = Eigen::Vector3f;  ///< The same in bulk data (meshes).
@@ -19,4 +20,5 @@ std::array<Vec3, N> zero_vectors() noexcept {
   return vectors;
 }
 
+}  // namespace geometry
 }  // namespace trocar

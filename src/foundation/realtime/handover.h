@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-namespace trocar {
+namespace trocar::realtime {
 
 /// Immutable objects that one thread makes and a real-time thread uses: publish and collect belong to the maker,
 /// acquire to the user. The user never frees anything. Invariant: `kept_` holds everything that the user may still be
@@ -55,4 +55,4 @@ class Handover {
   std::vector<std::shared_ptr<const T>> kept_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::realtime

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace trocar {
+namespace trocar::realtime {
 
 /// Counts durations in bins whose width is at most 1/32 of them: percentiles to within 3 % from 1 ns to an hour. Fixed
 /// size, copyable, real-time safe.
@@ -56,4 +56,4 @@ class LatencyHistogram {
   std::uint64_t max_ns_ = 0;
 };
 
-}  // namespace trocar
+}  // namespace trocar::realtime

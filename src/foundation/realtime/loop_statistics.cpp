@@ -1,6 +1,6 @@
 #include "realtime/loop_statistics.h"
 
-namespace trocar {
+namespace trocar::realtime {
 
 LatencySummary summarise(const LatencyHistogram& histogram) noexcept {
   constexpr double kUsPerNs = 1e-3;
@@ -33,4 +33,4 @@ LoopSummary LoopStatistics::summary() const noexcept {
   return summary;
 }
 
-}  // namespace trocar
+}  // namespace trocar::realtime

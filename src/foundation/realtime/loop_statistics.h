@@ -4,7 +4,7 @@
 
 #include "realtime/latency_histogram.h"
 
-namespace trocar {
+namespace trocar::realtime {
 
 /// A duration's distribution, microseconds.
 struct LatencySummary {
@@ -41,4 +41,4 @@ class LoopStatistics {
   LatencyHistogram lateness_, tick_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::realtime

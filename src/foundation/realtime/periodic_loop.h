@@ -7,7 +7,7 @@
 
 #include "realtime/loop_statistics.h"
 
-namespace trocar {
+namespace trocar::realtime {
 
 /// Steady clock, ns.
 inline std::int64_t now_ns() noexcept {
@@ -61,4 +61,4 @@ void run_periodic(std::int64_t period_ns, const std::atomic<bool>& is_stopping, 
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::realtime

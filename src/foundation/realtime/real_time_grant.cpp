@@ -5,7 +5,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 
-namespace trocar {
+namespace trocar::realtime {
 
 std::string RealTimeGrant::text() const {
   if (!was_asked) return "ordinary scheduling, as asked";
@@ -28,4 +28,4 @@ RealTimeGrant request_real_time(int priority) noexcept {
   return grant;
 }
 
-}  // namespace trocar
+}  // namespace trocar::realtime

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace trocar {
+namespace trocar::realtime {
 
 /// What the machine gave a thread that wants to be on time.
 struct RealTimeGrant {
@@ -20,4 +20,4 @@ struct RealTimeGrant {
 /// Never fails: what is not granted is left.
 RealTimeGrant request_real_time(int priority = 80) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::realtime

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace trocar {
+namespace trocar::realtime {
 
 /// Every value, in order, from one writing thread to one reading thread. Memory is taken (and touched) when it is
 /// built. Invariant: head - tail is at most the capacity.
@@ -45,4 +45,4 @@ class SpscRing {
   alignas(64) std::atomic<std::size_t> tail_{0};
 };
 
-}  // namespace trocar
+}  // namespace trocar::realtime

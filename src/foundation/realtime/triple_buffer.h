@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace trocar {
+namespace trocar::realtime {
 
 /// The newest value from one writing thread to one reading thread, neither of which ever waits. T is copied; for
 /// real-time use it must not allocate. Invariant: writer, reader and the place between them are three different slots.
@@ -47,4 +47,4 @@ class TripleBuffer {
   std::uint8_t reading_ = 2;
 };
 
-}  // namespace trocar
+}  // namespace trocar::realtime

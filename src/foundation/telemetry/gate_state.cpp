@@ -1,6 +1,6 @@
 #include "telemetry/gate_state.h"
 
-namespace trocar {
+namespace trocar::telemetry {
 
 const char* to_string(GateFault fault) noexcept {
   switch (fault) {
@@ -50,4 +50,4 @@ const char* to_string(GateMode mode) noexcept {
   return "unknown";
 }
 
-}  // namespace trocar
+}  // namespace trocar::telemetry

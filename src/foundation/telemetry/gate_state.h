@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace trocar {
+namespace trocar::telemetry {
 
 /// The reason why the safety gate gives zero force until a reset. The first fault stays latched.
 enum class GateFault : std::uint8_t {
@@ -34,4 +34,4 @@ enum class GateMode : std::uint8_t {
 inline constexpr GateMode kLastGateMode = GateMode::kAbsent;
 const char* to_string(GateMode mode) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::telemetry

@@ -1,6 +1,6 @@
 #include "telemetry/tick_pose.h"
 
-namespace trocar {
+namespace trocar::telemetry {
 namespace {
 
 Mat3 device_rotation(const TickSample& sample) noexcept {
@@ -29,4 +29,4 @@ Pose felt_probe(const TickSample& sample) noexcept {
   return {felt_rotation(sample, 1), sample.tip_mm};
 }
 
-}  // namespace trocar
+}  // namespace trocar::telemetry

@@ -3,7 +3,7 @@
 #include "geometry/pose.h"
 #include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::telemetry {
 
 /// The device's tool of a tick: X_PN, or X_PT of a transducer. Without a rotation: unturned.
 Pose device_pose(const TickSample& sample) noexcept;
@@ -12,4 +12,4 @@ Pose felt_needle(const TickSample& sample) noexcept;
 /// The same of a transducer, whose axis is y of T.
 Pose felt_probe(const TickSample& sample) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::telemetry

@@ -1,6 +1,6 @@
 #include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::telemetry {
 
 const char* to_string(InsertionPhase phase) noexcept {
   switch (phase) {
@@ -58,4 +58,4 @@ double tip_load_n(const TickSample& s) noexcept {
   return -(s.f_prepuncture_n + s.f_tip_proxy_n.dot(s.axis));
 }
 
-}  // namespace trocar
+}  // namespace trocar::telemetry

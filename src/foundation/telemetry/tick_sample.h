@@ -6,7 +6,7 @@
 #include "geometry/vec.h"
 #include "telemetry/gate_state.h"
 
-namespace trocar {
+namespace trocar::telemetry {
 
 /// Where the needle is in its insertion.
 enum class InsertionPhase : std::uint8_t { kOutside, kLoading, kInserted, kRetracting };
@@ -83,4 +83,4 @@ double axial_resistance_n(const TickSample& sample) noexcept;
 /// The part of it that loads the tip: what a layer bears before it gives way.
 double tip_load_n(const TickSample& sample) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::telemetry

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 constexpr char kFirst = ' ';
@@ -136,4 +136,4 @@ void draw_text(RgbImage& image, int column, int row, std::string_view text, Rgb 
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -5,7 +5,7 @@
 
 #include "core/check.h"
 
-namespace trocar {
+namespace trocar::volume {
 
 double correlation(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b, ComparedVoxels voxels) {
   TROCAR_CHECK(a.size() == b.size());
@@ -30,4 +30,4 @@ double correlation(std::span<const std::uint8_t> a, std::span<const std::uint8_t
   return (static_cast<double>(sum_ab) / n - mean_a * mean_b) / std::sqrt(variance_a * variance_b);
 }
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-namespace trocar {
+namespace trocar::volume {
 
 /// Which pairs of voxels a comparison looks at.
 enum class ComparedVoxels { kAll, kBothAboveZero };
@@ -13,4 +13,4 @@ enum class ComparedVoxels { kAll, kBothAboveZero };
 double correlation(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b,
                    ComparedVoxels voxels = ComparedVoxels::kAll);
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -13,7 +13,7 @@
 // mask, and at the centres of the faces between different voxels for the signed distance. Faces across i lie on the
 // rows of voxels, faces across j on rows half way between them, faces across k on planes half way between the planes.
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
@@ -201,4 +201,4 @@ FloatGrid distance_to_mask_mm(const MaskGrid& mask) {
   return result;
 }
 
-}  // namespace trocar
+}  // namespace trocar::volume

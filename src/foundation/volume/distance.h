@@ -2,7 +2,7 @@
 
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::volume {
 
 /// Signed distance (mm, anisotropic spacing) from voxel centres to the surface of a mask: negative inside, positive
 /// outside. The surface is the set of points half way between two neighbouring voxel centres, one inside, one outside
@@ -17,4 +17,4 @@ FloatGrid signed_distance_mm(const MaskGrid& mask);
 /// Exact Euclidean distance (mm) from each voxel centre to the nearest voxel centre of the mask (0 on the mask).
 FloatGrid distance_to_mask_mm(const MaskGrid& mask);
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -1,6 +1,6 @@
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::volume {
 
 bool GridGeometry::matches(const GridGeometry& other) const noexcept {
   constexpr double kToleranceVoxels = 0.01;
@@ -17,4 +17,4 @@ bool GridGeometry::matches(const GridGeometry& other) const noexcept {
   return true;
 }
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -8,7 +8,7 @@
 #include "core/check.h"
 #include "geometry/vec.h"
 
-namespace trocar {
+namespace trocar::volume {
 
 using Index3 = std::array<std::int64_t, 3>;  ///< Voxel index (i, j, k).
 
@@ -61,4 +61,4 @@ using LabelGrid = Grid<std::uint8_t>;  ///< Label ids, 0 = nothing labelled.
 using MaskGrid = Grid<std::uint8_t>;   ///< 0 or 1.
 using FloatGrid = Grid<float>;
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace trocar {
+namespace trocar::volume {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
@@ -26,4 +26,4 @@ struct RgbImage {
   }
 };
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -9,7 +9,7 @@
 #include "volume/detail/run_labels.h"
 #include "volume/distance.h"
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 detail::Block block_of(const GridGeometry& g) {
@@ -196,4 +196,4 @@ MaskGrid erode(const MaskGrid& mask, double radius_mm) {
   return result;
 }
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -5,7 +5,7 @@
 
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::volume {
 
 /// Connected components of a mask (6-neighbours), numbered from 1 by falling size; 0 outside the mask.
 struct Components {
@@ -27,4 +27,4 @@ MaskGrid dilate(const MaskGrid& mask, double radius_mm);
 /// is not outside. A negative radius dilates.
 MaskGrid erode(const MaskGrid& mask, double radius_mm);
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 double nearness(const Mat3& R_PV, const std::array<std::size_t, 3>& axis) noexcept {
@@ -84,4 +84,4 @@ LabelGrid along_P(LabelGrid grid) {
   return along_P_of(std::move(grid));
 }
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -2,7 +2,7 @@
 
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::volume {
 
 /// Order of the axes of a grid that runs along P: `axis[n]` is the axis of the source that becomes axis n, and
 /// `is_turned[n]` says that it is traversed from its far end.
@@ -27,4 +27,4 @@ GridGeometry reordered(const GridGeometry& geometry, const AxisOrder& order) noe
 CtGrid along_P(CtGrid grid);
 LabelGrid along_P(LabelGrid grid);
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -8,7 +8,7 @@
 #include "volume/detail/column_range.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 /// Straight row of voxel centres of a target grid, as fractional indices of the source.
@@ -100,4 +100,4 @@ double overlap_fraction(const GridGeometry& source, const GridGeometry& target) 
   return static_cast<double>(inside) / static_cast<double>(target.voxel_count());
 }
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -2,7 +2,7 @@
 
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::volume {
 
 /// The volume on another grid, trilinear and rounded; `outside` beyond its own box, whose edge values continue for the
 /// outer half voxel (as in sample_slice). Averages nothing: smooth before going to a much coarser grid. Parallel.
@@ -16,4 +16,4 @@ GridGeometry isotropic_geometry(const GridGeometry& source, double spacing_mm);
 /// Fraction 0..1 of the target's voxel centres that lie inside the source's box.
 double overlap_fraction(const GridGeometry& source, const GridGeometry& target);
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -7,7 +7,7 @@
 #include "volume/detail/column_range.h"
 #include "volume/detail/sampling_kernels.h"
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 using detail::kChunk;
@@ -184,4 +184,4 @@ void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float ou
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -6,7 +6,7 @@
 
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::volume {
 
 /// Value of the voxel nearest to a point of P; `outside` beyond the grid. Real-time safe.
 template <class T>
@@ -84,4 +84,4 @@ void sample_slice_nearest(const Grid<std::uint8_t>& grid, const SlicePlane& plan
 /// box's faces may fall to either side.
 void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float outside, std::span<float> out) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -15,7 +15,7 @@
 #include "volume/morphology.h"
 #include "volume/orientation.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 constexpr double kMinBodyMl = 100.0;       // assumed: less is no part of a person
@@ -23,8 +23,8 @@ constexpr double kHintAgreement = 0.9;     // Dice coefficient from which a give
 constexpr double kMaxShareOutside = 0.02;  // of a structure that may lie outside the body without a word
 
 /// A given mask of the whole body, filled, cuts away what it excludes, where it is much like the one found.
-MaskGrid apply_body_hint(MaskGrid body, const MaskGrid& given) {
-  const MaskGrid hint = fill_holes_in_slices(given);
+volume::MaskGrid apply_body_hint(volume::MaskGrid body, const volume::MaskGrid& given) {
+  const volume::MaskGrid hint = volume::fill_holes_in_slices(given);
   std::size_t both = 0;
   std::size_t sum = 0;
   for (std::size_t n = 0; n < hint.voxels.size(); ++n) {
@@ -33,11 +33,11 @@ MaskGrid apply_body_hint(MaskGrid body, const MaskGrid& given) {
   }
   if (2.0 * static_cast<double>(both) < kHintAgreement * static_cast<double>(sum)) return body;
   for (std::size_t n = 0; n < hint.voxels.size(); ++n) body.voxels[n] &= hint.voxels[n];
-  return largest_component(body);
+  return volume::largest_component(body);
 }
 
-Result<MaskGrid> find_checked_body(const CtGrid& ct, const MaskGrid& hint) {
-  MaskGrid body = find_body(ct);
+Result<volume::MaskGrid> find_checked_body(const volume::CtGrid& ct, const volume::MaskGrid& hint) {
+  volume::MaskGrid body = find_body(ct);
   if (!hint.empty()) body = apply_body_hint(std::move(body), hint);
   const auto voxels = static_cast<double>(std::count(body.voxels.begin(), body.voxels.end(), 1));
   if (voxels * ct.geometry.voxel_volume_mm3() / 1000.0 < kMinBodyMl)
@@ -46,7 +46,7 @@ Result<MaskGrid> find_checked_body(const CtGrid& ct, const MaskGrid& hint) {
 }
 
 /// Clears labels outside the body; a structure that loses more than a rim is named.
-void clear_outside(const MaskGrid& body, LabelGrid& labels, const LabelTable& table,
+void clear_outside(const volume::MaskGrid& body, volume::LabelGrid& labels, const LabelTable& table,
                    std::vector<std::string>& warnings) {
   std::array<std::size_t, 256> all{};
   std::array<std::size_t, 256> outside{};
@@ -79,8 +79,9 @@ void warn_of_doubtful_structures(const VirtualPatient& patient, std::size_t know
 
 }  // namespace
 
-Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> sources, const BuildOptions& options,
-                                     std::vector<std::string>& warnings, const Progress& progress) {
+Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<LabelSource> sources,
+                                     const BuildOptions& options, std::vector<std::string>& warnings,
+                                     const Progress& progress) {
   if (ct.empty()) return fail("the CT has no voxels", "CT", "give a CT volume with image data");
   TROCAR_TRY_STATUS(check_hounsfield(ct));
   VirtualPatient patient;
@@ -88,16 +89,16 @@ Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> 
   patient.provenance = options.provenance;
 
   // Slices are axial from here on, whatever the order in which the CT was stored.
-  patient.ct = along_P(ct);
+  patient.ct = volume::along_P(ct);
   report(progress, "labels", 0.0);
   TROCAR_TRY(detail::MergedLabels merged, detail::merge_sources(std::move(sources), patient.ct.geometry, warnings));
   report(progress, "body", 0.2);
-  TROCAR_TRY(const MaskGrid body, find_checked_body(patient.ct, merged.body_hint));
+  TROCAR_TRY(const volume::MaskGrid body, find_checked_body(patient.ct, merged.body_hint));
   merged.body_hint = {};
   clear_outside(body, merged.labels, merged.table, warnings);
 
   report(progress, "distance to the skin", 0.4);
-  patient.skin_distance_mm = signed_distance_mm(body);
+  patient.skin_distance_mm = volume::signed_distance_mm(body);
   patient.labels = std::move(merged.labels);
   patient.label_table = std::move(merged.table);
 
@@ -110,4 +111,4 @@ Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> 
   return patient;
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

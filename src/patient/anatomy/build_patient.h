@@ -9,12 +9,12 @@
 #include "core/progress.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// A structure as it was read from a segmentation, on its own grid.
 struct LabelSource {
   std::string file;                                ///< For messages.
-  LabelGrid labels;                                ///< Values as in the file.
+  volume::LabelGrid labels;                        ///< Values as in the file.
   std::vector<std::pair<int, std::string>> names;  ///< Value in the file -> structure name, or kIgnoredStructure.
 };
 
@@ -32,12 +32,13 @@ struct BuildOptions {
 /// Errors: HU that cannot be (check_hounsfield), a segmentation that does not overlap the CT, unknown structure names
 /// and values without a name (all of them in one line), no body in the CT, all masks empty. Warnings (an empty mask, a
 /// structure cut by the volume's border) are appended to `warnings`.
-Result<VirtualPatient> build_patient(const CtGrid& ct, std::vector<LabelSource> sources, const BuildOptions& options,
-                                     std::vector<std::string>& warnings, const Progress& progress = {});
+Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<LabelSource> sources,
+                                     const BuildOptions& options, std::vector<std::string>& warnings,
+                                     const Progress& progress = {});
 
 /// The body in a CT: skin contour filled, CT table, clothes and air removed. Cavities that leave the scan at the head
 /// or the feet are closed in axial slices: k must run along the body (volume/orientation.h, checked).
-MaskGrid find_body(const CtGrid& ct);
+volume::MaskGrid find_body(const volume::CtGrid& ct);
 
 /// One line for each label: voxels, volume, extent; used by `patient show` and `patient check`.
 struct LabelStatistics {
@@ -50,4 +51,4 @@ struct LabelStatistics {
 };
 std::vector<LabelStatistics> label_statistics(const VirtualPatient& patient);
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 constexpr double kNameable = 0.5;  // rounds to 1 mm or degree
@@ -41,4 +41,4 @@ std::string direction_words(const Vec3& direction_P) {
   return join_largest(direction_P, 0.0, [](Eigen::Index, const char* way) { return std::string(way); });
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

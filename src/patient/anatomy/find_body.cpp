@@ -7,7 +7,7 @@
 #include "volume/orientation.h"
 #include "volume/resample.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 // All numbers are assumed: chosen on two CTs (3 mm and 0.74 mm voxels) and kept away from what they separate.
@@ -18,8 +18,8 @@ constexpr double kLongMm = 120.0;             // what is thin and longer than th
 constexpr double kSealRadiusMm = 7.0;         // gaps that taking the table away may have torn into the chest wall
 constexpr double kNearMm = 4.0;               // the fine contour is looked for this close to the coarse one
 
-MaskGrid solid_of(const CtGrid& ct) {
-  MaskGrid mask(ct.geometry);
+volume::MaskGrid solid_of(const volume::CtGrid& ct) {
+  volume::MaskGrid mask(ct.geometry);
   parallel_for(mask.voxels.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) mask.voxels[n] = ct.voxels[n] > kSolidAboveHu ? 1 : 0;
   });
@@ -27,33 +27,33 @@ MaskGrid solid_of(const CtGrid& ct) {
 }
 
 /// a and not b.
-MaskGrid without(MaskGrid a, const MaskGrid& b) {
+volume::MaskGrid without(volume::MaskGrid a, const volume::MaskGrid& b) {
   for (std::size_t n = 0; n < a.voxels.size(); ++n) a.voxels[n] = a.voxels[n] && !b.voxels[n] ? 1 : 0;
   return a;
 }
 
-MaskGrid opened(const MaskGrid& mask, double radius_mm) {
-  return dilate(erode(mask, radius_mm), radius_mm);
+volume::MaskGrid opened(const volume::MaskGrid& mask, double radius_mm) {
+  return volume::dilate(volume::erode(mask, radius_mm), radius_mm);
 }
 
 /// Thin connected parts of a mask whose box is long: the CT table, tubes, folds of a blanket.
-MaskGrid long_thin_parts(const MaskGrid& solid) {
-  const GridGeometry& geometry = solid.geometry;
-  const Components parts = connected_components(without(solid, opened(solid, kThinRadiusMm)));
+volume::MaskGrid long_thin_parts(const volume::MaskGrid& solid) {
+  const volume::GridGeometry& geometry = solid.geometry;
+  const volume::Components parts = volume::connected_components(without(solid, opened(solid, kThinRadiusMm)));
   struct Box {
-    Index3 low, high;
+    volume::Index3 low, high;
   };
   std::vector<Box> boxes(parts.voxel_counts.size(), Box{geometry.size, {-1, -1, -1}});
   for (std::size_t n = 0; n < parts.ids.voxels.size(); ++n) {
     if (parts.ids.voxels[n] == 0) continue;
     Box& box = boxes[static_cast<std::size_t>(parts.ids.voxels[n] - 1)];
-    const Index3 ijk = geometry.index_of(n);
+    const volume::Index3 ijk = geometry.index_of(n);
     for (std::size_t a = 0; a < 3; ++a) {
       box.low[a] = std::min(box.low[a], ijk[a]);
       box.high[a] = std::max(box.high[a], ijk[a]);
     }
   }
-  MaskGrid mask(geometry);
+  volume::MaskGrid mask(geometry);
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
     if (parts.ids.voxels[n] == 0) continue;
     const Box& box = boxes[static_cast<std::size_t>(parts.ids.voxels[n] - 1)];
@@ -67,39 +67,41 @@ MaskGrid long_thin_parts(const MaskGrid& solid) {
 }
 
 /// The body's lungs and bowel gas filled; a torn chest wall is sealed for that, outer folds stay open.
-MaskGrid filled(const MaskGrid& body) {
-  const MaskGrid sealed = dilate(body, kSealRadiusMm);
-  const MaskGrid cavities = dilate(without(fill_holes_in_slices(sealed), sealed), kSealRadiusMm);
-  MaskGrid whole = body;
+volume::MaskGrid filled(const volume::MaskGrid& body) {
+  const volume::MaskGrid sealed = volume::dilate(body, kSealRadiusMm);
+  const volume::MaskGrid cavities =
+      volume::dilate(without(volume::fill_holes_in_slices(sealed), sealed), kSealRadiusMm);
+  volume::MaskGrid whole = body;
   for (std::size_t n = 0; n < whole.voxels.size(); ++n) whole.voxels[n] |= cavities.voxels[n];
-  return fill_holes(fill_holes_in_slices(whole));
+  return volume::fill_holes(volume::fill_holes_in_slices(whole));
 }
 
-MaskGrid find_coarse_body(const CtGrid& ct) {
-  const MaskGrid solid = solid_of(ct);
-  const MaskGrid body = largest_component(without(solid, long_thin_parts(solid)));
-  return largest_component(opened(filled(body), kThinRadiusMm));
+volume::MaskGrid find_coarse_body(const volume::CtGrid& ct) {
+  const volume::MaskGrid solid = solid_of(ct);
+  const volume::MaskGrid body = volume::largest_component(without(solid, long_thin_parts(solid)));
+  return volume::largest_component(opened(filled(body), kThinRadiusMm));
 }
 
 }  // namespace
 
-MaskGrid find_body(const CtGrid& ct) {
-  TROCAR_CHECK(order_along_P(ct.geometry).is_identity());
-  const CtGrid coarse_ct = resample_linear(ct, isotropic_geometry(ct.geometry, kCoarseMm), -1000);
-  MaskGrid zones = find_coarse_body(coarse_ct);
+volume::MaskGrid find_body(const volume::CtGrid& ct) {
+  TROCAR_CHECK(volume::order_along_P(ct.geometry).is_identity());
+  const volume::CtGrid coarse_ct =
+      volume::resample_linear(ct, volume::isotropic_geometry(ct.geometry, kCoarseMm), -1000);
+  volume::MaskGrid zones = find_coarse_body(coarse_ct);
   {  // 0 away from the body, 1 where the fine contour decides, 2 deep inside
-    const MaskGrid near = dilate(zones, kNearMm);
-    const MaskGrid deep = erode(zones, kNearMm);
+    const volume::MaskGrid near = volume::dilate(zones, kNearMm);
+    const volume::MaskGrid deep = volume::erode(zones, kNearMm);
     for (std::size_t n = 0; n < zones.voxels.size(); ++n) zones.voxels[n] = deep.voxels[n] ? 2 : near.voxels[n];
   }
-  MaskGrid body = resample_nearest(zones, ct.geometry, 0);
+  volume::MaskGrid body = volume::resample_nearest(zones, ct.geometry, 0);
   parallel_for(body.voxels.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       std::uint8_t& voxel = body.voxels[n];
       voxel = voxel == 2 || (voxel == 1 && ct.voxels[n] > kSolidAboveHu) ? 1 : 0;
     }
   });
-  return largest_component(fill_holes_in_slices(body));
+  return volume::largest_component(volume::fill_holes_in_slices(body));
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

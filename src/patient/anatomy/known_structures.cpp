@@ -5,7 +5,7 @@
 
 #include "anatomy/label_table.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 // Which mask wins where several claim a voxel: what lies inside or on top of another comes later.
@@ -24,33 +24,33 @@ constexpr int kCyst = 80;
 constexpr int kLesion = 90;  // a tumour over everything it grows in
 
 // Colours as in anatomical plates: arteries red, veins blue, portal vein violet, bone ivory, fat yellow, bile green.
-constexpr Rgb kLiverBrown{150, 68, 52};
-constexpr Rgb kLesionGreen{158, 205, 58};
-constexpr Rgb kBoneIvory{232, 220, 190};
-constexpr Rgb kCartilageBlueGrey{186, 204, 204};
-constexpr Rgb kMuscleRed{152, 48, 44};
-constexpr Rgb kFatYellow{240, 205, 105};
-constexpr Rgb kArteryRed{214, 32, 34};
-constexpr Rgb kVeinBlue{52, 92, 190};
-constexpr Rgb kPortalViolet{124, 72, 196};
-constexpr Rgb kBowelPink{222, 150, 120};
-constexpr Rgb kStomachPink{214, 128, 122};
-constexpr Rgb kLungRose{232, 176, 180};
-constexpr Rgb kKidneyMaroon{134, 50, 42};
-constexpr Rgb kSpleenPurple{128, 56, 84};
-constexpr Rgb kBileGreen{70, 140, 70};
-constexpr Rgb kPancreasOchre{226, 176, 110};
-constexpr Rgb kGlandOrange{228, 148, 64};
-constexpr Rgb kHeartRed{180, 50, 54};
-constexpr Rgb kLigamentSand{206, 186, 150};
-constexpr Rgb kFlavumGold{218, 178, 60};
-constexpr Rgb kCsfBlue{146, 206, 236};
-constexpr Rgb kSerousPearl{214, 200, 206};
-constexpr Rgb kNerveYellow{250, 238, 130};
-constexpr Rgb kFluidBlue{120, 180, 220};
-constexpr Rgb kGasGrey{70, 82, 96};
-constexpr Rgb kSoftRose{196, 136, 116};
-constexpr Rgb kSkinTone{228, 184, 154};
+constexpr volume::Rgb kLiverBrown{150, 68, 52};
+constexpr volume::Rgb kLesionGreen{158, 205, 58};
+constexpr volume::Rgb kBoneIvory{232, 220, 190};
+constexpr volume::Rgb kCartilageBlueGrey{186, 204, 204};
+constexpr volume::Rgb kMuscleRed{152, 48, 44};
+constexpr volume::Rgb kFatYellow{240, 205, 105};
+constexpr volume::Rgb kArteryRed{214, 32, 34};
+constexpr volume::Rgb kVeinBlue{52, 92, 190};
+constexpr volume::Rgb kPortalViolet{124, 72, 196};
+constexpr volume::Rgb kBowelPink{222, 150, 120};
+constexpr volume::Rgb kStomachPink{214, 128, 122};
+constexpr volume::Rgb kLungRose{232, 176, 180};
+constexpr volume::Rgb kKidneyMaroon{134, 50, 42};
+constexpr volume::Rgb kSpleenPurple{128, 56, 84};
+constexpr volume::Rgb kBileGreen{70, 140, 70};
+constexpr volume::Rgb kPancreasOchre{226, 176, 110};
+constexpr volume::Rgb kGlandOrange{228, 148, 64};
+constexpr volume::Rgb kHeartRed{180, 50, 54};
+constexpr volume::Rgb kLigamentSand{206, 186, 150};
+constexpr volume::Rgb kFlavumGold{218, 178, 60};
+constexpr volume::Rgb kCsfBlue{146, 206, 236};
+constexpr volume::Rgb kSerousPearl{214, 200, 206};
+constexpr volume::Rgb kNerveYellow{250, 238, 130};
+constexpr volume::Rgb kFluidBlue{120, 180, 220};
+constexpr volume::Rgb kGasGrey{70, 82, 96};
+constexpr volume::Rgb kSoftRose{196, 136, 116};
+constexpr volume::Rgb kSkinTone{228, 184, 154};
 
 /// A row: the name without case, separators and side. A trailing '#' stands for any number of digits,
 /// '%#' for a spine region's letter and digits, '*' for anything.
@@ -312,4 +312,4 @@ std::vector<std::string> similar_structure_names(std::string_view name, std::siz
   return names;
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

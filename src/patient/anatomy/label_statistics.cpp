@@ -2,7 +2,7 @@
 
 #include "anatomy/build_patient.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 struct Sums {
@@ -15,7 +15,7 @@ struct Sums {
 }  // namespace
 
 std::vector<LabelStatistics> label_statistics(const VirtualPatient& patient) {
-  const GridGeometry& geometry = patient.labels.geometry;
+  const volume::GridGeometry& geometry = patient.labels.geometry;
   std::array<Sums, 256> sums{};
   std::size_t n = 0;
   for (std::int64_t k = 0; k < geometry.size[2]; ++k) {
@@ -53,4 +53,4 @@ std::vector<LabelStatistics> label_statistics(const VirtualPatient& patient) {
   return all;
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace trocar {
+namespace trocar::anatomy {
 
 const Label* LabelTable::find(std::uint8_t id) const noexcept {
   const auto it = std::lower_bound(labels.begin(), labels.end(), id,
@@ -30,4 +30,4 @@ std::array<std::uint8_t, 256> lesions_as_organs(const LabelTable& table) noexcep
   return organ_of;
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

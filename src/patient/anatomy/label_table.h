@@ -9,14 +9,14 @@
 
 #include "volume/image.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// One structure of the label volume.
 struct Label {
   std::uint8_t id = 0;  ///< Value in the label volume; 0 is never a label.
   std::string name;  ///< As in the segmentation, else one of those found from HU: "rib_right_9", "livertumor1", "fat".
   std::string tissue;  ///< Tissue class (TissueTable): "bone", "liver".
-  Rgb color{200, 200, 200};
+  volume::Rgb color{200, 200, 200};
 };
 
 /// All structures of a patient, ordered by id; ids and names are unique.
@@ -37,7 +37,7 @@ std::array<std::uint8_t, 256> lesions_as_organs(const LabelTable& table) noexcep
 /// whole body, which is no structure inside it.
 struct KnownStructure {
   std::string_view tissue;
-  Rgb color;
+  volume::Rgb color;
   int priority;  ///< Where masks overlap the higher one wins (a tumour over its liver).
 };
 std::optional<KnownStructure> find_known_structure(std::string_view name);
@@ -53,4 +53,4 @@ std::vector<std::string> similar_structure_names(std::string_view name, std::siz
 /// TotalSegmentator v2, task "total": name of a label number (1..117).
 std::optional<std::string_view> totalsegmentator_name(int number);
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

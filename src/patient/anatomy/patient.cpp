@@ -7,7 +7,7 @@
 #include "core/hash.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 template <class Values>
@@ -26,7 +26,7 @@ void add_text(ContentHash& hash, const std::string& text) {
 }
 
 /// In single precision and with clean zeros: the last digits lost in a file must not change the hash.
-void add_geometry(ContentHash& hash, const GridGeometry& geometry) {
+void add_geometry(ContentHash& hash, const volume::GridGeometry& geometry) {
   add_values(hash, geometry.size);
   const auto add_number = [&](double value) {
     add_value(hash, std::abs(value) < 1e-6 ? 0.0F : static_cast<float>(value));
@@ -56,8 +56,8 @@ std::string hash_patient(const VirtualPatient& patient) {
 }
 
 const Label* find_label(const VirtualPatient& patient, const Vec3& p_P) noexcept {
-  const std::uint8_t id = sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
+  const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
   return id == 0 ? nullptr : patient.label_table.find(id);
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

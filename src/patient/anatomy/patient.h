@@ -8,7 +8,7 @@
 #include "geometry/triangle_mesh.h"
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// A named point of the patient.
 struct Landmark {
@@ -32,10 +32,10 @@ struct VirtualPatient {
   std::string name;
   std::string description;
   std::vector<std::string> provenance;  ///< What it was made from, one line each; no path of a machine.
-  CtGrid ct;                            ///< HU.
-  LabelGrid labels;                     ///< Structures, and inside the body fat and muscle found from HU.
+  volume::CtGrid ct;                    ///< HU.
+  volume::LabelGrid labels;             ///< Structures, and inside the body fat and muscle found from HU.
   LabelTable label_table;
-  FloatGrid skin_distance_mm;  ///< Signed distance to the skin, negative inside the body.
+  volume::FloatGrid skin_distance_mm;  ///< Signed distance to the skin, negative inside the body.
   std::vector<Landmark> landmarks;
   std::vector<NeedlePath> paths;  ///< Expert paths.
   std::string content_hash;       ///< Of CT, labels and label table (hash_patient).
@@ -47,4 +47,4 @@ std::string hash_patient(const VirtualPatient& patient);
 /// Label at a point of P; nullptr where nothing is labelled or outside the volume.
 const Label* find_label(const VirtualPatient& patient, const Vec3& p_P) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -5,7 +5,7 @@
 
 #include "anatomy/tissue/plausible_hu.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 std::vector<std::string> find_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics) {
   constexpr double kCoarse_mm = 2.5;
@@ -28,4 +28,4 @@ std::vector<std::string> find_doubts(const VirtualPatient& patient, const std::v
   return doubts;
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

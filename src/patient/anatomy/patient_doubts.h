@@ -5,10 +5,10 @@
 
 #include "anatomy/build_patient.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// What a reader should know before trusting a patient, one line each: coarse voxels, labels whose HU do not fit them,
 /// listed labels without a voxel, structures that the edge of the scan cuts off.
 std::vector<std::string> find_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics);
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

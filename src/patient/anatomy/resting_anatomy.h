@@ -2,7 +2,7 @@
 
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// The way between the patient as he lies there now and the resting anatomy that the volumes show: breathing, and
 /// tissue that yields. Forces are found in the resting anatomy, so the tick pulls the tool's pose back and turns the
@@ -16,4 +16,4 @@ struct RestingAnatomy {
   Vec3 push_forward(const Vec3& /*p_rest_P*/, const Vec3& v_rest_P) const noexcept { return v_rest_P; }
 };
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 struct LayerWords {
@@ -66,4 +66,4 @@ bool is_name_before(std::string_view a, std::string_view b) noexcept {
   return whole_a < whole_b;  // "rib_05" and "rib_5"
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

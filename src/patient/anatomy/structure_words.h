@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// A name in words, the side in front: "rib_right_10" -> "right rib 10", "liver_capsule" -> "liver capsule".
 std::string structure_words(std::string_view name);
@@ -13,4 +13,4 @@ std::string layer_words(std::string_view layer);
 /// Order of names in a list: by letters, numbers in them by their value ("rib_left_5" before "rib_left_10").
 bool is_name_before(std::string_view a, std::string_view b) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -2,7 +2,7 @@
 
 #include "anatomy/label_table.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 // The class map of TotalSegmentator v2, task "total" (github.com/wasserth/TotalSegmentator), number 1 first.
@@ -40,4 +40,4 @@ std::optional<std::string_view> totalsegmentator_name(int number) {
   return kNames[static_cast<std::size_t>(number - 1)];
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

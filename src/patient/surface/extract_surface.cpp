@@ -8,7 +8,7 @@
 #include "surface/detail/contour.h"
 #include "surface/detail/mesh_repair.h"
 
-namespace trocar {
+namespace trocar::surface {
 namespace {
 
 // Assumed: a large structure sampled more finely only costs triangles that are decimated again.
@@ -19,8 +19,8 @@ constexpr std::size_t kMaxFaces = 1'000'000;
 
 /// The voxels of one structure and the box around them.
 struct Box {
-  Index3 low{0, 0, 0};
-  Index3 high{-1, -1, -1};
+  volume::Index3 low{0, 0, 0};
+  volume::Index3 high{-1, -1, -1};
   std::size_t voxels = 0;
 
   void add(const Box& other) {
@@ -28,7 +28,7 @@ struct Box {
     add(other.low, other.high[0], 0);
     add(other.high, other.high[0], other.voxels);
   }
-  void add(const Index3& ijk, std::int64_t last_i, std::size_t count) {
+  void add(const volume::Index3& ijk, std::int64_t last_i, std::size_t count) {
     if (high[0] < low[0]) low = high = ijk;
     for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], ijk[a]);
     for (std::size_t a = 0; a < 3; ++a) high[a] = std::max(high[a], ijk[a]);
@@ -37,7 +37,7 @@ struct Box {
   }
 };
 
-std::array<Box, 256> find_boxes(const LabelGrid& labels) {
+std::array<Box, 256> find_boxes(const volume::LabelGrid& labels) {
   std::array<Box, 256> boxes;
   const auto& size = labels.geometry.size;
   for (std::int64_t k = 0; k < size[2]; ++k) {
@@ -59,7 +59,8 @@ struct Body {
   Box box;
 };
 
-Body body_of(std::uint8_t id, const std::array<Box, 256>& boxes, const std::array<std::uint8_t, 256>& organ_of) {
+Body body_of(std::uint8_t id, const std::array<Box, 256>& boxes,
+             const std::array<std::uint8_t, 256>& organ_of) {
   Body body;
   for (std::size_t label = 1; label < boxes.size(); ++label) {
     body.has[label] = label == id || organ_of[label] == id;
@@ -68,13 +69,13 @@ Body body_of(std::uint8_t id, const std::array<Box, 256>& boxes, const std::arra
   return body;
 }
 
-MaskGrid cut_out(const LabelGrid& labels, const Body& body) {
+volume::MaskGrid cut_out(const volume::LabelGrid& labels, const Body& body) {
   const Box& box = body.box;
-  GridGeometry geometry = labels.geometry;
+  volume::GridGeometry geometry = labels.geometry;
   for (std::size_t a = 0; a < 3; ++a) geometry.size[a] = box.high[a] - box.low[a] + 1;
   geometry.origin_P = labels.geometry.to_mm(
       Vec3(static_cast<double>(box.low[0]), static_cast<double>(box.low[1]), static_cast<double>(box.low[2])));
-  MaskGrid mask(geometry);
+  volume::MaskGrid mask(geometry);
   std::size_t n = 0;
   for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k) {
     for (std::int64_t j = box.low[1]; j <= box.high[1]; ++j) {
@@ -85,45 +86,45 @@ MaskGrid cut_out(const LabelGrid& labels, const Body& body) {
   return mask;
 }
 
-bool fills_the_space_between(const Label& label) {
+bool fills_the_space_between(const anatomy::Label& label) {
   return label.tissue == "adipose" || label.tissue == "gas" || label.tissue == "soft_tissue" || label.name == "muscle";
 }
 
-MaskGrid body_mask(const FloatGrid& skin_distance_mm) {
-  MaskGrid mask(skin_distance_mm.geometry);
+volume::MaskGrid body_mask(const volume::FloatGrid& skin_distance_mm) {
+  volume::MaskGrid mask(skin_distance_mm.geometry);
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) mask.voxels[n] = skin_distance_mm.voxels[n] < 0.0F ? 1 : 0;
   return mask;
 }
 
 }  // namespace
 
-TriangleMesh extract_surface(const MaskGrid& mask, const SurfaceOptions& options) {
+TriangleMesh extract_surface(const volume::MaskGrid& mask, const SurfaceOptions& options) {
   const auto voxels = static_cast<std::size_t>(std::count(mask.voxels.begin(), mask.voxels.end(), 1));
   if (voxels == 0) return {};
-  const Grid<std::uint8_t> occupancy =
+  const volume::Grid<std::uint8_t> occupancy =
       detail::bounded_occupancy(mask, voxels > kManyVoxels ? kCoarseMm : 0.0, kMaxFaces);
   TriangleMesh mesh = detail::contour(occupancy, options);
   detail::restore_volume(mesh, static_cast<double>(voxels) * mask.geometry.voxel_volume_mm3(),
                          0.5 * mask.geometry.spacing_mm.maxCoeff());
-  const GridGeometry& geometry = occupancy.geometry;
+  const volume::GridGeometry& geometry = occupancy.geometry;
   for (Vec3f& vertex : mesh.vertices)
     vertex = (geometry.origin_P + geometry.R_PV * vertex.cast<double>()).cast<float>();
   return mesh;
 }
 
-std::vector<NamedMesh> extract_surfaces(const VirtualPatient& patient, const SurfaceOptions& options,
-                                        const Progress& progress) {
+std::vector<anatomy::NamedMesh> extract_surfaces(const anatomy::VirtualPatient& patient, const SurfaceOptions& options,
+                                                 const Progress& progress) {
   const std::array<Box, 256> boxes = find_boxes(patient.labels);
-  std::vector<NamedMesh> meshes{{"skin", {}}};
+  std::vector<anatomy::NamedMesh> meshes{{"skin", {}}};
   std::vector<std::uint8_t> ids{0};  // 0: the skin
-  for (const Label& label : patient.label_table.labels) {
+  for (const anatomy::Label& label : patient.label_table.labels) {
     if (fills_the_space_between(label) || boxes[label.id].voxels < std::max<std::size_t>(options.min_voxels, 1))
       continue;
     meshes.push_back({label.name, {}});
     ids.push_back(label.id);
   }
 
-  const std::array<std::uint8_t, 256> organ_of = lesions_as_organs(patient.label_table);
+  const std::array<std::uint8_t, 256> organ_of = anatomy::lesions_as_organs(patient.label_table);
   std::mutex reporting;
   std::size_t done = 0;
   parallel_for(ids.size(), 1, [&](std::size_t first, std::size_t last) {
@@ -136,8 +137,8 @@ std::vector<NamedMesh> extract_surfaces(const VirtualPatient& patient, const Sur
       report(progress, "surfaces", static_cast<double>(++done) / static_cast<double>(ids.size()));
     }
   });
-  std::erase_if(meshes, [](const NamedMesh& mesh) { return mesh.mesh_P.triangles.empty(); });
+  std::erase_if(meshes, [](const anatomy::NamedMesh& mesh) { return mesh.mesh_P.triangles.empty(); });
   return meshes;
 }
 
-}  // namespace trocar
+}  // namespace trocar::surface

@@ -5,7 +5,7 @@
 #include "anatomy/patient.h"
 #include "core/progress.h"
 
-namespace trocar {
+namespace trocar::surface {
 
 struct SurfaceOptions {
   int smoothing_iterations = 20;      ///< Windowed sinc, which does not shrink. Range 0..200.
@@ -18,10 +18,10 @@ struct SurfaceOptions {
 /// Smoothed, decimated, closed surface of every structure and of the skin ("skin"), in P. What fills the space between
 /// structures (fat, the muscle found from HU, gas, soft tissue) has no surface of its own. An organ's surface goes
 /// about its lesions (lesions_as_organs), which have their own besides. Structures in parallel.
-std::vector<NamedMesh> extract_surfaces(const VirtualPatient& patient, const SurfaceOptions& options = {},
-                                        const Progress& progress = {});
+std::vector<anatomy::NamedMesh> extract_surfaces(const anatomy::VirtualPatient& patient,
+                                                 const SurfaceOptions& options = {}, const Progress& progress = {});
 /// Surface of one mask, closed also where the grid cuts the mask; empty for an empty mask. It encloses the volume of
 /// the mask's voxels. A mask of more than a million faces is made coarser first.
-TriangleMesh extract_surface(const MaskGrid& mask, const SurfaceOptions& options = {});
+TriangleMesh extract_surface(const volume::MaskGrid& mask, const SurfaceOptions& options = {});
 
-}  // namespace trocar
+}  // namespace trocar::surface

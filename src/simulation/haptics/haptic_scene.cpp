@@ -10,7 +10,7 @@
 #include "core/log.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 Status check_range(double value, double low, double high, const char* name) {
@@ -50,14 +50,14 @@ double indentation_stiffness(const LoadingLaw& law, double puncture_force_n) noe
   return puncture_force_n / static_displacement_mm(puncture_force_n, law);
 }
 
-Status fill_laws(HapticScene& scene, const TissueTable& table) {
+Status fill_laws(HapticScene& scene, const anatomy::TissueTable& table) {
   if (table.tissues.size() > kMaxTissues || table.layers.size() > kMaxLayers)
     return fail(fmt::format("more than {} tissues or {} layers", kMaxTissues, kMaxLayers), "tissue table",
                 "remove rows that the patient does not use");
   scene.tissue_count = static_cast<int>(table.tissues.size());
   scene.layer_count = static_cast<int>(table.layers.size());
   for (std::size_t i = 0; i < table.layers.size(); ++i) {
-    const LayerParams& layer = table.layers[i];
+    const anatomy::LayerParams& layer = table.layers[i];
     const LoadingLaw loading{layer.stiffness_n_per_mm, layer.viscosity_ns_per_mm, layer.delta_x_mm};
     scene.layers[i] = {loading, layer.puncture_force_n, indentation_stiffness(loading, layer.puncture_force_n),
                        layer.is_wall};
@@ -66,7 +66,7 @@ Status fill_laws(HapticScene& scene, const TissueTable& table) {
                         "set delta_x_mm and fp above 0");
   }
   for (std::size_t i = 0; i < table.tissues.size(); ++i) {
-    const TissueParams& tissue = table.tissues[i];
+    const anatomy::TissueParams& tissue = table.tissues[i];
     scene.tissues[i] = {tissue.viscosity_ns_per_mm,
                         tissue.roughness_n * tissue.friction_mu,
                         tissue.stick_n_per_mm,
@@ -81,12 +81,12 @@ Status fill_laws(HapticScene& scene, const TissueTable& table) {
   return {};
 }
 
-Status fill_label_tissues(HapticScene& scene, const TissueTable& table) {
+Status fill_label_tissues(HapticScene& scene, const anatomy::TissueTable& table) {
   const auto unlabelled = table.find_tissue("soft_tissue");
   if (!unlabelled) return fail("has no tissue named soft_tissue", "tissue table", "add it");
   scene.tissue_of_label.fill(*unlabelled);
   std::vector<std::string> unknown;
-  for (const Label& label : scene.patient->label_table.labels) {
+  for (const anatomy::Label& label : scene.patient->label_table.labels) {
     const auto tissue = table.find_tissue(label.tissue);
     scene.tissue_of_label[label.id] = tissue.value_or(*unlabelled);
     if (!tissue) unknown.push_back(fmt::format("{} ({})", label.name, label.tissue));
@@ -98,7 +98,7 @@ Status fill_label_tissues(HapticScene& scene, const TissueTable& table) {
 }
 
 /// The columns of tissue under a face read labels, or HU where there are none.
-Status check_palpable(const VirtualPatient& patient, const TissueTable& tissues) {
+Status check_palpable(const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues) {
   if (!patient.labels.empty()) return {};
   if (!patient.ct.empty() && tissues.transfer.knot_count > 0) return {};
   return fail(
@@ -106,7 +106,8 @@ Status check_palpable(const VirtualPatient& patient, const TissueTable& tissues)
       patient.name, "build it with labels or with a CT");
 }
 
-Status check_patient(const VirtualPatient* patient, const TissueTable& tissues, const HapticOptions& options) {
+Status check_patient(const anatomy::VirtualPatient* patient, const anatomy::TissueTable& tissues,
+                     const HapticOptions& options) {
   const ForceModel model = options.force_model;
   if (!patient) return fail("there is no patient", "haptic scene", "load a patient first");
   if (patient->skin_distance_mm.empty()) return fail("the patient has no skin", patient->name, "build it again");
@@ -142,8 +143,9 @@ Result<ForceModel> parse_force_model(std::string_view name) {
                     "use insertion, proxy or combined");
 }
 
-Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const VirtualPatient> patient,
-                                                             const TissueTable& tissues, const NeedleGeometry& needle,
+Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const anatomy::VirtualPatient> patient,
+                                                             const anatomy::TissueTable& tissues,
+                                                             const NeedleGeometry& needle,
                                                              const DeviceCapability& device,
                                                              const HapticOptions& options) {
   TROCAR_TRY_STATUS(check_patient(patient.get(), tissues, options));
@@ -171,12 +173,12 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
 }
 
 TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept {
-  const double distance_mm = sample_linear(scene.patient->skin_distance_mm, p_P);
+  const double distance_mm = volume::sample_linear(scene.patient->skin_distance_mm, p_P);
   if (!(distance_mm <= 0.0)) return {};
-  const LabelGrid& labels = scene.patient->labels;
-  const std::uint8_t label = labels.empty() ? std::uint8_t{0} : sample_nearest(labels, p_P, std::uint8_t{0});
+  const volume::LabelGrid& labels = scene.patient->labels;
+  const std::uint8_t label = labels.empty() ? std::uint8_t{0} : volume::sample_nearest(labels, p_P, std::uint8_t{0});
   if (distance_mm > -scene.skin_thickness_mm) return {scene.skin, label};
   return {scene.tissue_of_label[label], label};
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -12,11 +12,11 @@
 #include "geometry/pose.h"
 #include "haptics/contact/contact_face.h"
 #include "haptics/insertion/insertion_law.h"
-#include "haptics/proxy/needle_beam.h"
-#include "haptics/needle_geometry.h"
 #include "haptics/insertion/path_constraint.h"
+#include "haptics/needle_geometry.h"
+#include "haptics/proxy/needle_beam.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// Which law makes the force (docs/physics.md T1, T2).
 enum class ForceModel : std::uint8_t {
@@ -81,7 +81,7 @@ struct LayerLaw {
 
 /// Everything the tick reads and never changes. Built off-line, shared, read by many threads.
 struct HapticScene {
-  std::shared_ptr<const VirtualPatient> patient;
+  std::shared_ptr<const anatomy::VirtualPatient> patient;
   std::array<TissueLaw, kMaxTissues> tissues{};
   std::array<LayerLaw, kMaxLayers> layers{};
   int tissue_count = 0;
@@ -89,7 +89,7 @@ struct HapticScene {
   std::array<std::uint8_t, 256> tissue_of_label{};  ///< By label id.
   std::uint8_t skin = 0;
   double skin_thickness_mm = 2.0;
-  HuTransfer transfer;  ///< Unlabelled tissue, proxy and combined.
+  anatomy::HuTransfer transfer;  ///< Unlabelled tissue, proxy and combined.
   NeedleGeometry needle;
   ContactFace face;  ///< Of a transducer or a finger.
   NeedleBeam beam_with_stylet;
@@ -107,8 +107,9 @@ struct HapticScene {
 /// range, too many tissues; a patient without skin distance, without labels (insertion), without CT or a table without
 /// transfer functions (proxy, combined). A label of a tissue that the table lacks counts as soft_tissue, with a
 /// warning; a transducer or a finger needs labels, or a CT and transfer functions, whatever the force model.
-Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const VirtualPatient> patient,
-                                                             const TissueTable& tissues, const NeedleGeometry& needle,
+Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const anatomy::VirtualPatient> patient,
+                                                             const anatomy::TissueTable& tissues,
+                                                             const NeedleGeometry& needle,
                                                              const DeviceCapability& device = {},
                                                              const HapticOptions& options = {});
 
@@ -119,4 +120,4 @@ struct TissueAt {
 };
 TissueAt tissue_at(const HapticScene& scene, const Vec3& p_P) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace trocar {
+namespace trocar::haptics {
 
 inline constexpr int kMaxBodyProxies = 32;
 
@@ -16,4 +16,4 @@ struct NeedleGeometry {
   int body_proxies = 16;          ///< Range 1..kMaxBodyProxies.
 };
 
-}  // namespace trocar
+}  // namespace trocar::haptics

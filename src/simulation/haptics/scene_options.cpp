@@ -7,7 +7,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr std::string_view kForceModel = "force_model";
@@ -84,4 +84,4 @@ Status restore_options(std::span<const std::string> texts, HapticOptions& option
   return {};
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

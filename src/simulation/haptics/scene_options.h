@@ -7,7 +7,7 @@
 #include "core/result.h"
 #include "haptics/haptic_scene.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The force model, every other option of a scene's force law and the numbers of its device as text:
 /// "force_model=proxy", "coupling.stiffness=0.8", "device.peak_force=37.5". Numbers in the shortest form that reads
@@ -19,4 +19,4 @@ std::vector<std::string> option_texts(const HapticScene& scene);
 /// Errors (exit status 2): an unknown name, not a finite number. Ranges are checked by make_haptic_scene.
 Status restore_options(std::span<const std::string> texts, HapticOptions& options, DeviceCapability& device);
 
-}  // namespace trocar
+}  // namespace trocar::haptics

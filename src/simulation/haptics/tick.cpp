@@ -3,7 +3,7 @@
 #include "haptics/detail/tick_parts.h"
 #include "haptics/tick_contact.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 bool is_usable(const HapticInput& input) noexcept {
@@ -18,11 +18,11 @@ HapticOutput reject(const HapticState& state, const HapticInput& input) noexcept
   output.sample.device_tau_nmm = Vec3::Zero();
   output.sample.events = {};
   output.sample.limited = true;
-  EventList(output.sample).add(LimitReason::kInputRejected);
+  EventList(output.sample).add(telemetry::LimitReason::kInputRejected);
   return output;
 }
 
-void fill_insertion(TickSample& sample, const InsertionStep& step) noexcept {
+void fill_insertion(telemetry::TickSample& sample, const InsertionStep& step) noexcept {
   sample.tip_mm = step.tip_P;
   sample.axis = step.axis_P;
   sample.axial_velocity_mm_s = step.velocity_mm_per_s;
@@ -38,14 +38,14 @@ void fill_insertion(TickSample& sample, const InsertionStep& step) noexcept {
 }
 
 void add_events(EventList& events, const NeedleStep& step) noexcept {
-  if (step.has_jumped) events.add(LimitReason::kJumped);
-  if (step.has_resumed) events.add(LimitReason::kResumedInside);
-  if (step.axial.punctured != kNoLayer) events.add(EventKind::kPuncture, step.axial.punctured);
+  if (step.has_jumped) events.add(telemetry::LimitReason::kJumped);
+  if (step.has_resumed) events.add(telemetry::LimitReason::kResumedInside);
+  if (step.axial.punctured != kNoLayer) events.add(telemetry::EventKind::kPuncture, step.axial.punctured);
   for (const std::uint8_t label : step.axial.entered.labels) {
-    if (label != 0) events.add(EventKind::kEnter, label);
+    if (label != 0) events.add(telemetry::EventKind::kEnter, label);
   }
-  if (step.axial.entered.is_overflown) events.add(LimitReason::kEventsDropped);
-  if (step.axial.hit_solver_bound) events.add(LimitReason::kSolverBound);
+  if (step.axial.entered.is_overflown) events.add(telemetry::LimitReason::kEventsDropped);
+  if (step.axial.hit_solver_bound) events.add(telemetry::LimitReason::kSolverBound);
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
   const Wrench weight = weight_compensation(scene, X_PS.R());
 
   HapticOutput output;
-  TickSample& sample = output.sample;
+  telemetry::TickSample& sample = output.sample;
   sample.time_s = input.time_s;
   sample.breathing = input.resting.breathing;
   fill_insertion(sample, step.axial);
@@ -88,4 +88,4 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
   return output;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

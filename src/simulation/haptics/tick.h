@@ -6,7 +6,7 @@
 #include "haptics/insertion/needle_step.h"
 #include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// What the device gives a tick.
 struct HapticInput {
@@ -14,14 +14,14 @@ struct HapticInput {
   double dt_s = 0.001;  ///< Since the last tick; 0 < dt <= kMaxDt_s.
   Pose X_DS;            ///< Stylus in the device base.
   bool is_stylet_in = true;
-  RestingAnatomy resting{};  ///< The patient's motion now.
+  anatomy::RestingAnatomy resting{};  ///< The patient's motion now.
 };
 
 /// All that a tick carries to the next one. Fixed size, copyable: recorded inputs replay to the same bits.
 struct HapticState {
   NeedleState needle;
   ContactState contact;  ///< Of a transducer or a finger.
-  TickSample last;
+  telemetry::TickSample last;
 };
 
 /// What a tick gives: the wrench for the device (in D, about the stylus origin) and its record.
@@ -29,7 +29,7 @@ struct HapticOutput {
   Vec3 f_D = Vec3::Zero();
   Vec3 tau_D = Vec3::Zero();
   Wrench weight_D;  ///< The part of it that carries the weight of links and stylus (before the device's limits).
-  TickSample sample;
+  telemetry::TickSample sample;
 };
 
 inline constexpr double kMaxDt_s = 0.1;
@@ -42,4 +42,4 @@ inline constexpr double kFarAway_mm = 5000.0;  ///< No device reaches that far.
 /// safe.
 HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

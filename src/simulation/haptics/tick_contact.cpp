@@ -2,7 +2,7 @@
 
 #include "haptics/detail/tick_parts.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 HapticOutput tick_contact(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept {
   const Pose X_PS = scene.X_PD * input.X_DS;
@@ -19,14 +19,14 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   const bool has_past = was_started && !step.has_jumped;
 
   HapticOutput output;
-  TickSample& sample = output.sample;
+  telemetry::TickSample& sample = output.sample;
   sample.time_s = input.time_s;
   sample.tip_mm = shown.p();
   sample.axis = shown.R().col(1);
   sample.axial_velocity_mm_s = has_past ? sample.axis.dot(shown.p() - X_PT_before.p()) / input.dt_s : 0.0;
   sample.depth_mm = step.depth_mm;
   sample.tissue = step.points_in_contact > 0 ? scene.skin : std::uint8_t{0};
-  sample.phase = step.points_in_contact > 0 ? InsertionPhase::kLoading : InsertionPhase::kOutside;
+  sample.phase = step.points_in_contact > 0 ? telemetry::InsertionPhase::kLoading : telemetry::InsertionPhase::kOutside;
   sample.f_constraint_n = force_P;
   sample.f_weight_n = weight.force_n;
   sample.f_total_n = force_P + weight.force_n;
@@ -38,12 +38,12 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
 
   EventList events(sample);
-  if (step.has_jumped) events.add(LimitReason::kJumped);
-  if (step.started_inside) events.add(LimitReason::kResumedInside);
-  if (step.is_bound) events.add(LimitReason::kSolverBound);
+  if (step.has_jumped) events.add(telemetry::LimitReason::kJumped);
+  if (step.started_inside) events.add(telemetry::LimitReason::kResumedInside);
+  if (step.is_bound) events.add(telemetry::LimitReason::kSolverBound);
   limit_to_device(output, weight, events, scene);
   state.last = sample;
   return output;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

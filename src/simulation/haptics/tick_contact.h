@@ -2,7 +2,7 @@
 
 #include "haptics/tick.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The tick of a transducer or a finger (physics.md B9, B10, T1): contact with the skin, weight compensation, limits of
 /// the device. In the record the tool stands where the needle would: `tip_mm` and `axis` are its origin and +y as
@@ -10,4 +10,4 @@ namespace trocar {
 /// tick() has found it usable. Real-time safe.
 HapticOutput tick_contact(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -9,7 +9,7 @@
 #include "core/files/data_dir.h"
 #include "tasks/plan.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 namespace fs = std::filesystem;
 
 CaseDesk::CaseDesk() {
@@ -20,15 +20,15 @@ CaseDesk::~CaseDesk() = default;
 Status CaseDesk::load_tables() {
   const fs::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", {}, "set TROCAR_DATA_DIR to it");
-  TROCAR_TRY(templates_, load_tasks(data / "tasks"));
-  TROCAR_TRY(needles_, load_needles(data / "needles.toml"));
-  TROCAR_TRY(tissues_, load_tissue_table(data / "tissues.toml"));
+  TROCAR_TRY(templates_, tasks::load_tasks(data / "tasks"));
+  TROCAR_TRY(needles_, tasks::load_needles(data / "needles.toml"));
+  TROCAR_TRY(tissues_, anatomy::load_tissue_table(data / "tissues.toml"));
   return {};
 }
 
-const Needle* CaseDesk::needle() const noexcept {
+const tasks::Needle* CaseDesk::needle() const noexcept {
   const auto found = std::find_if(needles_.begin(), needles_.end(),
-                                  [&](const Needle& needle) { return needle.name == draft().task.needle; });
+                                  [&](const tasks::Needle& needle) { return needle.name == draft().task.needle; });
   return found != needles_.end() ? &*found : nullptr;
 }
 
@@ -72,13 +72,13 @@ void CaseDesk::import_patient(ImportRequest request) {
 
 void CaseDesk::plan_path() {
   if (work_ != Work::kNone || !has_patient()) return;
-  const Needle* the_needle = needle();
+  const tasks::Needle* the_needle = needle();
   if (the_needle == nullptr) return say("there is no needle \"" + draft().task.needle + "\"", true);
   plan_version_ = history_.version();
   plan_ = BackgroundJob<Segment>(
       [draft = draft(), patients = patients_, needle = *the_needle](const Progress& progress) -> Result<Segment> {
         const auto patient = patients->of(draft);
-        TROCAR_TRY(const auto paths, plan_paths(draft.task, *patient, needle, {}, progress));
+        TROCAR_TRY(const auto paths, tasks::plan_paths(draft.task, *patient, needle, {}, progress));
         return paths.front().line_P;
       });
   work_ = Work::kPlanning;
@@ -167,11 +167,11 @@ bool CaseDesk::take_save() {
 }
 
 void CaseDesk::start_review() {
-  const Needle* the_needle = needle();
+  const tasks::Needle* the_needle = needle();
   is_reviewing_ = true;
   review_ = BackgroundJob<Review>(
       [draft = draft(), version = history_.version(), patients = patients_, tissues = tissues_,
-       needle = the_needle != nullptr ? *the_needle : Needle{}](const Progress&) -> Result<Review> {
+       needle = the_needle != nullptr ? *the_needle : tasks::Needle{}](const Progress&) -> Result<Review> {
         Review review;
         review.version = version;
         review.patient = patients->of(draft);
@@ -217,7 +217,8 @@ bool CaseDesk::advance() {
     const bool is_other_import = meshes_of_ != draft().imported;
     const bool has_other_names =
         !std::equal(meshes_table_.labels.begin(), meshes_table_.labels.end(), draft().label_table.labels.begin(),
-                    draft().label_table.labels.end(), [](const Label& a, const Label& b) { return a.name == b.name; });
+                    draft().label_table.labels.end(),
+                    [](const anatomy::Label& a, const anatomy::Label& b) { return a.name == b.name; });
     if (is_other_import || has_other_names) {
       meshes_ = draft_meshes(draft());
       meshes_of_ = draft().imported;
@@ -236,4 +237,4 @@ bool CaseDesk::advance() {
   return is_new;
 }
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

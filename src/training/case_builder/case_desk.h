@@ -15,7 +15,7 @@
 #include "case_builder/save_case.h"
 #include "core/background_job.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 
 /// What an instructor works at: the draft with its steps, and the work in the background that a draft asks for. Every
 /// change has the draft looked over anew (checks, forces). One thread owns it and calls advance() once a frame; nothing
@@ -37,8 +37,8 @@ class CaseDesk {
   const CaseHistory& history() const noexcept { return history_; }
   bool has_patient() const noexcept { return draft().imported != nullptr; }
   /// The patient with the labels' names and tissues of the last look; null without an import.
-  std::shared_ptr<const VirtualPatient> patient() const noexcept { return patient_; }
-  std::shared_ptr<const std::vector<NamedMesh>> meshes() const noexcept { return meshes_; }
+  std::shared_ptr<const anatomy::VirtualPatient> patient() const noexcept { return patient_; }
+  std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes() const noexcept { return meshes_; }
 
   /// An edit of the draft (case_edits.h); its error becomes the message. False where it was refused.
   bool edit(Result<CaseDraft> next, std::string what, const std::string& gesture = {});
@@ -69,17 +69,17 @@ class CaseDesk {
   /// Whether what was saved last is the draft as it is.
   bool is_saved() const noexcept { return has_patient() && saved_version_ == history_.version(); }
 
-  const std::vector<Task>& templates() const noexcept { return templates_; }
-  const std::vector<Needle>& needles() const noexcept { return needles_; }
-  const TissueTable& tissues() const noexcept { return tissues_; }
+  const std::vector<tasks::Task>& templates() const noexcept { return templates_; }
+  const std::vector<tasks::Needle>& needles() const noexcept { return needles_; }
+  const anatomy::TissueTable& tissues() const noexcept { return tissues_; }
   /// Of the draft's task; nullptr where the list lacks it.
-  const Needle* needle() const noexcept;
+  const tasks::Needle* needle() const noexcept;
 
  private:
   struct Review {
     std::uint64_t version = 0;
     std::vector<CaseCheck> checks;
-    std::shared_ptr<const VirtualPatient> patient;
+    std::shared_ptr<const anatomy::VirtualPatient> patient;
     std::optional<ForcePreview> preview;
     std::string preview_error;
   };
@@ -93,14 +93,14 @@ class CaseDesk {
 
   CaseHistory history_;
   std::shared_ptr<DraftPatient> patients_ = std::make_shared<DraftPatient>();
-  std::shared_ptr<const VirtualPatient> patient_;
-  std::shared_ptr<const std::vector<NamedMesh>> meshes_;
+  std::shared_ptr<const anatomy::VirtualPatient> patient_;
+  std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes_;
   std::shared_ptr<const ImportedPatient> meshes_of_;
-  LabelTable meshes_table_;
+  anatomy::LabelTable meshes_table_;
 
-  std::vector<Task> templates_;
-  std::vector<Needle> needles_;
-  TissueTable tissues_;
+  std::vector<tasks::Task> templates_;
+  std::vector<tasks::Needle> needles_;
+  anatomy::TissueTable tissues_;
 
   Work work_ = Work::kNone;
   BackgroundJob<CaseDraft> import_;
@@ -125,4 +125,4 @@ class CaseDesk {
   bool has_news_ = true;
 };
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

@@ -6,7 +6,7 @@
 
 #include "tasks/assess_path.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 namespace {
 
 constexpr double kShortestPath_mm = 5.0;
@@ -18,7 +18,7 @@ Status check_imported(const CaseDraft& draft) {
 
 Status check_in_volume(const CaseDraft& draft, const Vec3& p_P, const char* what) {
   TROCAR_TRY_STATUS(check_imported(draft));
-  const GridGeometry& geometry = draft.imported->patient.labels.geometry;
+  const volume::GridGeometry& geometry = draft.imported->patient.labels.geometry;
   const Vec3 index = geometry.to_index(p_P);
   for (int a = 0; a < 3; ++a)
     if (!(index[a] >= -0.5 && index[a] <= static_cast<double>(geometry.size[static_cast<std::size_t>(a)]) - 0.5))
@@ -27,30 +27,30 @@ Status check_in_volume(const CaseDraft& draft, const Vec3& p_P, const char* what
   return {};
 }
 
-Result<Label*> find_label(CaseDraft& draft, std::uint8_t id) {
-  for (Label& label : draft.label_table.labels)
+Result<anatomy::Label*> find_label(CaseDraft& draft, std::uint8_t id) {
+  for (anatomy::Label& label : draft.label_table.labels)
     if (label.id == id) return &label;
   return fail(fmt::format("there is no label {}", id), "label table", "choose a label of this case");
 }
 
-std::vector<Landmark>::iterator find_landmark(CaseDraft& draft, const std::string& name) {
+std::vector<anatomy::Landmark>::iterator find_landmark(CaseDraft& draft, const std::string& name) {
   return std::find_if(draft.landmarks.begin(), draft.landmarks.end(),
-                      [&](const Landmark& landmark) { return landmark.name == name; });
+                      [&](const anatomy::Landmark& landmark) { return landmark.name == name; });
 }
 
-bool is_same_structure(const RiskStructure& a, const RiskStructure& b) {
+bool is_same_structure(const tasks::RiskStructure& a, const tasks::RiskStructure& b) {
   return a.tissue == b.tissue && a.label == b.label;
 }
 
 }  // namespace
 
 Result<CaseDraft> rename_label(CaseDraft draft, std::uint8_t id, const std::string& name) {
-  TROCAR_TRY(Label * label, find_label(draft, id));
+  TROCAR_TRY(anatomy::Label * label, find_label(draft, id));
   if (name.empty()) return fail("a label needs a name", label->name, "type one");
-  const Label* other = draft.label_table.find(std::string_view(name));
+  const anatomy::Label* other = draft.label_table.find(std::string_view(name));
   if (other != nullptr && other->id != id)
     return fail(fmt::format("another label is called \"{}\" already", name), label->name, "choose another name");
-  for (RiskStructure& risk : draft.task.risks)
+  for (tasks::RiskStructure& risk : draft.task.risks)
     if (!risk.label.empty() && risk.label == label->name) risk.label = name;
   if (draft.task.target_label == label->name) draft.task.target_label = name;
   label->name = name;
@@ -58,20 +58,20 @@ Result<CaseDraft> rename_label(CaseDraft draft, std::uint8_t id, const std::stri
 }
 
 Result<CaseDraft> set_label_tissue(CaseDraft draft, std::uint8_t id, const std::string& tissue) {
-  TROCAR_TRY(Label * label, find_label(draft, id));
+  TROCAR_TRY(anatomy::Label * label, find_label(draft, id));
   if (tissue.empty()) return fail("a label needs a tissue", label->name, "choose one of the list");
   label->tissue = tissue;
   return draft;
 }
 
-Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const Rgb& color) {
-  TROCAR_TRY(Label * label, find_label(draft, id));
+Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const volume::Rgb& color) {
+  TROCAR_TRY(anatomy::Label * label, find_label(draft, id));
   label->color = color;
   return draft;
 }
 
-CaseDraft use_template(CaseDraft draft, const Task& base) {
-  Task task = base;
+CaseDraft use_template(CaseDraft draft, const tasks::Task& base) {
+  tasks::Task task = base;
   task.target_label = draft.task.target_label;
   task.target_P = draft.task.target_P;
   task.entry_zone = draft.task.entry_zone;
@@ -95,7 +95,7 @@ Result<CaseDraft> set_target_label(CaseDraft draft, const std::string& name) {
   return draft;
 }
 
-Result<CaseDraft> set_risk(CaseDraft draft, const RiskStructure& risk) {
+Result<CaseDraft> set_risk(CaseDraft draft, const tasks::RiskStructure& risk) {
   if (risk.tissue.empty() == risk.label.empty())
     return fail("a risk structure is named by its tissue or its label", {}, "give one of the two");
   if (!(risk.margin_mm >= 0.0 && risk.margin_mm <= 50.0))
@@ -104,7 +104,7 @@ Result<CaseDraft> set_risk(CaseDraft draft, const RiskStructure& risk) {
     return fail("a penalty is from 0 to 100 points", fmt::format("{}", risk.penalty), "give a number in this range");
   auto& risks = draft.task.risks;
   const auto found = std::find_if(risks.begin(), risks.end(),
-                                  [&](const RiskStructure& other) { return is_same_structure(other, risk); });
+                                  [&](const tasks::RiskStructure& other) { return is_same_structure(other, risk); });
   if (found != risks.end()) {
     *found = risk;
   } else {
@@ -125,9 +125,9 @@ Result<CaseDraft> set_entry_zone(CaseDraft draft, const Vec3& near_P, double rad
   if (!(radius_mm >= 1.0 && radius_mm <= 200.0))
     return fail("the radius of an entry zone is from 1 to 200 mm", fmt::format("{}", radius_mm),
                 "give a number in this range");
-  const auto centre_P = find_nearest_skin(draft.imported->patient, near_P);
+  const auto centre_P = tasks::find_nearest_skin(draft.imported->patient, near_P);
   if (!centre_P) return fail("there is no skin near this place", {}, "click on the patient's skin");
-  draft.task.entry_zone = EntryZone{*centre_P, radius_mm};
+  draft.task.entry_zone = tasks::EntryZone{*centre_P, radius_mm};
   return draft;
 }
 
@@ -142,7 +142,7 @@ Result<CaseDraft> set_expert_path(CaseDraft draft, const Segment& line_P) {
   if (!(line_P.length_mm() >= kShortestPath_mm))
     return fail(fmt::format("a path is at least {:.0f} mm long", kShortestPath_mm), {}, "move its ends apart");
   if (draft.task.expert_path.empty()) draft.task.expert_path = kExpertPath;
-  for (NeedlePath& path : draft.paths) {
+  for (anatomy::NeedlePath& path : draft.paths) {
     if (path.name != draft.task.expert_path) continue;
     path.line_P = line_P;
     return draft;
@@ -152,7 +152,7 @@ Result<CaseDraft> set_expert_path(CaseDraft draft, const Segment& line_P) {
 }
 
 CaseDraft clear_expert_path(CaseDraft draft) {
-  std::erase_if(draft.paths, [&](const NeedlePath& path) { return path.name == draft.task.expert_path; });
+  std::erase_if(draft.paths, [&](const anatomy::NeedlePath& path) { return path.name == draft.task.expert_path; });
   draft.task.expert_path.clear();
   return draft;
 }
@@ -172,7 +172,7 @@ Result<CaseDraft> set_landmark(CaseDraft draft, const std::string& name, const V
 Result<CaseDraft> rename_landmark(CaseDraft draft, std::size_t row, const std::string& name) {
   if (row >= draft.landmarks.size())
     return fail("there is no such landmark", "landmarks", "choose a landmark of the list");
-  Landmark& landmark = draft.landmarks[row];
+  anatomy::Landmark& landmark = draft.landmarks[row];
   if (name.empty()) return fail("a landmark needs a name", landmark.name, "type one");
   if (name != landmark.name && find_landmark(draft, name) != draft.landmarks.end())
     return fail(fmt::format("another landmark is called \"{}\" already", name), landmark.name, "choose another name");
@@ -187,4 +187,4 @@ Result<CaseDraft> remove_landmark(CaseDraft draft, std::size_t row) {
   return draft;
 }
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

@@ -6,7 +6,7 @@
 #include "case_builder/case_draft.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 
 inline constexpr const char* kExpertPath = "expert";  ///< Name of the path that the case builder draws.
 
@@ -16,17 +16,17 @@ inline constexpr const char* kExpertPath = "expert";  ///< Name of the path that
 Result<CaseDraft> rename_label(CaseDraft draft, std::uint8_t id, const std::string& name);
 /// `tissue` as in the tissue table; the caller offers those.
 Result<CaseDraft> set_label_tissue(CaseDraft draft, std::uint8_t id, const std::string& tissue);
-Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const Rgb& color);
+Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const volume::Rgb& color);
 
 /// The task of another template; target, zone and path stay.
-CaseDraft use_template(CaseDraft draft, const Task& base);
+CaseDraft use_template(CaseDraft draft, const tasks::Task& base);
 /// The point that the needle is to reach: inside the volume.
 Result<CaseDraft> set_target_point(CaseDraft draft, const Vec3& p_P);
 /// The label that is the target; empty: every label of the template's target tissues. A point is given up.
 Result<CaseDraft> set_target_label(CaseDraft draft, const std::string& name);
 
 /// Adds a risk structure, or changes the one of the same tissue or label. Margin 0..50 mm, penalty 0..100.
-Result<CaseDraft> set_risk(CaseDraft draft, const RiskStructure& risk);
+Result<CaseDraft> set_risk(CaseDraft draft, const tasks::RiskStructure& risk);
 Result<CaseDraft> remove_risk(CaseDraft draft, std::size_t row);
 
 /// A disc on the skin: the centre is brought onto it. Radius 1..200 mm. Error: no skin near the point.
@@ -43,4 +43,4 @@ Result<CaseDraft> set_landmark(CaseDraft draft, const std::string& name, const V
 Result<CaseDraft> rename_landmark(CaseDraft draft, std::size_t row, const std::string& name);
 Result<CaseDraft> remove_landmark(CaseDraft draft, std::size_t row);
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

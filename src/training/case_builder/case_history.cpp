@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace trocar {
+namespace trocar::case_builder {
 
 void CaseHistory::begin(CaseDraft draft) {
   steps_.begin({std::move(draft), {}});
@@ -33,4 +33,4 @@ void CaseHistory::redo() {
   ++version_;
 }
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

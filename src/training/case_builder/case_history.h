@@ -6,7 +6,7 @@
 #include "case_builder/case_draft.h"
 #include "core/step_history.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 
 /// The draft with its steps back and forth. At most kMaxSteps are kept, some kilobytes each; the volumes of the import
 /// are shared. A new import begins a new history, so that no more than one import is held.
@@ -41,4 +41,4 @@ class CaseHistory {
   std::uint64_t version_ = 0;
 };
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

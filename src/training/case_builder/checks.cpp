@@ -10,7 +10,7 @@
 #include "tasks/assess_path.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 namespace {
 
 constexpr double kOutside_mm = 2.0;     ///< Beyond the skin: more than the edge of a voxel.
@@ -30,8 +30,13 @@ constexpr OrganVolume kOrganVolumes[] = {{"liver", 500.0, 5000.0},
 /// Lines of checks, gathered step by step.
 class Checks {
  public:
-  Checks(const CaseDraft& draft, const VirtualPatient& patient, const Needle& needle, const TissueTable& tissues)
-      : draft_(draft), patient_(patient), needle_(needle), tissues_(tissues), statistics_(label_statistics(patient)) {}
+  Checks(const CaseDraft& draft, const anatomy::VirtualPatient& patient, const tasks::Needle& needle,
+         const anatomy::TissueTable& tissues)
+      : draft_(draft),
+        patient_(patient),
+        needle_(needle),
+        tissues_(tissues),
+        statistics_(anatomy::label_statistics(patient)) {}
 
   std::vector<CaseCheck> run() {
     look_at_labels();
@@ -62,7 +67,7 @@ class Checks {
   }
 
   void look_at_labels() {
-    const std::vector<std::string> doubts = find_doubts(patient_, statistics_);
+    const std::vector<std::string> doubts = anatomy::find_doubts(patient_, statistics_);
     for (const std::string& doubt : doubts) warn(CaseStep::kLabels, doubt);
     for (const std::string& warning : draft_.imported->warnings) {
       const bool is_told = std::find(doubts.begin(), doubts.end(), warning) != doubts.end() ||
@@ -70,8 +75,8 @@ class Checks {
       if (!is_told) warn(CaseStep::kImport, warning);
     }
     look_outside();
-    for (const LabelStatistics& s : statistics_) {
-      const Label& label = *patient_.label_table.find(s.id);
+    for (const anatomy::LabelStatistics& s : statistics_) {
+      const anatomy::Label& label = *patient_.label_table.find(s.id);
       if (!tissues_.find_tissue(label.tissue))
         refuse(CaseStep::kLabels, fmt::format("{}: there is no tissue \"{}\" to feel", label.name, label.tissue),
                s.voxels > 0 ? std::optional(s.centroid_P) : std::nullopt);
@@ -93,11 +98,11 @@ class Checks {
       if (id == 0 || static_cast<double>(patient_.skin_distance_mm.voxels[n]) <= kOutside_mm) continue;
       if (outside[id]++ == 0) first[id] = n;
     }
-    for (const Label& label : patient_.label_table.labels) {
+    for (const anatomy::Label& label : patient_.label_table.labels) {
       const double share =
           static_cast<double>(outside[label.id]) / static_cast<double>(std::max<std::size_t>(all[label.id], 1));
       if (share <= kShareOutside) continue;
-      const Index3 ijk = patient_.labels.geometry.index_of(first[label.id]);
+      const volume::Index3 ijk = patient_.labels.geometry.index_of(first[label.id]);
       refuse(CaseStep::kLabels,
              fmt::format("{:.0f} % of {} lies outside the body: does the segmentation belong to this CT?",
                          100.0 * share, label.name),
@@ -106,7 +111,7 @@ class Checks {
     }
   }
 
-  void look_at_volume(const Label& label, const LabelStatistics& s) {
+  void look_at_volume(const anatomy::Label& label, const anatomy::LabelStatistics& s) {
     if (s.voxels == 0) return;
     for (const OrganVolume& organ : kOrganVolumes) {
       if (label.tissue != organ.tissue) continue;
@@ -123,15 +128,15 @@ class Checks {
   }
 
   void look_at_task() {
-    const TaskReadiness readiness = check_task(draft_.task, patient_);
+    const tasks::TaskReadiness readiness = tasks::check_task(draft_.task, patient_);
     for (const std::string& reason : readiness.reasons)
       add(readiness.is_possible ? CheckLevel::kWarning : CheckLevel::kError, CaseStep::kTarget, reason);
   }
 
   void look_at_target() {
-    const Task& task = draft_.task;
+    const tasks::Task& task = draft_.task;
     if (!task.target_label.empty()) {
-      const Label* label = patient_.label_table.find(std::string_view(task.target_label));
+      const anatomy::Label* label = patient_.label_table.find(std::string_view(task.target_label));
       const bool is_there = label != nullptr && std::any_of(statistics_.begin(), statistics_.end(), [&](const auto& s) {
                               return s.id == label->id && s.voxels > 0;
                             });
@@ -142,13 +147,13 @@ class Checks {
     }
     const std::optional<Vec3> target_P = find_target_point(draft_);
     if (!target_P) return;
-    const double skin_mm = sample_linear(patient_.skin_distance_mm, *target_P);
+    const double skin_mm = volume::sample_linear(patient_.skin_distance_mm, *target_P);
     if (skin_mm > 0.0) {
       refuse(CaseStep::kTarget, fmt::format("the target lies {:.0f} mm outside the body", skin_mm), target_P);
       return;
     }
-    const Label* label = find_label(patient_, *target_P);
-    const bool is_wanted = label != nullptr && (is_target(task, *label) || is_organ(task, *label));
+    const anatomy::Label* label = anatomy::find_label(patient_, *target_P);
+    const bool is_wanted = label != nullptr && (tasks::is_target(task, *label) || tasks::is_organ(task, *label));
     const std::string place =
         label != nullptr ? fmt::format("{} ({})", label->name, label->tissue) : "nothing labelled";
     if (!is_wanted && label != nullptr && find_risk(task, *label) != nullptr)
@@ -163,7 +168,7 @@ class Checks {
   void look_at_risks() {
     if (draft_.task.risks.empty())
       warn(CaseStep::kTarget, "no risk structures: nothing costs points when it is touched");
-    for (const RiskStructure& risk : draft_.task.risks) {
+    for (const tasks::RiskStructure& risk : draft_.task.risks) {
       if (risk.label.empty()) continue;
       if (patient_.label_table.find(std::string_view(risk.label)) == nullptr)
         warn(CaseStep::kTarget, fmt::format("the risk structure \"{}\" is not labelled", risk.label));
@@ -172,21 +177,22 @@ class Checks {
 
   void look_at_zone() {
     if (!draft_.task.entry_zone) return;
-    const EntryZone& zone = *draft_.task.entry_zone;
-    const double skin_mm = sample_linear(patient_.skin_distance_mm, zone.centre_P);
+    const tasks::EntryZone& zone = *draft_.task.entry_zone;
+    const double skin_mm = volume::sample_linear(patient_.skin_distance_mm, zone.centre_P);
     if (std::abs(skin_mm) > kOutside_mm)
       refuse(CaseStep::kPath, fmt::format("the entry zone's centre lies {:.0f} mm off the skin", std::abs(skin_mm)),
              zone.centre_P);
   }
 
   void look_at_path() {
-    const NeedlePath* path = find_expert_path(draft_);
+    const anatomy::NeedlePath* path = find_expert_path(draft_);
     if (path == nullptr) {
       warn(CaseStep::kPath, "no expert path is drawn: one is planned whenever the case is opened");
       return;
     }
-    const PathAssessment assessment = assess_path(draft_.task, patient_, needle_, path->line_P);
-    for (const PathFinding& finding : assessment.findings) refuse(CaseStep::kPath, finding.text, finding.where_P);
+    const tasks::PathAssessment assessment = tasks::assess_path(draft_.task, patient_, needle_, path->line_P);
+    for (const tasks::PathFinding& finding : assessment.findings)
+      refuse(CaseStep::kPath, finding.text, finding.where_P);
     if (!assessment.findings.empty()) return;
     add(CheckLevel::kOk, CaseStep::kPath,
         fmt::format("the path is {:.0f} mm long, {:.0f} mm of it in the {}, {:.0f}° off the skin's normal; {}",
@@ -206,17 +212,17 @@ class Checks {
   }
 
   const CaseDraft& draft_;
-  const VirtualPatient& patient_;
-  const Needle& needle_;
-  const TissueTable& tissues_;
-  std::vector<LabelStatistics> statistics_;
+  const anatomy::VirtualPatient& patient_;
+  const tasks::Needle& needle_;
+  const anatomy::TissueTable& tissues_;
+  std::vector<anatomy::LabelStatistics> statistics_;
   std::vector<CaseCheck> lines_;
 };
 
 }  // namespace
 
-std::vector<CaseCheck> check_draft(const CaseDraft& draft, const VirtualPatient& patient, const Needle& needle,
-                                   const TissueTable& tissues) {
+std::vector<CaseCheck> check_draft(const CaseDraft& draft, const anatomy::VirtualPatient& patient,
+                                   const tasks::Needle& needle, const anatomy::TissueTable& tissues) {
   return Checks(draft, patient, needle, tissues).run();
 }
 
@@ -227,4 +233,4 @@ CheckLevel worst_level(const std::vector<CaseCheck>& checks, CaseStep step) noex
   return worst;
 }
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

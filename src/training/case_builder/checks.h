@@ -9,7 +9,7 @@
 #include "case_builder/case_draft.h"
 #include "tasks/needle.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 
 enum class CheckLevel : std::uint8_t { kOk, kWarning, kError };
 
@@ -29,10 +29,10 @@ struct CaseCheck {
 /// known tissue), the task (what the patient lacks), target, entry zone and path (what they touch, where, by how much).
 /// Errors come first within a step; a step that is in order says so in one line. `patient` is the draft's
 /// (DraftPatient). Some 100 ms for a CT of 30 million voxels: not for the thread of a window.
-std::vector<CaseCheck> check_draft(const CaseDraft& draft, const VirtualPatient& patient, const Needle& needle,
-                                   const TissueTable& tissues);
+std::vector<CaseCheck> check_draft(const CaseDraft& draft, const anatomy::VirtualPatient& patient,
+                                   const tasks::Needle& needle, const anatomy::TissueTable& tissues);
 
 /// The worst of a step; kOk where nothing is said of it.
 CheckLevel worst_level(const std::vector<CaseCheck>& checks, CaseStep step) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

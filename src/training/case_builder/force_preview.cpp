@@ -4,7 +4,7 @@
 
 #include "attempt/guide/needle_geometry.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 namespace {
 
 constexpr double kSpeed_mm_per_s = 10.0;
@@ -12,24 +12,25 @@ constexpr double kMostLag_mm = 20.0;  ///< Behind the device by what tissue and 
 
 }  // namespace
 
-Result<ForcePreview> preview_forces(const CaseDraft& draft, std::shared_ptr<const VirtualPatient> patient,
-                                    const Needle& needle, const TissueTable& tissues) {
-  const NeedlePath* path = find_expert_path(draft);
+Result<ForcePreview> preview_forces(const CaseDraft& draft, std::shared_ptr<const anatomy::VirtualPatient> patient,
+                                    const tasks::Needle& needle, const anatomy::TissueTable& tissues) {
+  const anatomy::NeedlePath* path = find_expert_path(draft);
   if (path == nullptr) return fail("no expert path is drawn", draft.name, "draw one, or have one planned");
-  HapticOptions options;
+  haptics::HapticOptions options;
   options.has_weight_compensation = false;
-  TROCAR_TRY(options.force_model, parse_force_model(draft.task.force_model));
-  TROCAR_TRY(const auto scene, make_haptic_scene(std::move(patient), tissues, needle_geometry(needle), {}, options));
-  PrescribedMotion motion;
+  TROCAR_TRY(options.force_model, haptics::parse_force_model(draft.task.force_model));
+  TROCAR_TRY(const auto scene,
+             haptics::make_haptic_scene(std::move(patient), tissues, attempt::needle_geometry(needle), {}, options));
+  attempt::PrescribedMotion motion;
   motion.line_P = path->line_P;
   motion.speed_mm_per_s = kSpeed_mm_per_s;
   motion.after_mm = kMostLag_mm;
   ForcePreview preview;
-  preview.curve = force_curve(*scene, motion);
-  preview.events = find_curve_events(preview.curve, tissues);
-  preview.pieces = pieces_along(*scene, tissues, path->line_P);
-  for (const CurvePoint& point : preview.curve) preview.highest_n = std::max(preview.highest_n, point.force_n);
+  preview.curve = attempt::force_curve(*scene, motion);
+  preview.events = attempt::find_curve_events(preview.curve, tissues);
+  preview.pieces = attempt::pieces_along(*scene, tissues, path->line_P);
+  for (const attempt::CurvePoint& point : preview.curve) preview.highest_n = std::max(preview.highest_n, point.force_n);
   return preview;
 }
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

@@ -3,14 +3,14 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
+#include "attempt/case/prepare_case.h"
 #include "core/files/data_dir.h"
 #include "core/part_of_progress.h"
-#include "attempt/case/prepare_case.h"
 #include "io/patient/build_from_files.h"
 #include "io/patient/patient_source.h"
 #include "surface/extract_surface.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 namespace {
 namespace fs = std::filesystem;
 
@@ -34,30 +34,30 @@ Status check_request(const ImportRequest& request) {
   return {};
 }
 
-Result<VirtualPatient> read_patient(const ImportRequest& request, std::vector<std::string>& warnings,
-                                    const Progress& progress, const std::stop_token& stop) {
-  if (is_whole_patient(request)) return open_patient({request.ct, 1}, progress);
-  const PatientFiles files{request.ct,
-                           {request.labels.begin(), request.labels.end()},
-                           request.label_map,
-                           fs::path(last_name(request.ct)).stem().stem().string()};
-  return build_from_files(files, warnings, progress, stop);
+Result<anatomy::VirtualPatient> read_patient(const ImportRequest& request, std::vector<std::string>& warnings,
+                                             const Progress& progress, const std::stop_token& stop) {
+  if (is_whole_patient(request)) return io::open_patient({request.ct, 1}, progress);
+  const io::PatientFiles files{request.ct,
+                               {request.labels.begin(), request.labels.end()},
+                               request.label_map,
+                               fs::path(io::last_name(request.ct)).stem().stem().string()};
+  return io::build_from_files(files, warnings, progress, stop);
 }
 
 }  // namespace
 
 bool is_whole_patient(const ImportRequest& request) {
   if (is_patient_folder(request.ct)) return true;
-  for (const PhantomInfo& info : embedded_patients())
+  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients())
     if (info.name == request.ct) return true;
   return false;
 }
 
 Result<CaseDraft> import_case(const ImportRequest& request, const Progress& progress, const std::stop_token& stop) {
   TROCAR_TRY_STATUS(check_request(request));
-  CaseOptions options;
+  attempt::CaseOptions options;
   options.task = request.task;
-  TROCAR_TRY(const Case tables, load_tables(options));
+  TROCAR_TRY(const attempt::Case tables, attempt::load_tables(options));
 
   auto imported = std::make_shared<ImportedPatient>();
   imported->source = request.ct;
@@ -65,11 +65,11 @@ Result<CaseDraft> import_case(const ImportRequest& request, const Progress& prog
   if (stop.stop_requested()) return fail("stopped", request.ct, "start the import again");
   const Progress surfaces = part_of(progress, kVolumesPart, 1.0);
   if (is_patient_folder(request.ct)) {
-    TROCAR_TRY(imported->meshes, open_meshes({request.ct, 1}, imported->patient, surfaces));
+    TROCAR_TRY(imported->meshes, io::open_meshes({request.ct, 1}, imported->patient, surfaces));
   } else {
-    imported->meshes = extract_surfaces(imported->patient, {}, surfaces);
+    imported->meshes = surface::extract_surfaces(imported->patient, {}, surfaces);
   }
-  imported->statistics = label_statistics(imported->patient);
+  imported->statistics = anatomy::label_statistics(imported->patient);
 
   CaseDraft draft;
   draft.name = imported->patient.name;
@@ -79,17 +79,17 @@ Result<CaseDraft> import_case(const ImportRequest& request, const Progress& prog
   draft.landmarks = imported->patient.landmarks;
   draft.paths = imported->patient.paths;
   draft.base = draft.task = tables.task;
-  if (has_own_task(request.ct)) {
+  if (attempt::has_own_task(request.ct)) {
     options.task.clear();
     options.patient_folder = request.ct;
-    TROCAR_TRY(const Case own, load_tables(options));
+    TROCAR_TRY(const attempt::Case own, attempt::load_tables(options));
     draft.task = own.task;
     options.task = own.task.name;
-    TROCAR_TRY(const Case base, load_tables(options));
+    TROCAR_TRY(const attempt::Case base, attempt::load_tables(options));
     draft.base = base.task;
   }
   draft.imported = std::move(imported);
   return draft;
 }
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

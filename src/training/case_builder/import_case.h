@@ -8,7 +8,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 
 /// What is to be imported.
 struct ImportRequest {
@@ -29,4 +29,4 @@ bool is_whole_patient(const ImportRequest& request);
 Result<CaseDraft> import_case(const ImportRequest& request, const Progress& progress = {},
                               const std::stop_token& stop = {});
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

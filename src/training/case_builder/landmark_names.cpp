@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace trocar {
+namespace trocar::case_builder {
 
 std::span<const std::string_view> landmark_names() noexcept {
   static constexpr std::array<std::string_view, 25> kNames{"suprasternal notch",
@@ -33,4 +33,4 @@ std::span<const std::string_view> landmark_names() noexcept {
   return kNames;
 }
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

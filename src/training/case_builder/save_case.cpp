@@ -4,13 +4,13 @@
 
 #include "io/patient/patient_folder.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 namespace {
 namespace fs = std::filesystem;
 
 /// The patient as it is written. One copy of the volumes, for the time of the saving.
-VirtualPatient patient_of(const CaseDraft& draft, DraftPatient& patients) {
-  VirtualPatient patient = *patients.of(draft);
+anatomy::VirtualPatient patient_of(const CaseDraft& draft, DraftPatient& patients) {
+  anatomy::VirtualPatient patient = *patients.of(draft);
   patient.name = draft.name;
   patient.description = draft.description;
   patient.provenance = draft.provenance;
@@ -55,18 +55,18 @@ Status save_case(const CaseDraft& draft, DraftPatient& patients, const SaveOptio
   if (!draft.imported) return fail_usage("there is nothing to save", {}, "import a CT with its labels first");
   if (draft.name.empty()) return fail_usage("the case has no name", {}, "give it one");
   TROCAR_TRY_STATUS(check_target(options));
-  const VirtualPatient patient = patient_of(draft, patients);
-  const std::vector<PatientExtra> extras{{kOwnTaskFile, task_to_toml(draft.task, draft.base)}};
+  const anatomy::VirtualPatient patient = patient_of(draft, patients);
+  const std::vector<io::PatientExtra> extras{{tasks::kOwnTaskFile, tasks::task_to_toml(draft.task, draft.base)}};
   const fs::path folder = fs::absolute(options.folder).lexically_normal();
   const fs::path target = folder.has_filename() ? folder : folder.parent_path();
   std::error_code ignored;
   fs::create_directories(target.parent_path(), ignored);  // where that fails, writing says so
   if (!fs::exists(target / "patient.toml", ignored))
-    return save_patient(patient, *draft_meshes(draft), target, progress, extras);
+    return io::save_patient(patient, *draft_meshes(draft), target, progress, extras);
   const fs::path fresh = target.parent_path() / fmt::format(".{}.new", target.filename().string());
   fs::remove_all(fresh, ignored);
-  TROCAR_TRY_STATUS(save_patient(patient, *draft_meshes(draft), fresh, progress, extras));
+  TROCAR_TRY_STATUS(io::save_patient(patient, *draft_meshes(draft), fresh, progress, extras));
   return replace(fresh, target);
 }
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

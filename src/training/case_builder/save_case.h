@@ -7,7 +7,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 
 struct SaveOptions {
   std::filesystem::path folder;
@@ -20,4 +20,4 @@ struct SaveOptions {
 Status save_case(const CaseDraft& draft, DraftPatient& patients, const SaveOptions& options,
                  const Progress& progress = {});
 
-}  // namespace trocar
+}  // namespace trocar::case_builder

@@ -6,10 +6,10 @@
 #include "report/detail/sections.h"
 #include "report/detail/style.h"
 
-namespace trocar {
-using namespace report_detail;
+namespace trocar::report {
+using namespace detail;
 
-std::string html_report(const Session& session, const VirtualPatient* patient) {
+std::string html_report(const storage::Session& session, const anatomy::VirtualPatient* patient) {
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>";
@@ -32,4 +32,4 @@ std::string html_report(const Session& session, const VirtualPatient* patient) {
   return page + "</main></body></html>\n";
 }
 
-}  // namespace trocar
+}  // namespace trocar::report

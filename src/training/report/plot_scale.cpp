@@ -7,7 +7,7 @@
 
 #include "core/check.h"
 
-namespace trocar {
+namespace trocar::report {
 
 AxisRange range_of(const std::vector<double>& values) {
   bool is_empty = true;
@@ -94,4 +94,4 @@ std::vector<double> spread_labels(const std::vector<double>& wanted, const std::
   return centers;
 }
 
-}  // namespace trocar
+}  // namespace trocar::report

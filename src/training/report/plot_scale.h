@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace trocar {
+namespace trocar::report {
 
 using Point2 = Eigen::Vector2d;
 
@@ -35,4 +35,4 @@ std::vector<Point2> thin_out(const std::vector<Point2>& line, double column_widt
 std::vector<double> spread_labels(const std::vector<double>& wanted, const std::vector<double>& widths,
                                   const AxisRange& room);
 
-}  // namespace trocar
+}  // namespace trocar::report

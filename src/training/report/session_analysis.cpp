@@ -4,43 +4,43 @@
 
 #include <algorithm>
 
-namespace trocar {
+namespace trocar::report {
 namespace {
 
 constexpr double kDropWindow_s = 0.1;
 
-bool gives_way(const TickSample& sample) {
+bool gives_way(const telemetry::TickSample& sample) {
   return std::any_of(sample.events.begin(), sample.events.end(),
-                     [](const TickEvent& event) { return event.kind == EventKind::kPuncture; });
+                     [](const telemetry::TickEvent& event) { return event.kind == telemetry::EventKind::kPuncture; });
 }
 
-double drop_after(const std::vector<TickSample>& samples, std::size_t tick) {
-  double lowest = axial_resistance_n(samples[tick]);
+double drop_after(const std::vector<telemetry::TickSample>& samples, std::size_t tick) {
+  double lowest = telemetry::axial_resistance_n(samples[tick]);
   for (std::size_t i = tick + 1; i < samples.size(); ++i) {
     if (samples[i].time_s > samples[tick].time_s + kDropWindow_s || gives_way(samples[i])) break;
-    lowest = std::min(lowest, axial_resistance_n(samples[i]));
+    lowest = std::min(lowest, telemetry::axial_resistance_n(samples[i]));
   }
-  return axial_resistance_n(samples[tick]) - lowest;
+  return telemetry::axial_resistance_n(samples[tick]) - lowest;
 }
 
 }  // namespace
 
-std::vector<Puncture> find_punctures(const Session& session) {
+std::vector<Puncture> find_punctures(const storage::Session& session) {
   std::vector<Puncture> punctures;
   for (std::size_t i = 0; i < session.samples.size(); ++i) {
-    const TickSample& sample = session.samples[i];
-    for (const TickEvent& event : sample.events) {
-      if (event.kind != EventKind::kPuncture) continue;
+    const telemetry::TickSample& sample = session.samples[i];
+    for (const telemetry::TickEvent& event : sample.events) {
+      if (event.kind != telemetry::EventKind::kPuncture) continue;
       const auto& names = session.info.layer_names;
       punctures.push_back({i, event.id < names.size() ? names[event.id] : fmt::format("#{}", event.id), sample.time_s,
-                           sample.depth_mm, tip_load_n(sample), axial_resistance_n(sample),
+                           sample.depth_mm, telemetry::tip_load_n(sample), telemetry::axial_resistance_n(sample),
                            drop_after(session.samples, i)});
     }
   }
   return punctures;
 }
 
-std::vector<Insertion> find_insertions(const Session& session, double min_depth_mm) {
+std::vector<Insertion> find_insertions(const storage::Session& session, double min_depth_mm) {
   const auto& samples = session.samples;
   std::vector<Insertion> insertions;
   std::optional<Insertion> open;
@@ -50,7 +50,7 @@ std::vector<Insertion> find_insertions(const Session& session, double min_depth_
     open.reset();
   };
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (samples[i].phase == InsertionPhase::kOutside) {
+    if (samples[i].phase == telemetry::InsertionPhase::kOutside) {
       if (open) close(i - 1);
       continue;
     }
@@ -61,11 +61,11 @@ std::vector<Insertion> find_insertions(const Session& session, double min_depth_
   return insertions;
 }
 
-std::vector<TissueRun> tissues_along(const Session& session, const Insertion& insertion) {
+std::vector<TissueRun> tissues_along(const storage::Session& session, const Insertion& insertion) {
   std::vector<TissueRun> runs;
   double reached_mm = 0.0;
   for (std::size_t i = insertion.first; i <= insertion.deepest; ++i) {
-    const TickSample& sample = session.samples[i];
+    const telemetry::TickSample& sample = session.samples[i];
     if (!(sample.depth_mm > reached_mm)) continue;
     if (runs.empty() || runs.back().tissue != sample.tissue)
       runs.push_back({reached_mm, sample.depth_mm, sample.tissue});
@@ -76,17 +76,17 @@ std::vector<TissueRun> tissues_along(const Session& session, const Insertion& in
   return runs;
 }
 
-std::vector<PhaseRun> phase_runs(const Session& session) {
+std::vector<PhaseRun> phase_runs(const storage::Session& session) {
   std::vector<PhaseRun> runs;
-  for (const TickSample& sample : session.samples) {
+  for (const telemetry::TickSample& sample : session.samples) {
     if (!runs.empty()) runs.back().to_s = sample.time_s;
     if (runs.empty() || runs.back().phase != sample.phase) runs.push_back({sample.time_s, sample.time_s, sample.phase});
   }
   return runs;
 }
 
-std::string tissue_name(const SessionInfo& info, std::uint8_t id) {
+std::string tissue_name(const storage::SessionInfo& info, std::uint8_t id) {
   return id < info.tissue_names.size() ? info.tissue_names[id] : fmt::format("#{}", id);
 }
 
-}  // namespace trocar
+}  // namespace trocar::report

@@ -8,9 +8,9 @@
 #include "report/detail/html.h"
 #include "report/detail/style.h"
 
-namespace trocar {
-using report_detail::escape;
-using report_detail::text_width;
+namespace trocar::report {
+using detail::escape;
+using detail::text_width;
 namespace {
 
 constexpr double kLeft = 58.0;
@@ -287,8 +287,8 @@ std::string to_svg_file(const Plot& plot, std::string_view title) {
       "<text class=\"heading\" x=\"{4:.1f}\" y=\"{5:.1f}\">{6}</text>\n<g transform=\"translate({7:.1f} "
       "{8:.1f})\">{9}</g>\n"
       "</svg>\n",
-      width, height, escape(plot.description), report_detail::plot_style(), kLeft + kMargin, 0.66 * kTitle,
+      width, height, escape(plot.description), detail::plot_style(), kLeft + kMargin, 0.66 * kTitle,
       escape(title), kMargin, kTitle, drawing.elements);
 }
 
-}  // namespace trocar
+}  // namespace trocar::report

@@ -7,7 +7,7 @@
 
 #include "report/plot_scale.h"
 
-namespace trocar {
+namespace trocar::report {
 
 /// A curve. `style` is a CSS class that gives colour and dashes (report/detail/style.h). Points that are not finite
 /// break the line.
@@ -56,4 +56,4 @@ std::string to_svg(const Plot& plot);
 /// The same as a file of its own, with style and a title above it: for print, and for programs that know no page.
 std::string to_svg_file(const Plot& plot, std::string_view title);
 
-}  // namespace trocar
+}  // namespace trocar::report

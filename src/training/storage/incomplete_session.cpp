@@ -3,9 +3,9 @@
 #include "storage/detail/database.h"
 #include "storage/session_file.h"
 
-namespace trocar {
+namespace trocar::storage {
 namespace fs = std::filesystem;
-using namespace storage_detail;
+using namespace detail;
 namespace {
 
 /// Whether it is a session without an outcome. One without ticks may not have its tables yet.
@@ -69,4 +69,4 @@ Result<std::optional<fs::path>> set_aside_incomplete_session(const fs::path& pat
   return name;
 }
 
-}  // namespace trocar
+}  // namespace trocar::storage

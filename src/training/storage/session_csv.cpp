@@ -8,8 +8,8 @@
 #include "storage/detail/columns.h"
 #include "storage/session_file.h"
 
-namespace trocar {
-using namespace storage_detail;
+namespace trocar::storage {
+using namespace detail;
 namespace {
 
 constexpr std::size_t kBytesATick = 420;  ///< Usual length of a row, to reserve by.
@@ -44,7 +44,7 @@ void append_number(std::string& out, double value) {
 }
 
 void append_header(std::string& out) {
-  const TickSample sample;
+  const telemetry::TickSample sample;
   visit_columns(sample, [&](const char* name, const auto&) {
     out += name;
     out += ',';
@@ -80,9 +80,10 @@ void add_note(TickNotes& notes, std::size_t tick, const std::string& text) {
 TickNotes notes_of(const Session& session) {
   TickNotes notes;
   const auto& samples = session.samples;
-  for (const Interruption& gap : session.interruptions) {
-    const auto after = std::lower_bound(samples.begin(), samples.end(), gap.to_s,
-                                        [](const TickSample& sample, double t) { return sample.time_s < t; });
+  for (const tasks::Interruption& gap : session.interruptions) {
+    const auto after =
+        std::lower_bound(samples.begin(), samples.end(), gap.to_s,
+                         [](const telemetry::TickSample& sample, double t) { return sample.time_s < t; });
     if (after != samples.end()) add_note(notes, static_cast<std::size_t>(after - samples.begin()), event_text(gap));
   }
   for (const SessionParameters& change : session.parameters) add_note(notes, change.tick, event_text(change));
@@ -94,15 +95,16 @@ struct EventColumn {
   std::string note, mark;
 };
 
-void append_row(std::string& out, const SessionInfo& info, const TickSample& sample, const EventColumn& beside) {
+void append_row(std::string& out, const SessionInfo& info, const telemetry::TickSample& sample,
+                const EventColumn& beside) {
   visit_columns(sample, [&](const char*, const auto& field) {
     using Field = std::remove_cvref_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, double>)
       append_number(out, field);
     else if constexpr (std::is_same_v<Field, std::uint8_t>)
       append_text(out, name_of(info.tissue_names, field));
-    else if constexpr (std::is_same_v<Field, InsertionPhase> || std::is_same_v<Field, GateMode> ||
-                       std::is_same_v<Field, GateFault>)
+    else if constexpr (std::is_same_v<Field, telemetry::InsertionPhase> || std::is_same_v<Field, telemetry::GateMode> ||
+                       std::is_same_v<Field, telemetry::GateFault>)
       out += to_string(field);
     else if constexpr (std::is_same_v<Field, bool>)
       out += field ? '1' : '0';
@@ -115,24 +117,24 @@ void append_row(std::string& out, const SessionInfo& info, const TickSample& sam
 
 }  // namespace
 
-std::string event_text(const SessionInfo& info, const TickEvent& event) {
+std::string event_text(const SessionInfo& info, const telemetry::TickEvent& event) {
   switch (event.kind) {
-    case EventKind::kNone:
+    case telemetry::EventKind::kNone:
       return {};
-    case EventKind::kPuncture:
+    case telemetry::EventKind::kPuncture:
       return "puncture:" + name_of(info.layer_names, event.id);
-    case EventKind::kEnter:
+    case telemetry::EventKind::kEnter:
       return "enter:" + name_of(info.label_names, event.id);
-    case EventKind::kLimit:
-      return std::string("limit:") + to_string(static_cast<LimitReason>(event.id));
+    case telemetry::EventKind::kLimit:
+      return std::string("limit:") + to_string(static_cast<telemetry::LimitReason>(event.id));
   }
   return {};
 }
 
-std::string event_text(const SessionInfo& info, const TickSample& sample) {
+std::string event_text(const SessionInfo& info, const telemetry::TickSample& sample) {
   std::string text;
-  for (const TickEvent& event : sample.events) {
-    if (event.kind == EventKind::kNone) continue;
+  for (const telemetry::TickEvent& event : sample.events) {
+    if (event.kind == telemetry::EventKind::kNone) continue;
     if (!text.empty()) text += ';';
     text += event_text(info, event);
   }
@@ -145,7 +147,7 @@ std::string event_text(const SessionParameters& parameters) {
   return text;
 }
 
-std::string event_text(const Interruption& interruption) {
+std::string event_text(const tasks::Interruption& interruption) {
   return fmt::format("interruption:{:.3f}", interruption.to_s - interruption.from_s);
 }
 
@@ -163,4 +165,4 @@ Status export_csv(const Session& session, const std::filesystem::path& path) {
   return write_file_atomically(path, text);
 }
 
-}  // namespace trocar
+}  // namespace trocar::storage

@@ -10,11 +10,11 @@
 #include "anatomy/patient.h"
 #include "core/result.h"
 #include "geometry/pose.h"
-#include "telemetry/tick_sample.h"
 #include "tasks/active_time.h"
 #include "tasks/score.h"
+#include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::storage {
 
 inline constexpr int kSessionFormatVersion = 1;  ///< A file of a newer version is refused.
 
@@ -37,7 +37,7 @@ struct SessionInfo {
   std::string device;             ///< In words.
   std::string device_preset;      ///< Of data/devices.toml; empty: an older program.
   std::string tissue_table_toml;  ///< As in force at the first tick.
-  NeedlePath plan_P;
+  anatomy::NeedlePath plan_P;
   bool is_parenchymal = false;
   /// Names behind the ids in the samples, by id.
   std::vector<std::string> tissue_names;
@@ -75,16 +75,16 @@ class SessionWriter {
   SessionWriter& operator=(SessionWriter&&) noexcept;
   ~SessionWriter();
 
-  Status append(const TickSample& sample);
+  Status append(const telemetry::TickSample& sample);
   /// In the order of time. One that is not later than the last one, or not finite, is left out.
   Status append(const TransducerSample& sample);
   /// Of a sample that was appended already, in the order of ticks, one a tick.
   Status append(const SessionParameters& parameters);
   /// In the order of time.
-  Status append(const Interruption& interruption);
+  Status append(const tasks::Interruption& interruption);
   /// Writes what is buffered, then the outcome, and makes it a single file again. `fired` is a sample's index. Nothing
   /// can be appended afterwards.
-  Status finish(const Outcome& outcome, std::optional<std::size_t> fired);
+  Status finish(const tasks::Outcome& outcome, std::optional<std::size_t> fired);
   std::size_t saved_ticks() const noexcept;  ///< Committed so far.
 
  private:
@@ -103,15 +103,15 @@ struct SessionDamage {
 
 struct Session {
   SessionInfo info;
-  std::vector<TickSample> samples;
-  std::vector<TransducerSample> transducer;   ///< By time; empty: there was none, or an older program recorded it.
-  std::vector<SessionParameters> parameters;  ///< By tick; empty: an older program wrote the session.
-  std::vector<Interruption> interruptions;    ///< By time.
-  std::optional<Outcome> outcome;             ///< Missing when the program was killed before the end.
-  std::optional<std::size_t> fired;           ///< Sample at which the biopsy gun was fired.
-  bool is_incomplete = false;                 ///< The program ended before the attempt did.
-  bool has_checksums = false;                 ///< Missing in sessions of older programs: damage may pass unnoticed.
-  std::vector<SessionDamage> damage;          ///< In the order of ticks; empty in what load_session gives.
+  std::vector<telemetry::TickSample> samples;
+  std::vector<TransducerSample> transducer;        ///< By time; empty: there was none, or an older program recorded it.
+  std::vector<SessionParameters> parameters;       ///< By tick; empty: an older program wrote the session.
+  std::vector<tasks::Interruption> interruptions;  ///< By time.
+  std::optional<tasks::Outcome> outcome;           ///< Missing when the program was killed before the end.
+  std::optional<std::size_t> fired;                ///< Sample at which the biopsy gun was fired.
+  bool is_incomplete = false;                      ///< The program ended before the attempt did.
+  bool has_checksums = false;         ///< Missing in sessions of older programs: damage may pass unnoticed.
+  std::vector<SessionDamage> damage;  ///< In the order of ticks; empty in what load_session gives.
 };
 /// Reads a finished or a killed session (its -wal file beside it). NaN comes back as NaN, -0.0 as 0.0; other values bit
 /// by bit. Errors, one line each: no such file, a folder, empty, not a session, damaged, of a newer version, a killed
@@ -130,16 +130,16 @@ std::vector<std::filesystem::path> session_files(const std::filesystem::path& pa
 Result<std::optional<std::filesystem::path>> set_aside_incomplete_session(const std::filesystem::path& path);
 
 /// An event in words, "puncture:skin"; empty for kNone. An id without a name is "#id".
-std::string event_text(const SessionInfo& info, const TickEvent& event);
+std::string event_text(const SessionInfo& info, const telemetry::TickEvent& event);
 /// The events of a sample in words: "puncture:skin;enter:liver".
-std::string event_text(const SessionInfo& info, const TickSample& sample);
+std::string event_text(const SessionInfo& info, const telemetry::TickSample& sample);
 /// What the CSV says of them: "set:skin.fp=6;set:liver.k=0.5", "interruption:39.000" (seconds). Empty: nothing.
 std::string event_text(const SessionParameters& parameters);
-std::string event_text(const Interruption& interruption);
+std::string event_text(const tasks::Interruption& interruption);
 /// One row a tick under a header, comma separated; numbers in the shortest form that reads back to the same value, nan
 /// and inf as words. Columns: docs and `trocar session export --help`. Written whole or not at all. Of an incomplete
 /// session the last row has the event "incomplete"; behind a gap of damaged ticks the next row (or the last one) has
 /// the event "damaged:FIRST-LAST".
 Status export_csv(const Session& session, const std::filesystem::path& path);
 
-}  // namespace trocar
+}  // namespace trocar::storage

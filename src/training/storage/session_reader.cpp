@@ -11,9 +11,9 @@
 #include "storage/detail/salvage.h"
 #include "storage/session_file.h"
 
-namespace trocar {
+namespace trocar::storage {
 namespace fs = std::filesystem;
-using namespace storage_detail;
+using namespace detail;
 namespace {
 
 constexpr const char* kAdvice = "name a file made by `trocar run`";
@@ -117,4 +117,4 @@ Result<Session> load_session(const fs::path& path) {
   return tl::unexpected(damage_error(session, path, "save the rest with trocar session export"));
 }
 
-}  // namespace trocar
+}  // namespace trocar::storage

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/files/atomic_file.h"
 #include "core/check.h"
+#include "core/files/atomic_file.h"
 #include "core/log.h"
 #include "storage/detail/checksums.h"
 #include "storage/detail/columns.h"
@@ -19,9 +19,9 @@
 #include "storage/detail/transducer_table.h"
 #include "storage/session_file.h"
 
-namespace trocar {
+namespace trocar::storage {
 namespace fs = std::filesystem;
-using namespace storage_detail;
+using namespace detail;
 namespace {
 
 constexpr double kBatchSeconds = 0.5;         ///< Session time between two commits.
@@ -65,7 +65,7 @@ struct SessionWriter::Impl {
   bool is_finished = false;
 
   // Buffered columns, to which the statements are bound.
-  std::vector<TickSample> samples;
+  std::vector<telemetry::TickSample> samples;
   std::vector<int> tick_column;
   std::vector<std::vector<double>> real_columns;
   std::vector<std::vector<soci::indicator>> real_indicators;
@@ -90,7 +90,7 @@ struct SessionWriter::Impl {
   void set_up();
   void prepare_insert_ticks();
   void prepare_insert_events();
-  void buffer(const TickSample& sample);
+  void buffer(const telemetry::TickSample& sample);
   Status flush();
   void clear();
   Status make_single_file();
@@ -116,7 +116,7 @@ void SessionWriter::Impl::prepare_insert_ticks() {
   std::string values = ":tick";
   std::size_t reals = 0;
   std::size_t integers = 0;
-  const TickSample sample;
+  const telemetry::TickSample sample;
   visit_stored_columns(sample, [&](const char* name, const auto& field) {
     names += fmt::format(", {}", name);
     values += fmt::format(", :{}", name);
@@ -154,7 +154,7 @@ void SessionWriter::Impl::prepare_insert_events() {
   insert_events->define_and_bind();
 }
 
-void SessionWriter::Impl::buffer(const TickSample& sample) {
+void SessionWriter::Impl::buffer(const telemetry::TickSample& sample) {
   samples.push_back(sample);
   tick_column.push_back(next_tick);
   std::size_t real = 0;
@@ -169,8 +169,8 @@ void SessionWriter::Impl::buffer(const TickSample& sample) {
     }
   });
   for (std::size_t slot = 0; slot < sample.events.size(); ++slot) {
-    const TickEvent& event = sample.events[slot];
-    if (event.kind == EventKind::kNone) continue;
+    const telemetry::TickEvent& event = sample.events[slot];
+    if (event.kind == telemetry::EventKind::kNone) continue;
     events.tick.push_back(next_tick);
     events.slot.push_back(static_cast<int>(slot));
     events.kind.push_back(static_cast<int>(event.kind));
@@ -243,7 +243,7 @@ Result<SessionWriter> SessionWriter::create(const fs::path& path, const SessionI
   return SessionWriter(std::move(impl));
 }
 
-Status SessionWriter::append(const TickSample& sample) {
+Status SessionWriter::append(const telemetry::TickSample& sample) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   if (impl_->failure) return tl::unexpected(*impl_->failure);
   if (impl_->tick_column.empty()) impl_->batch_start_s = sample.time_s;
@@ -268,7 +268,7 @@ Status SessionWriter::append(const SessionParameters& parameters) {
   return {};
 }
 
-Status SessionWriter::append(const Interruption& interruption) {
+Status SessionWriter::append(const tasks::Interruption& interruption) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   if (impl_->failure) return tl::unexpected(*impl_->failure);
   impl_->parameters.add(interruption, static_cast<std::size_t>(impl_->next_tick));
@@ -279,7 +279,7 @@ std::size_t SessionWriter::saved_ticks() const noexcept {
   return impl_->saved_ticks;
 }
 
-Status SessionWriter::finish(const Outcome& outcome, std::optional<std::size_t> fired) {
+Status SessionWriter::finish(const tasks::Outcome& outcome, std::optional<std::size_t> fired) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   TROCAR_CHECK(!fired || *fired < static_cast<std::size_t>(impl_->next_tick));
   if (impl_->failure) return tl::unexpected(*impl_->failure);
@@ -307,4 +307,4 @@ Status SessionWriter::finish(const Outcome& outcome, std::optional<std::size_t> 
   return impl_->make_single_file();
 }
 
-}  // namespace trocar
+}  // namespace trocar::storage

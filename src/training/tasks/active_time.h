@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// A time in which the trainee could not act: a haptic server was away, or no tick was answered. Times of the session;
 /// `to_s` is the time of the first tick after it.
@@ -24,4 +24,4 @@ inline double active_time_s(double from_s, double to_s, std::span<const Interrup
   return std::max(0.0, time_s);
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -13,7 +13,7 @@
 #include "tasks/detail/planning_map.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 using detail::PlanningMap;
@@ -27,7 +27,7 @@ constexpr double kNotchShare = 0.25;  ///< Of the notch around its middle in whi
 /// Everything that a walk along the path meets.
 class Assessor {
  public:
-  Assessor(const Task& task, const VirtualPatient& patient, const Needle& needle, const Segment& line_P)
+  Assessor(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle, const Segment& line_P)
       : task_(task),
         patient_(patient),
         needle_(needle),
@@ -58,7 +58,7 @@ class Assessor {
 
   void look_at_entry() {
     const Vec3& entry_P = line_P_.a;
-    made_.skin_distance_mm = sample_linear(patient_.skin_distance_mm, entry_P);
+    made_.skin_distance_mm = volume::sample_linear(patient_.skin_distance_mm, entry_P);
     if (std::abs(made_.skin_distance_mm) > kOnSkin_mm)
       add(PathFault::kNotOnSkin, entry_P,
           fmt::format("the path begins {:.0f} mm {} the skin", std::abs(made_.skin_distance_mm),
@@ -93,13 +93,13 @@ class Assessor {
     for (int n = 0; n <= steps; ++n) {
       const double s_mm = n * kStep_mm;
       const Vec3 p_P = at(s_mm);
-      const std::uint8_t id = sample_nearest(patient_.labels, p_P, std::uint8_t{0});
+      const std::uint8_t id = volume::sample_nearest(patient_.labels, p_P, std::uint8_t{0});
       const Role role = map_.roles[id];
       has_target |= role == Role::kTarget;
       if (role == Role::kOrgan && !has_target && s_mm < made_.path.length_mm) made_.path.organ_path_mm += kStep_mm;
       if (id == 0 || role != Role::kForbidden || is_crossed_[id]) continue;
       is_crossed_[id] = true;
-      const Label& label = *patient_.label_table.find(id);
+      const anatomy::Label& label = *patient_.label_table.find(id);
       const bool is_in_throw = s_mm > made_.path.length_mm;
       add(PathFault::kCrosses, p_P,
           fmt::format("the {} goes through {} ({}) {:.0f} mm below the skin",
@@ -119,7 +119,7 @@ class Assessor {
 
   /// Every risk voxel within its margin, and 10 mm more, of one piece of the way.
   void look_around(const Segment& piece, double radius_mm, std::array<Nearest, 256>& nearest) const {
-    const GridGeometry& geometry = patient_.labels.geometry;
+    const volume::GridGeometry& geometry = patient_.labels.geometry;
     const detail::IndexBox box = detail::clipped(detail::united(detail::box_around(geometry, piece.a, radius_mm),
                                                                 detail::box_around(geometry, piece.b, radius_mm)),
                                                  geometry);
@@ -148,7 +148,7 @@ class Assessor {
       look_around({way.at(static_cast<double>(n) / count), way.at(static_cast<double>(n + 1) / count)}, radius_mm,
                   nearest);
     made_.path.spare_margin_mm = detail::kReportedMargin_mm;
-    for (const Label& label : patient_.label_table.labels) {
+    for (const anatomy::Label& label : patient_.label_table.labels) {
       const RiskStructure* risk = map_.risks[label.id];
       if (risk == nullptr) continue;
       const double away_mm = is_crossed_[label.id] ? 0.0 : nearest[label.id].distance_mm;
@@ -180,13 +180,13 @@ class Assessor {
       const Role role = map_.role_at(reached_P + s_mm * axis_P_);
       if (role == Role::kTarget || (wants_organ && role == Role::kOrgan)) return;
     }
-    const Label* label = find_label(patient_, reached_P);
+    const anatomy::Label* label = anatomy::find_label(patient_, reached_P);
     add(PathFault::kOffTarget, reached_P,
         fmt::format("the needle reaches {}, not the target", label != nullptr ? label->name : "nothing labelled"));
   }
 
   const Task& task_;
-  const VirtualPatient& patient_;
+  const anatomy::VirtualPatient& patient_;
   const Needle& needle_;
   Segment line_P_;
   Vec3 axis_P_;
@@ -195,7 +195,7 @@ class Assessor {
   PathAssessment made_;
 };
 
-bool is_in_volume(const GridGeometry& geometry, const Vec3& p_P) {
+bool is_in_volume(const volume::GridGeometry& geometry, const Vec3& p_P) {
   const Vec3 index = geometry.to_index(p_P);
   for (int a = 0; a < 3; ++a)
     if (!(index[a] >= 0.0 && index[a] <= static_cast<double>(geometry.size[static_cast<std::size_t>(a)] - 1)))
@@ -205,12 +205,12 @@ bool is_in_volume(const GridGeometry& geometry, const Vec3& p_P) {
 
 }  // namespace
 
-PathAssessment assess_path(const Task& task, const VirtualPatient& patient, const Needle& needle,
+PathAssessment assess_path(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle,
                            const Segment& line_P) {
   return Assessor(task, patient, needle, line_P).assess();
 }
 
-std::optional<Vec3> find_skin_entry(const VirtualPatient& patient, const Vec3& target_P, const Vec3& towards_P,
+std::optional<Vec3> find_skin_entry(const anatomy::VirtualPatient& patient, const Vec3& target_P, const Vec3& towards_P,
                                     double longest_mm) {
   const Vec3 way = towards_P - target_P;
   if (!(way.norm() > 0.0)) return std::nullopt;
@@ -219,7 +219,7 @@ std::optional<Vec3> find_skin_entry(const VirtualPatient& patient, const Vec3& t
   for (double s_mm = 0.0; s_mm <= longest_mm; s_mm += kStep_mm) {
     const Vec3 p_P = target_P + s_mm * outward;
     if (!is_in_volume(patient.skin_distance_mm.geometry, p_P)) return std::nullopt;
-    const double distance = sample_linear(patient.skin_distance_mm, p_P);
+    const double distance = volume::sample_linear(patient.skin_distance_mm, p_P);
     if (distance < 0.0) {
       inside_mm = s_mm;
       continue;
@@ -227,7 +227,7 @@ std::optional<Vec3> find_skin_entry(const VirtualPatient& patient, const Vec3& t
     double outside_mm = s_mm;
     for (int n = 0; n < 20; ++n) {
       const double middle_mm = 0.5 * (inside_mm + outside_mm);
-      (sample_linear(patient.skin_distance_mm, target_P + middle_mm * outward) < 0.0 ? inside_mm : outside_mm) =
+      (volume::sample_linear(patient.skin_distance_mm, target_P + middle_mm * outward) < 0.0 ? inside_mm : outside_mm) =
           middle_mm;
     }
     return Vec3(target_P + outside_mm * outward);
@@ -235,13 +235,13 @@ std::optional<Vec3> find_skin_entry(const VirtualPatient& patient, const Vec3& t
   return std::nullopt;
 }
 
-std::optional<Vec3> find_nearest_skin(const VirtualPatient& patient, const Vec3& p_P, double reach_mm) {
+std::optional<Vec3> find_nearest_skin(const anatomy::VirtualPatient& patient, const Vec3& p_P, double reach_mm) {
   constexpr int kMaxSteps = 100;
   constexpr double kClose_mm = 0.05;
   Vec3 q_P = p_P;
   for (int n = 0; n < kMaxSteps; ++n) {
     if (!is_in_volume(patient.skin_distance_mm.geometry, q_P) || (q_P - p_P).norm() > reach_mm) return std::nullopt;
-    const double distance = sample_linear(patient.skin_distance_mm, q_P);
+    const double distance = volume::sample_linear(patient.skin_distance_mm, q_P);
     if (std::abs(distance) < kClose_mm) return q_P;
     const Vec3 normal = detail::skin_normal(patient.skin_distance_mm, q_P);
     if (!(normal.norm() > 0.0)) return std::nullopt;
@@ -250,4 +250,4 @@ std::optional<Vec3> find_nearest_skin(const VirtualPatient& patient, const Vec3&
   return std::nullopt;
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -10,7 +10,7 @@
 #include "tasks/plan.h"
 #include "tasks/task.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// What can be wrong with a path that somebody drew.
 enum class PathFault : std::uint8_t {
@@ -44,14 +44,14 @@ struct PathAssessment {
 
 /// `line_P`: from the skin to where the tip is put; for a biopsy needle the throw beyond it is looked at, too.
 /// Takes some 10 ms at 1 mm voxels; more with wide margins.
-PathAssessment assess_path(const Task& task, const VirtualPatient& patient, const Needle& needle,
+PathAssessment assess_path(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle,
                            const Segment& line_P);
 
 /// The point of the skin where the line from a target outwards through `towards_P` leaves the body; nothing where that
 /// is beyond the volume or `longest_mm`.
-std::optional<Vec3> find_skin_entry(const VirtualPatient& patient, const Vec3& target_P, const Vec3& towards_P,
+std::optional<Vec3> find_skin_entry(const anatomy::VirtualPatient& patient, const Vec3& target_P, const Vec3& towards_P,
                                     double longest_mm = 400.0);
 /// The point of the skin next to a point; nothing where there is no skin within `reach_mm`.
-std::optional<Vec3> find_nearest_skin(const VirtualPatient& patient, const Vec3& p_P, double reach_mm = 60.0);
+std::optional<Vec3> find_nearest_skin(const anatomy::VirtualPatient& patient, const Vec3& p_P, double reach_mm = 60.0);
 
-}  // namespace trocar
+}  // namespace trocar::tasks

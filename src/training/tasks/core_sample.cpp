@@ -7,13 +7,13 @@
 #include "tasks/score.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 constexpr double kStep_mm = 0.25;
 
-std::uint8_t label_id(const VirtualPatient& patient, const Vec3& p_P) noexcept {
-  return sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
+std::uint8_t label_id(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept {
+  return volume::sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
 }
 
 /// Calls visit(middle_mm, length_mm) for each step of a stretch; not at all where there is none.
@@ -25,7 +25,7 @@ void walk(double from_mm, double to_mm, Visit visit) {
   for (int step = 0; step < steps; ++step) visit(from_mm + (step + 0.5) * length_mm, length_mm);
 }
 
-void add_to_pieces(std::vector<CorePiece>& pieces, const Label* label, double length_mm) {
+void add_to_pieces(std::vector<CorePiece>& pieces, const anatomy::Label* label, double length_mm) {
   const std::string name = label != nullptr ? label->name : "unlabelled";
   const double from_mm = pieces.empty() ? 0.0 : pieces.back().to_mm;
   if (!pieces.empty() && pieces.back().label == name) {
@@ -52,8 +52,8 @@ void add_to_sums(BiopsyCore& core, TaskLabels::Part part, double length_mm) {
   }
 }
 
-double shot_mm(const TaskLabels& labels, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
-               const Vec3& axis_P) {
+double shot_mm(const TaskLabels& labels, const anatomy::VirtualPatient& patient, const Needle& needle,
+               const Vec3& tip_P, const Vec3& axis_P) {
   double shot = needle.throw_mm;
   walk(0.0, needle.throw_mm, [&](double beyond_tip_mm, double length_mm) {
     if (labels.is_bone(label_id(patient, tip_P + beyond_tip_mm * axis_P)))
@@ -64,8 +64,8 @@ double shot_mm(const TaskLabels& labels, const VirtualPatient& patient, const Ne
 
 }  // namespace
 
-CorePart part_of(const Task& task, const VirtualPatient& patient, const CorePiece& piece) {
-  const Label* label = patient.label_table.find(std::string_view(piece.label));
+CorePart part_of(const Task& task, const anatomy::VirtualPatient& patient, const CorePiece& piece) {
+  const anatomy::Label* label = patient.label_table.find(std::string_view(piece.label));
   if (label == nullptr) return CorePart::kOther;
   switch (TaskLabels(task, patient).part(label->id)) {
     case TaskLabels::Part::kTarget:
@@ -80,12 +80,12 @@ CorePart part_of(const Task& task, const VirtualPatient& patient, const CorePiec
   return CorePart::kOther;
 }
 
-double stylet_throw_mm(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
-                       const Vec3& axis_P) {
+double stylet_throw_mm(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle,
+                       const Vec3& tip_P, const Vec3& axis_P) {
   return shot_mm(TaskLabels(task, patient), patient, needle, tip_P, axis_P);
 }
 
-BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
+BiopsyCore take_core(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
                      const Vec3& axis_P) {
   const TaskLabels labels(task, patient);
   BiopsyCore core;
@@ -112,4 +112,4 @@ BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Need
   return core;
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace trocar {
+namespace trocar::tasks {
 
 HandSpring hand_spring(const HandParams& hand, const HandCommand& command) noexcept {
   return {command.X_PN.p(), command.v_P, hand.stiffness_n_per_mm, hand.damping_ns_per_mm, hand.mass_kg};
@@ -19,4 +19,4 @@ Mat3 follow_rotation(const HandParams& hand, const Mat3& R_PN, const Mat3& R_PN_
   return now.slerp(fraction, Eigen::Quaterniond(R_PN_wanted)).normalized().toRotationMatrix();
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -3,7 +3,7 @@
 #include "geometry/pose.h"
 #include "tasks/operator.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// The hand that holds the stylus: a second-order lump (mass, spring, damper) between where the operator wants the
 /// needle and where the device has it; docs/physics.md, hand.
@@ -37,4 +37,4 @@ Vec3 hand_force_n(const HandParams& hand, const HandCommand& command, const Pose
 /// shrinking by exp(-dt/time constant) whatever the step. Real-time safe.
 Mat3 follow_rotation(const HandParams& hand, const Mat3& R_PN, const Mat3& R_PN_wanted, double dt_s) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -9,28 +9,29 @@
 #include "tasks/detail/task_labels.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 constexpr double kStep_mm = 0.5;         // between places tested for risk structures
 constexpr double kTremor_mm = 1.0;       // to and fro below this is not counted as travel
 constexpr double kSkinSearch_mm = 40.0;  // from the tip that pierced the skin back to the resting skin
 
-bool is_usable(const TickSample& sample) noexcept {
+bool is_usable(const telemetry::TickSample& sample) noexcept {
   return sample.tip_mm.allFinite() && sample.axis.allFinite() && std::isfinite(sample.depth_mm) &&
          std::isfinite(sample.time_s);
 }
 
-bool has_punctured(const TickSample& sample, std::optional<std::uint8_t> layer) noexcept {
-  return std::any_of(sample.events.begin(), sample.events.end(),
-                     [&](const TickEvent& event) { return event.kind == EventKind::kPuncture && event.id == layer; });
+bool has_punctured(const telemetry::TickSample& sample, std::optional<std::uint8_t> layer) noexcept {
+  return std::any_of(sample.events.begin(), sample.events.end(), [&](const telemetry::TickEvent& event) {
+    return event.kind == telemetry::EventKind::kPuncture && event.id == layer;
+  });
 }
 
 /// Where the line through a tip crosses the resting skin: skin that gives way has been pressed in.
-Vec3 skin_crossing(const VirtualPatient& patient, const Vec3& tip_P, const Vec3& axis_P) noexcept {
+Vec3 skin_crossing(const anatomy::VirtualPatient& patient, const Vec3& tip_P, const Vec3& axis_P) noexcept {
   if (patient.skin_distance_mm.empty()) return tip_P;
   const auto outside_mm = [&](double back_mm) {
-    return sample_linear(patient.skin_distance_mm, tip_P - back_mm * axis_P);
+    return volume::sample_linear(patient.skin_distance_mm, tip_P - back_mm * axis_P);
   };
   double before_mm = outside_mm(0.0);
   const double step_mm = before_mm < 0.0 ? kStep_mm : -kStep_mm;
@@ -48,10 +49,10 @@ Vec3 skin_crossing(const VirtualPatient& patient, const Vec3& tip_P, const Vec3&
 /// Collects risk structures, each label once.
 class RiskFinder {
  public:
-  RiskFinder(const Task& task, const VirtualPatient& patient) : patient_(patient), labels_(task, patient) {}
+  RiskFinder(const Task& task, const anatomy::VirtualPatient& patient) : patient_(patient), labels_(task, patient) {}
 
   void test(const Vec3& p_P, double depth_mm) {
-    const std::uint8_t id = sample_nearest<std::uint8_t>(patient_.labels, p_P, 0);
+    const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient_.labels, p_P, 0);
     const RiskStructure* risk = labels_.risk(id);
     if (risk == nullptr || is_found_[id]) return;
     is_found_[id] = true;
@@ -66,16 +67,16 @@ class RiskFinder {
   std::vector<RiskTouch> found;
 
  private:
-  const VirtualPatient& patient_;
+  const anatomy::VirtualPatient& patient_;
   TaskLabels labels_;
   std::array<bool, 256> is_found_{};
 };
 
-std::vector<RiskTouch> find_risks(const Task& task, const VirtualPatient& patient, std::span<const TickSample> samples,
-                                  std::size_t end) {
+std::vector<RiskTouch> find_risks(const Task& task, const anatomy::VirtualPatient& patient,
+                                  std::span<const telemetry::TickSample> samples, std::size_t end) {
   RiskFinder finder(task, patient);
-  const TickSample* before = nullptr;  // the last sample inside the body
-  for (const TickSample& sample : samples) {
+  const telemetry::TickSample* before = nullptr;  // the last sample inside the body
+  for (const telemetry::TickSample& sample : samples) {
     if (!is_usable(sample)) continue;
     if (sample.depth_mm <= 0.0) {
       before = nullptr;
@@ -84,7 +85,7 @@ std::vector<RiskTouch> find_risks(const Task& task, const VirtualPatient& patien
     finder.test_way(before != nullptr ? before->tip_mm : sample.tip_mm, sample.tip_mm, sample.depth_mm);
     before = &sample;
   }
-  const TickSample& last = samples[end];
+  const telemetry::TickSample& last = samples[end];
   const int steps = static_cast<int>(std::min(last.depth_mm, 1000.0) / kStep_mm);
   for (int step = steps; step >= 1; --step)  // from the skin down: the first touch of the shaft comes first
     finder.test(last.tip_mm - step * kStep_mm * last.axis, last.depth_mm - step * kStep_mm);
@@ -92,11 +93,11 @@ std::vector<RiskTouch> find_risks(const Task& task, const VirtualPatient& patien
 }
 
 /// Inward way of the tip, counted between turning points that lie further apart than a tremor.
-double inward_travel_mm(std::span<const TickSample> samples) noexcept {
+double inward_travel_mm(std::span<const telemetry::TickSample> samples) noexcept {
   double travel_mm = 0.0;
   double turn_mm = 0.0;  // the deepest point while going in, the shallowest while coming out
   bool is_going_in = true;
-  for (const TickSample& sample : samples) {
+  for (const telemetry::TickSample& sample : samples) {
     if (!is_usable(sample)) continue;
     const double depth_mm = std::max(0.0, sample.depth_mm);
     if (is_going_in) {
@@ -112,7 +113,8 @@ double inward_travel_mm(std::span<const TickSample> samples) noexcept {
   return travel_mm;
 }
 
-std::optional<std::size_t> end_of_attempt(std::span<const TickSample> samples, std::optional<std::size_t> fired) {
+std::optional<std::size_t> end_of_attempt(std::span<const telemetry::TickSample> samples,
+                                          std::optional<std::size_t> fired) {
   if (fired && *fired < samples.size() && is_usable(samples[*fired])) return fired;
   std::optional<std::size_t> deepest;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -128,7 +130,8 @@ struct Entry {
   std::optional<std::size_t> sample;
   int count = 0;
 };
-Entry find_entry(std::span<const TickSample> samples, std::size_t end, std::optional<std::uint8_t> skin_layer) {
+Entry find_entry(std::span<const telemetry::TickSample> samples, std::size_t end,
+                 std::optional<std::uint8_t> skin_layer) {
   Entry entry;
   for (std::size_t i = 0; i <= end; ++i)
     if (is_usable(samples[i]) && has_punctured(samples[i], skin_layer)) entry = {i, entry.count + 1};
@@ -138,7 +141,7 @@ Entry find_entry(std::span<const TickSample> samples, std::size_t end, std::opti
     if (!is_usable(samples[i])) continue;
     if (samples[i].depth_mm <= 0.0) {
       is_inside = false;
-    } else if (!is_inside && samples[i].phase != InsertionPhase::kLoading) {
+    } else if (!is_inside && samples[i].phase != telemetry::InsertionPhase::kLoading) {
       is_inside = true;
       entry = {i, entry.count + 1};
     }
@@ -148,12 +151,13 @@ Entry find_entry(std::span<const TickSample> samples, std::size_t end, std::opti
 
 }  // namespace
 
-AttemptMetrics measure_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues,
-                               const PlannedPath& plan, std::span<const TickSample> samples,
-                               std::optional<std::size_t> fired, std::span<const Interruption> interruptions) {
+AttemptMetrics measure_attempt(const Task& task, const anatomy::VirtualPatient& patient,
+                               const anatomy::TissueTable& tissues, const PlannedPath& plan,
+                               std::span<const telemetry::TickSample> samples, std::optional<std::size_t> fired,
+                               std::span<const Interruption> interruptions) {
   AttemptMetrics metrics;
-  const auto touch = std::find_if(samples.begin(), samples.end(), [](const TickSample& sample) {
-    return is_usable(sample) && (sample.phase != InsertionPhase::kOutside || sample.depth_mm > 0.0);
+  const auto touch = std::find_if(samples.begin(), samples.end(), [](const telemetry::TickSample& sample) {
+    return is_usable(sample) && (sample.phase != telemetry::InsertionPhase::kOutside || sample.depth_mm > 0.0);
   });
   metrics.has_touched_skin = touch != samples.end();
   const std::optional<std::size_t> end = end_of_attempt(samples, fired);
@@ -163,19 +167,19 @@ AttemptMetrics measure_attempt(const Task& task, const VirtualPatient& patient, 
 
   metrics.has_entered = true;
   metrics.entries = entry.count;
-  const TickSample& entered = samples[*entry.sample];
+  const telemetry::TickSample& entered = samples[*entry.sample];
   metrics.entry_offset_P = skin_crossing(patient, entered.tip_mm, entered.axis) - plan.line_P.a;
-  const TickSample& last = samples[*end];
+  const telemetry::TickSample& last = samples[*end];
   metrics.axis_P = last.axis;
   metrics.angle_deg = angle_between_rad(last.axis, plan.line_P.b - plan.line_P.a) * 180.0 / std::numbers::pi;
   metrics.tip_P = last.tip_mm;
   metrics.target_offset_P = last.tip_mm - plan.line_P.b;
   metrics.travel_mm = inward_travel_mm(samples.first(*end + 1));
-  for (const TickSample& sample : samples.first(*end + 1))
+  for (const telemetry::TickSample& sample : samples.first(*end + 1))
     if (is_usable(sample)) metrics.deepest_mm = std::max(metrics.deepest_mm, sample.depth_mm);
   metrics.time_s = active_time_s(touch->time_s, last.time_s, interruptions);
   metrics.risks = find_risks(task, patient, samples, *end);
   return metrics;
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -7,12 +7,12 @@
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "telemetry/tick_sample.h"
 #include "tasks/active_time.h"
 #include "tasks/plan.h"
 #include "tasks/task.h"
+#include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// A risk structure that the needle touched.
 struct RiskTouch {
@@ -40,8 +40,9 @@ struct AttemptMetrics {
 
 /// Measures an attempt. `fired`: sample at which the gun was fired. Samples without an end (a killed session), none at
 /// all, or with values that are not finite are measured as far as they go.
-AttemptMetrics measure_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues,
-                               const PlannedPath& plan, std::span<const TickSample> samples,
-                               std::optional<std::size_t> fired, std::span<const Interruption> interruptions = {});
+AttemptMetrics measure_attempt(const Task& task, const anatomy::VirtualPatient& patient,
+                               const anatomy::TissueTable& tissues, const PlannedPath& plan,
+                               std::span<const telemetry::TickSample> samples, std::optional<std::size_t> fired,
+                               std::span<const Interruption> interruptions = {});
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -9,20 +9,20 @@
 
 #include "config/sourced_number.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 constexpr std::array<std::string_view, 5> kUses{"biopsy", "aspiration", "spinal", "epidural", "ascites"};
 constexpr std::array<std::string_view, 5> kModels{"chiba", "tuohy", "quincke", "biopsy-gun", "trocar"};
 constexpr double kThinnestWall = 0.95;  ///< Largest bore as a share of the outer diameter.
 
-Status read_value(const TomlTable& row, std::string_view key, Range range, double& value) {
-  TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, key, range));
+Status read_value(const config::TomlTable& row, std::string_view key, config::Range range, double& value) {
+  TROCAR_TRY(const config::SourcedNumber number, config::read_sourced_number(row, key, range));
   value = number.value;
   return {};
 }
 
-Status read_word(const TomlTable& row, std::string_view key, std::span<const std::string_view> known,
+Status read_word(const config::TomlTable& row, std::string_view key, std::span<const std::string_view> known,
                  std::string& word) {
   TROCAR_TRY(word, row.string(key));
   if (std::find(known.begin(), known.end(), word) != known.end()) return {};
@@ -30,7 +30,7 @@ Status read_word(const TomlTable& row, std::string_view key, std::span<const std
               fmt::format("known are: {}", fmt::join(known, ", ")));
 }
 
-Result<Needle> read_needle(const TomlTable& row, const std::string& name) {
+Result<Needle> read_needle(const config::TomlTable& row, const std::string& name) {
   Needle needle;
   needle.name = name;
   TROCAR_TRY(needle.title, row.string("title"));
@@ -74,12 +74,12 @@ Result<Needle> read_needle(const TomlTable& row, const std::string& name) {
 }  // namespace
 
 Result<std::vector<Needle>> load_needles(const std::filesystem::path& path) {
-  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   TROCAR_TRY_STATUS(document.check_keys({"needles"}));
-  TROCAR_TRY(const TomlTable rows, document.table("needles"));
+  TROCAR_TRY(const config::TomlTable rows, document.table("needles"));
   std::vector<Needle> needles;
   for (const std::string& name : rows.keys()) {
-    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(const config::TomlTable row, rows.table(name));
     TROCAR_TRY(Needle needle, read_needle(row, name));
     needles.push_back(std::move(needle));
   }
@@ -105,4 +105,4 @@ Result<Needle> load_needle(const std::filesystem::path& path, std::string_view n
                     fmt::format("known are: {}", fmt::join(names, ", ")));
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

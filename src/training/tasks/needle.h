@@ -7,7 +7,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// A needle as data (data/needles.toml).
 struct Needle {
@@ -39,4 +39,4 @@ std::vector<Needle> needles_like(const std::vector<Needle>& needles, std::string
 /// Unknown name: exit status 2, the message lists the names.
 Result<Needle> load_needle(const std::filesystem::path& path, std::string_view name);
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -9,14 +9,14 @@
 #include "geometry/segment.h"
 #include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// What an operator knows before a tick.
 struct OperatorView {
   double time_s = 0.0;
   double dt_s = 0.001;
-  Pose X_PN_device;  ///< Needle as the device holds it now.
-  TickSample last;   ///< What the last tick made; at the first call default values.
+  Pose X_PN_device;            ///< Needle as the device holds it now.
+  telemetry::TickSample last;  ///< What the last tick made; at the first call default values.
 };
 
 /// Where the operator wants its hand: the hand's spring pulls the device there.
@@ -54,6 +54,7 @@ std::unique_ptr<Operator> make_novice(const OperatorCase& the_case);
 /// From 10 mm before the entry to the target, fires there if the case does, and out again. speed in mm/s, 0.1..500.
 std::unique_ptr<Operator> make_constant_velocity(const OperatorCase& the_case, double speed_mm_per_s);
 /// The device poses of a recorded session, tick by tick, rigid; `fired` is the sample at which the gun was fired.
-std::unique_ptr<Operator> make_replay(std::vector<TickSample> samples, std::optional<std::size_t> fired = {});
+std::unique_ptr<Operator> make_replay(std::vector<telemetry::TickSample> samples,
+                                      std::optional<std::size_t> fired = {});
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -4,7 +4,7 @@
 #include "core/check.h"
 #include "tasks/operator.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 constexpr double kStart_mm = -10.0;
@@ -52,4 +52,4 @@ std::unique_ptr<Operator> make_constant_velocity(const OperatorCase& the_case, d
   return std::make_unique<ConstantVelocity>(the_case, speed_mm_per_s);
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

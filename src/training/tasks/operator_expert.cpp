@@ -4,7 +4,7 @@
 #include "tasks/detail/guided_hand.h"
 #include "tasks/operator.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 // How an expert moves; all assumed, but for the tremor.
@@ -124,4 +124,4 @@ std::unique_ptr<Operator> make_expert(const OperatorCase& the_case) {
   return std::make_unique<Expert>(the_case);
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -7,7 +7,7 @@
 #include "tasks/detail/guided_hand.h"
 #include "tasks/operator.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 // How far a novice is off; assumed, where nothing else is said.
@@ -152,4 +152,4 @@ std::unique_ptr<Operator> make_novice(const OperatorCase& the_case) {
   return std::make_unique<Novice>(the_case);
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

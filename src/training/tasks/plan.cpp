@@ -16,7 +16,7 @@
 #include "tasks/detail/path_check.h"
 #include "tasks/detail/planning_map.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 using detail::PathCandidate;
@@ -153,7 +153,8 @@ class Selection {
     path.organ_path_mm = found.organ_path_mm;
     path.spare_margin_mm = found.spare_margin_mm;
     path.cost_mm = cost_mm(n);
-    if (const Label* label = map_.patient.label_table.find(found.nearest_risk)) path.nearest_risk = label->name;
+    if (const anatomy::Label* label = map_.patient.label_table.find(found.nearest_risk))
+      path.nearest_risk = label->name;
     return path;
   }
 
@@ -166,12 +167,12 @@ class Selection {
 };
 
 /// Label of the risk voxel whose margin is kept least around a point; nullptr when there is none.
-const Label* nearest_risk(const PlanningMap& map, const Vec3& p_P) {
-  const LabelGrid& labels = map.patient.labels;
+const anatomy::Label* nearest_risk(const PlanningMap& map, const Vec3& p_P) {
+  const volume::LabelGrid& labels = map.patient.labels;
   const detail::IndexBox box = detail::clipped(
       detail::box_around(labels.geometry, p_P, map.largest_margin_mm + 2.0 * map.slack_mm), labels.geometry);
   double smallest = std::numeric_limits<double>::infinity();
-  const Label* nearest = nullptr;
+  const anatomy::Label* nearest = nullptr;
   for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k)
     for (std::int64_t j = box.low[1]; j <= box.high[1]; ++j)
       for (std::int64_t i = box.low[0]; i <= box.high[0]; ++i) {
@@ -209,7 +210,7 @@ std::string reason_of(const PlanningMap& map, const Needle& needle, const PathCa
       return fmt::format("pass less than {} mm of {} before the target", task.min_organ_path_mm, task.organ);
     case Verdict::kCrosses:
     case Verdict::kMargin: {
-      const Label* label = find_label(map.patient, line.where_P);
+      const anatomy::Label* label = anatomy::find_label(map.patient, line.where_P);
       if (line.verdict == Verdict::kMargin && !(label && map.risks[label->id])) label = nearest_risk(map, line.where_P);
       if (!label) return "come too near to a risk structure";
       if (!map.risks[label->id]) return fmt::format("cross {}", label->tissue);
@@ -256,8 +257,9 @@ double path_cost_mm(double length_mm, double spare_margin_mm) noexcept {
   return length_mm + kMarginWorth_mm * missing * missing;
 }
 
-Result<std::vector<PlannedPath>> plan_paths(const Task& task, const VirtualPatient& patient, const Needle& needle,
-                                            const PlanOptions& options, const Progress& progress) {
+Result<std::vector<PlannedPath>> plan_paths(const Task& task, const anatomy::VirtualPatient& patient,
+                                            const Needle& needle, const PlanOptions& options,
+                                            const Progress& progress) {
   if (options.count < 1 || options.count > 100000)
     return fail_usage("the number of paths must be from 1 to 100000", fmt::format("{}", options.count),
                       "choose a number in this range");
@@ -285,4 +287,4 @@ Result<std::vector<PlannedPath>> plan_paths(const Task& task, const VirtualPatie
   return no_path(map, needle, lines);
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

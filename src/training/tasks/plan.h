@@ -10,7 +10,7 @@
 #include "tasks/needle.h"
 #include "tasks/task.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// A path that keeps every margin of its task, over the throw of a biopsy needle too.
 struct PlannedPath {
@@ -40,7 +40,8 @@ struct PlanOptions {
 /// else with a surface. More than one path have entries as far apart as they can (16 mm and less); fewer than `count`
 /// come where the patient has no more. The same paths for the same seed, whatever the number of threads. The error says
 /// which constraint left no path.
-Result<std::vector<PlannedPath>> plan_paths(const Task& task, const VirtualPatient& patient, const Needle& needle,
-                                            const PlanOptions& options = {}, const Progress& progress = {});
+Result<std::vector<PlannedPath>> plan_paths(const Task& task, const anatomy::VirtualPatient& patient,
+                                            const Needle& needle, const PlanOptions& options = {},
+                                            const Progress& progress = {});
 
-}  // namespace trocar
+}  // namespace trocar::tasks

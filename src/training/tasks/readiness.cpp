@@ -2,9 +2,9 @@
 
 #include "tasks/plan.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
-TaskReadiness check_task_and_paths(const Task& task, const VirtualPatient& patient, const Needle& needle,
+TaskReadiness check_task_and_paths(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle,
                                    const Progress& progress) {
   TaskReadiness readiness = check_task(task, patient);
   if (!readiness.is_possible) return readiness;
@@ -15,4 +15,4 @@ TaskReadiness check_task_and_paths(const Task& task, const VirtualPatient& patie
   return readiness;
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -7,7 +7,7 @@
 #include "tasks/detail/task_labels.h"
 #include "tasks/metrics.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 // What each part is worth; they add up to 100.
@@ -38,7 +38,7 @@ double core_share(const BiopsyCore& core, double possible_mm) noexcept {
 }
 
 /// What the stylet touched and the needle had not.
-std::vector<RiskTouch> find_stylet_risks(const TaskLabels& labels, const VirtualPatient& patient,
+std::vector<RiskTouch> find_stylet_risks(const TaskLabels& labels, const anatomy::VirtualPatient& patient,
                                          const AttemptMetrics& metrics, const std::optional<BiopsyCore>& core) {
   std::vector<RiskTouch> touches;
   if (!core) return touches;
@@ -118,9 +118,9 @@ std::string why_not_scored(const Needle& needle, const AttemptMetrics& metrics, 
 
 }  // namespace
 
-Outcome score_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues, const Needle& needle,
-                      const PlannedPath& plan, std::span<const TickSample> samples, std::optional<std::size_t> fired,
-                      std::span<const Interruption> interruptions) {
+Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues,
+                      const Needle& needle, const PlannedPath& plan, std::span<const telemetry::TickSample> samples,
+                      std::optional<std::size_t> fired, std::span<const Interruption> interruptions) {
   if (fired && *fired >= samples.size()) fired.reset();
   const AttemptMetrics metrics = measure_attempt(task, patient, tissues, plan, samples, fired, interruptions);
 
@@ -155,4 +155,4 @@ Outcome score_attempt(const Task& task, const VirtualPatient& patient, const Tis
   return outcome;
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -7,13 +7,13 @@
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "telemetry/tick_sample.h"
 #include "tasks/active_time.h"
 #include "tasks/needle.h"
 #include "tasks/plan.h"
 #include "tasks/task.h"
+#include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// Tissue along one stretch of the specimen notch.
 struct CorePiece {
@@ -70,13 +70,13 @@ struct Outcome {
 
 /// Takes the core at a fired tick. The stylet goes straight on from the tip; bone stops it, and what then stays of the
 /// notch inside the cannula takes nothing.
-BiopsyCore take_core(const Task& task, const VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
+BiopsyCore take_core(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle, const Vec3& tip_P,
                      const Vec3& axis_P);
 
 /// Scores a whole attempt. `fired` is the index of the sample at which the biopsy gun was fired. Time in an
 /// interruption is not counted.
-Outcome score_attempt(const Task& task, const VirtualPatient& patient, const TissueTable& tissues, const Needle& needle,
-                      const PlannedPath& plan, std::span<const TickSample> samples, std::optional<std::size_t> fired,
-                      std::span<const Interruption> interruptions = {});
+Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues,
+                      const Needle& needle, const PlannedPath& plan, std::span<const telemetry::TickSample> samples,
+                      std::optional<std::size_t> fired, std::span<const Interruption> interruptions = {});
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstring>
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 /// How often each label occurs, and which labels lie on the border of the volume.
@@ -15,9 +15,9 @@ struct LabelCounts {
   std::array<bool, 256> touches_border{};
 };
 
-LabelCounts count_labels(const LabelGrid& labels) {
+LabelCounts count_labels(const volume::LabelGrid& labels) {
   LabelCounts counts;
-  const Index3 size = labels.geometry.size;
+  const volume::Index3 size = labels.geometry.size;
   std::size_t n = 0;
   for (std::int64_t k = 0; k < size[2]; ++k)
     for (std::int64_t j = 0; j < size[1]; ++j) {
@@ -40,9 +40,9 @@ struct Inventory {
   bool is_organ_cut = false;
 };
 
-Inventory take_inventory(const Task& task, const VirtualPatient& patient, const LabelCounts& counts) {
+Inventory take_inventory(const Task& task, const anatomy::VirtualPatient& patient, const LabelCounts& counts) {
   Inventory found;
-  for (const Label& label : patient.label_table.labels) {
+  for (const anatomy::Label& label : patient.label_table.labels) {
     if (counts.voxels[label.id] == 0) continue;
     found.has_organ |= is_organ(task, label);
     found.has_target |= is_target(task, label);
@@ -54,11 +54,12 @@ Inventory take_inventory(const Task& task, const VirtualPatient& patient, const 
 }
 
 /// Risk structures of the task that the patient does not show.
-std::vector<std::string> unlabelled_risks(const Task& task, const VirtualPatient& patient, const LabelCounts& counts) {
+std::vector<std::string> unlabelled_risks(const Task& task, const anatomy::VirtualPatient& patient,
+                                          const LabelCounts& counts) {
   std::vector<std::string> missing;
   for (const RiskStructure& risk : task.risks) {
-    const bool is_there =
-        std::any_of(patient.label_table.labels.begin(), patient.label_table.labels.end(), [&](const Label& label) {
+    const bool is_there = std::any_of(
+        patient.label_table.labels.begin(), patient.label_table.labels.end(), [&](const anatomy::Label& label) {
           return counts.voxels[label.id] > 0 &&
                  (risk.tissue.empty() ? label.name == risk.label : label.tissue == risk.tissue);
         });
@@ -73,35 +74,35 @@ double EntryZone::distance_outside_mm(const Vec3& p_P) const noexcept {
   return std::max(0.0, (p_P - centre_P).norm() - radius_mm);
 }
 
-bool is_organ(const Task& task, const Label& label) noexcept {
+bool is_organ(const Task& task, const anatomy::Label& label) noexcept {
   return label.tissue == task.organ || label.name == task.organ;
 }
 
-bool is_target(const Task& task, const Label& label) noexcept {
+bool is_target(const Task& task, const anatomy::Label& label) noexcept {
   if (!task.target_label.empty()) return label.name == task.target_label;
   return std::find(task.target_tissues.begin(), task.target_tissues.end(), label.tissue) != task.target_tissues.end();
 }
 
-const RiskStructure* find_risk(const Task& task, const Label& label) noexcept {
+const RiskStructure* find_risk(const Task& task, const anatomy::Label& label) noexcept {
   const auto it = std::find_if(task.risks.begin(), task.risks.end(), [&](const RiskStructure& risk) {
     return risk.tissue.empty() ? label.name == risk.label : label.tissue == risk.tissue;
   });
   return it != task.risks.end() ? &*it : nullptr;
 }
 
-bool is_parenchymal(const Task& task, const VirtualPatient& patient) {
+bool is_parenchymal(const Task& task, const anatomy::VirtualPatient& patient) {
   if (task.target_P) {
-    const Label* label = find_label(patient, *task.target_P);
+    const anatomy::Label* label = anatomy::find_label(patient, *task.target_P);
     return label == nullptr || !is_target(task, *label);
   }
   const auto& voxels = patient.labels.voxels;
   const auto& labels = patient.label_table.labels;
-  return std::none_of(labels.begin(), labels.end(), [&](const Label& label) {
+  return std::none_of(labels.begin(), labels.end(), [&](const anatomy::Label& label) {
     return is_target(task, label) && !voxels.empty() && std::memchr(voxels.data(), label.id, voxels.size()) != nullptr;
   });
 }
 
-TaskReadiness check_task(const Task& task, const VirtualPatient& patient) {
+TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patient) {
   const LabelCounts counts = count_labels(patient.labels);
   const Inventory found = take_inventory(task, patient, counts);
   TaskReadiness readiness;
@@ -132,4 +133,4 @@ TaskReadiness check_task(const Task& task, const VirtualPatient& patient) {
   return readiness;
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -10,7 +10,7 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// A structure that must not be touched, and how far a planned path stays away from it.
 struct RiskStructure {
@@ -74,12 +74,12 @@ Result<Task> parse_task(std::string_view text, const std::string& name, const st
 std::string task_to_toml(const Task& task, const Task& base);
 
 /// Whether a label is the task's organ, target, or one of its risk structures (nullptr: none).
-bool is_organ(const Task& task, const Label& label) noexcept;
-bool is_target(const Task& task, const Label& label) noexcept;
-const RiskStructure* find_risk(const Task& task, const Label& label) noexcept;
+bool is_organ(const Task& task, const anatomy::Label& label) noexcept;
+bool is_target(const Task& task, const anatomy::Label& label) noexcept;
+const RiskStructure* find_risk(const Task& task, const anatomy::Label& label) noexcept;
 
 /// The target lies in the organ's healthy tissue: no label of the patient is a target, or the task's point is in none.
-bool is_parenchymal(const Task& task, const VirtualPatient& patient);
+bool is_parenchymal(const Task& task, const anatomy::VirtualPatient& patient);
 
 /// Whether a patient can serve a task, and what is missing or doubtful, in words.
 struct TaskReadiness {
@@ -87,6 +87,6 @@ struct TaskReadiness {
   bool is_parenchymal = false;       ///< No lesion: the target lies in the organ's healthy tissue.
   std::vector<std::string> reasons;  ///< Why not, or what is doubtful.
 };
-TaskReadiness check_task(const Task& task, const VirtualPatient& patient);
+TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patient);
 
-}  // namespace trocar
+}  // namespace trocar::tasks

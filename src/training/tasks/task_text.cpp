@@ -7,16 +7,16 @@
 #include "config/toml_quoted.h"
 #include "tasks/task.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr Range kCoordinate_mm{-1e5, 1e5};
+constexpr config::Range kCoordinate_mm{-1e5, 1e5};
 
 /// Reads the keys of a task file. A whole task must have them all; one with a base has those that differ.
 class TaskReader {
  public:
-  TaskReader(const TomlTable& document, bool is_whole) : document_(document), is_whole_(is_whole) {}
+  TaskReader(const config::TomlTable& document, bool is_whole) : document_(document), is_whole_(is_whole) {}
 
   Status read(Task& task) const {
     TROCAR_TRY_STATUS(
@@ -39,12 +39,12 @@ class TaskReader {
   }
 
  private:
-  Status text(const TomlTable& table, const char* key, std::string& value) const {
+  Status text(const config::TomlTable& table, const char* key, std::string& value) const {
     if (!is_whole_ && !table.has(key)) return {};
     TROCAR_TRY(value, table.string(key));
     return {};
   }
-  Status number(const TomlTable& table, const char* key, Range range, double& value) const {
+  Status number(const config::TomlTable& table, const char* key, config::Range range, double& value) const {
     if (!is_whole_ && !table.has(key)) return {};
     TROCAR_TRY(value, table.number(key, range));
     return {};
@@ -53,7 +53,7 @@ class TaskReader {
 
   Status read_path(Task& task) const {
     if (!lacks("path")) {
-      TROCAR_TRY(const TomlTable path, document_.table("path"));
+      TROCAR_TRY(const config::TomlTable path, document_.table("path"));
       TROCAR_TRY_STATUS(
           path.check_keys({"min_organ_path_mm", "max_path_mm", "max_entry_angle_deg", "max_posterior_deg"}));
       TROCAR_TRY_STATUS(number(path, "min_organ_path_mm", {0.0, 50.0}, task.min_organ_path_mm));
@@ -62,7 +62,7 @@ class TaskReader {
       TROCAR_TRY_STATUS(number(path, "max_posterior_deg", {0.0, 90.0}, task.max_posterior_deg));
     }
     if (lacks("parenchymal")) return {};
-    TROCAR_TRY(const TomlTable parenchymal, document_.table("parenchymal"));
+    TROCAR_TRY(const config::TomlTable parenchymal, document_.table("parenchymal"));
     TROCAR_TRY_STATUS(parenchymal.check_keys({"depth_mm", "vessel_mm"}));
     TROCAR_TRY_STATUS(number(parenchymal, "depth_mm", {0.0, 100.0}, task.parenchymal_depth_mm));
     return number(parenchymal, "vessel_mm", {0.0, 50.0}, task.parenchymal_vessel_mm);
@@ -70,7 +70,7 @@ class TaskReader {
 
   Status read_scoring(Task& task) const {
     if (lacks("scoring")) return {};
-    TROCAR_TRY(const TomlTable scoring, document_.table("scoring"));
+    TROCAR_TRY(const config::TomlTable scoring, document_.table("scoring"));
     TROCAR_TRY_STATUS(
         scoring.check_keys({"target_tolerance_mm", "entry_tolerance_mm", "angle_tolerance_deg", "time_limit_s"}));
     TROCAR_TRY_STATUS(number(scoring, "target_tolerance_mm", {0.1, 100.0}, task.target_tolerance_mm));
@@ -81,9 +81,9 @@ class TaskReader {
 
   Status read_risks(Task& task) const {
     if (!document_.has("risks")) return {};
-    TROCAR_TRY(const std::vector<TomlTable> rows, document_.tables("risks"));
+    TROCAR_TRY(const std::vector<config::TomlTable> rows, document_.tables("risks"));
     task.risks.clear();
-    for (const TomlTable& row : rows) {
+    for (const config::TomlTable& row : rows) {
       TROCAR_TRY_STATUS(row.check_keys({"tissue", "label", "margin_mm", "penalty"}));
       RiskStructure risk;
       TROCAR_TRY(risk.tissue, row.string_or("tissue", ""));
@@ -97,7 +97,7 @@ class TaskReader {
     return {};
   }
 
-  static Result<Vec3> point(const TomlTable& table, const char* key) {
+  static Result<Vec3> point(const config::TomlTable& table, const char* key) {
     TROCAR_TRY(const std::vector<double> numbers, table.numbers(key, kCoordinate_mm));
     if (numbers.size() == 3) return Vec3(numbers[0], numbers[1], numbers[2]);
     return fail(fmt::format("{} is not a point", key), table.where(), "write [x, y, z] in mm (LPS)");
@@ -105,7 +105,7 @@ class TaskReader {
 
   Status read_target(Task& task) const {
     if (!document_.has("target")) return {};
-    TROCAR_TRY(const TomlTable target, document_.table("target"));
+    TROCAR_TRY(const config::TomlTable target, document_.table("target"));
     TROCAR_TRY_STATUS(target.check_keys({"label", "point_mm"}));
     TROCAR_TRY(task.target_label, target.string_or("label", ""));
     if (target.has("point_mm")) {
@@ -116,7 +116,7 @@ class TaskReader {
 
   Status read_exam(Task& task) const {
     if (!document_.has("exam")) return {};
-    TROCAR_TRY(const TomlTable exam, document_.table("exam"));
+    TROCAR_TRY(const config::TomlTable exam, document_.table("exam"));
     TROCAR_TRY_STATUS(exam.check_keys({"shows_needle"}));
     TROCAR_TRY(task.exam_shows_needle, exam.boolean_or("shows_needle", task.exam_shows_needle));
     return {};
@@ -124,7 +124,7 @@ class TaskReader {
 
   Status read_entry_zone(Task& task) const {
     if (!document_.has("entry_zone")) return {};
-    TROCAR_TRY(const TomlTable table, document_.table("entry_zone"));
+    TROCAR_TRY(const config::TomlTable table, document_.table("entry_zone"));
     TROCAR_TRY_STATUS(table.check_keys({"centre_mm", "radius_mm"}));
     EntryZone zone;
     TROCAR_TRY(zone.centre_P, point(table, "centre_mm"));
@@ -133,11 +133,11 @@ class TaskReader {
     return {};
   }
 
-  const TomlTable& document_;
+  const config::TomlTable& document_;
   bool is_whole_;
 };
 
-Result<Task> read_whole_task(const TomlTable& document, const std::string& name) {
+Result<Task> read_whole_task(const config::TomlTable& document, const std::string& name) {
   Task task;
   task.name = name;
   TROCAR_TRY_STATUS(TaskReader(document, true).read(task));
@@ -145,13 +145,13 @@ Result<Task> read_whole_task(const TomlTable& document, const std::string& name)
 }
 
 Result<Task> read_whole_task(const fs::path& path) {
-  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   if (document.has("base"))
     return fail("a task of this folder has no base", path.string(), "write the whole task, or put it to a patient");
   return read_whole_task(document, path.stem().string());
 }
 
-Result<Task> read_task(const TomlTable& document, const std::string& name, const fs::path& tasks_folder) {
+Result<Task> read_task(const config::TomlTable& document, const std::string& name, const fs::path& tasks_folder) {
   if (!document.has("base")) return read_whole_task(document, name);
   TROCAR_TRY(const std::string base, document.string("base"));
   TROCAR_TRY(Task task, load_task(tasks_folder, base));
@@ -175,7 +175,7 @@ Result<std::vector<fs::path>> task_files(const fs::path& folder) {
 class DifferenceWriter {
  public:
   void text(const char* key, const std::string& value, const std::string& base) {
-    if (value != base) text_ += fmt::format("{} = {}\n", key, toml_quoted(value));
+    if (value != base) text_ += fmt::format("{} = {}\n", key, config::toml_quoted(value));
   }
   void number(const char* key, double value, double base) {
     if (value != base) text_ += fmt::format("{} = {}\n", key, value);
@@ -201,7 +201,7 @@ std::string risks_text(const std::vector<RiskStructure>& risks) {
   for (const RiskStructure& risk : risks)
     text +=
         fmt::format("\n[[risks]]\n{} = {}\nmargin_mm = {}\npenalty = {}\n", risk.tissue.empty() ? "label" : "tissue",
-                    toml_quoted(risk.tissue.empty() ? risk.label : risk.tissue), risk.margin_mm, risk.penalty);
+                    config::toml_quoted(risk.tissue.empty() ? risk.label : risk.tissue), risk.margin_mm, risk.penalty);
   return text;
 }
 
@@ -229,19 +229,19 @@ Result<Task> load_task(const fs::path& tasks_folder, std::string_view name) {
 }
 
 Result<Task> load_task_file(const fs::path& file, const fs::path& tasks_folder) {
-  TROCAR_TRY(const TomlTable document, load_toml(file));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(file));
   return read_task(document, file.stem().string(), tasks_folder);
 }
 
 Result<Task> parse_task(std::string_view text, const std::string& name, const std::string& where,
                         const fs::path& tasks_folder) {
-  TROCAR_TRY(const TomlTable document, parse_toml(text, where));
+  TROCAR_TRY(const config::TomlTable document, config::parse_toml(text, where));
   return read_task(document, name, tasks_folder);
 }
 
 std::string task_to_toml(const Task& task, const Task& base) {
-  std::string document =
-      fmt::format("# A task made for one patient: what differs from its base.\nbase = {}\n", toml_quoted(base.name));
+  std::string document = fmt::format("# A task made for one patient: what differs from its base.\nbase = {}\n",
+                                     config::toml_quoted(base.name));
   DifferenceWriter keys;
   keys.text("title", task.title, base.title);
   keys.text("organ", task.organ, base.organ);
@@ -250,7 +250,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.text("expert_path", task.expert_path, base.expert_path);
   if (task.target_tissues != base.target_tissues) {
     std::vector<std::string> quoted;
-    for (const std::string& tissue : task.target_tissues) quoted.push_back(toml_quoted(tissue));
+    for (const std::string& tissue : task.target_tissues) quoted.push_back(config::toml_quoted(tissue));
     keys.line(fmt::format("target_tissues = [{}]", fmt::join(quoted, ", ")));
   }
   const bool has_same_risks =
@@ -284,4 +284,4 @@ std::string task_to_toml(const Task& task, const Task& base) {
   return has_same_risks ? document : document + risks_text(task.risks);
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

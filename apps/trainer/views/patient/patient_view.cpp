@@ -5,8 +5,8 @@
 #include "core/check.h"
 #include "scene/input_watch.h"
 #include "ui_kit/theme.h"
-#include "views/ultrasound/scan_mask.h"
 #include "views/patient/stereo_output.h"
+#include "views/ultrasound/scan_mask.h"
 
 namespace trocar::trainer {
 namespace {
@@ -17,8 +17,8 @@ constexpr int kFirstSize_px = 64;  ///< Before the widget has one.
 /// The user's hand is asked for at most so often while a picture is drawn.
 constexpr std::chrono::milliseconds kWatchEvery{4};
 
-TransducerFace face_of(const ScanGeometry& scan) {
-  TransducerFace face;
+scene::TransducerFace face_of(const ultrasound::ScanGeometry& scan) {
+  scene::TransducerFace face;
   face.is_convex = scan.is_fan;
   face.radius_mm = scan.radius_mm;
   const double span = scan.line_step * (scan.lines - 1);
@@ -42,32 +42,32 @@ struct PatientView::Impl {
     last_watch = now;
   }
 
-  std::unique_ptr<PatientScene> scene;
+  std::unique_ptr<scene::PatientScene> scene;
   QImage image;                     ///< Of the last whole frame; of the left eye with shutter glasses.
   StereoOutput* shutter = nullptr;  ///< Made when shutter glasses are chosen.
   QWidget* shutter_cover = nullptr;
-  DetailPolicyParams params;
-  std::unique_ptr<DetailPolicy> policy;  ///< Made when it is known what draws.
-  Detail drawn;                          ///< Of the last whole frame.
+  scene::DetailPolicyParams params;
+  std::unique_ptr<scene::DetailPolicy> policy;  ///< Made when it is known what draws.
+  scene::Detail drawn;                          ///< Of the last whole frame.
   bool has_drawn = false;
   bool are_tools_moving = false;
   bool is_drawing = false;
   QSize drawn_size;  ///< Of the widget in the last whole frame.
-  FrameTimes moving_times;
-  FrameTimes still_times;
-  FrameTimes unwatched_times;
+  scene::FrameTimes moving_times;
+  scene::FrameTimes still_times;
+  scene::FrameTimes unwatched_times;
   int broken_frames = 0;
-  InputWatch watch;
+  scene::InputWatch watch;
   Clock::time_point last_watch{};
   std::function<bool()> interrupt;
   std::function<int(int)> row_on_screen;
   ScanMask scan_mask;
   std::optional<Pose> X_PT;
-  ScanGeometry scan;
+  ultrasound::ScanGeometry scan;
 };
 
 PatientView::PatientView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<Impl>()) {
-  Result<std::unique_ptr<PatientScene>> scene = PatientScene::make(kFirstSize_px, kFirstSize_px);
+  Result<std::unique_ptr<scene::PatientScene>> scene = scene::PatientScene::make(kFirstSize_px, kFirstSize_px);
   TROCAR_CHECK(scene);  // main() has asked can_render()
   impl_->scene = std::move(*scene);
   setAttribute(Qt::WA_OpaquePaintEvent);
@@ -84,8 +84,8 @@ void PatientView::note_motion() {
   if (impl_->policy) impl_->policy->note_motion(Clock::now());
 }
 
-void PatientView::show_patient(std::shared_ptr<const VirtualPatient> patient,
-                               std::shared_ptr<const std::vector<NamedMesh>> meshes,
+void PatientView::show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient,
+                               std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
                                const std::optional<Vec3>& target_P) {
   impl_->scene->show_patient(std::move(patient), std::move(meshes), target_P);
 }
@@ -98,7 +98,7 @@ void PatientView::set_path(const std::optional<Segment>& line_P, double entry_ra
   impl_->scene->set_path(line_P, entry_radius_mm);
 }
 
-void PatientView::set_guidance(Guidance guidance) {
+void PatientView::set_guidance(scene::Guidance guidance) {
   impl_->scene->set_guidance(guidance);
 }
 
@@ -112,7 +112,7 @@ void PatientView::set_landmarks_visible(bool are_visible) {
   impl_->scene->set_landmarks_visible(are_visible);
 }
 
-void PatientView::set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model) {
+void PatientView::set_needle(std::span<const Vec3> shaft_P, double diameter_mm, scene::NeedleModel model) {
   impl_->scene->set_needle(shaft_P, diameter_mm, model);
 }
 
@@ -124,13 +124,13 @@ void PatientView::set_shot(const std::optional<Segment>& stylet_P, const std::op
   impl_->scene->set_shot(stylet_P, core_P);
 }
 
-void PatientView::set_transducer(const std::optional<Pose>& X_PT, const ScanGeometry& scan) {
+void PatientView::set_transducer(const std::optional<Pose>& X_PT, const ultrasound::ScanGeometry& scan) {
   impl_->X_PT = X_PT;
   impl_->scan = scan;
   impl_->scene->set_transducer(X_PT, face_of(scan));
 }
 
-void PatientView::set_ultrasound(const RgbImage& picture, const std::array<Vec3, 3>& corners_P) {
+void PatientView::set_ultrasound(const volume::RgbImage& picture, const std::array<Vec3, 3>& corners_P) {
   if (!impl_->X_PT || picture.pixels.empty()) return impl_->scene->set_ultrasound(picture, {}, corners_P);
   impl_->scene->set_ultrasound(
       picture, impl_->scan_mask.of(picture.columns, picture.rows, corners_P, *impl_->X_PT, impl_->scan), corners_P);
@@ -140,7 +140,7 @@ void PatientView::hide_ultrasound() {
   impl_->scene->hide_ultrasound();
 }
 
-std::vector<StructureInfo> PatientView::structures() const {
+std::vector<scene::StructureInfo> PatientView::structures() const {
   return impl_->scene->structures();
 }
 
@@ -148,54 +148,54 @@ void PatientView::set_opacity(std::string_view name, double opacity) {
   impl_->scene->set_opacity(name, opacity);
 }
 
-void PatientView::apply_preset(StructurePreset preset) {
+void PatientView::apply_preset(scene::StructurePreset preset) {
   impl_->scene->apply_preset(preset);
 }
 
-void PatientView::set_volume_preset(VolumePreset preset) {
+void PatientView::set_volume_preset(scene::VolumePreset preset) {
   impl_->scene->set_volume_preset(preset);
 }
 
-VolumePreset PatientView::volume_preset() const {
+scene::VolumePreset PatientView::volume_preset() const {
   return impl_->scene->volume_preset();
 }
 
-void PatientView::set_mpr(const MprOptions& options) {
+void PatientView::set_mpr(const scene::MprOptions& options) {
   impl_->scene->set_mpr(options);
 }
 
-MprOptions PatientView::mpr() const {
+scene::MprOptions PatientView::mpr() const {
   return impl_->scene->mpr();
 }
 
-void PatientView::set_camera(CameraPreset preset) {
+void PatientView::set_camera(scene::CameraPreset preset) {
   impl_->scene->set_camera(preset);
 }
 
-void PatientView::set_view(const CameraView& view) {
+void PatientView::set_view(const scene::CameraView& view) {
   impl_->scene->set_view(view);
 }
 
-const CameraView& PatientView::view() const {
+const scene::CameraView& PatientView::view() const {
   return impl_->scene->view();
 }
 
-void PatientView::set_follow(FollowMode mode) {
+void PatientView::set_follow(scene::FollowMode mode) {
   impl_->scene->set_follow(mode);
 }
 
-FollowMode PatientView::follow() const {
+scene::FollowMode PatientView::follow() const {
   return impl_->scene->follow();
 }
 
 void PatientView::reset_camera() {
-  set_camera(CameraPreset::kRightAnteriorOblique);
+  set_camera(scene::CameraPreset::kRightAnteriorOblique);
 }
 
-void PatientView::set_stereo(const StereoOptions& options) {
+void PatientView::set_stereo(const scene::StereoOptions& options) {
   Impl& v = *impl_;
   v.scene->set_stereo(options);
-  const bool has_shutter = options.mode == StereoMode::kQuadBuffer;
+  const bool has_shutter = options.mode == scene::StereoMode::kQuadBuffer;
   if (has_shutter && v.shutter == nullptr) {
     v.shutter = new StereoOutput(*this);
     v.shutter_cover = QWidget::createWindowContainer(v.shutter, this);
@@ -209,7 +209,7 @@ void PatientView::set_row_on_screen(std::function<int(int)> row_on_screen) {
   impl_->row_on_screen = std::move(row_on_screen);
 }
 
-const StereoOptions& PatientView::stereo() const {
+const scene::StereoOptions& PatientView::stereo() const {
   return impl_->scene->stereo();
 }
 
@@ -230,15 +230,15 @@ void PatientView::set_interrupt(std::function<bool()> wants_break) {
   impl_->interrupt = std::move(wants_break);
 }
 
-const FrameTimes& PatientView::moving_frame_times() const noexcept {
+const scene::FrameTimes& PatientView::moving_frame_times() const noexcept {
   return impl_->moving_times;
 }
 
-const FrameTimes& PatientView::still_frame_times() const noexcept {
+const scene::FrameTimes& PatientView::still_frame_times() const noexcept {
   return impl_->still_times;
 }
 
-const FrameTimes& PatientView::unwatched_times() const noexcept {
+const scene::FrameTimes& PatientView::unwatched_times() const noexcept {
   return impl_->unwatched_times;
 }
 
@@ -249,24 +249,24 @@ void PatientView::clear_frame_times() noexcept {
 }
 
 bool PatientView::is_still() const noexcept {
-  return impl_->has_drawn && impl_->drawn == DetailPolicy::full();
+  return impl_->has_drawn && impl_->drawn == scene::DetailPolicy::full();
 }
 
 int PatientView::broken_frames() const noexcept {
   return impl_->broken_frames;
 }
 
-PatientScene& PatientView::scene() noexcept {
+scene::PatientScene& PatientView::scene() noexcept {
   return *impl_->scene;
 }
 
-QSize PatientView::picture_size(const Detail& detail) const {
+QSize PatientView::picture_size(const scene::Detail& detail) const {
   // Rows that are drawn smaller and stretched would mix the eyes.
-  const double share = stereo().mode == StereoMode::kInterlaced ? 1.0 : detail.resolution;
+  const double share = stereo().mode == scene::StereoMode::kInterlaced ? 1.0 : detail.resolution;
   return (QSizeF(size()) * devicePixelRatioF() * share).toSize().expandedTo({1, 1});
 }
 
-bool PatientView::render_eye(const Detail& detail, bool may_break, Eye eye, QImage& image) {
+bool PatientView::render_eye(const scene::Detail& detail, bool may_break, scene::Eye eye, QImage& image) {
   Impl& v = *impl_;
   const auto wants_break = [&v] {
     const auto now = Clock::now();
@@ -282,7 +282,7 @@ bool PatientView::render_eye(const Detail& detail, bool may_break, Eye eye, QIma
   return true;
 }
 
-void PatientView::render(const Detail& detail, bool may_break) {
+void PatientView::render(const scene::Detail& detail, bool may_break) {
   Impl& v = *impl_;
   const auto start = Clock::now();
   if (may_break) v.watch.start();
@@ -290,21 +290,21 @@ void PatientView::render(const Detail& detail, bool may_break) {
   const QSize size = picture_size(detail);
   v.scene->set_size(size.width(), size.height());
   v.scene->set_text_scale(static_cast<double>(size.height()) / std::max(1, height()));
-  const bool has_shutter = v.scene->stereo().mode == StereoMode::kQuadBuffer;
+  const bool has_shutter = v.scene->stereo().mode == scene::StereoMode::kQuadBuffer;
   QImage right;
-  const bool is_whole = render_eye(detail, may_break, Eye::kLeft, v.image) &&
-                        (!has_shutter || render_eye(detail, may_break, Eye::kRight, right));
+  const bool is_whole = render_eye(detail, may_break, scene::Eye::kLeft, v.image) &&
+                        (!has_shutter || render_eye(detail, may_break, scene::Eye::kRight, right));
   const auto end = Clock::now();
   if (may_break) v.note_watch(end);
   const double frame_ms = in_ms(end - start);
-  if (!v.policy) v.policy = std::make_unique<DetailPolicy>(v.scene->has_gpu(), v.params);
+  if (!v.policy) v.policy = std::make_unique<scene::DetailPolicy>(v.scene->has_gpu(), v.params);
   if (!is_whole) {
     ++v.broken_frames;
     v.policy->note_motion(end);
     return render(v.policy->next(end), false);
   }
   v.policy->note_frame(detail, frame_ms, end);
-  (detail == DetailPolicy::full() ? v.still_times : v.moving_times).add(frame_ms);
+  (detail == scene::DetailPolicy::full() ? v.still_times : v.moving_times).add(frame_ms);
   v.drawn = detail;
   v.has_drawn = true;
   v.drawn_size = this->size();
@@ -330,7 +330,7 @@ void PatientView::draw() {
   const auto now = Clock::now();
   // What draws is only known after a frame: the first one is a cheap one.
   if (!v.policy) {
-    render(DetailPolicy::moving(DetailPolicy::kMovingLevels - 1), false);
+    render(scene::DetailPolicy::moving(scene::DetailPolicy::kMovingLevels - 1), false);
     note_motion();
   } else {
     v.scene->poll();
@@ -339,8 +339,8 @@ void PatientView::draw() {
     v.scene->set_first_row(qRound(row * devicePixelRatioF()));
     const bool has_changed = v.scene->has_changed() || v.drawn_size != size();
     if (has_changed || v.are_tools_moving) v.policy->note_motion(now);
-    const Detail detail = v.policy->next(now);
-    const bool rises = v.drawn != detail && detail == DetailPolicy::full();
+    const scene::Detail detail = v.policy->next(now);
+    const bool rises = v.drawn != detail && detail == scene::DetailPolicy::full();
     if (has_changed || rises) render(detail, rises && !v.scene->has_gpu());
   }
   v.is_drawing = false;
@@ -348,7 +348,7 @@ void PatientView::draw() {
 
 void PatientView::draw_whole() {
   impl_->scene->finish_loading();
-  render(DetailPolicy::full(), false);
+  render(scene::DetailPolicy::full(), false);
 }
 
 }  // namespace trocar::trainer

@@ -31,48 +31,49 @@ class PatientView : public QWidget {
   explicit PatientView(QWidget* parent = nullptr);
   ~PatientView() override;
 
-  void show_patient(std::shared_ptr<const VirtualPatient> patient, std::shared_ptr<const std::vector<NamedMesh>> meshes,
+  void show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient,
+                    std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
                     const std::optional<Vec3>& target_P = {});
   /// Surfaces are prepared in the background after show_patient.
   bool is_ready() const;
 
   void set_path(const std::optional<Segment>& line_P, double entry_radius_mm);
   /// What the guidance consists of; set_guidance_visible and the key O show and hide that.
-  void set_guidance(Guidance guidance);
+  void set_guidance(scene::Guidance guidance);
   void set_guidance_visible(bool is_visible);
   bool is_guidance_visible() const noexcept { return is_guidance_visible_; }
   void set_landmarks_visible(bool are_visible);
   bool are_landmarks_visible() const noexcept { return are_landmarks_visible_; }
 
   /// From the hub to the tip; fewer than two points: no needle.
-  void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
+  void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, scene::NeedleModel model);
   /// Where the hand holds the needle, hub to tip; nothing when it is where the needle is.
   void set_hand(const std::optional<Segment>& ghost_P);
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
-  void set_transducer(const std::optional<Pose>& X_PT, const ScanGeometry& scan);
+  void set_transducer(const std::optional<Pose>& X_PT, const ultrasound::ScanGeometry& scan);
   /// Corners of the picture's outline in P: top left, top right, bottom left. What lies outside of the scan of the last
   /// set_transducer is transparent; without a transducer nothing is. An empty picture hides it.
-  void set_ultrasound(const RgbImage& picture, const std::array<Vec3, 3>& corners_P);
+  void set_ultrasound(const volume::RgbImage& picture, const std::array<Vec3, 3>& corners_P);
   void hide_ultrasound();
 
-  std::vector<StructureInfo> structures() const;
+  std::vector<scene::StructureInfo> structures() const;
   void set_opacity(std::string_view name, double opacity);
-  void apply_preset(StructurePreset preset);
-  void set_volume_preset(VolumePreset preset);
-  VolumePreset volume_preset() const;
-  void set_mpr(const MprOptions& options);
-  MprOptions mpr() const;
+  void apply_preset(scene::StructurePreset preset);
+  void set_volume_preset(scene::VolumePreset preset);
+  scene::VolumePreset volume_preset() const;
+  void set_mpr(const scene::MprOptions& options);
+  scene::MprOptions mpr() const;
 
-  void set_camera(CameraPreset preset);
-  void set_view(const CameraView& view);
-  const CameraView& view() const;
-  void set_follow(FollowMode mode);
-  FollowMode follow() const;
+  void set_camera(scene::CameraPreset preset);
+  void set_view(const scene::CameraView& view);
+  const scene::CameraView& view() const;
+  void set_follow(scene::FollowMode mode);
+  scene::FollowMode follow() const;
   /// The view that the last patient began with.
   void reset_camera();
 
-  void set_stereo(const StereoOptions& options);
-  const StereoOptions& stereo() const;
+  void set_stereo(const scene::StereoOptions& options);
+  const scene::StereoOptions& stereo() const;
   /// Which row of the screen a global row is drawn at; for pictures of interlaced rows in a window that is turned over.
   /// Without it: the same.
   void set_row_on_screen(std::function<int(int)> row_on_screen);
@@ -91,15 +92,15 @@ class PatientView : public QWidget {
   void draw_whole();
 
   /// Of the frames while things moved, and of those in full quality.
-  const FrameTimes& moving_frame_times() const noexcept;
-  const FrameTimes& still_frame_times() const noexcept;
+  const scene::FrameTimes& moving_frame_times() const noexcept;
+  const scene::FrameTimes& still_frame_times() const noexcept;
   /// Times for which a picture of full quality did not look for input: it is given up so long after the hand moves.
-  const FrameTimes& unwatched_times() const noexcept;
+  const scene::FrameTimes& unwatched_times() const noexcept;
   void clear_frame_times() noexcept;
   /// The last frame was drawn in full quality.
   bool is_still() const noexcept;
   int broken_frames() const noexcept;
-  PatientScene& scene() noexcept;
+  scene::PatientScene& scene() noexcept;
 
   QSize sizeHint() const override { return {760, 560}; }
   QSize minimumSizeHint() const override { return {240, 180}; }
@@ -124,10 +125,10 @@ class PatientView : public QWidget {
  private:
   struct Impl;
   void note_motion();
-  void render(const Detail& detail, bool may_break);
+  void render(const scene::Detail& detail, bool may_break);
   /// In pixels of the screen.
-  QSize picture_size(const Detail& detail) const;
-  bool render_eye(const Detail& detail, bool may_break, Eye eye, QImage& image);
+  QSize picture_size(const scene::Detail& detail) const;
+  bool render_eye(const scene::Detail& detail, bool may_break, scene::Eye eye, QImage& image);
   /// Places of events as the unmirrored picture has them.
   QPointF unmirrored(const QPointF& place) const;
 

@@ -22,25 +22,25 @@ QPointF place_of(const QMouseEvent& event) {
 /// What a key does; nothing for keys of others.
 using Act = void (*)(PatientView& view);
 
-void toggle(PatientView& view, FollowMode mode) {
-  view.set_follow(view.follow() == mode ? FollowMode::kFree : mode);
+void toggle(PatientView& view, scene::FollowMode mode) {
+  view.set_follow(view.follow() == mode ? scene::FollowMode::kFree : mode);
 }
 
 void turn(PatientView& view, double right, double up) {
-  view.set_view(orbited(view.view(), right, up));
+  view.set_view(scene::orbited(view.view(), right, up));
 }
 
 Act act_of(int key) {
   static constexpr std::pair<int, Act> kActs[] = {
-      {Qt::Key_1, [](PatientView& v) { v.set_camera(CameraPreset::kAnterior); }},
-      {Qt::Key_2, [](PatientView& v) { v.set_camera(CameraPreset::kRightAnteriorOblique); }},
-      {Qt::Key_3, [](PatientView& v) { v.set_camera(CameraPreset::kRight); }},
-      {Qt::Key_4, [](PatientView& v) { v.set_camera(CameraPreset::kLeft); }},
-      {Qt::Key_5, [](PatientView& v) { v.set_camera(CameraPreset::kPosterior); }},
-      {Qt::Key_6, [](PatientView& v) { v.set_camera(CameraPreset::kCranial); }},
-      {Qt::Key_T, [](PatientView& v) { toggle(v, FollowMode::kTip); }},
-      {Qt::Key_L, [](PatientView& v) { toggle(v, FollowMode::kAlongNeedle); }},
-      {Qt::Key_B, [](PatientView& v) { toggle(v, FollowMode::kSide); }},
+      {Qt::Key_1, [](PatientView& v) { v.set_camera(scene::CameraPreset::kAnterior); }},
+      {Qt::Key_2, [](PatientView& v) { v.set_camera(scene::CameraPreset::kRightAnteriorOblique); }},
+      {Qt::Key_3, [](PatientView& v) { v.set_camera(scene::CameraPreset::kRight); }},
+      {Qt::Key_4, [](PatientView& v) { v.set_camera(scene::CameraPreset::kLeft); }},
+      {Qt::Key_5, [](PatientView& v) { v.set_camera(scene::CameraPreset::kPosterior); }},
+      {Qt::Key_6, [](PatientView& v) { v.set_camera(scene::CameraPreset::kCranial); }},
+      {Qt::Key_T, [](PatientView& v) { toggle(v, scene::FollowMode::kTip); }},
+      {Qt::Key_L, [](PatientView& v) { toggle(v, scene::FollowMode::kAlongNeedle); }},
+      {Qt::Key_B, [](PatientView& v) { toggle(v, scene::FollowMode::kSide); }},
       {Qt::Key_O, [](PatientView& v) { v.set_guidance_visible(!v.is_guidance_visible()); }},
       {Qt::Key_I, [](PatientView& v) { v.set_landmarks_visible(!v.are_landmarks_visible()); }},
       {Qt::Key_Home, [](PatientView& v) { v.reset_camera(); }},
@@ -48,8 +48,8 @@ Act act_of(int key) {
       {Qt::Key_Right, [](PatientView& v) { turn(v, kKeyOrbit_rad, 0.0); }},
       {Qt::Key_Up, [](PatientView& v) { turn(v, 0.0, kKeyOrbit_rad); }},
       {Qt::Key_Down, [](PatientView& v) { turn(v, 0.0, -kKeyOrbit_rad); }},
-      {Qt::Key_Plus, [](PatientView& v) { v.set_view(zoomed(v.view(), kZoomPerNotch)); }},
-      {Qt::Key_Minus, [](PatientView& v) { v.set_view(zoomed(v.view(), 1.0 / kZoomPerNotch)); }},
+      {Qt::Key_Plus, [](PatientView& v) { v.set_view(scene::zoomed(v.view(), kZoomPerNotch)); }},
+      {Qt::Key_Minus, [](PatientView& v) { v.set_view(scene::zoomed(v.view(), 1.0 / kZoomPerNotch)); }},
   };
   const auto* found = std::find_if(std::begin(kActs), std::end(kActs), [key](const auto& a) { return a.first == key; });
   return found == std::end(kActs) ? nullptr : found->second;
@@ -58,14 +58,14 @@ Act act_of(int key) {
 }  // namespace
 
 QPointF PatientView::unmirrored(const QPointF& place) const {
-  const StereoOptions& options = stereo();
+  const scene::StereoOptions& options = stereo();
   return {options.is_mirrored_left_right ? width() - place.x() : place.x(),
           options.is_mirrored_up_down ? height() - place.y() : place.y()};
 }
 
 void PatientView::wheelEvent(QWheelEvent* event) {
   const double notches = event->angleDelta().y() / kWheelNotch;
-  set_view(zoomed(view(), std::pow(kZoomPerNotch, notches)));
+  set_view(scene::zoomed(view(), std::pow(kZoomPerNotch, notches)));
   event->accept();
 }
 
@@ -81,9 +81,9 @@ void PatientView::mouseMoveEvent(QMouseEvent* event) {
   const QPointF moved = (place - last_place_) / std::max(1, height());
   last_place_ = place;
   if (drag_ == Qt::LeftButton)
-    set_view(orbited(view(), kOrbit_rad_per_view * moved.x(), -kOrbit_rad_per_view * moved.y()));
-  if (drag_ == Qt::MiddleButton) set_view(panned(view(), moved.x(), moved.y()));
-  if (drag_ == Qt::RightButton) set_view(zoomed(view(), std::pow(kZoomPerView, -moved.y())));
+    set_view(scene::orbited(view(), kOrbit_rad_per_view * moved.x(), -kOrbit_rad_per_view * moved.y()));
+  if (drag_ == Qt::MiddleButton) set_view(scene::panned(view(), moved.x(), moved.y()));
+  if (drag_ == Qt::RightButton) set_view(scene::zoomed(view(), std::pow(kZoomPerView, -moved.y())));
 }
 
 void PatientView::mouseReleaseEvent(QMouseEvent* /*event*/) {

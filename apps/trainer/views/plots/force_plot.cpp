@@ -195,7 +195,9 @@ std::optional<ForcePoint> ForcePlot::current() const {
 void ForcePlot::redraw_ground(const PlotFrame& frame) {
   const double ratio = devicePixelRatioF();
   const QSize size = ratio * QWidget::size();
-  const auto is_same = [](const AxisRange& a, const AxisRange& b) { return a.low == b.low && a.high == b.high; };
+  const auto is_same = [](const report::AxisRange& a, const report::AxisRange& b) {
+    return a.low == b.low && a.high == b.high;
+  };
   if (ground_.size() == size && is_same(ground_x_, frame.x) && is_same(ground_y_, frame.y)) return;
   ground_ = QPixmap(size);
   ground_.setDevicePixelRatio(ratio);

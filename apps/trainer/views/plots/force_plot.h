@@ -114,7 +114,7 @@ class ForcePlot : public QWidget {
   std::optional<double> cursor_s_;
   double far_mm_, low_n_, high_n_;  ///< What the axes must hold.
   QPixmap ground_;                  ///< All that stands still: axes, bands, curves behind.
-  AxisRange ground_x_, ground_y_;
+  report::AxisRange ground_x_, ground_y_;
   QToolButton* axis_button_;
   ViewStrip* strip_;
 };

@@ -15,7 +15,7 @@ int steps_in(double points, double room) {
 }
 
 QString number(double value, double step) {
-  return QString::fromStdString(tick_text(value, step));
+  return QString::fromStdString(report::tick_text(value, step));
 }
 
 }  // namespace
@@ -35,9 +35,9 @@ void PlotFrame::draw_axes(QPainter& painter, const QString& x_unit, const QStrin
   painter.setFont(scaled_font(0.82));
   const QFontMetricsF metrics(painter.font());
   const double high = metrics.height();
-  const double step_x = nice_step(x, steps_in(area.width(), kTickRoom_x));
-  const double step_y = nice_step(y, steps_in(area.height(), kTickRoom_y));
-  for (const double value : ticks_in(y, step_y)) {
+  const double step_x = report::nice_step(x, steps_in(area.width(), kTickRoom_x));
+  const double step_y = report::nice_step(y, steps_in(area.height(), kTickRoom_y));
+  for (const double value : report::ticks_in(y, step_y)) {
     const double at = to_point({x.low, value}).y();
     painter.setPen(QPen(value == 0.0 ? t.dim : t.line, 1.0));
     painter.drawLine(QPointF(area.left(), at), QPointF(area.right(), at));
@@ -47,7 +47,7 @@ void PlotFrame::draw_axes(QPainter& painter, const QString& x_unit, const QStrin
   }
   const double unit_wide = metrics.horizontalAdvance(x_unit) + 8.0;
   const double top = area.bottom() + below + 2.0;
-  for (const double value : ticks_in(x, step_x)) {
+  for (const double value : report::ticks_in(x, step_x)) {
     const double at = to_point({value, y.low}).x();
     painter.setPen(QPen(t.line, 1.0));
     painter.drawLine(QPointF(at, area.top()), QPointF(at, area.bottom()));
@@ -62,8 +62,8 @@ void PlotFrame::draw_axes(QPainter& painter, const QString& x_unit, const QStrin
   painter.drawText(QPointF(area.left() + 5.0, area.top() + metrics.ascent()), y_unit);
 }
 
-AxisRange rounded_out(const AxisRange& range, int at_most) {
-  return nice_range(range, nice_step(range, at_most));
+report::AxisRange rounded_out(const report::AxisRange& range, int at_most) {
+  return report::nice_range(range, report::nice_step(range, at_most));
 }
 
 }  // namespace trocar::trainer

@@ -11,7 +11,7 @@ namespace trocar::trainer {
 /// The ground of a plot: where it lies in its widget and what its axes span.
 struct PlotFrame {
   QRectF area;  ///< Points of the widget.
-  AxisRange x, y;
+  report::AxisRange x, y;
 
   QPointF to_point(const QPointF& value) const noexcept;
   QPointF to_value(const QPointF& point) const noexcept;
@@ -21,6 +21,6 @@ struct PlotFrame {
 };
 
 /// A range with round ends that holds another one, for an axis that has room for `at_most` steps.
-AxisRange rounded_out(const AxisRange& range, int at_most);
+report::AxisRange rounded_out(const report::AxisRange& range, int at_most);
 
 }  // namespace trocar::trainer

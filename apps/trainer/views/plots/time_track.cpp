@@ -161,7 +161,7 @@ bool TimeTrack::event(QEvent* event) {
 
 void TimeTrack::paint_curve(QPainter& painter) const {
   const QRectF room = area().adjusted(0.0, 2.0, 0.0, -kPhaseHigh - 2.0);
-  std::vector<Point2> points;
+  std::vector<report::Point2> points;
   std::vector<double> forces{0.0};
   for (const QPointF& value : curve_) {
     if (!std::isfinite(value.x()) || !std::isfinite(value.y())) continue;
@@ -169,9 +169,9 @@ void TimeTrack::paint_curve(QPainter& painter) const {
     forces.push_back(value.y());
   }
   if (points.empty()) return;
-  const AxisRange range = range_of(forces);
+  const report::AxisRange range = report::range_of(forces);
   QPolygonF line;
-  for (const Point2& point : thin_out(points, 1.0))
+  for (const report::Point2& point : report::thin_out(points, 1.0))
     line.append({point.x(), room.bottom() - room.height() * (point.y() - range.low) / (range.high - range.low)});
   const double zero = room.bottom() - room.height() * (0.0 - range.low) / (range.high - range.low);
   QPolygonF filled = line;

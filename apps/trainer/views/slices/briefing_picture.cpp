@@ -3,9 +3,9 @@
 #include <QPainter>
 #include <QPainterPath>
 
-#include "ui_kit/theme.h"
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
+#include "ui_kit/theme.h"
 
 namespace trocar::trainer {
 namespace {
@@ -13,34 +13,36 @@ namespace {
 constexpr double kAroundPath_mm = 60.0;
 
 /// The middle of what is to be reached: a biopsy needle is stopped before it.
-Vec3 target_of(const Case& the_case) {
+Vec3 target_of(const attempt::Case& the_case) {
   const Segment& path_P = the_case.plan.line_P;
   return path_P.b + the_case.needle.notch_middle_mm() * path_P.direction();
 }
 
-SliceGeometry geometry_of(const OpenCase& open, BriefingPlane plane, const QSize& size) {
-  const VirtualPatient& patient = *open.the_case.patient;
+slices::SliceGeometry geometry_of(const attempt::OpenCase& open, BriefingPlane plane, const QSize& size) {
+  const anatomy::VirtualPatient& patient = *open.the_case.patient;
   const Segment& path_P = open.the_case.plan.line_P;
-  SliceGeometry geometry;
+  slices::SliceGeometry geometry;
   geometry.columns = size.width();
   geometry.rows = size.height();
   if (plane != BriefingPlane::kAlongPath) {
-    const Box body = body_box(patient);
+    const slices::Box body = slices::body_box(patient);
     const bool is_axial = plane == BriefingPlane::kAxial;
-    geometry.axes = slice_axes(is_axial ? SliceOrientation::kAxial : SliceOrientation::kSagittal);
+    geometry.axes =
+        slices::slice_axes(is_axial ? slices::SliceOrientation::kAxial : slices::SliceOrientation::kSagittal);
     geometry.center_P = body.center();
     const Vec3 across_P = geometry.axes.normal_P();
     geometry.center_P += (target_of(open.the_case) - geometry.center_P).dot(across_P) * across_P;
-    geometry.mm_per_px = fitting_scale(body, geometry.axes, geometry.columns, geometry.rows);
+    geometry.mm_per_px = slices::fitting_scale(body, geometry.axes, geometry.columns, geometry.rows);
   } else {
-    geometry.axes = needle_axes(path_P.direction(), NeedlePlane::kAlong);
+    geometry.axes = slices::needle_axes(path_P.direction(), slices::NeedlePlane::kAlong);
     geometry.center_P = 0.5 * (path_P.a + path_P.b);
     geometry.mm_per_px = (path_P.length_mm() + kAroundPath_mm) / std::min(geometry.columns, geometry.rows);
   }
   return geometry;
 }
 
-void draw_path(QPainter& painter, const SliceGeometry& geometry, const Case& the_case, Guidance guidance) {
+void draw_path(QPainter& painter, const slices::SliceGeometry& geometry, const attempt::Case& the_case,
+               scene::Guidance guidance) {
   const Segment& path_P = the_case.plan.line_P;
   const auto pixel = [&](const Vec3& p_P) {
     const Eigen::Vector2d p = geometry.to_pixel(p_P);
@@ -49,30 +51,31 @@ void draw_path(QPainter& painter, const SliceGeometry& geometry, const Case& the
   const QPointF tip = pixel(path_P.b);
   constexpr double kRing_px = 7.0, kEntry_px = 5.0;
   painter.setPen(QPen(theme().path, 2.0));
-  if (guidance != Guidance::kNone) painter.drawEllipse(pixel(path_P.a), kEntry_px, kEntry_px);
+  if (guidance != scene::Guidance::kNone) painter.drawEllipse(pixel(path_P.a), kEntry_px, kEntry_px);
   painter.setPen(QPen(theme().path, 2.0, Qt::DashLine));
-  if (guidance == Guidance::kPath) painter.drawLine(pixel(path_P.a), tip);
+  if (guidance == scene::Guidance::kPath) painter.drawLine(pixel(path_P.a), tip);
   painter.setPen(QPen(theme().target, 2.0));
-  painter.drawEllipse(guidance == Guidance::kPath ? tip : pixel(target_of(the_case)), kRing_px, kRing_px);
+  painter.drawEllipse(guidance == scene::Guidance::kPath ? tip : pixel(target_of(the_case)), kRing_px, kRing_px);
 }
 
 }  // namespace
 
-QImage to_qimage(const RgbImage& picture) {
-  static_assert(sizeof(Rgb) == 3);
+QImage to_qimage(const volume::RgbImage& picture) {
+  static_assert(sizeof(volume::Rgb) == 3);
   return QImage(reinterpret_cast<const uchar*>(picture.pixels.data()), picture.columns, picture.rows,
                 3 * picture.columns, QImage::Format_RGB888)
       .copy();
 }
 
-QImage briefing_picture(const OpenCase& open, BriefingPlane plane, const QSize& size, Guidance guidance) {
-  const SliceGeometry geometry = geometry_of(open, plane, size);
-  SliceBuffers buffers;
-  RgbImage picture;
-  SliceStyle style;
+QImage briefing_picture(const attempt::OpenCase& open, BriefingPlane plane, const QSize& size,
+                        scene::Guidance guidance) {
+  const slices::SliceGeometry geometry = geometry_of(open, plane, size);
+  slices::SliceBuffers buffers;
+  volume::RgbImage picture;
+  slices::SliceStyle style;
   style.window = {60.0, 350.0};
-  style.hides_lesions = guidance == Guidance::kNone;
-  paint_slice(*open.the_case.patient, geometry.plane(), style, buffers, picture);
+  style.hides_lesions = guidance == scene::Guidance::kNone;
+  slices::paint_slice(*open.the_case.patient, geometry.plane(), style, buffers, picture);
   QImage image = to_qimage(picture).convertToFormat(QImage::Format_RGB32);
   QPainter painter(&image);
   painter.setRenderHint(QPainter::Antialiasing);

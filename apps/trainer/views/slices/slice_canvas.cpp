@@ -130,7 +130,7 @@ void draw_target(const SliceCanvas& canvas, const Vec3& p_P) {
   }
 }
 
-void draw_entry_zone(const SliceCanvas& canvas, const EntryZone& zone) {
+void draw_entry_zone(const SliceCanvas& canvas, const tasks::EntryZone& zone) {
   const double away_mm = std::abs(canvas.geometry.height_mm(zone.centre_P));
   if (!(away_mm < zone.radius_mm)) return;
   const double mm_per_point = canvas.geometry.mm_per_px * canvas.device_pixel_ratio;
@@ -161,9 +161,9 @@ void draw_letters(const SliceCanvas& canvas) {
   painter.setFont(scaled_font(0.95, true));
   const QFontMetricsF metrics(painter.font());
   const QRectF area = canvas.picture.adjusted(6.0, 4.0, -6.0, -4.0);
-  const auto letters = [](const Vec3& way_P) { return QString::fromStdString(direction_letters(way_P)); };
+  const auto letters = [](const Vec3& way_P) { return QString::fromStdString(slices::direction_letters(way_P)); };
   const auto width = [&](const QString& text) { return metrics.horizontalAdvance(text); };
-  const SliceAxes& axes = canvas.geometry.axes;
+  const slices::SliceAxes& axes = canvas.geometry.axes;
   const QString right = letters(axes.u_P);
   const QString top = letters(-axes.v_P);
   const QString bottom = letters(axes.v_P);
@@ -180,7 +180,7 @@ void draw_scale_bar(const SliceCanvas& canvas) {
   const double mm_per_point = canvas.geometry.mm_per_px * canvas.device_pixel_ratio;
   const double room_mm = kShareOfWidth * canvas.picture.width() * mm_per_point;
   if (!(room_mm > 0.0)) return;
-  const double length_mm = nice_step({0.0, room_mm}, 3);  // at most 5/6 of the room
+  const double length_mm = report::nice_step({0.0, room_mm}, 3);  // at most 5/6 of the room
   const double length = length_mm / mm_per_point;
   QPainter& painter = canvas.painter;
   painter.setFont(scaled_font(0.85));

@@ -13,7 +13,7 @@ namespace trocar::trainer {
 /// A slice on the screen and what can be drawn over it. The geometry counts device pixels, the painter points.
 struct SliceCanvas {
   QPainter& painter;
-  const SliceGeometry& geometry;
+  const slices::SliceGeometry& geometry;
   QRectF picture;  ///< Points of the widget.
   double device_pixel_ratio = 1.0;
 
@@ -34,7 +34,7 @@ void draw_path(const SliceCanvas& canvas, const Segment& path_P);
 /// Cross-hairs on the target, faint where it lies off the plane.
 void draw_target(const SliceCanvas& canvas, const Vec3& p_P);
 /// The circle in which the plane cuts the zone's ball; nothing where it does not.
-void draw_entry_zone(const SliceCanvas& canvas, const EntryZone& zone);
+void draw_entry_zone(const SliceCanvas& canvas, const tasks::EntryZone& zone);
 
 struct CrossColors {
   QColor vertical, horizontal;

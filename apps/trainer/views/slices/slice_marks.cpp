@@ -36,7 +36,7 @@ void SliceMarks::set_target(const std::optional<Vec3>& p_P) {
   update();
 }
 
-void SliceMarks::set_landmarks(const std::vector<Landmark>& landmarks) {
+void SliceMarks::set_landmarks(const std::vector<anatomy::Landmark>& landmarks) {
   landmarks_ = landmarks;
   update();
 }
@@ -70,7 +70,7 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
   constexpr double kStylet_px = 2.0, kCore_px = 4.0;
   if (stylet_P_) draw_piece(painter, *stylet_P_, theme().needle, kStylet_px);
   if (core_P_) draw_piece(painter, *core_P_, theme().target, kCore_px);
-  for (const Landmark& landmark : landmarks_) {
+  for (const anatomy::Landmark& landmark : landmarks_) {
     const double away = away_mm(landmark.p_P);
     if (away > kNear_mm) continue;
     const QPointF at = view_->position_of(landmark.p_P);

@@ -23,7 +23,7 @@ class SliceMarks : public QWidget {
 
   void set_target(const std::optional<Vec3>& p_P);
   void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
-  void set_landmarks(const std::vector<Landmark>& landmarks);
+  void set_landmarks(const std::vector<anatomy::Landmark>& landmarks);
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
@@ -37,7 +37,7 @@ class SliceMarks : public QWidget {
   SliceView* view_;
   std::optional<Vec3> target_P_;
   std::optional<Segment> stylet_P_, core_P_;
-  std::vector<Landmark> landmarks_;
+  std::vector<anatomy::Landmark> landmarks_;
 };
 
 }  // namespace trocar::trainer

@@ -41,22 +41,22 @@ KindInfo info_of(SliceKind kind) {
   return {"slice-across-needle", "Across needle", t.across_needle, {t.turned_needle, t.along_needle}};
 }
 
-SliceAxes axes_of(SliceKind kind, const Vec3& needle_P) {
+slices::SliceAxes axes_of(SliceKind kind, const Vec3& needle_P) {
   switch (kind) {
     case SliceKind::kAxial:
-      return slice_axes(SliceOrientation::kAxial);
+      return slices::slice_axes(slices::SliceOrientation::kAxial);
     case SliceKind::kCoronal:
-      return slice_axes(SliceOrientation::kCoronal);
+      return slices::slice_axes(slices::SliceOrientation::kCoronal);
     case SliceKind::kSagittal:
-      return slice_axes(SliceOrientation::kSagittal);
+      return slices::slice_axes(slices::SliceOrientation::kSagittal);
     case SliceKind::kAlongNeedle:
-      return needle_axes(needle_P, NeedlePlane::kAlong);
+      return slices::needle_axes(needle_P, slices::NeedlePlane::kAlong);
     case SliceKind::kAlongNeedleTurned:
-      return needle_axes(needle_P, NeedlePlane::kAlongTurned);
+      return slices::needle_axes(needle_P, slices::NeedlePlane::kAlongTurned);
     case SliceKind::kAcrossNeedle:
       break;
   }
-  return needle_axes(needle_P, NeedlePlane::kAcross);
+  return slices::needle_axes(needle_P, slices::NeedlePlane::kAcross);
 }
 
 const char* const kHelp =
@@ -85,12 +85,12 @@ SliceView::SliceView(SliceKind kind, QWidget* parent)
 
 SliceView::~SliceView() = default;
 
-void SliceView::show_patient(std::shared_ptr<const VirtualPatient> patient) {
-  const Box body_P = patient ? body_box(*patient) : Box();
+void SliceView::show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient) {
+  const slices::Box body_P = patient ? slices::body_box(*patient) : slices::Box();
   show_patient(std::move(patient), body_P);
 }
 
-void SliceView::show_patient(std::shared_ptr<const VirtualPatient> patient, const Box& body_P) {
+void SliceView::show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient, const slices::Box& body_P) {
   patient_ = std::move(patient);
   is_stale_ = true;
   if (patient_) {
@@ -134,7 +134,7 @@ void SliceView::set_path(const std::optional<Segment>& path_P) {
   update();
 }
 
-void SliceView::set_entry_zone(const std::optional<EntryZone>& zone) {
+void SliceView::set_entry_zone(const std::optional<tasks::EntryZone>& zone) {
   const bool is_same = zone.has_value() == zone_.has_value() &&
                        (!zone || (zone->centre_P == zone_->centre_P && zone->radius_mm == zone_->radius_mm));
   if (is_same) return;
@@ -142,7 +142,7 @@ void SliceView::set_entry_zone(const std::optional<EntryZone>& zone) {
   update();
 }
 
-void SliceView::set_guidance(Guidance guidance) {
+void SliceView::set_guidance(scene::Guidance guidance) {
   if (std::exchange(guidance_, guidance) == guidance) return;
   is_stale_ = true;  // lesions come and go
   update();
@@ -150,7 +150,7 @@ void SliceView::set_guidance(Guidance guidance) {
 
 void SliceView::set_window(double centre_hu, double width_hu) {
   if (!std::isfinite(centre_hu) || !std::isfinite(width_hu)) return;
-  const Window window{centre_hu, std::max(width_hu, 1.0)};
+  const slices::Window window{centre_hu, std::max(width_hu, 1.0)};
   if (style_.window == window) return;
   style_.window = window;
   is_stale_ = true;
@@ -174,7 +174,7 @@ void SliceView::set_labels_visible(bool is_visible) {
 void SliceView::reset() {
   offset_mm_ = 0.0;
   fit();
-  change_window(Window{});
+  change_window(slices::Window{});
 }
 
 QRectF SliceView::picture_rect() const {
@@ -253,13 +253,13 @@ void SliceView::fit() {
 
 void SliceView::redraw_picture() {
   if (!is_stale_ || !patient_) return;
-  SliceStyle style = style_;
-  style.hides_lesions = guidance_ == Guidance::kNone;
+  slices::SliceStyle style = style_;
+  style.hides_lesions = guidance_ == scene::Guidance::kNone;
   if (!has_labels_) {
     style.label_opacity = 0.0;
     style.has_outlines = false;
   }
-  paint_slice(*patient_, geometry_.plane(), style, buffers_, picture_);
+  slices::paint_slice(*patient_, geometry_.plane(), style, buffers_, picture_);
   is_stale_ = false;
 }
 
@@ -284,12 +284,12 @@ void SliceView::paintEvent(QPaintEvent* /*event*/) {
 }
 
 void SliceView::draw_plan(const SliceCanvas& canvas) const {
-  if (guidance_ == Guidance::kNone) return;
+  if (guidance_ == scene::Guidance::kNone) return;
   if (zone_) draw_entry_zone(canvas, *zone_);
-  if (guidance_ == Guidance::kPath && path_P_) draw_path(canvas, *path_P_);
+  if (guidance_ == scene::Guidance::kPath && path_P_) draw_path(canvas, *path_P_);
   if (path_P_) draw_target(canvas, path_P_->b);
   const bool is_along = kind_ == SliceKind::kAlongNeedle || kind_ == SliceKind::kAlongNeedleTurned;
-  if (guidance_ == Guidance::kPath && is_along) draw_aim(canvas, shaft_P_);
+  if (guidance_ == scene::Guidance::kPath && is_along) draw_aim(canvas, shaft_P_);
 }
 
 void SliceView::paint_overlay(QPainter& painter) const {
@@ -330,7 +330,7 @@ QString SliceView::place_text() const {
 }
 
 QString SliceView::window_text() const {
-  const Window& window = style_.window;
+  const slices::Window& window = style_.window;
   return QStringLiteral("W %1 L %2").arg(std::lround(window.width_hu)).arg(std::lround(window.center_hu));
 }
 
@@ -359,7 +359,7 @@ void SliceView::paint_strip(QPainter& painter, QRectF room) const {
   put(place_text(), 0.9, false, t.text, false);
   put(window_text(), 0.85, false, t.dim, true);
   if (!has_labels_) put(tr("no labels"), 0.85, false, t.warning, true);
-  put(QString::fromStdString(std::string(window_name(style_.window))), 0.85, false, t.dim, true);
+  put(QString::fromStdString(std::string(slices::window_name(style_.window))), 0.85, false, t.dim, true);
 }
 
 QSize SliceView::sizeHint() const {

@@ -40,9 +40,9 @@ class SliceView : public QWidget {
   explicit SliceView(SliceKind kind, QWidget* parent = nullptr);
   ~SliceView() override;
 
-  void show_patient(std::shared_ptr<const VirtualPatient> patient);
+  void show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient);
   /// The same where the patient's body_box() is known.
-  void show_patient(std::shared_ptr<const VirtualPatient> patient, const Box& body_P);
+  void show_patient(std::shared_ptr<const anatomy::VirtualPatient> patient, const slices::Box& body_P);
   /// Moves the slice to a point and, where that leaves the middle part of the picture, the picture after it.
   void set_focus(const Vec3& p_P);
   /// From hub to tip; empty hides the needle.
@@ -53,10 +53,10 @@ class SliceView : public QWidget {
   void set_frame_at_skin(bool is_at_skin);
   /// The expert path, from the skin to the target.
   void set_path(const std::optional<Segment>& path_P);
-  void set_entry_zone(const std::optional<EntryZone>& zone);
+  void set_entry_zone(const std::optional<tasks::EntryZone>& zone);
   /// What is shown of path, target and zone; with the path also where the needle would go.
   /// With none, lesions are painted as the organ around them.
-  void set_guidance(Guidance guidance);
+  void set_guidance(scene::Guidance guidance);
   /// Does not signal window_changed. Width: at least 1 HU.
   void set_window(double centre_hu, double width_hu);
   /// Of the labels' fill, 0..1.
@@ -67,10 +67,10 @@ class SliceView : public QWidget {
 
   SliceKind kind() const noexcept { return kind_; }
   const Vec3& focus() const noexcept { return focus_P_; }
-  const Window& window() const noexcept { return style_.window; }
+  const slices::Window& window() const noexcept { return style_.window; }
   bool has_labels() const noexcept { return has_labels_; }
   /// Of the picture in device pixels.
-  const SliceGeometry& geometry() const noexcept { return geometry_; }
+  const slices::SliceGeometry& geometry() const noexcept { return geometry_; }
   /// Where the picture lies in the widget, in points.
   QRectF picture_rect() const;
   /// Name, place and window; a dock may take it into its title.
@@ -119,7 +119,7 @@ class SliceView : public QWidget {
   void zoom_at(const QPointF& position, double factor);
   void scroll(double slices);
   double slice_step_mm() const;
-  void change_window(const Window& window);
+  void change_window(const slices::Window& window);
   Eigen::Vector2d to_pixel(const QPointF& position) const;
   void redraw_picture();
   void paint_strip(QPainter& painter, QRectF room) const;
@@ -130,24 +130,24 @@ class SliceView : public QWidget {
 
   SliceKind kind_;
   ViewStrip* strip_;
-  std::shared_ptr<const VirtualPatient> patient_;
-  Box body_P_;
+  std::shared_ptr<const anatomy::VirtualPatient> patient_;
+  slices::Box body_P_;
   Vec3 focus_P_ = Vec3::Zero();
   Pose X_PN_;
   bool is_frame_at_skin_ = false;
   double offset_mm_ = 0.0;  ///< Of a needle's plane from the tip, along the plane's normal.
   std::vector<Vec3> shaft_P_;
   std::optional<Segment> path_P_;
-  std::optional<EntryZone> zone_;
-  Guidance guidance_ = Guidance::kPath;
+  std::optional<tasks::EntryZone> zone_;
+  scene::Guidance guidance_ = scene::Guidance::kPath;
   bool has_labels_ = true;
   bool is_fitted_ = true;  ///< Until someone pans or zooms: a new size fits the picture again.
 
-  SliceGeometry geometry_;
+  slices::SliceGeometry geometry_;
   double device_pixel_ratio_ = 1.0;
-  SliceStyle style_;
-  SliceBuffers buffers_;
-  RgbImage picture_;
+  slices::SliceStyle style_;
+  slices::SliceBuffers buffers_;
+  volume::RgbImage picture_;
   bool is_stale_ = true;  ///< The picture must be painted anew before it is shown.
 
   Drag drag_ = Drag::kNone;

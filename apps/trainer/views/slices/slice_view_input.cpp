@@ -63,7 +63,7 @@ void SliceView::zoom_at(const QPointF& position, double factor) {
 
 double SliceView::slice_step_mm() const {
   if (!patient_) return 1.0;
-  const GridGeometry& grid = patient_->ct.geometry;
+  const volume::GridGeometry& grid = patient_->ct.geometry;
   const Vec3 voxels_per_mm = (grid.R_PV.transpose() * geometry_.axes.normal_P()).cwiseQuotient(grid.spacing_mm);
   return 1.0 / voxels_per_mm.cwiseAbs().maxCoeff();
 }
@@ -77,8 +77,8 @@ void SliceView::scroll(double slices) {
   update();
 }
 
-void SliceView::change_window(const Window& window) {
-  const Window before = style_.window;
+void SliceView::change_window(const slices::Window& window) {
+  const slices::Window before = style_.window;
   set_window(window.center_hu, window.width_hu);
   if (!(style_.window == before)) Q_EMIT window_changed(style_.window.center_hu, style_.window.width_hu);
 }
@@ -153,13 +153,13 @@ void SliceView::keyPressEvent(QKeyEvent* event) {
   const double way_mm = event->modifiers().testFlag(Qt::ShiftModifier) ? 10.0 : 1.0;
   const auto arrow = [&](double right, double down) {
     if (follows_needle()) return pan_by(-kPanStep * QPointF(right, down));
-    const SliceAxes& axes = geometry_.axes;
+    const slices::SliceAxes& axes = geometry_.axes;
     move_focus(focus_P_ + way_mm * (right * axes.u_P + down * axes.v_P));
     follow_anchor();
   };
   const int key = event->key();
-  if (key >= Qt::Key_1 && key < Qt::Key_1 + static_cast<int>(kWindowPresets.size()))
-    return change_window(kWindowPresets[static_cast<std::size_t>(key - Qt::Key_1)].window);
+  if (key >= Qt::Key_1 && key < Qt::Key_1 + static_cast<int>(slices::kWindowPresets.size()))
+    return change_window(slices::kWindowPresets[static_cast<std::size_t>(key - Qt::Key_1)].window);
   switch (key) {
     case Qt::Key_Left:
       return arrow(-1.0, 0.0);

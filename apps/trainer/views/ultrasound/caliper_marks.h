@@ -16,7 +16,7 @@ struct CaliperMark {
 };
 
 /// The nearest mark within 8 points of a place of the view.
-std::optional<CaliperMark> find_mark(const PictureMap& map, std::span<const Measurement> measurements,
+std::optional<CaliperMark> find_mark(const PictureMap& map, std::span<const ultrasound::Measurement> measurements,
                                      const QPointF& place);
 
 }  // namespace trocar::trainer

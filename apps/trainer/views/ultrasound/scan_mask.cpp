@@ -9,14 +9,14 @@ namespace {
 /// Poses are rounded: a picture that moves with its transducer stays within this.
 constexpr double kSame_mm = 0.01;
 
-Vec2 in_plane(const Vec3& v_T) {
+ultrasound::Vec2 in_plane(const Vec3& v_T) {
   return {v_T.x(), v_T.y()};
 }
 
 }  // namespace
 
 const std::vector<std::uint8_t>& ScanMask::of(int columns, int rows, const std::array<Vec3, 3>& corners_P,
-                                              const Pose& X_PT, const ScanGeometry& scan) {
+                                              const Pose& X_PT, const ultrasound::ScanGeometry& scan) {
   const Pose X_TP = X_PT.inverse();
   Key key;
   key.columns = columns;
@@ -34,26 +34,27 @@ const std::vector<std::uint8_t>& ScanMask::of(int columns, int rows, const std::
 }
 
 bool ScanMask::are_near(const Key& a, const Key& b) {
-  const auto near = [](const Vec2& u, const Vec2& v) { return (u - v).norm() < kSame_mm; };
+  const auto near = [](const ultrasound::Vec2& u, const ultrasound::Vec2& v) { return (u - v).norm() < kSame_mm; };
   return a.columns == b.columns && a.rows == b.rows && a.scan == b.scan && near(a.corner_T, b.corner_T) &&
          near(a.right_T, b.right_T) && near(a.down_T, b.down_T);
 }
 
-std::vector<std::uint8_t> ScanMask::painted(const Key& key, const ScanGeometry& scan) {
+std::vector<std::uint8_t> ScanMask::painted(const Key& key, const ultrasound::ScanGeometry& scan) {
   std::vector<std::uint8_t> alpha(static_cast<std::size_t>(key.columns) * static_cast<std::size_t>(key.rows), 0);
   // Half a line's width beyond the outermost ones; without an arc tangent a pixel.
   const double half = 0.5 * scan.lines * scan.line_step;
   const double least_cos = scan.is_fan ? std::cos(half) : 0.0;
-  const auto is_within = [&](const Vec2& p_T) {
+  const auto is_within = [&](const ultrasound::Vec2& p_T) {
     if (!scan.is_fan) return std::abs(p_T.x()) <= half && p_T.y() >= 0.0 && p_T.y() <= scan.depth_mm;
-    const Vec2 from_apex(p_T.x(), p_T.y() + scan.radius_mm);
+    const ultrasound::Vec2 from_apex(p_T.x(), p_T.y() + scan.radius_mm);
     const double r_mm = from_apex.norm();
     return r_mm >= scan.radius_mm && r_mm <= scan.radius_mm + scan.depth_mm && from_apex.y() >= r_mm * least_cos;
   };
   std::size_t at = 0;
   for (int row = 0; row < key.rows; ++row) {
     for (int column = 0; column < key.columns; ++column, ++at) {
-      const Vec2 p_T = key.corner_T + (column + 0.5) / key.columns * key.right_T + (row + 0.5) / key.rows * key.down_T;
+      const ultrasound::Vec2 p_T =
+          key.corner_T + (column + 0.5) / key.columns * key.right_T + (row + 0.5) / key.rows * key.down_T;
       if (is_within(p_T)) alpha[at] = 255;
     }
   }

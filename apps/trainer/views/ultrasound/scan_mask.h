@@ -16,15 +16,15 @@ namespace trocar::trainer {
 class ScanMask {
  public:
   const std::vector<std::uint8_t>& of(int columns, int rows, const std::array<Vec3, 3>& corners_P, const Pose& X_PT,
-                                      const ScanGeometry& scan);
+                                      const ultrasound::ScanGeometry& scan);
 
  private:
   struct Key {
     int columns = 0;
     int rows = 0;
-    Vec2 corner_T{0, 0};
-    Vec2 right_T{0, 0};
-    Vec2 down_T{0, 0};
+    ultrasound::Vec2 corner_T{0, 0};
+    ultrasound::Vec2 right_T{0, 0};
+    ultrasound::Vec2 down_T{0, 0};
     std::array<double, 5> scan{};
   };
   struct Answer {
@@ -33,7 +33,7 @@ class ScanMask {
   };
   static constexpr std::size_t kMostAnswers = 6;
   static bool are_near(const Key& a, const Key& b);
-  static std::vector<std::uint8_t> painted(const Key& key, const ScanGeometry& scan);
+  static std::vector<std::uint8_t> painted(const Key& key, const ultrasound::ScanGeometry& scan);
   std::deque<Answer> answers_;  ///< The newest in front.
 };
 

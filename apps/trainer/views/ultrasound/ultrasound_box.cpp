@@ -10,12 +10,12 @@ constexpr double kEdge = 0.03;
 
 }  // namespace
 
-Vec2 box_place(const ScanGeometry& scan, const Vec2& p_T) noexcept {
-  const Polar at = scan.to_polar(p_T);
+ultrasound::Vec2 box_place(const ultrasound::ScanGeometry& scan, const ultrasound::Vec2& p_T) noexcept {
+  const ultrasound::Polar at = scan.to_polar(p_T);
   return {at.line / (scan.lines - 1), at.depth_mm / scan.depth_mm};
 }
 
-std::optional<BoxPart> find_box_part(const DopplerBox& box, const Vec2& place) noexcept {
+std::optional<BoxPart> find_box_part(const ultrasound::DopplerBox& box, const ultrasound::Vec2& place) noexcept {
   const bool is_across = place.x() >= box.first_line - kEdge && place.x() <= box.last_line + kEdge;
   const bool is_along = place.y() >= box.near - kEdge && place.y() <= box.far + kEdge;
   if (!is_across || !is_along) return std::nullopt;
@@ -26,8 +26,8 @@ std::optional<BoxPart> find_box_part(const DopplerBox& box, const Vec2& place) n
   return BoxPart::kWhole;
 }
 
-DopplerBox moved_box(const DopplerBox& box, BoxPart part, const Vec2& by) noexcept {
-  DopplerBox moved = box;
+ultrasound::DopplerBox moved_box(const ultrasound::DopplerBox& box, BoxPart part, const ultrasound::Vec2& by) noexcept {
+  ultrasound::DopplerBox moved = box;
   switch (part) {
     case BoxPart::kWhole: {
       const double across = std::clamp(by.x(), -box.first_line, 1.0 - box.last_line);

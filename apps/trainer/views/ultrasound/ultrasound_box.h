@@ -10,11 +10,11 @@ namespace trocar::trainer {
 enum class BoxPart { kWhole, kFirst, kLast, kNear, kFar };
 
 /// Share of width (scanlines) and depth of a place in the image plane, as the box counts.
-Vec2 box_place(const ScanGeometry& scan, const Vec2& p_T) noexcept;
+ultrasound::Vec2 box_place(const ultrasound::ScanGeometry& scan, const ultrasound::Vec2& p_T) noexcept;
 /// An edge near the place, the whole from within, or nothing.
-std::optional<BoxPart> find_box_part(const DopplerBox& box, const Vec2& place) noexcept;
+std::optional<BoxPart> find_box_part(const ultrasound::DopplerBox& box, const ultrasound::Vec2& place) noexcept;
 /// The box with that part moved by so much; it stays within the picture and at least kLeastBox wide and high.
-DopplerBox moved_box(const DopplerBox& box, BoxPart part, const Vec2& by) noexcept;
+ultrasound::DopplerBox moved_box(const ultrasound::DopplerBox& box, BoxPart part, const ultrasound::Vec2& by) noexcept;
 inline constexpr double kLeastBox = 0.08;
 
 }  // namespace trocar::trainer

@@ -21,7 +21,8 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr GrayMap kMaps[] = {GrayMap::kSoft, GrayMap::kLinear, GrayMap::kHighContrast};
+constexpr ultrasound::GrayMap kMaps[] = {ultrasound::GrayMap::kSoft, ultrasound::GrayMap::kLinear,
+                                         ultrasound::GrayMap::kHighContrast};
 
 QVBoxLayout* section(QWidget*& widget, const QString& heading) {
   widget = new QWidget;
@@ -85,10 +86,10 @@ UltrasoundControls::UltrasoundControls(UltrasoundView& view, QWidget* parent) : 
 }
 
 void UltrasoundControls::load_tables() {
-  auto transducers = load_transducers(data_dir() / "transducers.toml");
+  auto transducers = ultrasound::load_transducers(data_dir() / "transducers.toml");
   if (transducers) transducers_ = std::move(*transducers);
   if (!transducers) log_warning("{}", transducers.error().text());
-  auto presets = load_scan_presets(data_dir() / "scan_presets.toml");
+  auto presets = ultrasound::load_scan_presets(data_dir() / "scan_presets.toml");
   if (presets) presets_ = std::move(*presets);
   if (!presets) log_warning("{}", presets.error().text());
 }
@@ -107,13 +108,13 @@ QWidget* UltrasoundControls::make_source() {
     return made;
   };
   transducer_ = combo(0, "ultrasound-transducer", tr("Transducer"), tr("The array on the patient"));
-  for (const Transducer& t : transducers_) {
+  for (const ultrasound::Transducer& t : transducers_) {
     transducer_->addItem(to_qt(t.name));
     transducer_->setItemData(transducer_->count() - 1, to_qt(t.description), Qt::ToolTipRole);
   }
   preset_ = combo(1, "ultrasound-preset", tr("Preset"), tr("Transducer and knobs for a kind of examination"));
   preset_->addItem(tr("choose"));
-  for (const ScanPreset& preset : presets_) preset_->addItem(to_qt(preset.title));
+  for (const ultrasound::ScanPreset& preset : presets_) preset_->addItem(to_qt(preset.title));
   box->addLayout(grid);
   connect(transducer_, qOverload<int>(&QComboBox::activated), this, [this](int index) {
     if (index >= 0) view_.choose_transducer(transducers_[static_cast<std::size_t>(index)]);
@@ -125,13 +126,13 @@ QWidget* UltrasoundControls::make_source() {
 }
 
 void UltrasoundControls::apply_preset(int index) {
-  const ScanPreset& preset = presets_[static_cast<std::size_t>(index)];
+  const ultrasound::ScanPreset& preset = presets_[static_cast<std::size_t>(index)];
   const auto transducer = std::find_if(transducers_.begin(), transducers_.end(),
-                                       [&](const Transducer& t) { return t.name == preset.transducer; });
+                                       [&](const ultrasound::Transducer& t) { return t.name == preset.transducer; });
   if (transducer == transducers_.end()) return;
   view_.choose_transducer(*transducer);
   view_.change_settings([&](UltrasoundSettings& s) {
-    s.acquisition = acquisition_of(preset, *transducer);
+    s.acquisition = ultrasound::acquisition_of(preset, *transducer);
     s.display = preset.display;
     s.has_doppler = preset.has_doppler && view_.has_flow();
     s.doppler.scale_cm_per_s = preset.doppler_scale_cm_per_s;
@@ -227,7 +228,7 @@ QWidget* UltrasoundControls::make_picture() {
   gray_map_->setObjectName(QStringLiteral("ultrasound-gray-map"));
   gray_map_->setAccessibleName(tr("Gray map"));
   gray_map_->setToolTip(tr("From echo to gray"));
-  for (const GrayMap map : kMaps) gray_map_->addItem(to_qt(name_of(map)));
+  for (const ultrasound::GrayMap map : kMaps) gray_map_->addItem(to_qt(ultrasound::name_of(map)));
   connect(gray_map_, qOverload<int>(&QComboBox::activated), this,
           [this](int index) { view_.change_settings([&](S& s) { s.display.gray_map = kMaps[index]; }); });
   const int row = grid->rowCount();
@@ -245,9 +246,9 @@ QWidget* UltrasoundControls::make_tgc() {
   QVBoxLayout* box = section(widget, tr("Gain over depth (TGC)"));
   auto* grid = knob_grid();
   grid->setVerticalSpacing(2);
-  for (std::size_t n = 0; n < kTgcSliders; ++n) {
+  for (std::size_t n = 0; n < ultrasound::kTgcSliders; ++n) {
     const QByteArray name = QStringLiteral("ultrasound-tgc-%1").arg(n + 1).toLatin1();
-    const QString label = n == 0 ? tr("near") : n + 1 == kTgcSliders ? tr("far") : QString();
+    const QString label = n == 0 ? tr("near") : n + 1 == ultrasound::kTgcSliders ? tr("far") : QString();
     add_knob(*grid, {name.constData(), label, tr("Gain of layer %1 of 8, from near to far").arg(n + 1), -20, 20, 1,
                      [n](UltrasoundSettings& s) -> double& { return s.display.tgc_db[n]; }, decibels()});
   }
@@ -340,7 +341,7 @@ QWidget* UltrasoundControls::make_doppler() {
 }
 
 void UltrasoundControls::set_ranges() {
-  const Transducer& t = view_.transducer();
+  const ultrasound::Transducer& t = view_.transducer();
   const auto set = [this](const char* name, double low, double high) {
     for (Knob& knob : knobs_) {
       if (knob.slider->objectName() != QLatin1String(name)) continue;
@@ -364,13 +365,13 @@ void UltrasoundControls::show_view() {
     knob.value->setText(knob.text(value));
   }
   for (Check& check : checks_) check.box->setChecked(check.flag(settings));
-  gray_map_->setCurrentIndex(gray_map_->findText(to_qt(name_of(settings.display.gray_map))));
+  gray_map_->setCurrentIndex(gray_map_->findText(to_qt(ultrasound::name_of(settings.display.gray_map))));
   transducer_->setCurrentIndex(transducer_->findText(to_qt(view_.transducer().name)));
   // A preset is of a transducer.
   const int preset = preset_->currentIndex();
   if (preset > 0 && presets_[static_cast<std::size_t>(preset - 1)].transducer != view_.transducer().name)
     preset_->setCurrentIndex(0);
-  const CineState cine = view_.cine();
+  const ultrasound::CineState cine = view_.cine();
   freeze_->setChecked(cine.is_frozen);
   freeze_->setText(cine.is_frozen ? tr("Frozen") : tr("Freeze"));
   cine_row_->setVisible(cine.is_frozen);

@@ -63,8 +63,8 @@ class UltrasoundControls : public QWidget {
   void show_view();
 
   UltrasoundView& view_;
-  std::vector<Transducer> transducers_;
-  std::vector<ScanPreset> presets_;
+  std::vector<ultrasound::Transducer> transducers_;
+  std::vector<ultrasound::ScanPreset> presets_;
   std::vector<Knob> knobs_;
   std::vector<Check> checks_;
   QComboBox* transducer_ = nullptr;

@@ -12,7 +12,8 @@ constexpr int kSteps = 12;
 constexpr double kStep_px = 5.0;
 constexpr double kClearance_px = 4.0;
 
-bool touches(const QRectF& box, const QRectF& picture, const RasterGeometry& raster, const ScanGeometry& scan) {
+bool touches(const QRectF& box, const QRectF& picture, const ultrasound::RasterGeometry& raster,
+             const ultrasound::ScanGeometry& scan) {
   if (box.isEmpty()) return false;
   const QRectF wide = box.adjusted(-kClearance_px, -kClearance_px, kClearance_px, kClearance_px);
   const int columns = std::max(2, static_cast<int>(std::ceil(wide.width() / kStep_px)));
@@ -21,7 +22,7 @@ bool touches(const QRectF& box, const QRectF& picture, const RasterGeometry& ras
     for (int c = 0; c <= columns; ++c) {
       const double x = wide.left() + wide.width() * c / columns - picture.left();
       const double y = wide.top() + wide.height() * r / rows - picture.top();
-      const Polar at = scan.to_polar(raster.to_T(x - 0.5, y - 0.5));
+      const ultrasound::Polar at = scan.to_polar(raster.to_T(x - 0.5, y - 0.5));
       if (at.line >= 0.0 && at.line <= scan.lines - 1 && at.depth_mm >= 0.0 && at.depth_mm <= scan.depth_mm)
         return true;
     }
@@ -30,7 +31,7 @@ bool touches(const QRectF& box, const QRectF& picture, const RasterGeometry& ras
 
 }  // namespace
 
-UltrasoundLayout lay_out(const QSizeF& view, const ScanGeometry& scan, const UltrasoundRoom& room) {
+UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& scan, const UltrasoundRoom& room) {
   UltrasoundLayout layout;
   layout.scale_x = view.width() - room.scale_width;
   layout.caption = QRectF(QPointF(room.margin, room.margin), room.caption);
@@ -45,8 +46,8 @@ UltrasoundLayout lay_out(const QSizeF& view, const ScanGeometry& scan, const Ult
       const QRectF picture(left + marker, marker,
                            std::max(16.0, layout.scale_x - room.margin - left - right - 2.0 * marker),
                            std::max(16.0, view.height() - marker));
-      const RasterGeometry raster =
-          fit_raster(scan, static_cast<int>(picture.width()), static_cast<int>(picture.height()));
+      const ultrasound::RasterGeometry raster =
+          ultrasound::fit_raster(scan, static_cast<int>(picture.width()), static_cast<int>(picture.height()));
       // Among equals the one that moves the picture the least.
       const double moved = 1.0 + 1e-4 * (std::abs(l - r) + l + r);
       if (raster.mm_per_pixel * moved >= best_mm_per_pixel) continue;
@@ -58,21 +59,21 @@ UltrasoundLayout lay_out(const QSizeF& view, const ScanGeometry& scan, const Ult
   return layout;
 }
 
-PictureMap::PictureMap(const QRectF& target, const RasterGeometry& raster) noexcept : raster_(raster) {
+PictureMap::PictureMap(const QRectF& target, const ultrasound::RasterGeometry& raster) noexcept : raster_(raster) {
   scale_ = std::min(target.width() / raster.columns, target.height() / raster.rows);
   const QSizeF size(scale_ * raster.columns, scale_ * raster.rows);
   rect_ = QRectF(target.center() - QPointF(0.5 * size.width(), 0.5 * size.height()), size);
 }
 
-QPointF PictureMap::pixel_to_view(const Vec2& pixel) const noexcept {
+QPointF PictureMap::pixel_to_view(const ultrasound::Vec2& pixel) const noexcept {
   return rect_.topLeft() + scale_ * QPointF(pixel.x() + 0.5, pixel.y() + 0.5);
 }
 
-QPointF PictureMap::to_view(const Vec2& p_T) const noexcept {
+QPointF PictureMap::to_view(const ultrasound::Vec2& p_T) const noexcept {
   return pixel_to_view(raster_.to_pixel(p_T));
 }
 
-Vec2 PictureMap::to_T(const QPointF& place) const noexcept {
+ultrasound::Vec2 PictureMap::to_T(const QPointF& place) const noexcept {
   const QPointF pixel = (place - rect_.topLeft()) / scale_;
   return raster_.to_T(pixel.x() - 0.5, pixel.y() - 0.5);
 }

@@ -25,21 +25,21 @@ struct UltrasoundLayout {
   QRectF bars;
   double scale_x = 0.0;  ///< Of the depth scale's line.
 };
-UltrasoundLayout lay_out(const QSizeF& view, const ScanGeometry& scan, const UltrasoundRoom& room);
+UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& scan, const UltrasoundRoom& room);
 
 /// From a picture's pixels to the widget's and back: the raster as large as fits into the layout's picture.
 class PictureMap {
  public:
-  PictureMap(const QRectF& target, const RasterGeometry& raster) noexcept;
-  QPointF to_view(const Vec2& p_T) const noexcept;
-  Vec2 to_T(const QPointF& place) const noexcept;
+  PictureMap(const QRectF& target, const ultrasound::RasterGeometry& raster) noexcept;
+  QPointF to_view(const ultrasound::Vec2& p_T) const noexcept;
+  ultrasound::Vec2 to_T(const QPointF& place) const noexcept;
   /// A place in the raster's pixels.
-  QPointF pixel_to_view(const Vec2& pixel) const noexcept;
+  QPointF pixel_to_view(const ultrasound::Vec2& pixel) const noexcept;
   QRectF rect() const noexcept { return rect_; }
   double pixels_per_mm() const noexcept { return scale_ / raster_.mm_per_pixel; }
 
  private:
-  RasterGeometry raster_;
+  ultrasound::RasterGeometry raster_;
   QRectF rect_;
   double scale_ = 1.0;  ///< The widget's pixels for each of the raster.
 };

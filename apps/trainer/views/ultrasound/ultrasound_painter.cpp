@@ -61,16 +61,16 @@ QPen dotted(const QColor& color, double width) {
 
 }  // namespace
 
-std::vector<CaptionLine> caption_of(const ScanPicture& picture, const CaptionFacts& facts) {
+std::vector<CaptionLine> caption_of(const ultrasound::ScanPicture& picture, const CaptionFacts& facts) {
   using Kind = CaptionLine::Kind;
-  ScanCaption caption;
+  ultrasound::ScanCaption caption;
   caption.transducer = to_std(facts.transducer);
   caption.frequency_mhz = picture.acquisition.frequency_mhz;
   caption.focus_mm = picture.acquisition.focus_mm;
   caption.settings = picture.display;
-  const ScanAnnotation annotation = make_scan_annotation(picture.raster, picture.scan, caption);
+  const ultrasound::ScanAnnotation annotation = ultrasound::make_scan_annotation(picture.raster, picture.scan, caption);
   std::vector<CaptionLine> lines;
-  for (const ScanAnnotation::Text& text : annotation.texts)
+  for (const ultrasound::ScanAnnotation::Text& text : annotation.texts)
     if (text.column < annotation.scale_column) lines.push_back({to_qt(text.text), Kind::kPlain});
   if (!lines.empty()) lines.front().kind = Kind::kName;
   if (facts.is_small) lines.resize(std::min<std::size_t>(lines.size(), 1));
@@ -88,8 +88,8 @@ std::vector<CaptionLine> caption_of(const ScanPicture& picture, const CaptionFac
   }
   if (picture.unscanned_share > kUnscanned) lines.push_back({QStringLiteral("Outside CT"), Kind::kWarning});
   int number = 1;
-  for (const Measurement& measurement : facts.measurements) {
-    const std::vector<std::string> texts = results(measurement);
+  for (const ultrasound::Measurement& measurement : facts.measurements) {
+    const std::vector<std::string> texts = ultrasound::results(measurement);
     for (std::size_t n = 0; n < texts.size(); ++n)
       lines.push_back(
           {(n == 0 ? QStringLiteral("%1  ").arg(number) : QStringLiteral("    ")) + to_qt(texts[n]), Kind::kResult});
@@ -132,15 +132,15 @@ void draw_caption(QPainter& painter, const QRectF& place, const std::vector<Capt
   }
 }
 
-QPointF marker_place(const PictureMap& map, const ScanAnnotation& annotation) {
+QPointF marker_place(const PictureMap& map, const ultrasound::ScanAnnotation& annotation) {
   // A coarse raster's pixels are larger than the widget's and would move the marker out of the view.
   const QPointF marker = map.pixel_to_view(annotation.marker_pixel);
   const QRectF room = map.rect().adjusted(-kMarkerBeside_px, -kMarkerBeside_px, kMarkerBeside_px, kMarkerBeside_px);
   return {std::clamp(marker.x(), room.left(), room.right()), std::clamp(marker.y(), room.top(), room.bottom())};
 }
 
-void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x, const ScanAnnotation& annotation,
-                      const QFont& font) {
+void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x,
+                      const ultrasound::ScanAnnotation& annotation, const QFont& font) {
   const QFontMetricsF metrics(font);
   painter.setFont(font);
   int longest = 1;
@@ -168,8 +168,8 @@ void draw_depth_scale(QPainter& painter, const PictureMap& map, double scale_x, 
   painter.setBrush(Qt::NoBrush);
 }
 
-void draw_bars(QPainter& painter, const QRectF& place, const ScanAnnotation& annotation, const ScanPicture& picture,
-               const QFont& font) {
+void draw_bars(QPainter& painter, const QRectF& place, const ultrasound::ScanAnnotation& annotation,
+               const ultrasound::ScanPicture& picture, const QFont& font) {
   const bool has_doppler = picture.doppler_scale_cm_per_s > 0.0;
   const double above = has_doppler ? line_height(font) : 0.0;
   const double below = has_doppler ? 2.0 * line_height(font) : 0.0;
@@ -186,7 +186,7 @@ void draw_bars(QPainter& painter, const QRectF& place, const ScanAnnotation& ann
   QImage colours(1, kRows, QImage::Format_RGB32);
   const double b = picture.doppler.baseline;
   for (int r = 0; r < kRows; ++r) {
-    const Rgb c = doppler_colour(b + 1.0 - 2.0 * (r + 0.5) / kRows, picture.doppler);
+    const volume::Rgb c = ultrasound::doppler_colour(b + 1.0 - 2.0 * (r + 0.5) / kRows, picture.doppler);
     colours.setPixelColor(0, r, QColor(c[0], c[1], c[2]));
   }
   painter.drawImage(bar, colours);
@@ -211,9 +211,10 @@ void draw_line(QPainter& painter, const QPointF& a, const QPointF& b, const QPen
   painter.setPen(ink);
 }
 
-void draw_outline(QPainter& painter, const PictureMap& map, const EllipseCaliper& ellipse, const QPen& line) {
+void draw_outline(QPainter& painter, const PictureMap& map, const ultrasound::EllipseCaliper& ellipse,
+                  const QPen& line) {
   QPolygonF outline;
-  for (const Vec2& p_T : ellipse.outline_T(kOutlinePoints)) outline << map.to_view(p_T);
+  for (const ultrasound::Vec2& p_T : ellipse.outline_T(kOutlinePoints)) outline << map.to_view(p_T);
   const QPen ink = painter.pen();
   painter.setPen(line);
   painter.drawPolygon(outline);
@@ -222,18 +223,18 @@ void draw_outline(QPainter& painter, const PictureMap& map, const EllipseCaliper
 
 }  // namespace
 
-void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const Measurement> measurements,
+void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Measurement> measurements,
                        std::optional<std::size_t> chosen) {
   painter.setBrush(Qt::NoBrush);
   painter.setFont(caption_font(false));
   for (std::size_t n = 0; n < measurements.size(); ++n) {
-    const Measurement& measurement = measurements[n];
+    const ultrasound::Measurement& measurement = measurements[n];
     const bool is_chosen = chosen == n;
     const QPen line = dotted(kCaliperInk, is_chosen ? 1.8 : 1.2);
     painter.setPen(QPen(kCaliperInk, is_chosen ? 1.8 : 1.2));
     std::vector<QPointF> marks;
-    for (const Vec2& mark_T : marks_T(measurement)) marks.push_back(map.to_view(mark_T));
-    if (const auto* ellipse = std::get_if<EllipseCaliper>(&measurement)) {
+    for (const ultrasound::Vec2& mark_T : marks_T(measurement)) marks.push_back(map.to_view(mark_T));
+    if (const auto* ellipse = std::get_if<ultrasound::EllipseCaliper>(&measurement)) {
       draw_outline(painter, map, *ellipse, line);
     } else {
       for (std::size_t end = 1; end < marks.size(); ++end) draw_line(painter, marks[0], marks[end], line);
@@ -241,22 +242,22 @@ void draw_measurements(QPainter& painter, const PictureMap& map, std::span<const
     for (const QPointF& mark : marks) draw_cross(painter, mark, kCross_px);
     if (is_chosen)
       for (const QPointF& mark : marks) painter.drawEllipse(mark, kCross_px + 3.0, kCross_px + 3.0);
-    const QPointF& last = marks[std::holds_alternative<AngleCaliper>(measurement) ? 2 : 1];
+    const QPointF& last = marks[std::holds_alternative<ultrasound::AngleCaliper>(measurement) ? 2 : 1];
     draw_tag(painter, last + QPointF(kCross_px + (is_chosen ? 6.0 : 3.0), -3.0), QString::number(n + 1));
   }
 }
 
-void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const Vec2> marks_T, const Vec2& hover_T,
-                     bool is_ellipse, bool is_angle) {
+void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> marks_T,
+                     const ultrasound::Vec2& hover_T, bool is_ellipse, bool is_angle) {
   painter.setBrush(Qt::NoBrush);
   painter.setPen(QPen(kCaliperInk, 1.2));
   const QPen line = dotted(kCaliperInk, 1.2);
   const QPointF hover = map.to_view(hover_T);
-  for (const Vec2& mark_T : marks_T) draw_cross(painter, map.to_view(mark_T), kCross_px);
+  for (const ultrasound::Vec2& mark_T : marks_T) draw_cross(painter, map.to_view(mark_T), kCross_px);
   draw_cross(painter, hover, kCross_px);
   if (marks_T.empty()) return;
   if (is_ellipse && marks_T.size() == 2) {
-    EllipseCaliper ellipse{marks_T[0], marks_T[1], 0.0};
+    ultrasound::EllipseCaliper ellipse{marks_T[0], marks_T[1], 0.0};
     ellipse.half_width_mm = ellipse.distance_to_axis_mm(hover_T);
     draw_outline(painter, map, ellipse, line);
     return;
@@ -265,7 +266,7 @@ void draw_unfinished(QPainter& painter, const PictureMap& map, std::span<const V
   draw_line(painter, is_angle ? map.to_view(marks_T[0]) : map.to_view(marks_T.back()), hover, line);
 }
 
-void draw_guide(QPainter& painter, const PictureMap& map, std::span<const Vec2> line_T) {
+void draw_guide(QPainter& painter, const PictureMap& map, std::span<const ultrasound::Vec2> line_T) {
   painter.setBrush(theme().path);
   painter.setPen(Qt::NoPen);
   double along_mm = 0.0, next_mm = 0.0;
@@ -275,7 +276,7 @@ void draw_guide(QPainter& painter, const PictureMap& map, std::span<const Vec2> 
   for (std::size_t n = 1; n < line_T.size(); ++n) {
     const double length_mm = (line_T[n] - line_T[n - 1]).norm();
     for (; length_mm > 0.0 && next_mm <= along_mm + length_mm; next_mm += kDot_mm, ++dots) {
-      const Vec2 at_T = line_T[n - 1] + (next_mm - along_mm) / length_mm * (line_T[n] - line_T[n - 1]);
+      const ultrasound::Vec2 at_T = line_T[n - 1] + (next_mm - along_mm) / length_mm * (line_T[n] - line_T[n - 1]);
       painter.drawEllipse(map.to_view(at_T), dots % kDotsPerCm == 0 ? 2.2 : 1.0, dots % kDotsPerCm == 0 ? 2.2 : 1.0);
     }
     along_mm += length_mm;
@@ -283,7 +284,7 @@ void draw_guide(QPainter& painter, const PictureMap& map, std::span<const Vec2> 
   painter.setBrush(Qt::NoBrush);
 }
 
-void draw_needle_axis(QPainter& painter, const PictureMap& map, const ScanPicture& picture,
+void draw_needle_axis(QPainter& painter, const PictureMap& map, const ultrasound::ScanPicture& picture,
                       std::span<const Vec3> shaft_P) {
   if (shaft_P.size() < 2) return;
   const Vec3 tip_P = shaft_P.back();
@@ -295,7 +296,7 @@ void draw_needle_axis(QPainter& painter, const PictureMap& map, const ScanPictur
   QPolygonF near;
   for (double s = 0.0; s <= kAhead_mm; s += kAxisStep_mm)
     if (std::abs(tip_T.z() + s * along_T.z()) <= kNearPlane_mm)
-      near << map.to_view(shown_place_T(picture, tip_P + s * along_P));
+      near << map.to_view(ultrasound::shown_place_T(picture, tip_P + s * along_P));
   painter.setBrush(Qt::NoBrush);
   painter.setPen(dotted(theme().path, 2.0));
   painter.drawPolyline(near);
@@ -303,7 +304,7 @@ void draw_needle_axis(QPainter& painter, const PictureMap& map, const ScanPictur
   constexpr double kLeastSlope = 0.05;
   if (std::abs(along_T.z()) < kLeastSlope) return;
   const double pierce_mm = -tip_T.z() / along_T.z();
-  const QPointF at = map.to_view(shown_place_T(picture, tip_P + pierce_mm * along_P));
+  const QPointF at = map.to_view(ultrasound::shown_place_T(picture, tip_P + pierce_mm * along_P));
   painter.setPen(QPen(QColor(0, 0, 0, 200), 4.0));
   draw_cross(painter, at, 8.0);
   painter.setPen(QPen(theme().path, 2.0));

@@ -31,25 +31,25 @@ void visit(UltrasoundSettings& s, const Visitor& knob) {
   knob("guide/is_on_marked_side", s.guide.is_on_marked_side);
 }
 
-QString group(const Transducer& transducer) {
+QString group(const ultrasound::Transducer& transducer) {
   return QStringLiteral("ultrasound/") + to_qt(transducer.name);
 }
 
 }  // namespace
 
-UltrasoundSettings default_settings(const Transducer& transducer) {
+UltrasoundSettings default_settings(const ultrasound::Transducer& transducer) {
   UltrasoundSettings settings;
-  settings.acquisition = default_acquisition(transducer);
+  settings.acquisition = ultrasound::default_acquisition(transducer);
   settings.doppler.frequency_mhz = std::max(transducer.lowest_mhz, 0.8 * transducer.frequency_mhz);
   return settings;
 }
 
-UltrasoundSettings within_ranges(const UltrasoundSettings& settings, const Transducer& transducer) {
-  ScanRequest request;
+UltrasoundSettings within_ranges(const UltrasoundSettings& settings, const ultrasound::Transducer& transducer) {
+  ultrasound::ScanRequest request;
   request.acquisition = settings.acquisition;
   request.display = settings.display;
   request.doppler = settings.doppler;
-  request = trocar::within_ranges(request, transducer);
+  request = trocar::ultrasound::within_ranges(request, transducer);
   UltrasoundSettings held = settings;
   held.acquisition = request.acquisition;
   held.display = request.display;
@@ -59,7 +59,7 @@ UltrasoundSettings within_ranges(const UltrasoundSettings& settings, const Trans
   return held;
 }
 
-UltrasoundSettings load_settings(const Transducer& transducer) {
+UltrasoundSettings load_settings(const ultrasound::Transducer& transducer) {
   UltrasoundSettings settings = default_settings(transducer);
   QSettings store;
   store.beginGroup(group(transducer));
@@ -67,17 +67,17 @@ UltrasoundSettings load_settings(const Transducer& transducer) {
     const QVariant kept = store.value(QString::fromLatin1(name));
     if (kept.canConvert<std::decay_t<decltype(value)>>()) value = kept.value<std::decay_t<decltype(value)>>();
   });
-  const auto map = parse_gray_map(to_std(store.value(QStringLiteral("gray_map")).toString()));
+  const auto map = ultrasound::parse_gray_map(to_std(store.value(QStringLiteral("gray_map")).toString()));
   if (map) settings.display.gray_map = *map;
   return within_ranges(settings, transducer);
 }
 
-void save_settings(const Transducer& transducer, const UltrasoundSettings& settings) {
+void save_settings(const ultrasound::Transducer& transducer, const UltrasoundSettings& settings) {
   QSettings store;
   store.beginGroup(group(transducer));
   UltrasoundSettings kept = settings;
   visit(kept, [&](const char* name, auto& value) { store.setValue(QString::fromLatin1(name), value); });
-  store.setValue(QStringLiteral("gray_map"), to_qt(name_of(settings.display.gray_map)));
+  store.setValue(QStringLiteral("gray_map"), to_qt(ultrasound::name_of(settings.display.gray_map)));
 }
 
 }  // namespace trocar::trainer

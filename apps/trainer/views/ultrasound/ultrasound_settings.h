@@ -1,8 +1,8 @@
 #pragma once
 
+#include "ultrasound/doppler/doppler_settings.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/scanner/display_settings.h"
-#include "ultrasound/doppler/doppler_settings.h"
 
 namespace trocar::trainer {
 
@@ -17,22 +17,22 @@ struct NeedleGuide {
 
 /// All knobs of the ultrasound view.
 struct UltrasoundSettings {
-  Acquisition acquisition;
-  DisplaySettings display;
+  ultrasound::Acquisition acquisition;
+  ultrasound::DisplaySettings display;
   bool has_doppler = false;
-  DopplerSettings doppler;
+  ultrasound::DopplerSettings doppler;
   NeedleGuide guide;
 
   bool operator==(const UltrasoundSettings&) const = default;
 };
 
-UltrasoundSettings default_settings(const Transducer& transducer);
+UltrasoundSettings default_settings(const ultrasound::Transducer& transducer);
 /// Every knob in its range.
-UltrasoundSettings within_ranges(const UltrasoundSettings& settings, const Transducer& transducer);
+UltrasoundSettings within_ranges(const UltrasoundSettings& settings, const ultrasound::Transducer& transducer);
 
 /// As they were left for that transducer (QSettings, group "ultrasound"); the defaults where nothing was kept. Doppler
 /// begins switched off.
-UltrasoundSettings load_settings(const Transducer& transducer);
-void save_settings(const Transducer& transducer, const UltrasoundSettings& settings);
+UltrasoundSettings load_settings(const ultrasound::Transducer& transducer);
+void save_settings(const ultrasound::Transducer& transducer, const UltrasoundSettings& settings);
 
 }  // namespace trocar::trainer

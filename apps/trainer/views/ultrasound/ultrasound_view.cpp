@@ -25,17 +25,17 @@ constexpr double kBracket_mm = 8.0;
 constexpr double kGuideStep_mm = 1.0;
 constexpr int kEdgePoints = 48;
 
-bool is_same(const ScanGeometry& a, const ScanGeometry& b) noexcept {
+bool is_same(const ultrasound::ScanGeometry& a, const ultrasound::ScanGeometry& b) noexcept {
   return a.is_fan == b.is_fan && a.radius_mm == b.radius_mm && a.line_step == b.line_step && a.lines == b.lines &&
          a.depth_mm == b.depth_mm;
 }
 
-bool is_same(const CineState& a, const CineState& b) noexcept {
+bool is_same(const ultrasound::CineState& a, const ultrasound::CineState& b) noexcept {
   return a.is_frozen == b.is_frozen && a.is_playing == b.is_playing && a.position == b.position && a.size == b.size;
 }
 
 /// Outline of the scan in the view.
-QPainterPath outline_of(const ScanGeometry& scan, const PictureMap& map) {
+QPainterPath outline_of(const ultrasound::ScanGeometry& scan, const PictureMap& map) {
   QPolygonF edge;
   const double last = scan.lines - 1;
   for (int n = 0; n <= kEdgePoints; ++n) edge << map.to_view(scan.to_cartesian({last * n / kEdgePoints, 0.0}));
@@ -48,9 +48,9 @@ QPainterPath outline_of(const ScanGeometry& scan, const PictureMap& map) {
 }
 
 /// Hatches all but a polygon of the image plane: what the CT does not reach.
-void hatch_unscanned(QPainter& painter, const PictureMap& map, const std::vector<Vec2>& scanned_T) {
+void hatch_unscanned(QPainter& painter, const PictureMap& map, const std::vector<ultrasound::Vec2>& scanned_T) {
   QPolygonF scanned;
-  for (const Vec2& corner_T : scanned_T) scanned << map.to_view(corner_T);
+  for (const ultrasound::Vec2& corner_T : scanned_T) scanned << map.to_view(corner_T);
   QPainterPath hatched, seen;
   hatched.addRect(map.rect());
   seen.addPolygon(scanned);
@@ -75,8 +75,9 @@ UltrasoundView::~UltrasoundView() {
   save_now();
 }
 
-void UltrasoundView::show_patient(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow,
-                                  const Transducer& transducer) {
+void UltrasoundView::show_patient(std::shared_ptr<const ultrasound::AcousticScene> scene,
+                                  std::shared_ptr<const ultrasound::VesselFlow> flow,
+                                  const ultrasound::Transducer& transducer) {
   save_now();
   scene_ = std::move(scene);
   flow_ = std::move(flow);
@@ -95,7 +96,7 @@ void UltrasoundView::show_patient(std::shared_ptr<const AcousticScene> scene, st
   Q_EMIT changed();
 }
 
-void UltrasoundView::choose_transducer(const Transducer& transducer) {
+void UltrasoundView::choose_transducer(const ultrasound::Transducer& transducer) {
   if (scene_ && transducer.name != transducer_.name) show_patient(scene_, flow_, transducer);
 }
 
@@ -121,8 +122,8 @@ void UltrasoundView::advance(double now_s) {
   if (X_PT_) scanner_.request(make_request(now_s));
 }
 
-ScanRequest UltrasoundView::make_request(double now_s) {
-  ScanRequest request;
+ultrasound::ScanRequest UltrasoundView::make_request(double now_s) {
+  ultrasound::ScanRequest request;
   request.X_PT = *X_PT_;
   request.needle_shaft_P = needle_shaft_P_;
   request.needle_diameter_mm = needle_diameter_mm_;
@@ -142,15 +143,15 @@ ScanRequest UltrasoundView::make_request(double now_s) {
 }
 
 void UltrasoundView::take_picture(double now_s) {
-  std::shared_ptr<const ScanPicture> newest = scanner_.newest();
-  const CineState cine = scanner_.cine();
+  std::shared_ptr<const ultrasound::ScanPicture> newest = scanner_.newest();
+  const ultrasound::CineState cine = scanner_.cine();
   const bool is_state_new = !is_same(cine, shown_cine_);
   const bool is_freezing_new = cine.is_frozen != shown_cine_.is_frozen || cine.is_playing != shown_cine_.is_playing;
   shown_cine_ = cine;
   if (newest && newest != picture_) {
     count_picture(now_s, !newest->is_frozen);
     picture_ = std::move(newest);
-    const ScanPicture& p = *picture_;
+    const ultrasound::ScanPicture& p = *picture_;
     if (p.colour.pixels.empty()) {
       image_ = QImage(p.gray.pixels.data(), p.gray.columns, p.gray.rows, p.gray.columns, QImage::Format_Grayscale8);
     } else {
@@ -234,9 +235,9 @@ void UltrasoundView::play_cine(bool is_playing) {
   scanner_.play_cine(is_playing);
 }
 
-ScanGeometry UltrasoundView::wished_scan() const {
-  const Acquisition& a = settings_.acquisition;
-  return make_scan_geometry(transducer_, a.depth_mm, a.lines, a.samples);
+ultrasound::ScanGeometry UltrasoundView::wished_scan() const {
+  const ultrasound::Acquisition& a = settings_.acquisition;
+  return ultrasound::make_scan_geometry(transducer_, a.depth_mm, a.lines, a.samples);
 }
 
 std::optional<PictureMap> UltrasoundView::picture_map() const {
@@ -265,7 +266,7 @@ UltrasoundRoom UltrasoundView::room() const {
   return room;
 }
 
-const UltrasoundLayout& UltrasoundView::layout_for(const ScanGeometry& scan) const {
+const UltrasoundLayout& UltrasoundView::layout_for(const ultrasound::ScanGeometry& scan) const {
   const UltrasoundRoom wanted = room();
   const LayoutKey key{QSizeF(size()), wanted.caption, wanted.bars, scan};
   const bool is_known = layout_key_ && layout_key_->view == key.view && layout_key_->caption == key.caption &&
@@ -278,18 +279,18 @@ const UltrasoundLayout& UltrasoundView::layout_for(const ScanGeometry& scan) con
 }
 
 /// The bracket's line through the scan, as far as it goes.
-std::vector<Vec2> UltrasoundView::guide_line_T() const {
+std::vector<ultrasound::Vec2> UltrasoundView::guide_line_T() const {
   const NeedleGuide& guide = settings_.guide;
-  const ScanGeometry& scan = picture_->scan;
+  const ultrasound::ScanGeometry& scan = picture_->scan;
   const double side = guide.is_on_marked_side ? 1.0 : -1.0;
-  const Vec2 end_T = scan.line_origin(guide.is_on_marked_side ? scan.lines - 1 : 0);
+  const ultrasound::Vec2 end_T = scan.line_origin(guide.is_on_marked_side ? scan.lines - 1 : 0);
   const double angle = guide.angle_deg * std::numbers::pi / 180.0;
-  const Vec2 start_T = end_T + Vec2(side * kBracket_mm, 0.0);
-  const Vec2 along_T(-side * std::sin(angle), std::cos(angle));
-  std::vector<Vec2> line_T;
+  const ultrasound::Vec2 start_T = end_T + ultrasound::Vec2(side * kBracket_mm, 0.0);
+  const ultrasound::Vec2 along_T(-side * std::sin(angle), std::cos(angle));
+  std::vector<ultrasound::Vec2> line_T;
   for (double s = 0.0; s <= 2.0 * scan.depth_mm; s += kGuideStep_mm) {
-    const Vec2 p_T = start_T + s * along_T;
-    line_T.push_back(shown_place_T(*picture_, picture_->X_PT * Vec3(p_T.x(), p_T.y(), 0.0)));
+    const ultrasound::Vec2 p_T = start_T + s * along_T;
+    line_T.push_back(ultrasound::shown_place_T(*picture_, picture_->X_PT * Vec3(p_T.x(), p_T.y(), 0.0)));
   }
   return line_T;
 }
@@ -311,10 +312,11 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
   painter.setRenderHint(QPainter::SmoothPixmapTransform, !is_exact);
   painter.drawImage(map.rect(), image_);
 
-  ScanCaption caption;
+  ultrasound::ScanCaption caption;
   caption.focus_mm = picture_->acquisition.focus_mm;
   caption.settings = picture_->display;
-  const ScanAnnotation annotation = make_scan_annotation(picture_->raster, picture_->scan, caption);
+  const ultrasound::ScanAnnotation annotation =
+      ultrasound::make_scan_annotation(picture_->raster, picture_->scan, caption);
   const QFont font = caption_font(is_small);
   const CaptionFacts facts{to_qt(transducer_.name), frames_per_s_, shown_cine_, measurements_.items(), is_small};
   draw_caption(painter, layout.caption, caption_of(*picture_, facts), font);

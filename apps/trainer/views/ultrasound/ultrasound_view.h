@@ -34,8 +34,8 @@ class UltrasoundView : public QWidget {
   ~UltrasoundView() override;
 
   /// Begins with another patient; `flow` may be nullptr. The knobs are those that were kept for the transducer.
-  void show_patient(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow,
-                    const Transducer& transducer);
+  void show_patient(std::shared_ptr<const ultrasound::AcousticScene> scene,
+                    std::shared_ptr<const ultrasound::VesselFlow> flow, const ultrasound::Transducer& transducer);
   void set_transducer_pose(const Pose& X_PT);
   /// From the hub to the tip; empty: none. `bore_share` and `tip_shift_mm` as in ScanRequest.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, double bore_share = 0.0,
@@ -44,7 +44,7 @@ class UltrasoundView : public QWidget {
   /// time; the heart beats by it.
   void advance(double now_s);
   /// The newest; nullptr before the first.
-  std::shared_ptr<const ScanPicture> picture() const { return picture_; }
+  std::shared_ptr<const ultrasound::ScanPicture> picture() const { return picture_; }
 
   /// Whether there is a guide at all; none is shown, whatever is set, where it is not offered.
   void set_guide_offered(bool is_offered);
@@ -55,9 +55,9 @@ class UltrasoundView : public QWidget {
 
   bool has_patient() const noexcept { return scene_ != nullptr; }
   bool has_flow() const noexcept { return flow_ != nullptr; }
-  const Transducer& transducer() const noexcept { return transducer_; }
+  const ultrasound::Transducer& transducer() const noexcept { return transducer_; }
   /// Another array on the same patient, with its own knobs; the patient's view begins anew.
-  void choose_transducer(const Transducer& transducer);
+  void choose_transducer(const ultrasound::Transducer& transducer);
 
   const UltrasoundSettings& settings() const noexcept { return settings_; }
   /// Knobs beyond their range are held in it. Kept for the next time.
@@ -67,14 +67,14 @@ class UltrasoundView : public QWidget {
 
   void set_frozen(bool is_frozen);
   bool is_frozen() const { return scanner_.cine().is_frozen; }
-  CineState cine() const { return scanner_.cine(); }
+  ultrasound::CineState cine() const { return scanner_.cine(); }
   void step_cine(int frames);
   void show_cine(int index);
   void play_cine(bool is_playing);
 
   void start_measuring(MeasuringTool tool);
   MeasuringTool measuring_tool() const noexcept { return tool_; }
-  const Measurements& measurements() const noexcept { return measurements_; }
+  const ultrasound::Measurements& measurements() const noexcept { return measurements_; }
   void undo_measurement();
   void redo_measurement();
   /// The one whose mark was picked up last; nothing after a click beside all marks.
@@ -108,30 +108,30 @@ class UltrasoundView : public QWidget {
   /// A colour box between the mouse's press and its release.
   struct BoxDrag {
     BoxPart part = BoxPart::kWhole;
-    DopplerBox begun;
-    Vec2 from{0.0, 0.0};
+    ultrasound::DopplerBox begun;
+    ultrasound::Vec2 from{0.0, 0.0};
   };
 
   /// A mark between the mouse's press and its release.
   struct Grip {
     CaliperMark mark;
-    Vec2 beside_T{0.0, 0.0};  ///< Of the mark from where it was picked up.
+    ultrasound::Vec2 beside_T{0.0, 0.0};  ///< Of the mark from where it was picked up.
     bool has_moved = false;
   };
 
   void make_shortcuts();
-  ScanRequest make_request(double now_s);
+  ultrasound::ScanRequest make_request(double now_s);
   void take_picture(double now_s);
   void count_picture(double now_s, bool is_live);
   void save_now();
 
-  ScanGeometry wished_scan() const;
+  ultrasound::ScanGeometry wished_scan() const;
   UltrasoundRoom room() const;
-  const UltrasoundLayout& layout_for(const ScanGeometry& scan) const;
-  std::vector<Vec2> guide_line_T() const;
-  void set_mark(const Vec2& p_T);
+  const UltrasoundLayout& layout_for(const ultrasound::ScanGeometry& scan) const;
+  std::vector<ultrasound::Vec2> guide_line_T() const;
+  void set_mark(const ultrasound::Vec2& p_T);
   bool begin_grip(const QPointF& place);
-  void move_grip(const Vec2& to_T);
+  void move_grip(const ultrasound::Vec2& to_T);
   void forget_choice();
   bool begin_box_drag(const QPointF& place);
   void show_cursor(const QPointF& place);
@@ -139,10 +139,10 @@ class UltrasoundView : public QWidget {
   void leave_tool();
   void measurements_changed();
 
-  LiveScanner scanner_;
-  std::shared_ptr<const AcousticScene> scene_;
-  std::shared_ptr<const VesselFlow> flow_;
-  Transducer transducer_;
+  ultrasound::LiveScanner scanner_;
+  std::shared_ptr<const ultrasound::AcousticScene> scene_;
+  std::shared_ptr<const ultrasound::VesselFlow> flow_;
+  ultrasound::Transducer transducer_;
   UltrasoundSettings settings_;
   bool is_saving_wanted_ = false;
   double changed_s_ = 0.0, now_s_ = 0.0;
@@ -152,16 +152,16 @@ class UltrasoundView : public QWidget {
   double needle_diameter_mm_ = 1.2, needle_bore_share_ = 0.0, tip_shift_mm_ = 0.0;
   bool is_guide_visible_ = false, is_guide_offered_ = true;
 
-  std::shared_ptr<const ScanPicture> picture_;
+  std::shared_ptr<const ultrasound::ScanPicture> picture_;
   QImage image_;  ///< Of the picture's pixels, which it does not own.
   double frames_per_s_ = 0.0, counting_since_s_ = -1.0;
   int counted_ = 0;
-  CineState shown_cine_;
+  ultrasound::CineState shown_cine_;
 
   MeasuringTool tool_ = MeasuringTool::kNone;
-  Measurements measurements_;
-  std::vector<Vec2> marks_T_;  ///< Of a measurement in the making.
-  Vec2 hover_T_{0.0, 0.0};
+  ultrasound::Measurements measurements_;
+  std::vector<ultrasound::Vec2> marks_T_;  ///< Of a measurement in the making.
+  ultrasound::Vec2 hover_T_{0.0, 0.0};
   QPointF pressed_at_;
   bool is_pressed_ = false;
   std::optional<BoxDrag> box_drag_;
@@ -171,7 +171,7 @@ class UltrasoundView : public QWidget {
 
   struct LayoutKey {
     QSizeF view, caption, bars;
-    ScanGeometry scan;
+    ultrasound::ScanGeometry scan;
   };
   mutable std::optional<LayoutKey> layout_key_;
   mutable UltrasoundLayout layout_;

@@ -27,10 +27,10 @@ double turned(const QWheelEvent& event) noexcept {
 }
 
 /// The third mark of an ellipse is beside its axis.
-Measurement finished(MeasuringTool tool, const std::vector<Vec2>& m) {
-  if (tool == MeasuringTool::kDistance) return DistanceCaliper{m[0], m[1]};
-  if (tool == MeasuringTool::kAngle) return AngleCaliper{m[0], m[1], m[2]};
-  EllipseCaliper ellipse{m[0], m[1], 0.0};
+ultrasound::Measurement finished(MeasuringTool tool, const std::vector<ultrasound::Vec2>& m) {
+  if (tool == MeasuringTool::kDistance) return ultrasound::DistanceCaliper{m[0], m[1]};
+  if (tool == MeasuringTool::kAngle) return ultrasound::AngleCaliper{m[0], m[1], m[2]};
+  ultrasound::EllipseCaliper ellipse{m[0], m[1], 0.0};
   ellipse.half_width_mm = ellipse.distance_to_axis_mm(m[2]);
   return ellipse;
 }
@@ -125,7 +125,7 @@ bool UltrasoundView::begin_grip(const QPointF& place) {
     if (std::exchange(chosen_, std::nullopt)) measurements_changed();
     return false;
   }
-  const Vec2 mark_T = marks_T(measurements_.items()[found->item])[found->mark];
+  const ultrasound::Vec2 mark_T = ultrasound::marks_T(measurements_.items()[found->item])[found->mark];
   grip_ = Grip{*found, mark_T - map->to_T(place), false};
   chosen_ = found->item;
   setFocus();
@@ -133,14 +133,15 @@ bool UltrasoundView::begin_grip(const QPointF& place) {
   return true;
 }
 
-void UltrasoundView::move_grip(const Vec2& to_T) {
-  const Measurement& held = measurements_.items()[grip_->mark.item];
-  measurements_.put(grip_->mark.item, with_mark(held, grip_->mark.mark, to_T + grip_->beside_T), grip_->has_moved);
+void UltrasoundView::move_grip(const ultrasound::Vec2& to_T) {
+  const ultrasound::Measurement& held = measurements_.items()[grip_->mark.item];
+  measurements_.put(grip_->mark.item, ultrasound::with_mark(held, grip_->mark.mark, to_T + grip_->beside_T),
+                    grip_->has_moved);
   grip_->has_moved = true;
   measurements_changed();
 }
 
-void UltrasoundView::set_mark(const Vec2& p_T) {
+void UltrasoundView::set_mark(const ultrasound::Vec2& p_T) {
   marks_T_.push_back(p_T);
   if (marks_T_.size() == marks_of(tool_)) {
     measurements_.add(finished(tool_, marks_T_));
@@ -152,7 +153,7 @@ void UltrasoundView::set_mark(const Vec2& p_T) {
 bool UltrasoundView::begin_box_drag(const QPointF& place) {
   const auto map = picture_map();
   if (!map || !settings_.has_doppler || picture_->colour.pixels.empty() || picture_->is_frozen) return false;
-  const Vec2 at = box_place(picture_->scan, map->to_T(place));
+  const ultrasound::Vec2 at = box_place(picture_->scan, map->to_T(place));
   const auto part = find_box_part(settings_.doppler.box, at);
   if (!part) return false;
   box_drag_ = BoxDrag{*part, settings_.doppler.box, at};
@@ -196,7 +197,7 @@ void UltrasoundView::mouseMoveEvent(QMouseEvent* event) {
   if (!map) return;
   if (grip_) return move_grip(map->to_T(event->pos()));
   if (box_drag_) {
-    const Vec2 by = box_place(picture_->scan, map->to_T(event->pos())) - box_drag_->from;
+    const ultrasound::Vec2 by = box_place(picture_->scan, map->to_T(event->pos())) - box_drag_->from;
     change_settings([&](UltrasoundSettings& s) { s.doppler.box = moved_box(box_drag_->begun, box_drag_->part, by); });
     return;
   }

@@ -6,7 +6,7 @@
 
 #include "devices/device_spec.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 using OpenedDevice = Result<std::unique_ptr<HapticDevice>>;
 
@@ -21,6 +21,6 @@ OpenedDevice open_forcedimension(const DeviceSpec& spec, const DeviceOptions& op
 OpenedDevice open_haply(const DeviceSpec& spec, const DeviceOptions& options);
 
 /// For factories: the row of options.preset, or of `own` where none is named.
-Result<DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own);
+Result<haptics::DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own);
 
-}  // namespace trocar
+}  // namespace trocar::devices

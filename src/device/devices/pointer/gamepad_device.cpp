@@ -9,7 +9,7 @@
 
 #include "devices/detail/factories.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 constexpr double kFullAxis = 32767.0;    // SDL's axes are 16 bit
@@ -154,8 +154,8 @@ std::unique_ptr<PointerSource> make_gamepad_source() {
 }
 
 OpenedDevice open_gamepad(const DeviceSpec&, const DeviceOptions& options) {
-  TROCAR_TRY(const DevicePreset preset, load_preset_of(options, "gamepad"));
+  TROCAR_TRY(const haptics::DevicePreset preset, load_preset_of(options, "gamepad"));
   return PolledPointer::open(preset, make_gamepad_source());
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

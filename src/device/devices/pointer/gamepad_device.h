@@ -5,7 +5,7 @@
 
 #include "devices/pointer/polled_pointer.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// How a gamepad's sticks, triggers and buttons stand. Sticks -1..1: x to the right, y towards the user (as SDL gives
 /// them); triggers 0..1.
@@ -44,4 +44,4 @@ double rumble_power(double force_n) noexcept;
 /// The first gamepad that SDL knows. One at a time in a process.
 std::unique_ptr<PointerSource> make_gamepad_source();
 
-}  // namespace trocar
+}  // namespace trocar::devices

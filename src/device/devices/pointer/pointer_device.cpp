@@ -7,7 +7,7 @@
 #include "devices/simulated/detail/hand_motion.h"
 #include "haptics/closed_loop/rotation.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 constexpr double kMaxGap_s = 0.1;
@@ -20,7 +20,7 @@ Vec3 limited(const Vec3& step, double most) noexcept {
 
 }  // namespace
 
-PointerDevice::PointerDevice(DevicePreset preset, const PointerParams& params) noexcept
+PointerDevice::PointerDevice(haptics::DevicePreset preset, const PointerParams& params) noexcept
     : preset_(std::move(preset)), params_(params) {}
 
 void PointerDevice::hold(const DeviceHand& hand) noexcept {
@@ -49,9 +49,9 @@ DeviceReading PointerDevice::read(double now_s) noexcept {
     } else {
       const double share = 1.0 - std::exp(-dt_s / std::max(params_.time_constant_s, 1e-6));
       const Vec3 step = limited(share * (X_DS_wanted.p() - X_DS_.p()), params_.max_speed_mm_per_s * dt_s);
-      const Vec3 left = rotation_vector(X_DS_wanted.R() * X_DS_.R().transpose());
+      const Vec3 left = haptics::rotation_vector(X_DS_wanted.R() * X_DS_.R().transpose());
       const Vec3 turn = limited(share * left, params_.max_turn_rad_per_s * dt_s);
-      const Eigen::Quaterniond turned(rotation_from_vector(turn) * X_DS_.R());
+      const Eigen::Quaterniond turned(haptics::rotation_from_vector(turn) * X_DS_.R());
       X_DS_ = Pose(turned.normalized().toRotationMatrix(), X_DS_.p() + step);
     }
   }
@@ -59,13 +59,13 @@ DeviceReading PointerDevice::read(double now_s) noexcept {
   return reading;
 }
 
-bool PointerDevice::write(const Wrench& wrench_D) noexcept {
+bool PointerDevice::write(const haptics::Wrench& wrench_D) noexcept {
   return is_sane(wrench_D);
 }
 
 OpenedDevice open_pointer(const DeviceSpec&, const DeviceOptions& options) {
-  TROCAR_TRY(DevicePreset preset, load_preset_of(options, "mouse"));
+  TROCAR_TRY(haptics::DevicePreset preset, load_preset_of(options, "mouse"));
   return std::make_unique<PointerDevice>(std::move(preset), PointerParams{});
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -2,7 +2,7 @@
 
 #include "devices/haptic_device.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// How a pointed pose follows the pointer. All [assumed].
 struct PointerParams {
@@ -15,19 +15,19 @@ struct PointerParams {
 /// what is written is shown by the trainer, and the tick makes the pointer lag. Real-time safe once made.
 class PointerDevice final : public HapticDevice {
  public:
-  PointerDevice(DevicePreset preset, const PointerParams& params) noexcept;
+  PointerDevice(haptics::DevicePreset preset, const PointerParams& params) noexcept;
 
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return preset_.name; }
   DeviceReading read(double now_s) noexcept override;
   /// Not taken: what is no sane wrench.
-  bool write(const Wrench& wrench_D) noexcept override;
+  bool write(const haptics::Wrench& wrench_D) noexcept override;
   void hold(const DeviceHand& hand) noexcept override;
   bool is_in_real_hand() const noexcept override { return false; }
   Status reconnect() override { return {}; }
 
  private:
-  DevicePreset preset_;
+  haptics::DevicePreset preset_;
   PointerParams params_;
   DeviceHand hand_;
   Pose X_DS_;
@@ -37,4 +37,4 @@ class PointerDevice final : public HapticDevice {
   bool is_started_ = false;
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

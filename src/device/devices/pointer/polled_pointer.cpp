@@ -11,7 +11,7 @@
 
 #include "realtime/periodic_loop.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 constexpr std::int64_t kNsPerMs = 1'000'000;
@@ -51,14 +51,14 @@ Pose move_pointer(const Pose& X_DS, const PointerMotion& motion, double dt_s, do
   return moved.is_finite() ? moved : X_DS;  // huge velocities
 }
 
-Result<std::unique_ptr<HapticDevice>> PolledPointer::open(const DevicePreset& preset,
+Result<std::unique_ptr<HapticDevice>> PolledPointer::open(const haptics::DevicePreset& preset,
                                                           std::unique_ptr<PointerSource> source) {
   std::unique_ptr<PolledPointer> device(new PolledPointer(preset, std::move(source)));
   TROCAR_TRY_STATUS(device->start());
   return device;
 }
 
-PolledPointer::PolledPointer(const DevicePreset& preset, std::unique_ptr<PointerSource> source)
+PolledPointer::PolledPointer(const haptics::DevicePreset& preset, std::unique_ptr<PointerSource> source)
     : preset_(preset), source_(std::move(source)), name_(source_->name()) {}
 
 PolledPointer::~PolledPointer() {
@@ -110,7 +110,7 @@ void PolledPointer::poll_until_stopped() noexcept {
       return;
     }
     motion_.write(motion);
-    const std::int64_t now = now_ns();
+    const std::int64_t now = realtime::now_ns();
     if (force_n_.update()) written_ns = now;
     source_->show_force(now - written_ns <= kPointerForceAge_ns ? force_n_.value() : 0.0);
     wait_for_news(wake_, source_->descriptor());
@@ -131,7 +131,7 @@ DeviceReading PolledPointer::read(double now_s) noexcept {
   return {DeviceStatus::kFresh, X_DS_, motion_.value().buttons};
 }
 
-bool PolledPointer::write(const Wrench& wrench_D) noexcept {
+bool PolledPointer::write(const haptics::Wrench& wrench_D) noexcept {
   const double force_n = wrench_D.force_n.norm();
   const bool is_taken = std::isfinite(force_n) && !is_gone_.load(std::memory_order_acquire);
   force_n_.write(is_taken ? force_n : 0.0);
@@ -151,4 +151,4 @@ Status PolledPointer::reconnect() {
   return start();
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

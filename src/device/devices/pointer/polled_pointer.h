@@ -11,7 +11,7 @@
 #include "devices/haptic_device.h"
 #include "realtime/triple_buffer.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// What a pad or a knob asks of the stylus. Motions add up.
 struct PointerMotion {
@@ -61,33 +61,34 @@ inline constexpr std::int64_t kPointerForceAge_ns = 20'000'000;
 /// every reading, however slowly the source speaks. Invariant: the source is used by the thread alone.
 class PolledPointer final : public HapticDevice {
  public:
-  static Result<std::unique_ptr<HapticDevice>> open(const DevicePreset& preset, std::unique_ptr<PointerSource> source);
+  static Result<std::unique_ptr<HapticDevice>> open(const haptics::DevicePreset& preset,
+                                                    std::unique_ptr<PointerSource> source);
   ~PolledPointer() override;
 
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return name_; }
   DeviceReading read(double now_s) noexcept override;
-  bool write(const Wrench& wrench_D) noexcept override;
+  bool write(const haptics::Wrench& wrench_D) noexcept override;
   /// Puts the stylus where a new `is_placed` says; all else of the hand is the pad's.
   void hold(const DeviceHand& hand) noexcept override;
   Status reconnect() override;
 
  private:
-  PolledPointer(const DevicePreset& preset, std::unique_ptr<PointerSource> source);
+  PolledPointer(const haptics::DevicePreset& preset, std::unique_ptr<PointerSource> source);
   Status start();
   void stop() noexcept;
   void run(std::promise<Status> opened);
   void poll_until_stopped() noexcept;
 
-  DevicePreset preset_;
+  haptics::DevicePreset preset_;
   std::unique_ptr<PointerSource> source_;
   std::string name_;
   int wake_ = -1;  ///< Event descriptor: ends the thread's waiting.
   std::thread thread_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<bool> is_gone_{false};
-  TripleBuffer<PointerMotion> motion_;  ///< Thread to reader.
-  TripleBuffer<double> force_n_;        ///< Writer to thread.
+  realtime::TripleBuffer<PointerMotion> motion_;  ///< Thread to reader.
+  realtime::TripleBuffer<double> force_n_;        ///< Writer to thread.
 
   // The reader's own.
   Pose X_DS_ = pointer_start();
@@ -97,4 +98,4 @@ class PolledPointer final : public HapticDevice {
   std::optional<double> placed_s_;  ///< Which placement was carried out.
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

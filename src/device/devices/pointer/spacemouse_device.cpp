@@ -16,7 +16,7 @@
 
 #undef Status  // <spnav.h> brings Xlib's macros
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 constexpr int kMostEvents = 64;                                // taken a poll
@@ -86,7 +86,7 @@ bool SpaceMouseSource::poll(PointerMotion& motion) noexcept {
     if (spnav_poll_event(&event) != 0) take(event);
     if (event.type == SPNAV_EVENT_DEV && event.dev.op == SPNAV_DEV_RM) return false;
   }
-  if (now_ns() - moved_ns_ > kCapSilence_ns) axes_ = {};
+  if (realtime::now_ns() - moved_ns_ > kCapSilence_ns) axes_ = {};
   motion = spacemouse_motion(axes_, buttons_);
   return true;
 }
@@ -95,7 +95,7 @@ void SpaceMouseSource::take(const spnav_event& event) noexcept {
   if (event.type == SPNAV_EVENT_MOTION) {
     const spnav_event_motion& cap = event.motion;
     axes_.counts = {cap.x, cap.y, cap.z, cap.rx, cap.ry, cap.rz};
-    moved_ns_ = now_ns();
+    moved_ns_ = realtime::now_ns();
   } else if (event.type == SPNAV_EVENT_BUTTON && event.button.bnum >= 0 && event.button.bnum < kMostButtons) {
     const std::uint32_t bit = 1U << static_cast<unsigned>(event.button.bnum);
     buttons_ = event.button.press != 0 ? buttons_ | bit : buttons_ & ~bit;
@@ -124,8 +124,8 @@ std::unique_ptr<PointerSource> make_spacemouse_source() {
 }
 
 OpenedDevice open_spacemouse(const DeviceSpec&, const DeviceOptions& options) {
-  TROCAR_TRY(const DevicePreset preset, load_preset_of(options, "spacemouse"));
+  TROCAR_TRY(const haptics::DevicePreset preset, load_preset_of(options, "spacemouse"));
   return PolledPointer::open(preset, make_spacemouse_source());
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -6,7 +6,7 @@
 
 #include "devices/pointer/polled_pointer.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// How the cap of a SpaceMouse is pushed and turned, as spacenavd tells it: x, y, z, rx, ry, rz in counts; x to the
 /// right, y up, z away, turns counted left-handed with them (libspnav, src/util.c, spnav_posrot_moveobj).
@@ -29,4 +29,4 @@ PointerMotion spacemouse_motion(const SpaceMouseAxes& axes, std::uint32_t button
 /// keeps one connection a process.
 std::unique_ptr<PointerSource> make_spacemouse_source();
 
-}  // namespace trocar
+}  // namespace trocar::devices

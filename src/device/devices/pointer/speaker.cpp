@@ -13,7 +13,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 /// Whether there may be an output: libraries that look for one in vain write to standard error.
@@ -89,4 +89,4 @@ std::vector<float> make_gun_click() {
   return samples;
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

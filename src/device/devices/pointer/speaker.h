@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace trocar {
+namespace trocar::devices {
 
 /// Plays short sounds on the system's default output. Where there is none it is silent. Nothing waits: the output is
 /// opened on a thread of its own, and what is played before it is open is not heard.
@@ -29,4 +29,4 @@ class Speaker {
 /// The click of a biopsy gun, made by computation: the stylet's spring, and the cannula's 60 ms later.
 std::vector<float> make_gun_click();
 
-}  // namespace trocar
+}  // namespace trocar::devices

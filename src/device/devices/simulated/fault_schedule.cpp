@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 /// What the number after the colon may be; kinds that take none have high = 0.
@@ -94,4 +94,4 @@ Result<ScheduledFault> parse_fault(std::string_view text) {
   return fault;
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

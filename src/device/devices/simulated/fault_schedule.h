@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// What a faulty device does.
 enum class DeviceFault : std::uint8_t {
@@ -34,4 +34,4 @@ struct ScheduledFault {
 /// "nan@2.0+0.5", "jitter:0.3@1+2", "disconnect@5": KIND[:AMOUNT]@FROM_S[+FOR_S]. Exit status 2 where it is not that.
 Result<ScheduledFault> parse_fault(std::string_view text);
 
-}  // namespace trocar
+}  // namespace trocar::devices

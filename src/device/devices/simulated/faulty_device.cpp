@@ -8,7 +8,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 /// Once, and whatever wakes it: bounded.
@@ -94,7 +94,7 @@ DeviceReading FaultyDevice::read(double now_s) noexcept {
   return reading;
 }
 
-bool FaultyDevice::write(const Wrench& wrench_D) noexcept {
+bool FaultyDevice::write(const haptics::Wrench& wrench_D) noexcept {
   wait_for(DeviceFault::kSlowWrite);
   return !is_disconnected_ && device_->write(wrench_D);
 }
@@ -109,4 +109,4 @@ Status FaultyDevice::reconnect() {
   return {};
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

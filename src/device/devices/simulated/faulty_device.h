@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "devices/simulated/fault_schedule.h"
 #include "devices/haptic_device.h"
+#include "devices/simulated/fault_schedule.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// Any device, broken on schedule; times count from its first read. A tool to show what a server does when a device
 /// fails, and watched as a real one would be: its slow reads and writes wait, which no other device's do. Seeded: the
@@ -24,10 +24,10 @@ class FaultyDevice final : public HapticDevice {
   FaultyDevice(std::unique_ptr<HapticDevice> device, std::vector<ScheduledFault> faults, std::uint64_t seed,
                Wait wait = {});
 
-  const DevicePreset& preset() const noexcept override { return device_->preset(); }
+  const haptics::DevicePreset& preset() const noexcept override { return device_->preset(); }
   std::string name() const override { return "faulty:" + device_->name(); }
   DeviceReading read(double now_s) noexcept override;
-  bool write(const Wrench& wrench_D) noexcept override;
+  bool write(const haptics::Wrench& wrench_D) noexcept override;
   void hold(const DeviceHand& hand) noexcept override { device_->hold(hand); }
   /// Fails where the device is unplugged for ever. Within the time of its fault the next read finds it gone again.
   Status reconnect() override;
@@ -52,4 +52,4 @@ class FaultyDevice final : public HapticDevice {
   DeviceReading last_;  ///< Told last.
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -7,7 +7,7 @@
 #include "devices/detail/factories.h"
 #include "devices/simulated/detail/hand_motion.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 /// Nearer to a recorded sample than this share of a period is that sample: a server at the same rate gets its bits.
@@ -20,7 +20,7 @@ Pose between(const Pose& a, const Pose& b, double share) noexcept {
 
 }  // namespace
 
-ReplayDevice::ReplayDevice(DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz)
+ReplayDevice::ReplayDevice(haptics::DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz)
     : preset_(std::move(preset)), name_(std::move(name)), poses_(std::move(poses)), rate_hz_(rate_hz) {
   TROCAR_CHECK(!poses_.empty());
   TROCAR_CHECK(rate_hz_ > 0.0);
@@ -46,7 +46,7 @@ DeviceReading ReplayDevice::read(double now_s) noexcept {
   return reading;
 }
 
-bool ReplayDevice::write(const Wrench& wrench_D) noexcept {
+bool ReplayDevice::write(const haptics::Wrench& wrench_D) noexcept {
   return is_sane(wrench_D);
 }
 
@@ -62,8 +62,8 @@ OpenedDevice open_replay(const DeviceSpec& spec, const DeviceOptions& options) {
   if (!(options.replay_rate_hz > 0.0 && options.replay_rate_hz <= kMaxRate_hz)) {
     return fail("the rate of the recorded poses is not in 0..10000 Hz", spec.argument, "record it again");
   }
-  TROCAR_TRY(DevicePreset preset, load_preset_of(options, "premium"));
+  TROCAR_TRY(haptics::DevicePreset preset, load_preset_of(options, "premium"));
   return std::make_unique<ReplayDevice>(std::move(preset), spec.argument, options.replay, options.replay_rate_hz);
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

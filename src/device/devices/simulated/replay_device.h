@@ -4,24 +4,24 @@
 
 #include "devices/haptic_device.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// A recorded hand: poses X_DS at a rate, from the first read on; between them interpolated, after the last one held.
 /// It goes its way whatever is written. Not empty, and finite. Real-time safe once made.
 class ReplayDevice final : public HapticDevice {
  public:
-  ReplayDevice(DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz);
+  ReplayDevice(haptics::DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz);
 
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "replay:" + name_; }
   DeviceReading read(double now_s) noexcept override;
   /// Recorded nowhere; not taken is what is no sane wrench.
-  bool write(const Wrench& wrench_D) noexcept override;
+  bool write(const haptics::Wrench& wrench_D) noexcept override;
   bool is_in_real_hand() const noexcept override { return false; }
   Status reconnect() override { return {}; }
 
  private:
-  DevicePreset preset_;
+  haptics::DevicePreset preset_;
   std::string name_;
   std::vector<Pose> poses_;
   double rate_hz_;
@@ -30,4 +30,4 @@ class ReplayDevice final : public HapticDevice {
   bool is_started_ = false;
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

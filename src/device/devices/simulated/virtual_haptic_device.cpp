@@ -7,7 +7,7 @@
 #include "devices/simulated/detail/hand_motion.h"
 #include "haptics/closed_loop/rotation.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 constexpr double kMaxGap_s = 0.1;    ///< Beyond it the device stood still: a debugger, a suspended machine.
@@ -29,7 +29,7 @@ void push_front(std::array<T, n>& values, const T& value) noexcept {
 
 }  // namespace
 
-VirtualHapticDevice::VirtualHapticDevice(DevicePreset preset, const SimulatedDeviceParams& params) noexcept
+VirtualHapticDevice::VirtualHapticDevice(haptics::DevicePreset preset, const SimulatedDeviceParams& params) noexcept
     : preset_(std::move(preset)), params_(params) {
   params_.force_delay = std::clamp(params_.force_delay, 0, kMaxDelay);
   params_.reading_delay = std::clamp(params_.reading_delay, 0, kMaxDelay);
@@ -53,9 +53,9 @@ void VirtualHapticDevice::hold(const DeviceHand& hand) noexcept {
   }
 }
 
-bool VirtualHapticDevice::write(const Wrench& wrench_D) noexcept {
+bool VirtualHapticDevice::write(const haptics::Wrench& wrench_D) noexcept {
   if (!is_sane(wrench_D)) return false;
-  Wrench wrench = wrench_D;
+  haptics::Wrench wrench = wrench_D;
   clamp_norm(wrench.force_n, preset_.has_force() ? preset_.capability.peak_force_n : 0.0);
   clamp_norm(wrench.torque_nmm, preset_.capability.peak_torque_nmm);
   commanded_D_ = wrench;
@@ -88,7 +88,7 @@ DeviceReading VirtualHapticDevice::read(double now_s) noexcept {
 
 DeviceReading VirtualHapticDevice::tell() noexcept {
   DeviceReading reading;
-  reading.X_DS = quantise(X_DS(), preset_.encoder);
+  reading.X_DS = haptics::quantise(X_DS(), preset_.encoder);
   if (preset_.sensed_dof == 3) reading.X_DS = Pose::translation(reading.X_DS.p());
   reading.buttons = hand_.buttons;
   return reading;
@@ -107,8 +107,8 @@ Vec3 VirtualHapticDevice::wall_n() const noexcept {
   return -(k * beyond_mm + damping * speed) * outwards;
 }
 
-StylusHold VirtualHapticDevice::grip(const HandNow& hand) const noexcept {
-  StylusHold hold;
+haptics::StylusHold VirtualHapticDevice::grip(const HandNow& hand) const noexcept {
+  haptics::StylusHold hold;
   if (!hand_.is_held) return hold;
   hold.X_PS = hand.X_DS;
   hold.velocity_P = hand.v_D;
@@ -123,8 +123,8 @@ StylusHold VirtualHapticDevice::grip(const HandNow& hand) const noexcept {
   return hold;
 }
 
-VirtualStylusParams VirtualHapticDevice::stylus_params() const noexcept {
-  VirtualStylusParams params;
+haptics::VirtualStylusParams VirtualHapticDevice::stylus_params() const noexcept {
+  haptics::VirtualStylusParams params;
   params.mass_kg = preset_.apparent_mass_kg;
   params.inertia_kg_mm2 = params_.inertia_kg_mm2;
   params.weight_n = preset_.capability.stylus_weight_n;
@@ -144,14 +144,15 @@ void VirtualHapticDevice::step(double time_s, double dt_s) noexcept {
     stylus_ = {hand.X_DS, hand.v_D, hand.w_D};
     return;
   }
-  const Wrench push{acting_D_.force_n + wall_n(), acting_D_.torque_nmm};
-  step_stylus(stylus_, stylus_params(), grip(hand), push, -Vec3::UnitZ(), dt_s);
+  const haptics::Wrench push{acting_D_.force_n + wall_n(), acting_D_.torque_nmm};
+  haptics::step_stylus(stylus_, stylus_params(), grip(hand), push, -Vec3::UnitZ(), dt_s);
 }
 
 OpenedDevice open_virtual(const DeviceSpec& spec, const DeviceOptions& options) {
   const std::string& named = spec.argument.empty() ? options.preset : spec.argument;
-  TROCAR_TRY(DevicePreset preset, load_device_preset(options.devices_file, named.empty() ? "premium" : named));
+  TROCAR_TRY(haptics::DevicePreset preset,
+             haptics::load_device_preset(options.devices_file, named.empty() ? "premium" : named));
   return std::make_unique<VirtualHapticDevice>(std::move(preset), SimulatedDeviceParams{});
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -2,11 +2,11 @@
 
 #include <array>
 
-#include "devices/simulated/detail/hand_motion.h"
 #include "devices/haptic_device.h"
+#include "devices/simulated/detail/hand_motion.h"
 #include "haptics/closed_loop/virtual_stylus.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// How a device is simulated, beside what its preset says.
 struct SimulatedDeviceParams {
@@ -26,14 +26,14 @@ class VirtualHapticDevice final : public HapticDevice {
  public:
   static constexpr int kMaxDelay = 8;
 
-  VirtualHapticDevice(DevicePreset preset, const SimulatedDeviceParams& params) noexcept;
+  VirtualHapticDevice(haptics::DevicePreset preset, const SimulatedDeviceParams& params) noexcept;
 
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "virtual:" + preset_.name; }
   /// Moves the stylus on to `now_s`, in steps of at most 1 ms; a gap counts as 0.1 s at most.
   DeviceReading read(double now_s) noexcept override;
   /// Cut to the preset's peaks; torque is ignored where there is no motor for it. Not taken: what is no sane wrench.
-  bool write(const Wrench& wrench_D) noexcept override;
+  bool write(const haptics::Wrench& wrench_D) noexcept override;
   /// Ignored where it is not finite.
   void hold(const DeviceHand& hand) noexcept override;
   bool is_in_real_hand() const noexcept override { return false; }
@@ -45,25 +45,25 @@ class VirtualHapticDevice final : public HapticDevice {
 
  private:
   void step(double time_s, double dt_s) noexcept;
-  StylusHold grip(const HandNow& hand) const noexcept;
-  VirtualStylusParams stylus_params() const noexcept;
+  haptics::StylusHold grip(const HandNow& hand) const noexcept;
+  haptics::VirtualStylusParams stylus_params() const noexcept;
   Vec3 wall_n() const noexcept;
   DeviceReading tell() noexcept;
 
-  DevicePreset preset_;
+  haptics::DevicePreset preset_;
   SimulatedDeviceParams params_;
   DeviceHand hand_;
   bool was_ever_held_ = false;
   double placed_s_ = 0.0;  ///< Time of the target that was last put in place.
 
-  VirtualStylusState stylus_;  ///< Its frame P is D.
+  haptics::VirtualStylusState stylus_;  ///< Its frame P is D.
 
   double last_s_ = 0.0;
   bool is_started_ = false;
-  Wrench acting_D_;                                      ///< About S.
-  Wrench commanded_D_;                                   ///< About S: last written; and
-  std::array<Wrench, kMaxDelay + 1> written_{};          ///< what was so at the last reads, the newest first.
-  std::array<DeviceReading, kMaxDelay + 1> readings_{};  ///< The newest first.
+  haptics::Wrench acting_D_;                              ///< About S.
+  haptics::Wrench commanded_D_;                           ///< About S: last written; and
+  std::array<haptics::Wrench, kMaxDelay + 1> written_{};  ///< what was so at the last reads, the newest first.
+  std::array<DeviceReading, kMaxDelay + 1> readings_{};   ///< The newest first.
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

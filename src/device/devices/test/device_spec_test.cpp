@@ -4,7 +4,7 @@
 
 #include "core/testing/allocation_guard.inc.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 TEST(DeviceSpec, SplitsAtTheFirstColon) {
@@ -44,4 +44,4 @@ TEST(DeviceSpec, OpeningAnUnknownKindIsAnError) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -7,7 +7,7 @@
 #include "core/testing/allocation_guard.h"
 #include "devices/device_spec.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 class EveryDevice : public ::testing::TestWithParam<const char*> {
@@ -115,4 +115,4 @@ TEST(VirtualDeviceSpec, IsThePremiumUnlessAnotherIsNamed) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -12,37 +12,37 @@ namespace trocar::testing {
 
 inline constexpr double kDt_s = 0.001;
 
-inline DevicePreset preset_of(const char* name) {
-  const auto preset = load_device_preset(data_dir() / "devices.toml", name);
+inline haptics::DevicePreset preset_of(const char* name) {
+  const auto preset = haptics::load_device_preset(data_dir() / "devices.toml", name);
   EXPECT_TRUE(preset) << preset.error().text();
   return *preset;
 }
 
 /// Exact sensors and no friction, for closed forms.
-inline DevicePreset ideal() {
-  DevicePreset preset = preset_of("premium");
+inline haptics::DevicePreset ideal() {
+  haptics::DevicePreset preset = preset_of("premium");
   preset.encoder = {0.0, 0.0};
   preset.friction_n = 0.0;
   preset.viscosity_ns_per_mm = 0.0;
   return preset;
 }
-inline SimulatedDeviceParams without_friction() {
-  SimulatedDeviceParams params;
+inline devices::SimulatedDeviceParams without_friction() {
+  devices::SimulatedDeviceParams params;
   params.gimbal_friction_nmm = 0.0;
   params.gimbal_viscosity_nmms = 0.0;
   return params;
 }
 
-inline DeviceHand placed_at(const Pose& X_DS) {
-  DeviceHand hand;
+inline devices::DeviceHand placed_at(const Pose& X_DS) {
+  devices::DeviceHand hand;
   hand.X_DS = X_DS;
   hand.is_placed = true;
   return hand;
 }
 /// The hand of physics.md H1.
-inline DeviceHand holding(const Pose& X_DS, double time_s) {
-  const StylusHold made = make_hand();
-  DeviceHand hand;
+inline devices::DeviceHand holding(const Pose& X_DS, double time_s) {
+  const haptics::StylusHold made = haptics::make_hand();
+  devices::DeviceHand hand;
   hand.X_DS = X_DS;
   hand.time_s = time_s;
   hand.stiffness_n_per_mm = made.stiffness_n_per_mm;
@@ -56,7 +56,7 @@ inline DeviceHand holding(const Pose& X_DS, double time_s) {
 }
 
 /// The tick's compensation of links and stylus (physics.md W1), from the pose that was told.
-inline Wrench weight_compensation(const DevicePreset& preset, const Pose& X_DS) {
+inline haptics::Wrench weight_compensation(const haptics::DevicePreset& preset, const Pose& X_DS) {
   const Vec3 lift = Vec3::UnitZ() * preset.capability.stylus_weight_n;
   const Vec3 arm = X_DS.R() * Vec3(0.0, 0.0, -preset.capability.stylus_lever_mm);
   return {lift, arm.cross(lift)};
@@ -64,15 +64,17 @@ inline Wrench weight_compensation(const DevicePreset& preset, const Pose& X_DS) 
 
 /// A device and its clock; the server's periods.
 struct Bench {
-  VirtualHapticDevice device;
+  devices::VirtualHapticDevice device;
   double time_s = 100.0;
 
-  explicit Bench(const DevicePreset& preset, const SimulatedDeviceParams& params = {}) : device(preset, params) {
+  explicit Bench(const haptics::DevicePreset& preset, const devices::SimulatedDeviceParams& params = {})
+      : device(preset, params) {
     device.read(time_s);
   }
-  DeviceReading period(const std::optional<DeviceHand>& hand, const Wrench& wrench, double dt_s = kDt_s) {
+  devices::DeviceReading period(const std::optional<devices::DeviceHand>& hand, const haptics::Wrench& wrench,
+                                double dt_s = kDt_s) {
     time_s += dt_s;
-    const DeviceReading reading = device.read(time_s);
+    const devices::DeviceReading reading = device.read(time_s);
     if (hand) device.hold(*hand);
     EXPECT_TRUE(device.write(wrench));
     return reading;

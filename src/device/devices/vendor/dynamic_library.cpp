@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 std::string last_dl_error() {
@@ -41,4 +41,4 @@ Result<void*> DynamicLibrary::find_symbol(const char* name) const {
   return fail(fmt::format("the library has no function {}", name), path_, "install a newer release of it");
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

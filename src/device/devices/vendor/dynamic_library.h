@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// Where a vendor's library is looked for, and what to tell people who have none.
 struct LibraryPlace {
@@ -48,4 +48,4 @@ class DynamicLibrary {
   std::string path_;  ///< As it was asked for.
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "devices/vendor/detail/dhd_connection.h"
 #include "devices/detail/factories.h"
+#include "devices/vendor/detail/dhd_connection.h"
 #include "realtime/loop_statistics.h"
 #include "realtime/periodic_loop.h"
 #include "realtime/real_time_grant.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 /// Twice the usual loop: what it adds to the delay is half a millisecond each way. The devices take 4 kHz. [assumed]
@@ -18,10 +18,12 @@ constexpr int kServoPriority = 81;  // just above the loop that it serves (reque
 class RealTimePace final : public ServoPace {
  public:
   void run(const std::atomic<bool>& is_stopping, ServoBody& body) noexcept override {
-    request_real_time(kServoPriority);
-    LoopStatistics statistics(kServoPeriod_ns);
-    run_periodic(kServoPeriod_ns, is_stopping, statistics,
-                 [&](const Period&, const LoopStatistics&) { body.serve(seconds(now_ns())); });
+    realtime::request_real_time(kServoPriority);
+    realtime::LoopStatistics statistics(kServoPeriod_ns);
+    realtime::run_periodic(kServoPeriod_ns, is_stopping, statistics,
+                           [&](const realtime::Period&, const realtime::LoopStatistics&) {
+                             body.serve(realtime::seconds(realtime::now_ns()));
+                           });
   }
 };
 
@@ -49,21 +51,21 @@ Result<std::string> preset_of_type(int type, const std::string& name) {
 /// Invariant: connection_ is there, but after a reconnect that failed.
 class ForceDimensionDevice final : public HapticDevice {
  public:
-  ForceDimensionDevice(std::shared_ptr<ServoPace> pace, DevicePreset preset,
+  ForceDimensionDevice(std::shared_ptr<ServoPace> pace, haptics::DevicePreset preset,
                        std::unique_ptr<dhd::Connection> connection)
       : pace_(std::move(pace)),
         preset_(std::move(preset)),
         type_(connection->system_type()),
         connection_(std::move(connection)) {}
 
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return fmt::format("forcedimension:{}", preset_.name); }
   DeviceReading read(double now_s) noexcept override {
     if (connection_) last_ = connection_->exchange().read(now_s);
     if (!connection_) last_.status = DeviceStatus::kDisconnected;
     return last_;
   }
-  bool write(const Wrench& wrench_D) noexcept override {
+  bool write(const haptics::Wrench& wrench_D) noexcept override {
     return connection_ && connection_->exchange().write(wrench_D, preset_.capability);
   }
   Status reconnect() override {
@@ -87,7 +89,7 @@ class ForceDimensionDevice final : public HapticDevice {
 
  private:
   const std::shared_ptr<ServoPace> pace_;
-  const DevicePreset preset_;
+  const haptics::DevicePreset preset_;
   const int type_;
   std::unique_ptr<dhd::Connection> connection_;
   DeviceReading last_;
@@ -102,7 +104,7 @@ Result<std::unique_ptr<HapticDevice>> open_forcedimension_device(const ForceDime
   if (row.empty()) {
     TROCAR_TRY(row, preset_of_type(connection->system_type(), connection->system_name()));
   }
-  TROCAR_TRY(DevicePreset preset, load_device_preset(options.devices_file, row));
+  TROCAR_TRY(haptics::DevicePreset preset, haptics::load_device_preset(options.devices_file, row));
   // The vendor's library carries the device's weight; ours on top would lift it.
   preset.capability.stylus_weight_n = 0.0;
   TROCAR_TRY_STATUS(connection->start(preset.sensed_dof == 6));
@@ -116,4 +118,4 @@ OpenedDevice open_forcedimension(const DeviceSpec&, const DeviceOptions& options
   return open_forcedimension_device(own);
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -8,7 +8,7 @@
 #include "devices/haptic_device.h"
 #include "devices/vendor/servo_pace.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 struct ForceDimensionOptions {
   std::filesystem::path devices_file;  ///< data/devices.toml
@@ -21,4 +21,4 @@ struct ForceDimensionOptions {
 /// and gravity compensation stay on. Errors: no library, no device, not calibrated.
 Result<std::unique_ptr<HapticDevice>> open_forcedimension_device(const ForceDimensionOptions& options);
 
-}  // namespace trocar
+}  // namespace trocar::devices

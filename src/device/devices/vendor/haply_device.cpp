@@ -9,7 +9,7 @@
 #include "devices/vendor/detail/websocket.h"
 #include "realtime/periodic_loop.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 using std::chrono::milliseconds;
@@ -40,7 +40,8 @@ const char* advice_for(HaplyCondition condition) noexcept {
 
 }  // namespace
 
-Result<std::unique_ptr<HapticDevice>> HaplyDevice::open(const DevicePreset& preset, const std::string& address) {
+Result<std::unique_ptr<HapticDevice>> HaplyDevice::open(const haptics::DevicePreset& preset,
+                                                        const std::string& address) {
   std::unique_ptr<HaplyDevice> device(new HaplyDevice(preset, address));
   TROCAR_TRY_STATUS(device->start());
   // What the service told: constant from here on.
@@ -50,7 +51,7 @@ Result<std::unique_ptr<HapticDevice>> HaplyDevice::open(const DevicePreset& pres
   return device;
 }
 
-HaplyDevice::HaplyDevice(const DevicePreset& preset, std::string address)
+HaplyDevice::HaplyDevice(const haptics::DevicePreset& preset, std::string address)
     : preset_(preset), address_(std::move(address)) {
   const std::size_t hash = address_.find('#');
   if (hash == std::string::npos) return;
@@ -113,11 +114,11 @@ void HaplyDevice::stop() noexcept {
 /// At the top of the loop there is always one state that waits for its command.
 void HaplyDevice::run() {
   std::string message;
-  std::int64_t due_ns = now_ns();
+  std::int64_t due_ns = realtime::now_ns();
   bool is_answer_due = true;
   while (!is_stopping_.load(std::memory_order_relaxed)) {
-    sleep_until_ns(due_ns);
-    due_ns = std::max(due_ns + kHaplyPeriod_ns, now_ns());
+    realtime::sleep_until_ns(due_ns);
+    due_ns = std::max(due_ns + kHaplyPeriod_ns, realtime::now_ns());
     is_answer_due = false;
     if (!answer(unusable_ == 0 ? force_now() : Vec3::Zero().eval()) || !wait_for_state(message)) break;
     is_answer_due = true;
@@ -155,7 +156,7 @@ bool HaplyDevice::wait_for_state(std::string& message) {
 }
 
 Vec3 HaplyDevice::force_now() noexcept {
-  const std::int64_t now = now_ns();
+  const std::int64_t now = realtime::now_ns();
   if (force_.update()) written_ns_ = now;
   return now - written_ns_ <= kHaplyForceAge_ns ? force_.value() : Vec3::Zero().eval();
 }
@@ -175,7 +176,7 @@ DeviceReading HaplyDevice::read(double) noexcept {
   return {is_new ? DeviceStatus::kFresh : DeviceStatus::kRepeated, sample.X_DS, sample.buttons};
 }
 
-bool HaplyDevice::write(const Wrench& wrench_D) noexcept {
+bool HaplyDevice::write(const haptics::Wrench& wrench_D) noexcept {
   const bool is_taken = wrench_D.force_n.allFinite() && !is_gone_.load(std::memory_order_acquire);
   force_.write(is_taken ? wrench_D.force_n : Vec3::Zero().eval());
   return is_taken;
@@ -188,8 +189,8 @@ Status HaplyDevice::reconnect() {
 }
 
 OpenedDevice open_haply(const DeviceSpec& spec, const DeviceOptions& options) {
-  TROCAR_TRY(const DevicePreset preset, load_preset_of(options, "inverse3"));
+  TROCAR_TRY(const haptics::DevicePreset preset, load_preset_of(options, "inverse3"));
   return HaplyDevice::open(preset, spec.argument.empty() ? kHaplyAddress : spec.argument);
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -10,7 +10,7 @@
 #include "devices/haptic_device.h"
 #include "realtime/triple_buffer.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 inline constexpr const char* kHaplyAddress = "ws://localhost:10001";  ///< Source: the vendor's documentation.
 inline constexpr std::int64_t kHaplyPeriod_ns = 500'000;              ///< One state and its command: 2 kHz. [assumed]
@@ -29,13 +29,13 @@ class HaplyDevice final : public HapticDevice {
   /// `address`: "ws://HOST:PORT", the service's first Inverse3, or "ws://HOST:PORT#ID", the one with this id. Without a
   /// grip it senses 3 degrees of freedom, whatever the preset says. Reconnects to the same device, with a grip if it
   /// had one.
-  static Result<std::unique_ptr<HapticDevice>> open(const DevicePreset& preset, const std::string& address);
+  static Result<std::unique_ptr<HapticDevice>> open(const haptics::DevicePreset& preset, const std::string& address);
   ~HaplyDevice() override;
 
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "haply:" + address_; }
   DeviceReading read(double now_s) noexcept override;
-  bool write(const Wrench& wrench_D) noexcept override;
+  bool write(const haptics::Wrench& wrench_D) noexcept override;
   Status reconnect() override;
 
  private:
@@ -44,7 +44,7 @@ class HaplyDevice final : public HapticDevice {
     std::uint32_t buttons = 0;
   };
 
-  HaplyDevice(const DevicePreset& preset, std::string address);
+  HaplyDevice(const haptics::DevicePreset& preset, std::string address);
   Status start();
   Status take_first_state(const std::string& message);
   void stop() noexcept;
@@ -56,7 +56,7 @@ class HaplyDevice final : public HapticDevice {
   Vec3 force_now() noexcept;
   void say_goodbye(bool is_answer_due);
 
-  DevicePreset preset_;
+  haptics::DevicePreset preset_;
   std::string address_;
   std::string device_id_;  ///< Empty until one is found.
   bool is_centred_ = false;
@@ -67,8 +67,8 @@ class HaplyDevice final : public HapticDevice {
   std::thread thread_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<bool> is_gone_{false};
-  TripleBuffer<Sample> state_;               ///< Thread to reader.
-  TripleBuffer<Vec3> force_{Vec3(0, 0, 0)};  ///< N in D, writer to thread.
+  realtime::TripleBuffer<Sample> state_;               ///< Thread to reader.
+  realtime::TripleBuffer<Vec3> force_{Vec3(0, 0, 0)};  ///< N in D, writer to thread.
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -10,11 +10,11 @@
 #include "devices/vendor/detail/hd_connection.h"
 #include "realtime/periodic_loop.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 double steady_s() noexcept {
-  return seconds(now_ns());
+  return realtime::seconds(realtime::now_ns());
 }
 
 struct ModelRow {
@@ -45,8 +45,8 @@ void tighten(std::optional<double>& value, const std::optional<double>& said) no
 }
 
 /// The row, and nothing beyond what the device itself says that it bears.
-DevicePreset tightened(DevicePreset preset, const hd::Description& said) {
-  DeviceCapability& capability = preset.capability;
+haptics::DevicePreset tightened(haptics::DevicePreset preset, const hd::Description& said) {
+  haptics::DeviceCapability& capability = preset.capability;
   tighten(capability.peak_force_n, said.peak_force_n);
   tighten(preset.continuous_force_n, said.continuous_force_n);
   tighten(capability.max_stiffness_n_per_mm, said.stiffness_n_per_mm);
@@ -59,7 +59,7 @@ DevicePreset tightened(DevicePreset preset, const hd::Description& said) {
     preset.continuous_torque_nmm.reset();
   }
   // A softer spring keeps its damping time.
-  CouplingParams& coupling = preset.coupling;
+  haptics::CouplingParams& coupling = preset.coupling;
   const double share = std::min(1.0, capability.max_stiffness_n_per_mm / coupling.stiffness_n_per_mm);
   coupling.stiffness_n_per_mm *= share;
   coupling.damping_ns_per_mm *= share;
@@ -69,13 +69,14 @@ DevicePreset tightened(DevicePreset preset, const hd::Description& said) {
 /// Invariant: connection_ is there, but after a reconnect that failed.
 class OpenHapticsDevice final : public HapticDevice {
  public:
-  OpenHapticsDevice(OpenHapticsOptions options, DevicePreset preset, std::unique_ptr<hd::Connection> connection)
+  OpenHapticsDevice(OpenHapticsOptions options, haptics::DevicePreset preset,
+                    std::unique_ptr<hd::Connection> connection)
       : options_(std::move(options)),
         preset_(std::move(preset)),
         model_(connection->description().model),
         connection_(std::move(connection)) {}
 
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override {
     return options_.device.empty() ? "openhaptics" : fmt::format("openhaptics:{}", options_.device);
   }
@@ -84,7 +85,7 @@ class OpenHapticsDevice final : public HapticDevice {
     if (!connection_) last_.status = DeviceStatus::kDisconnected;
     return last_;
   }
-  bool write(const Wrench& wrench_D) noexcept override {
+  bool write(const haptics::Wrench& wrench_D) noexcept override {
     return connection_ && connection_->exchange().write(wrench_D, preset_.capability);
   }
   Status reconnect() override {
@@ -106,7 +107,7 @@ class OpenHapticsDevice final : public HapticDevice {
 
  private:
   const OpenHapticsOptions options_;
-  const DevicePreset preset_;
+  const haptics::DevicePreset preset_;
   const std::string model_;
   std::unique_ptr<hd::Connection> connection_;
   DeviceReading last_;
@@ -123,8 +124,8 @@ Result<std::unique_ptr<HapticDevice>> open_openhaptics_device(const OpenHapticsO
   if (options.preset.empty()) {
     TROCAR_TRY(options.preset, preset_of_model(said.model));
   }
-  TROCAR_TRY(const DevicePreset row, load_device_preset(options.devices_file, options.preset));
-  DevicePreset preset = tightened(row, said);
+  TROCAR_TRY(const haptics::DevicePreset row, haptics::load_device_preset(options.devices_file, options.preset));
+  haptics::DevicePreset preset = tightened(row, said);
   return std::make_unique<OpenHapticsDevice>(std::move(options), std::move(preset), std::move(connection));
 }
 
@@ -137,4 +138,4 @@ OpenedDevice open_openhaptics(const DeviceSpec& spec, const DeviceOptions& optio
   return open_openhaptics_device(own);
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -7,7 +7,7 @@
 #include "core/result.h"
 #include "devices/haptic_device.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 struct OpenHapticsOptions {
   std::string device;                  ///< Its name in the vendor's settings ("Left Device"); empty: the default one.
@@ -23,4 +23,4 @@ struct OpenHapticsOptions {
 /// a process: the scheduler is one. Errors: no library, no device, not calibrated.
 Result<std::unique_ptr<HapticDevice>> open_openhaptics_device(const OpenHapticsOptions& options);
 
-}  // namespace trocar
+}  // namespace trocar::devices

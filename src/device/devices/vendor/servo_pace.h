@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-namespace trocar {
+namespace trocar::devices {
 
 /// What a servo loop of ours does once a period.
 class ServoBody {
@@ -23,4 +23,4 @@ class ServoPace {
   virtual void wake() noexcept {}
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

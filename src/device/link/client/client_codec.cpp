@@ -7,7 +7,7 @@
 #include "link/detail/frame.h"
 #include "link/detail/inspection.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 using namespace detail;
 
@@ -33,12 +33,13 @@ static_assert(is_number(wire::RateLimit::MessagesPerS, static_cast<std::size_t>(
 static_assert(is_number(wire::RateLimit::BytesPerS, static_cast<std::size_t>(kMostBytesPerS)));
 static_assert(is_number(wire::Period::ControlLost, static_cast<std::size_t>(1e3 * kControlLost_s)));
 static_assert(is_number(wire::Period::HelloPatience, static_cast<std::size_t>(1e3 * kHelloPatience_s)));
-static_assert(is_number(wire::EventKind::Limit, static_cast<std::size_t>(EventKind::kLimit)));
-static_assert(is_number(wire::InsertionPhase::Retracting, static_cast<std::size_t>(InsertionPhase::kRetracting)));
-static_assert(is_number(wire::GateMode::Absent, static_cast<std::size_t>(kLastGateMode)));
-static_assert(is_number(wire::GateFault::Vibration, static_cast<std::size_t>(kLastGateFault)));
-static_assert(is_number(wire::LimitReason::Jumped, static_cast<std::size_t>(LimitReason::kJumped)));
-static_assert(is_number(wire::LimitReason::Fault, static_cast<std::size_t>(LimitReason::kFault)));
+static_assert(is_number(wire::EventKind::Limit, static_cast<std::size_t>(telemetry::EventKind::kLimit)));
+static_assert(is_number(wire::InsertionPhase::Retracting,
+                        static_cast<std::size_t>(telemetry::InsertionPhase::kRetracting)));
+static_assert(is_number(wire::GateMode::Absent, static_cast<std::size_t>(telemetry::kLastGateMode)));
+static_assert(is_number(wire::GateFault::Vibration, static_cast<std::size_t>(telemetry::kLastGateFault)));
+static_assert(is_number(wire::LimitReason::Jumped, static_cast<std::size_t>(telemetry::LimitReason::kJumped)));
+static_assert(is_number(wire::LimitReason::Fault, static_cast<std::size_t>(telemetry::LimitReason::kFault)));
 
 // Beyond what the scene takes (NeedleGeometry, hands): it says itself what it does not like. [assumed]
 constexpr Range kNeedleLengths_mm = {0.0, 1e4};
@@ -221,4 +222,4 @@ std::optional<CommandNumber> find_command(std::span<const std::byte> bytes) {
   return CommandNumber{(*root)->session(), (*root)->sequence(), (*root)->body_as_Command()->request()};
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

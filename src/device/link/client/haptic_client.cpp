@@ -7,7 +7,7 @@
 #include "link/client/detail/client_thread.h"
 #include "link/endpoint.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -58,7 +58,7 @@ std::vector<NumberedSample> HapticClient::take_samples() {
   return impl_->thread->mailbox().take_samples();
 }
 
-std::optional<TickSample> HapticClient::newest() const {
+std::optional<telemetry::TickSample> HapticClient::newest() const {
   return impl_->thread->mailbox().newest();
 }
 
@@ -100,4 +100,4 @@ Status HapticClient::wait_connected(milliseconds patience) {
   return no_server(impl_->thread->options().endpoint, patience, view().refusal);
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

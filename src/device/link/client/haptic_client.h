@@ -11,7 +11,7 @@
 #include "link/curve_keys.h"
 #include "link/messages.h"
 
-namespace trocar {
+namespace trocar::link {
 
 struct ClientSecurity {
   CurveKeys keys;
@@ -46,7 +46,7 @@ struct ClientView {
 /// A tick and its number: rises by one with every tick the server makes, begins at 0 again with a new server.
 struct NumberedSample {
   std::uint64_t tick = 0;
-  TickSample sample;
+  telemetry::TickSample sample;
   std::uint64_t scene = 0;  ///< Number of the scene that made it, see Reply::scene; 0: none.
 };
 
@@ -64,7 +64,7 @@ class HapticClient {
   /// All ticks since the last call, in order. At most a minute is kept; older ones are counted as missing.
   std::vector<NumberedSample> take_samples();
   /// The newest tick, if there was one.
-  std::optional<TickSample> newest() const;
+  std::optional<telemetry::TickSample> newest() const;
 
   /// Sends a command and gives its number; its reply comes by take_replies(), in any case: where there is no server, or
   /// it goes away, it says so. A command is never kept for a server that comes later.
@@ -84,4 +84,4 @@ class HapticClient {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::link

@@ -19,7 +19,7 @@
 
 #include "link/client/detail/start_program.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace fs = std::filesystem;
 namespace {
 
@@ -176,4 +176,4 @@ Result<fs::path> find_server_program() {
   return fail("the haptic server's program was not found", kProgram, "install it beside this program or on PATH");
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

@@ -7,7 +7,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::link {
 
 /// A trocar-hapticd that this process started. Ends it (SIGTERM, then SIGKILL after 2 s) when destroyed; a killed
 /// parent takes it along.
@@ -39,4 +39,4 @@ class ServerProcess {
 /// trocar-hapticd beside the running program, else on PATH. Error: neither.
 Result<std::filesystem::path> find_server_program();
 
-}  // namespace trocar
+}  // namespace trocar::link

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 /// The code points that a lead byte of UTF-8 begins: how many bytes follow, and the least value (no overlong forms).
@@ -44,4 +44,4 @@ bool is_clean_text(std::string_view text, Layout layout) {
   return true;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

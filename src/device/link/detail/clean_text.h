@@ -2,11 +2,11 @@
 
 #include <string_view>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 enum class Layout { kLine, kLines };  ///< kLines: tab, CR and newline may be in the text.
 
 /// Valid UTF-8 (no overlong forms, surrogates or values beyond U+10FFFF) without C0, DEL and C1 control characters.
 bool is_clean_text(std::string_view text, Layout layout);
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// Owner of a file descriptor.
 class Descriptor {
@@ -31,4 +31,4 @@ class Descriptor {
   int number_ = -1;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

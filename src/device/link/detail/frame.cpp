@@ -6,7 +6,7 @@
 
 #include "link/messages.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr flatbuffers::uoffset_t kMostDepth = 4;  ///< Root, body, and what is in it: 3.
@@ -53,4 +53,4 @@ Bytes take_bytes(const flatbuffers::FlatBufferBuilder& builder) {
   return {begin, begin + builder.GetSize()};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

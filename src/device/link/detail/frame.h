@@ -10,7 +10,7 @@
 #include "link/codec.h"
 #include "link/detail/messages_generated.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 inline constexpr char kClientIdentifier[] = "TRCC";  ///< File identifier of a client's message.
 inline constexpr char kServerIdentifier[] = "TRCS";
@@ -53,4 +53,4 @@ Bytes take_bytes(const flatbuffers::FlatBufferBuilder& builder);
 using Builder = flatbuffers::FlatBufferBuilder;
 using Text = flatbuffers::Offset<flatbuffers::String>;
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

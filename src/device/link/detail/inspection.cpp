@@ -8,7 +8,7 @@
 
 #include "link/messages.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr double kRotationTolerance = 1e-6;   ///< Of an entry of R^T R, and of the determinant.
@@ -96,4 +96,4 @@ wire::Pose to_wire(const Pose& pose) {
   return {flatbuffers::span<const double, 9>(rotation.data(), rotation.size()), to_wire(pose.p())};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

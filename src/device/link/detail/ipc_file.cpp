@@ -11,7 +11,7 @@
 #include <cstring>
 #include <optional>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace fs = std::filesystem;
 namespace {
 
@@ -112,4 +112,4 @@ void IpcFile::remove() noexcept {
   path_.clear();
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -8,7 +8,7 @@
 #include "core/result.h"
 #include "link/detail/descriptor.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// A listening Unix socket and its file, for the user alone (0600). The file goes with it, unless another has taken its
 /// place.
@@ -33,4 +33,4 @@ class IpcFile {
   ino_t inode_ = 0;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

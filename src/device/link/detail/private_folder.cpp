@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr mode_t kUserAlone = 0700;
@@ -35,4 +35,4 @@ Status make_private_folder(const std::filesystem::path& folder) {
   return check_private_folder(folder);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

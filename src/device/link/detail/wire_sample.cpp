@@ -1,15 +1,15 @@
 #include "link/detail/wire_sample.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr double kLongestAxis = 2.0;  ///< A unit vector with room for rounding and for a tick without one (zero).
 constexpr flatbuffers::uoffset_t kEvents = 4;
-static_assert(std::tuple_size_v<decltype(TickSample::events)> == kEvents);
+static_assert(std::tuple_size_v<decltype(telemetry::TickSample::events)> == kEvents);
 
 }  // namespace
 
-wire::Sample to_wire(const TickSample& s) {
+wire::Sample to_wire(const telemetry::TickSample& s) {
   std::array<wire::Event, kEvents> events;
   for (std::size_t i = 0; i < kEvents; ++i) {
     events[i] = {static_cast<std::uint8_t>(s.events[i].kind), s.events[i].id};
@@ -46,15 +46,15 @@ wire::Sample to_wire(const TickSample& s) {
           static_cast<std::uint8_t>(s.gate_fault)};
 }
 
-TickSample read_sample(const wire::Sample& w, Inspection& inspection) {
-  TickSample s;
+telemetry::TickSample read_sample(const wire::Sample& w, Inspection& inspection) {
+  telemetry::TickSample s;
   s.time_s = inspection.number(w.time_s(), kTimes_s, "time_s of a tick");
   s.tip_mm = inspection.vector(w.tip_mm(), kMostPosition_mm, "tip_mm of a tick");
   s.axis = inspection.vector(w.axis(), kLongestAxis, "axis of a tick");
   s.axial_velocity_mm_s = w.axial_velocity_mm_s();
   s.depth_mm = w.depth_mm();
   s.tissue = w.tissue();
-  s.phase = inspection.enumerator(w.phase(), InsertionPhase::kRetracting, "phase of a tick");
+  s.phase = inspection.enumerator(w.phase(), telemetry::InsertionPhase::kRetracting, "phase of a tick");
   s.layer_displacement_mm = w.layer_displacement_mm();
   s.f_prepuncture_n = w.f_prepuncture_n();
   s.f_friction_n = w.f_friction_n();
@@ -65,7 +65,7 @@ TickSample read_sample(const wire::Sample& w, Inspection& inspection) {
   s.tau_nmm = from_wire(w.tau_nmm());
   for (flatbuffers::uoffset_t i = 0; i < kEvents; ++i) {
     const wire::Event& event = *w.events()->Get(i);
-    s.events[i] = {inspection.enumerator(event.kind(), EventKind::kLimit, "event of a tick"), event.id()};
+    s.events[i] = {inspection.enumerator(event.kind(), telemetry::EventKind::kLimit, "event of a tick"), event.id()};
   }
   s.limited = w.limited();
   s.breathing = w.breathing();
@@ -79,9 +79,9 @@ TickSample read_sample(const wire::Sample& w, Inspection& inspection) {
   s.device_tau_nmm = from_wire(w.device_tau_nmm());
   s.gate_scale = w.gate_scale();
   s.coupling_share = w.coupling_share();
-  s.gate_mode = inspection.enumerator(w.gate_mode(), kLastGateMode, "gate_mode of a tick");
-  s.gate_fault = inspection.enumerator(w.gate_fault(), kLastGateFault, "gate_fault of a tick");
+  s.gate_mode = inspection.enumerator(w.gate_mode(), telemetry::kLastGateMode, "gate_mode of a tick");
+  s.gate_fault = inspection.enumerator(w.gate_fault(), telemetry::kLastGateFault, "gate_fault of a tick");
   return s;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -3,12 +3,12 @@
 #include "link/detail/inspection.h"
 #include "telemetry/tick_sample.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// Every field, bit for bit: NaN too.
-wire::Sample to_wire(const TickSample& sample);
+wire::Sample to_wire(const telemetry::TickSample& sample);
 /// Time, needle and device are finite, phase and events are known. All other numbers stay as they came, for a record of
 /// a fault must show it.
-TickSample read_sample(const wire::Sample& sample, Inspection& inspection);
+telemetry::TickSample read_sample(const wire::Sample& sample, Inspection& inspection);
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

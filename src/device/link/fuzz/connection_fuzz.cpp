@@ -9,10 +9,10 @@
 
 #include "core/check.h"
 #include "link/curve_keys.h"
-#include "link/zmtp/detail/zmtp_connection.h"
 #include "link/limits.h"
+#include "link/zmtp/detail/zmtp_connection.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 /// Bits of an input's first byte: how far the connection has come before the input's bytes.
@@ -82,7 +82,7 @@ void run(std::span<const std::byte> input) {
 }
 
 }  // namespace
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   trocar::detail::run(std::as_bytes(std::span(data, size)));

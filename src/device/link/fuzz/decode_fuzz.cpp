@@ -8,7 +8,7 @@
 #include "link/test/fingerprint.h"
 #include "link/test/invariants.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 
 /// A message that was accepted comes through the codec once more as it is.
@@ -28,11 +28,11 @@ void check(std::span<const std::byte> bytes, Decode decode) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto bytes = std::as_bytes(std::span(data, size));
-  trocar::check<trocar::ClientMessage>(bytes, trocar::decode_client_message);
-  trocar::check<trocar::ServerMessage>(bytes, trocar::decode_server_message);
+  trocar::check<trocar::link::ClientMessage>(bytes, trocar::link::decode_client_message);
+  trocar::check<trocar::link::ServerMessage>(bytes, trocar::link::decode_server_message);
   return 0;
 }

@@ -8,7 +8,7 @@
 #include "link/codec.h"
 #include "link/test/random_message.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 
 constexpr std::uint64_t kSeeds = 4;  ///< Of each kind of message.
@@ -34,7 +34,7 @@ Status write_seeds(const std::filesystem::path& folder) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -6,7 +6,7 @@
 #include "link/test/fingerprint.h"
 #include "link/test/random_message.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 
 constexpr std::uint64_t kSeeds = 200;
@@ -40,9 +40,9 @@ TEST(Codec, DefaultsComeThrough) {
     ASSERT_TRUE(decoded) << decoded.error().text();
     EXPECT_EQ(Fingerprint(*decoded), Fingerprint(message));
   }
-  for (const ServerBody& body :
-       {ServerBody(Welcome{}), ServerBody(StateBatch{}), ServerBody(StateBatch{0, {TickSample{}}, ServerStatus{}}),
-        ServerBody(Reply{}), ServerBody(Pong{})}) {
+  for (const ServerBody& body : {ServerBody(Welcome{}), ServerBody(StateBatch{}),
+                                 ServerBody(StateBatch{0, {telemetry::TickSample{}}, ServerStatus{}}),
+                                 ServerBody(Reply{}), ServerBody(Pong{})}) {
     const ServerMessage message{0, 0, body};
     const auto decoded = decode_server_message(encode(message));
     ASSERT_TRUE(decoded) << decoded.error().text();
@@ -54,7 +54,7 @@ TEST(Codec, LargestBatchAndLongestTextFit) {
   RandomMessages random(1);
   StateBatch batch;
   batch.samples.resize(kMostSamples);
-  for (TickSample& sample : batch.samples) sample = random.some<TickSample>();
+  for (telemetry::TickSample& sample : batch.samples) sample = random.some<telemetry::TickSample>();
   batch.status = random.some<ServerStatus>();
   const ServerMessage many{1, 1, batch};
   ASSERT_LE(encode(many).size(), kMostMessageBytes);
@@ -68,7 +68,7 @@ TEST(Codec, LargestBatchAndLongestTextFit) {
 }
 
 TEST(Codec, BytesMayStartAnywhere) {
-  const ServerMessage message{1, 1, StateBatch{1, {RandomMessages(3).some<TickSample>()}, std::nullopt}};
+  const ServerMessage message{1, 1, StateBatch{1, {RandomMessages(3).some<telemetry::TickSample>()}, std::nullopt}};
   const Bytes bytes = encode(message);
   for (std::size_t shift = 0; shift < sizeof(double); ++shift) {
     Bytes shifted(shift);
@@ -101,4 +101,4 @@ TEST(CodecDeathTest, BatchThatIsTooLongIsTheCallersMistake) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link

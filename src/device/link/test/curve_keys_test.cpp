@@ -8,7 +8,7 @@
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 namespace fs = std::filesystem;
 
@@ -150,4 +150,4 @@ TEST(PublicKey, IsOneAlone) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link

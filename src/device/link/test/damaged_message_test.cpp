@@ -6,7 +6,7 @@
 #include "link/test/invariants.h"
 #include "link/test/random_message.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 
 Result<ClientMessage> decode(std::span<const std::byte> bytes, const ClientMessage&) {
@@ -126,4 +126,4 @@ TEST(DamagedMessage, OtherSidesMessageIsRefused) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link

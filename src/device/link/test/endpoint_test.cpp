@@ -9,7 +9,7 @@
 #include "core/files/temporary_folder.h"
 #include "link/detail/private_folder.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 namespace fs = std::filesystem;
 
@@ -145,4 +145,4 @@ TEST(PrivateFolder, AnotherUsersIsRefused) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link

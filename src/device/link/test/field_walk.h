@@ -9,7 +9,7 @@
 
 #include "link/test/message_fields.h"
 
-namespace trocar {
+namespace trocar::link {
 
 /// Functions under one name, each for its own type.
 template <class... Functions>
@@ -73,4 +73,4 @@ void walk(Envelope<Body>& message, Visit visit) {
   FieldWalk<Visit>(visit).go(message.body);
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

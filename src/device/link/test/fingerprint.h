@@ -6,7 +6,7 @@
 
 #include "link/test/message_fields.h"
 
-namespace trocar {
+namespace trocar::link {
 
 /// All fields of a message, bit for bit, as text: two messages are the same where these are.
 class Fingerprint {
@@ -17,7 +17,7 @@ class Fingerprint {
     add(message.sequence);
     add(message.body);
   }
-  explicit Fingerprint(const TickSample& sample) { add(sample); }
+  explicit Fingerprint(const telemetry::TickSample& sample) { add(sample); }
   const std::string& text() const { return text_; }
   bool operator==(const Fingerprint&) const = default;
 
@@ -62,4 +62,4 @@ class Fingerprint {
   std::string text_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::link

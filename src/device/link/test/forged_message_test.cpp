@@ -8,7 +8,7 @@
 #include "link/detail/wire_sample.h"
 #include "link/test/random_message.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 using namespace detail;
 
@@ -112,7 +112,7 @@ TEST(ForgedMessage, TooManySettingsAreRefused) {
 TEST(ForgedMessage, TooManyTicksAreRefused) {
   for (const std::size_t count : {kMostSamples, kMostSamples + 1}) {
     Builder b;
-    const auto samples = b.CreateVectorOfStructs(std::vector(count, to_wire(TickSample{})));
+    const auto samples = b.CreateVectorOfStructs(std::vector(count, to_wire(telemetry::TickSample{})));
     const auto batch = wire::CreateStateBatch(b, 1, samples).Union();
     const auto decoded = decode_server_message(finish_server(b, wire::ServerBody::StateBatch, batch));
     EXPECT_EQ(decoded.has_value(), count == kMostSamples);
@@ -120,7 +120,7 @@ TEST(ForgedMessage, TooManyTicksAreRefused) {
 }
 
 /// A batch of one tick that lies `shift` bytes before where it would be aligned.
-Bytes forge_misaligned_batch(const TickSample& sample, std::size_t shift) {
+Bytes forge_misaligned_batch(const telemetry::TickSample& sample, std::size_t shift) {
   Builder b;
   b.ForceVectorAlignment(sizeof(wire::Sample), 1, alignof(wire::Sample));
   b.Pad(shift);
@@ -133,7 +133,7 @@ Bytes forge_misaligned_batch(const TickSample& sample, std::size_t shift) {
 }
 
 TEST(ForgedMessage, MisalignedTicksAreRefused) {
-  const TickSample sample = RandomMessages(31).some<TickSample>();
+  const telemetry::TickSample sample = RandomMessages(31).some<telemetry::TickSample>();
   EXPECT_TRUE(decode_server_message(forge_misaligned_batch(sample, 0)));
   expect_says(complaint(decode_server_message(forge_misaligned_batch(sample, 4))), "misaligned ticks");
 }
@@ -148,4 +148,4 @@ TEST(ForgedMessage, CyclesEnd) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link

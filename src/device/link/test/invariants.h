@@ -5,7 +5,7 @@
 
 #include "link/test/field_walk.h"
 
-namespace trocar {
+namespace trocar::link {
 
 /// What holds for every message that a decoder accepts; empty where all does, else what is broken.
 template <class Body>
@@ -48,13 +48,13 @@ std::string find_broken_invariant(Envelope<Body> message) {
                              for (const std::string& option : reply.options) check_text(option, false);
                              check_text(reply.tissues_toml, true);
                            },
-                           [&](TickSample& sample) {
+                           [&](telemetry::TickSample& sample) {
                              expect(std::isfinite(sample.time_s), "tick without a time");
                              expect(is_near(sample.tip_mm) && is_near(sample.device_mm), "tick far away");
                              expect(sample.axis.allFinite(), "axis not finite");
-                             expect(sample.phase <= InsertionPhase::kRetracting, "unknown phase");
-                             for (const TickEvent& event : sample.events)
-                               expect(event.kind <= EventKind::kLimit, "unknown event");
+                             expect(sample.phase <= telemetry::InsertionPhase::kRetracting, "unknown phase");
+                             for (const telemetry::TickEvent& event : sample.events)
+                               expect(event.kind <= telemetry::EventKind::kLimit, "unknown event");
                            }});
   if constexpr (std::is_same_v<Body, ServerBody>) {
     const auto* batch = std::get_if<StateBatch>(&message.body);
@@ -63,4 +63,4 @@ std::string find_broken_invariant(Envelope<Body> message) {
   return broken;
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

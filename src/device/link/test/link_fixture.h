@@ -32,21 +32,21 @@ inline bool eventually(const std::function<bool()>& is_so) {
   return true;
 }
 
-inline Endpoint ipc_endpoint(const TemporaryFolder& folder) {
+inline link::Endpoint ipc_endpoint(const TemporaryFolder& folder) {
   return {"ipc://" + (folder / "socket").string(), false};
 }
 /// One that nobody else has, while the program runs.
-inline Endpoint any_endpoint() {
+inline link::Endpoint any_endpoint() {
   static const TemporaryFolder folder;
   static std::atomic<int> count = 0;
   return {"ipc://" + (folder / std::to_string(++count)).string(), false};
 }
-inline Endpoint any_port() {
+inline link::Endpoint any_port() {
   return {"tcp://127.0.0.1:0", true};
 }
 
-inline Welcome test_welcome() {
-  Welcome welcome;
+inline link::Welcome test_welcome() {
+  link::Welcome welcome;
   welcome.server = "a server";
   welcome.tool = "needle";
   welcome.device.name = "virtual";
@@ -54,7 +54,7 @@ inline Welcome test_welcome() {
 }
 
 /// Writes another version into an encoded message.
-inline void set_version(Bytes& bytes, std::uint32_t version) {
+inline void set_version(link::Bytes& bytes, std::uint32_t version) {
   const auto at = [&](std::size_t offset) {
     std::uint32_t value = 0;
     std::memcpy(&value, bytes.data() + offset, sizeof value);
@@ -69,11 +69,11 @@ inline void set_version(Bytes& bytes, std::uint32_t version) {
 }
 
 /// Consecutive ticks whose time is their number.
-inline StateBatch test_batch(std::uint64_t first, std::size_t count) {
-  StateBatch batch;
+inline link::StateBatch test_batch(std::uint64_t first, std::size_t count) {
+  link::StateBatch batch;
   batch.first_tick = first;
   for (std::size_t i = 0; i < count; ++i) {
-    TickSample sample;
+    telemetry::TickSample sample;
     sample.time_s = static_cast<double>(first + i);
     batch.samples.push_back(sample);
   }
@@ -83,8 +83,8 @@ inline StateBatch test_batch(std::uint64_t first, std::size_t count) {
 /// A server in a thread: answers commands, remembers what it got, and does what a test asks for in between.
 class RunningServer {
  public:
-  explicit RunningServer(const Endpoint& endpoint, std::optional<ServerSecurity> security = {}) {
-    auto socket = ServerSocket::bind(endpoint, std::move(security));
+  explicit RunningServer(const link::Endpoint& endpoint, std::optional<link::ServerSecurity> security = {}) {
+    auto socket = link::ServerSocket::bind(endpoint, std::move(security));
     if (!socket) {
       error_ = socket.error().text();
       return;
@@ -100,36 +100,36 @@ class RunningServer {
   const std::string& error() const { return error_; }
 
   /// Calls it in the server's thread, and waits until it was.
-  void with_socket(const std::function<void(ServerSocket&)>& call) {
+  void with_socket(const std::function<void(link::ServerSocket&)>& call) {
     std::atomic<bool> is_done = false;
     {
       const std::lock_guard lock(mutex_);
-      calls_.push_back([&](ServerSocket& socket) {
+      calls_.push_back([&](link::ServerSocket& socket) {
         call(socket);
         is_done = true;
       });
     }
     eventually([&] { return is_done.load(); });
   }
-  void send(const StateBatch& batch) {
-    with_socket([&](ServerSocket& socket) { socket.send_batch(batch); });
+  void send(const link::StateBatch& batch) {
+    with_socket([&](link::ServerSocket& socket) { socket.send_batch(batch); });
   }
   template <class Body>
   std::vector<Body> received() {
     const std::lock_guard lock(mutex_);
     std::vector<Body> bodies;
-    for (const Received& one : received_) {
+    for (const link::Received& one : received_) {
       if (const auto* body = std::get_if<Body>(&one.body)) bodies.push_back(*body);
     }
     return bodies;
   }
 
  private:
-  void run(ServerSocket& server) {
-    const Welcome welcome = test_welcome();
+  void run(link::ServerSocket& server) {
+    const link::Welcome welcome = test_welcome();
     while (!is_stopping_) {
-      auto got = server.receive(1, welcome, seconds(now_ns()));
-      std::vector<std::function<void(ServerSocket&)>> calls;
+      auto got = server.receive(1, welcome, realtime::seconds(realtime::now_ns()));
+      std::vector<std::function<void(link::ServerSocket&)>> calls;
       {
         const std::lock_guard lock(mutex_);
         if (got) received_.push_back(*got);
@@ -137,8 +137,8 @@ class RunningServer {
       }
       for (const auto& call : calls) call(server);
       if (!got) continue;
-      if (const auto* command = std::get_if<Command>(&got->body)) {
-        const bool is_done = std::holds_alternative<ServerCommand>(command->what);
+      if (const auto* command = std::get_if<link::Command>(&got->body)) {
+        const bool is_done = std::holds_alternative<link::ServerCommand>(command->what);
         server.send_reply(got->session, {command->request, is_done, is_done ? "done" : "this server only obeys"});
       }
     }
@@ -146,8 +146,8 @@ class RunningServer {
 
   std::string url_, error_;
   std::mutex mutex_;
-  std::vector<Received> received_;
-  std::vector<std::function<void(ServerSocket&)>> calls_;
+  std::vector<link::Received> received_;
+  std::vector<std::function<void(link::ServerSocket&)>> calls_;
   std::atomic<bool> is_stopping_ = false;
   std::thread thread_;
 };

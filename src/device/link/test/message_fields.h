@@ -4,7 +4,7 @@
 
 #include "link/messages.h"
 
-namespace trocar {
+namespace trocar::link {
 
 /// Shows `visit` every field of a struct of messages.h. A field that is added there and forgotten here does not
 /// compile.
@@ -45,19 +45,19 @@ void each_field(T& value, Visit&& visit) {
   } else if constexpr (std::is_same_v<Plain, Pong>) {
     auto& [a, b] = value;
     all(a, b);
-  } else if constexpr (std::is_same_v<Plain, LatencySummary>) {
+  } else if constexpr (std::is_same_v<Plain, realtime::LatencySummary>) {
     auto& [a, b, c, d] = value;
     all(a, b, c, d);
-  } else if constexpr (std::is_same_v<Plain, LoopSummary>) {
+  } else if constexpr (std::is_same_v<Plain, realtime::LoopSummary>) {
     auto& [a, b, c, d, e, f, g] = value;
     all(a, b, c, d, e, f, g);
   } else if constexpr (std::is_same_v<Plain, ServerStatus>) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u] = value;
     all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u);
-  } else if constexpr (std::is_same_v<Plain, TickEvent>) {
+  } else if constexpr (std::is_same_v<Plain, telemetry::TickEvent>) {
     auto& [a, b] = value;
     all(a, b);
-  } else if constexpr (std::is_same_v<Plain, TickSample>) {
+  } else if constexpr (std::is_same_v<Plain, telemetry::TickSample>) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, aa, ab, ac, ad] = value;
     all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, aa, ab, ac, ad);
   } else if constexpr (std::is_same_v<Plain, StateBatch>) {
@@ -68,4 +68,4 @@ void each_field(T& value, Visit&& visit) {
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "link/test/message_fields.h"
 
-namespace trocar {
+namespace trocar::link {
 
 /// Seeded messages that a decoder must accept: every field different from its default, texts with characters of one to
 /// four bytes, forces that are NaN or infinite.
@@ -56,10 +56,14 @@ class RandomMessages {
   void fill(std::uint8_t& value) { value = static_cast<std::uint8_t>(random_.next()); }
   void fill(std::uint32_t& value) { value = static_cast<std::uint32_t>(random_.next()); }
   void fill(std::uint64_t& value) { value = random_.next(); }
-  void fill(InsertionPhase& value) { value = static_cast<InsertionPhase>(below(4)); }
-  void fill(GateMode& value) { value = static_cast<GateMode>(below(static_cast<std::size_t>(kLastGateMode) + 1)); }
-  void fill(GateFault& value) { value = static_cast<GateFault>(below(static_cast<std::size_t>(kLastGateFault) + 1)); }
-  void fill(EventKind& value) { value = static_cast<EventKind>(below(4)); }
+  void fill(telemetry::InsertionPhase& value) { value = static_cast<telemetry::InsertionPhase>(below(4)); }
+  void fill(telemetry::GateMode& value) {
+    value = static_cast<telemetry::GateMode>(below(static_cast<std::size_t>(telemetry::kLastGateMode) + 1));
+  }
+  void fill(telemetry::GateFault& value) {
+    value = static_cast<telemetry::GateFault>(below(static_cast<std::size_t>(telemetry::kLastGateFault) + 1));
+  }
+  void fill(telemetry::EventKind& value) { value = static_cast<telemetry::EventKind>(below(4)); }
   void fill(ServerCommand& value) {
     value = static_cast<ServerCommand>(below(static_cast<std::size_t>(kLastServerCommand) + 1));
   }
@@ -84,7 +88,7 @@ class RandomMessages {
     each_field(reply, [this](auto& field) { fill(field); });
     reply.tissues_toml += "\n";
   }
-  void fill(TickSample& sample) {
+  void fill(telemetry::TickSample& sample) {
     each_field(sample, [this](auto& field) { fill(field); });
     using Limits = std::numeric_limits<double>;
     const double other_nan = std::bit_cast<double>(0xFFF8'0000'DEAD'BEEFULL);
@@ -135,8 +139,8 @@ inline std::vector<ServerMessage> RandomMessages::server_messages() {
   for (std::size_t i = 0; i < std::variant_size_v<ServerBody>; ++i) {
     messages.push_back({random_.next(), random_.next(), alternative<ServerBody>(i)});
   }
-  messages.push_back({1, 2, StateBatch{3, {some<TickSample>()}, some<ServerStatus>()}});
+  messages.push_back({1, 2, StateBatch{3, {some<telemetry::TickSample>()}, some<ServerStatus>()}});
   return messages;
 }
 
-}  // namespace trocar
+}  // namespace trocar::link

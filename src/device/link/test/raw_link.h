@@ -22,25 +22,25 @@ class RawClient {
     socket_.set(ZMQ_RCVTIMEO, kPatience_ms);
     url_ = url;
   }
-  detail::ZmqSocket& socket() { return socket_; }
+  link::detail::ZmqSocket& socket() { return socket_; }
   void connect() { zmq_connect(socket_.get(), url_.c_str()); }
 
   bool send(std::span<const std::byte> bytes) { return socket_.send(bytes, 0); }
-  bool send(std::uint64_t session, std::uint64_t sequence, ClientBody body) {
-    return send(encode(ClientMessage{session, sequence, std::move(body)}));
+  bool send(std::uint64_t session, std::uint64_t sequence, link::ClientBody body) {
+    return send(link::encode(link::ClientMessage{session, sequence, std::move(body)}));
   }
-  bool send(ClientBody body) { return send(session_, ++sequence_, std::move(body)); }
+  bool send(link::ClientBody body) { return send(session_, ++sequence_, std::move(body)); }
   bool hello(const std::string& name = "raw", bool wants_control = true) {
     sequence_ = 0;
-    return send(0, 0, Hello{name, wants_control});
+    return send(0, 0, link::Hello{name, wants_control});
   }
   /// The next message, and the session of a Welcome becomes ours.
-  std::optional<ServerMessage> receive(int flags = 0) {
-    detail::ZmqFrame frame;
+  std::optional<link::ServerMessage> receive(int flags = 0) {
+    link::detail::ZmqFrame frame;
     if (!socket_.receive(frame, flags)) return {};
-    auto message = decode_server_message(frame.bytes());
+    auto message = link::decode_server_message(frame.bytes());
     if (!message) return {};
-    if (const auto* welcome = std::get_if<Welcome>(&message->body)) session_ = welcome->session;
+    if (const auto* welcome = std::get_if<link::Welcome>(&message->body)) session_ = welcome->session;
     return *std::move(message);
   }
   /// The next message of a kind; others are passed over.
@@ -54,8 +54,8 @@ class RawClient {
   std::uint64_t session() const { return session_; }
 
  private:
-  detail::ZmqContext context_;
-  detail::ZmqSocket socket_;
+  link::detail::ZmqContext context_;
+  link::detail::ZmqSocket socket_;
   std::string url_;
   std::uint64_t session_ = 0, sequence_ = 0;
 };
@@ -63,19 +63,19 @@ class RawClient {
 inline constexpr double kNow_s = 100.0;
 inline constexpr double kLongAfter_s = 1000.0;
 
-inline ServerSocket bound(const Endpoint& endpoint = any_endpoint()) {
-  auto server = ServerSocket::bind(endpoint);
+inline link::ServerSocket bound(const link::Endpoint& endpoint = any_endpoint()) {
+  auto server = link::ServerSocket::bind(endpoint);
   EXPECT_TRUE(server) << server.error().text();
   return *std::move(server);
 }
 
-inline std::optional<Received> serve(ServerSocket& server, double now_s = kNow_s) {
+inline std::optional<link::Received> serve(link::ServerSocket& server, double now_s = kNow_s) {
   return server.receive(kPatience_ms, test_welcome(), now_s);
 }
 
 /// The next message of a kind while the server sends what waits; what clients say meanwhile is dropped.
 template <class Body>
-std::optional<Body> next_while_served(ServerSocket& server, RawClient& client) {
+std::optional<Body> next_while_served(link::ServerSocket& server, RawClient& client) {
   std::optional<Body> body;
   eventually([&] {
     server.receive(0, test_welcome(), kNow_s);
@@ -87,23 +87,23 @@ std::optional<Body> next_while_served(ServerSocket& server, RawClient& client) {
 }
 
 /// Connects a client and gets it its session.
-inline void join(ServerSocket& server, RawClient& client, bool wants_control = true, double now_s = kNow_s) {
+inline void join(link::ServerSocket& server, RawClient& client, bool wants_control = true, double now_s = kNow_s) {
   client.connect();
   ASSERT_TRUE(client.hello("raw", wants_control));
   const auto hello = serve(server, now_s);
   ASSERT_TRUE(hello);
-  ASSERT_TRUE(std::holds_alternative<Hello>(hello->body));
-  const auto welcome = client.next<Welcome>();
+  ASSERT_TRUE(std::holds_alternative<link::Hello>(hello->body));
+  const auto welcome = client.next<link::Welcome>();
   ASSERT_TRUE(welcome);
   EXPECT_NE(welcome->session, 0u);
   EXPECT_EQ(welcome->session, hello->session);
 }
 
 /// A heartbeat that must arrive: all that was sent before it has been judged then.
-inline std::optional<Received> beat(ServerSocket& server, RawClient& client, double now_s = kNow_s) {
-  EXPECT_TRUE(client.send(Heartbeat{1.0, 0.0, 0}));
+inline std::optional<link::Received> beat(link::ServerSocket& server, RawClient& client, double now_s = kNow_s) {
+  EXPECT_TRUE(client.send(link::Heartbeat{1.0, 0.0, 0}));
   auto received = serve(server, now_s);
-  EXPECT_TRUE(received && std::holds_alternative<Heartbeat>(received->body));
+  EXPECT_TRUE(received && std::holds_alternative<link::Heartbeat>(received->body));
   return received;
 }
 

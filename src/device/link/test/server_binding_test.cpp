@@ -11,7 +11,7 @@
 #include "link/server_socket.h"
 #include "link/test/raw_link.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 
 using namespace testing;  // the link's
@@ -155,4 +155,4 @@ TEST_F(SecureServer, RefusesWhatIsNoKey) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link

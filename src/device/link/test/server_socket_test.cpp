@@ -5,7 +5,7 @@
 
 #include "link/test/raw_link.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 
 using namespace testing;  // the link's
@@ -419,4 +419,4 @@ TEST(ServerSocket, SilentPeersAreForgotten) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link

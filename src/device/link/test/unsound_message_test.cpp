@@ -8,7 +8,7 @@
 #include "link/test/field_walk.h"
 #include "link/test/random_message.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -37,7 +37,7 @@ template <class T, class Message>
 int expect_none_accepted(const Message& good, const std::vector<T>& values) {
   int count = 0;
   Message counted = good;
-  walk(counted, Overloaded{[&](T&) { ++count; }, [](TickSample&) {}});
+  walk(counted, Overloaded{[&](T&) { ++count; }, [](telemetry::TickSample&) {}});
   for (const T& value : values) {
     for (int chosen = 0; chosen < count; ++chosen) {
       Message bad = good;
@@ -45,7 +45,7 @@ int expect_none_accepted(const Message& good, const std::vector<T>& values) {
       walk(bad, Overloaded{[&](T& field) {
                              if (i++ == chosen) field = value;
                            },
-                           [](TickSample&) {}});
+                           [](telemetry::TickSample&) {}});
       EXPECT_FALSE(is_accepted(bad)) << "field " << chosen << " of body " << good.body.index();
     }
   }
@@ -155,24 +155,24 @@ TEST(UnsoundEnumerator, IsRefused) {
   EXPECT_FALSE(is_accepted(Command{1, static_cast<ServerCommand>(255)}));
 }
 
-bool is_accepted_in_a_batch(const TickSample& sample) {
-  return is_accepted(ServerMessage{1, 1, StateBatch{1, {TickSample{}, sample}, std::nullopt}});
+bool is_accepted_in_a_batch(const telemetry::TickSample& sample) {
+  return is_accepted(ServerMessage{1, 1, StateBatch{1, {telemetry::TickSample{}, sample}, std::nullopt}});
 }
 
 TEST(UnsoundTick, EnumeratorsOutOfRangeAreRefused) {
-  EXPECT_FALSE(is_accepted_in_a_batch(with(&TickSample::phase, static_cast<InsertionPhase>(4))));
+  EXPECT_FALSE(is_accepted_in_a_batch(with(&telemetry::TickSample::phase, static_cast<telemetry::InsertionPhase>(4))));
   for (std::size_t i = 0; i < 4; ++i) {
-    TickSample sample;
-    sample.events[i].kind = static_cast<EventKind>(4);
+    telemetry::TickSample sample;
+    sample.events[i].kind = static_cast<telemetry::EventKind>(4);
     EXPECT_FALSE(is_accepted_in_a_batch(sample));
   }
 }
 
 TEST(UnsoundTick, TimeNeedleAndDeviceAreFinite) {
   for (const double bad : {kNan, kInfinity, 1e200}) {
-    EXPECT_FALSE(is_accepted_in_a_batch(with(&TickSample::time_s, bad)));
+    EXPECT_FALSE(is_accepted_in_a_batch(with(&telemetry::TickSample::time_s, bad)));
     for (int k = 0; k < 3; ++k) {
-      TickSample tip, axis, device;
+      telemetry::TickSample tip, axis, device;
       tip.tip_mm[k] = axis.axis[k] = device.device_mm[k] = bad;
       EXPECT_FALSE(is_accepted_in_a_batch(tip));
       EXPECT_FALSE(is_accepted_in_a_batch(axis));
@@ -182,7 +182,7 @@ TEST(UnsoundTick, TimeNeedleAndDeviceAreFinite) {
 }
 
 TEST(UnsoundTick, ForcesOfAFaultArriveAsTheyWere) {
-  TickSample sample;
+  telemetry::TickSample sample;
   sample.f_total_n.x() = kNan;
   sample.f_stick_n = -kInfinity;
   EXPECT_TRUE(is_accepted_in_a_batch(sample));
@@ -197,4 +197,4 @@ TEST(UnsoundDevice, ImpossibleDegreesOfFreedomAreRefused) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link

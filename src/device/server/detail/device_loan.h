@@ -3,7 +3,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace trocar {
+namespace trocar::server {
 
 /// Lends the device of the real-time thread to the control thread. Every request has a ticket of its own, so that the
 /// answer to an earlier request is never taken for that to a later one. One thread a side; no side ever waits here.
@@ -34,4 +34,4 @@ class DeviceLoan {
   std::atomic<std::uint64_t> asked_{0}, lent_{0}, returned_{0};
 };
 
-}  // namespace trocar
+}  // namespace trocar::server

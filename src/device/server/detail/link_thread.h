@@ -4,31 +4,31 @@
 #include "server/detail/shared.h"
 #include "server/flight_recorder.h"
 
-namespace trocar {
+namespace trocar::server {
 
 /// The link's thread: messages in, batches out, status 20 times a second, the flight recorder's feed.
 class LinkThread {
  public:
-  LinkThread(Shared& shared, ServerSocket& socket, Welcome welcome, int priority);
+  LinkThread(Shared& shared, link::ServerSocket& socket, link::Welcome welcome, int priority);
   void run();
   std::uint64_t ticks() const noexcept { return ticks_; }  ///< After run() has ended.
 
  private:
   void receive_round();
-  void take(const Received& received);
-  void take(const Received& received, const Command& command);
-  void reply(const Received& received, std::uint32_t request, bool is_done, std::string text);
+  void take(const link::Received& received);
+  void take(const link::Received& received, const link::Command& command);
+  void reply(const link::Received& received, std::uint32_t request, bool is_done, std::string text);
   void drain();
   void flush();
-  ServerStatus make_status(double now_s);
+  link::ServerStatus make_status(double now_s);
   std::string warning() const;
 
   Shared& shared_;
-  ServerSocket& socket_;
-  Welcome welcome_;
+  link::ServerSocket& socket_;
+  link::Welcome welcome_;
   int priority_;
   FlightRecorder recorder_;
-  StateBatch batch_;
+  link::StateBatch batch_;
   ServoRecord newest_;
   std::uint64_t ticks_ = 0;
   std::uint64_t in_control_ = 0;  ///< Session; 0: nobody.
@@ -39,4 +39,4 @@ class LinkThread {
   double sent_s_ = 0.0, told_s_ = 0.0;
 };
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -23,7 +23,7 @@
 #include "server/servo.h"
 
 /// What the three threads of a haptic server share. Private to `server`.
-namespace trocar {
+namespace trocar::server {
 
 /// Work for the control thread.
 struct WriteFlight {
@@ -32,14 +32,14 @@ struct WriteFlight {
 struct ControlJob {
   std::uint64_t session = 0;  ///< Who gets the reply; 0: nobody.
   std::uint32_t request = 0;
-  std::variant<LoadScene, SetParameters, ServerCommand, WriteFlight> what;
+  std::variant<link::LoadScene, link::SetParameters, link::ServerCommand, WriteFlight> what;
 };
 /// Bytes of the texts that a client sent with it.
 std::size_t text_bytes(const ControlJob& job);
 
 struct AddressedReply {
   std::uint64_t session = 0;
-  Reply reply;
+  link::Reply reply;
 };
 
 /// What the control thread knows and the link's thread tells.
@@ -64,7 +64,7 @@ class ControlDoor {
       const std::size_t bytes = text_bytes(job);
       if (jobs_.size() >= kMostJobs || bytes_ + bytes > kMostJobBytes) return false;
       bytes_ += bytes;
-      if (std::holds_alternative<LoadScene>(job.what)) running_.request_stop();
+      if (std::holds_alternative<link::LoadScene>(job.what)) running_.request_stop();
       jobs_.push_back(std::move(job));
     }
     wake_.notify_one();
@@ -79,7 +79,7 @@ class ControlDoor {
     jobs_.pop_front();
     bytes_ -= text_bytes(job);
     running_ = std::stop_source();
-    const auto is_scene = [](const ControlJob& later) { return std::holds_alternative<LoadScene>(later.what); };
+    const auto is_scene = [](const ControlJob& later) { return std::holds_alternative<link::LoadScene>(later.what); };
     if (std::any_of(jobs_.begin(), jobs_.end(), is_scene)) running_.request_stop();
     return true;
   }
@@ -132,7 +132,7 @@ inline constexpr double kNeverHeard_s = 1e6;
 
 /// Everything between the threads, named by its direction.
 struct Shared {
-  explicit Shared(std::int64_t period) : period_ns(period), statistics(LoopStatistics(period)) {}
+  explicit Shared(std::int64_t period) : period_ns(period), statistics(realtime::LoopStatistics(period)) {}
 
   const std::int64_t period_ns;
   LastChance* last_chance = nullptr;  ///< Of the device; outlives the threads.
@@ -140,20 +140,20 @@ struct Shared {
   std::atomic<bool> is_fading{false};  ///< The server is about to stop: forces off.
 
   // Link -> real time.
-  SpscRing<ServerCommand> commands{kCommandsKept};
-  TripleBuffer<HandTarget> hand;
+  realtime::SpscRing<link::ServerCommand> commands{kCommandsKept};
+  realtime::TripleBuffer<link::HandTarget> hand;
   std::atomic<std::int64_t> heard_ns{0};  ///< The client in control; 0: there is none.
 
   // Real time -> link.
-  SpscRing<ServoRecord> records{kRecordsKept};
+  realtime::SpscRing<ServoRecord> records{kRecordsKept};
   std::atomic<std::uint64_t> records_dropped{0};
-  TripleBuffer<LoopStatistics> statistics;
+  realtime::TripleBuffer<realtime::LoopStatistics> statistics;
   std::atomic<bool> is_wanted{false};
   std::atomic<bool> has_grant{false};
-  RealTimeGrant grant;  ///< Written before has_grant is set.
+  realtime::RealTimeGrant grant;  ///< Written before has_grant is set.
 
   // Control <-> real time.
-  Handover<ServoScene> scene;
+  realtime::Handover<ServoScene> scene;
   DeviceLoan loan;  ///< Of the device, to the control thread.
 
   // Link <-> control.
@@ -163,4 +163,4 @@ struct Shared {
 /// The body of the real-time thread.
 void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -6,30 +6,30 @@
 #include <numbers>
 #include <utility>
 
-#include "devices/simulated/faulty_device.h"
 #include "devices/pointer/pointer_device.h"
+#include "devices/simulated/faulty_device.h"
 #include "devices/simulated/virtual_haptic_device.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 constexpr double kPeriod_s = 0.001;
 constexpr double kApproach_mm_per_s = 20.0;
 constexpr double kStart_mm = -10.0;
 
-std::unique_ptr<HapticDevice> make_simulated(const DevicePreset& preset) {
-  if (!preset.has_force()) return std::make_unique<PointerDevice>(preset, PointerParams{});
-  return std::make_unique<VirtualHapticDevice>(preset, SimulatedDeviceParams{});
+std::unique_ptr<devices::HapticDevice> make_simulated(const haptics::DevicePreset& preset) {
+  if (!preset.has_force()) return std::make_unique<devices::PointerDevice>(preset, devices::PointerParams{});
+  return std::make_unique<devices::VirtualHapticDevice>(preset, devices::SimulatedDeviceParams{});
 }
 
 /// Down to the upper end of its swing, then up and down.
-HandTarget hand_at(const SlowLoopTrial& trial, double time_s) {
+link::HandTarget hand_at(const SlowLoopTrial& trial, double time_s) {
   const double top_mm = trial.depth_mm - trial.swing_mm;
   const double begun_s = (top_mm - kStart_mm) / kApproach_mm_per_s;
   const double omega = 2.0 * std::numbers::pi * trial.swing_hz;
   const double phase = omega * (time_s - begun_s);
   const bool is_swinging = phase > 0.0;
-  HandTarget hand;
+  link::HandTarget hand;
   const double depth_mm =
       is_swinging ? trial.depth_mm - trial.swing_mm * std::cos(phase) : kStart_mm + kApproach_mm_per_s * time_s;
   hand.X_PN = needle_pose({0.0, 0.0, depth_mm}, Vec3::UnitZ());
@@ -56,12 +56,13 @@ struct Extent {
 
 }  // namespace
 
-SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const DevicePreset& preset, const SlowLoopTrial& trial) {
+SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const haptics::DevicePreset& preset,
+                                    const SlowLoopTrial& trial) {
   double waited_s = 0.0;
   const bool is_healthy = trial.slow_ms <= 0.0;
-  const ScheduledFault fault{trial.fault, is_healthy ? trial.end_s : trial.fault_s,
-                             std::numeric_limits<double>::infinity(), trial.slow_ms};
-  FaultyDevice device(make_simulated(preset), {fault}, 1, {count_wait, &waited_s});
+  const devices::ScheduledFault fault{trial.fault, is_healthy ? trial.end_s : trial.fault_s,
+                                      std::numeric_limits<double>::infinity(), trial.slow_ms};
+  devices::FaultyDevice device(make_simulated(preset), {fault}, 1, {count_wait, &waited_s});
   Servo servo(device, servo_params(preset));
 
   SlowLoopOutcome outcome;
@@ -95,7 +96,7 @@ SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const DevicePreset&
     } else {
       outcome.zero_s = std::min(outcome.zero_s, since_s);
     }
-    if (record.fault != GateFault::kNone && outcome.fault == GateFault::kNone) {
+    if (record.fault != telemetry::GateFault::kNone && outcome.fault == telemetry::GateFault::kNone) {
       outcome.fault = record.fault;
       outcome.latch_s = since_s;
       outcome.latch_periods = slow_periods;
@@ -105,4 +106,4 @@ SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const DevicePreset&
   return outcome;
 }
 
-}  // namespace trocar
+}  // namespace trocar::server

@@ -3,14 +3,14 @@
 #include "devices/simulated/fault_schedule.h"
 #include "server/servo.h"
 
-namespace trocar {
+namespace trocar::server {
 
 /// A simulated device whose reads or writes become slow while a hand moves it up and down in tissue: how soon the
 /// server takes the force away (docs/validation.md, Slow loops). Simulated time.
 struct SlowLoopTrial {
-  DeviceFault fault = DeviceFault::kSlowRead;  ///< kSlowRead or kSlowWrite.
-  double slow_ms = 0.0;                        ///< Of each read or write; 0: a healthy loop.
-  double fault_s = 4.0;                        ///< When it begins: forces are on, the hand moves.
+  devices::DeviceFault fault = devices::DeviceFault::kSlowRead;  ///< kSlowRead or kSlowWrite.
+  double slow_ms = 0.0;                                          ///< Of each read or write; 0: a healthy loop.
+  double fault_s = 4.0;                                          ///< When it begins: forces are on, the hand moves.
   double end_s = 8.0;
   double depth_mm = 15.0;  ///< Of the tip that the hand wants, its mean; the skin lies at z = 0 of P.
   double swing_mm = 10.0;
@@ -18,7 +18,7 @@ struct SlowLoopTrial {
 };
 
 struct SlowLoopOutcome {
-  GateFault fault = GateFault::kNone;
+  telemetry::GateFault fault = telemetry::GateFault::kNone;
   double longest_period_s = 0.0;
   double latch_s = 0.0;      ///< From the beginning of the first slow period; 0: none.
   int latch_periods = 0;     ///< Slow periods up to the one that latched, that one counted.
@@ -31,6 +31,7 @@ struct SlowLoopOutcome {
 
 /// `preset` without motors: the pointer of a trainer instead of a simulated stylus. `scene`: the skin is at z = 0, +z
 /// goes into the body.
-SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const DevicePreset& preset, const SlowLoopTrial& trial);
+SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const haptics::DevicePreset& preset,
+                                    const SlowLoopTrial& trial);
 
-}  // namespace trocar
+}  // namespace trocar::server

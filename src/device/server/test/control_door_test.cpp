@@ -2,11 +2,11 @@
 
 #include "server/detail/shared.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 ControlJob scene_job(std::uint32_t request) {
-  return {1, request, LoadScene{}};
+  return {1, request, link::LoadScene{}};
 }
 
 TEST(ControlDoor, ANewerSceneStopsTheOneThatIsLoaded) {
@@ -16,7 +16,7 @@ TEST(ControlDoor, ANewerSceneStopsTheOneThatIsLoaded) {
   ASSERT_TRUE(door.wait(job));
   const std::stop_token first = door.stop_token();
   EXPECT_FALSE(first.stop_requested());
-  door.post({1, 2, SetParameters{}});
+  door.post({1, 2, link::SetParameters{}});
   EXPECT_FALSE(first.stop_requested()) << "numbers wait for their scene";
   door.post(scene_job(3));
   EXPECT_TRUE(first.stop_requested());
@@ -45,18 +45,18 @@ TEST(ControlDoor, ClosingStopsTheRunningJob) {
 }
 
 ControlJob parameters_of(std::size_t bytes) {
-  SetParameters parameters;
+  link::SetParameters parameters;
   parameters.settings.emplace_back(bytes, 'x');
   return {1, 2, parameters};
 }
 
 TEST(ControlDoor, TakesAtMostSoManyJobs) {
   ControlDoor door;
-  for (std::size_t i = 0; i < kMostJobs; ++i) EXPECT_TRUE(door.post({1, 2, ServerCommand::kReconnect}));
-  EXPECT_FALSE(door.post({1, 2, ServerCommand::kReconnect}));
+  for (std::size_t i = 0; i < kMostJobs; ++i) EXPECT_TRUE(door.post({1, 2, link::ServerCommand::kReconnect}));
+  EXPECT_FALSE(door.post({1, 2, link::ServerCommand::kReconnect}));
   ControlJob job;
   ASSERT_TRUE(door.wait(job));
-  EXPECT_TRUE(door.post({1, 2, ServerCommand::kReconnect}));
+  EXPECT_TRUE(door.post({1, 2, link::ServerCommand::kReconnect}));
 }
 
 TEST(ControlDoor, TakesAtMostSoManyBytesOfText) {
@@ -66,10 +66,10 @@ TEST(ControlDoor, TakesAtMostSoManyBytesOfText) {
   while (door.post(parameters_of(kLarge))) ASSERT_LT(++taken, 100u);
   EXPECT_LE(taken * kLarge, kMostJobBytes);
   EXPECT_GT(taken, 0u);
-  LoadScene scene;
+  link::LoadScene scene;
   scene.tissues_toml.assign(kLarge, 'x');
   EXPECT_FALSE(door.post({1, 2, scene}));
-  EXPECT_TRUE(door.post({1, 2, ServerCommand::kReconnect})) << "a small job still has its place";
+  EXPECT_TRUE(door.post({1, 2, link::ServerCommand::kReconnect})) << "a small job still has its place";
   // What is done makes room again, to the last byte.
   ControlJob job;
   for (std::size_t i = 0; i <= taken; ++i) ASSERT_TRUE(door.wait(job));
@@ -78,4 +78,4 @@ TEST(ControlDoor, TakesAtMostSoManyBytesOfText) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

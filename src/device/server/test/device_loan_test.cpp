@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 /// A period of the real-time thread in two halves, so that a test can put the control thread's steps between them.
@@ -59,4 +59,4 @@ TEST(DeviceLoan, ALateAnswerToARequestThatWasGivenUpLendsNothing) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

@@ -5,7 +5,7 @@
 #include "core/testing/allocation_guard.h"
 #include "server/test/servo_rig.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
@@ -31,12 +31,12 @@ TEST(DeviceTrial, GivesNoForceThatNobodyAskedFor) {
   double now_s = 1.0;
   const Tried tried = run(trial, now_s, 1.0);
   EXPECT_EQ(tried.most_n, 0.0);
-  EXPECT_EQ(tried.last.fault, GateFault::kNone);
+  EXPECT_EQ(tried.last.fault, telemetry::GateFault::kNone);
 }
 
 TEST(DeviceTrial, PushesUpwardsOnceAndNoHarderThanTheDeviceBears) {
   for (const char* name : {"omni", "premium"}) {
-    const DevicePreset preset = testing::device_preset(name);
+    const haptics::DevicePreset preset = testing::device_preset(name);
     testing::ScriptedDevice device(preset);
     DeviceTrial trial(device, 1000.0);
     EXPECT_LE(trial.push_n(), 1.0);
@@ -59,16 +59,16 @@ TEST(DeviceTrial, AnUnpluggedDeviceIsToldAndAPushTriesAgain) {
   double now_s = 1.0;
   trial.push();
   run(trial, now_s, 0.8);
-  device.reading.status = DeviceStatus::kDisconnected;
+  device.reading.status = devices::DeviceStatus::kDisconnected;
   Tried tried = run(trial, now_s, 0.1);
-  EXPECT_EQ(tried.last.fault, GateFault::kDeviceLost);
+  EXPECT_EQ(tried.last.fault, telemetry::GateFault::kDeviceLost);
   EXPECT_EQ(tried.last.written_D.force_n.norm(), 0.0);
-  device.reading.status = DeviceStatus::kFresh;
+  device.reading.status = devices::DeviceStatus::kFresh;
   tried = run(trial, now_s, 1.0);
   EXPECT_EQ(tried.most_n, 0.0) << "nobody asked for a force since";
   trial.push();
   tried = run(trial, now_s, 3.0);
-  EXPECT_EQ(tried.last.fault, GateFault::kNone);
+  EXPECT_EQ(tried.last.fault, telemetry::GateFault::kNone);
   EXPECT_GT(tried.most_n, 0.4);
 }
 
@@ -82,4 +82,4 @@ TEST(DeviceTrial, NothingIsAllocatedInAPeriod) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

@@ -4,13 +4,13 @@
 
 #include <limits>
 
-#include "devices/simulated/faulty_device.h"
 #include "devices/pointer/pointer_device.h"
+#include "devices/simulated/faulty_device.h"
 #include "devices/simulated/replay_device.h"
 #include "devices/simulated/virtual_haptic_device.h"
 #include "server/test/servo_rig.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 using testing::needle_at_depth;
@@ -23,25 +23,25 @@ constexpr double kTremor_mm = 0.8;  // slow, and more than the joints' friction 
 /// What must come of a fault.
 struct Expected {
   const char* schedule;
-  GateFault fault;      ///< kNone: it goes on, within its limits.
-  double within_s = 0;  ///< From the fault to zero force.
+  telemetry::GateFault fault;  ///< kNone: it goes on, within its limits.
+  double within_s = 0;         ///< From the fault to zero force.
 };
 /// max_unread 20 ms, ramp 20 ms; stuck 5 s; a period for the fault to be read.
 const std::vector<Expected>& all_faults() {
   static const std::vector<Expected> faults{
-      {"nan@4", GateFault::kNotFinite, 0.025},
-      {"disconnect@4", GateFault::kDeviceLost, 0.025},
-      {"disconnect@4+0.05", GateFault::kDeviceLost, 0.025},
-      {"dropped@4", GateFault::kDeviceSilent, 0.045},
-      {"stuck@4", GateFault::kEncoderStuck, 5.1},
-      {"slow_read:400@4", GateFault::kLoopStalled, 0.9},
-      {"slow_write:400@4", GateFault::kLoopStalled, 1.3},
-      {"slow_read:3@4", GateFault::kNone},  // every millisecond up to 1 s: slow_loop_test.cpp
-      {"slow_write:3@4", GateFault::kNone},
-      {"jitter:0.05@4+2", GateFault::kNone},
-      {"jitter:0.3@4+2", GateFault::kVibration, 0.3},  // 420 mm/s rms
-      {"jump:50@4+0.5", GateFault::kImpossibleMotion, 0.025},
-      {"dropped@4+0.01", GateFault::kNone},
+      {"nan@4", telemetry::GateFault::kNotFinite, 0.025},
+      {"disconnect@4", telemetry::GateFault::kDeviceLost, 0.025},
+      {"disconnect@4+0.05", telemetry::GateFault::kDeviceLost, 0.025},
+      {"dropped@4", telemetry::GateFault::kDeviceSilent, 0.045},
+      {"stuck@4", telemetry::GateFault::kEncoderStuck, 5.1},
+      {"slow_read:400@4", telemetry::GateFault::kLoopStalled, 0.9},
+      {"slow_write:400@4", telemetry::GateFault::kLoopStalled, 1.3},
+      {"slow_read:3@4", telemetry::GateFault::kNone},  // every millisecond up to 1 s: slow_loop_test.cpp
+      {"slow_write:3@4", telemetry::GateFault::kNone},
+      {"jitter:0.05@4+2", telemetry::GateFault::kNone},
+      {"jitter:0.3@4+2", telemetry::GateFault::kVibration, 0.3},  // 420 mm/s rms
+      {"jump:50@4+0.5", telemetry::GateFault::kImpossibleMotion, 0.025},
+      {"dropped@4+0.01", telemetry::GateFault::kNone},
   };
   return faults;
 }
@@ -55,22 +55,23 @@ struct Kind {
   const char* preset;
 };
 
-std::unique_ptr<HapticDevice> make_device(const Kind& kind, const DevicePreset& preset) {
+std::unique_ptr<devices::HapticDevice> make_device(const Kind& kind, const haptics::DevicePreset& preset) {
   const std::string name = kind.name;
-  if (name == "virtual") return std::make_unique<VirtualHapticDevice>(preset, SimulatedDeviceParams{});
-  if (name == "mouse") return std::make_unique<PointerDevice>(preset, PointerParams{});
+  if (name == "virtual")
+    return std::make_unique<devices::VirtualHapticDevice>(preset, devices::SimulatedDeviceParams{});
+  if (name == "mouse") return std::make_unique<devices::PointerDevice>(preset, devices::PointerParams{});
   // A recorded hand: down onto the skin within 3 s, then trembling there.
   std::vector<Pose> poses;
   for (int i = 0; i < 20'000; ++i) {
     const double depth_mm = std::min(2.0, -10.0 + 0.005 * i) + kTremor_mm * std::sin(0.012 * i);
     poses.push_back(needle_at_depth(depth_mm));
   }
-  return std::make_unique<ReplayDevice>(preset, "recorded", std::move(poses), 1000.0);
+  return std::make_unique<devices::ReplayDevice>(preset, "recorded", std::move(poses), 1000.0);
 }
 
 /// The hand of a client, in P: as the recorded one.
-HandTarget hand_at(double time_s) {
-  HandTarget hand;
+link::HandTarget hand_at(double time_s) {
+  link::HandTarget hand;
   const double depth_mm = std::min(kPress_mm, -10.0 + 5.0 * time_s) + kTremor_mm * std::sin(12.0 * time_s);
   hand.X_PN = needle_pose({0.0, 0.0, depth_mm}, Vec3::UnitZ());
   hand.server_time_s = time_s;
@@ -83,18 +84,19 @@ class FaultMatrix : public ::testing::TestWithParam<std::tuple<Kind, std::size_t
 TEST_P(FaultMatrix, EndsAtZeroInTimeAndStaysWithinItsLimits) {
   const auto& [kind, number] = GetParam();
   const Expected& expected = all_faults()[number];
-  const DevicePreset preset = testing::device_preset(kind.preset);
+  const haptics::DevicePreset preset = testing::device_preset(kind.preset);
   double waited_s = 0.0;
-  FaultyDevice device(make_device(kind, preset), {*parse_fault(expected.schedule)}, 7, {count_wait, &waited_s});
+  devices::FaultyDevice device(make_device(kind, preset), {*devices::parse_fault(expected.schedule)}, 7,
+                               {count_wait, &waited_s});
   SceneBuilder builder(testing::layered_opener(), testing::data_file("tissues.toml"), preset);
-  const LoadScene request = testing::layered_request();
+  const link::LoadScene request = testing::layered_request();
   const auto scene = builder.load(request);
   ASSERT_TRUE(scene) << scene.error().text();
   Servo servo(device, servo_params(preset));
 
   double time_s = 0.0, zero_since_s = std::numeric_limits<double>::infinity(), before_n = 0.0;
   std::uint64_t ticks = 0;
-  GateFault fault = GateFault::kNone;
+  telemetry::GateFault fault = telemetry::GateFault::kNone;
   while (time_s < kFault_s + 7.0) {
     ServoInput input;
     const double waited_now_s = std::exchange(waited_s, 0.0);
@@ -116,10 +118,11 @@ TEST_P(FaultMatrix, EndsAtZeroInTimeAndStaysWithinItsLimits) {
   }
   EXPECT_TRUE(!preset.has_force() || before_n > 0.1) << "there was something to be felt before";
   // A mouse has no hand whose force could go wrong: nothing is watched there.
-  const bool is_of_force = expected.fault == GateFault::kEncoderStuck || expected.fault == GateFault::kVibration;
+  const bool is_of_force =
+      expected.fault == telemetry::GateFault::kEncoderStuck || expected.fault == telemetry::GateFault::kVibration;
   if (!preset.has_force() && is_of_force) return;
   EXPECT_STREQ(to_string(fault), to_string(expected.fault));
-  if (expected.fault == GateFault::kNone) return;
+  if (expected.fault == telemetry::GateFault::kNone) return;
   EXPECT_LE(zero_since_s, kFault_s + expected.within_s);
 }
 
@@ -139,4 +142,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, FaultMatrix,
                          });
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

@@ -8,10 +8,10 @@
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
-ServoRecord record_at(std::uint64_t tick, GateFault fault) {
+ServoRecord record_at(std::uint64_t tick, telemetry::GateFault fault) {
   ServoRecord record;
   record.tick = tick;
   record.fault = fault;
@@ -22,15 +22,17 @@ TEST(FlightRecorder, GivesTwoSecondsBeforeAFaultOnce) {
   FlightRecorder recorder(1000.0);
   std::vector<std::vector<ServoRecord>> flights;
   for (std::uint64_t tick = 0; tick < 9000; ++tick) {
-    auto given = recorder.add(record_at(tick, tick < 5000 ? GateFault::kNone : GateFault::kRunaway));
+    auto given =
+        recorder.add(record_at(tick, tick < 5000 ? telemetry::GateFault::kNone : telemetry::GateFault::kRunaway));
     if (given) flights.push_back(std::move(*given));
   }
   ASSERT_EQ(flights.size(), 1U);
   const auto& flight = flights.front();
   EXPECT_EQ(flight.size(), 2100U);
   EXPECT_EQ(flight.back().tick, 5100U);
-  EXPECT_EQ(std::count_if(flight.begin(), flight.end(), [](const auto& r) { return r.fault == GateFault::kNone; }),
-            1999);
+  EXPECT_EQ(
+      std::count_if(flight.begin(), flight.end(), [](const auto& r) { return r.fault == telemetry::GateFault::kNone; }),
+      1999);
 }
 
 TEST(FlightRecorder, GivesTheNextFaultToo) {
@@ -38,18 +40,19 @@ TEST(FlightRecorder, GivesTheNextFaultToo) {
   int flights = 0;
   for (std::uint64_t tick = 0; tick < 9000; ++tick) {
     const bool is_faulty = tick % 3000 > 2000;
-    if (recorder.add(record_at(tick, is_faulty ? GateFault::kNotFinite : GateFault::kNone))) ++flights;
+    if (recorder.add(record_at(tick, is_faulty ? telemetry::GateFault::kNotFinite : telemetry::GateFault::kNone)))
+      ++flights;
   }
   EXPECT_EQ(flights, 3);
 }
 
 TEST(WriteFlight, WritesARowAPeriodUnderAHeader) {
   const TemporaryFolder folder;
-  std::vector<ServoRecord> flight(3, record_at(7, GateFault::kDeviceLost));
-  flight[0].fault = GateFault::kNone;
+  std::vector<ServoRecord> flight(3, record_at(7, telemetry::GateFault::kDeviceLost));
+  flight[0].fault = telemetry::GateFault::kNone;
   const auto path = write_flight(folder.path(), "20260101T000000Z", flight);
   ASSERT_TRUE(path) << path.error().text();
-  EXPECT_NE(path->filename().string().find(to_string(GateFault::kDeviceLost)), std::string::npos);
+  EXPECT_NE(path->filename().string().find(to_string(telemetry::GateFault::kDeviceLost)), std::string::npos);
   const auto text = read_file(*path);
   ASSERT_TRUE(text);
   EXPECT_EQ(std::count(text->begin(), text->end(), '\n'), 4);
@@ -67,7 +70,7 @@ TEST(WriteFlight, KeepsTheNewestFilesOfItsFolderOnly) {
   const std::size_t kept = FlightQuota{}.files;
   for (std::size_t i = 0; i < kept + 5; ++i) {
     const std::string utc = fmt::format("20260101T0000{:02}Z", i);
-    ASSERT_TRUE(write_flight(folder.path(), utc, {record_at(1, GateFault::kDeviceLost)}));
+    ASSERT_TRUE(write_flight(folder.path(), utc, {record_at(1, telemetry::GateFault::kDeviceLost)}));
   }
   std::size_t flights = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
@@ -93,8 +96,8 @@ TEST(WriteFlight, KeepsWithinItsBytesButAlwaysTheNewest) {
 }
 
 TEST(WriteFlight, SaysThatAFolderCannotBeWritten) {
-  EXPECT_FALSE(write_flight("/proc/nowhere", "20260101T000000Z", {record_at(1, GateFault::kDeviceLost)}));
+  EXPECT_FALSE(write_flight("/proc/nowhere", "20260101T000000Z", {record_at(1, telemetry::GateFault::kDeviceLost)}));
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

@@ -9,14 +9,14 @@
 #include <functional>
 #include <thread>
 
-#include "core/random.h"
 #include "core/files/temporary_folder.h"
-#include "link/codec.h"
+#include "core/random.h"
 #include "link/client/haptic_client.h"
+#include "link/codec.h"
 #include "link/test/raw_link.h"
 #include "server/test/servo_rig.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 using namespace std::chrono_literals;
@@ -41,7 +41,7 @@ class ServerRig {
 
   HapticServer start() {
     ServerOptions options;
-    options.endpoint = *parse_endpoint("ipc://" + (folder_ / "needle").string());
+    options.endpoint = *link::parse_endpoint("ipc://" + (folder_ / "needle").string());
     options.priority = 0;
     options.tissues_file = testing::data_file("tissues.toml");
     options.flight_folder = folder_.path();
@@ -52,11 +52,11 @@ class ServerRig {
     TROCAR_CHECK(server.has_value());
     return std::move(*server);
   }
-  HapticClient connect(bool wants_control = true) {
-    ClientOptions options;
+  link::HapticClient connect(bool wants_control = true) {
+    link::ClientOptions options;
     options.endpoint = server_.url();
     options.wants_control = wants_control;
-    auto client = HapticClient::connect(options);
+    auto client = link::HapticClient::connect(options);
     TROCAR_CHECK(client.has_value());
     TROCAR_CHECK(client->wait_connected(kPatience).has_value());
     return std::move(*client);
@@ -72,24 +72,24 @@ class ServerRig {
 
 TEST(HapticServer, LoadsASceneAndRuns) {
   ServerRig rig;
-  HapticClient client = rig.connect();
+  link::HapticClient client = rig.connect();
   const auto loaded = client.ask(testing::layered_request(), kPatience);
   ASSERT_TRUE(loaded) << loaded.error().text();
-  ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+  ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
   EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
-  EXPECT_TRUE(wait_for([&] { return client.view().status.gate_mode == to_string(GateMode::kOn); }));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.gate_mode == to_string(telemetry::GateMode::kOn); }));
   EXPECT_EQ(client.view().status.patient, "layers");
   EXPECT_FALSE(client.view().status.grant.empty());
-  EXPECT_TRUE(client.ask(ServerCommand::kStop, kPatience));
+  EXPECT_TRUE(client.ask(link::ServerCommand::kStop, kPatience));
   EXPECT_TRUE(wait_for([&] { return client.view().status.state == "ready"; }));
 }
 
 TEST(HapticServer, SendsEveryTickOrCountsIt) {
   ServerRig rig;
-  HapticClient client = rig.connect();
+  link::HapticClient client = rig.connect();
   std::uint64_t expected = 0, seen = 0, gaps = 0;
   const bool is_enough = wait_for([&] {
-    for (const NumberedSample& numbered : client.take_samples()) {
+    for (const link::NumberedSample& numbered : client.take_samples()) {
       if (seen > 0) gaps += numbered.tick - expected;
       expected = numbered.tick + 1;
       ++seen;
@@ -101,10 +101,10 @@ TEST(HapticServer, SendsEveryTickOrCountsIt) {
 }
 
 /// The reply to a command, when it comes.
-Reply reply_to(HapticClient& client, std::uint32_t request) {
-  Reply found;
+link::Reply reply_to(link::HapticClient& client, std::uint32_t request) {
+  link::Reply found;
   EXPECT_TRUE(wait_for([&] {
-    for (Reply& reply : client.take_replies())
+    for (link::Reply& reply : client.take_replies())
       if (reply.request == request) found = std::move(reply);
     return found.request == request;
   }));
@@ -113,20 +113,21 @@ Reply reply_to(HapticClient& client, std::uint32_t request) {
 
 TEST(HapticServer, NumbersTheTicksOfAScene) {
   ServerRig rig;
-  HapticClient client = rig.connect();
-  const Reply loaded = reply_to(client, client.send(testing::layered_request()));
+  link::HapticClient client = rig.connect();
+  const link::Reply loaded = reply_to(client, client.send(testing::layered_request()));
   ASSERT_TRUE(loaded.is_done) << loaded.text;
   ASSERT_GT(loaded.scene, 0U);
-  const Reply changed = reply_to(client, client.send(SetParameters{{"skin.fp=6", "coupling.stiffness=0.5"}}));
+  const link::Reply changed =
+      reply_to(client, client.send(link::SetParameters{{"skin.fp=6", "coupling.stiffness=0.5"}}));
   ASSERT_TRUE(changed.is_done) << changed.text;
   EXPECT_GT(changed.scene, loaded.scene);
-  const auto table = parse_tissue_table(changed.tissues_toml, "reply");
+  const auto table = anatomy::parse_tissue_table(changed.tissues_toml, "reply");
   ASSERT_TRUE(table) << table.error().text();
   EXPECT_EQ(table->layers[*table->find_layer("skin")].puncture_force_n, 6.0);
   EXPECT_NE(std::ranges::find(changed.options, "coupling.stiffness=0.5"), changed.options.end());
   std::vector<std::uint64_t> scenes;  // every number once, in the order of the ticks
   EXPECT_TRUE(wait_for([&] {
-    for (const NumberedSample& numbered : client.take_samples())
+    for (const link::NumberedSample& numbered : client.take_samples())
       if (scenes.empty() || scenes.back() != numbered.scene) scenes.push_back(numbered.scene);
     return !scenes.empty() && scenes.back() == changed.scene;
   }));
@@ -135,16 +136,16 @@ TEST(HapticServer, NumbersTheTicksOfAScene) {
 
 TEST(HapticServer, RefusesToStartWithoutAScene) {
   ServerRig rig;
-  HapticClient client = rig.connect();
-  const auto started = client.ask(ServerCommand::kStart, kPatience);
+  link::HapticClient client = rig.connect();
+  const auto started = client.ask(link::ServerCommand::kStart, kPatience);
   ASSERT_FALSE(started);
   EXPECT_NE(started.error().text().find("scene"), std::string::npos);
 }
 
 TEST(HapticServer, TellsWhatIsWrongWithAScene) {
   ServerRig rig;
-  HapticClient client = rig.connect();
-  LoadScene request = testing::layered_request();
+  link::HapticClient client = rig.connect();
+  link::LoadScene request = testing::layered_request();
   request.patient = "nobody";
   const auto loaded = client.ask(request, kPatience);
   ASSERT_FALSE(loaded);
@@ -156,31 +157,31 @@ TEST(HapticServer, TellsWhatIsWrongWithAScene) {
 
 TEST(HapticServer, LetsAWatcherSeeButNotCommand) {
   ServerRig rig;
-  HapticClient master = rig.connect();
+  link::HapticClient master = rig.connect();
   ASSERT_TRUE(master.ask(testing::layered_request(), kPatience));
-  HapticClient watcher = rig.connect(false);
-  EXPECT_FALSE(watcher.ask(ServerCommand::kStart, kPatience));
+  link::HapticClient watcher = rig.connect(false);
+  EXPECT_FALSE(watcher.ask(link::ServerCommand::kStart, kPatience));
   EXPECT_TRUE(wait_for([&] { return watcher.newest().has_value(); }));
 }
 
 TEST(HapticServer, TakesForcesBackWhenTheClientInControlLeaves) {
   ServerRig rig;
   {
-    HapticClient client = rig.connect();
+    link::HapticClient client = rig.connect();
     ASSERT_TRUE(client.ask(testing::layered_request(), kPatience));
-    ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
+    ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
     EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
   }
-  HapticClient next = rig.connect();
+  link::HapticClient next = rig.connect();
   EXPECT_TRUE(wait_for([&] { return next.view().status.state == "ready"; }));
 }
 
 TEST(HapticServer, WarnsOfAClientsWindowThatStandsStill) {
   ServerRig rig;
-  ClientOptions options;
+  link::ClientOptions options;
   options.endpoint = rig.server().url();
   options.has_window = true;
-  auto client = HapticClient::connect(options);
+  auto client = link::HapticClient::connect(options);
   ASSERT_TRUE(client);
   client->frame_drawn();
   EXPECT_TRUE(wait_for([&] { return client->view().status.warning.find("window") != std::string::npos; }));
@@ -192,35 +193,35 @@ TEST(HapticServer, WarnsOfAClientsWindowThatStandsStill) {
 
 TEST(HapticServer, CountsBadMessagesAndKeepsItsForcesMeanwhile) {
   ServerRig rig;
-  HapticClient client = rig.connect();
+  link::HapticClient client = rig.connect();
   ASSERT_TRUE(client.ask(testing::layered_request(), kPatience));
-  ASSERT_TRUE(client.ask(ServerCommand::kStart, kPatience));
-  ASSERT_TRUE(wait_for([&] { return client.view().status.gate_mode == to_string(GateMode::kOn); }));
+  ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
+  ASSERT_TRUE(wait_for([&] { return client.view().status.gate_mode == to_string(telemetry::GateMode::kOn); }));
 
   testing::RawClient stranger(rig.server().url());
   stranger.connect();
-  const Bytes good = encode(ClientMessage{1, 1, Heartbeat{}});
+  const link::Bytes good = link::encode(link::ClientMessage{1, 1, link::Heartbeat{}});
   Random random(3);
   constexpr int kRounds = 50;
   for (int i = 0; i < kRounds; ++i) {
-    Bytes noise(1 + random.next() % 4000);
+    link::Bytes noise(1 + random.next() % 4000);
     for (std::byte& byte : noise) byte = static_cast<std::byte>(random.next());
     stranger.send(noise);
     stranger.send(std::span(good).first(random.next() % good.size()));  // truncated
     stranger.send(good);                                                // of no session
   }
   ASSERT_TRUE(stranger.hello("stranger"));
-  const auto welcome = stranger.next<Welcome>();
+  const auto welcome = stranger.next<link::Welcome>();
   ASSERT_TRUE(welcome);
   EXPECT_FALSE(welcome->has_control);
-  stranger.send(Bytes(kMostMessageBytes + 1));
-  stranger.send(welcome->session, 5, Heartbeat{});
-  stranger.send(welcome->session, 5, Heartbeat{});                       // replayed
-  stranger.send(welcome->session, 6, Command{1, ServerCommand::kStop});  // not in control
+  stranger.send(link::Bytes(link::kMostMessageBytes + 1));
+  stranger.send(welcome->session, 5, link::Heartbeat{});
+  stranger.send(welcome->session, 5, link::Heartbeat{});                             // replayed
+  stranger.send(welcome->session, 6, link::Command{1, link::ServerCommand::kStop});  // not in control
 
   EXPECT_TRUE(wait_for([&] { return client.view().status.messages_refused >= 3 * kRounds + 3; }))
       << client.view().status.messages_refused;
-  EXPECT_EQ(client.view().status.gate_mode, to_string(GateMode::kOn));
+  EXPECT_EQ(client.view().status.gate_mode, to_string(telemetry::GateMode::kOn));
   EXPECT_EQ(client.view().status.state, "running");
 }
 
@@ -228,7 +229,7 @@ TEST(HapticServer, EndsWhatHasStartedWhereAThreadDoesNotStart) {
   for (const char* failing : {"control", "link", "real-time"}) {
     const TemporaryFolder folder;
     ServerOptions options;
-    options.endpoint = *parse_endpoint("ipc://" + (folder / "needle").string());
+    options.endpoint = *link::parse_endpoint("ipc://" + (folder / "needle").string());
     options.priority = 0;
     const auto starter = [&](const char* name, std::function<void()> body) -> Result<std::thread> {
       if (name == std::string_view(failing)) return fail("the thread does not start", name, "test");
@@ -242,7 +243,7 @@ TEST(HapticServer, EndsWhatHasStartedWhereAThreadDoesNotStart) {
 }
 
 /// A healthy device is opened again under force: its motors are off then, whoever opens it.
-class ReopenedDevice final : public HapticDevice {
+class ReopenedDevice final : public devices::HapticDevice {
  public:
   struct Log {
     std::atomic<double> depth_mm{-10.0};
@@ -251,14 +252,14 @@ class ReopenedDevice final : public HapticDevice {
     std::atomic<double> largest_rise_n{0.0};
   };
   explicit ReopenedDevice(Log& log) : preset_(testing::device_preset()), log_(log) {}
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "reopened"; }
-  DeviceReading read(double now_s) noexcept override {
-    DeviceReading reading;
+  devices::DeviceReading read(double now_s) noexcept override {
+    devices::DeviceReading reading;
     reading.X_DS = testing::needle_at_depth(log_.depth_mm + 0.01 * std::sin(30.0 * now_s));
     return reading;
   }
-  bool write(const Wrench& wrench_D) noexcept override {
+  bool write(const haptics::Wrench& wrench_D) noexcept override {
     const double written_n = wrench_D.force_n.norm();
     log_.largest_rise_n = std::max(log_.largest_rise_n.load(), written_n - last_n_);
     last_n_ = written_n;
@@ -272,7 +273,7 @@ class ReopenedDevice final : public HapticDevice {
   }
 
  private:
-  DevicePreset preset_;
+  haptics::DevicePreset preset_;
   Log& log_;
   double last_n_ = 0.0;
 };
@@ -280,27 +281,27 @@ class ReopenedDevice final : public HapticDevice {
 TEST(HapticServer, FadesBeforeADeviceIsOpenedAgainAndComesBackSoftly) {
   const TemporaryFolder folder;
   ServerOptions options;
-  options.endpoint = *parse_endpoint("ipc://" + (folder / "needle").string());
+  options.endpoint = *link::parse_endpoint("ipc://" + (folder / "needle").string());
   options.priority = 0;
   options.tissues_file = testing::data_file("tissues.toml");
   ReopenedDevice::Log log;
   auto server = HapticServer::start(options, std::make_unique<ReopenedDevice>(log), testing::layered_opener());
   ASSERT_TRUE(server) << server.error().text();
-  ClientOptions client_options;
+  link::ClientOptions client_options;
   client_options.endpoint = server->url();
-  auto client = HapticClient::connect(client_options);
+  auto client = link::HapticClient::connect(client_options);
   ASSERT_TRUE(client && client->wait_connected(kPatience));
   ASSERT_TRUE(client->ask(testing::layered_request(), kPatience));
-  ASSERT_TRUE(client->ask(ServerCommand::kStart, kPatience));
-  ASSERT_TRUE(wait_for([&] { return client->view().status.gate_mode == to_string(GateMode::kOn); }));
+  ASSERT_TRUE(client->ask(link::ServerCommand::kStart, kPatience));
+  ASSERT_TRUE(wait_for([&] { return client->view().status.gate_mode == to_string(telemetry::GateMode::kOn); }));
   // Pressed slowly, until something is felt; a busy machine may have latched a fault meanwhile.
   ASSERT_TRUE(wait_for([&] {
     if (log.depth_mm < 3.0) log.depth_mm = log.depth_mm + 0.01;
     const auto newest = client->newest();
-    return newest && (newest->device_f_n.norm() > 1.0 || newest->gate_fault != GateFault::kNone);
+    return newest && (newest->device_f_n.norm() > 1.0 || newest->gate_fault != telemetry::GateFault::kNone);
   }));
   log.largest_rise_n = 0.0;
-  ASSERT_TRUE(client->ask(ServerCommand::kReconnect, kPatience));
+  ASSERT_TRUE(client->ask(link::ServerCommand::kReconnect, kPatience));
   EXPECT_EQ(log.reconnects, 1);
   EXPECT_EQ(log.held_n, 0.0) << "the forces have faded before";
   const std::uint64_t ticks = client->view().status.ticks;
@@ -312,7 +313,7 @@ TEST(HapticServer, FadesBeforeADeviceIsOpenedAgainAndComesBackSoftly) {
 TEST(HapticServer, RefusesARateItCannotKeep) {
   const TemporaryFolder folder;
   ServerOptions options;
-  options.endpoint = *parse_endpoint("ipc://" + (folder / "needle").string());
+  options.endpoint = *link::parse_endpoint("ipc://" + (folder / "needle").string());
   options.rate_hz = 100'000.0;
   const auto server = HapticServer::start(options, std::make_unique<ScriptedDevice>(testing::device_preset()),
                                           testing::layered_opener());
@@ -321,4 +322,4 @@ TEST(HapticServer, RefusesARateItCannotKeep) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

@@ -13,7 +13,7 @@
 
 #include "server/test/servo_rig.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 using namespace testing;  // the servo's
@@ -25,13 +25,13 @@ struct Seen {
   std::atomic<int> writes_by_servo{0};
 };
 
-class SeenDevice final : public HapticDevice {
+class SeenDevice final : public devices::HapticDevice {
  public:
   explicit SeenDevice(Seen& seen) : seen_(seen), preset_(device_preset()) {}
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "seen"; }
-  DeviceReading read(double) noexcept override { return {}; }
-  bool write(const Wrench& wrench_D) noexcept override {
+  devices::DeviceReading read(double) noexcept override { return {}; }
+  bool write(const haptics::Wrench& wrench_D) noexcept override {
     seen_.force_n = wrench_D.force_n.norm();
     ++seen_.writes;
     return true;
@@ -40,7 +40,7 @@ class SeenDevice final : public HapticDevice {
 
  private:
   Seen& seen_;
-  DevicePreset preset_;
+  haptics::DevicePreset preset_;
 };
 
 /// Runs it in a child process. The signal that ended the child, 0: none.
@@ -59,7 +59,7 @@ int signal_of_child(const std::function<void()>& run) {
 /// A loop that presses with 5 N until it is told to let go; `crash` is called in its thread after some periods.
 void press(LastChance& chance, SeenDevice& device, Seen& seen, const std::function<void()>& crash) {
   chance.adopt_thread();
-  Wrench pressing;
+  haptics::Wrench pressing;
   pressing.force_n = {0.0, 0.0, 5.0};
   for (int i = 0;; ++i) {
     if (!chance.takes_over(false)) {
@@ -153,4 +153,4 @@ TEST_F(LastChanceTest, PausedDeviceIsLeftToWhoHasIt) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

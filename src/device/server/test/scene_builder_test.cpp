@@ -8,7 +8,7 @@
 #include "haptics/coupling/coupling_limits.h"
 #include "server/test/servo_rig.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 using testing::data_file;
@@ -24,7 +24,7 @@ TEST(SceneBuilder, BuildsWhatIsAskedFor) {
   SceneBuilder builder = make_builder();
   const auto scene = builder.load(layered_request("proxy"));
   ASSERT_TRUE(scene) << scene.error().text();
-  EXPECT_EQ(scene->scene->options.force_model, ForceModel::kProxy);
+  EXPECT_EQ(scene->scene->options.force_model, haptics::ForceModel::kProxy);
   EXPECT_FALSE(scene->continues);
   EXPECT_LT((scene->scene->gravity_P - Vec3::UnitZ()).norm(), 1e-12) << "down in the room is into the layers";
 }
@@ -33,11 +33,12 @@ TEST(SceneBuilder, SaysWhatIsWrongAndKeepsTheLastScene) {
   SceneBuilder builder = make_builder();
   EXPECT_FALSE(builder.change({{"liver.k=0.5"}})) << "there is none yet";
   ASSERT_TRUE(builder.load(layered_request()));
-  for (const auto& spoil : std::vector<std::function<void(LoadScene&)>>{
-           [](LoadScene& r) { r.patient = "nobody"; }, [](LoadScene& r) { r.tool = "spoon"; },
-           [](LoadScene& r) { r.force_model = "magic"; }, [](LoadScene& r) { r.tissues_toml = "[tissues"; },
-           [](LoadScene& r) { r.needle_radius_mm = 9.0; }, [](LoadScene& r) { r.patient_hash = "another"; }}) {
-    LoadScene request = layered_request();
+  for (const auto& spoil : std::vector<std::function<void(link::LoadScene&)>>{
+           [](link::LoadScene& r) { r.patient = "nobody"; }, [](link::LoadScene& r) { r.tool = "spoon"; },
+           [](link::LoadScene& r) { r.force_model = "magic"; }, [](link::LoadScene& r) { r.tissues_toml = "[tissues"; },
+           [](link::LoadScene& r) { r.needle_radius_mm = 9.0; },
+           [](link::LoadScene& r) { r.patient_hash = "another"; }}) {
+    link::LoadScene request = layered_request();
     spoil(request);
     const auto scene = builder.load(request);
     ASSERT_FALSE(scene);
@@ -57,7 +58,7 @@ TEST(SceneBuilder, StopsBetweenItsStepsAndKeepsTheLastScene) {
   SceneBuilder builder(opener, data_file("tissues.toml"), device_preset("premium"));
   ASSERT_TRUE(builder.load(layered_request(), {}, source.get_token()));
   is_stopping = true;
-  LoadScene other = layered_request("proxy");
+  link::LoadScene other = layered_request("proxy");
   other.patient_seed = 2;
   const auto stopped = builder.load(other, {}, source.get_token());
   ASSERT_FALSE(stopped);
@@ -74,7 +75,7 @@ TEST(SceneBuilder, RefusesAPatientThatMemoryDoesNotHold) {
   SceneBuilder builder(opener, data_file("tissues.toml"), device_preset("premium"));
   ASSERT_TRUE(builder.load(layered_request()));
   is_short = true;
-  LoadScene other = layered_request();
+  link::LoadScene other = layered_request();
   other.patient_seed = 2;
   const auto refused = builder.load(other);
   ASSERT_FALSE(refused);
@@ -85,8 +86,8 @@ TEST(SceneBuilder, RefusesAPatientThatMemoryDoesNotHold) {
 TEST(SceneBuilder, ReplacesTheLoadedTable) {
   SceneBuilder builder = make_builder();
   ASSERT_TRUE(builder.load(layered_request()));
-  TissueTable other = builder.tissues();
-  ASSERT_TRUE(apply_override(other, "skin.fp=6"));
+  anatomy::TissueTable other = builder.tissues();
+  ASSERT_TRUE(anatomy::apply_override(other, "skin.fp=6"));
   ASSERT_TRUE(builder.change({{"liver.mu=0.2"}, other.to_toml()}));
   EXPECT_EQ(builder.tissues().layers[*other.find_layer("skin")].puncture_force_n, 6.0);
   ASSERT_TRUE(builder.change({}));
@@ -114,7 +115,7 @@ TEST(SceneBuilder, NumbersOfTissuesReplaceThoseOfEarlierChanges) {
   SceneBuilder builder = make_builder();
   const auto loaded = builder.load(layered_request());
   ASSERT_TRUE(loaded);
-  const TissueTable table = load_tissue_table(data_file("tissues.toml")).value();
+  const anatomy::TissueTable table = anatomy::load_tissue_table(data_file("tissues.toml")).value();
   const std::uint8_t liver = *table.find_tissue("liver"), capsule = *table.find_layer("liver_capsule");
   const auto cutting_n = [&](const auto& scene) { return scene->scene->tissues[liver].cutting_n; };
   const auto fp_n = [&](const auto& scene) { return scene->scene->layers[capsule].puncture_force_n; };
@@ -139,7 +140,7 @@ TEST(SceneBuilder, StartsAnewWithAnotherForceModel) {
 }
 
 TEST(SceneBuilder, ClipsTheCouplingToTheDeviceOverTheWorkspaceScale) {
-  DevicePreset preset = device_preset("premium");
+  haptics::DevicePreset preset = device_preset("premium");
   preset.motion_scale = 5.0;
   SceneBuilder builder(layered_opener(), data_file("tissues.toml"), preset);
   const auto scene = builder.load(layered_request());
@@ -150,7 +151,7 @@ TEST(SceneBuilder, ClipsTheCouplingToTheDeviceOverTheWorkspaceScale) {
 
 TEST(SceneBuilder, RefusesACouplingThatTheDeviceDoesNotBear) {
   for (const char* device : {"premium", "omni", "omega7", "falcon", "mouse"}) {
-    const DevicePreset preset = device_preset(device);
+    const haptics::DevicePreset preset = device_preset(device);
     SceneBuilder builder = make_builder(device);
     const auto before = builder.load(layered_request());
     ASSERT_TRUE(before) << before.error().text();
@@ -163,7 +164,7 @@ TEST(SceneBuilder, RefusesACouplingThatTheDeviceDoesNotBear) {
       EXPECT_NE(text.find("give a number from"), std::string::npos) << text;
       EXPECT_EQ(text.find('\n'), std::string::npos);
     }
-    const CouplingLimits limits = limits_of(preset);
+    const haptics::CouplingLimits limits = haptics::limits_of(preset);
     EXPECT_TRUE(builder.change({{fmt::format("coupling.stiffness={}", limits.most_n_per_mm)}})) << device;
     EXPECT_FALSE(builder.change({{fmt::format("coupling.stiffness={}", 1.01 * limits.most_n_per_mm)}})) << device;
     EXPECT_TRUE(builder.change({{fmt::format("coupling.damping={}", limits.most_ns_per_mm)}})) << device;
@@ -184,4 +185,4 @@ TEST(SceneBuilder, OpensAPatientOnceForManyScenes) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

@@ -3,7 +3,7 @@
 
 #include "server/test/servo_rig.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 using testing::needle_at_depth;
@@ -30,7 +30,7 @@ class Return : public ::testing::Test {
     rig.move_to(3.0, 10.0);
     rig.hold(0.5);
     EXPECT_LT(rig.largest_rise_n, kLargestStep_n);
-    EXPECT_EQ(rig.servo.mode(), GateMode::kOn);
+    EXPECT_EQ(rig.servo.mode(), telemetry::GateMode::kOn);
   }
   void reset() {
     rig.input.is_reset = true;
@@ -55,7 +55,7 @@ TEST_F(Return, OfADeviceThatWasLent) {
   rig.servo.resume();
   rig.input.is_wanted = true;
   rig.input.now_s += 1.5;
-  EXPECT_EQ(rig.step().fault, GateFault::kNone) << "a pose before the loan is no part of its way";
+  EXPECT_EQ(rig.step().fault, telemetry::GateFault::kNone) << "a pose before the loan is no part of its way";
   expect_soft_return();
 }
 
@@ -66,19 +66,19 @@ TEST_F(Return, OfADeviceThatWasLentInTheMiddleOfAForce) {
 }
 
 TEST_F(Return, OfALostDevice) {
-  rig.device.reading.status = DeviceStatus::kDisconnected;
+  rig.device.reading.status = devices::DeviceStatus::kDisconnected;
   for (int i = 0; i < 50; ++i) rig.step();
   EXPECT_EQ(rig.last_n, 0.0);
   rig.servo.resume();  // the control thread has opened it again
-  rig.device.reading.status = DeviceStatus::kFresh;
-  EXPECT_EQ(rig.hold(0.2).back().fault, GateFault::kDeviceLost) << "until the reset";
+  rig.device.reading.status = devices::DeviceStatus::kFresh;
+  EXPECT_EQ(rig.hold(0.2).back().fault, telemetry::GateFault::kDeviceLost) << "until the reset";
   reset();
   expect_soft_return();
 }
 
 TEST_F(Return, OfAResetFault) {
   rig.input.busy_s = rig.input.dt_s = 0.06;
-  EXPECT_EQ(rig.step().fault, GateFault::kLoopSlow);
+  EXPECT_EQ(rig.step().fault, telemetry::GateFault::kLoopSlow);
   rig.input.dt_s = 0.001;
   rig.input.busy_s = 0.0;
   rig.hold(0.5);
@@ -116,7 +116,7 @@ TEST_F(Return, OfASilentClient) {
 }
 
 TEST_F(Return, OfAStylusThatWasPutElsewhere) {
-  HandTarget put;
+  link::HandTarget put;
   put.X_PN = rig.scene.scene->X_PD * needle_at_depth(6.0) * rig.scene.scene->X_SN;
   put.is_placed = put.is_rigid = true;
   rig.input.hand = put;
@@ -128,4 +128,4 @@ TEST_F(Return, OfAStylusThatWasPutElsewhere) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

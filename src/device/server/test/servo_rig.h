@@ -15,16 +15,16 @@ namespace trocar::testing {
 inline std::filesystem::path data_file(const char* name) {
   return testing::source_dir() / "data" / name;
 }
-inline DevicePreset device_preset(const char* name = "premium") {
-  auto preset = load_device_preset(data_file("devices.toml"), name);
+inline haptics::DevicePreset device_preset(const char* name = "premium") {
+  auto preset = haptics::load_device_preset(data_file("devices.toml"), name);
   TROCAR_CHECK(preset.has_value());
   return *preset;
 }
 
 /// The flat layered patient lies under the room: z of W is up, the tip of a needle that hangs down from the origin of W
 /// is 20 mm below the skin.
-inline LoadScene layered_request(const std::string& force_model = "insertion") {
-  LoadScene request;
+inline link::LoadScene layered_request(const std::string& force_model = "insertion") {
+  link::LoadScene request;
   request.patient = "layers";
   request.force_model = force_model;
   Mat3 R_PW;
@@ -34,8 +34,9 @@ inline LoadScene layered_request(const std::string& force_model = "insertion") {
   request.X_PW = Pose(R_PW, {0.0, 0.0, 20.0 - request.needle_length_mm});
   return request;
 }
-inline PatientOpener layered_opener() {
-  return [](const std::string& name, std::uint64_t, const Progress&) -> Result<std::shared_ptr<const VirtualPatient>> {
+inline server::PatientOpener layered_opener() {
+  return [](const std::string& name, std::uint64_t,
+            const Progress&) -> Result<std::shared_ptr<const anatomy::VirtualPatient>> {
     if (name != "layers") return fail("there is no such patient", name);
     return layered_patient(liver_way());
   };
@@ -46,24 +47,24 @@ inline Pose needle_at_depth(double depth_mm) {
 }
 
 /// A device whose pose is said and whose wrench is written down.
-class ScriptedDevice final : public HapticDevice {
+class ScriptedDevice final : public devices::HapticDevice {
  public:
-  explicit ScriptedDevice(DevicePreset preset) : preset_(std::move(preset)) {}
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  explicit ScriptedDevice(haptics::DevicePreset preset) : preset_(std::move(preset)) {}
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "scripted"; }
-  DeviceReading read(double) noexcept override { return reading; }
-  bool write(const Wrench& wrench_D) noexcept override {
+  devices::DeviceReading read(double) noexcept override { return reading; }
+  bool write(const haptics::Wrench& wrench_D) noexcept override {
     written = wrench_D;
     return takes_writes;
   }
   Status reconnect() override { return {}; }
 
-  DeviceReading reading;
-  Wrench written;
+  devices::DeviceReading reading;
+  haptics::Wrench written;
   bool takes_writes = true;
 
  private:
-  DevicePreset preset_;
+  haptics::DevicePreset preset_;
 };
 
 /// A servo with a scripted device over the layered patient, driven in simulated time.
@@ -73,7 +74,7 @@ class ServoRig {
       : preset(device_preset(device_name)),
         device(preset),
         builder(layered_opener(), data_file("tissues.toml"), preset),
-        servo(device, servo_params(preset)) {
+        servo(device, server::servo_params(preset)) {
     auto made = builder.load(layered_request(force_model));
     TROCAR_CHECK(made.has_value());
     scene = *made;
@@ -81,9 +82,9 @@ class ServoRig {
     input.is_wanted = true;
     device.reading.X_DS = needle_at_depth(depth);
   }
-  ServoRecord step() {
+  server::ServoRecord step() {
     input.now_s += input.dt_s;
-    const ServoRecord record = servo.step(input);
+    const server::ServoRecord record = servo.step(input);
     const double written_n = device.written.force_n.norm();
     most_n = std::max(most_n, written_n);
     largest_rise_n = std::max(largest_rise_n, written_n - last_n);
@@ -93,8 +94,8 @@ class ServoRig {
     return record;
   }
   /// The tip goes to a depth at a speed; all records.
-  std::vector<ServoRecord> move_to(double depth_mm, double speed_mm_per_s) {
-    std::vector<ServoRecord> records;
+  std::vector<server::ServoRecord> move_to(double depth_mm, double speed_mm_per_s) {
+    std::vector<server::ServoRecord> records;
     const double step_mm = speed_mm_per_s * input.dt_s;
     while (depth != depth_mm) {
       depth = depth_mm > depth ? std::min(depth_mm, depth + step_mm) : std::max(depth_mm, depth - step_mm);
@@ -104,8 +105,8 @@ class ServoRig {
     return records;
   }
   /// Trembling a little, as a hand does, so that the encoder is seen to live.
-  std::vector<ServoRecord> hold(double seconds) {
-    std::vector<ServoRecord> records;
+  std::vector<server::ServoRecord> hold(double seconds) {
+    std::vector<server::ServoRecord> records;
     const auto count = static_cast<int>(seconds / input.dt_s + 0.5);
     for (int i = 0; i < count; ++i) {
       device.reading.X_DS = needle_at_depth(depth + 0.02 * ((i / 20) % 2));
@@ -116,24 +117,25 @@ class ServoRig {
   /// Forces on, past the safe start, outside the body.
   void start() { hold(2.0); }
 
-  DevicePreset preset;
+  haptics::DevicePreset preset;
   ScriptedDevice device;
-  SceneBuilder builder;
-  ServoScene scene;
-  Servo servo;
-  ServoInput input;
+  server::SceneBuilder builder;
+  server::ServoScene scene;
+  server::Servo servo;
+  server::ServoInput input;
   double depth = -10.0;
   double most_n = 0.0, largest_rise_n = 0.0, last_n = 0.0;
 };
 
-inline bool has_event(const std::vector<ServoRecord>& records, EventKind kind, int id = -1) {
-  return std::any_of(records.begin(), records.end(), [&](const ServoRecord& record) {
-    return std::any_of(record.sample.events.begin(), record.sample.events.end(),
-                       [&](const TickEvent& event) { return event.kind == kind && (id < 0 || event.id == id); });
+inline bool has_event(const std::vector<server::ServoRecord>& records, telemetry::EventKind kind, int id = -1) {
+  return std::any_of(records.begin(), records.end(), [&](const server::ServoRecord& record) {
+    return std::any_of(
+        record.sample.events.begin(), record.sample.events.end(),
+        [&](const telemetry::TickEvent& event) { return event.kind == kind && (id < 0 || event.id == id); });
   });
 }
-inline bool has_limit(const std::vector<ServoRecord>& records, LimitReason reason) {
-  return has_event(records, EventKind::kLimit, static_cast<int>(reason));
+inline bool has_limit(const std::vector<server::ServoRecord>& records, telemetry::LimitReason reason) {
+  return has_event(records, telemetry::EventKind::kLimit, static_cast<int>(reason));
 }
 
 }  // namespace trocar::testing

@@ -9,7 +9,7 @@
 #include "core/testing/allocation_guard.inc.h"
 #include "server/test/servo_rig.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 using testing::AllocationGuard;
@@ -28,9 +28,9 @@ TEST(Servo, GivesNoForceBeforeItIsAskedFor) {
 TEST(Servo, LetsTheHandFeelTheSkinAndItsGivingWay) {
   ServoRig rig;
   rig.start();
-  EXPECT_EQ(rig.servo.mode(), GateMode::kOn);
+  EXPECT_EQ(rig.servo.mode(), telemetry::GateMode::kOn);
   const auto records = rig.move_to(20.0, 10.0);
-  EXPECT_TRUE(has_event(records, EventKind::kPuncture));
+  EXPECT_TRUE(has_event(records, telemetry::EventKind::kPuncture));
   const auto drop = std::find_if(records.begin(), records.end(), [](const ServoRecord& r) { return r.drop_n > 1.0; });
   EXPECT_NE(drop, records.end()) << "the gate reports the fall of the force";
   for (const ServoRecord& record : records) {
@@ -66,7 +66,7 @@ TEST(Servo, FadesWhenTheClientIsSilentAndComesBackWithoutAJump) {
     rig.input.silence_s = 0.001 * i;
     const ServoRecord record = rig.step();
     if (i <= 250) {
-      ASSERT_EQ(record.actions & kGateStale, 0) << i;
+      ASSERT_EQ(record.actions & haptics::kGateStale, 0) << i;
     }
   }
   EXPECT_LT(rig.device.written.force_n.norm(), 1e-9);
@@ -81,16 +81,16 @@ TEST(Servo, LatchesAFaultWhenTheDeviceIsGoneAndGoesOnAfterAReset) {
   ServoRig rig;
   rig.start();
   rig.move_to(2.0, 10.0);
-  rig.device.reading.status = DeviceStatus::kDisconnected;
+  rig.device.reading.status = devices::DeviceStatus::kDisconnected;
   for (int i = 0; i < 30; ++i) rig.step();
   EXPECT_EQ(rig.device.written.force_n.norm(), 0.0);
-  rig.device.reading.status = DeviceStatus::kFresh;
-  EXPECT_EQ(rig.hold(0.5).back().fault, GateFault::kDeviceLost) << "until somebody resets it";
+  rig.device.reading.status = devices::DeviceStatus::kFresh;
+  EXPECT_EQ(rig.hold(0.5).back().fault, telemetry::GateFault::kDeviceLost) << "until somebody resets it";
   rig.input.is_reset = true;
   rig.step();
   rig.move_to(-10.0, 50.0);
-  EXPECT_EQ(rig.hold(2.0).back().fault, GateFault::kNone);
-  EXPECT_EQ(rig.servo.mode(), GateMode::kOn);
+  EXPECT_EQ(rig.hold(2.0).back().fault, telemetry::GateFault::kNone);
+  EXPECT_EQ(rig.servo.mode(), telemetry::GateMode::kOn);
 }
 
 TEST(Servo, TakesARefusedWriteAsALostDevice) {
@@ -98,7 +98,7 @@ TEST(Servo, TakesARefusedWriteAsALostDevice) {
   rig.start();
   rig.device.takes_writes = false;
   rig.hold(0.1);
-  EXPECT_EQ(rig.step().fault, GateFault::kDeviceLost);
+  EXPECT_EQ(rig.step().fault, telemetry::GateFault::kDeviceLost);
 }
 
 TEST(Servo, LatchesAFaultOnAPoseThatIsNone) {
@@ -107,7 +107,7 @@ TEST(Servo, LatchesAFaultOnAPoseThatIsNone) {
     rig.start();
     rig.move_to(2.0, 10.0);
     rig.device.reading.X_DS = Pose(Mat3::Identity(), {bad, 0.0, 0.0});
-    EXPECT_EQ(rig.step().fault, GateFault::kNotFinite);
+    EXPECT_EQ(rig.step().fault, telemetry::GateFault::kNotFinite);
     for (int i = 0; i < 30; ++i) rig.step();
     EXPECT_EQ(rig.device.written.force_n.norm(), 0.0);
   }
@@ -120,8 +120,8 @@ TEST(Servo, NoticesAnEncoderThatStandsStillUnderForce) {
   ASSERT_GT(rig.device.written.force_n.norm(), ServoParams{}.stuck_n);
   ServoRecord record;
   int periods = 0;
-  for (; periods < 7000 && record.fault == GateFault::kNone; ++periods) record = rig.step();
-  EXPECT_EQ(record.fault, GateFault::kEncoderStuck);
+  for (; periods < 7000 && record.fault == telemetry::GateFault::kNone; ++periods) record = rig.step();
+  EXPECT_EQ(record.fault, telemetry::GateFault::kEncoderStuck);
   EXPECT_NEAR(periods * rig.input.dt_s, ServoParams{}.stuck_s, 0.01);
 }
 
@@ -129,7 +129,7 @@ TEST(Servo, DoesNotMistakeATremblingHandForAStuckEncoder) {
   ServoRig rig;
   rig.start();
   rig.move_to(3.0, 10.0);
-  EXPECT_EQ(rig.hold(8.0).back().fault, GateFault::kNone);
+  EXPECT_EQ(rig.hold(8.0).back().fault, telemetry::GateFault::kNone);
 }
 
 TEST(Servo, NeverAllocates) {
@@ -138,8 +138,8 @@ TEST(Servo, NeverAllocates) {
   const AllocationGuard guard;
   for (int i = 0; i < 3000; ++i) {
     rig.device.reading.X_DS = testing::needle_at_depth(0.01 * i);
-    if (i == 2000) rig.device.reading.status = DeviceStatus::kDisconnected;
-    rig.input.hand = HandTarget{};
+    if (i == 2000) rig.device.reading.status = devices::DeviceStatus::kDisconnected;
+    rig.input.hand = link::HandTarget{};
     rig.input.silence_s = i == 1000 ? 0.4 : 0.0;
     rig.servo.step(rig.input);
   }
@@ -153,7 +153,7 @@ TEST(Servo, MakesTheSameOfTheSame) {
     rig.move_to(30.0, 25.0);
     return rig.device.written;
   };
-  const Wrench first = run(), second = run();
+  const haptics::Wrench first = run(), second = run();
   EXPECT_EQ(first.force_n, second.force_n);
   EXPECT_EQ(first.torque_nmm, second.torque_nmm);
 }
@@ -169,8 +169,8 @@ TEST(Servo, GoesOnWithTheInsertionWhenOnlyNumbersChange) {
   rig.input.scene = &*changed;
   const auto records = rig.hold(0.3);
   EXPECT_NEAR(records.back().sample.depth_mm, before_mm, 1.0);
-  EXPECT_EQ(rig.servo.mode(), GateMode::kOn);
-  EXPECT_FALSE(has_limit(records, LimitReason::kSafeStart));
+  EXPECT_EQ(rig.servo.mode(), telemetry::GateMode::kOn);
+  EXPECT_FALSE(has_limit(records, telemetry::LimitReason::kSafeStart));
 }
 
 TEST(Servo, GoesThroughTheSafeStartWithAnotherScene) {
@@ -182,7 +182,7 @@ TEST(Servo, GoesThroughTheSafeStartWithAnotherScene) {
   rig.input.scene = &*other;
   rig.largest_rise_n = 0.0;
   const auto records = rig.hold(0.1);
-  EXPECT_TRUE(has_limit(records, LimitReason::kSafeStart));
+  EXPECT_TRUE(has_limit(records, telemetry::LimitReason::kSafeStart));
   EXPECT_LT(rig.largest_rise_n, 0.2);
 }
 
@@ -193,7 +193,7 @@ TEST(Servo, BeginsAnewWhereTheNeedleIsPut) {
   const Pose X_DS_put = testing::needle_at_depth(20.0);
   rig.device.reading.X_DS = Pose(X_DS_put.R(), X_DS_put.p() + Vec3(3.0, 0.0, 0.0));
   for (int i = 0; i < 100; ++i) rig.step();
-  HandTarget put;
+  link::HandTarget put;
   put.X_PN = rig.scene.scene->X_PD * X_DS_put * rig.scene.scene->X_SN;
   put.is_placed = put.is_rigid = true;
   rig.input.hand = put;
@@ -203,8 +203,8 @@ TEST(Servo, BeginsAnewWhereTheNeedleIsPut) {
   rig.input.is_wanted = true;
   std::vector<ServoRecord> records;
   for (int i = 0; i < 1000; ++i) records.push_back(rig.step());
-  EXPECT_EQ(rig.servo.mode(), GateMode::kOn);
-  EXPECT_EQ(records.back().fault, GateFault::kNone);
+  EXPECT_EQ(rig.servo.mode(), telemetry::GateMode::kOn);
+  EXPECT_EQ(records.back().fault, telemetry::GateFault::kNone);
   EXPECT_LT(records.back().sample.f_constraint_n.norm(), 0.05);
   EXPECT_NEAR(records.back().sample.depth_mm, 20.0, 0.1);
 }
@@ -231,8 +231,8 @@ TEST(Servo, LatchesAFaultAfterALongHoleInTimeAndTakesAShortOne) {
     rig.largest_rise_n = 0.0;
     const auto records = rig.hold(1.0);
     EXPECT_TRUE(records.back().written_D.force_n.allFinite());
-    EXPECT_LE(rig.largest_rise_n, GateParams{}.slew_n_per_s * rig.input.dt_s + 1e-9);
-    EXPECT_EQ(records.back().fault, hole_s > 1.0 ? GateFault::kLoopStalled : GateFault::kNone);
+    EXPECT_LE(rig.largest_rise_n, haptics::GateParams{}.slew_n_per_s * rig.input.dt_s + 1e-9);
+    EXPECT_EQ(records.back().fault, hole_s > 1.0 ? telemetry::GateFault::kLoopStalled : telemetry::GateFault::kNone);
   }
 }
 
@@ -248,18 +248,18 @@ TEST(Servo, WeakensTheCouplingOfASlowLoopAtOnce) {
     rig.input.busy_s = is_own ? 0.008 : 0.0;
     const ServoRecord first = rig.step();
     EXPECT_EQ(first.sample.coupling_share < 1.0, is_own);
-    EXPECT_EQ((first.actions & kGateSlowLoop) != 0, is_own);
+    EXPECT_EQ((first.actions & haptics::kGateSlowLoop) != 0, is_own);
     const ServoRecord second = rig.step();
     // 0.0035 N s/mm of device and loose hand over 1.5 * 1 N/mm * 9 ms - 0.003 N s/mm.
     EXPECT_NEAR(second.sample.coupling_share, 0.0035 / 0.0105, 1e-3);
     EXPECT_LT(second.written_D.force_n.norm(), 0.7 * before_n);
     double slow_s = 0.018;
     ServoRecord record = second;
-    while (record.fault == GateFault::kNone && slow_s < 1.0) {
+    while (record.fault == telemetry::GateFault::kNone && slow_s < 1.0) {
       record = rig.step();
       slow_s += rig.input.dt_s;
     }
-    EXPECT_EQ(record.fault, GateFault::kLoopSlow);
+    EXPECT_EQ(record.fault, telemetry::GateFault::kLoopSlow);
     EXPECT_LE(slow_s, 0.055) << "50 ms, and the period in which they end";
   }
 }
@@ -273,7 +273,7 @@ TEST(Servo, ExcusesSingleHolesOfABusyMachine) {
     const ServoRecord record = rig.step();
     EXPECT_EQ(record.sample.coupling_share, 1.0) << hole_s;
     rig.input.dt_s = 0.001;
-    EXPECT_EQ(rig.hold(0.1).back().fault, GateFault::kNone) << hole_s;
+    EXPECT_EQ(rig.hold(0.1).back().fault, telemetry::GateFault::kNone) << hole_s;
   }
 }
 
@@ -291,12 +291,12 @@ TEST(Servo, LatchesAtOnceOnAJumpThatNoHandMakes) {
       const Pose X_DS = needle_at_depth(rig.depth);
       rig.device.reading.X_DS = Pose(X_DS.R(), X_DS.p() + Vec3((i / 20) % 2 == 0 ? jump_mm : 0.0, 0.0, 0.0));
       record = rig.step();
-      if (record.fault == GateFault::kNone) ++periods;
+      if (record.fault == telemetry::GateFault::kNone) ++periods;
       if (i == 25) {
         EXPECT_EQ(rig.last_n, 0.0);
       }
     }
-    EXPECT_EQ(record.fault, GateFault::kImpossibleMotion) << jump_mm;
+    EXPECT_EQ(record.fault, telemetry::GateFault::kImpossibleMotion) << jump_mm;
     EXPECT_EQ(periods, 0) << "in the very period";
     EXPECT_LE(rig.most_n, before_n) << "no brake is pressed for it";
     EXPECT_EQ(rig.last_n, 0.0);
@@ -322,4 +322,4 @@ TEST(Servo, NeverExceedsTheDeviceWhateverTheHandDoes) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

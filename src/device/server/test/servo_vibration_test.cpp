@@ -10,21 +10,21 @@
 #include "devices/simulated/virtual_haptic_device.h"
 #include "server/test/servo_rig.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
-using Motion = std::function<HandTarget(double time_s)>;
+using Motion = std::function<link::HandTarget(double time_s)>;
 
 struct Outcome {
-  GateFault fault = GateFault::kNone;
+  telemetry::GateFault fault = telemetry::GateFault::kNone;
   double fault_s = 0.0;
   double largest_n = 0.0;  ///< Until the fault.
   double speed_rms = 0.0;  ///< mm/s, of the last second before the fault.
   double after_n = 0.0;    ///< Largest force from 25 ms after the fault on.
 };
 
-Outcome run(const ServoScene& scene, const DevicePreset& preset, const Motion& motion, double seconds) {
-  VirtualHapticDevice device(preset, {});
+Outcome run(const ServoScene& scene, const haptics::DevicePreset& preset, const Motion& motion, double seconds) {
+  devices::VirtualHapticDevice device(preset, {});
   Servo servo(device, servo_params(preset));
   Outcome outcome;
   ServoInput input;
@@ -38,11 +38,11 @@ Outcome run(const ServoScene& scene, const DevicePreset& preset, const Motion& m
     input.hand->is_placed = input.now_s < 0.0015;
     const ServoRecord record = servo.step(input);
     const double written_n = record.written_D.force_n.norm();
-    if (record.fault != GateFault::kNone && outcome.fault == GateFault::kNone) {
+    if (record.fault != telemetry::GateFault::kNone && outcome.fault == telemetry::GateFault::kNone) {
       outcome.fault = record.fault;
       outcome.fault_s = input.now_s;
     }
-    if (outcome.fault == GateFault::kNone) {
+    if (outcome.fault == telemetry::GateFault::kNone) {
       outcome.largest_n = std::max(outcome.largest_n, written_n);
       sum += 0.001 * (device.v_D().squaredNorm() - sum);
       outcome.speed_rms = std::sqrt(sum);
@@ -54,7 +54,7 @@ Outcome run(const ServoScene& scene, const DevicePreset& preset, const Motion& m
 }
 
 ServoScene load(SceneBuilder& builder, const std::string& model, const std::string& tool = "needle") {
-  LoadScene request = testing::layered_request(model);
+  link::LoadScene request = testing::layered_request(model);
   request.tool = tool;
   auto scene = builder.load(request);
   TROCAR_CHECK(scene.has_value());
@@ -66,24 +66,24 @@ ServoScene load(SceneBuilder& builder, const std::string& model, const std::stri
   return *scene;
 }
 
-SceneBuilder builder_for(const DevicePreset& preset) {
+SceneBuilder builder_for(const haptics::DevicePreset& preset) {
   return {testing::layered_opener(), testing::data_file("tissues.toml"), preset};
 }
 
-HandTarget at(const Vec3& tip_P, const Vec3& axis_P = Vec3::UnitZ()) {
-  HandTarget hand;
+link::HandTarget at(const Vec3& tip_P, const Vec3& axis_P = Vec3::UnitZ()) {
+  link::HandTarget hand;
   hand.X_PN = needle_pose(tip_P, axis_P);
   return hand;
 }
 
 /// Down to a depth within a second, then still.
-HandTarget hold_at(double depth_mm, double time_s) {
+link::HandTarget hold_at(double depth_mm, double time_s) {
   return at({0.0, 0.0, std::min(depth_mm, -10.0 + (depth_mm + 10.0) * time_s)});
 }
 
 /// The same scene with a damper that no way in lets through.
 ServoScene with_damping(const ServoScene& scene, double damping_ns_per_mm) {
-  auto changed = std::make_shared<HapticScene>(*scene.scene);
+  auto changed = std::make_shared<haptics::HapticScene>(*scene.scene);
   changed->options.coupling.damping_ns_per_mm = damping_ns_per_mm;
   return {changed, scene.number, scene.continues};
 }
@@ -91,7 +91,7 @@ ServoScene with_damping(const ServoScene& scene, double damping_ns_per_mm) {
 // 1 N s/mm is 200 times what the device bears. In the insertion model the needle slides along with the device and
 // nothing vibrates; the proxy holds it.
 TEST(ServoVibration, ADamperThatTheDeviceDoesNotBearIsAFault) {
-  const DevicePreset preset = testing::device_preset();
+  const haptics::DevicePreset preset = testing::device_preset();
   SceneBuilder builder = builder_for(preset);
   const ServoScene good = load(builder, "proxy");
   const ServoScene bad = with_damping(good, 1.0);
@@ -100,9 +100,10 @@ TEST(ServoVibration, ADamperThatTheDeviceDoesNotBearIsAFault) {
     return at({0.0, 0.0, std::min(10.0 + 10.0 * std::sin(3.0 * t), -10.0 + 20.0 * t)});
   };
   for (const Motion* motion : {&hold, &swing}) {
-    EXPECT_EQ(run(good, preset, *motion, 4.0).fault, GateFault::kNone);
+    EXPECT_EQ(run(good, preset, *motion, 4.0).fault, telemetry::GateFault::kNone);
     const Outcome outcome = run(bad, preset, *motion, 4.0);
-    EXPECT_EQ(outcome.fault, GateFault::kVibration) << to_string(outcome.fault) << ' ' << outcome.speed_rms << " mm/s";
+    EXPECT_EQ(outcome.fault, telemetry::GateFault::kVibration)
+        << to_string(outcome.fault) << ' ' << outcome.speed_rms << " mm/s";
     EXPECT_EQ(outcome.after_n, 0.0);
   }
 }
@@ -110,7 +111,7 @@ TEST(ServoVibration, ADamperThatTheDeviceDoesNotBearIsAFault) {
 class GoodMotion : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(GoodMotion, IsNoVibrationAndNoImpossibleMotion) {
-  const DevicePreset preset = testing::device_preset(GetParam());
+  const haptics::DevicePreset preset = testing::device_preset(GetParam());
   SceneBuilder builder = builder_for(preset);
   Random random(3);
   std::array<double, 6> phases{};
@@ -125,11 +126,11 @@ TEST_P(GoodMotion, IsNoVibrationAndNoImpossibleMotion) {
               Vec3(0.2 * std::sin(7.0 * t + phases[4]), 0.2 * std::sin(6.0 * t + phases[5]), 1.0).normalized());
   };
   const Motion tremor = [](double t) {
-    const HandTarget hold = hold_at(20.0, t);
+    const link::HandTarget hold = hold_at(20.0, t);
     return at(hold.X_PN.p() + Vec3(0.3 * std::sin(50.0 * t), 0.3 * std::sin(60.0 * t), 0.5 * std::sin(70.0 * t)));
   };
   const Motion let_go = [](double t) {
-    HandTarget hand = hold_at(20.0, t);
+    link::HandTarget hand = hold_at(20.0, t);
     hand.is_held = t < 2.0;
     return hand;
   };
@@ -139,19 +140,19 @@ TEST_P(GoodMotion, IsNoVibrationAndNoImpossibleMotion) {
         {{"push", &push}, {"stab", &stab}, {"rough", &rough}, {"tremor", &tremor}, {"let go", &let_go}}};
     for (const auto& [name, motion] : motions) {
       const Outcome outcome = run(scene, preset, *motion, 5.0);
-      EXPECT_EQ(outcome.fault, GateFault::kNone) << to_string(outcome.fault) << ", " << model << ' ' << name;
+      EXPECT_EQ(outcome.fault, telemetry::GateFault::kNone) << to_string(outcome.fault) << ", " << model << ' ' << name;
       EXPECT_GT(outcome.largest_n, 0.1) << model << ' ' << name;
     }
   }
 }
 
 TEST_P(GoodMotion, PalpationIsNoVibration) {
-  const DevicePreset preset = testing::device_preset(GetParam());
+  const haptics::DevicePreset preset = testing::device_preset(GetParam());
   for (const char* tool : {"finger", "probe"}) {
     SceneBuilder builder = builder_for(preset);
     const ServoScene scene = load(builder, "insertion", tool);
     const Motion tap = [](double t) {  // y of T points into the body
-      HandTarget hand;
+      link::HandTarget hand;
       Mat3 R_PT;
       R_PT.col(0) = Vec3::UnitX();
       R_PT.col(1) = Vec3::UnitZ();
@@ -160,7 +161,7 @@ TEST_P(GoodMotion, PalpationIsNoVibration) {
       return hand;
     };
     const Outcome outcome = run(scene, preset, tap, 5.0);
-    EXPECT_EQ(outcome.fault, GateFault::kNone) << to_string(outcome.fault) << ", " << tool;
+    EXPECT_EQ(outcome.fault, telemetry::GateFault::kNone) << to_string(outcome.fault) << ", " << tool;
     EXPECT_GT(outcome.largest_n, 0.1) << tool;
   }
 }
@@ -171,4 +172,4 @@ INSTANTIATE_TEST_SUITE_P(EveryDevice, GoodMotion,
                          [](const auto& param) { return std::string(param.param); });
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

@@ -6,15 +6,15 @@
 #include <thread>
 
 #include "devices/device_spec.h"
-#include "devices/vendor/test/haply_service.h"
 #include "devices/pointer/test/spacenav_daemon.h"
 #include "devices/test/standin/dhd_stand_in.h"
 #include "devices/test/standin/hd_stand_in.h"
+#include "devices/vendor/test/haply_service.h"
 #include "devices/vendor/test/vendor_library.h"
 #include "realtime/periodic_loop.h"
 #include "server/test/servo_rig.h"
 
-namespace trocar {
+namespace trocar::server {
 namespace {
 
 /// What stands for the hardware of a kind, while it lives; and what it found broken.
@@ -55,7 +55,7 @@ class Hardware {
 /// The layered patient comes to the needle, wherever the device holds it.
 class ApproachingPatient {
  public:
-  explicit ApproachingPatient(const DevicePreset& preset)
+  explicit ApproachingPatient(const haptics::DevicePreset& preset)
       : builder_(testing::layered_opener(), testing::data_file("tissues.toml"), preset) {
     auto made = builder_.load(testing::layered_request());
     TROCAR_CHECK(made.has_value());
@@ -63,7 +63,7 @@ class ApproachingPatient {
   }
   /// The tip of a needle with its stylus there (in the room) is so deep below the skin.
   const ServoScene* at(const Pose& X_WS, double depth_mm) {
-    auto scene = std::make_shared<HapticScene>(*scene_.scene);
+    auto scene = std::make_shared<haptics::HapticScene>(*scene_.scene);
     const Pose X_WN = X_WS * scene->X_SN;
     scene->X_PD = needle_pose({0.0, 0.0, depth_mm}, Vec3::UnitZ()) * X_WN.inverse();
     scene_ = {std::move(scene), scene_.number + 1, true};
@@ -78,14 +78,14 @@ class ApproachingPatient {
 struct VendorFault {
   const char* kind;
   const char* schedule;
-  GateFault fault;
+  telemetry::GateFault fault;
 };
 
 class VendorFaults : public ::testing::TestWithParam<VendorFault> {};
 
 /// What a device that breaks at kFault_s led to.
 struct Trial {
-  GateFault fault = GateFault::kNone;
+  telemetry::GateFault fault = telemetry::GateFault::kNone;
   double broken_s =
       0.0;  ///< 0: the fault came before its time, from a loaded machine that starved the device's thread.
   double last_force_s = 0.0;
@@ -100,12 +100,12 @@ constexpr double kSilent_s = 0.5;  // a loaded machine may keep a device's threa
 void run_trial(const VendorFault& expected, Trial& trial) {
   const Hardware hardware(expected.kind);
   {
-    DeviceOptions options;
+    devices::DeviceOptions options;
     options.devices_file = testing::data_file("devices.toml");
-    options.faults = {*parse_fault(expected.schedule)};
-    auto device = open_device(*parse_device_spec(hardware.spec(expected.kind)), options);
+    options.faults = {*devices::parse_fault(expected.schedule)};
+    auto device = devices::open_device(*devices::parse_device_spec(hardware.spec(expected.kind)), options);
     ASSERT_TRUE(device) << device.error().text();
-    const DevicePreset& preset = (*device)->preset();
+    const haptics::DevicePreset& preset = (*device)->preset();
     ServoParams params = servo_params(preset);
     params.gate.max_unread_s = kSilent_s;
     params.max_hole_s = 10.0;
@@ -113,7 +113,7 @@ void run_trial(const VendorFault& expected, Trial& trial) {
     ApproachingPatient patient(preset);
 
     ServoRecord record;
-    const double end_s = kFault_s + (expected.fault == GateFault::kDeviceSilent ? kSilent_s : 0.0) + 0.3;
+    const double end_s = kFault_s + (expected.fault == telemetry::GateFault::kDeviceSilent ? kSilent_s : 0.0) + 0.3;
     constexpr double kPeriod_s = 1e-3;  // the servo's time is counted: a hole of the machine must look like no plunge
     for (double time_s = 0.0; time_s < end_s;) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -129,7 +129,7 @@ void run_trial(const VendorFault& expected, Trial& trial) {
       input.scene = patient.at(params.workspace.X_WD * X_WS, depth_mm);
       record = servo.step(input);
       trial.fault = record.fault;
-      if (trial.broken_s == 0.0 && record.fault != GateFault::kNone) break;
+      if (trial.broken_s == 0.0 && record.fault != telemetry::GateFault::kNone) break;
       const double written_n = record.written_D.force_n.norm();
       trial.most_n = std::max(trial.most_n, written_n);
       if (written_n > 0.0) trial.last_force_s = time_s;
@@ -150,17 +150,18 @@ TEST_P(VendorFaults, EndAtZeroAndBreakNoRule) {
   EXPECT_GT(trial.most_n, 0.1) << "there was something to be felt before";
   EXPECT_STREQ(to_string(trial.fault), to_string(expected.fault));
   constexpr double kRamp_s = 0.05;  // the gate's 20 ms, and a period of a loaded machine
-  EXPECT_LE(trial.last_force_s,
-            trial.broken_s + kRamp_s + (expected.fault == GateFault::kDeviceSilent ? kSilent_s + kRamp_s : 0.0));
+  EXPECT_LE(
+      trial.last_force_s,
+      trial.broken_s + kRamp_s + (expected.fault == telemetry::GateFault::kDeviceSilent ? kSilent_s + kRamp_s : 0.0));
   EXPECT_EQ(trial.violations, "");
 }
 
 std::vector<VendorFault> all_vendor_faults() {
   std::vector<VendorFault> faults;
   for (const char* kind : {"openhaptics", "forcedimension", "haply", "spacemouse"}) {
-    faults.push_back({kind, "nan@1.2", GateFault::kNotFinite});
-    faults.push_back({kind, "disconnect@1.2", GateFault::kDeviceLost});
-    faults.push_back({kind, "dropped@1.2", GateFault::kDeviceSilent});
+    faults.push_back({kind, "nan@1.2", telemetry::GateFault::kNotFinite});
+    faults.push_back({kind, "disconnect@1.2", telemetry::GateFault::kDeviceLost});
+    faults.push_back({kind, "dropped@1.2", telemetry::GateFault::kDeviceSilent});
   }
   return faults;
 }
@@ -170,4 +171,4 @@ INSTANTIATE_TEST_SUITE_P(Devices, VendorFaults, ::testing::ValuesIn(all_vendor_f
 });
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::server

@@ -2,11 +2,11 @@
 
 #include <initializer_list>
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 namespace {
 
-constexpr Rgb kSkinColor = {224, 178, 150};
-constexpr Rgb kIvory = {236, 226, 202};
+constexpr volume::Rgb kSkinColor = {224, 178, 150};
+constexpr volume::Rgb kIvory = {236, 226, 202};
 constexpr double kSkinOpacity = 0.15;
 constexpr double kLungOpacity = 0.16;
 constexpr double kFluidOpacity = 0.3;
@@ -20,9 +20,9 @@ bool is_one_of(std::string_view tissue, std::initializer_list<std::string_view> 
 
 }  // namespace
 
-std::optional<Appearance> find_appearance(const LabelTable& table, std::string_view name) {
+std::optional<Appearance> find_appearance(const anatomy::LabelTable& table, std::string_view name) {
   if (name == "skin") return Appearance{kSkinColor, kSkinOpacity, 0.1, 0.5, StructureKind::kSkin};
-  const Label* label = table.find(name);
+  const anatomy::Label* label = table.find(name);
   if (label == nullptr) return std::nullopt;
   const std::string& tissue = label->tissue;
   if (is_one_of(tissue, {"adipose", "muscle", "soft_tissue"}))
@@ -43,4 +43,4 @@ std::optional<Appearance> find_appearance(const LabelTable& table, std::string_v
   return Appearance{label->color, 1.0, 0.25};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

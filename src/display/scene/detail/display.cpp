@@ -3,7 +3,7 @@
 // Xlib's macros (Status, None, Bool) spoil other headers: nothing else is included here.
 #include <X11/Xlib.h>
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 bool has_opengl_display() noexcept {
   Display* display = XOpenDisplay(nullptr);
@@ -16,4 +16,4 @@ bool has_opengl_display() noexcept {
   return has_glx;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

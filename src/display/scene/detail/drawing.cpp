@@ -20,7 +20,7 @@
 
 #include "scene/detail/simplify.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 vtkSmartPointer<vtkPolyData> to_polydata(const TriangleMesh& mesh) {
   return to_polydata(mesh, vertex_normals(mesh));
@@ -177,7 +177,7 @@ void PictureQuad::show(const std::array<Vec3, 3>& corners_P) {
   actor_->VisibilityOn();
 }
 
-bool PictureQuad::show_picture(const RgbImage& picture, std::span<const std::uint8_t> alpha,
+bool PictureQuad::show_picture(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
                                const std::array<Vec3, 3>& corners_P) {
   constexpr double kUnseen_mm = 0.005;
   const std::span<std::uint8_t> rgba = resize(picture.columns, picture.rows);
@@ -186,7 +186,7 @@ bool PictureQuad::show_picture(const RgbImage& picture, std::span<const std::uin
   // Collected without a branch, which the compiler turns into vectors: this is done for every picture of the scanner.
   unsigned changes = 0;
   for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-    const Rgb& pixel = picture.pixels[i];
+    const volume::Rgb& pixel = picture.pixels[i];
     const std::array<std::uint8_t, 4> bytes{pixel[0], pixel[1], pixel[2], alpha.empty() ? std::uint8_t{255} : alpha[i]};
     for (std::size_t b = 0; b < bytes.size(); ++b) changes |= static_cast<unsigned>(rgba[4 * i + b] ^ bytes[b]);
     std::copy(bytes.begin(), bytes.end(), rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
@@ -202,13 +202,13 @@ bool PictureQuad::hide() {
   return was_shown;
 }
 
-RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supersampling) {
+volume::RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supersampling) {
   const int wide = columns * supersampling;
   const int high = rows * supersampling;
   const int samples = supersampling * supersampling;
   vtkNew<vtkUnsignedCharArray> bytes;
   window.GetPixelData(0, 0, wide - 1, high - 1, 0, bytes);
-  RgbImage image(columns, rows);
+  volume::RgbImage image(columns, rows);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       for (int channel = 0; channel < 3; ++channel) {
@@ -228,4 +228,4 @@ RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supers
   return image;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

@@ -18,7 +18,7 @@
 class vtkPolyDataMapper;
 class vtkRenderWindow;
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 /// The mesh with normals, one a vertex; without them they are those of the mesh.
 vtkSmartPointer<vtkPolyData> to_polydata(const TriangleMesh& mesh, const std::vector<Vec3f>& normals);
@@ -51,7 +51,8 @@ class PictureQuad {
   /// Corners of the picture's outline in P: top left, top right, bottom left.
   void show(const std::array<Vec3, 3>& corners_P);
   /// Both at once for a picture with its alpha (one byte a pixel; empty: all shown); tells whether anything is new.
-  bool show_picture(const RgbImage& picture, std::span<const std::uint8_t> alpha, const std::array<Vec3, 3>& corners_P);
+  bool show_picture(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
+                    const std::array<Vec3, 3>& corners_P);
   /// Tells whether it was shown.
   bool hide();
 
@@ -64,6 +65,6 @@ class PictureQuad {
 
 /// The window's pixels, averaged over blocks of `supersampling`^2 and turned to run from the top. The window has
 /// columns*supersampling x rows*supersampling pixels.
-RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supersampling);
+volume::RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supersampling);
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

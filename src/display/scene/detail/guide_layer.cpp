@@ -14,13 +14,13 @@
 #include "scene/needle_shape.h"
 #include "volume/sampling.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 namespace {
 
 // The trainer's colours of path and target (shell/theme.h).
-constexpr Rgb kPathColor = {0x54, 0xd1, 0xc4};
-constexpr Rgb kTargetColor = {0xff, 0x8a, 0x3d};
-constexpr Rgb kLandmarkColor = {0xf2, 0xd0, 0x6b};
+constexpr volume::Rgb kPathColor = {0x54, 0xd1, 0xc4};
+constexpr volume::Rgb kTargetColor = {0xff, 0x8a, 0x3d};
+constexpr volume::Rgb kLandmarkColor = {0xf2, 0xd0, 0x6b};
 constexpr double kPathRadius_mm = 1.0;
 constexpr double kDash_mm = 6.0;
 constexpr double kGap_mm = 4.0;
@@ -34,20 +34,20 @@ constexpr double kLandmarkRadius_mm = 3.0;
 constexpr double kAboveSkin_mm = 0.6;
 
 /// The point of the skin on the line through p along the path.
-Vec3 onto_skin(const Vec3& p_P, const Vec3& along_P, const FloatGrid& skin_distance_mm) {
+Vec3 onto_skin(const Vec3& p_P, const Vec3& along_P, const volume::FloatGrid& skin_distance_mm) {
   constexpr int kSteps = 12;
   constexpr double kFarthest_mm = 30.0;
   if (skin_distance_mm.empty()) return p_P;
   double moved_mm = 0.0;
   for (int step = 0; step < kSteps; ++step) {
-    const double distance_mm = sample_linear(skin_distance_mm, p_P + moved_mm * along_P);
+    const double distance_mm = volume::sample_linear(skin_distance_mm, p_P + moved_mm * along_P);
     moved_mm += distance_mm - kAboveSkin_mm;
     if (std::abs(distance_mm - kAboveSkin_mm) < 0.05) break;
   }
   return std::abs(moved_mm) < kFarthest_mm ? Vec3(p_P + moved_mm * along_P) : p_P;
 }
 
-std::vector<Vec3> entry_ring(const EntryMark& entry, const Vec3& along_P, const FloatGrid& skin_distance_mm) {
+std::vector<Vec3> entry_ring(const EntryMark& entry, const Vec3& along_P, const volume::FloatGrid& skin_distance_mm) {
   constexpr int kPoints = 72;
   const Vec3 u_P = along_P.unitOrthogonal();
   const Vec3 v_P = along_P.cross(u_P);
@@ -90,7 +90,8 @@ void GuideLayer::clear(Props& props) {
   props.clear();
 }
 
-void GuideLayer::add_mesh(Props& props, const TriangleMesh& mesh_P, const Rgb& color, double opacity, bool is_lit) {
+void GuideLayer::add_mesh(Props& props, const TriangleMesh& mesh_P, const volume::Rgb& color, double opacity,
+                          bool is_lit) {
   auto actor = vtkSmartPointer<vtkActor>::New();
   actor->SetMapper(make_mapper(to_polydata(mesh_P)));
   apply(Appearance{color, opacity, 0.2, 0.35}, *actor);
@@ -101,7 +102,7 @@ void GuideLayer::add_mesh(Props& props, const TriangleMesh& mesh_P, const Rgb& c
   props.push_back(actor);
 }
 
-void GuideLayer::add_text(const Vec3& p_P, const std::string& text, const Rgb& color) {
+void GuideLayer::add_text(const Vec3& p_P, const std::string& text, const volume::Rgb& color) {
   auto label = vtkSmartPointer<vtkTextActor>::New();
   label->SetInput(text.c_str());
   // Beside the mark, and over all that is drawn: half a name is worse than none.
@@ -141,7 +142,7 @@ void GuideLayer::look_from(const CameraView& view) {
 }
 
 void GuideLayer::set_path(const std::optional<Segment>& line_P, const EntryMark& entry,
-                          const FloatGrid& skin_distance_mm) {
+                          const volume::FloatGrid& skin_distance_mm) {
   clear(line_);
   clear(marks_);
   if (!line_P || !(line_P->length_mm() > 0.0)) return;
@@ -159,10 +160,10 @@ void GuideLayer::show_guidance() {
   for (const auto& prop : marks_) prop->SetVisibility(is_guidance_visible_ && guidance_ != Guidance::kNone);
 }
 
-void GuideLayer::set_landmarks(const std::vector<Landmark>& landmarks) {
+void GuideLayer::set_landmarks(const std::vector<anatomy::Landmark>& landmarks) {
   clear(landmarks_);
   texts_.clear();
-  for (const Landmark& landmark : landmarks) {
+  for (const anatomy::Landmark& landmark : landmarks) {
     add_mesh(landmarks_, make_ball(landmark.p_P, kLandmarkRadius_mm), kLandmarkColor, 1.0, true);
     add_text(landmark.p_P, landmark.name, kLandmarkColor);
   }
@@ -189,4 +190,4 @@ bool GuideLayer::set_landmarks_visible(bool are_visible) {
   return true;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

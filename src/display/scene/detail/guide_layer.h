@@ -9,7 +9,7 @@
 #include "scene/detail/drawing.h"
 #include "scene/guidance.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 /// Where the needle may enter: the skin within a ball. Frame P, mm.
 struct EntryMark {
@@ -23,8 +23,9 @@ class GuideLayer {
   explicit GuideLayer(vtkRenderer& renderer) : renderer_(renderer) {}
 
   /// Draws path, zone and target anew. `skin_distance_mm` lays the zone on the skin; may be empty.
-  void set_path(const std::optional<Segment>& line_P, const EntryMark& entry, const FloatGrid& skin_distance_mm);
-  void set_landmarks(const std::vector<Landmark>& landmarks);
+  void set_path(const std::optional<Segment>& line_P, const EntryMark& entry,
+                const volume::FloatGrid& skin_distance_mm);
+  void set_landmarks(const std::vector<anatomy::Landmark>& landmarks);
   // True when it changed something.
   bool set_guidance(Guidance guidance);
   bool set_guidance_visible(bool is_visible);
@@ -42,8 +43,8 @@ class GuideLayer {
     Vec3 p_P;
   };
   using Props = std::vector<vtkSmartPointer<vtkProp>>;
-  void add_mesh(Props& props, const TriangleMesh& mesh_P, const Rgb& color, double opacity, bool is_lit);
-  void add_text(const Vec3& p_P, const std::string& text, const Rgb& color);
+  void add_mesh(Props& props, const TriangleMesh& mesh_P, const volume::Rgb& color, double opacity, bool is_lit);
+  void add_text(const Vec3& p_P, const std::string& text, const volume::Rgb& color);
   void scale_texts();
   void clear(Props& props);
   void show_guidance();
@@ -59,4 +60,4 @@ class GuideLayer {
   bool are_landmarks_visible_ = false;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

@@ -11,7 +11,7 @@
 
 #include <algorithm>
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 namespace {
 
 /// A key from the upper left and a sky; the denser outline of what is like glass. Replaces three lights with shine,
@@ -42,7 +42,7 @@ vtkSmartPointer<vtkPolyData> colored(const MovingPart& part) {
 
 }  // namespace
 
-void MovingSurfaces::add(vtkPolyData* data, const Rgb& color, double opacity, bool has_colors) {
+void MovingSurfaces::add(vtkPolyData* data, const volume::Rgb& color, double opacity, bool has_colors) {
   auto mapper = make_mapper(data);
   if (has_colors) {
     mapper->ScalarVisibilityOn();
@@ -105,4 +105,4 @@ void MovingSurfaces::draw_last() {
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

@@ -6,12 +6,12 @@
 
 #include "scene/detail/drawing.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 /// A surface as it is drawn while things move.
 struct MovingPart {
   vtkSmartPointer<vtkPolyData> data;  ///< With normals.
-  Rgb color;
+  volume::Rgb color;
   double opacity = 1.0;
 };
 
@@ -29,7 +29,7 @@ class MovingSurfaces {
   void draw_last();
 
  private:
-  void add(vtkPolyData* data, const Rgb& color, double opacity, bool has_colors);
+  void add(vtkPolyData* data, const volume::Rgb& color, double opacity, bool has_colors);
 
   vtkRenderer& renderer_;
   std::vector<vtkSmartPointer<vtkActor>> actors_;  ///< In the order of drawing.
@@ -37,4 +37,4 @@ class MovingSurfaces {
   bool is_visible_ = false;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

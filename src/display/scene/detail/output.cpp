@@ -9,7 +9,7 @@
 
 #include "core/check.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 int to_vtk(StereoMode mode, Eye eye) {
   switch (mode) {
@@ -68,4 +68,4 @@ bool is_by_processor(std::string_view renderer_name) {
                      [&](std::string_view program) { return renderer_name.find(program) != std::string_view::npos; });
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

@@ -9,7 +9,7 @@
 
 class vtkRenderWindow;
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 /// VTK's number of a stereo mode; quad-buffer draws one eye at a time.
 int to_vtk(StereoMode mode, Eye eye);
@@ -22,4 +22,4 @@ std::string renderer_of(vtkRenderWindow& window);
 /// Whether a renderer of that name is a program on the processor.
 bool is_by_processor(std::string_view renderer_name);
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 std::optional<double> first_hit_mm(const TriangleMesh& mesh, const Vec3& origin, const Vec3& direction) {
   // The crossing in barycentric coordinates (Möller and Trumbore, 1997).
@@ -26,4 +26,4 @@ std::optional<double> first_hit_mm(const TriangleMesh& mesh, const Vec3& origin,
   return nearest_mm;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

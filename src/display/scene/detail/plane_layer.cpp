@@ -5,7 +5,7 @@
 
 #include "volume/sampling.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 namespace {
 
 constexpr float kOutside_hu = -32768.0F;
@@ -24,7 +24,7 @@ PlaneLayer::PlaneLayer(vtkRenderer& renderer) {
   for (const PictureQuad& quad : quads_) renderer.AddActor(quad.actor());
 }
 
-void PlaneLayer::set_patient(const VirtualPatient* patient) noexcept {
+void PlaneLayer::set_patient(const anatomy::VirtualPatient* patient) noexcept {
   patient_ = patient;
   drawn_pixels_ = 0;
 }
@@ -56,13 +56,13 @@ void PlaneLayer::update(const std::optional<Segment>& needle_P, int pixels) {
 void PlaneLayer::draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right_P, const Vec3& down_P, int pixels) {
   const double step_mm = options_.size_mm / pixels;
   const Vec3 corner_P = middle_P - 0.5 * options_.size_mm * (right_P + down_P);
-  SlicePlane plane;
+  volume::SlicePlane plane;
   plane.origin_P = corner_P + 0.5 * step_mm * (right_P + down_P);
   plane.step_u_P = step_mm * right_P;
   plane.step_v_P = step_mm * down_P;
   plane.columns = plane.rows = pixels;
   hu_.resize(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
-  sample_slice(patient_->ct, plane, kOutside_hu, hu_);
+  volume::sample_slice(patient_->ct, plane, kOutside_hu, hu_);
   const std::span<std::uint8_t> rgba = quad.resize(pixels, pixels);
   const auto low_hu = static_cast<float>(options_.level_hu - 0.5 * options_.window_hu);
   const auto scale = static_cast<float>(255.0 / options_.window_hu);
@@ -72,7 +72,7 @@ void PlaneLayer::draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right
     const auto column = static_cast<double>(i % static_cast<std::size_t>(pixels));
     const auto row = static_cast<double>(i / static_cast<std::size_t>(pixels));
     const Vec3 p_P = plane.origin_P + column * plane.step_u_P + row * plane.step_v_P;
-    return sample_linear(patient_->skin_distance_mm, p_P) < kRim_mm;
+    return volume::sample_linear(patient_->skin_distance_mm, p_P) < kRim_mm;
   };
   for (std::size_t i = 0; i < hu_.size(); ++i) {
     const auto grey = static_cast<std::uint8_t>(std::clamp((hu_[i] - low_hu) * scale, 0.0F, 255.0F));
@@ -82,4 +82,4 @@ void PlaneLayer::draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right
   quad.show({corner_P, corner_P + options_.size_mm * right_P, corner_P + options_.size_mm * down_P});
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

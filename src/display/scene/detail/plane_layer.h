@@ -8,7 +8,7 @@
 #include "scene/detail/drawing.h"
 #include "scene/mpr.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 /// The CT on planes along the needle.
 class PlaneLayer {
@@ -16,7 +16,7 @@ class PlaneLayer {
   explicit PlaneLayer(vtkRenderer& renderer);
 
   /// CT and the distance to the skin (may be empty) of this patient are kept, not copied; nullptr: none.
-  void set_patient(const VirtualPatient* patient) noexcept;
+  void set_patient(const anatomy::VirtualPatient* patient) noexcept;
   bool set_options(const MprOptions& options);
   const MprOptions& options() const noexcept { return options_; }
   /// Samples the planes anew where the needle or the options have changed; `pixels` along an edge.
@@ -25,7 +25,7 @@ class PlaneLayer {
  private:
   void draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right_P, const Vec3& down_P, int pixels);
 
-  const VirtualPatient* patient_ = nullptr;
+  const anatomy::VirtualPatient* patient_ = nullptr;
   MprOptions options_;
   std::array<PictureQuad, 3> quads_;
   std::vector<float> hu_;
@@ -33,4 +33,4 @@ class PlaneLayer {
   int drawn_pixels_ = 0;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

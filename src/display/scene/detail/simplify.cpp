@@ -9,7 +9,7 @@
 #include <cmath>
 #include <unordered_map>
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 namespace {
 
 float mean_edge_mm(const TriangleMesh& mesh) {
@@ -114,4 +114,4 @@ std::vector<Vec3f> vertex_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

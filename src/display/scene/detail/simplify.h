@@ -4,7 +4,7 @@
 
 #include "geometry/triangle_mesh.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 /// Unit normals of the vertices, of the triangles around weighted by area; zero where no triangle is.
 std::vector<Vec3f> vertex_normals(const TriangleMesh& mesh);
@@ -24,4 +24,4 @@ SimplifiedMesh simplify(const TriangleMesh& mesh, const std::vector<Vec3f>& norm
 /// decimation), with the new mesh's own normals. Slow beside `simplify`, and better where little is kept.
 SimplifiedMesh decimate(const TriangleMesh& mesh, double keep);
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

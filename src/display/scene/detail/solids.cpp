@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 namespace {
 
 std::uint32_t add_point(TriangleMesh& mesh, const Vec3& p) {
@@ -80,4 +80,4 @@ TriangleMesh make_box(const Pose& X_AL, const Vec3& half_mm, double corner_mm) {
   return make_loft(outlines);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

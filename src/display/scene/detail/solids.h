@@ -6,7 +6,7 @@
 #include "geometry/pose.h"
 #include "geometry/triangle_mesh.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 /// A circle of a turned solid: at `z` along the axis, of radius `r` (mm).
 struct Ring {
@@ -23,4 +23,4 @@ TriangleMesh make_box(const Pose& X_AL, const Vec3& half_mm, double corner_mm = 
 /// closed at both ends by fans to the rings' middles.
 TriangleMesh make_loft(const std::vector<std::vector<Vec3>>& rings);
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

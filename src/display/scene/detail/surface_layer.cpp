@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "scene/detail/simplify.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 namespace {
 
 /// Cells of level 1, in mean edges, and what level 2 keeps of its triangles.
@@ -44,12 +44,12 @@ SurfaceLayer::~SurfaceLayer() {
 }
 
 std::vector<SurfaceLayer::Surface> SurfaceLayer::build(const std::vector<std::pair<std::string, Appearance>>& looks,
-                                                       const std::vector<NamedMesh>& meshes) {
+                                                       const std::vector<anatomy::NamedMesh>& meshes) {
   std::vector<Surface> surfaces(looks.size());
   parallel_for(looks.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      const auto mesh =
-          std::find_if(meshes.begin(), meshes.end(), [&](const NamedMesh& m) { return m.name == looks[i].first; });
+      const auto mesh = std::find_if(meshes.begin(), meshes.end(),
+                                     [&](const anatomy::NamedMesh& m) { return m.name == looks[i].first; });
       Surface& surface = surfaces[i];
       surface.name = mesh->name;
       surface.look = looks[i].second;
@@ -71,8 +71,9 @@ std::vector<SurfaceLayer::Surface> SurfaceLayer::build(const std::vector<std::pa
   return surfaces;
 }
 
-void SurfaceLayer::show(std::vector<StructureInfo> structures, std::shared_ptr<const std::vector<NamedMesh>> meshes,
-                        const LabelTable& table) {
+void SurfaceLayer::show(std::vector<StructureInfo> structures,
+                        std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
+                        const anatomy::LabelTable& table) {
   if (loading_.valid()) loading_.get();
   for (Surface& surface : surfaces_) renderer_.RemoveActor(surface.actor);
   surfaces_.clear();
@@ -224,4 +225,4 @@ std::size_t SurfaceLayer::triangle_count(int level) const {
   return count;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

@@ -14,7 +14,7 @@
 #include "scene/detail/moving_surfaces.h"
 #include "scene/detail_policy.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 /// Whether the frame being drawn is to be given up; asked before every surface.
 class FrameBreak {
@@ -32,8 +32,8 @@ class SurfaceLayer {
   SurfaceLayer(const SurfaceLayer&) = delete;
   SurfaceLayer& operator=(const SurfaceLayer&) = delete;
 
-  void show(std::vector<StructureInfo> structures, std::shared_ptr<const std::vector<NamedMesh>> meshes,
-            const LabelTable& table);
+  void show(std::vector<StructureInfo> structures, std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes,
+            const anatomy::LabelTable& table);
   /// Puts surfaces in the picture that have become ready; true when all are there and some are new.
   bool poll();
   void wait();
@@ -67,7 +67,7 @@ class SurfaceLayer {
   };
 
   static std::vector<Surface> build(const std::vector<std::pair<std::string, Appearance>>& looks,
-                                    const std::vector<NamedMesh>& meshes);
+                                    const std::vector<anatomy::NamedMesh>& meshes);
   void update(Surface& surface);
   void update_moving();
   StructureInfo* find(std::string_view name);
@@ -91,4 +91,4 @@ class SurfaceLayer {
   int level_ = 0;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

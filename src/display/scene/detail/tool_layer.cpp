@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 namespace {
 
 /// Motion below is not seen: half a hundredth of a millimetre.
@@ -21,11 +21,11 @@ constexpr double kGhostOpacity = 0.4;
 constexpr double kGhostRadius_mm = 1.2;
 constexpr double kGhostHubRadius_mm = 4.0;
 constexpr double kGhostHub_mm = 22.0;
-constexpr Rgb kGhostColor = {150, 205, 255};
+constexpr volume::Rgb kGhostColor = {150, 205, 255};
 constexpr double kStyletRadius_mm = 0.8;  // thicker than it is, as the needle: to be seen
-constexpr Rgb kStyletColor = {236, 240, 246};
+constexpr volume::Rgb kStyletColor = {236, 240, 246};
 constexpr double kCoreRadius_mm = 1.6;  // about the needle
-constexpr Rgb kCoreColor = {255, 138, 61};
+constexpr volume::Rgb kCoreColor = {255, 138, 61};
 /// A change of the least thickness below this share rebuilds nothing.
 constexpr double kThicknessStep = 0.15;
 
@@ -135,7 +135,7 @@ bool ToolLayer::set_shot(const std::optional<Segment>& stylet_P, const std::opti
   core_P_ = core_P;
   shot_->SetVisibility(stylet_P || core_P);
   std::vector<ShapePart> parts;
-  const auto add = [&](const std::optional<Segment>& piece_P, double radius_mm, const Rgb& color) {
+  const auto add = [&](const std::optional<Segment>& piece_P, double radius_mm, const volume::Rgb& color) {
     if (!piece_P || piece_P->length_mm() < kUnseen_mm) return;
     const Vec3 ends_P[2] = {piece_P->a, piece_P->b};
     parts.push_back({make_tube(ends_P, radius_mm), color});
@@ -178,4 +178,4 @@ std::optional<Segment> ToolLayer::needle_P() const noexcept {
   return Segment{shaft_P_.front(), shaft_P_.back()};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

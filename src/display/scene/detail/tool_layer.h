@@ -8,7 +8,7 @@
 #include "scene/detail/drawing.h"
 #include "scene/transducer_shape.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 /// Parts of one tool as one surface, each in its own colour.
 vtkSmartPointer<vtkPolyData> to_colored_polydata(std::span<const ShapePart> parts);
@@ -50,4 +50,4 @@ class ToolLayer {
   PictureQuad ultrasound_;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 namespace {
 
 constexpr std::int16_t kAir_hu = -1000;
@@ -21,9 +21,9 @@ constexpr double kBoneEdge_mm = 2.0;
 /// What labels say of a block of voxels.
 enum Flag : std::uint8_t { kHasBone = 1, kHasVessel = 2 };
 
-std::array<std::uint8_t, 256> flags_of(const LabelTable& table) {
+std::array<std::uint8_t, 256> flags_of(const anatomy::LabelTable& table) {
   std::array<std::uint8_t, 256> flags{};
-  for (const Label& label : table.labels) {
+  for (const anatomy::Label& label : table.labels) {
     if (label.tissue == "bone" || label.tissue == "cartilage") flags[label.id] = kHasBone;
     if (label.tissue == "vessel") flags[label.id] = kHasVessel;
   }
@@ -32,7 +32,7 @@ std::array<std::uint8_t, 256> flags_of(const LabelTable& table) {
 
 /// Calls `act(i, j, k)` for each voxel of the grid, slices side by side.
 template <typename Act>
-void for_each_voxel(const GridGeometry& g, const Act& act) {
+void for_each_voxel(const volume::GridGeometry& g, const Act& act) {
   parallel_for(static_cast<std::size_t>(g.size[2]), 4, [&](std::size_t first_k, std::size_t last_k) {
     for (auto k = static_cast<std::int64_t>(first_k); k < static_cast<std::int64_t>(last_k); ++k) {
       for (std::int64_t j = 0; j < g.size[1]; ++j) {
@@ -42,8 +42,8 @@ void for_each_voxel(const GridGeometry& g, const Act& act) {
   });
 }
 
-GridGeometry coarse_geometry(const GridGeometry& g, const std::array<std::int64_t, 3>& steps) {
-  GridGeometry coarse = g;
+volume::GridGeometry coarse_geometry(const volume::GridGeometry& g, const std::array<std::int64_t, 3>& steps) {
+  volume::GridGeometry coarse = g;
   Vec3 first;
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
@@ -56,7 +56,7 @@ GridGeometry coarse_geometry(const GridGeometry& g, const std::array<std::int64_
 }
 
 /// HU of a voxel as the cloud wants it.
-std::int16_t cloud_hu(const VirtualPatient& patient, CloudContent content, std::size_t at) {
+std::int16_t cloud_hu(const anatomy::VirtualPatient& patient, CloudContent content, std::size_t at) {
   const std::int16_t hu = patient.ct.voxels[at];
   if (patient.skin_distance_mm.empty()) return hu;
   const float skin_mm = patient.skin_distance_mm.voxels[at];
@@ -65,17 +65,17 @@ std::int16_t cloud_hu(const VirtualPatient& patient, CloudContent content, std::
 }
 
 /// Bone and its edge become soft tissue, vessels beside it stay.
-void take_bone_out(CtGrid& cloud, const LabelGrid& flags) {
-  const GridGeometry& g = cloud.geometry;
+void take_bone_out(volume::CtGrid& cloud, const volume::LabelGrid& flags) {
+  const volume::GridGeometry& g = cloud.geometry;
   std::array<std::int64_t, 3> reach;
   for (std::size_t a = 0; a < 3; ++a)
     reach[a] = static_cast<std::int64_t>(std::ceil(kBoneEdge_mm / g.spacing_mm[static_cast<Eigen::Index>(a)]));
   // The edge is spread along one direction after the other.
-  LabelGrid near = flags;
+  volume::LabelGrid near = flags;
   for (std::size_t a = 0; a < 3; ++a) {
-    const LabelGrid before = near;
+    const volume::LabelGrid before = near;
     for_each_voxel(g, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
-      Index3 other{i, j, k};
+      volume::Index3 other{i, j, k};
       const std::int64_t low = std::max<std::int64_t>(0, other[a] - reach[a]);
       const std::int64_t high = std::min(g.size[a] - 1, other[a] + reach[a]);
       std::uint8_t& flag = near[{i, j, k}];
@@ -84,7 +84,7 @@ void take_bone_out(CtGrid& cloud, const LabelGrid& flags) {
     });
   }
   for_each_voxel(g, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
-    const Index3 ijk{i, j, k};
+    const volume::Index3 ijk{i, j, k};
     if (near[ijk] == kHasBone) cloud[ijk] = std::min(cloud[ijk], kSoft_hu);
   });
 }
@@ -102,7 +102,7 @@ CloudContent content_of(VolumePreset preset) noexcept {
   }
 }
 
-std::array<std::int64_t, 3> cloud_steps(const GridGeometry& ct, std::int64_t most_voxels) noexcept {
+std::array<std::int64_t, 3> cloud_steps(const volume::GridGeometry& ct, std::int64_t most_voxels) noexcept {
   double longest_mm = 0.0;
   for (std::size_t a = 0; a < 3; ++a)
     longest_mm = std::max(longest_mm, static_cast<double>(ct.size[a]) * ct.spacing_mm[static_cast<Eigen::Index>(a)]);
@@ -114,20 +114,21 @@ std::array<std::int64_t, 3> cloud_steps(const GridGeometry& ct, std::int64_t mos
   return steps;
 }
 
-CtGrid make_cloud(const VirtualPatient& patient, CloudContent content, const std::array<std::int64_t, 3>& steps) {
-  const GridGeometry& g = patient.ct.geometry;
-  CtGrid cloud(coarse_geometry(g, steps));
+volume::CtGrid make_cloud(const anatomy::VirtualPatient& patient, CloudContent content,
+                          const std::array<std::int64_t, 3>& steps) {
+  const volume::GridGeometry& g = patient.ct.geometry;
+  volume::CtGrid cloud(coarse_geometry(g, steps));
   const bool has_labels = content == CloudContent::kWithoutBone && !patient.labels.empty();
   const std::array<std::uint8_t, 256> flag_of_label = flags_of(patient.label_table);
-  LabelGrid flags;
-  if (has_labels) flags = LabelGrid(cloud.geometry);
+  volume::LabelGrid flags;
+  if (has_labels) flags = volume::LabelGrid(cloud.geometry);
   const std::int64_t count = steps[0] * steps[1] * steps[2];
   for_each_voxel(cloud.geometry, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
     std::int64_t sum = 0;
     std::uint8_t flag = 0;
     for (std::int64_t n = 0; n < count; ++n) {
-      const Index3 ijk{i * steps[0] + n % steps[0], j * steps[1] + n / steps[0] % steps[1],
-                       k * steps[2] + n / (steps[0] * steps[1])};
+      const volume::Index3 ijk{i * steps[0] + n % steps[0], j * steps[1] + n / steps[0] % steps[1],
+                               k * steps[2] + n / (steps[0] * steps[1])};
       const std::size_t at = g.offset(ijk);
       sum += cloud_hu(patient, content, at);
       if (has_labels) flag = static_cast<std::uint8_t>(flag | flag_of_label[patient.labels.voxels[at]]);
@@ -139,4 +140,4 @@ CtGrid make_cloud(const VirtualPatient& patient, CloudContent content, const std
   return cloud;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 namespace {
 
 /// Voxels along the longest edge that a processor casts through in about a second.
@@ -20,8 +20,8 @@ constexpr double kStepShare = 0.5;
 constexpr double kLongestStep_mm = 0.9;
 
 /// Values of the grid without its place, which goes to the volume as a matrix.
-vtkSmartPointer<vtkImageData> to_image(const CtGrid& grid) {
-  const GridGeometry& g = grid.geometry;
+vtkSmartPointer<vtkImageData> to_image(const volume::CtGrid& grid) {
+  const volume::GridGeometry& g = grid.geometry;
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(static_cast<int>(g.size[0]), static_cast<int>(g.size[1]), static_cast<int>(g.size[2]));
   image->SetSpacing(g.spacing_mm.data());
@@ -30,9 +30,10 @@ vtkSmartPointer<vtkImageData> to_image(const CtGrid& grid) {
   return image;
 }
 
-VolumeLayer::Cloud make_drawable(const VirtualPatient& patient, CloudContent content, bool has_gpu) {
+VolumeLayer::Cloud make_drawable(const anatomy::VirtualPatient& patient, CloudContent content, bool has_gpu) {
   const std::array<std::int64_t, 3> all{1, 1, 1};
-  const CtGrid grid = make_cloud(patient, content, has_gpu ? all : cloud_steps(patient.ct.geometry, kCoarseEdge));
+  const volume::CtGrid grid =
+      make_cloud(patient, content, has_gpu ? all : cloud_steps(patient.ct.geometry, kCoarseEdge));
   return {to_image(grid), grid.geometry, content};
 }
 
@@ -59,7 +60,7 @@ VolumeLayer::~VolumeLayer() {
   if (loading_.valid()) loading_.wait();
 }
 
-void VolumeLayer::set_patient(std::shared_ptr<const VirtualPatient> patient) {
+void VolumeLayer::set_patient(std::shared_ptr<const anatomy::VirtualPatient> patient) {
   if (loading_.valid()) loading_.get();
   if (volume_ != nullptr) renderer_.RemoveViewProp(volume_);
   volume_ = nullptr;
@@ -127,7 +128,7 @@ void VolumeLayer::rebuild() {
   if (volume_ == nullptr) {
     volume_ = vtkSmartPointer<vtkVolume>::New();
     volume_->SetMapper(make_ray_caster(cloud_->image, has_gpu_));
-    const GridGeometry& g = cloud_->geometry;
+    const volume::GridGeometry& g = cloud_->geometry;
     vtkNew<vtkMatrix4x4> matrix;
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) matrix->SetElement(row, column, g.R_PV(row, column));
@@ -149,4 +150,4 @@ void VolumeLayer::rebuild() {
   volume_->SetVisibility(is_visible_);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

@@ -14,7 +14,7 @@
 #include "scene/detail/volume_copy.h"
 #include "scene/volume_preset.h"
 
-namespace trocar::detail {
+namespace trocar::scene::detail {
 
 /// The CT inside the skin as a cloud: by the graphics card, or without one by casting rays on the processor through a
 /// coarser copy, which ends early when the window asks for it. The copy is made on a thread of its own.
@@ -25,7 +25,7 @@ class VolumeLayer {
   VolumeLayer(const VolumeLayer&) = delete;
   VolumeLayer& operator=(const VolumeLayer&) = delete;
 
-  void set_patient(std::shared_ptr<const VirtualPatient> patient);
+  void set_patient(std::shared_ptr<const anatomy::VirtualPatient> patient);
   bool set_preset(VolumePreset preset, bool has_gpu);
   VolumePreset preset() const noexcept { return preset_; }
   /// Whether the cloud can be drawn: a preset is chosen and its copy is ready.
@@ -39,7 +39,7 @@ class VolumeLayer {
   /// A copy of the CT that can be drawn.
   struct Cloud {
     vtkSmartPointer<vtkImageData> image;
-    GridGeometry geometry;
+    volume::GridGeometry geometry;
     CloudContent content = CloudContent::kWhole;
   };
 
@@ -48,7 +48,7 @@ class VolumeLayer {
   void rebuild();
 
   vtkRenderer& renderer_;
-  std::shared_ptr<const VirtualPatient> patient_;
+  std::shared_ptr<const anatomy::VirtualPatient> patient_;
   VolumePreset preset_ = VolumePreset::kNone;
   bool has_gpu_ = false;
   bool is_visible_ = false;
@@ -57,4 +57,4 @@ class VolumeLayer {
   vtkSmartPointer<vtkVolume> volume_;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::scene::detail

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 const std::vector<Vec3> kCorners_P = {{-150, -100, 0}, {150, 100, 300}, {-150, 100, 0}, {150, -100, 300}};
@@ -104,4 +104,4 @@ TEST(Camera, SideViewIsSquareToTheNeedleInEveryDirection) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::scene

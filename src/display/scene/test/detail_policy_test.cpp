@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 using std::chrono::milliseconds;
@@ -89,4 +89,4 @@ TEST(DetailPolicy, FramesOfFullQualitySayNothingAboutMoving) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 TEST(FrameTimes, GivesLastMedianAndTail) {
@@ -23,4 +23,4 @@ TEST(FrameTimes, ForgetsWhatIsLongAgo) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::scene

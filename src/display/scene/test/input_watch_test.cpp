@@ -5,7 +5,7 @@
 #include "scene/render_patient.h"
 #include "x_pointer.h"
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 TEST(InputWatch, SeesThePointerMoveWithoutReadingEvents) {
@@ -21,4 +21,4 @@ TEST(InputWatch, SeesThePointerMoveWithoutReadingEvents) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::scene

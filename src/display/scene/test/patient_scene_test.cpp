@@ -8,7 +8,7 @@
 #include "scene/render_patient.h"
 #include "two_organs.h"
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 constexpr int kSize = 160;
@@ -23,44 +23,45 @@ class PatientSceneTest : public testing::Test {
     scene = std::move(*made);
     Scene organs = two_organs();
     organs.patient.landmarks = {{"umbilicus", {0, -100, 0}}};
-    patient = std::make_shared<const VirtualPatient>(std::move(organs.patient));
-    scene->show_patient(patient, std::make_shared<const std::vector<NamedMesh>>(std::move(organs.meshes)));
+    patient = std::make_shared<const anatomy::VirtualPatient>(std::move(organs.patient));
+    scene->show_patient(patient, std::make_shared<const std::vector<anatomy::NamedMesh>>(std::move(organs.meshes)));
     scene->set_camera(CameraPreset::kAnterior);
     scene->finish_loading();
   }
-  RgbImage draw(const Detail& detail = DetailPolicy::full()) {
+  volume::RgbImage draw(const Detail& detail = DetailPolicy::full()) {
     EXPECT_TRUE(scene->render(detail));
     return picture();
   }
-  RgbImage picture() const {
+  volume::RgbImage picture() const {
     std::vector<std::uint32_t> pixels(static_cast<std::size_t>(kSize) * kSize);
     scene->copy_picture(pixels);
-    RgbImage image(kSize, kSize);
+    volume::RgbImage image(kSize, kSize);
     std::transform(pixels.begin(), pixels.end(), image.pixels.begin(), [](std::uint32_t p) {
-      return Rgb{static_cast<std::uint8_t>(p >> 16), static_cast<std::uint8_t>(p >> 8), static_cast<std::uint8_t>(p)};
+      return volume::Rgb{static_cast<std::uint8_t>(p >> 16), static_cast<std::uint8_t>(p >> 8),
+                         static_cast<std::uint8_t>(p)};
     });
     return image;
   }
   std::unique_ptr<PatientScene> scene;
-  std::shared_ptr<const VirtualPatient> patient;
+  std::shared_ptr<const anatomy::VirtualPatient> patient;
 };
 
-bool is_bright(const Rgb& c) {
+bool is_bright(const volume::Rgb& c) {
   return c[0] > 120 && c[1] > 120 && c[2] > 120;
 }
-bool is_teal(const Rgb& c) {
+bool is_teal(const volume::Rgb& c) {
   return c[1] > 150 && c[2] > 140 && c[0] < 130;
 }
-bool is_orange(const Rgb& c) {
+bool is_orange(const volume::Rgb& c) {
   return c[0] > 130 && c[0] > c[1] + 50 && c[1] > c[2] + 10 && c[1] > 60;
 }
-bool is_magenta(const Rgb& c) {
+bool is_magenta(const volume::Rgb& c) {
   return c[0] > 200 && c[2] > 200 && c[1] < 60;
 }
 
 TEST_F(PatientSceneTest, AnteriorViewHasPatientsRightOnTheLeftAndHeadUpAtEveryDetail) {
   for (const Detail& detail : {DetailPolicy::full(), DetailPolicy::moving(0), DetailPolicy::moving(2)}) {
-    const RgbImage image = draw(detail);
+    const volume::RgbImage image = draw(detail);
     EXPECT_LT(middle_of(image, is_reddish).x(), 60.0);
     EXPECT_NEAR(middle_of(image, is_reddish).y(), 80.0, 4.0);
     EXPECT_LT(middle_of(image, is_greenish).y(), 60.0);
@@ -100,7 +101,7 @@ TEST_F(PatientSceneTest, AShotIsSeenUntilThereIsNone) {
   scene->apply_preset(StructurePreset::kBones);
   const int before = count_of(draw(), is_orange);
   scene->set_shot(Segment{{-60, 0, -50}, {0, 0, -50}}, Segment{{10, 0, -50}, {60, 0, -50}});
-  const RgbImage image = draw();
+  const volume::RgbImage image = draw();
   EXPECT_GT(count_of(image, is_orange), before + 20);
   EXPECT_GT(count_of(image, is_bright), 20);
   scene->set_shot({}, {});
@@ -116,7 +117,7 @@ TEST_F(PatientSceneTest, ThinNeedleIsStillSeenFromAfar) {
 
 TEST_F(PatientSceneTest, UltrasoundPictureHangsInItsPlaneAndIsClearOutsideOfTheFan) {
   scene->apply_preset(StructurePreset::kBones);
-  const RgbImage picture(10, 10, {255, 0, 255});
+  const volume::RgbImage picture(10, 10, {255, 0, 255});
   std::vector<std::uint8_t> alpha(100, 255);
   const std::array<Vec3, 3> corners_P = {Vec3(-50, -110, 50), Vec3(50, -110, 50), Vec3(-50, -110, -50)};
   scene->set_ultrasound(picture, alpha, corners_P);
@@ -124,7 +125,7 @@ TEST_F(PatientSceneTest, UltrasoundPictureHangsInItsPlaneAndIsClearOutsideOfTheF
   EXPECT_GT(whole, 3000);
   std::fill(alpha.begin(), alpha.begin() + 50, std::uint8_t{0});  // the upper half
   scene->set_ultrasound(picture, alpha, corners_P);
-  const RgbImage half = draw();
+  const volume::RgbImage half = draw();
   EXPECT_NEAR(count_of(half, is_magenta), 0.5 * whole, 0.08 * whole);
   EXPECT_GT(middle_of(half, is_magenta).y(), 90.0);
   scene->hide_ultrasound();
@@ -141,24 +142,24 @@ TEST_F(PatientSceneTest, GuidanceIsShownAndHidden) {
 TEST_F(PatientSceneTest, GuidanceWithoutThePathIsTargetAndEntryZone) {
   scene->apply_preset(StructurePreset::kBones);  // there are none: nothing hides the marks
   scene->set_path(Segment{{60, -95, -50}, {20, 0, -50}}, 15.0);
-  const RgbImage guided = draw();
+  const volume::RgbImage guided = draw();
   scene->set_guidance(Guidance::kTarget);
-  const RgbImage assisted = draw();
+  const volume::RgbImage assisted = draw();
   EXPECT_GT(count_of(guided, is_orange), 5);
   EXPECT_NEAR(count_of(assisted, is_orange), count_of(guided, is_orange), 3);
   EXPECT_GT(count_of(assisted, is_teal), 20);
   EXPECT_LT(count_of(assisted, is_teal), count_of(guided, is_teal) - 20);
   scene->set_guidance(Guidance::kNone);
-  const RgbImage exam = draw();
+  const volume::RgbImage exam = draw();
   EXPECT_EQ(count_of(exam, is_orange) + count_of(exam, is_teal), 0);
 }
 
 TEST_F(PatientSceneTest, NoGuidanceWithholdsLesionsWhateverIsSet) {
-  VirtualPatient sick = *patient;
+  anatomy::VirtualPatient sick = *patient;
   sick.label_table.labels = {{1, "right", "kidney", kRed}, {2, "upper", "liver_lesion", kGreen}};
   scene->set_guidance(Guidance::kNone);
-  scene->show_patient(std::make_shared<const VirtualPatient>(std::move(sick)),
-                      std::make_shared<const std::vector<NamedMesh>>(two_organs().meshes));
+  scene->show_patient(std::make_shared<const anatomy::VirtualPatient>(std::move(sick)),
+                      std::make_shared<const std::vector<anatomy::NamedMesh>>(two_organs().meshes));
   scene->set_camera(CameraPreset::kAnterior);
   scene->finish_loading();
   const auto withheld = [&] {
@@ -194,19 +195,19 @@ TEST_F(PatientSceneTest, EntryZoneLiesAboutItsOwnCentre) {
 
 TEST_F(PatientSceneTest, LandmarksAreShownWhenAsked) {
   scene->apply_preset(StructurePreset::kBones);
-  const RgbImage without = draw();
+  const volume::RgbImage without = draw();
   scene->set_landmarks_visible(true);
-  const RgbImage with = draw();
+  const volume::RgbImage with = draw();
   EXPECT_NE(with.pixels, without.pixels);
 }
 
 TEST_F(PatientSceneTest, LandmarksAreThoseThatWereSetLast) {
   scene->apply_preset(StructurePreset::kBones);
   scene->set_landmarks_visible(true);
-  const RgbImage own = draw();
+  const volume::RgbImage own = draw();
   scene->set_landmarks({{"xiphoid process", {0, -100, 60}}, {"umbilicus", {0, -100, 0}}});
   EXPECT_TRUE(scene->has_changed());
-  const RgbImage others = draw();
+  const volume::RgbImage others = draw();
   EXPECT_NE(others.pixels, own.pixels);
   scene->set_landmarks(patient->landmarks);
   EXPECT_EQ(draw().pixels, own.pixels);
@@ -230,15 +231,15 @@ TEST_F(PatientSceneTest, ABreakGivesUpTheFrame) {
 }
 
 TEST_F(PatientSceneTest, MirroredPictureIsTheFlippedOne) {
-  const RgbImage image = draw();
+  const volume::RgbImage image = draw();
   StereoOptions options;
   options.is_mirrored_left_right = true;
   scene->set_stereo(options);
-  const RgbImage flipped = draw();
+  const volume::RgbImage flipped = draw();
   for (int column = 0; column < kSize; ++column) EXPECT_EQ(image.at(column, 80), flipped.at(kSize - 1 - column, 80));
   options.is_mirrored_up_down = true;
   scene->set_stereo(options);
-  const RgbImage turned = draw();
+  const volume::RgbImage turned = draw();
   for (int row = 0; row < kSize; ++row) EXPECT_EQ(image.at(100, row), turned.at(kSize - 1 - 100, kSize - 1 - row));
 }
 
@@ -279,11 +280,11 @@ TEST_F(PatientSceneTest, AnaglyphSplitsTheEyesIntoRedAndCyan) {
   options.eye_angle_deg = 6.0;
   scene->set_stereo(options);
   // A tinted pixel is one that only one eye's picture lights: along the outline of the skin.
-  const auto is_tinted = [](const Rgb& c) { return std::abs(c[0] - c[1]) > 60; };
-  const RgbImage anaglyph = draw();
+  const auto is_tinted = [](const volume::Rgb& c) { return std::abs(c[0] - c[1]) > 60; };
+  const volume::RgbImage anaglyph = draw();
   EXPECT_GT(count_of(anaglyph, is_tinted), 20);
   scene->set_stereo({});
-  const RgbImage mono = draw();
+  const volume::RgbImage mono = draw();
   EXPECT_EQ(count_of(mono, is_tinted), 0);
 }
 
@@ -291,7 +292,7 @@ TEST_F(PatientSceneTest, SideBySideShowsTheOrganOnceForEachEye) {
   StereoOptions options;
   options.mode = StereoMode::kSideBySide;
   scene->set_stereo(options);
-  const RgbImage image = draw();
+  const volume::RgbImage image = draw();
   int left = 0, right = 0;
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
@@ -317,10 +318,10 @@ TEST_F(PatientSceneTest, EvenRowsOfTheScreenAreTheLeftEyesHoweverThePictureStand
   const auto left_lead_px = [&](int first_row) {
     scene->set_stereo(options);
     scene->set_first_row(first_row);
-    RgbImage of_eye[2] = {draw(), {}};
+    volume::RgbImage of_eye[2] = {draw(), {}};
     of_eye[1] = of_eye[0];
     for (int row = 0; row < kSize; ++row) {
-      RgbImage& other = of_eye[(first_row + row + 1) % 2];
+      volume::RgbImage& other = of_eye[(first_row + row + 1) % 2];
       for (int column = 0; column < kSize; ++column) other.at(column, row) = {0, 0, 0};
     }
     return middle_of(of_eye[0], is_bright).x() - middle_of(of_eye[1], is_bright).x();
@@ -341,4 +342,4 @@ TEST_F(PatientSceneTest, SoftwareRendererIsKnownAsSuch) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::scene

@@ -7,7 +7,7 @@
 
 #include "two_organs.h"
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 SceneOptions small(CameraPreset camera) {
@@ -99,4 +99,4 @@ TEST(RenderPatientArguments, WithoutXServerTheErrorSaysWhatToDo) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::scene

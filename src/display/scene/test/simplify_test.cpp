@@ -4,7 +4,7 @@
 
 #include "two_organs.h"
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 TEST(Simplify, LeavesFewerTrianglesOfTheSameShape) {
@@ -50,4 +50,4 @@ TEST(VertexNormals, OfABallPointOutward) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::scene

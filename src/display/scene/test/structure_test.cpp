@@ -2,23 +2,23 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::scene {
 namespace {
 
 constexpr std::uint8_t kLiver = 1, kLesion = 2, kFat = 3;
 
 /// 100 mm of liver in fat, with a lesion of 10 mm in its middle.
-VirtualPatient liver_in_fat() {
-  VirtualPatient patient;
-  GridGeometry g;
+anatomy::VirtualPatient liver_in_fat() {
+  anatomy::VirtualPatient patient;
+  volume::GridGeometry g;
   g.size = {80, 80, 80};
   g.spacing_mm = {2.0, 2.0, 2.0};
-  patient.labels = LabelGrid(g, kFat);
+  patient.labels = volume::LabelGrid(g, kFat);
   patient.label_table.labels = {
       {kLiver, "liver", "liver"}, {kLesion, "tumour", "liver_lesion"}, {kFat, "fat", "adipose"}};
   const Vec3 middle_P(80, 80, 80);
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
-    const Index3 ijk = g.index_of(n);
+    const volume::Index3 ijk = g.index_of(n);
     const double away_mm =
         (g.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])}) - middle_P)
             .norm();
@@ -49,4 +49,4 @@ TEST(Structure, TheTargetPresetShowsTheOrganAroundAPlaceThatHasNoStructure) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::scene

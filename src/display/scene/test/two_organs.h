@@ -5,10 +5,10 @@
 
 #include "anatomy/patient.h"
 
-namespace trocar {
+namespace trocar::scene {
 
-inline constexpr Rgb kRed = {220, 30, 30};
-inline constexpr Rgb kGreen = {30, 200, 60};
+inline constexpr volume::Rgb kRed = {220, 30, 30};
+inline constexpr volume::Rgb kGreen = {30, 200, 60};
 
 /// A closed ball of latitude and longitude triangles, facing outward.
 inline TriangleMesh ball(const Vec3& center_P, double radius_mm) {
@@ -35,8 +35,8 @@ inline TriangleMesh ball(const Vec3& center_P, double radius_mm) {
 
 /// A red organ on the patient's right and a green one towards the head, in a skin.
 struct Scene {
-  VirtualPatient patient;
-  std::vector<NamedMesh> meshes;
+  anatomy::VirtualPatient patient;
+  std::vector<anatomy::NamedMesh> meshes;
 };
 
 inline Scene two_organs() {
@@ -47,19 +47,19 @@ inline Scene two_organs() {
   return scene;
 }
 
-inline bool is_reddish(const Rgb& c) {
+inline bool is_reddish(const volume::Rgb& c) {
   return c[0] > 70 && c[0] > 2 * c[1] && c[0] > 2 * c[2];
 }
-inline bool is_greenish(const Rgb& c) {
+inline bool is_greenish(const volume::Rgb& c) {
   return c[1] > 60 && 2 * c[1] > 3 * c[0] && 2 * c[1] > 3 * c[2];
 }
 
-inline bool is_bluish(const Rgb& c) {
+inline bool is_bluish(const volume::Rgb& c) {
   return c[2] > 90 && c[2] > c[1] && 2 * c[2] > 5 * c[0];
 }
 
 /// Mean position of the pixels that pass, in pixels; NaN when none does.
-inline Eigen::Vector2d middle_of(const RgbImage& image, bool (*passes)(const Rgb&)) {
+inline Eigen::Vector2d middle_of(const volume::RgbImage& image, bool (*passes)(const volume::Rgb&)) {
   Eigen::Vector2d sum(0, 0);
   int count = 0;
   for (int row = 0; row < image.rows; ++row) {
@@ -72,10 +72,10 @@ inline Eigen::Vector2d middle_of(const RgbImage& image, bool (*passes)(const Rgb
   return sum / count;
 }
 
-inline int count_of(const RgbImage& image, bool (*passes)(const Rgb&)) {
+inline int count_of(const volume::RgbImage& image, bool (*passes)(const volume::Rgb&)) {
   int count = 0;
-  for (const Rgb& pixel : image.pixels) count += passes(pixel) ? 1 : 0;
+  for (const volume::Rgb& pixel : image.pixels) count += passes(pixel) ? 1 : 0;
   return count;
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

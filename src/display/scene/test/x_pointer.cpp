@@ -3,7 +3,7 @@
 // Xlib's macros (Status, Success) spoil other headers: nothing else is included here.
 #include <X11/Xlib.h>
 
-namespace trocar {
+namespace trocar::scene {
 
 void move_pointer(int x, int y) {
   Display* display = XOpenDisplay(nullptr);
@@ -12,4 +12,4 @@ void move_pointer(int x, int y) {
   XCloseDisplay(display);
 }
 
-}  // namespace trocar
+}  // namespace trocar::scene

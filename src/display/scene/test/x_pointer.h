@@ -1,8 +1,8 @@
 #pragma once
 
-namespace trocar {
+namespace trocar::scene {
 
 /// Puts the X server's pointer at a place of the screen, as a hand does.
 void move_pointer(int x, int y);
 
-}  // namespace trocar
+}  // namespace trocar::scene

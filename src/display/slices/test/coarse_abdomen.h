@@ -2,12 +2,12 @@
 
 #include "anatomy/phantom/phantom.h"
 
-namespace trocar {
+namespace trocar::slices {
 
 /// The embedded abdomen on a grid coarse enough to be made in a moment.
-inline const VirtualPatient& coarse_abdomen() {
-  static const VirtualPatient patient = generate_phantom("abdomen", 1, {{90, 72, 64}}).value();
+inline const anatomy::VirtualPatient& coarse_abdomen() {
+  static const anatomy::VirtualPatient patient = anatomy::generate_phantom("abdomen", 1, {{90, 72, 64}}).value();
   return patient;
 }
 
-}  // namespace trocar
+}  // namespace trocar::slices

@@ -7,7 +7,7 @@
 #include "core/testing/allocation_guard.inc.h"
 #include "slices/slice_geometry.h"
 
-namespace trocar {
+namespace trocar::slices {
 namespace {
 
 SliceGeometry view_of(const Vec3& center_P, const SliceAxes& axes) {
@@ -20,8 +20,8 @@ SliceGeometry view_of(const Vec3& center_P, const SliceAxes& axes) {
 }
 
 /// The middle of all voxels of a label.
-Vec3 middle_of(const VirtualPatient& patient, std::string_view name) {
-  const Label* label = patient.label_table.find(name);
+Vec3 middle_of(const anatomy::VirtualPatient& patient, std::string_view name) {
+  const anatomy::Label* label = patient.label_table.find(name);
   Vec3 sum = Vec3::Zero();
   double count = 0.0;
   for (std::size_t n = 0; label != nullptr && n < patient.labels.voxels.size(); ++n) {
@@ -39,9 +39,9 @@ TEST(PaintSlice, ShowsTheLiverOnThePicturesLeft) {
   SliceGeometry at_liver = view;
   at_liver.center_P.z() = liver_P.z();
   SliceBuffers buffers;
-  RgbImage picture;
+  volume::RgbImage picture;
   paint_slice(coarse_abdomen(), at_liver.plane(), {{}, 1.0, false}, buffers, picture);
-  const Rgb liver = coarse_abdomen().label_table.find("liver")->color;
+  const volume::Rgb liver = coarse_abdomen().label_table.find("liver")->color;
   double sum_u = 0.0;
   double count = 0.0;
   for (int v = 0; v < picture.rows; ++v)
@@ -55,14 +55,14 @@ TEST(PaintSlice, LaysColoursOverGrayByTheirOpacity) {
   const Vec3 liver_P = middle_of(coarse_abdomen(), "liver");
   const SliceGeometry view = view_of(liver_P, needle_axes(Vec3(0.5, 0.8, 0.3).normalized(), NeedlePlane::kAlong));
   SliceBuffers buffers;
-  RgbImage plain;
+  volume::RgbImage plain;
   paint_slice(coarse_abdomen(), view.plane(), {{}, 0.0, false}, buffers, plain);
   for (const double opacity : {0.25, 0.5, 1.0}) {
-    RgbImage picture;
+    volume::RgbImage picture;
     paint_slice(coarse_abdomen(), view.plane(), {{}, opacity, false}, buffers, picture);
     for (int v = 0; v < picture.rows; v += 3)
       for (int u = 0; u < picture.columns; u += 3) {
-        const Label* label = find_label(coarse_abdomen(), view.to_P({u, v}));
+        const anatomy::Label* label = anatomy::find_label(coarse_abdomen(), view.to_P({u, v}));
         const bool is_ground = label == nullptr || label->tissue == "adipose" || label->tissue == "muscle";
         for (std::size_t c = 0; c < 3; ++c) {
           const double below = plain.at(u, v)[c];
@@ -76,15 +76,15 @@ TEST(PaintSlice, LaysColoursOverGrayByTheirOpacity) {
 TEST(PaintSlice, OutlinesStructuresInFullColour) {
   const SliceGeometry view = view_of(middle_of(coarse_abdomen(), "liver"), slice_axes(SliceOrientation::kCoronal));
   SliceBuffers buffers;
-  RgbImage picture;
+  volume::RgbImage picture;
   paint_slice(coarse_abdomen(), view.plane(), {{}, 0.0, true}, buffers, picture);
-  const Rgb liver = coarse_abdomen().label_table.find("liver")->color;
+  const volume::Rgb liver = coarse_abdomen().label_table.find("liver")->color;
   int outlined = 0;
   int inside = 0;
   for (int v = 1; v + 1 < picture.rows; ++v)
     for (int u = 1; u + 1 < picture.columns; ++u) {
       const auto is_liver = [&](int du, int dv) {
-        const Label* label = find_label(coarse_abdomen(), view.to_P({u + du, v + dv}));
+        const anatomy::Label* label = anatomy::find_label(coarse_abdomen(), view.to_P({u + du, v + dv}));
         return label != nullptr && label->name == "liver";
       };
       if (!is_liver(0, 0)) continue;
@@ -97,16 +97,16 @@ TEST(PaintSlice, OutlinesStructuresInFullColour) {
 }
 
 TEST(PaintSlice, PaintsLesionsAsTheirOrganWhereTheyAreToBeFound) {
-  const Label& lesion = *coarse_abdomen().label_table.find("liver_lesion_1");
+  const anatomy::Label& lesion = *coarse_abdomen().label_table.find("liver_lesion_1");
   const SliceGeometry view = view_of(middle_of(coarse_abdomen(), lesion.name), slice_axes(SliceOrientation::kAxial));
   const auto painted = [&](const SliceStyle& style) {
     SliceBuffers buffers;
-    RgbImage picture;
+    volume::RgbImage picture;
     paint_slice(coarse_abdomen(), view.plane(), style, buffers, picture);
     return picture;
   };
-  const RgbImage open = painted({{}, 1.0, true}), exam = painted({{}, 1.0, true, true});
-  const Rgb liver = coarse_abdomen().label_table.find("liver")->color;
+  const volume::RgbImage open = painted({{}, 1.0, true}), exam = painted({{}, 1.0, true, true});
+  const volume::Rgb liver = coarse_abdomen().label_table.find("liver")->color;
   int lesions = 0;
   for (std::size_t n = 0; n < open.pixels.size(); ++n) {
     if (open.pixels[n] == lesion.color) ++lesions;
@@ -118,7 +118,7 @@ TEST(PaintSlice, PaintsLesionsAsTheirOrganWhereTheyAreToBeFound) {
 TEST(PaintSlice, AllocatesNothingAfterTheFirstPicture) {
   SliceGeometry view = view_of(middle_of(coarse_abdomen(), "liver"), slice_axes(SliceOrientation::kAxial));
   SliceBuffers buffers;
-  RgbImage picture;
+  volume::RgbImage picture;
   paint_slice(coarse_abdomen(), view.plane(), {}, buffers, picture);
   const testing::AllocationGuard guard;
   for (int n = 0; n < 5; ++n) {
@@ -131,11 +131,11 @@ TEST(PaintSlice, AllocatesNothingAfterTheFirstPicture) {
 
 TEST(PaintSlice, StandsInAirFarFromThePatient) {
   SliceBuffers buffers;
-  RgbImage picture;
+  volume::RgbImage picture;
   const SliceGeometry view = view_of({1e5, 0, 0}, slice_axes(SliceOrientation::kSagittal));
   paint_slice(coarse_abdomen(), view.plane(), {}, buffers, picture);
-  EXPECT_EQ(picture.pixels, std::vector<Rgb>(picture.pixels.size(), Rgb{0, 0, 0}));
+  EXPECT_EQ(picture.pixels, std::vector<volume::Rgb>(picture.pixels.size(), volume::Rgb{0, 0, 0}));
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::slices

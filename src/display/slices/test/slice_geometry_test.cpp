@@ -5,7 +5,7 @@
 #include "coarse_abdomen.h"
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::slices {
 namespace {
 
 Vec3 random_direction(Random& random) {
@@ -32,7 +32,7 @@ TEST(SliceGeometry, PixelsAndPointsAreExactInverses) {
     EXPECT_LT((geometry.to_pixel(p_P) - pixel).norm(), 1e-8);  // rounding of 300 mm / 0.05 mm
     EXPECT_NEAR(geometry.height_mm(p_P), 0.0, 1e-9);
     EXPECT_NEAR(geometry.height_mm(p_P - 7.0 * geometry.axes.normal_P()), -7.0, 1e-9);
-    const SlicePlane plane = geometry.plane();
+    const volume::SlicePlane plane = geometry.plane();
     EXPECT_LT((plane.origin_P + pixel.x() * plane.step_u_P + pixel.y() * plane.step_v_P - p_P).norm(), 1e-9);
   }
 }
@@ -95,11 +95,11 @@ TEST(FittingScale, ShowsTheWholeBox) {
 }
 
 TEST(BodyBox, LiesTightAroundTheBody) {
-  const VirtualPatient& patient = coarse_abdomen();
+  const anatomy::VirtualPatient& patient = coarse_abdomen();
   const Box box = body_box(patient);
   const Box whole = volume_box(patient.ct.geometry);
   EXPECT_LT(box.sizes().x(), whole.sizes().x());  // There is air around it.
-  const FloatGrid& distance = patient.skin_distance_mm;
+  const volume::FloatGrid& distance = patient.skin_distance_mm;
   for (std::size_t n = 0; n < distance.voxels.size(); n += 101) {
     if (distance.voxels[n] >= 0.0F) continue;
     const auto [i, j, k] = distance.geometry.index_of(n);
@@ -109,4 +109,4 @@ TEST(BodyBox, LiesTightAroundTheBody) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::slices

@@ -6,17 +6,17 @@
 
 #include "volume/bitmap_font.h"
 
-namespace trocar {
+namespace trocar::slices {
 namespace {
 
 /// A cube of air, 300 mm wide, with voxels of 3 mm; not one gray value of its pictures is white.
-VirtualPatient air() {
-  VirtualPatient patient;
-  GridGeometry geometry;
+anatomy::VirtualPatient air() {
+  anatomy::VirtualPatient patient;
+  volume::GridGeometry geometry;
   geometry.size = {100, 100, 100};
   geometry.spacing_mm = Vec3::Constant(3.0);
-  patient.ct = CtGrid(geometry, -1000);
-  patient.labels = LabelGrid(geometry, 0);
+  patient.ct = volume::CtGrid(geometry, -1000);
+  patient.labels = volume::LabelGrid(geometry, 0);
   return patient;
 }
 
@@ -28,15 +28,15 @@ SlicePicture with_legend(SliceOrientation orientation, int size_px = 600) {
   return picture;
 }
 
-bool is_white(const RgbImage& image, int column, int row) {
-  return image.at(column, row) == Rgb{255, 255, 255};
+bool is_white(const volume::RgbImage& image, int column, int row) {
+  return image.at(column, row) == volume::Rgb{255, 255, 255};
 }
 
 /// Whether a letter stands with its top left dot at a pixel.
-bool reads(const RgbImage& image, int column, int row, char letter, int dot) {
-  for (int r = 0; r < kGlyphHeight; ++r)
-    for (int c = 0; c < kGlyphWidth; ++c) {
-      const bool is_dot = (glyph_row(letter, r) >> (kGlyphWidth - 1 - c) & 1U) != 0;
+bool reads(const volume::RgbImage& image, int column, int row, char letter, int dot) {
+  for (int r = 0; r < volume::kGlyphHeight; ++r)
+    for (int c = 0; c < volume::kGlyphWidth; ++c) {
+      const bool is_dot = (volume::glyph_row(letter, r) >> (volume::kGlyphWidth - 1 - c) & 1U) != 0;
       if (is_white(image, column + c * dot, row + r * dot) != is_dot) return false;
     }
   return true;
@@ -45,8 +45,8 @@ bool reads(const RgbImage& image, int column, int row, char letter, int dot) {
 TEST(SliceLegend, NamesTheDirectionsOfEveryOrientation) {
   constexpr int kDot = 3;  // of a picture of 600 pixels
   constexpr int kMargin = 4 * kDot;
-  constexpr int kMiddle = (600 - kGlyphHeight * kDot) / 2;
-  constexpr int kCentre = (600 - kGlyphWidth * kDot) / 2;
+  constexpr int kMiddle = (600 - volume::kGlyphHeight * kDot) / 2;
+  constexpr int kCentre = (600 - volume::kGlyphWidth * kDot) / 2;
   const struct {
     SliceOrientation orientation;
     const char* letters;  // left, right, top, bottom
@@ -56,9 +56,10 @@ TEST(SliceLegend, NamesTheDirectionsOfEveryOrientation) {
     const SlicePicture picture = with_legend(orientation);
     ASSERT_EQ(picture.image.columns, 600);
     EXPECT_TRUE(reads(picture.image, kMargin, kMiddle, letters[0], kDot)) << letters;
-    EXPECT_TRUE(reads(picture.image, 600 - kMargin - kGlyphWidth * kDot, kMiddle, letters[1], kDot)) << letters;
+    EXPECT_TRUE(reads(picture.image, 600 - kMargin - volume::kGlyphWidth * kDot, kMiddle, letters[1], kDot)) << letters;
     EXPECT_TRUE(reads(picture.image, kCentre, kMargin, letters[2], kDot)) << letters;
-    EXPECT_TRUE(reads(picture.image, kCentre, 600 - kMargin - kGlyphHeight * kDot, letters[3], kDot)) << letters;
+    EXPECT_TRUE(reads(picture.image, kCentre, 600 - kMargin - volume::kGlyphHeight * kDot, letters[3], kDot))
+        << letters;
   }
 }
 
@@ -81,8 +82,8 @@ TEST(SliceLegend, ScaleBarHasARoundLength) {
 
 TEST(SliceLegend, SmallPicturesStayAsTheyAre) {
   const SlicePicture picture = with_legend(SliceOrientation::kAxial, 64);
-  for (const Rgb& pixel : picture.image.pixels) EXPECT_NE(pixel, (Rgb{255, 255, 255}));
+  for (const volume::Rgb& pixel : picture.image.pixels) EXPECT_NE(pixel, (volume::Rgb{255, 255, 255}));
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::slices

@@ -4,22 +4,22 @@
 
 #include <array>
 
-namespace trocar {
+namespace trocar::slices {
 namespace {
 
 /// A volume of air with one bright voxel at (left, back, head) of the origin, on a grid whose axes are permuted and
 /// mirrored against P.
-VirtualPatient marked_patient() {
-  VirtualPatient patient;
-  GridGeometry geometry;
+anatomy::VirtualPatient marked_patient() {
+  anatomy::VirtualPatient patient;
+  volume::GridGeometry geometry;
   geometry.size = {40, 60, 50};  // i: head, j: right, k: front
   geometry.spacing_mm = {2.0, 1.0, 1.5};
   geometry.R_PV.col(0) = Vec3(0, 0, 1);
   geometry.R_PV.col(1) = Vec3(-1, 0, 0);
   geometry.R_PV.col(2) = Vec3(0, -1, 0);
   geometry.origin_P = {30, 37, -40};
-  patient.ct = CtGrid(geometry, -1000);
-  patient.labels = LabelGrid(geometry, 0);
+  patient.ct = volume::CtGrid(geometry, -1000);
+  patient.labels = volume::LabelGrid(geometry, 0);
   patient.label_table.labels = {{1, "liver", "liver", {10, 200, 30}}, {2, "fat", "adipose", {1, 2, 3}}};
   const Vec3 index = geometry.to_index({20, 16, 10});
   patient.ct[{std::llround(index.x()), std::llround(index.y()), std::llround(index.z())}] = 3000;
@@ -28,7 +28,7 @@ VirtualPatient marked_patient() {
 constexpr std::array kOrientations{SliceOrientation::kAxial, SliceOrientation::kCoronal, SliceOrientation::kSagittal};
 
 /// Column and row of the brightest pixel.
-std::array<int, 2> brightest(const RgbImage& image) {
+std::array<int, 2> brightest(const volume::RgbImage& image) {
   std::array<int, 2> best{0, 0};
   for (int row = 0; row < image.rows; ++row)
     for (int column = 0; column < image.columns; ++column)
@@ -37,7 +37,7 @@ std::array<int, 2> brightest(const RgbImage& image) {
 }
 
 TEST(SlicePicture, ShowsLeftOnTheRightFrontUpAndHeadUp) {
-  const VirtualPatient patient = marked_patient();
+  const anatomy::VirtualPatient patient = marked_patient();
   const SliceOptions options{{0.0, 4000.0}, 0.0, false, 200, 0.0, Vec3::Zero()};
   // The mark is left of, behind and above the volume's middle at (0.5, 0.25, -1).
   constexpr std::array<std::array<bool, 2>, 3> kIsRightAndLower{{{true, true}, {true, false}, {true, false}}};
@@ -51,7 +51,7 @@ TEST(SlicePicture, ShowsLeftOnTheRightFrontUpAndHeadUp) {
 }
 
 TEST(SlicePicture, PixelsAndPointsAgree) {
-  const VirtualPatient patient = marked_patient();
+  const anatomy::VirtualPatient patient = marked_patient();
   for (const auto orientation : kOrientations) {
     SliceOptions options;
     options.size_px = 200;
@@ -69,7 +69,7 @@ TEST(SlicePicture, PixelsAndPointsAgree) {
 }
 
 TEST(SlicePicture, HasSquarePixelsOverTheWholeVolume) {
-  const VirtualPatient patient = marked_patient();
+  const anatomy::VirtualPatient patient = marked_patient();
   SliceOptions options;
   options.size_px = 240;
   const auto coronal = make_slice_picture(patient, SliceOrientation::kCoronal, Vec3::Zero(), options);
@@ -79,7 +79,7 @@ TEST(SlicePicture, HasSquarePixelsOverTheWholeVolume) {
 }
 
 TEST(SlicePicture, ShowsAFieldInsideTheVolume) {
-  const VirtualPatient patient = marked_patient();
+  const anatomy::VirtualPatient patient = marked_patient();
   SliceOptions options;
   options.size_px = 100;
   options.field_mm = 50.0;
@@ -92,7 +92,7 @@ TEST(SlicePicture, ShowsAFieldInsideTheVolume) {
 }
 
 TEST(SlicePicture, WindowsGreyValues) {
-  VirtualPatient patient = marked_patient();
+  anatomy::VirtualPatient patient = marked_patient();
   SliceOptions options;
   options.window = {40.0, 400.0};
   for (const auto& [hu, grey] : {std::pair{-200, 0}, {-160, 0}, {40, 128}, {240, 255}, {1000, 255}}) {
@@ -103,17 +103,17 @@ TEST(SlicePicture, WindowsGreyValues) {
 }
 
 TEST(SlicePicture, FillsAndOutlinesStructuresButNotTheirGround) {
-  VirtualPatient patient = marked_patient();
+  anatomy::VirtualPatient patient = marked_patient();
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n)
     patient.labels.voxels[n] = patient.labels.geometry.index_of(n)[1] < 30 ? 1 : 2;  // left half liver, right half fat
   SliceOptions options;
   options.label_opacity = 0.5;
   options.size_px = 120;
   const auto picture = make_slice_picture(patient, SliceOrientation::kAxial, Vec3::Zero(), options);
-  EXPECT_EQ(picture.image.at(20, 50), (Rgb{0, 0, 0}));      // Fat on air.
-  EXPECT_EQ(picture.image.at(80, 50), (Rgb{5, 100, 15}));   // Half of the liver's colour on air.
-  EXPECT_EQ(picture.image.at(48, 50), (Rgb{10, 200, 30}));  // Its border.
+  EXPECT_EQ(picture.image.at(20, 50), (volume::Rgb{0, 0, 0}));      // Fat on air.
+  EXPECT_EQ(picture.image.at(80, 50), (volume::Rgb{5, 100, 15}));   // Half of the liver's colour on air.
+  EXPECT_EQ(picture.image.at(48, 50), (volume::Rgb{10, 200, 30}));  // Its border.
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::slices

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace trocar {
+namespace trocar::slices {
 namespace {
 
 TEST(WindowLevel, MapsTheWindowOntoTheGrays) {
@@ -35,4 +35,4 @@ TEST(WindowLevel, KnowsItsPresetsByName) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::slices

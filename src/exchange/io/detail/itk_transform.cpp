@@ -11,7 +11,7 @@
 
 #include "io/image/detail/quiet.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
@@ -95,4 +95,4 @@ Status write_transform_with_itk(const AffineMap& map, const fs::path& path) {
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

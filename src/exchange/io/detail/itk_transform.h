@@ -6,7 +6,7 @@
 
 #include "core/files/input_file.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// x -> matrix * x + offset, LPS mm, row by row. Plain data: see ItkImage.
 struct AffineMap {
@@ -22,4 +22,4 @@ Result<AffineMap> read_transform_with_itk(const InputFile& file);
 /// The map as an ITK affine transform in text, the kind that 3D Slicer writes itself.
 Status write_transform_with_itk(const AffineMap& map, const std::filesystem::path& path);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace {
 
 constexpr std::string_view kWhite = " \t\r\n\f\v";
@@ -32,15 +32,15 @@ std::optional<std::vector<double>> find_numbers(std::string_view text, std::size
   return numbers;
 }
 
-Result<TrackedSequence::Matrix4> parse_matrix(std::string_view text) {
+Result<ultrasound::TrackedSequence::Matrix4> parse_matrix(std::string_view text) {
   const auto numbers = find_numbers(text, 16);
   if (!numbers || numbers->size() != 16)
     return fail("is not a matrix of 16 finite numbers", "matrix", "give 16 numbers, row by row");
-  TrackedSequence::Matrix4 matrix;
+  ultrasound::TrackedSequence::Matrix4 matrix;
   for (int n = 0; n < 16; ++n) matrix(n / 4, n % 4) = (*numbers)[static_cast<std::size_t>(n)];
   if (matrix(3, 0) != 0.0 || matrix(3, 1) != 0.0 || matrix(3, 2) != 0.0 || matrix(3, 3) != 1.0)
     return fail("is not an affine matrix: its last row is not 0 0 0 1", "matrix", "give an affine matrix");
   return matrix;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

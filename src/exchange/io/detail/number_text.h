@@ -8,7 +8,7 @@
 #include "core/result.h"
 #include "ultrasound/sweep/tracked_sequence.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 std::string_view trimmed(std::string_view text);
 
@@ -16,6 +16,6 @@ std::string_view trimmed(std::string_view text);
 std::optional<std::vector<double>> find_numbers(std::string_view text, std::size_t most);
 
 /// An affine matrix written row by row. The error (without a place) says what is wrong with it.
-Result<TrackedSequence::Matrix4> parse_matrix(std::string_view text);
+Result<ultrasound::TrackedSequence::Matrix4> parse_matrix(std::string_view text);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -2,7 +2,7 @@
 
 #include "io/dicom/detail/find_series.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace fs = std::filesystem;
 
 Result<std::vector<DicomSeriesInfo>> list_dicom_series(const fs::path& folder) {
@@ -18,4 +18,4 @@ Result<std::vector<DicomSeriesInfo>> list_dicom_series(const fs::path& folder) {
   return series;
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::io {
 
 /// A DICOM series in a folder or its sub-folders.
 struct DicomSeriesInfo {
@@ -21,4 +21,4 @@ struct DicomSeriesInfo {
 /// DICOM image, a damaged DICOM file.
 Result<std::vector<DicomSeriesInfo>> list_dicom_series(const std::filesystem::path& folder);
 
-}  // namespace trocar
+}  // namespace trocar::io

@@ -8,7 +8,7 @@
 #include "io/image/detail/read_grid.h"
 #include "io/image/detail/volume_file.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
@@ -34,7 +34,8 @@ Status check_fields(const ImageFields& fields, const fs::path& path) {
 }
 
 template <class T>
-Status write_grid(const Grid<T>& grid, detail::VoxelType type, const fs::path& path, const ImageFields& fields = {}) {
+Status write_grid(const volume::Grid<T>& grid, detail::VoxelType type, const fs::path& path,
+                  const ImageFields& fields = {}) {
   if (grid.empty()) return fail("there is no image to write", path.string(), "make an image first");
   TROCAR_TRY_STATUS(check_fields(fields, path));
   return write_atomically(path, [&](const fs::path& temporary) -> Status {
@@ -47,7 +48,7 @@ Status write_grid(const Grid<T>& grid, detail::VoxelType type, const fs::path& p
 
 }  // namespace
 
-Result<CtGrid> read_ct(const fs::path& path, const std::string& series) {
+Result<volume::CtGrid> read_ct(const fs::path& path, const std::string& series) {
   if (!series.empty()) {
     std::error_code error;
     if (!fs::is_directory(path, error))
@@ -57,35 +58,35 @@ Result<CtGrid> read_ct(const fs::path& path, const std::string& series) {
   return detail::read_grid<std::int16_t>(path, detail::convert_voxels);
 }
 
-Result<LabelGrid> read_labels(const fs::path& path) {
+Result<volume::LabelGrid> read_labels(const fs::path& path) {
   return detail::read_grid<std::uint8_t>(path, detail::convert_voxels);
 }
 
-Result<FloatGrid> read_float(const fs::path& path) {
+Result<volume::FloatGrid> read_float(const fs::path& path) {
   return detail::read_grid<float>(path, detail::convert_voxels);
 }
 
-Status write_image(const CtGrid& grid, const fs::path& path) {
+Status write_image(const volume::CtGrid& grid, const fs::path& path) {
   return write_grid(grid, detail::VoxelType::kInt16, path);
 }
 
-Status write_image(const LabelGrid& grid, const fs::path& path) {
+Status write_image(const volume::LabelGrid& grid, const fs::path& path) {
   return write_grid(grid, detail::VoxelType::kUInt8, path);
 }
 
-Status write_image(const FloatGrid& grid, const fs::path& path) {
+Status write_image(const volume::FloatGrid& grid, const fs::path& path) {
   return write_grid(grid, detail::VoxelType::kFloat, path);
 }
 
-Status write_image(const CtGrid& grid, const fs::path& path, const ImageFields& fields) {
+Status write_image(const volume::CtGrid& grid, const fs::path& path, const ImageFields& fields) {
   return write_grid(grid, detail::VoxelType::kInt16, path, fields);
 }
 
-Status write_image(const LabelGrid& grid, const fs::path& path, const ImageFields& fields) {
+Status write_image(const volume::LabelGrid& grid, const fs::path& path, const ImageFields& fields) {
   return write_grid(grid, detail::VoxelType::kUInt8, path, fields);
 }
 
-Status write_image(const FloatGrid& grid, const fs::path& path, const ImageFields& fields) {
+Status write_image(const volume::FloatGrid& grid, const fs::path& path, const ImageFields& fields) {
   return write_grid(grid, detail::VoxelType::kFloat, path, fields);
 }
 
@@ -103,4 +104,4 @@ Result<ImageFields> read_image_fields(const fs::path& path) {
   return fields;
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

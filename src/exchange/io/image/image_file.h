@@ -7,7 +7,7 @@
 #include "core/result.h"
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::io {
 
 /// Reads a 3D CT: NIfTI, NRRD, MHA/MHD, or one DICOM series of a folder and its sub-folders (uncompressed, RLE, JPEG,
 /// JPEG-LS, JPEG 2000; the slice step comes from the positions; files that are no DICOM image are ignored). Result in
@@ -17,31 +17,31 @@ namespace trocar {
 /// uneven slice steps, two slices in one place, gantry tilt above 0.3 degrees, multi-frame, colour or deflated files;
 /// one DICOM file by itself. `series` chooses among several DICOM series by number (list_dicom_series) or UID; when it
 /// is empty, the only series or the only CT series with more than one image is taken. Giving it for a file is an error.
-Result<CtGrid> read_ct(const std::filesystem::path& path, const std::string& series = {});
+Result<volume::CtGrid> read_ct(const std::filesystem::path& path, const std::string& series = {});
 
 /// Reads a label volume or a mask: the same formats, .seg.nrrd without overlaps and DICOM mask series included. Values
 /// are whole numbers 0..255, anything else is refused.
-Result<LabelGrid> read_labels(const std::filesystem::path& path);
+Result<volume::LabelGrid> read_labels(const std::filesystem::path& path);
 
 /// A float volume (distance fields, float NIfTI). NaN and infinity are refused.
-Result<FloatGrid> read_float(const std::filesystem::path& path);
+Result<volume::FloatGrid> read_float(const std::filesystem::path& path);
 
 /// Writes by ending: .nrrd .nii .nii.gz .mha; compressed where the format can; whole or not at all. Needs free
 /// disk space for the image without compression.
-Status write_image(const CtGrid& grid, const std::filesystem::path& path);
-Status write_image(const LabelGrid& grid, const std::filesystem::path& path);
-Status write_image(const FloatGrid& grid, const std::filesystem::path& path);
+Status write_image(const volume::CtGrid& grid, const std::filesystem::path& path);
+Status write_image(const volume::LabelGrid& grid, const std::filesystem::path& path);
+Status write_image(const volume::FloatGrid& grid, const std::filesystem::path& path);
 
 /// Texts in the header of an image: what a volume is beside its voxels, such as the fan of an ultrasound sweep.
 using ImageFields = std::map<std::string, std::string>;
 
 /// The same with fields, in .nrrd only ("key:=value"). Keys of letters, digits, "_", "-" and "."; values of printable
 /// text in one line, else exit status 2.
-Status write_image(const CtGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
-Status write_image(const LabelGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
-Status write_image(const FloatGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
+Status write_image(const volume::CtGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
+Status write_image(const volume::LabelGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
+Status write_image(const volume::FloatGrid& grid, const std::filesystem::path& path, const ImageFields& fields);
 
 /// The fields of a .nrrd; none for other formats. Values are whatever somebody wrote: check them.
 Result<ImageFields> read_image_fields(const std::filesystem::path& path);
 
-}  // namespace trocar
+}  // namespace trocar::io

@@ -2,12 +2,12 @@
 
 #include <png.h>
 
-#include "core/files/atomic_file.h"
 #include "core/check.h"
+#include "core/files/atomic_file.h"
 
-namespace trocar {
+namespace trocar::io {
 
-std::string encode_png(const RgbImage& image) {
+std::string encode_png(const volume::RgbImage& image) {
   TROCAR_CHECK(image.columns > 0 && image.rows > 0);
   TROCAR_CHECK(image.pixels.size() == static_cast<std::size_t>(image.columns) * static_cast<std::size_t>(image.rows));
   png_image png{};
@@ -23,8 +23,8 @@ std::string encode_png(const RgbImage& image) {
   return bytes;
 }
 
-Status write_png(const RgbImage& image, const std::filesystem::path& path) {
+Status write_png(const volume::RgbImage& image, const std::filesystem::path& path) {
   return write_file_atomically(path, encode_png(image));
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

@@ -6,10 +6,10 @@
 #include "core/result.h"
 #include "volume/image.h"
 
-namespace trocar {
+namespace trocar::io {
 
 /// The picture as PNG bytes.
-std::string encode_png(const RgbImage& image);
-Status write_png(const RgbImage& image, const std::filesystem::path& path);
+std::string encode_png(const volume::RgbImage& image);
+Status write_png(const volume::RgbImage& image, const std::filesystem::path& path);
 
-}  // namespace trocar
+}  // namespace trocar::io

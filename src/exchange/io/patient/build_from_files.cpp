@@ -8,7 +8,7 @@
 #include "io/image/image_file.h"
 #include "io/patient/label_sources.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 Status check_stop(const std::stop_token& stop, const PatientFiles& files) {
@@ -22,26 +22,26 @@ std::string last_name(const std::filesystem::path& path) {
   return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
-Result<VirtualPatient> build_from_files(const PatientFiles& files, std::vector<std::string>& warnings,
-                                        const Progress& progress, const std::stop_token& stop) {
+Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std::vector<std::string>& warnings,
+                                                 const Progress& progress, const std::stop_token& stop) {
   report(progress, "reading the CT", 0.0);
-  TROCAR_TRY(CtGrid ct, read_ct(files.ct, files.series));
-  if (files.rescale) TROCAR_TRY_STATUS(apply_rescale(*files.rescale, ct));
-  if (auto status = check_hounsfield(ct); !status)
+  TROCAR_TRY(volume::CtGrid ct, read_ct(files.ct, files.series));
+  if (files.rescale) TROCAR_TRY_STATUS(anatomy::apply_rescale(*files.rescale, ct));
+  if (auto status = anatomy::check_hounsfield(ct); !status)
     return fail(status.error().what, files.ct.string(), status.error().advice);
   TROCAR_TRY_STATUS(check_stop(stop, files));
   report(progress, "reading the labels", 0.2);
   TROCAR_TRY(auto sources, read_label_sources(files.labels, files.label_map));
   TROCAR_TRY_STATUS(check_stop(stop, files));
 
-  BuildOptions options;
+  anatomy::BuildOptions options;
   options.name = files.name;
   options.provenance = {fmt::format("built by trocar {}", kVersion), "CT: " + last_name(files.ct)};
   if (files.rescale)
     options.provenance.push_back(
         fmt::format("CT rescaled: HU = {} * stored + {}", files.rescale->slope, files.rescale->intercept));
   for (const std::filesystem::path& path : files.labels) options.provenance.push_back("labels: " + last_name(path));
-  return build_patient(ct, std::move(sources), options, warnings, part_of(progress, 0.4, 1.0));
+  return anatomy::build_patient(ct, std::move(sources), options, warnings, part_of(progress, 0.4, 1.0));
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

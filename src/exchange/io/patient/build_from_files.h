@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "anatomy/tissue/hounsfield.h"
 #include "anatomy/patient.h"
+#include "anatomy/tissue/hounsfield.h"
 #include "core/progress.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::io {
 
 /// The files of which a patient is made.
 struct PatientFiles {
@@ -20,16 +20,16 @@ struct PatientFiles {
   std::string label_map = "totalsegmentator";  ///< See read_label_sources.
   std::string name;                            ///< Of the patient.
   std::string series{};                        ///< Of several DICOM series, see read_ct.
-  std::optional<Rescale> rescale{};            ///< For a CT whose file lacks the scale of its numbers.
+  std::optional<anatomy::Rescale> rescale{};   ///< For a CT whose file lacks the scale of its numbers.
 };
 
 /// Reads the files and builds the patient; it says in its provenance of what, without paths of this machine. Between
 /// the steps, the CT, the labels, the patient, a stop is obeyed (error "stopped"). Errors: those of read_ct,
 /// read_label_sources and build_patient.
-Result<VirtualPatient> build_from_files(const PatientFiles& files, std::vector<std::string>& warnings,
-                                        const Progress& progress = {}, const std::stop_token& stop = {});
+Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std::vector<std::string>& warnings,
+                                                 const Progress& progress = {}, const std::stop_token& stop = {});
 
 /// The last part of a path, without a slash at its end: "liver.nii.gz", "dicom_folder".
 std::string last_name(const std::filesystem::path& path);
 
-}  // namespace trocar
+}  // namespace trocar::io

@@ -8,7 +8,7 @@
 #include "anatomy/label_table.h"
 #include "config/toml.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 constexpr int kMaxLabel = 255;
@@ -18,7 +18,7 @@ constexpr std::string_view kRest = "*";
 std::map<int, std::string> totalsegmentator_names() {
   std::map<int, std::string> names;
   for (int number = 1; number <= kMaxLabel; ++number)
-    if (const auto name = totalsegmentator_name(number)) names.emplace(number, *name);
+    if (const auto name = anatomy::totalsegmentator_name(number)) names.emplace(number, *name);
   return names;
 }
 
@@ -31,7 +31,7 @@ std::optional<int> number_of(std::string_view key) {
 }
 
 /// The list as texts; TOML may have numbers or texts in it.
-Result<std::vector<std::string>> ignored_labels(const TomlTable& file) {
+Result<std::vector<std::string>> ignored_labels(const config::TomlTable& file) {
   if (!file.has("ignore")) return std::vector<std::string>{};
   if (auto names = file.strings("ignore")) return names;
   const auto numbers = file.numbers("ignore", {1, kMaxLabel});
@@ -66,7 +66,7 @@ Result<LabelMap> LabelMap::load(const std::string& label_map) {
     map.by_number_ = totalsegmentator_names();
     return map;
   }
-  TROCAR_TRY(const TomlTable file, load_toml(label_map));
+  TROCAR_TRY(const config::TomlTable file, config::load_toml(label_map));
   TROCAR_TRY_STATUS(file.check_keys({"base", "ignore", "labels"}));
   TROCAR_TRY(const std::string base, file.string_or("base", ""));
   if (!base.empty() && base != kTotalSegmentator)
@@ -74,9 +74,9 @@ Result<LabelMap> LabelMap::load(const std::string& label_map) {
   if (!base.empty()) map.by_number_ = totalsegmentator_names();
   TROCAR_TRY(const std::vector<std::string> ignored, ignored_labels(file));
   for (const std::string& key : ignored)
-    TROCAR_TRY_STATUS(map.read_entry(key, std::string(kIgnoredStructure), file.where() + ": ignore"));
+    TROCAR_TRY_STATUS(map.read_entry(key, std::string(anatomy::kIgnoredStructure), file.where() + ": ignore"));
   if (!file.has("labels") && (!base.empty() || !ignored.empty())) return map;
-  TROCAR_TRY(const TomlTable table, file.table("labels"));
+  TROCAR_TRY(const config::TomlTable table, file.table("labels"));
   for (const std::string& key : table.keys()) {
     TROCAR_TRY(std::string name, table.string(key));
     TROCAR_TRY_STATUS(map.read_entry(key, std::move(name), table.where()));
@@ -91,7 +91,7 @@ std::optional<std::string> LabelMap::name_of(int number) const {
 
 std::string LabelMap::name_of(const std::string& name) const {
   if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
-  return rest_ && !find_known_structure(name) && !is_background_name(name) ? *rest_ : name;
+  return rest_ && !anatomy::find_known_structure(name) && !anatomy::is_background_name(name) ? *rest_ : name;
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

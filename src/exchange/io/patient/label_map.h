@@ -7,7 +7,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::io {
 
 /// Names that a user gives to the labels of segmentations.
 ///   base = "totalsegmentator"     names of numbers that [labels] does not have
@@ -37,4 +37,4 @@ class LabelMap {
   std::optional<std::string> rest_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::io

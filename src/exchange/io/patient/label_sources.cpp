@@ -14,7 +14,7 @@
 #include "io/image/detail/read_grid.h"
 #include "io/patient/label_map.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
@@ -30,7 +30,7 @@ std::string stem_of(const fs::path& path) {
 }
 
 /// The values other than 0 that occur.
-std::vector<int> values_in(const LabelGrid& labels) {
+std::vector<int> values_in(const volume::LabelGrid& labels) {
   std::array<bool, 256> occurs{};
   for (const std::uint8_t value : labels.voxels) occurs[value] = true;
   std::vector<int> values;
@@ -45,12 +45,13 @@ enum class Place { kNamedByUser, kInFolder };
 /// to show one structure: so it is where only the label map knows a name.
 bool is_mask(const std::vector<int>& values, const std::string& stem, const LabelMap& map, Place place) {
   if (values.size() != 1) return values.empty();
-  return place == Place::kInFolder || find_known_structure(stem) || !map.has_number(values.front());
+  return place == Place::kInFolder || anatomy::find_known_structure(stem) || !map.has_number(values.front());
 }
 
 /// Values without a name are left to build_patient, which lists those of all files.
-Result<LabelSource> name_labels(LabelGrid labels, const fs::path& path, const LabelMap& map, Place place) {
-  LabelSource source{path.string(), std::move(labels), {}};
+Result<anatomy::LabelSource> name_labels(volume::LabelGrid labels, const fs::path& path, const LabelMap& map,
+                                         Place place) {
+  anatomy::LabelSource source{path.string(), std::move(labels), {}};
   const std::vector<int> values = values_in(source.labels);
   const std::string stem = stem_of(path);
   if (is_mask(values, stem, map, place)) {
@@ -93,12 +94,12 @@ std::vector<Segment3dSlicer> segments_in(const detail::RawVolume& raw) {
 }
 
 /// One source a layer: segments that overlap lie in different layers.
-Result<std::vector<LabelSource>> read_segments(const detail::RawVolume& raw,
-                                               const std::vector<Segment3dSlicer>& segments, const LabelMap& map,
-                                               const fs::path& path) {
+Result<std::vector<anatomy::LabelSource>> read_segments(const detail::RawVolume& raw,
+                                                        const std::vector<Segment3dSlicer>& segments,
+                                                        const LabelMap& map, const fs::path& path) {
   const auto count = static_cast<std::size_t>(raw.components);
   const std::size_t voxel_bytes = detail::bytes_per_voxel(raw.type);
-  std::vector<LabelSource> sources;
+  std::vector<anatomy::LabelSource> sources;
   for (std::size_t layer = 0; layer < count; ++layer) {
     detail::RawVolume single;
     single.geometry = raw.geometry;
@@ -107,7 +108,7 @@ Result<std::vector<LabelSource>> read_segments(const detail::RawVolume& raw,
     for (std::size_t n = 0; n < raw.geometry.voxel_count(); ++n)
       std::copy_n(raw.bytes.get() + (n * count + layer) * voxel_bytes, voxel_bytes,
                   single.bytes.get() + n * voxel_bytes);
-    LabelSource source{path.string(), {}, {}};
+    anatomy::LabelSource source{path.string(), {}, {}};
     TROCAR_TRY(source.labels, detail::to_grid<std::uint8_t>(single, path.string(), detail::convert_voxels));
     for (const Segment3dSlicer& segment : segments)
       if (segment.layer == static_cast<int>(layer)) source.names.emplace_back(segment.value, map.name_of(segment.name));
@@ -120,13 +121,13 @@ Result<std::vector<LabelSource>> read_segments(const detail::RawVolume& raw,
   return sources;
 }
 
-Result<std::vector<LabelSource>> read_label_file(const fs::path& path, const LabelMap& map, Place place) {
+Result<std::vector<anatomy::LabelSource>> read_label_file(const fs::path& path, const LabelMap& map, Place place) {
   TROCAR_TRY_STATUS(detail::check_image_path(path));
   TROCAR_TRY(const detail::RawVolume raw, detail::read_volume_file(path));
   if (const auto segments = segments_in(raw); !segments.empty()) return read_segments(raw, segments, map, path);
-  TROCAR_TRY(LabelGrid labels, detail::to_grid<std::uint8_t>(raw, path.string(), detail::convert_voxels));
-  TROCAR_TRY(LabelSource source, name_labels(std::move(labels), path, map, place));
-  std::vector<LabelSource> sources;
+  TROCAR_TRY(volume::LabelGrid labels, detail::to_grid<std::uint8_t>(raw, path.string(), detail::convert_voxels));
+  TROCAR_TRY(anatomy::LabelSource source, name_labels(std::move(labels), path, map, place));
+  std::vector<anatomy::LabelSource> sources;
   sources.push_back(std::move(source));
   return sources;
 }
@@ -134,19 +135,19 @@ Result<std::vector<LabelSource>> read_label_file(const fs::path& path, const Lab
 // --- Folders of masks ------------------------------------------------------------------------------------------------
 
 /// An empty mask needs no voxels: a coarse grid over the same box says where it lies.
-LabelGrid empty_over(const GridGeometry& g) {
-  GridGeometry coarse = g;
+volume::LabelGrid empty_over(const volume::GridGeometry& g) {
+  volume::GridGeometry coarse = g;
   coarse.size = {2, 2, 2};
   for (int axis = 0; axis < 3; ++axis)
     coarse.spacing_mm[axis] *= 0.5 * static_cast<double>(g.size[static_cast<std::size_t>(axis)]);
   const Vec3 corner_P = g.to_mm(Vec3::Constant(-0.5));
   coarse.origin_P = corner_P + g.R_PV * (0.5 * coarse.spacing_mm);
-  return LabelGrid(coarse);
+  return volume::LabelGrid(coarse);
 }
 
 /// Paints a mask into a source on the same grid when no voxel is taken yet. A hundred masks that do not overlap take
 /// the memory of one.
-bool try_join(const LabelSource& mask, LabelSource& into) {
+bool try_join(const anatomy::LabelSource& mask, anatomy::LabelSource& into) {
   const auto value = static_cast<std::uint8_t>(into.names.size() + 1);
   if (value == 0 || mask.names.size() != 1 || !mask.labels.geometry.matches(into.labels.geometry)) return false;
   const std::vector<std::uint8_t>& from = mask.labels.voxels;
@@ -163,8 +164,8 @@ bool try_join(const LabelSource& mask, LabelSource& into) {
 /// Collects the masks of a folder.
 class MaskFolder {
  public:
-  void add(LabelSource source) {
-    if (source.names.size() == 1 && source.names.front().second == kIgnoredStructure) return;
+  void add(anatomy::LabelSource source) {
+    if (source.names.size() == 1 && source.names.front().second == anatomy::kIgnoredStructure) return;
     if (source.names.size() != 1) {
       others_.push_back(std::move(source));
       return;
@@ -174,20 +175,21 @@ class MaskFolder {
       others_.push_back(std::move(source));
       return;
     }
-    if (std::any_of(joined_.begin(), joined_.end(), [&](LabelSource& into) { return try_join(source, into); })) return;
+    if (std::any_of(joined_.begin(), joined_.end(), [&](anatomy::LabelSource& into) { return try_join(source, into); }))
+      return;
     for (std::uint8_t& voxel : source.labels.voxels) voxel = voxel != 0 ? 1 : 0;
     source.names.front().first = 1;
     joined_.push_back(std::move(source));
   }
 
-  std::vector<LabelSource> take() {
+  std::vector<anatomy::LabelSource> take() {
     std::move(others_.begin(), others_.end(), std::back_inserter(joined_));
     return std::move(joined_);
   }
 
  private:
-  std::vector<LabelSource> joined_;
-  std::vector<LabelSource> others_;  ///< Empty masks and files of several labels.
+  std::vector<anatomy::LabelSource> joined_;
+  std::vector<anatomy::LabelSource> others_;  ///< Empty masks and files of several labels.
 };
 
 std::vector<fs::path> sorted_entries(const fs::path& folder, bool want_folders) {
@@ -202,28 +204,28 @@ std::vector<fs::path> sorted_entries(const fs::path& folder, bool want_folders) 
   return paths;
 }
 
-Result<std::vector<LabelSource>> read_mask_files(const std::vector<fs::path>& files, const LabelMap& map) {
+Result<std::vector<anatomy::LabelSource>> read_mask_files(const std::vector<fs::path>& files, const LabelMap& map) {
   MaskFolder folder;
   for (std::size_t begin = 0; begin < files.size(); begin += kFilesAtOnce) {
     const std::size_t count = std::min(kFilesAtOnce, files.size() - begin);
-    std::vector<Result<std::vector<LabelSource>>> read(count);
+    std::vector<Result<std::vector<anatomy::LabelSource>>> read(count);
     parallel_for(count, 1, [&](std::size_t first, std::size_t last) {
       for (std::size_t n = first; n < last; ++n) read[n] = read_label_file(files[begin + n], map, Place::kInFolder);
     });
     for (auto& result : read) {
-      TROCAR_TRY(std::vector<LabelSource> sources, std::move(result));
-      for (LabelSource& source : sources) folder.add(std::move(source));
+      TROCAR_TRY(std::vector<anatomy::LabelSource> sources, std::move(result));
+      for (anatomy::LabelSource& source : sources) folder.add(std::move(source));
     }
   }
   return folder.take();
 }
 
-Result<LabelSource> read_dicom_mask(const fs::path& folder, const LabelMap& map) {
-  TROCAR_TRY(MaskGrid mask, detail::read_dicom_folder<std::uint8_t>(folder, detail::convert_mask));
-  return LabelSource{folder.string(), std::move(mask), {{1, map.name_of(folder.filename().string())}}};
+Result<anatomy::LabelSource> read_dicom_mask(const fs::path& folder, const LabelMap& map) {
+  TROCAR_TRY(volume::MaskGrid mask, detail::read_dicom_folder<std::uint8_t>(folder, detail::convert_mask));
+  return anatomy::LabelSource{folder.string(), std::move(mask), {{1, map.name_of(folder.filename().string())}}};
 }
 
-Result<std::vector<LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map) {
+Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map) {
   std::vector<fs::path> files = sorted_entries(folder, false);
   std::erase_if(files, [](const fs::path& file) { return !detail::find_image_format(file); });
   if (!files.empty()) return read_mask_files(files, map);
@@ -232,14 +234,14 @@ Result<std::vector<LabelSource>> read_label_folder(const fs::path& folder, const
   // A path with a slash at its end has no file name.
   const fs::path self = fs::absolute(folder / ".").lexically_normal().parent_path();
   if (detail::has_dicom_images(self)) {
-    TROCAR_TRY(LabelSource mask, read_dicom_mask(self, map));
+    TROCAR_TRY(anatomy::LabelSource mask, read_dicom_mask(self, map));
     masks.add(std::move(mask));
     return masks.take();
   }
   bool any = false;
   for (const fs::path& series : sorted_entries(folder, true)) {
     if (!detail::has_dicom_images(series)) continue;
-    TROCAR_TRY(LabelSource mask, read_dicom_mask(series, map));
+    TROCAR_TRY(anatomy::LabelSource mask, read_dicom_mask(series, map));
     masks.add(std::move(mask));
     any = true;
   }
@@ -250,14 +252,15 @@ Result<std::vector<LabelSource>> read_label_folder(const fs::path& folder, const
 
 }  // namespace
 
-Result<std::vector<LabelSource>> read_label_sources(const std::vector<fs::path>& paths, const std::string& label_map) {
+Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<fs::path>& paths,
+                                                             const std::string& label_map) {
   TROCAR_TRY(const LabelMap map, LabelMap::load(label_map));
-  std::vector<LabelSource> all;
+  std::vector<anatomy::LabelSource> all;
   for (const fs::path& path : paths) {
     std::error_code error;
-    TROCAR_TRY(std::vector<LabelSource> sources, fs::is_directory(path, error)
-                                                     ? read_label_folder(path, map)
-                                                     : read_label_file(path, map, Place::kNamedByUser));
+    TROCAR_TRY(std::vector<anatomy::LabelSource> sources, fs::is_directory(path, error)
+                                                              ? read_label_folder(path, map)
+                                                              : read_label_file(path, map, Place::kNamedByUser));
     std::move(sources.begin(), sources.end(), std::back_inserter(all));
   }
   if (all.empty() && !paths.empty())
@@ -265,4 +268,4 @@ Result<std::vector<LabelSource>> read_label_sources(const std::vector<fs::path>&
   return all;
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

@@ -8,7 +8,7 @@
 #include "anatomy/build_patient.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::io {
 
 /// Reads the `--labels` of `patient build`: each a multi-label file (names from `label_map`, see LabelMap; a .seg.nrrd
 /// brings its own names), a single mask file (named after the file), a folder of mask files, or a folder of DICOM mask
@@ -17,7 +17,7 @@ namespace trocar {
 /// label map that has the value names it. Several values without a map and values above 255 are errors; a value that
 /// the map lacks comes without a name, which build_patient refuses. Masks of a folder that do not overlap share one
 /// source; an empty mask comes with a coarse grid over its box.
-Result<std::vector<LabelSource>> read_label_sources(const std::vector<std::filesystem::path>& paths,
-                                                    const std::string& label_map);
+Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<std::filesystem::path>& paths,
+                                                             const std::string& label_map);
 
-}  // namespace trocar
+}  // namespace trocar::io

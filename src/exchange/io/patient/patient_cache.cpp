@@ -6,11 +6,11 @@
 #include <span>
 
 #include "core/files/atomic_file.h"
-#include "core/hash.h"
 #include "core/files/unfinished_output.h"
+#include "core/hash.h"
 #include "io/patient/patient_folder.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -86,8 +86,8 @@ std::optional<fs::path> PatientCache::find_volumes(const PatientSource& source) 
   return is_usable(source) ? use(folder_of(source, false)) : std::nullopt;
 }
 
-Result<fs::path> PatientCache::keep(const PatientSource& source, const VirtualPatient& patient,
-                                    const std::vector<NamedMesh>& meshes) const {
+Result<fs::path> PatientCache::keep(const PatientSource& source, const anatomy::VirtualPatient& patient,
+                                    const std::vector<anatomy::NamedMesh>& meshes) const {
   if (!is_usable(source))
     return fail("the patient is not cached", source.folder_or_name, "name an embedded patient and a cache folder");
   std::error_code error;
@@ -109,4 +109,4 @@ void PatientCache::forget(const PatientSource& source) const noexcept {
   for (const bool has_surfaces : {true, false}) fs::remove_all(folder_of(source, has_surfaces), ignored);
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

@@ -9,7 +9,7 @@
 #include "core/result.h"
 #include "io/patient/patient_source.h"
 
-namespace trocar {
+namespace trocar::io {
 
 /// Embedded patients kept as patient folders, with their surfaces or without: loading takes a second, generating many.
 /// An entry belongs to one name, one seed and one build of the program, since another build may generate other
@@ -27,8 +27,8 @@ class PatientCache {
   /// The same, with or without surfaces.
   std::optional<std::filesystem::path> find_volumes(const PatientSource& source) const;
   /// Writes an entry; without meshes it has no surfaces. Errors: the disk; no cache; another process was faster.
-  Result<std::filesystem::path> keep(const PatientSource& source, const VirtualPatient& patient,
-                                     const std::vector<NamedMesh>& meshes) const;
+  Result<std::filesystem::path> keep(const PatientSource& source, const anatomy::VirtualPatient& patient,
+                                     const std::vector<anatomy::NamedMesh>& meshes) const;
   /// Removes damaged entries.
   void forget(const PatientSource& source) const noexcept;
 
@@ -38,4 +38,4 @@ class PatientCache {
   std::filesystem::path folder_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::io

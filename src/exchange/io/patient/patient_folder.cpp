@@ -8,18 +8,18 @@
 #include <cmath>
 #include <set>
 
-#include "core/files/atomic_file.h"
 #include "core/check.h"
+#include "core/files/atomic_file.h"
 #include "core/log.h"
 #include "core/parallel.h"
-#include "io/patient/detail/patient_toml.h"
 #include "io/image/detail/read_grid.h"
 #include "io/image/detail/volume_file.h"
 #include "io/image/image_file.h"
 #include "io/markups_file.h"
 #include "io/mesh_file.h"
+#include "io/patient/detail/patient_toml.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
@@ -33,8 +33,8 @@ constexpr const char* kBuildAgain = "build the patient again";
 constexpr float kDistanceUnit_mm = 0.01F;  ///< Of skin_distance.nrrd; beyond 327 mm it is clamped.
 constexpr std::size_t kGrain = std::size_t{1} << 18;
 
-CtGrid to_hundredths(const FloatGrid& distance_mm) {
-  CtGrid hundredths;
+volume::CtGrid to_hundredths(const volume::FloatGrid& distance_mm) {
+  volume::CtGrid hundredths;
   hundredths.geometry = distance_mm.geometry;
   hundredths.voxels.resize(distance_mm.voxels.size());
   parallel_for(distance_mm.voxels.size(), kGrain, [&](std::size_t first, std::size_t last) {
@@ -45,8 +45,8 @@ CtGrid to_hundredths(const FloatGrid& distance_mm) {
   return hundredths;
 }
 
-FloatGrid from_hundredths(const CtGrid& hundredths) {
-  FloatGrid distance_mm;
+volume::FloatGrid from_hundredths(const volume::CtGrid& hundredths) {
+  volume::FloatGrid distance_mm;
   distance_mm.geometry = hundredths.geometry;
   distance_mm.voxels.resize(hundredths.voxels.size());
   parallel_for(hundredths.voxels.size(), kGrain, [&](std::size_t first, std::size_t last) {
@@ -57,7 +57,7 @@ FloatGrid from_hundredths(const CtGrid& hundredths) {
 }
 
 /// Every label of the volume stands in the table.
-Status check_label_ids(const VirtualPatient& patient, const std::string& where) {
+Status check_label_ids(const anatomy::VirtualPatient& patient, const std::string& where) {
   std::array<bool, 256> occurs{};
   for (const std::uint8_t id : patient.labels.voxels) occurs[id] = true;
   for (std::size_t id = 1; id < occurs.size(); ++id)
@@ -67,8 +67,8 @@ Status check_label_ids(const VirtualPatient& patient, const std::string& where) 
   return {};
 }
 
-Status check_geometry(const VirtualPatient& patient, const std::string& where) {
-  const GridGeometry& g = patient.ct.geometry;
+Status check_geometry(const anatomy::VirtualPatient& patient, const std::string& where) {
+  const volume::GridGeometry& g = patient.ct.geometry;
   if (g.matches(patient.labels.geometry) && g.matches(patient.skin_distance_mm.geometry)) return {};
   return fail("CT, labels and skin distance do not lie on one grid", where, kBuildAgain);
 }
@@ -87,13 +87,13 @@ std::string mesh_file_name(const std::string& name, std::set<std::string>& taken
 }
 
 /// Distances pack badly and unpack slowly: plain.
-Status write_distance(const FloatGrid& distance_mm, const fs::path& path) {
-  const CtGrid hundredths = to_hundredths(distance_mm);
+Status write_distance(const volume::FloatGrid& distance_mm, const fs::path& path) {
+  const volume::CtGrid hundredths = to_hundredths(distance_mm);
   return detail::write_volume_file({detail::VoxelType::kInt16, std::as_bytes(std::span(hundredths.voxels))},
                                    hundredths.geometry, path, detail::Packing::kPlain);
 }
 
-Status write_volumes(const VirtualPatient& patient, const fs::path& folder) {
+Status write_volumes(const anatomy::VirtualPatient& patient, const fs::path& folder) {
   Status ct, labels, distance;
   parallel_invoke([&] { ct = write_image(patient.ct, folder / kCtFile); },
                   [&] { labels = write_image(patient.labels, folder / kLabelFile); },
@@ -103,14 +103,14 @@ Status write_volumes(const VirtualPatient& patient, const fs::path& folder) {
   return distance;
 }
 
-Status write_contents(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes, const fs::path& folder,
-                      const Progress& progress) {
+Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
+                      const fs::path& folder, const Progress& progress) {
   report(progress, "volumes", 0.0);
   TROCAR_TRY_STATUS(write_volumes(patient, folder));
-  detail::PatientDescription description{patient.name,          patient.description, patient.provenance,
-                                         hash_patient(patient), patient.label_table, {}};
+  detail::PatientDescription description{
+      patient.name, patient.description, patient.provenance, anatomy::hash_patient(patient), patient.label_table, {}};
   std::set<std::string> taken;
-  for (const NamedMesh& mesh : meshes) {
+  for (const anatomy::NamedMesh& mesh : meshes) {
     report(progress, "surfaces", 0.8 + 0.2 * static_cast<double>(taken.size()) / static_cast<double>(meshes.size()));
     description.meshes.push_back({mesh.name, mesh_file_name(mesh.name, taken)});
     TROCAR_TRY_STATUS(write_mesh(mesh.mesh_P, folder / description.meshes.back().file));
@@ -132,13 +132,13 @@ Result<detail::PatientDescription> load_description(const fs::path& folder) {
 }
 
 template <class T>
-Result<Grid<T>> read_volume(const fs::path& folder, const char* name, detail::Check check) {
+Result<volume::Grid<T>> read_volume(const fs::path& folder, const char* name, detail::Check check) {
   return detail::read_grid<T>(folder / name, detail::convert_voxels, check, folder);
 }
 
-Status load_volumes(const fs::path& folder, VirtualPatient& patient) {
-  Result<CtGrid> ct, distance;
-  Result<LabelGrid> labels;
+Status load_volumes(const fs::path& folder, anatomy::VirtualPatient& patient) {
+  Result<volume::CtGrid> ct, distance;
+  Result<volume::LabelGrid> labels;
   using detail::Check;  // The content hash shows afterwards whether CT and labels are whole.
   parallel_invoke([&] { ct = read_volume<std::int16_t>(folder, kCtFile, Check::kSize); },
                   [&] { labels = read_volume<std::uint8_t>(folder, kLabelFile, Check::kSize); },
@@ -156,12 +156,12 @@ Status load_volumes(const fs::path& folder, VirtualPatient& patient) {
 
 }  // namespace
 
-void round_skin_distance(VirtualPatient& patient) {
+void round_skin_distance(anatomy::VirtualPatient& patient) {
   patient.skin_distance_mm = from_hundredths(to_hundredths(patient.skin_distance_mm));
 }
 
-Status save_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes, const fs::path& folder,
-                    const Progress& progress, const std::vector<PatientExtra>& extras) {
+Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
+                    const fs::path& folder, const Progress& progress, const std::vector<PatientExtra>& extras) {
   TROCAR_TRY_STATUS(check_geometry(patient, folder.string()));
   TROCAR_TRY_STATUS(check_label_ids(patient, folder.string()));
   return write_folder_atomically(folder, [&](const fs::path& temporary) -> Status {
@@ -179,9 +179,9 @@ Result<PatientTitle> load_patient_title(const fs::path& folder) {
   return PatientTitle{description.name, description.description};
 }
 
-Result<VirtualPatient> load_patient(const fs::path& folder) {
+Result<anatomy::VirtualPatient> load_patient(const fs::path& folder) {
   TROCAR_TRY(detail::PatientDescription description, load_description(folder));
-  VirtualPatient patient;
+  anatomy::VirtualPatient patient;
   patient.name = std::move(description.name);
   patient.description = std::move(description.description);
   patient.provenance = std::move(description.provenance);
@@ -191,16 +191,16 @@ Result<VirtualPatient> load_patient(const fs::path& folder) {
   TROCAR_TRY_STATUS(check_label_ids(patient, folder.string()));
   TROCAR_TRY(patient.landmarks, read_landmarks(folder / kLandmarkFile, folder));
   TROCAR_TRY(patient.paths, read_paths(folder / kPathFile, folder));
-  patient.content_hash = hash_patient(patient);
+  patient.content_hash = anatomy::hash_patient(patient);
   log_info("loaded {}: {} labels, {:.1f} Mvoxel", folder.string(), patient.label_table.labels.size(),
            1e-6 * static_cast<double>(patient.labels.voxels.size()));
   if (patient.content_hash == description.content_hash) return patient;
   return fail("the patient's volumes or labels were changed after it was built", folder.string(), kBuildAgain);
 }
 
-Result<std::vector<NamedMesh>> load_patient_meshes(const fs::path& folder) {
+Result<std::vector<anatomy::NamedMesh>> load_patient_meshes(const fs::path& folder) {
   TROCAR_TRY(const detail::PatientDescription description, load_description(folder));
-  std::vector<NamedMesh> meshes;
+  std::vector<anatomy::NamedMesh> meshes;
   for (const detail::PatientMeshEntry& entry : description.meshes) {
     TROCAR_TRY(TriangleMesh mesh_P, read_mesh(folder / entry.file, folder));
     meshes.push_back({entry.name, std::move(mesh_P)});
@@ -208,4 +208,4 @@ Result<std::vector<NamedMesh>> load_patient_meshes(const fs::path& folder) {
   return meshes;
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

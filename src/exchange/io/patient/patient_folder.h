@@ -8,7 +8,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::io {
 
 inline constexpr int kPatientFormatVersion = 1;  ///< A folder of a newer version is refused.
 
@@ -21,19 +21,19 @@ struct PatientExtra {
 /// Writes a patient folder, whole or not at all: patient.toml, ct.nrrd, labels.nrrd, skin_distance.nrrd,
 /// meshes/NAME.vtp, landmarks.mrk.json, paths.mrk.json. An existing folder is never overwritten. The skin distance is
 /// kept in hundredths of a mm, up to 327 mm.
-Status save_patient(const VirtualPatient& patient, const std::vector<NamedMesh>& meshes,
+Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
                     const std::filesystem::path& folder, const Progress& progress = {},
                     const std::vector<PatientExtra>& extras = {});
 /// Reads it back without the meshes; volumes side by side. Errors: no patient folder, a newer version, a missing or
 /// damaged file, volumes on different grids, a label without a name, a content hash that does not fit.
-Result<VirtualPatient> load_patient(const std::filesystem::path& folder);
+Result<anatomy::VirtualPatient> load_patient(const std::filesystem::path& folder);
 /// What a list of patients shows; without the volumes. Errors: no patient folder, a newer version, a damaged file.
 struct PatientTitle {
   std::string name, description;
 };
 Result<PatientTitle> load_patient_title(const std::filesystem::path& folder);
 /// Rounds the skin distance as a patient folder keeps it, so that a patient and its saved copy give the same results.
-void round_skin_distance(VirtualPatient& patient);
-Result<std::vector<NamedMesh>> load_patient_meshes(const std::filesystem::path& folder);
+void round_skin_distance(anatomy::VirtualPatient& patient);
+Result<std::vector<anatomy::NamedMesh>> load_patient_meshes(const std::filesystem::path& folder);
 
-}  // namespace trocar
+}  // namespace trocar::io

@@ -10,7 +10,7 @@
 #include "io/patient/patient_folder.h"
 #include "surface/extract_surface.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 namespace fs = std::filesystem;
 
@@ -71,28 +71,29 @@ Result<std::string> find_recorded_patient(const std::string& recorded, const std
               "name it with --patient");
 }
 
-Result<VirtualPatient> open_patient(const PatientSource& source, const Progress& progress) {
+Result<anatomy::VirtualPatient> open_patient(const PatientSource& source, const Progress& progress) {
   if (is_path(source.folder_or_name)) return load_patient(source.folder_or_name);
   const PatientCache cache(source.cache_folder);
   if (const auto kept = cache.find_volumes(source)) {
     if (auto patient = load_patient(*kept)) return patient;
     cache.forget(source);
   }
-  TROCAR_TRY(VirtualPatient patient, generate_phantom(source.folder_or_name, source.seed, {}, progress));
+  TROCAR_TRY(anatomy::VirtualPatient patient,
+             anatomy::generate_phantom(source.folder_or_name, source.seed, {}, progress));
   round_skin_distance(patient);
   if (!source.cache_folder.empty()) log_if_failed(cache.keep(source, patient, {}));
   return patient;
 }
 
-Result<std::vector<NamedMesh>> open_meshes(const PatientSource& source, const VirtualPatient& patient,
-                                           const Progress& progress) {
+Result<std::vector<anatomy::NamedMesh>> open_meshes(const PatientSource& source, const anatomy::VirtualPatient& patient,
+                                                    const Progress& progress) {
   if (is_path(source.folder_or_name)) return load_patient_meshes(source.folder_or_name);
   const PatientCache cache(source.cache_folder);
   if (const auto kept = cache.find(source))
     if (auto meshes = load_patient_meshes(*kept)) return meshes;
-  auto meshes = extract_surfaces(patient, {}, progress);
+  auto meshes = surface::extract_surfaces(patient, {}, progress);
   if (!source.cache_folder.empty()) log_if_failed(cache.keep(source, patient, meshes));
   return meshes;
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

@@ -9,7 +9,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::io {
 
 /// How a command names its patient: a patient folder, or else an embedded patient by name.
 struct PatientSource {
@@ -31,9 +31,9 @@ Result<std::string> find_recorded_patient(const std::string& recorded, const std
 /// The patient behind a source. A folder wins over an embedded patient of the same name; a name that is neither is an
 /// error that lists the embedded patients (exit status 2). A patient is the same whether it comes from the cache or
 /// not.
-Result<VirtualPatient> open_patient(const PatientSource& source, const Progress& progress = {});
+Result<anatomy::VirtualPatient> open_patient(const PatientSource& source, const Progress& progress = {});
 /// Its surfaces: read from the folder, extracted from the labels of an embedded patient.
-Result<std::vector<NamedMesh>> open_meshes(const PatientSource& source, const VirtualPatient& patient,
-                                           const Progress& progress = {});
+Result<std::vector<anatomy::NamedMesh>> open_meshes(const PatientSource& source, const anatomy::VirtualPatient& patient,
+                                                    const Progress& progress = {});
 
-}  // namespace trocar
+}  // namespace trocar::io

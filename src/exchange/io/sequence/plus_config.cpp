@@ -14,7 +14,7 @@
 #include "io/detail/number_text.h"
 #include "io/sequence/detail/xml_elements.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
@@ -77,7 +77,7 @@ Status take_whole_number(const XmlElement& element, std::string_view name, int& 
   return {};
 }
 
-Status take_transform(const XmlElement& element, TrackedSequence::Transforms& transforms) {
+Status take_transform(const XmlElement& element, ultrasound::TrackedSequence::Transforms& transforms) {
   const auto from = find_attribute(element, "From"), to = find_attribute(element, "To");
   const auto matrix = find_attribute(element, "Matrix");
   if (!from || !to || !matrix || from->empty() || to->empty())
@@ -91,21 +91,22 @@ Status take_transform(const XmlElement& element, TrackedSequence::Transforms& tr
   return {};
 }
 
-Status take_rectangle(const XmlElement& element, FreehandOptions& options) {
+Status take_rectangle(const XmlElement& element, ultrasound::FreehandOptions& options) {
   TROCAR_TRY(const auto origin, numbers_of<2>(element, "ClipRectangleOrigin"));
   TROCAR_TRY(const auto size, numbers_of<2>(element, "ClipRectangleSize"));
   if (!origin || !size || (*size)[0] <= 0.0 || (*size)[1] <= 0.0) return {};  // PLUS: 0 0 is no clipping
   const auto pixels = [](double value) { return static_cast<int>(std::clamp(std::floor(value), -1e6, 1e6)); };
-  options.rectangle = ClipRectangle{pixels((*origin)[0]), pixels((*origin)[1]), pixels((*size)[0]), pixels((*size)[1])};
+  options.rectangle =
+      ultrasound::ClipRectangle{pixels((*origin)[0]), pixels((*origin)[1]), pixels((*size)[0]), pixels((*size)[1])};
   return {};
 }
 
-Status take_fan(const XmlElement& element, FreehandOptions& options) {
+Status take_fan(const XmlElement& element, ultrasound::FreehandOptions& options) {
   TROCAR_TRY(const auto angles_deg, numbers_of<2>(element, "FanAnglesDeg"));
   TROCAR_TRY(const auto origin_px, numbers_of<2>(element, "FanOriginPixel"));
   if (!angles_deg || !origin_px || (*angles_deg)[0] == (*angles_deg)[1]) return {};  // PLUS: 0 0 is no fan
   constexpr double kRadPerDegree = std::numbers::pi / 180.0;
-  ClipFan fan;
+  ultrasound::ClipFan fan;
   fan.origin_column = (*origin_px)[0];
   fan.origin_row = (*origin_px)[1];
   fan.first_angle_rad = (*angles_deg)[0] * kRadPerDegree;
@@ -124,13 +125,15 @@ void note_what_is_left_aside(const XmlElement& element, std::vector<std::string>
 }
 
 Status take_reconstruction(const XmlElement& element, PlusConfig& config, bool& is_filling) {
-  constexpr std::array<Choice<FreehandInterpolation>, 2> kInterpolations{
-      {{"NEAREST_NEIGHBOR", FreehandInterpolation::kNearest}, {"LINEAR", FreehandInterpolation::kLinear}}};
-  constexpr std::array<Choice<FreehandCompounding>, 3> kCompoundings{{{"MEAN", FreehandCompounding::kMean},
-                                                                      {"MAXIMUM", FreehandCompounding::kMaximum},
-                                                                      {"LATEST", FreehandCompounding::kLatest}}};
+  constexpr std::array<Choice<ultrasound::FreehandInterpolation>, 2> kInterpolations{
+      {{"NEAREST_NEIGHBOR", ultrasound::FreehandInterpolation::kNearest},
+       {"LINEAR", ultrasound::FreehandInterpolation::kLinear}}};
+  constexpr std::array<Choice<ultrasound::FreehandCompounding>, 3> kCompoundings{
+      {{"MEAN", ultrasound::FreehandCompounding::kMean},
+       {"MAXIMUM", ultrasound::FreehandCompounding::kMaximum},
+       {"LATEST", ultrasound::FreehandCompounding::kLatest}}};
   constexpr std::array<Choice<bool>, 2> kSwitch{{{"ON", true}, {"OFF", false}}};
-  FreehandOptions& options = config.reconstruction;
+  ultrasound::FreehandOptions& options = config.reconstruction;
   config.has_reconstruction = true;
   if (const auto name = find_attribute(element, "ImageCoordinateFrame")) options.image_frame = *name;
   if (const auto name = find_attribute(element, "ReferenceCoordinateFrame")) options.reference_frame = *name;
@@ -146,10 +149,10 @@ Status take_reconstruction(const XmlElement& element, PlusConfig& config, bool& 
 }
 
 Status take_hole_filling(const XmlElement& element, PlusConfig& config) {
-  using Kind = HoleFilling::Kind;
+  using Kind = ultrasound::HoleFilling::Kind;
   constexpr std::array<Choice<Kind>, 3> kKinds{
       {{"STICK", Kind::kStick}, {"NEAREST_NEIGHBOR", Kind::kNearest}, {"GAUSSIAN", Kind::kGaussian}}};
-  HoleFilling way;
+  ultrasound::HoleFilling way;
   TROCAR_TRY_STATUS(take_choice(element, "Type", kKinds, way.kind));
   TROCAR_TRY_STATUS(take_whole_number(element, "StickLengthLimit", way.stick_length_limit));
   TROCAR_TRY_STATUS(take_whole_number(element, "NumberOfSticksToUse", way.sticks));
@@ -189,4 +192,4 @@ Result<PlusConfig> read_plus_config(const fs::path& path) {
   return fail(config.error().what, path.string(), config.error().advice.empty() ? kNeeded : config.error().advice);
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

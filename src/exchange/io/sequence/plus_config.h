@@ -8,13 +8,13 @@
 #include "ultrasound/sweep/freehand_options.h"
 #include "ultrasound/sweep/tracked_sequence.h"
 
-namespace trocar {
+namespace trocar::io {
 
 /// What freehand reconstruction needs of a PLUS configuration.
 struct PlusConfig {
-  TrackedSequence::Transforms transforms;  ///< <CoordinateDefinitions>: "ImageToProbe" and so on, fixed.
-  bool has_reconstruction = false;         ///< There is a <VolumeReconstruction>; else `reconstruction` is the default.
-  FreehandOptions reconstruction;
+  ultrasound::TrackedSequence::Transforms transforms;  ///< <CoordinateDefinitions>: "ImageToProbe" and so on, fixed.
+  bool has_reconstruction = false;  ///< There is a <VolumeReconstruction>; else `reconstruction` is the default.
+  ultrasound::FreehandOptions reconstruction;
   std::vector<std::string> left_aside;  ///< What the file asks for and this program does not do; for a warning.
 };
 
@@ -22,4 +22,4 @@ struct PlusConfig {
 /// named), another document, a matrix or number that is none, an unknown name of a mode.
 Result<PlusConfig> read_plus_config(const std::filesystem::path& path);
 
-}  // namespace trocar
+}  // namespace trocar::io

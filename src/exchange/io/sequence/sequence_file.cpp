@@ -11,12 +11,12 @@
 #include "io/sequence/detail/sequence_header.h"
 #include "io/sequence/detail/sequence_pixels.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
 /// Turns all pictures to columns towards the marked side and rows away from the face.
-void turn_pictures(const detail::SequenceHeader& header, TrackedSequence& sequence) {
+void turn_pictures(const detail::SequenceHeader& header, ultrasound::TrackedSequence& sequence) {
   const auto columns = static_cast<std::ptrdiff_t>(sequence.columns);
   for (std::size_t frame = 0; frame < sequence.frames.size(); ++frame) {
     const auto first = sequence.pixels.begin() + static_cast<std::ptrdiff_t>(frame * sequence.frame_pixels());
@@ -32,7 +32,7 @@ bool is_transform_name(const std::string& name) {
   return name.find("To", 1) != std::string::npos && std::all_of(name.begin(), name.end(), is_word);
 }
 
-Status check(const TrackedSequence& sequence) {
+Status check(const ultrasound::TrackedSequence& sequence) {
   const bool is_whole = sequence.pixels.size() == sequence.frame_pixels() * sequence.frames.size();
   if (sequence.pixels.empty() || !is_whole)
     return fail("there is no sequence to write", "sequence", "record at least one frame");
@@ -52,7 +52,7 @@ Status check(const TrackedSequence& sequence) {
 
 }  // namespace
 
-Result<TrackedSequence> read_sequence(const fs::path& path) {
+Result<ultrasound::TrackedSequence> read_sequence(const fs::path& path) {
   TROCAR_TRY(InputFile file, InputFile::open(path, FileKind::kSequence));
   TROCAR_TRY(detail::SequenceHeader header, detail::read_sequence_header(file));
   if (!header.data_file.empty()) {
@@ -63,7 +63,7 @@ Result<TrackedSequence> read_sequence(const fs::path& path) {
   return std::move(header.sequence);
 }
 
-Status write_sequence(const TrackedSequence& sequence, const fs::path& path) {
+Status write_sequence(const ultrasound::TrackedSequence& sequence, const fs::path& path) {
   if (path.extension() != ".mha")
     return fail_usage("a sequence is written as .igs.mha", path.string(), "let the name end in .igs.mha");
   TROCAR_TRY_STATUS(check(sequence));
@@ -71,4 +71,4 @@ Status write_sequence(const TrackedSequence& sequence, const fs::path& path) {
   return write_file_atomically(path, detail::sequence_header_text(sequence, packed.size()) + packed);
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

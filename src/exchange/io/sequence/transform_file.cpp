@@ -15,7 +15,7 @@
 #include "core/files/input_file.h"
 #include "io/detail/itk_transform.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
@@ -131,4 +131,4 @@ Status write_transform(const Pose& X_AB, const fs::path& path, const TransformNo
   });
 }
 
-}  // namespace trocar
+}  // namespace trocar::io

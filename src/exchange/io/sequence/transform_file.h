@@ -7,7 +7,7 @@
 #include "core/result.h"
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::io {
 
 /// A rigid ITK transform (.tfm, LPS mm): points of the frame named first to the frame named second, so that X_PT as a
 /// file maps points of the tool T to P. Any linear ITK type is read, its centre of rotation worked in; written as an
@@ -19,4 +19,4 @@ Status write_transform(const Pose& X_AB, const std::filesystem::path& path, cons
 /// The notes of a file that write_transform wrote ("# trocar depth_mm = 150"); none in files of others.
 Result<TransformNotes> read_transform_notes(const std::filesystem::path& path);
 
-}  // namespace trocar
+}  // namespace trocar::io

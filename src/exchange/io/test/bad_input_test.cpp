@@ -2,12 +2,12 @@
 #include <cstdlib>
 
 #include "io/image/image_file.h"
-#include "io/patient/label_sources.h"
 #include "io/mesh_file.h"
-#include "io/test/test_support.h"
+#include "io/patient/label_sources.h"
 #include "io/sequence/transform_file.h"
+#include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::test_data;
@@ -21,7 +21,7 @@ std::vector<std::filesystem::path> files_below(const std::filesystem::path& fold
 }
 
 /// A volume that could be one, or an error of one line that names the file and says what to do.
-void expect_volume_or_one_line(const Result<CtGrid>& ct, const std::string& name) {
+void expect_volume_or_one_line(const Result<volume::CtGrid>& ct, const std::string& name) {
   if (ct) {
     EXPECT_EQ(ct->voxels.size(), ct->geometry.voxel_count());
     EXPECT_GT(ct->voxels.size(), 0U);
@@ -106,4 +106,4 @@ TEST_F(BadInput, EveryFileCutInHalfIsRefusedOrRead) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

@@ -4,16 +4,16 @@
 #include <functional>
 
 #include "io/image/image_file.h"
-#include "io/patient/label_sources.h"
 #include "io/markups_file.h"
 #include "io/mesh_file.h"
+#include "io/patient/label_sources.h"
 #include "io/patient/patient_folder.h"
 #include "io/sequence/plus_config.h"
 #include "io/sequence/sequence_file.h"
-#include "io/test/test_support.h"
 #include "io/sequence/transform_file.h"
+#include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 namespace fs = std::filesystem;
 
@@ -163,16 +163,16 @@ TEST(HostileFiles, AnUnknownEncodingIsNamed) {
 class HostilePatient : public ::testing::Test {
  protected:
   void SetUp() override {
-    VirtualPatient patient;
+    anatomy::VirtualPatient patient;
     patient.name = "small";
-    const GridGeometry g = oblique_geometry();
+    const volume::GridGeometry g = oblique_geometry();
     patient.ct = numbered_grid<std::int16_t>(g);
-    patient.labels = LabelGrid(g, 1);
-    patient.skin_distance_mm = FloatGrid(g, -5.0F);
+    patient.labels = volume::LabelGrid(g, 1);
+    patient.skin_distance_mm = volume::FloatGrid(g, -5.0F);
     patient.label_table.labels = {{1, "liver", "liver", {1, 2, 3}}};
-    patient.content_hash = hash_patient(patient);
-    const NamedMesh mesh{"liver",
-                         {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}}};
+    patient.content_hash = anatomy::hash_patient(patient);
+    const anatomy::NamedMesh mesh{
+        "liver", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}}};
     ASSERT_TRUE(save_patient(patient, {mesh}, path_));
     ASSERT_TRUE(load_patient(path_));
   }
@@ -226,4 +226,4 @@ TEST_F(HostilePatient, VolumesInAnotherFileAreRefused) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

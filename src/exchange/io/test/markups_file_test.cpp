@@ -4,7 +4,7 @@
 
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::write_bytes;
@@ -15,11 +15,11 @@ std::string markups(const std::string& inside) {
 
 class Markups : public ::testing::Test {
  protected:
-  Result<std::vector<Landmark>> landmarks_of(const std::string& text) {
+  Result<std::vector<anatomy::Landmark>> landmarks_of(const std::string& text) {
     write_bytes(folder_ / "x.mrk.json", text);
     return read_landmarks(folder_ / "x.mrk.json");
   }
-  Result<std::vector<NeedlePath>> paths_of(const std::string& text) {
+  Result<std::vector<anatomy::NeedlePath>> paths_of(const std::string& text) {
     write_bytes(folder_ / "x.mrk.json", text);
     return read_paths(folder_ / "x.mrk.json");
   }
@@ -27,7 +27,7 @@ class Markups : public ::testing::Test {
 };
 
 TEST_F(Markups, LandmarksComeBackAsTheyWere) {
-  const std::vector<Landmark> landmarks = {{"left \"rib\" 9", {1.0 / 3.0, -2.5e-7, 1234.5}}, {"", {0, 0, 0}}};
+  const std::vector<anatomy::Landmark> landmarks = {{"left \"rib\" 9", {1.0 / 3.0, -2.5e-7, 1234.5}}, {"", {0, 0, 0}}};
   ASSERT_TRUE(write_landmarks(landmarks, folder_ / "l.mrk.json"));
   const auto read = read_landmarks(folder_ / "l.mrk.json");
   ASSERT_TRUE(read) << read.error().text();
@@ -37,7 +37,8 @@ TEST_F(Markups, LandmarksComeBackAsTheyWere) {
 }
 
 TEST_F(Markups, PathsComeBackAsTheyWere) {
-  const std::vector<NeedlePath> paths = {{"intercostal", {{1, 2, 3}, {4, 5, 6.125}}}, {"b", {{0, 0, 0}, {0, 0, 9}}}};
+  const std::vector<anatomy::NeedlePath> paths = {{"intercostal", {{1, 2, 3}, {4, 5, 6.125}}},
+                                                  {"b", {{0, 0, 0}, {0, 0, 9}}}};
   ASSERT_TRUE(write_paths(paths, folder_ / "p.mrk.json"));
   const auto read = read_paths(folder_ / "p.mrk.json");
   ASSERT_TRUE(read) << read.error().text();
@@ -95,4 +96,4 @@ TEST_F(Markups, RefusesToWriteAPointThatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

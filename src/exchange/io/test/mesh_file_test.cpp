@@ -4,7 +4,7 @@
 
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::read_bytes;
@@ -87,4 +87,4 @@ TEST(MeshFile, RefusesOtherEndings) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

@@ -22,8 +22,8 @@ inline void write_bytes(const std::filesystem::path& path, std::string_view byte
 }
 
 /// A turned grid with three different spacings and sizes.
-inline GridGeometry oblique_geometry() {
-  GridGeometry g;
+inline volume::GridGeometry oblique_geometry() {
+  volume::GridGeometry g;
   g.size = {7, 5, 4};
   g.spacing_mm = {0.7, 1.1, 2.5};
   g.origin_P = {-31.25, 12.5, 104.0};
@@ -33,13 +33,13 @@ inline GridGeometry oblique_geometry() {
 
 /// Every voxel different: a swapped or mirrored axis shows.
 template <class T>
-Grid<T> numbered_grid(const GridGeometry& geometry) {
-  Grid<T> grid(geometry);
+volume::Grid<T> numbered_grid(const volume::GridGeometry& geometry) {
+  volume::Grid<T> grid(geometry);
   for (std::size_t n = 0; n < grid.voxels.size(); ++n) grid.voxels[n] = static_cast<T>(n);
   return grid;
 }
 
-inline void expect_same_place(const GridGeometry& a, const GridGeometry& b, double tolerance_mm) {
+inline void expect_same_place(const volume::GridGeometry& a, const volume::GridGeometry& b, double tolerance_mm) {
   ASSERT_EQ(a.size, b.size);
   const Vec3 last(static_cast<double>(a.size[0] - 1), static_cast<double>(a.size[1] - 1),
                   static_cast<double>(a.size[2] - 1));

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace trocar::detail {
+namespace trocar::config::detail {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
@@ -155,4 +155,4 @@ std::string_view nearest_word(std::string_view word, const std::vector<std::stri
   return nearest;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::config::detail

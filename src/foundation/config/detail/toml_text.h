@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 
-namespace trocar::detail {
+namespace trocar::config::detail {
 
 /// Whether toml++ 3.3 may see this text: size, UTF-8, no control characters, bounded nesting of values and of dotted
 /// keys (its parser and destructors recurse), nothing but ASCII outside of strings and comments and no backslash at the
@@ -16,4 +16,4 @@ Status check_toml_text(std::string_view text, const std::string& name);
 /// The candidate that is closest to a misspelled word, empty when none is similar.
 std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& candidates);
 
-}  // namespace trocar::detail
+}  // namespace trocar::config::detail

@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::config {
 namespace {
 
 TEST(Json, KeepsTheOrderOfKeysAndTheBitsOfNumbers) {
@@ -63,4 +63,4 @@ TEST(Json, MissingFileIsAnErrorWithItsPath) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::config

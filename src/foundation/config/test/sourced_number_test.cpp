@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::config {
 namespace {
 
 Result<SourcedNumber> read(const std::string& entry) {
@@ -28,4 +28,4 @@ TEST(SourcedNumber, RefusesWhatCannotBeTrusted) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::config

@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::config {
 namespace {
 
 constexpr std::string_view kExample = R"(# a tissue file
@@ -183,4 +183,4 @@ TEST(Toml, SurvivesDamagedFiles) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::config

@@ -12,6 +12,7 @@
 #include "core/files/unfinished_output.h"
 
 namespace trocar {
+inline namespace core {
 namespace fs = std::filesystem;
 namespace {
 
@@ -98,4 +99,5 @@ Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
   return file.read_all();
 }
 
+}  // namespace core
 }  // namespace trocar

@@ -7,6 +7,7 @@
 #include "core/result.h"
 
 namespace trocar {
+inline namespace core {
 
 /// Writes a file whole or not at all: `write` fills a temporary path beside `target` (same ending), which is then
 /// flushed to disk and renamed over it. On failure the temporary is removed and an existing target stays as it was.
@@ -27,4 +28,5 @@ Status make_parent_folder(const std::filesystem::path& target);
 /// The whole file, at most `max_bytes` long.
 Result<std::string> read_file(const std::filesystem::path& path, std::size_t max_bytes = std::size_t{1} << 30);
 
+}  // namespace core
 }  // namespace trocar

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 namespace trocar {
+inline namespace core {
 namespace fs = std::filesystem;
 
 fs::path data_dir() {
@@ -17,4 +18,5 @@ fs::path data_dir() {
   return {};
 }
 
+}  // namespace core
 }  // namespace trocar

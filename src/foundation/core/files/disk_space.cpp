@@ -7,6 +7,7 @@
 #include <cstring>
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 constexpr const char* kAdvice = "choose a folder that you can write to";
@@ -32,4 +33,5 @@ Status make_writable_folder(const std::filesystem::path& folder) {
   return {};
 }
 
+}  // namespace core
 }  // namespace trocar

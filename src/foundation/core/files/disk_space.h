@@ -7,6 +7,7 @@
 #include "core/result.h"
 
 namespace trocar {
+inline namespace core {
 
 /// Bytes that this user can still write on the file system of a folder; empty: not known.
 std::optional<std::uintmax_t> find_free_bytes(const std::filesystem::path& folder) noexcept;
@@ -15,4 +16,5 @@ std::optional<std::uintmax_t> find_free_bytes(const std::filesystem::path& folde
 /// reason in `what`; `advice` is left to the caller.
 Status make_writable_folder(const std::filesystem::path& folder);
 
+}  // namespace core
 }  // namespace trocar

@@ -10,6 +10,7 @@
 #include <utility>
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 constexpr mode_t kForUserAlone = 0600;
@@ -67,4 +68,5 @@ void FileLock::release() noexcept {
   file_ = -1;
 }
 
+}  // namespace core
 }  // namespace trocar

@@ -6,6 +6,7 @@
 #include "core/result.h"
 
 namespace trocar {
+inline namespace core {
 
 /// An exclusive advisory lock on a file, held while this object lives. The system releases it when the process ends,
 /// however it ends; processes started meanwhile do not hold it. The file stays, unless remove() is called.
@@ -29,4 +30,5 @@ class FileLock {
   int file_ = -1;
 };
 
+}  // namespace core
 }  // namespace trocar

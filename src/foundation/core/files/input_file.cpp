@@ -15,6 +15,7 @@
 #include "core/check.h"
 
 namespace trocar {
+inline namespace core {
 namespace fs = std::filesystem;
 namespace {
 
@@ -158,4 +159,5 @@ Result<std::string> read_input(const fs::path& path, FileKind kind, const fs::pa
   return file.read_all();
 }
 
+}  // namespace core
 }  // namespace trocar

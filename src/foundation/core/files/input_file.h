@@ -9,6 +9,7 @@
 #include "core/result.h"
 
 namespace trocar {
+inline namespace core {
 
 /// Kinds of files that the programs read. Each kind has one limit of size.
 enum class FileKind { kToml, kJson, kMarkups, kTransform, kXml, kMesh, kVolume, kDicom, kSequence, kSession, kOther };
@@ -61,4 +62,5 @@ class InputFile {
 Result<std::string> read_input(const std::filesystem::path& path, FileKind kind,
                                const std::filesystem::path& inside = {});
 
+}  // namespace core
 }  // namespace trocar

@@ -9,6 +9,7 @@
 #include <cstring>
 
 namespace trocar {
+inline namespace core {
 namespace fs = std::filesystem;
 namespace {
 
@@ -50,4 +51,5 @@ Status check_can_write(const fs::path& target) {
   return reason == 0 ? Status{} : cannot_write(reason, target);
 }
 
+}  // namespace core
 }  // namespace trocar

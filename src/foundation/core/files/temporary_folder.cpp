@@ -9,6 +9,7 @@
 #include "core/files/unfinished_output.h"
 
 namespace trocar {
+inline namespace core {
 namespace fs = std::filesystem;
 
 TemporaryFolder::TemporaryFolder() {
@@ -24,4 +25,5 @@ TemporaryFolder::~TemporaryFolder() {
   unregister_unfinished_output(path_);
 }
 
+}  // namespace core
 }  // namespace trocar

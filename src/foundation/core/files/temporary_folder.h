@@ -4,6 +4,7 @@
 #include <string_view>
 
 namespace trocar {
+inline namespace core {
 
 /// An empty folder of its own in the system's place for temporary files, removed with all it holds at the end. Aborts
 /// where none can be made.
@@ -22,4 +23,5 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+}  // namespace core
 }  // namespace trocar

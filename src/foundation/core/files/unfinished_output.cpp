@@ -7,6 +7,7 @@
 #include <mutex>
 
 namespace trocar {
+inline namespace core {
 namespace fs = std::filesystem;
 namespace {
 
@@ -116,4 +117,5 @@ std::error_code UnfinishedOutput::rename_to(const fs::path& target) {
   return {};
 }
 
+}  // namespace core
 }  // namespace trocar

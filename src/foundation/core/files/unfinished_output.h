@@ -6,6 +6,7 @@
 #include <vector>
 
 namespace trocar {
+inline namespace core {
 
 /// Files and folders that must not outlive a failure or an interruption. They are removed at the end unless keep() was
 /// called, and by end_without_unfinished_outputs(). Thread-safe.
@@ -35,4 +36,5 @@ void forget_finished_output(const std::filesystem::path& path);
 /// `output` is the last one that was finished, empty: none. Other threads end first, so that none makes a file anew.
 [[noreturn]] void end_without_unfinished_outputs(std::string (*say_why)(const std::filesystem::path& output));
 
+}  // namespace core
 }  // namespace trocar

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 std::filesystem::path folder(const char* variable, const char* below_home) {
@@ -29,4 +30,5 @@ std::filesystem::path user_cache_folder() {
   return folder("XDG_CACHE_HOME", ".cache");
 }
 
+}  // namespace core
 }  // namespace trocar

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 namespace trocar {
+inline namespace core {
 
 /// $XDG_STATE_HOME/trocar, else ~/.local/state/trocar: what a crash must not take along.
 std::filesystem::path user_state_folder();
@@ -11,4 +12,5 @@ std::filesystem::path user_config_folder();
 /// $XDG_CACHE_HOME/trocar, else ~/.cache/trocar: what can be made again.
 std::filesystem::path user_cache_folder();
 
+}  // namespace core
 }  // namespace trocar

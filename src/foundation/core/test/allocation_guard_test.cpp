@@ -11,6 +11,7 @@
 #include "core/testing/allocation_guard.inc.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 using testing::AllocationGuard;
@@ -84,4 +85,5 @@ TEST(AllocationGuard, LooksAtItsOwnThreadOnly) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

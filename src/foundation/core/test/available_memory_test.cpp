@@ -6,6 +6,7 @@
 #include <vector>
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 TEST(AvailableMemory, FreedMemoryGoesBackToTheSystem) {
@@ -23,4 +24,5 @@ TEST(AvailableMemory, FreedMemoryGoesBackToTheSystem) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

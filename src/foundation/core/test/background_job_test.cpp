@@ -5,6 +5,7 @@
 #include <future>
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 /// Until the work has ended; the test's own time limit ends a hang.
@@ -112,4 +113,5 @@ TEST(RetiredJobs, KeepAJobUntilItsWorkHasEnded) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

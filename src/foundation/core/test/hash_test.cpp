@@ -5,6 +5,7 @@
 #include <string_view>
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 std::string hash_of(std::initializer_list<std::string_view> parts) {
@@ -39,4 +40,5 @@ TEST(ContentHash, DigestCanBeAskedForOnTheWay) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

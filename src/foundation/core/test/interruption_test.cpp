@@ -16,6 +16,7 @@
 #include "core/files/unfinished_output.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 namespace fs = std::filesystem;
 
@@ -183,4 +184,5 @@ TEST(UnfinishedOutput, IsRemovedUnlessItIsKept) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

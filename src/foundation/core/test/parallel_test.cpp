@@ -9,6 +9,7 @@
 #include <vector>
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 TEST(ParallelFor, VisitsEveryIndexOnce) {
@@ -60,4 +61,5 @@ TEST(ParallelInvoke, RunsAllAndWaits) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

@@ -7,6 +7,7 @@
 #include <vector>
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 constexpr int kSamples = 1'000'000;
@@ -104,4 +105,5 @@ TEST(Uniform01, IsAFunctionOfSeedAndCounter) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

@@ -7,6 +7,7 @@
 #include "core/check.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 TEST(Error, TextSaysWhatWhereAndWhatToDo) {
@@ -83,4 +84,5 @@ TEST(CheckDeathTest, NamesTheConditionThatDoesNotHold) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

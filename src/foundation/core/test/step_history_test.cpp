@@ -5,6 +5,7 @@
 #include "core/random.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 TEST(StepHistory, AnySequenceWalksThroughTheSameValues) {
@@ -69,4 +70,5 @@ TEST(StepHistory, PuttingAValueIsNoStepAndChangingAllReachesEveryOne) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

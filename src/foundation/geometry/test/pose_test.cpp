@@ -8,6 +8,7 @@
 #include "core/random.h"
 
 namespace trocar {
+inline namespace geometry {
 namespace {
 
 constexpr double kTiny = 1e-12;
@@ -108,4 +109,5 @@ TEST(AngleBetween, IsExactAtBothEnds) {
 }
 
 }  // namespace
+}  // namespace geometry
 }  // namespace trocar

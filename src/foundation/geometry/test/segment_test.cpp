@@ -7,6 +7,7 @@
 #include "core/random.h"
 
 namespace trocar {
+inline namespace geometry {
 namespace {
 
 TEST(Segment, KnowsItsLengthDirectionAndPoints) {
@@ -50,4 +51,5 @@ TEST(DistanceToLine, IsTheLengthOfThePerpendicular) {
 }
 
 }  // namespace
+}  // namespace geometry
 }  // namespace trocar

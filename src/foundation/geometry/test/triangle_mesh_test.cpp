@@ -7,6 +7,7 @@
 #include <utility>
 
 namespace trocar {
+inline namespace geometry {
 namespace {
 
 TriangleMesh box(const Vec3f& size, const Vec3f& corner) {
@@ -76,4 +77,5 @@ TEST(TriangleMesh, WithoutTrianglesIsNothing) {
 }
 
 }  // namespace
+}  // namespace geometry
 }  // namespace trocar

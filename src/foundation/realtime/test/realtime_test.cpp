@@ -13,7 +13,7 @@
 #include "realtime/spsc_ring.h"
 #include "realtime/triple_buffer.h"
 
-namespace trocar {
+namespace trocar::realtime {
 namespace {
 
 /// Both halves always agree: a torn copy would not.
@@ -184,4 +184,4 @@ TEST(PeriodicLoop, KeepsItsGridAndSkipsWhatItCouldNotServe) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::realtime

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::telemetry {
 namespace {
 
 const Pose kHeld = needle_pose({10.0, 20.0, 30.0}, Vec3(0.3, 1.0, -0.2).normalized());
@@ -40,4 +40,4 @@ TEST(DevicePose, IsUnturnedWithoutARotation) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::telemetry

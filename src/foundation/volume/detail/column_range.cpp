@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar::detail {
+namespace trocar::volume::detail {
 
 bool is_inside(const GridGeometry& geometry, const Vec3& index) noexcept {
   for (int a = 0; a < 3; ++a) {
@@ -36,4 +36,4 @@ ColumnRange columns_inside(const GridGeometry& geometry, const Vec3& start, cons
   return first < last ? ColumnRange{first, last} : ColumnRange{};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::volume::detail

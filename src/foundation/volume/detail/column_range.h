@@ -2,7 +2,7 @@
 
 #include "volume/grid.h"
 
-namespace trocar::detail {
+namespace trocar::volume::detail {
 
 /// Columns first..last-1 of a row of samples.
 struct ColumnRange {
@@ -18,4 +18,4 @@ bool is_inside(const GridGeometry& geometry, const Vec3& index) noexcept;
 /// needs no test a sample. Empty where start or step is not finite.
 ColumnRange columns_inside(const GridGeometry& geometry, const Vec3& start, const Vec3& step, int columns) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::volume::detail

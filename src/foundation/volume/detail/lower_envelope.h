@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace trocar::detail {
+namespace trocar::volume::detail {
 
 /// Lower envelope of the parabolas (x - position)^2 + value, added in order of rising position (Felzenszwalb &
 /// Huttenlocher 2012, doi 10.4086/toc.2012.v008a019); here at any positions, evaluated at multiples of a spacing, and
@@ -63,4 +63,4 @@ class LowerEnvelope {
   std::size_t count_ = 0;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::volume::detail

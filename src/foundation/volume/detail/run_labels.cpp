@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace trocar::detail {
+namespace trocar::volume::detail {
 namespace {
 
 /// Union-find over runs; a root is the first run of its tree.
@@ -83,4 +83,4 @@ RunLabels label_runs(std::span<const std::uint8_t> voxels, const Block& block, b
   return labels;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::volume::detail

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace trocar::detail {
+namespace trocar::volume::detail {
 
 /// A box of voxels to be labelled, i running fastest.
 struct Block {
@@ -38,4 +38,4 @@ struct RunLabels {
 /// Labels the voxels that are set (`of_set`) or those that are not.
 RunLabels label_runs(std::span<const std::uint8_t> voxels, const Block& block, bool of_set);
 
-}  // namespace trocar::detail
+}  // namespace trocar::volume::detail

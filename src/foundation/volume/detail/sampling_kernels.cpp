@@ -12,7 +12,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace trocar::detail {
+namespace trocar::volume::detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -110,11 +110,11 @@ void interpolate(const Cells& cells, std::size_t n, float outside, float* HWY_RE
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace trocar::detail
+}  // namespace trocar::volume::detail
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace trocar::detail {
+namespace trocar::volume::detail {
 
 HWY_EXPORT(locate_row);
 HWY_EXPORT(locate_points);
@@ -142,5 +142,5 @@ void load_pairs(const CellGrid& grid, std::size_t n, Cells& cells) noexcept {
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::volume::detail
 #endif

@@ -7,7 +7,7 @@
 
 /// The steps of trilinear sampling, a chunk of samples at a time: find the cells, read their voxels, interpolate. The
 /// first and last are compiled for every instruction set and chosen at run time.
-namespace trocar::detail {
+namespace trocar::volume::detail {
 
 /// Samples handled together: their intermediate results stay in the first-level cache, and what one step stores has
 /// left the store buffer before the next step reads it in wider pieces.
@@ -62,4 +62,4 @@ void load_pairs(const CellGrid& grid, std::size_t n, Cells& cells) noexcept;
 /// Trilinear values of the first n cells, `outside` for those that are. Writes whole vectors, at most kChunk values.
 void interpolate(const Cells& cells, std::size_t n, float outside, float* values) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::volume::detail

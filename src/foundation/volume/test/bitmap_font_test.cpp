@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 TEST(BitmapFont, EveryCharacterLooksDifferent) {
@@ -31,4 +31,4 @@ TEST(BitmapFont, DrawsDotsAsLargeAsAsked) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::volume

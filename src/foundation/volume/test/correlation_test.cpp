@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 using Image = std::vector<std::uint8_t>;
@@ -33,4 +33,4 @@ TEST(Correlation, OfNothingIsZero) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -9,7 +9,7 @@
 
 #include "make_grids.h"
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 /// Distances are rounded to floats twice.
@@ -178,4 +178,4 @@ TEST(DistanceToMask, OfAnEmptyMaskIsInfinite) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::volume

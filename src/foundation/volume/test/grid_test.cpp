@@ -6,7 +6,7 @@
 
 #include "make_grids.h"
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 TEST(GridGeometry, IndexToMmAndBackIsIdentity) {
@@ -78,4 +78,4 @@ TEST(GridGeometry, MatchesNotWhereTheFarCornersPart) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -7,7 +7,7 @@
 #include "geometry/pose.h"
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::volume {
 
 inline Vec3 random_vec(Random& random, double low, double high) {
   const double x = random.uniform(low, high);
@@ -88,4 +88,4 @@ inline MaskGrid noise_mask(const GridGeometry& geometry, double filled, Random& 
   return mask;
 }
 
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -8,7 +8,7 @@
 
 #include "make_grids.h"
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 /// Slow reference: flood fill from every voxel not yet reached.
@@ -165,4 +165,4 @@ TEST(Dilate, KeepsAnEmptyMaskEmpty) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::volume

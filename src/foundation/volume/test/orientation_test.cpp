@@ -4,7 +4,7 @@
 
 #include "volume/test/make_grids.h"
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 CtGrid numbered(const GridGeometry& geometry) {
@@ -56,4 +56,4 @@ TEST(AlongP, LeavesAGridThatRunsAlongPAlone) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::volume

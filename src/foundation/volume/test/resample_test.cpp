@@ -7,7 +7,7 @@
 #include "make_grids.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 Vec3 centre_mm(const GridGeometry& geometry, std::size_t offset) {
@@ -103,4 +103,4 @@ TEST(OverlapFraction, AgreesWithSamplingOnTurnedGrids) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::volume

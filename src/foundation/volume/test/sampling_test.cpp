@@ -9,7 +9,7 @@
 #include "make_grids.h"
 #include "volume/detail/column_range.h"
 
-namespace trocar {
+namespace trocar::volume {
 namespace {
 
 constexpr float kOutside = -3000.0F;
@@ -286,4 +286,4 @@ TEST(ColumnsInside, AgreesWithTestingEveryColumn) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::volume

@@ -11,7 +11,7 @@
 #include "volume/resample.h"
 #include "volume/sampling.h"
 
-namespace trocar::detail {
+namespace trocar::anatomy::detail {
 namespace {
 
 // Assumed lengths.
@@ -28,15 +28,15 @@ constexpr double kLungAboveHu = -940.0;  // mean of aerated lung -700..-900, of 
 
 /// What the fields are found from, on the coarse grid.
 struct Coarse {
-  CtGrid ct;
-  MaskGrid body;
-  MaskGrid unlabelled;  ///< Body without a label.
-  MaskGrid skin_shell;  ///< The first millimetres below the skin.
-  MaskGrid bone;        ///< Labelled, or dense without a label.
-  MaskGrid lung;        ///< Labelled.
+  volume::CtGrid ct;
+  volume::MaskGrid body;
+  volume::MaskGrid unlabelled;  ///< Body without a label.
+  volume::MaskGrid skin_shell;  ///< The first millimetres below the skin.
+  volume::MaskGrid bone;        ///< Labelled, or dense without a label.
+  volume::MaskGrid lung;        ///< Labelled.
 };
 
-Vec3 to_vec3(const Index3& ijk) {
+Vec3 to_vec3(const volume::Index3& ijk) {
   return {static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])};
 }
 
@@ -46,16 +46,16 @@ std::array<bool, 256> ids_of_tissue(const LabelTable& table, std::string_view ti
   return ids;
 }
 
-Coarse make_coarse(const CtGrid& ct, const LabelGrid& labels, const LabelTable& table,
-                   const FloatGrid& skin_distance_mm) {
-  const GridGeometry grid = isotropic_geometry(ct.geometry, kCoarseMm);
-  const MaskGrid none(grid);
-  Coarse coarse{resample_linear(ct, grid, -1000), none, none, none, none, none};
-  const LabelGrid coarse_labels = resample_nearest(labels, grid, 0);
+Coarse make_coarse(const volume::CtGrid& ct, const volume::LabelGrid& labels, const LabelTable& table,
+                   const volume::FloatGrid& skin_distance_mm) {
+  const volume::GridGeometry grid = volume::isotropic_geometry(ct.geometry, kCoarseMm);
+  const volume::MaskGrid none(grid);
+  Coarse coarse{volume::resample_linear(ct, grid, -1000), none, none, none, none, none};
+  const volume::LabelGrid coarse_labels = volume::resample_nearest(labels, grid, 0);
   const auto is_bone = ids_of_tissue(table, "bone");
   const auto is_lung = ids_of_tissue(table, "lung");
   for (std::size_t n = 0; n < coarse.body.voxels.size(); ++n) {
-    const float distance_mm = sample_nearest(skin_distance_mm, grid.to_mm(to_vec3(grid.index_of(n))), 1.0F);
+    const float distance_mm = volume::sample_nearest(skin_distance_mm, grid.to_mm(to_vec3(grid.index_of(n))), 1.0F);
     const std::uint8_t id = coarse_labels.voxels[n];
     const bool inside = distance_mm < 0.0F;
     coarse.body.voxels[n] = inside;
@@ -67,46 +67,46 @@ Coarse make_coarse(const CtGrid& ct, const LabelGrid& labels, const LabelTable& 
   return coarse;
 }
 
-MaskGrid select(const GridGeometry& grid, const auto& is_wanted) {
-  MaskGrid mask(grid);
+volume::MaskGrid select(const volume::GridGeometry& grid, const auto& is_wanted) {
+  volume::MaskGrid mask(grid);
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) mask.voxels[n] = is_wanted(n) ? 1 : 0;
   return mask;
 }
 
-MaskGrid opened(const MaskGrid& mask, double radius_mm) {
-  return dilate(erode(mask, radius_mm), radius_mm);
+volume::MaskGrid opened(const volume::MaskGrid& mask, double radius_mm) {
+  return volume::dilate(volume::erode(mask, radius_mm), radius_mm);
 }
-MaskGrid closed(const MaskGrid& mask, double radius_mm) {
-  return erode(dilate(mask, radius_mm), radius_mm);
+volume::MaskGrid closed(const volume::MaskGrid& mask, double radius_mm) {
+  return volume::erode(volume::dilate(mask, radius_mm), radius_mm);
 }
 
 /// Fat below the skin: all that the straight way to the nearest skin leads through is fat too. (Connectedness would
 /// lead around the muscles into the visceral fat.) Thin shadows behind gaps between muscles are cut off.
-MaskGrid subcutaneous_fat(const Coarse& coarse, const FloatGrid& skin_distance_mm) {
-  const GridGeometry& grid = coarse.ct.geometry;
+volume::MaskGrid subcutaneous_fat(const Coarse& coarse, const volume::FloatGrid& skin_distance_mm) {
+  const volume::GridGeometry& grid = coarse.ct.geometry;
   std::vector<std::pair<float, std::size_t>> by_depth;
   for (std::size_t n = 0; n < coarse.unlabelled.voxels.size(); ++n) {
     const std::int16_t hu = coarse.ct.voxels[n];
     if (coarse.unlabelled.voxels[n] && !coarse.skin_shell.voxels[n] && hu > kFatAboveHu && hu <= kFatUpToHu)
-      by_depth.emplace_back(-sample_nearest(skin_distance_mm, grid.to_mm(to_vec3(grid.index_of(n))), 0.0F), n);
+      by_depth.emplace_back(-volume::sample_nearest(skin_distance_mm, grid.to_mm(to_vec3(grid.index_of(n))), 0.0F), n);
   }
   std::sort(by_depth.begin(), by_depth.end());
-  MaskGrid fat = coarse.skin_shell;
+  volume::MaskGrid fat = coarse.skin_shell;
   for (const auto& [depth_mm, n] : by_depth) {
     const Vec3 p_P = grid.to_mm(to_vec3(grid.index_of(n)));
-    const Vec3 outward_P = gradient_per_mm(skin_distance_mm, p_P).normalized();
-    fat.voxels[n] = sample_nearest<std::uint8_t>(fat, p_P + kStepMm * outward_P, 0);
+    const Vec3 outward_P = volume::gradient_per_mm(skin_distance_mm, p_P).normalized();
+    fat.voxels[n] = volume::sample_nearest<std::uint8_t>(fat, p_P + kStepMm * outward_P, 0);
   }
-  const MaskGrid core = erode(fat, kFatSheetMm);
+  const volume::MaskGrid core = volume::erode(fat, kFatSheetMm);
   return select(grid, [&](std::size_t n) { return core.voxels[n] || coarse.skin_shell.voxels[n]; });
 }
 
-FloatGrid find_wall(const Coarse& coarse, const FloatGrid& skin_distance_mm) {
+volume::FloatGrid find_wall(const Coarse& coarse, const volume::FloatGrid& skin_distance_mm) {
   // Closed first: some segmentations leave the marrow out.
-  const MaskGrid spine = opened(closed(coarse.bone, kThickBoneMm), kThickBoneMm);
-  const MaskGrid spine_with_discs = closed(spine, kDiscMm);
-  const FloatGrid to_spine_mm = distance_to_mask_mm(spine);
-  FloatGrid wall = distance_to_mask_mm(subcutaneous_fat(coarse, skin_distance_mm));
+  const volume::MaskGrid spine = opened(closed(coarse.bone, kThickBoneMm), kThickBoneMm);
+  const volume::MaskGrid spine_with_discs = closed(spine, kDiscMm);
+  const volume::FloatGrid to_spine_mm = volume::distance_to_mask_mm(spine);
+  volume::FloatGrid wall = volume::distance_to_mask_mm(subcutaneous_fat(coarse, skin_distance_mm));
   for (std::size_t n = 0; n < wall.voxels.size(); ++n) {
     // The fat's mask was shrunk: its border lies that much farther out.
     const auto from_fat_mm = static_cast<float>(wall.voxels[n] - kFatSheetMm - kWallReachMm);
@@ -118,12 +118,12 @@ FloatGrid find_wall(const Coarse& coarse, const FloatGrid& skin_distance_mm) {
 }
 
 /// Large parts of air inside the body that are not as empty as bowel gas, and the lungs that have a label.
-MaskGrid aerated_lung(const Coarse& coarse) {
-  const GridGeometry& grid = coarse.ct.geometry;
-  const MaskGrid air = select(grid, [&](std::size_t n) {
+volume::MaskGrid aerated_lung(const Coarse& coarse) {
+  const volume::GridGeometry& grid = coarse.ct.geometry;
+  const volume::MaskGrid air = select(grid, [&](std::size_t n) {
     return coarse.lung.voxels[n] || (coarse.unlabelled.voxels[n] && coarse.ct.voxels[n] < kGasBelowHu);
   });
-  const Components parts = connected_components(air);
+  const volume::Components parts = volume::connected_components(air);
   std::vector<double> sum_hu(parts.voxel_counts.size() + 1, 0.0);
   for (std::size_t n = 0; n < air.voxels.size(); ++n)
     sum_hu[static_cast<std::size_t>(parts.ids.voxels[n])] += coarse.ct.voxels[n];
@@ -139,10 +139,10 @@ MaskGrid aerated_lung(const Coarse& coarse) {
 
 }  // namespace
 
-BodyFields find_body_fields(const CtGrid& smooth_ct, const LabelGrid& labels, const LabelTable& table,
-                            const FloatGrid& skin_distance_mm) {
+BodyFields find_body_fields(const volume::CtGrid& smooth_ct, const volume::LabelGrid& labels, const LabelTable& table,
+                            const volume::FloatGrid& skin_distance_mm) {
   const Coarse coarse = make_coarse(smooth_ct, labels, table, skin_distance_mm);
-  return {find_wall(coarse, skin_distance_mm), signed_distance_mm(closed(aerated_lung(coarse), kLungVesselMm))};
+  return {find_wall(coarse, skin_distance_mm), volume::signed_distance_mm(closed(aerated_lung(coarse), kLungVesselMm))};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::anatomy::detail

@@ -3,20 +3,20 @@
 #include "anatomy/label_table.h"
 #include "volume/grid.h"
 
-namespace trocar::detail {
+namespace trocar::anatomy::detail {
 
 /// Where inside the body a point lies, as far as CT values alone do not tell: smooth fields on a coarse grid (3 mm).
 struct BodyFields {
   /// Negative in the trunk's wall: within reach of the subcutaneous fat or of the spine and pelvis, where lean tissue
   /// is muscle. Positive deeper, where it may be bowel, mesentery or an organ without a label, and in the spine's
   /// discs.
-  FloatGrid wall_mm;
+  volume::FloatGrid wall_mm;
   /// Signed distance to the surface of the aerated lungs, their vessels inside; infinite where there is none.
-  FloatGrid lung_mm;
+  volume::FloatGrid lung_mm;
 };
 
 /// Finds the fields from the smoothed CT, the labels known so far and the signed distance to the skin.
-BodyFields find_body_fields(const CtGrid& smooth_ct, const LabelGrid& labels, const LabelTable& table,
-                            const FloatGrid& skin_distance_mm);
+BodyFields find_body_fields(const volume::CtGrid& smooth_ct, const volume::LabelGrid& labels, const LabelTable& table,
+                            const volume::FloatGrid& skin_distance_mm);
 
-}  // namespace trocar::detail
+}  // namespace trocar::anatomy::detail

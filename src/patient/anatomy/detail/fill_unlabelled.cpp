@@ -14,7 +14,7 @@
 #include "volume/morphology.h"
 #include "volume/sampling.h"
 
-namespace trocar::detail {
+namespace trocar::anatomy::detail {
 namespace {
 
 constexpr double kMinPartMm3 = 100.0;  // assumed: smaller islands are noise and partial volume
@@ -63,17 +63,18 @@ std::uint8_t classify(int hu, const Place& place, const FillIds& ids) {
 /// Samples the coarse fields at the voxels of a finer grid that covers the same box.
 class FieldSampler {
  public:
-  FieldSampler(const BodyFields& fields, const GridGeometry& grid) : fields_(fields) {
-    const GridGeometry& coarse = fields.wall_mm.geometry;
+  FieldSampler(const BodyFields& fields, const volume::GridGeometry& grid) : fields_(fields) {
+    const volume::GridGeometry& coarse = fields.wall_mm.geometry;
     scale_ = grid.spacing_mm.cwiseQuotient(coarse.spacing_mm);
     offset_ = coarse.to_index(grid.origin_P);
   }
 
-  Place at(const Index3& ijk) const {
+  Place at(const volume::Index3& ijk) const {
     const Vec3 index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
     const Vec3 coarse_index = offset_ + scale_.cwiseProduct(index);
-    const double lung_mm = sample_linear_at_index(fields_.lung_mm, coarse_index);
-    return {sample_linear_at_index(fields_.wall_mm, coarse_index) < 0.0, lung_mm < -kLungRimMm, lung_mm < kLungRimMm};
+    const double lung_mm = volume::sample_linear_at_index(fields_.lung_mm, coarse_index);
+    return {volume::sample_linear_at_index(fields_.wall_mm, coarse_index) < 0.0, lung_mm < -kLungRimMm,
+            lung_mm < kLungRimMm};
   }
 
  private:
@@ -82,8 +83,8 @@ class FieldSampler {
   Vec3 offset_;
 };
 
-void classify_all(const CtGrid& smooth, const FloatGrid& skin_distance_mm, const BodyFields& fields, const FillIds& ids,
-                  LabelGrid& labels) {
+void classify_all(const volume::CtGrid& smooth, const volume::FloatGrid& skin_distance_mm, const BodyFields& fields,
+                  const FillIds& ids, volume::LabelGrid& labels) {
   const FieldSampler sampler(fields, labels.geometry);
   parallel_for(labels.voxels.size(), 1 << 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
@@ -97,24 +98,24 @@ void classify_all(const CtGrid& smooth, const FloatGrid& skin_distance_mm, const
 }
 
 /// Lean tissue just below the surface with fat beneath it is skin, thicker than elsewhere: it joins the subcutis.
-void remove_thick_skin(const FloatGrid& skin_distance_mm, const FillIds& ids, LabelGrid& labels) {
+void remove_thick_skin(const volume::FloatGrid& skin_distance_mm, const FillIds& ids, volume::LabelGrid& labels) {
   std::vector<std::size_t> skin;
   for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
     if (labels.voxels[n] != ids.muscle || skin_distance_mm.voxels[n] < -kThickSkinMm) continue;
-    const Index3 ijk = labels.geometry.index_of(n);
+    const volume::Index3 ijk = labels.geometry.index_of(n);
     const Vec3 p_P = labels.geometry.to_mm(
         Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
-    const Vec3 inward_P = -gradient_per_mm(skin_distance_mm, p_P).normalized();
-    if (sample_nearest<std::uint8_t>(labels, p_P + kBeneathSkinMm * inward_P, 0) == ids.fat) skin.push_back(n);
+    const Vec3 inward_P = -volume::gradient_per_mm(skin_distance_mm, p_P).normalized();
+    if (volume::sample_nearest<std::uint8_t>(labels, p_P + kBeneathSkinMm * inward_P, 0) == ids.fat) skin.push_back(n);
   }
   for (const std::size_t n : skin) labels.voxels[n] = ids.fat;
 }
 
 /// Dense parts without a truly dense voxel: contrast agent.
-void demote_faint_bone(const CtGrid& ct, const FillIds& ids, LabelGrid& labels) {
-  MaskGrid dense(labels.geometry);
+void demote_faint_bone(const volume::CtGrid& ct, const FillIds& ids, volume::LabelGrid& labels) {
+  volume::MaskGrid dense(labels.geometry);
   for (std::size_t n = 0; n < dense.voxels.size(); ++n) dense.voxels[n] = labels.voxels[n] == ids.bone ? 1 : 0;
-  const Components parts = connected_components(dense);
+  const volume::Components parts = volume::connected_components(dense);
   std::vector<bool> is_bone(parts.voxel_counts.size() + 1, false);
   for (std::size_t n = 0; n < dense.voxels.size(); ++n) {
     if (ct.voxels[n] >= kBonePeakHu) is_bone[static_cast<std::size_t>(parts.ids.voxels[n])] = true;
@@ -125,16 +126,16 @@ void demote_faint_bone(const CtGrid& ct, const FillIds& ids, LabelGrid& labels) 
 }
 
 /// Turns fat that is seen between air and the tissue around it into soft tissue: pleura or the wall of a bowel.
-void restore_air_walls(const LabelTable& table, const FillIds& ids, LabelGrid& labels) {
+void restore_air_walls(const LabelTable& table, const FillIds& ids, volume::LabelGrid& labels) {
   std::array<bool, 256> is_air{};
   for (const Label& label : table.labels) is_air[label.id] = label.tissue == "lung";
   is_air[ids.gas] = is_air[ids.lung] = true;
-  const GridGeometry& geometry = labels.geometry;
-  const auto is_near_air = [&](const Index3& ijk) {
+  const volume::GridGeometry& geometry = labels.geometry;
+  const auto is_near_air = [&](const volume::Index3& ijk) {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto reach = static_cast<std::int64_t>(kAirWallMm / geometry.spacing_mm[static_cast<Eigen::Index>(a)]);
       for (std::int64_t step = -reach; step <= reach; ++step) {
-        Index3 beside = ijk;
+        volume::Index3 beside = ijk;
         beside[a] += step;
         if (geometry.contains(beside) && is_air[labels[beside]]) return true;
       }
@@ -148,7 +149,7 @@ void restore_air_walls(const LabelTable& table, const FillIds& ids, LabelGrid& l
   for (const std::size_t n : walls) labels.voxels[n] = ids.soft_tissue;
 }
 
-void add_used(const FillIds& ids, const LabelGrid& labels, LabelTable& table) {
+void add_used(const FillIds& ids, const volume::LabelGrid& labels, LabelTable& table) {
   std::array<bool, 256> used{};
   for (const std::uint8_t id : labels.voxels) used[id] = true;
   for (std::size_t n = 0; n < kFillNames.size(); ++n) {
@@ -161,9 +162,10 @@ void add_used(const FillIds& ids, const LabelGrid& labels, LabelTable& table) {
 
 }  // namespace
 
-void fill_unlabelled(const CtGrid& ct, const FloatGrid& skin_distance_mm, LabelGrid& labels, LabelTable& table) {
+void fill_unlabelled(const volume::CtGrid& ct, const volume::FloatGrid& skin_distance_mm, volume::LabelGrid& labels,
+                     LabelTable& table) {
   const FillIds ids = choose_ids(table);
-  const CtGrid smooth = smooth_hu(ct);
+  const volume::CtGrid smooth = smooth_hu(ct);
   classify_all(smooth, skin_distance_mm, find_body_fields(smooth, labels, table, skin_distance_mm), ids, labels);
   remove_thick_skin(skin_distance_mm, ids, labels);
   restore_air_walls(table, ids, labels);
@@ -173,4 +175,4 @@ void fill_unlabelled(const CtGrid& ct, const FloatGrid& skin_distance_mm, LabelG
   add_used(ids, labels, table);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::anatomy::detail

@@ -7,7 +7,7 @@
 
 #include "volume/morphology.h"
 
-namespace trocar::detail {
+namespace trocar::anatomy::detail {
 namespace {
 
 struct SmallParts {
@@ -19,10 +19,10 @@ struct SmallParts {
   std::size_t count = 0;
 };
 
-void add_small_parts(const LabelGrid& labels, std::uint8_t id, std::size_t min_voxels, SmallParts& small) {
-  MaskGrid mask(labels.geometry);
+void add_small_parts(const volume::LabelGrid& labels, std::uint8_t id, std::size_t min_voxels, SmallParts& small) {
+  volume::MaskGrid mask(labels.geometry);
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) mask.voxels[n] = labels.voxels[n] == id ? 1 : 0;
-  const Components parts = connected_components(mask);
+  const volume::Components parts = volume::connected_components(mask);
   // Parts are numbered by falling size: the small ones come last.
   const auto first_small = std::find_if(parts.voxel_counts.begin(), parts.voxel_counts.end(),
                                         [&](std::size_t voxels) { return voxels < min_voxels; });
@@ -36,7 +36,7 @@ void add_small_parts(const LabelGrid& labels, std::uint8_t id, std::size_t min_v
 
 }  // namespace
 
-void merge_small_parts(LabelGrid& labels, std::span<const std::uint8_t> ids, std::size_t min_voxels) {
+void merge_small_parts(volume::LabelGrid& labels, std::span<const std::uint8_t> ids, std::size_t min_voxels) {
   SmallParts small;
   for (const std::uint8_t id : ids) add_small_parts(labels, id, min_voxels, small);
 
@@ -50,10 +50,10 @@ void merge_small_parts(LabelGrid& labels, std::span<const std::uint8_t> ids, std
 
   std::vector<std::uint32_t> contacts(small.count * columns, 0);
   for (const auto& [offset, part] : small.voxels) {
-    const Index3 ijk = labels.geometry.index_of(offset);
+    const volume::Index3 ijk = labels.geometry.index_of(offset);
     for (std::size_t a = 0; a < 3; ++a) {
       for (const std::int64_t step : {-1, 1}) {
-        Index3 beside = ijk;
+        volume::Index3 beside = ijk;
         beside[a] += step;
         if (labels.geometry.contains(beside)) ++contacts[part * columns + column_of[labels[beside]]];
       }
@@ -67,4 +67,4 @@ void merge_small_parts(LabelGrid& labels, std::span<const std::uint8_t> ids, std
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::anatomy::detail

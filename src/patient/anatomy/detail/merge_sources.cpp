@@ -11,14 +11,14 @@
 #include "volume/orientation.h"
 #include "volume/resample.h"
 
-namespace trocar::detail {
+namespace trocar::anatomy::detail {
 namespace {
 
 constexpr double kMinOverlap = 0.05;         // of the smaller grid; below, the files are of different scans
 constexpr std::size_t kMaxStructures = 245;  // of 255 label values, the rest is for what is found from HU
 constexpr std::size_t kBlock = 1 << 16;
 
-std::array<std::size_t, 256> count_values(const LabelGrid& labels) {
+std::array<std::size_t, 256> count_values(const volume::LabelGrid& labels) {
   std::array<std::size_t, 256> counts{};
   for (const std::uint8_t value : labels.voxels) ++counts[value];
   return counts;
@@ -67,11 +67,11 @@ Status check_names(const std::vector<LabelSource>& sources) {
   return unknown.status();
 }
 
-Status check_overlap(const LabelSource& source, const GridGeometry& grid) {
+Status check_overlap(const LabelSource& source, const volume::GridGeometry& grid) {
   if (source.labels.empty())
     return fail("the segmentation has no voxels", source.file, "export the segmentation again");
-  const double overlap =
-      std::max(overlap_fraction(source.labels.geometry, grid), overlap_fraction(grid, source.labels.geometry));
+  const double overlap = std::max(volume::overlap_fraction(source.labels.geometry, grid),
+                                  volume::overlap_fraction(grid, source.labels.geometry));
   if (overlap >= kMinOverlap) return {};
   return fail(fmt::format("the segmentation does not overlap the CT ({:.1f} % common)", 100.0 * overlap), source.file,
               "give the segmentation that was made from this CT");
@@ -80,12 +80,12 @@ Status check_overlap(const LabelSource& source, const GridGeometry& grid) {
 /// Merges one source after the other.
 class Merger {
  public:
-  explicit Merger(const GridGeometry& grid) { merged_.labels = LabelGrid(grid); }
+  explicit Merger(const volume::GridGeometry& grid) { merged_.labels = volume::LabelGrid(grid); }
 
   Status add(LabelSource source, std::vector<std::string>& empty_masks) {
-    LabelGrid labels = along_P(std::move(source.labels));
+    volume::LabelGrid labels = volume::along_P(std::move(source.labels));
     if (!labels.geometry.matches(merged_.labels.geometry))
-      labels = resample_nearest(labels, merged_.labels.geometry, 0);
+      labels = volume::resample_nearest(labels, merged_.labels.geometry, 0);
     const auto counts = count_values(labels);
     std::array<std::uint8_t, 256> id_of{};
     for (const auto& [value, name] : source.names) {
@@ -123,12 +123,12 @@ class Merger {
     return id;
   }
 
-  void add_body_hint(const LabelGrid& labels, std::uint8_t value) {
-    if (merged_.body_hint.empty()) merged_.body_hint = MaskGrid(labels.geometry);
+  void add_body_hint(const volume::LabelGrid& labels, std::uint8_t value) {
+    if (merged_.body_hint.empty()) merged_.body_hint = volume::MaskGrid(labels.geometry);
     for (std::size_t n = 0; n < labels.voxels.size(); ++n) merged_.body_hint.voxels[n] |= labels.voxels[n] == value;
   }
 
-  void paint(const LabelGrid& labels, const std::array<std::uint8_t, 256>& id_of) {
+  void paint(const volume::LabelGrid& labels, const std::array<std::uint8_t, 256>& id_of) {
     parallel_for(labels.voxels.size(), kBlock, [&](std::size_t first, std::size_t last) {
       for (std::size_t n = first; n < last; ++n) {
         const std::uint8_t id = id_of[labels.voxels[n]];
@@ -144,7 +144,7 @@ class Merger {
 
 }  // namespace
 
-Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const GridGeometry& grid,
+Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const volume::GridGeometry& grid,
                                    std::vector<std::string>& warnings) {
   if (sources.empty()) return fail_usage("no segmentation given", "--labels", "give at least one label file");
   TROCAR_TRY_STATUS(check_names(sources));
@@ -162,4 +162,4 @@ Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const GridG
   return merged;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::anatomy::detail

@@ -5,19 +5,19 @@
 
 #include "anatomy/build_patient.h"
 
-namespace trocar::detail {
+namespace trocar::anatomy::detail {
 
 /// The structures of all sources on one grid.
 struct MergedLabels {
-  LabelGrid labels;
-  LabelTable table;    ///< Ids in file order, from 1.
-  MaskGrid body_hint;  ///< A mask of the whole body ("skin"), where a source has one; else empty.
+  volume::LabelGrid labels;
+  LabelTable table;            ///< Ids in file order, from 1.
+  volume::MaskGrid body_hint;  ///< A mask of the whole body ("skin"), where a source has one; else empty.
 };
 
 /// Resamples the sources onto the grid of the CT (nearest voxel); where two claim a voxel the structure of higher
 /// priority has it, the earlier one among equals. Sources are freed as they are used. Errors and warnings as
 /// build_patient.
-Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const GridGeometry& grid,
+Result<MergedLabels> merge_sources(std::vector<LabelSource> sources, const volume::GridGeometry& grid,
                                    std::vector<std::string>& warnings);
 
-}  // namespace trocar::detail
+}  // namespace trocar::anatomy::detail

@@ -1,6 +1,6 @@
 #include "anatomy/phantom/abdomen.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 
 Result<BiopsyPlan> build_abdomen(Anatomy& anatomy) {
   add_trunk(anatomy);
@@ -20,4 +20,4 @@ Result<BiopsyPlan> build_abdomen(Anatomy& anatomy) {
   return plan;
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

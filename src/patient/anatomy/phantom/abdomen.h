@@ -2,9 +2,9 @@
 
 #include "anatomy/phantom/biopsy.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 
 /// Fills an empty anatomy with an upper abdomen, and returns the biopsy planned in it. Error: see plan_biopsy.
 Result<BiopsyPlan> build_abdomen(Anatomy& anatomy);
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -9,7 +9,7 @@
 
 #include "anatomy/phantom/skeleton.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
@@ -185,4 +185,4 @@ void add_lesions(Anatomy& anatomy, const BiopsyPlan& plan) {
   for (const Lesion& lesion : plan.lesions) paint_lesion(anatomy, lesion, ++number, random);
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -6,7 +6,7 @@
 #include "anatomy/phantom/structure.h"
 #include "core/result.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 
 /// Distances that the expert path of the biopsy keeps (mm).
 struct PathMargins {
@@ -41,4 +41,4 @@ void add_lesions(Anatomy& anatomy, const BiopsyPlan& plan);
 /// Portal and hepatic veins inside the liver, grown by rule around lesions and path.
 void add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan);
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -4,7 +4,7 @@
 
 #include "anatomy/phantom/structure.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kGasHu = -940.0F;
@@ -162,4 +162,4 @@ void add_stomach(Anatomy& anatomy) {
                }});
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -5,7 +5,7 @@
 
 #include "anatomy/phantom/layers.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 // Hounsfield units of the portal-venous phase, textbook-like [assumed].
@@ -172,4 +172,4 @@ LayerScene liver_scene() {
   return scene;
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -7,7 +7,7 @@
 #include "anatomy/patient.h"
 #include "anatomy/phantom/shapes.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 
 /// One thing in a layered scene, in its own coordinates: x as in P, the depth below the skin, z as in P. Later shapes
 /// cover earlier ones.
@@ -29,4 +29,4 @@ LayerScene lumbar_scene();
 LayerScene ascites_scene();
 LayerScene liver_scene();
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

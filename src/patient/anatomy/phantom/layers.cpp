@@ -9,7 +9,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 const Vec3 kHalfBox(40.0, 70.0, 40.0);
@@ -20,8 +20,8 @@ constexpr double kPsfSigma_mm =
     0.7;  ///< With the voxel an edge as wide as a CT's with a soft kernel, FWHM 1.8 mm. [assumed]
 constexpr float kAirHu = -1000.0F;
 
-GridGeometry scene_geometry(const PhantomResolution& resolution) {
-  GridGeometry geometry;
+volume::GridGeometry scene_geometry(const PhantomResolution& resolution) {
+  volume::GridGeometry geometry;
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
     const double extent_mm = 2.0 * kHalfBox[axis];
@@ -56,14 +56,14 @@ float depth_at(const LayerScene& scene, double y) {
 }
 
 /// The scene as it is, voxels at a border in proportion: HU, labels, distance to the skin.
-void paint(const LayerScene& scene, const ShapeLabels& labels, std::uint64_t seed, FloatGrid& hu,
+void paint(const LayerScene& scene, const ShapeLabels& labels, std::uint64_t seed, volume::FloatGrid& hu,
            VirtualPatient& patient) {
-  const GridGeometry& geometry = hu.geometry;
+  const volume::GridGeometry& geometry = hu.geometry;
   const ValueNoise noise(seed);
   const auto voxel_mm = static_cast<float>(std::cbrt(geometry.voxel_volume_mm3()));
   parallel_for(hu.voxels.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
-      const Index3 ijk = geometry.index_of(n);
+      const volume::Index3 ijk = geometry.index_of(n);
       const Vec3f p =
           geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])))
               .cast<float>();
@@ -86,8 +86,8 @@ void paint(const LayerScene& scene, const ShapeLabels& labels, std::uint64_t see
 }
 
 /// A Gaussian along one axis; the end values continue outside.
-void blur_along(FloatGrid& grid, std::size_t axis, double sigma_mm) {
-  const GridGeometry& geometry = grid.geometry;
+void blur_along(volume::FloatGrid& grid, std::size_t axis, double sigma_mm) {
+  const volume::GridGeometry& geometry = grid.geometry;
   const double sigma = sigma_mm / geometry.spacing_mm[static_cast<Eigen::Index>(axis)];
   const auto reach = static_cast<std::int64_t>(std::ceil(3.0 * sigma));
   std::vector<float> kernel;
@@ -100,7 +100,7 @@ void blur_along(FloatGrid& grid, std::size_t axis, double sigma_mm) {
   const std::vector<float> before = grid.voxels;
   parallel_for(before.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
-      Index3 ijk = geometry.index_of(n);
+      volume::Index3 ijk = geometry.index_of(n);
       const std::int64_t middle = ijk[axis];
       float value = 0.0F;
       for (std::size_t k = 0; k < kernel.size(); ++k) {
@@ -131,7 +131,7 @@ Result<VirtualPatient> make_layered_scene(std::string_view name, std::uint64_t s
                            : name == "layers-ascites" ? ascites_scene()
                                                       : liver_scene();
   const ShapeLabels labels(scene);
-  const GridGeometry geometry = scene_geometry(resolution);
+  const volume::GridGeometry geometry = scene_geometry(resolution);
   const std::uint64_t mixed_seed = mix64(seed);
 
   VirtualPatient patient;
@@ -139,12 +139,12 @@ Result<VirtualPatient> make_layered_scene(std::string_view name, std::uint64_t s
   patient.description = info->description;
   patient.provenance = {"generated: embedded patient \"" + info->name + "\", seed " + std::to_string(seed)};
   patient.label_table = labels.table;
-  patient.labels = LabelGrid(geometry);
-  patient.skin_distance_mm = FloatGrid(geometry);
-  FloatGrid hu(geometry);
+  patient.labels = volume::LabelGrid(geometry);
+  patient.skin_distance_mm = volume::FloatGrid(geometry);
+  volume::FloatGrid hu(geometry);
   paint(scene, labels, mixed_seed, hu, patient);
   for (std::size_t axis = 0; axis < 3; ++axis) blur_along(hu, axis, kPsfSigma_mm);
-  patient.ct = CtGrid(geometry);
+  patient.ct = volume::CtGrid(geometry);
   std::transform(hu.voxels.begin(), hu.voxels.end(), patient.ct.voxels.begin(),
                  [](float value) { return static_cast<std::int16_t>(std::lround(value)); });
   add_scanner_noise(patient.ct, patient.skin_distance_mm, mixed_seed);
@@ -158,4 +158,4 @@ Result<VirtualPatient> make_layered_scene(std::string_view name, std::uint64_t s
   return patient;
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -6,7 +6,7 @@
 
 #include "anatomy/phantom/phantom.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 
 /// Layered test scenes: a block of 80 x 140 x 80 mm cut out of a body, flat skin, the layers of one kind of puncture
 /// behind it as slabs, with what lies beside the needle's way, and one expert path straight in. For force curves along
@@ -43,4 +43,4 @@ inline constexpr float kVein = 74.0F;        ///< Centre of the portal vein's br
 inline constexpr float kVeinRadius = 4.5F;   ///< assumed.
 }  // namespace liver
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

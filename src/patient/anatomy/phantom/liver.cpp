@@ -3,7 +3,7 @@
 
 #include "anatomy/phantom/structure.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 struct LiverShape {
@@ -64,4 +64,4 @@ void add_liver(Anatomy& anatomy) {
                }});
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

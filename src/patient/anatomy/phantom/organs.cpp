@@ -4,7 +4,7 @@
 
 #include "anatomy/phantom/structure.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kFatHu = -98.0F;
@@ -142,4 +142,4 @@ void add_pancreas(Anatomy& anatomy) {
                }});
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -9,18 +9,18 @@
 #include "anatomy/phantom/render.h"
 #include "anatomy/phantom/skeleton.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 using namespace phantom;
 
-constexpr Index3 kDefaultSize{380, 300, 240};
+constexpr volume::Index3 kDefaultSize{380, 300, 240};
 constexpr std::int64_t kLeastSize = 16;
 constexpr std::int64_t kGreatestSize = 1024;
 
 /// The phantom's box divided into voxels; the box is the same for every size.
-GridGeometry box_geometry(const PhantomResolution& resolution) {
-  GridGeometry geometry;
+volume::GridGeometry box_geometry(const PhantomResolution& resolution) {
+  volume::GridGeometry geometry;
   const Vec3 extent = 2.0 * Vec3(kHalfWidth, kHalfDepth, kHalfHeight);
   for (std::size_t n = 0; n < 3; ++n) {
     const auto a = static_cast<Eigen::Index>(n);
@@ -56,7 +56,7 @@ std::vector<Landmark> landmarks(const Anatomy& anatomy) {
 
 Result<VirtualPatient> generate_abdomen(const PhantomInfo& info, std::uint64_t seed,
                                         const PhantomResolution& resolution, const Progress& progress) {
-  const GridGeometry geometry = box_geometry(resolution);
+  const volume::GridGeometry geometry = box_geometry(resolution);
   report(progress, "shaping the anatomy", 0.0);
   Anatomy anatomy(seed);
   TROCAR_TRY(BiopsyPlan plan, build_abdomen(anatomy));
@@ -103,4 +103,4 @@ Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t see
   return generate_abdomen(*found, seed, resolution, progress);
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

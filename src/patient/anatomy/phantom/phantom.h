@@ -9,7 +9,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// An embedded patient that the program generates itself.
 struct PhantomInfo {
@@ -29,4 +29,4 @@ struct PhantomResolution {
 Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed = 1,
                                         const PhantomResolution& resolution = {}, const Progress& progress = {});
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -6,7 +6,7 @@
 #include "anatomy/phantom/texture.h"
 #include "core/parallel.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kAirHu = -1000.0F;
@@ -14,12 +14,12 @@ constexpr double kBlockMm = 6.5;
 
 /// Voxels [low, high) of a grid, small enough that few structures touch them.
 struct Block {
-  Index3 low, high;
+  volume::Index3 low, high;
 };
 
 class Painter {
  public:
-  Painter(const Anatomy& anatomy, const GridGeometry& geometry, Culling culling, Rendering& out)
+  Painter(const Anatomy& anatomy, const volume::GridGeometry& geometry, Culling culling, Rendering& out)
       : anatomy_(anatomy), geometry_(geometry), culling_(culling), out_(out) {
     brush_.blur_mm = static_cast<float>(std::cbrt(geometry.voxel_volume_mm3()));
     for (std::size_t a = 0; a < 3; ++a) {
@@ -41,7 +41,7 @@ class Painter {
   }
 
  private:
-  Block block_at(const Index3& index) const {
+  Block block_at(const volume::Index3& index) const {
     Block block;
     for (std::size_t a = 0; a < 3; ++a) {
       block.low[a] = index[a] * block_size_[a];
@@ -109,18 +109,19 @@ class Painter {
   }
 
   const Anatomy& anatomy_;
-  const GridGeometry& geometry_;
+  const volume::GridGeometry& geometry_;
   Culling culling_;
   Rendering& out_;
   Brush brush_;
-  Index3 block_size_{1, 1, 1};
-  Index3 blocks_{0, 0, 0};
+  volume::Index3 block_size_{1, 1, 1};
+  volume::Index3 blocks_{0, 0, 0};
 };
 
 }  // namespace
 
-Rendering render(const Anatomy& anatomy, const GridGeometry& geometry, const Progress& progress, Culling culling) {
-  Rendering out{CtGrid(geometry), LabelGrid(geometry), FloatGrid(geometry)};
+Rendering render(const Anatomy& anatomy, const volume::GridGeometry& geometry, const Progress& progress,
+                 Culling culling) {
+  Rendering out{volume::CtGrid(geometry), volume::LabelGrid(geometry), volume::FloatGrid(geometry)};
   const Painter painter(anatomy, geometry, culling, out);
   // A few layers at a time, so that progress is told from the calling thread.
   constexpr std::size_t kBatch = 4;
@@ -136,4 +137,4 @@ Rendering render(const Anatomy& anatomy, const GridGeometry& geometry, const Pro
   return out;
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

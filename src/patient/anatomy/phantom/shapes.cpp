@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 
 void Box::add(const Vec3f& p, float radius) {
   low = low.cwiseMin(p - Vec3f::Constant(radius));
@@ -164,4 +164,4 @@ std::vector<Knot> mirrored(std::vector<Knot> knots) {
   return knots;
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -9,7 +9,7 @@
 
 // Implicit shapes: functions of a point (mm) that are negative inside, zero on the surface, and near it grow by about
 // 1 a mm. All are Lipschitz within kSteepness (blocks of voxels that a shape cannot reach are skipped by it).
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 
 /// Upper bound of the slope of every structure's distance function, noise and warp included.
 inline constexpr float kSteepness = 1.7F;
@@ -109,4 +109,4 @@ std::vector<Cone> chain(const std::vector<Knot>& knots, int pieces_per_span = 6)
 /// The mirror image at the median plane x = 0.
 std::vector<Knot> mirrored(std::vector<Knot> knots);
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -10,7 +10,7 @@
 #include "anatomy/phantom/shapes.h"
 #include "anatomy/phantom/torso.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 
 /// What fills a place: Hounsfield units and label.
 struct Paint {
@@ -28,7 +28,7 @@ struct Brush {
 /// One thing to paint. Later structures cover earlier ones.
 struct Structure {
   std::string name;                             ///< Its main label, for clearances ("rib_cage" for all ribs).
-  Box bounds;                                   ///< Nothing is painted outside.
+  Box bounds;                           ///< Nothing is painted outside.
   std::function<float(const Place&)> distance;  ///< mm, negative inside; slope within kSteepness.
   std::function<Paint(const Place&, float distance, const Brush&)> paint;
 };
@@ -80,4 +80,4 @@ void add_great_vessels(Anatomy& anatomy);  ///< Aorta, vena cava and their branc
 void add_back_muscles(Anatomy& anatomy);
 void add_skeleton(Anatomy& anatomy);
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kSigmaSkinHu = 9.0F;
@@ -35,7 +35,7 @@ float white(std::uint64_t key, std::uint64_t counter) {
 
 class SliceNoise {
  public:
-  SliceNoise(const GridGeometry& geometry, std::uint64_t key)
+  SliceNoise(const volume::GridGeometry& geometry, std::uint64_t key)
       : columns_(geometry.size[0]),
         rows_(geometry.size[1]),
         key_(key),
@@ -85,7 +85,7 @@ class SliceNoise {
 
 }  // namespace
 
-void add_scanner_noise(CtGrid& ct, const FloatGrid& skin_distance_mm, std::uint64_t seed) {
+void add_scanner_noise(volume::CtGrid& ct, const volume::FloatGrid& skin_distance_mm, std::uint64_t seed) {
   const auto plane = static_cast<std::size_t>(ct.geometry.size[0] * ct.geometry.size[1]);
   parallel_for(static_cast<std::size_t>(ct.geometry.size[2]), 4, [&](std::size_t first, std::size_t last) {
     SliceNoise noise(ct.geometry, mix64(seed ^ 0x6e6f697365U));
@@ -102,4 +102,4 @@ void add_scanner_noise(CtGrid& ct, const FloatGrid& skin_distance_mm, std::uint6
   });
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -3,7 +3,7 @@
 
 #include "anatomy/phantom/structure.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 /// All that can lie above the diaphragm.
@@ -73,4 +73,4 @@ void add_thorax(Anatomy& anatomy) {
   add_oesophagus(anatomy);
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
@@ -224,4 +224,4 @@ Place Torso::at(const Vec3f& p) const {
   return {p, p + Vec3f(v[4], v[5], v[6]), v[0], v[1], v[2], v[3]};
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -7,7 +7,7 @@
 #include "anatomy/phantom/shapes.h"
 #include "volume/grid.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 
 /// The box that every phantom fills, whatever its resolution (mm, P).
 inline constexpr float kHalfWidth = 180.5F;
@@ -65,4 +65,4 @@ class Torso {
   std::vector<Node> nodes_;
 };
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

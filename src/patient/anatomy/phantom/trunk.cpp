@@ -4,7 +4,7 @@
 
 #include "anatomy/phantom/structure.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kFatHu = -102.0F;
@@ -124,4 +124,4 @@ void add_trunk(Anatomy& anatomy) {
   add_diaphragm(anatomy);
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

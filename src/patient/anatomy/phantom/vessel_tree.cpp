@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kRunShare = 0.55F;  ///< The same share as the rule's, of the daughters.
@@ -124,4 +124,4 @@ std::vector<Cone> grow_tree(const VesselRoot& root, std::vector<Vec3f> territory
   return grower.take();
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -5,7 +5,7 @@
 
 #include "anatomy/phantom/shapes.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 
 /// How a vessel tree grows.
 struct GrowthRule {
@@ -28,4 +28,4 @@ struct VesselRoot {
 std::vector<Cone> grow_tree(const VesselRoot& root, std::vector<Vec3f> territory, const GrowthRule& rule,
                             Random& random);
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

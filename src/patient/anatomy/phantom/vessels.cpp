@@ -6,7 +6,7 @@
 #include "anatomy/phantom/structure.h"
 #include "anatomy/phantom/vessel_tree.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 constexpr float kArteryHu = 152.0F;
@@ -134,4 +134,4 @@ void add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan) {
   add_tree(anatomy, "hepatic_veins", hepatic, kVeinHu);
 }
 
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

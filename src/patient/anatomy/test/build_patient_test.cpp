@@ -9,12 +9,12 @@
 #include "volume/sampling.h"
 #include "volume/test/make_grids.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 const Vec3 kSpacingMm{3, 3, 4};
 
-LabelSource source(std::string name, LabelGrid mask) {
+LabelSource source(std::string name, volume::LabelGrid mask) {
   return {name + ".nii.gz", std::move(mask), {{1, name}}};
 }
 
@@ -74,8 +74,8 @@ TEST(BuildPatient, AirInsideIsLungOrGas) {
 TEST(BuildPatient, DistanceIsToTheSkinAndNotToTheEndsOfTheScan) {
   const Built built = build({liver()});
   ASSERT_TRUE(built.patient);
-  const GridGeometry& geometry = built.patient->ct.geometry;
-  const auto distance = [&](const Index3& ijk) { return built.patient->skin_distance_mm[ijk]; };
+  const volume::GridGeometry& geometry = built.patient->ct.geometry;
+  const auto distance = [&](const volume::Index3& ijk) { return built.patient->skin_distance_mm[ijk]; };
   const auto middle = [&](std::int64_t k) { return distance({geometry.size[0] / 2, geometry.size[1] / 2, k}); };
   // The trunk is a cylinder along z: the first slice is as deep as the middle one.
   EXPECT_NEAR(middle(0), middle(geometry.size[2] / 2), 1e-3);
@@ -86,7 +86,7 @@ TEST(BuildPatient, WhereMasksOverlapTheMoreSpecialWins) {
   const auto ball = [](double radius_mm) {
     return [radius_mm](const Vec3& p_P) { return (p_P - Vec3(-50.0, -10.0, 0.0)).norm() < radius_mm; };
   };
-  const GridGeometry geometry = Torso::grid(kSpacingMm);
+  const volume::GridGeometry geometry = Torso::grid(kSpacingMm);
   LabelSource tumour = source("livertumor1", Torso::mask(geometry, ball(10.0)));
   LabelSource vein = source("portalvein", Torso::mask(geometry, ball(20.0)));
   for (const bool reversed : {false, true}) {
@@ -113,7 +113,7 @@ TEST(BuildPatient, IdsFollowTheOrderOfTheFiles) {
 
 TEST(BuildPatient, AMaskOnAnotherGridLandsInItsPlace) {
   // Turned by 90 degrees about z, other spacing, cut down to a box around the liver.
-  GridGeometry turned;
+  volume::GridGeometry turned;
   turned.R_PV << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   turned.spacing_mm = {2, 2.5, 3};
   turned.size = {50, 40, 40};
@@ -152,7 +152,7 @@ TEST(BuildPatient, AHollowMaskOfTheBodyStillHoldsItsLung) {
 TEST(BuildPatient, IsTheSameInWhateverOrderTheVolumesAreStored) {
   // Table and sheet, a lung that leaves the scan at both ends, a mask on its own finer grid.
   constexpr double kLength_mm = 48.0;  // short: 49 patients
-  const CtGrid ct = Torso().ct(Torso::grid({6, 5, 8}, kLength_mm));
+  const volume::CtGrid ct = Torso().ct(Torso::grid({6, 5, 8}, kLength_mm));
   const LabelSource mask = source("liver", Torso::mask(Torso::grid({4, 5, 6}, kLength_mm), Torso::is_liver));
   const auto build_stored = [&](const auto& axis, const auto& is_turned) {
     LabelSource stored = mask;
@@ -162,11 +162,11 @@ TEST(BuildPatient, IsTheSameInWhateverOrderTheVolumesAreStored) {
   };
   const VirtualPatient axial = build_stored(std::array<std::size_t, 3>{0, 1, 2}, std::array<bool, 3>{});
   EXPECT_EQ(name_at(axial, {60, 20, -20}), "lung");  // the end of the lung's channel
-  EXPECT_LT(sample_linear(axial.skin_distance_mm, {60, 20, -20}), -20.0);
-  for_each_storage_order([&](const auto& axis, const auto& is_turned) {
+  EXPECT_LT(volume::sample_linear(axial.skin_distance_mm, {60, 20, -20}), -20.0);
+  volume::for_each_storage_order([&](const auto& axis, const auto& is_turned) {
     const VirtualPatient patient = build_stored(axis, is_turned);
     EXPECT_EQ(name_at(patient, {60, 20, -20}), "lung") << axis[0] << axis[1] << axis[2];
-    EXPECT_LT(sample_linear(patient.skin_distance_mm, {60, 20, -20}), -20.0);
+    EXPECT_LT(volume::sample_linear(patient.skin_distance_mm, {60, 20, -20}), -20.0);
     ASSERT_TRUE(patient.ct.geometry.matches(axial.ct.geometry));
     EXPECT_EQ(patient.ct.voxels, axial.ct.voxels);
     EXPECT_EQ(patient.labels.voxels, axial.labels.voxels) << axis[0] << axis[1] << axis[2];
@@ -208,7 +208,7 @@ TEST(BuildPatient, EveryUnknownLabelOfEveryFileIsListed) {
   first.names = {{1, "my_roi"}, {2, "livr"}};
   first.labels.voxels[0] = 2;
   first.labels.voxels[1] = 7;
-  LabelSource second = source("plan_2", LabelGrid(Torso::grid(kSpacingMm), 1));
+  LabelSource second = source("plan_2", volume::LabelGrid(Torso::grid(kSpacingMm), 1));
   const Built built = build({first, liver(), second});
   ASSERT_FALSE(built.patient);
   const std::string text = built.patient.error().text();
@@ -223,7 +223,7 @@ TEST(BuildPatient, IgnoredAndBackgroundLabelsAreLeftOut) {
   organs.labels.voxels[0] = 2;
   organs.labels.voxels[1] = 3;
   organs.names = {{1, "liver"}, {2, "Clear Label"}, {3, std::string(kIgnoredStructure)}};
-  const LabelSource background = source("background", LabelGrid(Torso::grid(kSpacingMm), 1));
+  const LabelSource background = source("background", volume::LabelGrid(Torso::grid(kSpacingMm), 1));
   const Built built = build({organs, background});
   ASSERT_TRUE(built.patient) << built.patient.error().text();
   EXPECT_EQ(name_at(*built.patient, {-50.0, -10.0, 0.0}), "liver");
@@ -232,12 +232,12 @@ TEST(BuildPatient, IgnoredAndBackgroundLabelsAreLeftOut) {
 }
 
 TEST(BuildPatient, EmptyMasksAreWarningsUnlessAllAre) {
-  const LabelSource empty = source("spleen", LabelGrid(Torso::grid(kSpacingMm)));
+  const LabelSource empty = source("spleen", volume::LabelGrid(Torso::grid(kSpacingMm)));
   const Built built = build({liver(), empty});
   ASSERT_TRUE(built.patient);
   EXPECT_TRUE(has_warning(built, "spleen"));
   EXPECT_EQ(built.patient->label_table.find("spleen"), nullptr);
-  const Built nothing = build({empty, source("kidney_left", LabelGrid(Torso::grid(kSpacingMm)))});
+  const Built nothing = build({empty, source("kidney_left", volume::LabelGrid(Torso::grid(kSpacingMm)))});
   ASSERT_FALSE(nothing.patient);
   EXPECT_NE(nothing.patient.error().text().find("empty"), std::string::npos);
 }
@@ -260,15 +260,15 @@ TEST(BuildPatient, NamesWhatTheScanCuts) {
 
 TEST(BuildPatient, ACtWithoutABodyIsRefused) {
   std::vector<std::string> warnings;
-  const auto patient = build_patient(CtGrid(Torso::grid(kSpacingMm), -1000), {liver()}, {"air", {}}, warnings);
+  const auto patient = build_patient(volume::CtGrid(Torso::grid(kSpacingMm), -1000), {liver()}, {"air", {}}, warnings);
   ASSERT_FALSE(patient);
   EXPECT_NE(patient.error().text().find("too little fat and soft tissue"), std::string::npos);
 }
 
 TEST(BuildPatient, IslandsOfNoiseTakeTheTissueAroundThem) {
   // Single voxels of muscle HU in the subcutaneous fat and the other way round.
-  const GridGeometry geometry = Torso::grid(kSpacingMm);
-  CtGrid ct = Torso().ct(geometry);
+  const volume::GridGeometry geometry = Torso::grid(kSpacingMm);
+  volume::CtGrid ct = Torso().ct(geometry);
   std::vector<Vec3> in_fat;
   std::vector<Vec3> in_muscle;
   for (double z = -40.0; z < 41.0; z += 20.0) {
@@ -289,4 +289,4 @@ TEST(BuildPatient, IslandsOfNoiseTakeTheTissueAroundThem) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 TEST(DirectionWords, NameTheTwoLargestDirectionsOfThePatient) {
@@ -18,4 +18,4 @@ TEST(DirectionWords, NameADirectionWithoutALength) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -6,7 +6,7 @@
 #include "anatomy/test/make_torso.h"
 #include "volume/morphology.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 /// Volumes of what is body and of what should be but is not, in ml.
@@ -16,7 +16,7 @@ struct Agreement {
   double extra_ml = 0.0;
 };
 
-Agreement compare(const MaskGrid& found, const GridGeometry& geometry) {
+Agreement compare(const volume::MaskGrid& found, const volume::GridGeometry& geometry) {
   Agreement agreement;
   const double voxel_ml = geometry.voxel_volume_mm3() / 1000.0;
   Torso::for_each(geometry, [&](std::size_t n, const Vec3& p_P) {
@@ -28,14 +28,14 @@ Agreement compare(const MaskGrid& found, const GridGeometry& geometry) {
   return agreement;
 }
 
-MaskGrid find_in(const Torso& torso, const GridGeometry& geometry) {
+volume::MaskGrid find_in(const Torso& torso, const volume::GridGeometry& geometry) {
   return find_body(torso.ct(geometry));
 }
 
 TEST(FindBody, IsTheFilledContourWithoutTableAndSheet) {
   // Isotropic, anisotropic fine, and thick slices.
   for (const Vec3& spacing_mm : {Vec3(3, 3, 3), Vec3(1.5, 1.5, 4), Vec3(2, 2, 7)}) {
-    const GridGeometry geometry = Torso::grid(spacing_mm);
+    const volume::GridGeometry geometry = Torso::grid(spacing_mm);
     const Agreement agreement = compare(find_in(Torso(), geometry), geometry);
     // The shapes are sampled without partial volume: the contour is met voxel by voxel, but for a few at its corners.
     EXPECT_LT(agreement.missed_ml, 1e-4 * agreement.body_ml) << spacing_mm.transpose();
@@ -47,7 +47,7 @@ TEST(FindBody, CutsATableThatTouchesTheBack) {
   Torso torso;
   torso.table_gap_mm = -1.0;
   torso.sheet_gap_mm = -1.0;
-  const GridGeometry geometry = Torso::grid({2, 2, 3});
+  const volume::GridGeometry geometry = Torso::grid({2, 2, 3});
   const Agreement agreement = compare(find_in(torso, geometry), geometry);
   EXPECT_EQ(agreement.missed_ml, 0.0);
   // What touches the skin may stay as a film at the contact, not as a plate.
@@ -55,27 +55,27 @@ TEST(FindBody, CutsATableThatTouchesTheBack) {
 }
 
 TEST(FindBody, IsOneComponentWithoutHoles) {
-  const MaskGrid body = find_in(Torso(), Torso::grid({3, 3, 3}));
-  EXPECT_EQ(connected_components(body).voxel_counts.size(), 1u);
-  EXPECT_EQ(fill_holes_in_slices(body).voxels, body.voxels);
+  const volume::MaskGrid body = find_in(Torso(), Torso::grid({3, 3, 3}));
+  EXPECT_EQ(volume::connected_components(body).voxel_counts.size(), 1u);
+  EXPECT_EQ(volume::fill_holes_in_slices(body).voxels, body.voxels);
 }
 
 TEST(FindBody, KeepsTheLungBehindAThinChestWall) {
   // Only 9 mm of chest wall before a lung that fills most of the trunk: less than any table is thick.
-  const GridGeometry geometry = Torso::grid({3, 3, 3});
-  CtGrid ct = Torso().ct(geometry);
+  const volume::GridGeometry geometry = Torso::grid({3, 3, 3});
+  volume::CtGrid ct = Torso().ct(geometry);
   Torso::for_each(geometry, [&](std::size_t n, const Vec3& p_P) {
     const double r = Torso::radius(p_P);
     if (r < 0.93 && p_P.y() < 20.0) ct.voxels[n] = Torso::kLung;
   });
-  const MaskGrid body = find_body(ct);
+  const volume::MaskGrid body = find_body(ct);
   const Agreement agreement = compare(body, geometry);
   EXPECT_LT(agreement.missed_ml, 0.01 * agreement.body_ml);
   EXPECT_LT(agreement.extra_ml, 0.01 * agreement.body_ml);
 }
 
 TEST(FindBody, FollowsABodyThatTheFieldOfViewCuts) {
-  GridGeometry geometry = Torso::grid({3, 3, 3});
+  volume::GridGeometry geometry = Torso::grid({3, 3, 3});
   geometry.size[0] = 60;  // from x = -220 to -40 mm: the left two thirds are missing
   const Agreement agreement = compare(find_in(Torso(), geometry), geometry);
   EXPECT_EQ(agreement.missed_ml, 0.0);
@@ -83,9 +83,9 @@ TEST(FindBody, FollowsABodyThatTheFieldOfViewCuts) {
 }
 
 TEST(FindBody, ThereIsNoneInAir) {
-  const MaskGrid body = find_body(CtGrid(Torso::grid({6, 6, 6}), -1000));
+  const volume::MaskGrid body = find_body(volume::CtGrid(Torso::grid({6, 6, 6}), -1000));
   EXPECT_EQ(std::count(body.voxels.begin(), body.voxels.end(), 1), 0);
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 std::string tissue_of(std::string_view name) {
@@ -154,4 +154,4 @@ TEST(KnownStructure, ATypingErrorFindsTheNameMeant) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -4,7 +4,7 @@
 
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// A trunk of simple shapes for tests: elliptic, 300 x 220 mm, at belly and back 20 mm of fat around 15 mm of muscle (a
 /// third more at the sides) around a cavity of visceral fat with a "liver", a lung and a gas-filled bowel in it; below
@@ -41,8 +41,8 @@ struct Torso {
     return kAir;
   }
 
-  static GridGeometry grid(const Vec3& spacing_mm, double length_mm = 120.0) {
-    GridGeometry geometry;
+  static volume::GridGeometry grid(const Vec3& spacing_mm, double length_mm = 120.0) {
+    volume::GridGeometry geometry;
     const Vec3 extent_mm(440.0, 320.0, length_mm);
     for (int a = 0; a < 3; ++a)
       geometry.size[static_cast<std::size_t>(a)] = static_cast<std::int64_t>(std::floor(extent_mm[a] / spacing_mm[a]));
@@ -51,26 +51,26 @@ struct Torso {
     return geometry;
   }
 
-  CtGrid ct(const GridGeometry& geometry) const {
-    CtGrid grid(geometry);
+  volume::CtGrid ct(const volume::GridGeometry& geometry) const {
+    volume::CtGrid grid(geometry);
     for_each(geometry, [&](std::size_t n, const Vec3& p_P) { grid.voxels[n] = hu(p_P); });
     return grid;
   }
 
   /// Calls visit(offset, point) for every voxel.
-  static void for_each(const GridGeometry& geometry, const auto& visit) {
+  static void for_each(const volume::GridGeometry& geometry, const auto& visit) {
     for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
-      const Index3 ijk = geometry.index_of(n);
+      const volume::Index3 ijk = geometry.index_of(n);
       visit(n, geometry.to_mm(
                    Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]))));
     }
   }
 
-  static LabelGrid mask(const GridGeometry& geometry, const auto& is_set, std::uint8_t value = 1) {
-    LabelGrid grid(geometry);
+  static volume::LabelGrid mask(const volume::GridGeometry& geometry, const auto& is_set, std::uint8_t value = 1) {
+    volume::LabelGrid grid(geometry);
     for_each(geometry, [&](std::size_t n, const Vec3& p_P) { grid.voxels[n] = is_set(p_P) ? value : 0; });
     return grid;
   }
 };
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -4,17 +4,17 @@
 
 #include <limits>
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 VirtualPatient small_patient() {
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.size = {4, 5, 6};
   geometry.spacing_mm = {0.743, 0.8, 1.6};
   geometry.origin_P = {-100.25, 20.5, -7.0};
   VirtualPatient patient;
-  patient.ct = CtGrid(geometry, 40);
-  patient.labels = LabelGrid(geometry, 0);
+  patient.ct = volume::CtGrid(geometry, 40);
+  patient.labels = volume::LabelGrid(geometry, 0);
   patient.labels[{1, 2, 3}] = 4;
   patient.label_table.labels = {{4, "liver", "liver", {150, 70, 50}}};
   return patient;
@@ -60,7 +60,7 @@ TEST(PatientHash, TextsDoNotRunIntoOneAnother) {
 
 TEST(FindLabel, GivesTheNearestVoxelsLabel) {
   const VirtualPatient patient = small_patient();
-  const GridGeometry& geometry = patient.labels.geometry;
+  const volume::GridGeometry& geometry = patient.labels.geometry;
   const Label* label = find_label(patient, geometry.to_mm({1.4, 1.6, 3.4}));
   ASSERT_NE(label, nullptr);
   EXPECT_EQ(label->name, "liver");
@@ -70,4 +70,4 @@ TEST(FindLabel, GivesTheNearestVoxelsLabel) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

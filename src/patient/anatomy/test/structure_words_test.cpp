@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 TEST(StructureWords, PutTheSideInFront) {
@@ -39,4 +39,4 @@ TEST(StructureWords, NumbersInNamesAreOrderedByTheirValue) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 // All numbers are assumed: far from what CTs of a trunk show (a fifth and more of the voxels is air, nine tenths of the
@@ -25,7 +25,7 @@ constexpr const char* kAdvice =
 
 class Histogram {
  public:
-  explicit Histogram(const CtGrid& ct) : counts_(std::size_t{1} << 16) {
+  explicit Histogram(const volume::CtGrid& ct) : counts_(std::size_t{1} << 16) {
     for (const std::int16_t value : ct.voxels) ++counts_[at(value)];
   }
   /// Voxels from `low` to below `high`.
@@ -52,7 +52,7 @@ class Histogram {
 
 }  // namespace
 
-Status apply_rescale(const Rescale& rescale, CtGrid& ct) {
+Status apply_rescale(const Rescale& rescale, volume::CtGrid& ct) {
   constexpr double kMaxSlope = 1e4, kMaxIntercept = 1e6;
   const double slope = std::abs(rescale.slope);
   if (!(slope >= 1.0 / kMaxSlope && slope <= kMaxSlope) || !(std::abs(rescale.intercept) <= kMaxIntercept))
@@ -68,7 +68,7 @@ Status apply_rescale(const Rescale& rescale, CtGrid& ct) {
   return {};
 }
 
-Status check_hounsfield(const CtGrid& ct) {
+Status check_hounsfield(const volume::CtGrid& ct) {
   const Histogram histogram(ct);
   const std::string range = fmt::format("its values are {} to {}", histogram.lowest(), histogram.highest());
   const auto all = static_cast<double>(ct.voxels.size());
@@ -82,4 +82,4 @@ Status check_hounsfield(const CtGrid& ct) {
   return {};
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

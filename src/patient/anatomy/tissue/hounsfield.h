@@ -3,7 +3,7 @@
 #include "core/result.h"
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// value -> slope * value + intercept, rounded.
 struct Rescale {
@@ -13,12 +13,12 @@ struct Rescale {
 
 /// Stored numbers to HU: for a CT whose file lacks them (--rescale). Below -32768 becomes -32768; an error where a
 /// value would be above 32767.
-Status apply_rescale(const Rescale& rescale, CtGrid& ct);
+Status apply_rescale(const Rescale& rescale, volume::CtGrid& ct);
 
 /// Whether the numbers of a CT can be HU: there is air, and most of what is no air is soft tissue. Not so where the
 /// rescale tags are missing (air at 0), applied twice, or where a picture of 8 bits was exported. Errors name the range
 /// that was found. Every build of a patient asks for this: without air no skin is found, and the noise of a whole
 /// volume becomes structures.
-Status check_hounsfield(const CtGrid& ct);
+Status check_hounsfield(const volume::CtGrid& ct);
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -1,6 +1,6 @@
 #include "anatomy/tissue/hu_transfer.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 HuLaw mix(const HuLaw& a, const HuLaw& b, double t) noexcept {
@@ -26,4 +26,4 @@ HuLaw HuTransfer::at(double hu_value) const noexcept {
   return laws[knot_count - 1];
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

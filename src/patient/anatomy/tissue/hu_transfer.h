@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// What tissue of one intensity does to a needle where no label says more (paper B, eqs. 1 to 5; physics.md B1 to B4).
 struct HuLaw {
@@ -33,4 +33,4 @@ struct HuTransfer {
   HuLaw at(double hu_value) const noexcept;
 };
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

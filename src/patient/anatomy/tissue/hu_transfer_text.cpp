@@ -6,18 +6,18 @@
 #include "config/sourced_number.h"
 #include "config/toml_quoted.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 /// How far every value of an assumed curve may be off, as factors around 1.
 constexpr std::string_view kFactors = "factors";
-constexpr Range kFactorRange{0.01, 100.0};
+constexpr config::Range kFactorRange{0.01, 100.0};
 
 std::string path_of(std::string_view field) {
   return fmt::format("{}.{}", kTransfer, field);
 }
 
-Status read_knots(const TomlTable& section, HuTransfer& transfer) {
+Status read_knots(const config::TomlTable& section, HuTransfer& transfer) {
   TROCAR_TRY(const std::vector<double> knots, section.numbers("hu", kHuRange));
   if (knots.size() < 2 || knots.size() > HuTransfer::kMaxKnots)
     return fail(fmt::format("hu has {} knots", knots.size()), section.where(),
@@ -32,9 +32,9 @@ Status read_knots(const TomlTable& section, HuTransfer& transfer) {
 }
 
 /// KEY = {values = [one a knot], source = "…", factors = [0.5, 2.0]}.
-Status read_curve(const TomlTable& section, const TissueField<HuLaw>& field, TissueTable& table) {
+Status read_curve(const config::TomlTable& section, const TissueField<HuLaw>& field, TissueTable& table) {
   HuTransfer& transfer = table.transfer;
-  TROCAR_TRY(const TomlTable entry, section.table(field.name));
+  TROCAR_TRY(const config::TomlTable entry, section.table(field.name));
   TROCAR_TRY_STATUS(entry.check_keys({"values", "source", kFactors}));
   TROCAR_TRY(const std::vector<double> values, entry.numbers("values", field.range));
   if (values.size() != transfer.knot_count)
@@ -59,8 +59,9 @@ Status read_curve(const TomlTable& section, const TissueField<HuLaw>& field, Tis
   return {};
 }
 
-Status read_gradient_number(const TomlTable& section, const TissueField<HuTransfer>& field, TissueTable& table) {
-  TROCAR_TRY(const SourcedNumber number, read_sourced_number(section, field.name, field.range));
+Status read_gradient_number(const config::TomlTable& section, const TissueField<HuTransfer>& field,
+                            TissueTable& table) {
+  TROCAR_TRY(const config::SourcedNumber number, config::read_sourced_number(section, field.name, field.range));
   table.transfer.*field.member = number.value;
   Provenance provenance{number.source, {}, {}};
   if (number.range) {
@@ -73,9 +74,9 @@ Status read_gradient_number(const TomlTable& section, const TissueField<HuTransf
 
 }  // namespace
 
-Status read_hu_transfer(const TomlTable& document, TissueTable& table) {
+Status read_hu_transfer(const config::TomlTable& document, TissueTable& table) {
   if (!document.has(kTransfer)) return {};
-  TROCAR_TRY(const TomlTable section, document.table(kTransfer));
+  TROCAR_TRY(const config::TomlTable section, document.table(kTransfer));
   std::vector<std::string_view> known = {"hu"};
   for (const auto& field : kHuLawFields) known.push_back(field.name);
   for (const auto& field : kGradientFields) known.push_back(field.name);
@@ -99,7 +100,7 @@ void append_hu_transfer(std::string& out, const TissueTable& table) {
     for (std::size_t n = 0; n < transfer.knot_count; ++n) values.push_back(transfer.laws[n].*field.member);
     const Provenance source = find_provenance(table.provenance, path_of(field.name));
     out += fmt::format("{} = {{values = [{}], source = {}", field.name, fmt::join(values, ", "),
-                       toml_quoted(source.source));
+                       config::toml_quoted(source.source));
     if (source.low && source.high) out += fmt::format(", {} = [{}, {}]", kFactors, *source.low, *source.high);
     out += "}\n";
   }
@@ -107,4 +108,4 @@ void append_hu_transfer(std::string& out, const TissueTable& table) {
     append_number(out, field.name, transfer.*field.member, path_of(field.name), table.provenance);
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -6,7 +6,7 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "config/toml.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// The curves and numbers of the section [transfer] of a tissue file. Private to the tissue table's units.
 inline constexpr std::array<TissueField<HuLaw>, 8> kHuLawFields{{
@@ -27,14 +27,14 @@ inline constexpr std::array<TissueField<HuTransfer>, 3> kGradientFields{{
 inline constexpr std::string_view kTransfer = "transfer";
 /// An override transfer.FIELD_factor multiplies a curve.
 inline constexpr std::string_view kFactorEnding = "_factor";
-inline constexpr Range kCurveFactorRange{0.1, 10.0};
-inline constexpr Range kHuRange{-1100.0, 4000.0};
+inline constexpr config::Range kCurveFactorRange{0.1, 10.0};
+inline constexpr config::Range kHuRange{-1100.0, 4000.0};
 
 /// Reads [transfer] into table.transfer; nothing when the file has none. Errors name the line: knots that do not rise,
 /// curves of another length, numbers out of range or without source, thresholds that cross.
-Status read_hu_transfer(const TomlTable& document, TissueTable& table);
+Status read_hu_transfer(const config::TomlTable& document, TissueTable& table);
 
 /// Appends [transfer] so that read_hu_transfer gives the same; nothing for a table without.
 void append_hu_transfer(std::string& out, const TissueTable& table);
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 struct HuRange {
@@ -49,4 +49,4 @@ std::vector<std::string> find_implausible_hu(const VirtualPatient& patient,
   return doubts;
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -5,7 +5,7 @@
 
 #include "anatomy/build_patient.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// Labels whose mean HU no tissue of their kind has, one line each: bone that is soft, lung that is solid, a liver of
 /// air. Where that holds for many of them, a line that the segmentation may belong to another CT comes first.
@@ -13,4 +13,4 @@ namespace trocar {
 std::vector<std::string> find_implausible_hu(const VirtualPatient& patient,
                                              const std::vector<LabelStatistics>& statistics);
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

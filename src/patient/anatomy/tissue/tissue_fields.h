@@ -7,7 +7,7 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "config/toml.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// A number of a tissue or layer as files and overrides name it. Private to the tissue table's units.
 template <class T>
@@ -15,7 +15,7 @@ struct TissueField {
   std::string_view name;
   std::string_view short_name;
   double T::*member;
-  Range range;
+  config::Range range;
 };
 
 inline constexpr std::string_view kPunctureForce = "puncture_force_n";
@@ -39,7 +39,7 @@ inline constexpr std::array<TissueField<TissueParams>, 6> kTissueFields{{
 }};
 
 inline constexpr std::string_view kSkinThickness = "thickness_mm";
-inline constexpr Range kSkinThicknessRange{0.5, 6.0};
+inline constexpr config::Range kSkinThicknessRange{0.5, 6.0};
 
 /// Source of a number that apply_override has set.
 inline constexpr std::string_view kOverrideSource = "set by the user";
@@ -62,4 +62,4 @@ Provenance find_provenance(const std::map<std::string, Provenance>& provenance, 
 void append_number(std::string& out, std::string_view key, double value, const std::string& path,
                    const std::map<std::string, Provenance>& provenance);
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -8,7 +8,7 @@
 #include "anatomy/tissue/hu_transfer_text.h"
 #include "anatomy/tissue/tissue_fields.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 /// In which of the force models a number is felt (physics.md, table of the models' parts).
@@ -64,7 +64,7 @@ const Wording& words_of(const Words& words, std::string_view key) noexcept {
   return *std::find_if(words.begin(), words.end(), [&](const Wording& w) { return w.key == key; });
 }
 
-TissueParameter parameter_of(const Wording& words, std::string setting, double value, Range range) {
+TissueParameter parameter_of(const Wording& words, std::string setting, double value, config::Range range) {
   TissueParameter made;
   made.setting = std::move(setting);
   made.key = words.key;
@@ -184,4 +184,4 @@ std::vector<TissueParameterGroup> tissue_parameters(const TissueTable& table) {
   return groups;
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -6,7 +6,7 @@
 
 #include "anatomy/tissue/tissue_table.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// A number of a tissue table that is fitted to a patient (paper A: "an interface to adjust these parameters"), as
 /// a window shows it and apply_override takes it.
@@ -39,4 +39,4 @@ struct TissueParameterGroup {
 /// "transfer.X_factor" has the value 1: it is relative to the table.
 std::vector<TissueParameterGroup> tissue_parameters(const TissueTable& table);
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -8,7 +8,7 @@
 #include "anatomy/tissue/hu_transfer_text.h"
 #include "anatomy/tissue/tissue_fields.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 constexpr std::string_view kViscosity = "nu";  // of layers and of tissues
@@ -100,4 +100,4 @@ std::vector<std::string> changed_settings(const TissueTable& from, const TissueT
   return settings;
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

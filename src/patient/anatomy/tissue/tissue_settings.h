@@ -5,7 +5,7 @@
 
 #include "anatomy/tissue/tissue_table.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// The numbers that a user has set in a table (apply_override), as settings: "skin.fp=6", "tissues.liver.nu=0.01".
 std::vector<std::string> user_settings(const TissueTable& table);
@@ -15,4 +15,4 @@ std::vector<std::string> user_settings(const TissueTable& table);
 /// "transfer.tn=replaced".
 std::vector<std::string> changed_settings(const TissueTable& from, const TissueTable& to);
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

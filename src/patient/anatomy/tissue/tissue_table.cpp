@@ -9,10 +9,10 @@
 #include "config/sourced_number.h"
 #include "core/files/atomic_file.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
-constexpr Range kUnknownYoung{1.0, 1000.0};
+constexpr config::Range kUnknownYoung{1.0, 1000.0};
 constexpr std::size_t kMaxEntries = 250;  ///< Tissues and layers are numbered with one byte.
 
 template <class T>
@@ -23,9 +23,9 @@ std::optional<std::uint8_t> find_named(const std::vector<T>& entries, std::strin
 }
 
 /// Reads one number with its source into `value` and the table's provenance under `path`.
-Status read_number(const TomlTable& row, std::string_view key, Range allowed, const std::string& path, double& value,
-                   TissueTable& table) {
-  TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, key, allowed));
+Status read_number(const config::TomlTable& row, std::string_view key, config::Range allowed, const std::string& path,
+                   double& value, TissueTable& table) {
+  TROCAR_TRY(const config::SourcedNumber number, config::read_sourced_number(row, key, allowed));
   value = number.value;
   Provenance provenance{number.source, {}, {}};
   if (number.range) {
@@ -37,7 +37,7 @@ Status read_number(const TomlTable& row, std::string_view key, Range allowed, co
 }
 
 /// puncture_force_n = {never = true, source = "…"}; nothing when the entry is an ordinary number.
-Result<std::optional<std::string>> read_never(const TomlTable& row, std::string_view key) {
+Result<std::optional<std::string>> read_never(const config::TomlTable& row, std::string_view key) {
   const auto entry = row.table(key);
   if (!entry || !entry->has("never")) return std::optional<std::string>();
   TROCAR_TRY_STATUS(entry->check_keys({"never", "source"}));
@@ -49,7 +49,7 @@ Result<std::optional<std::string>> read_never(const TomlTable& row, std::string_
 
 /// Reads the fields of a row; in a profile only those that stand there.
 template <class T>
-Status read_fields(const TomlTable& row, std::span<const TissueField<T>> fields, const std::string& path,
+Status read_fields(const config::TomlTable& row, std::span<const TissueField<T>> fields, const std::string& path,
                    bool are_required, T& entry, TissueTable& table) {
   for (const TissueField<T>& field : fields) {
     if (!are_required && !row.has(field.name)) continue;
@@ -76,7 +76,7 @@ std::vector<std::string_view> field_names(std::span<const TissueField<T>> fields
 
 /// The fields of a tissue that a row must have. Sessions that were stored before tissues had a Young's modulus still
 /// load: what is missing takes the default, and says so.
-std::span<const TissueField<TissueParams>> required_fields(const TomlTable& row, bool is_stored,
+std::span<const TissueField<TissueParams>> required_fields(const config::TomlTable& row, bool is_stored,
                                                            const std::string& path, TissueTable& table) {
   const std::span<const TissueField<TissueParams>> fields = kTissueFields;
   static_assert(kTissueFields.back().name == kYoung);
@@ -86,10 +86,10 @@ std::span<const TissueField<TissueParams>> required_fields(const TomlTable& row,
   return fields.first(fields.size() - 1);
 }
 
-Status read_layers(const TomlTable& document, TissueTable& table) {
-  TROCAR_TRY(const TomlTable rows, document.table("layers"));
+Status read_layers(const config::TomlTable& document, TissueTable& table) {
+  TROCAR_TRY(const config::TomlTable rows, document.table("layers"));
   for (const std::string& name : rows.keys()) {
-    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(const config::TomlTable row, rows.table(name));
     std::vector<std::string_view> known = field_names<LayerParams>(kLayerFields);
     known.push_back(kWall);
     TROCAR_TRY_STATUS(row.check_keys(known));
@@ -102,16 +102,16 @@ Status read_layers(const TomlTable& document, TissueTable& table) {
   return {};
 }
 
-Status read_tissues(const TomlTable& document, TissueTable& table) {
+Status read_tissues(const config::TomlTable& document, TissueTable& table) {
   TissueParams air;
   air.name = "air";
   table.tissues.push_back(std::move(air));
-  TROCAR_TRY(const TomlTable rows, document.table("tissues"));
+  TROCAR_TRY(const config::TomlTable rows, document.table("tissues"));
   std::vector<std::string_view> known = field_names<TissueParams>(kTissueFields);
   known.push_back("layer");
   const bool is_stored = document.has("applied_profile");
   for (const std::string& name : rows.keys()) {
-    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(const config::TomlTable row, rows.table(name));
     if (name == "air") return fail("air is built in and gives no force", row.where(), "remove it");
     TROCAR_TRY_STATUS(row.check_keys(known));
     TissueParams tissue;
@@ -130,12 +130,12 @@ Status read_tissues(const TomlTable& document, TissueTable& table) {
 
 /// The changes of one profile on the entries of one kind ("layers" or "tissues").
 template <class T>
-Status apply_profile_part(const TomlTable& profile, std::string_view kind, std::span<const TissueField<T>> fields,
-                          std::vector<T>& entries, TissueTable& table) {
+Status apply_profile_part(const config::TomlTable& profile, std::string_view kind,
+                          std::span<const TissueField<T>> fields, std::vector<T>& entries, TissueTable& table) {
   if (!profile.has(kind)) return {};
-  TROCAR_TRY(const TomlTable rows, profile.table(kind));
+  TROCAR_TRY(const config::TomlTable rows, profile.table(kind));
   for (const std::string& name : rows.keys()) {
-    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(const config::TomlTable row, rows.table(name));
     TROCAR_TRY_STATUS(row.check_keys(field_names<T>(fields)));
     const auto index = find_named(entries, name);
     if (!index)
@@ -146,7 +146,7 @@ Status apply_profile_part(const TomlTable& profile, std::string_view kind, std::
   return {};
 }
 
-Status apply_profile(const TomlTable& document, std::string_view wanted, TissueTable& table) {
+Status apply_profile(const config::TomlTable& document, std::string_view wanted, TissueTable& table) {
   TROCAR_TRY(const std::string applied, document.string_or("applied_profile", ""));
   if (!applied.empty()) {
     if (!wanted.empty() && wanted != applied)
@@ -156,20 +156,20 @@ Status apply_profile(const TomlTable& document, std::string_view wanted, TissueT
     return {};
   }
   table.profile = wanted.empty() ? kDefaultProfile : wanted;
-  TROCAR_TRY(const TomlTable profiles, document.table("profiles"));
+  TROCAR_TRY(const config::TomlTable profiles, document.table("profiles"));
   if (!profiles.has(table.profile))
     return fail_usage(fmt::format("unknown tissue profile \"{}\"", table.profile), document.where(),
                       fmt::format("known are: {}", fmt::join(profiles.keys(), ", ")));
-  TROCAR_TRY(const TomlTable profile, profiles.table(table.profile));
+  TROCAR_TRY(const config::TomlTable profile, profiles.table(table.profile));
   TROCAR_TRY_STATUS(profile.check_keys({"description", "layers", "tissues"}));
   TROCAR_TRY_STATUS(apply_profile_part<LayerParams>(profile, "layers", kLayerFields, table.layers, table));
   return apply_profile_part<TissueParams>(profile, "tissues", kTissueFields, table.tissues, table);
 }
 
-Result<TissueTable> read_table(const TomlTable& document, std::string_view profile) {
+Result<TissueTable> read_table(const config::TomlTable& document, std::string_view profile) {
   TROCAR_TRY_STATUS(document.check_keys({"skin", "layers", "tissues", "profiles", "applied_profile", kTransfer}));
   TissueTable table;
-  TROCAR_TRY(const TomlTable skin, document.table("skin"));
+  TROCAR_TRY(const config::TomlTable skin, document.table("skin"));
   TROCAR_TRY_STATUS(skin.check_keys({kSkinThickness}));
   TROCAR_TRY_STATUS(
       read_number(skin, kSkinThickness, kSkinThicknessRange, "skin.thickness_mm", table.skin_thickness_mm, table));
@@ -197,23 +197,23 @@ std::optional<std::uint8_t> TissueTable::find_layer(std::string_view name) const
 }
 
 Result<TissueTable> parse_tissue_table(std::string_view toml_text, const std::string& name, std::string_view profile) {
-  TROCAR_TRY(const TomlTable document, parse_toml(toml_text, name));
+  TROCAR_TRY(const config::TomlTable document, config::parse_toml(toml_text, name));
   return read_table(document, profile);
 }
 
 Result<TissueTable> load_tissue_table(const std::filesystem::path& path, std::string_view profile) {
-  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   return read_table(document, profile);
 }
 
 Result<std::vector<std::string>> tissue_profiles(const std::filesystem::path& path) {
-  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   if (document.has("applied_profile")) {
     TROCAR_TRY(std::string applied, document.string("applied_profile"));
     return std::vector<std::string>{std::move(applied)};
   }
-  TROCAR_TRY(const TomlTable profiles, document.table("profiles"));
+  TROCAR_TRY(const config::TomlTable profiles, document.table("profiles"));
   return profiles.keys();
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

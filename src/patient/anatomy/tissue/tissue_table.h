@@ -12,7 +12,7 @@
 #include "anatomy/tissue/hu_transfer.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 
 /// A membrane or organ surface that indents under the tip until it gives way (paper A, pre-puncture force; physics.md
 /// P1).
@@ -78,4 +78,4 @@ Result<std::vector<std::string>> tissue_profiles(const std::filesystem::path& pa
 /// 0.1..10, each value kept in its field's range. Out of range or unknown: exit status 2, the table stays as it was.
 Status apply_override(TissueTable& table, std::string_view assignment);
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

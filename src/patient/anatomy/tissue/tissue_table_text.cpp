@@ -10,7 +10,7 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "config/toml_quoted.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 constexpr std::string_view kOfLayers = "layers.", kOfTissues = "tissues.";
@@ -48,7 +48,7 @@ Result<Assignment> parse_assignment(std::string_view text) {
   return assignment;
 }
 
-Status check_range(const Assignment& assignment, std::string_view field, Range range, std::string_view text) {
+Status check_range(const Assignment& assignment, std::string_view field, config::Range range, std::string_view text) {
   const bool is_never = std::isinf(assignment.value) && field == kPunctureForce;
   if (is_never || (assignment.value >= range.low && assignment.value <= range.high)) return {};
   return fail_usage(fmt::format("{} must be a number from {} to {}", field, range.low, range.high), std::string(text),
@@ -195,23 +195,23 @@ void append_number(std::string& out, std::string_view key, double value, const s
   out += fmt::format("{} = {{", key);
   // The shortest digits that read back to the same bits.
   out += std::isinf(value) ? "never = true" : fmt::format("value = {}", value);
-  out += ", source = " + toml_quoted(source.source);
+  out += ", source = " + config::toml_quoted(source.source);
   if (source.low && source.high) out += fmt::format(", range = [{}, {}]", *source.low, *source.high);
   out += "}\n";
 }
 
 std::string TissueTable::to_toml() const {
-  std::string out = fmt::format("applied_profile = {}\n\n[skin]\n", toml_quoted(profile));
+  std::string out = fmt::format("applied_profile = {}\n\n[skin]\n", config::toml_quoted(profile));
   append_number(out, kSkinThickness, skin_thickness_mm, "skin.thickness_mm", provenance);
   for (const LayerParams& layer : layers) {
-    out += fmt::format("\n[layers.{}]\n", toml_quoted(layer.name));
+    out += fmt::format("\n[layers.{}]\n", config::toml_quoted(layer.name));
     if (layer.is_wall) out += fmt::format("{} = true\n", kWall);
     append_fields<LayerParams>(out, layer, kLayerFields, "layers", provenance);
   }
   for (std::size_t n = 1; n < tissues.size(); ++n) {
     const TissueParams& tissue = tissues[n];
-    out += fmt::format("\n[tissues.{}]\n", toml_quoted(tissue.name));
-    if (tissue.layer) out += fmt::format("layer = {}\n", toml_quoted(layers[*tissue.layer].name));
+    out += fmt::format("\n[tissues.{}]\n", config::toml_quoted(tissue.name));
+    if (tissue.layer) out += fmt::format("layer = {}\n", config::toml_quoted(layers[*tissue.layer].name));
     append_fields<TissueParams>(out, tissue, kTissueFields, "tissues", provenance);
   }
   append_hu_transfer(out, *this);
@@ -223,4 +223,4 @@ Status apply_override(TissueTable& table, std::string_view assignment) {
   return Override(table, parsed, assignment).apply();
 }
 
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -17,14 +17,14 @@
 
 #include "surface/detail/mesh_repair.h"
 
-namespace trocar::detail {
+namespace trocar::surface::detail {
 namespace {
 
 constexpr int kFull = 255;
 constexpr double kFewTriangles = 1000.0;  // assumed: a mesh this small is drawn as it is
 
 /// The grid with an empty voxel around it, so that its contour closes.
-vtkNew<vtkImageData> to_vtk(const Grid<std::uint8_t>& grid) {
+vtkNew<vtkImageData> to_vtk(const volume::Grid<std::uint8_t>& grid) {
   const auto& size = grid.geometry.size;
   const Vec3& spacing_mm = grid.geometry.spacing_mm;
   vtkNew<vtkImageData> image;
@@ -113,10 +113,10 @@ vtkSmartPointer<vtkPolyData> smoothed(vtkPolyData& surface, const SurfaceOptions
 
 }  // namespace
 
-Grid<std::uint8_t> occupancy(const MaskGrid& mask, double spacing_mm) {
-  const GridGeometry& fine = mask.geometry;
-  Index3 factor;
-  GridGeometry coarse = fine;
+volume::Grid<std::uint8_t> occupancy(const volume::MaskGrid& mask, double spacing_mm) {
+  const volume::GridGeometry& fine = mask.geometry;
+  volume::Index3 factor;
+  volume::GridGeometry coarse = fine;
   Vec3 first_centre;  // of the first coarse voxel, in fine indices
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
@@ -135,19 +135,19 @@ Grid<std::uint8_t> occupancy(const MaskGrid& mask, double spacing_mm) {
       for (std::int64_t i = 0; i < fine.size[0]; ++i) row[i / factor[0]] += mask.voxels[n++];
     }
   }
-  Grid<std::uint8_t> filled(coarse);
+  volume::Grid<std::uint8_t> filled(coarse);
   const auto block = static_cast<int>(factor[0] * factor[1] * factor[2]);
   for (n = 0; n < counts.size(); ++n) filled.voxels[n] = static_cast<std::uint8_t>(counts[n] * kFull / block);
   return filled;
 }
 
-std::size_t count_faces(const Grid<std::uint8_t>& occupancy) {
+std::size_t count_faces(const volume::Grid<std::uint8_t>& occupancy) {
   const auto& size = occupancy.geometry.size;
   const std::array<std::int64_t, 3> step{1, size[0], size[0] * size[1]};
   const auto is_filled = [&](std::int64_t n) { return 2 * occupancy.voxels[static_cast<std::size_t>(n)] > kFull; };
   std::size_t faces = 0;
   std::int64_t n = 0;
-  for (Index3 ijk{0, 0, 0}; ijk[2] < size[2]; ++ijk[2])
+  for (volume::Index3 ijk{0, 0, 0}; ijk[2] < size[2]; ++ijk[2])
     for (ijk[1] = 0; ijk[1] < size[1]; ++ijk[1])
       for (ijk[0] = 0; ijk[0] < size[0]; ++ijk[0], ++n)
         for (std::size_t a = 0; a < 3; ++a) {
@@ -158,8 +158,8 @@ std::size_t count_faces(const Grid<std::uint8_t>& occupancy) {
   return faces;
 }
 
-Grid<std::uint8_t> bounded_occupancy(const MaskGrid& mask, double spacing_mm, std::size_t max_faces) {
-  Grid<std::uint8_t> grid = occupancy(mask, spacing_mm);
+volume::Grid<std::uint8_t> bounded_occupancy(const volume::MaskGrid& mask, double spacing_mm, std::size_t max_faces) {
+  volume::Grid<std::uint8_t> grid = occupancy(mask, spacing_mm);
   while (count_faces(grid) > max_faces) {
     const double finest_mm = grid.geometry.spacing_mm.minCoeff();
     grid = occupancy(mask, 2.0 * finest_mm);
@@ -167,7 +167,7 @@ Grid<std::uint8_t> bounded_occupancy(const MaskGrid& mask, double spacing_mm, st
   return grid;
 }
 
-TriangleMesh contour(const Grid<std::uint8_t>& occupancy, const SurfaceOptions& options) {
+TriangleMesh contour(const volume::Grid<std::uint8_t>& occupancy, const SurfaceOptions& options) {
   vtkNew<vtkFlyingEdges3D> edges;
   edges->SetInputData(to_vtk(occupancy));
   edges->SetValue(0, 0.5 * kFull);
@@ -197,4 +197,4 @@ TriangleMesh contour(const Grid<std::uint8_t>& occupancy, const SurfaceOptions& 
   return mesh;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::surface::detail

@@ -2,22 +2,22 @@
 
 #include "surface/extract_surface.h"
 
-namespace trocar::detail {
+namespace trocar::surface::detail {
 
 /// How much of each voxel a mask fills, 0..255, on a grid made coarser by whole factors until its spacing is about
 /// `spacing_mm` (0: the mask's own grid).
-Grid<std::uint8_t> occupancy(const MaskGrid& mask, double spacing_mm);
+volume::Grid<std::uint8_t> occupancy(const volume::MaskGrid& mask, double spacing_mm);
 
 /// Faces between voxels that are half filled or more and others, the grid's border included: a contour has about two
 /// triangles for each.
-std::size_t count_faces(const Grid<std::uint8_t>& occupancy);
+std::size_t count_faces(const volume::Grid<std::uint8_t>& occupancy);
 
 /// The occupancy at about `spacing_mm`, or so much coarser that it has at most `max_faces`. Smoothing and decimation
 /// take minutes for the millions of triangles of noise.
-Grid<std::uint8_t> bounded_occupancy(const MaskGrid& mask, double spacing_mm, std::size_t max_faces);
+volume::Grid<std::uint8_t> bounded_occupancy(const volume::MaskGrid& mask, double spacing_mm, std::size_t max_faces);
 
 /// Contour of a half filled voxel, smoothed and decimated with VTK's filters; in mm along the grid's axes from voxel
 /// (0,0,0), closed, triangles outward.
-TriangleMesh contour(const Grid<std::uint8_t>& occupancy, const SurfaceOptions& options);
+TriangleMesh contour(const volume::Grid<std::uint8_t>& occupancy, const SurfaceOptions& options);
 
-}  // namespace trocar::detail
+}  // namespace trocar::surface::detail

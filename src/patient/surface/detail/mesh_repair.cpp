@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-namespace trocar::detail {
+namespace trocar::surface::detail {
 namespace {
 
 /// An edge that is walked once, packed for sorting.
@@ -72,4 +72,4 @@ void restore_volume(TriangleMesh& mesh, double volume_mm3, double max_shift_mm) 
     mesh.vertices[n] += static_cast<float>(shift_mm) * normals[n].normalized();
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::surface::detail

@@ -2,7 +2,7 @@
 
 #include "geometry/triangle_mesh.h"
 
-namespace trocar::detail {
+namespace trocar::surface::detail {
 
 /// Fills the holes of a mesh, each by a fan of triangles: afterwards every edge is walked as often in one direction as
 /// in the other. For the few triangles that a decimation loses.
@@ -12,4 +12,4 @@ void close_holes(TriangleMesh& mesh);
 /// volume again that rounding off its corners took.
 void restore_volume(TriangleMesh& mesh, double volume_mm3, double max_shift_mm);
 
-}  // namespace trocar::detail
+}  // namespace trocar::surface::detail

@@ -9,31 +9,31 @@
 #include "core/random.h"
 #include "surface/detail/contour.h"
 
-namespace trocar {
+namespace trocar::surface {
 namespace {
 
-GridGeometry cube(std::int64_t size, const Vec3& spacing_mm) {
-  GridGeometry geometry;
+volume::GridGeometry cube(std::int64_t size, const Vec3& spacing_mm) {
+  volume::GridGeometry geometry;
   geometry.size = {size, size, size};
   geometry.spacing_mm = spacing_mm;
   return geometry;
 }
 
-MaskGrid fill(const GridGeometry& geometry, const auto& is_inside) {
-  MaskGrid mask(geometry);
+volume::MaskGrid fill(const volume::GridGeometry& geometry, const auto& is_inside) {
+  volume::MaskGrid mask(geometry);
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
-    const Index3 ijk = geometry.index_of(n);
+    const volume::Index3 ijk = geometry.index_of(n);
     mask.voxels[n] = is_inside(
         geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]))));
   }
   return mask;
 }
 
-MaskGrid ball(const GridGeometry& geometry, const Vec3& centre_P, double radius_mm) {
+volume::MaskGrid ball(const volume::GridGeometry& geometry, const Vec3& centre_P, double radius_mm) {
   return fill(geometry, [&](const Vec3& p_P) { return (p_P - centre_P).norm() < radius_mm; });
 }
 
-double voxel_volume_mm3(const MaskGrid& mask) {
+double voxel_volume_mm3(const volume::MaskGrid& mask) {
   return static_cast<double>(std::count(mask.voxels.begin(), mask.voxels.end(), 1)) * mask.geometry.voxel_volume_mm3();
 }
 
@@ -53,7 +53,7 @@ bool is_closed(const TriangleMesh& mesh) {
 TEST(ExtractSurface, ASphereKeepsVolumeAndRadius) {
   constexpr double kRadiusMm = 15.0;
   const Vec3 centre_P(20.0, 20.0, 20.0);
-  const MaskGrid mask = ball(cube(41, {1, 1, 1}), centre_P, kRadiusMm);
+  const volume::MaskGrid mask = ball(cube(41, {1, 1, 1}), centre_P, kRadiusMm);
   const TriangleMesh mesh = extract_surface(mask);
   ASSERT_FALSE(mesh.triangles.empty());
   EXPECT_TRUE(is_closed(mesh));
@@ -65,7 +65,7 @@ TEST(ExtractSurface, ASphereKeepsVolumeAndRadius) {
 }
 
 TEST(ExtractSurface, SmoothingTakesAwayTheStairs) {
-  const MaskGrid mask = ball(cube(41, {1, 1, 1}), {20, 20, 20}, 15.0);
+  const volume::MaskGrid mask = ball(cube(41, {1, 1, 1}), {20, 20, 20}, 15.0);
   SurfaceOptions rough;
   rough.smoothing_iterations = 0;
   rough.decimate_to_fraction = 1.0;
@@ -79,7 +79,7 @@ TEST(ExtractSurface, SmoothingTakesAwayTheStairs) {
 }
 
 TEST(ExtractSurface, ATurnedAnisotropicGridLandsInItsPlace) {
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.size = {60, 50, 24};
   geometry.spacing_mm = {0.8, 0.9, 2.5};
   geometry.R_PV = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
@@ -94,7 +94,7 @@ TEST(ExtractSurface, ATurnedAnisotropicGridLandsInItsPlace) {
 }
 
 TEST(ExtractSurface, AStructureThatTheGridCutsIsClosedAtTheCut) {
-  const MaskGrid mask = ball(cube(30, {1, 1, 1}), {0, 15, 29}, 12.0);
+  const volume::MaskGrid mask = ball(cube(30, {1, 1, 1}), {0, 15, 29}, 12.0);
   const TriangleMesh mesh = extract_surface(mask);
   EXPECT_TRUE(is_closed(mesh));
   EXPECT_NEAR(enclosed_volume_mm3(mesh) / voxel_volume_mm3(mask), 1.0, 0.02);
@@ -103,8 +103,8 @@ TEST(ExtractSurface, AStructureThatTheGridCutsIsClosedAtTheCut) {
 TEST(ExtractSurface, RaggedMasksAreClosedToo) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Random random(seed);
-    const GridGeometry geometry = cube(24, {1, 1.3, 2});
-    MaskGrid mask(geometry);
+    const volume::GridGeometry geometry = cube(24, {1, 1.3, 2});
+    volume::MaskGrid mask(geometry);
     for (auto& voxel : mask.voxels) voxel = random.uniform() < 0.4 ? 1 : 0;
     EXPECT_TRUE(is_closed(extract_surface(mask))) << seed;
   }
@@ -112,7 +112,7 @@ TEST(ExtractSurface, RaggedMasksAreClosedToo) {
 
 TEST(ExtractSurface, ALargeStructureIsCoarserAndKeepsItsVolume) {
   // 1.8 million voxels of 0.6 mm, with ribs on it and a hollow in it.
-  const MaskGrid mask = fill(cube(160, {0.6, 0.6, 0.6}), [](const Vec3& p_P) {
+  const volume::MaskGrid mask = fill(cube(160, {0.6, 0.6, 0.6}), [](const Vec3& p_P) {
     const Vec3 r = p_P - Vec3(48, 48, 48);
     return r.norm() < 44.0 + 1.5 * std::sin(0.4 * r.x()) && (r - Vec3(10, 0, 0)).norm() > 8.0;
   });
@@ -131,30 +131,30 @@ TEST(ExtractSurface, ALargeStructureIsCoarserAndKeepsItsVolume) {
 }
 
 TEST(BoundedOccupancy, CountsTheFacesOfABlock) {
-  const GridGeometry grid = cube(8, {1, 1, 1});
-  EXPECT_EQ(detail::count_faces(detail::occupancy(MaskGrid(grid, 1), 0.0)), 6u * 64u);
-  const MaskGrid corner = fill(grid, [](const Vec3& p) { return p.maxCoeff() < 1.5; });
+  const volume::GridGeometry grid = cube(8, {1, 1, 1});
+  EXPECT_EQ(detail::count_faces(detail::occupancy(volume::MaskGrid(grid, 1), 0.0)), 6u * 64u);
+  const volume::MaskGrid corner = fill(grid, [](const Vec3& p) { return p.maxCoeff() < 1.5; });
   EXPECT_EQ(detail::count_faces(detail::occupancy(corner, 0.0)), 24u);
-  EXPECT_EQ(detail::count_faces(detail::occupancy(MaskGrid(grid), 0.0)), 0u);
+  EXPECT_EQ(detail::count_faces(detail::occupancy(volume::MaskGrid(grid), 0.0)), 0u);
 }
 
 TEST(BoundedOccupancy, NoiseIsMadeCoarserUntilItsSurfaceIsBounded) {
-  const GridGeometry grid = cube(64, {0.7, 0.7, 2.0});
+  const volume::GridGeometry grid = cube(64, {0.7, 0.7, 2.0});
   std::uint64_t n = 0;
-  const MaskGrid noise = fill(grid, [&](const Vec3&) { return uniform01(7, n++) < 0.5; });
+  const volume::MaskGrid noise = fill(grid, [&](const Vec3&) { return uniform01(7, n++) < 0.5; });
   ASSERT_GT(detail::count_faces(detail::occupancy(noise, 0.0)), 300'000u);
   for (const std::size_t most : {100'000u, 10'000u, 100u})
     EXPECT_LE(detail::count_faces(detail::bounded_occupancy(noise, 0.0, most)), most);
   // An organ is left as it is.
-  const MaskGrid organ = ball(grid, {22, 22, 60}, 18.0);
+  const volume::MaskGrid organ = ball(grid, {22, 22, 60}, 18.0);
   EXPECT_EQ(detail::bounded_occupancy(organ, 0.0, 100'000u).voxels, detail::occupancy(organ, 0.0).voxels);
 }
 
 TEST(ExtractSurface, SmoothingDoesNotStretch) {
   // Two balls 180 mm apart in one mask. VTK's filter alone moves them 0.4 mm further apart.
-  GridGeometry geometry = cube(20, {1, 1, 1});
+  volume::GridGeometry geometry = cube(20, {1, 1, 1});
   geometry.size[2] = 200;
-  const MaskGrid mask = fill(geometry, [](const Vec3& p_P) {
+  const volume::MaskGrid mask = fill(geometry, [](const Vec3& p_P) {
     return (p_P - Vec3(10, 10, 10)).norm() < 8.0 || (p_P - Vec3(10, 10, 190)).norm() < 8.0;
   });
   double sum[2] = {0.0, 0.0};
@@ -170,16 +170,16 @@ TEST(ExtractSurface, SmoothingDoesNotStretch) {
 }
 
 TEST(ExtractSurface, AnEmptyMaskHasNone) {
-  EXPECT_TRUE(extract_surface(MaskGrid(cube(8, {1, 1, 1}))).vertices.empty());
+  EXPECT_TRUE(extract_surface(volume::MaskGrid(cube(8, {1, 1, 1}))).vertices.empty());
 }
 
-VirtualPatient small_patient() {
-  const GridGeometry geometry = cube(40, {2, 2, 2});
-  VirtualPatient patient;
-  patient.labels = LabelGrid(geometry, 0);
-  patient.skin_distance_mm = FloatGrid(geometry);
+anatomy::VirtualPatient small_patient() {
+  const volume::GridGeometry geometry = cube(40, {2, 2, 2});
+  anatomy::VirtualPatient patient;
+  patient.labels = volume::LabelGrid(geometry, 0);
+  patient.skin_distance_mm = volume::FloatGrid(geometry);
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
-    const Index3 ijk = geometry.index_of(n);
+    const volume::Index3 ijk = geometry.index_of(n);
     const Vec3 r =
         geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]))) -
         Vec3(39, 39, 39);
@@ -209,13 +209,13 @@ TEST(ExtractSurfaces, GivesSkinAndStructuresWithoutFillingsAndCrumbs) {
 
 TEST(ExtractSurfaces, AnOrganGoesAboutItsLesions) {
   // One within it, one at its border; of both the organ's own surface shows nothing.
-  VirtualPatient patient = small_patient();
+  anatomy::VirtualPatient patient = small_patient();
   const double whole_mm3 = [&] {
     patient.labels[{19, 19, 19}] = 3;
     return enclosed_volume_mm3(extract_surfaces(patient)[1].mesh_P);
   }();
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
-    const Index3 ijk = patient.labels.geometry.index_of(n);
+    const volume::Index3 ijk = patient.labels.geometry.index_of(n);
     const auto near = [&](std::int64_t i, double most) {
       return std::hypot(static_cast<double>(ijk[0] - i), static_cast<double>(ijk[1] - 19),
                         static_cast<double>(ijk[2] - 19)) < most;
@@ -239,4 +239,4 @@ TEST(ExtractSurfaces, CrumbsAreAMatterOfTheOptions) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::surface

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::surface {
 namespace {
 
 TriangleMesh octahedron() {
@@ -54,4 +54,4 @@ TEST(RestoreVolume, NeverMovesFartherThanAllowed) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::surface

@@ -1,6 +1,6 @@
 #include "haptics/closed_loop/closed_loop.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 const char* to_string(Holder holder) noexcept {
   switch (holder) {
@@ -48,7 +48,7 @@ ClosedLoop::ClosedLoop(std::shared_ptr<const HapticScene> scene, const DevicePre
   params_.weight_lever_mm = preset.has_torque() ? preset.capability.stylus_lever_mm : 0.0;
 }
 
-const TickSample& ClosedLoop::carry(const Vec3& tip_P, const Vec3& axis_P) noexcept {
+const telemetry::TickSample& ClosedLoop::carry(const Vec3& tip_P, const Vec3& axis_P) noexcept {
   const Pose X_PS = needle_pose(tip_P, axis_P) * scene_->X_SN.inverse();
   stylus_.v_P = time_s_ > 0.0 ? Vec3((X_PS.p() - stylus_.X_PS.p()) / dt_s_) : Vec3::Zero();
   stylus_.w_P = Vec3::Zero();
@@ -57,13 +57,13 @@ const TickSample& ClosedLoop::carry(const Vec3& tip_P, const Vec3& axis_P) noexc
   return sense();
 }
 
-const TickSample& ClosedLoop::run(const StylusHold& hold) noexcept {
+const telemetry::TickSample& ClosedLoop::run(const StylusHold& hold) noexcept {
   const StylusMotion motion = step_stylus(stylus_, params_, hold, acting_P_, scene_->gravity_P, dt_s_);
   observer_.add(acting_P_, motion.v_P, motion.w_P, dt_s_);
   return sense();
 }
 
-const TickSample& ClosedLoop::sense() noexcept {
+const telemetry::TickSample& ClosedLoop::sense() noexcept {
   time_s_ += dt_s_;
   Pose X_DS = quantise(scene_->X_PD.inverse() * stylus_.X_PS, encoder_);
   if (!senses_rotation_) X_DS = Pose(scene_->X_PD.R().transpose() * R_PS_told_, X_DS.p());
@@ -78,4 +78,4 @@ const TickSample& ClosedLoop::sense() noexcept {
   return sample_;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

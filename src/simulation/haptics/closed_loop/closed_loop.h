@@ -3,12 +3,12 @@
 #include <array>
 #include <memory>
 
-#include "haptics/coupling/device_preset.h"
 #include "haptics/closed_loop/passivity_observer.h"
 #include "haptics/closed_loop/virtual_stylus.h"
+#include "haptics/coupling/device_preset.h"
 #include "haptics/tick.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// Who holds the simulated device.
 enum class Holder { kHand, kGuidingHand, kBare45g, kBare150g };
@@ -29,14 +29,14 @@ class ClosedLoop {
   ClosedLoop(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset, Holder holder, double dt_s = 0.001);
 
   /// The device is carried along a prescribed way: a tick with the needle's tip and axis there.
-  const TickSample& carry(const Vec3& tip_P, const Vec3& axis_P) noexcept;
+  const telemetry::TickSample& carry(const Vec3& tip_P, const Vec3& axis_P) noexcept;
   /// One tick of the device on its own under `hold`.
-  const TickSample& run(const StylusHold& hold) noexcept;
+  const telemetry::TickSample& run(const StylusHold& hold) noexcept;
 
   const VirtualStylusState& stylus() const noexcept { return stylus_; }
   VirtualStylusState& stylus() noexcept { return stylus_; }
   Vec3 tip_P() const noexcept { return (stylus_.X_PS * scene_->X_SN).p(); }
-  const TickSample& last() const noexcept { return sample_; }
+  const telemetry::TickSample& last() const noexcept { return sample_; }
   const Wrench& wrench_P() const noexcept { return wrench_P_; }
   const PassivityObserver& observer() const noexcept { return observer_; }
   void restart_observer() noexcept { observer_ = {}; }
@@ -44,7 +44,7 @@ class ClosedLoop {
   double dt_s() const noexcept { return dt_s_; }
 
  private:
-  const TickSample& sense() noexcept;
+  const telemetry::TickSample& sense() noexcept;
 
   std::shared_ptr<const HapticScene> scene_;
   EncoderParams encoder_;
@@ -57,8 +57,8 @@ class ClosedLoop {
   Wrench wrench_P_;                    ///< About S: of the last tick, acts during the one after the next.
   Wrench acting_P_;                    ///< About S: acts during the next tick.
   HapticState state_;
-  TickSample sample_;
+  telemetry::TickSample sample_;
   PassivityObserver observer_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -2,7 +2,7 @@
 
 #include "haptics/closed_loop/rotation.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 Vec3 rounded(const Vec3& v, double count) noexcept {
@@ -17,4 +17,4 @@ Pose quantise(const Pose& X_DS, const EncoderParams& encoder) noexcept {
   return {rotation_from_vector(rounded(rotation_vector(X_DS.R()), encoder.count_rad)), p};
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -2,7 +2,7 @@
 
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// What the sensors of a device resolve.
 struct EncoderParams {
@@ -14,4 +14,4 @@ struct EncoderParams {
 /// further from the true one than half a count an axis. Real-time safe.
 Pose quantise(const Pose& X_DS, const EncoderParams& encoder) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

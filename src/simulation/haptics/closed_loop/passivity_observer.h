@@ -5,7 +5,7 @@
 #include "geometry/vec.h"
 #include "haptics/insertion/path_constraint.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// Keeps account of the energy that the haptic side gives to a device: E = sum (f.v + tau.w) dt (physics.md H5). Tissue
 /// can only give back what was put in: while nobody works on the device E must not grow. After Hannaford and Ryu's time
@@ -31,4 +31,4 @@ class PassivityObserver {
   double growth_mj_ = 0.0;
 };
 
-}  // namespace trocar
+}  // namespace trocar::haptics

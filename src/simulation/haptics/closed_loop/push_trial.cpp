@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::haptics {
 
 std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset,
                                        const PushTrial& trial) {
@@ -21,11 +21,11 @@ std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene,
     const double hand_mm = is_pushing ? trial.from_mm + trial.speed_mm_per_s * t : trial.to_mm;
     hold.X_PS = Pose::translation({0.0, 0.0, hand_mm - length_mm});
     hold.velocity_P = Vec3(0.0, 0.0, is_pushing ? trial.speed_mm_per_s : 0.0);
-    const TickSample& tick = loop->run(hold);
+    const telemetry::TickSample& tick = loop->run(hold);
     PushSample sample{t,     hand_mm, loop->tip_P().z(), -(loop->wrench_P().force_n - tick.f_weight_n).z(),
                       false, kNoLayer};
-    for (const TickEvent& event : tick.events) {
-      if (event.kind != EventKind::kPuncture) continue;
+    for (const telemetry::TickEvent& event : tick.events) {
+      if (event.kind != telemetry::EventKind::kPuncture) continue;
       sample.is_puncture = true;
       sample.layer = event.id;
     }
@@ -118,4 +118,4 @@ LossOfResistance judge_loss_of_resistance(const std::vector<PushSample>& samples
   return loss;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -4,7 +4,7 @@
 
 #include "haptics/closed_loop/closed_loop.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// A hand pushes the device's needle straight down (+z) at constant speed and then holds it there: what the device
 /// feels, tick by tick (docs/validation.md, Bone and loss of resistance).
@@ -49,4 +49,4 @@ struct LossOfResistance {
 };
 LossOfResistance judge_loss_of_resistance(const std::vector<PushSample>& samples, std::uint8_t layer) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

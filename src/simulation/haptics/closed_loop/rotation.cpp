@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace trocar {
+namespace trocar::haptics {
 
 Vec3 rotation_vector(const Mat3& R) noexcept {
   const Eigen::Quaterniond q(R);
@@ -20,4 +20,4 @@ Mat3 rotation_from_vector(const Vec3& v) noexcept {
   return Eigen::AngleAxisd(angle, v / angle).toRotationMatrix();
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kCarry_s = 2.0;
@@ -60,7 +60,7 @@ StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, c
   const StylusHold hold = hold_here(*loop, holder, scene->needle.length_mm);
   // Nothing holds a needle across the skin before it is open.
   const bool is_open =
-      loop->last().phase != InsertionPhase::kOutside && loop->last().contact_to_puncture_mm != Vec3::Zero();
+      loop->last().phase != telemetry::InsertionPhase::kOutside && loop->last().contact_to_puncture_mm != Vec3::Zero();
   if (is_open) loop->stylus().v_P += Vec3(trial.tap_mm_per_s, 0.0, 0.0);
   if (is_open && preset.has_torque()) loop->stylus().w_P += Vec3(0.0, trial.tap_rad_per_s, 0.0);
 
@@ -84,4 +84,4 @@ StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, c
   return outcome;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

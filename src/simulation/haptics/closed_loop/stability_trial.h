@@ -2,7 +2,7 @@
 
 #include "haptics/closed_loop/closed_loop.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// A needle is carried straight down (+z) into a flat scene whose skin is at z = 0, held there until the forces have
 /// settled, given a tap and let go; then nobody moves it. A hand wants to stay there and must come to rest. Without a
@@ -34,4 +34,4 @@ struct StabilityOutcome {
 StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset,
                                      Holder holder, const StabilityTrial& trial);
 
-}  // namespace trocar
+}  // namespace trocar::haptics

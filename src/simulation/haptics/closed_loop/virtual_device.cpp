@@ -1,6 +1,6 @@
 #include "haptics/closed_loop/virtual_device.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 void step_device(VirtualDeviceState& state, const VirtualDeviceParams& params, const HandHold& hand,
                  const Vec3& force_P, const Vec3& gravity_P, double dt_s) noexcept {
@@ -15,4 +15,4 @@ void step_device(VirtualDeviceState& state, const VirtualDeviceParams& params, c
   state.X_PN = Pose(hand.R_PN, state.X_PN.p() + dt_s * state.v_P);
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

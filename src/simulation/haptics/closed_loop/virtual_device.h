@@ -2,7 +2,7 @@
 
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// A simulated haptic device: the stylus as a point mass with weight, held by the spring of a hand. Forces of the tick
 /// act on it one tick late, as on a real device. Frame P throughout; the point is the needle's tip.
@@ -31,4 +31,4 @@ struct VirtualDeviceState {
 void step_device(VirtualDeviceState& state, const VirtualDeviceParams& params, const HandHold& hand,
                  const Vec3& force_P, const Vec3& gravity_P, double dt_s) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

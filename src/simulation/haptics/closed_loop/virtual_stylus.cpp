@@ -4,7 +4,7 @@
 
 #include "haptics/closed_loop/rotation.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kMmPerM = 1000.0;
@@ -119,4 +119,4 @@ StylusMotion step_stylus(VirtualStylusState& state, const VirtualStylusParams& p
   return {v, w};
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -3,7 +3,7 @@
 #include "geometry/pose.h"
 #include "haptics/insertion/path_constraint.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// A simulated device in six degrees of freedom: the stylus as a rigid body that moves about its origin S (physics.md
 /// H2). Frame P. The inertia is that of a ball, so that there is no gyroscopic torque.
@@ -52,4 +52,4 @@ struct StylusMotion {
 StylusMotion step_stylus(VirtualStylusState& state, const VirtualStylusParams& params, const StylusHold& hold,
                          const Wrench& wrench_P, const Vec3& gravity_P, double dt_s) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

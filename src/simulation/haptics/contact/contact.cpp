@@ -6,7 +6,7 @@
 
 #include "haptics/contact/contact_balance.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kNear_mm = 1.0;           // points further from the skin cost one look at the distance
@@ -29,7 +29,7 @@ struct SkinHere {
 /// The signed distance to the skin with its gradient in the cell of voxels around a point.
 class SkinField {
  public:
-  explicit SkinField(const VirtualPatient& patient) noexcept
+  explicit SkinField(const anatomy::VirtualPatient& patient) noexcept
       : distance_(patient.skin_distance_mm),
         per_mm_(distance_.geometry.spacing_mm.cwiseInverse()),
         row_(static_cast<std::size_t>(distance_.geometry.size[0])),
@@ -37,7 +37,7 @@ class SkinField {
 
   /// Nothing outside the volume or without a gradient.
   std::optional<SkinHere> at(const Vec3& p_P) const noexcept {
-    const GridGeometry& g = distance_.geometry;
+    const volume::GridGeometry& g = distance_.geometry;
     const Vec3 index = (g.R_PV.transpose() * (p_P - g.origin_P)).cwiseProduct(per_mm_);
     std::int64_t low[3];
     double f[3];
@@ -69,7 +69,7 @@ class SkinField {
   }
 
  private:
-  const FloatGrid& distance_;
+  const volume::FloatGrid& distance_;
   Vec3 per_mm_;
   std::size_t row_;
   std::size_t plane_;
@@ -184,4 +184,4 @@ ContactStep step_contact(ContactState& state, const HapticScene& scene, const Po
   return step;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -7,7 +7,7 @@
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion/path_constraint.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// What a tool on the skin carries from tick to tick. Fixed size, copyable.
 struct ContactState {
@@ -45,4 +45,4 @@ struct ContactStep {
 /// dt > 0, finite pose. Real-time safe.
 ContactStep step_contact(ContactState& state, const HapticScene& scene, const Pose& X_PT, double dt_s) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr int kSweeps = 2;
@@ -181,4 +181,4 @@ ContactSolution solve(const ContactBalance& balance) noexcept {
   return Solver(balance).run();
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -4,7 +4,7 @@
 
 #include "haptics/contact/contact_column.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// A point of the face at or near the skin, with the tool as it was shown last, carried along by the device.
 struct PressedPoint {
@@ -48,4 +48,4 @@ struct ContactSolution {
 /// Real-time safe.
 ContactSolution solve(const ContactBalance& balance) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

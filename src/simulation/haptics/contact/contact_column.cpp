@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kTiny_mm = 1e-9;
@@ -11,7 +11,7 @@ constexpr double kLeastLength_mm = 0.5;
 constexpr double kNPerMm2PerKpa = 1e-3;
 
 /// Young's modulus over HU: HuTransfer::at for this one number.
-double young_of_hu(const HuTransfer& transfer, double hu) noexcept {
+double young_of_hu(const anatomy::HuTransfer& transfer, double hu) noexcept {
   if (!(hu > transfer.hu[0])) return transfer.laws[0].young_kpa;
   for (std::size_t i = 1; i < transfer.knot_count; ++i) {
     if (!(hu < transfer.hu[i])) continue;
@@ -38,7 +38,7 @@ class Ray {
   double young_kpa(double depth_mm) const noexcept {
     if (depth_mm < scene_.skin_thickness_mm) return scene_.tissues[scene_.skin].young_kpa;
     const std::size_t voxel = voxel_at(depth_mm);
-    const VirtualPatient& patient = *scene_.patient;
+    const anatomy::VirtualPatient& patient = *scene_.patient;
     const std::uint8_t label = patient.labels.empty() ? std::uint8_t{0} : patient.labels.voxels[voxel];
     if (label == 0 && scene_.transfer.knot_count > 0 && !patient.ct.empty())
       return young_of_hu(scene_.transfer, patient.ct.voxels[voxel]);
@@ -56,7 +56,7 @@ class Ray {
       return geometry_.offset({static_cast<std::int64_t>(index.x()), static_cast<std::int64_t>(index.y()),
                                static_cast<std::int64_t>(index.z())});
     }
-    Index3 ijk;
+    volume::Index3 ijk;
     for (std::size_t a = 0; a < 3; ++a) {
       const auto last = static_cast<double>(geometry_.size[a] - 1);
       const double v = index[static_cast<int>(a)];
@@ -66,7 +66,7 @@ class Ray {
   }
 
   const HapticScene& scene_;
-  const GridGeometry& geometry_;
+  const volume::GridGeometry& geometry_;
   Vec3 from_;
   Vec3 step_;
   bool is_inside_;
@@ -119,4 +119,4 @@ TissueColumn tissue_column(const HapticScene& scene, const Vec3& skin_point_P, c
   return column;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -2,7 +2,7 @@
 
 #include "haptics/haptic_scene.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The tissue that carries a unit of area of a tool's face (physics.md B9).
 struct TissueColumn {
@@ -39,4 +39,4 @@ inline ColumnResponse respond(const TissueColumn& column, double indentation_mm)
   return {pressure + (indentation_mm - p) * tangent, tangent};
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kGelFriction = 0.05;     // [assumed] 0.02..0.2
@@ -113,4 +113,4 @@ Pose tool_in_stylus(const ContactFace& face) noexcept {
   return {R_ST, Vec3(0.0, 0.0, face.reach_mm)};
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

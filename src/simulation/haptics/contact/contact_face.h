@@ -7,7 +7,7 @@
 #include "core/result.h"
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// What the device's stylus stands for.
 enum class Tool : std::uint8_t {
@@ -56,4 +56,4 @@ Pose tool_in_stylus(const ContactFace& face) noexcept;
 /// (physics.md B9). Grows from 0 to pi/2 spread. Real-time safe.
 double settlement_mm(double depth_mm, double spread_mm) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::haptics {
 
 double AxialBalance::prepuncture_n(double s_mm) const noexcept {
   return prepuncture_force_n(displacement(s_mm), velocity(s_mm), loading);
@@ -68,4 +68,4 @@ AxialSolution solve(const AxialBalance& balance) noexcept {
   return {0.5 * (low + high), true};
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

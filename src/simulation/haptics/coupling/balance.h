@@ -4,7 +4,7 @@
 
 #include "haptics/haptic_scene.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The force balance of the virtual needle along its axis for one step (physics.md V1): resistance of the tissue
 /// against the coupling to the device. The needle has no mass; its speed is (s - s_previous)/dt, so the step is
@@ -41,4 +41,4 @@ struct AxialSolution {
 /// The s at which resistance and coupling balance. Bounded, real-time safe.
 AxialSolution solve(const AxialBalance& balance) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

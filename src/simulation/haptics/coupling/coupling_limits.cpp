@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 Status check_range(double value, double low, double high, const char* name, const char* unit) {
@@ -42,4 +42,4 @@ Status check(const CouplingParams& coupling, const CouplingLimits& limits) {
   return check_range(coupling.damping_ns_per_mm, 0.0, most_ns_per_mm, "coupling.damping", "N s/mm");
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -3,7 +3,7 @@
 #include "core/result.h"
 #include "haptics/coupling/device_preset.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// What a coupling may be, in the patient's newtons and millimetres.
 struct CouplingLimits {
@@ -22,4 +22,4 @@ CouplingParams within(const CouplingParams& coupling, const CouplingLimits& limi
 /// numbers of its own: it is that of two springs as far apart as the tool is wide (physics.md B9).
 Status check(const CouplingParams& coupling, const CouplingLimits& limits);
 
-}  // namespace trocar
+}  // namespace trocar::haptics

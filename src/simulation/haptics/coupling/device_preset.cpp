@@ -9,18 +9,19 @@
 #include "config/sourced_number.h"
 #include "haptics/coupling/coupling_limits.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-Status read_value(const TomlTable& row, std::string_view key, Range range, double& value) {
-  TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, key, range));
+Status read_value(const config::TomlTable& row, std::string_view key, config::Range range, double& value) {
+  TROCAR_TRY(const config::SourcedNumber number, config::read_sourced_number(row, key, range));
   value = number.value;
   return {};
 }
 
-Status read_optional(const TomlTable& row, std::string_view key, Range range, std::optional<double>& value) {
+Status read_optional(const config::TomlTable& row, std::string_view key, config::Range range,
+                     std::optional<double>& value) {
   if (!row.has(key)) return {};
   double number = 0.0;
   TROCAR_TRY_STATUS(read_value(row, key, range, number));
@@ -29,12 +30,12 @@ Status read_optional(const TomlTable& row, std::string_view key, Range range, st
 }
 
 /// A sourced number where the key is there; else `value` stays.
-Status read_given(const TomlTable& row, std::string_view key, Range range, double& value) {
+Status read_given(const config::TomlTable& row, std::string_view key, config::Range range, double& value) {
   return row.has(key) ? read_value(row, key, range, value) : Status{};
 }
 
 /// Three plain numbers where the key is there (a calibration is measured on the spot and has no source), else zero.
-Result<Vec3> read_vec3(const TomlTable& row, std::string_view key, Range range) {
+Result<Vec3> read_vec3(const config::TomlTable& row, std::string_view key, config::Range range) {
   if (!row.has(key)) return Vec3(Vec3::Zero());
   TROCAR_TRY(const std::vector<double> numbers, row.numbers(key, range));
   if (numbers.size() != 3)
@@ -43,7 +44,7 @@ Result<Vec3> read_vec3(const TomlTable& row, std::string_view key, Range range) 
   return Vec3(numbers[0], numbers[1], numbers[2]);
 }
 
-Result<int> read_dof(const TomlTable& row, std::string_view key, bool may_be_none) {
+Result<int> read_dof(const config::TomlTable& row, std::string_view key, bool may_be_none) {
   TROCAR_TRY(const std::int64_t dof, row.integer(key, {0, 6}));
   const bool is_known = dof == 3 || dof == 6 || (dof == 0 && may_be_none);
   if (is_known) return static_cast<int>(dof);
@@ -51,7 +52,7 @@ Result<int> read_dof(const TomlTable& row, std::string_view key, bool may_be_non
               "correct it in the device table");
 }
 
-Status read_motion(const TomlTable& row, DevicePreset& preset) {
+Status read_motion(const config::TomlTable& row, DevicePreset& preset) {
   TROCAR_TRY(preset.sensed_dof, read_dof(row, "sensed_dof", false));
   TROCAR_TRY(preset.actuated_dof, read_dof(row, "actuated_dof", true));
   TROCAR_TRY_STATUS(read_value(row, "workspace_radius_mm", {10.0, 1000.0}, preset.workspace_radius_mm));
@@ -67,7 +68,7 @@ Status read_motion(const TomlTable& row, DevicePreset& preset) {
   return {};
 }
 
-Status read_forces(const TomlTable& row, DevicePreset& preset) {
+Status read_forces(const config::TomlTable& row, DevicePreset& preset) {
   DeviceCapability& capability = preset.capability;
   TROCAR_TRY_STATUS(read_value(row, "peak_force_n", {0.1, 200.0}, capability.peak_force_n));
   TROCAR_TRY_STATUS(
@@ -88,9 +89,9 @@ Status read_forces(const TomlTable& row, DevicePreset& preset) {
 }
 
 /// How its motion and force become the patient's.
-Status read_mapping(const TomlTable& row, DevicePreset& preset) {
-  constexpr Range kRoom_mm{-5000.0, 5000.0};
-  constexpr Range kTurn_deg{-360.0, 360.0};
+Status read_mapping(const config::TomlTable& row, DevicePreset& preset) {
+  constexpr config::Range kRoom_mm{-5000.0, 5000.0};
+  constexpr config::Range kTurn_deg{-360.0, 360.0};
   TROCAR_TRY_STATUS(read_given(row, "force_scale", {0.01, 1.0}, preset.force_scale));
   TROCAR_TRY_STATUS(read_given(row, "motion_scale", {0.1, 10.0}, preset.motion_scale));
   if (row.has("clutch_button")) {
@@ -107,7 +108,7 @@ Status read_mapping(const TomlTable& row, DevicePreset& preset) {
   return {};
 }
 
-Result<DevicePreset> read_preset(const TomlTable& row, const std::string& name) {
+Result<DevicePreset> read_preset(const config::TomlTable& row, const std::string& name) {
   DevicePreset preset;
   preset.name = name;
   TROCAR_TRY(preset.title, row.string("title"));
@@ -144,12 +145,12 @@ Result<DevicePreset> read_preset(const TomlTable& row, const std::string& name) 
 }  // namespace
 
 Result<std::vector<DevicePreset>> load_device_presets(const std::filesystem::path& path) {
-  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   TROCAR_TRY_STATUS(document.check_keys({"devices"}));
-  TROCAR_TRY(const TomlTable rows, document.table("devices"));
+  TROCAR_TRY(const config::TomlTable rows, document.table("devices"));
   std::vector<DevicePreset> presets;
   for (const std::string& name : rows.keys()) {
-    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(const config::TomlTable row, rows.table(name));
     TROCAR_TRY(DevicePreset preset, read_preset(row, name));
     presets.push_back(std::move(preset));
   }
@@ -181,4 +182,4 @@ void apply_device_preset(const DevicePreset& preset, HapticOptions& options) noe
   constraint.force_n = std::min(constraint.force_n, preset.coupling.stiffness_n_per_mm * constraint.linear_mm);
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

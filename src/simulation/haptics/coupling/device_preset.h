@@ -8,10 +8,10 @@
 
 #include "core/result.h"
 #include "geometry/pose.h"
-#include "haptics/haptic_scene.h"
 #include "haptics/closed_loop/encoder.h"
+#include "haptics/haptic_scene.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// A haptic device as data (data/devices.toml): what it can do, and the coupling we use with it.
 struct DevicePreset {
@@ -51,4 +51,4 @@ DeviceCapability scene_capability(const DevicePreset& preset) noexcept;
 /// What a scene for this device needs: its coupling, and no constraint stiffer than it.
 void apply_device_preset(const DevicePreset& preset, HapticOptions& options) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -5,22 +5,25 @@
 #include "haptics/tick.h"
 
 /// What the ticks of all tools share. Private to `haptics`; all of it real-time safe.
-namespace trocar {
+namespace trocar::haptics {
 
 /// Fills the few places for events in a sample; the last one says when there were more.
 class EventList {
  public:
-  explicit EventList(TickSample& sample) noexcept : sample_(sample) {}
-  void add(EventKind kind, std::uint8_t id) noexcept {
+  explicit EventList(telemetry::TickSample& sample) noexcept : sample_(sample) {}
+  void add(telemetry::EventKind kind, std::uint8_t id) noexcept {
     if (count_ < sample_.events.size())
       sample_.events[count_++] = {kind, id};
     else
-      sample_.events.back() = {EventKind::kLimit, static_cast<std::uint8_t>(LimitReason::kEventsDropped)};
+      sample_.events.back() = {telemetry::EventKind::kLimit,
+                               static_cast<std::uint8_t>(telemetry::LimitReason::kEventsDropped)};
   }
-  void add(LimitReason reason) noexcept { add(EventKind::kLimit, static_cast<std::uint8_t>(reason)); }
+  void add(telemetry::LimitReason reason) noexcept {
+    add(telemetry::EventKind::kLimit, static_cast<std::uint8_t>(reason));
+  }
 
  private:
-  TickSample& sample_;
+  telemetry::TickSample& sample_;
   std::size_t count_ = 0;
 };
 
@@ -44,13 +47,13 @@ inline bool clamp_norm(Vec3& v, double limit) noexcept {
 /// into D, and beside them the weight's part of them.
 inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, EventList& events,
                             const HapticScene& scene) noexcept {
-  TickSample& sample = output.sample;
+  telemetry::TickSample& sample = output.sample;
   Vec3 torque_P = sample.tau_nmm;
   const bool force_limited = clamp_norm(sample.device_f_n, scene.device.peak_force_n);
   const bool has_torque = scene.device.has_torque();
   const bool torque_limited = has_torque && clamp_norm(torque_P, scene.device.peak_torque_nmm);
-  if (force_limited) events.add(LimitReason::kForceClamped);
-  if (torque_limited) events.add(LimitReason::kTorqueClamped);
+  if (force_limited) events.add(telemetry::LimitReason::kForceClamped);
+  if (torque_limited) events.add(telemetry::LimitReason::kTorqueClamped);
   sample.limited = force_limited || torque_limited;
 
   const Mat3 R_DP = scene.X_PD.R().transpose();
@@ -62,4 +65,4 @@ inline void limit_to_device(HapticOutput& output, const Wrench& weight_P, EventL
   if (has_torque) output.weight_D.torque_nmm = R_DP * weight_P.torque_nmm;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 // Known shares: 6.2/37.5 N and 0.88/3.3 N, 188/515 N mm (data/devices.toml, premium and omni).
@@ -35,4 +35,4 @@ GateParams gate_params(const DevicePreset& preset) noexcept {
   return params;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -5,7 +5,7 @@
 
 #include "haptics/gate/detail/gate_stages.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 /// A field's range, and what it is taken for where it is out of it: the end that gives the least force.
@@ -88,4 +88,4 @@ GateParams made_safe(const GateParams& params) noexcept {
 }
 
 }  // namespace detail
-}  // namespace trocar
+}  // namespace trocar::haptics

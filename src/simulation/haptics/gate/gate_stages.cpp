@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar::detail {
+namespace trocar::haptics::detail {
 namespace {
 
 constexpr double kBeyondReason = 1e6;       // of any unit: a force, a speed, a position of no device [assumed]
@@ -93,14 +93,15 @@ bool restore(GateState& state) noexcept {
                          state.scale <= 1.0 && std::isfinite(state.energy_mj) && state.force_heat >= 0.0 &&
                          std::isfinite(state.force_heat) && state.torque_heat >= 0.0 &&
                          std::isfinite(state.torque_heat) && is_sound(state.runaway_s) && is_sound(state.quiet_s) &&
-                         is_sound(state.drop_from_n) && is_sound(state.drop_s) && state.mode <= GateMode::kFault &&
-                         state.fault <= kLastGateFault &&
-                         (state.mode == GateMode::kFault) == (state.fault != GateFault::kNone);
+                         is_sound(state.drop_from_n) && is_sound(state.drop_s) &&
+                         state.mode <= telemetry::GateMode::kFault && state.fault <= telemetry::kLastGateFault &&
+                         (state.mode == telemetry::GateMode::kFault) == (state.fault != telemetry::GateFault::kNone);
   if (is_usable) return true;
-  const GateFault fault = state.fault <= kLastGateFault ? state.fault : GateFault::kNotFinite;
+  const telemetry::GateFault fault =
+      state.fault <= telemetry::kLastGateFault ? state.fault : telemetry::GateFault::kNotFinite;
   state = GateState{};
   state.fault = fault;
-  state.mode = fault == GateFault::kNone ? GateMode::kOff : GateMode::kFault;
+  state.mode = fault == telemetry::GateFault::kNone ? telemetry::GateMode::kOff : telemetry::GateMode::kFault;
   state.force_heat = state.torque_heat = 1.0;  // how warm is not known: as warm as may be
   return false;
 }
@@ -182,4 +183,4 @@ Wrench limited(const Wrench& wrench, const Vec3& axis, double force_n, double to
   return {clipped(result.force_n, force_n), clipped(result.torque_nmm, torque_nmm)};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::haptics::detail

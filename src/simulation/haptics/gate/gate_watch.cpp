@@ -6,7 +6,7 @@
 #include "haptics/gate/loop_limits.h"
 
 /// Watches of the safety gate: the loop's period, impossible motion, vibration (physics.md G11-G13).
-namespace trocar::detail {
+namespace trocar::haptics::detail {
 namespace {
 
 constexpr double kOwnShare = 0.5;          // of a late period, spent in the loop's own calls: it will be late again
@@ -29,7 +29,7 @@ void watch_loop(GateState& state, const GateInput& input, double rise_s, const G
   const bool is_own = input.busy_s > kOwnShare * input.dt_s;
   const bool is_slow = is_late && (is_own || state.since_late_s < kMemory_s);
   const bool is_forceful = input.coupling.stiffness_n_per_mm > 0.0 && state.scale > 0.0;
-  const bool is_counted = is_forceful || state.fault == GateFault::kLoopSlow;
+  const bool is_counted = is_forceful || state.fault == telemetry::GateFault::kLoopSlow;
   const double late_s = (is_own ? 2.0 : 1.0) * input.dt_s;
   state.slow_s =
       std::clamp(state.slow_s + (is_late && is_counted ? late_s : -input.dt_s), 0.0, 2.0 * params.max_slow_s);
@@ -78,4 +78,4 @@ bool is_vibrating(const GateState& state) noexcept {
   return state.vibration_s >= kMostVibration_s;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::haptics::detail

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kDelayPeriods = 1.5;    // of a wrench: held for a period, one period late (physics.md H2)
@@ -28,4 +28,4 @@ double longest_period_s(const CouplingParams& coupling, const GateParams& params
   return std::max(longest_s, kLeastLate * params.period_s);
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

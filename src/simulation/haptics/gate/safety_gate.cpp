@@ -5,7 +5,7 @@
 
 #include "haptics/gate/detail/gate_stages.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kNominalPeriod_s = 0.001;  // where the caller's is no time
@@ -49,43 +49,46 @@ void count_runaway(GateState& state, bool is_braking, double rise_s) noexcept {
 }
 
 /// Why the force must go in this period. The caller's word comes first: it names the cause.
-GateFault find_cause(const GateState& state, const GateInput& input, const GateParams& params,
-                     bool is_usable) noexcept {
-  if (input.device_fault > kLastGateFault) return GateFault::kNotFinite;
-  if (input.device_fault != GateFault::kNone) return input.device_fault;
-  if (!is_usable) return GateFault::kNotFinite;
-  if (!(input.unread_s <= params.max_unread_s)) return GateFault::kDeviceSilent;
-  if (state.mode != GateMode::kOff && detail::is_motion_impossible(state, input, params))
-    return GateFault::kImpossibleMotion;
-  if (state.runaway_s > params.max_runaway_s + kSum_s) return GateFault::kRunaway;
-  if (detail::is_loop_slow(state, params)) return GateFault::kLoopSlow;
-  if (detail::is_vibrating(state)) return GateFault::kVibration;
-  if (state.fault == GateFault::kRunaway && is_too_fast(input, params)) return GateFault::kRunaway;
-  return GateFault::kNone;
+telemetry::GateFault find_cause(const GateState& state, const GateInput& input, const GateParams& params,
+                                bool is_usable) noexcept {
+  if (input.device_fault > telemetry::kLastGateFault) return telemetry::GateFault::kNotFinite;
+  if (input.device_fault != telemetry::GateFault::kNone) return input.device_fault;
+  if (!is_usable) return telemetry::GateFault::kNotFinite;
+  if (!(input.unread_s <= params.max_unread_s)) return telemetry::GateFault::kDeviceSilent;
+  if (state.mode != telemetry::GateMode::kOff && detail::is_motion_impossible(state, input, params))
+    return telemetry::GateFault::kImpossibleMotion;
+  if (state.runaway_s > params.max_runaway_s + kSum_s) return telemetry::GateFault::kRunaway;
+  if (detail::is_loop_slow(state, params)) return telemetry::GateFault::kLoopSlow;
+  if (detail::is_vibrating(state)) return telemetry::GateFault::kVibration;
+  if (state.fault == telemetry::GateFault::kRunaway && is_too_fast(input, params))
+    return telemetry::GateFault::kRunaway;
+  return telemetry::GateFault::kNone;
 }
 
 /// Safe start, fading and resume (physics.md G7): moves the mode and its scale.
-void step_mode(GateState& state, const GateInput& input, const GateParams& params, const Period& period) noexcept {
-  if (state.mode == GateMode::kOff) {
+void step_mode(GateState& state, const GateInput& input, const GateParams& params,
+               const Period& period) noexcept {
+  if (state.mode == telemetry::GateMode::kOff) {
     state.scale = 0.0;
     state.energy_mj = 0.0;
-    if (input.is_wanted) state.mode = GateMode::kWaiting;
+    if (input.is_wanted) state.mode = telemetry::GateMode::kWaiting;
   }
   const bool is_silent = is_client_silent(input, params);
-  if (state.mode == GateMode::kWaiting) {
-    if (!input.is_wanted) state.mode = GateMode::kOff;
-    if (input.is_wanted && !is_silent && detail::is_small(input.wanted, params)) state.mode = GateMode::kRising;
-    if (state.mode != GateMode::kRising) return;
+  if (state.mode == telemetry::GateMode::kWaiting) {
+    if (!input.is_wanted) state.mode = telemetry::GateMode::kOff;
+    if (input.is_wanted && !is_silent && detail::is_small(input.wanted, params))
+      state.mode = telemetry::GateMode::kRising;
+    if (state.mode != telemetry::GateMode::kRising) return;
   }
-  if (state.mode == GateMode::kOff) return;
+  if (state.mode == telemetry::GateMode::kOff) return;
   if (!input.is_wanted || is_silent) {
-    state.mode = GateMode::kFading;
+    state.mode = telemetry::GateMode::kFading;
     state.scale = ramped(state.scale, -period.dt_s / params.fade_s);
-    if (!input.is_wanted && state.scale == 0.0) state.mode = GateMode::kOff;
+    if (!input.is_wanted && state.scale == 0.0) state.mode = telemetry::GateMode::kOff;
     return;
   }
   state.scale = ramped(state.scale, period.rise_s / params.rise_s);
-  state.mode = state.scale < 1.0 ? GateMode::kRising : GateMode::kOn;
+  state.mode = state.scale < 1.0 ? telemetry::GateMode::kRising : telemetry::GateMode::kOn;
 }
 
 /// What goes out of a fault's period: the last wrench on its straight way to zero.
@@ -97,15 +100,15 @@ Wrench fault_wrench(GateState& state, const GateParams& params, const Period& pe
   return {share * state.last.force_n, share * state.last.torque_nmm};
 }
 
-void latch(GateState& state, GateFault cause) noexcept {
+void latch(GateState& state, telemetry::GateFault cause) noexcept {
   state.fault = cause;
-  state.mode = GateMode::kFault;
+  state.mode = telemetry::GateMode::kFault;
   state.scale = 1.0;
 }
 
 void release(GateState& state) noexcept {
-  state.fault = GateFault::kNone;
-  state.mode = GateMode::kOff;
+  state.fault = telemetry::GateFault::kNone;
+  state.mode = telemetry::GateMode::kOff;
   state.scale = 0.0;
   state.runaway_s = state.vibration_s = 0.0;
 }
@@ -159,18 +162,18 @@ void follow_drop(GateState& state, double force_n, double dt_s, GateOutput& outp
   state.drop_from_n = state.drop_s = 0.0;
 }
 
-std::uint16_t mode_actions(GateMode mode) noexcept {
+std::uint16_t mode_actions(telemetry::GateMode mode) noexcept {
   switch (mode) {
-    case GateMode::kOff:
+    case telemetry::GateMode::kOff:
       return kGateOff;
-    case GateMode::kWaiting:
-    case GateMode::kRising:
+    case telemetry::GateMode::kWaiting:
+    case telemetry::GateMode::kRising:
       return kGateStart;
-    case GateMode::kFault:
+    case telemetry::GateMode::kFault:
       return kGateFault;
-    case GateMode::kOn:
-    case GateMode::kFading:
-    case GateMode::kAbsent:
+    case telemetry::GateMode::kOn:
+    case telemetry::GateMode::kFading:
+    case telemetry::GateMode::kAbsent:
       break;
   }
   return 0;
@@ -181,10 +184,10 @@ std::uint16_t mode_actions(GateMode mode) noexcept {
 void restart_gate(GateState& state) noexcept {
   GateState fresh;
   fresh.fault = state.fault;
-  fresh.mode = state.fault == GateFault::kNone ? GateMode::kOff : GateMode::kFault;
+  fresh.mode = state.fault == telemetry::GateFault::kNone ? telemetry::GateMode::kOff : telemetry::GateMode::kFault;
   fresh.force_heat = state.force_heat;
   fresh.torque_heat = state.torque_heat;
-  fresh.slow_s = state.fault == GateFault::kLoopSlow ? state.slow_s : 0.0;
+  fresh.slow_s = state.fault == telemetry::GateFault::kLoopSlow ? state.slow_s : 0.0;
   state = fresh;
 }
 
@@ -194,7 +197,7 @@ GateOutput step_gate(GateState& state, const GateInput& input, const GateParams&
   const bool is_input_sound = detail::is_sound(input);
   const bool is_usable = detail::restore(state) && is_input_sound;
   const bool is_braking =
-      is_input_sound && state.scale > 0.0 && state.fault == GateFault::kNone && is_too_fast(input, params);
+      is_input_sound && state.scale > 0.0 && state.fault == telemetry::GateFault::kNone && is_too_fast(input, params);
   if (is_input_sound) {
     detail::watch_loop(state, input, period.rise_s, params);
     detail::watch_vibration(state, input, period.dt_s, params);
@@ -203,13 +206,14 @@ GateOutput step_gate(GateState& state, const GateInput& input, const GateParams&
   if (is_input_sound) detail::observe_energy(state, given_input, period.dt_s, params);
   count_runaway(state, is_braking, period.rise_s);
 
-  const GateFault cause = find_cause(state, input, params, is_usable);
-  if (state.fault == GateFault::kNone && cause != GateFault::kNone) latch(state, cause);
-  if (state.fault != GateFault::kNone && cause == GateFault::kNone && input.is_reset) release(state);
+  const telemetry::GateFault cause = find_cause(state, input, params, is_usable);
+  if (state.fault == telemetry::GateFault::kNone && cause != telemetry::GateFault::kNone) latch(state, cause);
+  if (state.fault != telemetry::GateFault::kNone && cause == telemetry::GateFault::kNone && input.is_reset)
+    release(state);
 
   GateOutput output;
   Wrench out;
-  if (state.fault != GateFault::kNone) {
+  if (state.fault != telemetry::GateFault::kNone) {
     out = fault_wrench(state, params, period);
   } else {
     step_mode(state, input, params, period);
@@ -226,4 +230,4 @@ GateOutput step_gate(GateState& state, const GateInput& input, const GateParams&
   return output;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

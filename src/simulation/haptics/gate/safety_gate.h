@@ -3,11 +3,11 @@
 #include <cstdint>
 
 #include "core/result.h"
-#include "haptics/haptic_scene.h"     // CouplingParams
+#include "haptics/haptic_scene.h"               // CouplingParams
 #include "haptics/insertion/path_constraint.h"  // Wrench
 #include "telemetry/gate_state.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// What the gate did to the wrench in this period; bits.
 enum GateAction : std::uint16_t {
@@ -79,15 +79,15 @@ struct GateInput {
   double busy_s = 0.0;      ///< Part of dt_s that reading, tick and writing of the last period took.
   CouplingParams coupling;  ///< As the device sees it; stiffness 0: nothing to watch.
   bool is_wanted = false;   ///< Somebody asked for forces.
-  GateFault device_fault =
-      GateFault::kNone;   ///< What the caller saw (kDeviceLost, kEncoderStuck, kLoopStalled, kRequested).
-  bool is_reset = false;  ///< Explicit reset of a fault; without effect while its cause lasts.
+  telemetry::GateFault device_fault =
+      telemetry::GateFault::kNone;  ///< What the caller saw (kDeviceLost, kEncoderStuck, kLoopStalled, kRequested).
+  bool is_reset = false;            ///< Explicit reset of a fault; without effect while its cause lasts.
 };
 
 /// Fixed size, copyable.
 struct GateState {
-  GateMode mode = GateMode::kOff;
-  GateFault fault = GateFault::kNone;
+  telemetry::GateMode mode = telemetry::GateMode::kOff;
+  telemetry::GateFault fault = telemetry::GateFault::kNone;
   Wrench last;              ///< What went out; and
   Wrench watched;           ///< the same without the weight's share, whose energy is watched.
   double scale = 0.0;       ///< Of safe start, fading and a fault's ramp, 0..1.
@@ -128,4 +128,4 @@ void restart_gate(GateState& state) noexcept;
 /// latches. A pure function of its arguments; real-time safe; total: any bits in, a wrench within the limits out.
 GateOutput step_gate(GateState& state, const GateInput& input, const GateParams& params) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

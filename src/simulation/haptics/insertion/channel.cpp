@@ -5,7 +5,7 @@
 
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 int bin_of(double s_mm) noexcept {
   return std::clamp(static_cast<int>(std::max(0.0, s_mm) / Channel::kBin_mm), 0, Channel::kBins - 1);
@@ -44,7 +44,7 @@ void look_ahead(Channel& channel, const HapticScene& scene, double s_mm, double 
     channel.label[index] = here.label;
     channel.wall[index] = wall_at_next_bin(channel, walled_layer(scene, here.tissue));
     if (reads_ct)
-      channel.hu[index] = static_cast<std::int16_t>(std::lround(sample_linear(scene.patient->ct, middle_P)));
+      channel.hu[index] = static_cast<std::int16_t>(std::lround(volume::sample_linear(scene.patient->ct, middle_P)));
   }
   channel.known_bins = std::max(channel.known_bins, last);
 }
@@ -88,4 +88,4 @@ void ChannelMemory::remember(const Channel& channel) noexcept {
   next = (next + 1) % kCapacity;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -5,7 +5,7 @@
 
 #include "haptics/haptic_scene.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The straight hole that a needle makes: its line, what lies along it in the resting anatomy, what has been pierced
 /// and how deep it was cut. Fixed size; copied, never allocated. Coordinate s (mm): along the line, 0 on the resting
@@ -69,4 +69,4 @@ struct ChannelMemory {
   void remember(const Channel& channel) noexcept;
 };
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -6,7 +6,7 @@
 
 #include "haptics/coupling/balance.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kLook_mm = 10.0;  // Past the tip and the device: more than a tick can jump.
@@ -136,7 +136,7 @@ struct Puncture {
   double s_mm;
 };
 Puncture find_puncture(const AxialBalance& whole, const LineStep& line, double v_device_before_mm_per_s,
-                       double puncture_force_n) noexcept {
+                               double puncture_force_n) noexcept {
   constexpr int kMaxSteps = 40;
   constexpr double kTolerance = 1e-4;
   double low = 1e-3;
@@ -157,12 +157,13 @@ Puncture find_puncture(const AxialBalance& whole, const LineStep& line, double v
   return puncture;
 }
 
-InsertionPhase next_phase(const InsertionState& state, const InsertionPath& path) noexcept {
-  if (state.loading != kNoLayer) return InsertionPhase::kLoading;
-  if (!path.is_open) return InsertionPhase::kOutside;
-  if (state.velocity_mm_per_s < -kRestSpeed_mm_per_s) return InsertionPhase::kRetracting;
-  if (state.velocity_mm_per_s > kRestSpeed_mm_per_s) return InsertionPhase::kInserted;
-  return state.phase == InsertionPhase::kRetracting ? InsertionPhase::kRetracting : InsertionPhase::kInserted;
+telemetry::InsertionPhase next_phase(const InsertionState& state, const InsertionPath& path) noexcept {
+  if (state.loading != kNoLayer) return telemetry::InsertionPhase::kLoading;
+  if (!path.is_open) return telemetry::InsertionPhase::kOutside;
+  if (state.velocity_mm_per_s < -kRestSpeed_mm_per_s) return telemetry::InsertionPhase::kRetracting;
+  if (state.velocity_mm_per_s > kRestSpeed_mm_per_s) return telemetry::InsertionPhase::kInserted;
+  return state.phase == telemetry::InsertionPhase::kRetracting ? telemetry::InsertionPhase::kRetracting
+                                                               : telemetry::InsertionPhase::kInserted;
 }
 
 /// Contact with hysteresis: begins at the resting surface, ends a little above it.
@@ -199,7 +200,7 @@ InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const Vec3
   step.velocity_mm_per_s = (tip_P - state.device_tip_P).dot(axis_P) / dt_s;
   state.velocity_mm_per_s = state.device_velocity_mm_per_s = step.velocity_mm_per_s;
   state.device_tip_P = tip_P;
-  state.phase = InsertionPhase::kOutside;
+  state.phase = telemetry::InsertionPhase::kOutside;
   return step;
 }
 
@@ -248,7 +249,7 @@ void start_insertion(InsertionState& state, const InsertionPath& path, const Vec
   state.device_tip_P = device_tip_P;
   if (!path.is_open) return;
   state.s_mm = state.s_device_mm = path.channel.direction_P.dot(device_tip_P - path.channel.origin_P);
-  state.phase = InsertionPhase::kInserted;
+  state.phase = telemetry::InsertionPhase::kInserted;
 }
 
 InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const HapticScene& scene,
@@ -293,4 +294,4 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   return step;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

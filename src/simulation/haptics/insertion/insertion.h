@@ -3,12 +3,12 @@
 #include <array>
 #include <cstdint>
 
-#include "haptics/proxy/body_proxies.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion/insertion_path.h"
+#include "haptics/proxy/body_proxies.h"
 #include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The needle in its insertion (paper A, section 4.1): what must be known from one tick to the next. Fixed size.
 struct InsertionState {
@@ -25,7 +25,7 @@ struct InsertionState {
   std::uint8_t loading = kNoLayer;  ///< Layer under load.
   double surface_mm = 0.0;          ///< s of its resting surface.
   bool is_stuck = false;
-  InsertionPhase phase = InsertionPhase::kOutside;
+  telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
 };
 
 /// What one step gives: the very values put into the laws, forces as resistances (positive pushes the needle out).
@@ -42,7 +42,7 @@ struct InsertionStep {
   double tip_proxy_n = 0.0;   ///< Combined: the tip in tissue that no layer or cutting force describes.
   double body_axial_n = 0.0;  ///< Combined: friction of the body proxies, in place of friction_n.
   std::uint8_t tissue = 0;
-  InsertionPhase phase = InsertionPhase::kOutside;
+  telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
   std::uint8_t punctured = kNoLayer;  ///< Layer that gave way in this step.
   EnteredLabels entered;
   bool hit_solver_bound = false;
@@ -66,4 +66,4 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
                              const Vec3& device_tip_P, const Vec3& device_axis_P, double dt_s,
                              const ProxyShare* share = nullptr) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 double prepuncture_force_n(double x_mm, double v_mm_per_s, const LoadingLaw& law) noexcept {
   if (!(x_mm > 0.0)) return 0.0;
@@ -55,4 +55,4 @@ double motion_fade(double speed_mm_per_s) noexcept {
   return std::clamp(std::abs(speed_mm_per_s) / kRestSpeed_mm_per_s, 0.0, 1.0);
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The force laws of paper A, section 4.1, each as printed or as docs/physics.md says where the paper leaves something
 /// open. Pure, closed form, real-time safe. Forces here are resistances: positive pushes the needle out.
@@ -38,4 +38,4 @@ double motion_fade(double speed_mm_per_s) noexcept;
 inline constexpr double kNoiseCorrelation_mm = 0.2;
 inline constexpr double kRestSpeed_mm_per_s = 0.5;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -5,20 +5,20 @@
 
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
-  const FloatGrid& distance = scene.patient->skin_distance_mm;
+  const volume::FloatGrid& distance = scene.patient->skin_distance_mm;
   constexpr double kReach_mm = 30.0;
   constexpr double kGrazing = 0.17;  // cosine of 80 degrees
   constexpr int kMaxSteps = 12;
   double t = 0.0;
   for (int i = 0; i < kMaxSteps; ++i) {
     const Vec3 here_P = tip_P + t * axis_P;
-    const double d = sample_linear(distance, here_P);
+    const double d = volume::sample_linear(distance, here_P);
     if (!(std::abs(d) < kReach_mm)) return std::nullopt;
     if (std::abs(d) < 1e-6) return t;
-    const double slope = gradient_per_mm(distance, here_P).dot(axis_P);
+    const double slope = volume::gradient_per_mm(distance, here_P).dot(axis_P);
     if (slope > -kGrazing) return std::nullopt;
     t -= d / slope;
     if (std::abs(t) > kReach_mm) return std::nullopt;
@@ -91,10 +91,10 @@ namespace {
 double way_to_skin_back(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
   constexpr double kStep_mm = 1.0;
   constexpr double kLongest_mm = (Channel::kBins - 1) * Channel::kBin_mm;
-  const FloatGrid& distance = scene.patient->skin_distance_mm;
-  double inside = -sample_linear(distance, tip_P);
+  const volume::FloatGrid& distance = scene.patient->skin_distance_mm;
+  double inside = -volume::sample_linear(distance, tip_P);
   for (double back = kStep_mm; back < kLongest_mm; back += kStep_mm) {
-    const double next = -sample_linear(distance, tip_P - back * axis_P);
+    const double next = -volume::sample_linear(distance, tip_P - back * axis_P);
     if (next <= 0.0) return back - kStep_mm * (-next) / (inside - next);
     inside = next;
   }
@@ -104,7 +104,7 @@ double way_to_skin_back(const HapticScene& scene, const Vec3& tip_P, const Vec3&
 }  // namespace
 
 bool resume_inside(InsertionPath& path, const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
-  if (!(sample_linear(scene.patient->skin_distance_mm, tip_P) < 0.0)) return false;
+  if (!(volume::sample_linear(scene.patient->skin_distance_mm, tip_P) < 0.0)) return false;
   const double depth_mm = way_to_skin_back(scene, tip_P, axis_P);
   start_channel(path, tip_P - depth_mm * axis_P, axis_P);
   open_path(path, scene.tissues[scene.skin].layer);
@@ -118,4 +118,4 @@ bool resume_inside(InsertionPath& path, const HapticScene& scene, const Vec3& ti
   return true;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

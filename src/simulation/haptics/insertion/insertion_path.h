@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "haptics/insertion/channel.h"
 #include "haptics/haptic_scene.h"
+#include "haptics/insertion/channel.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// Labels that the tip entered in a step, 0 = none.
 struct EnteredLabels {
@@ -50,4 +50,4 @@ void leave_body(InsertionPath& path) noexcept;
 /// (safe start: no force step). False where the tip is not inside. Takes some 100 us, once. Real-time safe.
 bool resume_inside(InsertionPath& path, const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -4,7 +4,7 @@
 
 #include "haptics/proxy/tip_law.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 /// A hand moves a needle by less than this in a tick.
@@ -140,4 +140,4 @@ NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose&
   return step;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "haptics/proxy/body_proxies.h"
 #include "haptics/insertion/insertion.h"
 #include "haptics/insertion/insertion_path.h"
+#include "haptics/proxy/body_proxies.h"
 #include "haptics/proxy/proxy_needle.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The needle under any force model, from one tick to the next. Fixed size.
 struct NeedleState {
@@ -32,4 +32,4 @@ struct NeedleStep {
 NeedleStep step_needle(NeedleState& state, const HapticScene& scene, const Pose& X_PN, bool is_stylet_in,
                        double dt_s) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

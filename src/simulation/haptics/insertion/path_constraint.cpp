@@ -4,7 +4,7 @@
 
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 /// Way (0..1) through the fade.
@@ -76,4 +76,4 @@ Wrench path_constraint(const PathLine& line, const NeedleAtPath& now, const Need
   return wrench;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

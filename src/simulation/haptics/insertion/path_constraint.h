@@ -2,7 +2,7 @@
 
 #include "geometry/vec.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// Holds the needle on the line it pierced the skin along (paper A, path constraint; physics.md C3, C4).
 /// Range: m0/d0 at most the device's stiffness (checked when the scene is built).
@@ -56,4 +56,4 @@ double path_energy_nmm(const PathLine& line, const NeedleAtPath& now, const Path
 Wrench path_constraint(const PathLine& line, const NeedleAtPath& now, const NeedleAtPath& ahead,
                        const PathConstraintParams& params) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -6,7 +6,7 @@
 
 #include "haptics/insertion/insertion_law.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kTissuePoisson = 0.5;  // Soft tissue keeps its volume.
@@ -35,7 +35,7 @@ ShaftTissue tissue_at_bin(const Channel& channel, const HapticScene& scene, std:
   const std::uint8_t tissue = channel.tissue[bin];
   if (tissue == 0) return {};  // Outside the body.
   if (channel.label[bin] == 0 && tissue != scene.skin && scene.transfer.knot_count > 0) {
-    const HuLaw law = scene.transfer.at(channel.hu[bin]);
+    const anatomy::HuLaw law = scene.transfer.at(channel.hu[bin]);
     return {law.shaft_n_per_mm, law.shaft_viscosity_ns_per_mm, law.young_kpa};
   }
   const TissueLaw& law = scene.tissues[tissue];
@@ -220,4 +220,4 @@ BentNeedle straight_needle(const Pose& X_PN, const HapticScene& scene) noexcept 
   return needle;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

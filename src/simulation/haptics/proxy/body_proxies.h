@@ -2,12 +2,12 @@
 
 #include <array>
 
-#include "haptics/insertion/channel.h"
 #include "haptics/haptic_scene.h"
-#include "haptics/proxy/needle_beam.h"
+#include "haptics/insertion/channel.h"
 #include "haptics/insertion/path_constraint.h"
+#include "haptics/proxy/needle_beam.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The channel's tissue is read in cells that stand still in it, so that sums over a sliding shaft have no steps.
 inline constexpr double kShaftCell_mm = 2.0;
@@ -60,4 +60,4 @@ Vec3 bevel_force_P(const NeedleGeometry& needle, const Pose& X_PN, double axial_
 /// A straight needle, for models without bending.
 BentNeedle straight_needle(const Pose& X_PN, const HapticScene& scene) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

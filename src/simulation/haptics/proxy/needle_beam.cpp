@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 /// Compliance of the shaft's end as built so far, clamp to node: deflection and slope a unit of force and of moment.
@@ -146,4 +146,4 @@ GripStiffness grip_stiffness(const NeedleBeam& beam, const BeamBed& bed) noexcep
   return {k_ww, k_ss};
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

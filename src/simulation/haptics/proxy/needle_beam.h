@@ -5,7 +5,7 @@
 #include "geometry/vec.h"
 #include "haptics/needle_geometry.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The shaft as a beam (Euler, Bernoulli), clamped in the grip (paper B, section 2.1, last paragraph; physics.md B8).
 /// Nodes 0..n-1 are the body proxies at equal distances from the grip, node n is the tip.
@@ -49,4 +49,4 @@ struct GripStiffness {
 };
 GripStiffness grip_stiffness(const NeedleBeam& beam, const BeamBed& bed) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -6,7 +6,7 @@
 #include "haptics/proxy/tip_proxy.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kLook_mm = 10.0;
@@ -25,7 +25,7 @@ double damping_s(const HapticScene& scene) noexcept {
 }
 
 double skin_distance(const HapticScene& scene, const Vec3& p_P) noexcept {
-  return sample_linear(scene.patient->skin_distance_mm, p_P);
+  return volume::sample_linear(scene.patient->skin_distance_mm, p_P);
 }
 
 /// Where the way from a point outside to one inside meets the skin.
@@ -58,7 +58,7 @@ ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose&
   state.tissue_n_per_mm = 0.0;
   state.wall = kNoLayer;
   state.is_on_skin = false;
-  state.phase = InsertionPhase::kOutside;
+  state.phase = telemetry::InsertionPhase::kOutside;
   return step;
 }
 
@@ -66,7 +66,7 @@ ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose&
 ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
                         const Pose& X_PN_ahead, double dt_s) noexcept {
   const Vec3 axis_P = X_PN.R().col(2);
-  const Vec3 inward_P = -gradient_per_mm(scene.patient->skin_distance_mm, state.proxy_P).normalized();
+  const Vec3 inward_P = -volume::gradient_per_mm(scene.patient->skin_distance_mm, state.proxy_P).normalized();
   const std::uint8_t layer = scene.tissues[scene.skin].layer;
   const double tissue_n_per_mm = layer == kNoLayer ? 1.0 : scene.layers[layer].indent_n_per_mm;
   const double k = in_series(scene.options.coupling.stiffness_n_per_mm, tissue_n_per_mm);
@@ -99,7 +99,7 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   step.axial.axis_P = axis_P;
   step.axial.displacement_mm = step.axial.depth_mm = f.dot(inward_P) / tissue_n_per_mm;
   step.axial.tissue = scene.skin;
-  step.axial.phase = state.phase = InsertionPhase::kLoading;
+  step.axial.phase = state.phase = telemetry::InsertionPhase::kLoading;
   if (gives_way) {
     start_channel(path, state.proxy_P, axis_P);
     open_path(path, layer);
@@ -206,11 +206,12 @@ TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticSce
   return step;
 }
 
-InsertionPhase next_phase(const ProxyNeedleState& state, bool is_loading) noexcept {
-  if (is_loading) return InsertionPhase::kLoading;
-  if (state.velocity_mm_per_s < -kRestSpeed_mm_per_s) return InsertionPhase::kRetracting;
-  if (state.velocity_mm_per_s > kRestSpeed_mm_per_s) return InsertionPhase::kInserted;
-  return state.phase == InsertionPhase::kRetracting ? InsertionPhase::kRetracting : InsertionPhase::kInserted;
+telemetry::InsertionPhase next_phase(const ProxyNeedleState& state, bool is_loading) noexcept {
+  if (is_loading) return telemetry::InsertionPhase::kLoading;
+  if (state.velocity_mm_per_s < -kRestSpeed_mm_per_s) return telemetry::InsertionPhase::kRetracting;
+  if (state.velocity_mm_per_s > kRestSpeed_mm_per_s) return telemetry::InsertionPhase::kInserted;
+  return state.phase == telemetry::InsertionPhase::kRetracting ? telemetry::InsertionPhase::kRetracting
+                                                               : telemetry::InsertionPhase::kInserted;
 }
 
 /// The tip on its path through the body.
@@ -271,7 +272,7 @@ void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, cons
   state.proxy_P = tip_P;
   if (!path.is_open) return;
   state.needle_mm = path.channel.direction_P.dot(tip_P - path.channel.origin_P);
-  state.phase = InsertionPhase::kInserted;
+  state.phase = telemetry::InsertionPhase::kInserted;
 }
 
 ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
@@ -284,4 +285,4 @@ ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, 
   return in_body(state, path, scene, X_PN_ahead, dt_s);
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "haptics/proxy/body_proxies.h"
 #include "haptics/insertion/insertion.h"
 #include "haptics/insertion/insertion_path.h"
+#include "haptics/proxy/body_proxies.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The tip of paper B from one tick to the next. Fixed size.
 struct ProxyNeedleState {
@@ -17,7 +17,7 @@ struct ProxyNeedleState {
   double wall_mm = 0.0;           ///< where on the path it rests,
   double wall_anchor_mm = 0.0;    ///< and the proxy's place under its load.
   double velocity_mm_per_s = 0.0;
-  InsertionPhase phase = InsertionPhase::kOutside;
+  telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
 };
 
 /// One step of the tip, forces as the needle feels them in P.
@@ -38,4 +38,4 @@ ProxyNeedleStep step_proxy_needle(ProxyNeedleState& state, InsertionPath& path, 
 inline constexpr double kProxyStep_mm = 0.25;  ///< At most this far before the law is read again.
 inline constexpr int kMaxProxySteps = 32;      ///< A tick: 8 m/s at 1 kHz.
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -5,17 +5,18 @@
 
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 /// Gradient (HU/mm in P) by central differences of `scale_mm` to each side along the axes of P.
-Vec3 gradient_at_scale(const CtGrid& ct, const Vec3& p_P, double scale_mm) noexcept {
+Vec3 gradient_at_scale(const volume::CtGrid& ct, const Vec3& p_P, double scale_mm) noexcept {
   const Vec3 index = ct.geometry.to_index(p_P);
   Vec3 slope;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 step = (ct.geometry.R_PV.row(axis).transpose() * scale_mm).cwiseQuotient(ct.geometry.spacing_mm);
     slope[axis] =
-        (sample_linear_at_index(ct, index + step) - sample_linear_at_index(ct, index - step)) / (2.0 * scale_mm);
+        (volume::sample_linear_at_index(ct, index + step) - volume::sample_linear_at_index(ct, index - step)) /
+        (2.0 * scale_mm);
   }
   return slope;
 }
@@ -29,7 +30,7 @@ std::uint8_t wall_of(const HapticScene& scene, const Vec3& p_P) noexcept {
 /// Whether the air outside, as blurred as a CT shows it, reaches into the gradient at a point.
 bool is_under_skin(const HapticScene& scene, const Vec3& p_P) noexcept {
   constexpr double kBlur_mm = 2.0;
-  return sample_linear(scene.patient->skin_distance_mm, p_P) > -(scene.transfer.gradient_scale_mm + kBlur_mm);
+  return volume::sample_linear(scene.patient->skin_distance_mm, p_P) > -(scene.transfer.gradient_scale_mm + kBlur_mm);
 }
 
 /// Whether the border at a point is that of a walled structure, which has a threshold of its own.
@@ -46,12 +47,12 @@ TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& her
     tip.law = {};
     return tip;
   }
-  tip.law = scene.transfer.at(sample_linear(scene.patient->ct, p_P));
+  tip.law = scene.transfer.at(volume::sample_linear(scene.patient->ct, p_P));
   const bool is_labelled = here.label != 0 || here.tissue == scene.skin;
   if (is_labelled) tip.law.resistance_n = scene.tissues[here.tissue].cutting_n;
   if (here.tissue == scene.skin) return tip;  // its border is the body's surface
 
-  const HuTransfer& transfer = scene.transfer;
+  const anatomy::HuTransfer& transfer = scene.transfer;
   const Vec3 gradient = gradient_at_scale(scene.patient->ct, p_P, transfer.gradient_scale_mm);
   const double strength = gradient.norm();
   if (!(strength > transfer.gradient_none_hu_per_mm)) return tip;
@@ -71,4 +72,4 @@ double threshold_along_n(const TipLaw& tip, const Vec3& u_P) noexcept {
   return tip.border * border_n + (1.0 - tip.border) * tip.law.resistance_n;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -2,14 +2,14 @@
 
 #include "haptics/haptic_scene.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// What resists the tip at a point: the transfer functions at its intensity, and the border it lies on, if any (paper
 /// B, eq. 2; physics.md B1). Zero outside the body.
 struct TipLaw {
   Vec3 normal_P = Vec3::Zero();  ///< N: unit, along the image gradient, into denser tissue; zero: no border.
   double border = 0.0;           ///< w: 0 no border .. 1 a border that counts whole.
-  HuLaw law;
+  anatomy::HuLaw law;
 };
 
 /// Law at a point of the resting anatomy. `tissue`, `label`: what lies there (tissue_at or the channel). Labels stand
@@ -21,4 +21,4 @@ TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& her
 /// the law bears (physics.md B3).
 double threshold_along_n(const TipLaw& law, const Vec3& u_P) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

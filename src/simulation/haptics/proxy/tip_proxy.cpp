@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 /// The part of v that is longer than `threshold`.
@@ -62,4 +62,4 @@ NeedleBalance balance_needle(const NeedleDrive& drive, double tissue_n_per_mm, d
   return balance;
 }
 
-}  // namespace trocar
+}  // namespace trocar::haptics

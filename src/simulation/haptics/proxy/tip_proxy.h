@@ -2,7 +2,7 @@
 
 #include "haptics/proxy/tip_law.h"
 
-namespace trocar {
+namespace trocar::haptics {
 
 /// The proxy of the needle's tip (paper B, section 2.1, eqs. 1 to 5; physics.md B1 to B3): a point x_p tied to the tip
 /// x_t by a spring and a damper, which moves only as far as the tissue's thresholds let it.
@@ -54,4 +54,4 @@ struct NeedleBalance {
 /// Closed form; at rest while the dry friction holds it.
 NeedleBalance balance_needle(const NeedleDrive& drive, double tissue_n_per_mm, double proxy_mm) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::haptics

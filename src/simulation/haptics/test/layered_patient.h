@@ -11,8 +11,8 @@
 namespace trocar::testing {
 
 /// Transfer functions for tests: air, fat, muscle, bone.
-inline HuTransfer test_transfer() {
-  HuTransfer transfer;
+inline anatomy::HuTransfer test_transfer() {
+  anatomy::HuTransfer transfer;
   transfer.knot_count = 5;
   transfer.hu = {-200, -100, 50, 250, 500};
   //                  K    T_N   T_T   R0    c      shaft   nu     E
@@ -25,15 +25,15 @@ inline HuTransfer test_transfer() {
 }
 
 /// Paper A, Table 1, and puncture and cutting forces of references.md (skin 2.8 N, muscle 2.5 N, capsule 1.5 N).
-inline TissueTable paper_tissues() {
-  TissueTable table;
+inline anatomy::TissueTable paper_tissues() {
+  anatomy::TissueTable table;
   table.layers = {{"skin", 0.46, 0.02, 0.1, 2.8},
                   {"muscle", 0.19, 0.03, 0.11, 2.5},
                   {"liver_capsule", 0.42, 0.02, 0.12, 1.5},
                   {"bone", 20.0, 0.0, 0.1}};
   const auto tissue = [](const char* name, double nu, double mu, double delta, double stick, double cutting,
                          std::optional<std::uint8_t> layer) {
-    return TissueParams{name, nu, mu, delta, stick, cutting, layer};
+    return anatomy::TissueParams{name, nu, mu, delta, stick, cutting, layer};
   };
   table.tissues = {tissue("air", 0, 0, 0, 0, 0, {}),
                    tissue("skin", 0.02, 0.18, 0.1, 0.004, 0, 0),
@@ -44,7 +44,7 @@ inline TissueTable paper_tissues() {
                    tissue("soft_tissue", 0.01, 0.1, 0.1, 0.002, 0, {})};
   table.skin = 1;
   table.transfer = test_transfer();
-  for (LayerParams& layer : table.layers) layer.is_wall = layer.name != "muscle";
+  for (anatomy::LayerParams& layer : table.layers) layer.is_wall = layer.name != "muscle";
   return table;
 }
 
@@ -62,15 +62,15 @@ inline std::vector<Slab> liver_way() {
 }
 
 /// A flat layered patient, 1 mm voxels: skin at z = 0, inside at z > 0; slabs by depth.
-inline std::shared_ptr<VirtualPatient> layered_patient(const std::vector<Slab>& slabs) {
-  auto patient = std::make_shared<VirtualPatient>();
+inline std::shared_ptr<anatomy::VirtualPatient> layered_patient(const std::vector<Slab>& slabs) {
+  auto patient = std::make_shared<anatomy::VirtualPatient>();
   patient->name = "layers";
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.size = {41, 41, 121};
   geometry.origin_P = {-20.0, -20.0, -20.0};
-  patient->ct = CtGrid(geometry, 0);
-  patient->labels = LabelGrid(geometry, 0);
-  patient->skin_distance_mm = FloatGrid(geometry, 0.0F);
+  patient->ct = volume::CtGrid(geometry, 0);
+  patient->labels = volume::LabelGrid(geometry, 0);
+  patient->skin_distance_mm = volume::FloatGrid(geometry, 0.0F);
   for (std::size_t n = 0; n < patient->labels.voxels.size(); ++n) {
     const double z = static_cast<double>(geometry.index_of(n)[2]) - 20.0;
     patient->skin_distance_mm.voxels[n] = static_cast<float>(-z);
@@ -84,28 +84,29 @@ inline std::shared_ptr<VirtualPatient> layered_patient(const std::vector<Slab>& 
   return patient;
 }
 
-inline std::shared_ptr<const HapticScene> make_scene(const std::vector<Slab>& slabs, const HapticOptions& options = {},
-                                                     const TissueTable& tissues = paper_tissues()) {
-  auto scene = make_haptic_scene(layered_patient(slabs), tissues, {}, {}, options);
+inline std::shared_ptr<const haptics::HapticScene> make_scene(const std::vector<Slab>& slabs,
+                                                              const haptics::HapticOptions& options = {},
+                                                              const anatomy::TissueTable& tissues = paper_tissues()) {
+  auto scene = haptics::make_haptic_scene(layered_patient(slabs), tissues, {}, {}, options);
   TROCAR_CHECK(scene.has_value());
   return *scene;
 }
 
-inline std::shared_ptr<const HapticScene> make_scene(const std::vector<Slab>& slabs, ForceModel model,
-                                                     const TissueTable& tissues = paper_tissues()) {
-  HapticOptions options;
+inline std::shared_ptr<const haptics::HapticScene> make_scene(const std::vector<Slab>& slabs, haptics::ForceModel model,
+                                                              const anatomy::TissueTable& tissues = paper_tissues()) {
+  haptics::HapticOptions options;
   options.force_model = model;
   return make_scene(slabs, options, tissues);
 }
 
 /// The same patient without labels: everything but the skin is felt from the CT.
-inline std::shared_ptr<const HapticScene> make_unlabelled_scene(const std::vector<Slab>& slabs, ForceModel model,
-                                                                const TissueTable& tissues = paper_tissues()) {
+inline std::shared_ptr<const haptics::HapticScene> make_unlabelled_scene(
+    const std::vector<Slab>& slabs, haptics::ForceModel model, const anatomy::TissueTable& tissues = paper_tissues()) {
   auto patient = layered_patient(slabs);
-  patient->labels = LabelGrid(patient->ct.geometry, 0);
-  HapticOptions options;
+  patient->labels = volume::LabelGrid(patient->ct.geometry, 0);
+  haptics::HapticOptions options;
   options.force_model = model;
-  auto scene = make_haptic_scene(std::move(patient), tissues, {}, {}, options);
+  auto scene = haptics::make_haptic_scene(std::move(patient), tissues, {}, {}, options);
   TROCAR_CHECK(scene.has_value());
   return *scene;
 }
@@ -113,18 +114,18 @@ inline std::shared_ptr<const HapticScene> make_unlabelled_scene(const std::vecto
 /// Drives the device's needle tip through the scene, tick by tick.
 class Driver {
  public:
-  explicit Driver(std::shared_ptr<const HapticScene> scene, double rate_hz = 1000.0)
+  explicit Driver(std::shared_ptr<const haptics::HapticScene> scene, double rate_hz = 1000.0)
       : scene_(std::move(scene)), dt_s_(1.0 / rate_hz) {}
 
-  TickSample to(const Vec3& tip_P, const Vec3& axis_P = Vec3::UnitZ()) {
+  telemetry::TickSample to(const Vec3& tip_P, const Vec3& axis_P = Vec3::UnitZ()) {
     const Pose X_DS = scene_->X_PD.inverse() * needle_pose(tip_P, axis_P) * scene_->X_SN.inverse();
     time_s_ += dt_s_;
     depth_mm_ = tip_P.z();
-    return tick(state_, {time_s_, dt_s_, X_DS}, *scene_).sample;
+    return haptics::tick(state_, {time_s_, dt_s_, X_DS}, *scene_).sample;
   }
   /// Straight down (or up) to a depth at constant speed; all samples.
-  std::vector<TickSample> move(double to_depth_mm, double speed_mm_per_s) {
-    std::vector<TickSample> samples;
+  std::vector<telemetry::TickSample> move(double to_depth_mm, double speed_mm_per_s) {
+    std::vector<telemetry::TickSample> samples;
     const double step = speed_mm_per_s * dt_s_ * (to_depth_mm > depth_mm_ ? 1.0 : -1.0);
     const double start = depth_mm_;
     const auto count = static_cast<int>(std::abs((to_depth_mm - start) / step));
@@ -133,45 +134,46 @@ class Driver {
   }
   /// Puts the tip there at once.
   void jump_to(double depth_mm) { to({0.0, 0.0, depth_mm}); }
-  std::vector<TickSample> hold(double seconds) {
-    std::vector<TickSample> samples;
+  std::vector<telemetry::TickSample> hold(double seconds) {
+    std::vector<telemetry::TickSample> samples;
     for (double t = 0.0; t < seconds; t += dt_s_) samples.push_back(to({0.0, 0.0, depth_mm_}));
     return samples;
   }
-  HapticState& state() { return state_; }
+  haptics::HapticState& state() { return state_; }
 
  private:
-  std::shared_ptr<const HapticScene> scene_;
-  HapticState state_;
+  std::shared_ptr<const haptics::HapticScene> scene_;
+  haptics::HapticState state_;
   double dt_s_;
   double time_s_ = 0.0;
   double depth_mm_ = -10.0;
 };
 
 /// Layers that gave way, in order.
-inline std::vector<int> punctures(const std::vector<TickSample>& samples) {
+inline std::vector<int> punctures(const std::vector<telemetry::TickSample>& samples) {
   std::vector<int> layers;
-  for (const TickSample& sample : samples) {
-    for (const TickEvent& event : sample.events) {
-      if (event.kind == EventKind::kPuncture) layers.push_back(event.id);
+  for (const telemetry::TickSample& sample : samples) {
+    for (const telemetry::TickEvent& event : sample.events) {
+      if (event.kind == telemetry::EventKind::kPuncture) layers.push_back(event.id);
     }
   }
   return layers;
 }
 
 /// Layers that gave way and labels that were entered, in order.
-inline std::vector<std::pair<EventKind, int>> ways_in(const std::vector<TickSample>& samples) {
-  std::vector<std::pair<EventKind, int>> ways;
-  for (const TickSample& sample : samples) {
-    for (const TickEvent& event : sample.events) {
-      if (event.kind == EventKind::kPuncture || event.kind == EventKind::kEnter)
+inline std::vector<std::pair<telemetry::EventKind, int>> ways_in(const std::vector<telemetry::TickSample>& samples) {
+  std::vector<std::pair<telemetry::EventKind, int>> ways;
+  for (const telemetry::TickSample& sample : samples) {
+    for (const telemetry::TickEvent& event : sample.events) {
+      if (event.kind == telemetry::EventKind::kPuncture || event.kind == telemetry::EventKind::kEnter)
         ways.emplace_back(event.kind, event.id);
     }
   }
   return ways;
 }
 
-inline std::vector<TickSample> joined(std::vector<TickSample> a, const std::vector<TickSample>& b) {
+inline std::vector<telemetry::TickSample> joined(std::vector<telemetry::TickSample> a,
+                                                 const std::vector<telemetry::TickSample>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }

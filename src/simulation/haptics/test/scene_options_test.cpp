@@ -4,7 +4,7 @@
 
 #include "haptics/test/layered_patient.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 TEST(SceneOptions, ReadBackToTheSameValues) {
@@ -45,7 +45,7 @@ TEST(HapticScene, LabelsOfUnknownTissuesCountAsSoftTissueAndAreAllNamed) {
   auto patient = testing::layered_patient(testing::liver_way());
   patient->label_table.labels[0].tissue = "blubber";
   patient->label_table.labels[3].tissue = "horn";
-  const TissueTable tissues = testing::paper_tissues();
+  const anatomy::TissueTable tissues = testing::paper_tissues();
   ::testing::internal::CaptureStderr();
   const auto scene = make_haptic_scene(patient, tissues, {}, {}, {});
   const std::string warning = ::testing::internal::GetCapturedStderr();
@@ -57,4 +57,4 @@ TEST(HapticScene, LabelsOfUnknownTissuesCountAsSoftTissueAndAreAllNamed) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -16,14 +16,14 @@ namespace {
 TEST(Tick, NeverAllocates) {
   Driver driver(make_scene(liver_way()));
   const auto scene = make_scene(liver_way());
-  HapticState state;
-  HapticInput input;
+  haptics::HapticState state;
+  haptics::HapticInput input;
   std::size_t events = 0;
   for (int i = 0; i < 12000; ++i) {
     const double z = i < 8000 ? -10.0 + 0.01 * i : 70.0 - 0.02 * (i - 8000);
     input.X_DS = needle_pose({0, 0, z}, Vec3::UnitZ()) * scene->X_SN.inverse();
     const AllocationGuard guard;
-    tick(state, input, *scene);
+    haptics::tick(state, input, *scene);
     events += guard.count();
   }
   EXPECT_EQ(events, 0u);
@@ -37,9 +37,9 @@ TEST(AllocationGuard, SeesAnAllocation) {
 }
 
 /// In 20 mm deep, aside there, on to 45 mm and out again: every term of the model acts at some tick.
-std::vector<TickSample> in_aside_and_out(ForceModel model) {
+std::vector<telemetry::TickSample> in_aside_and_out(haptics::ForceModel model) {
   Driver driver(make_scene(liver_way(), model));
-  std::vector<TickSample> samples = driver.move(20.0, 10.0);
+  std::vector<telemetry::TickSample> samples = driver.move(20.0, 10.0);
   for (int i = 1; i <= 200; ++i) samples.push_back(driver.to({0.01 * i, 0.0, 20.0}));
   for (int i = 1; i <= 2500; ++i) samples.push_back(driver.to({2.0, 0.0, 20.0 + 0.01 * i}));
   for (int i = 1; i <= 5000; ++i) samples.push_back(driver.to({2.0, 0.0, 45.0 - 0.01 * i}));
@@ -47,11 +47,12 @@ std::vector<TickSample> in_aside_and_out(ForceModel model) {
 }
 
 TEST(Tick, ComposesTheTotalFromAllItsParts) {
-  for (const ForceModel model : {ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined}) {
+  for (const haptics::ForceModel model :
+       {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
     double most_axial_n = 0.0;
     double most_proxy_n = 0.0;
     double most_constraint_n = 0.0;
-    for (const TickSample& s : in_aside_and_out(model)) {
+    for (const telemetry::TickSample& s : in_aside_and_out(model)) {
       const double axial_n = s.f_prepuncture_n + s.f_friction_n + s.f_cutting_n + s.f_body_axial_n;
       const Vec3 expected = s.axis * axial_n + s.f_constraint_n + s.f_tip_proxy_n + s.f_weight_n;
       ASSERT_LT((s.f_total_n - expected).norm(), 1e-12);
@@ -62,26 +63,28 @@ TEST(Tick, ComposesTheTotalFromAllItsParts) {
     }
     EXPECT_GT(most_axial_n, 0.1) << to_string(model);
     EXPECT_GT(most_constraint_n, 0.01) << to_string(model);
-    EXPECT_EQ(most_proxy_n > 0.1, model == ForceModel::kProxy) << to_string(model);
+    EXPECT_EQ(most_proxy_n > 0.1, model == haptics::ForceModel::kProxy) << to_string(model);
   }
 }
 
 TEST(Tick, GivesTheDeviceTheForceOfTheCoupling) {
   // physics.md V1: along the path the device is pushed back by k_c (s_D - s) + b_c (v_D - v), which balances all
   // resistances. Here from the recorded places alone, without the recorded terms.
-  const CouplingParams coupling;
+  const haptics::CouplingParams coupling;
   constexpr double kDt_s = 0.001;
   Driver driver(make_scene(liver_way()));
-  const std::vector<TickSample> samples = driver.move(50.0, 10.0);
+  const std::vector<telemetry::TickSample> samples = driver.move(50.0, 10.0);
   int checked = 0;
   for (std::size_t i = 2; i < samples.size(); ++i) {
-    const auto has_event = [](const TickSample& s) { return s.events[0].kind == EventKind::kPuncture; };
+    const auto has_event = [](const telemetry::TickSample& s) {
+      return s.events[0].kind == telemetry::EventKind::kPuncture;
+    };
     if (has_event(samples[i]) || has_event(samples[i - 1])) continue;  // these ticks are shorter and longer
-    const auto way = [&](const Vec3 TickSample::*place) {
+    const auto way = [&](const Vec3 telemetry::TickSample::*place) {
       return std::pair((samples[i].*place).z(), ((samples[i].*place) - (samples[i - 1].*place)).z() / kDt_s);
     };
-    const auto [s_device, v_device] = way(&TickSample::device_mm);
-    const auto [s_needle, v_needle] = way(&TickSample::tip_mm);
+    const auto [s_device, v_device] = way(&telemetry::TickSample::device_mm);
+    const auto [s_needle, v_needle] = way(&telemetry::TickSample::tip_mm);
     const double coupling_n =
         coupling.stiffness_n_per_mm * (s_device - s_needle) + coupling.damping_ns_per_mm * (v_device - v_needle);
     ASSERT_NEAR((samples[i].device_f_n - samples[i].f_weight_n).z(), -coupling_n, 1e-6) << samples[i].depth_mm;
@@ -92,16 +95,16 @@ TEST(Tick, GivesTheDeviceTheForceOfTheCoupling) {
 
 TEST(Tick, CompensatesTheWeightUpwards) {
   Driver driver(make_scene(liver_way()));
-  const TickSample sample = driver.to({0, 0, -10});
+  const telemetry::TickSample sample = driver.to({0, 0, -10});
   EXPECT_LT((sample.f_weight_n - Vec3(0, -0.5, 0)).norm(), 1e-12);  // supine: up is -y
-  HapticOptions off;
+  haptics::HapticOptions off;
   off.has_weight_compensation = false;
   EXPECT_EQ(Driver(make_scene(liver_way(), off)).to({0, 0, -10}).f_total_n.norm(), 0.0);
 }
 
 TEST(Tick, ClampsToTheDeviceAndSaysSo) {
   Driver driver(make_scene({{0, kFat}, {10, kBone}}));
-  const TickSample sample = driver.move(80.0, 50.0).back();
+  const telemetry::TickSample sample = driver.move(80.0, 50.0).back();
   EXPECT_NEAR(sample.device_f_n.norm(), 37.5, 1e-9);
   EXPECT_TRUE(sample.limited);
 }
@@ -111,11 +114,11 @@ TEST(Tick, StaysFiniteWhateverComesIn) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Random random(3);
-  HapticState state;
+  haptics::HapticState state;
   int rejected = 0;
   for (int i = 0; i < 20000; ++i) {
     Vec3 tip(random.uniform(-15, 15), random.uniform(-15, 15), random.uniform(-15, 90));
-    HapticInput input;
+    haptics::HapticInput input;
     input.dt_s = 0.001;
     switch (random.next() % 12) {
       case 0:
@@ -140,11 +143,11 @@ TEST(Tick, StaysFiniteWhateverComesIn) {
         break;
     }
     input.X_DS = needle_pose(tip, Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 1.0)) * scene->X_SN.inverse();
-    const HapticOutput output = tick(state, input, *scene);
+    const haptics::HapticOutput output = haptics::tick(state, input, *scene);
     ASSERT_TRUE(output.f_D.allFinite() && output.tau_D.allFinite());
     ASSERT_TRUE(output.sample.tip_mm.allFinite() && output.sample.f_total_n.allFinite());
     ASSERT_LE(output.f_D.norm(), 37.5 + 1e-9);
-    rejected += output.sample.events[0].kind == EventKind::kLimit ? 1 : 0;
+    rejected += output.sample.events[0].kind == telemetry::EventKind::kLimit ? 1 : 0;
   }
   EXPECT_GT(rejected, 4000);
 }
@@ -152,11 +155,12 @@ TEST(Tick, StaysFiniteWhateverComesIn) {
 TEST(Tick, ReplaysToTheSameBits) {
   const auto scene = make_scene(liver_way());
   const auto run = [&] {
-    HapticState state;
+    haptics::HapticState state;
     double sum = 0.0;
     for (int i = 0; i < 5000; ++i) {
       const Vec3 tip(0.1 * std::sin(0.01 * i), 0.0, -10.0 + 0.012 * i);
-      sum += tick(state, {0.001 * i, 0.001, needle_pose(tip, Vec3::UnitZ()) * scene->X_SN.inverse()}, *scene).f_D.z();
+      sum += haptics::tick(state, {0.001 * i, 0.001, needle_pose(tip, Vec3::UnitZ()) * scene->X_SN.inverse()}, *scene)
+                 .f_D.z();
     }
     return sum;
   };
@@ -170,17 +174,18 @@ TEST_P(ClosedLoop, ComesToRestInEveryTissue) {
   constexpr double kCount_mm = 0.03;  // one encoder count of a 860 dpi device
   for (const double depth : {0.0, 1.0, 8.0, 11.9, 13.0, 23.9, 24.5, 50.0}) {
     const auto scene = make_scene(liver_way());
-    HapticState state;
-    VirtualDeviceState device{needle_pose({0, 0, -5}, Vec3::UnitZ()), Vec3::Zero()};
-    HandHold hand{Vec3::Zero(), Vec3::Zero(), 0.5, 0.005, 0.05};
+    haptics::HapticState state;
+    haptics::VirtualDeviceState device{needle_pose({0, 0, -5}, Vec3::UnitZ()), Vec3::Zero()};
+    haptics::HandHold hand{Vec3::Zero(), Vec3::Zero(), 0.5, 0.005, 0.05};
     Vec3 force_P = Vec3::Zero();
     double low = 1e9;
     double high = -1e9;
     for (int i = 0; i < 6000; ++i) {
       hand.anchor_P.z() = -5.0 + (depth + 5.0) * std::min(1.0, i / 2000.0);
-      step_device(device, {GetParam(), 0.5}, hand, force_P, scene->gravity_P, 0.001);
+      haptics::step_device(device, {GetParam(), 0.5}, hand, force_P, scene->gravity_P, 0.001);
       const Vec3 tip = (device.X_PN.p() / kCount_mm).array().round() * kCount_mm;
-      force_P = tick(state, {0.001 * i, 0.001, Pose(device.X_PN.R(), tip) * scene->X_SN.inverse()}, *scene).f_D;
+      force_P =
+          haptics::tick(state, {0.001 * i, 0.001, Pose(device.X_PN.R(), tip) * scene->X_SN.inverse()}, *scene).f_D;
       if (i < 5500) continue;
       low = std::min(low, device.X_PN.p().z());
       high = std::max(high, device.X_PN.p().z());

@@ -9,11 +9,11 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "ultrasound/engine/b_mode.h"
 #include "ultrasound/doppler/detail/colour_conversion.h"
+#include "ultrasound/engine/b_mode.h"
 #include "ultrasound/scanner/detail/receiver.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
@@ -259,7 +259,7 @@ const DopplerFrame& ColourDoppler::render(const DopplerInput& input) noexcept {
   return impl.frame;
 }
 
-const RgbImage& ColourDoppler::overlay(const GrayImage& image, const RasterGeometry& raster) noexcept {
+const volume::RgbImage& ColourDoppler::overlay(const GrayImage& image, const RasterGeometry& raster) noexcept {
   Impl& impl = *impl_;
   return impl.conversion.convert(image, raster, impl.scan, impl.frame, impl.held);
 }
@@ -268,4 +268,4 @@ void ColourDoppler::reset() noexcept {
   impl_->has_kept = false;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "geometry/pose.h"
-#include "ultrasound/engine/beam.h"
 #include "ultrasound/doppler/doppler_settings.h"
+#include "ultrasound/doppler/vessel_flow.h"
+#include "ultrasound/engine/beam.h"
 #include "ultrasound/probe/scan_geometry.h"
 #include "ultrasound/scanner/scanner.h"
-#include "ultrasound/doppler/vessel_flow.h"
 #include "volume/image.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 class BMode;
 
@@ -63,7 +63,7 @@ class ColourDoppler {
   /// Valid until the next call.
   const DopplerFrame& render(const DopplerInput& input) noexcept;
   /// The last frame's colours over the picture of the same scan, with the box's outline. Valid until the next call.
-  const RgbImage& overlay(const GrayImage& image, const RasterGeometry& raster) noexcept;
+  const volume::RgbImage& overlay(const GrayImage& image, const RasterGeometry& raster) noexcept;
   /// Forgets what persists.
   void reset() noexcept;
 
@@ -74,9 +74,9 @@ class ColourDoppler {
 
 /// Colour of a velocity in parts of the scale (-1..1), after inversion and shift of the baseline: red over orange to
 /// yellow towards the transducer, blue to cyan away from it; dark near the baseline. Real-time safe.
-Rgb doppler_colour(double share, const DopplerSettings& settings) noexcept;
+volume::Rgb doppler_colour(double share, const DopplerSettings& settings) noexcept;
 /// Draws the colour bar with +-scale (cm/s) at its ends; its top left at (column, row).
-void draw_colour_bar(RgbImage& image, int column, int row, int columns, int rows, double scale_cm_per_s,
+void draw_colour_bar(volume::RgbImage& image, int column, int row, int columns, int rows, double scale_cm_per_s,
                      const DopplerSettings& settings);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -8,7 +8,7 @@
 
 #include "ultrasound/engine/beam.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kSpeed_cm_per_s = kScannerSpeed_mm_per_us * 1e5;
@@ -94,4 +94,4 @@ double FlowCaliper::corrected_cm_per_s(double along_beam_cm_per_s, const ScanGeo
   return cosine >= kLeastCosine ? along_beam_cm_per_s / cosine : 0.0;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -3,7 +3,7 @@
 #include "core/result.h"
 #include "ultrasound/probe/scan_geometry.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// Where colour is looked for, as shares of the picture's width and depth; 0..1 each, first < last.
 struct DopplerBox {
@@ -56,4 +56,4 @@ struct FlowCaliper {
   double corrected_cm_per_s(double along_beam_cm_per_s, const ScanGeometry& scan) const noexcept;
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -12,26 +12,27 @@
 #include "config/sourced_number.h"
 #include "ultrasound/probe/detail/label_pattern.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr std::size_t kMostWaveforms = 32;
 constexpr double kSecondsPerMinute = 60.0;
 
-Result<double> read_number(const TomlTable& row, std::string_view key, Range range) {
-  TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, key, range));
+Result<double> read_number(const config::TomlTable& row, std::string_view key, config::Range range) {
+  TROCAR_TRY(const config::SourcedNumber number, config::read_sourced_number(row, key, range));
   return number.value;
 }
 
 /// Which of a few words a key says.
-Result<std::size_t> read_word(const TomlTable& row, std::string_view key, const std::vector<std::string>& words) {
+Result<std::size_t> read_word(const config::TomlTable& row, std::string_view key,
+                              const std::vector<std::string>& words) {
   TROCAR_TRY(const std::string word, row.string(key));
   const auto it = std::find(words.begin(), words.end(), word);
   if (it != words.end()) return static_cast<std::size_t>(it - words.begin());
   return fail(fmt::format("{} is \"{}\"", key, word), row.where(), fmt::format("use {}", fmt::join(words, ", ")));
 }
 
-Result<FlowWaveform> read_waveform(const TomlTable& row, const std::string& name) {
+Result<FlowWaveform> read_waveform(const config::TomlTable& row, const std::string& name) {
   TROCAR_TRY_STATUS(row.check_keys({"source", "values", "breathing"}));
   FlowWaveform waveform;
   waveform.name = name;
@@ -43,7 +44,8 @@ Result<FlowWaveform> read_waveform(const TomlTable& row, const std::string& name
   return waveform;
 }
 
-Result<FlowRule> read_rule(const TomlTable& row, const std::string& name, const std::vector<std::string>& waveforms) {
+Result<FlowRule> read_rule(const config::TomlTable& row, const std::string& name,
+                           const std::vector<std::string>& waveforms) {
   TROCAR_TRY_STATUS(row.check_keys(
       {"labels", "ends", "near", "at", "waveform", "peak_cm_per_s", "profile_exponent", "narrowing_exponent"}));
   FlowRule rule;
@@ -86,40 +88,40 @@ double FlowWaveform::at(double time_s, double heart_per_min, double breaths_per_
   return value * (1.0 + breathing * breath);
 }
 
-const FlowRule* FlowTable::find(std::string_view label, const LabelTable& labels) const {
+const FlowRule* FlowTable::find(std::string_view label, const anatomy::LabelTable& labels) const {
   for (const FlowRule& rule : rules) {
     if (!is_named(label, rule.labels)) continue;
-    const bool has_neighbour = std::any_of(labels.labels.begin(), labels.labels.end(), [&](const Label& other) {
-      return other.name != label && is_named(other.name, rule.near);
-    });
+    const bool has_neighbour = std::any_of(
+        labels.labels.begin(), labels.labels.end(),
+        [&](const anatomy::Label& other) { return other.name != label && is_named(other.name, rule.near); });
     if (has_neighbour || rule.at != FlowRule::At::kNowhere) return &rule;
   }
   return nullptr;
 }
 
 Result<FlowTable> load_flow_table(const std::filesystem::path& path) {
-  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   TROCAR_TRY_STATUS(document.check_keys({"heart_per_min", "breaths_per_min", "waveforms", "vessels"}));
   FlowTable table;
   TROCAR_TRY(table.heart_per_min, read_number(document, "heart_per_min", {30.0, 200.0}));
   TROCAR_TRY(table.breaths_per_min, read_number(document, "breaths_per_min", {0.0, 60.0}));
-  TROCAR_TRY(const TomlTable waveforms, document.table("waveforms"));
+  TROCAR_TRY(const config::TomlTable waveforms, document.table("waveforms"));
   const std::vector<std::string> names = waveforms.keys();
   if (names.size() > kMostWaveforms)
     return fail(fmt::format("{} waveforms", names.size()), waveforms.where(),
                 fmt::format("at most {} can be used", kMostWaveforms));
   for (const std::string& name : names) {
-    TROCAR_TRY(const TomlTable row, waveforms.table(name));
+    TROCAR_TRY(const config::TomlTable row, waveforms.table(name));
     TROCAR_TRY(FlowWaveform waveform, read_waveform(row, name));
     table.waveforms.push_back(std::move(waveform));
   }
-  TROCAR_TRY(const TomlTable rules, document.table("vessels"));
+  TROCAR_TRY(const config::TomlTable rules, document.table("vessels"));
   for (const std::string& name : rules.keys()) {
-    TROCAR_TRY(const TomlTable row, rules.table(name));
+    TROCAR_TRY(const config::TomlTable row, rules.table(name));
     TROCAR_TRY(FlowRule rule, read_rule(row, name, names));
     table.rules.push_back(std::move(rule));
   }
   return table;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

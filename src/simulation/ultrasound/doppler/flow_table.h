@@ -10,7 +10,7 @@
 #include "anatomy/label_table.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// Speed over one heartbeat, against its peak (data/flow.toml; physics.md U15).
 struct FlowWaveform {
@@ -45,7 +45,7 @@ struct FlowTable {
   std::vector<FlowRule> rules;
 
   /// The rule of a label in that company: the first of its rules whose neighbours are there, or that needs none.
-  const FlowRule* find(std::string_view label, const LabelTable& labels) const;
+  const FlowRule* find(std::string_view label, const anatomy::LabelTable& labels) const;
 };
 
 /// Errors name file, row and key: unknown key, out of range, no source, an unknown waveform.
@@ -54,4 +54,4 @@ Result<FlowTable> load_flow_table(const std::filesystem::path& path);
 /// Whether a label is meant by one of the patterns ('*' ends a stem; case and separators do not matter).
 bool is_named(std::string_view label, const std::vector<std::string>& patterns);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

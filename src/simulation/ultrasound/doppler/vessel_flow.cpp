@@ -9,7 +9,7 @@
 #include "core/check.h"
 #include "ultrasound/doppler/detail/vessel_flow_maker.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 VesselFlow::Moment VesselFlow::moment(double time_s) const noexcept {
   Moment values{};
@@ -54,12 +54,12 @@ Vec3 VesselFlow::velocity_P(const Vec3& p_P, double time_s) const noexcept {
   return at(p_P.cast<float>(), moment(time_s)).velocity_P.cast<double>();
 }
 
-Result<std::shared_ptr<const VesselFlow>> make_vessel_flow(const VirtualPatient& patient, FlowTable table,
+Result<std::shared_ptr<const VesselFlow>> make_vessel_flow(const anatomy::VirtualPatient& patient, FlowTable table,
                                                            const VesselFlowOptions& options, const Progress& progress) {
   TROCAR_CHECK(options.spacing_mm >= 0.3 && options.spacing_mm <= 3.0);
   TROCAR_CHECK(table.waveforms.size() <= VesselFlow::Moment{}.size());
   VesselFlowMaker maker(patient, std::move(table), options);
-  const std::vector<Label>& labels = patient.label_table.labels;
+  const std::vector<anatomy::Label>& labels = patient.label_table.labels;
   for (std::size_t n = 0; n < labels.size(); ++n) {
     if (labels[n].tissue != "vessel") continue;
     report(progress, "following " + labels[n].name, static_cast<double>(n) / static_cast<double>(labels.size()));
@@ -74,4 +74,4 @@ Result<std::shared_ptr<const VesselFlow>> make_vessel_flow(const VirtualPatient&
                   : fmt::format("add a row to flow.toml for {}", fmt::join(flow->without_flow(), ", ")));
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -12,7 +12,7 @@
 #include "core/result.h"
 #include "ultrasound/doppler/flow_table.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// A place on a vessel's middle line.
 struct VesselPoint {
@@ -72,7 +72,7 @@ class VesselFlow {
     std::uint8_t waveform = 0;
   };
 
-  GridGeometry geometry_;
+  volume::GridGeometry geometry_;
   std::array<std::array<float, 3>, 3> index_of_P_{};  ///< Rows: index along an axis for each mm of P.
   std::array<float, 3> index_of_origin_{};
   std::array<std::int32_t, 3> brick_count_{};
@@ -84,8 +84,8 @@ class VesselFlow {
 };
 
 /// Errors: no vessel of the patient has flow (with the labels that could).
-Result<std::shared_ptr<const VesselFlow>> make_vessel_flow(const VirtualPatient& patient, FlowTable table,
+Result<std::shared_ptr<const VesselFlow>> make_vessel_flow(const anatomy::VirtualPatient& patient, FlowTable table,
                                                            const VesselFlowOptions& options = {},
                                                            const Progress& progress = {});
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

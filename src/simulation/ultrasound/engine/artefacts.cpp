@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, bool Artefacts::*>, 9> kNames = {{
@@ -39,4 +39,4 @@ Status switch_off(Artefacts& artefacts, std::string_view name) {
                     fmt::format("known are: {}, all", fmt::join(artefact_names(), ", ")));
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

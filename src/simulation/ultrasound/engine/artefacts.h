@@ -5,7 +5,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// What sound does beside going straight and coming back; each can be switched off.
 struct Artefacts {
@@ -28,4 +28,4 @@ std::vector<std::string_view> artefact_names();
 /// Switches one off, or "all". An unknown name is an error that lists the names (exit status 2).
 Status switch_off(Artefacts& artefacts, std::string_view name);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

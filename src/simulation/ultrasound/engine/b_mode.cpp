@@ -19,7 +19,7 @@
 #include "ultrasound/engine/detail/tissue_texture.h"
 #include "ultrasound/engine/detail/tissue_walk.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace detail;
@@ -217,4 +217,4 @@ SoundWay BMode::sound_way(int line) const noexcept {
           walk.mirror_depth_mm};
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

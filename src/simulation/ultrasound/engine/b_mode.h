@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "geometry/pose.h"
-#include "ultrasound/tissue/acoustic_scene.h"
 #include "ultrasound/engine/artefacts.h"
 #include "ultrasound/engine/beam.h"
 #include "ultrasound/engine/needle_echo.h"
 #include "ultrasound/probe/scan_geometry.h"
 #include "ultrasound/probe/transducer.h"
+#include "ultrasound/tissue/acoustic_scene.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// How the transducer listens: what a scanner's knobs change before the echoes are there.
 struct Acquisition {
@@ -83,4 +83,4 @@ class BMode {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -6,7 +6,7 @@
 
 #include "core/check.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 /// Standard deviation of the Gaussian aperture that stands for a uniform one of width 1. With it the two-way profile of
@@ -54,4 +54,4 @@ Beam make_beam(const Transducer& transducer, double frequency_mhz, double focus_
   return beam;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

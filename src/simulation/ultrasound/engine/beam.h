@@ -2,7 +2,7 @@
 
 #include "ultrasound/probe/transducer.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// Two-way point spread of a transducer's beam (docs/physics.md U3), as standard deviations of Gaussian amplitude
 /// profiles; the full width at half maximum of the amplitude is 2.355 times that, the -6 dB width of the echo.
@@ -25,4 +25,4 @@ inline constexpr double kScannerSpeed_mm_per_us = 1.540;  ///< What every scanne
 /// The beam at a frequency (MHz, within the transducer's band) and a transmit focus.
 Beam make_beam(const Transducer& transducer, double frequency_mhz, double focus_mm);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

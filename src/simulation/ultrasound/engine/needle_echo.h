@@ -4,7 +4,7 @@
 
 #include "geometry/vec.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// A needle as sound meets it. Frame P, mm. What is not finite or shorter than its tip's point leaves no image.
 struct NeedleEcho {
@@ -17,4 +17,4 @@ struct NeedleEcho {
   double bore_share = 0.66;
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

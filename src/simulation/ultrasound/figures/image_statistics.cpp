@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 struct Moments {
@@ -104,4 +104,4 @@ double mean_gray(const GrayHistogram& histogram) noexcept {
   return mean;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

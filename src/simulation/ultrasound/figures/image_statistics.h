@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// How well a target shows against what surrounds it, from the values (envelope or gray) of both.
 struct TargetVisibility {
@@ -25,4 +25,4 @@ double bhattacharyya_distance(const GrayHistogram& a, const GrayHistogram& b) no
 int gray_percentile(const GrayHistogram& histogram, double share) noexcept;
 double mean_gray(const GrayHistogram& histogram) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr int kLines = 400;
@@ -176,4 +176,4 @@ PictureFigures PictureStatistics::figures() const {
   return figures;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "ultrasound/figures/image_statistics.h"
-#include "ultrasound/probe/scan_geometry.h"
 #include "ultrasound/figures/speckle_statistics.h"
+#include "ultrasound/probe/scan_geometry.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// A gray picture with its fan.
 struct FanPicture {
@@ -55,4 +55,4 @@ class PictureStatistics {
   std::vector<Patch> patches_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

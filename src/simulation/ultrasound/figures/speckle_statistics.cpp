@@ -8,7 +8,7 @@
 #include "core/check.h"
 #include "ultrasound/engine/b_mode.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 double mean_of(std::span<const float> values) {
@@ -258,4 +258,4 @@ double level_slope_db_per_mm(std::span<const DepthLevel> levels) {
   return covariance / variance;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 struct BasebandFrame;
 
@@ -92,4 +92,4 @@ std::vector<DepthLevel> level_against_depth(const EchoPatch& envelope, double ba
 /// Slope of the least-squares line, dB/mm.
 double level_slope_db_per_mm(std::span<const DepthLevel> levels);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

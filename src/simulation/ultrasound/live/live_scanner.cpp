@@ -19,7 +19,7 @@
 #include "core/random.h"
 #include "ultrasound/live/picture_maker.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 /// Two servers' loops, the window and the drawing.
@@ -255,4 +255,4 @@ CineState LiveScanner::cine() const {
   return impl_->state;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

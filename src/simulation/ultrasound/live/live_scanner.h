@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "ultrasound/live/scan_picture.h"
 #include "ultrasound/doppler/vessel_flow.h"
+#include "ultrasound/live/scan_picture.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// How a live scanner shares the machine with those who must be on time.
 struct LiveScannerOptions {
@@ -58,4 +58,4 @@ class LiveScanner {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -9,7 +9,7 @@
 #include "ultrasound/doppler/detail/colour_conversion.h"
 #include "ultrasound/probe/probe_contact.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 /// What renders one detail.
@@ -171,7 +171,7 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
   picture.acquisition = request.acquisition;
   picture.display = request.display;
   picture.detail = detail;
-  picture.coupled_share = trocar::coupled_share(echoes);
+  picture.coupled_share = trocar::ultrasound::coupled_share(echoes);
   set_unscanned(*impl.scene, picture);
   for (int line = 0; line < echoes.geometry.lines; ++line)
     picture.pressed_mm.push_back(stage.engine.sound_way(line).pressed_mm);
@@ -228,4 +228,4 @@ ScanPicture PictureMaker::show_kept(const ScanRequest& asked) {
   return picture;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -3,11 +3,11 @@
 #include <memory>
 #include <optional>
 
-#include "ultrasound/scanner/cine_loop.h"
-#include "ultrasound/live/scan_picture.h"
 #include "ultrasound/doppler/vessel_flow.h"
+#include "ultrasound/live/scan_picture.h"
+#include "ultrasound/scanner/cine_loop.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// Engine, receiver, colour and cine loop of one transducer on one patient, worked by a single thread: makes a picture
 /// of a request and keeps it in the loop, or shows one that was kept. Buffers of each detail are taken when it is first
@@ -42,4 +42,4 @@ class PictureMaker {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -6,7 +6,7 @@
 #include "core/check.h"
 #include "ultrasound/probe/probe_contact.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 /// Two neighbours and the share of the second, of 256.
@@ -63,4 +63,4 @@ void resample_levels(std::span<const std::uint8_t> from, const ScanGeometry& fro
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -10,14 +10,14 @@
 #include "ultrasound/scanner/scanner.h"
 #include "volume/image.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// A finished picture of a live scanner with all that is needed to draw it, measure in it and lay it into a 3D view.
 /// Immutable once it is shared.
 struct ScanPicture {
   std::uint64_t number = 0;  ///< Grows by one with each picture of a scanner.
   GrayImage gray;
-  RgbImage colour;  ///< With Doppler's colours and box; empty without.
+  volume::RgbImage colour;  ///< With Doppler's colours and box; empty without.
   RasterGeometry raster;
   ScanGeometry scan;
   Pose X_PT;            ///< Where it was made.
@@ -49,4 +49,4 @@ Vec2 shown_place_T(const ScanPicture& picture, const Vec3& p_P) noexcept;
 void resample_levels(std::span<const std::uint8_t> from, const ScanGeometry& from_scan, const ScanGeometry& to_scan,
                      std::vector<std::uint8_t>& to);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

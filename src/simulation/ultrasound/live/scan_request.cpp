@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kLeastDepth_mm = 20.0;
@@ -62,4 +62,4 @@ bool is_as_good(const ScanRequest& a, const ScanRequest& b, double tolerance_mm)
                     [&](const Vec3& p, const Vec3& q) { return is_near(p, q, tolerance_mm); });
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

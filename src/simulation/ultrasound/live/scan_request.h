@@ -3,12 +3,12 @@
 #include <vector>
 
 #include "geometry/pose.h"
-#include "ultrasound/engine/b_mode.h"
-#include "ultrasound/scanner/display_settings.h"
 #include "ultrasound/doppler/doppler_settings.h"
+#include "ultrasound/engine/b_mode.h"
 #include "ultrasound/probe/transducer.h"
+#include "ultrasound/scanner/display_settings.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// What a live scanner is to show: where transducer and needle are now, and how its knobs stand.
 struct ScanRequest {
@@ -36,4 +36,4 @@ bool is_as_good(const ScanRequest& a, const ScanRequest& b, double tolerance_mm)
 /// The knobs of it alone.
 bool has_same_settings(const ScanRequest& a, const ScanRequest& b) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 /// Nominal work of a frame, in samples: of one whatever its detail (contact, scan conversion), for every sample, and
@@ -98,4 +98,4 @@ void ScanSchedule::restart() noexcept {
   shown_.reset();
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

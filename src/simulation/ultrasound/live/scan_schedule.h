@@ -5,7 +5,7 @@
 
 #include "ultrasound/live/scan_request.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// How finely a frame is rendered, of what the user asked for.
 enum class ScanDetail { kFast, kMiddle, kFull };
@@ -57,4 +57,4 @@ class ScanSchedule {
   std::array<double, kScanDetails> correction_{1.0, 1.0, 1.0};
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

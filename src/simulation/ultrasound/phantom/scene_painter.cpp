@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "ultrasound/probe/scan_geometry.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 /// Room beside the scan and air before the skin.
@@ -26,10 +26,10 @@ double sag_mm(const SceneBox& box) {
   return box.face_radius_mm - std::sqrt(box.face_radius_mm * box.face_radius_mm - half_mm * half_mm);
 }
 
-GridGeometry grid_of(const SceneBox& box) {
+volume::GridGeometry grid_of(const SceneBox& box) {
   const double before_mm = kRim_mm + sag_mm(box);
   const auto whole = [&](double length_mm) { return static_cast<std::int64_t>(std::ceil(length_mm / box.spacing_mm)); };
-  GridGeometry grid;
+  volume::GridGeometry grid;
   grid.spacing_mm = Vec3::Constant(box.spacing_mm);
   grid.size = {2 * whole(box.half_width_mm), whole(before_mm) + whole(box.depth_mm), 2 * whole(box.half_thickness_mm)};
   // Voxels' middles lie half a spacing beside whole ones, so that borders lie on whole ones.
@@ -59,13 +59,13 @@ AcousticScene paint_scene(const SceneBox& box, AcousticTable table, const Tissue
   AcousticScene scene;
   scene.geometry = grid_of(box);
   scene.table = std::move(table);
-  scene.skin_distance_mm = FloatGrid(scene.geometry);
+  scene.skin_distance_mm = volume::FloatGrid(scene.geometry);
   scene.tissue.resize(scene.geometry.voxel_count());
   scene.texture.assign(scene.geometry.voxel_count(), 0);
-  const GridGeometry& grid = scene.geometry;
+  const volume::GridGeometry& grid = scene.geometry;
   parallel_for(scene.tissue.size(), static_cast<std::size_t>(grid.size[0]), [&](std::size_t first, std::size_t last) {
     for (std::size_t at = first; at < last; ++at) {
-      const Index3 ijk = grid.index_of(at);
+      const volume::Index3 ijk = grid.index_of(at);
       const Vec3 p_P =
           grid.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
       const double skin_mm = skin_distance_at ? skin_distance_at(p_P) : own_skin_distance_mm(box, p_P);
@@ -77,4 +77,4 @@ AcousticScene paint_scene(const SceneBox& box, AcousticTable table, const Tissue
   return scene;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -4,10 +4,10 @@
 #include <functional>
 #include <memory>
 
-#include "ultrasound/tissue/acoustic_scene.h"
 #include "ultrasound/probe/transducer.h"
+#include "ultrasound/tissue/acoustic_scene.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// The block of tissue of a test scene. The face lies with its middle at the origin of P and looks along +y, x lateral,
 /// z elevation: the identity is X_PT.
@@ -30,4 +30,4 @@ using SkinDistanceAt = std::function<double(const Vec3& p_P)>;
 AcousticScene paint_scene(const SceneBox& box, AcousticTable table, const TissueAt& tissue_at,
                           const SkinDistanceAt& skin_distance_at = {});
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kSilent_db = -80.0;
@@ -143,4 +143,4 @@ ScenePtr gap_scene(const SceneBox& box, TestTissue tissue, double from_x_mm, dou
       box, test_table(), [=](const Vec3&) { return index_of(tissue); }, skin_distance));
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

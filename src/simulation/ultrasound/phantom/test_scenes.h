@@ -8,7 +8,7 @@
 
 /// Scenes with one thing in them, as a physicist's test phantom has, in which each artefact is seen alone. In all of
 /// them the identity is X_PT. `y` is depth below the face's middle, mm.
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// Tissues of the test scenes: round numbers, so that what is measured can be held against what was set. All but the
 /// named ones have 1540 m/s and 1000 kg/m3, so that no border between them reflects.
@@ -73,4 +73,4 @@ Vec3 mirrored(const Vec3& p_P, const TestPlane& plane);
 /// Tissue whose skin falls `gap_mm` back from a flat face for x > from_x_mm.
 ScenePtr gap_scene(const SceneBox& box, TestTissue tissue, double from_x_mm, double gap_mm);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -8,7 +8,7 @@
 #include "ultrasound/probe/probe_contact.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kGreatestTilt = 15.0 * std::numbers::pi / 180.0;  ///< In the plane, for the sake of contact.
@@ -19,7 +19,8 @@ Pose tilted(const Vec3& skin_P, const Mat3& R_PT, double tilt) {
   return {R_PT * Mat3(Eigen::AngleAxisd(tilt, Vec3::UnitZ())), skin_P};
 }
 
-Pose lay_along(const FloatGrid& skin_distance_mm, const ScanGeometry& scan, const Vec3& skin_P, const Mat3& R_PT) {
+Pose lay_along(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& scan, const Vec3& skin_P,
+               const Mat3& R_PT) {
   double tilt = 0.0;
   for (int round = 0; round < 4; ++round) {
     const Pose X_PT = tilted(skin_P, R_PT, tilt);
@@ -28,7 +29,7 @@ Pose lay_along(const FloatGrid& skin_distance_mm, const ScanGeometry& scan, cons
     for (int n = 0; n < scan.lines; ++n) {
       const Vec2 at_T = scan.line_origin(n);
       sum_xx += at_T.x() * at_T.x();
-      sum_xd += at_T.x() * -sample_linear(skin_distance_mm, X_PT * Vec3(at_T.x(), at_T.y(), 0.0));
+      sum_xd += at_T.x() * -volume::sample_linear(skin_distance_mm, X_PT * Vec3(at_T.x(), at_T.y(), 0.0));
     }
     if (sum_xx <= 0.0) break;  // a phased array: all scanlines leave one point
     tilt = std::clamp(tilt - std::atan(sum_xd / sum_xx), -kGreatestTilt, kGreatestTilt);
@@ -38,8 +39,8 @@ Pose lay_along(const FloatGrid& skin_distance_mm, const ScanGeometry& scan, cons
 
 }  // namespace
 
-FaceFit fit_face(const FloatGrid& skin_distance_mm, const ScanGeometry& scan, const Vec3& skin_P, const Mat3& R_PT,
-                 double pressed_mm) {
+FaceFit fit_face(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& scan, const Vec3& skin_P,
+                 const Mat3& R_PT, double pressed_mm) {
   const Pose on_skin = lay_along(skin_distance_mm, scan, skin_P, R_PT);
   std::vector<LineContact> contact(static_cast<std::size_t>(scan.lines));
   FaceFit fit;
@@ -55,4 +56,4 @@ FaceFit fit_face(const FloatGrid& skin_distance_mm, const ScanGeometry& scan, co
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

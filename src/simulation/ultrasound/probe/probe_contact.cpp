@@ -6,7 +6,7 @@
 #include "ultrasound/tissue/acoustic_scene.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr int kMaxSteps = 24;
@@ -23,7 +23,7 @@ constexpr int kReachLines = 9;
 
 /// Way from p to the skin along a unit direction, at most `farthest_mm`: the signed distance never exceeds it, so
 /// steps of that length approach the skin and do not pass it.
-double way_to_skin_mm(const FloatGrid& skin_distance_mm, const Vec3& p_P, const Vec3& direction_P, double sign,
+double way_to_skin_mm(const volume::FloatGrid& skin_distance_mm, const Vec3& p_P, const Vec3& direction_P, double sign,
                       double farthest_mm) noexcept {
   double way_mm = 0.0;
   for (int step = 0; step < kMaxSteps && way_mm < farthest_mm; ++step) {
@@ -50,7 +50,7 @@ std::uint8_t tissue_at(const AcousticScene& scene, const Vec3& p_P) noexcept {
   const Vec3 index = scene.geometry.to_index(p_P);
   if (!index.allFinite() || index.cwiseAbs().maxCoeff() > 1e6) return 0;
   const auto nearest = [](double v) { return static_cast<std::int64_t>(std::floor(v + 0.5)); };
-  const Index3 ijk{nearest(index.x()), nearest(index.y()), nearest(index.z())};
+  const volume::Index3 ijk{nearest(index.x()), nearest(index.y()), nearest(index.z())};
   if (!scene.geometry.contains(ijk)) return 0;
   return static_cast<std::uint8_t>(scene.tissue[scene.geometry.offset(ijk)] & ~kMixedCell);
 }
@@ -77,7 +77,7 @@ float gap_coupling(float gap_mm) noexcept {
   return 1.0F - t * t * (3.0F - 2.0F * t);
 }
 
-void find_contact(const FloatGrid& skin_distance_mm, const ScanGeometry& geometry, const Pose& X_PT,
+void find_contact(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& geometry, const Pose& X_PT,
                   std::span<LineContact> contact) noexcept {
   const bool has_skin = !skin_distance_mm.empty() && X_PT.is_finite();
   const std::size_t lines = std::min(contact.size(), static_cast<std::size_t>(std::max(geometry.lines, 0)));
@@ -118,4 +118,4 @@ double find_dent_reach_mm(const AcousticScene& scene, const ScanGeometry& geomet
   return sum_mm / kReachLines;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

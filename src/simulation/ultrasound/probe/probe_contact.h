@@ -6,7 +6,7 @@
 #include "ultrasound/probe/scan_geometry.h"
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 struct AcousticScene;
 
@@ -29,7 +29,7 @@ float gap_coupling(float gap_mm) noexcept;
 
 /// Contact of every scanline of a face at X_PT; `contact` is as long as the geometry has lines (fewer: the first ones).
 /// Where the skin is met along the scanline, forwards or backwards, to 0.02 mm. Real-time safe. physics.md U8.
-void find_contact(const FloatGrid& skin_distance_mm, const ScanGeometry& geometry, const Pose& X_PT,
+void find_contact(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& geometry, const Pose& X_PT,
                   std::span<LineContact> contact) noexcept;
 
 /// Tissue deeper than this does not yield, where nothing more is known: with it a dent's half is gone at 12 mm, as
@@ -55,4 +55,4 @@ double pressed_depth_mm(double rest_depth_mm, double pressed_mm, double reach_mm
 /// a mean over the scanlines, so that it moves smoothly with the probe. Real-time safe.
 double find_dent_reach_mm(const AcousticScene& scene, const ScanGeometry& geometry, const Pose& X_PT) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

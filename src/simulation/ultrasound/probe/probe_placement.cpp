@@ -15,7 +15,7 @@
 #include "ultrasound/probe/face_fit.h"
 #include "ultrasound/probe/scan_geometry.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using detail::ViewGround;
@@ -243,7 +243,8 @@ class Placer {
 
 }  // namespace
 
-Result<ProbePlacement> place_probe(const VirtualPatient& patient, const ProbeView& view, const Transducer& transducer) {
+Result<ProbePlacement> place_probe(const anatomy::VirtualPatient& patient, const ProbeView& view,
+                                   const Transducer& transducer) {
   if (patient.labels.empty()) return fail("the patient has no voxels", patient.name, "build the patient again");
   TROCAR_TRY(const Vec3 target_P, detail::find_target_point(patient, view));
   const ViewGround ground(patient, view);
@@ -258,4 +259,4 @@ Result<ProbePlacement> place_probe(const VirtualPatient& patient, const ProbeVie
   return ProbePlacement{best.X_PT, best.visibility};
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

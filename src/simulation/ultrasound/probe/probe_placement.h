@@ -7,7 +7,7 @@
 #include "ultrasound/probe/transducer.h"
 #include "ultrasound/probe/view_visibility.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// A transducer in a standard view.
 struct ProbePlacement {
@@ -21,6 +21,7 @@ struct ProbePlacement {
 /// degrees about the view's direction, the plane turned by up to 60 degrees, for views with search_mm > 0. The face is
 /// tilted by at most 15 degrees in its plane and pressed in by at least view.pressed_mm, at most 15 mm, so that it
 /// touches along its width. Errors: a patient without the target, no skin on any way out that the view allows.
-Result<ProbePlacement> place_probe(const VirtualPatient& patient, const ProbeView& view, const Transducer& transducer);
+Result<ProbePlacement> place_probe(const anatomy::VirtualPatient& patient, const ProbeView& view,
+                                   const Transducer& transducer);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

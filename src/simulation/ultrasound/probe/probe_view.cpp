@@ -13,14 +13,14 @@
 #include "config/toml.h"
 #include "ultrasound/probe/detail/label_pattern.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr std::size_t kLeastVoxels = 8;  // fewer are a segmentation's crumbs
 
 /// Reads one of a few words.
 template <class T, std::size_t N>
-Status read_word(const TomlTable& row, std::string_view key, const std::pair<std::string_view, T> (&words)[N],
+Status read_word(const config::TomlTable& row, std::string_view key, const std::pair<std::string_view, T> (&words)[N],
                  T& value) {
   if (!row.has(key)) return {};
   TROCAR_TRY(const std::string word, row.string(key));
@@ -35,14 +35,15 @@ Status read_word(const TomlTable& row, std::string_view key, const std::pair<std
   return fail(fmt::format("{} is \"{}\"", key, word), row.where(), fmt::format("use {}", fmt::join(known, ", ")));
 }
 
-Result<Vec3> read_vector(const TomlTable& row, std::string_view key, Range range, const Vec3& fallback) {
+Result<Vec3> read_vector(const config::TomlTable& row, std::string_view key, config::Range range,
+                         const Vec3& fallback) {
   if (!row.has(key)) return fallback;
   TROCAR_TRY(const std::vector<double> numbers, row.numbers(key, range));
   if (numbers.size() != 3) return fail(fmt::format("{} has {} numbers", key, numbers.size()), row.where(), "give 3");
   return Vec3(numbers[0], numbers[1], numbers[2]);
 }
 
-Status read_choices(const TomlTable& row, ProbeView& view) {
+Status read_choices(const config::TomlTable& row, ProbeView& view) {
   constexpr std::pair<std::string_view, ScanPlane> kPlanes[] = {{"longitudinal", ScanPlane::kLongitudinal},
                                                                 {"transverse", ScanPlane::kTransverse}};
   constexpr std::pair<std::string_view, BoneWish> kBones[] = {
@@ -54,7 +55,7 @@ Status read_choices(const TomlTable& row, ProbeView& view) {
   return read_word(row, "point", kPoints, view.point);
 }
 
-Result<ProbeView> read_view(const TomlTable& row, const std::string& name) {
+Result<ProbeView> read_view(const config::TomlTable& row, const std::string& name) {
   TROCAR_TRY_STATUS(
       row.check_keys({"title", "targets", "through", "point", "offset_mm", "direction", "plane", "angle_deg", "bone",
                       "pressed_mm", "search_mm", "depth_mm", "frequency_mhz", "focus_mm", "transducer"}));
@@ -86,18 +87,18 @@ Result<ProbeView> read_view(const TomlTable& row, const std::string& name) {
   return view;
 }
 
-std::array<std::size_t, 256> count_voxels(const LabelGrid& labels) {
+std::array<std::size_t, 256> count_voxels(const volume::LabelGrid& labels) {
   std::array<std::size_t, 256> counts{};
   for (const std::uint8_t id : labels.voxels) ++counts[id];
   return counts;
 }
 
-const Label* find_counted(const LabelTable& table, const std::array<std::size_t, 256>& voxels,
-                          std::span<const std::string> patterns) {
+const anatomy::Label* find_counted(const anatomy::LabelTable& table, const std::array<std::size_t, 256>& voxels,
+                                   std::span<const std::string> patterns) {
   for (const std::string& pattern : patterns) {
     const std::string key = detail::plain_name(pattern);
-    const Label* largest = nullptr;
-    for (const Label& label : table.labels) {
+    const anatomy::Label* largest = nullptr;
+    for (const anatomy::Label& label : table.labels) {
       if (voxels[label.id] < kLeastVoxels || !detail::matches_pattern(key, detail::plain_name(label.name))) continue;
       if (largest == nullptr || voxels[label.id] > voxels[largest->id]) largest = &label;
     }
@@ -107,8 +108,8 @@ const Label* find_counted(const LabelTable& table, const std::array<std::size_t,
 }
 
 /// The patterns of which the patient needs one and has none; nullptr: nothing is missing.
-const std::vector<std::string>* find_missing(const LabelTable& table, const std::array<std::size_t, 256>& voxels,
-                                             const ProbeView& view) {
+const std::vector<std::string>* find_missing(const anatomy::LabelTable& table,
+                                             const std::array<std::size_t, 256>& voxels, const ProbeView& view) {
   if (find_counted(table, voxels, view.targets) == nullptr) return &view.targets;
   const bool needs_through = view.point == TargetPoint::kFacing;
   return needs_through && find_counted(table, voxels, view.through) == nullptr ? &view.through : nullptr;
@@ -122,29 +123,29 @@ std::string missing_text(const ProbeView& view, const std::vector<std::string>& 
 }  // namespace
 
 Result<std::vector<ProbeView>> load_probe_views(const std::filesystem::path& path) {
-  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   TROCAR_TRY_STATUS(document.check_keys({"views"}));
-  TROCAR_TRY(const TomlTable rows, document.table("views"));
+  TROCAR_TRY(const config::TomlTable rows, document.table("views"));
   std::vector<ProbeView> views;
   for (const std::string& name : rows.keys()) {
-    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(const config::TomlTable row, rows.table(name));
     TROCAR_TRY(ProbeView view, read_view(row, name));
     views.push_back(std::move(view));
   }
   return views;
 }
 
-const Label* find_target(const VirtualPatient& patient, std::span<const std::string> patterns) {
+const anatomy::Label* find_target(const anatomy::VirtualPatient& patient, std::span<const std::string> patterns) {
   return find_counted(patient.label_table, count_voxels(patient.labels), patterns);
 }
 
-Status check_view(const VirtualPatient& patient, const ProbeView& view) {
+Status check_view(const anatomy::VirtualPatient& patient, const ProbeView& view) {
   const auto* missing = find_missing(patient.label_table, count_voxels(patient.labels), view);
   if (missing == nullptr) return {};
   return fail_usage(missing_text(view, *missing), patient.name, "choose another view");
 }
 
-std::vector<std::string> possible_views(const VirtualPatient& patient, std::span<const ProbeView> views) {
+std::vector<std::string> possible_views(const anatomy::VirtualPatient& patient, std::span<const ProbeView> views) {
   const auto voxels = count_voxels(patient.labels);
   std::vector<std::string> names;
   for (const ProbeView& view : views) {
@@ -153,7 +154,8 @@ std::vector<std::string> possible_views(const VirtualPatient& patient, std::span
   return names;
 }
 
-Result<ProbeView> choose_view(const VirtualPatient& patient, std::span<const ProbeView> views, std::string_view name) {
+Result<ProbeView> choose_view(const anatomy::VirtualPatient& patient, std::span<const ProbeView> views,
+                              std::string_view name) {
   const auto it = std::find_if(views.begin(), views.end(), [&](const ProbeView& view) { return view.name == name; });
   if (it == views.end()) {
     std::vector<std::string_view> names;
@@ -169,4 +171,4 @@ Result<ProbeView> choose_view(const VirtualPatient& patient, std::span<const Pro
                                      : fmt::format("available views: {}", fmt::join(possible, ", ")));
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -10,7 +10,7 @@
 #include "anatomy/patient.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 enum class ScanPlane {
   kLongitudinal,  ///< +x of T towards the patient's head.
@@ -55,16 +55,17 @@ Result<std::vector<ProbeView>> load_probe_views(const std::filesystem::path& pat
 
 /// The label that a view aims at: the largest of those that match the first pattern which any matches; labels of fewer
 /// than 8 voxels do not count. Case and separators do not matter.
-const Label* find_target(const VirtualPatient& patient, std::span<const std::string> patterns);
+const anatomy::Label* find_target(const anatomy::VirtualPatient& patient, std::span<const std::string> patterns);
 
 /// Error (exit status 2): the patient lacks a label that the view needs; it names the label.
-Status check_view(const VirtualPatient& patient, const ProbeView& view);
+Status check_view(const anatomy::VirtualPatient& patient, const ProbeView& view);
 
 /// Names of the views whose targets a patient has.
-std::vector<std::string> possible_views(const VirtualPatient& patient, std::span<const ProbeView> views);
+std::vector<std::string> possible_views(const anatomy::VirtualPatient& patient, std::span<const ProbeView> views);
 
 /// The view of that name. Errors (exit status 2): an unknown name, with all names; a patient who lacks its target, with
 /// the views that he has.
-Result<ProbeView> choose_view(const VirtualPatient& patient, std::span<const ProbeView> views, std::string_view name);
+Result<ProbeView> choose_view(const anatomy::VirtualPatient& patient, std::span<const ProbeView> views,
+                              std::string_view name);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

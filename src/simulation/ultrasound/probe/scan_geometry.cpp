@@ -5,7 +5,7 @@
 
 #include "core/check.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 /// Part of the picture that stays empty at each side of the scan, so that its edge is seen.
@@ -89,4 +89,4 @@ RasterGeometry fit_raster(const ScanGeometry& scan, int columns, int rows, bool 
   return raster;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -4,7 +4,7 @@
 
 #include "ultrasound/probe/transducer.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 using Vec2 = Eigen::Vector2d;
 
@@ -60,4 +60,4 @@ struct RasterGeometry {
 };
 RasterGeometry fit_raster(const ScanGeometry& scan, int columns, int rows, bool is_mirrored = false);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -9,7 +9,7 @@
 
 #include "config/sourced_number.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
@@ -24,21 +24,21 @@ constexpr std::pair<std::string_view, TransducerKind> kKinds[] = {
 /// Reads sourced numbers of a row and keeps their keys, so that any other key is an error.
 class Reader {
  public:
-  explicit Reader(const TomlTable& row) : row_(row) {}
+  explicit Reader(const config::TomlTable& row) : row_(row) {}
 
-  Status value(std::string_view key, Range range, double& value) {
+  Status value(std::string_view key, config::Range range, double& value) {
     known_.push_back(key);
-    TROCAR_TRY(const SourcedNumber number, read_sourced_number(row_, key, range));
+    TROCAR_TRY(const config::SourcedNumber number, config::read_sourced_number(row_, key, range));
     value = number.value;
     return {};
   }
-  Status angle(std::string_view key_deg, Range range_deg, double& value_rad) {
+  Status angle(std::string_view key_deg, config::Range range_deg, double& value_rad) {
     double value_deg = 0.0;
     TROCAR_TRY_STATUS(value(key_deg, range_deg, value_deg));
     value_rad = value_deg * kRadPerDeg;
     return {};
   }
-  Status count(std::string_view key, Range range, int& count) {
+  Status count(std::string_view key, config::Range range, int& count) {
     double number = 0.0;
     TROCAR_TRY_STATUS(value(key, range, number));
     count = static_cast<int>(number);
@@ -49,11 +49,11 @@ class Reader {
   Status finish() { return row_.check_keys(known_); }
 
  private:
-  const TomlTable& row_;
+  const config::TomlTable& row_;
   std::vector<std::string_view> known_{"description", "kind"};
 };
 
-Result<TransducerKind> read_kind(const TomlTable& row) {
+Result<TransducerKind> read_kind(const config::TomlTable& row) {
   TROCAR_TRY(const std::string word, row.string("kind"));
   std::vector<std::string_view> words;
   for (const auto& [known, kind] : kKinds) {
@@ -93,7 +93,7 @@ Status read_picture(Reader& reader, Transducer& t) {
   return reader.count("scanlines", {2.0, 1024.0}, t.scanlines);
 }
 
-Result<Transducer> read_transducer(const TomlTable& row, const std::string& name) {
+Result<Transducer> read_transducer(const config::TomlTable& row, const std::string& name) {
   Transducer t;
   t.name = name;
   TROCAR_TRY(t.description, row.string("description"));
@@ -113,12 +113,12 @@ Result<Transducer> read_transducer(const TomlTable& row, const std::string& name
 }  // namespace
 
 Result<std::vector<Transducer>> load_transducers(const std::filesystem::path& path) {
-  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   TROCAR_TRY_STATUS(document.check_keys({"transducers"}));
-  TROCAR_TRY(const TomlTable rows, document.table("transducers"));
+  TROCAR_TRY(const config::TomlTable rows, document.table("transducers"));
   std::vector<Transducer> transducers;
   for (const std::string& name : rows.keys()) {
-    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(const config::TomlTable row, rows.table(name));
     TROCAR_TRY(Transducer transducer, read_transducer(row, name));
     transducers.push_back(std::move(transducer));
   }
@@ -136,4 +136,4 @@ Result<Transducer> load_transducer(const std::filesystem::path& path, std::strin
                     fmt::format("known are: {}", fmt::join(names, ", ")));
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -7,7 +7,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 enum class TransducerKind {
   kConvex,            ///< Elements on an arc, scanlines along its radii.
@@ -52,4 +52,4 @@ Result<std::vector<Transducer>> load_transducers(const std::filesystem::path& pa
 /// One by name; an unknown one is an error that lists the names (exit status 2).
 Result<Transducer> load_transducer(const std::filesystem::path& path, std::string_view name);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -9,9 +9,9 @@
 
 #include "ultrasound/probe/detail/view_sight.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
-Result<ViewVisibility> measure_visibility(const VirtualPatient& patient, const ProbeView& view,
+Result<ViewVisibility> measure_visibility(const anatomy::VirtualPatient& patient, const ProbeView& view,
                                           const Transducer& transducer, const Pose& X_PT) {
   TROCAR_TRY(const Vec3 target_P, detail::find_target_point(patient, view));
   const detail::ViewGround ground(patient, view);
@@ -32,4 +32,4 @@ std::string hidden_causes(const ViewVisibility& visibility) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

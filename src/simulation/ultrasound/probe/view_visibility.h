@@ -8,7 +8,7 @@
 #include "ultrasound/probe/probe_view.h"
 #include "ultrasound/probe/transducer.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// Shares of a view's subject: how much of it a transducer shows, and why the rest is not seen. They sum to 1.
 struct ViewVisibility {
@@ -26,11 +26,11 @@ inline constexpr double kEnoughVisible = 0.5;
 /// Measures the part of the view's target within 40 mm of the point that the view aims at, in the image plane: its
 /// area, or the surface that faces the transducer where the target is bone, lung or gas (docs/physics.md U16). Errors:
 /// as choose_view for a patient without the target.
-Result<ViewVisibility> measure_visibility(const VirtualPatient& patient, const ProbeView& view,
+Result<ViewVisibility> measure_visibility(const anatomy::VirtualPatient& patient, const ProbeView& view,
                                           const Transducer& transducer, const Pose& X_PT);
 
 /// The causes of what is not visible, the largest first: "71 % behind bone, 9 % outside the CT". Shares below half a
 /// percent are left out.
 std::string hidden_causes(const ViewVisibility& visibility);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

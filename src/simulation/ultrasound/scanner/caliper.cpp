@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr int kMeanSteps = 8;  ///< The arithmetic-geometric mean doubles its digits with each; five are enough.
@@ -84,4 +84,4 @@ double AngleCaliper::angle_rad() const noexcept {
   return std::atan2(std::abs(cross(a, b)), a.dot(b));
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

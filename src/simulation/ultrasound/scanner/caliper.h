@@ -6,7 +6,7 @@
 
 /// Measuring in a picture. Calipers are set in pixels and kept in mm of the image plane (x, y of T), so that they stay
 /// where they are when the picture's size or depth changes, and give back the pixels to draw them at.
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// A straight line between two marks.
 struct DistanceCaliper {
@@ -44,4 +44,4 @@ struct AngleCaliper {
 AngleCaliper place_angle(const RasterGeometry& raster, const Vec2& corner_pixel, const Vec2& a_pixel,
                          const Vec2& b_pixel) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

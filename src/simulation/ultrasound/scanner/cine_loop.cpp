@@ -5,7 +5,7 @@
 
 #include "core/check.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 CineLoop::CineLoop(const ScanGeometry& scan, int capacity)
     : scan_(scan), frame_bytes_(static_cast<std::size_t>(scan.lines) * static_cast<std::size_t>(scan.samples)) {
@@ -79,4 +79,4 @@ CineFrame CineLoop::frame(int index) const noexcept {
   return {moment.X_PT, moment.time_s, moment.settings, std::span(levels_).subspan(place * frame_bytes_, frame_bytes_)};
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "geometry/pose.h"
-#include "ultrasound/scanner/display_settings.h"
 #include "ultrasound/probe/scan_geometry.h"
+#include "ultrasound/scanner/display_settings.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// One kept picture: what Scanner::show_levels needs, and where and when it was taken.
 struct CineFrame {
@@ -77,4 +77,4 @@ class CineLoop {
   double played_s_ = 0.0;  ///< Time shown beyond that of the frame looked at.
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 struct Range {
@@ -141,4 +141,4 @@ std::uint8_t gray_of_level(double level_db, const DisplaySettings& settings) noe
   return static_cast<std::uint8_t>(std::lround(255.0 * mapped(settings.gray_map, x)));
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 inline constexpr int kTgcSliders = 8;
 
@@ -57,4 +57,4 @@ inline constexpr double kWhite_db = 15.0;
 /// 0..255. Real-time safe.
 std::uint8_t gray_of_level(double level_db, const DisplaySettings& settings) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 void Measurements::add(const Measurement& measurement) {
   std::vector<Measurement> changed = items();
@@ -66,4 +66,4 @@ std::vector<std::string> results(const Measurement& measurement) {
   return {fmt::format("Angle {:.1f}°", kDeg_per_rad * std::get<AngleCaliper>(measurement).angle_rad())};
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -7,7 +7,7 @@
 #include "core/step_history.h"
 #include "ultrasound/scanner/caliper.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 using Measurement = std::variant<DistanceCaliper, EllipseCaliper, AngleCaliper>;
 
@@ -42,4 +42,4 @@ Measurement with_mark(Measurement measurement, std::size_t mark, const Vec2& p_T
 /// "Angle 43.2°". UTF-8.
 std::vector<std::string> results(const Measurement& measurement);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -7,19 +7,19 @@
 
 #include "volume/bitmap_font.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
-constexpr Rgb kInk = {200, 205, 210};
-constexpr Rgb kMarkerInk = {90, 200, 120};
-constexpr Rgb kFocusInk = {240, 200, 80};
+constexpr volume::Rgb kInk = {200, 205, 210};
+constexpr volume::Rgb kMarkerInk = {90, 200, 120};
+constexpr volume::Rgb kFocusInk = {240, 200, 80};
 
 /// Layout, in dots of the text.
 constexpr int kMargin = 6;
 constexpr int kLineHeight = 10;
 constexpr int kShortTick = 3;
 constexpr int kLongTick = 6;
-constexpr int kLabelColumns = 2 * kGlyphAdvance;  ///< Room for two digits right of the scale.
+constexpr int kLabelColumns = 2 * volume::kGlyphAdvance;  ///< Room for two digits right of the scale.
 constexpr int kWedgeColumns = 8;
 constexpr int kTriangle = 4;
 constexpr int kMarkerDistance = 9;
@@ -45,7 +45,7 @@ void add_depth_scale(ScanAnnotation& annotation, const RasterGeometry& raster, c
     const double row = raster.to_pixel({0.0, depth_mm}).y();
     annotation.ticks.push_back({row, (is_long ? kLongTick : kShortTick) * dot, depth_mm});
     if (!is_long) continue;
-    const int top = static_cast<int>(std::lround(row)) - kGlyphHeight / 2 * dot;
+    const int top = static_cast<int>(std::lround(row)) - volume::kGlyphHeight / 2 * dot;
     annotation.texts.push_back({annotation.scale_column + 3 * dot, top, depth_label(depth_mm)});
   }
 }
@@ -78,18 +78,18 @@ void add_wedge(ScanAnnotation& annotation, const RasterGeometry& raster, const D
   }
 }
 
-void draw_box(RgbImage& image, int column, int row, int columns, int rows, Rgb colour) {
+void draw_box(volume::RgbImage& image, int column, int row, int columns, int rows, volume::Rgb colour) {
   for (int r = std::max(row, 0); r < std::min(row + rows, image.rows); ++r) {
     for (int c = std::max(column, 0); c < std::min(column + columns, image.columns); ++c) image.at(c, r) = colour;
   }
 }
 
 /// Filled, its point at (column, row) and to the right.
-void draw_triangle(RgbImage& image, int column, int row, int size, Rgb colour) {
+void draw_triangle(volume::RgbImage& image, int column, int row, int size, volume::Rgb colour) {
   for (int i = 0; i <= size; ++i) draw_box(image, column - i, row - i, 1, 2 * i + 1, colour);
 }
 
-void draw_disc(RgbImage& image, const Vec2& middle, double radius, Rgb colour) {
+void draw_disc(volume::RgbImage& image, const Vec2& middle, double radius, volume::Rgb colour) {
   for (int r = static_cast<int>(middle.y() - radius); r <= static_cast<int>(middle.y() + radius) + 1; ++r) {
     for (int c = static_cast<int>(middle.x() - radius); c <= static_cast<int>(middle.x() + radius) + 1; ++c) {
       if ((Vec2(c, r) - middle).norm() <= radius) draw_box(image, c, r, 1, 1, colour);
@@ -117,15 +117,15 @@ ScanAnnotation make_scan_annotation(const RasterGeometry& raster, const ScanGeom
   return annotation;
 }
 
-RgbImage to_rgb(const GrayImage& image) {
-  RgbImage result(image.columns, image.rows);
+volume::RgbImage to_rgb(const GrayImage& image) {
+  volume::RgbImage result(image.columns, image.rows);
   std::transform(image.pixels.begin(), image.pixels.end(), result.pixels.begin(), [](std::uint8_t gray) {
-    return Rgb{gray, gray, gray};
+    return volume::Rgb{gray, gray, gray};
   });
   return result;
 }
 
-void draw_annotation(RgbImage& image, const ScanAnnotation& annotation) {
+void draw_annotation(volume::RgbImage& image, const ScanAnnotation& annotation) {
   const int dot = annotation.text_scale;
   for (const ScanAnnotation::Tick& tick : annotation.ticks) {
     const int row = static_cast<int>(std::lround(tick.row));
@@ -140,8 +140,8 @@ void draw_annotation(RgbImage& image, const ScanAnnotation& annotation) {
              {gray, gray, gray});
   }
   for (const ScanAnnotation::Text& text : annotation.texts) {
-    draw_text(image, text.column, text.row, text.text, kInk, dot);
+    volume::draw_text(image, text.column, text.row, text.text, kInk, dot);
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

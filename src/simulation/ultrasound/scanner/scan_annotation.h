@@ -6,7 +6,7 @@
 #include "ultrasound/scanner/scanner.h"
 #include "volume/image.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// What is said beside a picture.
 struct ScanCaption {
@@ -46,8 +46,8 @@ struct ScanAnnotation {
 
 ScanAnnotation make_scan_annotation(const RasterGeometry& raster, const ScanGeometry& scan, const ScanCaption& caption);
 
-RgbImage to_rgb(const GrayImage& image);
+volume::RgbImage to_rgb(const GrayImage& image);
 /// Draws over a picture of the raster's size; what is beyond it is left out.
-void draw_annotation(RgbImage& image, const ScanAnnotation& annotation);
+void draw_annotation(volume::RgbImage& image, const ScanAnnotation& annotation);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

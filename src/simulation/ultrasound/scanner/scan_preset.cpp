@@ -4,16 +4,17 @@
 
 #include "config/toml.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
-Status read_number(const TomlTable& row, std::string_view key, Range range, std::optional<double>& value) {
+Status read_number(const config::TomlTable& row, std::string_view key, config::Range range,
+                   std::optional<double>& value) {
   if (!row.has(key)) return {};
   TROCAR_TRY(value, row.number(key, range));
   return {};
 }
 
-Result<ScanPreset> read_preset(const TomlTable& row, const std::string& name) {
+Result<ScanPreset> read_preset(const config::TomlTable& row, const std::string& name) {
   TROCAR_TRY_STATUS(
       row.check_keys({"title", "transducer", "depth_mm", "frequency_mhz", "focus_mm", "gain_db", "dynamic_range_db",
                       "gray_map", "persistence", "has_doppler", "doppler_scale_cm_per_s"}));
@@ -41,12 +42,12 @@ Result<ScanPreset> read_preset(const TomlTable& row, const std::string& name) {
 }  // namespace
 
 Result<std::vector<ScanPreset>> load_scan_presets(const std::filesystem::path& path) {
-  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   TROCAR_TRY_STATUS(document.check_keys({"presets"}));
-  TROCAR_TRY(const TomlTable rows, document.table("presets"));
+  TROCAR_TRY(const config::TomlTable rows, document.table("presets"));
   std::vector<ScanPreset> presets;
   for (const std::string& name : rows.keys()) {
-    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(const config::TomlTable row, rows.table(name));
     TROCAR_TRY(ScanPreset preset, read_preset(row, name));
     presets.push_back(std::move(preset));
   }
@@ -61,4 +62,4 @@ Acquisition acquisition_of(const ScanPreset& preset, const Transducer& transduce
   return acquisition;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "core/result.h"
+#include "ultrasound/doppler/doppler_settings.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/scanner/display_settings.h"
-#include "ultrasound/doppler/doppler_settings.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// How a scanner's knobs stand for a kind of examination (data/scan_presets.toml).
 struct ScanPreset {
@@ -28,4 +28,4 @@ Result<std::vector<ScanPreset>> load_scan_presets(const std::filesystem::path& p
 /// The transducer's acquisition with what the preset says.
 Acquisition acquisition_of(const ScanPreset& preset, const Transducer& transducer);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -11,7 +11,7 @@
 #include "ultrasound/scanner/detail/scan_conversion.h"
 #include "ultrasound/scanner/detail/scanner_kernels.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using detail::kLevelFloor_db;
@@ -235,4 +235,4 @@ void Scanner::reset() noexcept {
   impl_->has_state = false;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

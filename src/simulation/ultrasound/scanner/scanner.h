@@ -7,10 +7,10 @@
 
 #include "ultrasound/engine/artefacts.h"
 #include "ultrasound/engine/b_mode.h"
-#include "ultrasound/scanner/display_settings.h"
 #include "ultrasound/probe/scan_geometry.h"
+#include "ultrasound/scanner/display_settings.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// A gray picture, row by row from the top left.
 struct GrayImage {
@@ -57,4 +57,4 @@ class Scanner {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -8,10 +8,10 @@
 #include "core/check.h"
 #include "core/parallel.h"
 #include "ultrasound/sweep/detail/hole_filling.h"
-#include "ultrasound/tissue/detail/slice_insertion.h"
 #include "ultrasound/sweep/transform_graph.h"
+#include "ultrasound/tissue/detail/slice_insertion.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kMaxVoxels = 256e6;  ///< 2.5 GB while it is made.
@@ -79,7 +79,7 @@ double voxels_along(double length_mm, double spacing_mm, FreehandInterpolation i
   return 1.0 + (interpolation == FreehandInterpolation::kLinear ? std::ceil(last) : std::floor(last + 0.5));
 }
 
-Result<GridGeometry> lay_grid(const detail::Extent& extent, const FreehandOptions& options) {
+Result<volume::GridGeometry> lay_grid(const detail::Extent& extent, const FreehandOptions& options) {
   const Vec3& spacing_mm = options.spacing_mm;
   const Vec3 length_mm = extent.last_P - extent.first_P;
   Vec3 size;
@@ -88,7 +88,7 @@ Result<GridGeometry> lay_grid(const detail::Extent& extent, const FreehandOption
   if (!(size.prod() <= kMaxVoxels))  // also NaN
     return fail(fmt::format("the volume would have {:.0f} x {:.0f} x {:.0f} voxels", size[0], size[1], size[2]), {},
                 "choose a larger spacing, and check that the transforms are in mm");
-  GridGeometry grid;
+  volume::GridGeometry grid;
   grid.origin_P = extent.first_P;
   grid.spacing_mm = spacing_mm;
   for (int axis = 0; axis < 3; ++axis)
@@ -105,7 +105,7 @@ Result<FreehandVolume> reconstruct_freehand(const TrackedSequence& sequence,
   TROCAR_TRY(const auto frames, place_frames(sequence, calibration, options));
   const auto runs = detail::pixel_runs(sequence, options);
   if (runs.empty()) return fail("no pixel is left by the clip region", {}, "check the clip rectangle and the fan");
-  TROCAR_TRY(const GridGeometry grid,
+  TROCAR_TRY(const volume::GridGeometry grid,
              lay_grid(detail::extent_of(frames, detail::box_of(sequence, runs, options)), options));
 
   report(progress, "inserting the pictures", 0.0);
@@ -115,7 +115,7 @@ Result<FreehandVolume> reconstruct_freehand(const TrackedSequence& sequence,
   FreehandVolume volume;
   volume.frames_used = frames.size();
   volume.frames_left_out = sequence.frames.size() - frames.size();
-  volume.gray = LabelGrid(grid);
+  volume.gray = volume::LabelGrid(grid);
   std::vector<std::uint8_t> known(cells.size());
   parallel_for(cells.size(), kGrain, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
@@ -131,4 +131,4 @@ Result<FreehandVolume> reconstruct_freehand(const TrackedSequence& sequence,
   return volume;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -6,14 +6,14 @@
 #include "core/progress.h"
 #include "core/result.h"
 #include "ultrasound/sweep/freehand_options.h"
-#include "volume/grid.h"
 #include "ultrasound/sweep/tracked_sequence.h"
+#include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// A volume made of tracked pictures.
 struct FreehandVolume {
-  LabelGrid gray;  ///< 0..255; 0 also where nothing is known. Its P is the reference frame, taken as LPS, mm.
+  volume::LabelGrid gray;  ///< 0..255; 0 also where nothing is known. Its P is the reference frame, taken as LPS, mm.
   std::size_t frames_used = 0;
   std::size_t frames_left_out = 0;  ///< Invalid pictures, and those whose place is not known.
   std::size_t voxels_met = 0;       ///< By a pixel.
@@ -28,4 +28,4 @@ Result<FreehandVolume> reconstruct_freehand(const TrackedSequence& sequence,
                                             const TrackedSequence::Transforms& calibration,
                                             const FreehandOptions& options, const Progress& progress = {});
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

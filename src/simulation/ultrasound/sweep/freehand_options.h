@@ -6,7 +6,7 @@
 
 #include "geometry/vec.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// How a pixel enters the voxels about it.
 enum class FreehandInterpolation {
@@ -59,4 +59,4 @@ struct FreehandOptions {
   std::vector<HoleFilling> holes;  ///< Tried in this order; none: holes stay 0.
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -6,11 +6,11 @@
 
 #include "core/check.h"
 #include "core/random.h"
-#include "ultrasound/sweep/mechanical_sweep.h"
 #include "ultrasound/scanner/scanner.h"
+#include "ultrasound/sweep/mechanical_sweep.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 /// A sensor on the transducer's handle, behind and beside the face. Assumed.
@@ -41,7 +41,7 @@ TrackedSequence::Matrix4 image_to_transducer(const RasterGeometry& raster) {
 
 /// Along y of T from that pose, until the middle of its face is that deep; the pose itself where there is no such
 /// place.
-Pose follow_skin(const FloatGrid& skin_distance_mm, const Pose& X_PT, double depth_of_face_mm) {
+Pose follow_skin(const volume::FloatGrid& skin_distance_mm, const Pose& X_PT, double depth_of_face_mm) {
   constexpr double kFarthest_mm = 60.0;
   constexpr double kTolerance_mm = 0.05;
   constexpr int kMostSteps = 50;
@@ -49,7 +49,7 @@ Pose follow_skin(const FloatGrid& skin_distance_mm, const Pose& X_PT, double dep
   double way_mm = 0.0;
   for (int step = 0; step < kMostSteps; ++step) {
     const double too_shallow_mm =
-        sample_linear(skin_distance_mm, Vec3(X_PT.p() + way_mm * into_body_P)) + depth_of_face_mm;
+        volume::sample_linear(skin_distance_mm, Vec3(X_PT.p() + way_mm * into_body_P)) + depth_of_face_mm;
     if (std::abs(too_shallow_mm) < kTolerance_mm) return {X_PT.R(), X_PT.p() + way_mm * into_body_P};
     way_mm += too_shallow_mm;
     if (!(std::abs(way_mm) < kFarthest_mm)) break;  // also NaN
@@ -64,9 +64,10 @@ double share_of(int frame, int frames) {
 
 }  // namespace
 
-std::vector<Pose> slide_over_skin(const FloatGrid& skin_distance_mm, const Pose& X_PT, double length_mm, int frames) {
+std::vector<Pose> slide_over_skin(const volume::FloatGrid& skin_distance_mm, const Pose& X_PT, double length_mm,
+                                  int frames) {
   TROCAR_CHECK(frames >= 2);
-  const double depth_of_face_mm = -sample_linear(skin_distance_mm, X_PT.p());
+  const double depth_of_face_mm = -volume::sample_linear(skin_distance_mm, X_PT.p());
   std::vector<Pose> poses;
   for (int n = 0; n < frames; ++n) {
     const Pose moved = X_PT * Pose::translation({0.0, 0.0, share_of(n, frames) * length_mm});
@@ -133,4 +134,4 @@ FreehandSweep make_freehand_sweep(const std::shared_ptr<const AcousticScene>& sc
   return sweep;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -9,15 +9,16 @@
 #include "geometry/pose.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/scanner/display_settings.h"
-#include "volume/grid.h"
 #include "ultrasound/sweep/tracked_sequence.h"
+#include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 // Poses X_PT of a hand that sweeps, about the pose in the middle; frames >= 2.
 
 /// Along z of T, over the skin: each pose is moved along y so that the middle of the face is as deep as in the middle.
-std::vector<Pose> slide_over_skin(const FloatGrid& skin_distance_mm, const Pose& X_PT, double length_mm, int frames);
+std::vector<Pose> slide_over_skin(const volume::FloatGrid& skin_distance_mm, const Pose& X_PT, double length_mm,
+                                  int frames);
 /// About the line y = -radius_mm, z = 0 of T; 0: about the face.
 std::vector<Pose> tilt_on_skin(const Pose& X_PT, double angle_rad, double radius_mm, int frames);
 
@@ -46,4 +47,4 @@ FreehandSweep make_freehand_sweep(const std::shared_ptr<const AcousticScene>& sc
                                   std::span<const Pose> X_PT, const FreehandSweepOptions& options,
                                   const Progress& progress = {});
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -12,7 +12,7 @@
 #include "core/random.h"
 #include "ultrasound/scanner/scanner.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kMaxVoxels = 256e6;
@@ -130,12 +130,12 @@ Result<SweepGeometry> plan_sweep(const Transducer& transducer, const MechanicalS
 }
 
 /// A grid of T in which a plane of voxels lies in the middle frame.
-Result<GridGeometry> lay_grid(const SweepGeometry& geometry, double spacing_mm) {
+Result<volume::GridGeometry> lay_grid(const SweepGeometry& geometry, double spacing_mm) {
   if (!is_within(spacing_mm, 0.2, 5.0))
     return fail_usage(fmt::format("a spacing of {} mm is not within 0.2..5", spacing_mm), "spacing",
                       "give a spacing in this range");
   const SweepGeometry::Extent extent = geometry.extent();
-  GridGeometry grid;
+  volume::GridGeometry grid;
   grid.spacing_mm = Vec3::Constant(spacing_mm);
   double voxels = 1.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -188,15 +188,15 @@ Result<SweepVolume> make_mechanical_sweep(const std::shared_ptr<const AcousticSc
                                           const MechanicalSweepOptions& options, const Progress& progress) {
   SweepVolume volume;
   TROCAR_TRY(volume.geometry, plan_sweep(transducer, options));
-  TROCAR_TRY(const GridGeometry grid, lay_grid(volume.geometry, options.spacing_mm));
+  TROCAR_TRY(const volume::GridGeometry grid, lay_grid(volume.geometry, options.spacing_mm));
   const Frames frames = take_frames(scene, transducer, X_PT, volume.geometry, options, progress);
   volume.mean_contact = frames.mean_contact;
   report(progress, "laying the frames into a volume", 0.8);
-  volume.gray = LabelGrid(grid);
+  volume.gray = volume::LabelGrid(grid);
   const auto row = static_cast<std::size_t>(grid.size[0]);
   parallel_for(volume.gray.voxels.size() / row, 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first * row; n < last * row; ++n) {
-      const Index3 ijk = grid.index_of(n);
+      const volume::Index3 ijk = grid.index_of(n);
       const Vec3 index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
       volume.gray.voxels[n] = gray_at(frames, volume.geometry, grid.to_mm(index));
     }
@@ -205,11 +205,11 @@ Result<SweepVolume> make_mechanical_sweep(const std::shared_ptr<const AcousticSc
   return volume;
 }
 
-LabelGrid in_patient(const SweepVolume& volume, const Pose& X_PT) {
-  LabelGrid grid = volume.gray;
+volume::LabelGrid in_patient(const SweepVolume& volume, const Pose& X_PT) {
+  volume::LabelGrid grid = volume.gray;
   grid.geometry.origin_P = X_PT * volume.gray.geometry.origin_P;
   grid.geometry.R_PV = X_PT.R() * volume.gray.geometry.R_PV;
   return grid;
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -10,7 +10,7 @@
 #include "ultrasound/scanner/display_settings.h"
 #include "volume/grid.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// Where the samples of a swung array lie. The motor's axis is the line y = -radius_mm, z = 0 of T, which is the
 /// transducer's frame in the middle of the swing; turned by angle a, a point (x, y, 0) of the array's plane comes to
@@ -51,7 +51,8 @@ struct MechanicalSweepOptions {
 
 /// A volume as a mechanical 3D transducer makes it.
 struct SweepVolume {
-  LabelGrid gray;  ///< Gray 0..255; 0 beside the fan as well. Its axes are those of T in the middle of the swing.
+  volume::LabelGrid
+      gray;  ///< Gray 0..255; 0 beside the fan as well. Its axes are those of T in the middle of the swing.
   SweepGeometry geometry;
   double mean_contact = 1.0;  ///< Share of all frames' scanlines that are coupled to the skin.
 };
@@ -64,6 +65,6 @@ Result<SweepVolume> make_mechanical_sweep(const std::shared_ptr<const AcousticSc
                                           const MechanicalSweepOptions& options, const Progress& progress = {});
 
 /// The same voxels where they lie in the patient.
-LabelGrid in_patient(const SweepVolume& volume, const Pose& X_PT);
+volume::LabelGrid in_patient(const SweepVolume& volume, const Pose& X_PT);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

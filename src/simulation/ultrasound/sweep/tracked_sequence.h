@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// 2D gray images with where they were taken, as a tracker said it: what PLUS and 3D Slicer write as .igs.mha. Outside
 /// names stay: "ProbeToTracker" maps points of Probe to Tracker and is X_TrackerProbe here. Matrices, since
@@ -37,4 +37,4 @@ struct TrackedSequence {
   }
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -8,7 +8,7 @@
 #include <deque>
 #include <map>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using Matrix4 = TransformGraph::Matrix4;
@@ -83,4 +83,4 @@ std::string TransformGraph::explain(std::string_view from, std::string_view to) 
                      joined_names(transforms_), from, joined_names(from_side), to, joined_names(to_side));
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -7,7 +7,7 @@
 
 #include "ultrasound/sweep/tracked_sequence.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// Named frames and the transforms between them, as a tracker and a calibration give them: PLUS' transform repository.
 class TransformGraph {
@@ -26,4 +26,4 @@ class TransformGraph {
   TrackedSequence::Transforms transforms_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

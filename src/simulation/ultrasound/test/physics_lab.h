@@ -11,70 +11,72 @@
 #include "core/files/data_dir.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/figures/image_statistics.h"
-#include "ultrasound/phantom/test_scenes.h"
 #include "ultrasound/figures/speckle_statistics.h"
+#include "ultrasound/phantom/test_scenes.h"
 
 /// What the tests of the engine's physics share: shipped transducers before scenes of one thing each.
 namespace trocar::testing {
 
-inline Transducer shipped(std::string_view name) {
-  const auto transducer = load_transducer(data_dir() / "transducers.toml", name);
+inline ultrasound::Transducer shipped(std::string_view name) {
+  const auto transducer = ultrasound::load_transducer(data_dir() / "transducers.toml", name);
   EXPECT_TRUE(transducer) << name;
-  return transducer ? *transducer : Transducer{};
+  return transducer ? *transducer : ultrasound::Transducer{};
 }
-inline Transducer convex() {
+inline ultrasound::Transducer convex() {
   return shipped("C5-2");
 }
-inline Transducer linear() {
+inline ultrasound::Transducer linear() {
   return shipped("L14-5");
 }
 
-inline Artefacts no_artefacts() {
-  Artefacts none;
+inline ultrasound::Artefacts no_artefacts() {
+  ultrasound::Artefacts none;
   none.attenuation = none.reverberation = none.mirror = none.refraction = none.range_distortion = none.side_lobes =
       none.contact_loss = none.clutter = none.noise = false;
   return none;
 }
 
 /// The transducer's own settings without artefacts.
-inline Acquisition plain(const Transducer& transducer, Artefacts artefacts = no_artefacts()) {
-  Acquisition acquisition = default_acquisition(transducer);
+inline ultrasound::Acquisition plain(const ultrasound::Transducer& transducer,
+                                     ultrasound::Artefacts artefacts = no_artefacts()) {
+  ultrasound::Acquisition acquisition = ultrasound::default_acquisition(transducer);
   acquisition.artefacts = artefacts;
   return acquisition;
 }
 
 /// The scene with its table changed.
 template <class Change>
-ScenePtr with_table(const ScenePtr& scene, const Change& change) {
-  auto copy = std::make_shared<AcousticScene>(*scene);
+ultrasound::ScenePtr with_table(const ultrasound::ScenePtr& scene, const Change& change) {
+  auto copy = std::make_shared<ultrasound::AcousticScene>(*scene);
   change(copy->table);
   return copy;
 }
 
 /// Place in the frame of a point (x, y) of the identity pose.
-inline Polar polar_of(const BasebandFrame& frame, double x_mm, double y_mm) {
-  return frame.geometry.to_polar(Vec2(x_mm, y_mm));
+inline ultrasound::Polar polar_of(const ultrasound::BasebandFrame& frame, double x_mm, double y_mm) {
+  return frame.geometry.to_polar(ultrasound::Vec2(x_mm, y_mm));
 }
 
 /// Samples of a rectangle |x - x0| < half_width, y0..y1 of the picture's plane, as the identity pose sees it.
-inline EchoPatch patch_at(const BasebandFrame& frame, double x0_mm, double half_width_mm, double y0_mm, double y1_mm) {
+inline ultrasound::EchoPatch patch_at(const ultrasound::BasebandFrame& frame, double x0_mm, double half_width_mm,
+                                      double y0_mm, double y1_mm) {
   const double middle_mm = 0.5 * (y0_mm + y1_mm);
-  PatchBounds bounds;
+  ultrasound::PatchBounds bounds;
   bounds.first_line = static_cast<int>(std::ceil(polar_of(frame, x0_mm - half_width_mm, middle_mm).line));
   bounds.last_line = static_cast<int>(std::floor(polar_of(frame, x0_mm + half_width_mm, middle_mm).line)) + 1;
   const double back_mm = polar_of(frame, x0_mm, middle_mm).depth_mm - middle_mm;
   bounds.near_mm = y0_mm + back_mm;
   bounds.far_mm = y1_mm + back_mm;
-  return envelope_patch(frame, bounds);
+  return ultrasound::envelope_patch(frame, bounds);
 }
 
-inline double root_mean_square(const EchoPatch& patch) {
+inline double root_mean_square(const ultrasound::EchoPatch& patch) {
   double sum = 0.0;
   for (const float value : patch.values) sum += static_cast<double>(value) * value;
   return patch.values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(patch.values.size()));
 }
 
-inline double level_db(const EchoPatch& patch) {
+inline double level_db(const ultrasound::EchoPatch& patch) {
   return 20.0 * std::log10(root_mean_square(patch) + 1e-12);
 }
 
@@ -83,7 +85,7 @@ struct Peak {
   int line = 0, sample = 0;  ///< Of the patch.
   double amplitude = 0.0;
 };
-inline Peak peak_of(const EchoPatch& patch) {
+inline Peak peak_of(const ultrasound::EchoPatch& patch) {
   Peak peak;
   for (int line = 0; line < patch.lines; ++line)
     for (int sample = 0; sample < patch.samples; ++sample)

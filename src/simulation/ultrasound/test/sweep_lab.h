@@ -5,17 +5,17 @@
 #include <memory>
 #include <vector>
 
-#include "ultrasound/sweep/mechanical_sweep.h"
 #include "ultrasound/phantom/test_scenes.h"
+#include "ultrasound/sweep/mechanical_sweep.h"
 #include "volume/correlation.h"
 
 namespace trocar::testing {
 
 /// A small array on a motor, and tissue whose skin lies along the dome that it swings in. The identity is X_PT.
-inline Transducer motor_probe() {
-  Transducer transducer;
+inline ultrasound::Transducer motor_probe() {
+  ultrasound::Transducer transducer;
   transducer.name = "motor";
-  transducer.kind = TransducerKind::kMechanicalConvex;
+  transducer.kind = ultrasound::TransducerKind::kMechanicalConvex;
   transducer.frequency_mhz = 4.0;
   transducer.bandwidth = 0.25;  // its speckle is longer than a voxel
   transducer.radius_mm = 40.0;
@@ -31,41 +31,43 @@ inline constexpr double kLabDepth_mm = 70.0;
 inline constexpr double kPlace_mm = 0.8;
 
 /// Beside the middle on all axes, so that a swapped sign or axis is seen.
-inline std::vector<AcousticPoint> lab_points() {
+inline std::vector<ultrasound::AcousticPoint> lab_points() {
   return {{{8.0, 40.0, 5.0}, 24.0}, {{-12.0, 52.0, -9.0}, 24.0}, {{3.0, 30.0, -7.0}, 24.0}};
 }
 
-inline std::shared_ptr<const AcousticScene> lab_scene() {
-  static const std::shared_ptr<const AcousticScene> scene = [] {
-    const Transducer transducer = motor_probe();
-    SceneBox box = box_for(transducer, kLabDepth_mm);
+inline std::shared_ptr<const ultrasound::AcousticScene> lab_scene() {
+  static const std::shared_ptr<const ultrasound::AcousticScene> scene = [] {
+    const ultrasound::Transducer transducer = motor_probe();
+    ultrasound::SceneBox box = ultrasound::box_for(transducer, kLabDepth_mm);
     box.half_thickness_mm = 50.0;
     const auto dome = [transducer](const Vec3& p) {
       const double y = std::hypot(p.y() + transducer.sweep_radius_mm, p.z()) - transducer.sweep_radius_mm;
       return transducer.radius_mm - std::hypot(p.x(), y + transducer.radius_mm);
     };
-    AcousticScene made = paint_scene(
-        box, test_table(), [](const Vec3&) { return index_of(TestTissue::kMinus12); }, dome);
+    ultrasound::AcousticScene made = ultrasound::paint_scene(
+        box, ultrasound::test_table(),
+        [](const Vec3&) { return ultrasound::index_of(ultrasound::TestTissue::kMinus12); }, dome);
     made.points = lab_points();
-    return std::make_shared<const AcousticScene>(std::move(made));
+    return std::make_shared<const ultrasound::AcousticScene>(std::move(made));
   }();
   return scene;
 }
 
 /// The scene where a transducer at X_PT meets what one at the identity met.
-inline std::shared_ptr<const AcousticScene> moved(const AcousticScene& scene, const Pose& X_PT) {
-  AcousticScene made = scene;
-  for (GridGeometry* grid : {&made.geometry, &made.skin_distance_mm.geometry}) {
+inline std::shared_ptr<const ultrasound::AcousticScene> moved(const ultrasound::AcousticScene& scene,
+                                                              const Pose& X_PT) {
+  ultrasound::AcousticScene made = scene;
+  for (volume::GridGeometry* grid : {&made.geometry, &made.skin_distance_mm.geometry}) {
     grid->origin_P = X_PT * grid->origin_P;
     grid->R_PV = X_PT.R() * grid->R_PV;
   }
-  for (AcousticPoint& point : made.points) point.p_P = X_PT * point.p_P;
-  return std::make_shared<const AcousticScene>(std::move(made));
+  for (ultrasound::AcousticPoint& point : made.points) point.p_P = X_PT * point.p_P;
+  return std::make_shared<const ultrasound::AcousticScene>(std::move(made));
 }
 
-inline MechanicalSweepOptions lab_options() {
-  MechanicalSweepOptions options;
-  options.acquisition = default_acquisition(motor_probe());
+inline ultrasound::MechanicalSweepOptions lab_options() {
+  ultrasound::MechanicalSweepOptions options;
+  options.acquisition = ultrasound::default_acquisition(motor_probe());
   options.acquisition.depth_mm = kLabDepth_mm;
   options.acquisition.focus_mm = 40.0;
   options.acquisition.lines = 128;
@@ -79,15 +81,15 @@ inline MechanicalSweepOptions lab_options() {
 }
 
 /// Middle of what is bright within 5 mm of a place, above most of the speckle.
-inline Vec3 brightest_near(const LabelGrid& volume, const Vec3& p_P) {
+inline Vec3 brightest_near(const volume::LabelGrid& volume, const Vec3& p_P) {
   constexpr double kReach_mm = 5.0;
-  const GridGeometry& grid = volume.geometry;
+  const volume::GridGeometry& grid = volume.geometry;
   int most = 0;
   Vec3 sum = Vec3::Zero();
   double weight = 0.0;
   for (const bool is_search : {true, false}) {
     for (std::size_t n = 0; n < grid.voxel_count(); ++n) {
-      const Index3 ijk = grid.index_of(n);
+      const volume::Index3 ijk = grid.index_of(n);
       const Vec3 q_P =
           grid.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
       if ((q_P - p_P).norm() > kReach_mm) continue;

@@ -6,7 +6,7 @@
 
 #include "ultrasound/probe/scan_geometry.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 Transducer convex() {
@@ -17,7 +17,7 @@ Transducer convex() {
 
 std::uint8_t tissue_at(const AcousticScene& scene, const Vec3& p_P) {
   const Vec3 index = scene.geometry.to_index(p_P);
-  const Index3 ijk{std::lround(index.x()), std::lround(index.y()), std::lround(index.z())};
+  const volume::Index3 ijk{std::lround(index.x()), std::lround(index.y()), std::lround(index.z())};
   return scene.geometry.contains(ijk) ? scene.tissue[scene.geometry.offset(ijk)] & ~kMixedCell : 255;
 }
 
@@ -59,7 +59,7 @@ TEST(TestScenes, ABoxHoldsTheWholeScanBehindTheSkin) {
 TEST(TestScenes, SkinFollowsAConvexFace) {
   const Transducer transducer = convex();
   const ScenePtr scene = homogeneous_scene(box_for(transducer, 60.0, 2.0), TestTissue::kTissue);
-  const FloatGrid& skin = scene->skin_distance_mm;
+  const volume::FloatGrid& skin = scene->skin_distance_mm;
   for (std::size_t at = 0; at < skin.voxels.size(); at += 997) {
     const Vec3 p = skin.geometry.to_mm(Vec3(static_cast<double>(skin.geometry.index_of(at)[0]),
                                             static_cast<double>(skin.geometry.index_of(at)[1]), 0.0));
@@ -112,7 +112,7 @@ TEST(TestScenes, CellsAreMixedAtBordersAlone) {
   for (std::size_t at = 0; at < scene->tissue.size(); ++at) {
     if ((scene->tissue[at] & kMixedCell) == 0) continue;
     ++mixed;
-    const Index3 ijk = scene->geometry.index_of(at);
+    const volume::Index3 ijk = scene->geometry.index_of(at);
     const Vec3 p = scene->geometry.to_mm(
         Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
     const bool is_near_skin = std::abs(p.y()) < 1.1;
@@ -125,4 +125,4 @@ TEST(TestScenes, CellsAreMixedAtBordersAlone) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

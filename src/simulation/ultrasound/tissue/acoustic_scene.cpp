@@ -14,7 +14,7 @@
 #include "ultrasound/tissue/detail/tissue_votes.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kMargin_mm = 20.0;      ///< Of air around the body: what the face meets before the skin.
@@ -26,8 +26,8 @@ constexpr double kTextureSigma_mm = 1.1;
 constexpr double kLeastShareOfVoxel = 0.5;
 
 /// Grid of cubes over the window's voxels, to their outer faces.
-GridGeometry cubic_geometry(const GridGeometry& window, double spacing_mm, bool is_at_faces) {
-  GridGeometry grid = window;
+volume::GridGeometry cubic_geometry(const volume::GridGeometry& window, double spacing_mm, bool is_at_faces) {
+  volume::GridGeometry grid = window;
   grid.spacing_mm.setConstant(spacing_mm);
   Vec3 first_index;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -43,13 +43,13 @@ GridGeometry cubic_geometry(const GridGeometry& window, double spacing_mm, bool 
 }
 
 /// 1-2-1 along one axis; the end values continue outside.
-void smooth_along(FloatGrid& grid, std::size_t axis) {
-  const FloatGrid before = grid;
+void smooth_along(volume::FloatGrid& grid, std::size_t axis) {
+  const volume::FloatGrid before = grid;
   const std::int64_t last = grid.geometry.size[axis] - 1;
   parallel_for(grid.voxels.size(), 1 << 14, [&](std::size_t from, std::size_t to) {
     for (std::size_t n = from; n < to; ++n) {
-      Index3 low = grid.geometry.index_of(n);
-      Index3 high = low;
+      volume::Index3 low = grid.geometry.index_of(n);
+      volume::Index3 high = low;
       low[axis] = std::max<std::int64_t>(low[axis] - 1, 0);
       high[axis] = std::min(high[axis] + 1, last);
       grid.voxels[n] = 0.25F * before[low] + 0.5F * before.voxels[n] + 0.25F * before[high];
@@ -59,13 +59,13 @@ void smooth_along(FloatGrid& grid, std::size_t axis) {
 
 /// Distance to the skin on a grid of 2 mm, without the steps that voxels of a mask leave in it (standard deviation of
 /// the kernel 1.4 mm; a ball's surface of radius r moves inwards by 2 mm²/r).
-FloatGrid smooth_skin_distance(const FloatGrid& source, const GridGeometry& window) {
-  FloatGrid skin(cubic_geometry(window, kSkinSpacing_mm, true));
+volume::FloatGrid smooth_skin_distance(const volume::FloatGrid& source, const volume::GridGeometry& window) {
+  volume::FloatGrid skin(cubic_geometry(window, kSkinSpacing_mm, true));
   parallel_for(skin.voxels.size(), 1 << 12, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
-      const Index3 ijk = skin.geometry.index_of(n);
+      const volume::Index3 ijk = skin.geometry.index_of(n);
       const Vec3 index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
-      skin.voxels[n] = static_cast<float>(sample_linear(source, skin.geometry.to_mm(index)));
+      skin.voxels[n] = static_cast<float>(volume::sample_linear(source, skin.geometry.to_mm(index)));
     }
   });
   for (std::size_t axis = 0; axis < 3; ++axis) smooth_along(skin, axis);
@@ -75,7 +75,7 @@ FloatGrid smooth_skin_distance(const FloatGrid& source, const GridGeometry& wind
 /// Rows of a coarse grid that shares the axes, at the rows of a finer one.
 class RowSampler {
  public:
-  RowSampler(const FloatGrid& coarse, const GridGeometry& fine)
+  RowSampler(const volume::FloatGrid& coarse, const volume::GridGeometry& fine)
       : coarse_(coarse), offset_(coarse.geometry.to_index(fine.origin_P)), line_(line_size(coarse)) {
     step_ = fine.spacing_mm.cwiseQuotient(coarse.geometry.spacing_mm);
   }
@@ -102,7 +102,9 @@ class RowSampler {
     std::int64_t low, high;
     float fraction;
   };
-  static std::size_t line_size(const FloatGrid& grid) { return static_cast<std::size_t>(grid.geometry.size[0]); }
+  static std::size_t line_size(const volume::FloatGrid& grid) {
+    return static_cast<std::size_t>(grid.geometry.size[0]);
+  }
   const float* row(std::int64_t j, std::int64_t k) const {
     return coarse_.voxels.data() + coarse_.geometry.offset({0, j, k});
   }
@@ -114,7 +116,7 @@ class RowSampler {
     return {low, std::min(low + 1, last), static_cast<float>(at - static_cast<double>(low))};
   }
 
-  const FloatGrid& coarse_;
+  const volume::FloatGrid& coarse_;
   Vec3 offset_;
   Vec3 step_;
   std::vector<float> line_;
@@ -135,7 +137,7 @@ Between between_voxels(double at, std::int64_t size) {
 /// Fills target slices one by one, each from the two source slices around it.
 class SceneSlices {
  public:
-  SceneSlices(const detail::TissueVolume& source, const FloatGrid& skin, std::uint8_t skin_tissue,
+  SceneSlices(const detail::TissueVolume& source, const volume::FloatGrid& skin, std::uint8_t skin_tissue,
               std::uint8_t inner_tissue, AcousticScene& scene)
       : source_(source),
         scene_(scene),
@@ -218,7 +220,8 @@ class SceneSlices {
 
 }  // namespace
 
-Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const VirtualPatient& patient, AcousticTable table,
+Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const anatomy::VirtualPatient& patient,
+                                                                 AcousticTable table,
                                                                  const AcousticSceneOptions& options,
                                                                  const Progress& progress) {
   if (table.tissues.size() > 127)
@@ -257,7 +260,7 @@ Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const VirtualPa
 }
 
 void mark_mixed_cells(AcousticScene& scene) {
-  const Index3& size = scene.geometry.size;
+  const volume::Index3& size = scene.geometry.size;
   TROCAR_CHECK(scene.tissue.size() == scene.geometry.voxel_count());
   constexpr auto kTissue = static_cast<std::uint8_t>(~kMixedCell);
   std::vector<std::uint8_t> marked(scene.tissue.size());
@@ -286,4 +289,4 @@ void mark_mixed_cells(AcousticScene& scene) {
   scene.tissue = std::move(marked);
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -11,7 +11,7 @@
 #include "ultrasound/tissue/acoustic_table.h"
 #include "ultrasound/tissue/scan_ends.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// One scatterer that stands out: a wire of a test phantom across the image, a microcalcification. Frame P, mm.
 struct AcousticPoint {
@@ -24,13 +24,13 @@ struct AcousticPoint {
 /// The patient as sound meets him, in resting anatomy; immutable, shared by all who scan. Frame P, mm.
 struct AcousticScene {
   /// About isotropic: `tissue` and `texture` lie on it.
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   /// Acoustic tissue of each voxel (index into table.tissues, 0..126), the borders smooth across the CT's slices. Bit 7
   /// (kMixedCell) is set where the cell from this voxel to the next along i, j and k holds more than one tissue.
   std::vector<std::uint8_t> tissue;
   /// Smoothed deviation of the CT from its structure's mean, in steps of kTextureStep_hu.
   std::vector<std::int8_t> texture;
-  FloatGrid skin_distance_mm;  ///< Negative inside.
+  volume::FloatGrid skin_distance_mm;  ///< Negative inside.
   AcousticTable table;
   std::vector<ScanEnd> ends;          ///< Where the CT ends within the body; empty: nowhere.
   std::vector<AcousticPoint> points;  ///< Beside the tissue's scatterers; they do not shadow.
@@ -46,11 +46,12 @@ struct AcousticSceneOptions {
 
 /// Errors: a label whose tissue has no row in the table (named), more than 127 tissues. Outside the body is air,
 /// whatever lies there; unlabelled voxels inside are what their HU say.
-Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const VirtualPatient& patient, AcousticTable table,
+Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const anatomy::VirtualPatient& patient,
+                                                                 AcousticTable table,
                                                                  const AcousticSceneOptions& options = {},
                                                                  const Progress& progress = {});
 
 /// Sets kMixedCell in every voxel of `tissue` (whose other bits hold tissues). For scenes made by hand.
 void mark_mixed_cells(AcousticScene& scene);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -7,14 +7,14 @@
 
 #include "config/sourced_number.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr std::size_t kMostTissues = 127;  // AcousticScene keeps them in seven bits
 
 struct Field {
   std::string_view key;
-  Range range;
+  config::Range range;
   double AcousticTissue::*value;
 };
 constexpr Field kFields[] = {
@@ -30,19 +30,19 @@ constexpr Field kFields[] = {
     {"fibre_db", {0.0, 20.0}, &AcousticTissue::fibre_db},
 };
 
-Result<AcousticTissue> read_tissue(const TomlTable& row, const std::string& name) {
+Result<AcousticTissue> read_tissue(const config::TomlTable& row, const std::string& name) {
   AcousticTissue tissue;
   tissue.name = name;
   std::vector<std::string_view> known;
   for (const Field& field : kFields) {
-    TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, field.key, field.range));
+    TROCAR_TRY(const config::SourcedNumber number, config::read_sourced_number(row, field.key, field.range));
     tissue.*field.value = number.value;
     known.push_back(field.key);
   }
   constexpr std::string_view kStrands = "strands_per_ml";  // most tissues have none
   known.push_back(kStrands);
   if (row.has(kStrands)) {
-    TROCAR_TRY(const SourcedNumber number, read_sourced_number(row, kStrands, {0.0, 20.0}));
+    TROCAR_TRY(const config::SourcedNumber number, config::read_sourced_number(row, kStrands, {0.0, 20.0}));
     tissue.strands_per_ml = number.value;
   }
   TROCAR_TRY_STATUS(row.check_keys(known));
@@ -67,9 +67,9 @@ std::optional<std::uint8_t> AcousticTable::find(std::string_view name) const noe
 }
 
 Result<AcousticTable> load_acoustic_table(const std::filesystem::path& path) {
-  TROCAR_TRY(const TomlTable document, load_toml(path));
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   TROCAR_TRY_STATUS(document.check_keys({"tissues"}));
-  TROCAR_TRY(const TomlTable rows, document.table("tissues"));
+  TROCAR_TRY(const config::TomlTable rows, document.table("tissues"));
   const std::vector<std::string> names = rows.keys();
   if (names.empty() || names.front() != "air")
     return fail("the first tissue must be air", rows.where(), "move air to the top of the table");
@@ -77,7 +77,7 @@ Result<AcousticTable> load_acoustic_table(const std::filesystem::path& path) {
     return fail(fmt::format("{} tissues, at most {} fit", names.size(), kMostTissues), rows.where(), "remove tissues");
   AcousticTable table;
   for (const std::string& name : names) {
-    TROCAR_TRY(const TomlTable row, rows.table(name));
+    TROCAR_TRY(const config::TomlTable row, rows.table(name));
     TROCAR_TRY(AcousticTissue tissue, read_tissue(row, name));
     table.tissues.push_back(std::move(tissue));
   }
@@ -88,4 +88,4 @@ double reflection(double z1_mrayl, double z2_mrayl) noexcept {
   return (z2_mrayl - z1_mrayl) / (z2_mrayl + z1_mrayl);
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

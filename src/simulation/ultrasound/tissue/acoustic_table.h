@@ -9,7 +9,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// What sound meets in a tissue (data/acoustics.toml; each number there has its source).
 struct AcousticTissue {
@@ -49,4 +49,4 @@ Result<AcousticTable> load_acoustic_table(const std::filesystem::path& path);
 /// Amplitude reflected at a plane border under normal incidence: (z2 - z1) / (z2 + z1), -1..1.
 double reflection(double z1_mrayl, double z2_mrayl) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -5,24 +5,24 @@
 
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kBody_mm = 3.0;  ///< A face cuts the body where the skin lies farther outside than this.
-constexpr Rgb kHatch{58, 66, 78};
+constexpr volume::Rgb kHatch{58, 66, 78};
 constexpr int kHatchStep_px = 12, kHatchWidth_px = 1;
 constexpr int kHatchColumns = 640;  ///< Pictures of so many columns have lines of one pixel, twice as many of two.
 
-bool is_cut(const VirtualPatient& patient, int axis, bool is_last) {
-  const GridGeometry& grid = patient.labels.geometry;
+bool is_cut(const anatomy::VirtualPatient& patient, int axis, bool is_last) {
+  const volume::GridGeometry& grid = patient.labels.geometry;
   const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
-  Index3 at{};
+  volume::Index3 at{};
   at[a] = is_last ? grid.size[a] - 1 : 0;
   for (at[b] = 0; at[b] < grid.size[b]; ++at[b]) {
     for (at[c] = 0; at[c] < grid.size[c]; ++at[c]) {
       const Vec3 p_P =
           grid.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
-      if (sample_linear(patient.skin_distance_mm, p_P) < -kBody_mm) return true;
+      if (volume::sample_linear(patient.skin_distance_mm, p_P) < -kBody_mm) return true;
     }
   }
   return false;
@@ -53,10 +53,10 @@ std::vector<Vec2> clipped(const std::vector<Vec2>& polygon, const HalfPlane& hal
 
 }  // namespace
 
-std::vector<ScanEnd> find_scan_ends(const VirtualPatient& patient) {
+std::vector<ScanEnd> find_scan_ends(const anatomy::VirtualPatient& patient) {
   std::vector<ScanEnd> ends;
   if (patient.labels.empty() || patient.skin_distance_mm.empty()) return ends;
-  const GridGeometry& grid = patient.labels.geometry;
+  const volume::GridGeometry& grid = patient.labels.geometry;
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool is_last : {false, true}) {
       if (!is_cut(patient, axis, is_last)) continue;
@@ -100,7 +100,7 @@ std::vector<Vec2> scanned_polygon_T(const std::vector<ScanEnd>& ends, const Pose
   return polygon;
 }
 
-void hatch_unscanned(RgbImage& image, const RasterGeometry& raster, const ScanGeometry& scan, const Pose& X_PT,
+void hatch_unscanned(volume::RgbImage& image, const RasterGeometry& raster, const ScanGeometry& scan, const Pose& X_PT,
                      const std::vector<ScanEnd>& ends) {
   if (ends.empty()) return;
   const int dot = std::max(1, image.columns / kHatchColumns);
@@ -116,4 +116,4 @@ void hatch_unscanned(RgbImage& image, const RasterGeometry& raster, const ScanGe
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -7,7 +7,7 @@
 #include "ultrasound/probe/scan_geometry.h"
 #include "volume/image.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 /// A plane where the CT ends within the body. Points with normal_P · p_P > offset_mm were not scanned: a simulated
 /// picture has no echoes there, which is not a shadow. Frame P, mm.
@@ -17,7 +17,7 @@ struct ScanEnd {
 };
 
 /// The faces of the CT that cut the body: at most six. Beyond the other faces is air.
-std::vector<ScanEnd> find_scan_ends(const VirtualPatient& patient);
+std::vector<ScanEnd> find_scan_ends(const anatomy::VirtualPatient& patient);
 
 bool is_unscanned(const std::vector<ScanEnd>& ends, const Vec3& p_P) noexcept;
 
@@ -29,7 +29,7 @@ double unscanned_share(const std::vector<ScanEnd>& ends, const Pose& X_PT, const
 std::vector<Vec2> scanned_polygon_T(const std::vector<ScanEnd>& ends, const Pose& X_PT, const ScanGeometry& scan);
 
 /// Hatches the part of the scan that was not scanned by the CT.
-void hatch_unscanned(RgbImage& image, const RasterGeometry& raster, const ScanGeometry& scan, const Pose& X_PT,
+void hatch_unscanned(volume::RgbImage& image, const RasterGeometry& raster, const ScanGeometry& scan, const Pose& X_PT,
                      const std::vector<ScanEnd>& ends);
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

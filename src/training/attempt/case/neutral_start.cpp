@@ -16,7 +16,7 @@
 #include "ultrasound/probe/probe_placement.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr double kPastTarget_mm = 25.0;      ///< The needle's line goes by the target at least so far.
@@ -46,9 +46,9 @@ struct Skin {
 class UpperSkin {
  public:
   UpperSkin(const Case& the_case, const Vec3& entry_P) : skin_mm_(the_case.patient->skin_distance_mm) {
-    const GridGeometry& grid = skin_mm_.geometry;
+    const volume::GridGeometry& grid = skin_mm_.geometry;
     for (int corner = 0; corner < 8; ++corner) {
-      const Index3 far{grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1};
+      const volume::Index3 far{grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1};
       Vec3 index = Vec3::Zero();
       for (int a = 0; a < 3; ++a)
         if ((corner >> a) & 1) index[a] = static_cast<double>(far[static_cast<std::size_t>(a)]);
@@ -61,7 +61,7 @@ class UpperSkin {
 
   /// By how near they lie to the middle of the organ's level.
   const std::vector<Skin>& places() const noexcept { return places_; }
-  double mm(const Vec3& p_P) const { return sample_linear(skin_mm_, p_P); }
+  double mm(const Vec3& p_P) const { return volume::sample_linear(skin_mm_, p_P); }
   bool is_on_side(const Vec3& out_P) const { return out_P.dot(up_P_) >= kLeastUp; }
 
   Vec3 outwards(const Vec3& p_P) const {
@@ -84,15 +84,15 @@ class UpperSkin {
  private:
   /// Of its middle; the entry zone's or target's own where the patient has no such label.
   static double organ_level_mm(const Case& the_case) {
-    const LabelGrid& labels = the_case.patient->labels;
+    const volume::LabelGrid& labels = the_case.patient->labels;
     std::array<bool, 256> is_of_organ{};
-    for (const Label& label : the_case.patient->label_table.labels)
-      is_of_organ[label.id] = is_organ(the_case.task, label);
+    for (const anatomy::Label& label : the_case.patient->label_table.labels)
+      is_of_organ[label.id] = tasks::is_organ(the_case.task, label);
     double sum_mm = 0.0, count = 0.0;
     constexpr std::size_t kEvery = 61;  // a prime: in no step with rows and slices
     for (std::size_t n = 0; n < labels.voxels.size(); n += kEvery) {
       if (!is_of_organ[labels.voxels[n]]) continue;
-      const Index3 ijk = labels.geometry.index_of(n);
+      const volume::Index3 ijk = labels.geometry.index_of(n);
       sum_mm +=
           labels.geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])})
               .z();
@@ -137,7 +137,7 @@ class UpperSkin {
     });
   }
 
-  const FloatGrid& skin_mm_;
+  const volume::FloatGrid& skin_mm_;
   Eigen::AlignedBox3d bounds_P_;
   Vec3 up_P_;
   std::vector<Skin> places_;
@@ -166,20 +166,21 @@ std::optional<Pose> neutral_needle(const Case& the_case, const UpperSkin& skin, 
 
 class NeutralProbe {
  public:
-  NeutralProbe(const Case& the_case, const UpperSkin& skin, const Transducer& transducer, const Pose& X_PT_planned)
+  NeutralProbe(const Case& the_case, const UpperSkin& skin, const ultrasound::Transducer& transducer,
+               const Pose& X_PT_planned)
       : case_(the_case), skin_(skin), transducer_(transducer), X_PT_planned_(X_PT_planned) {}
 
   /// In a view of something else than the lesion; its depth of picture with it.
-  std::optional<std::pair<Pose, double>> in_view(const std::vector<ProbeView>& views) const {
+  std::optional<std::pair<Pose, double>> in_view(const std::vector<ultrasound::ProbeView>& views) const {
     std::vector<std::string> names(kFirstViews.begin(), kFirstViews.end());
-    for (const ProbeView& view : views) names.push_back(view.name);
-    const std::vector<std::string> possible = possible_views(*case_.patient, views);
+    for (const ultrasound::ProbeView& view : views) names.push_back(view.name);
+    const std::vector<std::string> possible = ultrasound::possible_views(*case_.patient, views);
     for (const std::string& name : names) {
       if (name == kLesionView || std::find(possible.begin(), possible.end(), name) == possible.end()) continue;
-      const auto view = choose_view(*case_.patient, views, name);
+      const auto view = ultrasound::choose_view(*case_.patient, views, name);
       if (!view) continue;
-      const auto placed = place_probe(*case_.patient, *view, transducer_);
-      if (!placed || placed->visibility.visible < kEnoughVisible) continue;
+      const auto placed = ultrasound::place_probe(*case_.patient, *view, transducer_);
+      if (!placed || placed->visibility.visible < ultrasound::kEnoughVisible) continue;
       const Pose& X_PT = placed->X_PT;
       if (is_neutral(X_PT.p()) && skin_.is_on_side(-X_PT.R().col(1))) return std::pair(X_PT, view->depth_mm);
     }
@@ -188,7 +189,8 @@ class NeutralProbe {
 
   /// Across the body, wherever the skin lets it touch.
   std::optional<Pose> anywhere() const {
-    const ScanGeometry scan = make_scan_geometry(transducer_, transducer_.greatest_depth_mm, kLines, 16);
+    const ultrasound::ScanGeometry scan =
+        ultrasound::make_scan_geometry(transducer_, transducer_.greatest_depth_mm, kLines, 16);
     for (const Skin& place : skin_.places()) {
       if (!is_neutral(place.p_P)) continue;
       Mat3 R_PT;
@@ -196,7 +198,8 @@ class NeutralProbe {
       R_PT.col(0) = place.out_P.cross(Vec3::UnitZ()).normalized();  // towards the patient's right, seen from the front
       if (R_PT.col(0).x() > 0.0) R_PT.col(0) *= -1.0;
       R_PT.col(2) = R_PT.col(0).cross(R_PT.col(1));
-      const FaceFit fit = fit_face(case_.patient->skin_distance_mm, scan, place.p_P, R_PT, kPress_mm);
+      const ultrasound::FaceFit fit =
+          ultrasound::fit_face(case_.patient->skin_distance_mm, scan, place.p_P, R_PT, kPress_mm);
       if (fit.touching >= kTouching) return fit.X_PT;
     }
     return std::nullopt;
@@ -209,14 +212,15 @@ class NeutralProbe {
 
   const Case& case_;
   const UpperSkin& skin_;
-  const Transducer& transducer_;
+  const ultrasound::Transducer& transducer_;
   const Pose& X_PT_planned_;
 };
 
 }  // namespace
 
-Result<NeutralStart> find_neutral_start(const Case& the_case, const Transducer& transducer, const Pose& X_PT_planned) {
-  TROCAR_TRY(const std::vector<ProbeView> views, load_probe_views(data_dir() / "views.toml"));
+Result<NeutralStart> find_neutral_start(const Case& the_case, const ultrasound::Transducer& transducer,
+                                        const Pose& X_PT_planned) {
+  TROCAR_TRY(const std::vector<ultrasound::ProbeView> views, ultrasound::load_probe_views(data_dir() / "views.toml"));
   const Segment& path_P = the_case.plan.line_P;
   const UpperSkin skin(the_case, path_P.a);
   const NeutralProbe probe(the_case, skin, transducer, X_PT_planned);
@@ -240,4 +244,4 @@ Result<NeutralStart> find_neutral_start(const Case& the_case, const Transducer& 
   return start;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

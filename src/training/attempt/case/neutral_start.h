@@ -2,11 +2,11 @@
 
 #include <string>
 
-#include "geometry/pose.h"
 #include "attempt/case/prepare_case.h"
+#include "geometry/pose.h"
 #include "ultrasound/probe/transducer.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// Where needle and transducer begin when nothing of the plan may be told. Frame P.
 struct NeutralStart {
@@ -24,6 +24,7 @@ struct NeutralStart {
 /// middle of the body's side that the entry is on, at the organ's level, where needle and transducer are kAway_mm from
 /// the entry, the whole shaft is free and neither points at the target; never from below. The same patient and plan
 /// give the same start. `X_PT_planned` is kept away from, too. Errors: the views' file.
-Result<NeutralStart> find_neutral_start(const Case& the_case, const Transducer& transducer, const Pose& X_PT_planned);
+Result<NeutralStart> find_neutral_start(const Case& the_case, const ultrasound::Transducer& transducer,
+                                        const Pose& X_PT_planned);
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -7,14 +7,14 @@
 #include <optional>
 #include <utility>
 
+#include "attempt/case/probe_start.h"
+#include "attempt/guide/needle_geometry.h"
 #include "core/files/data_dir.h"
 #include "core/parallel.h"
-#include "attempt/guide/needle_geometry.h"
 #include "io/patient/patient_cache.h"
 #include "io/patient/patient_source.h"
-#include "attempt/case/probe_start.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr double kPredictedSpeed_mm_per_s = 10.0;
@@ -46,42 +46,42 @@ bool is_same_patient(const CaseChoice& a, const CaseChoice& b) {
   return a.patient_source == b.patient_source && a.patient_seed == b.patient_seed;
 }
 
-PatientSource source_of(const CaseChoice& choice) {
+io::PatientSource source_of(const CaseChoice& choice) {
   return {choice.patient_source, choice.patient_seed};
 }
 
 /// The patient, from where it is kept if it is; `made.server_source` says where from.
-Result<std::shared_ptr<const VirtualPatient>> patient_of(OpenCase& made, const PatientCache& cache,
-                                                         const Progress& progress) {
+Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(OpenCase& made, const io::PatientCache& cache,
+                                                                  const Progress& progress) {
   made.server_source = made.choice.patient_source;
   if (const auto kept = cache.find(source_of(made.choice))) {
-    if (auto patient = open_patient({kept->string(), 1}, progress)) {
+    if (auto patient = io::open_patient({kept->string(), 1}, progress)) {
       made.server_source = kept->string();
-      return std::make_shared<const VirtualPatient>(*std::move(patient));
+      return std::make_shared<const anatomy::VirtualPatient>(*std::move(patient));
     }
     cache.forget(source_of(made.choice));
   }
-  TROCAR_TRY(VirtualPatient patient, open_patient(source_of(made.choice), progress));
-  return std::make_shared<const VirtualPatient>(std::move(patient));
+  TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(source_of(made.choice), progress));
+  return std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
 }
 
-Status add_surfaces(OpenCase& made, const VirtualPatient& patient, const PatientCache& cache,
+Status add_surfaces(OpenCase& made, const anatomy::VirtualPatient& patient, const io::PatientCache& cache,
                     const Progress& progress) {
-  TROCAR_TRY(auto meshes, open_meshes({made.server_source, made.choice.patient_seed}, patient, progress));
+  TROCAR_TRY(auto meshes, io::open_meshes({made.server_source, made.choice.patient_seed}, patient, progress));
   const bool is_kept = made.server_source != made.choice.patient_source;
   if (!is_kept) {
     // Where it cannot be kept, it is made again the next time.
     if (const auto kept = cache.keep(source_of(made.choice), patient, meshes)) made.server_source = kept->string();
   }
-  made.meshes = std::make_shared<const std::vector<NamedMesh>>(std::move(meshes));
+  made.meshes = std::make_shared<const std::vector<anatomy::NamedMesh>>(std::move(meshes));
   return {};
 }
 
-Status add_acoustics(OpenCase& made, const VirtualPatient& patient, const Progress& progress) {
-  TROCAR_TRY(AcousticTable acoustics, load_acoustic_table(data_dir() / "acoustics.toml"));
-  TROCAR_TRY(made.acoustic, make_acoustic_scene(patient, std::move(acoustics), {}, progress));
-  TROCAR_TRY(FlowTable flows, load_flow_table(data_dir() / "flow.toml"));
-  auto flow = make_vessel_flow(patient, std::move(flows));
+Status add_acoustics(OpenCase& made, const anatomy::VirtualPatient& patient, const Progress& progress) {
+  TROCAR_TRY(ultrasound::AcousticTable acoustics, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
+  TROCAR_TRY(made.acoustic, ultrasound::make_acoustic_scene(patient, std::move(acoustics), {}, progress));
+  TROCAR_TRY(ultrasound::FlowTable flows, ultrasound::load_flow_table(data_dir() / "flow.toml"));
+  auto flow = ultrasound::make_vessel_flow(patient, std::move(flows));
   if (flow) {
     made.flow = *std::move(flow);
   } else {
@@ -90,7 +90,7 @@ Status add_acoustics(OpenCase& made, const VirtualPatient& patient, const Progre
   return {};
 }
 
-Status add_case(OpenCase& made, std::shared_ptr<const VirtualPatient> patient, const Progress& progress) {
+Status add_case(OpenCase& made, std::shared_ptr<const anatomy::VirtualPatient> patient, const Progress& progress) {
   TROCAR_TRY(made.the_case, prepare_case(std::move(patient), made.choice.options, progress));
   made.force_model = made.choice.force_model.empty() ? made.the_case.task.force_model : made.choice.force_model;
   TROCAR_TRY(ProbeStart start, find_probe_start(*made.the_case.patient, made.the_case.plan.line_P));
@@ -104,15 +104,15 @@ Status add_case(OpenCase& made, std::shared_ptr<const VirtualPatient> patient, c
   return {};
 }
 
-Result<std::shared_ptr<const HapticScene>> scene_of(const Case& the_case, const TissueTable& tissues,
-                                                    const std::string& force_model) {
-  HapticOptions haptics;
+Result<std::shared_ptr<const haptics::HapticScene>> scene_of(const Case& the_case, const anatomy::TissueTable& tissues,
+                                                             const std::string& force_model) {
+  haptics::HapticOptions haptics;
   haptics.has_weight_compensation = false;
-  TROCAR_TRY(haptics.force_model, parse_force_model(force_model));
-  return make_haptic_scene(the_case.patient, tissues, needle_geometry(the_case.needle), {}, haptics);
+  TROCAR_TRY(haptics.force_model, haptics::parse_force_model(force_model));
+  return haptics::make_haptic_scene(the_case.patient, tissues, needle_geometry(the_case.needle), {}, haptics);
 }
 
-std::vector<CurvePoint> curve_of(const Case& the_case, const HapticScene& scene) {
+std::vector<CurvePoint> curve_of(const Case& the_case, const haptics::HapticScene& scene) {
   PrescribedMotion motion;
   motion.line_P = the_case.plan.line_P;
   motion.speed_mm_per_s = kPredictedSpeed_mm_per_s;
@@ -141,13 +141,13 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
   auto made = std::make_shared<OpenCase>();
   made->choice = choice;
   made->choice.options.patient_folder = choice.patient_source;  // where a task of the patient's own would lie
-  const PatientCache cache(options.cache_folder);
+  const io::PatientCache cache(options.cache_folder);
   std::shared_ptr<const OpenCase> previous = options.previous;
   if (previous && !is_same_patient(previous->choice, choice)) previous.reset();
   // What is wrong with the tables is told before a patient is opened.
   TROCAR_TRY_STATUS(load_tables(made->choice.options));
   SharedProgress shared(progress);
-  std::shared_ptr<const VirtualPatient> patient;
+  std::shared_ptr<const anatomy::VirtualPatient> patient;
   if (previous) {
     patient = previous->the_case.patient;
     made->server_source = previous->server_source;
@@ -192,8 +192,8 @@ BackgroundJob<std::shared_ptr<const OpenCase>> open_case(CaseChoice choice, std:
 
 Result<std::vector<CurvePoint>> predict_force(const Case& the_case, const std::vector<std::string>& overrides,
                                               const std::string& force_model) {
-  TissueTable tissues = the_case.tissues;
-  for (const std::string& assignment : overrides) TROCAR_TRY_STATUS(apply_override(tissues, assignment));
+  anatomy::TissueTable tissues = the_case.tissues;
+  for (const std::string& assignment : overrides) TROCAR_TRY_STATUS(anatomy::apply_override(tissues, assignment));
   TROCAR_TRY(const auto scene,
              scene_of(the_case, tissues, force_model.empty() ? the_case.task.force_model : force_model));
   return curve_of(the_case, *scene);
@@ -209,4 +209,4 @@ BackgroundJob<std::vector<CurvePoint>> predict_force_in_background(std::shared_p
   });
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "anatomy/patient.h"
+#include "attempt/case/neutral_start.h"
+#include "attempt/case/prepare_case.h"
+#include "attempt/offline/force_curve.h"
 #include "core/background_job.h"
 #include "geometry/pose.h"
-#include "attempt/offline/force_curve.h"
-#include "attempt/case/prepare_case.h"
-#include "attempt/case/neutral_start.h"
-#include "ultrasound/tissue/acoustic_scene.h"
-#include "ultrasound/probe/transducer.h"
 #include "ultrasound/doppler/vessel_flow.h"
+#include "ultrasound/probe/transducer.h"
+#include "ultrasound/tissue/acoustic_scene.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// What a trainee chooses on the start page.
 struct CaseChoice {
@@ -35,10 +35,10 @@ struct OpenCase {
   std::string force_model;  ///< The choice's, else the task's.
   /// How a haptic server of this machine opens the patient: the choice's source, or the folder where it is kept.
   std::string server_source;
-  std::shared_ptr<const std::vector<NamedMesh>> meshes;
-  std::shared_ptr<const AcousticScene> acoustic;
-  std::shared_ptr<const VesselFlow> flow;  ///< Null: no vessel of this patient has flow; notes say so.
-  Transducer transducer;
+  std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes;
+  std::shared_ptr<const ultrasound::AcousticScene> acoustic;
+  std::shared_ptr<const ultrasound::VesselFlow> flow;  ///< Null: no vessel of this patient has flow; notes say so.
+  ultrasound::Transducer transducer;
   double probe_depth_mm = 160.0;  ///< Depth of picture that shows the target and what lies behind it.
   /// Where the transducer begins: pressed lightly onto the skin, with the planned path in its plane and the face beside
   /// the entry; where that cannot be, a standard view (is_in_plane says which).
@@ -76,4 +76,4 @@ BackgroundJob<std::vector<CurvePoint>> predict_force_in_background(std::shared_p
                                                                    std::vector<std::string> overrides,
                                                                    std::string force_model = {});
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -12,7 +12,7 @@
 #include "tasks/plan.h"
 #include "tasks/task.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// Which attempt is to be made; empty texts mean the default.
 struct CaseOptions {
@@ -28,12 +28,12 @@ struct CaseOptions {
 
 /// A patient, a task and a planned path: all that an attempt needs.
 struct Case {
-  std::shared_ptr<const VirtualPatient> patient;
-  Task task;
+  std::shared_ptr<const anatomy::VirtualPatient> patient;
+  tasks::Task task;
   std::string task_toml;  ///< Text of the file that the task is from; empty: a task of the data folder.
-  Needle needle;
-  TissueTable tissues;
-  PlannedPath plan;
+  tasks::Needle needle;
+  anatomy::TissueTable tissues;
+  tasks::PlannedPath plan;
   bool is_parenchymal = false;
 };
 
@@ -45,7 +45,7 @@ bool has_own_task(const std::string& patient_folder);
 
 /// Loads tables and task, checks that the patient can serve the task, and plans the expert path, or takes the one that
 /// the task names. Errors say which structure is missing or which margin leaves no path.
-Result<Case> prepare_case(std::shared_ptr<const VirtualPatient> patient, const CaseOptions& options,
+Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const CaseOptions& options,
                           const Progress& progress = {});
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -12,7 +12,7 @@
 #include "ultrasound/probe/probe_placement.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr const char* kTransducer = "C5-2";  // the abdomen's
@@ -50,12 +50,12 @@ struct Place {
 
 class InPlane {
  public:
-  InPlane(const VirtualPatient& patient, const Segment& path_P, const Transducer& transducer)
+  InPlane(const anatomy::VirtualPatient& patient, const Segment& path_P, const ultrasound::Transducer& transducer)
       : patient_(patient),
         path_P_(path_P),
-        scan_(make_scan_geometry(transducer, transducer.greatest_depth_mm, kLines, 16)) {
+        scan_(ultrasound::make_scan_geometry(transducer, transducer.greatest_depth_mm, kLines, 16)) {
     half_face_mm_ = std::abs(scan_.line_origin(0.0).x());
-    for (const Label& label : patient.label_table.labels)
+    for (const anatomy::Label& label : patient.label_table.labels)
       hides_[label.id] =
           label.tissue == "bone" || label.tissue == "cartilage" || label.tissue == "lung" || label.tissue == "gas";
   }
@@ -77,7 +77,7 @@ class InPlane {
   }
 
  private:
-  double skin_mm(const Vec3& p_P) const { return sample_linear(patient_.skin_distance_mm, p_P); }
+  double skin_mm(const Vec3& p_P) const { return volume::sample_linear(patient_.skin_distance_mm, p_P); }
   Vec3 outwards(const Vec3& p_P) const {
     Vec3 slope;
     for (int a = 0; a < 3; ++a) {
@@ -100,7 +100,8 @@ class InPlane {
     const Vec3 normal_P = outwards(at_P);
     const double tilt = std::asin(std::min(1.0, std::abs(normal_P.dot(plane_P))));
     const Vec3 y_P = -(normal_P - normal_P.dot(plane_P) * plane_P).normalized();
-    const FaceFit fit = fit_face(patient_.skin_distance_mm, scan_, at_P, oriented(y_P, plane_P), kPress_mm);
+    const ultrasound::FaceFit fit =
+        ultrasound::fit_face(patient_.skin_distance_mm, scan_, at_P, oriented(y_P, plane_P), kPress_mm);
     place.X_PT = fit.X_PT;
     const Vec3 entry_T = fit.X_PT.inverse() * path_P_.a;
     if (std::abs(entry_T.x()) < half_face_mm_ + 0.5 * kBesideFace_mm) return place;
@@ -128,18 +129,18 @@ class InPlane {
   }
 
   bool contains(const Vec3& p_P) const {
-    return sample_nearest<std::int16_t>(patient_.ct, p_P, std::numeric_limits<std::int16_t>::min()) !=
+    return volume::sample_nearest<std::int16_t>(patient_.ct, p_P, std::numeric_limits<std::int16_t>::min()) !=
            std::numeric_limits<std::int16_t>::min();
   }
 
-  Polar polar(const Pose& X_PT, const Vec3& p_P) const {
+  ultrasound::Polar polar(const Pose& X_PT, const Vec3& p_P) const {
     const Vec3 p_T = X_PT.inverse() * p_P;
     return scan_.to_polar({p_T.x(), p_T.y()});
   }
 
   /// 0: seen; 1: outside the fan; between: the share of the way that lies behind bone or gas.
   double hidden_share(const Pose& X_PT, const Vec3& p_P) const {
-    const Polar at = polar(X_PT, p_P);
+    const ultrasound::Polar at = polar(X_PT, p_P);
     if (!(at.line >= 0.0 && at.line <= scan_.lines - 1 && at.depth_mm > 0.0 && at.depth_mm < scan_.depth_mm))
       return 1.0;
     return hidden_share(X_PT, at);
@@ -149,42 +150,43 @@ class InPlane {
   double dark_share(const Pose& X_PT, double depth_mm) const {
     double sum = 0.0;
     for (int line = 0; line < scan_.lines; ++line)
-      sum += hidden_share(X_PT, Polar{static_cast<double>(line), depth_mm});
+      sum += hidden_share(X_PT, ultrasound::Polar{static_cast<double>(line), depth_mm});
     return sum / scan_.lines;
   }
 
   /// The share of the way to a place of the fan that lies behind bone or gas.
-  double hidden_share(const Pose& X_PT, const Polar& at) const {
-    const Vec2 from = scan_.line_origin(at.line);
-    const Vec2 way = scan_.line_direction(at.line);
+  double hidden_share(const Pose& X_PT, const ultrasound::Polar& at) const {
+    const ultrasound::Vec2 from = scan_.line_origin(at.line);
+    const ultrasound::Vec2 way = scan_.line_direction(at.line);
     const Vec3 from_P = X_PT * Vec3(from.x(), from.y(), 0.0);
     const Vec3 way_P = X_PT.R() * Vec3(way.x(), way.y(), 0.0);
     for (double gone_mm = 0.0; gone_mm < at.depth_mm; gone_mm += kWayStep_mm) {
       const Vec3 q_P = from_P + gone_mm * way_P;
       if (skin_mm(q_P) > 0.0) continue;
-      const auto label = sample_nearest<std::uint8_t>(patient_.labels, q_P, 0);
-      if (hides_[label] || sample_nearest<std::int16_t>(patient_.ct, q_P, 0) < kGasBelow_hu)
+      const auto label = volume::sample_nearest<std::uint8_t>(patient_.labels, q_P, 0);
+      if (hides_[label] || volume::sample_nearest<std::int16_t>(patient_.ct, q_P, 0) < kGasBelow_hu)
         return 1.0 - gone_mm / at.depth_mm;
     }
     return 0.0;
   }
 
-  const VirtualPatient& patient_;
+  const anatomy::VirtualPatient& patient_;
   const Segment& path_P_;
-  ScanGeometry scan_;
+  ultrasound::ScanGeometry scan_;
   double half_face_mm_ = 0.0;
   std::array<bool, 256> hides_{};
 };
 
 /// The lesion's view where the patient has one, else the first that he has.
-std::optional<Pose> standard_view(const VirtualPatient& patient, const std::vector<ProbeView>& views,
-                                  const Transducer& transducer, std::string& title) {
-  std::vector<std::string> names = possible_views(patient, views);
+std::optional<Pose> standard_view(const anatomy::VirtualPatient& patient,
+                                  const std::vector<ultrasound::ProbeView>& views,
+                                  const ultrasound::Transducer& transducer, std::string& title) {
+  std::vector<std::string> names = ultrasound::possible_views(patient, views);
   std::stable_partition(names.begin(), names.end(), [](const std::string& name) { return name == kLesionView; });
   for (const std::string& name : names) {
-    const auto view = choose_view(patient, views, name);
+    const auto view = ultrasound::choose_view(patient, views, name);
     if (!view) continue;
-    if (const auto placed = place_probe(patient, *view, transducer)) {
+    if (const auto placed = ultrasound::place_probe(patient, *view, transducer)) {
       title = view->title;
       return placed->X_PT;
     }
@@ -194,10 +196,10 @@ std::optional<Pose> standard_view(const VirtualPatient& patient, const std::vect
 
 }  // namespace
 
-Result<ProbeStart> find_probe_start(const VirtualPatient& patient, const Segment& path_P) {
+Result<ProbeStart> find_probe_start(const anatomy::VirtualPatient& patient, const Segment& path_P) {
   ProbeStart start;
-  TROCAR_TRY(start.transducer, load_transducer(data_dir() / "transducers.toml", kTransducer));
-  TROCAR_TRY(const std::vector<ProbeView> views, load_probe_views(data_dir() / "views.toml"));
+  TROCAR_TRY(start.transducer, ultrasound::load_transducer(data_dir() / "transducers.toml", kTransducer));
+  TROCAR_TRY(const std::vector<ultrasound::ProbeView> views, ultrasound::load_probe_views(data_dir() / "views.toml"));
   const Place place = InPlane(patient, path_P, start.transducer).best();
   start.X_PT = place.X_PT;
   start.is_in_plane = place.is_good;
@@ -219,4 +221,4 @@ Result<ProbeStart> find_probe_start(const VirtualPatient& patient, const Segment
   return start;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -2,7 +2,7 @@
 
 #include "attempt/guide/needle_geometry.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 Pose room_in_patient(const Segment& path_P, double needle_length_mm) noexcept {
   Mat3 R_PW;
@@ -15,9 +15,9 @@ Pose room_in_patient(const Segment& path_P, double needle_length_mm) noexcept {
   return {R_PW, path_P.a + direction * (0.5 * length_mm - needle_length_mm)};
 }
 
-LoadScene scene_request(const Case& the_case, const SceneChoice& choice) {
-  const NeedleGeometry needle = needle_geometry(the_case.needle);
-  LoadScene request;
+link::LoadScene scene_request(const Case& the_case, const SceneChoice& choice) {
+  const haptics::NeedleGeometry needle = needle_geometry(the_case.needle);
+  link::LoadScene request;
   request.task = the_case.task.name;
   request.patient = choice.patient_source;
   request.patient_seed = choice.patient_seed;
@@ -37,4 +37,4 @@ LoadScene scene_request(const Case& the_case, const SceneChoice& choice) {
   return request;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -5,7 +5,7 @@
 #include "attempt/case/prepare_case.h"
 #include "link/messages.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// How a scene is asked of a server.
 struct SceneChoice {
@@ -15,11 +15,11 @@ struct SceneChoice {
   std::uint64_t patient_seed = 1;
   std::uint64_t seed = 1;
 };
-LoadScene scene_request(const Case& the_case, const SceneChoice& choice);
+link::LoadScene scene_request(const Case& the_case, const SceneChoice& choice);
 
 /// Where the room stands about a supine patient: who works sits at the patient's right side and looks across (W: x
 /// towards the feet, y to the patient's left, z up). The origin is where the grip is when the needle is half-way in, so
 /// that a device's workspace, centred there, holds the whole puncture.
 Pose room_in_patient(const Segment& path_P, double needle_length_mm) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::attempt

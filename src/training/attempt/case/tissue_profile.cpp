@@ -8,7 +8,7 @@
 #include "config/toml_quoted.h"
 #include "core/files/atomic_file.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr std::size_t kLongestName = 80;
@@ -27,18 +27,19 @@ Status check_name(const std::string& name) {
   const bool is_blank = std::all_of(name.begin(), name.end(), [](char c) { return c == ' '; });
   const bool has_control = std::any_of(name.begin(), name.end(), is_control);
   if (name.size() <= kLongestName && !is_blank && !has_control) return {};
-  return fail_usage("a profile's name has 1 to 80 characters and no control characters", toml_quoted(name),
+  return fail_usage("a profile's name has 1 to 80 characters and no control characters", config::toml_quoted(name),
                     "give it another name");
 }
 
 std::string to_toml(const TissueProfile& profile) {
   std::string text =
       "# Numbers of tissues that differ from the table's (trocar run --set KEY=VALUE takes them, too).\n";
-  text += fmt::format("name = {}\n", toml_quoted(profile.name));
-  if (!profile.note.empty()) text += fmt::format("note = {}\n", toml_quoted(profile.note));
-  if (!profile.force_model.empty()) text += fmt::format("force_model = {}\n", toml_quoted(profile.force_model));
+  text += fmt::format("name = {}\n", config::toml_quoted(profile.name));
+  if (!profile.note.empty()) text += fmt::format("note = {}\n", config::toml_quoted(profile.note));
+  if (!profile.force_model.empty()) text += fmt::format("force_model = {}\n", config::toml_quoted(profile.force_model));
   text += "overrides = [\n";
-  for (const std::string& assignment : profile.overrides) text += fmt::format("  {},\n", toml_quoted(assignment));
+  for (const std::string& assignment : profile.overrides)
+    text += fmt::format("  {},\n", config::toml_quoted(assignment));
   return text + "]\n";
 }
 
@@ -53,8 +54,8 @@ std::filesystem::path profile_file(const std::filesystem::path& folder, const st
   return folder / (file + ".toml");
 }
 
-Status save_profile(const TissueProfile& profile, const TissueTable& table, const std::filesystem::path& folder,
-                    bool may_replace) {
+Status save_profile(const TissueProfile& profile, const anatomy::TissueTable& table,
+                    const std::filesystem::path& folder, bool may_replace) {
   TROCAR_TRY_STATUS(check_name(profile.name));
   TROCAR_TRY_STATUS(with_profile(table, profile));
   const std::filesystem::path file = profile_file(folder, profile.name);
@@ -69,7 +70,7 @@ Status save_profile(const TissueProfile& profile, const TissueTable& table, cons
 }
 
 Result<TissueProfile> load_profile(const std::filesystem::path& file) {
-  TROCAR_TRY(const TomlTable table, load_toml(file));
+  TROCAR_TRY(const config::TomlTable table, config::load_toml(file));
   TROCAR_TRY_STATUS(table.check_keys({"name", "note", "force_model", "overrides"}));
   TissueProfile profile;
   TROCAR_TRY(profile.name, table.string("name"));
@@ -106,9 +107,9 @@ ProfileList list_profiles(const std::filesystem::path& folder) {
   return list;
 }
 
-Result<TissueTable> with_profile(TissueTable table, const TissueProfile& profile) {
-  for (const std::string& assignment : profile.overrides) TROCAR_TRY_STATUS(apply_override(table, assignment));
+Result<anatomy::TissueTable> with_profile(anatomy::TissueTable table, const TissueProfile& profile) {
+  for (const std::string& assignment : profile.overrides) TROCAR_TRY_STATUS(anatomy::apply_override(table, assignment));
   return table;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -7,7 +7,7 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// Numbers of tissues that somebody fitted to a patient, under a name of its own: what differs from the table.
 struct TissueProfile {
@@ -22,8 +22,8 @@ struct TissueProfile {
 std::filesystem::path profile_file(const std::filesystem::path& folder, const std::string& name);
 /// Writes it as TOML, whole or not at all; makes the folder. Errors: a name that cannot be used, overrides that the
 /// table does not take (exit status 2), a profile of that name where `may_replace` is false (exit status 2), the disk.
-Status save_profile(const TissueProfile& profile, const TissueTable& table, const std::filesystem::path& folder,
-                    bool may_replace);
+Status save_profile(const TissueProfile& profile, const anatomy::TissueTable& table,
+                    const std::filesystem::path& folder, bool may_replace);
 /// Errors name file, line and key.
 Result<TissueProfile> load_profile(const std::filesystem::path& file);
 /// Removes the file that it was loaded from. Error: the disk.
@@ -36,6 +36,6 @@ struct ProfileList {
 };
 ProfileList list_profiles(const std::filesystem::path& folder);
 /// The table with the profile's numbers. Errors: a number that the table does not take.
-Result<TissueTable> with_profile(TissueTable table, const TissueProfile& profile);
+Result<anatomy::TissueTable> with_profile(anatomy::TissueTable table, const TissueProfile& profile);
 
-}  // namespace trocar
+}  // namespace trocar::attempt

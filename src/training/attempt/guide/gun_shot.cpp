@@ -4,19 +4,19 @@
 
 #include <algorithm>
 
-namespace trocar {
+namespace trocar::attempt {
 
-GunShot make_gun_shot(const Case& the_case, const TickSample& fired) {
-  const Needle& needle = the_case.needle;
-  const VirtualPatient& patient = *the_case.patient;
+GunShot make_gun_shot(const Case& the_case, const telemetry::TickSample& fired) {
+  const tasks::Needle& needle = the_case.needle;
+  const anatomy::VirtualPatient& patient = *the_case.patient;
   GunShot shot;
   shot.time_s = fired.time_s;
   shot.depth_mm = fired.depth_mm;
   shot.throw_mm = needle.throw_mm;
   if (shot.is_in_body()) {
-    shot.throw_mm = stylet_throw_mm(the_case.task, patient, needle, fired.tip_mm, fired.axis);
-    shot.core = take_core(the_case.task, patient, needle, fired.tip_mm, fired.axis);
-    for (const CorePiece& piece : shot.core.pieces)
+    shot.throw_mm = tasks::stylet_throw_mm(the_case.task, patient, needle, fired.tip_mm, fired.axis);
+    shot.core = tasks::take_core(the_case.task, patient, needle, fired.tip_mm, fired.axis);
+    for (const tasks::CorePiece& piece : shot.core.pieces)
       shot.pieces.push_back({part_of(the_case.task, patient, piece), piece.label, piece.from_mm, piece.to_mm});
   }
   const double end_mm = std::max(0.0, shot.throw_mm - needle.dead_space_mm);
@@ -46,4 +46,4 @@ std::vector<Vec3> thrown_shaft(std::vector<Vec3> shaft_P, double forward_mm) {
   return shaft_P;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

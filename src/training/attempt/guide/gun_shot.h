@@ -3,16 +3,16 @@
 #include <string>
 #include <vector>
 
-#include "geometry/segment.h"
 #include "attempt/case/prepare_case.h"
-#include "telemetry/tick_sample.h"
+#include "geometry/segment.h"
 #include "tasks/core_sample.h"
+#include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// A stretch of the core as it is drawn.
 struct ShotPiece {
-  CorePart part = CorePart::kOther;
+  tasks::CorePart part = tasks::CorePart::kOther;
   std::string label;
   double from_mm = 0.0, to_mm = 0.0;  ///< As CorePiece.
 };
@@ -23,14 +23,14 @@ struct GunShot {
   double depth_mm = 0.0;  ///< Of the tip below the skin before the shot.
   double throw_mm = 0.0;  ///< How far the stylet got.
   Segment core_P;         ///< Where the core came from.
-  BiopsyCore core;
+  tasks::BiopsyCore core;
   std::vector<ShotPiece> pieces;
 
   bool is_in_body() const noexcept { return depth_mm > 0.0; }
 };
 
 /// The shot at a tick. Outside of the body it takes nothing.
-GunShot make_gun_shot(const Case& the_case, const TickSample& fired);
+GunShot make_gun_shot(const Case& the_case, const telemetry::TickSample& fired);
 
 /// "the gun was fired at 92 mm: a core of 17 mm, 14 mm of it target tissue".
 std::string shot_words(const GunShot& shot);
@@ -48,4 +48,4 @@ inline constexpr double kCannulaMoves_s = 0.2;  ///< After the stylet. [assumed]
 /// The shaft with its last point moved forward along the last stretch.
 std::vector<Vec3> thrown_shaft(std::vector<Vec3> shaft_P, double forward_mm);
 
-}  // namespace trocar
+}  // namespace trocar::attempt

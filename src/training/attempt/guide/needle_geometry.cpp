@@ -2,10 +2,10 @@
 
 #include <numbers>
 
-namespace trocar {
+namespace trocar::attempt {
 
-NeedleGeometry needle_geometry(const Needle& needle) noexcept {
-  NeedleGeometry geometry;
+haptics::NeedleGeometry needle_geometry(const tasks::Needle& needle) noexcept {
+  haptics::NeedleGeometry geometry;
   geometry.radius_mm = 0.5 * needle.outer_diameter_mm;
   geometry.length_mm = needle.length_mm;
   geometry.inner_radius_mm = 0.5 * needle.inner_diameter_mm;
@@ -15,4 +15,4 @@ NeedleGeometry needle_geometry(const Needle& needle) noexcept {
   return geometry;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -3,9 +3,9 @@
 #include "haptics/needle_geometry.h"
 #include "tasks/needle.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// A needle of the list as the forces see it, of steel, with its grip at the hub.
-NeedleGeometry needle_geometry(const Needle& needle) noexcept;
+haptics::NeedleGeometry needle_geometry(const tasks::Needle& needle) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::attempt

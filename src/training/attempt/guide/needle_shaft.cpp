@@ -4,16 +4,16 @@
 
 #include "telemetry/tick_pose.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr int kPoints = 17;
 
 }  // namespace
 
-std::vector<Vec3> needle_shaft(const TickSample& sample, double length_mm) {
-  const Vec3 grip_axis = device_pose(sample).R().col(2);
-  const Vec3 tip_axis = felt_needle(sample).R().col(2);
+std::vector<Vec3> needle_shaft(const telemetry::TickSample& sample, double length_mm) {
+  const Vec3 grip_axis = telemetry::device_pose(sample).R().col(2);
+  const Vec3 tip_axis = telemetry::felt_needle(sample).R().col(2);
   const double lag_mm = (sample.device_mm - sample.tip_mm).dot(grip_axis);
   const Vec3 hub_P = sample.device_mm - (length_mm + lag_mm) * grip_axis;
   const Vec3 way_P = sample.tip_mm - hub_P;
@@ -52,4 +52,4 @@ std::vector<Vec3> shaft_outside(std::vector<Vec3> shaft_P, double inside_mm) {
   return {};
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

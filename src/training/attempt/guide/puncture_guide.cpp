@@ -10,7 +10,7 @@
 #include "anatomy/structure_words.h"
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr double kFarFromEntry_mm = 15.0;
@@ -18,33 +18,34 @@ constexpr double kLookStep_mm = 0.5;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// What must not be touched, ahead of the tip.
-std::string danger_ahead(const Case& the_case, const TickSample& sample) {
+std::string danger_ahead(const Case& the_case, const telemetry::TickSample& sample) {
   for (double ahead_mm = 0.0; ahead_mm <= kGuideAhead_mm; ahead_mm += kLookStep_mm) {
-    const Label* label = find_label(*the_case.patient, sample.tip_mm + ahead_mm * sample.axis);
+    const anatomy::Label* label = anatomy::find_label(*the_case.patient, sample.tip_mm + ahead_mm * sample.axis);
     if (label == nullptr) continue;
     const bool is_bone = label->tissue == "bone";
     if (!is_bone && find_risk(the_case.task, *label) == nullptr) continue;
-    if (ahead_mm == 0.0) return fmt::format("The tip is in the {}: pull back", structure_words(label->name));
-    return fmt::format("{} {:.0f} mm ahead: stop, {}", is_bone ? "Bone" : structure_words(label->name),
+    if (ahead_mm == 0.0) return fmt::format("The tip is in the {}: pull back", anatomy::structure_words(label->name));
+    return fmt::format("{} {:.0f} mm ahead: stop, {}", is_bone ? "Bone" : anatomy::structure_words(label->name),
                        std::ceil(ahead_mm), sample.depth_mm > 0.0 ? "pull back and tilt" : "aim anew");
   }
   return {};
 }
 
-std::string guide_outside(const Segment& path_P, const TickSample& sample) {
+std::string guide_outside(const Segment& path_P, const telemetry::TickSample& sample) {
   const Vec3 to_entry = path_P.a - sample.tip_mm;
   const Vec3 axis = path_P.direction();
   const Vec3 across = to_entry - to_entry.dot(axis) * axis;
-  if (across.norm() > kFarFromEntry_mm) return "The entry is " + direction_words(across, " mm");
+  if (across.norm() > kFarFromEntry_mm) return "The entry is " + anatomy::direction_words(across, " mm");
   if (across.norm() > kGuideBeside_mm)
-    return fmt::format("{:.1f} mm beside the entry: move the tip {}", across.norm(), direction_words(across));
+    return fmt::format("{:.1f} mm beside the entry: move the tip {}", across.norm(), anatomy::direction_words(across));
   const double angle_deg = kDegPerRad * angle_between_rad(sample.axis, axis);
   if (angle_deg > kGuideTilt_deg)
-    return fmt::format("{:.0f} degrees off the path: tilt the hub {}", angle_deg, direction_words(sample.axis - axis));
+    return fmt::format("{:.0f} degrees off the path: tilt the hub {}", angle_deg,
+                       anatomy::direction_words(sample.axis - axis));
   return "On the path: advance";
 }
 
-std::string guide_inside(const Case& the_case, const TickSample& sample) {
+std::string guide_inside(const Case& the_case, const telemetry::TickSample& sample) {
   const Segment& path_P = the_case.plan.line_P;
   const Vec3 axis = path_P.direction();
   const Vec3 to_target = path_P.b - sample.tip_mm;
@@ -57,23 +58,24 @@ std::string guide_inside(const Case& the_case, const TickSample& sample) {
   if (beside_mm > kGuideBeside_mm) {
     const double turn_deg = kDegPerRad * angle_between_rad(sample.axis, to_target);
     return fmt::format("{:.1f} mm beside the path: tilt the tip {} by {:.0f} degrees", beside_mm,
-                       direction_words(across), std::min(turn_deg, 90.0));
+                       anatomy::direction_words(across), std::min(turn_deg, 90.0));
   }
   return fmt::format("{:.0f} mm to the target", left_mm);
 }
 
 }  // namespace
 
-std::string guide_puncture(const Case& the_case, const TickSample& sample, bool has_fired) {
+std::string guide_puncture(const Case& the_case, const telemetry::TickSample& sample, bool has_fired) {
   if (!sample.tip_mm.allFinite() || !(std::abs(sample.axis.norm() - 1.0) < 1e-3)) return {};
   if (has_fired)
-    return sample.phase == InsertionPhase::kOutside ? "The needle is out: end the attempt"
-                                                    : "The gun was fired: withdraw the needle";
+    return sample.phase == telemetry::InsertionPhase::kOutside ? "The needle is out: end the attempt"
+                                                               : "The gun was fired: withdraw the needle";
   std::string danger = danger_ahead(the_case, sample);
   if (!danger.empty()) return danger;
-  const bool is_inside = sample.phase == InsertionPhase::kInserted || sample.phase == InsertionPhase::kRetracting ||
+  const bool is_inside = sample.phase == telemetry::InsertionPhase::kInserted ||
+                         sample.phase == telemetry::InsertionPhase::kRetracting ||
                          sample.depth_mm > the_case.tissues.skin_thickness_mm;
   return is_inside ? guide_inside(the_case, sample) : guide_outside(the_case.plan.line_P, sample);
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 Mat3 turned(const Mat3& R, const Vec3& turn_rad) noexcept {
@@ -63,4 +63,4 @@ void LedHand::step(double dt_s) noexcept {
   X_P_ = next;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -2,7 +2,7 @@
 
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// How fast a hand moves a tool, at most. [assumed]
 struct HandLimits {
@@ -49,4 +49,4 @@ class LedHand {
   bool is_clamped_ = false;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

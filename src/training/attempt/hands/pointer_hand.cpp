@@ -6,7 +6,7 @@
 
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr double kLongestStep_mm = 20.0;  ///< Of one gesture: what is longer is a slip of the pointer.
@@ -18,7 +18,7 @@ Vec3 bounded(const Vec3& shift_P) {
 }
 
 /// A point moved along the skin: the shift's tangential part, then back onto the skin.
-Vec3 moved_on_skin(const VirtualPatient& patient, const Vec3& skin_P, const Vec3& shift_P) {
+Vec3 moved_on_skin(const anatomy::VirtualPatient& patient, const Vec3& skin_P, const Vec3& shift_P) {
   const Vec3 inward_P = skin_inward(patient, skin_P);
   return nearest_skin_point(patient, skin_P + shift_P - inward_P.dot(shift_P) * inward_P);
 }
@@ -41,24 +41,24 @@ Vec3 leaned(const Vec3& axis_P, const Vec3& right_P, const Vec3& down_P, double 
 
 }  // namespace
 
-Vec3 nearest_skin_point(const VirtualPatient& patient, const Vec3& p_P) noexcept {
+Vec3 nearest_skin_point(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept {
   Vec3 q_P = p_P;
   constexpr int kSteps = 8;
   for (int step = 0; step < kSteps; ++step) {
-    const double distance_mm = sample_linear(patient.skin_distance_mm, q_P);
+    const double distance_mm = volume::sample_linear(patient.skin_distance_mm, q_P);
     if (std::abs(distance_mm) < 1e-3) break;
     q_P += distance_mm * skin_inward(patient, q_P);
   }
   return q_P;
 }
 
-Vec3 skin_inward(const VirtualPatient& patient, const Vec3& p_P) noexcept {
-  const Vec3 outward_P = gradient_per_mm(patient.skin_distance_mm, p_P);
+Vec3 skin_inward(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept {
+  const Vec3 outward_P = volume::gradient_per_mm(patient.skin_distance_mm, p_P);
   const double size = outward_P.norm();
   return size > 1e-6 ? Vec3(-outward_P / size) : Vec3(0.0, 1.0, 0.0);
 }
 
-PointerNeedle::PointerNeedle(const VirtualPatient& patient, const Segment& path_P, double length_mm)
+PointerNeedle::PointerNeedle(const anatomy::VirtualPatient& patient, const Segment& path_P, double length_mm)
     : patient_(&patient), length_mm_(length_mm), entry_P_(path_P.a), axis_P_(path_P.direction()) {
   aim_at(path_P);
 }
@@ -78,7 +78,7 @@ void PointerNeedle::put(const Pose& X_PN) {
   constexpr int kSteps = 12;
   for (int step = 0; step < kSteps; ++step) {
     const Vec3 at_P = X_PN.p() - back_mm * axis_P_;
-    const double distance_mm = sample_linear(patient_->skin_distance_mm, at_P);
+    const double distance_mm = volume::sample_linear(patient_->skin_distance_mm, at_P);
     const double steepness = std::max(0.2, axis_P_.dot(skin_inward(*patient_, at_P)));
     back_mm -= distance_mm / steepness;
     back_mm = std::clamp(back_mm, -kFarthest_mm, length_mm_);
@@ -125,7 +125,7 @@ void PointerNeedle::update() {
   X_PN_ = {X_unrolled.R() * Eigen::AngleAxisd(roll_rad_, Vec3::UnitZ()).toRotationMatrix(), X_unrolled.p()};
 }
 
-PointerProbe::PointerProbe(const VirtualPatient& patient, const Pose& X_PT) : patient_(&patient) {
+PointerProbe::PointerProbe(const anatomy::VirtualPatient& patient, const Pose& X_PT) : patient_(&patient) {
   put(X_PT);
 }
 
@@ -162,4 +162,4 @@ void PointerProbe::push(double mm) {
   if (std::isfinite(mm)) pressed_mm_ = std::clamp(pressed_mm_ + mm, -kFarthest_mm, kDeepest_mm);
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

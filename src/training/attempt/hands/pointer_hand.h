@@ -4,7 +4,7 @@
 #include "geometry/pose.h"
 #include "geometry/segment.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// Hands that are moved by mouse, wheel and keys: each gesture is a small change, and what comes out is where the hand
 /// wants the tool. No time in here: how fast a hand gets there is limited where it is sent (hand_motion.h). Frame P.
@@ -19,7 +19,7 @@ class PointerNeedle {
   static constexpr double kFlattest_rad = 1.35;  ///< Between needle and the skin's inward normal.
 
   /// Over the entry of a path, along it. The patient must outlive it.
-  PointerNeedle(const VirtualPatient& patient, const Segment& path_P, double length_mm);
+  PointerNeedle(const anatomy::VirtualPatient& patient, const Segment& path_P, double length_mm);
 
   const Pose& X_PN() const noexcept { return X_PN_; }
   bool is_past_skin() const noexcept { return past_mm_ > 0.0; }
@@ -40,7 +40,7 @@ class PointerNeedle {
   void lean(const Vec3& axis_P);
   void update();
 
-  const VirtualPatient* patient_;
+  const anatomy::VirtualPatient* patient_;
   double length_mm_;
   Vec3 entry_P_;
   Vec3 axis_P_;  ///< Unit, hub to tip.
@@ -58,7 +58,7 @@ class PointerProbe {
   static constexpr double kFlattest_rad = 0.9;  ///< Between beam and the skin's inward normal.
 
   /// Begins there; the patient must outlive it.
-  PointerProbe(const VirtualPatient& patient, const Pose& X_PT);
+  PointerProbe(const anatomy::VirtualPatient& patient, const Pose& X_PT);
 
   Pose X_PT() const noexcept;
   double pressed_mm() const noexcept { return pressed_mm_; }  ///< Negative: off the skin.
@@ -70,15 +70,15 @@ class PointerProbe {
   void push(double mm);
 
  private:
-  const VirtualPatient* patient_;
+  const anatomy::VirtualPatient* patient_;
   Vec3 skin_P_;
   Mat3 R_PT_;
   double pressed_mm_ = 0.0;
 };
 
 /// The point of the resting skin nearest to a point that lies within some cm of it.
-Vec3 nearest_skin_point(const VirtualPatient& patient, const Vec3& p_P) noexcept;
+Vec3 nearest_skin_point(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept;
 /// Unit normal of the skin there, into the body.
-Vec3 skin_inward(const VirtualPatient& patient, const Vec3& p_P) noexcept;
+Vec3 skin_inward(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::attempt

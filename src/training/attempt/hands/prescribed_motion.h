@@ -4,7 +4,7 @@
 #include "geometry/segment.h"
 #include "haptics/tick.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// A device that is led along a needle path, whatever the forces: open loop, so that two scenes get the same poses.
 /// It runs at constant speed from `before_mm` outside the skin to the path's end; on the way it drifts off the path
@@ -23,6 +23,6 @@ int tick_count(const PrescribedMotion& motion) noexcept;
 /// Way of the tip along the path at a tick (1 = the first), mm; negative outside the skin.
 double way_mm(const PrescribedMotion& motion, int tick) noexcept;
 /// What the device gives the scene at that tick.
-HapticInput input_at(const PrescribedMotion& motion, const HapticScene& scene, int tick) noexcept;
+haptics::HapticInput input_at(const PrescribedMotion& motion, const haptics::HapticScene& scene, int tick) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -8,7 +8,7 @@
 #include "haptics/contact/contact_face.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr double kPressing_mm_s = 10.0;           // [assumed]
@@ -22,21 +22,21 @@ struct SkinPoint {
   Vec3 outwards_P;  ///< Unit.
 };
 
-SkinPoint find_skin(const FloatGrid& distance_mm, Vec3 p_P) noexcept {
+SkinPoint find_skin(const volume::FloatGrid& distance_mm, Vec3 p_P) noexcept {
   constexpr int kSteps = 20;  // the distance is nearly a true one: a few are enough
   Vec3 outwards_P = -Vec3::UnitY();
   for (int i = 0; i < kSteps; ++i) {
-    const Vec3 slope = gradient_per_mm(distance_mm, p_P);
+    const Vec3 slope = volume::gradient_per_mm(distance_mm, p_P);
     if (slope.norm() > 0.0) outwards_P = slope.normalized();
-    p_P -= sample_linear(distance_mm, p_P) * outwards_P;
+    p_P -= volume::sample_linear(distance_mm, p_P) * outwards_P;
   }
   return {p_P, outwards_P};
 }
 
 }  // namespace
 
-ProbeHand::ProbeHand(const VirtualPatient& patient, const Segment& path_P) noexcept {
-  const FloatGrid& distance_mm = patient.skin_distance_mm;
+ProbeHand::ProbeHand(const anatomy::VirtualPatient& patient, const Segment& path_P) noexcept {
+  const volume::FloatGrid& distance_mm = patient.skin_distance_mm;
   const SkinPoint entry = find_skin(distance_mm, path_P.a);
   const bool is_on_top = std::abs(entry.outwards_P.z()) > kNearlyAlongBody;
   const Vec3 across = entry.outwards_P.cross(is_on_top ? Vec3::UnitX() : Vec3::UnitZ());
@@ -54,7 +54,7 @@ ProbeHand::ProbeHand(const VirtualPatient& patient, const Segment& path_P) noexc
   X_PT_skin_ = Pose(R_PT, place.p_P);
 }
 
-HandTarget ProbeHand::at(double time_s) const noexcept {
+link::HandTarget ProbeHand::at(double time_s) const noexcept {
   const double lowered_mm = std::min(std::max(0.0, time_s) * kPressing_mm_s, kAbove_mm + kPress_mm);
   const bool is_moving = time_s > 0.0 && lowered_mm < kAbove_mm + kPress_mm;
   Vec3 tremor_T, tremor_mm_s_T;
@@ -63,7 +63,7 @@ HandTarget ProbeHand::at(double time_s) const noexcept {
     tremor_T[static_cast<Eigen::Index>(i)] = kTremor_mm * std::sin(rad_s * time_s);
     tremor_mm_s_T[static_cast<Eigen::Index>(i)] = kTremor_mm * rad_s * std::cos(rad_s * time_s);
   }
-  HandTarget hand;
+  link::HandTarget hand;
   const Vec3 offset_T = (lowered_mm - kAbove_mm) * Vec3::UnitY() + tremor_T;
   hand.X_PN = X_PT_skin_ * Pose::translation(offset_T);
   hand.v_P = X_PT_skin_.R() * (tremor_mm_s_T + (is_moving ? kPressing_mm_s : 0.0) * Vec3::UnitY());
@@ -75,8 +75,8 @@ Pose ProbeHand::room(const Pose& X_PW_of_needle) const noexcept {
 }
 
 Pose probe_room(const Pose& X_PW_of_needle, const Pose& X_PT) noexcept {
-  const Pose X_TS = tool_in_stylus(make_face(Tool::kTransducer)).inverse();
+  const Pose X_TS = haptics::tool_in_stylus(haptics::make_face(haptics::Tool::kTransducer)).inverse();
   return {X_PW_of_needle.R(), (X_PT * X_TS).p()};
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

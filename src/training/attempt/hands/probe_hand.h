@@ -4,17 +4,17 @@
 #include "geometry/segment.h"
 #include "link/messages.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// A hand that holds the transducer on the skin beside a needle's entry: from above it presses down a few mm and stays,
 /// with the tremor of a hand. A function of time alone. Frame P.
 class ProbeHand {
  public:
   /// Beside path_P.a, towards head or feet, where the skin is flatter.
-  ProbeHand(const VirtualPatient& patient, const Segment& path_P) noexcept;
+  ProbeHand(const anatomy::VirtualPatient& patient, const Segment& path_P) noexcept;
 
   /// Where the hand wants the transducer, `time_s` after the forces came on; not its server_time_s.
-  HandTarget at(double time_s) const noexcept;
+  link::HandTarget at(double time_s) const noexcept;
   /// Room in the patient: where the grip is at rest, so that the device's workspace is about it.
   Pose room(const Pose& X_PW_of_needle) const noexcept;
 
@@ -29,4 +29,4 @@ class ProbeHand {
 /// Room of a transducer in the patient: turned as the needle's, with the grip at its origin where it is held at X_PT.
 Pose probe_room(const Pose& X_PW_of_needle, const Pose& X_PT) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -9,7 +9,7 @@
 #include "geometry/pose.h"
 #include "telemetry/tick_sample.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 struct GunShot;
 
@@ -38,7 +38,7 @@ struct NeedleView {
   double depth_mm = 0.0;      ///< Of the tip below the skin.
   double speed_mm_s = 0.0;    ///< Along the axis; positive inward.
   std::string tissue;         ///< At the tip: a label's name where one lies there, else the tissue's; empty outside.
-  InsertionPhase phase = InsertionPhase::kOutside;
+  telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
   bool is_clamped = false;
 };
 
@@ -109,9 +109,9 @@ struct ForcePoint {
 struct AttemptEvent {
   double time_s = 0.0;
   double depth_mm = 0.0;
-  EventKind kind = EventKind::kNone;
+  telemetry::EventKind kind = telemetry::EventKind::kNone;
   std::string name;  ///< Of the layer or label.
   std::string text;  ///< "through the liver capsule at 1.9 N"
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -5,7 +5,7 @@
 
 #include "attempt/live/detail/attempt_loop.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 OwnServerOptions server_options(const AttemptOptions& options, const char* tool) {
@@ -132,7 +132,7 @@ void LiveAttempt::set_parameters(std::vector<std::string> settings) {
   impl_->desk.wishes.settings.push_back(std::move(settings));
 }
 
-void LiveAttempt::perform(std::unique_ptr<Operator> the_operator) {
+void LiveAttempt::perform(std::unique_ptr<tasks::Operator> the_operator) {
   const std::lock_guard lock(impl_->desk.mutex);
   impl_->desk.news.view.is_performing = impl_->desk.news.view.is_performing || the_operator != nullptr;
   impl_->desk.wishes.performer = std::move(the_operator);
@@ -143,4 +143,4 @@ void LiveAttempt::finish() {
   impl_->desk.wishes.finishes = true;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

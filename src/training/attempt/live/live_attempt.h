@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "core/files/disk_space.h"
-#include "attempt/servers/own_server.h"
-#include "attempt/record/run_result.h"
-#include "attempt/live/attempt_view.h"
 #include "attempt/case/open_case.h"
+#include "attempt/live/attempt_view.h"
+#include "attempt/record/run_result.h"
+#include "attempt/servers/own_server.h"
+#include "core/files/disk_space.h"
 #include "tasks/operator.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// Which of the two tools a hand holds.
 enum class HandTool : std::uint8_t { kNeedle, kProbe };
@@ -103,7 +103,7 @@ class LiveAttempt {
   void set_parameters(std::vector<std::string> settings);
   /// An operator of `training` moves the needle, after the hand has gone to where it begins; the view's is_performing
   /// says how long.
-  void perform(std::unique_ptr<Operator> the_operator);
+  void perform(std::unique_ptr<tasks::Operator> the_operator);
   /// Ends the attempt and scores it. Without a single tick it fails.
   void finish();
 
@@ -113,4 +113,4 @@ class LiveAttempt {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -4,30 +4,30 @@
 #include <utility>
 
 #include "haptics/closed_loop/closed_loop.h"
-#include "telemetry/tick_pose.h"
 #include "tasks/hand.h"
+#include "telemetry/tick_pose.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr double kLongestGap_s = 0.1;    // between two ticks: a longer one is time in which nobody could act
 constexpr double kLongestStep_s = 0.02;  // of a hand: a longer gap between ticks is a pause, not a motion
 
 /// The server resumed the needle while the hand was being placed, in ticks that are not recorded.
-void note_resumption(TickSample& sample) noexcept {
-  if (sample.phase == InsertionPhase::kOutside) return;
-  for (TickEvent& event : sample.events) {
-    if (event.kind != EventKind::kNone) continue;
-    event = {EventKind::kLimit, static_cast<std::uint8_t>(LimitReason::kResumedInside)};
+void note_resumption(telemetry::TickSample& sample) noexcept {
+  if (sample.phase == telemetry::InsertionPhase::kOutside) return;
+  for (telemetry::TickEvent& event : sample.events) {
+    if (event.kind != telemetry::EventKind::kNone) continue;
+    event = {telemetry::EventKind::kLimit, static_cast<std::uint8_t>(telemetry::LimitReason::kResumedInside)};
     return;
   }
 }
 
 }  // namespace
 
-HandTarget hand_target(const HandCommand& command, double server_time_s) noexcept {
-  const HandSpring spring = hand_spring(HandParams{}, command);
-  HandTarget target;
+link::HandTarget hand_target(const tasks::HandCommand& command, double server_time_s) noexcept {
+  const tasks::HandSpring spring = tasks::hand_spring(tasks::HandParams{}, command);
+  link::HandTarget target;
   target.X_PN = command.X_PN;
   target.v_P = spring.anchor_velocity_P;
   target.server_time_s = server_time_s;
@@ -35,14 +35,14 @@ HandTarget hand_target(const HandCommand& command, double server_time_s) noexcep
   target.damping_ns_per_mm = spring.damping_ns_per_mm;
   target.mass_kg = spring.mass_kg;
   target.holds_tip = true;
-  const StylusHold guiding = make_guiding_hand(0.0);  // the server knows where the tip is
+  const haptics::StylusHold guiding = haptics::make_guiding_hand(0.0);  // the server knows where the tip is
   target.turning_nmm_per_rad = guiding.turning_nmm_per_rad;
   target.turning_damping_nmms_per_rad = guiding.turning_damping_nmms_per_rad;
   target.is_rigid = command.is_rigid;
   return target;
 }
 
-LiveOperator::LiveOperator(const Performer& performer, AttemptRecord& record, const HandCommand& first,
+LiveOperator::LiveOperator(const Performer& performer, AttemptRecord& record, const tasks::HandCommand& first,
                            double longest_s)
     : performer_(&performer),
       record_(&record),
@@ -65,17 +65,17 @@ Status LiveOperator::note_interruption(double step_s, bool is_seen) {
   const bool can_act = is_seen && !was_away && step_s <= kLongestGap_s;
   if (!can_act && !idle_) {
     const char* const reason = !is_seen ? "the program did not run" : "ticks were lost";
-    idle_ = Interruption{std::min(time_s_, time_s_ - step_s + period_s_), 0.0, reason};
+    idle_ = tasks::Interruption{std::min(time_s_, time_s_ - step_s + period_s_), 0.0, reason};
   }
-  if (idle_ && was_away) idle_->reason = is_placed_anew_ ? kServerWasAway : "no tick came";
+  if (idle_ && was_away) idle_->reason = is_placed_anew_ ? tasks::kServerWasAway : "no tick came";
   if (!idle_ || !is_seen) return {};
   idle_->to_s = time_s_;
-  const Interruption ended = *std::exchange(idle_, std::nullopt);
+  const tasks::Interruption ended = *std::exchange(idle_, std::nullopt);
   interrupted_s_ += ended.to_s - ended.from_s;
   return record_->append(ended);
 }
 
-Result<double> LiveOperator::record(const TickSample& tick, bool is_seen) {
+Result<double> LiveOperator::record(const telemetry::TickSample& tick, bool is_seen) {
   server_time_s_ = tick.time_s;
   if (!has_begun_) origin_s_ = tick.time_s - offset_s_;
   view_.last = tick;
@@ -90,12 +90,12 @@ Result<double> LiveOperator::record(const TickSample& tick, bool is_seen) {
   }
   is_seated_anew_ = false;
   view_.last.time_s = time_s_;
-  view_.X_PN_device = device_pose(tick);
+  view_.X_PN_device = telemetry::device_pose(tick);
   TROCAR_TRY_STATUS(record_->append(view_.last));
   return step_s;
 }
 
-Result<bool> LiveOperator::take(const TickSample& tick) {
+Result<bool> LiveOperator::take(const telemetry::TickSample& tick) {
   TROCAR_TRY(const double step_s, record(tick, true));
   // Ticks that never arrived, because this program did not read them, were not seen either.
   view_.dt_s = std::min(step_s, kLongestStep_s);
@@ -107,25 +107,26 @@ Result<bool> LiveOperator::take(const TickSample& tick) {
   return true;
 }
 
-Status LiveOperator::take_unseen(const TickSample& tick) {
+Status LiveOperator::take_unseen(const telemetry::TickSample& tick) {
   TROCAR_TRY(const double step_s, record(tick, false));
   unseen_s_ += step_s;
   return {};
 }
 
-Status LiveOperator::note_transducer(std::span<const NumberedSample> ticks, double clock_offset_s) {
+Status LiveOperator::note_transducer(std::span<const link::NumberedSample> ticks, double clock_offset_s) {
   if (!has_begun_) return {};
-  for (const NumberedSample& numbered : ticks) {
-    const TickSample& tick = numbered.sample;
+  for (const link::NumberedSample& numbered : ticks) {
+    const telemetry::TickSample& tick = numbered.sample;
     const double at_s = tick.time_s - clock_offset_s - origin_s_;
     if (at_s < 0.0) continue;
-    TROCAR_TRY_STATUS(record_->append(TransducerSample{at_s, felt_probe(tick), tick.f_constraint_n.norm()}));
+    TROCAR_TRY_STATUS(
+        record_->append(storage::TransducerSample{at_s, telemetry::felt_probe(tick), tick.f_constraint_n.norm()}));
   }
   return {};
 }
 
-HandTarget LiveOperator::hand() const noexcept {
+link::HandTarget LiveOperator::hand() const noexcept {
   return hand_target(command_, server_time_s_ + period_s_);
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -3,12 +3,12 @@
 #include <optional>
 #include <span>
 
-#include "attempt/record/attempt_record.h"
 #include "attempt/live/performer.h"
+#include "attempt/record/attempt_record.h"
 #include "link/client/haptic_client.h"
 #include "telemetry/tick_pose.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// The operator of an attempt whose ticks come from a live server, some milliseconds late: every tick is recorded,
 /// shown to the operator, and answered with where the hand shall be next.
@@ -16,22 +16,22 @@ class LiveOperator {
  public:
   /// Performer and record must outlive it. The operator's first command, made by the caller, placed the hand.
   /// After `longest_s` of active time it is done, whatever it says.
-  LiveOperator(const Performer& performer, AttemptRecord& record, const HandCommand& first,
+  LiveOperator(const Performer& performer, AttemptRecord& record, const tasks::HandCommand& first,
                double longest_s = kLongestAttempt_s);
 
   /// Ticks come for the first time, or again after none came. `clock_offset_s`: the server's clock minus ours.
   /// `is_placed_anew`: the server was seated meanwhile and its insertion began anew; else it only was not heard.
   void begin(double clock_offset_s, bool is_placed_anew = true) noexcept;
   /// A tick of the server; its time becomes the session's. false: the operator is done.
-  Result<bool> take(const TickSample& tick);
+  Result<bool> take(const telemetry::TickSample& tick);
   /// A tick that comes too late to be answered, because this program stood still: recorded; the operator does not see
   /// it and its hand's time stands still with it.
-  Status take_unseen(const TickSample& tick);
+  Status take_unseen(const telemetry::TickSample& tick);
   /// Ticks of the transducer's server, whose clock is so far ahead of ours: recorded in the session's time. Before the
   /// needle's first tick there is no session yet.
-  Status note_transducer(std::span<const NumberedSample> ticks, double clock_offset_s);
+  Status note_transducer(std::span<const link::NumberedSample> ticks, double clock_offset_s);
   /// The answer to the last tick.
-  HandTarget hand() const noexcept;
+  link::HandTarget hand() const noexcept;
 
   double time_s() const noexcept { return time_s_; }  ///< Of the session.
   /// Of it, without interruptions: servers that were away, ticks that were lost or came too late to be answered.
@@ -40,20 +40,20 @@ class LiveOperator {
   double unseen_s() const noexcept { return unseen_s_; }  ///< while the operator did not look.
   /// Where the needle is put again when its server comes back: as it was felt, which is in its channel. The device's
   /// own grip may have swung aside of it while the server went away.
-  Pose X_PN_to_resume() const noexcept { return felt_needle(view_.last); }
-  const TickSample& last() const noexcept { return view_.last; }    ///< With the session's time.
-  const HandCommand& command() const noexcept { return command_; }  ///< The answer to it.
+  Pose X_PN_to_resume() const noexcept { return telemetry::felt_needle(view_.last); }
+  const telemetry::TickSample& last() const noexcept { return view_.last; }  ///< With the session's time.
+  const tasks::HandCommand& command() const noexcept { return command_; }    ///< The answer to it.
 
  private:
   /// Records a tick; gives the time since the last one. Unseen: the operator does not answer it.
-  Result<double> record(const TickSample& tick, bool is_seen);
+  Result<double> record(const telemetry::TickSample& tick, bool is_seen);
   /// Records an interruption that ends with the tick under way.
   Status note_interruption(double step_s, bool is_seen);
 
   const Performer* performer_;
   AttemptRecord* record_;
-  HandCommand command_;
-  OperatorView view_;
+  tasks::HandCommand command_;
+  tasks::OperatorView view_;
   double period_s_;
   double longest_s_;
   double offset_s_ = 0.0;
@@ -62,7 +62,7 @@ class LiveOperator {
   double paused_s_ = 0.0;
   double unseen_s_ = 0.0;
   double interrupted_s_ = 0.0;
-  std::optional<Interruption> idle_;  ///< Under way.
+  std::optional<tasks::Interruption> idle_;  ///< Under way.
   double server_time_s_ = 0.0;
   bool has_begun_ = false;
   bool is_seated_anew_ = false, is_placed_anew_ = false;
@@ -70,6 +70,6 @@ class LiveOperator {
 
 /// A command as a server's hand takes it: the in-process hand (training/hand.h), which holds the tip. `server_time_s`:
 /// when it is meant for.
-HandTarget hand_target(const HandCommand& command, double server_time_s) noexcept;
+link::HandTarget hand_target(const tasks::HandCommand& command, double server_time_s) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -6,7 +6,7 @@
 
 #include "attempt/record/attempt_record.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 /// An operator as it was named: the text after the colon, if any, is its speed or its session.
@@ -42,7 +42,7 @@ Result<OperatorChoice> parse_operator(std::string_view name) {
 }
 
 Result<Performer> make_replayer(const Case& the_case, const RunOptions& options) {
-  std::shared_ptr<const Session> session = options.replayed;
+  std::shared_ptr<const storage::Session> session = options.replayed;
   if (session == nullptr) {
     TROCAR_TRY(session, load_replayed(options.operator_name));
   }
@@ -51,7 +51,7 @@ Result<Performer> make_replayer(const Case& the_case, const RunOptions& options)
   if (changes.force_model.empty()) changes.force_model = options.force_model;
   Performer performer;
   TROCAR_TRY(performer.parameters, replay_parameters(*session, changes));
-  performer.the_operator = make_replay(session->samples, session->fired);
+  performer.the_operator = tasks::make_replay(session->samples, session->fired);
   performer.rate_hz = session->info.rate_hz;
   performer.has_own_rate = true;
   performer.force_model = session->info.force_model;
@@ -60,16 +60,16 @@ Result<Performer> make_replayer(const Case& the_case, const RunOptions& options)
 }
 
 Result<Performer> make_named(const Case& the_case, const RunOptions& options) {
-  const OperatorCase what{the_case.plan.line_P, the_case.needle.is_biopsy, options.seed};
+  const tasks::OperatorCase what{the_case.plan.line_P, the_case.needle.is_biopsy, options.seed};
   const std::string& force_model = the_case.task.force_model;
   TROCAR_TRY(const OperatorChoice choice, parse_operator(options.operator_name));
   switch (choice.kind) {
     case OperatorChoice::Kind::kExpert:
-      return Performer{make_expert(what), options.rate_hz, false, force_model};
+      return Performer{tasks::make_expert(what), options.rate_hz, false, force_model};
     case OperatorChoice::Kind::kNovice:
-      return Performer{make_novice(what), options.rate_hz, false, force_model};
+      return Performer{tasks::make_novice(what), options.rate_hz, false, force_model};
     case OperatorChoice::Kind::kConstantVelocity:
-      return Performer{make_constant_velocity(what, choice.speed_mm_per_s), options.rate_hz, false, force_model};
+      return Performer{tasks::make_constant_velocity(what, choice.speed_mm_per_s), options.rate_hz, false, force_model};
     case OperatorChoice::Kind::kReplay:
       break;
   }
@@ -89,16 +89,16 @@ Result<Performer> make_performer(const Case& the_case, const RunOptions& options
   return performer;
 }
 
-Result<std::shared_ptr<const Session>> load_replayed(std::string_view operator_name) {
+Result<std::shared_ptr<const storage::Session>> load_replayed(std::string_view operator_name) {
   TROCAR_TRY(const OperatorChoice choice, parse_operator(operator_name));
-  if (choice.kind != OperatorChoice::Kind::kReplay) return std::shared_ptr<const Session>();
-  TROCAR_TRY(Session session, load_session(choice.session));
+  if (choice.kind != OperatorChoice::Kind::kReplay) return std::shared_ptr<const storage::Session>();
+  TROCAR_TRY(storage::Session session, storage::load_session(choice.session));
   if (session.samples.empty())
     return fail("the session was cut off before its first tick", choice.session, "name another one");
-  return std::make_shared<const Session>(std::move(session));
+  return std::make_shared<const storage::Session>(std::move(session));
 }
 
-std::string recorded_preset(const SessionInfo& info) {
+std::string recorded_preset(const storage::SessionInfo& info) {
   if (!info.device_preset.empty()) return info.device_preset;
   // An older program kept the words alone: "premium, simulated: …" or "virtual:premium, …, through trocar-hapticd …".
   constexpr std::string_view kSimulated = ", simulated: ";
@@ -109,7 +109,7 @@ std::string recorded_preset(const SessionInfo& info) {
 
 RunOptions options_of(const Performer& performer, RunOptions options) {
   if (performer.replayed == nullptr) return options;
-  const SessionInfo& info = performer.replayed->info;
+  const storage::SessionInfo& info = performer.replayed->info;
   options.seed = info.seed;
   options.rate_hz = info.rate_hz;
   if (!options.is_other_patient_meant) options.patient_seed = info.patient_seed;
@@ -117,4 +117,4 @@ RunOptions options_of(const Performer& performer, RunOptions options) {
   return options;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

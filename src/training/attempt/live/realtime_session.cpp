@@ -8,16 +8,16 @@
 #include <span>
 #include <thread>
 
-#include "core/interruption.h"
-#include "attempt/servers/detail/own_servers.h"
-#include "attempt/live/live_operator.h"
-#include "attempt/hands/probe_hand.h"
 #include "attempt/case/scene_request.h"
+#include "attempt/hands/probe_hand.h"
+#include "attempt/live/live_operator.h"
+#include "attempt/servers/detail/own_servers.h"
 #include "attempt/servers/server_seat.h"
+#include "core/interruption.h"
 #include "io/patient/patient_source.h"
 #include "link/endpoint.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 using State = ServerSeat::State;
@@ -70,7 +70,7 @@ Result<LiveServers> LiveServers::connect(const RunOptions& options, const Realti
   }
   std::vector<ServerSeat> seats;
   for (const std::string& endpoint : endpoints) {
-    ClientOptions client;
+    link::ClientOptions client;
     client.endpoint = endpoint;
     client.name = "trocar run";
     client.security = realtime.security;
@@ -140,11 +140,11 @@ Status LiveServers::move_probe(const ProbeHand& hand, LiveOperator& live) {
     probe_on_s_.reset();
     return {};
   }
-  const std::vector<NumberedSample> samples = probe.take_samples();
+  const std::vector<link::NumberedSample> samples = probe.take_samples();
   if (samples.empty()) return {};
   const double now_s = samples.back().sample.time_s;
   if (!probe_on_s_) probe_on_s_ = now_s;
-  HandTarget target = hand.at(now_s - *probe_on_s_);
+  link::HandTarget target = hand.at(now_s - *probe_on_s_);
   target.server_time_s = now_s;
   probe.set_hand(target);
   return live.note_transducer(samples, probe.view().clock_offset_s);
@@ -164,7 +164,7 @@ void LiveServers::tell(RunResult& result) {
 }
 
 /// Where the needle's hand begins, and the transducer's.
-SeatRequest needle_request(const Case& the_case, const SceneChoice& choice, const HandCommand& first,
+SeatRequest needle_request(const Case& the_case, const SceneChoice& choice, const tasks::HandCommand& first,
                            const Performer& performer) {
   SeatRequest request{scene_request(the_case, choice), hand_target(first, 0.0)};
   if (!performer.parameters.empty()) request.parameters = as_command(performer.parameters.front());
@@ -190,14 +190,14 @@ class ReplayedChanges {
 
   void send(ServerSeat& needle, std::size_t ticks) {
     while (next_ < parameters_.size() && parameters_[next_].tick <= ticks) {
-      const SetParameters command = as_command(parameters_[next_++]);
+      const link::SetParameters command = as_command(parameters_[next_++]);
       needle.adjust(command);
       needle.send(command);
     }
   }
 
  private:
-  std::span<const SessionParameters> parameters_;
+  std::span<const storage::SessionParameters> parameters_;
   std::size_t next_ = 1;  ///< The first ones are the scene's.
 };
 
@@ -209,10 +209,10 @@ Status perform(LiveServers& servers, LiveOperator& live, AttemptRecord& record, 
     TROCAR_TRY_STATUS(check_interruption());
     // Ticks first: when a look finds the server changed, all of the old one's are already taken.
     ServerSeat& needle = servers.needle();
-    const std::vector<NumberedSample> samples = needle.take_samples();
+    const std::vector<link::NumberedSample> samples = needle.take_samples();
     if (!samples.empty() && !was_on) live.begin(needle.view().clock_offset_s);
     was_on = needle.state() == State::kOn && (was_on || !samples.empty());
-    for (const NumberedSample& sample : samples) {
+    for (const link::NumberedSample& sample : samples) {
       bool goes_on = true;
       if (sample.sample.time_s < samples.back().sample.time_s - kAnswered_s) {
         TROCAR_TRY_STATUS(live.take_unseen(sample.sample));
@@ -254,7 +254,7 @@ Status check_realtime(const RealtimeOptions& options) {
   if (options.endpoints.size() > 2)
     return fail_usage("an attempt has two servers at most", "--endpoint", "name the needle's and the probe's");
   for (const std::string& text : options.endpoints) {
-    TROCAR_TRY(const Endpoint endpoint, parse_endpoint(text));
+    TROCAR_TRY(const link::Endpoint endpoint, link::parse_endpoint(text));
     if (endpoint.needs_keys && !options.security)
       return fail_usage("a server on tcp:// needs keys", text, "give --keys and --server-key, or use ipc://");
   }
@@ -264,13 +264,13 @@ Status check_realtime(const RealtimeOptions& options) {
 }
 
 Status find_servers(const RealtimeOptions& options) {
-  if (options.endpoints.empty()) TROCAR_TRY_STATUS(find_server_program());
+  if (options.endpoints.empty()) TROCAR_TRY_STATUS(link::find_server_program());
   for (const std::string& endpoint : options.endpoints) {
-    ClientOptions watcher;
+    link::ClientOptions watcher;
     watcher.endpoint = endpoint;
     watcher.wants_control = false;
     watcher.security = options.security;
-    TROCAR_TRY(HapticClient client, HapticClient::connect(watcher));
+    TROCAR_TRY(link::HapticClient client, link::HapticClient::connect(watcher));
     TROCAR_TRY_STATUS(client.wait_connected(options.patience));
   }
   return {};
@@ -284,7 +284,7 @@ Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& g
   const RunOptions options = options_of(performer, given);
   const InterruptibleWork interruptible;
   TROCAR_TRY(LiveServers servers, LiveServers::connect(options, realtime, performer.rate_hz, progress));
-  const ClientView welcome = servers.needle().view();
+  const link::ClientView welcome = servers.needle().view();
   const double rate_hz = welcome.status.loop.wanted_hz;
   if (performer.has_own_rate && std::abs(rate_hz - performer.rate_hz) > kSameRate_hz)
     return fail(
@@ -292,12 +292,12 @@ Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& g
         servers.needle().endpoint(), fmt::format("start it with --rate {:.0f}", performer.rate_hz));
   performer.rate_hz = rate_hz;
 
-  OperatorView before;
+  tasks::OperatorView before;
   before.dt_s = 1.0 / rate_hz;
-  const HandCommand first = performer.the_operator->next(before);
+  const tasks::HandCommand first = performer.the_operator->next(before);
   SceneChoice choice;
   choice.force_model = performer.force_model;
-  choice.patient_source = absolute_source(options.patient_source);
+  choice.patient_source = io::absolute_source(options.patient_source);
   choice.patient_seed = options.patient_seed;
   choice.seed = options.seed;
   const ProbeHand probe_hand(*the_case.patient, the_case.plan.line_P);
@@ -323,4 +323,4 @@ Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& g
   return result;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

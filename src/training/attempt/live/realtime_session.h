@@ -8,14 +8,14 @@
 #include "attempt/offline/run_session.h"
 #include "link/client/haptic_client.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// Through which servers an attempt goes.
 struct RealtimeOptions {
   /// Of running servers, in any order: the needle's, and perhaps the probe's. None: two are started for the attempt and
   /// end with it.
   std::vector<std::string> endpoints;
-  std::optional<ClientSecurity> security;  ///< For servers on tcp.
+  std::optional<link::ClientSecurity> security;  ///< For servers on tcp.
   /// How long a server may be silent, or keep from doing what it was asked (loading a scene excepted).
   std::chrono::milliseconds patience{5000};
 };
@@ -36,4 +36,4 @@ Status find_servers(const RealtimeOptions& options);
 Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& options, const RealtimeOptions& realtime,
                                        const Progress& progress = {});
 
-}  // namespace trocar
+}  // namespace trocar::attempt

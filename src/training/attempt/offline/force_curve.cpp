@@ -3,37 +3,37 @@
 #include <algorithm>
 #include <memory>
 
-namespace trocar {
+namespace trocar::attempt {
 
-std::vector<CurvePoint> force_curve(const HapticScene& scene, const PrescribedMotion& motion) {
-  const auto state = std::make_unique<HapticState>();
+std::vector<CurvePoint> force_curve(const haptics::HapticScene& scene, const PrescribedMotion& motion) {
+  const auto state = std::make_unique<haptics::HapticState>();
   const Vec3 axis_P = motion.line_P.direction();
   std::vector<CurvePoint> curve;
   const double length_mm = motion.line_P.length_mm();
   const int count = tick_count(motion);
   curve.reserve(static_cast<std::size_t>(count));
   for (int i = 1; i <= count; ++i) {
-    const TickSample sample = tick(*state, input_at(motion, scene, i), scene).sample;
+    const telemetry::TickSample sample = haptics::tick(*state, input_at(motion, scene, i), scene).sample;
     CurvePoint point;
     point.time_s = sample.time_s;
     point.way_mm = way_mm(motion, i);
     point.tip_mm = sample.depth_mm;
     point.force_n = -sample.device_f_n.dot(axis_P);
     point.tissue = sample.tissue;
-    for (const TickEvent& event : sample.events)
-      if (event.kind == EventKind::kPuncture) point.layer = event.id;
+    for (const telemetry::TickEvent& event : sample.events)
+      if (event.kind == telemetry::EventKind::kPuncture) point.layer = event.id;
     curve.push_back(point);
     if (motion.after_mm > 0.0 && point.way_mm >= length_mm && point.tip_mm >= length_mm) break;
   }
   return curve;
 }
 
-std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, const TissueTable& tissues) {
+std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, const anatomy::TissueTable& tissues) {
   // The record may name the puncture a tick or two after the force was highest.
   constexpr std::size_t kPeakWindow = 5;
   std::vector<std::size_t> punctures;
   for (std::size_t i = 0; i < curve.size(); ++i)
-    if (curve[i].layer != kNoLayer) punctures.push_back(i);
+    if (curve[i].layer != haptics::kNoLayer) punctures.push_back(i);
 
   const auto lower = [](const CurvePoint& a, const CurvePoint& b) { return a.force_n < b.force_n; };
   std::vector<CurveEvent> events;
@@ -62,16 +62,17 @@ std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, 
   return events;
 }
 
-std::vector<PathPiece> pieces_along(const HapticScene& scene, const TissueTable& tissues, const Segment& line_P) {
+std::vector<PathPiece> pieces_along(const haptics::HapticScene& scene, const anatomy::TissueTable& tissues,
+                                    const Segment& line_P) {
   constexpr double kStep_mm = 0.05;
   std::vector<PathPiece> pieces;
   const double length_mm = line_P.length_mm();
   const auto count = static_cast<int>(length_mm / kStep_mm);
   for (int i = 0; i <= count; ++i) {
     const double s_mm = kStep_mm * i;
-    const TissueAt at = tissue_at(scene, line_P.a + s_mm * line_P.direction());
+    const haptics::TissueAt at = haptics::tissue_at(scene, line_P.a + s_mm * line_P.direction());
     if (at.tissue == 0) continue;  // rounding at the skin
-    const Label* label = at.tissue == scene.skin ? nullptr : scene.patient->label_table.find(at.label);
+    const anatomy::Label* label = at.tissue == scene.skin ? nullptr : scene.patient->label_table.find(at.label);
     const std::string tissue = tissues.tissues[at.tissue].name;
     const std::string name = label ? label->name : tissue;
     if (pieces.empty() || pieces.back().name != name)
@@ -81,4 +82,4 @@ std::vector<PathPiece> pieces_along(const HapticScene& scene, const TissueTable&
   return pieces;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "anatomy/tissue/tissue_table.h"
-#include "haptics/haptic_scene.h"
 #include "attempt/hands/prescribed_motion.h"
+#include "haptics/haptic_scene.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// What a device that is led along a path feels of the needle, at one tick.
 struct CurvePoint {
@@ -16,8 +16,8 @@ struct CurvePoint {
   double way_mm = 0.0;   ///< Device's tip past the resting skin, along the path.
   double tip_mm = 0.0;   ///< Depth of the virtual needle's tip: behind the device's by what tissue and coupling yield.
   double force_n = 0.0;  ///< On the device along the path; positive pushes the needle out.
-  std::uint8_t tissue = 0;        ///< At the needle's tip.
-  std::uint8_t layer = kNoLayer;  ///< That gave way at this tick.
+  std::uint8_t tissue = 0;                 ///< At the needle's tip.
+  std::uint8_t layer = haptics::kNoLayer;  ///< That gave way at this tick.
 };
 
 /// A layer that gave way, as the hand feels it.
@@ -44,10 +44,11 @@ struct PathPiece {
 /// Leads the device along the path, and on past its end (after_mm) until the needle's tip has arrived there, too: the
 /// tip lags behind the device by what tissue and coupling yield. Without the stylus' weight where the scene leaves it
 /// out.
-std::vector<CurvePoint> force_curve(const HapticScene& scene, const PrescribedMotion& motion);
+std::vector<CurvePoint> force_curve(const haptics::HapticScene& scene, const PrescribedMotion& motion);
 /// The layers that gave way, in order.
-std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, const TissueTable& tissues);
+std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, const anatomy::TissueTable& tissues);
 /// From the skin to the path's end.
-std::vector<PathPiece> pieces_along(const HapticScene& scene, const TissueTable& tissues, const Segment& line_P);
+std::vector<PathPiece> pieces_along(const haptics::HapticScene& scene, const anatomy::TissueTable& tissues,
+                                    const Segment& line_P);
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -7,45 +7,45 @@
 #include <cmath>
 #include <optional>
 
-#include "core/files/data_dir.h"
-#include "core/interruption.h"
-#include "core/log.h"
-#include "core/files/unfinished_output.h"
-#include "haptics/coupling/device_preset.h"
-#include "haptics/scene_options.h"
-#include "haptics/closed_loop/virtual_device.h"
-#include "haptics/tick.h"
-#include "attempt/record/attempt_record.h"
 #include "attempt/guide/needle_geometry.h"
 #include "attempt/live/performer.h"
+#include "attempt/record/attempt_record.h"
+#include "core/files/data_dir.h"
+#include "core/files/unfinished_output.h"
+#include "core/interruption.h"
+#include "core/log.h"
+#include "haptics/closed_loop/virtual_device.h"
+#include "haptics/coupling/device_preset.h"
+#include "haptics/scene_options.h"
+#include "haptics/tick.h"
 #include "tasks/hand.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
-Result<DevicePreset> find_device(const RunOptions& options) {
+Result<haptics::DevicePreset> find_device(const RunOptions& options) {
   const std::filesystem::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
-  return load_device_preset(data / "devices.toml", options.device);
+  return haptics::load_device_preset(data / "devices.toml", options.device);
 }
 
 /// One step of the device under the operator's hand and the force of the last tick.
-void move_device(VirtualDeviceState& device, double mass_kg, const HandCommand& command, const Vec3& force_P,
-                 const HapticScene& scene, double dt_s) noexcept {
+void move_device(haptics::VirtualDeviceState& device, double mass_kg, const tasks::HandCommand& command,
+                 const Vec3& force_P, const haptics::HapticScene& scene, double dt_s) noexcept {
   if (command.is_rigid) {
     device = {command.X_PN, command.v_P};
     return;
   }
-  constexpr HandParams kHand;
-  const HandSpring spring = hand_spring(kHand, command);
-  const HandHold hold{spring.anchor_P,
-                      spring.anchor_velocity_P,
-                      spring.stiffness_n_per_mm,
-                      spring.damping_ns_per_mm,
-                      spring.mass_kg,
-                      follow_rotation(kHand, device.X_PN.R(), command.X_PN.R(), dt_s)};
-  const VirtualDeviceParams params{mass_kg, scene.device.stylus_weight_n};
-  step_device(device, params, hold, force_P, scene.gravity_P, dt_s);
+  constexpr tasks::HandParams kHand;
+  const tasks::HandSpring spring = tasks::hand_spring(kHand, command);
+  const haptics::HandHold hold{spring.anchor_P,
+                               spring.anchor_velocity_P,
+                               spring.stiffness_n_per_mm,
+                               spring.damping_ns_per_mm,
+                               spring.mass_kg,
+                               tasks::follow_rotation(kHand, device.X_PN.R(), command.X_PN.R(), dt_s)};
+  const haptics::VirtualDeviceParams params{mass_kg, scene.device.stylus_weight_n};
+  haptics::step_device(device, params, hold, force_P, scene.gravity_P, dt_s);
 }
 
 /// The scenes of an attempt: one, or in a replay one for each change of parameters.
@@ -53,11 +53,11 @@ class SceneSchedule {
  public:
   struct Entry {
     std::size_t tick = 0;  ///< The first one that feels it.
-    std::shared_ptr<const HapticScene> scene;
+    std::shared_ptr<const haptics::HapticScene> scene;
     SceneParameters parameters;
   };
   static Result<SceneSchedule> make(const Case& the_case, const Performer& performer, const RunOptions& options,
-                                    const DevicePreset& device);
+                                    const haptics::DevicePreset& device);
 
   const Entry& first() const noexcept { return entries_.front(); }
   /// The scene of a tick; ticks are asked for in order.
@@ -67,36 +67,38 @@ class SceneSchedule {
   }
 
  private:
-  Status add(const Case& the_case, const SessionParameters& parameters, HapticOptions options, DeviceCapability device);
+  Status add(const Case& the_case, const storage::SessionParameters& parameters, haptics::HapticOptions options,
+             haptics::DeviceCapability device);
   std::vector<Entry> entries_;  ///< Not empty, by tick.
   std::size_t now_ = 0;
 };
 
 Result<SceneSchedule> SceneSchedule::make(const Case& the_case, const Performer& performer, const RunOptions& options,
-                                          const DevicePreset& device) {
-  HapticOptions haptics;
+                                          const haptics::DevicePreset& device) {
+  haptics::HapticOptions haptics;
   haptics.seed = options.seed;
-  apply_device_preset(device, haptics);
+  haptics::apply_device_preset(device, haptics);
   SceneSchedule schedule;
   if (performer.parameters.empty()) {
     const std::vector<std::string> force_model{"force_model=" + performer.force_model};
     TROCAR_TRY_STATUS(
         schedule.add(the_case, {0, 0.0, {}, force_model, the_case.tissues.to_toml()}, haptics, device.capability));
   }
-  for (const SessionParameters& parameters : performer.parameters)
+  for (const storage::SessionParameters& parameters : performer.parameters)
     TROCAR_TRY_STATUS(schedule.add(the_case, parameters, haptics, device.capability));
   return schedule;
 }
 
-Status SceneSchedule::add(const Case& the_case, const SessionParameters& parameters, HapticOptions options,
-                          DeviceCapability device) {
-  TROCAR_TRY_STATUS(restore_options(parameters.options, options, device));
-  TROCAR_TRY(const TissueTable tissues, parse_tissue_table(parameters.tissue_table_toml, "the parameters in force"));
+Status SceneSchedule::add(const Case& the_case, const storage::SessionParameters& parameters,
+                          haptics::HapticOptions options, haptics::DeviceCapability device) {
+  TROCAR_TRY_STATUS(haptics::restore_options(parameters.options, options, device));
+  TROCAR_TRY(const anatomy::TissueTable tissues,
+             anatomy::parse_tissue_table(parameters.tissue_table_toml, "the parameters in force"));
   Entry entry;
   entry.tick = parameters.tick;
   TROCAR_TRY(entry.scene,
-             make_haptic_scene(the_case.patient, tissues, needle_geometry(the_case.needle), device, options));
-  entry.parameters = {option_texts(*entry.scene), parameters.tissue_table_toml};
+             haptics::make_haptic_scene(the_case.patient, tissues, needle_geometry(the_case.needle), device, options));
+  entry.parameters = {haptics::option_texts(*entry.scene), parameters.tissue_table_toml};
   entries_.push_back(std::move(entry));
   return {};
 }
@@ -115,12 +117,12 @@ class TickTimes {
     constexpr double kRounding_s = 1e-9;  // of recorded times
     if (session_ == nullptr || tick == 0) return dt_s_;
     const double step_s = time_s(tick) - time_s(tick - 1);
-    return std::abs(step_s - dt_s_) < kRounding_s ? dt_s_ : std::clamp(step_s, kRounding_s, kMaxDt_s);
+    return std::abs(step_s - dt_s_) < kRounding_s ? dt_s_ : std::clamp(step_s, kRounding_s, haptics::kMaxDt_s);
   }
   /// The interruption that the tick ends; null: none.
-  const Interruption* interruption(std::size_t tick) const noexcept {
+  const tasks::Interruption* interruption(std::size_t tick) const noexcept {
     if (session_ == nullptr) return nullptr;
-    const auto found = std::ranges::find(session_->interruptions, time_s(tick), &Interruption::to_s);
+    const auto found = std::ranges::find(session_->interruptions, time_s(tick), &tasks::Interruption::to_s);
     return found == session_->interruptions.end() ? nullptr : &*found;
   }
   std::size_t most_ticks() const noexcept {
@@ -131,7 +133,7 @@ class TickTimes {
 
  private:
   double dt_s_;
-  const Session* session_;
+  const storage::Session* session_;
 };
 
 /// The closed loop, until the operator is done. Gives how many ticks it took.
@@ -140,28 +142,28 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
   const TickTimes times(performer);
   const std::size_t most_ticks = times.most_ticks();
   const SceneSchedule::Entry* before = nullptr;
-  VirtualDeviceState device;
-  HapticState state;
-  OperatorView view;
+  haptics::VirtualDeviceState device;
+  haptics::HapticState state;
+  tasks::OperatorView view;
   for (std::size_t i = 0; i < most_ticks; ++i) {
     view.time_s = times.time_s(i);
     view.dt_s = times.dt_s(i);
     if (is_interrupted()) return tl::unexpected(interruption_error("trocar run"));
-    const HandCommand command = performer.the_operator->next(view);
+    const tasks::HandCommand command = performer.the_operator->next(view);
     if (command.is_done) return i;
     const SceneSchedule::Entry& now = scenes.at(i);
-    const HapticScene& scene = *now.scene;
+    const haptics::HapticScene& scene = *now.scene;
     if (i == 0) device.X_PN = command.X_PN;
     const bool is_another_model = before != nullptr && before->scene->options.force_model != scene.options.force_model;
     if (is_another_model) state = {};  // as a server does: the insertion begins anew
     move_device(device, mass_kg, command, state.last.device_f_n, scene, view.dt_s);
-    if (const Interruption* gap = times.interruption(i)) {
-      if (gap->reason == kServerWasAway) state = {};
+    if (const tasks::Interruption* gap = times.interruption(i)) {
+      if (gap->reason == tasks::kServerWasAway) state = {};
       TROCAR_TRY_STATUS(record.append(*gap));
     }
 
     const Pose X_DS = scene.X_PD.inverse() * device.X_PN * scene.X_SN.inverse();
-    const HapticOutput output = tick(state, {view.time_s, view.dt_s, X_DS}, scene);
+    const haptics::HapticOutput output = tick(state, {view.time_s, view.dt_s, X_DS}, scene);
     view.X_PN_device = device.X_PN;
     view.last = output.sample;
     record.note(command);
@@ -176,7 +178,7 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
 }  // namespace
 
 Status check_run(const RunOptions& options) {
-  if (!options.force_model.empty()) TROCAR_TRY_STATUS(parse_force_model(options.force_model));
+  if (!options.force_model.empty()) TROCAR_TRY_STATUS(haptics::parse_force_model(options.force_model));
   if (!(options.rate_hz >= 250.0 && options.rate_hz <= 4000.0))
     return fail_usage(fmt::format("rate {} Hz is not between 250 and 4000", options.rate_hz), "--rate",
                       "choose a rate in this range");
@@ -188,7 +190,7 @@ Result<RunResult> run_session(const Case& the_case, const RunOptions& given, con
   TROCAR_TRY_STATUS(check_run(given));
   TROCAR_TRY(const Performer performer, make_performer(the_case, given));
   const RunOptions options = options_of(performer, given);
-  TROCAR_TRY(const DevicePreset device, find_device(options));
+  TROCAR_TRY(const haptics::DevicePreset device, find_device(options));
   TROCAR_TRY(SceneSchedule scenes, SceneSchedule::make(the_case, performer, options, device));
 
   const AttemptFacts facts{fmt::format("{}, simulated: {}", device.name, device.title), performer.rate_hz,
@@ -197,7 +199,7 @@ Result<RunResult> run_session(const Case& the_case, const RunOptions& given, con
   const InterruptibleWork interruptible;
   std::optional<UnfinishedOutput> unfinished;  // ends after the record, which still writes when it ends
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, options, facts));
-  unfinished.emplace(session_files(options.session));
+  unfinished.emplace(storage::session_files(options.session));
   const auto start = std::chrono::steady_clock::now();
   TROCAR_TRY(const std::size_t ticks, perform(performer, scenes, device.apparent_mass_kg, record, progress));
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
@@ -207,4 +209,4 @@ Result<RunResult> run_session(const Case& the_case, const RunOptions& given, con
   return result;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

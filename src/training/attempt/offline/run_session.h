@@ -5,13 +5,13 @@
 #include <memory>
 #include <string>
 
-#include "core/progress.h"
-#include "core/result.h"
 #include "attempt/case/prepare_case.h"
 #include "attempt/record/replay.h"
 #include "attempt/record/run_result.h"
+#include "core/progress.h"
+#include "core/result.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// Who performs the attempt, how, and where it is written.
 struct RunOptions {
@@ -24,7 +24,7 @@ struct RunOptions {
   std::uint64_t patient_seed = 1;
   std::filesystem::path session;  ///< Written here; must not exist.
   // Of a replay alone. Seeds, rate and device are its session's, whatever stands above.
-  std::shared_ptr<const Session> replayed;  ///< What the operator's name names, where it is loaded already.
+  std::shared_ptr<const storage::Session> replayed;  ///< What the operator's name names, where it is loaded already.
   ReplayChanges replay_changes;
   bool is_other_patient_meant = false;  ///< A patient with another content hash is not refused.
 };
@@ -37,4 +37,4 @@ Status check_run(const RunOptions& options);
 /// same ticks again.
 Result<RunResult> run_session(const Case& the_case, const RunOptions& options, const Progress& progress = {});
 
-}  // namespace trocar
+}  // namespace trocar::attempt

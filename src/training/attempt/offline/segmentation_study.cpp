@@ -11,7 +11,7 @@
 #include "core/random.h"
 #include "haptics/tick.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr std::size_t kPathsAtOnce = 64;  ///< Between two reports of progress.
@@ -24,14 +24,14 @@ Vec3 across(const Vec3& axis, double angle_rad) {
 
 /// Two needles, one in each scene; big, so a worker makes them once for its paths.
 struct Needles {
-  HapticState full;
-  HapticState partly;
+  haptics::HapticState full;
+  haptics::HapticState partly;
 };
 
-PathError compare_on_path(Needles& needles, const HapticScene& full, const HapticScene& partly,
+PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, const haptics::HapticScene& partly,
                           const PrescribedMotion& motion) {
-  needles.full = HapticState{};
-  needles.partly = HapticState{};
+  needles.full = haptics::HapticState{};
+  needles.partly = haptics::HapticState{};
   PathError error;
   error.line_P = motion.line_P;
   double sum2 = 0.0;
@@ -39,9 +39,9 @@ PathError compare_on_path(Needles& needles, const HapticScene& full, const Hapti
   double full2 = 0.0;
   const int count = tick_count(motion);
   for (int i = 1; i <= count; ++i) {
-    const HapticInput input = input_at(motion, full, i);
-    const HapticOutput a = tick(needles.full, input, full);
-    const HapticOutput b = tick(needles.partly, input, partly);
+    const haptics::HapticInput input = input_at(motion, full, i);
+    const haptics::HapticOutput a = haptics::tick(needles.full, input, full);
+    const haptics::HapticOutput b = haptics::tick(needles.partly, input, partly);
     if (way_mm(motion, i) <= 0.0) continue;
     const double difference_n = (a.f_D - b.f_D).norm();
     const double torque_nmm = (a.tau_D - b.tau_D).norm();
@@ -56,7 +56,7 @@ PathError compare_on_path(Needles& needles, const HapticScene& full, const Hapti
     if (difference_n <= error.max_n) continue;
     error.max_n = difference_n;
     error.worst_tissue = a.sample.tissue;
-    error.worst_ahead = tissue_at(full, a.sample.device_mm).tissue;
+    error.worst_ahead = haptics::tissue_at(full, a.sample.device_mm).tissue;
     error.worst_depth_mm = way_mm(motion, i);
   }
   const double ticks = std::max(1, error.ticks);
@@ -68,12 +68,13 @@ PathError compare_on_path(Needles& needles, const HapticScene& full, const Hapti
 
 }  // namespace
 
-VirtualPatient partly_segmented(const VirtualPatient& full, std::span<const std::string_view> tissues) {
-  VirtualPatient partly = full;
+anatomy::VirtualPatient partly_segmented(const anatomy::VirtualPatient& full,
+                                         std::span<const std::string_view> tissues) {
+  anatomy::VirtualPatient partly = full;
   partly.name += ", partly segmented";
   std::array<std::uint8_t, 256> kept{};
   partly.label_table.labels.clear();
-  for (const Label& label : full.label_table.labels) {
+  for (const anatomy::Label& label : full.label_table.labels) {
     if (std::find(tissues.begin(), tissues.end(), label.tissue) == tissues.end()) continue;
     kept[label.id] = label.id;
     partly.label_table.labels.push_back(label);
@@ -110,7 +111,7 @@ PrescribedMotion study_motion(const Segment& line_P, std::size_t number, const S
   return motion;
 }
 
-std::vector<PathError> compare_forces(const HapticScene& full, const HapticScene& partly,
+std::vector<PathError> compare_forces(const haptics::HapticScene& full, const haptics::HapticScene& partly,
                                       std::span<const PrescribedMotion> motions, const Progress& progress) {
   std::vector<PathError> errors(motions.size());
   for (std::size_t from = 0; from < motions.size(); from += kPathsAtOnce) {
@@ -149,7 +150,7 @@ StudyFigures study_figures(std::span<const PathError> errors) {
   return figures;
 }
 
-std::vector<WorstPlace> worst_places(std::span<const PathError> errors, const TissueTable& tissues) {
+std::vector<WorstPlace> worst_places(std::span<const PathError> errors, const anatomy::TissueTable& tissues) {
   std::map<std::string, WorstPlace> places;
   for (const PathError& error : errors) {
     if (!(error.max_n > 0.0)) continue;
@@ -171,4 +172,4 @@ std::vector<WorstPlace> worst_places(std::span<const PathError> errors, const Ti
   return sorted;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -8,11 +8,11 @@
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
+#include "attempt/hands/prescribed_motion.h"
 #include "core/progress.h"
 #include "haptics/haptic_scene.h"
-#include "attempt/hands/prescribed_motion.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// What stays labelled in a partly segmented patient (the study of the Luebeck group: references.md, Sci Rep 2017):
 /// bones, the liver with its lesions, the vessels. The skin is a distance, not a label, and stays too. Rib cartilage is
@@ -20,7 +20,8 @@ namespace trocar {
 inline constexpr std::string_view kPartlySegmented[] = {"bone", "liver", "liver_lesion", "vessel"};
 
 /// The same patient with only the labels of these tissues; all else is 0, felt from its HU.
-VirtualPatient partly_segmented(const VirtualPatient& full, std::span<const std::string_view> tissues);
+anatomy::VirtualPatient partly_segmented(const anatomy::VirtualPatient& full,
+                                         std::span<const std::string_view> tissues);
 
 /// `count` of `available` numbers, spread evenly over all of them, in rising order; all where there are fewer.
 std::vector<std::size_t> spread_choice(std::size_t available, std::size_t count, std::uint64_t seed);
@@ -53,7 +54,7 @@ inline constexpr double kAffectedShare = 0.07;  ///< Force JND (Pang, Tan, Durla
 
 /// Drives both scenes with the same poses along every path. Parallel over paths; the result does not depend on the
 /// number of threads. The scenes must differ in their patients only.
-std::vector<PathError> compare_forces(const HapticScene& full, const HapticScene& partly,
+std::vector<PathError> compare_forces(const haptics::HapticScene& full, const haptics::HapticScene& partly,
                                       std::span<const PrescribedMotion> motions, const Progress& progress = {});
 
 /// The figures of the study, over paths.
@@ -72,6 +73,6 @@ struct WorstPlace {
   int paths = 0;
   double mean_max_n = 0.0, max_n = 0.0;
 };
-std::vector<WorstPlace> worst_places(std::span<const PathError> errors, const TissueTable& tissues);
+std::vector<WorstPlace> worst_places(std::span<const PathError> errors, const anatomy::TissueTable& tissues);
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -8,21 +8,21 @@
 #include <utility>
 
 #include "anatomy/tissue/tissue_settings.h"
-#include "core/version.h"
 #include "attempt/live/performer.h"
+#include "core/version.h"
 #include "io/patient/patient_source.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
-SessionInfo describe(const Case& the_case, const RunOptions& options, const AttemptFacts& facts) {
-  SessionInfo info;
+storage::SessionInfo describe(const Case& the_case, const RunOptions& options, const AttemptFacts& facts) {
+  storage::SessionInfo info;
   info.program_version = kVersion;
   info.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
   info.task = the_case.task.name;
   info.task_toml = the_case.task_toml;
   info.patient_name = the_case.patient->name;
-  info.patient_source = absolute_source(options.patient_source);
+  info.patient_source = io::absolute_source(options.patient_source);
   info.patient_hash = the_case.patient->content_hash;
   info.patient_seed = options.patient_seed;
   info.operator_name = options.operator_name;
@@ -37,17 +37,17 @@ SessionInfo describe(const Case& the_case, const RunOptions& options, const Atte
   info.tissue_table_toml = table.empty() ? the_case.tissues.to_toml() : table;
   info.plan_P = {the_case.task.name + " plan", the_case.plan.line_P};
   info.is_parenchymal = the_case.is_parenchymal;
-  for (const TissueParams& tissue : the_case.tissues.tissues) info.tissue_names.push_back(tissue.name);
-  for (const LayerParams& layer : the_case.tissues.layers) info.layer_names.push_back(layer.name);
+  for (const anatomy::TissueParams& tissue : the_case.tissues.tissues) info.tissue_names.push_back(tissue.name);
+  for (const anatomy::LayerParams& layer : the_case.tissues.layers) info.layer_names.push_back(layer.name);
   info.label_names.resize(256);
-  for (const Label& label : the_case.patient->label_table.labels) info.label_names[label.id] = label.name;
+  for (const anatomy::Label& label : the_case.patient->label_table.labels) info.label_names[label.id] = label.name;
   return info;
 }
 
 /// What differs from `before`: numbers of tissues, then options.
-std::vector<std::string> changed(const TissueTable& before, const std::vector<std::string>& options_before,
-                                 const TissueTable& now, const std::vector<std::string>& options) {
-  std::vector<std::string> settings = changed_settings(before, now);
+std::vector<std::string> changed(const anatomy::TissueTable& before, const std::vector<std::string>& options_before,
+                                 const anatomy::TissueTable& now, const std::vector<std::string>& options) {
+  std::vector<std::string> settings = anatomy::changed_settings(before, now);
   for (const std::string& option : options)
     if (std::ranges::find(options_before, option) == options_before.end()) settings.push_back(option);
   return settings;
@@ -67,24 +67,25 @@ std::string preset_of_device(std::string_view device_name) {
   return device_name.starts_with(kVirtual) ? std::string(device_name.substr(kVirtual.size())) : std::string();
 }
 
-AttemptRecord::AttemptRecord(const Case& the_case, SessionInfo info, SessionWriter writer, std::size_t expected_ticks)
+AttemptRecord::AttemptRecord(const Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
+                             std::size_t expected_ticks)
     : the_case_(&the_case), info_(std::move(info)), writer_(std::move(writer)) {
   samples_.reserve(expected_ticks);
 }
 
 Result<AttemptRecord> AttemptRecord::create(const Case& the_case, const RunOptions& options,
                                             const AttemptFacts& facts) {
-  SessionInfo info = describe(the_case, options, facts);
-  TROCAR_TRY(SessionWriter writer, SessionWriter::create(options.session, info));
+  storage::SessionInfo info = describe(the_case, options, facts);
+  TROCAR_TRY(storage::SessionWriter writer, storage::SessionWriter::create(options.session, info));
   const auto expected_ticks = static_cast<std::size_t>(0.25 * kLongestAttempt_s * facts.rate_hz);
   return AttemptRecord(the_case, std::move(info), std::move(writer), expected_ticks);
 }
 
-void AttemptRecord::note(const HandCommand& command) noexcept {
+void AttemptRecord::note(const tasks::HandCommand& command) noexcept {
   if (command.has_fired && !fired_) fired_ = samples_.size();
 }
 
-Status AttemptRecord::append(const TickSample& sample) {
+Status AttemptRecord::append(const telemetry::TickSample& sample) {
   samples_.push_back(sample);
   return written(writer_.append(sample));
 }
@@ -123,9 +124,11 @@ Status AttemptRecord::record(std::size_t tick, const SceneParameters& parameters
   const bool is_same = tissues_ && parameters.options == parameters_.options &&
                        parameters.tissue_table_toml == parameters_.tissue_table_toml;
   if (is_same) return {};
-  TROCAR_TRY(TissueTable table, parse_tissue_table(parameters.tissue_table_toml, "the parameters in force"));
-  SessionParameters row{tick, samples_[tick].time_s, {}, parameters.options, parameters.tissue_table_toml};
-  row.settings = tissues_ ? changed(*tissues_, parameters_.options, table, parameters.options) : user_settings(table);
+  TROCAR_TRY(anatomy::TissueTable table,
+             anatomy::parse_tissue_table(parameters.tissue_table_toml, "the parameters in force"));
+  storage::SessionParameters row{tick, samples_[tick].time_s, {}, parameters.options, parameters.tissue_table_toml};
+  row.settings =
+      tissues_ ? changed(*tissues_, parameters_.options, table, parameters.options) : anatomy::user_settings(table);
   if (!tissues_) info_.force_model = force_model_of(parameters, info_.force_model);
   tissues_ = std::move(table);
   parameters_ = parameters;
@@ -133,12 +136,12 @@ Status AttemptRecord::record(std::size_t tick, const SceneParameters& parameters
   return written(writer_.append(parameter_rows_.back()));
 }
 
-Status AttemptRecord::append(const Interruption& interruption) {
+Status AttemptRecord::append(const tasks::Interruption& interruption) {
   interruptions_.push_back(interruption);
   return written(writer_.append(interruption));
 }
 
-Status AttemptRecord::append(const TransducerSample& sample) {
+Status AttemptRecord::append(const storage::TransducerSample& sample) {
   if (!transducer_.empty() && sample.time_s < transducer_.back().time_s + kTransducerEvery_s) return {};
   transducer_.push_back(sample);
   return written(writer_.append(sample));
@@ -146,13 +149,13 @@ Status AttemptRecord::append(const TransducerSample& sample) {
 
 RunResult AttemptRecord::score() {
   RunResult result;
-  result.outcome = score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,
-                                 the_case_->plan, samples_, fired_, interruptions_);
+  result.outcome = tasks::score_attempt(the_case_->task, *the_case_->patient, the_case_->tissues, the_case_->needle,
+                                        the_case_->plan, samples_, fired_, interruptions_);
   result.punctures = find_punctures(info_, samples_);
   result.force_model = info_.force_model;
   result.ticks = samples_.size();
   result.simulated_s = samples_.empty() ? 0.0 : samples_.back().time_s;
-  result.active_s = active_time_s(0.0, result.simulated_s, interruptions_);
+  result.active_s = tasks::active_time_s(0.0, result.simulated_s, interruptions_);
   if (has_lost_scene_ || !unknown_.empty())
     result.warnings.push_back("the server did not tell the parameters of some ticks: the session lacks a change");
   return result;
@@ -174,7 +177,7 @@ RunResult AttemptRecord::finish_unsaved() {
       "{:.1f} s and no score",
       result.simulated_s, failure.what, failure.where, saved_s);
   result.warnings.push_back(result.cut_short);
-  Session& session = result.unsaved.emplace();
+  storage::Session& session = result.unsaved.emplace();
   session.info = std::move(info_);
   session.samples = std::move(samples_);
   session.transducer = std::move(transducer_);
@@ -186,4 +189,4 @@ RunResult AttemptRecord::finish_unsaved() {
   return result;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

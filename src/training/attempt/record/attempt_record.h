@@ -5,11 +5,11 @@
 #include <string_view>
 #include <vector>
 
-#include "attempt/record/known_scenes.h"
 #include "attempt/offline/run_session.h"
+#include "attempt/record/known_scenes.h"
 #include "tasks/operator.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// What an attempt's record says of how it was made, beside case and options.
 struct AttemptFacts {
@@ -36,8 +36,8 @@ class AttemptRecord {
   static Result<AttemptRecord> create(const Case& the_case, const RunOptions& options, const AttemptFacts& facts);
 
   /// What the operator does before the next tick: fires, perhaps.
-  void note(const HandCommand& command) noexcept;
-  Status append(const TickSample& sample);
+  void note(const tasks::HandCommand& command) noexcept;
+  Status append(const telemetry::TickSample& sample);
   /// The last appended sample was made with these parameters. Recorded where they are others than before.
   Status note_parameters(const SceneParameters& parameters);
   /// The same of the scene of a server by its number. One that is not known yet is recorded later, by another call.
@@ -45,12 +45,12 @@ class AttemptRecord {
   /// Another server comes, with other numbers of scenes.
   void forget_scenes() noexcept;
   /// Before the first sample after it.
-  Status append(const Interruption& interruption);
-  const std::vector<Interruption>& interruptions() const noexcept { return interruptions_; }
+  Status append(const tasks::Interruption& interruption);
+  const std::vector<tasks::Interruption>& interruptions() const noexcept { return interruptions_; }
   /// Kept at most every kTransducerEvery_s; it has no part in the score.
-  Status append(const TransducerSample& sample);
-  const SessionInfo& info() const noexcept { return info_; }
-  const std::vector<TickSample>& samples() const noexcept { return samples_; }  ///< So far.
+  Status append(const storage::TransducerSample& sample);
+  const storage::SessionInfo& info() const noexcept { return info_; }
+  const std::vector<telemetry::TickSample>& samples() const noexcept { return samples_; }  ///< So far.
   /// The sample at which the gun was fired; it may be still to come.
   const std::optional<std::size_t>& fired() const noexcept { return fired_; }
   /// Scores, and closes the session file.
@@ -70,22 +70,23 @@ class AttemptRecord {
   Status written(Status status);
   RunResult score();
 
-  AttemptRecord(const Case& the_case, SessionInfo info, SessionWriter writer, std::size_t expected_ticks);
+  AttemptRecord(const Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
+                std::size_t expected_ticks);
 
   const Case* the_case_;
-  SessionInfo info_;
-  SessionWriter writer_;
-  std::vector<TickSample> samples_;
+  storage::SessionInfo info_;
+  storage::SessionWriter writer_;
+  std::vector<telemetry::TickSample> samples_;
   std::optional<std::size_t> fired_;
-  std::vector<TransducerSample> transducer_;  ///< Those that were kept.
-  std::vector<SessionParameters> parameter_rows_;
+  std::vector<storage::TransducerSample> transducer_;  ///< Those that were kept.
+  std::vector<storage::SessionParameters> parameter_rows_;
   std::optional<Error> write_failure_;
-  SceneParameters parameters_;          ///< Recorded last.
-  std::optional<TissueTable> tissues_;  ///< Their table; none: nothing was recorded yet.
-  std::uint64_t scene_ = 0;             ///< Of the last sample.
-  std::vector<UnknownScene> unknown_;   ///< By tick.
-  bool has_lost_scene_ = false;         ///< The parameters of some ticks were never told.
-  std::vector<Interruption> interruptions_;
+  SceneParameters parameters_;                   ///< Recorded last.
+  std::optional<anatomy::TissueTable> tissues_;  ///< Their table; none: nothing was recorded yet.
+  std::uint64_t scene_ = 0;                      ///< Of the last sample.
+  std::vector<UnknownScene> unknown_;            ///< By tick.
+  bool has_lost_scene_ = false;                  ///< The parameters of some ticks were never told.
+  std::vector<tasks::Interruption> interruptions_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -6,16 +6,16 @@
 #include <algorithm>
 
 #include "anatomy/structure_words.h"
-#include "geometry/segment.h"
 #include "attempt/guide/needle_shaft.h"
+#include "geometry/segment.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 /// The label behind an event, by its id in the session.
-const Label* find_entered(const OpenCase& open, const TickEvent& event) {
-  if (event.kind != EventKind::kEnter) return nullptr;
-  for (const Label& label : open.the_case.patient->label_table.labels)
+const anatomy::Label* find_entered(const OpenCase& open, const telemetry::TickEvent& event) {
+  if (event.kind != telemetry::EventKind::kEnter) return nullptr;
+  for (const anatomy::Label& label : open.the_case.patient->label_table.labels)
     if (label.id == event.id) return &label;
   return nullptr;
 }
@@ -23,26 +23,26 @@ const Label* find_entered(const OpenCase& open, const TickEvent& event) {
 }  // namespace
 
 Result<AttemptReplay> AttemptReplay::load(const std::filesystem::path& path, std::shared_ptr<const OpenCase> open) {
-  TROCAR_TRY(Session session, load_session(path));
+  TROCAR_TRY(storage::Session session, storage::load_session(path));
   Result<AttemptReplay> replay = of(std::move(session), std::move(open));
   if (!replay) replay.error().where = path.string();
   return replay;
 }
 
-Result<AttemptReplay> AttemptReplay::of(Session session, std::shared_ptr<const OpenCase> open) {
+Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_ptr<const OpenCase> open) {
   if (session.samples.empty()) return fail("the attempt was cut off before its first tick", {}, "start another one");
   if (session.info.patient_hash != open->the_case.patient->content_hash)
     return fail("the session is of another patient than the case", {}, "open that patient first");
   const bool was_cut_off = !session.outcome.has_value();
   if (was_cut_off) {
     const Case& the_case = open->the_case;
-    session.outcome = score_attempt(the_case.task, *the_case.patient, the_case.tissues, the_case.needle, the_case.plan,
-                                    session.samples, session.fired, session.interruptions);
+    session.outcome = tasks::score_attempt(the_case.task, *the_case.patient, the_case.tissues, the_case.needle,
+                                           the_case.plan, session.samples, session.fired, session.interruptions);
   }
   return AttemptReplay(std::move(session), std::move(open), was_cut_off);
 }
 
-AttemptReplay::AttemptReplay(Session session, std::shared_ptr<const OpenCase> open, bool was_cut_off)
+AttemptReplay::AttemptReplay(storage::Session session, std::shared_ptr<const OpenCase> open, bool was_cut_off)
     : session_(std::move(session)), open_(std::move(open)), was_cut_off_(was_cut_off) {
   if (session_.fired) shot_ = make_gun_shot(open_->the_case, session_.samples[*session_.fired]);
   find_moments();
@@ -52,10 +52,10 @@ AttemptReplay::AttemptReplay(Session session, std::shared_ptr<const OpenCase> op
                    [](const ReplayMoment& a, const ReplayMoment& b) { return a.time_s < b.time_s; });
 }
 
-const TickSample& AttemptReplay::at(double time_s) const noexcept {
+const telemetry::TickSample& AttemptReplay::at(double time_s) const noexcept {
   const auto& samples = session_.samples;
   const auto next = std::upper_bound(samples.begin(), samples.end(), time_s,
-                                     [](double t, const TickSample& sample) { return t < sample.time_s; });
+                                     [](double t, const telemetry::TickSample& sample) { return t < sample.time_s; });
   return next == samples.begin() ? samples.front() : *(next - 1);
 }
 
@@ -66,10 +66,11 @@ std::vector<Vec3> AttemptReplay::shaft_at(double time_s) const {
 std::optional<Pose> AttemptReplay::transducer_at(double time_s) const noexcept {
   const auto& moments = session_.transducer;
   if (moments.empty()) return std::nullopt;
-  const auto next = std::upper_bound(moments.begin(), moments.end(), time_s,
-                                     [](double t, const TransducerSample& sample) { return t < sample.time_s; });
+  const auto next =
+      std::upper_bound(moments.begin(), moments.end(), time_s,
+                       [](double t, const storage::TransducerSample& sample) { return t < sample.time_s; });
   if (next == moments.begin()) return moments.front().X_PT;
-  const TransducerSample& before = *(next - 1);
+  const storage::TransducerSample& before = *(next - 1);
   if (next == moments.end() || next->time_s - before.time_s > kTransducerGap_s) return before.X_PT;
   const double share = (time_s - before.time_s) / (next->time_s - before.time_s);
   const Eigen::Quaterniond from(before.X_PT.R()), to(next->X_PT.R());
@@ -78,26 +79,26 @@ std::optional<Pose> AttemptReplay::transducer_at(double time_s) const noexcept {
 
 void AttemptReplay::find_moments() {
   using Kind = ReplayMoment::Kind;
-  for (const TickSample& sample : session_.samples) {
-    for (const TickEvent& event : sample.events) {
-      if (event.kind == EventKind::kPuncture) {
-        const std::string text = event_text(session_.info, event);
+  for (const telemetry::TickSample& sample : session_.samples) {
+    for (const telemetry::TickEvent& event : sample.events) {
+      if (event.kind == telemetry::EventKind::kPuncture) {
+        const std::string text = storage::event_text(session_.info, event);
         moments_.push_back(
-            {sample.time_s, Kind::kPuncture, "through the " + layer_words(text.substr(text.find(':') + 1))});
+            {sample.time_s, Kind::kPuncture, "through the " + anatomy::layer_words(text.substr(text.find(':') + 1))});
       }
-      const Label* label = find_entered(*open_, event);
+      const anatomy::Label* label = find_entered(*open_, event);
       if (label == nullptr) continue;
-      const bool is_risk = find_risk(open_->the_case.task, *label) != nullptr;
-      moments_.push_back(
-          {sample.time_s, is_risk ? Kind::kRisk : Kind::kEnter,
-           is_risk ? "touched: " + structure_words(label->name) : "into the " + structure_words(label->name)});
+      const bool is_risk = tasks::find_risk(open_->the_case.task, *label) != nullptr;
+      moments_.push_back({sample.time_s, is_risk ? Kind::kRisk : Kind::kEnter,
+                          is_risk ? "touched: " + anatomy::structure_words(label->name)
+                                  : "into the " + anatomy::structure_words(label->name)});
     }
   }
-  for (const SessionParameters& change : session_.parameters)
+  for (const storage::SessionParameters& change : session_.parameters)
     if (change.tick > 0)
       moments_.push_back(
           {change.time_s, Kind::kChange, fmt::format("parameters: {}", fmt::join(change.settings, ", "))});
-  for (const Interruption& gap : session_.interruptions)
+  for (const tasks::Interruption& gap : session_.interruptions)
     moments_.push_back({gap.to_s, Kind::kInterruption,
                         fmt::format("interrupted for {:.1f} s: {}", gap.to_s - gap.from_s, gap.reason)});
   if (shot_) moments_.push_back({shot_->time_s, Kind::kFired, shot_words(*shot_)});
@@ -117,7 +118,7 @@ void AttemptReplay::find_worst() {
   const Vec3 direction_P = plan_P.direction();
   double farthest_mm = -1.0;
   double farthest_s = 0.0;
-  for (const TickSample& sample : session_.samples) {
+  for (const telemetry::TickSample& sample : session_.samples) {
     if (sample.depth_mm < kInside_mm) continue;
     const double beside_mm = distance_to_line_mm(plan_P.a, direction_P, sample.tip_mm);
     if (beside_mm <= farthest_mm) continue;
@@ -129,12 +130,13 @@ void AttemptReplay::find_worst() {
     return;
   }
   constexpr double kFelt_n = 0.05;  // rounds to 0.1 N
-  const auto strongest = std::max_element(
-      session_.samples.begin(), session_.samples.end(),
-      [](const TickSample& a, const TickSample& b) { return axial_resistance_n(a) < axial_resistance_n(b); });
-  if (axial_resistance_n(*strongest) < kFelt_n) return;
+  const auto strongest = std::max_element(session_.samples.begin(), session_.samples.end(),
+                                          [](const telemetry::TickSample& a, const telemetry::TickSample& b) {
+                                            return telemetry::axial_resistance_n(a) < telemetry::axial_resistance_n(b);
+                                          });
+  if (telemetry::axial_resistance_n(*strongest) < kFelt_n) return;
   worst_ = {strongest->time_s, ReplayMoment::Kind::kWorst,
-            fmt::format("{:.1f} N, and the skin was not pierced", axial_resistance_n(*strongest))};
+            fmt::format("{:.1f} N, and the skin was not pierced", telemetry::axial_resistance_n(*strongest))};
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

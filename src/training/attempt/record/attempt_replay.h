@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "attempt/guide/gun_shot.h"
 #include "attempt/case/open_case.h"
+#include "attempt/guide/gun_shot.h"
+#include "core/result.h"
 #include "storage/session_file.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// A moment of a recorded attempt that is worth a look.
 struct ReplayMoment {
@@ -29,14 +29,14 @@ class AttemptReplay {
   static Result<AttemptReplay> load(const std::filesystem::path& session, std::shared_ptr<const OpenCase> open);
 
   /// The same of a session in memory, whose file could not be written to the end.
-  static Result<AttemptReplay> of(Session session, std::shared_ptr<const OpenCase> open);
+  static Result<AttemptReplay> of(storage::Session session, std::shared_ptr<const OpenCase> open);
 
-  const Session& session() const noexcept { return session_; }
-  const Outcome& outcome() const noexcept { return *session_.outcome; }
+  const storage::Session& session() const noexcept { return session_; }
+  const tasks::Outcome& outcome() const noexcept { return *session_.outcome; }
   bool was_cut_off() const noexcept { return was_cut_off_; }
   double duration_s() const noexcept { return session_.samples.back().time_s; }
   /// The tick under way at a time; the ends beyond them.
-  const TickSample& at(double time_s) const noexcept;
+  const telemetry::TickSample& at(double time_s) const noexcept;
   std::vector<Vec3> shaft_at(double time_s) const;
   /// X_PT between the recorded moments; across a gap of more than kTransducerGap_s it stays where it was. Empty: the
   /// session tells nothing of a transducer.
@@ -51,11 +51,11 @@ class AttemptReplay {
   const std::optional<ReplayMoment>& worst() const noexcept { return worst_; }
 
  private:
-  AttemptReplay(Session session, std::shared_ptr<const OpenCase> open, bool was_cut_off);
+  AttemptReplay(storage::Session session, std::shared_ptr<const OpenCase> open, bool was_cut_off);
   void find_moments();
   void find_worst();
 
-  Session session_;
+  storage::Session session_;
   std::shared_ptr<const OpenCase> open_;
   bool was_cut_off_;
   std::optional<GunShot> shot_;
@@ -63,4 +63,4 @@ class AttemptReplay {
   std::optional<ReplayMoment> worst_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

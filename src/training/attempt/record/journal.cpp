@@ -3,13 +3,13 @@
 #include "config/json.h"
 #include "core/files/atomic_file.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr int kVersion = 1;
 
-Json to_json(const SeatState& state) {
+config::Json to_json(const SeatState& state) {
   const CaseOptions& options = state.choice.options;
   return {{"version", kVersion},
           {"session", state.session.string()},
@@ -25,7 +25,7 @@ Json to_json(const SeatState& state) {
 }
 
 /// Nothing where a field is missing or of another kind.
-std::optional<SeatState> from_json(const Json& json) {
+std::optional<SeatState> from_json(const config::Json& json) {
   const auto text = [&](const char* key) -> std::optional<std::string> {
     return json.contains(key) && json[key].is_string() ? std::optional(json[key].get<std::string>()) : std::nullopt;
   };
@@ -47,13 +47,13 @@ std::optional<SeatState> from_json(const Json& json) {
   options.profile = text("profile").value_or("");
   options.seed = number("seed");
   if (json.contains("overrides") && json["overrides"].is_array())
-    for (const Json& one : json["overrides"])
+    for (const config::Json& one : json["overrides"])
       if (one.is_string()) options.overrides.push_back(one.get<std::string>());
   return state;
 }
 
 std::optional<SeatState> load_state(const fs::path& file) {
-  const Result<Json> json = load_json(file);
+  const Result<config::Json> json = config::load_json(file);
   return json ? from_json(*json) : std::nullopt;
 }
 
@@ -77,7 +77,7 @@ Status Journal::begin(const SeatState& state) {
   file_ = file_of(folder_, state);
   TROCAR_TRY(lock_, FileLock::try_lock(fs::path(file_).replace_extension(".lock")));
   if (!lock_) return fail("the attempt runs in another trainer", file_.string(), "choose another name");
-  return write_file_atomically(file_, json_text(to_json(state)));
+  return write_file_atomically(file_, config::json_text(to_json(state)));
 }
 
 void Journal::clear() noexcept {
@@ -114,4 +114,4 @@ bool Journal::forget(const SeatState& state) const noexcept {
   return was_there;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <optional>
 
+#include "attempt/case/open_case.h"
 #include "core/files/file_lock.h"
 #include "core/result.h"
-#include "attempt/case/open_case.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// What a seat was doing, kept in a file so that a crash loses nothing.
 struct SeatState {
@@ -38,4 +38,4 @@ class Journal {
   std::optional<FileLock> lock_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

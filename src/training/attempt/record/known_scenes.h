@@ -7,7 +7,7 @@
 
 #include "link/messages.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// The parameters of a scene.
 struct SceneParameters {
@@ -18,7 +18,7 @@ struct SceneParameters {
 /// The scenes that a client has asked of a server, by number, as the server's replies describe them.
 class KnownScenes {
  public:
-  void learn(const Reply& reply) {
+  void learn(const link::Reply& reply) {
     if (!reply.is_done || reply.scene == 0) return;
     newest_ = reply.scene;
     scenes_[newest_] = {reply.options, reply.tissues_toml};
@@ -40,4 +40,4 @@ class KnownScenes {
   std::uint64_t newest_ = 0;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr double kBytesATick = 11e6 / 60.0 / 1000.0;  // measured: 11 MB a minute at 1000 Hz
@@ -54,4 +54,4 @@ std::string RecordingRoom::banner() const {
                      duration_words(left_s()), folder_.string());
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

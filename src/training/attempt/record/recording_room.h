@@ -7,7 +7,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// How long an attempt can still be recorded on a disk. A session takes 11 MB a minute at 1000 ticks a second.
 class RecordingRoom {
@@ -37,4 +37,4 @@ class RecordingRoom {
   double bytes_a_second_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -9,7 +9,7 @@
 #include "link/messages.h"
 #include "storage/session_file.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// What a replay changes on purpose: the recorded motion in other tissue. Nothing in it: as recorded.
 struct ReplayChanges {
@@ -24,17 +24,18 @@ struct ReplayChanges {
 
 /// The parameters of a replay: those of the session with the changes, by tick; the first at tick 0. Errors: a number
 /// that a table does not take, a session with a damaged table.
-Result<std::vector<SessionParameters>> replay_parameters(const Session& session, const ReplayChanges& changes);
+Result<std::vector<storage::SessionParameters>> replay_parameters(const storage::Session& session,
+                                                                  const ReplayChanges& changes);
 
 /// The case of a session: its task, needle, plan, and the tissues in force at its first tick. Errors: another patient
 /// (exit status 2) unless that is meant, a task or needle that this program does not know.
-Result<Case> restore_case(std::shared_ptr<const VirtualPatient> patient, const Session& session,
-                          const SessionParameters& first, bool is_other_patient_meant = false);
+Result<Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const storage::Session& session,
+                          const storage::SessionParameters& first, bool is_other_patient_meant = false);
 
 /// Whether the session was recorded in that patient. Error (exit status 2): it was not.
-Status check_patient(const Session& session, const VirtualPatient& patient);
+Status check_patient(const storage::Session& session, const anatomy::VirtualPatient& patient);
 
 /// What a server is asked for so that a loaded scene gets these parameters.
-SetParameters as_command(const SessionParameters& parameters);
+link::SetParameters as_command(const storage::SessionParameters& parameters);
 
-}  // namespace trocar
+}  // namespace trocar::attempt

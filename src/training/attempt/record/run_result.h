@@ -8,7 +8,7 @@
 #include "realtime/loop_statistics.h"
 #include "storage/session_file.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// A layer that gave way.
 struct PunctureRecord {
@@ -22,17 +22,17 @@ struct PunctureRecord {
 struct ServerFigures {
   std::string tool;  ///< "needle", "probe"
   std::string endpoint;
-  std::string server;  ///< "trocar-hapticd 0.1.0"
-  std::string device;  ///< "virtual:premium"
-  std::string grant;   ///< What the system granted it, in words.
-  LoopSummary loop;    ///< Since the server was started.
+  std::string server;          ///< "trocar-hapticd 0.1.0"
+  std::string device;          ///< "virtual:premium"
+  std::string grant;           ///< What the system granted it, in words.
+  realtime::LoopSummary loop;  ///< Since the server was started.
   std::uint64_t ticks_received = 0;
   std::uint64_t ticks_missing = 0;  ///< Gaps in their numbers.
   int returns = 0;                  ///< How often it was lost and found again.
 };
 
 struct RunResult {
-  Outcome outcome;
+  tasks::Outcome outcome;
   std::vector<PunctureRecord> punctures;
   std::string force_model;  ///< At the first tick.
   std::size_t ticks = 0;
@@ -43,10 +43,11 @@ struct RunResult {
   std::vector<std::string> warnings;
   std::string cut_short;  ///< Why the attempt was ended before the operator ended it; empty: it was not.
   /// All that was recorded, where the file could not take it to the end: the file lacks the last of it and the score.
-  std::optional<Session> unsaved;
+  std::optional<storage::Session> unsaved;
 };
 
 /// What went through the skin, in order.
-std::vector<PunctureRecord> find_punctures(const SessionInfo& info, const std::vector<TickSample>& samples);
+std::vector<PunctureRecord> find_punctures(const storage::SessionInfo& info,
+                                           const std::vector<telemetry::TickSample>& samples);
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr const char* kLog = "log";
@@ -40,7 +40,7 @@ Result<OwnServer> OwnServer::start(const OwnServerOptions& options) {
 }
 
 Status OwnServer::restart() {
-  TROCAR_TRY(const std::filesystem::path program, find_server_program());
+  TROCAR_TRY(const std::filesystem::path program, link::find_server_program());
   const std::string flights = options_.flight_folder.empty() ? "." : options_.flight_folder.string();
   const std::vector<std::string> arguments{"--device",         options_.device,
                                            "--tool",           options_.tool,
@@ -49,8 +49,8 @@ Status OwnServer::restart() {
                                            "--endpoint",       endpoint_,
                                            "--flight-records", flights};
   process_.reset();
-  TROCAR_TRY(ServerProcess process, ServerProcess::start(program, arguments, *folder_ / kLog));
-  process_ = std::make_unique<ServerProcess>(std::move(process));
+  TROCAR_TRY(link::ServerProcess process, link::ServerProcess::start(program, arguments, *folder_ / kLog));
+  process_ = std::make_unique<link::ServerProcess>(std::move(process));
   return {};
 }
 
@@ -63,4 +63,4 @@ Status OwnServer::check() {
               "trocar-hapticd", last);
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

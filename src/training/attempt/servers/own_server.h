@@ -9,7 +9,7 @@
 #include "core/files/temporary_folder.h"
 #include "link/client/server_process.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// How a trocar-hapticd of our own is started.
 struct OwnServerOptions {
@@ -45,7 +45,7 @@ class OwnServer {
   OwnServerOptions options_;
   std::string endpoint_;
   std::unique_ptr<TemporaryFolder> folder_;
-  std::unique_ptr<ServerProcess> process_;
+  std::unique_ptr<link::ServerProcess> process_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -8,7 +8,7 @@
 
 #include "attempt/live/live_attempt.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,4 +73,4 @@ bool can_share_seat(const std::string& needle_spec, const std::string& probe_spe
   return hardware_of(needle_spec) != hardware_of(probe_spec);
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

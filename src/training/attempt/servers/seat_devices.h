@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// A device that a tool may be moved by.
 struct SeatDevice {
@@ -22,4 +22,4 @@ std::string seat_device_title(const std::string& spec);
 /// device is one piece of hardware in one hand.
 bool can_share_seat(const std::string& needle_spec, const std::string& probe_spec);
 
-}  // namespace trocar
+}  // namespace trocar::attempt

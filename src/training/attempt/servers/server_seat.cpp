@@ -7,7 +7,7 @@
 
 #include "haptics/gate/safety_gate.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 using State = ServerSeat::State;
@@ -16,30 +16,30 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPlaceAgain{20}, kResetAgain{200};
 constexpr double kLongestLook_s = 0.05;  // a longer hole between two looks is this program's own
 /// A client that went away without a word keeps control for so long.
-constexpr double kControlPatience_s = kControlLost_s + 1.0;
+constexpr double kControlPatience_s = link::kControlLost_s + 1.0;
 constexpr double kSagging_mm =
     10.0;  // without forces the hand alone bears the stylus' weight: 0.5 N at 0.6 N/mm, tilted
 constexpr double kSettled_mm = 0.5;
 constexpr double kSettledAxis = 0.02;    // rad
 constexpr double kMostSettling_s = 1.0;  // inside tissue it comes to rest elsewhere
 
-Vec3 axis_of(const TickSample& sample) noexcept {
+Vec3 axis_of(const telemetry::TickSample& sample) noexcept {
   const auto& [w, x, y, z] = sample.device_rotation_wxyz;
   return Eigen::Quaterniond(w, x, y, z).toRotationMatrix().col(2);
 }
 
-bool has_fault(const ServerStatus& status) {
-  return !status.fault.empty() && status.fault != to_string(GateFault::kNone);
+bool has_fault(const link::ServerStatus& status) {
+  return !status.fault.empty() && status.fault != to_string(telemetry::GateFault::kNone);
 }
 
 }  // namespace
 
-Result<ServerSeat> ServerSeat::connect(const ClientOptions& options, milliseconds patience) {
-  TROCAR_TRY(HapticClient client, HapticClient::connect(options));
+Result<ServerSeat> ServerSeat::connect(const link::ClientOptions& options, milliseconds patience) {
+  TROCAR_TRY(link::HapticClient client, link::HapticClient::connect(options));
   return ServerSeat(std::move(client), options.endpoint, patience);
 }
 
-ServerSeat::ServerSeat(HapticClient client, std::string endpoint, milliseconds patience)
+ServerSeat::ServerSeat(link::HapticClient client, std::string endpoint, milliseconds patience)
     : client_(std::move(client)), endpoint_(std::move(endpoint)), patience_(patience), looked_(Clock::now()) {}
 
 void ServerSeat::hold(const SeatRequest& request) {
@@ -53,13 +53,13 @@ void ServerSeat::place_at(const Pose& X_PN) {
   if (request_) request_->place.X_PN = X_PN;
 }
 
-void ServerSeat::adjust(const SetParameters& parameters) {
+void ServerSeat::adjust(const link::SetParameters& parameters) {
   if (request_) request_->parameters = parameters;
 }
 
-std::vector<Reply> ServerSeat::take_replies() {
-  std::vector<Reply> replies = client_.take_replies();
-  for (const Reply& reply : replies) scenes_.learn(reply);
+std::vector<link::Reply> ServerSeat::take_replies() {
+  std::vector<link::Reply> replies = client_.take_replies();
+  for (const link::Reply& reply : replies) scenes_.learn(reply);
   return replies;
 }
 
@@ -137,7 +137,8 @@ Result<State> ServerSeat::look() {
 /// The motors of a device in a person's hand are not turned on again behind their back.
 bool ServerSeat::is_stall_to_forgive() const {
   const std::string& fault = view_.status.fault;
-  const bool is_stall = fault == to_string(GateFault::kLoopStalled) || fault == to_string(GateFault::kLoopSlow);
+  const bool is_stall =
+      fault == to_string(telemetry::GateFault::kLoopStalled) || fault == to_string(telemetry::GateFault::kLoopSlow);
   return request_ && !request_->is_in_real_hand && is_stall;
 }
 
@@ -149,8 +150,8 @@ Status ServerSeat::wait_for_control() {
 
 Status ServerSeat::reset_fault() {
   if (Clock::now() - reset_ > kResetAgain) {
-    client_.send(ServerCommand::kStop);  // forces come on when the tool is in its place
-    client_.send(ServerCommand::kResetFault);
+    client_.send(link::ServerCommand::kStop);  // forces come on when the tool is in its place
+    client_.send(link::ServerCommand::kResetFault);
     reset_ = Clock::now();
   }
   return check_time("the fault of the safety gate did not go away", "look at the server's log");
@@ -171,11 +172,11 @@ Status ServerSeat::connecting() {
 }
 
 Result<bool> ServerSeat::is_answered() {
-  for (const Reply& reply : take_replies()) {
+  for (const link::Reply& reply : take_replies()) {
     if (reply.request != asked_) continue;
     if (reply.is_done) return true;
     // A command that found the server gone is no refusal: when it is back it will be asked again.
-    const ClientView now = client_.view();
+    const link::ClientView now = client_.view();
     if (now.is_connected && now.welcome.session == session_)
       return fail(reply.text, endpoint_, "see the log of the server");
     return false;
@@ -208,26 +209,26 @@ void ServerSeat::load_parameters() {
   is_adjusting_ = true;
 }
 
-bool ServerSeat::is_near(const TickSample& sample, double most_mm) const {
+bool ServerSeat::is_near(const telemetry::TickSample& sample, double most_mm) const {
   return (sample.device_mm - request_->place.X_PN.p()).norm() < most_mm;
 }
 
 Status ServerSeat::placing() {
   TROCAR_TRY_STATUS(check_time("the device did not go where the operator's hand put it",
                                "scripted operators move simulated devices alone: trocar-hapticd --device virtual"));
-  const std::optional<TickSample> newest = client_.newest();
+  const std::optional<telemetry::TickSample> newest = client_.newest();
   if (!newest) return {};
-  HandTarget place = request_->place;
+  link::HandTarget place = request_->place;
   place.server_time_s = newest->time_s;
   if (request_->is_in_real_hand) {
-    asked_ = client_.send(ServerCommand::kStart);
+    asked_ = client_.send(link::ServerCommand::kStart);
     started_server_s_ = 0.0;
     enter(State::kStarting);
     return {};
   }
   if (was_placed_ && newest->time_s != placed_newest_s_ && is_near(*newest, kSagging_mm)) {
     client_.set_hand(place);
-    asked_ = client_.send(ServerCommand::kStart);
+    asked_ = client_.send(link::ServerCommand::kStart);
     started_server_s_ = 0.0;
     enter(State::kStarting);
   } else if (Clock::now() - placed_ > kPlaceAgain) {
@@ -247,7 +248,7 @@ Status ServerSeat::starting() {
   }
   if (state_ != State::kStarting) return {};
   const bool is_told_since = started_server_s_ > 0.0 && view_.status.server_time_s > started_server_s_;
-  if (is_told_since && view_.status.gate_mode == to_string(GateMode::kOn)) {
+  if (is_told_since && view_.status.gate_mode == to_string(telemetry::GateMode::kOn)) {
     enter(State::kSettling);
     return {};
   }
@@ -255,7 +256,7 @@ Status ServerSeat::starting() {
 }
 
 void ServerSeat::settling() {
-  const std::optional<TickSample> newest = client_.newest();
+  const std::optional<telemetry::TickSample> newest = client_.newest();
   const bool is_settled =
       request_->is_in_real_hand || (newest && is_near(*newest, kSettled_mm) &&
                                     (axis_of(*newest) - request_->place.X_PN.R().col(2)).norm() < kSettledAxis);
@@ -265,17 +266,17 @@ void ServerSeat::settling() {
   enter(State::kOn);
 }
 
-std::vector<NumberedSample> ServerSeat::take_samples() {
+std::vector<link::NumberedSample> ServerSeat::take_samples() {
   if (state_ != State::kOn) return {};
-  std::vector<NumberedSample> samples = client_.take_samples();
+  std::vector<link::NumberedSample> samples = client_.take_samples();
   if (client_.view().welcome.session != session_) {
     // Ticks of the server that came back may be among them: ours are those that follow on without a gap.
     std::uint64_t next = last_tick_ ? *last_tick_ + 1 : 0;
     const auto end = std::find_if(samples.begin(), samples.end(),
-                                  [&next](const NumberedSample& sample) { return sample.tick != next++; });
+                                  [&next](const link::NumberedSample& sample) { return sample.tick != next++; });
     samples.erase(end, samples.end());
   }
-  for (const NumberedSample& sample : samples) {
+  for (const link::NumberedSample& sample : samples) {
     if (last_tick_ && sample.tick > *last_tick_) missing_ += sample.tick - *last_tick_ - 1;
     last_tick_ = sample.tick;
   }
@@ -284,7 +285,7 @@ std::vector<NumberedSample> ServerSeat::take_samples() {
 
 void ServerSeat::stop() {
   constexpr milliseconds kStopPatience{500};
-  if (view_.is_connected) static_cast<void>(client_.ask(ServerCommand::kStop, kStopPatience));
+  if (view_.is_connected) static_cast<void>(client_.ask(link::ServerCommand::kStop, kStopPatience));
   view_ = client_.view();
 }
 
@@ -302,4 +303,4 @@ ServerFigures ServerSeat::figures() const {
   return figures;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

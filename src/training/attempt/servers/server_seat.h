@@ -7,22 +7,22 @@
 #include <utility>
 #include <vector>
 
-#include "core/progress.h"
 #include "attempt/record/known_scenes.h"
 #include "attempt/record/run_result.h"
+#include "core/progress.h"
 #include "link/client/haptic_client.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// What a server is to hold, and where the hand begins: at rest, and rigid until the forces are on.
 struct SeatRequest {
-  LoadScene scene;
-  HandTarget place;
+  link::LoadScene scene;
+  link::HandTarget place;
   /// A person's hand holds the device: it is not put anywhere, the forces come on where it is.
   bool is_in_real_hand = false;
   bool resets_fault = false;  ///< A fault that the gate has latched before we came is forgotten.
   /// What differs from the scene's numbers; in force before the forces come on. Nothing in it: not sent.
-  SetParameters parameters = {};
+  link::SetParameters parameters = {};
 };
 
 /// One haptic server as an attempt sees it. It connects, has the scene loaded, puts the hand in its place, turns the
@@ -34,15 +34,15 @@ class ServerSeat {
  public:
   enum class State { kConnecting, kReady, kLoading, kPlacing, kStarting, kSettling, kOn };
 
-  static Result<ServerSeat> connect(const ClientOptions& options, std::chrono::milliseconds patience);
+  static Result<ServerSeat> connect(const link::ClientOptions& options, std::chrono::milliseconds patience);
 
   /// What to hold from now on; until then a connected server stays in kReady. Where the hand begins may be told anew.
   void hold(const SeatRequest& request);
   void place_at(const Pose& X_PN);
   /// What SeatRequest::parameters is from now on, for the next time that the scene is loaded; sends nothing.
-  void adjust(const SetParameters& parameters);
+  void adjust(const link::SetParameters& parameters);
   /// What was last sent with the scene.
-  const SetParameters& adjusted() const noexcept { return adjusted_; }
+  const link::SetParameters& adjusted() const noexcept { return adjusted_; }
   /// What the server said where it refused them: the seat goes on without. Once.
   std::optional<std::string> take_refusal() { return std::exchange(refusal_, std::nullopt); }
 
@@ -52,20 +52,20 @@ class ServerSeat {
   double loading() const noexcept { return view_.status.loading; }  ///< 0..1
 
   /// Ticks since the forces were on, or since the last call. None from before that, or of a server that came back.
-  std::vector<NumberedSample> take_samples();
+  std::vector<link::NumberedSample> take_samples();
   std::uint64_t ticks_missing() const noexcept { return missing_; }  ///< Among them, so far.
   /// Only in kOn.
-  void set_hand(const HandTarget& target) { client_.set_hand(target); }
+  void set_hand(const link::HandTarget& target) { client_.set_hand(target); }
   void stop();
   /// Only in kOn, and when a seat is given up: a command beside those of the seat itself. Gives its number.
-  std::uint32_t send(decltype(Command::what) what) { return client_.send(std::move(what)); }
-  std::vector<Reply> take_replies();                              ///< Only in kOn.
+  std::uint32_t send(decltype(link::Command::what) what) { return client_.send(std::move(what)); }
+  std::vector<link::Reply> take_replies();                        ///< Only in kOn.
   const KnownScenes& scenes() const noexcept { return scenes_; }  ///< Of the server that is there now.
   void frame_drawn() { client_.frame_drawn(); }                   ///< See HapticClient.
   /// The newest tick, whatever the state: where the device is while it is not ours.
-  std::optional<TickSample> newest() const { return client_.newest(); }
+  std::optional<telemetry::TickSample> newest() const { return client_.newest(); }
 
-  const ClientView& view() const noexcept { return view_; }
+  const link::ClientView& view() const noexcept { return view_; }
   const std::string& endpoint() const noexcept { return endpoint_; }
   int returns() const noexcept { return returns_; }  ///< Of a server that went away,
   int stalls() const noexcept { return stalls_; }    ///< or that had stood still.
@@ -74,7 +74,7 @@ class ServerSeat {
  private:
   using Clock = std::chrono::steady_clock;
 
-  ServerSeat(HapticClient client, std::string endpoint, std::chrono::milliseconds patience);
+  ServerSeat(link::HapticClient client, std::string endpoint, std::chrono::milliseconds patience);
   void enter(State state);
   void count_time();
   bool is_stall_to_forgive() const;
@@ -89,13 +89,13 @@ class ServerSeat {
   Status placing();
   Status starting();
   void settling();
-  bool is_near(const TickSample& sample, double most_mm) const;
+  bool is_near(const telemetry::TickSample& sample, double most_mm) const;
 
-  HapticClient client_;
+  link::HapticClient client_;
   std::string endpoint_;
   std::chrono::milliseconds patience_;
   std::optional<SeatRequest> request_;
-  ClientView view_;
+  link::ClientView view_;
   State state_ = State::kConnecting;
   Clock::time_point looked_;
   double in_state_s_ = 0.0;  ///< As far as look() was called meanwhile.
@@ -109,11 +109,11 @@ class ServerSeat {
   double placed_newest_s_ = 0.0;   ///< Time of the newest tick when the hand was placed.
   double started_server_s_ = 0.0;  ///< Server's time when it said that it would start.
   KnownScenes scenes_;
-  SetParameters adjusted_;
+  link::SetParameters adjusted_;
   bool is_adjusting_ = false;  ///< In kLoading: the scene is there, its parameters are asked for.
   std::optional<std::string> refusal_;
   int returns_ = 0, stalls_ = 0;
   double without_control_s_ = 0.0;  ///< Of in_state_s_, when the server first said so; 0: it did not.
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

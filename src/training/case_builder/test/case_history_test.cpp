@@ -10,7 +10,7 @@
 #include "case_builder/test/made_draft.h"
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 namespace {
 
 using testing::made_draft;
@@ -167,4 +167,4 @@ TEST(CaseEdits, EntryZoneIsBroughtOntoTheSkin) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::case_builder

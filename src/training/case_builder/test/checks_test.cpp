@@ -7,7 +7,7 @@
 #include "case_builder/force_preview.h"
 #include "case_builder/test/made_draft.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 namespace {
 
 using namespace testing;
@@ -39,7 +39,7 @@ TEST(Checks, SoundDraftHasNoError) {
 TEST(Checks, LabelsOutsideTheBodyAreNamedWithAPlace) {
   CaseDraft draft = made_draft();
   auto imported = std::make_shared<ImportedPatient>(*draft.imported);
-  LabelGrid& labels = imported->patient.labels;
+  volume::LabelGrid& labels = imported->patient.labels;
   std::size_t painted = 0;
   for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
     if (imported->patient.skin_distance_mm.voxels[n] < 5.0F || painted > 500) continue;
@@ -107,7 +107,7 @@ TEST(ForcePreview, HasTheLayersOfThePathInOrder) {
   const auto preview = preview_forces(draft, patients.of(draft), biopsy_gun(), shipped_tissues());
   ASSERT_TRUE(preview) << preview.error().text();
   std::vector<std::string> layers;
-  for (const CurveEvent& event : preview->events) layers.push_back(event.layer);
+  for (const attempt::CurveEvent& event : preview->events) layers.push_back(event.layer);
   EXPECT_EQ(layers, (std::vector<std::string>{"skin", "muscle", "liver_capsule"}));
   ASSERT_FALSE(preview->pieces.empty());
   EXPECT_EQ(preview->pieces.front().name, "skin");
@@ -128,4 +128,4 @@ TEST(DraftPatient, IsTheImportUntilLabelsAreEdited) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::case_builder

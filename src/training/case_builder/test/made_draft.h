@@ -7,24 +7,24 @@
 
 namespace trocar::testing {
 
-inline Task liver_biopsy() {
-  return *load_task(data_dir() / "tasks", "liver-biopsy");
+inline tasks::Task liver_biopsy() {
+  return *tasks::load_task(data_dir() / "tasks", "liver-biopsy");
 }
-inline Needle biopsy_gun() {
-  return *load_needle(data_dir() / "needles.toml", "biopsy-18g");
+inline tasks::Needle biopsy_gun() {
+  return *tasks::load_needle(data_dir() / "needles.toml", "biopsy-18g");
 }
-inline TissueTable shipped_tissues() {
-  return *load_tissue_table(data_dir() / "tissues.toml");
+inline anatomy::TissueTable shipped_tissues() {
+  return *anatomy::load_tissue_table(data_dir() / "tissues.toml");
 }
 
 /// A draft of the patient made of shapes, as an import would give it, without surfaces.
-inline CaseDraft made_draft(const BoxPatient& box = {}) {
-  auto imported = std::make_shared<ImportedPatient>();
+inline case_builder::CaseDraft made_draft(const BoxPatient& box = {}) {
+  auto imported = std::make_shared<case_builder::ImportedPatient>();
   imported->patient = box.make();
-  imported->patient.content_hash = hash_patient(imported->patient);
-  imported->statistics = label_statistics(imported->patient);
+  imported->patient.content_hash = anatomy::hash_patient(imported->patient);
+  imported->statistics = anatomy::label_statistics(imported->patient);
   imported->source = "box";
-  CaseDraft draft;
+  case_builder::CaseDraft draft;
   draft.name = "box";
   draft.description = "a patient made of shapes";
   draft.provenance = {"made for a test"};
@@ -35,7 +35,7 @@ inline CaseDraft made_draft(const BoxPatient& box = {}) {
 }
 
 /// From the right side straight to the lesion, the notch's middle in it.
-inline Segment good_path(const Needle& needle) {
+inline Segment good_path(const tasks::Needle& needle) {
   const Vec3 lesion_P = BoxPatient{}.lesion_centre_P;
   return {{-100.0, lesion_P.y(), lesion_P.z()}, lesion_P - needle.notch_middle_mm() * Vec3::UnitX()};
 }

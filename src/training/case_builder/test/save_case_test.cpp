@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "attempt/case/prepare_case.h"
 #include "case_builder/case_edits.h"
 #include "case_builder/case_history.h"
 #include "case_builder/import_case.h"
@@ -11,11 +12,10 @@
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 #include "core/testing/test_data.h"
-#include "attempt/case/prepare_case.h"
 #include "io/image/image_file.h"
 #include "io/patient/patient_folder.h"
 
-namespace trocar {
+namespace trocar::case_builder {
 namespace {
 namespace fs = std::filesystem;
 using namespace testing;
@@ -42,8 +42,9 @@ TEST(SaveCase, WhatIsSavedIsOpenedTheSame) {
   ASSERT_TRUE(opened) << opened.error().text();
   CaseDraft same = *opened;
   same.imported = draft.imported;  // volumes are compared by their hash
-  EXPECT_TRUE(is_same_draft(same, draft)) << task_to_toml(same.task, Task{}) << task_to_toml(draft.task, Task{});
-  EXPECT_EQ(opened->imported->patient.content_hash, hash_patient(*patients.of(draft)));
+  EXPECT_TRUE(is_same_draft(same, draft))
+      << tasks::task_to_toml(same.task, tasks::Task{}) << tasks::task_to_toml(draft.task, tasks::Task{});
+  EXPECT_EQ(opened->imported->patient.content_hash, anatomy::hash_patient(*patients.of(draft)));
 }
 
 TEST(SaveCase, SavedCaseIsReadyForAnAttemptWithItsOwnTask) {
@@ -51,18 +52,19 @@ TEST(SaveCase, SavedCaseIsReadyForAnAttemptWithItsOwnTask) {
   DraftPatient patients;
   const CaseDraft draft = full_draft();
   ASSERT_TRUE(save_case(draft, patients, {folder.path() / "case", false}));
-  auto patient = load_patient(folder.path() / "case");
+  auto patient = io::load_patient(folder.path() / "case");
   ASSERT_TRUE(patient) << patient.error().text();
-  CaseOptions options;
+  attempt::CaseOptions options;
   options.task.clear();
   options.patient_folder = (folder.path() / "case").string();
-  const auto the_case = prepare_case(std::make_shared<const VirtualPatient>(std::move(*patient)), options);
+  const auto the_case =
+      attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(*patient)), options);
   ASSERT_TRUE(the_case) << the_case.error().text();
   EXPECT_EQ(the_case->plan.line_P.a, good_path(biopsy_gun()).a);
   EXPECT_GT(the_case->plan.organ_path_mm, 10.0);
   EXPECT_EQ(the_case->task.target_label, "lesion");
   options.patient_folder = "abdomen";
-  EXPECT_FALSE(load_tables(options));
+  EXPECT_FALSE(attempt::load_tables(options));
 }
 
 TEST(SaveCase, NothingIsOverwrittenWithoutBeingTold) {
@@ -98,13 +100,13 @@ TEST(SaveCase, NothingToSaveIsSaid) {
 
 TEST(ImportCase, BuildsACaseFromFiles) {
   const TemporaryFolder folder;
-  VirtualPatient patient = BoxPatient{}.make();
+  anatomy::VirtualPatient patient = BoxPatient{}.make();
   for (std::size_t n = 0; n < patient.ct.voxels.size(); ++n)
     patient.ct.voxels[n] = patient.skin_distance_mm.voxels[n] < 0.0F ? std::int16_t{60} : std::int16_t{-1000};
-  LabelGrid labels = patient.labels;
+  volume::LabelGrid labels = patient.labels;
   for (std::uint8_t& id : labels.voxels) id = id == 3 ? 1 : id == 4 ? 2 : 0;
-  ASSERT_TRUE(write_image(patient.ct, folder.path() / "ct.nrrd"));
-  ASSERT_TRUE(write_image(labels, folder.path() / "labels.nii.gz"));
+  ASSERT_TRUE(io::write_image(patient.ct, folder.path() / "ct.nrrd"));
+  ASSERT_TRUE(io::write_image(labels, folder.path() / "labels.nii.gz"));
   ASSERT_TRUE(write_file_atomically(folder.path() / "names.toml", "[labels]\n1 = \"liver\"\n2 = \"livertumor1\"\n"));
   std::vector<std::string> steps;
   const auto draft = import_case({(folder.path() / "ct.nrrd").string(),
@@ -165,4 +167,4 @@ TEST(ImportCase, BrokenFilesGiveOneLineAndLeaveTheDraft) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::case_builder

@@ -10,7 +10,7 @@
 #include "report/session_analysis.h"
 #include "report/svg_plot.h"
 
-namespace trocar::report_detail {
+namespace trocar::report::detail {
 namespace {
 
 constexpr std::size_t kMostInsertions = 3;  ///< Drawn; more would not be told apart.
@@ -21,7 +21,7 @@ std::string figure(const std::string& body, std::string_view caption) {
 }
 
 /// Stripes of the deepest insertion's tissues; each tissue is named where it is met first and where it is wide.
-std::vector<PlotBand> tissue_bands(const Session& session, const Insertion& insertion, double depth_mm) {
+std::vector<PlotBand> tissue_bands(const storage::Session& session, const Insertion& insertion, double depth_mm) {
   constexpr double kWide = 0.12;  // of the axis
   std::vector<PlotBand> bands;
   std::set<std::uint8_t> named;
@@ -39,7 +39,7 @@ std::vector<PlotBand> tissue_bands(const Session& session, const Insertion& inse
   return bands;
 }
 
-std::vector<PlotBand> phase_bands(const Session& session) {
+std::vector<PlotBand> phase_bands(const storage::Session& session) {
   std::vector<PlotBand> bands;
   if (session.samples.empty()) return bands;
   const double narrow_s = (session.samples.back().time_s - session.samples.front().time_s) / kPlotPixels;
@@ -53,10 +53,10 @@ std::vector<PlotBand> phase_bands(const Session& session) {
   return bands;
 }
 
-std::vector<PlotLine> event_lines(const Session& session, bool are_named) {
+std::vector<PlotLine> event_lines(const storage::Session& session, bool are_named) {
   std::vector<PlotLine> lines;
   for (const Puncture& puncture : find_punctures(session))
-    lines.push_back({puncture.time_s, are_named ? words(layer_words(puncture.layer)) : std::string()});
+    lines.push_back({puncture.time_s, are_named ? words(anatomy::layer_words(puncture.layer)) : std::string()});
   if (session.fired && *session.fired < session.samples.size())
     lines.push_back({session.samples[*session.fired].time_s, are_named ? "fired" : ""});
   std::sort(lines.begin(), lines.end(), [](const PlotLine& a, const PlotLine& b) { return a.x < b.x; });
@@ -64,14 +64,14 @@ std::vector<PlotLine> event_lines(const Session& session, bool are_named) {
 }
 
 template <class Value>
-PlotSeries over_time(const Session& session, const char* name, const char* style, const Value& value) {
+PlotSeries over_time(const storage::Session& session, const char* name, const char* style, const Value& value) {
   PlotSeries series{name, style, {}};
   series.points.reserve(session.samples.size());
-  for (const TickSample& sample : session.samples) series.points.emplace_back(sample.time_s, value(sample));
+  for (const telemetry::TickSample& sample : session.samples) series.points.emplace_back(sample.time_s, value(sample));
   return series;
 }
 
-Plot time_plot(const Session& session, bool are_events_named) {
+Plot time_plot(const storage::Session& session, bool are_events_named) {
   Plot plot;
   plot.x_title = "time (s)";
   plot.bands = phase_bands(session);
@@ -100,7 +100,7 @@ std::string tissue_style(const std::string& tissue) {
   return style;
 }
 
-std::string force_depth_figure(const Session& session) {
+std::string force_depth_figure(const storage::Session& session) {
   std::vector<Insertion> insertions = find_insertions(session);
   if (insertions.empty()) return "<p>The needle did not enter the body: there is no insertion to plot.</p>";
   const auto deeper = [&](const Insertion& a, const Insertion& b) {
@@ -121,7 +121,7 @@ std::string force_depth_figure(const Session& session) {
   for (std::size_t n = 0; n < std::min(insertions.size(), kMostInsertions); ++n) {
     PlotSeries series{kNames[n], kStyles[n], {}};
     for (std::size_t i = insertions[n].first; i <= insertions[n].deepest; ++i)
-      series.points.emplace_back(session.samples[i].depth_mm, axial_resistance_n(session.samples[i]));
+      series.points.emplace_back(session.samples[i].depth_mm, telemetry::axial_resistance_n(session.samples[i]));
     plot.series.push_back(std::move(series));
   }
   std::vector<Puncture> punctures = find_punctures(session);
@@ -131,14 +131,14 @@ std::string force_depth_figure(const Session& session) {
     const Point2 peak(puncture.depth_mm, puncture.resistance_n);
     if (!peak.allFinite()) continue;
     plot.markers.push_back(
-        {peak, fmt::format("{} {} N", words(layer_words(puncture.layer)), number_text(peak.y(), 2))});
+        {peak, fmt::format("{} {} N", words(anatomy::layer_words(puncture.layer)), number_text(peak.y(), 2))});
   }
   return figure(to_svg(plot),
                 "What tip and shaft meet along the needle on the way in; positive pushes the needle out. Each marked "
                 "peak is a layer giving way. Stripes: tissue at the tip.");
 }
 
-std::string puncture_table(const Session& session) {
+std::string puncture_table(const storage::Session& session) {
   const std::vector<Puncture> punctures = find_punctures(session);
   if (punctures.empty()) return "<p>No layer gave way.</p>";
   std::string out =
@@ -146,26 +146,27 @@ std::string puncture_table(const Session& session) {
       "<th>Resistance (N)</th><th>Drop (N)</th></tr></thead><tbody>";
   for (const Puncture& puncture : punctures)
     out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
-                       escape(words(layer_words(puncture.layer))), number_text(puncture.time_s, 2),
+                       escape(words(anatomy::layer_words(puncture.layer))), number_text(puncture.time_s, 2),
                        number_text(puncture.depth_mm, 1), number_text(puncture.layer_force_n, 2),
                        number_text(puncture.resistance_n, 2), number_text(puncture.drop_n, 2));
   return out + "</tbody></table>";
 }
 
-std::string force_time_figure(const Session& session) {
+std::string force_time_figure(const storage::Session& session) {
   Plot axial = time_plot(session, true);
   axial.description = "Resistance along the needle over time, by component";
   axial.y_title = "along the needle (N)";
   axial.height = 250.0;
-  axial.series = {over_time(session, "pre-puncture", "c-pre", [](const TickSample& s) { return -s.f_prepuncture_n; }),
-                  over_time(session, "friction", "c-friction", [](const TickSample& s) { return -s.f_friction_n; }),
-                  over_time(session, "cutting", "c-cutting", [](const TickSample& s) { return -s.f_cutting_n; }),
-                  over_time(session, "stick", "c-stick", [](const TickSample& s) { return -s.f_stick_n; })};
+  axial.series = {
+      over_time(session, "pre-puncture", "c-pre", [](const telemetry::TickSample& s) { return -s.f_prepuncture_n; }),
+      over_time(session, "friction", "c-friction", [](const telemetry::TickSample& s) { return -s.f_friction_n; }),
+      over_time(session, "cutting", "c-cutting", [](const telemetry::TickSample& s) { return -s.f_cutting_n; }),
+      over_time(session, "stick", "c-stick", [](const telemetry::TickSample& s) { return -s.f_stick_n; })};
   if (session.info.force_model != "insertion") {
+    axial.series.push_back(over_time(session, "tip proxy", "c-tip",
+                                     [](const telemetry::TickSample& s) { return -s.f_tip_proxy_n.dot(s.axis); }));
     axial.series.push_back(
-        over_time(session, "tip proxy", "c-tip", [](const TickSample& s) { return -s.f_tip_proxy_n.dot(s.axis); }));
-    axial.series.push_back(
-        over_time(session, "body proxies", "c-body", [](const TickSample& s) { return -s.f_body_axial_n; }));
+        over_time(session, "body proxies", "c-body", [](const telemetry::TickSample& s) { return -s.f_body_axial_n; }));
   }
 
   Plot norms = time_plot(session, false);
@@ -173,29 +174,30 @@ std::string force_time_figure(const Session& session) {
   norms.y_title = "magnitude (N)";
   norms.height = 220.0;
   norms.series = {
-      over_time(session, "model total", "c-total", [](const TickSample& s) { return s.f_total_n.norm(); }),
+      over_time(session, "model total", "c-total", [](const telemetry::TickSample& s) { return s.f_total_n.norm(); }),
       over_time(session, "across the path", "c-constraint",
-                [](const TickSample& s) { return s.f_constraint_n.norm(); }),
-      over_time(session, "to the device", "c-device", [](const TickSample& s) { return s.device_f_n.norm(); })};
+                [](const telemetry::TickSample& s) { return s.f_constraint_n.norm(); }),
+      over_time(session, "to the device", "c-device",
+                [](const telemetry::TickSample& s) { return s.device_f_n.norm(); })};
   return "<figure>" + to_svg(axial) + "</figure>" +
          figure(to_svg(norms) + phase_key(),
                 "Above: positive pushes the needle out. Dotted lines: punctures and the shot of the biopsy gun. Stick: "
                 "static friction while the needle is at rest (not part of paper A's model).");
 }
 
-std::string motion_figure(const Session& session) {
+std::string motion_figure(const storage::Session& session) {
   Plot depth = time_plot(session, false);
   depth.description = "Needle depth over time";
   depth.y_title = "depth (mm)";
   depth.width = 460.0;
   depth.height = 190.0;
-  depth.series = {over_time(session, "depth", "c-depth", [](const TickSample& s) { return s.depth_mm; })};
+  depth.series = {over_time(session, "depth", "c-depth", [](const telemetry::TickSample& s) { return s.depth_mm; })};
   Plot velocity = depth;
   velocity.description = "Axial needle velocity over time";
   velocity.y_title = "velocity inward (mm/s)";
-  velocity.series = {
-      over_time(session, "velocity", "c-velocity", [](const TickSample& s) { return s.axial_velocity_mm_s; })};
+  velocity.series = {over_time(session, "velocity", "c-velocity",
+                               [](const telemetry::TickSample& s) { return s.axial_velocity_mm_s; })};
   return "<div class=\"pair\"><figure>" + to_svg(depth) + "</figure><figure>" + to_svg(velocity) + "</figure></div>";
 }
 
-}  // namespace trocar::report_detail
+}  // namespace trocar::report::detail

@@ -7,7 +7,7 @@
 
 #include "anatomy/structure_words.h"
 
-namespace trocar::report_detail {
+namespace trocar::report::detail {
 
 std::string escape(std::string_view text) {
   std::string out;
@@ -49,7 +49,7 @@ std::string number_text(double value, int decimals) {
 }
 
 std::string words(std::string_view name) {
-  std::string out = structure_words(name);
+  std::string out = anatomy::structure_words(name);
   std::replace(out.begin(), out.end(), '-', ' ');
   return out;
 }
@@ -84,4 +84,4 @@ double text_width(std::string_view text, double font_px) {
   return kMeanAdvance * font_px * static_cast<double>(letters);
 }
 
-}  // namespace trocar::report_detail
+}  // namespace trocar::report::detail

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace trocar::report_detail {
+namespace trocar::report::detail {
 
 /// Text for HTML and for attribute values; control characters become spaces.
 std::string escape(std::string_view text);
@@ -21,4 +21,4 @@ std::string base64(std::string_view bytes);
 /// About how wide a text is (px) at a font size: enough to place labels.
 double text_width(std::string_view text, double font_px);
 
-}  // namespace trocar::report_detail
+}  // namespace trocar::report::detail

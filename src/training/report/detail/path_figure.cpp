@@ -11,7 +11,7 @@
 #include "report/session_analysis.h"
 #include "slices/slice_picture.h"
 
-namespace trocar::report_detail {
+namespace trocar::report::detail {
 namespace {
 
 constexpr int kPicturePx = 440;
@@ -31,7 +31,7 @@ struct PathDrawing {
   double field_mm = kField_mm;
 };
 
-PathDrawing collect(const Session& session) {
+PathDrawing collect(const storage::Session& session) {
   PathDrawing drawing;
   const Segment& plan = session.info.plan_P.line_P;
   if (plan.length_mm() > 0.0) drawing.planned_P = plan;
@@ -46,7 +46,7 @@ PathDrawing collect(const Session& session) {
   }
   if (session.fired && *session.fired < session.samples.size()) deepest = session.fired;
   if (deepest) {
-    const TickSample& sample = session.samples[*deepest];
+    const telemetry::TickSample& sample = session.samples[*deepest];
     drawing.shaft_P = Segment{sample.tip_mm - (sample.depth_mm + kShaftOutside_mm) * sample.axis, sample.tip_mm};
   }
   if (drawing.planned_P)
@@ -62,7 +62,7 @@ PathDrawing collect(const Session& session) {
 /// Draws points of P over one picture. Pixel centres of the picture lie at halves of the SVG's units.
 class Overlay {
  public:
-  explicit Overlay(const SlicePicture& picture) : picture_(picture) {}
+  explicit Overlay(const slices::SlicePicture& picture) : picture_(picture) {}
 
   Point2 at(const Vec3& p_P) const { return picture_.to_pixel(p_P) + Point2(0.5, 0.5); }
 
@@ -107,20 +107,20 @@ class Overlay {
   const std::string& svg() const { return svg_; }
 
  private:
-  const SlicePicture& picture_;
+  const slices::SlicePicture& picture_;
   std::string svg_;
 };
 
 struct SliceText {
-  SliceOrientation orientation;
+  slices::SliceOrientation orientation;
   const char* title;
   const char* letters[4];  ///< Left, right, top, bottom of the picture.
 };
-constexpr SliceText kSlices[] = {{SliceOrientation::kAxial, "Axial", {"R", "L", "A", "P"}},
-                                 {SliceOrientation::kCoronal, "Coronal", {"R", "L", "H", "F"}},
-                                 {SliceOrientation::kSagittal, "Sagittal", {"A", "P", "H", "F"}}};
+constexpr SliceText kSlices[] = {{slices::SliceOrientation::kAxial, "Axial", {"R", "L", "A", "P"}},
+                                 {slices::SliceOrientation::kCoronal, "Coronal", {"R", "L", "H", "F"}},
+                                 {slices::SliceOrientation::kSagittal, "Sagittal", {"A", "P", "H", "F"}}};
 
-std::string draw_overlay(const SlicePicture& picture, const SliceText& text, const PathDrawing& drawing) {
+std::string draw_overlay(const slices::SlicePicture& picture, const SliceText& text, const PathDrawing& drawing) {
   Overlay overlay(picture);
   for (const auto& [style, width] : {std::pair{"halo", 7.0}, std::pair{"own", 3.5}})
     for (const auto& line : drawing.own_P) overlay.line(line, style, width);
@@ -144,19 +144,20 @@ std::string draw_overlay(const SlicePicture& picture, const SliceText& text, con
 }
 
 /// One slice as a figure; figures share the row's width by their size in mm, so that all have one scale.
-std::string slice_figure(const VirtualPatient& patient, const SliceText& text, const PathDrawing& drawing) {
-  SliceOptions options;
+std::string slice_figure(const anatomy::VirtualPatient& patient, const SliceText& text, const PathDrawing& drawing) {
+  slices::SliceOptions options;
   options.size_px = kPicturePx;
   options.label_opacity = 0.12;
   options.field_mm = drawing.field_mm;
   options.center_P = drawing.center_P;
-  const SlicePicture picture = make_slice_picture(patient, text.orientation, drawing.through_P, options);
+  const slices::SlicePicture picture =
+      slices::make_slice_picture(patient, text.orientation, drawing.through_P, options);
   const double width_mm = picture.image.columns * picture.plane.step_u_P.norm();
   return fmt::format(
       "<figure style=\"flex:{0:.0f} 1 0\"><svg viewBox=\"0 0 {1} {2}\" role=\"img\" aria-label=\"{3} CT slice with the "
       "needle path\"><image width=\"{1}\" height=\"{2}\" href=\"data:image/png;base64,{4}\"/>{5}</svg>"
       "<figcaption>{3}</figcaption></figure>",
-      width_mm, picture.image.columns, picture.image.rows, text.title, base64(encode_png(picture.image)),
+      width_mm, picture.image.columns, picture.image.rows, text.title, base64(io::encode_png(picture.image)),
       draw_overlay(picture, text, drawing));
 }
 
@@ -179,7 +180,7 @@ std::string path_key() {
 
 }  // namespace
 
-std::string path_figure(const Session& session, const VirtualPatient* patient) {
+std::string path_figure(const storage::Session& session, const anatomy::VirtualPatient* patient) {
   if (patient == nullptr || patient->ct.empty())
     return fmt::format("<p>Patient folder “{}” not found: the path cannot be shown in its CT.</p>",
                        escape(session.info.patient_name));
@@ -191,7 +192,7 @@ std::string path_figure(const Session& session, const VirtualPatient* patient) {
   const PathDrawing drawing = collect(session);
   out += "<div class=\"slices\">";
   for (const SliceText& text : kSlices) out += slice_figure(*patient, text, drawing);
-  const Window window = SliceOptions{}.window;
+  const slices::Window window = slices::SliceOptions{}.window;
   return out + "</div>" + path_key() +
          fmt::format(
              "<p class=\"note\">Slices through the {} at ({}, {}, {}) mm (LPS), paths projected onto them. "
@@ -201,4 +202,4 @@ std::string path_figure(const Session& session, const VirtualPatient* patient) {
              window.center_hu);
 }
 
-}  // namespace trocar::report_detail
+}  // namespace trocar::report::detail

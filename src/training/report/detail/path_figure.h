@@ -5,9 +5,9 @@
 #include "anatomy/patient.h"
 #include "storage/session_file.h"
 
-namespace trocar::report_detail {
+namespace trocar::report::detail {
 
 /// Planned and own path over three CT slices through the target; says so where there is no patient to show.
-std::string path_figure(const Session& session, const VirtualPatient* patient);
+std::string path_figure(const storage::Session& session, const anatomy::VirtualPatient* patient);
 
-}  // namespace trocar::report_detail
+}  // namespace trocar::report::detail

@@ -8,7 +8,7 @@
 #include "report/detail/force_plots.h"
 #include "report/detail/html.h"
 
-namespace trocar::report_detail {
+namespace trocar::report::detail {
 namespace {
 
 constexpr double kLowShare = 0.5;  ///< Of a part's points; below it the bar is shown as weak.
@@ -55,8 +55,8 @@ std::string with_unit(double value, const std::string& unit) {
   return short_number(value) + (is_attached ? "" : " ") + escape(unit);
 }
 
-std::string part_row(const ScorePart& part) {
-  if (is_deduction(part))
+std::string part_row(const tasks::ScorePart& part) {
+  if (tasks::is_deduction(part))
     return fmt::format("<tr><td>{}</td><td></td><td></td><td class=\"number\"><b>{}</b></td></tr>", escape(part.title),
                        number_text(part.points, std::abs(part.points - std::round(part.points)) < 0.05 ? 0 : 1));
   const double share =
@@ -69,16 +69,16 @@ std::string part_row(const ScorePart& part) {
 }
 
 /// The notch as a bar, its pieces to scale.
-std::string core_bar(const BiopsyCore& core) {
+std::string core_bar(const tasks::BiopsyCore& core) {
   constexpr double kWidth = 760.0;
   constexpr double kMargin = 14.0;
   constexpr double kTickStep_mm = 5.0;
   double length_mm = 0.0;
-  for (const CorePiece& piece : core.pieces) length_mm = std::max(length_mm, piece.to_mm);
+  for (const tasks::CorePiece& piece : core.pieces) length_mm = std::max(length_mm, piece.to_mm);
   if (!(length_mm > 0.0)) return "<p>The notch brought nothing out.</p>";
   const auto x_of = [&](double mm) { return kMargin + mm / length_mm * (kWidth - 2.0 * kMargin); };
   std::string out = "<svg viewBox=\"0 0 760 78\" role=\"img\" aria-label=\"Tissue along the specimen notch\">";
-  for (const CorePiece& piece : core.pieces) {
+  for (const tasks::CorePiece& piece : core.pieces) {
     const double x = x_of(piece.from_mm);
     const double width = x_of(piece.to_mm) - x;
     out += fmt::format(
@@ -105,9 +105,9 @@ std::string case_row(const char* name, const std::string& value) {
 }
 
 /// What changed while the attempt was performed, and when; what a user had set before it began.
-std::string changes_rows(const Session& session) {
+std::string changes_rows(const storage::Session& session) {
   std::string rows;
-  for (const SessionParameters& change : session.parameters) {
+  for (const storage::SessionParameters& change : session.parameters) {
     if (change.settings.empty()) continue;
     std::string list;
     for (const std::string& setting : change.settings) list += (list.empty() ? "" : ", ") + setting;
@@ -117,22 +117,22 @@ std::string changes_rows(const Session& session) {
   return rows;
 }
 
-std::string interruption_rows(const Session& session) {
+std::string interruption_rows(const storage::Session& session) {
   std::string rows;
-  for (const Interruption& gap : session.interruptions)
+  for (const tasks::Interruption& gap : session.interruptions)
     rows += case_row("Interruption", fmt::format("at {} s: {} s, {}", number_text(gap.from_s, 2),
                                                  number_text(gap.to_s - gap.from_s, 2), gap.reason));
   return rows;
 }
 
 /// The tables in force, each under the time from which on it was.
-std::string tissue_tables(const Session& session) {
+std::string tissue_tables(const storage::Session& session) {
   const auto details = [](const std::string& title, const std::string& table) {
     return fmt::format("<details><summary>{}</summary><pre>{}</pre></details>", escape(title), escape(table));
   };
   const std::string* before = &session.info.tissue_table_toml;
   std::string out = before->empty() ? std::string() : details("Tissue table", *before);
-  for (const SessionParameters& change : session.parameters) {
+  for (const storage::SessionParameters& change : session.parameters) {
     if (change.tissue_table_toml == *before) continue;
     before = &change.tissue_table_toml;
     out += details(fmt::format("Tissue table from {} s", number_text(change.time_s, 2)), *before);
@@ -142,8 +142,8 @@ std::string tissue_tables(const Session& session) {
 
 }  // namespace
 
-std::string page_header(const Session& session) {
-  const SessionInfo& info = session.info;
+std::string page_header(const storage::Session& session) {
+  const storage::SessionInfo& info = session.info;
   return fmt::format(
       "<header><h1>{}: session report</h1><dl class=\"facts\">{}{}{}{}{}</dl>"
       "<p class=\"note\">Trocar is a training simulator, not a medical device.</p></header>",
@@ -153,16 +153,17 @@ std::string page_header(const Session& session) {
 }
 
 /// The damaged parts, and that they are left out; empty where all is whole.
-std::string damage_note(const Session& session) {
+std::string damage_note(const storage::Session& session) {
   if (session.damage.empty()) return {};
   std::string parts;
-  for (const SessionDamage& damage : session.damage) parts += (parts.empty() ? "" : ", ") + escape(damage.part);
+  for (const storage::SessionDamage& damage : session.damage)
+    parts += (parts.empty() ? "" : ", ") + escape(damage.part);
   return "<p class=\"warning\"><b>This session is damaged.</b> Left out: " + parts + ".</p>";
 }
 
 /// "Target reached", with the level of help that the score was reached at.
-std::string verdict_of(const Session& session) {
-  const Outcome& outcome = *session.outcome;
+std::string verdict_of(const storage::Session& session) {
+  const tasks::Outcome& outcome = *session.outcome;
   std::string verdict = outcome.target_reached ? "Target reached" : "Target missed";
   if (!outcome.is_scored()) verdict = "Not scored: " + escape(outcome.not_scored);
   if (!session.info.level.empty())
@@ -170,35 +171,35 @@ std::string verdict_of(const Session& session) {
   return verdict;
 }
 
-std::string result_section(const Session& session) {
+std::string result_section(const storage::Session& session) {
   if (!session.outcome && !session.damage.empty()) return damage_note(session);
   if (!session.outcome)
     return "<p class=\"warning\"><b>This session is incomplete.</b> The program ended before the attempt did: there is "
            "no score. The ticks recorded until then are shown below.</p>";
-  const Outcome& outcome = *session.outcome;
+  const tasks::Outcome& outcome = *session.outcome;
   std::string out =
       damage_note(session) + fmt::format(
                                  "<section class=\"together\"><h2>Result</h2><div class=\"result\"><div "
                                  "class=\"ring\">{}<div class=\"verdict\">{}"
                                  "</div></div><table class=\"parts\"><tbody>",
                                  outcome.is_scored() ? score_ring(outcome.score) : std::string(), verdict_of(session));
-  for (const ScorePart& part : outcome.parts) out += part_row(part);
+  for (const tasks::ScorePart& part : outcome.parts) out += part_row(part);
   out += "</tbody></table></div>";
   if (!outcome.risks_touched.empty())
     out += fmt::format("<p class=\"warning\">Structures at risk touched: <b>{}</b>.</p>", join(outcome.risks_touched));
   return out + "</section>";
 }
 
-std::string hints_section(const Session& session) {
+std::string hints_section(const storage::Session& session) {
   if (!session.outcome || session.outcome->hints.empty()) return {};
   std::string out = "<section class=\"together\"><h2>Hints</h2><ol class=\"hints\">";
   for (const std::string& hint : session.outcome->hints) out += "<li>" + escape(hint) + "</li>";
   return out + "</ol></section>";
 }
 
-std::string core_section(const Session& session) {
+std::string core_section(const storage::Session& session) {
   if (!session.outcome || !session.outcome->core) return {};
-  const BiopsyCore& core = *session.outcome->core;
+  const tasks::BiopsyCore& core = *session.outcome->core;
   std::string out = "<section class=\"together\"><h2>The core</h2><figure>" + core_bar(core) +
                     fmt::format(
                         "<figcaption>Target tissue {} mm, organ {} mm, vessel {} mm, other {} mm.</figcaption>"
@@ -210,8 +211,8 @@ std::string core_section(const Session& session) {
   return out + "</section>";
 }
 
-std::string case_section(const Session& session) {
-  const SessionInfo& info = session.info;
+std::string case_section(const storage::Session& session) {
+  const storage::SessionInfo& info = session.info;
   const double duration_s =
       session.samples.empty() ? 0.0 : session.samples.back().time_s - session.samples.front().time_s;
   std::string out = "<section><h2>The case</h2><table class=\"list case\"><tbody>";
@@ -229,8 +230,9 @@ std::string case_section(const Session& session) {
   out += case_row("Recorded", fmt::format("{} ticks, {} s at {:g} Hz", session.samples.size(),
                                           number_text(duration_s, 1), info.rate_hz));
   if (!session.interruptions.empty())
-    out += case_row("Active time", fmt::format("{} s without interruptions",
-                                               number_text(active_time_s(0.0, duration_s, session.interruptions), 1)));
+    out += case_row("Active time",
+                    fmt::format("{} s without interruptions",
+                                number_text(tasks::active_time_s(0.0, duration_s, session.interruptions), 1)));
   out += interruption_rows(session);
   out += changes_rows(session);
   out += case_row("Program", "Trocar " + info.program_version);
@@ -238,4 +240,4 @@ std::string case_section(const Session& session) {
   return out + "</section>";
 }
 
-}  // namespace trocar::report_detail
+}  // namespace trocar::report::detail

@@ -1,6 +1,6 @@
 #include "report/detail/style.h"
 
-namespace trocar::report_detail {
+namespace trocar::report::detail {
 namespace {
 
 // Colours of curves are dark enough for 4.5:1 on white; stripes of tissues also differ in lightness.
@@ -114,4 +114,4 @@ std::string plot_style() {
   return std::string(kAlone) + std::string(kPlotStyle);
 }
 
-}  // namespace trocar::report_detail
+}  // namespace trocar::report::detail

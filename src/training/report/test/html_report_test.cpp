@@ -7,11 +7,11 @@
 
 #include "report/test/example_attempt.h"
 
-namespace trocar {
+namespace trocar::report {
 namespace {
 
-using test::example_attempt;
-using test::example_patient;
+using testing::example_attempt;
+using testing::example_patient;
 
 std::size_t count_of(const std::string& text, const std::string& part) {
   std::size_t count = 0;
@@ -49,7 +49,7 @@ std::string first_unbalanced(const std::string& html) {
 }
 
 TEST(HtmlReport, NamesTheThreePeaks) {
-  const Session session = example_attempt();
+  const storage::Session session = example_attempt();
   const std::string html = html_report(session, nullptr);
   EXPECT_EQ(count_of(html, "class=\"mark\""), 3u);
   EXPECT_EQ(count_of(html, "class=\"marklabel\""), 3u);
@@ -58,7 +58,7 @@ TEST(HtmlReport, NamesTheThreePeaks) {
 }
 
 TEST(HtmlReport, TellsTheLevelBesideTheScore) {
-  Session session = example_attempt();
+  storage::Session session = example_attempt();
   EXPECT_EQ(html_report(session, nullptr).find("<dt>Level</dt>"), std::string::npos);
   session.info.level = "exam";
   const std::string html = html_report(session, nullptr);
@@ -76,7 +76,7 @@ TEST(HtmlReport, TellsScorePartsHintsAndCore) {
 }
 
 TEST(HtmlReport, NamesDamagedPartsAndDeductions) {
-  Session session = example_attempt();
+  storage::Session session = example_attempt();
   session.damage = {{"ticks 500 to 999", 500, 500, 500}};
   session.outcome->parts.push_back({"deduction", "Deduction for structures at risk", 25.0, "points", -5.0, 0.0});
   session.outcome->risks_touched = {"rib_right_10"};
@@ -91,7 +91,7 @@ TEST(HtmlReport, NamesDamagedPartsAndDeductions) {
 }
 
 TEST(HtmlReport, IsOneFileThatLoadsNothing) {
-  const VirtualPatient patient = example_patient();
+  const anatomy::VirtualPatient patient = example_patient();
   const std::string html = html_report(example_attempt(), &patient);
   EXPECT_EQ(count_of(html, "<script"), 0u);
   EXPECT_EQ(count_of(html, "http"), 0u);
@@ -101,7 +101,7 @@ TEST(HtmlReport, IsOneFileThatLoadsNothing) {
 }
 
 TEST(HtmlReport, ShowsThePathInThreeSlices) {
-  const VirtualPatient patient = example_patient();
+  const anatomy::VirtualPatient patient = example_patient();
   const std::string html = html_report(example_attempt(), &patient);
   EXPECT_EQ(count_of(html, "<image "), 3u);
   for (const char* text : {"Axial", "Coronal", "Sagittal", "50 mm", "Window 400/40 HU"})
@@ -110,7 +110,7 @@ TEST(HtmlReport, ShowsThePathInThreeSlices) {
 }
 
 TEST(HtmlReport, SaysThatThePatientChanged) {
-  VirtualPatient patient = example_patient();
+  anatomy::VirtualPatient patient = example_patient();
   patient.content_hash = "other";
   EXPECT_NE(html_report(example_attempt(), &patient).find("The patient has changed"), std::string::npos);
 }
@@ -120,7 +120,7 @@ TEST(HtmlReport, SaysThatThePatientIsNotThere) {
 }
 
 TEST(HtmlReport, EscapesWhatPeopleWrote) {
-  Session session = example_attempt();
+  storage::Session session = example_attempt();
   const std::string evil = "<script>alert('x')</script>\"&";
   session.info.patient_name = session.info.task = session.info.operator_name = session.info.device = evil;
   session.info.tissue_table_toml = session.info.needle = session.info.started_utc = session.info.patient_source = evil;
@@ -128,35 +128,35 @@ TEST(HtmlReport, EscapesWhatPeopleWrote) {
   for (std::string& name : session.info.tissue_names) name = evil;
   session.outcome->hints = {evil};
   session.outcome->risks_touched = session.outcome->core->risks_in_throw = {evil};
-  for (CorePiece& piece : session.outcome->core->pieces) piece.label = piece.tissue = evil;
-  for (ScorePart& part : session.outcome->parts) part.title = part.unit = evil;
+  for (tasks::CorePiece& piece : session.outcome->core->pieces) piece.label = piece.tissue = evil;
+  for (tasks::ScorePart& part : session.outcome->parts) part.title = part.unit = evil;
   const std::string html = html_report(session, nullptr);
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_EQ(first_unbalanced(html), "");
 }
 
 TEST(HtmlReport, IsWellFormedWhateverIsMissing) {
-  const VirtualPatient patient = example_patient();
-  Session whole = example_attempt();
-  Session no_outcome = whole;
+  const anatomy::VirtualPatient patient = example_patient();
+  storage::Session whole = example_attempt();
+  storage::Session no_outcome = whole;
   no_outcome.outcome.reset();
   no_outcome.fired.reset();
-  Session no_events = whole;
-  for (TickSample& sample : no_events.samples) sample.events = {};
-  Session outside = whole;
-  for (TickSample& sample : outside.samples) sample.phase = InsertionPhase::kOutside;
-  Session one_tick = whole;
+  storage::Session no_events = whole;
+  for (telemetry::TickSample& sample : no_events.samples) sample.events = {};
+  storage::Session outside = whole;
+  for (telemetry::TickSample& sample : outside.samples) sample.phase = telemetry::InsertionPhase::kOutside;
+  storage::Session one_tick = whole;
   one_tick.samples.resize(1);
-  Session no_ticks = whole;
+  storage::Session no_ticks = whole;
   no_ticks.samples.clear();
-  Session no_plan = whole;
+  storage::Session no_plan = whole;
   no_plan.info.plan_P = {};
-  Session no_names = whole;
+  storage::Session no_names = whole;
   no_names.info.tissue_names.clear();
   no_names.info.layer_names.clear();
-  for (const Session& session :
-       {whole, no_outcome, no_events, outside, one_tick, no_ticks, no_plan, no_names, Session{}}) {
-    for (const VirtualPatient* shown : {static_cast<const VirtualPatient*>(nullptr), &patient}) {
+  for (const storage::Session& session :
+       {whole, no_outcome, no_events, outside, one_tick, no_ticks, no_plan, no_names, storage::Session{}}) {
+    for (const anatomy::VirtualPatient* shown : {static_cast<const anatomy::VirtualPatient*>(nullptr), &patient}) {
       const std::string html = without_pictures(html_report(session, shown));
       EXPECT_EQ(first_unbalanced(html), "");
       EXPECT_EQ(count_of(html, "nan"), 0u);
@@ -165,7 +165,7 @@ TEST(HtmlReport, IsWellFormedWhateverIsMissing) {
 }
 
 TEST(HtmlReport, SaysThatAKilledSessionIsIncompleteAndStillPlots) {
-  Session session = example_attempt();
+  storage::Session session = example_attempt();
   session.outcome.reset();
   session.fired.reset();
   const std::string html = html_report(session, nullptr);
@@ -175,7 +175,7 @@ TEST(HtmlReport, SaysThatAKilledSessionIsIncompleteAndStillPlots) {
 }
 
 TEST(HtmlReport, LeavesNumbersThatAreNoneOutOfThePlots) {
-  Session session = example_attempt();
+  storage::Session session = example_attempt();
   for (std::size_t i = 0; i < session.samples.size(); i += 3) {
     session.samples[i].f_friction_n = std::numeric_limits<double>::quiet_NaN();
     session.samples[i].device_f_n.x() = std::numeric_limits<double>::infinity();
@@ -183,7 +183,7 @@ TEST(HtmlReport, LeavesNumbersThatAreNoneOutOfThePlots) {
   }
   session.outcome->score = std::numeric_limits<double>::quiet_NaN();
   session.outcome->parts[0].points = std::numeric_limits<double>::quiet_NaN();
-  const VirtualPatient patient = example_patient();
+  const anatomy::VirtualPatient patient = example_patient();
   const std::string html = without_pictures(html_report(session, &patient));
   EXPECT_EQ(count_of(html, "nan"), 0u);
   EXPECT_EQ(count_of(html, "inf "), 0u);
@@ -191,10 +191,10 @@ TEST(HtmlReport, LeavesNumbersThatAreNoneOutOfThePlots) {
 }
 
 TEST(HtmlReport, StaysSmallForALongSession) {
-  Session session = example_attempt();
+  storage::Session session = example_attempt();
   const auto one = session.samples;
   for (int n = 1; n < 30; ++n) {
-    for (TickSample sample : one) {
+    for (telemetry::TickSample sample : one) {
       sample.time_s += 8.0 * n;
       session.samples.push_back(sample);
     }
@@ -203,4 +203,4 @@ TEST(HtmlReport, StaysSmallForALongSession) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::report

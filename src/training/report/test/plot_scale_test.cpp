@@ -8,7 +8,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::report {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -122,4 +122,4 @@ TEST(PlotScale, LabelsDoNotOverlapAndStayWhereTheyMay) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::report

@@ -4,10 +4,10 @@
 
 #include "report/test/example_attempt.h"
 
-namespace trocar {
+namespace trocar::report {
 namespace {
 
-using test::example_attempt;
+using testing::example_attempt;
 
 TEST(SessionAnalysis, FindsPuncturesWithPeakAndDrop) {
   const auto punctures = find_punctures(example_attempt());
@@ -23,20 +23,20 @@ TEST(SessionAnalysis, FindsPuncturesWithPeakAndDrop) {
 }
 
 TEST(SessionAnalysis, FindsTheInsertionAndItsDepth) {
-  const Session session = example_attempt();
+  const storage::Session session = example_attempt();
   const auto insertions = find_insertions(session);
   ASSERT_EQ(insertions.size(), 1u);
   EXPECT_EQ(session.samples[insertions[0].deepest].depth_mm, 40.0);
   EXPECT_EQ(insertions[0].last, session.samples.size() - 1);
-  EXPECT_NE(session.samples[insertions[0].first].phase, InsertionPhase::kOutside);
-  EXPECT_EQ(session.samples[insertions[0].first - 1].phase, InsertionPhase::kOutside);
+  EXPECT_NE(session.samples[insertions[0].first].phase, telemetry::InsertionPhase::kOutside);
+  EXPECT_EQ(session.samples[insertions[0].first - 1].phase, telemetry::InsertionPhase::kOutside);
 }
 
 TEST(SessionAnalysis, CountsASecondInsertionButNoTouch) {
-  Session session = example_attempt();
+  storage::Session session = example_attempt();
   const auto once = session.samples;
   for (const double depth_factor : {0.02, 1.0}) {  // A touch of 0.8 mm, then the whole way again.
-    for (TickSample sample : once) {
+    for (telemetry::TickSample sample : once) {
       sample.depth_mm *= depth_factor;
       session.samples.push_back(sample);
     }
@@ -45,7 +45,7 @@ TEST(SessionAnalysis, CountsASecondInsertionButNoTouch) {
 }
 
 TEST(SessionAnalysis, ListsTissuesByDepthOfFirstArrival) {
-  Session session = example_attempt();
+  storage::Session session = example_attempt();
   // The hand draws back 5 mm and goes on: nothing new is met on the way.
   for (std::size_t i = 3000; i < 3500; ++i) {
     session.samples[i].depth_mm -= 5.0;
@@ -61,7 +61,7 @@ TEST(SessionAnalysis, ListsTissuesByDepthOfFirstArrival) {
 }
 
 TEST(SessionAnalysis, PhasesCoverTheWholeTime) {
-  const Session session = example_attempt();
+  const storage::Session session = example_attempt();
   const auto runs = phase_runs(session);
   EXPECT_EQ(runs.front().from_s, session.samples.front().time_s);
   EXPECT_EQ(runs.back().to_s, session.samples.back().time_s);
@@ -72,4 +72,4 @@ TEST(SessionAnalysis, PhasesCoverTheWholeTime) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::report

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::report {
 namespace {
 
 Plot two_curves() {
@@ -43,4 +43,4 @@ TEST(SvgFile, DrawsWhatThePageDraws) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::report

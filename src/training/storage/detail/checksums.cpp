@@ -8,7 +8,7 @@
 #include "storage/detail/guarded_database.h"
 #include "storage/detail/sqlite_handle.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 namespace {
 
 constexpr std::size_t kDigestDigits = 32;
@@ -54,10 +54,10 @@ std::vector<std::string> checksum_schema() {
           "ROWID"};
 }
 
-std::string digest_of(std::span<const TickSample> samples, const std::set<std::string>* present) {
+std::string digest_of(std::span<const telemetry::TickSample> samples, const std::set<std::string>* present) {
   ContentHash hash;
   std::vector<double> values;
-  for (const TickSample& sample : samples) {
+  for (const telemetry::TickSample& sample : samples) {
     values.clear();
     visit_stored_columns(sample, [&](const char* name, const auto& field) {
       if (present != nullptr && !present->contains(name)) return;
@@ -66,9 +66,9 @@ std::string digest_of(std::span<const TickSample> samples, const std::set<std::s
       else
         values.push_back(static_cast<double>(field));
     });
-    for (const TickEvent& event : sample.events) {
+    for (const telemetry::TickEvent& event : sample.events) {
       values.push_back(static_cast<double>(event.kind));
-      values.push_back(event.kind == EventKind::kNone ? 0.0 : static_cast<double>(event.id));
+      values.push_back(event.kind == telemetry::EventKind::kNone ? 0.0 : static_cast<double>(event.id));
     }
     hash.add(std::as_bytes(std::span(values)));
   }
@@ -134,4 +134,4 @@ std::optional<RowsDigest> read_checksum(soci::session& database, const CheckedRo
   return RowsDigest{count, digest};
 }
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

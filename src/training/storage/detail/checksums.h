@@ -11,7 +11,7 @@
 #include "storage/detail/database.h"
 #include "telemetry/tick_sample.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 
 /// The tables of checksums. `tick_blocks`: one row a commit, its ticks and their digest. `checksums`: rows and digest
 /// of other tables; `tick_blocks` itself only when the session is finished.
@@ -19,7 +19,7 @@ std::vector<std::string> checksum_schema();
 
 /// Digest of ticks with their events, over the values as a session keeps them (NaN is one value, -0.0 is 0.0).
 /// Over the columns that the session's table has; nullptr: all.
-std::string digest_of(std::span<const TickSample> samples, const std::set<std::string>* present = nullptr);
+std::string digest_of(std::span<const telemetry::TickSample> samples, const std::set<std::string>* present = nullptr);
 
 /// A block of ticks with one checksum.
 struct TickBlock {
@@ -60,4 +60,4 @@ void write_checksum(soci::session& database, const CheckedRows& rows);
 /// The one that was written; nothing where there is none. Throws soci::soci_error.
 std::optional<RowsDigest> read_checksum(soci::session& database, const CheckedRows& rows);
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

@@ -4,14 +4,14 @@
 
 #include "telemetry/tick_sample.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 
 /// The one ordered list of what a session keeps of a tick: calls visit(name, field) for every column of
 /// `trocar session export --csv`, in its order. Fields are double, std::uint8_t (the tissue), InsertionPhase, bool
 /// (limited), GateMode, GateFault or the array of events. `Sample` is TickSample or const TickSample.
 template <class Sample, class Visitor>
 void visit_columns(Sample& s, Visitor&& visit) {
-  static_assert(std::is_same_v<std::remove_const_t<Sample>, TickSample>);
+  static_assert(std::is_same_v<std::remove_const_t<Sample>, telemetry::TickSample>);
   visit("time_s", s.time_s);
   visit("tip_x_mm", s.tip_mm[0]);
   visit("tip_y_mm", s.tip_mm[1]);
@@ -68,7 +68,7 @@ template <class Sample, class Visitor>
 void visit_stored_columns(Sample& s, Visitor&& visit) {
   visit_columns(s, [&](const char* name, auto& field) {
     if constexpr (!std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(field)>>,
-                                  std::array<TickEvent, 4>>)
+                                  std::array<telemetry::TickEvent, 4>>)
       visit(name, field);
   });
   visit("device_qw", s.device_rotation_wxyz[0]);
@@ -84,4 +84,4 @@ void visit_stored_columns(Sample& s, Visitor&& visit) {
 template <class Field>
 inline constexpr bool kIsReal = std::is_same_v<std::remove_const_t<Field>, double>;
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

@@ -8,7 +8,7 @@
 #include "storage/detail/transducer_table.h"
 #include "storage/session_file.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 namespace {
 
 /// The enumerators' words in place of their numbers.
@@ -23,19 +23,19 @@ std::string words_of(const char* column, Enum last) {
 /// Columns of the view, which shows names where the table has numbers.
 std::string view_columns() {
   std::string list;
-  const TickSample sample;
+  const telemetry::TickSample sample;
   visit_columns(sample, [&](const char* name, const auto& field) {
     using Field = std::remove_cvref_t<decltype(field)>;
     if (!list.empty()) list += ", ";
     if constexpr (std::is_same_v<Field, std::uint8_t>)
       list += fmt::format("(SELECT name FROM tissues WHERE id = t.{0}) AS {0}", name);
-    else if constexpr (std::is_same_v<Field, InsertionPhase>)
+    else if constexpr (std::is_same_v<Field, telemetry::InsertionPhase>)
       list += fmt::format("(SELECT name FROM phases WHERE id = t.{0}) AS {0}", name);
-    else if constexpr (std::is_same_v<Field, GateMode>)
-      list += words_of(name, kLastGateMode);
-    else if constexpr (std::is_same_v<Field, GateFault>)
-      list += words_of(name, kLastGateFault);
-    else if constexpr (std::is_same_v<Field, std::array<TickEvent, 4>>)
+    else if constexpr (std::is_same_v<Field, telemetry::GateMode>)
+      list += words_of(name, telemetry::kLastGateMode);
+    else if constexpr (std::is_same_v<Field, telemetry::GateFault>)
+      list += words_of(name, telemetry::kLastGateFault);
+    else if constexpr (std::is_same_v<Field, std::array<telemetry::TickEvent, 4>>)
       list += fmt::format(
           "coalesce((SELECT group_concat(text, ';') FROM ({} UNION ALL SELECT text FROM (SELECT text FROM events e"
           " WHERE e.tick = t.tick ORDER BY slot))), '') AS {}",
@@ -56,7 +56,7 @@ void open_database(soci::session& database, const std::filesystem::path& path) {
 
 std::vector<std::string> schema_statements() {
   std::string ticks = "CREATE TABLE ticks (tick INTEGER PRIMARY KEY";
-  const TickSample sample;
+  const telemetry::TickSample sample;
   visit_stored_columns(sample, [&](const char* name, const auto& field) {
     using Field = std::remove_cvref_t<decltype(field)>;
     ticks += fmt::format(", {} {}", name, kIsReal<Field> ? "REAL" : "INTEGER NOT NULL");
@@ -93,4 +93,4 @@ std::string reason_of(const std::exception& error) {
   return text;
 }
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

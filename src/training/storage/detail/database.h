@@ -9,7 +9,7 @@
 
 #include "core/result.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 
 /// "trcr": PRAGMA application_id of a session, by which `file` and we know one.
 inline constexpr int kApplicationId = 0x74726372;
@@ -37,4 +37,4 @@ Status guarded(const char* what, const std::filesystem::path& path, const char* 
   }
 }
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

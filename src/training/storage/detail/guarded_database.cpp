@@ -4,7 +4,7 @@
 
 #include "storage/detail/sqlite_handle.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 namespace {
 
 // Reading a tick of about 500 bytes takes some 150 steps, three times over at most.
@@ -65,4 +65,4 @@ void GuardedDatabase::require_table(const std::string& name) {
   if (computed != 0) throw soci::soci_error(fmt::format("the table \"{}\" has computed columns", name));
 }
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

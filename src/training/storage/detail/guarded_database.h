@@ -5,7 +5,7 @@
 
 #include "storage/detail/database.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 
 /// Longest text or row that is read from a session; a longer one is an error before it is loaded.
 inline constexpr int kMaxTextBytes = 4 << 20;
@@ -42,4 +42,4 @@ class GuardedDatabase {
   soci::session session_;
 };
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

@@ -7,7 +7,7 @@
 
 #include "storage/detail/guarded_database.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 namespace {
 
 /// The one list of what `info` keeps: calls visit(key, field) for each member; strings, numbers and truth values.
@@ -101,8 +101,8 @@ void write_info(soci::session& database, const SessionInfo& info) {
   write_names(database, "layers", info.layer_names);
   write_names(database, "labels", info.label_names);
   std::vector<std::string> phases;
-  for (const auto phase :
-       {InsertionPhase::kOutside, InsertionPhase::kLoading, InsertionPhase::kInserted, InsertionPhase::kRetracting})
+  for (const auto phase : {telemetry::InsertionPhase::kOutside, telemetry::InsertionPhase::kLoading,
+                           telemetry::InsertionPhase::kInserted, telemetry::InsertionPhase::kRetracting})
     phases.emplace_back(to_string(phase));
   write_names(database, "phases", phases);
 }
@@ -142,4 +142,4 @@ SessionInfo read_info(soci::session& database) {
   return info;
 }
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

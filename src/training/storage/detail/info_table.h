@@ -3,11 +3,11 @@
 #include "storage/detail/database.h"
 #include "storage/session_file.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 
 /// Writes the tables info, tissues, layers, labels and phases. Throws soci::soci_error.
 void write_info(soci::session& database, const SessionInfo& info);
 /// Reads them back. Throws soci::soci_error, also where a value is missing or no number.
 SessionInfo read_info(soci::session& database);
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

@@ -4,16 +4,16 @@
 
 #include "config/json.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 namespace {
 
-Json vector_json(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
+config::Json vector_json(const Vec3& v) {
+  return config::Json::array({v.x(), v.y(), v.z()});
 }
 
-Json core_json(const BiopsyCore& core) {
-  Json pieces = Json::array();
-  for (const CorePiece& piece : core.pieces)
+config::Json core_json(const tasks::BiopsyCore& core) {
+  config::Json pieces = config::Json::array();
+  for (const tasks::CorePiece& piece : core.pieces)
     pieces.push_back(
         {{"label", piece.label}, {"tissue", piece.tissue}, {"from_mm", piece.from_mm}, {"to_mm", piece.to_mm}});
   return {{"tip_P", vector_json(core.tip_P)}, {"axis_P", vector_json(core.axis_P)},
@@ -25,63 +25,63 @@ Json core_json(const BiopsyCore& core) {
 /// Reads the members of one object; the first that is missing or of another kind makes the whole reading fail.
 class Reader {
  public:
-  explicit Reader(const Json& object, bool& is_good) : object_(object), is_good_(is_good) {}
+  explicit Reader(const config::Json& object, bool& is_good) : object_(object), is_good_(is_good) {}
 
   double number(const char* key) {
-    const Json* member = find(key);
+    const config::Json* member = find(key);
     return member != nullptr ? number_of(*member) : 0.0;
   }
   bool boolean(const char* key) {
-    const Json* member = find(key);
-    return is_kind(member, Json::value_t::boolean) && member->get<bool>();
+    const config::Json* member = find(key);
+    return is_kind(member, config::Json::value_t::boolean) && member->get<bool>();
   }
   std::string text(const char* key) {
-    const Json* member = find(key);
-    return is_kind(member, Json::value_t::string) ? member->get<std::string>() : std::string();
+    const config::Json* member = find(key);
+    return is_kind(member, config::Json::value_t::string) ? member->get<std::string>() : std::string();
   }
   std::vector<std::string> texts(const char* key) {
     std::vector<std::string> list;
-    for (const Json& item : array(key))
-      if (is_kind(&item, Json::value_t::string)) list.push_back(item.get<std::string>());
+    for (const config::Json& item : array(key))
+      if (is_kind(&item, config::Json::value_t::string)) list.push_back(item.get<std::string>());
     return list;
   }
   Vec3 vector(const char* key) {
-    const Json& items = array(key);
+    const config::Json& items = array(key);
     if (items.size() != 3) return is_good_ = false, Vec3::Zero();
     return {number_of(items[0]), number_of(items[1]), number_of(items[2])};
   }
-  const Json& array(const char* key) {
-    static const Json kEmpty = Json::array();
-    const Json* member = find(key);
-    return is_kind(member, Json::value_t::array) ? *member : kEmpty;
+  const config::Json& array(const char* key) {
+    static const config::Json kEmpty = config::Json::array();
+    const config::Json* member = find(key);
+    return is_kind(member, config::Json::value_t::array) ? *member : kEmpty;
   }
 
  private:
-  const Json* find(const char* key) {
+  const config::Json* find(const char* key) {
     const auto found = object_.find(key);
     if (found == object_.end()) return is_good_ = false, nullptr;
     return &*found;
   }
-  bool is_kind(const Json* value, Json::value_t kind) {
+  bool is_kind(const config::Json* value, config::Json::value_t kind) {
     if (value == nullptr || value->type() != kind) is_good_ = false;
     return is_good_;
   }
-  double number_of(const Json& value) {
+  double number_of(const config::Json& value) {
     if (value.is_null()) return std::numeric_limits<double>::quiet_NaN();
     if (!value.is_number()) return is_good_ = false, 0.0;
     return value.get<double>();
   }
 
-  const Json& object_;
+  const config::Json& object_;
   bool& is_good_;
 };
 
-BiopsyCore read_core(const Json& object, bool& is_good) {
+tasks::BiopsyCore read_core(const config::Json& object, bool& is_good) {
   Reader reader(object, is_good);
-  BiopsyCore core;
+  tasks::BiopsyCore core;
   core.tip_P = reader.vector("tip_P");
   core.axis_P = reader.vector("axis_P");
-  for (const Json& item : reader.array("pieces")) {
+  for (const config::Json& item : reader.array("pieces")) {
     Reader piece(item, is_good);
     core.pieces.push_back({piece.text("label"), piece.text("tissue"), piece.number("from_mm"), piece.number("to_mm")});
   }
@@ -95,33 +95,33 @@ BiopsyCore read_core(const Json& object, bool& is_good) {
 
 }  // namespace
 
-std::string outcome_to_json(const Outcome& outcome) {
-  Json parts = Json::array();
-  for (const ScorePart& part : outcome.parts)
+std::string outcome_to_json(const tasks::Outcome& outcome) {
+  config::Json parts = config::Json::array();
+  for (const tasks::ScorePart& part : outcome.parts)
     parts.push_back({{"name", part.name},
                      {"title", part.title},
                      {"value", part.value},
                      {"unit", part.unit},
                      {"points", part.points},
                      {"max_points", part.max_points}});
-  Json object{{"score", outcome.score},
-              {"target_reached", outcome.target_reached},
-              {"parts", std::move(parts)},
-              {"hints", outcome.hints},
-              {"risks_touched", outcome.risks_touched}};
+  config::Json object{{"score", outcome.score},
+                      {"target_reached", outcome.target_reached},
+                      {"parts", std::move(parts)},
+                      {"hints", outcome.hints},
+                      {"risks_touched", outcome.risks_touched}};
   if (!outcome.is_scored()) object["not_scored"] = outcome.not_scored;
   if (outcome.core) object["core"] = core_json(*outcome.core);
-  return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return object.dump(-1, ' ', false, config::Json::error_handler_t::replace);
 }
 
-Result<Outcome> outcome_from_json(std::string_view text, const std::string& where) {
-  TROCAR_TRY(const Json object, parse_json(text, where));
+Result<tasks::Outcome> outcome_from_json(std::string_view text, const std::string& where) {
+  TROCAR_TRY(const config::Json object, config::parse_json(text, where));
   bool is_good = true;
   Reader reader(object, is_good);
-  Outcome outcome;
+  tasks::Outcome outcome;
   outcome.score = reader.number("score");
   outcome.target_reached = reader.boolean("target_reached");
-  for (const Json& item : reader.array("parts")) {
+  for (const config::Json& item : reader.array("parts")) {
     Reader part(item, is_good);
     outcome.parts.push_back({part.text("name"), part.text("title"), part.number("value"), part.text("unit"),
                              part.number("points"), part.number("max_points")});
@@ -134,4 +134,4 @@ Result<Outcome> outcome_from_json(std::string_view text, const std::string& wher
   return outcome;
 }
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

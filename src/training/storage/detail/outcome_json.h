@@ -6,11 +6,11 @@
 #include "core/result.h"
 #include "tasks/score.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 
 /// An outcome as one JSON object. Numbers that are not finite become null, and NaN when read.
-std::string outcome_to_json(const Outcome& outcome);
+std::string outcome_to_json(const tasks::Outcome& outcome);
 /// Reads it back; `where` is for the message.
-Result<Outcome> outcome_from_json(std::string_view text, const std::string& where);
+Result<tasks::Outcome> outcome_from_json(std::string_view text, const std::string& where);
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

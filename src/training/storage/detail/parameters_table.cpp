@@ -6,7 +6,7 @@
 
 #include "storage/detail/guarded_database.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 namespace {
 
 constexpr char kBetweenSettings = ';', kBetweenOptions = '\n';
@@ -92,10 +92,10 @@ std::vector<SessionParameters> read_parameters(soci::session& database, std::siz
   return all;
 }
 
-std::vector<Interruption> read_interruptions(soci::session& database) {
-  std::vector<Interruption> all;
+std::vector<tasks::Interruption> read_interruptions(soci::session& database) {
+  std::vector<tasks::Interruption> all;
   if (!has_table(database, "interruptions")) return all;
-  Interruption row;
+  tasks::Interruption row;
   soci::statement select = (database.prepare << "SELECT from_s, to_s, reason FROM interruptions ORDER BY from_s",
                             soci::into(row.from_s), soci::into(row.to_s), soci::into(row.reason));
   select.execute();
@@ -108,4 +108,4 @@ std::vector<Interruption> read_interruptions(soci::session& database) {
   return all;
 }
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

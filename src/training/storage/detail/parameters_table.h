@@ -6,7 +6,7 @@
 #include "storage/detail/database.h"
 #include "storage/session_file.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 
 /// The tables `parameters` (settings joined by `;`, options and tissue table line by line) and `interruptions`.
 /// Sessions of older programs do not have them.
@@ -18,7 +18,9 @@ std::string parameters_events_sql();
 class ParametersBuffer {
  public:
   void add(const SessionParameters& parameters) { parameters_.push_back(parameters); }
-  void add(const Interruption& interruption, std::size_t tick) { interruptions_.push_back({interruption, tick}); }
+  void add(const tasks::Interruption& interruption, std::size_t tick) {
+    interruptions_.push_back({interruption, tick});
+  }
   bool is_empty() const noexcept { return parameters_.empty() && interruptions_.empty(); }
   /// Throws soci::soci_error.
   void write(soci::session& database);
@@ -26,7 +28,7 @@ class ParametersBuffer {
 
  private:
   struct InterruptedTick {
-    Interruption interruption;
+    tasks::Interruption interruption;
     std::size_t tick;  ///< The first one after it.
   };
   std::vector<SessionParameters> parameters_;
@@ -36,6 +38,6 @@ class ParametersBuffer {
 /// All of them; none where there is no such table. Throws soci::soci_error, also for a tick that is none of
 /// `tick_count`, or a time that is not finite.
 std::vector<SessionParameters> read_parameters(soci::session& database, std::size_t tick_count);
-std::vector<Interruption> read_interruptions(soci::session& database);
+std::vector<tasks::Interruption> read_interruptions(soci::session& database);
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

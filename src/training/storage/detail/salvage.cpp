@@ -10,7 +10,7 @@
 #include "storage/detail/tick_reader.h"
 #include "storage/detail/transducer_table.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 namespace {
 
 constexpr std::size_t kUncheckedBlockTicks = 500;  // a session without checksums is read in blocks, too
@@ -153,8 +153,9 @@ class Salvage {
     const auto& samples = session_.samples;
     if (session_.damage.empty()) return;
     for (SessionParameters& parameters : session_.parameters) {
-      const auto behind = std::find_if(samples.begin(), samples.end(),
-                                       [&](const TickSample& sample) { return sample.time_s >= parameters.time_s; });
+      const auto behind = std::find_if(samples.begin(), samples.end(), [&](const telemetry::TickSample& sample) {
+        return sample.time_s >= parameters.time_s;
+      });
       parameters.tick = static_cast<std::size_t>(behind - samples.begin());
     }
   }
@@ -168,7 +169,7 @@ class Salvage {
       if (block.first_tick > next_tick) note_ticks(next_tick, block.first_tick - next_tick);
       next_tick = block.first_tick + block.ticks;
       try {
-        const std::vector<TickSample> samples = reader.read(block);
+        const std::vector<telemetry::TickSample> samples = reader.read(block);
         session_.samples.insert(session_.samples.end(), samples.begin(), samples.end());
       } catch (const std::exception&) {
         note_ticks(block.first_tick, block.ticks);
@@ -216,4 +217,4 @@ std::string salvage(GuardedDatabase& database, Session& session) {
   return Salvage(database, session).read();
 }
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

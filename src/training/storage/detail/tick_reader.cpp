@@ -6,7 +6,7 @@
 
 #include "storage/detail/columns.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 namespace {
 
 constexpr std::size_t kRowsAFetch = 4096;
@@ -15,18 +15,20 @@ void set_field(std::uint8_t& field, int value) {
   if (value < 0 || value > 255) throw soci::soci_error("a tissue is out of range");
   field = static_cast<std::uint8_t>(value);
 }
-void set_field(InsertionPhase& field, int value) {
-  if (value < 0 || value > static_cast<int>(InsertionPhase::kRetracting))
+void set_field(telemetry::InsertionPhase& field, int value) {
+  if (value < 0 || value > static_cast<int>(telemetry::InsertionPhase::kRetracting))
     throw soci::soci_error("a phase is out of range");
-  field = static_cast<InsertionPhase>(value);
+  field = static_cast<telemetry::InsertionPhase>(value);
 }
-void set_field(GateMode& field, int value) {
-  if (value < 0 || value > static_cast<int>(kLastGateMode)) throw soci::soci_error("a gate mode is out of range");
-  field = static_cast<GateMode>(value);
+void set_field(telemetry::GateMode& field, int value) {
+  if (value < 0 || value > static_cast<int>(telemetry::kLastGateMode))
+    throw soci::soci_error("a gate mode is out of range");
+  field = static_cast<telemetry::GateMode>(value);
 }
-void set_field(GateFault& field, int value) {
-  if (value < 0 || value > static_cast<int>(kLastGateFault)) throw soci::soci_error("a gate fault is out of range");
-  field = static_cast<GateFault>(value);
+void set_field(telemetry::GateFault& field, int value) {
+  if (value < 0 || value > static_cast<int>(telemetry::kLastGateFault))
+    throw soci::soci_error("a gate fault is out of range");
+  field = static_cast<telemetry::GateFault>(value);
 }
 void set_field(bool& field, int value) {
   if (value < 0 || value > 1) throw soci::soci_error("a truth value is out of range");
@@ -46,8 +48,8 @@ struct TickColumns {
     for (auto& column : indicators) column.resize(rows);
     for (auto& column : integers) column.resize(rows);
   }
-  TickSample row(std::size_t index) const {
-    TickSample sample;
+  telemetry::TickSample row(std::size_t index) const {
+    telemetry::TickSample sample;
     std::size_t real = 0;
     std::size_t integer = 0;
     visit_stored_columns(sample, [&](const char*, auto& field) {
@@ -86,7 +88,7 @@ std::string column_text(const std::set<std::string>& present, const char* name, 
 /// Binds the columns to a statement and gives their texts.
 std::string bind_columns(soci::statement& select, TickColumns& columns, const std::set<std::string>& present) {
   std::string names = "tick";
-  const TickSample sample;
+  const telemetry::TickSample sample;
   visit_stored_columns(sample, [&](const char* name, const auto& field) {
     names += ", " + column_text(present, name, field);
     if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>)
@@ -115,7 +117,7 @@ std::string where_ticks(const TickBlock& block) {
   return fmt::format("WHERE tick BETWEEN {} AND {}", block.first_tick, block.first_tick + block.ticks - 1);
 }
 
-void read_events(soci::session& database, const TickBlock& block, std::vector<TickSample>& samples) {
+void read_events(soci::session& database, const TickBlock& block, std::vector<telemetry::TickSample>& samples) {
   int tick = 0;
   int slot = 0;
   int kind = 0;
@@ -124,18 +126,19 @@ void read_events(soci::session& database, const TickBlock& block, std::vector<Ti
                             soci::into(tick), soci::into(slot), soci::into(kind), soci::into(id));
   select.execute();
   while (select.fetch()) {
-    const bool is_good = tick >= 0 && slot >= 0 && static_cast<std::size_t>(slot) < TickSample{}.events.size() &&
-                         id >= 0 && id <= 255 && kind > 0 && kind <= static_cast<int>(EventKind::kLimit) &&
+    const bool is_good = tick >= 0 && slot >= 0 &&
+                         static_cast<std::size_t>(slot) < telemetry::TickSample{}.events.size() && id >= 0 &&
+                         id <= 255 && kind > 0 && kind <= static_cast<int>(telemetry::EventKind::kLimit) &&
                          static_cast<std::size_t>(tick) - block.first_tick < samples.size();
     if (!is_good) throw soci::soci_error("an event is out of range");
     samples[static_cast<std::size_t>(tick) - block.first_tick].events[static_cast<std::size_t>(slot)] = {
-        static_cast<EventKind>(kind), static_cast<std::uint8_t>(id)};
+        static_cast<telemetry::EventKind>(kind), static_cast<std::uint8_t>(id)};
   }
 }
 
 }  // namespace
 
-std::vector<TickSample> TickReader::read(const TickBlock& block) {
+std::vector<telemetry::TickSample> TickReader::read(const TickBlock& block) {
   if (present_.empty()) present_ = present_columns(*database_);
   TickColumns columns;
   soci::statement select(*database_);
@@ -145,7 +148,7 @@ std::vector<TickSample> TickReader::read(const TickBlock& block) {
   select.define_and_bind();
   select.execute();
 
-  std::vector<TickSample> samples;
+  std::vector<telemetry::TickSample> samples;
   while (select.fetch()) {
     for (std::size_t i = 0; i < columns.tick.size(); ++i) {
       if (columns.tick[i] != static_cast<int>(block.first_tick + samples.size()))
@@ -161,4 +164,4 @@ std::vector<TickSample> TickReader::read(const TickBlock& block) {
   return samples;
 }
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

@@ -8,7 +8,7 @@
 
 #include "storage/detail/guarded_database.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 namespace {
 
 using Row = std::array<double, kTransducerColumns.size()>;
@@ -93,4 +93,4 @@ std::vector<TransducerSample> read_transducer(soci::session& database) {
   return samples;
 }
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

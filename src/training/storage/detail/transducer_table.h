@@ -8,7 +8,7 @@
 #include "storage/detail/database.h"
 #include "storage/session_file.h"
 
-namespace trocar::storage_detail {
+namespace trocar::storage::detail {
 
 /// The table `transducer`: time, origin and rotation of X_PT, force of contact; real numbers, none is missing. Sessions
 /// of older programs do not have it.
@@ -35,4 +35,4 @@ class TransducerBuffer {
 /// All of them by time; none where there is no such table. Throws soci::soci_error, also for what is no pose.
 std::vector<TransducerSample> read_transducer(soci::session& database);
 
-}  // namespace trocar::storage_detail
+}  // namespace trocar::storage::detail

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "core/random.h"
 #include "core/files/temporary_folder.h"
+#include "core/random.h"
 #include "storage/detail/columns.h"
 #include "storage/session_file.h"
 
-namespace trocar::test {
+namespace trocar::testing {
 
-inline SessionInfo example_info() {
-  SessionInfo info;
+inline storage::SessionInfo example_info() {
+  storage::SessionInfo info;
   info.program_version = "0.1.0";
   info.started_utc = "2026-01-02T03:04:05Z";
   info.task = "liver-biopsy";
@@ -41,18 +41,18 @@ inline SessionInfo example_info() {
 }
 
 /// Tick number n of a made-up attempt: every field has its own value, none is a round number.
-inline TickSample example_sample(std::size_t n) {
+inline telemetry::TickSample example_sample(std::size_t n) {
   Random random(n + 1);
   const auto number = [&] { return random.uniform(-100.0, 100.0); };
   const auto vector = [&] { return Vec3(number(), number(), number()); };
-  TickSample s;
+  telemetry::TickSample s;
   s.time_s = 0.001 * static_cast<double>(n);
   s.tip_mm = vector();
   s.axis = vector().normalized();
   s.axial_velocity_mm_s = number();
   s.depth_mm = number();
   s.tissue = static_cast<std::uint8_t>(n % 5);
-  s.phase = static_cast<InsertionPhase>(n % 4);
+  s.phase = static_cast<telemetry::InsertionPhase>(n % 4);
   s.layer_displacement_mm = number();
   s.f_prepuncture_n = number();
   s.f_friction_n = number();
@@ -61,9 +61,10 @@ inline TickSample example_sample(std::size_t n) {
   s.f_weight_n = vector();
   s.f_total_n = vector();
   s.tau_nmm = vector();
-  if (n % 50 == 3) s.events[0] = {EventKind::kPuncture, 2};
-  if (n % 100 == 3) s.events[1] = {EventKind::kEnter, 7};
-  if (n % 200 == 3) s.events[2] = {EventKind::kLimit, static_cast<std::uint8_t>(LimitReason::kTorqueClamped)};
+  if (n % 50 == 3) s.events[0] = {telemetry::EventKind::kPuncture, 2};
+  if (n % 100 == 3) s.events[1] = {telemetry::EventKind::kEnter, 7};
+  if (n % 200 == 3)
+    s.events[2] = {telemetry::EventKind::kLimit, static_cast<std::uint8_t>(telemetry::LimitReason::kTorqueClamped)};
   s.limited = n % 7 == 0;
   s.breathing = random.uniform();
   s.f_tip_proxy_n = vector();
@@ -74,20 +75,20 @@ inline TickSample example_sample(std::size_t n) {
   s.device_rotation_wxyz = {number(), number(), number(), number()};
   s.contact_to_puncture_mm = {number(), number(), number()};
   s.device_tau_nmm = vector();
-  s.gate_mode = static_cast<GateMode>(n % 7);
-  s.gate_fault = static_cast<GateFault>(n % 11);
+  s.gate_mode = static_cast<telemetry::GateMode>(n % 7);
+  s.gate_fault = static_cast<telemetry::GateFault>(n % 11);
   s.gate_scale = random.uniform();
   s.coupling_share = random.uniform();
   return s;
 }
 
-inline Outcome example_outcome() {
-  Outcome outcome;
+inline tasks::Outcome example_outcome() {
+  tasks::Outcome outcome;
   outcome.score = 100.0 / 3.0;
   outcome.target_reached = true;
   outcome.parts = {{"target", "Distance to the target", 0.1, "mm", 29.5, 30.0}, {"time", "Time", 12.25, "s", 10, 10}};
   outcome.hints = {"Hold the needle nearer to 30°", "\"quoted\" \\ \n second line"};
-  BiopsyCore core;
+  tasks::BiopsyCore core;
   core.tip_P = {0.1, 0.2, 0.3};
   core.axis_P = {0, 0, -1};
   core.pieces = {{"liver", "liver", 0.0, 7.1}, {"lesion_1", "liver_lesion", 7.1, 19.0}};
@@ -103,35 +104,35 @@ inline Outcome example_outcome() {
 
 /// Writes a session of `ticks` samples, finished, with the transducer at every tenth; the gun was fired at sample 5.
 inline void write_example(const std::filesystem::path& path, std::size_t ticks) {
-  auto writer = SessionWriter::create(path, example_info());
+  auto writer = storage::SessionWriter::create(path, example_info());
   ASSERT_TRUE(writer) << writer.error().text();
   for (std::size_t n = 0; n < ticks; ++n) {
-    const TickSample sample = example_sample(n);
+    const telemetry::TickSample sample = example_sample(n);
     ASSERT_TRUE(writer->append(sample));
     if (n == 3) {
-      ASSERT_TRUE(writer->append(SessionParameters{3, sample.time_s, {"skin.fp=6"}, {}, "[tissues]\n"}));
+      ASSERT_TRUE(writer->append(storage::SessionParameters{3, sample.time_s, {"skin.fp=6"}, {}, "[tissues]\n"}));
     }
     if (n % 10 != 0) continue;
-    ASSERT_TRUE(writer->append(TransducerSample{sample.time_s, Pose(), 0.5}));
+    ASSERT_TRUE(writer->append(storage::TransducerSample{sample.time_s, Pose(), 0.5}));
   }
   const Status status = writer->finish(example_outcome(), ticks > 5 ? std::optional<std::size_t>(5) : std::nullopt);
   ASSERT_TRUE(status) << status.error().text();
 }
 
 /// All fields of a sample, bit by bit.
-inline std::vector<std::uint64_t> bits_of(const TickSample& sample) {
+inline std::vector<std::uint64_t> bits_of(const telemetry::TickSample& sample) {
   std::vector<std::uint64_t> bits;
-  storage_detail::visit_stored_columns(sample, [&](const char*, const auto& field) {
-    if constexpr (storage_detail::kIsReal<std::remove_cvref_t<decltype(field)>>)
+  storage::detail::visit_stored_columns(sample, [&](const char*, const auto& field) {
+    if constexpr (storage::detail::kIsReal<std::remove_cvref_t<decltype(field)>>)
       bits.push_back(std::bit_cast<std::uint64_t>(field));
     else
       bits.push_back(static_cast<std::uint64_t>(field));
   });
-  for (const TickEvent& event : sample.events) {
+  for (const telemetry::TickEvent& event : sample.events) {
     bits.push_back(static_cast<std::uint64_t>(event.kind));
     bits.push_back(event.id);
   }
   return bits;
 }
 
-}  // namespace trocar::test
+}  // namespace trocar::testing

@@ -9,13 +9,13 @@
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"
 
-namespace trocar {
+namespace trocar::storage {
 namespace {
 
 namespace fs = std::filesystem;
-using test::example_info;
-using test::example_outcome;
-using test::example_sample;
+using testing::example_info;
+using testing::example_outcome;
+using testing::example_sample;
 
 /// Runs `work` in a process of its own and returns how that ended (waitpid's status).
 template <class Work>
@@ -36,7 +36,7 @@ void write_and_die(const fs::path& path, std::size_t ticks, double time_step_s, 
   info.rate_hz = rate_hz;
   auto writer = SessionWriter::create(path, info);
   for (std::size_t n = 0; writer && n < ticks; ++n) {
-    TickSample sample = example_sample(n);
+    telemetry::TickSample sample = example_sample(n);
     sample.time_s = time_step_s * static_cast<double>(n);
     if (!writer->append(sample)) ::_exit(3);
   }
@@ -197,7 +197,7 @@ TEST(IncompleteSession, NothingElseIsSetAside) {
   const TemporaryFolder folder;
   const fs::path path = folder / "s.session";
   EXPECT_FALSE(set_aside_incomplete_session(path).value());  // nothing there
-  test::write_example(path, 600);
+  testing::write_example(path, 600);
   EXPECT_FALSE(set_aside_incomplete_session(path).value());  // finished
   EXPECT_TRUE(load_session(path));
   std::ofstream(folder / "text") << "not a session";
@@ -232,4 +232,4 @@ TEST(SessionCrash, ADiskThatIsFullAtTheEndIsAnError) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::storage

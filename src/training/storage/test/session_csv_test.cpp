@@ -10,11 +10,11 @@
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"
 
-namespace trocar {
+namespace trocar::storage {
 namespace {
 
-using test::example_info;
-using test::example_sample;
+using testing::example_info;
+using testing::example_sample;
 
 /// The columns as promised to scripts: spelled out here on purpose.
 constexpr const char* kHeader =
@@ -58,7 +58,7 @@ TEST(SessionCsv, PutsEachFieldUnderItsName) {
   const Session session = example_session(4);
   const auto rows = exported_rows(session);
   ASSERT_EQ(rows.size(), 5u);
-  const TickSample& s = session.samples[3];
+  const telemetry::TickSample& s = session.samples[3];
   const auto field = [&](const std::string& name) {
     for (std::size_t c = 0; c < rows[0].size(); ++c)
       if (rows[0][c] == name) return rows[4][c];
@@ -118,8 +118,8 @@ TEST(SessionCsv, QuotesNamesThatHoldCommas) {
 
 TEST(SessionCsv, NamesAnIdThatTheTableLacks) {
   SessionInfo info = example_info();
-  TickSample sample;
-  sample.events[0] = {EventKind::kPuncture, 200};
+  telemetry::TickSample sample;
+  sample.events[0] = {telemetry::EventKind::kPuncture, 200};
   EXPECT_EQ(event_text(info, sample), "puncture:#200");
 }
 
@@ -130,4 +130,4 @@ TEST(SessionCsv, LeavesNothingHalfWritten) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::storage

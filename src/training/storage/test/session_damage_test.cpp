@@ -9,19 +9,19 @@
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"
 
-namespace trocar {
+namespace trocar::storage {
 namespace {
 
 namespace fs = std::filesystem;
-using test::bits_of;
-using test::example_info;
-using test::example_outcome;
-using test::example_sample;
-using test::write_example;
+using testing::bits_of;
+using testing::example_info;
+using testing::example_outcome;
+using testing::example_sample;
+using testing::write_example;
 
 void change(const fs::path& path, const std::vector<std::string>& statements) {
   soci::session database;
-  storage_detail::open_database(database, path);
+  detail::open_database(database, path);
   for (const std::string& statement : statements) database << statement;
 }
 
@@ -94,7 +94,7 @@ FlipCounts flip_bits(std::size_t files, std::size_t flips, std::uint64_t seed) {
     ++(session->damage.empty() ? counts.whole : counts.partly);
     expect_right_samples(*session, kTicks);
     if (session->damage.empty()) expect_same_case(*session);
-    if (testing::Test::HasFatalFailure()) {
+    if (::testing::Test::HasFatalFailure()) {
       ADD_FAILURE() << "file " << n << " of seed " << seed;
       break;
     }
@@ -240,7 +240,7 @@ TEST(SessionDamage, RefusesLongTextsUnread) {
 TEST(SessionDamage, BoundsTheWorkOfAQuery) {
   const TemporaryFolder folder;
   write_example(folder / "s.trocar", 600);
-  storage_detail::GuardedDatabase database(folder / "s.trocar");
+  detail::GuardedDatabase database(folder / "s.trocar");
   const auto count_endlessly = [&] {
     long long rows = 0;
     database.session() << "WITH RECURSIVE c(x) AS (SELECT 0 UNION ALL SELECT x + 1 FROM c) SELECT count(*) FROM c",
@@ -253,7 +253,7 @@ TEST(SessionDamage, BoundsTheWorkOfAQuery) {
 TEST(SessionDamage, ChangesNothing) {
   const TemporaryFolder folder;
   write_example(folder / "s.trocar", 600);
-  storage_detail::GuardedDatabase database(folder / "s.trocar");
+  detail::GuardedDatabase database(folder / "s.trocar");
   EXPECT_ANY_THROW(database.session() << "DELETE FROM ticks");
   EXPECT_ANY_THROW(database.session() << "SELECT * FROM session_rows");
 }
@@ -290,4 +290,4 @@ TEST(SessionDamage, TheCsvMarksGapsAndIncompleteSessions) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::storage

@@ -12,14 +12,14 @@
 #include "storage/detail/database.h"
 #include "storage/test/example_session.h"
 
-namespace trocar {
+namespace trocar::storage {
 namespace {
 
 namespace fs = std::filesystem;
-using test::bits_of;
-using test::example_info;
-using test::example_outcome;
-using test::example_sample;
+using testing::bits_of;
+using testing::example_info;
+using testing::example_outcome;
+using testing::example_sample;
 
 void write_bytes(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
@@ -87,7 +87,7 @@ TEST(SessionFile, GivesTheOutcomeBack) {
   ASSERT_TRUE(session) << session.error().text();
   ASSERT_TRUE(session->outcome);
   EXPECT_EQ(session->fired, std::optional<std::size_t>(5));
-  const Outcome expected = example_outcome();
+  const tasks::Outcome expected = example_outcome();
   EXPECT_EQ(session->outcome->score, expected.score);
   EXPECT_TRUE(session->outcome->target_reached);
   EXPECT_EQ(session->outcome->hints, expected.hints);
@@ -110,13 +110,13 @@ TEST(SessionFile, GivesTheOutcomeBack) {
 
 TEST(SessionFile, KeepsNumbersThatAreNone) {
   const TemporaryFolder folder;
-  TickSample sample = example_sample(0);
+  telemetry::TickSample sample = example_sample(0);
   sample.f_prepuncture_n = std::numeric_limits<double>::quiet_NaN();
   sample.f_total_n[1] = std::numeric_limits<double>::infinity();
   sample.f_total_n[2] = -std::numeric_limits<double>::infinity();
   sample.depth_mm = std::numeric_limits<double>::denorm_min();
   sample.f_cutting_n = -0.0;
-  Outcome outcome = example_outcome();
+  tasks::Outcome outcome = example_outcome();
   outcome.score = std::numeric_limits<double>::quiet_NaN();
   {
     auto writer = SessionWriter::create(folder / "s.trocar", example_info());
@@ -125,7 +125,7 @@ TEST(SessionFile, KeepsNumbersThatAreNone) {
   }
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
-  const TickSample& read = session->samples[0];
+  const telemetry::TickSample& read = session->samples[0];
   EXPECT_TRUE(std::isnan(read.f_prepuncture_n));
   EXPECT_EQ(read.f_total_n[1], std::numeric_limits<double>::infinity());
   EXPECT_EQ(read.f_total_n[2], -std::numeric_limits<double>::infinity());
@@ -187,7 +187,7 @@ TEST(SessionFile, RefusesANewerFormat) {
   write_session(folder / "s.trocar", 3);
   {
     soci::session database;
-    storage_detail::open_database(database, folder / "s.trocar");
+    detail::open_database(database, folder / "s.trocar");
     database << "PRAGMA user_version = 2";
   }
   EXPECT_NE(refusal(folder / "s.trocar").find("has format 2, this program reads up to 1"), std::string::npos);
@@ -197,7 +197,7 @@ TEST(SessionFile, RefusesADatabaseThatIsNoSession) {
   const TemporaryFolder folder;
   {
     soci::session database;
-    storage_detail::open_database(database, folder / "other.db");
+    detail::open_database(database, folder / "other.db");
     database << "CREATE TABLE ticks (tick INTEGER)";
   }
   EXPECT_NE(refusal(folder / "other.db").find("is a database, but not a session"), std::string::npos);
@@ -259,7 +259,7 @@ TEST(SessionFile, RefusesIdsOutOfRange) {
     write_session(path, 10);
     {
       soci::session database;
-      storage_detail::open_database(database, path);
+      detail::open_database(database, path);
       database << damage;
     }
     EXPECT_NE(refusal(path), "opened") << damage;
@@ -272,7 +272,7 @@ TEST(SessionFile, SessionsOfOlderProgramsLackTheGateAndOpen) {
   write_session(folder / "s.trocar", 10);
   {
     soci::session database;
-    storage_detail::open_database(database, folder / "s.trocar");
+    detail::open_database(database, folder / "s.trocar");
     for (const char* newer : {"VIEW session_rows", "TABLE checksums", "TABLE tick_blocks"})
       database << std::string("DROP ") + newer;
     for (const char* column : {"device_tau_x_nmm", "device_tau_y_nmm", "device_tau_z_nmm", "gate_mode", "gate_fault",
@@ -284,7 +284,7 @@ TEST(SessionFile, SessionsOfOlderProgramsLackTheGateAndOpen) {
   ASSERT_EQ(session->samples.size(), 10u);
   EXPECT_EQ(session->samples[7].device_f_n, example_sample(7).device_f_n);
   EXPECT_EQ(session->samples[7].device_tau_nmm, Vec3(Vec3::Zero()));
-  EXPECT_EQ(session->samples[7].gate_mode, GateMode::kAbsent);
+  EXPECT_EQ(session->samples[7].gate_mode, telemetry::GateMode::kAbsent);
   EXPECT_EQ(session->samples[7].coupling_share, 1.0);
 }
 
@@ -292,7 +292,7 @@ TEST(SessionFile, ShowsNamesInItsView) {
   const TemporaryFolder folder;
   write_session(folder / "s.trocar", 10);
   soci::session database;
-  storage_detail::open_database(database, folder / "s.trocar");
+  detail::open_database(database, folder / "s.trocar");
   std::string tissue;
   std::string phase;
   std::string event;
@@ -306,4 +306,4 @@ TEST(SessionFile, ShowsNamesInItsView) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::storage

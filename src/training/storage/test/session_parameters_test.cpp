@@ -7,15 +7,15 @@
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"
 
-namespace trocar {
+namespace trocar::storage {
 namespace {
 
-using test::example_info;
-using test::example_outcome;
-using test::example_sample;
+using testing::example_info;
+using testing::example_outcome;
+using testing::example_sample;
 
-TickSample sample_at(std::size_t n) {
-  TickSample sample = example_sample(n);
+telemetry::TickSample sample_at(std::size_t n) {
+  telemetry::TickSample sample = example_sample(n);
   sample.time_s = 0.001 * static_cast<double>(n);
   return sample;
 }
@@ -23,7 +23,7 @@ TickSample sample_at(std::size_t n) {
 const SessionParameters kFirst{0, 0.0, {}, {"force_model=insertion", "coupling.stiffness=1"}, "[skin]\nfp = 2.8\n"};
 const SessionParameters kChanged{
     7, 0.007, {"skin.fp=6", "coupling.stiffness=0.5"}, {"force_model=insertion", "coupling.stiffness=0.5"}, "other\n"};
-const Interruption kGap{0.004, 0.009, "the needle's server was away"};
+const tasks::Interruption kGap{0.004, 0.009, "the needle's server was away"};
 
 void write_session(const std::filesystem::path& path) {
   auto writer = SessionWriter::create(path, example_info());
@@ -90,7 +90,7 @@ TEST(SessionParametersFile, ShowsThemInTheEventColumnOfCsvAndView) {
   EXPECT_EQ(events[1].find("set:"), std::string::npos) << "nothing was set before the start";
 
   soci::session database;
-  storage_detail::open_database(database, folder / "s.trocar");
+  detail::open_database(database, folder / "s.trocar");
   std::vector<std::string> shown(20);
   database << "SELECT event FROM session_rows", soci::into(shown);
   EXPECT_EQ(shown, std::vector<std::string>(events.begin() + 1, events.end()));
@@ -101,7 +101,7 @@ TEST(SessionParametersFile, OpensSessionsOfOlderPrograms) {
   write_session(folder / "s.trocar");
   {
     soci::session database;
-    storage_detail::open_database(database, folder / "s.trocar");
+    detail::open_database(database, folder / "s.trocar");
     for (const char* statement :
          {"DROP VIEW session_rows", "DROP TABLE parameters", "DROP TABLE interruptions", "DROP TABLE tick_blocks",
           "DROP TABLE checksums", "DELETE FROM info WHERE key IN ('task_toml', 'device_preset')"})
@@ -120,7 +120,7 @@ TEST(SessionParametersFile, RefusesAChangeBeyondTheTicks) {
   write_session(folder / "s.trocar");
   {
     soci::session database;
-    storage_detail::open_database(database, folder / "s.trocar");
+    detail::open_database(database, folder / "s.trocar");
     database << "UPDATE parameters SET tick = 12 WHERE tick = 7";
   }
   const auto session = load_session(folder / "s.trocar");
@@ -135,7 +135,7 @@ TEST(SessionParametersFile, MissesNoChangeUnnoticed) {
     write_session(folder / "s.trocar");
     {
       soci::session database;
-      storage_detail::open_database(database, folder / "s.trocar");
+      detail::open_database(database, folder / "s.trocar");
       database << "DROP VIEW session_rows";
       database << statement;
     }
@@ -144,4 +144,4 @@ TEST(SessionParametersFile, MissesNoChangeUnnoticed) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::storage

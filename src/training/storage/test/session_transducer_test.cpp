@@ -7,7 +7,7 @@
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"
 
-namespace trocar {
+namespace trocar::storage {
 namespace {
 
 namespace fs = std::filesystem;
@@ -22,7 +22,7 @@ TransducerSample example_transducer(std::size_t n) {
 }
 
 SessionWriter begin(const fs::path& path) {
-  auto writer = SessionWriter::create(path, test::example_info());
+  auto writer = SessionWriter::create(path, testing::example_info());
   EXPECT_TRUE(writer) << (writer ? "" : writer.error().text());
   return *std::move(writer);
 }
@@ -31,15 +31,15 @@ SessionWriter begin(const fs::path& path) {
 void write_session(const fs::path& path, std::size_t moments) {
   SessionWriter writer = begin(path);
   for (std::size_t n = 0; n < moments; ++n) {
-    ASSERT_TRUE(writer.append(test::example_sample(10 * n)));
+    ASSERT_TRUE(writer.append(testing::example_sample(10 * n)));
     ASSERT_TRUE(writer.append(example_transducer(n)));
   }
-  ASSERT_TRUE(writer.finish(test::example_outcome(), {}));
+  ASSERT_TRUE(writer.finish(testing::example_outcome(), {}));
 }
 
 void change(const fs::path& path, const char* statement) {
   soci::session database;
-  storage_detail::open_database(database, path);
+  detail::open_database(database, path);
   database << statement;
 }
 
@@ -81,7 +81,7 @@ TEST(SessionTransducer, LeavesOutWhatIsNoPoseOrNotLater) {
     for (const TransducerSample& sample :
          {example_transducer(1), example_transducer(1), example_transducer(0), broken, example_transducer(4)})
       ASSERT_TRUE(writer.append(sample));
-    ASSERT_TRUE(writer.finish(test::example_outcome(), {}));
+    ASSERT_TRUE(writer.finish(testing::example_outcome(), {}));
   }
   const auto session = load_session(folder / "s.trocar");
   ASSERT_TRUE(session) << session.error().text();
@@ -106,8 +106,8 @@ TEST(SessionTransducer, DoesNotMakeTheFormatANewerOne) {
   const TemporaryFolder folder;
   write_session(folder / "s.trocar", 2);
   soci::session database;
-  storage_detail::open_database(database, folder / "s.trocar");
-  EXPECT_EQ(storage_detail::pragma_integer(database, "user_version"), 1);  // older programs still read its ticks
+  detail::open_database(database, folder / "s.trocar");
+  EXPECT_EQ(detail::pragma_integer(database, "user_version"), 1);  // older programs still read its ticks
 }
 
 TEST(SessionTransducer, WhatIsNoPoseIsRefused) {
@@ -124,4 +124,4 @@ TEST(SessionTransducer, WhatIsNoPoseIsRefused) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::storage

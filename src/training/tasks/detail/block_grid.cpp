@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-namespace trocar::detail {
+namespace trocar::tasks::detail {
 
 IndexBox united(const IndexBox& a, const IndexBox& b) noexcept {
   if (a.is_empty()) return b;
@@ -15,7 +15,7 @@ IndexBox united(const IndexBox& a, const IndexBox& b) noexcept {
   return box;
 }
 
-IndexBox grown(const IndexBox& box, const Index3& voxels) noexcept {
+IndexBox grown(const IndexBox& box, const volume::Index3& voxels) noexcept {
   IndexBox result = box;
   for (std::size_t n = 0; n < 3; ++n) {
     result.low[n] -= voxels[n];
@@ -28,7 +28,7 @@ IndexBox grown(const IndexBox& box, std::int64_t voxels) noexcept {
   return grown(box, {voxels, voxels, voxels});
 }
 
-IndexBox clipped(const IndexBox& box, const GridGeometry& geometry) noexcept {
+IndexBox clipped(const IndexBox& box, const volume::GridGeometry& geometry) noexcept {
   IndexBox result = box;
   for (std::size_t n = 0; n < 3; ++n) {
     result.low[n] = std::max<std::int64_t>(box.low[n], 0);
@@ -37,7 +37,7 @@ IndexBox clipped(const IndexBox& box, const GridGeometry& geometry) noexcept {
   return result;
 }
 
-IndexBox box_around(const GridGeometry& geometry, const Vec3& p_P, double radius_mm) noexcept {
+IndexBox box_around(const volume::GridGeometry& geometry, const Vec3& p_P, double radius_mm) noexcept {
   const Vec3 index = geometry.to_index(p_P);
   IndexBox box;
   for (int a = 0; a < 3; ++a) {
@@ -48,10 +48,10 @@ IndexBox box_around(const GridGeometry& geometry, const Vec3& p_P, double radius
   return box;
 }
 
-LabelBoxes find_label_boxes(const LabelGrid& labels) {
+LabelBoxes find_label_boxes(const volume::LabelGrid& labels) {
   LabelBoxes all;
   std::mutex mutex;
-  const Index3 size = labels.geometry.size;
+  const volume::Index3 size = labels.geometry.size;
   parallel_for(static_cast<std::size_t>(size[2]), 8, [&](std::size_t begin, std::size_t end) {
     LabelBoxes part;
     const auto add = [&](std::uint8_t id, const IndexBox& run, std::int64_t length) {
@@ -76,14 +76,14 @@ LabelBoxes find_label_boxes(const LabelGrid& labels) {
   return all;
 }
 
-Index3 blocks_factor(const GridGeometry& geometry, double cell_mm) noexcept {
-  Index3 factor{};
+volume::Index3 blocks_factor(const volume::GridGeometry& geometry, double cell_mm) noexcept {
+  volume::Index3 factor{};
   for (int a = 0; a < 3; ++a)
     factor[static_cast<std::size_t>(a)] = std::max<std::int64_t>(1, std::llround(cell_mm / geometry.spacing_mm[a]));
   return factor;
 }
 
-BlockGrid make_blocks(const GridGeometry& geometry, const IndexBox& box, double cell_mm) {
+BlockGrid make_blocks(const volume::GridGeometry& geometry, const IndexBox& box, double cell_mm) {
   BlockGrid blocks;
   blocks.first = box.low;
   blocks.factor = blocks_factor(geometry, cell_mm);
@@ -101,4 +101,4 @@ BlockGrid make_blocks(const GridGeometry& geometry, const IndexBox& box, double 
   return blocks;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::tasks::detail

@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 constexpr double kTremorLow_hz = 8.0;  // band: Lakie 2015 (6-12 Hz), Murbe 2001 (mean 8.1 Hz)
@@ -76,7 +76,7 @@ void GuidedHand::sense(const OperatorView& view) noexcept {
   tip_mm_ = (view.last.tip_mm - start_P_).dot(axis_P_);
   const Vec3 felt_P = view.last.device_f_n - view.last.f_weight_n;  // the rest of it only carries the stylus
   push_n_ += (-felt_P.dot(axis_P_) - push_n_) * smoothing(view.dt_s, kFeeling_s);
-  is_touching_ = push_n_ > kTouch_n || view.last.phase != InsertionPhase::kOutside;
+  is_touching_ = push_n_ > kTouch_n || view.last.phase != telemetry::InsertionPhase::kOutside;
 
   peak_push_n_ = std::max(peak_push_n_, push_n_);
   if (peak_push_n_ - push_n_ > std::max(kLeastDrop_n, kDropShare * peak_push_n_)) {
@@ -101,4 +101,4 @@ HandCommand GuidedHand::command() const noexcept {
   return command;
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

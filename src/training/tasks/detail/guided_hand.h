@@ -8,7 +8,7 @@
 #include "geometry/segment.h"
 #include "tasks/operator.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// Involuntary movement of the hand: a few sines in the physiological band on each axis, a function of time alone.
 class Tremor {
@@ -86,4 +86,4 @@ class StallWatch {
   double gained_s_ = 0.0;
 };
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -8,7 +8,7 @@
 #include "anatomy/direction_words.h"
 #include "anatomy/structure_words.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 constexpr double kMatters = 0.1;          // share of a part's points that must be lost before it is spoken of
@@ -33,7 +33,7 @@ double lost(const HintSubject& subject, std::string_view name) {
 }
 
 std::string target_name(const HintSubject& subject) {
-  return subject.is_parenchymal ? structure_words(subject.task.organ) + " tissue" : "lesion";
+  return subject.is_parenchymal ? anatomy::structure_words(subject.task.organ) + " tissue" : "lesion";
 }
 
 /// "5 mm short of it and 4 mm too far towards the feet", and what to do about it.
@@ -44,7 +44,8 @@ struct Correction {
 Correction correct(const Vec3& offset_P, const Vec3& path_direction_P) {
   const double deeper_mm = offset_P.dot(path_direction_P);
   const Vec3 sideways_P = offset_P - deeper_mm * path_direction_P;
-  const double least_mm = std::max(kNameable, kSecondDirection * std::max(std::abs(deeper_mm), sideways_P.norm()));
+  const double least_mm =
+      std::max(kNameable, anatomy::kSecondDirection * std::max(std::abs(deeper_mm), sideways_P.norm()));
   std::vector<std::string> deviations;
   std::vector<std::string> advice;
   if (std::abs(deeper_mm) >= least_mm) {
@@ -54,8 +55,8 @@ Correction correct(const Vec3& offset_P, const Vec3& path_direction_P) {
                                      : fmt::format("stop {:.0f} mm earlier", deeper_mm));
   }
   if (sideways_P.norm() >= least_mm) {
-    deviations.push_back(direction_words(sideways_P, " mm too far"));
-    advice.push_back("aim " + direction_words(-sideways_P, " mm further"));
+    deviations.push_back(anatomy::direction_words(sideways_P, " mm too far"));
+    advice.push_back("aim " + anatomy::direction_words(-sideways_P, " mm further"));
   }
   return {fmt::format("{}", fmt::join(deviations, ", ")), fmt::format("{}", fmt::join(advice, ", "))};
 }
@@ -99,13 +100,13 @@ void add_path_hints(const HintSubject& subject, std::vector<Hint>& hints) {
   const AttemptMetrics& metrics = subject.metrics;
   if (const double points = lost(subject, "entry"); points > 0.0)
     hints.push_back({points, fmt::format("The insertion point was {}: move the needle {} before you insert it.",
-                                         direction_words(metrics.entry_offset_P, " mm too far"),
-                                         direction_words(-metrics.entry_offset_P, " mm"))});
+                                         anatomy::direction_words(metrics.entry_offset_P, " mm too far"),
+                                         anatomy::direction_words(-metrics.entry_offset_P, " mm"))});
   if (const double points = lost(subject, "angle"); points > 0.0) {
     const Vec3 tilt_deg = metrics.angle_deg * (metrics.axis_P - subject.plan.line_P.direction()).normalized();
-    hints.push_back(
-        {points, fmt::format("The needle pointed {}: tilt it so that its tip points {}.",
-                             direction_words(tilt_deg, "° too far"), direction_words(-tilt_deg, "° further"))});
+    hints.push_back({points, fmt::format("The needle pointed {}: tilt it so that its tip points {}.",
+                                         anatomy::direction_words(tilt_deg, "° too far"),
+                                         anatomy::direction_words(-tilt_deg, "° further"))});
   }
 }
 
@@ -113,12 +114,12 @@ void add_risk_hints(const HintSubject& subject, std::vector<Hint>& hints) {
   for (const RiskTouch& touch : subject.metrics.risks)
     hints.push_back({touch.penalty, fmt::format("The needle touched a structure at risk, {}, {:.0f} mm below the skin: "
                                                 "find it in the image and keep clear of it.",
-                                                structure_words(touch.label), touch.depth_mm)});
+                                                anatomy::structure_words(touch.label), touch.depth_mm)});
   for (const RiskTouch& touch : subject.stylet_risks)
     hints.push_back(
         {touch.penalty, fmt::format("The stylet shot into a structure at risk, {}: look {:.0f} mm beyond the "
                                     "tip before you fire.",
-                                    structure_words(touch.label), subject.needle.throw_mm)});
+                                    anatomy::structure_words(touch.label), subject.needle.throw_mm)});
 }
 
 /// Travel beyond the path's length is either repeated after a retraction or lies beyond the target.
@@ -175,4 +176,4 @@ std::vector<std::string> make_hints(const HintSubject& subject) {
   return texts;
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

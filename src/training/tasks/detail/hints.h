@@ -8,7 +8,7 @@
 #include "tasks/metrics.h"
 #include "tasks/score.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// All that a hint may speak of.
 struct HintSubject {
@@ -26,4 +26,4 @@ struct HintSubject {
 /// What to do better, as an instructor would say it, the costliest first; praise where nothing matters.
 std::vector<std::string> make_hints(const HintSubject& subject);
 
-}  // namespace trocar
+}  // namespace trocar::tasks

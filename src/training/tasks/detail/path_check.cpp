@@ -7,7 +7,7 @@
 #include "tasks/detail/block_grid.h"
 #include "volume/sampling.h"
 
-namespace trocar::detail {
+namespace trocar::tasks::detail {
 namespace {
 
 constexpr double kBorder_mm = 3.0;        ///< An entry this near to the volume's border may lie on a cut face.
@@ -19,7 +19,7 @@ constexpr double kMinMuscle_mm = 2.0;
 constexpr double kChunk_mm = 8.0;  ///< Of the path, for the exact margins.
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-bool is_near_border(const GridGeometry& geometry, const Vec3& p_P, double margin_mm) {
+bool is_near_border(const volume::GridGeometry& geometry, const Vec3& p_P, double margin_mm) {
   const Vec3 index = geometry.to_index(p_P);
   for (int a = 0; a < 3; ++a) {
     const double margin = margin_mm / geometry.spacing_mm[a];
@@ -30,8 +30,8 @@ bool is_near_border(const GridGeometry& geometry, const Vec3& p_P, double margin
 }
 
 /// Distance along `outward` to the skin; negative: not found before `reach_mm` or the volume's end.
-double distance_to_skin(const FloatGrid& skin_distance, const Vec3& start_P, const Vec3& outward, double reach_mm,
-                        PathVerdict& verdict) {
+double distance_to_skin(const volume::FloatGrid& skin_distance, const Vec3& start_P, const Vec3& outward,
+                        double reach_mm, PathVerdict& verdict) {
   double s = 0.0;
   double inside = 0.0;
   while (true) {
@@ -59,7 +59,7 @@ double distance_to_skin(const FloatGrid& skin_distance, const Vec3& start_P, con
 /// Tells the nearest risk voxel around one piece of the path; `findings` keeps the smallest clearance. Stops at the
 /// first margin that is not kept.
 void look_around(const PlanningMap& map, const Segment& piece, PathFindings& findings) {
-  const GridGeometry& geometry = map.patient.labels.geometry;
+  const volume::GridGeometry& geometry = map.patient.labels.geometry;
   const double half_voxel = 0.5 * geometry.spacing_mm.norm();
   const double radius = map.largest_margin_mm + findings.spare_margin_mm + half_voxel;
   const IndexBox box =
@@ -163,7 +163,7 @@ class Walk {
 
 }  // namespace
 
-Vec3 skin_normal(const FloatGrid& skin_distance, const Vec3& p_P) {
+Vec3 skin_normal(const volume::FloatGrid& skin_distance, const Vec3& p_P) {
   Vec3 slope;
   for (int a = 0; a < 3; ++a) {
     Vec3 step = Vec3::Zero();
@@ -173,7 +173,7 @@ Vec3 skin_normal(const FloatGrid& skin_distance, const Vec3& p_P) {
   return slope.norm() > 0.0 ? Vec3(slope.normalized()) : Vec3::Zero();
 }
 
-double segment_box_distance_mm(const Segment& segment, const GridGeometry& geometry, const Vec3& centre_P) {
+double segment_box_distance_mm(const Segment& segment, const volume::GridGeometry& geometry, const Vec3& centre_P) {
   // Alternating projections converge fast at this size.
   const Vec3 half = 0.5 * geometry.spacing_mm;
   Vec3 on_box = centre_P;
@@ -187,7 +187,7 @@ double segment_box_distance_mm(const Segment& segment, const GridGeometry& geome
 }
 
 PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec3& target_P, const Vec3& outward) {
-  const FloatGrid& skin_distance = map.patient.skin_distance_mm;
+  const volume::FloatGrid& skin_distance = map.patient.skin_distance_mm;
   PathCandidate path;
   const double ahead = needle.notch_middle_mm();
   const double longest = std::min(map.task.max_path_mm, needle.length_mm - kHubReserve_mm);
@@ -235,4 +235,4 @@ PathFindings check_path(const PlanningMap& map, const Needle& needle, const Path
   return findings;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::tasks::detail

@@ -5,7 +5,7 @@
 #include "tasks/detail/planning_map.h"
 #include "tasks/needle.h"
 
-namespace trocar::detail {
+namespace trocar::tasks::detail {
 
 /// Why a line is no path. The first ones have to do with the skin alone.
 enum class PathVerdict : std::uint8_t {
@@ -36,10 +36,10 @@ struct PathCandidate {
 PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec3& target_P, const Vec3& outward);
 
 /// Outward normal of the skin at a point of P, over a few voxels; zero where the distance has no slope.
-Vec3 skin_normal(const FloatGrid& skin_distance, const Vec3& p_P);
+Vec3 skin_normal(const volume::FloatGrid& skin_distance, const Vec3& p_P);
 
 /// Distance between a segment and the box of a voxel. mm.
-double segment_box_distance_mm(const Segment& segment, const GridGeometry& geometry, const Vec3& centre_P);
+double segment_box_distance_mm(const Segment& segment, const volume::GridGeometry& geometry, const Vec3& centre_P);
 
 /// What an exact look at a path finds.
 struct PathFindings {
@@ -55,4 +55,4 @@ inline constexpr double kReportedMargin_mm = 10.0;  ///< Upper bound of spare_ma
 /// Walks the path and the throw beyond it voxel by voxel: layers in order, organ passed, margins to the risk voxels.
 PathFindings check_path(const PlanningMap& map, const Needle& needle, const PathCandidate& path);
 
-}  // namespace trocar::detail
+}  // namespace trocar::tasks::detail

@@ -12,7 +12,7 @@
 #include "volume/distance.h"
 #include "volume/sampling.h"
 
-namespace trocar::detail {
+namespace trocar::tasks::detail {
 namespace {
 
 constexpr double kCell_mm = 2.5;           ///< Edge of the coarse cells, about.
@@ -21,7 +21,7 @@ constexpr std::size_t kMaxTargets = 48;
 constexpr std::size_t kMaxLesions = 16;
 constexpr double kLesionCore = 0.8;  ///< A lesion's middle: where it is deeper than this part of its greatest depth.
 
-Role role_of(const Task& task, const Label& label) {
+Role role_of(const Task& task, const anatomy::Label& label) {
   if (is_target(task, label)) return Role::kTarget;
   if (is_organ(task, label)) return Role::kOrgan;
   if (find_risk(task, label)) return Role::kForbidden;
@@ -32,12 +32,12 @@ Role role_of(const Task& task, const Label& label) {
 }
 
 /// The middle of one lesion: the centre of its deepest part, or its deepest voxel where the part is bent.
-Vec3 lesion_middle(const LabelGrid& labels, std::uint8_t id, const IndexBox& box) {
-  const MaskGrid mask = cut_mask(labels, grown(box, 1), [&](std::uint8_t label) { return label == id; });
-  const FloatGrid distance = signed_distance_mm(mask);
+Vec3 lesion_middle(const volume::LabelGrid& labels, std::uint8_t id, const IndexBox& box) {
+  const volume::MaskGrid mask = cut_mask(labels, grown(box, 1), [&](std::uint8_t label) { return label == id; });
+  const volume::FloatGrid distance = volume::signed_distance_mm(mask);
   const auto deepest = std::min_element(distance.voxels.begin(), distance.voxels.end());
   const auto point_of = [&](std::size_t n) {
-    const Index3 ijk = mask.geometry.index_of(n);
+    const volume::Index3 ijk = mask.geometry.index_of(n);
     return mask.geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])});
   };
   Vec3 sum = Vec3::Zero();
@@ -48,29 +48,29 @@ Vec3 lesion_middle(const LabelGrid& labels, std::uint8_t id, const IndexBox& box
     count += 1.0;
   }
   const Vec3 middle = sum / count;
-  if (sample_nearest(labels, middle, std::uint8_t{0}) == id) return middle;
+  if (volume::sample_nearest(labels, middle, std::uint8_t{0}) == id) return middle;
   return point_of(static_cast<std::size_t>(deepest - distance.voxels.begin()));
 }
 
 /// Points of the organ deep enough below its surface and far enough from vessels, on coarse cells.
 std::vector<Vec3> parenchymal_points(const PlanningMap& map, const IndexBox& organ_box) {
-  const LabelGrid& labels = map.patient.labels;
+  const volume::LabelGrid& labels = map.patient.labels;
   std::array<bool, 256> is_inside{};
   std::array<bool, 256> is_vessel{};
-  for (const Label& label : map.patient.label_table.labels) {
+  for (const anatomy::Label& label : map.patient.label_table.labels) {
     is_vessel[label.id] = label.tissue == "vessel";
     is_inside[label.id] = is_organ(map.task, label) || is_vessel[label.id];
   }
   // One cell around the organ, even beyond the volume: what is not seen is not the organ.
   const BlockGrid blocks =
       make_blocks(labels.geometry, grown(organ_box, blocks_factor(labels.geometry, kCell_mm)), kCell_mm);
-  const MaskGrid outside = block_mask(
+  const volume::MaskGrid outside = block_mask(
       labels, blocks, [&](std::uint8_t id) { return !is_inside[id]; }, /*beyond=*/true);
-  const MaskGrid vessels = block_mask(
+  const volume::MaskGrid vessels = block_mask(
       labels, blocks, [&](std::uint8_t id) { return is_vessel[id]; }, false);
-  const FloatGrid depth = distance_to_mask_mm(outside);
+  const volume::FloatGrid depth = volume::distance_to_mask_mm(outside);
   const bool has_vessels = std::find(vessels.voxels.begin(), vessels.voxels.end(), 1) != vessels.voxels.end();
-  const FloatGrid to_vessel = has_vessels ? distance_to_mask_mm(vessels) : FloatGrid();
+  const volume::FloatGrid to_vessel = has_vessels ? volume::distance_to_mask_mm(vessels) : volume::FloatGrid();
   std::vector<Vec3> points;
   for (std::size_t n = 0; n < depth.voxels.size(); ++n) {
     if (static_cast<double>(depth.voxels[n]) < map.task.parenchymal_depth_mm + blocks.half_diagonal_mm) continue;
@@ -83,9 +83,10 @@ std::vector<Vec3> parenchymal_points(const PlanningMap& map, const IndexBox& org
 }
 
 /// At most kMaxTargets of the points, the ones nearest to the skin, some way apart.
-std::vector<Vec3> spread_targets(const std::vector<Vec3>& points, const FloatGrid& skin_distance) {
+std::vector<Vec3> spread_targets(const std::vector<Vec3>& points, const volume::FloatGrid& skin_distance) {
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t n = 0; n < points.size(); ++n) order.emplace_back(-sample_linear(skin_distance, points[n]), n);
+  for (std::size_t n = 0; n < points.size(); ++n)
+    order.emplace_back(-volume::sample_linear(skin_distance, points[n]), n);
   std::sort(order.begin(), order.end());
   std::vector<Vec3> chosen;
   for (const auto& [depth, n] : order) {
@@ -101,12 +102,12 @@ std::vector<Vec3> spread_targets(const std::vector<Vec3>& points, const FloatGri
 }  // namespace
 
 Role PlanningMap::role_at(const Vec3& p_P) const noexcept {
-  return roles[sample_nearest(patient.labels, p_P, std::uint8_t{0})];
+  return roles[volume::sample_nearest(patient.labels, p_P, std::uint8_t{0})];
 }
 
-PlanningMap make_planning_map(const Task& task, const VirtualPatient& patient) {
+PlanningMap make_planning_map(const Task& task, const anatomy::VirtualPatient& patient) {
   PlanningMap map{task, patient};
-  for (const Label& label : patient.label_table.labels) {
+  for (const anatomy::Label& label : patient.label_table.labels) {
     map.roles[label.id] = role_of(task, label);
     if (map.roles[label.id] == Role::kForbidden) map.risks[label.id] = find_risk(task, label);
   }
@@ -114,7 +115,7 @@ PlanningMap make_planning_map(const Task& task, const VirtualPatient& patient) {
 }
 
 Result<PlanTargets> find_targets(const PlanningMap& map) {
-  const LabelGrid& labels = map.patient.labels;
+  const volume::LabelGrid& labels = map.patient.labels;
   if (map.task.target_P) {
     const Role role = map.role_at(*map.task.target_P);
     if (role == Role::kTarget || role == Role::kOrgan) return PlanTargets{{*map.task.target_P}, role == Role::kOrgan};
@@ -124,7 +125,7 @@ Result<PlanTargets> find_targets(const PlanningMap& map) {
   PlanTargets targets;
   std::vector<std::pair<std::size_t, std::uint8_t>> lesions;
   IndexBox organ_box;
-  for (const Label& label : map.patient.label_table.labels) {
+  for (const anatomy::Label& label : map.patient.label_table.labels) {
     if (boxes.voxels[label.id] == 0) continue;
     if (map.roles[label.id] == Role::kTarget) lesions.emplace_back(boxes.voxels[label.id], label.id);
     if (map.roles[label.id] == Role::kOrgan) organ_box = united(organ_box, boxes.boxes[label.id]);
@@ -146,23 +147,23 @@ Result<PlanTargets> find_targets(const PlanningMap& map) {
 }
 
 void measure_clearance(PlanningMap& map, const PlanTargets& targets, double reach_mm) {
-  const LabelGrid& labels = map.patient.labels;
+  const volume::LabelGrid& labels = map.patient.labels;
   IndexBox box;
   for (const Vec3& target : targets.points_P) box = united(box, box_around(labels.geometry, target, reach_mm));
   const BlockGrid blocks = make_blocks(labels.geometry, clipped(box, labels.geometry), kCell_mm);
   map.slack_mm = blocks.half_diagonal_mm;
-  map.clearance_mm = FloatGrid(blocks.geometry, std::numeric_limits<float>::infinity());
+  map.clearance_mm = volume::FloatGrid(blocks.geometry, std::numeric_limits<float>::infinity());
 
   // One distance map a margin, not one a structure.
   std::map<double, std::array<bool, 256>> ids_of_margin;
   for (std::size_t id = 0; id < map.risks.size(); ++id)
     if (map.risks[id]) ids_of_margin[map.risks[id]->margin_mm][id] = true;
   for (const auto& [margin, ids] : ids_of_margin) {
-    const MaskGrid mask = block_mask(
+    const volume::MaskGrid mask = block_mask(
         labels, blocks, [&set = ids](std::uint8_t id) { return set[id]; }, false);
     if (std::find(mask.voxels.begin(), mask.voxels.end(), 1) == mask.voxels.end()) continue;
     map.largest_margin_mm = std::max(map.largest_margin_mm, margin);
-    const FloatGrid distance = distance_to_mask_mm(mask);
+    const volume::FloatGrid distance = volume::distance_to_mask_mm(mask);
     for (std::size_t n = 0; n < distance.voxels.size(); ++n)
       map.clearance_mm.voxels[n] =
           std::min(map.clearance_mm.voxels[n], distance.voxels[n] - static_cast<float>(margin));
@@ -171,4 +172,4 @@ void measure_clearance(PlanningMap& map, const PlanTargets& targets, double reac
   for (float& clearance : map.clearance_mm.voxels) clearance = std::min(clearance, static_cast<float>(reach_mm));
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::tasks::detail

@@ -6,7 +6,7 @@
 #include "anatomy/patient.h"
 #include "tasks/task.h"
 
-namespace trocar::detail {
+namespace trocar::tasks::detail {
 
 /// What a label means to a needle on its way.
 enum class Role : std::uint8_t { kPassable, kMuscle, kOrgan, kTarget, kForbidden };
@@ -14,11 +14,11 @@ enum class Role : std::uint8_t { kPassable, kMuscle, kOrgan, kTarget, kForbidden
 /// Labels of a patient as a task sees them, and how far the risk structures are. References the task and the patient.
 struct PlanningMap {
   const Task& task;
-  const VirtualPatient& patient;
+  const anatomy::VirtualPatient& patient;
   std::array<Role, 256> roles{};
   std::array<const RiskStructure*, 256> risks{};  ///< By label id; nullptr: none.
   double largest_margin_mm = 0.0;                 ///< Of the risks that the patient shows.
-  FloatGrid clearance_mm{};                       ///< Coarse: distance to the nearest risk cell minus its margin.
+  volume::FloatGrid clearance_mm{};               ///< Coarse: distance to the nearest risk cell minus its margin.
   double slack_mm = 0.0;  ///< The coarse clearance may err by this (half the diagonal of a cell).
 
   Role role_at(const Vec3& p_P) const noexcept;
@@ -31,7 +31,7 @@ struct PlanTargets {
 };
 
 /// Roles and risks of the labels; no distances yet.
-PlanningMap make_planning_map(const Task& task, const VirtualPatient& patient);
+PlanningMap make_planning_map(const Task& task, const anatomy::VirtualPatient& patient);
 
 /// The deepest point of each lesion, largest first; without a lesion points of the organ at the task's depth and
 /// distance to vessels, those nearest to the skin first.
@@ -40,4 +40,4 @@ Result<PlanTargets> find_targets(const PlanningMap& map);
 /// Fills the clearance in the part of the volume that lies within `reach_mm` of a target.
 void measure_clearance(PlanningMap& map, const PlanTargets& targets, double reach_mm);
 
-}  // namespace trocar::detail
+}  // namespace trocar::tasks::detail

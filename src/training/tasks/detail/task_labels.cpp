@@ -1,11 +1,11 @@
 #include "tasks/detail/task_labels.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
-TaskLabels::TaskLabels(const Task& task, const VirtualPatient& patient) {
+TaskLabels::TaskLabels(const Task& task, const anatomy::VirtualPatient& patient) {
   const auto& labels = patient.label_table.labels;
-  is_parenchymal_ = trocar::is_parenchymal(task, patient);
-  for (const Label& label : labels) {
+  is_parenchymal_ = trocar::tasks::is_parenchymal(task, patient);
+  for (const anatomy::Label& label : labels) {
     if (is_target(task, label)) {
       parts_[label.id] = Part::kTarget;
     } else if (is_organ(task, label)) {
@@ -18,4 +18,4 @@ TaskLabels::TaskLabels(const Task& task, const VirtualPatient& patient) {
   }
 }
 
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -6,12 +6,12 @@
 #include "anatomy/patient.h"
 #include "tasks/task.h"
 
-namespace trocar {
+namespace trocar::tasks {
 
 /// What each label of a patient means to a task.
 class TaskLabels {
  public:
-  TaskLabels(const Task& task, const VirtualPatient& patient);
+  TaskLabels(const Task& task, const anatomy::VirtualPatient& patient);
 
   enum class Part : std::uint8_t { kOther, kTarget, kOrgan, kVessel };
   Part part(std::uint8_t label_id) const noexcept { return parts_[label_id]; }
@@ -28,4 +28,4 @@ class TaskLabels {
   bool is_parenchymal_ = true;
 };
 
-}  // namespace trocar
+}  // namespace trocar::tasks

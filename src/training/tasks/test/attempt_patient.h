@@ -9,18 +9,18 @@ namespace trocar::testing {
 /// A body of boxes, 100 mm wide and high, voxels of 1 mm: the skin is the plane y = 0, behind it (towards the back) fat
 /// to 10 mm, muscle to 20 mm, liver to 95 mm; in the liver a lesion (ball of 10 mm radius round (50, 60, 50)) and a
 /// vessel (x from 20 to 25); a rib in the muscle at z from 70 to 80.
-inline VirtualPatient make_box_patient(bool has_lesion = true) {
-  VirtualPatient patient;
-  GridGeometry geometry;
+inline anatomy::VirtualPatient make_box_patient(bool has_lesion = true) {
+  anatomy::VirtualPatient patient;
+  volume::GridGeometry geometry;
   geometry.size = {100, 115, 100};
   geometry.origin_P = {0.5, -14.5, 0.5};
-  patient.labels = LabelGrid(geometry);
-  patient.skin_distance_mm = FloatGrid(geometry);
+  patient.labels = volume::LabelGrid(geometry);
+  patient.skin_distance_mm = volume::FloatGrid(geometry);
   patient.label_table.labels = {{1, "fat", "adipose"},        {2, "muscle", "muscle"},
                                 {3, "liver", "liver"},        {4, "livertumor1", "liver_lesion"},
                                 {5, "portal_vein", "vessel"}, {6, "rib_right_9", "bone"}};
   for (std::size_t i = 0; i < geometry.voxel_count(); ++i) {
-    const Index3 ijk = geometry.index_of(i);
+    const volume::Index3 ijk = geometry.index_of(i);
     const Vec3 p_P =
         geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
     std::uint8_t label = 0;
@@ -36,8 +36,8 @@ inline VirtualPatient make_box_patient(bool has_lesion = true) {
 }
 
 /// The throw reaches 22 mm beyond the tip, the notch from 1 to 18 mm.
-inline Needle make_gun() {
-  Needle needle;
+inline tasks::Needle make_gun() {
+  tasks::Needle needle;
   needle.is_biopsy = true;
   needle.throw_mm = 22.0;
   needle.notch_mm = 17.0;
@@ -45,8 +45,8 @@ inline Needle make_gun() {
   return needle;
 }
 
-inline Task make_box_task() {
-  Task task;
+inline tasks::Task make_box_task() {
+  tasks::Task task;
   task.organ = "liver";
   task.target_tissues = {"liver_lesion"};
   task.risks = {{"vessel", "", 5.0, 20.0}, {"bone", "", 5.0, 15.0}};
@@ -54,14 +54,14 @@ inline Task make_box_task() {
 }
 
 /// Straight to the near side of the lesion: all of the notch lies in it.
-inline PlannedPath make_box_plan() {
-  PlannedPath plan;
+inline tasks::PlannedPath make_box_plan() {
+  tasks::PlannedPath plan;
   plan.line_P = {{50.0, 0.0, 50.0}, {50.0, 51.0, 50.0}};
   return plan;
 }
 
-inline TissueTable make_box_tissues() {
-  TissueTable tissues;
+inline anatomy::TissueTable make_box_tissues() {
+  anatomy::TissueTable tissues;
   tissues.layers.resize(2);
   tissues.layers[0].name = "muscle";
   tissues.layers[1].name = "skin";
@@ -71,7 +71,7 @@ inline TissueTable make_box_tissues() {
 /// An attempt along a straight line, a sample a ms: from 5 mm outside at 20 mm/s to the end and out again, with a
 /// puncture of the skin `dent_mm` behind the resting skin. `fired` is the sample at the end.
 struct Attempt {
-  std::vector<TickSample> samples;
+  std::vector<telemetry::TickSample> samples;
   std::size_t fired = 0;
 };
 inline Attempt make_attempt(const Segment& line_P, double dent_mm = 0.6) {
@@ -79,18 +79,18 @@ inline Attempt make_attempt(const Segment& line_P, double dent_mm = 0.6) {
   const double length_mm = line_P.length_mm();
   bool is_inside = false;
   const auto add = [&](double along_mm) {
-    TickSample sample;
+    telemetry::TickSample sample;
     sample.time_s = 0.001 * static_cast<double>(attempt.samples.size());
     sample.tip_mm = line_P.a + along_mm * line_P.direction();
     sample.axis = line_P.direction();
     sample.depth_mm = std::max(0.0, along_mm);
     if (!is_inside && along_mm >= dent_mm) {
       is_inside = true;
-      sample.events[0] = {EventKind::kPuncture, 1};
+      sample.events[0] = {telemetry::EventKind::kPuncture, 1};
     }
-    sample.phase = is_inside         ? InsertionPhase::kInserted
-                   : along_mm >= 0.0 ? InsertionPhase::kLoading
-                                     : InsertionPhase::kOutside;
+    sample.phase = is_inside         ? telemetry::InsertionPhase::kInserted
+                   : along_mm >= 0.0 ? telemetry::InsertionPhase::kLoading
+                                     : telemetry::InsertionPhase::kOutside;
     attempt.samples.push_back(sample);
   };
   for (double along_mm = -5.0; along_mm < length_mm; along_mm += 0.02) add(along_mm);

@@ -44,20 +44,20 @@ struct BoxPatient {
     return 9;
   }
 
-  VirtualPatient make() const {
-    VirtualPatient patient;
+  anatomy::VirtualPatient make() const {
+    anatomy::VirtualPatient patient;
     patient.name = "box";
-    GridGeometry geometry;
+    volume::GridGeometry geometry;
     geometry.spacing_mm = Vec3::Constant(spacing_mm);
     for (int a = 0; a < 3; ++a)
       geometry.size[static_cast<std::size_t>(a)] =
           static_cast<std::int64_t>(std::floor(2.0 * half_volume_mm[a] / spacing_mm)) + 1;
     geometry.origin_P = -half_volume_mm;
-    patient.labels = LabelGrid(geometry);
-    patient.skin_distance_mm = FloatGrid(geometry);
-    patient.ct = CtGrid(geometry);
+    patient.labels = volume::LabelGrid(geometry);
+    patient.skin_distance_mm = volume::FloatGrid(geometry);
+    patient.ct = volume::CtGrid(geometry);
     for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
-      const Index3 ijk = geometry.index_of(n);
+      const volume::Index3 ijk = geometry.index_of(n);
       const Vec3 p =
           geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
       patient.labels.voxels[n] = label_at(p);

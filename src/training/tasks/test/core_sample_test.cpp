@@ -2,7 +2,7 @@
 
 #include "tasks/test/attempt_patient.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 using namespace testing;
@@ -10,7 +10,7 @@ using namespace testing;
 constexpr double kVoxel_mm = 0.5;  // where a border lies on a voxel grid of 1 mm
 
 TEST(TakeCore, NamesThePiecesAlongTheNotch) {
-  const VirtualPatient patient = make_box_patient();
+  const anatomy::VirtualPatient patient = make_box_patient();
   // The notch from y = 41 to 58: liver to 50, lesion behind it.
   const BiopsyCore core = take_core(make_box_task(), patient, make_gun(), {50.0, 40.0, 50.0}, Vec3::UnitY());
   ASSERT_EQ(core.pieces.size(), 2u);
@@ -27,7 +27,7 @@ TEST(TakeCore, NamesThePiecesAlongTheNotch) {
 }
 
 TEST(TakeCore, LengthsAddUpToTheNotchWhereverItIsTaken) {
-  const VirtualPatient patient = make_box_patient();
+  const anatomy::VirtualPatient patient = make_box_patient();
   for (int i = 0; i < 200; ++i) {
     const Vec3 tip_P(10.0 + 0.37 * i, -20.0 + 0.6 * i, 15.0 + 0.4 * i);
     const Vec3 axis_P = Vec3(std::sin(i), 1.0, std::cos(i)).normalized();
@@ -38,7 +38,7 @@ TEST(TakeCore, LengthsAddUpToTheNotchWhereverItIsTaken) {
 }
 
 TEST(TakeCore, MeasuresVesselsAndFindsRisksBeyondTheNotch) {
-  const VirtualPatient patient = make_box_patient();
+  const anatomy::VirtualPatient patient = make_box_patient();
   // Towards the patient's right: notch x from 38 to 21, dead space from 21 to 17.
   const BiopsyCore core = take_core(make_box_task(), patient, make_gun(), {39.0, 40.0, 20.0}, -Vec3::UnitX());
   EXPECT_NEAR(core.vessel_mm, 4.0, kVoxel_mm);
@@ -52,7 +52,7 @@ TEST(TakeCore, MeasuresVesselsAndFindsRisksBeyondTheNotch) {
 }
 
 TEST(TakeCore, BoneStopsTheStylet) {
-  const VirtualPatient patient = make_box_patient();
+  const anatomy::VirtualPatient patient = make_box_patient();
   // From the fat into the rib 10 mm below the skin: the stylet gets 8 mm far, 4 mm of them notch.
   const BiopsyCore core = take_core(make_box_task(), patient, make_gun(), {50.0, 2.0, 75.0}, Vec3::UnitY());
   EXPECT_EQ(core.risks_in_throw, std::vector<std::string>{"rib_right_9"});
@@ -65,7 +65,7 @@ TEST(TakeCore, BoneStopsTheStylet) {
 }
 
 TEST(TakeCore, TakesTheOrganAsTargetWhereThereIsNoLesion) {
-  const VirtualPatient patient = make_box_patient(false);
+  const anatomy::VirtualPatient patient = make_box_patient(false);
   const BiopsyCore core = take_core(make_box_task(), patient, make_gun(), {50.0, 40.0, 50.0}, Vec3::UnitY());
   EXPECT_NEAR(core.target_mm, 17.0, 1e-9);
   EXPECT_EQ(core.organ_mm, 0.0);
@@ -79,4 +79,4 @@ TEST(TakeCore, OutsideThePatientFindsNothing) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::tasks

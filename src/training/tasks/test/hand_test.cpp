@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 HandCommand wanted(const Vec3& tip_P, const Vec3& v_P = Vec3::Zero()) {
@@ -68,4 +68,4 @@ TEST(Hand, ComesToRestAgainstADelayedSpring) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::tasks

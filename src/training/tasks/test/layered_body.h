@@ -23,18 +23,19 @@ class LayeredBody {
       : path_P_(path_P), layers_(std::move(layers)), dt_s_(dt_s) {}
 
   /// Lets the operator puncture until it is done or the time is over.
-  void run(Operator& the_operator, double limit_s) {
+  void run(tasks::Operator& the_operator, double limit_s) {
     for (double time_s = 0.0; time_s < limit_s && !is_done; time_s += dt_s_) {
-      const HandCommand command = the_operator.next({time_s, dt_s_, X_PN_, samples.empty() ? TickSample{} : last()});
+      const tasks::HandCommand command =
+          the_operator.next({time_s, dt_s_, X_PN_, samples.empty() ? telemetry::TickSample{} : last()});
       is_done = command.is_done;
       if (command.has_fired) fired.push_back(samples.size());
       step(command, time_s);
     }
   }
-  const TickSample& last() const { return samples.back(); }
-  double depth_mm(const TickSample& sample) const { return along(sample.tip_mm); }
+  const telemetry::TickSample& last() const { return samples.back(); }
+  double depth_mm(const telemetry::TickSample& sample) const { return along(sample.tip_mm); }
 
-  std::vector<TickSample> samples;
+  std::vector<telemetry::TickSample> samples;
   std::vector<std::size_t> fired;
   std::size_t punctured = 0;
   bool is_done = false;
@@ -48,40 +49,42 @@ class LayeredBody {
 
   double along(const Vec3& p_P) const { return (p_P - path_P_.a).dot(path_P_.direction()); }
 
-  void step(const HandCommand& command, double time_s) {
+  void step(const tasks::HandCommand& command, double time_s) {
     move_device(command);
     const double device_mm = along(X_PN_.p());
     needle_mm_ = needle_position(device_mm);
     const Vec3 axis_P = path_P_.direction();
     force_P_ = -kCoupling_n_per_mm * (device_mm - needle_mm_) * axis_P;
 
-    TickSample sample;
+    telemetry::TickSample sample;
     sample.time_s = time_s;
     sample.tip_mm = X_PN_.p() + (needle_mm_ - device_mm) * axis_P;
     sample.axis = X_PN_.R().col(2);
     sample.depth_mm = std::max(0.0, punctured > 0 ? needle_mm_ : 0.0);
-    sample.phase = needle_mm_ < 0.0 && punctured == 0 ? InsertionPhase::kOutside : InsertionPhase::kInserted;
+    sample.phase =
+        needle_mm_ < 0.0 && punctured == 0 ? telemetry::InsertionPhase::kOutside : telemetry::InsertionPhase::kInserted;
     sample.device_mm = X_PN_.p();
     sample.f_weight_n = kWeight_P;  // carries the stylus; the device is weightless here
     sample.device_f_n = force_P_ + kWeight_P;
     samples.push_back(sample);
   }
 
-  void move_device(const HandCommand& command) {
+  void move_device(const tasks::HandCommand& command) {
     if (samples.empty() || command.is_rigid) {
       X_PN_ = command.X_PN;
       v_P_ = command.v_P;
       if (samples.empty()) needle_mm_ = along(X_PN_.p());
       return;
     }
-    const HandSpring hand = hand_spring(HandParams{}, command);
+    const tasks::HandSpring hand = tasks::hand_spring(tasks::HandParams{}, command);
     const double kg_to_ns2_per_mm = 1e-3;
     const double mass = (hand.mass_kg + kDevice_kg) * kg_to_ns2_per_mm;
     const double k = hand.stiffness_n_per_mm;
     const double b = hand.damping_ns_per_mm;
     const Vec3 push = k * (hand.anchor_P - X_PN_.p()) + b * hand.anchor_velocity_P + force_P_;
     v_P_ = (mass * v_P_ + dt_s_ * push) / (mass + dt_s_ * b + dt_s_ * dt_s_ * k);
-    X_PN_ = Pose(follow_rotation(HandParams{}, X_PN_.R(), command.X_PN.R(), dt_s_), X_PN_.p() + dt_s_ * v_P_);
+    X_PN_ =
+        Pose(tasks::follow_rotation(tasks::HandParams{}, X_PN_.R(), command.X_PN.R(), dt_s_), X_PN_.p() + dt_s_ * v_P_);
   }
 
   double needle_position(double device_mm) {

@@ -8,13 +8,13 @@
 
 #include "tasks/test/attempt_patient.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 using namespace testing;
 
-AttemptMetrics measure(const std::vector<TickSample>& samples, std::optional<std::size_t> fired) {
-  static const VirtualPatient patient = make_box_patient();
+AttemptMetrics measure(const std::vector<telemetry::TickSample>& samples, std::optional<std::size_t> fired) {
+  static const anatomy::VirtualPatient patient = make_box_patient();
   return measure_attempt(make_box_task(), patient, make_box_tissues(), make_box_plan(), samples, fired);
 }
 
@@ -45,10 +45,10 @@ TEST(Metrics, OffsetsAreWhereTheNeedleWasMinusWhereItWasPlanned) {
 }
 
 TEST(Metrics, CountsPullingBackButNotTremorAsTravel) {
-  std::vector<TickSample> samples = make_attempt({{50.0, 0.0, 50.0}, {50.0, 40.0, 50.0}}).samples;
+  std::vector<telemetry::TickSample> samples = make_attempt({{50.0, 0.0, 50.0}, {50.0, 40.0, 50.0}}).samples;
   samples.resize(45 * 50);  // up to a depth of 40 mm
   const auto add = [&](double depth_mm) {
-    TickSample sample = samples.back();
+    telemetry::TickSample sample = samples.back();
     sample.time_s += 0.001;
     sample.depth_mm = depth_mm;
     sample.tip_mm.y() = depth_mm;
@@ -72,9 +72,9 @@ TEST(Metrics, FindsRisksByTheTipWithTheirDepth) {
 }
 
 TEST(Metrics, FindsRisksBetweenSamplesThatLieFarApart) {
-  std::vector<TickSample> samples = make_attempt({{35.0, 0.0, 50.0}, {35.0, 40.0, 50.0}}).samples;
+  std::vector<telemetry::TickSample> samples = make_attempt({{35.0, 0.0, 50.0}, {35.0, 40.0, 50.0}}).samples;
   samples.resize(45 * 50);
-  TickSample jump = samples.back();
+  telemetry::TickSample jump = samples.back();
   jump.tip_mm.x() = 10.0;  // over the vessel between two ticks
   samples.push_back(jump);
   const AttemptMetrics metrics = measure(samples, {});
@@ -84,7 +84,7 @@ TEST(Metrics, FindsRisksBetweenSamplesThatLieFarApart) {
 
 TEST(Metrics, WithoutPunctureEventsEntersWhereTheDepthBegins) {
   Attempt attempt = make_attempt(make_box_plan().line_P);
-  for (TickSample& sample : attempt.samples) sample.events = {};
+  for (telemetry::TickSample& sample : attempt.samples) sample.events = {};
   const AttemptMetrics metrics = measure(attempt.samples, attempt.fired);
   EXPECT_TRUE(metrics.has_entered);
   EXPECT_EQ(metrics.entries, 1);
@@ -93,10 +93,10 @@ TEST(Metrics, WithoutPunctureEventsEntersWhereTheDepthBegins) {
 
 TEST(Metrics, TellsSkinNeverTouchedFromSkinNeverPierced) {
   EXPECT_FALSE(measure({}, {}).has_touched_skin);
-  const std::vector<TickSample> whole = make_attempt(make_box_plan().line_P).samples;
-  const std::vector<TickSample> outside(whole.begin(), whole.begin() + 200);
+  const std::vector<telemetry::TickSample> whole = make_attempt(make_box_plan().line_P).samples;
+  const std::vector<telemetry::TickSample> outside(whole.begin(), whole.begin() + 200);
   EXPECT_FALSE(measure(outside, {}).has_touched_skin);
-  const std::vector<TickSample> loading(whole.begin(), whole.begin() + 270);
+  const std::vector<telemetry::TickSample> loading(whole.begin(), whole.begin() + 270);
   EXPECT_TRUE(measure(loading, {}).has_touched_skin);
   EXPECT_FALSE(measure(loading, {}).has_entered);
 }
@@ -105,7 +105,7 @@ TEST(Metrics, SkipsSamplesThatAreNotFinite) {
   Attempt attempt = make_attempt(make_box_plan().line_P);
   const AttemptMetrics clean = measure(attempt.samples, attempt.fired);
   for (std::size_t i = 3; i < attempt.samples.size(); i += 7)
-    if (i != attempt.fired && attempt.samples[i].events[0].kind == EventKind::kNone)
+    if (i != attempt.fired && attempt.samples[i].events[0].kind == telemetry::EventKind::kNone)
       attempt.samples[i].tip_mm.x() = attempt.samples[i].depth_mm = std::numeric_limits<double>::quiet_NaN();
   const AttemptMetrics metrics = measure(attempt.samples, attempt.fired);
   EXPECT_EQ(metrics.target_offset_P, clean.target_offset_P);
@@ -113,4 +113,4 @@ TEST(Metrics, SkipsSamplesThatAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::tasks

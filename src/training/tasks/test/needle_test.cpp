@@ -8,7 +8,7 @@
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 const std::filesystem::path kFile = data_dir() / "needles.toml";
@@ -86,4 +86,4 @@ TEST(Needle, ImpossibleNeedleIsRefused) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::tasks

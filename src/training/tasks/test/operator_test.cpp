@@ -9,7 +9,7 @@
 #include "core/testing/allocation_guard.inc.h"
 #include "tasks/test/layered_body.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 using testing::bone_below_skin;
@@ -24,7 +24,7 @@ OperatorCase case_of_length(double length_mm, std::uint64_t seed = 1) {
 
 double deepest_mm(const LayeredBody& body) {
   double deepest = -1e9;
-  for (const TickSample& sample : body.samples) deepest = std::max(deepest, body.depth_mm(sample));
+  for (const telemetry::TickSample& sample : body.samples) deepest = std::max(deepest, body.depth_mm(sample));
   return deepest;
 }
 
@@ -64,10 +64,12 @@ TEST(Expert, PausesAtTheSkinAndHoldsStillBeforeItFires) {
     return (body.depth_mm(body.samples[to]) - body.depth_mm(body.samples[from])) /
            (body.samples[to].time_s - body.samples[from].time_s);
   };
-  const auto touch = static_cast<std::size_t>(
-      std::find_if(body.samples.begin(), body.samples.end(),
-                   [](const TickSample& sample) { return (sample.device_f_n - sample.f_weight_n).norm() > 0.15; }) -
-      body.samples.begin());
+  const auto touch =
+      static_cast<std::size_t>(std::find_if(body.samples.begin(), body.samples.end(),
+                                            [](const telemetry::TickSample& sample) {
+                                              return (sample.device_f_n - sample.f_weight_n).norm() > 0.15;
+                                            }) -
+                               body.samples.begin());
   EXPECT_LT(std::abs(speed_mm_s(touch + 250, touch + 450)), 1.0);
   EXPECT_LT(std::abs(speed_mm_s(body.fired[0] - 200, body.fired[0])), 1.0);
 }
@@ -100,13 +102,13 @@ TEST(Novice, MissesEntryAngleAndTarget) {
     LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
     body.run(*make_novice(the_case), 60.0);
     const auto skin = std::find_if(body.samples.begin(), body.samples.end(),
-                                   [&](const TickSample& sample) { return body.depth_mm(sample) > 0.0; });
+                                   [&](const telemetry::TickSample& sample) { return body.depth_mm(sample) > 0.0; });
     ASSERT_NE(skin, body.samples.end());
     const double entry_error_mm = (skin->tip_mm - the_case.path_P.a).norm();
     EXPECT_GT(entry_error_mm, 2.0) << seed;  // 3..8 mm and the tremor's 0.6 mm
     EXPECT_LT(entry_error_mm, 9.0) << seed;
     ASSERT_EQ(body.fired.size(), 1u);
-    const TickSample& fired = body.samples[body.fired[0]];
+    const telemetry::TickSample& fired = body.samples[body.fired[0]];
     const double angle_deg = angle_between_rad(fired.axis, the_case.path_P.direction()) * 180.0 / std::numbers::pi;
     EXPECT_GT(angle_deg, 1.9) << seed;
     EXPECT_LT(angle_deg, 6.1) << seed;
@@ -140,7 +142,7 @@ TEST(ConstantVelocity, MovesTheDeviceItselfInAndOut) {
   EXPECT_NEAR(body.last().time_s, 10.0, 0.002);  // 50 mm in, 50 mm out
   ASSERT_EQ(body.fired.size(), 1u);
   EXPECT_NEAR(body.samples[body.fired[0]].time_s, 5.0, 0.002);
-  for (const TickSample& sample : body.samples) {
+  for (const telemetry::TickSample& sample : body.samples) {
     const double expected_mm = std::max(-10.0, 40.0 - speed_mm_s * std::abs(5.0 - sample.time_s));
     EXPECT_LT((sample.device_mm - (the_case.path_P.a + expected_mm * the_case.path_P.direction())).norm(), 1e-6);
   }
@@ -150,7 +152,7 @@ TEST(Replay, GivesTheRecordedDevicePosesTickByTick) {
   const OperatorCase the_case = case_of_length(60.0, 7);
   LayeredBody recorded(the_case.path_P, skin_muscle_capsule(), 0.001);
   recorded.run(*make_novice(the_case), 60.0);
-  for (TickSample& sample : recorded.samples) {
+  for (telemetry::TickSample& sample : recorded.samples) {
     const Eigen::Quaterniond q(needle_pose(sample.device_mm, sample.axis).R());
     sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
   }
@@ -177,7 +179,7 @@ TEST(Operators, AllocateNothingInATick) {
   const OperatorCase the_case = case_of_length(60.0);
   const std::unique_ptr<Operator> operators[] = {make_expert(the_case), make_novice(the_case),
                                                  make_constant_velocity(the_case, 10.0),
-                                                 make_replay(std::vector<TickSample>(500))};
+                                                 make_replay(std::vector<telemetry::TickSample>(500))};
   OperatorView view;
   const testing::AllocationGuard guard;
   for (int tick = 0; tick < 1000; ++tick) {
@@ -203,4 +205,4 @@ TEST(Operators, KeepTheirCommandsFiniteWhateverTheySee) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::tasks

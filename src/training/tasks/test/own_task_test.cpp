@@ -11,7 +11,7 @@
 #include "tasks/test/box_patient.h"
 #include "tasks/test/layered_body.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 using testing::BoxPatient;
@@ -85,7 +85,7 @@ TEST(OwnTask, DamagedFileIsRefusedWithItsPlace) {
 }
 
 TEST(OwnTask, PathsArePlannedToThePointAndFromTheZone) {
-  const VirtualPatient patient = BoxPatient{}.make();
+  const anatomy::VirtualPatient patient = BoxPatient{}.make();
   Task task = liver_biopsy();
   task.target_P = Vec3(-45.0, 10.0, 5.0);
   task.entry_zone = EntryZone{{-100.0, 5.0, 5.0}, 12.0};
@@ -119,7 +119,7 @@ TEST(OwnTask, TargetPointOutsideTheOrganIsRefused) {
 }
 
 TEST(OwnTask, PointInHealthyTissueIsParenchymal) {
-  const VirtualPatient patient = BoxPatient{}.make();
+  const anatomy::VirtualPatient patient = BoxPatient{}.make();
   Task task = liver_biopsy();
   EXPECT_FALSE(is_parenchymal(task, patient));
   task.target_P = BoxPatient{}.lesion_centre_P;
@@ -130,7 +130,7 @@ TEST(OwnTask, PointInHealthyTissueIsParenchymal) {
 
 TEST(OwnTask, EntryInsideTheZoneIsWhole) {
   using namespace testing;
-  const VirtualPatient patient = make_box_patient();
+  const anatomy::VirtualPatient patient = make_box_patient();
   const Segment plan_P = make_box_plan().line_P;
   const Segment beside_P{plan_P.a + Vec3(4.0, 0.0, 0.0), plan_P.b + Vec3(4.0, 0.0, 0.0)};
   const Attempt attempt = make_attempt(beside_P);
@@ -162,7 +162,7 @@ TEST(AssessPath, NamesEveryFaultOfADrawnPath) {
     if (std::abs(p.x() + 60.0) < 3.0 && p.y() > 8.0 && p.y() < 14.0) return "vessel";
     return "";
   };
-  const VirtualPatient patient = box.make();
+  const anatomy::VirtualPatient patient = box.make();
   Task task = liver_biopsy();
   const Segment through_bone{{-100.0, 0.0, 0.0}, {-45.0, 0.0, 0.0}};
   PathAssessment assessment = assess_path(task, patient, gun(), through_bone);
@@ -195,7 +195,7 @@ TEST(AssessPath, NamesEveryFaultOfADrawnPath) {
 }
 
 TEST(AssessPath, FindsTheSkinAlongALineAndNextToAPoint) {
-  const VirtualPatient patient = BoxPatient{}.make();
+  const anatomy::VirtualPatient patient = BoxPatient{}.make();
   const auto entry = find_skin_entry(patient, {-30.0, 0.0, 0.0}, {-50.0, 0.0, 0.0});
   ASSERT_TRUE(entry);
   EXPECT_NEAR(entry->x(), -100.0, 0.1);
@@ -206,4 +206,4 @@ TEST(AssessPath, FindsTheSkinAlongALineAndNextToAPoint) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::tasks

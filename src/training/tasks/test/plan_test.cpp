@@ -11,7 +11,7 @@
 #include "tasks/test/box_patient.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 using testing::BoxPatient;
@@ -23,8 +23,8 @@ Needle needle(std::string_view name = "biopsy-18g") {
   return *load_needle(data_dir() / "needles.toml", name);
 }
 
-std::string tissue_at(const VirtualPatient& patient, const Vec3& p_P) {
-  const Label* label = find_label(patient, p_P);
+std::string tissue_at(const anatomy::VirtualPatient& patient, const Vec3& p_P) {
+  const anatomy::Label* label = anatomy::find_label(patient, p_P);
   return label ? label->tissue : "";
 }
 
@@ -37,16 +37,17 @@ Vec3 notch_middle(const PlannedPath& path, const Needle& n) {
 
 /// Smallest clearance of a path, throw included, to the risk voxels (as boxes) beyond their margins: slow, independent
 /// of the planner.
-double smallest_clearance(const Task& task, const VirtualPatient& patient, const PlannedPath& path, const Needle& n) {
-  const GridGeometry& geometry = patient.labels.geometry;
+double smallest_clearance(const Task& task, const anatomy::VirtualPatient& patient, const PlannedPath& path,
+                          const Needle& n) {
+  const volume::GridGeometry& geometry = patient.labels.geometry;
   const Segment way{path.line_P.a, end_of_throw(path, n)};
   std::array<const RiskStructure*, 256> risks{};
-  for (const Label& label : patient.label_table.labels) risks[label.id] = find_risk(task, label);
+  for (const anatomy::Label& label : patient.label_table.labels) risks[label.id] = find_risk(task, label);
   double smallest = 1e9;
   for (std::size_t v = 0; v < patient.labels.voxels.size(); ++v) {
     const RiskStructure* risk = risks[patient.labels.voxels[v]];
     if (!risk) continue;
-    const Index3 ijk = geometry.index_of(v);
+    const volume::Index3 ijk = geometry.index_of(v);
     const Vec3 centre =
         geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])});
     if (distance_mm(way, centre) - risk->margin_mm > smallest + geometry.spacing_mm.norm()) continue;
@@ -144,7 +145,7 @@ TEST(Plan, SpareMarginIsWorthLengthTheMoreTheLessThereIs) {
 
 // The planner checks candidates in the order of a bound; nothing that it leaves unchecked may be better.
 TEST(Plan, OnePathIsTheBestOfAll) {
-  const VirtualPatient patient = crowded().make();
+  const anatomy::VirtualPatient patient = crowded().make();
   const auto one = plan_paths(liver_biopsy(), patient, needle(), {1, 3});
   const auto all = plan_paths(liver_biopsy(), patient, needle(), {2000, 3});  // not spread, and of the same lines
   ASSERT_TRUE(one && all);
@@ -158,7 +159,7 @@ TEST(Plan, OnePathIsTheBestOfAll) {
 
 TEST(Plan, EveryPathKeepsEveryMarginOverTheWholeThrow) {
   const Task task = liver_biopsy();
-  const VirtualPatient patient = crowded().make();
+  const anatomy::VirtualPatient patient = crowded().make();
   const auto paths = plan_paths(task, patient, needle(), {40, 3});
   ASSERT_TRUE(paths) << paths.error().text();
   ASSERT_EQ(paths->size(), 40u);
@@ -172,11 +173,11 @@ TEST(Plan, EveryPathKeepsEveryMarginOverTheWholeThrow) {
 
 TEST(Plan, EveryPathPassesSkinMuscleAndLiverInThisOrderAndStaysInside) {
   const Task task = liver_biopsy();
-  const VirtualPatient patient = crowded().make();
+  const anatomy::VirtualPatient patient = crowded().make();
   const auto paths = plan_paths(task, patient, needle(), {60, 4});
   ASSERT_TRUE(paths) << paths.error().text();
   for (const PlannedPath& path : *paths) {
-    EXPECT_NEAR(sample_linear(patient.skin_distance_mm, path.line_P.a), 0.0, 0.01);
+    EXPECT_NEAR(volume::sample_linear(patient.skin_distance_mm, path.line_P.a), 0.0, 0.01);
     const Segment way{path.line_P.a, end_of_throw(path, needle())};
     double muscle_mm = 0.0;
     double organ_mm = 0.0;
@@ -202,7 +203,7 @@ TEST(Plan, EveryPathPassesSkinMuscleAndLiverInThisOrderAndStaysInside) {
 }
 
 TEST(Plan, PathsAreSortedApartAndTheSameForTheSameSeed) {
-  const VirtualPatient patient = crowded().make();
+  const anatomy::VirtualPatient patient = crowded().make();
   const auto a = plan_paths(liver_biopsy(), patient, needle(), {12, 5});
   const auto b = plan_paths(liver_biopsy(), patient, needle(), {12, 5});
   const auto c = plan_paths(liver_biopsy(), patient, needle(), {12, 6});
@@ -233,10 +234,10 @@ TEST(Plan, ManyPathsAreManyDifferentPaths) {
 TEST(Plan, WithoutLesionTheTargetIsDeepInTheLiverAndAwayFromVessels) {
   BoxPatient box = crowded();
   box.lesion_radius_mm = 0.0;
-  const VirtualPatient patient = box.make();
+  const anatomy::VirtualPatient patient = box.make();
   const auto paths = plan_paths(liver_biopsy(), patient, needle(), {10, 2});
   ASSERT_TRUE(paths) << paths.error().text();
-  const GridGeometry& geometry = patient.labels.geometry;
+  const volume::GridGeometry& geometry = patient.labels.geometry;
   for (const PlannedPath& path : *paths) {
     const Vec3 target = notch_middle(path, needle());
     double to_vessel = 1e9;
@@ -245,7 +246,7 @@ TEST(Plan, WithoutLesionTheTargetIsDeepInTheLiverAndAwayFromVessels) {
       const std::uint8_t id = patient.labels.voxels[v];
       const std::string tissue = id ? patient.label_table.find(id)->tissue : "";
       if (tissue == "liver") continue;
-      const Index3 ijk = geometry.index_of(v);
+      const volume::Index3 ijk = geometry.index_of(v);
       const double distance =
           (geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])}) -
            target)
@@ -319,10 +320,10 @@ TEST(Plan, ErrorNamesTheConstraintThatLeftNoPath) {
 }
 
 TEST(Plan, ImpossibleCountIsAUsageError) {
-  const VirtualPatient patient = BoxPatient{}.make();
+  const anatomy::VirtualPatient patient = BoxPatient{}.make();
   for (const int count : {0, -1, 100001})
     EXPECT_EQ(plan_paths(liver_biopsy(), patient, needle(), {count}).error().exit_status, 2);
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -6,7 +6,7 @@
 #include "tasks/plan.h"
 #include "tasks/test/box_patient.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 using testing::BoxPatient;
@@ -25,7 +25,7 @@ TEST(Readiness, AgreesWithThePlanner) {
   BoxPatient none;
   none.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) <= -22.0 ? "soft_tissue" : ""; };
   for (const BoxPatient& box : {BoxPatient{}, caged, small, none}) {
-    const VirtualPatient patient = box.make();
+    const anatomy::VirtualPatient patient = box.make();
     const TaskReadiness readiness = check_task_and_paths(task, patient, needle);
     const auto paths = plan_paths(task, patient, needle);
     EXPECT_EQ(readiness.is_possible, paths.has_value());
@@ -40,4 +40,4 @@ TEST(Readiness, AgreesWithThePlanner) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::tasks

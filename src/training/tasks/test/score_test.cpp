@@ -9,17 +9,17 @@
 #include "tasks/test/attempt_patient.h"
 #include "tasks/test/layered_body.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 using namespace testing;
 
-const VirtualPatient& patient() {
-  static const VirtualPatient the_patient = make_box_patient();
+const anatomy::VirtualPatient& patient() {
+  static const anatomy::VirtualPatient the_patient = make_box_patient();
   return the_patient;
 }
 
-Outcome score(const std::vector<TickSample>& samples, std::optional<std::size_t> fired) {
+Outcome score(const std::vector<telemetry::TickSample>& samples, std::optional<std::size_t> fired) {
   return score_attempt(make_box_task(), patient(), make_box_tissues(), make_gun(), make_box_plan(), samples, fired);
 }
 Outcome score(const Segment& line_P) {
@@ -139,11 +139,11 @@ TEST(Score, PenaltiesBeyondTheRiskPartAreADeduction) {
 
 TEST(Score, ATargetFarOffIsNotReached) {
   // 12 and 19 mm short of a long lesion: the core is full of lesion, and yet the tip is not at the planned point.
-  VirtualPatient long_lesion = make_box_patient();
+  anatomy::VirtualPatient long_lesion = make_box_patient();
   for (std::size_t i = 0; i < long_lesion.labels.voxels.size(); ++i)
     if (long_lesion.labels.voxels[i] == 3) long_lesion.labels.voxels[i] = 4;
-  const VirtualPatient healthy = make_box_patient(false);
-  const auto is_reached = [](const VirtualPatient& who, double short_mm) {
+  const anatomy::VirtualPatient healthy = make_box_patient(false);
+  const auto is_reached = [](const anatomy::VirtualPatient& who, double short_mm) {
     const Attempt attempt = make_attempt({{50.0, 0.0, 50.0}, {50.0, 51.0 - short_mm, 50.0}});
     const Outcome outcome = score_attempt(make_box_task(), who, make_box_tissues(), make_gun(), make_box_plan(),
                                           attempt.samples, attempt.fired);
@@ -177,18 +177,18 @@ TEST(Score, EveryNoviceIsWorseThanTheExpert) {
 }
 
 TEST(Score, ScoresWhatThereIsOfAnUnfinishedAttempt) {
-  EXPECT_EQ(score(std::vector<TickSample>{}, {}).score, 0.0);
-  EXPECT_EQ(score(std::vector<TickSample>{}, {}).not_scored, "the needle never touched the skin");
-  EXPECT_TRUE(has_hint(score(std::vector<TickSample>{}, {}), "never reached the skin"));
+  EXPECT_EQ(score(std::vector<telemetry::TickSample>{}, {}).score, 0.0);
+  EXPECT_EQ(score(std::vector<telemetry::TickSample>{}, {}).not_scored, "the needle never touched the skin");
+  EXPECT_TRUE(has_hint(score(std::vector<telemetry::TickSample>{}, {}), "never reached the skin"));
 
-  const std::vector<TickSample> whole = make_attempt(make_box_plan().line_P).samples;
-  const std::vector<TickSample> loading(whole.begin(), whole.begin() + 270);
+  const std::vector<telemetry::TickSample> whole = make_attempt(make_box_plan().line_P).samples;
+  const std::vector<telemetry::TickSample> loading(whole.begin(), whole.begin() + 270);
   EXPECT_EQ(score(loading, {}).score, 0.0);
   EXPECT_EQ(score(loading, {}).not_scored, "the needle did not pierce the skin");
   EXPECT_TRUE(has_hint(score(loading, {}), "skin was not pierced"));
 
   for (const std::size_t ticks : {400u, 1000u, 2000u, 2700u}) {  // killed on the way in
-    const std::vector<TickSample> killed(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(ticks));
+    const std::vector<telemetry::TickSample> killed(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(ticks));
     const Outcome outcome = score(killed, {});
     EXPECT_EQ(outcome.not_scored, "the gun was not fired");
     EXPECT_EQ(outcome.score, 0.0);
@@ -247,13 +247,13 @@ TEST(Hints, AnOvershootIsNoRetraction) {
   // In to 45 mm, out to 5 mm, in to the target: 40 mm are travelled twice.
   Attempt attempt = make_attempt(make_box_plan().line_P);
   const auto sample_at = [&](double depth_mm) {
-    TickSample sample = attempt.samples[attempt.fired];
+    telemetry::TickSample sample = attempt.samples[attempt.fired];
     sample.depth_mm = depth_mm;
     sample.tip_mm.y() = depth_mm;
     return sample;
   };
-  std::vector<TickSample> samples(attempt.samples.begin(),
-                                  attempt.samples.begin() + static_cast<std::ptrdiff_t>(attempt.fired));
+  std::vector<telemetry::TickSample> samples(attempt.samples.begin(),
+                                             attempt.samples.begin() + static_cast<std::ptrdiff_t>(attempt.fired));
   for (double depth_mm = 45.0; depth_mm > 5.0; depth_mm -= 0.1) samples.push_back(sample_at(depth_mm));
   for (double depth_mm = 5.0; depth_mm < 51.0; depth_mm += 0.1) samples.push_back(sample_at(depth_mm));
   samples.push_back(sample_at(51.0));
@@ -274,4 +274,4 @@ TEST(Hints, SpeakOfWhatMattersOnly) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -8,7 +8,7 @@
 #include "tasks/needle.h"
 #include "tasks/test/box_patient.h"
 
-namespace trocar {
+namespace trocar::tasks {
 namespace {
 
 using testing::BoxPatient;
@@ -29,7 +29,7 @@ TEST(Task, ShippedTasksAreReadableAndNameKnownTissuesAndNeedles) {
   const auto tasks = load_tasks(kTasks);
   ASSERT_TRUE(tasks) << tasks.error().text();
   ASSERT_FALSE(tasks->empty());
-  const auto table = load_tissue_table(data_dir() / "tissues.toml");
+  const auto table = anatomy::load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(table);
   for (const Task& task : *tasks) {
     EXPECT_TRUE(load_needle(data_dir() / "needles.toml", task.needle)) << task.name;
@@ -121,4 +121,4 @@ TEST(TaskReadiness, TellsWhenTheOrganIsCut) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::tasks

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/test/bounded_wait.h"
 #include "core/files/data_dir.h"
 #include "core/testing/allocation_guard.h"
 #include "devices/device_spec.h"
+#include "devices/test/bounded_wait.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 using testing::wait_until;
@@ -97,8 +97,8 @@ class VirtualPad {
   std::atomic<int> high_{-1};
 };
 
-DevicePreset gamepad() {
-  DevicePreset preset;
+haptics::DevicePreset gamepad() {
+  haptics::DevicePreset preset;
   preset.name = "gamepad";
   preset.workspace_radius_mm = 100.0;
   return preset;
@@ -254,7 +254,7 @@ TEST(Gamepad, ForceRumblesAndEndsWithTheWrites) {
   auto device = open_pad();
   ASSERT_NE(device, nullptr);
   const double force_n = (kRumbleFrom_n + kRumbleFull_n) / 2;
-  const Wrench wrench{Vec3(0.0, force_n, 0.0), Vec3::Zero()};
+  const haptics::Wrench wrench{Vec3(0.0, force_n, 0.0), Vec3::Zero()};
   const auto rumbles = [&] {
     EXPECT_TRUE(device->write(wrench));
     return pad.low() == 32767 && pad.high() == 32767;
@@ -331,4 +331,4 @@ TEST(Gamepad, IsOpenedByItsName) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

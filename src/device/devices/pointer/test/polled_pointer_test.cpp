@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/test/bounded_wait.h"
 #include "core/random.h"
+#include "devices/test/bounded_wait.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -79,7 +79,7 @@ TEST(MovePointer, NonsenseMovesNothing) {
 
 TEST(PolledPointer, MovesOnAtEveryReadingAndStopsWhenItsThreadHangs) {
   std::atomic<bool> is_silent{false};
-  DevicePreset preset;
+  haptics::DevicePreset preset;
   preset.workspace_radius_mm = kRadius_mm;
   const auto device = PolledPointer::open(preset, std::make_unique<SteadySource>(is_silent));
   ASSERT_TRUE(device.has_value());
@@ -106,7 +106,7 @@ TEST(PolledPointer, MovesOnAtEveryReadingAndStopsWhenItsThreadHangs) {
 
 TEST(PolledPointer, IsPlacedOnceAndGoesOnFromThere) {
   const std::atomic<bool> is_silent{false};
-  DevicePreset preset;
+  haptics::DevicePreset preset;
   preset.workspace_radius_mm = kRadius_mm;
   const auto device = PolledPointer::open(preset, std::make_unique<SteadySource>(is_silent));
   ASSERT_TRUE(device.has_value());
@@ -128,4 +128,4 @@ TEST(PolledPointer, IsPlacedOnceAndGoesOnFromThere) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

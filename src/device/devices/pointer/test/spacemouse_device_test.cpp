@@ -5,13 +5,13 @@
 #include <limits>
 #include <string>
 
-#include "devices/test/bounded_wait.h"
 #include "core/files/data_dir.h"
 #include "core/testing/allocation_guard.h"
 #include "devices/device_spec.h"
+#include "devices/test/bounded_wait.h"
 #include "spacenav_daemon.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 using testing::SpacenavDaemon;
@@ -20,8 +20,8 @@ using testing::wait_until;
 constexpr int kFull = static_cast<int>(kCapFull_counts);
 constexpr double kTick_s = 0.001;
 
-DevicePreset spacemouse() {
-  DevicePreset preset;
+haptics::DevicePreset spacemouse() {
+  haptics::DevicePreset preset;
   preset.name = "spacemouse";
   preset.workspace_radius_mm = 50.0;
   return preset;
@@ -196,4 +196,4 @@ TEST(SpaceMouse, IsOpenedByItsName) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <thread>
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 double loudest(const std::vector<float>& samples, double from_s, double to_s) {
@@ -48,4 +48,4 @@ TEST(Speaker, OpensAnOutputAndPlays) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

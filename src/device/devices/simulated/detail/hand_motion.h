@@ -2,7 +2,7 @@
 
 #include "devices/haptic_device.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// A hand target is carried on by its velocity for at most this long, then it stands still: beyond it the next one is
 /// lost rather than late. Five of a trainer's heartbeats.
@@ -22,8 +22,8 @@ bool is_usable(const DeviceHand& hand) noexcept;
 
 /// A wrench that some gate may have written: finite, and less than any device of the table could give a hundred times
 /// over. Real-time safe.
-bool is_sane(const Wrench& wrench) noexcept;
+bool is_sane(const haptics::Wrench& wrench) noexcept;
 inline constexpr double kAbsurdForce_n = 2e4;
 inline constexpr double kAbsurdTorque_nmm = 5e5;
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 TEST(FaultSchedule, ReadsKindAmountBeginningAndDuration) {
@@ -55,4 +55,4 @@ TEST(FaultSchedule, AnythingElseIsRefusedWithTheGrammar) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

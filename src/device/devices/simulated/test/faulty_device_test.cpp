@@ -9,7 +9,7 @@
 #include "devices/device_spec.h"
 #include "devices/simulated/replay_device.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 constexpr double kForEver = std::numeric_limits<double>::infinity();
@@ -17,7 +17,7 @@ constexpr double kForEver = std::numeric_limits<double>::infinity();
 /// Moves by 1 mm a read; remembers what was written.
 class Mover final : public HapticDevice {
  public:
-  const DevicePreset& preset() const noexcept override { return preset_; }
+  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "mover"; }
   DeviceReading read(double) noexcept override {
     DeviceReading reading;
@@ -25,7 +25,7 @@ class Mover final : public HapticDevice {
     reading.X_DS = Pose::translation({static_cast<double>(reads_++), 0.0, 0.0});
     return reading;
   }
-  bool write(const Wrench& wrench_D) noexcept override {
+  bool write(const haptics::Wrench& wrench_D) noexcept override {
     written = wrench_D;
     ++writes;
     return true;
@@ -37,12 +37,12 @@ class Mover final : public HapticDevice {
     return {};
   }
 
-  Wrench written;
+  haptics::Wrench written;
   int writes = 0, holds = 0, reconnects = 0;
   bool is_gone = false;
 
  private:
-  DevicePreset preset_;
+  haptics::DevicePreset preset_;
   int reads_ = 0;
 };
 
@@ -201,4 +201,4 @@ TEST(FaultyDevice, WrapsWhatIsOpenedWithASchedule) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -8,13 +8,13 @@
 #include "devices/device_spec.h"
 #include "haptics/closed_loop/rotation.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 std::vector<Pose> swing(int count) {
   std::vector<Pose> poses;
   for (int i = 0; i < count; ++i) {
-    poses.emplace_back(rotation_from_vector({0.1 * i, 0.0, 0.0}), Vec3(2.0 * i, 1.0, 0.0));
+    poses.emplace_back(haptics::rotation_from_vector({0.1 * i, 0.0, 0.0}), Vec3(2.0 * i, 1.0, 0.0));
   }
   return poses;
 }
@@ -35,7 +35,7 @@ TEST(ReplayDevice, InterpolatesBetweenThem) {
   device.read(0.0);
   const DeviceReading reading = device.read(0.0125);
   EXPECT_NEAR(reading.X_DS.p().x(), 2.5, 1e-9);
-  EXPECT_NEAR(rotation_vector(reading.X_DS.R()).x(), 0.125, 1e-9);
+  EXPECT_NEAR(haptics::rotation_vector(reading.X_DS.R()).x(), 0.125, 1e-9);
 }
 
 TEST(ReplayDevice, HoldsTheLastPoseWhateverIsWritten) {
@@ -65,4 +65,4 @@ TEST(ReplayDevice, IsOpenedWithPosesOnly) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

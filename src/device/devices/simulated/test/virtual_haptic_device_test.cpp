@@ -11,7 +11,7 @@
 #include "haptics/test/layered_patient.h"
 #include "haptics/tick.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 using namespace trocar::testing;
@@ -19,17 +19,18 @@ using namespace trocar::testing;
 class ReleasedInAir : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ReleasedInAir, StaysPutWithWeightCompensation) {
-  const DevicePreset preset = preset_of(GetParam());
+  const haptics::DevicePreset preset = preset_of(GetParam());
   Bench bench(preset);
-  const Pose X_DS(rotation_from_vector({0.3, 2.0, -0.4}), {10.0, -20.0, 30.0});
+  const Pose X_DS(haptics::rotation_from_vector({0.3, 2.0, -0.4}), {10.0, -20.0, 30.0});
   DeviceReading reading = bench.period(placed_at(X_DS), {});
-  for (int i = 0; i < 5000; ++i) reading = bench.period(DeviceHand{}, weight_compensation(preset, reading.X_DS));
+  for (int i = 0; i < 5000; ++i)
+    reading = bench.period(DeviceHand{}, weight_compensation(preset, reading.X_DS));
   EXPECT_LT((bench.device.X_DS().p() - X_DS.p()).norm(), 0.5);  // what it falls before the first wrench acts
-  EXPECT_LT(rotation_vector(bench.device.X_DS().R() * X_DS.R().transpose()).norm(), 0.02);
+  EXPECT_LT(haptics::rotation_vector(bench.device.X_DS().R() * X_DS.R().transpose()).norm(), 0.02);
 }
 
 TEST_P(ReleasedInAir, SinksWithoutCompensation) {
-  const DevicePreset preset = preset_of(GetParam());
+  const haptics::DevicePreset preset = preset_of(GetParam());
   Bench bench(preset);
   bench.period(placed_at(Pose()), {});
   for (int i = 0; i < 3000; ++i) bench.period(DeviceHand{}, {});
@@ -41,24 +42,26 @@ TEST_P(ReleasedInAir, SinksWithoutCompensation) {
 INSTANTIATE_TEST_SUITE_P(Presets, ReleasedInAir, ::testing::Values("premium", "omni", "omega7", "inverse3", "falcon"));
 
 TEST(ReleasedStylus, TickOfAServerCarriesTheStylus) {
-  const DevicePreset preset = preset_of("premium");
+  const haptics::DevicePreset preset = preset_of("premium");
   for (const bool is_carried : {true, false}) {
-    HapticOptions options;
+    haptics::HapticOptions options;
     options.has_weight_compensation = is_carried;
-    apply_device_preset(preset, options);
-    const auto made = make_haptic_scene(layered_patient(liver_way()), paper_tissues(), {}, preset.capability, options);
+    haptics::apply_device_preset(preset, options);
+    const auto made =
+        haptics::make_haptic_scene(layered_patient(liver_way()), paper_tissues(), {}, preset.capability, options);
     ASSERT_TRUE(made) << made.error().text();
-    HapticScene scene = **made;
+    haptics::HapticScene scene = **made;
     // Down in D is down in P, and the needle is far above the skin.
     scene.X_PD = Pose(rotation_between(-Vec3::UnitZ(), scene.gravity_P), -800.0 * scene.gravity_P);
     Bench bench(preset);
-    DeviceReading reading = bench.period(placed_at(Pose(rotation_from_vector({2.0, 0.5, 0.0}), Vec3::Zero())), {});
-    HapticState state;
+    DeviceReading reading =
+        bench.period(placed_at(Pose(haptics::rotation_from_vector({2.0, 0.5, 0.0}), Vec3::Zero())), {});
+    haptics::HapticState state;
     for (int i = 0; i < 2000; ++i) {
-      HapticInput input;
+      haptics::HapticInput input;
       input.time_s = bench.time_s;
       input.X_DS = reading.X_DS;
-      const HapticOutput output = tick(state, input, scene);
+      const haptics::HapticOutput output = haptics::tick(state, input, scene);
       reading = bench.period(DeviceHand{}, {output.f_D, output.tau_D});
     }
     const double sunk_mm = -bench.device.X_DS().p().z();
@@ -71,7 +74,7 @@ TEST(ReleasedStylus, TickOfAServerCarriesTheStylus) {
 }
 
 TEST(VirtualHapticDevice, FallsAsItsWeightAndMassSay) {
-  const DevicePreset preset = ideal();
+  const haptics::DevicePreset preset = ideal();
   Bench bench(preset, without_friction());
   bench.period(placed_at(Pose::translation({0.0, 0.0, 50.0})), {});
   for (int i = 0; i < 100; ++i) bench.period(std::nullopt, {});
@@ -91,11 +94,11 @@ TEST(VirtualHapticDevice, WrenchActsLateByItsDelay) {
   for (const int delay : {0, 1, 3}) {
     SimulatedDeviceParams params = without_friction();
     params.force_delay = delay;
-    DevicePreset preset = ideal();
+    haptics::DevicePreset preset = ideal();
     preset.capability.stylus_weight_n = 0.0;
     Bench bench(preset, params);
     bench.period(placed_at(Pose()), {});
-    const Wrench push{{2.0, 0.0, 0.0}, Vec3::Zero()};
+    const haptics::Wrench push{{2.0, 0.0, 0.0}, Vec3::Zero()};
     int waited = 0;
     bench.period(std::nullopt, push);
     while (!(bench.device.X_DS().p().x() > 0.0) && waited < 20) {
@@ -107,7 +110,7 @@ TEST(VirtualHapticDevice, WrenchActsLateByItsDelay) {
 }
 
 TEST(VirtualHapticDevice, LastWrenchActsUntilAnotherIsWritten) {
-  DevicePreset preset = ideal();
+  haptics::DevicePreset preset = ideal();
   preset.capability.stylus_weight_n = 0.0;
   Bench bench(preset, without_friction());
   bench.period(placed_at(Pose()), {});
@@ -134,11 +137,11 @@ TEST(VirtualHapticDevice, ReadingsAreLateByTheirDelay) {
 }
 
 TEST(VirtualHapticDevice, TellsPositionsAndAnglesInCounts) {
-  const DevicePreset preset = preset_of("omni");
+  const haptics::DevicePreset preset = preset_of("omni");
   Bench bench(preset);
   Random random(5);
   for (int i = 0; i < 200; ++i) {
-    DeviceHand hand = placed_at(Pose(rotation_from_vector({random.uniform(-1, 1), random.uniform(-1, 1), 0.2}),
+    DeviceHand hand = placed_at(Pose(haptics::rotation_from_vector({random.uniform(-1, 1), random.uniform(-1, 1), 0.2}),
                                      {random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-50, 50)}));
     hand.time_s = bench.time_s;
     bench.period(hand, {});
@@ -148,14 +151,14 @@ TEST(VirtualHapticDevice, TellsPositionsAndAnglesInCounts) {
     }
     const Pose X_DS = bench.device.X_DS();
     EXPECT_LE((reading.X_DS.p() - X_DS.p()).cwiseAbs().maxCoeff(), 0.5 * preset.encoder.count_mm + 1e-9);
-    EXPECT_LE(rotation_vector(reading.X_DS.R() * X_DS.R().transpose()).norm(),
+    EXPECT_LE(haptics::rotation_vector(reading.X_DS.R() * X_DS.R().transpose()).norm(),
               0.5 * std::sqrt(3.0) * preset.encoder.count_rad + 1e-9);
   }
 }
 
 TEST(VirtualHapticDevice, WithoutAngleSensorsTellsIdentity) {
   Bench bench(preset_of("falcon"));
-  bench.period(placed_at(Pose(rotation_from_vector({0.5, 0.5, 0.0}), {1.0, 2.0, 3.0})), {});
+  bench.period(placed_at(Pose(haptics::rotation_from_vector({0.5, 0.5, 0.0}), {1.0, 2.0, 3.0})), {});
   const DeviceReading reading = bench.period(std::nullopt, {});
   EXPECT_EQ(reading.X_DS.R(), Mat3::Identity().eval());
   EXPECT_NEAR(reading.X_DS.p().x(), 1.0, 0.1);
@@ -163,18 +166,18 @@ TEST(VirtualHapticDevice, WithoutAngleSensorsTellsIdentity) {
 
 TEST(VirtualHapticDevice, WithoutTorqueMotorsIgnoresTorque) {
   for (const char* name : {"omni", "premium"}) {
-    const DevicePreset preset = preset_of(name);
+    const haptics::DevicePreset preset = preset_of(name);
     Bench bench(preset);
     bench.period(placed_at(Pose()), {});
-    const Wrench twist{Vec3(0.0, 0.0, preset.capability.stylus_weight_n), {0.0, 0.0, 100.0}};
+    const haptics::Wrench twist{Vec3(0.0, 0.0, preset.capability.stylus_weight_n), {0.0, 0.0, 100.0}};
     for (int i = 0; i < 50; ++i) bench.period(DeviceHand{}, twist);
-    const double turned = rotation_vector(bench.device.X_DS().R()).norm();
+    const double turned = haptics::rotation_vector(bench.device.X_DS().R()).norm();
     EXPECT_EQ(turned > 0.1, preset.has_torque()) << name << " " << turned;
   }
 }
 
 TEST(VirtualHapticDevice, MotorsGiveNoMoreThanTheirPeaks) {
-  DevicePreset preset = ideal();
+  haptics::DevicePreset preset = ideal();
   preset.capability.stylus_weight_n = 0.0;
   for (const double wanted_n : {10.0, 37.5, 100.0, 15000.0}) {
     Bench bench(preset, without_friction());
@@ -187,7 +190,7 @@ TEST(VirtualHapticDevice, MotorsGiveNoMoreThanTheirPeaks) {
 }
 
 TEST(VirtualHapticDevice, DryFrictionHoldsUntilItIsOvercome) {
-  DevicePreset preset = preset_of("omni");
+  haptics::DevicePreset preset = preset_of("omni");
   preset.capability.stylus_weight_n = 0.0;
   preset.viscosity_ns_per_mm = 0.0;
   const auto pushed_mm = [&](double force_n) {
@@ -202,7 +205,7 @@ TEST(VirtualHapticDevice, DryFrictionHoldsUntilItIsOvercome) {
 }
 
 TEST(VirtualHapticDevice, DryFrictionStopsAMotionAsItsWorkSays) {
-  DevicePreset preset = preset_of("omni");
+  haptics::DevicePreset preset = preset_of("omni");
   preset.capability.stylus_weight_n = 0.0;
   preset.viscosity_ns_per_mm = 0.0;
   Bench bench(preset);
@@ -221,7 +224,7 @@ TEST(VirtualHapticDevice, DryFrictionStopsAMotionAsItsWorkSays) {
 }
 
 TEST(VirtualHapticDevice, ViscosityLimitsTheSpeed) {
-  DevicePreset preset = ideal();
+  haptics::DevicePreset preset = ideal();
   preset.capability.stylus_weight_n = 0.0;
   preset.viscosity_ns_per_mm = 0.005;  // 0.5 N: 100 mm/s, reached with 20 ms
   preset.workspace_radius_mm = 1000.0;
@@ -232,7 +235,7 @@ TEST(VirtualHapticDevice, ViscosityLimitsTheSpeed) {
 }
 
 TEST(VirtualHapticDevice, WorkspaceEndsInASoftWall) {
-  const DevicePreset preset = preset_of("premium");
+  const haptics::DevicePreset preset = preset_of("premium");
   Bench bench(preset);
   double farthest_mm = 0.0;
   for (int i = 0; i < 3000; ++i) {
@@ -285,4 +288,4 @@ TEST(VirtualHapticDevice, SameTimeAgainIsARepeatedReading) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

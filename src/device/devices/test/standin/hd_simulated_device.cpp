@@ -12,12 +12,12 @@
 namespace trocar::testing {
 namespace {
 
-constexpr hd::Handle kHandle = 7;
+constexpr devices::hd::Handle kHandle = 7;
 constexpr double kPeriod_s = 0.001;
 
 }  // namespace
 
-hd::Handle HdSimulatedDevice::init(const char* name) {
+devices::hd::Handle HdSimulatedDevice::init(const char* name) {
   const std::lock_guard lock(mutex_);
   violations_.require(!state_.is_open, "hdInitDevice of a device that is open");
   bool is_known = name == nullptr || std::string(name) == "Default Device" || std::string(name) == "Left Device";
@@ -27,8 +27,8 @@ hd::Handle HdSimulatedDevice::init(const char* name) {
     if (is_known) take_controls();
   }
   if (!state_.is_present || !is_known) {
-    state_.errors.push_back(hd::kCommError);
-    return hd::kInvalidHandle;
+    state_.errors.push_back(devices::hd::kCommError);
+    return devices::hd::kInvalidHandle;
   }
   state_.is_open = true;
   state_.errors.clear();
@@ -69,7 +69,7 @@ void HdSimulatedDevice::take_controls() {
   for (int i = 0; i < 9; ++i) arm.R(i / 3, i % 3) = controls_->R[static_cast<std::size_t>(i)];
 }
 
-void HdSimulatedDevice::disable_device(hd::Handle handle) {
+void HdSimulatedDevice::disable_device(devices::hd::Handle handle) {
   const std::lock_guard lock(mutex_);
   violations_.require(state_.is_open && handle == kHandle, "hdDisableDevice of a device that is not open");
   violations_.require(!is_running_, "hdDisableDevice while the scheduler runs");
@@ -78,17 +78,17 @@ void HdSimulatedDevice::disable_device(hd::Handle handle) {
   state_.has_force_output = false;
 }
 
-void HdSimulatedDevice::begin(hd::Handle handle) {
+void HdSimulatedDevice::begin(devices::hd::Handle handle) {
   const std::lock_guard lock(mutex_);
   violations_.require(state_.is_open && handle == kHandle, "hdBeginFrame without an open device");
   violations_.require(is_on_scheduler(), "hdBeginFrame outside the scheduler's thread");
   violations_.require(!state_.is_in_frame, "hdBeginFrame inside a frame");
   violations_.require(!state_.had_frame, "two frames in one period");
   state_.is_in_frame = state_.had_frame = true;
-  if (!state_.is_present) state_.errors.push_back(hd::kCommError);
+  if (!state_.is_present) state_.errors.push_back(devices::hd::kCommError);
 }
 
-void HdSimulatedDevice::end(hd::Handle handle) {
+void HdSimulatedDevice::end(devices::hd::Handle handle) {
   const std::lock_guard lock(mutex_);
   require_frame("hdEndFrame without hdBeginFrame");
   violations_.require(handle == kHandle, "hdEndFrame of another device");
@@ -104,34 +104,34 @@ void HdSimulatedDevice::end(hd::Handle handle) {
   state_.arm.torque_nmm = state_.wanted_nmm;
 }
 
-hd::ErrorInfo HdSimulatedDevice::pop_error() {
+devices::hd::ErrorInfo HdSimulatedDevice::pop_error() {
   const std::lock_guard lock(mutex_);
-  if (state_.errors.empty()) return {hd::kSuccess, 0, kHandle};
-  const hd::Enum code = state_.errors.back();
+  if (state_.errors.empty()) return {devices::hd::kSuccess, 0, kHandle};
+  const devices::hd::Enum code = state_.errors.back();
   state_.errors.pop_back();
   return {code, 0, kHandle};
 }
 
-void HdSimulatedDevice::enable(hd::Enum capability, bool is_on) {
+void HdSimulatedDevice::enable(devices::hd::Enum capability, bool is_on) {
   const std::lock_guard lock(mutex_);
   violations_.require(state_.is_open, "hdEnable or hdDisable without an open device");
-  if (capability == hd::kForceOutput) {
+  if (capability == devices::hd::kForceOutput) {
     state_.has_force_output = is_on;
     if (!is_on) cut_motors();
     return;
   }
   violations_.require(is_on, "one of the vendor's safety functions was switched off");
-  if (capability == hd::kMaxForceClamping) state_.has_clamping = is_on;
+  if (capability == devices::hd::kMaxForceClamping) state_.has_clamping = is_on;
 }
 
-void HdSimulatedDevice::get_integers(hd::Enum name, int* values) {
+void HdSimulatedDevice::get_integers(devices::hd::Enum name, int* values) {
   const std::lock_guard lock(mutex_);
   violations_.require(state_.is_open, "hdGetIntegerv without an open device");
-  if (name == hd::kOutputDof) {
+  if (name == devices::hd::kOutputDof) {
     *values = state_.output_dof;
-  } else if (name == hd::kCalibrationStyle) {
+  } else if (name == devices::hd::kCalibrationStyle) {
     *values = state_.calibration_style;
-  } else if (name == hd::kCurrentButtons) {
+  } else if (name == devices::hd::kCurrentButtons) {
     require_frame("hdGetIntegerv of a state outside a frame");
     *values = state_.buttons;
   } else {
@@ -139,12 +139,12 @@ void HdSimulatedDevice::get_integers(hd::Enum name, int* values) {
   }
 }
 
-void HdSimulatedDevice::get_doubles(hd::Enum name, double* values) {
+void HdSimulatedDevice::get_doubles(devices::hd::Enum name, double* values) {
   const std::lock_guard lock(mutex_);
   violations_.require(state_.is_open, "hdGetDoublev without an open device");
   const SimulatedArm& arm = state_.arm;
   switch (name) {
-    case hd::kCurrentTransform:
+    case devices::hd::kCurrentTransform:
       require_frame("hdGetDoublev of a state outside a frame");
       std::fill(values, values + 16, 0.0);
       for (int column = 0; column < 3; ++column) {
@@ -153,23 +153,23 @@ void HdSimulatedDevice::get_doubles(hd::Enum name, double* values) {
       }
       values[15] = 1.0;
       return;
-    case hd::kUsableWorkspace:
+    case devices::hd::kUsableWorkspace:
       std::copy_n(state_.least_mm.data(), 3, values);
       std::copy_n(state_.greatest_mm.data(), 3, values + 3);
       return;
-    case hd::kNominalMaxForce:
+    case devices::hd::kNominalMaxForce:
       *values = state_.force_n;
       return;
-    case hd::kNominalMaxContinuousForce:
+    case devices::hd::kNominalMaxContinuousForce:
       *values = state_.continuous_n;
       return;
-    case hd::kNominalMaxStiffness:
+    case devices::hd::kNominalMaxStiffness:
       *values = state_.stiffness_n_per_mm;
       return;
-    case hd::kNominalMaxTorque:
+    case devices::hd::kNominalMaxTorque:
       *values = state_.torque_nmm;
       return;
-    case hd::kNominalMaxContinuousTorque:
+    case devices::hd::kNominalMaxContinuousTorque:
       state_.errors.push_back(0x0100);  // HD_INVALID_ENUM: an older driver
       return;
     default:
@@ -177,15 +177,15 @@ void HdSimulatedDevice::get_doubles(hd::Enum name, double* values) {
   }
 }
 
-void HdSimulatedDevice::set_doubles(hd::Enum name, const double* values) {
+void HdSimulatedDevice::set_doubles(devices::hd::Enum name, const double* values) {
   const std::lock_guard lock(mutex_);
   require_frame("hdSetDoublev outside a frame");
   const Vec3 value(values[0], values[1], values[2]);
   violations_.require(value.allFinite(), "hdSetDoublev of what is not a number");
   violations_.require(state_.has_force_output, "a force before hdEnable(HD_FORCE_OUTPUT)");
-  if (name == hd::kCurrentForce) {
+  if (name == devices::hd::kCurrentForce) {
     state_.wanted_n = value;
-  } else if (name == hd::kCurrentTorque) {
+  } else if (name == devices::hd::kCurrentTorque) {
     violations_.require(state_.output_dof == 6, "a torque for a device without one");
     state_.wanted_nmm = value;
   } else {
@@ -193,25 +193,26 @@ void HdSimulatedDevice::set_doubles(hd::Enum name, const double* values) {
   }
 }
 
-const char* HdSimulatedDevice::get_string(hd::Enum name) {
+const char* HdSimulatedDevice::get_string(devices::hd::Enum name) {
   const std::lock_guard lock(mutex_);
   violations_.require(state_.is_open, "hdGetString without an open device");
-  return name == hd::kDeviceModelType ? state_.model.c_str() : "";
+  return name == devices::hd::kDeviceModelType ? state_.model.c_str() : "";
 }
 
-hd::Enum HdSimulatedDevice::check_calibration() {
+devices::hd::Enum HdSimulatedDevice::check_calibration() {
   const std::lock_guard lock(mutex_);
   require_frame("hdCheckCalibration outside a frame");
   return state_.calibration;
 }
 
-void HdSimulatedDevice::update_calibration(hd::Enum style) {
+void HdSimulatedDevice::update_calibration(devices::hd::Enum style) {
   const std::lock_guard lock(mutex_);
   violations_.require(state_.is_open && is_on_scheduler(), "hdUpdateCalibration outside the scheduler's thread");
   violations_.require((static_cast<int>(style) & state_.calibration_style) != 0, "an unknown style of calibration");
-  const bool is_reset = style == hd::kStyleEncoderReset;
+  const bool is_reset = style == devices::hd::kStyleEncoderReset;
   violations_.require(!is_reset || state_.is_in_reset_position, "an encoder reset that nobody asked for");
-  if (state_.calibration == hd::kCalibrationNeedsUpdate || is_reset) state_.calibration = hd::kCalibrationOk;
+  if (state_.calibration == devices::hd::kCalibrationNeedsUpdate || is_reset)
+    state_.calibration = devices::hd::kCalibrationOk;
 }
 
 void HdSimulatedDevice::start() {
@@ -242,12 +243,12 @@ void HdSimulatedDevice::set_rate(unsigned long hz) {
   violations_.require(hz >= 500 && hz <= 2000, "a scheduler rate that the device does not know");
 }
 
-hd::SchedulerHandle HdSimulatedDevice::schedule(hd::Callback callback, void* user, unsigned short priority,
-                                                bool is_synchronous) {
+devices::hd::SchedulerHandle HdSimulatedDevice::schedule(devices::hd::Callback callback, void* user,
+                                                         unsigned short priority, bool is_synchronous) {
   std::unique_lock lock(mutex_);
   violations_.require(state_.is_open, "a callback scheduled without an open device");
   violations_.require(!is_synchronous || is_running_, "hdScheduleSynchronous without a scheduler");
-  const hd::SchedulerHandle handle = next_handle_++;
+  const devices::hd::SchedulerHandle handle = next_handle_++;
   jobs_.push_back({handle, callback, user, priority, is_synchronous});
   std::stable_sort(jobs_.begin(), jobs_.end(), [](const HdJob& a, const HdJob& b) { return a.priority > b.priority; });
   if (!is_synchronous) return handle;
@@ -258,7 +259,7 @@ hd::SchedulerHandle HdSimulatedDevice::schedule(hd::Callback callback, void* use
   return handle;
 }
 
-void HdSimulatedDevice::unschedule(hd::SchedulerHandle handle) {
+void HdSimulatedDevice::unschedule(devices::hd::SchedulerHandle handle) {
   const std::lock_guard lock(mutex_);
   violations_.require(state_.is_open && handle < next_handle_, "hdUnschedule of what was never scheduled");
   std::erase_if(jobs_, [&](const HdJob& job) { return job.handle == handle; });
@@ -294,7 +295,7 @@ void HdSimulatedDevice::run_period(std::unique_lock<std::mutex>& lock) {
     const unsigned code = job.callback(job.user);
     lock.lock();
     violations_.require(!state_.is_in_frame, "a callback that leaves its frame open");
-    if (code == hd::kCallbackDone) {
+    if (code == devices::hd::kCallbackDone) {
       std::erase_if(jobs_, [&](const HdJob& other) { return other.handle == job.handle; });
     }
   }

@@ -5,16 +5,16 @@
 #include <thread>
 #include <vector>
 
-#include "devices/vendor/detail/hd_api.h"
-#include "devices/vendor/test/hd_stand_ins.h"
 #include "devices/test/standin/hd_stand_in.h"
 #include "devices/test/standin/violations.h"
+#include "devices/vendor/detail/hd_api.h"
+#include "devices/vendor/test/hd_stand_ins.h"
 
 namespace trocar::testing {
 
 struct HdJob {
-  hd::SchedulerHandle handle;
-  hd::Callback callback;
+  devices::hd::SchedulerHandle handle;
+  devices::hd::Callback callback;
   void* user;
   unsigned short priority;
   bool is_synchronous;
@@ -107,23 +107,24 @@ class HdSimulatedDevice final : public HdStandIn {
   }
 
   // What the vendor's functions do.
-  hd::Handle init(const char* name);
-  void disable_device(hd::Handle handle);
-  void begin(hd::Handle handle);
-  void end(hd::Handle handle);
-  hd::ErrorInfo pop_error();
-  void enable(hd::Enum capability, bool is_on);
-  void get_integers(hd::Enum name, int* values);
-  void get_doubles(hd::Enum name, double* values);
-  void set_doubles(hd::Enum name, const double* values);
-  const char* get_string(hd::Enum name);
-  hd::Enum check_calibration();
-  void update_calibration(hd::Enum style);
+  devices::hd::Handle init(const char* name);
+  void disable_device(devices::hd::Handle handle);
+  void begin(devices::hd::Handle handle);
+  void end(devices::hd::Handle handle);
+  devices::hd::ErrorInfo pop_error();
+  void enable(devices::hd::Enum capability, bool is_on);
+  void get_integers(devices::hd::Enum name, int* values);
+  void get_doubles(devices::hd::Enum name, double* values);
+  void set_doubles(devices::hd::Enum name, const double* values);
+  const char* get_string(devices::hd::Enum name);
+  devices::hd::Enum check_calibration();
+  void update_calibration(devices::hd::Enum style);
   void start();
   void stop();
   void set_rate(unsigned long hz);
-  hd::SchedulerHandle schedule(hd::Callback callback, void* user, unsigned short priority, bool is_synchronous);
-  void unschedule(hd::SchedulerHandle handle);
+  devices::hd::SchedulerHandle schedule(devices::hd::Callback callback, void* user, unsigned short priority,
+                                        bool is_synchronous);
+  void unschedule(devices::hd::SchedulerHandle handle);
   void require_open(const char* rule) {
     const std::lock_guard lock(mutex_);
     violations_.require(state_.is_open, rule);
@@ -136,8 +137,8 @@ class HdSimulatedDevice final : public HdStandIn {
     int output_dof = 3;
     double force_n = 3.3, continuous_n = 0.88, stiffness_n_per_mm = 0.5, torque_nmm = 0.0;
     Vec3 least_mm = Vec3(-80, -60, -35), greatest_mm = Vec3(80, 60, 35);
-    unsigned calibration = hd::kCalibrationOk;
-    int calibration_style = hd::kStyleInkwell;
+    unsigned calibration = devices::hd::kCalibrationOk;
+    int calibration_style = devices::hd::kStyleInkwell;
     int buttons = 0;
     bool is_in_reset_position = false;
     bool is_present = true;
@@ -149,7 +150,7 @@ class HdSimulatedDevice final : public HdStandIn {
     bool is_in_frame = false;
     bool had_frame = false;  ///< In this period.
     Vec3 wanted_n = Vec3::Zero(), wanted_nmm = Vec3::Zero();
-    std::vector<hd::Enum> errors, coming_errors;
+    std::vector<devices::hd::Enum> errors, coming_errors;
   };
 
   void run();
@@ -176,7 +177,7 @@ class HdSimulatedDevice final : public HdStandIn {
   HdControls* controls_ = nullptr;
   bool is_running_ = false;
   int granted_ = 0;
-  hd::SchedulerHandle next_handle_ = 1;
+  devices::hd::SchedulerHandle next_handle_ = 1;
 };
 
 }  // namespace trocar::testing

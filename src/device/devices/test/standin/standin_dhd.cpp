@@ -4,9 +4,9 @@
 #include <limits>
 #include <mutex>
 
-#include "devices/vendor/detail/dhd_api.h"
 #include "devices/test/standin/dhd_stand_in.h"
 #include "devices/test/standin/violations.h"
+#include "devices/vendor/detail/dhd_api.h"
 
 namespace trocar::testing {
 namespace {
@@ -20,7 +20,7 @@ constexpr unsigned kFactoryVelocity = 30;
 
 struct State {
   SimulatedArm arm;
-  int type = dhd::kOmega6;
+  int type = devices::dhd::kOmega6;
   std::string name = "omega.6";
   bool has_active_wrist = false;
   bool is_present = true;
@@ -118,11 +118,11 @@ class Device final : public DhdStandIn {
     violations_.require(state_.watchdog > 0, "the vendor's watchdog was off");
     state_.is_open = state_.has_force = false;
     cut_motors(state_);
-    return dhd::kNoError;
+    return devices::dhd::kNoError;
   }
   int set_expert(bool is_expert) {
     change([=](State& state) { state.is_expert = is_expert; });
-    return dhd::kNoError;
+    return devices::dhd::kNoError;
   }
   const char* name() {
     const std::lock_guard lock(mutex_);
@@ -167,7 +167,7 @@ int set_wrench(State& state, Violations& violations, const Vec3& force_n, const 
     state.arm.torque_nmm = kMmPerM * torque_nm;
   }
   state.arm.advance(kPeriod_s);
-  return dhd::kNoError;
+  return devices::dhd::kNoError;
 }
 
 int get_pose(const State& state, double* x, double* y, double* z, double (*rows)[3]) {
@@ -178,13 +178,13 @@ int get_pose(const State& state, double* x, double* y, double* z, double (*rows)
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) rows[row][column] = state.arm.R(row, column);
   }
-  return state.is_early ? dhd::kTimeGuard : dhd::kNoError;
+  return state.is_early ? devices::dhd::kTimeGuard : devices::dhd::kNoError;
 }
 
 }  // namespace
 }  // namespace trocar::testing
 
-namespace dhd = trocar::dhd;
+namespace dhd = trocar::devices::dhd;
 using trocar::Vec3;
 using trocar::testing::device;
 using trocar::testing::State;
@@ -210,23 +210,23 @@ int dhdEnableForce(unsigned char on, char id) {
   return device().call(id, "dhdEnableForce without a device", [=](State& state, Violations&) {
     state.has_force = on != 0 && state.force_off_cause == 0;
     if (!state.has_force) trocar::testing::Device::cut_motors(state);
-    return dhd::kNoError;
+    return trocar::devices::dhd::kNoError;
   });
 }
 int dhdGetStatus(int* status, char id) {
   return device().call(id, "dhdGetStatus without a device", [=](State& state, Violations&) {
     for (int i = 0; i < trocar::testing::kStatusCount; ++i) status[i] = 0;
-    status[dhd::kStatusPower] = 1;
-    status[dhd::kStatusReset] = state.is_calibrated ? 0 : 1;
-    status[dhd::kStatusForce] = state.has_force ? 1 : 0;
-    status[dhd::kStatusForceOffCause] = state.force_off_cause;
-    return dhd::kNoError;
+    status[trocar::devices::dhd::kStatusPower] = 1;
+    status[trocar::devices::dhd::kStatusReset] = state.is_calibrated ? 0 : 1;
+    status[trocar::devices::dhd::kStatusForce] = state.has_force ? 1 : 0;
+    status[trocar::devices::dhd::kStatusForceOffCause] = state.force_off_cause;
+    return trocar::devices::dhd::kNoError;
   });
 }
 int dhdSetGravityCompensation(int on, char id) {
   return device().call(id, "dhdSetGravityCompensation without a device", [=](State& state, Violations&) {
     state.has_gravity_compensation = on != 0;
-    return dhd::kNoError;
+    return trocar::devices::dhd::kNoError;
   });
 }
 int dhdGetPositionAndOrientationFrame(double* x, double* y, double* z, double (*rows)[3], char id) {
@@ -252,7 +252,7 @@ const char* dhdErrorGetLastStr() {
 int dhdGetWatchdog(unsigned char* counts, char id) {
   return device().call(id, "dhdGetWatchdog without a device", [=](State& state, Violations&) {
     *counts = state.watchdog;
-    return dhd::kNoError;
+    return trocar::devices::dhd::kNoError;
   });
 }
 int dhdSetWatchdog(unsigned char counts, char id) {
@@ -260,7 +260,7 @@ int dhdSetWatchdog(unsigned char counts, char id) {
     violations.require(counts > 0, "the vendor's watchdog was switched off");
     violations.require(state.is_expert, "an expert's function outside expert mode");
     state.watchdog = counts;
-    return dhd::kNoError;
+    return trocar::devices::dhd::kNoError;
   });
 }
 int dhdEnableExpertMode() {
@@ -272,13 +272,13 @@ int dhdDisableExpertMode() {
 int dhdSetVelocityThreshold(unsigned threshold, char id) {
   return device().call(id, "dhdSetVelocityThreshold without a device", [=](State&, Violations& violations) {
     violations.require(threshold <= trocar::testing::kFactoryVelocity, "the velocity brake was loosened");
-    return dhd::kNoError;
+    return trocar::devices::dhd::kNoError;
   });
 }
 int dhdEmulateButton(unsigned char, char id) {
   return device().call(id, "dhdEmulateButton without a device", [](State&, Violations& violations) {
     violations.require(false, "the force button was pressed by the program");
-    return dhd::kNoError;
+    return trocar::devices::dhd::kNoError;
   });
 }
 }

@@ -11,55 +11,55 @@ trocar::testing::HdSimulatedDevice& device() {
 
 }  // namespace
 
-namespace hd = trocar::hd;
+namespace hd = trocar::devices::hd;
 
 extern "C" {
 trocar::testing::HdStandIn* trocar_hd_stand_in() {
   return &device();
 }
-hd::Handle hdInitDevice(const char* name) {
+trocar::devices::hd::Handle hdInitDevice(const char* name) {
   return device().init(name);
 }
-void hdDisableDevice(hd::Handle handle) {
+void hdDisableDevice(trocar::devices::hd::Handle handle) {
   device().disable_device(handle);
 }
-void hdMakeCurrentDevice(hd::Handle) {
+void hdMakeCurrentDevice(trocar::devices::hd::Handle) {
   device().require_open("hdMakeCurrentDevice without an open device");
 }
-void hdBeginFrame(hd::Handle handle) {
+void hdBeginFrame(trocar::devices::hd::Handle handle) {
   device().begin(handle);
 }
-void hdEndFrame(hd::Handle handle) {
+void hdEndFrame(trocar::devices::hd::Handle handle) {
   device().end(handle);
 }
-hd::ErrorInfo hdGetError() {
+trocar::devices::hd::ErrorInfo hdGetError() {
   return device().pop_error();
 }
-const char* hdGetErrorString(hd::Enum code) {
-  return code == hd::kCommError ? "Communication error" : "Some error";
+const char* hdGetErrorString(trocar::devices::hd::Enum code) {
+  return code == trocar::devices::hd::kCommError ? "Communication error" : "Some error";
 }
-void hdEnable(hd::Enum capability) {
+void hdEnable(trocar::devices::hd::Enum capability) {
   device().enable(capability, true);
 }
-void hdDisable(hd::Enum capability) {
+void hdDisable(trocar::devices::hd::Enum capability) {
   device().enable(capability, false);
 }
-void hdGetIntegerv(hd::Enum name, int* values) {
+void hdGetIntegerv(trocar::devices::hd::Enum name, int* values) {
   device().get_integers(name, values);
 }
-void hdGetDoublev(hd::Enum name, double* values) {
+void hdGetDoublev(trocar::devices::hd::Enum name, double* values) {
   device().get_doubles(name, values);
 }
-void hdSetDoublev(hd::Enum name, const double* values) {
+void hdSetDoublev(trocar::devices::hd::Enum name, const double* values) {
   device().set_doubles(name, values);
 }
-const char* hdGetString(hd::Enum name) {
+const char* hdGetString(trocar::devices::hd::Enum name) {
   return device().get_string(name);
 }
-hd::Enum hdCheckCalibration() {
+trocar::devices::hd::Enum hdCheckCalibration() {
   return device().check_calibration();
 }
-void hdUpdateCalibration(hd::Enum style) {
+void hdUpdateCalibration(trocar::devices::hd::Enum style) {
   device().update_calibration(style);
 }
 void hdStartScheduler() {
@@ -71,13 +71,14 @@ void hdStopScheduler() {
 void hdSetSchedulerRate(unsigned long hz) {
   device().set_rate(hz);
 }
-void hdScheduleSynchronous(hd::Callback callback, void* user, unsigned short priority) {
+void hdScheduleSynchronous(trocar::devices::hd::Callback callback, void* user, unsigned short priority) {
   device().schedule(callback, user, priority, true);
 }
-hd::SchedulerHandle hdScheduleAsynchronous(hd::Callback callback, void* user, unsigned short priority) {
+trocar::devices::hd::SchedulerHandle hdScheduleAsynchronous(trocar::devices::hd::Callback callback, void* user,
+                                                            unsigned short priority) {
   return device().schedule(callback, user, priority, false);
 }
-void hdUnschedule(hd::SchedulerHandle handle) {
+void hdUnschedule(trocar::devices::hd::SchedulerHandle handle) {
   device().unschedule(handle);
 }
 }

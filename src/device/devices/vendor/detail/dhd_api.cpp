@@ -1,6 +1,6 @@
 #include "devices/vendor/detail/dhd_api.h"
 
-namespace trocar::dhd {
+namespace trocar::devices::dhd {
 namespace {
 
 // libdrd holds all of libdhd.
@@ -35,4 +35,4 @@ Result<Api> load_api() {
   return api;
 }
 
-}  // namespace trocar::dhd
+}  // namespace trocar::devices::dhd

@@ -4,7 +4,7 @@
 
 /// The part of Force Dimension's DHD library that is used, declared by hand: names, signatures and values are facts of
 /// its header dhdc.h (SDK 3.3 to 3.17).
-namespace trocar::dhd {
+namespace trocar::devices::dhd {
 
 inline constexpr int kNoError = 0;         // DHD_NO_ERROR; below it: failed
 inline constexpr int kTimeGuard = 1;       // DHD_TIMEGUARD: asked again too early, the values of before
@@ -57,4 +57,4 @@ struct Api {
 /// libdhd.so under one of its names, or what TROCAR_LIBDHD names.
 Result<Api> load_api();
 
-}  // namespace trocar::dhd
+}  // namespace trocar::devices::dhd

@@ -10,7 +10,7 @@
 #include "devices/vendor/detail/servo_exchange.h"
 #include "devices/vendor/servo_pace.h"
 
-namespace trocar::dhd {
+namespace trocar::devices::dhd {
 
 /// V, the vendor's axes: x towards the user, y right, z up. D: x right, y away, z up.
 Mat3 R_DV() noexcept;
@@ -45,7 +45,7 @@ class Connection final : private ServoBody {
   void serve(double now_s) noexcept override;
   enum class Sensed { kNew, kRepeated, kFailed };
   Sensed sense(ServoSample& sample) noexcept;
-  bool apply(const Wrench& wrench_D) noexcept;
+  bool apply(const haptics::Wrench& wrench_D) noexcept;
   bool has_force() noexcept;
 
   const Api api_;
@@ -64,4 +64,4 @@ class Connection final : private ServoBody {
   int periods_ = 0;
 };
 
-}  // namespace trocar::dhd
+}  // namespace trocar::devices::dhd

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 using Json = nlohmann::json;
@@ -184,4 +184,4 @@ Vec3 haply_force(const Vec3& f_D) noexcept {
   return f_D;
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -8,7 +8,7 @@
 
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// What a message of the Inverse service says of its Inverse3.
 enum class HaplyCondition : std::uint8_t {
@@ -50,4 +50,4 @@ Pose haply_pose(const HaplyState& state, bool is_centred) noexcept;
 /// A force in D for the vendor: the axes are the same.
 Vec3 haply_force(const Vec3& f_D) noexcept;
 
-}  // namespace trocar
+}  // namespace trocar::devices

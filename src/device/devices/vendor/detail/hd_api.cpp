@@ -1,6 +1,6 @@
 #include "devices/vendor/detail/hd_api.h"
 
-namespace trocar::hd {
+namespace trocar::devices::hd {
 namespace {
 
 constexpr const char* kNames[] = {"libHD.so", "libHD.so.3.4", "libHD.so.3"};
@@ -40,4 +40,4 @@ Result<Api> load_api() {
   return api;
 }
 
-}  // namespace trocar::hd
+}  // namespace trocar::devices::hd

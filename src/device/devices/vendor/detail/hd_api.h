@@ -4,7 +4,7 @@
 
 /// The part of OpenHaptics' HD API that is used, declared by hand: names, signatures and values are facts of its
 /// headers hdDefines.h, hdDevice.h and hdScheduler.h (3.0 to 3.4; public copy: danepowell/openhaptics, usr/include/HD).
-namespace trocar::hd {
+namespace trocar::devices::hd {
 
 using Handle = unsigned int;                    // HHD
 using Enum = unsigned int;                      // HDenum, HDerror
@@ -88,4 +88,4 @@ struct Api {
 /// libHD.so, or what TROCAR_LIBHD names.
 Result<Api> load_api();
 
-}  // namespace trocar::hd
+}  // namespace trocar::devices::hd

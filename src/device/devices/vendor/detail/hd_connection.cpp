@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace trocar::hd {
+namespace trocar::devices::hd {
 namespace {
 
 constexpr unsigned long kServoRate_hz = 1000;  // the vendor's usual rate
@@ -170,7 +170,7 @@ unsigned int Connection::on_first_period(void* connection) {
   self.first_ = self.sense();
   if (self.calibration_ == kCalibrationOk) {
     self.api_.enable(kForceOutput);
-    self.apply(Wrench{});
+    self.apply(haptics::Wrench{});
   }
   self.api_.end_frame(self.handle_);
   return kCallbackDone;
@@ -199,9 +199,9 @@ unsigned int Connection::on_closing(void* connection) {
 void Connection::serve() noexcept {
   api_.begin_frame(handle_);
   ServoSample sample = sense();
-  const Wrench wrench_D = exchange_->wanted(clock_s_());
+  const haptics::Wrench wrench_D = exchange_->wanted(clock_s_());
   // The driver turns forces into motor torques by the pose: none by one that is not a number.
-  apply(sample.X_DS.is_finite() ? wrench_D : Wrench{});
+  apply(sample.X_DS.is_finite() ? wrench_D : haptics::Wrench{});
   api_.end_frame(handle_);
   take_errors(sample);
   exchange_->sensed(sample);
@@ -224,7 +224,7 @@ ServoSample Connection::sense() noexcept {
   return sample;
 }
 
-void Connection::apply(const Wrench& wrench_D) noexcept {
+void Connection::apply(const haptics::Wrench& wrench_D) noexcept {
   const Vec3 force_V = R_DV().transpose() * wrench_D.force_n;
   api_.set_doublev(kCurrentForce, force_V.data());
   if (description_.output_dof <= 3) return;
@@ -245,4 +245,4 @@ void Connection::take_errors(ServoSample& sample) noexcept {
   }
 }
 
-}  // namespace trocar::hd
+}  // namespace trocar::devices::hd

@@ -8,7 +8,7 @@
 #include "devices/vendor/detail/hd_api.h"
 #include "devices/vendor/detail/servo_exchange.h"
 
-namespace trocar::hd {
+namespace trocar::devices::hd {
 
 /// What the device says of itself; none where it says nothing usable.
 struct Description {
@@ -54,7 +54,7 @@ class Connection {
   static unsigned int on_calibration_update(void* connection);
   void serve() noexcept;
   ServoSample sense() noexcept;
-  void apply(const Wrench& wrench_D) noexcept;
+  void apply(const haptics::Wrench& wrench_D) noexcept;
   void take_errors(ServoSample& sample) noexcept;
 
   const Api api_;
@@ -74,4 +74,4 @@ class Connection {
   bool is_done_ = false;  ///< Of the scheduler's thread.
 };
 
-}  // namespace trocar::hd
+}  // namespace trocar::devices::hd

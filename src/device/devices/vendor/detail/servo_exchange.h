@@ -4,11 +4,11 @@
 #include <atomic>
 #include <cstdint>
 
-#include "devices/simulated/detail/hand_motion.h"  // is_sane
 #include "devices/haptic_device.h"
+#include "devices/simulated/detail/hand_motion.h"  // is_sane
 #include "realtime/triple_buffer.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// What one period of a vendor's servo loop sensed and was told.
 struct ServoSample {
@@ -51,9 +51,9 @@ class ServoExchange {
   }
   /// By the real-time thread. Cut to the device's peaks, a torque left out where that peak is zero. false: no gate
   /// wrote that (zero goes out instead), the vendor's safety refuses forces, or the device is lost.
-  bool write(const Wrench& wrench_D, const DeviceCapability& capability) noexcept {
+  bool write(const haptics::Wrench& wrench_D, const haptics::DeviceCapability& capability) noexcept {
     const bool is_taken = is_sane(wrench_D);
-    Wrench sent;
+    haptics::Wrench sent;
     if (is_taken) {
       sent.force_n = cut(wrench_D.force_n, capability.peak_force_n);
       sent.torque_nmm = cut(wrench_D.torque_nmm, capability.peak_torque_nmm);
@@ -63,13 +63,13 @@ class ServoExchange {
   }
 
   /// By the servo loop: what the motors are to get now.
-  Wrench wanted(double now_s) noexcept {
+  haptics::Wrench wanted(double now_s) noexcept {
     if (wrenches_.update()) {
       written_s_ = now_s;
       has_written_ = true;
     }
     const bool is_old = !has_written_ || !(now_s - written_s_ <= kOldestWrench_s);
-    return is_old || is_closing_.load(std::memory_order_acquire) ? Wrench{} : wrenches_.value();
+    return is_old || is_closing_.load(std::memory_order_acquire) ? haptics::Wrench{} : wrenches_.value();
   }
   /// By the servo loop.
   void sensed(const ServoSample& sample) noexcept { samples_.write(sample); }
@@ -94,10 +94,10 @@ class ServoExchange {
   double written_s_ = 0.0;
   bool has_written_ = false;
 
-  TripleBuffer<ServoSample> samples_;
-  TripleBuffer<Wrench> wrenches_;
+  realtime::TripleBuffer<ServoSample> samples_;
+  realtime::TripleBuffer<haptics::Wrench> wrenches_;
   std::atomic<bool> is_closing_{false};
   std::atomic<bool> is_lost_{false};
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

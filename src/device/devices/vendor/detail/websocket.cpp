@@ -12,7 +12,7 @@
 #include <exception>
 #include <utility>
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 namespace asio = boost::asio;
@@ -172,4 +172,4 @@ void WebSocket::close(std::chrono::milliseconds limit) {
            [&](auto handler) { c.stream.async_close(beast::websocket::close_code::normal, std::move(handler)); });
 }
 
-}  // namespace trocar
+}  // namespace trocar::devices

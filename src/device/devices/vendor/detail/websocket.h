@@ -8,7 +8,7 @@
 
 #include "core/result.h"
 
-namespace trocar {
+namespace trocar::devices {
 
 /// "ws://HOST[:PORT][/PATH]".
 struct WebSocketAddress {
@@ -46,4 +46,4 @@ class WebSocket {
   std::unique_ptr<Connection> connection_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::devices

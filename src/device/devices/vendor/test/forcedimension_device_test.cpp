@@ -8,14 +8,14 @@
 
 #include "core/testing/allocation_guard.h"
 #include "core/testing/source_dir.h"
-#include "devices/vendor/detail/dhd_api.h"
-#include "devices/vendor/detail/servo_exchange.h"
 #include "devices/device_spec.h"
 #include "devices/test/standin/dhd_stand_in.h"
+#include "devices/vendor/detail/dhd_api.h"
+#include "devices/vendor/detail/servo_exchange.h"
 #include "devices/vendor/test/stepped_pace.h"
 #include "devices/vendor/test/vendor_library.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 using testing::DhdStandIn;
@@ -229,7 +229,7 @@ TEST_F(ForceDimension, UnpluggedIsDisconnectedUntilReconnected) {
   ASSERT_FALSE(gone);
   EXPECT_NE(gone.error().text().find("no device found"), std::string::npos) << gone.error().text();
   EXPECT_EQ(device->read(now_s).status, DeviceStatus::kDisconnected);
-  EXPECT_FALSE(device->write(Wrench{}));
+  EXPECT_FALSE(device->write(haptics::Wrench{}));
 
   vendor->set_present(true);
   const Status back = device->reconnect();
@@ -339,4 +339,4 @@ TEST_F(ForceDimension, StandInNotesBrokenRules) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/test/bounded_wait.h"
 #include "core/files/data_dir.h"
 #include "core/testing/allocation_guard.h"
+#include "devices/device_spec.h"
+#include "devices/test/bounded_wait.h"
 #include "devices/vendor/detail/haply_messages.h"
 #include "devices/vendor/detail/websocket.h"
-#include "devices/device_spec.h"
 #include "haply_service.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 using testing::HaplyMood;
@@ -24,8 +24,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRightAngle_rad = 1.5707963267948966;
 constexpr double kTolerance_mm = 1e-6;  // decimal text there and back
 
-DevicePreset inverse3() {
-  DevicePreset preset;
+haptics::DevicePreset inverse3() {
+  haptics::DevicePreset preset;
   preset.name = "inverse3";
   preset.actuated_dof = 3;
   preset.capability.peak_force_n = 8.0;
@@ -44,7 +44,7 @@ std::string error_of(HaplyMood mood) {
   return device ? "opened" : device.error().text();
 }
 
-Wrench pull(double x, double y, double z) {
+haptics::Wrench pull(double x, double y, double z) {
   return {Vec3(x, y, z), Vec3::Zero()};
 }
 
@@ -379,4 +379,4 @@ TEST(HaplyDevice, IsOpenedByItsName) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

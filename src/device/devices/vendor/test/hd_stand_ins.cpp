@@ -38,7 +38,7 @@ HdControls& HdStandIns::add(const std::string& name, const char* model) {
   ::close(file);
   auto* device = new (memory) HdControls{};
   std::strncpy(device->model.data(), model, device->model.size() - 1);
-  device->calibration = hd::kCalibrationOk;
+  device->calibration = devices::hd::kCalibrationOk;
   for (std::size_t i = 0; i < device->R.size(); i += 4) device->R[i] = 1.0;
   devices_.push_back(device);
   return *device;
@@ -46,7 +46,7 @@ HdControls& HdStandIns::add(const std::string& name, const char* model) {
 
 HdControls& HdStandIns::add_omni(const std::string& name) {
   HdControls& device = add(name, "PHANTOM Omni");
-  device.calibration_style = hd::kStyleInkwell;
+  device.calibration_style = devices::hd::kStyleInkwell;
   return device;
 }
 
@@ -55,7 +55,7 @@ HdControls& HdStandIns::add_premium(const std::string& name) {
   device.force_n = 37.5;
   device.continuous_n = 6.2;
   device.stiffness_n_per_mm = 3.5;
-  device.calibration_style = hd::kStyleEncoderReset;
+  device.calibration_style = devices::hd::kStyleEncoderReset;
   return device;
 }
 

@@ -9,13 +9,13 @@
 
 #include "core/testing/allocation_guard.h"
 #include "core/testing/source_dir.h"
-#include "devices/vendor/detail/hd_api.h"
-#include "devices/vendor/detail/servo_exchange.h"
 #include "devices/device_spec.h"
 #include "devices/test/standin/hd_stand_in.h"
+#include "devices/vendor/detail/hd_api.h"
+#include "devices/vendor/detail/servo_exchange.h"
 #include "devices/vendor/test/vendor_library.h"
 
-namespace trocar {
+namespace trocar::devices {
 namespace {
 
 using testing::HdStandIn;
@@ -162,7 +162,7 @@ TEST_F(OpenHaptics, WhatTheDeviceBearsTightensThePreset) {
   vendor->set_model("PHANTOM Premium 1.5 6DOF", 6);
   vendor->set_nominal(8.5, 1.4, 0.25, 188.0);
   open_or_fail();
-  const DevicePreset& preset = device->preset();
+  const haptics::DevicePreset& preset = device->preset();
   EXPECT_DOUBLE_EQ(preset.capability.peak_force_n, 8.5);
   EXPECT_DOUBLE_EQ(preset.continuous_force_n.value(), 1.4);
   EXPECT_DOUBLE_EQ(preset.capability.max_stiffness_n_per_mm, 0.25);
@@ -238,9 +238,9 @@ TEST_F(OpenHaptics, ForceErrorIsARefusedWrite) {
   for (const hd::Enum code : {hd::kWarmMotors, hd::kExceededMaxForce, hd::kForceError}) {
     vendor->push_error(code);
     EXPECT_EQ(read_after(1).status, DeviceStatus::kFresh);
-    EXPECT_FALSE(device->write(Wrench{}));
+    EXPECT_FALSE(device->write(haptics::Wrench{}));
     EXPECT_EQ(read_after(1).status, DeviceStatus::kFresh);
-    EXPECT_TRUE(device->write(Wrench{}));
+    EXPECT_TRUE(device->write(haptics::Wrench{}));
   }
 }
 
@@ -254,7 +254,7 @@ TEST_F(OpenHaptics, UnpluggedIsDisconnectedUntilReconnected) {
   ASSERT_FALSE(gone);
   EXPECT_NE(gone.error().text().find("Communication error"), std::string::npos) << gone.error().text();
   EXPECT_EQ(device->read(now_s).status, DeviceStatus::kDisconnected);
-  EXPECT_FALSE(device->write(Wrench{}));
+  EXPECT_FALSE(device->write(haptics::Wrench{}));
 
   vendor->set_present(true);
   const Status back = device->reconnect();
@@ -417,4 +417,4 @@ TEST_F(OpenHaptics, StandInNotesBrokenRules) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::devices

@@ -10,9 +10,9 @@
 namespace trocar::testing {
 
 /// A servo loop that runs as many periods as the test asks for, at the test's time.
-class SteppedPace final : public ServoPace {
+class SteppedPace final : public devices::ServoPace {
  public:
-  void run(const std::atomic<bool>& is_stopping, ServoBody& body) noexcept override {
+  void run(const std::atomic<bool>& is_stopping, devices::ServoBody& body) noexcept override {
     std::unique_lock lock(mutex_);
     while (!is_stopping.load()) {
       if (granted_ == 0 && !is_free_) {

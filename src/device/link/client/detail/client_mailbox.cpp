@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr double kBeat_s = 1e-9 * static_cast<double>(kBeat_ns);
@@ -52,12 +52,12 @@ std::vector<NumberedSample> ClientMailbox::take_samples() {
   samples.reserve(count);
   for (const StateBatch& batch : batches) {
     std::uint64_t tick = batch.first_tick;
-    for (const TickSample& sample : batch.samples) samples.push_back({tick++, sample, batch.scene});
+    for (const telemetry::TickSample& sample : batch.samples) samples.push_back({tick++, sample, batch.scene});
   }
   return samples;
 }
 
-std::optional<TickSample> ClientMailbox::newest() const {
+std::optional<telemetry::TickSample> ClientMailbox::newest() const {
   const std::lock_guard lock(mutex_);
   return newest_;
 }
@@ -163,4 +163,4 @@ void ClientMailbox::put_lost() {
   has_session_ = false;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

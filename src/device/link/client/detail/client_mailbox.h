@@ -10,7 +10,7 @@
 
 #include "link/client/haptic_client.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 inline constexpr std::int64_t kBeat_ns = 10'000'000;  ///< Between two beats of a client's thread.
 
@@ -30,7 +30,7 @@ class ClientMailbox {
   void leave();
   ClientView view() const;
   std::vector<NumberedSample> take_samples();
-  std::optional<TickSample> newest() const;
+  std::optional<telemetry::TickSample> newest() const;
   std::vector<Reply> take_replies();
   /// Waits for a reply with this number, or for a server. Empty, false: not within that time.
   std::optional<Reply> wait_reply(std::uint32_t request, std::chrono::milliseconds patience);
@@ -62,8 +62,8 @@ class ClientMailbox {
   bool has_session_ = false;
   std::deque<StateBatch> batches_;
   std::size_t samples_held_ = 0;
-  std::optional<TickSample> newest_;
+  std::optional<telemetry::TickSample> newest_;
   std::deque<Reply> replies_;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 bool ClientSession::take(ServerMessage message, double now_s) {
   if (const auto* refusal = std::get_if<Refusal>(&message.body); refusal != nullptr && message.session == 0) {
@@ -89,4 +89,4 @@ bool ClientSession::take_body(const Refusal& refusal, double) {
   return true;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -8,7 +8,7 @@
 #include "link/client/detail/clock_offset.h"
 #include "link/messages.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// What a client's thread knows of its server, from message to message. Knows neither sockets nor clocks; what the
 /// caller may see goes to the mailbox.
@@ -47,4 +47,4 @@ class ClientSession {
   std::vector<std::uint32_t> waiting_;  ///< Commands without reply.
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

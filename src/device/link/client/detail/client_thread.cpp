@@ -16,7 +16,7 @@
 #include "link/codec.h"
 #include "realtime/periodic_loop.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr double kHelloAgain_s = 0.2;
@@ -31,7 +31,7 @@ constexpr int kGoodbye_ms = 50;  ///< Goodbye may take so long to leave.
 constexpr std::size_t kRoutingIdBytes = 16;
 
 double steady_s() {
-  return seconds(now_ns());
+  return realtime::seconds(realtime::now_ns());
 }
 
 /// Random: the server tells clients apart by it, and nobody can guess another's. The first byte 0 is the library's.
@@ -69,7 +69,7 @@ Result<std::unique_ptr<ClientThread>> ClientThread::start(const ClientOptions& o
 }
 
 ClientThread::ClientThread(const ClientOptions& options)
-    : options_(options), frame_drawn_ns_(now_ns()), routing_id_(make_routing_id()) {}
+    : options_(options), frame_drawn_ns_(realtime::now_ns()), routing_id_(make_routing_id()) {}
 
 ClientThread::~ClientThread() {
   mailbox_.leave();
@@ -123,7 +123,7 @@ void ClientThread::wake() noexcept {
 }
 
 void ClientThread::frame_drawn() noexcept {
-  frame_drawn_ns_.store(now_ns(), std::memory_order_relaxed);
+  frame_drawn_ns_.store(realtime::now_ns(), std::memory_order_relaxed);
 }
 
 void ClientThread::run() {
@@ -180,7 +180,8 @@ void ClientThread::beat() {
   }
   if (++silent_beats_ <= kSilentBeats) {
     // An age of 0 would mean that there is no window.
-    const double age_s = options_.has_window ? now_s - seconds(frame_drawn_ns_.load(std::memory_order_relaxed)) : 0.0;
+    const double age_s =
+        options_.has_window ? now_s - realtime::seconds(frame_drawn_ns_.load(std::memory_order_relaxed)) : 0.0;
     send(Heartbeat{now_s, std::max(0.0, age_s), session_.ticks_received()});
     return;
   }
@@ -218,4 +219,4 @@ void ClientThread::say_goodbye() {
   socket_.close();
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

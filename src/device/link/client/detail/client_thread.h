@@ -9,11 +9,11 @@
 #include "core/result.h"
 #include "link/client/detail/client_mailbox.h"
 #include "link/client/detail/client_session.h"
-#include "link/zmtp/detail/handshake_monitor.h"
 #include "link/client/detail/zmq_handles.h"
 #include "link/client/haptic_client.h"
+#include "link/zmtp/detail/handshake_monitor.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// The thread of a HapticClient: owns its socket, beats on absolute times, greets, and greets anew after silence.
 /// Sleeps until its clock, its socket or wake() ends that.
@@ -60,4 +60,4 @@ class ClientThread {
   std::thread thread_;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

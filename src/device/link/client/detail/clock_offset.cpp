@@ -1,6 +1,6 @@
 #include "link/client/detail/clock_offset.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 /// Clocks of quartz drift by some 50 ppm [assumed]: 0.25 ms in this time, below a loaded link's jitter.
@@ -22,4 +22,4 @@ std::optional<ClockOffset::Estimate> ClockOffset::best() const {
   return pings_.front().estimate;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -3,7 +3,7 @@
 #include <deque>
 #include <optional>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// The difference of two clocks by question and answer: of the last seconds the fastest round trip counts, since its
 /// two ways can differ least (as NTP's clock filter does, RFC 5905).
@@ -27,4 +27,4 @@ class ClockOffset {
   std::deque<Ping> pings_;  ///< Slower ones before a faster one are gone: the first is the best.
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr int kCannotRun = 127;  // the shell's status for a program that cannot be run
@@ -90,4 +90,4 @@ Result<int> start_program(const Program& program) {
   return child;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 struct Program {
   std::filesystem::path path;
@@ -18,4 +18,4 @@ struct Program {
 /// cannot be written, the program cannot be run.
 Result<int> start_program(const Program& program);
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -3,7 +3,7 @@
 #include <array>
 #include <cerrno>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 ZmqContext::~ZmqContext() {
   if (context_ == nullptr) return;
@@ -57,4 +57,4 @@ bool ZmqSocket::wait_readable(int wait_ms) noexcept {
   return zmq_poll(&item, 1, wait_ms) > 0;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

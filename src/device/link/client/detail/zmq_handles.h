@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// Owner of a ZeroMQ context. shut_down() ends the waits of all its sockets (error ETERM), in any thread.
 class ZmqContext {
@@ -88,4 +88,4 @@ class ZmqSocket {
   void* socket_ = nullptr;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

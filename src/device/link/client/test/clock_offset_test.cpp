@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 TEST(ClockOffset, IsExactWhereBothWaysTakeEquallyLong) {
@@ -53,4 +53,4 @@ TEST(ClockOffset, AnswerBeforeItsQuestionIsNotTaken) {
 }
 
 }  // namespace
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -9,7 +9,7 @@
 #include "link/client/detail/zmq_handles.h"
 #include "link/test/link_fixture.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 
 using namespace testing;  // the link's
@@ -429,4 +429,4 @@ TEST(HapticClient, RefusesAnotherMachineWithoutKeysAndWhatIsNoKey) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link

@@ -13,7 +13,7 @@
 
 #include "link/test/link_fixture.h"
 
-namespace trocar {
+namespace trocar::link {
 namespace {
 namespace fs = std::filesystem;
 
@@ -173,4 +173,4 @@ TEST(FindServerProgram, LooksInTheNamedFolderAndOnThePath) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::link

@@ -10,7 +10,7 @@
 
 #include "link/zmtp/detail/zmtp_frames.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr std::size_t kKeyTextBytes = 40;
@@ -245,4 +245,4 @@ std::vector<std::byte> CurveHandshake::ready(std::span<const std::byte> metadata
   return command;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

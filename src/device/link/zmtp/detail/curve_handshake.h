@@ -11,7 +11,7 @@
 #include "core/result.h"
 #include "link/curve_keys.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 inline constexpr std::size_t kCurveKeyBytes = 32;
 using CurveKey = std::array<std::uint8_t, kCurveKeyBytes>;
@@ -73,4 +73,4 @@ class CurveHandshake {
   std::uint64_t last_received_ = 0, last_sent_ = 0;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

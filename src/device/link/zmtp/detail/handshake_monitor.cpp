@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr int kFailures =
@@ -49,4 +49,4 @@ std::optional<std::string> HandshakeMonitor::take() {
   return newest;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

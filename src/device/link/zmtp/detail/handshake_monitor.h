@@ -5,7 +5,7 @@
 
 #include "link/client/detail/zmq_handles.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// Why connections of a client's socket fail before a message: keys that do not fit, one side without keys.
 class HandshakeMonitor {
@@ -20,4 +20,4 @@ class HandshakeMonitor {
   int watched_ = 0;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 Peer* PeerTable::greet(std::string_view routing_id, const Hello& hello, std::uint64_t new_session, double now_s) {
   Peer* peer = find(routing_id);
@@ -75,4 +75,4 @@ void PeerTable::forget_silent(double now_s, double longest_s) {
   if (controller() == nullptr) controller_ = 0;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

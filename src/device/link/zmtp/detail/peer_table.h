@@ -8,7 +8,7 @@
 
 #include "link/messages.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// What a server knows of one client.
 struct Peer {
@@ -54,4 +54,4 @@ class PeerTable {
   std::uint64_t controller_ = 0;  ///< Session; 0: nobody.
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "core/log.h"
-#include "link/zmtp/detail/tcp_address.h"
 #include "link/limits.h"
+#include "link/zmtp/detail/tcp_address.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr std::string_view kIpc = "ipc://";
@@ -254,4 +254,4 @@ void ServerConnections::report(const std::string& what, double now_s) {
   log_warning("link: {}", what);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

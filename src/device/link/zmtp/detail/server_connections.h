@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "core/result.h"
-#include "link/zmtp/detail/curve_handshake.h"
 #include "link/detail/descriptor.h"
 #include "link/detail/ipc_file.h"
-#include "link/zmtp/detail/token_bucket.h"
-#include "link/zmtp/detail/zmtp_connection.h"
 #include "link/endpoint.h"
 #include "link/limits.h"
+#include "link/zmtp/detail/curve_handshake.h"
+#include "link/zmtp/detail/token_bucket.h"
+#include "link/zmtp/detail/zmtp_connection.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// The listening socket of a server and its connections, in one thread. Bounded in everything that a stranger can
 /// raise: connections, accepts a second, bytes and messages of each connection (link/limits.h). Connections that have
@@ -87,4 +87,4 @@ class ServerConnections {
   bool has_ready_ = false;  ///< The last pump found a socket ready.
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

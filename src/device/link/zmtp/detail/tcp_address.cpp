@@ -9,7 +9,7 @@
 #include <charconv>
 #include <cstring>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr std::string_view kTcp = "tcp://";
@@ -87,4 +87,4 @@ Result<TcpListener> listen_tcp(const std::string& url) {
   return TcpListener{std::move(socket), address->url()};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -9,7 +9,7 @@
 #include "core/result.h"
 #include "link/detail/descriptor.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// The number of an interface and a port: "127.0.0.1:5571", "[::1]:5571". Names are not looked up.
 struct TcpAddress {
@@ -27,4 +27,4 @@ struct TcpListener {
 };
 Result<TcpListener> listen_tcp(const std::string& url);
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

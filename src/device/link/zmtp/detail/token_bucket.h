@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// A rate limit: `burst` at once, `per_s` in the long run. Time is an argument.
 class TokenBucket {
@@ -24,4 +24,4 @@ class TokenBucket {
   bool has_time_ = false;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

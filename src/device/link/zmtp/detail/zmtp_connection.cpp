@@ -6,7 +6,7 @@
 
 #include "link/limits.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr std::size_t kMostHandshakeBytes = 1024;  ///< The longest of RFC 26 has 257 and the metadata.
@@ -224,4 +224,4 @@ ZmtpConnection::Incoming ZmtpConnection::break_off(std::string why) {
   return {Event::kBroken, {}};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -11,7 +11,7 @@
 #include "link/zmtp/detail/token_bucket.h"
 #include "link/zmtp/detail/zmtp_frames.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 /// The server's side of one ZMTP 3 connection, without its socket: bytes in, messages and bytes out. What it holds of a
 /// peer is bounded in bytes, frames and rate, whatever the peer sends. Mechanisms: NULL, or CURVE with an identity.
@@ -75,4 +75,4 @@ class ZmtpConnection {
   std::string identity_, why_;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace zmtp {
 namespace {
 
@@ -134,4 +134,4 @@ void FrameReader::drop_taken() {
   if (bytes_.empty() && bytes_.capacity() > kKept) std::vector<std::byte>().swap(bytes_);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

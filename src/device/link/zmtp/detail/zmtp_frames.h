@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 
 inline void append_bytes(std::vector<std::byte>& bytes, std::span<const std::byte> more) {
   const std::size_t begin = bytes.size();
@@ -65,4 +65,4 @@ class FrameReader {
   std::size_t skipped_ = 0;  ///< Of a frame that is too large: still to be skipped.
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

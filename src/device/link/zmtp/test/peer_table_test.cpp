@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 constexpr double kNow_s = 10.0;
@@ -106,4 +106,4 @@ TEST(PeerTable, ChangingItsWishDoesNotOpenAFullTable) {
 }
 
 }  // namespace
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

@@ -6,7 +6,7 @@
 #include "core/random.h"
 #include "link/limits.h"
 
-namespace trocar::detail {
+namespace trocar::link::detail {
 namespace {
 
 using Event = ZmtpConnection::Event;
@@ -203,4 +203,4 @@ TEST(ZmtpConnection, RandomBytesNeitherCrashNorGrow) {
 }
 
 }  // namespace
-}  // namespace trocar::detail
+}  // namespace trocar::link::detail

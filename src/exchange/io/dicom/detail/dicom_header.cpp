@@ -8,7 +8,7 @@
 
 #include "core/files/input_file.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
@@ -219,4 +219,4 @@ std::vector<std::span<const char>> DicomHeader::pixels() const {
   return pieces;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

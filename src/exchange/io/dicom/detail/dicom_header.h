@@ -10,7 +10,7 @@
 
 #include "core/result.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// (group, element), for example dicom_tag(0x0028, 0x0010).
 constexpr std::uint32_t dicom_tag(std::uint16_t group, std::uint16_t element) {
@@ -50,4 +50,4 @@ class DicomHeader {
   bool is_compressed_ = false;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "io/dicom/detail/find_series.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
@@ -114,7 +114,7 @@ Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const fs::path&
   TROCAR_TRY_STATUS(check_tilt(stack_P, normal_P, folder));
 
   DicomSeries series;
-  GridGeometry& g = series.geometry;
+  volume::GridGeometry& g = series.geometry;
   g.size = {slices.front().columns, slices.front().rows, static_cast<std::int64_t>(slices.size())};
   g.spacing_mm = {(*slices.front().spacing_mm)[0], (*slices.front().spacing_mm)[1],
                   stack_P.dot(normal_P) / static_cast<double>(slices.size() - 1)};
@@ -126,14 +126,14 @@ Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const fs::path&
 }
 
 template <class T>
-Result<Grid<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert, const std::string& wanted) {
+Result<volume::Grid<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert, const std::string& wanted) {
   TROCAR_TRY(std::vector<SeriesImages> found, find_series(folder));
   TROCAR_TRY(SeriesImages slices, choose_series(std::move(found), folder, wanted));
   TROCAR_TRY(const DicomSeries series, order_slices(std::move(slices), folder));
   if constexpr (std::is_same_v<T, std::int16_t>) TROCAR_TRY_STATUS(check_modality(series.slices.front(), folder));
   const std::uint64_t bytes = series.geometry.voxel_count() * sizeof(T);
   TROCAR_TRY_STATUS(check_memory_for_image(bytes, available_memory_bytes(), folder.string()));
-  Grid<T> grid(series.geometry);
+  volume::Grid<T> grid(series.geometry);
   const auto pixels = static_cast<std::size_t>(series.geometry.size[0] * series.geometry.size[1]);
   std::vector<Status> statuses(series.slices.size());
   parallel_for(series.slices.size(), 4, [&](std::size_t first, std::size_t last) {
@@ -147,8 +147,10 @@ Result<Grid<T>> read_dicom_folder(const fs::path& folder, Converter<T> convert, 
   return grid;
 }
 
-template Result<Grid<std::int16_t>> read_dicom_folder(const fs::path&, Converter<std::int16_t>, const std::string&);
-template Result<Grid<std::uint8_t>> read_dicom_folder(const fs::path&, Converter<std::uint8_t>, const std::string&);
-template Result<Grid<float>> read_dicom_folder(const fs::path&, Converter<float>, const std::string&);
+template Result<volume::Grid<std::int16_t>> read_dicom_folder(const fs::path&, Converter<std::int16_t>,
+                                                              const std::string&);
+template Result<volume::Grid<std::uint8_t>> read_dicom_folder(const fs::path&, Converter<std::uint8_t>,
+                                                              const std::string&);
+template Result<volume::Grid<float>> read_dicom_folder(const fs::path&, Converter<float>, const std::string&);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

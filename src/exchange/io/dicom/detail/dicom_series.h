@@ -9,11 +9,11 @@
 #include "io/image/detail/raw_volume.h"
 #include "volume/grid.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// One series in the order of its slices along their normal.
 struct DicomSeries {
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   std::vector<DicomSlice> slices;  ///< k = 0, 1, 2 …
 };
 
@@ -25,7 +25,7 @@ Result<DicomSeries> order_slices(std::vector<DicomSlice> slices, const std::file
 /// Reads one DICOM series of a folder and its sub-folders; files that are no DICOM images are ignored. `wanted`: see
 /// choose_series.
 template <class T>
-Result<Grid<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert,
-                                  const std::string& wanted = {});
+Result<volume::Grid<T>> read_dicom_folder(const std::filesystem::path& folder, Converter<T> convert,
+                                          const std::string& wanted = {});
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -15,7 +15,7 @@
 #include "io/dicom/detail/dicom_header.h"
 #include "io/image/detail/quiet.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
@@ -235,4 +235,4 @@ Status decode_slice(const DicomSlice& slice, const std::function<Status(const Ra
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -10,7 +10,7 @@
 #include "geometry/vec.h"
 #include "io/image/detail/raw_volume.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// What the header of one DICOM image says. Frame P is DICOM's own: LPS, mm.
 struct DicomSlice {
@@ -40,4 +40,4 @@ Result<std::optional<DicomSlice>> find_dicom_slice(const std::filesystem::path& 
 /// Unpacks the pixels of one slice (uncompressed, JPEG, JPEG-LS, JPEG 2000, RLE) and hands them to `use`.
 Status decode_slice(const DicomSlice& slice, const std::function<Status(const RawVoxels&)>& use);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

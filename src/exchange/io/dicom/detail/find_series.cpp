@@ -8,7 +8,7 @@
 
 #include "core/parallel.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
@@ -105,4 +105,4 @@ Result<SeriesImages> choose_series(std::vector<SeriesImages> series, const fs::p
                     folder.string(), "name the folder of one series, or choose it with --series NUMBER or UID");
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

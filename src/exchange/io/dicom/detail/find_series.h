@@ -7,7 +7,7 @@
 #include "core/result.h"
 #include "io/dicom/detail/dicom_slice.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// The images of one series, ordered by file; at least one.
 using SeriesImages = std::vector<DicomSlice>;
@@ -24,4 +24,4 @@ Result<std::vector<SeriesImages>> find_series(const std::filesystem::path& folde
 Result<SeriesImages> choose_series(std::vector<SeriesImages> series, const std::filesystem::path& folder,
                                    const std::string& wanted);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -6,7 +6,7 @@
 #include "io/image/image_file.h"
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using detail::DicomSlice;
@@ -45,7 +45,7 @@ TEST(DicomSeries, OrdersByPositionAndTakesTheStepFromIt) {
   const auto ordered = order_slices(slices, "folder");
   ASSERT_TRUE(ordered) << ordered.error().text();
   for (std::size_t n = 0; n < 5; ++n) EXPECT_EQ(ordered->slices[n].file, "slice" + std::to_string(n));
-  const GridGeometry& g = ordered->geometry;
+  const volume::GridGeometry& g = ordered->geometry;
   EXPECT_EQ(g.size, (std::array<std::int64_t, 3>{6, 4, 5}));
   EXPECT_LT((g.spacing_mm - Vec3(0.5, 0.75, 2.0)).norm(), 1e-9);
   EXPECT_LT((g.R_PV - R).norm(), 1e-9);
@@ -234,4 +234,4 @@ TEST_F(RealSeries, WithATruncatedSliceIsRefusedInSilence) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

@@ -4,7 +4,7 @@
 #include "io/image/image_file.h"
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 namespace fs = std::filesystem;
 
@@ -45,7 +45,7 @@ void write_series(const fs::path& folder, const std::string& uid, const std::str
   for (int n = 0; n < slices; ++n) write_slice(folder / ("image" + std::to_string(n)), uid, modality, n, value);
 }
 
-int first_voxel(const Result<CtGrid>& ct) {
+int first_voxel(const Result<volume::CtGrid>& ct) {
   EXPECT_TRUE(ct) << ct.error().text();
   return ct ? ct->voxels.front() : -32768;
 }
@@ -120,11 +120,11 @@ TEST(FindSeries, FolderWithoutImagesIsAnError) {
 
 TEST(FindSeries, SeriesOfAFileIsAUsageError) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(write_image(CtGrid(testing::oblique_geometry(), 5), folder / "ct.nrrd"));
+  ASSERT_TRUE(write_image(volume::CtGrid(testing::oblique_geometry(), 5), folder / "ct.nrrd"));
   const auto ct = read_ct(folder / "ct.nrrd", "1");
   ASSERT_FALSE(ct);
   EXPECT_EQ(ct.error().exit_status, 2);
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

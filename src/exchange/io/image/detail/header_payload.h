@@ -7,7 +7,7 @@
 
 #include "core/files/input_file.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 inline constexpr const char* kExportAgain = "copy or export the file again";
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
@@ -37,4 +37,4 @@ Result<std::uint64_t> volume_bytes(const std::vector<std::int64_t>& sizes, std::
 /// (no qform and no sform, sheared, not in mm), NaN or infinite voxels.
 Result<Payload> nifti_payload(const InputFile& file);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -9,7 +9,7 @@
 #include "core/available_memory.h"
 #include "io/image/detail/quiet.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
@@ -188,4 +188,4 @@ Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, c
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -14,7 +14,7 @@
 #include "io/image/detail/payload.h"
 #include "io/image/detail/voxel_type.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// Key and value texts of a header.
 using TextFields = std::vector<std::pair<std::string, std::string>>;
@@ -45,4 +45,4 @@ enum class Packing { kCompressed, kPlain };
 Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, const std::filesystem::path& path,
                       ImageFormat format, Packing packing);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

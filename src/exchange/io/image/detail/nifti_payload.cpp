@@ -12,7 +12,7 @@
 #include "io/image/detail/header_payload.h"
 #include "io/image/detail/raw_volume.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace {
 
 /// Fixed-offset fields of a NIfTI header in either byte order.
@@ -83,7 +83,7 @@ Status check_place(const NiftiHeader& header, const std::string& where) {
   const Vec3 lengths = axes.colwise().norm().transpose();
   if (!axes.allFinite() || (lengths.array() <= 0.0).any())
     return fail("the header's sform places no voxel", where, kExportAgain);
-  GridGeometry probe;
+  volume::GridGeometry probe;
   probe.R_PV = axes * lengths.cwiseInverse().asDiagonal();
   if (auto status = tidy_geometry(probe); !status) return fail(status.error().what, where, status.error().advice);
   return {};
@@ -151,4 +151,4 @@ Result<Payload> nifti_payload(const InputFile& input) {
   return Payload{.offset = skipped, .bytes = voxels};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -15,7 +15,7 @@
 
 #include "io/image/detail/header_payload.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
@@ -284,4 +284,4 @@ Result<CheckedImage> open_image_file(const fs::path& path, ImageFormat format, C
   return CheckedImage{std::move(file), std::move(library_path)};
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

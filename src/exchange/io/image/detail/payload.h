@@ -5,7 +5,7 @@
 
 #include "core/files/input_file.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// The image formats, told by the file's ending.
 enum class ImageFormat { kNifti, kNrrd, kMeta };
@@ -34,4 +34,4 @@ struct CheckedImage {
 Result<CheckedImage> open_image_file(const std::filesystem::path& path, ImageFormat format,
                                      Check check = Check::kUnpack, const std::filesystem::path& inside = {});
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

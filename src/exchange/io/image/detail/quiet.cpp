@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <mutex>
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace {
 
 /// Standard error as it was, while at least one MutedStandardError lives.
@@ -60,4 +60,4 @@ MutedStandardError::~MutedStandardError() {
   shared.saved = -1;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

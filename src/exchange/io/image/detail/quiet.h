@@ -1,6 +1,6 @@
 #pragma once
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// Stops the image libraries from writing to the terminal: what is wrong with a file is said once, by our error.
 /// Cheap after the first call; safe from any thread.
@@ -17,4 +17,4 @@ class MutedStandardError {
   MutedStandardError& operator=(const MutedStandardError&) = delete;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -13,7 +13,7 @@
 
 #include "core/parallel.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 18;
@@ -101,7 +101,7 @@ std::size_t bytes_per_voxel(VoxelType type) noexcept {
   return with_type(type, []<class S>(S) { return sizeof(S); });
 }
 
-Status tidy_geometry(GridGeometry& geometry) {
+Status tidy_geometry(volume::GridGeometry& geometry) {
   if (!geometry.spacing_mm.allFinite() || !geometry.origin_P.allFinite() || !geometry.R_PV.allFinite())
     return fail("the image's place is no number", {}, "export it again");
   if ((geometry.spacing_mm.array() <= 0.0).any())
@@ -119,8 +119,8 @@ Status tidy_geometry(GridGeometry& geometry) {
 }
 
 template <class T>
-void make_right_handed(Grid<T>& grid) {
-  GridGeometry& g = grid.geometry;
+void make_right_handed(volume::Grid<T>& grid) {
+  volume::GridGeometry& g = grid.geometry;
   if (g.R_PV.determinant() > 0.0) return;
   g.origin_P = g.to_mm({0.0, 0.0, static_cast<double>(g.size[2] - 1)});
   g.R_PV.col(2) = -g.R_PV.col(2);
@@ -132,10 +132,10 @@ void make_right_handed(Grid<T>& grid) {
 }
 
 template <class T>
-Result<Grid<T>> to_grid(const RawVolume& raw, const std::string& where, Converter<T> convert) {
+Result<volume::Grid<T>> to_grid(const RawVolume& raw, const std::string& where, Converter<T> convert) {
   if (raw.components != 1)
     return fail("has several values in each voxel (colour or vectors)", where, "give an image of one value a voxel");
-  Grid<T> grid;
+  volume::Grid<T> grid;
   grid.geometry = raw.geometry;
   Status status = tidy_geometry(grid.geometry);
   if (status) {
@@ -147,9 +147,9 @@ Result<Grid<T>> to_grid(const RawVolume& raw, const std::string& where, Converte
   return grid;
 }
 
-template Result<Grid<std::int16_t>> to_grid(const RawVolume&, const std::string&, Converter<std::int16_t>);
-template Result<Grid<std::uint8_t>> to_grid(const RawVolume&, const std::string&, Converter<std::uint8_t>);
-template Result<Grid<float>> to_grid(const RawVolume&, const std::string&, Converter<float>);
+template Result<volume::Grid<std::int16_t>> to_grid(const RawVolume&, const std::string&, Converter<std::int16_t>);
+template Result<volume::Grid<std::uint8_t>> to_grid(const RawVolume&, const std::string&, Converter<std::uint8_t>);
+template Result<volume::Grid<float>> to_grid(const RawVolume&, const std::string&, Converter<float>);
 
 Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out) {
   if (is_plain(in, VoxelType::kInt16)) {
@@ -205,4 +205,4 @@ Status convert_mask(const RawVoxels& in, std::span<std::uint8_t> out) {
   return fail("the mask has a voxel that is no number", {}, "export it again without NaN");
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

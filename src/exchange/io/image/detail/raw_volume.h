@@ -12,7 +12,7 @@
 #include "io/image/detail/voxel_type.h"
 #include "volume/grid.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// Numbers as a file stores them, in this machine's byte order.
 struct RawVoxels {
@@ -24,7 +24,7 @@ struct RawVoxels {
 
 /// A volume as its file has it.
 struct RawVolume {
-  GridGeometry geometry;  ///< R_PV may still be mirrored or slightly off: see tidy_geometry().
+  volume::GridGeometry geometry;  ///< R_PV may still be mirrored or slightly off: see tidy_geometry().
   VoxelType type = VoxelType::kUInt8;
   int components = 1;  ///< Numbers per voxel, running fastest.
   std::unique_ptr<std::byte[]> bytes;
@@ -40,7 +40,7 @@ inline constexpr double kMaxShear = 1e-3;
 
 /// Checks a geometry as read and makes its direction exactly orthonormal. Errors (without a place): a spacing that is
 /// zero or no number, a sheared direction. A mirrored direction is kept.
-Status tidy_geometry(GridGeometry& geometry);
+Status tidy_geometry(volume::GridGeometry& geometry);
 
 /// One of the functions below: turns stored numbers into voxels.
 template <class T>
@@ -49,12 +49,12 @@ using Converter = Status (*)(const RawVoxels&, std::span<T>);
 /// The volume as a grid that keeps GridGeometry's invariant. Errors, at `where`: what tidy_geometry() and the converter
 /// refuse, more than one number a voxel.
 template <class T>
-Result<Grid<T>> to_grid(const RawVolume& raw, const std::string& where, Converter<T> convert);
+Result<volume::Grid<T>> to_grid(const RawVolume& raw, const std::string& where, Converter<T> convert);
 
 /// Re-orders a mirrored grid (determinant < 0) by reversing its k axis, so that R_PV is a rotation. No voxel moves in
 /// P.
 template <class T>
-void make_right_handed(Grid<T>& grid);
+void make_right_handed(volume::Grid<T>& grid);
 
 /// Converts numbers of a file; `out` has one element for each stored number. The error says what is wrong with the
 /// values, without a place.
@@ -67,4 +67,4 @@ Status convert_voxels(const RawVoxels& in, std::span<float> out);
 /// A mask: 1 where the value is above zero. NaN is an error.
 Status convert_mask(const RawVoxels& in, std::span<std::uint8_t> out);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -4,7 +4,7 @@
 
 #include "io/image/detail/payload.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace fs = std::filesystem;
 
 Status check_image_path(const fs::path& path) {
@@ -25,4 +25,4 @@ Status check_image_path(const fs::path& path) {
   return fail("is one DICOM image, not a volume", path.string(), "name the folder of its series instead");
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

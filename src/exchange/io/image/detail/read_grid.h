@@ -7,15 +7,15 @@
 #include "io/image/detail/raw_volume.h"
 #include "io/image/detail/volume_file.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// A path that must name an image file or a folder; a single DICOM file is refused with advice.
 Status check_image_path(const std::filesystem::path& path);
 
 /// Any image the project reads: a file or the folder of a DICOM series. With `inside`: a file of that folder.
 template <class T>
-Result<Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> convert, Check check = Check::kUnpack,
-                          const std::filesystem::path& inside = {}) {
+Result<volume::Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> convert, Check check = Check::kUnpack,
+                                  const std::filesystem::path& inside = {}) {
   TROCAR_TRY_STATUS(check_image_path(path));
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return read_dicom_folder<T>(path, convert);
@@ -23,4 +23,4 @@ Result<Grid<T>> read_grid(const std::filesystem::path& path, Converter<T> conver
   return to_grid<T>(raw, path.string(), convert);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

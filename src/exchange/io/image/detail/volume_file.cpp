@@ -6,7 +6,7 @@
 
 #include "io/image/detail/payload.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
@@ -46,8 +46,8 @@ Result<RawVolume> read_volume_file(const fs::path& path, Check check, const fs::
   return volume;
 }
 
-Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, const fs::path& path, Packing packing,
-                         TextFields fields) {
+Status write_volume_file(const RawVoxels& voxels, const volume::GridGeometry& geometry, const fs::path& path,
+                         Packing packing, TextFields fields) {
   TROCAR_TRY(const ImageFormat format, find_image_format(path));
   TROCAR_TRY_STATUS(reserve_space(path, voxels.bytes.size() + voxels.bytes.size() / 256 + kHeaderBytes));
   ItkImage image;
@@ -65,4 +65,4 @@ Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, 
   return fail("the image was not written whole", path.string(), "check the disk space");
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -6,7 +6,7 @@
 #include "io/image/detail/itk_image.h"
 #include "io/image/detail/raw_volume.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// Reads a NIfTI, NRRD or MetaImage file as it is, place in LPS mm. Errors of open_image_file().
 Result<RawVolume> read_volume_file(const std::filesystem::path& path, Check check = Check::kUnpack,
@@ -15,7 +15,8 @@ Result<RawVolume> read_volume_file(const std::filesystem::path& path, Check chec
 /// Writes a volume (one number a voxel) by the path's ending, compressed where asked and the format can, and checks
 /// that it is all there: the libraries do not report a full disk. Writes straight to `path`; the caller makes it
 /// atomic. Fields only where the format has them (NRRD).
-Status write_volume_file(const RawVoxels& voxels, const GridGeometry& geometry, const std::filesystem::path& path,
-                         Packing packing = Packing::kCompressed, TextFields fields = {});
+Status write_volume_file(const RawVoxels& voxels, const volume::GridGeometry& geometry,
+                         const std::filesystem::path& path, Packing packing = Packing::kCompressed,
+                         TextFields fields = {});
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

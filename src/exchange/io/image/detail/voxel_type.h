@@ -3,11 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// How a file stores one number.
 enum class VoxelType { kUInt8, kInt8, kUInt16, kInt16, kUInt32, kInt32, kUInt64, kInt64, kFloat, kDouble };
 
 std::size_t bytes_per_voxel(VoxelType type) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

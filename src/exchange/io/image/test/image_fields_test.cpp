@@ -1,7 +1,7 @@
 #include "io/image/image_file.h"
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::numbered_grid;
@@ -10,7 +10,7 @@ using testing::read_bytes;
 
 TEST(ImageFields, ComeBackFromNrrd) {
   const TemporaryFolder folder;
-  const LabelGrid grid = numbered_grid<std::uint8_t>(oblique_geometry());
+  const volume::LabelGrid grid = numbered_grid<std::uint8_t>(oblique_geometry());
   const ImageFields fields{{"trocar.fan.radius_mm", "40.5"}, {"trocar_axis", "+z; a = b: c"}, {"empty", ""}};
   ASSERT_TRUE(write_image(grid, folder / "sweep.nrrd", fields));
   EXPECT_NE(read_bytes(folder / "sweep.nrrd").find("trocar.fan.radius_mm:=40.5\n"), std::string::npos);
@@ -28,7 +28,7 @@ TEST(ImageFields, ComeBackFromNrrd) {
 
 TEST(ImageFields, AreEmptyWithoutAny) {
   const TemporaryFolder folder;
-  const LabelGrid grid = numbered_grid<std::uint8_t>(oblique_geometry());
+  const volume::LabelGrid grid = numbered_grid<std::uint8_t>(oblique_geometry());
   for (const char* name : {"a.nrrd", "a.nii.gz", "a.mha"}) {
     ASSERT_TRUE(write_image(grid, folder / name));
     const auto read = read_image_fields(folder / name);
@@ -40,7 +40,7 @@ TEST(ImageFields, AreEmptyWithoutAny) {
 
 TEST(ImageFields, RefuseWhatAHeaderCannotHold) {
   const TemporaryFolder folder;
-  const LabelGrid grid = numbered_grid<std::uint8_t>(oblique_geometry());
+  const volume::LabelGrid grid = numbered_grid<std::uint8_t>(oblique_geometry());
   EXPECT_FALSE(write_image(grid, folder / "a.nii.gz", {{"key", "value"}}));
   for (const ImageFields& fields : {ImageFields{{"two words", "v"}}, ImageFields{{"", "v"}}, ImageFields{{"a:=b", "v"}},
                                     ImageFields{{"k", "a\nb"}}, ImageFields{{"NRRD_space", "v"}}})
@@ -49,4 +49,4 @@ TEST(ImageFields, RefuseWhatAHeaderCannotHold) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

@@ -9,7 +9,7 @@
 #include "core/random.h"
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::expect_same_place;
@@ -33,7 +33,7 @@ class EveryFormat : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(EveryFormat, KeepsObliqueCt) {
-  CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
+  volume::CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
   ct.voxels[3] = -32768;
   ct.voxels[4] = 32767;
   const auto path = folder_ / (std::string("ct") + GetParam());
@@ -46,7 +46,7 @@ TEST_P(EveryFormat, KeepsObliqueCt) {
 }
 
 TEST_P(EveryFormat, KeepsLabels) {
-  const LabelGrid labels = numbered_grid<std::uint8_t>(oblique_geometry());
+  const volume::LabelGrid labels = numbered_grid<std::uint8_t>(oblique_geometry());
   const auto path = folder_ / (std::string("labels") + GetParam());
   ASSERT_TRUE(write_image(labels, path));
   const auto read = read_labels(path);
@@ -56,7 +56,7 @@ TEST_P(EveryFormat, KeepsLabels) {
 }
 
 TEST_P(EveryFormat, KeepsFloats) {
-  FloatGrid distance = numbered_grid<float>(oblique_geometry());
+  volume::FloatGrid distance = numbered_grid<float>(oblique_geometry());
   distance.voxels[5] = -12.375F;
   const auto path = folder_ / (std::string("distance") + GetParam());
   ASSERT_TRUE(write_image(distance, path));
@@ -66,7 +66,7 @@ TEST_P(EveryFormat, KeepsFloats) {
 }
 
 TEST_P(EveryFormat, RefusesEveryTruncation) {
-  const CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
+  const volume::CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
   const std::string name = std::string("ct") + GetParam();
   ASSERT_TRUE(write_image(ct, folder_ / name));
   const std::string whole = read_bytes(folder_ / name);
@@ -80,7 +80,7 @@ TEST_P(EveryFormat, RefusesEveryTruncation) {
 }
 
 TEST_P(EveryFormat, SaysNothingOnTheTerminal) {
-  const CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
+  const volume::CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
   const std::string name = std::string("ct") + GetParam();
   ASSERT_TRUE(write_image(ct, folder_ / name));
   const std::string whole = read_bytes(folder_ / name);
@@ -95,7 +95,7 @@ TEST_P(EveryFormat, SaysNothingOnTheTerminal) {
 }
 
 TEST_P(EveryFormat, SurvivesDamagedHeadersInSilence) {
-  const CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
+  const volume::CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
   const std::string name = std::string("ct") + GetParam();
   ASSERT_TRUE(write_image(ct, folder_ / name));
   const std::string whole = read_bytes(folder_ / name);
@@ -114,9 +114,9 @@ TEST_P(EveryFormat, SurvivesDamagedHeadersInSilence) {
 }
 
 TEST_P(EveryFormat, LeavesNothingWhenTheDiskIsFull) {
-  GridGeometry g = oblique_geometry();
+  volume::GridGeometry g = oblique_geometry();
   g.size = {64, 64, 32};
-  CtGrid noise(g);
+  volume::CtGrid noise(g);
   std::uint32_t state = 1;
   for (auto& voxel : noise.voxels) voxel = static_cast<std::int16_t>((state = state * 1664525U + 1013904223U) >> 16);
   const auto path = folder_ / (std::string("ct") + GetParam());
@@ -152,7 +152,7 @@ TEST(ImageFile, ReadsRasNrrd) {
   const auto ct = read_ct(folder / "ct.nrrd");
   ASSERT_TRUE(ct) << ct.error().text();
   const Vec3 index = ct->geometry.to_index({-14, -20, 34});
-  EXPECT_EQ((*ct)[(Index3{std::lround(index[0]), std::lround(index[1]), std::lround(index[2])})], 8);
+  EXPECT_EQ((*ct)[(volume::Index3{std::lround(index[0]), std::lround(index[1]), std::lround(index[2])})], 8);
 }
 
 TEST(ImageFile, ReadsHeaderWithVoxelsBeside) {
@@ -198,4 +198,4 @@ TEST(ImageFile, RefusesToWriteAnUnknownEnding) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

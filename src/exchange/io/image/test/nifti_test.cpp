@@ -5,7 +5,7 @@
 #include "io/image/image_file.h"
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::numbered_grid;
@@ -71,7 +71,7 @@ TEST(Nifti, TurnsRasNiftiIntoLps) {
   ASSERT_TRUE(ct) << ct.error().text();
   // The marked voxel i=2, j=0, k=1 (value 8) lies at RAS (14, 20, 34).
   const Vec3 index = ct->geometry.to_index({-14, -20, 34});
-  const Index3 voxel{std::lround(index[0]), std::lround(index[1]), std::lround(index[2])};
+  const volume::Index3 voxel{std::lround(index[0]), std::lround(index[1]), std::lround(index[2])};
   ASSERT_TRUE(ct->geometry.contains(voxel));
   EXPECT_EQ((*ct)[voxel], 8);
 }
@@ -87,7 +87,7 @@ TEST(Nifti, ReordersMirroredGridWithoutMovingVoxels) {
   for (int n = 0; n < 12; ++n) {
     const Vec3 p_P(-(10.0 - 2.0 * (n % 3)), -(20.0 + 3.0 * (n / 3 % 2)), 30.0 + 4.0 * (n / 6));
     const Vec3 index = ct->geometry.to_index(p_P);
-    const Index3 voxel{std::lround(index[0]), std::lround(index[1]), std::lround(index[2])};
+    const volume::Index3 voxel{std::lround(index[0]), std::lround(index[1]), std::lround(index[2])};
     ASSERT_TRUE(ct->geometry.contains(voxel));
     EXPECT_EQ((*ct)[voxel], n);
     EXPECT_LT((ct->geometry.to_mm(index) - p_P).norm(), 1e-9);
@@ -180,7 +180,7 @@ TEST(Nifti, ReadsQform) {
   ASSERT_TRUE(ct) << ct.error().text();
   EXPECT_NEAR(ct->geometry.R_PV.determinant(), 1.0, 1e-12);
   const Vec3 index = ct->geometry.to_index({-14, -20, 26});  // i=2, j=0, k=1 in the file
-  EXPECT_EQ((*ct)[(Index3{std::lround(index[0]), std::lround(index[1]), std::lround(index[2])})], 8);
+  EXPECT_EQ((*ct)[(volume::Index3{std::lround(index[0]), std::lround(index[1]), std::lround(index[2])})], 8);
 }
 
 TEST(Nifti, RefusesShearedGrid) {
@@ -221,7 +221,7 @@ TEST(Nifti, AcceptsOneTimePoint) {
 
 TEST(Nifti, WritesNiftiInRas) {
   TemporaryFolder folder;
-  GridGeometry g;
+  volume::GridGeometry g;
   g.size = {3, 4, 5};
   g.spacing_mm = {2, 3, 4};
   g.origin_P = {10, 20, 30};
@@ -235,4 +235,4 @@ TEST(Nifti, WritesNiftiInRas) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

@@ -4,11 +4,11 @@
 
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 TEST(Png, DecodesToTheSamePixels) {
-  RgbImage image(7, 3);
+  volume::RgbImage image(7, 3);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 7; ++column)
       image.at(column, row) = {static_cast<std::uint8_t>(30 * column), static_cast<std::uint8_t>(80 * row), 200};
@@ -20,17 +20,17 @@ TEST(Png, DecodesToTheSamePixels) {
   EXPECT_EQ(png.width, 7U);
   EXPECT_EQ(png.height, 3U);
   png.format = PNG_FORMAT_RGB;
-  std::vector<Rgb> pixels(21);
+  std::vector<volume::Rgb> pixels(21);
   ASSERT_NE(png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr), 0);
   EXPECT_EQ(pixels, image.pixels);
 }
 
 TEST(Png, IsWrittenAsAFile) {
   TemporaryFolder folder;
-  const RgbImage image(2, 2, {1, 2, 3});
+  const volume::RgbImage image(2, 2, {1, 2, 3});
   ASSERT_TRUE(write_png(image, folder / "a.png"));
   EXPECT_EQ(testing::read_bytes(folder / "a.png"), encode_png(image));
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

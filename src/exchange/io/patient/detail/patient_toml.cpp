@@ -10,13 +10,13 @@
 #include "core/files/input_file.h"
 #include "io/patient/patient_folder.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
-Result<Label> label_of(const TomlTable& table) {
+Result<anatomy::Label> label_of(const config::TomlTable& table) {
   TROCAR_TRY_STATUS(table.check_keys({"id", "name", "tissue", "color"}));
-  Label label;
+  anatomy::Label label;
   TROCAR_TRY(const std::int64_t id, table.integer("id", {1, 255}));
   label.id = static_cast<std::uint8_t>(id);
   TROCAR_TRY(label.name, table.string("name"));
@@ -27,22 +27,23 @@ Result<Label> label_of(const TomlTable& table) {
   return label;
 }
 
-Result<LabelTable> labels_of(const TomlTable& file) {
-  LabelTable table;
+Result<anatomy::LabelTable> labels_of(const config::TomlTable& file) {
+  anatomy::LabelTable table;
   std::set<std::string> names;
-  TROCAR_TRY(const std::vector<TomlTable> rows, file.tables("labels"));
-  for (const TomlTable& row : rows) {
-    TROCAR_TRY(Label label, label_of(row));
+  TROCAR_TRY(const std::vector<config::TomlTable> rows, file.tables("labels"));
+  for (const config::TomlTable& row : rows) {
+    TROCAR_TRY(anatomy::Label label, label_of(row));
     if (!names.insert(label.name).second || table.find(label.id) != nullptr)
       return fail(fmt::format("label {} \"{}\" occurs twice", label.id, label.name), row.where(),
                   "ids and names must be unique");
     table.labels.push_back(std::move(label));
   }
-  std::sort(table.labels.begin(), table.labels.end(), [](const Label& a, const Label& b) { return a.id < b.id; });
+  std::sort(table.labels.begin(), table.labels.end(),
+            [](const anatomy::Label& a, const anatomy::Label& b) { return a.id < b.id; });
   return table;
 }
 
-Result<PatientMeshEntry> mesh_of(const TomlTable& table) {
+Result<PatientMeshEntry> mesh_of(const config::TomlTable& table) {
   TROCAR_TRY_STATUS(table.check_keys({"name", "file"}));
   PatientMeshEntry entry;
   TROCAR_TRY(entry.name, table.string("name"));
@@ -53,7 +54,7 @@ Result<PatientMeshEntry> mesh_of(const TomlTable& table) {
   return entry;
 }
 
-Status check_version(const TomlTable& file, const fs::path& path) {
+Status check_version(const config::TomlTable& file, const fs::path& path) {
   TROCAR_TRY(const std::int64_t version, file.integer("format_version", {1, 1e6}));
   if (version <= kPatientFormatVersion) return {};
   return fail(fmt::format("the patient has format {}, this program reads up to {}", version, kPatientFormatVersion),
@@ -67,23 +68,24 @@ std::string to_toml(const PatientDescription& patient) {
       "# A virtual patient. ct.nrrd: HU; labels.nrrd: ids of [[labels]]; skin_distance.nrrd: hundredths\n"
       "# of a mm, negative inside the body. Frame P: LPS, mm.\n";
   text += fmt::format("format_version = {}\n", kPatientFormatVersion);
-  text += fmt::format("name = {}\n", toml_quoted(patient.name));
-  text += fmt::format("description = {}\n", toml_quoted(patient.description));
+  text += fmt::format("name = {}\n", config::toml_quoted(patient.name));
+  text += fmt::format("description = {}\n", config::toml_quoted(patient.description));
   text += "provenance = [\n";
-  for (const std::string& line : patient.provenance) text += fmt::format("  {},\n", toml_quoted(line));
-  text += fmt::format("]\ncontent_hash = {}\n", toml_quoted(patient.content_hash));
-  for (const Label& label : patient.label_table.labels)
-    text +=
-        fmt::format("\n[[labels]]\nid = {}\nname = {}\ntissue = {}\ncolor = [{}, {}, {}]\n", label.id,
-                    toml_quoted(label.name), toml_quoted(label.tissue), label.color[0], label.color[1], label.color[2]);
+  for (const std::string& line : patient.provenance) text += fmt::format("  {},\n", config::toml_quoted(line));
+  text += fmt::format("]\ncontent_hash = {}\n", config::toml_quoted(patient.content_hash));
+  for (const anatomy::Label& label : patient.label_table.labels)
+    text += fmt::format("\n[[labels]]\nid = {}\nname = {}\ntissue = {}\ncolor = [{}, {}, {}]\n", label.id,
+                        config::toml_quoted(label.name), config::toml_quoted(label.tissue), label.color[0],
+                        label.color[1], label.color[2]);
   for (const PatientMeshEntry& mesh : patient.meshes)
-    text += fmt::format("\n[[meshes]]\nname = {}\nfile = {}\n", toml_quoted(mesh.name), toml_quoted(mesh.file));
+    text += fmt::format("\n[[meshes]]\nname = {}\nfile = {}\n", config::toml_quoted(mesh.name),
+                        config::toml_quoted(mesh.file));
   return text;
 }
 
 Result<PatientDescription> load_patient_toml(const fs::path& path, const fs::path& folder) {
   TROCAR_TRY(const std::string text, read_input(path, FileKind::kToml, folder));
-  TROCAR_TRY(const TomlTable file, parse_toml(text, path.string()));
+  TROCAR_TRY(const config::TomlTable file, config::parse_toml(text, path.string()));
   TROCAR_TRY_STATUS(check_version(file, path));
   TROCAR_TRY_STATUS(
       file.check_keys({"format_version", "name", "description", "provenance", "content_hash", "labels", "meshes"}));
@@ -93,12 +95,12 @@ Result<PatientDescription> load_patient_toml(const fs::path& path, const fs::pat
   TROCAR_TRY(patient.provenance, file.strings("provenance"));
   TROCAR_TRY(patient.content_hash, file.string("content_hash"));
   TROCAR_TRY(patient.label_table, labels_of(file));
-  TROCAR_TRY(const std::vector<TomlTable> meshes, file.tables("meshes"));
-  for (const TomlTable& mesh : meshes) {
+  TROCAR_TRY(const std::vector<config::TomlTable> meshes, file.tables("meshes"));
+  for (const config::TomlTable& mesh : meshes) {
     TROCAR_TRY(PatientMeshEntry entry, mesh_of(mesh));
     patient.meshes.push_back(std::move(entry));
   }
   return patient;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -7,7 +7,7 @@
 #include "anatomy/label_table.h"
 #include "core/result.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 struct PatientMeshEntry {
   std::string name;  ///< The label's name, or "skin".
@@ -20,7 +20,7 @@ struct PatientDescription {
   std::string description;
   std::vector<std::string> provenance;
   std::string content_hash;
-  LabelTable label_table;
+  anatomy::LabelTable label_table;
   std::vector<PatientMeshEntry> meshes;
 };
 
@@ -31,4 +31,4 @@ std::string to_toml(const PatientDescription& patient);
 /// mesh file outside of meshes/, a link that leads out of the folder.
 Result<PatientDescription> load_patient_toml(const std::filesystem::path& path, const std::filesystem::path& folder);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -5,7 +5,7 @@
 #include "io/image/image_file.h"
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::oblique_geometry;
@@ -15,20 +15,20 @@ using testing::write_bytes;
 using Names = std::vector<std::pair<int, std::string>>;
 
 /// A label volume with the values of `values` in its first voxels.
-LabelGrid labels_with(const std::vector<std::uint8_t>& values) {
-  LabelGrid labels(oblique_geometry());
+volume::LabelGrid labels_with(const std::vector<std::uint8_t>& values) {
+  volume::LabelGrid labels(oblique_geometry());
   std::copy(values.begin(), values.end(), labels.voxels.begin());
   return labels;
 }
 
-std::string error_of(const Result<std::vector<LabelSource>>& result) {
+std::string error_of(const Result<std::vector<anatomy::LabelSource>>& result) {
   return result ? "read" : result.error().text();
 }
 
 /// The voxels of a structure, whichever source and value it has.
-std::vector<std::size_t> voxels_of(const std::vector<LabelSource>& sources, const std::string& name) {
+std::vector<std::size_t> voxels_of(const std::vector<anatomy::LabelSource>& sources, const std::string& name) {
   std::vector<std::size_t> voxels;
-  for (const LabelSource& source : sources)
+  for (const anatomy::LabelSource& source : sources)
     for (const auto& [value, label] : source.names)
       if (label == name)
         for (std::size_t n = 0; n < source.labels.voxels.size(); ++n)
@@ -150,7 +150,7 @@ TEST(LabelSources, AnEmptyMaskCoversItsBoxWithFewVoxels) {
   ASSERT_TRUE(sources) << error_of(sources);
   ASSERT_EQ(sources->size(), 1U);
   EXPECT_EQ((*sources)[0].names, (Names{{1, "brain"}}));
-  const GridGeometry &coarse = (*sources)[0].labels.geometry, whole = oblique_geometry();
+  const volume::GridGeometry &coarse = (*sources)[0].labels.geometry, whole = oblique_geometry();
   EXPECT_LT(coarse.voxel_count(), whole.voxel_count());
   const Vec3 half = Vec3::Constant(-0.5);
   EXPECT_LT((coarse.to_mm(half) - whole.to_mm(half)).norm(), 1e-4);
@@ -211,7 +211,7 @@ TEST(LabelSources, TotalSegmentatorsFolderKeepsEveryMask) {
   const auto sources = read_label_sources({folder}, "");
   ASSERT_TRUE(sources) << error_of(sources);
   std::size_t structures = 0;
-  for (const LabelSource& source : *sources) structures += source.names.size();
+  for (const anatomy::LabelSource& source : *sources) structures += source.names.size();
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string file = entry.path().filename().string();
@@ -239,4 +239,4 @@ TEST(LabelSources, TotalSegmentatorsNumbersAreKnown) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

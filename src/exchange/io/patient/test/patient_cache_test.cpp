@@ -8,13 +8,13 @@
 #include "core/files/temporary_folder.h"
 #include "io/patient/patient_folder.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 namespace fs = std::filesystem;
 
 /// An embedded patient, coarse enough for a test.
-VirtualPatient coarse(std::uint64_t seed) {
-  auto patient = generate_phantom("abdomen", seed, {{40, 32, 36}});
+anatomy::VirtualPatient coarse(std::uint64_t seed) {
+  auto patient = anatomy::generate_phantom("abdomen", seed, {{40, 32, 36}});
   EXPECT_TRUE(patient) << patient.error().text();
   return *std::move(patient);
 }
@@ -27,7 +27,7 @@ TEST(PatientCache, FindsWhatItKeptAndNothingElse) {
   const TemporaryFolder folder;
   const PatientCache cache(folder / "patients");
   EXPECT_FALSE(cache.find_volumes({"abdomen", 3}));
-  const VirtualPatient patient = coarse(3);
+  const anatomy::VirtualPatient patient = coarse(3);
   const auto kept = cache.keep({"abdomen", 3}, patient, {});
   ASSERT_TRUE(kept) << kept.error().text();
   EXPECT_EQ(cache.find_volumes({"abdomen", 3}), *kept);
@@ -41,7 +41,7 @@ TEST(PatientCache, FindsWhatItKeptAndNothingElse) {
 
 TEST(PatientCache, KeptPatientIsThePatientWithARoundedSkinDistance) {
   const TemporaryFolder folder;
-  VirtualPatient patient = coarse(3);
+  anatomy::VirtualPatient patient = coarse(3);
   const auto kept = PatientCache(folder / "patients").keep({"abdomen", 3}, patient, {});
   ASSERT_TRUE(kept) << kept.error().text();
   const auto loaded = load_patient(*kept);
@@ -56,7 +56,7 @@ TEST(PatientCache, KeptPatientIsThePatientWithARoundedSkinDistance) {
 TEST(PatientCache, EntryWithSurfacesReplacesTheOneWithout) {
   const TemporaryFolder folder;
   const PatientCache cache(folder / "patients");
-  const VirtualPatient patient = coarse(3);
+  const anatomy::VirtualPatient patient = coarse(3);
   ASSERT_TRUE(cache.keep({"abdomen", 3}, patient, {}));
   const TriangleMesh triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   const auto kept = cache.keep({"abdomen", 3}, patient, {{"skin", triangle}});
@@ -69,7 +69,7 @@ TEST(PatientCache, EntryWithSurfacesReplacesTheOneWithout) {
 TEST(PatientCache, LeastRecentlyUsedEntriesGo) {
   const TemporaryFolder folder;
   const PatientCache cache(folder / "patients");
-  const VirtualPatient patient = coarse(1);
+  const anatomy::VirtualPatient patient = coarse(1);
   const auto set_age = [&](std::uint64_t seed, int hours) {
     const auto entry = cache.find_volumes({"abdomen", seed});
     ASSERT_TRUE(entry);
@@ -107,4 +107,4 @@ TEST(PatientCache, DamagedEntryIsForgotten) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

@@ -8,7 +8,7 @@
 #include "io/image/image_file.h"
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::oblique_geometry;
@@ -17,15 +17,15 @@ using testing::write_bytes;
 
 constexpr float kHalfUnit_mm = 0.005F;  // skin_distance.nrrd has hundredths of a mm
 
-VirtualPatient small_patient() {
-  VirtualPatient patient;
+anatomy::VirtualPatient small_patient() {
+  anatomy::VirtualPatient patient;
   patient.name = "A \"quoted\" name\nin two lines, é\x7f\t\\";
   patient.description = "small";
   patient.provenance = {"CT: made for a test", "labels = \"none\""};
-  GridGeometry g = oblique_geometry();
-  patient.ct = CtGrid(g);
-  patient.labels = LabelGrid(g);
-  patient.skin_distance_mm = FloatGrid(g);
+  volume::GridGeometry g = oblique_geometry();
+  patient.ct = volume::CtGrid(g);
+  patient.labels = volume::LabelGrid(g);
+  patient.skin_distance_mm = volume::FloatGrid(g);
   for (std::size_t n = 0; n < g.voxel_count(); ++n) {
     patient.ct.voxels[n] = static_cast<std::int16_t>(10 * static_cast<int>(n) - 1000);
     patient.labels.voxels[n] = n % 3 == 0 ? 7 : n % 3 == 1 ? 200 : 0;
@@ -34,11 +34,11 @@ VirtualPatient small_patient() {
   patient.label_table.labels = {{7, "liver", "liver", {1, 2, 3}}, {200, "odd/name", "bone", {255, 254, 0}}};
   patient.landmarks = {{"xiphoid", {1.5, -2.25, 1e3}}};
   patient.paths = {{"path 1", {{0, 0, 0}, {10, 20, 30}}}};
-  patient.content_hash = hash_patient(patient);
+  patient.content_hash = anatomy::hash_patient(patient);
   return patient;
 }
 
-NamedMesh tetrahedron(const std::string& name) {
+anatomy::NamedMesh tetrahedron(const std::string& name) {
   return {name, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.5F}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}}};
 }
 
@@ -60,7 +60,7 @@ class PatientFolder : public ::testing::Test {
 
   TemporaryFolder folder_;
   std::filesystem::path path_ = folder_ / "patient";
-  VirtualPatient patient_ = small_patient();
+  anatomy::VirtualPatient patient_ = small_patient();
 };
 
 TEST_F(PatientFolder, ComesBackAsItWas) {
@@ -78,7 +78,7 @@ TEST_F(PatientFolder, ComesBackAsItWas) {
   ASSERT_EQ(loaded->label_table.labels.size(), 2U);
   EXPECT_EQ(loaded->label_table.labels[1].name, "odd/name");
   EXPECT_EQ(loaded->label_table.labels[1].tissue, "bone");
-  EXPECT_EQ(loaded->label_table.labels[1].color, (Rgb{255, 254, 0}));
+  EXPECT_EQ(loaded->label_table.labels[1].color, (volume::Rgb{255, 254, 0}));
   ASSERT_EQ(loaded->landmarks.size(), 1U);
   EXPECT_EQ(loaded->landmarks[0].p_P, patient_.landmarks[0].p_P);
   ASSERT_EQ(loaded->paths.size(), 1U);
@@ -128,21 +128,21 @@ TEST_F(PatientFolder, WithATruncatedVolumeIsRefused) {
 }
 
 TEST_F(PatientFolder, WithAnotherGridIsRefused) {
-  LabelGrid moved = patient_.labels;
+  volume::LabelGrid moved = patient_.labels;
   moved.geometry.origin_P.x() += 1.0;
   ASSERT_TRUE(write_image(moved, path_ / "labels.nrrd"));
   EXPECT_NE(load_error().find("one grid"), std::string::npos) << load_error();
 }
 
 TEST_F(PatientFolder, WithChangedVoxelsIsRefused) {
-  CtGrid changed = patient_.ct;
+  volume::CtGrid changed = patient_.ct;
   ++changed.voxels[17];
   ASSERT_TRUE(write_image(changed, path_ / "ct.nrrd"));
   EXPECT_NE(load_error().find("changed after"), std::string::npos) << load_error();
 }
 
 TEST_F(PatientFolder, WithALabelOutsideOfTheTableIsRefused) {
-  LabelGrid changed = patient_.labels;
+  volume::LabelGrid changed = patient_.labels;
   changed.voxels[17] = 9;
   ASSERT_TRUE(write_image(changed, path_ / "labels.nrrd"));
   EXPECT_NE(load_error().find("value 9"), std::string::npos) << load_error();
@@ -160,7 +160,7 @@ TEST_F(PatientFolder, DoesNotReadMeshesFromElsewhere) {
 
 TEST(PatientFolderFailure, LeavesNothingBehind) {
   TemporaryFolder folder;
-  VirtualPatient patient = small_patient();
+  anatomy::VirtualPatient patient = small_patient();
   patient.landmarks.push_back({"lost", Vec3::Constant(std::nan(""))});  // found after the volumes are written
   EXPECT_FALSE(save_patient(patient, {}, folder / "patient"));
   EXPECT_TRUE(folder.is_empty());
@@ -173,7 +173,7 @@ TEST(PatientFolderFailure, KilledHalfWayLeavesNoPatient) {
   std::optional<TemporaryFolder> own;
   if (std::getenv(kFolderName) == nullptr) ::setenv(kFolderName, own.emplace().path().c_str(), 1);
   const std::filesystem::path folder = std::getenv(kFolderName);
-  const VirtualPatient patient = small_patient();
+  const anatomy::VirtualPatient patient = small_patient();
   const auto die_at_surfaces = [](std::string_view step, double) {
     if (step == "surfaces") std::raise(SIGKILL);
   };
@@ -188,11 +188,11 @@ TEST(PatientFolderFailure, KilledHalfWayLeavesNoPatient) {
 
 TEST(PatientFolderFailure, RefusesAPatientThatDoesNotFitTogether) {
   TemporaryFolder folder;
-  VirtualPatient patient = small_patient();
+  anatomy::VirtualPatient patient = small_patient();
   patient.labels.voxels[0] = 99;
   EXPECT_FALSE(save_patient(patient, {}, folder / "patient"));
   EXPECT_TRUE(folder.is_empty());
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

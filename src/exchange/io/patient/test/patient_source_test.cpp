@@ -3,22 +3,22 @@
 #include "io/patient/patient_folder.h"
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 namespace fs = std::filesystem;
 
 /// A patient of two voxels' difference, by name.
 std::string save_small_patient(const fs::path& folder, std::int16_t hu) {
-  VirtualPatient patient;
+  anatomy::VirtualPatient patient;
   patient.name = "small";
-  const GridGeometry g = testing::oblique_geometry();
-  patient.ct = CtGrid(g);
-  patient.labels = LabelGrid(g);
-  patient.skin_distance_mm = FloatGrid(g);
+  const volume::GridGeometry g = testing::oblique_geometry();
+  patient.ct = volume::CtGrid(g);
+  patient.labels = volume::LabelGrid(g);
+  patient.skin_distance_mm = volume::FloatGrid(g);
   patient.ct.voxels[0] = hu;
   const Status status = save_patient(patient, {}, folder);
   EXPECT_TRUE(status) << status.error().text();
-  return hash_patient(patient);
+  return anatomy::hash_patient(patient);
 }
 
 TEST(RecordedPatient, IsFoundWhereItWasAndBesideTheRecord) {
@@ -63,4 +63,4 @@ TEST(RecordedPatient, AFolderIsRecordedByItsAbsolutePath) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

@@ -12,10 +12,10 @@
 #include <optional>
 #include <set>
 
-#include "io/image/detail/header_payload.h"
 #include "io/detail/number_text.h"
+#include "io/image/detail/header_payload.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace {
 
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
@@ -87,7 +87,7 @@ std::string value_of(const Fields& fields, std::string_view key, std::string_vie
   return found == fields.end() ? std::string(fallback) : found->second;
 }
 
-Status take_size(const HeaderText& text, const std::string& where, TrackedSequence& sequence) {
+Status take_size(const HeaderText& text, const std::string& where, ultrasound::TrackedSequence& sequence) {
   const auto sizes = find_numbers(value_of(text.fields, "DimSize"), 4);
   if (!sizes || sizes->size() < 3)
     return fail("the field DimSize does not give columns, rows and frames", where, kNeeded);
@@ -154,7 +154,7 @@ Status take_place_of_pixels(const HeaderText& text, const std::string& where, Se
 
 /// One field of a frame; those that are not known are left aside.
 Status take_field(const Fields& fields, const std::string& name, const std::string& value,
-                  TrackedSequence::Frame& frame) {
+                  ultrasound::TrackedSequence::Frame& frame) {
   if (name == "ImageStatus") {
     frame.is_valid = value == "OK";
   } else if (name == "Timestamp") {
@@ -169,7 +169,7 @@ Status take_field(const Fields& fields, const std::string& name, const std::stri
   return {};
 }
 
-Status take_frames(const HeaderText& text, const std::string& where, TrackedSequence& sequence) {
+Status take_frames(const HeaderText& text, const std::string& where, ultrasound::TrackedSequence& sequence) {
   for (const auto& [number, fields] : text.frames) {
     for (const auto& [name, value] : fields) {
       const Status taken = take_field(fields, name, value, sequence.frames[number]);
@@ -195,7 +195,7 @@ Result<SequenceHeader> read_sequence_header(const InputFile& file) {
   return header;
 }
 
-std::string sequence_header_text(const TrackedSequence& sequence, std::size_t packed_bytes) {
+std::string sequence_header_text(const ultrasound::TrackedSequence& sequence, std::size_t packed_bytes) {
   std::string text = fmt::format(
       "ObjectType = Image\nNDims = 3\nAnatomicalOrientation = RAI\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
       "CenterOfRotation = 0 0 0\nCompressedData = True\nCompressedDataSize = {}\nDimSize = {} {} {}\n"
@@ -206,12 +206,13 @@ std::string sequence_header_text(const TrackedSequence& sequence, std::size_t pa
   for (const auto& frame : sequence.frames)
     for (const auto& [name, matrix] : frame.transforms) names.insert(name);
   for (std::size_t n = 0; n < sequence.frames.size(); ++n) {
-    const TrackedSequence::Frame& frame = sequence.frames[n];
+    const ultrasound::TrackedSequence::Frame& frame = sequence.frames[n];
     const std::string prefix = fmt::format("{}{:04}_", kFramePrefix, n);
     for (const std::string& name : names) {
       const auto found = frame.transforms.find(name);
       const bool is_known = found != frame.transforms.end();
-      const TrackedSequence::Matrix4 matrix = is_known ? found->second : TrackedSequence::Matrix4::Identity();
+      const ultrasound::TrackedSequence::Matrix4 matrix =
+          is_known ? found->second : ultrasound::TrackedSequence::Matrix4::Identity();
       text += prefix + name + "Transform =";
       for (int value = 0; value < 16; ++value) text += fmt::format(" {}", matrix(value / 4, value % 4));
       text += fmt::format("\n{}{}TransformStatus = {}\n", prefix, name, is_known ? "OK" : "INVALID");
@@ -222,4 +223,4 @@ std::string sequence_header_text(const TrackedSequence& sequence, std::size_t pa
   return text + "ElementDataFile = LOCAL\n";
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -7,14 +7,14 @@
 #include "core/files/input_file.h"
 #include "ultrasound/sweep/tracked_sequence.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// What the text of a tracked sequence says.
 struct SequenceHeader {
-  TrackedSequence sequence;         ///< Without pixels.
-  std::filesystem::path data_file;  ///< Relative to the header; empty: pixels follow the header.
-  std::uint64_t pixel_offset = 0;   ///< Where the pixels, or their compressed stream, start.
-  std::uint64_t packed_bytes = 0;   ///< Length of the compressed stream, 0 where the header does not say.
+  ultrasound::TrackedSequence sequence;  ///< Without pixels.
+  std::filesystem::path data_file;       ///< Relative to the header; empty: pixels follow the header.
+  std::uint64_t pixel_offset = 0;        ///< Where the pixels, or their compressed stream, start.
+  std::uint64_t packed_bytes = 0;        ///< Length of the compressed stream, 0 where the header does not say.
   bool is_compressed = false;
   bool is_column_flipped = false;  ///< Columns run to the unmarked side (U).
   bool is_row_flipped = false;     ///< Rows run to the face (N).
@@ -24,6 +24,6 @@ struct SequenceHeader {
 Result<SequenceHeader> read_sequence_header(const InputFile& file);
 
 /// The header of a sequence in one file, up to and with the line before the pixels.
-std::string sequence_header_text(const TrackedSequence& sequence, std::size_t packed_bytes);
+std::string sequence_header_text(const ultrasound::TrackedSequence& sequence, std::size_t packed_bytes);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

@@ -9,7 +9,7 @@
 
 #include "io/image/detail/header_payload.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace {
 
 constexpr std::uint64_t kMaxDeflateRatio = 1'032;     ///< Deflate cannot pack tighter.
@@ -77,4 +77,4 @@ Result<std::string> pack(std::span<const std::uint8_t> bytes) {
   return packed;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

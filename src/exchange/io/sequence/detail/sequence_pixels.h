@@ -8,7 +8,7 @@
 #include "core/result.h"
 #include "io/sequence/detail/sequence_header.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// The pixels of all frames as the file that has them stores them; errors name the file `where`. Nothing is allocated
 /// for pixels that the file cannot hold.
@@ -18,4 +18,4 @@ Result<std::vector<std::uint8_t>> read_pixels(const SequenceHeader& header, cons
 /// A zlib stream of the bytes.
 Result<std::string> pack(std::span<const std::uint8_t> bytes);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

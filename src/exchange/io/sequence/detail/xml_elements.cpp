@@ -9,7 +9,7 @@
 
 #include "io/image/detail/quiet.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 namespace {
 
 constexpr std::size_t kMaxDepth = 32;
@@ -67,4 +67,4 @@ Result<std::vector<XmlElement>> parse_xml(std::string_view text) {
   return std::move(parser->elements);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

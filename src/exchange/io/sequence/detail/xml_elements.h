@@ -7,7 +7,7 @@
 
 #include "core/result.h"
 
-namespace trocar::detail {
+namespace trocar::io::detail {
 
 /// An element of an XML document; text between elements is left aside.
 struct XmlElement {
@@ -19,4 +19,4 @@ struct XmlElement {
 /// (without a place): no XML, a document type, nested deeper than 32, more than 100,000 elements.
 Result<std::vector<XmlElement>> parse_xml(std::string_view text);
 
-}  // namespace trocar::detail
+}  // namespace trocar::io::detail

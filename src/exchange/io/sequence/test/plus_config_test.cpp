@@ -6,7 +6,7 @@
 
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::test_data;
@@ -45,16 +45,16 @@ TEST_F(PlusConfigFile, GivesTransformsAndReconstruction) {
       "</HoleFilling></VolumeReconstruction></PlusConfiguration>");
   ASSERT_TRUE(config) << config.error().text();
   EXPECT_EQ(config->transforms.at("ImageToProbe")(1, 3), 2.0);
-  const FreehandOptions& options = config->reconstruction;
+  const ultrasound::FreehandOptions& options = config->reconstruction;
   EXPECT_EQ(options.reference_frame, "Bed");
   EXPECT_EQ(options.spacing_mm, Vec3(0.5, 0.6, 0.7));
   ASSERT_TRUE(options.rectangle);
   EXPECT_EQ(options.rectangle->first_row, 20);
   EXPECT_EQ(options.rectangle->columns, 30);
-  EXPECT_EQ(options.interpolation, FreehandInterpolation::kLinear);
-  EXPECT_EQ(options.compounding, FreehandCompounding::kMaximum);
+  EXPECT_EQ(options.interpolation, ultrasound::FreehandInterpolation::kLinear);
+  EXPECT_EQ(options.compounding, ultrasound::FreehandCompounding::kMaximum);
   ASSERT_EQ(options.holes.size(), 2U);
-  EXPECT_EQ(options.holes[0].kind, HoleFilling::Kind::kGaussian);
+  EXPECT_EQ(options.holes[0].kind, ultrasound::HoleFilling::Kind::kGaussian);
   EXPECT_EQ(options.holes[0].size, 7);
   EXPECT_EQ(options.holes[0].least_share, 0.25);
   EXPECT_EQ(options.holes[1].stick_length_limit, 11);
@@ -134,4 +134,4 @@ TEST(RealPlusConfig, IsRead) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

@@ -7,7 +7,7 @@
 
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::read_bytes;
@@ -37,7 +37,7 @@ const std::string kPixels = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
 
 class SequenceFile : public ::testing::Test {
  protected:
-  Result<TrackedSequence> read(const std::string& bytes) {
+  Result<ultrasound::TrackedSequence> read(const std::string& bytes) {
     write_bytes(path_, bytes);
     return read_sequence(path_);
   }
@@ -128,7 +128,7 @@ TEST_F(SequenceFile, RefusesDamageWithOneLine) {
 }
 
 TEST_F(SequenceFile, RefusesAFileThatIsCutShort) {
-  TrackedSequence sequence = *read(header() + kPixels);
+  ultrasound::TrackedSequence sequence = *read(header() + kPixels);
   const auto whole_path = folder_ / "whole.igs.mha";
   ASSERT_TRUE(write_sequence(sequence, whole_path));
   const std::string whole = read_bytes(whole_path);
@@ -137,27 +137,27 @@ TEST_F(SequenceFile, RefusesAFileThatIsCutShort) {
     EXPECT_FALSE(read(whole.substr(0, length))) << length;
 }
 
-TrackedSequence sweep() {
-  TrackedSequence sequence;
+ultrasound::TrackedSequence sweep() {
+  ultrasound::TrackedSequence sequence;
   sequence.columns = 20;
   sequence.rows = 31;
   sequence.frames.resize(3);
   sequence.pixels.resize(sequence.frame_pixels() * 3);
   std::iota(sequence.pixels.begin(), sequence.pixels.end(), std::uint8_t{0});
   for (std::size_t n = 0; n < 3; ++n) {
-    TrackedSequence::Matrix4 matrix = TrackedSequence::Matrix4::Identity();
+    ultrasound::TrackedSequence::Matrix4 matrix = ultrasound::TrackedSequence::Matrix4::Identity();
     matrix(0, 3) = 1.0 / 3.0 + static_cast<double>(n);
     matrix(2, 1) = 0.1 * std::sqrt(2.0);
     sequence.frames[n].time_s = 0.1 * static_cast<double>(n);
     sequence.frames[n].transforms.emplace("ImageToReference", matrix);
   }
-  sequence.frames[1].transforms.emplace("ProbeToTracker", TrackedSequence::Matrix4::Identity());
+  sequence.frames[1].transforms.emplace("ProbeToTracker", ultrasound::TrackedSequence::Matrix4::Identity());
   sequence.frames[2].is_valid = false;
   return sequence;
 }
 
 TEST_F(SequenceFile, WritesWhatItReads) {
-  const TrackedSequence sequence = sweep();
+  const ultrasound::TrackedSequence sequence = sweep();
   ASSERT_TRUE(write_sequence(sequence, path_));
   const auto read_back = read_sequence(path_);
   ASSERT_TRUE(read_back) << read_back.error().text();
@@ -183,10 +183,10 @@ TEST_F(SequenceFile, WritesTheNamesOfPlus) {
 }
 
 TEST_F(SequenceFile, RefusesToWriteWhatNobodyCouldRead) {
-  TrackedSequence sequence = sweep();
+  ultrasound::TrackedSequence sequence = sweep();
   EXPECT_FALSE(write_sequence({}, path_));
   EXPECT_FALSE(write_sequence(sequence, folder_ / "sweep.nrrd"));
-  sequence.frames[0].transforms.emplace("Probe\nToTracker", TrackedSequence::Matrix4::Identity());
+  sequence.frames[0].transforms.emplace("Probe\nToTracker", ultrasound::TrackedSequence::Matrix4::Identity());
   EXPECT_FALSE(write_sequence(sequence, path_));
   sequence = sweep();
   sequence.frames[0].transforms.begin()->second(0, 0) = std::nan("");
@@ -214,4 +214,4 @@ TEST(RealSequence, IsReadAsPlusWroteIt) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

@@ -4,7 +4,7 @@
 
 #include "io/test/test_support.h"
 
-namespace trocar {
+namespace trocar::io {
 namespace {
 
 using testing::read_bytes;
@@ -114,4 +114,4 @@ TEST(TransformFile, RefusesToWriteAPoseThatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::io

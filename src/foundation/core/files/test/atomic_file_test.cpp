@@ -10,6 +10,7 @@
 #include "core/files/temporary_folder.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 namespace fs = std::filesystem;
 
@@ -154,4 +155,5 @@ TEST_F(AtomicFile, ReadingSaysWhatIsWrong) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

@@ -6,6 +6,7 @@
 #include "core/files/temporary_folder.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 TEST(DiskSpace, IsKnownOfAFolderAndOfNothingElse) {
@@ -30,4 +31,5 @@ TEST(DiskSpace, AFolderThatCannotBeMadeIsNamedWithTheReason) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

@@ -8,6 +8,7 @@
 #include "core/files/temporary_folder.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 
 bool is_free(const std::filesystem::path& path) {
@@ -70,4 +71,5 @@ TEST(FileLock, SaysWhichFileCannotBeOpened) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

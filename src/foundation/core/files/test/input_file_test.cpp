@@ -9,12 +9,13 @@
 
 #include <fstream>
 
-#include "core/files/atomic_file.h"
 #include "core/available_memory.h"
+#include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 #include "core/testing/source_dir.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 namespace fs = std::filesystem;
 
@@ -157,4 +158,5 @@ TEST(AvailableMemory, AnImageNeedsRoomForItselfAndACopy) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

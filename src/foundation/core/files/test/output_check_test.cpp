@@ -9,6 +9,7 @@
 #include "core/files/temporary_folder.h"
 
 namespace trocar {
+inline namespace core {
 namespace {
 namespace fs = std::filesystem;
 
@@ -50,4 +51,5 @@ TEST(OutputCheck, FindsAFullDisk) {
 }
 
 }  // namespace
+}  // namespace core
 }  // namespace trocar

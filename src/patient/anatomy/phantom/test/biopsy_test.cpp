@@ -15,12 +15,12 @@
 #include "anatomy/phantom/render.h"
 #include "volume/sampling.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 /// Voxels of 1 mm around a path.
-GridGeometry box_around(const Segment& line, double margin_mm) {
-  GridGeometry geometry;
+volume::GridGeometry box_around(const Segment& line, double margin_mm) {
+  volume::GridGeometry geometry;
   const Vec3 low = line.a.cwiseMin(line.b) - Vec3::Constant(margin_mm);
   const Vec3 high = line.a.cwiseMax(line.b) + Vec3::Constant(margin_mm);
   geometry.origin_P = low;
@@ -58,13 +58,13 @@ class ExpertPath : public testing::TestWithParam<std::uint64_t> {
   }
 
   std::string tissue_at(const Vec3& p) const {
-    const Label* label = anatomy_.label_table.find(sample_nearest(rendering_.labels, p, std::uint8_t{0}));
+    const Label* label = anatomy_.label_table.find(volume::sample_nearest(rendering_.labels, p, std::uint8_t{0}));
     return label == nullptr ? "outside" : label->tissue;
   }
 
   /// Least distance of the path from the voxel centres of some tissues.
   double clearance_mm(const std::set<std::string>& tissues) const {
-    MaskGrid mask(rendering_.labels.geometry);
+    volume::MaskGrid mask(rendering_.labels.geometry);
     for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
       const Label* label = anatomy_.label_table.find(rendering_.labels.voxels[n]);
       mask.voxels[n] = label != nullptr && tissues.contains(label->tissue);
@@ -72,7 +72,7 @@ class ExpertPath : public testing::TestWithParam<std::uint64_t> {
     double least = 1e9;
     for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
       if (mask.voxels[n] == 0) continue;
-      const Index3 at = mask.geometry.index_of(n);
+      const volume::Index3 at = mask.geometry.index_of(n);
       const Vec3 p =
           mask.geometry.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
       least = std::min(least, distance_mm(line_, p));
@@ -132,7 +132,7 @@ TEST(Rendering, IsNotChangedByLeavingOutWhatIsFar) {
   ASSERT_TRUE(build_abdomen(anatomy));
   // A slab through liver, stomach and spine, and one through bowel and pelvis, with ordinary voxels.
   for (const double z : {20.0, -70.0}) {
-    GridGeometry geometry;
+    volume::GridGeometry geometry;
     geometry.size = {120, 96, 6};
     geometry.spacing_mm = Vec3(2.9, 2.9, 1.0);
     geometry.origin_P = Vec3(-172.0, -138.0, z);
@@ -144,4 +144,4 @@ TEST(Rendering, IsNotChangedByLeavingOutWhatIsFar) {
 }
 
 }  // namespace
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

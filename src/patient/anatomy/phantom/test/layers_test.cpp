@@ -12,7 +12,7 @@
 #include "anatomy/tissue/plausible_hu.h"
 #include "volume/sampling.h"
 
-namespace trocar::phantom {
+namespace trocar::anatomy::phantom {
 namespace {
 
 const VirtualPatient& scene(const std::string& name) {
@@ -82,8 +82,8 @@ TEST(LayeredScene, PathRunsFromTheSkinInwardsFromTheSideOfItsPuncture) {
     const VirtualPatient& patient = scene(info.name);
     ASSERT_EQ(patient.paths.size(), 1u);
     const Segment& line = patient.paths[0].line_P;
-    EXPECT_NEAR(sample_linear(patient.skin_distance_mm, line.a), 0.0, 1e-4) << info.name;
-    EXPECT_NEAR(sample_linear(patient.skin_distance_mm, line.b), -line.length_mm(), 1e-3) << info.name;
+    EXPECT_NEAR(volume::sample_linear(patient.skin_distance_mm, line.a), 0.0, 1e-4) << info.name;
+    EXPECT_NEAR(volume::sample_linear(patient.skin_distance_mm, line.b), -line.length_mm(), 1e-3) << info.name;
     EXPECT_EQ(line.direction().y() < 0.0, info.name == "layers-lumbar") << info.name;
     EXPECT_EQ(patient.description.substr(0, 18), "layered test scene");
   }
@@ -96,7 +96,7 @@ TEST(LayeredScene, BoneLiesBesideTheLumbarPathAndNotOnIt) {
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
     const Label* label = patient.label_table.find(patient.labels.voxels[n]);
     if (label == nullptr || label->tissue != "bone") continue;
-    const Index3 ijk = patient.labels.geometry.index_of(n);
+    const volume::Index3 ijk = patient.labels.geometry.index_of(n);
     const Vec3 p = patient.labels.geometry.to_mm(
         Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
     nearest_mm = std::min(nearest_mm, distance_mm(line, p));
@@ -139,4 +139,4 @@ TEST(LayeredScene, UnknownNameIsAUsageErrorThatListsThem) {
 }
 
 }  // namespace
-}  // namespace trocar::phantom
+}  // namespace trocar::anatomy::phantom

@@ -12,7 +12,7 @@
 #include "volume/morphology.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 constexpr PhantomResolution kCoarse{{96, 76, 60}};
@@ -38,8 +38,8 @@ std::map<std::string, double> volumes_ml(const VirtualPatient& patient) {
   return volumes;
 }
 
-MaskGrid mask_of(const VirtualPatient& patient, const std::set<std::string>& names) {
-  MaskGrid mask(patient.labels.geometry);
+volume::MaskGrid mask_of(const VirtualPatient& patient, const std::set<std::string>& names) {
+  volume::MaskGrid mask(patient.labels.geometry);
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
     const Label* label = patient.label_table.find(patient.labels.voxels[n]);
     mask.voxels[n] = label != nullptr && names.contains(label->name);
@@ -50,14 +50,14 @@ MaskGrid mask_of(const VirtualPatient& patient, const std::set<std::string>& nam
 /// Names of the labels that touch a structure by a voxel's face.
 std::set<std::string> neighbours_of(const VirtualPatient& patient, const std::string& name) {
   std::set<std::string> neighbours;
-  const GridGeometry& geometry = patient.labels.geometry;
+  const volume::GridGeometry& geometry = patient.labels.geometry;
   const std::uint8_t id = patient.label_table.find(name)->id;
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
     if (patient.labels.voxels[n] != id) continue;
-    const Index3 at = geometry.index_of(n);
+    const volume::Index3 at = geometry.index_of(n);
     for (std::size_t axis = 0; axis < 3; ++axis)
       for (const std::int64_t step : {-1, 1}) {
-        Index3 next = at;
+        volume::Index3 next = at;
         next[axis] += step;
         if (!geometry.contains(next)) continue;
         const Label* label = patient.label_table.find(patient.labels[next]);
@@ -118,7 +118,7 @@ TEST(Phantom, KeepsEveryOrganInOnePiece) {
       {"rib_right_9"},
       {"spinal_cord"}};
   for (const auto& names : wholes) {
-    const Components components = connected_components(mask_of(patient, names));
+    const volume::Components components = volume::connected_components(mask_of(patient, names));
     ASSERT_FALSE(components.voxel_counts.empty()) << *names.begin();
     std::size_t total = 0;
     for (const std::size_t count : components.voxel_counts) total += count;
@@ -157,13 +157,14 @@ TEST(Phantom, MeasuresTheDistanceToTheSkin) {
   int checked = 0;
   while (checked < 400) {
     const Vec3 p(random.uniform(-160.0, 160.0), random.uniform(-120.0, 120.0), random.uniform(-100.0, 100.0));
-    const double distance = sample_linear(patient.skin_distance_mm, p);
+    const double distance = volume::sample_linear(patient.skin_distance_mm, p);
     if (std::abs(distance) > 12.0) continue;
     ++checked;
-    const Vec3 slope = gradient_per_mm(patient.skin_distance_mm, p);
+    const Vec3 slope = volume::gradient_per_mm(patient.skin_distance_mm, p);
     EXPECT_NEAR(slope.norm(), 1.0, 0.12) << p.transpose();
     // Walking the distance down the slope arrives at the skin.
-    EXPECT_NEAR(sample_linear(patient.skin_distance_mm, p - distance * slope.normalized()), 0.0, 0.6) << p.transpose();
+    EXPECT_NEAR(volume::sample_linear(patient.skin_distance_mm, p - distance * slope.normalized()), 0.0, 0.6)
+        << p.transpose();
   }
 }
 
@@ -203,4 +204,4 @@ TEST(Phantom, RefusesAnUnknownNameAndAnImpossibleSize) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

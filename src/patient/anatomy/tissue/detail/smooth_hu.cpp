@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 
-namespace trocar::detail {
+namespace trocar::anatomy::detail {
 namespace {
 
 using Row = std::span<std::int16_t>;
@@ -44,8 +44,8 @@ int passes(double spacing_mm) {
 
 }  // namespace
 
-CtGrid smooth_hu(const CtGrid& ct) {
-  CtGrid smooth = ct;
+volume::CtGrid smooth_hu(const volume::CtGrid& ct) {
+  volume::CtGrid smooth = ct;
   const auto columns = static_cast<std::size_t>(ct.geometry.size[0]);
   const auto rows = static_cast<std::size_t>(ct.geometry.size[1]);
   const auto slices = static_cast<std::size_t>(ct.geometry.size[2]);
@@ -68,4 +68,4 @@ CtGrid smooth_hu(const CtGrid& ct) {
   return smooth;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::anatomy::detail

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace trocar::detail {
+namespace trocar::anatomy::detail {
 
 // Adipose tissue -190..-30 HU and skeletal muscle -29..150 HU: the ranges of CT body composition studies
 // (doi 10.1038/s41598-025-96238-6, table 1; PMC4043057 measures -140..-30 for pure fat).
@@ -13,4 +13,4 @@ inline constexpr int kBonePeakHu = 400;   // assumed: a part without any voxel a
 /// Skin and subcutis: no muscle lies this close below the surface. Assumed: skin about 2 mm and as much fat.
 inline constexpr double kSubcutisMm = 4.0;
 
-}  // namespace trocar::detail
+}  // namespace trocar::anatomy::detail

@@ -7,21 +7,21 @@
 #include "anatomy/build_patient.h"
 #include "anatomy/test/make_torso.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
-CtGrid torso_ct() {
+volume::CtGrid torso_ct() {
   return Torso().ct(Torso::grid({5, 5, 6}));
 }
 
 /// A CT whose numbers were changed by `change`.
-CtGrid changed(auto change) {
-  CtGrid ct = torso_ct();
+volume::CtGrid changed(auto change) {
+  volume::CtGrid ct = torso_ct();
   for (std::int16_t& voxel : ct.voxels) voxel = static_cast<std::int16_t>(change(static_cast<int>(voxel)));
   return ct;
 }
 
-std::string doubt(const CtGrid& ct) {
+std::string doubt(const volume::CtGrid& ct) {
   const Status status = check_hounsfield(ct);
   return status ? "believed" : status.error().text();
 }
@@ -58,7 +58,7 @@ TEST(Hounsfield, DoubtsOneValueAndNoise) {
 }
 
 TEST(Hounsfield, AScaleMakesHuOfStoredNumbers) {
-  CtGrid ct = changed([](int hu) { return 2 * (hu + 1024); });
+  volume::CtGrid ct = changed([](int hu) { return 2 * (hu + 1024); });
   ASSERT_TRUE(apply_rescale({0.5, -1024.0}, ct));
   EXPECT_EQ(ct.voxels, torso_ct().voxels);
 }
@@ -66,12 +66,12 @@ TEST(Hounsfield, AScaleMakesHuOfStoredNumbers) {
 TEST(Hounsfield, AScaleThatCannotBeIsRefused) {
   for (const Rescale& rescale :
        {Rescale{0.0, 0.0}, Rescale{std::nan(""), 0.0}, Rescale{1.0, INFINITY}, Rescale{1e9, 0.0}}) {
-    CtGrid ct = torso_ct();
+    volume::CtGrid ct = torso_ct();
     const Status status = apply_rescale(rescale, ct);
     ASSERT_FALSE(status);
     EXPECT_EQ(status.error().exit_status, 2);
   }
-  CtGrid ct = torso_ct();
+  volume::CtGrid ct = torso_ct();
   EXPECT_FALSE(apply_rescale({1000.0, 0.0}, ct));
 }
 
@@ -85,4 +85,4 @@ TEST(Hounsfield, NoPatientIsBuiltOfOtherNumbers) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

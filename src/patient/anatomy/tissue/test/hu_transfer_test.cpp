@@ -12,7 +12,7 @@
 #include "core/testing/allocation_guard.h"
 #include "core/testing/allocation_guard.inc.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 HuTransfer make_transfer() {
@@ -93,4 +93,4 @@ TEST(HuTransfer, DoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -8,7 +8,7 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "core/files/data_dir.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 TissueTable shipped() {
@@ -165,4 +165,4 @@ TEST(HuTransferText, ATableStoredBeforeYoungsModulusLoadsAndAFileWithoutItDoesNo
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 /// A patient of labels of one tissue each and what was measured in them.
@@ -43,4 +43,4 @@ TEST(ImplausibleHu, DoesNotJudgeCrumbs) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

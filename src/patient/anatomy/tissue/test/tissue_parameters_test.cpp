@@ -8,7 +8,7 @@
 
 #include "core/files/data_dir.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 TissueTable shipped() {
@@ -92,4 +92,4 @@ TEST(TissueParameters, ScalesBeginAtOrBelowEveryNumber) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

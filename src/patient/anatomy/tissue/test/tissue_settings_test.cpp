@@ -4,7 +4,7 @@
 
 #include "core/files/data_dir.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 using Settings = std::vector<std::string>;
@@ -67,4 +67,4 @@ TEST(TissueSettings, SurviveNamesWithControlCharacters) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

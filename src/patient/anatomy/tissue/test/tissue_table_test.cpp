@@ -10,7 +10,7 @@
 #include "core/files/data_dir.h"
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::anatomy {
 namespace {
 
 TissueTable shipped(std::string_view profile = {}) {
@@ -351,4 +351,4 @@ TEST(TissueTable, DamagedTableIsRefusedWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::anatomy

@@ -10,7 +10,7 @@
 #include "haptics/closed_loop/stability_trial.h"
 #include "haptics/test/layered_patient.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 using namespace testing;
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Devices, RestOnThePath, ::testing::Values("premium", "s
 
 TEST(ClosedSkin, GivesWayToTheProxyWhateverCountTheTipComesInBy) {
   const auto presets = load_device_presets(data_dir() / "devices.toml");
-  const auto table = load_tissue_table(data_dir() / "tissues.toml");
+  const auto table = anatomy::load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(presets && table);
   for (const DevicePreset& preset : *presets) {  // some tell a tip that lies just on the skin
     HapticOptions options;
@@ -150,4 +150,4 @@ TEST(LossOfResistance, IsFeltWhereALayerGivesWay) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::haptics

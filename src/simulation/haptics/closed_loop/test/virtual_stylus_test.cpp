@@ -13,7 +13,7 @@
 #include "haptics/closed_loop/passivity_observer.h"
 #include "haptics/closed_loop/rotation.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kDt_s = 0.001;
@@ -252,4 +252,4 @@ TEST(PassivityObserver, SeesAHeldSpringGiveEnergyAndADamperTakeIt) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::haptics

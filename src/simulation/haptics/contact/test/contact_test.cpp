@@ -22,33 +22,33 @@ constexpr double kDt_s = 0.001;
 /// Moves the device's tool there from where it is, straight and evenly, and holds it until all is at rest.
 class Hand {
  public:
-  explicit Hand(std::shared_ptr<const HapticScene> scene, double dt_s = kDt_s)
+  explicit Hand(std::shared_ptr<const haptics::HapticScene> scene, double dt_s = kDt_s)
       : scene_(std::move(scene)), dt_s_(dt_s) {}
 
-  ContactStep go(const Vec3& p_PT, double tilt_rad = 0.0, double seconds = 0.5, double hold_s = 0.5) {
+  haptics::ContactStep go(const Vec3& p_PT, double tilt_rad = 0.0, double seconds = 0.5, double hold_s = 0.5) {
     const auto steps = static_cast<int>(std::lround(seconds / dt_s_));
     const auto rests = static_cast<int>(std::lround(hold_s / dt_s_));
     const Vec3 from = at_;
     const double tilt_from = tilt_;
-    ContactStep step;
+    haptics::ContactStep step;
     for (int i = 1; i <= steps + rests; ++i) {
       const double t = std::min(1.0, static_cast<double>(i) / steps);
       at_ = from + t * (p_PT - from);
       tilt_ = tilt_from + t * (tilt_rad - tilt_from);
-      step = step_contact(state, *scene_, face_down(at_, tilt_), dt_s_);
+      step = haptics::step_contact(state, *scene_, face_down(at_, tilt_), dt_s_);
       worst_jump_n = std::max(worst_jump_n, (step.wrench_P.force_n - force_).norm());
       force_ = step.wrench_P.force_n;
       hit_bound = hit_bound || step.is_bound;
     }
     return step;
   }
-  const HapticScene& scene() const { return *scene_; }
-  ContactState state;
+  const haptics::HapticScene& scene() const { return *scene_; }
+  haptics::ContactState state;
   double worst_jump_n = 0.0;
   bool hit_bound = false;
 
  private:
-  std::shared_ptr<const HapticScene> scene_;
+  std::shared_ptr<const haptics::HapticScene> scene_;
   double dt_s_;
   Vec3 at_{0.0, 0.0, -2.0};
   double tilt_ = 0.0;
@@ -57,11 +57,11 @@ class Hand {
 
 TEST(Contact, FingerOnFlatSkinIsStiffnessTimesTheVolumeOfTheDent) {
   // The dent is shallow against the column: the linear law shows.
-  HapticOptions options;
+  haptics::HapticOptions options;
   options.coupling.stiffness_n_per_mm = 3.5;
-  Hand hand(make_face_scene(Tool::kFinger, all_fat, options));
-  const ContactStep step = hand.go({0, 0, 2.5});
-  const double k = tissue_column(hand.scene(), Vec3::Zero(), Vec3::UnitZ()).stiffness_n_per_mm3;
+  Hand hand(make_face_scene(haptics::Tool::kFinger, all_fat, options));
+  const haptics::ContactStep step = hand.go({0, 0, 2.5});
+  const double k = haptics::tissue_column(hand.scene(), Vec3::Zero(), Vec3::UnitZ()).stiffness_n_per_mm3;
   const double depth = step.depth_mm + 0.2;  // the first ring lies 0.2 mm above the tip
   const double dent_mm3 = std::numbers::pi * depth * depth * (3.0 * 8.0 - depth) / 3.0;
   EXPECT_NEAR(step.wrench_P.force_n.z(), -k * dent_mm3, 0.12 * k * dent_mm3);  // rings 5 %, the rest stiffening
@@ -69,10 +69,10 @@ TEST(Contact, FingerOnFlatSkinIsStiffnessTimesTheVolumeOfTheDent) {
 }
 
 TEST(Contact, ProbeOnFlatSkinIsTheSumOverItsColumns) {
-  Hand hand(make_face_scene(Tool::kTransducer, all_fat));
-  const ContactStep step = hand.go({0, 0, 10.0});
-  const TissueColumn column = tissue_column(hand.scene(), Vec3::Zero(), Vec3::UnitZ());
-  const ContactFace& face = hand.scene().face;
+  Hand hand(make_face_scene(haptics::Tool::kTransducer, all_fat));
+  const haptics::ContactStep step = hand.go({0, 0, 10.0});
+  const haptics::TissueColumn column = haptics::tissue_column(hand.scene(), Vec3::Zero(), Vec3::UnitZ());
+  const haptics::ContactFace& face = hand.scene().face;
   double expected = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(face.count); ++i) {
     const double depth = (hand.state.X_PT * face.point_T[i]).z();
@@ -87,15 +87,15 @@ TEST(Contact, ProbeOnFlatSkinIsTheSumOverItsColumns) {
 
 TEST(Contact, SteadyForceDoesNotDependOnTheTickRate) {
   const auto rib = [](const Vec3& p) { return p.z() > 12.0 && std::abs(p.x() - 8.0) < 6.0 ? kBone : kFat; };
-  for (const Tool tool : {Tool::kTransducer, Tool::kFinger}) {
+  for (const haptics::Tool tool : {haptics::Tool::kTransducer, haptics::Tool::kFinger}) {
     const auto at = [&](double rate_hz) {
       Hand hand(make_face_scene(tool, rib), 1.0 / rate_hz);
       hand.go({1.0, 0.0, 7.0}, 0.1, 0.3, 0.0);
       return hand.go({2.0, 1.0, 7.0}, 0.1, 0.3, 0.4).wrench_P;
     };
-    const Wrench at_1 = at(1000.0);
+    const haptics::Wrench at_1 = at(1000.0);
     for (const double rate : {2000.0, 4000.0}) {
-      const Wrench other = at(rate);
+      const haptics::Wrench other = at(rate);
       EXPECT_LT((other.force_n - at_1.force_n).norm(), 0.005 * at_1.force_n.norm());
       EXPECT_LT((other.torque_nmm - at_1.torque_nmm).norm(), 0.005 * at_1.torque_nmm.norm());
     }
@@ -106,8 +106,8 @@ TEST(Contact, FeelsARibUnderFatAndAHardTumour) {
   const auto rib = [](const Vec3& p) { return (p - Vec3(0, p.y(), 14.0)).norm() < 5.0 ? kBone : kFat; };
   const auto tumour = [](const Vec3& p) { return (p - Vec3(0, 0, 20.0)).norm() < 10.0 ? kLiver : kFat; };
   for (const auto& label_at : {std::function<std::uint8_t(const Vec3&)>(rib), {tumour}}) {
-    Hand on(make_face_scene(Tool::kFinger, label_at));
-    Hand beside(make_face_scene(Tool::kFinger, label_at));
+    Hand on(make_face_scene(haptics::Tool::kFinger, label_at));
+    Hand beside(make_face_scene(haptics::Tool::kFinger, label_at));
     beside.go({25.0, 0, -2.0});
     const double hard = on.go({0, 0, 5.0}).wrench_P.force_n.norm();
     const double soft = beside.go({25.0, 0, 5.0}).wrench_P.force_n.norm();
@@ -118,8 +118,8 @@ TEST(Contact, FeelsARibUnderFatAndAHardTumour) {
 
 TEST(Contact, TiltIsRighted) {
   for (const double tilt : {0.17, -0.17}) {
-    Hand hand(make_face_scene(Tool::kTransducer, all_fat));
-    const ContactStep step = hand.go({0, 0, 5.0}, tilt);
+    Hand hand(make_face_scene(haptics::Tool::kTransducer, all_fat));
+    const haptics::ContactStep step = hand.go({0, 0, 5.0}, tilt);
     // face_down turns by -tilt about y of P; a torque the other way rights it.
     EXPECT_GT(step.wrench_P.torque_nmm.y() * tilt, 0.0);
     EXPECT_GT(std::abs(step.wrench_P.torque_nmm.y()), 2.0);
@@ -129,8 +129,8 @@ TEST(Contact, TiltIsRighted) {
 TEST(Contact, TorqueIsThatOfThePointsForces) {
   // Half of the face over a plate of bone: the force acts there.
   const auto plate = [](const Vec3& p) { return p.x() > 0.0 && p.z() > 6.0 ? kBone : kFat; };
-  Hand hand(make_face_scene(Tool::kTransducer, plate));
-  const Wrench wrench = hand.go({0, 0, 8.0}, 0.0, 0.5, 2.0).wrench_P;
+  Hand hand(make_face_scene(haptics::Tool::kTransducer, plate));
+  const haptics::Wrench wrench = hand.go({0, 0, 8.0}, 0.0, 0.5, 2.0).wrench_P;
   const double lever_mm = wrench.torque_nmm.y() / -wrench.force_n.z();  // M = x f: M_y = -x f_z
   EXPECT_GT(lever_mm, 2.0);
   EXPECT_LT(lever_mm, 30.0);
@@ -139,9 +139,9 @@ TEST(Contact, TorqueIsThatOfThePointsForces) {
 
 TEST(Contact, ShownToolDoesNotPassThroughBoneHoweverHardThePush) {
   const auto thin = [](const Vec3& p) { return p.z() < 10.0 ? kFat : kBone; };
-  for (const Tool tool : {Tool::kTransducer, Tool::kFinger}) {
+  for (const haptics::Tool tool : {haptics::Tool::kTransducer, haptics::Tool::kFinger}) {
     Hand hand(make_face_scene(tool, thin));
-    const ContactStep step = hand.go({0, 0, 40.0}, 0.0, 1.0);
+    const haptics::ContactStep step = hand.go({0, 0, 40.0}, 0.0, 1.0);
     EXPECT_LT(hand.state.X_PT.p().z(), 10.0);
     EXPECT_GT(hand.state.X_PT.p().z(), 5.0);
     EXPECT_NEAR(-step.wrench_P.force_n.z(), 40.0 - hand.state.X_PT.p().z(), 1e-4);  // k_c of 1 N/mm
@@ -150,41 +150,41 @@ TEST(Contact, ShownToolDoesNotPassThroughBoneHoweverHardThePush) {
 }
 
 TEST(Contact, StaysInTheFrictionConeAndSlidesAtItsEdge) {
-  for (const Tool tool : {Tool::kTransducer, Tool::kFinger}) {
+  for (const haptics::Tool tool : {haptics::Tool::kTransducer, haptics::Tool::kFinger}) {
     Hand hand(make_face_scene(tool, all_fat));
     hand.go({-10.0, 0, -2.0});
     hand.go({-10.0, 0, 5.0});
     const double mu = hand.scene().face.friction_mu;
-    const Wrench little = hand.go({-9.98, 0, 5.0}).wrench_P;  // sticks
+    const haptics::Wrench little = hand.go({-9.98, 0, 5.0}).wrench_P;  // sticks
     EXPECT_LT(little.force_n.x(), 0.0);
     EXPECT_LT(std::abs(little.force_n.x()), 0.9 * mu * std::abs(little.force_n.z()));
-    const ContactStep sliding = hand.go({10.0, 0, 5.0}, 0.0, 1.0, 0.0);
+    const haptics::ContactStep sliding = hand.go({10.0, 0, 5.0}, 0.0, 1.0, 0.0);
     EXPECT_NEAR(sliding.wrench_P.force_n.x(), sliding.wrench_P.force_n.z() * mu,
                 0.02 * mu * std::abs(sliding.wrench_P.force_n.z()));
-    const ContactStep held = hand.go({10.0, 0, 5.0}, 0.0, 0.1, 2.0);
+    const haptics::ContactStep held = hand.go({10.0, 0, 5.0}, 0.0, 0.1, 2.0);
     EXPECT_LE(held.friction_n, mu * held.normal_n + 1e-9);
     EXPECT_LT(held.wrench_P.force_n.x(), -0.5 * mu * held.normal_n);  // the stretched skin goes on pulling
   }
 }
 
 TEST(Contact, CostsNothingAndFeelsNothingAwayFromTheSkin) {
-  Hand hand(make_face_scene(Tool::kTransducer, all_fat));
+  Hand hand(make_face_scene(haptics::Tool::kTransducer, all_fat));
   EXPECT_EQ(hand.go({0, 0, -1.5}).wrench_P.force_n.norm(), 0.0);
   EXPECT_EQ(hand.go({0, 0, -1.5}).points_in_contact, 0);
   hand.go({0, 0, 8.0});
-  const ContactStep away = hand.go({0, 0, -5.0}, 0.0, 0.2);
+  const haptics::ContactStep away = hand.go({0, 0, -5.0}, 0.0, 0.2);
   EXPECT_LT(away.wrench_P.force_n.norm(), 1e-9);
   EXPECT_LT((hand.state.X_PT.p() - Vec3(0, 0, -5.0)).norm(), 1e-6);
 }
 
 TEST(Contact, StartInsideGivesNoForceStep) {
-  const auto scene = make_face_scene(Tool::kFinger, [](const Vec3& p) { return p.z() < 10.0 ? kFat : kBone; });
+  const auto scene = make_face_scene(haptics::Tool::kFinger, [](const Vec3& p) { return p.z() < 10.0 ? kFat : kBone; });
   Hand usual(scene);
   const double full = usual.go({0, 0, 8.0}).wrench_P.force_n.norm();
-  ContactState state;
+  haptics::ContactState state;
   double before = 0.0;
   for (int i = 0; i < 2000; ++i) {
-    const ContactStep step = step_contact(state, *scene, face_down({0, 0, 8.0}), kDt_s);
+    const haptics::ContactStep step = haptics::step_contact(state, *scene, face_down({0, 0, 8.0}), kDt_s);
     EXPECT_EQ(step.started_inside, i == 0);
     const double now = step.wrench_P.force_n.norm();
     EXPECT_LT(std::abs(now - before), 0.03 * full);
@@ -197,7 +197,7 @@ TEST(Contact, StartInsideGivesNoForceStep) {
 }
 
 TEST(Contact, TouchIsFeltWithoutAForceStep) {
-  Hand hand(make_face_scene(Tool::kTransducer, all_fat));
+  Hand hand(make_face_scene(haptics::Tool::kTransducer, all_fat));
   const double full = hand.go({0, 0, 10.0}, 0.0, 0.12).wrench_P.force_n.norm();  // 100 mm/s
   EXPECT_LT(hand.worst_jump_n, 0.1 * full);
 }
@@ -208,10 +208,10 @@ TEST(ContactTick, NeverAllocatesAndStaysFiniteWhateverComesIn) {
   const auto rib = [](const Vec3& p) { return p.z() > 6.0 && std::abs(p.x()) < 8.0 ? kBone : kFat; };
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  for (const Tool tool : {Tool::kTransducer, Tool::kFinger}) {
+  for (const haptics::Tool tool : {haptics::Tool::kTransducer, haptics::Tool::kFinger}) {
     const auto scene = make_face_scene(tool, rib);
     Random random(5);
-    HapticState state;
+    haptics::HapticState state;
     std::size_t allocations = 0;
     int rejected = 0;
     Vec3 at(0, 0, 0);
@@ -219,7 +219,7 @@ TEST(ContactTick, NeverAllocatesAndStaysFiniteWhateverComesIn) {
       at += Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
       if (at.norm() > 40.0) at *= 0.1;
       Vec3 tip = at;
-      HapticInput input;
+      haptics::HapticInput input;
       switch (random.next() % 14) {
         case 0:
           tip.x() = kNan;
@@ -247,13 +247,13 @@ TEST(ContactTick, NeverAllocatesAndStaysFiniteWhateverComesIn) {
       }
       input.X_DS = scene->X_PD.inverse() * face_down(tip, random.uniform(-3, 3)) * scene->X_SN.inverse();
       const AllocationGuard guard;
-      const HapticOutput output = tick(state, input, *scene);
+      const haptics::HapticOutput output = haptics::tick(state, input, *scene);
       allocations += guard.count();
       ASSERT_TRUE(output.f_D.allFinite() && output.tau_D.allFinite());
       ASSERT_TRUE(output.sample.tip_mm.allFinite() && output.sample.f_total_n.allFinite());
       ASSERT_LE(output.f_D.norm(), 37.5 + 1e-9);
       ASSERT_LE(output.tau_D.norm(), 515.0 + 1e-9);
-      rejected += output.sample.events[0].kind == EventKind::kLimit ? 1 : 0;
+      rejected += output.sample.events[0].kind == telemetry::EventKind::kLimit ? 1 : 0;
     }
     EXPECT_EQ(allocations, 0u);
     EXPECT_GT(rejected, 1000);
@@ -261,20 +261,20 @@ TEST(ContactTick, NeverAllocatesAndStaysFiniteWhateverComesIn) {
 }
 
 TEST(ContactTick, RecordsTheToolAndComposesTheTotal) {
-  const auto scene = make_face_scene(Tool::kTransducer, all_fat);
-  HapticState state;
-  TickSample sample;
-  Wrench contact;
-  ContactState own;
+  const auto scene = make_face_scene(haptics::Tool::kTransducer, all_fat);
+  haptics::HapticState state;
+  telemetry::TickSample sample;
+  haptics::Wrench contact;
+  haptics::ContactState own;
   for (int i = 0; i < 1000; ++i) {
     const Pose X_PT = face_down({0, 0, std::min(8.0, -2.0 + 0.02 * i)}, 0.1);
-    sample = tick(state, {0.001 * i, kDt_s, X_PT * scene->X_SN.inverse(), true, {}}, *scene).sample;
-    contact = step_contact(own, *scene, X_PT, kDt_s).wrench_P;
+    sample = haptics::tick(state, {0.001 * i, kDt_s, X_PT * scene->X_SN.inverse(), true, {}}, *scene).sample;
+    contact = haptics::step_contact(own, *scene, X_PT, kDt_s).wrench_P;
   }
   EXPECT_LT((sample.f_constraint_n - contact.force_n).norm(), 1e-9);
   EXPECT_LT((sample.f_total_n - sample.f_constraint_n - sample.f_weight_n).norm(), 1e-12);
   EXPECT_LT((sample.axis - state.contact.X_PT.R().col(1)).norm(), 1e-12);
-  EXPECT_EQ(sample.phase, InsertionPhase::kLoading);
+  EXPECT_EQ(sample.phase, telemetry::InsertionPhase::kLoading);
   EXPECT_NEAR(sample.device_mm.z(), 8.0, 1e-9);
   EXPECT_LT(sample.tip_mm.z(), 8.0);
   // The grip is reach_mm behind the face: the torque about it has the force's lever.
@@ -289,16 +289,16 @@ TEST(ContactTick, NeedsTissueToReadFrom) {
   auto patient = flat_patient(all_fat);
   patient->labels = {};
   patient->ct = {};
-  HapticOptions options;
-  options.tool = Tool::kFinger;
-  EXPECT_FALSE(make_haptic_scene(patient, soft_tissues(), {}, {}, options).has_value());
+  haptics::HapticOptions options;
+  options.tool = haptics::Tool::kFinger;
+  EXPECT_FALSE(haptics::make_haptic_scene(patient, soft_tissues(), {}, {}, options).has_value());
 }
 
 // Closed loop: a bare mass rests on the skin by its weight, its position quantised, the force one tick late.
 
 struct Load {
   double mass_kg;
-  Tool tool;
+  haptics::Tool tool;
 };
 class RestingOnSkin : public ::testing::TestWithParam<Load> {};
 
@@ -308,21 +308,22 @@ TEST_P(RestingOnSkin, ComesToRestAndStays) {
   const auto thin = [](const Vec3& p) { return p.z() < 4.0 ? kFat : kBone; };
   const auto rib = [](const Vec3& p) { return p.z() > 4.0 && std::abs(p.x() - 6.0) < 5.0 ? kBone : kFat; };
   for (const auto& label_at : {std::function<std::uint8_t(const Vec3&)>(all_fat), {muscle}, {thin}, {rib}}) {
-    HapticOptions options;
+    haptics::HapticOptions options;
     options.has_weight_compensation = false;
     const auto scene = make_face_scene(GetParam().tool, label_at, options);
     const double weight_n = 9.81 * GetParam().mass_kg;
-    HapticState state;
-    VirtualDeviceState device{face_down({0, 0, -1}, 0.05), Vec3::Zero()};
-    HandHold hand;
+    haptics::HapticState state;
+    haptics::VirtualDeviceState device{face_down({0, 0, -1}, 0.05), Vec3::Zero()};
+    haptics::HandHold hand;
     hand.R_PN = device.X_PN.R();
     Vec3 force_P = Vec3::Zero();
     Vec3 low = Vec3::Constant(1e9);
     Vec3 high = -low;
     for (int i = 0; i < 5000; ++i) {
-      step_device(device, {GetParam().mass_kg, weight_n}, hand, force_P, Vec3::UnitZ(), kDt_s);
+      haptics::step_device(device, {GetParam().mass_kg, weight_n}, hand, force_P, Vec3::UnitZ(), kDt_s);
       const Vec3 seen = (device.X_PN.p() / kCount_mm).array().round() * kCount_mm;
-      force_P = tick(state, {kDt_s * i, kDt_s, Pose(hand.R_PN, seen) * scene->X_SN.inverse(), true, {}}, *scene).f_D;
+      force_P =
+          haptics::tick(state, {kDt_s * i, kDt_s, Pose(hand.R_PN, seen) * scene->X_SN.inverse(), true, {}}, *scene).f_D;
       if (i < 4000) continue;
       low = low.cwiseMin(device.X_PN.p());
       high = high.cwiseMax(device.X_PN.p());
@@ -334,22 +335,23 @@ TEST_P(RestingOnSkin, ComesToRestAndStays) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(BareMasses, RestingOnSkin,
-                         ::testing::Values(Load{0.045, Tool::kTransducer}, Load{0.15, Tool::kTransducer},
-                                           Load{0.045, Tool::kFinger}, Load{0.15, Tool::kFinger}));
+                         ::testing::Values(Load{0.045, haptics::Tool::kTransducer},
+                                           Load{0.15, haptics::Tool::kTransducer}, Load{0.045, haptics::Tool::kFinger},
+                                           Load{0.15, haptics::Tool::kFinger}));
 
 /// In six degrees of freedom: the hand presses and tilts the tool, a stylus of 50 kg mm^2 turns under it.
 TEST(ContactInClosedLoop, TurnsToRestInTheHandOverBone) {
-  const auto preset = load_device_preset(data_dir() / "devices.toml", "sigma7");
+  const auto preset = haptics::load_device_preset(data_dir() / "devices.toml", "sigma7");
   ASSERT_TRUE(preset.has_value());
   const auto thin = [](const Vec3& p) { return p.z() < 4.0 ? kFat : kBone; };
   const auto rib = [](const Vec3& p) { return p.z() > 4.0 && std::abs(p.x() - 6.0) < 5.0 ? kBone : kFat; };
   for (const auto& label_at : {std::function<std::uint8_t(const Vec3&)>(all_fat), {thin}, {rib}}) {
-    for (const Tool tool : {Tool::kTransducer, Tool::kFinger}) {
-      HapticOptions options;
-      apply_device_preset(*preset, options);
+    for (const haptics::Tool tool : {haptics::Tool::kTransducer, haptics::Tool::kFinger}) {
+      haptics::HapticOptions options;
+      haptics::apply_device_preset(*preset, options);
       const auto scene = make_face_scene(tool, label_at, options);
-      ClosedLoop loop(scene, *preset, Holder::kHand);
-      StylusHold hold = make_hand();
+      haptics::ClosedLoop loop(scene, *preset, haptics::Holder::kHand);
+      haptics::StylusHold hold = haptics::make_hand();
       loop.stylus().X_PS = hold.X_PS = face_down({0, 0, -1}, 0.1) * scene->X_SN.inverse();
       for (int i = 0; i < 4000; ++i) {
         hold.X_PS = face_down({0, 0, std::min(9.0, -1.0 + 0.02 * i)}, 0.1) * scene->X_SN.inverse();

@@ -9,8 +9,8 @@
 namespace trocar::testing {
 
 /// Moduli for palpation (kPa): fat and muscle soft, bone rigid.
-inline TissueTable soft_tissues(double fat_kpa = 5.0, double muscle_kpa = 20.0, double liver_kpa = 60.0) {
-  TissueTable table = paper_tissues();
+inline anatomy::TissueTable soft_tissues(double fat_kpa = 5.0, double muscle_kpa = 20.0, double liver_kpa = 60.0) {
+  anatomy::TissueTable table = paper_tissues();
   const auto set = [&](const char* name, double kpa) { table.tissues[*table.find_tissue(name)].young_kpa = kpa; };
   set("skin", fat_kpa);
   set("adipose", fat_kpa);
@@ -22,16 +22,16 @@ inline TissueTable soft_tissues(double fat_kpa = 5.0, double muscle_kpa = 20.0, 
 }
 
 /// Flat skin at z = 0, inside at z > 0, 1 mm voxels, 100 x 40 mm wide and 50 mm deep; a label for every voxel.
-inline std::shared_ptr<VirtualPatient> flat_patient(const std::function<std::uint8_t(const Vec3&)>& label_at) {
+inline std::shared_ptr<anatomy::VirtualPatient> flat_patient(const std::function<std::uint8_t(const Vec3&)>& label_at) {
   auto patient = layered_patient({});
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.size = {101, 41, 61};
   geometry.origin_P = {-50.0, -20.0, -10.0};
-  patient->ct = CtGrid(geometry, 0);
-  patient->labels = LabelGrid(geometry, 0);
-  patient->skin_distance_mm = FloatGrid(geometry, 0.0F);
+  patient->ct = volume::CtGrid(geometry, 0);
+  patient->labels = volume::LabelGrid(geometry, 0);
+  patient->skin_distance_mm = volume::FloatGrid(geometry, 0.0F);
   for (std::size_t n = 0; n < patient->labels.voxels.size(); ++n) {
-    const Index3 ijk = geometry.index_of(n);
+    const volume::Index3 ijk = geometry.index_of(n);
     const Vec3 p =
         geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])});
     patient->skin_distance_mm.voxels[n] = static_cast<float>(-p.z());
@@ -40,12 +40,11 @@ inline std::shared_ptr<VirtualPatient> flat_patient(const std::function<std::uin
   return patient;
 }
 
-inline std::shared_ptr<const HapticScene> make_face_scene(Tool tool,
-                                                          const std::function<std::uint8_t(const Vec3&)>& label_at,
-                                                          HapticOptions options = {},
-                                                          const TissueTable& tissues = soft_tissues()) {
+inline std::shared_ptr<const haptics::HapticScene> make_face_scene(
+    haptics::Tool tool, const std::function<std::uint8_t(const Vec3&)>& label_at, haptics::HapticOptions options = {},
+    const anatomy::TissueTable& tissues = soft_tissues()) {
   options.tool = tool;
-  auto scene = make_haptic_scene(flat_patient(label_at), tissues, {}, {}, options);
+  auto scene = haptics::make_haptic_scene(flat_patient(label_at), tissues, {}, {}, options);
   TROCAR_CHECK(scene.has_value());
   return *scene;
 }

@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 AxialBalance random_balance(Random& random) {
@@ -58,4 +58,4 @@ TEST(Solve, SaysWhenItsInputHasNoBalance) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::haptics

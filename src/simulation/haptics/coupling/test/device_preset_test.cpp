@@ -11,7 +11,7 @@
 #include "core/files/temporary_folder.h"
 #include "haptics/test/layered_patient.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 const std::filesystem::path kFile = data_dir() / "devices.toml";
@@ -54,10 +54,10 @@ TEST(DevicePreset, EveryDeviceMakesAScene) {
 
 TEST(DevicePreset, ForcesOfTissuesAreScaledIntoTheDevice) {
   const auto presets = load_device_presets(kFile);
-  const auto table = load_tissue_table(data_dir() / "tissues.toml");
+  const auto table = anatomy::load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(presets && table);
   double strongest_n = 0.0;
-  for (const LayerParams& layer : table->layers) {
+  for (const anatomy::LayerParams& layer : table->layers) {
     if (std::isfinite(layer.puncture_force_n)) strongest_n = std::max(strongest_n, layer.puncture_force_n);
   }
   const auto skin = table->find_layer("skin");
@@ -167,4 +167,4 @@ TEST(DevicePreset, ImpossibleDeviceIsRefused) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::haptics

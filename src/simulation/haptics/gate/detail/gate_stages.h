@@ -5,7 +5,7 @@
 #include "haptics/gate/safety_gate.h"
 
 /// The stages of the safety gate, each a plain function. Real-time safe.
-namespace trocar::detail {
+namespace trocar::haptics::detail {
 
 /// What a period may take: the limits of the motors as warm as they are.
 struct GateLimits {
@@ -58,4 +58,4 @@ Vec3 slew_limited(const Vec3& last, const Vec3& target, double most) noexcept;
 /// factor (physics.md G8). An axis of no length: the whole force and the torque shrink.
 Wrench limited(const Wrench& wrench, const Vec3& axis, double force_n, double torque_nmm) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::haptics::detail

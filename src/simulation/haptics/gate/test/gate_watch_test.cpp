@@ -11,7 +11,7 @@
 #include "haptics/gate/device_gate.h"
 #include "haptics/gate/loop_limits.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kDt_s = 0.001;
@@ -25,8 +25,9 @@ GateInput wanting(const Vec3& force_n) {
 
 GateState open_gate(const GateParams& params = {}) {
   GateState state;
-  for (int i = 0; i < 5000 && state.mode != GateMode::kOn; ++i) step_gate(state, wanting(Vec3::Zero()), params);
-  EXPECT_EQ(state.mode, GateMode::kOn);
+  for (int i = 0; i < 5000 && state.mode != telemetry::GateMode::kOn; ++i)
+    step_gate(state, wanting(Vec3::Zero()), params);
+  EXPECT_EQ(state.mode, telemetry::GateMode::kOn);
   return state;
 }
 
@@ -122,7 +123,7 @@ TEST(GateLoop, FallsAtOnceAndComesBackWithinTheSafeStartsTime) {
     last_n = now_n;
   }
   EXPECT_NEAR(periods, 50 + 500 * (1.0 - share), 15) << "50 ms of good periods, then the ramp";
-  EXPECT_EQ(state.fault, GateFault::kNone);
+  EXPECT_EQ(state.fault, telemetry::GateFault::kNone);
 }
 
 /// The number of late periods to the fault, or 0.
@@ -134,7 +135,7 @@ int periods_to_fault(double period_s, double busy_s) {
   input.busy_s = busy_s;
   for (int i = 1; i <= 200; ++i) {
     step_gate(state, input, {});
-    if (state.fault == GateFault::kLoopSlow) return i;
+    if (state.fault == telemetry::GateFault::kLoopSlow) return i;
   }
   return 0;
 }
@@ -156,13 +157,13 @@ TEST(GateLoop, AFaultStaysWhileTheLoopIsSlow) {
   input.dt_s = 0.02;
   input.busy_s = 0.019;
   for (int i = 0; i < 5; ++i) step_gate(state, input, {});
-  ASSERT_EQ(state.fault, GateFault::kLoopSlow);
+  ASSERT_EQ(state.fault, telemetry::GateFault::kLoopSlow);
   input.is_reset = true;
   step_gate(state, input, {});
-  EXPECT_EQ(state.fault, GateFault::kLoopSlow);
+  EXPECT_EQ(state.fault, telemetry::GateFault::kLoopSlow);
   input.dt_s = kDt_s;
   for (int i = 0; i < 150; ++i) step_gate(state, input, {});
-  EXPECT_EQ(state.fault, GateFault::kNone);
+  EXPECT_EQ(state.fault, telemetry::GateFault::kNone);
 }
 
 TEST(GateLoop, CountsNothingWithoutForceOrMotors) {
@@ -170,7 +171,7 @@ TEST(GateLoop, CountsNothingWithoutForceOrMotors) {
   GateInput input;
   input.dt_s = 0.06;
   for (int i = 0; i < 20; ++i) step_gate(off, input, {});
-  EXPECT_EQ(off.fault, GateFault::kNone);
+  EXPECT_EQ(off.fault, telemetry::GateFault::kNone);
   const auto mouse = load_device_preset(data_dir() / "devices.toml", "mouse");
   ASSERT_TRUE(mouse);
   const GateParams params = gate_params(*mouse);
@@ -179,17 +180,18 @@ TEST(GateLoop, CountsNothingWithoutForceOrMotors) {
   input.coupling = {0.0, 0.0};
   input.dt_s = 0.06;
   for (int i = 0; i < 20; ++i) step_gate(shown, input, params);
-  EXPECT_EQ(shown.fault, GateFault::kNone);
+  EXPECT_EQ(shown.fault, telemetry::GateFault::kNone);
   EXPECT_EQ(shown.coupling_share, 1.0);
 }
 
 // --- motion ---
 
 TEST(GateMotion, AStepThatNoHandMakesIsAFaultInItsPeriod) {
-  for (const auto& [step_mm, dt_s, fault] :
-       {std::tuple{2.8, 0.001, GateFault::kNone}, std::tuple{3.0, 0.001, GateFault::kImpossibleMotion},
-        std::tuple{100.0, 0.001, GateFault::kImpossibleMotion}, std::tuple{60.0, 0.02, GateFault::kNone},
-        std::tuple{70.0, 0.02, GateFault::kImpossibleMotion}}) {
+  for (const auto& [step_mm, dt_s, fault] : {std::tuple{2.8, 0.001, telemetry::GateFault::kNone},
+                                             std::tuple{3.0, 0.001, telemetry::GateFault::kImpossibleMotion},
+                                             std::tuple{100.0, 0.001, telemetry::GateFault::kImpossibleMotion},
+                                             std::tuple{60.0, 0.02, telemetry::GateFault::kNone},
+                                             std::tuple{70.0, 0.02, telemetry::GateFault::kImpossibleMotion}}) {
     GateState state = open_gate();
     GateInput input = wanting({0, 0, 2});
     step_gate(state, input, {});
@@ -197,7 +199,7 @@ TEST(GateMotion, AStepThatNoHandMakesIsAFaultInItsPeriod) {
     input.v_mm_per_s = {step_mm / dt_s, 0, 0};
     const GateOutput output = step_gate(state, input, {});
     EXPECT_EQ(state.fault, fault) << step_mm;
-    if (fault == GateFault::kNone) continue;
+    if (fault == telemetry::GateFault::kNone) continue;
     EXPECT_FALSE(output.actions & kGateBrake);
     EXPECT_LE(output.wrench.force_n.norm(), 2.0);
   }
@@ -208,10 +210,10 @@ TEST(GateMotion, ATurnThatNoHandMakesIsAFault) {
   GateInput input = wanting({0, 0, 2});
   input.w_rad_per_s = {0, 0, 1000};
   step_gate(state, input, {});
-  EXPECT_EQ(state.fault, GateFault::kNone);
+  EXPECT_EQ(state.fault, telemetry::GateFault::kNone);
   input.w_rad_per_s = {0, 0, 1100};
   step_gate(state, input, {});
-  EXPECT_EQ(state.fault, GateFault::kImpossibleMotion);
+  EXPECT_EQ(state.fault, telemetry::GateFault::kImpossibleMotion);
 }
 
 // --- vibration ---
@@ -220,7 +222,7 @@ TEST(GateMotion, ATurnThatNoHandMakesIsAFault) {
 GateState swing(double force_n, double speed_mm_per_s, double hz, double phase, double seconds) {
   GateState state = open_gate();
   const int periods = static_cast<int>(seconds / kDt_s);
-  for (int i = 0; i < periods && state.fault == GateFault::kNone; ++i) {
+  for (int i = 0; i < periods && state.fault == telemetry::GateFault::kNone; ++i) {
     const double angle = 2.0 * std::numbers::pi * hz * i * kDt_s;
     GateInput input = wanting({0, 0, force_n * std::sin(angle + phase)});
     // What went out in the last period acted while this way was made.
@@ -233,17 +235,17 @@ GateState swing(double force_n, double speed_mm_per_s, double hz, double phase, 
 TEST(GateVibration, PowerIntoFastMotionIsAFault) {
   for (const double hz : {80.0, 150.0, 250.0}) {
     // 1200 mW; the passivity control, which comes first, takes at most 3 N of the 8.
-    EXPECT_EQ(swing(8.0, 300.0, hz, 0.0, 1.0).fault, GateFault::kVibration) << hz;
+    EXPECT_EQ(swing(8.0, 300.0, hz, 0.0, 1.0).fault, telemetry::GateFault::kVibration) << hz;
   }
 }
 
 TEST(GateVibration, SpringsDampersAndHandsAreNone) {
   const double pi = std::numbers::pi;
-  EXPECT_EQ(swing(2.0, 300.0, 100.0, 0.5 * pi, 2.0).fault, GateFault::kNone) << "a spring";
-  EXPECT_EQ(swing(2.0, 300.0, 100.0, pi, 2.0).fault, GateFault::kNone) << "a damper";
-  EXPECT_EQ(swing(2.0, 40.0, 100.0, 0.0, 2.0).fault, GateFault::kNone) << "too weak";
-  EXPECT_EQ(swing(3.0, 400.0, 3.0, 0.0, 2.0).fault, GateFault::kNone) << "a hand that is led";
+  EXPECT_EQ(swing(2.0, 300.0, 100.0, 0.5 * pi, 2.0).fault, telemetry::GateFault::kNone) << "a spring";
+  EXPECT_EQ(swing(2.0, 300.0, 100.0, pi, 2.0).fault, telemetry::GateFault::kNone) << "a damper";
+  EXPECT_EQ(swing(2.0, 40.0, 100.0, 0.0, 2.0).fault, telemetry::GateFault::kNone) << "too weak";
+  EXPECT_EQ(swing(3.0, 400.0, 3.0, 0.0, 2.0).fault, telemetry::GateFault::kNone) << "a hand that is led";
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::haptics

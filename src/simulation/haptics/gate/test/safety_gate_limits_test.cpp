@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "haptics/gate/safety_gate.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kDt_s = 0.001;
@@ -21,7 +21,8 @@ GateInput wanting(const Vec3& force_n, const Vec3& torque_nmm = Vec3::Zero()) {
 
 GateState open_gate(const GateParams& params = {}) {
   GateState state;
-  for (int i = 0; i < 5000 && state.mode != GateMode::kOn; ++i) step_gate(state, wanting(Vec3::Zero()), params);
+  for (int i = 0; i < 5000 && state.mode != telemetry::GateMode::kOn; ++i)
+    step_gate(state, wanting(Vec3::Zero()), params);
   return state;
 }
 
@@ -215,7 +216,7 @@ TEST(GatePassivity, BringsASpringToRestThatIsActiveByItsDelay) {
     const double allowed_mj = (spring.late < 5 ? 1.0 : 1.25) * params.passivity_margin_mj;
     EXPECT_LT(fastest_mm_per_s, std::sqrt(2.0 * allowed_mj / LateSpring::kMass)) << spring.late << " periods late";
     EXPECT_LT(last_mm_per_s, 5.0) << spring.late << " periods late";
-    EXPECT_EQ(state.fault, GateFault::kNone);
+    EXPECT_EQ(state.fault, telemetry::GateFault::kNone);
   }
 }
 
@@ -310,26 +311,26 @@ TEST(GateBrake, LeavesOnlyDampingAboveItsSpeedAndFaultsWhenItLasts) {
     EXPECT_TRUE(output.actions & kGateBrake);
     if (i <= 2) continue;  // the turn
     EXPECT_LT((output.wrench.force_n - Vec3(0, 0, -params.brake_ns_per_mm * 1500.0)).norm(), 1e-9);
-    EXPECT_EQ(state.fault, GateFault::kNone) << "period " << i;
+    EXPECT_EQ(state.fault, telemetry::GateFault::kNone) << "period " << i;
   }
   step_gate(state, input, params);
-  EXPECT_EQ(state.fault, GateFault::kRunaway);
+  EXPECT_EQ(state.fault, telemetry::GateFault::kRunaway);
   input.is_reset = true;
   step_gate(state, input, params);
-  EXPECT_EQ(state.fault, GateFault::kRunaway) << "still too fast";
+  EXPECT_EQ(state.fault, telemetry::GateFault::kRunaway) << "still too fast";
   input.v_mm_per_s = Vec3::Zero();
   step_gate(state, input, params);
-  EXPECT_EQ(state.fault, GateFault::kNone);
+  EXPECT_EQ(state.fault, telemetry::GateFault::kNone);
 }
 
 TEST(GateBrake, CountsASwingThroughStandstill) {
   GateState state = open_gate();
   GateInput input = wanting({0, 0, 1});
-  for (int i = 0; i < 2000 && state.fault == GateFault::kNone; ++i) {
+  for (int i = 0; i < 2000 && state.fault == telemetry::GateFault::kNone; ++i) {
     input.v_mm_per_s = {0, 0, 4000.0 * std::sin(0.3 * i)};  // 84 % of the time above the brake's speed
     step_gate(state, input, {});
   }
-  EXPECT_EQ(state.fault, GateFault::kRunaway);
+  EXPECT_EQ(state.fault, telemetry::GateFault::kRunaway);
 }
 
 TEST(GateBrake, BlamesNoMotorThatGivesNothing) {
@@ -337,7 +338,7 @@ TEST(GateBrake, BlamesNoMotorThatGivesNothing) {
   GateInput input;
   input.v_mm_per_s = {3000, 0, 0};
   for (int i = 0; i < 500; ++i) step_gate(state, input, {});
-  EXPECT_EQ(state.fault, GateFault::kNone);
+  EXPECT_EQ(state.fault, telemetry::GateFault::kNone);
 }
 
 // --- saturation ---
@@ -395,4 +396,4 @@ TEST(GateClamp, GivesNoTorqueToADeviceWithout) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::haptics

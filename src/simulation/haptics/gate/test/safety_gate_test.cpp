@@ -14,7 +14,7 @@
 #include "core/testing/allocation_guard.h"
 #include "haptics/gate/device_gate.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 constexpr double kDt_s = 0.001;
@@ -30,8 +30,9 @@ GateInput wanting(const Vec3& force_n) {
 /// A gate that gives full force, as after a safe start in air.
 GateState open_gate(const GateParams& params = {}) {
   GateState state;
-  for (int i = 0; i < 5000 && state.mode != GateMode::kOn; ++i) step_gate(state, wanting(Vec3::Zero()), params);
-  EXPECT_EQ(state.mode, GateMode::kOn);
+  for (int i = 0; i < 5000 && state.mode != telemetry::GateMode::kOn; ++i)
+    step_gate(state, wanting(Vec3::Zero()), params);
+  EXPECT_EQ(state.mode, telemetry::GateMode::kOn);
   return state;
 }
 
@@ -89,7 +90,7 @@ TEST(SafetyGate, FadesToZeroAndLatchesWhenAnyNumberIsBroken) {
         last = force_n(output);
       }
       EXPECT_EQ(state.last.force_n, Vec3::Zero().eval());
-      EXPECT_EQ(state.fault, GateFault::kNotFinite);
+      EXPECT_EQ(state.fault, telemetry::GateFault::kNotFinite);
     }
   }
 }
@@ -107,7 +108,7 @@ TEST(SafetyGate, BearsTheSmallestNumbersWithoutAFault) {
         ASSERT_TRUE(is_within(output.wrench, {}));
         ASSERT_TRUE(is_finite(state));
       }
-      EXPECT_EQ(state.fault, GateFault::kNone);
+      EXPECT_EQ(state.fault, telemetry::GateFault::kNone);
     }
   }
 }
@@ -118,7 +119,7 @@ TEST(SafetyGate, TakesAPeriodWithoutTimeForABrokenOne) {
     GateInput input = wanting({0, 0, 1});
     input.dt_s = dt_s;
     step_gate(state, input, {});
-    EXPECT_EQ(state.fault, GateFault::kNotFinite);
+    EXPECT_EQ(state.fault, telemetry::GateFault::kNotFinite);
   }
 }
 
@@ -142,9 +143,9 @@ TEST(SafetyGate, GivesALimitedWrenchForAnyNumbersAnywhere) {
     for (double* number : {&state.scale, &state.energy_mj, &state.force_heat, &state.torque_heat, &state.runaway_s,
                            &state.drop_from_n, &state.drop_s, &state.last.force_n[1], &state.watched.torque_nmm[2]})
       scramble(*number);
-    state.mode = static_cast<GateMode>(random.next() % 9);
-    state.fault = static_cast<GateFault>(random.next() % 3 == 0 ? random.next() % 9 : 0);
-    input.device_fault = static_cast<GateFault>(random.next() % 3 == 0 ? random.next() % 9 : 0);
+    state.mode = static_cast<telemetry::GateMode>(random.next() % 9);
+    state.fault = static_cast<telemetry::GateFault>(random.next() % 3 == 0 ? random.next() % 9 : 0);
+    input.device_fault = static_cast<telemetry::GateFault>(random.next() % 3 == 0 ? random.next() % 9 : 0);
     for (int k = 0; k < 5; ++k) {
       const GateOutput output = step_gate(state, input, params);
       ASSERT_TRUE(output.wrench.force_n.allFinite() && output.wrench.torque_nmm.allFinite());
@@ -203,7 +204,7 @@ TEST(SafetyGate, StaysWithinItsLimitsOverAMillionRandomPeriods) {
       input.w_rad_per_s = any_vector(random, 20.0);
       input.dt_s = random.uniform() < 0.02 ? random.uniform(0.0001, 0.3) : kDt_s;
       input.silence_s = random.uniform() < 0.01 ? 2.0 : 0.0;
-      input.device_fault = random.uniform() < 0.002 ? GateFault::kRequested : GateFault::kNone;
+      input.device_fault = random.uniform() < 0.002 ? telemetry::GateFault::kRequested : telemetry::GateFault::kNone;
       input.is_reset = random.uniform() < 0.05;
       const Vec3 before = state.last.force_n;
       const GateOutput output = step_gate(state, input, params);
@@ -260,19 +261,19 @@ TEST(SafetyGate, WaitsForASmallForceWhenItStartsInsideTissue) {
     ASSERT_EQ(force_n(output), 0.0);
     ASSERT_TRUE(output.actions & kGateStart);
   }
-  EXPECT_EQ(state.mode, GateMode::kWaiting);
+  EXPECT_EQ(state.mode, telemetry::GateMode::kWaiting);
   input.wanted.force_n = {0, 0, 0.2};
   input.wanted.torque_nmm = {30, 0, 0};  // still too much
   step_gate(state, input, params);
-  EXPECT_EQ(state.mode, GateMode::kWaiting);
+  EXPECT_EQ(state.mode, telemetry::GateMode::kWaiting);
   input.wanted.torque_nmm = Vec3::Zero();
   step_gate(state, input, params);
-  EXPECT_EQ(state.mode, GateMode::kRising);
+  EXPECT_EQ(state.mode, telemetry::GateMode::kRising);
   input.wanted.force_n = {0, 0, 3};
   const double whole = Vec3(0, -0.5, 3).norm();
   const int periods = static_cast<int>(std::lround(params.rise_s / kDt_s));
   for (int i = 2; i <= periods; ++i) EXPECT_NEAR(force_n(step_gate(state, input, params)), whole * i / periods, 1e-9);
-  EXPECT_EQ(state.mode, GateMode::kOn);
+  EXPECT_EQ(state.mode, telemetry::GateMode::kOn);
 }
 
 TEST(SafetyGate, IsAtZeroExactlyAfterSilenceAndFade) {
@@ -285,7 +286,7 @@ TEST(SafetyGate, IsAtZeroExactlyAfterSilenceAndFade) {
     EXPECT_NEAR(force_n(output), 3.0 * std::clamp((450 - ms) / 200.0, 0.0, 1.0), ms < 450 ? kRounding_n : 0.0);
     EXPECT_EQ((output.actions & kGateStale) != 0, ms > 250);
   }
-  EXPECT_EQ(state.mode, GateMode::kFading);
+  EXPECT_EQ(state.mode, telemetry::GateMode::kFading);
   input.silence_s = 0.0;
   double last = 0.0;
   for (int ms = 1; ms <= 500; ++ms) {
@@ -293,7 +294,7 @@ TEST(SafetyGate, IsAtZeroExactlyAfterSilenceAndFade) {
     EXPECT_NEAR(now - last, 3.0 * kDt_s / params.rise_s, kRounding_n);
     last = now;
   }
-  EXPECT_EQ(state.mode, GateMode::kOn);
+  EXPECT_EQ(state.mode, telemetry::GateMode::kOn);
 }
 
 TEST(SafetyGate, ResumesFromTheMiddleOfAFadeWithoutAJump) {
@@ -315,7 +316,7 @@ TEST(SafetyGate, SilenceNeverSkipsTheSafeStart) {
     input.silence_s = (i / 500) % 2 == 0 ? 0.0 : 1.0;
     ASSERT_EQ(force_n(step_gate(state, input, {})), 0.0);
   }
-  EXPECT_EQ(state.mode, GateMode::kWaiting);
+  EXPECT_EQ(state.mode, telemetry::GateMode::kWaiting);
 }
 
 TEST(SafetyGate, FadesToOffWhenNobodyWantsForces) {
@@ -331,17 +332,20 @@ TEST(SafetyGate, FadesToOffWhenNobodyWantsForces) {
   EXPECT_TRUE(output.actions & kGateOff);
   input.is_wanted = true;
   step_gate(state, input, params);
-  EXPECT_EQ(state.mode, GateMode::kWaiting) << "after off comes a safe start";
+  EXPECT_EQ(state.mode, telemetry::GateMode::kWaiting) << "after off comes a safe start";
 }
 
 TEST(SafetyGate, AFaultLatchesUntilAResetAfterItsCauseIsGone) {
   using Break = std::function<void(GateInput&)>;
-  const std::array<std::pair<GateFault, Break>, 5> causes{{
-      {GateFault::kDeviceLost, [](GateInput& input) { input.device_fault = GateFault::kDeviceLost; }},
-      {GateFault::kEncoderStuck, [](GateInput& input) { input.device_fault = GateFault::kEncoderStuck; }},
-      {GateFault::kRequested, [](GateInput& input) { input.device_fault = GateFault::kRequested; }},
-      {GateFault::kDeviceSilent, [](GateInput& input) { input.unread_s = 0.021; }},
-      {GateFault::kNotFinite, [](GateInput& input) { input.wanted.force_n.x() = std::nan(""); }},
+  const std::array<std::pair<telemetry::GateFault, Break>, 5> causes{{
+      {telemetry::GateFault::kDeviceLost,
+       [](GateInput& input) { input.device_fault = telemetry::GateFault::kDeviceLost; }},
+      {telemetry::GateFault::kEncoderStuck,
+       [](GateInput& input) { input.device_fault = telemetry::GateFault::kEncoderStuck; }},
+      {telemetry::GateFault::kRequested,
+       [](GateInput& input) { input.device_fault = telemetry::GateFault::kRequested; }},
+      {telemetry::GateFault::kDeviceSilent, [](GateInput& input) { input.unread_s = 0.021; }},
+      {telemetry::GateFault::kNotFinite, [](GateInput& input) { input.wanted.force_n.x() = std::nan(""); }},
   }};
   for (const auto& [fault, break_it] : causes) {
     GateState state = open_gate();
@@ -357,8 +361,8 @@ TEST(SafetyGate, AFaultLatchesUntilAResetAfterItsCauseIsGone) {
     EXPECT_EQ(state.fault, fault) << "nobody has reset it";
     healthy.is_reset = true;
     ASSERT_EQ(force_n(step_gate(state, healthy, {})), 0.0);
-    EXPECT_EQ(state.fault, GateFault::kNone);
-    EXPECT_EQ(state.mode, GateMode::kWaiting);
+    EXPECT_EQ(state.fault, telemetry::GateFault::kNone);
+    EXPECT_EQ(state.mode, telemetry::GateMode::kWaiting);
   }
 }
 
@@ -367,10 +371,10 @@ TEST(SafetyGate, KeepsTheFirstFault) {
   GateInput input = wanting({0, 0, 3});
   input.unread_s = 1.0;
   step_gate(state, input, {});
-  input.device_fault = GateFault::kDeviceLost;
+  input.device_fault = telemetry::GateFault::kDeviceLost;
   input.v_mm_per_s.x() = std::nan("");
   for (int i = 0; i < 10; ++i) step_gate(state, input, {});
-  EXPECT_EQ(state.fault, GateFault::kDeviceSilent);
+  EXPECT_EQ(state.fault, telemetry::GateFault::kDeviceSilent);
 }
 
 TEST(SafetyGate, TellsUnusableParametersByName) {
@@ -399,4 +403,4 @@ TEST(SafetyGate, HasUsableParametersForEveryDevice) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::haptics

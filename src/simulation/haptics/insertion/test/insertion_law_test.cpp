@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 // Paper A, Table 1.
@@ -95,4 +95,4 @@ TEST(MotionFade, IsZeroAtRestAndOneInMotion) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kPeakTolerance = 0.01;  // the bar for a recorded peak
 
-double peak_at_puncture(const std::vector<TickSample>& samples, int layer) {
-  for (const TickSample& sample : samples) {
-    for (const TickEvent& event : sample.events) {
-      if (event.kind == EventKind::kPuncture && event.id == layer) return -sample.f_prepuncture_n;
+double peak_at_puncture(const std::vector<telemetry::TickSample>& samples, int layer) {
+  for (const telemetry::TickSample& sample : samples) {
+    for (const telemetry::TickEvent& event : sample.events) {
+      if (event.kind == telemetry::EventKind::kPuncture && event.id == layer) return -sample.f_prepuncture_n;
     }
   }
   return 0.0;
@@ -41,9 +41,9 @@ INSTANTIATE_TEST_SUITE_P(Speeds, PuncturePeaks,
                                            Drive{50, 4000}, Drive{10, 250}));
 
 TEST(Insertion, TissueIsEnteredAfterItsLayerGaveWay) {
-  using enum EventKind;
-  const std::vector<std::pair<EventKind, int>> in_order{{kPuncture, 0},    {kEnter, kFat}, {kPuncture, 1},
-                                                        {kEnter, kMuscle}, {kPuncture, 2}, {kEnter, kLiver}};
+  using enum telemetry::EventKind;
+  const std::vector<std::pair<telemetry::EventKind, int>> in_order{{kPuncture, 0},    {kEnter, kFat}, {kPuncture, 1},
+                                                                   {kEnter, kMuscle}, {kPuncture, 2}, {kEnter, kLiver}};
   for (const double speed_mm_per_s : {2.0, 10.0, 50.0}) {
     Driver driver(make_scene(liver_way()));
     EXPECT_EQ(ways_in(driver.move(60.0, speed_mm_per_s)), in_order);
@@ -62,7 +62,7 @@ TEST(Insertion, TissueIsEnteredAfterItsLayerGaveWay) {
 TEST(Insertion, PeaksAreExactForATremblingHand) {
   for (const double phase : {0.0, 0.7, 1.4, 2.1, 2.8}) {
     Driver driver(make_scene(liver_way()));
-    std::vector<TickSample> samples;
+    std::vector<telemetry::TickSample> samples;
     for (int i = 0; i < 3000; ++i)  // 30 mm/s with 0.4 mm of tremor at 11 Hz and encoder counts of 0.03 mm
       samples.push_back(
           driver.to({0, 0, 0.03 * std::round((-10 + 0.03 * i + 0.4 * std::sin(0.07 * i + phase)) / 0.03)}));
@@ -76,7 +76,7 @@ TEST(Insertion, PeaksAreExactForATremblingHand) {
 TEST(Insertion, SkinPeakIsExactForANeedleThatSlidesAndTilts) {
   for (const double slide_mm_per_s : {-40.0, 15.0, 40.0}) {
     Driver driver(make_scene(liver_way()));
-    std::vector<TickSample> samples;
+    std::vector<telemetry::TickSample> samples;
     for (int i = 0; i < 1500 && punctures(samples).empty(); ++i) {
       const double t = 0.001 * i;
       const Vec3 axis = Vec3(0.5 + 0.2 * std::sin(9.0 * t), 0.7, 1.0).normalized();
@@ -89,19 +89,20 @@ TEST(Insertion, SkinPeakIsExactForANeedleThatSlidesAndTilts) {
 
 TEST(Insertion, RecordsTheVeryValuesPutIntoTheLaw) {
   Driver driver(make_scene(liver_way()));
-  const TissueTable table = paper_tissues();
+  const anatomy::TissueTable table = paper_tissues();
   int loaded = 0;
   std::uint8_t layer = 0;
-  for (const TickSample& sample : driver.move(60.0, 10.0)) {
+  for (const telemetry::TickSample& sample : driver.move(60.0, 10.0)) {
     if (sample.f_prepuncture_n != 0.0) {
       ++loaded;
-      const LayerParams& params = table.layers[layer];
-      EXPECT_NEAR(-sample.f_prepuncture_n,
-                  prepuncture_force_n(sample.layer_displacement_mm, sample.axial_velocity_mm_s,
-                                      {params.stiffness_n_per_mm, params.viscosity_ns_per_mm, params.delta_x_mm}),
-                  1e-9);
+      const anatomy::LayerParams& params = table.layers[layer];
+      EXPECT_NEAR(
+          -sample.f_prepuncture_n,
+          haptics::prepuncture_force_n(sample.layer_displacement_mm, sample.axial_velocity_mm_s,
+                                       {params.stiffness_n_per_mm, params.viscosity_ns_per_mm, params.delta_x_mm}),
+          1e-9);
     }
-    if (sample.events[0].kind == EventKind::kPuncture) ++layer;
+    if (sample.events[0].kind == telemetry::EventKind::kPuncture) ++layer;
   }
   EXPECT_GT(loaded, 100);
 }
@@ -110,19 +111,19 @@ TEST(Insertion, DropsAfterEachPuncture) {
   Driver driver(make_scene(liver_way()));
   const auto samples = driver.move(60.0, 10.0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (samples[i].events[0].kind != EventKind::kPuncture) continue;
+    if (samples[i].events[0].kind != telemetry::EventKind::kPuncture) continue;
     constexpr std::size_t kAfter = 60;  // ms: several time constants of the coupling
     EXPECT_LT(-samples[i + kAfter].device_f_n.z(), 0.7 * -samples[i].device_f_n.z());
   }
 }
 
 TEST(Insertion, SumsTheFrictionOfEveryTissueByItsOwnLength) {
-  HapticOptions options;
-  TissueTable smooth = paper_tissues();
-  for (TissueParams& tissue : smooth.tissues) tissue.roughness_n = 0.0;
+  haptics::HapticOptions options;
+  anatomy::TissueTable smooth = paper_tissues();
+  for (anatomy::TissueParams& tissue : smooth.tissues) tissue.roughness_n = 0.0;
   Driver driver(make_scene(liver_way(), options, smooth));
   const auto samples = driver.move(60.0, 10.0);
-  const TickSample& last = samples.back();
+  const telemetry::TickSample& last = samples.back();
   const double s = last.depth_mm;
   // Closed form: skin 0-2, fat 2-12, muscle 12-24, liver from 24 mm; nu v 2 pi r x with the area in cm^2.
   const double per_mm = 2 * std::numbers::pi * 0.635 / 100.0;
@@ -134,11 +135,12 @@ TEST(Insertion, SumsTheFrictionOfEveryTissueByItsOwnLength) {
 }
 
 TEST(Insertion, FluctuatesWithinDeltaMuOfThePenetratedTissues) {
-  TissueTable rough = paper_tissues();
-  for (TissueParams& tissue : rough.tissues) tissue.viscosity_ns_per_mm = 0.0;
+  anatomy::TissueTable rough = paper_tissues();
+  for (anatomy::TissueParams& tissue : rough.tissues) tissue.viscosity_ns_per_mm = 0.0;
   Driver driver(make_scene(liver_way(), {}, rough));
   double largest = 0.0;
-  for (const TickSample& sample : driver.move(60.0, 10.0)) largest = std::max(largest, std::abs(sample.f_friction_n));
+  for (const telemetry::TickSample& sample : driver.move(60.0, 10.0))
+    largest = std::max(largest, std::abs(sample.f_friction_n));
   const double bound = 0.1 * (0.18 + 0.1 + 0.15 + 0.58);
   EXPECT_LE(largest, bound + 1e-12);
   EXPECT_GT(largest, 0.3 * bound);
@@ -150,8 +152,8 @@ TEST(Insertion, IsTheSameAtOneAndFourKilohertz) {
   double worst = 0.0;
   std::size_t compared = 0;
   for (std::size_t i = 3; i < slow.size(); ++i) {
-    const TickSample& a = slow[i];
-    const TickSample& b = fast[4 * i + 3];
+    const telemetry::TickSample& a = slow[i];
+    const telemetry::TickSample& b = fast[4 * i + 3];
     ASSERT_NEAR(a.device_mm.z(), b.device_mm.z(), 1e-9);
     if (std::abs(a.axial_velocity_mm_s - 10.0) > 1.0) continue;  // not in the milliseconds after a puncture
     worst = std::max(worst, std::abs(a.f_total_n.dot(a.axis) - b.f_total_n.dot(b.axis)));
@@ -165,13 +167,13 @@ TEST(Insertion, CutsOnlyFreshLiverAndOnlyForward) {
   Driver driver(make_scene(liver_way()));
   const auto in = driver.move(60.0, 10.0);
   EXPECT_NEAR(in.back().f_cutting_n, -0.6, 1e-9);
-  for (const TickSample& sample : driver.move(40.0, 10.0)) {
+  for (const telemetry::TickSample& sample : driver.move(40.0, 10.0)) {
     if (sample.axial_velocity_mm_s <= 0.0) {
       EXPECT_EQ(sample.f_cutting_n, 0.0);
     }
   }
   const auto again = driver.move(70.0, 10.0);
-  for (const TickSample& sample : again) {
+  for (const telemetry::TickSample& sample : again) {
     if (sample.depth_mm < in.back().depth_mm - 0.1) {
       EXPECT_EQ(sample.f_cutting_n, 0.0);
     }
@@ -180,16 +182,17 @@ TEST(Insertion, CutsOnlyFreshLiverAndOnlyForward) {
 }
 
 TEST(Insertion, SecondTimeInTheSameHoleNeedsNoPunctureAndNoCutting) {
-  TissueTable smooth = paper_tissues();
-  for (TissueParams& tissue : smooth.tissues) tissue.roughness_n = 0.0;
+  anatomy::TissueTable smooth = paper_tissues();
+  for (anatomy::TissueParams& tissue : smooth.tissues) tissue.roughness_n = 0.0;
   Driver driver(make_scene(liver_way(), {}, smooth));
   const auto first = driver.move(60.0, 10.0);
   const auto out = driver.move(-10.0, 10.0);
-  EXPECT_EQ(out.back().phase, InsertionPhase::kOutside);
+  EXPECT_EQ(out.back().phase, telemetry::InsertionPhase::kOutside);
   const auto second = driver.move(55.0, 10.0);
   EXPECT_TRUE(punctures(second).empty());
-  const auto at = [](const std::vector<TickSample>& samples, double depth) {
-    return *std::find_if(samples.begin(), samples.end(), [&](const TickSample& s) { return s.depth_mm >= depth; });
+  const auto at = [](const std::vector<telemetry::TickSample>& samples, double depth) {
+    return *std::find_if(samples.begin(), samples.end(),
+                         [&](const telemetry::TickSample& s) { return s.depth_mm >= depth; });
   };
   const double before = -at(first, 50.0).f_total_n.z();
   const double after = -at(second, 50.0).f_total_n.z();
@@ -200,7 +203,7 @@ TEST(Insertion, AnotherPlaceIsAnotherHole) {
   Driver driver(make_scene(liver_way()));
   driver.move(40.0, 20.0);
   driver.move(-10.0, 20.0);
-  std::vector<TickSample> samples;
+  std::vector<telemetry::TickSample> samples;
   for (int i = 0; i < 3000; ++i) samples.push_back(driver.to({8.0, 0.0, -10.0 + 0.02 * i}));
   EXPECT_EQ(punctures(samples), (std::vector<int>{0, 1, 2}));
 }
@@ -212,7 +215,7 @@ TEST(Insertion, MuscleBehindAFatPlaneIsTheSameLayer) {
 
 TEST(Insertion, AThinLayerInTheDentOfAnotherIsStillPierced) {
   // Muscle indents by several mm in the tented profile: deeper than the 2 mm of muscle in front of the liver.
-  TissueTable tented = paper_tissues();
+  anatomy::TissueTable tented = paper_tissues();
   tented.layers[0].delta_x_mm = 4.0;
   tented.layers[1].delta_x_mm = 1.35;
   tented.layers[2].delta_x_mm = 4.6;
@@ -231,11 +234,11 @@ TEST(Insertion, BoneStopsTheNeedle) {
 TEST(Insertion, ForceIsNeverPullingOnRetreatFromALoadedLayer) {
   Driver driver(make_scene(liver_way()));
   driver.move(2.0, 10.0);  // skin loaded, not pierced
-  for (const TickSample& sample : driver.move(-5.0, 30.0)) {
+  for (const telemetry::TickSample& sample : driver.move(-5.0, 30.0)) {
     EXPECT_LE(sample.f_prepuncture_n, 0.0);
-    EXPECT_NE(sample.phase, InsertionPhase::kInserted);
+    EXPECT_NE(sample.phase, telemetry::InsertionPhase::kInserted);
   }
-  EXPECT_EQ(driver.state().needle.insertion.phase, InsertionPhase::kOutside);
+  EXPECT_EQ(driver.state().needle.insertion.phase, telemetry::InsertionPhase::kOutside);
 }
 
 TEST(Insertion, HoldsANeedleThatIsLetGo) {
@@ -245,7 +248,7 @@ TEST(Insertion, HoldsANeedleThatIsLetGo) {
   const double before = driver.state().needle.insertion.s_mm;
   EXPECT_GT(std::abs(driver.state().last.f_stick_n), 0.01);  // the stretch that the stop left
   // A pull below the holding force (0.1 N: 0.1 mm of the coupling) does not move it …
-  TickSample held;
+  telemetry::TickSample held;
   for (double z = 50.0; z > before - 0.1; z -= 0.0004) held = driver.to({0, 0, z});
   EXPECT_NEAR(driver.state().needle.insertion.s_mm, before, 1e-9);
   EXPECT_NEAR(held.f_stick_n, 0.1, 0.005);
@@ -257,17 +260,17 @@ TEST(Insertion, HoldsANeedleThatIsLetGo) {
 
 TEST(Insertion, PhasesFollowTheNeedle) {
   Driver driver(make_scene(liver_way()));
-  EXPECT_EQ(driver.move(-1.0, 10.0).back().phase, InsertionPhase::kOutside);
-  EXPECT_EQ(driver.move(1.0, 10.0).back().phase, InsertionPhase::kLoading);
-  EXPECT_EQ(driver.move(8.0, 10.0).back().phase, InsertionPhase::kInserted);
-  EXPECT_EQ(driver.move(4.0, 10.0).back().phase, InsertionPhase::kRetracting);
-  EXPECT_EQ(driver.move(-5.0, 10.0).back().phase, InsertionPhase::kOutside);
+  EXPECT_EQ(driver.move(-1.0, 10.0).back().phase, telemetry::InsertionPhase::kOutside);
+  EXPECT_EQ(driver.move(1.0, 10.0).back().phase, telemetry::InsertionPhase::kLoading);
+  EXPECT_EQ(driver.move(8.0, 10.0).back().phase, telemetry::InsertionPhase::kInserted);
+  EXPECT_EQ(driver.move(4.0, 10.0).back().phase, telemetry::InsertionPhase::kRetracting);
+  EXPECT_EQ(driver.move(-5.0, 10.0).back().phase, telemetry::InsertionPhase::kOutside);
 }
 
 TEST(Insertion, KeepsThePathThatPiercedTheSkin) {
   Driver driver(make_scene(liver_way()));
   driver.move(10.0, 10.0);
-  TickSample sample;
+  telemetry::TickSample sample;
   const Vec3 tilted = Vec3(0.1, 0.0, 1.0).normalized();
   for (int i = 0; i < 100; ++i) sample = driver.to({0.02 * i, 0.0, 10.0 + 0.01 * i}, tilted);
   EXPECT_NEAR(sample.tip_mm.x(), 0.0, 1e-9);
@@ -278,9 +281,9 @@ TEST(Insertion, KeepsThePathThatPiercedTheSkin) {
 
 TEST(Insertion, RecordsTheWayFromContactToPuncture) {
   Driver driver(make_scene(liver_way()));
-  const TickSample sample = driver.move(10.0, 10.0).back();
+  const telemetry::TickSample sample = driver.move(10.0, 10.0).back();
   constexpr double kTick_mm = 0.01;  // contact is noticed at the end of a tick
-  EXPECT_NEAR(sample.contact_to_puncture_mm.z(), static_displacement_mm(2.8, {0.46, 0.02, 0.1}),
+  EXPECT_NEAR(sample.contact_to_puncture_mm.z(), haptics::static_displacement_mm(2.8, {0.46, 0.02, 0.1}),
               0.15);  // and viscosity
   EXPECT_NEAR(sample.contact_to_puncture_mm.head<2>().norm(), 0.0, kTick_mm);
 }
@@ -288,10 +291,11 @@ TEST(Insertion, RecordsTheWayFromContactToPuncture) {
 TEST(Insertion, ObliqueNeedleTouchesTheSkinWhereItsAxisMeetsIt) {
   Driver driver(make_scene(liver_way()));
   const Vec3 axis = Vec3(1.0, 0.0, 1.0).normalized();
-  std::vector<TickSample> samples;
+  std::vector<telemetry::TickSample> samples;
   for (int i = 0; i < 6000; ++i) samples.push_back(driver.to(Vec3(-10, 0, -10) + axis * 0.01 * i, axis));
-  const auto pierced = std::find_if(samples.begin(), samples.end(),
-                                    [](const TickSample& s) { return s.events[0].kind == EventKind::kPuncture; });
+  const auto pierced = std::find_if(samples.begin(), samples.end(), [](const telemetry::TickSample& s) {
+    return s.events[0].kind == telemetry::EventKind::kPuncture;
+  });
   ASSERT_NE(pierced, samples.end());
   EXPECT_NEAR(pierced->layer_displacement_mm * axis.z(), pierced->tip_mm.z(), 1e-6);  // counted from z = 0
 }

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::haptics {
 namespace {
 
 const PathLine kLine{{3.0, -2.0, 10.0}, Vec3(0.2, 0.5, 1.0).normalized()};
@@ -140,4 +140,4 @@ TEST(Renderable, KeepsTheForcesAndBoundsTheTurning) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::haptics

@@ -10,15 +10,15 @@ namespace {
 
 const Vec3 kStraight = Vec3::Zero();
 
-HapticOptions options_of(ForceModel model) {
-  HapticOptions options;
+haptics::HapticOptions options_of(haptics::ForceModel model) {
+  haptics::HapticOptions options;
   options.force_model = model;
   options.has_weight_compensation = false;
   return options;
 }
 
 /// The needle in its path: 60 mm deep along +z through the origin, and back to `depth_mm`.
-Driver inserted(const std::shared_ptr<const HapticScene>& scene, double depth_mm) {
+Driver inserted(const std::shared_ptr<const haptics::HapticScene>& scene, double depth_mm) {
   Driver driver(scene);
   driver.to({0, 0, -10});
   driver.move(60.0, 20.0);
@@ -34,7 +34,7 @@ struct Place {
   Vec3 axis_P() const { return Eigen::AngleAxisd(tilt_rad.norm(), tilt_rad.stableNormalized()) * Vec3::UnitZ(); }
 };
 
-TickSample put(Driver& driver, const Place& place) {
+telemetry::TickSample put(Driver& driver, const Place& place) {
   return driver.to(place.tip_P, place.tilt_rad.norm() > 0.0 ? place.axis_P() : Vec3::UnitZ());
 }
 
@@ -57,7 +57,7 @@ class Work {
  public:
   explicit Work(double needle_mm) : needle_mm_(needle_mm) {}
 
-  void add(const TickSample& sample, const Place& place) {
+  void add(const telemetry::TickSample& sample, const Place& place) {
     const Vec3 axis_P = sample_axis(place);
     const Vec3 stylus_P = place.tip_P - needle_mm_ * axis_P;
     if (has_last_) {
@@ -103,7 +103,7 @@ Work around(Driver& driver, std::vector<Place> corners, double speed_mm_per_s, d
   work.add(put(driver, corners.front()), corners.front());
   for (std::size_t i = 1; i < corners.size(); ++i)
     go(driver, corners[i - 1], corners[i], speed_mm_per_s,
-       [&](const TickSample& sample, const Place& place) { work.add(sample, place); });
+       [&](const telemetry::TickSample& sample, const Place& place) { work.add(sample, place); });
   for (int i = 0; i < 200; ++i) work.add(put(driver, corners.front()), corners.front());
   return work;
 }
@@ -111,12 +111,12 @@ Work around(Driver& driver, std::vector<Place> corners, double speed_mm_per_s, d
 const Vec3 kSides[] = {{3, 0, 0}, {-3, 0, 0}, {0, 3, 0}, {0, -3, 0}, {-0.7, 0.7, 0}, {6, -8, 0}};
 
 TEST(PathHold, NeverPullsTheNeedleIn) {
-  const auto scene = make_scene(liver_way(), options_of(ForceModel::kInsertion));
+  const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion));
   for (const Vec3& side : kSides) {
     for (const Vec3& tilt : {Vec3(0, 0, 0), Vec3(0.08, 0, 0), Vec3(-0.05, 0.1, 0)}) {
       Driver driver = inserted(scene, 40.0);
       int seen = 0;
-      const auto look = [&](const TickSample& sample, const Place& place) {
+      const auto look = [&](const telemetry::TickSample& sample, const Place& place) {
         ASSERT_LE(sample.f_constraint_n.z(), 1e-12) << place.tip_P.transpose();  // +z leads into the body
         seen += sample.f_constraint_n.norm() > 0.0 ? 1 : 0;
       };
@@ -129,7 +129,7 @@ TEST(PathHold, NeverPullsTheNeedleIn) {
   }
 }
 
-class PathHoldOf : public ::testing::TestWithParam<ForceModel> {};
+class PathHoldOf : public ::testing::TestWithParam<haptics::ForceModel> {};
 
 TEST_P(PathHoldOf, GivesTheHandNoEnergyAroundALoop) {
   const auto scene = make_scene(liver_way(), options_of(GetParam()));
@@ -150,7 +150,7 @@ TEST_P(PathHoldOf, GivesTheHandNoEnergyAroundALoop) {
         EXPECT_LE(work.of_device_nmm(), kRounding_nmm)
             << depths.from_mm << " to " << depths.to_mm << " mm, " << side.transpose() << ", turned " << is_turned;
         // The body proxies' bed grows with depth without an axial force of its own; dry friction takes more (B7).
-        if (GetParam() != ForceModel::kInsertion) continue;
+        if (GetParam() != haptics::ForceModel::kInsertion) continue;
         EXPECT_LE(work.of_constraint_nmm(), kRounding_nmm) << depths.from_mm << ", " << side.transpose();
       }
     }
@@ -180,17 +180,18 @@ TEST_P(PathHoldOf, GivesTheHandNoEnergyAroundALoopOfTilts) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Models, PathHoldOf,
-                         ::testing::Values(ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined),
+                         ::testing::Values(haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
+                                           haptics::ForceModel::kCombined),
                          [](const auto& tested) { return to_string(tested.param); });
 
 TEST(PathHold, HasNoStepWhereTheNeedleLeavesTheSkin) {
-  const auto scene = make_scene(liver_way(), options_of(ForceModel::kInsertion));
+  const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion));
   for (const Vec3& side : kSides) {
     Driver driver = inserted(scene, 30.0);
     Vec3 before = Vec3::Zero();
     double largest_n = 0.0;
     double most_n = 0.0;
-    const auto look = [&](const TickSample& sample, const Place&) {
+    const auto look = [&](const telemetry::TickSample& sample, const Place&) {
       largest_n = std::max(largest_n, (sample.f_constraint_n - before).norm());
       most_n = std::max(most_n, sample.f_constraint_n.norm());
       before = sample.f_constraint_n;
@@ -206,12 +207,12 @@ TEST(PathHold, HasNoStepWhereTheNeedleLeavesTheSkin) {
 }
 
 TEST(PathHold, HasNoStepWhereTheNeedleFallsIntoItsHoleBesideThePath) {
-  const auto scene = make_scene(liver_way(), options_of(ForceModel::kInsertion));
+  const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion));
   Driver driver = inserted(scene, -5.0);
   Vec3 before = Vec3::Zero();
   double largest_n = 0.0;
   const Vec3 tilt(0.05, 0.0, 0.0);
-  go(driver, {{0.8, 0, -5}, tilt}, {{0.8, 0, 25}, tilt}, 10.0, [&](const TickSample& sample, const Place&) {
+  go(driver, {{0.8, 0, -5}, tilt}, {{0.8, 0, 25}, tilt}, 10.0, [&](const telemetry::TickSample& sample, const Place&) {
     largest_n = std::max(largest_n, (sample.f_constraint_n - before).norm());
     before = sample.f_constraint_n;
   });
@@ -220,25 +221,25 @@ TEST(PathHold, HasNoStepWhereTheNeedleFallsIntoItsHoleBesideThePath) {
 }
 
 TEST(PathHold, AParallelOffsetPushesTheStylusBackAndDoesNotTurnIt) {
-  const auto scene = make_scene(liver_way(), options_of(ForceModel::kInsertion));
+  const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion));
   Driver driver = inserted(scene, 40.0);
   go(driver, {{0, 0, 40}, kStraight}, {{2, 0, 40}, kStraight}, 5.0, [](const auto&...) {});
-  TickSample sample;
+  telemetry::TickSample sample;
   for (int i = 0; i < 200; ++i) sample = driver.to({2, 0, 40});
   EXPECT_LT((sample.f_constraint_n - Vec3(-2, 0, 0)).norm(), 1e-9);
   EXPECT_LT(sample.tau_nmm.norm(), 1e-9);
 }
 
 TEST(PathHold, ATiltAboutTheTipIsTurnedBackAndItsStylusPushedBack) {
-  const auto scene = make_scene(liver_way(), options_of(ForceModel::kInsertion));
+  const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion));
   Driver driver = inserted(scene, 40.0);
   const double tilt_rad = 0.01;
   const Place tilted{{0, 0, 40}, {0, tilt_rad, 0}};
   go(driver, {{0, 0, 40}, kStraight}, tilted, 5.0, [](const auto&...) {});
-  TickSample sample;
+  telemetry::TickSample sample;
   for (int i = 0; i < 500; ++i) sample = put(driver, tilted);
   const double aside_mm = -scene->needle.length_mm * std::sin(tilt_rad);  // of the stylus
-  const PathConstraintParams& hold = scene->options.constraint;
+  const haptics::PathConstraintParams& hold = scene->options.constraint;
   EXPECT_NEAR(sample.f_constraint_n.x(), -hold.force_n / hold.linear_mm * aside_mm, 1e-9);
   const Vec3 axial_n = sample.device_f_n - sample.f_constraint_n;  // what friction still holds acts at the tip
   const Vec3 lever = scene->needle.length_mm * tilted.axis_P();
@@ -246,28 +247,28 @@ TEST(PathHold, ATiltAboutTheTipIsTurnedBackAndItsStylusPushedBack) {
 }
 
 TEST(PathHold, ATiltAboutTheStylusMeetsOnlyATorque) {
-  const auto scene = make_scene(liver_way(), options_of(ForceModel::kInsertion));
+  const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion));
   Driver driver = inserted(scene, 40.0);
   const double length = scene->needle.length_mm;
   const Place turned{Vec3(length * std::sin(0.02), 0, 40 - length * (1 - std::cos(0.02))), {0, 0.02, 0}};
   go(driver, {{0, 0, 40}, kStraight}, turned, 5.0, [](const auto&...) {});
-  TickSample sample;
+  telemetry::TickSample sample;
   for (int i = 0; i < 200; ++i) sample = put(driver, turned);
   EXPECT_NEAR(sample.f_constraint_n.norm(), 0.0, 1e-9);
   EXPECT_LT(sample.tau_nmm.y(), -10.0);
 }
 
 TEST(PathHold, ADeviceWithoutTorqueIsHeldAtTheStylus) {
-  DeviceCapability device;
+  haptics::DeviceCapability device;
   device.peak_torque_nmm = 0.0;
-  const auto scene =
-      *make_haptic_scene(layered_patient(liver_way()), paper_tissues(), {}, device, options_of(ForceModel::kInsertion));
+  const auto scene = *make_haptic_scene(layered_patient(liver_way()), paper_tissues(), {}, device,
+                                        options_of(haptics::ForceModel::kInsertion));
   Driver driver = inserted(scene, 40.0);
   // A turn about the stylus moves the tip and meets no force; the stylus beside the path is pulled back.
   const double length = scene->needle.length_mm;
   const Place turned{Vec3(length * std::sin(0.02), 0, 40 - length * (1 - std::cos(0.02))), {0, 0.02, 0}};
   go(driver, {{0, 0, 40}, kStraight}, turned, 5.0, [](const auto&...) {});
-  TickSample sample;
+  telemetry::TickSample sample;
   for (int i = 0; i < 200; ++i) sample = put(driver, turned);
   EXPECT_NEAR(sample.f_constraint_n.norm(), 0.0, 1e-9);
   Driver other = inserted(scene, 40.0);

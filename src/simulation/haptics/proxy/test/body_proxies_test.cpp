@@ -9,8 +9,8 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/insertion/insertion_law.h"
 #include "haptics/closed_loop/virtual_stylus.h"
+#include "haptics/insertion/insertion_law.h"
 #include "haptics/test/layered_patient.h"
 
 namespace trocar::testing {
@@ -19,41 +19,42 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-NeedleGeometry needle_22g() {
-  NeedleGeometry needle;
+haptics::NeedleGeometry needle_22g() {
+  haptics::NeedleGeometry needle;
   needle.radius_mm = 0.359;
   return needle;
 }
 
-TissueTable tissues() {
-  TissueTable table = paper_tissues();
-  for (TissueParams& tissue : table.tissues) tissue.young_kpa = 30.0;
+anatomy::TissueTable tissues() {
+  anatomy::TissueTable table = paper_tissues();
+  for (anatomy::TissueParams& tissue : table.tissues) tissue.young_kpa = 30.0;
   table.tissues[5].young_kpa = 1e6;  // bone
   table.transfer.knot_count = 2;
   table.transfer.hu = {-200.0, 200.0};
-  HuLaw& soft = table.transfer.laws[0];
+  anatomy::HuLaw& soft = table.transfer.laws[0];
   soft.young_kpa = 30.0;
   soft.shaft_n_per_mm = 0.002;
   soft.shaft_viscosity_ns_per_mm = 0.01;
-  HuLaw& dense = table.transfer.laws[1] = soft;
+  anatomy::HuLaw& dense = table.transfer.laws[1] = soft;
   dense.shaft_n_per_mm = 0.010;
   dense.shaft_viscosity_ns_per_mm = 0.03;
   return table;
 }
 
 struct World {
-  std::shared_ptr<const HapticScene> scene;
-  Channel channel;
+  std::shared_ptr<const haptics::HapticScene> scene;
+  haptics::Channel channel;
 };
 
-World make_world(const std::vector<Slab>& slabs, bool has_bending = true, const NeedleGeometry& needle = needle_22g()) {
-  HapticOptions options;
-  options.force_model = ForceModel::kProxy;
+World make_world(const std::vector<Slab>& slabs, bool has_bending = true,
+                 const haptics::NeedleGeometry& needle = needle_22g()) {
+  haptics::HapticOptions options;
+  options.force_model = haptics::ForceModel::kProxy;
   options.has_bending = has_bending;
   World world;
   world.scene = *make_haptic_scene(layered_patient(slabs), tissues(), needle, {}, options);
   world.channel.is_used = true;
-  for (int i = 0; i < 20; ++i) look_ahead(world.channel, *world.scene, 0.0, 100.0);
+  for (int i = 0; i < 20; ++i) haptics::look_ahead(world.channel, *world.scene, 0.0, 100.0);
   return world;
 }
 
@@ -67,8 +68,8 @@ Pose displaced(const World& world, double tip_mm, const Vec3& shift, const Vec3&
 
 Vector6 wrench_at(const World& world, double tip_mm, const Vector6& move, const Vec3& tip_force = Vec3::Zero()) {
   const Pose X_PN = displaced(world, tip_mm, move.head<3>(), move.tail<3>());
-  const HeldShaft shaft = hold_shaft(world.channel, *world.scene, X_PN, tip_mm, true);
-  const Wrench wrench = react(shaft, *world.scene, tip_force).wrench_P;
+  const haptics::HeldShaft shaft = haptics::hold_shaft(world.channel, *world.scene, X_PN, tip_mm, true);
+  const haptics::Wrench wrench = haptics::react(shaft, *world.scene, tip_force).wrench_P;
   return (Vector6() << wrench.force_n, wrench.torque_nmm).finished();
 }
 
@@ -84,31 +85,31 @@ Matrix6 grip_stiffness(const World& world, double tip_mm) {
 
 TEST(ShaftResistance, AddsUpTissueByTissue) {
   const World world = make_world({{0, kFat}, {12, kMuscle}, {24, kLiver}});
-  const ShaftResistance resistance = shaft_resistance(world.channel, *world.scene, 50.0);
+  const haptics::ShaftResistance resistance = haptics::shaft_resistance(world.channel, *world.scene, 50.0);
   const double skin = 2.0, fat = 10.0, muscle = 12.0, liver = 26.0;
   const double voxel_mm = 0.5;  // Labels begin at the border of their nearest voxel; cells of 2 mm then round to it.
   EXPECT_NEAR(resistance.dry_n, 0.004 * skin + 0.002 * fat + 0.004 * (muscle + liver), 0.002 * 2.0 * voxel_mm);
   const double r = world.scene->needle.radius_mm;
-  const double viscous = 0.02 * contact_area_cm2(r, skin) + 0.01 * contact_area_cm2(r, fat) +
-                         0.03 * contact_area_cm2(r, muscle) + 0.02 * contact_area_cm2(r, liver);
-  EXPECT_NEAR(resistance.viscous_ns_per_mm, viscous, 0.02 * contact_area_cm2(r, 2.0 * voxel_mm) + 1e-12);
+  const double viscous = 0.02 * haptics::contact_area_cm2(r, skin) + 0.01 * haptics::contact_area_cm2(r, fat) +
+                         0.03 * haptics::contact_area_cm2(r, muscle) + 0.02 * haptics::contact_area_cm2(r, liver);
+  EXPECT_NEAR(resistance.viscous_ns_per_mm, viscous, 0.02 * haptics::contact_area_cm2(r, 2.0 * voxel_mm) + 1e-12);
 }
 
 TEST(ShaftResistance, ReadsIntensitiesWhereNothingIsLabelled) {
   const World world = make_world({});  // HU 0: half-way between the two knots.
-  const ShaftResistance resistance = shaft_resistance(world.channel, *world.scene, 42.0);
+  const haptics::ShaftResistance resistance = haptics::shaft_resistance(world.channel, *world.scene, 42.0);
   EXPECT_NEAR(resistance.dry_n, 0.004 * 2.0 + 0.006 * 40.0, 1e-12);
   const double r = world.scene->needle.radius_mm;
-  EXPECT_NEAR(resistance.viscous_ns_per_mm, 0.02 * contact_area_cm2(r, 2.0) + 0.02 * contact_area_cm2(r, 40.0), 1e-12);
+  EXPECT_NEAR(resistance.viscous_ns_per_mm, 0.02 * haptics::contact_area_cm2(r, 2.0) + 0.02 * haptics::contact_area_cm2(r, 40.0), 1e-12);
 }
 
 TEST(ShaftResistance, HasNoStepsAsTheNeedleSlides) {
   const World world = make_world({{0, kFat}, {12, kMuscle}, {24, kLiver}});
   constexpr double kSlide_mm = 0.01;
-  ShaftResistance before = shaft_resistance(world.channel, *world.scene, -1.0);
+  haptics::ShaftResistance before = haptics::shaft_resistance(world.channel, *world.scene, -1.0);
   EXPECT_EQ(before.dry_n, 0.0);
   for (double tip = -1.0; tip < 90.0; tip += kSlide_mm) {
-    const ShaftResistance now = shaft_resistance(world.channel, *world.scene, tip);
+    const haptics::ShaftResistance now = haptics::shaft_resistance(world.channel, *world.scene, tip);
     EXPECT_LE(std::abs(now.dry_n - before.dry_n), 0.004 * kSlide_mm + 1e-12);  // The stickiest tissue's a mm.
     EXPECT_GE(now.dry_n, before.dry_n - 1e-12);
     before = now;
@@ -118,8 +119,8 @@ TEST(ShaftResistance, HasNoStepsAsTheNeedleSlides) {
 TEST(HoldShaft, HasVesicsBed) {
   const World world = make_world({{0, kMuscle}});
   const double tip_mm = 60.0;
-  const HeldShaft shaft =
-      hold_shaft(world.channel, *world.scene, displaced(world, tip_mm, {1, 0, 0}, {0, 0, 0}), tip_mm, true);
+  const haptics::HeldShaft shaft =
+      haptics::hold_shaft(world.channel, *world.scene, displaced(world, tip_mm, {1, 0, 0}, {0, 0, 0}), tip_mm, true);
   const double young = 0.030, d = 0.718, ei = bending_stiffness_n_mm2(world.scene->needle, true);
   const double k = 0.65 * young / 0.75 * std::pow(young * std::pow(d, 4.0) / ei, 1.0 / 12.0);
   double sum = 0.0;
@@ -133,12 +134,12 @@ TEST(HoldShaft, HasVesicsBed) {
 
 TEST(HoldShaft, IsNoStifferThanTheDeviceInBone) {
   for (const bool has_bending : {false, true}) {
-    NeedleGeometry needle;
+    haptics::NeedleGeometry needle;
     needle.radius_mm = 2.5;
     const World world = make_world({{0, kBone}}, has_bending, needle);
     for (const double tip_mm : {3.0, 30.0, 99.0}) {
-      const HeldShaft shaft =
-          hold_shaft(world.channel, *world.scene, displaced(world, tip_mm, {1, 0, 0}, {0, 0, 0}), tip_mm, true);
+      const haptics::HeldShaft shaft = haptics::hold_shaft(
+          world.channel, *world.scene, displaced(world, tip_mm, {1, 0, 0}, {0, 0, 0}), tip_mm, true);
       double sum = 0.0;
       for (const double k : shaft.bed.stiffness_n_per_mm) {
         EXPECT_LE(k, world.scene->options.coupling.stiffness_n_per_mm + 1e-12);
@@ -148,7 +149,7 @@ TEST(HoldShaft, IsNoStifferThanTheDeviceInBone) {
       EXPECT_LE(sum, 0.5 * world.scene->device.max_stiffness_n_per_mm + 1e-12);
       const Matrix6 stiffness = grip_stiffness(world, tip_mm);
       EXPECT_LE(stiffness(0, 0), sum + 1e-9);
-      EXPECT_LE(stiffness(3, 3), kMostTurning_nmm_per_rad * (1.0 + 1e-6));
+      EXPECT_LE(stiffness(3, 3), haptics::kMostTurning_nmm_per_rad * (1.0 + 1e-6));
     }
   }
 }
@@ -205,20 +206,21 @@ TEST(HoldShaft, ComesToRestOnABareStylusWithATickOfDelay) {
       const World world = make_world(slabs, has_bending, {});
       for (const double tip_mm : {5.0, 45.0, 99.0}) {
         constexpr double kDt_s = 0.001, kAhead_s = 0.004;
-        const VirtualStylusParams stylus{0.045, 50.0, 0.0, 0.0};
-        VirtualStylusState state;
+        const haptics::VirtualStylusParams stylus{0.045, 50.0, 0.0, 0.0};
+        haptics::VirtualStylusState state;
         state.X_PS = displaced(world, tip_mm, {1, 0.5, 0}, {0.02, -0.01, 0}) * world.scene->X_SN.inverse();
-        Wrench told, acting;
+        haptics::Wrench told, acting;
         double early = 0.0, late = 0.0;
         for (int i = 0; i < 2000; ++i) {
           const Vec3 axis = state.X_PS.R().col(2);
           const Vec3 ahead = (axis + kAhead_s * state.w_P.cross(axis)).normalized();
           const Pose X_PS(rotation_between(axis, ahead) * state.X_PS.R(), state.X_PS.p() + kAhead_s * state.v_P);
           acting = told;
-          told = react(hold_shaft(world.channel, *world.scene, X_PS * world.scene->X_SN, tip_mm, true), *world.scene,
-                       Vec3::Zero())
-                     .wrench_P;
-          step_stylus(state, stylus, {}, acting, Vec3::UnitY(), kDt_s);
+          told =
+              haptics::react(haptics::hold_shaft(world.channel, *world.scene, X_PS * world.scene->X_SN, tip_mm, true),
+                             *world.scene, Vec3::Zero())
+                  .wrench_P;
+          haptics::step_stylus(state, stylus, {}, acting, Vec3::UnitY(), kDt_s);
           const double motion = state.v_P.norm() + 100.0 * state.w_P.norm();
           if (i < 500) early = std::max(early, motion);
           if (i >= 1500) late = std::max(late, motion);
@@ -258,9 +260,9 @@ TEST(HoldShaft, HasNoStepsAsTheNeedleSlides) {
 TEST(React, GivesTheTorqueOfEquationSix) {
   const World world = make_world({{0, kMuscle}});
   const Pose X_PN = displaced(world, 70.0, {2, -1, 0}, {0.03, 0.05, 0.4});
-  const HeldShaft shaft = hold_shaft(world.channel, *world.scene, X_PN, 70.0, true);
+  const haptics::HeldShaft shaft = haptics::hold_shaft(world.channel, *world.scene, X_PN, 70.0, true);
   const Vec3 tip_force(0.3, -0.2, -2.0);
-  const ShaftReaction reaction = react(shaft, *world.scene, tip_force);
+  const haptics::ShaftReaction reaction = haptics::react(shaft, *world.scene, tip_force);
   const Vec3 axis = X_PN.R().col(2);
   const Vec3 grip = X_PN * Vec3(0, 0, -150.0);
   const Vec3 tip_across = tip_force - axis * axis.dot(tip_force);
@@ -282,23 +284,23 @@ TEST(React, GivesTheTorqueOfEquationSix) {
 
 TEST(React, LetsABedThatHoldsTheTipKeepItsForceFromTheHand) {
   // A shaft that turns the grip too stiffly gives a share of all its forces: bed and tip still balance.
-  NeedleGeometry needle;
+  haptics::NeedleGeometry needle;
   needle.radius_mm = 1.0;
   const World world = make_world({{0, kFat}, {20, kBone}}, true, needle);
   const Pose X_PN = displaced(world, 99.0, {0, 0, 0}, {0, 0, 0});
-  const HeldShaft shaft = hold_shaft(world.channel, *world.scene, X_PN, 99.0, true);
+  const haptics::HeldShaft shaft = haptics::hold_shaft(world.channel, *world.scene, X_PN, 99.0, true);
   EXPECT_LT(shaft.share, 0.5);
-  const Wrench all = react({shaft.beam, shaft.bed, X_PN, 1.0}, *world.scene, {1, 0, 0}).wrench_P;
-  const Wrench told = react(shaft, *world.scene, {1, 0, 0}).wrench_P;
+  const haptics::Wrench all = haptics::react({shaft.beam, shaft.bed, X_PN, 1.0}, *world.scene, {1, 0, 0}).wrench_P;
+  const haptics::Wrench told = haptics::react(shaft, *world.scene, {1, 0, 0}).wrench_P;
   EXPECT_NEAR((told.force_n - shaft.share * all.force_n).norm(), 0.0, 1e-12);
   EXPECT_NEAR((told.torque_nmm - shaft.share * all.torque_nmm).norm(), 0.0, 1e-10);
 }
 
 TEST(React, TurnsATipForceInAirIntoTheWholeLever) {
   const World world = make_world({{0, kMuscle}});
-  const HeldShaft shaft =
-      hold_shaft(world.channel, *world.scene, displaced(world, 0.0, {0, 0, 0}, {0, 0, 0}), 0.0, true);
-  const ShaftReaction reaction = react(shaft, *world.scene, {0.1, 0.0, -1.0});
+  const haptics::HeldShaft shaft =
+      haptics::hold_shaft(world.channel, *world.scene, displaced(world, 0.0, {0, 0, 0}, {0, 0, 0}), 0.0, true);
+  const haptics::ShaftReaction reaction = haptics::react(shaft, *world.scene, {0.1, 0.0, -1.0});
   EXPECT_NEAR((reaction.wrench_P.force_n - Vec3(0.1, 0, 0)).norm(), 0.0, 1e-12);
   EXPECT_NEAR((reaction.wrench_P.torque_nmm - Vec3(0, 15.0, 0)).norm(), 0.0, 1e-10);
   ASSERT_EQ(reaction.needle.count, 18);
@@ -307,10 +309,10 @@ TEST(React, TurnsATipForceInAirIntoTheWholeLever) {
 
 TEST(React, BendsASmallTipForceAsACantilever) {
   const World world = make_world({{0, kMuscle}});
-  const HeldShaft shaft =
-      hold_shaft(world.channel, *world.scene, displaced(world, 0.0, {0, 0, 0}, {0, 0, 0}), 0.0, true);
+  const haptics::HeldShaft shaft =
+      haptics::hold_shaft(world.channel, *world.scene, displaced(world, 0.0, {0, 0, 0}, {0, 0, 0}), 0.0, true);
   const double force = 0.005;
-  const ShaftReaction reaction = react(shaft, *world.scene, {force, 0.0, 0.0});
+  const haptics::ShaftReaction reaction = haptics::react(shaft, *world.scene, {force, 0.0, 0.0});
   const double closed = force * std::pow(150.0, 3.0) / (3.0 * bending_stiffness_n_mm2(world.scene->needle, true));
   constexpr double kSpansKeepTheirLength = 1e-3;  // Relative: the square of the slope, 2 mm over 150 mm.
   EXPECT_NEAR(reaction.needle.points_P[17].x(), closed, kSpansKeepTheirLength * closed);
@@ -318,10 +320,10 @@ TEST(React, BendsASmallTipForceAsACantilever) {
 
 TEST(React, DrawsAShaftThatKeepsItsLength) {
   const World world = make_world({{0, kMuscle}});
-  const HeldShaft shaft =
-      hold_shaft(world.channel, *world.scene, displaced(world, 40.0, {3, 0, 0}, {0.1, 0, 0}), 40.0, true);
+  const haptics::HeldShaft shaft =
+      haptics::hold_shaft(world.channel, *world.scene, displaced(world, 40.0, {3, 0, 0}, {0.1, 0, 0}), 40.0, true);
   for (const double force : {0.0, 0.5, 50.0}) {
-    const BentNeedle needle = react(shaft, *world.scene, {0.0, force, 0.0}).needle;
+    const haptics::BentNeedle needle = haptics::react(shaft, *world.scene, {0.0, force, 0.0}).needle;
     double length = 0.0;
     for (std::size_t i = 1; i < 18; ++i) length += (needle.points_P[i] - needle.points_P[i - 1]).norm();
     EXPECT_NEAR(length, 150.0, 1e-9);
@@ -344,25 +346,25 @@ TEST(React, LeavesThinNeedlesToTheTissueAndStraightOnesToTheLine) {
   const World straight = make_world({{0, kMuscle}}, false);
   EXPECT_LT(wrench_at(bending, tip_mm, turned).norm(), 0.3 * wrench_at(straight, tip_mm, turned).norm());
   const Pose X_PN = displaced(bending, tip_mm, {0, 0, 0}, turned.tail<3>());
-  const auto reaction =
-      react(hold_shaft(bending.channel, *bending.scene, X_PN, tip_mm, true), *bending.scene, {0, 0, 0});
+  const auto reaction = haptics::react(haptics::hold_shaft(bending.channel, *bending.scene, X_PN, tip_mm, true),
+                                       *bending.scene, {0, 0, 0});
   EXPECT_LT(std::abs(reaction.needle.points_P[17].y()), 0.2 * std::abs(X_PN.p().y()));
 }
 
 TEST(Bevel, PushesAwayFromItsFaceWhileTheTipAdvances) {
-  NeedleGeometry needle;
+  haptics::NeedleGeometry needle;
   needle.bevel_share = 0.1;
   const Pose X_PN = needle_pose({1, 2, 3}, Vec3(0.2, 0.1, 1.0).normalized());
-  const Vec3 force = bevel_force_P(needle, X_PN, 2.0);
+  const Vec3 force = haptics::bevel_force_P(needle, X_PN, 2.0);
   EXPECT_NEAR((force + 0.2 * X_PN.R().col(1)).norm(), 0.0, 1e-12);
-  EXPECT_EQ(bevel_force_P(needle, X_PN, -2.0).norm(), 0.0);
-  EXPECT_EQ(bevel_force_P(needle, X_PN, std::numeric_limits<double>::quiet_NaN()).norm(), 0.0);
+  EXPECT_EQ(haptics::bevel_force_P(needle, X_PN, -2.0).norm(), 0.0);
+  EXPECT_EQ(haptics::bevel_force_P(needle, X_PN, std::numeric_limits<double>::quiet_NaN()).norm(), 0.0);
 }
 
 TEST(StraightNeedle, RunsFromGripToTip) {
   const World world = make_world({{0, kMuscle}});
   const Pose X_PN = needle_pose({1, 2, 3}, Vec3::UnitX());
-  const BentNeedle needle = straight_needle(X_PN, *world.scene);
+  const haptics::BentNeedle needle = haptics::straight_needle(X_PN, *world.scene);
   ASSERT_EQ(needle.count, 18);
   EXPECT_NEAR((needle.points_P[0] - Vec3(-149, 2, 3)).norm(), 0.0, 1e-12);
   EXPECT_NEAR((needle.points_P[17] - Vec3(1, 2, 3)).norm(), 0.0, 1e-12);
@@ -372,16 +374,16 @@ TEST(BodyProxies, StayFiniteWhateverComes) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   const World world = make_world({{0, kMuscle}});
-  const Channel unknown;
+  const haptics::Channel unknown;
   for (const double bad : {nan, infinity, -infinity, 0.0, 1e4, 1e12, 1e300, -1e300}) {
-    for (const Channel* channel : {&world.channel, &unknown}) {
-      const ShaftResistance resistance = shaft_resistance(*channel, *world.scene, bad);
+    for (const haptics::Channel* channel : {&world.channel, &unknown}) {
+      const haptics::ShaftResistance resistance = haptics::shaft_resistance(*channel, *world.scene, bad);
       EXPECT_TRUE(std::isfinite(resistance.dry_n) && std::isfinite(resistance.viscous_ns_per_mm)) << bad;
       for (const Pose& X_PN : {Pose::translation({bad, 0, 0}), Pose(Mat3::Constant(bad), {0, 0, 0}), Pose()}) {
         for (const double tip_mm : {bad, 50.0}) {
-          const HeldShaft shaft = hold_shaft(*channel, *world.scene, X_PN, tip_mm, false);
+          const haptics::HeldShaft shaft = haptics::hold_shaft(*channel, *world.scene, X_PN, tip_mm, false);
           for (const Vec3& force : {Vec3(bad, 0, bad), Vec3(0, 1, 0)}) {
-            const ShaftReaction reaction = react(shaft, *world.scene, force);
+            const haptics::ShaftReaction reaction = haptics::react(shaft, *world.scene, force);
             EXPECT_TRUE(reaction.wrench_P.force_n.allFinite() && reaction.wrench_P.torque_nmm.allFinite()) << bad;
             for (const Vec3& point : reaction.needle.points_P) EXPECT_TRUE(point.allFinite() || bad != bad) << bad;
           }
@@ -395,7 +397,7 @@ TEST(BodyProxies, SayThatAPoseIsFarOffTheLine) {
   const World world = make_world({{0, kMuscle}});
   for (const double x_mm : {1e4, std::nan(""), 1.0}) {
     const Pose X_PN = Pose::translation({x_mm, 0, 0});
-    EXPECT_EQ(hold_shaft(world.channel, *world.scene, X_PN, 50.0, true).beam.is_bound, x_mm != 1.0);
+    EXPECT_EQ(haptics::hold_shaft(world.channel, *world.scene, X_PN, 50.0, true).beam.is_bound, x_mm != 1.0);
   }
 }
 
@@ -403,10 +405,11 @@ TEST(BodyProxies, NeverAllocate) {
   const World world = make_world({{0, kMuscle}});
   const Pose X_PN = displaced(world, 70.0, {2, 0, 0}, {0.03, 0.0, 0.0});
   const AllocationGuard guard;
-  const ShaftResistance resistance = shaft_resistance(world.channel, *world.scene, 70.0);
-  const HeldShaft shaft = hold_shaft(world.channel, *world.scene, X_PN, 70.0, true);
-  const ShaftReaction reaction = react(shaft, *world.scene, bevel_force_P(world.scene->needle, X_PN, 1.0));
-  const BentNeedle straight = straight_needle(X_PN, *world.scene);
+  const haptics::ShaftResistance resistance = haptics::shaft_resistance(world.channel, *world.scene, 70.0);
+  const haptics::HeldShaft shaft = haptics::hold_shaft(world.channel, *world.scene, X_PN, 70.0, true);
+  const haptics::ShaftReaction reaction =
+      haptics::react(shaft, *world.scene, haptics::bevel_force_P(world.scene->needle, X_PN, 1.0));
+  const haptics::BentNeedle straight = haptics::straight_needle(X_PN, *world.scene);
   EXPECT_EQ(guard.count(), 0u);
   EXPECT_GT(resistance.dry_n + reaction.wrench_P.force_n.norm() + straight.count, 0.0);
 }

@@ -17,10 +17,10 @@ constexpr double kLength_mm = 150.0;
 constexpr double kStiffness_n_mm2 = 2600.0;  // About 22 G.
 constexpr double kRounding = 1e-10;          // Relative; the passes add positive numbers only.
 
-NeedleBeam beam_of(int nodes) {
+haptics::NeedleBeam beam_of(int nodes) {
   return {nodes, kLength_mm / nodes, kStiffness_n_mm2};
 }
-double arc_mm(const NeedleBeam& beam, int node) {
+double arc_mm(const haptics::NeedleBeam& beam, int node) {
   return beam.spacing_mm * (node + 1);
 }
 std::size_t at(int node) {
@@ -34,7 +34,7 @@ double cantilever_mm_per_n(double x, double a) {
 }
 
 /// The same bed by the cantilever's influence numbers and a dense solver: independent of the spans.
-Eigen::MatrixXd dense_deflections(const NeedleBeam& beam, const BeamBed& bed, bool has_tip_force) {
+Eigen::MatrixXd dense_deflections(const haptics::NeedleBeam& beam, const haptics::BeamBed& bed, bool has_tip_force) {
   const int n = beam.node_count;
   Eigen::MatrixXd compliance(n, n), forces(n, 3);
   Eigen::VectorXd k(n);
@@ -50,8 +50,8 @@ Eigen::MatrixXd dense_deflections(const NeedleBeam& beam, const BeamBed& bed, bo
 
 TEST(NeedleBeam, BendsUnderATipForceAsACantilever) {
   for (const int nodes : {2, 17, 33}) {
-    const NeedleBeam beam = beam_of(nodes);
-    const BeamSolution solution = solve_beam(beam, {});
+    const haptics::NeedleBeam beam = beam_of(nodes);
+    const haptics::BeamSolution solution = haptics::solve_beam(beam, {});
     for (int i = 0; i < nodes; ++i) {
       const double expected = cantilever_mm_per_n(arc_mm(beam, i), kLength_mm);
       EXPECT_NEAR(solution.per_tip_force_mm_n[at(i)], expected, kRounding * expected);
@@ -64,17 +64,17 @@ TEST(NeedleBeam, BendsUnderATipForceAsACantilever) {
 }
 
 TEST(NeedleBeam, SharesItsLoadWithOneSpring) {
-  const NeedleBeam beam = beam_of(17);
+  const haptics::NeedleBeam beam = beam_of(17);
   const Vec3 offset(1.5, -0.5, 0.25);
   for (const int node : {0, 7, 16}) {
     for (const double k : {0.001, 0.5, 1e4}) {
-      BeamBed bed;
+      haptics::BeamBed bed;
       bed.stiffness_n_per_mm[at(node)] = k;
       bed.offset_mm[at(node)] = offset;
       const double a = arc_mm(beam, node);
       const double own = 3.0 * kStiffness_n_mm2 / (a * a * a);
       const Vec3 expected = offset * (k / (k + own));  // Springs in series.
-      const BeamSolution solution = solve_beam(beam, bed);
+      const haptics::BeamSolution solution = haptics::solve_beam(beam, bed);
       EXPECT_NEAR((solution.deflection_mm[at(node)] - expected).norm(), 0.0, kRounding * expected.norm());
     }
   }
@@ -82,12 +82,12 @@ TEST(NeedleBeam, SharesItsLoadWithOneSpring) {
 
 TEST(NeedleBeam, IsProppedByAStiffSpring) {
   // Force F at the tip, a support at a: the support bears R = F (3 L - a) / (2 a), the tip's own formula less its.
-  const NeedleBeam beam = beam_of(15);
+  const haptics::NeedleBeam beam = beam_of(15);
   const int support = 9;
   const double a = arc_mm(beam, support);
-  BeamBed bed;
+  haptics::BeamBed bed;
   bed.stiffness_n_per_mm[at(support)] = 1e9;  // Gives by 1e-9 mm: the tolerance.
-  const BeamSolution solution = solve_beam(beam, bed);
+  const haptics::BeamSolution solution = haptics::solve_beam(beam, bed);
   const double reaction = (3.0 * kLength_mm - a) / (2.0 * a);
   const double tip = cantilever_mm_per_n(kLength_mm, kLength_mm) - reaction * cantilever_mm_per_n(kLength_mm, a);
   EXPECT_NEAR(solution.per_tip_force_mm_n[at(14)], tip, 1e-7 * tip);
@@ -102,10 +102,10 @@ TEST(NeedleBeam, LiesInAFoundationAsHetenyiSays) {
   const double k = 4.0 * kStiffness_n_mm2 * std::pow(b, 4.0);
   double previous = 0.0;
   for (const int nodes : {17, 25, 33}) {
-    const NeedleBeam beam = beam_of(nodes);
-    BeamBed bed;
+    const haptics::NeedleBeam beam = beam_of(nodes);
+    haptics::BeamBed bed;
     for (int i = 0; i < nodes; ++i) bed.stiffness_n_per_mm[at(i)] = k * beam.spacing_mm * (i == nodes - 1 ? 0.5 : 1.0);
-    const double error = solve_beam(beam, bed).per_tip_force_mm_n[at(nodes - 1)] * k / (2.0 * b) - 1.0;
+    const double error = haptics::solve_beam(beam, bed).per_tip_force_mm_n[at(nodes - 1)] * k / (2.0 * b) - 1.0;
     const double order = error / std::pow(b * beam.spacing_mm, 2.0);
     EXPECT_LT(std::abs(order), 1.0 / 3.0);
     if (previous != 0.0) {
@@ -118,14 +118,14 @@ TEST(NeedleBeam, LiesInAFoundationAsHetenyiSays) {
 TEST(NeedleBeam, AgreesWithADenseSolverInRandomBeds) {
   Random random(7);
   for (int trial = 0; trial < 200; ++trial) {
-    const NeedleBeam beam = beam_of(2 + trial % 32);
-    BeamBed bed;
+    const haptics::NeedleBeam beam = beam_of(2 + trial % 32);
+    haptics::BeamBed bed;
     for (int i = 0; i < beam.node_count; ++i) {
       if (random.uniform(0, 1) < 0.3) continue;
       bed.stiffness_n_per_mm[at(i)] = std::pow(10.0, random.uniform(-4, 0.5));
       bed.offset_mm[at(i)] = 3.0 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     }
-    const BeamSolution solution = solve_beam(beam, bed);
+    const haptics::BeamSolution solution = haptics::solve_beam(beam, bed);
     if (solution.is_bound) continue;
     const Eigen::MatrixXd free = dense_deflections(beam, bed, false);
     const Eigen::MatrixXd tip = dense_deflections(beam, bed, true);
@@ -139,14 +139,14 @@ TEST(NeedleBeam, AgreesWithADenseSolverInRandomBeds) {
 
 TEST(NeedleBeam, FollowsAShiftedAndTurnedBedOnlyAsFarAsItMust) {
   // Betti: the work of one load on the other's deflection is the same both ways.
-  const NeedleBeam beam = beam_of(17);
-  BeamBed bed;
+  const haptics::NeedleBeam beam = beam_of(17);
+  haptics::BeamBed bed;
   for (int i = 5; i < 17; ++i) bed.stiffness_n_per_mm[at(i)] = 0.02 * i;
   for (int p = 5; p < 17; ++p) {
-    BeamBed shifted = bed;
+    haptics::BeamBed shifted = bed;
     shifted.offset_mm[at(p)] = Vec3::UnitX();
-    const double tip_by_p = solve_beam(beam, shifted).deflection_mm[16].x() / bed.stiffness_n_per_mm[at(p)];
-    const double p_by_tip = solve_beam(beam, bed).per_tip_force_mm_n[at(p)];
+    const double tip_by_p = haptics::solve_beam(beam, shifted).deflection_mm[16].x() / bed.stiffness_n_per_mm[at(p)];
+    const double p_by_tip = haptics::solve_beam(beam, bed).per_tip_force_mm_n[at(p)];
     EXPECT_NEAR(tip_by_p, p_by_tip, 1e-10);
   }
 }
@@ -155,8 +155,8 @@ TEST(NeedleBeam, TellsTheStiffnessThatTheGripMeets) {
   // Against the supports of a shifted and of a turned grip; a rigid shaft adds up its springs.
   Random random(11);
   for (int trial = 0; trial < 50; ++trial) {
-    const NeedleBeam beam = beam_of(2 + trial % 32);
-    BeamBed shifted, turned;
+    const haptics::NeedleBeam beam = beam_of(2 + trial % 32);
+    haptics::BeamBed shifted, turned;
     double sum = 0.0, sum_turning = 0.0;
     for (int i = 0; i < beam.node_count; ++i) {
       const double k = std::pow(10.0, random.uniform(-4, 0));
@@ -167,44 +167,45 @@ TEST(NeedleBeam, TellsTheStiffnessThatTheGripMeets) {
       sum_turning += k * arc_mm(beam, i) * arc_mm(beam, i);
     }
     double across = 0.0, turning = 0.0;
-    const BeamSolution shift = solve_beam(beam, shifted);
-    const BeamSolution turn = solve_beam(beam, turned);
+    const haptics::BeamSolution shift = haptics::solve_beam(beam, shifted);
+    const haptics::BeamSolution turn = haptics::solve_beam(beam, turned);
     for (int i = 0; i < beam.node_count; ++i) {
       const double k = shifted.stiffness_n_per_mm[at(i)];
       across += k * (1.0 - shift.deflection_mm[at(i)].x());
       turning += k * arc_mm(beam, i) * (arc_mm(beam, i) - kLength_mm * turn.deflection_mm[at(i)].x());
     }
-    const GripStiffness grip = grip_stiffness(beam, shifted);
+    const haptics::GripStiffness grip = haptics::grip_stiffness(beam, shifted);
     constexpr double kCancelling = 1e-7;  // Relative: supports are small differences of offset and deflection.
     EXPECT_NEAR(grip.across_n_per_mm, across, kCancelling * sum);
     EXPECT_NEAR(grip.turning_nmm_per_rad, turning, kCancelling * sum_turning);
-    NeedleBeam rigid = beam;
+    haptics::NeedleBeam rigid = beam;
     rigid.bending_stiffness_n_mm2 = std::numeric_limits<double>::infinity();
-    EXPECT_NEAR(grip_stiffness(rigid, shifted).across_n_per_mm, sum, kRounding * sum);
-    EXPECT_NEAR(grip_stiffness(rigid, shifted).turning_nmm_per_rad, sum_turning, kRounding * sum_turning);
+    EXPECT_NEAR(haptics::grip_stiffness(rigid, shifted).across_n_per_mm, sum, kRounding * sum);
+    EXPECT_NEAR(haptics::grip_stiffness(rigid, shifted).turning_nmm_per_rad, sum_turning, kRounding * sum_turning);
   }
 }
 
 TEST(NeedleBeam, IsStiffByTubeAndStylet) {
-  NeedleGeometry needle;
+  haptics::NeedleGeometry needle;
   needle.radius_mm = 0.359;  // 22 G
   needle.young_gpa = 200.0;
-  const double solid = bending_stiffness_n_mm2(needle, true);
+  const double solid = haptics::bending_stiffness_n_mm2(needle, true);
   EXPECT_NEAR(solid, 200e3 * std::numbers::pi * std::pow(0.718, 4.0) / 64.0, 1e-9 * solid);
   needle.inner_radius_mm = needle.stylet_radius_mm = 0.2;
-  EXPECT_NEAR(bending_stiffness_n_mm2(needle, true), solid, 1e-9 * solid);
-  EXPECT_NEAR(bending_stiffness_n_mm2(needle, false), solid * (1.0 - std::pow(0.2 / 0.359, 4.0)), 1e-9 * solid);
+  EXPECT_NEAR(haptics::bending_stiffness_n_mm2(needle, true), solid, 1e-9 * solid);
+  EXPECT_NEAR(haptics::bending_stiffness_n_mm2(needle, false), solid * (1.0 - std::pow(0.2 / 0.359, 4.0)),
+              1e-9 * solid);
 }
 
 TEST(NeedleBeam, LimitsItsDeflectionAndSaysSo) {
-  const NeedleBeam beam = beam_of(17);
-  BeamBed bed;
+  const haptics::NeedleBeam beam = beam_of(17);
+  haptics::BeamBed bed;
   bed.stiffness_n_per_mm[16] = 1.0;
   for (const double huge : {400.0, 1e12, 1e200}) {
     bed.offset_mm[16] = huge * Vec3::UnitY();
-    const BeamSolution solution = solve_beam(beam, bed);
+    const haptics::BeamSolution solution = haptics::solve_beam(beam, bed);
     EXPECT_TRUE(solution.is_bound);
-    EXPECT_NEAR(solution.deflection_mm[16].norm(), kMaxDeflection * kLength_mm, 1e-6);
+    EXPECT_NEAR(solution.deflection_mm[16].norm(), haptics::kMaxDeflection * kLength_mm, 1e-6);
   }
 }
 
@@ -212,15 +213,16 @@ TEST(NeedleBeam, StaysFiniteOnNumbersThatAreNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, infinity, -infinity, -1.0, 0.0, 1e300}) {
-    BeamBed stiff, off;
+    haptics::BeamBed stiff, off;
     stiff.stiffness_n_per_mm.fill(bad);
     stiff.offset_mm.fill(Vec3::UnitX());
     off.stiffness_n_per_mm.fill(0.1);
     off.offset_mm.fill(Vec3(bad, 0.0, 0.0));
-    for (const BeamBed& bed : {stiff, off}) {
+    for (const haptics::BeamBed& bed : {stiff, off}) {
       for (const int nodes : {-5, 0, 1, 17, 1000}) {
-        const BeamSolution solution = solve_beam({nodes, 8.8, kStiffness_n_mm2}, bed);
-        EXPECT_TRUE(std::isfinite(grip_stiffness({nodes, 8.8, kStiffness_n_mm2}, bed).turning_nmm_per_rad)) << bad;
+        const haptics::BeamSolution solution = haptics::solve_beam({nodes, 8.8, kStiffness_n_mm2}, bed);
+        EXPECT_TRUE(std::isfinite(haptics::grip_stiffness({nodes, 8.8, kStiffness_n_mm2}, bed).turning_nmm_per_rad))
+            << bad;
         for (int i = 0; i < solution.node_count; ++i) {
           EXPECT_TRUE(solution.deflection_mm[at(i)].allFinite()) << bad << " " << nodes;
           EXPECT_TRUE(std::isfinite(solution.per_tip_force_mm_n[at(i)])) << bad << " " << nodes;
@@ -231,12 +233,12 @@ TEST(NeedleBeam, StaysFiniteOnNumbersThatAreNone) {
 }
 
 TEST(NeedleBeam, NeverAllocates) {
-  BeamBed bed;
+  haptics::BeamBed bed;
   bed.stiffness_n_per_mm.fill(0.1);
   bed.offset_mm.fill(Vec3::UnitX());
   const AllocationGuard guard;
-  const BeamSolution solution = solve_beam(beam_of(33), bed);
-  const GripStiffness grip = grip_stiffness(beam_of(33), bed);
+  const haptics::BeamSolution solution = haptics::solve_beam(beam_of(33), bed);
+  const haptics::GripStiffness grip = haptics::grip_stiffness(beam_of(33), bed);
   EXPECT_EQ(guard.count(), 0u);
   EXPECT_GT(solution.deflection_mm[32].x() * grip.across_n_per_mm, 0.0);
 }

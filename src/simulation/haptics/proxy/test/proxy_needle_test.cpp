@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::uint8_t kSkinLayer = 0, kMuscleLayer = 1, kCapsuleLayer = 2;
 
-double axial(const TickSample& s) {
+double axial(const telemetry::TickSample& s) {
   return -s.f_tip_proxy_n.dot(s.axis);
 }
-double peak_between(const std::vector<TickSample>& samples, double from_mm, double to_mm) {
+double peak_between(const std::vector<telemetry::TickSample>& samples, double from_mm, double to_mm) {
   double peak = 0.0;
-  for (const TickSample& s : samples) {
+  for (const telemetry::TickSample& s : samples) {
     if (s.depth_mm >= from_mm && s.depth_mm < to_mm) peak = std::max(peak, axial(s));
   }
   return peak;
@@ -32,35 +32,35 @@ INSTANTIATE_TEST_SUITE_P(SpeedAndRate, ProxySpeeds,
 
 TEST_P(ProxySpeeds, WallsGiveWayAtTheirPunctureForceAndInOrder) {
   const auto [speed, rate] = GetParam();
-  Driver driver(make_scene(liver_way(), ForceModel::kProxy), rate);
+  Driver driver(make_scene(liver_way(), haptics::ForceModel::kProxy), rate);
   const auto samples = driver.move(60.0, speed);
   EXPECT_EQ(punctures(samples), (std::vector<int>{kSkinLayer, kCapsuleLayer}));
-  for (const TickSample& s : samples) {
-    for (const TickEvent& event : s.events) {
-      if (event.kind != EventKind::kPuncture) continue;
+  for (const telemetry::TickSample& s : samples) {
+    for (const telemetry::TickEvent& event : s.events) {
+      if (event.kind != telemetry::EventKind::kPuncture) continue;
       EXPECT_NEAR(axial(s), event.id == kSkinLayer ? 2.8 : 1.5, 1e-9);
     }
   }
 }
 
 TEST(ProxyNeedle, TissueIsEnteredAfterItsWallGaveWay) {
-  using enum EventKind;
-  Driver driver(make_scene(liver_way(), ForceModel::kProxy));
+  using enum telemetry::EventKind;
+  Driver driver(make_scene(liver_way(), haptics::ForceModel::kProxy));
   EXPECT_EQ(
       ways_in(driver.move(60.0, 10.0)),
-      (std::vector<std::pair<EventKind, int>>{
+      (std::vector<std::pair<telemetry::EventKind, int>>{
           {kPuncture, kSkinLayer}, {kEnter, kFat}, {kEnter, kMuscle}, {kPuncture, kCapsuleLayer}, {kEnter, kLiver}}));
 }
 
 TEST(ProxyNeedle, DropsToTheResistanceInsideAfterAWall) {
-  Driver driver(make_scene(liver_way(), ForceModel::kProxy));
+  Driver driver(make_scene(liver_way(), haptics::ForceModel::kProxy));
   const auto samples = driver.move(60.0, 5.0);
   EXPECT_NEAR(axial(samples.back()), 0.6 + 0.005 * 5.0, 0.01);  // cutting force of the liver + c v of its HU
 }
 
 TEST(ProxyNeedle, FeelsMuscleFromTheGradientWhetherLabelledOrNot) {
-  Driver labelled(make_scene({{0, kFat}, {20, kMuscle}}, ForceModel::kProxy));
-  Driver unlabelled(make_unlabelled_scene({{0, kFat}, {20, kMuscle}}, ForceModel::kProxy));
+  Driver labelled(make_scene({{0, kFat}, {20, kMuscle}}, haptics::ForceModel::kProxy));
+  Driver unlabelled(make_unlabelled_scene({{0, kFat}, {20, kMuscle}}, haptics::ForceModel::kProxy));
   const double with_labels = peak_between(labelled.move(50.0, 5.0), 15.0, 30.0);
   const double without = peak_between(unlabelled.move(50.0, 5.0), 15.0, 30.0);
   EXPECT_GT(with_labels, 1.0);
@@ -69,12 +69,12 @@ TEST(ProxyNeedle, FeelsMuscleFromTheGradientWhetherLabelledOrNot) {
 }
 
 TEST(ProxyNeedle, ComesOutOfMuscleWithoutAThreshold) {
-  Driver driver(make_unlabelled_scene({{0, kMuscle}, {20, kFat}}, ForceModel::kProxy));
+  Driver driver(make_unlabelled_scene({{0, kMuscle}, {20, kFat}}, haptics::ForceModel::kProxy));
   EXPECT_LT(peak_between(driver.move(50.0, 5.0), 10.0, 40.0), 0.35);  // R0 + c v of muscle, and no T_N
 }
 
 TEST(ProxyNeedle, SecondTimeInTheSameHoleNeedsNoPuncture) {
-  Driver driver(make_scene(liver_way(), ForceModel::kProxy));
+  Driver driver(make_scene(liver_way(), haptics::ForceModel::kProxy));
   driver.move(50.0, 10.0);
   EXPECT_TRUE(punctures(driver.move(20.0, 10.0)).empty());
   EXPECT_TRUE(punctures(driver.move(49.0, 10.0)).empty());  // the capsule again, in its hole
@@ -84,9 +84,9 @@ TEST(ProxyNeedle, SecondTimeInTheSameHoleNeedsNoPuncture) {
 }
 
 TEST(ProxyNeedle, ItsOwnHoleHasNoBordersAndNothingToCut) {
-  Driver driver(make_unlabelled_scene({{0, kMuscle}, {15, kFat}, {30, kMuscle}}, ForceModel::kProxy));
+  Driver driver(make_unlabelled_scene({{0, kMuscle}, {15, kFat}, {30, kMuscle}}, haptics::ForceModel::kProxy));
   driver.move(45.0, 5.0);
-  for (const TickSample& s : driver.move(5.0, 5.0)) {  // out of fat into muscle, on the way back
+  for (const telemetry::TickSample& s : driver.move(5.0, 5.0)) {  // out of fat into muscle, on the way back
     if (s.depth_mm < 43.0) {
       ASSERT_LT(std::abs(axial(s)), 0.03) << s.depth_mm;  // c v
     }
@@ -95,8 +95,8 @@ TEST(ProxyNeedle, ItsOwnHoleHasNoBordersAndNothingToCut) {
 }
 
 TEST(ProxyNeedle, BoneStopsTheNeedleWithOrWithoutItsLabel) {
-  for (const auto& scene : {make_scene({{0, kFat}, {15, kBone}}, ForceModel::kProxy),
-                            make_unlabelled_scene({{0, kFat}, {15, kBone}}, ForceModel::kProxy)}) {
+  for (const auto& scene : {make_scene({{0, kFat}, {15, kBone}}, haptics::ForceModel::kProxy),
+                            make_unlabelled_scene({{0, kFat}, {15, kBone}}, haptics::ForceModel::kProxy)}) {
     Driver driver(scene);
     const auto samples = driver.move(35.0, 10.0);
     const double proxy_depth = driver.state().needle.proxy.proxy_P.z();
@@ -107,13 +107,13 @@ TEST(ProxyNeedle, BoneStopsTheNeedleWithOrWithoutItsLabel) {
 
 TEST(ProxyNeedle, StiffnessThatIsReadAnewIsNotFeltAsABlow) {
   // Soft fat that needs force, then the stiffer wall of the liver: the force must rise from where it was.
-  TissueTable tissues = paper_tissues();
+  anatomy::TissueTable tissues = paper_tissues();
   tissues.tissues[2].cutting_n = 1.0;
   tissues.transfer.laws[1].stiffness_n_per_mm = 0.3;
-  Driver driver(make_scene({{0, kFat}, {30, kLiver}}, ForceModel::kProxy, tissues));
+  Driver driver(make_scene({{0, kFat}, {30, kLiver}}, haptics::ForceModel::kProxy, tissues));
   double before = 0.0;
-  for (const TickSample& s : driver.move(45.0, 10.0)) {
-    if (s.depth_mm > 10.0 && s.events[0].kind != EventKind::kPuncture) {
+  for (const telemetry::TickSample& s : driver.move(45.0, 10.0)) {
+    if (s.depth_mm > 10.0 && s.events[0].kind != telemetry::EventKind::kPuncture) {
       ASSERT_LT(axial(s) - before, 0.03) << s.depth_mm;  // 10 mm/s on 1 N/mm is 0.01 N a tick
     }
     before = axial(s);
@@ -121,17 +121,17 @@ TEST(ProxyNeedle, StiffnessThatIsReadAnewIsNotFeltAsABlow) {
 }
 
 TEST(ProxyNeedle, AWallSofterThanTheTissueBeforeItMustBePiercedToo) {
-  TissueTable tissues = paper_tissues();
+  anatomy::TissueTable tissues = paper_tissues();
   tissues.layers[2].delta_x_mm = 5.0;  // gives way some millimetres in, like the dura
   tissues.transfer.laws[1].stiffness_n_per_mm = 5.0;
-  Driver driver(make_scene({{0, kFat}, {30, kLiver}}, ForceModel::kProxy, tissues));
+  Driver driver(make_scene({{0, kFat}, {30, kLiver}}, haptics::ForceModel::kProxy, tissues));
   EXPECT_EQ(punctures(driver.move(45.0, 10.0)), (std::vector<int>{kSkinLayer, kCapsuleLayer}));
 }
 
 TEST(ProxyNeedle, SteadyForceIsTheSameAtAnyRate) {
   std::vector<double> forces;
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
-    Driver driver(make_unlabelled_scene({{0, kFat}}, ForceModel::kProxy), rate);
+    Driver driver(make_unlabelled_scene({{0, kFat}}, haptics::ForceModel::kProxy), rate);
     forces.push_back(driver.move(60.0, 10.0).back().f_total_n.z());
   }
   EXPECT_NEAR(forces[0], forces[1], 2e-3);  // the shaft is a hundredth of a millimetre further in or out
@@ -139,9 +139,9 @@ TEST(ProxyNeedle, SteadyForceIsTheSameAtAnyRate) {
 }
 
 TEST(ProxyNeedle, SlidesOnClosedSkinWithFrictionAndDoesNotPassThrough) {
-  Driver driver(make_scene(liver_way(), ForceModel::kProxy));
+  Driver driver(make_scene(liver_way(), haptics::ForceModel::kProxy));
   driver.move(1.5, 5.0);  // presses with less than the puncture force
-  TickSample sample;
+  telemetry::TickSample sample;
   for (int i = 1; i <= 200; ++i) sample = driver.to({0.05 * i, 0.0, 1.5});
   const Vec3 proxy = driver.state().needle.proxy.proxy_P;
   EXPECT_NEAR(proxy.z(), 0.0, 1e-6);
@@ -152,10 +152,11 @@ TEST(ProxyNeedle, SlidesOnClosedSkinWithFrictionAndDoesNotPassThrough) {
 }
 
 TEST(ProxyNeedle, ComposesTheTotalFromItsParts) {
-  for (const ForceModel model : {ForceModel::kProxy, ForceModel::kCombined}) {
+  for (const haptics::ForceModel model : {haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
     Driver driver(make_scene(liver_way(), model));
     for (int i = 0; i < 6000; ++i) {
-      const TickSample s = driver.to({0.3 * std::sin(0.01 * i), 0.0, -10.0 + 0.01 * i}, Vec3(0.05, 0, 1).normalized());
+      const telemetry::TickSample s =
+          driver.to({0.3 * std::sin(0.01 * i), 0.0, -10.0 + 0.01 * i}, Vec3(0.05, 0, 1).normalized());
       const double along = s.f_prepuncture_n + s.f_friction_n + s.f_cutting_n + s.f_body_axial_n;
       const Vec3 expected = s.axis * along + s.f_constraint_n + s.f_tip_proxy_n + s.f_weight_n;
       ASSERT_LT((s.f_total_n - expected).norm(), 1e-12);
@@ -164,10 +165,10 @@ TEST(ProxyNeedle, ComposesTheTotalFromItsParts) {
 }
 
 TEST(Combined, TakesLoadingAndCuttingFromPaperAAndFrictionFromTheProxies) {
-  Driver driver(make_scene(liver_way(), ForceModel::kCombined));
+  Driver driver(make_scene(liver_way(), haptics::ForceModel::kCombined));
   const auto samples = driver.move(60.0, 5.0);
   EXPECT_EQ(punctures(samples), (std::vector<int>{kSkinLayer, kMuscleLayer, kCapsuleLayer}));
-  const TickSample& last = samples.back();
+  const telemetry::TickSample& last = samples.back();
   EXPECT_NEAR(last.f_cutting_n, -0.6, 1e-9);
   EXPECT_EQ(last.f_friction_n, 0.0);
   EXPECT_EQ(last.f_tip_proxy_n.norm(), 0.0);  // the liver is labelled: the tip is A's
@@ -175,7 +176,7 @@ TEST(Combined, TakesLoadingAndCuttingFromPaperAAndFrictionFromTheProxies) {
 }
 
 TEST(Combined, FeelsUnlabelledTissueThroughTheTipProxy) {
-  Driver driver(make_unlabelled_scene({{0, kFat}, {20, kMuscle}}, ForceModel::kCombined));
+  Driver driver(make_unlabelled_scene({{0, kFat}, {20, kMuscle}}, haptics::ForceModel::kCombined));
   const auto samples = driver.move(50.0, 5.0);
   EXPECT_EQ(punctures(samples), (std::vector<int>{kSkinLayer}));
   EXPECT_GT(peak_between(samples, 15.0, 30.0), 1.0);  // the border from the gradient
@@ -183,14 +184,15 @@ TEST(Combined, FeelsUnlabelledTissueThroughTheTipProxy) {
 }
 
 TEST(SafeStart, InsideTheBodyGivesNoForceAndIsTakenAsInserted) {
-  for (const ForceModel model : {ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined}) {
+  for (const haptics::ForceModel model :
+       {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
     Driver driver(make_scene(liver_way(), model));
-    const TickSample first = driver.to({0, 0, 40.0});
+    const telemetry::TickSample first = driver.to({0, 0, 40.0});
     EXPECT_LT((first.device_f_n - first.f_weight_n).norm(), 1e-6) << to_string(model);
-    EXPECT_EQ(first.events[0].kind, EventKind::kLimit);
-    EXPECT_EQ(first.events[0].id, static_cast<std::uint8_t>(LimitReason::kResumedInside));
+    EXPECT_EQ(first.events[0].kind, telemetry::EventKind::kLimit);
+    EXPECT_EQ(first.events[0].id, static_cast<std::uint8_t>(telemetry::LimitReason::kResumedInside));
     EXPECT_NEAR(first.depth_mm, 40.0, 1e-6);
-    EXPECT_EQ(first.phase, InsertionPhase::kInserted);
+    EXPECT_EQ(first.phase, telemetry::InsertionPhase::kInserted);
     EXPECT_TRUE(punctures(driver.hold(0.1)).empty());
     driver.jump_to(41.0);
     EXPECT_LT(driver.hold(0.3).back().device_f_n.norm(), 3.0);
@@ -198,21 +200,23 @@ TEST(SafeStart, InsideTheBodyGivesNoForceAndIsTakenAsInserted) {
 }
 
 TEST(SafeStart, AJumpStartsAfreshWithoutAForceStep) {
-  for (const ForceModel model : {ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined}) {
+  for (const haptics::ForceModel model :
+       {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
     Driver driver(make_scene(liver_way(), model));
     driver.move(15.0, 10.0);
-    const TickSample there = driver.to({10.0, 0, 60.0});
+    const telemetry::TickSample there = driver.to({10.0, 0, 60.0});
     EXPECT_LT((there.device_f_n - there.f_weight_n).norm(), 1e-6) << to_string(model);
-    EXPECT_EQ(there.events[0].id, static_cast<std::uint8_t>(LimitReason::kJumped));
-    const TickSample back = driver.to({10.0, 0, -30.0});
+    EXPECT_EQ(there.events[0].id, static_cast<std::uint8_t>(telemetry::LimitReason::kJumped));
+    const telemetry::TickSample back = driver.to({10.0, 0, -30.0});
     EXPECT_LT((back.device_f_n - back.f_weight_n).norm(), 1e-6);
-    EXPECT_EQ(back.phase, InsertionPhase::kOutside);
+    EXPECT_EQ(back.phase, telemetry::InsertionPhase::kOutside);
   }
 }
 
-class Models : public ::testing::TestWithParam<ForceModel> {};
+class Models : public ::testing::TestWithParam<haptics::ForceModel> {};
 INSTANTIATE_TEST_SUITE_P(All, Models,
-                         ::testing::Values(ForceModel::kInsertion, ForceModel::kProxy, ForceModel::kCombined),
+                         ::testing::Values(haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
+                                           haptics::ForceModel::kCombined),
                          [](const auto& the) { return std::string(to_string(the.param)); });
 
 TEST_P(Models, StayFiniteAndNeverAllocateWhateverComesIn) {
@@ -220,12 +224,12 @@ TEST_P(Models, StayFiniteAndNeverAllocateWhateverComesIn) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Random random(7);
-  HapticState state;
+  haptics::HapticState state;
   int flagged = 0;
   std::size_t allocations = 0;
   Vec3 tip(0, 0, -5);
   for (int i = 0; i < 20000; ++i) {
-    HapticInput input;
+    haptics::HapticInput input;
     tip += Vec3(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), random.uniform(-0.4, 0.5));
     if (tip.z() > 90.0) tip = {0, 0, -5};
     Vec3 here = tip;
@@ -251,7 +255,7 @@ TEST_P(Models, StayFiniteAndNeverAllocateWhateverComesIn) {
     const Vec3 axis = Vec3(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), 1.0).normalized();
     input.X_DS = needle_pose(here, axis) * scene->X_SN.inverse();
     const AllocationGuard guard;
-    const HapticOutput output = tick(state, input, *scene);
+    const haptics::HapticOutput output = haptics::tick(state, input, *scene);
     allocations += guard.count();
     ASSERT_TRUE(output.f_D.allFinite() && output.tau_D.allFinite());
     ASSERT_TRUE(output.sample.tip_mm.allFinite() && output.sample.f_total_n.allFinite());
@@ -263,21 +267,21 @@ TEST_P(Models, StayFiniteAndNeverAllocateWhateverComesIn) {
 }
 
 TEST(ProxyScene, RefusesWhatItCannotUse) {
-  HapticOptions options;
-  options.force_model = ForceModel::kProxy;
+  haptics::HapticOptions options;
+  options.force_model = haptics::ForceModel::kProxy;
   auto no_ct = layered_patient(liver_way());
   no_ct->ct = {};
-  const auto without_ct = make_haptic_scene(no_ct, paper_tissues(), {}, {}, options);
+  const auto without_ct = haptics::make_haptic_scene(no_ct, paper_tissues(), {}, {}, options);
   ASSERT_FALSE(without_ct);
   EXPECT_NE(without_ct.error().text().find("CT"), std::string::npos);
-  TissueTable no_transfer = paper_tissues();
+  anatomy::TissueTable no_transfer = paper_tissues();
   no_transfer.transfer = {};
-  EXPECT_FALSE(make_haptic_scene(layered_patient(liver_way()), no_transfer, {}, {}, options));
+  EXPECT_FALSE(haptics::make_haptic_scene(layered_patient(liver_way()), no_transfer, {}, {}, options));
   auto no_labels = layered_patient(liver_way());
   no_labels->labels = {};
-  EXPECT_TRUE(make_haptic_scene(no_labels, paper_tissues(), {}, {}, options));
-  options.force_model = ForceModel::kInsertion;
-  EXPECT_FALSE(make_haptic_scene(no_labels, paper_tissues(), {}, {}, options));
+  EXPECT_TRUE(haptics::make_haptic_scene(no_labels, paper_tissues(), {}, {}, options));
+  options.force_model = haptics::ForceModel::kInsertion;
+  EXPECT_FALSE(haptics::make_haptic_scene(no_labels, paper_tissues(), {}, {}, options));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "volume/grid.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// A place on the middle line of a tube.
 struct CentrelineNode {
@@ -32,6 +32,6 @@ struct CentrelineTree {
 /// `least_mm3`. Paths are those of least cost from the root, a mm costing 1/depth³, so that they keep to the middle;
 /// the farthest place that no path passes begins the next one (after Sato et al., TEASAR, Pacific Graphics 2000, doi
 /// 10.1109/PCCGA.2000.883951). Smoothed by lines of least squares. About isotropic voxels.
-std::vector<CentrelineTree> find_centrelines(const FloatGrid& depth_mm, double least_mm3 = 100.0);
+std::vector<CentrelineTree> find_centrelines(const volume::FloatGrid& depth_mm, double least_mm3 = 100.0);
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

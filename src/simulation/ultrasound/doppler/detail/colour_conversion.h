@@ -6,7 +6,7 @@
 
 #include "ultrasound/doppler/colour_doppler.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 bool is_same_scan(const ScanGeometry& a, const ScanGeometry& b) noexcept;
 
@@ -17,8 +17,8 @@ class ColourConversion {
   ColourConversion() : image_() {}
   /// The tables no longer fit.
   void forget() noexcept { is_made_ = false; }
-  const RgbImage& convert(const GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
-                          const DopplerFrame& frame, const DopplerSettings& settings) noexcept;
+  const volume::RgbImage& convert(const GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
+                                  const DopplerFrame& frame, const DopplerSettings& settings) noexcept;
 
  private:
   /// A pixel within the box: its cell (lower line and gate), and how far it is to the next ones, of 255.
@@ -35,10 +35,10 @@ class ColourConversion {
 
   bool is_made_ = false;
   RasterGeometry raster_;
-  RgbImage image_;
+  volume::RgbImage image_;
   std::vector<Place> places_;
   std::vector<std::int32_t> outline_;
-  std::array<Rgb, kColours> colours_{};  ///< From -1 to 1 in parts of the scale.
+  std::array<volume::Rgb, kColours> colours_{};  ///< From -1 to 1 in parts of the scale.
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr double kTouches_mm = 6.0;  ///< A tip so near to a structure ends there. Assumed, range 3..10.
@@ -16,19 +16,19 @@ struct Reach {
 };
 
 /// Distances of the tips from the nearest voxel of what `near` names.
-Reach find_reach(const VirtualPatient& patient, std::uint8_t label, const FlowRule& rule,
+Reach find_reach(const anatomy::VirtualPatient& patient, std::uint8_t label, const FlowRule& rule,
                  const std::vector<CentrelineTree>& trees) {
   Reach reach;
   for (const CentrelineTree& tree : trees)
     reach.distance_mm.emplace_back(tree.tips.size(), std::numeric_limits<double>::infinity());
   std::array<bool, 256> is_near{};
-  for (const Label& other : patient.label_table.labels)
+  for (const anatomy::Label& other : patient.label_table.labels)
     is_near[other.id] = other.id != label && is_named(other.name, rule.near);
-  const GridGeometry& geometry = patient.labels.geometry;
+  const volume::GridGeometry& geometry = patient.labels.geometry;
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
     if (!is_near[patient.labels.voxels[n]]) continue;
     reach.has_any = true;
-    const Index3 at = geometry.index_of(n);
+    const volume::Index3 at = geometry.index_of(n);
     const Vec3 p_P =
         geometry.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
     for (std::size_t t = 0; t < trees.size(); ++t)
@@ -97,8 +97,8 @@ std::vector<bool> tips_near(const CentrelineTree& tree, const std::vector<double
 
 }  // namespace
 
-std::vector<std::vector<bool>> find_sources(const VirtualPatient& patient, std::uint8_t label, const FlowRule& rule,
-                                            const std::vector<CentrelineTree>& trees) {
+std::vector<std::vector<bool>> find_sources(const anatomy::VirtualPatient& patient, std::uint8_t label,
+                                            const FlowRule& rule, const std::vector<CentrelineTree>& trees) {
   const Reach reach = find_reach(patient, label, rule, trees);
   const bool named_are_sources = rule.ends == FlowRule::End::kSources;
   std::vector<std::vector<bool>> sources;
@@ -128,4 +128,4 @@ std::vector<bool> flows_from_root(const CentrelineTree& tree, const std::vector<
   return from_root;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -10,7 +10,7 @@
 #include "volume/resample.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kJoins_mm =
@@ -24,8 +24,8 @@ struct Owner {
   std::size_t point;
 };
 
-Vec3 voxel_place(const GridGeometry& geometry, std::size_t n) {
-  const Index3 at = geometry.index_of(n);
+Vec3 voxel_place(const volume::GridGeometry& geometry, std::size_t n) {
+  const volume::Index3 at = geometry.index_of(n);
   return geometry.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
 }
 
@@ -79,11 +79,12 @@ Vec3 velocity_at(const Owner& owner, const Vec3& p_P, double depth_mm) {
 
 }  // namespace
 
-VesselFlowMaker::VesselFlowMaker(const VirtualPatient& patient, FlowTable table, const VesselFlowOptions& options)
+VesselFlowMaker::VesselFlowMaker(const anatomy::VirtualPatient& patient, FlowTable table,
+                                 const VesselFlowOptions& options)
     : patient_(patient), options_(options), flow_(std::make_shared<VesselFlow>()) {
   VesselFlow& flow = *flow_;
   flow.table_ = std::move(table);
-  flow.geometry_ = isotropic_geometry(patient.labels.geometry, options.spacing_mm);
+  flow.geometry_ = volume::isotropic_geometry(patient.labels.geometry, options.spacing_mm);
   const Vec3 zero = flow.geometry_.to_index(Vec3::Zero());
   for (std::size_t a = 0; a < 3; ++a) {
     const auto row = static_cast<Eigen::Index>(a);
@@ -99,21 +100,21 @@ VesselFlowMaker::VesselFlowMaker(const VirtualPatient& patient, FlowTable table,
 }
 
 /// Vessels whose blood comes from or goes to this one.
-std::array<bool, 256> VesselFlowMaker::find_joining(const Label& label) const {
+std::array<bool, 256> VesselFlowMaker::find_joining(const anatomy::Label& label) const {
   std::array<bool, 256> joins{};
-  for (const Label& other : patient_.label_table.labels) {
+  for (const anatomy::Label& other : patient_.label_table.labels) {
     const FlowRule* rule = flow_->table_.find(other.name, patient_.label_table);
     joins[other.id] = other.id != label.id && rule != nullptr && is_named(label.name, rule->near);
   }
   return joins;
 }
 
-VesselFlowMaker::Box VesselFlowMaker::box_of(const Label& label) const {
-  const GridGeometry& source = patient_.labels.geometry;
+VesselFlowMaker::Box VesselFlowMaker::box_of(const anatomy::Label& label) const {
+  const volume::GridGeometry& source = patient_.labels.geometry;
   Box box{source.size, {-1, -1, -1}};
   for (std::size_t n = 0; n < patient_.labels.voxels.size(); ++n) {
     if (patient_.labels.voxels[n] != label.id) continue;
-    const Index3 at = source.index_of(n);
+    const volume::Index3 at = source.index_of(n);
     for (std::size_t a = 0; a < 3; ++a) {
       box.low[a] = std::min(box.low[a], at[a]);
       box.high[a] = std::max(box.high[a], at[a]);
@@ -130,9 +131,9 @@ VesselFlowMaker::Box VesselFlowMaker::box_of(const Label& label) const {
 }
 
 /// The piece of the flow's grid that covers a box of the labels.
-GridGeometry VesselFlowMaker::flow_grid_over(const Box& box) const {
-  const GridGeometry& source = patient_.labels.geometry;
-  GridGeometry piece = flow_->geometry_;
+volume::GridGeometry VesselFlowMaker::flow_grid_over(const Box& box) const {
+  const volume::GridGeometry& source = patient_.labels.geometry;
+  volume::GridGeometry piece = flow_->geometry_;
   Vec3 low;
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
@@ -146,48 +147,48 @@ GridGeometry VesselFlowMaker::flow_grid_over(const Box& box) const {
   return piece;
 }
 
-FloatGrid VesselFlowMaker::depth_of(const MaskGrid& mask, const GridGeometry& target) const {
-  const FloatGrid distance_mm = signed_distance_mm(mask);
-  FloatGrid depth_mm(target);
+volume::FloatGrid VesselFlowMaker::depth_of(const volume::MaskGrid& mask, const volume::GridGeometry& target) const {
+  const volume::FloatGrid distance_mm = volume::signed_distance_mm(mask);
+  volume::FloatGrid depth_mm(target);
   parallel_for(depth_mm.voxels.size(), 4096, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n)
-      depth_mm.voxels[n] = static_cast<float>(-sample_linear(distance_mm, voxel_place(target, n)));
+      depth_mm.voxels[n] = static_cast<float>(-volume::sample_linear(distance_mm, voxel_place(target, n)));
   });
   return depth_mm;
 }
 
-VesselFlowMaker::Lumen VesselFlowMaker::find_lumen(const Label& label) const {
+VesselFlowMaker::Lumen VesselFlowMaker::find_lumen(const anatomy::Label& label) const {
   const Box box = box_of(label);
   if (box.high[0] < 0) return {};
-  GridGeometry cut = patient_.labels.geometry;
+  volume::GridGeometry cut = patient_.labels.geometry;
   for (std::size_t a = 0; a < 3; ++a) cut.size[a] = box.high[a] - box.low[a] + 1;
   cut.origin_P = patient_.labels.geometry.to_mm(
       Vec3(static_cast<double>(box.low[0]), static_cast<double>(box.low[1]), static_cast<double>(box.low[2])));
-  MaskGrid own(cut);
-  MaskGrid joining(cut);
+  volume::MaskGrid own(cut);
+  volume::MaskGrid joining(cut);
   const std::array<bool, 256> joins = find_joining(label);
   bool has_joining = false;
   for (std::size_t n = 0; n < own.voxels.size(); ++n) {
-    const Index3 at = cut.index_of(n);
+    const volume::Index3 at = cut.index_of(n);
     const std::uint8_t id = patient_.labels[{at[0] + box.low[0], at[1] + box.low[1], at[2] + box.low[2]}];
     own.voxels[n] = id == label.id ? 1 : 0;
     joining.voxels[n] = joins[id] ? 1 : 0;
     has_joining = has_joining || joins[id];
   }
-  const GridGeometry target = flow_grid_over(box);
+  const volume::GridGeometry target = flow_grid_over(box);
   Lumen lumen{depth_of(own, target), {}};
   if (!has_joining) {
     lumen.joined = lumen.own;
     return lumen;
   }
-  const FloatGrid from_own_mm = distance_to_mask_mm(own);
+  const volume::FloatGrid from_own_mm = volume::distance_to_mask_mm(own);
   for (std::size_t n = 0; n < own.voxels.size(); ++n)
     if (joining.voxels[n] != 0 && static_cast<double>(from_own_mm.voxels[n]) <= kJoins_mm) own.voxels[n] = 1;
   lumen.joined = depth_of(own, target);
   return lumen;
 }
 
-void VesselFlowMaker::add(const Label& label) {
+void VesselFlowMaker::add(const anatomy::Label& label) {
   const FlowRule* rule = flow_->table_.find(label.name, patient_.label_table);
   const Lumen lumen = rule != nullptr ? find_lumen(label) : Lumen{};
   const std::vector<detail::CentrelineTree> trees =
@@ -208,7 +209,7 @@ void VesselFlowMaker::add(const Label& label) {
 }
 
 void VesselFlowMaker::add_tree(const detail::CentrelineTree& tree, const std::vector<bool>& from_root,
-                               const Label& label, const FlowRule& rule, double widest_mm) {
+                               const anatomy::Label& label, const FlowRule& rule, double widest_mm) {
   for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
     const detail::CentrelineNode& node = tree.nodes[n];
     if (n == 0 || node.parent != static_cast<int>(n) - 1)
@@ -226,7 +227,7 @@ void VesselFlowMaker::fill(const Lumen& lumen, std::size_t first_branch) {
   for (std::size_t b = first_branch; b < flow_->branches_.size(); ++b)
     for (std::size_t n = 0; n < flow_->branches_[b].points.size(); ++n)
       if (flow_->branches_[b].points[n].is_in_own_tube) owners.push_back({&flow_->branches_[b], n});
-  const GridGeometry& geometry = lumen.own.geometry;
+  const volume::GridGeometry& geometry = lumen.own.geometry;
   const auto edge_mm = static_cast<float>(0.5 * geometry.spacing_mm.mean());
   std::vector<std::size_t> voxels;
   for (std::size_t n = 0; n < lumen.own.voxels.size(); ++n)
@@ -248,7 +249,7 @@ void VesselFlowMaker::fill(const Lumen& lumen, std::size_t first_branch) {
   });
   const Vec3 low = flow_->geometry_.to_index(geometry.origin_P);
   for (std::size_t m = 0; m < voxels.size(); ++m) {
-    Index3 at = geometry.index_of(voxels[m]);
+    volume::Index3 at = geometry.index_of(voxels[m]);
     for (std::size_t a = 0; a < 3; ++a) at[a] += std::llround(low[static_cast<Eigen::Index>(a)]);
     if (cells[m].share > 0) store(at, cells[m]);
   }
@@ -265,9 +266,9 @@ VesselFlow::Cell& VesselFlowMaker::cell(std::int64_t brick, std::int64_t offset)
 
 /// Into every brick that has the voxel: its own, and those whose last row it is. Where vessels meet the fuller one
 /// stays.
-void VesselFlowMaker::store(const Index3& at, const VesselFlow::Cell& value) {
+void VesselFlowMaker::store(const volume::Index3& at, const VesselFlow::Cell& value) {
   for (int n = 0; n < 8; ++n) {
-    Index3 brick, within;
+    volume::Index3 brick, within;
     bool has = true;
     for (std::size_t a = 0; a < 3; ++a) {
       const bool is_last = (n >> a & 1) != 0;
@@ -288,4 +289,4 @@ std::shared_ptr<const VesselFlow> VesselFlowMaker::finish() {
   return std::move(flow_);
 }
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

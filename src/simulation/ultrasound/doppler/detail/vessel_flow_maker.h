@@ -7,7 +7,7 @@
 #include "ultrasound/doppler/detail/centreline.h"
 #include "ultrasound/doppler/vessel_flow.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 
 inline constexpr std::int32_t kBrickBits = 3;
 inline constexpr std::int32_t kBrick = 1 << kBrickBits;
@@ -17,37 +17,37 @@ inline constexpr float kSpeedStep_mm_per_s = 0.1F;
 /// Makes a VesselFlow label by label.
 class VesselFlowMaker {
  public:
-  VesselFlowMaker(const VirtualPatient& patient, FlowTable table, const VesselFlowOptions& options);
+  VesselFlowMaker(const anatomy::VirtualPatient& patient, FlowTable table, const VesselFlowOptions& options);
 
-  void add(const Label& label);
+  void add(const anatomy::Label& label);
   std::shared_ptr<const VesselFlow> finish();
 
  private:
   /// A box of voxels; of the patient's labels or of the flow's grid.
   struct Box {
-    Index3 low, high;  ///< Both within.
+    volume::Index3 low, high;  ///< Both within.
   };
 
   /// Depth below the surface (mm, negative outside) on a piece of the flow's grid.
   struct Lumen {
-    FloatGrid own;     ///< Of the label alone.
-    FloatGrid joined;  ///< With the beginnings of the vessels that join it: they may be cut out of it.
+    volume::FloatGrid own;     ///< Of the label alone.
+    volume::FloatGrid joined;  ///< With the beginnings of the vessels that join it: they may be cut out of it.
   };
 
-  std::array<bool, 256> find_joining(const Label& label) const;
-  Box box_of(const Label& label) const;
-  GridGeometry flow_grid_over(const Box& box) const;
-  FloatGrid depth_of(const MaskGrid& mask, const GridGeometry& target) const;
-  Lumen find_lumen(const Label& label) const;
-  void add_tree(const detail::CentrelineTree& tree, const std::vector<bool>& from_root, const Label& label,
+  std::array<bool, 256> find_joining(const anatomy::Label& label) const;
+  Box box_of(const anatomy::Label& label) const;
+  volume::GridGeometry flow_grid_over(const Box& box) const;
+  volume::FloatGrid depth_of(const volume::MaskGrid& mask, const volume::GridGeometry& target) const;
+  Lumen find_lumen(const anatomy::Label& label) const;
+  void add_tree(const detail::CentrelineTree& tree, const std::vector<bool>& from_root, const anatomy::Label& label,
                 const FlowRule& rule, double widest_mm);
   void fill(const Lumen& lumen, std::size_t first_branch);
   VesselFlow::Cell& cell(std::int64_t brick, std::int64_t offset);
-  void store(const Index3& at, const VesselFlow::Cell& value);
+  void store(const volume::Index3& at, const VesselFlow::Cell& value);
 
-  const VirtualPatient& patient_;
+  const anatomy::VirtualPatient& patient_;
   VesselFlowOptions options_;
   std::shared_ptr<VesselFlow> flow_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -9,11 +9,11 @@
 
 #include "core/files/data_dir.h"
 #include "core/testing/allocation_guard.h"
+#include "ultrasound/doppler/test/tube_patient.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/tissue/test/make_block.h"
-#include "ultrasound/doppler/test/tube_patient.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using testing::make_steady_table;
@@ -23,7 +23,7 @@ constexpr double kPlug = 20.0;  // a profile as blunt as rules allow
 
 /// A straight tube along z with flow to the feet, that fast.
 std::shared_ptr<const VesselFlow> tube_flow(double cm_per_s) {
-  static const VirtualPatient kPatient = make_tube_patient(
+  static const anatomy::VirtualPatient kPatient = make_tube_patient(
       Vec3(40, 40, 160), Vec3(1, 1, 1), {{"tube", [](const Vec3& p) { return std::hypot(p.x(), p.y()) < 10.0; }}});
   return *make_vessel_flow(kPatient, make_steady_table(cm_per_s, kPlug));
 }
@@ -206,24 +206,24 @@ TEST(ColourDoppler, ColoursTheVesselAndLeavesBrightTissueGray) {
   GrayImage gray{320, 240, std::vector<std::uint8_t>(320 * 240, 20)};
   doppler.render(input);
   const Vec2 middle = raster.to_pixel({0.0, 50.0});
-  const auto pixel = [&](const RgbImage& image) {
+  const auto pixel = [&](const volume::RgbImage& image) {
     return image.at(static_cast<int>(middle.x()), static_cast<int>(middle.y()));
   };
-  const Rgb away = pixel(doppler.overlay(gray, raster));
+  const volume::Rgb away = pixel(doppler.overlay(gray, raster));
   EXPECT_GT(away[2], away[0] + 50);  // blue
-  const Rgb beside = doppler.overlay(gray, raster).at(2, 2);
-  EXPECT_EQ(beside, (Rgb{20, 20, 20}));
+  const volume::Rgb beside = doppler.overlay(gray, raster).at(2, 2);
+  EXPECT_EQ(beside, (volume::Rgb{20, 20, 20}));
   doppler.settings.is_inverted = true;
   doppler.render(input);
-  const Rgb inverted = pixel(doppler.overlay(gray, raster));
+  const volume::Rgb inverted = pixel(doppler.overlay(gray, raster));
   EXPECT_GT(inverted[0], inverted[2] + 50);
   std::fill(gray.pixels.begin(), gray.pixels.end(), std::uint8_t{200});
-  EXPECT_EQ(pixel(doppler.overlay(gray, raster)), (Rgb{200, 200, 200}));
+  EXPECT_EQ(pixel(doppler.overlay(gray, raster)), (volume::Rgb{200, 200, 200}));
 }
 
 TEST(ColourDoppler, ShowsNoFlowBehindBone) {
   // A vessel along x, 20 to 36 mm deep; before it bone on one side.
-  VirtualPatient patient = testing::make_block(Vec3(120, 90, 60), Vec3(1, 1, 1), [](const Vec3& p) {
+  anatomy::VirtualPatient patient = testing::make_block(Vec3(120, 90, 60), Vec3(1, 1, 1), [](const Vec3& p) {
     if (std::hypot(p.y() - 28.0, p.z()) < 8.0) return testing::BlockVoxel{testing::kVessel, 40};
     if (p.x() > 5.0 && p.y() > 8.0 && p.y() < 14.0) return testing::BlockVoxel{testing::kBone, 900};
     return testing::BlockVoxel{testing::kLiver, 60};
@@ -301,7 +301,7 @@ TEST(FlowCaliper, CorrectsForTheAngle) {
 TEST(DopplerColour, TurnsAtTheShiftedBaseline) {
   DopplerSettings settings;
   const auto is_red = [&](double share) {
-    const Rgb colour = doppler_colour(share, settings);
+    const volume::Rgb colour = doppler_colour(share, settings);
     return colour[0] > colour[2];
   };
   EXPECT_TRUE(is_red(0.5));
@@ -312,4 +312,4 @@ TEST(DopplerColour, TurnsAtTheShiftedBaseline) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

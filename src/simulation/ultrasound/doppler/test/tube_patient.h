@@ -11,23 +11,23 @@
 namespace trocar::testing {
 
 /// A patient of nothing but labels, centred on the origin: of each place the first label whose shape has it.
-inline VirtualPatient make_tube_patient(
+inline anatomy::VirtualPatient make_tube_patient(
     const Vec3& extent_mm, const Vec3& spacing_mm,
     const std::vector<std::pair<std::string, std::function<bool(const Vec3&)>>>& shapes) {
-  VirtualPatient patient;
+  anatomy::VirtualPatient patient;
   patient.name = "tubes";
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.spacing_mm = spacing_mm;
   for (std::size_t a = 0; a < 3; ++a)
     geometry.size[a] = std::llround(extent_mm[static_cast<Eigen::Index>(a)] / spacing_mm[static_cast<Eigen::Index>(a)]);
   const Vec3 size(static_cast<double>(geometry.size[0]), static_cast<double>(geometry.size[1]),
                   static_cast<double>(geometry.size[2]));
   geometry.origin_P = -0.5 * (size - Vec3::Ones()).cwiseProduct(spacing_mm);
-  patient.labels = LabelGrid(geometry);
+  patient.labels = volume::LabelGrid(geometry);
   for (std::size_t s = 0; s < shapes.size(); ++s)
     patient.label_table.labels.push_back({static_cast<std::uint8_t>(s + 1), shapes[s].first, "vessel", {}});
   for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
-    const Index3 at = geometry.index_of(n);
+    const volume::Index3 at = geometry.index_of(n);
     const Vec3 p_P =
         geometry.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
     for (std::size_t s = shapes.size(); s-- > 0;)
@@ -37,13 +37,13 @@ inline VirtualPatient make_tube_patient(
 }
 
 /// Steady flow from the head in "tube", that fast in its middle.
-inline FlowTable make_steady_table(double peak_cm_per_s, double profile_exponent) {
-  FlowTable table;
+inline ultrasound::FlowTable make_steady_table(double peak_cm_per_s, double profile_exponent) {
+  ultrasound::FlowTable table;
   table.waveforms.push_back({"steady", {1.0, 1.0, 1.0, 1.0}, 0.0});
-  FlowRule rule;
+  ultrasound::FlowRule rule;
   rule.name = "tube";
   rule.labels = {"tube"};
-  rule.at = FlowRule::At::kHead;
+  rule.at = ultrasound::FlowRule::At::kHead;
   rule.peak_cm_per_s = peak_cm_per_s;
   rule.profile_exponent = profile_exponent;
   table.rules.push_back(rule);

@@ -11,7 +11,7 @@
 #include "core/files/data_dir.h"
 #include "ultrasound/doppler/test/tube_patient.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using testing::make_steady_table;
@@ -33,7 +33,8 @@ bool is_in_half_ring(const Vec3& p) {
 }
 
 std::shared_ptr<const VesselFlow> ring_flow(const Vec3& spacing_mm) {
-  const VirtualPatient patient = make_tube_patient(Vec3(30, 110, 110), spacing_mm, {{"tube", is_in_half_ring}});
+  const anatomy::VirtualPatient patient =
+      make_tube_patient(Vec3(30, 110, 110), spacing_mm, {{"tube", is_in_half_ring}});
   const auto flow = make_vessel_flow(patient, make_steady_table(50.0, 2.0));
   EXPECT_TRUE(flow.has_value()) << flow.error().text();
   return *flow;
@@ -41,7 +42,7 @@ std::shared_ptr<const VesselFlow> ring_flow(const Vec3& spacing_mm) {
 
 const VesselFlow& abdomen_flow() {
   static const std::shared_ptr<const VesselFlow> kFlow =
-      *make_vessel_flow(*generate_phantom("abdomen", 1, {{190, 150, 120}}), shipped_table(), {1.6, 100.0});
+      *make_vessel_flow(*anatomy::generate_phantom("abdomen", 1, {{190, 150, 120}}), shipped_table(), {1.6, 100.0});
   return *kFlow;
 }
 
@@ -99,7 +100,7 @@ TEST(VesselFlow, JoinsTwoSourcesIntoOneSink) {
     return distance_mm(Segment{a, b}, p) < radius;
   };
   const Vec3 meet(0, 0, 0), left(40, 0, 5), below(0, 0, -40), liver(-35, 0, 20);
-  const VirtualPatient patient =
+  const anatomy::VirtualPatient patient =
       make_tube_patient(Vec3(110, 30, 110), Vec3(1, 1, 1),
                         {{"portal_vein_and_splenic_vein",
                           [&](const Vec3& p) {
@@ -119,7 +120,7 @@ TEST(VesselFlow, ComesFromTheWideEndThoughABranchIsLongerAndHigher) {
     return distance_mm(Segment{a, b}, p) < radius;
   };
   const Vec3 fork(0, 0, -25), out(45, 0, -25), up(45, 0, 52);
-  const VirtualPatient patient = make_tube_patient(
+  const anatomy::VirtualPatient patient = make_tube_patient(
       Vec3(130, 30, 120), Vec3(1, 1, 1), {{"artery", [&](const Vec3& p) {
                                              return is_near_line(p, {0, 0, 35}, {0, 0, -50}, 8.0) ||
                                                     is_near_line(p, fork, out, 2.5) || is_near_line(p, out, up, 2.5);
@@ -158,7 +159,7 @@ TEST(VesselFlow, GoesTheRightWayInTheEmbeddedPatient) {
 TEST(VesselFlow, PulsesInArteriesAndIsSteadyInThePortalVein) {
   const FlowTable table = shipped_table();
   const auto range = [&](const char* label) {
-    const FlowRule* rule = table.find(label, LabelTable{});
+    const FlowRule* rule = table.find(label, anatomy::LabelTable{});
     EXPECT_NE(rule, nullptr) << label;
     double low = 1e9, high = -1e9;
     for (double time_s = 0.0; time_s < 20.0; time_s += 0.01) {
@@ -187,16 +188,16 @@ TEST(FlowWaveform, IsPeriodicAndContinuous) {
 
 TEST(FlowTable, ChoosesARuleByTheCompany) {
   const FlowTable table = shipped_table();
-  LabelTable with_trunk;
+  anatomy::LabelTable with_trunk;
   with_trunk.labels = {{1, "portal_vein_and_splenic_vein", "vessel", {}}, {2, "portal_vein", "vessel", {}}};
   EXPECT_EQ(table.find("portal_vein", with_trunk)->name, "portal_branches");
-  EXPECT_EQ(table.find("portalvein", LabelTable{})->name, "portal_trunk");  // as 3D-IRCADb has it
-  EXPECT_EQ(table.find("Inferior Vena-Cava", LabelTable{})->name, "inferior_vena_cava");
-  EXPECT_EQ(table.find("liver", LabelTable{}), nullptr);
+  EXPECT_EQ(table.find("portalvein", anatomy::LabelTable{})->name, "portal_trunk");  // as 3D-IRCADb has it
+  EXPECT_EQ(table.find("Inferior Vena-Cava", anatomy::LabelTable{})->name, "inferior_vena_cava");
+  EXPECT_EQ(table.find("liver", anatomy::LabelTable{}), nullptr);
 }
 
 TEST(VesselFlow, SaysWhichVesselsHaveNoFlow) {
-  const VirtualPatient patient =
+  const anatomy::VirtualPatient patient =
       make_tube_patient(Vec3(30, 110, 110), Vec3(1, 1, 1), {{"vitelline duct", is_in_half_ring}});
   const auto flow = make_vessel_flow(patient, shipped_table());
   ASSERT_FALSE(flow.has_value());
@@ -204,4 +205,4 @@ TEST(VesselFlow, SaysWhichVesselsHaveNoFlow) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr double kReach_mm = 3.0;  ///< To either side: several voxels, and less than most organs' curvature.
@@ -99,4 +99,4 @@ SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane,
   return fit;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -5,7 +5,7 @@
 
 /// Borders of neighbouring scanlines and planes, put together to surfaces. A border's place on one scanline has the
 /// voxels' steps in it; a line through its neighbours has the surface's own place and tilt.
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// A surface where a scanline crosses it.
 struct SurfaceFit {
@@ -24,4 +24,4 @@ SurfaceFit fit_in_plane(const ScanPlan& plan, const FrameState& frame, int plane
 SurfaceFit fit_surface(const ScanPlan& plan, const FrameState& frame, int plane, int line,
                        const Border& border) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

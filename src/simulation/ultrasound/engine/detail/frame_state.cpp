@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 FrameState make_frame_state(const AcousticScene& scene) {
   FrameState frame;
@@ -35,4 +35,4 @@ void forget_borders(FrameState& frame) noexcept {
   std::fill(frame.border_counts.begin(), frame.border_counts.end(), std::uint8_t{0});
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

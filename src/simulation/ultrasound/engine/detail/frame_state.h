@@ -11,7 +11,7 @@
 #include "ultrasound/engine/needle_echo.h"
 #include "ultrasound/probe/probe_contact.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// A scanline as voxel indices of the scene: origin + along * mm + lateral * mm + elevation * mm, reflected where it
 /// lies behind a mirror.
@@ -110,4 +110,4 @@ void fit_frame(FrameState& frame, const ScanPlan& plan);
 /// Before a frame: no border is known on any plane, so that nothing of the last frame can be read.
 void forget_borders(FrameState& frame) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

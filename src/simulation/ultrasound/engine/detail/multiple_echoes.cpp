@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// What the face of the array and the skin give back of an echo that returns to them (assumed, range 0.05..0.4).
@@ -61,4 +61,4 @@ void add_reverberation(const ScanPlan& plan, const FrameState& frame, int look, 
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -5,7 +5,7 @@
 #include "ultrasound/engine/detail/scan_plan.h"
 
 /// Sound that goes to and fro (docs/physics.md U7).
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// Ring-down behind gas: before the point spread, on one scanline.
 void add_ring_down(const ScanPlan& plan, FrameState& frame, int line) noexcept;
@@ -13,4 +13,4 @@ void add_ring_down(const ScanPlan& plan, FrameState& frame, int line) noexcept;
 /// the reflector's depth, and again (A-lines).
 void add_reverberation(const ScanPlan& plan, const FrameState& frame, int look, int line, BasebandFrame& out) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

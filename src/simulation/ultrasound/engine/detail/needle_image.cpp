@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
@@ -187,4 +187,4 @@ void add_needles(const ScanPlan& plan, FrameState& frame, const NeedleImage& ima
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

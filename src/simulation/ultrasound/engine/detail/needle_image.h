@@ -10,7 +10,7 @@
 #include "ultrasound/engine/needle_echo.h"
 
 /// Needles in the image (docs/physics.md U13): echo, comet tail, shadow, and the tissue that they drag along.
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// Levels against liver's speckle (root mean square) without attenuation, of a shaft of kNeedleReference_mm in the
 /// middle of the beam; all assumed, within the measured falls of visibility with the angle.
@@ -76,4 +76,4 @@ void lay_needles(const ScanPlan& plan, FrameState& frame, std::span<const Needle
 /// Shadows and echoes on the scanlines [first, last), whose gains and surface echoes are there.
 void add_needles(const ScanPlan& plan, FrameState& frame, const NeedleImage& image, int first, int last) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

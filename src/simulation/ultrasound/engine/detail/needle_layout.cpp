@@ -5,7 +5,7 @@
 #include "core/random.h"
 #include "ultrasound/engine/detail/needle_image.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
@@ -271,4 +271,4 @@ void lay_needles(const ScanPlan& plan, FrameState& frame, std::span<const Needle
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -6,7 +6,7 @@
 
 #include "ultrasound/probe/probe_contact.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// The point's place among scanlines and samples of `walk`, and in elevation; line < -1: not heard.
@@ -65,4 +65,4 @@ void add_points(const ScanPlan& plan, FrameState& frame) noexcept {
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

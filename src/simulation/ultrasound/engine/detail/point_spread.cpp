@@ -4,14 +4,14 @@
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "ultrasound/detail/point_spread.cpp"
+#define HWY_TARGET_INCLUDE "ultrasound/engine/detail/point_spread.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which sets the instruction set that these headers compile for.
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -127,11 +127,11 @@ void gains(const float* log_gain, const float* added, int n, float* gain) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 HWY_EXPORT(spread);
 HWY_EXPORT(gains);
@@ -158,5 +158,5 @@ void to_gain(const float* log_gain, const float* added, int n, float* gain) noex
   HWY_DYNAMIC_DISPATCH(gains)(log_gain, added, n, gain);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 #endif

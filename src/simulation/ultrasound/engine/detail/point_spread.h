@@ -7,7 +7,7 @@
 #include "ultrasound/engine/detail/frame_state.h"
 #include "ultrasound/engine/detail/scan_plan.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// One scanline of all looks on its way through spread_echoes; a task has its own.
 class LookRows {
@@ -34,4 +34,4 @@ void spread_echoes(const ScanPlan& plan, const FrameState& frame, int line, Look
 /// gain[s] = exp(log_gain[s] + added[s]), 0 where that is nothing. Both inputs reach 16 floats beyond n.
 void to_gain(const float* log_gain, const float* added, int n, float* gain) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -7,7 +7,7 @@
 #include "ultrasound/engine/detail/scatterer_bricks.h"
 #include "ultrasound/engine/detail/scatterer_gain.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr double kNeperPerDb = std::numbers::ln10 / 20.0;
@@ -183,4 +183,4 @@ ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer
   return plan;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

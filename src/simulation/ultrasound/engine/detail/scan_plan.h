@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "ultrasound/tissue/acoustic_scene.h"
 #include "ultrasound/engine/b_mode.h"
+#include "ultrasound/tissue/acoustic_scene.h"
 
 /// What all frames of a scan share. The engine knows three ways along a scanline, in samples: `rest` (distance in the
 /// resting tissue, from where the undented skin would meet the face), `walk` (distance from the face now) and `shown`
 /// (the echo's time of flight at the speed that scanners assume).
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 inline constexpr int kPad = 96;    ///< Zero samples before and behind a scanline, for the pulse to reach into.
 inline constexpr int kCoarse = 8;  ///< Samples to a step of what varies slowly.
@@ -82,4 +82,4 @@ struct ScanPlan {
 
 ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer, const Acquisition& acquisition);
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -5,7 +5,7 @@
 
 #include "core/random.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 std::uint64_t hash_of(const BrickIndex& brick) noexcept {
@@ -54,4 +54,4 @@ PlacedBrick place_brick(const BrickIndex& index, const std::vector<Brick>& libra
   return placed;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -8,7 +8,7 @@
 
 /// Scatterers fill P in cubes, "bricks". What a brick holds is a pure function of its place in P, so that speckle moves
 /// with the tissue; it is one of a library's, turned and mirrored.
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 inline constexpr int kBrickScatterers = 32;
 /// All are equally strong, of either sign, and stratified in their brick: with that a few in a resolution cell are
@@ -33,4 +33,4 @@ struct PlacedBrick {
 PlacedBrick place_brick(const BrickIndex& index, const std::vector<Brick>& library, const Vec3f& middle_T,
                         const Eigen::Matrix3f& side_T) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 std::size_t sample_near(const ScanPlan& plan, float s) noexcept {
@@ -144,4 +144,4 @@ bool is_at_depth(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T, 
   return (low < 0.0F || far2 > low * low) && far2 < high * high;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -7,7 +7,7 @@
 #include "ultrasound/engine/detail/scan_plan.h"
 
 /// Where a task looks for scatterers: some scanlines, some depth.
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// The scanlines and resting depths that a task looks for scatterers in, with bounds that are cheap to test in T: half
 /// planes on either side (x * nx + (y + radius) * ny <= 0), squared distance from the apex (fans) or y, thickness.
@@ -42,4 +42,4 @@ void stay_in_cell(const ScanPlan& plan, const Cell& cell, const Vec3f& start_T, 
 /// Whether such a ball comes into the cell's depths.
 bool is_at_depth(const ScanPlan& plan, const Cell& cell, const Vec3f& middle_T, float radius_mm) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

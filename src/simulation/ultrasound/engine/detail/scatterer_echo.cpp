@@ -5,7 +5,7 @@
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "ultrasound/detail/scatterer_echo.cpp"
+#define HWY_TARGET_INCLUDE "ultrasound/engine/detail/scatterer_echo.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which sets the instruction set that these headers compile for.
 #include <hwy/contrib/math/math-inl.h>
@@ -13,7 +13,7 @@
 
 #ifndef TROCAR_ULTRASOUND_ECHO_TYPES
 #define TROCAR_ULTRASOUND_ECHO_TYPES
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// Scatterers that are near a cell, in T, until there are enough to hear them together.
 struct alignas(64) Candidates {
@@ -29,11 +29,11 @@ struct alignas(64) Echoes {
   float parts[4 * (Candidates::kMost + 64)];
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -256,11 +256,11 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 HWY_EXPORT(take_near);
 HWY_EXPORT(hear);
@@ -345,5 +345,5 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
   add_field(plan, field, frame, first, last);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 #endif

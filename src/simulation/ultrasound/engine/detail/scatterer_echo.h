@@ -4,7 +4,7 @@
 
 #include "ultrasound/engine/detail/scatterer_bricks.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// What a task's scatterers add up to, before it is added to the scanlines: complex, a row of scanlines for each
 /// sample, so that an echo's two scanlines lie side by side. Begins kBeforeFace samples before the face, and one
@@ -19,4 +19,4 @@ ScattererField make_scatterer_field(const ScanPlan& plan);
 void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, FrameState& frame, int first, int last,
                     ScattererField& field) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -3,13 +3,13 @@
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "ultrasound/detail/scatterer_gain.cpp"
+#define HWY_TARGET_INCLUDE "ultrasound/engine/detail/scatterer_gain.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which sets the instruction set that this header compiles for.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -33,11 +33,11 @@ void pack(const float* log_gain, const float* added, const std::uint8_t* share_c
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 HWY_EXPORT(pack);
 
@@ -54,5 +54,5 @@ std::uint8_t share_class(double share) noexcept {
   return static_cast<std::uint8_t>(best);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 #endif

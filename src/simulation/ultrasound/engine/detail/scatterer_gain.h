@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// What scatterers at a place give: logarithm of their amplitude and the share that is there, in 16 bits. Crowds of
 /// scatterers read them here and there, and half a float's size is what stays in the cache.
@@ -29,4 +29,4 @@ constexpr ScattererGain weaken(ScattererGain gain, float neper) noexcept {
   return static_cast<ScattererGain>((level > 0 ? level : 0) << kShareBits | (gain & ((1 << kShareBits) - 1)));
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -5,7 +5,7 @@
 
 #include "ultrasound/engine/detail/border_fit.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// A border that reflects more than this (amplitude) from a tissue far lighter than water is gas: it can mirror.
@@ -86,7 +86,7 @@ void note_gas(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, i
 }  // namespace
 
 void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept {
-  const GridGeometry& grid = frame.scene->geometry;
+  const volume::GridGeometry& grid = frame.scene->geometry;
   const Mat3 index_of_T = grid.spacing_mm.cwiseInverse().asDiagonal() * Mat3(grid.R_PV.transpose() * frame.X_PT.R());
   const Vec3 index_of_origin = grid.to_index(frame.X_PT.p());
   frame.elevation = floats(index_of_T.col(2));
@@ -276,4 +276,4 @@ void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept {
   frame.widest_warp = std::min(frame.widest_warp, kMostLines);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -6,7 +6,7 @@
 
 /// Where sound goes: contact of the face, straight scanlines, what bends them and what mirrors them. On the central
 /// plane, in coarse steps (docs/physics.md U7, U8).
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// Frame-wide transforms and each scanline's straight walk.
 void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept;
@@ -20,4 +20,4 @@ void stand_mirrors(const ScanPlan& plan, FrameState& frame) noexcept;
 /// After all lines were probed: displacement and focusing by refraction, from how slowness changes sideways.
 void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -8,7 +8,7 @@
 #include "ultrasound/engine/detail/border_fit.h"
 #include "ultrasound/engine/detail/tissue_walk.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// Echo of a perfect, smooth, perpendicular reflector against liver's speckle, without attenuation: 48 dB (assumed;
@@ -86,4 +86,4 @@ void add_surface_echoes(const ScanPlan& plan, FrameState& frame, int line, int p
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -5,16 +5,16 @@
 #include "core/check.h"
 #include "core/parallel.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 namespace {
 
 /// Mean texture of the cell from that voxel to the next along i, j and k: that of the cell's middle.
-std::int8_t mean_texture(const AcousticScene& scene, const Index3& voxel) {
-  const GridGeometry& grid = scene.geometry;
+std::int8_t mean_texture(const AcousticScene& scene, const volume::Index3& voxel) {
+  const volume::GridGeometry& grid = scene.geometry;
   int sum = 0;
   for (int corner = 0; corner < 8; ++corner) {
-    Index3 at = voxel;
+    volume::Index3 at = voxel;
     for (std::size_t a = 0; a < 3; ++a) at[a] = std::min(at[a] + ((corner >> a) & 1), grid.size[a] - 1);
     sum += scene.texture[grid.offset(at)];
   }
@@ -60,4 +60,4 @@ TiledTissue::TiledTissue(const AcousticScene& scene) {
   });
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -6,7 +6,7 @@
 
 #include "ultrasound/tissue/acoustic_scene.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// A scene's voxels in cubes of 4 x 4 x 4, one cache line each: a scan plane lies across the rows of a plain volume and
 /// would read a line for every voxel. The offset of a voxel is the sum of three parts, one an axis.
@@ -68,4 +68,4 @@ inline CellCorners corners_at(const TiledTissue& tiles, float i, float j, float 
   return corners;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -6,7 +6,7 @@
 #include "core/random.h"
 #include "volume/sampling.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// Layers of muscle and septa of fat lie along the skin, about so far apart (assumed, range 1..4 mm), waving over …
@@ -85,7 +85,8 @@ void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult
       const Vec3 p_mm =
           Vec3(walk.index[0][at], walk.index[1][at], walk.index[2][at]).cwiseProduct(scene.geometry.spacing_mm);
       const Vec3 p_P = scene.geometry.origin_P + scene.geometry.R_PV * p_mm;
-      const double skin_mm = scene.skin_distance_mm.empty() ? -p_mm.y() : sample_linear(scene.skin_distance_mm, p_P);
+      const double skin_mm =
+          scene.skin_distance_mm.empty() ? -p_mm.y() : volume::sample_linear(scene.skin_distance_mm, p_P);
       next = layering_at(static_cast<float>(-skin_mm), p_mm);
     }
     if (is_in && !was_in) last = next;
@@ -135,4 +136,4 @@ void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResul
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -5,7 +5,7 @@
 #include "ultrasound/engine/detail/tissue_walk.h"
 
 /// How bright the scatterers of one tissue are from place to place (docs/physics.md U5).
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// What is added to a walk's log_gain, neper a sample: the CT's texture, layers of muscle and fat, focusing by
 /// refraction. `fibres` is made on the central plane and read on the others.
@@ -16,4 +16,4 @@ struct alignas(64) Texture {
 void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, int line, bool is_central,
                   Texture& texture) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -5,13 +5,13 @@
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "ultrasound/detail/tissue_walk.cpp"
+#define HWY_TARGET_INCLUDE "ultrasound/engine/detail/tissue_walk.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which sets the instruction set that this header compiles for.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -24,7 +24,7 @@ void place_samples(const ScanPlan& plan, const FrameState& frame, const LineWalk
                    WalkResult& result) {
   const F f;
   const I d;
-  const GridGeometry& grid = frame.scene->geometry;
+  const volume::GridGeometry& grid = frame.scene->geometry;
   // Offset among the tiles: (index / 4) * stride + (index % 4) * step, an axis.
   const std::int32_t stride[3] = {TiledTissue::kTile, frame.tiles.row(), frame.tiles.slab()};
   const std::int32_t step[3] = {1, 4, 16};
@@ -63,11 +63,11 @@ void place_samples(const ScanPlan& plan, const FrameState& frame, const LineWalk
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 HWY_EXPORT(place_samples);
 
@@ -402,5 +402,5 @@ void keep_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& res
   frame.border_counts[at] = static_cast<std::uint8_t>(result.border_count);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 #endif

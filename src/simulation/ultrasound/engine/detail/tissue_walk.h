@@ -7,7 +7,7 @@
 #include "ultrasound/engine/detail/scan_plan.h"
 
 /// Marches a scanline of one plane through the tissues: what sound loses on the way, where it meets borders.
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 inline constexpr int kMaxSamples = 4096;
 
@@ -49,4 +49,4 @@ Blend blend_at(const FrameState& frame, const std::array<TissueRow, kTissues>& r
 /// Gradient of the impedance's logarithm at a fractional voxel index, a mm, in the scene's voxel axes; over 1.5 voxels.
 Vec3 impedance_slope(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 int count_on(const Artefacts& a) {
@@ -43,4 +43,4 @@ TEST(Artefacts, UnknownNameListsTheKnownAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

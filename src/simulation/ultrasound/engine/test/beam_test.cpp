@@ -8,7 +8,7 @@
 
 #include "core/files/data_dir.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -133,4 +133,4 @@ TEST(Beam, HigherFrequencyIsFinerInEveryDirection) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

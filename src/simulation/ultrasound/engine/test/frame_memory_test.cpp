@@ -5,12 +5,12 @@
 #include <cmath>
 #include <vector>
 
-#include "ultrasound/live/picture_maker.h"
-#include "ultrasound/test/physics_lab.h"
 #include "ultrasound/doppler/test/tube_patient.h"
 #include "ultrasound/doppler/vessel_flow.h"
+#include "ultrasound/live/picture_maker.h"
+#include "ultrasound/test/physics_lab.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
@@ -131,7 +131,7 @@ TEST(FrameMemory, EngineGivesTheSameBitsAfterAnyOtherFrame) {
 
 /// Blood along z through the middle of the scenes.
 std::shared_ptr<const VesselFlow> make_flow() {
-  const VirtualPatient patient =
+  const anatomy::VirtualPatient patient =
       make_tube_patient({40.0, 80.0, 60.0}, {1.0, 1.0, 1.0},
                         {{"tube", [](const Vec3& p_P) { return std::hypot(p_P.x(), p_P.y() - 25.0) < 4.0; }}});
   auto flow = make_vessel_flow(patient, make_steady_table(60.0, 2.0));
@@ -215,4 +215,4 @@ TEST(FrameMemory, ColourThatIsSwitchedOnAgainHasNoOldFrameInIt) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

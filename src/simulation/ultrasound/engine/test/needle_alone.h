@@ -13,18 +13,18 @@
 /// Needles in pictures, for tests.
 namespace trocar::testing {
 
-using namespace detail;  // NOLINT: tests only
+using namespace ultrasound::detail;  // NOLINT: tests only
 
 inline constexpr double kPi = std::numbers::pi;
 
-inline Transducer convex() {
-  Transducer transducer;
+inline ultrasound::Transducer convex() {
+  ultrasound::Transducer transducer;
   transducer.name = "convex";
   return transducer;
 }
 
-inline Acquisition shallow(int lines = 128, int samples = 640) {
-  Acquisition acquisition;
+inline ultrasound::Acquisition shallow(int lines = 128, int samples = 640) {
+  ultrasound::Acquisition acquisition;
   acquisition.depth_mm = 100.0;
   acquisition.focus_mm = 60.0;
   acquisition.lines = lines;
@@ -33,15 +33,15 @@ inline Acquisition shallow(int lines = 128, int samples = 640) {
   return acquisition;
 }
 
-inline BMode engine_in(TestTissue tissue) {
-  return {homogeneous_scene(box_for(convex(), 100.0, 2.0), tissue), convex(), shallow()};
+inline ultrasound::BMode engine_in(ultrasound::TestTissue tissue) {
+  return {ultrasound::homogeneous_scene(ultrasound::box_for(convex(), 100.0, 2.0), tissue), convex(), shallow()};
 }
 
 /// Hears needles and nothing else: as the engine, in a medium without loss and scatterers.
 class NeedleAlone {
  public:
-  explicit NeedleAlone(const Acquisition& acquisition = shallow())
-      : scene(homogeneous_scene(box_for(convex(), 100.0, 3.0), TestTissue::kWater)),
+  explicit NeedleAlone(const ultrasound::Acquisition& acquisition = shallow())
+      : scene(ultrasound::homogeneous_scene(ultrasound::box_for(convex(), 100.0, 3.0), ultrasound::TestTissue::kWater)),
         plan(make_scan_plan(*scene, convex(), acquisition)),
         frame(make_frame_state(*scene)),
         image(make_needle_image(plan)),
@@ -53,7 +53,7 @@ class NeedleAlone {
     out.im = out.re;
   }
 
-  const BasebandFrame& render(const BModeInput& input) {
+  const ultrasound::BasebandFrame& render(const ultrasound::BModeInput& input) {
     std::fill(frame.re.begin(), frame.re.end(), 0.0F);
     std::fill(frame.im.begin(), frame.im.end(), 0.0F);
     std::fill(frame.way_gain.begin(), frame.way_gain.end(), 1.0F);
@@ -64,12 +64,12 @@ class NeedleAlone {
     return out;
   }
 
-  ScenePtr scene;
+  ultrasound::ScenePtr scene;
   ScanPlan plan;
   FrameState frame;
   NeedleImage image;
   LookRows rows;
-  BasebandFrame out;
+  ultrasound::BasebandFrame out;
 };
 
 /// A straight shaft that ends at `tip`.
@@ -81,15 +81,15 @@ inline Vec3 in_plane(double angle_rad) {
   return {std::sin(angle_rad), std::cos(angle_rad), 0.0};
 }
 
-inline NeedleEcho needle_of(const std::vector<Vec3>& shaft) {
-  NeedleEcho needle;
+inline ultrasound::NeedleEcho needle_of(const std::vector<Vec3>& shaft) {
+  ultrasound::NeedleEcho needle;
   needle.shaft_P = shaft;
   return needle;
 }
 
 template <class Engine>
-inline BasebandFrame seen(Engine& engine, const NeedleEcho& needle) {
-  BModeInput input;
+inline ultrasound::BasebandFrame seen(Engine& engine, const ultrasound::NeedleEcho& needle) {
+  ultrasound::BModeInput input;
   input.needles = {&needle, 1};
   return engine.render(input);
 }
@@ -98,7 +98,7 @@ inline double db(double amplitude) {
   return 20.0 * std::log10(std::max(amplitude, 1e-9));
 }
 
-inline double envelope(const BasebandFrame& frame, int line, int sample) {
+inline double envelope(const ultrasound::BasebandFrame& frame, int line, int sample) {
   const auto at = static_cast<std::size_t>(line * frame.geometry.samples + sample);
   return std::hypot(static_cast<double>(frame.re[at]), static_cast<double>(frame.im[at]));
 }
@@ -107,7 +107,7 @@ struct LinePeak {
   double depth_mm = 0.0, level_db = -1e9;
 };
 /// The brightest sample of a scanline between two depths, its place refined by a parabola.
-inline LinePeak peak_of(const BasebandFrame& frame, int line, double from_mm = 2.0, double to_mm = 99.0) {
+inline LinePeak peak_of(const ultrasound::BasebandFrame& frame, int line, double from_mm = 2.0, double to_mm = 99.0) {
   const double mm = frame.geometry.sample_mm();
   int best = static_cast<int>(from_mm / mm);
   for (int s = best; s < static_cast<int>(to_mm / mm); ++s)

@@ -9,7 +9,7 @@
 #include "ultrasound/engine/detail/needle_image.h"
 #include "ultrasound/engine/test/needle_alone.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
@@ -153,4 +153,4 @@ TEST(NeedleEffects, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

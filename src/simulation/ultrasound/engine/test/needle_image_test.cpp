@@ -6,7 +6,7 @@
 
 #include "ultrasound/engine/test/needle_alone.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
@@ -207,4 +207,4 @@ TEST(NeedleImage, LiesDeeperUnderSlowTissue) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -3,7 +3,7 @@
 #include "ultrasound/scanner/scanner.h"
 #include "ultrasound/test/physics_lab.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
@@ -245,4 +245,4 @@ TEST(Clutter, HazesTheNearFieldOnly) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -5,7 +5,7 @@
 #include "core/testing/allocation_guard.h"
 #include "ultrasound/test/physics_lab.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
@@ -123,4 +123,4 @@ TEST(Frame, IsMadeWithoutAllocation) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -2,7 +2,7 @@
 
 #include "ultrasound/test/physics_lab.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
@@ -202,4 +202,4 @@ TEST(SurfaceEcho, FallsWithTheAngle) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -2,7 +2,7 @@
 
 #include "ultrasound/test/physics_lab.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
@@ -163,4 +163,4 @@ TEST(Resolution, TwoPointsMergeCloserThanThePulseAndPartFartherAway) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

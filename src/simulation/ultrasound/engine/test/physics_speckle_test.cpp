@@ -2,7 +2,7 @@
 
 #include "ultrasound/test/physics_lab.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
@@ -120,4 +120,4 @@ TEST(Speckle, WidthsAreTheBeams) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 std::vector<float> rayleigh(std::size_t count, double rms, std::uint64_t seed) {
@@ -73,4 +73,4 @@ TEST(BhattacharyyaDistance, IsZeroForEqualAndInfiniteForDisjoint) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 struct Drawn {
@@ -97,4 +97,4 @@ TEST(PictureStatistics, LeaveEdgesAndShadowsOut) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kFwhmPerSigma = 2.3548200450309493;
@@ -179,4 +179,4 @@ TEST(NormalisedCorrelation, IsOneForScaledAndZeroForOtherFields) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -6,10 +6,10 @@
 #include <chrono>
 #include <thread>
 
-#include "ultrasound/phantom/test_scenes.h"
 #include "ultrasound/live/picture_maker.h"
+#include "ultrasound/phantom/test_scenes.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kDepth_mm = 60.0;
@@ -264,4 +264,4 @@ TEST(LiveScanner, LeavesOutWhatIsNoPlace) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

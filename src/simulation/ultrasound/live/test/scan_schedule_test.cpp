@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kFrame_s = 1.0 / 60.0;
@@ -182,4 +182,4 @@ TEST(ScanRequest, IsHeldToItsRanges) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

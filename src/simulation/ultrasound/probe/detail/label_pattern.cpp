@@ -2,7 +2,7 @@
 
 #include <cctype>
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 std::string plain_name(std::string_view name) {
   std::string text;
@@ -18,4 +18,4 @@ bool matches_pattern(std::string_view pattern, std::string_view name) noexcept {
   return pattern == name;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

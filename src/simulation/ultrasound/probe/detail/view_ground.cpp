@@ -4,27 +4,27 @@
 
 #include "volume/sampling.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr double kSlope_mm = 6.0;   ///< The skin's normal is that of a patch so large, not of a voxel.
 constexpr int kGasBelow_hu = -300;  ///< As in src/anatomy; gas in bowel is labelled bowel.
 constexpr double kFacingSlab_mm = 8.0;
 
-Vec3 voxel_place(const GridGeometry& geometry, std::size_t n) {
-  const Index3 ijk = geometry.index_of(n);
+Vec3 voxel_place(const volume::GridGeometry& geometry, std::size_t n) {
+  const volume::Index3 ijk = geometry.index_of(n);
   return geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
 }
 
 /// Calls use(point) for every voxel of a label.
 template <class Use>
-void for_voxels(const LabelGrid& labels, std::uint8_t id, const Use& use) {
+void for_voxels(const volume::LabelGrid& labels, std::uint8_t id, const Use& use) {
   for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
     if (labels.voxels[n] == id) use(voxel_place(labels.geometry, n));
   }
 }
 
-Vec3 centroid(const LabelGrid& labels, std::uint8_t id) {
+Vec3 centroid(const volume::LabelGrid& labels, std::uint8_t id) {
   Vec3 sum = Vec3::Zero();
   double count = 0.0;
   for_voxels(labels, id, [&](const Vec3& p_P) {
@@ -34,7 +34,7 @@ Vec3 centroid(const LabelGrid& labels, std::uint8_t id) {
   return sum / count;
 }
 
-Vec3 nearest_voxel(const LabelGrid& labels, std::uint8_t id, const Vec3& to_P) {
+Vec3 nearest_voxel(const volume::LabelGrid& labels, std::uint8_t id, const Vec3& to_P) {
   Vec3 best_P = to_P;
   double least = std::numeric_limits<double>::infinity();
   for_voxels(labels, id, [&](const Vec3& p_P) {
@@ -48,7 +48,7 @@ Vec3 nearest_voxel(const LabelGrid& labels, std::uint8_t id, const Vec3& to_P) {
 }
 
 /// Middle of the part of a label that lies nearest to a point.
-Vec3 facing_point(const LabelGrid& labels, std::uint8_t id, const Vec3& from_P) {
+Vec3 facing_point(const volume::LabelGrid& labels, std::uint8_t id, const Vec3& from_P) {
   const double nearest_mm = (nearest_voxel(labels, id, from_P) - from_P).norm();
   Vec3 sum = Vec3::Zero();
   double count = 0.0;
@@ -62,16 +62,17 @@ Vec3 facing_point(const LabelGrid& labels, std::uint8_t id, const Vec3& from_P) 
 
 }  // namespace
 
-ViewGround::ViewGround(const VirtualPatient& of, const ProbeView& view) : patient(of), ends(find_scan_ends(of)) {
-  for (const Label& label : of.label_table.labels) {
+ViewGround::ViewGround(const anatomy::VirtualPatient& of, const ProbeView& view)
+    : patient(of), ends(find_scan_ends(of)) {
+  for (const anatomy::Label& label : of.label_table.labels) {
     is_bone[label.id] = label.tissue == "bone" || label.tissue == "cartilage";  // of ribs
     is_lung[label.id] = label.tissue == "lung" || label.tissue == "gas";
   }
-  if (const Label* through = find_target(of, view.through)) is_through[through->id] = true;
+  if (const anatomy::Label* through = find_target(of, view.through)) is_through[through->id] = true;
 }
 
 double ViewGround::skin_mm(const Vec3& p_P) const noexcept {
-  return sample_linear(patient.skin_distance_mm, p_P);
+  return volume::sample_linear(patient.skin_distance_mm, p_P);
 }
 
 Vec3 ViewGround::skin_normal(const Vec3& p_P) const noexcept {
@@ -90,27 +91,27 @@ Vec3 ViewGround::on_skin(Vec3 p_P) const noexcept {
 
 bool ViewGround::contains(const Vec3& p_P) const noexcept {
   const Vec3 index = patient.labels.geometry.to_index(p_P);
-  const Index3& size = patient.labels.geometry.size;
+  const volume::Index3& size = patient.labels.geometry.size;
   return (index.array() > -0.5).all() && index.x() < static_cast<double>(size[0]) - 0.5 &&
          index.y() < static_cast<double>(size[1]) - 0.5 && index.z() < static_cast<double>(size[2]) - 0.5;
 }
 
 std::uint8_t ViewGround::label_at(const Vec3& p_P) const noexcept {
-  return sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
+  return volume::sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
 }
 
 bool ViewGround::is_gas_at(const Vec3& p_P) const noexcept {
-  return sample_nearest<std::int16_t>(patient.ct, p_P, 0) < kGasBelow_hu;
+  return volume::sample_nearest<std::int16_t>(patient.ct, p_P, 0) < kGasBelow_hu;
 }
 
-Result<Vec3> find_target_point(const VirtualPatient& patient, const ProbeView& view) {
+Result<Vec3> find_target_point(const anatomy::VirtualPatient& patient, const ProbeView& view) {
   TROCAR_TRY_STATUS(check_view(patient, view));
-  const Label* target = find_target(patient, view.targets);
-  const Label* through = find_target(patient, view.through);
+  const anatomy::Label* target = find_target(patient, view.targets);
+  const anatomy::Label* through = find_target(patient, view.through);
   const Vec3 p_P = view.point == TargetPoint::kFacing
                        ? facing_point(patient.labels, target->id, centroid(patient.labels, through->id))
                        : nearest_voxel(patient.labels, target->id, centroid(patient.labels, target->id));
   return Vec3(p_P + view.offset_mm);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

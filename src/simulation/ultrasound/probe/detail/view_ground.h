@@ -8,15 +8,15 @@
 #include "ultrasound/probe/probe_view.h"
 #include "ultrasound/tissue/scan_ends.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// A patient as the placement of a transducer sees him. Frame P, mm. Refers to the patient.
 struct ViewGround {
-  const VirtualPatient& patient;
+  const anatomy::VirtualPatient& patient;
   std::array<bool, 256> is_bone{}, is_lung{}, is_through{};  ///< By label.
   std::vector<ScanEnd> ends;
 
-  ViewGround(const VirtualPatient& of, const ProbeView& view);
+  ViewGround(const anatomy::VirtualPatient& of, const ProbeView& view);
 
   double skin_mm(const Vec3& p_P) const noexcept;    ///< Negative inside.
   Vec3 skin_normal(const Vec3& p_P) const noexcept;  ///< Outwards, unit, of a patch of some millimetres.
@@ -27,6 +27,6 @@ struct ViewGround {
 };
 
 /// The point of the patient that a view aims at. Errors: the patient lacks the view's target.
-Result<Vec3> find_target_point(const VirtualPatient& patient, const ProbeView& view);
+Result<Vec3> find_target_point(const anatomy::VirtualPatient& patient, const ProbeView& view);
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -5,7 +5,7 @@
 
 #include "ultrasound/scanner/detail/receiver.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr double kSubject_mm = 40.0;  ///< The subject: the target within so far of the view's point [assumed].
@@ -26,7 +26,7 @@ ViewSight::ViewSight(const ViewGround& ground, const ProbeView& view, const Tran
       target_P_(target_P),
       is_between_ribs_(view.bone == BoneWish::kBeside),
       shows_bone_(view.bone == BoneWish::kShow) {
-  const Label* target = find_target(ground.patient, view.targets);
+  const anatomy::Label* target = find_target(ground.patient, view.targets);
   if (target != nullptr) is_subject_[target->id] = true;
   if (shows_bone_)
     for (std::size_t id = 0; id < is_subject_.size(); ++id) is_subject_[id] = is_subject_[id] || ground.is_bone[id];
@@ -168,4 +168,4 @@ ViewVisibility ViewSight::measure(const Pose& X_PT) const {
   return is_surface_ ? measure_surface(rays, in_plane_T) : measure_area(X_PT, rays, in_plane_T);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

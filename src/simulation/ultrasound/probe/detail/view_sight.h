@@ -8,7 +8,7 @@
 #include "ultrasound/probe/view_visibility.h"
 
 /// How much of a view's subject is seen from a pose, by straight scanlines through the labels (docs/physics.md U16).
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 class ViewSight {
  public:
@@ -45,4 +45,4 @@ class ViewSight {
   double frequency_mhz_ = 3.5;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -9,19 +9,19 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "ultrasound/tissue/test/make_block.h"
 #include "ultrasound/tissue/acoustic_scene.h"
+#include "ultrasound/tissue/test/make_block.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 /// Skin at y = 0, the body where y > 0.
-FloatGrid flat_skin() {
-  GridGeometry geometry;
+volume::FloatGrid flat_skin() {
+  volume::GridGeometry geometry;
   geometry.size = {61, 61, 31};
   geometry.spacing_mm.setConstant(2.0);
   geometry.origin_P = Vec3(-60, -60, -30);
-  FloatGrid skin(geometry);
+  volume::FloatGrid skin(geometry);
   for (std::size_t n = 0; n < skin.voxels.size(); ++n)
     skin.voxels[n] = static_cast<float>(60.0 - 2.0 * static_cast<double>(geometry.index_of(n)[1]));
   return skin;
@@ -48,7 +48,7 @@ Pose tilted(double angle_rad, const Vec3& p_PT) {
 }
 
 TEST(ProbeContact, FlatFaceDentsFlatSkinByItsDepth) {
-  const FloatGrid skin = flat_skin();
+  const volume::FloatGrid skin = flat_skin();
   std::vector<LineContact> contact(65);
   find_contact(skin, linear(), Pose::translation({3, 4.3, 1}), contact);
   for (const LineContact& line : contact) {
@@ -59,7 +59,7 @@ TEST(ProbeContact, FlatFaceDentsFlatSkinByItsDepth) {
 }
 
 TEST(ProbeContact, GapIsMeasuredAndLosesTheSound) {
-  const FloatGrid skin = flat_skin();
+  const volume::FloatGrid skin = flat_skin();
   std::vector<LineContact> contact(65);
   for (const double gap_mm : {0.4, 1.5, 3.0, 40.0}) {
     find_contact(skin, linear(), Pose::translation({3, -gap_mm, 1}), contact);
@@ -76,7 +76,7 @@ TEST(ProbeContact, GapIsMeasuredAndLosesTheSound) {
 
 TEST(ProbeContact, DistanceIsAlongTheScanline) {
   // A convex face: its outer scanlines leave it obliquely and behind the middle.
-  const FloatGrid skin = flat_skin();
+  const volume::FloatGrid skin = flat_skin();
   const ScanGeometry geometry = convex();
   std::vector<LineContact> contact(65);
   constexpr double kPressed_mm = 3.0;
@@ -92,7 +92,7 @@ TEST(ProbeContact, DistanceIsAlongTheScanline) {
 }
 
 TEST(ProbeContact, TiltedFaceLosesOneSideSmoothly) {
-  const FloatGrid skin = flat_skin();
+  const volume::FloatGrid skin = flat_skin();
   std::vector<LineContact> contact(257);
   find_contact(skin, linear(257), tilted(0.2, {0, 1, 0}), contact);
   EXPECT_EQ(contact.front().coupling, 0.0F);
@@ -105,11 +105,11 @@ TEST(ProbeContact, TiltedFaceLosesOneSideSmoothly) {
 
 TEST(ProbeContact, WithoutSkinOrPoseNothingIsPressed) {
   std::vector<LineContact> contact(65, LineContact{1, 1, 0});
-  find_contact(FloatGrid{}, linear(), Pose{}, contact);
+  find_contact(volume::FloatGrid{}, linear(), Pose{}, contact);
   EXPECT_EQ(contact[7].pressed_mm, 0.0F);
   EXPECT_EQ(contact[7].coupling, 1.0F);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const FloatGrid skin = flat_skin();
+  const volume::FloatGrid skin = flat_skin();
   for (const double bad : {nan, 1e300, -1e300, std::numeric_limits<double>::infinity()}) {
     find_contact(skin, linear(), Pose::translation({bad, 0, 0}), contact);
     for (const LineContact& line : contact) EXPECT_TRUE(std::isfinite(line.pressed_mm + line.gap_mm + line.coupling));
@@ -117,7 +117,7 @@ TEST(ProbeContact, WithoutSkinOrPoseNothingIsPressed) {
 }
 
 TEST(ProbeContact, AllocatesNothing) {
-  const FloatGrid skin = flat_skin();
+  const volume::FloatGrid skin = flat_skin();
   std::vector<LineContact> contact(65);
   const testing::AllocationGuard guard;
   find_contact(skin, convex(), Pose::translation({0, 3, 0}), contact);
@@ -155,7 +155,7 @@ TEST(ProbeContact, DentTakesTheSkinToTheFaceAndLeavesTheDepth) {
 TEST(ProbeContact, ReachGrowsWithFatAndEndsAtBone) {
   using namespace testing;
   const auto reach_mm = [](double fat_mm, double bone_mm) {
-    const VirtualPatient patient = make_block({90, 80, 30}, {1.5, 1.5, 3.0}, [&](const Vec3& p_P) {
+    const anatomy::VirtualPatient patient = make_block({90, 80, 30}, {1.5, 1.5, 3.0}, [&](const Vec3& p_P) {
       return BlockVoxel{p_P.y() > bone_mm ? kBone : p_P.y() < fat_mm ? kFat : kMuscle, 0};
     });
     AcousticTable table = make_block_table();
@@ -171,4 +171,4 @@ TEST(ProbeContact, ReachGrowsWithFatAndEndsAtBone) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -12,11 +12,11 @@
 #include "ultrasound/probe/probe_contact.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
-const VirtualPatient& abdomen() {
-  static const VirtualPatient kPatient = *generate_phantom("abdomen", 1, {{145, 114, 92}});
+const anatomy::VirtualPatient& abdomen() {
+  static const anatomy::VirtualPatient kPatient = *anatomy::generate_phantom("abdomen", 1, {{145, 114, 92}});
   return kPatient;
 }
 
@@ -33,7 +33,7 @@ struct Placed {
   ViewVisibility visibility;
 };
 
-Placed place(const VirtualPatient& patient, std::string_view name) {
+Placed place(const anatomy::VirtualPatient& patient, std::string_view name) {
   const auto view = choose_view(patient, views(), name);
   EXPECT_TRUE(view.has_value()) << view.error().text();
   const auto transducer = load_transducer(data_dir() / "transducers.toml", view->transducer);
@@ -48,22 +48,22 @@ Vec3 at(const Placed& placed, double line, double depth_mm) {
   return placed.X_PT * Vec3(p_T.x(), p_T.y(), 0.0);
 }
 
-std::string label_at(const VirtualPatient& patient, const Vec3& p_P) {
-  const Label* label = find_label(patient, p_P);
+std::string label_at(const anatomy::VirtualPatient& patient, const Vec3& p_P) {
+  const anatomy::Label* label = anatomy::find_label(patient, p_P);
   return label != nullptr ? label->name : "";
 }
 
 /// Depth of the first bone on a scanline; the picture's depth where there is none.
-double bone_depth_mm(const VirtualPatient& patient, const Placed& placed, double line) {
+double bone_depth_mm(const anatomy::VirtualPatient& patient, const Placed& placed, double line) {
   for (double depth_mm = 0.0; depth_mm < placed.view.depth_mm; depth_mm += 0.5) {
-    const Label* label = find_label(patient, at(placed, line, depth_mm));
+    const anatomy::Label* label = anatomy::find_label(patient, at(placed, line, depth_mm));
     if (label != nullptr && label->tissue == "bone") return depth_mm;
   }
   return placed.view.depth_mm;
 }
 
 /// Share of the picture that a label takes.
-double share_of(const VirtualPatient& patient, const Placed& placed, std::string_view name) {
+double share_of(const anatomy::VirtualPatient& patient, const Placed& placed, std::string_view name) {
   int hits = 0;
   int all = 0;
   for (int line = 0; line < placed.scan.lines; line += 2) {
@@ -74,7 +74,7 @@ double share_of(const VirtualPatient& patient, const Placed& placed, std::string
 }
 
 /// What every view keeps: a rigid pose, the face on the skin along its width, the marker where the plane says.
-void expect_on_skin(const VirtualPatient& patient, const Placed& placed) {
+void expect_on_skin(const anatomy::VirtualPatient& patient, const Placed& placed) {
   const std::string& name = placed.view.name;
   const Mat3& R_PT = placed.X_PT.R();
   EXPECT_LT((R_PT.transpose() * R_PT - Mat3::Identity()).norm(), 1e-9) << name;
@@ -93,8 +93,8 @@ void expect_on_skin(const VirtualPatient& patient, const Placed& placed) {
 }
 
 /// And its target is in the picture.
-void expect_target_in_picture(const VirtualPatient& patient, const Placed& placed) {
-  const Label* target = find_target(patient, placed.view.targets);
+void expect_target_in_picture(const anatomy::VirtualPatient& patient, const Placed& placed) {
+  const anatomy::Label* target = find_target(patient, placed.view.targets);
   ASSERT_NE(target, nullptr);
   EXPECT_GT(share_of(patient, placed, target->name), 0.001) << placed.view.name;
 }
@@ -117,7 +117,7 @@ TEST(ProbePlacement, LayeredScenesHaveTheirViews) {
                                                         {"layers-liver", "intercostal"},
                                                         {"layers-liver", "bile-duct"}};
   for (const auto& [scene, name] : kViews) {
-    const auto patient = phantom::make_layered_scene(scene, 1, {{50, 88, 50}});
+    const auto patient = anatomy::phantom::make_layered_scene(scene, 1, {{50, 88, 50}});
     ASSERT_TRUE(patient.has_value());
     const Placed placed = place(*patient, name);
     expect_on_skin(*patient, placed);
@@ -139,8 +139,8 @@ TEST(ProbePlacement, KidneyLiesBehindLiverAndNoBoneInFront) {
 }
 
 TEST(ProbePlacement, IntercostalViewHasARibAtEitherSideOfAFreeMiddle) {
-  const auto liver = phantom::make_layered_scene("layers-liver", 1, {{100, 175, 100}});
-  for (const VirtualPatient* patient : {&abdomen(), &*liver}) {
+  const auto liver = anatomy::phantom::make_layered_scene("layers-liver", 1, {{100, 175, 100}});
+  for (const anatomy::VirtualPatient* patient : {&abdomen(), &*liver}) {
     const Placed placed = place(*patient, "intercostal");
     const double middle = placed.scan.middle_line();
     EXPECT_GT(bone_depth_mm(*patient, placed, middle), 70.0) << patient->name;
@@ -207,11 +207,11 @@ TEST(ProbePlacement, SaysWhatThePatientLacksAndWhatHeHas) {
   ProbeView view;
   view.targets = {"tail"};
   EXPECT_FALSE(place_probe(abdomen(), view, *transducer).has_value());
-  EXPECT_FALSE(place_probe(VirtualPatient{}, view, *transducer).has_value());
+  EXPECT_FALSE(place_probe(anatomy::VirtualPatient{}, view, *transducer).has_value());
 }
 
 TEST(ProbeView, FirstPatternThatMatchesCountsAndTheLargestOfItsLabels) {
-  VirtualPatient patient;
+  anatomy::VirtualPatient patient;
   patient.labels.geometry.size = {10, 10, 1};
   patient.labels.voxels.assign(100, 0);
   const char* const names[] = {"livertumor1", "livertumor2", "Right Kidney", "speck"};
@@ -219,7 +219,7 @@ TEST(ProbeView, FirstPatternThatMatchesCountsAndTheLargestOfItsLabels) {
   for (std::size_t n = 0; n < 100; ++n)
     patient.labels.voxels[n] = static_cast<std::uint8_t>(n < 20 ? 1 : n < 60 ? 2 : n < 95 ? 3 : 4);
   const auto found = [&](std::vector<std::string> patterns) {
-    const Label* label = find_target(patient, patterns);
+    const anatomy::Label* label = find_target(patient, patterns);
     return label != nullptr ? label->name : "";
   };
   EXPECT_EQ(found({"liver_tumor*"}), "livertumor2");
@@ -229,4 +229,4 @@ TEST(ProbeView, FirstPatternThatMatchesCountsAndTheLargestOfItsLabels) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -8,7 +8,7 @@
 #include "core/files/data_dir.h"
 #include "ultrasound/probe/transducer.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 /// What loading a file of this text says.
@@ -60,4 +60,4 @@ TEST(ProbeViews, RefusesWhatMakesNoView) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

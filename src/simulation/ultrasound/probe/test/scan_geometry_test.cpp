@@ -8,7 +8,7 @@
 
 #include "core/files/data_dir.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kRounding_mm = 1e-9;  // distances of up to 1e3 mm in double
@@ -139,4 +139,4 @@ TEST(RasterGeometry, MirrorSwapsLeftAndRight) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -10,7 +10,7 @@
 #include "core/files/temporary_folder.h"
 #include "ultrasound/probe/scan_geometry.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 const std::filesystem::path kFile = data_dir() / "transducers.toml";
@@ -112,4 +112,4 @@ TEST(Transducers, MissingFileIsAnError) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

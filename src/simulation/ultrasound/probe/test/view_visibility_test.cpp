@@ -9,7 +9,7 @@
 #include "ultrasound/probe/probe_placement.h"
 #include "ultrasound/tissue/test/make_block.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using testing::BlockVoxel;
@@ -34,7 +34,7 @@ ProbeView ball_view() {
 
 /// A ball in liver, behind what `cover` puts before it.
 template <class Cover>
-VirtualPatient ball_behind(const Cover& cover) {
+anatomy::VirtualPatient ball_behind(const Cover& cover) {
   return testing::make_block({240.0, 130.0, 240.0}, {4.0, 4.0, 4.0}, [&](const Vec3& p_P) -> BlockVoxel {
     if (const BlockVoxel covering = cover(p_P); covering.label != 0) return covering;
     const bool is_ball = (p_P - Vec3(0.0, kDepth_mm, 0.0)).norm() < kRadius_mm;
@@ -58,7 +58,7 @@ double sum_of(const ViewVisibility& v) {
 }
 
 TEST(ViewVisibility, OfAFreeBallIsWhole) {
-  const VirtualPatient patient = ball_behind(nothing);
+  const anatomy::VirtualPatient patient = ball_behind(nothing);
   const auto placed = place_probe(patient, ball_view(), convex());
   ASSERT_TRUE(placed) << placed.error().text();
   EXPECT_NEAR(placed->visibility.visible, 1.0, 0.02);
@@ -68,7 +68,7 @@ TEST(ViewVisibility, OfAFreeBallIsWhole) {
 }
 
 TEST(ViewVisibility, FindsTheWindowBesideBoneBeyondTheSearch) {
-  const VirtualPatient patient = ball_behind(plate(24.0));
+  const anatomy::VirtualPatient patient = ball_behind(plate(24.0));
   const auto placed = place_probe(patient, ball_view(), convex());
   ASSERT_TRUE(placed) << placed.error().text();
   EXPECT_GT(placed->visibility.visible, 0.9) << hidden_causes(placed->visibility);
@@ -98,7 +98,7 @@ TEST(ViewVisibility, SaysWhatHidesTheSubject) {
 }
 
 TEST(ViewVisibility, EndsWithThePictureAndWithTheSound) {
-  const VirtualPatient patient = ball_behind(nothing);
+  const anatomy::VirtualPatient patient = ball_behind(nothing);
   ProbeView fixed = ball_view();
   fixed.search_mm = 0.0;
   fixed.depth_mm = kDepth_mm;
@@ -124,8 +124,8 @@ TEST(ViewVisibility, EndsWithThePictureAndWithTheSound) {
 
 TEST(ViewVisibility, CountsWhatTheCtHasLeftOut) {
   // Half of the ball lies beyond the end of the CT at z = 0.
-  VirtualPatient patient = ball_behind(nothing);
-  GridGeometry half = patient.labels.geometry;
+  anatomy::VirtualPatient patient = ball_behind(nothing);
+  volume::GridGeometry half = patient.labels.geometry;
   const std::size_t slices = static_cast<std::size_t>(half.size[2]) / 2;
   const std::size_t slice = static_cast<std::size_t>(half.size[0] * half.size[1]);
   half.size[2] = static_cast<std::int64_t>(slices);
@@ -145,4 +145,4 @@ TEST(ViewVisibility, CountsWhatTheCtHasLeftOut) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

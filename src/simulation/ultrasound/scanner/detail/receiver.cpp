@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "ultrasound/scanner/detail/scanner_kernels.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr std::uint64_t kTableSeed = 0x5eed0001;
@@ -148,4 +148,4 @@ void Receiver::add_bands(const ScanGeometry& scan, const Beam& beam) {
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

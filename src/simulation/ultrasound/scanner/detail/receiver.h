@@ -7,7 +7,7 @@
 #include "ultrasound/engine/beam.h"
 #include "ultrasound/probe/scan_geometry.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 inline constexpr std::size_t kNoiseLength = std::size_t{1} << 16;
 inline constexpr std::size_t kMostSamples = 4096;  ///< A scanline, see Acquisition.
@@ -51,4 +51,4 @@ class Receiver {
   std::vector<float> clutter_re_, clutter_im_;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

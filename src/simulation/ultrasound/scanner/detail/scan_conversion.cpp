@@ -6,7 +6,7 @@
 #include "core/check.h"
 #include "ultrasound/scanner/detail/scanner_kernels.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr int kBlock = static_cast<int>(kMostLanes);
@@ -112,4 +112,4 @@ void ScanConversion::convert_rows(std::size_t first, std::size_t last, std::uint
   interpolate_pixels(sources, line_samples_.data(), block_start_.data() + begin, end - begin, pixels);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

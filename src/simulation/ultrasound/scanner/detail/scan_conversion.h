@@ -6,7 +6,7 @@
 
 #include "ultrasound/probe/scan_geometry.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// From scanlines to pixels by a table (docs/physics.md U11): for every block of pixels that the scan touches, where
 /// its values come from. Pixels beyond the scan are left alone, or black where a block reaches over the edge.
@@ -40,4 +40,4 @@ class ScanConversion {
   std::vector<std::uint8_t> across_lines_;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -4,13 +4,13 @@
 
 // Compiled once for each instruction set by foreach_target.h; the fitting one is chosen when the program runs.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "ultrasound/detail/scanner_kernels.cpp"
+#define HWY_TARGET_INCLUDE "ultrasound/scanner/detail/scanner_kernels.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which sets the instruction set that this header compiles for.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -126,11 +126,11 @@ void interpolate_pixels(const PixelSources& sources, const std::uint8_t* HWY_RES
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 static_assert(std::endian::native == std::endian::little,
               "the lowest byte of a gathered word must be its first sample");
@@ -152,5 +152,5 @@ void interpolate_pixels(const PixelSources& sources, const std::uint8_t* samples
   HWY_DYNAMIC_DISPATCH(interpolate_pixels)(sources, samples, block_start, blocks, pixels);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail
 #endif

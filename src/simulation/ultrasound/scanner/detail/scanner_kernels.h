@@ -5,7 +5,7 @@
 
 /// The steps of the scanner's back end that run over every sample and every pixel (docs/physics.md U11). Compiled
 /// for every instruction set and chosen at run time. Real-time safe.
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// Level of an echo as it is kept: steps of kLevelStep_db above kLevelFloor_db, against liver's speckle; 256 fine
 /// levels are one step. What is no number (NaN, infinite) is level 0. The 127 dB hold what gain and dynamic range can
@@ -52,4 +52,4 @@ struct PixelSources {
 void interpolate_pixels(const PixelSources& sources, const std::uint8_t* samples, const std::int32_t* block_start,
                         std::size_t blocks, std::uint8_t* pixels) noexcept;
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

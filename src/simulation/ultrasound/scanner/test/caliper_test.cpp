@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 RasterGeometry raster_of(double mm_per_pixel, bool is_mirrored) {
@@ -85,4 +85,4 @@ TEST(Caliper, AngleIsBetweenTheArms) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

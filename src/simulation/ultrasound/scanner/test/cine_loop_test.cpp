@@ -4,7 +4,7 @@
 
 #include "core/testing/allocation_guard.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 ScanGeometry small_scan() {
@@ -108,4 +108,4 @@ TEST(CineLoop, PushTakesNoMemory) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

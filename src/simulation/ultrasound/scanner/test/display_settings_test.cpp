@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -148,4 +148,4 @@ TEST(GrayMap, LinearIsProportionalToDecibels) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 DistanceCaliper distance(double mm) {
@@ -92,4 +92,4 @@ TEST(Measurements, ResultsHaveUnits) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

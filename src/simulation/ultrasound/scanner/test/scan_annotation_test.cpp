@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 ScanGeometry fan(double depth_mm) {
@@ -90,22 +90,22 @@ TEST(ScanAnnotation, WedgeShowsTheGrayMap) {
 TEST(ScanAnnotation, DrawsOverAPictureAndNeverBeyondIt) {
   const ScanGeometry scan = fan(160.0);
   const ScanAnnotation annotation = make_scan_annotation(fit_raster(scan, 640, 480), scan, caption());
-  RgbImage image(640, 480);
+  volume::RgbImage image(640, 480);
   draw_annotation(image, annotation);
   const auto row = static_cast<int>(std::lround(annotation.ticks[5].row));
-  EXPECT_NE(image.at(annotation.scale_column - 1, row), (Rgb{0, 0, 0}));
-  EXPECT_EQ(image.at(320, 240), (Rgb{0, 0, 0}));
-  RgbImage tiny(20, 16);
+  EXPECT_NE(image.at(annotation.scale_column - 1, row), (volume::Rgb{0, 0, 0}));
+  EXPECT_EQ(image.at(320, 240), (volume::Rgb{0, 0, 0}));
+  volume::RgbImage tiny(20, 16);
   draw_annotation(tiny, annotation);  // sanitizers watch
-  RgbImage none;
+  volume::RgbImage none;
   draw_annotation(none, annotation);
 }
 
 TEST(ScanAnnotation, GrayBecomesRgb) {
-  const RgbImage image = to_rgb({2, 1, {7, 200}});
-  EXPECT_EQ(image.at(0, 0), (Rgb{7, 7, 7}));
-  EXPECT_EQ(image.at(1, 0), (Rgb{200, 200, 200}));
+  const volume::RgbImage image = to_rgb({2, 1, {7, 200}});
+  EXPECT_EQ(image.at(0, 0), (volume::Rgb{7, 7, 7}));
+  EXPECT_EQ(image.at(1, 0), (volume::Rgb{200, 200, 200}));
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

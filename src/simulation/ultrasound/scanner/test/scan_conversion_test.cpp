@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// Gray values: rounding of the value, of two weights and of a smoothed sample.
@@ -117,4 +117,4 @@ TEST(ScanConversion, CoarsePixelsAverageNeighbouringSamples) {
 }
 
 }  // namespace
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -8,7 +8,7 @@
 #include "core/files/temporary_folder.h"
 #include "ultrasound/live/scan_request.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 TEST(ScanPreset, ThoseThatShipFitTheirTransducers) {
@@ -44,4 +44,4 @@ TEST(ScanPreset, WhatIsWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

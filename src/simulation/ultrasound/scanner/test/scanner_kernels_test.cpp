@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// Of the logarithm (0.0004 dB) and half a fine level, dB; a gray value is never finer than 0.05 dB.
@@ -99,4 +99,4 @@ TEST(Persist, ReachesAStandingPicture) {
 }
 
 }  // namespace
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -10,7 +10,7 @@
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 constexpr int kLines = 96;
@@ -274,4 +274,4 @@ TEST(Scanner, ShowTakesNoMemoryWhileTheGeometryStays) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -9,7 +9,7 @@
 
 #include "core/parallel.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// The 13 lines through a voxel and its neighbours.
@@ -29,13 +29,13 @@ constexpr std::array<std::array<int, 3>, 13> kSticks{{{1, 0, 0},
 
 /// What is known, before anything is filled.
 struct Known {
-  const GridGeometry& grid;
+  const volume::GridGeometry& grid;
   const std::vector<std::uint8_t>& is_known;
   const std::vector<std::uint8_t>& gray;
 };
 
 /// Steps that stay in the grid from ijk along a direction (sign -1: against it).
-int room(const GridGeometry& grid, const Index3& ijk, const std::array<int, 3>& direction, int sign) {
+int room(const volume::GridGeometry& grid, const volume::Index3& ijk, const std::array<int, 3>& direction, int sign) {
   std::int64_t steps = std::numeric_limits<int>::max();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int d = sign * direction[axis];
@@ -57,9 +57,9 @@ struct StickValue {
 };
 
 /// The stick through a hole, if it meets known voxels on both sides and is at most `longest` voxels long.
-std::optional<StickValue> find_stick(const Known& known, const Index3& ijk, const std::array<int, 3>& stick,
+std::optional<StickValue> find_stick(const Known& known, const volume::Index3& ijk, const std::array<int, 3>& stick,
                                      int longest) {
-  const GridGeometry& grid = known.grid;
+  const volume::GridGeometry& grid = known.grid;
   const auto from = static_cast<std::int64_t>(grid.offset(ijk));
   const std::int64_t stride = (stick[2] * grid.size[1] + stick[1]) * grid.size[0] + stick[0];
   const int ahead = steps_to_known(known, from, stride, std::min(longest - 2, room(grid, ijk, stick, 1)));
@@ -73,7 +73,7 @@ std::optional<StickValue> find_stick(const Known& known, const Index3& ijk, cons
   return StickValue{length * length * step2, (behind * gray_ahead + ahead * gray_behind) / (ahead + behind)};
 }
 
-std::optional<double> fill_by_sticks(const Known& known, const Index3& ijk, const HoleFilling& way) {
+std::optional<double> fill_by_sticks(const Known& known, const volume::Index3& ijk, const HoleFilling& way) {
   std::array<StickValue, kSticks.size()> found;
   std::size_t count = 0;
   int shortest2 = std::numeric_limits<int>::max();
@@ -107,9 +107,9 @@ struct CubeSum {
 };
 
 template <class Weight>
-CubeSum sum_cube(const Known& known, const Index3& ijk, int radius, Weight weight_of) {
+CubeSum sum_cube(const Known& known, const volume::Index3& ijk, int radius, Weight weight_of) {
   CubeSum sum;
-  Index3 low{}, high{};
+  volume::Index3 low{}, high{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     low[axis] = std::max<std::int64_t>(ijk[axis] - radius, 0);
     high[axis] = std::min<std::int64_t>(ijk[axis] + radius, known.grid.size[axis] - 1);
@@ -127,7 +127,7 @@ CubeSum sum_cube(const Known& known, const Index3& ijk, int radius, Weight weigh
   return sum;
 }
 
-std::optional<double> fill_by_nearest(const Known& known, const Index3& ijk, const HoleFilling& way) {
+std::optional<double> fill_by_nearest(const Known& known, const volume::Index3& ijk, const HoleFilling& way) {
   CubeSum sum;
   for (int radius = 1; radius <= (way.size - 1) / 2 && sum.count == 0; ++radius)
     sum = sum_cube(known, ijk, radius, [](auto, auto, auto) { return 1.0; });
@@ -135,7 +135,7 @@ std::optional<double> fill_by_nearest(const Known& known, const Index3& ijk, con
   return sum.gray / sum.weights;
 }
 
-std::optional<double> fill_by_gaussian(const Known& known, const Index3& ijk, const HoleFilling& way) {
+std::optional<double> fill_by_gaussian(const Known& known, const volume::Index3& ijk, const HoleFilling& way) {
   const double scale = -0.5 / (way.sigma_voxels * way.sigma_voxels);
   const CubeSum sum = sum_cube(known, ijk, (way.size - 1) / 2, [&](std::int64_t i, std::int64_t j, std::int64_t k) {
     return std::exp(scale * static_cast<double>(i * i + j * j + k * k));
@@ -145,7 +145,7 @@ std::optional<double> fill_by_gaussian(const Known& known, const Index3& ijk, co
   return sum.gray / sum.weights;
 }
 
-std::optional<double> fill_by(const HoleFilling& way, const Known& known, const Index3& ijk) {
+std::optional<double> fill_by(const HoleFilling& way, const Known& known, const volume::Index3& ijk) {
   switch (way.kind) {
     case HoleFilling::Kind::kNearest:
       return fill_by_nearest(known, ijk, way);
@@ -160,7 +160,7 @@ std::optional<double> fill_by(const HoleFilling& way, const Known& known, const 
 /// Blocks of 4³ voxels that have something known within reach: most of a sweep's box is empty and needs no search.
 class NearBlocks {
  public:
-  NearBlocks(const GridGeometry& grid, const std::vector<std::uint8_t>& is_known, std::int64_t reach) {
+  NearBlocks(const volume::GridGeometry& grid, const std::vector<std::uint8_t>& is_known, std::int64_t reach) {
     for (std::size_t axis = 0; axis < 3; ++axis) blocks_[axis] = (grid.size[axis] + kEdge - 1) / kEdge;
     is_near_.assign(static_cast<std::size_t>(blocks_[0] * blocks_[1] * blocks_[2]), 0);
     std::size_t n = 0;
@@ -170,12 +170,12 @@ class NearBlocks {
           if (is_known[n] != 0) is_near_[block_of({i, j, k})] = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) spread(axis, (reach + kEdge - 1) / kEdge);
   }
-  bool is_near(const Index3& ijk) const { return is_near_[block_of(ijk)] != 0; }
+  bool is_near(const volume::Index3& ijk) const { return is_near_[block_of(ijk)] != 0; }
 
  private:
   static constexpr std::int64_t kEdge = 4;
 
-  std::size_t block_of(const Index3& ijk) const {
+  std::size_t block_of(const volume::Index3& ijk) const {
     return static_cast<std::size_t>((ijk[2] / kEdge * blocks_[1] + ijk[1] / kEdge) * blocks_[0] + ijk[0] / kEdge);
   }
   void spread(std::size_t axis, std::int64_t distance) {
@@ -191,7 +191,7 @@ class NearBlocks {
     }
   }
 
-  Index3 blocks_{};
+  volume::Index3 blocks_{};
   std::vector<std::uint8_t> is_near_;
 };
 
@@ -221,7 +221,8 @@ std::size_t fill_slice(const Known& known, const NearBlocks& near_blocks, const 
 
 }  // namespace
 
-std::size_t fill_holes(LabelGrid& gray, const std::vector<std::uint8_t>& known, const std::vector<HoleFilling>& ways) {
+std::size_t fill_holes(volume::LabelGrid& gray, const std::vector<std::uint8_t>& known,
+                       const std::vector<HoleFilling>& ways) {
   if (ways.empty() || gray.empty()) return 0;
   const NearBlocks near_blocks(gray.geometry, known, reach_of(ways));
   std::vector<std::uint8_t> filled = gray.voxels;
@@ -235,4 +236,4 @@ std::size_t fill_holes(LabelGrid& gray, const std::vector<std::uint8_t>& known, 
   return count;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

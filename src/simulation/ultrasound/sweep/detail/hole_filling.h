@@ -7,10 +7,11 @@
 #include "ultrasound/sweep/freehand_options.h"
 #include "volume/grid.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// Fills voxels that are not `known` (1 a known voxel) from known ones, by the first of `ways` that can; returns how
 /// many. Filled ones fill no others.
-std::size_t fill_holes(LabelGrid& gray, const std::vector<std::uint8_t>& known, const std::vector<HoleFilling>& ways);
+std::size_t fill_holes(volume::LabelGrid& gray, const std::vector<std::uint8_t>& known,
+                       const std::vector<HoleFilling>& ways);
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -9,7 +9,7 @@
 #include "ultrasound/test/sweep_lab.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
@@ -39,18 +39,18 @@ TEST(FreehandSweep, ATiltReconstructsToTheVolumeOfTheMotor) {
   const FreehandVolume hand = reconstruct(poses, options.spacing_mm);
   std::vector<std::uint8_t> resampled(direct->gray.voxels.size());
   for (std::size_t n = 0; n < resampled.size(); ++n) {
-    const Index3 ijk = direct->gray.geometry.index_of(n);
+    const volume::Index3 ijk = direct->gray.geometry.index_of(n);
     const Vec3 p_P = direct->gray.geometry.to_mm(
         Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
-    resampled[n] =
-        static_cast<std::uint8_t>(std::lround(sample_linear_at_index(hand.gray, hand.gray.geometry.to_index(p_P))));
+    resampled[n] = static_cast<std::uint8_t>(
+        std::lround(volume::sample_linear_at_index(hand.gray, hand.gray.geometry.to_index(p_P))));
   }
   // Both interpolate the same frames, one by their scanlines and one by their pixels, on other grids.
-  EXPECT_GT(correlation(direct->gray.voxels, resampled, ComparedVoxels::kBothAboveZero), 0.9);
+  EXPECT_GT(volume::correlation(direct->gray.voxels, resampled, volume::ComparedVoxels::kBothAboveZero), 0.9);
 }
 
 TEST(FreehandSweep, ASlideShowsPointsWhereTheyAre) {
-  FloatGrid flat_skin = lab_scene()->skin_distance_mm;
+  volume::FloatGrid flat_skin = lab_scene()->skin_distance_mm;
   const FreehandVolume volume = reconstruct(slide_over_skin(flat_skin, {}, 50.0, 51), 0.7);
   for (const AcousticPoint& point : lab_points())
     EXPECT_LT((brightest_near(volume.gray, point.p_P) - point.p_P).norm(), kPlace_mm) << point.p_P.transpose();
@@ -58,14 +58,14 @@ TEST(FreehandSweep, ASlideShowsPointsWhereTheyAre) {
 
 TEST(FreehandSweep, ASlideKeepsTheFaceAsDeepOnACurvedSkin) {
   // A leg along x with a radius of 80 mm: the skin falls back to both sides in z.
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.size = {41, 101, 101};
   geometry.spacing_mm = Vec3::Constant(2.0);
   geometry.origin_P = {-40.0, -20.0, -100.0};
-  FloatGrid skin(geometry);
+  volume::FloatGrid skin(geometry);
   constexpr double kRadius_mm = 80.0;
   for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
-    const Index3 ijk = geometry.index_of(n);
+    const volume::Index3 ijk = geometry.index_of(n);
     const Vec3 p =
         geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
     skin.voxels[n] = static_cast<float>(std::hypot(p.y() - kRadius_mm, p.z()) - kRadius_mm);
@@ -82,9 +82,9 @@ TEST(FreehandSweep, ASlideKeepsTheFaceAsDeepOnACurvedSkin) {
 }
 
 TEST(FreehandSweep, ASlideBesideTheBodyStaysStraight) {
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.size = {4, 4, 4};
-  const FloatGrid nowhere(geometry, 500.0F);
+  const volume::FloatGrid nowhere(geometry, 500.0F);
   const auto poses = slide_over_skin(nowhere, {}, 20.0, 3);
   for (const Pose& pose : poses) EXPECT_TRUE(pose.is_finite());
 }
@@ -125,4 +125,4 @@ TEST(FreehandSweep, EveryFrameSaysWhereAndWhenAsPlusDoes) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -8,7 +8,7 @@
 
 #include "core/random.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using Matrix4 = TrackedSequence::Matrix4;
@@ -116,14 +116,14 @@ TEST(Freehand, MeanOfThousandsOfPixelsIsExact) {
 }
 
 /// The definition: every pixel to the nearest voxel, in doubles, one after the other.
-std::vector<double> slow_means(const TrackedSequence& sequence, const GridGeometry& grid) {
+std::vector<double> slow_means(const TrackedSequence& sequence, const volume::GridGeometry& grid) {
   std::vector<double> sums(grid.voxel_count(), 0.0), counts(grid.voxel_count(), 0.0);
   for (std::size_t frame = 0; frame < sequence.frames.size(); ++frame) {
     const Matrix4& T_PI = sequence.frames[frame].transforms.at("ImageToReference");
     for (int row = 0; row < sequence.rows; ++row) {
       for (int column = 0; column < sequence.columns; ++column) {
         const Vec3 index = grid.to_index((T_PI * Eigen::Vector4d(column, row, 0, 1)).head<3>());
-        Index3 voxel{};
+        volume::Index3 voxel{};
         for (int axis = 0; axis < 3; ++axis)
           voxel[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor(index[axis] + 0.5));
         EXPECT_TRUE(grid.contains(voxel));
@@ -169,11 +169,11 @@ TEST(Freehand, RestoresASmoothFieldFromTiltedPictures) {
     options.spacing_mm = Vec3::Constant(0.5);
     options.interpolation = interpolation;
     options.holes = {HoleFilling{}};
-    const LabelGrid gray = reconstruct(sequence, options).gray;
+    const volume::LabelGrid gray = reconstruct(sequence, options).gray;
     double sum2 = 0.0, count = 0.0;
     for (std::size_t n = 0; n < gray.voxels.size(); ++n) {
       if (gray.voxels[n] == 0) continue;
-      const Index3 ijk = gray.geometry.index_of(n);
+      const volume::Index3 ijk = gray.geometry.index_of(n);
       const Vec3 index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
       sum2 += std::pow(gray.voxels[n] - field(gray.geometry.to_mm(index)), 2);
       count += 1.0;
@@ -264,4 +264,4 @@ TEST(Freehand, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "ultrasound/test/sweep_lab.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
@@ -77,7 +77,7 @@ TEST(MechanicalSweep, LiesInThePatientAsTheTransducerDoes) {
   const Pose X_PT(rotation_between(Vec3::UnitZ(), Vec3(0.2, -0.5, 0.7).normalized()), {10.0, -20.0, 30.0});
   const auto volume = make_mechanical_sweep(moved(*lab_scene(), X_PT), motor_probe(), X_PT, lab_options());
   ASSERT_TRUE(volume) << volume.error().text();
-  const LabelGrid placed = in_patient(*volume, X_PT);
+  const volume::LabelGrid placed = in_patient(*volume, X_PT);
   for (const AcousticPoint& point : lab_points()) {
     const Vec3 p_P = X_PT * point.p_P;
     EXPECT_LT((brightest_near(placed, p_P) - p_P).norm(), kPlace_mm);
@@ -94,16 +94,16 @@ TEST(MechanicalSweep, SpeckleBelongsToTheTissueAndNoiseToTheSeed) {
   ASSERT_TRUE(first && same && other);
   EXPECT_EQ(first->gray.voxels, same->gray.voxels);
   EXPECT_NE(first->gray.voxels, other->gray.voxels);
-  EXPECT_GT(correlation(first->gray.voxels, other->gray.voxels, ComparedVoxels::kBothAboveZero), 0.95);
+  EXPECT_GT(volume::correlation(first->gray.voxels, other->gray.voxels, volume::ComparedVoxels::kBothAboveZero), 0.95);
 }
 
 TEST(MechanicalSweep, IsBlackBesideTheFan) {
   const auto& volume = lab_volume();
   ASSERT_TRUE(volume);
-  const GridGeometry& grid = volume->gray.geometry;
+  const volume::GridGeometry& grid = volume->gray.geometry;
   std::size_t inside = 0, lit = 0;
   for (std::size_t n = 0; n < grid.voxel_count(); ++n) {
-    const Index3 ijk = grid.index_of(n);
+    const volume::Index3 ijk = grid.index_of(n);
     const Vec3 p_T =
         grid.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
     const SweepGeometry::Place place = volume->geometry.to_place(p_T);
@@ -146,4 +146,4 @@ TEST(MechanicalSweep, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using Matrix4 = TransformGraph::Matrix4;
@@ -69,4 +69,4 @@ TEST(TransformGraph, SaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -6,7 +6,7 @@
 #include "ultrasound/tissue/acoustic_scene.h"
 #include "ultrasound/tissue/detail/tissue_volume.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr float kBorderWeight = 0.05F;  // assumed: a voxel at a border shows both sides; only thin structures need it
@@ -17,9 +17,9 @@ constexpr std::uint8_t kNeverEqual = 0xFE;  ///< Pads rows: no tissue and not kN
 /// Mean HU of each structure: a label, all gas, unlabelled voxels of one tissue.
 class StructureMeans {
  public:
-  StructureMeans(const VirtualPatient& patient, const BodyWindow& window, const TissueVolume& volume)
+  StructureMeans(const anatomy::VirtualPatient& patient, const BodyWindow& window, const TissueVolume& volume)
       : gas_(volume.gas) {
-    const Index3& size = window.geometry.size;
+    const volume::Index3& size = window.geometry.size;
     std::vector<Sums> by_slice(static_cast<std::size_t>(size[2]));
     parallel_for(by_slice.size(), 1, [&](std::size_t first, std::size_t last) {
       for (std::size_t w = first; w < last; ++w)
@@ -51,7 +51,7 @@ class StructureMeans {
     return label != 0 && tissue != gas_ ? label : std::size_t{256} + tissue;
   }
 
-  Sums sum_slice(const VirtualPatient& patient, const BodyWindow& window, const TissueVolume& volume,
+  Sums sum_slice(const anatomy::VirtualPatient& patient, const BodyWindow& window, const TissueVolume& volume,
                  std::int64_t w) const {
     Sums sums{};
     const std::uint8_t* tissue = volume.tissue_slice(w);
@@ -83,7 +83,7 @@ std::vector<float> half_kernel(double sigma_mm, double spacing_mm) {
 /// A slice of sums and weights with a rim of `rim` voxels that belongs to no tissue. The normalised convolution sums
 /// both over the neighbours of the same tissue, one axis after the other.
 struct WeightedSlice {
-  WeightedSlice(const Index3& size, std::int64_t rim_)
+  WeightedSlice(const volume::Index3& size, std::int64_t rim_)
       : width(size[0] + 2 * rim_),
         height(size[1] + 2 * rim_),
         rim(rim_),
@@ -100,7 +100,7 @@ struct WeightedSlice {
 
 /// Whether a voxel's six neighbours are its own tissue; the volume's border is none.
 bool is_pure(const TissueVolume& volume, std::int64_t u, std::int64_t v, std::int64_t w, const std::uint8_t* at) {
-  const Index3& size = volume.geometry.size;
+  const volume::Index3& size = volume.geometry.size;
   const std::int64_t slice = size[0] * size[1];
   const std::uint8_t own = *at;
   return (u == 0 || at[-1] == own) && (u + 1 == size[0] || at[1] == own) && (v == 0 || at[-size[0]] == own) &&
@@ -108,7 +108,7 @@ bool is_pure(const TissueVolume& volume, std::int64_t u, std::int64_t v, std::in
          (w + 1 == size[2] || at[slice] == own);
 }
 
-void fill_slice(const VirtualPatient& patient, const BodyWindow& window, const StructureMeans& means,
+void fill_slice(const anatomy::VirtualPatient& patient, const BodyWindow& window, const StructureMeans& means,
                 const TissueVolume& volume, std::int64_t w, WeightedSlice& slice) {
   const std::uint8_t* tissue = volume.tissue_slice(w);
   for (std::int64_t v = 0; v < window.geometry.size[1]; ++v) {
@@ -127,7 +127,7 @@ void fill_slice(const VirtualPatient& patient, const BodyWindow& window, const S
 }
 
 /// One axis of the convolution: `step` from a voxel to its next. Results go to `out`.
-void convolve(const WeightedSlice& in, const Index3& size, std::int64_t step, const std::vector<float>& kernel,
+void convolve(const WeightedSlice& in, const volume::Index3& size, std::int64_t step, const std::vector<float>& kernel,
               WeightedSlice& out) {
   for (std::int64_t v = 0; v < size[1]; ++v) {
     const std::size_t row = in.row(v);
@@ -184,9 +184,10 @@ void convolve_across(const TissueVolume& volume, const std::vector<std::int8_t>&
 
 }  // namespace
 
-void make_texture(const VirtualPatient& patient, const BodyWindow& window, double sigma_mm, TissueVolume& volume) {
+void make_texture(const anatomy::VirtualPatient& patient, const BodyWindow& window, double sigma_mm,
+                  TissueVolume& volume) {
   const StructureMeans means(patient, window, volume);
-  const Index3& size = window.geometry.size;
+  const volume::Index3& size = window.geometry.size;
   const auto slices = static_cast<std::size_t>(size[2]);
   const std::vector<float> kernel_u = half_kernel(sigma_mm, window.geometry.spacing_mm[0]);
   const std::vector<float> kernel_v = half_kernel(sigma_mm, window.geometry.spacing_mm[1]);
@@ -218,4 +219,4 @@ void make_texture(const VirtualPatient& patient, const BodyWindow& window, doubl
   });
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// How far borders are sought, in slice spacings and mm: assumed, a slope of about 1 in 3 is the flattest that is told
@@ -43,7 +43,7 @@ void SliceBlend::set_slices(std::int64_t w) {
   lower_ = volume_.tissue_slice(w);
   upper_ = volume_.tissue_slice(std::min(w + 1, volume_.geometry.size[2] - 1));
   changes_.clear();
-  const Index3& size = volume_.geometry.size;
+  const volume::Index3& size = volume_.geometry.size;
   std::size_t pixel = 0;
   for (std::int64_t v = 0; v < size[1]; ++v) {
     for (std::int64_t u = 0; u < size[0]; ++u, ++pixel) {
@@ -92,7 +92,7 @@ SliceBlend::Borders SliceBlend::find_borders(std::int64_t u, std::int64_t v, std
                                              std::uint8_t upper) const {
   constexpr float kNotFound = -1.0F;
   Borders found{kNotFound, kNotFound, kNotFound, kNotFound, lower, upper};
-  const Index3& size = volume_.geometry.size;
+  const volume::Index3& size = volume_.geometry.size;
   for (const Offset& offset : offsets_) {
     const std::int64_t at_u = u + offset.u;
     const std::int64_t at_v = v + offset.v;
@@ -118,7 +118,7 @@ SliceBlend::Borders SliceBlend::find_borders(std::int64_t u, std::int64_t v, std
 
 /// Shortest way through the tissue of a pixel along rows, columns and diagonals; each side counts up to the reach.
 float SliceBlend::thickness_mm(const std::uint8_t* tissue, std::int64_t u, std::int64_t v) const {
-  const Index3& size = volume_.geometry.size;
+  const volume::Index3& size = volume_.geometry.size;
   const Vec3& spacing_mm = volume_.geometry.spacing_mm;
   const std::uint8_t own = tissue[v * size[0] + u];
   float thinnest = 2.0F * reach_mm_;
@@ -149,4 +149,4 @@ void SliceBlend::blend(double fraction, std::vector<std::uint8_t>& out) const {
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

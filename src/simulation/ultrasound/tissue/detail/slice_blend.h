@@ -5,7 +5,7 @@
 
 #include "ultrasound/tissue/detail/tissue_volume.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// Tissue between two slices of a CT. Where both show the same tissue it goes through. Elsewhere a border moves across
 /// the pixel, at the height that the distances to the borders in either slice say (shape-based interpolation, Raya and
@@ -52,4 +52,4 @@ class SliceBlend {
   std::vector<Change> changes_;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

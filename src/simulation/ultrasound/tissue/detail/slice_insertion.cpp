@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// Voxel index with 32 binary places: a step along a row is one addition, and its exact range in the grid a division.
@@ -51,7 +51,7 @@ void meet(Cell& cell, Cell gray, Cell weight) {
 
 /// Slices first_k..last_k-1 of the volume, which one thread fills.
 struct Slab {
-  const GridGeometry* grid;
+  const volume::GridGeometry* grid;
   Cell* cells;
   std::int64_t first_k, last_k;
   double least_gray;
@@ -72,7 +72,7 @@ void insert_nearest(const Slab& slab, const std::uint8_t* row, FixedPoint at, co
 
 /// Shares a pixel among the eight voxels about it: `low` the one below on all axes, `part` in 256ths towards the next.
 template <FreehandCompounding kCompounding>
-void share(const Slab& slab, const Index3& low, const std::array<Cell, 3>& part, Cell gray) {
+void share(const Slab& slab, const volume::Index3& low, const std::array<Cell, 3>& part, Cell gray) {
   const auto& size = slab.grid->size;
   for (int side = 0; side < 4; ++side) {
     const bool is_next_j = (side & 1) != 0, is_next_k = (side & 2) != 0;
@@ -91,7 +91,7 @@ template <FreehandCompounding kCompounding>
 void insert_linear(const Slab& slab, const std::uint8_t* row, FixedPoint at, const FixedPoint& step, std::int64_t first,
                    std::int64_t last) {
   for (std::int64_t n = first; n <= last; ++n) {
-    Index3 low{};
+    volume::Index3 low{};
     std::array<Cell, 3> part{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[axis] = at[axis] >> kPlaces;
@@ -125,7 +125,8 @@ struct FixedFrame {
   FixedPoint column_step;
 };
 
-FixedFrame fix(const TrackedSequence& sequence, const PlacedFrame& placed, const GridGeometry& grid, double shift) {
+FixedFrame fix(const TrackedSequence& sequence, const PlacedFrame& placed, const volume::GridGeometry& grid,
+               double shift) {
   const auto in_voxels = [&](const Vec3& v) -> Vec3 { return v.cwiseQuotient(grid.spacing_mm); };
   FixedFrame fixed;
   fixed.picture = sequence.picture(placed.frame).data();
@@ -232,7 +233,7 @@ Extent extent_of(const std::vector<PlacedFrame>& frames, const ClipRectangle& bo
 }
 
 void insert_frames(const TrackedSequence& sequence, const std::vector<PlacedFrame>& frames,
-                   const std::vector<PixelRun>& runs, const FreehandOptions& options, const GridGeometry& grid,
+                   const std::vector<PixelRun>& runs, const FreehandOptions& options, const volume::GridGeometry& grid,
                    std::vector<Cell>& cells) {
   const bool is_linear = options.interpolation == FreehandInterpolation::kLinear;
   const double shift = is_linear ? 0.0 : 0.5;
@@ -253,4 +254,4 @@ void insert_frames(const TrackedSequence& sequence, const std::vector<PlacedFram
   });
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

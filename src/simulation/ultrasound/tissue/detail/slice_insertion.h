@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "ultrasound/sweep/freehand_options.h"
-#include "volume/grid.h"
 #include "ultrasound/sweep/tracked_sequence.h"
+#include "volume/grid.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// Pixels first..last of a row that count.
 struct PixelRun {
@@ -42,7 +42,7 @@ inline constexpr Cell kWholePixel = 256;
 
 /// Puts the pixels of all frames into cells (one a voxel of `grid`), frame after frame in each voxel.
 void insert_frames(const TrackedSequence& sequence, const std::vector<PlacedFrame>& frames,
-                   const std::vector<PixelRun>& runs, const FreehandOptions& options, const GridGeometry& grid,
+                   const std::vector<PixelRun>& runs, const FreehandOptions& options, const volume::GridGeometry& grid,
                    std::vector<Cell>& cells);
 
 /// Rounded gray of a cell; nothing has met it: 0.
@@ -52,4 +52,4 @@ inline std::uint8_t gray_of(Cell cell) noexcept {
   return weight == 0 ? std::uint8_t{0} : static_cast<std::uint8_t>((sum + weight / 2) / weight);
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr double kCell_mm = 8.0;  ///< Each cube of P holds one strand at most.
@@ -17,8 +17,9 @@ constexpr double kWeakest_db = -10.0, kStrongest_db = 2.0;  ///< Of a point (ass
 /// Tissue at a point of P; 127 outside and in mixed cells.
 std::uint8_t plain_tissue(const AcousticScene& scene, const Vec3& p_P) {
   const Vec3 index = scene.geometry.to_index(p_P);
-  const Index3 voxel{static_cast<std::int64_t>(std::floor(index.x())), static_cast<std::int64_t>(std::floor(index.y())),
-                     static_cast<std::int64_t>(std::floor(index.z()))};
+  const volume::Index3 voxel{static_cast<std::int64_t>(std::floor(index.x())),
+                             static_cast<std::int64_t>(std::floor(index.y())),
+                             static_cast<std::int64_t>(std::floor(index.z()))};
   if (!scene.geometry.contains(voxel)) return 127;
   const std::uint8_t value = scene.tissue[scene.geometry.offset(voxel)];
   return (value & kMixedCell) != 0 ? 127 : value;
@@ -67,4 +68,4 @@ void add_strands(AcousticScene& scene) {
   }
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

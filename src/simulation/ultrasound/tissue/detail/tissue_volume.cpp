@@ -8,7 +8,7 @@
 
 #include "core/parallel.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 // HU of what has no label, as src/anatomy finds them (adipose tissue up to -30 HU, doi 10.1038/s41598-025-96238-6,
@@ -19,8 +19,8 @@ constexpr int kBoneAbove_hu = 250;
 
 /// Smallest and greatest index of the body along each axis.
 struct Bounds {
-  Index3 low{INT64_MAX, INT64_MAX, INT64_MAX};
-  Index3 high{-1, -1, -1};
+  volume::Index3 low{INT64_MAX, INT64_MAX, INT64_MAX};
+  volume::Index3 high{-1, -1, -1};
 
   void include(const Bounds& other) {
     for (std::size_t a = 0; a < 3; ++a) {
@@ -30,9 +30,9 @@ struct Bounds {
   }
 };
 
-Bounds slice_bounds(const FloatGrid& skin_distance_mm, std::int64_t k) {
+Bounds slice_bounds(const volume::FloatGrid& skin_distance_mm, std::int64_t k) {
   Bounds bounds;
-  const Index3& size = skin_distance_mm.geometry.size;
+  const volume::Index3& size = skin_distance_mm.geometry.size;
   for (std::int64_t j = 0; j < size[1]; ++j) {
     const float* row = skin_distance_mm.voxels.data() + skin_distance_mm.geometry.offset({0, j, k});
     const auto is_inside = [](float distance_mm) { return distance_mm < 0.0F; };
@@ -45,7 +45,7 @@ Bounds slice_bounds(const FloatGrid& skin_distance_mm, std::int64_t k) {
   return bounds;
 }
 
-Bounds body_bounds(const FloatGrid& skin_distance_mm) {
+Bounds body_bounds(const volume::FloatGrid& skin_distance_mm) {
   const auto slices = static_cast<std::size_t>(skin_distance_mm.geometry.size[2]);
   std::vector<Bounds> by_slice(slices);
   parallel_for(slices, 1, [&](std::size_t first, std::size_t last) {
@@ -90,7 +90,7 @@ Result<std::uint8_t> find_code(const AcousticTable& table, std::string_view tiss
               "add a row of that name to data/acoustics.toml");
 }
 
-Result<TissueCodes> make_codes(const LabelTable& labels, const AcousticTable& table) {
+Result<TissueCodes> make_codes(const anatomy::LabelTable& labels, const AcousticTable& table) {
   constexpr std::string_view kUnlabelled = "unlabelled parts of the body";
   TissueCodes codes;
   TROCAR_TRY(codes.gas, find_code(table, "gas", kUnlabelled));
@@ -98,7 +98,7 @@ Result<TissueCodes> make_codes(const LabelTable& labels, const AcousticTable& ta
   TROCAR_TRY(codes.bone, find_code(table, "bone", kUnlabelled));
   TROCAR_TRY(codes.soft_tissue, find_code(table, "soft_tissue", kUnlabelled));
   codes.by_label.fill(codes.soft_tissue);
-  for (const Label& label : labels.labels) {
+  for (const anatomy::Label& label : labels.labels) {
     TROCAR_TRY(codes.by_label[label.id], find_code(table, label.tissue, fmt::format("label \"{}\"", label.name)));
     codes.holds_gas[label.id] = label.tissue == "bowel";
   }
@@ -107,8 +107,8 @@ Result<TissueCodes> make_codes(const LabelTable& labels, const AcousticTable& ta
 
 }  // namespace
 
-Result<BodyWindow> find_body_window(const VirtualPatient& patient, double margin_mm) {
-  const GridGeometry& grid = patient.labels.geometry;
+Result<BodyWindow> find_body_window(const anatomy::VirtualPatient& patient, double margin_mm) {
+  const volume::GridGeometry& grid = patient.labels.geometry;
   if (patient.labels.empty()) return fail("the patient has no voxels", patient.name, "build the patient again");
   Bounds box = body_bounds(patient.skin_distance_mm);
   if (box.high[0] < 0)
@@ -140,14 +140,14 @@ Result<BodyWindow> find_body_window(const VirtualPatient& patient, double margin
   return window;
 }
 
-Result<TissueVolume> make_tissue_volume(const VirtualPatient& patient, const BodyWindow& window,
+Result<TissueVolume> make_tissue_volume(const anatomy::VirtualPatient& patient, const BodyWindow& window,
                                         const AcousticTable& table) {
   TROCAR_TRY(const TissueCodes codes, make_codes(patient.label_table, table));
   TissueVolume volume;
   volume.geometry = window.geometry;
   volume.gas = codes.gas;
   volume.tissue.resize(window.geometry.voxel_count());
-  const Index3& size = window.geometry.size;
+  const volume::Index3& size = window.geometry.size;
   parallel_for(static_cast<std::size_t>(size[1] * size[2]), 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row) {
       const auto v = static_cast<std::int64_t>(row) % size[1];
@@ -163,4 +163,4 @@ Result<TissueVolume> make_tissue_volume(const VirtualPatient& patient, const Bod
   return volume;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

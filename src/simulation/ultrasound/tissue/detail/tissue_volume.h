@@ -8,14 +8,14 @@
 #include "core/result.h"
 #include "ultrasound/tissue/acoustic_table.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// Stands in TissueVolume::tissue where there is no body.
 inline constexpr std::uint8_t kNoTissue = 0xFF;
 
 /// The part of a patient's grid that holds his body and a margin, with the axis of the thickest voxels last (slices).
 struct BodyWindow {
-  GridGeometry geometry;              ///< Of the part, axes in their new order.
+  volume::GridGeometry geometry;      ///< Of the part, axes in their new order.
   std::array<std::size_t, 3> stride;  ///< From a voxel to the next along each of them, in the patient's grid.
   std::size_t first;                  ///< Offset of its voxel (0, 0, 0) in the patient's grid.
 
@@ -26,11 +26,11 @@ struct BodyWindow {
 };
 
 /// Error: no voxel lies inside the body, or no skin is in the volume.
-Result<BodyWindow> find_body_window(const VirtualPatient& patient, double margin_mm);
+Result<BodyWindow> find_body_window(const anatomy::VirtualPatient& patient, double margin_mm);
 
 /// Acoustic tissue and HU deviation of the patient's own voxels.
 struct TissueVolume {
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   std::uint8_t gas = 0;              ///< Tissue index of gas.
   std::vector<std::uint8_t> tissue;  ///< Index into the table, or kNoTissue.
   std::vector<std::int8_t> texture;  ///< As AcousticScene::texture. Empty until make_texture has been there.
@@ -46,11 +46,12 @@ struct TissueVolume {
 
 /// Labels become tissues by their name in the table, gas in bowel and what has no label by their HU. Errors: a tissue
 /// without row.
-Result<TissueVolume> make_tissue_volume(const VirtualPatient& patient, const BodyWindow& window,
+Result<TissueVolume> make_tissue_volume(const anatomy::VirtualPatient& patient, const BodyWindow& window,
                                         const AcousticTable& table);
 
 /// Fills `texture`: the CT's deviation from the mean of its structure (label), smoothed by a Gaussian of about
 /// `sigma_mm` over the same tissue alone; voxels at a tissue's border, where the CT mixes both, count little.
-void make_texture(const VirtualPatient& patient, const BodyWindow& window, double sigma_mm, TissueVolume& volume);
+void make_texture(const anatomy::VirtualPatient& patient, const BodyWindow& window, double sigma_mm,
+                  TissueVolume& volume);
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -8,7 +8,7 @@
 #include "core/check.h"
 #include "ultrasound/tissue/detail/tissue_volume.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 namespace {
 
 /// Factor of a vote of a voxel in a structure of 3 or more, of 1 and of 2 voxels' thickness. Chosen so that a wall of
@@ -165,4 +165,4 @@ std::uint8_t TissueVotes::winner(std::size_t target_u, std::size_t target_v) noe
   return best;
 }
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

@@ -5,7 +5,7 @@
 
 #include "volume/grid.h"
 
-namespace trocar::detail {
+namespace trocar::ultrasound::detail {
 
 /// The source voxels that a target voxel looks at along one axis, and their weights: a cubic B-spline as wide as the
 /// coarser of the two spacings, so that borders come out smooth and nothing falls between two target voxels.
@@ -44,4 +44,4 @@ class TissueVotes {
   std::vector<float> votes_;
 };
 
-}  // namespace trocar::detail
+}  // namespace trocar::ultrasound::detail

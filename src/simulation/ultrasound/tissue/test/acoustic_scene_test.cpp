@@ -9,19 +9,19 @@
 
 #include "make_block.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 using namespace testing;
 
-std::shared_ptr<const AcousticScene> make_scene(const VirtualPatient& patient, double spacing_mm = 1.0) {
+std::shared_ptr<const AcousticScene> make_scene(const anatomy::VirtualPatient& patient, double spacing_mm = 1.0) {
   auto scene = make_acoustic_scene(patient, make_block_table(), {.spacing_mm = spacing_mm});
   EXPECT_TRUE(scene.has_value()) << scene.error().text();
   return *scene;
 }
 
 Vec3 place(const AcousticScene& scene, std::size_t n) {
-  const Index3 ijk = scene.geometry.index_of(n);
+  const volume::Index3 ijk = scene.geometry.index_of(n);
   return scene.geometry.to_mm(
       Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
 }
@@ -59,7 +59,7 @@ TEST(AcousticScene, SlantedBorderHasNoTerracesBetweenThickSlices) {
   for (const double slope_deg : {20.0, 35.0, 60.0}) {
     const double slope = slope_deg * std::numbers::pi / 180.0;
     const Vec3 normal(std::sin(slope) * 0.8, std::sin(slope) * 0.6, std::cos(slope));
-    const VirtualPatient patient = make_block({56, 60, 60}, {0.7, 0.7, 5.0}, [&](const Vec3& p_P) {
+    const anatomy::VirtualPatient patient = make_block({56, 60, 60}, {0.7, 0.7, 5.0}, [&](const Vec3& p_P) {
       return BlockVoxel{normal.dot(p_P - Vec3(0, 25, 0)) < 0.0 ? kLiver : kKidney, 60};
     });
     // Slices as they are would be wrong by up to 2.5 mm cos(slope) (2.35 at 20 degrees); half a voxel of 0.7 mm in
@@ -71,7 +71,7 @@ TEST(AcousticScene, SlantedBorderHasNoTerracesBetweenThickSlices) {
 TEST(AcousticScene, BallKeepsItsVolumeAndShape) {
   const Vec3 middle_P(0.3, 24.2, 0.9);
   constexpr double kRadius_mm = 12.0;
-  const VirtualPatient patient = make_block({50, 60, 50}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
+  const anatomy::VirtualPatient patient = make_block({50, 60, 50}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
     return BlockVoxel{(p_P - middle_P).norm() < kRadius_mm ? kKidney : kLiver, 60};
   });
   const auto scene = make_scene(patient);
@@ -92,7 +92,7 @@ TEST(AcousticScene, WallOfOneVoxelHasNoHole) {
   for (const double turn_deg : {0.0, 13.0, 27.0, 45.0}) {
     const double turn = turn_deg * std::numbers::pi / 180.0;
     const Vec3 normal(std::sin(turn), std::cos(turn), 0.0);
-    const VirtualPatient patient = make_block({50, 60, 40}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
+    const anatomy::VirtualPatient patient = make_block({50, 60, 40}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
       const double side_mm = normal.dot(p_P - Vec3(0, 22.1, 0));
       // As wide as a row of voxels that touch at their faces.
       const double half_mm = 0.35 * (std::abs(normal.x()) + std::abs(normal.y()));
@@ -102,14 +102,14 @@ TEST(AcousticScene, WallOfOneVoxelHasNoHole) {
     const auto liver = *scene->table.find("liver");
     const auto lung = *scene->table.find("lung");
     // No liver voxel touches a lung voxel at a face.
-    const Index3& size = scene->geometry.size;
+    const volume::Index3& size = scene->geometry.size;
     int touching = 0;
     for (std::size_t n = 0; n < scene->tissue.size(); ++n) {
       if ((scene->tissue[n] & 0x7F) != liver) continue;
-      const Index3 ijk = scene->geometry.index_of(n);
+      const volume::Index3 ijk = scene->geometry.index_of(n);
       if (ijk[0] < 2 || ijk[0] > size[0] - 3) continue;  // at the CT's edge nobody knows what is thin
       for (std::size_t a = 0; a < 2; ++a) {
-        Index3 next = ijk;
+        volume::Index3 next = ijk;
         if (++next[a] < size[a] && (scene->tissue[scene->geometry.offset(next)] & 0x7F) == lung) ++touching;
       }
     }
@@ -127,7 +127,7 @@ TEST(AcousticScene, ThinVesselsAndRibsStayWhole) {
     const Vec3 direction = tube.direction.normalized();
     const Vec3 through_P(0.2, 24.0, 0.3);
     const auto away_mm = [&](const Vec3& p_P) { return (p_P - through_P).cross(direction).norm(); };
-    const VirtualPatient patient = make_block({50, 60, 50}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
+    const anatomy::VirtualPatient patient = make_block({50, 60, 50}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
       return BlockVoxel{away_mm(p_P) < 0.5 * tube.diameter_mm ? kVessel : kLiver, 60};
     });
     const auto scene = make_scene(patient);
@@ -160,7 +160,7 @@ TEST(AcousticScene, LayerThatMovesByMoreThanItsThicknessStaysBetweenItsNeighbour
   // From one slice to the next (5 mm) the layer moves by 7 mm; in a slice it is 3 mm wide.
   const Vec3 normal = Vec3(5.0, 0.0, 7.0).normalized();
   const double half_mm = 1.5 * normal.x();
-  const VirtualPatient patient = make_block({60, 40, 60}, {0.7, 0.7, 5.0}, [&](const Vec3& p_P) {
+  const anatomy::VirtualPatient patient = make_block({60, 40, 60}, {0.7, 0.7, 5.0}, [&](const Vec3& p_P) {
     const double side_mm = normal.dot(p_P);
     return BlockVoxel{std::abs(side_mm) < half_mm ? kFat : side_mm < 0.0 ? kLiver : kKidney, 0};
   });
@@ -183,7 +183,7 @@ TEST(AcousticScene, LayerThatMovesByMoreThanItsThicknessStaysBetweenItsNeighbour
 }
 
 TEST(AcousticScene, SkinIsAShellAndOutsideIsAir) {
-  VirtualPatient patient = make_block({30, 60, 30}, {1.0, 1.0, 2.0}, [](const Vec3&) {
+  anatomy::VirtualPatient patient = make_block({30, 60, 30}, {1.0, 1.0, 2.0}, [](const Vec3&) {
     return BlockVoxel{kLiver, 60};
   });
   patient.labels[{3, 2, 3}] = kBone;  // outside the body: air all the same
@@ -192,17 +192,17 @@ TEST(AcousticScene, SkinIsAShellAndOutsideIsAir) {
     const double depth_mm = place(*scene, n).y();
     EXPECT_EQ(tissue_name(*scene, n), depth_mm <= 0.0 ? "air" : depth_mm < 2.0 ? "skin" : "liver") << depth_mm;
   }
-  const FloatGrid& skin = scene->skin_distance_mm;
-  const Index3 voxel{7, 9, 8};
+  const volume::FloatGrid& skin = scene->skin_distance_mm;
+  const volume::Index3 voxel{7, 9, 8};
   EXPECT_NEAR(skin[voxel], -skin.geometry.to_mm(Vec3(7, 9, 8)).y(), 1e-4);
 }
 
 TEST(AcousticScene, IsCroppedToTheBodyAndItsMargin) {
-  VirtualPatient patient = make_block({120, 60, 120}, {1.0, 1.0, 2.0}, [](const Vec3&) {
+  anatomy::VirtualPatient patient = make_block({120, 60, 120}, {1.0, 1.0, 2.0}, [](const Vec3&) {
     return BlockVoxel{kLiver, 60};
   });
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
-    const Index3 ijk = patient.labels.geometry.index_of(n);
+    const volume::Index3 ijk = patient.labels.geometry.index_of(n);
     const Vec3 p_P = patient.labels.geometry.to_mm(
         Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
     patient.skin_distance_mm.voxels[n] = static_cast<float>((p_P - Vec3(0, 24, 0)).norm() - 15.0);
@@ -222,7 +222,7 @@ TEST(AcousticScene, GridIsNotMuchFinerThanTheCt) {
 }
 
 TEST(AcousticScene, UnlabelledTissueAndGasInBowelAreWhatTheirHuSay) {
-  const VirtualPatient patient = make_block({60, 60, 40}, {1.0, 1.0, 2.0}, [](const Vec3& p_P) {
+  const anatomy::VirtualPatient patient = make_block({60, 60, 40}, {1.0, 1.0, 2.0}, [](const Vec3& p_P) {
     if (p_P.z() > 0.0) return BlockVoxel{kBowel, static_cast<std::int16_t>(p_P.x() < 0.0 ? -900 : 30)};
     const int hu = p_P.x() < -15.0 ? -900 : p_P.x() < 0.0 ? -100 : p_P.x() < 15.0 ? 40 : 700;
     return BlockVoxel{0, static_cast<std::int16_t>(hu)};
@@ -239,7 +239,7 @@ TEST(AcousticScene, UnlabelledTissueAndGasInBowelAreWhatTheirHuSay) {
 
 TEST(AcousticScene, TextureShowsADeviationAndNoNeighbour) {
   const Vec3 lesion_P(-10.0, 24.0, 0.0);
-  const VirtualPatient patient = make_block({60, 60, 40}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
+  const anatomy::VirtualPatient patient = make_block({60, 60, 40}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
     if (p_P.x() > 0.0) return BlockVoxel{kLung, -800};
     return BlockVoxel{kLiver, static_cast<std::int16_t>((p_P - lesion_P).norm() < 5.0 ? 20 : 80)};
   });
@@ -253,7 +253,7 @@ TEST(AcousticScene, TextureShowsADeviationAndNoNeighbour) {
 
 TEST(AcousticScene, TextureIsSmoothedByAboutItsSigma) {
   // A sharp step of HU within one tissue: from 16 to 84 % it takes two standard deviations.
-  const VirtualPatient patient = make_block({60, 60, 20}, {0.5, 0.5, 2.0}, [](const Vec3& p_P) {
+  const anatomy::VirtualPatient patient = make_block({60, 60, 20}, {0.5, 0.5, 2.0}, [](const Vec3& p_P) {
     return BlockVoxel{kLiver, static_cast<std::int16_t>(p_P.x() < 0.0 ? 0 : 200)};
   });
   const auto scene = make_scene(patient, 0.5);
@@ -297,10 +297,10 @@ TEST(AcousticScene, MixedCellsAreThoseWithTwoTissues) {
   const std::vector<std::uint8_t> before = scene.tissue;
   mark_mixed_cells(scene);
   for (std::size_t n = 0; n < before.size(); ++n) {
-    const Index3 ijk = scene.geometry.index_of(n);
+    const volume::Index3 ijk = scene.geometry.index_of(n);
     bool is_mixed = false;
     for (int corner = 1; corner < 8; ++corner) {
-      Index3 at = ijk;
+      volume::Index3 at = ijk;
       for (std::size_t a = 0; a < 3; ++a) at[a] = std::min(at[a] + ((corner >> a) & 1), scene.geometry.size[a] - 1);
       is_mixed |= (before[scene.geometry.offset(at)] & 0x7F) != (before[n] & 0x7F);
     }
@@ -325,8 +325,8 @@ TEST(AcousticScene, RefusesAPatientWithoutSkin) {
   auto patient = make_block({20, 30, 20}, {1, 1, 2}, [](const Vec3&) { return BlockVoxel{kLiver, 60}; });
   for (float& distance_mm : patient.skin_distance_mm.voxels) distance_mm = 1.0F;
   EXPECT_FALSE(make_acoustic_scene(patient, make_block_table()).has_value());
-  EXPECT_FALSE(make_acoustic_scene(VirtualPatient{}, make_block_table()).has_value());
+  EXPECT_FALSE(make_acoustic_scene(anatomy::VirtualPatient{}, make_block_table()).has_value());
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

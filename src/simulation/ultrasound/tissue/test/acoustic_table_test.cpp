@@ -9,7 +9,7 @@
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
 const std::filesystem::path kFile = data_dir() / "acoustics.toml";
@@ -27,7 +27,7 @@ const AcousticTissue& tissue(const AcousticTable& table, std::string_view name) 
 }
 
 TEST(AcousticTable, HasTheTissuesThatAreFeltAndThreeMore) {
-  const auto felt = load_tissue_table(data_dir() / "tissues.toml");
+  const auto felt = anatomy::load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(felt) << felt.error().text();
   std::set<std::string> expected = {"air", "water", "gel"};
   for (const auto& params : felt->tissues) expected.insert(params.name);
@@ -133,4 +133,4 @@ TEST(AcousticTable, AirMustComeFirst) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

@@ -21,12 +21,12 @@ inline constexpr std::uint8_t kLiver = 1, kKidney = 2, kVessel = 3, kMuscle = 4,
 
 /// A patient made by hand: a block of tissue behind a flat skin at y = 0 (the body where y > 0), centred on x = z = 0,
 /// with 12 mm of air in front.
-inline VirtualPatient make_block(const Vec3& extent_mm, const Vec3& spacing_mm,
-                                 const std::function<BlockVoxel(const Vec3&)>& voxel) {
+inline anatomy::VirtualPatient make_block(const Vec3& extent_mm, const Vec3& spacing_mm,
+                                          const std::function<BlockVoxel(const Vec3&)>& voxel) {
   constexpr double kAir_mm = 12.0;
-  VirtualPatient patient;
+  anatomy::VirtualPatient patient;
   patient.name = "block";
-  GridGeometry geometry;
+  volume::GridGeometry geometry;
   geometry.spacing_mm = spacing_mm;
   for (std::size_t a = 0; a < 3; ++a)
     geometry.size[a] = std::llround(extent_mm[static_cast<Eigen::Index>(a)] / spacing_mm[static_cast<Eigen::Index>(a)]);
@@ -34,11 +34,11 @@ inline VirtualPatient make_block(const Vec3& extent_mm, const Vec3& spacing_mm,
                   static_cast<double>(geometry.size[2]));
   geometry.origin_P = -0.5 * (size - Vec3::Ones()).cwiseProduct(spacing_mm);
   geometry.origin_P.y() = 0.5 * spacing_mm.y() - kAir_mm;
-  patient.ct = CtGrid(geometry, -1000);
-  patient.labels = LabelGrid(geometry);
-  patient.skin_distance_mm = FloatGrid(geometry);
+  patient.ct = volume::CtGrid(geometry, -1000);
+  patient.labels = volume::LabelGrid(geometry);
+  patient.skin_distance_mm = volume::FloatGrid(geometry);
   for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
-    const Index3 ijk = geometry.index_of(n);
+    const volume::Index3 ijk = geometry.index_of(n);
     const Vec3 p_P =
         geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
     patient.skin_distance_mm.voxels[n] = static_cast<float>(-p_P.y());
@@ -54,11 +54,11 @@ inline VirtualPatient make_block(const Vec3& extent_mm, const Vec3& spacing_mm,
 }
 
 /// A table of all tissues that a block may hold, without acoustic sense.
-inline AcousticTable make_block_table() {
-  AcousticTable table;
+inline ultrasound::AcousticTable make_block_table() {
+  ultrasound::AcousticTable table;
   for (const char* name : {"air", "skin", "adipose", "gas", "soft_tissue", "liver", "kidney", "vessel", "muscle",
                            "bone", "lung", "bowel"}) {
-    AcousticTissue tissue;
+    ultrasound::AcousticTissue tissue;
     tissue.name = name;
     table.tissues.push_back(tissue);
   }

@@ -7,10 +7,10 @@
 
 #include "ultrasound/tissue/test/make_block.h"
 
-namespace trocar {
+namespace trocar::ultrasound {
 namespace {
 
-VirtualPatient block() {
+anatomy::VirtualPatient block() {
   return testing::make_block({60.0, 60.0, 40.0}, {2.0, 2.0, 2.0}, [](const Vec3&) {
     return testing::BlockVoxel{testing::kLiver, 60};
   });
@@ -36,7 +36,7 @@ TEST(ScanEnds, AreTheFacesThatCutTheBody) {
   EXPECT_FALSE(is_unscanned(ends, {29.9, 20.0, 19.9}));
   EXPECT_TRUE(is_unscanned(ends, {30.1, 20.0, 0.0}));
   EXPECT_TRUE(is_unscanned(ends, {0.0, 20.0, -20.1}));
-  EXPECT_TRUE(find_scan_ends(VirtualPatient{}).empty());
+  EXPECT_TRUE(find_scan_ends(anatomy::VirtualPatient{}).empty());
 }
 
 TEST(ScanEnds, ShareAndPolygonOfHalfAPicture) {
@@ -52,7 +52,7 @@ TEST(ScanEnds, ShareAndPolygonOfHalfAPicture) {
 
 TEST(ScanEnds, HatchLiesBeyondThemAndWithinTheScan) {
   const RasterGeometry raster = fit_raster(fan(), 200, 160);
-  RgbImage image(200, 160);
+  volume::RgbImage image(200, 160);
   hatch_unscanned(image, raster, fan(), Pose(), {{Vec3::UnitX(), 0.0}});
   int hatched = 0, beyond = 0;
   for (int row = 0; row < image.rows; ++row) {
@@ -61,7 +61,7 @@ TEST(ScanEnds, HatchLiesBeyondThemAndWithinTheScan) {
       const Polar at = fan().to_polar(p_T);
       const bool is_beyond = p_T.x() > 0.0 && at.line <= 64.0 && at.depth_mm >= 0.0 && at.depth_mm <= 100.0;
       beyond += is_beyond ? 1 : 0;
-      if (image.at(column, row) == Rgb{0, 0, 0}) continue;
+      if (image.at(column, row) == volume::Rgb{0, 0, 0}) continue;
       ++hatched;
       EXPECT_TRUE(is_beyond) << column << " " << row;
     }
@@ -70,4 +70,4 @@ TEST(ScanEnds, HatchLiesBeyondThemAndWithinTheScan) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::ultrasound

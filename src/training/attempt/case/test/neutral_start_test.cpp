@@ -8,7 +8,7 @@
 #include "core/files/data_dir.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr double kAcross_mm = 150.0, kFrontBack_mm = 100.0;  ///< Half axes of the body.
@@ -23,18 +23,18 @@ double outside_mm(const Vec3& p_P) {
   return std::min(body, arm);
 }
 
-std::shared_ptr<const VirtualPatient> cylinder() {
+std::shared_ptr<const anatomy::VirtualPatient> cylinder() {
   static const auto made = [] {
-    auto patient = std::make_shared<VirtualPatient>();
-    GridGeometry grid;
+    auto patient = std::make_shared<anatomy::VirtualPatient>();
+    volume::GridGeometry grid;
     grid.spacing_mm = {5.0, 5.0, 5.0};
     grid.size = {101, 61, 2 * static_cast<std::int64_t>(kHalfLength_mm / 5.0) + 1};
     grid.origin_P = {-250.0, -150.0, -kHalfLength_mm};
-    patient->skin_distance_mm = FloatGrid(grid);
-    patient->ct = CtGrid(grid, 0);
-    patient->labels = LabelGrid(grid, 0);
+    patient->skin_distance_mm = volume::FloatGrid(grid);
+    patient->ct = volume::CtGrid(grid, 0);
+    patient->labels = volume::LabelGrid(grid, 0);
     for (std::size_t n = 0; n < grid.voxel_count(); ++n) {
-      const Index3 i = grid.index_of(n);
+      const volume::Index3 i = grid.index_of(n);
       patient->skin_distance_mm.voxels[n] = static_cast<float>(
           outside_mm(grid.to_mm({static_cast<double>(i[0]), static_cast<double>(i[1]), static_cast<double>(i[2])})));
     }
@@ -53,8 +53,8 @@ Case case_at(double angle, double z_mm) {
   return the_case;
 }
 
-const Transducer& transducer() {
-  static const Transducer probe = *load_transducer(data_dir() / "transducers.toml", "C5-2");
+const ultrasound::Transducer& transducer() {
+  static const ultrasound::Transducer probe = *ultrasound::load_transducer(data_dir() / "transducers.toml", "C5-2");
   return probe;
 }
 
@@ -107,7 +107,7 @@ TEST(NeutralStart, StaysOutOfTheTasksEntryZone) {
   const auto free = find_neutral_start(the_case, transducer(), Pose::translation({-130.0, -40.0, 40.0}));
   ASSERT_TRUE(free);
   const Vec3 before_P = free->X_PN * Vec3(0.0, 0.0, NeutralStart::kAbove_mm);
-  the_case.task.entry_zone = EntryZone{before_P, 30.0};
+  the_case.task.entry_zone = tasks::EntryZone{before_P, 30.0};
   const auto start = find_neutral_start(the_case, transducer(), Pose::translation({-130.0, -40.0, 40.0}));
   ASSERT_TRUE(start);
   EXPECT_GE((start->X_PN * Vec3(0.0, 0.0, NeutralStart::kAbove_mm) - before_P).norm(), 50.0 - 1e-6);
@@ -115,11 +115,11 @@ TEST(NeutralStart, StaysOutOfTheTasksEntryZone) {
 
 TEST(NeutralStart, SaysWhereAPatientIsTooSmall) {
   Case the_case = case_at(0.0, 0.0);
-  auto small = std::make_shared<VirtualPatient>(*the_case.patient);
+  auto small = std::make_shared<anatomy::VirtualPatient>(*the_case.patient);
   for (float& distance : small->skin_distance_mm.voxels) distance += 70.0F;  // 30 mm and thinner
   the_case.patient = small;
   the_case.plan.line_P = {{0.0, -30.0, 0.0}, {0.0, 0.0, 0.0}};
-  GridGeometry& grid = small->skin_distance_mm.geometry;
+  volume::GridGeometry& grid = small->skin_distance_mm.geometry;
   grid.spacing_mm.z() = 1.2;  // and shorter than the tools need
   grid.origin_P.z() = -0.6 * static_cast<double>(grid.size[2]);
   const auto start = find_neutral_start(the_case, transducer(), Pose::translation({0.0, -30.0, 20.0}));
@@ -130,4 +130,4 @@ TEST(NeutralStart, SaysWhereAPatientIsTooSmall) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

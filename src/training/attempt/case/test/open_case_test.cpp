@@ -10,7 +10,7 @@
 #include "ultrasound/probe/probe_contact.h"
 #include "ultrasound/probe/scan_geometry.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 class OpenedCase : public ::testing::Test {
@@ -52,14 +52,15 @@ TEST_F(OpenedCase, PutsTheTransducerInPlaneBesideTheEntry) {
   const Segment path_T{X_TP * opened->the_case.plan.line_P.a, X_TP * opened->the_case.plan.line_P.b};
   EXPECT_NEAR(path_T.a.z(), 0.0, 1e-6);
   EXPECT_NEAR(path_T.b.z(), 0.0, 1e-6);
-  const ScanGeometry scan = make_scan_geometry(opened->transducer, opened->probe_depth_mm, 65, 64);
+  const ultrasound::ScanGeometry scan =
+      ultrasound::make_scan_geometry(opened->transducer, opened->probe_depth_mm, 65, 64);
   EXPECT_GT(std::abs(path_T.a.x()), std::abs(scan.line_origin(0).x()));  // the needle's place is free
-  const Polar target = scan.to_polar({path_T.b.x(), path_T.b.y()});
+  const ultrasound::Polar target = scan.to_polar({path_T.b.x(), path_T.b.y()});
   EXPECT_GE(target.line, 0.0);
   EXPECT_LE(target.line, 64.0);
   EXPECT_LT(target.depth_mm, opened->probe_depth_mm);
-  std::vector<LineContact> contact(65);
-  find_contact(opened->the_case.patient->skin_distance_mm, scan, opened->X_PT_start, contact);
+  std::vector<ultrasound::LineContact> contact(65);
+  ultrasound::find_contact(opened->the_case.patient->skin_distance_mm, scan, opened->X_PT_start, contact);
   const auto touching = std::count_if(contact.begin(), contact.end(), [](const auto& c) { return c.coupling > 0.5F; });
   EXPECT_GT(touching, 52);
 }
@@ -71,9 +72,9 @@ TEST_F(OpenedCase, HasANeutralStartWithAPictureOfSomethingElse) {
   EXPECT_GT((start.X_PN.p() - opened->the_case.plan.line_P.a).norm(), NeutralStart::kAway_mm);
   EXPECT_EQ(start.depth_mm, 140.0);      // the aorta's view
   EXPECT_GT(start.X_PT.R()(1, 1), 0.8);  // from the front
-  const ScanGeometry scan = make_scan_geometry(opened->transducer, start.depth_mm, 65, 64);
-  std::vector<LineContact> contact(65);
-  find_contact(opened->the_case.patient->skin_distance_mm, scan, start.X_PT, contact);
+  const ultrasound::ScanGeometry scan = ultrasound::make_scan_geometry(opened->transducer, start.depth_mm, 65, 64);
+  std::vector<ultrasound::LineContact> contact(65);
+  ultrasound::find_contact(opened->the_case.patient->skin_distance_mm, scan, start.X_PT, contact);
   const auto touching = std::count_if(contact.begin(), contact.end(), [](const auto& c) { return c.coupling > 0.5F; });
   EXPECT_GT(touching, 52);
 }
@@ -153,4 +154,4 @@ TEST(OpenCase, CancelledGivesNothing) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -7,17 +7,17 @@
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 class Profiles : public ::testing::Test {
  protected:
   void SetUp() override {
-    auto loaded = load_tissue_table(data_dir() / "tissues.toml");
+    auto loaded = anatomy::load_tissue_table(data_dir() / "tissues.toml");
     ASSERT_TRUE(loaded) << loaded.error().text();
     table = *std::move(loaded);
   }
-  TissueTable table;
+  anatomy::TissueTable table;
   TemporaryFolder folder;
   const TissueProfile soft{"Soft liver, \"Ms. Ä\"", "fitted by hand", "combined", {"liver.mu=0.2", "skin.fp=4.5"}};
 };
@@ -103,4 +103,4 @@ TEST_F(Profiles, ThatCannotBeReadAreNamed) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

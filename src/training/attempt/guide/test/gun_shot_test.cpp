@@ -7,7 +7,7 @@
 #include "attempt/case/open_case.h"
 #include "attempt/guide/puncture_guide.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 const OpenCase& liver() {
@@ -19,14 +19,14 @@ const OpenCase& liver() {
   return *open;
 }
 
-TickSample at_target() {
+telemetry::TickSample at_target() {
   const Segment& plan_P = liver().the_case.plan.line_P;
-  TickSample sample;
+  telemetry::TickSample sample;
   sample.time_s = 12.0;
   sample.tip_mm = plan_P.b;
   sample.axis = plan_P.direction();
   sample.depth_mm = plan_P.length_mm();
-  sample.phase = InsertionPhase::kInserted;
+  sample.phase = telemetry::InsertionPhase::kInserted;
   return sample;
 }
 
@@ -39,14 +39,14 @@ TEST(GunShot, TakesACoreWhereTheNotchWas) {
   ASSERT_FALSE(shot.pieces.empty());
   double target_mm = 0.0;
   for (const ShotPiece& piece : shot.pieces)
-    if (piece.part == CorePart::kTarget) target_mm += piece.to_mm - piece.from_mm;
+    if (piece.part == tasks::CorePart::kTarget) target_mm += piece.to_mm - piece.from_mm;
   EXPECT_NEAR(target_mm, shot.core.target_mm, 1e-9);
   EXPECT_GT(target_mm, 5.0);
   EXPECT_NE(shot_words(shot).find("target tissue"), std::string::npos) << shot_words(shot);
 }
 
 TEST(GunShot, OutsideOfTheBodyTakesNothing) {
-  TickSample outside = at_target();
+  telemetry::TickSample outside = at_target();
   outside.depth_mm = 0.0;
   const GunShot shot = make_gun_shot(liver().the_case, outside);
   EXPECT_TRUE(shot.pieces.empty());
@@ -86,13 +86,13 @@ TEST(GunShot, AThrownShaftIsLongerByTheThrowAlongItsEnd) {
 }
 
 TEST(GunShot, TheHintGoesOnToWithdrawing) {
-  TickSample sample = at_target();
+  telemetry::TickSample sample = at_target();
   EXPECT_NE(guide_puncture(liver().the_case, sample).find("fire"), std::string::npos);
   EXPECT_NE(guide_puncture(liver().the_case, sample, true).find("withdraw the needle"), std::string::npos);
   sample.depth_mm = 0.0;
-  sample.phase = InsertionPhase::kOutside;
+  sample.phase = telemetry::InsertionPhase::kOutside;
   EXPECT_NE(guide_puncture(liver().the_case, sample, true).find("end the attempt"), std::string::npos);
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

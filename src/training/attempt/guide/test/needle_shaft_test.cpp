@@ -4,13 +4,13 @@
 
 #include "geometry/pose.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr double kLength_mm = 150.0;
 
-TickSample sample_at(const Pose& X_PN) {
-  TickSample sample;
+telemetry::TickSample sample_at(const Pose& X_PN) {
+  telemetry::TickSample sample;
   sample.tip_mm = sample.device_mm = X_PN.p();
   sample.axis = X_PN.R().col(2);
   const Eigen::Quaterniond q(X_PN.R());
@@ -46,7 +46,7 @@ TEST(NeedleShaft, IsStraightFromHubToTipWhileNothingBendsIt) {
 }
 
 TEST(NeedleShaft, KeepsItsLengthWhenTheTipLagsBehindTheHand) {
-  TickSample sample = sample_at(kHeld);
+  telemetry::TickSample sample = sample_at(kHeld);
   sample.tip_mm -= 5.0 * sample.axis;
   const std::vector<Vec3> shaft = needle_shaft(sample, kLength_mm);
   EXPECT_NEAR(length_of(shaft), kLength_mm, 1e-9);
@@ -54,7 +54,7 @@ TEST(NeedleShaft, KeepsItsLengthWhenTheTipLagsBehindTheHand) {
 }
 
 TEST(NeedleShaft, BendsFromTheGripsDirectionToTheTips) {
-  TickSample sample = sample_at(kHeld);
+  telemetry::TickSample sample = sample_at(kHeld);
   const Vec3 aside = sample.axis.unitOrthogonal();
   sample.tip_mm += 6.0 * aside;
   sample.axis = (sample.axis + 0.1 * aside).normalized();
@@ -68,4 +68,4 @@ TEST(NeedleShaft, BendsFromTheGripsDirectionToTheTips) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -4,25 +4,25 @@
 
 #include "io/patient/patient_source.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 class PunctureGuide : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto patient = open_patient({"layers-liver", 1});
+    auto patient = io::open_patient({"layers-liver", 1});
     ASSERT_TRUE(patient) << patient.error().text();
-    auto made = prepare_case(std::make_shared<const VirtualPatient>(*std::move(patient)), {});
+    auto made = prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
     ASSERT_TRUE(made) << made.error().text();
     the_case = *std::move(made);
   }
   /// On the planned path, so far from the entry.
-  static TickSample on_path(double depth_mm) {
-    TickSample sample;
+  static telemetry::TickSample on_path(double depth_mm) {
+    telemetry::TickSample sample;
     sample.axis = the_case.plan.line_P.direction();
     sample.tip_mm = the_case.plan.line_P.a + depth_mm * sample.axis;
     sample.depth_mm = std::max(0.0, depth_mm);
-    sample.phase = depth_mm > 0.0 ? InsertionPhase::kInserted : InsertionPhase::kOutside;
+    sample.phase = depth_mm > 0.0 ? telemetry::InsertionPhase::kInserted : telemetry::InsertionPhase::kOutside;
     return sample;
   }
   /// Towards the head, square to the path.
@@ -30,7 +30,7 @@ class PunctureGuide : public ::testing::Test {
     const Vec3 axis = the_case.plan.line_P.direction();
     return (Vec3::UnitZ() - axis.z() * axis).normalized();
   }
-  static bool says(const TickSample& sample, const std::string& words) {
+  static bool says(const telemetry::TickSample& sample, const std::string& words) {
     return guide_puncture(the_case, sample).find(words) != std::string::npos;
   }
   static inline Case the_case;
@@ -46,7 +46,7 @@ TEST_F(PunctureGuide, SaysAdvanceOnThePathAndFireAtItsEnd) {
 }
 
 TEST_F(PunctureGuide, SaysWhereTheEntryIs) {
-  TickSample sample = on_path(-15.0);
+  telemetry::TickSample sample = on_path(-15.0);
   sample.tip_mm += 40.0 * headward();
   EXPECT_TRUE(says(sample, "towards the feet")) << guide_puncture(the_case, sample);
   // An entry that lies lateral and further back is not called to be on the patient's back.
@@ -64,7 +64,7 @@ TEST_F(PunctureGuide, SaysWhereTheEntryIs) {
 TEST_F(PunctureGuide, FollowingItsWordsBringsTheNeedleBack) {
   const Vec3 axis = the_case.plan.line_P.direction();
   const double angle = 6.0 * 3.14159265 / 180.0;
-  TickSample outside = on_path(-15.0);
+  telemetry::TickSample outside = on_path(-15.0);
   outside.axis = Eigen::AngleAxisd(angle, Vec3::UnitZ()) * axis;  // about z: x grows where y shrinks
   const std::string said = guide_puncture(the_case, outside);
   EXPECT_NE(said.find("6 degrees"), std::string::npos) << said;
@@ -72,24 +72,24 @@ TEST_F(PunctureGuide, FollowingItsWordsBringsTheNeedleBack) {
   const Vec3 way = outside.axis - axis;
   EXPECT_NE(said.find(way.x() > 0.0 ? "left" : "right"), std::string::npos) << said;
 
-  TickSample inside = on_path(20.0);
+  telemetry::TickSample inside = on_path(20.0);
   inside.tip_mm += 3.0 * headward();
   EXPECT_TRUE(says(inside, "3.0 mm beside the path: tilt the tip towards the feet"))
       << guide_puncture(the_case, inside);
 }
 
 TEST_F(PunctureGuide, WarnsOfBoneAheadBeforeAllElse) {
-  const LabelGrid& labels = the_case.patient->labels;
+  const volume::LabelGrid& labels = the_case.patient->labels;
   std::optional<Vec3> bone_P;
   for (std::size_t n = 0; n < labels.voxels.size() && !bone_P; ++n) {
-    const Label* label = the_case.patient->label_table.find(labels.voxels[n]);
+    const anatomy::Label* label = the_case.patient->label_table.find(labels.voxels[n]);
     if (label == nullptr || label->tissue != "bone") continue;
-    const Index3 ijk = labels.geometry.index_of(n);
+    const volume::Index3 ijk = labels.geometry.index_of(n);
     bone_P = labels.geometry.to_mm(
         Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
   }
   ASSERT_TRUE(bone_P);
-  TickSample sample = on_path(10.0);
+  telemetry::TickSample sample = on_path(10.0);
   sample.tip_mm = *bone_P - 5.0 * sample.axis;
   const std::string said = guide_puncture(the_case, sample);
   EXPECT_NE(said.find("Bone"), std::string::npos) << said;
@@ -97,11 +97,11 @@ TEST_F(PunctureGuide, WarnsOfBoneAheadBeforeAllElse) {
 }
 
 TEST_F(PunctureGuide, HasNothingToSayOfWhatIsNoNumber) {
-  TickSample sample = on_path(5.0);
+  telemetry::TickSample sample = on_path(5.0);
   sample.tip_mm.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(guide_puncture(the_case, sample), "");
-  EXPECT_EQ(guide_puncture(the_case, TickSample{}).empty(), false);  // a real place, if a strange one
+  EXPECT_EQ(guide_puncture(the_case, telemetry::TickSample{}).empty(), false);  // a real place, if a strange one
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

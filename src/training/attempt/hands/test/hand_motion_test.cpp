@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr double kFrame_s = 1.0 / 60.0, kTick_s = 0.001;
@@ -99,4 +99,4 @@ TEST(LedHand, IgnoresWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -9,17 +9,17 @@
 #include "core/random.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
-const VirtualPatient& patient() {
-  static const VirtualPatient the_patient = *generate_phantom("layers-liver");
+const anatomy::VirtualPatient& patient() {
+  static const anatomy::VirtualPatient the_patient = *anatomy::generate_phantom("layers-liver");
   return the_patient;
 }
 
 /// From the front, through the middle of the skin.
 Segment path() {
-  const GridGeometry& grid = patient().skin_distance_mm.geometry;
+  const volume::GridGeometry& grid = patient().skin_distance_mm.geometry;
   const Vec3 middle_P =
       grid.to_mm(Vec3(0.5 * static_cast<double>(grid.size[0]), 0.5 * static_cast<double>(grid.size[1]),
                       0.5 * static_cast<double>(grid.size[2])));
@@ -41,7 +41,7 @@ TEST(PointerNeedle, AimsAlongThePathBeforeTheSkin) {
 TEST(PointerNeedle, GlidesOverTheSkinAndKeepsItsHeight) {
   PointerNeedle hand = needle();
   for (int step = 0; step < 20; ++step) hand.glide({1.0, 3.0, 0.5});
-  EXPECT_NEAR(sample_linear(patient().skin_distance_mm, hand.entry_P()), 0.0, 0.1);
+  EXPECT_NEAR(volume::sample_linear(patient().skin_distance_mm, hand.entry_P()), 0.0, 0.1);
   EXPECT_NEAR((hand.X_PN().p() - hand.entry_P()).norm(), PointerNeedle::kAbove_mm, 1e-9);
   EXPECT_GT((hand.entry_P() - path().a).norm(), 10.0);
 }
@@ -105,7 +105,7 @@ TEST(PointerProbe, StaysOnTheSkinAndFacesInward) {
   for (int step = 0; step < 20; ++step) hand.glide({2.0, 1.0, 1.0});
   hand.push(3.0);
   EXPECT_NEAR(hand.pressed_mm(), 3.0, 0.2);
-  EXPECT_NEAR(sample_linear(patient().skin_distance_mm, hand.X_PT().p()), -3.0, 0.5);
+  EXPECT_NEAR(volume::sample_linear(patient().skin_distance_mm, hand.X_PT().p()), -3.0, 0.5);
   EXPECT_GT(hand.X_PT().R().col(1).dot(skin_inward(patient(), hand.X_PT().p())), 0.98);
   EXPECT_NEAR(hand.X_PT().R().determinant(), 1.0, 1e-9);
 }
@@ -121,4 +121,4 @@ TEST(PointerProbe, TurnsAboutItsBeamAndPressesNoDeeperThanItMay) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -5,25 +5,25 @@
 #include "anatomy/phantom/phantom.h"
 #include "volume/sampling.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 class HeldProbe : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto made = generate_phantom("layers-liver");
+    auto made = anatomy::generate_phantom("layers-liver");
     ASSERT_TRUE(made.has_value());
-    patient = new VirtualPatient(*std::move(made));
+    patient = new anatomy::VirtualPatient(*std::move(made));
   }
   static void TearDownTestSuite() {
     delete patient;
     patient = nullptr;
   }
-  static inline VirtualPatient* patient = nullptr;
+  static inline anatomy::VirtualPatient* patient = nullptr;
 
   static const Segment& path() { return patient->paths.front().line_P; }
-  static double above_skin_mm(const HandTarget& hand) {
-    return sample_linear(patient->skin_distance_mm, hand.X_PN.p());
+  static double above_skin_mm(const link::HandTarget& hand) {
+    return volume::sample_linear(patient->skin_distance_mm, hand.X_PN.p());
   }
   static constexpr double kTremor_mm = 0.2;  // of three axes together
 };
@@ -37,9 +37,9 @@ TEST_F(HeldProbe, ComesDownFromAboveAndStaysPressedIn) {
 
 TEST_F(HeldProbe, LooksIntoTheBodyBesideTheEntry) {
   const ProbeHand hand(*patient, path());
-  const HandTarget held = hand.at(10.0);
+  const link::HandTarget held = hand.at(10.0);
   EXPECT_NEAR((held.X_PN.p() - path().a).norm(), ProbeHand::kBeside_mm, 0.15 * ProbeHand::kBeside_mm);
-  const Vec3 outwards_P = gradient_per_mm(patient->skin_distance_mm, held.X_PN.p()).normalized();
+  const Vec3 outwards_P = volume::gradient_per_mm(patient->skin_distance_mm, held.X_PN.p()).normalized();
   EXPECT_LT(held.X_PN.R().col(1).dot(outwards_P), -0.99);
   EXPECT_NEAR(held.X_PN.R().determinant(), 1.0, 1e-9);
   EXPECT_LT((held.X_PN.R() * held.X_PN.R().transpose() - Mat3::Identity()).norm(), 1e-9);
@@ -59,4 +59,4 @@ TEST_F(HeldProbe, NeverStandsStillAndTellsItsVelocity) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -7,12 +7,12 @@
 #include <thread>
 
 #include "attempt/case/scene_request.h"
-#include "attempt/live/attempt_event.h"
 #include "attempt/guide/gun_shot.h"
+#include "attempt/live/attempt_event.h"
 #include "attempt/record/recording_room.h"
 #include "telemetry/tick_pose.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenLooks{2};
@@ -202,7 +202,7 @@ Status AttemptLoop::start_recording() {
   run.seed = options_.seed;
   run.rate_hz = performer_.rate_hz = needle_->wanted_hz() > 0.0 ? needle_->wanted_hz() : options_.rate_hz;
   run.session = options_.session;
-  const Welcome& welcome = needle_->client().welcome;
+  const link::Welcome& welcome = needle_->client().welcome;
   AttemptFacts facts;
   facts.device = fmt::format("{}, {}, through {}", welcome.device.name, welcome.device.title, welcome.server);
   facts.rate_hz = performer_.rate_hz;
@@ -220,7 +220,7 @@ Status AttemptLoop::start_recording() {
 }
 
 Status AttemptLoop::step_needle() {
-  const std::vector<NumberedSample> samples = needle_->take_samples();
+  const std::vector<link::NumberedSample> samples = needle_->take_samples();
   if (!needle_->is_on() && samples.empty()) {
     was_needle_on_ = false;
     return {};
@@ -229,7 +229,7 @@ Status AttemptLoop::step_needle() {
   if (!was_needle_on_) {
     if (live_) live_->begin(needle_->clock_offset_s(), needle_->seatings() != seatings_);
     seatings_ = needle_->seatings();
-    if (has_ever_been_on_) steering_->resume_at(device_pose(samples.front().sample));
+    if (has_ever_been_on_) steering_->resume_at(telemetry::device_pose(samples.front().sample));
     needle_time_s_ = samples.front().sample.time_s;
   }
   was_needle_on_ = true;
@@ -238,18 +238,18 @@ Status AttemptLoop::step_needle() {
   } else {
     answer_unrecorded(samples);
   }
-  HandTarget target = live_ ? live_->hand() : hand_target(command_, needle_time_s_ + 1.0 / performer_.rate_hz);
+  link::HandTarget target = live_ ? live_->hand() : hand_target(command_, needle_time_s_ + 1.0 / performer_.rate_hz);
   needle_->set_hand(target);
-  needle_->place_at(felt_needle(samples.back().sample));  // in its channel, wherever the grip has swung
+  needle_->place_at(telemetry::felt_needle(samples.back().sample));  // in its channel, wherever the grip has swung
   return {};
 }
 
-void AttemptLoop::answer_unrecorded(const std::vector<NumberedSample>& samples) {
-  OperatorView view;
-  for (const NumberedSample& numbered : samples) {
+void AttemptLoop::answer_unrecorded(const std::vector<link::NumberedSample>& samples) {
+  tasks::OperatorView view;
+  for (const link::NumberedSample& numbered : samples) {
     view.last = numbered.sample;
     view.dt_s = std::clamp(numbered.sample.time_s - needle_time_s_, 0.0, kLongestStep_s);
-    view.X_PN_device = device_pose(numbered.sample);
+    view.X_PN_device = telemetry::device_pose(numbered.sample);
     needle_time_s_ = numbered.sample.time_s;
     command_ = performer_.the_operator->next(view);
   }
@@ -257,8 +257,8 @@ void AttemptLoop::answer_unrecorded(const std::vector<NumberedSample>& samples) 
   last_needle_->time_s = 0.0;
 }
 
-Status AttemptLoop::record(const std::vector<NumberedSample>& samples) {
-  for (const NumberedSample& numbered : samples) {
+Status AttemptLoop::record(const std::vector<link::NumberedSample>& samples) {
+  for (const link::NumberedSample& numbered : samples) {
     if (numbered.sample.time_s < samples.back().sample.time_s - kAnswered_s) {
       TROCAR_TRY_STATUS(live_->take_unseen(numbered.sample));
     } else {
@@ -274,11 +274,11 @@ Status AttemptLoop::record(const std::vector<NumberedSample>& samples) {
   return {};
 }
 
-void AttemptLoop::note_tick(const TickSample& sample) {
-  trace_.add({sample.time_s, sample.depth_mm, axial_resistance_n(sample)});
-  if (!contact_s_ && sample.phase != InsertionPhase::kOutside) contact_s_ = sample.time_s;
-  for (const TickEvent& event : sample.events) {
-    if (event.kind == EventKind::kNone) break;
+void AttemptLoop::note_tick(const telemetry::TickSample& sample) {
+  trace_.add({sample.time_s, sample.depth_mm, telemetry::axial_resistance_n(sample)});
+  if (!contact_s_ && sample.phase != telemetry::InsertionPhase::kOutside) contact_s_ = sample.time_s;
+  for (const telemetry::TickEvent& event : sample.events) {
+    if (event.kind == telemetry::EventKind::kNone) break;
     if (auto told = describe_event(record_->info(), sample, event)) events_.push_back(*std::move(told));
   }
 }
@@ -288,12 +288,12 @@ void AttemptLoop::note_shot() {
   if (shot_ || !fired || *fired >= record_->samples().size()) return;
   shot_ = std::make_shared<const GunShot>(make_gun_shot(open_case_->the_case, record_->samples()[*fired]));
   // The composition of the core stands beside its picture.
-  events_.push_back({shot_->time_s, shot_->depth_mm, EventKind::kNone, "shot",
+  events_.push_back({shot_->time_s, shot_->depth_mm, telemetry::EventKind::kNone, "shot",
                      fmt::format("the gun was fired at {:.0f}\u00a0mm", shot_->depth_mm)});
 }
 
 Status AttemptLoop::step_probe() {
-  const std::vector<NumberedSample> samples = probe_->take_samples();
+  const std::vector<link::NumberedSample> samples = probe_->take_samples();
   if (samples.empty()) {
     was_probe_on_ = was_probe_on_ && probe_->is_on();
     return {};
@@ -304,13 +304,13 @@ Status AttemptLoop::step_probe() {
   probe_hand_.step(std::min(now_s - probe_time_s_, kAnswered_s));
   probe_time_s_ = now_s;
   last_probe_ = samples.back().sample;
-  HandTarget target;
+  link::HandTarget target;
   target.X_PN = probe_hand_.X_P();
   target.v_P = probe_hand_.v_P();
   target.w_P = probe_hand_.w_P();
   target.server_time_s = now_s;
   probe_->set_hand(target);
-  probe_->place_at(device_pose(*last_probe_));
+  probe_->place_at(telemetry::device_pose(*last_probe_));
   return live_ ? live_->note_transducer(samples, probe_->clock_offset_s()) : Status{};
 }
 
@@ -354,4 +354,4 @@ void AttemptLoop::conclude(Status status) {
   publish(end, std::move(result));
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "attempt/live/live_operator.h"
 #include "attempt/hands/probe_hand.h"
 #include "attempt/live/detail/force_trace.h"
 #include "attempt/live/detail/steered_needle.h"
-#include "attempt/servers/detail/tool_server.h"
 #include "attempt/live/live_attempt.h"
+#include "attempt/live/live_operator.h"
+#include "attempt/servers/detail/tool_server.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// What the window asks of the attempt between two looks of its thread.
 struct AttemptWishes {
@@ -28,7 +28,7 @@ struct AttemptWishes {
   std::optional<bool> needle_clamped, probe_clamped;
   std::optional<bool> stopped;
   std::vector<std::vector<std::string>> settings;  ///< Messages, in order.
-  std::unique_ptr<Operator> performer;
+  std::unique_ptr<tasks::Operator> performer;
   bool begins = false, fires = false, finishes = false, has_drawn = false;
 };
 
@@ -65,9 +65,9 @@ class AttemptLoop {
   void stop_or_resume(bool is_stopped);
   Status start_recording();
   Status step_needle();
-  void answer_unrecorded(const std::vector<NumberedSample>& samples);
-  Status record(const std::vector<NumberedSample>& samples);
-  void note_tick(const TickSample& sample);
+  void answer_unrecorded(const std::vector<link::NumberedSample>& samples);
+  Status record(const std::vector<link::NumberedSample>& samples);
+  void note_tick(const telemetry::TickSample& sample);
   void note_shot();
   Status step_probe();
   void look_at(ToolServer& server);
@@ -91,8 +91,8 @@ class AttemptLoop {
   LedHand probe_hand_{kSteeredHand};
   std::optional<AttemptRecord> record_;
   std::optional<LiveOperator> live_;
-  HandCommand command_;  ///< Of the needle's hand.
-  std::optional<TickSample> last_needle_, last_probe_;
+  tasks::HandCommand command_;  ///< Of the needle's hand.
+  std::optional<telemetry::TickSample> last_needle_, last_probe_;
   double probe_time_s_ = 0.0, needle_time_s_ = 0.0;  ///< Of the servers' last ticks.
   int seatings_ = 0;                                 ///< Of the needle's server, when its ticks last began to come.
   bool was_needle_on_ = false, was_probe_on_ = false;
@@ -111,4 +111,4 @@ class AttemptLoop {
   double progress_fraction_ = 0.0;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -1,11 +1,11 @@
 // What the window sees of an attempt.
-#include "attempt/live/detail/attempt_loop.h"
 #include "attempt/guide/gun_shot.h"
 #include "attempt/guide/needle_view.h"
 #include "attempt/guide/puncture_guide.h"
+#include "attempt/live/detail/attempt_loop.h"
 #include "telemetry/tick_pose.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 const char* to_string(AttemptPhase phase) noexcept {
   switch (phase) {
@@ -43,8 +43,8 @@ AttemptPhase AttemptLoop::phase_now() const {
   if (is_stopped_) return AttemptPhase::kStopped;
   if (!has_ever_been_on_) return AttemptPhase::kStarting;
   if (!needle_->is_on()) return AttemptPhase::kServerLost;
-  const bool is_inside = last_needle_ && (last_needle_->phase == InsertionPhase::kInserted ||
-                                          last_needle_->phase == InsertionPhase::kRetracting ||
+  const bool is_inside = last_needle_ && (last_needle_->phase == telemetry::InsertionPhase::kInserted ||
+                                          last_needle_->phase == telemetry::InsertionPhase::kRetracting ||
                                           last_needle_->depth_mm > open_case_->the_case.tissues.skin_thickness_mm);
   return is_inside ? AttemptPhase::kInBody : AttemptPhase::kReady;
 }
@@ -53,7 +53,8 @@ NeedleView AttemptLoop::needle_now() const {
   NeedleView view;
   if (last_needle_) {
     const bool is_led = device_hold(options_.device_needle) == DeviceHold::kOurHand;
-    view = needle_view(open_case_->the_case, *last_needle_, is_led ? command_.X_PN : device_pose(*last_needle_));
+    view = needle_view(open_case_->the_case, *last_needle_,
+                       is_led ? command_.X_PN : telemetry::device_pose(*last_needle_));
   } else {
     view.X_PN = view.X_PN_device = view.X_PN_hand = command_.X_PN;
   }
@@ -67,8 +68,8 @@ TransducerView AttemptLoop::probe_now() const {
   view.is_clamped = probe_hand_.is_clamped();
   if (!last_probe_) return view;
   view.is_known = true;
-  view.X_PT = felt_probe(*last_probe_);
-  if (device_hold(options_.device_probe) != DeviceHold::kOurHand) view.X_PT_hand = device_pose(*last_probe_);
+  view.X_PT = telemetry::felt_probe(*last_probe_);
+  if (device_hold(options_.device_probe) != DeviceHold::kOurHand) view.X_PT_hand = telemetry::device_pose(*last_probe_);
   view.contact_n = last_probe_->f_constraint_n.norm();
   view.pressed_mm = last_probe_->depth_mm;
   return view;
@@ -101,7 +102,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   if (last_needle_) {
     if (live_) session_s_ = live_->active_s();
     if (contact_s_ && record_)
-      since_contact_s_ = active_time_s(*contact_s_, last_needle_->time_s, record_->interruptions());
+      since_contact_s_ = tasks::active_time_s(*contact_s_, last_needle_->time_s, record_->interruptions());
     view.session_s = session_s_;
     view.shot = shot_;
     if (shot_) view.since_shot_s = last_needle_->time_s - shot_->time_s;
@@ -125,4 +126,4 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   if (result) news.result = std::move(result);
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

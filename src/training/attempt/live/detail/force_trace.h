@@ -5,7 +5,7 @@
 
 #include "attempt/live/attempt_view.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// Ticks thinned to what a plot shows: of each stretch of time the lowest and the highest force, in their order. So no
 /// peak is lost, and a second has 150 points at most.
@@ -50,4 +50,4 @@ class ForceTrace {
   bool has_any_ = false;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -6,20 +6,20 @@
 #include "attempt/hands/hand_motion.h"
 #include "tasks/operator.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 inline constexpr HandLimits kSteeredHand;  ///< A jump of the mouse is no jump of the tool.
 
 /// Who moves the needle's hand: the trainee's, led by the window, or a scripted operator, to whose start the hand goes
 /// first. To the attempt it is one operator that is never done.
-class SteeredNeedle final : public Operator {
+class SteeredNeedle final : public tasks::Operator {
  public:
   LedHand& hand() noexcept { return hand_; }
   void fire() noexcept { fires_ = true; }
   bool has_fired() const noexcept { return has_fired_; }
   bool is_performing() const noexcept { return performer_ != nullptr; }
 
-  void perform(std::unique_ptr<Operator> performer) noexcept {
+  void perform(std::unique_ptr<tasks::Operator> performer) noexcept {
     performer_ = std::move(performer);
     is_at_start_ = false;
     performed_s_ = 0.0;
@@ -37,11 +37,11 @@ class SteeredNeedle final : public Operator {
     hand_.lead(goal, Vec3::Zero(), Vec3::Zero());
   }
 
-  HandCommand next(const OperatorView& view) noexcept override {
-    HandCommand command = is_performing() ? next_of_performer(view) : HandCommand{};
+  tasks::HandCommand next(const tasks::OperatorView& view) noexcept override {
+    tasks::HandCommand command = is_performing() ? next_of_performer(view) : tasks::HandCommand{};
     if (!is_performing()) {
       hand_.step(view.dt_s);
-      command = HandCommand{};
+      command = tasks::HandCommand{};
       command.X_PN = hand_.X_P();
       command.v_P = hand_.v_P();
     }
@@ -52,20 +52,20 @@ class SteeredNeedle final : public Operator {
   }
 
  private:
-  HandCommand next_of_performer(const OperatorView& view) noexcept {
+  tasks::HandCommand next_of_performer(const tasks::OperatorView& view) noexcept {
     constexpr double kThere_mm = 0.5, kThere_rad = 0.02;
     if (!is_at_start_) {
       hand_.step(view.dt_s);
-      HandCommand going;
+      tasks::HandCommand going;
       going.X_PN = hand_.X_P();
       going.v_P = hand_.v_P();
       is_at_start_ = (hand_.X_P().p() - first_.X_PN.p()).norm() < kThere_mm &&
                      turn_between(hand_.X_P().R(), first_.X_PN.R()).norm() < kThere_rad;
       return going;
     }
-    OperatorView own = view;
+    tasks::OperatorView own = view;
     own.time_s = performed_s_ += view.dt_s;
-    HandCommand command = performer_->next(own);
+    tasks::HandCommand command = performer_->next(own);
     hand_.put(command.X_PN);
     if (command.is_done) performer_.reset();
     command.is_done = false;
@@ -73,11 +73,11 @@ class SteeredNeedle final : public Operator {
   }
 
   LedHand hand_{kSteeredHand};
-  std::unique_ptr<Operator> performer_;
-  HandCommand first_;
+  std::unique_ptr<tasks::Operator> performer_;
+  tasks::HandCommand first_;
   double performed_s_ = 0.0;
   bool is_at_start_ = false;
   bool fires_ = false, has_fired_ = false;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 AttemptView view_in(AttemptPhase phase) {
@@ -32,4 +32,4 @@ TEST(AttemptView, IsNeverTooOldWhereNoNeedleMoves) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 TEST(ForceTrace, KeepsEveryPeakWithFewPoints) {
@@ -33,4 +33,4 @@ TEST(ForceTrace, KeepsEveryPeakWithFewPoints) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -7,33 +7,33 @@
 #include "anatomy/phantom/phantom.h"
 #include "core/files/temporary_folder.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 /// Keeps what it is shown, and wants the needle as many mm down as it was asked times.
-class Witness final : public Operator {
+class Witness final : public tasks::Operator {
  public:
-  HandCommand next(const OperatorView& view) noexcept override {
+  tasks::HandCommand next(const tasks::OperatorView& view) noexcept override {
     views.push_back(view);
-    HandCommand command;
+    tasks::HandCommand command;
     command.X_PN = Pose::translation({0.0, static_cast<double>(views.size()), 0.0});
     command.v_P = {0.0, 7.0, 0.0};
     command.has_fired = views.size() == fires_at;
     command.is_done = views.size() == done_at;
     return command;
   }
-  std::vector<OperatorView> views;
+  std::vector<tasks::OperatorView> views;
   std::size_t fires_at = 0, done_at = 0;
 };
 
 class LiveOperatorTest : public testing::Test {
  protected:
   void SetUp() override {
-    auto patient = generate_phantom("layers-liver");
+    auto patient = anatomy::generate_phantom("layers-liver");
     auto tables = load_tables({});
     ASSERT_TRUE(patient.has_value() && tables.has_value());
     the_case_ = *std::move(tables);
-    the_case_.patient = std::make_shared<const VirtualPatient>(*std::move(patient));
+    the_case_.patient = std::make_shared<const anatomy::VirtualPatient>(*std::move(patient));
     the_case_.plan.line_P = {Vec3::Zero(), Vec3(0.0, 50.0, 0.0)};
     auto witness = std::make_unique<Witness>();
     witness_ = witness.get();
@@ -43,25 +43,26 @@ class LiveOperatorTest : public testing::Test {
     auto record = AttemptRecord::create(the_case_, options, {"a device", performer_.rate_hz, "insertion", "", {}});
     ASSERT_TRUE(record.has_value()) << record.error().text();
     record_.emplace(*std::move(record));
-    live_.emplace(performer_, *record_, HandCommand{});
+    live_.emplace(performer_, *record_, tasks::HandCommand{});
   }
-  bool take(double server_time_s, InsertionPhase phase = InsertionPhase::kOutside) {
+  bool take(double server_time_s, telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside) {
     const auto goes_on = live_->take(tick(server_time_s, phase));
     EXPECT_TRUE(goes_on.has_value());
     return goes_on.value_or(false);
   }
-  static TickSample tick(double server_time_s, InsertionPhase phase = InsertionPhase::kOutside) {
-    TickSample sample;
+  static telemetry::TickSample tick(double server_time_s,
+                                    telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside) {
+    telemetry::TickSample sample;
     sample.time_s = server_time_s;
     sample.phase = phase;
     return sample;
   }
   /// What is in the file when the attempt ends here.
-  Session recorded() {
+  storage::Session recorded() {
     EXPECT_TRUE(record_->finish().has_value());
-    auto session = load_session(folder_ / "attempt.session");
+    auto session = storage::load_session(folder_ / "attempt.session");
     EXPECT_TRUE(session.has_value()) << (session ? "" : session.error().text());
-    return session ? *std::move(session) : Session{};
+    return session ? *std::move(session) : storage::Session{};
   }
 
   TemporaryFolder folder_;
@@ -82,12 +83,12 @@ TEST_F(LiveOperatorTest, RecordsFromZeroAndLooksOnePeriodAhead) {
   EXPECT_NEAR(witness_->views[0].time_s, 0.001, kTolerance_s);
   EXPECT_NEAR(witness_->views[1].time_s, 0.002, kTolerance_s);
   EXPECT_NEAR(witness_->views[1].dt_s, 0.001, kTolerance_s);
-  const HandTarget hand = live_->hand();
+  const link::HandTarget hand = live_->hand();
   EXPECT_NEAR(hand.server_time_s, kServer_s + 0.002, kTolerance_s);
   EXPECT_EQ(hand.X_PN.p().y(), 2.0);
   EXPECT_EQ(hand.v_P.y(), 7.0);
   EXPECT_TRUE(hand.holds_tip);
-  const Session session = recorded();
+  const storage::Session session = recorded();
   ASSERT_EQ(session.samples.size(), 2u);
   EXPECT_EQ(session.samples[0].time_s, 0.0);
   EXPECT_NEAR(session.samples[1].time_s, 0.001, kTolerance_s);
@@ -104,19 +105,19 @@ TEST_F(LiveOperatorTest, CoversMissingTicksWithOneLongerStep) {
 TEST_F(LiveOperatorTest, StandsStillWhileTheServerIsAwayThoughTimeGoesOn) {
   live_->begin(100.0);
   take(kServer_s);
-  take(kServer_s + 0.001, InsertionPhase::kInserted);
+  take(kServer_s + 0.001, telemetry::InsertionPhase::kInserted);
   live_->begin(-4000.0);  // another machine's clock
   const double again_s = kServer_s - 100.0 - 4000.0 + 2.001;
-  take(again_s, InsertionPhase::kInserted);
+  take(again_s, telemetry::InsertionPhase::kInserted);
   EXPECT_NEAR(live_->time_s(), 2.001, kTolerance_s);
   EXPECT_NEAR(live_->paused_s(), 1.999, kTolerance_s);
   EXPECT_NEAR(witness_->views[2].time_s, 0.003, kTolerance_s);
   EXPECT_NEAR(witness_->views[2].dt_s, 0.001, kTolerance_s);
-  const Session session = recorded();
+  const storage::Session session = recorded();
   ASSERT_EQ(session.samples.size(), 3u);
   EXPECT_NEAR(session.samples[2].time_s, 2.001, kTolerance_s);
-  EXPECT_EQ(session.samples[1].events[0].kind, EventKind::kNone);
-  EXPECT_EQ(session.samples[2].events[0].id, static_cast<std::uint8_t>(LimitReason::kResumedInside));
+  EXPECT_EQ(session.samples[1].events[0].kind, telemetry::EventKind::kNone);
+  EXPECT_EQ(session.samples[2].events[0].id, static_cast<std::uint8_t>(telemetry::LimitReason::kResumedInside));
 }
 
 TEST_F(LiveOperatorTest, CountsNoOutageAsTheTraineesTime) {
@@ -125,7 +126,7 @@ TEST_F(LiveOperatorTest, CountsNoOutageAsTheTraineesTime) {
   constexpr double kActive_s = 51.0, kOutage_s = 39.0, kBefore_s = 20.0, kFired_s = 45.0;
   the_case_.plan.line_P = {Vec3::Zero(), Vec3(0.0, 50.0, 0.0)};
   const auto deeper = [&](double server_s, double depth_mm) {
-    TickSample sample = tick(kServer_s + server_s, InsertionPhase::kInserted);
+    telemetry::TickSample sample = tick(kServer_s + server_s, telemetry::InsertionPhase::kInserted);
     sample.depth_mm = depth_mm;
     sample.axis = Vec3::UnitY();
     sample.tip_mm = {0.0, depth_mm, 0.0};
@@ -143,14 +144,14 @@ TEST_F(LiveOperatorTest, CountsNoOutageAsTheTraineesTime) {
   const auto result = record_->finish();
   ASSERT_TRUE(result) << result.error().text();
   EXPECT_NEAR(result->active_s, kActive_s, 2.0 * kStep_s);
-  const auto part = std::ranges::find(result->outcome.parts, "time", &ScorePart::name);
+  const auto part = std::ranges::find(result->outcome.parts, "time", &tasks::ScorePart::name);
   ASSERT_NE(part, result->outcome.parts.end());
   EXPECT_NEAR(part->value, kFired_s, 2.0 * kStep_s);
-  const auto session = load_session(folder_ / "attempt.session");
+  const auto session = storage::load_session(folder_ / "attempt.session");
   ASSERT_TRUE(session) << session.error().text();
   ASSERT_EQ(session->interruptions.size(), 1u);
   EXPECT_NEAR(session->interruptions[0].to_s - session->interruptions[0].from_s, kOutage_s, 2.0 * kStep_s);
-  EXPECT_EQ(session->interruptions[0].reason, kServerWasAway);
+  EXPECT_EQ(session->interruptions[0].reason, tasks::kServerWasAway);
 }
 
 TEST_F(LiveOperatorTest, CountsTicksThatCouldNotBeAnsweredAsAnInterruption) {
@@ -162,7 +163,7 @@ TEST_F(LiveOperatorTest, CountsTicksThatCouldNotBeAnsweredAsAnInterruption) {
   EXPECT_NEAR(live_->active_s(), 0.002, kTolerance_s);
   take(kServer_s + 3.002);  // a second of ticks was lost on the way
   EXPECT_NEAR(live_->active_s(), 0.003, kTolerance_s);
-  const Session session = recorded();
+  const storage::Session session = recorded();
   ASSERT_EQ(session.interruptions.size(), 2u);
   EXPECT_NEAR(session.interruptions[0].from_s, 0.001, kTolerance_s);
   EXPECT_NEAR(session.interruptions[0].to_s, 2.001, kTolerance_s);
@@ -170,13 +171,13 @@ TEST_F(LiveOperatorTest, CountsTicksThatCouldNotBeAnsweredAsAnInterruption) {
 }
 
 /// A server's reply to a command that made a scene.
-Reply scene_reply(std::uint64_t number, const TissueTable& tissues, const char* option) {
+link::Reply scene_reply(std::uint64_t number, const anatomy::TissueTable& tissues, const char* option) {
   return {1, true, "", number, {option}, tissues.to_toml()};
 }
 
 TEST_F(LiveOperatorTest, RecordsFromWhichTickOnParametersWereInForce) {
-  TissueTable changed = the_case_.tissues;
-  ASSERT_TRUE(apply_override(changed, "skin.fp=6"));
+  anatomy::TissueTable changed = the_case_.tissues;
+  ASSERT_TRUE(anatomy::apply_override(changed, "skin.fp=6"));
   KnownScenes known;
   known.learn(scene_reply(3, the_case_.tissues, "bending=1"));
   live_->begin(0.0);
@@ -189,7 +190,7 @@ TEST_F(LiveOperatorTest, RecordsFromWhichTickOnParametersWereInForce) {
     take(kServer_s + 0.001 * n);
     ASSERT_TRUE(record_->note_scene(scene, known));
   }
-  const Session session = recorded();
+  const storage::Session session = recorded();
   ASSERT_EQ(session.parameters.size(), 2u);
   EXPECT_EQ(session.parameters[0].tick, 0u);
   EXPECT_TRUE(session.parameters[0].settings.empty());
@@ -236,14 +237,14 @@ TEST_F(LiveOperatorTest, FiresAtTheTickAfterTheCommandAndEndsWhenTheOperatorIsDo
   live_->begin(0.0);
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(take(kServer_s + 0.001 * i));
   EXPECT_FALSE(take(kServer_s + 0.003));
-  const Session session = recorded();
+  const storage::Session session = recorded();
   EXPECT_EQ(session.fired, std::optional<std::size_t>(2));
   EXPECT_EQ(session.samples.size(), 4u);
 }
 
 TEST_F(LiveOperatorTest, ResumesTheNeedleInItsChannelWhereverTheGripHasSwung) {
   live_->begin(0.0);
-  TickSample inside = tick(kServer_s, InsertionPhase::kInserted);
+  telemetry::TickSample inside = tick(kServer_s, telemetry::InsertionPhase::kInserted);
   inside.axis = Vec3::UnitY();
   inside.tip_mm = {1.0, 25.0, 3.0};
   inside.device_mm = {4.0, 27.0, 3.0};
@@ -258,9 +259,9 @@ TEST_F(LiveOperatorTest, ResumesTheNeedleInItsChannelWhereverTheGripHasSwung) {
 TEST_F(LiveOperatorTest, RecordsTheTransducerInTheSessionsTime) {
   constexpr double kProbesClock_s = -700.0, kNeedlesClock_s = 300.0;
   const auto probe_ticks = [&](double from_s, int count) {
-    std::vector<NumberedSample> ticks;
+    std::vector<link::NumberedSample> ticks;
     for (int i = 0; i < count; ++i) {
-      TickSample sample = tick(kServer_s - kNeedlesClock_s + kProbesClock_s + from_s + 0.001 * i);
+      telemetry::TickSample sample = tick(kServer_s - kNeedlesClock_s + kProbesClock_s + from_s + 0.001 * i);
       sample.axis = Vec3::UnitY();
       sample.tip_mm = sample.device_mm = {sample.time_s, 0.0, 0.0};
       sample.f_constraint_n = {0.0, -3.0, 0.0};
@@ -273,17 +274,17 @@ TEST_F(LiveOperatorTest, RecordsTheTransducerInTheSessionsTime) {
   take(kServer_s);
   take(kServer_s + 0.001);
   ASSERT_TRUE(live_->note_transducer(probe_ticks(-0.05, 300), kProbesClock_s));
-  const Session session = recorded();
+  const storage::Session session = recorded();
   ASSERT_EQ(session.samples.size(), 2u);
   ASSERT_GE(session.transducer.size(), 23u);  // of the 250 ms in it, at most 100 a second
   ASSERT_LE(session.transducer.size(), 25u);
   EXPECT_NEAR(session.transducer.front().time_s, 0.0, 0.0011);
   EXPECT_NEAR(session.transducer.back().time_s, 0.25, 0.0121);
-  for (const TransducerSample& moment : session.transducer) {
+  for (const storage::TransducerSample& moment : session.transducer) {
     EXPECT_NEAR(moment.X_PT.p().x(), kServer_s - kNeedlesClock_s + kProbesClock_s + moment.time_s, kTolerance_s);
     EXPECT_EQ(moment.contact_n, 3.0);
   }
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -2,7 +2,7 @@
 
 #include "attempt/live/realtime_session.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 Status check(const std::vector<std::string>& endpoints) {
@@ -38,4 +38,4 @@ TEST(RealtimeOptions, LetsKeysOpenServersOfOtherMachines) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -4,7 +4,7 @@
 
 #include "haptics/test/layered_patient.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 using testing::layered_patient;
@@ -14,10 +14,10 @@ using testing::paper_tissues;
 constexpr double kDt_s = 0.001;
 constexpr double kFluctuation_n = 0.05;  // of the friction
 
-std::shared_ptr<const HapticScene> weightless_scene() {
-  HapticOptions options;
+std::shared_ptr<const haptics::HapticScene> weightless_scene() {
+  haptics::HapticOptions options;
   options.has_weight_compensation = false;
-  auto scene = make_haptic_scene(layered_patient(liver_way()), paper_tissues(), {}, {}, options);
+  auto scene = haptics::make_haptic_scene(layered_patient(liver_way()), paper_tissues(), {}, {}, options);
   TROCAR_CHECK(scene.has_value());
   return *scene;
 }
@@ -105,4 +105,4 @@ TEST(PiecesAlong, NamesTheLabelsBelowTheSkinShell) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -6,7 +6,7 @@
 
 #include "haptics/test/layered_patient.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 using testing::kFat;
@@ -16,10 +16,10 @@ using testing::layered_patient;
 using testing::liver_way;
 using testing::paper_tissues;
 
-std::shared_ptr<const HapticScene> scene_of(std::shared_ptr<const VirtualPatient> patient) {
-  HapticOptions options;
+std::shared_ptr<const haptics::HapticScene> scene_of(std::shared_ptr<const anatomy::VirtualPatient> patient) {
+  haptics::HapticOptions options;
   options.has_weight_compensation = false;
-  auto scene = make_haptic_scene(std::move(patient), paper_tissues(), {}, {}, options);
+  auto scene = haptics::make_haptic_scene(std::move(patient), paper_tissues(), {}, {}, options);
   TROCAR_CHECK(scene.has_value());
   return *scene;
 }
@@ -52,7 +52,7 @@ TEST(SegmentationStudy, FindsNoErrorBetweenIdenticalScenes) {
 
 TEST(SegmentationStudy, FeelsALabelThatIsGone) {
   const auto full = layered_patient(liver_way());
-  const auto partly = std::make_shared<const VirtualPatient>(partly_segmented(*full, kPartlySegmented));
+  const auto partly = std::make_shared<const anatomy::VirtualPatient>(partly_segmented(*full, kPartlySegmented));
   const auto errors = compare_forces(*scene_of(full), *scene_of(partly), motions(4));
   const StudyFigures figures = study_figures(errors);
   EXPECT_EQ(figures.paths, 4U);
@@ -78,11 +78,11 @@ TEST(SegmentationStudy, GivesTheSameFiguresAgain) {
 
 TEST(PartlySegmented, KeepsOnlyTheNamedTissues) {
   const auto full = layered_patient(liver_way());
-  const VirtualPatient partly = partly_segmented(*full, kPartlySegmented);
-  EXPECT_EQ(find_label(partly, {0.0, 0.0, 5.0}), nullptr);   // fat
-  EXPECT_EQ(find_label(partly, {0.0, 0.0, 15.0}), nullptr);  // muscle
-  ASSERT_NE(find_label(partly, {0.0, 0.0, 30.0}), nullptr);
-  EXPECT_EQ(find_label(partly, {0.0, 0.0, 30.0})->id, kLiver);
+  const anatomy::VirtualPatient partly = partly_segmented(*full, kPartlySegmented);
+  EXPECT_EQ(anatomy::find_label(partly, {0.0, 0.0, 5.0}), nullptr);   // fat
+  EXPECT_EQ(anatomy::find_label(partly, {0.0, 0.0, 15.0}), nullptr);  // muscle
+  ASSERT_NE(anatomy::find_label(partly, {0.0, 0.0, 30.0}), nullptr);
+  EXPECT_EQ(anatomy::find_label(partly, {0.0, 0.0, 30.0})->id, kLiver);
   EXPECT_EQ(partly.label_table.find(kMuscle), nullptr);
   EXPECT_EQ(partly.skin_distance_mm.voxels, full->skin_distance_mm.voxels);
 }
@@ -118,4 +118,4 @@ TEST(PrescribedMotion, RunsFromOutsideTheSkinToTheTargetAndItsDrift) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files/temporary_folder.h"
 #include "attempt/offline/run_session.h"
+#include "core/files/temporary_folder.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 /// The expert's liver biopsy, performed once.
@@ -64,14 +64,15 @@ TEST(AttemptReplay, NamesWhatHappenedInOrder) {
 }
 
 /// A session of two ticks in which the transducer is moved, and one without.
-std::filesystem::path short_session(const TemporaryFolder& folder, const std::vector<TransducerSample>& moments) {
+std::filesystem::path short_session(const TemporaryFolder& folder,
+                                    const std::vector<storage::TransducerSample>& moments) {
   const std::filesystem::path path = folder / "short.trocar";
-  const auto from = load_session(recorded().session);
+  const auto from = storage::load_session(recorded().session);
   EXPECT_TRUE(from);
-  auto writer = SessionWriter::create(path, from->info);
+  auto writer = storage::SessionWriter::create(path, from->info);
   EXPECT_TRUE(writer);
   for (std::size_t n = 0; n < 2; ++n) EXPECT_TRUE(writer->append(from->samples[n]));
-  for (const TransducerSample& moment : moments) EXPECT_TRUE(writer->append(moment));
+  for (const storage::TransducerSample& moment : moments) EXPECT_TRUE(writer->append(moment));
   return path;
 }
 
@@ -110,7 +111,7 @@ TEST(AttemptReplay, ANeedleThatMetNothingHasNoScoreAndNoWorstMoment) {
 }
 
 TEST(AttemptReplay, ASessionInMemoryIsSeenLikeOneOfAFile) {
-  auto session = load_session(recorded().session);
+  auto session = storage::load_session(recorded().session);
   ASSERT_TRUE(session);
   const double score = session->outcome->score;
   const auto replay = AttemptReplay::of(*std::move(session), recorded().open);
@@ -120,7 +121,7 @@ TEST(AttemptReplay, ASessionInMemoryIsSeenLikeOneOfAFile) {
 
 TEST(AttemptReplay, ASessionOfAnotherPatientIsRefused) {
   auto other = std::make_shared<OpenCase>(*recorded().open);
-  auto patient = std::make_shared<VirtualPatient>(*other->the_case.patient);
+  auto patient = std::make_shared<anatomy::VirtualPatient>(*other->the_case.patient);
   patient->content_hash = "another";
   other->the_case.patient = patient;
   const auto replay = AttemptReplay::load(recorded().session, other);
@@ -129,4 +130,4 @@ TEST(AttemptReplay, ASessionOfAnotherPatientIsRefused) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

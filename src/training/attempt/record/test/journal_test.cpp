@@ -8,7 +8,7 @@
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 struct JournalTest : testing::Test {
@@ -121,4 +121,4 @@ TEST_F(JournalTest, DamageIsNoCrash) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 constexpr std::uintmax_t kMB = 1'000'000;
@@ -39,4 +39,4 @@ TEST(RecordingRoom, RefusesAStartThatWouldEndAtOnce) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt

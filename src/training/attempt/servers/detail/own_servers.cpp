@@ -1,6 +1,6 @@
 #include "attempt/servers/detail/own_servers.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 Result<OwnServers> OwnServers::start(const RunOptions& options, double rate_hz) {
   OwnServers own;
@@ -28,4 +28,4 @@ Status OwnServers::check(std::string_view tool) {
   return {};
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

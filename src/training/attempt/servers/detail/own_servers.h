@@ -4,10 +4,10 @@
 #include <string_view>
 #include <vector>
 
-#include "attempt/servers/own_server.h"
 #include "attempt/offline/run_session.h"
+#include "attempt/servers/own_server.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// Two servers of our own, needle and probe, with simulated devices. They end with this.
 class OwnServers {
@@ -23,4 +23,4 @@ class OwnServers {
   std::vector<OwnServer> servers_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

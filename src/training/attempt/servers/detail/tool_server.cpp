@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cctype>
 
-#include "haptics/gate/safety_gate.h"
 #include "attempt/servers/seat_devices.h"
+#include "haptics/gate/safety_gate.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 using State = ServerSeat::State;
@@ -56,7 +56,7 @@ void ToolServer::connect() {
   stalls_ = 0;
   lost_device_.reset();
   before_.clear();
-  ClientOptions options;
+  link::ClientOptions options;
   options.endpoint = process_->endpoint();
   options.name = "trocar station";
   options.has_window = has_window_;
@@ -122,15 +122,15 @@ std::string ToolServer::seat_again(bool is_new_process) {
 
 bool ToolServer::is_device_lost() const {
   const std::string& fault = seat_->view().status.fault;
-  return seat_->view().is_connected &&
-         (fault == to_string(GateFault::kDeviceLost) || fault == to_string(GateFault::kDeviceSilent));
+  return seat_->view().is_connected && (fault == to_string(telemetry::GateFault::kDeviceLost) ||
+                                        fault == to_string(telemetry::GateFault::kDeviceSilent));
 }
 
 /// Until it is there again; forces stay off meanwhile, for the fault is latched.
 std::string ToolServer::open_device_again() {
   LostDevice& lost = *lost_device_;
   const auto now = Clock::now();
-  for (const Reply& reply : seat_->take_replies()) {
+  for (const link::Reply& reply : seat_->take_replies()) {
     if (reply.request != lost.asked) continue;
     if (reply.is_done) return bring_back(fmt::format("the {} is there again", device_words()), false);
     lost.asked.reset();
@@ -140,7 +140,7 @@ std::string ToolServer::open_device_again() {
     banner_ = reply.text + "; resume to try again";
   }
   if (!waits_for_resume_ && !lost.asked && now - lost.refused > kAskAgain)
-    lost.asked = seat_->send(ServerCommand::kReconnect);
+    lost.asked = seat_->send(link::ServerCommand::kReconnect);
   return {};
 }
 
@@ -174,7 +174,7 @@ std::string ToolServer::look() {
     if (!interrupted_by_.empty())
       recovery_ = fmt::format("{}. The forces are back and the puncture goes on", sentence(interrupted_by_));
     interrupted_by_.clear();
-    const SetParameters now = parameters();  // set while the forces were coming on
+    const link::SetParameters now = parameters();  // set while the forces were coming on
     if (now.settings != seat_->adjusted().settings) before_[seat_->send(now)] = settings_;
   }
   if (was_on_ && *state != State::kOn) return note_interruption();
@@ -191,7 +191,7 @@ std::string ToolServer::look() {
 }
 
 void ToolServer::note_replies() {
-  for (const Reply& reply : seat_->take_replies()) {
+  for (const link::Reply& reply : seat_->take_replies()) {
     const auto before = before_.find(reply.request);
     if (before == before_.end()) continue;
     if (!reply.is_done) settings_ = before->second;  // all of a message or nothing
@@ -233,7 +233,7 @@ std::string ToolServer::cannot_go_on(const Error& why) {
     was_on_ = false;
     waits_for_resume_ = !is_stopped_;
     if (is_device_lost()) {
-      const bool is_gone = seat_->view().status.fault == to_string(GateFault::kDeviceLost);
+      const bool is_gone = seat_->view().status.fault == to_string(telemetry::GateFault::kDeviceLost);
       return banner_ = fmt::format("{}, which moves the {}, {}, then resume the forces (Space).", device_words(),
                                    tool_ == "probe" ? "transducer" : tool_,
                                    is_gone ? "is gone. Plug it in again" : "is silent. Look after its cable");
@@ -270,18 +270,18 @@ std::string ToolServer::doing() const {
   return fmt::format("turning on the forces of the {}", tool_);
 }
 
-std::vector<NumberedSample> ToolServer::take_samples() {
+std::vector<link::NumberedSample> ToolServer::take_samples() {
   if (!seat_ || !was_on_) return {};
-  std::vector<NumberedSample> samples = seat_->take_samples();
+  std::vector<link::NumberedSample> samples = seat_->take_samples();
   if (!samples.empty()) ticked_ = Clock::now();
   return samples;
 }
 
-void ToolServer::set_hand(const HandTarget& target) {
+void ToolServer::set_hand(const link::HandTarget& target) {
   if (is_on()) seat_->set_hand(target);
 }
 
-SetParameters ToolServer::parameters() const {
+link::SetParameters ToolServer::parameters() const {
   std::vector<std::string> all = settings_.tissues;
   for (const auto& [key, setting] : settings_.other) all.push_back(setting);
   return {std::move(all)};
@@ -301,7 +301,7 @@ void ToolServer::set_parameters(const std::vector<std::string>& settings) {
   }
   if (!tissues.empty() || settings.empty()) settings_.tissues = std::move(tissues);
   if (seat_) seat_->adjust(parameters());
-  if (is_on()) before_[seat_->send(SetParameters{settings})] = before;
+  if (is_on()) before_[seat_->send(link::SetParameters{settings})] = before;
 }
 
 std::vector<std::string> ToolServer::take_messages() {
@@ -310,7 +310,7 @@ std::vector<std::string> ToolServer::take_messages() {
 
 void ToolServer::stop_forces() {
   is_stopped_ = true;
-  if (seat_) seat_->send(ServerCommand::kStop);
+  if (seat_) seat_->send(link::ServerCommand::kStop);
 }
 
 void ToolServer::resume_forces() {
@@ -320,7 +320,7 @@ void ToolServer::resume_forces() {
   const Status alive = process_->check();
   const bool is_alive = alive.has_value();
   if (is_on() && is_alive) {
-    seat_->send(ServerCommand::kStart);
+    seat_->send(link::ServerCommand::kStart);
     return;
   }
   has_given_up_ = false;
@@ -347,14 +347,14 @@ std::string ToolServer::device_words() const {
   return words_of(client().welcome.device.name);
 }
 
-const ClientView& ToolServer::client() const {
-  static const ClientView kNone;
+const link::ClientView& ToolServer::client() const {
+  static const link::ClientView kNone;
   return seat_ ? seat_->view() : kNone;
 }
 
 ServerView ToolServer::view() const {
-  const ClientView& client_view = client();
-  const ServerStatus& status = client_view.status;
+  const link::ClientView& client_view = client();
+  const link::ServerStatus& status = client_view.status;
   ServerView view;
   view.tool = tool_;
   view.pid = process_->pid();
@@ -382,4 +382,4 @@ ServerFigures ToolServer::figures() const {
   return figures;
 }
 
-}  // namespace trocar
+}  // namespace trocar::attempt

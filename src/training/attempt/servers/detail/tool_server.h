@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "attempt/live/attempt_view.h"
 #include "attempt/servers/own_server.h"
 #include "attempt/servers/server_seat.h"
-#include "attempt/live/attempt_view.h"
 
-namespace trocar {
+namespace trocar::attempt {
 
 /// How a device goes to where an attempt wants it.
 enum class DeviceHold {
@@ -46,11 +46,11 @@ class ToolServer {
   double loading() const noexcept { return seat_ ? seat_->loading() : 0.0; }
   std::string doing() const;  ///< "loading the patient", for a progress line.
 
-  std::vector<NumberedSample> take_samples();
+  std::vector<link::NumberedSample> take_samples();
   /// The scenes of the ticks that take_samples() gives; null while there is no seat.
   const KnownScenes* scenes() const noexcept { return seat_ ? &seat_->scenes() : nullptr; }
   int seatings() const noexcept { return seatings_; }  ///< How often its forces came on, the tool put to its place.
-  void set_hand(const HandTarget& target);
+  void set_hand(const link::HandTarget& target);
   /// As SetParameters means them. Sent now, and what holds then again whenever the server comes back, before its forces
   /// do. What is said of them comes by take_messages().
   void set_parameters(const std::vector<std::string>& settings);
@@ -62,7 +62,7 @@ class ToolServer {
 
   double clock_offset_s() const noexcept { return seat_ ? seat_->view().clock_offset_s : 0.0; }
   double wanted_hz() const noexcept { return seat_ ? seat_->view().status.loop.wanted_hz : 0.0; }
-  const ClientView& client() const;
+  const link::ClientView& client() const;
   ServerView view() const;
   ServerFigures figures() const;
 
@@ -79,7 +79,7 @@ class ToolServer {
   std::string open_device_again();
   std::string device_words() const;  ///< "gamepad"
   /// All that was set since the scene was loaded.
-  SetParameters parameters() const;
+  link::SetParameters parameters() const;
   void note_replies();
 
   OwnServer* process_;
@@ -121,4 +121,4 @@ class ToolServer {
   std::optional<LostDevice> lost_device_;
 };
 
-}  // namespace trocar
+}  // namespace trocar::attempt

@@ -8,7 +8,7 @@
 
 #include "core/files/temporary_folder.h"
 
-namespace trocar {
+namespace trocar::attempt {
 namespace {
 
 std::vector<std::string> specs() {
@@ -61,4 +61,4 @@ TEST_F(SeatDevices, OneDeviceIsNotInTwoHands) {
 }
 
 }  // namespace
-}  // namespace trocar
+}  // namespace trocar::attempt
