@@ -10,7 +10,7 @@ class QPushButton;
 class QScrollArea;
 class QVBoxLayout;
 
-namespace trocar {
+namespace trocar::attempt {
 struct GunShot;
 }
 

@@ -11,7 +11,7 @@ class QListWidget;
 class QPushButton;
 class QShortcut;
 
-namespace trocar {
+namespace trocar::attempt {
 struct GunShot;
 }
 

@@ -46,7 +46,7 @@ TEST_F(ParameterPanelTest, TissuesOnThePathComeFirst) {
 
 TEST_F(ParameterPanelTest, AStifferCapsuleChangesThePredictedForceAndUndoGivesItBack) {
   open_tissue("parameter-tissue-liver");
-  const double before_mm = attempt::way_mm("liver_capsule");
+  const double before_mm = way_mm("liver_capsule");
   const std::vector<attempt::CurvePoint> before = panel.preview().changed_curve();
   ASSERT_GT(before_mm, 0.0);
   type("parameter-liver-k", "0.05");
@@ -59,7 +59,7 @@ TEST_F(ParameterPanelTest, AStifferCapsuleChangesThePredictedForceAndUndoGivesIt
   const auto& curve = panel.preview().changed_curve();
   ASSERT_EQ(curve.size(), expected->size());
   for (std::size_t n = 0; n < curve.size(); ++n) ASSERT_EQ(curve[n].force_n, (*expected)[n].force_n);
-  EXPECT_GT(attempt::way_mm("liver_capsule"), before_mm + 0.2) << "a softer capsule gives way later";
+  EXPECT_GT(way_mm("liver_capsule"), before_mm + 0.2) << "a softer capsule gives way later";
   keep_picture("parameters_changed.png");
 
   EXPECT_TRUE(strike(panel, QStringLiteral("Ctrl+Z")));
@@ -67,7 +67,7 @@ TEST_F(ParameterPanelTest, AStifferCapsuleChangesThePredictedForceAndUndoGivesIt
   settle();
   EXPECT_EQ(sent.back(), QStringList());
   EXPECT_EQ(panel.preview().changed_curve().size(), before.size());
-  EXPECT_EQ(attempt::way_mm("liver_capsule"), before_mm);
+  EXPECT_EQ(way_mm("liver_capsule"), before_mm);
   EXPECT_TRUE(strike(panel, QStringLiteral("Ctrl+Shift+Z")));
   settle();
   EXPECT_EQ(sent.back(), QStringList{QStringLiteral("liver.k=0.05")});
