@@ -60,6 +60,7 @@ function(trocar_add_module tier name uses libraries)
     endif()
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${links} PRIVATE trocar_warnings)
+    trocar_use_precompiled(${target} trocar_precompiled)
     if("vtk-rendering" IN_LIST libraries)
       vtk_module_autoinit(TARGETS ${target} MODULES VTK::RenderingCore VTK::RenderingOpenGL2
         VTK::RenderingVolumeOpenGL2 VTK::RenderingFreeType)
@@ -79,6 +80,11 @@ function(trocar_add_module tier name uses libraries)
   endif()
 endfunction()
 
+# Tests are compiled once and run once: optimising them costs more than it gains. What they test keeps its options.
+function(trocar_optimise_little target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # One test program of GoogleTest files.
 function(trocar_add_test name library)
   add_executable(${name}_test ${ARGN})
@@ -88,6 +94,10 @@ function(trocar_add_test name library)
     target_compile_definitions(trocar_source_dir PRIVATE TROCAR_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   endif()
   target_link_libraries(${name}_test PRIVATE ${library} trocar_source_dir GTest::gtest_main trocar_warnings)
+  trocar_optimise_little(${name}_test)
+  if(NOT name STREQUAL "trainer")
+    trocar_use_precompiled(${name}_test trocar_precompiled_tests)
+  endif()
   set_target_properties(${name}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   set(launcher)
   if(name MATCHES "^(scene|cli|trainer)$")  # VTK and Qt draw on an X server only
