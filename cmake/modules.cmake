@@ -60,7 +60,9 @@ function(trocar_add_module tier name uses libraries)
     endif()
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${links} PRIVATE trocar_warnings)
-    trocar_use_precompiled(${target} trocar_precompiled)
+    if(NOT "itk" IN_LIST libraries)  # ITK brings an Eigen of its own
+      trocar_use_precompiled(${target} trocar_precompiled)
+    endif()
     if("vtk-rendering" IN_LIST libraries)
       vtk_module_autoinit(TARGETS ${target} MODULES VTK::RenderingCore VTK::RenderingOpenGL2
         VTK::RenderingVolumeOpenGL2 VTK::RenderingFreeType)
