@@ -69,13 +69,13 @@ Status add_flavum(std::vector<CaseResult>& results, const Setting& setting,
   const haptics::LossOfResistance loss = haptics::judge_loss_of_resistance(samples, layer);
   const std::string name = fmt::format("contact/flavum/{}/{}", setting.device.name, to_string(setting.model));
   if (!loss.has_given_way) {
-    add(results, name, "n", 0.0, "did not give way");
+    add(results, name, "n", 0.0, "not punctured");
     return {};
   }
   add(results, name, "n", loss.peak_n, "peak on the device");
   add(results, name + "/drop", "n", loss.drop_n);
   add(results, name + "/drop-time", "ms", 1000.0 * loss.drop_time_s, "10 to 90 %");
-  add(results, name + "/jump", "mm", loss.jump_mm, "needle beyond the hand's way within 0.3 s");
+  add(results, name + "/jump", "mm", loss.jump_mm, "needle travel beyond the hand within 0.3 s");
   return {};
 }
 

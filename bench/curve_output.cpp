@@ -67,7 +67,7 @@ report::Plot plot_of(const PathCurves& path) {
   constexpr const char* kStyles[] = {"c-total", "c-second", "c-third"};
   report::Plot plot;
   plot.description = "Force along the needle against the depth of the device, " + path.title;
-  plot.x_title = "way of the device past the resting skin (mm)";
+  plot.x_title = "displacement of the device past the resting skin (mm)";
   plot.y_title = "force along the needle (N)";
   plot.width = 940.0;
   plot.height = 400.0;
@@ -141,7 +141,7 @@ std::string curves_text(const PathCurves& path) {
     }
     text += fmt::format(" {}\n", names_in(path, from, from + step));
   }
-  return text + fmt::format("  largest force (N) in each row; * a layer gave way; longest bar {:.2f} N\n\n", full_n);
+  return text + fmt::format("  largest force (N) in each row; * puncture of a layer; longest bar {:.2f} N\n\n", full_n);
 }
 
 Status write_curves(const PathCurves& path, const anatomy::TissueTable& tissues, const std::filesystem::path& folder) {

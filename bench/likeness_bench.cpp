@@ -131,10 +131,11 @@ std::string table_of(const ultrasound::PictureFigures& real, const ultrasound::P
     text +=
         fmt::format("  {:>3} % {:>5} | {:>3}\n", percent, ultrasound::gray_percentile(real.histogram, percent / 100.0),
                     ultrasound::gray_percentile(simulated.histogram, percent / 100.0));
-  text += fmt::format("  mean {:.1f} | {:.1f}; moved {:.1f} grays a pixel, Bhattacharyya {:.3f}\n",
-                      ultrasound::mean_gray(real.histogram), ultrasound::mean_gray(simulated.histogram),
-                      ultrasound::earth_mover_distance(real.histogram, simulated.histogram),
-                      ultrasound::bhattacharyya_distance(real.histogram, simulated.histogram));
+  text +=
+      fmt::format("  mean {:.1f} | {:.1f}; earth mover's distance {:.1f} gray values per pixel, Bhattacharyya {:.3f}\n",
+                  ultrasound::mean_gray(real.histogram), ultrasound::mean_gray(simulated.histogram),
+                  ultrasound::earth_mover_distance(real.histogram, simulated.histogram),
+                  ultrasound::bhattacharyya_distance(real.histogram, simulated.histogram));
   text += "\ndepth mm: gray mean/median/p99 (recorded | simulated)\n";
   for (std::size_t i = 0; i < std::min(real.levels.size(), simulated.levels.size()); ++i)
     text += fmt::format("  {:>4.0f}  {:>5.1f} {:>3.0f} {:>3.0f} | {:>5.1f} {:>3.0f} {:>3.0f}\n",

@@ -76,7 +76,7 @@ void run_trials(std::vector<Trial>& trials, const Progress& progress) {
       trial.outcome = haptics::run_stability_trial(trial.scene, *trial.device, trial.holder, {trial.depth_mm});
       const std::size_t count = ++done;
       if (count % 32 == 0)
-        report(progress, "letting needles go", static_cast<double>(count) / static_cast<double>(trials.size()));
+        report(progress, "releasing needles", static_cast<double>(count) / static_cast<double>(trials.size()));
     }
   });
 }

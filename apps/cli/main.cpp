@@ -34,7 +34,7 @@ int report_usage(const CLI::App& program, const CLI::ParseError& error) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("Trocar: a simulator on which people learn needle punctures. A trainer, not a medical device.");
+  CLI::App program("Trocar: a training simulator for needle punctures. Not a medical device.");
   program.name("trocar");
   program.set_version_flag("--version", std::string("trocar ") + trocar::kVersion, "Print the version and exit");
   bool is_verbose = false;

@@ -75,7 +75,7 @@ Status check_new(const fs::path& out, const char* option) {
 Result<fs::path> find_data(std::string_view name) {
   const fs::path folder = data_dir();
   if (folder.empty()) {
-    return fail("the tables of tasks, needles and tissues are missing", "data/",
+    return fail("the data tables of tasks, needles and tissues are missing", "data/",
                 "set TROCAR_DATA_DIR to the data folder of Trocar");
   }
   return folder / name;

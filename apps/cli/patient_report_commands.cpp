@@ -260,13 +260,13 @@ void add_patient_report_commands(CLI::App& patient, Action& action) {
   show_command->add_flag("--json", arguments->is_json, "Print one JSON object");
   show_command->footer("Example:\n  trocar patient show my_patient\n");
 
-  CLI::App* check_command =
-      add_command(patient, action, "check", "Which tasks a patient can serve, and what is doubtful", check, arguments);
+  CLI::App* check_command = add_command(
+      patient, action, "check", "List the tasks that a patient supports, and doubtful results", check, arguments);
   check_command->add_flag("--json", arguments->is_json, "Print one JSON object");
   check_command->footer("Example:\n  trocar patient check my_patient\n");
 
-  CLI::App* render_command = add_command(patient, action, "render",
-                                         "CT slices, and 3D pictures where there is an X server", render, arguments);
+  CLI::App* render_command = add_command(
+      patient, action, "render", "Render CT slices, and 3D images if an X server is available", render, arguments);
   render_command->add_option("--out", arguments->out, "Folder to create")->required();
   render_command->add_option("--paths", arguments->paths, "Needle paths to draw, as trocar plan writes them");
   render_command->footer("Example:\n  xvfb-run -a trocar patient render my_patient --out pictures\n");

@@ -85,8 +85,8 @@ void draw_colour_bar(volume::RgbImage& image, const ColourPicture& picture) {
   constexpr int kColumnsPerScale = 640;
   const int dot = std::max(1, image.columns / kColumnsPerScale);
   const int rows = image.rows / 4;
-  ultrasound::draw_colour_bar(image, kBarColumn * dot, (image.rows - rows) / 2, kBarColumns * dot, rows, picture.scale_cm_per_s,
-                  picture.settings);
+  ultrasound::draw_colour_bar(image, kBarColumn * dot, (image.rows - rows) / 2, kBarColumns * dot, rows,
+                              picture.scale_cm_per_s, picture.settings);
 }
 
 }  // namespace trocar::cli

@@ -175,19 +175,21 @@ Status sweep(const Arguments& arguments) {
 }  // namespace
 
 void add_ultrasound_sweep_command(CLI::App& ultrasound, Action& action) {
-  CLI::App* command = ultrasound.add_subcommand("sweep", "Make a simulated 3D acquisition");
+  CLI::App* command = ultrasound.add_subcommand("sweep", "Simulate a 3D acquisition");
   command->footer(
       "Examples:\n  trocar ultrasound sweep --patient my_patient --pose probe.tfm --out volume.nrrd\n"
       "  trocar ultrasound sweep --patient abdomen --view liver-right-kidney --in-patient --out liver.nrrd\n"
       "  trocar ultrasound sweep --patient abdomen --view liver-right-kidney --tracked sweep.igs.mha\n");
   const auto a = std::make_shared<Arguments>();
   add_scan_options(*command, a->scan);
-  command->add_option("--out", a->out, "Volume of a mechanical 3D transducer: .nrrd, one byte a voxel, with its fan");
-  command->add_option("--tracked", a->tracked, "Instead: tracked pictures of a freehand sweep, .igs.mha");
+  command->add_option(
+      "--out", a->out,
+      "Output volume of a mechanical 3D transducer: .nrrd, one byte per voxel, with the fan geometry in the header");
+  command->add_option("--tracked", a->tracked, "Alternative output: tracked images of a freehand sweep, .igs.mha");
   arguments::number_within(
       command->add_option(
           "--angle-deg", a->angle_deg,
-          "Total angle of the sweep; the transducer's own when left out. Freehand sweep: tilt, no slide"),
+          "Total angle of the sweep; default: that of the transducer. Freehand sweep: tilt without translation"),
       1.0, 90.0, "degrees");
   arguments::number_within(command->add_option("--step-deg", a->step_deg, "Angle between frames"), 0.1, 10.0, "degrees")
       ->capture_default_str();

@@ -132,7 +132,7 @@ class EndSignal {
       sigwait(&signals, &signal);
       const std::lock_guard lock(state->mutex);
       if (!state->holds_device) {
-        fmt::print(stderr, "error: stopped before the server had started\n");
+        fmt::print(stderr, "error: stopped before the server was ready\n");
         std::fflush(nullptr);
         std::_Exit(1);
       }
@@ -172,7 +172,7 @@ void print_report(const server::ServerReport& report) {
   line("tick", loop.tick);
   fmt::print("{}\n", report.grant.text());
   if (report.ticks_dropped + report.refused.total() + report.batches_not_taken > 0)
-    fmt::print("{} ticks dropped, {} messages refused, {} batches that a client did not take\n", report.ticks_dropped,
+    fmt::print("{} ticks dropped, {} messages refused, {} batches dropped for slow clients\n", report.ticks_dropped,
                report.refused.total(), report.batches_not_taken);
 }
 
@@ -222,15 +222,17 @@ Status serve(Arguments& arguments) {
 void add_options(CLI::App& program, Arguments& a) {
   program
       .add_option("--device", a.device,
-                  "virtual[:PRESET], mouse, gamepad, spacemouse, replay:SESSION, openhaptics[:NAME], forcedimension or "
-                  "haply[:ws://HOST:PORT]")
+                  "Device: virtual[:PRESET], mouse, gamepad, spacemouse, replay:SESSION, openhaptics[:NAME], "
+                  "forcedimension or haply[:ws://HOST:PORT]")
       ->capture_default_str();
-  program.add_option("--preset", a.preset, "Row of data/devices.toml instead of the device's own");
-  program.add_option("--tool", a.tool, "What the device stands for: needle, probe or finger")->capture_default_str();
-  program.add_option("--patient", a.patient.folder_or_name, "Patient to load at once; without it a client sends one");
+  program.add_option("--preset", a.preset, "Preset (row of data/devices.toml); default: that of the device");
+  program.add_option("--tool", a.tool, "Tool of the device: needle, probe or finger")->capture_default_str();
+  program.add_option("--patient", a.patient.folder_or_name,
+                     "Patient to load at the start; without it, a client sends one");
   arguments::seed_number(program.add_option("--patient-seed", a.patient.seed, "Seed of an embedded patient"))
       ->capture_default_str();
-  program.add_option("--task", a.the_case.task, "Task that places the patient in the room")->capture_default_str();
+  program.add_option("--task", a.the_case.task, "Task that defines the patient's position in the room")
+      ->capture_default_str();
   program.add_option("--needle", a.the_case.needle, "Needle of data/needles.toml; the task's own when left out");
   program.add_option("--force-model", a.force_model, "insertion, proxy or combined; the task's own when left out");
   arguments::number_within(program.add_option("--rate", a.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
@@ -245,27 +247,25 @@ void add_options(CLI::App& program, Arguments& a) {
   program.add_option("--flight-records", a.flight_folder, "Folder for the last 2 s before a fault")
       ->capture_default_str();
   program
-      .add_option(
-          "--fault", a.faults,
-          "Break the device on schedule, to see what happens: KIND[:AMOUNT]@FROM_S[+FOR_S], as nan@2+0.5; kinds "
-          "jitter, dropped, nan, stuck, jump, disconnect, slow_write, slow_read")
+      .add_option("--fault", a.faults,
+                  "Inject a device fault: KIND[:AMOUNT]@FROM_S[+FOR_S], as nan@2+0.5; kinds jitter, dropped, nan, "
+                  "stuck, jump, disconnect, slow_write, slow_read")
       ->allow_extra_args(false);
-  program.add_flag(
-      "--test", a.is_test,
-      "Serve nobody: print the device's pose 30 times a second; the line \"push\" on standard input gives a "
-      "small force upwards, its end ends the test");
+  program.add_flag("--test", a.is_test,
+                   "Test mode without clients: print the device's pose 30 times a second; the line \"push\" on "
+                   "standard input applies a small upward force; end of input ends the test");
   program.add_flag("--calibrate", a.is_calibrating,
                    "OpenHaptics: calibrate first; hold the stylus in its inkwell, or the arm in its reset position");
   program.add_flag("-v,--verbose", a.is_verbose, "Print details to stderr");
   program.footer(
-      "It runs until it is interrupted, keeps its device safe whatever its clients do, and gives no force before a "
-      "client asks "
-      "for it.\nExamples:\n  trocar-hapticd --device virtual --tool needle --patient abdomen\n"
+      "The server runs until it is interrupted. It keeps its device safe independent of its clients, and applies no "
+      "force before a client requests it.\nExamples:\n  trocar-hapticd --device virtual --tool needle --patient "
+      "abdomen\n"
       "  trocar-hapticd --device openhaptics --tool probe --endpoint ipc:///tmp/probe\n");
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("The haptic server of Trocar: one process a device. A trainer, not a medical device.");
+  CLI::App program("The haptic server of Trocar, one process per device. A trainer, not a medical device.");
   program.name("trocar-hapticd");
   program.set_version_flag("--version", std::string("trocar-hapticd ") + kVersion, "Print the version and exit");
   Arguments arguments;
