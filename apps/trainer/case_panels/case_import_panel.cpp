@@ -25,7 +25,7 @@ QString first_line(const QString& entry) {
 class ImportPanel final : public CasePanel {
  public:
   ImportPanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
-    content()->addWidget(make_label(tr("CT, or a patient that is whole already"), "dim"));
+    content()->addWidget(make_label(tr("CT, or a complete patient folder"), "dim"));
     ct_ = add_field("case-ct", tr("CT"), tr("Path of a CT: NIfTI, NRRD, MHA, a DICOM folder; or a patient folder"));
     add_choosers();
     content()->addWidget(make_label(tr("Labels (several: separated by ;)"), "dim"));
@@ -117,7 +117,7 @@ class ImportPanel final : public CasePanel {
   }
 
   void add_actions() {
-    start_ = make_button("case-import", tr("Import"), tr("Reads the files and builds the patient"));
+    start_ = make_button("case-import", tr("Import"), tr("Read the files and build the patient"));
     start_->setProperty("role", "primary");
     content()->addWidget(start_);
     connect(start_, &QPushButton::clicked, this, [this] { import(); });

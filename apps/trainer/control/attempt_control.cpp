@@ -137,15 +137,14 @@ void AttemptControl::strike(int key) {
 
 void AttemptControl::ask_to_end() {
   question_ = Question::kEnd;
-  page_.puncture().ask(tr("End the attempt and score it? Until then it goes on."), tr("End (Enter)"));
+  page_.puncture().ask(tr("End the attempt and score it? It continues until you confirm."), tr("End (Enter)"));
 }
 
 void AttemptControl::ask_to_close() {
   question_ = Question::kClose;
-  page_.puncture().ask(
-      tr("Close the trainer? The attempt ends here. Its recording is kept, and the next start offers to "
-         "score it."),
-      tr("Close (Enter)"));
+  page_.puncture().ask(tr("Close the trainer? This ends the attempt without a score. The recording is kept, and the "
+                          "next start offers to score it."),
+                       tr("Close (Enter)"));
 }
 
 ViewScale AttemptControl::scale_of_3d() const {
@@ -188,7 +187,7 @@ bool AttemptControl::is_free(attempt::HandTool tool) const {
 
 void AttemptControl::aim() {
   if (choice_.difficulty != Difficulty::kGuided)
-    return say(tr("Where the plan has the tools is told in guided attempts alone."));
+    return say(tr("The planned position is available in guided attempts only."));
   if (gestures_.in_hand() == ToolInHand::kTransducer && is_led_[1]) probe_.put(open_->X_PT_start);
   if (gestures_.in_hand() == ToolInHand::kNeedle && is_led_[0] && !needle_.is_past_skin())
     needle_.aim_at(open_->the_case.plan.line_P);

@@ -7,7 +7,6 @@
 
 #include "attempt/case/scene_request.h"
 #include "attempt/record/recording_room.h"
-#include "parameters/force_preview.h"
 #include "control/attempt_control.h"
 #include "control/mirror_station.h"
 #include "control/replay_control.h"
@@ -21,6 +20,7 @@
 #include "pages/work_page.h"
 #include "panels/feedback_panel.h"
 #include "panels/puncture_panel.h"
+#include "parameters/force_preview.h"
 #include "parameters/parameter_panel.h"
 #include "report/html_report.h"
 #include "shell/main_window.h"
@@ -70,7 +70,7 @@ SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
   offered_ = journal_.find_cut_off();
   if (offered_)
     window_.start().offer_recovery(
-        tr("The last attempt was cut off. What was recorded is kept: it can be scored and seen again."));
+        tr("The last attempt was interrupted. Its recording is kept: you can score and replay it."));
   can_record();
   clock_.start();
   timer_.setTimerType(Qt::PreciseTimer);
@@ -125,10 +125,11 @@ void SeatFlow::go_to_start() {
 }
 
 void SeatFlow::go_to_case_builder() {
-  const QString is_scored = tr("The attempt is being scored. The case builder opens after that.");
+  const QString is_scored = tr("The attempt is being scored. The case builder is available afterwards.");
   if (attempt_) {
     const bool is_ending = attempt_->view().phase == attempt::AttemptPhase::kFinishing;
-    return attempt_->say(is_ending ? is_scored : tr("The case builder is closed during an attempt. End it first (E)."));
+    return attempt_->say(
+        is_ending ? is_scored : tr("The case builder is not available during an attempt. End the attempt first (E)."));
   }
   if (loading_.has_work()) return window_.tell(is_scored, BannerKind::kWarning);
   window_.show_page(QStringLiteral("case-builder"));
@@ -185,10 +186,10 @@ void SeatFlow::show_opened() {
 bool SeatFlow::can_record() {
   const std::filesystem::path folder = state_folder_ / "sessions";
   if (const Status made = make_writable_folder(folder); !made) {
-    window_.show_banner(tr("No attempt can be recorded in %1: %2. Start trocar-trainer with --state and a folder that "
-                           "you can write to.")
-                            .arg(to_qt(folder.string()), to_qt(made.error().what)),
-                        BannerKind::kError);
+    window_.show_banner(
+        tr("Cannot record attempts in %1: %2. Start trocar-trainer with --state and a folder with write permission.")
+            .arg(to_qt(folder.string()), to_qt(made.error().what)),
+        BannerKind::kError);
     return false;
   }
   const attempt::RecordingRoom room(folder, find_free_bytes(folder));
@@ -262,7 +263,7 @@ void SeatFlow::look_at_attempt() {
   journal_.clear();
   if (!*result) {
     window_.strip().show_servers({});
-    window_.show_banner(sentence_of(result->error()) + tr(" Begin tries again; Back leads to the start page."),
+    window_.show_banner(sentence_of(result->error()) + tr(" Press Begin to try again, or Back for the start page."),
                         BannerKind::kError);
     return window_.show_page(QStringLiteral("briefing"));
   }
@@ -310,7 +311,7 @@ void SeatFlow::recover() {
   cut_off_ = std::exchange(offered_, {});
   if (!journal_.forget(*cut_off_)) {
     cut_off_.reset();
-    return window_.tell(tr("The attempt was opened in another trainer meanwhile."), BannerKind::kWarning);
+    return window_.tell(tr("The attempt has been opened in another trainer."), BannerKind::kWarning);
   }
   SeatChoice choice = window_.start().choice();
   choice.task = cut_off_->choice.options.task;

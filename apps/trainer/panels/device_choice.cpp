@@ -32,7 +32,7 @@ void grey_out(QComboBox& box, const std::string& other) {
     const bool is_free = attempt::can_share_seat(to_std(box.itemData(row).toString()), other);
     QStandardItem* item = model->item(row);
     item->setEnabled(is_free);
-    item->setToolTip(is_free ? QString() : DeviceChoice::tr("The other tool has this device"));
+    item->setToolTip(is_free ? QString() : DeviceChoice::tr("Already used for the other tool"));
   }
 }
 
@@ -43,7 +43,7 @@ DeviceChoice::DeviceChoice(QWidget* parent) : QWidget(parent) {
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(4);
   auto* add = make_button("add-device", tr("Add a device by name …"),
-                          tr("An OpenHaptics device under the name that the vendor's setup program gave it"));
+                          tr("An OpenHaptics device with the name assigned in the vendor's setup program"));
   add->setStyleSheet(QStringLiteral("padding: 1px 8px;"));
   auto* heading = new QHBoxLayout;
   heading->addWidget(make_label(tr("Needle by"), "dim"));
@@ -66,7 +66,7 @@ QComboBox* DeviceChoice::add_tool(QBoxLayout& column, const QString& title, cons
   box->setObjectName(QString::fromLatin1(name));
   box->setAccessibleName(title);
   box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  auto* button = make_button(test_name, tr("Test"), tr("Whether the device answers, moves and gives forces"));
+  auto* button = make_button(test_name, tr("Test"), tr("Tests connection, motion and forces of the device"));
   button->setAccessibleName(tr("Test the device of: %1").arg(title));
   auto* row = new QHBoxLayout;
   row->setSpacing(6);

@@ -66,7 +66,7 @@ ForcePreview::ForcePreview(QWidget* parent)
   caption_->setMinimumWidth(std::max(wide, caption_->sizeHint().width()));
   plot_->set_curve_names(tr("default"), tr("as set"));
   plot_->setFixedHeight(184);
-  plot_->setToolTip(tr("Predicted force along the planned path at 10 mm/s: dashed as by default, solid as changed"));
+  plot_->setToolTip(tr("Predicted force along the planned path at 10 mm/s: dashed: default; solid: changed"));
 
   auto* row = new QHBoxLayout;
   row->addWidget(caption_);

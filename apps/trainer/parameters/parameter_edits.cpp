@@ -64,8 +64,8 @@ bool ParameterEdits::is_changed(const anatomy::TissueParameterGroup& group) cons
 Status ParameterEdits::set(const std::string& setting, double value, bool joins) {
   const anatomy::TissueParameter* parameter = find(setting);
   if (parameter == nullptr)
-    return fail_usage(fmt::format("there is no number \"{}\"", setting), "tissue parameters",
-                      "choose a number of the list");
+    return fail_usage(fmt::format("unknown parameter \"{}\"", setting), "tissue parameters",
+                      "select a parameter of the list");
   Values values = now().values;
   if (value == parameter->value) {
     values.erase(setting);
@@ -151,8 +151,8 @@ Result<ParameterEdits::Values> ParameterEdits::read(const std::vector<std::strin
       read_from(table, values);
     }
     if (!is_new && !gives(values, table))
-      return fail_usage("this setting changes what the panel cannot adjust", text,
-                        "write it as the panel saves it, or use it with --set");
+      return fail_usage("the panel cannot edit this setting", text,
+                        "use it with --set, or write it in the format of a saved profile");
   }
   std::erase_if(values, [&](const auto& change) { return find(change.first)->value == change.second; });
   return values;

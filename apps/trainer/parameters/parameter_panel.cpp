@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "parameters/force_preview.h"
 #include "core/files/user_folders.h"
+#include "parameters/force_preview.h"
 #include "parameters/parameter_list.h"
 #include "parameters/parameter_profiles.h"
 #include "ui_kit/parts.h"
@@ -101,7 +101,7 @@ QWidget* ParameterPanel::make_head() {
   undo_buttons_.emplace(
       "parameter", *this, [this] { undo(); }, [this] { redo(); });
   undo_buttons_->add_to(*layout);
-  reset_ = make_tool_button("parameter-reset-all", tr("Reset all"), tr("All numbers back to the case's own"));
+  reset_ = make_tool_button("parameter-reset-all", tr("Reset all"), tr("Reset all parameters to those of the case"));
   connect(reset_, &QToolButton::clicked, this, [this] {
     edits_.reset_all();
     show_changes();
@@ -202,7 +202,7 @@ void ParameterPanel::choose_profile(const std::string& file) {
     show_values();
   }
   profiles_->show_problem(done ? QString()
-                               : tr("“%1” is not used: %2").arg(to_qt(profile.name), to_qt(done.error().text())));
+                               : tr("“%1” was not applied: %2").arg(to_qt(profile.name), to_qt(done.error().text())));
 }
 
 void ParameterPanel::save_profile_as(attempt::TissueProfile profile, bool may_replace) {

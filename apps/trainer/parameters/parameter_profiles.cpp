@@ -101,9 +101,9 @@ QWidget* ParameterProfiles::make_choice() {
     Q_EMIT chosen(to_std(choice_->itemData(index).toString()));
   });
   save_as_ = make_tool_button("parameter-profile-save-as", tr("Save as …"),
-                              tr("Saves the numbers and the force model under a name  (Space)"));
+                              tr("Save the parameters and the force model under a name  (Space)"));
   delete_ = make_tool_button("parameter-profile-delete", tr("Delete"),
-                             tr("Deletes the chosen profile; the numbers stay as they are  (Space)"));
+                             tr("Delete the selected profile; the parameters do not change  (Space)"));
   connect(save_as_, &QToolButton::clicked, this, [this] { ask(Question::kName); });
   connect(delete_, &QToolButton::clicked, this, [this] { ask(Question::kDelete); });
   layout->addWidget(choice_, 1);
@@ -130,8 +130,8 @@ QWidget* ParameterProfiles::make_question() {
   words_->setObjectName(QStringLiteral("parameter-profile-question"));
   words_->setTextFormat(Qt::PlainText);
   words_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-  yes_ = make_button("parameter-profile-yes", {}, tr("Does it  (Space)"));
-  no_ = make_button("parameter-profile-no", tr("Cancel"), tr("Leaves all as it is  (Escape)"));
+  yes_ = make_button("parameter-profile-yes", {}, tr("Confirm  (Space)"));
+  no_ = make_button("parameter-profile-no", tr("Cancel"), tr("Cancel  (Escape)"));
   for (QPushButton* button : {yes_, no_}) button->setStyleSheet(QStringLiteral("padding: 5px 9px"));
   connect(name_, &QLineEdit::returnPressed, this, &ParameterProfiles::answer_yes);
   connect(yes_, &QPushButton::clicked, this, &ParameterProfiles::answer_yes);
@@ -163,7 +163,7 @@ void ParameterProfiles::read_folder() {
 
 void ParameterProfiles::list_entries() {
   choice_->clear();
-  choice_->addItem(tr("Case's own"), QString());
+  choice_->addItem(tr("As in the case"), QString());
   for (const attempt::TissueProfile& profile : profiles_) {
     choice_->addItem(to_qt(profile.name), to_qt(profile.file.string()));
     choice_->setItemData(choice_->count() - 1, about(profile), Qt::ToolTipRole);
@@ -179,8 +179,8 @@ void ParameterProfiles::show_chosen(const std::string& file, bool differs) {
   for (int entry = 0; entry < choice_->count(); ++entry)
     if (const bool is_dotted = entry == index && differs; choice_->itemIcon(entry).isNull() == is_dotted)
       choice_->setItemIcon(entry, is_dotted ? make_dot(devicePixelRatioF()) : QIcon());
-  const QString tip = tr("Profile of tissue numbers: %1  (Up, Down)").arg(choice_->currentText());
-  choice_->setToolTip(differs ? tip + QLatin1Char('\n') + tr("●  changed since it was chosen") : tip);
+  const QString tip = tr("Tissue profile: %1  (Up, Down)").arg(choice_->currentText());
+  choice_->setToolTip(differs ? tip + QLatin1Char('\n') + tr("●  changed since it was selected") : tip);
   choice_->setAccessibleDescription(differs ? tr("changed") : QString());
   delete_->setEnabled(index > 0);
 }
@@ -279,7 +279,7 @@ void ParameterProfiles::remove() {
   ask(Question::kNone);
   read_folder();
   if (done) {
-    tell(tr("“%1” is deleted; its numbers are still set.").arg(breakable(name)), false);
+    tell(tr("Profile “%1” is deleted; its values stay active.").arg(breakable(name)), false);
   } else {
     show_problem(to_qt(done.error().text()));
   }

@@ -103,28 +103,28 @@ Result<std::vector<ScriptStep>> parse_script(const QString& text, const QString&
     ++number;
     const std::string where = to_std(QStringLiteral("%1:%2").arg(name).arg(number));
     auto words = words_of(line);
-    if (!words) return fail("a quotation is not closed", where, "put \" at its end");
+    if (!words) return fail("unterminated quotation", where, "add \" at its end");
     if (words->isEmpty()) continue;
     const QString verb = words->takeFirst();
     const auto found = verbs().find(verb);
     if (found == verbs().end())
-      return fail("there is no step \"" + to_std(verb) + "\"", where, "see trocar-trainer --help");
+      return fail("unknown step \"" + to_std(verb) + "\"", where, "see trocar-trainer --help");
     if (words->size() < found->second.least || words->size() > found->second.most)
       return fail("\"" + to_std(verb) + "\" has " + std::to_string(words->size()) + " arguments", where,
                   "see trocar-trainer --help");
     if (const auto wrong = find_no_number(verb, *words))
-      return fail("\"" + to_std(*wrong) + "\" is no number", where, "see trocar-trainer --help");
+      return fail("\"" + to_std(*wrong) + "\" is not a number", where, "see trocar-trainer --help");
     if (const auto wrong = find_no_comparison(verb, *words))
-      return fail("\"" + to_std(*wrong) + "\" compares nothing", where, "write is, isnt, has, <, >, <= or >=");
+      return fail("\"" + to_std(*wrong) + "\" is not a comparison", where, "write is, isnt, has, <, >, <= or >=");
     steps.push_back({number, verb, *words});
   }
-  if (steps.empty()) return fail("the script has no step", to_std(name), "see trocar-trainer --help");
+  if (steps.empty()) return fail("the script contains no steps", to_std(name), "see trocar-trainer --help");
   return steps;
 }
 
 Result<std::vector<ScriptStep>> load_script(const std::filesystem::path& path) {
   QFile file(to_qt(path.string()));
-  if (!file.open(QIODevice::ReadOnly)) return fail("the script cannot be read", path.string(), "check its name");
+  if (!file.open(QIODevice::ReadOnly)) return fail("cannot read the script", path.string(), "check its name");
   constexpr qint64 kMostBytes = 1 << 20;
   if (file.size() > kMostBytes) return fail("the script is larger than 1 MiB", path.string(), "is it a script?");
   return parse_script(QString::fromUtf8(file.readAll()), to_qt(path.filename().string()));

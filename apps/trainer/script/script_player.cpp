@@ -78,16 +78,16 @@ Result<QWidget*> ScriptPlayer::find(const QString& name) const {
       hidden = widget;
     }
   }
-  if (hidden == nullptr) return fail("there is no such widget", to_std(name), "see its object name");
+  if (hidden == nullptr) return fail("no such widget", to_std(name), "check its object name");
   if (seconds() < stage_.look_s) return nullptr;
-  return fail("it is not to be seen now", to_std(name), "is another page open?");
+  return fail("the widget is not visible", to_std(name), "is another page open?");
 }
 
 Result<QWidget*> ScriptPlayer::find_usable(const QString& name) const {
   TROCAR_TRY(QWidget* const widget, find(name));
   if (widget == nullptr || widget->isEnabled()) return widget;
   if (seconds() < stage_.look_s) return nullptr;
-  return fail("it cannot be used now", to_std(name), "it is disabled");
+  return fail("it cannot be used now", to_std(name), "the widget is disabled");
 }
 
 Result<ScriptPlayer::Progress> ScriptPlayer::click_menu_entry(QAction& entry) const {
@@ -96,7 +96,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::click_menu_entry(QAction& entry) co
     return Progress::kDone;
   }
   if (seconds() < stage_.look_s) return Progress::kAgain;
-  return fail("it cannot be used now", to_std(entry.objectName()), "it is disabled");
+  return fail("it cannot be used now", to_std(entry.objectName()), "the widget is disabled");
 }
 
 bool ScriptPlayer::holds(const QString& fact, const QString& op, const QString& value) const {
@@ -119,11 +119,11 @@ Result<ScriptPlayer::Progress> ScriptPlayer::wait_until_holds(const QStringList&
   if (seconds() < patience_s) return Progress::kAgain;
   const QVariantMap facts = stage_.facts();
   if (!facts.contains(fact))
-    return fail("there is no fact \"" + to_std(fact) + "\"", {}, "known: " + to_std(facts.keys().join(' ')));
+    return fail("unknown fact \"" + to_std(fact) + "\"", {}, "known: " + to_std(facts.keys().join(' ')));
   const QString banner = facts.value(QStringLiteral("banner")).toString();
-  return fail("it did not come about: " + to_std(fact_op_value.mid(0, 3).join(' ')),
+  return fail("the condition did not become true: " + to_std(fact_op_value.mid(0, 3).join(' ')),
               to_std(fact + " is " + facts.value(fact).toString()),
-              banner.isEmpty() ? "give it longer: within SECONDS" : "the window says: " + to_std(banner));
+              banner.isEmpty() ? "increase the time: within SECONDS" : "window message: " + to_std(banner));
 }
 
 Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
@@ -249,7 +249,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
   if (widget == nullptr) return Progress::kAgain;
   const QImage image = widget->grab().toImage();
   if (step.verb == QLatin1String("screenshot")) {
-    if (!image.save(a[0])) return fail("the picture cannot be written", to_std(a[0]), "check the folder");
+    if (!image.save(a[0])) return fail("cannot write the image", to_std(a[0]), "check the folder");
     return Progress::kDone;
   }
   const double share = share_near(image, QColor(a[1]), a[2].toInt());
@@ -264,12 +264,12 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
 Result<ScriptPlayer::Progress> ScriptPlayer::expect_whole() const {
   const auto* stop = stage_.window->findChild<QWidget*>(QStringLiteral("force-stop"));
   QStringList faults = find_cut_off(*stage_.window);
-  if (stop == nullptr || !is_wholly_visible(*stop)) faults.prepend(QStringLiteral("force-stop: not wholly visible"));
+  if (stop == nullptr || !is_wholly_visible(*stop)) faults.prepend(QStringLiteral("force-stop: not fully visible"));
   if (faults.isEmpty()) return Progress::kDone;
   if (seconds() < kSettled_s) return Progress::kAgain;
   const QSize size = stage_.window->size();
   return fail(to_std(faults.join(QStringLiteral("; "))), fmt::format("{}x{}", size.width(), size.height()),
-              "give it room, or let it be scrolled");
+              "provide more space, or let it scroll");
 }
 
 }  // namespace trocar::trainer

@@ -58,7 +58,7 @@ QIcon level_icon(std::optional<case_builder::CheckLevel> level) {
 CheckList::CheckList(QWidget* parent) : QListWidget(parent) {
   setObjectName(QStringLiteral("case-checks"));
   setAccessibleName(tr("Checks of the case"));
-  setToolTip(tr("A click jumps to what is meant  (Enter)"));
+  setToolTip(tr("Click to go to the problem  (Enter)"));
   wrap_rows(*this);
   const auto choose = [this](QListWidgetItem* item) {
     Q_EMIT check_chosen(checks_[static_cast<std::size_t>(row(item))]);

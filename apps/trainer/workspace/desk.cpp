@@ -62,10 +62,10 @@ QWidget* make_title(QDockWidget& dock, QWidget& line) {
     row->addWidget(button);
     return button;
   };
-  QObject::connect(add(QStringLiteral("❐"), Desk::tr("Floats as a window of its own, or docks again")),
-                   &QToolButton::clicked, &dock, [&dock] { dock.setFloating(!dock.isFloating()); });
-  QObject::connect(add(QStringLiteral("✕"), Desk::tr("Hides it; the menu Views shows it again")), &QToolButton::clicked,
-                   &dock, &QDockWidget::hide);
+  QObject::connect(add(QStringLiteral("❐"), Desk::tr("Undock the view, or dock it again")), &QToolButton::clicked,
+                   &dock, [&dock] { dock.setFloating(!dock.isFloating()); });
+  QObject::connect(add(QStringLiteral("✕"), Desk::tr("Hide the view; show it again with the menu Views")),
+                   &QToolButton::clicked, &dock, &QDockWidget::hide);
   return bar;
 }
 
@@ -162,7 +162,7 @@ void Desk::add_view(const char* name, const QString& title, QWidget& view, QWidg
 
 /// In the title of the ultrasound view, where it covers nothing of the picture.
 void Desk::add_knobs_button() {
-  auto* knobs = make_tool_button("ultrasound-knobs", tr("Knobs"), tr("The scanner's knobs beside its picture"),
+  auto* knobs = make_tool_button("ultrasound-knobs", tr("Knobs"), tr("Image controls next to the ultrasound image"),
                                  QStringLiteral("K"));
   knobs->setCheckable(true);
   knobs->setFocusPolicy(Qt::NoFocus);

@@ -167,7 +167,7 @@ void Desk::fill_menu(QMenu& menu) {
     action->setShortcut(QKeySequence(QStringLiteral("Ctrl+%1").arg(++number)));
     connect(action, &QAction::triggered, this, [this, name] { choose_layout(name); });
   }
-  QAction* reset = menu.addAction(tr("Layout as it was made"));
+  QAction* reset = menu.addAction(tr("Reset layout"));
   connect(reset, &QAction::triggered, this, &Desk::reset_layout);
   menu.addSeparator();
   for (const auto& [name, dock] : docks_) add_to_menu(menu, name, *dock);

@@ -75,7 +75,8 @@ PatientView::PatientView(QWidget* parent) : QWidget(parent), impl_(std::make_uni
   setObjectName(QStringLiteral("patient-view"));
   setAccessibleName(tr("3D view of the patient"));
   setToolTip(
-      tr("Drag: turn · Shift+drag: move · wheel: zoom · 1–6: views · F follow · L along the needle · N side view"));
+      tr("Drag: rotate · Shift+drag: pan · wheel: zoom · 1–6: views · T: follow the tip · L: along the needle · B: "
+         "side view"));
 }
 
 PatientView::~PatientView() = default;

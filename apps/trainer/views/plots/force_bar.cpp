@@ -55,8 +55,8 @@ ForceBar::ForceBar(Qt::Orientation orientation, QWidget* parent) : QWidget(paren
   setObjectName(QStringLiteral("force-bar"));
   setAccessibleName(tr("Resistance and lag"));
   setToolTip(
-      tr("Resistance: of the tissue now, of what the device can give; the line holds the peak.\n"
-         "Lag: how far the tool stays behind the hand."));
+      tr("Resistance: present force of the tissue, relative to the device's maximum; the line holds the peak.\nLag: "
+         "distance of the tool behind the hand."));
   set_orientation(orientation);
 }
 

@@ -46,7 +46,7 @@ ForcePlot::ForcePlot(QWidget* parent)
       strip_(new ViewStrip(*this, [this](QPainter& painter, const QRectF& room) { paint_strip(painter, room); })) {
   setObjectName(QStringLiteral("force-plot"));
   setAccessibleName(tr("Resistance"));
-  setToolTip(tr("Resistance of the tissue along the needle. T: against depth or time"));
+  setToolTip(tr("Resistance of the tissue along the needle. T: switch between depth and time"));
   setFocusPolicy(Qt::StrongFocus);
   setAttribute(Qt::WA_OpaquePaintEvent);
   axis_button_->setObjectName(QStringLiteral("force-plot-axis"));
@@ -122,7 +122,7 @@ void ForcePlot::set_depth_shown(bool is_shown) {
   if (is_shown == is_depth_shown_) return;
   is_depth_shown_ = is_shown;
   axis_button_->setEnabled(is_shown);
-  axis_button_->setToolTip(is_shown ? tr("Against depth or time (T)") : tr("The depth is not shown in an exam"));
+  axis_button_->setToolTip(is_shown ? tr("Against depth or time (T)") : tr("Depth is hidden in an exam"));
   set_axis(is_shown ? Axis::kDepth : Axis::kTime);
 }
 

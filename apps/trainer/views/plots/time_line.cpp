@@ -50,11 +50,11 @@ TimeLine::TimeLine(QWidget* parent)
   label_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   label_->setMinimumWidth(QFontMetrics(label_->font()).horizontalAdvance(QStringLiteral("0:00.0 / 0:00.0")) + 4);
   row->addWidget(label_);
-  worst_ = add_button("time-worst", tr("Worst"), tr("The worst moment (W)"));
+  worst_ = add_button("time-worst", tr("Worst"), tr("Go to the worst moment (W)"));
   for (const double factor : speeds()) speed_->addItem(QStringLiteral("%1×").arg(factor), factor);
   speed_->setObjectName(QStringLiteral("time-speed"));
   speed_->setAccessibleName(tr("Speed"));
-  speed_->setToolTip(tr("Speed of the replay (< slower, > faster)"));
+  speed_->setToolTip(tr("Replay speed (< slower, > faster)"));
   speed_->setFocusPolicy(Qt::TabFocus);
   row->addWidget(speed_);
   set_speed(1.0);

@@ -303,7 +303,7 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
   if (!picture_) {
     painter.setFont(caption_font(is_small));
     painter.setPen(theme().dim);
-    painter.drawText(rect(), Qt::AlignCenter, scene_ ? tr("Waiting for the picture") : tr("No patient"));
+    painter.drawText(rect(), Qt::AlignCenter, scene_ ? tr("Waiting for the first image") : tr("No patient"));
     return;
   }
   const UltrasoundLayout& layout = layout_for(picture_->scan);
