@@ -59,11 +59,11 @@ Result<DeviceSpec> parse_device_spec(std::string_view text) {
   if (kind == nullptr) return fail_unknown(spec.kind);
   const bool has_colon = colon != std::string_view::npos;
   if (has_colon && kind->argument == Argument::kNone) {
-    return fail_usage(fmt::format("device \"{}\" takes nothing after the colon", spec.kind), std::string(text),
+    return fail_usage(fmt::format("device \"{}\" has no argument after the colon", spec.kind), std::string(text),
                       fmt::format("write {}", spec.kind));
   }
   if (spec.argument.empty() && (has_colon || kind->argument == Argument::kNeeded)) {
-    return fail_usage(fmt::format("device \"{}\" lacks its argument", spec.kind), std::string(text),
+    return fail_usage(fmt::format("device \"{}\" needs an argument", spec.kind), std::string(text),
                       kind->argument == Argument::kNeeded ? "write it after the colon, as in replay:FILE"
                                                           : "write it after the colon, or leave the colon out");
   }

@@ -85,7 +85,7 @@ Status GamepadSource::open() {
   if (pad_ != nullptr) return {};
   close();
   return fail("no gamepad is connected", "gamepad",
-              "plug one in or pair it, see that you may read /dev/input, or use mouse");
+              "connect or pair one, check read permission for /dev/input, or use mouse");
 }
 
 bool GamepadSource::poll(PointerMotion& motion) noexcept {

@@ -69,7 +69,7 @@ Status SpaceMouseSource::open() {
   errno = 0;
   if (spnav_open() != 0) {
     return fail(
-        "spacenavd does not answer", "spacemouse",
+        "spacenavd does not respond", "spacemouse",
         "install the package spacenavd, plug the SpaceMouse in, start it (systemctl start spacenavd), and close "
         "another spacemouse of this program");
   }

@@ -102,7 +102,7 @@ bool FaultyDevice::write(const haptics::Wrench& wrench_D) noexcept {
 Status FaultyDevice::reconnect() {
   const ScheduledFault* fault = find_active(DeviceFault::kDisconnect);
   if (fault != nullptr && std::isinf(fault->for_s)) {
-    return fail("the device is unplugged for ever", name(), "leave the fault disconnect out");
+    return fail("the device stays unplugged", name(), "omit the fault disconnect");
   }
   if (is_inner_gone_) TROCAR_TRY_STATUS(device_->reconnect());
   is_disconnected_ = false;

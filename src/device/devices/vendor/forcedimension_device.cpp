@@ -70,7 +70,7 @@ class ForceDimensionDevice final : public HapticDevice {
   }
   Status reconnect() override {
     const char* cause = connection_ ? connection_->last_error() : nullptr;
-    const std::string suffix = cause != nullptr ? fmt::format("; it was lost by: {}", cause) : std::string();
+    const std::string suffix = cause != nullptr ? fmt::format("; last error: {}", cause) : std::string();
     connection_.reset();
     auto opened = dhd::Connection::open(pace_);
     if (!opened) {
@@ -79,8 +79,8 @@ class ForceDimensionDevice final : public HapticDevice {
       return tl::unexpected(std::move(error));
     }
     if ((*opened)->system_type() != type_) {
-      return fail(fmt::format("another device is there now: {}", (*opened)->system_name()), preset_.title,
-                  "start again with it");
+      return fail(fmt::format("a different device is connected: {}", (*opened)->system_name()), preset_.title,
+                  "restart with it");
     }
     TROCAR_TRY_STATUS((*opened)->start(preset_.sensed_dof == 6));
     connection_ = *std::move(opened);

@@ -72,7 +72,7 @@ Status HaplyDevice::start() {
   socket_ = std::move(*socket);
   std::string message;
   if (socket_->receive(message, kFirstStateLimit) != WebSocket::Received::kMessage) {
-    return fail("the Inverse service says nothing", address_, "start the Inverse service anew");
+    return fail("the Inverse service sends no data", address_, "restart it");
   }
   TROCAR_TRY_STATUS(take_first_state(message));
   unusable_ = 0;
@@ -90,7 +90,7 @@ Status HaplyDevice::take_first_state(const std::string& message) {
     return fail(to_string(first.condition), address_, advice_for(first.condition));
   }
   if (has_grip_.value_or(false) && !first.q_grip) {
-    return fail("the grip is missing", address_, "switch it on, or start the server anew without it");
+    return fail("the grip is missing", address_, "switch it on, or restart the server without it");
   }
   if (!has_grip_) has_grip_ = first.q_grip.has_value();
   device_id_ = first.device_id;

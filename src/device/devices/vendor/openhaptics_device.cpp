@@ -94,12 +94,12 @@ class OpenHapticsDevice final : public HapticDevice {
     auto opened = hd::Connection::open(options_.device, options_.clock_s, false);
     if (!opened) {
       Error error = std::move(opened).error();
-      if (!cause.empty()) error.what += fmt::format("; it was lost by: {}", cause);
+      if (!cause.empty()) error.what += fmt::format("; last error: {}", cause);
       return tl::unexpected(std::move(error));
     }
     if ((*opened)->description().model != model_) {
-      return fail(fmt::format("another device is there now: {}", (*opened)->description().model), model_,
-                  "start again with it");
+      return fail(fmt::format("a different device is connected: {}", (*opened)->description().model), model_,
+                  "restart with it");
     }
     connection_ = *std::move(opened);
     return {};

@@ -55,7 +55,7 @@ tl::unexpected<Error> Connection::failed(const char* what) const {
 
 Status Connection::check_state() {
   std::array<int, kStatusRoom> status{};
-  if (api_.get_status(status.data(), id_) < kNoError) return failed("the device does not tell its state");
+  if (api_.get_status(status.data(), id_) < kNoError) return failed("the device does not report its state");
   if (status[kStatusPower] == 0) return fail("the device has no power", name_, "switch it on, then open it again");
   if (status[kStatusReset] != 0) {
     return fail("the device is not calibrated", name_,
@@ -72,24 +72,23 @@ Status Connection::keep_watchdog() {
   const bool can_set = api_.set_watchdog != nullptr && api_.enable_expert_mode != nullptr &&
                        api_.disable_expert_mode != nullptr && api_.enable_expert_mode() >= kNoError;
   if (!can_set) {
-    log_warning("{}: its library knows no watchdog; Trocar's own alone cuts an old force", name_);
+    log_warning("{}: its library has no watchdog; only Trocar's own timeout stops an outdated force", name_);
     return {};
   }
   const auto wanted = static_cast<unsigned char>(std::lround(kWatchdog_s / kWatchdogCount_s));
   const bool is_set = api_.set_watchdog(wanted, id_) >= kNoError;
   api_.disable_expert_mode();
-  if (!is_set) log_warning("{}: its watchdog cannot be switched on: {}", name_, api_.error_text());
+  if (!is_set) log_warning("{}: cannot switch on its watchdog: {}", name_, api_.error_text());
   return {};
 }
 
 Status Connection::start(bool senses_rotation) {
   senses_rotation_ = senses_rotation;
   TROCAR_TRY_STATUS(keep_watchdog());
-  if (api_.set_gravity_compensation(kOn, id_) < kNoError)
-    return failed("its gravity compensation cannot be switched on");
-  if (sense(sample_) == Sensed::kFailed) return failed("its pose cannot be read");
-  if (api_.enable_force(kOn, id_) < kNoError) return failed("its motors cannot be switched on");
-  if (!apply(haptics::Wrench{})) return failed("it takes no force");
+  if (api_.set_gravity_compensation(kOn, id_) < kNoError) return failed("cannot switch on its gravity compensation");
+  if (sense(sample_) == Sensed::kFailed) return failed("cannot read its pose");
+  if (api_.enable_force(kOn, id_) < kNoError) return failed("cannot switch on its motors");
+  if (!apply(haptics::Wrench{})) return failed("it does not accept forces");
   exchange_.emplace(sample_);
   thread_ = std::thread([this] { pace_->run(is_stopping_, *this); });
   return {};

@@ -45,7 +45,7 @@ Result<std::unique_ptr<Connection>> Connection::open(const std::string& device, 
                                                      bool is_calibrating) {
   TROCAR_TRY(const Api api, load_api());
   if (is_in_use.exchange(true)) {
-    return fail("OpenHaptics is in use in this program already", device, "give each device a server of its own");
+    return fail("OpenHaptics is already in use in this program", device, "use a separate server for each device");
   }
   const Handle handle = api.init_device(device.empty() ? nullptr : device.c_str());
   const ErrorInfo error = api.get_error();
@@ -70,7 +70,7 @@ Status Connection::start() {
   TROCAR_TRY_STATUS(calibrate());
   exchange_.emplace(first_);
   callback_ = api_.schedule_asynchronous(&on_period, this, kHighestPriority);
-  TROCAR_TRY_STATUS(check("the vendor's scheduler does not take our callback"));
+  TROCAR_TRY_STATUS(check("the vendor's scheduler rejects the callback"));
   has_callback_ = true;
   return {};
 }
@@ -85,7 +85,7 @@ Status Connection::calibrate() {
     api_.schedule_synchronous(&on_calibration_update, this, kHighestPriority);
     api_.schedule_synchronous(&on_first_period, this, kHighestPriority);
   }
-  TROCAR_TRY_STATUS(check("the device does not answer"));
+  TROCAR_TRY_STATUS(check("the device does not respond"));
   if (calibration_ == kCalibrationOk) return {};
   return fail(
       "the device is not calibrated", description_.model,
@@ -133,7 +133,7 @@ Status Connection::check(const char* what) {
   }
   if (first == kSuccess) return {};
   return fail(fmt::format("{}: {}", what, words_of(api_, first)), description_.model,
-              "look at the device with the vendor's diagnostic program");
+              "check the device with the vendor's diagnostic program");
 }
 
 Connection::~Connection() {

@@ -43,7 +43,7 @@ ClientMessage ClientSession::message(ClientBody body) {
 
 void ClientSession::lose() {
   for (const std::uint32_t request : std::exchange(waiting_, {})) {
-    mailbox_.put_reply({request, false, "the server went away before it answered"});
+    mailbox_.put_reply({request, false, "the server disconnected before it replied"});
   }
   session_ = 0;
   last_sent_ = last_received_ = 0;

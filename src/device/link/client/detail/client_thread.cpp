@@ -63,7 +63,7 @@ Result<std::unique_ptr<ClientThread>> ClientThread::start(const ClientOptions& o
   try {
     client->thread_ = std::thread([self = client.get()] { self->run(); });
   } catch (const std::system_error& error) {
-    return fail("no thread for the link", options.endpoint, error.what());
+    return fail("cannot start the link thread", options.endpoint, error.what());
   }
   return client;
 }
@@ -105,7 +105,7 @@ Status ClientThread::open_socket() {
       socket_.set(ZMQ_IPV6, options_.endpoint.find('[') == std::string::npos ? 0 : 1);
   if (!is_set) return fail("no socket", options_.endpoint, zmq_strerror(zmq_errno()));
   if (options_.security && !has_keys_set(socket_, *options_.security)) {
-    return fail_usage("these are no CURVE keys", options_.endpoint, "make new ones with `trocar link keygen`");
+    return fail_usage("invalid CURVE keys", options_.endpoint, "make new ones with `trocar link keygen`");
   }
   handshakes_.watch(context_, socket_);
   if (zmq_connect(socket_.get(), options_.endpoint.c_str()) != 0) {
@@ -199,9 +199,9 @@ void ClientThread::send_outgoing(Outgoing outgoing) {
   for (Command& command : outgoing.commands) {
     const std::uint32_t request = command.request;
     if (!session_.is_welcomed()) {
-      mailbox_.put_reply({request, false, "there is no server"});
+      mailbox_.put_reply({request, false, "no server connected"});
     } else if (!send(std::move(command))) {
-      mailbox_.put_reply({request, false, "the command is too large, or the server takes no messages"});
+      mailbox_.put_reply({request, false, "the command is too large, or the server does not accept messages"});
     } else {
       session_.expect_reply(request);
     }
