@@ -14,8 +14,8 @@ namespace trocar::tasks {
 
 /// A path that keeps every margin of its task, over the throw of a biopsy needle too.
 struct PlannedPath {
-  /// Entry on the skin -> where the tip is put: at the target, or for a biopsy needle so far before it that the middle
-  /// of the notch comes to lie in the target when it is fired.
+  /// From the entry on the skin to the end position of the tip: at the target, or for a biopsy needle short of it, so
+  /// that the centre of the notch is in the target after firing.
   Segment line_P{Vec3::Zero(), Vec3::Zero()};
   double length_mm = 0.0;
   double organ_path_mm = 0.0;  ///< Length inside the organ before the lesion or the tip, what comes first.

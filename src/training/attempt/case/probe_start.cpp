@@ -208,13 +208,12 @@ Result<ProbeStart> find_probe_start(const anatomy::VirtualPatient& patient, cons
     std::string title;
     const auto X_PT = standard_view(patient, views, start.transducer, title);
     if (!X_PT && !std::isfinite(place.cost))
-      return fail("the transducer finds no place on the skin beside the entry", patient.name,
+      return fail("no position for the transducer on the skin near the entry", patient.name,
                   "place the transducer by hand");
     if (X_PT) start.X_PT = *X_PT;
     deepest_mm = (path_P.b - start.X_PT.p()).norm();
-    start.note = X_PT
-                     ? "the path cannot be seen along its length beside the entry; the transducer begins with: " + title
-                     : "the path cannot be seen whole: bone, lung or gas is in the way";
+    start.note = X_PT ? "no view along the whole path near the entry; the transducer starts with: " + title
+                      : "the path is only partly visible: bone, lung or gas is in front of it";
   }
   start.depth_mm = std::clamp(std::ceil(kBehindTarget * deepest_mm / kDepthStep_mm) * kDepthStep_mm, kLeastDepth_mm,
                               start.transducer.greatest_depth_mm);
