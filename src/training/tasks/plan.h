@@ -28,7 +28,7 @@ struct PlannedPath {
 
 /// What paths are ranked by: the length plus a penalty for spare margin below 10 mm,
 /// length + 20 mm (1 - spare / 10 mm)^2. The first millimetre of spare margin is worth 3.8 mm of length, the fifth
-/// 2.2 mm, the tenth 0.2 mm. src/training/README.md.
+/// 2.2 mm, the tenth 0.2 mm. src/training/tasks/README.md.
 double path_cost_mm(double length_mm, double spare_margin_mm) noexcept;
 
 struct PlanOptions {

@@ -67,7 +67,7 @@ class LiveOperator {
   bool is_seated_anew_ = false, is_placed_anew_ = false;
 };
 
-/// A command as a server's hand takes it: the in-process hand (training/hand.h), which holds the tip. `server_time_s`:
+/// A command as a server's hand takes it: the in-process hand (tasks/hand.h), which holds the tip. `server_time_s`:
 /// when it is meant for.
 link::HandTarget hand_target(const tasks::HandCommand& command, double server_time_s) noexcept;
 
