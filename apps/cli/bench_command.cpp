@@ -21,10 +21,10 @@ struct Arguments {
   io::PatientSource source;
   std::string force_model;
   bench::Options options;
-  std::vector<std::string> given;  ///< Of kForSome.
+  std::vector<std::string> given;  ///< Options of kForSome that were given.
 };
 
-/// Options that only some benchmarks can use.
+/// Options that only some benchmarks use.
 constexpr const char* kForSome[] = {"--patient", "--patient-seed", "--task",    "--paths", "--force-model",
                                     "--seed",    "--out",          "--seconds", "--rate",  "--sequence"};
 
@@ -59,7 +59,7 @@ Result<std::vector<const bench::Benchmark*>> choose(const std::vector<std::strin
   return chosen;
 }
 
-/// An option must mean something to every benchmark that is to run.
+/// Every benchmark of the run must support a given option.
 Status check_options(const std::vector<const bench::Benchmark*>& chosen, const std::vector<std::string>& given) {
   for (const std::string& option : given) {
     for (const bench::Benchmark* benchmark : chosen) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-/// An unknown or absent figure is null.
+/// Unknown or missing values are null.
 config::Json optional_json(const std::optional<double>& value) {
   return value ? config::Json(*value) : config::Json(nullptr);
 }

@@ -10,7 +10,7 @@ namespace {
 
 using namespace trocar::cli;
 
-/// The command that was being parsed when an error came up.
+/// The command that was parsed when an error occurred.
 const CLI::App& deepest_command(const CLI::App& program) {
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().back();

@@ -1,4 +1,4 @@
-// trocar patient list, generate and build: where patients come from.
+// trocar patient list, generate and build: sources of patients.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// trocar patient show, check and render: what a patient holds.
+// trocar patient show, check and render: contents of a patient.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   io::PatientSource source;
   bool is_json = false;
-  std::string paths;  ///< Markups file with needle paths to draw; empty: the patient's own.
+  std::string paths;  ///< Markups file with needle paths to draw; empty: those of the patient.
   std::string out;
 };
 
@@ -161,7 +161,7 @@ Status check(const Arguments& arguments) {
   return {};
 }
 
-/// Where pictures look: the target of the first path, else the first lesion, else the liver, else the middle.
+/// Focal point of the pictures: the target of the first path, else the first lesion, else the liver, else the centre.
 Vec3 point_of_interest(const anatomy::VirtualPatient& patient) {
   if (!patient.paths.empty()) return patient.paths.front().line_P.b;
   const auto statistics = anatomy::label_statistics(patient);
@@ -196,7 +196,7 @@ Status write_slices(const anatomy::VirtualPatient& patient, const fs::path& fold
   return {};
 }
 
-/// Every camera's picture.
+/// One picture per camera.
 Status write_views(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
                    const fs::path& folder, const Progress& progress) {
   constexpr std::array<std::pair<scene::CameraPreset, const char*>, 4> kCameras = {
@@ -254,7 +254,7 @@ CLI::App* add_command(CLI::App& patient, Action& action, const char* name, const
 }  // namespace
 
 void add_patient_report_commands(CLI::App& patient, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();  // one command runs: they share it
+  const auto arguments = std::make_shared<Arguments>();  // one command runs: they share the arguments
   CLI::App* show_command =
       add_command(patient, action, "show", "Labels with volumes, meshes, frames, provenance", show, arguments);
   show_command->add_flag("--json", arguments->is_json, "Print one JSON object");

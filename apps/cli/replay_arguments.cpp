@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kTask = "TASK";
 
-/// An argument that was named and is not the session's.
+/// Error for a given argument that differs from the session's.
 template <class Value>
 Status check_same(const NamedOptions& named, const char* option, const Value& value, const Value& recorded) {
   if (!named.has(option) || value == recorded) return {};

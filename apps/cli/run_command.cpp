@@ -160,7 +160,7 @@ void print_result(const Arguments& arguments, const attempt::Case& the_case, con
   for (const attempt::ServerFigures& server : result.servers) print_server(server);
 }
 
-/// What belongs to live servers, and what does not.
+/// Checks the options of live servers for conflicts.
 Status check_servers(Arguments& a) {
   const bool names_servers = !a.realtime.endpoints.empty() || !a.key_file.empty() || !a.server_key_file.empty();
   if (names_servers && !a.is_realtime)
@@ -182,7 +182,8 @@ Status check_servers(Arguments& a) {
   return attempt::check_realtime(a.realtime);
 }
 
-/// The session can be made: nothing is there but what an interrupted run has left, which is kept under another name.
+/// Checks that the session can be written: an interrupted run's session is kept under another name; any other file is
+/// an error.
 Status make_room(const std::filesystem::path& session) {
   TROCAR_TRY(const auto kept_as, storage::set_aside_incomplete_session(session));
   if (kept_as)
@@ -191,7 +192,7 @@ Status make_room(const std::filesystem::path& session) {
   return check_new(session);
 }
 
-/// What can be wrong with the case before there is a patient.
+/// Checks the case before a patient is opened.
 Status check_case(const Arguments& arguments) {
   const attempt::RunOptions& run = arguments.run;
   if (run.replayed == nullptr) {

@@ -13,7 +13,7 @@
 namespace trocar::cli {
 namespace {
 
-/// What a reader of the session must be told, beside its damage.
+/// Prints warnings about the session, except damage.
 void warn_of(const storage::Session& session, const std::string& file) {
   if (session.is_incomplete)
     print_warning(fmt::format(
@@ -37,11 +37,11 @@ Status export_session(const std::string& session_file, const std::string& csv) {
 
 struct ReportArguments {
   std::string session;
-  io::PatientSource patient;  ///< Without a name: where the session says.
+  io::PatientSource patient;  ///< Empty: as recorded in the session.
   std::string out;
 };
 
-/// The session's patient, or nothing with a warning where it is gone or has changed since.
+/// The session's patient; empty with a warning if it is missing or has changed.
 std::optional<anatomy::VirtualPatient> find_patient(const storage::SessionInfo& info, io::PatientSource source,
                                                     const std::filesystem::path& session, const Progress& progress) {
   if (source.folder_or_name.empty()) {

@@ -1,4 +1,4 @@
-// trocar ultrasound: pictures, sweeps and volumes; each sub-command has a file of its own.
+// trocar ultrasound: images, sweeps and volumes; each sub-command has its own file.
 #include <CLI/CLI.hpp>
 
 #include "commands.h"

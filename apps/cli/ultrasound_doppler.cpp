@@ -13,10 +13,10 @@ namespace trocar::cli {
 namespace {
 
 constexpr double kPercent = 0.01;
-/// So many pictures persist until the newest is all that is seen.
+/// Number of frames after which persistence has reached its final value.
 constexpr int kPictures = 12;
 
-/// Where the colour bar stands, in dots: right of the gray wedge.
+/// Position of the colour bar, in dots: right of the gray wedge.
 constexpr int kBarColumn = 18;
 constexpr int kBarColumns = 10;
 

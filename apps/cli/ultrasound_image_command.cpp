@@ -1,4 +1,4 @@
-// trocar ultrasound image: a B-mode picture of a patient, and how fast pictures come.
+// trocar ultrasound image: a B-mode image of a patient, and the frame rate.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -28,9 +28,9 @@ namespace fs = std::filesystem;
 
 constexpr double kNeedleLength_mm = 200.0;
 constexpr int kMostFrames = 100000;
-/// Needles with a diameter below.
+/// Range of the needle gauges below.
 constexpr int kThickestGauge = 14, kThinnestGauge = 25;
-/// So many pictures persist to within a gray value or two.
+/// Number of frames after which persistence has converged to one or two gray values.
 constexpr int kPersistingPictures = 40;
 
 struct Arguments {
@@ -68,7 +68,7 @@ Result<Size> parse_size(const std::string& text) {
   return size;
 }
 
-/// The straight needle of a file; no shaft without a file.
+/// The straight needle of a file; without a file, no shaft.
 struct Needle {
   std::vector<Vec3> shaft_P;
   double diameter_mm = 0.0;
@@ -82,7 +82,7 @@ Result<Needle> load_needle(const Arguments& arguments) {
   return needle;
 }
 
-/// What the arguments ask for, before any work.
+/// Request of the arguments, checked before any work.
 struct Request {
   Size size;
   Needle needle;
@@ -104,8 +104,8 @@ Result<Request> check_arguments(const Arguments& arguments) {
   return request;
 }
 
-/// The picture as a thin volume where its plane lies in the patient: two equal slices, since a volume of one has no
-/// inside that readers could interpolate in.
+/// The image as a thin volume at the position of its plane in the patient: two equal slices, since readers cannot
+/// interpolate within a single slice.
 volume::LabelGrid as_slab(const ultrasound::GrayImage& picture, const ultrasound::RasterGeometry& raster,
                           const Pose& X_PT) {
   constexpr double kThickness_mm = 1.0;
@@ -125,7 +125,7 @@ volume::LabelGrid as_slab(const ultrasound::GrayImage& picture, const ultrasound
 }
 
 struct Timing {
-  double frames_per_s = 0.0;  ///< Of all frames, one after another.
+  double frames_per_s = 0.0;  ///< Of all consecutive frames.
   bench::Figures frame_ms, engine_ms, scanner_ms;
 };
 Timing time_frames(ultrasound::BMode& engine, ultrasound::Scanner& scanner, const Scan& scan,

@@ -1,4 +1,4 @@
-// trocar ultrasound views and transducers: what can be asked for.
+// trocar ultrasound views and transducers: available choices.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -129,7 +129,7 @@ Status list_transducers(const Arguments& arguments) {
 }  // namespace
 
 void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action) {
-  const auto a = std::make_shared<Arguments>();  // one command runs: they share it
+  const auto a = std::make_shared<Arguments>();  // one command runs: they share the arguments
   CLI::App* views = ultrasound.add_subcommand("views", "List standard views, and whether a patient supports them");
   views->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
   arguments::seed_number(views->add_option("--patient-seed", a->source.seed, "Seed of an embedded patient"))

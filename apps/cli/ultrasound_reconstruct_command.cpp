@@ -1,4 +1,4 @@
-// trocar ultrasound reconstruct: a tracked freehand sweep as a volume.
+// trocar ultrasound reconstruct: a volume from a tracked freehand sweep.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -23,8 +23,8 @@ struct Arguments {
   std::string calibration;
   std::string out;
   double spacing_mm = 0.0;
-  std::string interpolation, compounding, holes, reference;  ///< Empty: what the calibration file says.
-  std::string black;  ///< Empty: kept where the calibration file says how to reconstruct, as PLUS keeps it.
+  std::string interpolation, compounding, holes, reference;  ///< Empty: as in the calibration file.
+  std::string black;  ///< Empty: keep with reconstruction settings in the calibration file, else skip.
   bool is_json = false;
 };
 
@@ -57,7 +57,7 @@ std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
   return names;
 }
 
-/// What the calibration file says, and over it what the command line says.
+/// Settings of the calibration file, overridden by the command line.
 Result<io::PlusConfig> gather(const Arguments& arguments) {
   io::PlusConfig config;
   if (!arguments.calibration.empty()) {

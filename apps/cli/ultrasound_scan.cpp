@@ -21,18 +21,18 @@ namespace fs = std::filesystem;
 
 constexpr double kLeastDepth_mm = 20.0;
 constexpr double kLeastFocus_mm = 5.0;
-/// No transducer sees deeper; its own limit is checked once it is known.
+/// No transducer images deeper; the limit of the transducer is checked later.
 constexpr double kMostDepth_mm = 300.0;
-/// Where the user says a depth and no focus, the focus stays within the picture.
+/// With a given depth and no focus, the focus stays within the image.
 constexpr double kDeepestFocus = 0.75;
-constexpr double kWorthSaying = 0.1;  ///< Share of a picture outside the CT that a warning mentions.
-/// Settings that a saved pose keeps.
+constexpr double kWorthSaying = 0.1;  ///< Share of an image outside the CT that causes a warning.
+/// Settings stored with a saved pose.
 constexpr const char* kTransducerNote = "transducer";
 constexpr const char* kDepthNote = "depth_mm";
 constexpr const char* kFrequencyNote = "frequency_mhz";
 constexpr const char* kFocusNote = "focus_mm";
 
-/// Takes a number that was given, within what the transducer can do.
+/// Applies a given number after checking it against the transducer's limits.
 Status take(const char* option, const std::optional<double>& asked, double low, double high, const char* unit,
             double& value) {
   if (!asked) return {};
@@ -42,7 +42,7 @@ Status take(const char* option, const std::optional<double>& asked, double low, 
                     fmt::format("give {:g} to {:g} {}", low, high, unit));
 }
 
-/// A setting that a pose was saved with; `value` stays where the file has none. Held in the transducer's range.
+/// Reads a setting saved with a pose, clamped to the transducer's range; `value` is unchanged if the file has none.
 Status take_note(const io::TransformNotes& notes, const char* key, double low, double high, double& value,
                  const std::string& where) {
   const auto note = notes.find(key);
@@ -56,7 +56,7 @@ Status take_note(const io::TransformNotes& notes, const char* key, double low, d
   return {};
 }
 
-/// The settings of the saved pose, for the transducer that it was saved with.
+/// Applies the settings of the saved pose to the transducer that it was saved with.
 Status take_notes(const io::TransformNotes& notes, const ultrasound::Transducer& transducer, const std::string& where,
                   ultrasound::Acquisition& acquisition) {
   const auto name = notes.find(kTransducerNote);
@@ -109,7 +109,7 @@ Result<ultrasound::DisplaySettings> gather_display(const ScanArguments& a) {
   return display;
 }
 
-/// A view by its name, before there is a patient to hold it against.
+/// Finds a view by its name before a patient is opened.
 Result<std::optional<ultrasound::ProbeView>> find_view(const std::vector<ultrasound::ProbeView>& views,
                                                        const std::string& name) {
   if (name.empty()) return std::nullopt;

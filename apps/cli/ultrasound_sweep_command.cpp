@@ -1,4 +1,4 @@
-// trocar ultrasound sweep: a volume as a mechanical 3D transducer makes it, or a tracked sweep as a hand makes it.
+// trocar ultrasound sweep: a volume of a mechanical 3D transducer, or a tracked freehand sweep.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -25,12 +25,12 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 struct Arguments {
   ScanArguments scan;
   std::string out, tracked;
-  double angle_deg = 0.0;  ///< 0: the transducer's, or by hand a slide.
+  double angle_deg = 0.0;  ///< 0: that of the transducer; freehand: translation only.
   double step_deg = 0.75;
   double spacing_mm = 0.7;
   bool is_in_patient = false;
   double length_mm = 60.0;
-  int frames = 0;  ///< By hand; 0: one a mm, or a step.
+  int frames = 0;  ///< Freehand sweep; 0: one frame per mm, or per step.
   bool is_json = false;
 };
 
@@ -45,7 +45,7 @@ std::string text_of(const Pose& X) {
   return text + "0 0 0 1";
 }
 
-/// The fan for those who stitch or register: the frame of the numbers is the volume's own, T or P.
+/// Fan geometry for stitching and registration, in the frame of the volume: T or P.
 io::ImageFields fan_fields(const Scan& scan, const ultrasound::SweepVolume& volume, bool is_in_patient) {
   const ultrasound::SweepGeometry& sweep = volume.geometry;
   const Pose X = is_in_patient ? scan.X_PT : Pose();

@@ -1,4 +1,4 @@
-// trocar-hapticd: the haptic server, one process a device.
+// trocar-hapticd: the haptic server, one process per device.
 #include <fmt/format.h>
 #include <signal.h>
 
@@ -37,7 +37,7 @@ struct Arguments {
   bool is_verbose = false, is_test = false, is_calibrating = false;
 };
 
-/// Patients for the server; one that was opened here already is not opened twice.
+/// Loads patients for the server; a patient that is already open is not loaded again.
 class Patients {
  public:
   Result<std::shared_ptr<const anatomy::VirtualPatient>> open(const std::string& name, std::uint64_t seed,
@@ -58,7 +58,7 @@ class Patients {
 };
 
 Result<std::vector<Pose>> replayed_poses(const storage::Session& session, double needle_length_mm) {
-  // The room of the replay is that of its own plan; the stylus is the needle's grip.
+  // The room of the replay is that of its own plan; the stylus is at the needle's grip.
   const Pose X_WP = attempt::room_in_patient(session.info.plan_P.line_P, needle_length_mm).inverse();
   const Pose X_NS = Pose::translation({0.0, 0.0, -needle_length_mm});
   std::vector<Pose> poses;
@@ -104,7 +104,7 @@ Result<std::optional<link::ServerSecurity>> load_security(const Arguments& argum
   return security;
 }
 
-/// The scene of the command line: the patient is planned as `trocar run` would, so that the room stands at the entry.
+/// Scene of the command line: the path is planned as in `trocar run`, so that the room is placed at the entry.
 Result<link::LoadScene> first_scene(const Arguments& arguments, Patients& patients) {
   TROCAR_TRY(anatomy::VirtualPatient opened, io::open_patient(arguments.patient));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
@@ -118,8 +118,8 @@ Result<link::LoadScene> first_scene(const Arguments& arguments, Patients& patien
   return attempt::scene_request(the_case, choice);
 }
 
-/// Waits for the signals that end the server, on a thread of its own. As long as no device is held, the program ends at
-/// once: loading the first patient takes seconds.
+/// Waits for the signals that end the server, on a separate thread. While no device is open, the program ends at once:
+/// loading the first patient takes seconds.
 class EndSignal {
  public:
   EndSignal() : state_(std::make_shared<State>()) {
@@ -140,7 +140,7 @@ class EndSignal {
       state->wake.notify_all();
     }).detach();
   }
-  /// From now on wait() is how the program ends.
+  /// After this call, wait() ends the program.
   void hold_device() {
     const std::lock_guard lock(state_->mutex);
     state_->holds_device = true;
@@ -282,7 +282,7 @@ int run(int argc, char** argv) {
   return done ? 0 : arguments::report_error(done.error());
 }
 
-/// All threads inherit it: the signals that end the server are waited for, not handled.
+/// All threads inherit the blocked signals; a thread waits for them instead of a handler.
 void block_signals() {
   sigset_t signals;
   sigemptyset(&signals);

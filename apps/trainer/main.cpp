@@ -1,4 +1,4 @@
-// trocar-trainer: the desktop that a trainee sits at.
+// trocar-trainer: the trainer's window.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -59,7 +59,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       "Steps of a script: click, drag, wheel, key, choose, set, wait-for, expect, screenshot … (docs/user_guide.md)");
 }
 
-/// What the arguments choose, before there is a window: an unknown name is told, not passed over.
+/// Applies the arguments before there is a window: an unknown name is an error.
 Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments) {
   if (arguments.task) {
     TROCAR_TRY(const tasks::Task task, tasks::load_task(data_dir() / "tasks", *arguments.task));
@@ -87,7 +87,7 @@ void save_window(MainWindow& window, const std::string& file) {
   QCoreApplication::exit(is_saved ? 0 : 1);
 }
 
-/// The script, then the picture, then the end.
+/// Runs the script, then saves the screenshot, then exits.
 Status play(const Arguments& arguments, MainWindow& window) {
   if (arguments.script.empty() && !arguments.is_benchmark) {
     constexpr int kSettled_ms = 700;
@@ -133,7 +133,7 @@ int run(int argc, char** argv) {
   QCoreApplication::setOrganizationName(QStringLiteral("trocar"));
   QCoreApplication::setApplicationName(QStringLiteral("trocar-trainer"));
   TrainerApplication application(argc, argv);
-  // A benchmark is of the built-in layouts, and leaves no trace in the user's settings.
+  // A benchmark uses the built-in layouts and does not change the user's settings.
   const QTemporaryDir own_settings;
   if (arguments.is_benchmark) QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, own_settings.path());
   apply_theme(application, kept_text_percent());

@@ -1,4 +1,4 @@
-// Step 5 of the case builder: what a hand will feel along the expert's path.
+// Step 5 of the case builder: predicted force along the expert's path.
 #include <QHeaderView>
 #include <QLabel>
 #include <QTableWidget>

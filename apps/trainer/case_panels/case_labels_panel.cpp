@@ -1,4 +1,4 @@
-// Step 2 of the case builder: are the labels right?
+// Step 2 of the case builder: check and edit the labels.
 #include <QColorDialog>
 #include <QComboBox>
 #include <QHeaderView>

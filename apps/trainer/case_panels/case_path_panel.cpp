@@ -1,4 +1,4 @@
-// Step 4 of the case builder: where the needle may enter, and how an expert goes.
+// Step 4 of the case builder: entry zone and expert path.
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>

@@ -1,4 +1,4 @@
-// Step 6 of the case builder: name, words, and where it is written.
+// Step 6 of the case builder: name, description and output folder.
 #include <QCheckBox>
 #include <QDir>
 #include <QFileDialog>

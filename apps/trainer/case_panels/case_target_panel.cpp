@@ -1,4 +1,4 @@
-// Step 3 of the case builder: what is to be reached, and what must not be touched.
+// Step 3 of the case builder: target and structures at risk.
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QHeaderView>
@@ -214,7 +214,7 @@ class TargetPanel final : public CasePanel {
     desk_.edit(case_builder::set_risk(desk_.draft(), next), "change a risk", "risk " + risk->tissue + risk->label);
   }
 
-  /// Labels of the patient; the first entry stands for the template's tissues.
+  /// Labels of the patient; the first entry selects the tissues of the template.
   void fill_labels() {
     QStringList names;
     for (const anatomy::Label& label : desk_.draft().label_table.labels) names << to_qt(label.name);

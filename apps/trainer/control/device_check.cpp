@@ -11,7 +11,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kPatience_ms = 2000;  ///< For the program to end; its device is at rest long before.
+constexpr int kPatience_ms = 2000;  ///< Timeout for the end of the program; its device is at rest long before.
 
 QString last_line(const QByteArray& text) {
   const QStringList lines = QString::fromUtf8(text).split('\n', Qt::SkipEmptyParts);

@@ -40,7 +40,7 @@ constexpr std::size_t kMostFrames = 200'000;  // an hour
 
 attempt::CaseChoice case_choice(const SeatChoice& choice) {
   attempt::CaseChoice result;
-  // A patient that the case builder has made brings a task of its own.
+  // A patient of the case builder contains its own task.
   result.options.task = attempt::has_own_task(choice.patient) ? std::string() : choice.task;
   result.options.needle = choice.needle;
   result.patient_source = choice.patient;
@@ -137,7 +137,7 @@ void SeatFlow::go_to_case_builder() {
 
 void SeatFlow::open(const SeatChoice& choice) {
   choice_ = choice;
-  // What a cut-off exam was is seen again, not sat again.
+  // An interrupted exam can be replayed but not continued.
   window_.work().set_parameters_locked(is_exam() && !cut_off_);
   opened_.reset();
   retired_.retire(std::exchange(
@@ -161,7 +161,7 @@ void SeatFlow::look_at_opening() {
   window_.work().desk().begin_case(opened_);
 }
 
-/// The briefing last: from then on one may begin.
+/// The briefing is last: it enables the start.
 void SeatFlow::show_opened() {
   if (!opened_) return;
   if (window_.work().desk().show_part()) return;
@@ -171,10 +171,10 @@ void SeatFlow::show_opened() {
     return;
   }
   opened_.reset();
-  release_freed_memory();  // of the case before, and of what opening took
+  release_freed_memory();  // memory of the previous case and of opening
   Desk& desk = window_.work().desk();
   desk.show_help(choice_.difficulty);
-  // How deep the target lies is of the plan, too.
+  // The depth of the target belongs to the plan, too.
   const bool is_guided = choice_.difficulty == Difficulty::kGuided;
   const double depth_mm = is_guided ? open_->probe_depth_mm : open_->neutral.depth_mm;
   desk.ultrasound().change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = depth_mm; });
@@ -182,7 +182,7 @@ void SeatFlow::show_opened() {
   if (cut_off_) load_replay(std::exchange(cut_off_, {})->session);
 }
 
-/// Whether sessions can be kept; what is wrong, or will be soon, is shown.
+/// Checks if sessions can be written; displays present and impending problems.
 bool SeatFlow::can_record() {
   const std::filesystem::path folder = state_folder_ / "sessions";
   if (const Status made = make_writable_folder(folder); !made) {
@@ -210,7 +210,7 @@ void SeatFlow::begin_attempt() {
   if (!is_exam()) options.force_model = to_std(window_.work().parameters().preview().model());
   options.is_guided = choice_.difficulty != Difficulty::kExam;
   if (choice_.difficulty != Difficulty::kGuided) {
-    // Where the plan begins would be the solution.
+    // The start of the plan would reveal the solution.
     options.X_PN_start = open_->neutral.X_PN;
     options.X_PT_start = open_->neutral.X_PT;
   }
@@ -258,7 +258,7 @@ void SeatFlow::look_at_attempt() {
   servers_ = attempt_->attempt().servers();
   attempt_.reset();
   window_.strip().show_forces(false, false);
-  window_.strip().show_servers({});  // they wait for the next attempt; what they did is no longer so
+  window_.strip().show_servers({});  // the servers wait for the next attempt; their status is outdated
   window_.show_banner({});
   journal_.clear();
   if (!*result) {
@@ -304,7 +304,7 @@ void SeatFlow::show_replay(Result<attempt::AttemptReplay> replay) {
   window_.work().time_line().setFocus();
 }
 
-/// Opens the case of the attempt that was cut off; its replay follows when that is there.
+/// Opens the case of the interrupted attempt; its replay follows when the case is open.
 void SeatFlow::recover() {
   window_.start().offer_recovery({});
   if (!offered_) return;
@@ -388,7 +388,7 @@ QVariantMap SeatFlow::facts() const {
   facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(frames_.late());
   if (attempt_) facts.insert(attempt_->facts());
   if (replay_) facts.insert(replay_->facts());
-  // What the ultrasound picture on the screen was made at.
+  // Settings of the displayed ultrasound image.
   const bool tells_plan = !attempt_ || !is_exam();
   if (const auto picture = window_.work().desk().ultrasound().picture(); picture && open_ && tells_plan)
     facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();

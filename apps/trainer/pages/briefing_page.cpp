@@ -48,7 +48,7 @@ QString rows(std::span<const Control> controls) {
   return all;
 }
 
-/// Of a device that is no mouse.
+/// Rows for devices other than the mouse.
 QString device_rows(const std::string& device, bool is_needle) {
   if (device == "gamepad") return is_needle ? rows(kNeedleByGamepad) : rows(kProbeByGamepad);
   const QString tool = is_needle ? BriefingPage::tr("needle") : BriefingPage::tr("transducer");
@@ -219,7 +219,7 @@ void BriefingPage::show_case(const attempt::OpenCase& open, Difficulty difficult
   goal_->setText(difficulty == Difficulty::kExam ? goal_text(the_case) : goal_text(the_case) + way_text(the_case));
   counts_->setText(counts_text(the_case.task));
   const QSize side(qMax(240, axial_->width()), qMax(160, axial_->height()));
-  // A plane along the path would tell where the path lies.
+  // A plane along the path would reveal the path.
   const BriefingPlane second =
       guidance == scene::Guidance::kPath ? BriefingPlane::kAlongPath : BriefingPlane::kSagittal;
   axial_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAxial, side, guidance)));

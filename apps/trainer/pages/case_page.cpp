@@ -162,7 +162,7 @@ QWidget* CasePage::make_views() {
     connect(slice, &SliceView::focus_moved, this, [this, n](const Vec3& p_P) {
       for (std::size_t other = 0; other < slices_.size(); ++other)
         if (other != n) slices_[other]->set_focus(p_P);
-      // A wheel scrolls through slices and moves nothing; a drag does.
+      // The wheel scrolls through slices without a change; a drag changes the draft.
       if (QApplication::mouseButtons().testFlag(Qt::LeftButton)) click_at(p_P, true);
     });
     connect(slice, &SliceView::clicked, this, [this](const Vec3& p_P) { click_at(p_P, false); });
@@ -232,7 +232,7 @@ void CasePage::show_hint() {
   click_text_->setText(text);
 }
 
-/// Of the panel that is shown.
+/// Of the visible panel.
 std::string CasePage::click_name() const {
   return panels_[static_cast<std::size_t>(stack_->currentIndex())]->click_name();
 }
@@ -255,7 +255,7 @@ Result<case_builder::CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
       const auto entry_P = tasks::find_nearest_skin(*desk_->patient(), p_P);
       if (!entry_P) return fail("no skin near this position", {}, "click on the patient's skin");
       Segment line_P{*entry_P, *target_P};
-      // A biopsy needle stops short of the target, so that the notch comes to lie in it.
+      // A biopsy needle stops short of the target, so that the notch is in the target.
       if (const tasks::Needle* needle = desk_->needle(); path == nullptr && needle != nullptr)
         line_P.b -= needle->notch_middle_mm() * line_P.direction();
       return case_builder::set_expert_path(draft, line_P);
@@ -277,7 +277,7 @@ void CasePage::click_at(const Vec3& p_P, bool is_drag) {
   const char* const words[] = {
       "", "set the target", "set the entry zone", "set the entry", "set the tip", "place a landmark"};
   const std::string what = words[static_cast<std::size_t>(click_)];
-  // Press and drag are one step; a click ends it.
+  // Press and drag are one step; the release ends it.
   desk_->edit(clicked_draft(p_P), what, what + std::to_string(clicks_));
   if (!is_drag) ++clicks_;
 }
@@ -290,7 +290,7 @@ void CasePage::refresh_views() {
     const bool is_known = placed_import_ == desk_->draft().imported && view_->is_ready();
     const scene::CameraView before = view_->view();
     if (shown_patient_ && shown_meshes_) view_->show_patient(shown_patient_, shown_meshes_);
-    if (is_known) view_->set_view(before);  // another name or tissue is no reason to look from elsewhere
+    if (is_known) view_->set_view(before);  // a new name or tissue does not change the camera
     shown_landmarks_.reset();
   }
   const case_builder::CaseDraft& draft = desk_->draft();
@@ -343,7 +343,7 @@ void CasePage::refresh_foot() {
 
 void CasePage::refresh() {
   refresh_foot();
-  // Progress alone moves the bar and nothing else.
+  // A change of progress only updates the bar.
   const Shown now{desk_->history().version(), desk_->is_reviewed(), desk_->work(), desk_->patient().get(),
                   desk_->message()};
   if (now == shown_) return;

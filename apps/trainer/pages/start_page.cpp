@@ -47,7 +47,7 @@ void add_item(QListWidget& list, const QString& title, const QString& source, co
   item->setToolTip(text);
 }
 
-/// A patient folder by the name that its maker gave it.
+/// Adds a patient folder with the name stored in it.
 void add_folder(QListWidget& list, const QString& folder) {
   const auto title = io::load_patient_title(to_std(folder));
   if (!title) return add_item(list, folder.section('/', -1), folder, folder);
@@ -221,7 +221,7 @@ void StartPage::offer_recovery(const QString& text) {
   recovery_->setVisible(!text.isEmpty());
 }
 
-/// Needles that are made for what the chosen task does; the one that was chosen stays where it is among them.
+/// Lists the needles for the use of the selected task; keeps the selected needle if possible.
 void StartPage::fill_needles() {
   const QString chosen = needle_->currentData().toString();
   needle_->clear();
@@ -238,7 +238,7 @@ void StartPage::fill_needles() {
   needle_->setCurrentIndex(std::max(0, needle_->findData(chosen)));
 }
 
-/// Embedded patients that serve the chosen task, and folders that were opened before.
+/// Embedded patients that support the selected task, and folders opened earlier.
 void StartPage::fill_patients() {
   const QListWidgetItem* task = tasks_->currentItem();
   const QListWidgetItem* before = patients_->currentItem();
@@ -311,7 +311,7 @@ SeatChoice StartPage::choice() const {
   choice.needle_device = devices_->needle();
   choice.probe_device = devices_->probe();
   choice.difficulty = static_cast<Difficulty>(difficulty_->checkedId());
-  if (choice.difficulty != Difficulty::kExam) {  // an exam takes the task's own
+  if (choice.difficulty != Difficulty::kExam) {  // an exam uses the task's own
     choice.needle = to_std(needle_->currentData().toString());
     choice.force_model = to_std(model_->currentData().toString());
   }

@@ -25,7 +25,7 @@ std::string spec_of(const QComboBox& box) {
   return to_std(box.currentData().toString());
 }
 
-/// Entries that the tool beside has cannot be chosen here.
+/// Disables devices that are used for the other tool.
 void grey_out(QComboBox& box, const std::string& other) {
   auto* model = qobject_cast<QStandardItemModel*>(box.model());
   for (int row = 0; row < box.count(); ++row) {
@@ -91,7 +91,7 @@ void DeviceChoice::list(const QString& spec) {
     if (box->findData(spec) < 0) box->addItem(to_qt(attempt::seat_device_title(to_std(spec))), spec);
 }
 
-/// The transducer gives way.
+/// On a conflict, the transducer gets the mouse.
 void DeviceChoice::keep_apart() {
   if (!attempt::can_share_seat(spec_of(*needle_), spec_of(*probe_))) probe_->setCurrentIndex(probe_->findData("mouse"));
   grey_out(*probe_, spec_of(*needle_));
@@ -103,7 +103,7 @@ void DeviceChoice::choose(const std::string& needle, const std::string& probe) {
     if (!spec.empty()) list(to_qt(spec));
     box.setCurrentIndex(std::max(0, box.findData(to_qt(spec))));
   };
-  probe_->setCurrentIndex(0);  // so that the needle may have what the transducer had
+  probe_->setCurrentIndex(0);  // so that the needle can use the device of the transducer
   select(*needle_, needle);
   select(*probe_, probe);
   keep_apart();
@@ -133,7 +133,7 @@ void DeviceChoice::add_by_name() {
 }
 
 void DeviceChoice::test(const QComboBox& box) {
-  if (auto* open = window()->findChild<DeviceTestDialog*>()) delete open;  // it may hold the same device
+  if (auto* open = window()->findChild<DeviceTestDialog*>()) delete open;  // both can use the same device
   auto* dialog = new DeviceTestDialog(box.currentData().toString(), box.currentText(), window());
   dialog->show();
 }

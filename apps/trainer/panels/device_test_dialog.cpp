@@ -15,13 +15,13 @@ namespace {
 
 using State = DeviceCheckView::State;
 
-constexpr double kMoved_mm = 5.0;  ///< Further is no tremble.
+constexpr double kMoved_mm = 5.0;  ///< Larger motion is not tremor.
 
 bool can_calibrate(const QString& spec) {
   return spec.startsWith(QLatin1String("openhaptics"));
 }
 
-/// What a device needs that the program cannot do for it.
+/// Steps of a device's calibration that the user must do.
 QString calibration_text(const QString& spec) {
   if (can_calibrate(spec))
     return DeviceTestDialog::tr(
@@ -126,7 +126,7 @@ QVariantMap DeviceTestDialog::facts() const {
 }
 
 void DeviceTestDialog::start(bool is_calibrating) {
-  check_.reset();  // one program at a time has the device
+  check_.reset();  // only one program can open the device
   was_calibrating_ = is_calibrating;
   check_ = std::make_unique<DeviceCheck>(spec_, is_calibrating);
   connect(check_.get(), &DeviceCheck::changed, this, &DeviceTestDialog::show_state);

@@ -42,7 +42,7 @@ void clear(QGridLayout& grid) {
   }
 }
 
-/// Names of files can be wrapped, too.
+/// File names can be wrapped, too.
 QString breakable(QString text) {
   for (const char mark : {'/', '_', '-'}) text.replace(QLatin1Char(mark), QString(QLatin1Char(mark)) + QChar(0x200b));
   return text;

@@ -72,7 +72,7 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
   column->addWidget(scroll, 1);
-  auto* buttons = new QVBoxLayout;  // always in sight
+  auto* buttons = new QVBoxLayout;  // always visible
   buttons->setContentsMargins(12, 8, 12, 12);
   buttons->setSpacing(8);
   buttons->addWidget(fire_);

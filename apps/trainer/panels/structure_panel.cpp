@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kGap = 8;
 constexpr int kSwatch = 12;
-// Many small controls stand side by side here: less padding than elsewhere.
+// Smaller padding than elsewhere, because many small controls are side by side.
 constexpr const char* kSlim = "padding: 5px 3px;";
 constexpr const char* kFlat = "background: transparent; border: none; padding: 3px;";
 
@@ -31,14 +31,14 @@ QString widget_name(const char* prefix, const std::string& structure) {
   return QString::fromLatin1(prefix) + to_qt(structure).replace(QLatin1Char('_'), QLatin1Char('-'));
 }
 
-/// "kidney_left" as people read it.
+/// Display text of "kidney_left".
 QString shown_name(const std::string& structure) {
   QString name = to_qt(structure).replace(QLatin1Char('_'), QLatin1Char(' '));
   if (!name.isEmpty()) name[0] = name[0].toUpper();
   return name;
 }
 
-/// A round patch of the structure's colour; a ring where it is hidden.
+/// A disc in the structure's colour; a ring if it is hidden.
 QIcon swatch(const volume::Rgb& color, double ratio) {
   QIcon icon;
   for (const bool is_shown : {true, false}) {
@@ -220,7 +220,7 @@ void StructurePanel::refresh() {
   undo_buttons_->show(steps_.can_undo(), steps_.can_redo());
   const QSignalBlocker quiet_guidance(guidance_);
   const QSignalBlocker quiet_landmarks(landmarks_);
-  // There may be nothing that it could show.
+  // Without guidance in the scene, there is nothing to show.
   guidance_->setEnabled(view_.scene().guidance() != scene::Guidance::kNone);
   guidance_->setChecked(guidance_->isEnabled() && view_.is_guidance_visible());
   landmarks_->setChecked(view_.are_landmarks_visible());

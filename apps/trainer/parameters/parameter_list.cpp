@@ -18,7 +18,7 @@ QString title_of(const std::string& tissue) {
   return title;
 }
 
-/// "0–2 mm": where the path is in a tissue; several stretches are named from first to last.
+/// "0–2 mm": depth range of a tissue on the path; several ranges are given from first to last.
 QString place_of(const std::string& tissue, const std::vector<attempt::PathPiece>& pieces) {
   double from = 0.0, to = -1.0;
   for (const attempt::PathPiece& piece : pieces) {
@@ -102,7 +102,7 @@ void ParameterList::show_header(Section& section, bool is_changed) const {
 }
 
 void ParameterList::choose(const std::string& tissue) {
-  // The focus may be in what goes.
+  // The focus may be in a widget that is deleted.
   for (const Section& section : sections_)
     if (body_ != nullptr && section.group.name == chosen_ && body_->isAncestorOf(focusWidget()))
       section.header->setFocus();
@@ -111,7 +111,7 @@ void ParameterList::choose(const std::string& tissue) {
   reset_tissue_ = nullptr;
   if (body_ != nullptr) {
     body_->hide();
-    body_->deleteLater();  // A row of it may be what has called.
+    body_->deleteLater();  // The signal may come from a row that is deleted.
     body_->setParent(nullptr);
     body_ = nullptr;
   }
@@ -122,7 +122,7 @@ void ParameterList::choose(const std::string& tissue) {
 void ParameterList::fill(Section& section) {
   body_ = make_rows(section.group);
   section.content->addWidget(body_);
-  // Tab goes from the header into its rows.
+  // Tab moves from the header to its rows.
   QWidget* last = section.header;
   for (ParameterRow* row : rows_)
     for (QWidget* part : row->findChildren<QWidget*>())

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kDot_px = 10;
 constexpr int kLongestName = 80;
-constexpr int kShownLetters = 14;  ///< Of a name in a question, beside its buttons.
+constexpr int kShownLetters = 14;  ///< Width of a name in a question, next to its buttons.
 
 QIcon make_dot(qreal pixel_ratio) {
   QPixmap dot(QSize(kDot_px, kDot_px) * pixel_ratio);
@@ -36,7 +36,7 @@ QIcon make_dot(qreal pixel_ratio) {
   return QIcon(dot);
 }
 
-/// Never asks for more width than there is.
+/// Never requests more than the available width.
 QLabel* make_wrapped(const char* name) {
   auto* label = make_label({});
   label->setObjectName(QString::fromLatin1(name));
@@ -48,7 +48,7 @@ QLabel* make_wrapped(const char* name) {
   return label;
 }
 
-/// With places where a path, a key or a very long word may be wrapped.
+/// Inserts break opportunities for wrapping paths, keys and very long words.
 QString breakable(const QString& text) {
   constexpr int kLongestWord = 18;
   QString broken;
@@ -109,7 +109,7 @@ QWidget* ParameterProfiles::make_choice() {
   layout->addWidget(choice_, 1);
   for (QToolButton* button : {save_as_, delete_}) {
     button->setFocusPolicy(Qt::StrongFocus);
-    button->setStyleSheet(QStringLiteral("padding: 5px 6px"));  // Names need the width.
+    button->setStyleSheet(QStringLiteral("padding: 5px 6px"));  // leaves more width for names
     layout->addWidget(button);
   }
   return row;
@@ -228,7 +228,7 @@ void ParameterProfiles::ask(Question question) {
     name_->setFocus();
     name_->selectAll();
   } else if (question != Question::kNone) {
-    no_->setFocus();  // A second Enter or Space by mistake loses nothing.
+    no_->setFocus();  // an accidental second Enter or Space has no effect
   } else if (had_focus) {
     choice_->setFocus();
   }
@@ -262,7 +262,7 @@ void ParameterProfiles::save() {
 }
 
 void ParameterProfiles::finish_saving(const attempt::TissueProfile& saved) {
-  // One of the same name may have lain in another file.
+  // Deletes a profile of the same name in another file.
   Status done;
   for (const attempt::TissueProfile& profile : profiles_)
     if (profile.name == saved.name && profile.file != saved.file) done = attempt::delete_profile(profile);
@@ -295,7 +295,7 @@ void ParameterProfiles::tell(const QString& text, bool is_problem) {
   problem_->setVisible(!text.isEmpty());
 }
 
-/// Escape closes the question before any shortcut of the window gets it.
+/// Escape closes the question before window shortcuts receive it.
 bool ParameterProfiles::event(QEvent* event) {
   if (event->type() == QEvent::ShortcutOverride && question_ != Question::kNone &&
       static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape) {

@@ -104,7 +104,7 @@ void ParameterRow::make_parts(const QString& name) {
   const QString plain = to_qt(parameter_.name);
   caption_ = make_label(QStringLiteral("<b>%1</b>  %2").arg(to_qt(parameter_.symbol), plain));
   QString symbol = to_qt(parameter_.symbol);
-  if (const auto at = symbol.indexOf(QLatin1Char('_')); at > 0)  // F_p as the papers print it
+  if (const auto at = symbol.indexOf(QLatin1Char('_')); at > 0)  // F_p as printed in the papers
     symbol = symbol.left(at) + QStringLiteral("<sub>") + symbol.mid(at + 1) + QStringLiteral("</sub>");
   caption_->setText(QStringLiteral("<b>%1</b>&nbsp; %2").arg(symbol, plain));
   field_ = new NumberField;
@@ -117,7 +117,7 @@ void ParameterRow::make_parts(const QString& name) {
   reset_ = new QToolButton;
   reset_->setObjectName(name + QStringLiteral("-reset"));
   reset_->setText(QStringLiteral("↺"));
-  reset_->setStyleSheet(QStringLiteral("padding: 2px 6px"));  // no higher than the field beside it
+  reset_->setStyleSheet(QStringLiteral("padding: 2px 6px"));  // not higher than the field next to it
   reset_->setAccessibleName(tr("Reset %1").arg(plain));
   reset_->setToolTip(tr("Reset to the default, %1").arg(number_text(parameter_.value)));
   slider_ = new MarkedSlider;
@@ -207,7 +207,7 @@ void ParameterRow::take_slider(int position) {
   const bool is_down = slider_->isSliderDown();
   const bool joins = is_down && is_held_;
   is_held_ = is_down;
-  // Back at the mark is the default itself, with all its digits.
+  // At the mark, the value is the exact default.
   const double value = position == scale_.position_of(parameter_.value) ? parameter_.value : scale_.value_at(position);
   if (value != value_) Q_EMIT edited(value, joins);
 }

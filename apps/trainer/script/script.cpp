@@ -25,7 +25,7 @@ const std::map<QString, Arity>& verbs() {
   return all;
 }
 
-/// Which arguments of a step are numbers.
+/// Indices of numeric arguments of a step.
 const std::map<QString, std::vector<int>>& numbers() {
   static const std::map<QString, std::vector<int>> all = {
       {"click", {1, 2}},
@@ -45,7 +45,7 @@ const std::map<QString, std::vector<int>>& numbers() {
   return all;
 }
 
-/// The argument that should be a number and is none.
+/// The first argument that should be a number but is not.
 std::optional<QString> find_no_number(const QString& verb, const QStringList& words) {
   const auto found = numbers().find(verb);
   if (found == numbers().end()) return std::nullopt;
@@ -57,7 +57,7 @@ std::optional<QString> find_no_number(const QString& verb, const QStringList& wo
   return std::nullopt;
 }
 
-/// What should compare a fact with a value and does not.
+/// The operator of a comparison if it is not valid.
 std::optional<QString> find_no_comparison(const QString& verb, const QStringList& words) {
   static const std::map<QString, int> places = {{"wheel-until", 3}, {"key-until", 3}, {"wait-for", 1}, {"expect", 1}};
   static const QStringList comparisons = {"is", "isnt", "has", "<", ">", "<=", ">="};
@@ -66,14 +66,14 @@ std::optional<QString> find_no_comparison(const QString& verb, const QStringList
   return words[found->second];
 }
 
-/// Words of a line up to a comment; nothing where a quotation does not end.
+/// Words of a line up to a comment; empty if a quotation is not terminated.
 std::optional<QStringList> words_of(const QString& line) {
   QStringList words;
   QString word;
   bool is_quoted = false, has_word = false;
   for (int at = 0; at < line.size(); ++at) {
     const QChar c = line[at];
-    // A colour begins with the same sign.
+    // A colour starts with the same character.
     const bool is_comment =
         c == '#' && !has_word && !is_quoted && (words.isEmpty() || at + 1 == line.size() || line[at + 1].isSpace());
     if (is_comment) break;

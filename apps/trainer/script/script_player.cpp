@@ -22,8 +22,8 @@ namespace {
 constexpr int kBetweenSteps_ms = 15;
 constexpr double kPatience_s = 30.0;
 constexpr double kDrag_s = 0.4;
-constexpr double kSettled_s = 1.0;  ///< After that a layout is as it stays.
-constexpr int kMostAtOnce = 2;      ///< Events of a step that goes on until something holds.
+constexpr double kSettled_s = 1.0;  ///< Time after which a layout is stable.
+constexpr int kMostAtOnce = 2;      ///< Events per call of a step that repeats until a condition is true.
 
 QPointF place_of(const QStringList& arguments, int first) {
   if (arguments.size() < first + 2) return {0.5, 0.5};
@@ -73,7 +73,7 @@ Result<QWidget*> ScriptPlayer::find(const QString& name) const {
   QWidget* hidden = nullptr;
   for (QWidget* top : QApplication::topLevelWidgets()) {
     for (QWidget* widget : top->findChildren<QWidget*>(name)) {
-      // What stands in a menu is reached without opening it, which would stop the player.
+      // Menu entries are used without opening the menu, which would block the player.
       if (widget->isVisible() || qobject_cast<QMenu*>(widget->window()) != nullptr) return widget;
       hidden = widget;
     }
@@ -102,7 +102,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::click_menu_entry(QAction& entry) co
 bool ScriptPlayer::holds(const QString& fact, const QString& op, const QString& value) const {
   const QVariantMap facts = stage_.facts();
   const auto found = facts.find(fact);
-  if (found == facts.end()) return false;  // it may come
+  if (found == facts.end()) return false;  // it may appear later
   if (op == QLatin1String("is")) return found->toString() == value;
   if (op == QLatin1String("isnt")) return found->toString() != value;
   if (op == QLatin1String("has")) return found->toString().contains(value);
@@ -220,7 +220,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_until(const ScriptStep& step, 
   TROCAR_TRY(const Progress progress, wait_until_holds(a.mid(2), patience_of(a)));
   if (progress == Progress::kDone) return progress;
   const int due = static_cast<int>(seconds() * std::abs(a[1].toDouble()));
-  // A hand does not make up for the time in which it saw nothing: it would go far past the mark.
+  // Missed events are dropped: catching up would overshoot the condition.
   sent_ = std::max(sent_, due - kMostAtOnce);
   for (; sent_ < due; ++sent_) TROCAR_TRY_STATUS(act());
   return Progress::kAgain;
@@ -260,7 +260,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
   return Progress::kAgain;
 }
 
-/// The force stop and every text on the page.
+/// Checks the force stop and every text of the page.
 Result<ScriptPlayer::Progress> ScriptPlayer::expect_whole() const {
   const auto* stop = stage_.window->findChild<QWidget*>(QStringLiteral("force-stop"));
   QStringList faults = find_cut_off(*stage_.window);

@@ -39,7 +39,7 @@ struct Step {
 constexpr Step kSteps[] = {
     {"start", "Choose"}, {"briefing", "Briefing"}, {"puncture", "Puncture"}, {"feedback", "Feedback"}};
 
-/// Fits a screen of 1024x768 beside a desktop's own bars.
+/// Fits a screen of 1024x768 with the bars of a desktop.
 constexpr QSize kLeastSize(960, 640);
 
 }  // namespace
@@ -64,7 +64,7 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* paren
   column->addWidget(make_top_bar());
   column->addWidget(pages_, 1);
   column->addWidget(strip_);
-  pages_->setMinimumSize(1, 1);  // no page pushes the strip off the window
+  pages_->setMinimumSize(1, 1);  // no page pushes the strip out of the window
   setCentralWidget(central);
   banner_ = new Banner(*central);
   add_shortcuts();
@@ -72,7 +72,7 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* paren
   mirror_ = new MirrorStation(*this);
   mirror_->fill_menu(*views_menu_);
   flow_ = new SeatFlow(*this, state_folder);
-  // A page that needs more room is scrolled, so that the strip at the foot is always on the screen.
+  // A page that needs more space is scrolled, so that the strip at the bottom is always visible.
   setMinimumSize(kLeastSize);
   resize(QSize(1280, 800).boundedTo(screen()->availableSize()));
   restoreGeometry(QSettings().value(QStringLiteral("window/geometry")).toByteArray());

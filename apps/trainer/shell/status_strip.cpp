@@ -18,7 +18,7 @@ QString colored(const QString& text, const QColor& color) {
   return QStringLiteral("<span style='color:%1'>%2</span>").arg(color.name(), text.toHtmlEscaped());
 }
 
-/// Figures of a server, from few to all.
+/// Figures of a server, from least to most detail.
 enum Detail { kShare, kRate, kAll };
 
 QString line_text(const ServerLine& line, int detail) {
@@ -65,7 +65,7 @@ StatusStrip::StatusStrip(QWidget* parent) : QFrame(parent) {
   stop_->setProperty("role", "stop");
   stop_->setFocusPolicy(Qt::NoFocus);
   row->addWidget(stop_);
-  for (QLabel* label : {needle_, probe_, frames_}) label->setMinimumWidth(1);  // the button never gives way
+  for (QLabel* label : {needle_, probe_, frames_}) label->setMinimumWidth(1);  // the button is never shrunk
   connect(stop_, &QPushButton::clicked, this, &StatusStrip::toggle_wanted);
   show_forces(false, false);
 }

@@ -11,7 +11,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kIconPixels = 64;  ///< Scaled down by the widget, whatever the screen.
+constexpr int kIconPixels = 64;  ///< Scaled down by the widget on every screen.
 
 void paint_tick(QPainter& painter) {
   painter.drawPolyline(QPolygonF() << QPointF(16, 34) << QPointF(28, 46) << QPointF(48, 20));
@@ -25,7 +25,7 @@ void paint_cross(QPainter& painter) {
   painter.drawLine(QPointF(44, 20), QPointF(20, 44));
 }
 
-/// A long list of names is cut; the tooltip has all of it.
+/// A long list of names is shortened; the tooltip shows all of it.
 QString shortened(const QString& text) {
   constexpr int kLongest = 120;
   if (text.size() <= kLongest) return text;

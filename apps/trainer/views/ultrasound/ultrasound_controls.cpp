@@ -41,7 +41,7 @@ QGridLayout* knob_grid() {
   return grid;
 }
 
-/// Small enough that three stand side by side in the panel.
+/// Small enough for three side by side in the panel.
 QPushButton* small_button(const char* name, const QString& text, const QString& tooltip) {
   QPushButton* button = make_button(name, text, tooltip);
   button->setStyleSheet(QStringLiteral("padding: 4px 6px;"));
@@ -368,7 +368,7 @@ void UltrasoundControls::show_view() {
   for (Check& check : checks_) check.box->setChecked(check.flag(settings));
   gray_map_->setCurrentIndex(gray_map_->findText(to_qt(ultrasound::name_of(settings.display.gray_map))));
   transducer_->setCurrentIndex(transducer_->findText(to_qt(view_.transducer().name)));
-  // A preset is of a transducer.
+  // A preset belongs to one transducer.
   const int preset = preset_->currentIndex();
   if (preset > 0 && presets_[static_cast<std::size_t>(preset - 1)].transducer != view_.transducer().name)
     preset_->setCurrentIndex(0);

@@ -19,10 +19,10 @@ const QColor kMarkerInk(0x5a, 0xc8, 0x78);
 const QColor kFocusInk(0xf0, 0xc8, 0x50);
 const QColor kCaliperInk(0xf4, 0xe0, 0x6a);
 
-constexpr double kHardlyAny = 0.02, kMost = 0.75;  ///< Of the face on the skin, as the command line warns.
-constexpr double kUnscanned = 0.01;                ///< Of the picture outside the CT, from which a caption says so.
+constexpr double kHardlyAny = 0.02, kMost = 0.75;  ///< Shares of the face on the skin, as in the command line.
+constexpr double kUnscanned = 0.01;                ///< Share of the image outside the CT that needs a caption.
 constexpr double kWedge_px = 8.0, kBarGap_px = 12.0, kColourBar_px = 10.0;
-/// The needle's axis is shown where it lies so near to the plane: about half the beam's thickness.
+/// The needle's axis is drawn within this distance of the plane: about half the beam's thickness.
 constexpr double kNearPlane_mm = 3.0;
 constexpr double kAhead_mm = 250.0, kAxisStep_mm = 1.0;
 constexpr int kOutlinePoints = 72;
