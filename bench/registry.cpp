@@ -2,7 +2,7 @@
 
 namespace trocar::bench {
 
-// A new benchmark: its function in benchmarks.h, a line here.
+// To add a benchmark, add its function to benchmarks.h and a line here.
 const std::vector<Benchmark>& all_benchmarks() {
   static const std::vector<Benchmark> benchmarks{
       {"slice", "trilinear slices of a CT volume on one core, compared with VTK on two cores", run_slice_benchmark},

@@ -20,7 +20,7 @@ struct DeviceKind {
   OpenedDevice (*open)(const DeviceSpec&, const DeviceOptions&);
 };
 
-// clang-format off: a kind a line
+// clang-format off: one kind per line
 constexpr std::array kKinds{
     DeviceKind{"virtual", Argument::kOptional, open_virtual},  // :PRESET
     DeviceKind{"mouse", Argument::kNone, open_pointer},
@@ -33,7 +33,7 @@ constexpr std::array kKinds{
 };
 // clang-format on
 
-constexpr std::uint64_t kFaultSeed = 1;  ///< Of jitter.
+constexpr std::uint64_t kFaultSeed = 1;  ///< Seed of the jitter.
 
 const DeviceKind* find_kind(std::string_view name) noexcept {
   const auto* it =

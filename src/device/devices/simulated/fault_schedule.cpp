@@ -11,7 +11,7 @@
 namespace trocar::devices {
 namespace {
 
-/// What the number after the colon may be; kinds that take none have high = 0.
+/// Range of the number after the colon; high = 0 for kinds without one.
 struct FaultKind {
   DeviceFault fault;
   const char* name;
@@ -36,7 +36,7 @@ const FaultKind* find_fault(std::string_view name) noexcept {
   return nullptr;
 }
 
-/// A finite number that fills the whole text and is at least 0.
+/// Parses a finite, non-negative number from the whole text.
 std::optional<double> parse_number(std::string_view text, double high) noexcept {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -18,10 +18,10 @@ double steady_s() noexcept {
 }
 
 struct ModelRow {
-  std::string_view word;  ///< In the model's name, small letters.
+  std::string_view word;  ///< In the model's name, in lower case.
   std::string_view preset;
 };
-/// In this order: "Touch X" is the PHANTOM Desktop's successor, "Touch" the Omni's.
+/// In this order: "Touch X" is the successor of the PHANTOM Desktop, "Touch" that of the Omni.
 constexpr std::array kModels{ModelRow{"premium", "premium"}, ModelRow{"desktop", "desktop"},
                              ModelRow{"touch x", "desktop"}, ModelRow{"touchx", "desktop"},
                              ModelRow{"omni", "omni"},       ModelRow{"touch", "omni"}};
@@ -44,7 +44,7 @@ void tighten(std::optional<double>& value, const std::optional<double>& said) no
   if (said) value = value ? std::min(*value, *said) : *said;
 }
 
-/// The row, and nothing beyond what the device itself says that it bears.
+/// The preset, limited to the values that the device reports.
 haptics::DevicePreset tightened(haptics::DevicePreset preset, const hd::Description& said) {
   haptics::DeviceCapability& capability = preset.capability;
   tighten(capability.peak_force_n, said.peak_force_n);
@@ -66,7 +66,7 @@ haptics::DevicePreset tightened(haptics::DevicePreset preset, const hd::Descript
   return preset;
 }
 
-/// Invariant: connection_ is there, but after a reconnect that failed.
+/// Invariant: connection_ is set, except after a failed reconnect.
 class OpenHapticsDevice final : public HapticDevice {
  public:
   OpenHapticsDevice(OpenHapticsOptions options, haptics::DevicePreset preset,

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kMmPerM = 1000.0;
 constexpr double kNmmPerNm = 1000.0;
-constexpr double kWatchdog_s = 0.020;  // where the vendor's is off: as ours, ServoExchange::kOldestWrench_s
-constexpr int kFailuresToLose = 5;     // calls failed one after the other [assumed]
-constexpr int kPeriodsPerStatus = 50;  // 25 ms at 2 kHz: the motors' state is read now and then [assumed]
+constexpr double kWatchdog_s = 0.020;  // if the vendor's is off: as ours, ServoExchange::kOldestWrench_s
+constexpr int kFailuresToLose = 5;     // consecutive failed calls [assumed]
+constexpr int kPeriodsPerStatus = 50;  // 25 ms at 2 kHz: interval of reading the motors' state [assumed]
 
 }  // namespace
 
@@ -64,7 +64,7 @@ Status Connection::check_state() {
   return {};
 }
 
-/// The vendor's watchdog cuts the force when no new one arrives. As the vendor set it; switched on where it is off.
+/// The vendor's watchdog stops the force without new commands. Its setting is kept; it is switched on if it is off.
 Status Connection::keep_watchdog() {
   unsigned char counts = 0;
   const bool is_known = api_.get_watchdog != nullptr && api_.get_watchdog(&counts, id_) >= kNoError;
@@ -108,7 +108,7 @@ void Connection::serve(double now_s) noexcept {
   if (sample_.is_lost) return;
   const Sensed sensed = sense(sample_);
   const haptics::Wrench wrench_D = exchange_->wanted(now_s);
-  // The library turns forces into motor torques by the pose: none by one that is not a number.
+  // The library converts forces to motor torques with the pose: no force without a finite pose.
   const bool is_applied = apply(sample_.X_DS.is_finite() ? wrench_D : haptics::Wrench{});
   failures_ = sensed != Sensed::kFailed && is_applied ? 0 : failures_ + 1;
   if (!is_applied) sample_.is_force_refused = true;
@@ -121,7 +121,7 @@ void Connection::serve(double now_s) noexcept {
   if (sensed == Sensed::kNew || sample_.is_lost) exchange_->sensed(sample_);
 }
 
-/// Into the sample, which keeps its pose where the device does not answer.
+/// Reads into the sample, which keeps its pose if the device does not respond.
 Connection::Sensed Connection::sense(ServoSample& sample) noexcept {
   Vec3 p_VH = Vec3::Zero();
   double rows[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -145,8 +145,8 @@ bool Connection::apply(const haptics::Wrench& wrench_D) noexcept {
   return api_.set_wrench(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0.0, id_) >= kNoError;
 }
 
-/// false: its button, its velocity brake or its watchdog keeps the motors off. Switching them on again is for the
-/// person at the device (its force button).
+/// Returns false if its button, velocity brake or watchdog keeps the motors off. Only the person at the device can
+/// switch them on again (force button).
 bool Connection::has_force() noexcept {
   std::array<int, kStatusRoom> status{};
   return api_.get_status(status.data(), id_) < kNoError || status[kStatusForce] != 0;

@@ -9,16 +9,16 @@ namespace trocar::devices::hd {
 namespace {
 
 constexpr unsigned long kServoRate_hz = 1000;  // the vendor's usual rate
-constexpr int kMostErrors = 32;                // popped at a time, so that the loop is bounded
+constexpr int kMostErrors = 32;                // limit of errors read at a time
 
-/// The vendor's library has one scheduler and one current device a process.
+/// The vendor's library has one scheduler and one current device per process.
 std::atomic<bool> is_in_use{false};
 
 bool is_force_error(Enum code) noexcept {
   return code >= kWarmMotors && code <= kForceError;
 }
 
-/// After these the vendor's own programs stop too (hduError, hduIsSchedulerError).
+/// Errors at which the vendor's own programs stop, too (hduError, hduIsSchedulerError).
 bool is_fatal(Enum code) noexcept {
   return code == kCommError || code == kCommConfigError || code == kTimerError || code == kDeviceFault ||
          code == kBadHandle;
@@ -75,8 +75,8 @@ Status Connection::start() {
   return {};
 }
 
-/// Where the device can do it alone, or somebody holds it where it must be for that: an encoder reset is only right
-/// while the arm is in its reset position.
+/// Only if the device can calibrate alone, or a person holds it in the calibration position: an encoder reset is only
+/// correct in the reset position of the arm.
 Status Connection::calibrate() {
   api_.get_integerv(kCalibrationStyle, &calibration_style_);
   api_.schedule_synchronous(&on_first_period, this, kHighestPriority);
@@ -110,20 +110,20 @@ void Connection::describe() {
   api_.get_doublev(kUsableWorkspace, box.data());
   const Vec3 centre = 0.5 * (Vec3(box[0], box[1], box[2]) + Vec3(box[3], box[4], box[5]));
   if (centre.allFinite()) description_.centre_V = centre;
-  // What an older driver does not know it answers with an error; those figures stay open.
+  // An older driver returns an error for unknown parameters; these values stay unset.
   for (int i = 0; i < kMostErrors && api_.get_error().code != kSuccess; ++i) {
   }
 }
 
 std::optional<double> Connection::positive(Enum name) {
-  // Some of these are one number a joint or an axis: room for them, the first is taken.
+  // Some parameters have one value per joint or axis: the first one is used.
   std::array<double, 6> values{};
   api_.get_doublev(name, values.data());
   if (!std::isfinite(values[0]) || values[0] <= 0.0) return std::nullopt;
   return values[0];
 }
 
-/// The errors since the last look, the oldest as the cause.
+/// The errors since the last check, with the oldest as the cause.
 Status Connection::check(const char* what) {
   Enum first = kSuccess;
   for (int i = 0; i < kMostErrors; ++i) {
@@ -140,7 +140,7 @@ Connection::~Connection() {
   if (exchange_) exchange_->close();
   const bool answers = !is_lost_.load() && !(exchange_ && exchange_->is_lost());
   if (has_callback_ && answers) {
-    // One whole period of the callback lies between the two: it has sent zero when the motors go off.
+    // One complete callback period is in between: it has sent zero before the motors are switched off.
     api_.schedule_synchronous([](void*) { return kCallbackDone; }, nullptr, kLowestPriority);
     api_.schedule_synchronous(&on_closing, this, kLowestPriority);
   }
@@ -162,7 +162,7 @@ unsigned int Connection::on_period(void* connection) {
   return self.is_lost_.load(std::memory_order_relaxed) ? kCallbackDone : kCallbackContinue;
 }
 
-/// Looks at the calibration and, where that is right, switches the motors on at zero force.
+/// Checks the calibration and, if it is valid, switches the motors on with zero force.
 unsigned int Connection::on_first_period(void* connection) {
   auto& self = *static_cast<Connection*>(connection);
   self.api_.begin_frame(self.handle_);
@@ -186,8 +186,8 @@ unsigned int Connection::on_calibration_update(void* connection) {
   return kCallbackDone;
 }
 
-/// After the callback of its period, whose frame brought the motors to zero: no second frame in one period, and none
-/// in the periods until the scheduler stops.
+/// After the callback of its period, whose frame set the motors to zero: no second frame in this period, and none until
+/// the scheduler stops.
 unsigned int Connection::on_closing(void* connection) {
   auto& self = *static_cast<Connection*>(connection);
   self.is_done_ = true;
@@ -200,7 +200,7 @@ void Connection::serve() noexcept {
   api_.begin_frame(handle_);
   ServoSample sample = sense();
   const haptics::Wrench wrench_D = exchange_->wanted(clock_s_());
-  // The driver turns forces into motor torques by the pose: none by one that is not a number.
+  // The driver converts forces to motor torques with the pose: no force without a finite pose.
   apply(sample.X_DS.is_finite() ? wrench_D : haptics::Wrench{});
   api_.end_frame(handle_);
   take_errors(sample);
