@@ -23,7 +23,7 @@ constexpr std::string_view kRle = "1.2.840.10008.1.2.5";  ///< DICOM PS3.5, anne
 constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
 constexpr const char* kExportAgain = "export the series again, uncompressed";
 
-/// Numbers of a decimal string "a\b\c", as many as asked for or nothing.
+/// Numbers of a decimal string "a\b\c": exactly as many as requested, or empty.
 template <std::size_t N>
 std::optional<std::array<double, N>> decimals_of(const DicomHeader& header, std::uint32_t tag) {
   const std::string text = header.text(tag);
@@ -57,7 +57,7 @@ DicomSlice slice_of(const DicomHeader& header) {
     slice.position_P = Vec3((*p)[0], (*p)[1], (*p)[2]);
   if (const auto d = decimals_of<6>(header, dicom_tag(0x0020, 0x0037)))
     slice.directions_P = {Vec3((*d)[0], (*d)[1], (*d)[2]), Vec3((*d)[3], (*d)[4], (*d)[5])};
-  // DICOM names the distance between rows first.
+  // DICOM gives the distance between rows first.
   if (const auto s = decimals_of<2>(header, dicom_tag(0x0028, 0x0030))) slice.spacing_mm = {(*s)[1], (*s)[0]};
   if (const auto slope = decimals_of<1>(header, dicom_tag(0x0028, 0x1053))) slice.slope = (*slope)[0];
   if (const auto intercept = decimals_of<1>(header, dicom_tag(0x0028, 0x1052))) slice.intercept = (*intercept)[0];
@@ -69,7 +69,7 @@ DicomSlice slice_of(const DicomHeader& header) {
   return slice;
 }
 
-/// How the pixels are stored (PS3.3, C.7.6.3).
+/// Pixel encoding (PS3.3, C.7.6.3).
 struct PixelLayout {
   int bits_allocated = 16;
   int bits_stored = 16;
