@@ -61,13 +61,13 @@ class ServerSeat {
   std::vector<link::Reply> take_replies();                        ///< Only in kOn.
   const KnownScenes& scenes() const noexcept { return scenes_; }  ///< Of the server that is there now.
   void frame_drawn() { client_.frame_drawn(); }                   ///< See HapticClient.
-  /// The newest tick, whatever the state: where the device is while it is not ours.
+  /// The newest tick in any state, for the device pose without control.
   std::optional<telemetry::TickSample> newest() const { return client_.newest(); }
 
   const link::ClientView& view() const noexcept { return view_; }
   const std::string& endpoint() const noexcept { return endpoint_; }
-  int returns() const noexcept { return returns_; }  ///< Of a server that went away,
-  int stalls() const noexcept { return stalls_; }    ///< or that had stood still.
+  int returns() const noexcept { return returns_; }  ///< Number of reconnections.
+  int stalls() const noexcept { return stalls_; }    ///< Number of stalls of its loop.
   ServerFigures figures() const;
 
  private:
