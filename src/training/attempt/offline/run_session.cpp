@@ -29,7 +29,7 @@ Result<haptics::DevicePreset> find_device(const RunOptions& options) {
   return haptics::load_device_preset(data / "devices.toml", options.device);
 }
 
-/// One step of the device under the operator's hand and the force of the last tick.
+/// One step of the device with the operator's hand and the force of the last tick.
 void move_device(haptics::VirtualDeviceState& device, double mass_kg, const tasks::HandCommand& command,
                  const Vec3& force_P, const haptics::HapticScene& scene, double dt_s) noexcept {
   if (command.is_rigid) {
@@ -48,11 +48,11 @@ void move_device(haptics::VirtualDeviceState& device, double mass_kg, const task
   haptics::step_device(device, params, hold, force_P, scene.gravity_P, dt_s);
 }
 
-/// The scenes of an attempt: one, or in a replay one for each change of parameters.
+/// The scenes of an attempt: one, or in a replay one per change of parameters.
 class SceneSchedule {
  public:
   struct Entry {
-    std::size_t tick = 0;  ///< The first one that feels it.
+    std::size_t tick = 0;  ///< The first tick with it.
     std::shared_ptr<const haptics::HapticScene> scene;
     SceneParameters parameters;
   };
@@ -60,7 +60,7 @@ class SceneSchedule {
                                     const haptics::DevicePreset& device);
 
   const Entry& first() const noexcept { return entries_.front(); }
-  /// The scene of a tick; ticks are asked for in order.
+  /// The scene of a tick; ticks must be requested in order.
   const Entry& at(std::size_t tick) noexcept {
     while (now_ + 1 < entries_.size() && entries_[now_ + 1].tick <= tick) ++now_;
     return entries_[now_];
@@ -69,7 +69,7 @@ class SceneSchedule {
  private:
   Status add(const Case& the_case, const storage::SessionParameters& parameters, haptics::HapticOptions options,
              haptics::DeviceCapability device);
-  std::vector<Entry> entries_;  ///< Not empty, by tick.
+  std::vector<Entry> entries_;  ///< Not empty, sorted by tick.
   std::size_t now_ = 0;
 };
 
@@ -103,7 +103,7 @@ Status SceneSchedule::add(const Case& the_case, const storage::SessionParameters
   return {};
 }
 
-/// When a tick is, and how long after the last one: regular, or as recorded.
+/// Time of a tick and of the period before it: regular, or as recorded.
 class TickTimes {
  public:
   explicit TickTimes(const Performer& performer) : dt_s_(1.0 / performer.rate_hz), session_(performer.replayed.get()) {}
@@ -119,7 +119,7 @@ class TickTimes {
     const double step_s = time_s(tick) - time_s(tick - 1);
     return std::abs(step_s - dt_s_) < kRounding_s ? dt_s_ : std::clamp(step_s, kRounding_s, haptics::kMaxDt_s);
   }
-  /// The interruption that the tick ends; null: none.
+  /// The interruption that ends at the tick; null: none.
   const tasks::Interruption* interruption(std::size_t tick) const noexcept {
     if (session_ == nullptr) return nullptr;
     const auto found = std::ranges::find(session_->interruptions, time_s(tick), &tasks::Interruption::to_s);
@@ -136,7 +136,7 @@ class TickTimes {
   const storage::Session* session_;
 };
 
-/// The closed loop, until the operator is done. Gives how many ticks it took.
+/// The closed loop, until the operator has finished. Returns the number of ticks.
 Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, double mass_kg, AttemptRecord& record,
                             const Progress& progress) {
   const TickTimes times(performer);
@@ -155,7 +155,7 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     const haptics::HapticScene& scene = *now.scene;
     if (i == 0) device.X_PN = command.X_PN;
     const bool is_another_model = before != nullptr && before->scene->options.force_model != scene.options.force_model;
-    if (is_another_model) state = {};  // as a server does: the insertion begins anew
+    if (is_another_model) state = {};  // as in a server: the insertion restarts
     move_device(device, mass_kg, command, state.last.device_f_n, scene, view.dt_s);
     if (const tasks::Interruption* gap = times.interruption(i)) {
       if (gap->reason == tasks::kServerWasAway) state = {};
@@ -197,7 +197,7 @@ Result<RunResult> run_session(const Case& the_case, const RunOptions& given, con
                            to_string(scenes.first().scene->options.force_model), device.name,
                            scenes.first().parameters};
   const InterruptibleWork interruptible;
-  std::optional<UnfinishedOutput> unfinished;  // ends after the record, which still writes when it ends
+  std::optional<UnfinishedOutput> unfinished;  // declared before the record, whose destructor still writes
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, options, facts));
   unfinished.emplace(storage::session_files(options.session));
   const auto start = std::chrono::steady_clock::now();
