@@ -21,10 +21,10 @@ using detail::Role;
 
 constexpr double kStep_mm = 0.25;
 constexpr double kChunk_mm = 8.0;
-constexpr double kOnSkin_mm = 3.0;    ///< So near to the skin a path begins at it: a voxel or two.
-constexpr double kNotchShare = 0.25;  ///< Of the notch around its middle in which the target has to be.
+constexpr double kOnSkin_mm = 3.0;    ///< Distance from the skin at which a path may start: one or two voxels.
+constexpr double kNotchShare = 0.25;  ///< Part of the notch around its centre that must contain the target.
 
-/// Everything that a walk along the path meets.
+/// Collects all findings along the path.
 class Assessor {
  public:
   Assessor(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle, const Segment& line_P)
@@ -68,14 +68,14 @@ class Assessor {
     made_.entry_angle_deg = std::acos(cosine) * 180.0 / std::numbers::pi;
     if (made_.entry_angle_deg > task_.max_entry_angle_deg)
       add(PathFault::kGlancing, entry_P,
-          fmt::format("the needle meets the skin {:.0f}° off its normal; at most {:.0f}° are wanted",
-                      made_.entry_angle_deg, task_.max_entry_angle_deg));
+          fmt::format("the needle is {:.0f}° from the skin's normal; the limit is {:.0f}°", made_.entry_angle_deg,
+                      task_.max_entry_angle_deg));
     if (normal.y() > std::sin(task_.max_posterior_deg * std::numbers::pi / 180.0))
-      add(PathFault::kOutOfReach, entry_P, "the entry lies on the patient's back, out of reach");
+      add(PathFault::kOutOfReach, entry_P, "the entry is on the patient's back and not accessible");
     if (!task_.entry_zone) return;
     const double outside_mm = task_.entry_zone->distance_outside_mm(entry_P);
     if (outside_mm > 0.0)
-      add(PathFault::kOutsideZone, entry_P, fmt::format("the entry lies {:.0f} mm outside the entry zone", outside_mm));
+      add(PathFault::kOutsideZone, entry_P, fmt::format("the entry is {:.0f} mm outside the entry zone", outside_mm));
   }
 
   void look_at_length() {
@@ -108,7 +108,7 @@ class Assessor {
     }
     if (made_.path.organ_path_mm < task_.min_organ_path_mm)
       add(PathFault::kOrganPath, line_P_.b,
-          fmt::format("the path passes {:.0f} mm of {} before the target; at least {:.0f} mm are wanted",
+          fmt::format("the path passes through {:.0f} mm of {} before the target; the minimum is {:.0f} mm",
                       made_.path.organ_path_mm, task_.organ, task_.min_organ_path_mm));
   }
 
@@ -117,7 +117,7 @@ class Assessor {
     Vec3 where_P = Vec3::Zero();
   };
 
-  /// Every risk voxel within its margin, and 10 mm more, of one piece of the way.
+  /// Finds every risk voxel within its margin plus 10 mm of one piece of the path.
   void look_around(const Segment& piece, double radius_mm, std::array<Nearest, 256>& nearest) const {
     const volume::GridGeometry& geometry = patient_.labels.geometry;
     const detail::IndexBox box = detail::clipped(detail::united(detail::box_around(geometry, piece.a, radius_mm),
@@ -159,8 +159,9 @@ class Assessor {
       if (is_crossed_[label.id] || away_mm >= risk->margin_mm) continue;
       const Vec3& where_P = nearest[label.id].where_P;
       add(PathFault::kMargin, where_P,
-          fmt::format("the path passes {} ({}) at {:.1f} mm, {:.0f} mm below the skin; {:.0f} mm are wanted",
-                      label.name, label.tissue, away_mm, std::max(0.0, depth_of(where_P)), risk->margin_mm),
+          fmt::format(
+              "the path passes {} ({}) at {:.1f} mm, {:.0f} mm below the skin; the required margin is {:.0f} mm",
+              label.name, label.tissue, away_mm, std::max(0.0, depth_of(where_P)), risk->margin_mm),
           label.name, away_mm);
     }
   }
@@ -171,7 +172,7 @@ class Assessor {
       const double miss_mm = (reached_P - *task_.target_P).norm();
       if (miss_mm > task_.target_tolerance_mm)
         add(PathFault::kOffTarget, reached_P,
-            fmt::format("what the needle reaches lies {:.0f} mm off the target", miss_mm));
+            fmt::format("the needle's end position is {:.0f} mm from the target", miss_mm));
       return;
     }
     const bool wants_organ = is_parenchymal(task_, patient_);
@@ -182,7 +183,7 @@ class Assessor {
     }
     const anatomy::Label* label = anatomy::find_label(patient_, reached_P);
     add(PathFault::kOffTarget, reached_P,
-        fmt::format("the needle reaches {}, not the target", label != nullptr ? label->name : "nothing labelled"));
+        fmt::format("the needle ends in {}, not in the target", label != nullptr ? label->name : "nothing labelled"));
   }
 
   const Task& task_;
@@ -245,7 +246,7 @@ std::optional<Vec3> find_nearest_skin(const anatomy::VirtualPatient& patient, co
     if (std::abs(distance) < kClose_mm) return q_P;
     const Vec3 normal = detail::skin_normal(patient.skin_distance_mm, q_P);
     if (!(normal.norm() > 0.0)) return std::nullopt;
-    q_P -= 0.8 * distance * normal;  // damped: at edges of the skin the normal turns
+    q_P -= 0.8 * distance * normal;  // damped: the normal changes abruptly at edges of the skin
   }
   return std::nullopt;
 }

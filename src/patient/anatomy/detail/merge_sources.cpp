@@ -14,8 +14,8 @@
 namespace trocar::anatomy::detail {
 namespace {
 
-constexpr double kMinOverlap = 0.05;         // of the smaller grid; below, the files are of different scans
-constexpr std::size_t kMaxStructures = 245;  // of 255 label values, the rest is for what is found from HU
+constexpr double kMinOverlap = 0.05;         // of the smaller grid; below, the files belong to different scans
+constexpr std::size_t kMaxStructures = 245;  // of 255 label values; the others are for labels from HU
 constexpr std::size_t kBlock = 1 << 16;
 
 std::array<std::size_t, 256> count_values(const volume::LabelGrid& labels) {
@@ -52,12 +52,12 @@ struct UnknownLabels {
   Status status() const {
     if (files.empty()) return {};
     std::string what;
-    if (!names.empty()) what = fmt::format("not known as names of structures: {}", fmt::join(names, ", "));
+    if (!names.empty()) what = fmt::format("unknown structure names: {}", fmt::join(names, ", "));
     if (!values.empty())
       what += fmt::format("{}label values without a name: {}", what.empty() ? "" : "; ", fmt::join(values, ", "));
     return fail(
         what, fmt::format("{}", fmt::join(files, ", ")),
-        "give them names of TotalSegmentator, or leave them out with ignore = [...], in a label map (--label-map)");
+        "assign TotalSegmentator names, or ignore the labels with ignore = [...], in a label map (--label-map)");
   }
 };
 
@@ -95,7 +95,7 @@ class Merger {
       const auto v = static_cast<std::uint8_t>(value);
       if (v == 0 || is_left_out(name)) continue;
       if (counts[v] == 0) {
-        // A label map names more than a scan shows; a file of its own that is empty is worth a word.
+        // A label map can name more structures than a scan contains; an empty mask file causes a warning.
         if (source.names.size() == 1) empty_masks.push_back(name);
         continue;
       }
@@ -104,7 +104,8 @@ class Merger {
         continue;
       }
       if (merged_.table.labels.size() == kMaxStructures)
-        return fail(fmt::format("more than {} structures", kMaxStructures), source.file, "leave some out");
+        return fail(fmt::format("more than {} structures", kMaxStructures), source.file,
+                    "leave some out with a label map");
       id_of[v] = find_or_add(name);
     }
     paint(labels, id_of);

@@ -18,7 +18,7 @@ constexpr volume::Index3 kDefaultSize{380, 300, 240};
 constexpr std::int64_t kLeastSize = 16;
 constexpr std::int64_t kGreatestSize = 1024;
 
-/// The phantom's box divided into voxels; the box is the same for every size.
+/// The phantom's box divided into voxels; the box is the same for every resolution.
 volume::GridGeometry box_geometry(const PhantomResolution& resolution) {
   volume::GridGeometry geometry;
   const Vec3 extent = 2.0 * Vec3(kHalfWidth, kHalfDepth, kHalfHeight);
@@ -57,7 +57,7 @@ std::vector<Landmark> landmarks(const Anatomy& anatomy) {
 Result<VirtualPatient> generate_abdomen(const PhantomInfo& info, std::uint64_t seed,
                                         const PhantomResolution& resolution, const Progress& progress) {
   const volume::GridGeometry geometry = box_geometry(resolution);
-  report(progress, "shaping the anatomy", 0.0);
+  report(progress, "generating the anatomy", 0.0);
   Anatomy anatomy(seed);
   TROCAR_TRY(BiopsyPlan plan, build_abdomen(anatomy));
 
@@ -96,7 +96,7 @@ Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t see
   if (found == patients.end()) {
     std::string names;
     for (const PhantomInfo& patient : patients) names += (names.empty() ? "" : ", ") + patient.name;
-    return fail_usage("no embedded patient is called \"" + std::string(name) + "\"", {}, "there are: " + names);
+    return fail_usage("unknown embedded patient \"" + std::string(name) + "\"", {}, "there are: " + names);
   }
   TROCAR_TRY_STATUS(check_resolution(resolution));
   if (found != patients.begin()) return make_layered_scene(name, seed, resolution);

@@ -11,13 +11,13 @@
 namespace trocar::anatomy {
 namespace {
 
-// All numbers are assumed: far from what CTs of a trunk show (a fifth and more of the voxels is air, nine tenths of the
-// rest soft tissue) and from what other numbers show (next to none).
+// All numbers are assumed, with a large margin: in CTs of a trunk, a fifth or more of the voxels is air and nine tenths
+// of the rest is soft tissue; in other data there are almost none.
 constexpr int kAirFrom = -1200, kAirBelow = -300;
 constexpr int kSoftFrom = -250, kSoftBelow = 300;
 constexpr double kLeastAir = 0.001;  ///< Of all voxels.
-constexpr double kLeastSoft = 0.4;   ///< Of the voxels above air,
-constexpr double kLeastBody = 0.02;  ///< and of all voxels.
+constexpr double kLeastSoft = 0.4;   ///< Of the voxels above air.
+constexpr double kLeastBody = 0.02;  ///< Of all voxels.
 
 constexpr const char* kAdvice =
     "give a CT in Hounsfield units that shows the skin and air around it, or the missing scale with --rescale "
@@ -56,12 +56,13 @@ Status apply_rescale(const Rescale& rescale, volume::CtGrid& ct) {
   constexpr double kMaxSlope = 1e4, kMaxIntercept = 1e6;
   const double slope = std::abs(rescale.slope);
   if (!(slope >= 1.0 / kMaxSlope && slope <= kMaxSlope) || !(std::abs(rescale.intercept) <= kMaxIntercept))
-    return fail_usage("the scale is not usable", fmt::format("--rescale {},{}", rescale.slope, rescale.intercept),
+    return fail_usage("the rescale values are not usable",
+                      fmt::format("--rescale {},{}", rescale.slope, rescale.intercept),
                       "give SLOPE,INTERCEPT such as 1,-1024");
   for (std::int16_t& voxel : ct.voxels) {
     const double hu = rescale.slope * voxel + rescale.intercept;
     if (hu >= 32767.5)
-      return fail_usage(fmt::format("the scale makes {:.0f} HU of the stored number {}", hu, voxel),
+      return fail_usage(fmt::format("the rescale values convert the stored number {} to {:.0f} HU", voxel, hu),
                         fmt::format("--rescale {},{}", rescale.slope, rescale.intercept), "check slope and intercept");
     voxel = static_cast<std::int16_t>(std::lround(std::max(hu, -32768.0)));
   }

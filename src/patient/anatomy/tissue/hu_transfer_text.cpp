@@ -9,7 +9,7 @@
 namespace trocar::anatomy {
 namespace {
 
-/// How far every value of an assumed curve may be off, as factors around 1.
+/// Uncertainty of every value of an assumed curve, as factors around 1.
 constexpr std::string_view kFactors = "factors";
 constexpr config::Range kFactorRange{0.01, 100.0};
 
@@ -24,14 +24,14 @@ Status read_knots(const config::TomlTable& section, HuTransfer& transfer) {
                 fmt::format("give 2 to {}", HuTransfer::kMaxKnots));
   for (std::size_t n = 1; n < knots.size(); ++n)
     if (!(knots[n] > knots[n - 1]))
-      return fail(fmt::format("hu must rise, {} follows {}", knots[n], knots[n - 1]), section.where(),
+      return fail(fmt::format("hu must increase: {} follows {}", knots[n], knots[n - 1]), section.where(),
                   "order the knots by HU");
   std::copy(knots.begin(), knots.end(), transfer.hu.begin());
   transfer.knot_count = knots.size();
   return {};
 }
 
-/// KEY = {values = [one a knot], source = "…", factors = [0.5, 2.0]}.
+/// KEY = {values = [one per knot], source = "…", factors = [0.5, 2.0]}.
 Status read_curve(const config::TomlTable& section, const TissueField<HuLaw>& field, TissueTable& table) {
   HuTransfer& transfer = table.transfer;
   TROCAR_TRY(const config::TomlTable entry, section.table(field.name));
@@ -53,7 +53,7 @@ Status read_curve(const config::TomlTable& section, const TissueField<HuLaw>& fi
     provenance.low = factors[0];
     provenance.high = factors[1];
   } else if (provenance.source.starts_with("assumed")) {
-    return fail("an assumed curve needs the factors by which it may be off", entry.where(), "add factors = [0.5, 2]");
+    return fail("an assumed curve must give its uncertainty factors", entry.where(), "add factors = [0.5, 2]");
   }
   table.provenance[path_of(field.name)] = std::move(provenance);
   return {};

@@ -36,18 +36,18 @@ Status read_number(const config::TomlTable& row, std::string_view key, config::R
   return {};
 }
 
-/// puncture_force_n = {never = true, source = "…"}; nothing when the entry is an ordinary number.
+/// puncture_force_n = {never = true, source = "…"}; empty if the entry is an ordinary number.
 Result<std::optional<std::string>> read_never(const config::TomlTable& row, std::string_view key) {
   const auto entry = row.table(key);
   if (!entry || !entry->has("never")) return std::optional<std::string>();
   TROCAR_TRY_STATUS(entry->check_keys({"never", "source"}));
   TROCAR_TRY(const bool never, entry->boolean_or("never", false));
   TROCAR_TRY(std::string source, entry->string("source"));
-  if (!never) return fail("never can only be true", entry->where(), "give a value instead");
+  if (!never) return fail("never must be true", entry->where(), "give a value instead");
   return std::optional(std::move(source));
 }
 
-/// Reads the fields of a row; in a profile only those that stand there.
+/// Reads the fields of a row; in a profile only the present ones.
 template <class T>
 Status read_fields(const config::TomlTable& row, std::span<const TissueField<T>> fields, const std::string& path,
                    bool are_required, T& entry, TissueTable& table) {
@@ -74,8 +74,8 @@ std::vector<std::string_view> field_names(std::span<const TissueField<T>> fields
   return names;
 }
 
-/// The fields of a tissue that a row must have. Sessions that were stored before tissues had a Young's modulus still
-/// load: what is missing takes the default, and says so.
+/// The required fields of a tissue. Sessions stored before tissues had a Young's modulus can still be loaded: missing
+/// fields get the default, with a corresponding source.
 std::span<const TissueField<TissueParams>> required_fields(const config::TomlTable& row, bool is_stored,
                                                            const std::string& path, TissueTable& table) {
   const std::span<const TissueField<TissueParams>> fields = kTissueFields;
@@ -112,7 +112,7 @@ Status read_tissues(const config::TomlTable& document, TissueTable& table) {
   const bool is_stored = document.has("applied_profile");
   for (const std::string& name : rows.keys()) {
     TROCAR_TRY(const config::TomlTable row, rows.table(name));
-    if (name == "air") return fail("air is built in and gives no force", row.where(), "remove it");
+    if (name == "air") return fail("air is built in and has no force", row.where(), "remove it");
     TROCAR_TRY_STATUS(row.check_keys(known));
     TissueParams tissue;
     tissue.name = name;

@@ -22,14 +22,14 @@
 namespace trocar::ultrasound {
 namespace {
 
-/// Two servers' loops, the window and the drawing.
+/// Cores for two servers' loops, the window and the drawing.
 constexpr int kCoresOfOthers = 3;
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The calling thread gives way to others. What is not granted is left.
+/// Lowers the priority of the calling thread, as far as permitted.
 void give_way(int nice) {
 #ifdef __linux__
   const auto thread = static_cast<id_t>(::syscall(SYS_gettid));
@@ -45,7 +45,7 @@ bool is_finite(const ScanRequest& request) noexcept {
                      [](const Vec3& p_P) { return p_P.allFinite(); });
 }
 
-/// What the window wants of the loop.
+/// The window's requests for the cine loop.
 struct CineWish {
   bool is_frozen = false;
   bool is_playing = false;
@@ -58,7 +58,7 @@ struct CineWish {
 struct LiveScanner::Impl {
   explicit Impl(const LiveScannerOptions& how) : options(how), schedule(how.pace) {}
 
-  // Shared, under the mutex.
+  // Shared, protected by the mutex.
   mutable std::mutex mutex;
   std::condition_variable wake;
   bool is_ending = false;
@@ -70,18 +70,18 @@ struct LiveScanner::Impl {
   CineState state;
   std::shared_ptr<const ScanPicture> picture;
 
-  // The worker's own.
+  // Used by the worker only.
   LiveScannerOptions options;
   std::optional<PictureMaker> maker;
   ScanSchedule schedule;
-  std::optional<ScanRequest> kept_request;  ///< With which the frozen picture was shown.
+  std::optional<ScanRequest> kept_request;  ///< Request for which the frozen image was drawn.
   int kept_position = -1;
   double played_s = 0.0;
   std::uint64_t number = 0;
 
   std::thread thread;
 
-  /// What the worker takes at once.
+  /// Task of the worker.
   struct Task {
     std::uint64_t opened = 0;
     ScanRequest request;
@@ -110,7 +110,7 @@ std::optional<LiveScanner::Impl::Task> LiveScanner::Impl::next_task() {
   Task task{opened, *wanted, wish};
   wish.steps = 0;
   wish.index.reset();
-  lock.unlock();  // before the old maker's buffers go
+  lock.unlock();  // before the buffers of the old maker are released
   return task;
 }
 
@@ -166,7 +166,7 @@ void LiveScanner::Impl::publish(const Task& task, ScanPicture made, double begun
   const CineLoop& cine = *maker->cine();
   auto shared = std::make_shared<const ScanPicture>(std::move(made));
   const std::lock_guard lock(mutex);
-  if (task.opened != opened) return;  // of a patient who has left
+  if (task.opened != opened) return;  // of the previous patient
   picture.swap(shared);
   state.position = cine.position();
   state.size = cine.size();

@@ -6,18 +6,18 @@
 namespace trocar::ultrasound {
 namespace {
 
-/// Nominal work of a frame, in samples: of one whatever its detail (contact, scan conversion), for every sample, and
-/// for each plane and look of it. From frames of the embedded abdomen; what is off is learned.
+/// Nominal work of a frame, in samples: a constant part (contact, scan conversion), per sample, and per plane and
+/// compounding angle. From frames of the embedded abdomen; deviations are learned.
 constexpr double kWorkOfFrame = 1.3e6, kWorkOfSample = 1.0, kWorkOfPlane = 1.0, kWorkOfLook = 0.6;
 
-/// Parts of a new measurement that go to the machine's load and to the detail's own work. The first is larger: servers
-/// and windows come and go, what a detail costs does not.
+/// Fractions of a new measurement assigned to the machine's load and to the detail's own work. The first is larger:
+/// servers and windows start and end, the cost of a detail is constant.
 constexpr double kLoadShare = 0.5, kCorrectionShare = 0.1;
-/// What was learned of details not in use fades with each frame, so that they are tried again.
+/// Learned values of unused details decay with each frame, so that they are tried again.
 constexpr double kMemory = 0.985;
-/// One frame that was interrupted for long says little.
+/// Limit for a single interrupted frame.
 constexpr double kMostSurprise = 3.0;
-/// A finer detail is begun only where it leaves so much of the pace, lest it alternates.
+/// A finer detail starts only if it leaves this margin in the time budget, to avoid alternation.
 constexpr double kRoomToRefine = 0.8;
 
 std::size_t at(ScanDetail detail) noexcept {
@@ -40,7 +40,7 @@ Acquisition with_detail(const Acquisition& full, ScanDetail detail) noexcept {
   a.samples = std::max(64, is_middle ? full.samples * 3 / 4 : full.samples / 2);
   a.lines = std::min(a.lines, full.lines);
   a.samples = std::min(a.samples, full.samples);
-  // A single plane makes borders too bright and sharp, and saves little.
+  // A single plane makes borders too bright and sharp, and saves little time.
   a.planes = std::min(full.planes, 3);
   a.looks = std::min(full.looks, is_middle ? 2 : 1);
   return a;

@@ -14,7 +14,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kMaxVoxels = 256e6;  ///< 2.5 GB while it is made.
+constexpr double kMaxVoxels = 256e6;  ///< 2.5 GB during the reconstruction.
 constexpr std::size_t kGrain = 1 << 16;
 
 bool is_within(double value, double low, double high) {
@@ -54,7 +54,7 @@ Result<std::vector<detail::PlacedFrame>> place_frames(const TrackedSequence& seq
                                                       const TrackedSequence::Transforms& calibration,
                                                       const FreehandOptions& options) {
   std::vector<detail::PlacedFrame> placed;
-  std::string reason = "no picture of the sequence is marked as valid";
+  std::string reason = "no frame of the sequence is marked as valid";
   for (std::size_t n = 0; n < sequence.frames.size(); ++n) {
     const TrackedSequence::Frame& frame = sequence.frames[n];
     if (!frame.is_valid) continue;
@@ -73,7 +73,7 @@ Result<std::vector<detail::PlacedFrame>> place_frames(const TrackedSequence& seq
   return placed;
 }
 
-/// Voxels along one axis: the last is the last that a pixel can meet, the nearest or the one beyond.
+/// Voxels along one axis: the last one that a pixel can reach, by nearest neighbour or interpolation.
 double voxels_along(double length_mm, double spacing_mm, FreehandInterpolation interpolation) {
   const double last = length_mm / spacing_mm;
   return 1.0 + (interpolation == FreehandInterpolation::kLinear ? std::ceil(last) : std::floor(last + 0.5));
@@ -104,7 +104,7 @@ Result<FreehandVolume> reconstruct_freehand(const TrackedSequence& sequence,
   TROCAR_TRY_STATUS(check(sequence, options));
   TROCAR_TRY(const auto frames, place_frames(sequence, calibration, options));
   const auto runs = detail::pixel_runs(sequence, options);
-  if (runs.empty()) return fail("no pixel is left by the clip region", {}, "check the clip rectangle and the fan");
+  if (runs.empty()) return fail("the clip region contains no pixels", {}, "check the clip rectangle and the fan");
   TROCAR_TRY(const volume::GridGeometry grid,
              lay_grid(detail::extent_of(frames, detail::box_of(sequence, runs, options)), options));
 

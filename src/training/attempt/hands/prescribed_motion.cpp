@@ -6,7 +6,7 @@
 namespace trocar::attempt {
 namespace {
 
-/// 0 at the skin, 1 at the path's end, without a step in speed.
+/// 0 at the skin, 1 at the path's end, with continuous speed.
 double share_of_drift(const PrescribedMotion& motion, double s_mm) noexcept {
   const double x = std::clamp(s_mm / std::max(motion.line_P.length_mm(), 1e-9), 0.0, 1.0);
   return x * x * (3.0 - 2.0 * x);

@@ -65,7 +65,7 @@ AttemptView LiveAttempt::view() const {
   const AttemptNews& news = impl_->desk.news;
   AttemptView view =
       aged(news.view, std::chrono::duration<double>(std::chrono::steady_clock::now() - news.told).count());
-  // A second press acts against the first, even where the thread has not taken that one yet.
+  // A second press reverses the first, even before the thread has processed it.
   view.are_forces_stopped = impl_->desk.wishes.stopped.value_or(view.are_forces_stopped);
   return view;
 }

@@ -24,18 +24,18 @@ using State = ServerSeat::State;
 
 constexpr std::chrono::milliseconds kBetweenLooks{1};
 constexpr double kSameRate_hz = 0.5;
-/// Ticks that are older when they come were not answered in time: a server's hand stands still when it hears nothing
-/// for so long, and the operator's must not have moved on meanwhile.
+/// Older ticks arrive too late for a reply: a server's hand stops without messages for this time, and the operator's
+/// must not have moved on meanwhile.
 constexpr double kAnswered_s = 0.05;
 
 Status check_interruption() {
   return is_interrupted() ? tl::unexpected(interruption_error("trocar run")) : Status{};
 }
 
-/// The servers of an attempt: the needle's, and perhaps the probe's.
+/// The servers of an attempt: the needle's, and optionally the probe's.
 class LiveServers {
  public:
-  /// Connected, told apart, and holding nothing yet.
+  /// Connected and identified, without a scene.
   static Result<LiveServers> connect(const RunOptions& options, const RealtimeOptions& realtime, double own_rate_hz,
                                      const Progress& progress);
 
@@ -45,16 +45,16 @@ class LiveServers {
   /// Waits until all of them have reached that state.
   Status wait_for(State state, const Progress& progress);
 
-  /// One look at all. Errors: what befalls the needle's server; without the probe's the attempt goes on.
+  /// Advances all of them. Errors: those of the needle's server; without the probe's server the attempt continues.
   Result<State> look();
-  /// Moves the transducer's hand on and records where it was felt.
+  /// Moves the transducer's hand and records its virtual pose.
   Status move_probe(const ProbeHand& hand, LiveOperator& live);
   void stop();
   void tell(RunResult& result);
 
  private:
   std::optional<OwnServers> own_;
-  std::vector<ServerSeat> needle_, probe_;  ///< One, one at most.
+  std::vector<ServerSeat> needle_, probe_;  ///< At most one.
   std::vector<ServerFigures> lost_;
   std::vector<std::string> warnings_;
   std::optional<double> probe_on_s_;
@@ -91,12 +91,12 @@ Result<LiveServers> LiveServers::connect(const RunOptions& options, const Realti
     std::vector<ServerSeat>* place = tool == "needle" ? &servers.needle_ : tool == "probe" ? &servers.probe_ : nullptr;
     if (place == nullptr || !place->empty())
       return fail(
-          fmt::format("{} server of the {} has no place in an attempt", place == nullptr ? "the" : "a second", tool),
+          fmt::format("{} server of the {} is not needed for an attempt", place == nullptr ? "the" : "a second", tool),
           seat.endpoint(), "name one of the needle and at most one of the probe");
     place->push_back(std::move(seat));
   }
   if (servers.needle_.empty())
-    return fail("no server of the needle among them", endpoints.front(), "start trocar-hapticd --tool needle");
+    return fail("no needle server among the endpoints", endpoints.front(), "start trocar-hapticd --tool needle");
   return servers;
 }
 
@@ -124,7 +124,7 @@ Result<State> LiveServers::look() {
       if (const auto state = probe_.front().look(); !state) probe = tl::unexpected(state.error());
     }
     if (!probe) {
-      warnings_.push_back("the attempt goes on without the probe: " + probe.error().text());
+      warnings_.push_back("the attempt continues without the probe: " + probe.error().text());
       lost_.push_back(probe_.front().figures());
       probe_.clear();
     }
@@ -163,7 +163,7 @@ void LiveServers::tell(RunResult& result) {
   result.warnings.insert(result.warnings.begin(), warnings_.begin(), warnings_.end());
 }
 
-/// Where the needle's hand begins, and the transducer's.
+/// Initial hand poses of needle and transducer.
 SeatRequest needle_request(const Case& the_case, const SceneChoice& choice, const tasks::HandCommand& first,
                            const Performer& performer) {
   SeatRequest request{scene_request(the_case, choice), hand_target(first, 0.0)};
@@ -182,8 +182,8 @@ SceneParameters parameters_of(const ServerSeat& needle) {
   return newest == nullptr ? SceneParameters{} : *newest;
 }
 
-/// The changes of parameters of a replayed session, sent when as many ticks were made as before them. The server says
-/// from which tick on it felt them.
+/// The changes of parameters of a replayed session, sent after the same number of ticks. The server reports the first
+/// tick with them.
 class ReplayedChanges {
  public:
   explicit ReplayedChanges(const Performer& performer) : parameters_(performer.parameters) {}
@@ -198,16 +198,16 @@ class ReplayedChanges {
 
  private:
   std::span<const storage::SessionParameters> parameters_;
-  std::size_t next_ = 1;  ///< The first ones are the scene's.
+  std::size_t next_ = 1;  ///< The first ones are those of the scene.
 };
 
-/// The closed loop through the servers, until the operator is done.
+/// The closed loop through the servers, until the operator has finished.
 Status perform(LiveServers& servers, LiveOperator& live, AttemptRecord& record, ReplayedChanges changes,
                const ProbeHand& probe_hand, const Progress& progress) {
   bool was_on = false;
   while (true) {
     TROCAR_TRY_STATUS(check_interruption());
-    // Ticks first: when a look finds the server changed, all of the old one's are already taken.
+    // Ticks first: when look() detects a change of the server, all ticks of the old one have been taken.
     ServerSeat& needle = servers.needle();
     const std::vector<link::NumberedSample> samples = needle.take_samples();
     if (!samples.empty() && !was_on) live.begin(needle.view().clock_offset_s);
@@ -240,12 +240,13 @@ void warn_of_gaps(const LiveOperator& live, RunResult& result) {
     result.warnings.push_back(
         fmt::format("{} ticks of the needle did not arrive: the session has gaps there", result.ticks_missing));
   if (live.paused_s() > 0.0)
-    result.warnings.push_back(fmt::format(
-        "the needle's server was away: {:.1f} s are missing from the session, and the needle was resumed where it was",
-        live.paused_s()));
+    result.warnings.push_back(
+        fmt::format("the needle server was unavailable: {:.1f} s are missing in the session, and the needle resumed at "
+                    "its last pose",
+                    live.paused_s()));
   if (live.unseen_s() > 0.0)
     result.warnings.push_back(
-        fmt::format("this program stood still for {:.2f} s in all, and the operator with it", live.unseen_s()));
+        fmt::format("the computer was too busy: the attempt was paused for {:.2f} s in total", live.unseen_s()));
 }
 
 }  // namespace
@@ -259,7 +260,7 @@ Status check_realtime(const RealtimeOptions& options) {
       return fail_usage("a server on tcp:// needs keys", text, "give --keys and --server-key, or use ipc://");
   }
   if (options.endpoints.size() == 2 && options.endpoints[0] == options.endpoints[1])
-    return fail_usage("the same server twice", options.endpoints[0], "name the needle's and the probe's");
+    return fail_usage("the same server was given twice", options.endpoints[0], "name the needle's and the probe's");
   return {};
 }
 

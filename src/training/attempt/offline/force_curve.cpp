@@ -29,7 +29,7 @@ std::vector<CurvePoint> force_curve(const haptics::HapticScene& scene, const Pre
 }
 
 std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, const anatomy::TissueTable& tissues) {
-  // The record may name the puncture a tick or two after the force was highest.
+  // The record may name the puncture one or two ticks after the maximum of the force.
   constexpr std::size_t kPeakWindow = 5;
   std::vector<std::size_t> punctures;
   for (std::size_t i = 0; i < curve.size(); ++i)

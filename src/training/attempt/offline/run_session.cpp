@@ -30,7 +30,7 @@ Result<haptics::DevicePreset> find_device(const RunOptions& options) {
   return haptics::load_device_preset(data / "devices.toml", options.device);
 }
 
-/// One step of the device under the operator's hand and the force of the last tick.
+/// One step of the device with the operator's hand and the force of the last tick.
 void move_device(haptics::VirtualDeviceState& device, double mass_kg, const tasks::HandCommand& command,
                  const Vec3& force_P, const haptics::HapticScene& scene, double dt_s) noexcept {
   if (command.is_rigid) {
@@ -49,11 +49,11 @@ void move_device(haptics::VirtualDeviceState& device, double mass_kg, const task
   haptics::step_device(device, params, hold, force_P, scene.gravity_P, dt_s);
 }
 
-/// The scenes of an attempt: one, or in a replay one for each change of parameters.
+/// The scenes of an attempt: one, or in a replay one per change of parameters.
 class SceneSchedule {
  public:
   struct Entry {
-    std::size_t tick = 0;  ///< The first one that feels it.
+    std::size_t tick = 0;  ///< The first tick with it.
     std::shared_ptr<const haptics::HapticScene> scene;
     SceneParameters parameters;
   };
@@ -61,7 +61,7 @@ class SceneSchedule {
                                     const haptics::DevicePreset& device);
 
   const Entry& first() const noexcept { return entries_.front(); }
-  /// The scene of a tick; ticks are asked for in order.
+  /// The scene of a tick; ticks must be requested in order.
   const Entry& at(std::size_t tick) noexcept {
     while (now_ + 1 < entries_.size() && entries_[now_ + 1].tick <= tick) ++now_;
     return entries_[now_];
@@ -70,7 +70,7 @@ class SceneSchedule {
  private:
   Status add(const Case& the_case, const storage::SessionParameters& parameters, haptics::HapticOptions options,
              haptics::DeviceCapability device);
-  std::vector<Entry> entries_;  ///< Not empty, by tick.
+  std::vector<Entry> entries_;  ///< Not empty, sorted by tick.
   std::size_t now_ = 0;
 };
 
@@ -128,7 +128,7 @@ class RecordedTicks {
     const telemetry::ToolPose tool{sample.device_rotation_wxyz, sample.device_mm};
     return tool.is_valid() ? tool : telemetry::to_tool_pose(telemetry::device_pose(sample));
   }
-  /// The interruption that the tick ends; null: none.
+  /// The interruption that ends at the tick; null: none.
   const tasks::Interruption* interruption(std::size_t tick) const noexcept {
     if (session_ == nullptr) return nullptr;
     const auto found = std::ranges::find(session_->interruptions, time_s(tick), &tasks::Interruption::to_s);
@@ -145,7 +145,7 @@ class RecordedTicks {
   const storage::Session* session_;
 };
 
-/// The closed loop, until the operator is done. Gives how many ticks it took.
+/// The closed loop, until the operator has finished. Returns the number of ticks.
 Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, double mass_kg, AttemptRecord& record,
                             const Progress& progress) {
   const RecordedTicks recorded(performer);
@@ -164,7 +164,7 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     const haptics::HapticScene& scene = *now.scene;
     if (i == 0) device.X_PN = command.X_PN;
     const bool is_another_model = before != nullptr && before->scene->options.force_model != scene.options.force_model;
-    if (is_another_model) state = {};  // as a server does: the insertion begins anew
+    if (is_another_model) state = {};  // as in a server: the insertion restarts
     move_device(device, mass_kg, command, state.last.device_f_n, scene, view.dt_s);
     if (const tasks::Interruption* gap = recorded.interruption(i)) {
       if (gap->reason == tasks::kServerWasAway) state = {};
@@ -206,7 +206,7 @@ Result<RunResult> run_session(const Case& the_case, const RunOptions& given, con
                            to_string(scenes.first().scene->options.force_model), device.name,
                            scenes.first().parameters};
   const InterruptibleWork interruptible;
-  std::optional<UnfinishedOutput> unfinished;  // ends after the record, which still writes when it ends
+  std::optional<UnfinishedOutput> unfinished;  // declared before the record, whose destructor still writes
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, options, facts));
   unfinished.emplace(storage::session_files(options.session));
   const auto start = std::chrono::steady_clock::now();

@@ -44,7 +44,7 @@ storage::SessionInfo describe(const Case& the_case, const RunOptions& options, c
   return info;
 }
 
-/// What differs from `before`: numbers of tissues, then options.
+/// Differences from `before`: numbers of tissues, then options.
 std::vector<std::string> changed(const anatomy::TissueTable& before, const std::vector<std::string>& options_before,
                                  const anatomy::TissueTable& now, const std::vector<std::string>& options) {
   std::vector<std::string> settings = anatomy::changed_settings(before, now);
@@ -157,7 +157,8 @@ RunResult AttemptRecord::score() {
   result.simulated_s = samples_.empty() ? 0.0 : samples_.back().time_s;
   result.active_s = tasks::active_time_s(0.0, result.simulated_s, interruptions_);
   if (has_lost_scene_ || !unknown_.empty())
-    result.warnings.push_back("the server did not tell the parameters of some ticks: the session lacks a change");
+    result.warnings.push_back(
+        "the server did not report the parameters of some ticks: a change is missing in the session");
   return result;
 }
 

@@ -12,7 +12,7 @@
 namespace trocar::attempt {
 namespace {
 
-/// The label behind an event, by its id in the session.
+/// The label of an event, by its id in the session.
 const anatomy::Label* find_entered(const OpenCase& open, const telemetry::TickEvent& event) {
   if (event.kind != telemetry::EventKind::kEnter) return nullptr;
   for (const anatomy::Label& label : open.the_case.patient->label_table.labels)
@@ -30,7 +30,7 @@ Result<AttemptReplay> AttemptReplay::load(const std::filesystem::path& path, std
 }
 
 Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_ptr<const OpenCase> open) {
-  if (session.samples.empty()) return fail("the attempt was cut off before its first tick", {}, "start another one");
+  if (session.samples.empty()) return fail("the attempt ended before its first tick", {}, "start another one");
   if (session.info.patient_hash != open->the_case.patient->content_hash)
     return fail("the session is of another patient than the case", {}, "open that patient first");
   const bool was_cut_off = !session.outcome.has_value();
@@ -104,8 +104,8 @@ void AttemptReplay::find_moments() {
   if (shot_) moments_.push_back({shot_->time_s, Kind::kFired, shot_words(*shot_)});
 }
 
-/// What was at risk comes first; then where the needle was farthest beside the path in the body; then the greatest
-/// force. A needle that met nothing has no worst moment.
+/// Contact with a risk structure comes first; then the largest distance of the needle from the path in the body; then
+/// the largest force. A needle without contact has no worst moment.
 void AttemptReplay::find_worst() {
   const auto risk = std::find_if(moments_.begin(), moments_.end(),
                                  [](const ReplayMoment& m) { return m.kind == ReplayMoment::Kind::kRisk; });
@@ -126,7 +126,7 @@ void AttemptReplay::find_worst() {
     farthest_s = sample.time_s;
   }
   if (farthest_mm >= 0.0) {
-    worst_ = {farthest_s, ReplayMoment::Kind::kWorst, fmt::format("{:.1f} mm beside the planned path", farthest_mm)};
+    worst_ = {farthest_s, ReplayMoment::Kind::kWorst, fmt::format("{:.1f} mm from the planned path", farthest_mm)};
     return;
   }
   constexpr double kFelt_n = 0.05;  // rounds to 0.1 N
@@ -136,7 +136,7 @@ void AttemptReplay::find_worst() {
                                           });
   if (telemetry::axial_resistance_n(*strongest) < kFelt_n) return;
   worst_ = {strongest->time_s, ReplayMoment::Kind::kWorst,
-            fmt::format("{:.1f} N, and the skin was not pierced", telemetry::axial_resistance_n(*strongest))};
+            fmt::format("{:.1f} N without piercing the skin", telemetry::axial_resistance_n(*strongest))};
 }
 
 }  // namespace trocar::attempt

@@ -14,14 +14,14 @@ using State = ServerSeat::State;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPlaceAgain{20}, kResetAgain{200};
-constexpr double kLongestLook_s = 0.05;  // a longer hole between two looks is this program's own
-/// A client that went away without a word keeps control for so long.
+constexpr double kLongestLook_s = 0.05;  // a longer gap between two calls is caused by this program itself
+/// A client that disconnects without Goodbye keeps control for this time.
 constexpr double kControlPatience_s = link::kControlLost_s + 1.0;
 constexpr double kSagging_mm =
-    10.0;  // without forces the hand alone bears the stylus' weight: 0.5 N at 0.6 N/mm, tilted
+    10.0;  // without forces only the hand holds the stylus' weight: 0.5 N at 0.6 N/mm, tilted
 constexpr double kSettled_mm = 0.5;
 constexpr double kSettledAxis = 0.02;    // rad
-constexpr double kMostSettling_s = 1.0;  // inside tissue it comes to rest elsewhere
+constexpr double kMostSettling_s = 1.0;  // inside tissue it comes to rest at another position
 
 Vec3 axis_of(const telemetry::TickSample& sample) noexcept {
   const auto& [w, x, y, z] = sample.device_rotation_wxyz;
@@ -45,7 +45,8 @@ ServerSeat::ServerSeat(link::HapticClient client, std::string endpoint, millisec
 void ServerSeat::hold(const SeatRequest& request) {
   request_ = request;
   request_->place.v_P = request_->place.w_P = Vec3::Zero();
-  // A soft hand would let the stylus sag across the needle's channel until the forces are on: they would not come on.
+  // With a soft hand the stylus would sag across the needle's channel before the forces are on, and they would not
+  // switch on.
   request_->place.is_rigid = true;
 }
 
@@ -88,11 +89,11 @@ Result<State> ServerSeat::look() {
   if (view_.silent_s > std::chrono::duration<double>(patience_).count()) {
     const bool was_heard = view_.welcome.session != 0;
     const std::string why = view_.refusal.empty() ? "" : ": " + view_.refusal;
-    return fail(fmt::format("{} for {:.1f} s{}", was_heard ? "the server is gone, silent" : "no server answers, tried",
+    return fail(fmt::format("{} for {:.1f} s{}", was_heard ? "the server has not responded" : "no server has responded",
                             view_.silent_s, why),
                 endpoint_,
-                was_heard ? "look at its log; it may be started again within --patience"
-                          : "start trocar-hapticd there; with keys, both sides must know each other's");
+                was_heard ? "see its log; it can be restarted within --patience"
+                          : "start trocar-hapticd there; with keys, each side needs the other's public key");
   }
   if (state_ != State::kConnecting && view_.welcome.session != session_) {
     if (session_ != 0) ++returns_;
@@ -129,12 +130,12 @@ Result<State> ServerSeat::look() {
     enter(State::kConnecting);
   } else if (is_ours && has_fault(view_.status)) {
     return fail(fmt::format("the safety gate has latched a fault: {}", view_.status.fault), endpoint_,
-                "the server's flight record tells what came before; start the server again");
+                "see the server's flight record for the cause; restart the server");
   }
   return state_;
 }
 
-/// The motors of a device in a person's hand are not turned on again behind their back.
+/// The motors of a device in a person's hand are not switched on again without confirmation.
 bool ServerSeat::is_stall_to_forgive() const {
   const std::string& fault = view_.status.fault;
   const bool is_stall =
@@ -145,16 +146,16 @@ bool ServerSeat::is_stall_to_forgive() const {
 Status ServerSeat::wait_for_control() {
   if (without_control_s_ == 0.0) without_control_s_ = in_state_s_;
   if (in_state_s_ - without_control_s_ < kControlPatience_s) return {};
-  return fail("another client has this server", endpoint_, "end it, or name another server");
+  return fail("another client controls this server", endpoint_, "end it, or name another server");
 }
 
 Status ServerSeat::reset_fault() {
   if (Clock::now() - reset_ > kResetAgain) {
-    client_.send(link::ServerCommand::kStop);  // forces come on when the tool is in its place
+    client_.send(link::ServerCommand::kStop);  // the forces are switched on when the tool is in place
     client_.send(link::ServerCommand::kResetFault);
     reset_ = Clock::now();
   }
-  return check_time("the fault of the safety gate did not go away", "look at the server's log");
+  return check_time("the fault of the safety gate persists", "look at the server's log");
 }
 
 Status ServerSeat::connecting() {
@@ -175,7 +176,7 @@ Result<bool> ServerSeat::is_answered() {
   for (const link::Reply& reply : take_replies()) {
     if (reply.request != asked_) continue;
     if (reply.is_done) return true;
-    // A command that found the server gone is no refusal: when it is back it will be asked again.
+    // A command that found the server disconnected is not refused: it is sent again after reconnection.
     const link::ClientView now = client_.view();
     if (now.is_connected && now.welcome.session == session_)
       return fail(reply.text, endpoint_, "see the log of the server");
@@ -214,8 +215,8 @@ bool ServerSeat::is_near(const telemetry::TickSample& sample, double most_mm) co
 }
 
 Status ServerSeat::placing() {
-  TROCAR_TRY_STATUS(check_time("the device did not go where the operator's hand put it",
-                               "scripted operators move simulated devices alone: trocar-hapticd --device virtual"));
+  TROCAR_TRY_STATUS(check_time("the device did not reach the pose of the operator's hand",
+                               "scripted operators work only with simulated devices: trocar-hapticd --device virtual"));
   const std::optional<telemetry::TickSample> newest = client_.newest();
   if (!newest) return {};
   link::HandTarget place = request_->place;
@@ -252,7 +253,7 @@ Status ServerSeat::starting() {
     enter(State::kSettling);
     return {};
   }
-  return check_time("the forces did not come on", "look at the server's log");
+  return check_time("the forces did not switch on", "look at the server's log");
 }
 
 void ServerSeat::settling() {
@@ -270,7 +271,7 @@ std::vector<link::NumberedSample> ServerSeat::take_samples() {
   if (state_ != State::kOn) return {};
   std::vector<link::NumberedSample> samples = client_.take_samples();
   if (client_.view().welcome.session != session_) {
-    // Ticks of the server that came back may be among them: ours are those that follow on without a gap.
+    // Ticks from before the reconnection may be among them: ours are those that continue without a gap.
     std::uint64_t next = last_tick_ ? *last_tick_ + 1 : 0;
     const auto end = std::find_if(samples.begin(), samples.end(),
                                   [&next](const link::NumberedSample& sample) { return sample.tick != next++; });

@@ -15,19 +15,19 @@ namespace trocar::report::detail {
 namespace {
 
 constexpr int kPicturePx = 440;
-constexpr double kField_mm = 220.0;      ///< Least side of the square that a slice shows ...
-constexpr double kAroundPath_mm = 60.0;  ///< ... and what it shows around the path at least.
+constexpr double kField_mm = 220.0;      ///< Minimum side of the square displayed by a slice,
+constexpr double kAroundPath_mm = 60.0;  ///< and minimum margin around the path.
 constexpr double kScaleBar_mm = 50.0;
-constexpr double kShaftOutside_mm = 30.0;  ///< Of the needle's shaft drawn beyond the skin.
+constexpr double kShaftOutside_mm = 30.0;  ///< Length of the needle's shaft drawn outside the skin.
 
-/// What is drawn over each slice, in P.
+/// Drawing over each slice, in P.
 struct PathDrawing {
   std::optional<Segment> planned_P;
-  std::vector<std::vector<Vec3>> own_P;  ///< The tip's way in, one line an insertion.
+  std::vector<std::vector<Vec3>> own_P;  ///< Path of the tip during insertion, one line per insertion.
   std::vector<Vec3> own_entries_P;
-  std::optional<Segment> shaft_P;  ///< The needle where it was fired, or deepest: from outside to the tip.
+  std::optional<Segment> shaft_P;  ///< The needle at firing, or at its deepest position: from outside to the tip.
   Vec3 through_P = Vec3::Zero();
-  Vec3 center_P = Vec3::Zero();  ///< Middle of the path.
+  Vec3 center_P = Vec3::Zero();  ///< Centre of the path.
   double field_mm = kField_mm;
 };
 
@@ -59,7 +59,7 @@ PathDrawing collect(const storage::Session& session) {
   return drawing;
 }
 
-/// Draws points of P over one picture. Pixel centres of the picture lie at halves of the SVG's units.
+/// Draws points of P over one picture. Pixel centres are at half SVG units.
 class Overlay {
  public:
   explicit Overlay(const slices::SlicePicture& picture) : picture_(picture) {}
@@ -143,7 +143,8 @@ std::string draw_overlay(const slices::SlicePicture& picture, const SliceText& t
   return overlay.svg();
 }
 
-/// One slice as a figure; figures share the row's width by their size in mm, so that all have one scale.
+/// One slice as a figure; figures share the row's width in proportion to their size in mm, so that all have the same
+/// scale.
 std::string slice_figure(const anatomy::VirtualPatient& patient, const SliceText& text, const PathDrawing& drawing) {
   slices::SliceOptions options;
   options.size_px = kPicturePx;
@@ -174,8 +175,8 @@ std::string path_key() {
              "<path class=\"target\" stroke-width=\"1.6\" d=\"M8 6.5h4m6 0h4m-7 -6v3m0 6v3m3 -6a3 3 0 1 1 -6 0 3 3 0 1 "
              "1 6 0\"/>",
              "target") +
-         entry("<path class=\"own\" stroke-width=\"3.5\" d=\"M2 6.5h26\"/>", "own path of the tip") +
-         entry("<circle class=\"own-entry\" cx=\"15\" cy=\"6.5\" r=\"3.5\"/>", "own entry and tip") + "</ul>";
+         entry("<path class=\"own\" stroke-width=\"3.5\" d=\"M2 6.5h26\"/>", "path of the tip") +
+         entry("<circle class=\"own-entry\" cx=\"15\" cy=\"6.5\" r=\"3.5\"/>", "actual entry and tip") + "</ul>";
 }
 
 }  // namespace
@@ -187,8 +188,8 @@ std::string path_figure(const storage::Session& session, const anatomy::VirtualP
   std::string out;
   if (patient->content_hash != session.info.patient_hash)
     out +=
-        "<p class=\"warning\">The patient has changed since the session: the slices may not show what was "
-        "punctured.</p>";
+        "<p class=\"warning\">The patient has changed since the session: the slices may differ from the anatomy of the "
+        "attempt.</p>";
   const PathDrawing drawing = collect(session);
   out += "<div class=\"slices\">";
   for (const SliceText& text : kSlices) out += slice_figure(*patient, text, drawing);
