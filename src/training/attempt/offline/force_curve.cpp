@@ -13,7 +13,7 @@ std::vector<CurvePoint> force_curve(const haptics::HapticScene& scene, const Pre
   const int count = tick_count(motion);
   curve.reserve(static_cast<std::size_t>(count));
   for (int i = 1; i <= count; ++i) {
-    const telemetry::TickSample sample = haptics::tick(*state, input_at(motion, scene, i), scene).sample;
+    const telemetry::TickSample sample = haptics::tick(*state, input_at(motion, i), scene).sample;
     CurvePoint point;
     point.time_s = sample.time_s;
     point.way_mm = way_mm(motion, i);

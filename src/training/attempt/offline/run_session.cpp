@@ -19,6 +19,7 @@
 #include "haptics/scene_options.h"
 #include "haptics/tick.h"
 #include "tasks/hand.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
 namespace {
@@ -103,10 +104,11 @@ Status SceneSchedule::add(const Case& the_case, const storage::SessionParameters
   return {};
 }
 
-/// Time of a tick and of the period before it: regular, or as recorded.
-class TickTimes {
+/// When a tick is, and where its tool: regular, or as recorded by the session that is replayed.
+class RecordedTicks {
  public:
-  explicit TickTimes(const Performer& performer) : dt_s_(1.0 / performer.rate_hz), session_(performer.replayed.get()) {}
+  explicit RecordedTicks(const Performer& performer)
+      : dt_s_(1.0 / performer.rate_hz), session_(performer.replayed.get()) {}
 
   double time_s(std::size_t tick) const noexcept {
     if (session_ == nullptr) return static_cast<double>(tick) * dt_s_;
@@ -118,6 +120,13 @@ class TickTimes {
     if (session_ == nullptr || tick == 0) return dt_s_;
     const double step_s = time_s(tick) - time_s(tick - 1);
     return std::abs(step_s - dt_s_) < kRounding_s ? dt_s_ : std::clamp(step_s, kRounding_s, haptics::kMaxDt_s);
+  }
+  /// Empty: the operator's hand moves it.
+  std::optional<telemetry::ToolPose> tool(std::size_t tick) const noexcept {
+    if (session_ == nullptr || session_->samples.empty()) return {};
+    const telemetry::TickSample& sample = session_->samples[std::min(tick, session_->samples.size() - 1)];
+    const telemetry::ToolPose tool{sample.device_rotation_wxyz, sample.device_mm};
+    return tool.is_valid() ? tool : telemetry::to_tool_pose(telemetry::device_pose(sample));
   }
   /// The interruption that ends at the tick; null: none.
   const tasks::Interruption* interruption(std::size_t tick) const noexcept {
@@ -139,15 +148,15 @@ class TickTimes {
 /// The closed loop, until the operator has finished. Returns the number of ticks.
 Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, double mass_kg, AttemptRecord& record,
                             const Progress& progress) {
-  const TickTimes times(performer);
-  const std::size_t most_ticks = times.most_ticks();
+  const RecordedTicks recorded(performer);
+  const std::size_t most_ticks = recorded.most_ticks();
   const SceneSchedule::Entry* before = nullptr;
   haptics::VirtualDeviceState device;
   haptics::HapticState state;
   tasks::OperatorView view;
   for (std::size_t i = 0; i < most_ticks; ++i) {
-    view.time_s = times.time_s(i);
-    view.dt_s = times.dt_s(i);
+    view.time_s = recorded.time_s(i);
+    view.dt_s = recorded.dt_s(i);
     if (is_interrupted()) return tl::unexpected(interruption_error("trocar run"));
     const tasks::HandCommand command = performer.the_operator->next(view);
     if (command.is_done) return i;
@@ -157,13 +166,13 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     const bool is_another_model = before != nullptr && before->scene->options.force_model != scene.options.force_model;
     if (is_another_model) state = {};  // as in a server: the insertion restarts
     move_device(device, mass_kg, command, state.last.device_f_n, scene, view.dt_s);
-    if (const tasks::Interruption* gap = times.interruption(i)) {
+    if (const tasks::Interruption* gap = recorded.interruption(i)) {
       if (gap->reason == tasks::kServerWasAway) state = {};
       TROCAR_TRY_STATUS(record.append(*gap));
     }
 
-    const Pose X_DS = scene.X_PD.inverse() * device.X_PN * scene.X_SN.inverse();
-    const haptics::HapticOutput output = tick(state, {view.time_s, view.dt_s, X_DS}, scene);
+    const telemetry::ToolPose tool = recorded.tool(i).value_or(telemetry::to_tool_pose(device.X_PN));
+    const haptics::HapticOutput output = tick(state, {view.time_s, view.dt_s, tool}, scene);
     view.X_PN_device = device.X_PN;
     view.last = output.sample;
     record.note(command);

@@ -39,7 +39,7 @@ PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, co
   double full2 = 0.0;
   const int count = tick_count(motion);
   for (int i = 1; i <= count; ++i) {
-    const haptics::HapticInput input = input_at(motion, full, i);
+    const haptics::HapticInput input = input_at(motion, i);
     const haptics::HapticOutput a = haptics::tick(needles.full, input, full);
     const haptics::HapticOutput b = haptics::tick(needles.partly, input, partly);
     if (way_mm(motion, i) <= 0.0) continue;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "io/image/png.h"
+#include "png/png_file.h"
 #include "report/detail/html.h"
 #include "report/plot_scale.h"
 #include "report/session_analysis.h"
@@ -158,7 +158,7 @@ std::string slice_figure(const anatomy::VirtualPatient& patient, const SliceText
       "<figure style=\"flex:{0:.0f} 1 0\"><svg viewBox=\"0 0 {1} {2}\" role=\"img\" aria-label=\"{3} CT slice with the "
       "needle path\"><image width=\"{1}\" height=\"{2}\" href=\"data:image/png;base64,{4}\"/>{5}</svg>"
       "<figcaption>{3}</figcaption></figure>",
-      width_mm, picture.image.columns, picture.image.rows, text.title, base64(io::encode_png(picture.image)),
+      width_mm, picture.image.columns, picture.image.rows, text.title, base64(png::encode_png(picture.image)),
       draw_overlay(picture, text, drawing));
 }
 
