@@ -72,7 +72,7 @@ class Checks {
     for (const std::string& doubt : doubts) warn(CaseStep::kLabels, doubt);
     for (const std::string& warning : draft_.imported->warnings) {
       const bool is_told = std::find(doubts.begin(), doubts.end(), warning) != doubts.end() ||
-                           warning.starts_with("cut by the border of the CT");  // the same doubt in different words
+                           warning.starts_with("cut off by the border of the CT");  // the same doubt in different words
       if (!is_told) warn(CaseStep::kImport, warning);
     }
     look_outside();
