@@ -1,6 +1,7 @@
 // The whole line by command: patient, plan, puncture, CSV, report, pictures.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <memory>
