@@ -80,6 +80,10 @@ function(trocar_add_module tier name uses libraries)
         endif()
       endif()
     endforeach()
+    if("highway" IN_LIST libraries)
+      # Without optimisation g++ 12 cannot compile Highway's AVX-512: some arguments have to become constants.
+      target_compile_definitions(${target} PRIVATE $<$<CONFIG:Debug>:HWY_DISABLED_TARGETS=\(HWY_AVX3|HWY_AVX3_DL\)>)
+    endif()
     if("vtk-rendering" IN_LIST libraries)
       vtk_module_autoinit(TARGETS ${target} MODULES VTK::RenderingCore VTK::RenderingOpenGL2
         VTK::RenderingVolumeOpenGL2 VTK::RenderingFreeType)
