@@ -11,7 +11,7 @@
 namespace trocar::bench {
 namespace {
 
-constexpr int kRows = 45;  ///< At most, of the plot on a terminal.
+constexpr int kRows = 45;  ///< Maximum rows of the plot on a terminal.
 constexpr int kBar = 20;   ///< Characters of the longest bar.
 
 std::string words(std::string text) {
@@ -34,7 +34,7 @@ double largest_n(const PathCurves& path) {
   return largest;
 }
 
-/// Largest force between two ways of the device, and whether a layer gave way there.
+/// Largest force in an interval of the device's displacement, and whether a layer was punctured there.
 struct Bin {
   double force_n = 0.0;
   bool is_puncture = false;
@@ -52,7 +52,7 @@ Bin bin_of(const NamedCurve& curve, double from_mm, double to_mm) {
   return bin;
 }
 
-/// Names of the pieces that begin in a row; in the first row all that are there.
+/// Names of the path pieces that begin in a row; in the first row, all pieces present.
 std::string names_in(const PathCurves& path, double from_mm, double to_mm) {
   std::string names;
   for (const attempt::PathPiece& piece : path.pieces) {
@@ -67,7 +67,7 @@ report::Plot plot_of(const PathCurves& path) {
   constexpr const char* kStyles[] = {"c-total", "c-second", "c-third"};
   report::Plot plot;
   plot.description = "Force along the needle against the depth of the device, " + path.title;
-  plot.x_title = "way of the device past the resting skin (mm)";
+  plot.x_title = "displacement of the device past the resting skin (mm)";
   plot.y_title = "force along the needle (N)";
   plot.width = 940.0;
   plot.height = 400.0;
@@ -82,7 +82,7 @@ report::Plot plot_of(const PathCurves& path) {
       series.points.emplace_back(point.way_mm, point.force_n);
     plot.series.push_back(std::move(series));
   }
-  // The layers are named once, on the curve on which the most give way.
+  // The layers are named once, on the curve with the most punctures.
   const auto marked =
       std::max_element(path.curves.begin(), path.curves.end(),
                        [](const NamedCurve& a, const NamedCurve& b) { return a.events.size() <= b.events.size(); });
@@ -93,7 +93,7 @@ report::Plot plot_of(const PathCurves& path) {
   return plot;
 }
 
-/// Curves of one motion: their ticks are the same.
+/// Curves of one motion: their ticks are identical.
 std::string csv_of(const PathCurves& path, const anatomy::TissueTable& tissues) {
   std::string csv = "time_s,device_mm";
   for (const NamedCurve& curve : path.curves)
@@ -141,7 +141,7 @@ std::string curves_text(const PathCurves& path) {
     }
     text += fmt::format(" {}\n", names_in(path, from, from + step));
   }
-  return text + fmt::format("  largest force (N) in each row; * a layer gave way; longest bar {:.2f} N\n\n", full_n);
+  return text + fmt::format("  largest force (N) in each row; * puncture of a layer; longest bar {:.2f} N\n\n", full_n);
 }
 
 Status write_curves(const PathCurves& path, const anatomy::TissueTable& tissues, const std::filesystem::path& folder) {

@@ -1,5 +1,4 @@
-// The force along one needle path as a curve, by each force model: the layered patients, or any patient with a path of
-// its own.
+// Force along one needle path for each force model: on the layered patients, or on any patient with its own path.
 
 #include <fmt/format.h>
 
@@ -18,11 +17,11 @@ namespace trocar::bench {
 namespace {
 
 constexpr double kSpeed_mm_per_s = 5.0;
-constexpr double kAfter_mm = 10.0;  ///< At most, for the tip to arrive.
+constexpr double kAfter_mm = 10.0;  ///< Maximum time for the tip to arrive.
 constexpr haptics::ForceModel kModels[] = {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
                                            haptics::ForceModel::kCombined};
 
-/// A patient and the needle that goes into it.
+/// A patient and its needle.
 struct Way {
   std::string patient;
   std::string needle;
@@ -39,7 +38,7 @@ bool is_embedded(const std::string& name) {
   return std::any_of(all.begin(), all.end(), [&](const anatomy::PhantomInfo& info) { return info.name == name; });
 }
 
-/// "layers-lumbar" -> "lumbar"; other names keep only what a file's name may have.
+/// "layers-lumbar" -> "lumbar"; of other names, only characters valid in file names are kept.
 std::string short_name(std::string name) {
   constexpr std::string_view kLayers = "layers-";
   if (name.starts_with(kLayers)) name.erase(0, kLayers.size());
@@ -109,8 +108,8 @@ Figures single(double value) {
   return figures;
 }
 
-/// A line a layer that gave way, in order; one that gives way again is numbered. For programs drop and time of the drop
-/// are cases of their own; people read them in the note.
+/// One line per puncture, in order; repeated punctures are numbered. In JSON, drop and drop time are separate cases; in
+/// text they are in the note.
 void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is_for_people) {
   for (const NamedCurve& curve : path.curves) {
     std::map<std::string, int> times;

@@ -1,5 +1,5 @@
-// One haptic tick, call by call, on its way through the embedded patient; a fixed piece of arithmetic interleaved, so
-// that figures of noisy machines can be held against it.
+// One haptic tick, call by call, in the embedded patient, interleaved with a fixed calculation that makes figures of
+// noisy machines comparable.
 
 #include <fmt/format.h>
 
@@ -27,8 +27,8 @@ struct Round {
   std::vector<double> calibration_us;
 };
 
-/// In along the planned path and out again, slightly beside and askew so that the shaft is bent; a calibration after
-/// each tick.
+/// In along the planned path and out again, with an offset and a tilt that bend the shaft; a calibration after each
+/// tick.
 Round measure_round(const haptics::HapticScene& scene, const Segment& path_P) {
   Round round;
   auto state = std::make_unique<haptics::HapticState>();  // some hundred kB
@@ -49,7 +49,7 @@ Round measure_round(const haptics::HapticScene& scene, const Segment& path_P) {
   return round;
 }
 
-/// The best of the rounds, and how it stands to the calibration beside it.
+/// The best of the rounds, and its ratio to the calibration.
 struct Best {
   Figures tick, calibration;
   std::size_t calls = 0;

@@ -1,5 +1,5 @@
-// The forces of an insertion into the embedded patient, for docs/validation.md: peaks by speed and profile, drop,
-// second insertion.
+// Forces of an insertion into the embedded patient, for docs/validation.md: peaks by speed and profile, drop, second
+// insertion.
 
 #include <fmt/format.h>
 
@@ -36,7 +36,7 @@ std::vector<telemetry::TickSample> drive(haptics::HapticState& state, const hapt
   }
   return samples;
 }
-/// Peak at each puncture, and how long the resistance takes to lose half of its drop within the next 0.2 s.
+/// Peak at each puncture, and the time in which the resistance loses half of its drop within the next 0.2 s.
 void add_punctures(std::vector<CaseResult>& results, const anatomy::TissueTable& tissues,
                    const std::vector<telemetry::TickSample>& samples, const std::string& name) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -79,7 +79,7 @@ double mean_resistance_n(const std::vector<telemetry::TickSample>& samples, doub
   return count > 0 ? sum / count : 0.0;
 }
 
-/// Depth at which the last layer of a way gave way.
+/// Depth of the last puncture on a path.
 double last_puncture_mm(const std::vector<telemetry::TickSample>& samples) {
   double depth = 0.0;
   for (const telemetry::TickSample& sample : samples) {
@@ -88,7 +88,7 @@ double last_puncture_mm(const std::vector<telemetry::TickSample>& samples) {
   return depth;
 }
 
-/// The same path twice: the mean resistance in the organ, once the coupling has relaxed behind its surface.
+/// The same path twice: mean resistance in the organ, after the relaxation of the coupling behind its surface.
 void add_second_insertion(std::vector<CaseResult>& results, const attempt::Case& the_case,
                           const haptics::HapticScene& scene) {
   haptics::HapticState state;

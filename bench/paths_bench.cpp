@@ -1,5 +1,5 @@
-// How much it matters that only some structures are segmented: forces of the same poses on fully and on partly
-// segmented data (the study of the Luebeck group, references.md).
+// Effect of an incomplete segmentation: forces of the same poses on fully and partly segmented data (the study of the
+// Luebeck group, references.md).
 
 #include <fmt/format.h>
 
@@ -18,9 +18,9 @@
 namespace trocar::bench {
 namespace {
 
-constexpr int kMostPlanned = 100000;     ///< All that plan_paths gives; the study's paths are spread over them.
-constexpr std::size_t kWorstPlaces = 8;  ///< In the table.
-constexpr haptics::ForceModel kModel = haptics::ForceModel::kProxy;  ///< Of the study.
+constexpr int kMostPlanned = 100000;     ///< Limit of plan_paths; the study's paths are a sample of them.
+constexpr std::size_t kWorstPlaces = 8;  ///< Rows of the table.
+constexpr haptics::ForceModel kModel = haptics::ForceModel::kProxy;  ///< Model of the study.
 
 Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(const Options& options) {
   if (options.patient) return options.patient;
@@ -96,7 +96,7 @@ void add_worst_places(std::vector<CaseResult>& results, const std::vector<attemp
   }
 }
 
-/// Both scenes, the paths through them and what came out.
+/// Both scenes, the paths through them and the results.
 struct Study {
   std::shared_ptr<const haptics::HapticScene> full;
   std::shared_ptr<const haptics::HapticScene> partly;

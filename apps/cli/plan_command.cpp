@@ -77,15 +77,15 @@ Status plan(const Arguments& arguments) {
 
 void add_plan_command(CLI::App& program, Action& action) {
   const auto a = std::make_shared<Arguments>();
-  CLI::App* command = program.add_subcommand("plan", "Find safe needle paths: they keep every margin of the task");
+  CLI::App* command = program.add_subcommand("plan", "Plan safe needle paths that keep all margins of the task");
   command->add_option("TASK,--task", a->task,
-                      "Task: see trocar task list, or a task file (.toml); the patient's own when left out");
+                      "Task: see trocar task list, or a task file (.toml); default: the patient's own task");
   command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name")
       ->required();
   arguments::whole_number_within(
-      command->add_option("--count", a->options.count, "Number of paths, each with its own entry"), 1, 100000)
+      command->add_option("--count", a->options.count, "Number of paths, each with a different entry point"), 1, 100000)
       ->capture_default_str();
-  command->add_option("--needle", a->needle, "Needle of data/needles.toml; the task's own when left out");
+  command->add_option("--needle", a->needle, "Needle of data/needles.toml; default: the task's needle");
   arguments::seed_number(command->add_option("--seed", a->options.seed, "Random seed for the choice among paths"))
       ->capture_default_str();
   arguments::seed_number(

@@ -121,7 +121,7 @@ TEST_F(Stalls, AServerThatIsStoppedIsWaitedForAndTheNeedleStays) {
         const Stall stall(pid);
         stall.lasts(duration);
         EXPECT_EQ(attempt->view().phase, attempt::AttemptPhase::kServerLost);
-        EXPECT_NE(attempt->view().banner.find("does not answer"), std::string::npos) << attempt->view().banner;
+        EXPECT_NE(attempt->view().banner.find("does not respond"), std::string::npos) << attempt->view().banner;
       }
       ASSERT_TRUE(goes_on()) << where();
       EXPECT_LT((tip_P() - rest_P).norm(), kCreep_mm) << duration.count() << " ms";

@@ -1,4 +1,4 @@
-// Step 5 of the case builder: what a hand will feel along the expert's path.
+// Step 5 of the case builder: predicted force along the expert's path.
 #include <QHeaderView>
 #include <QLabel>
 #include <QTableWidget>
@@ -23,8 +23,8 @@ class ForcePanel final : public CasePanel {
     content()->addWidget(plot_, 3);
     table_ = new QTableWidget(0, 3);
     table_->setObjectName(QStringLiteral("case-force-events"));
-    table_->setAccessibleName(tr("Layers that give way"));
-    table_->setToolTip(tr("Where a layer gives way, and at which force; double click jumps there"));
+    table_->setAccessibleName(tr("Punctured layers"));
+    table_->setToolTip(tr("Position and force of each puncture; double-click to go there"));
     table_->setHorizontalHeaderLabels({tr("Gives way"), tr("at mm"), tr("N")});
     table_->verticalHeader()->hide();
     table_->verticalHeader()->setDefaultSectionSize(26);

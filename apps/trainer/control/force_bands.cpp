@@ -9,7 +9,7 @@ namespace {
 QColor color_of(const attempt::OpenCase& open, const attempt::PathPiece& piece) {
   for (const anatomy::Label& label : open.the_case.patient->label_table.labels)
     if (label.name == piece.name) return {label.color[0], label.color[1], label.color[2]};
-  return {0x8a, 0x7a, 0x60};  // what has no label: fat, the skin's shell
+  return {0x8a, 0x7a, 0x60};  // unlabelled: fat, the skin's shell
 }
 
 }  // namespace

@@ -24,8 +24,8 @@ class AttemptControl;
 class MainWindow;
 class ReplayControl;
 
-/// The way through the pages: choose, open, brief, puncture, feedback, and again. Owns what a case and an attempt are
-/// made of; once a frame it looks at what goes on in the background and has the views drawn.
+/// Sequence of pages: start, open, briefing, puncture, feedback. Owns the data of case and attempt; polls background
+/// work and draws the views once per frame.
 class SeatFlow : public QObject {
   Q_OBJECT
 

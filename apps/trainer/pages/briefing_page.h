@@ -12,8 +12,8 @@ class QPushButton;
 
 namespace trocar::trainer {
 
-/// What there is to do, with which patient and needle, what counts, and how the tools are moved; while the case opens
-/// it shows how far that is. Keys: Enter begins, Escape goes back.
+/// Task, patient, needle, scoring and controls; shows the progress while the case opens. Keys: Enter begins, Escape
+/// goes back.
 class BriefingPage : public QWidget {
   Q_OBJECT
 

@@ -16,10 +16,10 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr std::size_t kMostAtWork = 2;  ///< Predictions that nobody wants any more and that have not ended.
+constexpr std::size_t kMostAtWork = 2;  ///< Cancelled predictions that have not ended yet.
 
-/// Depth of the tip and force, without points that nobody sees. Where the tip is drawn back a little when a layer gives
-/// way, the deepest place stands.
+/// Points of force against tip depth, thinned to the resolution of the plot. While the tip moves back slightly at a
+/// puncture, the largest depth is used.
 std::vector<QPointF> shown_points(const std::vector<attempt::CurvePoint>& curve) {
   constexpr double kStep_mm = 0.1, kStep_n = 0.02;
   std::vector<QPointF> points;
@@ -66,7 +66,7 @@ ForcePreview::ForcePreview(QWidget* parent)
   caption_->setMinimumWidth(std::max(wide, caption_->sizeHint().width()));
   plot_->set_curve_names(tr("default"), tr("as set"));
   plot_->setFixedHeight(184);
-  plot_->setToolTip(tr("Predicted force along the planned path at 10 mm/s: dashed as by default, solid as changed"));
+  plot_->setToolTip(tr("Predicted force along the planned path at 10 mm/s: dashed: default; solid: changed"));
 
   auto* row = new QHBoxLayout;
   row->addWidget(caption_);
@@ -124,7 +124,7 @@ void ForcePreview::choose_model(const QString& model) {
   want();
 }
 
-/// What is at work now is old.
+/// Discards the running prediction and requests a new one.
 void ForcePreview::want() {
   retired_.retire(std::exchange(job_, {}));
   changed_.clear();
@@ -136,7 +136,7 @@ void ForcePreview::want() {
     is_wanted_ = false;
     show_busy(false);
   }
-  // The old curve stands until the new one is there.
+  // The old curve is shown until the new one is ready.
   if (!case_ || !changed_.empty()) show_curves();
 }
 
@@ -152,7 +152,7 @@ void ForcePreview::start_work() {
     if (default_job_.has_work() && default_model_ == model) return;
     retired_.retire(std::exchange(default_job_, attempt::predict_force_in_background(case_, {}, model)));
     default_model_ = model;
-    return;  // the changed curve follows: two at once would be late both
+    return;  // the changed curve follows: two at once would delay both
   }
   is_wanted_ = false;
   if (settings_.empty()) {

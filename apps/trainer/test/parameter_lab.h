@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "parameters/force_preview.h"
 #include "core/files/temporary_folder.h"
+#include "parameters/force_preview.h"
 #include "parameters/parameter_panel.h"
 #include "test/open_abdomen.h"
 

@@ -55,7 +55,7 @@ TEST_F(ParameterProfilesTest, WhatIsSavedComesBackWhenItIsChosen) {
 
   const QStringList settings = panel.settings();
   models.clear();
-  ASSERT_TRUE(choose_entry(choice(), QStringLiteral("Case's own")));
+  ASSERT_TRUE(choose_entry(choice(), QStringLiteral("As in the case")));
   EXPECT_TRUE(panel.settings().isEmpty());
   EXPECT_EQ(panel.preview().model(), QStringLiteral("insertion"));
   ASSERT_TRUE(choose_entry(choice(), QStringLiteral("Soft liver")));

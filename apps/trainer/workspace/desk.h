@@ -40,7 +40,7 @@ struct ToolsShown {
   bool are_moving = false;
 };
 
-/// All views of a case, in layouts that are freely docked and remembered. Keys: Ctrl+1 .. Ctrl+4 choose a layout.
+/// All views of a case in dockable layouts, which are stored. Keys: Ctrl+1 .. Ctrl+4 select a layout.
 class Desk : public QMainWindow {
   Q_OBJECT
 
@@ -48,7 +48,7 @@ class Desk : public QMainWindow {
   explicit Desk(QWidget* parent = nullptr);
 
   void show_case(std::shared_ptr<const attempt::OpenCase> open);
-  /// The same in parts, each short enough for a frame: show_part() shows the next one; false: all are shown.
+  /// The same in parts, each short enough for one frame: show_part() shows the next one; returns false when complete.
   void begin_case(std::shared_ptr<const attempt::OpenCase> open);
   bool show_part();
   /// Of the plan, in all views; the structure panel and the keys of the views show no more than that.

@@ -10,10 +10,10 @@
 
 namespace trocar::case_builder {
 
-/// What a hand feels along the expert's path: at 10 mm/s, without the stylus' weight.
+/// Predicted force on the hand along the expert's path: at 10 mm/s, without the stylus' weight.
 struct ForcePreview {
   std::vector<attempt::CurvePoint> curve;
-  std::vector<attempt::CurveEvent> events;  ///< Layers that give way.
+  std::vector<attempt::CurveEvent> events;  ///< Punctured layers.
   std::vector<attempt::PathPiece> pieces;   ///< Tissue from the skin to the path's end.
   double highest_n = 0.0;
 };

@@ -22,15 +22,13 @@ bool is_patient_folder(const std::string& path) {
 }
 
 Status check_request(const ImportRequest& request) {
-  if (request.ct.empty())
-    return fail_usage("no CT was named", {}, "choose a file, a DICOM folder, or a patient folder");
+  if (request.ct.empty()) return fail_usage("no CT given", {}, "choose a file, a DICOM folder, or a patient folder");
   if (is_whole_patient(request)) {
     if (request.labels.empty()) return {};
-    return fail_usage("this patient has its labels already", request.ct, "leave the labels out");
+    return fail_usage("this patient already has labels", request.ct, "omit the labels");
   }
   if (request.labels.empty())
-    return fail_usage("no labels were named", request.ct,
-                      "choose a segmentation of this CT: a case needs its structures");
+    return fail_usage("no labels given", request.ct, "choose a segmentation of this CT: a case needs its structures");
   return {};
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kAroundPath_mm = 60.0;
 
-/// The middle of what is to be reached: a biopsy needle is stopped before it.
+/// Centre of the target: a biopsy needle stops short of it.
 Vec3 target_of(const attempt::Case& the_case) {
   const Segment& path_P = the_case.plan.line_P;
   return path_P.b + the_case.needle.notch_middle_mm() * path_P.direction();

@@ -236,11 +236,11 @@ Result<NeutralStart> find_neutral_start(const Case& the_case, const ultrasound::
   start.X_PT = X_PT.value_or(X_PT_planned);
   start.X_PN = X_PN.value_or(needle_pose(path_P.a - NeutralStart::kAbove_mm * path_P.direction(), path_P.direction()));
   if (!X_PN || !X_PT)
-    start.note =
-        fmt::format("this patient has no skin far enough from the plan: {} where planned at every level of help",
-                    X_PN   ? "the transducer begins"
-                    : X_PT ? "the needle begins"
-                           : "both tools begin");
+    start.note = fmt::format(
+        "this patient has no skin far enough from the planned path: {} at the planned position at every level of help",
+        X_PN   ? "the transducer begins"
+        : X_PT ? "the needle begins"
+               : "both tools begin");
   return start;
 }
 

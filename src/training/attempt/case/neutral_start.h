@@ -8,7 +8,7 @@
 
 namespace trocar::attempt {
 
-/// Where needle and transducer begin when nothing of the plan may be told. Frame P.
+/// Initial poses of needle and transducer that do not reveal the plan. Frame P.
 struct NeutralStart {
   static constexpr double kAway_mm = 60.0;   ///< Of needle and transducer from the planned entry, at least; and
   static constexpr double kApart_mm = 60.0;  ///< from each other: hub and housing are thick.

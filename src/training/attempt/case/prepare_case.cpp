@@ -82,7 +82,7 @@ Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient
   const tasks::TaskReadiness readiness = tasks::check_task(made.task, *patient);
   if (!readiness.is_possible)
     return fail(
-        fmt::format("the patient cannot serve the task {}: {}", made.task.name, fmt::join(readiness.reasons, "; ")),
+        fmt::format("the patient does not support the task {}: {}", made.task.name, fmt::join(readiness.reasons, "; ")),
         patient->name, "see trocar patient check");
   made.is_parenchymal = readiness.is_parenchymal;
   if (!made.task.expert_path.empty()) {

@@ -14,7 +14,7 @@
 
 namespace trocar::attempt {
 
-/// Which attempt is to be made; empty texts mean the default.
+/// Selection of an attempt; empty texts mean the default.
 struct CaseOptions {
   /// Name of a task of the data folder, or a task file (ends in .toml); empty: the patient's own task.
   std::string task = "liver-biopsy";
@@ -37,7 +37,7 @@ struct Case {
   bool is_parenchymal = false;
 };
 
-/// Task, needle and tissues alone, from the data folder: what is wrong with them can be told before there is a patient.
+/// Task, needle and tissues from the data folder, without a patient: detects their errors early.
 Result<Case> load_tables(const CaseOptions& options);
 
 /// Whether a patient has a task of its own: a folder with task.toml in it.

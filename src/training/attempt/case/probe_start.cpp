@@ -25,7 +25,7 @@ constexpr double kSlide_mm = 4.0;
 constexpr double kPress_mm = 3.0;
 constexpr double kWayStep_mm = 2.0;
 constexpr double kSlope_mm = 6.0;   ///< The skin's normal is that of a patch so large.
-constexpr int kGasBelow_hu = -300;  ///< As in src/anatomy; gas in bowel is labelled bowel.
+constexpr int kGasBelow_hu = -300;  ///< As in src/patient/anatomy; gas in bowel is labelled bowel.
 constexpr double kBehindTarget = 1.33;
 constexpr double kDepthStep_mm = 10.0;
 constexpr double kLeastDepth_mm = 80.0;
@@ -208,13 +208,12 @@ Result<ProbeStart> find_probe_start(const anatomy::VirtualPatient& patient, cons
     std::string title;
     const auto X_PT = standard_view(patient, views, start.transducer, title);
     if (!X_PT && !std::isfinite(place.cost))
-      return fail("the transducer finds no place on the skin beside the entry", patient.name,
+      return fail("no position for the transducer on the skin near the entry", patient.name,
                   "place the transducer by hand");
     if (X_PT) start.X_PT = *X_PT;
     deepest_mm = (path_P.b - start.X_PT.p()).norm();
-    start.note = X_PT
-                     ? "the path cannot be seen along its length beside the entry; the transducer begins with: " + title
-                     : "the path cannot be seen whole: bone, lung or gas is in the way";
+    start.note = X_PT ? "no view along the whole path near the entry; the transducer starts with: " + title
+                      : "the path is only partly visible: bone, lung or gas is in front of it";
   }
   start.depth_mm = std::clamp(std::ceil(kBehindTarget * deepest_mm / kDepthStep_mm) * kDepthStep_mm, kLeastDepth_mm,
                               start.transducer.greatest_depth_mm);

@@ -17,9 +17,9 @@ struct SceneChoice {
 };
 link::LoadScene scene_request(const Case& the_case, const SceneChoice& choice);
 
-/// Where the room stands about a supine patient: who works sits at the patient's right side and looks across (W: x
-/// towards the feet, y to the patient's left, z up). The origin is where the grip is when the needle is half-way in, so
-/// that a device's workspace, centred there, holds the whole puncture.
+/// Pose of the room for a supine patient: the user is at the patient's right side (W: x towards the feet, y to the
+/// patient's left, z up). The origin is the grip with the needle inserted half-way, so that a centred workspace covers
+/// the whole puncture.
 Pose room_in_patient(const Segment& path_P, double needle_length_mm) noexcept;
 
 }  // namespace trocar::attempt

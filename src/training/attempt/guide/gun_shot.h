@@ -22,7 +22,7 @@ struct GunShot {
   double time_s = 0.0;    ///< Of the session.
   double depth_mm = 0.0;  ///< Of the tip below the skin before the shot.
   double throw_mm = 0.0;  ///< How far the stylet got.
-  Segment core_P;         ///< Where the core came from.
+  Segment core_P;         ///< Position of the core.
   tasks::BiopsyCore core;
   std::vector<ShotPiece> pieces;
 

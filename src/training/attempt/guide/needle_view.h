@@ -5,7 +5,7 @@
 
 namespace trocar::attempt {
 
-/// What a page shows of a tick of the needle. `X_PN_hand`: where the hand wants it.
+/// Display data of a needle tick. `X_PN_hand`: target pose of the hand.
 NeedleView needle_view(const Case& the_case, const telemetry::TickSample& sample, const Pose& X_PN_hand);
 
 }  // namespace trocar::attempt

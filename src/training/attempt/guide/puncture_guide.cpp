@@ -37,7 +37,7 @@ std::string guide_outside(const Segment& path_P, const telemetry::TickSample& sa
   const Vec3 across = to_entry - to_entry.dot(axis) * axis;
   if (across.norm() > kFarFromEntry_mm) return "The entry is " + anatomy::direction_words(across, " mm");
   if (across.norm() > kGuideBeside_mm)
-    return fmt::format("{:.1f} mm beside the entry: move the tip {}", across.norm(), anatomy::direction_words(across));
+    return fmt::format("{:.1f} mm from the entry: move the tip {}", across.norm(), anatomy::direction_words(across));
   const double angle_deg = kDegPerRad * angle_between_rad(sample.axis, axis);
   if (angle_deg > kGuideTilt_deg)
     return fmt::format("{:.0f} degrees off the path: tilt the hub {}", angle_deg,
@@ -57,7 +57,7 @@ std::string guide_inside(const Case& the_case, const telemetry::TickSample& samp
     return the_case.needle.is_biopsy ? "At the target: hold still and fire" : "At the target: hold still";
   if (beside_mm > kGuideBeside_mm) {
     const double turn_deg = kDegPerRad * angle_between_rad(sample.axis, to_target);
-    return fmt::format("{:.1f} mm beside the path: tilt the tip {} by {:.0f} degrees", beside_mm,
+    return fmt::format("{:.1f} mm from the path: tilt the tip {} by {:.0f} degrees", beside_mm,
                        anatomy::direction_words(across), std::min(turn_deg, 90.0));
   }
   return fmt::format("{:.0f} mm to the target", left_mm);

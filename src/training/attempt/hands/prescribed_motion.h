@@ -6,9 +6,9 @@
 
 namespace trocar::attempt {
 
-/// A device that is led along a needle path, whatever the forces: open loop, so that two scenes get the same poses.
-/// It runs at constant speed from `before_mm` outside the skin to the path's end; on the way it drifts off the path
-/// and tilts, smoothly and only inside the body, so that the path constraint and the shaft have work to do.
+/// Moves a device along a needle path at constant speed, independent of forces (open loop), so that two scenes get the
+/// same poses: from `before_mm` outside the skin to the path's end, with smooth drift and tilt inside the body, which
+/// exercise the path constraint and the shaft.
 struct PrescribedMotion {
   Segment line_P{Vec3::Zero(), Vec3::Zero()};  ///< Skin -> target.
   double speed_mm_per_s = 10.0;                ///< Range 0.1..500.

@@ -35,7 +35,7 @@ Result<OperatorChoice> parse_operator(std::string_view name) {
     return OperatorChoice{Kind::kConstantVelocity, speed, {}};
   }
   constexpr std::string_view kReplay = "replay:";
-  if (name == kReplay) return fail_usage("replay: names no session", "--operator", "write replay:SESSION");
+  if (name == kReplay) return fail_usage("replay: needs a session", "--operator", "write replay:SESSION");
   if (name.starts_with(kReplay)) return OperatorChoice{Kind::kReplay, 0.0, std::string(name.substr(kReplay.size()))};
   return fail_usage(fmt::format("no operator named {}", name), "--operator",
                     "use expert, novice, constant-velocity:MM_PER_S or replay:SESSION");
@@ -94,7 +94,7 @@ Result<std::shared_ptr<const storage::Session>> load_replayed(std::string_view o
   if (choice.kind != OperatorChoice::Kind::kReplay) return std::shared_ptr<const storage::Session>();
   TROCAR_TRY(storage::Session session, storage::load_session(choice.session));
   if (session.samples.empty())
-    return fail("the session was cut off before its first tick", choice.session, "name another one");
+    return fail("the session ended before its first tick", choice.session, "name another one");
   return std::make_shared<const storage::Session>(std::move(session));
 }
 

@@ -10,9 +10,9 @@
 
 namespace trocar::attempt {
 
-inline constexpr double kLongestAttempt_s = 120.0;  ///< An operator that is not done by then is stopped.
+inline constexpr double kLongestAttempt_s = 120.0;  ///< Limit after which an operator is stopped.
 
-/// An operator and how it wants to be run.
+/// An operator and its options.
 struct Performer {
   std::unique_ptr<tasks::Operator> the_operator;
   double rate_hz = 1000.0;

@@ -91,12 +91,12 @@ Result<LiveServers> LiveServers::connect(const RunOptions& options, const Realti
     std::vector<ServerSeat>* place = tool == "needle" ? &servers.needle_ : tool == "probe" ? &servers.probe_ : nullptr;
     if (place == nullptr || !place->empty())
       return fail(
-          fmt::format("{} server of the {} has no place in an attempt", place == nullptr ? "the" : "a second", tool),
+          fmt::format("{} server of the {} is not needed for an attempt", place == nullptr ? "the" : "a second", tool),
           seat.endpoint(), "name one of the needle and at most one of the probe");
     place->push_back(std::move(seat));
   }
   if (servers.needle_.empty())
-    return fail("no server of the needle among them", endpoints.front(), "start trocar-hapticd --tool needle");
+    return fail("no needle server among the endpoints", endpoints.front(), "start trocar-hapticd --tool needle");
   return servers;
 }
 
@@ -124,7 +124,7 @@ Result<State> LiveServers::look() {
       if (const auto state = probe_.front().look(); !state) probe = tl::unexpected(state.error());
     }
     if (!probe) {
-      warnings_.push_back("the attempt goes on without the probe: " + probe.error().text());
+      warnings_.push_back("the attempt continues without the probe: " + probe.error().text());
       lost_.push_back(probe_.front().figures());
       probe_.clear();
     }
@@ -240,12 +240,13 @@ void warn_of_gaps(const LiveOperator& live, RunResult& result) {
     result.warnings.push_back(
         fmt::format("{} ticks of the needle did not arrive: the session has gaps there", result.ticks_missing));
   if (live.paused_s() > 0.0)
-    result.warnings.push_back(fmt::format(
-        "the needle's server was away: {:.1f} s are missing from the session, and the needle was resumed where it was",
-        live.paused_s()));
+    result.warnings.push_back(
+        fmt::format("the needle server was unavailable: {:.1f} s are missing in the session, and the needle resumed at "
+                    "its last pose",
+                    live.paused_s()));
   if (live.unseen_s() > 0.0)
     result.warnings.push_back(
-        fmt::format("this program stood still for {:.2f} s in all, and the operator with it", live.unseen_s()));
+        fmt::format("the computer was too busy: the attempt was paused for {:.2f} s in total", live.unseen_s()));
 }
 
 }  // namespace
@@ -259,7 +260,7 @@ Status check_realtime(const RealtimeOptions& options) {
       return fail_usage("a server on tcp:// needs keys", text, "give --keys and --server-key, or use ipc://");
   }
   if (options.endpoints.size() == 2 && options.endpoints[0] == options.endpoints[1])
-    return fail_usage("the same server twice", options.endpoints[0], "name the needle's and the probe's");
+    return fail_usage("the same server was given twice", options.endpoints[0], "name the needle's and the probe's");
   return {};
 }
 

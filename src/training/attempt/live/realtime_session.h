@@ -10,20 +10,20 @@
 
 namespace trocar::attempt {
 
-/// Through which servers an attempt goes.
+/// Servers of an attempt.
 struct RealtimeOptions {
   /// Of running servers, in any order: the needle's, and perhaps the probe's. None: two are started for the attempt and
   /// end with it.
   std::vector<std::string> endpoints;
   std::optional<link::ClientSecurity> security;  ///< For servers on tcp.
-  /// How long a server may be silent, or keep from doing what it was asked (loading a scene excepted).
+  /// Timeout for a server without messages or without progress (except loading a scene).
   std::chrono::milliseconds patience{5000};
 };
 
-/// What can be said of the options before there is a patient (exit status 2); run_realtime_session asks it, too.
+/// Checks the options before a patient is opened (exit status 2); run_realtime_session calls it, too.
 Status check_realtime(const RealtimeOptions& options);
 
-/// Whether every server that is named answers, or there is one to be started: worth asking before a patient is opened.
+/// Checks that every named server responds, or that one can be started; call it before a patient is opened.
 Status find_servers(const RealtimeOptions& options);
 
 /// Performs an attempt through live haptic servers, in real time: operator here, hand, device and tick there. The

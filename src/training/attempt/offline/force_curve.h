@@ -10,7 +10,7 @@
 
 namespace trocar::attempt {
 
-/// What a device that is led along a path feels of the needle, at one tick.
+/// Force on a device moved along a path, at one tick.
 struct CurvePoint {
   double time_s = 0.0;
   double way_mm = 0.0;   ///< Device's tip past the resting skin, along the path.
@@ -20,7 +20,7 @@ struct CurvePoint {
   std::uint8_t layer = haptics::kNoLayer;  ///< That gave way at this tick.
 };
 
-/// A layer that gave way, as the hand feels it.
+/// A punctured layer, measured at the device.
 struct CurveEvent {
   std::string layer;
   std::size_t at = 0;      ///< Point of the peak.
@@ -41,9 +41,8 @@ struct PathPiece {
   std::string tissue;  ///< Of the tissue table.
 };
 
-/// Leads the device along the path, and on past its end (after_mm) until the needle's tip has arrived there, too: the
-/// tip lags behind the device by what tissue and coupling yield. Without the stylus' weight where the scene leaves it
-/// out.
+/// Moves the device along the path and beyond its end (after_mm) until the needle's tip reaches it: the tip lags
+/// because of the compliance of tissue and coupling. Excludes the stylus' weight if the scene does.
 std::vector<CurvePoint> force_curve(const haptics::HapticScene& scene, const PrescribedMotion& motion);
 /// The layers that gave way, in order.
 std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, const anatomy::TissueTable& tissues);

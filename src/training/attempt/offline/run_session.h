@@ -29,12 +29,11 @@ struct RunOptions {
   bool is_other_patient_meant = false;  ///< A patient with another content hash is not refused.
 };
 
-/// What can be said of the options before there is a patient (exit status 2); run_session asks it, too.
+/// Checks the options before a patient is opened (exit status 2); run_session calls it, too.
 Status check_run(const RunOptions& options);
 
-/// Performs an attempt in one thread, faster than real time: operator, hand, device, tick, recording, score.
-/// Every tick is in the session file. A failure or an interruption on the way leaves no file: the same options make the
-/// same ticks again.
+/// Performs an attempt in one thread, faster than real time: operator, hand, device, tick, recording, score. Every tick
+/// is in the session file. A failure or interruption leaves no file: the same options reproduce the same ticks.
 Result<RunResult> run_session(const Case& the_case, const RunOptions& options, const Progress& progress = {});
 
 }  // namespace trocar::attempt

@@ -30,7 +30,7 @@ Result<AttemptReplay> AttemptReplay::load(const std::filesystem::path& path, std
 }
 
 Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_ptr<const OpenCase> open) {
-  if (session.samples.empty()) return fail("the attempt was cut off before its first tick", {}, "start another one");
+  if (session.samples.empty()) return fail("the attempt ended before its first tick", {}, "start another one");
   if (session.info.patient_hash != open->the_case.patient->content_hash)
     return fail("the session is of another patient than the case", {}, "open that patient first");
   const bool was_cut_off = !session.outcome.has_value();
@@ -126,7 +126,7 @@ void AttemptReplay::find_worst() {
     farthest_s = sample.time_s;
   }
   if (farthest_mm >= 0.0) {
-    worst_ = {farthest_s, ReplayMoment::Kind::kWorst, fmt::format("{:.1f} mm beside the planned path", farthest_mm)};
+    worst_ = {farthest_s, ReplayMoment::Kind::kWorst, fmt::format("{:.1f} mm from the planned path", farthest_mm)};
     return;
   }
   constexpr double kFelt_n = 0.05;  // rounds to 0.1 N
@@ -136,7 +136,7 @@ void AttemptReplay::find_worst() {
                                           });
   if (telemetry::axial_resistance_n(*strongest) < kFelt_n) return;
   worst_ = {strongest->time_s, ReplayMoment::Kind::kWorst,
-            fmt::format("{:.1f} N, and the skin was not pierced", telemetry::axial_resistance_n(*strongest))};
+            fmt::format("{:.1f} N without piercing the skin", telemetry::axial_resistance_n(*strongest))};
 }
 
 }  // namespace trocar::attempt

@@ -21,7 +21,7 @@ struct ReplayMoment {
   std::string text;  ///< "through the liver capsule", "the lung was touched"
 };
 
-/// A recorded attempt to be seen again. Immutable. Frame P.
+/// A recorded attempt for replay. Immutable. Frame P.
 class AttemptReplay {
  public:
   /// Reads a session and, where a crash has kept it from its score, scores it against the case. Errors: the file; a

@@ -11,7 +11,7 @@
 
 namespace trocar::attempt {
 
-/// What a replay changes on purpose: the recorded motion in other tissue. Nothing in it: as recorded.
+/// Intended differences of a replay: other tissue. Empty: as recorded.
 struct ReplayChanges {
   std::vector<std::string> overrides;  ///< On top of every table of the session: "liver.k=0.5".
   std::string tissue_file, profile;    ///< Instead of every table of the session; empty: none.
@@ -35,7 +35,7 @@ Result<Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient
 /// Whether the session was recorded in that patient. Error (exit status 2): it was not.
 Status check_patient(const storage::Session& session, const anatomy::VirtualPatient& patient);
 
-/// What a server is asked for so that a loaded scene gets these parameters.
+/// SetParameters message that gives a loaded scene these parameters.
 link::SetParameters as_command(const storage::SessionParameters& parameters);
 
 }  // namespace trocar::attempt

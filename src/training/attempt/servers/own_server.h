@@ -20,11 +20,10 @@ struct OwnServerOptions {
   std::filesystem::path flight_folder = ".";
 };
 
-/// The error that a server's last line says, as a program ends with one ("error: what — where — what to do"); none:
-/// the line is no error.
+/// Extracts the error from a server's last log line ("error: what — where — what to do"); empty if it is not an error.
 std::optional<Error> error_of_line(std::string_view line);
 
-/// A haptic server of our own, on a socket in a folder of its own. Ends with this.
+/// A haptic server started by this program, with a socket in a private folder. The destructor ends it.
 class OwnServer {
  public:
   /// Returns at once; whether it comes up, check() tells. Errors: no trocar-hapticd, it cannot be started.
@@ -33,7 +32,7 @@ class OwnServer {
   const OwnServerOptions& options() const noexcept { return options_; }
   const std::string& endpoint() const noexcept { return endpoint_; }
   int pid() const { return process_->pid(); }
-  /// Error: it has ended; what it said was wrong, else how it ended and the last line of its log.
+  /// Error if the process has ended: its error line, otherwise its exit status and last log line.
   Status check();
   /// See ServerProcess.
   bool is_held_up() { return process_ && process_->is_held_up(); }

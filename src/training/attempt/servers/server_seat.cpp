@@ -88,11 +88,11 @@ Result<State> ServerSeat::look() {
   if (view_.silent_s > std::chrono::duration<double>(patience_).count()) {
     const bool was_heard = view_.welcome.session != 0;
     const std::string why = view_.refusal.empty() ? "" : ": " + view_.refusal;
-    return fail(fmt::format("{} for {:.1f} s{}", was_heard ? "the server is gone, silent" : "no server answers, tried",
+    return fail(fmt::format("{} for {:.1f} s{}", was_heard ? "the server has not responded" : "no server has responded",
                             view_.silent_s, why),
                 endpoint_,
-                was_heard ? "look at its log; it may be started again within --patience"
-                          : "start trocar-hapticd there; with keys, both sides must know each other's");
+                was_heard ? "see its log; it can be restarted within --patience"
+                          : "start trocar-hapticd there; with keys, each side needs the other's public key");
   }
   if (state_ != State::kConnecting && view_.welcome.session != session_) {
     if (session_ != 0) ++returns_;
@@ -129,7 +129,7 @@ Result<State> ServerSeat::look() {
     enter(State::kConnecting);
   } else if (is_ours && has_fault(view_.status)) {
     return fail(fmt::format("the safety gate has latched a fault: {}", view_.status.fault), endpoint_,
-                "the server's flight record tells what came before; start the server again");
+                "see the server's flight record for the cause; restart the server");
   }
   return state_;
 }
@@ -145,7 +145,7 @@ bool ServerSeat::is_stall_to_forgive() const {
 Status ServerSeat::wait_for_control() {
   if (without_control_s_ == 0.0) without_control_s_ = in_state_s_;
   if (in_state_s_ - without_control_s_ < kControlPatience_s) return {};
-  return fail("another client has this server", endpoint_, "end it, or name another server");
+  return fail("another client controls this server", endpoint_, "end it, or name another server");
 }
 
 Status ServerSeat::reset_fault() {
@@ -154,7 +154,7 @@ Status ServerSeat::reset_fault() {
     client_.send(link::ServerCommand::kResetFault);
     reset_ = Clock::now();
   }
-  return check_time("the fault of the safety gate did not go away", "look at the server's log");
+  return check_time("the fault of the safety gate persists", "look at the server's log");
 }
 
 Status ServerSeat::connecting() {
@@ -214,8 +214,8 @@ bool ServerSeat::is_near(const telemetry::TickSample& sample, double most_mm) co
 }
 
 Status ServerSeat::placing() {
-  TROCAR_TRY_STATUS(check_time("the device did not go where the operator's hand put it",
-                               "scripted operators move simulated devices alone: trocar-hapticd --device virtual"));
+  TROCAR_TRY_STATUS(check_time("the device did not reach the pose of the operator's hand",
+                               "scripted operators work only with simulated devices: trocar-hapticd --device virtual"));
   const std::optional<telemetry::TickSample> newest = client_.newest();
   if (!newest) return {};
   link::HandTarget place = request_->place;
@@ -252,7 +252,7 @@ Status ServerSeat::starting() {
     enter(State::kSettling);
     return {};
   }
-  return check_time("the forces did not come on", "look at the server's log");
+  return check_time("the forces did not switch on", "look at the server's log");
 }
 
 void ServerSeat::settling() {

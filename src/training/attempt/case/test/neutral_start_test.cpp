@@ -124,7 +124,7 @@ TEST(NeutralStart, SaysWhereAPatientIsTooSmall) {
   grid.origin_P.z() = -0.6 * static_cast<double>(grid.size[2]);
   const auto start = find_neutral_start(the_case, transducer(), Pose::translation({0.0, -30.0, 20.0}));
   ASSERT_TRUE(start);
-  EXPECT_NE(start->note.find("begin where planned"), std::string::npos) << start->note;
+  EXPECT_NE(start->note.find("begin at the planned position"), std::string::npos) << start->note;
   EXPECT_NEAR(distance_to_line_mm(the_case.plan.line_P.a, the_case.plan.line_P.direction(), start->X_PN.p()), 0.0,
               1e-9);
 }

@@ -50,7 +50,7 @@ TEST(GunShot, OutsideOfTheBodyTakesNothing) {
   outside.depth_mm = 0.0;
   const GunShot shot = make_gun_shot(liver().the_case, outside);
   EXPECT_TRUE(shot.pieces.empty());
-  EXPECT_NE(shot_words(shot).find("outside of the body"), std::string::npos);
+  EXPECT_NE(shot_words(shot).find("outside the body"), std::string::npos);
 }
 
 TEST(GunShot, StyletGoesFirstThenTheCannulaAndBothStay) {

@@ -74,8 +74,7 @@ TEST_F(PunctureGuide, FollowingItsWordsBringsTheNeedleBack) {
 
   telemetry::TickSample inside = on_path(20.0);
   inside.tip_mm += 3.0 * headward();
-  EXPECT_TRUE(says(inside, "3.0 mm beside the path: tilt the tip towards the feet"))
-      << guide_puncture(the_case, inside);
+  EXPECT_TRUE(says(inside, "3.0 mm from the path: tilt the tip towards the feet")) << guide_puncture(the_case, inside);
 }
 
 TEST_F(PunctureGuide, WarnsOfBoneAheadBeforeAllElse) {

@@ -148,7 +148,7 @@ void AttemptLoop::watch_disk() {
   disk_banner_ = room.banner();
   if (!room.is_full() || finishes_) return;
   finishes_ = true;
-  cut_short_ = fmt::format("The disk is full ({}): the recording ended after {:.1f} s. Nothing of it is lost",
+  cut_short_ = fmt::format("The disk is full ({}): the recording ended after {:.1f} s. Nothing recorded so far is lost",
                            folder.string(), live_->active_s());
   notes_.push_back(cut_short_);
 }

@@ -60,7 +60,7 @@ TEST(AttemptReplay, NamesWhatHappenedInOrder) {
   EXPECT_GT(replay->shot()->core.target_mm, 0.0);
   EXPECT_NEAR(replay->shot()->core.target_mm, replay->outcome().core->target_mm, 1e-9);
   ASSERT_TRUE(replay->worst());
-  EXPECT_NE(replay->worst()->text.find("mm beside"), std::string::npos) << replay->worst()->text;
+  EXPECT_NE(replay->worst()->text.find("mm from the planned path"), std::string::npos) << replay->worst()->text;
 }
 
 /// A session of two ticks in which the transducer is moved, and one without.

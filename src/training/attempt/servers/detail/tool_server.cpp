@@ -96,13 +96,15 @@ std::string ToolServer::bring_back(const std::string& what, bool is_new_process)
   returns_.push_back(now);
   if (returns_.size() > kMostReturns) {
     return give_up(
-        {fmt::format("The server of the {} does not stay: {}. Resume to try again, or finish.", tool_, what), {}, {}});
+        {fmt::format("The {} server ends repeatedly: {}. Resume to try again, or end the attempt.", tool_, what),
+         {},
+         {}});
   }
   was_on_ = false;
-  interrupted_by_ = is_new_process ? what + " and was started again" : what;
-  banner_ = is_new_process ? fmt::format("{}. It is started again, and the forces come back where the {} is",
+  interrupted_by_ = is_new_process ? what + " and was restarted" : what;
+  banner_ = is_new_process ? fmt::format("{}. It is being restarted; the forces return with the {} at its last pose",
                                          sentence(what), tool_)
-                           : fmt::format("{}. The forces come back where the {} is", sentence(what), tool_);
+                           : fmt::format("{}. The forces return with the {} at its last pose", sentence(what), tool_);
   // Starting a process takes a while: the banner is to be seen before.
   is_restart_due_ = is_new_process;
   return is_new_process ? banner_ : seat_again(false);
@@ -132,7 +134,7 @@ std::string ToolServer::open_device_again() {
   const auto now = Clock::now();
   for (const link::Reply& reply : seat_->take_replies()) {
     if (reply.request != lost.asked) continue;
-    if (reply.is_done) return bring_back(fmt::format("the {} is there again", device_words()), false);
+    if (reply.is_done) return bring_back(fmt::format("the {} is connected again", device_words()), false);
     lost.asked.reset();
     lost.refused = now;
     if (!is_real_hand_) continue;
@@ -155,7 +157,7 @@ std::string ToolServer::look() {
     }
     if (!is_stopped_) return bring_back(alive.error().what, true);
     was_on_ = false;
-    banner_ = alive.error().what + "; it is started again when you resume";
+    banner_ = alive.error().what + "; it is restarted when you resume";
     return banner_;
   }
   const Result<State> state = seat_->look();
@@ -172,7 +174,7 @@ std::string ToolServer::look() {
     ticked_ = Clock::now();
     banner_.clear();
     if (!interrupted_by_.empty())
-      recovery_ = fmt::format("{}. The forces are back and the puncture goes on", sentence(interrupted_by_));
+      recovery_ = fmt::format("{}. The forces are on again and the puncture continues", sentence(interrupted_by_));
     interrupted_by_.clear();
     const link::SetParameters now = parameters();  // set while the forces were coming on
     if (now.settings != seat_->adjusted().settings) before_[seat_->send(now)] = settings_;
@@ -180,9 +182,9 @@ std::string ToolServer::look() {
   if (was_on_ && *state != State::kOn) return note_interruption();
   if (!was_on_) return {};
   if (!seat_->view().is_connected) {
-    banner_ = fmt::format("The server of the {} does not answer. It is waited for", tool_);
+    banner_ = fmt::format("The {} server does not respond. Waiting for it", tool_);
   } else if (Clock::now() - ticked_ > kFresh) {
-    banner_ = fmt::format("There is no news of the {}: this machine is too busy", tool_);
+    banner_ = fmt::format("No data from the {}: this machine is too busy", tool_);
   } else {
     banner_.clear();
   }
@@ -207,10 +209,10 @@ std::string ToolServer::note_interruption() {
   before_.clear();
   const bool is_stall = seat_->stalls() > stalls_;
   stalls_ = seat_->stalls();
-  const char* const what = is_stall ? "stood still: this machine is too busy" : "was away";
-  interrupted_by_ = fmt::format("the server of the {} {}", tool_, what);
-  if (is_stopped_) return banner_ = fmt::format("The server of the {} {}; resume when you are ready", tool_, what);
-  return banner_ = fmt::format("The server of the {} {}. Its forces come back where the {} is", tool_, what, tool_);
+  const char* const what = is_stall ? "stopped because this machine is too busy" : "was unavailable";
+  interrupted_by_ = fmt::format("the {} server {}", tool_, what);
+  if (is_stopped_) return banner_ = fmt::format("The {} server {}; resume when you are ready", tool_, what);
+  return banner_ = fmt::format("The {} server {}. The forces return with the {} at its last pose", tool_, what, tool_);
 }
 
 /// Whether a silent server only wants a processor.
@@ -225,9 +227,9 @@ std::string ToolServer::cannot_go_on(const Error& why) {
   if (is_device_lost() && !is_stopped_ && !is_real_hand_) {
     was_on_ = false;
     lost_device_.emplace();
-    return banner_ =
-               fmt::format("The {} is gone. Plug it in again and the puncture goes on where it is; or end the attempt.",
-                           device_words());
+    return banner_ = fmt::format(
+               "The {} is disconnected. Plug it in to continue the puncture at the present pose, or end the attempt.",
+               device_words());
   }
   if (is_stopped_ || (is_real_hand_ && is_heard)) {
     was_on_ = false;
@@ -236,12 +238,12 @@ std::string ToolServer::cannot_go_on(const Error& why) {
       const bool is_gone = seat_->view().status.fault == to_string(telemetry::GateFault::kDeviceLost);
       return banner_ = fmt::format("{}, which moves the {}, {}, then resume the forces (Space).", device_words(),
                                    tool_ == "probe" ? "transducer" : tool_,
-                                   is_gone ? "is gone. Plug it in again" : "is silent. Look after its cable");
+                                   is_gone ? "is disconnected. Plug it in again" : "sends no data. Check its cable");
     }
     return banner_ = why.what + "; resume when you are ready";
   }
   if (!is_heard && is_slow()) {
-    banner_ = fmt::format("The server of the {} does not answer: it gets no processor. It is waited for", tool_);
+    banner_ = fmt::format("The {} server does not respond because it gets no processor time. Waiting for it", tool_);
     return {};
   }
   // A server that answers has a fault, which the next seat resets; one that does not is ended.
@@ -267,7 +269,7 @@ std::string ToolServer::doing() const {
     case State::kOn:
       break;
   }
-  return fmt::format("turning on the forces of the {}", tool_);
+  return fmt::format("switching on the forces of the {}", tool_);
 }
 
 std::vector<link::NumberedSample> ToolServer::take_samples() {
