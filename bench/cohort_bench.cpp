@@ -1,5 +1,5 @@
-// A cohort of scripted novices: what their attempts score, and what the path constraint does to their hand.
-// docs/validation.md, The novice cohort.
+// A cohort of scripted novices: their scores, and the effect of the path constraint on their hands. docs/validation.md,
+// The novice cohort.
 
 #include <fmt/format.h>
 
@@ -23,9 +23,9 @@ struct CohortPatient {
   std::shared_ptr<const anatomy::VirtualPatient> patient;
 };
 
-/// What the path constraint did in one attempt.
+/// Effect of the path constraint in one attempt.
 struct ConstraintFigures {
-  double inward_n = 0.0;   ///< Largest part along the needle's axis into the body.
+  double inward_n = 0.0;   ///< Largest component along the needle's axis into the body.
   double step_n = 0.0;     ///< Largest change from one tick to the next.
   double largest_n = 0.0;  ///< Largest force.
 };
@@ -48,7 +48,7 @@ Result<CohortPatient> build(const io::PatientFiles& files, const Options& option
   return CohortPatient{files.name, std::make_shared<const anatomy::VirtualPatient>(std::move(patient))};
 }
 
-/// Adds the patients of the real CTs that are there; says which are not.
+/// Adds the available patients of real CTs and prints the missing ones.
 Status add_real_patients(std::vector<CohortPatient>& patients, const Options& options) {
   const auto say_missing = [&](const fs::path& path) {
     if (options.print) options.print(fmt::format("left out, there is no {}\n", path.string()));
@@ -90,7 +90,7 @@ Result<std::vector<CohortPatient>> cohort_patients(const Options& options) {
 
 /// All novices on one patient: the same plan, seeds 1 to kNovices of operator and friction.
 Status add_cohort(std::vector<CaseResult>& results, const CohortPatient& on, const Options& options) {
-  TROCAR_TRY(const attempt::Case the_case, attempt::prepare_case(on.patient, {}, options.progress));
+  TROCAR_TRY(const cases::Case the_case, cases::prepare_case(on.patient, {}, options.progress));
   const TemporaryFolder folder;
   std::vector<double> scores, inward_n, step_n, largest_n;
   int reached = 0;

@@ -1,5 +1,5 @@
-// What the two events that users ask for feel like on every device: the needle on bone, and the loss of resistance
-// behind the ligamentum flavum. docs/validation.md, Bone and loss of resistance by device.
+// The two events of special interest to users on every device: contact of the needle with bone, and the loss of
+// resistance behind the ligamentum flavum. docs/validation.md, Bone and loss of resistance by device.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace {
 constexpr std::array kModels{haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
                              haptics::ForceModel::kCombined};
 constexpr double kBone_mm = 25.0;
-constexpr double kPastBone_mm = 10.0;  // the hand wants the tip this far in
+constexpr double kPastBone_mm = 10.0;  // final target depth of the tip
 constexpr double kFlavum_mm = 30.0;
 constexpr double kFlavumThickness_mm = 4.0;  // [assumed] 3..5
 constexpr double kPastFlavum_mm = 25.0;
@@ -69,13 +69,13 @@ Status add_flavum(std::vector<CaseResult>& results, const Setting& setting,
   const haptics::LossOfResistance loss = haptics::judge_loss_of_resistance(samples, layer);
   const std::string name = fmt::format("contact/flavum/{}/{}", setting.device.name, to_string(setting.model));
   if (!loss.has_given_way) {
-    add(results, name, "n", 0.0, "did not give way");
+    add(results, name, "n", 0.0, "not punctured");
     return {};
   }
   add(results, name, "n", loss.peak_n, "peak on the device");
   add(results, name + "/drop", "n", loss.drop_n);
   add(results, name + "/drop-time", "ms", 1000.0 * loss.drop_time_s, "10 to 90 %");
-  add(results, name + "/jump", "mm", loss.jump_mm, "needle beyond the hand's way within 0.3 s");
+  add(results, name + "/jump", "mm", loss.jump_mm, "needle travel beyond the hand within 0.3 s");
   return {};
 }
 

@@ -1,5 +1,4 @@
-// The force along one needle path as a curve, by each force model: the layered patients, or any patient with a path of
-// its own.
+// Force along one needle path for each force model: on the layered patients, or on any patient with its own path.
 
 #include <fmt/format.h>
 
@@ -7,9 +6,9 @@
 #include <map>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/guide/needle_geometry.h"
 #include "bench/benchmarks.h"
 #include "bench/curve_output.h"
+#include "cases/needle_geometry.h"
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "tasks/needle.h"
@@ -18,11 +17,11 @@ namespace trocar::bench {
 namespace {
 
 constexpr double kSpeed_mm_per_s = 5.0;
-constexpr double kAfter_mm = 10.0;  ///< At most, for the tip to arrive.
+constexpr double kAfter_mm = 10.0;  ///< Maximum time for the tip to arrive.
 constexpr haptics::ForceModel kModels[] = {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
                                            haptics::ForceModel::kCombined};
 
-/// A patient and the needle that goes into it.
+/// A patient and its needle.
 struct Way {
   std::string patient;
   std::string needle;
@@ -39,7 +38,7 @@ bool is_embedded(const std::string& name) {
   return std::any_of(all.begin(), all.end(), [&](const anatomy::PhantomInfo& info) { return info.name == name; });
 }
 
-/// "layers-lumbar" -> "lumbar"; other names keep only what a file's name may have.
+/// "layers-lumbar" -> "lumbar"; of other names, only characters valid in file names are kept.
 std::string short_name(std::string name) {
   constexpr std::string_view kLayers = "layers-";
   if (name.starts_with(kLayers)) name.erase(0, kLayers.size());
@@ -80,7 +79,7 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
   if (needle == tables.needles.end())
     return fail("there is no needle of that name", needle_name, "use a needle of data/needles.toml");
 
-  attempt::PrescribedMotion motion;
+  cases::PrescribedMotion motion;
   motion.line_P = patient->paths.front().line_P;
   motion.speed_mm_per_s = kSpeed_mm_per_s;
   motion.after_mm = kAfter_mm;
@@ -93,11 +92,11 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
     haptics::HapticOptions haptic;
     haptic.force_model = model;
     haptic.has_weight_compensation = false;
-    const haptics::NeedleGeometry geometry = attempt::needle_geometry(*needle);
+    const haptics::NeedleGeometry geometry = cases::needle_geometry(*needle);
     TROCAR_TRY(const auto scene, haptics::make_haptic_scene(patient, tables.tissues, geometry, {}, haptic));
-    if (path.pieces.empty()) path.pieces = attempt::pieces_along(*scene, tables.tissues, with_rest);
-    NamedCurve curve{to_string(model), attempt::force_curve(*scene, motion), {}};
-    curve.events = attempt::find_curve_events(curve.points, tables.tissues);
+    if (path.pieces.empty()) path.pieces = cases::pieces_along(*scene, tables.tissues, with_rest);
+    NamedCurve curve{to_string(model), cases::force_curve(*scene, motion), {}};
+    curve.events = cases::find_curve_events(curve.points, tables.tissues);
     path.curves.push_back(std::move(curve));
   }
   return path;
@@ -109,12 +108,12 @@ Figures single(double value) {
   return figures;
 }
 
-/// A line a layer that gave way, in order; one that gives way again is numbered. For programs drop and time of the drop
-/// are cases of their own; people read them in the note.
+/// One line per puncture, in order; repeated punctures are numbered. In JSON, drop and drop time are separate cases; in
+/// text they are in the note.
 void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is_for_people) {
   for (const NamedCurve& curve : path.curves) {
     std::map<std::string, int> times;
-    for (const attempt::CurveEvent& event : curve.events) {
+    for (const cases::CurveEvent& event : curve.events) {
       const int number = ++times[event.layer];
       std::string name = fmt::format("curves/{}/{}/{}", path.name, curve.name, event.layer);
       if (number > 1) name += fmt::format("-{}", number);

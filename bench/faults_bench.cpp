@@ -1,5 +1,5 @@
-// Loops of 1 to 1000 ms on every simulated device while a hand moves it in tissue: how soon the force is gone, how
-// large it was, how far the stylus moved. docs/validation.md, Slow loops.
+// Loops of 1 to 1000 ms on every simulated device while a hand moves it in tissue: time until the force is zero, its
+// maximum, motion of the stylus. docs/validation.md, Slow loops.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array kSlow_ms{1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 30.0, 50.0, 100.0, 200.0, 240.0, 400.0, 1000.0};
 
-/// The flat patient under the room: z of the room is up, the needle hangs down over the skin.
+/// The flat patient below the room: z of the room points up, the needle points down at the skin.
 link::LoadScene flat_request() {
   link::LoadScene request;
   request.patient = "flat";
@@ -46,7 +46,7 @@ void print_row(const Options& options, const std::string& device, double slow_ms
                             slow.after_n, slow.travel_mm));
 }
 
-/// The worst of all slow loops of a device.
+/// The worst slow loop of a device.
 void add_results(std::vector<CaseResult>& results, const std::string& device,
                  const std::vector<server::SlowLoopOutcome>& outcomes, const server::SlowLoopOutcome& healthy) {
   const auto add = [&](const char* what, const char* unit, auto&& value, std::string note) {

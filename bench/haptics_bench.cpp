@@ -1,5 +1,5 @@
-// One haptic tick, call by call, on its way through the embedded patient; a fixed piece of arithmetic interleaved, so
-// that figures of noisy machines can be held against it.
+// One haptic tick, call by call, in the embedded patient, interleaved with a fixed calculation that makes figures of
+// noisy machines comparable.
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <memory>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
-#include "attempt/guide/needle_geometry.h"
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
+#include "cases/needle_geometry.h"
+#include "cases/prepare_case.h"
 #include "haptics/tick.h"
 
 namespace trocar::bench {
@@ -27,8 +27,8 @@ struct Round {
   std::vector<double> calibration_us;
 };
 
-/// In along the planned path and out again, slightly beside and askew so that the shaft is bent; a calibration after
-/// each tick.
+/// In along the planned path and out again, with an offset and a tilt that bend the shaft; a calibration after each
+/// tick.
 Round measure_round(const haptics::HapticScene& scene, const Segment& path_P) {
   Round round;
   auto state = std::make_unique<haptics::HapticState>();  // some hundred kB
@@ -49,7 +49,7 @@ Round measure_round(const haptics::HapticScene& scene, const Segment& path_P) {
   return round;
 }
 
-/// The best of the rounds, and how it stands to the calibration beside it.
+/// The best of the rounds, and its ratio to the calibration.
 struct Best {
   Figures tick, calibration;
   std::size_t calls = 0;
@@ -84,9 +84,9 @@ Result<std::vector<CaseResult>> run_haptics_benchmark() {
   anatomy::PhantomResolution resolution;
   resolution.size = {512, 512, 119};
   TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, resolution));
-  TROCAR_TRY(const attempt::Case the_case,
-             attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
-  const haptics::NeedleGeometry needle = attempt::needle_geometry(the_case.needle);
+  TROCAR_TRY(const cases::Case the_case,
+             cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
+  const haptics::NeedleGeometry needle = cases::needle_geometry(the_case.needle);
 
   std::vector<CaseResult> results;
   constexpr std::array<std::pair<haptics::ForceModel, const char*>, 3> kCases{

@@ -13,7 +13,7 @@
 namespace trocar::bench {
 namespace {
 
-/// Nearest rank: the smallest value that at least `fraction` of all do not exceed.
+/// Nearest rank: the smallest value that at least `fraction` of all values do not exceed.
 double quantile(const std::vector<double>& sorted, double fraction) {
   const auto rank = static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(sorted.size())));
   return sorted[std::max<std::size_t>(rank, 1) - 1];

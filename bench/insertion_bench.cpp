@@ -1,5 +1,5 @@
-// The forces of an insertion into the embedded patient, for docs/validation.md: peaks by speed and profile, drop,
-// second insertion.
+// Forces of an insertion into the embedded patient, for docs/validation.md: peaks by speed and profile, drop, second
+// insertion.
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
-#include "attempt/guide/needle_geometry.h"
 #include "bench/harness.h"
+#include "cases/needle_geometry.h"
+#include "cases/prepare_case.h"
 #include "haptics/tick.h"
 
 namespace trocar::bench {
@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kDt_s = 0.001;
 
-std::shared_ptr<const haptics::HapticScene> make_scene(const attempt::Case& the_case) {
-  const haptics::NeedleGeometry needle = attempt::needle_geometry(the_case.needle);
+std::shared_ptr<const haptics::HapticScene> make_scene(const cases::Case& the_case) {
+  const haptics::NeedleGeometry needle = cases::needle_geometry(the_case.needle);
   const auto scene = haptics::make_haptic_scene(the_case.patient, the_case.tissues, needle);
   return scene ? *scene : nullptr;
 }
@@ -36,7 +36,7 @@ std::vector<telemetry::TickSample> drive(haptics::HapticState& state, const hapt
   }
   return samples;
 }
-/// Peak at each puncture, and how long the resistance takes to lose half of its drop within the next 0.2 s.
+/// Peak at each puncture, and the time in which the resistance loses half of its drop within the next 0.2 s.
 void add_punctures(std::vector<CaseResult>& results, const anatomy::TissueTable& tissues,
                    const std::vector<telemetry::TickSample>& samples, const std::string& name) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -79,7 +79,7 @@ double mean_resistance_n(const std::vector<telemetry::TickSample>& samples, doub
   return count > 0 ? sum / count : 0.0;
 }
 
-/// Depth at which the last layer of a way gave way.
+/// Depth of the last puncture on a path.
 double last_puncture_mm(const std::vector<telemetry::TickSample>& samples) {
   double depth = 0.0;
   for (const telemetry::TickSample& sample : samples) {
@@ -88,8 +88,8 @@ double last_puncture_mm(const std::vector<telemetry::TickSample>& samples) {
   return depth;
 }
 
-/// The same path twice: the mean resistance in the organ, once the coupling has relaxed behind its surface.
-void add_second_insertion(std::vector<CaseResult>& results, const attempt::Case& the_case,
+/// The same path twice: mean resistance in the organ, after the relaxation of the coupling behind its surface.
+void add_second_insertion(std::vector<CaseResult>& results, const cases::Case& the_case,
                           const haptics::HapticScene& scene) {
   haptics::HapticState state;
   const Segment& path = the_case.plan.line_P;
@@ -118,9 +118,9 @@ Result<std::vector<CaseResult>> run_insertion_benchmark() {
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
   std::vector<CaseResult> results;
   for (const char* profile : {"paper-a", "tented"}) {
-    attempt::CaseOptions options;
+    cases::CaseOptions options;
     options.profile = profile;
-    TROCAR_TRY(const attempt::Case the_case, attempt::prepare_case(patient, options));
+    TROCAR_TRY(const cases::Case the_case, cases::prepare_case(patient, options));
     const auto scene = make_scene(the_case);
     if (!scene) return fail("the scene could not be built", "bench insertion", "check data/tissues.toml");
     for (const double speed : {2.0, 10.0, 50.0}) {

@@ -1,5 +1,5 @@
-// How like a recorded sweep of a liver the simulated pictures are: gray levels, level against depth, size of the
-// speckle; and both next to each other.
+// Similarity of simulated images to a recorded sweep of a liver: gray levels, level against depth, speckle size; and a
+// comparison image.
 
 #include <fmt/format.h>
 
@@ -22,18 +22,18 @@ namespace {
 
 constexpr const char* kTransducer = "liver-sweep";
 constexpr const char* kView = "diaphragm";
-/// Of the recorded pictures (739 x 593 pixels): size of a pixel, and the pixel at the middle of the face; fitted to the
-/// fan's edges.
+/// Geometry of the recorded images (739 x 593 pixels): pixel size, and the pixel at the centre of the face; fitted to
+/// the edges of the fan.
 constexpr double kPixel_mm = 0.3148;
 constexpr double kFaceColumn = 369.6, kFaceRow = 22.3;
 constexpr int kColumns = 739, kRows = 593;
-constexpr std::size_t kEvery = 10;  ///< Of the recorded frames, one in so many is measured.
-constexpr int kSimulated = 14;      ///< Frames.
+constexpr std::size_t kEvery = 10;  ///< Interval of the measured frames of the recording.
+constexpr int kSimulated = 14;      ///< Number of frames.
 constexpr double kSweep_mm = 40.0;  ///< Along elevation.
 
 struct Pictures {
   ultrasound::PictureFigures figures;
-  volume::RgbImage shown;  ///< One of them.
+  volume::RgbImage shown;  ///< One of the images.
 };
 
 volume::RgbImage rgb_of(std::span<const std::uint8_t> grays, int columns, int rows) {
@@ -124,17 +124,18 @@ const ultrasound::PictureFigures::Speckle* speckle_at(const ultrasound::PictureF
   return nullptr;
 }
 
-/// Recorded and simulated in two columns.
+/// Prints recorded and simulated values in two columns.
 std::string table_of(const ultrasound::PictureFigures& real, const ultrasound::PictureFigures& simulated) {
   std::string text = fmt::format("\ngray percentiles (recorded | simulated)\n");
   for (const int percent : {5, 10, 25, 50, 75, 90, 95, 99})
     text +=
         fmt::format("  {:>3} % {:>5} | {:>3}\n", percent, ultrasound::gray_percentile(real.histogram, percent / 100.0),
                     ultrasound::gray_percentile(simulated.histogram, percent / 100.0));
-  text += fmt::format("  mean {:.1f} | {:.1f}; moved {:.1f} grays a pixel, Bhattacharyya {:.3f}\n",
-                      ultrasound::mean_gray(real.histogram), ultrasound::mean_gray(simulated.histogram),
-                      ultrasound::earth_mover_distance(real.histogram, simulated.histogram),
-                      ultrasound::bhattacharyya_distance(real.histogram, simulated.histogram));
+  text +=
+      fmt::format("  mean {:.1f} | {:.1f}; earth mover's distance {:.1f} gray values per pixel, Bhattacharyya {:.3f}\n",
+                  ultrasound::mean_gray(real.histogram), ultrasound::mean_gray(simulated.histogram),
+                  ultrasound::earth_mover_distance(real.histogram, simulated.histogram),
+                  ultrasound::bhattacharyya_distance(real.histogram, simulated.histogram));
   text += "\ndepth mm: gray mean/median/p99 (recorded | simulated)\n";
   for (std::size_t i = 0; i < std::min(real.levels.size(), simulated.levels.size()); ++i)
     text += fmt::format("  {:>4.0f}  {:>5.1f} {:>3.0f} {:>3.0f} | {:>5.1f} {:>3.0f} {:>3.0f}\n",

@@ -1,5 +1,5 @@
-// What a fingertip and a transducer feel on the embedded patient, in newtons for docs/validation.md, and what a tick of
-// theirs costs.
+// Forces of a fingertip and a transducer on the embedded patient in newtons, for docs/validation.md, and the cost of
+// their tick.
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include <numbers>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
+#include "cases/prepare_case.h"
 #include "haptics/tick.h"
 #include "volume/sampling.h"
 
@@ -29,7 +29,7 @@ Figures one(double value) {
   return figures;
 }
 
-/// A place on the skin: foot point and outward normal.
+/// A position on the skin: foot point and outward normal.
 struct Place {
   Vec3 p_P;
   Vec3 normal_P;
@@ -45,7 +45,8 @@ Place on_skin(const anatomy::VirtualPatient& patient, Vec3 p_P) {
   return {p_P, normal};
 }
 
-/// The tool's +y into the skin, turned by `tilt_rad` about its elevation axis; x across the body's axis.
+/// The tool's +y points into the skin, rotated by `tilt_rad` about the elevation axis; x is perpendicular to the body's
+/// axis.
 Pose pose_on(const Place& place, double height_mm, double tilt_rad) {
   const Vec3 y = -place.normal_P;
   const Vec3 z = (Vec3::UnitZ() - y * y.z()).normalized();
@@ -57,12 +58,12 @@ Pose pose_on(const Place& place, double height_mm, double tilt_rad) {
 }
 
 struct Press {
-  double at_depth_n = 0.0;   ///< Force on the finger at the wanted indentation; NaN: it was not reached.
-  double at_force_mm = 0.0;  ///< Indentation at the wanted force.
-  double torque_nmm = 0.0;   ///< About the tool's elevation axis, at the wanted indentation.
+  double at_depth_n = 0.0;   ///< Force on the finger at the target indentation; NaN: not reached.
+  double at_force_mm = 0.0;  ///< Indentation at the target force.
+  double torque_nmm = 0.0;   ///< About the tool's elevation axis, at the target indentation.
 };
 
-/// Presses the device straight in until the shown tool has indented `depth_mm` and bears `force_n`.
+/// Presses the device straight in until the virtual tool has indented `depth_mm` and the force is `force_n`.
 Press press(const haptics::HapticScene& scene, const Place& place, double depth_mm, double force_n,
             double tilt_rad = 0.0) {
   constexpr double kWay_mm = 60.0;
@@ -86,7 +87,7 @@ Press press(const haptics::HapticScene& scene, const Place& place, double depth_
 constexpr double kFingerDepth_mm = 5.0;
 constexpr double kFingerForce_n = 5.0;
 
-/// Secant stiffness at the force, or at the depth: both in the note.
+/// Secant stiffness at the force or the depth; both are in the note.
 CaseResult finger_case(const std::string& name, const Press& pressed, const std::string& where) {
   return {"palpation/" + name,
           "n",
@@ -96,7 +97,7 @@ CaseResult finger_case(const std::string& name, const Press& pressed, const std:
                       pressed.at_force_mm, kFingerForce_n / pressed.at_force_mm)};
 }
 
-/// Presses along a line over the skin: the hardest and the softest place, and their ratio.
+/// Presses along a line on the skin: the stiffest and the softest position, and their ratio.
 void add_line(std::vector<CaseResult>& results, const haptics::HapticScene& scene, const Vec3& from_P, const Vec3& to_P,
               const std::string& hard, const std::string& soft) {
   constexpr double kStep_mm = 2.0;
@@ -142,7 +143,7 @@ Result<std::shared_ptr<const haptics::HapticScene>> scene_for(
   return haptics::make_haptic_scene(patient, tissues, {}, {}, options);
 }
 
-/// A block of soft tissue (5 kPa) with a hard ball (60 kPa) whose top lies 10 mm below the skin.
+/// A block of soft tissue (5 kPa) with a stiff ball (60 kPa), whose top is 10 mm below the skin.
 Status add_tumour(std::vector<CaseResult>& results, const anatomy::TissueTable& table) {
   anatomy::TissueTable tissues = table;
   const auto soft = tissues.find_tissue("liver");
@@ -155,7 +156,7 @@ Status add_tumour(std::vector<CaseResult>& results, const anatomy::TissueTable& 
   patient->name = "tumour";
   patient->label_table.labels = {{1, "soft", "liver"}, {2, "tumour", "liver_lesion"}};
   volume::GridGeometry geometry;
-  geometry.size = {121, 71, 61};  // skin at y = 0, as the front of a supine patient
+  geometry.size = {121, 71, 61};  // skin at y = 0, the front of a supine patient
   geometry.origin_P = {-30.0, -10.0, -30.0};
   patient->labels = volume::LabelGrid(geometry, 0);
   patient->skin_distance_mm = volume::FloatGrid(geometry, 0.0F);
@@ -194,7 +195,7 @@ void add_probe(std::vector<CaseResult>& results, const haptics::HapticScene& sce
                                  tilted.at_depth_n)});
 }
 
-/// The tool slides over the skin, pressed in; a calibration after each tick.
+/// Slides the pressed tool over the skin; a calibration after each tick.
 void add_time(std::vector<CaseResult>& results, const haptics::HapticScene& scene, const Vec3& from_P, const Vec3& to_P,
               double depth_mm, const std::string& name) {
   constexpr int kTicks = 5000;
@@ -238,7 +239,7 @@ void add_time(std::vector<CaseResult>& results, const haptics::HapticScene& scen
 }  // namespace
 
 Result<std::vector<CaseResult>> run_palpation_benchmark() {
-  TROCAR_TRY(const attempt::Case tables, attempt::load_tables({}));
+  TROCAR_TRY(const cases::Case tables, cases::load_tables({}));
   TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, {{512, 512, 119}}));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
   TROCAR_TRY(const auto finger, scene_for(patient, tables.tissues, haptics::Tool::kFinger));

@@ -1,5 +1,5 @@
-// Freehand reconstruction: a made sweep, and real ones where the test data lies beside the checkout, with how near the
-// spine phantom comes to PLUS' own volume.
+// Freehand reconstruction: a synthetic sweep, and recorded ones if the test data are next to the checkout, with the
+// similarity of the spine phantom to PLUS' volume.
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr int kRounds = 5;
 
-/// 100 pictures of 640 by 480 pixels of 0.3 mm in a tilting sweep, full of speckle.
+/// 100 images of 640 by 480 pixels of 0.3 mm in a tilting sweep, filled with speckle.
 ultrasound::TrackedSequence made_sweep() {
   ultrasound::TrackedSequence sequence;
   sequence.columns = 640;
@@ -45,7 +45,7 @@ std::string note_of(const ultrasound::FreehandVolume& volume) {
                      volume.holes_filled);
 }
 
-/// Times one reconstruction and gives its volume.
+/// Times one reconstruction and returns its volume.
 Result<ultrasound::FreehandVolume> measure(const std::string& name, const ultrasound::TrackedSequence& sequence,
                                            const io::PlusConfig& config, std::vector<CaseResult>& results) {
   TROCAR_TRY(ultrasound::FreehandVolume volume,

@@ -2,15 +2,15 @@
 
 namespace trocar::bench {
 
-// A new benchmark: its function in benchmarks.h, a line here.
+// To add a benchmark, add its function to benchmarks.h and a line here.
 const std::vector<Benchmark>& all_benchmarks() {
   static const std::vector<Benchmark> benchmarks{
-      {"slice", "trilinear slices of a CT volume on one core, VTK's on two beside them", run_slice_benchmark},
-      {"haptics", "one haptic tick, call by call, beside a fixed piece of arithmetic", run_haptics_benchmark},
+      {"slice", "trilinear slices of a CT volume on one core, compared with VTK on two cores", run_slice_benchmark},
+      {"haptics", "one haptic tick, call by call, with a fixed calculation for comparison", run_haptics_benchmark},
       {"session", "30 simulated seconds at 1 kHz with recording, and the whole process", run_session_benchmark},
       {"insertion", "forces into the embedded patient: peaks by speed, drops, second insertion",
        run_insertion_benchmark},
-      {"palpation", "fingertip and transducer on the skin: newtons by place, and one tick", run_palpation_benchmark},
+      {"palpation", "fingertip and transducer on the skin: forces by position, and one tick", run_palpation_benchmark},
       {"paths",
        "forces of partly against fully segmented data along planned paths",
        run_paths_benchmark,
@@ -41,7 +41,7 @@ const std::vector<Benchmark>& all_benchmarks() {
        run_servers_benchmark,
        {"--seconds", "--rate", "--force-model"}},
       {"likeness",
-       "simulated ultrasound of the liver beside a recorded sweep: gray levels, speckle; a picture with --out",
+       "simulated ultrasound of the liver compared with a recorded sweep: gray levels, speckle; an image with --out",
        run_likeness_benchmark,
        {"--patient", "--sequence", "--out"}},
   };

@@ -1,5 +1,5 @@
-// Two live servers (a needle with the full model, a transducer on the skin), a client that draws, and one more busy
-// process: what the servers' loops get done (docs/validation.md, Servers).
+// Two live servers (a needle with the full model, a transducer on the skin), a drawing client and one more busy
+// process: timing of the servers' loops (docs/validation.md, Servers).
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -16,9 +16,9 @@
 #include <thread>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/scene_request.h"
 #include "attempt/hands/probe_hand.h"
 #include "bench/benchmarks.h"
+#include "cases/scene_request.h"
 #include "core/files/temporary_folder.h"
 #include "link/client/haptic_client.h"
 #include "link/client/server_process.h"
@@ -31,11 +31,11 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPatience = 60s;
-constexpr auto kFrame = 16ms;  // a client draws at most 60 times a second
+constexpr auto kFrame = 16ms;  // a client draws at most 60 frames per second
 constexpr int kSlicePixels = 512;
 constexpr double kSlice_mm = 200.0;
 
-/// A process that does nothing but arithmetic until it is ended.
+/// A process that only calculates until it is ended.
 class BusyProcess {
  public:
   BusyProcess() : pid_(::fork()) {
@@ -56,12 +56,12 @@ class BusyProcess {
   pid_t pid_;
 };
 
-/// A server of its own and the client that holds it.
+/// A server process and its client.
 struct Station {
   std::string tool;
   link::ServerProcess process;
   link::HapticClient client;
-  double resident_mib = 0.0;  ///< When the measurement began.
+  double resident_mib = 0.0;  ///< Time of the start of the measurement.
 };
 
 Result<Station> open_station(const std::filesystem::path& program, const TemporaryFolder& folder,
@@ -82,7 +82,7 @@ Result<Station> open_station(const std::filesystem::path& program, const Tempora
   return Station{tool, std::move(process), std::move(client), 0.0};
 }
 
-/// In and out along the path, 12 s a cycle, with a little tremor.
+/// In and out along the path, 12 s per cycle, with a small tremor.
 link::HandTarget needle_hand(const Segment& line_P, double time_s) {
   constexpr double kCycle_s = 12.0, kTremor_hz = 9.0, kTremor_mm = 0.1, kOutside_mm = 10.0;
   const double swing = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * time_s / kCycle_s);
@@ -95,8 +95,8 @@ link::HandTarget needle_hand(const Segment& line_P, double time_s) {
   return hand;
 }
 
-/// Three slices through the tip, as a window with slice viewers draws them. Gives their sum, so that it is not left
-/// out.
+/// Computes three slices through the tip, as in a window with slice viewers. Returns their sum, so that the compiler
+/// keeps the work.
 double draw_frame(const volume::CtGrid& ct, const Vec3& tip_P, const Vec3& axis_P) {
   const Vec3 across = axis_P.unitOrthogonal();
   const std::array<std::pair<Vec3, Vec3>, 3> planes{
@@ -113,7 +113,7 @@ double draw_frame(const volume::CtGrid& ct, const Vec3& tip_P, const Vec3& axis_
   return sum;
 }
 
-/// Resident memory of a process, MiB; 0 where it cannot be read.
+/// Resident memory of a process, MiB; 0 if it cannot be read.
 double resident_mib(int pid) {
   std::ifstream status(fmt::format("/proc/{}/statm", pid));
   std::uint64_t size = 0, resident = 0;
@@ -157,13 +157,13 @@ void add_results(Station& station, double rate_hz, std::vector<CaseResult>& resu
                                 fmt::format("{:.1f} MiB at the end", now_mib)));
 }
 
-/// Time that a spinning thread loses in one piece.
+/// Longest interruption of a spinning thread.
 struct Holes {
   realtime::LatencyHistogram histogram;
   std::int64_t lost_ns = 0;
 };
 constexpr std::int64_t kWatch_ns = 3'000'000'000;
-constexpr std::int64_t kHole_ns = 50'000;  // no tick and no interrupt takes so long
+constexpr std::int64_t kHole_ns = 50'000;  // longer than any tick or interrupt
 
 Holes spin() {
   Holes holes;
@@ -177,8 +177,7 @@ Holes spin() {
   return holes;
 }
 
-/// What the machine itself does to a thread that never waits while two cores are busy: a loop cannot be better than
-/// that.
+/// Measures the interruptions of a thread that never waits while two cores are busy: a lower bound for every loop.
 CaseResult machine_holes(double rate_hz) {
   std::thread other([] { spin(); });
   const Holes holes = spin();
@@ -191,13 +190,13 @@ CaseResult machine_holes(double rate_hz) {
   return result;
 }
 
-/// Draws and moves the hands until the time is over; frames drawn.
-int play(std::array<Station*, 2> stations, const attempt::Case& the_case, double seconds, const Progress& progress) {
+/// Draws and moves the hands until the end time; returns the number of frames.
+int play(std::array<Station*, 2> stations, const cases::Case& the_case, double seconds, const Progress& progress) {
   const attempt::ProbeHand probe(*the_case.patient, the_case.plan.line_P);
   const Segment& line_P = the_case.plan.line_P;
   const auto start = std::chrono::steady_clock::now();
   const auto time_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  // Hands move by a thread of their own, 200 times a second, as a scripted operator would.
+  // A separate thread moves the hands 200 times per second, as a scripted operator would.
   std::atomic<bool> is_done{false};
   std::thread hands([&] {
     while (!is_done) {
@@ -229,8 +228,7 @@ int play(std::array<Station*, 2> stations, const attempt::Case& the_case, double
   return frames;
 }
 
-Status measure(const attempt::Case& the_case, const Options& options, double rate_hz,
-               std::vector<CaseResult>& results) {
+Status measure(const cases::Case& the_case, const Options& options, double rate_hz, std::vector<CaseResult>& results) {
   results.push_back(machine_holes(rate_hz));
   TROCAR_TRY(const std::filesystem::path program, link::find_server_program());
   const TemporaryFolder folder;
@@ -239,11 +237,11 @@ Status measure(const attempt::Case& the_case, const Options& options, double rat
   const attempt::ProbeHand probe(*the_case.patient, the_case.plan.line_P);
   const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(kPatience);
   for (Station* station : {&needle, &probe_station}) {
-    attempt::SceneChoice choice;
+    cases::SceneChoice choice;
     choice.tool = station->tool;
     choice.force_model = to_string(options.force_model.value_or(haptics::ForceModel::kProxy));
     choice.patient_source = "abdomen";
-    link::LoadScene request = attempt::scene_request(the_case, choice);
+    link::LoadScene request = cases::scene_request(the_case, choice);
     request.patient_hash.clear();
     if (station->tool == "probe") request.X_PW = probe.room(request.X_PW);
     TROCAR_TRY_STATUS(station->client.ask(request, patience));
@@ -269,8 +267,8 @@ Status measure(const attempt::Case& the_case, const Options& options, double rat
 
 Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options) {
   TROCAR_TRY(anatomy::VirtualPatient abdomen, anatomy::generate_phantom("abdomen"));
-  TROCAR_TRY(const attempt::Case the_case,
-             attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(abdomen)), {}));
+  TROCAR_TRY(const cases::Case the_case,
+             cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(abdomen)), {}));
   std::vector<CaseResult> results;
   for (const double rate_hz : options.rates_hz) {
     TROCAR_TRY_STATUS(measure(the_case, options, rate_hz, results));

@@ -1,4 +1,4 @@
-// A whole attempt faster than real time: the closed loop with its recording, and the whole process.
+// A complete attempt faster than real time: the closed loop with recording, and the whole process.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSimulated_s = 30.0;
-constexpr double kOutside_mm = 10.0;  // where make_constant_velocity starts and ends
+constexpr double kOutside_mm = 10.0;  // start and end of make_constant_velocity
 
 /// Runs this program again with other arguments and waits for it.
 Status run_self(std::vector<std::string> arguments) {
@@ -43,10 +43,10 @@ Result<std::vector<CaseResult>> run_session_benchmark() {
   TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen"));
   const fs::path patient_folder = folder.path() / "patient";
   TROCAR_TRY_STATUS(io::save_patient(generated, {}, patient_folder));
-  TROCAR_TRY(const attempt::Case the_case,
-             attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
+  TROCAR_TRY(const cases::Case the_case,
+             cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(generated)), {}));
 
-  // In and out along the path in just 30 simulated seconds.
+  // In and out along the path in exactly 30 simulated seconds.
   const double speed = 2.0 * (the_case.plan.line_P.length_mm() + kOutside_mm) / kSimulated_s;
   attempt::RunOptions options;
   options.operator_name = fmt::format("constant-velocity:{:.6f}", speed);

@@ -19,8 +19,8 @@ namespace {
 
 constexpr int kSide = 256;     ///< Voxels along each axis of the volume.
 constexpr int kPixels = 512;   ///< Pixels along each side of the slice.
-constexpr int kRounds = 5;     ///< Ours and the peer's in turn; the best median counts, as machines are noisy.
-constexpr int kRepeats = 100;  ///< Slices a round.
+constexpr int kRounds = 5;     ///< Ours and the peer's alternate; the best median counts, because machines are noisy.
+constexpr int kRepeats = 100;  ///< Slices per round.
 constexpr int kPeerThreads = 2;
 constexpr float kOutside = -1024.0F;
 
@@ -33,9 +33,9 @@ volume::CtGrid make_volume() {
   return ct;
 }
 
-/// A slice through the middle of the volume that lies inside it, spanned by two directions square to each other.
+/// A slice through the centre of the volume and completely inside it, spanned by two perpendicular directions.
 volume::SlicePlane plane_through_middle(const Vec3& u_P, const Vec3& v_P) {
-  const double span_mm = 0.7 * kSide;  // a square of this side fits into the cube however it is turned
+  const double span_mm = 0.7 * kSide;  // a square of this side fits into the cube in every orientation
   const double step_mm = span_mm / (kPixels - 1);
   volume::SlicePlane plane;
   plane.step_u_P = step_mm * u_P;
@@ -89,7 +89,7 @@ void keep_best(Figures& best, const Figures& round) {
   if (!best.median || *round.median < *best.median) best = round;
 }
 
-/// A race is only worth its figures where both runners arrive at the same place: the peer rounds to whole units.
+/// Figures are comparable only if both results agree: the peer rounds to whole units.
 Status check_agreement(const std::vector<float>& ours, const short* peers, std::string_view name) {
   constexpr double kRoundingHu = 0.6;
   double worst = 0.0;
@@ -117,7 +117,7 @@ Result<CaseResult> race(const volume::CtGrid& ct, std::string name, const volume
   return result;
 }
 
-/// The points of the oblique slice one by one, as a beam or an ultrasound image asks for them.
+/// The points of the oblique slice one by one, as required by a beam or an ultrasound image.
 CaseResult time_points(const volume::CtGrid& ct) {
   const volume::SlicePlane plane = oblique_plane();
   std::vector<Vec3f> points_P;
@@ -131,7 +131,7 @@ CaseResult time_points(const volume::CtGrid& ct) {
   return {"slice/points-262144", "ms", best, std::nullopt, "the oblique slice as single points, one core"};
 }
 
-/// What a slice viewer does for a new frame: CT, window, labels with outlines.
+/// Work of a slice viewer for a new frame: CT, window, labels with outlines.
 CaseResult time_painting(const volume::CtGrid& ct) {
   constexpr int kView = 400;  // pixels along each side of a viewer
   anatomy::VirtualPatient patient;

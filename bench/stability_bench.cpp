@@ -1,5 +1,5 @@
-// Every tissue, force model, device and holder in closed loop: does the needle come to rest, and does the haptic side
-// give no energy meanwhile? docs/validation.md, Stability.
+// Every tissue, force model, device and holder in closed loop: does the needle come to rest, and is the haptic side
+// passive? docs/validation.md, Stability.
 
 #include <fmt/format.h>
 
@@ -17,9 +17,9 @@
 namespace trocar::bench {
 namespace {
 
-constexpr double kSurface_mm = 10.0;  // adipose tissue above, under the skin
+constexpr double kSurface_mm = 10.0;  // adipose tissue above it, under the skin
 constexpr double kDeep_mm = 40.0;
-constexpr double kAtWall_mm = 0.5;  // the device's tip under a wall's resting surface: no wall gives way
+constexpr double kAtWall_mm = 0.5;  // position below the wall's resting surface: no wall is punctured
 constexpr double kIntoBone_mm = 2.0;
 constexpr std::array kModels{haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy,
                              haptics::ForceModel::kCombined};
@@ -35,7 +35,7 @@ struct Trial {
   haptics::StabilityOutcome outcome;
 };
 
-/// Where the needle is let go: deep in the tissue, and at its wall where it has one.
+/// Position at release: deep in the tissue, and at its wall if it has one.
 std::vector<std::pair<bool, double>> depths(const anatomy::TissueTable& table, const anatomy::TissueParams& tissue) {
   const double surface_mm = tissue.name == "skin" ? 0.0 : kSurface_mm;
   const bool has_wall = tissue.layer.has_value();
@@ -76,7 +76,7 @@ void run_trials(std::vector<Trial>& trials, const Progress& progress) {
       trial.outcome = haptics::run_stability_trial(trial.scene, *trial.device, trial.holder, {trial.depth_mm});
       const std::size_t count = ++done;
       if (count % 32 == 0)
-        report(progress, "letting needles go", static_cast<double>(count) / static_cast<double>(trials.size()));
+        report(progress, "releasing needles", static_cast<double>(count) / static_cast<double>(trials.size()));
     }
   });
 }
@@ -85,7 +85,7 @@ std::string name_of(const Trial& trial) {
   return fmt::format("{}{} held by {}", trial.is_at_wall ? "wall of " : "", trial.tissue, to_string(trial.holder));
 }
 
-/// One line a model, device and kind of holder.
+/// One line per model, device and kind of holder.
 void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& trials, haptics::ForceModel model,
                  const haptics::DevicePreset& device) {
   std::vector<const Trial*> group;
@@ -120,7 +120,7 @@ void add_results(std::vector<CaseResult>& results, const std::vector<Trial>& tri
       fmt::format("worst growth, allowed {:.3f}: {}", group.front()->outcome.allowed_mj, name_of(*worst(growth))));
 }
 
-/// What is not stable, a line each.
+/// The unstable trials, one line each.
 void print_failures(const std::vector<Trial>& trials, const Options& options) {
   if (!options.print) return;
   for (const Trial& t : trials) {

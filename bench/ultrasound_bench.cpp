@@ -1,4 +1,4 @@
-// Frames of ultrasound from the embedded patient while the transducer moves: engine and scanner, what they allocate.
+// Ultrasound frames of the embedded patient with a moving transducer: time and allocations of engine and scanner.
 #include <fmt/format.h>
 #include <stdlib.h>
 #include <time.h>
@@ -18,13 +18,13 @@
 namespace trocar::bench {
 namespace {
 
-constexpr int kRounds = 5;  ///< The best median counts, as machines are noisy.
+constexpr int kRounds = 5;  ///< The best median counts, because machines are noisy.
 constexpr int kFrames = 120;
 constexpr int kWarmUp = 5;
 constexpr int kColumns = 640, kRows = 480;
 constexpr double kMsPerS = 1000.0;
 
-/// A scan to be timed.
+/// A scan to time.
 struct Setting {
   std::string name;
   std::string transducer;
@@ -66,11 +66,11 @@ Round measure_round(ultrasound::BMode& engine, ultrasound::Scanner& scanner, con
   return round;
 }
 
-/// The round with the least median, and the most that any round allocated.
+/// The round with the lowest median, and the largest allocation of any round.
 struct Best {
   Figures frame, engine, scanner, calibration;
   double allocations_a_frame = 0.0;
-  double cpu_ms_a_frame = 0.0;  ///< The least.
+  double cpu_ms_a_frame = 0.0;  ///< Over all rounds.
 };
 Best measure(const std::shared_ptr<const ultrasound::AcousticScene>& scene, const ultrasound::Transducer& transducer,
              const Pose& X_PT, const ultrasound::Acquisition& acquisition) {
@@ -97,7 +97,7 @@ std::string load_note() {
   return ::getloadavg(&load, 1) == 1 ? fmt::format("load {:.1f}", load) : std::string("load unknown");
 }
 
-/// Frames a second; the tail is what 99 of 100 frames reach.
+/// Frames per second; the tail value is reached by 99 of 100 frames.
 Figures frames_per_s(const Figures& frame_ms) {
   Figures figures;
   figures.median = kMsPerS / *frame_ms.median;

@@ -10,7 +10,7 @@
 namespace trocar::arguments {
 namespace {
 
-/// The number that fills the whole text.
+/// Parses a number from the whole text.
 template <class Number>
 std::optional<Number> parse_whole_text(std::string_view text) {
   Number number{};
@@ -27,11 +27,11 @@ struct Range {
   std::string unit;
 
   std::string text() const { return fmt::format("{} to {}{}{}", low, high, unit.empty() ? "" : " ", unit); }
-  /// NaN is outside of every range.
+  /// NaN is outside every range.
   bool holds(Number number) const { return number >= low && number <= high; }
 };
 
-/// Refuses what is not within the range; writes the number again in the form that CLI11 reads in decimal.
+/// Rejects values out of range; rewrites the number in a decimal form that CLI11 can read.
 template <class Number>
 CLI::Option* restrict_to(CLI::Option* option, Range<Number> range) {
   option->description(fmt::format("{} ({})", option->get_description(), range.text()));

@@ -33,7 +33,7 @@ int report_error(const Error& error) {
 }
 
 int run_program(const std::function<int()>& program, const char* name) {
-  // Our code does not throw; memory can still run out, and fmt throws where standard output cannot be written.
+  // Our code does not throw; memory can still run out, and fmt throws if standard output cannot be written.
   try {
     return end_output(program());
   } catch (const std::bad_alloc&) {

@@ -21,10 +21,10 @@ struct Arguments {
   io::PatientSource source;
   std::string force_model;
   bench::Options options;
-  std::vector<std::string> given;  ///< Of kForSome.
+  std::vector<std::string> given;  ///< Options of kForSome that were given.
 };
 
-/// Options that only some benchmarks can use.
+/// Options that only some benchmarks use.
 constexpr const char* kForSome[] = {"--patient", "--patient-seed", "--task",    "--paths", "--force-model",
                                     "--seed",    "--out",          "--seconds", "--rate",  "--sequence"};
 
@@ -59,7 +59,7 @@ Result<std::vector<const bench::Benchmark*>> choose(const std::vector<std::strin
   return chosen;
 }
 
-/// An option must mean something to every benchmark that is to run.
+/// Every benchmark of the run must support a given option.
 Status check_options(const std::vector<const bench::Benchmark*>& chosen, const std::vector<std::string>& given) {
   for (const std::string& option : given) {
     for (const bench::Benchmark* benchmark : chosen) {
@@ -128,8 +128,8 @@ Status run_benchmarks(Arguments& arguments) {
 void add_bench_command(CLI::App& program, Action& action) {
   const auto a = std::make_shared<Arguments>();
   CLI::App* command =
-      program.add_subcommand("bench", "Measure the speed of the kernels, beside other libraries where installed");
-  command->add_option("NAME", a->names, "Benchmarks to run; all when left out");
+      program.add_subcommand("bench", "Measure the speed of the kernels and, if installed, of comparable libraries");
+  command->add_option("NAME", a->names, "Benchmarks to run; default: all");
   command->add_flag("--list", a->is_list, "List the benchmarks");
   command->add_flag("--json", a->is_json, "Print one JSON object; with several benchmarks a list under \"benches\"");
   command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
@@ -148,10 +148,10 @@ void add_bench_command(CLI::App& program, Action& action) {
                            86400.0, "s")
       ->capture_default_str();
   arguments::number_within(
-      command->add_option("--rate", a->options.rates_hz, "Rate of live servers; several may be given"), 250.0, 4000.0,
-      "Hz")
+      command->add_option("--rate", a->options.rates_hz, "Rate of the live servers; can be given several times"), 250.0,
+      4000.0, "Hz")
       ->capture_default_str();
-  command->add_option("--sequence", a->options.sequence, "Recorded ultrasound (.igs.mha) to compare pictures with");
+  command->add_option("--sequence", a->options.sequence, "Recorded ultrasound (.igs.mha) for the comparison of images");
   command->add_option("--out", a->options.out, "Folder to create for the benchmark's files");
   command->footer("Examples:\n  trocar bench slice --json\n  trocar bench paths --patient my_patient --paths 2000\n");
   command->callback([&action, a, command] {

@@ -1,4 +1,4 @@
-// trocar completion bash: a completion script made from the commands and options of this program.
+// trocar completion bash: a completion script for the commands and options of this program.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Values of options that name something of this program, by the option's or argument's name.
+/// Values of options with a fixed set of names, by the name of the option or argument.
 using Values = std::map<std::string, Words>;
 
 template <class Things, class Name>
@@ -48,7 +48,7 @@ Result<Values> known_values() {
   return values;
 }
 
-/// The choices of an option that takes one of a few words: CLI11 writes them as "TEXT:{a,b}".
+/// Choices of an option with a fixed set of words: CLI11 writes them as "TEXT:{a,b}".
 Words choices_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const auto open = type.find('{');
@@ -78,7 +78,7 @@ std::string quoted(const Words& words) {
   return fmt::format("'{}'", fmt::join(words, " "));
 }
 
-/// The lines of the script about one command and those below it. `path`: "patient build"; empty for the program.
+/// Script lines of one command and its sub-commands. `path`: "patient build"; empty for the program.
 class CommandLines {
  public:
   explicit CommandLines(const Values& known) : known_(known) {}
@@ -117,7 +117,7 @@ class CommandLines {
   std::string commands_, words_, values_;
 };
 
-// Names of files complete everywhere where no word fits: outputs, folders and sessions are files.
+// File names complete wherever no word fits: outputs, folders and sessions are files.
 constexpr const char* kScript = R"(# Bash completion of trocar. Load it with: source <(trocar completion bash)
 _trocar() {{
   local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}}

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-/// An unknown or absent figure is null.
+/// Unknown or missing values are null.
 config::Json optional_json(const std::optional<double>& value) {
   return value ? config::Json(*value) : config::Json(nullptr);
 }
@@ -80,8 +80,9 @@ void add_device_commands(CLI::App& program, Action& action) {
   CLI::App* device = program.add_subcommand("device", "Haptic devices");
   device->require_subcommand(1);
   device->footer("Example:\n  trocar device list\n");
-  CLI::App* list = device->add_subcommand(
-      "list", "List data/devices.toml: peak force and torque, stiffness, encoder count, coupling stiffness");
+  CLI::App* list = device->add_subcommand("list",
+                                          "List the devices of data/devices.toml: peak force and torque, stiffness, "
+                                          "encoder resolution, coupling stiffness");
   list->footer("Example:\n  trocar device list --json\n");
   const auto is_json = std::make_shared<bool>(false);
   list->add_flag("--json", *is_json, "Print one JSON object");

@@ -32,16 +32,16 @@ Status make_keys(const KeygenArguments& arguments) {
 }  // namespace
 
 void add_link_commands(CLI::App& program, Action& action) {
-  CLI::App* link = program.add_subcommand("link", "The link to haptic servers on other machines");
+  CLI::App* link = program.add_subcommand("link", "Connections to haptic servers on other machines");
   link->require_subcommand(1);
   link->footer("Example:\n  trocar link keygen --out keys\n");
   CLI::App* keygen = link->add_subcommand(
-      "keygen", "New CURVE keys for a server and a client: without keys a server serves its own machine only");
+      "keygen", "Create CURVE keys for a server and a client (without keys, a server accepts local connections only)");
   keygen->footer(
       "Example:\n  trocar link keygen --out keys\n"
       "  trocar-hapticd --endpoint tcp://0.0.0.0:5571 --keys keys/server.key --allow keys/allowed\n");
   const auto arguments = std::make_shared<KeygenArguments>();
-  keygen->add_option("--out", arguments->out, "New folder for the keys, readable by you alone")->required();
+  keygen->add_option("--out", arguments->out, "New folder for the keys, accessible only to you")->required();
   keygen->add_flag("--json", arguments->is_json, "Print one JSON object");
   keygen->callback([&action, arguments] { action = [arguments] { return make_keys(*arguments); }; });
 }

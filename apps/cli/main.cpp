@@ -10,7 +10,7 @@ namespace {
 
 using namespace trocar::cli;
 
-/// The command that was being parsed when an error came up.
+/// The command that was parsed when an error occurred.
 const CLI::App& deepest_command(const CLI::App& program) {
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().back();
@@ -34,7 +34,7 @@ int report_usage(const CLI::App& program, const CLI::ParseError& error) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("Trocar: a simulator on which people learn needle punctures. A trainer, not a medical device.");
+  CLI::App program("Trocar: a training simulator for needle punctures. Not a medical device.");
   program.name("trocar");
   program.set_version_flag("--version", std::string("trocar ") + trocar::kVersion, "Print the version and exit");
   bool is_verbose = false;

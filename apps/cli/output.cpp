@@ -27,7 +27,7 @@ constexpr std::chrono::seconds kBetweenLines{1};
 }  // namespace
 
 struct ProgressPrinter::State {
-  std::mutex mutex;  // steps may be told by several threads
+  std::mutex mutex;  // several threads can report steps
   bool is_terminal = ::isatty(STDERR_FILENO) == 1;
   std::string step;
   int percent = -1;
@@ -37,7 +37,7 @@ struct ProgressPrinter::State {
     const std::lock_guard lock(mutex);
     const int new_percent = static_cast<int>(100.0 * std::clamp(fraction, 0.0, 1.0));
     if (new_step == step && new_percent == percent) return;
-    if (!is_terminal) {  // plain lines, and only of work that takes long
+    if (!is_terminal) {  // plain lines, only for long work
       const auto now = std::chrono::steady_clock::now();
       if (now - last_line < kBetweenLines) return;
       last_line = now;
@@ -75,7 +75,7 @@ Status check_new(const fs::path& out, const char* option) {
 Result<fs::path> find_data(std::string_view name) {
   const fs::path folder = data_dir();
   if (folder.empty()) {
-    return fail("the tables of tasks, needles and tissues are missing", "data/",
+    return fail("the data tables of tasks, needles and tissues are missing", "data/",
                 "set TROCAR_DATA_DIR to the data folder of Trocar");
   }
   return folder / name;

@@ -1,4 +1,4 @@
-// trocar patient list, generate and build: where patients come from.
+// trocar patient list, generate and build: sources of patients.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -147,11 +147,11 @@ Status list_series(const SeriesArguments& arguments) {
 }  // namespace
 
 void add_patient_commands(CLI::App& program, Action& action) {
-  CLI::App* patient = program.add_subcommand("patient", "Make, show and check virtual patients");
+  CLI::App* patient = program.add_subcommand("patient", "Create, show and check virtual patients");
   patient->require_subcommand(1);
   patient->footer("Example:\n  trocar patient generate abdomen --out my_patient\n");
 
-  CLI::App* list = patient->add_subcommand("list", "Embedded patients, by the task they serve");
+  CLI::App* list = patient->add_subcommand("list", "List embedded patients and their tasks");
   list->footer("Example:\n  trocar patient list\n");
   const auto is_json = std::make_shared<bool>(false);
   list->add_flag("--json", *is_json, "Print one JSON object");
@@ -162,12 +162,12 @@ void add_patient_commands(CLI::App& program, Action& action) {
     std::uint64_t seed = 1;
     std::string out;
   };
-  CLI::App* generate = patient->add_subcommand("generate", "Write an embedded patient as a folder");
+  CLI::App* generate = patient->add_subcommand("generate", "Write an embedded patient to a folder");
   generate->footer("Example:\n  trocar patient generate abdomen --seed 7 --out abdomen_7\n");
   const auto g = std::make_shared<GenerateArguments>();
   generate->add_option("NAME", g->name, "Embedded patient: see trocar patient list")->required();
   generate->add_option("--out", g->out, "Folder to create")->required();
-  arguments::seed_number(generate->add_option("--seed", g->seed, "Random seed; each seed gives another individual"))
+  arguments::seed_number(generate->add_option("--seed", g->seed, "Random seed; each seed gives a different individual"))
       ->capture_default_str();
   generate->callback([&action, g] { action = [g] { return generate_patient(g->name, g->seed, g->out); }; });
 
@@ -180,8 +180,8 @@ void add_patient_commands(CLI::App& program, Action& action) {
   build_command->add_option("--ct", b->ct, "CT: NIfTI, NRRD, MHA, or a folder of DICOM files with its sub-folders")
       ->required();
   build_command->add_option("--series", b->series,
-                            "Number or UID of the DICOM series of the CT, see trocar patient series; needed where the "
-                            "folder holds several CT series");
+                            "Number or UID of the DICOM series of the CT, see trocar patient series; required if the "
+                            "folder contains several CT series");
   build_command
       ->add_option("--labels", b->labels, "Label volumes, single masks, folders of masks or of DICOM mask series")
       ->required();
@@ -191,7 +191,7 @@ void add_patient_commands(CLI::App& program, Action& action) {
       ->capture_default_str();
   build_command->add_option("--rescale", b->rescale,
                             "SLOPE,INTERCEPT of a CT whose file lacks them: HU = SLOPE * stored number + INTERCEPT");
-  build_command->add_option("--name", b->name, "Name of the patient; the folder's name when left out");
+  build_command->add_option("--name", b->name, "Name of the patient; default: the folder's name");
   build_command->add_option("--out", b->out, "Folder to create")->required();
   build_command->add_flag("--json", b->is_json, "Print the summary as one JSON object");
   build_command->callback([&action, b] { action = [b] { return build(*b); }; });

@@ -1,4 +1,4 @@
-// trocar patient show, check and render: what a patient holds.
+// trocar patient show, check and render: contents of a patient.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,7 +9,7 @@
 
 #include "anatomy/build_patient.h"
 #include "anatomy/patient_doubts.h"
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "commands.h"
 #include "core/files/atomic_file.h"
 #include "io/image/png.h"
@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   io::PatientSource source;
   bool is_json = false;
-  std::string paths;  ///< Markups file with needle paths to draw; empty: the patient's own.
+  std::string paths;  ///< Markups file with needle paths to draw; empty: those of the patient.
   std::string out;
 };
 
@@ -128,7 +128,7 @@ Result<std::vector<CheckedTask>> checked_tasks(const Arguments& arguments, const
     return {};
   };
   for (const tasks::Task& task : tasks) TROCAR_TRY_STATUS(check(task));
-  if (attempt::has_own_task(arguments.source.folder_or_name)) {
+  if (cases::has_own_task(arguments.source.folder_or_name)) {
     TROCAR_TRY(tasks::Task task,
                tasks::load_task_file(fs::path(arguments.source.folder_or_name) / tasks::kOwnTaskFile, folder));
     task.name += fmt::format(" ({})", tasks::kOwnTaskFile);
@@ -161,7 +161,7 @@ Status check(const Arguments& arguments) {
   return {};
 }
 
-/// Where pictures look: the target of the first path, else the first lesion, else the liver, else the middle.
+/// Focal point of the pictures: the target of the first path, else the first lesion, else the liver, else the centre.
 Vec3 point_of_interest(const anatomy::VirtualPatient& patient) {
   if (!patient.paths.empty()) return patient.paths.front().line_P.b;
   const auto statistics = anatomy::label_statistics(patient);
@@ -196,7 +196,7 @@ Status write_slices(const anatomy::VirtualPatient& patient, const fs::path& fold
   return {};
 }
 
-/// Every camera's picture.
+/// One picture per camera.
 Status write_views(const anatomy::VirtualPatient& patient, const std::vector<anatomy::NamedMesh>& meshes,
                    const fs::path& folder, const Progress& progress) {
   constexpr std::array<std::pair<scene::CameraPreset, const char*>, 4> kCameras = {
@@ -254,19 +254,19 @@ CLI::App* add_command(CLI::App& patient, Action& action, const char* name, const
 }  // namespace
 
 void add_patient_report_commands(CLI::App& patient, Action& action) {
-  const auto arguments = std::make_shared<Arguments>();  // one command runs: they share it
+  const auto arguments = std::make_shared<Arguments>();  // one command runs: they share the arguments
   CLI::App* show_command =
       add_command(patient, action, "show", "Labels with volumes, meshes, frames, provenance", show, arguments);
   show_command->add_flag("--json", arguments->is_json, "Print one JSON object");
   show_command->footer("Example:\n  trocar patient show my_patient\n");
 
-  CLI::App* check_command =
-      add_command(patient, action, "check", "Which tasks a patient can serve, and what is doubtful", check, arguments);
+  CLI::App* check_command = add_command(
+      patient, action, "check", "List the tasks that a patient supports, and doubtful results", check, arguments);
   check_command->add_flag("--json", arguments->is_json, "Print one JSON object");
   check_command->footer("Example:\n  trocar patient check my_patient\n");
 
-  CLI::App* render_command = add_command(patient, action, "render",
-                                         "CT slices, and 3D pictures where there is an X server", render, arguments);
+  CLI::App* render_command = add_command(
+      patient, action, "render", "Render CT slices, and 3D images if an X server is available", render, arguments);
   render_command->add_option("--out", arguments->out, "Folder to create")->required();
   render_command->add_option("--paths", arguments->paths, "Needle paths to draw, as trocar plan writes them");
   render_command->footer("Example:\n  xvfb-run -a trocar patient render my_patient --out pictures\n");

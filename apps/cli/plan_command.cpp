@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "attempt/case/prepare_case.h"
+#include "cases/prepare_case.h"
 #include "commands.h"
 #include "io/markups_file.h"
 #include "io/patient/patient_source.h"
@@ -54,11 +54,11 @@ void print_plan(const std::vector<tasks::PlannedPath>& paths, bool is_json) {
 
 Status plan(const Arguments& arguments) {
   TROCAR_TRY_STATUS(check_new(arguments.out));
-  attempt::CaseOptions options;
+  cases::CaseOptions options;
   options.task = arguments.task;
   options.needle = arguments.needle;
   options.patient_folder = arguments.source.folder_or_name;
-  TROCAR_TRY(const attempt::Case tables, attempt::load_tables(options));
+  TROCAR_TRY(const cases::Case tables, cases::load_tables(options));
   std::vector<tasks::PlannedPath> paths;
   {
     const ProgressPrinter printer;
@@ -77,15 +77,15 @@ Status plan(const Arguments& arguments) {
 
 void add_plan_command(CLI::App& program, Action& action) {
   const auto a = std::make_shared<Arguments>();
-  CLI::App* command = program.add_subcommand("plan", "Find safe needle paths: they keep every margin of the task");
+  CLI::App* command = program.add_subcommand("plan", "Plan safe needle paths that keep all margins of the task");
   command->add_option("TASK,--task", a->task,
-                      "Task: see trocar task list, or a task file (.toml); the patient's own when left out");
+                      "Task: see trocar task list, or a task file (.toml); default: the patient's own task");
   command->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name")
       ->required();
   arguments::whole_number_within(
-      command->add_option("--count", a->options.count, "Number of paths, each with its own entry"), 1, 100000)
+      command->add_option("--count", a->options.count, "Number of paths, each with a different entry point"), 1, 100000)
       ->capture_default_str();
-  command->add_option("--needle", a->needle, "Needle of data/needles.toml; the task's own when left out");
+  command->add_option("--needle", a->needle, "Needle of data/needles.toml; default: the task's needle");
   arguments::seed_number(command->add_option("--seed", a->options.seed, "Random seed for the choice among paths"))
       ->capture_default_str();
   arguments::seed_number(

@@ -7,15 +7,15 @@ namespace {
 
 constexpr const char* kTask = "TASK";
 
-/// An argument that was named and is not the session's.
+/// Error for a given argument that differs from the session's.
 template <class Value>
 Status check_same(const NamedOptions& named, const char* option, const Value& value, const Value& recorded) {
   if (!named.has(option) || value == recorded) return {};
   return fail_usage(fmt::format("the session was recorded with {}, not with {}", recorded, value), option,
-                    "leave it out: a replay takes it from the session");
+                    "omit it: a replay takes it from the session");
 }
 
-Status check_contradictions(const NamedOptions& named, const attempt::CaseOptions& the_case,
+Status check_contradictions(const NamedOptions& named, const cases::CaseOptions& the_case,
                             const attempt::RunOptions& run, const io::PatientSource& source) {
   const storage::SessionInfo& info = run.replayed->info;
   TROCAR_TRY_STATUS(check_same(named, kTask, the_case.task, info.task));
@@ -37,12 +37,12 @@ void NamedOptions::note(const CLI::App& command) {
   }
 }
 
-Status restore_arguments(const NamedOptions& named, attempt::CaseOptions& the_case, attempt::RunOptions& run,
+Status restore_arguments(const NamedOptions& named, cases::CaseOptions& the_case, attempt::RunOptions& run,
                          io::PatientSource& source) {
   TROCAR_TRY(run.replayed, attempt::load_replayed(run.operator_name));
   if (run.replayed == nullptr) {
     if (run.is_other_patient_meant)
-      return fail_usage("only a replay has a recorded patient", "--other-patient", "leave it out");
+      return fail_usage("only a replay has a recorded patient", "--other-patient", "omit the option");
     if (source.folder_or_name.empty())
       return fail_usage("the patient is missing", "--patient", "name a patient folder or an embedded patient");
     return {};

@@ -16,7 +16,7 @@ namespace trocar::cli {
 namespace {
 
 struct Arguments {
-  attempt::CaseOptions the_case;
+  cases::CaseOptions the_case;
   attempt::RunOptions run;
   io::PatientSource source;
   bool is_json = false;
@@ -74,7 +74,7 @@ void print_server(const attempt::ServerFigures& server) {
   fmt::print("  {} ticks received, {} missing; {}\n", server.ticks_received, server.ticks_missing, server.grant);
 }
 
-config::Json result_json(const Arguments& arguments, const attempt::Case& the_case, const attempt::RunResult& result) {
+config::Json result_json(const Arguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
   const tasks::Outcome& outcome = result.outcome;
   config::Json parts = config::Json::array();
   for (const tasks::ScorePart& part : outcome.parts) {
@@ -131,11 +131,11 @@ void print_part(const tasks::ScorePart& part) {
   }
 }
 
-void print_result(const Arguments& arguments, const attempt::Case& the_case, const attempt::RunResult& result) {
+void print_result(const Arguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {
   const tasks::Outcome& outcome = result.outcome;
   fmt::print("{} on {} by {}: {:.1f} s, {} ticks\n", the_case.task.title, the_case.patient->name,
              arguments.run.operator_name, result.simulated_s, result.ticks);
-  if (the_case.is_parenchymal) fmt::print("no lesion in this patient: the target lies in healthy tissue\n");
+  if (the_case.is_parenchymal) fmt::print("no lesion in this patient: the target is in healthy tissue\n");
   for (const attempt::PunctureRecord& p : result.punctures) {
     fmt::print("  puncture of {:<16} at {:6.2f} s, {:5.1f} mm deep, {:.2f} N\n", p.layer, p.time_s, p.depth_mm,
                p.peak_n);
@@ -160,7 +160,7 @@ void print_result(const Arguments& arguments, const attempt::Case& the_case, con
   for (const attempt::ServerFigures& server : result.servers) print_server(server);
 }
 
-/// What belongs to live servers, and what does not.
+/// Checks the options of live servers for conflicts.
 Status check_servers(Arguments& a) {
   const bool names_servers = !a.realtime.endpoints.empty() || !a.key_file.empty() || !a.server_key_file.empty();
   if (names_servers && !a.is_realtime)
@@ -170,8 +170,8 @@ Status check_servers(Arguments& a) {
     return fail_usage("--keys and --server-key must be given together", "--keys, --server-key",
                       "give both; trocar link keygen makes them");
   if (!a.realtime.endpoints.empty() && (a.named.has("--device") || a.named.has("--rate")))
-    return fail_usage("device and rate of running servers are set when they start", "--device, --rate",
-                      "give them to trocar-hapticd instead");
+    return fail_usage("a running server has a fixed device and rate", "--device, --rate",
+                      "set them when you start trocar-hapticd");
   if (!a.key_file.empty()) {
     link::ClientSecurity security;
     TROCAR_TRY(security.keys, link::load_curve_keys(a.key_file));
@@ -182,7 +182,8 @@ Status check_servers(Arguments& a) {
   return attempt::check_realtime(a.realtime);
 }
 
-/// The session can be made: nothing is there but what an interrupted run has left, which is kept under another name.
+/// Checks that the session can be written: an interrupted run's session is kept under another name; any other file is
+/// an error.
 Status make_room(const std::filesystem::path& session) {
   TROCAR_TRY(const auto kept_as, storage::set_aside_incomplete_session(session));
   if (kept_as)
@@ -191,27 +192,27 @@ Status make_room(const std::filesystem::path& session) {
   return check_new(session);
 }
 
-/// What can be wrong with the case before there is a patient.
+/// Checks the case before a patient is opened.
 Status check_case(const Arguments& arguments) {
   const attempt::RunOptions& run = arguments.run;
   if (run.replayed == nullptr) {
-    TROCAR_TRY_STATUS(attempt::load_tables(arguments.the_case));
+    TROCAR_TRY_STATUS(cases::load_tables(arguments.the_case));
     return {};
   }
-  TROCAR_TRY_STATUS(attempt::replay_parameters(*run.replayed, run.replay_changes));
+  TROCAR_TRY_STATUS(cases::replay_parameters(*run.replayed, run.replay_changes));
   if (run.replay_changes.is_any())
     print_warning(
-        "the replay has other tissues or another force model than the session: its forces are not the "
-        "recorded ones");
+        "the replay uses other tissues or another force model than the session: its forces differ from the recorded "
+        "ones");
   return {};
 }
 
-Result<attempt::Case> make_case(const Arguments& arguments, anatomy::VirtualPatient opened, const Progress& progress) {
+Result<cases::Case> make_case(const Arguments& arguments, anatomy::VirtualPatient opened, const Progress& progress) {
   auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
   const attempt::RunOptions& run = arguments.run;
-  if (run.replayed == nullptr) return attempt::prepare_case(std::move(patient), arguments.the_case, progress);
-  TROCAR_TRY(const auto parameters, attempt::replay_parameters(*run.replayed, run.replay_changes));
-  return attempt::restore_case(std::move(patient), *run.replayed, parameters.front(), run.is_other_patient_meant);
+  if (run.replayed == nullptr) return cases::prepare_case(std::move(patient), arguments.the_case, progress);
+  TROCAR_TRY(const auto parameters, cases::replay_parameters(*run.replayed, run.replay_changes));
+  return cases::restore_case(std::move(patient), *run.replayed, parameters.front(), run.is_other_patient_meant);
 }
 
 Status run(Arguments& arguments) {
@@ -226,7 +227,7 @@ Status run(Arguments& arguments) {
   TROCAR_TRY_STATUS(check_servers(arguments));
   TROCAR_TRY_STATUS(check_case(arguments));
   if (arguments.is_realtime) TROCAR_TRY_STATUS(attempt::find_servers(arguments.realtime));
-  attempt::Case the_case;
+  cases::Case the_case;
   attempt::RunResult result;
   {
     const ProgressPrinter printer;
@@ -246,12 +247,13 @@ Status run(Arguments& arguments) {
 }
 
 void add_server_options(CLI::App& command, Arguments& a) {
-  command.add_flag("--realtime", a.is_realtime,
-                   "In real time through live haptic servers; without --endpoint two are started, needle and probe");
+  command.add_flag(
+      "--realtime", a.is_realtime,
+      "Run in real time through live haptic servers; without --endpoint, two servers (needle and probe) are started");
   command
       .add_option("--endpoint", a.realtime.endpoints,
-                  "A running trocar-hapticd: ipc://PATH, or tcp://ADDRESS:PORT with --keys; again for a second one, in "
-                  "any order")
+                  "Endpoint of a running trocar-hapticd: ipc://PATH, or tcp://ADDRESS:PORT with --keys; repeat it for "
+                  "a second one, in any order")
       ->allow_extra_args(false);
   command.add_option("--keys", a.key_file, "Your private key file, for servers on other machines (trocar link keygen)");
   command.add_option("--server-key", a.server_key_file, "The servers' public key");
@@ -270,20 +272,20 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option("TASK,--task", a->the_case.task,
                       "Task: see trocar task list, or a task file (.toml); the patient's own when left out");
   command->add_option("--patient", a->source.folder_or_name,
-                      "Patient folder, or an embedded patient's name; a replay has its session's");
+                      "Patient folder, or name of an embedded patient; default of a replay: the session's patient");
   command
       ->add_option("--operator", a->run.operator_name, "expert, novice, constant-velocity:MM_PER_S or replay:SESSION")
       ->required();
   command->add_option("--out", a->run.session, "Session file to write")->required();
-  command->add_option(
-      "--force-model", a->run.force_model,
-      "How forces are made: insertion (paper A), proxy (paper B) or combined; the task's own when left out");
-  command->add_option("--device", a->run.device, "Simulated device: its limits and coupling; see trocar device list")
+  command->add_option("--force-model", a->run.force_model,
+                      "Force model: insertion (paper A), proxy (paper B) or combined; default: the task's model");
+  command
+      ->add_option("--device", a->run.device, "Simulated device with its limits and coupling; see trocar device list")
       ->capture_default_str();
   command->add_option("--needle", a->the_case.needle, "Needle of data/needles.toml; the task's own when left out");
   command->add_option("--tissues", a->the_case.tissue_file, "Tissue table (TOML) instead of data/tissues.toml");
   command->add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");
-  command->add_option("--set", a->the_case.overrides, "Change numbers of the tissue table: liver.k=0.5")
+  command->add_option("--set", a->the_case.overrides, "Override numbers of the tissue table: liver.k=0.5")
       ->allow_extra_args(false);
   arguments::seed_number(
       command->add_option("--seed", a->run.seed, "Random seed for operator, friction and path choice"))
@@ -291,10 +293,10 @@ void add_run_command(CLI::App& program, Action& action) {
   arguments::seed_number(
       command->add_option("--patient-seed", a->source.seed, "Random seed for the anatomy of an embedded patient"))
       ->capture_default_str();
-  arguments::number_within(command->add_option("--rate", a->run.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
+  arguments::number_within(command->add_option("--rate", a->run.rate_hz, "Haptic tick rate"), 250.0, 4000.0, "Hz")
       ->capture_default_str();
   command->add_flag("--other-patient", a->run.is_other_patient_meant,
-                    "Replay in another patient than the session's, as --patient names it");
+                    "Replay with a different patient than that of the session, given with --patient");
   add_cache_option(*command, a->source);
   add_server_options(*command, *a);
   command->add_flag("--json", a->is_json, "Print one JSON object");

@@ -13,15 +13,15 @@
 namespace trocar::cli {
 namespace {
 
-/// What a reader of the session must be told, beside its damage.
+/// Prints warnings about the session, except damage.
 void warn_of(const storage::Session& session, const std::string& file) {
   if (session.is_incomplete)
-    print_warning(
-        fmt::format("incomplete session: the program ended before the attempt did, {} ticks were recorded "
-                    "and there is no score — {}",
-                    session.samples.size(), file));
+    print_warning(fmt::format(
+        "incomplete session: the program ended during the attempt; {} ticks were recorded and there is no score — {}",
+        session.samples.size(), file));
   if (!session.has_checksums)
-    print_warning(fmt::format("no checksums in a session of an older program: damage may pass unnoticed — {}", file));
+    print_warning(
+        fmt::format("no checksums in a session of an older program: damage may remain undetected — {}", file));
 }
 
 Status export_session(const std::string& session_file, const std::string& csv) {
@@ -31,16 +31,17 @@ Status export_session(const std::string& session_file, const std::string& csv) {
   TROCAR_TRY_STATUS(storage::export_csv(session, csv));
   if (session.damage.empty()) return {};
   return tl::unexpected(storage::damage_error(
-      session, session_file, "the rest was exported; behind a gap the event column says damaged:FIRST-LAST"));
+      session, session_file,
+      "the undamaged part was exported; after a gap the event column contains damaged:FIRST-LAST"));
 }
 
 struct ReportArguments {
   std::string session;
-  io::PatientSource patient;  ///< Without a name: where the session says.
+  io::PatientSource patient;  ///< Empty: as recorded in the session.
   std::string out;
 };
 
-/// The session's patient, or nothing with a warning where it is gone or has changed since.
+/// The session's patient; empty with a warning if it is missing or has changed.
 std::optional<anatomy::VirtualPatient> find_patient(const storage::SessionInfo& info, io::PatientSource source,
                                                     const std::filesystem::path& session, const Progress& progress) {
   if (source.folder_or_name.empty()) {
@@ -59,8 +60,8 @@ std::optional<anatomy::VirtualPatient> find_patient(const storage::SessionInfo& 
   }
   if (patient->content_hash != info.patient_hash) {
     print_warning(
-        fmt::format("the report has no CT slices: this is not the patient of the session — {} — name it with "
-                    "--patient",
+        fmt::format("the report has no CT slices: the patient differs from that of the session — {} — name the right "
+                    "one with --patient",
                     source.folder_or_name));
     return std::nullopt;
   }
@@ -75,7 +76,7 @@ Status write_report(const ReportArguments& arguments) {
   const auto patient = find_patient(session.info, arguments.patient, arguments.session, printer.callback());
   TROCAR_TRY_STATUS(write_file_atomically(arguments.out, report::html_report(session, patient ? &*patient : nullptr)));
   if (session.damage.empty()) return {};
-  return tl::unexpected(storage::damage_error(session, arguments.session, "the report shows the rest"));
+  return tl::unexpected(storage::damage_error(session, arguments.session, "the report shows the undamaged part"));
 }
 
 }  // namespace
@@ -102,7 +103,7 @@ void add_session_commands(CLI::App& program, Action& action) {
       session->add_subcommand("report", "Write an HTML report with score, hints, forces and slices");
   const auto r = std::make_shared<ReportArguments>();
   report_command->add_option("SESSION", r->session, "Session file of trocar run")->required();
-  report_command->add_option("--patient", r->patient.folder_or_name, "Patient folder, if it was moved since");
+  report_command->add_option("--patient", r->patient.folder_or_name, "Patient folder, if it was moved");
   add_cache_option(*report_command, r->patient);
   report_command->add_option("--out", r->out, "HTML file to write")->required();
   report_command->footer("Example:\n  trocar session report first.session --out first.html\n");

@@ -35,7 +35,7 @@ void add_task_commands(CLI::App& program, Action& action) {
   CLI::App* task = program.add_subcommand("task", "Training tasks");
   task->require_subcommand(1);
   task->footer("Example:\n  trocar task list\n");
-  CLI::App* list = task->add_subcommand("list", "The tasks, with the needle each one uses");
+  CLI::App* list = task->add_subcommand("list", "List the tasks and the needle of each");
   list->footer("Example:\n  trocar task list --json\n");
   const auto is_json = std::make_shared<bool>(false);
   list->add_flag("--json", *is_json, "Print one JSON object");

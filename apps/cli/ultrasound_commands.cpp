@@ -1,4 +1,4 @@
-// trocar ultrasound: pictures, sweeps and volumes; each sub-command has a file of its own.
+// trocar ultrasound: images, sweeps and volumes; each sub-command has its own file.
 #include <CLI/CLI.hpp>
 
 #include "commands.h"
@@ -6,7 +6,7 @@
 namespace trocar::cli {
 
 void add_ultrasound_commands(CLI::App& program, Action& action) {
-  CLI::App* ultrasound = program.add_subcommand("ultrasound", "Ultrasound pictures, sweeps and volumes");
+  CLI::App* ultrasound = program.add_subcommand("ultrasound", "Ultrasound images, sweeps and volumes");
   ultrasound->require_subcommand(1);
   ultrasound->footer(
       "Examples:\n  trocar ultrasound image --patient abdomen --view liver-right-kidney --out kidney.png\n"

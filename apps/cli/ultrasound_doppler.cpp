@@ -13,10 +13,10 @@ namespace trocar::cli {
 namespace {
 
 constexpr double kPercent = 0.01;
-/// So many pictures persist until the newest is all that is seen.
+/// Number of frames after which persistence has reached its final value.
 constexpr int kPictures = 12;
 
-/// Where the colour bar stands, in dots: right of the gray wedge.
+/// Position of the colour bar, in dots: right of the gray wedge.
 constexpr int kBarColumn = 18;
 constexpr int kBarColumns = 10;
 
@@ -85,8 +85,8 @@ void draw_colour_bar(volume::RgbImage& image, const ColourPicture& picture) {
   constexpr int kColumnsPerScale = 640;
   const int dot = std::max(1, image.columns / kColumnsPerScale);
   const int rows = image.rows / 4;
-  ultrasound::draw_colour_bar(image, kBarColumn * dot, (image.rows - rows) / 2, kBarColumns * dot, rows, picture.scale_cm_per_s,
-                  picture.settings);
+  ultrasound::draw_colour_bar(image, kBarColumn * dot, (image.rows - rows) / 2, kBarColumns * dot, rows,
+                              picture.scale_cm_per_s, picture.settings);
 }
 
 }  // namespace trocar::cli

@@ -1,4 +1,4 @@
-// trocar ultrasound image: a B-mode picture of a patient, and how fast pictures come.
+// trocar ultrasound image: a B-mode image of a patient, and the frame rate.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -28,9 +28,9 @@ namespace fs = std::filesystem;
 
 constexpr double kNeedleLength_mm = 200.0;
 constexpr int kMostFrames = 100000;
-/// Needles with a diameter below.
+/// Range of the needle gauges below.
 constexpr int kThickestGauge = 14, kThinnestGauge = 25;
-/// So many pictures persist to within a gray value or two.
+/// Number of frames after which persistence has converged to one or two gray values.
 constexpr int kPersistingPictures = 40;
 
 struct Arguments {
@@ -68,7 +68,7 @@ Result<Size> parse_size(const std::string& text) {
   return size;
 }
 
-/// The straight needle of a file; no shaft without a file.
+/// The straight needle of a file; without a file, no shaft.
 struct Needle {
   std::vector<Vec3> shaft_P;
   double diameter_mm = 0.0;
@@ -82,7 +82,7 @@ Result<Needle> load_needle(const Arguments& arguments) {
   return needle;
 }
 
-/// What the arguments ask for, before any work.
+/// Request of the arguments, checked before any work.
 struct Request {
   Size size;
   Needle needle;
@@ -90,7 +90,7 @@ struct Request {
 };
 Result<Request> check_arguments(const Arguments& arguments) {
   if (arguments.engine == "panorama")
-    return fail_usage("the engine panorama is not implemented yet", "--engine panorama", "use --engine raycast");
+    return fail_usage("engine panorama is not implemented", "--engine panorama", "use --engine raycast");
   const std::string ending = fs::path(arguments.out).extension().string();
   if (ending != ".png" && ending != ".nrrd")
     return fail_usage("the file name must end in .png or .nrrd", arguments.out, "rename the output");
@@ -104,8 +104,8 @@ Result<Request> check_arguments(const Arguments& arguments) {
   return request;
 }
 
-/// The picture as a thin volume where its plane lies in the patient: two equal slices, since a volume of one has no
-/// inside that readers could interpolate in.
+/// The image as a thin volume at the position of its plane in the patient: two equal slices, since readers cannot
+/// interpolate within a single slice.
 volume::LabelGrid as_slab(const ultrasound::GrayImage& picture, const ultrasound::RasterGeometry& raster,
                           const Pose& X_PT) {
   constexpr double kThickness_mm = 1.0;
@@ -125,7 +125,7 @@ volume::LabelGrid as_slab(const ultrasound::GrayImage& picture, const ultrasound
 }
 
 struct Timing {
-  double frames_per_s = 0.0;  ///< Of all frames, one after another.
+  double frames_per_s = 0.0;  ///< Of all consecutive frames.
   bench::Figures frame_ms, engine_ms, scanner_ms;
 };
 Timing time_frames(ultrasound::BMode& engine, ultrasound::Scanner& scanner, const Scan& scan,
@@ -253,7 +253,7 @@ Status make_image(const Arguments& arguments) {
 }  // namespace
 
 void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
-  CLI::App* command = ultrasound.add_subcommand("image", "Make a B-mode picture of a patient");
+  CLI::App* command = ultrasound.add_subcommand("image", "Create a B-mode image of a patient");
   command->footer(
       "Examples:\n  trocar ultrasound image --patient abdomen --view liver-right-kidney --out kidney.png\n"
       "  trocar ultrasound image --patient abdomen --view aorta --doppler --doppler-scale 60 --out aorta.png\n"
@@ -263,27 +263,31 @@ void add_ultrasound_image_command(CLI::App& ultrasound, Action& action) {
   add_scan_options(*command, a->scan);
   add_doppler_options(*command, a->doppler);
   arguments::number_within(
-      command->add_option("--persistence", a->scan.display.persistence, "Weight of the previous picture"), 0.0, 0.95,
-      "")
+      command->add_option("--persistence", a->scan.display.persistence, "Weight of the previous frame (persistence)"),
+      0.0, 0.95, "")
       ->capture_default_str();
   command->add_option("--needle", a->needle,
-                      "X_PN: points of the needle, tip at 0 and +z to it, to the patient's (.tfm)");
+                      "X_PN: transform from the needle (tip at 0, +z towards the tip) to the patient (.tfm)");
   arguments::whole_number_within(
       command->add_option("--needle-gauge", a->needle_gauge, "Outer diameter of the needle, gauge"), kThickestGauge,
       kThinnestGauge)
       ->capture_default_str();
-  command->add_option("--engine", a->engine, "raycast (from CT and labels) or panorama (from stitched volumes: later)")
+  command
+      ->add_option("--engine", a->engine,
+                   "raycast (from CT and labels) or panorama (from stitched volumes, not implemented)")
       ->check(CLI::IsMember({"raycast", "panorama"}))
       ->capture_default_str();
-  command->add_option("--out", a->out, "Picture: .png, or .nrrd as a thin slab where its plane lies in the patient")
+  command
+      ->add_option("--out", a->out,
+                   "Output: .png, or .nrrd as a thin slab at the position of the image plane in the patient")
       ->required();
-  command->add_option("--size", a->size, "Size of the picture, COLUMNSxROWS, 16 to 4096 each")->capture_default_str();
+  command->add_option("--size", a->size, "Size of the image, COLUMNSxROWS, 16 to 4096 each")->capture_default_str();
   arguments::whole_number_within(
       command->add_option("--frames", a->frames, "Benchmark: render N more frames with a moving transducer"), 1,
       kMostFrames);
-  command->add_flag("--plain", a->is_plain, "No scale, marker and settings around the picture");
+  command->add_flag("--plain", a->is_plain, "Omit scale, marker and settings around the image");
   command->add_flag("--unmirrored", a->is_unmirrored,
-                    "+x of the transducer (head, or the patient's right) to the right");
+                    "Show +x of the transducer (head, or the patient's right) on the right");
   command->add_flag("--json", a->is_json, "Print one JSON object");
   command->callback([&action, a] { action = [a] { return make_image(*a); }; });
 }

@@ -1,4 +1,4 @@
-// trocar ultrasound views and transducers: what can be asked for.
+// trocar ultrasound views and transducers: available choices.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -129,8 +129,8 @@ Status list_transducers(const Arguments& arguments) {
 }  // namespace
 
 void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action) {
-  const auto a = std::make_shared<Arguments>();  // one command runs: they share it
-  CLI::App* views = ultrasound.add_subcommand("views", "Standard views, and which of them a patient has");
+  const auto a = std::make_shared<Arguments>();  // one command runs: they share the arguments
+  CLI::App* views = ultrasound.add_subcommand("views", "List standard views, and whether a patient supports them");
   views->add_option("--patient", a->source.folder_or_name, "Patient folder, or an embedded patient's name");
   arguments::seed_number(views->add_option("--patient-seed", a->source.seed, "Seed of an embedded patient"))
       ->capture_default_str();
@@ -139,7 +139,7 @@ void add_ultrasound_list_commands(CLI::App& ultrasound, Action& action) {
   views->footer("Example:\n  trocar ultrasound views --patient abdomen\n");
   views->callback([&action, a] { action = [a] { return list_views(*a); }; });
 
-  CLI::App* transducers = ultrasound.add_subcommand("transducers", "Transducers that can be held");
+  CLI::App* transducers = ultrasound.add_subcommand("transducers", "List available transducers");
   transducers->add_flag("--json", a->is_json, "Print one JSON object");
   transducers->footer("Example:\n  trocar ultrasound transducers\n");
   transducers->callback([&action, a] { action = [a] { return list_transducers(*a); }; });

@@ -1,4 +1,4 @@
-// trocar ultrasound reconstruct: a tracked freehand sweep as a volume.
+// trocar ultrasound reconstruct: a volume from a tracked freehand sweep.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -23,8 +23,8 @@ struct Arguments {
   std::string calibration;
   std::string out;
   double spacing_mm = 0.0;
-  std::string interpolation, compounding, holes, reference;  ///< Empty: what the calibration file says.
-  std::string black;  ///< Empty: kept where the calibration file says how to reconstruct, as PLUS keeps it.
+  std::string interpolation, compounding, holes, reference;  ///< Empty: as in the calibration file.
+  std::string black;  ///< Empty: keep with reconstruction settings in the calibration file, else skip.
   bool is_json = false;
 };
 
@@ -57,7 +57,7 @@ std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
   return names;
 }
 
-/// What the calibration file says, and over it what the command line says.
+/// Settings of the calibration file, overridden by the command line.
 Result<io::PlusConfig> gather(const Arguments& arguments) {
   io::PlusConfig config;
   if (!arguments.calibration.empty()) {
@@ -124,9 +124,9 @@ Status reconstruct(const Arguments& arguments) {
   TROCAR_TRY_STATUS(io::write_image(volume->gray, arguments.out));
   report(progress, "done", 1.0);
   for (const std::string& what : config.left_aside)
-    print_warning(fmt::format("{} of {} is not followed", what, arguments.calibration));
+    print_warning(fmt::format("PLUS setting {} of {} is ignored", what, arguments.calibration));
   if (volume->frames_left_out > 0)
-    print_warning(fmt::format("{} frames are left out: invalid, or without a place", volume->frames_left_out));
+    print_warning(fmt::format("{} frames are omitted: invalid, or without a pose", volume->frames_left_out));
   if (arguments.is_json) {
     print_json(to_json(*volume, config.reconstruction, seconds));
   } else {
@@ -138,20 +138,20 @@ Status reconstruct(const Arguments& arguments) {
 }  // namespace
 
 void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action) {
-  CLI::App* command = ultrasound.add_subcommand("reconstruct", "Make a volume of a tracked freehand sweep");
+  CLI::App* command = ultrasound.add_subcommand("reconstruct", "Reconstruct a volume from a tracked freehand sweep");
   command->footer(
       "Examples:\n  trocar ultrasound reconstruct sweep.igs.mha --calibration PlusDeviceSet.xml --spacing 0.5 --out "
       "volume.nrrd\n  trocar ultrasound reconstruct sweep.igs.mha --spacing 1 --reference Tracker --out volume.nrrd\n");
   const auto a = std::make_shared<Arguments>();
-  command->add_option("SEQUENCE", a->sequence, "Tracked pictures of PLUS or 3D Slicer: .igs.mha")->required();
+  command->add_option("SEQUENCE", a->sequence, "Tracked images of PLUS or 3D Slicer: .igs.mha")->required();
   command->add_option("--calibration", a->calibration,
                       "PLUS configuration (XML) with ImageToProbe; its <VolumeReconstruction> gives the defaults");
   arguments::number_within(
-      command->add_option("--spacing", a->spacing_mm, "Voxel size; the calibration file's or 1 mm when left out"), 0.01,
-      100.0, "mm");
+      command->add_option("--spacing", a->spacing_mm, "Voxel size; default: that of the calibration file, or 1 mm"),
+      0.01, 100.0, "mm");
   command->add_option("--out", a->out, "Volume to write: .nrrd, one byte a voxel, LPS axes of the reference")
       ->required();
-  command->add_option("--reference", a->reference, "Tracked frame that the volume stands in; Reference when left out");
+  command->add_option("--reference", a->reference, "Reference frame of the volume; default: Reference");
   command->add_option("--interpolation", a->interpolation, "nearest or linear; nearest when left out")
       ->check(CLI::IsMember(names_of(interpolations())));
   command
@@ -165,8 +165,8 @@ void add_ultrasound_reconstruct_command(CLI::App& ultrasound, Action& action) {
       ->check(CLI::IsMember(holes));
   command
       ->add_option("--black", a->black,
-                   "Pixels black in all frames, such as the margin beside the fan: skip or keep; skip when left out, "
-                   "unless the calibration file has a <VolumeReconstruction>")
+                   "Pixels that are black in all frames (margin outside the fan): skip or keep; default: skip, or keep "
+                   "with a <VolumeReconstruction> in the calibration file")
       ->check(CLI::IsMember({"skip", "keep"}));
   command->add_flag("--json", a->is_json, "Print one JSON object");
   command->callback([&action, a] { action = [a] { return reconstruct(*a); }; });

@@ -21,28 +21,28 @@ namespace fs = std::filesystem;
 
 constexpr double kLeastDepth_mm = 20.0;
 constexpr double kLeastFocus_mm = 5.0;
-/// No transducer sees deeper; its own limit is checked once it is known.
+/// No transducer images deeper; the limit of the transducer is checked later.
 constexpr double kMostDepth_mm = 300.0;
-/// Where the user says a depth and no focus, the focus stays within the picture.
+/// With a given depth and no focus, the focus stays within the image.
 constexpr double kDeepestFocus = 0.75;
-constexpr double kWorthSaying = 0.1;  ///< Share of a picture outside the CT that a warning mentions.
-/// Settings that a saved pose keeps.
+constexpr double kWorthSaying = 0.1;  ///< Share of an image outside the CT that causes a warning.
+/// Settings stored with a saved pose.
 constexpr const char* kTransducerNote = "transducer";
 constexpr const char* kDepthNote = "depth_mm";
 constexpr const char* kFrequencyNote = "frequency_mhz";
 constexpr const char* kFocusNote = "focus_mm";
 
-/// Takes a number that was given, within what the transducer can do.
+/// Applies a given number after checking it against the transducer's limits.
 Status take(const char* option, const std::optional<double>& asked, double low, double high, const char* unit,
             double& value) {
   if (!asked) return {};
   value = *asked;
   if (value >= low && value <= high) return {};
-  return fail_usage(fmt::format("{} is out of the transducer's range", option), fmt::format("{}", value),
+  return fail_usage(fmt::format("{} is out of the range of the transducer", option), fmt::format("{}", value),
                     fmt::format("give {:g} to {:g} {}", low, high, unit));
 }
 
-/// A setting that a pose was saved with; `value` stays where the file has none. Held in the transducer's range.
+/// Reads a setting saved with a pose, clamped to the transducer's range; `value` is unchanged if the file has none.
 Status take_note(const io::TransformNotes& notes, const char* key, double low, double high, double& value,
                  const std::string& where) {
   const auto note = notes.find(key);
@@ -56,7 +56,7 @@ Status take_note(const io::TransformNotes& notes, const char* key, double low, d
   return {};
 }
 
-/// The settings of the saved pose, for the transducer that it was saved with.
+/// Applies the settings of the saved pose to the transducer that it was saved with.
 Status take_notes(const io::TransformNotes& notes, const ultrasound::Transducer& transducer, const std::string& where,
                   ultrasound::Acquisition& acquisition) {
   const auto name = notes.find(kTransducerNote);
@@ -109,7 +109,7 @@ Result<ultrasound::DisplaySettings> gather_display(const ScanArguments& a) {
   return display;
 }
 
-/// A view by its name, before there is a patient to hold it against.
+/// Finds a view by its name before a patient is opened.
 Result<std::optional<ultrasound::ProbeView>> find_view(const std::vector<ultrasound::ProbeView>& views,
                                                        const std::string& name) {
   if (name.empty()) return std::nullopt;
@@ -127,19 +127,19 @@ void add_scan_options(CLI::App& command, ScanArguments& a) {
   arguments::seed_number(command.add_option("--patient-seed", a.source.seed, "Seed of an embedded patient"))
       ->capture_default_str();
   add_cache_option(command, a.source);
-  CLI::Option* pose = command.add_option("--pose", a.pose, "X_PT: points of the transducer to the patient's (.tfm)");
+  CLI::Option* pose = command.add_option("--pose", a.pose, "X_PT: transform from the transducer to the patient (.tfm)");
   CLI::Option* view =
       command.add_option("--view", a.view, "Place the transducer in a standard view: trocar ultrasound views");
   pose->excludes(view);
   command.add_option("--save-pose", a.save_pose,
                      "Write X_PT as a .tfm, with transducer, depth, frequency and focus as comments that --pose reads");
   command.add_option("--transducer", a.transducer,
-                     "One of trocar ultrasound transducers; when left out the view's, or a fitting one");
+                     "Transducer, see trocar ultrasound transducers; default: that of the view, or a suitable one");
   arguments::number_within(command.add_option("--depth-mm", a.depth_mm, "Image depth below the face"), kLeastDepth_mm,
                            kMostDepth_mm, "mm");
   arguments::number_within(
-      command.add_option("--frequency-mhz", a.frequency_mhz, "Frequency, within the transducer's band"), 0.5, 50.0,
-      "MHz");
+      command.add_option("--frequency-mhz", a.frequency_mhz, "Transmit frequency, within the transducer's band"), 0.5,
+      50.0, "MHz");
   arguments::number_within(command.add_option("--focus-mm", a.focus_mm, "Depth of the transmit focus"), kLeastFocus_mm,
                            kMostDepth_mm, "mm");
   arguments::number_within(command.add_option("--gain-db", a.display.gain_db, "Gain"), -40.0, 40.0, "dB")
@@ -198,7 +198,7 @@ Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_tra
   scan.patient_name = patient.name;
   if (scan.view) {
     TROCAR_TRY(scan.view, ultrasound::choose_view(patient, views, a.view));
-    report(progress, "placing the transducer", 0.0);
+    report(progress, "searching the pose of the transducer", 0.0);
     TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, *scan.view, scan.transducer));
     scan.X_PT = placed.X_PT;
     scan.visibility = placed.visibility;
@@ -235,23 +235,21 @@ void warn_of_contact(double coupled) {
   constexpr double kHardlyAny = 0.02;
   constexpr double kMost = 0.75;
   if (coupled < kHardlyAny) {
-    print_warning("the face does not touch the skin: nothing but air is seen");
+    print_warning("the transducer does not touch the skin: the image shows only air");
   } else if (coupled < kMost) {
-    print_warning(fmt::format("only {:.0f} % of the face touch the skin", 100.0 * coupled));
+    print_warning(fmt::format("only {:.0f} % of the transducer face touches the skin", 100.0 * coupled));
   }
 }
 
 void warn_of_visibility(const Scan& scan) {
   if (scan.view && scan.visibility && scan.visibility->visible < ultrasound::kEnoughVisible)
-    print_warning(
-        fmt::format("view \"{}\": {:.0f} % of the subject is visible ({}): choose another view, or place the "
-                    "transducer with --pose",
-                    scan.view->name, 100.0 * scan.visibility->visible, ultrasound::hidden_causes(*scan.visibility)));
+    print_warning(fmt::format(
+        "view \"{}\": only {:.0f} % of the subject is visible ({}): select another view, or set the pose with --pose",
+        scan.view->name, 100.0 * scan.visibility->visible, ultrasound::hidden_causes(*scan.visibility)));
   if (scan.unscanned_share > kWorthSaying)
-    print_warning(
-        fmt::format("{:.0f} % of the picture lies outside the CT (hatched) and shows no echoes: use a CT that "
-                    "reaches further, or another view",
-                    100.0 * scan.unscanned_share));
+    print_warning(fmt::format(
+        "{:.0f} % of the image is outside the CT (hatched) and has no echoes: use a larger CT or another view",
+        100.0 * scan.unscanned_share));
 }
 
 Status save_pose(const Scan& scan, const std::string& path) {

@@ -16,7 +16,7 @@
 
 namespace trocar::cli {
 
-/// What all commands that scan a patient ask for; what is left out is the transducer's or the view's.
+/// Arguments of all commands that scan a patient; defaults come from the transducer or the view.
 struct ScanArguments {
   io::PatientSource source;
   std::string pose, view, save_pose;
@@ -57,7 +57,7 @@ Result<Scan> prepare_scan(const ScanArguments& arguments, const std::string& def
 /// out.
 Status check_outputs(const std::vector<std::string>& outputs);
 
-/// Warns where a face or a part of it hears nothing. `coupled`: the share of scanlines on the skin, 0..1.
+/// Warns if the transducer face has no or only partial contact. `coupled`: the share of scanlines on the skin, 0..1.
 void warn_of_contact(double coupled);
 
 /// Warns where the view shows little of its subject, and where the picture reaches beyond the CT.

@@ -1,4 +1,4 @@
-// trocar ultrasound sweep: a volume as a mechanical 3D transducer makes it, or a tracked sweep as a hand makes it.
+// trocar ultrasound sweep: a volume of a mechanical 3D transducer, or a tracked freehand sweep.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -25,12 +25,12 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 struct Arguments {
   ScanArguments scan;
   std::string out, tracked;
-  double angle_deg = 0.0;  ///< 0: the transducer's, or by hand a slide.
+  double angle_deg = 0.0;  ///< 0: that of the transducer; freehand: translation only.
   double step_deg = 0.75;
   double spacing_mm = 0.7;
   bool is_in_patient = false;
   double length_mm = 60.0;
-  int frames = 0;  ///< By hand; 0: one a mm, or a step.
+  int frames = 0;  ///< Freehand sweep; 0: one frame per mm, or per step.
   bool is_json = false;
 };
 
@@ -45,7 +45,7 @@ std::string text_of(const Pose& X) {
   return text + "0 0 0 1";
 }
 
-/// The fan for those who stitch or register: the frame of the numbers is the volume's own, T or P.
+/// Fan geometry for stitching and registration, in the frame of the volume: T or P.
 io::ImageFields fan_fields(const Scan& scan, const ultrasound::SweepVolume& volume, bool is_in_patient) {
   const ultrasound::SweepGeometry& sweep = volume.geometry;
   const Pose X = is_in_patient ? scan.X_PT : Pose();
@@ -175,19 +175,21 @@ Status sweep(const Arguments& arguments) {
 }  // namespace
 
 void add_ultrasound_sweep_command(CLI::App& ultrasound, Action& action) {
-  CLI::App* command = ultrasound.add_subcommand("sweep", "Make a simulated 3D acquisition");
+  CLI::App* command = ultrasound.add_subcommand("sweep", "Simulate a 3D acquisition");
   command->footer(
       "Examples:\n  trocar ultrasound sweep --patient my_patient --pose probe.tfm --out volume.nrrd\n"
       "  trocar ultrasound sweep --patient abdomen --view liver-right-kidney --in-patient --out liver.nrrd\n"
       "  trocar ultrasound sweep --patient abdomen --view liver-right-kidney --tracked sweep.igs.mha\n");
   const auto a = std::make_shared<Arguments>();
   add_scan_options(*command, a->scan);
-  command->add_option("--out", a->out, "Volume of a mechanical 3D transducer: .nrrd, one byte a voxel, with its fan");
-  command->add_option("--tracked", a->tracked, "Instead: tracked pictures of a freehand sweep, .igs.mha");
+  command->add_option(
+      "--out", a->out,
+      "Output volume of a mechanical 3D transducer: .nrrd, one byte per voxel, with the fan geometry in the header");
+  command->add_option("--tracked", a->tracked, "Alternative output: tracked images of a freehand sweep, .igs.mha");
   arguments::number_within(
       command->add_option(
           "--angle-deg", a->angle_deg,
-          "Total angle of the sweep; the transducer's own when left out. Freehand sweep: tilt, no slide"),
+          "Total angle of the sweep; default: that of the transducer. Freehand sweep: tilt without translation"),
       1.0, 90.0, "degrees");
   arguments::number_within(command->add_option("--step-deg", a->step_deg, "Angle between frames"), 0.1, 10.0, "degrees")
       ->capture_default_str();

@@ -1,4 +1,4 @@
-// trocar-hapticd: the haptic server, one process a device.
+// trocar-hapticd: the haptic server, one process per device.
 #include <fmt/format.h>
 #include <signal.h>
 
@@ -9,7 +9,7 @@
 #include <mutex>
 #include <thread>
 
-#include "attempt/case/scene_request.h"
+#include "cases/scene_request.h"
 #include "core/files/data_dir.h"
 #include "core/log.h"
 #include "core/version.h"
@@ -29,7 +29,7 @@ struct Arguments {
   std::string device = "virtual", preset, tool = "needle", endpoint, replay_file;
   std::vector<std::string> faults;
   io::PatientSource patient;
-  attempt::CaseOptions the_case;
+  cases::CaseOptions the_case;
   std::string force_model;
   double rate_hz = 1000.0;
   int priority = 80;
@@ -37,7 +37,7 @@ struct Arguments {
   bool is_verbose = false, is_test = false, is_calibrating = false;
 };
 
-/// Patients for the server; one that was opened here already is not opened twice.
+/// Loads patients for the server; a patient that is already open is not loaded again.
 class Patients {
  public:
   Result<std::shared_ptr<const anatomy::VirtualPatient>> open(const std::string& name, std::uint64_t seed,
@@ -58,8 +58,8 @@ class Patients {
 };
 
 Result<std::vector<Pose>> replayed_poses(const storage::Session& session, double needle_length_mm) {
-  // The room of the replay is that of its own plan; the stylus is the needle's grip.
-  const Pose X_WP = attempt::room_in_patient(session.info.plan_P.line_P, needle_length_mm).inverse();
+  // The room of the replay is that of its own plan; the stylus is at the needle's grip.
+  const Pose X_WP = cases::room_in_patient(session.info.plan_P.line_P, needle_length_mm).inverse();
   const Pose X_NS = Pose::translation({0.0, 0.0, -needle_length_mm});
   std::vector<Pose> poses;
   poses.reserve(session.samples.size());
@@ -84,10 +84,10 @@ Result<std::unique_ptr<devices::HapticDevice>> open_named_device(const Arguments
   }
   if (spec.kind == "replay") {
     TROCAR_TRY(const storage::Session session, storage::load_session(spec.argument));
-    attempt::CaseOptions of_session;
+    cases::CaseOptions of_session;
     of_session.task = session.info.task;
     of_session.needle = session.info.needle;
-    TROCAR_TRY(const attempt::Case tables, attempt::load_tables(of_session));
+    TROCAR_TRY(const cases::Case tables, cases::load_tables(of_session));
     TROCAR_TRY(options.replay, replayed_poses(session, tables.needle.length_mm));
     options.replay_rate_hz = session.info.rate_hz;
   }
@@ -104,22 +104,22 @@ Result<std::optional<link::ServerSecurity>> load_security(const Arguments& argum
   return security;
 }
 
-/// The scene of the command line: the patient is planned as `trocar run` would, so that the room stands at the entry.
+/// Scene of the command line: the path is planned as in `trocar run`, so that the room is placed at the entry.
 Result<link::LoadScene> first_scene(const Arguments& arguments, Patients& patients) {
   TROCAR_TRY(anatomy::VirtualPatient opened, io::open_patient(arguments.patient));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(opened));
-  TROCAR_TRY(const attempt::Case the_case, attempt::prepare_case(patient, arguments.the_case));
+  TROCAR_TRY(const cases::Case the_case, cases::prepare_case(patient, arguments.the_case));
   patients.keep(arguments.patient, patient);
-  attempt::SceneChoice choice;
+  cases::SceneChoice choice;
   choice.tool = arguments.tool;
   choice.force_model = arguments.force_model;
   choice.patient_source = arguments.patient.folder_or_name;
   choice.patient_seed = arguments.patient.seed;
-  return attempt::scene_request(the_case, choice);
+  return cases::scene_request(the_case, choice);
 }
 
-/// Waits for the signals that end the server, on a thread of its own. As long as no device is held, the program ends at
-/// once: loading the first patient takes seconds.
+/// Waits for the signals that end the server, on a separate thread. While no device is open, the program ends at once:
+/// loading the first patient takes seconds.
 class EndSignal {
  public:
   EndSignal() : state_(std::make_shared<State>()) {
@@ -132,7 +132,7 @@ class EndSignal {
       sigwait(&signals, &signal);
       const std::lock_guard lock(state->mutex);
       if (!state->holds_device) {
-        fmt::print(stderr, "error: stopped before the server had started\n");
+        fmt::print(stderr, "error: stopped before the server was ready\n");
         std::fflush(nullptr);
         std::_Exit(1);
       }
@@ -140,7 +140,7 @@ class EndSignal {
       state->wake.notify_all();
     }).detach();
   }
-  /// From now on wait() is how the program ends.
+  /// After this call, wait() ends the program.
   void hold_device() {
     const std::lock_guard lock(state_->mutex);
     state_->holds_device = true;
@@ -172,7 +172,7 @@ void print_report(const server::ServerReport& report) {
   line("tick", loop.tick);
   fmt::print("{}\n", report.grant.text());
   if (report.ticks_dropped + report.refused.total() + report.batches_not_taken > 0)
-    fmt::print("{} ticks dropped, {} messages refused, {} batches that a client did not take\n", report.ticks_dropped,
+    fmt::print("{} ticks dropped, {} messages refused, {} batches dropped for slow clients\n", report.ticks_dropped,
                report.refused.total(), report.batches_not_taken);
 }
 
@@ -222,15 +222,17 @@ Status serve(Arguments& arguments) {
 void add_options(CLI::App& program, Arguments& a) {
   program
       .add_option("--device", a.device,
-                  "virtual[:PRESET], mouse, gamepad, spacemouse, replay:SESSION, openhaptics[:NAME], forcedimension or "
-                  "haply[:ws://HOST:PORT]")
+                  "Device: virtual[:PRESET], mouse, gamepad, spacemouse, replay:SESSION, openhaptics[:NAME], "
+                  "forcedimension or haply[:ws://HOST:PORT]")
       ->capture_default_str();
-  program.add_option("--preset", a.preset, "Row of data/devices.toml instead of the device's own");
-  program.add_option("--tool", a.tool, "What the device stands for: needle, probe or finger")->capture_default_str();
-  program.add_option("--patient", a.patient.folder_or_name, "Patient to load at once; without it a client sends one");
+  program.add_option("--preset", a.preset, "Preset (row of data/devices.toml); default: that of the device");
+  program.add_option("--tool", a.tool, "Tool of the device: needle, probe or finger")->capture_default_str();
+  program.add_option("--patient", a.patient.folder_or_name,
+                     "Patient to load at the start; without it, a client sends one");
   arguments::seed_number(program.add_option("--patient-seed", a.patient.seed, "Seed of an embedded patient"))
       ->capture_default_str();
-  program.add_option("--task", a.the_case.task, "Task that places the patient in the room")->capture_default_str();
+  program.add_option("--task", a.the_case.task, "Task that defines the patient's position in the room")
+      ->capture_default_str();
   program.add_option("--needle", a.the_case.needle, "Needle of data/needles.toml; the task's own when left out");
   program.add_option("--force-model", a.force_model, "insertion, proxy or combined; the task's own when left out");
   arguments::number_within(program.add_option("--rate", a.rate_hz, "Rate of haptic ticks"), 250.0, 4000.0, "Hz")
@@ -245,27 +247,25 @@ void add_options(CLI::App& program, Arguments& a) {
   program.add_option("--flight-records", a.flight_folder, "Folder for the last 2 s before a fault")
       ->capture_default_str();
   program
-      .add_option(
-          "--fault", a.faults,
-          "Break the device on schedule, to see what happens: KIND[:AMOUNT]@FROM_S[+FOR_S], as nan@2+0.5; kinds "
-          "jitter, dropped, nan, stuck, jump, disconnect, slow_write, slow_read")
+      .add_option("--fault", a.faults,
+                  "Inject a device fault: KIND[:AMOUNT]@FROM_S[+FOR_S], as nan@2+0.5; kinds jitter, dropped, nan, "
+                  "stuck, jump, disconnect, slow_write, slow_read")
       ->allow_extra_args(false);
-  program.add_flag(
-      "--test", a.is_test,
-      "Serve nobody: print the device's pose 30 times a second; the line \"push\" on standard input gives a "
-      "small force upwards, its end ends the test");
+  program.add_flag("--test", a.is_test,
+                   "Test mode without clients: print the device's pose 30 times a second; the line \"push\" on "
+                   "standard input applies a small upward force; end of input ends the test");
   program.add_flag("--calibrate", a.is_calibrating,
                    "OpenHaptics: calibrate first; hold the stylus in its inkwell, or the arm in its reset position");
   program.add_flag("-v,--verbose", a.is_verbose, "Print details to stderr");
   program.footer(
-      "It runs until it is interrupted, keeps its device safe whatever its clients do, and gives no force before a "
-      "client asks "
-      "for it.\nExamples:\n  trocar-hapticd --device virtual --tool needle --patient abdomen\n"
+      "The server runs until it is interrupted. It keeps its device safe independent of its clients, and applies no "
+      "force before a client requests it.\nExamples:\n  trocar-hapticd --device virtual --tool needle --patient "
+      "abdomen\n"
       "  trocar-hapticd --device openhaptics --tool probe --endpoint ipc:///tmp/probe\n");
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("The haptic server of Trocar: one process a device. A trainer, not a medical device.");
+  CLI::App program("The haptic server of Trocar, one process per device. A trainer, not a medical device.");
   program.name("trocar-hapticd");
   program.set_version_flag("--version", std::string("trocar-hapticd ") + kVersion, "Print the version and exit");
   Arguments arguments;
@@ -282,7 +282,7 @@ int run(int argc, char** argv) {
   return done ? 0 : arguments::report_error(done.error());
 }
 
-/// All threads inherit it: the signals that end the server are waited for, not handled.
+/// All threads inherit the blocked signals; a thread waits for them instead of a handler.
 void block_signals() {
   sigset_t signals;
   sigemptyset(&signals);

@@ -20,13 +20,13 @@ namespace {
 
 constexpr double kPrinted_hz = 30.0;
 
-/// What the other end of standard input asks for.
+/// Commands on standard input.
 struct Wishes {
   std::atomic<bool> pushes{false};
   std::atomic<bool> ends{false};
 };
 
-/// Until standard input or a signal ends the test; SIGINT and SIGTERM are blocked in all threads (main.cpp).
+/// Runs until end of input or a signal; SIGINT and SIGTERM are blocked in all threads (main.cpp).
 void read_wishes(Wishes& wishes) {
   sigset_t signals;
   sigemptyset(&signals);

@@ -1,4 +1,4 @@
-// trocar-trainer: the desktop that a trainee sits at.
+// trocar-trainer: the trainer's window.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -42,15 +42,15 @@ struct Arguments {
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("--task", arguments.task, "Task that is chosen at the start");
+  app.add_option("--task", arguments.task, "Task selected at the start");
   app.add_option("--patient", arguments.patient, "Patient folder, or an embedded patient's name");
   arguments::seed_number(app.add_option("--patient-seed", arguments.patient_seed,
                                         "Random seed for the anatomy of an embedded patient [1]"));
-  app.add_option("--script", arguments.script, "Plays a user's steps, then ends; exit status 1 where one fails")
+  app.add_option("--script", arguments.script, "Run a script of user actions, then exit; exit status 1 if a step fails")
       ->check(CLI::ExistingFile);
   app.add_option("--screenshot", arguments.screenshot,
-                 "Saves the window as a PNG and ends; after the script if there is one");
-  app.add_flag("--benchmark", arguments.is_benchmark, "Plays a puncture in every layout and prints frame times");
+                 "Save the window as a PNG and exit; after the script if there is one");
+  app.add_flag("--benchmark", arguments.is_benchmark, "Run a puncture in every layout and print frame times");
   app.add_option("--state", arguments.state_folder, "Folder for sessions [$XDG_STATE_HOME/trocar]");
   app.set_version_flag("--version", fmt::format("trocar-trainer {} (Qt {})", kVersion, qVersion()));
   app.footer(
@@ -59,7 +59,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       "Steps of a script: click, drag, wheel, key, choose, set, wait-for, expect, screenshot … (docs/user_guide.md)");
 }
 
-/// What the arguments choose, before there is a window: an unknown name is told, not passed over.
+/// Applies the arguments before there is a window: an unknown name is an error.
 Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments) {
   if (arguments.task) {
     TROCAR_TRY(const tasks::Task task, tasks::load_task(data_dir() / "tasks", *arguments.task));
@@ -83,11 +83,11 @@ Result<SeatChoice> with_arguments(SeatChoice choice, const Arguments& arguments)
 
 void save_window(MainWindow& window, const std::string& file) {
   const bool is_saved = window.grab().save(to_qt(file), "PNG");
-  if (!is_saved) arguments::report_error(Error{"the picture cannot be written", file, "check the folder"});
+  if (!is_saved) arguments::report_error(Error{"cannot write the image", file, "check the folder"});
   QCoreApplication::exit(is_saved ? 0 : 1);
 }
 
-/// The script, then the picture, then the end.
+/// Runs the script, then saves the screenshot, then exits.
 Status play(const Arguments& arguments, MainWindow& window) {
   if (arguments.script.empty() && !arguments.is_benchmark) {
     constexpr int kSettled_ms = 700;
@@ -112,7 +112,7 @@ Status play(const Arguments& arguments, MainWindow& window) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("The desktop that a trainee sits at: ultrasound, slices, 3D, forces and a score.", "trocar-trainer");
+  CLI::App app("The Trocar trainer window: ultrasound, slices, 3D, forces and score.", "trocar-trainer");
   Arguments arguments;
   add_options(app, arguments);
   try {
@@ -123,7 +123,7 @@ int run(int argc, char** argv) {
     return arguments::report_error({error.what(), "trocar-trainer", "see trocar-trainer --help", 2});
   }
   if (!scene::can_render())
-    return arguments::report_error(Error{"the window needs an X server that can draw, and there is none", "DISPLAY",
+    return arguments::report_error(Error{"the window needs an X server with rendering; none is available", "DISPLAY",
                                          "start it from a desktop, or under xvfb-run"});
 
 #if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
@@ -133,7 +133,7 @@ int run(int argc, char** argv) {
   QCoreApplication::setOrganizationName(QStringLiteral("trocar"));
   QCoreApplication::setApplicationName(QStringLiteral("trocar-trainer"));
   TrainerApplication application(argc, argv);
-  // A benchmark is of the built-in layouts, and leaves no trace in the user's settings.
+  // A benchmark uses the built-in layouts and does not change the user's settings.
   const QTemporaryDir own_settings;
   if (arguments.is_benchmark) QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, own_settings.path());
   apply_theme(application, kept_text_percent());

@@ -9,7 +9,7 @@ namespace trocar::architecture {
 namespace {
 
 std::size_t complaints_of(std::string_view source) {
-  return check_messages("src/io/a.cpp", source).size();
+  return check_messages("src/exchange/io/a.cpp", source).size();
 }
 
 TEST(Messages, NeedAllThreeParts) {
@@ -33,9 +33,9 @@ TEST(Messages, OtherFunctionsAndTheDeclarationMayHaveFewer) {
 }
 
 TEST(Messages, LinesAreNamed) {
-  const auto complaints = check_messages("src/io/a.cpp", "\n\n  return fail(\"what\");\n");
+  const auto complaints = check_messages("src/exchange/io/a.cpp", "\n\n  return fail(\"what\");\n");
   ASSERT_EQ(complaints.size(), 1u);
-  EXPECT_TRUE(complaints.front().starts_with("src/io/a.cpp:3: ")) << complaints.front();
+  EXPECT_TRUE(complaints.front().starts_with("src/exchange/io/a.cpp:3: ")) << complaints.front();
 }
 
 TEST(Messages, OfTheWholeProgramSayWhatToDo) {

@@ -150,7 +150,7 @@ TEST_F(FirstPuncture, NoviceScoresLowerThanTheExpert) {
 TEST_F(FirstPuncture, ReplayRepeatsTheRecording) {
   const std::string again = *folder_ / "again.session";
   const Outcome outcome = trocar("run liver-biopsy --patient '" + patient_ + "' --operator 'replay:" + session_ +
-                                        "' --out '" + again + "'");
+                                 "' --out '" + again + "'");
   ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
   const std::string first_csv = *folder_ / "first.csv";
   const std::string again_csv = *folder_ / "again.csv";

@@ -65,9 +65,8 @@ TEST_F(ReplayCommand, GoesIntoAnotherPatientOnlyWhenThatIsMeant) {
   const config::Json other = json_of(meant);
   EXPECT_NE(other["patient_hash"], recorded_["patient_hash"]);
   EXPECT_EQ(other["patient_seed"], 4);
-  const Outcome pointless =
-      trocar("run liver-biopsy --patient layers-liver --operator expert --other-patient --out '" +
-             (*folder_ / "pointless.session") + "'");
+  const Outcome pointless = trocar("run liver-biopsy --patient layers-liver --operator expert --other-patient --out '" +
+                                   (*folder_ / "pointless.session") + "'");
   EXPECT_EQ(pointless.exit_status, 2);
 }
 

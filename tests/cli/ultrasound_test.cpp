@@ -129,9 +129,9 @@ TEST(UltrasoundImage, PictureBeyondTheCtIsWarnedOf) {
 TEST(UltrasoundImage, FaceBesideTheBodyIsWarnedOf) {
   const TemporaryFolder folder;
   const Outcome outcome = trocar("ultrasound image" + kScene + kQuick + " --pose " +
-                                        place_on_scene(folder, {0.0, -400.0, 0.0}) + " --out " + (folder / "air.png"));
+                                 place_on_scene(folder, {0.0, -400.0, 0.0}) + " --out " + (folder / "air.png"));
   EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("the face does not touch the skin"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("the transducer does not touch the skin"), std::string::npos) << outcome.err;
 }
 
 TEST(UltrasoundSweep, VolumeOfTheMotorAndOfAHandAgreeInThePatient) {
@@ -256,7 +256,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(UltrasoundSweep, NeedsAMotor) {
   const TemporaryFolder folder;
   const Outcome outcome = trocar("ultrasound sweep --patient layers-liver --transducer C5-2 --pose " +
-                                        place_on_scene(folder) + " --out " + (folder / "x.nrrd"));
+                                 place_on_scene(folder) + " --out " + (folder / "x.nrrd"));
   EXPECT_EQ(outcome.exit_status, 2) << outcome.err;
   EXPECT_NE(outcome.err.find("no motor"), std::string::npos) << outcome.err;
 }

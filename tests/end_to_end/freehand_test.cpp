@@ -54,7 +54,7 @@ TEST(RealFreehand, SpinePhantomWithoutItsCalibrationSaysWhatIsMissing) {
   ASSERT_TRUE(sequence) << sequence.error().text();
   const auto volume = ultrasound::reconstruct_freehand(*sequence, {}, {});
   ASSERT_FALSE(volume);
-  EXPECT_NE(volume.error().what.find("no way from Image to Reference"), std::string::npos);
+  EXPECT_NE(volume.error().what.find("no transform from Image to Reference"), std::string::npos);
 }
 
 TEST(RealFreehand, LiverSweepBringsItsOwnPlaces) {

@@ -1,4 +1,5 @@
-"""A client of trocar-hapticd, written from docs/link.md and src/link/messages.fbs alone. Standard library and flatbuffers."""
+"""A client of trocar-hapticd, written from docs/link.md and src/device/link/messages.fbs alone.
+Standard library and flatbuffers."""
 import os
 import select
 import socket

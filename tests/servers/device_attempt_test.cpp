@@ -16,11 +16,11 @@ namespace {
 using testing::GamepadStandIn;
 using testing::SpacenavDaemon;
 
-std::shared_ptr<const attempt::OpenCase> layered_case() {
-  static const std::shared_ptr<const attempt::OpenCase> kOpen = [] {
-    attempt::CaseChoice choice;
+std::shared_ptr<const cases::OpenCase> layered_case() {
+  static const std::shared_ptr<const cases::OpenCase> kOpen = [] {
+    cases::CaseChoice choice;
     choice.patient_source = "layers-liver";
-    auto made = attempt::make_open_case(choice);
+    auto made = cases::make_open_case(choice);
     EXPECT_TRUE(made) << made.error().text();
     return made ? *made : nullptr;
   }();
@@ -98,7 +98,8 @@ TEST_F(DeviceAttemptTest, AnUnpluggedGamepadIsToldAndThePunctureGoesOnWhenItIsBa
   const double depth_mm = attempt->view().needle.depth_mm;
   pad.plug(false);
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kServerLost)) << where();
-  ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("gamepad is gone") != std::string::npos; })) << where();
+  ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("gamepad is disconnected") != std::string::npos; }))
+      << where();
   const int pid = attempt->view().servers[0].pid;
   pad.plug(true);
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kInBody)) << where();
@@ -116,7 +117,7 @@ TEST_F(DeviceAttemptTest, SaysInOneLineThatNoGamepadIsThere) {
   start("gamepad");
   const Error error = failure();
   EXPECT_EQ(error.what, "no gamepad is connected");
-  EXPECT_NE(error.advice.find("plug one in"), std::string::npos) << error.advice;
+  EXPECT_NE(error.advice.find("connect or pair one"), std::string::npos) << error.advice;
 }
 
 TEST_F(DeviceAttemptTest, ASpaceMousePushesTheNeedleInAndMayBeUnplugged) {
@@ -137,7 +138,7 @@ TEST_F(DeviceAttemptTest, ASpaceMousePushesTheNeedleInAndMayBeUnplugged) {
   EXPECT_EQ(attempt->view().phase, attempt::AttemptPhase::kInBody);
   ASSERT_TRUE(wait_rest()) << where();
   daemon.unplug_device();
-  ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("SpaceMouse is gone") != std::string::npos; }))
+  ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("SpaceMouse is disconnected") != std::string::npos; }))
       << where();
   // The daemon still answers, so the device is taken for back.
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kInBody)) << where();
@@ -147,7 +148,7 @@ TEST_F(DeviceAttemptTest, ASpaceMousePushesTheNeedleInAndMayBeUnplugged) {
 TEST_F(DeviceAttemptTest, SaysInOneLineThatNoSpaceMouseIsThere) {
   ::setenv("SPNAV_SOCKET", (folder_ / "nobody").c_str(), 1);
   start("spacemouse");
-  EXPECT_EQ(failure().what, "spacenavd does not answer");
+  EXPECT_EQ(failure().what, "spacenavd does not respond");
   ::unsetenv("SPNAV_SOCKET");
 }
 

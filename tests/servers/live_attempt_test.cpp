@@ -163,7 +163,7 @@ TEST_F(LiveAttemptTest, ParametersReachTheServerWhileItRuns) {
   start(options());
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->set_parameters({"skin.fp=30"});
-  ASSERT_TRUE(wait_for([&] { return attempt->view().message.find("other numbers") != std::string::npos; }));
+  ASSERT_TRUE(wait_for([&] { return attempt->view().message.find("changed parameters") != std::string::npos; }));
   attempt->set_parameters({"skin.colour=9"});
   ASSERT_TRUE(wait_for([&] { return attempt->view().message.find("colour") != std::string::npos; }))
       << attempt->view().message;

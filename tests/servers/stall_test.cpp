@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <future>
 
-#include "attempt/case/prepare_case.h"
 #include "attempt/live/realtime_session.h"
+#include "attempt/servers/link_connection.h"
 #include "attempt/servers/server_seat.h"
+#include "cases/prepare_case.h"
 #include "servers/live_attempt_lab.h"
 #include "storage/session_file.h"
 
@@ -121,7 +122,7 @@ TEST_F(Stalls, AServerThatIsStoppedIsWaitedForAndTheNeedleStays) {
         const Stall stall(pid);
         stall.lasts(duration);
         EXPECT_EQ(attempt->view().phase, attempt::AttemptPhase::kServerLost);
-        EXPECT_NE(attempt->view().banner.find("does not answer"), std::string::npos) << attempt->view().banner;
+        EXPECT_NE(attempt->view().banner.find("does not respond"), std::string::npos) << attempt->view().banner;
       }
       ASSERT_TRUE(goes_on()) << where();
       EXPECT_LT((tip_P() - rest_P).norm(), kCreep_mm) << duration.count() << " ms";
@@ -220,8 +221,10 @@ TEST(SeatStalls, ASeatWaitsForControlThatIsNotFreeYet) {
   ASSERT_TRUE(wait_for([&] { return gone->view().welcome.has_control; }));
   link::ClientOptions options;
   options.endpoint = server.url();
-  auto seat = attempt::ServerSeat::connect(options, kPatience);
-  ASSERT_TRUE(seat) << seat.error().text();
+  auto connection = attempt::connect_by_link(options);
+  ASSERT_TRUE(connection) << connection.error().text();
+  SteadyClock clock;
+  std::optional<attempt::ServerSeat> seat(std::in_place, *std::move(connection), server.url(), kPatience, clock);
   ASSERT_TRUE(wait_for([&] {
     const auto looked = seat->look();
     EXPECT_TRUE(looked) << looked.error().text();
@@ -240,7 +243,7 @@ class RealtimeStalls : public ::testing::Test {
  protected:
   /// `trocar run --realtime` on a thread of its own; a watcher sees how deep its needle is.
   void begin(milliseconds patience) {
-    auto prepared = attempt::prepare_case(abdomen_case()->the_case.patient, {});
+    auto prepared = cases::prepare_case(abdomen_case()->the_case.patient, {});
     ASSERT_TRUE(prepared) << prepared.error().text();
     the_case_.emplace(*std::move(prepared));
     attempt::RunOptions run;
@@ -272,7 +275,7 @@ class RealtimeStalls : public ::testing::Test {
   TemporaryFolder folder_;
   LiveServer server_;
   link::HapticClient watcher_ = connect(server_.url(), false);
-  std::optional<attempt::Case> the_case_;
+  std::optional<cases::Case> the_case_;
   std::future<Result<attempt::RunResult>> result_;
 };
 

@@ -1,4 +1,4 @@
-// Step 1 of the case builder: which files a case is made of.
+// Step 1 of the case builder: input files of the case.
 #include <QComboBox>
 #include <QFileDialog>
 #include <QLabel>
@@ -25,7 +25,7 @@ QString first_line(const QString& entry) {
 class ImportPanel final : public CasePanel {
  public:
   ImportPanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
-    content()->addWidget(make_label(tr("CT, or a patient that is whole already"), "dim"));
+    content()->addWidget(make_label(tr("CT, or a complete patient folder"), "dim"));
     ct_ = add_field("case-ct", tr("CT"), tr("Path of a CT: NIfTI, NRRD, MHA, a DICOM folder; or a patient folder"));
     add_choosers();
     content()->addWidget(make_label(tr("Labels (several: separated by ;)"), "dim"));
@@ -104,7 +104,7 @@ class ImportPanel final : public CasePanel {
     content()->addLayout(row);
     const auto add = [this](const QString& path) {
       if (path.isEmpty()) return;
-      // Labels that could not be imported are replaced, others are added to.
+      // A new selection replaces labels whose import failed; otherwise it is appended.
       const QString before = has_failed_ ? QString() : labels_->text().trimmed();
       has_failed_ = false;
       labels_->setText(before.isEmpty() ? path : before + QStringLiteral(";") + path);
@@ -117,7 +117,7 @@ class ImportPanel final : public CasePanel {
   }
 
   void add_actions() {
-    start_ = make_button("case-import", tr("Import"), tr("Reads the files and builds the patient"));
+    start_ = make_button("case-import", tr("Import"), tr("Read the files and build the patient"));
     start_->setProperty("role", "primary");
     content()->addWidget(start_);
     connect(start_, &QPushButton::clicked, this, [this] { import(); });
@@ -137,7 +137,7 @@ class ImportPanel final : public CasePanel {
     desk_.import_patient(std::move(request));
   }
 
-  /// Keeps what was imported.
+  /// Stores the fields of the import.
   void remember() const {
     QSettings settings;
     QStringList recent = settings.value(QString::fromLatin1(kRecentKey)).toStringList();
@@ -170,9 +170,9 @@ class ImportPanel final : public CasePanel {
   QPushButton* start_ = nullptr;
   QListWidget* recent_ = nullptr;
   QString imported_;                                             ///< The three fields of the last import, a line each.
-  std::shared_ptr<const case_builder::ImportedPatient> before_;  ///< What the draft had when that began.
+  std::shared_ptr<const case_builder::ImportedPatient> before_;  ///< Import of the draft when the new import started.
   bool was_importing_ = false;
-  bool has_failed_ = false;  ///< The last import; its files are not added to.
+  bool has_failed_ = false;  ///< The last import failed; a new selection replaces its files.
 };
 
 }  // namespace

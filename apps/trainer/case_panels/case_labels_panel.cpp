@@ -1,4 +1,4 @@
-// Step 2 of the case builder: are the labels right?
+// Step 2 of the case builder: check and edit the labels.
 #include <QColorDialog>
 #include <QComboBox>
 #include <QHeaderView>
@@ -26,7 +26,7 @@ class LabelsPanel final : public CasePanel {
     add_opacity();
     add_table();
     add_editor();
-    content()->addWidget(make_label(tr("The tick shows or hides a structure in 3D."), "dim"));
+    content()->addWidget(make_label(tr("The check box shows or hides a structure in 3D."), "dim"));
   }
 
   void refresh() override {
@@ -43,7 +43,7 @@ class LabelsPanel final : public CasePanel {
     auto* slider = new QSlider(Qt::Horizontal);
     slider->setObjectName(QStringLiteral("case-label-opacity"));
     slider->setAccessibleName(tr("Opacity of the labels"));
-    slider->setToolTip(tr("How strongly the labels are drawn over the CT  (arrow keys)"));
+    slider->setToolTip(tr("Opacity of the labels over the CT  (arrow keys)"));
     slider->setRange(0, 100);
     slider->setValue(40);
     row->addWidget(slider, 1);
@@ -55,7 +55,7 @@ class LabelsPanel final : public CasePanel {
     table_ = new QTableWidget(0, kColumns);
     table_->setObjectName(QStringLiteral("case-label-table"));
     table_->setAccessibleName(tr("Labels"));
-    table_->setToolTip(tr("Select a row to edit it below; double click jumps there"));
+    table_->setToolTip(tr("Select a row to edit it below; double-click to go to the label"));
     table_->setHorizontalHeaderLabels({tr("Label"), tr("Tissue"), tr("ml")});
     table_->verticalHeader()->hide();
     table_->verticalHeader()->setDefaultSectionSize(26);
@@ -91,15 +91,15 @@ class LabelsPanel final : public CasePanel {
     name_ = new QLineEdit;
     name_->setObjectName(QStringLiteral("case-label-name"));
     name_->setAccessibleName(tr("Name of the label"));
-    name_->setToolTip(tr("Another name for the selected label  (Enter)"));
-    color_ = make_button("case-label-color", tr("Colour…"), tr("Another colour for the selected label"));
+    name_->setToolTip(tr("New name for the selected label  (Enter)"));
+    color_ = make_button("case-label-color", tr("Colour…"), tr("New colour for the selected label"));
     row->addWidget(name_, 1);
     row->addWidget(color_);
     content()->addLayout(row);
     tissue_ = new QComboBox;
     tissue_->setObjectName(QStringLiteral("case-label-tissue"));
     tissue_->setAccessibleName(tr("Tissue of the label"));
-    tissue_->setToolTip(tr("What the needle feels in the selected label"));
+    tissue_->setToolTip(tr("Mechanical tissue of the selected label"));
     for (const anatomy::TissueParams& tissue : desk_.tissues().tissues)
       if (tissue.name != "air") tissue_->addItem(to_qt(tissue.name));
     content()->addWidget(tissue_);

@@ -24,7 +24,7 @@ CaseLandmarks::CaseLandmarks(case_builder::CaseDesk& desk, QWidget* parent) : QW
 }
 
 void CaseLandmarks::add_naming() {
-  layout()->addWidget(make_label(tr("Name: choose one, or type any"), "dim"));
+  layout()->addWidget(make_label(tr("Name: select one, or type a name"), "dim"));
   name_ = new QComboBox;
   name_->setObjectName(QStringLiteral("case-landmark-name"));
   name_->setAccessibleName(tr("Name of the landmark"));
@@ -36,8 +36,8 @@ void CaseLandmarks::add_naming() {
   for (const std::string_view name : case_builder::landmark_names()) name_->addItem(to_qt(name));
   connect(name_, &QComboBox::editTextChanged, this, &CaseLandmarks::name_changed);
   layout()->addWidget(name_);
-  pick_ = make_button("case-landmark-pick", tr("Click its place"),
-                      tr("Click it in a slice, or double click it in 3D; again: moves it"), QStringLiteral("Ctrl+L"));
+  pick_ = make_button("case-landmark-pick", tr("Place by click"),
+                      tr("Click in a slice, or double-click in 3D; click again to move it"), QStringLiteral("Ctrl+L"));
   pick_->setCheckable(true);
   connect(pick_, &QPushButton::clicked, this, &CaseLandmarks::picking_wanted);
   layout()->addWidget(pick_);
@@ -47,7 +47,7 @@ void CaseLandmarks::add_list() {
   list_ = new QListWidget;
   list_->setObjectName(QStringLiteral("case-landmarks"));
   list_->setAccessibleName(tr("Landmarks"));
-  list_->setToolTip(tr("A click goes there  (Enter); F2 renames, Delete removes"));
+  list_->setToolTip(tr("Click to go there  (Enter); F2 renames, Delete removes"));
   list_->setEditTriggers(QAbstractItemView::EditKeyPressed);
   list_->setTextElideMode(Qt::ElideRight);
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
@@ -70,8 +70,8 @@ void CaseLandmarks::add_list() {
 
 void CaseLandmarks::add_buttons() {
   auto* row = new QHBoxLayout;
-  rename_ = make_button("case-landmark-rename", tr("Rename"), tr("Another name for the selected one  (F2)"));
-  remove_ = make_button("case-landmark-remove", tr("Remove"), tr("Takes the selected one away  (Delete)"));
+  rename_ = make_button("case-landmark-rename", tr("Rename"), tr("Rename the selected landmark  (F2)"));
+  remove_ = make_button("case-landmark-remove", tr("Remove"), tr("Remove the selected landmark  (Delete)"));
   for (QPushButton* button : {rename_, remove_}) {
     button->setEnabled(false);
     row->addWidget(button);

@@ -1,4 +1,4 @@
-// Step 4 of the case builder: where the needle may enter, and how an expert goes.
+// Step 4 of the case builder: entry zone and expert path.
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>
@@ -26,15 +26,16 @@ class PathPanel final : public CasePanel {
     is_refreshing_ = true;
     const tasks::Task& task = desk_.draft().task;
     zone_text_->setText(task.entry_zone
-                            ? tr("Entries within %1 mm are as good as the expert's.").arg(task.entry_zone->radius_mm)
-                            : tr("No zone: entries are held against the expert's."));
+                            ? tr("Entry points within %1 mm get full points.").arg(task.entry_zone->radius_mm)
+                            : tr("No zone: the entry point is compared with the expert's."));
     if (task.entry_zone && !radius_->hasFocus()) radius_->setValue(task.entry_zone->radius_mm);
     no_zone_->setEnabled(task.entry_zone.has_value());
     const anatomy::NeedlePath* path = case_builder::find_expert_path(desk_.draft());
     no_path_->setEnabled(path != nullptr);
     path_text_->setText(
-        path != nullptr ? tr("%1 mm from the skin to where the tip is put.").arg(path->line_P.length_mm(), 0, 'f', 0)
-                        : tr("None: it is planned whenever the case is opened."));
+        path != nullptr
+            ? tr("%1 mm from the skin to the end position of the tip.").arg(path->line_P.length_mm(), 0, 'f', 0)
+            : tr("No path: it is planned each time the case is opened."));
     plan_->setEnabled(desk_.has_patient() && desk_.work() == case_builder::CaseDesk::Work::kNone);
     is_refreshing_ = false;
   }
@@ -66,7 +67,7 @@ class PathPanel final : public CasePanel {
   void add_zone() {
     zone_text_ = add_text("case-zone-text");
     auto* row = new QHBoxLayout;
-    zone_ = make_pick("case-zone-pick", tr("Click the skin"), tr("Click the zone's middle on the skin"),
+    zone_ = make_pick("case-zone-pick", tr("Click the skin"), tr("Click the centre of the zone on the skin"),
                       QStringLiteral("Ctrl+E"), CaseClick::kZone);
     radius_ = new QDoubleSpinBox;
     radius_->setObjectName(QStringLiteral("case-zone-radius"));
@@ -79,8 +80,8 @@ class PathPanel final : public CasePanel {
     row->addWidget(zone_);
     row->addWidget(radius_);
     content()->addLayout(row);
-    no_zone_ =
-        make_button("case-zone-clear", tr("Remove entry zone"), tr("Entries are held against the expert's path alone"));
+    no_zone_ = make_button("case-zone-clear", tr("Remove entry zone"),
+                           tr("The entry point is then compared with the expert's path only"));
     content()->addWidget(no_zone_);
     connect(radius_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double radius_mm) {
       const auto& zone = desk_.draft().task.entry_zone;
@@ -94,20 +95,21 @@ class PathPanel final : public CasePanel {
 
   void add_path() {
     path_text_ = add_text("case-path-text");
-    plan_ = make_button("case-plan", tr("Plan for me"),
-                        tr("The shortest path that keeps every margin, from the entry zone to the target"),
+    plan_ = make_button("case-plan", tr("Plan automatically"),
+                        tr("The shortest path from the entry zone to the target that keeps all margins"),
                         QStringLiteral("Ctrl+P"));
     plan_->setProperty("role", "primary");
     content()->addWidget(plan_);
     auto* row = new QHBoxLayout;
-    entry_ = make_pick("case-entry-pick", tr("Set entry"), tr("Click the entry; drag to move it"),
+    entry_ = make_pick("case-entry-pick", tr("Set entry"), tr("Click the entry point; drag to move it"),
                        QStringLiteral("Ctrl+1"), CaseClick::kEntry);
-    tip_ = make_pick("case-tip-pick", tr("Set tip"), tr("Click where the tip is put; drag to move it"),
+    tip_ = make_pick("case-tip-pick", tr("Set tip"), tr("Click the end position of the tip; drag to move it"),
                      QStringLiteral("Ctrl+2"), CaseClick::kTip);
     row->addWidget(entry_);
     row->addWidget(tip_);
     content()->addLayout(row);
-    no_path_ = make_button("case-path-clear", tr("Remove path"), tr("The path is planned whenever the case is opened"));
+    no_path_ =
+        make_button("case-path-clear", tr("Remove path"), tr("The path is then planned each time the case is opened"));
     content()->addWidget(no_path_);
     connect(plan_, &QPushButton::clicked, this, [this] { desk_.plan_path(); });
     connect(no_path_, &QPushButton::clicked, this,

@@ -1,4 +1,4 @@
-// Step 6 of the case builder: name, words, and where it is written.
+// Step 6 of the case builder: name, description and output folder.
 #include <QCheckBox>
 #include <QDir>
 #include <QFileDialog>
@@ -17,20 +17,21 @@ namespace {
 class SavePanel final : public CasePanel {
  public:
   SavePanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
-    name_ = add_line("case-name", tr("Name"), tr("What trainees choose the case by"));
+    name_ = add_line("case-name", tr("Name"), tr("Name shown to trainees in the list of cases"));
     connect(name_, &QLineEdit::textEdited, this, [this](const QString& text) {
       case_builder::CaseDraft next = desk_.draft();
       next.name = to_std(text);
       desk_.edit(std::move(next), "name the case", "name");
     });
-    description_ = add_text("case-description", tr("Description"), tr("What trainees read before they begin"));
+    description_ =
+        add_text("case-description", tr("Description"), tr("Description shown to trainees before they begin"));
     connect(description_, &QPlainTextEdit::textChanged, this, [this] {
       if (is_refreshing_) return;
       case_builder::CaseDraft next = desk_.draft();
       next.description = to_std(description_->toPlainText());
       desk_.edit(std::move(next), "describe the case", "description");
     });
-    provenance_ = add_text("case-provenance", tr("Where it comes from, a line each"),
+    provenance_ = add_text("case-provenance", tr("Source of the data, one line each"),
                            tr("Data set, licence, who made the labels"));
     connect(provenance_, &QPlainTextEdit::textChanged, this, [this] {
       if (is_refreshing_) return;
@@ -83,22 +84,23 @@ class SavePanel final : public CasePanel {
   }
 
   void add_folder() {
-    folder_ = add_line("case-folder", tr("Folder to create"), tr("The case is written here  (Enter saves)"));
+    folder_ = add_line("case-folder", tr("Folder to create"), tr("Folder for the case  (Enter saves)"));
     folder_->setText(QDir::home().filePath(QStringLiteral("trocar-cases/my-case")));
     QPushButton* choose =
-        make_button("case-folder-choose", tr("Choose…"), tr("Choose the folder in which the case's folder is made"));
-    replaces_ = new QCheckBox(tr("Replace the case that lies there"));
+        make_button("case-folder-choose", tr("Choose…"), tr("Select the parent folder of the case folder"));
+    replaces_ = new QCheckBox(tr("Replace the existing case"));
     replaces_->setObjectName(QStringLiteral("case-replace"));
-    replaces_->setToolTip(tr("Without this nothing is ever overwritten"));
-    save_ = make_button("case-save", tr("Save"), tr("Writes the case, whole or not at all"), QStringLiteral("Ctrl+S"));
+    replaces_->setToolTip(tr("Without this option, nothing is overwritten"));
+    save_ =
+        make_button("case-save", tr("Save"), tr("Write the case completely or not at all"), QStringLiteral("Ctrl+S"));
     save_->setProperty("role", "primary");
-    open_ = make_button("case-open", tr("Open this case"), tr("Begins an attempt with the saved case"));
+    open_ = make_button("case-open", tr("Open this case"), tr("Start an attempt with the saved case"));
     content()->addWidget(choose);
     content()->addWidget(replaces_);
     content()->addWidget(save_);
     content()->addWidget(open_);
     connect(choose, &QPushButton::clicked, this, [this] {
-      const QString parent = QFileDialog::getExistingDirectory(this, tr("Where the case's folder is made"));
+      const QString parent = QFileDialog::getExistingDirectory(this, tr("Parent folder of the case"));
       if (!parent.isEmpty())
         folder_->setText(QDir(parent).filePath(name_->text().trimmed().replace(QLatin1Char(' '), QLatin1Char('-'))));
     });

@@ -1,4 +1,4 @@
-// Step 3 of the case builder: what is to be reached, and what must not be touched.
+// Step 3 of the case builder: target and structures at risk.
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QHeaderView>
@@ -29,7 +29,7 @@ class TargetPanel final : public CasePanel {
     add_target();
     auto* tabs = new QTabWidget;
     tabs->setObjectName(QStringLiteral("case-target-tabs"));
-    tabs->addTab(make_risks(), tr("Not to be touched"));
+    tabs->addTab(make_risks(), tr("Structures at risk"));
     tabs->addTab(make_landmarks(), tr("Landmarks"));
     content()->addWidget(tabs, 1);
   }
@@ -43,7 +43,7 @@ class TargetPanel final : public CasePanel {
     const auto target_P = case_builder::find_target_point(draft);
     where_->setText(!target_P             ? tr("no target yet")
                     : draft.task.target_P ? tr("point %1").arg(place(*target_P))
-                                          : tr("middle of the label, %1").arg(place(*target_P)));
+                                          : tr("centre of the label, %1").arg(place(*target_P)));
     fill_table();
     landmarks_->refresh();
     is_refreshing_ = false;
@@ -75,7 +75,7 @@ class TargetPanel final : public CasePanel {
 
   void add_template() {
     template_ =
-        add_box("case-template", tr("Task, as a template"), tr("Limits, scoring and risks begin as in this task"));
+        add_box("case-template", tr("Task, as a template"), tr("Limits, scoring and risks are copied from this task"));
     for (const tasks::Task& task : desk_.templates()) template_->addItem(to_qt(task.title), to_qt(task.name));
     connect(template_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int row) {
       if (is_refreshing_ || row < 0) return;
@@ -85,7 +85,7 @@ class TargetPanel final : public CasePanel {
   }
 
   void add_target() {
-    target_ = add_box("case-target-label", tr("Target"), tr("The structure that is to be reached"));
+    target_ = add_box("case-target-label", tr("Target"), tr("The target structure"));
     connect(target_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int row) {
       if (is_refreshing_ || row < 0) return;
       desk_.edit(case_builder::set_target_label(desk_.draft(), to_std(target_->currentData().toString())),
@@ -153,8 +153,8 @@ class TargetPanel final : public CasePanel {
 
   void add_editor(QVBoxLayout& column) {
     auto* numbers = new QHBoxLayout;
-    margin_ = make_number("case-risk-margin", tr("Margin that a path keeps"), 50.0, tr(" mm"));
-    penalty_ = make_number("case-risk-penalty", tr("Points that a touch costs"), 100.0, tr(" points"));
+    margin_ = make_number("case-risk-margin", tr("Required margin of a path"), 50.0, tr(" mm"));
+    penalty_ = make_number("case-risk-penalty", tr("Penalty points for contact"), 100.0, tr(" points"));
     numbers->addWidget(margin_);
     numbers->addWidget(penalty_);
     column.addLayout(numbers);
@@ -165,8 +165,8 @@ class TargetPanel final : public CasePanel {
     structure_->setToolTip(tr("A tissue, or one label of this patient"));
     structure_->setMinimumContentsLength(6);
     structure_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    QPushButton* add = make_button("case-risk-add", tr("Add"), tr("Adds this structure to the list"));
-    QPushButton* remove = make_button("case-risk-remove", tr("Remove"), tr("Takes the selected row out of the list"));
+    QPushButton* add = make_button("case-risk-add", tr("Add"), tr("Add this structure to the list"));
+    QPushButton* remove = make_button("case-risk-remove", tr("Remove"), tr("Remove the selected row from the list"));
     row->addWidget(structure_, 1);
     row->addWidget(add);
     row->addWidget(remove);
@@ -214,14 +214,14 @@ class TargetPanel final : public CasePanel {
     desk_.edit(case_builder::set_risk(desk_.draft(), next), "change a risk", "risk " + risk->tissue + risk->label);
   }
 
-  /// Labels of the patient; the first entry stands for the template's tissues.
+  /// Labels of the patient; the first entry selects the tissues of the template.
   void fill_labels() {
     QStringList names;
     for (const anatomy::Label& label : desk_.draft().label_table.labels) names << to_qt(label.name);
     if (names == shown_labels_ && target_->count() > 0) return;
     shown_labels_ = names;
     target_->clear();
-    target_->addItem(tr("as the task says"), QString());
+    target_->addItem(tr("as in the task"), QString());
     structure_->clear();
     for (const anatomy::TissueParams& tissue : desk_.tissues().tissues)
       if (tissue.name != "air" && tissue.name != "skin")

@@ -22,9 +22,9 @@ namespace {
 
 constexpr double kStill_s = 0.3;
 constexpr std::size_t kFramesAPlot = 2;
-constexpr double kGhost_mm = 1.0;  ///< A hand that is less ahead of the needle is not shown.
-/// End of the force bar. Assumed: above what the embedded patient's layers bear (docs/validation.md), so that a peak
-/// stays in sight.
+constexpr double kGhost_mm = 1.0;  ///< The hand is drawn if it is at least this far ahead of the needle.
+/// End of the force bar. Assumed: above the puncture forces of the embedded patients' layers (docs/validation.md), so
+/// that peaks are visible.
 constexpr double kFullForce_n = 8.0;
 
 QString phase_text(const attempt::AttemptView& view) {
@@ -53,7 +53,7 @@ QString phase_text(const attempt::AttemptView& view) {
   return {};
 }
 
-bool is_risk(const attempt::Case& the_case, const attempt::AttemptEvent& event) {
+bool is_risk(const cases::Case& the_case, const attempt::AttemptEvent& event) {
   if (event.kind != telemetry::EventKind::kEnter) return false;
   const anatomy::Label* label = the_case.patient->label_table.find(std::string_view(event.name));
   return label != nullptr && find_risk(the_case.task, *label) != nullptr;
@@ -61,7 +61,7 @@ bool is_risk(const attempt::Case& the_case, const attempt::AttemptEvent& event) 
 
 }  // namespace
 
-AttemptControl::AttemptControl(std::shared_ptr<const attempt::OpenCase> open, const SeatChoice& choice,
+AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, const SeatChoice& choice,
                                attempt::AttemptOptions options, std::shared_ptr<attempt::SeatServers> servers,
                                WorkPage& page)
     : open_(std::move(open)),
@@ -83,7 +83,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const attempt::OpenCase> open, co
   plot.set_reference({});
   plot.set_cursor({});
   plot.set_predicted(is_exam() ? std::vector<QPointF>{} : predicted_curve(*open_));
-  // A picture of full quality takes long without a graphics card: a needle that moves breaks it off.
+  // A full-quality picture takes long without a graphics card: needle motion cancels it.
   page_.desk().view_3d().set_interrupt([this] {
     constexpr double kMoved_mm = 0.5;
     return (attempt_.view().needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
@@ -122,7 +122,7 @@ void AttemptControl::take(ToolInHand tool) {
 
 bool AttemptControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
   if (key.key() != Qt::Key_Space || key.modifiers() != Qt::NoModifier) return gestures_.strike(key, place);
-  // Space in a text field stops the forces; it must not turn them on.
+  // Space in a text field stops the forces but must not switch them on.
   if (place.is_text && attempt_.view().are_forces_stopped) return false;
   if (!key.isAutoRepeat()) toggle_forces();
   return true;
@@ -137,15 +137,14 @@ void AttemptControl::strike(int key) {
 
 void AttemptControl::ask_to_end() {
   question_ = Question::kEnd;
-  page_.puncture().ask(tr("End the attempt and score it? Until then it goes on."), tr("End (Enter)"));
+  page_.puncture().ask(tr("End the attempt and score it? It continues until you confirm."), tr("End (Enter)"));
 }
 
 void AttemptControl::ask_to_close() {
   question_ = Question::kClose;
-  page_.puncture().ask(
-      tr("Close the trainer? The attempt ends here. Its recording is kept, and the next start offers to "
-         "score it."),
-      tr("Close (Enter)"));
+  page_.puncture().ask(tr("Close the trainer? This ends the attempt without a score. The recording is kept, and the "
+                          "next start offers to score it."),
+                       tr("Close (Enter)"));
 }
 
 ViewScale AttemptControl::scale_of_3d() const {
@@ -188,7 +187,7 @@ bool AttemptControl::is_free(attempt::HandTool tool) const {
 
 void AttemptControl::aim() {
   if (choice_.difficulty != Difficulty::kGuided)
-    return say(tr("Where the plan has the tools is told in guided attempts alone."));
+    return say(tr("The planned position is available in guided attempts only."));
   if (gestures_.in_hand() == ToolInHand::kTransducer && is_led_[1]) probe_.put(open_->X_PT_start);
   if (gestures_.in_hand() == ToolInHand::kNeedle && is_led_[0] && !needle_.is_past_skin())
     needle_.aim_at(open_->the_case.plan.line_P);
@@ -222,7 +221,7 @@ void AttemptControl::advance(double dt_s) {
   view_ = attempt_.view();
   const bool are_on = view_.phase == attempt::AttemptPhase::kReady || view_.phase == attempt::AttemptPhase::kInBody;
   if ((!are_on || !is_led_[0]) && view_.needle.is_known && view_.phase != attempt::AttemptPhase::kFinishing) {
-    // The hands wait where the tools are, so that nothing jumps when the forces come back.
+    // The hands wait at the poses of the tools, to avoid a jump when the forces return.
     needle_.put(view_.needle.X_PN);
   }
   if (!is_led_[1] && view_.probe.is_known) probe_.put(view_.probe.X_PT);
@@ -242,7 +241,7 @@ void AttemptControl::advance(double dt_s) {
   show_panel();
 }
 
-/// In an exam the hand feels layers give way; their names, and what the segmentation says, would be the solution.
+/// An exam shows no layer names and no labels: they would reveal the solution.
 void AttemptControl::look_at_events() {
   for (const attempt::AttemptEvent& event : attempt_.take_events()) {
     const bool is_shot = event.kind == telemetry::EventKind::kNone;
@@ -258,7 +257,7 @@ void AttemptControl::look_at_events() {
 void AttemptControl::look_at_shot() {
   if (!view_.shot || has_shown_shot_) return;
   has_shown_shot_ = true;
-  if (!is_exam()) page_.puncture().show_core(*view_.shot);  // in an exam its composition is the solution
+  if (!is_exam()) page_.puncture().show_core(*view_.shot);  // in an exam its composition would reveal the solution
   page_.desk().forces().add_event(view_.shot->depth_mm, view_.shot->time_s, tr("shot"));
   Q_EMIT gun_fired();
 }
@@ -270,7 +269,7 @@ void AttemptControl::show_tools(double dt_s) {
     tools.shaft_P = needle.shaft_P;
     tools.X_PN = needle.X_PN;
     tools.inside_mm = needle.depth_mm;
-    // Before the skin the slices show what the needle looks at.
+    // Outside the skin the slices show the position ahead of the needle.
     constexpr double kAhead_mm = 40.0;
     tools.focus_P =
         needle.depth_mm > 0.0 ? needle.X_PN.p() : Vec3(needle_.entry_P() + kAhead_mm * needle_.X_PN().R().col(2));
@@ -316,7 +315,7 @@ void AttemptControl::show_panel() {
   page_.puncture().show_figures(figures);
 }
 
-/// Where tools are against tissue and plan: an exam tells scripts no more of it than the window shows.
+/// Poses of the tools relative to tissue and plan: in an exam, scripts get no more than the window shows.
 QVariantMap AttemptControl::solution_facts() const {
   QVariantMap facts;
   facts[QStringLiteral("depth_mm")] = view_.needle.depth_mm;

@@ -4,9 +4,9 @@
 #include <QVariantMap>
 #include <memory>
 
-#include "attempt/case/open_case.h"
 #include "attempt/hands/pointer_hand.h"
 #include "attempt/live/live_attempt.h"
+#include "cases/open_case.h"
 #include "control/page_keys.h"
 #include "control/tool_gestures.h"
 #include "shell/seat_choice.h"
@@ -15,13 +15,13 @@ namespace trocar::trainer {
 
 class WorkPage;
 
-/// One attempt as the window performs it: gestures move the hands, the servers answer, desk and panel show it.
+/// One attempt in the window: gestures move the hands, servers send states, desk and panel display them.
 class AttemptControl : public QObject {
   Q_OBJECT
 
  public:
-  AttemptControl(std::shared_ptr<const attempt::OpenCase> open, const SeatChoice& choice,
-                 attempt::AttemptOptions options, std::shared_ptr<attempt::SeatServers> servers, WorkPage& page);
+  AttemptControl(std::shared_ptr<const cases::OpenCase> open, const SeatChoice& choice, attempt::AttemptOptions options,
+                 std::shared_ptr<attempt::SeatServers> servers, WorkPage& page);
   ~AttemptControl() override;
 
   /// Once a frame.
@@ -30,7 +30,7 @@ class AttemptControl : public QObject {
   attempt::LiveAttempt& attempt() noexcept { return attempt_; }
   /// Stops the forces, or turns stopped ones on again; at any time, also while a server is silent or starts.
   void toggle_forces();
-  /// Asks whether to end and score the attempt, which goes on meanwhile.
+  /// Asks for confirmation to end and score the attempt, which continues meanwhile.
   void ask_to_end();
   /// Asks whether to close the program; close_confirmed says yes.
   void ask_to_close();
@@ -58,7 +58,7 @@ class AttemptControl : public QObject {
   void look_at_events();
   void look_at_shot();
   bool is_free(attempt::HandTool tool) const;
-  /// The needle in the body is to be found by ultrasound and feel: nothing tells where its tip is.
+  /// True in an exam that hides the needle tip in the body.
   bool is_tip_hidden() const noexcept { return is_exam() && !open_->the_case.task.exam_shows_needle; }
   bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
   ViewScale scale_of_3d() const;
@@ -66,7 +66,7 @@ class AttemptControl : public QObject {
   QVariantMap solution_facts() const;
   double distance_mm() const;
 
-  std::shared_ptr<const attempt::OpenCase> open_;
+  std::shared_ptr<const cases::OpenCase> open_;
   SeatChoice choice_;
   WorkPage& page_;
   attempt::LiveAttempt attempt_;

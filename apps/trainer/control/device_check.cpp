@@ -3,7 +3,7 @@
 #include <QStringList>
 #include <algorithm>
 
-#include "attempt/servers/own_server.h"
+#include "attempt/servers/local_server.h"
 #include "control/seat_words.h"
 #include "link/client/server_process.h"
 #include "ui_kit/parts.h"
@@ -11,7 +11,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kPatience_ms = 2000;  ///< For the program to end; its device is at rest long before.
+constexpr int kPatience_ms = 2000;  ///< Timeout for the end of the program; its device is at rest long before.
 
 QString last_line(const QByteArray& text) {
   const QStringList lines = QString::fromUtf8(text).split('\n', Qt::SkipEmptyParts);
@@ -81,7 +81,7 @@ void DeviceCheck::read_state(const QStringList& fields) {
 void DeviceCheck::note_end() {
   const QString line = last_line(process_.readAllStandardError());
   if (const auto error = attempt::error_of_line(to_std(line))) return fail_with(sentence_of(*error), line);
-  fail_with(tr("The test of the device ended by itself."), line);
+  fail_with(tr("The device test ended unexpectedly."), line);
 }
 
 void DeviceCheck::fail_with(const QString& text, const QString& details) {

@@ -24,8 +24,8 @@ struct DeviceCheckView {
   double strongest_n = 0.0;  ///< Since the start.
 };
 
-/// Tries out a device without a patient, by a trocar-hapticd --test of its own: whether it answers, its pose, a small
-/// force on request. The device is free again when this ends.
+/// Tests a device without a patient with a separate trocar-hapticd --test: connection, pose, a small force on request.
+/// The destructor releases the device.
 class DeviceCheck : public QObject {
   Q_OBJECT
 

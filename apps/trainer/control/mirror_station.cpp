@@ -21,14 +21,14 @@ bool are_same(const scene::CameraView& a, const scene::CameraView& b) {
 }  // namespace
 
 MirrorStation::MirrorStation(QMainWindow& window)
-    : QObject(&window), window_(window), mirror_(window, tr("Mirrored window: F8 turns it back")) {
+    : QObject(&window), window_(window), mirror_(window, tr("Window mirrored: F8 switches mirroring off")) {
   auto* key = new QShortcut(QKeySequence(Qt::Key_F8), &window);
   connect(key, &QShortcut::activated, this, &MirrorStation::toggle);
   set(load_mirror_settings());
 }
 
 void MirrorStation::fill_menu(QMenu& menu) {
-  QAction* turn = menu.addAction(tr("Mirror the window, or turn it back  (F8)"));
+  QAction* turn = menu.addAction(tr("Switch window mirroring on or off  (F8)"));
   turn->setObjectName(QStringLiteral("mirror-toggle"));
   connect(turn, &QAction::triggered, this, &MirrorStation::toggle);
   QAction* dialog = menu.addAction(tr("Mirror workstation …"));

@@ -18,9 +18,8 @@ struct KeyPlace {
   QAbstractButton* button = nullptr;  ///< Null where it is none.
 };
 
-/// Gets each key of a window, and of its floating views, before the widget with the focus, so that the keys of a page
-/// act wherever the focus is. `take` returns whether it used the key; it is called again, with is_unclaimed, for a key
-/// that no widget has used.
+/// Receives each key of a window and its floating views before the focused widget, so that page keys work with any
+/// focus. `take` returns true if it used the key; it is called again with is_unclaimed for a key that no widget used.
 class PageKeys : public QObject {
   Q_OBJECT
 

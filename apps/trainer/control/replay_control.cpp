@@ -79,8 +79,8 @@ QString level_title(const std::string& name) {
 
 }  // namespace
 
-ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const attempt::OpenCase> open,
-                             WorkPage& page, const std::vector<std::string>& warnings)
+ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const cases::OpenCase> open, WorkPage& page,
+                             const std::vector<std::string>& warnings)
     : replay_(std::move(replay)),
       open_(std::move(open)),
       page_(page),
@@ -94,12 +94,12 @@ ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<cons
   page_.feedback().show_level(level_title(replay_.session().info.level));
   page_.feedback().show_core(replay_.shot() ? &*replay_.shot() : nullptr);
   page_.feedback().show_notes(notes_of(replay_, warnings));
-  page_.desk().show_help(Difficulty::kGuided);  // afterwards everybody may see the expert's path
+  page_.desk().show_help(Difficulty::kGuided);  // after the attempt the expert's path is visible at every level of help
   connect(&page_.feedback(), &FeedbackPanel::worst_wanted, this, &ReplayControl::go_to_worst);
   show_at(replay_.duration_s(), false);
 }
 
-/// The time line's letters and Space, wherever the focus is.
+/// Letter keys and Space of the time line, independent of the focus.
 bool ReplayControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
   if ((key.modifiers() & ~Qt::KeypadModifier) != Qt::NoModifier || place.is_text || place.is_aside) return false;
   if (!page_.time_line().isVisible()) return false;
@@ -169,7 +169,7 @@ void ReplayControl::fill_time_line() {
 void ReplayControl::advance(double dt_s) {
   page_.time_line().advance(dt_s);
   const double time_s = page_.time_line().time_s();
-  // Scrubbing is moving, too: pictures of full quality come when the time rests.
+  // Scrubbing counts as motion: full-quality pictures are drawn when the time stops changing.
   constexpr double kStill_s = 0.3;
   const bool was_moving = still_s_ < kStill_s;
   still_s_ = time_s != shown_s_ || page_.time_line().is_playing() ? 0.0 : still_s_ + dt_s;

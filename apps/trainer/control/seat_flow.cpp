@@ -5,9 +5,8 @@
 #include <QFileDialog>
 #include <algorithm>
 
-#include "attempt/case/scene_request.h"
 #include "attempt/record/recording_room.h"
-#include "parameters/force_preview.h"
+#include "cases/scene_request.h"
 #include "control/attempt_control.h"
 #include "control/mirror_station.h"
 #include "control/replay_control.h"
@@ -21,6 +20,7 @@
 #include "pages/work_page.h"
 #include "panels/feedback_panel.h"
 #include "panels/puncture_panel.h"
+#include "parameters/force_preview.h"
 #include "parameters/parameter_panel.h"
 #include "report/html_report.h"
 #include "shell/main_window.h"
@@ -38,10 +38,10 @@ namespace {
 constexpr int kFrame_ms = 16;
 constexpr std::size_t kMostFrames = 200'000;  // an hour
 
-attempt::CaseChoice case_choice(const SeatChoice& choice) {
-  attempt::CaseChoice result;
-  // A patient that the case builder has made brings a task of its own.
-  result.options.task = attempt::has_own_task(choice.patient) ? std::string() : choice.task;
+cases::CaseChoice case_choice(const SeatChoice& choice) {
+  cases::CaseChoice result;
+  // A patient of the case builder contains its own task.
+  result.options.task = cases::has_own_task(choice.patient) ? std::string() : choice.task;
   result.options.needle = choice.needle;
   result.patient_source = choice.patient;
   result.patient_seed = choice.patient_seed;
@@ -70,7 +70,7 @@ SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
   offered_ = journal_.find_cut_off();
   if (offered_)
     window_.start().offer_recovery(
-        tr("The last attempt was cut off. What was recorded is kept: it can be scored and seen again."));
+        tr("The last attempt was interrupted. Its recording is kept: you can score and replay it."));
   can_record();
   clock_.start();
   timer_.setTimerType(Qt::PreciseTimer);
@@ -125,10 +125,11 @@ void SeatFlow::go_to_start() {
 }
 
 void SeatFlow::go_to_case_builder() {
-  const QString is_scored = tr("The attempt is being scored. The case builder opens after that.");
+  const QString is_scored = tr("The attempt is being scored. The case builder is available afterwards.");
   if (attempt_) {
     const bool is_ending = attempt_->view().phase == attempt::AttemptPhase::kFinishing;
-    return attempt_->say(is_ending ? is_scored : tr("The case builder is closed during an attempt. End it first (E)."));
+    return attempt_->say(
+        is_ending ? is_scored : tr("The case builder is not available during an attempt. End the attempt first (E)."));
   }
   if (loading_.has_work()) return window_.tell(is_scored, BannerKind::kWarning);
   window_.show_page(QStringLiteral("case-builder"));
@@ -136,12 +137,11 @@ void SeatFlow::go_to_case_builder() {
 
 void SeatFlow::open(const SeatChoice& choice) {
   choice_ = choice;
-  // What a cut-off exam was is seen again, not sat again.
+  // An interrupted exam can be replayed but not continued.
   window_.work().set_parameters_locked(is_exam() && !cut_off_);
   opened_.reset();
   retired_.retire(std::exchange(
-      opening_,
-      attempt::open_case(case_choice(choice), attempt::OpenOptions{open_, user_cache_folder() / "patients"})));
+      opening_, cases::open_case(case_choice(choice), cases::OpenOptions{open_, user_cache_folder() / "patients"})));
   window_.briefing().show_opening(choice);
   window_.show_page(QStringLiteral("briefing"));
 }
@@ -160,7 +160,7 @@ void SeatFlow::look_at_opening() {
   window_.work().desk().begin_case(opened_);
 }
 
-/// The briefing last: from then on one may begin.
+/// The briefing is last: it enables the start.
 void SeatFlow::show_opened() {
   if (!opened_) return;
   if (window_.work().desk().show_part()) return;
@@ -170,10 +170,10 @@ void SeatFlow::show_opened() {
     return;
   }
   opened_.reset();
-  release_freed_memory();  // of the case before, and of what opening took
+  release_freed_memory();  // memory of the previous case and of opening
   Desk& desk = window_.work().desk();
   desk.show_help(choice_.difficulty);
-  // How deep the target lies is of the plan, too.
+  // The depth of the target belongs to the plan, too.
   const bool is_guided = choice_.difficulty == Difficulty::kGuided;
   const double depth_mm = is_guided ? open_->probe_depth_mm : open_->neutral.depth_mm;
   desk.ultrasound().change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = depth_mm; });
@@ -181,14 +181,14 @@ void SeatFlow::show_opened() {
   if (cut_off_) load_replay(std::exchange(cut_off_, {})->session);
 }
 
-/// Whether sessions can be kept; what is wrong, or will be soon, is shown.
+/// Checks if sessions can be written; displays present and impending problems.
 bool SeatFlow::can_record() {
   const std::filesystem::path folder = state_folder_ / "sessions";
   if (const Status made = make_writable_folder(folder); !made) {
-    window_.show_banner(tr("No attempt can be recorded in %1: %2. Start trocar-trainer with --state and a folder that "
-                           "you can write to.")
-                            .arg(to_qt(folder.string()), to_qt(made.error().what)),
-                        BannerKind::kError);
+    window_.show_banner(
+        tr("Cannot record attempts in %1: %2. Start trocar-trainer with --state and a folder with write permission.")
+            .arg(to_qt(folder.string()), to_qt(made.error().what)),
+        BannerKind::kError);
     return false;
   }
   const attempt::RecordingRoom room(folder, find_free_bytes(folder));
@@ -209,7 +209,7 @@ void SeatFlow::begin_attempt() {
   if (!is_exam()) options.force_model = to_std(window_.work().parameters().preview().model());
   options.is_guided = choice_.difficulty != Difficulty::kExam;
   if (choice_.difficulty != Difficulty::kGuided) {
-    // Where the plan begins would be the solution.
+    // The start of the plan would reveal the solution.
     options.X_PN_start = open_->neutral.X_PN;
     options.X_PT_start = open_->neutral.X_PT;
   }
@@ -257,12 +257,12 @@ void SeatFlow::look_at_attempt() {
   servers_ = attempt_->attempt().servers();
   attempt_.reset();
   window_.strip().show_forces(false, false);
-  window_.strip().show_servers({});  // they wait for the next attempt; what they did is no longer so
+  window_.strip().show_servers({});  // the servers wait for the next attempt; their status is outdated
   window_.show_banner({});
   journal_.clear();
   if (!*result) {
     window_.strip().show_servers({});
-    window_.show_banner(sentence_of(result->error()) + tr(" Begin tries again; Back leads to the start page."),
+    window_.show_banner(sentence_of(result->error()) + tr(" Press Begin to try again, or Back for the start page."),
                         BannerKind::kError);
     return window_.show_page(QStringLiteral("briefing"));
   }
@@ -303,14 +303,14 @@ void SeatFlow::show_replay(Result<attempt::AttemptReplay> replay) {
   window_.work().time_line().setFocus();
 }
 
-/// Opens the case of the attempt that was cut off; its replay follows when that is there.
+/// Opens the case of the interrupted attempt; its replay follows when the case is open.
 void SeatFlow::recover() {
   window_.start().offer_recovery({});
   if (!offered_) return;
   cut_off_ = std::exchange(offered_, {});
   if (!journal_.forget(*cut_off_)) {
     cut_off_.reset();
-    return window_.tell(tr("The attempt was opened in another trainer meanwhile."), BannerKind::kWarning);
+    return window_.tell(tr("The attempt has been opened in another trainer."), BannerKind::kWarning);
   }
   SeatChoice choice = window_.start().choice();
   choice.task = cut_off_->choice.options.task;
@@ -344,9 +344,9 @@ void SeatFlow::frame() {
   if (window_.page() == QLatin1String("case-builder")) window_.case_builder().advance();
   if (attempt_ || replay_) {
     window_.work().parameters().advance();
-    const attempt::Case& the_case = open_->the_case;
+    const cases::Case& the_case = open_->the_case;
     window_.mirror().lead_camera(window_.work().desk().view_3d(),
-                                 attempt::room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
+                                 cases::room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
     window_.work().desk().draw(now);
   }
   if (attempt_) attempt_->attempt().frame_drawn();
@@ -387,7 +387,7 @@ QVariantMap SeatFlow::facts() const {
   facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(frames_.late());
   if (attempt_) facts.insert(attempt_->facts());
   if (replay_) facts.insert(replay_->facts());
-  // What the ultrasound picture on the screen was made at.
+  // Settings of the displayed ultrasound image.
   const bool tells_plan = !attempt_ || !is_exam();
   if (const auto picture = window_.work().desk().ultrasound().picture(); picture && open_ && tells_plan)
     facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();

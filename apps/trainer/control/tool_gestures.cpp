@@ -15,7 +15,7 @@ namespace {
 constexpr double kTilt_rad_per_px = 0.0026;
 constexpr double kNotch_mm = 1.0, kFineNotch_mm = 0.1;
 constexpr double kKeyGlide_mm = 1.0, kKeyTilt_rad = 0.0175;
-constexpr double kNotchAngle = 120.0;  // eighths of a degree, as Qt counts
+constexpr double kNotchAngle = 120.0;  // eighths of a degree, as in Qt
 
 QPointF position(const QMouseEvent& event) {
 #if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
@@ -100,7 +100,7 @@ bool ToolGestures::move(const Watched& watched, const QMouseEvent& event) {
 }
 
 bool ToolGestures::turn(const Watched& watched, const QWheelEvent& event) {
-  // With Shift some systems turn the wheel sideways.
+  // With Shift, some systems report a horizontal wheel.
   const QPoint angle = event.angleDelta();
   const double notches = (angle.y() != 0 ? angle.y() : angle.x()) / kNotchAngle;
   const bool is_fine = QApplication::keyboardModifiers() & Qt::ShiftModifier;
@@ -108,7 +108,7 @@ bool ToolGestures::turn(const Watched& watched, const QWheelEvent& event) {
   return true;
 }
 
-/// Whether a watched view has the focus: arrows and page keys move the tool then.
+/// True if a watched view has the focus: arrow and page keys then move the tool.
 bool ToolGestures::has_focus() const {
   return std::any_of(watched_.begin(), watched_.end(), [](const Watched& watched) {
     const QWidget* focus = watched.view->window()->focusWidget();
@@ -116,7 +116,7 @@ bool ToolGestures::has_focus() const {
   });
 }
 
-/// The focus goes to a view, so that arrows move the tool and no choice or slider.
+/// Sets the focus to a view, so that arrow keys move the tool instead of a list or slider.
 bool ToolGestures::take_by_key(ToolInHand tool) {
   take(tool);
   if (!watched_.empty() && !has_focus()) watched_.front().view->setFocus(Qt::ShortcutFocusReason);
@@ -170,7 +170,7 @@ bool ToolGestures::strike(const QKeyEvent& event, const KeyPlace& place) {
       return true;
     case Qt::Key_Return:
     case Qt::Key_Enter:
-      // Space stops the forces, so that Enter presses a button.
+      // Space stops the forces; therefore Enter presses a button.
       if (place.button != nullptr) {
         place.button->click();
         return true;
@@ -178,7 +178,7 @@ bool ToolGestures::strike(const QKeyEvent& event, const KeyPlace& place) {
       Q_EMIT key_struck(event.key());
       return true;
     default:
-      // Arrows also move sliders, lists and slices.
+      // Arrow keys also move sliders, lists and slices.
       return (place.is_unclaimed || has_focus()) && move_by_key(event);
   }
 }

@@ -23,7 +23,7 @@ struct ViewScale {
   double mm_per_px = 0.0;                                 ///< 0: the view keeps its mouse.
 };
 
-/// A person's gesture, in what it means for a tool.
+/// A user's gesture, converted to a tool motion.
 struct Gesture {
   enum class Kind {
     kGlide,  ///< Over the skin; right, down in mm of the view.
@@ -36,8 +36,8 @@ struct Gesture {
   ViewScale view;
 };
 
-/// Takes mouse and wheel on views, and keys, for the tool in hand. With no tool in hand, and with
-/// Ctrl held, the views keep their mouse.
+/// Receives mouse, wheel and keys on views for the active tool. Without an active tool, or with Ctrl, the views handle
+/// the mouse.
 class ToolGestures : public QObject {
   Q_OBJECT
 

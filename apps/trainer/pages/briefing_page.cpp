@@ -22,12 +22,12 @@ struct Control {
   const char* with;
   const char* does;
 };
-constexpr Control kTakeMouse[] = {{"A / S", "take the needle / the transducer"},
-                                  {"drag", "glide over the skin; right button: tilt"},
-                                  {"wheel", "push in and pull out; Shift: finely"},
-                                  {"H", "put the tool in hand where the plan has it (guided)"}};
+constexpr Control kTakeMouse[] = {{"A / S", "select the needle / the transducer"},
+                                  {"drag", "move along the skin; right button: tilt"},
+                                  {"wheel", "advance and withdraw; Shift: fine steps"},
+                                  {"H", "move the active tool to its planned position (guided)"}};
 constexpr Control kNeedleByGamepad[] = {{"left stick", "moves the needle; cross: lifts and lowers it"},
-                                        {"right stick", "swings the tip to where it points"},
+                                        {"right stick", "swings the tip in the direction of the stick"},
                                         {"triggers", "right: push in, left: pull out; rumble: resistance"},
                                         {"shoulders", "turn the bevel"}};
 constexpr Control kProbeByGamepad[] = {{"left stick", "moves the transducer; cross: lifts and lowers it"},
@@ -48,13 +48,12 @@ QString rows(std::span<const Control> controls) {
   return all;
 }
 
-/// Of a device that is no mouse.
+/// Rows for devices other than the mouse.
 QString device_rows(const std::string& device, bool is_needle) {
   if (device == "gamepad") return is_needle ? rows(kNeedleByGamepad) : rows(kProbeByGamepad);
   const QString tool = is_needle ? BriefingPage::tr("needle") : BriefingPage::tr("transducer");
   if (device == "spacemouse")
-    return row(BriefingPage::tr("cap"),
-               BriefingPage::tr("push and turn it: the %1 moves and turns that way").arg(tool));
+    return row(BriefingPage::tr("cap"), BriefingPage::tr("push and turn it to move and turn the %1").arg(tool));
   return row(to_qt(attempt::seat_device_title(device)), BriefingPage::tr("its stylus is the %1").arg(tool));
 }
 
@@ -81,29 +80,29 @@ QString risks_text(const tasks::Task& task) {
 }
 
 QString counts_text(const tasks::Task& task) {
-  return BriefingPage::tr(
-             "Tip at the target (half of the points at %1 mm), entry (half at %2 mm) and angle (half at %3°) as the "
-             "expert's, a core of the target, a short path, less than %4 s. Not to be touched: %5.")
-      .arg(task.target_tolerance_mm, 0, 'f', 0)
-      .arg(task.entry_tolerance_mm, 0, 'f', 0)
-      .arg(task.angle_tolerance_deg, 0, 'f', 0)
-      .arg(task.time_limit_s, 0, 'f', 0)
-      .arg(risks_text(task));
+  return BriefingPage::
+      tr("Scoring: tip at the target (half of the points at %1 mm), entry point (half at %2 mm) and angle (half at "
+         "%3°) compared with the expert's, target tissue in the core, a short path, less than %4 s. Do not touch: %5.")
+          .arg(task.target_tolerance_mm, 0, 'f', 0)
+          .arg(task.entry_tolerance_mm, 0, 'f', 0)
+          .arg(task.angle_tolerance_deg, 0, 'f', 0)
+          .arg(task.time_limit_s, 0, 'f', 0)
+          .arg(risks_text(task));
 }
 
-QString goal_text(const attempt::Case& the_case) {
+QString goal_text(const cases::Case& the_case) {
   return BriefingPage::tr("Bring the needle's tip to the %1 %2, under ultrasound.")
       .arg(the_case.is_parenchymal ? BriefingPage::tr("healthy tissue of the") : BriefingPage::tr("lesion of the"),
            to_qt(the_case.task.organ));
 }
 
-QString way_text(const attempt::Case& the_case) {
-  return BriefingPage::tr(" The planned way is %1 mm long, %2 mm of it in the %3; nearest to it lies: %4.")
+QString way_text(const cases::Case& the_case) {
+  return BriefingPage::tr(" The planned path is %1 mm long, %2 mm of it in the %3; nearest structure: %4.")
       .arg(the_case.plan.length_mm, 0, 'f', 0)
       .arg(the_case.plan.organ_path_mm, 0, 'f', 0)
       .arg(to_qt(the_case.task.organ))
       .arg(the_case.plan.nearest_risk.empty()
-               ? BriefingPage::tr("nothing at risk")
+               ? BriefingPage::tr("no structure at risk")
                : to_qt(the_case.plan.nearest_risk).replace(QLatin1Char(0x5f), QLatin1Char(0x20)));
 }
 
@@ -135,13 +134,13 @@ BriefingPage::BriefingPage(QWidget* parent) : QWidget(parent) {
 
 QWidget* BriefingPage::make_text() {
   QBoxLayout* content = nullptr;
-  QFrame* card = make_card(tr("What to do"), content);
+  QFrame* card = make_card(tr("Task"), content);
   goal_ = paragraph();
   content->addWidget(goal_);
-  content->addWidget(make_label(tr("What counts"), "heading"));
+  content->addWidget(make_label(tr("Scoring"), "heading"));
   counts_ = paragraph();
   content->addWidget(counts_);
-  content->addWidget(make_label(tr("How to move"), "heading"));
+  content->addWidget(make_label(tr("Controls"), "heading"));
   controls_ = paragraph();
   content->addWidget(controls_);
   content->addStretch();
@@ -150,7 +149,7 @@ QWidget* BriefingPage::make_text() {
 
 QWidget* BriefingPage::make_pictures() {
   QBoxLayout* content = nullptr;
-  QFrame* card = make_card(tr("Where the target lies"), content);
+  QFrame* card = make_card(tr("Target location"), content);
   auto* pictures = new QVBoxLayout;
   for (QLabel** label : {&axial_, &second_}) {
     *label = make_label({}, "dim");
@@ -167,7 +166,7 @@ QWidget* BriefingPage::make_bottom() {
   auto* bottom = new QWidget;
   auto* row = new QHBoxLayout(bottom);
   row->setContentsMargins(0, 0, 0, 0);
-  auto* back = make_button("back", tr("Back"), tr("To the start page; stops opening"), QStringLiteral("Esc"));
+  auto* back = make_button("back", tr("Back"), tr("Back to the start page; cancels opening"), QStringLiteral("Esc"));
   row->addWidget(back);
   state_ = make_label({}, "dim");
   state_->setObjectName(QStringLiteral("opening-state"));
@@ -210,8 +209,8 @@ void BriefingPage::show_error(const QString& text) {
   state_->setWordWrap(true);
 }
 
-void BriefingPage::show_case(const attempt::OpenCase& open, Difficulty difficulty) {
-  const attempt::Case& the_case = open.the_case;
+void BriefingPage::show_case(const cases::OpenCase& open, Difficulty difficulty) {
+  const cases::Case& the_case = open.the_case;
   const scene::Guidance guidance = guidance_of(difficulty);
   title_->setText(to_qt(the_case.task.title));
   subtitle_->setText(tr("Patient %1 · %2 · %3: %4")
@@ -220,7 +219,7 @@ void BriefingPage::show_case(const attempt::OpenCase& open, Difficulty difficult
   goal_->setText(difficulty == Difficulty::kExam ? goal_text(the_case) : goal_text(the_case) + way_text(the_case));
   counts_->setText(counts_text(the_case.task));
   const QSize side(qMax(240, axial_->width()), qMax(160, axial_->height()));
-  // A plane along the path would tell where the path lies.
+  // A plane along the path would reveal the path.
   const BriefingPlane second =
       guidance == scene::Guidance::kPath ? BriefingPlane::kAlongPath : BriefingPlane::kSagittal;
   axial_->setPixmap(QPixmap::fromImage(briefing_picture(open, BriefingPlane::kAxial, side, guidance)));

@@ -2,7 +2,7 @@
 
 #include <QWidget>
 
-#include "attempt/case/open_case.h"
+#include "cases/open_case.h"
 #include "shell/seat_choice.h"
 
 class QBoxLayout;
@@ -12,8 +12,8 @@ class QPushButton;
 
 namespace trocar::trainer {
 
-/// What there is to do, with which patient and needle, what counts, and how the tools are moved; while the case opens
-/// it shows how far that is. Keys: Enter begins, Escape goes back.
+/// Task, patient, needle, scoring and controls; shows the progress while the case opens. Keys: Enter begins, Escape
+/// goes back.
 class BriefingPage : public QWidget {
   Q_OBJECT
 
@@ -23,7 +23,7 @@ class BriefingPage : public QWidget {
   void show_opening(const SeatChoice& choice);
   void show_progress(const QString& step, double fraction);
   void show_error(const QString& text);
-  void show_case(const attempt::OpenCase& open, Difficulty difficulty);
+  void show_case(const cases::OpenCase& open, Difficulty difficulty);
 
  Q_SIGNALS:
   void begin_wanted();

@@ -34,13 +34,13 @@ const char* hint_of(CaseClick click) {
     case CaseClick::kTarget:
       return "Click the target: in a slice, or by a double click in 3D. Esc: done.";
     case CaseClick::kZone:
-      return "Click the middle of the entry zone on the skin. Esc: done.";
+      return "Click the centre of the entry zone on the skin. Esc: done.";
     case CaseClick::kEntry:
-      return "Click where the needle enters; it is brought onto the skin. Esc: done.";
+      return "Click the entry point; it is moved onto the skin. Esc: done.";
     case CaseClick::kTip:
-      return "Click where the tip is put. Esc: done.";
+      return "Click the end position of the tip. Esc: done.";
     case CaseClick::kLandmark:
-      return "Click the place of “%1”: in a slice, or by a double click in 3D. Esc: done.";
+      return "Click the position of “%1”: in a slice, or double-click in 3D. Esc: done.";
   }
   return "";
 }
@@ -86,8 +86,8 @@ QWidget* CasePage::make_head() {
   row->addSpacing(16);
   row->addWidget(click_text_);
   row->addStretch();
-  undo_ = make_button("case-undo", tr("Undo"), tr("Takes the last step back"), QStringLiteral("Ctrl+Z"));
-  redo_ = make_button("case-redo", tr("Redo"), tr("Does it again"), QStringLiteral("Ctrl+Shift+Z"));
+  undo_ = make_button("case-undo", tr("Undo"), tr("Undo the last step"), QStringLiteral("Ctrl+Z"));
+  redo_ = make_button("case-redo", tr("Redo"), tr("Redo the step"), QStringLiteral("Ctrl+Shift+Z"));
   row->addWidget(undo_);
   row->addWidget(redo_);
   connect(undo_, &QPushButton::clicked, this, [this] { desk_->undo(); });
@@ -108,7 +108,7 @@ QWidget* CasePage::make_steps() {
   auto* group = new QButtonGroup(this);
   for (int step = 0; step < case_builder::kCaseSteps; ++step) {
     QPushButton* button = make_button(qPrintable(QStringLiteral("case-step-%1").arg(step + 1)),
-                                      QStringLiteral("%1 %2").arg(step + 1).arg(titles[step]), tr("Goes to this step"),
+                                      QStringLiteral("%1 %2").arg(step + 1).arg(titles[step]), tr("Go to this step"),
                                       QStringLiteral("Alt+%1").arg(step + 1));
     button->setCheckable(true);
     button->setStyleSheet(QStringLiteral("padding: 6px 4px; text-align: left;"));
@@ -162,7 +162,7 @@ QWidget* CasePage::make_views() {
     connect(slice, &SliceView::focus_moved, this, [this, n](const Vec3& p_P) {
       for (std::size_t other = 0; other < slices_.size(); ++other)
         if (other != n) slices_[other]->set_focus(p_P);
-      // A wheel scrolls through slices and moves nothing; a drag does.
+      // The wheel scrolls through slices without a change; a drag changes the draft.
       if (QApplication::mouseButtons().testFlag(Qt::LeftButton)) click_at(p_P, true);
     });
     connect(slice, &SliceView::clicked, this, [this](const Vec3& p_P) { click_at(p_P, false); });
@@ -201,7 +201,7 @@ QWidget* CasePage::make_foot() {
   progress_->setRange(0, 1000);
   progress_->setFixedWidth(240);
   row->addWidget(progress_);
-  cancel_ = make_button("case-cancel", tr("Cancel"), tr("Gives up what is under way; the case stays as it is"));
+  cancel_ = make_button("case-cancel", tr("Cancel"), tr("Cancel the running work; the case is unchanged"));
   row->addWidget(cancel_);
   connect(cancel_, &QPushButton::clicked, this, [this] { desk_->cancel(); });
   return foot;
@@ -232,7 +232,7 @@ void CasePage::show_hint() {
   click_text_->setText(text);
 }
 
-/// Of the panel that is shown.
+/// Of the visible panel.
 std::string CasePage::click_name() const {
   return panels_[static_cast<std::size_t>(stack_->currentIndex())]->click_name();
 }
@@ -251,17 +251,18 @@ Result<case_builder::CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
       return case_builder::set_entry_zone(draft, p_P, draft.task.entry_zone ? draft.task.entry_zone->radius_mm : 20.0);
     case CaseClick::kEntry: {
       const auto target_P = path != nullptr ? std::optional(path->line_P.b) : case_builder::find_target_point(draft);
-      if (!target_P) return fail("a path needs a target first", {}, "go to step 3 and choose one");
+      if (!target_P) return fail("a path needs a target first", {}, "go to step 3 and select one");
       const auto entry_P = tasks::find_nearest_skin(*desk_->patient(), p_P);
-      if (!entry_P) return fail("there is no skin near this place", {}, "click on the patient's skin");
+      if (!entry_P) return fail("no skin near this position", {}, "click on the patient's skin");
       Segment line_P{*entry_P, *target_P};
-      // A biopsy needle stops short of the target, so that the notch comes to lie in it.
+      // A biopsy needle stops short of the target, so that the notch is in the target.
       if (const tasks::Needle* needle = desk_->needle(); path == nullptr && needle != nullptr)
         line_P.b -= needle->notch_middle_mm() * line_P.direction();
       return case_builder::set_expert_path(draft, line_P);
     }
     case CaseClick::kTip:
-      if (path == nullptr) return fail("the path has no entry yet", {}, "set the entry first, or have it planned");
+      if (path == nullptr)
+        return fail("the path has no entry point yet", {}, "set the entry, or let the program plan it");
       return case_builder::set_expert_path(draft, {path->line_P.a, p_P});
     case CaseClick::kLandmark:
       return case_builder::set_landmark(draft, click_name(), p_P);
@@ -276,7 +277,7 @@ void CasePage::click_at(const Vec3& p_P, bool is_drag) {
   const char* const words[] = {
       "", "set the target", "set the entry zone", "set the entry", "set the tip", "place a landmark"};
   const std::string what = words[static_cast<std::size_t>(click_)];
-  // Press and drag are one step; a click ends it.
+  // Press and drag are one step; the release ends it.
   desk_->edit(clicked_draft(p_P), what, what + std::to_string(clicks_));
   if (!is_drag) ++clicks_;
 }
@@ -289,7 +290,7 @@ void CasePage::refresh_views() {
     const bool is_known = placed_import_ == desk_->draft().imported && view_->is_ready();
     const scene::CameraView before = view_->view();
     if (shown_patient_ && shown_meshes_) view_->show_patient(shown_patient_, shown_meshes_);
-    if (is_known) view_->set_view(before);  // another name or tissue is no reason to look from elsewhere
+    if (is_known) view_->set_view(before);  // a new name or tissue does not change the camera
     shown_landmarks_.reset();
   }
   const case_builder::CaseDraft& draft = desk_->draft();
@@ -342,7 +343,7 @@ void CasePage::refresh_foot() {
 
 void CasePage::refresh() {
   refresh_foot();
-  // Progress alone moves the bar and nothing else.
+  // A change of progress only updates the bar.
   const Shown now{desk_->history().version(), desk_->is_reviewed(), desk_->work(), desk_->patient().get(),
                   desk_->message()};
   if (now == shown_) return;

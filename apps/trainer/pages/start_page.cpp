@@ -47,7 +47,7 @@ void add_item(QListWidget& list, const QString& title, const QString& source, co
   item->setToolTip(text);
 }
 
-/// A patient folder by the name that its maker gave it.
+/// Adds a patient folder with the name stored in it.
 void add_folder(QListWidget& list, const QString& folder) {
   const auto title = io::load_patient_title(to_std(folder));
   if (!title) return add_item(list, folder.section('/', -1), folder, folder);
@@ -69,7 +69,7 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   auto* page = new QVBoxLayout(this);
   page->setContentsMargins(40, 24, 40, 24);
   page->setSpacing(16);
-  page->addWidget(make_label(tr("What will you practise?"), "title"));
+  page->addWidget(make_label(tr("Select a task"), "title"));
   page->addWidget(make_recovery());
   auto* columns = new QHBoxLayout;
   columns->setSpacing(16);
@@ -79,9 +79,9 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   page->addLayout(columns, 1);
 
   auto* bottom = new QHBoxLayout;
-  bottom->addWidget(make_label(tr("A trainer, no medical device."), "dim"));
+  bottom->addWidget(make_label(tr("A trainer, not a medical device."), "dim"));
   bottom->addStretch();
-  start_ = make_button("start", tr("Start"), tr("Opens the case and shows the briefing"), QStringLiteral("Return"));
+  start_ = make_button("start", tr("Start"), tr("Open the case and show the briefing"), QStringLiteral("Return"));
   start_->setProperty("role", "primary");
   bottom->addWidget(start_);
   page->addLayout(bottom);
@@ -146,7 +146,7 @@ QWidget* StartPage::make_patients() {
 
 QWidget* StartPage::make_help_choice() {
   QBoxLayout* content = nullptr;
-  QFrame* card = make_card(tr("Help and tools"), content);
+  QFrame* card = make_card(tr("Level of help and tools"), content);
   difficulty_ = new QButtonGroup(this);
   for (const auto& [difficulty, name] : kHelpLevels) {
     const QString help = tr(help_text_of(difficulty));
@@ -174,7 +174,7 @@ QWidget* StartPage::make_help_choice() {
   };
   needle_ = add(tr("Needle"), "needle");
   model_ = add(tr("Forces"), "force-model");
-  model_->addItem(tr("The task's own"), QString());
+  model_->addItem(tr("As defined by the task"), QString());
   model_->addItem(tr("Insertion model"), QStringLiteral("insertion"));
   model_->addItem(tr("Volume proxy"), QStringLiteral("proxy"));
   model_->addItem(tr("Both combined"), QStringLiteral("combined"));
@@ -191,7 +191,7 @@ void StartPage::lock_for_exam() {
   const bool is_exam = difficulty_->checkedId() == static_cast<int>(Difficulty::kExam);
   for (QComboBox* box : {needle_, model_}) {
     box->setEnabled(!is_exam);
-    box->setToolTip(is_exam ? tr("An exam takes the task's own") : QString());
+    box->setToolTip(is_exam ? tr("An exam uses the task's own") : QString());
     if (is_exam) box->setCurrentIndex(0);
   }
 }
@@ -203,8 +203,8 @@ QWidget* StartPage::make_recovery() {
   recovery_text_ = make_label({});
   recovery_text_->setWordWrap(true);
   row->addWidget(recovery_text_, 1);
-  auto* resume = make_button("recover", tr("See it"), tr("Scores and replays what was recorded"));
-  auto* decline = make_button("decline-recovery", tr("Not now"), tr("Keeps the recording and starts anew"));
+  auto* resume = make_button("recover", tr("See it"), tr("Scores and replays the recording"));
+  auto* decline = make_button("decline-recovery", tr("Not now"), tr("Keeps the recording and starts a new attempt"));
   row->addWidget(resume);
   row->addWidget(decline);
   connect(resume, &QPushButton::clicked, this, &StartPage::recovery_wanted);
@@ -221,11 +221,11 @@ void StartPage::offer_recovery(const QString& text) {
   recovery_->setVisible(!text.isEmpty());
 }
 
-/// Needles that are made for what the chosen task does; the one that was chosen stays where it is among them.
+/// Lists the needles for the use of the selected task; keeps the selected needle if possible.
 void StartPage::fill_needles() {
   const QString chosen = needle_->currentData().toString();
   needle_->clear();
-  needle_->addItem(tr("The task's own"), QString());
+  needle_->addItem(tr("As defined by the task"), QString());
   const QListWidgetItem* item = tasks_->currentItem();
   const auto tasks = tasks::load_tasks(data_dir() / "tasks");
   const auto needles = tasks::load_needles(data_dir() / "needles.toml");
@@ -238,7 +238,7 @@ void StartPage::fill_needles() {
   needle_->setCurrentIndex(std::max(0, needle_->findData(chosen)));
 }
 
-/// Embedded patients that serve the chosen task, and folders that were opened before.
+/// Embedded patients that support the selected task, and folders opened earlier.
 void StartPage::fill_patients() {
   const QListWidgetItem* task = tasks_->currentItem();
   const QListWidgetItem* before = patients_->currentItem();
@@ -311,7 +311,7 @@ SeatChoice StartPage::choice() const {
   choice.needle_device = devices_->needle();
   choice.probe_device = devices_->probe();
   choice.difficulty = static_cast<Difficulty>(difficulty_->checkedId());
-  if (choice.difficulty != Difficulty::kExam) {  // an exam takes the task's own
+  if (choice.difficulty != Difficulty::kExam) {  // an exam uses the task's own
     choice.needle = to_std(needle_->currentData().toString());
     choice.force_model = to_std(model_->currentData().toString());
   }

@@ -15,8 +15,8 @@ namespace trocar::trainer {
 
 class DeviceChoice;
 
-/// Where a trainee begins: task, patient, how much help, which device moves which tool. Keys: Enter starts, Ctrl+O
-/// opens a patient folder. What was chosen last is chosen again at the next start.
+/// Start page: task, patient, level of help, device of each tool. Keys: Enter starts, Ctrl+O opens a patient folder.
+/// The last selection is stored.
 class StartPage : public QWidget {
   Q_OBJECT
 

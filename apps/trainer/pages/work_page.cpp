@@ -46,12 +46,12 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
   row->addWidget(parameters_);
   connect(desk_, &Desk::layout_chosen, this, &WorkPage::fit);
   connect(puncture_, &PuncturePanel::asked, this, [this] {
-    if (side_->isHidden()) toggle_parameters();  // its question must be seen
+    if (side_->isHidden()) toggle_parameters();  // its question must be visible
   });
   fit();
 }
 
-/// In a narrow window the tissues stand in the place of the side panel, so that the pictures keep their size.
+/// In a narrow window the tissue panel replaces the side panel, so that the images keep their size.
 void WorkPage::fit() {
   const int side_px = fontMetrics().averageCharWidth() * kSideColumns;
   if (side_->maximumWidth() != side_px) side_->setFixedWidth(side_px);

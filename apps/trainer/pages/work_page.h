@@ -29,7 +29,7 @@ class WorkPage : public QWidget {
 
   void show_puncture();
   void show_feedback();
-  /// Locked: the parameter panel is closed and stays so, and changes nothing.
+  /// Locked: the parameter panel stays closed and has no effect.
   void set_parameters_locked(bool are_locked);
   /// False: it is locked.
   bool toggle_parameters();

@@ -54,7 +54,7 @@ void CorePicture::set_shot(const attempt::GunShot& shot) {
       if (piece.part == part) length_mm += piece.to_mm - piece.from_mm;
     if (length_mm > 0.0) legend_.push_back({part, tr("%1 mm %2").arg(length_mm, 0, 'f', 1).arg(title_of(part))});
   }
-  if (legend_.empty()) legend_.push_back({tasks::CorePart::kOther, tr("The notch is empty")});
+  if (legend_.empty()) legend_.push_back({tasks::CorePart::kOther, tr("No tissue in the notch")});
   QStringList texts;
   for (const Entry& entry : legend_) texts << entry.text;
   setAccessibleName(tr("Core: %1").arg(texts.join(QStringLiteral(", "))));

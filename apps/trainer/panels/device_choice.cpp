@@ -25,14 +25,14 @@ std::string spec_of(const QComboBox& box) {
   return to_std(box.currentData().toString());
 }
 
-/// Entries that the tool beside has cannot be chosen here.
+/// Disables devices that are used for the other tool.
 void grey_out(QComboBox& box, const std::string& other) {
   auto* model = qobject_cast<QStandardItemModel*>(box.model());
   for (int row = 0; row < box.count(); ++row) {
     const bool is_free = attempt::can_share_seat(to_std(box.itemData(row).toString()), other);
     QStandardItem* item = model->item(row);
     item->setEnabled(is_free);
-    item->setToolTip(is_free ? QString() : DeviceChoice::tr("The other tool has this device"));
+    item->setToolTip(is_free ? QString() : DeviceChoice::tr("Already used for the other tool"));
   }
 }
 
@@ -43,7 +43,7 @@ DeviceChoice::DeviceChoice(QWidget* parent) : QWidget(parent) {
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(4);
   auto* add = make_button("add-device", tr("Add a device by name …"),
-                          tr("An OpenHaptics device under the name that the vendor's setup program gave it"));
+                          tr("An OpenHaptics device with the name assigned in the vendor's setup program"));
   add->setStyleSheet(QStringLiteral("padding: 1px 8px;"));
   auto* heading = new QHBoxLayout;
   heading->addWidget(make_label(tr("Needle by"), "dim"));
@@ -66,7 +66,7 @@ QComboBox* DeviceChoice::add_tool(QBoxLayout& column, const QString& title, cons
   box->setObjectName(QString::fromLatin1(name));
   box->setAccessibleName(title);
   box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  auto* button = make_button(test_name, tr("Test"), tr("Whether the device answers, moves and gives forces"));
+  auto* button = make_button(test_name, tr("Test"), tr("Tests connection, motion and forces of the device"));
   button->setAccessibleName(tr("Test the device of: %1").arg(title));
   auto* row = new QHBoxLayout;
   row->setSpacing(6);
@@ -91,7 +91,7 @@ void DeviceChoice::list(const QString& spec) {
     if (box->findData(spec) < 0) box->addItem(to_qt(attempt::seat_device_title(to_std(spec))), spec);
 }
 
-/// The transducer gives way.
+/// On a conflict, the transducer gets the mouse.
 void DeviceChoice::keep_apart() {
   if (!attempt::can_share_seat(spec_of(*needle_), spec_of(*probe_))) probe_->setCurrentIndex(probe_->findData("mouse"));
   grey_out(*probe_, spec_of(*needle_));
@@ -103,7 +103,7 @@ void DeviceChoice::choose(const std::string& needle, const std::string& probe) {
     if (!spec.empty()) list(to_qt(spec));
     box.setCurrentIndex(std::max(0, box.findData(to_qt(spec))));
   };
-  probe_->setCurrentIndex(0);  // so that the needle may have what the transducer had
+  probe_->setCurrentIndex(0);  // so that the needle can use the device of the transducer
   select(*needle_, needle);
   select(*probe_, probe);
   keep_apart();
@@ -133,7 +133,7 @@ void DeviceChoice::add_by_name() {
 }
 
 void DeviceChoice::test(const QComboBox& box) {
-  if (auto* open = window()->findChild<DeviceTestDialog*>()) delete open;  // it may hold the same device
+  if (auto* open = window()->findChild<DeviceTestDialog*>()) delete open;  // both can use the same device
   auto* dialog = new DeviceTestDialog(box.currentData().toString(), box.currentText(), window());
   dialog->show();
 }

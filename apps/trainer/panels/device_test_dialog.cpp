@@ -15,22 +15,22 @@ namespace {
 
 using State = DeviceCheckView::State;
 
-constexpr double kMoved_mm = 5.0;  ///< Further is no tremble.
+constexpr double kMoved_mm = 5.0;  ///< Larger motion is not tremor.
 
 bool can_calibrate(const QString& spec) {
   return spec.startsWith(QLatin1String("openhaptics"));
 }
 
-/// What a device needs that the program cannot do for it.
+/// Steps of a device's calibration that the user must do.
 QString calibration_text(const QString& spec) {
   if (can_calibrate(spec))
     return DeviceTestDialog::tr(
         "Calibrate: first put the stylus into its inkwell (Omni, Touch), or hold the arm in its reset position as the "
         "vendor's manual shows it (Premium).");
   if (spec.startsWith(QLatin1String("forcedimension")))
-    return DeviceTestDialog::tr("It calibrates itself in its calibration pit; then press its force button.");
+    return DeviceTestDialog::tr("It calibrates automatically in its calibration pit; then press its force button.");
   if (spec.startsWith(QLatin1String("haply")))
-    return DeviceTestDialog::tr("It calibrates itself with the grip on its rest.");
+    return DeviceTestDialog::tr("It calibrates automatically with the grip on its rest.");
   return {};
 }
 
@@ -39,13 +39,13 @@ QString answer_text(const DeviceCheckView& view, bool was_calibrating) {
     case State::kStarting:
       return DeviceTestDialog::tr("Looking for the device …");
     case State::kAnswers:
-      return (was_calibrating ? DeviceTestDialog::tr("Calibrated. The device answers: %1.")
-                              : DeviceTestDialog::tr("The device answers: %1."))
+      return (was_calibrating ? DeviceTestDialog::tr("Calibrated. The device responds: %1.")
+                              : DeviceTestDialog::tr("The device responds: %1."))
           .arg(view.text);
     case State::kUnplugged:
-      return DeviceTestDialog::tr("The device does not answer any more: is it unplugged? Plug it in, then test again.");
+      return DeviceTestDialog::tr("The device no longer responds. Check that it is plugged in, then test again.");
     case State::kFailed:
-      return DeviceTestDialog::tr("The device does not answer. %1").arg(view.text);
+      return DeviceTestDialog::tr("The device does not respond. %1").arg(view.text);
   }
   return {};
 }
@@ -53,8 +53,8 @@ QString answer_text(const DeviceCheckView& view, bool was_calibrating) {
 QString pose_text(const DeviceCheckView& view) {
   if (!view.has_pose) return DeviceTestDialog::tr("Waiting for its pose …");
   const QString moved = view.moved_mm > kMoved_mm
-                            ? DeviceTestDialog::tr("It moves: %1 mm so far.").arg(view.moved_mm, 0, 'f', 0)
-                            : DeviceTestDialog::tr("Move it: the picture must follow.");
+                            ? DeviceTestDialog::tr("Motion detected: %1 mm so far.").arg(view.moved_mm, 0, 'f', 0)
+                            : DeviceTestDialog::tr("Move the device: the picture must follow.");
   return DeviceTestDialog::tr("Right %1, away %2, up %3 mm. Buttons: %4. %5")
       .arg(view.p_D.x(), 0, 'f', 0)
       .arg(view.p_D.y(), 0, 'f', 0)
@@ -67,9 +67,9 @@ QString force_text(const DeviceCheckView& view) {
   constexpr double kSomething_n = 0.05;
   if (view.force_n > kSomething_n) return DeviceTestDialog::tr("Force now: %1 N upwards").arg(view.force_n, 0, 'f', 1);
   if (view.strongest_n > kSomething_n)
-    return DeviceTestDialog::tr("It was given %1 N. Was it felt?").arg(view.strongest_n, 0, 'f', 1);
-  return view.has_force ? DeviceTestDialog::tr("No force is given before you ask for it.")
-                        : DeviceTestDialog::tr("It has no motors for forces; a gamepad rumbles.");
+    return DeviceTestDialog::tr("%1 N were applied. Did you feel the force?").arg(view.strongest_n, 0, 'f', 1);
+  return view.has_force ? DeviceTestDialog::tr("No force is applied before you request it.")
+                        : DeviceTestDialog::tr("It has no motors for forces; a gamepad uses rumble.");
 }
 
 }  // namespace
@@ -101,11 +101,11 @@ DeviceTestDialog::DeviceTestDialog(const QString& spec, const QString& title, QW
     column->addWidget(calibration);
   }
   auto* row = new QHBoxLayout;
-  push_ = make_button("device-push", tr("Give a small force"), tr("Upwards, about a second long; hold the device"));
-  calibrate_ = make_button("device-calibrate", tr("Calibrate"), tr("When the device is where it must be for that"));
+  push_ = make_button("device-push", tr("Give a small force"), tr("Upwards, for about a second; hold the device"));
+  calibrate_ = make_button("device-calibrate", tr("Calibrate"), tr("When the device is in the required position"));
   calibrate_->setVisible(can_calibrate(spec));
   again_ = make_button("device-again", tr("Test again"), tr("Opens the device again"));
-  auto* close = make_button("device-close", tr("Close"), tr("Lets go of the device"));
+  auto* close = make_button("device-close", tr("Close"), tr("Release the device"));
   for (QPushButton* button : {push_, calibrate_, again_}) row->addWidget(button);
   row->addStretch();
   row->addWidget(close);
@@ -126,7 +126,7 @@ QVariantMap DeviceTestDialog::facts() const {
 }
 
 void DeviceTestDialog::start(bool is_calibrating) {
-  check_.reset();  // one program at a time has the device
+  check_.reset();  // only one program can open the device
   was_calibrating_ = is_calibrating;
   check_ = std::make_unique<DeviceCheck>(spec_, is_calibrating);
   connect(check_.get(), &DeviceCheck::changed, this, &DeviceTestDialog::show_state);

@@ -23,8 +23,8 @@ QString verdict_of(const tasks::Outcome& outcome) {
   if (!outcome.target_reached) return FeedbackPanel::tr("The target was missed");
   if (outcome.score >= kExcellent) return FeedbackPanel::tr("Excellent");
   if (outcome.score >= kGood) return FeedbackPanel::tr("Good");
-  return outcome.score >= kFair ? FeedbackPanel::tr("Target reached, room to improve")
-                                : FeedbackPanel::tr("Target reached the hard way");
+  return outcome.score >= kFair ? FeedbackPanel::tr("Target reached, with room for improvement")
+                                : FeedbackPanel::tr("Target reached, with a low score");
 }
 
 QString core_text(const tasks::BiopsyCore& core) {
@@ -42,7 +42,7 @@ void clear(QGridLayout& grid) {
   }
 }
 
-/// Names of files can be wrapped, too.
+/// File names can be wrapped, too.
 QString breakable(QString text) {
   for (const char mark : {'/', '_', '-'}) text.replace(QLatin1Char(mark), QString(QLatin1Char(mark)) + QChar(0x200b));
   return text;
@@ -83,7 +83,7 @@ FeedbackPanel::FeedbackPanel(QWidget* parent) : QWidget(parent) {
   core_ = make_label({}, "dim");
   core_->setWordWrap(true);
   content->addWidget(core_);
-  content->addWidget(make_label(tr("What to do better"), "heading"));
+  content->addWidget(make_label(tr("Improvements"), "heading"));
   hints_ = make_label({});
   hints_->setObjectName(QStringLiteral("hints"));
   hints_->setWordWrap(true);
@@ -107,12 +107,12 @@ QWidget* FeedbackPanel::make_buttons() {
   auto* grid = new QGridLayout(bar);
   grid->setContentsMargins(16, 8, 16, 12);
   grid->setSpacing(8);
-  auto* again = make_button("try-again", tr("Try again"), tr("The same case once more"), QStringLiteral("Ctrl+R"));
+  auto* again = make_button("try-again", tr("Try again"), tr("Repeat the same case"), QStringLiteral("Ctrl+R"));
   again->setProperty("role", "primary");
-  worst_button_ = make_button("worst-moment", tr("Worst moment"), tr("Goes to it in the replay (W)"));
+  worst_button_ = make_button("worst-moment", tr("Worst moment"), tr("Go to the worst moment in the replay (W)"));
   auto* other = make_button("other-case", tr("Other case"), tr("Back to the start page"), QStringLiteral("Ctrl+N"));
   auto* report =
-      make_button("open-report", tr("Report"), tr("The attempt as a page to keep"), QStringLiteral("Ctrl+P"));
+      make_button("open-report", tr("Report"), tr("Save the report of the attempt"), QStringLiteral("Ctrl+P"));
   grid->addWidget(again, 0, 0, 1, 2);
   grid->addWidget(worst_button_, 1, 0, 1, 2);
   grid->addWidget(report, 2, 0);
@@ -154,7 +154,7 @@ void FeedbackPanel::show_outcome(const tasks::Outcome& outcome, const QString& w
   show_parts(outcome.parts);
   QStringList hints;
   for (const std::string& hint : outcome.hints) hints << QStringLiteral("•  ") + to_qt(hint);
-  hints_->setText(hints.isEmpty() ? tr("Nothing: as the expert does it.") : hints.join(QStringLiteral("\n\n")));
+  hints_->setText(hints.isEmpty() ? tr("Nothing to improve.") : hints.join(QStringLiteral("\n\n")));
   core_->setText(outcome.core ? core_text(*outcome.core) : QString());
   core_->setVisible(outcome.core.has_value());
   worst_->setText(worst_moment);

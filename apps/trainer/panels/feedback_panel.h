@@ -19,8 +19,7 @@ namespace trocar::trainer {
 class CorePicture;
 class ScoreDial;
 
-/// What an attempt is told at its end: the score, its parts, what to do better. Keys: Ctrl+R tries again, W shows the
-/// worst moment.
+/// Result of an attempt: score, its parts, improvements. Keys: Ctrl+R tries again, W shows the worst moment.
 class FeedbackPanel : public QWidget {
   Q_OBJECT
 
@@ -33,7 +32,7 @@ class FeedbackPanel : public QWidget {
   void show_level(const QString& level);
   /// Its picture; null: the gun was not fired.
   void show_core(const attempt::GunShot* shot);
-  /// What happened to the attempt beside the trainee: warnings, interruptions, changed parameters. A line each.
+  /// Events during the attempt: warnings, interruptions, changed parameters. One line each.
   void show_notes(const QStringList& notes);
 
  Q_SIGNALS:

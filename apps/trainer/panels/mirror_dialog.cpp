@@ -19,7 +19,7 @@ MirrorDialog::MirrorDialog(const MirrorSettings& settings, QWidget* parent) : QD
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(20, 16, 20, 16);
   column->setSpacing(10);
-  QLabel* text = make_label(tr("For a monitor that is seen in a mirror, with the hands behind the mirror."), "dim");
+  QLabel* text = make_label(tr("For a monitor viewed in a mirror, with the hands behind the mirror."), "dim");
   text->setWordWrap(true);
   column->addWidget(text);
   auto* form = new QFormLayout;
@@ -29,14 +29,14 @@ MirrorDialog::MirrorDialog(const MirrorSettings& settings, QWidget* parent) : QD
   axis_->setObjectName(QStringLiteral("mirror-axis"));
   axis_->addItems({tr("Off"), tr("Left and right"), tr("Up and down")});
   axis_->setCurrentIndex(static_cast<int>(settings.axis));
-  axis_->setToolTip(tr("Turns over the whole window with its menus and dialogs; F8 turns it back"));
-  form->addRow(tr("Turn the window over"), axis_);
-  fixed_ = new QCheckBox(tr("Camera fixed to the device: the tool is seen where the hand is"));
+  axis_->setToolTip(tr("Mirrors the whole window with its menus and dialogs; F8 switches mirroring on and off"));
+  form->addRow(tr("Mirror the window"), axis_);
+  fixed_ = new QCheckBox(tr("Camera fixed to the device: the tool is displayed at the position of the hand"));
   fixed_->setObjectName(QStringLiteral("mirror-fixed"));
   fixed_->setChecked(settings.is_camera_fixed);
   column->addWidget(fixed_);
   QLabel* place =
-      make_label(tr("Where the picture stands in the mirror, from the middle of the device's workspace:"), "dim");
+      make_label(tr("Position of the mirror image, relative to the centre of the device's workspace:"), "dim");
   place->setWordWrap(true);
   column->addWidget(place);
   auto* numbers = new QFormLayout;
@@ -44,16 +44,18 @@ MirrorDialog::MirrorDialog(const MirrorSettings& settings, QWidget* parent) : QD
   column->addLayout(numbers);
   const QString mm = tr(" mm");
   const Vec3& p = settings.picture_W;
-  right_ = add(*numbers, "mirror-right", tr("To the right"), tr("Of the window's middle"), mm, -500, 500, p.x());
-  away_ = add(*numbers, "mirror-away", tr("Away from you"), tr("Of the window's middle"), mm, -500, 500, p.y());
-  up_ = add(*numbers, "mirror-up", tr("Up"), tr("Of the window's middle"), mm, -500, 500, p.z());
-  tilt_ = add(*numbers, "mirror-tilt", tr("Tilt"), tr("0°: upright before you; 90°: lying, seen from above"), tr("°"),
-              0, 90, settings.tilt_deg);
-  width_ = add(*numbers, "mirror-width", tr("Width of the screen"), tr("Of its picture in the mirror: the scale"), mm,
+  right_ = add(*numbers, "mirror-right", tr("To the right"), tr("Position of the window's centre (to the right)"), mm,
+               -500, 500, p.x());
+  away_ = add(*numbers, "mirror-away", tr("Away from you"), tr("Position of the window's centre (away from you)"), mm,
+              -500, 500, p.y());
+  up_ = add(*numbers, "mirror-up", tr("Up"), tr("Position of the window's centre (up)"), mm, -500, 500, p.z());
+  tilt_ = add(*numbers, "mirror-tilt", tr("Tilt"), tr("0°: upright before you; 90°: horizontal, viewed from above"),
+              tr("°"), 0, 90, settings.tilt_deg);
+  width_ = add(*numbers, "mirror-width", tr("Width of the screen"), tr("Width of the screen's image in the mirror"), mm,
                100, 2000, settings.screen_width_mm);
-  eye_ = add(*numbers, "mirror-eye", tr("From your eye"), tr("From the eye to the picture"), mm, 200, 2000,
+  eye_ = add(*numbers, "mirror-eye", tr("From your eye"), tr("Distance from the eye to the image"), mm, 200, 2000,
              settings.eye_distance_mm);
-  auto* close = make_button("mirror-close", tr("Close"), tr("The settings are kept"));
+  auto* close = make_button("mirror-close", tr("Close"), tr("The settings are saved"));
   column->addWidget(close, 0, Qt::AlignRight);
   connect(close, &QPushButton::clicked, this, &QDialog::close);
   connect(axis_, qOverload<int>(&QComboBox::currentIndexChanged), this, &MirrorDialog::tell);

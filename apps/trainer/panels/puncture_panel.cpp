@@ -61,10 +61,10 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   events_->setSelectionMode(QAbstractItemView::NoSelection);
   content->addWidget(events_, 1);
   connect(events_->verticalScrollBar(), &QScrollBar::rangeChanged, events_, &QListWidget::scrollToBottom);
-  fire_ = make_button("fire", tr("Fire the gun"), tr("Takes the core (Enter)"));
+  fire_ = make_button("fire", tr("Fire the gun"), tr("Take a core (Enter)"));
   fire_->setProperty("role", "primary");
   fire_->setFocusPolicy(Qt::NoFocus);
-  end_ = make_button("end-attempt", tr("End the attempt"), tr("Asks, then scores what was done (E)"));
+  end_ = make_button("end-attempt", tr("End the attempt"), tr("End and score the attempt; asks for confirmation (E)"));
   end_->setFocusPolicy(Qt::NoFocus);
   auto* scroll = make_scrolled(*inside);
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
@@ -72,7 +72,7 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   column->setContentsMargins(0, 0, 0, 0);
   column->setSpacing(0);
   column->addWidget(scroll, 1);
-  auto* buttons = new QVBoxLayout;  // always in sight
+  auto* buttons = new QVBoxLayout;  // always visible
   buttons->setContentsMargins(12, 8, 12, 12);
   buttons->setSpacing(8);
   buttons->addWidget(fire_);
@@ -88,7 +88,7 @@ QWidget* PuncturePanel::make_hand() {
   auto* grid = new QGridLayout(box);
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setSpacing(6);
-  grid->addWidget(make_label(tr("In your hand"), "dim"), 0, 0, 1, 2);
+  grid->addWidget(make_label(tr("Active tool"), "dim"), 0, 0, 1, 2);
   hand_ = new QButtonGroup(this);
   const auto add = [&](ToolInHand tool, const char* name, const QString& text, const QString& tooltip, int row,
                        int column) {
@@ -101,8 +101,8 @@ QWidget* PuncturePanel::make_hand() {
   };
   add(ToolInHand::kNeedle, "hand-needle", tr("Needle"), tr("The mouse moves the needle (A)"), 1, 0);
   add(ToolInHand::kTransducer, "hand-transducer", tr("Transducer"), tr("The mouse moves the transducer (S)"), 1, 1);
-  add(ToolInHand::kNone, "hand-none", tr("View"), tr("The mouse turns the view (V)"), 2, 0);
-  clamp_ = make_button("clamp", tr("Clamp"), tr("Holds the tool in hand where it is (X)"));
+  add(ToolInHand::kNone, "hand-none", tr("View"), tr("The mouse rotates the view (V)"), 2, 0);
+  clamp_ = make_button("clamp", tr("Clamp"), tr("Hold the active tool in place (X)"));
   clamp_->setCheckable(true);
   clamp_->setFocusPolicy(Qt::NoFocus);
   grid->addWidget(clamp_, 2, 1);
@@ -125,7 +125,7 @@ QWidget* PuncturePanel::make_question() {
   question_text_->setWordWrap(true);
   yes_ = make_button("question-yes", {}, tr("Enter"));
   yes_->setProperty("role", "primary");
-  auto* no = make_button("question-no", tr("Go on (Esc)"), tr("The attempt goes on"));
+  auto* no = make_button("question-no", tr("Go on (Esc)"), tr("Continue the attempt"));
   for (QPushButton* button : {yes_, no}) button->setFocusPolicy(Qt::NoFocus);
   rows->addWidget(question_text_);
   rows->addWidget(yes_);
@@ -178,15 +178,15 @@ QWidget* PuncturePanel::make_figures() {
   phase_ = make_figure(*grid, 0, tr("Needle"), "phase");
   tissue_ = make_figure(*grid, 1, tr("Tissue at the tip"), "tissue");
   depth_ = make_figure(*grid, 2, tr("Depth"), "depth");
-  target_ = make_figure(*grid, 3, tr("To the target"), "to-target");
-  time_ = make_figure(*grid, 4, tr("Since the skin"), "time");
+  target_ = make_figure(*grid, 3, tr("Distance to the target"), "to-target");
+  time_ = make_figure(*grid, 4, tr("Time since the skin"), "time");
   return box;
 }
 
 void PuncturePanel::begin(double most_force_n, bool can_aim) {
   aim_->setEnabled(can_aim);
-  aim_->setToolTip(can_aim ? tr("Puts needle or transducer where the plan has it (H)")
-                           : tr("Where the plan has the tools is told in guided attempts alone"));
+  aim_->setToolTip(can_aim ? tr("Move needle or transducer to its planned position (H)")
+                           : tr("The planned position is available in guided attempts only"));
   events_->clear();
   force_->clear();
   core_->hide();

@@ -22,7 +22,7 @@ class ForceBar;
 
 enum class ToolInHand { kNone, kNeedle, kTransducer };
 
-/// What the panel tells in one frame.
+/// Contents of the panel in one frame.
 struct PunctureFigures {
   QString phase;
   QString tissue;
@@ -37,9 +37,9 @@ struct PunctureFigures {
   bool is_clamped[2] = {false, false};  ///< Needle, transducer.
 };
 
-/// Beside the views while the puncture goes on: tool in hand, where the needle is, what it meets, what to do now. Keys:
-/// A and S take a tool, V none, X clamps the one in hand, Enter fires, E ends. A question lies in the place of the last
-/// two buttons and stops nothing; Enter and Escape answer it.
+/// Panel during the puncture: active tool, needle position, resistance, next step. Keys: A and S select a tool, V none,
+/// X locks the active tool, Enter fires, E ends. A question replaces the last two buttons and stops nothing; Enter and
+/// Escape answer it.
 class PuncturePanel : public QWidget {
   Q_OBJECT
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kGap = 8;
 constexpr int kSwatch = 12;
-// Many small controls stand side by side here: less padding than elsewhere.
+// Smaller padding than elsewhere, because many small controls are side by side.
 constexpr const char* kSlim = "padding: 5px 3px;";
 constexpr const char* kFlat = "background: transparent; border: none; padding: 3px;";
 
@@ -31,14 +31,14 @@ QString widget_name(const char* prefix, const std::string& structure) {
   return QString::fromLatin1(prefix) + to_qt(structure).replace(QLatin1Char('_'), QLatin1Char('-'));
 }
 
-/// "kidney_left" as people read it.
+/// Display text of "kidney_left".
 QString shown_name(const std::string& structure) {
   QString name = to_qt(structure).replace(QLatin1Char('_'), QLatin1Char(' '));
   if (!name.isEmpty()) name[0] = name[0].toUpper();
   return name;
 }
 
-/// A round patch of the structure's colour; a ring where it is hidden.
+/// A disc in the structure's colour; a ring if it is hidden.
 QIcon swatch(const volume::Rgb& color, double ratio) {
   QIcon icon;
   for (const bool is_shown : {true, false}) {
@@ -97,10 +97,10 @@ void StructurePanel::add_presets(QBoxLayout& layout) {
     scene::StructurePreset preset;
   };
   const Choice choices[] = {
-      {"preset-all", tr("All"), tr("All structures as they begin"), scene::StructurePreset::kAll},
-      {"preset-skin", tr("Skin"), tr("The skin alone"), scene::StructurePreset::kSkinOnly},
+      {"preset-all", tr("All"), tr("Default visibility of all structures"), scene::StructurePreset::kAll},
+      {"preset-skin", tr("Skin"), tr("Skin only"), scene::StructurePreset::kSkinOnly},
       {"preset-bones", tr("Bones"), tr("Bones and cartilage"), scene::StructurePreset::kBones},
-      {"preset-vessels", tr("Vessels"), tr("Vessels and target in faint bones"), scene::StructurePreset::kVessels},
+      {"preset-vessels", tr("Vessels"), tr("Vessels and target, bones translucent"), scene::StructurePreset::kVessels},
       {"preset-target", tr("Target"), tr("The target and the organ around it"), scene::StructurePreset::kTarget},
   };
   auto* rows = new QGridLayout;
@@ -220,7 +220,7 @@ void StructurePanel::refresh() {
   undo_buttons_->show(steps_.can_undo(), steps_.can_redo());
   const QSignalBlocker quiet_guidance(guidance_);
   const QSignalBlocker quiet_landmarks(landmarks_);
-  // There may be nothing that it could show.
+  // Without guidance in the scene, there is nothing to show.
   guidance_->setEnabled(view_.scene().guidance() != scene::Guidance::kNone);
   guidance_->setChecked(guidance_->isEnabled() && view_.is_guidance_visible());
   landmarks_->setChecked(view_.are_landmarks_visible());
@@ -229,7 +229,7 @@ void StructurePanel::refresh() {
 void StructurePanel::add_volume(QBoxLayout& layout) {
   volume_ = new QComboBox(this);
   volume_->setObjectName(QStringLiteral("volume-preset"));
-  volume_->setToolTip(tr("The CT itself as a cloud (Up, Down)"));
+  volume_->setToolTip(tr("CT volume rendering (Up, Down)"));
   volume_->setAccessibleName(tr("CT volume"));
   volume_->addItems(
       {tr("Surfaces"), tr("CT: bone"), tr("CT: soft tissue"), tr("CT: vessels"), tr("CT: skin and bone")});
@@ -264,7 +264,8 @@ void StructurePanel::add_toggles(QBoxLayout& layout) {
   auto* marks = new QHBoxLayout;
   marks->setSpacing(kGap / 2);
   guidance_ = make_toggle("show-guidance", tr("Guidance"),
-                          tr("Path, entry zone and target, as far as the help goes (O)"), view_.is_guidance_visible());
+                          tr("Path, entry zone and target, as permitted by the level of help (O)"),
+                          view_.is_guidance_visible());
   landmarks_ =
       make_toggle("show-landmarks", tr("Landmarks"), tr("Landmarks with names (I)"), view_.are_landmarks_visible());
   connect(guidance_, &QToolButton::toggled, this, [this](bool is_on) { view_.set_guidance_visible(is_on); });
@@ -289,8 +290,8 @@ void StructurePanel::add_menus(QBoxLayout& layout) {
     row->addWidget(button);
     return menu;
   };
-  fill_camera_menu(*add("camera-menu", tr("Camera ▾"), tr("Where the patient is seen from")));
-  fill_stereo_menu(*add("stereo-menu", tr("Stereo ▾"), tr("Pictures for two eyes, and for a mirror")));
+  fill_camera_menu(*add("camera-menu", tr("Camera ▾"), tr("Camera position")));
+  fill_stereo_menu(*add("stereo-menu", tr("Stereo ▾"), tr("Stereo and mirror modes")));
   row->addStretch(1);
   layout.addLayout(row);
 }
@@ -338,7 +339,7 @@ void StructurePanel::fill_stereo_menu(QMenu& menu) {
     action->setChecked(view_.stereo().mode == mode);
     modes->addAction(action);
   };
-  add_mode(tr("One picture"), "stereo-off", scene::StereoMode::kOff);
+  add_mode(tr("Mono"), "stereo-off", scene::StereoMode::kOff);
   add_mode(tr("Red-cyan glasses"), "stereo-anaglyph", scene::StereoMode::kAnaglyph);
   add_mode(tr("Side by side"), "stereo-side-by-side", scene::StereoMode::kSideBySide);
   add_mode(tr("Interlaced rows"), "stereo-interlaced", scene::StereoMode::kInterlaced);

@@ -17,7 +17,7 @@ std::string text_of(double value) {
   return std::isinf(value) ? "never" : fmt::format("{}", value);  // the shortest digits that read back
 }
 
-/// The number behind the "=" of a setting; apply_override says what is wrong with one that is none.
+/// Parses the number after the "=" of a setting; apply_override reports errors.
 double number_in(std::string_view text) {
   double value = std::numeric_limits<double>::quiet_NaN();
   if (text == "never") return std::numeric_limits<double>::infinity();
@@ -64,8 +64,8 @@ bool ParameterEdits::is_changed(const anatomy::TissueParameterGroup& group) cons
 Status ParameterEdits::set(const std::string& setting, double value, bool joins) {
   const anatomy::TissueParameter* parameter = find(setting);
   if (parameter == nullptr)
-    return fail_usage(fmt::format("there is no number \"{}\"", setting), "tissue parameters",
-                      "choose a number of the list");
+    return fail_usage(fmt::format("unknown parameter \"{}\"", setting), "tissue parameters",
+                      "select a parameter of the list");
   Values values = now().values;
   if (value == parameter->value) {
     values.erase(setting);
@@ -134,8 +134,8 @@ void ParameterEdits::forget_profile(const std::string& profile) {
   });
 }
 
-/// Profiles may be written by hand, with other names of the same numbers ("liver_capsule.stiffness_n_per_mm=0.5"): what
-/// such a setting does to the table tells which number is meant.
+/// Profiles can be written by hand with long names ("liver_capsule.stiffness_n_per_mm=0.5"): the change of the table
+/// shows which parameter a setting refers to.
 Result<ParameterEdits::Values> ParameterEdits::read(const std::vector<std::string>& settings) const {
   Values values;
   anatomy::TissueTable table = defaults_;
@@ -151,15 +151,15 @@ Result<ParameterEdits::Values> ParameterEdits::read(const std::vector<std::strin
       read_from(table, values);
     }
     if (!is_new && !gives(values, table))
-      return fail_usage("this setting changes what the panel cannot adjust", text,
-                        "write it as the panel saves it, or use it with --set");
+      return fail_usage("the panel cannot edit this setting", text,
+                        "use it with --set, or write it in the format of a saved profile");
   }
   std::erase_if(values, [&](const auto& change) { return find(change.first)->value == change.second; });
   return values;
 }
 
-/// Numbers that differ between the table and the defaults. A factor is relative to the curve as it stands, so no table
-/// tells it.
+/// Reads the numbers that differ between the table and the defaults. Factors are relative to the present curve and
+/// cannot be derived from a table.
 void ParameterEdits::read_from(const anatomy::TissueTable& table, Values& values) const {
   for (const anatomy::TissueParameterGroup& group : anatomy::tissue_parameters(table))
     for (const anatomy::TissueParameter& is : group.parameters) {
@@ -173,7 +173,7 @@ void ParameterEdits::read_from(const anatomy::TissueTable& table, Values& values
     }
 }
 
-/// Whether these numbers make this table out of the defaults; where they come from does not matter.
+/// True if these numbers turn the defaults into this table; sources are ignored.
 bool ParameterEdits::gives(const Values& values, anatomy::TissueTable table) const {
   anatomy::TissueTable made = defaults_;
   for (const std::string& setting : settings_of(values))
@@ -190,7 +190,7 @@ void ParameterEdits::keep(Values values, bool joins) {
 }
 
 void ParameterEdits::keep(Step step, bool joins) {
-  // Another name alone is nothing that anybody would undo.
+  // A new profile name alone is not an undo step.
   if (step.values == now().values && step.model == now().model) return steps_.put(std::move(step));
   steps_.step_to(std::move(step), joins);
 }
@@ -200,11 +200,11 @@ std::vector<std::string> ParameterEdits::settings_of(const Values& values) const
   const auto add = [&](std::string_view setting) {
     const auto change = values.find(setting);
     std::string text = change != values.end() ? fmt::format("{}={}", setting, text_of(change->second)) : "";
-    // Tissues under one surface name the same number.
+    // Tissues with the same surface refer to the same number.
     if (!text.empty() && std::find(settings.begin(), settings.end(), text) == settings.end())
       settings.push_back(std::move(text));
   };
-  // The lower of two thresholds is never above the higher one on the way: a raised upper one comes first.
+  // The lower threshold must never exceed the upper one in between: a raised upper threshold is set first.
   const anatomy::TissueParameter* full = find(kFull);
   const bool is_full_first = full != nullptr && values.contains(kFull) && values.find(kFull)->second > full->value;
   for (const anatomy::TissueParameterGroup& group : groups_)

@@ -11,17 +11,17 @@ namespace trocar::trainer {
 namespace {
 
 QString title_of(const std::string& tissue) {
-  if (tissue == "transfer") return ParameterList::tr("Unlabelled, by CT number");
+  if (tissue == "transfer") return ParameterList::tr("Unlabelled tissue, by HU");
   QString title = to_qt(tissue).replace(QLatin1Char('_'), QLatin1Char(' '));
   if (tissue == "csf") return title.toUpper();
   title[0] = title[0].toUpper();
   return title;
 }
 
-/// "0–2 mm": where the path is in a tissue; several stretches are named from first to last.
-QString place_of(const std::string& tissue, const std::vector<attempt::PathPiece>& pieces) {
+/// "0–2 mm": depth range of a tissue on the path; several ranges are given from first to last.
+QString place_of(const std::string& tissue, const std::vector<cases::PathPiece>& pieces) {
   double from = 0.0, to = -1.0;
-  for (const attempt::PathPiece& piece : pieces) {
+  for (const cases::PathPiece& piece : pieces) {
     if (piece.tissue != tissue) continue;
     if (to < 0.0) from = piece.from_mm;
     to = piece.to_mm;
@@ -29,9 +29,9 @@ QString place_of(const std::string& tissue, const std::vector<attempt::PathPiece
   return to < 0.0 ? QString() : QStringLiteral("%1–%2 mm").arg(from, 0, 'f', 0).arg(to, 0, 'f', 0);
 }
 
-std::vector<std::string> along_path(const std::vector<attempt::PathPiece>& pieces) {
+std::vector<std::string> along_path(const std::vector<cases::PathPiece>& pieces) {
   std::vector<std::string> names;
-  for (const attempt::PathPiece& piece : pieces)
+  for (const cases::PathPiece& piece : pieces)
     if (std::find(names.begin(), names.end(), piece.tissue) == names.end()) names.push_back(piece.tissue);
   return names;
 }
@@ -49,7 +49,7 @@ ParameterList::ParameterList(QWidget* parent) : QWidget(parent) {
 }
 
 void ParameterList::show_tissues(const std::vector<anatomy::TissueParameterGroup>& groups,
-                                 const std::vector<attempt::PathPiece>& pieces) {
+                                 const std::vector<cases::PathPiece>& pieces) {
   sections_.clear();
   rows_.clear();
   body_ = nullptr;
@@ -80,7 +80,7 @@ void ParameterList::add_section(const anatomy::TissueParameterGroup& group, cons
   Section section{group, title_of(group.name), place, new QPushButton, new QVBoxLayout};
   section.header->setObjectName(QStringLiteral("parameter-tissue-") + to_qt(group.name));
   section.header->setAccessibleName(section.title);
-  section.header->setToolTip(tr("Shows the numbers of this tissue  (Space)"));
+  section.header->setToolTip(tr("Show the parameters of this tissue  (Space)"));
   section.header->setCheckable(true);
   section.header->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);  // A long text must not widen the list.
   section.header->setStyleSheet(QStringLiteral("text-align: left; padding: 5px 8px"));
@@ -102,7 +102,7 @@ void ParameterList::show_header(Section& section, bool is_changed) const {
 }
 
 void ParameterList::choose(const std::string& tissue) {
-  // The focus may be in what goes.
+  // The focus may be in a widget that is deleted.
   for (const Section& section : sections_)
     if (body_ != nullptr && section.group.name == chosen_ && body_->isAncestorOf(focusWidget()))
       section.header->setFocus();
@@ -111,7 +111,7 @@ void ParameterList::choose(const std::string& tissue) {
   reset_tissue_ = nullptr;
   if (body_ != nullptr) {
     body_->hide();
-    body_->deleteLater();  // A row of it may be what has called.
+    body_->deleteLater();  // The signal may come from a row that is deleted.
     body_->setParent(nullptr);
     body_ = nullptr;
   }
@@ -122,7 +122,7 @@ void ParameterList::choose(const std::string& tissue) {
 void ParameterList::fill(Section& section) {
   body_ = make_rows(section.group);
   section.content->addWidget(body_);
-  // Tab goes from the header into its rows.
+  // Tab moves from the header to its rows.
   QWidget* last = section.header;
   for (ParameterRow* row : rows_)
     for (QWidget* part : row->findChildren<QWidget*>())
@@ -148,7 +148,7 @@ QWidget* ParameterList::make_rows(const anatomy::TissueParameterGroup& group) {
   layout->setSpacing(4);
   const QString name = QStringLiteral("parameter-") + to_qt(group.name) + QLatin1Char('-');
   if (group.name == "transfer") {
-    auto* note = make_label(tr("× multiplies a whole curve over CT numbers."), "dim");
+    auto* note = make_label(tr("× multiplies a complete curve over HU."), "dim");
     note->setWordWrap(true);
     layout->addWidget(note);
   }
@@ -164,7 +164,7 @@ QWidget* ParameterList::make_rows(const anatomy::TissueParameterGroup& group) {
   reset_tissue_ = new QPushButton(tr("↺  Reset %1").arg(title_of(group.name)));
   reset_tissue_->setObjectName(name + QStringLiteral("reset-all"));
   reset_tissue_->setAccessibleName(tr("Reset %1").arg(title_of(group.name)));
-  reset_tissue_->setToolTip(tr("All numbers of this tissue back to their defaults"));
+  reset_tissue_->setToolTip(tr("Reset all parameters of this tissue to their defaults"));
   connect(reset_tissue_, &QPushButton::clicked, this,
           [this, tissue = group.name] { Q_EMIT reset_tissue_asked(tissue); });
   layout->addWidget(reset_tissue_);

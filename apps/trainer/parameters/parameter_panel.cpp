@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "parameters/force_preview.h"
 #include "core/files/user_folders.h"
+#include "parameters/force_preview.h"
 #include "parameters/parameter_list.h"
 #include "parameters/parameter_profiles.h"
 #include "ui_kit/parts.h"
@@ -21,7 +21,7 @@
 namespace trocar::trainer {
 namespace {
 
-/// A moving slider changes the number with every picture; the server and the prediction get the newest after this.
+/// A moving slider changes the number with every frame; server and prediction get the newest value after this time.
 constexpr std::chrono::milliseconds kQuiet{150};
 
 std::vector<std::string> texts_of(const QStringList& list) {
@@ -82,7 +82,7 @@ ParameterPanel::ParameterPanel(QWidget* parent)
   });
   connect(list_, &ParameterList::opened, this, [this] {
     show_values();
-    // The rows have their places when the layouts have been through.
+    // The positions of the rows are known after the layout.
     QTimer::singleShot(0, this, &ParameterPanel::scroll_to_opened);
   });
   connect(profiles_, &ParameterProfiles::chosen, this, &ParameterPanel::choose_profile);
@@ -101,7 +101,7 @@ QWidget* ParameterPanel::make_head() {
   undo_buttons_.emplace(
       "parameter", *this, [this] { undo(); }, [this] { redo(); });
   undo_buttons_->add_to(*layout);
-  reset_ = make_tool_button("parameter-reset-all", tr("Reset all"), tr("All numbers back to the case's own"));
+  reset_ = make_tool_button("parameter-reset-all", tr("Reset all"), tr("Reset all parameters to those of the case"));
   connect(reset_, &QToolButton::clicked, this, [this] {
     edits_.reset_all();
     show_changes();
@@ -111,15 +111,15 @@ QWidget* ParameterPanel::make_head() {
   return head;
 }
 
-void ParameterPanel::show_case(std::shared_ptr<const attempt::OpenCase> open_case) {
+void ParameterPanel::show_case(std::shared_ptr<const cases::OpenCase> open_case) {
   case_ = std::move(open_case);
   empty_->setVisible(case_ == nullptr);
   body_->setVisible(case_ != nullptr);
   preview_->show_case(case_);
   edits_.start(case_ ? case_->the_case.tissues : anatomy::TissueTable{}, to_std(preview_->model()));
   list_->show_model(preview_->model());
-  list_->show_tissues(edits_.groups(), case_ ? case_->pieces : std::vector<attempt::PathPiece>{});
-  // A server that has just loaded the case has its own numbers.
+  list_->show_tissues(edits_.groups(), case_ ? case_->pieces : std::vector<cases::PathPiece>{});
+  // A server that has just loaded the case uses the numbers of the case.
   sent_.clear();
   show_changes();
 }
@@ -162,7 +162,7 @@ void ParameterPanel::show_changes() {
   changed_at_ = std::chrono::steady_clock::now();
 }
 
-/// Undo or a profile may have brought another.
+/// Undo or a profile can change the model.
 void ParameterPanel::show_model() {
   const QString model = to_qt(edits_.model());
   if (model == preview_->model()) return;
@@ -186,8 +186,8 @@ void ParameterPanel::set_profile_folder(const std::filesystem::path& folder) {
 
 void ParameterPanel::choose_profile(const std::string& file) {
   if (!case_) return;
-  attempt::TissueProfile profile;  // The case's own.
-  if (const attempt::TissueProfile* found = profiles_->find(file)) profile = *found;
+  cases::TissueProfile profile;  // The case's own.
+  if (const cases::TissueProfile* found = profiles_->find(file)) profile = *found;
   if (profile.force_model.empty()) profile.force_model = case_->force_model;
   Status done;
   if (preview_->offers(to_qt(profile.force_model))) {
@@ -202,15 +202,15 @@ void ParameterPanel::choose_profile(const std::string& file) {
     show_values();
   }
   profiles_->show_problem(done ? QString()
-                               : tr("“%1” is not used: %2").arg(to_qt(profile.name), to_qt(done.error().text())));
+                               : tr("“%1” was not applied: %2").arg(to_qt(profile.name), to_qt(done.error().text())));
 }
 
-void ParameterPanel::save_profile_as(attempt::TissueProfile profile, bool may_replace) {
+void ParameterPanel::save_profile_as(cases::TissueProfile profile, bool may_replace) {
   if (!case_) return;
   profile.force_model = edits_.model();
   profile.overrides = edits_.settings();
-  profile.file = attempt::profile_file(profiles_->folder(), profile.name);
-  const Status saved = attempt::save_profile(profile, case_->the_case.tissues, profiles_->folder(), may_replace);
+  profile.file = cases::profile_file(profiles_->folder(), profile.name);
+  const Status saved = cases::save_profile(profile, case_->the_case.tissues, profiles_->folder(), may_replace);
   if (!saved) {
     profiles_->show_problem(to_qt(saved.error().text()));
     return;
@@ -220,7 +220,8 @@ void ParameterPanel::save_profile_as(attempt::TissueProfile profile, bool may_re
   show_values();
 }
 
-/// Not where the header stands high already; else as little as shows the whole tissue, its header in any case.
+/// Scrolls as little as necessary to show the whole tissue, at least its header; not if the header is already near the
+/// top.
 void ParameterPanel::scroll_to_opened() {
   constexpr int kMargin_px = 4;
   const QRect opened = list_->chosen_rect();

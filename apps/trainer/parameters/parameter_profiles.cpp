@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kDot_px = 10;
 constexpr int kLongestName = 80;
-constexpr int kShownLetters = 14;  ///< Of a name in a question, beside its buttons.
+constexpr int kShownLetters = 14;  ///< Width of a name in a question, next to its buttons.
 
 QIcon make_dot(qreal pixel_ratio) {
   QPixmap dot(QSize(kDot_px, kDot_px) * pixel_ratio);
@@ -36,7 +36,7 @@ QIcon make_dot(qreal pixel_ratio) {
   return QIcon(dot);
 }
 
-/// Never asks for more width than there is.
+/// Never requests more than the available width.
 QLabel* make_wrapped(const char* name) {
   auto* label = make_label({});
   label->setObjectName(QString::fromLatin1(name));
@@ -48,7 +48,7 @@ QLabel* make_wrapped(const char* name) {
   return label;
 }
 
-/// With places where a path, a key or a very long word may be wrapped.
+/// Inserts break opportunities for wrapping paths, keys and very long words.
 QString breakable(const QString& text) {
   constexpr int kLongestWord = 18;
   QString broken;
@@ -63,7 +63,7 @@ QString breakable(const QString& text) {
   return broken;
 }
 
-QString about(const attempt::TissueProfile& profile) {
+QString about(const cases::TissueProfile& profile) {
   const int count = static_cast<int>(profile.overrides.size());
   QString text = count == 1 ? ParameterProfiles::tr("1 number") : ParameterProfiles::tr("%1 numbers").arg(count);
   if (!profile.force_model.empty()) text += QStringLiteral(", ") + to_qt(profile.force_model);
@@ -101,15 +101,15 @@ QWidget* ParameterProfiles::make_choice() {
     Q_EMIT chosen(to_std(choice_->itemData(index).toString()));
   });
   save_as_ = make_tool_button("parameter-profile-save-as", tr("Save as …"),
-                              tr("Saves the numbers and the force model under a name  (Space)"));
+                              tr("Save the parameters and the force model under a name  (Space)"));
   delete_ = make_tool_button("parameter-profile-delete", tr("Delete"),
-                             tr("Deletes the chosen profile; the numbers stay as they are  (Space)"));
+                             tr("Delete the selected profile; the parameters do not change  (Space)"));
   connect(save_as_, &QToolButton::clicked, this, [this] { ask(Question::kName); });
   connect(delete_, &QToolButton::clicked, this, [this] { ask(Question::kDelete); });
   layout->addWidget(choice_, 1);
   for (QToolButton* button : {save_as_, delete_}) {
     button->setFocusPolicy(Qt::StrongFocus);
-    button->setStyleSheet(QStringLiteral("padding: 5px 6px"));  // Names need the width.
+    button->setStyleSheet(QStringLiteral("padding: 5px 6px"));  // leaves more width for names
     layout->addWidget(button);
   }
   return row;
@@ -130,8 +130,8 @@ QWidget* ParameterProfiles::make_question() {
   words_->setObjectName(QStringLiteral("parameter-profile-question"));
   words_->setTextFormat(Qt::PlainText);
   words_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-  yes_ = make_button("parameter-profile-yes", {}, tr("Does it  (Space)"));
-  no_ = make_button("parameter-profile-no", tr("Cancel"), tr("Leaves all as it is  (Escape)"));
+  yes_ = make_button("parameter-profile-yes", {}, tr("Confirm  (Space)"));
+  no_ = make_button("parameter-profile-no", tr("Cancel"), tr("Cancel  (Escape)"));
   for (QPushButton* button : {yes_, no_}) button->setStyleSheet(QStringLiteral("padding: 5px 9px"));
   connect(name_, &QLineEdit::returnPressed, this, &ParameterProfiles::answer_yes);
   connect(yes_, &QPushButton::clicked, this, &ParameterProfiles::answer_yes);
@@ -150,7 +150,7 @@ void ParameterProfiles::set_folder(const std::filesystem::path& folder) {
 }
 
 void ParameterProfiles::read_folder() {
-  attempt::ProfileList list = attempt::list_profiles(folder_);
+  cases::ProfileList list = cases::list_profiles(folder_);
   profiles_ = std::move(list.profiles);
   list_entries();
   if (!list.problems.empty()) {
@@ -163,8 +163,8 @@ void ParameterProfiles::read_folder() {
 
 void ParameterProfiles::list_entries() {
   choice_->clear();
-  choice_->addItem(tr("Case's own"), QString());
-  for (const attempt::TissueProfile& profile : profiles_) {
+  choice_->addItem(tr("As in the case"), QString());
+  for (const cases::TissueProfile& profile : profiles_) {
     choice_->addItem(to_qt(profile.name), to_qt(profile.file.string()));
     choice_->setItemData(choice_->count() - 1, about(profile), Qt::ToolTipRole);
   }
@@ -179,25 +179,25 @@ void ParameterProfiles::show_chosen(const std::string& file, bool differs) {
   for (int entry = 0; entry < choice_->count(); ++entry)
     if (const bool is_dotted = entry == index && differs; choice_->itemIcon(entry).isNull() == is_dotted)
       choice_->setItemIcon(entry, is_dotted ? make_dot(devicePixelRatioF()) : QIcon());
-  const QString tip = tr("Profile of tissue numbers: %1  (Up, Down)").arg(choice_->currentText());
-  choice_->setToolTip(differs ? tip + QLatin1Char('\n') + tr("●  changed since it was chosen") : tip);
+  const QString tip = tr("Tissue profile: %1  (Up, Down)").arg(choice_->currentText());
+  choice_->setToolTip(differs ? tip + QLatin1Char('\n') + tr("●  changed since it was selected") : tip);
   choice_->setAccessibleDescription(differs ? tr("changed") : QString());
   delete_->setEnabled(index > 0);
 }
 
-const attempt::TissueProfile* ParameterProfiles::find(const std::string& file) const noexcept {
+const cases::TissueProfile* ParameterProfiles::find(const std::string& file) const noexcept {
   const auto found = std::find_if(profiles_.begin(), profiles_.end(),
-                                  [&](const attempt::TissueProfile& profile) { return profile.file.native() == file; });
+                                  [&](const cases::TissueProfile& profile) { return profile.file.native() == file; });
   return found != profiles_.end() ? &*found : nullptr;
 }
 
-const attempt::TissueProfile* ParameterProfiles::find_same(const std::string& name) const noexcept {
-  for (const attempt::TissueProfile& profile : profiles_)
+const cases::TissueProfile* ParameterProfiles::find_same(const std::string& name) const noexcept {
+  for (const cases::TissueProfile& profile : profiles_)
     if (profile.name == name) return &profile;
-  return find(attempt::profile_file(folder_, name).string());
+  return find(cases::profile_file(folder_, name).string());
 }
 
-const attempt::TissueProfile* ParameterProfiles::current() const noexcept {
+const cases::TissueProfile* ParameterProfiles::current() const noexcept {
   return find(chosen_);
 }
 
@@ -214,7 +214,7 @@ void ParameterProfiles::ask(Question question) {
   QString verb = tr("Save"), name = name_->text().trimmed();
   if (question == Question::kReplace) {
     verb = tr("Replace");
-    if (const attempt::TissueProfile* old = find_same(to_std(name))) name = to_qt(old->name);
+    if (const cases::TissueProfile* old = find_same(to_std(name))) name = to_qt(old->name);
   } else if (question == Question::kDelete && current() != nullptr) {
     verb = tr("Delete");
     name = to_qt(current()->name);
@@ -228,7 +228,7 @@ void ParameterProfiles::ask(Question question) {
     name_->setFocus();
     name_->selectAll();
   } else if (question != Question::kNone) {
-    no_->setFocus();  // A second Enter or Space by mistake loses nothing.
+    no_->setFocus();  // an accidental second Enter or Space has no effect
   } else if (had_focus) {
     choice_->setFocus();
   }
@@ -247,11 +247,11 @@ void ParameterProfiles::answer_no() {
 }
 
 void ParameterProfiles::save() {
-  attempt::TissueProfile profile;
+  cases::TissueProfile profile;
   profile.name = to_std(name_->text().trimmed());
   std::error_code error;
-  const attempt::TissueProfile* old = find_same(profile.name);
-  const bool replaces = old != nullptr || std::filesystem::exists(attempt::profile_file(folder_, profile.name), error);
+  const cases::TissueProfile* old = find_same(profile.name);
+  const bool replaces = old != nullptr || std::filesystem::exists(cases::profile_file(folder_, profile.name), error);
   if (replaces && question_ != Question::kReplace && !profile.name.empty()) {
     ask(Question::kReplace);
     return;
@@ -261,25 +261,25 @@ void ParameterProfiles::save() {
   Q_EMIT save_asked(profile, question_ == Question::kReplace);
 }
 
-void ParameterProfiles::finish_saving(const attempt::TissueProfile& saved) {
-  // One of the same name may have lain in another file.
+void ParameterProfiles::finish_saving(const cases::TissueProfile& saved) {
+  // Deletes a profile of the same name in another file.
   Status done;
-  for (const attempt::TissueProfile& profile : profiles_)
-    if (profile.name == saved.name && profile.file != saved.file) done = attempt::delete_profile(profile);
+  for (const cases::TissueProfile& profile : profiles_)
+    if (profile.name == saved.name && profile.file != saved.file) done = cases::delete_profile(profile);
   ask(Question::kNone);
   read_folder();
   if (!done) show_problem(to_qt(done.error().text()));
 }
 
 void ParameterProfiles::remove() {
-  const attempt::TissueProfile* profile = current();
+  const cases::TissueProfile* profile = current();
   if (profile == nullptr) return;
   const QString name = to_qt(profile->name);
-  const Status done = attempt::delete_profile(*profile);
+  const Status done = cases::delete_profile(*profile);
   ask(Question::kNone);
   read_folder();
   if (done) {
-    tell(tr("“%1” is deleted; its numbers are still set.").arg(breakable(name)), false);
+    tell(tr("Profile “%1” is deleted; its values stay active.").arg(breakable(name)), false);
   } else {
     show_problem(to_qt(done.error().text()));
   }
@@ -295,7 +295,7 @@ void ParameterProfiles::tell(const QString& text, bool is_problem) {
   problem_->setVisible(!text.isEmpty());
 }
 
-/// Escape closes the question before any shortcut of the window gets it.
+/// Escape closes the question before window shortcuts receive it.
 bool ParameterProfiles::event(QEvent* event) {
   if (event->type() == QEvent::ShortcutOverride && question_ != Question::kNone &&
       static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape) {

@@ -104,7 +104,7 @@ void ParameterRow::make_parts(const QString& name) {
   const QString plain = to_qt(parameter_.name);
   caption_ = make_label(QStringLiteral("<b>%1</b>  %2").arg(to_qt(parameter_.symbol), plain));
   QString symbol = to_qt(parameter_.symbol);
-  if (const auto at = symbol.indexOf(QLatin1Char('_')); at > 0)  // F_p as the papers print it
+  if (const auto at = symbol.indexOf(QLatin1Char('_')); at > 0)  // F_p as printed in the papers
     symbol = symbol.left(at) + QStringLiteral("<sub>") + symbol.mid(at + 1) + QStringLiteral("</sub>");
   caption_->setText(QStringLiteral("<b>%1</b>&nbsp; %2").arg(symbol, plain));
   field_ = new NumberField;
@@ -117,9 +117,9 @@ void ParameterRow::make_parts(const QString& name) {
   reset_ = new QToolButton;
   reset_->setObjectName(name + QStringLiteral("-reset"));
   reset_->setText(QStringLiteral("↺"));
-  reset_->setStyleSheet(QStringLiteral("padding: 2px 6px"));  // no higher than the field beside it
+  reset_->setStyleSheet(QStringLiteral("padding: 2px 6px"));  // not higher than the field next to it
   reset_->setAccessibleName(tr("Reset %1").arg(plain));
-  reset_->setToolTip(tr("Back to the default, %1").arg(number_text(parameter_.value)));
+  reset_->setToolTip(tr("Reset to the default, %1").arg(number_text(parameter_.value)));
   slider_ = new MarkedSlider;
   slider_->setObjectName(name + QStringLiteral("-slider"));
   slider_->setAccessibleName(plain);
@@ -155,15 +155,15 @@ QString ParameterRow::tooltip() const {
   QStringList lines{tr("Default %1%2").arg(number_text(parameter_.value), unit),
                     tr("Source: %1").arg(to_qt(source.source).toHtmlEscaped())};
   if (source.low && source.high)
-    lines << tr("Thought possible: %1 to %2%3").arg(number_text(*source.low), number_text(*source.high), unit);
+    lines << tr("Plausible range: %1 to %2%3").arg(number_text(*source.low), number_text(*source.high), unit);
   lines << tr("Taken: %1").arg(range_text(parameter_));
-  if (!parameter_.owner.empty()) lines << tr("The same number as that of %1").arg(to_qt(parameter_.owner));
+  if (!parameter_.owner.empty()) lines << tr("Same parameter as that of %1").arg(to_qt(parameter_.owner));
   QStringList models;
   if (parameter_.is_insertion) models << tr("insertion");
   if (parameter_.is_proxy) models << tr("proxy");
   if (parameter_.is_combined) models << tr("combined");
-  lines << tr("Felt in: %1").arg(models.join(QStringLiteral(", ")));
-  lines << tr("Enter takes a number, arrow keys move the slider");
+  lines << tr("Used by: %1").arg(models.join(QStringLiteral(", ")));
+  lines << tr("Press Enter to apply; arrow keys move the slider");
   return lines.join(QStringLiteral("<br>"));
 }
 
@@ -193,7 +193,7 @@ void ParameterRow::take_text() {
   if (field_->text() == number_text(value_)) return;
   double value = 0.0;
   if (!read_number(field_->text(), parameter_, value)) {
-    show_refusal(tr("\"%1\" is refused: %2").arg(field_->text().left(20), range_text(parameter_)));
+    show_refusal(tr("\"%1\" is not valid: %2").arg(field_->text().left(20), range_text(parameter_)));
     return;
   }
   if (value == value_) {
@@ -207,7 +207,7 @@ void ParameterRow::take_slider(int position) {
   const bool is_down = slider_->isSliderDown();
   const bool joins = is_down && is_held_;
   is_held_ = is_down;
-  // Back at the mark is the default itself, with all its digits.
+  // At the mark, the value is the exact default.
   const double value = position == scale_.position_of(parameter_.value) ? parameter_.value : scale_.value_at(position);
   if (value != value_) Q_EMIT edited(value, joins);
 }

@@ -28,7 +28,7 @@ int ParameterScale::position_of(double value) const noexcept {
   if (value >= high_) return kSteps;
   const double share = log_from_ > 0.0 ? std::log(std::max(value, log_from_) / log_from_) / std::log(high_ / log_from_)
                                        : (value - low_) / (high_ - low_);
-  // A number above zero is not shown as zero.
+  // A positive number is not displayed as zero.
   const int least = log_from_ > low_ ? 1 : 0;
   return std::clamp(static_cast<int>(std::lround(share * kSteps)), least, kSteps);
 }

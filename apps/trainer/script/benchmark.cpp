@@ -7,7 +7,7 @@ namespace trocar::trainer {
 Result<std::vector<ScriptStep>> benchmark_steps() {
   QString text = QStringLiteral(
       "resize 1280 800\n"
-      "click difficulty-guided\n"  // the last one's choice may be another
+      "click difficulty-guided\n"  // the previous run may have selected another
       "click start\n"
       "wait-for is_open is true within 120\n"
       "click begin\n"
@@ -17,7 +17,7 @@ Result<std::vector<ScriptStep>> benchmark_steps() {
   int number = 0;
   for (const QString& layout : Desk::layouts()) {
     ++number;
-    // In and out again, so that each layout sees a tool that moves through skin and liver.
+    // In and out again, so that each layout displays a tool that moves through skin and liver.
     text += QStringLiteral(
                 "key Ctrl+%1\n"
                 "wait 2\n"

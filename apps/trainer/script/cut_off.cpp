@@ -30,7 +30,7 @@ bool is_viewport(const QWidget& widget) {
   return area != nullptr && area->viewport() == &widget;
 }
 
-/// The widget that cuts a part of this one off.
+/// The widget that clips a part of this one.
 const QWidget* find_cutter(const QWidget& widget) {
   QRect rect(QPoint(), widget.size());
   for (const QWidget* inner = &widget; !inner->isWindow(); inner = inner->parentWidget()) {
@@ -38,7 +38,7 @@ const QWidget* find_cutter(const QWidget& widget) {
     rect.translate(inner->pos());
     QRect shown = rect.intersected(outer->rect());
     if (is_viewport(*outer)) {
-      if (shown.isEmpty() && rect.width() <= outer->width()) return nullptr;  // scrolled away
+      if (shown.isEmpty() && rect.width() <= outer->width()) return nullptr;  // scrolled out of view
       shown.setTop(rect.top());
       shown.setBottom(rect.bottom());
       if (shown != rect) return outer;

@@ -25,7 +25,7 @@ const std::map<QString, Arity>& verbs() {
   return all;
 }
 
-/// Which arguments of a step are numbers.
+/// Indices of numeric arguments of a step.
 const std::map<QString, std::vector<int>>& numbers() {
   static const std::map<QString, std::vector<int>> all = {
       {"click", {1, 2}},
@@ -45,7 +45,7 @@ const std::map<QString, std::vector<int>>& numbers() {
   return all;
 }
 
-/// The argument that should be a number and is none.
+/// The first argument that should be a number but is not.
 std::optional<QString> find_no_number(const QString& verb, const QStringList& words) {
   const auto found = numbers().find(verb);
   if (found == numbers().end()) return std::nullopt;
@@ -57,7 +57,7 @@ std::optional<QString> find_no_number(const QString& verb, const QStringList& wo
   return std::nullopt;
 }
 
-/// What should compare a fact with a value and does not.
+/// The operator of a comparison if it is not valid.
 std::optional<QString> find_no_comparison(const QString& verb, const QStringList& words) {
   static const std::map<QString, int> places = {{"wheel-until", 3}, {"key-until", 3}, {"wait-for", 1}, {"expect", 1}};
   static const QStringList comparisons = {"is", "isnt", "has", "<", ">", "<=", ">="};
@@ -66,14 +66,14 @@ std::optional<QString> find_no_comparison(const QString& verb, const QStringList
   return words[found->second];
 }
 
-/// Words of a line up to a comment; nothing where a quotation does not end.
+/// Words of a line up to a comment; empty if a quotation is not terminated.
 std::optional<QStringList> words_of(const QString& line) {
   QStringList words;
   QString word;
   bool is_quoted = false, has_word = false;
   for (int at = 0; at < line.size(); ++at) {
     const QChar c = line[at];
-    // A colour begins with the same sign.
+    // A colour starts with the same character.
     const bool is_comment =
         c == '#' && !has_word && !is_quoted && (words.isEmpty() || at + 1 == line.size() || line[at + 1].isSpace());
     if (is_comment) break;
@@ -103,28 +103,28 @@ Result<std::vector<ScriptStep>> parse_script(const QString& text, const QString&
     ++number;
     const std::string where = to_std(QStringLiteral("%1:%2").arg(name).arg(number));
     auto words = words_of(line);
-    if (!words) return fail("a quotation is not closed", where, "put \" at its end");
+    if (!words) return fail("unterminated quotation", where, "add \" at its end");
     if (words->isEmpty()) continue;
     const QString verb = words->takeFirst();
     const auto found = verbs().find(verb);
     if (found == verbs().end())
-      return fail("there is no step \"" + to_std(verb) + "\"", where, "see trocar-trainer --help");
+      return fail("unknown step \"" + to_std(verb) + "\"", where, "see trocar-trainer --help");
     if (words->size() < found->second.least || words->size() > found->second.most)
       return fail("\"" + to_std(verb) + "\" has " + std::to_string(words->size()) + " arguments", where,
                   "see trocar-trainer --help");
     if (const auto wrong = find_no_number(verb, *words))
-      return fail("\"" + to_std(*wrong) + "\" is no number", where, "see trocar-trainer --help");
+      return fail("\"" + to_std(*wrong) + "\" is not a number", where, "see trocar-trainer --help");
     if (const auto wrong = find_no_comparison(verb, *words))
-      return fail("\"" + to_std(*wrong) + "\" compares nothing", where, "write is, isnt, has, <, >, <= or >=");
+      return fail("\"" + to_std(*wrong) + "\" is not a comparison", where, "write is, isnt, has, <, >, <= or >=");
     steps.push_back({number, verb, *words});
   }
-  if (steps.empty()) return fail("the script has no step", to_std(name), "see trocar-trainer --help");
+  if (steps.empty()) return fail("the script contains no steps", to_std(name), "see trocar-trainer --help");
   return steps;
 }
 
 Result<std::vector<ScriptStep>> load_script(const std::filesystem::path& path) {
   QFile file(to_qt(path.string()));
-  if (!file.open(QIODevice::ReadOnly)) return fail("the script cannot be read", path.string(), "check its name");
+  if (!file.open(QIODevice::ReadOnly)) return fail("cannot read the script", path.string(), "check its name");
   constexpr qint64 kMostBytes = 1 << 20;
   if (file.size() > kMostBytes) return fail("the script is larger than 1 MiB", path.string(), "is it a script?");
   return parse_script(QString::fromUtf8(file.readAll()), to_qt(path.filename().string()));

@@ -22,8 +22,8 @@ namespace {
 constexpr int kBetweenSteps_ms = 15;
 constexpr double kPatience_s = 30.0;
 constexpr double kDrag_s = 0.4;
-constexpr double kSettled_s = 1.0;  ///< After that a layout is as it stays.
-constexpr int kMostAtOnce = 2;      ///< Events of a step that goes on until something holds.
+constexpr double kSettled_s = 1.0;  ///< Time after which a layout is stable.
+constexpr int kMostAtOnce = 2;      ///< Events per call of a step that repeats until a condition is true.
 
 QPointF place_of(const QStringList& arguments, int first) {
   if (arguments.size() < first + 2) return {0.5, 0.5};
@@ -73,21 +73,21 @@ Result<QWidget*> ScriptPlayer::find(const QString& name) const {
   QWidget* hidden = nullptr;
   for (QWidget* top : QApplication::topLevelWidgets()) {
     for (QWidget* widget : top->findChildren<QWidget*>(name)) {
-      // What stands in a menu is reached without opening it, which would stop the player.
+      // Menu entries are used without opening the menu, which would block the player.
       if (widget->isVisible() || qobject_cast<QMenu*>(widget->window()) != nullptr) return widget;
       hidden = widget;
     }
   }
-  if (hidden == nullptr) return fail("there is no such widget", to_std(name), "see its object name");
+  if (hidden == nullptr) return fail("no such widget", to_std(name), "check its object name");
   if (seconds() < stage_.look_s) return nullptr;
-  return fail("it is not to be seen now", to_std(name), "is another page open?");
+  return fail("the widget is not visible", to_std(name), "is another page open?");
 }
 
 Result<QWidget*> ScriptPlayer::find_usable(const QString& name) const {
   TROCAR_TRY(QWidget* const widget, find(name));
   if (widget == nullptr || widget->isEnabled()) return widget;
   if (seconds() < stage_.look_s) return nullptr;
-  return fail("it cannot be used now", to_std(name), "it is disabled");
+  return fail("it cannot be used now", to_std(name), "the widget is disabled");
 }
 
 Result<ScriptPlayer::Progress> ScriptPlayer::click_menu_entry(QAction& entry) const {
@@ -96,13 +96,13 @@ Result<ScriptPlayer::Progress> ScriptPlayer::click_menu_entry(QAction& entry) co
     return Progress::kDone;
   }
   if (seconds() < stage_.look_s) return Progress::kAgain;
-  return fail("it cannot be used now", to_std(entry.objectName()), "it is disabled");
+  return fail("it cannot be used now", to_std(entry.objectName()), "the widget is disabled");
 }
 
 bool ScriptPlayer::holds(const QString& fact, const QString& op, const QString& value) const {
   const QVariantMap facts = stage_.facts();
   const auto found = facts.find(fact);
-  if (found == facts.end()) return false;  // it may come
+  if (found == facts.end()) return false;  // it may appear later
   if (op == QLatin1String("is")) return found->toString() == value;
   if (op == QLatin1String("isnt")) return found->toString() != value;
   if (op == QLatin1String("has")) return found->toString().contains(value);
@@ -119,11 +119,11 @@ Result<ScriptPlayer::Progress> ScriptPlayer::wait_until_holds(const QStringList&
   if (seconds() < patience_s) return Progress::kAgain;
   const QVariantMap facts = stage_.facts();
   if (!facts.contains(fact))
-    return fail("there is no fact \"" + to_std(fact) + "\"", {}, "known: " + to_std(facts.keys().join(' ')));
+    return fail("unknown fact \"" + to_std(fact) + "\"", {}, "known: " + to_std(facts.keys().join(' ')));
   const QString banner = facts.value(QStringLiteral("banner")).toString();
-  return fail("it did not come about: " + to_std(fact_op_value.mid(0, 3).join(' ')),
+  return fail("the condition did not become true: " + to_std(fact_op_value.mid(0, 3).join(' ')),
               to_std(fact + " is " + facts.value(fact).toString()),
-              banner.isEmpty() ? "give it longer: within SECONDS" : "the window says: " + to_std(banner));
+              banner.isEmpty() ? "increase the time: within SECONDS" : "window message: " + to_std(banner));
 }
 
 Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
@@ -220,7 +220,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_until(const ScriptStep& step, 
   TROCAR_TRY(const Progress progress, wait_until_holds(a.mid(2), patience_of(a)));
   if (progress == Progress::kDone) return progress;
   const int due = static_cast<int>(seconds() * std::abs(a[1].toDouble()));
-  // A hand does not make up for the time in which it saw nothing: it would go far past the mark.
+  // Missed events are dropped: catching up would overshoot the condition.
   sent_ = std::max(sent_, due - kMostAtOnce);
   for (; sent_ < due; ++sent_) TROCAR_TRY_STATUS(act());
   return Progress::kAgain;
@@ -249,7 +249,7 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
   if (widget == nullptr) return Progress::kAgain;
   const QImage image = widget->grab().toImage();
   if (step.verb == QLatin1String("screenshot")) {
-    if (!image.save(a[0])) return fail("the picture cannot be written", to_std(a[0]), "check the folder");
+    if (!image.save(a[0])) return fail("cannot write the image", to_std(a[0]), "check the folder");
     return Progress::kDone;
   }
   const double share = share_near(image, QColor(a[1]), a[2].toInt());
@@ -260,16 +260,16 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play_looking(const ScriptStep& step
   return Progress::kAgain;
 }
 
-/// The force stop and every text on the page.
+/// Checks the force stop and every text of the page.
 Result<ScriptPlayer::Progress> ScriptPlayer::expect_whole() const {
   const auto* stop = stage_.window->findChild<QWidget*>(QStringLiteral("force-stop"));
   QStringList faults = find_cut_off(*stage_.window);
-  if (stop == nullptr || !is_wholly_visible(*stop)) faults.prepend(QStringLiteral("force-stop: not wholly visible"));
+  if (stop == nullptr || !is_wholly_visible(*stop)) faults.prepend(QStringLiteral("force-stop: not fully visible"));
   if (faults.isEmpty()) return Progress::kDone;
   if (seconds() < kSettled_s) return Progress::kAgain;
   const QSize size = stage_.window->size();
   return fail(to_std(faults.join(QStringLiteral("; "))), fmt::format("{}x{}", size.width(), size.height()),
-              "give it room, or let it be scrolled");
+              "provide more space, or let it scroll");
 }
 
 }  // namespace trocar::trainer

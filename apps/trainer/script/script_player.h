@@ -19,11 +19,11 @@ struct Stage {
   std::function<QVariantMap()> facts;
   std::function<void(const QString& tool)> end_server;
   std::function<void()> reset_watch;
-  double look_s = 10.0;  ///< A person looks so long for what is not there yet before giving up.
+  double look_s = 10.0;  ///< Timeout for a widget that does not exist yet.
 };
 
-/// Plays a script on a window as a person would: events to the widgets, one step after the other, the window running
-/// meanwhile. Ends with what went wrong, or nothing.
+/// Plays a script in a window: sends events to the widgets step by step while the window runs. Ends with an error or
+/// empty.
 class ScriptPlayer : public QObject {
   Q_OBJECT
 

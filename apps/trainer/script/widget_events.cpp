@@ -29,7 +29,7 @@ QPointF at(const QWidget& widget, const QPointF& place) {
   return {place.x() * (widget.width() - 1), place.y() * (widget.height() - 1)};
 }
 
-/// The child that lies there, as the window system would choose it.
+/// The child widget at this position, as the window system would find it.
 QWidget& hit(QWidget& widget, QPointF& place_px) {
   QWidget* child = widget.childAt(place_px.toPoint());
   if (child == nullptr) return widget;
@@ -46,7 +46,8 @@ void send_mouse(QWidget& widget, QEvent::Type type, const QPointF& place, Qt::Mo
   QCoreApplication::sendEvent(&target, &event);
 }
 
-/// What has the focus, or has it as soon as the window is the active one: a bare X server makes none active.
+/// The widget with the focus, or the one that gets it when the window becomes active: a bare X server activates no
+/// window.
 QWidget& focused(QWidget& window) {
   if (QWidget* widget = QApplication::focusWidget()) return *widget;
   return window.focusWidget() != nullptr ? *window.focusWidget() : window;
@@ -57,7 +58,7 @@ Status no_such(const QWidget& widget, const QString& what) {
               std::string("it is a ") + widget.metaObject()->className());
 }
 
-/// Shortcuts are found by the window system's path alone; so they are looked up here.
+/// Qt finds shortcuts only for events of the window system; therefore they are looked up here.
 bool act_on_shortcut(QWidget& window, const QKeySequence& sequence) {
   for (QAbstractButton* button : window.findChildren<QAbstractButton*>()) {
     if (button->shortcut() != sequence || !button->isVisible() || !button->isEnabled()) continue;
@@ -119,7 +120,7 @@ Status strike(QWidget& window, const QString& keys) {
 #endif
   QWidget* target = &focused(window);
   const QString text = modifiers == Qt::NoModifier && key < 0x100 ? QString(QChar(key)).toLower() : QString();
-  // An override event first, as the window system does: a text field keeps its keys.
+  // An override event first, as from the window system: text fields keep their keys.
   QKeyEvent override_event(QEvent::ShortcutOverride, key, modifiers, text);
   override_event.ignore();
   QCoreApplication::sendEvent(target, &override_event);

@@ -15,26 +15,27 @@ struct Key {
   const char* keys;
   const char* does;
 };
-constexpr Key kTools[] = {{"A, S, V", "needle, transducer, view in hand"},
-                          {"drag", "glides over the skin"},
-                          {"right drag", "tilts; with Shift it turns about the axis"},
-                          {"wheel", "needle in and out, transducer harder and softer; Shift: finely"},
-                          {"arrows", "as dragging, a millimetre a step"},
-                          {"Page up, down", "as the wheel"},
-                          {"H", "to the planned entry"},
-                          {"X", "clamps the tool in hand, or frees it"},
-                          {"Enter", "fires the biopsy gun"},
-                          {"E", "ends the attempt"},
-                          {"Space", "stops all forces, or turns them on again"}};
+constexpr Key kTools[] = {
+    {"A, S, V", "select needle, transducer or view as the active tool"},
+    {"drag", "moves along the skin"},
+    {"right drag", "tilts; with Shift it turns about the axis"},
+    {"wheel", "needle: advance and withdraw, transducer: press harder and softer; Shift: fine steps"},
+    {"arrows", "same as dragging, one millimetre per step"},
+    {"Page up, down", "same as the wheel"},
+    {"H", "to the planned position"},
+    {"X", "locks or unlocks the active tool"},
+    {"Enter", "fires the biopsy gun"},
+    {"E", "ends the attempt"},
+    {"Space", "stops all forces, or switches them on again"}};
 constexpr Key kViews[] = {{"Ctrl+1 … 4", "layouts"},
                           {"F", "freezes the ultrasound"},
                           {"G, D", "gain, depth; with Shift less"},
                           {"C", "colour Doppler"},
                           {"M", "measures a distance; its ends can be dragged"},
-                          {"Delete", "takes the chosen caliper away, else the last"},
+                          {"Delete", "deletes the selected caliper, otherwise the last"},
                           {"T, L, B", "3D view: follow the tip, along, beside the needle"},
                           {"O, I", "3D view: guidance, landmarks"},
-                          {"Tab", "next control; Space presses it, in a puncture Enter"},
+                          {"Tab", "next control; Space presses it, during a puncture Enter"},
                           {"Ctrl++, Ctrl+-", "larger, smaller text"},
                           {"Ctrl+R", "tries again"},
                           {"W", "worst moment of the replay"},
@@ -42,7 +43,7 @@ constexpr Key kViews[] = {{"Ctrl+1 … 4", "layouts"},
                           {"Ctrl+T", "tissue parameters"},
                           {"Ctrl+B", "case builder"},
                           {"F1", "these keys"},
-                          {"F8", "mirrors the window, or turns it back"},
+                          {"F8", "switches window mirroring on or off"},
                           {"F11", "full screen"}};
 
 void add_keys(QGridLayout& grid, int column, const QString& title, std::span<const Key> keys) {

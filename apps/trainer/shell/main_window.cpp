@@ -39,7 +39,7 @@ struct Step {
 constexpr Step kSteps[] = {
     {"start", "Choose"}, {"briefing", "Briefing"}, {"puncture", "Puncture"}, {"feedback", "Feedback"}};
 
-/// Fits a screen of 1024x768 beside a desktop's own bars.
+/// Fits a screen of 1024x768 with the bars of a desktop.
 constexpr QSize kLeastSize(960, 640);
 
 }  // namespace
@@ -64,7 +64,7 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* paren
   column->addWidget(make_top_bar());
   column->addWidget(pages_, 1);
   column->addWidget(strip_);
-  pages_->setMinimumSize(1, 1);  // no page pushes the strip off the window
+  pages_->setMinimumSize(1, 1);  // no page pushes the strip out of the window
   setCentralWidget(central);
   banner_ = new Banner(*central);
   add_shortcuts();
@@ -72,7 +72,7 @@ MainWindow::MainWindow(const std::filesystem::path& state_folder, QWidget* paren
   mirror_ = new MirrorStation(*this);
   mirror_->fill_menu(*views_menu_);
   flow_ = new SeatFlow(*this, state_folder);
-  // A page that needs more room is scrolled, so that the strip at the foot is always on the screen.
+  // A page that needs more space is scrolled, so that the strip at the bottom is always visible.
   setMinimumSize(kLeastSize);
   resize(QSize(1280, 800).boundedTo(screen()->availableSize()));
   restoreGeometry(QSettings().value(QStringLiteral("window/geometry")).toByteArray());
@@ -95,12 +95,12 @@ QWidget* MainWindow::make_top_bar() {
     if (!steps_.empty()) row->addWidget(make_label(QStringLiteral("›"), "dim"));
     auto* label = make_label(tr(step.title), "dim");
     label->setObjectName(QStringLiteral("step-") + QString::fromLatin1(step.page));
-    label->setToolTip(tr("Where you are on the way from the choice to the feedback"));
+    label->setToolTip(tr("Current step, from the start page to the feedback"));
     steps_.push_back(label);
     row->addWidget(label);
   }
   row->addStretch();
-  auto* views = make_tool_button("views-menu", tr("Views"), tr("Layouts, and which views are shown"));
+  auto* views = make_tool_button("views-menu", tr("Views"), tr("Layouts and visible views"));
   views_menu_ = new QMenu(views);
   work_->desk().fill_menu(*views_menu_);
   fill_text_menu(*views_menu_->addMenu(tr("Text size")));
@@ -110,13 +110,13 @@ QWidget* MainWindow::make_top_bar() {
   views->setPopupMode(QToolButton::InstantPopup);
   auto* tissues = make_tool_button("open-parameters", tr("Tissues"), tr("Tissue parameters and the predicted force"),
                                    QStringLiteral("Ctrl+T"));
-  auto* builder = make_tool_button("open-case-builder", tr("Case builder"), tr("Makes cases from CT and labels"),
+  auto* builder = make_tool_button("open-case-builder", tr("Case builder"), tr("Create cases from CT and labels"),
                                    QStringLiteral("Ctrl+B"));
   auto* keys = make_tool_button("open-keys", tr("Keys"), tr("All keys and mouse actions"), QStringLiteral("F1"));
   for (QToolButton* button : {views, tissues, builder, keys}) row->addWidget(button);
   connect(tissues, &QToolButton::clicked, this, [this] {
     if (!work_->toggle_parameters())
-      tell(tr("The Tissues panel is closed in an exam: it tells path, depths and forces, and changes the task."),
+      tell(tr("The Tissues panel is closed in an exam: it shows path, depths and forces, and changes the task."),
            BannerKind::kWarning);
   });
   connect(builder, &QToolButton::clicked, this,
@@ -128,7 +128,7 @@ QWidget* MainWindow::make_top_bar() {
 void MainWindow::add_sound(QMenu& menu) {
   const QString key = QStringLiteral("sound/is_on");
   menu.addSeparator();
-  sound_ = menu.addAction(tr("Sound of the gun"));
+  sound_ = menu.addAction(tr("Biopsy gun sound"));
   sound_->setObjectName(QStringLiteral("sound"));
   sound_->setCheckable(true);
   sound_->setChecked(QSettings().value(key, true).toBool());

@@ -14,7 +14,7 @@ constexpr double kFarthest_mm = 500.0;
 constexpr double kLeastAngle_rad = 0.05, kMostAngle_rad = 1.5;  // of CameraView
 
 double screen_width_mm() {
-  constexpr double kLeast_mm = 100.0;  // a screen that tells nothing tells 0
+  constexpr double kLeast_mm = 100.0;  // a screen with unknown size reports 0
   const QScreen* screen = QGuiApplication::primaryScreen();
   const double told_mm = screen == nullptr ? 0.0 : screen->physicalSize().width();
   return told_mm >= kLeast_mm ? told_mm : MirrorSettings().screen_width_mm;

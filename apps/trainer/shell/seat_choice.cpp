@@ -14,7 +14,7 @@ const char* title_of(Difficulty difficulty) noexcept {
 
 const char* help_text_of(Difficulty difficulty) noexcept {
   constexpr std::array kTexts{"Expert path, entry zone, target, guide line and hints.",
-                              "Entry zone, target and hints; you find the way.", "Pictures and forces alone."};
+                              "Entry zone, target and hints, without the path.", "Images and forces only."};
   return kTexts[static_cast<std::size_t>(difficulty)];
 }
 

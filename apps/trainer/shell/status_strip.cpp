@@ -18,7 +18,7 @@ QString colored(const QString& text, const QColor& color) {
   return QStringLiteral("<span style='color:%1'>%2</span>").arg(color.name(), text.toHtmlEscaped());
 }
 
-/// Figures of a server, from few to all.
+/// Figures of a server, from least to most detail.
 enum Detail { kShare, kRate, kAll };
 
 QString line_text(const ServerLine& line, int detail) {
@@ -30,13 +30,13 @@ QString line_text(const ServerLine& line, int detail) {
            colored(detail == kAll ? StatusStrip::tr("fault: %1").arg(line.fault) : StatusStrip::tr("fault"), t.bad);
   const QColor served = line.served >= kServedWell ? t.good : line.served >= kServedBadly ? t.warning : t.bad;
   const QString share =
-      StatusStrip::tr("%1 % in time").arg(100.0 * line.served, 0, 'f', line.served >= kServedBadly ? 2 : 1);
+      StatusStrip::tr("%1 % on time").arg(100.0 * line.served, 0, 'f', line.served >= kServedBadly ? 2 : 1);
   if (detail == kShare) return name + colored(share, served);
   QString text = name + colored(StatusStrip::tr("%1 Hz, %2").arg(line.rate_hz, 0, 'f', 0).arg(share), served);
   if (detail == kRate) return text;
-  text += colored(StatusStrip::tr(" · late by %1 µs").arg(line.lateness_p99_us, 0, 'f', 0), t.dim);
+  text += colored(StatusStrip::tr(" · %1 µs late").arg(line.lateness_p99_us, 0, 'f', 0), t.dim);
   if (line.ticks_missing > 0) text += colored(StatusStrip::tr(" · %1 ticks lost").arg(line.ticks_missing), t.warning);
-  if (!line.is_real_time) text += colored(StatusStrip::tr(" · no real-time permission"), t.warning);
+  if (!line.is_real_time) text += colored(StatusStrip::tr(" · no real-time scheduling"), t.warning);
   return text;
 }
 
@@ -48,23 +48,24 @@ StatusStrip::StatusStrip(QWidget* parent) : QFrame(parent) {
   auto* row = new QHBoxLayout(this);
   row->setContentsMargins(16, 6, 8, 6);
   row->setSpacing(20);
-  needle_ = make_label(tr("No attempt is running: no forces"), "dim");
+  needle_ = make_label(tr("No attempt is running: forces are off"), "dim");
   probe_ = make_label({});
   frames_ = make_label({}, "dim");
   needle_->setObjectName(QStringLiteral("status-needle"));
   probe_->setObjectName(QStringLiteral("status-probe"));
   frames_->setObjectName(QStringLiteral("status-frames"));
-  frames_->setToolTip(tr("Frames of the last second and the slowest of them; late: of this attempt, over %1 ms")
+  frames_->setToolTip(tr("Frames of the last second and the slowest of them; late: frames of this attempt over %1 ms")
                           .arg(1e3 * FrameCount::kLate_s, 0, 'f', 0));
   row->addWidget(needle_);
   row->addWidget(probe_);
   row->addStretch();
   row->addWidget(frames_);
-  stop_ = make_button("force-stop", tr("STOP FORCES"), tr("Turns all forces off at once; again: on (Space)"));
+  stop_ = make_button("force-stop", tr("STOP FORCES"),
+                      tr("Switches all forces off at once; press again to switch them on (Space)"));
   stop_->setProperty("role", "stop");
   stop_->setFocusPolicy(Qt::NoFocus);
   row->addWidget(stop_);
-  for (QLabel* label : {needle_, probe_, frames_}) label->setMinimumWidth(1);  // the button never gives way
+  for (QLabel* label : {needle_, probe_, frames_}) label->setMinimumWidth(1);  // the button is never shrunk
   connect(stop_, &QPushButton::clicked, this, &StatusStrip::toggle_wanted);
   show_forces(false, false);
 }
@@ -92,7 +93,7 @@ void StatusStrip::set_texts(int detail) {
                                          tr("<br>Granted by the system: %1").arg(shown_[s].grant.toHtmlEscaped())
                                    : QString());
   }
-  if (shown_.empty()) needle_->setText(tr("No attempt is running: no forces"));
+  if (shown_.empty()) needle_->setText(tr("No attempt is running: forces are off"));
 }
 
 void StatusStrip::fit_texts() {
@@ -116,7 +117,7 @@ void StatusStrip::changeEvent(QEvent* event) {
 
 void StatusStrip::show_forces(bool is_attempt, bool are_stopped) {
   if (stop_->isEnabled() != is_attempt) stop_->setEnabled(is_attempt);
-  const QString text = is_attempt && are_stopped ? tr("FORCES ON AGAIN") : tr("STOP FORCES");
+  const QString text = is_attempt && are_stopped ? tr("RESUME FORCES") : tr("STOP FORCES");
   if (stop_->text() == text) return;
   stop_->setText(text);
   fit_texts();

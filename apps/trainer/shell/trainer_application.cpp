@@ -34,7 +34,7 @@ bool TrainerApplication::notify(QObject* receiver, QEvent* event) {
   const bool is_outermost = depth_ == 0;
   if (is_outermost) drawn_ns_ = 0;
   const std::int64_t begin_ns = now_ns();
-  // The receiver may be gone afterwards.
+  // The receiver may have been deleted.
   const QString name = receiver->objectName();
   const char* kind = receiver->metaObject()->className();
   ++depth_;
@@ -42,7 +42,7 @@ bool TrainerApplication::notify(QObject* receiver, QEvent* event) {
   --depth_;
   const std::int64_t took_ns = now_ns() - begin_ns;
   if (is_drawing(type)) {
-    // What it painted within another handler is drawing, too.
+    // Painting within another handler is drawing, too.
     if (!is_outermost) drawn_ns_ += took_ns;
     return is_taken;
   }

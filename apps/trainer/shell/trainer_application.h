@@ -6,14 +6,14 @@
 
 namespace trocar::trainer {
 
-/// A handler that held up the window.
+/// A handler that blocked the window.
 struct SlowHandler {
   double ms = 0.0;
   QString what;  ///< Event and receiver.
 };
 
-/// The application, which watches how long each event's handler takes. Drawing is counted apart: it is bounded by the
-/// detail that is drawn, all else must be short.
+/// The application; measures the duration of each event handler. Drawing is measured separately: its time depends on
+/// the level of detail, all other handlers must be short.
 class TrainerApplication : public QApplication {
   Q_OBJECT
 

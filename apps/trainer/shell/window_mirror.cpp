@@ -16,7 +16,7 @@
 namespace trocar::trainer {
 namespace {
 
-/// Draws a widget with all that is in it turned over.
+/// Draws a widget with its contents, mirrored.
 class TurnOver : public QGraphicsEffect {
  public:
   TurnOver(MirrorAxis axis, QString text) : axis_(axis), text_(std::move(text)) {}
@@ -37,7 +37,7 @@ class TurnOver : public QGraphicsEffect {
   }
 
  private:
-  /// For who looks at the screen itself.
+  /// Text for users who look at the screen directly.
   void draw_text(QPainter& painter, const QRectF& box) const {
     painter.setFont(scaled_font(0.85, true));
     const QRectF line = painter.fontMetrics().boundingRect(text_).adjusted(-8, -3, 8, 3);
@@ -52,7 +52,7 @@ class TurnOver : public QGraphicsEffect {
 };
 
 #if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
-/// A copy stays "spontaneous": focus by click and tool tips ask for that.
+/// The copy stays "spontaneous", as required for focus by click and for tool tips.
 struct TurnedMouseEvent : QMouseEvent {
   TurnedMouseEvent(const QMouseEvent& event, const QPointF& place, const QPointF& global) : QMouseEvent(event) {
     l = w = place;
@@ -126,7 +126,7 @@ int WindowMirror::row_on_screen(int global_row) const {
   return 2 * window_.geometry().top() + window_.height() - 1 - global_row;
 }
 
-/// Where Qt has put it belongs to a window that is not turned over.
+/// Moves a popup from the position chosen by Qt to that in the mirrored window.
 void WindowMirror::put_in_place(QWidget& popup) const {
   const QRectF window = window_.geometry();
   const QRectF box = popup.geometry();
@@ -142,7 +142,7 @@ bool WindowMirror::forward(QWindow& window, QEvent& event) {
     auto copy = make(original, place, QPointF(window.mapToGlobal(QPoint(0, 0))) + place);
     copy.setTimestamp(original.timestamp());
     is_forwarding_ = true;
-    qApp->notify(&window, &copy);  // sendEvent would make it no event of the window system
+    qApp->notify(&window, &copy);  // sendEvent would clear the flag of a window system event
     is_forwarding_ = false;
     original.setAccepted(copy.isAccepted());
     return true;

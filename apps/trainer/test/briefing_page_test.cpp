@@ -51,10 +51,10 @@ TEST(BriefingPage, TellsNothingOfTheWayInAnExam) {
                        [&](const QLabel* label) { return label->text().contains(QString::fromUtf8(text)); });
   };
   page.show_case(*open_abdomen(), Difficulty::kAssisted);
-  EXPECT_TRUE(says("lesion of the liver") && says("planned way"));
+  EXPECT_TRUE(says("lesion of the liver") && says("planned path"));
   page.show_case(*open_abdomen(), Difficulty::kExam);
   EXPECT_TRUE(says("lesion of the liver"));
-  EXPECT_FALSE(says("planned way"));
+  EXPECT_FALSE(says("planned path"));
   save(page, "briefing_exam.png");
 }
 

@@ -43,7 +43,7 @@ TEST(CorePicture, SaysThatANotchIsEmpty) {
   picture.resize(200, picture.sizeHint().height());
   picture.show();
   EXPECT_EQ(share_of(picture, tasks::CorePart::kTarget), 0.0);
-  EXPECT_TRUE(picture.accessibleName().contains(QStringLiteral("empty")));
+  EXPECT_TRUE(picture.accessibleName().contains(QStringLiteral("No tissue")));
 }
 
 }  // namespace

@@ -74,14 +74,14 @@ TEST_F(DeviceChoiceTest, ADeviceOfLastTimeThatIsNotListedIsKept) {
 TEST_F(DeviceChoiceTest, TheTestSaysWhetherADeviceAnswersMovesAndPushes) {
   DeviceTestDialog dialog(QStringLiteral("openhaptics:Left Device"), QStringLiteral("Left Device"));
   EXPECT_TRUE(
-      text_when(dialog, "device-answer", QStringLiteral("Premium")).startsWith(QStringLiteral("The device an")));
-  text_when(dialog, "device-pose", QStringLiteral("Move it"));
+      text_when(dialog, "device-answer", QStringLiteral("Premium")).startsWith(QStringLiteral("The device re")));
+  text_when(dialog, "device-pose", QStringLiteral("Move the device"));
   trocar::testing::place(*premium, {30.0, 10.0, 0.0});
   text_when(dialog, "device-pose", QStringLiteral("Right 30"));
-  text_when(dialog, "device-pose", QStringLiteral("It moves"));
+  text_when(dialog, "device-pose", QStringLiteral("Motion detected"));
   EXPECT_EQ(premium->strongest_n, 0.0) << "nobody asked for a force";
   dialog.findChild<QPushButton*>(QStringLiteral("device-push"))->click();
-  text_when(dialog, "device-force", QStringLiteral("Was it felt"));
+  text_when(dialog, "device-force", QStringLiteral("Did you feel"));
   EXPECT_GT(premium->strongest_n, 0.5);
   EXPECT_LT(premium->strongest_n, 1.1);
   EXPECT_EQ(omni->openings, 0);
@@ -90,14 +90,14 @@ TEST_F(DeviceChoiceTest, TheTestSaysWhetherADeviceAnswersMovesAndPushes) {
 TEST_F(DeviceChoiceTest, MissingAndUnpluggedDevicesAreToldInOneLine) {
   omni->is_present = 0;
   DeviceTestDialog dialog(QStringLiteral("openhaptics:Right Device"), QStringLiteral("Right Device"));
-  const QString missing = text_when(dialog, "device-answer", QStringLiteral("does not answer."));
+  const QString missing = text_when(dialog, "device-answer", QStringLiteral("does not respond."));
   EXPECT_TRUE(missing.contains(QStringLiteral("Right Device"))) << missing.toStdString();
   EXPECT_FALSE(missing.contains(QLatin1Char('\n')));
   omni->is_present = 1;
   dialog.findChild<QPushButton*>(QStringLiteral("device-again"))->click();
-  text_when(dialog, "device-answer", QStringLiteral("The device answers"));
+  text_when(dialog, "device-answer", QStringLiteral("The device reswers"));
   omni->is_present = 0;
-  text_when(dialog, "device-answer", QStringLiteral("unplugged"));
+  text_when(dialog, "device-answer", QStringLiteral("no longer responds"));
 }
 
 TEST_F(DeviceChoiceTest, APremiumIsCalibratedWhereItsArmIsHeldForIt) {
@@ -106,7 +106,7 @@ TEST_F(DeviceChoiceTest, APremiumIsCalibratedWhereItsArmIsHeldForIt) {
   text_when(dialog, "device-answer", QStringLiteral("not calibrated"));
   premium->is_in_reset_position = 1;
   dialog.findChild<QPushButton*>(QStringLiteral("device-calibrate"))->click();
-  text_when(dialog, "device-answer", QStringLiteral("Calibrated. The device answers"));
+  text_when(dialog, "device-answer", QStringLiteral("Calibrated. The device reswers"));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(FeedbackPanelTest, OpensAtTheTopEachTime) {
   panel.show();
   QScrollBar& bar = *panel.findChild<QScrollArea*>()->verticalScrollBar();
   for (int attempt = 0; attempt < 2; ++attempt) {
-    panel.show_outcome(long_outcome(), QStringLiteral("Worst moment: 3.0 mm beside the planned path, after 4 s"));
+    panel.show_outcome(long_outcome(), QStringLiteral("Worst moment: 3.0 mm from the planned path, after 4 s"));
     QCoreApplication::processEvents();
     ASSERT_GT(bar.maximum(), 0);
     EXPECT_EQ(bar.value(), 0);
@@ -78,7 +78,7 @@ TEST(FeedbackPanelTest, SaysWhyAnAttemptIsNotScored) {
             QStringLiteral("Not scored: the needle never touched the skin"));
   EXPECT_TRUE(panel.findChild<QWidget*>(QStringLiteral("score-dial"))->isHidden());
   EXPECT_FALSE(panel.findChild<QPushButton*>(QStringLiteral("worst-moment"))->isEnabled());
-  panel.show_outcome(long_outcome(), QStringLiteral("Worst moment: 3.0 mm beside the planned path, after 4 s"));
+  panel.show_outcome(long_outcome(), QStringLiteral("Worst moment: 3.0 mm from the planned path, after 4 s"));
   EXPECT_FALSE(panel.findChild<QWidget*>(QStringLiteral("score-dial"))->isHidden());
   EXPECT_TRUE(panel.findChild<QPushButton*>(QStringLiteral("worst-moment"))->isEnabled());
 }

@@ -154,8 +154,7 @@ TEST(ForcePlot, CursorGoesToItsTime) {
 TEST(ForcePlot, LeavesOutWhatIsNotFinite) {
   Shown shown;
   const double nan = std::nan("");
-  const std::vector<ForcePoint> points{
-      {0.0, nan, 1.0}, {0.1, 1.0, INFINITY}, {nan, 1.0, 1.0}, {0.2, 5.0, 0.5}};
+  const std::vector<ForcePoint> points{{0.0, nan, 1.0}, {0.1, 1.0, INFINITY}, {nan, 1.0, 1.0}, {0.2, 5.0, 0.5}};
   shown.plot.append(points);
   shown.plot.set_predicted({{0.0, nan}, {INFINITY, 1.0}, {10.0, 0.7}});
   EXPECT_EQ(shown.plot.current()->depth_mm, 5.0);

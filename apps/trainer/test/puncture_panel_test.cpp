@@ -64,7 +64,7 @@ TEST(PuncturePanel, AimsOnlyWhereThePlanMayBeTold) {
   EXPECT_TRUE(aim->isEnabled());
   shown.panel.begin(8.0, false);
   EXPECT_FALSE(aim->isEnabled());
-  EXPECT_TRUE(aim->toolTip().contains(QStringLiteral("guided attempts alone")));
+  EXPECT_TRUE(aim->toolTip().contains(QStringLiteral("guided attempts only")));
 }
 
 TEST(PuncturePanel, TheNewestEventStaysInSightWhenTheCoreIsShown) {

@@ -45,9 +45,9 @@ TEST(Script, ColoursAreNoComments) {
 TEST(Script, MistakesNameTheirLine) {
   EXPECT_NE(error_of("click start\nclock start\n").find("steps.txt:2"), std::string::npos);
   EXPECT_NE(error_of("click\n").find("0 arguments"), std::string::npos);
-  EXPECT_NE(error_of("wait soon\n").find("no number"), std::string::npos);
-  EXPECT_NE(error_of("wheel view-3d many\n").find("no number"), std::string::npos);
-  EXPECT_NE(error_of("expect depth_mm = 3\n").find("compares nothing"), std::string::npos);
+  EXPECT_NE(error_of("wait soon\n").find("is not a number"), std::string::npos);
+  EXPECT_NE(error_of("wheel view-3d many\n").find("is not a number"), std::string::npos);
+  EXPECT_NE(error_of("expect depth_mm = 3\n").find("is not a comparison"), std::string::npos);
   EXPECT_NE(error_of("type \"abc\n").find("quotation"), std::string::npos);
   EXPECT_NE(error_of("# nothing\n"), "");
 }
@@ -134,8 +134,8 @@ TEST_F(SmallStage, WhatFailsNamesItsLine) {
   look_s = 0.05;
   EXPECT_TRUE(play("click push\nexpect pushed is 7\n").startsWith(QStringLiteral("line 2:")));
   EXPECT_TRUE(play("click nothing\n").contains(QStringLiteral("nothing")));
-  EXPECT_TRUE(play("wait-for pushed > 99 within 0.1\n").contains(QStringLiteral("did not come about")));
-  EXPECT_TRUE(play("expect unheard is 1\n").contains(QStringLiteral("no fact")));
+  EXPECT_TRUE(play("wait-for pushed > 99 within 0.1\n").contains(QStringLiteral("did not become true")));
+  EXPECT_TRUE(play("expect unheard is 1\n").contains(QStringLiteral("unknown fact")));
   button->setEnabled(false);
   EXPECT_TRUE(play("click push\n").contains(QStringLiteral("disabled")));
 }

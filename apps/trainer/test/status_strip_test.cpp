@@ -52,7 +52,7 @@ TEST(StatusStrip, ItsButtonSaysWhatAPressDoes) {
   EXPECT_EQ(stop->text(), QStringLiteral("STOP FORCES"));
   stop->click();
   strip.show_forces(true, true);
-  EXPECT_EQ(stop->text(), QStringLiteral("FORCES ON AGAIN"));
+  EXPECT_EQ(stop->text(), QStringLiteral("RESUME FORCES"));
   stop->click();
   EXPECT_EQ(presses, 2);
 }

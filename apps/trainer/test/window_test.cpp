@@ -246,7 +246,7 @@ TEST_F(WindowTest, TwoHapticDevicesAreNamedTestedAndMoveATool) {
   };
   // A machine too busy for a device in a real hand stops its forces until somebody resumes, who is not here.
   const auto was_too_busy = [](const Played& played) {
-    return played.exit_status == 1 && played.output.contains(QStringLiteral("the window says: ")) &&
+    return played.exit_status == 1 && played.output.contains(QStringLiteral("window message: ")) &&
            played.output.contains(QStringLiteral("resume"));
   };
   Played played = played_in(folder.filePath(QStringLiteral("1")));

@@ -21,10 +21,10 @@ constexpr int kMargin_px = 8;
 constexpr int kStep_px = 8;
 constexpr int kWidest_px = 900;
 
-/// A part of the window that is better not covered.
+/// A part of the window that should not be covered.
 struct Obstacle {
   QRect place;
-  double weight;  ///< Of a covered pixel.
+  double weight;  ///< Cost of a covered pixel.
 };
 
 double weight_of(const QWidget& widget) {
@@ -82,7 +82,7 @@ Banner::Banner(QWidget& area) : QLabel(&area), area_(area) {
   area.installEventFilter(this);
   told_.setSingleShot(true);
   connect(&told_, &QTimer::timeout, this, [this] { show_message(state_); });
-  constexpr int kPlaceEvery_ms = 500;  // docks and panels come and go under it
+  constexpr int kPlaceEvery_ms = 500;  // docks and panels appear and disappear below it
   placing_.setInterval(kPlaceEvery_ms);
   connect(&placing_, &QTimer::timeout, this, &Banner::place);
 }
@@ -121,7 +121,7 @@ void Banner::place() {
   setGeometry(free_place({width, heightForWidth(width)}));
 }
 
-/// The first of the places that cover least, from the top down; in the middle rather than at a side.
+/// The first position with the least covered area, from top to bottom; the centre is preferred to the sides.
 QRect Banner::free_place(const QSize& size) const {
   const std::vector<Obstacle> obstacles = obstacles_in(area_, *this);
   const int middle = (area_.width() - size.width()) / 2;

@@ -7,8 +7,8 @@ namespace trocar::trainer {
 
 enum class BannerKind { kError, kWarning, kSuccess };
 
-/// A message over the pages. It takes no place in their layout and no mouse events, and lies where it covers no control
-/// and as little text as possible. A state is shown until it is replaced; a message told goes by itself.
+/// A message on top of the pages. It takes no space in their layout and no mouse events, and avoids controls and text.
+/// A state stays until it is replaced; other messages disappear after kTold_ms.
 class Banner : public QLabel {
   Q_OBJECT
 

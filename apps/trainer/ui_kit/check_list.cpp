@@ -11,7 +11,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr int kIconPixels = 64;  ///< Scaled down by the widget, whatever the screen.
+constexpr int kIconPixels = 64;  ///< Scaled down by the widget on every screen.
 
 void paint_tick(QPainter& painter) {
   painter.drawPolyline(QPolygonF() << QPointF(16, 34) << QPointF(28, 46) << QPointF(48, 20));
@@ -25,7 +25,7 @@ void paint_cross(QPainter& painter) {
   painter.drawLine(QPointF(44, 20), QPointF(20, 44));
 }
 
-/// A long list of names is cut; the tooltip has all of it.
+/// A long list of names is shortened; the tooltip shows all of it.
 QString shortened(const QString& text) {
   constexpr int kLongest = 120;
   if (text.size() <= kLongest) return text;
@@ -58,7 +58,7 @@ QIcon level_icon(std::optional<case_builder::CheckLevel> level) {
 CheckList::CheckList(QWidget* parent) : QListWidget(parent) {
   setObjectName(QStringLiteral("case-checks"));
   setAccessibleName(tr("Checks of the case"));
-  setToolTip(tr("A click jumps to what is meant  (Enter)"));
+  setToolTip(tr("Click to go to the problem  (Enter)"));
   wrap_rows(*this);
   const auto choose = [this](QListWidgetItem* item) {
     Q_EMIT check_chosen(checks_[static_cast<std::size_t>(row(item))]);

@@ -31,7 +31,7 @@ class Ring final : public QWidget {
   }
 
  protected:
-  /// Light with a dark line beside it, so that it is seen on any ground.
+  /// Light with a dark line next to it, so that it is visible on any background.
   void paintEvent(QPaintEvent* /*event*/) override {
     QPainter painter(this);
     painter.setRenderHint(QPainter::Antialiasing);

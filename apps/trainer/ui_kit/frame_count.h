@@ -6,8 +6,8 @@
 
 namespace trocar::trainer {
 
-/// How the window's frames came, as the strip says it. A mean over a second hides a stall: the slowest frame of that
-/// second and the late frames of the whole attempt stand beside it.
+/// Frame statistics of the window for the status bar: mean rate, the slowest frame of the last second and the late
+/// frames of the attempt.
 struct FrameFigures {
   double per_s = 0.0;
   double slowest_ms = 0.0;

@@ -13,7 +13,7 @@ class QScrollArea;
 class QToolButton;
 class QWidget;
 
-/// The small parts that all pages are made of, so that they look alike.
+/// Common widgets of all pages, for a uniform look.
 namespace trocar::trainer {
 
 /// A role of the style sheet: "title", "heading", "dim", "badge"; empty: plain text.
@@ -27,7 +27,7 @@ QToolButton* make_tool_button(const char* name, const QString& text, const QStri
 QFrame* make_card(const QString& heading, QBoxLayout*& content);
 /// The content in a frameless scroll area that scrolls it where there is less room than it needs.
 QScrollArea* make_scrolled(QWidget& content);
-/// Sets a property that the style sheet looks at, and has the look made anew.
+/// Sets a property used by the style sheet and updates the style.
 void set_look(QWidget& widget, const char* property, const QVariant& value);
 
 QString to_qt(std::string_view text);

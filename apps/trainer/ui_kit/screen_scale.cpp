@@ -46,7 +46,7 @@ void follow_screen(int argc, char** argv) {
   const double scale = scale_of(main_screen(argc, argv));
   if (scale == 1.0) return;
   qputenv("QT_SCALE_FACTOR", QByteArray::number(scale));
-  // Else fonts would be scaled twice.
+  // Otherwise fonts would be scaled twice.
   qputenv("QT_FONT_DPI", QByteArray::number(kPlain_dpi));
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kTextSizeKey = "window/text_percent";
 
-/// The style sheet with @names for colours, and @ before sizes that follow the chosen size of text.
+/// The style sheet with @names for colours, and @ before sizes that scale with the selected text size.
 constexpr const char* kSheet = R"(
 * { outline: none; }
 QWidget { color: @text; background: transparent; selection-background-color: @accent; selection-color: @ground; }
@@ -89,7 +89,7 @@ QColor mixed(const QColor& a, const QColor& b, double share_of_b) {
   return {mix(a.red(), b.red()), mix(a.green(), b.green()), mix(a.blue(), b.blue())};
 }
 
-/// The point sizes that the sheet names, for that size of text.
+/// Point sizes of the style sheet for the selected text size.
 QString with_text_size(QString sheet, int text_percent) {
   static const QRegularExpression points(QStringLiteral("@(\\d+)pt"));
   for (auto found = points.match(sheet); found.hasMatch(); found = points.match(sheet))

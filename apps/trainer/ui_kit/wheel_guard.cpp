@@ -26,13 +26,13 @@ bool WheelGuard::eventFilter(QObject* watched, QEvent* event) {
   QWidget* const widget = find_guarded(watched);
   if (widget == nullptr) return false;
   if (event->type() == QEvent::Polish) {
-    // The wheel would give it the focus first.
+    // Otherwise the wheel would first give it the focus.
     if (widget->focusPolicy() == Qt::WheelFocus) widget->setFocusPolicy(Qt::StrongFocus);
     return false;
   }
   if (widget->window()->focusWidget() == widget) return false;
   event->ignore();
-  return true;  // the parent gets it
+  return true;  // the parent receives it
 }
 
 }  // namespace trocar::trainer

@@ -6,8 +6,7 @@
 
 namespace trocar::trainer {
 
-/// The line above a view with its name and numbers. It lies at the view's top, or in the title of the dock that the
-/// view stands in, which then needs no line of its own.
+/// The line above a view with its name and numbers. It is at the top of the view, or in the title of its dock.
 class ViewStrip : public QWidget {
  public:
   /// Paints into the room that buttons leave.

@@ -30,18 +30,18 @@ namespace trocar::trainer {
 namespace {
 
 constexpr double kEntryZone_mm = 10.0;
-/// So that all layouts fit beside the tissues on a screen of 1024x768.
+/// So that all layouts fit next to the tissue panel on a screen of 1024x768.
 constexpr QSize kLeastView(130, 100);
-/// What the 3D views may take of a frame while tools move, so that with slices, ultrasound and curves 15 a second
-/// remain.
+/// Frame time available to the 3D views while tools move, so that 15 frames per second remain with slices, ultrasound
+/// and curves.
 constexpr double kFrameOfOne_ms = 32.0, kFrameOfTwo_ms = 20.0;
 
-/// The task's own, else the skin about the planned entry.
-tasks::EntryZone entry_zone_of(const attempt::Case& the_case) {
+/// The task's entry zone, else the skin around the planned entry.
+tasks::EntryZone entry_zone_of(const cases::Case& the_case) {
   return the_case.task.entry_zone.value_or(tasks::EntryZone{the_case.plan.line_P.a, kEntryZone_mm});
 }
 
-/// A slim title with a button to let the view float and one to hide it.
+/// A slim title with buttons to undock and to hide the view.
 QWidget* make_title(QDockWidget& dock, QWidget& line) {
   auto* bar = new QFrame;
   bar->setProperty("role", "bar");
@@ -62,14 +62,14 @@ QWidget* make_title(QDockWidget& dock, QWidget& line) {
     row->addWidget(button);
     return button;
   };
-  QObject::connect(add(QStringLiteral("❐"), Desk::tr("Floats as a window of its own, or docks again")),
-                   &QToolButton::clicked, &dock, [&dock] { dock.setFloating(!dock.isFloating()); });
-  QObject::connect(add(QStringLiteral("✕"), Desk::tr("Hides it; the menu Views shows it again")), &QToolButton::clicked,
-                   &dock, &QDockWidget::hide);
+  QObject::connect(add(QStringLiteral("❐"), Desk::tr("Undock the view, or dock it again")), &QToolButton::clicked,
+                   &dock, [&dock] { dock.setFloating(!dock.isFloating()); });
+  QObject::connect(add(QStringLiteral("✕"), Desk::tr("Hide the view; show it again with the menu Views")),
+                   &QToolButton::clicked, &dock, &QDockWidget::hide);
   return bar;
 }
 
-/// Less than the eye sees: a tool at rest trembles by the servo's noise, and each change costs a frame.
+/// Invisible motion: a tool at rest moves with the noise of the servo, and each change costs a frame.
 constexpr double kUnseen_mm = 0.03, kUnseen_rad = 5e-4;
 
 bool are_near(const Pose& a, const Pose& b) {
@@ -93,7 +93,7 @@ bool are_same(const ToolsShown& a, const ToolsShown& b) {
          (!a.focus_P || (*a.focus_P - *b.focus_P).norm() < kUnseen_mm);
 }
 
-/// What an eye beside the patient sees of the tools: the needle up to the skin.
+/// Visible part of the tools from outside the patient: the needle up to the skin.
 ToolsShown seen_from_outside(ToolsShown tools) {
   tools.shaft_P = attempt::shaft_outside(std::move(tools.shaft_P), tools.inside_mm);
   if (!tools.shaft_P.empty()) tools.X_PN = Pose(tools.X_PN.R(), tools.shaft_P.back());
@@ -150,19 +150,19 @@ void Desk::add_view(const char* name, const QString& title, QWidget& view, QWidg
     strip->setContentsMargins(8, 1, 0, 1);
   }
   dock->setTitleBarWidget(make_title(*dock, *strip));
-  if (&view != structures_) view.setMinimumSize(kLeastView);  // a panel of controls needs its own
+  if (&view != structures_) view.setMinimumSize(kLeastView);  // a control panel needs its own
   dock->setWidget(&view);
   addDockWidget(Qt::LeftDockWidgetArea, dock);
-  dock->hide();  // a layout shows it
+  dock->hide();  // the layout decides
   docks_[QString::fromLatin1(name)] = dock;
   const auto note = [this] { QTimer::singleShot(0, this, &Desk::note_shares); };
   connect(dock, &QDockWidget::dockLocationChanged, this, note);
   connect(dock, &QDockWidget::topLevelChanged, this, note);
 }
 
-/// In the title of the ultrasound view, where it covers nothing of the picture.
+/// In the title of the ultrasound view, where it does not cover the image.
 void Desk::add_knobs_button() {
-  auto* knobs = make_tool_button("ultrasound-knobs", tr("Knobs"), tr("The scanner's knobs beside its picture"),
+  auto* knobs = make_tool_button("ultrasound-knobs", tr("Knobs"), tr("Image controls next to the ultrasound image"),
                                  QStringLiteral("K"));
   knobs->setCheckable(true);
   knobs->setFocusPolicy(Qt::NoFocus);
@@ -190,13 +190,13 @@ void Desk::show_in_space(PatientView& view) {
   view.scene().set_entry_centre(zone.centre_P);
 }
 
-void Desk::show_case(std::shared_ptr<const attempt::OpenCase> open) {
+void Desk::show_case(std::shared_ptr<const cases::OpenCase> open) {
   begin_case(std::move(open));
   while (show_part()) {
   }
 }
 
-void Desk::begin_case(std::shared_ptr<const attempt::OpenCase> open) {
+void Desk::begin_case(std::shared_ptr<const cases::OpenCase> open) {
   open_ = std::move(open);
   has_side_patient_ = false;
   picture_number_ = 0;
@@ -226,7 +226,7 @@ bool Desk::show_part() {
 }
 
 void Desk::show_in_slices() {
-  const attempt::Case& the_case = open_->the_case;
+  const cases::Case& the_case = open_->the_case;
   const slices::Box body_P = slices::body_box(*the_case.patient);
   for (SliceView* slice : slices_) {
     slice->show_patient(the_case.patient, body_P);
@@ -274,14 +274,14 @@ void Desk::show_tools(const ToolsShown& tools) {
   }
   for (SliceMarks* marks : marks_) marks->set_shot(shown_.stylet_P, shown_.core_P);
   stale_slices_ = (1U << slices_.size()) - 1U;
-  std::vector<Vec3> metal_P = tools.shaft_P;  // the stylet echoes, too
+  std::vector<Vec3> metal_P = tools.shaft_P;  // the stylet is visible in ultrasound, too
   if (tools.stylet_P) metal_P.push_back(tools.stylet_P->b);
   ultrasound_->set_needle(metal_P, needle.outer_diameter_mm);
   if (tools.X_PT) ultrasound_->set_transducer_pose(*tools.X_PT);
 }
 
 void Desk::draw(double now_s) {
-  // Its surfaces cost seconds of computing: only where it is looked at.
+  // Computing its surfaces takes seconds: only if they are visible.
   if (!has_side_patient_ && side_->isVisible()) {
     show_in_space(*side_);
     has_side_patient_ = true;
@@ -294,7 +294,7 @@ void Desk::draw(double now_s) {
   draw_in_space();
 }
 
-/// Two views share the time of one; while tools move the side view is drawn every other time.
+/// Two views share the time of one; while tools move, the side view is drawn in every second frame.
 void Desk::draw_in_space() {
   const bool has_both = view_3d_->isVisible() && side_->isVisible();
   for (PatientView* view : {view_3d_, side_}) {
@@ -303,8 +303,7 @@ void Desk::draw_in_space() {
   }
 }
 
-/// Slices follow the tools; while these move every other one at a time, which the eye does not miss and the processor
-/// feels.
+/// Slices follow the tools; while tools move, each slice is updated in every second frame to save processor time.
 void Desk::follow_with_slices() {
   ++frame_;
   for (std::size_t s = 0; s < slices_.size(); ++s) {
@@ -317,8 +316,8 @@ void Desk::follow_with_slices() {
   }
 }
 
-/// The newest ultrasound picture as a plane of the 3D views. With the tools at rest one in full detail stays there: its
-/// noise alone is not worth drawing the patient again.
+/// The newest ultrasound image as a plane in the 3D views. With the tools at rest, one full-detail image stays: a
+/// change of its noise does not justify another frame of the patient.
 void Desk::show_picture_in_space() {
   const auto picture = ultrasound_->picture();
   if (!picture || picture->number == picture_number_ || (has_whole_picture_ && !are_moving_)) return;

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "attempt/case/open_case.h"
+#include "cases/open_case.h"
 #include "geometry/pose.h"
 #include "geometry/segment.h"
 #include "shell/seat_choice.h"
@@ -40,16 +40,16 @@ struct ToolsShown {
   bool are_moving = false;
 };
 
-/// All views of a case, in layouts that are freely docked and remembered. Keys: Ctrl+1 .. Ctrl+4 choose a layout.
+/// All views of a case in dockable layouts, which are stored. Keys: Ctrl+1 .. Ctrl+4 select a layout.
 class Desk : public QMainWindow {
   Q_OBJECT
 
  public:
   explicit Desk(QWidget* parent = nullptr);
 
-  void show_case(std::shared_ptr<const attempt::OpenCase> open);
-  /// The same in parts, each short enough for a frame: show_part() shows the next one; false: all are shown.
-  void begin_case(std::shared_ptr<const attempt::OpenCase> open);
+  void show_case(std::shared_ptr<const cases::OpenCase> open);
+  /// The same in parts, each short enough for one frame: show_part() shows the next one; returns false when complete.
+  void begin_case(std::shared_ptr<const cases::OpenCase> open);
   bool show_part();
   /// Of the plan, in all views; the structure panel and the keys of the views show no more than that.
   void show_help(Difficulty difficulty);
@@ -109,7 +109,7 @@ class Desk : public QMainWindow {
   QString layout_;
   std::map<QString, QSizeF> shares_;  ///< Of the desk's size, by view; of a hidden view the last one.
   bool is_arranging_ = false;         ///< The program moves the docks, not a person.
-  std::shared_ptr<const attempt::OpenCase> open_;
+  std::shared_ptr<const cases::OpenCase> open_;
   bool is_tip_hidden_ = false;
   std::optional<ToolsShown> tools_;   ///< Of the last frame.
   ToolsShown shown_;                  ///< What slices and 3D may show of them.

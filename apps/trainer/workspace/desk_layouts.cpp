@@ -1,4 +1,4 @@
-// Layouts of the desk: chosen, kept, and fitted to the window.
+// Layouts of the desk: selection, storage and adaptation to the window.
 #include <QAction>
 #include <QDockWidget>
 #include <QEvent>
@@ -14,7 +14,7 @@
 namespace trocar::trainer {
 namespace {
 
-/// What is kept is of so many views: with more or fewer of them it no longer fits and is not taken.
+/// Stored layouts are valid for a fixed number of views: with another number they are ignored.
 QString settings_key(const QString& layout) {
   return QStringLiteral("desk/") + layout;
 }
@@ -40,7 +40,7 @@ void Desk::choose_layout(const QString& name) {
   QSettings settings;
   settings.setValue(QStringLiteral("desk/layout"), name);
   const QByteArray kept = settings.value(settings_key(name)).toByteArray();
-  // First: views of both layouts together would widen the window.
+  // First: the views of both layouts together would widen the window.
   for (const auto& [view, dock] : docks_) dock->hide();
   is_arranging_ = true;
   const QVariantMap shares = settings.value(shares_key(name)).toMap();
@@ -72,7 +72,7 @@ void Desk::reset_layout() {
   QTimer::singleShot(0, this, [this] { is_arranging_ = false; });
 }
 
-/// After a change by a person (drag, show, hide); a change of the window's size keeps the shares.
+/// Stores the shares after a user's change (drag, show, hide); a change of the window's size keeps them.
 void Desk::note_shares() {
   if (!isVisible() || is_arranging_) return;
   for (const auto& [view, dock] : docks_) {
@@ -114,8 +114,8 @@ int Desk::needed_width() const {
 void Desk::arrange(const QString& name) {
   const auto layout = std::find_if(built_in_layouts().begin(), built_in_layouts().end(),
                                    [&](const Layout& l) { return l.name == name; });
-  // All views, hidden, in a column on the right: there the menu shows one that the layout does not have, and what is
-  // kept of the layout knows that it was hidden.
+  // Puts all hidden views into a column on the right: there the menu shows a view that is not in the layout, and the
+  // stored layout records that it was hidden.
   for (const auto& [view, dock] : docks_) {
     dock->hide();
     dock->setFloating(false);
@@ -125,7 +125,7 @@ void Desk::arrange(const QString& name) {
   QList<QDockWidget*> column_tops;
   int all_columns = 0;
   for (const LayoutColumn& column : layout->columns) all_columns += column.share;
-  // Columns first, so that they reach from top to bottom; then each is cut into its rows.
+  // Columns first, so that they extend from top to bottom; then each is split into rows.
   for (const LayoutColumn& column : layout->columns) {
     QDockWidget* top = docks_.at(column.cells.front().views.front());
     if (column_tops.isEmpty())
@@ -167,13 +167,13 @@ void Desk::fill_menu(QMenu& menu) {
     action->setShortcut(QKeySequence(QStringLiteral("Ctrl+%1").arg(++number)));
     connect(action, &QAction::triggered, this, [this, name] { choose_layout(name); });
   }
-  QAction* reset = menu.addAction(tr("Layout as it was made"));
+  QAction* reset = menu.addAction(tr("Reset layout"));
   connect(reset, &QAction::triggered, this, &Desk::reset_layout);
   menu.addSeparator();
   for (const auto& [name, dock] : docks_) add_to_menu(menu, name, *dock);
 }
 
-/// Qt's own action hides a view that lies behind another one's tab.
+/// Qt's own action hides a view behind the tab of another.
 void Desk::add_to_menu(QMenu& menu, const QString& name, QDockWidget& dock) {
   QAction* action = menu.addAction(dock.windowTitle());
   action->setObjectName(QStringLiteral("show-") + name);

@@ -20,7 +20,7 @@ struct DeviceKind {
   OpenedDevice (*open)(const DeviceSpec&, const DeviceOptions&);
 };
 
-// clang-format off: a kind a line
+// clang-format off: one kind per line
 constexpr std::array kKinds{
     DeviceKind{"virtual", Argument::kOptional, open_virtual},  // :PRESET
     DeviceKind{"mouse", Argument::kNone, open_pointer},
@@ -33,7 +33,7 @@ constexpr std::array kKinds{
 };
 // clang-format on
 
-constexpr std::uint64_t kFaultSeed = 1;  ///< Of jitter.
+constexpr std::uint64_t kFaultSeed = 1;  ///< Seed of the jitter.
 
 const DeviceKind* find_kind(std::string_view name) noexcept {
   const auto* it =
@@ -59,11 +59,11 @@ Result<DeviceSpec> parse_device_spec(std::string_view text) {
   if (kind == nullptr) return fail_unknown(spec.kind);
   const bool has_colon = colon != std::string_view::npos;
   if (has_colon && kind->argument == Argument::kNone) {
-    return fail_usage(fmt::format("device \"{}\" takes nothing after the colon", spec.kind), std::string(text),
+    return fail_usage(fmt::format("device \"{}\" has no argument after the colon", spec.kind), std::string(text),
                       fmt::format("write {}", spec.kind));
   }
   if (spec.argument.empty() && (has_colon || kind->argument == Argument::kNeeded)) {
-    return fail_usage(fmt::format("device \"{}\" lacks its argument", spec.kind), std::string(text),
+    return fail_usage(fmt::format("device \"{}\" needs an argument", spec.kind), std::string(text),
                       kind->argument == Argument::kNeeded ? "write it after the colon, as in replay:FILE"
                                                           : "write it after the colon, or leave the colon out");
   }

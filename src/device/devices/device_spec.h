@@ -22,21 +22,22 @@ struct DeviceSpec {
 /// Unknown kind, or an argument that is missing: exit status 2, the message lists the kinds.
 Result<DeviceSpec> parse_device_spec(std::string_view text);
 
-/// What opening needs beside the name.
+/// Arguments of opening in addition to the name.
 struct DeviceOptions {
   std::filesystem::path devices_file;  ///< data/devices.toml
   std::string preset;                  ///< Row of it; empty: the kind's own.
   std::vector<ScheduledFault> faults;  ///< Not empty: wrapped by a FaultyDevice.
-  /// Poses X_DS of a recorded session, one a period at rate_hz; for "replay" (who reads sessions is above this module).
+  /// Poses X_DS of a recorded session, one per period at rate_hz, for "replay" (session files are read in a higher
+  /// module).
   std::vector<Pose> replay;
   double replay_rate_hz = 1000.0;
   bool has_weight_compensation = true;
-  /// Somebody holds the device where its calibration wants it (stylus in the inkwell, arm in the reset position): it is
-  /// calibrated there while it is opened. Of "openhaptics" alone; the others calibrate themselves.
+  /// The device is in its calibration position (stylus in the inkwell, arm in the reset position) and is calibrated
+  /// while it is opened. Only for "openhaptics".
   bool is_calibrating = false;
 };
 
-/// Opens the device. Errors say what is missing and how to get it: no vendor library, no device, no service.
+/// Opens the device. Errors state what is missing: vendor library, device, or service.
 Result<std::unique_ptr<HapticDevice>> open_device(const DeviceSpec& spec, const DeviceOptions& options);
 
 }  // namespace trocar::devices

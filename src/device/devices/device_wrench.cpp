@@ -9,8 +9,8 @@ haptics::Wrench without_torque(const haptics::Wrench& wrench, const Vec3& axis,
                                const std::optional<Vec3>& p_SE) noexcept {
   haptics::Wrench turned{wrench.force_n, Vec3::Zero()};
   if (!p_SE) return turned;
-  // A lateral force g at S has the moment -lever axis x g about the entry point: g = axis x torque / lever makes up for
-  // the torque, and nothing can be done about its part along the axis.
+  // A lateral force g at S has the moment -lever axis x g about the entry point: g = axis x torque / lever replaces the
+  // torque, except its component along the axis, which cannot be replaced.
   const double lever_mm = p_SE->dot(axis);
   const double least_mm = std::max(std::abs(lever_mm), kLeastLever_mm);
   turned.force_n += axis.cross(wrench.torque_nmm) * (lever_mm / (least_mm * least_mm));

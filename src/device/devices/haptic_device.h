@@ -10,10 +10,10 @@
 
 namespace trocar::devices {
 
-/// How a reading came about.
+/// Status of a reading.
 enum class DeviceStatus : std::uint8_t {
   kFresh,         ///< Read just now.
-  kRepeated,      ///< Nothing new; the last reading again.
+  kRepeated,      ///< No new data; the last reading repeated.
   kDisconnected,  ///< Gone, until it is opened again.
 };
 
@@ -23,11 +23,11 @@ inline constexpr std::uint32_t kButtonSecond = 2;
 /// What a device senses.
 struct DeviceReading {
   DeviceStatus status = DeviceStatus::kFresh;
-  Pose X_DS;                  ///< Stylus in the device base; a device that senses no rotation gives identity.
+  Pose X_DS;                  ///< Stylus in the device base; identity rotation if the device senses none.
   std::uint32_t buttons = 0;  ///< Bits.
 };
 
-/// Where the simulated or the pointing hand wants the stylus, for devices that nobody really holds.
+/// Target pose of a simulated hand or pointer, for devices that no person holds.
 struct DeviceHand {
   Pose X_DS;
   Vec3 v_D = Vec3::Zero();  ///< mm/s
@@ -39,12 +39,12 @@ struct DeviceHand {
   double turning_nmm_per_rad = 0.0;
   double turning_damping_nmms_per_rad = 0.0;
   double inertia_kg_mm2 = 0.0;
-  /// Where the spring holds it, along +z of S from its origin: 0 at the grip, the needle's length at the tip.
+  /// Position of the hand's spring along +z of S: 0 at the grip, the needle's length at the tip.
   double point_mm = 0.0;
   std::uint32_t buttons = 0;
-  bool is_held = false;    ///< false: nobody holds it.
-  bool is_rigid = false;   ///< Follows exactly, whatever it pushes.
-  bool is_placed = false;  ///< Put there now, at rest.
+  bool is_held = false;    ///< false: released.
+  bool is_rigid = false;   ///< Follows exactly, independent of the force.
+  bool is_placed = false;  ///< Placed there now, at rest.
 };
 
 /// One haptic device. Opened by a factory, closed by its destructor (at zero force). read, write and hold are called by
@@ -56,19 +56,20 @@ class HapticDevice {
   HapticDevice(const HapticDevice&) = delete;
   HapticDevice& operator=(const HapticDevice&) = delete;
 
-  /// What it senses and can bear: of data/devices.toml, tightened by what the device itself says. Constant while open.
+  /// Limits of the device: from data/devices.toml, lowered to the values that the device reports. Constant while open.
   virtual const haptics::DevicePreset& preset() const noexcept = 0;
   /// "virtual:premium", for people and records.
   virtual std::string name() const = 0;
   /// The pose now, at a time of the steady clock (s). Real-time safe.
   virtual DeviceReading read(double now_s) noexcept = 0;
-  /// The wrench for the motors, in D about S. false: it was not taken. Real-time safe.
+  /// Wrench for the motors, in D about S. Returns false if it was not accepted. Real-time safe.
   virtual bool write(const haptics::Wrench& wrench_D) noexcept = 0;
   /// For devices that nobody really holds; ignored by all others. Real-time safe.
   virtual void hold(const DeviceHand&) noexcept {}
-  /// A person's hand holds it: it never stands quite still. false: a simulated hand, or a recorded one.
+  /// True if a person's hand holds it (it is never completely at rest); false: simulated or recorded hand.
   virtual bool is_in_real_hand() const noexcept { return true; }
-  /// After kDisconnected, by a thread that may wait, while nobody calls read or write: opens it again.
+  /// Reopens the device after kDisconnected. Call it from a thread that may block, while no other thread calls read or
+  /// write.
   virtual Status reconnect() = 0;
 
  protected:

@@ -10,7 +10,7 @@ Pose shown(const WorkspaceState& state, double motion_scale, const Pose& X_DS) n
   return {X_WD.R() * X_DS.R() * state.R_SS_now, X_WD * Vec3(motion_scale * X_DS.p())};
 }
 
-/// Moves base and tool so that this reading is shown where the stylus was held.
+/// Moves base and tool so that this reading maps to the pose held by the clutch.
 void release(WorkspaceState& state, double motion_scale, const Pose& X_DS) noexcept {
   const Mat3& R_WD = state.X_WD_now.R();
   state.R_SS_now = (R_WD * X_DS.R()).transpose() * state.X_WS_held.R();

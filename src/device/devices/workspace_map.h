@@ -8,18 +8,19 @@
 
 namespace trocar::devices {
 
-/// How the device stands in the room, and how its motion and force become the patient's.
+/// Pose of the device in the room, and the mapping of its motion and force to the patient.
 struct WorkspaceParams {
   Pose X_WD;                  ///< Device base in the room (calibration).
   double motion_scale = 1.0;  ///< Patient mm a device mm. Range 0.1..10.
   double force_scale = 1.0;   ///< Device newtons a patient newton, for devices too weak for the peaks. Range 0.01..1.
-  std::uint32_t clutch = 0;   ///< Button bits that let go of the patient while pressed; 0: none.
+  std::uint32_t clutch = 0;   ///< Button bits of the clutch; while pressed, the device moves without moving the tool.
+                              ///< 0: none.
 };
 /// What data/devices.toml says of it.
 WorkspaceParams workspace_params(const haptics::DevicePreset& preset) noexcept;
 
-/// What the clutch has done so far. It moves the base and turns the tool in the hand, but never turns the base: up
-/// stays up, and a force keeps its direction.
+/// State of the clutch. It moves the base and rotates the tool in the hand but never rotates the base: up remains up,
+/// and a force keeps its direction.
 struct WorkspaceState {
   Pose X_WD_now;                     ///< X_WD moved by the clutch.
   Mat3 R_SS_now = Mat3::Identity();  ///< The stylus as shown in the stylus as held, turned by the clutch.
@@ -28,8 +29,8 @@ struct WorkspaceState {
   bool is_clutched = false;
 };
 
-/// X_WS for a reading, motion scaled about the device's origin; while the clutch is pressed it stays where it was, and
-/// goes on from there. A reading that is not finite comes back as it is and changes nothing. Real-time safe.
+/// X_WS of a reading, motion scaled about the device's origin; constant while the clutch is pressed. A non-finite
+/// reading is returned unchanged and has no effect. Real-time safe.
 Pose map_to_room(WorkspaceState& state, const WorkspaceParams& params, const Pose& X_DS,
                  std::uint32_t buttons) noexcept;
 

@@ -18,10 +18,10 @@ using Bytes = std::vector<std::byte>;
 Bytes encode(const ClientMessage& message);
 Bytes encode(const ServerMessage& message);
 
-/// Hostile bytes welcome: truncated, oversized, of another version, with NaN poses, rotations that are none, texts too
-/// long or not UTF-8, enumerators out of range: an Error that says which. Never allocates more than a small multiple of
-/// the bytes. Of a tick the time, tip, axis and device position must be finite; its forces and the rest arrive bit for
-/// bit, NaN too, for the record of a fault must show it.
+/// Decodes untrusted bytes: truncated, oversized, of another version, with NaN poses, invalid rotations, texts too long
+/// or not UTF-8, enumerators out of range give an Error that names the problem. Never allocates more than a small
+/// multiple of the input. Time, tip, axis and device position of a tick must be finite; other values are kept bit by
+/// bit, including NaN, for records of faults.
 Result<ClientMessage> decode_client_message(std::span<const std::byte> bytes);
 /// Of a command whose numbers or texts were refused though its frame is sound: what a reply needs.
 struct CommandNumber {

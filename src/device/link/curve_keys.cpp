@@ -90,7 +90,7 @@ Status check_for_user_alone(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return fail("no such file", file.string(), "check the path");
   if ((status.st_mode & kOthers) == 0) return {};
-  return fail("a secret key that other users can read", file.string(),
+  return fail("the secret key is readable by other users", file.string(),
               fmt::format("chmod 600 {}, or make new keys", file.string()));
 }
 
@@ -99,11 +99,10 @@ Status check_written_by_user_alone(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return fail("no such file", file.string(), "check the path");
   if ((status.st_mode & kOthersMayWrite) != 0) {
-    return fail("a file of keys that other users can write", file.string(),
-                fmt::format("chmod go-w {}", file.string()));
+    return fail("the key file is writable by other users", file.string(), fmt::format("chmod go-w {}", file.string()));
   }
   if (status.st_uid == ::geteuid() || status.st_uid == 0) return {};
-  return fail("a file of keys that belongs to another user", file.string(), "copy it: cp FILE COPY");
+  return fail("the key file belongs to another user", file.string(), "copy it: cp FILE COPY");
 }
 
 /// A new file that nobody else could read at any time.
@@ -140,7 +139,7 @@ Result<CurveKeys> write_pair(const fs::path& folder, std::string_view name) {
 Result<CurveKeys> make_curve_keys() {
   KeyBuffer public_key{}, secret_key{};
   if (::zmq_curve_keypair(public_key.data(), secret_key.data()) != 0) {
-    return fail(std::string("cannot make keys: ") + ::zmq_strerror(errno), "libzmq", "install a libzmq with CURVE");
+    return fail(std::string("cannot create keys: ") + ::zmq_strerror(errno), "libzmq", "install a libzmq with CURVE");
   }
   return CurveKeys{public_key.data(), secret_key.data()};
 }
@@ -171,11 +170,11 @@ Result<CurveKeys> load_curve_keys(const fs::path& file) {
     return true;
   }));
   if (keys.public_key.empty() || keys.secret_key.empty()) {
-    return fail("has not both keys", file.string(), "name a .key file of: trocar link keygen --out DIR");
+    return fail("does not contain both keys", file.string(), "name a .key file of: trocar link keygen --out DIR");
   }
   KeyBuffer derived{};
   if (::zmq_curve_public(derived.data(), keys.secret_key.c_str()) != 0 || keys.public_key != derived.data()) {
-    return fail("the public key is not that of the secret one", file.string(), "make new keys");
+    return fail("public and secret key do not match", file.string(), "make new keys");
   }
   return keys;
 }
@@ -184,7 +183,7 @@ Result<std::string> load_public_key(const fs::path& file) {
   TROCAR_TRY_STATUS(check_written_by_user_alone(file));
   TROCAR_TRY(const auto keys, read_public_keys(file, kMostKeyFileBytes));
   if (keys.size() == 1) return *keys.begin();
-  return fail(fmt::format("has {} public keys, not one", keys.size()), file.string(), "name a .pub file");
+  return fail(fmt::format("contains {} public keys instead of one", keys.size()), file.string(), "name a .pub file");
 }
 
 Result<std::set<std::string>> load_allow_list(const fs::path& file) {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-/// What a server takes from its clients. docs/link.md lists these numbers for other implementations.
+/// Limits of a server for its clients. docs/link.md lists these numbers for other implementations.
 namespace trocar::link {
 
 inline constexpr std::size_t kMostMessageBytes = 1 << 20;  ///< Larger ones are dropped unread.

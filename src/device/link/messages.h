@@ -18,8 +18,8 @@ inline constexpr std::uint32_t kLinkVersion = 2;  ///< Both sides must have the 
 
 // From a client.
 
-/// The first message: who is there. The first client that wants control has it until it leaves or is silent for
-/// kControlLost_s; all others may watch.
+/// The first message. The first client that wants control gets it until it disconnects or times out (kControlLost_s);
+/// others can watch.
 struct Hello {
   std::string client;
   bool wants_control = true;
@@ -28,7 +28,7 @@ struct Hello {
 /// At 100 Hz, from a thread of its own.
 struct Heartbeat {
   double client_time_s = 0.0;        ///< Steady clock of the client, to be sent back.
-  double window_age_s = 0.0;         ///< Since the client's window drew its last picture; 0: it has none.
+  double window_age_s = 0.0;         ///< Time since the client's window last drew a frame; 0: no window.
   std::uint64_t ticks_received = 0;  ///< So far.
 };
 
@@ -77,8 +77,8 @@ struct Command {
   std::variant<LoadScene, SetParameters, ServerCommand> what = ServerCommand::kStop;
 };
 
-/// Where a simulated or pointing hand wants the tool: a needle X_PN, a transducer X_PT. Not answered; the newest
-/// counts.
+/// Target pose of the tool for a simulated or pointing hand: a needle X_PN, a transducer X_PT. No reply; only the
+/// newest is used.
 struct HandTarget {
   Pose X_PN;
   Vec3 v_P = Vec3::Zero();     ///< mm/s, of the tip (for extrapolation), and
@@ -124,7 +124,7 @@ struct Welcome {
 struct Reply {
   std::uint32_t request = 0;
   bool is_done = false;
-  std::string text;  ///< What was wrong, as Error::text, or what was done.
+  std::string text;  ///< The error text, or a description of what was done.
   /// Of a command that made a scene (LoadScene, SetParameters): its number, and the parameters in force with it. A
   /// scene is felt from the first tick whose batch has its number; that batch may arrive before this reply.
   std::uint64_t scene = 0;                ///< 0: made none. Rises while the server runs.
@@ -137,7 +137,7 @@ struct Pong {
   double server_time_s = 0.0;
 };
 
-/// Everything a status bar wants to tell the truth.
+/// Data for a status bar.
 struct ServerStatus {
   double server_time_s = 0.0;
   std::string state;      ///< "no scene", "loading", "ready", "running", "fault" …
@@ -149,7 +149,7 @@ struct ServerStatus {
   double loading = 0.0;  ///< 0..1 while a scene is being built.
   realtime::LoopSummary loop;
   std::uint64_t ticks = 0;          ///< Made.
-  std::uint64_t ticks_dropped = 0;  ///< That no batch could take: every gap in the numbers is counted here.
+  std::uint64_t ticks_dropped = 0;  ///< Ticks that fit into no batch; every gap in the numbers is counted here.
   std::uint64_t messages_refused = 0;
   std::uint32_t gate_actions = 0;     ///< GateAction bits since the last status.
   double drop_n = 0.0, drop_s = 0.0;  ///< The last fall of the force.
@@ -168,7 +168,7 @@ struct StateBatch {
 };
 inline constexpr std::size_t kMostSamples = 512;
 
-/// Why the server did not take a message. To a client without a session it comes with session 0 and sequence 0.
+/// Reason for refusing a message. For a client without a session, session and sequence are 0.
 struct Refusal {
   std::string text;  ///< As Error::text.
 };

@@ -117,7 +117,7 @@ std::optional<Received> ServerSocket::Impl::take(const ServerConnections::Incomi
   if (verdict != Verdict::kGood) {
     ++(verdict == Verdict::kReplayed ? refused.replayed : refused.unknown_session);
     if (peer == nullptr) {
-      refuse(incoming.routing_id, hello == nullptr ? "no session: say Hello first" : "the server has too many clients",
+      refuse(incoming.routing_id, hello == nullptr ? "no session: send Hello first" : "the server has too many clients",
              now_s);
     }
     return {};
@@ -178,7 +178,7 @@ bool ServerSocket::Impl::is_permitted(Peer& peer, const ClientBody& body) {
   if (peers.has_control(peer)) return true;
   ++refused.not_in_control;
   if (command != nullptr) {
-    ServerMessage reply{0, 0, Reply{command->request, false, "another client has control of this server"}};
+    ServerMessage reply{0, 0, Reply{command->request, false, "another client controls this server"}};
     send(peer, reply);
   }
   return false;

@@ -50,10 +50,10 @@ class ServerSocket {
   /// To every peer; batches a slow peer cannot take are dropped for it and counted.
   void send_batch(const StateBatch& batch);
   void send_reply(std::uint64_t session, const Reply& reply);
-  /// Forgets peers that were silent for long, and closes connections that never said Hello.
+  /// Removes clients that timed out, and closes connections that never sent Hello.
   void drop_silent(double now_s);
 
-  /// When the client in control was last heard (steady clock, s); none: there is no such client.
+  /// Time of the last message from the client in control (steady clock, s); empty without such a client.
   std::optional<double> controller_heard_s() const;
   /// "tcp://127.0.0.1:40123" where the port was 0.
   std::string bound_url() const;

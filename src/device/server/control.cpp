@@ -100,7 +100,7 @@ void Control::publish(const ServoScene& scene) {
 
 Result<std::string> Control::perform(const link::LoadScene& request) {
   if (request.tool != tool_)
-    return fail(fmt::format("this server holds the {}, not the {}", tool_, request.tool), "tool",
+    return fail(fmt::format("this server controls the {}, not the {}", tool_, request.tool), "tool",
                 "send the scene to the other server");
   const auto tell = [this](double done) { shared_.door.update([&](ControlStatus& status) { status.loading = done; }); };
   constexpr double kBegun = 0.01;
@@ -117,17 +117,17 @@ Result<std::string> Control::perform(const link::LoadScene& request) {
 Result<std::string> Control::perform(const link::SetParameters& request) {
   TROCAR_TRY(const ServoScene scene, builder_.change(request));
   publish(scene);
-  return fmt::format("scene {} has other numbers; the coupling is {:.3g} N/mm", scene.number,
+  return fmt::format("scene {} has changed parameters; the coupling is {:.3g} N/mm", scene.number,
                      scene.scene->options.coupling.stiffness_n_per_mm);
 }
 
 Result<std::string> Control::perform(link::ServerCommand) {
   const DevicePause pause(shared_);
   if (!pause.is_granted())
-    return fail("the real-time thread does not let go of the device", device_.name(),
+    return fail("the real-time thread does not release the device", device_.name(),
                 "try again; restart trocar-hapticd if it stays so");
   TROCAR_TRY_STATUS(device_.reconnect());
-  return fmt::format("{} is open again; reset the fault to go on", device_.name());
+  return fmt::format("{} is open again; reset the fault to continue", device_.name());
 }
 
 Result<std::string> Control::perform(const WriteFlight& flight) {
@@ -135,7 +135,7 @@ Result<std::string> Control::perform(const WriteFlight& flight) {
   const std::string utc = fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
   const Result<std::filesystem::path> path = write_flight(flight_folder_, utc, flight.records);
   const std::string text =
-      path ? fmt::format("a fault: the last {} periods are in {}", flight.records.size(), path->string())
+      path ? fmt::format("fault: the last {} periods were saved to {}", flight.records.size(), path->string())
            : fmt::format("the flight record could not be written: {}", path.error().text());
   shared_.door.update([&](ControlStatus& status) { status.warning = text; });
   if (!path) return tl::unexpected(path.error());

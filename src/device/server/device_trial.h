@@ -7,7 +7,7 @@
 
 namespace trocar::server {
 
-/// What a period of a trial made.
+/// Result of one period of a trial.
 struct DeviceTrialRecord {
   devices::DeviceReading reading;
   haptics::Wrench written_D;
@@ -15,9 +15,8 @@ struct DeviceTrialRecord {
   bool is_pushing = false;
 };
 
-/// A device tried out by itself, without a patient: its pose is read, and a small force is given where somebody asks
-/// for one. One period: read, gate, write; the gate's output is all that is written. Time is an argument; real-time
-/// safe.
+/// Tests a device without a patient: reads its pose and applies a small force on request. One period: read, gate,
+/// write; only the gate's output is written. Time is an argument; real-time safe.
 class DeviceTrial {
  public:
   DeviceTrial(devices::HapticDevice& device, double rate_hz) noexcept;

@@ -12,8 +12,8 @@
 
 namespace trocar::server {
 
-/// Keeps the last periods, and gives them away once a fault has latched and a little more has been seen. Fed by the
-/// link's thread with the records that leave the servo: the servo itself pays nothing for it.
+/// Keeps the last periods and returns them after a fault has latched and some more periods were recorded. Fed by the
+/// link thread with the records of the servo, at no cost for the servo.
 class FlightRecorder {
  public:
   /// `rate_hz`: of the records. Keeps kBefore_s before the fault and kAfter_s of what came after it.

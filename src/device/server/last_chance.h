@@ -25,8 +25,8 @@ class LastChance {
 
   /// The calling thread is the one that writes the device.
   void adopt_thread() noexcept;
-  /// Asked by that thread at the begin of every period. True: the process is ending, nothing more may be written; zero
-  /// was written now unless the device is not this thread's (`is_lent`). Real-time safe.
+  /// Called by that thread at the start of every period. True: the process is ending and nothing may be written; zero
+  /// has been written unless the device is lent (`is_lent`). Real-time safe.
   bool takes_over(bool is_lent) noexcept;
 
   /// What the handler does; async-signal-safe as far as the device's write() is real-time safe.

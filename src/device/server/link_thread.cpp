@@ -83,7 +83,7 @@ void LinkThread::drain() {
     ticks_ = record.tick + 1;
     if (auto flight = recorder_.add(record)) {
       const bool is_taken = shared_.door.post({0, 0, WriteFlight{std::move(*flight)}});
-      if (!is_taken) log_warning("a flight record was dropped: too many jobs wait");
+      if (!is_taken) log_warning("a flight record was dropped: too many jobs are queued");
     }
     newest_ = record;
   }
@@ -123,11 +123,11 @@ void LinkThread::take(const link::Received& received, const link::Command& comma
     ControlJob job{received.session, command.request, link::ServerCommand::kReconnect};
     std::visit([&](const auto& what) { job.what = what; }, command.what);
     if (!shared_.door.post(std::move(job)))
-      reply(received, command.request, false, "busy: other jobs of the server wait — send it again when they are done");
+      reply(received, command.request, false, "busy: other jobs are queued — send it again when they are done");
     return;
   }
   if (*simple == link::ServerCommand::kStart && !shared_.door.status().has_scene) {
-    reply(received, command.request, false, "there is no scene to feel — load one first");
+    reply(received, command.request, false, "no scene loaded — load one first");
     return;
   }
   if (*simple == link::ServerCommand::kResetFault)
@@ -137,7 +137,8 @@ void LinkThread::take(const link::Received& received, const link::Command& comma
 }
 
 std::string LinkThread::warning() const {
-  if (window_age_s_ > kStalled_s) return fmt::format("the client's window has stood still for {:.1f} s", window_age_s_);
+  if (window_age_s_ > kStalled_s)
+    return fmt::format("the client's window has not drawn a frame for {:.1f} s", window_age_s_);
   return shared_.door.status().warning;
 }
 

@@ -85,7 +85,7 @@ Result<std::shared_ptr<const anatomy::VirtualPatient>> SceneBuilder::patient_for
       TROCAR_TRY(patient, open_patient_(request.patient, request.patient_seed, progress));
     }
     if (patient->content_hash != request.patient_hash)
-      return fail("the server's patient is not the client's: another content hash", request.patient,
+      return fail("the server's patient differs from the client's (different content hash)", request.patient,
                   "give both the same folder and version");
   }
   return patient;
@@ -137,7 +137,8 @@ Result<ServoScene> SceneBuilder::load_throwing(const link::LoadScene& request, c
                                                const std::stop_token& stop) {
   const auto check_stop = [&]() -> Status {
     if (!stop.stop_requested()) return {};
-    return fail("loading was stopped: a newer scene was sent or the server ends", request.patient, "load it again");
+    return fail("loading was stopped: a newer scene was sent, or the server is shutting down", request.patient,
+                "load it again");
   };
   TROCAR_TRY_STATUS(check_stop());
   report(progress, "checking the scene", 0.0);
@@ -153,7 +154,7 @@ Result<ServoScene> SceneBuilder::change(const link::SetParameters& request) {
 }
 
 Result<ServoScene> SceneBuilder::change_throwing(const link::SetParameters& request) {
-  if (patient_ == nullptr) return fail("there is no scene whose numbers could be changed", "", "load one first");
+  if (patient_ == nullptr) return fail("no scene loaded; cannot change parameters", "", "load one first");
   Parts parts = parts_;
   if (!request.tissues_toml.empty()) {
     TROCAR_TRY(parts.loaded, anatomy::parse_tissue_table(request.tissues_toml, "the client's tissue table"));

@@ -12,12 +12,12 @@
 
 namespace trocar::server {
 
-/// What the servo works on: made by the control thread, swapped in whole. `scene.X_PD` is X_PW: the tick's device base
-/// is the room.
+/// Scene of the servo: built by the control thread, swapped as a whole. `scene.X_PD` is X_PW: the tick's device base is
+/// the room.
 struct ServoScene {
   std::shared_ptr<const haptics::HapticScene> scene;
   std::uint64_t number = 0;  ///< Rises with every scene.
-  bool continues = false;    ///< The insertion goes on: the same patient with other numbers.
+  bool continues = false;    ///< The insertion continues: same patient with other numbers.
 };
 
 /// Of a device, constant while the servo lives.
@@ -33,7 +33,7 @@ struct ServoParams {
 /// [assumed].
 ServoParams servo_params(const haptics::DevicePreset& preset, double rate_hz = 1000.0) noexcept;
 
-/// What the other threads tell a period.
+/// Input of a period from the other threads.
 struct ServoInput {
   double now_s = 0.0;
   double dt_s = 0.001;
@@ -46,7 +46,7 @@ struct ServoInput {
   bool is_stylet_in = true;
 };
 
-/// What a period made: for clients, recorder and flight recorder. Fixed size.
+/// Output of a period: for clients, recorder and flight recorder. Fixed size.
 struct ServoRecord {
   std::uint64_t tick = 0;
   std::uint64_t scene = 0;       ///< Number of the scene that made it; 0: none.
@@ -63,8 +63,8 @@ struct ServoRecord {
   double silence_s = 0.0;
 };
 
-/// One period of a haptic server: read, hold, map, tick, gate, write. Time is an argument; no clock, no lock, no
-/// allocation: the same readings and inputs give the same records. It alone touches the device while it runs.
+/// One period of a haptic server: read, hold, map, tick, gate, write. Time is an argument; no clock, lock or
+/// allocation: the same inputs give the same records. Only the servo accesses the device while it runs.
 class Servo {
  public:
   Servo(devices::HapticDevice& device, const ServoParams& params) noexcept;
@@ -72,8 +72,8 @@ class Servo {
   telemetry::GateMode mode() const noexcept { return gate_.mode; }
   /// Something else than zero was written last.
   bool gives_force() const noexcept;
-  /// After the device was in other hands: nothing read, written or felt before counts, and forces come back through the
-  /// safe start. A fault stays.
+  /// Call after the device was lent: earlier readings and outputs are discarded, and forces return through the safe
+  /// start. A fault is kept.
   void resume() noexcept;
 
  private:
@@ -88,7 +88,7 @@ class Servo {
   };
   Sensed sense(const ServoInput& input) noexcept;
   telemetry::GateFault watch_encoder(const devices::DeviceReading& reading, double dt_s) noexcept;
-  /// The tool begins where it is now: another scene, or somebody has put it there.
+  /// Restarts the tool at its present pose: for a new scene, or a placed hand.
   void begin_anew() noexcept;
   Wanted feel(const Sensed& sensed, const ServoInput& input, telemetry::TickSample& sample) noexcept;
   devices::DeviceHand hand_in_device(const link::HandTarget& target, const haptics::HapticScene& scene) const noexcept;

@@ -21,12 +21,13 @@ enum class CameraPreset {
 enum class FollowMode {
   kFree,         ///< Nothing.
   kTip,          ///< Keeps the tip in the middle, its direction and distance stay.
-  kAlongNeedle,  ///< Looks from the hub along the shaft.
-  kSide,         ///< Looks at the tip square to the shaft, from near by; what lies in front of the needle is cut away.
+  kAlongNeedle,  ///< View from the hub along the shaft.
+  kSide,         ///< View of the tip perpendicular to the shaft, at close range; structures in front of the needle are
+                 ///< clipped.
 };
 
-/// Where one looks from and to, in P (mm). Invariant of what the functions below make: `up_P` is a unit vector square
-/// to the line of sight.
+/// Camera position and focal point in P (mm). Invariant of the functions below: `up_P` is a unit vector perpendicular
+/// to the view direction.
 struct CameraView {
   Vec3 eye_P{0, -1000, 0};
   Vec3 focus_P{0, 0, 0};

@@ -4,12 +4,12 @@
 
 namespace trocar::scene {
 
-/// How much work goes into a frame.
+/// Level of detail of a frame.
 struct Detail {
   int mesh_level = 0;       ///< 0: all triangles; 1, 2: fewer, in simpler light.
   bool is_peeled = true;    ///< Translucent surfaces in their right order, pixel by pixel.
   bool is_smooth = true;    ///< Edges smoothed.
-  bool has_volume = true;   ///< The CT volume, where one is chosen; else surfaces stand in for it.
+  bool has_volume = true;   ///< Volume rendering of the CT, if selected; otherwise surfaces replace it.
   double resolution = 1.0;  ///< Of the picture against the window, 0.25..1.
   bool operator==(const Detail&) const = default;
 };
@@ -37,7 +37,7 @@ class DetailPolicy {
   void set_target(double target_ms) noexcept { params_.target_ms = target_ms; }
   /// Something was moved at this time: tool, camera, opacity.
   void note_motion(Time now) noexcept;
-  /// A frame of this detail has taken so long. One that was broken off is not told.
+  /// Reports the duration of a frame of this detail. Cancelled frames are not reported.
   void note_frame(const Detail& detail, double frame_ms, Time now) noexcept;
   /// Detail of a frame that begins now.
   Detail next(Time now) const noexcept;

@@ -2,9 +2,9 @@
 
 namespace trocar::scene {
 
-/// How much of a plan the views of a case give away.
+/// Amount of a plan that the views of a case show.
 enum class Guidance {
-  kNone,    ///< Nothing, and lesions of the segmentation neither: they are to be found in the pictures.
+  kNone,    ///< No guidance, and no lesions of the segmentation: the trainee must find them in the images.
   kTarget,  ///< The target and where the needle may enter.
   kPath,    ///< The expert's path between them, too.
 };

@@ -4,8 +4,8 @@
 
 namespace trocar::scene {
 
-/// Sees the user's hand while a program is busy drawing and reads no events: asks the X server itself whether pointer,
-/// buttons or keys have changed. Without an X server nothing ever happens.
+/// Detects user input while the program draws and processes no events: queries pointer, buttons and keys from the X
+/// server. Without an X server it never reports input.
 class InputWatch {
  public:
   InputWatch();

@@ -87,13 +87,12 @@ class PatientScene {
   /// Row of the screen that the picture's first row falls on: in interlaced stereo the screen's even rows are the left
   /// eye's, wherever the picture stands and however it is mirrored.
   void set_first_row(int row);
-  /// Takes over surfaces and volume that have become ready.
+  /// Applies surfaces and volume that have finished loading.
   void poll();
   /// Something was set, or has become ready, since the last whole frame.
   bool has_changed() const noexcept;
-  /// Draws a frame. `wants_break` (may be empty) is asked many times; once it says yes the frame is given up, its
-  /// picture is of no use, and false is returned. Quad-buffer stereo takes a frame for each eye; the other modes draw
-  /// both into one and have no use for `eye`.
+  /// Renders a frame. `wants_break` (may be empty) is polled; if it returns true the frame is cancelled and false is
+  /// returned. Quad-buffer stereo renders one frame per eye; the other modes render both into one and ignore `eye`.
   bool render(const Detail& detail, const std::function<bool()>& wants_break = {}, Eye eye = Eye::kLeft);
   /// The picture after `render`, as a mirror wants it where one is set: 0xffRRGGBB, rows from the top. `pixels` has a
   /// place for each.
@@ -102,9 +101,9 @@ class PatientScene {
   /// First surface, tool or plane at a place of the picture (shares of its width and height from the top left), in P.
   std::optional<Vec3> pick(double right, double down);
 
-  /// What draws, by OpenGL's own name ("llvmpipe (LLVM 15.0.6, 256 bits)"); known after the first frame.
+  /// Name of the OpenGL renderer ("llvmpipe (LLVM 15.0.6, 256 bits)"); known after the first frame.
   std::string renderer_name() const;
-  /// Not drawn by the processor. Known after the first frame; until then false.
+  /// True with hardware rendering. Known after the first frame; false before.
   bool has_gpu() const;
   std::size_t triangle_count(int mesh_level) const;
 

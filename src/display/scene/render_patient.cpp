@@ -57,7 +57,7 @@ Result<volume::RgbImage> render_patient(const anatomy::VirtualPatient& patient,
                       fmt::format("choose {}..{}", kMinPixels, kMaxPixels));
   }
   if (!can_render()) {
-    return fail("3D pictures need an X server, and there is none", "DISPLAY", "start the program under xvfb-run");
+    return fail("3D images need an X server; none is available", "DISPLAY", "start the program under xvfb-run");
   }
   vtkObject::GlobalWarningDisplayOff();
   vtkNew<vtkRenderer> renderer;
@@ -71,7 +71,7 @@ Result<volume::RgbImage> render_patient(const anatomy::VirtualPatient& patient,
     for (const Vec3f& vertex_P : mesh.mesh_P.vertices) points_P.push_back(vertex_P.cast<double>());
   }
   for (const anatomy::NeedlePath& path : options.paths) add_needle(*renderer, path.line_P, points_P);
-  if (points_P.empty()) return fail("the patient has no surface to draw", patient.name, "see trocar patient check");
+  if (points_P.empty()) return fail("the patient has no surfaces", patient.name, "see trocar patient check");
   detail::apply(fit_camera(points_P, options.camera, static_cast<double>(options.columns) / options.rows), *renderer);
   renderer->SetUseDepthPeeling(1);
   renderer->SetMaximumNumberOfPeels(kPeels);

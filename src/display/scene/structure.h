@@ -8,7 +8,7 @@
 
 namespace trocar::scene {
 
-/// What a structure counts as when many are shown or hidden together.
+/// Category of a structure, used to show or hide groups.
 enum class StructureKind { kSkin, kBone, kVessel, kLung, kHollowOrgan, kOrgan, kMuscle, kTarget };
 
 /// A surface of the patient and how it is shown.
@@ -39,7 +39,7 @@ std::vector<StructureInfo> describe_structures(const anatomy::LabelTable& table,
 /// Opacity of a structure in a preset, 0..1.
 double preset_opacity(const StructureInfo& structure, StructurePreset preset, std::string_view around_name) noexcept;
 
-/// What is aimed at, and the structure that surrounds it; "" where there is none.
+/// The target and the structure around it; "" if there is none.
 struct Aim {
   std::string target_name;
   std::string around_name;

@@ -6,7 +6,7 @@
 
 namespace trocar::scene {
 
-/// What of the CT shows as a cloud of colour.
+/// Preset of the CT volume rendering.
 enum class VolumePreset { kNone, kBone, kSoftTissue, kVessels, kSkinAndBone };
 
 /// A point of a transfer function; linear between, constant outside.

@@ -30,8 +30,8 @@ class TomlTable {
   /// Every key that is present, in the file's order of lines.
   std::vector<std::string> keys() const;
   bool has(std::string_view key) const;
-  /// An error that names the first key which is not in `known`, and the known one it resembles: a misspelled key is
-  /// never ignored in silence.
+  /// Error for the first key that is not in `known`, with the nearest known key: a misspelled key is never ignored
+  /// silently.
   Status check_keys(const std::vector<std::string_view>& known) const;
 
   /// Finite number inside the range, or an error. An integer in the file is a number too.
@@ -47,7 +47,7 @@ class TomlTable {
   /// All tables of an array of tables ([[key]]); a missing key is an empty list.
   Result<std::vector<TomlTable>> tables(std::string_view key) const;
 
-  /// "file.toml: tissues.liver": where this table stands, for messages.
+  /// Path of this table for messages: "file.toml: tissues.liver".
   std::string where() const;
 
  private:

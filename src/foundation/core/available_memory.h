@@ -15,8 +15,8 @@ std::uint64_t available_memory_bytes();
 /// Memory of this process that is in the machine's memory now (VmRSS of /proc/self/status); 0 where the system does not
 /// state it.
 std::uint64_t resident_memory_bytes();
-/// Gives memory that was freed back to the system. The allocator keeps what it got for volumes of tens of megabytes on
-/// several threads: call it when something that large is gone. Takes some milliseconds; not real-time safe.
+/// Returns freed memory to the system. The allocator keeps large blocks per thread: call this after releasing tens of
+/// megabytes. Takes some milliseconds; not real-time safe.
 void release_freed_memory();
 
 /// An error at `where` if an image of `bytes` and a converted copy of it do not fit into `available_bytes`. Asked for

@@ -23,12 +23,12 @@ inline namespace core {
 /// How far work in the background is.
 struct JobView {
   std::string step;       ///< What it does now.
-  double fraction = 0.0;  ///< 0..1, done.
-  bool is_done = false;   ///< The result can be taken.
+  double fraction = 0.0;  ///< Progress, 0..1.
+  bool is_done = false;   ///< The result is ready.
 };
 
-/// Work on a thread of its own, for a window that looks at it once a frame. Nothing here waits for the work but the
-/// destructor (see RetiredJobs). One thread owns the job; the work has only its Progress and its stop token.
+/// Work on a thread of its own, polled by a window once per frame. Only the destructor blocks (see RetiredJobs). One
+/// thread owns the job; the work has only its Progress and its stop token.
 template <class T>
 class BackgroundJob {
  public:
@@ -55,10 +55,10 @@ class BackgroundJob {
     const std::lock_guard lock(state_->mutex);
     return state_->view;
   }
-  /// The result is not wanted any more; returns at once. The work is told and may go on for a while.
+  /// Cancels the job and returns at once. The work gets a stop request and may continue for some time.
   void cancel() noexcept { thread_.request_stop(); }
   bool is_cancelled() const noexcept { return thread_.get_stop_token().stop_requested(); }
-  /// The result, once; nothing before it is there, and never that of a cancelled job.
+  /// Returns the result once; empty before it is ready and for a cancelled job.
   std::optional<Result<T>> take() {
     if (!state_ || is_cancelled()) return std::nullopt;
     const std::lock_guard lock(state_->mutex);
@@ -89,7 +89,7 @@ class BackgroundJob {
         return work(progress);
       }
     } catch (const std::bad_alloc&) {
-      return fail("there is not enough memory", {}, "close other programs, or use smaller data");
+      return fail("not enough memory", {}, "close other programs, or use smaller data");
     }
   }
 
@@ -97,8 +97,7 @@ class BackgroundJob {
   std::jthread thread_;
 };
 
-/// Jobs whose results nobody wants and whose work has not ended yet: kept here so that their owner need not wait for
-/// them. What is still at work when this ends is waited for then.
+/// Keeps cancelled jobs until their work ends, so that their owner does not block. The destructor waits for the rest.
 class RetiredJobs {
  public:
   template <class T>
@@ -107,7 +106,7 @@ class RetiredJobs {
     job.cancel();
     jobs_.push_back(std::make_unique<Retired<T>>(std::move(job)));
   }
-  /// Lets go of those that have ended; to be called now and then. Gives how many are still at work.
+  /// Removes the jobs that have ended; call it regularly. Returns the number of running ones.
   std::size_t sweep() {
     std::erase_if(jobs_, [](const std::unique_ptr<Any>& job) { return job->is_done(); });
     return jobs_.size();

@@ -8,7 +8,7 @@ inline namespace core {
 namespace detail {
 
 void check_failed(const char* condition, const char* file, int line) noexcept {
-  std::fprintf(stderr, "internal error: %s does not hold — %s:%d — please report this\n", condition, file, line);
+  std::fprintf(stderr, "internal error: check failed: %s — %s:%d — please report this\n", condition, file, line);
   std::abort();
 }
 

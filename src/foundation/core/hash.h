@@ -7,8 +7,7 @@
 namespace trocar {
 inline namespace core {
 
-/// 128-bit content hash (XXH3) as 32 hexadecimal digits: tells whether two patients or tables are the same.
-/// Not for security.
+/// 128-bit content hash (XXH3) as 32 hexadecimal digits, to compare patients or tables. Not for security.
 class ContentHash {
  public:
   ContentHash();

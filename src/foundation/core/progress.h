@@ -6,7 +6,7 @@
 namespace trocar {
 inline namespace core {
 
-/// Told by long work how far it is: what it does now and the done fraction in 0..1. May be empty.
+/// Callback of long work: present step, and progress in 0..1. May be empty.
 using Progress = std::function<void(std::string_view step, double fraction)>;
 
 /// Calls progress where there is one.

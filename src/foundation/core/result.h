@@ -7,8 +7,8 @@
 namespace trocar {
 inline namespace core {
 
-/// What went wrong with the outside world (a file, a device, the user's words), said so that the user can act.
-/// Printed as "error: what — where — what to do"; empty parts are left out.
+/// An error of the outside world (file, device, user input) with the advice to fix it. Printed as "error: what — where
+/// — what to do"; empty parts are omitted.
 struct Error {
   std::string what;     ///< What is wrong: "the image ends before its last voxel".
   std::string where;    ///< Where: a file, a line, an option.

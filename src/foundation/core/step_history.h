@@ -23,15 +23,15 @@ class StepHistory {
     before_.clear();
     after_.clear();
   }
-  /// A step to another value. `joins`: one step together with the last (a slider that is still held), where there is
-  /// one. What was undone can no longer be done again; of more than the most steps the oldest is forgotten.
+  /// Adds a step to another value. `joins`: merge it with the last step (a slider that is still dragged). Clears redo;
+  /// beyond the limit the oldest step is dropped.
   void step_to(State next, bool joins = false) {
     if (!joins || before_.empty()) before_.push_back(std::move(now_));
     if (before_.size() > most_steps_) before_.pop_front();
     after_.clear();
     now_ = std::move(next);
   }
-  /// Another value in the place of this one, without a step.
+  /// Replaces the present value without a step.
   void put(State state) { now_ = std::move(state); }
   /// Changes this value and all that undo and redo lead to.
   template <class Change>

@@ -6,9 +6,8 @@
 
 namespace trocar::realtime {
 
-/// Immutable objects that one thread makes and a real-time thread uses: publish and collect belong to the maker,
-/// acquire to the user. The user never frees anything. Invariant: `kept_` holds everything that the user may still be
-/// reading.
+/// Immutable objects built by one thread and used by a real-time thread: the builder calls publish and collect, the
+/// user acquire. The user never frees memory. Invariant: `kept_` contains all objects that the user may still read.
 template <class T>
 class Handover {
  public:
@@ -22,7 +21,7 @@ class Handover {
     kept_.push_back(std::move(object));
     collect();
   }
-  /// By the maker, now and then: frees what nobody can be reading any more.
+  /// Called regularly by the builder: frees objects that the user can no longer read.
   void collect() {
     const T* offered = offered_.load(std::memory_order_seq_cst);
     const T* trying = trying_.load(std::memory_order_seq_cst);
@@ -33,7 +32,8 @@ class Handover {
   }
   /// By the user, once a period: valid until its next acquire. Real-time safe.
   const T* acquire() noexcept {
-    // What is tried is announced before it is looked at again: offered still, so it was not collected in between.
+    // Announces the candidate before checking again that it is still offered, so that collect() cannot free it in
+    // between.
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const T* object = offered_.load(std::memory_order_seq_cst);
       if (object == current_) return current_;

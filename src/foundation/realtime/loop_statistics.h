@@ -12,12 +12,12 @@ struct LatencySummary {
 };
 LatencySummary summarise(const LatencyHistogram& histogram) noexcept;
 
-/// How a periodic loop has done since it was started.
+/// Statistics of a periodic loop since its start.
 struct LoopSummary {
   double wanted_hz = 0.0;
   double achieved_hz = 0.0;   ///< Ticks over the time they took.
   std::uint64_t periods = 0;  ///< That have begun, skipped ones too.
-  std::uint64_t missed = 0;   ///< Whose tick was not finished when the next period began, skipped ones too.
+  std::uint64_t missed = 0;   ///< Periods whose tick was not finished before the next period, including skipped ones.
   std::uint64_t skipped = 0;  ///< That got no tick at all.
   LatencySummary lateness;    ///< Of the wake-up after the period's begin.
   LatencySummary tick;        ///< From wake-up to the end of the tick.

@@ -33,9 +33,9 @@ struct Period {
   std::uint64_t number = 0;   ///< Of the period, skipped ones counted.
 };
 
-/// Runs `body(const Period&, const LoopStatistics&)` at absolute times until `is_stopping`. A period whose time has
-/// passed is counted and skipped, never caught up: the next one keeps the grid. The statistics are of the ticks before.
-/// The calling thread is the loop's; ask for real time before.
+/// Calls `body(const Period&, const LoopStatistics&)` at absolute times until `is_stopping`. A late period is counted
+/// and skipped. The statistics cover the previous ticks. Runs on the calling thread; request real-time scheduling
+/// before.
 template <class Body>
 void run_periodic(std::int64_t period_ns, const std::atomic<bool>& is_stopping, LoopStatistics& statistics,
                   Body&& body) noexcept {

@@ -8,10 +8,10 @@
 namespace trocar::realtime {
 
 std::string RealTimeGrant::text() const {
-  if (!was_asked) return "ordinary scheduling, as asked";
+  if (!was_asked) return "ordinary scheduling, as requested";
   const std::string scheduling =
       has_fifo ? fmt::format("SCHED_FIFO priority {}", priority)
-               : std::string("no SCHED_FIFO (allow it: an rtprio line in /etc/security/limits.conf)");
+               : std::string("no SCHED_FIFO (to allow it, add an rtprio line to /etc/security/limits.conf)");
   return scheduling + (has_locked_memory ? ", memory locked" : ", memory not locked (raise memlock in limits.conf)");
 }
 

@@ -4,7 +4,7 @@
 
 namespace trocar::realtime {
 
-/// What the machine gave a thread that wants to be on time.
+/// Real-time privileges that the system granted to a thread.
 struct RealTimeGrant {
   bool was_asked = false;          ///< Somebody wanted it.
   bool has_fifo = false;           ///< SCHED_FIFO.
@@ -16,8 +16,8 @@ struct RealTimeGrant {
   std::string text() const;
 };
 
-/// Asks for all of it for the calling thread (memory: for the process). Priority 1..99; 0 asks for fine timers alone.
-/// Never fails: what is not granted is left.
+/// Requests all of them for the calling thread (memory: for the process). Priority 1..99; 0 requests fine timers only.
+/// Never fails: privileges that are not granted are skipped.
 RealTimeGrant request_real_time(int priority = 80) noexcept;
 
 }  // namespace trocar::realtime

@@ -23,13 +23,13 @@ const char* to_string(GateFault fault) noexcept;
 
 /// The state of the safety gate on its way to full force.
 enum class GateMode : std::uint8_t {
-  kOff,      ///< No client asked for forces: zero.
-  kWaiting,  ///< Waits for a small wanted force: zero.
+  kOff,      ///< No forces requested: zero.
+  kWaiting,  ///< Waits for a small requested force: zero.
   kRising,   ///< Ramps up.
   kOn,
-  kFading,  ///< The client is silent, or forces are no longer wanted: ramps to zero, or is at zero.
+  kFading,  ///< Client timeout, or forces no longer requested: ramps to zero, or is at zero.
   kFault,   ///< Latched; ramps to zero within fault_ramp_s, then zero.
-  kAbsent,  ///< There is no gate: an attempt without a server. Never a mode of the gate itself.
+  kAbsent,  ///< No gate (attempt without a server). Never a mode of the gate itself.
 };
 inline constexpr GateMode kLastGateMode = GateMode::kAbsent;
 const char* to_string(GateMode mode) noexcept;

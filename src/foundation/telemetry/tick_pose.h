@@ -7,7 +7,7 @@ namespace trocar::telemetry {
 
 /// The device's tool of a tick: X_PN, or X_PT of a transducer. Without a rotation: unturned.
 Pose device_pose(const TickSample& sample) noexcept;
-/// The felt needle: tip and axis of the virtual one, the device's roll.
+/// Virtual needle: its tip and axis, with the device's roll.
 Pose felt_needle(const TickSample& sample) noexcept;
 /// The same of a transducer, whose axis is y of T.
 Pose felt_probe(const TickSample& sample) noexcept;

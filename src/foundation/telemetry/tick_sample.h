@@ -27,16 +27,15 @@ enum class LimitReason : std::uint8_t {
   kInputRejected,
   kSolverBound,
   kEventsDropped,
-  kResumedInside,  ///< The needle was found inside the body: no force step, taken as inserted.
-  kJumped,         ///< The device moved further in one tick than a hand can: started afresh where it is.
-  // The safety gate began to...
-  kPassivity,   ///< take out energy,
-  kContinuous,  ///< spare warm motors,
-  kSlew,        ///< hold back a rise,
-  kStale,       ///< fade: the client is silent,
-  kBrake,       ///< brake,
-  kSafeStart,   ///< wait or ramp up,
-  kFault,       ///< fade to zero, for good.
+  kResumedInside,  ///< The needle was inside the body at the start: no force step, treated as inserted.
+  kJumped,         ///< The device moved further in one tick than a hand can: restarted at its present pose.
+  kPassivity,      ///< The gate began to dissipate energy.
+  kContinuous,     ///< The gate began to limit the force because the motors are warm.
+  kSlew,           ///< The gate began to limit a rise.
+  kStale,          ///< The gate began to fade because of a client timeout.
+  kBrake,          ///< The gate began to brake.
+  kSafeStart,      ///< The gate began to wait or to ramp up.
+  kFault,          ///< The gate began to fade to zero and latched.
 };
 const char* to_string(LimitReason reason) noexcept;
 
@@ -46,11 +45,11 @@ struct TickSample {
   double time_s = 0.0;
   Vec3 tip_mm = Vec3::Zero();        ///< Tip of the virtual needle.
   Vec3 axis = Vec3::UnitZ();         ///< Unit, hub to tip, of the virtual needle.
-  double axial_velocity_mm_s = 0.0;  ///< Positive inward; the value put into the force law.
+  double axial_velocity_mm_s = 0.0;  ///< Positive inward; the input of the force law.
   double depth_mm = 0.0;             ///< Tip below the skin along the path, 0 outside.
   std::uint8_t tissue = 0;           ///< Tissue id (TissueTable) at the tip.
   InsertionPhase phase = InsertionPhase::kOutside;
-  double layer_displacement_mm = 0.0;  ///< x of the layer being loaded; the value put into the force law.
+  double layer_displacement_mm = 0.0;  ///< x of the layer being loaded; the input of the force law.
   double f_prepuncture_n = 0.0;        ///< Signed along the axis: negative pushes the needle out.
   double f_friction_n = 0.0;
   double f_cutting_n = 0.0;
@@ -68,7 +67,7 @@ struct TickSample {
   Vec3 device_f_n = Vec3::Zero();     ///< What went to the device.
   /// R_PN of the device's needle: with device_mm and time_s all that a replay needs. Stored, not in the CSV.
   std::array<double, 4> device_rotation_wxyz{1, 0, 0, 0};
-  /// PX_p of paper A: from the first contact with the skin to where it gave way; zero before. Stored, not in the CSV.
+  /// PX_p of paper A: from the first contact with the skin to its puncture; zero before. Stored, not in the CSV.
   Vec3 contact_to_puncture_mm = Vec3::Zero();
   Vec3 device_tau_nmm = Vec3::Zero();      ///< Torque that went to the device, about S; zero where it has no motors.
   GateMode gate_mode = GateMode::kAbsent;  ///< Of the server's safety gate after this tick.
@@ -80,7 +79,7 @@ struct TickSample {
 /// Resistance (N) along the needle of tip and shaft together, whatever force model made it: positive pushes the needle
 /// out. Without path constraint, weight and stick.
 double axial_resistance_n(const TickSample& sample) noexcept;
-/// The part of it that loads the tip: what a layer bears before it gives way.
+/// The part that loads the tip: the load of a layer before its puncture.
 double tip_load_n(const TickSample& sample) noexcept;
 
 }  // namespace trocar::telemetry

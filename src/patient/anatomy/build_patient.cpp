@@ -62,7 +62,7 @@ void clear_outside(const volume::MaskGrid& body, volume::LabelGrid& labels, cons
         static_cast<double>(outside[label.id]) / static_cast<double>(std::max<std::size_t>(all[label.id], 1));
     if (share > kMaxShareOutside)
       warnings.push_back(
-          fmt::format("{:.0f} % of \"{}\" lies outside the body and was left out", 100.0 * share, label.name));
+          fmt::format("{:.0f} % of \"{}\" is outside the body and was removed", 100.0 * share, label.name));
   }
 }
 
@@ -74,7 +74,7 @@ void warn_of_doubtful_structures(const VirtualPatient& patient, std::size_t know
   for (const LabelStatistics& label : statistics) {
     if (label.touches_border && label.id <= known_count) cut.push_back(patient.label_table.find(label.id)->name);
   }
-  if (!cut.empty()) warnings.push_back(fmt::format("cut by the border of the CT: {}", fmt::join(cut, ", ")));
+  if (!cut.empty()) warnings.push_back(fmt::format("cut off by the border of the CT: {}", fmt::join(cut, ", ")));
 }
 
 }  // namespace

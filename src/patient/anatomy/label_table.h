@@ -27,8 +27,8 @@ struct LabelTable {
   const Label* find(std::string_view name) const noexcept;
 };
 
-/// By label id: of a lesion (tissue "X_lesion") the id of the organ that it lies in, the first label of tissue "X", or
-/// 0 where the table has none; of all else the id itself.
+/// For each label id: for a lesion (tissue "X_lesion"), the id of its organ, the first label of tissue "X", or 0 if the
+/// table has none; for all other labels, the id itself.
 std::array<std::uint8_t, 256> lesions_as_organs(const LabelTable& table) noexcept;
 
 /// Tissue class and colour of a structure name known out of the box: TotalSegmentator v2, the phantom's names, the mask
@@ -42,8 +42,8 @@ struct KnownStructure {
 };
 std::optional<KnownStructure> find_known_structure(std::string_view name);
 
-/// Names of what is no structure: "background", "air", "Clear Label", "exterior", "unlabeled" and the like. Case and
-/// separators are not looked at.
+/// Names of background labels ("background", "air", "Clear Label", "exterior", "unlabeled"), independent of case and
+/// separators.
 bool is_background_name(std::string_view name);
 
 /// The known names most like an unknown one, best first; only those within a few letters of it (edit distance at most a

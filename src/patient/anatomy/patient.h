@@ -31,7 +31,7 @@ struct NamedMesh {
 struct VirtualPatient {
   std::string name;
   std::string description;
-  std::vector<std::string> provenance;  ///< What it was made from, one line each; no path of a machine.
+  std::vector<std::string> provenance;  ///< Provenance, one line per step; contains no path of this machine.
   volume::CtGrid ct;                    ///< HU.
   volume::LabelGrid labels;             ///< Structures, and inside the body fat and muscle found from HU.
   LabelTable label_table;

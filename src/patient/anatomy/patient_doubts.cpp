@@ -12,14 +12,14 @@ std::vector<std::string> find_doubts(const VirtualPatient& patient, const std::v
   std::vector<std::string> doubts;
   const Vec3& spacing = patient.ct.geometry.spacing_mm;
   if (spacing.maxCoeff() > kCoarse_mm)
-    doubts.push_back(fmt::format("voxels of {:.2f} x {:.2f} x {:.2f} mm: thin structures are missed", spacing.x(),
+    doubts.push_back(fmt::format("voxels of {:.2f} x {:.2f} x {:.2f} mm: thin structures can be missing", spacing.x(),
                                  spacing.y(), spacing.z()));
   for (std::string& doubt : find_implausible_hu(patient, statistics)) doubts.push_back(std::move(doubt));
   std::vector<std::string> cut_off;
   for (const LabelStatistics& s : statistics) {
     const Label* label = patient.label_table.find(s.id);
     if (label == nullptr) continue;
-    if (s.voxels == 0) doubts.push_back(label->name + " is listed and has no voxel");
+    if (s.voxels == 0) doubts.push_back(label->name + " is in the label table but has no voxels");
     // Fat and muscle reach every border of a scan; an organ that does is cut off.
     const bool is_filling = label->tissue == "adipose" || label->tissue == "muscle";
     if (s.touches_border && !is_filling) cut_off.push_back(label->name);

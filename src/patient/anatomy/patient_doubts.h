@@ -7,8 +7,8 @@
 
 namespace trocar::anatomy {
 
-/// What a reader should know before trusting a patient, one line each: coarse voxels, labels whose HU do not fit them,
-/// listed labels without a voxel, structures that the edge of the scan cuts off.
+/// Warnings about the quality of a patient, one line each: coarse voxels, labels with implausible HU, listed labels
+/// without voxels, structures cut off at the edge of the scan.
 std::vector<std::string> find_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics);
 
 }  // namespace trocar::anatomy

@@ -59,8 +59,7 @@ struct Body {
   Box box;
 };
 
-Body body_of(std::uint8_t id, const std::array<Box, 256>& boxes,
-             const std::array<std::uint8_t, 256>& organ_of) {
+Body body_of(std::uint8_t id, const std::array<Box, 256>& boxes, const std::array<std::uint8_t, 256>& organ_of) {
   Body body;
   for (std::size_t label = 1; label < boxes.size(); ++label) {
     body.has[label] = label == id || organ_of[label] == id;

@@ -92,7 +92,7 @@ Status fill_label_tissues(HapticScene& scene, const anatomy::TissueTable& table)
     if (!tissue) unknown.push_back(fmt::format("{} ({})", label.name, label.tissue));
   }
   if (!unknown.empty())
-    log_warning("{}: not in the tissue table, so they have the numbers of soft_tissue: {}", scene.patient->name,
+    log_warning("{}: not in the tissue table; soft_tissue is used instead: {}", scene.patient->name,
                 fmt::join(unknown, ", "));
   return {};
 }
@@ -101,15 +101,14 @@ Status fill_label_tissues(HapticScene& scene, const anatomy::TissueTable& table)
 Status check_palpable(const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues) {
   if (!patient.labels.empty()) return {};
   if (!patient.ct.empty() && tissues.transfer.knot_count > 0) return {};
-  return fail(
-      "the patient has neither labels nor a CT that the tissue table can read, which the skin's stiffness needs",
-      patient.name, "build it with labels or with a CT");
+  return fail("the patient has neither labels nor a CT for the tissue table, which the skin stiffness needs",
+              patient.name, "build it with labels or with a CT");
 }
 
 Status check_patient(const anatomy::VirtualPatient* patient, const anatomy::TissueTable& tissues,
                      const HapticOptions& options) {
   const ForceModel model = options.force_model;
-  if (!patient) return fail("there is no patient", "haptic scene", "load a patient first");
+  if (!patient) return fail("no patient loaded", "haptic scene", "load a patient first");
   if (patient->skin_distance_mm.empty()) return fail("the patient has no skin", patient->name, "build it again");
   if (options.tool != Tool::kNeedle) return check_palpable(*patient, tissues);
   if (model == ForceModel::kInsertion && patient->labels.empty())

@@ -20,7 +20,7 @@ namespace trocar::haptics {
 
 /// Which law makes the force (docs/physics.md T1, T2).
 enum class ForceModel : std::uint8_t {
-  kInsertion,  ///< Paper A: layers that load and give way, friction, cutting, path constraint.
+  kInsertion,  ///< Paper A: layers that are loaded and punctured, friction, cutting, path constraint.
   kProxy,      ///< Paper B: tip proxy on CT and labels, body proxies on the path, bending.
   kCombined,   ///< A's loading and cutting where a tissue has parameters, B elsewhere and for the shaft.
 };
@@ -28,10 +28,10 @@ const char* to_string(ForceModel model) noexcept;
 /// "insertion", "proxy", "combined"; else exit status 2.
 Result<ForceModel> parse_force_model(std::string_view name);
 
-/// What a device senses and can bear. Defaults: PHANTOM Premium 1.5 High Force 6DOF (paper B, section 2.1).
+/// Sensing and limits of a device. Defaults: PHANTOM Premium 1.5 High Force 6DOF (paper B, section 2.1).
 struct DeviceCapability {
   double peak_force_n = 37.5;
-  double peak_torque_nmm = 515.0;       ///< 0: senses rotation, gives no torque.
+  double peak_torque_nmm = 515.0;       ///< 0: senses rotation but has no torque.
   double max_stiffness_n_per_mm = 3.5;  ///< Range 0.1..20. Source: vendor's nominal figure, references.md.
   double stylus_weight_n = 0.5;         ///< Weight that links and stylus put on the hand. Range 0..5. [assumed]
   double stylus_lever_mm = 20.0;        ///< Centre of that weight behind the stylus origin, along -z of S. [assumed]
@@ -46,7 +46,7 @@ struct CouplingParams {
   double damping_ns_per_mm = 0.003;
 };
 
-/// Whose weight is compensated, and switches for study.
+/// Weight compensation, and switches for studies.
 struct HapticOptions {
   Tool tool = Tool::kNeedle;
   ForceModel force_model = ForceModel::kInsertion;
@@ -76,7 +76,7 @@ struct LayerLaw {
   LoadingLaw loading;
   double puncture_force_n = std::numeric_limits<double>::infinity();
   double indent_n_per_mm = 1.0;  ///< Puncture force over the static indentation at it; bone: its stiffness.
-  bool is_wall = false;          ///< Proxy models: gives way at a label's border.
+  bool is_wall = false;          ///< Proxy models: punctured at a label's border.
 };
 
 /// Everything the tick reads and never changes. Built off-line, shared, read by many threads.
@@ -113,7 +113,7 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
                                                              const DeviceCapability& device = {},
                                                              const HapticOptions& options = {});
 
-/// What lies at a point of the resting anatomy. Real-time safe.
+/// Tissue at a point of the resting anatomy. Real-time safe.
 struct TissueAt {
   std::uint8_t tissue = 0;  ///< 0: air.
   std::uint8_t label = 0;

@@ -4,7 +4,7 @@ namespace trocar::haptics {
 
 inline constexpr int kMaxBodyProxies = 32;
 
-/// The needle as forces see it. Frame N: origin at the tip, +z hub to tip, +y towards the bevel's face.
+/// Needle parameters of the force models. Frame N: origin at the tip, +z hub to tip, +y towards the bevel's face.
 struct NeedleGeometry {
   double radius_mm = 0.635;       ///< Outside. Range 0.1..2.5.
   double length_mm = 150.0;       ///< Stylus origin (grip) to tip. Range 20..300.

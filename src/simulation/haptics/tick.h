@@ -8,7 +8,7 @@
 
 namespace trocar::haptics {
 
-/// What the device gives a tick.
+/// Input of a tick from the device.
 struct HapticInput {
   double time_s = 0.0;
   double dt_s = 0.001;  ///< Since the last tick; 0 < dt <= kMaxDt_s.
@@ -24,7 +24,7 @@ struct HapticState {
   telemetry::TickSample last;
 };
 
-/// What a tick gives: the wrench for the device (in D, about the stylus origin) and its record.
+/// Output of a tick: the wrench for the device (in D, about the stylus origin) and its record.
 struct HapticOutput {
   Vec3 f_D = Vec3::Zero();
   Vec3 tau_D = Vec3::Zero();
@@ -33,7 +33,7 @@ struct HapticOutput {
 };
 
 inline constexpr double kMaxDt_s = 0.1;
-inline constexpr double kFarAway_mm = 5000.0;  ///< No device reaches that far.
+inline constexpr double kFarAway_mm = 5000.0;  ///< Beyond the reach of any device.
 
 /// One haptic tick: pose into P and into the resting anatomy, force model of the scene, weight compensation,
 /// composition (paper A, force composition; physics.md T1, T2), limits of the device. Pure: a function of its arguments

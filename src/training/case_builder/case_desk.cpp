@@ -56,7 +56,7 @@ void CaseDesk::undo() {
 
 void CaseDesk::redo() {
   if (!history_.can_redo()) return;
-  say("Done again: " + history_.redo_text());
+  say("Redone: " + history_.redo_text());
   history_.redo();
 }
 
@@ -86,7 +86,7 @@ void CaseDesk::plan_path() {
 }
 
 void CaseDesk::save(SaveOptions options) {
-  if (work_ != Work::kNone) return say("something else is under way; wait a moment", true);
+  if (work_ != Work::kNone) return say("another job is running; wait a moment", true);
   save_version_ = history_.version();
   save_ = BackgroundJob<fs::path>([draft = draft(), patients = patients_,
                                    options = std::move(options)](const Progress& progress) -> Result<fs::path> {
@@ -102,7 +102,7 @@ void CaseDesk::cancel() {
   retired_.retire(std::exchange(import_, {}));
   retired_.retire(std::exchange(plan_, {}));
   work_ = Work::kNone;
-  say("Given up; everything is as it was.");
+  say("Cancelled; nothing was changed.");
 }
 
 JobView CaseDesk::work_view() const {
@@ -144,7 +144,7 @@ bool CaseDesk::take_plan() {
   if (!*line_P) {
     say(line_P->error().text(), true);
   } else if (plan_version_ != history_.version()) {
-    say("The case was changed while the path was planned: plan again.", true);
+    say("The case changed during planning: plan again.", true);
   } else if (edit(set_expert_path(draft(), **line_P), "planned path")) {
     say(fmt::format("Planned: a path of {:.0f} mm.", (*line_P)->length_mm()));
   }

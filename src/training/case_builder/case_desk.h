@@ -17,9 +17,9 @@
 
 namespace trocar::case_builder {
 
-/// What an instructor works at: the draft with its steps, and the work in the background that a draft asks for. Every
-/// change has the draft looked over anew (checks, forces). One thread owns it and calls advance() once a frame; nothing
-/// here waits. Errors are told in message(), a line each.
+/// State of the case builder: the draft with its history, and its background work. Every change triggers new checks and
+/// forces. Owned by one thread, which calls advance() once per frame; no call blocks. message() returns errors, one
+/// line each.
 class CaseDesk {
  public:
   enum class Work : std::uint8_t { kNone, kImporting, kPlanning, kSaving };
@@ -30,13 +30,13 @@ class CaseDesk {
   CaseDesk(const CaseDesk&) = delete;
   CaseDesk& operator=(const CaseDesk&) = delete;
 
-  /// Takes what was finished, starts what is wanted. True: something that is shown may have changed.
+  /// Collects finished work and starts requested work. Returns true if displayed data may have changed.
   bool advance();
 
   const CaseDraft& draft() const noexcept { return history_.draft(); }
   const CaseHistory& history() const noexcept { return history_; }
   bool has_patient() const noexcept { return draft().imported != nullptr; }
-  /// The patient with the labels' names and tissues of the last look; null without an import.
+  /// The patient with the label names and tissues of the last check; null without an import.
   std::shared_ptr<const anatomy::VirtualPatient> patient() const noexcept { return patient_; }
   std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes() const noexcept { return meshes_; }
 
@@ -45,17 +45,17 @@ class CaseDesk {
   void undo();
   void redo();
 
-  /// A new import, in place of the draft once it has succeeded. An import that is under way is given up.
+  /// Starts a new import, which replaces the draft on success. Cancels a running import.
   void import_patient(ImportRequest request);
   /// The expert's path, found by the planner from target, entry zone and risks.
   void plan_path();
   void save(SaveOptions options);
-  /// Gives up what is under way. Saving is not given up: a case is written whole.
+  /// Cancels the running work. Saving is not cancelled: a case is written completely.
   void cancel();
   Work work() const noexcept { return work_; }
   JobView work_view() const;
 
-  /// Of the newest draft that was looked over; is_reviewed() tells whether that is the draft.
+  /// Checks of the newest checked draft; is_reviewed() is true if that is the current draft.
   const std::vector<CaseCheck>& checks() const noexcept { return checks_; }
   const std::optional<ForcePreview>& preview() const noexcept { return preview_; }
   const std::string& preview_error() const noexcept { return preview_error_; }

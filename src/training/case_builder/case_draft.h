@@ -11,7 +11,7 @@
 
 namespace trocar::case_builder {
 
-/// What was imported: immutable, and shared by every draft that is made of it.
+/// Imported data: immutable, shared by all drafts.
 struct ImportedPatient {
   anatomy::VirtualPatient patient;
   std::vector<anatomy::NamedMesh> meshes;            ///< By the names that the labels had at the import.
@@ -33,14 +33,14 @@ struct CaseDraft {
   tasks::Task task;                        ///< The template with its changes.
 };
 
-/// Whether two drafts say the same of the same import.
+/// True if two drafts of the same import are equal.
 bool is_same_draft(const CaseDraft& a, const CaseDraft& b);
 
-/// The path that the task names; nullptr: none is drawn, the path is planned when the case is opened.
+/// Expert path of the task, or nullptr: then the path is planned each time the case is opened.
 const anatomy::NeedlePath* find_expert_path(const CaseDraft& draft) noexcept;
 
-/// The middle of the target: the task's point, else the centroid of the target's label, or of the largest label of the
-/// task's target tissues; nothing where the patient has none.
+/// Centre of the target: the task's point, else the centroid of the target's label, or of the largest label of the
+/// task's target tissues; empty if there is none.
 std::optional<Vec3> find_target_point(const CaseDraft& draft);
 
 }  // namespace trocar::case_builder

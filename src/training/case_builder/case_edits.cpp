@@ -22,8 +22,8 @@ Status check_in_volume(const CaseDraft& draft, const Vec3& p_P, const char* what
   const Vec3 index = geometry.to_index(p_P);
   for (int a = 0; a < 3; ++a)
     if (!(index[a] >= -0.5 && index[a] <= static_cast<double>(geometry.size[static_cast<std::size_t>(a)]) - 0.5))
-      return fail(fmt::format("the {} lies outside the volume", what),
-                  fmt::format("({:.0f}, {:.0f}, {:.0f}) mm", p_P.x(), p_P.y(), p_P.z()), "put it into the patient");
+      return fail(fmt::format("the {} is outside the volume", what),
+                  fmt::format("({:.0f}, {:.0f}, {:.0f}) mm", p_P.x(), p_P.y(), p_P.z()), "move it into the patient");
   return {};
 }
 
@@ -97,7 +97,7 @@ Result<CaseDraft> set_target_label(CaseDraft draft, const std::string& name) {
 
 Result<CaseDraft> set_risk(CaseDraft draft, const tasks::RiskStructure& risk) {
   if (risk.tissue.empty() == risk.label.empty())
-    return fail("a risk structure is named by its tissue or its label", {}, "give one of the two");
+    return fail("a risk structure needs either a tissue or a label", {}, "give one of the two");
   if (!(risk.margin_mm >= 0.0 && risk.margin_mm <= 50.0))
     return fail("a margin is from 0 to 50 mm", fmt::format("{}", risk.margin_mm), "give a number in this range");
   if (!(risk.penalty >= 0.0 && risk.penalty <= 100.0))
@@ -126,7 +126,7 @@ Result<CaseDraft> set_entry_zone(CaseDraft draft, const Vec3& near_P, double rad
     return fail("the radius of an entry zone is from 1 to 200 mm", fmt::format("{}", radius_mm),
                 "give a number in this range");
   const auto centre_P = tasks::find_nearest_skin(draft.imported->patient, near_P);
-  if (!centre_P) return fail("there is no skin near this place", {}, "click on the patient's skin");
+  if (!centre_P) return fail("no skin near this position", {}, "click on the patient's skin");
   draft.task.entry_zone = tasks::EntryZone{*centre_P, radius_mm};
   return draft;
 }
@@ -140,7 +140,7 @@ Result<CaseDraft> set_expert_path(CaseDraft draft, const Segment& line_P) {
   TROCAR_TRY_STATUS(check_in_volume(draft, line_P.a, "entry"));
   TROCAR_TRY_STATUS(check_in_volume(draft, line_P.b, "path's end"));
   if (!(line_P.length_mm() >= kShortestPath_mm))
-    return fail(fmt::format("a path is at least {:.0f} mm long", kShortestPath_mm), {}, "move its ends apart");
+    return fail(fmt::format("a path must be at least {:.0f} mm long", kShortestPath_mm), {}, "move its ends apart");
   if (draft.task.expert_path.empty()) draft.task.expert_path = kExpertPath;
   for (anatomy::NeedlePath& path : draft.paths) {
     if (path.name != draft.task.expert_path) continue;

@@ -10,7 +10,7 @@ namespace trocar::case_builder {
 
 inline constexpr const char* kExpertPath = "expert";  ///< Name of the path that the case builder draws.
 
-// Each gives the draft with one change, or one clear line why that cannot be; the draft that was given stays as it is.
+// Each function returns a copy of the draft with one change, or an error; the input is not modified.
 
 /// Names are unique and not empty. Risks and a target that name the label follow it.
 Result<CaseDraft> rename_label(CaseDraft draft, std::uint8_t id, const std::string& name);
@@ -22,18 +22,18 @@ Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const volume
 CaseDraft use_template(CaseDraft draft, const tasks::Task& base);
 /// The point that the needle is to reach: inside the volume.
 Result<CaseDraft> set_target_point(CaseDraft draft, const Vec3& p_P);
-/// The label that is the target; empty: every label of the template's target tissues. A point is given up.
+/// Sets the target label (empty: all labels of the template's target tissues) and clears a target point.
 Result<CaseDraft> set_target_label(CaseDraft draft, const std::string& name);
 
 /// Adds a risk structure, or changes the one of the same tissue or label. Margin 0..50 mm, penalty 0..100.
 Result<CaseDraft> set_risk(CaseDraft draft, const tasks::RiskStructure& risk);
 Result<CaseDraft> remove_risk(CaseDraft draft, std::size_t row);
 
-/// A disc on the skin: the centre is brought onto it. Radius 1..200 mm. Error: no skin near the point.
+/// Sets a disc on the skin; the centre is projected onto it. Radius 1..200 mm. Error: no skin near the point.
 Result<CaseDraft> set_entry_zone(CaseDraft draft, const Vec3& near_P, double radius_mm);
 CaseDraft clear_entry_zone(CaseDraft draft);
 
-/// The expert's path, from the skin to where the tip is put. At least 5 mm long.
+/// Sets the expert's path, from the skin to the end position of the tip; at least 5 mm long.
 Result<CaseDraft> set_expert_path(CaseDraft draft, const Segment& line_P);
 CaseDraft clear_expert_path(CaseDraft draft);
 

@@ -20,21 +20,21 @@ class CaseHistory {
 
   /// Forgets all steps.
   void begin(CaseDraft draft);
-  /// One step. `what` in words, for the buttons. Steps that follow each other with the same `gesture` (a drag, a number
-  /// that is turned) are one; empty: a step of its own. A draft that says the same is no step.
+  /// Adds one step. `what`: text for the buttons. Consecutive steps with the same `gesture` (a drag, a spin box) are
+  /// merged; empty: a separate step. A draft without a change adds no step.
   void apply(CaseDraft next, std::string what, const std::string& gesture = {});
 
   bool can_undo() const noexcept { return steps_.can_undo(); }
   bool can_redo() const noexcept { return steps_.can_redo(); }
   std::string undo_text() const { return can_undo() ? steps_.now().what : std::string(); }
   std::string redo_text() const { return can_redo() ? steps_.next().what : std::string(); }
-  void undo();  ///< Nothing where there is nothing to undo.
+  void undo();  ///< No effect if there is nothing to undo.
   void redo();
 
  private:
   struct Step {
     CaseDraft draft;
-    std::string what;  ///< Led to it.
+    std::string what;  ///< Text of the step that led to it.
   };
   StepHistory<Step> steps_{kMaxSteps};
   std::string gesture_;

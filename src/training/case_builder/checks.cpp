@@ -78,7 +78,7 @@ class Checks {
     for (const anatomy::LabelStatistics& s : statistics_) {
       const anatomy::Label& label = *patient_.label_table.find(s.id);
       if (!tissues_.find_tissue(label.tissue))
-        refuse(CaseStep::kLabels, fmt::format("{}: there is no tissue \"{}\" to feel", label.name, label.tissue),
+        refuse(CaseStep::kLabels, fmt::format("{}: tissue \"{}\" is not in the tissue table", label.name, label.tissue),
                s.voxels > 0 ? std::optional(s.centroid_P) : std::nullopt);
       look_at_volume(label, s);
     }
@@ -104,8 +104,8 @@ class Checks {
       if (share <= kShareOutside) continue;
       const volume::Index3 ijk = patient_.labels.geometry.index_of(first[label.id]);
       refuse(CaseStep::kLabels,
-             fmt::format("{:.0f} % of {} lies outside the body: does the segmentation belong to this CT?",
-                         100.0 * share, label.name),
+             fmt::format("{:.0f} % of {} is outside the body: does the segmentation belong to this CT?", 100.0 * share,
+                         label.name),
              patient_.labels.geometry.to_mm(
                  {static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])}));
     }
@@ -141,15 +141,15 @@ class Checks {
                               return s.id == label->id && s.voxels > 0;
                             });
       if (!is_there)
-        refuse(CaseStep::kTarget, fmt::format("the target \"{}\" has no voxel", task.target_label));
+        refuse(CaseStep::kTarget, fmt::format("the target \"{}\" has no voxels", task.target_label));
       else if (find_risk(task, *label) != nullptr)
-        refuse(CaseStep::kTarget, fmt::format("the target {} is a risk structure, too", label->name));
+        refuse(CaseStep::kTarget, fmt::format("the target {} is also a risk structure", label->name));
     }
     const std::optional<Vec3> target_P = find_target_point(draft_);
     if (!target_P) return;
     const double skin_mm = volume::sample_linear(patient_.skin_distance_mm, *target_P);
     if (skin_mm > 0.0) {
-      refuse(CaseStep::kTarget, fmt::format("the target lies {:.0f} mm outside the body", skin_mm), target_P);
+      refuse(CaseStep::kTarget, fmt::format("the target is {:.0f} mm outside the body", skin_mm), target_P);
       return;
     }
     const anatomy::Label* label = anatomy::find_label(patient_, *target_P);
@@ -157,17 +157,16 @@ class Checks {
     const std::string place =
         label != nullptr ? fmt::format("{} ({})", label->name, label->tissue) : "nothing labelled";
     if (!is_wanted && label != nullptr && find_risk(task, *label) != nullptr)
-      refuse(CaseStep::kTarget, fmt::format("the target lies in {}, a risk structure", place), target_P);
+      refuse(CaseStep::kTarget, fmt::format("the target is in {}, a risk structure", place), target_P);
     else if (!is_wanted && task.target_P)
-      refuse(CaseStep::kTarget, fmt::format("the target lies in {}, not in the {}", place, task.organ), target_P);
+      refuse(CaseStep::kTarget, fmt::format("the target is in {}, not in the {}", place, task.organ), target_P);
     else
       add(CheckLevel::kOk, CaseStep::kTarget,
-          fmt::format("the target lies in {}, {:.0f} mm below the skin", place, -skin_mm), target_P);
+          fmt::format("the target is in {}, {:.0f} mm below the skin", place, -skin_mm), target_P);
   }
 
   void look_at_risks() {
-    if (draft_.task.risks.empty())
-      warn(CaseStep::kTarget, "no risk structures: nothing costs points when it is touched");
+    if (draft_.task.risks.empty()) warn(CaseStep::kTarget, "no risk structures: contact never costs points");
     for (const tasks::RiskStructure& risk : draft_.task.risks) {
       if (risk.label.empty()) continue;
       if (patient_.label_table.find(std::string_view(risk.label)) == nullptr)
@@ -180,14 +179,14 @@ class Checks {
     const tasks::EntryZone& zone = *draft_.task.entry_zone;
     const double skin_mm = volume::sample_linear(patient_.skin_distance_mm, zone.centre_P);
     if (std::abs(skin_mm) > kOutside_mm)
-      refuse(CaseStep::kPath, fmt::format("the entry zone's centre lies {:.0f} mm off the skin", std::abs(skin_mm)),
+      refuse(CaseStep::kPath, fmt::format("the centre of the entry zone is {:.0f} mm from the skin", std::abs(skin_mm)),
              zone.centre_P);
   }
 
   void look_at_path() {
     const anatomy::NeedlePath* path = find_expert_path(draft_);
     if (path == nullptr) {
-      warn(CaseStep::kPath, "no expert path is drawn: one is planned whenever the case is opened");
+      warn(CaseStep::kPath, "no expert path: it is planned each time the case is opened");
       return;
     }
     const tasks::PathAssessment assessment = tasks::assess_path(draft_.task, patient_, needle_, path->line_P);
@@ -199,7 +198,7 @@ class Checks {
                     assessment.path.length_mm, assessment.path.organ_path_mm, draft_.task.organ,
                     assessment.entry_angle_deg,
                     assessment.path.nearest_risk.empty()
-                        ? std::string("nothing at risk is near")
+                        ? std::string("no risk structure nearby")
                         : fmt::format("{} is {:.1f} mm beyond its margin", assessment.path.nearest_risk,
                                       assessment.path.spare_margin_mm)),
         path->line_P.a);
@@ -208,7 +207,7 @@ class Checks {
   void look_at_texts() {
     if (draft_.name.empty()) refuse(CaseStep::kSave, "the case has no name");
     if (draft_.description.empty()) warn(CaseStep::kSave, "no description: trainees see only the name");
-    if (draft_.provenance.empty()) warn(CaseStep::kSave, "it is not said where the patient comes from");
+    if (draft_.provenance.empty()) warn(CaseStep::kSave, "the source of the patient is not stated");
   }
 
   const CaseDraft& draft_;

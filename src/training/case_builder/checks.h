@@ -21,18 +21,17 @@ inline constexpr int kCaseSteps = 6;
 struct CaseCheck {
   CheckLevel level = CheckLevel::kOk;
   CaseStep step = CaseStep::kLabels;
-  std::string text;             ///< What is right, doubtful or wrong, in words.
+  std::string text;             ///< Text of the result.
   std::optional<Vec3> where_P;  ///< What a view can jump to.
 };
 
-/// Everything that can be said of a draft: labels (outside the body, implausible HU, volume or extent, cut off, of no
-/// known tissue), the task (what the patient lacks), target, entry zone and path (what they touch, where, by how much).
-/// Errors come first within a step; a step that is in order says so in one line. `patient` is the draft's
-/// (DraftPatient). Some 100 ms for a CT of 30 million voxels: not for the thread of a window.
+/// Runs all checks of a draft: labels (outside the body, implausible HU, volume or extent, cut off, unknown tissue),
+/// task, target, entry zone and path. Errors come first within a step; a correct step has one line. `patient`: that of
+/// the draft. Takes about 100 ms for a CT of 30 million voxels: do not call it on the GUI thread.
 std::vector<CaseCheck> check_draft(const CaseDraft& draft, const anatomy::VirtualPatient& patient,
                                    const tasks::Needle& needle, const anatomy::TissueTable& tissues);
 
-/// The worst of a step; kOk where nothing is said of it.
+/// Worst level of a step; kOk if there are no findings.
 CheckLevel worst_level(const std::vector<CaseCheck>& checks, CaseStep step) noexcept;
 
 }  // namespace trocar::case_builder

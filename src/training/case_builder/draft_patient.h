@@ -8,9 +8,8 @@
 
 namespace trocar::case_builder {
 
-/// A draft's patient as all other parts want it. While the labels are as imported it is the import itself; with edited
-/// labels the volumes have to be copied once, whichever thread asks first: ask on a thread of its own. Keeps the
-/// newest.
+/// The patient of a draft. With unedited labels it is the import itself; with edited labels the first request copies
+/// the volumes: call it from a worker thread. Caches the newest one.
 class DraftPatient {
  public:
   /// With the draft's label table; landmarks, paths and texts are those of the import. The draft must have an import.

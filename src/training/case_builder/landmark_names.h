@@ -5,8 +5,7 @@
 
 namespace trocar::case_builder {
 
-/// Names of landmarks that are seen or felt on the skin, as they are said at the bedside: those of the trunk from head
-/// to feet, then those of the back.
+/// Common clinical names of landmarks that are visible or palpable on the skin: trunk from head to feet, then the back.
 std::span<const std::string_view> landmark_names() noexcept;
 
 }  // namespace trocar::case_builder

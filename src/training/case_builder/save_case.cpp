@@ -21,11 +21,11 @@ anatomy::VirtualPatient patient_of(const CaseDraft& draft, DraftPatient& patient
 
 Status check_target(const SaveOptions& options) {
   const fs::path& folder = options.folder;
-  if (folder.empty()) return fail_usage("no folder was named", {}, "choose a folder for the case");
+  if (folder.empty()) return fail_usage("no folder given", {}, "choose a folder for the case");
   std::error_code ignored;
   if (!fs::exists(folder, ignored) || fs::is_empty(folder, ignored)) return {};
   if (!fs::exists(folder / "patient.toml", ignored))
-    return fail_usage("the folder holds something other than a patient", folder.string(), "choose another folder");
+    return fail_usage("the folder contains data other than a patient", folder.string(), "choose another folder");
   if (!options.overwrites)
     return fail_usage("a case already exists there", folder.string(),
                       "choose another folder, or confirm that it is replaced");

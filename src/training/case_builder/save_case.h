@@ -11,12 +11,11 @@ namespace trocar::case_builder {
 
 struct SaveOptions {
   std::filesystem::path folder;
-  bool overwrites = false;  ///< A patient folder that stands there is replaced; anything else never is.
+  bool overwrites = false;  ///< Replaces an existing patient folder; other folders are never replaced.
 };
 
-/// Writes the case as a patient folder with its own task (task.toml) in it, whole or not at all: `trocar run --patient
-/// FOLDER` opens it. Errors: the folder is there already, or is no patient's, and everything that writing can meet;
-/// what stood there before then stands there still.
+/// Writes the case as a patient folder with its own task (task.toml), completely or not at all. Errors: the folder
+/// exists, or is not a patient folder, and all write errors; existing data are then unchanged.
 Status save_case(const CaseDraft& draft, DraftPatient& patients, const SaveOptions& options,
                  const Progress& progress = {});
 

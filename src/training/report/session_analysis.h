@@ -36,7 +36,7 @@ struct TissueRun {
   double to_mm = 0.0;
   std::uint8_t tissue = 0;
 };
-/// What the tip went through on its way in, by depth: each depth counts when it is reached for the first time.
+/// Tissues that the tip passed during insertion, by depth: each depth counts when it is reached for the first time.
 std::vector<TissueRun> tissues_along(const storage::Session& session, const Insertion& insertion);
 
 /// A run of one phase.

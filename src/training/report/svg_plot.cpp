@@ -287,8 +287,8 @@ std::string to_svg_file(const Plot& plot, std::string_view title) {
       "<text class=\"heading\" x=\"{4:.1f}\" y=\"{5:.1f}\">{6}</text>\n<g transform=\"translate({7:.1f} "
       "{8:.1f})\">{9}</g>\n"
       "</svg>\n",
-      width, height, escape(plot.description), detail::plot_style(), kLeft + kMargin, 0.66 * kTitle,
-      escape(title), kMargin, kTitle, drawing.elements);
+      width, height, escape(plot.description), detail::plot_style(), kLeft + kMargin, 0.66 * kTitle, escape(title),
+      kMargin, kTitle, drawing.elements);
 }
 
 }  // namespace trocar::report

@@ -45,7 +45,7 @@ struct SessionInfo {
   std::vector<std::string> label_names;  ///< 256 entries.
 };
 
-/// Where the transducer was felt at a moment. Frame P.
+/// Pose of the virtual transducer at a time. Frame P.
 struct TransducerSample {
   double time_s = 0.0;     ///< As the ticks' time.
   Pose X_PT;               ///< As felt: it does not pass through the skin.
@@ -117,7 +117,7 @@ struct Session {
 /// by bit. Errors, one line each: no such file, a folder, empty, not a session, damaged, of a newer version, a killed
 /// session where nothing can be written. A hostile file costs bounded time and memory.
 Result<Session> load_session(const std::filesystem::path& path);
-/// The same of a damaged session: what is left of it, and the damage. An error where nothing is left.
+/// Reads the undamaged part of a damaged session, with a list of the damage. Error if nothing is readable.
 Result<Session> salvage_session(const std::filesystem::path& path);
 /// "the session is damaged: ticks 500 to 999".
 Error damage_error(const Session& session, const std::filesystem::path& path, const std::string& advice);

@@ -58,7 +58,7 @@ void apply(const SessionParameters& first, SessionInfo& info) {
 const char* open_advice(const fs::path& path) {
   std::error_code error;
   return fs::exists(path.string() + "-wal", error)
-             ? "the program was killed here: copy the session and its -wal file to a place that can be written"
+             ? "the program was killed during recording: copy the session and its -wal file to a writable folder"
              : "check the file; if it was copied, copy it again";
 }
 
@@ -97,7 +97,7 @@ Result<Session> salvage_session(const fs::path& path) {
     is_exhausted = database.is_exhausted();
   });
   if (is_exhausted)
-    return fail("not a session: reading it takes more work than a session of its size", path.string(), kAdvice);
+    return fail("not a session: reading it requires more work than a session of its size", path.string(), kAdvice);
   TROCAR_TRY_STATUS(read);
   TROCAR_TRY_STATUS(identity);
   if (!session.damage.empty() && session.samples.empty())

@@ -219,7 +219,7 @@ Status SessionWriter::Impl::make_single_file() {
   });
   const bool is_locked = !status && status.error().what.find("is locked") != std::string::npos;
   if (!is_locked) return status;
-  log_warning("{} stays in two files: another program is reading it", path.string());
+  log_warning("{} remains in two files: another program is reading it", path.string());
   return {};
 }
 
@@ -234,7 +234,7 @@ Result<SessionWriter> SessionWriter::create(const fs::path& path, const SessionI
   impl->path = path;
   impl->info = info;
   impl->batch_ticks = static_cast<std::size_t>(std::clamp(kBatchSeconds * info.rate_hz, 1.0, kMaxBatchTicks));
-  const Status status = guarded("the session cannot be made", path, kWriteAdvice, [&] { impl->set_up(); });
+  const Status status = guarded("cannot create the session", path, kWriteAdvice, [&] { impl->set_up(); });
   if (!status) {
     impl.reset();
     remove_all(session_files(path));

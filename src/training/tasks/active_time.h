@@ -6,14 +6,14 @@
 
 namespace trocar::tasks {
 
-/// A time in which the trainee could not act: a haptic server was away, or no tick was answered. Times of the session;
+/// A time in which the trainee could not act: a haptic server was unavailable, or no tick was answered. Session times;
 /// `to_s` is the time of the first tick after it.
 struct Interruption {
   double from_s = 0.0;
   double to_s = 0.0;
   std::string reason;  ///< kServerWasAway, or other words.
 };
-/// After it the insertion began anew where the needle was.
+/// After such an interruption the insertion restarts at the needle's pose.
 inline constexpr const char* kServerWasAway = "the needle's server was away";
 
 /// Time from `from_s` to `to_s` in which the trainee could act. Interruptions do not overlap.

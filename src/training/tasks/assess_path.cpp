@@ -68,14 +68,14 @@ class Assessor {
     made_.entry_angle_deg = std::acos(cosine) * 180.0 / std::numbers::pi;
     if (made_.entry_angle_deg > task_.max_entry_angle_deg)
       add(PathFault::kGlancing, entry_P,
-          fmt::format("the needle meets the skin {:.0f}° off its normal; at most {:.0f}° are wanted",
-                      made_.entry_angle_deg, task_.max_entry_angle_deg));
+          fmt::format("the needle is {:.0f}° from the skin's normal; the limit is {:.0f}°", made_.entry_angle_deg,
+                      task_.max_entry_angle_deg));
     if (normal.y() > std::sin(task_.max_posterior_deg * std::numbers::pi / 180.0))
-      add(PathFault::kOutOfReach, entry_P, "the entry lies on the patient's back, out of reach");
+      add(PathFault::kOutOfReach, entry_P, "the entry is on the patient's back and not accessible");
     if (!task_.entry_zone) return;
     const double outside_mm = task_.entry_zone->distance_outside_mm(entry_P);
     if (outside_mm > 0.0)
-      add(PathFault::kOutsideZone, entry_P, fmt::format("the entry lies {:.0f} mm outside the entry zone", outside_mm));
+      add(PathFault::kOutsideZone, entry_P, fmt::format("the entry is {:.0f} mm outside the entry zone", outside_mm));
   }
 
   void look_at_length() {
@@ -108,7 +108,7 @@ class Assessor {
     }
     if (made_.path.organ_path_mm < task_.min_organ_path_mm)
       add(PathFault::kOrganPath, line_P_.b,
-          fmt::format("the path passes {:.0f} mm of {} before the target; at least {:.0f} mm are wanted",
+          fmt::format("the path passes through {:.0f} mm of {} before the target; the minimum is {:.0f} mm",
                       made_.path.organ_path_mm, task_.organ, task_.min_organ_path_mm));
   }
 
@@ -159,8 +159,9 @@ class Assessor {
       if (is_crossed_[label.id] || away_mm >= risk->margin_mm) continue;
       const Vec3& where_P = nearest[label.id].where_P;
       add(PathFault::kMargin, where_P,
-          fmt::format("the path passes {} ({}) at {:.1f} mm, {:.0f} mm below the skin; {:.0f} mm are wanted",
-                      label.name, label.tissue, away_mm, std::max(0.0, depth_of(where_P)), risk->margin_mm),
+          fmt::format(
+              "the path passes {} ({}) at {:.1f} mm, {:.0f} mm below the skin; the required margin is {:.0f} mm",
+              label.name, label.tissue, away_mm, std::max(0.0, depth_of(where_P)), risk->margin_mm),
           label.name, away_mm);
     }
   }
@@ -171,7 +172,7 @@ class Assessor {
       const double miss_mm = (reached_P - *task_.target_P).norm();
       if (miss_mm > task_.target_tolerance_mm)
         add(PathFault::kOffTarget, reached_P,
-            fmt::format("what the needle reaches lies {:.0f} mm off the target", miss_mm));
+            fmt::format("the needle's end position is {:.0f} mm from the target", miss_mm));
       return;
     }
     const bool wants_organ = is_parenchymal(task_, patient_);
@@ -182,7 +183,7 @@ class Assessor {
     }
     const anatomy::Label* label = anatomy::find_label(patient_, reached_P);
     add(PathFault::kOffTarget, reached_P,
-        fmt::format("the needle reaches {}, not the target", label != nullptr ? label->name : "nothing labelled"));
+        fmt::format("the needle ends in {}, not in the target", label != nullptr ? label->name : "nothing labelled"));
   }
 
   const Task& task_;

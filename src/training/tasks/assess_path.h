@@ -16,8 +16,8 @@ namespace trocar::tasks {
 enum class PathFault : std::uint8_t {
   kNotOnSkin,    ///< It does not begin at the skin.
   kTooLong,      ///< For the task or for the needle.
-  kGlancing,     ///< The needle meets the skin too flat.
-  kOutOfReach,   ///< The skin looks too far down: the patient lies on it.
+  kGlancing,     ///< The angle between needle and skin is too flat.
+  kOutOfReach,   ///< The skin faces downwards: the patient lies on it.
   kOutsideZone,  ///< It begins outside the entry zone.
   kCrosses,      ///< It goes through a structure that no path may pass.
   kMargin,       ///< It comes nearer to a risk structure than its margin.
@@ -28,7 +28,7 @@ enum class PathFault : std::uint8_t {
 struct PathFinding {
   PathFault fault = PathFault::kCrosses;
   std::string label;  ///< The structure's name, where there is one.
-  std::string text;   ///< In words: what, where, by how much.
+  std::string text;   ///< Description: what, where, by how much.
   Vec3 where_P = Vec3::Zero();
   double depth_mm = 0.0;      ///< Of where_P along the path, from its entry.
   double clearance_mm = 0.0;  ///< To the structure's surface; 0: it is crossed.

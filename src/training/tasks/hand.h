@@ -21,7 +21,7 @@ struct HandParams {
 /// The hand as an integrator takes it: f_P = stiffness*(anchor - tip) + damping*(anchor velocity - velocity) on a mass
 /// that is added to the device's. The derivatives by position and velocity are -stiffness and -damping.
 struct HandSpring {
-  Vec3 anchor_P = Vec3::Zero();           ///< Where the operator wants the tip, mm.
+  Vec3 anchor_P = Vec3::Zero();           ///< Target position of the tip, mm.
   Vec3 anchor_velocity_P = Vec3::Zero();  ///< mm/s.
   double stiffness_n_per_mm = 0.0;
   double damping_ns_per_mm = 0.0;

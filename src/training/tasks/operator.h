@@ -11,7 +11,7 @@
 
 namespace trocar::tasks {
 
-/// What an operator knows before a tick.
+/// Input of an operator before a tick.
 struct OperatorView {
   double time_s = 0.0;
   double dt_s = 0.001;
@@ -19,13 +19,13 @@ struct OperatorView {
   telemetry::TickSample last;  ///< What the last tick made; at the first call default values.
 };
 
-/// Where the operator wants its hand: the hand's spring pulls the device there.
+/// Target pose of the operator's hand: the hand's spring pulls the device there.
 struct HandCommand {
   Pose X_PN;                ///< Wanted needle pose.
   Vec3 v_P = Vec3::Zero();  ///< Wanted velocity of the tip, mm/s.
   bool has_fired = false;   ///< The biopsy gun is fired at this tick.
-  bool is_done = false;     ///< Nothing more to do.
-  bool is_rigid = false;    ///< The device follows X_PN exactly, whatever it pushes (replay).
+  bool is_done = false;     ///< Finished.
+  bool is_rigid = false;    ///< The device follows X_PN exactly, independent of the force (replay).
 };
 
 /// A scripted operator. Deterministic: the same seed and the same views give the same commands.
@@ -42,10 +42,9 @@ struct OperatorCase {
   std::uint64_t seed = 1;
 };
 
-/// Follows the path: touches, pauses, inserts slower the more it feels, stops where it sees the tip (of the virtual
-/// needle) at the target, holds still, fires, withdraws. Gives up, without firing, where it cannot get through. The
-/// device must start at the pose of the first command. About 10..30 s, never more
-/// than 60.
+/// Follows the path: touches, pauses, inserts more slowly with more resistance, stops when the (virtual) tip is at the
+/// target, holds still, fires, withdraws. Stops without firing if it cannot advance. The device must start at the pose
+/// of the first command. Takes about 10..30 s, at most 60.
 std::unique_ptr<Operator> make_expert(const OperatorCase& the_case);
 /// Misses the entry and the angle, trembles, moves unevenly and too fast, hesitates, pulls back, stops short or too
 /// deep: by chance, from the seed. Never more than 60 s.

@@ -197,13 +197,13 @@ std::string reason_of(const PlanningMap& map, const Needle& needle, const PathCa
     case Verdict::kCutFace:
       return "leave the volume before the skin";
     case Verdict::kOutOfReach:
-      return "start at the back, out of reach";
+      return "start at the patient's back and are not accessible";
     case Verdict::kOutsideZone:
       return "start outside the entry zone";
     case Verdict::kGlancing:
       return fmt::format("meet the skin at more than {} degrees", task.max_entry_angle_deg);
     case Verdict::kNoMuscle:
-      return "do not pass muscle";
+      return "do not pass through muscle";
     case Verdict::kLeavesOrgan:
       return fmt::format("leave the {} again before the needle's end", task.organ);
     case Verdict::kOrganPath:
@@ -212,9 +212,9 @@ std::string reason_of(const PlanningMap& map, const Needle& needle, const PathCa
     case Verdict::kMargin: {
       const anatomy::Label* label = anatomy::find_label(map.patient, line.where_P);
       if (line.verdict == Verdict::kMargin && !(label && map.risks[label->id])) label = nearest_risk(map, line.where_P);
-      if (!label) return "come too near to a risk structure";
+      if (!label) return "are too close to a risk structure";
       if (!map.risks[label->id]) return fmt::format("cross {}", label->tissue);
-      return fmt::format("keep less than the margin of {} mm to {}", map.risks[label->id]->margin_mm, label->tissue);
+      return fmt::format("are closer than the margin of {} mm to {}", map.risks[label->id]->margin_mm, label->tissue);
     }
     case Verdict::kFree:
       break;
@@ -243,11 +243,11 @@ tl::unexpected<Error> no_path(const PlanningMap& map, const Needle& needle, cons
   for (std::size_t n = 0; n < asked.size(); n += stride, ++total) ++reasons[reason_of(map, needle, *asked[n])];
   const auto worst = std::max_element(reasons.begin(), reasons.end(),
                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return fail(fmt::format("there is no safe path: of the {} {:.0f} % {}",
+  return fail(fmt::format("no safe path: of the {} {:.0f} % {}",
                           has_entries ? "lines from a usable entry" : "lines from the target",
                           100.0 * static_cast<double>(worst->second) / static_cast<double>(total), worst->first),
               map.patient.name,
-              fmt::format("relax this limit of the task {} or choose another patient", map.task.name));
+              fmt::format("relax this limit of the task {} or select another patient", map.task.name));
 }
 
 }  // namespace

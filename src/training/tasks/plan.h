@@ -14,8 +14,8 @@ namespace trocar::tasks {
 
 /// A path that keeps every margin of its task, over the throw of a biopsy needle too.
 struct PlannedPath {
-  /// Entry on the skin -> where the tip is put: at the target, or for a biopsy needle so far before it that the middle
-  /// of the notch comes to lie in the target when it is fired.
+  /// From the entry on the skin to the end position of the tip: at the target, or for a biopsy needle short of it, so
+  /// that the centre of the notch is in the target after firing.
   Segment line_P{Vec3::Zero(), Vec3::Zero()};
   double length_mm = 0.0;
   double organ_path_mm = 0.0;  ///< Length inside the organ before the lesion or the tip, what comes first.
@@ -28,7 +28,7 @@ struct PlannedPath {
 
 /// What paths are ranked by: the length plus a penalty for spare margin below 10 mm,
 /// length + 20 mm (1 - spare / 10 mm)^2. The first millimetre of spare margin is worth 3.8 mm of length, the fifth
-/// 2.2 mm, the tenth 0.2 mm. src/training/README.md.
+/// 2.2 mm, the tenth 0.2 mm. src/training/tasks/README.md.
 double path_cost_mm(double length_mm, double spare_margin_mm) noexcept;
 
 struct PlanOptions {

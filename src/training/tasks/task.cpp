@@ -112,7 +112,7 @@ TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patien
   const bool has_skin = std::any_of(patient.skin_distance_mm.voxels.begin(), patient.skin_distance_mm.voxels.end(),
                                     [](float distance) { return distance > 0.0F; });
   readiness.is_possible = found.has_organ && found.has_muscle && has_skin;
-  note(!found.has_organ, fmt::format("no {} is labelled", task.organ));
+  note(!found.has_organ, fmt::format("the {} is not labelled", task.organ));
   note(!found.has_muscle, "no muscle between skin and organ is labelled");
   note(!has_skin, "the skin's surface is not inside the volume");
   if (!readiness.is_possible) return readiness;
@@ -120,16 +120,16 @@ TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patien
   readiness.is_parenchymal = is_parenchymal(task, patient);
   note(!task.target_label.empty() && !found.has_target,
        fmt::format("the target \"{}\" is not labelled", task.target_label));
-  note(readiness.is_parenchymal && !task.target_P && task.target_label.empty(),
-       fmt::format(
-           "no lesion is labelled: the target lies in healthy {}, at least {} mm below its surface and {} mm from "
-           "vessels",
-           task.organ, task.parenchymal_depth_mm, task.parenchymal_vessel_mm));
+  note(
+      readiness.is_parenchymal && !task.target_P && task.target_label.empty(),
+      fmt::format(
+          "no lesion is labelled: the target is in healthy {}, at least {} mm below its surface and {} mm from vessels",
+          task.organ, task.parenchymal_depth_mm, task.parenchymal_vessel_mm));
   note(found.is_organ_cut, fmt::format("the {} is cut by the border of the volume", task.organ));
-  note(!found.has_vessel, "doubtful: no vessels are labelled, so none are avoided");
+  note(!found.has_vessel, "doubtful: vessels are not labelled, so paths do not avoid them");
   std::vector<std::string> missing = unlabelled_risks(task, patient, counts);
   std::erase(missing, "vessel");
-  note(!missing.empty(), fmt::format("not labelled, so not avoided: {}", fmt::join(missing, ", ")));
+  note(!missing.empty(), fmt::format("not labelled, so paths do not avoid them: {}", fmt::join(missing, ", ")));
   return readiness;
 }
 

@@ -38,7 +38,7 @@ struct Task {
   std::string needle;                       ///< Name in data/needles.toml.
   std::string force_model = "insertion";    ///< insertion, proxy or combined; see docs/physics.md T2.
   std::vector<RiskStructure> risks;
-  // What only a patient's own task says: it names places and structures of this one patient.
+  // Settings that only a patient's own task has: they refer to places and structures of this patient.
   std::string target_label;             ///< The one label that is the target; empty: all of target_tissues.
   std::optional<Vec3> target_P;         ///< The point to be reached; else the middle of a target's label.
   std::optional<EntryZone> entry_zone;  ///< Planned inside it; an entry inside it is as good as the expert's.
@@ -81,10 +81,10 @@ const RiskStructure* find_risk(const Task& task, const anatomy::Label& label) no
 /// The target lies in the organ's healthy tissue: no label of the patient is a target, or the task's point is in none.
 bool is_parenchymal(const Task& task, const anatomy::VirtualPatient& patient);
 
-/// Whether a patient can serve a task, and what is missing or doubtful, in words.
+/// Checks if a patient supports a task; lists missing and doubtful requirements.
 struct TaskReadiness {
   bool is_possible = false;
-  bool is_parenchymal = false;       ///< No lesion: the target lies in the organ's healthy tissue.
+  bool is_parenchymal = false;       ///< No lesion: the target is in the organ's healthy tissue.
   std::vector<std::string> reasons;  ///< Why not, or what is doubtful.
 };
 TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patient);

@@ -147,7 +147,8 @@ Result<Task> read_whole_task(const config::TomlTable& document, const std::strin
 Result<Task> read_whole_task(const fs::path& path) {
   TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
   if (document.has("base"))
-    return fail("a task of this folder has no base", path.string(), "write the whole task, or put it to a patient");
+    return fail("a task of this folder has no base", path.string(),
+                "write the complete task, or move the file to a patient folder");
   return read_whole_task(document, path.stem().string());
 }
 

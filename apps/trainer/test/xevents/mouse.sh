@@ -30,7 +30,7 @@ until_seen 3-inside into_the_body
 click 1197 777 # STOP FORCES
 seen 4-stopped
 shot stopped
-click 1197 777 # FORCES ON AGAIN
+click 1197 777 # RESUME FORCES
 seen 5-on-again
 move 500 260
 until_seen 6-near wheel up 1

@@ -13,8 +13,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kFirstSize_px = 64;  ///< Before the widget has one.
-/// The user's hand is asked for at most so often while a picture is drawn.
+constexpr int kFirstSize_px = 64;  ///< Used before the widget has a size.
+/// Minimum interval of input checks while a picture is rendered.
 constexpr std::chrono::milliseconds kWatchEvery{4};
 
 scene::TransducerFace face_of(const ultrasound::ScanGeometry& scan) {
@@ -43,16 +43,16 @@ struct PatientView::Impl {
   }
 
   std::unique_ptr<scene::PatientScene> scene;
-  QImage image;                     ///< Of the last whole frame; of the left eye with shutter glasses.
-  StereoOutput* shutter = nullptr;  ///< Made when shutter glasses are chosen.
+  QImage image;                     ///< Of the last complete frame; of the left eye with shutter glasses.
+  StereoOutput* shutter = nullptr;  ///< Created when shutter glasses are selected.
   QWidget* shutter_cover = nullptr;
   scene::DetailPolicyParams params;
-  std::unique_ptr<scene::DetailPolicy> policy;  ///< Made when it is known what draws.
-  scene::Detail drawn;                          ///< Of the last whole frame.
+  std::unique_ptr<scene::DetailPolicy> policy;  ///< Created when the renderer is known.
+  scene::Detail drawn;                          ///< Of the last complete frame.
   bool has_drawn = false;
   bool are_tools_moving = false;
   bool is_drawing = false;
-  QSize drawn_size;  ///< Of the widget in the last whole frame.
+  QSize drawn_size;  ///< Size of the widget in the last complete frame.
   scene::FrameTimes moving_times;
   scene::FrameTimes still_times;
   scene::FrameTimes unwatched_times;
@@ -68,14 +68,15 @@ struct PatientView::Impl {
 
 PatientView::PatientView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<Impl>()) {
   Result<std::unique_ptr<scene::PatientScene>> scene = scene::PatientScene::make(kFirstSize_px, kFirstSize_px);
-  TROCAR_CHECK(scene);  // main() has asked can_render()
+  TROCAR_CHECK(scene);  // main() has checked can_render()
   impl_->scene = std::move(*scene);
   setAttribute(Qt::WA_OpaquePaintEvent);
   setFocusPolicy(Qt::StrongFocus);
   setObjectName(QStringLiteral("patient-view"));
   setAccessibleName(tr("3D view of the patient"));
   setToolTip(
-      tr("Drag: turn · Shift+drag: move · wheel: zoom · 1–6: views · F follow · L along the needle · N side view"));
+      tr("Drag: rotate · Shift+drag: pan · wheel: zoom · 1–6: views · T: follow the tip · L: along the needle · B: "
+         "side view"));
 }
 
 PatientView::~PatientView() = default;
@@ -261,7 +262,7 @@ scene::PatientScene& PatientView::scene() noexcept {
 }
 
 QSize PatientView::picture_size(const scene::Detail& detail) const {
-  // Rows that are drawn smaller and stretched would mix the eyes.
+  // Scaled rows would mix the images of both eyes.
   const double share = stereo().mode == scene::StereoMode::kInterlaced ? 1.0 : detail.resolution;
   return (QSizeF(size()) * devicePixelRatioF() * share).toSize().expandedTo({1, 1});
 }
@@ -328,7 +329,7 @@ void PatientView::draw() {
   if (v.is_drawing || !isVisible()) return;
   v.is_drawing = true;
   const auto now = Clock::now();
-  // What draws is only known after a frame: the first one is a cheap one.
+  // The renderer is known only after a frame: the first frame has the lowest detail.
   if (!v.policy) {
     render(scene::DetailPolicy::moving(scene::DetailPolicy::kMovingLevels - 1), false);
     note_motion();

@@ -80,12 +80,12 @@ class PatientView : public QWidget {
   /// Whether the screen can show quad-buffer stereo.
   static bool has_quad_buffer();
 
-  /// Tools move by themselves (a haptic device, a replay): the picture stays cheap.
+  /// Tools move without user input (haptic device, replay): keeps the image at low detail.
   void set_tools_moving(bool are_moving);
   /// What a frame may take while things move, ms, 5..500, without a graphics card.
   void set_frame_target(double target_ms);
-  /// Asked while a picture of full quality is drawn, which takes long without a graphics card: a yes breaks it off.
-  /// Pointer and keys are watched anyway. Called in the GUI thread.
+  /// Polled while a full-quality image is rendered, which is slow without a graphics card: true cancels it. Pointer and
+  /// keys are always checked. Called in the GUI thread.
   void set_interrupt(std::function<bool()> wants_break);
   void draw();
   /// Draws now in full quality, without a break (screenshots).

@@ -14,12 +14,12 @@ constexpr double kZoomPerNotch = 1.15;
 constexpr double kZoomPerView = 6.0;  ///< A drag over the whole height.
 constexpr double kKeyOrbit_rad = 0.12;
 constexpr double kWheelNotch = 120.0;  ///< Of QWheelEvent::angleDelta.
-/// Where the pointer of a mouse event is; the same in Qt 5 and Qt 6.
+/// Position of a mouse event; the same in Qt 5 and Qt 6.
 QPointF place_of(const QMouseEvent& event) {
   return QPointF(event.pos());
 }
 
-/// What a key does; nothing for keys of others.
+/// Action of a key; empty for other keys.
 using Act = void (*)(PatientView& view);
 
 void toggle(PatientView& view, scene::FollowMode mode) {
@@ -103,7 +103,7 @@ void PatientView::keyPressEvent(QKeyEvent* event) {
   Q_EMIT changed();
 }
 
-/// With the focus here its keys are its own, also against shortcuts of the window.
+/// With the focus here, the view's keys take precedence over shortcuts of the window.
 bool PatientView::event(QEvent* event) {
   if (event->type() == QEvent::ShortcutOverride) {
     const auto* key = static_cast<QKeyEvent*>(event);

@@ -7,7 +7,7 @@
 namespace trocar::trainer {
 namespace {
 
-// Names of OpenGL that its embedded sibling, whose header Qt may bring, does not have.
+// OpenGL names that OpenGL ES, whose header Qt may include, does not define.
 constexpr unsigned kBackLeft = 0x0402;
 constexpr unsigned kBackRight = 0x0403;
 constexpr unsigned kBack = 0x0405;
@@ -98,7 +98,7 @@ void StereoOutput::put(const QImage& picture, unsigned buffer) {
   gl.glDrawBuffers(1, &target);
   const int wide = qRound(width() * devicePixelRatio());
   const int high = qRound(height() * devicePixelRatio());
-  // Images begin at the top, OpenGL's windows at the bottom.
+  // Images start at the top, OpenGL windows at the bottom.
   gl.glBlitFramebuffer(0, 0, picture.width(), picture.height(), 0, high, wide, 0, GL_COLOR_BUFFER_BIT, GL_LINEAR);
   gl.glDeleteFramebuffers(1, &source);
   gl.glDeleteTextures(1, &texture);

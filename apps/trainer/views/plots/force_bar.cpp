@@ -10,13 +10,13 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kHold_s = 1.5;        ///< That a peak is held.
+constexpr double kHold_s = 1.5;        ///< Hold time of a peak.
 constexpr double kWarningShare = 0.6;  ///< Of the device's peak force.
 constexpr double kBadShare = 0.85;
 constexpr double kGap = 8.0;
 constexpr double kForceThick = 16.0;
 constexpr double kLagThick = 7.0;
-constexpr double kShown = 0.002;  ///< Share of a bar that can be seen: smaller changes need no drawing.
+constexpr double kShown = 0.002;  ///< Smallest visible change, as share of the bar: smaller changes are not drawn.
 
 QColor color_of(double share) {
   const Theme& t = theme();
@@ -40,7 +40,7 @@ QString lag_title() {
   return ForceBar::tr("Lag");
 }
 
-/// Room beside lying bars for their titles and for their values.
+/// Width of the titles and values next to horizontal bars.
 double titles_width() {
   return std::max(text_width(force_title()), text_width(lag_title())) + kGap;
 }
@@ -55,8 +55,8 @@ ForceBar::ForceBar(Qt::Orientation orientation, QWidget* parent) : QWidget(paren
   setObjectName(QStringLiteral("force-bar"));
   setAccessibleName(tr("Resistance and lag"));
   setToolTip(
-      tr("Resistance: of the tissue now, of what the device can give; the line holds the peak.\n"
-         "Lag: how far the tool stays behind the hand."));
+      tr("Resistance: present force of the tissue, relative to the device's maximum; the line holds the peak.\nLag: "
+         "distance of the tool behind the hand."));
   set_orientation(orientation);
 }
 
@@ -109,7 +109,7 @@ QRectF ForceBar::force_rect() const {
     const double left = 0.5 * (width() - kForceThick - kGap - kLagThick);
     return {left, 2.0 * text_height() + 4.0, kForceThick, height() - 4.0 * text_height() - 8.0};
   }
-  const double top = 0.5 * (height() - text_height() - kForceThick);  // two lines of text, a bar in the middle of each
+  const double top = 0.5 * (height() - text_height() - kForceThick);  // two text lines, a bar in the middle of each
   return {titles_width(), top, width() - titles_width() - values_width(), kForceThick};
 }
 
@@ -142,7 +142,7 @@ void ForceBar::paintEvent(QPaintEvent* /*event*/) {
   constexpr double kLine = 2.0;
   const double thickness = kLine / (orientation_ == Qt::Vertical ? bar.height() : bar.width());
   if (peak > 0.0) painter.fillRect(part_of(bar, std::max(0.0, peak - thickness), peak), t.text);
-  for (const double mark : {kWarningShare, kBadShare}) {  // where the colour changes
+  for (const double mark : {kWarningShare, kBadShare}) {  // thresholds of the colours
     painter.setPen(QPen(t.line, 1.0));
     const QRectF at = part_of(bar, mark, mark);
     painter.drawLine(at.topLeft(), at.bottomRight());

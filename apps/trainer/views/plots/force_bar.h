@@ -4,10 +4,9 @@
 
 namespace trocar::trainer {
 
-/// The tissue's resistance now as a bar against what the device can give, with the peak of the last seconds held as a
-/// line; beside it, thinner, how far the tool lags behind the hand: the cue of resistance for hands that feel no force.
-/// Both have their names and values beside them. Stands upright or lies. It follows setters only; time comes with the
-/// force. Object name: force-bar.
+/// Bar of the tissue's present resistance relative to the device's maximum, with a line at the peak of the last
+/// seconds; next to it, thinner, the lag of the tool behind the hand, as a visual cue of resistance. Both have names
+/// and values. The orientation is vertical or horizontal. Only setters change it. Object name: force-bar.
 class ForceBar : public QWidget {
   Q_OBJECT
 

@@ -14,11 +14,11 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kLeastDepth_mm = 20.0;  ///< Axes span at least this.
+constexpr double kLeastDepth_mm = 20.0;  ///< Minimum ranges of the axes.
 constexpr double kLeastForce_n = 1.0;
 constexpr double kLeastTime_s = 10.0;
 constexpr double kHeadroom = 1.08;
-constexpr int kDepthSteps = 6;  ///< Pieces of an axis that its end is rounded to.
+constexpr int kDepthSteps = 6;  ///< The end of an axis is rounded to a multiple of its range divided by this.
 constexpr int kForceSteps = 6;
 
 QPolygonF polygon_of(const std::vector<QPointF>& values, const PlotFrame& frame) {
@@ -46,7 +46,7 @@ ForcePlot::ForcePlot(QWidget* parent)
       strip_(new ViewStrip(*this, [this](QPainter& painter, const QRectF& room) { paint_strip(painter, room); })) {
   setObjectName(QStringLiteral("force-plot"));
   setAccessibleName(tr("Resistance"));
-  setToolTip(tr("Resistance of the tissue along the needle. T: against depth or time"));
+  setToolTip(tr("Resistance of the tissue along the needle. T: switch between depth and time"));
   setFocusPolicy(Qt::StrongFocus);
   setAttribute(Qt::WA_OpaquePaintEvent);
   axis_button_->setObjectName(QStringLiteral("force-plot-axis"));
@@ -122,7 +122,7 @@ void ForcePlot::set_depth_shown(bool is_shown) {
   if (is_shown == is_depth_shown_) return;
   is_depth_shown_ = is_shown;
   axis_button_->setEnabled(is_shown);
-  axis_button_->setToolTip(is_shown ? tr("Against depth or time (T)") : tr("The depth is not shown in an exam"));
+  axis_button_->setToolTip(is_shown ? tr("Against depth or time (T)") : tr("Depth is hidden in an exam"));
   set_axis(is_shown ? Axis::kDepth : Axis::kTime);
 }
 
@@ -167,7 +167,7 @@ PlotFrame ForcePlot::frame() const {
     frame.x = rounded_out({0.0, far_mm_}, kDepthSteps);
     return frame;
   }
-  double span_s = kLeastTime_s;  // doubling, it changes rarely
+  double span_s = kLeastTime_s;  // doubled, so that it changes rarely
   while (!by_time_.points().empty() && span_s < by_time_.points().back().x()) span_s *= 2.0;
   frame.x = {0.0, span_s};
   return frame;
@@ -231,7 +231,7 @@ void ForcePlot::paint_bands(QPainter& painter, const PlotFrame& frame) const {
     painter.fillRect(QRectF(left, frame.area.top(), right - left, frame.area.height()), faded(band.color, 0.10));
     const QRectF box(left, frame.area.bottom(), right - left, high);
     painter.fillRect(box.adjusted(0.0, 0.0, right - left > 3.0 ? -1.0 : 0.0, 0.0), band.color);
-    if (metrics.horizontalAdvance(band.name) + 4.0 > box.width()) continue;  // the tool tip names it
+    if (metrics.horizontalAdvance(band.name) + 4.0 > box.width()) continue;  // the tool tip shows the name
     const bool is_bright = qGray(band.color.rgb()) > 120;
     painter.setPen(is_bright ? QColor(0x10, 0x14, 0x1a) : QColor(Qt::white));
     painter.drawText(box, Qt::AlignCenter, band.name);
@@ -285,7 +285,7 @@ void ForcePlot::paint_events(QPainter& painter, const PlotFrame& frame) const {
     painter.drawLine(QPointF(x, frame.area.top()), QPointF(x, frame.area.bottom()));
     const double wide = metrics.horizontalAdvance(event->text);
     const double left = std::min(x + 4.0, frame.area.right() - wide);
-    for (std::size_t row = 0; row < kRows; ++row) {  // without room in any row the tool tip has to name it
+    for (std::size_t row = 0; row < kRows; ++row) {  // if no row has space, the tool tip shows the name
       if (left < free_from[row]) continue;
       const double top = frame.area.top() + static_cast<double>(row) * metrics.height();
       painter.fillRect(QRectF(left - 2.0, top, wide + 4.0, metrics.height()), faded(theme().panel, 0.75));

@@ -51,12 +51,12 @@ class ForcePlot : public QWidget {
   /// By rising time. Points that are not finite are left out.
   void append(std::span<const ForcePoint> points);
   void add_event(double depth_mm, double time_s, const QString& text);
-  /// Forgets curve and events, and lets the axes shrink again; bands and the other curves stay.
+  /// Clears curve and events, and resets the axes; bands and the other curves stay.
   void clear();
   /// Replay: the curve up to this time is bright, the rest faint. Nothing: the newest point is the current one.
   void set_cursor(std::optional<double> time_s);
   void set_axis(Axis axis);
-  /// Without the depth there is the axis of time alone, and nothing tells how deep the tip is.
+  /// Without depth there is only the time axis, and nothing shows the depth of the tip.
   void set_depth_shown(bool is_shown);
 
   Axis axis() const noexcept { return axis_; }

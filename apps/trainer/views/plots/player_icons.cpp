@@ -8,7 +8,7 @@
 namespace trocar::trainer {
 namespace {
 
-/// In a square of side 1.
+/// Shape in a unit square.
 QPainterPath shape_of(PlayerIcon icon) {
   QPainterPath path;
   const auto triangle = [&](double back, double tip) {
@@ -49,7 +49,7 @@ QPixmap painted(PlayerIcon icon, int side, const QColor& color) {
 
 QIcon player_icon(PlayerIcon icon) {
   QIcon all;
-  for (const int side : {16, 32, 64}) {  // also for screens of two and four pixels a point
+  for (const int side : {16, 32, 64}) {  // also for screens with two or four pixels per point
     all.addPixmap(painted(icon, side, theme().text), QIcon::Normal);
     all.addPixmap(painted(icon, side, theme().line), QIcon::Disabled);
   }

@@ -7,7 +7,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kTickRoom_x = 52.0;  ///< Points that a number needs along its axis.
+constexpr double kTickRoom_x = 52.0;  ///< Space in points for a number along its axis.
 constexpr double kTickRoom_y = 30.0;
 
 int steps_in(double points, double room) {
@@ -53,7 +53,7 @@ void PlotFrame::draw_axes(QPainter& painter, const QString& x_unit, const QStrin
     painter.drawLine(QPointF(at, area.top()), QPointF(at, area.bottom()));
     const QString text = number(value, step_x);
     const double wide = metrics.horizontalAdvance(text);
-    if (at + 0.5 * wide > area.right() - unit_wide) continue;  // the unit stands there
+    if (at + 0.5 * wide > area.right() - unit_wide) continue;  // space of the unit
     painter.setPen(t.dim);
     painter.drawText(QPointF(at - 0.5 * wide, top + metrics.ascent()), text);
   }

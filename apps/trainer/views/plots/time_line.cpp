@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kStep_s = 0.1;
 constexpr double kLongStep_s = 1.0;
-constexpr double kSame_s = 1e-3;  ///< Nearer than one tick of the recording is at the event.
+constexpr double kSame_s = 1e-3;  ///< Within one tick of the recording: the same time as the event.
 
 QString clock_text(double time_s) {
   const auto tenths = std::llround(10.0 * time_s);
@@ -50,11 +50,11 @@ TimeLine::TimeLine(QWidget* parent)
   label_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   label_->setMinimumWidth(QFontMetrics(label_->font()).horizontalAdvance(QStringLiteral("0:00.0 / 0:00.0")) + 4);
   row->addWidget(label_);
-  worst_ = add_button("time-worst", tr("Worst"), tr("The worst moment (W)"));
+  worst_ = add_button("time-worst", tr("Worst"), tr("Go to the worst moment (W)"));
   for (const double factor : speeds()) speed_->addItem(QStringLiteral("%1×").arg(factor), factor);
   speed_->setObjectName(QStringLiteral("time-speed"));
   speed_->setAccessibleName(tr("Speed"));
-  speed_->setToolTip(tr("Speed of the replay (< slower, > faster)"));
+  speed_->setToolTip(tr("Replay speed (< slower, > faster)"));
   speed_->setFocusPolicy(Qt::TabFocus);
   row->addWidget(speed_);
   set_speed(1.0);
@@ -71,7 +71,7 @@ TimeLine::TimeLine(QWidget* parent)
 QToolButton* TimeLine::add_button(const char* name, const QString& text, const QString& tooltip) {
   QToolButton* button = make_tool_button(name, text, tooltip);
   button->setAccessibleName(tooltip);
-  button->setFocusPolicy(Qt::TabFocus);  // a click must not take the keys away from the time line
+  button->setFocusPolicy(Qt::TabFocus);  // a click must not move the focus away from the time line
   layout()->addWidget(button);
   return button;
 }
@@ -159,7 +159,7 @@ void TimeLine::go_to_previous_event() {
 void TimeLine::go_to_worst() {
   for (const Event& event : track_->events())
     if (event.kind == TimeMark::kWorst) {
-      set_playing(false);  // it is to be looked at
+      set_playing(false);  // stop to show the event
       return set_time(event.time_s);
     }
 }

@@ -13,10 +13,10 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kSide = 10.0;      ///< Room for the handle beyond both ends.
-constexpr double kPhaseHigh = 5.0;  ///< The strip of phases below the curve.
-constexpr double kMarkHigh = 12.0;  ///< The row of marks above the curve.
-constexpr double kNear = 6.0;       ///< Points from a mark that still mean it.
+constexpr double kSide = 10.0;      ///< Space for the handle at both ends.
+constexpr double kPhaseHigh = 5.0;  ///< Height of the phase strip below the curve.
+constexpr double kMarkHigh = 12.0;  ///< Height of the row of marks above the curve.
+constexpr double kNear = 6.0;       ///< Maximum distance in points for selecting a mark.
 
 QColor color_of(TimeMark kind) {
   const Theme& t = theme();
@@ -37,15 +37,15 @@ QColor color_of(TimeMark kind) {
   return t.dim;
 }
 
-/// The sign "!" in the middle of a mark.
+/// Draws "!" in the centre of a mark.
 void draw_exclamation(QPainter& painter, const QPointF& at) {
   painter.setPen(QPen(theme().ground, 2.0));
   painter.drawLine(at - QPointF(0.0, 3.0), at + QPointF(0.0, 0.5));
   painter.drawPoint(at + QPointF(0.0, 3.5));
 }
 
-/// Shapes differ as colours do: a triangle that points down, a diamond, a square, a disc, and the triangle of a warning
-/// sign for what was at risk.
+/// Marks differ in shape and colour: triangle pointing down, diamond, square, disc, and a warning triangle for risk
+/// structures.
 void draw_mark(QPainter& painter, const QPointF& at, TimeMark kind) {
   constexpr double kSize = 5.0;
   painter.setPen(QPen(theme().panel, 1.0));
@@ -124,7 +124,7 @@ double TimeTrack::time_at(double x) const {
 }
 
 void TimeTrack::scrub(double x) {
-  for (const Event& event : events_)  // what is marked can be hit
+  for (const Event& event : events_)  // marks can be clicked
     if (std::abs(x_of(event.time_s) - x) <= 0.5 * kNear) return Q_EMIT scrubbed(event.time_s);
   Q_EMIT scrubbed(time_at(x));
 }
@@ -187,7 +187,7 @@ void TimeTrack::paint_curve(QPainter& painter) const {
 }
 
 void TimeTrack::paint_marks(QPainter& painter) const {
-  // The worst moment lies over the others, and what was at risk over that: it often is the worst.
+  // The worst moment is drawn over the other marks, and contact with a risk structure over it, as they often coincide.
   const auto rank = [](TimeMark kind) { return kind == TimeMark::kRisk ? 2 : kind == TimeMark::kWorst ? 1 : 0; };
   for (const int now : {0, 1, 2}) {
     for (const Event& event : events_) {
@@ -219,7 +219,7 @@ void TimeTrack::paintEvent(QPaintEvent* /*event*/) {
   paint_curve(painter);
   paint_marks(painter);
   const double x = x_of(time_s_);
-  QColor later = t.ground;  // what is still to come is dimmed
+  QColor later = t.ground;  // the part after the present time is dimmed
   later.setAlphaF(0.45F);
   painter.fillRect(QRectF(x, room.top(), room.right() - x, room.height()), later);
   painter.setPen(QPen(t.text, 2.0));

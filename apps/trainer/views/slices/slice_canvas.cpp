@@ -22,7 +22,7 @@ QPen round_pen(const QColor& color, double width) {
   return {color, width, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin};
 }
 
-/// Pieces of a line that lie in the plane or off it; neighbouring pieces of a kind are one.
+/// Parts of a line in the plane and off it; adjacent parts of the same kind are joined.
 class SplitLine {
  public:
   SplitLine(const SliceCanvas& canvas, std::span<const Vec3> points_P) : canvas_(canvas) {
@@ -117,7 +117,7 @@ void draw_path(const SliceCanvas& canvas, const Segment& path_P) {
 void draw_target(const SliceCanvas& canvas, const Vec3& p_P) {
   QPainter& painter = canvas.painter;
   painter.setBrush(Qt::NoBrush);
-  constexpr double kFar_mm = 5.0;  // the target is a place of some size: it fades later than lines do
+  constexpr double kFar_mm = 5.0;  // the target has a size: it fades at a larger distance than lines
   constexpr double kRing = 5.5, kArm = 10.0;
   const bool is_near = std::abs(canvas.geometry.height_mm(p_P)) <= kFar_mm;
   const QColor color = is_near ? theme().target : faded(theme().target, 0.5);
@@ -180,7 +180,7 @@ void draw_scale_bar(const SliceCanvas& canvas) {
   const double mm_per_point = canvas.geometry.mm_per_px * canvas.device_pixel_ratio;
   const double room_mm = kShareOfWidth * canvas.picture.width() * mm_per_point;
   if (!(room_mm > 0.0)) return;
-  const double length_mm = report::nice_step({0.0, room_mm}, 3);  // at most 5/6 of the room
+  const double length_mm = report::nice_step({0.0, room_mm}, 3);  // at most 5/6 of the available space
   const double length = length_mm / mm_per_point;
   QPainter& painter = canvas.painter;
   painter.setFont(scaled_font(0.85));

@@ -14,7 +14,7 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kNear_mm = 15.0;  ///< A landmark farther from the slice is not drawn.
+constexpr double kNear_mm = 15.0;  ///< Landmarks farther from the slice are not drawn.
 
 }  // namespace
 

@@ -13,8 +13,8 @@ namespace trocar::trainer {
 
 class SliceView;
 
-/// Lies over a slice viewer and marks what a case is made of beside the plan, the target and landmarks, and the shot of
-/// a gun; faint where they lie beside the slice. Lets the mouse through.
+/// Overlay of a slice viewer with the marks of a case besides the plan (target, landmarks) and the gun's shot; faint if
+/// they are off the slice. Transparent for the mouse.
 class SliceMarks : public QWidget {
   Q_OBJECT
 

@@ -11,9 +11,9 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kNeedleField_mm = 180.0;  ///< What a needle's plane shows at first.
-constexpr double kFitMargin = 1.04;        ///< Of the picture over the body.
-constexpr double kMiddlePart = 0.3;        ///< Of width and height to each side of the middle: the anchor stays inside.
+constexpr double kNeedleField_mm = 180.0;  ///< Initial field of view of a needle's plane.
+constexpr double kFitMargin = 1.04;        ///< Margin of the picture around the body.
+constexpr double kMiddlePart = 0.3;        ///< Share of each side of the centre that the anchor may use.
 
 struct KindInfo {
   const char* object_name;
@@ -144,7 +144,7 @@ void SliceView::set_entry_zone(const std::optional<tasks::EntryZone>& zone) {
 
 void SliceView::set_guidance(scene::Guidance guidance) {
   if (std::exchange(guidance_, guidance) == guidance) return;
-  is_stale_ = true;  // lesions come and go
+  is_stale_ = true;  // visibility of lesions can change
   update();
 }
 
@@ -311,7 +311,7 @@ void SliceView::set_frame_at_skin(bool is_at_skin) {
 }
 
 QString SliceView::place_text() const {
-  // Signs of P as letters: LPS counts to the left, to the back and to the head.
+  // Direction letters of P: the LPS axes point to the left, to the back and to the head.
   const auto beyond = [](double mm, const char* positive, const char* negative) {
     const double shown_mm = std::abs(mm) < 0.05 ? 0.0 : std::abs(mm);
     return QStringLiteral("%1 %2 mm").arg(QLatin1String(mm < 0.0 ? negative : positive)).arg(shown_mm, 0, 'f', 1);
@@ -345,7 +345,7 @@ void SliceView::paint_strip(QPainter& painter, QRectF room) const {
                    hasFocus() ? info.color : info.color.darker(220));
   room.adjust(0.0, 0.0, 0.0, -kLine);
 
-  bool has_room = true;  // what has none is left out, and so is what is needed less
+  bool has_room = true;  // texts without space are omitted, together with all of lower priority
   const auto put = [&](const QString& text, double size, bool is_bold, const QColor& color, bool is_right) {
     painter.setFont(scaled_font(size, is_bold));
     const double wide = std::ceil(QFontMetricsF(painter.font()).horizontalAdvance(text));

@@ -12,17 +12,17 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kClick = 4.0;        ///< Points that a click may move.
-constexpr double kWheelStep = 120.0;  ///< Of angleDelta; finer wheels send parts of it.
+constexpr double kClick = 4.0;        ///< Maximum motion of a click in points.
+constexpr double kWheelStep = 120.0;  ///< angleDelta of one step; finer wheels send fractions.
 constexpr double kZoomStep = 1.15;
-constexpr double kNearest_mm = 0.02;  ///< Of a device pixel.
+constexpr double kNearest_mm = 0.02;  ///< Nearest zoom: size of a device pixel.
 constexpr double kFarthest_mm = 10.0;
-constexpr double kPanStep = 16.0;  ///< Points an arrow key.
+constexpr double kPanStep = 16.0;  ///< Points per arrow key.
 
 }  // namespace
 
 bool SliceView::event(QEvent* event) {
-  // Over the picture a help text would hide what is being looked at.
+  // A tool tip over the picture would hide it.
   if (event->type() == QEvent::ToolTip && static_cast<QHelpEvent*>(event)->pos().y() > picture_rect().top())
     return true;
   return QWidget::event(event);
@@ -72,7 +72,7 @@ void SliceView::scroll(double slices) {
   const double way_mm = slices * slice_step_mm();
   if (!follows_needle()) return move_focus(focus_P_ + way_mm * geometry_.axes.normal_P());
   offset_mm_ += way_mm;
-  if (std::abs(offset_mm_) < 1e-6) offset_mm_ = 0.0;  // back at the tip, whatever the sum was rounded to
+  if (std::abs(offset_mm_) < 1e-6) offset_mm_ = 0.0;  // back at the tip: removes rounding errors
   move_plane_to_anchor();
   update();
 }
@@ -115,7 +115,7 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
     case Drag::kWindow:
       break;
   }
-  // Wide windows change fast, narrow ones finely.
+  // Wide windows change fast, narrow ones slowly.
   const double hu_per_point = std::max(1.0, style_.window.width_hu / 200.0);
   change_window({style_.window.center_hu + hu_per_point * moved.y(),
                  std::max(1.0, style_.window.width_hu + hu_per_point * moved.x())});
@@ -123,7 +123,7 @@ void SliceView::mouseMoveEvent(QMouseEvent* event) {
 
 void SliceView::mouseReleaseEvent(QMouseEvent* event) {
   if (drag_ == Drag::kNone) return;
-  // Another button may have been pressed and released in the middle of the drag.
+  // Another button may have been pressed and released during the drag.
   const Qt::MouseButtons needed = drag_ == Drag::kFocus    ? Qt::MouseButtons(Qt::LeftButton)
                                   : drag_ == Drag::kWindow ? Qt::MouseButtons(Qt::RightButton)
                                                            : Qt::LeftButton | Qt::MiddleButton;

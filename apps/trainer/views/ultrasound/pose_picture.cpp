@@ -8,8 +8,8 @@
 namespace trocar::trainer {
 namespace {
 
-constexpr double kHalf_mm = 150.0;   ///< Shown to each side of the workspace's middle.
-constexpr double kStylus_mm = 60.0;  ///< Length that the stylus is drawn with.
+constexpr double kHalf_mm = 150.0;   ///< Displayed range to each side of the workspace's centre.
+constexpr double kStylus_mm = 60.0;  ///< Length of the drawn stylus.
 constexpr double kGrip_px = 5.0;
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace trocar::trainer {
 namespace {
 
-/// Poses are rounded: a picture that moves with its transducer stays within this.
+/// Tolerance for rounded poses: an image that moves with its transducer stays within it.
 constexpr double kSame_mm = 0.01;
 
 ultrasound::Vec2 in_plane(const Vec3& v_T) {
@@ -41,7 +41,7 @@ bool ScanMask::are_near(const Key& a, const Key& b) {
 
 std::vector<std::uint8_t> ScanMask::painted(const Key& key, const ultrasound::ScanGeometry& scan) {
   std::vector<std::uint8_t> alpha(static_cast<std::size_t>(key.columns) * static_cast<std::size_t>(key.rows), 0);
-  // Half a line's width beyond the outermost ones; without an arc tangent a pixel.
+  // Includes half a line's width beyond the outermost lines; avoids one arc tangent per pixel.
   const double half = 0.5 * scan.lines * scan.line_step;
   const double least_cos = scan.is_fan ? std::cos(half) : 0.0;
   const auto is_within = [&](const ultrasound::Vec2& p_T) {

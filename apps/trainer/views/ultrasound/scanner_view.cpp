@@ -25,7 +25,7 @@ void ScannerView::resizeEvent(QResizeEvent* event) {
   QWidget::resizeEvent(event);
   const bool is_narrow = width() < controls_.sizeHint().width() + kLeastPicture_px;
   parts_->setDirection(is_narrow ? QBoxLayout::TopToBottom : QBoxLayout::LeftToRight);
-  // Below, each has half of the height.
+  // One below the other, each has half of the height.
   parts_->setStretch(1, is_narrow ? 1 : 0);
 }
 

@@ -32,7 +32,7 @@ ultrasound::DopplerBox moved_box(const ultrasound::DopplerBox& box, BoxPart part
     case BoxPart::kWhole: {
       const double across = std::clamp(by.x(), -box.first_line, 1.0 - box.last_line);
       const double along = std::clamp(by.y(), -box.near, 1.0 - box.far);
-      // Lest rounding leaves the picture.
+      // Keeps the box in the image despite rounding.
       return {std::max(0.0, box.first_line + across), std::min(1.0, box.last_line + across),
               std::max(0.0, box.near + along), std::min(1.0, box.far + along)};
     }

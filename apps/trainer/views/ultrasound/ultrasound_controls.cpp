@@ -41,7 +41,7 @@ QGridLayout* knob_grid() {
   return grid;
 }
 
-/// Small enough that three stand side by side in the panel.
+/// Small enough for three side by side in the panel.
 QPushButton* small_button(const char* name, const QString& text, const QString& tooltip) {
   QPushButton* button = make_button(name, text, tooltip);
   button->setStyleSheet(QStringLiteral("padding: 4px 6px;"));
@@ -68,7 +68,8 @@ UltrasoundControls::UltrasoundControls(UltrasoundView& view, QWidget* parent) : 
   for (QWidget* part :
        {make_source(), make_freeze(), make_picture(), make_tgc(), make_measuring(), make_guide(), make_doppler()})
     column->addWidget(part);
-  auto* reset = make_button("ultrasound-reset", tr("Reset knobs"), tr("All knobs as the transducer's defaults"));
+  auto* reset = make_button("ultrasound-reset", tr("Reset image settings"),
+                            tr("Reset all image settings to the transducer's defaults"));
   connect(reset, &QPushButton::clicked, this, [this] { view_.reset_settings(); });
   column->addWidget(reset);
   column->addStretch(1);
@@ -107,12 +108,12 @@ QWidget* UltrasoundControls::make_source() {
     grid->addWidget(made, row, 1);
     return made;
   };
-  transducer_ = combo(0, "ultrasound-transducer", tr("Transducer"), tr("The array on the patient"));
+  transducer_ = combo(0, "ultrasound-transducer", tr("Transducer"), tr("Ultrasound array"));
   for (const ultrasound::Transducer& t : transducers_) {
     transducer_->addItem(to_qt(t.name));
     transducer_->setItemData(transducer_->count() - 1, to_qt(t.description), Qt::ToolTipRole);
   }
-  preset_ = combo(1, "ultrasound-preset", tr("Preset"), tr("Transducer and knobs for a kind of examination"));
+  preset_ = combo(1, "ultrasound-preset", tr("Preset"), tr("Transducer and image settings for an examination"));
   preset_->addItem(tr("choose"));
   for (const ultrasound::ScanPreset& preset : presets_) preset_->addItem(to_qt(preset.title));
   box->addLayout(grid);
@@ -142,8 +143,7 @@ void UltrasoundControls::apply_preset(int index) {
 QWidget* UltrasoundControls::make_freeze() {
   QWidget* widget = nullptr;
   QVBoxLayout* box = section(widget, {});
-  freeze_ =
-      make_button("ultrasound-freeze", tr("Freeze"), tr("Keeps the picture; what was measured goes with it  (F)"));
+  freeze_ = make_button("ultrasound-freeze", tr("Freeze"), tr("Freezes the image  (F)"));
   freeze_->setCheckable(true);
   connect(freeze_, &QPushButton::clicked, this, [this](bool is_on) { view_.set_frozen(is_on); });
   box->addWidget(freeze_);
@@ -151,14 +151,14 @@ QWidget* UltrasoundControls::make_freeze() {
   auto* row = new QHBoxLayout(cine_row_);
   row->setContentsMargins(0, 0, 0, 0);
   row->setSpacing(6);
-  auto* back = small_button("ultrasound-cine-back", QStringLiteral("‹"), tr("Back one picture  (Left)"));
-  auto* on = small_button("ultrasound-cine-on", QStringLiteral("›"), tr("On one picture  (Right)"));
-  play_ = small_button("ultrasound-cine-play", tr("Play"), tr("Plays what was kept  (P)"));
+  auto* back = small_button("ultrasound-cine-back", QStringLiteral("‹"), tr("Previous frame  (Left)"));
+  auto* on = small_button("ultrasound-cine-on", QStringLiteral("›"), tr("Next frame  (Right)"));
+  play_ = small_button("ultrasound-cine-play", tr("Play"), tr("Plays the cine loop  (P)"));
   play_->setCheckable(true);
   cine_ = new QSlider(Qt::Horizontal);
   cine_->setObjectName(QStringLiteral("ultrasound-cine"));
   cine_->setAccessibleName(tr("Cine loop"));
-  cine_->setToolTip(tr("Pictures that were kept, oldest at the left"));
+  cine_->setToolTip(tr("Frames of the cine loop, oldest on the left"));
   row->addWidget(back);
   row->addWidget(cine_, 1);
   row->addWidget(on);
@@ -210,24 +210,24 @@ QWidget* UltrasoundControls::make_picture() {
   QVBoxLayout* box = section(widget, tr("Picture"));
   auto* grid = knob_grid();
   using S = UltrasoundSettings;
-  add_knob(*grid, {"ultrasound-gain", tr("Gain"), tr("Brightness of all echoes  (G, Shift+G)"), -40, 40, 1,
+  add_knob(*grid, {"ultrasound-gain", tr("Gain"), tr("Gain of all echoes  (G, Shift+G)"), -40, 40, 1,
                    [](S& s) -> double& { return s.display.gain_db; }, decibels()});
-  add_knob(*grid, {"ultrasound-depth", tr("Depth"), tr("How deep the picture reaches  (D, Shift+D)"), 20, 300, 5,
+  add_knob(*grid, {"ultrasound-depth", tr("Depth"), tr("Imaging depth  (D, Shift+D)"), 20, 300, 5,
                    [](S& s) -> double& { return s.acquisition.depth_mm; }, centimetres()});
-  add_knob(*grid, {"ultrasound-frequency", tr("Frequency"), tr("High: finer; low: deeper"), 1, 20, 0.1,
-                   [](S& s) -> double& { return s.acquisition.frequency_mhz; },
+  add_knob(*grid, {"ultrasound-frequency", tr("Frequency"), tr("Higher: better resolution; lower: more penetration"), 1,
+                   20, 0.1, [](S& s) -> double& { return s.acquisition.frequency_mhz; },
                    [](double mhz) { return QStringLiteral("%1 MHz").arg(mhz, 0, 'f', 1); }});
-  add_knob(*grid, {"ultrasound-focus", tr("Focus"), tr("Depth at which the beam is thinnest"), 5, 300, 5,
+  add_knob(*grid, {"ultrasound-focus", tr("Focus"), tr("Depth of the transmit focus"), 5, 300, 5,
                    [](S& s) -> double& { return s.acquisition.focus_mm; }, centimetres()});
-  add_knob(*grid, {"ultrasound-dynamic-range", tr("Dynamic range"), tr("Small: hard contrast"), 20, 100, 1,
+  add_knob(*grid, {"ultrasound-dynamic-range", tr("Dynamic range"), tr("Smaller: higher contrast"), 20, 100, 1,
                    [](S& s) -> double& { return s.display.dynamic_range_db; }, decibels()});
-  add_knob(*grid, {"ultrasound-persistence", tr("Persistence"), tr("How much of the last picture stays"), 0, 0.95, 0.05,
+  add_knob(*grid, {"ultrasound-persistence", tr("Persistence"), tr("Weight of the previous frame"), 0, 0.95, 0.05,
                    [](S& s) -> double& { return s.display.persistence; },
                    [](double part) { return QStringLiteral("%1 %").arg(100.0 * part, 0, 'f', 0); }});
   gray_map_ = new QComboBox;
   gray_map_->setObjectName(QStringLiteral("ultrasound-gray-map"));
   gray_map_->setAccessibleName(tr("Gray map"));
-  gray_map_->setToolTip(tr("From echo to gray"));
+  gray_map_->setToolTip(tr("Gray map"));
   for (const ultrasound::GrayMap map : kMaps) gray_map_->addItem(to_qt(ultrasound::name_of(map)));
   connect(gray_map_, qOverload<int>(&QComboBox::activated), this,
           [this](int index) { view_.change_settings([&](S& s) { s.display.gray_map = kMaps[index]; }); });
@@ -235,8 +235,8 @@ QWidget* UltrasoundControls::make_picture() {
   grid->addWidget(make_label(tr("Gray map")), row, 0);
   grid->addWidget(gray_map_, row, 1, 1, 2);
   box->addLayout(grid);
-  add_check(*box, "ultrasound-mirror", tr("Marked side on the left"),
-            tr("Off: left and right are swapped; the green dot goes to the other side"),
+  add_check(*box, "ultrasound-mirror", tr("Marker on the left"),
+            tr("Off: the image is mirrored; the green dot moves to the other side"),
             [](S& s) -> bool& { return s.display.is_mirrored; });
   return widget;
 }
@@ -249,7 +249,7 @@ QWidget* UltrasoundControls::make_tgc() {
   for (std::size_t n = 0; n < ultrasound::kTgcSliders; ++n) {
     const QByteArray name = QStringLiteral("ultrasound-tgc-%1").arg(n + 1).toLatin1();
     const QString label = n == 0 ? tr("near") : n + 1 == ultrasound::kTgcSliders ? tr("far") : QString();
-    add_knob(*grid, {name.constData(), label, tr("Gain of layer %1 of 8, from near to far").arg(n + 1), -20, 20, 1,
+    add_knob(*grid, {name.constData(), label, tr("TGC slider %1 of 8, from near to far").arg(n + 1), -20, 20, 1,
                      [n](UltrasoundSettings& s) -> double& { return s.display.tgc_db[n]; }, decibels()});
   }
   box->addLayout(grid);
@@ -273,16 +273,16 @@ QWidget* UltrasoundControls::make_measuring() {
     button->setCheckable(true);
     tools_.push_back(button);
   };
-  tool(0, "ultrasound-distance", tr("Distance"), tr("Two marks, or a drag  (M)"), MeasuringTool::kDistance);
-  tool(1, "ultrasound-ellipse", tr("Ellipse"), tr("Ends of one axis, then how wide it is"), MeasuringTool::kEllipse);
-  tool(2, "ultrasound-angle", tr("Angle"), tr("The corner, then both arms"), MeasuringTool::kAngle);
-  undo_ = add(1, 0, "ultrasound-undo", tr("Undo"), tr("Takes the last change back  (Ctrl+Z, redo Ctrl+Shift+Z)"),
+  tool(0, "ultrasound-distance", tr("Distance"), tr("Click two points, or drag  (M)"), MeasuringTool::kDistance);
+  tool(1, "ultrasound-ellipse", tr("Ellipse"), tr("Ends of one axis, then the width"), MeasuringTool::kEllipse);
+  tool(2, "ultrasound-angle", tr("Angle"), tr("Vertex, then both arms"), MeasuringTool::kAngle);
+  undo_ = add(1, 0, "ultrasound-undo", tr("Undo"), tr("Undo the last change  (Ctrl+Z, redo Ctrl+Shift+Z)"),
               [this] { view_.undo_measurement(); });
   remove_ =
-      add(1, 1, "ultrasound-delete", tr("Delete"), tr("Takes the chosen measurement away, else the last  (Delete)"),
+      add(1, 1, "ultrasound-delete", tr("Delete"), tr("Delete the selected measurement, otherwise the last  (Delete)"),
           [this] { view_.remove_measurement(); });
-  clear_ = add(1, 2, "ultrasound-clear", tr("Clear"), tr("Takes all measurements away"),
-               [this] { view_.clear_measurements(); });
+  clear_ =
+      add(1, 2, "ultrasound-clear", tr("Clear"), tr("Delete all measurements"), [this] { view_.clear_measurements(); });
   box->addLayout(grid);
   return widget;
 }
@@ -290,25 +290,26 @@ QWidget* UltrasoundControls::make_measuring() {
 QWidget* UltrasoundControls::make_guide() {
   QWidget* widget = nullptr;
   QVBoxLayout* box = section(widget, tr("Needle"));
-  axis_ = new QCheckBox(tr("Show where the needle goes"));
+  axis_ = new QCheckBox(tr("Show the needle's path"));
   axis_->setObjectName(QStringLiteral("ultrasound-axis"));
   axis_->setAccessibleName(axis_->text());
-  axis_->setToolTip(tr("Its axis near the plane, and a cross where it pierces it"));
+  axis_->setToolTip(tr("The needle axis near the image plane, and a cross at its intersection"));
   connect(axis_, &QCheckBox::clicked, this, [this](bool is_on) { view_.set_guide_visible(is_on); });
   box->addWidget(axis_);
   using S = UltrasoundSettings;
-  auto* bracket =
-      add_check(*box, "ultrasound-guide", tr("Line of a guide on the transducer"),
-                tr("A bracket that leads the needle into the plane"), [](S& s) -> bool& { return s.guide.is_shown; });
+  auto* bracket = add_check(*box, "ultrasound-guide", tr("Needle guide line"),
+                            tr("A bracket that guides the needle into the image plane"),
+                            [](S& s) -> bool& { return s.guide.is_shown; });
   connect(bracket, &QCheckBox::clicked, this, [this](bool is_on) {
     if (is_on) view_.set_guide_visible(true);
   });
   add_check(*box, "ultrasound-guide-side", tr("Guide on the marked side"), tr("The side of the green dot"),
             [](S& s) -> bool& { return s.guide.is_on_marked_side; });
   auto* grid = knob_grid();
-  add_knob(*grid, {"ultrasound-guide-angle", tr("Angle"), tr("Between the guide and the middle of the beam"), 10, 80, 1,
-                   [](S& s) -> double& { return s.guide.angle_deg; },
-                   [](double deg) { return QStringLiteral("%1°").arg(deg, 0, 'f', 0); }});
+  add_knob(*grid,
+           {"ultrasound-guide-angle", tr("Angle"), tr("Angle between the guide and the central axis of the beam"), 10,
+            80, 1, [](S& s) -> double& { return s.guide.angle_deg; },
+            [](double deg) { return QStringLiteral("%1°").arg(deg, 0, 'f', 0); }});
   box->addLayout(grid);
   guide_ = widget;
   return widget;
@@ -318,21 +319,21 @@ QWidget* UltrasoundControls::make_doppler() {
   QWidget* widget = nullptr;
   QVBoxLayout* box = section(widget, tr("Colour Doppler"));
   using S = UltrasoundSettings;
-  doppler_ = add_check(*box, "ultrasound-doppler", tr("Show flow"), tr("Colour where blood flows  (C); drag the box"),
+  doppler_ = add_check(*box, "ultrasound-doppler", tr("Show flow"), tr("Colour Doppler  (C); drag the box"),
                        [](S& s) -> bool& { return s.has_doppler; });
   doppler_knobs_ = new QWidget;
   auto* knobs = new QVBoxLayout(doppler_knobs_);
   knobs->setContentsMargins(0, 0, 0, 0);
   knobs->setSpacing(6);
   auto* grid = knob_grid();
-  add_knob(*grid, {"ultrasound-doppler-scale", tr("Scale"), tr("Fastest flow before colours turn over (PRF)"), 2, 200,
-                   1, [](S& s) -> double& { return s.doppler.scale_cm_per_s; },
+  add_knob(*grid, {"ultrasound-doppler-scale", tr("Scale"), tr("Velocity limit before aliasing (PRF)"), 2, 200, 1,
+                   [](S& s) -> double& { return s.doppler.scale_cm_per_s; },
                    [](double cm_per_s) { return QStringLiteral("%1 cm/s").arg(cm_per_s, 0, 'f', 0); }});
-  add_knob(*grid, {"ultrasound-doppler-baseline", tr("Baseline"), tr("Shifts the middle of the scale"), -0.9, 0.9, 0.05,
+  add_knob(*grid, {"ultrasound-doppler-baseline", tr("Baseline"), tr("Baseline shift"), -0.9, 0.9, 0.05,
                    [](S& s) -> double& { return s.doppler.baseline; },
                    [](double b) { return QStringLiteral("%1 %").arg(100.0 * b, 0, 'f', 0); }});
-  add_knob(*grid, {"ultrasound-doppler-gain", tr("Gain"), tr("Weaker flow, then noise"), -40, 40, 1,
-                   [](S& s) -> double& { return s.doppler.gain_db; }, decibels()});
+  add_knob(*grid, {"ultrasound-doppler-gain", tr("Gain"), tr("Colour gain: higher shows weaker flow, then noise"), -40,
+                   40, 1, [](S& s) -> double& { return s.doppler.gain_db; }, decibels()});
   knobs->addLayout(grid);
   add_check(*knobs, "ultrasound-doppler-invert", tr("Invert colours"), tr("Blue towards the transducer"),
             [](S& s) -> bool& { return s.doppler.is_inverted; });
@@ -367,7 +368,7 @@ void UltrasoundControls::show_view() {
   for (Check& check : checks_) check.box->setChecked(check.flag(settings));
   gray_map_->setCurrentIndex(gray_map_->findText(to_qt(ultrasound::name_of(settings.display.gray_map))));
   transducer_->setCurrentIndex(transducer_->findText(to_qt(view_.transducer().name)));
-  // A preset is of a transducer.
+  // A preset belongs to one transducer.
   const int preset = preset_->currentIndex();
   if (preset > 0 && presets_[static_cast<std::size_t>(preset - 1)].transducer != view_.transducer().name)
     preset_->setCurrentIndex(0);

@@ -17,8 +17,8 @@ class QSlider;
 
 namespace trocar::trainer {
 
-/// The knobs of an ultrasound view, for its side: transducer and preset, freeze and cine loop, picture, TGC, measuring,
-/// needle guide, Doppler. Shows what the view has, whoever changed it. Scrolls where it is higher than its place.
+/// Controls of an ultrasound view: transducer and preset, freeze and cine loop, image, TGC, measurements, needle guide,
+/// Doppler. Always displays the settings of the view. Scrolls if there is not enough space.
 class UltrasoundControls : public QWidget {
   Q_OBJECT
  public:

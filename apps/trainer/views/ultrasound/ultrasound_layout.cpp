@@ -7,7 +7,7 @@
 namespace trocar::trainer {
 namespace {
 
-/// Fineness of looking for the largest picture, and of looking whether a box touches the scan.
+/// Steps of the search for the largest image, and of the test whether a box overlaps the scan.
 constexpr int kSteps = 12;
 constexpr double kStep_px = 5.0;
 constexpr double kClearance_px = 4.0;
@@ -48,7 +48,7 @@ UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& sca
                            std::max(16.0, view.height() - marker));
       const ultrasound::RasterGeometry raster =
           ultrasound::fit_raster(scan, static_cast<int>(picture.width()), static_cast<int>(picture.height()));
-      // Among equals the one that moves the picture the least.
+      // Of equal sizes, the smallest displacement of the image is preferred.
       const double moved = 1.0 + 1e-4 * (std::abs(l - r) + l + r);
       if (raster.mm_per_pixel * moved >= best_mm_per_pixel) continue;
       if (l < kSteps && touches(layout.caption, picture, raster, scan)) continue;

@@ -19,10 +19,10 @@ const QColor kMarkerInk(0x5a, 0xc8, 0x78);
 const QColor kFocusInk(0xf0, 0xc8, 0x50);
 const QColor kCaliperInk(0xf4, 0xe0, 0x6a);
 
-constexpr double kHardlyAny = 0.02, kMost = 0.75;  ///< Of the face on the skin, as the command line warns.
-constexpr double kUnscanned = 0.01;                ///< Of the picture outside the CT, from which a caption says so.
+constexpr double kHardlyAny = 0.02, kMost = 0.75;  ///< Shares of the face on the skin, as in the command line.
+constexpr double kUnscanned = 0.01;                ///< Share of the image outside the CT that needs a caption.
 constexpr double kWedge_px = 8.0, kBarGap_px = 12.0, kColourBar_px = 10.0;
-/// The needle's axis is shown where it lies so near to the plane: about half the beam's thickness.
+/// The needle's axis is drawn within this distance of the plane: about half the beam's thickness.
 constexpr double kNearPlane_mm = 3.0;
 constexpr double kAhead_mm = 250.0, kAxisStep_mm = 1.0;
 constexpr int kOutlinePoints = 72;
@@ -43,7 +43,7 @@ void draw_cross(QPainter& painter, const QPointF& at, double size) {
   painter.drawLine(at - QPointF(0, size), at + QPointF(0, size));
 }
 
-/// Text beside a mark, with a dark rim so that it can be read on bright tissue.
+/// Text next to a mark, with a dark outline for legibility on bright tissue.
 void draw_tag(QPainter& painter, const QPointF& at, const QString& text) {
   const QPen ink = painter.pen();
   painter.setPen(QColor(0, 0, 0, 200));
@@ -133,7 +133,7 @@ void draw_caption(QPainter& painter, const QRectF& place, const std::vector<Capt
 }
 
 QPointF marker_place(const PictureMap& map, const ultrasound::ScanAnnotation& annotation) {
-  // A coarse raster's pixels are larger than the widget's and would move the marker out of the view.
+  // The pixels of a coarse raster are larger than those of the widget and would move the marker out of the view.
   const QPointF marker = map.pixel_to_view(annotation.marker_pixel);
   const QRectF room = map.rect().adjusted(-kMarkerBeside_px, -kMarkerBeside_px, kMarkerBeside_px, kMarkerBeside_px);
   return {std::clamp(marker.x(), room.left(), room.right()), std::clamp(marker.y(), room.top(), room.bottom())};
@@ -300,7 +300,7 @@ void draw_needle_axis(QPainter& painter, const PictureMap& map, const ultrasound
   painter.setBrush(Qt::NoBrush);
   painter.setPen(dotted(theme().path, 2.0));
   painter.drawPolyline(near);
-  // An axis that stays in the plane pierces it nowhere in particular.
+  // An axis nearly parallel to the plane has no well-defined intersection.
   constexpr double kLeastSlope = 0.05;
   if (std::abs(along_T.z()) < kLeastSlope) return;
   const double pierce_mm = -tip_T.z() / along_T.z();

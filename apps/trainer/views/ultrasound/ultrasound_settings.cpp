@@ -10,7 +10,7 @@
 namespace trocar::trainer {
 namespace {
 
-/// Reads or writes every knob that is kept, so that both have the same names.
+/// Reads or writes all stored settings, so that both use the same names.
 template <class Visitor>
 void visit(UltrasoundSettings& s, const Visitor& knob) {
   knob("depth_mm", s.acquisition.depth_mm);

@@ -15,12 +15,12 @@
 namespace trocar::trainer {
 namespace {
 
-/// Larger pictures are drawn scaled: speckle has no finer detail, and the servers need the machine.
+/// Larger images are drawn scaled: speckle has no finer detail, and the servers need processor time.
 constexpr double kMostPixels_px = 1280.0;
 constexpr double kSmallHeight_px = 300.0, kSmallWidth_px = 340.0;
 constexpr double kCountFor_s = 0.7;
 constexpr double kSaveAfter_s = 1.0;
-/// A bracket's needle enters the skin so far beside the face.
+/// Distance from the face at which a needle in the bracket enters the skin.
 constexpr double kBracket_mm = 8.0;
 constexpr double kGuideStep_mm = 1.0;
 constexpr int kEdgePoints = 48;
@@ -47,7 +47,7 @@ QPainterPath outline_of(const ultrasound::ScanGeometry& scan, const PictureMap& 
   return path;
 }
 
-/// Hatches all but a polygon of the image plane: what the CT does not reach.
+/// Hatches the image plane outside a polygon, where there are no CT data.
 void hatch_unscanned(QPainter& painter, const PictureMap& map, const std::vector<ultrasound::Vec2>& scanned_T) {
   QPolygonF scanned;
   for (const ultrasound::Vec2& corner_T : scanned_T) scanned << map.to_view(corner_T);
@@ -214,7 +214,7 @@ void UltrasoundView::save_now() {
 
 void UltrasoundView::set_frozen(bool is_frozen) {
   scanner_.set_frozen(is_frozen);
-  // What was measured belongs to the picture that goes.
+  // Measurements belong to the previous image.
   if (!is_frozen) {
     measurements_.clear();
     forget_choice();
@@ -253,7 +253,7 @@ UltrasoundRoom UltrasoundView::room() const {
   if (picture_) {
     const CaptionFacts facts{to_qt(transducer_.name), 88.0, {}, measurements_.items(), is_small};
     std::vector<CaptionLine> lines = caption_of(*picture_, facts);
-    // Room for what comes and goes, so that the picture stays where it is.
+    // Space for optional texts, so that the image does not move.
     std::erase_if(lines, [](const CaptionLine& line) {
       return line.kind == CaptionLine::Kind::kWarning || line.kind == CaptionLine::Kind::kFrozen;
     });
@@ -278,7 +278,7 @@ const UltrasoundLayout& UltrasoundView::layout_for(const ultrasound::ScanGeometr
   return layout_;
 }
 
-/// The bracket's line through the scan, as far as it goes.
+/// The bracket's line through the scan, clipped to the scan.
 std::vector<ultrasound::Vec2> UltrasoundView::guide_line_T() const {
   const NeedleGuide& guide = settings_.guide;
   const ultrasound::ScanGeometry& scan = picture_->scan;
@@ -303,7 +303,7 @@ void UltrasoundView::paintEvent(QPaintEvent*) {
   if (!picture_) {
     painter.setFont(caption_font(is_small));
     painter.setPen(theme().dim);
-    painter.drawText(rect(), Qt::AlignCenter, scene_ ? tr("Waiting for the picture") : tr("No patient"));
+    painter.drawText(rect(), Qt::AlignCenter, scene_ ? tr("Waiting for the first image") : tr("No patient"));
     return;
   }
   const UltrasoundLayout& layout = layout_for(picture_->scan);

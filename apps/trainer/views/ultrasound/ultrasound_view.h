@@ -40,8 +40,8 @@ class UltrasoundView : public QWidget {
   /// From the hub to the tip; empty: none. `bore_share` and `tip_shift_mm` as in ScanRequest.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, double bore_share = 0.0,
                   double tip_shift_mm = 0.0);
-  /// Once a frame: asks for a picture of now, takes the newest, repaints where something is new. now_s: any steady
-  /// time; the heart beats by it.
+  /// Called once per frame: requests an image, takes the newest, repaints if necessary. now_s: any steady time; defines
+  /// the cardiac phase.
   void advance(double now_s);
   /// The newest; nullptr before the first.
   std::shared_ptr<const ultrasound::ScanPicture> picture() const { return picture_; }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kGainStep_db = 2.0;
 constexpr double kDepthStep_mm = 10.0;
-/// A mouse that moves farther with its button down draws a line instead of setting a mark.
+/// Distance in points from which a press is a drag that draws a line instead of setting a mark.
 constexpr double kDrag_px = 6.0;
 
 std::size_t marks_of(MeasuringTool tool) noexcept {
@@ -26,7 +26,7 @@ double turned(const QWheelEvent& event) noexcept {
   return event.angleDelta().y() / kNotch;
 }
 
-/// The third mark of an ellipse is beside its axis.
+/// The third mark of an ellipse is next to its axis.
 ultrasound::Measurement finished(MeasuringTool tool, const std::vector<ultrasound::Vec2>& m) {
   if (tool == MeasuringTool::kDistance) return ultrasound::DistanceCaliper{m[0], m[1]};
   if (tool == MeasuringTool::kAngle) return ultrasound::AngleCaliper{m[0], m[1], m[2]};
@@ -69,7 +69,7 @@ void UltrasoundView::start_measuring(MeasuringTool tool) {
 }
 
 void UltrasoundView::leave_tool() {
-  // The first press of Esc takes the marks back, the next one leaves the tool.
+  // The first Esc removes the marks, the second one leaves the tool.
   if (marks_T_.empty()) {
     start_measuring(MeasuringTool::kNone);
   } else {
@@ -111,7 +111,7 @@ void UltrasoundView::clear_measurements() {
   measurements_changed();
 }
 
-/// The numbers of measurements are not what they were, or nobody means one of them any more.
+/// Clears the selection, because the indices of measurements have changed or none is selected.
 void UltrasoundView::forget_choice() {
   chosen_.reset();
   grip_.reset();
@@ -227,7 +227,7 @@ void UltrasoundView::wheelEvent(QWheelEvent* event) {
   step_cine(notches < 0.0 ? -1 : 1);
 }
 
-/// True where the key means something here now; a rehearsal does nothing.
+/// Returns true if the key has a function at present; a rehearsal has no effect.
 bool UltrasoundView::handle_key(int key, Qt::KeyboardModifiers modifiers, bool is_rehearsal) {
   const auto act = [&](bool is_meant, auto what) {
     if (is_meant && !is_rehearsal) what();

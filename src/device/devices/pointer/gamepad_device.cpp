@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kFullAxis = 32767.0;    // SDL's axes are 16 bit
 constexpr double kFullRumble = 65535.0;  // and its motors
-constexpr Uint32 kRumbleLasts_ms = 100;  // a thread that hangs leaves no rumble behind
+constexpr Uint32 kRumbleLasts_ms = 100;  // ends the rumble of a stalled thread
 
 double finite_or_zero(double value) noexcept {
   return std::isfinite(value) ? value : 0.0;
 }
 
-/// 0 within the dead zone, then growing to 1.
+/// 0 within the dead zone, then increasing to 1.
 double respond(double deflection, double dead_zone) noexcept {
   const double beyond = std::clamp((deflection - dead_zone) / (1.0 - dead_zone), 0.0, 1.0);
   return std::pow(beyond, kStickExponent);
@@ -31,7 +31,7 @@ struct Stick {
   double away = 0.0;
 };
 
-/// The dead zone is a circle, so that slanting motion starts as smoothly as straight motion.
+/// The dead zone is a circle, so that diagonal motion starts as smoothly as axial motion.
 Stick stick(double x, double y) noexcept {
   const double right = finite_or_zero(x);
   const double away = -finite_or_zero(y);
@@ -69,14 +69,14 @@ class GamepadSource final : public PointerSource {
 };
 
 Status GamepadSource::open() {
-  // SDL would catch SIGINT and SIGTERM, and be deaf without a window.
+  // SDL would otherwise catch SIGINT and SIGTERM, and ignore input without a window.
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");
   if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) != 0) {
     return fail("SDL finds no gamepads", SDL_GetError(), "use mouse or another device");
   }
   has_sdl_ = true;
-  SDL_JoystickEventState(SDL_IGNORE);  // nobody empties the queue of events
+  SDL_JoystickEventState(SDL_IGNORE);  // the event queue is not used
   SDL_GameControllerEventState(SDL_IGNORE);
   SDL_GameControllerUpdate();
   for (int i = 0; i < SDL_NumJoysticks() && pad_ == nullptr; ++i) {
@@ -85,7 +85,7 @@ Status GamepadSource::open() {
   if (pad_ != nullptr) return {};
   close();
   return fail("no gamepad is connected", "gamepad",
-              "plug one in or pair it, see that you may read /dev/input, or use mouse");
+              "connect or pair one, check read permission for /dev/input, or use mouse");
 }
 
 bool GamepadSource::poll(PointerMotion& motion) noexcept {
@@ -126,7 +126,7 @@ void GamepadSource::close() noexcept {
   if (!has_sdl_) return;
   has_sdl_ = false;
   SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
-  SDL_TLSCleanup();  // what SDL keeps for a thread that it did not make
+  SDL_TLSCleanup();  // frees SDL's data of a thread that it did not create
 }
 
 }  // namespace
@@ -138,7 +138,7 @@ PointerMotion gamepad_motion(const GamepadState& state) noexcept {
   motion.v_D = kPadSpeed_mm_per_s * Vec3(left.right, left.away, difference(state.is_up, state.is_down));
   motion.inward_mm_per_s = kPadInward_mm_per_s * (respond(finite_or_zero(state.right_trigger), kTriggerDeadZone) -
                                                   respond(finite_or_zero(state.left_trigger), kTriggerDeadZone));
-  // The tip hangs below the grip: to swing it to the right is to turn about -y, away from the user about +x.
+  // The tip is below the grip: swinging it to the right is a rotation about -y, away from the user about +x.
   motion.w_D = kPadTilt_rad_per_s * Vec3(right.away, -right.right, 0.0);
   motion.turning_rad_per_s = kPadTurning_rad_per_s * difference(state.is_right_shoulder, state.is_left_shoulder);
   motion.buttons = state.buttons;

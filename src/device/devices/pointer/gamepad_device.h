@@ -7,8 +7,8 @@
 
 namespace trocar::devices {
 
-/// How a gamepad's sticks, triggers and buttons stand. Sticks -1..1: x to the right, y towards the user (as SDL gives
-/// them); triggers 0..1.
+/// State of a gamepad's sticks, triggers and buttons. Sticks -1..1: x to the right, y towards the user (as in SDL);
+/// triggers 0..1.
 struct GamepadState {
   double left_x = 0.0;
   double left_y = 0.0;
@@ -30,7 +30,7 @@ inline constexpr double kPadSpeed_mm_per_s = 60.0;    ///< Sideways, away and up
 inline constexpr double kPadInward_mm_per_s = 25.0;   ///< Along the needle. Range 5..100. [assumed]
 inline constexpr double kPadTilt_rad_per_s = 0.6;     ///< Range 0.1..2. [assumed]
 inline constexpr double kPadTurning_rad_per_s = 1.5;  ///< About the needle. Range 0.2..4. [assumed]
-inline constexpr double kRumbleFrom_n = 0.3;          ///< Less is not shown. [assumed]
+inline constexpr double kRumbleFrom_n = 0.3;          ///< Forces below this are not rendered. [assumed]
 inline constexpr double kRumbleFull_n = 6.0;          ///< From here on the motors run at full power. [assumed]
 
 /// Left stick: sideways and away; cross: up and down; right stick: swings the tip to where it points; triggers: right
@@ -41,7 +41,7 @@ PointerMotion gamepad_motion(const GamepadState& state) noexcept;
 /// Power of the rumble motors, 0..1: linear from kRumbleFrom_n to kRumbleFull_n. Real-time safe.
 double rumble_power(double force_n) noexcept;
 
-/// The first gamepad that SDL knows. One at a time in a process.
+/// The first gamepad that SDL supports. Only one per process.
 std::unique_ptr<PointerSource> make_gamepad_source();
 
 }  // namespace trocar::devices

@@ -11,8 +11,8 @@ struct PointerParams {
   double max_turn_rad_per_s = 6.0;    ///< Range 0.1..100.
 };
 
-/// Mouse and keyboard of a trainer: the pose is where the trainer's hand target is, smoothed. Nobody feels a force:
-/// what is written is shown by the trainer, and the tick makes the pointer lag. Real-time safe once made.
+/// Mouse and keyboard of a trainer: the pose follows the trainer's hand target, smoothed. Written forces are only
+/// displayed, and the tick makes the pointer lag. Real-time safe after construction.
 class PointerDevice final : public HapticDevice {
  public:
   PointerDevice(haptics::DevicePreset preset, const PointerParams& params) noexcept;
@@ -20,7 +20,7 @@ class PointerDevice final : public HapticDevice {
   const haptics::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return preset_.name; }
   DeviceReading read(double now_s) noexcept override;
-  /// Not taken: what is no sane wrench.
+  /// Returns false for an invalid wrench.
   bool write(const haptics::Wrench& wrench_D) noexcept override;
   void hold(const DeviceHand& hand) noexcept override;
   bool is_in_real_hand() const noexcept override { return false; }

@@ -27,7 +27,7 @@ Mat3 rotation_of(const Vec3& vector_rad) noexcept {
   return Eigen::AngleAxisd(angle_rad, vector_rad / angle_rad).toRotationMatrix();
 }
 
-/// Waits for news of the source, the end, or one period.
+/// Waits for new data of the source, the end, or one period.
 void wait_for_news(int wake, int source) noexcept {
   std::array<pollfd, 2> watched{pollfd{wake, POLLIN, 0}, pollfd{source, POLLIN, 0}};
   ::poll(watched.data(), source >= 0 ? 2 : 1, static_cast<int>(kPointerPeriod_ns / kNsPerMs));
@@ -48,7 +48,7 @@ Pose move_pointer(const Pose& X_DS, const PointerMotion& motion, double dt_s, do
   const Mat3 R_DS =
       rotation_of(dt_s * motion.w_D) * X_DS.R() * rotation_of(Vec3(0.0, 0.0, dt_s * motion.turning_rad_per_s));
   const Pose moved(Eigen::Quaterniond(R_DS).normalized().toRotationMatrix(), p_DS);
-  return moved.is_finite() ? moved : X_DS;  // huge velocities
+  return moved.is_finite() ? moved : X_DS;  // avoids huge velocities
 }
 
 Result<std::unique_ptr<HapticDevice>> PolledPointer::open(const haptics::DevicePreset& preset,
@@ -70,7 +70,7 @@ Status PolledPointer::start() {
   if (wake_ < 0) return fail("no event descriptor for the device's thread", name_, "close some programs");
   is_stopping_ = false;
   is_gone_ = true;
-  force_n_.update();  // what was written before is not for the device opened now
+  force_n_.update();  // discards wrenches written before the device was opened
   std::promise<Status> opened;
   std::future<Status> outcome = opened.get_future();
   thread_ = std::thread([this, promise = std::move(opened)]() mutable { run(std::move(promise)); });
@@ -83,7 +83,7 @@ void PolledPointer::stop() noexcept {
   is_stopping_ = true;
   const std::uint64_t one = 1;
   if (wake_ >= 0 && ::write(wake_, &one, sizeof one) < 0) {
-    // The thread wakes after a period all the same.
+    // The thread also wakes after a period.
   }
   if (thread_.joinable()) thread_.join();
   if (wake_ >= 0) ::close(wake_);
@@ -146,7 +146,7 @@ void PolledPointer::hold(const DeviceHand& hand) noexcept {
 
 Status PolledPointer::reconnect() {
   stop();
-  motion_.update();  // news of the device that is gone
+  motion_.update();  // discards data of the previous connection
   has_read_ = false;
   return start();
 }

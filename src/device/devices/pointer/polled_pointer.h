@@ -13,7 +13,7 @@
 
 namespace trocar::devices {
 
-/// What a pad or a knob asks of the stylus. Motions add up.
+/// Motion requested by a gamepad or SpaceMouse. Motions add up.
 struct PointerMotion {
   Vec3 v_D = Vec3::Zero();         ///< mm/s
   double inward_mm_per_s = 0.0;    ///< Along +z of S: from the grip to the tip.
@@ -29,7 +29,7 @@ Pose pointer_start() noexcept;
 /// a time that is not finite, and time that runs back, moves nothing. Real-time safe.
 Pose move_pointer(const Pose& X_DS, const PointerMotion& motion, double dt_s, double workspace_radius_mm) noexcept;
 
-/// A pad or knob of which one can ask how it stands. All functions are called by one thread.
+/// A gamepad or SpaceMouse whose state is polled. One thread calls all functions.
 class PointerSource {
  public:
   virtual ~PointerSource() = default;
@@ -39,11 +39,11 @@ class PointerSource {
   virtual std::string name() const = 0;
   /// Finds and opens it; may take a second. Again after close.
   virtual Status open() = 0;
-  /// A file descriptor that becomes readable when there is news; -1: there is none.
+  /// File descriptor that becomes readable when there is new data; -1: none.
   virtual int descriptor() const noexcept { return -1; }
-  /// What it asks for now; false: it is gone.
+  /// Present motion; false: disconnected.
   virtual bool poll(PointerMotion& motion) noexcept = 0;
-  /// Lets the hand know of a force (N): rumble.
+  /// Displays a force (N) as rumble.
   virtual void show_force(double) noexcept {}
   virtual void close() noexcept = 0;
 
@@ -52,13 +52,13 @@ class PointerSource {
 };
 
 inline constexpr std::int64_t kPointerPeriod_ns = 4'000'000;  ///< The thread polls at 250 Hz. [assumed]
-inline constexpr double kPointerSilence_s = 0.1;  ///< Without news for so long, the stylus stands still. [assumed]
+inline constexpr double kPointerSilence_s = 0.1;  ///< Without new data for this time, the stylus stops. [assumed]
 inline constexpr double kPointerStep_s = 0.02;    ///< The longest time that one reading moves the stylus for. [assumed]
-/// Without a fresh wrench for so long, no force is shown. [assumed]
+/// Without a new wrench for this time, no force is rendered. [assumed]
 inline constexpr std::int64_t kPointerForceAge_ns = 20'000'000;
 
-/// A device made of a source: a thread of its own polls it, each reading moves the stylus on. So a pose is new at
-/// every reading, however slowly the source speaks. Invariant: the source is used by the thread alone.
+/// A device based on a polled source: a thread polls the source, and each reading moves the stylus, so that every
+/// reading has a new pose. Invariant: only that thread uses the source.
 class PolledPointer final : public HapticDevice {
  public:
   static Result<std::unique_ptr<HapticDevice>> open(const haptics::DevicePreset& preset,

@@ -14,14 +14,14 @@
 #include "devices/detail/factories.h"
 #include "realtime/periodic_loop.h"
 
-#undef Status  // <spnav.h> brings Xlib's macros
+#undef Status  // <spnav.h> includes Xlib's macros
 
 namespace trocar::devices {
 namespace {
 
-constexpr int kMostEvents = 64;                                // taken a poll
-constexpr int kMostButtons = 16;                               // of which we keep bits
-constexpr std::size_t kEventBytes = 8 * sizeof(std::int32_t);  // spacenavd's protocol: eight integers an event
+constexpr int kMostEvents = 64;                                // events per poll
+constexpr int kMostButtons = 16;                               // stored as bits
+constexpr std::size_t kEventBytes = 8 * sizeof(std::int32_t);  // spacenavd's protocol: eight integers per event
 
 double respond(int counts) noexcept {
   const double size = std::abs(static_cast<double>(counts));
@@ -31,8 +31,8 @@ double respond(int counts) noexcept {
 
 enum class Socket { kQuiet, kHasEvent, kClosed };
 
-/// libspnav takes half an event for a whole one and a closed connection for silence: look before it reads. spacenavd
-/// sends whole events; half a one is the end.
+/// libspnav treats half an event as a whole one and a closed connection as no event: check before it reads. spacenavd
+/// sends whole events; half an event means the end.
 Socket look(int descriptor) noexcept {
   std::array<char, kEventBytes> bytes;
   const ssize_t count = ::recv(descriptor, bytes.data(), bytes.size(), MSG_PEEK | MSG_DONTWAIT);
@@ -59,7 +59,7 @@ class SpaceMouseSource final : public PointerSource {
 };
 
 Status SpaceMouseSource::open() {
-  // libspnav writes to a socket that may be closed already.
+  // libspnav writes to a socket that may already be closed.
   sigset_t pipe;
   sigemptyset(&pipe);
   sigaddset(&pipe, SIGPIPE);
@@ -69,7 +69,7 @@ Status SpaceMouseSource::open() {
   errno = 0;
   if (spnav_open() != 0) {
     return fail(
-        "spacenavd does not answer", "spacemouse",
+        "spacenavd does not respond", "spacemouse",
         "install the package spacenavd, plug the SpaceMouse in, start it (systemctl start spacenavd), and close "
         "another spacemouse of this program");
   }
@@ -112,7 +112,7 @@ void SpaceMouseSource::close() noexcept {
 PointerMotion spacemouse_motion(const SpaceMouseAxes& axes, std::uint32_t buttons) noexcept {
   const auto& [x, y, z, rx, ry, rz] = axes.counts;
   PointerMotion motion;
-  // D is x right, y away, z up: y and z change places, and with them the hand of the turns.
+  // D is x right, y away, z up: y and z are exchanged, which also inverts the sense of rotations.
   motion.v_D = kCapSpeed_mm_per_s * Vec3(respond(x), respond(z), respond(y));
   motion.w_D = kCapTurning_rad_per_s * Vec3(respond(rx), respond(rz), respond(ry));
   motion.buttons = buttons;

@@ -15,11 +15,11 @@ struct SpaceMouseAxes {
 };
 
 inline constexpr double kCapFull_counts = 350.0;  ///< 3Dconnexion's devices at sensitivity 1. Range 100..500. [assumed]
-inline constexpr double kCapDeadZone_counts = 15.0;   ///< What a cap at rest still tells. [assumed]
+inline constexpr double kCapDeadZone_counts = 15.0;   ///< Noise level of a cap at rest. [assumed]
 inline constexpr double kCapExponent = 1.5;           ///< As kStickExponent. [assumed]
 inline constexpr double kCapSpeed_mm_per_s = 60.0;    ///< Range 10..200. [assumed]
 inline constexpr double kCapTurning_rad_per_s = 0.8;  ///< Range 0.1..3. [assumed]
-/// A cap that is held tells so many times a second; silent for so long, it counts as let go. [assumed]
+/// Event rate of a cap that is held; without events for this time it counts as released. [assumed]
 inline constexpr std::int64_t kCapSilence_ns = 500'000'000;
 
 /// The cap is the grip: it moves and turns as the cap is pushed and turned. Real-time safe.

@@ -16,7 +16,7 @@
 namespace trocar::devices {
 namespace {
 
-/// Whether there may be an output: libraries that look for one in vain write to standard error.
+/// Checks for an audio output: libraries that find none write to standard error.
 bool has_output() {
   namespace fs = std::filesystem;
   if (std::getenv("SDL_AUDIODRIVER") != nullptr || std::getenv("PULSE_SERVER") != nullptr) return true;
@@ -39,7 +39,7 @@ SDL_AudioDeviceID open_output() {
   return device;
 }
 
-/// Two ringing parts and noise, as a light metal part that stops.
+/// Two decaying tones and noise, as from a light metal part that hits a stop.
 double click_at(double time_s, double noise) {
   constexpr double kTwoPi = 2.0 * std::numbers::pi;
   constexpr double kRing_hz = 2300.0, kHiss_s = 0.004, kRing_s = 0.008, kBody_hz = 190.0, kBody_s = 0.03;

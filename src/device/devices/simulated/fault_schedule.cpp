@@ -11,7 +11,7 @@
 namespace trocar::devices {
 namespace {
 
-/// What the number after the colon may be; kinds that take none have high = 0.
+/// Range of the number after the colon; high = 0 for kinds without one.
 struct FaultKind {
   DeviceFault fault;
   const char* name;
@@ -36,7 +36,7 @@ const FaultKind* find_fault(std::string_view name) noexcept {
   return nullptr;
 }
 
-/// A finite number that fills the whole text and is at least 0.
+/// Parses a finite, non-negative number from the whole text.
 std::optional<double> parse_number(std::string_view text, double high) noexcept {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -62,18 +62,18 @@ const char* to_string(DeviceFault fault) noexcept {
 
 Result<ScheduledFault> parse_fault(std::string_view text) {
   const std::size_t at = text.find('@');
-  if (at == std::string_view::npos) return refuse(text, "the fault does not say when it begins");
+  if (at == std::string_view::npos) return refuse(text, "the fault has no start time");
   const std::string_view what = text.substr(0, at);
   const std::string_view when = text.substr(at + 1);
   const std::size_t colon = what.find(':');
   const FaultKind* kind = find_fault(what.substr(0, colon));
-  if (kind == nullptr) return refuse(text, "there is no such fault");
+  if (kind == nullptr) return refuse(text, "unknown fault");
 
   ScheduledFault fault;
   fault.fault = kind->fault;
   const bool takes_amount = kind->high > 0.0;
   if (takes_amount != (colon != std::string_view::npos)) {
-    return refuse(text, takes_amount ? fmt::format("{} lacks its amount in {}", kind->name, kind->unit)
+    return refuse(text, takes_amount ? fmt::format("{} needs an amount in {}", kind->name, kind->unit)
                                      : fmt::format("{} takes no amount", kind->name));
   }
   if (takes_amount) {
@@ -84,7 +84,7 @@ Result<ScheduledFault> parse_fault(std::string_view text) {
 
   const std::size_t plus = when.find('+');
   const auto from_s = parse_number(when.substr(0, plus), kMaxTime_s);
-  if (!from_s) return refuse(text, fmt::format("its beginning is not a number of 0..{} s", kMaxTime_s));
+  if (!from_s) return refuse(text, fmt::format("the start is not a number of 0..{} s", kMaxTime_s));
   fault.from_s = *from_s;
   fault.for_s = std::numeric_limits<double>::infinity();
   if (plus == std::string_view::npos) return fault;

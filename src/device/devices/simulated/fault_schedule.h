@@ -13,15 +13,15 @@ enum class DeviceFault : std::uint8_t {
   kJitter,      ///< The pose shakes: uniform noise of `amount` mm.
   kDropped,     ///< Reads repeat the last pose.
   kNan,         ///< Poses are NaN.
-  kStuck,       ///< The encoder stands still while reads claim to be fresh.
+  kStuck,       ///< The encoder value is frozen, but reads report new data.
   kJump,        ///< The pose is `amount` mm off.
-  kDisconnect,  ///< Reads say disconnected, writes are refused.
+  kDisconnect,  ///< Reads report disconnected, writes fail.
   kSlowWrite,   ///< Writes take `amount` ms.
   kSlowRead,    ///< Reads take `amount` ms.
 };
 const char* to_string(DeviceFault fault) noexcept;
 
-/// A read or write is never slower than this, so that a server with such a device can still be stopped.
+/// Upper bound of a slow read or write, so that the server can still be stopped.
 inline constexpr double kMaxSlow_ms = 2000.0;
 
 struct ScheduledFault {

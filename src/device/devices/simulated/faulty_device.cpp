@@ -11,7 +11,7 @@
 namespace trocar::devices {
 namespace {
 
-/// Once, and whatever wakes it: bounded.
+/// Waits once, even if woken early: bounded.
 void sleep_ms(void*, double wait_ms) noexcept {
   constexpr double kMsPerS = 1e3;
   constexpr double kNsPerMs = 1e6;
@@ -55,7 +55,7 @@ void FaultyDevice::shake(Pose& X_DS) noexcept {
   if (jump != nullptr || jitter != nullptr) X_DS = Pose(X_DS.R(), X_DS.p() + off_D);
 }
 
-/// As after a pulled plug: the motors are off, and the pose is the last one.
+/// As with an unplugged cable: the motors are off, and the last pose is repeated.
 DeviceReading FaultyDevice::disconnected() noexcept {
   if (!is_disconnected_) device_->write({});
   is_disconnected_ = true;
@@ -102,7 +102,7 @@ bool FaultyDevice::write(const haptics::Wrench& wrench_D) noexcept {
 Status FaultyDevice::reconnect() {
   const ScheduledFault* fault = find_active(DeviceFault::kDisconnect);
   if (fault != nullptr && std::isinf(fault->for_s)) {
-    return fail("the device is unplugged for ever", name(), "leave the fault disconnect out");
+    return fail("the device stays unplugged", name(), "omit the fault disconnect");
   }
   if (is_inner_gone_) TROCAR_TRY_STATUS(device_->reconnect());
   is_disconnected_ = false;

@@ -10,9 +10,9 @@
 
 namespace trocar::devices {
 
-/// Any device, broken on schedule; times count from its first read. A tool to show what a server does when a device
-/// fails, and watched as a real one would be: its slow reads and writes wait, which no other device's do. Seeded: the
-/// same reads give the same poses.
+/// Wraps any device and injects faults at given times; time starts at its first read. Shows the server's reaction to
+/// device faults. Its slow reads and writes block, unlike those of other devices. Seeded: the same reads give the same
+/// poses.
 class FaultyDevice final : public HapticDevice {
  public:
   /// Waits for so many ms; nanosleep unless a simulation counts instead.
@@ -29,7 +29,7 @@ class FaultyDevice final : public HapticDevice {
   DeviceReading read(double now_s) noexcept override;
   bool write(const haptics::Wrench& wrench_D) noexcept override;
   void hold(const DeviceHand& hand) noexcept override { device_->hold(hand); }
-  /// Fails where the device is unplugged for ever. Within the time of its fault the next read finds it gone again.
+  /// Fails if the fault "disconnect" has no end. During the fault the next read reports disconnected again.
   Status reconnect() override;
 
  private:

@@ -10,7 +10,8 @@
 namespace trocar::devices {
 namespace {
 
-/// Nearer to a recorded sample than this share of a period is that sample: a server at the same rate gets its bits.
+/// Distance from a recorded sample, as share of a period, below which the sample itself is used: a server at the same
+/// rate gets identical bits.
 constexpr double kSameSample = 1e-6;
 
 Pose between(const Pose& a, const Pose& b, double share) noexcept {

@@ -6,8 +6,8 @@
 
 namespace trocar::devices {
 
-/// A recorded hand: poses X_DS at a rate, from the first read on; between them interpolated, after the last one held.
-/// It goes its way whatever is written. Not empty, and finite. Real-time safe once made.
+/// A recorded hand: poses X_DS at a fixed rate, from the first read on; interpolated in between, constant after the
+/// last. Written wrenches are ignored. Real-time safe after construction.
 class ReplayDevice final : public HapticDevice {
  public:
   ReplayDevice(haptics::DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz);

@@ -10,9 +10,9 @@
 namespace trocar::devices {
 namespace {
 
-constexpr double kMaxGap_s = 0.1;    ///< Beyond it the device stood still: a debugger, a suspended machine.
+constexpr double kMaxGap_s = 0.1;    ///< Longer gaps: the process was stopped (debugger, suspended machine).
 constexpr double kMaxStep_s = 1e-3;  ///< physics.md H2 holds at 1 kHz.
-/// Twice the stiffest hand of physics.md H1, and that at the end of a 30 mm grip. A stiffer one would swing for ever.
+/// Twice the stiffest hand of physics.md H1, and the same at the end of a 30 mm grip. A stiffer hand would oscillate.
 constexpr double kStiffestHand_n_per_mm = 10.0;
 constexpr double kStiffestTurn_nmm_per_rad = 1e4;
 
@@ -46,7 +46,7 @@ void VirtualHapticDevice::hold(const DeviceHand& hand) noexcept {
     placed_s_ = hand.time_s;
     was_ever_held_ = true;
   }
-  if (hand.is_held && !was_ever_held_) {  // taken out of its holder: it is where the hand is
+  if (hand.is_held && !was_ever_held_) {  // first hold: the stylus starts at the pose of the hand
     stylus_ = {};
     stylus_.X_PS = hand_at(hand, last_s_).X_DS;
     was_ever_held_ = true;
@@ -94,7 +94,7 @@ DeviceReading VirtualHapticDevice::tell() noexcept {
   return reading;
 }
 
-/// The end stops' force on S: a spring with half of critical damping against what moves outwards.
+/// Force of the end stops on S: a spring, with half of critical damping against outward motion.
 Vec3 VirtualHapticDevice::wall_n() const noexcept {
   const Vec3 p_D = X_DS().p();
   const double beyond_mm = p_D.norm() - preset_.workspace_radius_mm;
@@ -128,7 +128,7 @@ haptics::VirtualStylusParams VirtualHapticDevice::stylus_params() const noexcept
   params.mass_kg = preset_.apparent_mass_kg;
   params.inertia_kg_mm2 = params_.inertia_kg_mm2;
   params.weight_n = preset_.capability.stylus_weight_n;
-  // A gimbal without motors carries no lever: it is balanced, and the weight hangs on S.
+  // A gimbal without motors has no lever: it is balanced, and the weight acts at S.
   params.weight_lever_mm = preset_.has_torque() ? preset_.capability.stylus_lever_mm : 0.0;
   params.viscosity_ns_per_mm = preset_.viscosity_ns_per_mm;
   params.turning_viscosity_nmms = params_.gimbal_viscosity_nmms;

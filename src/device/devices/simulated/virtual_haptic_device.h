@@ -8,7 +8,7 @@
 
 namespace trocar::devices {
 
-/// How a device is simulated, beside what its preset says.
+/// Simulation parameters in addition to the preset.
 struct SimulatedDeviceParams {
   /// Whole periods that a written wrench waits before it acts for one period: with 1 the loop has the 1.5 periods of
   /// physics.md H2. Range 0..8.
@@ -39,7 +39,7 @@ class VirtualHapticDevice final : public HapticDevice {
   bool is_in_real_hand() const noexcept override { return false; }
   Status reconnect() override { return {}; }
 
-  /// What the encoders do not tell: the stylus itself.
+  /// The exact pose of the stylus, before encoder quantisation.
   const Pose& X_DS() const noexcept { return stylus_.X_PS; }
   const Vec3& v_D() const noexcept { return stylus_.v_P; }
 

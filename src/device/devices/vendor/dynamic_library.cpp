@@ -15,7 +15,7 @@ std::string last_dl_error() {
   return text != nullptr ? text : "no reason given";
 }
 
-/// The path of the environment alone where it is set, else the usual names.
+/// Only the path of the environment variable if it is set, else the usual names.
 std::vector<std::string> candidates_of(const LibraryPlace& place) {
   const char* named = std::getenv(place.variable);
   if (named != nullptr && *named != '\0') return {named};

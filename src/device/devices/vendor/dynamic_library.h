@@ -16,15 +16,14 @@ struct LibraryPlace {
   std::string_view advice;             ///< How to get it.
 };
 
-/// A shared library opened at run time. It stays in the process until its end: vendors' drivers do not bear being
-/// unloaded (CHAI3D, src/devices/CPhantomDevices.cpp, says so of PHANTOM's).
+/// A shared library loaded at run time. It stays loaded until the process ends: vendors' drivers cannot be unloaded
+/// safely (CHAI3D, src/devices/CPhantomDevices.cpp, on PHANTOM's).
 class DynamicLibrary {
  public:
   /// Everything is bound at once, so that no first call costs a search. The error names package, driver and variable.
   static Result<DynamicLibrary> open(const LibraryPlace& place);
 
-  /// Looks `name` up and sets `function`, a pointer to a C function. The error says which function an old library
-  /// lacks.
+  /// Looks up `name` and sets `function`. The error names the missing function of an old library.
   template <class Function>
   Status find(const char* name, Function*& function) const {
     TROCAR_TRY(void* const symbol, find_symbol(name));

@@ -11,7 +11,7 @@
 namespace trocar::devices {
 namespace {
 
-/// Twice the usual loop: what it adds to the delay is half a millisecond each way. The devices take 4 kHz. [assumed]
+/// Twice the usual rate: adds half a millisecond of delay in each direction. The devices support 4 kHz. [assumed]
 constexpr std::int64_t kServoPeriod_ns = 500'000;
 constexpr int kServoPriority = 81;  // just above the loop that it serves (request_real_time's default)
 
@@ -48,7 +48,7 @@ Result<std::string> preset_of_type(int type, const std::string& name) {
   }
 }
 
-/// Invariant: connection_ is there, but after a reconnect that failed.
+/// Invariant: connection_ is set, except after a failed reconnect.
 class ForceDimensionDevice final : public HapticDevice {
  public:
   ForceDimensionDevice(std::shared_ptr<ServoPace> pace, haptics::DevicePreset preset,
@@ -70,7 +70,7 @@ class ForceDimensionDevice final : public HapticDevice {
   }
   Status reconnect() override {
     const char* cause = connection_ ? connection_->last_error() : nullptr;
-    const std::string suffix = cause != nullptr ? fmt::format("; it was lost by: {}", cause) : std::string();
+    const std::string suffix = cause != nullptr ? fmt::format("; last error: {}", cause) : std::string();
     connection_.reset();
     auto opened = dhd::Connection::open(pace_);
     if (!opened) {
@@ -79,8 +79,8 @@ class ForceDimensionDevice final : public HapticDevice {
       return tl::unexpected(std::move(error));
     }
     if ((*opened)->system_type() != type_) {
-      return fail(fmt::format("another device is there now: {}", (*opened)->system_name()), preset_.title,
-                  "start again with it");
+      return fail(fmt::format("a different device is connected: {}", (*opened)->system_name()), preset_.title,
+                  "restart with it");
     }
     TROCAR_TRY_STATUS((*opened)->start(preset_.sensed_dof == 6));
     connection_ = *std::move(opened);
@@ -105,7 +105,7 @@ Result<std::unique_ptr<HapticDevice>> open_forcedimension_device(const ForceDime
     TROCAR_TRY(row, preset_of_type(connection->system_type(), connection->system_name()));
   }
   TROCAR_TRY(haptics::DevicePreset preset, haptics::load_device_preset(options.devices_file, row));
-  // The vendor's library carries the device's weight; ours on top would lift it.
+  // The vendor's library compensates the weight; a second compensation would lift the device.
   preset.capability.stylus_weight_n = 0.0;
   TROCAR_TRY_STATUS(connection->start(preset.sensed_dof == 6));
   return std::make_unique<ForceDimensionDevice>(pace, std::move(preset), std::move(connection));

@@ -17,9 +17,9 @@ using std::chrono::milliseconds;
 constexpr milliseconds kConnectLimit{2000};
 constexpr milliseconds kFirstStateLimit{2000};
 constexpr milliseconds kSendLimit{100};
-constexpr milliseconds kStateLimit{1000};  // a service that is silent for longer is gone
+constexpr milliseconds kStateLimit{1000};  // a service without messages for longer is disconnected
 constexpr milliseconds kGoodbyeLimit{200};
-constexpr milliseconds kLook{20};  // how often a waiting thread looks whether it shall end
+constexpr milliseconds kLook{20};  // polling interval of a waiting thread for its end
 
 const char* advice_for(HaplyCondition condition) noexcept {
   switch (condition) {
@@ -44,7 +44,7 @@ Result<std::unique_ptr<HapticDevice>> HaplyDevice::open(const haptics::DevicePre
                                                         const std::string& address) {
   std::unique_ptr<HaplyDevice> device(new HaplyDevice(preset, address));
   TROCAR_TRY_STATUS(device->start());
-  // What the service told: constant from here on.
+  // Values reported by the service: constant from here on.
   if (!*device->has_grip_) device->preset_.sensed_dof = 3;
   device->preset_.actuated_dof = 3;
   device->preset_.capability.peak_torque_nmm = 0.0;
@@ -72,12 +72,12 @@ Status HaplyDevice::start() {
   socket_ = std::move(*socket);
   std::string message;
   if (socket_->receive(message, kFirstStateLimit) != WebSocket::Received::kMessage) {
-    return fail("the Inverse service says nothing", address_, "start the Inverse service anew");
+    return fail("the Inverse service sends no data", address_, "restart it");
   }
   TROCAR_TRY_STATUS(take_first_state(message));
   unusable_ = 0;
   written_ns_ = 0;
-  force_.update();  // what was written before is not for the device opened now
+  force_.update();  // discards wrenches written before the device was opened
   is_stopping_ = false;
   is_gone_ = false;
   thread_ = std::thread([this] { run(); });
@@ -90,7 +90,7 @@ Status HaplyDevice::take_first_state(const std::string& message) {
     return fail(to_string(first.condition), address_, advice_for(first.condition));
   }
   if (has_grip_.value_or(false) && !first.q_grip) {
-    return fail("the grip is missing", address_, "switch it on, or start the server anew without it");
+    return fail("the grip is missing", address_, "switch it on, or restart the server without it");
   }
   if (!has_grip_) has_grip_ = first.q_grip.has_value();
   device_id_ = first.device_id;
@@ -99,7 +99,7 @@ Status HaplyDevice::take_first_state(const std::string& message) {
   return {};
 }
 
-/// A grip that turns up later is no part of a device that was opened without one.
+/// A grip that is connected later is ignored if the device was opened without one.
 Pose HaplyDevice::pose_of(HaplyState state) const noexcept {
   if (!has_grip_.value_or(false)) state.q_grip.reset();
   return haply_pose(state, is_centred_);
@@ -111,7 +111,7 @@ void HaplyDevice::stop() noexcept {
   socket_.reset();
 }
 
-/// At the top of the loop there is always one state that waits for its command.
+/// At the top of the loop, exactly one state awaits its command.
 void HaplyDevice::run() {
   std::string message;
   std::int64_t due_ns = realtime::now_ns();
@@ -128,7 +128,7 @@ void HaplyDevice::run() {
   say_goodbye(is_answer_due);
 }
 
-/// false: the device is gone.
+/// Returns false if the device is disconnected.
 bool HaplyDevice::take_state(const std::string& message) {
   const HaplyState state = parse_haply_state(message, device_id_);
   const bool is_usable = state.condition == HaplyCondition::kReady && (state.q_grip.has_value() || !*has_grip_);
@@ -145,7 +145,7 @@ bool HaplyDevice::answer(const Vec3& f_D) {
   return socket_->send(haply_force_command(device_id_, haply_force(f_D)), kSendLimit);
 }
 
-/// false: none came in time, or the device shall be closed.
+/// Returns false if no state arrived in time, or the device is closing.
 bool HaplyDevice::wait_for_state(std::string& message) {
   for (milliseconds waited{0}; waited < kStateLimit; waited += kLook) {
     const WebSocket::Received received = socket_->receive(message, kLook);
@@ -161,11 +161,11 @@ Vec3 HaplyDevice::force_now() noexcept {
   return now - written_ns_ <= kHaplyForceAge_ns ? force_.value() : Vec3::Zero().eval();
 }
 
-/// Zero force, then the connection ends. A service that owes a state is told all the same: better than a force left on.
+/// Sends zero force, then closes the connection; also without a pending state, because a remaining force is worse.
 void HaplyDevice::say_goodbye(bool is_answer_due) {
   const bool is_sent = answer(Vec3::Zero());
   std::string message;
-  if (is_sent && is_answer_due) socket_->receive(message, kStateLimit);  // it was taken
+  if (is_sent && is_answer_due) socket_->receive(message, kStateLimit);  // the reply confirms it
   socket_->close(kGoodbyeLimit);
 }
 
@@ -184,7 +184,7 @@ bool HaplyDevice::write(const haptics::Wrench& wrench_D) noexcept {
 
 Status HaplyDevice::reconnect() {
   stop();
-  state_.update();  // the last of the connection that ended
+  state_.update();  // discards the last state of the previous connection
   return start();
 }
 

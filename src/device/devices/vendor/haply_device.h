@@ -16,7 +16,8 @@ inline constexpr const char* kHaplyAddress = "ws://localhost:10001";  ///< Sourc
 inline constexpr std::int64_t kHaplyPeriod_ns = 500'000;              ///< One state and its command: 2 kHz. [assumed]
 inline constexpr std::int64_t kHaplyForceAge_ns =
     20'000'000;                                ///< Without a fresh wrench for so long: no force. [assumed]
-inline constexpr int kHaplyMostUnusable = 50;  ///< Messages in a row that cannot be used: taken for gone. [assumed]
+inline constexpr int kHaplyMostUnusable = 50;  ///< Consecutive unreadable messages after which the device counts as
+                                               ///< disconnected. [assumed]
 
 class WebSocket;
 struct HaplyState;

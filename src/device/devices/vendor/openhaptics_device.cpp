@@ -18,10 +18,10 @@ double steady_s() noexcept {
 }
 
 struct ModelRow {
-  std::string_view word;  ///< In the model's name, small letters.
+  std::string_view word;  ///< In the model's name, in lower case.
   std::string_view preset;
 };
-/// In this order: "Touch X" is the PHANTOM Desktop's successor, "Touch" the Omni's.
+/// In this order: "Touch X" is the successor of the PHANTOM Desktop, "Touch" that of the Omni.
 constexpr std::array kModels{ModelRow{"premium", "premium"}, ModelRow{"desktop", "desktop"},
                              ModelRow{"touch x", "desktop"}, ModelRow{"touchx", "desktop"},
                              ModelRow{"omni", "omni"},       ModelRow{"touch", "omni"}};
@@ -44,7 +44,7 @@ void tighten(std::optional<double>& value, const std::optional<double>& said) no
   if (said) value = value ? std::min(*value, *said) : *said;
 }
 
-/// The row, and nothing beyond what the device itself says that it bears.
+/// The preset, limited to the values that the device reports.
 haptics::DevicePreset tightened(haptics::DevicePreset preset, const hd::Description& said) {
   haptics::DeviceCapability& capability = preset.capability;
   tighten(capability.peak_force_n, said.peak_force_n);
@@ -66,7 +66,7 @@ haptics::DevicePreset tightened(haptics::DevicePreset preset, const hd::Descript
   return preset;
 }
 
-/// Invariant: connection_ is there, but after a reconnect that failed.
+/// Invariant: connection_ is set, except after a failed reconnect.
 class OpenHapticsDevice final : public HapticDevice {
  public:
   OpenHapticsDevice(OpenHapticsOptions options, haptics::DevicePreset preset,
@@ -94,12 +94,12 @@ class OpenHapticsDevice final : public HapticDevice {
     auto opened = hd::Connection::open(options_.device, options_.clock_s, false);
     if (!opened) {
       Error error = std::move(opened).error();
-      if (!cause.empty()) error.what += fmt::format("; it was lost by: {}", cause);
+      if (!cause.empty()) error.what += fmt::format("; last error: {}", cause);
       return tl::unexpected(std::move(error));
     }
     if ((*opened)->description().model != model_) {
-      return fail(fmt::format("another device is there now: {}", (*opened)->description().model), model_,
-                  "start again with it");
+      return fail(fmt::format("a different device is connected: {}", (*opened)->description().model), model_,
+                  "restart with it");
     }
     connection_ = *std::move(opened);
     return {};

@@ -13,7 +13,7 @@ class ServoBody {
   ~ServoBody() = default;
 };
 
-/// When a servo loop of ours wakes. The real one keeps absolute times; a test's wakes when it is told to.
+/// Clock of a servo loop. The real one wakes at absolute times; a test's wakes on request.
 class ServoPace {
  public:
   virtual ~ServoPace() = default;

@@ -1,4 +1,4 @@
-// The client's half of codec.h: what clients say.
+// The client's half of codec.h: client messages.
 #include <fmt/format.h>
 
 #include <array>
@@ -11,7 +11,7 @@ namespace trocar::link {
 namespace {
 using namespace detail;
 
-// docs/link.md gives these numbers to other implementations by the schema.
+// docs/link.md publishes these numbers for other implementations of the schema.
 template <class Enum>
 constexpr bool is_number(Enum value, std::size_t number) {
   return static_cast<std::size_t>(value) == number;
@@ -41,7 +41,7 @@ static_assert(is_number(wire::GateFault::Vibration, static_cast<std::size_t>(tel
 static_assert(is_number(wire::LimitReason::Jumped, static_cast<std::size_t>(telemetry::LimitReason::kJumped)));
 static_assert(is_number(wire::LimitReason::Fault, static_cast<std::size_t>(telemetry::LimitReason::kFault)));
 
-// Beyond what the scene takes (NeedleGeometry, hands): it says itself what it does not like. [assumed]
+// Limits wider than those of the scene (NeedleGeometry, hands), which reports its own errors. [assumed]
 constexpr Range kNeedleLengths_mm = {0.0, 1e4};
 constexpr Range kNeedleRadii_mm = {0.0, 1e3};
 constexpr Range kYoung_gpa = {0.0, 1e4};
@@ -196,7 +196,7 @@ ClientBody read(const wire::ClientMessage& table, Inspection& in) {
 
 Bytes encode(const ClientMessage& message) {
   Builder b;
-  b.ForceDefaults(true);  // else a zero is not sent, and -0.0 is taken for one
+  b.ForceDefaults(true);  // otherwise zeros are omitted, and -0.0 counts as zero
   const auto [type, body] = std::visit([&](const auto& alternative) { return build_body(b, alternative); },  //
                                        message.body);
   b.Finish(wire::CreateClientMessage(b, kLinkVersion, message.session, message.sequence, type, body),

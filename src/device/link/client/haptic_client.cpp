@@ -23,7 +23,7 @@ tl::unexpected<Error> no_server(const std::string& endpoint, milliseconds patien
     return fail(fmt::format("no session within {} ms: {}", patience.count(), refusal), endpoint,
                 "look at the log of trocar-hapticd");
   }
-  return fail(fmt::format("no server was heard within {} ms", patience.count()), endpoint,
+  return fail(fmt::format("no server responded within {} ms", patience.count()), endpoint,
               "start trocar-hapticd there, or look at its log");
 }
 
@@ -80,7 +80,7 @@ Result<std::string> HapticClient::ask(decltype(Command::what) what, milliseconds
   const auto reply = impl_->thread->mailbox().wait_reply(request, left_of(patience, begin));
   const std::string& endpoint = impl_->thread->options().endpoint;
   if (!reply) {
-    return fail(fmt::format("the server did not answer within {} ms", patience.count()), endpoint, "look at its log");
+    return fail(fmt::format("the server did not reply within {} ms", patience.count()), endpoint, "look at its log");
   }
   if (!reply->is_done) return fail(reply->text, endpoint, "see the log of the server");
   return reply->text;

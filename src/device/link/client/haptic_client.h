@@ -23,15 +23,15 @@ struct ClientOptions {
   std::string name = "trocar";
   bool wants_control = true;
   std::optional<ClientSecurity> security;
-  /// A client with a window promises to call frame_drawn(); without that the server takes it as having none.
+  /// A client with a window must call frame_drawn(); otherwise the server assumes that it has none.
   bool has_window = false;
 };
 
-/// What a client knows of its server. Silence is counted in beats of the client's own thread: where that thread gets
-/// no processor nothing can be heard, and the server is not to blame.
+/// A client's view of its server. Timeouts are counted in heartbeats of the client thread: if that thread is not
+/// scheduled, the server does not time out.
 struct ClientView {
-  bool is_connected = false;  ///< Heard within the last 250 ms.
-  double silent_s = 0.0;      ///< Since it was last heard; since the start when never.
+  bool is_connected = false;  ///< A message arrived within the last 250 ms.
+  double silent_s = 0.0;      ///< Time since the last message; since the start if none arrived.
   Welcome welcome;
   ServerStatus status;          ///< Empty until this session's first one came.
   double clock_offset_s = 0.0;  ///< Server's clock minus ours, from the fastest round trip of the last seconds.
@@ -39,7 +39,7 @@ struct ClientView {
   std::uint64_t ticks_received = 0;
   std::uint64_t ticks_missing = 0;  ///< Gaps in the numbers: dropped on the way, or by the server.
   std::uint64_t messages_refused = 0;
-  std::string refusal;         ///< The newest reason why the server does not talk to us; empty: none in this session.
+  std::string refusal;         ///< The newest reason for a refusal by the server; empty: none in this session.
   std::uint64_t welcomes = 0;  ///< Sessions so far: above 1 the server was lost and found again.
 };
 
@@ -50,9 +50,8 @@ struct NumberedSample {
   std::uint64_t scene = 0;  ///< Number of the scene that made it, see Reply::scene; 0: none.
 };
 
-/// The client's side of the link, in a thread of its own that beats at 100 Hz whatever the caller does. Connects by
-/// itself, and again when a server comes back: any start order. All members may be called from any one thread; none
-/// waits for the server but ask().
+/// The client's side of the link, in a thread that sends heartbeats at 100 Hz independent of the caller. Connects and
+/// reconnects automatically, in any start order. Any one thread may call the members; only ask() waits for the server.
 class HapticClient {
  public:
   static Result<HapticClient> connect(const ClientOptions& options);
@@ -66,16 +65,16 @@ class HapticClient {
   /// The newest tick, if there was one.
   std::optional<telemetry::TickSample> newest() const;
 
-  /// Sends a command and gives its number; its reply comes by take_replies(), in any case: where there is no server, or
-  /// it goes away, it says so. A command is never kept for a server that comes later.
+  /// Sends a command and returns its number; take_replies() always returns a reply, also if there is no server or it
+  /// disconnects. Commands are not queued for a later server.
   std::uint32_t send(decltype(Command::what) what);
   std::vector<Reply> take_replies();
   /// Sends a command and waits for its reply. Errors: the reply's own, no server, no answer in time.
   Result<std::string> ask(decltype(Command::what) what, std::chrono::milliseconds patience);
   void set_hand(const HandTarget& target);
-  /// The window has drawn a picture.
+  /// Call after the window drew a frame.
   void frame_drawn();
-  /// Waits until the server was heard. Error: not within that time.
+  /// Waits for the first message of the server. Error: timeout.
   Status wait_connected(std::chrono::milliseconds patience);
 
  private:

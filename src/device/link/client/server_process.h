@@ -23,8 +23,8 @@ class ServerProcess {
 
   int pid() const;
   bool is_running();
-  /// It cannot be blamed for its silence now: it is stopped, or one of its threads runs, waits for a processor or for a
-  /// disk. False when all of it sleeps, and when it has ended.
+  /// True if the process cannot respond now: it is stopped, or one of its threads is running or waiting for a processor
+  /// or a disk. False if all threads sleep, and after its end.
   bool is_held_up();
   /// "ended with exit status 1", "was killed by signal 9"; empty while it runs.
   std::string how_it_ended();
@@ -36,7 +36,7 @@ class ServerProcess {
   std::unique_ptr<Impl> impl_;
 };
 
-/// trocar-hapticd beside the running program, else on PATH. Error: neither.
+/// Path of trocar-hapticd next to the running program, else on PATH. Error: not found.
 Result<std::filesystem::path> find_server_program();
 
 }  // namespace trocar::link

@@ -41,13 +41,13 @@ Status clear_place(const fs::path& path, const sockaddr_un& name) {
   struct stat found {};
   if (::lstat(path.c_str(), &found) != 0) return {};
   if (!S_ISSOCK(found.st_mode)) {
-    return fail("there is a file that is no socket", path.string(), "choose another endpoint");
+    return fail("the path exists and is not a socket", path.string(), "choose another endpoint");
   }
   if (is_alive(name)) {
     return fail("the endpoint is in use by another server", path.string(), "end that one or choose another endpoint");
   }
   if (::unlink(path.c_str()) != 0 && errno != ENOENT) {
-    return fail("the socket of a dead server cannot be removed", path.string(), std::strerror(errno));
+    return fail("cannot remove the socket of a server that has ended", path.string(), std::strerror(errno));
   }
   return {};
 }
@@ -75,7 +75,7 @@ Result<IpcFile> IpcFile::listen(const fs::path& path) {
     if (errno == EADDRINUSE)
       return fail("the endpoint is in use by another server", path.string(),
                   "stop that server, or choose another endpoint");
-    return fail("the socket cannot be made", path.string(), std::strerror(errno));
+    return fail("cannot create the socket", path.string(), std::strerror(errno));
   }
   IpcFile file;
   file.path_ = path;

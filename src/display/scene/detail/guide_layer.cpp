@@ -17,7 +17,7 @@
 namespace trocar::scene::detail {
 namespace {
 
-// The trainer's colours of path and target (shell/theme.h).
+// The trainer's colours of path and target (ui_kit/theme.h).
 constexpr volume::Rgb kPathColor = {0x54, 0xd1, 0xc4};
 constexpr volume::Rgb kTargetColor = {0xff, 0x8a, 0x3d};
 constexpr volume::Rgb kLandmarkColor = {0xf2, 0xd0, 0x6b};

@@ -70,7 +70,7 @@ Status check_label_ids(const anatomy::VirtualPatient& patient, const std::string
 Status check_geometry(const anatomy::VirtualPatient& patient, const std::string& where) {
   const volume::GridGeometry& g = patient.ct.geometry;
   if (g.matches(patient.labels.geometry) && g.matches(patient.skin_distance_mm.geometry)) return {};
-  return fail("CT, labels and skin distance do not lie on one grid", where, kBuildAgain);
+  return fail("CT, labels and skin distance are not on the same grid", where, kBuildAgain);
 }
 
 /// A file name of a structure's name, not yet taken.
@@ -195,7 +195,7 @@ Result<anatomy::VirtualPatient> load_patient(const fs::path& folder) {
   log_info("loaded {}: {} labels, {:.1f} Mvoxel", folder.string(), patient.label_table.labels.size(),
            1e-6 * static_cast<double>(patient.labels.voxels.size()));
   if (patient.content_hash == description.content_hash) return patient;
-  return fail("the patient's volumes or labels were changed after it was built", folder.string(), kBuildAgain);
+  return fail("the patient's volumes or labels changed after it was built", folder.string(), kBuildAgain);
 }
 
 Result<std::vector<anatomy::NamedMesh>> load_patient_meshes(const fs::path& folder) {

@@ -67,7 +67,7 @@ Result<std::string> find_recorded_patient(const std::string& recorded, const std
     if (has_hash(candidate, hash)) return absolute_source(candidate.string());
   std::error_code ignored;
   if (recorded.find('/') == std::string::npos || fs::is_directory(recorded, ignored)) return recorded;
-  return fail("patient folder not found, nor one with its content beside the session", recorded,
+  return fail("patient folder not found, and no folder with the same content near the session", recorded,
               "name it with --patient");
 }
 

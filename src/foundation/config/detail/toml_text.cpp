@@ -110,7 +110,7 @@ class Scanner {
 
 Status check_toml_text(std::string_view text, const std::string& name) {
   if (text.size() > kMaxBytes)
-    return fail(fmt::format("a configuration file of {} bytes, at most {} are read", text.size(), kMaxBytes), name,
+    return fail(fmt::format("configuration file of {} bytes exceeds the limit of {}", text.size(), kMaxBytes), name,
                 "is this the right file?");
   int line = 1;
   for (std::size_t n = 0; n < text.size();) {

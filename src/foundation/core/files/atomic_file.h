@@ -9,8 +9,8 @@
 namespace trocar {
 inline namespace core {
 
-/// Writes a file whole or not at all: `write` fills a temporary path beside `target` (same ending), which is then
-/// flushed to disk and renamed over it. On failure the temporary is removed and an existing target stays as it was.
+/// Writes a file completely or not at all: `write` fills a temporary file next to `target` (same ending), which is
+/// flushed to disk and renamed. On failure the temporary file is removed and an existing target is unchanged.
 Status write_atomically(const std::filesystem::path& target,
                         const std::function<Status(const std::filesystem::path& temporary)>& write);
 
@@ -22,7 +22,7 @@ Status write_file_atomically(const std::filesystem::path& target, std::string_vi
 Status write_folder_atomically(const std::filesystem::path& target,
                                const std::function<Status(const std::filesystem::path& temporary)>& write);
 
-/// Makes the folder that `target` will lie in, where it is missing.
+/// Creates the parent folder of `target` if it does not exist.
 Status make_parent_folder(const std::filesystem::path& target);
 
 /// The whole file, at most `max_bytes` long.

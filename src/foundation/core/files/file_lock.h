@@ -8,12 +8,12 @@
 namespace trocar {
 inline namespace core {
 
-/// An exclusive advisory lock on a file, held while this object lives. The system releases it when the process ends,
-/// however it ends; processes started meanwhile do not hold it. The file stays, unless remove() is called.
+/// An exclusive advisory lock on a file, held during the lifetime of this object. The system releases it when the
+/// process ends for any reason; child processes do not inherit it. The file stays unless remove() is called.
 class FileLock {
  public:
-  /// Creates the file where there is none. Empty: somebody else holds the lock, another process or another object of
-  /// this one. Errors: the file cannot be opened or locked.
+  /// Creates the file if necessary. Empty if another process or object holds the lock. Errors: the file cannot be
+  /// opened or locked.
   static Result<std::optional<FileLock>> try_lock(const std::filesystem::path& path);
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;

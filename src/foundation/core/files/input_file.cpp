@@ -51,7 +51,7 @@ tl::unexpected<Error> too_large(const fs::path& path, const FileLimit& limit) {
 
 tl::unexpected<Error> cannot_open(const fs::path& path, int reason) {
   if (reason == ENOENT || reason == ENOTDIR) return fail("no such file", path.string(), "check the path");
-  if (reason == ELOOP) return fail("symbolic links that lead in a circle", path.string(), "check the path");
+  if (reason == ELOOP) return fail("circular symbolic links", path.string(), "check the path");
   if (reason == EACCES) return fail("no permission to read", path.string(), "check the permissions");
   return fail(fmt::format("cannot be opened: {}", std::strerror(reason)), path.string(), "check the file");
 }
@@ -121,7 +121,7 @@ Result<InputFile> InputFile::open(const fs::path& path, const FileLimit& limit, 
   if (::fstat(file.descriptor_, &status) != 0) return cannot_open(path, errno);
   TROCAR_TRY_STATUS(check_kind(status, path));
   if (!inside.empty() && !is_inside(file.pinned_path(), inside))
-    return fail("a link that leads out of the folder", path.string(), "put the file itself into the folder");
+    return fail("a link leads out of the folder", path.string(), "put the file itself into the folder");
   file.size_ = static_cast<std::uint64_t>(status.st_size);
   if (file.size_ > limit.max_bytes) return too_large(path, limit);
   return file;

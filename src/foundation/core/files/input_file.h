@@ -43,8 +43,8 @@ class InputFile {
   const std::filesystem::path& path() const noexcept { return path_; }  ///< As it was named, for messages.
   std::uint64_t size() const noexcept { return size_; }                 ///< In bytes, when it was opened.
 
-  /// A path that leads to this very file as long as this object lives, whatever the name leads to by then
-  /// ("/proc/self/fd/5"): for libraries that open files by name. It has no ending.
+  /// A path that refers to the open file during the lifetime of this object ("/proc/self/fd/5"), for libraries that
+  /// open files by name. It has no ending.
   std::filesystem::path pinned_path() const;
 
   /// The whole file. Errors: it cannot be read, it has grown above the limit.

@@ -7,8 +7,8 @@
 namespace trocar {
 inline namespace core {
 
-/// Before long work: whether a file or folder can be made at `target`. Makes and removes a small file in the nearest
-/// existing parent folder, so that a full disk, a read-only file system and a name that is too long are found now.
+/// Checks before long work that a file or folder can be created at `target`: creates and removes a small file in the
+/// nearest existing parent folder. Detects a full disk, a read-only file system and a name that is too long.
 Status check_can_write(const std::filesystem::path& target);
 
 }  // namespace core

@@ -32,8 +32,8 @@ void unregister_unfinished_output(const std::filesystem::path& path);
 /// A finished output that nobody asked for, such as a cached patient: an interruption does not name it.
 void forget_finished_output(const std::filesystem::path& path);
 
-/// Ends the process with status 1, its unfinished outputs removed. `say_why(output)` gives the line for standard error;
-/// `output` is the last one that was finished, empty: none. Other threads end first, so that none makes a file anew.
+/// Ends the process with status 1 after removing its unfinished outputs. `say_why(output)` returns the line for
+/// standard error; `output` is the last finished one, or empty. Other threads end first, so that none recreates a file.
 [[noreturn]] void end_without_unfinished_outputs(std::string (*say_why)(const std::filesystem::path& output));
 
 }  // namespace core

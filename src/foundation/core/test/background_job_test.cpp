@@ -74,7 +74,7 @@ TEST(BackgroundJob, SaysWhenMemoryIsShort) {
   wait_done(job);
   const auto result = job.take();
   ASSERT_TRUE(result && !*result);
-  EXPECT_EQ(result->error().what, "there is not enough memory");
+  EXPECT_EQ(result->error().what, "not enough memory");
 }
 
 TEST(BackgroundJob, CanBeMovedWhileItWorks) {

@@ -80,7 +80,7 @@ TEST(Try, PassesAStatusOn) {
 TEST(CheckDeathTest, NamesTheConditionThatDoesNotHold) {
   const int two = 2;
   TROCAR_CHECK(two == 2);
-  EXPECT_DEATH(TROCAR_CHECK(two == 3), "two == 3 does not hold");
+  EXPECT_DEATH(TROCAR_CHECK(two == 3), "check failed: two == 3");
 }
 
 }  // namespace

@@ -52,12 +52,12 @@ struct UnknownLabels {
   Status status() const {
     if (files.empty()) return {};
     std::string what;
-    if (!names.empty()) what = fmt::format("not known as names of structures: {}", fmt::join(names, ", "));
+    if (!names.empty()) what = fmt::format("unknown structure names: {}", fmt::join(names, ", "));
     if (!values.empty())
       what += fmt::format("{}label values without a name: {}", what.empty() ? "" : "; ", fmt::join(values, ", "));
     return fail(
         what, fmt::format("{}", fmt::join(files, ", ")),
-        "give them names of TotalSegmentator, or leave them out with ignore = [...], in a label map (--label-map)");
+        "assign TotalSegmentator names, or ignore the labels with ignore = [...], in a label map (--label-map)");
   }
 };
 
@@ -104,7 +104,8 @@ class Merger {
         continue;
       }
       if (merged_.table.labels.size() == kMaxStructures)
-        return fail(fmt::format("more than {} structures", kMaxStructures), source.file, "leave some out");
+        return fail(fmt::format("more than {} structures", kMaxStructures), source.file,
+                    "leave some out with a label map");
       id_of[v] = find_or_add(name);
     }
     paint(labels, id_of);

@@ -31,7 +31,7 @@ void add_erector_spinae(Anatomy& anatomy, float sign) {
     return std::pair{multifidus, outer};
   };
   const Box back{Vec3f(sign < 0.0F ? -75.0F : 0.0F, 40.0F, -kHalfHeight - 5.0F),
-                         Vec3f(sign < 0.0F ? 0.0F : 75.0F, 130.0F, kHalfHeight + 5.0F)};
+                 Vec3f(sign < 0.0F ? 0.0F : 75.0F, 130.0F, kHalfHeight + 5.0F)};
   anatomy.add({"autochthon" + side, back,
                [=](const Place& place) {
                  const auto [multifidus, outer] = bellies(place);
@@ -63,8 +63,7 @@ void add_psoas(Anatomy& anatomy, float sign) {
 void add_quadratus_lumborum(Anatomy& anatomy, float sign) {
   const Vec3f quadratus(sign * 64.0F, 59.0F, 0.0F);
   anatomy.add_plain(
-      "muscle",
-      warped(Box{Vec3f(quadratus.x() - 28.0F, 40.0F, -125.0F), Vec3f(quadratus.x() + 28.0F, 80.0F, 28.0F)}),
+      "muscle", warped(Box{Vec3f(quadratus.x() - 28.0F, 40.0F, -125.0F), Vec3f(quadratus.x() + 28.0F, 80.0F, 28.0F)}),
       [=](const Place& place) {
         const float widening = smooth_step(30.0F, -60.0F, place.p.z());
         const Vec3f u = place.q - quadratus;

@@ -167,13 +167,13 @@ Result<BiopsyPlan> plan_biopsy(const Anatomy& anatomy, const PathMargins& margin
   const Risks risks(anatomy);
   const auto first = find_case(anatomy, risks, margins, random);
   if (!first)
-    return fail("this seed leaves no safe way to a liver lesion", "phantom \"abdomen\"", "choose another seed");
+    return fail("no safe path to a liver lesion with this seed", "phantom \"abdomen\"", "choose another seed");
   BiopsyPlan plan{margins, {first->lesion}, {"liver-biopsy expert", {}}};
   plan.path.line_P = {first->entry.cast<double>(), first->lesion.centre.cast<double>()};
   while (plan.lesions.size() < kLesions) {
     const auto lesion = find_lesion(anatomy, risks, plan.lesions, random);
     if (!lesion)
-      return fail("this seed leaves no room for three liver lesions", "phantom \"abdomen\"", "choose another seed");
+      return fail("no space for three liver lesions with this seed", "phantom \"abdomen\"", "choose another seed");
     plan.lesions.push_back(*lesion);
   }
   return plan;

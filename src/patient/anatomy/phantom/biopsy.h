@@ -27,13 +27,13 @@ struct BiopsyPlan {
   std::vector<Lesion> lesions;
   NeedlePath path;
 
-  /// Whether a liver vessel of this radius at p would touch a lesion or the path's surroundings.
+  /// True if a liver vessel of this radius at p would touch a lesion or the surroundings of the path.
   bool is_in_the_way(const Vec3f& p, float vessel_radius_mm) const;
 };
 
-/// Chooses places for three lesions, the first where a needle reaches it between two ribs of the right flank. Asked
-/// before the liver's vessels grow: they grow around lesions and path. The margins hold to the anatomy's surfaces.
-/// Error: no such place in 20,000 tries.
+/// Selects positions for three lesions; a needle can reach the first one between two ribs of the right flank. Called
+/// before the liver's vessels grow, which avoid lesions and path. Margins are measured to the anatomy's surfaces.
+/// Error: no position in 20,000 tries.
 Result<BiopsyPlan> plan_biopsy(const Anatomy& anatomy, const PathMargins& margins = {});
 
 void add_lesions(Anatomy& anatomy, const BiopsyPlan& plan);

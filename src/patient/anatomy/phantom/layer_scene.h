@@ -9,8 +9,8 @@
 
 namespace trocar::anatomy::phantom {
 
-/// One thing in a layered scene, in its own coordinates: x as in P, the depth below the skin, z as in P. Later shapes
-/// cover earlier ones.
+/// One object of a layered scene in its own coordinates: x as in P, depth below the skin, z as in P. Later shapes cover
+/// earlier ones.
 struct LayerShape {
   std::string_view name;  ///< A known structure.
   float hu = 0.0F;

@@ -117,7 +117,7 @@ void blur_along(volume::FloatGrid& grid, std::size_t axis, double sigma_mm) {
 const std::vector<PhantomInfo>& layered_scenes() {
   static const std::vector<PhantomInfo> kScenes{
       {"layers-lumbar", "layered test scene: lumbar puncture from the back, between two spinous processes", {}},
-      {"layers-ascites", "layered test scene: ascites behind the wall of the left lower quadrant, bowel behind", {}},
+      {"layers-ascites", "layered test scene: ascites behind the left lower abdominal wall, bowel behind it", {}},
       {"layers-liver", "layered test scene: liver behind the chest wall, with a bile duct and a vein", {}}};
   return kScenes;
 }

@@ -8,9 +8,9 @@
 
 namespace trocar::anatomy::phantom {
 
-/// Layered test scenes: a block of 80 x 140 x 80 mm cut out of a body, flat skin, the layers of one kind of puncture
-/// behind it as slabs, with what lies beside the needle's way, and one expert path straight in. For force curves along
-/// a path and for tests. "layers-lumbar" is entered from the back (+y), the others from the front (-y).
+/// Layered test scenes: a block of 80 x 140 x 80 mm with flat skin, the layers of one kind of puncture as slabs,
+/// structures next to the path, and one straight expert path. For force curves and tests. The needle enters
+/// "layers-lumbar" from the back (+y), the others from the front (-y).
 const std::vector<PhantomInfo>& layered_scenes();
 
 /// The scene of that name, 0.8 mm voxels where the resolution says nothing. The seed changes texture and noise alone:

@@ -57,7 +57,7 @@ std::vector<Landmark> landmarks(const Anatomy& anatomy) {
 Result<VirtualPatient> generate_abdomen(const PhantomInfo& info, std::uint64_t seed,
                                         const PhantomResolution& resolution, const Progress& progress) {
   const volume::GridGeometry geometry = box_geometry(resolution);
-  report(progress, "shaping the anatomy", 0.0);
+  report(progress, "generating the anatomy", 0.0);
   Anatomy anatomy(seed);
   TROCAR_TRY(BiopsyPlan plan, build_abdomen(anatomy));
 
@@ -96,7 +96,7 @@ Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t see
   if (found == patients.end()) {
     std::string names;
     for (const PhantomInfo& patient : patients) names += (names.empty() ? "" : ", ") + patient.name;
-    return fail_usage("no embedded patient is called \"" + std::string(name) + "\"", {}, "there are: " + names);
+    return fail_usage("unknown embedded patient \"" + std::string(name) + "\"", {}, "there are: " + names);
   }
   TROCAR_TRY_STATUS(check_resolution(resolution));
   if (found != patients.begin()) return make_layered_scene(name, seed, resolution);

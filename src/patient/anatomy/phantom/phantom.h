@@ -15,7 +15,7 @@ namespace trocar::anatomy {
 struct PhantomInfo {
   std::string name;  ///< "abdomen".
   std::string description;
-  std::vector<std::string> tasks;  ///< Task names that it serves.
+  std::vector<std::string> tasks;  ///< Names of the tasks that it supports.
 };
 const std::vector<PhantomInfo>& embedded_patients();
 
@@ -24,7 +24,7 @@ struct PhantomResolution {
   std::array<std::int64_t, 3> size{0, 0, 0};  ///< 0: the default grid (1 mm or finer).
 };
 
-/// Generates an embedded patient: the same bits for the same name, seed and resolution, whatever the number of threads.
+/// Generates an embedded patient; bit-identical for the same name, seed and resolution, for any number of threads.
 /// Unknown name: exit status 2, the message lists the names.
 Result<VirtualPatient> generate_phantom(std::string_view name, std::uint64_t seed = 1,
                                         const PhantomResolution& resolution = {}, const Progress& progress = {});

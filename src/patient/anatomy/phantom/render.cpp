@@ -126,7 +126,7 @@ Rendering render(const Anatomy& anatomy, const volume::GridGeometry& geometry, c
   // A few layers at a time, so that progress is told from the calling thread.
   constexpr std::size_t kBatch = 4;
   for (std::size_t first = 0; first < painter.layers(); first += kBatch) {
-    report(progress, "painting the anatomy", static_cast<double>(first) / static_cast<double>(painter.layers()));
+    report(progress, "rendering the anatomy", static_cast<double>(first) / static_cast<double>(painter.layers()));
     const std::size_t count = std::min(kBatch, painter.layers() - first);
     parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t layer = begin; layer < end; ++layer) painter.paint_layer(first + layer);

@@ -13,7 +13,7 @@ struct Rendering {
   volume::FloatGrid skin_distance_mm;
 };
 
-/// How the structures of a block of voxels are chosen. kEvery exists to prove in a test that kNear changes nothing.
+/// Selection of structures for a block of voxels. A test compares kNear with kEvery.
 enum class Culling { kNear, kEvery };
 
 /// Paints the anatomy onto a grid (R_PV identity) with scanner noise. Parallel; the same bits for any number of

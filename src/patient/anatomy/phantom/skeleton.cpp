@@ -219,8 +219,7 @@ void add_spine(Anatomy& anatomy) {
 
   const std::uint8_t cord = anatomy.label("spinal_cord");
   const std::uint8_t fat = anatomy.label("fat");
-  anatomy.add({"spinal_cord",
-               Box{Vec3f(-14.0F, 30.0F, -kHalfHeight - 5.0F), Vec3f(14.0F, 75.0F, kHalfHeight + 5.0F)},
+  anatomy.add({"spinal_cord", Box{Vec3f(-14.0F, 30.0F, -kHalfHeight - 5.0F), Vec3f(14.0F, 75.0F, kHalfHeight + 5.0F)},
                [](const Place& place) { return canal(place.p - Vec3f(0.0F, spine_y(place.p.z()), 0.0F)) + 0.3F; },
                [=](const Place& place, float distance, const Brush& brush) {
                  const float sac = distance + 1.6F;

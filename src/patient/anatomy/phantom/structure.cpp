@@ -35,8 +35,8 @@ Vec3f Anatomy::unwarped(const Vec3f& q) const {
   return p;
 }
 
-void Anatomy::add_plain(std::string name, const Box& bounds, std::function<float(const Place&)> distance,
-                        float hu, float texture_hu, float texture_mm) {
+void Anatomy::add_plain(std::string name, const Box& bounds, std::function<float(const Place&)> distance, float hu,
+                        float texture_hu, float texture_mm) {
   const std::uint8_t id = label(name);
   add({std::move(name), bounds, std::move(distance), [=, this](const Place& place, float, const Brush&) {
          const float texture = texture_hu == 0.0F ? 0.0F : texture_hu * noise.fractal(place.p, texture_mm);

@@ -12,7 +12,7 @@
 
 namespace trocar::anatomy::phantom {
 
-/// What fills a place: Hounsfield units and label.
+/// HU and label of a point.
 struct Paint {
   float hu = -1000.0F;
   std::uint8_t label = 0;
@@ -25,10 +25,10 @@ struct Brush {
   float cover(float distance) const { return smooth_step(-0.6F * blur_mm, 0.6F * blur_mm, -distance); }
 };
 
-/// One thing to paint. Later structures cover earlier ones.
+/// One structure to draw. Later structures cover earlier ones.
 struct Structure {
   std::string name;                             ///< Its main label, for clearances ("rib_cage" for all ribs).
-  Box bounds;                           ///< Nothing is painted outside.
+  Box bounds;                                   ///< Nothing is painted outside.
   std::function<float(const Place&)> distance;  ///< mm, negative inside; slope within kSteepness.
   std::function<Paint(const Place&, float distance, const Brush&)> paint;
 };
@@ -50,7 +50,7 @@ struct Anatomy {
   /// Random numbers of one organ: what is changed in one does not change the others.
   Random random(std::string_view organ) const;
   const Structure& find(std::string_view name) const;
-  /// The point of P that the warp brings to q.
+  /// Point of P that the warp maps to q.
   Vec3f unwarped(const Vec3f& q) const;
   void add(Structure structure) { structures.push_back(std::move(structure)); }
   /// A structure of one label with HU that varies slowly around `hu` (texture_hu, features of texture_mm).

@@ -15,10 +15,10 @@ inline constexpr float kHalfDepth = 142.5F;
 inline constexpr float kHalfHeight = 114.0F;
 inline constexpr float kUmbilicusZ = -92.0F;
 
-/// A place in the body and what the torso knows about it.
+/// A point in the body and its torso coordinates.
 struct Place {
   Vec3f p;          ///< P, mm.
-  Vec3f q;          ///< p moved by the smooth warp that makes this patient's organs unlike the next one's.
+  Vec3f q;          ///< p after the smooth random warp that makes the organs of each patient different.
   float skin;       ///< Signed distance to the skin (mm, negative inside the body).
   float wall;       ///< To the outer surface of the muscles of the trunk.
   float cavity;     ///< To the inner surface of the trunk's wall (negative in the abdominal and thoracic cavity).

@@ -10,7 +10,7 @@ namespace trocar::anatomy::phantom {
 /// How a vessel tree grows.
 struct GrowthRule {
   float root_radius_mm = 7.0F;
-  float root_share = 0.5F;       ///< Share of the way to the territory's middle before the root forks.
+  float root_share = 0.5F;       ///< Fraction of the distance to the territory's centre at which the root forks.
   float least_radius_mm = 1.2F;  ///< Thinner branches are not grown.
   /// Whether a vessel of this radius may run through a point of P.
   std::function<bool(const Vec3f& p, float radius_mm)> allowed;
@@ -21,10 +21,10 @@ struct VesselRoot {
   Vec3f direction;
 };
 
-/// Grows a tree by halving the territory it supplies: a vessel runs towards the middle of its territory, there it
-/// forks, and each daughter takes one half. Radii follow Murray's law, r^3 = r1^3 + r2^3 (C. D. Murray, PNAS 12:207,
-/// 1926), each daughter's cube in proportion to its share of the territory. A vessel that is not allowed tries other
-/// bends and lengths, and forks at once where none fits.
+/// Grows a tree by halving the territory it supplies: a vessel grows towards the centre of its territory and forks
+/// there; each daughter supplies one half. Radii follow Murray's law, r^3 = r1^3 + r2^3 (C. D. Murray, PNAS 12:207,
+/// 1926), with each daughter's r^3 proportional to its share of the territory. A vessel that violates a constraint
+/// tries other bends and lengths, and forks at once if none fits.
 std::vector<Cone> grow_tree(const VesselRoot& root, std::vector<Vec3f> territory, const GrowthRule& rule,
                             Random& random);
 

@@ -56,12 +56,13 @@ Status apply_rescale(const Rescale& rescale, volume::CtGrid& ct) {
   constexpr double kMaxSlope = 1e4, kMaxIntercept = 1e6;
   const double slope = std::abs(rescale.slope);
   if (!(slope >= 1.0 / kMaxSlope && slope <= kMaxSlope) || !(std::abs(rescale.intercept) <= kMaxIntercept))
-    return fail_usage("the scale is not usable", fmt::format("--rescale {},{}", rescale.slope, rescale.intercept),
+    return fail_usage("the rescale values are not usable",
+                      fmt::format("--rescale {},{}", rescale.slope, rescale.intercept),
                       "give SLOPE,INTERCEPT such as 1,-1024");
   for (std::int16_t& voxel : ct.voxels) {
     const double hu = rescale.slope * voxel + rescale.intercept;
     if (hu >= 32767.5)
-      return fail_usage(fmt::format("the scale makes {:.0f} HU of the stored number {}", hu, voxel),
+      return fail_usage(fmt::format("the rescale values convert the stored number {} to {:.0f} HU", voxel, hu),
                         fmt::format("--rescale {},{}", rescale.slope, rescale.intercept), "check slope and intercept");
     voxel = static_cast<std::int16_t>(std::lround(std::max(hu, -32768.0)));
   }

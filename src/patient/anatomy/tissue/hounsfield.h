@@ -15,10 +15,9 @@ struct Rescale {
 /// value would be above 32767.
 Status apply_rescale(const Rescale& rescale, volume::CtGrid& ct);
 
-/// Whether the numbers of a CT can be HU: there is air, and most of what is no air is soft tissue. Not so where the
-/// rescale tags are missing (air at 0), applied twice, or where a picture of 8 bits was exported. Errors name the range
-/// that was found. Every build of a patient asks for this: without air no skin is found, and the noise of a whole
-/// volume becomes structures.
+/// Checks that the numbers of a CT can be HU: air is present, and most of the rest is soft tissue. Fails if the rescale
+/// tags are missing (air at 0) or applied twice, or for an exported 8-bit image. Errors state the range found. Every
+/// build calls this: without air no skin is found, and the noise of a whole volume becomes structures.
 Status check_hounsfield(const volume::CtGrid& ct);
 
 }  // namespace trocar::anatomy

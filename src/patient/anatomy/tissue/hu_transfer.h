@@ -5,9 +5,9 @@
 
 namespace trocar::anatomy {
 
-/// What tissue of one intensity does to a needle where no label says more (paper B, eqs. 1 to 5; physics.md B1 to B4).
+/// Resistance of tissue as a function of HU, for unlabelled tissue (paper B, eqs. 1 to 5; physics.md B1 to B4).
 struct HuLaw {
-  double stiffness_n_per_mm = 1.0;         ///< k: tissue that bears the tip before the proxy moves. Range 0.01..50.
+  double stiffness_n_per_mm = 1.0;         ///< Stiffness k before the proxy moves. Range 0.01..50.
   double normal_n = 0.0;                   ///< T_N: threshold along the gradient, into denser tissue. Range 0..200.
   double tangential_n = 0.0;               ///< T_T: threshold across the gradient. Range 0..50.
   double resistance_n = 0.0;               ///< R0: what the tip needs to move at all. Range 0..50.
@@ -26,7 +26,7 @@ struct HuTransfer {
   std::size_t knot_count = 0;  ///< 0: no transfer functions; the proxy models refuse the table.
 
   double gradient_scale_mm = 1.5;         ///< Half distance of the central differences. Range 0.2..5.
-  double gradient_none_hu_per_mm = 15.0;  ///< Below it there is no border: viscosity alone. Range 0..500.
+  double gradient_none_hu_per_mm = 15.0;  ///< Gradient below which there is no border, only viscosity. Range 0..500.
   double gradient_full_hu_per_mm = 30.0;  ///< From it on the border counts whole. Range above the former..1000.
 
   /// Real-time safe; NaN reads as the first knot.

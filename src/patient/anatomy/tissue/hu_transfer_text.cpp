@@ -24,7 +24,7 @@ Status read_knots(const config::TomlTable& section, HuTransfer& transfer) {
                 fmt::format("give 2 to {}", HuTransfer::kMaxKnots));
   for (std::size_t n = 1; n < knots.size(); ++n)
     if (!(knots[n] > knots[n - 1]))
-      return fail(fmt::format("hu must rise, {} follows {}", knots[n], knots[n - 1]), section.where(),
+      return fail(fmt::format("hu must increase: {} follows {}", knots[n], knots[n - 1]), section.where(),
                   "order the knots by HU");
   std::copy(knots.begin(), knots.end(), transfer.hu.begin());
   transfer.knot_count = knots.size();
@@ -53,7 +53,7 @@ Status read_curve(const config::TomlTable& section, const TissueField<HuLaw>& fi
     provenance.low = factors[0];
     provenance.high = factors[1];
   } else if (provenance.source.starts_with("assumed")) {
-    return fail("an assumed curve needs the factors by which it may be off", entry.where(), "add factors = [0.5, 2]");
+    return fail("an assumed curve must give its uncertainty factors", entry.where(), "add factors = [0.5, 2]");
   }
   table.provenance[path_of(field.name)] = std::move(provenance);
   return {};

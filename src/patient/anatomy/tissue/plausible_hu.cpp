@@ -42,9 +42,9 @@ std::vector<std::string> find_implausible_hu(const VirtualPatient& patient,
   }
   constexpr std::size_t kMany = 4;
   if (doubts.size() >= kMany && doubts.size() * 5 >= judged) {
-    doubts.insert(doubts.begin(), fmt::format("{} of {} structures have HU that do not fit them: does the segmentation "
-                                              "belong to this CT?",
-                                              doubts.size(), judged));
+    doubts.insert(doubts.begin(),
+                  fmt::format("{} of {} structures have implausible HU: does the segmentation belong to this CT?",
+                              doubts.size(), judged));
   }
   return doubts;
 }

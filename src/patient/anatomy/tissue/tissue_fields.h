@@ -46,7 +46,7 @@ inline constexpr std::string_view kOverrideSource = "set by the user";
 
 inline constexpr std::string_view kDefaultProfile = "paper-a";
 
-/// The field of that long or short name, nullptr when there is none.
+/// Field with this long or short name, or nullptr.
 template <class T>
 const TissueField<T>* find_field(std::span<const TissueField<T>> fields, std::string_view key) noexcept {
   for (const TissueField<T>& field : fields)
@@ -56,7 +56,7 @@ const TissueField<T>* find_field(std::span<const TissueField<T>> fields, std::st
 
 // Text of a table, for the units that write one.
 
-/// Of a number that has none: "set by the user".
+/// Source of a user's value: "set by the user".
 Provenance find_provenance(const std::map<std::string, Provenance>& provenance, const std::string& path);
 /// Appends KEY = {value = 0.46, source = "…", range = [low, high]}; an infinite value is written as never = true.
 void append_number(std::string& out, std::string_view key, double value, const std::string& path,

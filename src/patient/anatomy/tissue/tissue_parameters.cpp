@@ -31,7 +31,7 @@ struct Wording {
 constexpr std::array<Wording, 4> kLayerWords{{
     {"k", "k", "stiffness of the surface", "N/mm", 0.001, kEverywhere},
     {"nu", "ν", "viscosity of the surface", "N·s/mm", 1e-4, kInsertionAndCombined},
-    {"dx", "Δx", "step of the loading", "mm", 0.01, kEverywhere},
+    {"dx", "Δx", "displacement step Δx of the loading law", "mm", 0.01, kEverywhere},
     {"fp", "F_p", "puncture force", "N", 0.01, kEverywhere},
 }};
 constexpr std::array<Wording, 6> kTissueWords{{
@@ -39,11 +39,11 @@ constexpr std::array<Wording, 6> kTissueWords{{
     {"mu", "μ", "friction coefficient", "", 0.0, kInsertionAlone},
     {"delta", "δ", "roughness", "N", 0.0, kInsertionAlone},
     {"stick", "s", "holding force at rest", "N/mm", 1e-4, kEverywhere},
-    {"fc", "F_c", "cutting, R₀ of the proxy", "N", 0.0, kEverywhere},
+    {"fc", "F_c", "cutting force (R₀ of the proxy)", "N", 0.0, kEverywhere},
     {"young", "E", "Young's modulus", "kPa", 0.1, kProxyAndCombined},
 }};
 constexpr std::array<Wording, 8> kCurveWords{{
-    {"k", "k", "stiffness under the tip", "×", 0.1, kProxyAndCombined},
+    {"k", "k", "stiffness at the tip", "×", 0.1, kProxyAndCombined},
     {"tn", "T_N", "threshold across a border", "×", 0.1, kProxyAndCombined},
     {"tt", "T_T", "threshold along a border", "×", 0.1, kProxyAndCombined},
     {"r0", "R₀", "resistance of the tip", "×", 0.1, kProxyAndCombined},
@@ -53,9 +53,9 @@ constexpr std::array<Wording, 8> kCurveWords{{
     {"young", "E", "Young's modulus", "×", 0.1, kProxyAndCombined},
 }};
 constexpr std::array<Wording, 3> kGradientWords{{
-    {"scale", "h", "reach of the gradient", "mm", 0.0, kProxyAndCombined},
-    {"none", "g_none", "no border below", "HU/mm", 0.0, kProxyAndCombined},
-    {"full", "g_full", "a full border from", "HU/mm", 0.0, kProxyAndCombined},
+    {"scale", "h", "gradient distance", "mm", 0.0, kProxyAndCombined},
+    {"none", "g_none", "gradient below which there is no border", "HU/mm", 0.0, kProxyAndCombined},
+    {"full", "g_full", "gradient of a full border", "HU/mm", 0.0, kProxyAndCombined},
 }};
 constexpr Wording kThicknessWords{kSkinThickness, "d", "thickness", "mm", 0.0, kEverywhere};
 

@@ -43,7 +43,7 @@ Result<std::optional<std::string>> read_never(const config::TomlTable& row, std:
   TROCAR_TRY_STATUS(entry->check_keys({"never", "source"}));
   TROCAR_TRY(const bool never, entry->boolean_or("never", false));
   TROCAR_TRY(std::string source, entry->string("source"));
-  if (!never) return fail("never can only be true", entry->where(), "give a value instead");
+  if (!never) return fail("never must be true", entry->where(), "give a value instead");
   return std::optional(std::move(source));
 }
 
@@ -112,7 +112,7 @@ Status read_tissues(const config::TomlTable& document, TissueTable& table) {
   const bool is_stored = document.has("applied_profile");
   for (const std::string& name : rows.keys()) {
     TROCAR_TRY(const config::TomlTable row, rows.table(name));
-    if (name == "air") return fail("air is built in and gives no force", row.where(), "remove it");
+    if (name == "air") return fail("air is built in and has no force", row.where(), "remove it");
     TROCAR_TRY_STATUS(row.check_keys(known));
     TissueParams tissue;
     tissue.name = name;

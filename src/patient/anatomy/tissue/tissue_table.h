@@ -14,7 +14,7 @@
 
 namespace trocar::anatomy {
 
-/// A membrane or organ surface that indents under the tip until it gives way (paper A, pre-puncture force; physics.md
+/// A membrane or organ surface that the tip indents before it punctures it (paper A, pre-puncture force; physics.md
 /// P1).
 struct LayerParams {
   std::string name;                  ///< As in puncture events: skin, muscle, liver_capsule, vessel, bowel, pleura …
@@ -22,11 +22,11 @@ struct LayerParams {
   double viscosity_ns_per_mm = 0.0;  ///< nu of the loading law. Range 0..1.
   double delta_x_mm = 0.1;           ///< Displacement after which a Voigt element is added. Range 0.01..20.
   double puncture_force_n =
-      std::numeric_limits<double>::infinity();  ///< Gives way at this force. Range 0.01..100; infinite: never (bone).
+      std::numeric_limits<double>::infinity();  ///< Puncture force. Range 0.01..100; infinite: never (bone).
   bool is_wall = false;  ///< Volume proxy: must be pierced at a label's border, because the CT does not show it.
 };
 
-/// What the needle's shaft and tip feel inside a tissue (paper A, friction and cutting force; physics.md F1, C1).
+/// Friction and cutting of shaft and tip inside a tissue (paper A; physics.md F1, C1).
 struct TissueParams {
   std::string name;                   ///< "liver", "adipose", "bone" …; index 0 is "air".
   double viscosity_ns_per_mm = 0.0;   ///< nu of the friction law. Range 0..1.
@@ -38,7 +38,7 @@ struct TissueParams {
   double young_kpa = 10.0;            ///< Young's modulus under slow load: bed of the shaft, palpation. Range 0..1e6.
 };
 
-/// Where a number comes from.
+/// Source of a number.
 struct Provenance {
   std::string source;               ///< "paper A, Table 1", a DOI, or "assumed".
   std::optional<double> low, high;  ///< Range of an assumed or measured value.

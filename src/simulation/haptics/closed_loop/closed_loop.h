@@ -15,8 +15,8 @@ enum class Holder { kHand, kGuidingHand, kBare45g, kBare150g };
 inline constexpr std::array kAllHolders{Holder::kHand, Holder::kGuidingHand, Holder::kBare45g, Holder::kBare150g};
 const char* to_string(Holder holder) noexcept;
 
-/// The hand of physics.md H1, and how it holds the orientation. The springs about the grip are [assumed]: a pen grip of
-/// two fingers 30 mm apart with the hand's stiffness between them. Range 50..1000 N mm/rad.
+/// The hand of physics.md H1 with rotational springs about the grip [assumed]: a pen grip of two fingers 30 mm apart.
+/// Range 50..1000 N mm/rad.
 StylusHold make_hand() noexcept;
 /// The same hand where it guides the needle at its tip, `tip_mm` before S (physics.md H6).
 StylusHold make_guiding_hand(double tip_mm) noexcept;
@@ -28,7 +28,7 @@ class ClosedLoop {
  public:
   ClosedLoop(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset, Holder holder, double dt_s = 0.001);
 
-  /// The device is carried along a prescribed way: a tick with the needle's tip and axis there.
+  /// Moves the device along a prescribed path: one tick with the needle's tip and axis there.
   const telemetry::TickSample& carry(const Vec3& tip_P, const Vec3& axis_P) noexcept;
   /// One tick of the device on its own under `hold`.
   const telemetry::TickSample& run(const StylusHold& hold) noexcept;

@@ -10,8 +10,8 @@ struct EncoderParams {
   double count_rad = 4.0e-5;  ///< One count of an angle. Range 1e-6..0.1; 0: exact.
 };
 
-/// The pose that the device tells: position rounded to counts on every axis, the rotation vector likewise; nowhere
-/// further from the true one than half a count an axis. Real-time safe.
+/// Quantised pose: position rounded to counts on every axis, the rotation vector likewise; the error is at most half a
+/// count per axis. Real-time safe.
 Pose quantise(const Pose& X_DS, const EncoderParams& encoder) noexcept;
 
 }  // namespace trocar::haptics

@@ -7,9 +7,8 @@
 
 namespace trocar::haptics {
 
-/// Keeps account of the energy that the haptic side gives to a device: E = sum (f.v + tau.w) dt (physics.md H5). Tissue
-/// can only give back what was put in: while nobody works on the device E must not grow. After Hannaford and Ryu's time
-/// domain observer. Real-time safe.
+/// Sums the energy supplied to a device: E = sum (f.v + tau.w) dt (physics.md H5). Tissue can only return stored
+/// energy: without external work E must not grow. After Hannaford and Ryu's time domain observer. Real-time safe.
 class PassivityObserver {
  public:
   /// One tick: the wrench that acted on the device and its mean velocities meanwhile (mm/s, rad/s), all in one frame

@@ -6,8 +6,8 @@
 
 namespace trocar::haptics {
 
-/// A hand pushes the device's needle straight down (+z) at constant speed and then holds it there: what the device
-/// feels, tick by tick (docs/validation.md, Bone and loss of resistance).
+/// A hand pushes the device's needle straight down (+z) at constant speed and then holds it; records the force on the
+/// device tick by tick (docs/validation.md, Bone and loss of resistance).
 struct PushTrial {
   double from_mm = -5.0;         ///< Of the tip that the hand wants; the skin lies at z = 0.
   double to_mm = 40.0;           ///< Where the hand stops.
@@ -17,17 +17,17 @@ struct PushTrial {
 
 struct PushSample {
   double time_s;
-  double hand_mm;       ///< Where the hand wants the tip.
+  double hand_mm;       ///< Target position of the tip.
   double device_mm;     ///< Where the device's tip is.
   double resistance_n;  ///< Along the needle, of the device's force without the weight; positive pushes out.
-  bool is_puncture;     ///< A layer gave way in this tick...
+  bool is_puncture;     ///< A layer was punctured in this tick...
   std::uint8_t layer;   ///< ...this one.
 };
 
 std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset,
                                        const PushTrial& trial);
 
-/// What the push against something that does not give way felt like. `surface_mm`: depth of its resting surface.
+/// Metrics of a push against an unyielding structure. `surface_mm`: depth of its resting surface.
 struct BoneContact {
   double slope_n_per_mm = 0.0;  ///< Of the force over the device's way, from 10 to 80 % of the steady rise.
   double peak_n = 0.0;
@@ -39,7 +39,7 @@ struct BoneContact {
 BoneContact judge_bone_contact(const std::vector<PushSample>& samples, const PushTrial& trial, double surface_mm,
                                double peak_force_n) noexcept;
 
-/// What the puncture of one layer felt like; all zero where it did not give way.
+/// Metrics of the puncture of one layer; all zero without a puncture.
 struct LossOfResistance {
   double peak_n = 0.0;       ///< On the device within 50 ms before.
   double drop_n = 0.0;       ///< To the lowest force within 0.3 s.

@@ -4,10 +4,9 @@
 
 namespace trocar::haptics {
 
-/// A needle is carried straight down (+z) into a flat scene whose skin is at z = 0, held there until the forces have
-/// settled, given a tap and let go; then nobody moves it. A hand wants to stay there and must come to rest. Without a
-/// hand only its weight is carried: what was pressed pushes it back, and where nothing holds it it may float on, but
-/// neither buzz nor gain energy (docs/validation.md, Stability).
+/// A needle moves straight down (+z) into a flat scene with skin at z = 0, is held until the forces have settled,
+/// tapped and released. A hand must come to rest. A free mass (weight compensated) may drift, but must neither vibrate
+/// nor gain energy (docs/validation.md, Stability).
 struct StabilityTrial {
   double depth_mm = 40.0;     ///< Of the device's tip when it is let go.
   double seconds = 60.0;      ///< After that. Range 2..600.

@@ -19,9 +19,9 @@ struct VirtualStylusParams {
   double turning_friction_nmm = 0.0;    ///< Dry friction of the gimbal. Range 0..20.
 };
 
-/// A hand that holds the stylus: spring and damper in position and in orientation, and its own mass. All zero: nobody.
+/// Model of the hand at the stylus: spring and damper in position and orientation, and a mass. All zero: no hand.
 struct StylusHold {
-  Pose X_PS;                               ///< Where the hand wants the stylus at the end of the tick.
+  Pose X_PS;                               ///< Target pose of the stylus at the end of the tick.
   Vec3 velocity_P = Vec3::Zero();          ///< Of S in that, mm/s.
   Vec3 angular_velocity_P = Vec3::Zero();  ///< rad/s
   double point_mm = 0.0;                   ///< The point H that it holds: S + point z of S. Range -500..500.

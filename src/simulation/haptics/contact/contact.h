@@ -25,7 +25,7 @@ struct ContactState {
 /// Inside this time a tool that started in the body is pressed out: no force step. [assumed] 0.2..2 s.
 inline constexpr double kEngage_s = 0.5;
 
-/// A column goes over into the next one in this time, so that a voxel's border is no click. [assumed] 0.005..0.03 s.
+/// Time of the transition between two columns, to avoid a force step at a voxel border. [assumed] 0.005..0.03 s.
 inline constexpr double kColumnBlend_s = 0.015;
 
 struct ContactStep {

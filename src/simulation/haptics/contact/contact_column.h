@@ -17,7 +17,8 @@ struct ColumnResponse {
   double tangent = 0.0;
 };
 
-inline constexpr double kRigid_kpa = 1e4;    ///< From this modulus on tissue ends the column: bone. [assumed]
+inline constexpr double kRigid_kpa = 1e4;    ///< Modulus from which on tissue is rigid and ends the column (bone).
+                                             ///< [assumed]
 inline constexpr double kSoftest_kpa = 1.0;  ///< Fluid and gas are held by what is around them. Range 0.2..3. [assumed]
 inline constexpr double kPoisson = 0.5;      ///< Soft tissue hardly changes its volume.
 

@@ -44,7 +44,7 @@ Result<Tool> parse_tool(std::string_view name) {
   for (const Tool tool : {Tool::kNeedle, Tool::kTransducer, Tool::kFinger}) {
     if (name == to_string(tool)) return tool;
   }
-  return fail_usage(fmt::format("there is no tool {}", name), "--tool", "use needle, probe or finger");
+  return fail_usage(fmt::format("unknown tool {}", name), "--tool", "use needle, probe or finger");
 }
 
 double settlement_mm(double depth_mm, double spread_mm) noexcept {

@@ -9,7 +9,7 @@
 
 namespace trocar::haptics {
 
-/// What the device's stylus stands for.
+/// Tool represented by the device's stylus.
 enum class Tool : std::uint8_t {
   kNeedle,
   kTransducer,  ///< Convex array on the skin (physics.md B9).
@@ -37,7 +37,7 @@ struct ContactFace {
   double friction_mu = 0.0;  ///< Against the skin. Range 0..2.
   double lever_mm = 1.0;     ///< Half its width: the coupling turns the tool as two springs this far apart would.
   double reach_mm = 0.0;     ///< Stylus origin (grip) to T's origin, along +z of S.
-  double spread_mm = 1.0;    ///< Radius of the disc whose load spreads in depth as the face's does.
+  double spread_mm = 1.0;    ///< Radius of the disc with the same decrease of load with depth.
   /// Compliance times modulus (mm) of homogeneous tissue down to each cell border of a column, under that disc.
   std::array<double, kColumnCells + 1> settlement_mm{};
 };

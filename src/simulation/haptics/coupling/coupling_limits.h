@@ -9,8 +9,8 @@ namespace trocar::haptics {
 struct CouplingLimits {
   double most_n_per_mm = 3.5;     ///< Spring that the device can show.
   double most_ns_per_mm = 0.005;  ///< Damper that it can show at 1 kHz.
-  double least_n_per_mm = 0.05;   ///< A softer coupling is no feeling of tissue. [assumed]
-  double longest_s = 0.01;        ///< Damping over stiffness: B7 and C3 look so far ahead. [assumed]
+  double least_n_per_mm = 0.05;   ///< Lower limit; a softer coupling renders no useful tissue force. [assumed]
+  double longest_s = 0.01;        ///< Ratio of damping to stiffness; B7 and C3 predict the pose by this time. [assumed]
 };
 
 /// Limits of a device: its greatest stiffness and damping over its scales. A device without motors only shows a force

@@ -17,8 +17,8 @@ namespace trocar::haptics {
 struct DevicePreset {
   std::string name;
   std::string title;
-  int sensed_dof = 6;                        ///< 3: position alone, the needle keeps its direction; 6: also the angles.
-  int actuated_dof = 6;                      ///< 0: no force, it is only shown; 3: forces alone; 6: also torques.
+  int sensed_dof = 6;                        ///< 3: position only, the needle keeps its direction; 6: also orientation.
+  int actuated_dof = 6;                      ///< 0: no force (display only); 3: forces only; 6: also torques.
   double workspace_radius_mm = 100.0;        ///< Range 10..1000.
   DeviceCapability capability;               ///< Peak values; peak torque 0 without torque.
   std::optional<double> continuous_force_n;  ///< Where it could be found. Range 0.1..200.
@@ -31,11 +31,11 @@ struct DevicePreset {
   double max_damping_ns_per_mm = 0.003;  ///< Damper that it can show in a loop of 1 kHz. Range 0..0.1.
   double force_scale = 1.0;              ///< Device newtons a patient newton. Range 0.01..1.
   double motion_scale = 1.0;             ///< Patient mm a device mm. Range 0.1..10.
-  int clutch_button = 0;                 ///< 1, 2: that button lets go of the patient while it is pressed; 0: none.
+  int clutch_button = 0;                 ///< 1, 2: clutch button; 0: none.
   Pose X_WD;                             ///< Calibration: its base in the room.
 
   bool has_torque() const noexcept { return capability.peak_torque_nmm > 0.0; }
-  /// false: a mouse, a gamepad. Its peak and stiffness are those of the force that is shown.
+  /// false for a mouse or gamepad. Peak and stiffness are then those of the displayed force.
   bool has_force() const noexcept { return actuated_dof > 0; }
 };
 
@@ -44,8 +44,8 @@ Result<std::vector<DevicePreset>> load_device_presets(const std::filesystem::pat
 /// Unknown name: exit status 2, the message lists the names.
 Result<DevicePreset> load_device_preset(const std::filesystem::path& path, std::string_view name);
 
-/// What a scene may ask for in patient newtons and millimetres, so that it arrives at the device within its limits:
-/// peaks and weight over force_scale, stiffness over both scales.
+/// Limits of a scene in patient newtons and millimetres that keep the device within its own limits: peaks and weight
+/// divided by force_scale, stiffness by both scales.
 DeviceCapability scene_capability(const DevicePreset& preset) noexcept;
 
 /// What a scene for this device needs: its coupling, and no constraint stiffer than it.

@@ -66,8 +66,7 @@ telemetry::GateFault find_cause(const GateState& state, const GateInput& input, 
 }
 
 /// Safe start, fading and resume (physics.md G7): moves the mode and its scale.
-void step_mode(GateState& state, const GateInput& input, const GateParams& params,
-               const Period& period) noexcept {
+void step_mode(GateState& state, const GateInput& input, const GateParams& params, const Period& period) noexcept {
   if (state.mode == telemetry::GateMode::kOff) {
     state.scale = 0.0;
     state.energy_mj = 0.0;

@@ -11,10 +11,10 @@ namespace trocar::haptics {
 
 /// What the gate did to the wrench in this period; bits.
 enum GateAction : std::uint16_t {
-  kGatePassivity = 1 << 0,   ///< Took out energy that was made.
-  kGateContinuous = 1 << 1,  ///< Held below the peak: the motors are warm.
-  kGateSlew = 1 << 2,        ///< Held back a rise.
-  kGateStale = 1 << 3,       ///< The client is silent.
+  kGatePassivity = 1 << 0,   ///< Passivity control dissipated energy.
+  kGateContinuous = 1 << 1,  ///< Limited below the peak because the motors are warm.
+  kGateSlew = 1 << 2,        ///< Limited a rise.
+  kGateStale = 1 << 3,       ///< Client timeout.
   kGateClamp = 1 << 4,       ///< At the device's peak force or torque.
   kGateBrake = 1 << 5,       ///< Brakes a device that is too fast.
   kGateStart = 1 << 6,       ///< Safe start: waiting or rising.
@@ -30,15 +30,15 @@ struct GateParams {
   double continuous_force_n = 6.2;
   double continuous_torque_nmm = 188;
   double thermal_time_s = 10.0;         ///< Of the motors' first-order warming. Range 0.5..600.
-  double max_damping_ns_per_mm = 0.01;  ///< That the passivity control may add, what the device shows at 1 kHz.
-  double passivity_margin_mj = 2.0;  ///< Energy that may be given before it is taken out: counts, delay. Range 0..50.
-  double softest_n_per_mm = 0.2;     ///< Softest spring whose energy may come back. Range 0.01..5.
-  double softest_nmm_per_rad = 100;  ///< The same of a turn. Range 5..1e4.
+  double max_damping_ns_per_mm = 0.01;  ///< Upper limit of passivity damping: what the device permits at 1 kHz.
+  double passivity_margin_mj = 2.0;     ///< Energy margin before damping starts (counts, delay). Range 0..50.
+  double softest_n_per_mm = 0.2;        ///< Softest spring whose stored energy may be returned. Range 0.01..5.
+  double softest_nmm_per_rad = 100;     ///< The same of a turn. Range 5..1e4.
   double count_mm = 0.0295;      ///< Of the device's encoders: motion within it has no moment. Range 0..1; 0: exact.
   double count_rad = 4.0e-5;     ///< Range 0..0.1.
   double slew_n_per_s = 4000.0;  ///< Rises only. Range 50..1e5.
   double slew_nmm_per_s = 8e4;
-  double stale_s = 0.25;       ///< Silence of the client before the force fades.
+  double stale_s = 0.25;       ///< Client timeout before the force fades.
   double fade_s = 0.2;         ///< From full force to zero.
   double rise_s = 0.5;         ///< Safe start and resume: from zero to full force.
   double small_force_n = 0.3;  ///< Safe start begins below it.
@@ -61,12 +61,12 @@ struct GateParams {
   double max_vibration_mw = 100.0;  ///< Power given above 30 Hz before a fault (physics.md G13). Range 1..1e6.
 };
 
-/// Errors: the first field that is out of its range, a continuous limit above its peak. step_gate() takes any bits: a
-/// field out of its range is there what gives the least force.
+/// Errors: the first field out of range, a continuous limit above its peak. step_gate() accepts any bits and replaces a
+/// field out of range by the value with the least force.
 Status check(const GateParams& params);
 
-/// What a period gives the gate: the wrench that the tick wants (about S, in any frame at rest, all in the same one),
-/// and what is known of the device and of the client.
+/// Input of one period: the requested wrench (about S, all quantities in one frame at rest), and the state of device
+/// and client.
 struct GateInput {
   Wrench wanted;                   ///< Without the weight: what tissue and path do.
   Wrench weight;                   ///< Compensation of the stylus' weight; conservative, not watched for energy.
@@ -74,11 +74,11 @@ struct GateInput {
   Vec3 v_mm_per_s = Vec3::Zero();  ///< Of the stylus, the mean since the last period (its way over dt); and
   Vec3 w_rad_per_s = Vec3::Zero();
   double dt_s = 0.001;
-  double silence_s = 0.0;   ///< Since the client was last heard.
+  double silence_s = 0.0;   ///< Time since the last client message.
   double unread_s = 0.0;    ///< Since the device's last fresh reading.
   double busy_s = 0.0;      ///< Part of dt_s that reading, tick and writing of the last period took.
-  CouplingParams coupling;  ///< As the device sees it; stiffness 0: nothing to watch.
-  bool is_wanted = false;   ///< Somebody asked for forces.
+  CouplingParams coupling;  ///< Coupling as the device sees it; stiffness 0: no check.
+  bool is_wanted = false;   ///< Forces are requested.
   telemetry::GateFault device_fault =
       telemetry::GateFault::kNone;  ///< What the caller saw (kDeviceLost, kEncoderStuck, kLoopStalled, kRequested).
   bool is_reset = false;            ///< Explicit reset of a fault; without effect while its cause lasts.
@@ -91,8 +91,9 @@ struct GateState {
   Wrench last;              ///< What went out; and
   Wrench watched;           ///< the same without the weight's share, whose energy is watched.
   double scale = 0.0;       ///< Of safe start, fading and a fault's ramp, 0..1.
-  double energy_mj = 0.0;   ///< Given to the device, less what was taken out; at least what springs may store (G2).
-  double quiet_s = 0.0;     ///< Since more than a small force was wanted.
+  double energy_mj = 0.0;   ///< Energy supplied to the device minus dissipated energy; bounded below by the energy that
+                            ///< springs may store (G2).
+  double quiet_s = 0.0;     ///< Time since more than a small force was requested.
   double force_heat = 0.0;  ///< Mean square of the force over the continuous one's square: 1 = warm.
   double torque_heat = 0.0;
   double runaway_s = 0.0;
@@ -116,16 +117,16 @@ struct GateOutput {
   double drop_s = 0.0;        ///< and how long it took. Zero otherwise.
 };
 
-/// The device was in other hands and has given nothing meanwhile: what went out last is zero, no energy, speed or drop
-/// is remembered, and forces come back through the safe start. A fault and the motors' warmth stay.
+/// Call after the device was lent: resets the last output, energy, speed and drop; forces return through the safe
+/// start. A fault and the motor temperature are kept.
 void restart_gate(GateState& state) noexcept;
 
-/// The last step before the motors and the only one that writes to them (physics.md G1-G9, G11-G13): finite check,
-/// faults, share of the coupling that the loop's period permits, passivity control (Hannaford and Ryu's observer and
-/// controller), velocity brake, continuous-force limit, scale of safe start and staleness, slew limit on rises only,
-/// norm clamp last. When a force saturates the lateral part and the torque are scaled by one factor and the axial part
-/// is kept (to 2 %: it leaves room for a lateral fifth of the limit). Any fault fades to zero within fault_ramp_s and
-/// latches. A pure function of its arguments; real-time safe; total: any bits in, a wrench within the limits out.
+/// The last step before the motors, and the only one that writes to them (physics.md G1-G9, G11-G13). Stages: finite
+/// check, faults, share of the coupling that the loop's period permits, passivity control (Hannaford and Ryu's observer
+/// and controller), velocity brake, continuous-force limit, scale of safe start and client timeout, slew limit on rises
+/// only, norm clamp. If a force saturates, one factor scales the lateral part and the torque, and the axial part is
+/// kept (to 2 %, which leaves a fifth of the limit to the lateral part). Any fault fades to zero within fault_ramp_s
+/// and latches. A pure function of its arguments; real-time safe; any input bits give a wrench within the limits.
 GateOutput step_gate(GateState& state, const GateInput& input, const GateParams& params) noexcept;
 
 }  // namespace trocar::haptics

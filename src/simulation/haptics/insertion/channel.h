@@ -7,9 +7,8 @@
 
 namespace trocar::haptics {
 
-/// The straight hole that a needle makes: its line, what lies along it in the resting anatomy, what has been pierced
-/// and how deep it was cut. Fixed size; copied, never allocated. Coordinate s (mm): along the line, 0 on the resting
-/// skin.
+/// The straight channel of a needle: its line, the resting tissue along it, pierced layers and cut depth. Fixed size;
+/// copied, never allocated. Coordinate s (mm): along the line, 0 on the resting skin.
 struct Channel {
   static constexpr double kBin_mm = 0.1;
   static constexpr int kBins = 3000;  ///< 300 mm, the longest needle.
@@ -17,7 +16,7 @@ struct Channel {
   bool is_used = false;
   Vec3 origin_P = Vec3::Zero();      ///< P: where the line meets the resting skin.
   Vec3 direction_P = Vec3::UnitZ();  ///< u, unit.
-  std::uint32_t pierced = 0;         ///< Bit by layer: gave way already.
+  std::uint32_t pierced = 0;         ///< One bit per pierced layer.
   double cut_to_mm = 0.0;            ///< Deepest s that the tip has reached.
   int known_bins = 0;                ///< Bins [0, known_bins) are filled.
   std::array<std::uint8_t, kBins> tissue{};
@@ -51,8 +50,8 @@ struct LayerAhead {
 };
 LayerAhead next_layer(const Channel& channel, const HapticScene& scene, double from_mm, double to_mm) noexcept;
 
-/// The first wall that begins in fresh tissue between `from_mm` and `to_mm` within the known bins: what has been passed
-/// stays open.
+/// The first wall that begins in uncut tissue between `from_mm` and `to_mm` within the known bins: passed walls stay
+/// open.
 LayerAhead next_wall(const Channel& channel, double from_mm, double to_mm) noexcept;
 
 /// Channels of the past insertions of one attempt; the oldest is forgotten when it is full.
@@ -63,7 +62,7 @@ struct ChannelMemory {
   std::array<Channel, kCapacity> channels{};
   int next = 0;
 
-  /// The past channel that a needle at this place falls into, or nullptr.
+  /// The earlier channel that a needle at this position enters, or nullptr.
   const Channel* find(const Vec3& entry_P, const Vec3& axis_P) const noexcept;
   /// Keeps a channel; one with the same line is replaced.
   void remember(const Channel& channel) noexcept;

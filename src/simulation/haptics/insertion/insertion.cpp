@@ -136,7 +136,7 @@ struct Puncture {
   double s_mm;
 };
 Puncture find_puncture(const AxialBalance& whole, const LineStep& line, double v_device_before_mm_per_s,
-                               double puncture_force_n) noexcept {
+                       double puncture_force_n) noexcept {
   constexpr int kMaxSteps = 40;
   constexpr double kTolerance = 1e-4;
   double low = 1e-3;

@@ -10,7 +10,7 @@
 
 namespace trocar::haptics {
 
-/// The needle in its insertion (paper A, section 4.1): what must be known from one tick to the next. Fixed size.
+/// State of an insertion from one tick to the next (paper A, section 4.1). Fixed size.
 struct InsertionState {
   Vec3 device_tip_P = Vec3::Zero();  ///< Device tip at the last tick.
   double s_device_mm = 0.0;          ///< Device tip along the path at the last solution.
@@ -18,7 +18,7 @@ struct InsertionState {
   double velocity_mm_per_s = 0.0;
   double device_velocity_mm_per_s = 0.0;  ///< Axial, of the last step.
   double device_speed_mm_per_s = 0.0;     ///< Smoothed |axial velocity| of the device.
-  double pending_s = 0.0;                 ///< Rest of the tick in which a layer gave way.
+  double pending_s = 0.0;                 ///< Remaining time of the tick in which a layer was punctured.
 
   Vec3 contact_P = Vec3::Zero();  ///< P: where the needle first touched the skin.
 
@@ -28,7 +28,7 @@ struct InsertionState {
   telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
 };
 
-/// What one step gives: the very values put into the laws, forces as resistances (positive pushes the needle out).
+/// Result of one step: the inputs of the force laws, and forces as resistances (positive pushes the needle out).
 struct InsertionStep {
   Vec3 tip_P = Vec3::Zero();
   Vec3 axis_P = Vec3::UnitZ();
@@ -48,15 +48,14 @@ struct InsertionStep {
   bool hit_solver_bound = false;
 };
 
-/// What the proxies of paper B feel along the path, in place of the friction of paper A (combined model; physics.md
-/// T2).
+/// Forces of the proxies of paper B along the path, instead of the friction of paper A (combined model; physics.md T2).
 struct ProxyShare {
   ShaftResistance shaft;
   double tip_n = 0.0;  ///< Threshold of the tip in fresh tissue without parameters of A.
   double tip_viscous_ns_per_mm = 0.0;
 };
 
-/// Takes needle and device to be where the device is: no force. Real-time safe.
+/// Sets needle and device to the device's pose: zero force. Real-time safe.
 void start_insertion(InsertionState& state, const InsertionPath& path, const Vec3& device_tip_P) noexcept;
 
 /// One step of the needle: device tip and unit axis in P, dt > 0. A layer that gives way within the step ends it there

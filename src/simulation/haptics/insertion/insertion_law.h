@@ -24,12 +24,12 @@ double static_displacement_mm(double force_n, const LoadingLaw& law) noexcept;
 /// Static tangent stiffness dF/dx (N/mm) at displacement x.
 double tangent_stiffness_n_per_mm(double x_mm, const LoadingLaw& law) noexcept;
 
-/// Contact area of the shaft with one tissue in cm^2 (physics.md F1: with mm^2 the paper's numbers would hold the
-/// needle a hundred times too hard).
+/// Contact area of the shaft with one tissue in cm^2 (physics.md F1: in mm^2 the friction would be a hundred times too
+/// high).
 double contact_area_cm2(double radius_mm, double inserted_mm) noexcept;
 
-/// Fluctuation of the friction, -1..1, uniform at its nodes: a seeded function of the travelled way with correlation
-/// length 0.2 mm, so that it does not depend on the tick rate (physics.md F2).
+/// Fluctuation of the friction, -1..1, uniform at its nodes: a seeded function of the travelled distance with
+/// correlation length 0.2 mm, independent of the tick rate (physics.md F2).
 double friction_noise(std::uint64_t seed, std::uint32_t tissue, double travel_mm) noexcept;
 
 /// Fades a force out as the needle comes to rest: 0 at rest, 1 from 0.5 mm/s (physics.md F2).

@@ -15,8 +15,8 @@ struct EnteredLabels {
   bool is_overflown = false;
 };
 
-/// The way of the needle into the body, the same for every force model: the line it keeps to once the skin is open, how
-/// far the tip has come on it, and the holes of past insertions. Fixed size.
+/// Path of the needle into the body, for all force models: its line after the skin puncture, the tip's progress on it,
+/// and the channels of earlier insertions. Fixed size.
 struct InsertionPath {
   bool is_open = false;    ///< The skin is pierced: the needle keeps to channel's line.
   Channel channel;         ///< Of this insertion.
@@ -25,11 +25,11 @@ struct InsertionPath {
   double travel_mm = 0.0;  ///< Way of the tip through the resting tissue, in and out.
   std::uint8_t label = 0;  ///< At the tip.
   std::array<double, kMaxTissues> inserted_mm{};  ///< Shaft length in each tissue.
-  Vec3 contact_to_puncture_P = Vec3::Zero();      ///< PX_p of paper A; zero before the skin gives way.
+  Vec3 contact_to_puncture_P = Vec3::Zero();      ///< PX_p of paper A; zero before the skin puncture.
 };
 
-/// Distance (mm) along the axis from the tip to the resting skin; negative when the tip is below it. Nothing when the
-/// skin is not near, or the axis only grazes it. Real-time safe.
+/// Distance (mm) along the axis from the tip to the resting skin; negative if the tip is below it. Empty if the skin is
+/// not near, or nearly parallel to the axis. Real-time safe.
 std::optional<double> distance_to_skin_along(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept;
 
 /// Puts a fresh channel on a line. Real-time safe.
@@ -43,11 +43,11 @@ void open_path(InsertionPath& path, std::uint8_t skin_layer) noexcept;
 /// entered after its capsule gave way. Real-time safe.
 EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double rest_mm, std::uint8_t loading) noexcept;
 
-/// The needle is out: the hole is remembered, the path closed. Real-time safe.
+/// Ends the insertion: stores the channel, closes the path. Real-time safe.
 void leave_body(InsertionPath& path) noexcept;
 
-/// A needle that is found inside the body is taken as inserted along its axis, with everything down to its tip pierced
-/// (safe start: no force step). False where the tip is not inside. Takes some 100 us, once. Real-time safe.
+/// Treats a needle inside the body as inserted along its axis, with all layers down to the tip pierced (safe start: no
+/// force step). Returns false if the tip is outside. Takes about 100 us, once. Real-time safe.
 bool resume_inside(InsertionPath& path, const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept;
 
 }  // namespace trocar::haptics

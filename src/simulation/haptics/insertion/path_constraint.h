@@ -4,8 +4,8 @@
 
 namespace trocar::haptics {
 
-/// Holds the needle on the line it pierced the skin along (paper A, path constraint; physics.md C3, C4).
-/// Range: m0/d0 at most the device's stiffness (checked when the scene is built).
+/// Pulls the needle back to the line of its skin puncture (paper A, path constraint; physics.md C3, C4). Range: m0/d0
+/// at most the device's stiffness (checked when the scene is built).
 struct PathConstraintParams {
   double force_n = 3.0;      ///< m0: force beyond d0. Range 0..20. [assumed]
   double linear_mm = 3.0;    ///< d0: below it the force grows linearly. Range 0.5..20. [assumed]
@@ -35,7 +35,7 @@ struct PathLine {
 
 /// The device's needle as the path constraint reads it.
 struct NeedleAtPath {
-  Vec3 stylus_P = Vec3::Zero();  ///< X' = S, the point that the device holds and the force acts at.
+  Vec3 stylus_P = Vec3::Zero();  ///< X' = S, the stylus origin, where the force acts.
   Vec3 axis_P = Vec3::UnitZ();   ///< a, unit: the tip is at S + l a.
   double length_mm = 0.0;        ///< l.
 };

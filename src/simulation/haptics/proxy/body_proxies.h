@@ -9,7 +9,7 @@
 
 namespace trocar::haptics {
 
-/// The channel's tissue is read in cells that stand still in it, so that sums over a sliding shaft have no steps.
+/// The channel's tissue is sampled in cells fixed in the channel, so that sums over a sliding shaft have no steps.
 inline constexpr double kShaftCell_mm = 2.0;
 
 /// Dry and viscous friction of the inserted shaft: summed over the body proxies, each by the tissue it lies in and the
@@ -29,14 +29,14 @@ struct HeldShaft {
   BeamSolution beam;
   BeamBed bed;
   Pose X_PN;
-  double share =
-      1.0;  ///< Of the shaft's forces that the hand gets: below 1 where the bed would turn the grip too stiffly.
+  double share = 1.0;  ///< Share of the shaft's forces rendered at the hand: below 1 if the tissue's rotational
+                       ///< stiffness at the grip is too high.
 };
 inline constexpr double kMostTurning_nmm_per_rad = 1500.0;
 HeldShaft hold_shaft(const Channel& channel, const HapticScene& scene, const Pose& X_PN, double tip_mm,
                      bool is_stylet_in) noexcept;
 
-/// Points of the bent shaft in P, grip first, tip last, as long as the straight one: for pictures, ultrasound and
+/// Points of the bent shaft in P, grip first, tip last, same length as the straight shaft; for display, ultrasound and
 /// X-ray.
 struct BentNeedle {
   int count = 0;

@@ -17,18 +17,18 @@ struct NeedleBeam {
 
 inline constexpr int kMaxBeamNodes = kMaxBodyProxies + 1;
 
-/// E I (N mm^2) of the tube, and of the stylet beside it when it is in.
+/// E I (N mm^2) of the tube, plus that of an inserted stylet.
 double bending_stiffness_n_mm2(const NeedleGeometry& needle, bool is_stylet_in) noexcept;
 NeedleBeam make_needle_beam(const NeedleGeometry& needle, bool is_stylet_in) noexcept;
 
-/// The bed that holds the shaft: a spring a node, from the shaft to where its proxy lies.
+/// Elastic foundation of the shaft: one spring per node, from the shaft to its proxy.
 struct BeamBed {
   std::array<double, kMaxBeamNodes> stiffness_n_per_mm{};  ///< >= 0; 0 outside the body.
   std::array<Vec3, kMaxBeamNodes> offset_mm =
       zero_vectors<kMaxBeamNodes>();  ///< From the straight shaft's node to its proxy, across the shaft.
 };
 
-/// Where the shaft comes to rest in its bed, across its straight axis, as a linear function of a force on the tip.
+/// Equilibrium of the shaft across its straight axis, as a linear function of a force on the tip.
 struct BeamSolution {
   int node_count = 0;
   std::array<Vec3, kMaxBeamNodes> deflection_mm = zero_vectors<kMaxBeamNodes>();  ///< Without a force on the tip.

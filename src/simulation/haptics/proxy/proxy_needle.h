@@ -10,12 +10,12 @@ namespace trocar::haptics {
 struct ProxyNeedleState {
   Vec3 proxy_P = Vec3::Zero();    ///< x_p
   Vec3 contact_P = Vec3::Zero();  ///< Where the needle first touched the skin.
-  bool is_on_skin = false;        ///< Touches the skin that has not given way yet.
+  bool is_on_skin = false;        ///< In contact with unpierced skin.
   double needle_mm = 0.0;         ///< Virtual needle along the path: between the device and the proxy.
   double tissue_n_per_mm = 0.0;   ///< K at the last step; 0: none yet.
-  std::uint8_t wall = kNoLayer;   ///< Wall that the tip stands at,
-  double wall_mm = 0.0;           ///< where on the path it rests,
-  double wall_anchor_mm = 0.0;    ///< and the proxy's place under its load.
+  std::uint8_t wall = kNoLayer;   ///< Wall in contact with the tip.
+  double wall_mm = 0.0;           ///< Position of that wall on the path at rest.
+  double wall_anchor_mm = 0.0;    ///< Position of the proxy under the load of the wall.
   double velocity_mm_per_s = 0.0;
   telemetry::InsertionPhase phase = telemetry::InsertionPhase::kOutside;
 };
@@ -26,7 +26,7 @@ struct ProxyNeedleStep {
   Vec3 tip_force_P = Vec3::Zero();  ///< On the tip.
 };
 
-/// Takes the proxy to be where the tip is: no force. Real-time safe.
+/// Sets the proxy to the tip: zero force. Real-time safe.
 void start_proxy_needle(ProxyNeedleState& state, const InsertionPath& path, const Vec3& tip_P) noexcept;
 
 /// One step of the tip proxy (physics.md B1 to B4): before the skin gives way on the skin's surface, then on the path's

@@ -4,8 +4,8 @@
 
 namespace trocar::haptics {
 
-/// What resists the tip at a point: the transfer functions at its intensity, and the border it lies on, if any (paper
-/// B, eq. 2; physics.md B1). Zero outside the body.
+/// Resistance of the tissue at a point: the transfer functions at its intensity, and the border there, if any (paper B,
+/// eq. 2; physics.md B1). Zero outside the body.
 struct TipLaw {
   Vec3 normal_P = Vec3::Zero();  ///< N: unit, along the image gradient, into denser tissue; zero: no border.
   double border = 0.0;           ///< w: 0 no border .. 1 a border that counts whole.
@@ -17,8 +17,8 @@ struct TipLaw {
 /// structure the wall speaks for it alone. Real-time safe.
 TipLaw tip_law_at(const HapticScene& scene, const Vec3& p_P, const TissueAt& here) noexcept;
 
-/// Force (N) that the tip needs to move along the unit vector u, without viscosity: the greatest F.u of the forces that
-/// the law bears (physics.md B3).
+/// Force (N) needed to move the tip along the unit vector u, without viscosity: the largest F.u that the law permits
+/// (physics.md B3).
 double threshold_along_n(const TipLaw& law, const Vec3& u_P) noexcept;
 
 }  // namespace trocar::haptics

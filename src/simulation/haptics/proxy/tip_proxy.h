@@ -7,8 +7,8 @@ namespace trocar::haptics {
 /// The proxy of the needle's tip (paper B, section 2.1, eqs. 1 to 5; physics.md B1 to B3): a point x_p tied to the tip
 /// x_t by a spring and a damper, which moves only as far as the tissue's thresholds let it.
 
-/// Equation (1) for one step: what the spring between tip and proxy bears now, and how fast that falls as the proxy
-/// moves on, along the shaft (unit u) and across it. Implicit: neither force nor stability hang on the tick rate.
+/// Equation (1) for one step: present force of the spring between tip and proxy, and its decrease as the proxy moves
+/// along the shaft (unit u) and across it. Implicit: force and stability do not depend on the tick rate.
 struct TipSpring {
   Vec3 u_P = Vec3::UnitZ();
   Vec3 force_P = Vec3::Zero();  ///< On the tissue.
@@ -51,7 +51,7 @@ struct NeedleBalance {
   double on_tip_n = 0.0;
   double tip_n_per_mm = 0.0;  ///< Falls by this as the proxy moves on.
 };
-/// Closed form; at rest while the dry friction holds it.
+/// Closed form; at rest while dry friction exceeds the driving force.
 NeedleBalance balance_needle(const NeedleDrive& drive, double tissue_n_per_mm, double proxy_mm) noexcept;
 
 }  // namespace trocar::haptics

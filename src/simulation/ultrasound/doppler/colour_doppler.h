@@ -23,8 +23,8 @@ struct DopplerInput {
   Beam beam;
   double time_s = 0.0;     ///< Of heart and breath.
   std::uint64_t seed = 0;  ///< Of the noise; another for each frame.
-  /// The engine that has rendered this very frame: what sound loses on the way, and the dent under the face. nullptr:
-  /// no loss but kPlainLoss_db_per_cm_mhz, no dent.
+  /// The engine that rendered this frame: losses along the path, and the indentation under the face. nullptr: only
+  /// kPlainLoss_db_per_cm_mhz, no indentation.
   const BMode* engine = nullptr;
 };
 inline constexpr double kPlainLoss_db_per_cm_mhz = 0.5;
@@ -58,13 +58,13 @@ class ColourDoppler {
   ColourDoppler(ColourDoppler&&) noexcept;
   ColourDoppler& operator=(ColourDoppler&&) noexcept;
 
-  DopplerSettings settings;  ///< Knobs beyond their range are held in it.
+  DopplerSettings settings;  ///< Settings out of range are clamped.
 
   /// Valid until the next call.
   const DopplerFrame& render(const DopplerInput& input) noexcept;
   /// The last frame's colours over the picture of the same scan, with the box's outline. Valid until the next call.
   const volume::RgbImage& overlay(const GrayImage& image, const RasterGeometry& raster) noexcept;
-  /// Forgets what persists.
+  /// Clears persistence.
   void reset() noexcept;
 
  private:

@@ -36,7 +36,7 @@ Status check(const DopplerSettings& settings);
 /// The same settings with each knob held in its range; one that is not a number gets its default. Real-time safe.
 DopplerSettings within_ranges(const DopplerSettings& settings) noexcept;
 
-/// Velocity that a pulse repetition frequency can just tell: c PRF / (4 f), cm/s.
+/// Largest velocity without aliasing at a pulse repetition frequency: c PRF / (4 f), cm/s.
 double nyquist_cm_per_s(double prf_hz, double frequency_mhz) noexcept;
 /// Its inverse.
 double prf_hz(double nyquist_cm_per_s, double frequency_mhz) noexcept;

@@ -29,7 +29,7 @@ struct FlowRule {
 
   std::string name;
   std::vector<std::string> labels;  ///< '*' ends a stem.
-  End ends = End::kSources;         ///< What the ends near `near`, else the one at `at`, are; the others are opposite.
+  End ends = End::kSources;         ///< Kind of the ends near `near`, else of the one at `at`; the others are opposite.
   std::vector<std::string> near;
   At at = At::kNowhere;
   std::size_t waveform = 0;         ///< Index into FlowTable::waveforms.

@@ -67,7 +67,7 @@ Result<std::shared_ptr<const VesselFlow>> make_vessel_flow(const anatomy::Virtua
   }
   std::shared_ptr<const VesselFlow> flow = maker.finish();
   if (!flow->branches().empty()) return flow;
-  return fail(fmt::format("no vessel to show flow in{}", flow->without_flow().empty() ? "" : " among those labelled"),
+  return fail(flow->without_flow().empty() ? "no labelled vessel" : "no flow data for the labelled vessels",
               patient.name,
               flow->without_flow().empty()
                   ? "label some: aorta, inferior_vena_cava, portal_vein_and_splenic_vein, hepatic_veins"

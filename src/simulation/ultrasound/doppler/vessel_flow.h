@@ -14,10 +14,10 @@
 
 namespace trocar::ultrasound {
 
-/// A place on a vessel's middle line.
+/// A point on a vessel's centreline.
 struct VesselPoint {
   Vec3 p_P = Vec3::Zero();
-  Vec3 flow_P = Vec3::UnitZ();  ///< Unit; where blood goes while the waveform is positive.
+  Vec3 flow_P = Vec3::UnitZ();  ///< Unit vector; flow direction for positive waveform values.
   double radius_mm = 0.0;
   double peak_mm_per_s = 0.0;  ///< In the middle, at the waveform's 1.
   bool is_in_own_tube = true;  ///< Else within the vessel that this one leaves.
@@ -38,9 +38,9 @@ struct VesselFlowOptions {
   double least_vessel_mm3 = 100.0;  ///< Smaller pieces of a label have no flow. Range 10..10000.
 };
 
-/// Blood flow in the labelled vessels of a patient at rest: along the middle lines, with a profile across the lumen and
-/// a waveform over the heartbeat (docs/physics.md U15). Immutable once made; frame P. Not in it: vortices, helices,
-/// jets, the pulse's travel time, walls that move.
+/// Blood flow in the labelled vessels of a patient at rest: along the centrelines, with a profile across the lumen and
+/// a waveform over the heartbeat (docs/physics.md U15). Immutable; frame P. Not included: vortices, helices, jets, the
+/// pulse's travel time, moving walls.
 class VesselFlow {
  public:
   /// Blood at a place: velocity (mm/s, P) and how much of the place is lumen, 0..1.

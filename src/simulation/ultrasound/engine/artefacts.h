@@ -7,7 +7,7 @@
 
 namespace trocar::ultrasound {
 
-/// What sound does beside going straight and coming back; each can be switched off.
+/// Deviations from straight propagation and single reflection; each can be switched off.
 struct Artefacts {
   bool attenuation = true;       ///< Shadow behind bone and gas, enhancement behind fluid.
   bool reverberation = true;     ///< A-lines, ring-down at gas.

@@ -21,8 +21,8 @@ struct Acquisition {
   double focus_mm = 80.0;
   int lines = 256;     ///< Range 2..1024.
   int samples = 1024;  ///< A scanline. Range 16..4096.
-  int looks = 3;   ///< Of a compound picture: sub-apertures whose pictures are averaged. Range 1..5; 1: full speckle.
-  int planes = 5;  ///< Across the beam's thickness. 1, 3, 5, 7 or 9.
+  int looks = 3;       ///< Number of compounding angles whose images are averaged. Range 1..5; 1: full speckle.
+  int planes = 5;      ///< Across the beam's thickness. 1, 3, 5, 7 or 9.
   Artefacts artefacts;
 
   bool operator==(const Acquisition&) const = default;
@@ -30,7 +30,7 @@ struct Acquisition {
 /// The transducer's own defaults.
 Acquisition default_acquisition(const Transducer& transducer);
 
-/// What one frame is made of.
+/// Input of one frame.
 struct BModeInput {
   Pose X_PT;  ///< Transducer in the (resting) patient.
   std::span<const NeedleEcho> needles;
@@ -50,10 +50,10 @@ struct BasebandFrame {
 /// Share of the scanlines that are coupled to the skin, 0..1.
 double coupled_share(const BasebandFrame& frame) noexcept;
 
-/// What the last frame's sound met on the way along one scanline; for Doppler.
+/// Losses of the last frame along one scanline; for Doppler.
 struct SoundWay {
   std::span<const float> gain;  ///< A sample: amplitude left of an echo from there, without its own strength.
-  /// A sample at depth r shows what rests at r - pressed_mm * dent_share.
+  /// Tissue displayed at depth r has its rest position at r - pressed_mm * dent_share.
   float pressed_mm = 0.0F;
   std::span<const float> dent_share;
   float mirror_depth_mm = 1e30F;  ///< Deeper samples show a mirror image.

@@ -6,7 +6,7 @@
 
 namespace trocar::ultrasound {
 
-/// A needle as sound meets it. Frame P, mm. What is not finite or shorter than its tip's point leaves no image.
+/// Acoustic model of a needle. Frame P, mm. A needle with non-finite values, or shorter than its point, has no echo.
 struct NeedleEcho {
   std::span<const Vec3> shaft_P;  ///< Polyline from the hub to the tip; bent needles have more than two points.
   double diameter_mm = 1.2;       ///< Range 0.2..5.

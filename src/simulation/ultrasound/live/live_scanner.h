@@ -7,7 +7,7 @@
 
 namespace trocar::ultrasound {
 
-/// How a live scanner shares the machine with those who must be on time.
+/// Limits of a live scanner's use of processor time, to leave time for real-time threads.
 struct LiveScannerOptions {
   int threads = 1;  ///< That a frame uses. Range 1..64.
   int nice = 5;     ///< Added to the worker's niceness where the system has one. Range 0..19.
@@ -24,10 +24,9 @@ struct CineState {
   int size = 0;
 };
 
-/// A scanner at work: a thread makes pictures of the newest request (what came before it is forgotten), as fine as the
-/// pace allows, and keeps them in a cine loop. It only works when requests come, and renders when something in them has
-/// changed or a refresh is due (ScanSchedule). All calls are for one thread, e.g. the window's; none waits for a frame
-/// but the destructor.
+/// A live scanner: a thread renders the newest request (older ones are dropped) at the detail that the time budget
+/// permits, and stores frames in a cine loop. It renders only if a request has changed or a refresh is due
+/// (ScanSchedule). One thread, e.g. that of the window, makes all calls; only the destructor waits for a frame.
 class LiveScanner {
  public:
   explicit LiveScanner(const LiveScannerOptions& options = default_live_scanner_options());
@@ -39,7 +38,7 @@ class LiveScanner {
   /// nullptr: no colour.
   void open(std::shared_ptr<const AcousticScene> scene, std::shared_ptr<const VesselFlow> flow, Transducer transducer);
 
-  /// A request with a pose or a needle that is no number is left out. Knobs are held in their ranges.
+  /// A request with a non-finite pose or needle is ignored. Settings are clamped.
   void request(ScanRequest request);
   /// nullptr before the first.
   std::shared_ptr<const ScanPicture> newest() const;

@@ -9,9 +9,8 @@
 
 namespace trocar::ultrasound {
 
-/// Engine, receiver, colour and cine loop of one transducer on one patient, worked by a single thread: makes a picture
-/// of a request and keeps it in the loop, or shows one that was kept. Buffers of each detail are taken when it is first
-/// used.
+/// Engine, receiver, colour and cine loop of one transducer on one patient, used by one thread: renders a request and
+/// stores it in the loop, or displays a stored frame. Buffers of each detail are allocated at first use.
 class PictureMaker {
  public:
   /// Without `flow` no request has colour.

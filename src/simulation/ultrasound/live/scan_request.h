@@ -10,7 +10,7 @@
 
 namespace trocar::ultrasound {
 
-/// What a live scanner is to show: where transducer and needle are now, and how its knobs stand.
+/// Request to a live scanner: present poses of transducer and needle, and settings.
 struct ScanRequest {
   Pose X_PT;                         ///< Transducer in the (resting) patient.
   std::vector<Vec3> needle_shaft_P;  ///< From the hub to the tip; fewer than two points: no needle.
@@ -30,8 +30,8 @@ struct ScanRequest {
 /// focus lies within the picture.
 ScanRequest within_ranges(const ScanRequest& request, const Transducer& transducer);
 
-/// True where a frame of `a` also serves `b`: the same place but for a hand's tremor (the transducer's corners and the
-/// needle within `tolerance_mm`), the same knobs and size. Time does not count.
+/// True if a frame of `a` can also be displayed for `b`: same pose within a hand's tremor (corners and needle within
+/// `tolerance_mm`), same settings and size. Time is ignored.
 bool is_as_good(const ScanRequest& a, const ScanRequest& b, double tolerance_mm) noexcept;
 /// The knobs of it alone.
 bool has_same_settings(const ScanRequest& a, const ScanRequest& b) noexcept;

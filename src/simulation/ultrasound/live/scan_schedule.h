@@ -7,7 +7,7 @@
 
 namespace trocar::ultrasound {
 
-/// How finely a frame is rendered, of what the user asked for.
+/// Level of detail of a frame, relative to the user's settings.
 enum class ScanDetail { kFast, kMiddle, kFull };
 inline constexpr std::size_t kScanDetails = 3;
 
@@ -24,9 +24,8 @@ struct ScanPace {
   double tremor_mm = 0.05;  ///< A hand that moves less is still. Range 0..1.
 };
 
-/// Decides when a frame is due and how fine it may be, from what frames took: a pure machine, time is an argument.
-/// While transducer, needle or knobs change, the finest detail whose time stays in the pace; full detail once still;
-/// then a refresh now and then.
+/// Decides when a frame is due and at which detail, from measured frame times; time is an argument. During motion or
+/// changes: the finest detail within the time budget; when still: full detail, then occasional refreshes.
 class ScanSchedule {
  public:
   explicit ScanSchedule(const ScanPace& pace = {}) : pace_(pace) {}

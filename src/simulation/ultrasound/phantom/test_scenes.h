@@ -6,15 +6,15 @@
 
 #include "ultrasound/phantom/scene_painter.h"
 
-/// Scenes with one thing in them, as a physicist's test phantom has, in which each artefact is seen alone. In all of
-/// them the identity is X_PT. `y` is depth below the face's middle, mm.
+/// Scenes with a single object, as in a physicist's test phantom, that isolate each artefact. X_PT is the identity. `y`
+/// is depth below the face's centre, mm.
 namespace trocar::ultrasound {
 
 /// Tissues of the test scenes: round numbers, so that what is measured can be held against what was set. All but the
 /// named ones have 1540 m/s and 1000 kg/m3, so that no border between them reflects.
 enum class TestTissue : std::uint8_t {
   kAir,
-  kWater,     ///< Silent and without loss.
+  kWater,     ///< Without echoes and losses.
   kTissue,    ///< Speckle of 0 dB, 0.5 dB/cm/MHz.
   kLossless,  ///< The same without loss.
   kLossy,     ///< The same with 0.8 dB/cm/MHz^1.2.
@@ -68,7 +68,7 @@ struct TestPlane {
 };
 ScenePtr plane_scene(const SceneBox& box, TestTissue medium, const TestPlane& plane, std::span<const TestRod> rods = {},
                      std::vector<AcousticPoint> points = {});
-/// Where the plane shows a point of the picture's plane again (x, y).
+/// Position of the mirror image of a point of the image plane (x, y).
 Vec3 mirrored(const Vec3& p_P, const TestPlane& plane);
 /// Tissue whose skin falls `gap_mm` back from a flat face for x > from_x_mm.
 ScenePtr gap_scene(const SceneBox& box, TestTissue tissue, double from_x_mm, double gap_mm);

@@ -10,7 +10,7 @@ namespace trocar::ultrasound {
 
 struct AcousticScene;
 
-/// How the face meets the skin on one scanline.
+/// Contact of the face with the skin on one scanline.
 struct LineContact {
   float pressed_mm = 0.0F;  ///< The face dents the skin so deep, along the scanline. Range 0..kDeepestDent_mm.
   float gap_mm = 0.0F;      ///< Or stays off it; filled with gel as far as that reaches. Range 0..kWidestGap_mm.
@@ -19,8 +19,8 @@ struct LineContact {
 
 inline constexpr double kDeepestDent_mm = 30.0;
 inline constexpr double kWidestGap_mm = 8.0;
-/// Gel fills gaps up to the first, holds on to the skin in wedges up to the second, and then there is air. Assumed: a
-/// layer of 1 to 2 mm is what is spread.
+/// Gel fills gaps up to the first distance, remains in wedges up to the second; beyond is air. Assumed: gel layers are
+/// 1 to 2 mm.
 inline constexpr double kGelFills_mm = 1.0;
 inline constexpr double kGelEnds_mm = 2.0;
 

@@ -254,7 +254,7 @@ Result<ProbePlacement> place_probe(const anatomy::VirtualPatient& patient, const
     best = placer.search_near(*skin_P, 0.0, view.search_mm, 0.0, best);
   if (best.visibility.visible < kEnoughVisible && view.search_mm > 0.0) best = placer.search_far(best);
   if (!std::isfinite(best.cost))
-    return fail(fmt::format("no skin lies where the view \"{}\" looks from: the CT ends before it", view.name),
+    return fail(fmt::format("no skin in the direction of the view \"{}\": the CT ends before it", view.name),
                 patient.name, "choose another view");
   return ProbePlacement{best.X_PT, best.visibility};
 }

@@ -17,7 +17,7 @@ enum class ScanPlane {
   kTransverse,    ///< +x of T towards the patient's right (from the flanks: to the back on the right side).
 };
 
-/// What a view wants of bone in its way.
+/// Treatment of bone in a view.
 enum class BoneWish {
   kAvoid,   ///< None in the middle.
   kBeside,  ///< A free middle with a rib at either side.
@@ -26,7 +26,7 @@ enum class BoneWish {
 
 enum class TargetPoint {
   kMiddle,  ///< The label's voxel nearest to its centroid.
-  kFacing,  ///< Where it comes nearest to the middle of what the view looks through.
+  kFacing,  ///< At the closest approach to the centre of the acoustic window.
 };
 
 /// A standard view (data/views.toml): how a transducer is put onto any patient to see a structure. Directions in P
@@ -35,7 +35,7 @@ struct ProbeView {
   std::string name;  ///< "liver-right-kidney".
   std::string title;
   std::vector<std::string> targets;  ///< Label names, the first that the patient has counts; '*' ends a stem.
-  std::vector<std::string> through;  ///< Labels that the sound should pass on its way; may be empty.
+  std::vector<std::string> through;  ///< Labels that the beam should pass through; may be empty.
   TargetPoint point = TargetPoint::kMiddle;
   Vec3 offset_mm = Vec3::Zero();  ///< From the target's point to what is aimed at.
   Vec3 direction_P{0, -1, 0};     ///< Unit, from the target to the skin.

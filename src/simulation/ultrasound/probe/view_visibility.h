@@ -10,7 +10,7 @@
 
 namespace trocar::ultrasound {
 
-/// Shares of a view's subject: how much of it a transducer shows, and why the rest is not seen. They sum to 1.
+/// Visible share of a view's subject, and shares by cause of invisibility. They sum to 1.
 struct ViewVisibility {
   double visible = 0.0;
   double behind_bone = 0.0;

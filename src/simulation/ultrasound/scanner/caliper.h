@@ -4,8 +4,8 @@
 
 #include "ultrasound/probe/scan_geometry.h"
 
-/// Measuring in a picture. Calipers are set in pixels and kept in mm of the image plane (x, y of T), so that they stay
-/// where they are when the picture's size or depth changes, and give back the pixels to draw them at.
+/// Measurements in an image. Calipers are set in pixels and stored in mm of the image plane (x, y of T), so that they
+/// are independent of image size and depth; converted back to pixels for drawing.
 namespace trocar::ultrasound {
 
 /// A straight line between two marks.

@@ -10,7 +10,7 @@
 
 namespace trocar::ultrasound {
 
-/// One kept picture: what Scanner::show_levels needs, and where and when it was taken.
+/// One stored frame: input of Scanner::show_levels, with its pose and time.
 struct CineFrame {
   Pose X_PT;
   double time_s = 0.0;
@@ -35,7 +35,7 @@ class CineLoop {
   /// does not decrease. Real-time safe.
   void push(std::span<const std::uint8_t> levels, const Pose& X_PT, double time_s,
             const DisplaySettings& settings) noexcept;
-  /// Forgets all frames and runs. Real-time safe.
+  /// Clears all frames and runs. Real-time safe.
   void restart() noexcept;
 
   /// Stops at the newest frame, with the range over all. Nothing can be frozen while there is no frame.

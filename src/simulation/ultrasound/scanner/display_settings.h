@@ -17,7 +17,7 @@ enum class GrayMap {
   kHighContrast,  ///< As kSoft but steeper, and black below.
 };
 
-/// The knobs behind the receiver: they change the picture of echoes that are there already.
+/// Display settings: they process existing echoes.
 struct DisplaySettings {
   double gain_db = 0.0;                      ///< Range -40..40.
   std::array<double, kTgcSliders> tgc_db{};  ///< From near to far, beside the automatic part. Range -20..20.
@@ -37,7 +37,7 @@ struct DisplaySettings {
 
 /// An error names the knob that is out of its range (exit status 2).
 Status check(const DisplaySettings& settings);
-/// The same settings with each knob held in its range; one that is not a number gets its default. Real-time safe.
+/// Returns the settings clamped to their ranges; NaN is replaced by the default. Real-time safe.
 DisplaySettings within_ranges(const DisplaySettings& settings) noexcept;
 
 /// "linear", "soft", "high-contrast"; an unknown name is an error (exit status 2).
@@ -49,8 +49,8 @@ std::string_view name_of(GrayMap map) noexcept;
 double tgc_gain_db(const DisplaySettings& settings, double depth_mm, double scan_depth_mm,
                    double frequency_mhz) noexcept;
 
-/// What is shown as white at gain 0, against liver's speckle after TGC (root mean square). Assumed, range 10..35: liver
-/// behind a wall that takes some 8 dB then has the gray of the sweep in docs/validation.md.
+/// Level displayed as white at gain 0, relative to liver's speckle after TGC (root mean square). Assumed, range 10..35:
+/// liver behind a wall with a loss of about 8 dB then has the gray level of the sweep in docs/validation.md.
 inline constexpr double kWhite_db = 15.0;
 
 /// Gray of a level after TGC and before gain, dB against liver's speckle (docs/physics.md U11). Grows with the level.

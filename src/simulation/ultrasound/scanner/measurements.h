@@ -38,8 +38,8 @@ std::vector<Vec2> marks_T(const Measurement& measurement);
 /// With one of these at another place.
 Measurement with_mark(Measurement measurement, std::size_t mark, const Vec2& p_T);
 
-/// What a scanner says of it, a line each: "Dist 23.4 mm"; "Ell 40.2 x 31.0 mm", "Area 9.79 cm2", "Circ 112.3 mm";
-/// "Angle 43.2°". UTF-8.
+/// Text of a measurement as on a scanner, one line each: "Dist 23.4 mm"; "Ell 40.2 x 31.0 mm", "Area 9.79 cm2",
+/// "Circ 112.3 mm"; "Angle 43.2°". UTF-8.
 std::vector<std::string> results(const Measurement& measurement);
 
 }  // namespace trocar::ultrasound

@@ -12,7 +12,7 @@
 
 namespace trocar::ultrasound {
 
-/// How a scanner's knobs stand for a kind of examination (data/scan_presets.toml).
+/// Settings of a scanner for an examination (data/scan_presets.toml).
 struct ScanPreset {
   std::string name;                                         ///< "liver-biopsy".
   std::string title;                                        ///< "Liver biopsy".
@@ -25,7 +25,7 @@ struct ScanPreset {
 
 /// All of a file. Errors name file, preset and key: unknown key, out of range.
 Result<std::vector<ScanPreset>> load_scan_presets(const std::filesystem::path& path);
-/// The transducer's acquisition with what the preset says.
+/// The transducer's acquisition with the preset applied.
 Acquisition acquisition_of(const ScanPreset& preset, const Transducer& transducer);
 
 }  // namespace trocar::ultrasound

@@ -36,8 +36,8 @@ class Scanner {
   /// The picture of a frame; `seed` makes its noise. Valid until the next call. Samples that are no number are black,
   /// as is what is beyond the scan. The same whatever the number of threads.
   const GrayImage& show(const BasebandFrame& frame, std::uint64_t seed) noexcept;
-  /// The picture of levels that a cine loop has kept (see levels()), with the gain, dynamic range and gray map of now.
-  /// Does not touch what persists.
+  /// Displays stored levels of a cine loop (see levels()) with the present gain, dynamic range and gray map. Does not
+  /// change persistence.
   const GrayImage& show_levels(std::span<const std::uint8_t> levels, const ScanGeometry& scan) noexcept;
 
   /// The last picture before scan conversion, gray value a sample, scanline by scanline.
@@ -49,7 +49,7 @@ class Scanner {
   static double level_db(std::uint8_t level) noexcept;
 
   const RasterGeometry& raster() const noexcept;
-  /// Forgets the pictures that persist.
+  /// Clears persistence.
   void reset() noexcept;
 
  private:

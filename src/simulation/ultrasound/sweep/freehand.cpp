@@ -54,7 +54,7 @@ Result<std::vector<detail::PlacedFrame>> place_frames(const TrackedSequence& seq
                                                       const TrackedSequence::Transforms& calibration,
                                                       const FreehandOptions& options) {
   std::vector<detail::PlacedFrame> placed;
-  std::string reason = "no picture of the sequence is marked as valid";
+  std::string reason = "no frame of the sequence is marked as valid";
   for (std::size_t n = 0; n < sequence.frames.size(); ++n) {
     const TrackedSequence::Frame& frame = sequence.frames[n];
     if (!frame.is_valid) continue;
@@ -104,7 +104,7 @@ Result<FreehandVolume> reconstruct_freehand(const TrackedSequence& sequence,
   TROCAR_TRY_STATUS(check(sequence, options));
   TROCAR_TRY(const auto frames, place_frames(sequence, calibration, options));
   const auto runs = detail::pixel_runs(sequence, options);
-  if (runs.empty()) return fail("no pixel is left by the clip region", {}, "check the clip rectangle and the fan");
+  if (runs.empty()) return fail("the clip region contains no pixels", {}, "check the clip rectangle and the fan");
   TROCAR_TRY(const volume::GridGeometry grid,
              lay_grid(detail::extent_of(frames, detail::box_of(sequence, runs, options)), options));
 

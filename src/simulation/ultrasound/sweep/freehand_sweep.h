@@ -22,7 +22,7 @@ std::vector<Pose> slide_over_skin(const volume::FloatGrid& skin_distance_mm, con
 /// About the line y = -radius_mm, z = 0 of T; 0: about the face.
 std::vector<Pose> tilt_on_skin(const Pose& X_PT, double angle_rad, double radius_mm, int frames);
 
-/// Where a hand that holds still is at one of many frames: always a little elsewhere, at most 4 mm and 3 degrees away.
+/// Small random motion of a hand at one of many frames: at most 4 mm and 3 degrees.
 Pose sway(const Pose& X_PT, int frame) noexcept;
 
 struct FreehandSweepOptions {

@@ -109,7 +109,7 @@ std::uint8_t gray_at(const Frames& frames, const SweepGeometry& geometry, const 
 
 Result<SweepGeometry> plan_sweep(const Transducer& transducer, const MechanicalSweepOptions& options) {
   if (transducer.kind != TransducerKind::kMechanicalConvex)
-    return fail_usage("the transducer has no motor that swings it", transducer.name, "choose a mechanical one");
+    return fail_usage("the transducer has no motor", transducer.name, "choose a mechanical one");
   SweepGeometry geometry;
   const Acquisition& acquisition = options.acquisition;
   geometry.scan = make_scan_geometry(transducer, acquisition.depth_mm, acquisition.lines, acquisition.samples);
@@ -191,7 +191,7 @@ Result<SweepVolume> make_mechanical_sweep(const std::shared_ptr<const AcousticSc
   TROCAR_TRY(const volume::GridGeometry grid, lay_grid(volume.geometry, options.spacing_mm));
   const Frames frames = take_frames(scene, transducer, X_PT, volume.geometry, options, progress);
   volume.mean_contact = frames.mean_contact;
-  report(progress, "laying the frames into a volume", 0.8);
+  report(progress, "combining the frames into a volume", 0.8);
   volume.gray = volume::LabelGrid(grid);
   const auto row = static_cast<std::size_t>(grid.size[0]);
   parallel_for(volume.gray.voxels.size() / row, 16, [&](std::size_t first, std::size_t last) {

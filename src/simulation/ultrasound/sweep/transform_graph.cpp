@@ -79,7 +79,7 @@ std::string TransformGraph::explain(std::string_view from, std::string_view to) 
   auto to_side = reach(edges, to);
   from_side.erase(std::string(from));
   to_side.erase(std::string(to));
-  return fmt::format("no way from {} to {}: the transforms are {}; {} is joined to {}, {} to {}", from, to,
+  return fmt::format("no transform from {} to {}: known transforms are {}; {} is connected to {}, {} to {}", from, to,
                      joined_names(transforms_), from, joined_names(from_side), to, joined_names(to_side));
 }
 

@@ -19,7 +19,7 @@ class TransformGraph {
   void add(const TrackedSequence::Transforms& transforms);
   /// Points of `from` to points of `to`, by the fewest transforms; nothing where they are not joined.
   std::optional<Matrix4> find(std::string_view from, std::string_view to) const;
-  /// Why find() gives nothing, for the user: what is known, and where the chain ends.
+  /// Explains a failed find() for the user: known transforms, and where the chain ends.
   std::string explain(std::string_view from, std::string_view to) const;
 
  private:

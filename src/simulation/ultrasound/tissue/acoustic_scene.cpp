@@ -225,8 +225,8 @@ Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const anatomy::
                                                                  const AcousticSceneOptions& options,
                                                                  const Progress& progress) {
   if (table.tissues.size() > 127)
-    return fail(fmt::format("{} tissues are too many for a scene", table.tissues.size()), "acoustic table",
-                "at most 127 fit");
+    return fail(fmt::format("{} tissues exceed the limit of a scene", table.tissues.size()), "acoustic table",
+                "use at most 127");
   const auto skin_tissue = table.find("skin");
   const auto inner_tissue = table.find("adipose");
   if (!skin_tissue || !inner_tissue)

@@ -13,7 +13,7 @@
 
 namespace trocar::ultrasound {
 
-/// One scatterer that stands out: a wire of a test phantom across the image, a microcalcification. Frame P, mm.
+/// A single bright scatterer: a wire of a test phantom across the image, a microcalcification. Frame P, mm.
 struct AcousticPoint {
   Vec3 p_P = Vec3::Zero();
   /// Peak of its echo in the middle of the beam, without attenuation and at any depth, against liver's speckle (root
@@ -21,7 +21,7 @@ struct AcousticPoint {
   double amplitude_db = 40.0;
 };
 
-/// The patient as sound meets him, in resting anatomy; immutable, shared by all who scan. Frame P, mm.
+/// Acoustic model of a patient in the resting anatomy; immutable, shared by all scanners. Frame P, mm.
 struct AcousticScene {
   /// About isotropic: `tissue` and `texture` lie on it.
   volume::GridGeometry geometry;
@@ -33,13 +33,13 @@ struct AcousticScene {
   volume::FloatGrid skin_distance_mm;  ///< Negative inside.
   AcousticTable table;
   std::vector<ScanEnd> ends;          ///< Where the CT ends within the body; empty: nowhere.
-  std::vector<AcousticPoint> points;  ///< Beside the tissue's scatterers; they do not shadow.
+  std::vector<AcousticPoint> points;  ///< In addition to the tissue's scatterers; without shadows.
 };
 
 inline constexpr std::uint8_t kMixedCell = 0x80;
 inline constexpr double kTextureStep_hu = 2.0;
 
-/// How finely a scene is made.
+/// Resolution of a scene.
 struct AcousticSceneOptions {
   double spacing_mm = 1.0;  ///< Range 0.3..3.
 };

@@ -11,7 +11,7 @@
 
 namespace trocar::ultrasound {
 
-/// What sound meets in a tissue (data/acoustics.toml; each number there has its source).
+/// Acoustic properties of a tissue (data/acoustics.toml, with the source of each number).
 struct AcousticTissue {
   std::string name;                        ///< A tissue of data/tissues.toml, or "air", "gel", "water".
   double speed_m_per_s = 1540.0;           ///< Range 300..4500.
@@ -22,9 +22,8 @@ struct AcousticTissue {
   double scatterer_share = 1.0;    ///< Scatterers against fully developed speckle. Range 0..1.
   double texture_db_per_hu = 0.0;  ///< How its speckle follows a CT above the tissue's mean. Range -1..1.
   double texture_below_db_per_hu = 0.0;  ///< The same below the mean: positive is darker. Range -1..1.
-  double roughness = 0.2;                ///< Part of a surface's echo that goes to all sides. Range 0..1.
-  double strands_per_ml =
-      0.0;                ///< Sheets of tissue across it that echo where the beam meets them squarely. Range 0..20.
+  double roughness = 0.2;                ///< Diffuse fraction of a surface's echo. Range 0..1.
+  double strands_per_ml = 0.0;           ///< Sheets of tissue that echo when perpendicular to the beam. Range 0..20.
   double fibre_db = 0.0;  ///< Depth of the layering along the skin (muscle, fat with septa). Range 0..20.
 
   /// Z = density times speed, MRayl.

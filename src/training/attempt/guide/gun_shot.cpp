@@ -6,7 +6,7 @@
 
 namespace trocar::attempt {
 
-GunShot make_gun_shot(const Case& the_case, const telemetry::TickSample& fired) {
+GunShot make_gun_shot(const cases::Case& the_case, const telemetry::TickSample& fired) {
   const tasks::Needle& needle = the_case.needle;
   const anatomy::VirtualPatient& patient = *the_case.patient;
   GunShot shot;
@@ -26,7 +26,7 @@ GunShot make_gun_shot(const Case& the_case, const telemetry::TickSample& fired) 
 }
 
 std::string shot_words(const GunShot& shot) {
-  if (!shot.is_in_body()) return "the gun was fired outside of the body: no core";
+  if (!shot.is_in_body()) return "the gun was fired outside the body: no core";
   if (shot.pieces.empty()) return fmt::format("the gun was fired at {:.0f}\u00a0mm: no core, bone", shot.depth_mm);
   return fmt::format(
       "the gun was fired at {:.0f}\u00a0mm: a core of {:.0f}\u00a0mm, {:.0f}\u00a0mm of it target tissue",

@@ -18,7 +18,7 @@ constexpr double kLookStep_mm = 0.5;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// What must not be touched, ahead of the tip.
-std::string danger_ahead(const Case& the_case, const telemetry::TickSample& sample) {
+std::string danger_ahead(const cases::Case& the_case, const telemetry::TickSample& sample) {
   for (double ahead_mm = 0.0; ahead_mm <= kGuideAhead_mm; ahead_mm += kLookStep_mm) {
     const anatomy::Label* label = anatomy::find_label(*the_case.patient, sample.tip_mm + ahead_mm * sample.axis);
     if (label == nullptr) continue;
@@ -37,7 +37,7 @@ std::string guide_outside(const Segment& path_P, const telemetry::TickSample& sa
   const Vec3 across = to_entry - to_entry.dot(axis) * axis;
   if (across.norm() > kFarFromEntry_mm) return "The entry is " + anatomy::direction_words(across, " mm");
   if (across.norm() > kGuideBeside_mm)
-    return fmt::format("{:.1f} mm beside the entry: move the tip {}", across.norm(), anatomy::direction_words(across));
+    return fmt::format("{:.1f} mm from the entry: move the tip {}", across.norm(), anatomy::direction_words(across));
   const double angle_deg = kDegPerRad * angle_between_rad(sample.axis, axis);
   if (angle_deg > kGuideTilt_deg)
     return fmt::format("{:.0f} degrees off the path: tilt the hub {}", angle_deg,
@@ -45,7 +45,7 @@ std::string guide_outside(const Segment& path_P, const telemetry::TickSample& sa
   return "On the path: advance";
 }
 
-std::string guide_inside(const Case& the_case, const telemetry::TickSample& sample) {
+std::string guide_inside(const cases::Case& the_case, const telemetry::TickSample& sample) {
   const Segment& path_P = the_case.plan.line_P;
   const Vec3 axis = path_P.direction();
   const Vec3 to_target = path_P.b - sample.tip_mm;
@@ -57,7 +57,7 @@ std::string guide_inside(const Case& the_case, const telemetry::TickSample& samp
     return the_case.needle.is_biopsy ? "At the target: hold still and fire" : "At the target: hold still";
   if (beside_mm > kGuideBeside_mm) {
     const double turn_deg = kDegPerRad * angle_between_rad(sample.axis, to_target);
-    return fmt::format("{:.1f} mm beside the path: tilt the tip {} by {:.0f} degrees", beside_mm,
+    return fmt::format("{:.1f} mm from the path: tilt the tip {} by {:.0f} degrees", beside_mm,
                        anatomy::direction_words(across), std::min(turn_deg, 90.0));
   }
   return fmt::format("{:.0f} mm to the target", left_mm);
@@ -65,7 +65,7 @@ std::string guide_inside(const Case& the_case, const telemetry::TickSample& samp
 
 }  // namespace
 
-std::string guide_puncture(const Case& the_case, const telemetry::TickSample& sample, bool has_fired) {
+std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample, bool has_fired) {
   if (!sample.tip_mm.allFinite() || !(std::abs(sample.axis.norm() - 1.0) < 1e-3)) return {};
   if (has_fired)
     return sample.phase == telemetry::InsertionPhase::kOutside ? "The needle is out: end the attempt"

@@ -19,9 +19,8 @@ Vec3 turn_between(const Mat3& from, const Mat3& to) noexcept;
 /// A pose turned by a rotation vector about its own origin, and moved.
 Pose moved(const Pose& X, const Vec3& shift, const Vec3& turn_rad) noexcept;
 
-/// A hand that is told where to be now and then, by a window's frames, and moves there evenly: with a first-order lag
-/// of kSmoothing_s, within its limits. In between it goes on with the velocity that it was told, for kStandsStill_s at
-/// most. Bounded; no clock.
+/// A hand whose target is set by a window once per frame, and which moves smoothly: first-order lag of kSmoothing_s,
+/// with limits. Between targets it extrapolates with the last velocity for at most kStandsStill_s. Bounded; no clock.
 class LedHand {
  public:
   static constexpr double kStandsStill_s = 0.05;

@@ -6,8 +6,8 @@
 
 namespace trocar::attempt {
 
-/// Hands that are moved by mouse, wheel and keys: each gesture is a small change, and what comes out is where the hand
-/// wants the tool. No time in here: how fast a hand gets there is limited where it is sent (hand_motion.h). Frame P.
+/// Hands moved by mouse, wheel and keys: each gesture is a small change of the hand's target pose. Contains no time;
+/// hand_motion.h limits the speed. Frame P.
 
 /// The needle's hand. It knows the entry E, where the needle's axis meets the resting skin, the direction d and how far
 /// the tip is past E. Before the skin (not past E) the entry glides over the skin; in the body the needle turns about E
@@ -27,7 +27,7 @@ class PointerNeedle {
   const Vec3& entry_P() const noexcept { return entry_P_; }
 
   void aim_at(const Segment& path_P);
-  /// Takes over from where the needle is: after another hand has led it.
+  /// Takes over from the needle's pose after another hand moved it.
   void put(const Pose& X_PN);
   /// A shift of the hand, mm: over the skin, or of the hub about the entry.
   void glide(const Vec3& shift_P);

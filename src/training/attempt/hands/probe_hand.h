@@ -6,14 +6,14 @@
 
 namespace trocar::attempt {
 
-/// A hand that holds the transducer on the skin beside a needle's entry: from above it presses down a few mm and stays,
-/// with the tremor of a hand. A function of time alone. Frame P.
+/// Simulated hand with the transducer on the skin near a needle's entry: presses down a few mm and stays, with tremor.
+/// A function of time only. Frame P.
 class ProbeHand {
  public:
   /// Beside path_P.a, towards head or feet, where the skin is flatter.
   ProbeHand(const anatomy::VirtualPatient& patient, const Segment& path_P) noexcept;
 
-  /// Where the hand wants the transducer, `time_s` after the forces came on; not its server_time_s.
+  /// Target pose of the transducer `time_s` after the forces were switched on; without server_time_s.
   link::HandTarget at(double time_s) const noexcept;
   /// Room in the patient: where the grip is at rest, so that the device's workspace is about it.
   Pose room(const Pose& X_PW_of_needle) const noexcept;

@@ -29,7 +29,7 @@ std::optional<AttemptEvent> describe_event(const storage::SessionInfo& info, con
   }
   if (event.id != static_cast<std::uint8_t>(telemetry::LimitReason::kResumedInside)) return std::nullopt;
   told.name = to_string(telemetry::LimitReason::kResumedInside);
-  told.text = "the needle was taken up again inside the body";
+  told.text = "the needle was resumed inside the body";
   return told;
 }
 

@@ -8,8 +8,7 @@
 
 namespace trocar::attempt {
 
-/// An event of a tick for people: punctures, tissue that is entered, a needle that was resumed inside. Nothing for
-/// what else the record keeps.
+/// Display text of a tick's event: punctures, entered tissue, a needle resumed inside. Empty for other events.
 std::optional<AttemptEvent> describe_event(const storage::SessionInfo& info, const telemetry::TickSample& sample,
                                            const telemetry::TickEvent& event);
 

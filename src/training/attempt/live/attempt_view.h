@@ -14,10 +14,10 @@ namespace trocar::attempt {
 struct GunShot;
 
 enum class AttemptPhase : std::uint8_t {
-  kStarting,    ///< Servers come up and load; `progress` says how far.
+  kStarting,    ///< Servers start and load; `progress` is their progress.
   kReady,       ///< Forces are on, the needle is outside the skin.
   kInBody,      ///< The skin was pierced, the needle is inside.
-  kServerLost,  ///< There is no news of the needle: its server is away or slow, or this machine is; see `banner`.
+  kServerLost,  ///< No data from the needle: its server or this machine is too slow or has failed; see `banner`.
   kStopped,     ///< Forces were stopped by the trainee; resume_forces() goes on.
   kFinishing,   ///< Being scored.
   kFinished,    ///< result() has the score.
@@ -25,16 +25,17 @@ enum class AttemptPhase : std::uint8_t {
 };
 const char* to_string(AttemptPhase phase) noexcept;
 
-/// What the needle does, as felt. Frame P.
+/// State of the virtual needle. Frame P.
 struct NeedleView {
   bool is_known = false;      ///< A tick has come.
   double time_s = 0.0;        ///< Of the session; 0 until it is recorded.
   Pose X_PN;                  ///< Felt: tip and axis of the virtual needle, the device's roll.
   std::vector<Vec3> shaft_P;  ///< Hub to tip, see needle_shaft.h.
-  Pose X_PN_device;           ///< As the device has it: ahead of the felt one by what tissue yields.
-  Pose X_PN_hand;             ///< Where the hand wants it.
+  Pose X_PN_device;           ///< Needle pose of the device: ahead of the virtual needle by the deformation of the
+                              ///< tissue.
+  Pose X_PN_hand;             ///< Target pose of the hand.
   double resistance_n = 0.0;  ///< Along the needle; positive pushes it out.
-  double lag_mm = 0.0;        ///< Felt tip behind the hand's, along the axis.
+  double lag_mm = 0.0;        ///< Distance of the virtual tip behind the hand's, along the axis.
   double depth_mm = 0.0;      ///< Of the tip below the skin.
   double speed_mm_s = 0.0;    ///< Along the axis; positive inward.
   std::string tissue;         ///< At the tip: a label's name where one lies there, else the tissue's; empty outside.
@@ -42,7 +43,7 @@ struct NeedleView {
   bool is_clamped = false;
 };
 
-/// What the transducer does, as felt. Frame P.
+/// State of the virtual transducer. Frame P.
 struct TransducerView {
   bool is_known = false;
   Pose X_PT;                ///< Felt: it does not pass through the skin.
@@ -52,7 +53,7 @@ struct TransducerView {
   bool is_clamped = false;
 };
 
-/// How a haptic server does: what a status bar tells.
+/// State of a haptic server for the status bar.
 struct ServerView {
   std::string tool;  ///< "needle", "probe"
   int pid = 0;
@@ -66,20 +67,20 @@ struct ServerView {
   std::string fault;                      ///< Of the safety gate; empty: none.
   std::string grant;                      ///< What real time the system granted.
   std::string warning;                    ///< The server's own.
-  bool waits_for_resume = false;          ///< It has no forces until resume_forces(), though nobody stopped them.
-  int restarts = 0;                       ///< How often it was started again or seated again.
+  bool waits_for_resume = false;          ///< Has no forces until resume_forces(), although the user did not stop them.
+  int restarts = 0;                       ///< Number of restarts and reconnections.
 };
 
-/// All that a page shows of an attempt, at one moment.
+/// All data of an attempt displayed by a page at one time.
 struct AttemptView {
   AttemptPhase phase = AttemptPhase::kStarting;
   std::string progress;            ///< What is being done in kStarting and kFinishing.
   double progress_fraction = 0.0;  ///< 0..1
-  std::string banner;              ///< One line that must be seen; empty: all is well.
+  std::string banner;              ///< One line of high importance; empty: no problem.
   std::string recovered;           ///< What the last recovery of a server was, in a sentence.
-  int recoveries = 0;              ///< How often forces came back after a server had ended or was away.
+  int recoveries = 0;              ///< Number of times that forces returned after a server ended or was unavailable.
   std::string message;             ///< What came of the last set_parameters(), or of a command.
-  std::string hint;                ///< What to do now; guided attempts alone; empty: nothing to say.
+  std::string hint;                ///< Instruction for the trainee (guided attempts only); may be empty.
   NeedleView needle;
   TransducerView probe;
   bool has_probe = false;
@@ -89,13 +90,12 @@ struct AttemptView {
   bool are_forces_stopped = false;    ///< By stop_forces(), or a server waits: resume_forces() turns them on again.
   bool has_fired = false;
   std::shared_ptr<const GunShot> shot;  ///< With the first tick after it.
-  double since_shot_s = 0.0;       ///< In the session's time; it stands still while there is no news of the needle.
-  bool is_performing = false;      ///< A scripted operator moves the needle.
-  std::vector<std::string> notes;  ///< What went wrong on the way, in order.
+  double since_shot_s = 0.0;            ///< Session time; stops while there are no data from the needle.
+  bool is_performing = false;           ///< A scripted operator moves the needle.
+  std::vector<std::string> notes;       ///< What went wrong on the way, in order.
 };
 
-/// The view as it must be taken when it was made so long ago: of a needle in motion that nobody has looked after for
-/// 250 ms nothing is known.
+/// The view with its age taken into account: without an update for 250 ms, the state of a moving needle is unknown.
 AttemptView aged(AttemptView view, double age_s);
 
 /// A point of the force plot.

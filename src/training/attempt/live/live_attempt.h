@@ -8,16 +8,17 @@
 #include <string>
 #include <vector>
 
-#include "attempt/case/open_case.h"
 #include "attempt/live/attempt_view.h"
 #include "attempt/record/run_result.h"
-#include "attempt/servers/own_server.h"
+#include "attempt/servers/local_server.h"
+#include "cases/open_case.h"
+#include "core/clock.h"
 #include "core/files/disk_space.h"
 #include "tasks/operator.h"
 
 namespace trocar::attempt {
 
-/// Which of the two tools a hand holds.
+/// Tool held by a hand.
 enum class HandTool : std::uint8_t { kNeedle, kProbe };
 
 struct AttemptOptions {
@@ -37,16 +38,17 @@ struct AttemptOptions {
   bool has_probe = true;         ///< false: one server alone.
   std::optional<Pose> X_PN_start;  ///< Empty: 20 mm before the entry on the planned path.
   std::optional<Pose> X_PT_start;  ///< Empty: the case's.
-  /// How long a server may be silent before it is started again; one that has no processor, four times as long.
+  /// Timeout after which a server is restarted; four times as long if it gets no processor time.
   std::chrono::milliseconds patience{8000};
   /// Asked about the session's folder once a second while it is recorded; tests put another disk in its place.
   std::function<std::optional<std::uintmax_t>(const std::filesystem::path&)> free_bytes = find_free_bytes;
+  std::shared_ptr<Clock> clock = std::make_shared<SteadyClock>();  ///< Of supervision and recording.
 };
 
 /// Whether set_hand() moves a device of that name; else it moves itself, or a person does.
 bool is_moved_by_hand_targets(const std::string& device);
 
-/// The haptic servers of a seat. Kept from one attempt to the next they need not open the patient again. At most one
+/// The haptic servers of a trainer. If they are kept between attempts, they need not reopen the patient. Only one
 /// attempt uses them at a time.
 class SeatServers {
  public:
@@ -54,21 +56,21 @@ class SeatServers {
   static Result<std::shared_ptr<SeatServers>> start(const AttemptOptions& options);
   bool fits(const AttemptOptions& options) const;
 
-  OwnServer needle;
-  std::optional<OwnServer> probe;
+  std::unique_ptr<LocalServer> needle;
+  std::unique_ptr<LocalServer> probe;  ///< Null: none.
 
  private:
-  explicit SeatServers(OwnServer of_needle) : needle(std::move(of_needle)) {}
+  SeatServers() = default;
 };
 
-/// An attempt while it is performed, on a thread of its own: it starts the haptic servers and looks after them, sends
-/// them the hands, records every tick of the needle, and scores at the end. No member waits for servers or files; all
-/// may be called from any one thread. The destructor ends the attempt without a score: what was recorded stays; it
-/// waits for the thread and for servers that nobody else holds (some 10 ms).
+/// A running attempt, on a thread of its own: starts and supervises the haptic servers, sends hand targets, records
+/// every needle tick, and scores at the end. No member blocks on servers or files; any one thread may call them. The
+/// destructor ends the attempt without a score and keeps the recording; it waits for the thread and for servers that
+/// are not shared (about 10 ms).
 class LiveAttempt {
  public:
   /// Starts; what is wrong shows as kFailed. `servers` that do not fit the options are not used.
-  LiveAttempt(std::shared_ptr<const OpenCase> open_case, AttemptOptions options,
+  LiveAttempt(std::shared_ptr<const cases::OpenCase> open_case, AttemptOptions options,
               std::shared_ptr<SeatServers> servers = nullptr);
   ~LiveAttempt();
   LiveAttempt(const LiveAttempt&) = delete;
@@ -87,11 +89,11 @@ class LiveAttempt {
 
   /// The window has drawn a picture. Once called, the servers are told how old the last one is.
   void frame_drawn();
-  /// Where the hand wants the tool, and how fast it moves there (mm/s of the tip or face, rad/s). A hand that is not
-  /// told anything for 50 ms stands still; one that jumps is slowed down to what a hand does. While there is no news of
-  /// the needle (kServerLost) its hand is not heard: it is where it was when there is.
+  /// Target pose and velocity (mm/s of tip or face, rad/s) of a hand. A hand without an update for 50 ms stops; a jump
+  /// is slowed down to possible hand motion. While there are no data from the needle (kServerLost), targets are
+  /// ignored.
   void set_hand(HandTool tool, const Pose& X_PTool, const Vec3& v_P = Vec3::Zero(), const Vec3& w_P = Vec3::Zero());
-  /// Clamped: the tool stays where its hand is, whatever set_hand says.
+  /// Locked: the tool stays in place and ignores set_hand.
   void hold(HandTool tool, bool is_clamped);
   void begin();  ///< See AttemptOptions::waits_for_begin.
   void fire();   ///< The biopsy gun; counts once.

@@ -10,8 +10,8 @@
 
 namespace trocar::attempt {
 
-/// The operator of an attempt whose ticks come from a live server, some milliseconds late: every tick is recorded,
-/// shown to the operator, and answered with where the hand shall be next.
+/// Operator of an attempt with ticks from a live server, some milliseconds late: records every tick, passes it to the
+/// operator, and sends the next hand target.
 class LiveOperator {
  public:
   /// Performer and record must outlive it. The operator's first command, made by the caller, placed the hand.
@@ -19,13 +19,13 @@ class LiveOperator {
   LiveOperator(const Performer& performer, AttemptRecord& record, const tasks::HandCommand& first,
                double longest_s = kLongestAttempt_s);
 
-  /// Ticks come for the first time, or again after none came. `clock_offset_s`: the server's clock minus ours.
-  /// `is_placed_anew`: the server was seated meanwhile and its insertion began anew; else it only was not heard.
+  /// Call when ticks arrive for the first time, or again after a gap. `clock_offset_s`: the server's clock minus ours.
+  /// `is_placed_anew`: the server reloaded the scene and its insertion restarted; otherwise only messages were missing.
   void begin(double clock_offset_s, bool is_placed_anew = true) noexcept;
   /// A tick of the server; its time becomes the session's. false: the operator is done.
   Result<bool> take(const telemetry::TickSample& tick);
-  /// A tick that comes too late to be answered, because this program stood still: recorded; the operator does not see
-  /// it and its hand's time stands still with it.
+  /// A tick too late for a reply because this program was not scheduled: recorded; the operator's time does not
+  /// advance.
   Status take_unseen(const telemetry::TickSample& tick);
   /// Ticks of the transducer's server, whose clock is so far ahead of ours: recorded in the session's time. Before the
   /// needle's first tick there is no session yet.
@@ -34,12 +34,11 @@ class LiveOperator {
   link::HandTarget hand() const noexcept;
 
   double time_s() const noexcept { return time_s_; }  ///< Of the session.
-  /// Of it, without interruptions: servers that were away, ticks that were lost or came too late to be answered.
+  /// Active time: without server outages, lost ticks and ticks too late for a reply.
   double active_s() const noexcept { return time_s_ - interrupted_s_; }
   double paused_s() const noexcept { return paused_s_; }  ///< Of it, while there was no server; and
   double unseen_s() const noexcept { return unseen_s_; }  ///< while the operator did not look.
-  /// Where the needle is put again when its server comes back: as it was felt, which is in its channel. The device's
-  /// own grip may have swung aside of it while the server went away.
+  /// Pose at which the needle resumes after a server returns: the last virtual pose, which is in its channel.
   Pose X_PN_to_resume() const noexcept { return telemetry::felt_needle(view_.last); }
   const telemetry::TickSample& last() const noexcept { return view_.last; }  ///< With the session's time.
   const tasks::HandCommand& command() const noexcept { return command_; }    ///< The answer to it.
@@ -68,7 +67,7 @@ class LiveOperator {
   bool is_seated_anew_ = false, is_placed_anew_ = false;
 };
 
-/// A command as a server's hand takes it: the in-process hand (training/hand.h), which holds the tip. `server_time_s`:
+/// A command as a server's hand takes it: the in-process hand (tasks/hand.h), which holds the tip. `server_time_s`:
 /// when it is meant for.
 link::HandTarget hand_target(const tasks::HandCommand& command, double server_time_s) noexcept;
 

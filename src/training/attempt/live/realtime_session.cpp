@@ -8,11 +8,12 @@
 #include <span>
 #include <thread>
 
-#include "attempt/case/scene_request.h"
 #include "attempt/hands/probe_hand.h"
 #include "attempt/live/live_operator.h"
 #include "attempt/servers/detail/own_servers.h"
+#include "attempt/servers/link_connection.h"
 #include "attempt/servers/server_seat.h"
+#include "cases/scene_request.h"
 #include "core/interruption.h"
 #include "io/patient/patient_source.h"
 #include "link/endpoint.h"
@@ -74,8 +75,8 @@ Result<LiveServers> LiveServers::connect(const RunOptions& options, const Realti
     client.endpoint = endpoint;
     client.name = "trocar run";
     client.security = realtime.security;
-    TROCAR_TRY(ServerSeat seat, ServerSeat::connect(client, realtime.patience));
-    seats.push_back(std::move(seat));
+    TROCAR_TRY(std::unique_ptr<ServerConnection> connection, connect_by_link(client));
+    seats.emplace_back(std::move(connection), endpoint, realtime.patience, *realtime.clock);
   }
   const auto is_ready = [](const ServerSeat& seat) { return seat.state() == State::kReady; };
   while (!std::all_of(seats.begin(), seats.end(), is_ready)) {
@@ -91,12 +92,12 @@ Result<LiveServers> LiveServers::connect(const RunOptions& options, const Realti
     std::vector<ServerSeat>* place = tool == "needle" ? &servers.needle_ : tool == "probe" ? &servers.probe_ : nullptr;
     if (place == nullptr || !place->empty())
       return fail(
-          fmt::format("{} server of the {} has no place in an attempt", place == nullptr ? "the" : "a second", tool),
+          fmt::format("{} server of the {} is not needed for an attempt", place == nullptr ? "the" : "a second", tool),
           seat.endpoint(), "name one of the needle and at most one of the probe");
     place->push_back(std::move(seat));
   }
   if (servers.needle_.empty())
-    return fail("no server of the needle among them", endpoints.front(), "start trocar-hapticd --tool needle");
+    return fail("no needle server among the endpoints", endpoints.front(), "start trocar-hapticd --tool needle");
   return servers;
 }
 
@@ -124,7 +125,7 @@ Result<State> LiveServers::look() {
       if (const auto state = probe_.front().look(); !state) probe = tl::unexpected(state.error());
     }
     if (!probe) {
-      warnings_.push_back("the attempt goes on without the probe: " + probe.error().text());
+      warnings_.push_back("the attempt continues without the probe: " + probe.error().text());
       lost_.push_back(probe_.front().figures());
       probe_.clear();
     }
@@ -164,15 +165,15 @@ void LiveServers::tell(RunResult& result) {
 }
 
 /// Where the needle's hand begins, and the transducer's.
-SeatRequest needle_request(const Case& the_case, const SceneChoice& choice, const tasks::HandCommand& first,
-                           const Performer& performer) {
-  SeatRequest request{scene_request(the_case, choice), hand_target(first, 0.0)};
-  if (!performer.parameters.empty()) request.parameters = as_command(performer.parameters.front());
+SeatRequest needle_request(const cases::Case& the_case, const cases::SceneChoice& choice,
+                           const tasks::HandCommand& first, const Performer& performer) {
+  SeatRequest request{cases::scene_request(the_case, choice), hand_target(first, 0.0)};
+  if (!performer.parameters.empty()) request.parameters = cases::as_command(performer.parameters.front());
   return request;
 }
-SeatRequest probe_request(const Case& the_case, SceneChoice choice, const ProbeHand& hand) {
+SeatRequest probe_request(const cases::Case& the_case, cases::SceneChoice choice, const ProbeHand& hand) {
   choice.tool = "probe";
-  SeatRequest request{scene_request(the_case, choice), hand.at(0.0)};
+  SeatRequest request{cases::scene_request(the_case, choice), hand.at(0.0)};
   request.scene.X_PW = hand.room(request.scene.X_PW);
   return request;
 }
@@ -190,7 +191,7 @@ class ReplayedChanges {
 
   void send(ServerSeat& needle, std::size_t ticks) {
     while (next_ < parameters_.size() && parameters_[next_].tick <= ticks) {
-      const link::SetParameters command = as_command(parameters_[next_++]);
+      const link::SetParameters command = cases::as_command(parameters_[next_++]);
       needle.adjust(command);
       needle.send(command);
     }
@@ -240,12 +241,13 @@ void warn_of_gaps(const LiveOperator& live, RunResult& result) {
     result.warnings.push_back(
         fmt::format("{} ticks of the needle did not arrive: the session has gaps there", result.ticks_missing));
   if (live.paused_s() > 0.0)
-    result.warnings.push_back(fmt::format(
-        "the needle's server was away: {:.1f} s are missing from the session, and the needle was resumed where it was",
-        live.paused_s()));
+    result.warnings.push_back(
+        fmt::format("the needle server was unavailable: {:.1f} s are missing in the session, and the needle resumed at "
+                    "its last pose",
+                    live.paused_s()));
   if (live.unseen_s() > 0.0)
     result.warnings.push_back(
-        fmt::format("this program stood still for {:.2f} s in all, and the operator with it", live.unseen_s()));
+        fmt::format("the computer was too busy: the attempt was paused for {:.2f} s in total", live.unseen_s()));
 }
 
 }  // namespace
@@ -259,7 +261,7 @@ Status check_realtime(const RealtimeOptions& options) {
       return fail_usage("a server on tcp:// needs keys", text, "give --keys and --server-key, or use ipc://");
   }
   if (options.endpoints.size() == 2 && options.endpoints[0] == options.endpoints[1])
-    return fail_usage("the same server twice", options.endpoints[0], "name the needle's and the probe's");
+    return fail_usage("the same server was given twice", options.endpoints[0], "name the needle's and the probe's");
   return {};
 }
 
@@ -276,8 +278,8 @@ Status find_servers(const RealtimeOptions& options) {
   return {};
 }
 
-Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& given, const RealtimeOptions& realtime,
-                                       const Progress& progress) {
+Result<RunResult> run_realtime_session(const cases::Case& the_case, const RunOptions& given,
+                                       const RealtimeOptions& realtime, const Progress& progress) {
   TROCAR_TRY_STATUS(check_run(given));
   TROCAR_TRY_STATUS(check_realtime(realtime));
   TROCAR_TRY(Performer performer, make_performer(the_case, given));
@@ -295,7 +297,7 @@ Result<RunResult> run_realtime_session(const Case& the_case, const RunOptions& g
   tasks::OperatorView before;
   before.dt_s = 1.0 / rate_hz;
   const tasks::HandCommand first = performer.the_operator->next(before);
-  SceneChoice choice;
+  cases::SceneChoice choice;
   choice.force_model = performer.force_model;
   choice.patient_source = io::absolute_source(options.patient_source);
   choice.patient_seed = options.patient_seed;

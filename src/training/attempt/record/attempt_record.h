@@ -11,7 +11,7 @@
 
 namespace trocar::attempt {
 
-/// What an attempt's record says of how it was made, beside case and options.
+/// Description of how an attempt was made, in addition to case and options.
 struct AttemptFacts {
   std::string device;  ///< In words.
   double rate_hz = 1000.0;
@@ -24,25 +24,26 @@ struct AttemptFacts {
 /// The preset of a server's device: "premium" of "virtual:premium"; empty: it is none of data/devices.toml.
 std::string preset_of_device(std::string_view device_name);
 
-/// The transducer is recorded so often at most: a hand moves it 0.6 mm in that time, its tremor has 8 to 12 Hz, a
-/// screen shows 60 pictures a second. It makes a file about 5 % larger; every tick would make it half as large again.
+/// Maximum rate of recorded transducer poses: a hand moves 0.6 mm in that time, tremor has 8 to 12 Hz, a screen shows
+/// 60 frames a second. Increases the file by about 5 %; recording every tick would increase it by half.
 inline constexpr double kTransducerEvery_s = 0.01;
 
-/// An attempt while it happens: every tick in memory and in the session file, scored at the end. What was appended is
-/// in the file, whatever becomes of the attempt.
+/// A running attempt: every tick in memory and in the session file, scored at the end. Appended ticks are in the file
+/// even if the attempt fails.
 class AttemptRecord {
  public:
   /// The case must outlive it. Errors: the session file.
-  static Result<AttemptRecord> create(const Case& the_case, const RunOptions& options, const AttemptFacts& facts);
+  static Result<AttemptRecord> create(const cases::Case& the_case, const RunOptions& options,
+                                      const AttemptFacts& facts);
 
   /// What the operator does before the next tick: fires, perhaps.
   void note(const tasks::HandCommand& command) noexcept;
   Status append(const telemetry::TickSample& sample);
-  /// The last appended sample was made with these parameters. Recorded where they are others than before.
+  /// Parameters of the last appended sample; recorded when they change.
   Status note_parameters(const SceneParameters& parameters);
   /// The same of the scene of a server by its number. One that is not known yet is recorded later, by another call.
   Status note_scene(std::uint64_t number, const KnownScenes& known);
-  /// Another server comes, with other numbers of scenes.
+  /// Call when a server is replaced: scene numbers start again.
   void forget_scenes() noexcept;
   /// Before the first sample after it.
   Status append(const tasks::Interruption& interruption);
@@ -57,7 +58,7 @@ class AttemptRecord {
   Result<RunResult> finish();
   /// The first failure to write the session file; empty: all is well.
   const std::optional<Error>& write_failure() const noexcept { return write_failure_; }
-  /// After such a failure: scores what was recorded, and says how much of it the file lacks.
+  /// Call after such a failure: scores the recorded part and reports how much the file lacks.
   RunResult finish_unsaved();
 
  private:
@@ -70,10 +71,10 @@ class AttemptRecord {
   Status written(Status status);
   RunResult score();
 
-  AttemptRecord(const Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
+  AttemptRecord(const cases::Case& the_case, storage::SessionInfo info, storage::SessionWriter writer,
                 std::size_t expected_ticks);
 
-  const Case* the_case_;
+  const cases::Case* the_case_;
   storage::SessionInfo info_;
   storage::SessionWriter writer_;
   std::vector<telemetry::TickSample> samples_;
@@ -85,7 +86,7 @@ class AttemptRecord {
   std::optional<anatomy::TissueTable> tissues_;  ///< Their table; none: nothing was recorded yet.
   std::uint64_t scene_ = 0;                      ///< Of the last sample.
   std::vector<UnknownScene> unknown_;            ///< By tick.
-  bool has_lost_scene_ = false;                  ///< The parameters of some ticks were never told.
+  bool has_lost_scene_ = false;                  ///< Some ticks have no reported parameters.
   std::vector<tasks::Interruption> interruptions_;
 };
 

@@ -3,15 +3,15 @@
 #include <filesystem>
 #include <optional>
 
-#include "attempt/case/open_case.h"
+#include "cases/open_case.h"
 #include "core/files/file_lock.h"
 #include "core/result.h"
 
 namespace trocar::attempt {
 
-/// What a seat was doing, kept in a file so that a crash loses nothing.
+/// Record of the running attempts in a file, so that a crash loses no data.
 struct SeatState {
-  CaseChoice choice;
+  cases::CaseChoice choice;
   std::filesystem::path session;  ///< Of the attempt under way.
 };
 
@@ -26,8 +26,8 @@ class Journal {
   Status begin(const SeatState& state);
   /// The attempt begun has ended in order.
   void clear() noexcept;
-  /// The newest attempt that was cut off, where its session is still there; attempts of living trainers are left out. A
-  /// file that cannot be understood is taken as nothing.
+  /// The newest interrupted attempt whose session still exists; attempts of running trainers are excluded. Unreadable
+  /// files are ignored.
   std::optional<SeatState> find_cut_off() const;
   /// Takes a cut-off attempt out of the journal. False: it is no longer there, or another trainer has it.
   bool forget(const SeatState& state) const noexcept;

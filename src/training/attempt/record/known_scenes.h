@@ -15,7 +15,7 @@ struct SceneParameters {
   std::string tissue_table_toml;
 };
 
-/// The scenes that a client has asked of a server, by number, as the server's replies describe them.
+/// The scenes that a client requested from a server, by number, as described in the server's replies.
 class KnownScenes {
  public:
   void learn(const link::Reply& reply) {
@@ -28,7 +28,7 @@ class KnownScenes {
     scenes_.clear();
     newest_ = 0;
   }
-  /// Null: its reply has not come yet.
+  /// Null: no reply yet.
   const SceneParameters* find(std::uint64_t number) const {
     const auto found = scenes_.find(number);
     return found == scenes_.end() ? nullptr : &found->second;

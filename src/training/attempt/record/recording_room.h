@@ -9,10 +9,10 @@
 
 namespace trocar::attempt {
 
-/// How long an attempt can still be recorded on a disk. A session takes 11 MB a minute at 1000 ticks a second.
+/// Remaining recording time on a disk. A session takes 11 MB a minute at 1000 ticks a second.
 class RecordingRoom {
  public:
-  /// `free_bytes`: of the file system of `folder`; empty: not known, and then nothing is said.
+  /// `free_bytes`: free space of the file system of `folder`; empty: unknown, no warning.
   RecordingRoom(std::filesystem::path folder, std::optional<std::uintmax_t> free_bytes, double rate_hz = 1000.0);
 
   /// Nothing more can be recorded: what is left is needed to close the session with its score.

@@ -33,7 +33,7 @@ TEST(Checks, SoundDraftHasNoError) {
   for (const CaseCheck& check : checks) EXPECT_NE(check.level, CheckLevel::kError) << check.text;
   EXPECT_EQ(worst_level(checks, CaseStep::kPath), CheckLevel::kOk);
   EXPECT_NE(find(checks, CheckLevel::kOk, "the path is 6"), nullptr);
-  EXPECT_NE(find(checks, CheckLevel::kOk, "the target lies in lesion"), nullptr);
+  EXPECT_NE(find(checks, CheckLevel::kOk, "the target is in lesion"), nullptr);
 }
 
 TEST(Checks, LabelsOutsideTheBodyAreNamedWithAPlace) {
@@ -48,7 +48,7 @@ TEST(Checks, LabelsOutsideTheBodyAreNamedWithAPlace) {
   }
   draft.imported = imported;
   const auto checks = checks_of(draft);
-  const CaseCheck* check = find(checks, CheckLevel::kError, "of gallbladder lies outside the body");
+  const CaseCheck* check = find(checks, CheckLevel::kError, "of gallbladder is outside the body");
   ASSERT_NE(check, nullptr);
   ASSERT_TRUE(check->where_P);
   EXPECT_GT(BoxPatient::skin_distance(*check->where_P), 0.0);
@@ -82,7 +82,7 @@ TEST(Checks, TargetInTheWrongPlaceIsAnError) {
 TEST(Checks, TargetThatIsARiskIsAnError) {
   CaseDraft draft = *set_target_label(made_draft(), "lesion");
   draft = *set_risk(draft, {"", "lesion", 2.0, 10.0});
-  EXPECT_NE(find(checks_of(draft), CheckLevel::kError, "is a risk structure, too"), nullptr);
+  EXPECT_NE(find(checks_of(draft), CheckLevel::kError, "is also a risk structure"), nullptr);
 }
 
 TEST(Checks, FaultsOfThePathAreNamedWithTheirPlace) {
@@ -107,7 +107,7 @@ TEST(ForcePreview, HasTheLayersOfThePathInOrder) {
   const auto preview = preview_forces(draft, patients.of(draft), biopsy_gun(), shipped_tissues());
   ASSERT_TRUE(preview) << preview.error().text();
   std::vector<std::string> layers;
-  for (const attempt::CurveEvent& event : preview->events) layers.push_back(event.layer);
+  for (const cases::CurveEvent& event : preview->events) layers.push_back(event.layer);
   EXPECT_EQ(layers, (std::vector<std::string>{"skin", "muscle", "liver_capsule"}));
   ASSERT_FALSE(preview->pieces.empty());
   EXPECT_EQ(preview->pieces.front().name, "skin");

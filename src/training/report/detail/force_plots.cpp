@@ -134,13 +134,13 @@ std::string force_depth_figure(const storage::Session& session) {
         {peak, fmt::format("{} {} N", words(anatomy::layer_words(puncture.layer)), number_text(peak.y(), 2))});
   }
   return figure(to_svg(plot),
-                "What tip and shaft meet along the needle on the way in; positive pushes the needle out. Each marked "
-                "peak is a layer giving way. Stripes: tissue at the tip.");
+                "Forces on tip and shaft along the needle during insertion; positive pushes the needle out. Each "
+                "marked peak is a puncture. Stripes: tissue at the tip.");
 }
 
 std::string puncture_table(const storage::Session& session) {
   const std::vector<Puncture> punctures = find_punctures(session);
-  if (punctures.empty()) return "<p>No layer gave way.</p>";
+  if (punctures.empty()) return "<p>No layer was punctured.</p>";
   std::string out =
       "<table class=\"list\"><thead><tr><th>Layer</th><th>Time (s)</th><th>Depth (mm)</th><th>Layer's force (N)</th>"
       "<th>Resistance (N)</th><th>Drop (N)</th></tr></thead><tbody>";
@@ -177,7 +177,7 @@ std::string force_time_figure(const storage::Session& session) {
       over_time(session, "model total", "c-total", [](const telemetry::TickSample& s) { return s.f_total_n.norm(); }),
       over_time(session, "across the path", "c-constraint",
                 [](const telemetry::TickSample& s) { return s.f_constraint_n.norm(); }),
-      over_time(session, "to the device", "c-device",
+      over_time(session, "sent to the device", "c-device",
                 [](const telemetry::TickSample& s) { return s.device_f_n.norm(); })};
   return "<figure>" + to_svg(axial) + "</figure>" +
          figure(to_svg(norms) + phase_key(),

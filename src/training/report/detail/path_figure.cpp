@@ -174,8 +174,8 @@ std::string path_key() {
              "<path class=\"target\" stroke-width=\"1.6\" d=\"M8 6.5h4m6 0h4m-7 -6v3m0 6v3m3 -6a3 3 0 1 1 -6 0 3 3 0 1 "
              "1 6 0\"/>",
              "target") +
-         entry("<path class=\"own\" stroke-width=\"3.5\" d=\"M2 6.5h26\"/>", "own path of the tip") +
-         entry("<circle class=\"own-entry\" cx=\"15\" cy=\"6.5\" r=\"3.5\"/>", "own entry and tip") + "</ul>";
+         entry("<path class=\"own\" stroke-width=\"3.5\" d=\"M2 6.5h26\"/>", "path of the tip") +
+         entry("<circle class=\"own-entry\" cx=\"15\" cy=\"6.5\" r=\"3.5\"/>", "actual entry and tip") + "</ul>";
 }
 
 }  // namespace
@@ -187,8 +187,8 @@ std::string path_figure(const storage::Session& session, const anatomy::VirtualP
   std::string out;
   if (patient->content_hash != session.info.patient_hash)
     out +=
-        "<p class=\"warning\">The patient has changed since the session: the slices may not show what was "
-        "punctured.</p>";
+        "<p class=\"warning\">The patient has changed since the session: the slices may differ from the anatomy of the "
+        "attempt.</p>";
   const PathDrawing drawing = collect(session);
   out += "<div class=\"slices\">";
   for (const SliceText& text : kSlices) out += slice_figure(*patient, text, drawing);

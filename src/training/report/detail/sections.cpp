@@ -75,7 +75,7 @@ std::string core_bar(const tasks::BiopsyCore& core) {
   constexpr double kTickStep_mm = 5.0;
   double length_mm = 0.0;
   for (const tasks::CorePiece& piece : core.pieces) length_mm = std::max(length_mm, piece.to_mm);
-  if (!(length_mm > 0.0)) return "<p>The notch brought nothing out.</p>";
+  if (!(length_mm > 0.0)) return "<p>The core is empty.</p>";
   const auto x_of = [&](double mm) { return kMargin + mm / length_mm * (kWidth - 2.0 * kMargin); };
   std::string out = "<svg viewBox=\"0 0 760 78\" role=\"img\" aria-label=\"Tissue along the specimen notch\">";
   for (const tasks::CorePiece& piece : core.pieces) {
@@ -158,7 +158,7 @@ std::string damage_note(const storage::Session& session) {
   std::string parts;
   for (const storage::SessionDamage& damage : session.damage)
     parts += (parts.empty() ? "" : ", ") + escape(damage.part);
-  return "<p class=\"warning\"><b>This session is damaged.</b> Left out: " + parts + ".</p>";
+  return "<p class=\"warning\"><b>This session is damaged.</b> Missing: " + parts + ".</p>";
 }
 
 /// "Target reached", with the level of help that the score was reached at.
@@ -174,8 +174,9 @@ std::string verdict_of(const storage::Session& session) {
 std::string result_section(const storage::Session& session) {
   if (!session.outcome && !session.damage.empty()) return damage_note(session);
   if (!session.outcome)
-    return "<p class=\"warning\"><b>This session is incomplete.</b> The program ended before the attempt did: there is "
-           "no score. The ticks recorded until then are shown below.</p>";
+    return "<p class=\"warning\"><b>This session is incomplete.</b> The program ended during the attempt: there is no "
+           "score. The recorded ticks "
+           "are shown below.</p>";
   const tasks::Outcome& outcome = *session.outcome;
   std::string out =
       damage_note(session) + fmt::format(

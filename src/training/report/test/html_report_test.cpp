@@ -81,7 +81,7 @@ TEST(HtmlReport, NamesDamagedPartsAndDeductions) {
   session.outcome->parts.push_back({"deduction", "Deduction for structures at risk", 25.0, "points", -5.0, 0.0});
   session.outcome->risks_touched = {"rib_right_10"};
   const std::string html = html_report(session, nullptr);
-  for (const char* text : {"This session is damaged.", "Left out: ticks 500 to 999", "<b>\u22125</b></td></tr>",
+  for (const char* text : {"This session is damaged.", "Missing: ticks 500 to 999", "<b>\u22125</b></td></tr>",
                            "Structures at risk touched: <b>right rib 10</b>"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
   session.outcome.reset();

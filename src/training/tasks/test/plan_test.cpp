@@ -299,7 +299,7 @@ TEST(Plan, ErrorNamesTheConstraintThatLeftNoPath) {
 
   BoxPatient no_muscle;
   no_muscle.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) > -22.0 ? "adipose" : ""; };
-  EXPECT_NE(error_of(liver_biopsy(), no_muscle).find("do not pass muscle"), std::string::npos);
+  EXPECT_NE(error_of(liver_biopsy(), no_muscle).find("do not pass through muscle"), std::string::npos);
 
   BoxPatient shallow;
   shallow.lesion_centre_P = {-30.0, -40.0, 0.0};

@@ -84,8 +84,8 @@ TEST(TaskReadiness, CompletePatientServesTheTask) {
   const auto readiness = check_task(liver_biopsy(), BoxPatient{}.make());
   EXPECT_TRUE(readiness.is_possible);
   EXPECT_FALSE(readiness.is_parenchymal);
-  EXPECT_TRUE(mentions(readiness, "no vessels are labelled"));
-  EXPECT_TRUE(mentions(readiness, "not avoided: bone, cartilage, lung"));
+  EXPECT_TRUE(mentions(readiness, "vessels are not labelled"));
+  EXPECT_TRUE(mentions(readiness, "do not avoid them: bone, cartilage, lung"));
   EXPECT_FALSE(mentions(readiness, "cut by the border"));
 }
 
@@ -103,7 +103,7 @@ TEST(TaskReadiness, NamesWhatMakesTheTaskImpossible) {
   no_liver.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) <= -22.0 ? "soft_tissue" : ""; };
   const auto readiness = check_task(liver_biopsy(), no_liver.make());
   EXPECT_FALSE(readiness.is_possible);
-  EXPECT_TRUE(mentions(readiness, "no liver is labelled"));
+  EXPECT_TRUE(mentions(readiness, "the liver is not labelled"));
 
   BoxPatient no_muscle;
   no_muscle.special = [](const Vec3& p) { return BoxPatient::skin_distance(p) > -22.0 ? "adipose" : ""; };

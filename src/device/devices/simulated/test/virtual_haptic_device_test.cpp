@@ -23,8 +23,7 @@ TEST_P(ReleasedInAir, StaysPutWithWeightCompensation) {
   Bench bench(preset);
   const Pose X_DS(haptics::rotation_from_vector({0.3, 2.0, -0.4}), {10.0, -20.0, 30.0});
   DeviceReading reading = bench.period(placed_at(X_DS), {});
-  for (int i = 0; i < 5000; ++i)
-    reading = bench.period(DeviceHand{}, weight_compensation(preset, reading.X_DS));
+  for (int i = 0; i < 5000; ++i) reading = bench.period(DeviceHand{}, weight_compensation(preset, reading.X_DS));
   EXPECT_LT((bench.device.X_DS().p() - X_DS.p()).norm(), 0.5);  // what it falls before the first wrench acts
   EXPECT_LT(haptics::rotation_vector(bench.device.X_DS().R() * X_DS.R().transpose()).norm(), 0.02);
 }

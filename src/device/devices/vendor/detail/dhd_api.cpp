@@ -3,7 +3,7 @@
 namespace trocar::devices::dhd {
 namespace {
 
-// libdrd holds all of libdhd.
+// libdrd contains all of libdhd.
 constexpr const char* kNames[] = {"libdhd.so", "libdhd.so.3", "libdrd.so", "libdrd.so.3"};
 constexpr LibraryPlace kPlace{
     .variable = "TROCAR_LIBDHD",

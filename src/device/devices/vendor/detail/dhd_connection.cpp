@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kMmPerM = 1000.0;
 constexpr double kNmmPerNm = 1000.0;
-constexpr double kWatchdog_s = 0.020;  // where the vendor's is off: as ours, ServoExchange::kOldestWrench_s
-constexpr int kFailuresToLose = 5;     // calls failed one after the other [assumed]
-constexpr int kPeriodsPerStatus = 50;  // 25 ms at 2 kHz: the motors' state is read now and then [assumed]
+constexpr double kWatchdog_s = 0.020;  // if the vendor's is off: as ours, ServoExchange::kOldestWrench_s
+constexpr int kFailuresToLose = 5;     // consecutive failed calls [assumed]
+constexpr int kPeriodsPerStatus = 50;  // 25 ms at 2 kHz: interval of reading the motors' state [assumed]
 
 }  // namespace
 
@@ -55,7 +55,7 @@ tl::unexpected<Error> Connection::failed(const char* what) const {
 
 Status Connection::check_state() {
   std::array<int, kStatusRoom> status{};
-  if (api_.get_status(status.data(), id_) < kNoError) return failed("the device does not tell its state");
+  if (api_.get_status(status.data(), id_) < kNoError) return failed("the device does not report its state");
   if (status[kStatusPower] == 0) return fail("the device has no power", name_, "switch it on, then open it again");
   if (status[kStatusReset] != 0) {
     return fail("the device is not calibrated", name_,
@@ -64,7 +64,7 @@ Status Connection::check_state() {
   return {};
 }
 
-/// The vendor's watchdog cuts the force when no new one arrives. As the vendor set it; switched on where it is off.
+/// The vendor's watchdog stops the force without new commands. Its setting is kept; it is switched on if it is off.
 Status Connection::keep_watchdog() {
   unsigned char counts = 0;
   const bool is_known = api_.get_watchdog != nullptr && api_.get_watchdog(&counts, id_) >= kNoError;
@@ -72,24 +72,23 @@ Status Connection::keep_watchdog() {
   const bool can_set = api_.set_watchdog != nullptr && api_.enable_expert_mode != nullptr &&
                        api_.disable_expert_mode != nullptr && api_.enable_expert_mode() >= kNoError;
   if (!can_set) {
-    log_warning("{}: its library knows no watchdog; Trocar's own alone cuts an old force", name_);
+    log_warning("{}: its library has no watchdog; only Trocar's own timeout stops an outdated force", name_);
     return {};
   }
   const auto wanted = static_cast<unsigned char>(std::lround(kWatchdog_s / kWatchdogCount_s));
   const bool is_set = api_.set_watchdog(wanted, id_) >= kNoError;
   api_.disable_expert_mode();
-  if (!is_set) log_warning("{}: its watchdog cannot be switched on: {}", name_, api_.error_text());
+  if (!is_set) log_warning("{}: cannot switch on its watchdog: {}", name_, api_.error_text());
   return {};
 }
 
 Status Connection::start(bool senses_rotation) {
   senses_rotation_ = senses_rotation;
   TROCAR_TRY_STATUS(keep_watchdog());
-  if (api_.set_gravity_compensation(kOn, id_) < kNoError)
-    return failed("its gravity compensation cannot be switched on");
-  if (sense(sample_) == Sensed::kFailed) return failed("its pose cannot be read");
-  if (api_.enable_force(kOn, id_) < kNoError) return failed("its motors cannot be switched on");
-  if (!apply(haptics::Wrench{})) return failed("it takes no force");
+  if (api_.set_gravity_compensation(kOn, id_) < kNoError) return failed("cannot switch on its gravity compensation");
+  if (sense(sample_) == Sensed::kFailed) return failed("cannot read its pose");
+  if (api_.enable_force(kOn, id_) < kNoError) return failed("cannot switch on its motors");
+  if (!apply(haptics::Wrench{})) return failed("it does not accept forces");
   exchange_.emplace(sample_);
   thread_ = std::thread([this] { pace_->run(is_stopping_, *this); });
   return {};
@@ -109,7 +108,7 @@ void Connection::serve(double now_s) noexcept {
   if (sample_.is_lost) return;
   const Sensed sensed = sense(sample_);
   const haptics::Wrench wrench_D = exchange_->wanted(now_s);
-  // The library turns forces into motor torques by the pose: none by one that is not a number.
+  // The library converts forces to motor torques with the pose: no force without a finite pose.
   const bool is_applied = apply(sample_.X_DS.is_finite() ? wrench_D : haptics::Wrench{});
   failures_ = sensed != Sensed::kFailed && is_applied ? 0 : failures_ + 1;
   if (!is_applied) sample_.is_force_refused = true;
@@ -122,7 +121,7 @@ void Connection::serve(double now_s) noexcept {
   if (sensed == Sensed::kNew || sample_.is_lost) exchange_->sensed(sample_);
 }
 
-/// Into the sample, which keeps its pose where the device does not answer.
+/// Reads into the sample, which keeps its pose if the device does not respond.
 Connection::Sensed Connection::sense(ServoSample& sample) noexcept {
   Vec3 p_VH = Vec3::Zero();
   double rows[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -146,8 +145,8 @@ bool Connection::apply(const haptics::Wrench& wrench_D) noexcept {
   return api_.set_wrench(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0.0, id_) >= kNoError;
 }
 
-/// false: its button, its velocity brake or its watchdog keeps the motors off. Switching them on again is for the
-/// person at the device (its force button).
+/// Returns false if its button, velocity brake or watchdog keeps the motors off. Only the person at the device can
+/// switch them on again (force button).
 bool Connection::has_force() noexcept {
   std::array<int, kStatusRoom> status{};
   return api_.get_status(status.data(), id_) < kNoError || status[kStatusForce] != 0;

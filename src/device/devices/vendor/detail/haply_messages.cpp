@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 constexpr double kMmPerM = 1000.0;
 constexpr std::size_t kMostIdBytes = 64;
 constexpr std::size_t kMostDevices = 16;
-constexpr double kQuaternionSlack = 0.1;  // how far from unit length it may be and still be taken for one
+constexpr double kQuaternionSlack = 0.1;  // tolerance of the unit length
 
 const Json* member(const Json& object, const char* key) {
   if (!object.is_object()) return nullptr;
@@ -45,7 +45,7 @@ std::optional<Eigen::Quaterniond> quaternion_of(const Json& object) {
   return q.normalized();
 }
 
-/// A flag that is missing is taken for fine: older services tell fewer of them.
+/// A missing flag counts as no error: older services send fewer flags.
 bool is_denied(const Json* status, const char* key) {
   const Json* flag = status == nullptr ? nullptr : member(*status, key);
   return flag != nullptr && (!flag->is_boolean() || !flag->get<bool>());
@@ -64,7 +64,7 @@ const std::string* id_of(const Json& device) {
   return text != nullptr && !text->empty() && text->size() <= kMostIdBytes ? text : nullptr;
 }
 
-/// The wanted one of an array of devices.
+/// The selected entry in an array of devices.
 const Json* find_device(const Json& devices, std::string_view wanted_id) {
   std::size_t count = 0;
   for (const Json& device : devices) {
@@ -76,7 +76,7 @@ const Json* find_device(const Json& devices, std::string_view wanted_id) {
 }
 
 std::uint32_t buttons_of(const Json* buttons) {
-  // Wireless grips name their buttons a, b, c; wired ones and older services otherwise.
+  // Wireless grips name their buttons a, b, c; wired grips and older services use other names.
   constexpr std::array kNames{std::array{"a", "button_0", "button"}, std::array{"b", "button_1", "button_1"},
                               std::array{"c", "button_2", "button_2"}};
   std::uint32_t bits = 0;
@@ -89,7 +89,7 @@ std::uint32_t buttons_of(const Json* buttons) {
   return bits;
 }
 
-/// Orientation and buttons of the first grip; false: there is one that says nonsense.
+/// Orientation and buttons of the first grip; false: its data are not valid.
 bool read_grip(const Json& document, HaplyState& state) {
   for (const char* kind : {"wireless_verse_grip", "verse_grip", "custom_verse_grip"}) {
     const Json* grips = member(document, kind);

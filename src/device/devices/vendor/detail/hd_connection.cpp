@@ -9,16 +9,16 @@ namespace trocar::devices::hd {
 namespace {
 
 constexpr unsigned long kServoRate_hz = 1000;  // the vendor's usual rate
-constexpr int kMostErrors = 32;                // popped at a time, so that the loop is bounded
+constexpr int kMostErrors = 32;                // limit of errors read at a time
 
-/// The vendor's library has one scheduler and one current device a process.
+/// The vendor's library has one scheduler and one current device per process.
 std::atomic<bool> is_in_use{false};
 
 bool is_force_error(Enum code) noexcept {
   return code >= kWarmMotors && code <= kForceError;
 }
 
-/// After these the vendor's own programs stop too (hduError, hduIsSchedulerError).
+/// Errors at which the vendor's own programs stop, too (hduError, hduIsSchedulerError).
 bool is_fatal(Enum code) noexcept {
   return code == kCommError || code == kCommConfigError || code == kTimerError || code == kDeviceFault ||
          code == kBadHandle;
@@ -45,7 +45,7 @@ Result<std::unique_ptr<Connection>> Connection::open(const std::string& device, 
                                                      bool is_calibrating) {
   TROCAR_TRY(const Api api, load_api());
   if (is_in_use.exchange(true)) {
-    return fail("OpenHaptics is in use in this program already", device, "give each device a server of its own");
+    return fail("OpenHaptics is already in use in this program", device, "use a separate server for each device");
   }
   const Handle handle = api.init_device(device.empty() ? nullptr : device.c_str());
   const ErrorInfo error = api.get_error();
@@ -70,13 +70,13 @@ Status Connection::start() {
   TROCAR_TRY_STATUS(calibrate());
   exchange_.emplace(first_);
   callback_ = api_.schedule_asynchronous(&on_period, this, kHighestPriority);
-  TROCAR_TRY_STATUS(check("the vendor's scheduler does not take our callback"));
+  TROCAR_TRY_STATUS(check("the vendor's scheduler rejects the callback"));
   has_callback_ = true;
   return {};
 }
 
-/// Where the device can do it alone, or somebody holds it where it must be for that: an encoder reset is only right
-/// while the arm is in its reset position.
+/// Only if the device can calibrate alone, or a person holds it in the calibration position: an encoder reset is only
+/// correct in the reset position of the arm.
 Status Connection::calibrate() {
   api_.get_integerv(kCalibrationStyle, &calibration_style_);
   api_.schedule_synchronous(&on_first_period, this, kHighestPriority);
@@ -85,7 +85,7 @@ Status Connection::calibrate() {
     api_.schedule_synchronous(&on_calibration_update, this, kHighestPriority);
     api_.schedule_synchronous(&on_first_period, this, kHighestPriority);
   }
-  TROCAR_TRY_STATUS(check("the device does not answer"));
+  TROCAR_TRY_STATUS(check("the device does not respond"));
   if (calibration_ == kCalibrationOk) return {};
   return fail(
       "the device is not calibrated", description_.model,
@@ -110,20 +110,20 @@ void Connection::describe() {
   api_.get_doublev(kUsableWorkspace, box.data());
   const Vec3 centre = 0.5 * (Vec3(box[0], box[1], box[2]) + Vec3(box[3], box[4], box[5]));
   if (centre.allFinite()) description_.centre_V = centre;
-  // What an older driver does not know it answers with an error; those figures stay open.
+  // An older driver returns an error for unknown parameters; these values stay unset.
   for (int i = 0; i < kMostErrors && api_.get_error().code != kSuccess; ++i) {
   }
 }
 
 std::optional<double> Connection::positive(Enum name) {
-  // Some of these are one number a joint or an axis: room for them, the first is taken.
+  // Some parameters have one value per joint or axis: the first one is used.
   std::array<double, 6> values{};
   api_.get_doublev(name, values.data());
   if (!std::isfinite(values[0]) || values[0] <= 0.0) return std::nullopt;
   return values[0];
 }
 
-/// The errors since the last look, the oldest as the cause.
+/// The errors since the last check, with the oldest as the cause.
 Status Connection::check(const char* what) {
   Enum first = kSuccess;
   for (int i = 0; i < kMostErrors; ++i) {
@@ -133,14 +133,14 @@ Status Connection::check(const char* what) {
   }
   if (first == kSuccess) return {};
   return fail(fmt::format("{}: {}", what, words_of(api_, first)), description_.model,
-              "look at the device with the vendor's diagnostic program");
+              "check the device with the vendor's diagnostic program");
 }
 
 Connection::~Connection() {
   if (exchange_) exchange_->close();
   const bool answers = !is_lost_.load() && !(exchange_ && exchange_->is_lost());
   if (has_callback_ && answers) {
-    // One whole period of the callback lies between the two: it has sent zero when the motors go off.
+    // One complete callback period is in between: it has sent zero before the motors are switched off.
     api_.schedule_synchronous([](void*) { return kCallbackDone; }, nullptr, kLowestPriority);
     api_.schedule_synchronous(&on_closing, this, kLowestPriority);
   }
@@ -162,7 +162,7 @@ unsigned int Connection::on_period(void* connection) {
   return self.is_lost_.load(std::memory_order_relaxed) ? kCallbackDone : kCallbackContinue;
 }
 
-/// Looks at the calibration and, where that is right, switches the motors on at zero force.
+/// Checks the calibration and, if it is valid, switches the motors on with zero force.
 unsigned int Connection::on_first_period(void* connection) {
   auto& self = *static_cast<Connection*>(connection);
   self.api_.begin_frame(self.handle_);
@@ -186,8 +186,8 @@ unsigned int Connection::on_calibration_update(void* connection) {
   return kCallbackDone;
 }
 
-/// After the callback of its period, whose frame brought the motors to zero: no second frame in one period, and none
-/// in the periods until the scheduler stops.
+/// After the callback of its period, whose frame set the motors to zero: no second frame in this period, and none until
+/// the scheduler stops.
 unsigned int Connection::on_closing(void* connection) {
   auto& self = *static_cast<Connection*>(connection);
   self.is_done_ = true;
@@ -200,7 +200,7 @@ void Connection::serve() noexcept {
   api_.begin_frame(handle_);
   ServoSample sample = sense();
   const haptics::Wrench wrench_D = exchange_->wanted(clock_s_());
-  // The driver turns forces into motor torques by the pose: none by one that is not a number.
+  // The driver converts forces to motor torques with the pose: no force without a finite pose.
   apply(sample.X_DS.is_finite() ? wrench_D : haptics::Wrench{});
   api_.end_frame(handle_);
   take_errors(sample);

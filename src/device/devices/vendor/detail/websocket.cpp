@@ -20,7 +20,7 @@ namespace beast = boost::beast;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostHostBytes = 253;  // of a name in the DNS
+constexpr std::size_t kMostHostBytes = 253;  // timeout of the DNS lookup
 
 bool is_host(std::string_view host) {
   return !host.empty() && host.size() <= kMostHostBytes && std::all_of(host.begin(), host.end(), [](unsigned char c) {
@@ -60,7 +60,7 @@ Result<WebSocketAddress> parse_websocket_address(std::string_view text) {
   return address;
 }
 
-/// Declared first, destroyed last: the context owns the handlers that were never called.
+/// Declared first, destroyed last: the context owns handlers that were never called.
 struct WebSocket::Connection {
   asio::io_context context;
   beast::websocket::stream<beast::tcp_stream> stream{context};
@@ -69,13 +69,13 @@ struct WebSocket::Connection {
   bool has_read = false;
   error_code read_error;
 
-  /// Works until `is_done` or the time is over.
+  /// Runs until `is_done` or the timeout.
   void work(const bool& is_done, Clock::time_point deadline) {
     context.restart();
     while (!is_done && context.run_one_until(deadline) != 0) {
     }
   }
-  /// Starts an operation that takes a handler of (error_code, ...); timed out where it does not end.
+  /// Starts an operation with a handler of (error_code, ...) and waits for it, up to the timeout.
   template <class Start>
   error_code finish(std::chrono::milliseconds limit, Start&& start) {
     bool is_done = false;
@@ -88,7 +88,7 @@ struct WebSocket::Connection {
     if (!is_done) {
       drop();
       outcome = asio::error::timed_out;
-      while (!is_done) {  // cancelled now: the handler is called before it leaves scope
+      while (!is_done) {  // cancelled: the handler must be called before it goes out of scope
         context.restart();
         if (context.run_one() == 0) break;
       }
@@ -128,7 +128,7 @@ Result<std::unique_ptr<WebSocket>> WebSocket::connect(const WebSocketAddress& ad
           limit, [&](auto handler) { beast::get_lowest_layer(stream).async_connect(ends, std::move(handler)); });
     }
     if (!error) {
-      beast::get_lowest_layer(stream).expires_never();  // the WebSocket's own limits count from here on
+      beast::get_lowest_layer(stream).expires_never();  // the WebSocket's own timeouts apply from here on
       beast::get_lowest_layer(stream).socket().set_option(asio::ip::tcp::no_delay(true), error);
       stream.set_option(beast::websocket::stream_base::timeout{limit, beast::websocket::stream_base::none(), false});
       stream.read_message_max(most_bytes);
@@ -151,7 +151,7 @@ WebSocket::Received WebSocket::receive(std::string& message, std::chrono::millis
   if (!c.is_reading && !c.has_read) c.start_reading();
   c.work(c.has_read, Clock::now() + limit);
   if (!c.has_read) return Received::kNothingYet;
-  if (c.read_error) return Received::kClosed;  // has_read stays: closed for good
+  if (c.read_error) return Received::kClosed;  // has_read remains set: the connection stays closed
   const asio::const_buffer bytes = c.buffer.cdata();
   message.assign(static_cast<const char*>(bytes.data()), bytes.size());
   c.buffer.consume(bytes.size());

@@ -282,8 +282,8 @@ TEST(HaplyDevice, SaysAtOpenWhatIsMissing) {
   EXPECT_NE(error_of(HaplyMood::kNotReady).find("not ready"), std::string::npos);
   EXPECT_NE(error_of(HaplyMood::kNotJson).find("cannot be read"), std::string::npos);
   EXPECT_NE(error_of(HaplyMood::kWrongTypes).find("cannot be read"), std::string::npos);
-  EXPECT_NE(error_of(HaplyMood::kTooLong).find("says nothing"), std::string::npos);
-  EXPECT_NE(error_of(HaplyMood::kClose).find("says nothing"), std::string::npos);
+  EXPECT_NE(error_of(HaplyMood::kTooLong).find("sends no data"), std::string::npos);
+  EXPECT_NE(error_of(HaplyMood::kClose).find("sends no data"), std::string::npos);
 }
 
 TEST(HaplyDevice, WithoutAServiceSaysHowToGetIt) {

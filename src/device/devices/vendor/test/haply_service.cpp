@@ -147,13 +147,13 @@ std::string HaplyService::state_text(HaplyMood mood, bool is_first) const {
   if (mood == HaplyMood::kTooLong) return std::string(kTooLongBytes, ' ');
   const std::lock_guard lock(mutex_);
   Json device = {{"device_id", kDeviceId},
-                         {"state",
-                          {{"cursor_position", {{"x", p_m_.x()}, {"y", p_m_.y()}, {"z", p_m_.z()}}},
-                           {"cursor_velocity", {{"x", v_m_per_s_.x()}, {"y", v_m_per_s_.y()}, {"z", v_m_per_s_.z()}}}}},
-                         {"status",
-                          {{"calibrated", mood != HaplyMood::kNotCalibrated},
-                           {"power_supply", mood != HaplyMood::kNoPower},
-                           {"ready", mood != HaplyMood::kNotReady}}}};
+                 {"state",
+                  {{"cursor_position", {{"x", p_m_.x()}, {"y", p_m_.y()}, {"z", p_m_.z()}}},
+                   {"cursor_velocity", {{"x", v_m_per_s_.x()}, {"y", v_m_per_s_.y()}, {"z", v_m_per_s_.z()}}}}},
+                 {"status",
+                  {{"calibrated", mood != HaplyMood::kNotCalibrated},
+                   {"power_supply", mood != HaplyMood::kNoPower},
+                   {"ready", mood != HaplyMood::kNotReady}}}};
   if (is_first) device["config"] = {{"preset", is_centred_ ? "arm_front_centered" : "defaults"}};
   if (mood == HaplyMood::kWrongTypes) device["state"]["cursor_position"]["x"] = "0.1";
   if (mood == HaplyMood::kHugeNumbers) device["state"]["cursor_position"]["y"] = 1e300;

@@ -7,9 +7,9 @@ namespace trocar::link::detail {
 namespace {
 
 constexpr double kBeat_s = 1e-9 * static_cast<double>(kBeat_ns);
-constexpr int kConnectedBeats = 25;                  ///< Heard within so many.
+constexpr int kConnectedBeats = 25;                  ///< Timeout for a connected server.
 constexpr std::size_t kMostSamplesHeld = 60 * 4000;  ///< A minute at 4 kHz.
-constexpr std::size_t kMostRepliesHeld = 1024;       ///< A caller that takes none loses the oldest [assumed].
+constexpr std::size_t kMostRepliesHeld = 1024;       ///< If replies are not taken, the oldest are dropped [assumed].
 
 }  // namespace
 
@@ -97,7 +97,7 @@ void ClientMailbox::put_welcome(const Welcome& welcome, bool is_new) {
   if (is_new) {
     ++view_.welcomes;
     view_.refusal.clear();
-    view_.status = {};  // what the last one said is not so of this one
+    view_.status = {};  // the status of the previous server does not apply
     newest_.reset();
   }
   has_session_ = true;

@@ -7,7 +7,7 @@ namespace trocar::link::detail {
 
 bool ClientSession::take(ServerMessage message, double now_s) {
   if (const auto* refusal = std::get_if<Refusal>(&message.body); refusal != nullptr && message.session == 0) {
-    // The server does not know us, or no longer: greet it again.
+    // The server does not know this session: send Hello again.
     mailbox_.put_refusal(refusal->text);
     if (is_welcomed()) lose();
     return false;
@@ -43,11 +43,11 @@ ClientMessage ClientSession::message(ClientBody body) {
 
 void ClientSession::lose() {
   for (const std::uint32_t request : std::exchange(waiting_, {})) {
-    mailbox_.put_reply({request, false, "the server went away before it answered"});
+    mailbox_.put_reply({request, false, "the server disconnected before it replied"});
   }
   session_ = 0;
   last_sent_ = last_received_ = 0;
-  knows_next_tick_ = false;  // a server that was started again counts from 0
+  knows_next_tick_ = false;  // a restarted server counts from 0
   clock_.clear();
   mailbox_.put_lost();
 }

@@ -20,21 +20,22 @@ namespace trocar::link::detail {
 namespace {
 
 constexpr double kHelloAgain_s = 0.2;
-/// Beats without a word until the server counts as gone, 2 s: one that fills memory for a scene may be silent for some.
-/// Beats, not time: a client that was suspended reads what waits for it before it gives its server up.
+/// Heartbeats without a message until the server counts as disconnected, 2 s: a server that loads a scene may be silent
+/// for some time. Heartbeats instead of time: a suspended client reads the waiting messages before it disconnects.
 constexpr int kSilentBeats = 200;
-constexpr int kMostWaitingOut = 200;  ///< Messages that the server does not take [assumed: two seconds of beats].
+constexpr int kMostWaitingOut = 200;  ///< Messages that the server does not accept [assumed: 2 s of heartbeats].
 constexpr int kMostWaitingIn = 1000;  ///< [assumed: ten seconds of batches at 100 Hz]
-constexpr int kMostReadAtOnce = 256;  ///< Messages between two looks at the clock [assumed].
+constexpr int kMostReadAtOnce = 256;  ///< Messages between two checks of the clock [assumed].
 constexpr int kReconnect_ms = 20, kReconnectMost_ms = 200, kHandshake_ms = 2000;
-constexpr int kGoodbye_ms = 50;  ///< Goodbye may take so long to leave.
+constexpr int kGoodbye_ms = 50;  ///< Timeout for sending Goodbye.
 constexpr std::size_t kRoutingIdBytes = 16;
 
 double steady_s() {
   return realtime::seconds(realtime::now_ns());
 }
 
-/// Random: the server tells clients apart by it, and nobody can guess another's. The first byte 0 is the library's.
+/// Random: the server identifies clients by it, and others cannot guess it. The first byte 0 is reserved for the
+/// library.
 std::string make_routing_id() {
   std::string id(kRoutingIdBytes, '\0');
   while (::getrandom(id.data(), id.size(), 0) != static_cast<ssize_t>(id.size())) {
@@ -63,7 +64,7 @@ Result<std::unique_ptr<ClientThread>> ClientThread::start(const ClientOptions& o
   try {
     client->thread_ = std::thread([self = client.get()] { self->run(); });
   } catch (const std::system_error& error) {
-    return fail("no thread for the link", options.endpoint, error.what());
+    return fail("cannot start the link thread", options.endpoint, error.what());
   }
   return client;
 }
@@ -82,7 +83,7 @@ ClientThread::~ClientThread() {
 Status ClientThread::open() {
   wake_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   clock_ = ::timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
-  // The first beat at once, the others on its grid.
+  // The first heartbeat at once, the others on its grid.
   itimerspec beats{};
   beats.it_interval.tv_nsec = kBeat_ns;
   beats.it_value.tv_nsec = 1;
@@ -96,7 +97,7 @@ Status ClientThread::open_socket() {
   socket_ = ZmqSocket(context_, ZMQ_DEALER);
   const bool is_set =
       socket_.is_open() && socket_.set(ZMQ_LINGER, 0) && socket_.set_text(ZMQ_ROUTING_ID, routing_id_) &&
-      // Nothing is kept for a server that is not there: a beat is of now or worth nothing.
+      // Messages for a missing server are not queued: only present heartbeats are useful.
       socket_.set(ZMQ_IMMEDIATE, 1) && socket_.set(ZMQ_SNDHWM, kMostWaitingOut) &&
       socket_.set(ZMQ_RCVHWM, kMostWaitingIn) &&
       socket_.set_long(ZMQ_MAXMSGSIZE, static_cast<std::int64_t>(kMostMessageBytes)) &&
@@ -105,7 +106,7 @@ Status ClientThread::open_socket() {
       socket_.set(ZMQ_IPV6, options_.endpoint.find('[') == std::string::npos ? 0 : 1);
   if (!is_set) return fail("no socket", options_.endpoint, zmq_strerror(zmq_errno()));
   if (options_.security && !has_keys_set(socket_, *options_.security)) {
-    return fail_usage("these are no CURVE keys", options_.endpoint, "make new ones with `trocar link keygen`");
+    return fail_usage("invalid CURVE keys", options_.endpoint, "make new ones with `trocar link keygen`");
   }
   handshakes_.watch(context_, socket_);
   if (zmq_connect(socket_.get(), options_.endpoint.c_str()) != 0) {
@@ -118,7 +119,7 @@ Status ClientThread::open_socket() {
 
 void ClientThread::wake() noexcept {
   const std::uint64_t one = 1;
-  // It can fail only when the counter is full, and then the thread is awake.
+  // This fails only if the counter is full, and then the thread is awake.
   [[maybe_unused]] const ssize_t written = ::write(wake_, &one, sizeof one);
 }
 
@@ -128,10 +129,10 @@ void ClientThread::frame_drawn() noexcept {
 
 void ClientThread::run() {
   while (true) {
-    // Handshakes are looked at with every beat.
+    // Handshake events are checked with every heartbeat.
     std::array<zmq_pollitem_t, 3> items{
         {{socket_.get(), 0, ZMQ_POLLIN, 0}, {nullptr, clock_, ZMQ_POLLIN, 0}, {nullptr, wake_, ZMQ_POLLIN, 0}}};
-    // A socket that could not be opened is tried again at the next beat.
+    // A socket that could not be opened is retried at the next heartbeat.
     const int first = socket_.is_open() ? 0 : 1;
     zmq_poll(items.data() + first, static_cast<int>(items.size()) - first, -1);
     read_messages();
@@ -185,7 +186,7 @@ void ClientThread::beat() {
     send(Heartbeat{now_s, std::max(0.0, age_s), session_.ticks_received()});
     return;
   }
-  // A new connection, so that nothing old waits in it.
+  // A new connection, so that it contains no old messages.
   session_.lose();
   if (const Status opened = open_socket(); !opened) log_warning("{}", opened.error().text());
 }
@@ -199,9 +200,9 @@ void ClientThread::send_outgoing(Outgoing outgoing) {
   for (Command& command : outgoing.commands) {
     const std::uint32_t request = command.request;
     if (!session_.is_welcomed()) {
-      mailbox_.put_reply({request, false, "there is no server"});
+      mailbox_.put_reply({request, false, "no server connected"});
     } else if (!send(std::move(command))) {
-      mailbox_.put_reply({request, false, "the command is too large, or the server takes no messages"});
+      mailbox_.put_reply({request, false, "the command is too large, or the server does not accept messages"});
     } else {
       session_.expect_reply(request);
     }

@@ -3,7 +3,7 @@
 namespace trocar::link::detail {
 namespace {
 
-/// Clocks of quartz drift by some 50 ppm [assumed]: 0.25 ms in this time, below a loaded link's jitter.
+/// Quartz clocks drift by about 50 ppm [assumed]: 0.25 ms in this time, below the jitter of a loaded link.
 constexpr double kRemembered_s = 5.0;
 
 }  // namespace

@@ -307,13 +307,13 @@ TEST(HapticClient, GreetsAServerAgainThatHasForgottenIt) {
   welcome.session = 7;
   server.send(7, 1, welcome);
   ASSERT_TRUE(eventually([&] { return client.view().welcomes == 1; }));
-  server.send(0, 0, Refusal{"no session: say Hello first"});
+  server.send(0, 0, Refusal{"no session: send Hello first"});
   std::optional<ClientMessage> message;
   do {
     message = server.receive();
     ASSERT_TRUE(message);
   } while (!std::holds_alternative<Hello>(message->body));
-  EXPECT_EQ(client.view().refusal, "no session: say Hello first");
+  EXPECT_EQ(client.view().refusal, "no session: send Hello first");
 }
 
 TEST(HapticClient, CountsWhatIsNoMessageOfItsServer) {
@@ -404,7 +404,7 @@ TEST(HapticClient, AllowedKeyIsWelcomedAndOthersAreNot) {
     EXPECT_TRUE(eventually([&] { return !client.view().refusal.empty(); }));
     return client.view().refusal;
   };
-  EXPECT_NE(refusal_of(*keyless).find("one side has keys"), std::string::npos) << refusal_of(*keyless);
+  EXPECT_NE(refusal_of(*keyless).find("only one side uses keys"), std::string::npos) << refusal_of(*keyless);
   EXPECT_NE(refusal_of(*stranger).find("refused the keys"), std::string::npos) << refusal_of(*stranger);
   EXPECT_NE(refusal_of(*misled).find("refused the keys"), std::string::npos) << refusal_of(*misled);
   EXPECT_NE(stranger->wait_connected(std::chrono::milliseconds(1)).error().text().find("refused the keys"),

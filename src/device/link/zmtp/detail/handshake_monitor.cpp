@@ -12,11 +12,10 @@ constexpr int kFailures =
 
 std::string describe(int event, int value) {
   if (event == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH) {
-    return "the server refused the keys: this client's key is not in its allow-list, or the server's public key is "
-           "another one";
+    return "the server refused the keys: the client's key is not in its allow-list, or the server's public key differs";
   }
   if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL && value == ZMQ_PROTOCOL_ERROR_ZMTP_MECHANISM_MISMATCH) {
-    return "one side has keys and the other has none: give both --keys, or neither";
+    return "only one side uses keys: use --keys on both sides, or on neither";
   }
   return "the server closed the connection before it was set up";
 }

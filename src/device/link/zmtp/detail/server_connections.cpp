@@ -35,7 +35,7 @@ Status ensure_descriptors() {
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kWanted) return {};
   limit.rlim_cur = kWanted;
   if (limit.rlim_max >= kWanted && ::setrlimit(RLIMIT_NOFILE, &limit) == 0) return {};
-  return fail(fmt::format("{} file descriptors are allowed, the server needs {}", limit.rlim_max, kWanted),
+  return fail(fmt::format("only {} file descriptors are allowed, the server needs {}", limit.rlim_max, kWanted),
               "RLIMIT_NOFILE", "raise the limit: ulimit -n 1024");
 }
 
@@ -168,7 +168,7 @@ void ServerConnections::accept_some(double now_s) {
     if (!socket.is_open()) {
       if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return;
       accepts_.take(kPauseAccepts);
-      report(fmt::format("no connection can be accepted: {}", std::strerror(errno)), now_s);
+      report(fmt::format("cannot accept a connection: {}", std::strerror(errno)), now_s);
       return;
     }
     accepts_.take(1.0);

@@ -52,7 +52,7 @@ Status check_slices(const std::vector<DicomSlice>& slices, const fs::path& folde
                   where, kNameOneSeries);
     if (slice.samples_per_pixel != 1) return fail("is a colour image", where, "give a CT series or a mask series");
     if (!slice.position_P || !slice.directions_P || !slice.spacing_mm)
-      return fail("no place in the header (position, orientation or pixel spacing is missing)", where,
+      return fail("no position in the header (position, orientation or pixel spacing is missing)", where,
                   "export the series with its geometry");
     if (!is_alike(slices.front(), slice))
       return fail("the slices differ in size, spacing or direction", where, kNameOneSeries);
@@ -68,7 +68,7 @@ Status check_steps(const std::vector<DicomSlice>& slices, const Vec3& normal_P, 
   const double mean_mm = (along_mm(slices.size() - 1) - along_mm(0)) / static_cast<double>(slices.size() - 1);
   for (std::size_t n = 1; n < slices.size(); ++n)
     if (along_mm(n) - along_mm(n - 1) < kSamePlace_mm)
-      return fail(fmt::format("two slices lie in the same place: {} and {}", name(n - 1), name(n)), folder.string(),
+      return fail(fmt::format("two slices have the same position: {} and {}", name(n - 1), name(n)), folder.string(),
                   "give one time point of one series");
   const double allowed_mm = std::max(kMaxStepDeviation * mean_mm, kMaxStepDeviation_mm);
   for (std::size_t n = 1; n < slices.size(); ++n) {
@@ -89,8 +89,8 @@ Status check_steps(const std::vector<DicomSlice>& slices, const Vec3& normal_P, 
 Status check_tilt(const Vec3& stack_P, const Vec3& normal_P, const fs::path& folder) {
   const double tilt_deg = std::atan2(stack_P.cross(normal_P).norm(), stack_P.dot(normal_P)) * 180.0 / std::numbers::pi;
   if (tilt_deg <= kMaxTilt_deg) return {};
-  return fail(fmt::format("gantry tilt: the stack leans by {:.1f} degrees against the slices", tilt_deg),
-              folder.string(), "resample it onto a straight grid, for example with 3D Slicer");
+  return fail(fmt::format("gantry tilt: the slices are tilted by {:.1f} degrees", tilt_deg), folder.string(),
+              "resample it onto a straight grid, for example with 3D Slicer");
 }
 
 /// HU are of CTs. Other kinds that volumes in HU come as: cone-beam CT of a C-arm (XA), converted files (OT).

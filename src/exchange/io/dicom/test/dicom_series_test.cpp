@@ -71,7 +71,7 @@ TEST(DicomSeries, RefusesTwoSlicesInOnePlace) {
   auto slices = series(10, 2.0);
   slices.push_back(slices[4]);
   slices.back().file = "again";
-  EXPECT_NE(error_of(slices).find("same place: slice4 and again"), std::string::npos) << error_of(slices);
+  EXPECT_NE(error_of(slices).find("same position: slice4 and again"), std::string::npos) << error_of(slices);
 }
 
 TEST(DicomSeries, RefusesGantryTilt) {

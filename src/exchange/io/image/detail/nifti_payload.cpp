@@ -82,7 +82,7 @@ Status check_place(const NiftiHeader& header, const std::string& where) {
   const Mat3 axes = header.sform_axes();
   const Vec3 lengths = axes.colwise().norm().transpose();
   if (!axes.allFinite() || (lengths.array() <= 0.0).any())
-    return fail("the header's sform places no voxel", where, kExportAgain);
+    return fail("the header's sform gives no valid position", where, kExportAgain);
   volume::GridGeometry probe;
   probe.R_PV = axes * lengths.cwiseInverse().asDiagonal();
   if (auto status = tidy_geometry(probe); !status) return fail(status.error().what, where, status.error().advice);
@@ -112,7 +112,7 @@ Status check_finite(gzFile file, const NiftiHeader& header, std::uint64_t offset
     const std::span bytes(chunk.data(), static_cast<std::size_t>(got));
     if (!(header.bits_per_voxel() == 32 ? has_only_finite<float>(bytes, header.is_swapped())
                                         : has_only_finite<double>(bytes, header.is_swapped())))
-      return fail("the image has a voxel that is no number", where, "export it again without NaN");
+      return fail("the image contains a voxel that is not a number", where, "export it again without NaN");
   }
   return {};
 }

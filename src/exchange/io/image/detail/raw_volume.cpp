@@ -103,7 +103,7 @@ std::size_t bytes_per_voxel(VoxelType type) noexcept {
 
 Status tidy_geometry(volume::GridGeometry& geometry) {
   if (!geometry.spacing_mm.allFinite() || !geometry.origin_P.allFinite() || !geometry.R_PV.allFinite())
-    return fail("the image's place is no number", {}, "export it again");
+    return fail("the position of the image is not a number", {}, "export it again");
   if ((geometry.spacing_mm.array() <= 0.0).any())
     return fail("the voxel spacing is not above zero", {}, "export the image with its spacing");
   const Mat3 product = geometry.R_PV.transpose() * geometry.R_PV;
@@ -164,7 +164,8 @@ Status convert_voxels(const RawVoxels& in, std::span<std::int16_t> out) {
   });
   if (!bad) return {};
   if (!std::isfinite(*bad)) return fail("the image has a voxel that is no number", {}, "export it again without NaN");
-  return fail(fmt::format("the image has a value of {:g}, no HU of a CT", *bad), {}, "give a CT in Hounsfield units");
+  return fail(fmt::format("the image contains the value {:g}, which is not a valid HU", *bad), {},
+              "give a CT in Hounsfield units");
 }
 
 Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out) {
@@ -183,7 +184,7 @@ Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out) {
   if (const std::vector<int> above = labels_above_255(in, out.size()); !above.empty())
     return fail(fmt::format("the segmentation has label numbers above 255: {}", fmt::join(above, ", ")), {},
                 "give its structures numbers from 1 to 255");
-  return fail(fmt::format("the image has a value of {:g}, no label (whole numbers 0 to 255)", *bad), {},
+  return fail(fmt::format("the image contains the value {:g}, which is not a label (whole numbers 0 to 255)", *bad), {},
               "give a segmentation, not an image of intensities");
 }
 

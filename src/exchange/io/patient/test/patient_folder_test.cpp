@@ -131,7 +131,7 @@ TEST_F(PatientFolder, WithAnotherGridIsRefused) {
   volume::LabelGrid moved = patient_.labels;
   moved.geometry.origin_P.x() += 1.0;
   ASSERT_TRUE(write_image(moved, path_ / "labels.nrrd"));
-  EXPECT_NE(load_error().find("one grid"), std::string::npos) << load_error();
+  EXPECT_NE(load_error().find("the same grid"), std::string::npos) << load_error();
 }
 
 TEST_F(PatientFolder, WithChangedVoxelsIsRefused) {

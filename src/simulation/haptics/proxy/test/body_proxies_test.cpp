@@ -100,7 +100,8 @@ TEST(ShaftResistance, ReadsIntensitiesWhereNothingIsLabelled) {
   const haptics::ShaftResistance resistance = haptics::shaft_resistance(world.channel, *world.scene, 42.0);
   EXPECT_NEAR(resistance.dry_n, 0.004 * 2.0 + 0.006 * 40.0, 1e-12);
   const double r = world.scene->needle.radius_mm;
-  EXPECT_NEAR(resistance.viscous_ns_per_mm, 0.02 * haptics::contact_area_cm2(r, 2.0) + 0.02 * haptics::contact_area_cm2(r, 40.0), 1e-12);
+  EXPECT_NEAR(resistance.viscous_ns_per_mm,
+              0.02 * haptics::contact_area_cm2(r, 2.0) + 0.02 * haptics::contact_area_cm2(r, 40.0), 1e-12);
 }
 
 TEST(ShaftResistance, HasNoStepsAsTheNeedleSlides) {

@@ -8,7 +8,7 @@ namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr double kSlope_mm = 6.0;   ///< The skin's normal is that of a patch so large, not of a voxel.
-constexpr int kGasBelow_hu = -300;  ///< As in src/anatomy; gas in bowel is labelled bowel.
+constexpr int kGasBelow_hu = -300;  ///< As in src/patient/anatomy; gas in bowel is labelled bowel.
 constexpr double kFacingSlab_mm = 8.0;
 
 Vec3 voxel_place(const volume::GridGeometry& geometry, std::size_t n) {

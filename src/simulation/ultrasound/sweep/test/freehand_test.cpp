@@ -204,7 +204,7 @@ TEST(Freehand, SaysWhichTransformIsMissing) {
   options.reference_frame = "Bed";
   const auto volume = reconstruct_freehand(sequence, {}, options);
   ASSERT_FALSE(volume);
-  EXPECT_NE(volume.error().what.find("no way from Image to Bed: the transforms are ImageToReference"),
+  EXPECT_NE(volume.error().what.find("no transform from Image to Bed: known transforms are ImageToReference"),
             std::string::npos);
 }
 

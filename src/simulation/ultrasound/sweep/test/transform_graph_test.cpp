@@ -64,7 +64,8 @@ TEST(TransformGraph, SaysWhatIsMissing) {
   graph.add({{"ProbeToTracker", Matrix4::Identity()}, {"ReferenceToTracker", Matrix4::Identity()}});
   EXPECT_FALSE(graph.find("Image", "Reference"));
   EXPECT_EQ(graph.explain("Image", "Reference"),
-            "no way from Image to Reference: the transforms are ProbeToTracker, ReferenceToTracker; Image is joined to "
+            "no transform from Image to Reference: known transforms are ProbeToTracker, ReferenceToTracker; Image is "
+            "connected to "
             "none, Reference to Probe, Tracker");
 }
 

@@ -11,8 +11,8 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-// HU of what has no label, as src/anatomy finds them (adipose tissue up to -30 HU, doi 10.1038/s41598-025-96238-6,
-// table 1). A built patient has no such voxels; one that was made by hand may.
+// HU of what has no label, as src/patient/anatomy finds them (adipose tissue up to -30 HU,
+// doi 10.1038/s41598-025-96238-6, table 1). A built patient has no such voxels; one that was made by hand may.
 constexpr int kGasBelow_hu = -300;
 constexpr int kFatUpTo_hu = -30;
 constexpr int kBoneAbove_hu = 250;

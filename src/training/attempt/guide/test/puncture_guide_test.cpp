@@ -12,7 +12,7 @@ class PunctureGuide : public ::testing::Test {
   static void SetUpTestSuite() {
     auto patient = io::open_patient({"layers-liver", 1});
     ASSERT_TRUE(patient) << patient.error().text();
-    auto made = prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
+    auto made = cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
     ASSERT_TRUE(made) << made.error().text();
     the_case = *std::move(made);
   }
@@ -33,7 +33,7 @@ class PunctureGuide : public ::testing::Test {
   static bool says(const telemetry::TickSample& sample, const std::string& words) {
     return guide_puncture(the_case, sample).find(words) != std::string::npos;
   }
-  static inline Case the_case;
+  static inline cases::Case the_case;
 };
 
 TEST_F(PunctureGuide, SaysAdvanceOnThePathAndFireAtItsEnd) {
@@ -74,8 +74,7 @@ TEST_F(PunctureGuide, FollowingItsWordsBringsTheNeedleBack) {
 
   telemetry::TickSample inside = on_path(20.0);
   inside.tip_mm += 3.0 * headward();
-  EXPECT_TRUE(says(inside, "3.0 mm beside the path: tilt the tip towards the feet"))
-      << guide_puncture(the_case, inside);
+  EXPECT_TRUE(says(inside, "3.0 mm from the path: tilt the tip towards the feet")) << guide_puncture(the_case, inside);
 }
 
 TEST_F(PunctureGuide, WarnsOfBoneAheadBeforeAllElse) {

@@ -34,7 +34,7 @@ AttemptView aged(AttemptView view, double age_s) {
   const bool moves = view.phase == AttemptPhase::kReady || view.phase == AttemptPhase::kInBody;
   if (!moves || age_s < kFresh_s) return view;
   view.phase = AttemptPhase::kServerLost;
-  view.banner = "The puncture stands still: this machine is too busy";
+  view.banner = "The puncture is paused: this machine is too busy";
   view.hint.clear();
   return view;
 }
@@ -98,7 +98,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
     if (!(*server)->banner().empty()) view.banner = (*server)->banner();
   }
   if (view.banner.empty()) view.banner = disk_banner_;
-  if (is_stopped_ && view.banner.empty()) view.banner = "Forces are stopped. Resume to go on.";
+  if (is_stopped_ && view.banner.empty()) view.banner = "Forces are stopped. Resume to continue.";
   if (last_needle_) {
     if (live_) session_s_ = live_->active_s();
     if (contact_s_ && record_)
@@ -118,7 +118,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   AttemptNews& news = desk_.news;
   view.is_performing = view.is_performing || desk_.wishes.performer != nullptr;
   news.view = std::move(view);
-  news.told = std::chrono::steady_clock::now();
+  news.told = options_.clock->now();
   news.servers = servers_;
   if (news.forces.size() < kMostKept) news.forces.insert(news.forces.end(), forces.begin(), forces.end());
   if (news.events.size() < kMostKept) news.events.insert(news.events.end(), events_.begin(), events_.end());

@@ -40,12 +40,13 @@ DeviceHold device_hold(const std::string& device_spec) {
   return DeviceHold::kRealHand;
 }
 
-ToolServer::ToolServer(OwnServer& process, std::chrono::milliseconds patience, bool has_window)
-    : process_(&process),
+ToolServer::ToolServer(ServerHost& host, std::chrono::milliseconds patience, bool has_window, Clock& clock)
+    : host_(&host),
+      clock_(&clock),
       patience_(patience),
       has_window_(has_window),
-      is_real_hand_(device_hold(process.options().device) == DeviceHold::kRealHand),
-      tool_(process.options().tool) {
+      is_real_hand_(device_hold(host.device()) == DeviceHold::kRealHand),
+      tool_(host.tool()) {
   connect();
 }
 
@@ -57,15 +58,14 @@ void ToolServer::connect() {
   lost_device_.reset();
   before_.clear();
   link::ClientOptions options;
-  options.endpoint = process_->endpoint();
   options.name = "trocar station";
   options.has_window = has_window_;
-  Result<ServerSeat> seat = ServerSeat::connect(options, patience_);
-  if (!seat) {
-    give_up(seat.error());
+  Result<std::unique_ptr<ServerConnection>> connection = host_->connect(options);
+  if (!connection) {
+    give_up(connection.error());
     return;
   }
-  seat_.emplace(*std::move(seat));
+  seat_.emplace(*std::move(connection), host_->endpoint(), patience_, *clock_);
   if (!request_) return;
   request_->parameters = parameters();
   seat_->hold(*request_);
@@ -91,18 +91,20 @@ std::string ToolServer::give_up(Error why) {
 }
 
 std::string ToolServer::bring_back(const std::string& what, bool is_new_process) {
-  const auto now = Clock::now();
+  const auto now = clock_->now();
   while (!returns_.empty() && now - returns_.front() > 60s) returns_.pop_front();
   returns_.push_back(now);
   if (returns_.size() > kMostReturns) {
     return give_up(
-        {fmt::format("The server of the {} does not stay: {}. Resume to try again, or finish.", tool_, what), {}, {}});
+        {fmt::format("The {} server ends repeatedly: {}. Resume to try again, or end the attempt.", tool_, what),
+         {},
+         {}});
   }
   was_on_ = false;
-  interrupted_by_ = is_new_process ? what + " and was started again" : what;
-  banner_ = is_new_process ? fmt::format("{}. It is started again, and the forces come back where the {} is",
+  interrupted_by_ = is_new_process ? what + " and was restarted" : what;
+  banner_ = is_new_process ? fmt::format("{}. It is being restarted; the forces return with the {} at its last pose",
                                          sentence(what), tool_)
-                           : fmt::format("{}. The forces come back where the {} is", sentence(what), tool_);
+                           : fmt::format("{}. The forces return with the {} at its last pose", sentence(what), tool_);
   // Starting a process takes a while: the banner is to be seen before.
   is_restart_due_ = is_new_process;
   return is_new_process ? banner_ : seat_again(false);
@@ -112,7 +114,7 @@ std::string ToolServer::seat_again(bool is_new_process) {
   is_restart_due_ = false;
   ++restarts_;
   if (is_new_process) {
-    if (const Status started = process_->restart(); !started) {
+    if (const Status started = host_->restart(); !started) {
       return give_up(started.error());
     }
   }
@@ -129,10 +131,10 @@ bool ToolServer::is_device_lost() const {
 /// Until it is there again; forces stay off meanwhile, for the fault is latched.
 std::string ToolServer::open_device_again() {
   LostDevice& lost = *lost_device_;
-  const auto now = Clock::now();
+  const auto now = clock_->now();
   for (const link::Reply& reply : seat_->take_replies()) {
     if (reply.request != lost.asked) continue;
-    if (reply.is_done) return bring_back(fmt::format("the {} is there again", device_words()), false);
+    if (reply.is_done) return bring_back(fmt::format("the {} is connected again", device_words()), false);
     lost.asked.reset();
     lost.refused = now;
     if (!is_real_hand_) continue;
@@ -148,19 +150,19 @@ std::string ToolServer::look() {
   if (has_given_up_ || waits_for_resume_ || !seat_) return {};
   if (is_stopped_ && !was_on_) return {};  // seating it would turn forces on
   if (is_restart_due_) return seat_again(true);
-  if (const Status alive = process_->check(); !alive) {
+  if (const Status alive = host_->check(); !alive) {
     if (!was_ever_heard_) {
       // It cannot come up: a device that is not there, a wrong name.
       return give_up(alive.error());
     }
     if (!is_stopped_) return bring_back(alive.error().what, true);
     was_on_ = false;
-    banner_ = alive.error().what + "; it is started again when you resume";
+    banner_ = alive.error().what + "; it is restarted when you resume";
     return banner_;
   }
   const Result<State> state = seat_->look();
   was_ever_heard_ = was_ever_heard_ || seat_->view().welcome.session != 0;
-  if (seat_->view().is_connected || process_->is_held_up()) held_up_ = Clock::now();
+  if (seat_->view().is_connected || host_->is_held_up()) held_up_ = clock_->now();
   if (std::optional<std::string> refusal = seat_->take_refusal()) {
     settings_ = {};
     messages_.push_back(*std::move(refusal));
@@ -169,10 +171,10 @@ std::string ToolServer::look() {
   if (*state == State::kOn && !was_on_) {
     was_on_ = true;
     ++seatings_;
-    ticked_ = Clock::now();
+    ticked_ = clock_->now();
     banner_.clear();
     if (!interrupted_by_.empty())
-      recovery_ = fmt::format("{}. The forces are back and the puncture goes on", sentence(interrupted_by_));
+      recovery_ = fmt::format("{}. The forces are on again and the puncture continues", sentence(interrupted_by_));
     interrupted_by_.clear();
     const link::SetParameters now = parameters();  // set while the forces were coming on
     if (now.settings != seat_->adjusted().settings) before_[seat_->send(now)] = settings_;
@@ -180,9 +182,9 @@ std::string ToolServer::look() {
   if (was_on_ && *state != State::kOn) return note_interruption();
   if (!was_on_) return {};
   if (!seat_->view().is_connected) {
-    banner_ = fmt::format("The server of the {} does not answer. It is waited for", tool_);
-  } else if (Clock::now() - ticked_ > kFresh) {
-    banner_ = fmt::format("There is no news of the {}: this machine is too busy", tool_);
+    banner_ = fmt::format("The {} server does not respond. Waiting for it", tool_);
+  } else if (clock_->now() - ticked_ > kFresh) {
+    banner_ = fmt::format("No data from the {}: this machine is too busy", tool_);
   } else {
     banner_.clear();
   }
@@ -207,15 +209,15 @@ std::string ToolServer::note_interruption() {
   before_.clear();
   const bool is_stall = seat_->stalls() > stalls_;
   stalls_ = seat_->stalls();
-  const char* const what = is_stall ? "stood still: this machine is too busy" : "was away";
-  interrupted_by_ = fmt::format("the server of the {} {}", tool_, what);
-  if (is_stopped_) return banner_ = fmt::format("The server of the {} {}; resume when you are ready", tool_, what);
-  return banner_ = fmt::format("The server of the {} {}. Its forces come back where the {} is", tool_, what, tool_);
+  const char* const what = is_stall ? "stopped because this machine is too busy" : "was unavailable";
+  interrupted_by_ = fmt::format("the {} server {}", tool_, what);
+  if (is_stopped_) return banner_ = fmt::format("The {} server {}; resume when you are ready", tool_, what);
+  return banner_ = fmt::format("The {} server {}. The forces return with the {} at its last pose", tool_, what, tool_);
 }
 
 /// Whether a silent server only wants a processor.
 bool ToolServer::is_slow() const {
-  return Clock::now() - held_up_ < kAsleep &&
+  return clock_->now() - held_up_ < kAsleep &&
          seat_->view().silent_s < kMostPatience * std::chrono::duration<double>(patience_).count();
 }
 
@@ -225,9 +227,9 @@ std::string ToolServer::cannot_go_on(const Error& why) {
   if (is_device_lost() && !is_stopped_ && !is_real_hand_) {
     was_on_ = false;
     lost_device_.emplace();
-    return banner_ =
-               fmt::format("The {} is gone. Plug it in again and the puncture goes on where it is; or end the attempt.",
-                           device_words());
+    return banner_ = fmt::format(
+               "The {} is disconnected. Plug it in to continue the puncture at the present pose, or end the attempt.",
+               device_words());
   }
   if (is_stopped_ || (is_real_hand_ && is_heard)) {
     was_on_ = false;
@@ -236,12 +238,12 @@ std::string ToolServer::cannot_go_on(const Error& why) {
       const bool is_gone = seat_->view().status.fault == to_string(telemetry::GateFault::kDeviceLost);
       return banner_ = fmt::format("{}, which moves the {}, {}, then resume the forces (Space).", device_words(),
                                    tool_ == "probe" ? "transducer" : tool_,
-                                   is_gone ? "is gone. Plug it in again" : "is silent. Look after its cable");
+                                   is_gone ? "is disconnected. Plug it in again" : "sends no data. Check its cable");
     }
     return banner_ = why.what + "; resume when you are ready";
   }
   if (!is_heard && is_slow()) {
-    banner_ = fmt::format("The server of the {} does not answer: it gets no processor. It is waited for", tool_);
+    banner_ = fmt::format("The {} server does not respond because it gets no processor time. Waiting for it", tool_);
     return {};
   }
   // A server that answers has a fault, which the next seat resets; one that does not is ended.
@@ -250,7 +252,7 @@ std::string ToolServer::cannot_go_on(const Error& why) {
 
 bool ToolServer::is_on() const noexcept {
   return seat_ && was_on_ && !has_given_up_ && seat_->state() == State::kOn && seat_->view().is_connected &&
-         Clock::now() - ticked_ < kFresh;
+         clock_->now() - ticked_ < kFresh;
 }
 
 std::string ToolServer::doing() const {
@@ -267,13 +269,13 @@ std::string ToolServer::doing() const {
     case State::kOn:
       break;
   }
-  return fmt::format("turning on the forces of the {}", tool_);
+  return fmt::format("switching on the forces of the {}", tool_);
 }
 
 std::vector<link::NumberedSample> ToolServer::take_samples() {
   if (!seat_ || !was_on_) return {};
   std::vector<link::NumberedSample> samples = seat_->take_samples();
-  if (!samples.empty()) ticked_ = Clock::now();
+  if (!samples.empty()) ticked_ = clock_->now();
   return samples;
 }
 
@@ -317,7 +319,7 @@ void ToolServer::resume_forces() {
   is_stopped_ = false;
   waits_for_resume_ = false;
   if (has_given_up_) returns_.clear();
-  const Status alive = process_->check();
+  const Status alive = host_->check();
   const bool is_alive = alive.has_value();
   if (is_on() && is_alive) {
     seat_->send(link::ServerCommand::kStart);
@@ -357,7 +359,7 @@ ServerView ToolServer::view() const {
   const link::ServerStatus& status = client_view.status;
   ServerView view;
   view.tool = tool_;
-  view.pid = process_->pid();
+  view.pid = host_->pid();
   view.is_connected = client_view.is_connected;
   view.is_on = is_on() && !is_stopped_;
   view.device = client_view.welcome.device.name;
