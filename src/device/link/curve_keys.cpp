@@ -27,7 +27,7 @@ constexpr mode_t kOthersMayWrite = 0022;
 constexpr std::string_view kPublicWord = "public";
 constexpr std::string_view kSecretWord = "secret";
 
-using KeyBuffer = std::array<char, kKeyCharacters + 1>;  ///< As libzmq wants it: with a NUL at the end.
+using KeyBuffer = std::array<char, kKeyCharacters + 1>;  ///< As required by libzmq: with a NUL at the end.
 
 bool is_key(const std::string& text) {
   std::array<std::uint8_t, kKeyBytes> bytes;
@@ -40,8 +40,8 @@ struct Words {
   bool has_more = false;
 };
 
-/// A word that begins with # begins a comment. No key does: # is in Z85's alphabet, but five characters from it on are
-/// more than 32 bits.
+/// A word that begins with # starts a comment. No key does: # is in Z85's alphabet, but five characters from it on
+/// exceed 32 bits.
 Words split(const std::string& line) {
   std::istringstream stream(line);
   Words words;
@@ -58,7 +58,7 @@ Words split(const std::string& line) {
   return words;
 }
 
-/// Calls `take` with the words and the number of every line that has some, until it says that one is wrong.
+/// Calls `take` with the words and the number of every non-empty line, until it reports an error.
 template <class Take>
 Status read_lines(const fs::path& file, std::size_t most_bytes, Take&& take) {
   TROCAR_TRY(const std::string text, read_file(file, most_bytes));
@@ -94,7 +94,7 @@ Status check_for_user_alone(const fs::path& file) {
               fmt::format("chmod 600 {}, or make new keys", file.string()));
 }
 
-/// Who can write to such a file decides whom this program trusts.
+/// Users who can write to such a file decide which keys this program trusts.
 Status check_written_by_user_alone(const fs::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return fail("no such file", file.string(), "check the path");
@@ -105,7 +105,7 @@ Status check_written_by_user_alone(const fs::path& file) {
   return fail("the key file belongs to another user", file.string(), "copy it: cp FILE COPY");
 }
 
-/// A new file that nobody else could read at any time.
+/// A new file that is never readable by other users.
 Status write_secret(const fs::path& file, std::string_view text) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUserMayReadAndWrite);
   if (descriptor < 0)

@@ -23,7 +23,7 @@ constexpr std::string_view kIpc = "ipc://";
 constexpr std::string_view kTcp = "tcp://";
 constexpr std::string_view kAdvice = "write ipc:///PATH, or tcp://ADDRESS:PORT as in tcp://127.0.0.1:5571";
 
-/// A whole number of 0 to `most`, in digits alone.
+/// An integer of 0 to `most`, digits only.
 std::optional<unsigned> parse_number(std::string_view digits, unsigned most) {
   unsigned value = 0;
   const char* const end = digits.data() + digits.size();
@@ -53,7 +53,7 @@ Result<Endpoint> parse_tcp(std::string_view address) {
   if (!port)
     return fail_usage(fmt::format("the port is not a number of 0 to {}", kMostPort), where,
                       "write it as tcp://127.0.0.1:5571");
-  if (host == "localhost") host = "127.0.0.1";  // sockets are not bound to names
+  if (host == "localhost") host = "127.0.0.1";  // sockets cannot be bound to names
   const auto parsed = detail::parse_tcp_address(host, *port);
   if (!parsed) {
     return fail_usage("not an IP address (names are not looked up)", where,

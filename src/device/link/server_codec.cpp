@@ -1,4 +1,4 @@
-// The server's half of codec.h: what servers say.
+// The server's half of codec.h: server messages.
 #include "core/check.h"
 #include "link/codec.h"
 #include "link/detail/frame.h"
@@ -9,8 +9,8 @@ namespace trocar::link {
 namespace {
 using namespace detail;
 
-constexpr int kMostDof = 7;                        ///< Six and a grip.
-constexpr std::size_t kBytesBeforeSamples = 2048;  ///< A batch's frame and status: first size of a builder.
+constexpr int kMostDof = 7;                        ///< Six numbers and a grip.
+constexpr std::size_t kBytesBeforeSamples = 2048;  ///< Frame and status of a batch: initial size of a builder.
 
 // To bytes.
 
@@ -72,7 +72,7 @@ ServerMember build_body(Builder& b, const Refusal& refusal) {
   return {wire::ServerBody::Refusal, wire::CreateRefusal(b, text).Union()};
 }
 
-/// What the builder will need, so that it allocates once.
+/// Size of the builder, so that it allocates once.
 std::size_t expected_bytes(const ServerMessage& message) {
   const auto* batch = std::get_if<StateBatch>(&message.body);
   return kBytesBeforeSamples + (batch == nullptr ? 0 : batch->samples.size() * sizeof(wire::Sample));
@@ -140,9 +140,9 @@ ServerStatus read(const wire::ServerStatus& table, Inspection& in) {
 
 void read_samples(const flatbuffers::Vector<const wire::Sample*>& samples, Inspection& in,
                   std::vector<telemetry::TickSample>& result) {
-  if (samples.size() == 0) return;  // FlatBuffers aligns only vectors with something in them
+  if (samples.size() == 0) return;  // FlatBuffers aligns only non-empty vectors
   if (samples.size() > kMostSamples) return in.refuse("more ticks than a batch may have", "samples");
-  // FlatBuffers verifies that a vector of structs lies within the message, but not that it is aligned.
+  // FlatBuffers verifies that a vector of structs is within the message, but not its alignment.
   if (reinterpret_cast<std::uintptr_t>(samples.Data()) % alignof(wire::Sample) != 0) {
     return in.refuse("misaligned ticks", "samples");
   }
@@ -192,7 +192,7 @@ ServerBody read(const wire::ServerMessage& table, Inspection& in) {
 
 Bytes encode(const ServerMessage& message) {
   Builder b(expected_bytes(message));
-  b.ForceDefaults(true);  // else a zero is not sent, and -0.0 is taken for one
+  b.ForceDefaults(true);  // otherwise zeros are omitted, and -0.0 counts as zero
   const auto [type, body] = std::visit([&](const auto& alternative) { return build_body(b, alternative); },  //
                                        message.body);
   b.Finish(wire::CreateServerMessage(b, kLinkVersion, message.session, message.sequence, type, body),

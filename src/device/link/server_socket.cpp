@@ -20,12 +20,12 @@ using detail::ServerConnections;
 using detail::Verdict;
 using Event = detail::ZmtpConnection::Event;
 
-/// A peer is forgotten when it was silent for so long [assumed: far above what a suspended client needs].
+/// A client is removed after this time without a message [assumed: far longer than a suspended client needs].
 constexpr double kForgotten_s = 10.0;
-/// Bad messages that one receive() drops before it gives its caller the turn [assumed].
+/// Limit of invalid messages that one receive() drops before it returns [assumed].
 constexpr int kMostDroppedAtOnce = 64;
 
-/// Not to be guessed, and never 0.
+/// Unpredictable, and never 0.
 std::uint64_t make_session() {
   std::uint64_t session = 0;
   while (session == 0) {
@@ -76,7 +76,7 @@ std::optional<Received> ServerSocket::receive(int wait_ms, const Welcome& welcom
   constexpr std::int64_t kNsPerMs = 1'000'000;
   const std::int64_t begin_ns = realtime::now_ns();
   for (int dropped = 0; dropped < kMostDroppedAtOnce;) {
-    // The caller's time is of before the wait.
+    // now_s is the time before the wait.
     const double heard_s = now_s + realtime::seconds(realtime::now_ns() - begin_ns);
     const auto incoming = impl_->connections.next(heard_s);
     if (!incoming) {
@@ -139,7 +139,7 @@ std::optional<Received> ServerSocket::Impl::take(const ServerConnections::Incomi
   return received;
 }
 
-/// A message that cannot be decoded: a command of a known peer gets its reply, all else a refusal.
+/// Handles a message that cannot be decoded: a command of a known client gets a reply, everything else a refusal.
 void ServerSocket::Impl::explain(const ServerConnections::Incoming& incoming, const Error& error, double now_s) {
   connections.report(fmt::format("a message was refused: {}", error.text()), now_s);
   Peer* peer = peers.find(incoming.routing_id);
@@ -162,7 +162,7 @@ void ServerSocket::Impl::refuse(std::string_view routing_id, std::string text, d
   }
 }
 
-/// Tells a peer who it is, and whether it has control.
+/// Sends a client its session, and whether it has control.
 void ServerSocket::Impl::greet(Peer& peer, const Welcome& welcome) {
   Welcome mine = welcome;
   mine.session = peer.session;
@@ -171,7 +171,7 @@ void ServerSocket::Impl::greet(Peer& peer, const Welcome& welcome) {
   if (send(peer, message)) peer.was_told_control = peers.has_control(peer);
 }
 
-/// Watchers may not move anything.
+/// Clients without control may not move anything.
 bool ServerSocket::Impl::is_permitted(Peer& peer, const ClientBody& body) {
   const auto* command = std::get_if<Command>(&body);
   if (command == nullptr && !std::holds_alternative<HandTarget>(body)) return true;
@@ -184,7 +184,8 @@ bool ServerSocket::Impl::is_permitted(Peer& peer, const ClientBody& body) {
   return false;
 }
 
-/// Gives the message the peer's session and next number. False: the peer takes no more, or is not there.
+/// Sends the message with the client's session and next number. Returns false if the client is gone or accepts no more
+/// messages.
 bool ServerSocket::Impl::send(Peer& peer, ServerMessage& message) {
   message.session = peer.session;
   message.sequence = peer.last_sent + 1;

@@ -13,9 +13,9 @@
 namespace trocar::server {
 namespace {
 
-constexpr std::chrono::milliseconds kPausePatience{2000};  // the forces fade first, in 0.2 s
+constexpr std::chrono::milliseconds kPausePatience{2000};  // the forces fade first, for 0.2 s
 
-/// Has the real-time thread fade the forces and leave the device alone while it lives.
+/// While it exists, the real-time thread has faded the forces and does not access the device.
 class DevicePause {
  public:
   explicit DevicePause(Shared& shared) : shared_(shared), ticket_(shared.loan.ask()) {

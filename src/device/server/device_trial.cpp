@@ -10,9 +10,9 @@
 namespace trocar::server {
 namespace {
 
-constexpr double kMostPush_n = 1.0;   ///< A hand notices it and is not pushed away. [assumed]
-constexpr double kShare = 0.6;        ///< Of the continuous force. [assumed]
-constexpr double kShownPush_n = 3.0;  ///< Of a gamepad, half of its rumble.
+constexpr double kMostPush_n = 1.0;   ///< Noticeable, but does not push the hand away. [assumed]
+constexpr double kShare = 0.6;        ///< Share of the continuous force. [assumed]
+constexpr double kShownPush_n = 3.0;  ///< For a gamepad, half of its rumble.
 
 haptics::GateParams trial_gate(const haptics::DevicePreset& preset, double rate_hz) noexcept {
   haptics::GateParams params = haptics::gate_params(preset);

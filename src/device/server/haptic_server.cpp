@@ -17,7 +17,7 @@ namespace trocar::server {
 namespace {
 
 constexpr double kNsPerS = 1e9;
-constexpr std::chrono::milliseconds kLoadPatience{300};  ///< At the end of the server, for a step of loading.
+constexpr std::chrono::milliseconds kLoadPatience{300};  ///< Wait for a step of loading at the end of the server.
 
 link::Welcome make_welcome(const devices::HapticDevice& device, const std::string& tool, double force_scale) {
   const haptics::DevicePreset& preset = device.preset();
@@ -59,7 +59,7 @@ struct HapticServer::Impl {
     if (control_thread.joinable()) control_thread.join();
   }
 
-  /// After an error the destructor ends those threads that have started.
+  /// After an error, the destructor ends the threads that have started.
   Status start_threads(const ThreadStarter& starter, int priority) {
     TROCAR_TRY(control_thread, starter("control", [this] {
                  control.run();
@@ -70,7 +70,7 @@ struct HapticServer::Impl {
     return {};
   }
 
-  /// False: the control thread still runs after kLoadPatience.
+  /// Returns false if the control thread still runs after kLoadPatience.
   bool wait_for_control() {
     if (!control_thread.joinable()) return true;
     if (control_end.get_future().wait_for(kLoadPatience) != std::future_status::ready) return false;
@@ -89,7 +89,7 @@ struct HapticServer::Impl {
     if (link_thread.joinable()) link_thread.join();
     shared.door.close();
     const bool has_ended = wait_for_control();
-    // Loading a scene does not touch the device; opening it anew does.
+    // Loading a scene does not access the device; reopening it does.
     const bool is_loading = !has_ended && shared.door.status().loading > 0.0;
     if (is_loading) {
       last_chance.reset();

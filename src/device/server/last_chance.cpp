@@ -11,12 +11,12 @@ namespace {
 
 constexpr std::array kSignals{SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGXCPU};
 constexpr std::size_t kMostDevices = 8;
-/// A device's own thread sends what was written within this time. [assumed: ten periods of 1 kHz]
+/// The device's own thread sends a written wrench within this time. [assumed: ten periods of 1 kHz]
 constexpr int kSent_ms = 10;
-/// The process ends after it whatever a device's write() does.
+/// Time after which the process ends, even if a device's write() blocks.
 constexpr unsigned kLongest_s = 1;
 
-// A signal handler has no other way to its data.
+// A signal handler can access data only through a global.
 std::array<std::atomic<LastChance*>, kMostDevices> devices{};
 std::atomic<pid_t> crashed_thread{0};
 

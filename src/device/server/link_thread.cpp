@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kBatch_s = 0.005;
 constexpr double kStatus_s = 0.05;
-constexpr std::size_t kSendAt = 128;  // samples: a batch is sent before its time
+constexpr std::size_t kSendAt = 128;  // samples from which a batch is sent early
 constexpr int kWait_ms = 1;
-constexpr int kMostMessagesARound = 64;    // between two looks at the ring of records
-constexpr double kLongestRound_s = 0.003;  // the same, beside one message's own time
-constexpr double kStalled_s = 1.0;         // a window without a picture for so long is told of
+constexpr int kMostMessagesARound = 64;    // between two reads of the ring of records
+constexpr double kLongestRound_s = 0.003;  // the same, plus the time of one message
+constexpr double kStalled_s = 1.0;         // age of the window's last frame that causes a warning
 
 }  // namespace
 
@@ -52,7 +52,7 @@ void LinkThread::run() {
   flush();
 }
 
-/// Bounded in messages and in time: batches go out whatever clients send.
+/// Limited in messages and time, so that batches are sent under any load from clients.
 void LinkThread::receive_round() {
   const double begin_s = realtime::seconds(realtime::now_ns());
   double now_s = begin_s;
@@ -67,7 +67,7 @@ void LinkThread::receive_round() {
 void LinkThread::drain() {
   ServoRecord record;
   while (shared_.records.pop(record)) {
-    // A gap ends a batch, because its ticks are numbered from the first; so does another scene.
+    // A gap or a new scene ends a batch, because its ticks are numbered from the first.
     const bool is_next = record.tick == batch_.first_tick + batch_.samples.size() && record.scene == batch_.scene;
     if (!batch_.samples.empty() && !is_next) flush();
     if (batch_.samples.empty()) batch_.first_tick = record.tick;
@@ -104,7 +104,7 @@ void LinkThread::take(const link::Received& received) {
   } else if (const auto* target = std::get_if<link::HandTarget>(&received.body)) {
     shared_.hand.write(*target);
   }
-  // Another client took over, or the one in control said goodbye: forces wait to be asked for again.
+  // Another client has control, or the controlling client said goodbye: forces must be requested again.
   const bool has_left = received.session == in_control_ && !received.has_control;
   const bool is_another = received.has_control && received.session != in_control_;
   if (!has_left && !is_another) return;

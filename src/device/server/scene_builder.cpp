@@ -12,7 +12,7 @@
 namespace trocar::server {
 namespace {
 
-/// "NAME=VALUE" in two.
+/// Splits "NAME=VALUE".
 struct Setting {
   std::string_view name, value;
 };
@@ -38,7 +38,7 @@ haptics::NeedleGeometry needle_of(const link::LoadScene& request) noexcept {
   return needle;
 }
 
-/// Of a scene's option; nothing where the text is not one of them.
+/// Tissue options of a scene; empty if the text is not valid.
 Result<bool> apply_option(std::string_view text, haptics::HapticOptions& options) {
   const std::size_t at = text.find('=');
   const Setting setting{text.substr(0, at), at == std::string_view::npos ? "" : text.substr(at + 1)};
@@ -57,7 +57,7 @@ Result<bool> apply_option(std::string_view text, haptics::HapticOptions& options
   return true;
 }
 
-/// Memory may run out in any step: the scene is refused, and the loop with the last one goes on.
+/// Any step can run out of memory: then the scene is refused, and the loop continues with the last one.
 template <class Step>
 Result<ServoScene> with_memory_checked(const std::string& patient, const Step& step) {
   try {
@@ -81,7 +81,7 @@ Result<std::shared_ptr<const anatomy::VirtualPatient>> SceneBuilder::patient_for
     TROCAR_TRY(patient, open_patient_(request.patient, request.patient_seed, progress));
   }
   if (!request.patient_hash.empty() && patient->content_hash != request.patient_hash) {
-    if (is_known) {  // a folder may have been built anew meanwhile
+    if (is_known) {  // the folder may have been rebuilt
       TROCAR_TRY(patient, open_patient_(request.patient, request.patient_seed, progress));
     }
     if (patient->content_hash != request.patient_hash)
@@ -101,7 +101,7 @@ Result<SceneBuilder::Parts> SceneBuilder::parts_for(const link::LoadScene& reque
   parts.tissues = parts.loaded;
   haptics::apply_device_preset(device_, parts.options);
   parts.options.coupling =
-      haptics::within(parts.options.coupling, haptics::limits_of(device_));  // its scales may want a softer one
+      haptics::within(parts.options.coupling, haptics::limits_of(device_));  // its scales may require a softer coupling
   TROCAR_TRY(parts.options.tool, haptics::parse_tool(request.tool));
   TROCAR_TRY(parts.options.force_model, haptics::parse_force_model(request.force_model));
   parts.options.seed = request.seed;
@@ -112,7 +112,7 @@ Result<ServoScene> SceneBuilder::build(const link::LoadScene& request,
                                        std::shared_ptr<const anatomy::VirtualPatient> patient, Parts parts,
                                        bool continues) {
   haptics::HapticOptions options = parts.options;
-  // The tick works in the patient's newtons and mm; the gate holds the device's own limits, after the scales.
+  // The tick uses patient newtons and mm; the gate applies the device's own limits, after the scales.
   const haptics::DeviceCapability capability = haptics::scene_capability(device_);
   const double stiffest = capability.max_stiffness_n_per_mm;
   TROCAR_TRY_STATUS(check(options.coupling, haptics::limits_of(device_)));

@@ -9,7 +9,7 @@
 namespace trocar::server {
 namespace {
 
-/// Which event tells that the gate began to act.
+/// Event that reports a stage of the gate.
 struct GateEvent {
   std::uint16_t action;
   telemetry::LimitReason reason;
@@ -24,7 +24,7 @@ constexpr std::array kGateEvents{
     GateEvent{haptics::kGateSlew, telemetry::LimitReason::kSlew},
 };
 
-/// Into the first free place; an event too many is left out: `limited` says it anyway.
+/// Adds an event in the first free entry; if there is none, the event is dropped: `limited` is still set.
 void add_event(telemetry::TickSample& sample, telemetry::LimitReason reason) noexcept {
   for (telemetry::TickEvent& event : sample.events) {
     if (event.kind != telemetry::EventKind::kNone) continue;
@@ -33,7 +33,7 @@ void add_event(telemetry::TickSample& sample, telemetry::LimitReason reason) noe
   }
 }
 
-/// From S to where the needle goes through the skin, in the room; none outside the body.
+/// Vector from S to the needle's entry point on the skin, in the room; empty outside the body.
 std::optional<Vec3> to_entry_W(const haptics::HapticState& state, const haptics::HapticScene& scene,
                                const Pose& X_WS) noexcept {
   if (scene.options.tool != haptics::Tool::kNeedle || !state.needle.path.is_open) return std::nullopt;
@@ -42,7 +42,7 @@ std::optional<Vec3> to_entry_W(const haptics::HapticState& state, const haptics:
 
 }  // namespace
 
-/// The spring and damper that the device feels: none where it feels no force.
+/// Spring and damper at the device; zero if it has no force.
 haptics::CouplingParams Servo::coupling_in_device(const ServoScene* scene) const noexcept {
   if (scene == nullptr || !device_.preset().has_force()) return {0.0, 0.0};
   const double scale = params_.workspace.force_scale * params_.workspace.motion_scale;
@@ -67,7 +67,7 @@ Servo::Servo(devices::HapticDevice& device, const ServoParams& params) noexcept
       senses_rotation_(device.preset().sensed_dof == 6),
       is_watched_(device.preset().has_force() && device.is_in_real_hand()) {
   workspace_.X_WD_now = params.workspace.X_WD;
-  R_WS_told_ = rotation_between(Vec3::UnitZ(), -Vec3::UnitZ());  // the tool hangs down until somebody says otherwise
+  R_WS_told_ = rotation_between(Vec3::UnitZ(), -Vec3::UnitZ());  // the tool points down until an orientation is set
 }
 
 telemetry::GateFault Servo::watch_encoder(const devices::DeviceReading& reading, double dt_s) noexcept {
@@ -150,7 +150,7 @@ Servo::Wanted Servo::feel(const Sensed& sensed, const ServoInput& input, telemet
     tissue_W = devices::without_torque(tissue_W, axis_W, to_entry_W(tick_, scene, X_WS));
   }
   wanted.wrench_D = devices::map_to_device(workspace_, params_.workspace, tissue_W);
-  // The weight is carried while the clutch is pressed, too.
+  // The weight is also compensated while the clutch is pressed.
   const Mat3 R_DW = params_.workspace.force_scale * workspace_.X_WD_now.R().transpose();
   wanted.weight_D = {R_DW * output.weight_D.force_n, R_DW * output.weight_D.torque_nmm};
   wanted.axis_D = workspace_.X_WD_now.R().transpose() * axis_W;
@@ -202,7 +202,7 @@ ServoRecord Servo::step(const ServoInput& input) noexcept {
   }
 
   const Sensed sensed = sense(input);
-  if (was_placed_) begin_anew();  // where it was before is no part of its way, and makes no channel
+  if (was_placed_) begin_anew();  // a placed tool has no path from its former pose and creates no channel
   was_placed_ = input.hand && input.hand->is_placed;
   if (input.hand && input.scene != nullptr) {
     const haptics::HapticScene& scene = *input.scene->scene;

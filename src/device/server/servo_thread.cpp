@@ -6,9 +6,9 @@
 namespace trocar::server {
 namespace {
 
-constexpr double kStatistics_s = 0.05;  // between two copies of the statistics
+constexpr double kStatistics_s = 0.05;  // interval of copying the statistics
 
-/// What commands have changed so far.
+/// State set by the commands so far.
 struct Switches {
   bool is_wanted = false;
   bool is_stylet_in = true;
@@ -39,7 +39,7 @@ void obey(Shared& shared, Switches& switches, realtime::LoopStatistics& statisti
       case link::ServerCommand::kRestartStatistics:
         statistics = realtime::LoopStatistics(shared.period_ns);
         break;
-      case link::ServerCommand::kReconnect:  // the control thread's
+      case link::ServerCommand::kReconnect:  // handled by the control thread
         break;
     }
   }
@@ -65,7 +65,7 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
         if (request.is_open && (is_lent || !servo.gives_force())) {
           is_lent = true;
           shared.loan.lend(request);
-          return;  // commands wait: a reset must not get lost
+          return;  // commands are waiting: a reset must not be lost
         }
         if (std::exchange(is_lent, false)) {
           servo.resume();
@@ -84,7 +84,7 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
         if (shared.hand.update()) input.hand = shared.hand.value();
         const std::int64_t heard_ns = shared.heard_ns.load(std::memory_order_relaxed);
         input.silence_s = heard_ns == 0 ? kNeverHeard_s : realtime::seconds(period.begin_ns - heard_ns);
-        input.is_wanted = switches.is_wanted && !request.is_open;  // asked for: faded before it is lent
+        input.is_wanted = switches.is_wanted && !request.is_open;  // on request: forces fade before the device is lent
         input.is_stylet_in = switches.is_stylet_in;
         input.is_reset = switches.is_reset;
         input.busy_s = realtime::seconds(busy_ns);

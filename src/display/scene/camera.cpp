@@ -9,11 +9,11 @@ namespace {
 constexpr double kMargin = 1.05;
 constexpr double kNearest_mm = 20.0;
 constexpr double kFarthest_mm = 5000.0;
-/// Least angle between the line of sight and the head-feet axis while a hand turns the view.
+/// Minimum angle between the view direction and the head-feet axis during rotation by hand.
 constexpr double kPoleGap_rad = 0.03;
 constexpr double kSideDistance_mm = 320.0;
 constexpr double kBeforeTip_mm = 30.0;
-/// The eye stands where the shaft begins and a little beside it, or the hub would hide all else.
+/// The camera is at the start of the shaft with a small offset, as the hub would otherwise hide everything.
 constexpr double kBesideShaft_mm = 14.0;
 
 /// Unit vectors from the patient to the camera and upward, in P (x left, y back, z head).
@@ -40,7 +40,8 @@ Direction direction_of(CameraPreset preset) {
   return {{0, -1, 0}, {0, 0, 1}};
 }
 
-/// The part of `v` square to the unit vector `axis`, as a unit vector; any such where there is none.
+/// The component of `v` perpendicular to the unit vector `axis`, normalised; an arbitrary perpendicular vector if it is
+/// zero.
 Vec3 square_to(const Vec3& v, const Vec3& axis) {
   const Vec3 part = v - v.dot(axis) * axis;
   return part.norm() > 1e-6 ? part.normalized() : axis.unitOrthogonal();
@@ -87,7 +88,7 @@ CameraView orbited(const CameraView& view, double right_rad, double up_rad) noex
   CameraView turned = view;
   const Vec3 back_P = -view.forward_P();
   const double from_pole_rad = std::acos(std::clamp(back_P.dot(head_P), -1.0, 1.0));
-  // Dragging upward lifts the patient's front: the eye goes towards the feet.
+  // Dragging upward raises the patient's front: the camera moves towards the feet.
   const double new_from_pole_rad =
       std::clamp(from_pole_rad + up_rad, kPoleGap_rad, std::numbers::pi - kPoleGap_rad) - from_pole_rad;
   const Vec3 right_P = view.right_P();
@@ -135,7 +136,7 @@ CameraView following(const CameraView& view, FollowMode mode, const Segment& nee
       return next;
     }
     case FollowMode::kSide: {
-      // From the patient's feet where that is square to the shaft: the picture then stands as an axial CT slice does.
+      // From the patient's feet, perpendicular to the shaft: the view then corresponds to an axial CT slice.
       const Vec3 back_P = square_to(std::abs(axis_P.z()) < 0.95 ? Vec3(0, 0, -1) : Vec3(-1, 0, 0), axis_P);
       const double distance_mm = is_new ? kSideDistance_mm : view.distance_mm();
       next.focus_P = tip_P;

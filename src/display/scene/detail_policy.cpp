@@ -5,9 +5,9 @@
 namespace trocar::scene {
 namespace {
 
-/// One slow frame may be another program's doing; the second is a reason.
+/// A single slow frame can be caused by another program; the second one counts.
 constexpr int kSlowFrames = 2;
-/// So much above the target a single frame is enough.
+/// Factor above the target at which a single frame counts.
 constexpr double kMuchTooSlow = 2.5;
 
 }  // namespace

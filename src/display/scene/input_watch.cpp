@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-// Xlib's macros (Status, None, Bool) spoil other headers: it comes last.
+// Xlib's macros (Status, None, Bool) conflict with other headers: it comes last.
 #include <X11/Xlib.h>
 
 namespace trocar::scene {

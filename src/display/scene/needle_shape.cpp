@@ -23,11 +23,11 @@ constexpr volume::Rgb kHandleGrey = {120, 130, 142};
 constexpr volume::Rgb kWhite = {232, 236, 240};
 constexpr int kSides = 16;
 
-/// How a needle ends; lengths in shaft diameters.
+/// Shape of a needle's tip; lengths in shaft diameters.
 struct Tip {
-  double bevel = 0.0;     ///< Length of the slanted face.
+  double bevel = 0.0;     ///< Length of the bevel face.
   double curve = 0.0;     ///< Sideways bend of the end (Tuohy).
-  bool is_point = false;  ///< Runs out to a three-sided point instead.
+  bool is_point = false;  ///< A three-sided point instead.
 };
 
 Tip tip_of(NeedleModel model) {
@@ -46,7 +46,7 @@ Tip tip_of(NeedleModel model) {
   return {};
 }
 
-/// The frames along a line: z forward, turned as little as may be from one point to the next.
+/// Frames along a line: z forward, with minimal rotation between points.
 std::vector<Pose> frames_along(std::span<const Vec3> line) {
   std::vector<Pose> frames;
   Mat3 R = Mat3::Identity();
@@ -70,7 +70,7 @@ std::vector<Vec3> circle(const Pose& X_AL, double radius_mm, int sides) {
   return points;
 }
 
-/// As many points as of a circle on a triangle with corners at `radius_mm`.
+/// Points on a triangle with corners at `radius_mm`, as many as on a circle.
 std::vector<Vec3> triangle(const Pose& X_AL, double radius_mm, int sides) {
   constexpr double kCorner_rad = 2.0 * std::numbers::pi / 3.0;
   std::vector<Vec3> points;
@@ -83,7 +83,7 @@ std::vector<Vec3> triangle(const Pose& X_AL, double radius_mm, int sides) {
   return points;
 }
 
-/// The shaft, its last ring cut to the tip's shape: the bevel's longest point lies at the line's end.
+/// The shaft, with its last ring cut to the shape of the tip: the longest point of the bevel is at the end of the line.
 TriangleMesh make_shaft(std::span<const Vec3> line, double diameter_mm, const Tip& tip) {
   const double radius_mm = 0.5 * diameter_mm;
   const std::vector<Pose> frames = frames_along(line);
@@ -104,7 +104,7 @@ TriangleMesh make_shaft(std::span<const Vec3> line, double diameter_mm, const Ti
   std::vector<Vec3> cut;
   for (int s = 0; s < kSides; ++s) {
     const double angle = 2.0 * std::numbers::pi * s / kSides;
-    const double back_mm = 0.5 * length_mm * (1.0 + std::sin(angle));  // the face looks along +y
+    const double back_mm = 0.5 * length_mm * (1.0 + std::sin(angle));  // the face points along +y
     const double share = 1.0 - back_mm / std::max(length_mm, 1e-9);
     cut.push_back(X_AEnd *
                   (Vec3(radius_mm * std::cos(angle), radius_mm * std::sin(angle), -back_mm) + share * share * lift));
@@ -142,7 +142,7 @@ void add_depth_marks(std::vector<ShapePart>& parts, std::span<const Vec3> line, 
   }
 }
 
-/// Hubs are built on the pose of the shaft's first point: z towards the tip, so that they lie at negative z.
+/// Hubs are built at the pose of the shaft's first point: z towards the tip, so that they are at negative z.
 void add_hub(std::vector<ShapePart>& parts, const Pose& X_AH, NeedleModel model, double diameter_mm) {
   switch (model) {
     case NeedleModel::kChiba:
@@ -177,7 +177,7 @@ void add_hub(std::vector<ShapePart>& parts, const Pose& X_AH, NeedleModel model,
   }
 }
 
-/// The notch of a biopsy stylet: a dark flat bed that shows on the bevel's side, behind the tip.
+/// The notch of a biopsy stylet: a dark flat surface on the bevel's side, behind the tip.
 void add_notch(std::vector<ShapePart>& parts, const Pose& X_AEnd, double diameter_mm) {
   constexpr double kDeadSpace_mm = 3.0;
   constexpr double kNotch_mm = 19.0;

@@ -24,14 +24,14 @@ namespace trocar::scene {
 namespace {
 
 constexpr int kPeels = 6;
-/// A needle is drawn at least so many pixels thick.
+/// Minimum thickness of a needle in pixels.
 constexpr double kLeastNeedle_px = 2.6;
 constexpr int kPlanePixels = 320;
 constexpr int kPlanePixelsMoving = 192;
-/// A cut leaves the needle and so much before it whole.
+/// A cut does not clip the needle and this distance in front of it.
 constexpr double kCutBeforeNeedle_mm = 1.5;
 
-/// Asks the caller of `render` and stays at a yes until the frame is over.
+/// Polls the caller of `render`; once it returns true, this stays true until the end of the frame.
 class CallersBreak : public detail::FrameBreak {
  public:
   bool is_wanted() override {
@@ -82,11 +82,11 @@ struct PatientScene::Impl {
     return static_cast<double>(std::max(1, size[0])) / std::max(1, size[1]);
   }
   void poll();
-  /// The path again, on the skin of the patient that is shown now.
+  /// Sets the path again, on the skin of the displayed patient.
   void lay_path() {
     static const volume::FloatGrid kNoSkin;
     const volume::FloatGrid& skin =
-        patient ? patient->skin_distance_mm : kNoSkin;  // not a choice of values: that copies it
+        patient ? patient->skin_distance_mm : kNoSkin;  // a reference: a conditional of values would copy it
     const Vec3 begin_P = path_P ? path_P->a : Vec3::Zero();
     guides.set_path(path_P, {entry_centre_P.value_or(begin_P), entry_radius_mm}, skin);
     has_changed = true;
@@ -94,7 +94,7 @@ struct PatientScene::Impl {
   void place_camera(int rows);
   void prepare(const Detail& detail, Eye eye);
   void set_up_stereo(Eye eye);
-  /// The rows that VTK would draw for the left eye are the right one's on the screen.
+  /// The rows that VTK draws for the left eye are those of the right eye on the screen.
   bool has_rows_of_other_eye() const;
 
   vtkNew<vtkRenderWindow> window;
@@ -114,7 +114,7 @@ struct PatientScene::Impl {
   detail::PlaneLayer planes{*renderer.Get()};
   detail::VolumeLayer volume{*renderer.Get()};
   CameraView view;
-  std::optional<CameraPreset> wanted_preset;  ///< Applied when there is something to look at.
+  std::optional<CameraPreset> wanted_preset;  ///< Applied when the scene has content.
   FollowMode follow = FollowMode::kFree;
   bool is_follow_new = false;
   StereoOptions stereo;
@@ -155,7 +155,7 @@ void PatientScene::Impl::place_camera(int rows) {
 
 bool PatientScene::Impl::has_rows_of_other_eye() const {
   if (stereo.mode != StereoMode::kInterlaced) return false;
-  // VTK gives the picture's first row from below to the left eye; mirrored it is the first one from above.
+  // VTK assigns the first row from below to the left eye; in a mirrored picture it is the first row from above.
   const int rows = window->GetSize()[1];
   return (first_row + (stereo.is_mirrored_up_down ? 0 : rows - 1)) % 2 != 0;
 }

@@ -21,7 +21,7 @@ using detail::Appearance;
 
 constexpr int kMinPixels = 16;
 constexpr int kMaxPixels = 8192;
-/// Drawn larger and rendered down: smooth edges also where depth peeling rules out multisampling.
+/// Rendered larger and scaled down: smooth edges also with depth peeling, which excludes multisampling.
 constexpr int kSupersampling = 2;
 constexpr int kPeels = 6;
 
@@ -33,10 +33,10 @@ void add_surface(vtkRenderer& renderer, const TriangleMesh& mesh_P, const Appear
   renderer.AddActor(actor);
 }
 
-/// A needle that ends at the target, with its hub outside the body. Adds points that the picture has to hold.
+/// A needle that ends at the target, with its hub outside the body. Adds the points that must be in the picture.
 void add_needle(vtkRenderer& renderer, const Segment& path_P, std::vector<Vec3>& points_P) {
   constexpr double kOutside_mm = 60.0;
-  constexpr double kShaft_mm = 2.4;  // thicker than life, to be seen
+  constexpr double kShaft_mm = 2.4;  // drawn thicker than in reality for visibility
   const Vec3 shaft_P[2] = {path_P.a - kOutside_mm * path_P.direction(), path_P.b};
   for (const ShapePart& part : make_needle_shape(shaft_P, kShaft_mm, NeedleModel::kChiba)) {
     add_surface(renderer, part.mesh, {part.color, 1.0, part.specular});

@@ -42,7 +42,7 @@ bool fills_space(const anatomy::Label& label) {
   return label.tissue == "adipose" || label.tissue == "muscle" || label.tissue == "soft_tissue";
 }
 
-/// Points all around, evenly enough for a vote.
+/// Points in a ball, evenly distributed for a vote.
 std::vector<Vec3> ball_about(const Vec3& middle_P, double radius_mm) {
   std::vector<Vec3> points_P;
   for (int x = -2; x <= 2; ++x) {
@@ -55,7 +55,7 @@ std::vector<Vec3> ball_about(const Vec3& middle_P, double radius_mm) {
   return points_P;
 }
 
-/// An organ that goes on about the point, not a small structure that is held for one.
+/// True if an organ surrounds the point, not a small structure of the same name.
 bool is_deep_in_organ(const anatomy::VirtualPatient& patient, const Vec3& p_P, const anatomy::Label& organ) {
   const auto look = detail::find_appearance(patient.label_table, organ.name);
   if (!look || look->kind != StructureKind::kOrgan) return false;

@@ -17,16 +17,16 @@ constexpr int kSides = 40;
 constexpr double kRim_mm = 4.0;            ///< Of the shell around the outermost elements.
 constexpr double kHalfElevation_mm = 9.0;  ///< Half the lens' height.
 
-/// A cut through the housing at height y: half sizes along x and z.
+/// A cross section of the housing at height y: half sizes along x and z.
 struct Section {
   double y;
   double half_x;
   double half_z;
 };
 
-/// A rounded rectangle (superellipse), counter-clockwise seen from -y, sunk by the face's arc towards its sides.
+/// A rounded rectangle (superellipse), counter-clockwise seen from -y, lowered by the face's arc towards its sides.
 std::vector<Vec3> outline(const Section& section, double arc_radius_mm) {
-  constexpr double kPower = 0.55;  // 1 an ellipse, 0 a rectangle
+  constexpr double kPower = 0.55;  // 1: an ellipse, 0: a rectangle
   std::vector<Vec3> points;
   for (int s = 0; s < kSides; ++s) {
     const double angle = 2.0 * std::numbers::pi * s / kSides;
@@ -59,7 +59,7 @@ std::vector<ShapePart> make_transducer_shape(const TransducerFace& face) {
   const double z = kHalfElevation_mm;
 
   std::vector<ShapePart> parts;
-  // The lens: concentric outlines from its middle out, so that the arc shows.
+  // The lens: concentric outlines from its centre, so that the arc is visible.
   parts.push_back({make_housing({{0.0, 0.02 * wide, 0.02 * z},
                                  {0.0, 0.35 * wide, 0.55 * z},
                                  {-0.1, 0.7 * wide, 0.8 * z},

@@ -16,10 +16,10 @@ constexpr TransferPoint kBoneRamp[] = {
     {180, kMarrow, 0.0}, {250, kMarrow, 0.12}, {330, kBone, 0.5}, {700, kBoneWhite, 0.9}};
 constexpr TransferPoint kSoftTissueRamp[] = {{-20, kFlesh, 0.0},  {40, kFlesh, 0.015}, {110, kFlesh, 0.10},
                                              {180, kBlood, 0.25}, {260, kBone, 0.4},   {900, kBoneWhite, 0.85}};
-// Bone has been taken out: what is denser than blood is contrast, or calcified.
+// Bone has been removed: everything denser than blood is contrast agent or calcified.
 constexpr TransferPoint kVesselRamp[] = {
     {140, kBlood, 0.0}, {190, kBlood, 0.25}, {260, kBlood, 0.5}, {450, kBloodBright, 0.7}, {700, kBoneWhite, 0.9}};
-// The skin is a band that is wide enough in HU for a ray not to step over it.
+// The HU band of the skin is wide enough that a ray does not step over it.
 constexpr TransferPoint kSkinAndBoneRamp[] = {{-900, kSkin, 0.0}, {-600, kSkin, 0.11},   {-300, kSkin, 0.11},
                                               {-130, kSkin, 0.0}, {200, kMarrow, 0.0},   {260, kMarrow, 0.14},
                                               {350, kBone, 0.5},  {700, kBoneWhite, 0.9}};

@@ -8,12 +8,12 @@
 namespace trocar::slices {
 namespace {
 
-/// Fat and muscle fill the whole body: they are the ground on which structures are drawn.
+/// Fat and muscle fill the whole body: they are the background of the structures.
 bool is_drawn(const anatomy::Label& label) {
   return label.tissue != "adipose" && label.tissue != "muscle" && label.tissue != "skin";
 }
 
-/// A label's colour laid over gray: (gray * gray_share + color) / 256, rounded. All zero: the label is not drawn.
+/// A label's colour blended with gray: (gray * gray_share + color) / 256, rounded. All zero: the label is not drawn.
 struct Ink {
   std::array<std::uint32_t, 3> color{};
   std::uint32_t gray_share = 256;
@@ -50,7 +50,7 @@ volume::Rgb lay_over(std::uint8_t gray, const Ink& ink) {
   return out;
 }
 
-/// One row of labels over gray. `above` and `below` are the neighbouring rows; beyond the picture there is no label.
+/// One row of labels over gray. `above` and `below` are the adjacent rows; outside the picture there is no label.
 struct LabelRow {
   const std::uint8_t* ids;
   const std::uint8_t* above;
@@ -75,7 +75,7 @@ void hide_lesions(const anatomy::LabelTable& table, std::span<std::uint8_t> ids)
 
 void draw_labels(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
                  SliceBuffers& buffers, volume::RgbImage& picture) {
-  // A row of "no label" stands before the first and after the last one.
+  // A row of "no label" precedes the first row and follows the last one.
   const auto columns = static_cast<std::size_t>(plane.columns);
   const auto rows = static_cast<std::size_t>(plane.rows);
   buffers.ids.assign((rows + 2) * columns, 0);

@@ -20,7 +20,7 @@ SliceAxes slice_axes(SliceOrientation orientation) noexcept {
 }
 
 SliceAxes needle_axes(const Vec3& axis_P, NeedlePlane plane) noexcept {
-  // Nearer than this to the long axis of the body "as axial as goes" is no plane any more; the front decides instead.
+  // Closer to the long axis of the body, the axial direction is undefined; the front is used instead.
   constexpr double kAlongBody = 0.98;
   const Vec3 up_P = std::abs(axis_P.z()) < kAlongBody ? Vec3(Vec3::UnitZ()) : Vec3(-Vec3::UnitY());
   const Vec3 head_P = (up_P - up_P.dot(axis_P) * axis_P).normalized();
@@ -38,7 +38,7 @@ SliceAxes needle_axes(const Vec3& axis_P, NeedlePlane plane) noexcept {
 
 namespace {
 
-/// Pixel coordinates of the picture's middle.
+/// Pixel coordinates of the picture's centre.
 Eigen::Vector2d middle_px(const SliceGeometry& geometry) {
   return {0.5 * (geometry.columns - 1), 0.5 * (geometry.rows - 1)};
 }
@@ -93,7 +93,7 @@ Box body_box(const anatomy::VirtualPatient& patient) {
         if (distance[{i, j, k}] < 0.0F)
           box.extend(geometry.to_mm({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)}));
   if (!box.isEmpty()) {
-    const Vec3 skipped_mm = static_cast<double>(kStride) * geometry.spacing_mm;  // the grid may be turned against P
+    const Vec3 skipped_mm = static_cast<double>(kStride) * geometry.spacing_mm;  // the grid may be rotated against P
     const double margin_mm = skipped_mm.maxCoeff();
     return {box.min() - Vec3::Constant(margin_mm), box.max() + Vec3::Constant(margin_mm)};
   }

@@ -11,7 +11,7 @@ namespace trocar::slices {
 namespace {
 
 constexpr int kLeastPixels = 96;
-constexpr int kPixelsPerDot = 256;  ///< A dot of the font has one pixel more for each of these.
+constexpr int kPixelsPerDot = 256;  ///< The font's dots grow by one pixel per this number of pixels.
 constexpr int kMargin = 4;          ///< From the picture's edge, in dots.
 constexpr double kScaleBarShare = 0.3;
 constexpr volume::Rgb kInk{255, 255, 255};

@@ -10,7 +10,8 @@ struct Extent {
   double low, high;
 };
 
-/// What is shown along an axis of P: the volume's box (voxel borders, not centres) or the part inside the field.
+/// Displayed range along an axis of P: the volume's box (voxel borders, not centres) or its part inside the field of
+/// view.
 Extent extent_mm(const volume::GridGeometry& geometry, const Vec3& direction_P, const SliceOptions& options) {
   const Box volume_P = volume_box(geometry);
   const double ends[2] = {direction_P.dot(volume_P.min()), direction_P.dot(volume_P.max())};
@@ -34,7 +35,7 @@ volume::SlicePlane plane_through(const volume::GridGeometry& geometry, SliceOrie
   plane.rows = std::max(1, static_cast<int>(std::lround((v.high - v.low) / step_mm)));
   plane.step_u_P = step_mm * axes.u_P;
   plane.step_v_P = step_mm * axes.v_P;
-  // The point keeps its coordinate across the plane; the first pixel's centre lies half a pixel inside the box.
+  // The point keeps its coordinate perpendicular to the plane; the first pixel's centre is half a pixel inside the box.
   const Vec3 across_P = axes.normal_P();
   plane.origin_P =
       across_P * across_P.dot(through_P) + axes.u_P * (u.low + 0.5 * step_mm) + axes.v_P * (v.low + 0.5 * step_mm);

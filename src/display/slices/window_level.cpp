@@ -19,7 +19,7 @@ void apply_window(std::span<const float> hu, const Window& window, std::span<std
   TROCAR_CHECK(hu.size() == gray.size() && window.width_hu > 0.0);
   const auto steps_per_hu = static_cast<float>(255.0 / window.width_hu);
   const auto center_hu = static_cast<float>(window.center_hu);
-  constexpr float kMiddle = 127.5F + 0.5F;  // the half rounds
+  constexpr float kMiddle = 127.5F + 0.5F;  // 0.5 for rounding
   for (std::size_t n = 0; n < hu.size(); ++n) {
     const float step = (hu[n] - center_hu) * steps_per_hu + kMiddle;
     const float positive = step > 0.0F ? step : 0.0F;  // also NaN

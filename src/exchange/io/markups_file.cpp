@@ -64,7 +64,7 @@ Result<Markup> markup_of(const config::Json& json, const std::string& where) {
   for (const config::Json& point : *points) {
     if (!point.is_object())
       return fail("a control point is not an object", where, "save the markups again in 3D Slicer");
-    // 3D Slicer keeps points that were never placed.
+    // 3D Slicer also stores points that were never placed.
     if (text_of(point, "positionStatus", "defined") != "defined") continue;
     TROCAR_TRY(Vec3 p, position_of(point, where));
     if (system == "RAS") p = Vec3(-p.x(), -p.y(), p.z());

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kExportAgain = "export the surface again";
-constexpr std::uint64_t kMaxVertices = 50'000'000;  ///< Assumed: far above any surface of an organ.
+constexpr std::uint64_t kMaxVertices = 50'000'000;  ///< Assumed: far above any organ surface.
 
 enum class MeshFormat { kVtp, kStl };
 
@@ -51,7 +51,7 @@ Status check_stl(const std::string& bytes, const std::string& where) {
   return fail("the surface ends before its last triangle", where, kExportAgain);
 }
 
-/// VTK allocates what a .vtp file declares. Points and polygons take more bytes than they are many, even packed.
+/// VTK allocates the declared size of a .vtp file. Each point and polygon takes more than one byte, even compressed.
 Status check_vtp(std::string_view text, const std::string& where) {
   constexpr std::uint64_t kMaxPackRatio = 1'032;  ///< Of deflate.
   if (text.find("<VTKFile") == std::string_view::npos || text.find("PolyData") == std::string_view::npos)
@@ -90,7 +90,7 @@ Result<TriangleMesh> mesh_of(vtkPolyData& data, const std::string& where) {
     for (vtkIdType n = 0; n < cell->GetNumberOfIds(); ++n)
       if (cell->GetId(n) < 0 || cell->GetId(n) >= data.GetNumberOfPoints())
         return fail("the surface names a vertex that it does not have", where, kExportAgain);
-    // A flat polygon is a fan of triangles.
+    // A planar polygon becomes a fan of triangles.
     const auto id = [&](vtkIdType n) { return static_cast<std::uint32_t>(cell->GetId(n)); };
     for (vtkIdType n = 2; n < cell->GetNumberOfIds(); ++n) mesh.triangles.push_back({id(0), id(n - 1), id(n)});
   }
@@ -143,7 +143,7 @@ bool write_throwing(const TriangleMesh& mesh, const fs::path& path, MeshFormat f
   if (format == MeshFormat::kStl) {
     vtkNew<vtkSTLWriter> writer;
     writer->SetFileTypeToBinary();
-    writer->SetHeader("trocar surface. SPACE=LPS");  // 3D Slicer reads the frame from here.
+    writer->SetHeader("trocar surface. SPACE=LPS");  // 3D Slicer reads the frame from this header.
     return run_writer(*writer, *data, path);
   }
   vtkNew<vtkXMLPolyDataWriter> writer;
@@ -174,7 +174,7 @@ Status write_mesh(const TriangleMesh& mesh_P, const fs::path& path) {
     try {
       if (write_throwing(mesh_P, temporary, format)) return {};
     } catch (const std::exception&) {
-      // Said below.
+      // Reported below.
     }
     return fail("the surface cannot be written", path.string(), "check the disk space and the permissions");
   });

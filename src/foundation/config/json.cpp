@@ -9,7 +9,7 @@
 namespace trocar::config {
 namespace {
 
-constexpr int kMaxDepth = 64;  ///< Documents of ours nest less than 10 deep; whoever walks one may recurse.
+constexpr int kMaxDepth = 64;  ///< Our documents are nested less than 10 deep; recursive functions may process them.
 
 /// Deepest nesting of arrays and objects; brackets inside strings do not count.
 int nesting_depth(std::string_view text) {

@@ -10,13 +10,14 @@
 #include "core/files/input_file.h"
 
 namespace {
-/// Out of line, so that toml++'s noexcept functions may name it without a warning.
+/// Not inline, so that toml++'s noexcept functions can call it without a warning.
 [[noreturn]] void give_up(const char* condition) {
   throw std::logic_error(condition);
 }
 }  // namespace
 
-// toml++ asserts what hostile text can violate ("[ ="): here an assertion is one more parse error, in every build type.
+// toml++ asserts conditions that malformed text can violate ("[ ="): here a failed assertion is a parse error in every
+// build type.
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 #define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : give_up(#condition))
@@ -26,7 +27,7 @@ namespace {
 
 namespace trocar::config {
 
-/// What toml++ knows of a table's keys, for the getters and their messages.
+/// Data of toml++ about the keys of a table, for the getters and their messages.
 struct TomlNodes {
   const TomlTable& table;
 

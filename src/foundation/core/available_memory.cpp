@@ -14,7 +14,7 @@ namespace trocar {
 inline namespace core {
 namespace {
 
-/// Of a line "KEY: NUMBER kB" in a file of /proc.
+/// Reads the line "KEY: NUMBER kB" of a file in /proc.
 std::optional<std::uint64_t> find_bytes(const char* path, std::string_view key) {
   constexpr std::uint64_t kBytesPerKiB = 1024;
   std::ifstream file(path);

@@ -21,7 +21,7 @@ constexpr int kFailed = 1;  // exit status
 
 std::atomic<bool> was_signalled{false};
 std::atomic<int> work_that_ends_by_itself{0};
-sem_t signals;  // posted once a signal: sem_post is allowed in a handler
+sem_t signals;  // posted for each signal: sem_post is allowed in a handler
 
 /// Never freed: the thread that waits for signals outlives main.
 std::string& command_name() {
@@ -36,7 +36,7 @@ extern "C" void note_signal(int) {
   errno = error;
 }
 
-/// Waits for a signal, and then for the work that ends by itself, unless a second signal comes.
+/// Waits for a signal, then for the end of interruptible work, unless a second signal arrives.
 void wait_for_end() {
   while (::sem_wait(&signals) != 0) {
   }
@@ -75,7 +75,7 @@ void handle_interruptions(std::string command) {
   if (::sem_init(&signals, 0, 0) != 0) return;
   std::thread(watch).detach();
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) handle(signal_number);
-  ::signal(SIGXFSZ, SIG_IGN);  // a limit of file size is an error of the write, as a full disk is
+  ::signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, like a full disk
 }
 
 bool is_interrupted() noexcept {

@@ -9,7 +9,7 @@ Mat3 device_rotation(const TickSample& sample) noexcept {
   return q.norm() > 0.0 ? q.normalized().toRotationMatrix() : Mat3(Mat3::Identity());
 }
 
-/// The device's rotation, turned the shortest way so that its `column` looks along the felt axis.
+/// The device's rotation, with the minimal rotation that aligns its `column` with the axis of the virtual needle.
 Mat3 felt_rotation(const TickSample& sample, int column) noexcept {
   const Mat3 R = device_rotation(sample);
   return sample.axis.norm() > 0.0 ? Mat3(rotation_between(R.col(column), sample.axis.normalized()) * R) : R;

@@ -9,7 +9,7 @@ namespace trocar::volume {
 
 double correlation(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b, ComparedVoxels voxels) {
   TROCAR_CHECK(a.size() == b.size());
-  // Whole numbers: exact for 2^48 voxels.
+  // Integers: exact for 2^48 voxels.
   std::uint64_t count = 0, sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0, sum_ab = 0;
   for (std::size_t n = 0; n < a.size(); ++n) {
     if (voxels == ComparedVoxels::kBothAboveZero && (a[n] == 0 || b[n] == 0)) continue;

@@ -8,16 +8,16 @@
 #include "core/parallel.h"
 #include "volume/detail/lower_envelope.h"
 
-// Squared distances are spread along i by two scans of the row, then along j and along k by the lower envelope of the
-// parabolas of a line. The points that distances are measured to ("sites") lie at voxel centres for the distance to a
-// mask, and at the centres of the faces between different voxels for the signed distance. Faces across i lie on the
-// rows of voxels, faces across j on rows half way between them, faces across k on planes half way between the planes.
+// Squared distances are computed along i by two scans of the row, then along j and along k by the lower envelope of the
+// parabolas of a line. The points of zero distance ("sites") are at voxel centres for the distance to a mask, and at
+// the centres of the faces between different voxels for the signed distance. Faces across i are on the rows of voxels,
+// faces across j on rows half way between them, faces across k on planes half way between the planes.
 
 namespace trocar::volume {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr std::size_t kTile = 16;  ///< Lines handled together: one cache line of floats a row.
+constexpr std::size_t kTile = 16;  ///< Lines processed together: one cache line of floats per row.
 
 struct Extent {
   std::size_t i, j, k;
@@ -71,8 +71,9 @@ void spread_differences(std::span<const std::uint8_t> a, std::span<const std::ui
   spread_centres([&](std::size_t i) { return a[i] != b[i]; }, spacing_mm, forward, out);
 }
 
-/// Lines across a plane or a volume: `count` values, `stride` apart, each line beside the next. Values on the voxels
-/// are replaced by their lower envelope with those half way between the voxels (`between`, one less; may be null).
+/// Lines across a plane or a volume: `count` values at a distance of `stride`, with adjacent lines next to each other.
+/// Values on the voxels are replaced by their lower envelope with those half way between the voxels (`between`, one
+/// less; may be null).
 struct Lines {
   float* values;
   const float* between;
@@ -111,7 +112,7 @@ void spread_lines(const Lines& lines, std::size_t width) {
   }
 }
 
-/// Spreads along k and takes the root; `between` holds the planes half way, or is empty.
+/// Computes along k and takes the root; `between` contains the planes half way, or is empty.
 void spread_across_planes(const GridGeometry& geometry, const std::vector<float>& between, std::vector<float>& values) {
   const Extent n(geometry);
   parallel_for(n.j, 4, [&](std::size_t first, std::size_t last) {

@@ -6,7 +6,7 @@ bool GridGeometry::matches(const GridGeometry& other) const noexcept {
   constexpr double kToleranceVoxels = 0.01;
   if (size != other.size) return false;
 
-  // Both maps are affine: where the eight corners agree, everything between them does.
+  // Both maps are affine: if the eight corners agree, everything between them does.
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 index;
     for (int a = 0; a < 3; ++a)

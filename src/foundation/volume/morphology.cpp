@@ -32,7 +32,7 @@ void for_each_run(const detail::RunLabels& labels, const auto& write) {
   });
 }
 
-/// Which components have a voxel on the border of the block; its first and last plane count only where asked.
+/// Components with a voxel on the border of the block; its first and last plane count only on request.
 std::vector<bool> touches_border(const detail::RunLabels& labels, bool with_planes) {
   const auto& [columns, rows, planes] = labels.block;
   std::vector<bool> result(labels.component_count, false);
@@ -95,7 +95,7 @@ Box grown(Box box, const GridGeometry& geometry, double margin_mm) {
   return box;
 }
 
-/// Copies a box out of a mask (1 where a voxel is set as `of_set` says).
+/// Copies a box out of a mask (1 if a voxel is set, selected by `of_set`).
 MaskGrid cut_out(const MaskGrid& mask, const Box& box, bool of_set) {
   GridGeometry geometry = mask.geometry;
   for (std::size_t a = 0; a < 3; ++a) geometry.size[a] = box.last[a] - box.first[a] + 1;
@@ -110,9 +110,9 @@ MaskGrid cut_out(const MaskGrid& mask, const Box& box, bool of_set) {
   return part;
 }
 
-/// Sets the voxels of the box to `value` that lie within the radius of a voxel of `part`, the mask of that box.
+/// Sets the voxels of the box to `value` within the radius of a voxel of `part`, the mask of that box.
 void paint_near(const MaskGrid& part, const Box& box, double radius_mm, std::uint8_t value, MaskGrid& result) {
-  // A ball of whole voxels must hold its outermost ones although distances are rounded.
+  // A ball of whole voxels must include its outermost ones despite rounding.
   constexpr double kRounding = 1e-6;
   const auto limit = static_cast<float>(radius_mm * (1.0 + kRounding));
   const FloatGrid distance = distance_to_mask_mm(part);

@@ -37,7 +37,7 @@ detail::CellGrid cells_around(const CtGrid& grid, const Index3& anchor) {
   return cells;
 }
 
-/// Interpolates into `out`; a part of a vector goes through a buffer.
+/// Interpolates into `out`; a partial vector uses a buffer.
 void write_values(const detail::Cells& cells, float outside, std::span<float> out) {
   if (out.size() == kChunk) {
     detail::interpolate(cells, kChunk, outside, out.data());
@@ -48,7 +48,7 @@ void write_values(const detail::Cells& cells, float outside, std::span<float> ou
   std::copy_n(values, out.size(), out.data());
 }
 
-/// Samples a row that lies inside the grid.
+/// Samples a row inside the grid.
 void sample_row(const CtGrid& grid, const Vec3& start, const Vec3& step, float outside, std::span<float> out,
                 detail::Cells& cells) {
   for (std::size_t first = 0; first < out.size(); first += kChunk) {
@@ -67,7 +67,7 @@ void sample_row(const CtGrid& grid, const Vec3& start, const Vec3& step, float o
   }
 }
 
-/// The kernels read pairs of voxels along i: a grid one voxel wide has none.
+/// The kernels read pairs of voxels along i: a grid of width one has none.
 bool has_pairs(const CtGrid& grid) {
   return grid.geometry.size[0] > 1 && !grid.empty();
 }
@@ -77,8 +77,7 @@ float sample_or(const CtGrid& grid, const Vec3& index, float outside) {
   return static_cast<float>(sample_linear_at_index(grid, index));
 }
 
-/// Steps along a row of voxel numbers in fixed point, 32 bits behind the point: exact to 1e-6 of a voxel after 4096
-/// steps.
+/// Iterates over a row of voxel numbers in fixed point, 32 fractional bits: exact to 1e-6 of a voxel after 4096 steps.
 class VoxelWalk {
  public:
   VoxelWalk(double start, double step, std::int64_t size) noexcept
@@ -155,7 +154,7 @@ void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float ou
     return;
   }
 
-  // Counted from the middle of the grid, floats stay small and exact.
+  // Relative to the centre of the grid, floats are small and precise.
   const Index3 anchor{geometry.size[0] / 2, geometry.size[1] / 2, geometry.size[2] / 2};
   const detail::CellGrid around = cells_around(grid, anchor);
   const Vec3 anchor_P =

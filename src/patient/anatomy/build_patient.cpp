@@ -18,11 +18,11 @@
 namespace trocar::anatomy {
 namespace {
 
-constexpr double kMinBodyMl = 100.0;       // assumed: less is no part of a person
-constexpr double kHintAgreement = 0.9;     // Dice coefficient from which a given body mask is believed
-constexpr double kMaxShareOutside = 0.02;  // of a structure that may lie outside the body without a word
+constexpr double kMinBodyMl = 100.0;       // assumed: smaller parts do not belong to a person
+constexpr double kHintAgreement = 0.9;     // Dice coefficient above which a given body mask is used
+constexpr double kMaxShareOutside = 0.02;  // share of a structure outside the body without a warning
 
-/// A given mask of the whole body, filled, cuts away what it excludes, where it is much like the one found.
+/// Removes the voxels outside a given, filled mask of the whole body if it is similar to the one found.
 volume::MaskGrid apply_body_hint(volume::MaskGrid body, const volume::MaskGrid& given) {
   const volume::MaskGrid hint = volume::fill_holes_in_slices(given);
   std::size_t both = 0;
@@ -45,7 +45,7 @@ Result<volume::MaskGrid> find_checked_body(const volume::CtGrid& ct, const volum
   return body;
 }
 
-/// Clears labels outside the body; a structure that loses more than a rim is named.
+/// Clears labels outside the body; warns if a structure loses more than a rim.
 void clear_outside(const volume::MaskGrid& body, volume::LabelGrid& labels, const LabelTable& table,
                    std::vector<std::string>& warnings) {
   std::array<std::size_t, 256> all{};
@@ -88,7 +88,7 @@ Result<VirtualPatient> build_patient(const volume::CtGrid& ct, std::vector<Label
   patient.name = options.name;
   patient.provenance = options.provenance;
 
-  // Slices are axial from here on, whatever the order in which the CT was stored.
+  // Slices are axial from here on, independent of the stored order of the CT.
   patient.ct = volume::along_P(ct);
   report(progress, "labels", 0.0);
   TROCAR_TRY(detail::MergedLabels merged, detail::merge_sources(std::move(sources), patient.ct.geometry, warnings));

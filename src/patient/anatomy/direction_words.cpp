@@ -15,7 +15,7 @@ constexpr std::array<std::array<const char*, 2>, 3> kWays{{{"to the patient's ri
                                                            {"towards the front", "towards the back"},
                                                            {"towards the feet", "towards the head"}}};
 
-/// The two largest components, joined; `word` names the component of an axis.
+/// The two largest components, joined; `word` gives the name of an axis component.
 template <class Word>
 std::string join_largest(const Vec3& offset_P, double least_second, Word word) {
   std::array<Eigen::Index, 3> order{0, 1, 2};

@@ -10,13 +10,13 @@
 namespace trocar::anatomy {
 namespace {
 
-// All numbers are assumed: chosen on two CTs (3 mm and 0.74 mm voxels) and kept away from what they separate.
+// All numbers are assumed: chosen on two CTs (3 mm and 0.74 mm voxels), with a safety distance.
 constexpr std::int16_t kSolidAboveHu = -300;  // skin and fat above, air, foam and cloth below
 constexpr double kCoarseMm = 3.0;             // the table is found at this resolution
 constexpr double kThinRadiusMm = 5.0;         // plates, tubes and blankets are thinner than twice this
-constexpr double kLongMm = 120.0;             // what is thin and longer than this is no part of a body
-constexpr double kSealRadiusMm = 7.0;         // gaps that taking the table away may have torn into the chest wall
-constexpr double kNearMm = 4.0;               // the fine contour is looked for this close to the coarse one
+constexpr double kLongMm = 120.0;             // thin parts that are longer do not belong to a body
+constexpr double kSealRadiusMm = 7.0;         // gaps in the chest wall from removing the table
+constexpr double kNearMm = 4.0;               // search distance of the fine contour around the coarse one
 
 volume::MaskGrid solid_of(const volume::CtGrid& ct) {
   volume::MaskGrid mask(ct.geometry);
@@ -36,7 +36,7 @@ volume::MaskGrid opened(const volume::MaskGrid& mask, double radius_mm) {
   return volume::dilate(volume::erode(mask, radius_mm), radius_mm);
 }
 
-/// Thin connected parts of a mask whose box is long: the CT table, tubes, folds of a blanket.
+/// Thin connected parts of a mask with a long box: the CT table, tubes, folds of a blanket.
 volume::MaskGrid long_thin_parts(const volume::MaskGrid& solid) {
   const volume::GridGeometry& geometry = solid.geometry;
   const volume::Components parts = volume::connected_components(without(solid, opened(solid, kThinRadiusMm)));
@@ -66,7 +66,7 @@ volume::MaskGrid long_thin_parts(const volume::MaskGrid& solid) {
   return mask;
 }
 
-/// The body's lungs and bowel gas filled; a torn chest wall is sealed for that, outer folds stay open.
+/// Fills the body's lungs and bowel gas; seals a torn chest wall for this, but keeps outer folds open.
 volume::MaskGrid filled(const volume::MaskGrid& body) {
   const volume::MaskGrid sealed = volume::dilate(body, kSealRadiusMm);
   const volume::MaskGrid cavities =
@@ -89,7 +89,7 @@ volume::MaskGrid find_body(const volume::CtGrid& ct) {
   const volume::CtGrid coarse_ct =
       volume::resample_linear(ct, volume::isotropic_geometry(ct.geometry, kCoarseMm), -1000);
   volume::MaskGrid zones = find_coarse_body(coarse_ct);
-  {  // 0 away from the body, 1 where the fine contour decides, 2 deep inside
+  {  // 0: far from the body, 1: the fine contour decides, 2: deep inside
     const volume::MaskGrid near = volume::dilate(zones, kNearMm);
     const volume::MaskGrid deep = volume::erode(zones, kNearMm);
     for (std::size_t n = 0; n < zones.voxels.size(); ++n) zones.voxels[n] = deep.voxels[n] ? 2 : near.voxels[n];

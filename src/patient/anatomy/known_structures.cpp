@@ -8,20 +8,20 @@
 namespace trocar::anatomy {
 namespace {
 
-// Which mask wins where several claim a voxel: what lies inside or on top of another comes later.
+// Priority of masks that claim the same voxel: structures inside or on top of another come later.
 constexpr int kFill = 10;  // fat, other soft tissue
 constexpr int kMuscle = 20;
 constexpr int kHollow = 30;      // lung, bowel, fluid
 constexpr int kParenchyma = 40;  // solid organs
 constexpr int kBone = 50;
-constexpr int kCanal = 60;  // what fills the canal of the vertebrae
-constexpr int kSac = 62;    // the sac of the dura in it
-constexpr int kCord = 64;   // the cord in that
+constexpr int kCanal = 60;  // content of the vertebral canal
+constexpr int kSac = 62;    // the dural sac in it
+constexpr int kCord = 64;   // the spinal cord in the sac
 constexpr int kVein = 70;   // vessels inside an organ
 constexpr int kArtery = 75;
-constexpr int kDuct = 77;  // bile ducts beside them
+constexpr int kDuct = 77;  // bile ducts next to them
 constexpr int kCyst = 80;
-constexpr int kLesion = 90;  // a tumour over everything it grows in
+constexpr int kLesion = 90;  // a tumour, above its organ
 
 // Colours as in anatomical plates: arteries red, veins blue, portal vein violet, bone ivory, fat yellow, bile green.
 constexpr volume::Rgb kLiverBrown{150, 68, 52};
@@ -52,15 +52,15 @@ constexpr volume::Rgb kGasGrey{70, 82, 96};
 constexpr volume::Rgb kSoftRose{196, 136, 116};
 constexpr volume::Rgb kSkinTone{228, 184, 154};
 
-/// A row: the name without case, separators and side. A trailing '#' stands for any number of digits,
-/// '%#' for a spine region's letter and digits, '*' for anything.
+/// A row: the name without case, separators and side. A trailing '#' matches any number of digits, '%#' the letter and
+/// digits of a spine region, '*' anything.
 struct Row {
   std::string_view pattern;
   KnownStructure known;
 };
 
 constexpr Row kRows[] = {
-    // Lesions first: "livertumor" is no liver.
+    // Lesions first: "livertumor" is not a liver.
     {"livertumor#", {"liver_lesion", kLesionGreen, kLesion}},
     {"livertumors#", {"liver_lesion", kLesionGreen, kLesion}},
     {"livertumour#", {"liver_lesion", kLesionGreen, kLesion}},
@@ -221,7 +221,7 @@ constexpr Row kRows[] = {
     {"bodytrunc", {"skin", kSkinTone, 0}},
 };
 
-/// Lower case letters and digits alone.
+/// Lower case letters and digits only.
 std::string plain(std::string_view name) {
   std::string text;
   for (const char c : name) {
@@ -294,13 +294,13 @@ std::vector<std::string> similar_structure_names(std::string_view name, std::siz
   const auto consider = [&](std::string_view known) {
     const std::string spelled = plain(known);
     const std::size_t distance = edit_distance(wanted, spelled);
-    // More changed letters are another word, not a misspelling: "my_roi" is no "thyroid".
+    // With more changes it is another word, not a misspelling: "my_roi" is not "thyroid".
     const std::size_t allowed = std::max<std::size_t>(1, (std::max(wanted.size(), spelled.size()) + 1) / 4);
     if (distance <= allowed) candidates.emplace_back(distance, known);
   };
   for (int number = 1; const auto known = totalsegmentator_name(number); ++number) consider(*known);
   for (const Row& row : kRows) {
-    if (row.pattern.find('%') != std::string_view::npos) continue;  // TotalSegmentator's names are all of these
+    if (row.pattern.find('%') != std::string_view::npos) continue;  // this includes all names of TotalSegmentator
     const std::string_view known = row.pattern.substr(0, row.pattern.find_first_of("#*"));
     const auto spelled = [&](const auto& candidate) { return plain(candidate.second) == known; };
     if (std::none_of(candidates.begin(), candidates.end(), spelled)) consider(known);

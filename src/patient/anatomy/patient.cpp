@@ -19,13 +19,13 @@ void add_value(ContentHash& hash, const T& value) {
   hash.add(std::as_bytes(std::span(&value, 1)));
 }
 
-/// With its length before it, so that the bytes of two neighbours cannot be mistaken for one another.
+/// Preceded by its length, so that adjacent fields cannot be confused.
 void add_text(ContentHash& hash, const std::string& text) {
   add_value(hash, static_cast<std::uint64_t>(text.size()));
   add_values(hash, text);
 }
 
-/// In single precision and with clean zeros: the last digits lost in a file must not change the hash.
+/// In single precision and with normalised zeros: rounding in a file must not change the hash.
 void add_geometry(ContentHash& hash, const volume::GridGeometry& geometry) {
   add_values(hash, geometry.size);
   const auto add_number = [&](double value) {

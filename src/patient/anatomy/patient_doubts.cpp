@@ -20,7 +20,7 @@ std::vector<std::string> find_doubts(const VirtualPatient& patient, const std::v
     const Label* label = patient.label_table.find(s.id);
     if (label == nullptr) continue;
     if (s.voxels == 0) doubts.push_back(label->name + " is in the label table but has no voxels");
-    // Fat and muscle reach every border of a scan; an organ that does is cut off.
+    // Fat and muscle extend to every border of a scan; an organ that does is cut off.
     const bool is_filling = label->tissue == "adipose" || label->tissue == "muscle";
     if (s.touches_border && !is_filling) cut_off.push_back(label->name);
   }

@@ -16,7 +16,7 @@ bool is_digit(char c) noexcept {
   return c >= '0' && c <= '9';
 }
 
-/// Takes the number at the front off, its leading zeros left out.
+/// Removes the leading number and returns it without leading zeros.
 std::string_view take_number(std::string_view& text) noexcept {
   const auto end = static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), is_digit) - text.begin());
   std::string_view number = text.substr(0, end);

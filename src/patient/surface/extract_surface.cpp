@@ -11,7 +11,7 @@
 namespace trocar::surface {
 namespace {
 
-// Assumed: a large structure sampled more finely only costs triangles that are decimated again.
+// Assumed: finer sampling of a large structure only adds triangles that decimation removes.
 constexpr std::size_t kManyVoxels = 300'000;
 constexpr double kCoarseMm = 1.5;
 // Assumed: the skin of a whole trunk has a third of this at 1.5 mm, noise in a whole CT a hundred times as many.
@@ -53,7 +53,7 @@ std::array<Box, 256> find_boxes(const volume::LabelGrid& labels) {
   return boxes;
 }
 
-/// What belongs to one surface: a label, and the lesions in it.
+/// Labels of one surface: a label, and the lesions in it.
 struct Body {
   std::array<bool, 256> has{};
   Box box;

@@ -44,7 +44,7 @@ Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& devic
                      "path constraint m0/d0 (N/mm, at most the device's)");
 }
 
-/// A spring that bears the puncture force at the same indentation as the loading law.
+/// A spring with the puncture force at the same indentation as the loading law.
 double indentation_stiffness(const LoadingLaw& law, double puncture_force_n) noexcept {
   if (!std::isfinite(puncture_force_n)) return law.stiffness_n_per_mm;
   return puncture_force_n / static_displacement_mm(puncture_force_n, law);
@@ -97,7 +97,7 @@ Status fill_label_tissues(HapticScene& scene, const anatomy::TissueTable& table)
   return {};
 }
 
-/// The columns of tissue under a face read labels, or HU where there are none.
+/// The columns of tissue under a face use labels, or HU without labels.
 Status check_palpable(const anatomy::VirtualPatient& patient, const anatomy::TissueTable& tissues) {
   if (!patient.labels.empty()) return {};
   if (!patient.ct.empty() && tissues.transfer.knot_count > 0) return {};

@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kForceModel = "force_model";
 constexpr std::string_view kOfConstraint = "constraint.";
 
-/// The one list of options and device numbers: calls visit(name, field) for each; a field is a double or a bool.
+/// The single list of options and device numbers: calls visit(name, field) for each; a field is a double or a bool.
 template <class Options, class Device, class Visitor>
 void visit_numbers(Options& options, Device& device, Visitor&& visit) {
   visit("coupling.stiffness", options.coupling.stiffness_n_per_mm);

@@ -81,7 +81,7 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
   EventList events(sample);
   add_events(events, step);
 
-  // The device gets the coupling's force: the balance of the laws and the holding force.
+  // The device receives the coupling's force: the balance of the laws and the holding force.
   sample.device_f_n = sample.f_total_n + sample.axis * sample.f_stick_n;
   limit_to_device(output, weight, events, scene);
   state.last = sample;

@@ -31,7 +31,8 @@ bool is_program(const fs::path& path) {
   return fs::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0;
 }
 
-/// "R" runs or wants to, "D" waits for a disk, "T" and "t" are stopped; after the name in brackets (proc(5)).
+/// "R" is running or runnable, "D" waits for a disk, "T" and "t" are stopped; the state follows the name in brackets
+/// (proc(5)).
 bool is_held_up_thread(const fs::path& thread) {
   std::ifstream file(thread / "stat");
   const std::string stat{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -47,13 +48,13 @@ std::string told(int status) {
 
 }  // namespace
 
-/// The child belongs to the thread: the kernel ends a child when the thread that started it ends, not the process, so
-/// the caller's own thread will not do.
+/// The thread starts the child: the kernel ends a child when the thread that started it ends, not the process; so it
+/// cannot be the caller's thread.
 struct ServerProcess::Impl {
   std::mutex mutex;
   std::condition_variable news;
   std::optional<Result<int>> started;  ///< Process id.
-  std::optional<int> end_status;       ///< As waitpid tells it; until then the id is the child's and may be signalled.
+  std::optional<int> end_status;       ///< From waitpid; until then the id belongs to the child and may be signalled.
   std::thread thread;
 
   void live(const detail::Program& program);
@@ -70,7 +71,7 @@ void ServerProcess::Impl::live(const detail::Program& program) {
   }
   news.notify_all();
   if (!child) return;
-  // The id stays the child's until it is reaped, under the lock.
+  // The id belongs to the child until it is reaped, under the lock.
   siginfo_t info{};
   while (::waitid(P_PID, static_cast<id_t>(*child), &info, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
   }
@@ -91,7 +92,7 @@ void ServerProcess::Impl::signal(int number) {
 void ServerProcess::Impl::stop() {
   if (!thread.joinable()) return;
   signal(SIGTERM);
-  // A child that is stopped takes no SIGTERM until it goes on.
+  // A stopped child receives no SIGTERM until it continues.
   signal(SIGCONT);
   {
     std::unique_lock lock(mutex);

@@ -6,7 +6,7 @@
 namespace trocar::link::detail {
 namespace {
 
-/// The code points that a lead byte of UTF-8 begins: how many bytes follow, and the least value (no overlong forms).
+/// Code points by the lead byte of UTF-8: number of following bytes, and the smallest value (no overlong forms).
 struct Lead {
   int following;
   char32_t bits;

@@ -9,7 +9,7 @@
 namespace trocar::link::detail {
 namespace {
 
-constexpr flatbuffers::uoffset_t kMostDepth = 4;  ///< Root, body, and what is in it: 3.
+constexpr flatbuffers::uoffset_t kMostDepth = 4;  ///< Depth of root, body and contents: 3.
 constexpr flatbuffers::uoffset_t kMostTables = 8;
 
 }  // namespace

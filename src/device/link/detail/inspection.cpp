@@ -11,8 +11,8 @@
 namespace trocar::link::detail {
 namespace {
 
-constexpr double kRotationTolerance = 1e-6;   ///< Of an entry of R^T R, and of the determinant.
-constexpr double kRoundingTolerance = 1e-12;  ///< Below this a rotation is left as it is, bit for bit.
+constexpr double kRotationTolerance = 1e-6;   ///< Tolerance of the entries of R^T R, and of the determinant.
+constexpr double kRoundingTolerance = 1e-12;  ///< Below this, a rotation is unchanged, bit for bit.
 
 double rotation_error(const Mat3& R) {
   const double skewness = (R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff();

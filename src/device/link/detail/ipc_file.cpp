@@ -30,13 +30,13 @@ const sockaddr* as_address(const sockaddr_un& name) {
   return reinterpret_cast<const sockaddr*>(&name);
 }
 
-/// Somebody listens, or may: only a refused connection proves a dead server.
+/// A process listens, or may listen: only a refused connection proves that the server has ended.
 bool is_alive(const sockaddr_un& name) {
   const Descriptor probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   return ::connect(probe.get(), as_address(name), sizeof name) == 0 || (errno != ECONNREFUSED && errno != ENOENT);
 }
 
-/// Removes what a dead server left.
+/// Removes the files of a server that has ended.
 Status clear_place(const fs::path& path, const sockaddr_un& name) {
   struct stat found {};
   if (::lstat(path.c_str(), &found) != 0) return {};
@@ -58,8 +58,8 @@ Result<IpcFile> IpcFile::listen(const fs::path& path) {
   const auto name = socket_name(path);
   if (!name) return fail_usage("the name of the socket is empty or too long", path.string(), "choose a shorter path");
 
-  // Two servers that start at once take turns, so that none removes the other's fresh socket. A lock that somebody else
-  // keeps must not keep us.
+  // Two servers that start at the same time lock in turn, so that neither removes the new socket of the other. A lock
+  // held by another process must not block this server.
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const Descriptor turn(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!turn.is_open()) return fail("the folder of the socket cannot be opened", folder.string(), std::strerror(errno));
@@ -67,7 +67,7 @@ Result<IpcFile> IpcFile::listen(const fs::path& path) {
 
   TROCAR_TRY_STATUS(clear_place(path, *name));
   Descriptor listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  // The mode of the descriptor becomes the file's: there is no moment at which others could connect.
+  // The mode of the descriptor becomes that of the file: other users can connect at no time.
   struct stat made {};
   if (!listener.is_open() || ::fchmod(listener.get(), kForUserAlone) != 0 ||
       ::bind(listener.get(), as_address(*name), sizeof *name) != 0 ||

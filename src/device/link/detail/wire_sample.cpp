@@ -3,7 +3,7 @@
 namespace trocar::link::detail {
 namespace {
 
-constexpr double kLongestAxis = 2.0;  ///< A unit vector with room for rounding and for a tick without one (zero).
+constexpr double kLongestAxis = 2.0;  ///< A unit vector, with tolerance for rounding and for a tick without one (zero).
 constexpr flatbuffers::uoffset_t kEvents = 4;
 static_assert(std::tuple_size_v<decltype(telemetry::TickSample::events)> == kEvents);
 

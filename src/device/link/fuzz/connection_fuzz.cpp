@@ -1,5 +1,5 @@
-// What scripts/fuzz runs: whatever bytes a peer sends and however they are cut, a connection stays within its bounds
-// and gives whole messages or an end with a reason.
+// Fuzz target of scripts/fuzz: for any bytes of a peer and any fragmentation, a connection stays within its limits and
+// returns complete messages, or ends with a reason.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +15,7 @@
 namespace trocar::link::detail {
 namespace {
 
-/// Bits of an input's first byte: how far the connection has come before the input's bytes.
+/// Bits of an input's first byte: state of the connection before the remaining bytes.
 constexpr unsigned kWithKeys = 1, kAfterGreeting = 2, kAfterReady = 4, kAfterHello = 8;
 
 const CurveIdentity& server_identity() {
@@ -30,7 +30,7 @@ const CurveIdentity& server_identity() {
   return identity;
 }
 
-/// What an honest peer would have sent so far.
+/// Data that a correct peer would have sent up to this state.
 std::vector<std::byte> opening(unsigned how) {
   if ((how & (kAfterGreeting | kAfterReady)) == 0) return {};
   std::vector<std::byte> bytes = zmtp::make_greeting((how & kWithKeys) != 0 ? "CURVE" : "NULL", false);
@@ -42,7 +42,7 @@ std::vector<std::byte> opening(unsigned how) {
   return bytes;
 }
 
-/// Gives a piece and takes all that comes of it. False: the connection has ended.
+/// Feeds a fragment and takes all resulting messages. Returns false if the connection has ended.
 bool feed(ZmtpConnection& connection, std::span<const std::byte> piece, double now_s) {
   if (connection.room(now_s) == 0) return true;
   connection.append(piece);
@@ -58,7 +58,7 @@ bool feed(ZmtpConnection& connection, std::span<const std::byte> piece, double n
     if (incoming.event == ZmtpConnection::Event::kNone) return true;
     if (incoming.event != ZmtpConnection::Event::kMessage) continue;
     TROCAR_CHECK(connection.is_ready());
-    connection.put(incoming.message);  // an echo, as large as what came
+    connection.put(incoming.message);  // an echo of the received size
     connection.note_sent(connection.outgoing().size());
   }
 }

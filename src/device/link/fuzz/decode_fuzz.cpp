@@ -1,4 +1,4 @@
-// What scripts/fuzz runs: whatever the bytes are, a decoder refuses them or gives a sound message.
+// Fuzz target of scripts/fuzz: for any bytes, a decoder returns an error or a valid message.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,7 +11,7 @@
 namespace trocar::link {
 namespace {
 
-/// A message that was accepted comes through the codec once more as it is.
+/// An accepted message is unchanged by encoding and decoding.
 template <class Message, class Decode>
 void check(std::span<const std::byte> bytes, Decode decode) {
   const Result<Message> decoded = decode(bytes);
@@ -21,7 +21,7 @@ void check(std::span<const std::byte> bytes, Decode decode) {
   }
   TROCAR_CHECK(find_broken_invariant(*decoded).empty());
   const Bytes encoded = encode(*decoded);
-  if (encoded.size() > kMostMessageBytes) return;  // parts of a message may lie over one another
+  if (encoded.size() > kMostMessageBytes) return;  // parts of a message may overlap
   const Result<Message> again = decode(encoded);
   TROCAR_CHECK(again.has_value());
   TROCAR_CHECK(Fingerprint(*again) == Fingerprint(*decoded));

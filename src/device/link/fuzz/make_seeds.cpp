@@ -1,4 +1,4 @@
-// Writes good messages of every kind into a folder, for a fuzzer to start from.
+// Writes valid messages of every kind into a folder, as seeds of a fuzzer.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace trocar::link {
 namespace {
 
-constexpr std::uint64_t kSeeds = 4;  ///< Of each kind of message.
+constexpr std::uint64_t kSeeds = 4;  ///< Per kind of message.
 
 template <class Message>
 Status write_all(const std::filesystem::path& folder, std::string_view side, std::uint64_t seed,

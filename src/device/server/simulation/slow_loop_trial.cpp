@@ -22,7 +22,7 @@ std::unique_ptr<devices::HapticDevice> make_simulated(const haptics::DevicePrese
   return std::make_unique<devices::VirtualHapticDevice>(preset, devices::SimulatedDeviceParams{});
 }
 
-/// Down to the upper end of its swing, then up and down.
+/// Down to the upper end of its oscillation, then up and down.
 link::HandTarget hand_at(const SlowLoopTrial& trial, double time_s) {
   const double top_mm = trial.depth_mm - trial.swing_mm;
   const double begun_s = (top_mm - kStart_mm) / kApproach_mm_per_s;
@@ -43,7 +43,7 @@ void count_wait(void* waited_s, double wait_ms) noexcept {
   *static_cast<double*>(waited_s) += 1e-3 * wait_ms;
 }
 
-/// Smallest box around what was seen.
+/// Smallest box around the visited points.
 struct Extent {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 high = -low;
@@ -75,7 +75,7 @@ SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const haptics::Devi
   double begun_s = trial.fault_s;
   while (input.now_s < trial.end_s) {
     input.busy_s = std::exchange(waited_s, 0.0);
-    // The loop's grid: a period that has passed is skipped.
+    // Grid of the loop: late periods are skipped.
     input.dt_s = kPeriod_s * (std::floor(input.busy_s / kPeriod_s + 1e-9) + 1.0);
     if (input.busy_s > 0.0 && slow_periods++ == 0) begun_s = input.now_s;
     input.now_s += input.dt_s;

@@ -1,6 +1,6 @@
 #include "scene/detail/display.h"
 
-// Xlib's macros (Status, None, Bool) spoil other headers: nothing else is included here.
+// Xlib's macros (Status, None, Bool) conflict with other headers: nothing else is included here.
 #include <X11/Xlib.h>
 
 namespace trocar::scene::detail {

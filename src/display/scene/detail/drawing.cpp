@@ -134,7 +134,7 @@ PictureQuad::PictureQuad()
   vtkNew<vtkCellArray> cells;
   const vtkIdType corners[4] = {0, 1, 2, 3};
   cells->InsertNextCell(4, corners);
-  // Textures run from the bottom: the picture's first row is the texture's t = 0, at the top corners.
+  // Textures start at the bottom: the picture's first row is the texture's t = 0, at the top corners.
   vtkNew<vtkFloatArray> places;
   places->SetNumberOfComponents(2);
   for (const auto& [s, t] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) places->InsertNextTuple2(s, t);
@@ -183,7 +183,7 @@ bool PictureQuad::show_picture(const volume::RgbImage& picture, std::span<const 
   const std::span<std::uint8_t> rgba = resize(picture.columns, picture.rows);
   bool is_new = actor_->GetVisibility() == 0;
   for (std::size_t i = 0; i < 3; ++i) is_new |= (corners_P[i] - corners_P_[i]).norm() > kUnseen_mm;
-  // Collected without a branch, which the compiler turns into vectors: this is done for every picture of the scanner.
+  // Collected without a branch, so that the compiler vectorises it: this runs for every ultrasound image.
   unsigned changes = 0;
   for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
     const volume::Rgb& pixel = picture.pixels[i];

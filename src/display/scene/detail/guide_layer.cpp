@@ -24,7 +24,7 @@ constexpr volume::Rgb kLandmarkColor = {0xf2, 0xd0, 0x6b};
 constexpr double kPathRadius_mm = 1.0;
 constexpr double kDash_mm = 6.0;
 constexpr double kGap_mm = 4.0;
-constexpr double kOutside_mm = 45.0;  ///< The path goes on so far before the skin.
+constexpr double kOutside_mm = 45.0;  ///< Length of the path drawn outside the skin.
 constexpr double kTargetRadius_mm = 3.0;
 constexpr double kRingRadius_mm = 0.9;
 constexpr double kFont_px = 13.0;  ///< At a text scale of 1.
@@ -33,7 +33,7 @@ constexpr double kFarBehind_mm = 25.0;
 constexpr double kLandmarkRadius_mm = 3.0;
 constexpr double kAboveSkin_mm = 0.6;
 
-/// The point of the skin on the line through p along the path.
+/// Intersection of the skin with the line through p along the path.
 Vec3 onto_skin(const Vec3& p_P, const Vec3& along_P, const volume::FloatGrid& skin_distance_mm) {
   constexpr int kSteps = 12;
   constexpr double kFarthest_mm = 30.0;
@@ -60,7 +60,7 @@ std::vector<Vec3> entry_ring(const EntryMark& entry, const Vec3& along_P, const 
   return ring_P;
 }
 
-/// The ring's inside: a fan from its middle.
+/// Interior of the ring: a fan around its centre.
 TriangleMesh disc(const std::vector<Vec3>& ring_P, const Vec3& middle_P) {
   TriangleMesh mesh;
   mesh.vertices.push_back(middle_P.cast<float>());
@@ -105,7 +105,7 @@ void GuideLayer::add_mesh(Props& props, const TriangleMesh& mesh_P, const volume
 void GuideLayer::add_text(const Vec3& p_P, const std::string& text, const volume::Rgb& color) {
   auto label = vtkSmartPointer<vtkTextActor>::New();
   label->SetInput(text.c_str());
-  // Beside the mark, and over all that is drawn: half a name is worse than none.
+  // Next to the mark, and on top of everything, so that names are never partly hidden.
   vtkNew<vtkCoordinate> mark;
   mark->SetCoordinateSystemToWorld();
   mark->SetValue(p_P.x(), p_P.y(), p_P.z());

@@ -14,8 +14,8 @@
 namespace trocar::scene::detail {
 namespace {
 
-/// A key from the upper left and a sky; the denser outline of what is like glass. Replaces three lights with shine,
-/// which cost a processor three times as much.
+/// A key light from the upper left and a sky light; denser outlines of translucent surfaces. Replaces three lights with
+/// specular reflection, which take three times as long on a CPU.
 constexpr const char* kSimpleLight =
     "  vec3 towards = normalVCVSOutput.z < 0.0 ? -normalVCVSOutput : normalVCVSOutput;\n"
     "  float key = max(0.0, dot(towards, vec3(-0.42, 0.57, 0.71)));\n"
@@ -76,7 +76,7 @@ void MovingSurfaces::set_parts(const std::vector<MovingPart>& parts) {
     together->Update();
     add(together->GetOutput(), {255, 255, 255}, 1.0, true);
   }
-  // What is larger lies around what is smaller.
+  // Larger parts enclose smaller ones.
   std::sort(translucent.begin(), translucent.end(),
             [](const MovingPart* a, const MovingPart* b) { return a->data->GetLength() < b->data->GetLength(); });
   for (const MovingPart* part : translucent) add(part->data, part->color, part->opacity, false);

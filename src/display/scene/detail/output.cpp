@@ -34,7 +34,7 @@ void copy_picture(vtkRenderWindow& window, std::span<std::uint32_t> pixels) {
   vtkNew<vtkUnsignedCharArray> bytes;
   window.GetRGBACharPixelData(0, 0, columns - 1, rows - 1, 0, bytes);
   const std::uint8_t* rgba = bytes->GetPointer(0);
-  for (int row = rows - 1; row >= 0; --row) {  // OpenGL begins at the bottom
+  for (int row = rows - 1; row >= 0; --row) {  // OpenGL starts at the bottom
     std::uint32_t* pixel = pixels.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(columns);
     for (int column = 0; column < columns; ++column, rgba += 4)
       pixel[column] = 0xff000000U | std::uint32_t{rgba[0]} << 16 | std::uint32_t{rgba[1]} << 8 | rgba[2];

@@ -5,7 +5,7 @@
 namespace trocar::scene::detail {
 
 std::optional<double> first_hit_mm(const TriangleMesh& mesh, const Vec3& origin, const Vec3& direction) {
-  // The crossing in barycentric coordinates (Möller and Trumbore, 1997).
+  // The intersection in barycentric coordinates (Möller and Trumbore, 1997).
   std::optional<double> nearest_mm;
   for (const auto& t : mesh.triangles) {
     const Vec3 a = mesh.vertices[t[0]].cast<double>();

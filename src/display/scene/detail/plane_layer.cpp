@@ -10,7 +10,8 @@ namespace {
 
 constexpr float kOutside_hu = -32768.0F;
 constexpr double kUnseen_mm = 0.02;
-/// The air around the patient is left out: it would hide what lies behind. So far before the skin the plane ends.
+/// The air around the patient is not drawn, as it would hide structures behind it. Distance from the skin at which the
+/// plane ends.
 constexpr double kRim_mm = 0.5;
 
 bool are_close(const std::optional<Segment>& a, const std::optional<Segment>& b) {
@@ -43,7 +44,7 @@ void PlaneLayer::update(const std::optional<Segment>& needle_P, int pixels) {
   for (PictureQuad& quad : quads_) quad.hide();
   if (patient_ == nullptr || patient_->ct.empty() || !needle_P || !(needle_P->length_mm() > 0.0)) return;
   const Vec3 axis_P = needle_P->direction();
-  // In the first plane lies, beside the axis, the direction nearest to axial that is square to it.
+  // The first plane contains the axis and the perpendicular direction nearest to axial.
   const Vec3 across_P = std::abs(axis_P.z()) < 0.95 ? Vec3(axis_P.cross(Vec3::UnitZ()).normalized())
                                                     : Vec3(axis_P.cross(Vec3::UnitY()).normalized());
   const Vec3 third_P = axis_P.cross(across_P);

@@ -18,7 +18,7 @@ float mean_edge_mm(const TriangleMesh& mesh) {
   return static_cast<float>(sum / static_cast<double>(mesh.triangles.size()));
 }
 
-/// 21 bits a coordinate: cells down to a thousandth of a millimetre in a body of two metres.
+/// 21 bits per coordinate: cells down to a thousandth of a millimetre in a body of two metres.
 std::uint64_t cell_of(const Vec3f& p, float cell_mm) {
   constexpr std::int64_t kOffset = 1 << 20;
   const auto part = [&](float v) {

@@ -11,7 +11,7 @@ std::uint32_t add_point(TriangleMesh& mesh, const Vec3& p) {
   return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
 }
 
-/// A lid with points of its own, so that the edge stays sharp.
+/// A lid with its own points, so that the edge stays sharp.
 void add_lid(TriangleMesh& mesh, const std::vector<Vec3>& ring, bool faces_forward) {
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : ring) middle += p;

@@ -14,15 +14,15 @@
 namespace trocar::scene::detail {
 namespace {
 
-/// Cells of level 1, in mean edges, and what level 2 keeps of its triangles.
+/// Cell size of level 1 in mean edges, and the fraction of its triangles kept in level 2.
 constexpr double kCoarseness = 2.0;
 constexpr double kKeep = 0.25;
 static_assert(kMeshLevels == 3);
-/// Meshes below are not made coarser: they cost nothing and would lose their shape.
+/// Smaller meshes are not simplified: they are fast and would lose their shape.
 constexpr std::size_t kFewTriangles = 800;
 
-/// A surface that is skipped once the frame is to be given up. Depth peeling draws each many times: this is where a
-/// slow frame can end early.
+/// A surface that is skipped once the frame is cancelled. Depth peeling draws each surface many times, so that a slow
+/// frame can end early here.
 class BreakableActor : public vtkOpenGLActor {
  public:
   static BreakableActor* New();
@@ -59,7 +59,7 @@ std::vector<SurfaceLayer::Surface> SurfaceLayer::build(const std::vector<std::pa
       if (has_few) {
         surface.levels[1] = surface.levels[2] = surface.levels[0];
       } else {
-        // The first step is quick and harmless; only its result is small enough for the slow one.
+        // The first step is fast and robust; only its result is small enough for the slow one.
         const SimplifiedMesh coarse = simplify(mesh->mesh_P, normals, kCoarseness);
         const SimplifiedMesh coarser = decimate(coarse.mesh, kKeep);
         surface.levels[1] = to_polydata(coarse.mesh, coarse.normals);
@@ -120,7 +120,7 @@ void SurfaceLayer::update(Surface& surface) {
   Appearance look = surface.look;
   look.opacity = opacity;
   apply(look, *surface.actor);
-  // What is cut open shows its inside.
+  // Clipped surfaces show their back faces.
   if (is_cut_) surface.actor->GetProperty()->BackfaceCullingOff();
   surface.actor->SetVisibility(is_visible_ && level_ == 0 && opacity > kLeastOpacity);
 }
@@ -166,7 +166,7 @@ bool SurfaceLayer::withhold_lesions(bool are_withheld) {
 
 void SurfaceLayer::set_level(int level) {
   if (level == level_) return;
-  // From still to moving and back the same moving pieces serve, as long as their level is the same.
+  // The pieces for motion are reused after a rest if their level is unchanged.
   if (level > 0 && level != moving_level_) is_moving_stale_ = true;
   if (level > 0) moving_level_ = level;
   level_ = level;

@@ -14,7 +14,7 @@
 namespace trocar::scene::detail {
 namespace {
 
-/// Motion below is not seen: half a hundredth of a millimetre.
+/// Smaller motion is invisible: five thousandths of a millimetre.
 constexpr double kUnseen_mm = 0.005;
 constexpr double kGlassyTransducer = 0.3;
 constexpr double kGhostOpacity = 0.4;
@@ -22,11 +22,11 @@ constexpr double kGhostRadius_mm = 1.2;
 constexpr double kGhostHubRadius_mm = 4.0;
 constexpr double kGhostHub_mm = 22.0;
 constexpr volume::Rgb kGhostColor = {150, 205, 255};
-constexpr double kStyletRadius_mm = 0.8;  // thicker than it is, as the needle: to be seen
+constexpr double kStyletRadius_mm = 0.8;  // drawn thicker than in reality for visibility, like the needle
 constexpr volume::Rgb kStyletColor = {236, 240, 246};
-constexpr double kCoreRadius_mm = 1.6;  // about the needle
+constexpr double kCoreRadius_mm = 1.6;  // around the needle
 constexpr volume::Rgb kCoreColor = {255, 138, 61};
-/// A change of the least thickness below this share rebuilds nothing.
+/// A smaller relative change of the minimum thickness does not rebuild the needle.
 constexpr double kThicknessStep = 0.15;
 
 vtkSmartPointer<vtkActor> make_tool(vtkRenderer& renderer) {
@@ -42,7 +42,8 @@ vtkSmartPointer<vtkActor> make_tool(vtkRenderer& renderer) {
   return actor;
 }
 
-/// Faces that look the same: a live scan's number of scanlines changes, and with it the last digits of its width.
+/// Compares the appearance of faces: the number of scanlines of a live scan changes, and with it the last digits of its
+/// width.
 bool are_alike(const TransducerFace& a, const TransducerFace& b) {
   constexpr double kUnseen_rad = 1e-4;
   return a.is_convex == b.is_convex && std::abs(a.radius_mm - b.radius_mm) < kUnseen_mm &&

@@ -11,14 +11,14 @@ namespace {
 constexpr std::int16_t kAir_hu = -1000;
 constexpr std::int16_t kFat_hu = -100;
 constexpr std::int16_t kSoft_hu = 40;
-/// Farther outside of the skin a voxel is table or blanket.
+/// Voxels farther outside the skin are table or blanket.
 constexpr float kOutside_mm = 1.0F;
-/// Gas that lies so deep is not the air before the skin.
+/// Gas at this depth is not the air outside the skin.
 constexpr float kInside_mm = -5.0F;
-/// The blurred edge of bone, too, is taken out.
+/// The partial volume edge of bone is also removed.
 constexpr double kBoneEdge_mm = 2.0;
 
-/// What labels say of a block of voxels.
+/// Labels in a block of voxels.
 enum Flag : std::uint8_t { kHasBone = 1, kHasVessel = 2 };
 
 std::array<std::uint8_t, 256> flags_of(const anatomy::LabelTable& table) {
@@ -30,7 +30,7 @@ std::array<std::uint8_t, 256> flags_of(const anatomy::LabelTable& table) {
   return flags;
 }
 
-/// Calls `act(i, j, k)` for each voxel of the grid, slices side by side.
+/// Calls `act(i, j, k)` for each voxel of the grid, slices in parallel.
 template <typename Act>
 void for_each_voxel(const volume::GridGeometry& g, const Act& act) {
   parallel_for(static_cast<std::size_t>(g.size[2]), 4, [&](std::size_t first_k, std::size_t last_k) {
@@ -55,7 +55,7 @@ volume::GridGeometry coarse_geometry(const volume::GridGeometry& g, const std::a
   return coarse;
 }
 
-/// HU of a voxel as the cloud wants it.
+/// HU of a voxel for the volume rendering.
 std::int16_t cloud_hu(const anatomy::VirtualPatient& patient, CloudContent content, std::size_t at) {
   const std::int16_t hu = patient.ct.voxels[at];
   if (patient.skin_distance_mm.empty()) return hu;
@@ -64,13 +64,13 @@ std::int16_t cloud_hu(const anatomy::VirtualPatient& patient, CloudContent conte
   return content == CloudContent::kWithoutGas && skin_mm < kInside_mm ? std::max(hu, kFat_hu) : hu;
 }
 
-/// Bone and its edge become soft tissue, vessels beside it stay.
+/// Replaces bone and its edge by soft tissue and keeps vessels next to it.
 void take_bone_out(volume::CtGrid& cloud, const volume::LabelGrid& flags) {
   const volume::GridGeometry& g = cloud.geometry;
   std::array<std::int64_t, 3> reach;
   for (std::size_t a = 0; a < 3; ++a)
     reach[a] = static_cast<std::int64_t>(std::ceil(kBoneEdge_mm / g.spacing_mm[static_cast<Eigen::Index>(a)]));
-  // The edge is spread along one direction after the other.
+  // The edge is extended along one direction after the other.
   volume::LabelGrid near = flags;
   for (std::size_t a = 0; a < 3; ++a) {
     const volume::LabelGrid before = near;

@@ -13,13 +13,13 @@
 namespace trocar::scene::detail {
 namespace {
 
-/// Voxels along the longest edge that a processor casts through in about a second.
+/// Voxels along the longest edge that a CPU can ray cast in about a second.
 constexpr std::int64_t kCoarseEdge = 190;
-/// Steps of a ray, in voxels and at most in mm: longer ones leave rings on the skin.
+/// Step length of a ray, in voxels with a limit in mm: longer steps produce rings on the skin.
 constexpr double kStepShare = 0.5;
 constexpr double kLongestStep_mm = 0.9;
 
-/// Values of the grid without its place, which goes to the volume as a matrix.
+/// Values of the grid without its pose, which the volume gets as a matrix.
 vtkSmartPointer<vtkImageData> to_image(const volume::CtGrid& grid) {
   const volume::GridGeometry& g = grid.geometry;
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -101,7 +101,7 @@ bool VolumeLayer::poll() {
   if (is_ready()) {
     rebuild();
   } else {
-    start();  // another preset has been chosen meanwhile
+    start();  // another preset has been selected since
   }
   return true;
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Linear = itk::MatrixOffsetTransformBase<double, 3, 3>;
 
-/// ITK knows its usual transforms, but not the base of all linear ones, which other programs write.
+/// ITK knows its usual transforms, but not the base class of all linear ones, which other programs write.
 void register_transforms() {
   static std::once_flag once;
   std::call_once(once, [] {
@@ -26,7 +26,7 @@ void register_transforms() {
   });
 }
 
-/// May throw what ITK throws.
+/// May throw exceptions of ITK.
 Result<AffineMap> read_throwing(const InputFile& file) {
   const std::string where = file.path().string();
   register_transforms();
@@ -45,7 +45,8 @@ Result<AffineMap> read_throwing(const InputFile& file) {
     for (unsigned column = 0; column < 3; ++column) map.matrix[row][column] = linear->GetMatrix()(row, column);
     map.offset_mm[row] = linear->GetOffset()[row];
   }
-  // What was read has as many as the file gave; a new one of the type has as many as it needs.
+  // The loaded transform has as many parameters as the file contains; a new one of the same type has as many as it
+  // needs.
   const itk::LightObject::Pointer another = linear->CreateAnother();
   const auto* fresh = dynamic_cast<const Linear*>(another.GetPointer());
   if (fresh == nullptr)
@@ -55,7 +56,7 @@ Result<AffineMap> read_throwing(const InputFile& file) {
   return map;
 }
 
-/// May throw what ITK throws.
+/// May throw exceptions of ITK.
 void write_throwing(const AffineMap& map, const fs::path& path) {
   const auto affine = itk::AffineTransform<double, 3>::New();
   itk::Matrix<double, 3, 3> matrix;

@@ -12,7 +12,7 @@ namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kOwnPrefixes[] = {"NRRD_", "ITK_"};  ///< ITK's own notes among the fields.
+constexpr const char* kOwnPrefixes[] = {"NRRD_", "ITK_"};  ///< Entries that ITK adds to the fields.
 
 bool is_own_note(const std::string& key) {
   return std::any_of(std::begin(kOwnPrefixes), std::end(kOwnPrefixes),

@@ -18,7 +18,7 @@ std::string encode_png(const volume::RgbImage& image) {
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string bytes(size, '\0');
   const int done = png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr);
-  TROCAR_CHECK(done != 0);  // Only a wrong size or no memory could fail.
+  TROCAR_CHECK(done != 0);  // Only a wrong size or lack of memory could fail.
   bytes.resize(size);
   return bytes;
 }

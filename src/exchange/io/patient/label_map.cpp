@@ -22,7 +22,7 @@ std::map<int, std::string> totalsegmentator_names() {
   return names;
 }
 
-/// Nothing: not a whole number.
+/// Empty if the key is not an integer.
 std::optional<int> number_of(std::string_view key) {
   int number = 0;
   const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
@@ -30,7 +30,7 @@ std::optional<int> number_of(std::string_view key) {
   return number;
 }
 
-/// The list as texts; TOML may have numbers or texts in it.
+/// The list as texts; its TOML entries can be numbers or texts.
 Result<std::vector<std::string>> ignored_labels(const config::TomlTable& file) {
   if (!file.has("ignore")) return std::vector<std::string>{};
   if (auto names = file.strings("ignore")) return names;

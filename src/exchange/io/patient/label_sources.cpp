@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kMaxLabel = 255;
-constexpr std::size_t kFilesAtOnce = 8;  ///< Masks unpacked at a time: bounds the memory.
+constexpr std::size_t kFilesAtOnce = 8;  ///< Masks unpacked at a time: limits the memory.
 
 /// File name without the endings of image files: "liver.nii.gz" -> "liver".
 std::string stem_of(const fs::path& path) {
@@ -29,7 +29,7 @@ std::string stem_of(const fs::path& path) {
   return name;
 }
 
-/// The values other than 0 that occur.
+/// The values other than 0 in the image.
 std::vector<int> values_in(const volume::LabelGrid& labels) {
   std::array<bool, 256> occurs{};
   for (const std::uint8_t value : labels.voxels) occurs[value] = true;
@@ -41,14 +41,14 @@ std::vector<int> values_in(const volume::LabelGrid& labels) {
 
 enum class Place { kNamedByUser, kInFolder };
 
-/// A file of one value is a mask and named after its file. Given by itself it may also be a segmentation that happens
-/// to show one structure: so it is where only the label map knows a name.
+/// A file with one value is a mask named after its file. A single file can also be a segmentation with one structure:
+/// this holds if only the label map knows a name.
 bool is_mask(const std::vector<int>& values, const std::string& stem, const LabelMap& map, Place place) {
   if (values.size() != 1) return values.empty();
   return place == Place::kInFolder || anatomy::find_known_structure(stem) || !map.has_number(values.front());
 }
 
-/// Values without a name are left to build_patient, which lists those of all files.
+/// Values without a name are reported by build_patient, which lists those of all files.
 Result<anatomy::LabelSource> name_labels(volume::LabelGrid labels, const fs::path& path, const LabelMap& map,
                                          Place place) {
   anatomy::LabelSource source{path.string(), std::move(labels), {}};
@@ -66,7 +66,7 @@ Result<anatomy::LabelSource> name_labels(volume::LabelGrid labels, const fs::pat
   return source;
 }
 
-// --- .seg.nrrd of 3D Slicer ------------------------------------------------------------------------------------------
+// .seg.nrrd files of 3D Slicer.
 
 struct Segment3dSlicer {
   std::string name;
@@ -93,7 +93,7 @@ std::vector<Segment3dSlicer> segments_in(const detail::RawVolume& raw) {
   }
 }
 
-/// One source a layer: segments that overlap lie in different layers.
+/// One source per layer: overlapping segments are in different layers.
 Result<std::vector<anatomy::LabelSource>> read_segments(const detail::RawVolume& raw,
                                                         const std::vector<Segment3dSlicer>& segments,
                                                         const LabelMap& map, const fs::path& path) {
@@ -132,9 +132,9 @@ Result<std::vector<anatomy::LabelSource>> read_label_file(const fs::path& path, 
   return sources;
 }
 
-// --- Folders of masks ------------------------------------------------------------------------------------------------
+// Folders of masks.
 
-/// An empty mask needs no voxels: a coarse grid over the same box says where it lies.
+/// An empty mask needs no voxels: a coarse grid over the same box gives its position.
 volume::LabelGrid empty_over(const volume::GridGeometry& g) {
   volume::GridGeometry coarse = g;
   coarse.size = {2, 2, 2};
@@ -145,8 +145,7 @@ volume::LabelGrid empty_over(const volume::GridGeometry& g) {
   return volume::LabelGrid(coarse);
 }
 
-/// Paints a mask into a source on the same grid when no voxel is taken yet. A hundred masks that do not overlap take
-/// the memory of one.
+/// Merges a mask into a source on the same grid if they do not overlap. A hundred such masks take the memory of one.
 bool try_join(const anatomy::LabelSource& mask, anatomy::LabelSource& into) {
   const auto value = static_cast<std::uint8_t>(into.names.size() + 1);
   if (value == 0 || mask.names.size() != 1 || !mask.labels.geometry.matches(into.labels.geometry)) return false;
@@ -157,7 +156,7 @@ bool try_join(const anatomy::LabelSource& mask, anatomy::LabelSource& into) {
   for (std::size_t n = 0; n < from.size(); ++n)
     if (from[n] != 0) to[n] = value;
   into.names.emplace_back(value, mask.names.front().second);
-  into.file = fs::path(mask.file).parent_path().string();  // The masks' folder.
+  into.file = fs::path(mask.file).parent_path().string();  // The folder of the masks.
   return true;
 }
 
@@ -231,7 +230,7 @@ Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& fold
   if (!files.empty()) return read_mask_files(files, map);
 
   MaskFolder masks;
-  // A path with a slash at its end has no file name.
+  // A path with a trailing slash has no file name.
   const fs::path self = fs::absolute(folder / ".").lexically_normal().parent_path();
   if (detail::has_dicom_images(self)) {
     TROCAR_TRY(anatomy::LabelSource mask, read_dicom_mask(self, map));

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Hash of the running program; empty where it cannot be read.
+/// Hash of the running program; empty if it cannot be read.
 const std::string& build_hash() {
   static const std::string kHash = [] {
     const auto program = read_file("/proc/self/exe");
@@ -41,7 +41,7 @@ std::uintmax_t bytes_of(const fs::path& folder) {
   return bytes;
 }
 
-/// Removes the least recently used entries beyond the limits; the newest one stays.
+/// Removes the least recently used entries beyond the limits; keeps the newest one.
 void drop_oldest(const fs::path& folder) {
   std::error_code ignored;
   std::vector<std::pair<fs::file_time_type, fs::path>> entries;
@@ -56,7 +56,7 @@ void drop_oldest(const fs::path& folder) {
   }
 }
 
-/// The entry where it is whole; it counts as used now.
+/// Returns the entry if it is complete, and marks it as used now.
 std::optional<fs::path> use(const fs::path& entry) {
   std::error_code ignored;
   if (!fs::exists(entry / "patient.toml", ignored)) return std::nullopt;

@@ -56,7 +56,7 @@ volume::FloatGrid from_hundredths(const volume::CtGrid& hundredths) {
   return distance_mm;
 }
 
-/// Every label of the volume stands in the table.
+/// Checks that the table contains every label of the volume.
 Status check_label_ids(const anatomy::VirtualPatient& patient, const std::string& where) {
   std::array<bool, 256> occurs{};
   for (const std::uint8_t id : patient.labels.voxels) occurs[id] = true;
@@ -73,7 +73,7 @@ Status check_geometry(const anatomy::VirtualPatient& patient, const std::string&
   return fail("CT, labels and skin distance are not on the same grid", where, kBuildAgain);
 }
 
-/// A file name of a structure's name, not yet taken.
+/// A unique file name for a structure.
 std::string mesh_file_name(const std::string& name, std::set<std::string>& taken) {
   std::string stem;
   for (const char c : name) {
@@ -86,7 +86,7 @@ std::string mesh_file_name(const std::string& name, std::set<std::string>& taken
   return fmt::format("meshes/{}.vtp", file);
 }
 
-/// Distances pack badly and unpack slowly: plain.
+/// Distances compress badly and unpack slowly: not compressed.
 Status write_distance(const volume::FloatGrid& distance_mm, const fs::path& path) {
   const volume::CtGrid hundredths = to_hundredths(distance_mm);
   return detail::write_volume_file({detail::VoxelType::kInt16, std::as_bytes(std::span(hundredths.voxels))},
@@ -139,7 +139,7 @@ Result<volume::Grid<T>> read_volume(const fs::path& folder, const char* name, de
 Status load_volumes(const fs::path& folder, anatomy::VirtualPatient& patient) {
   Result<volume::CtGrid> ct, distance;
   Result<volume::LabelGrid> labels;
-  using detail::Check;  // The content hash shows afterwards whether CT and labels are whole.
+  using detail::Check;  // The content hash later verifies that CT and labels are complete.
   parallel_invoke([&] { ct = read_volume<std::int16_t>(folder, kCtFile, Check::kSize); },
                   [&] { labels = read_volume<std::uint8_t>(folder, kLabelFile, Check::kSize); },
                   [&] {

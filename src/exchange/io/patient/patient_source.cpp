@@ -19,7 +19,7 @@ bool is_path(const std::string& folder_or_name) {
   return folder_or_name.find('/') != std::string::npos || fs::exists(folder_or_name, ignored);
 }
 
-constexpr std::size_t kMostFolders = 256;  // looked into beside a record
+constexpr std::size_t kMostFolders = 256;  // number of folders searched next to a session
 
 bool has_hash(const fs::path& folder, const std::string& hash) {
   std::error_code ignored;
@@ -28,7 +28,7 @@ bool has_hash(const fs::path& folder, const std::string& hash) {
   return description && description->content_hash == hash;
 }
 
-/// The recorded path and those that it may have become, best first.
+/// The recorded path and its possible new locations, best first.
 std::vector<fs::path> candidates(const fs::path& recorded, const fs::path& beside) {
   std::vector<fs::path> folders{recorded};
   if (recorded.is_relative()) folders.push_back(beside / recorded);
@@ -46,7 +46,7 @@ std::vector<fs::path> candidates(const fs::path& recorded, const fs::path& besid
   return folders;
 }
 
-/// A cache that cannot be written costs time, not the command.
+/// If the cache cannot be written, the command continues more slowly.
 void log_if_failed(const Result<fs::path>& kept) {
   if (!kept) log_info("the patient is not cached: {}", kept.error().text());
 }

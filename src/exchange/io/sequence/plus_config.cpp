@@ -31,7 +31,7 @@ struct Choice {
   Value value;
 };
 
-/// Sets `value` by the attribute's name of it, where there is one.
+/// Sets `value` from its attribute, if present.
 template <class Value, std::size_t N>
 Status take_choice(const XmlElement& element, std::string_view name, const std::array<Choice<Value>, N>& choices,
                    Value& value) {
@@ -47,7 +47,7 @@ Status take_choice(const XmlElement& element, std::string_view name, const std::
   return fail(fmt::format("{} {}=\"{}\" is not known", element.path, name, *text), {}, "use one of " + names);
 }
 
-/// The attribute's numbers, where there is one: exactly N.
+/// The numbers of the attribute, if present: exactly N.
 template <std::size_t N>
 Result<std::optional<std::array<double, N>>> numbers_of(const XmlElement& element, std::string_view name) {
   const auto text = find_attribute(element, name);
@@ -94,7 +94,7 @@ Status take_transform(const XmlElement& element, ultrasound::TrackedSequence::Tr
 Status take_rectangle(const XmlElement& element, ultrasound::FreehandOptions& options) {
   TROCAR_TRY(const auto origin, numbers_of<2>(element, "ClipRectangleOrigin"));
   TROCAR_TRY(const auto size, numbers_of<2>(element, "ClipRectangleSize"));
-  if (!origin || !size || (*size)[0] <= 0.0 || (*size)[1] <= 0.0) return {};  // PLUS: 0 0 is no clipping
+  if (!origin || !size || (*size)[0] <= 0.0 || (*size)[1] <= 0.0) return {};  // PLUS: 0 0 means no clipping
   const auto pixels = [](double value) { return static_cast<int>(std::clamp(std::floor(value), -1e6, 1e6)); };
   options.rectangle =
       ultrasound::ClipRectangle{pixels((*origin)[0]), pixels((*origin)[1]), pixels((*size)[0]), pixels((*size)[1])};
@@ -104,7 +104,7 @@ Status take_rectangle(const XmlElement& element, ultrasound::FreehandOptions& op
 Status take_fan(const XmlElement& element, ultrasound::FreehandOptions& options) {
   TROCAR_TRY(const auto angles_deg, numbers_of<2>(element, "FanAnglesDeg"));
   TROCAR_TRY(const auto origin_px, numbers_of<2>(element, "FanOriginPixel"));
-  if (!angles_deg || !origin_px || (*angles_deg)[0] == (*angles_deg)[1]) return {};  // PLUS: 0 0 is no fan
+  if (!angles_deg || !origin_px || (*angles_deg)[0] == (*angles_deg)[1]) return {};  // PLUS: 0 0 means no fan
   constexpr double kRadPerDegree = std::numbers::pi / 180.0;
   ultrasound::ClipFan fan;
   fan.origin_column = (*origin_px)[0];
@@ -117,7 +117,7 @@ Status take_fan(const XmlElement& element, ultrasound::FreehandOptions& options)
   return {};
 }
 
-/// Attributes of <VolumeReconstruction> that change the result and are not followed.
+/// Attributes of <VolumeReconstruction> that change the result but are not supported.
 void note_what_is_left_aside(const XmlElement& element, std::vector<std::string>& left_aside) {
   for (const char* name : {"OutputOrigin", "OutputExtent", "EnableFanAnglesAutoDetect", "SkipInterval", "FanAngles"})
     if (const auto text = find_attribute(element, name); text && *text != "FALSE" && *text != "1")

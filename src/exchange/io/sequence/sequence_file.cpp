@@ -15,7 +15,7 @@ namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
-/// Turns all pictures to columns towards the marked side and rows away from the face.
+/// Converts all frames to columns towards the marked side and rows away from the face.
 void turn_pictures(const detail::SequenceHeader& header, ultrasound::TrackedSequence& sequence) {
   const auto columns = static_cast<std::ptrdiff_t>(sequence.columns);
   for (std::size_t frame = 0; frame < sequence.frames.size(); ++frame) {

@@ -19,12 +19,12 @@ namespace trocar::io {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMaxDeviation = 1e-4;  ///< Of R^T R from identity.
+constexpr double kMaxDeviation = 1e-4;  ///< Of R^T R from the identity.
 constexpr const char* kNote = "# trocar ";
 constexpr const char* kNoteEquals = " = ";
 constexpr const char* kSaveAgain = "save a linear transform as .tfm, for example in 3D Slicer";
 
-/// How many numbers stand in "1 -2.5 3e4"; nothing where a word is not a finite number.
+/// Count of the numbers in "1 -2.5 3e4"; empty if a word is not a finite number.
 std::optional<std::size_t> count_numbers(std::string_view text) {
   for (std::size_t count = 0;; ++count) {
     const auto first = text.find_first_not_of(" \t\r");
@@ -38,16 +38,16 @@ std::optional<std::size_t> count_numbers(std::string_view text) {
   }
 }
 
-/// Numbers in a transform file, nothing where its line is missing.
+/// Count of numbers in a transform file; empty if the line is missing.
 struct ParameterCounts {
   std::optional<std::size_t> parameters;
   std::optional<std::size_t> fixed_parameters;
 };
 
-/// ITK's reader reports no missing line, no missing number and no file that was cut: it returns the identity or zeros.
+/// ITK's reader does not report a missing line, a missing number or a truncated file: it returns the identity or zeros.
 Result<ParameterCounts> count_parameters(const std::string& text, const std::string& where) {
   if (!text.starts_with("#Insight Transform File")) return fail("not an ITK transform file", where, kSaveAgain);
-  // A file that was cut within its last number has as many numbers as a whole one.
+  // A file truncated within its last number has the full count of numbers.
   if (!text.ends_with('\n'))
     return fail("the last line has no line break: the file may be cut", where,
                 "copy the file again, or end its last line with a line break");

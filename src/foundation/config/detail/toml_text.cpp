@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
 constexpr int kMaxDepth = 32;  ///< Nested brackets, and dots of one key.
 
-/// Length of the well-formed UTF-8 character at the start of `text`, 0 when it is malformed (Unicode, table 3-7).
+/// Length of the well-formed UTF-8 character at the start of `text`; 0 if it is malformed (Unicode, table 3-7).
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t n) -> unsigned { return static_cast<unsigned char>(text[n]); };
   const auto tail = [&](std::size_t n, unsigned low = 0x80, unsigned high = 0xbf) {
@@ -33,17 +33,17 @@ std::size_t utf8_length(std::string_view text) {
   return 0;
 }
 
-/// Walks the text as toml++ does up to the first error: what follows an error is never parsed.
+/// Scans the text like toml++ up to the first error: text after an error is never parsed.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : text_(text) {}
 
-  /// What toml++ must not see, empty when nothing.
+  /// The first fault that toml++ must not parse; empty if there is none.
   std::string find_fault() {
     int brackets = 0;
     int dots = 0;
-    char before = '\n';  // the last character that is not blank
-    bool is_key = true;  // no value has begun on this line
+    char before = '\n';  // the last non-blank character
+    bool is_key = true;  // no value has started on this line
     while (at_ < text_.size()) {
       const char c = text_[at_];
       if (c == '"' || c == '\'') {
@@ -75,8 +75,8 @@ class Scanner {
   }
 
  private:
-  /// Goes behind the string that starts here; false at an escape that TOML does not have, or at a backslash that joins
-  /// lines: what follows one is undefined behaviour in toml++ where it is not ASCII.
+  /// Moves past the string that starts here; false at an escape that is not in TOML, or at a backslash that joins
+  /// lines: non-ASCII text after it is undefined behaviour in toml++.
   bool skip_string() {
     const char quote = text_[at_];
     const std::string fence(3, quote);
@@ -93,7 +93,7 @@ class Scanner {
         return true;
       } else if (is_multiline && text_.substr(at_, 3) == fence) {
         at_ += 3;
-        while (at_ < text_.size() && text_[at_] == quote) ++at_;  // quotes that belong to the content
+        while (at_ < text_.size() && text_[at_] == quote) ++at_;  // quotes that are part of the content
         return true;
       } else {
         ++at_;
@@ -145,7 +145,7 @@ std::string_view nearest_word(std::string_view word, const std::vector<std::stri
         row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
       }
     }
-    // More changed letters than a third are no misspelling.
+    // More changes than a third of the letters do not count as a misspelling.
     const std::size_t allowed = std::max<std::size_t>(2, std::max(word.size(), candidate.size()) / 3);
     if (row.back() <= allowed && row.back() < smallest) {
       smallest = row.back();

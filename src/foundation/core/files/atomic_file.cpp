@@ -16,7 +16,7 @@ inline namespace core {
 namespace fs = std::filesystem;
 namespace {
 
-/// The target without "." and "..", and without the slash that a folder's name may end in.
+/// The target without "." and "..", and without a trailing slash.
 fs::path plain(const fs::path& target) {
   const fs::path normal = fs::absolute(target).lexically_normal();
   return normal.has_filename() ? normal : normal.parent_path();

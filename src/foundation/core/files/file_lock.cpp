@@ -15,7 +15,7 @@ namespace {
 
 constexpr mode_t kForUserAlone = 0600;
 
-/// Whether the path still names the open file: its holder may have removed it before it released the lock.
+/// True if the path still refers to the open file: its holder may have removed it before it released the lock.
 bool is_still_there(int file, const std::filesystem::path& path) {
   struct stat opened {
   }, named{};

@@ -23,7 +23,7 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
-// Assumed: several times the largest file of the kind that was met in practice.
+// Assumed: several times the largest file of this kind found in practice.
 constexpr std::array kLimits{
     FileLimit{FileKind::kToml, "TOML file", 4 * kMiB},
     FileLimit{FileKind::kJson, "JSON file", 8 * kMiB},
@@ -62,7 +62,7 @@ Status check_kind(const struct stat& status, const fs::path& path) {
   return fail("not a regular file", path.string(), "name a file, not a pipe, socket or device");
 }
 
-/// Whether an open file lies below a folder: both as the kernel knows them.
+/// True if an open file is below a folder, both according to the kernel.
 bool is_inside(const fs::path& pinned_path, const fs::path& folder) {
   std::error_code error;
   const fs::path file = fs::read_symlink(pinned_path, error);
@@ -112,7 +112,7 @@ Result<InputFile> InputFile::open(const fs::path& path, FileKind kind, const fs:
 }
 
 Result<InputFile> InputFile::open(const fs::path& path, const FileLimit& limit, const fs::path& inside) {
-  // Looked at before it is opened: opening some devices has an effect. O_NONBLOCK: opening a FIFO would wait.
+  // Checked before it is opened: opening some devices has side effects. O_NONBLOCK: opening a FIFO would block.
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return cannot_open(path, errno);
   TROCAR_TRY_STATUS(check_kind(status, path));
@@ -134,7 +134,7 @@ fs::path InputFile::pinned_path() const {
 Result<std::string> InputFile::read_all() const {
   std::string bytes;
   try {
-    // Files below /proc give no size; a file may grow while it is read.
+    // Files below /proc have no size; a file can grow while it is read.
     bytes.resize(static_cast<std::size_t>(size_) + 1);
     std::size_t done = 0;
     while (true) {

@@ -13,9 +13,9 @@ inline namespace core {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kProbeBytes = 4096;  // a block: an empty file fits on a full disk
+constexpr std::size_t kProbeBytes = 4096;  // one block: an empty file fits on a full disk
 
-/// The folder in which something must be made: the target's, or where that is missing the nearest parent of it.
+/// The folder of the output: that of the target, or its nearest existing parent.
 fs::path nearest_folder(const fs::path& target) {
   std::error_code ignored;
   fs::path folder = fs::absolute(target, ignored).lexically_normal();
@@ -39,7 +39,7 @@ Status check_can_write(const fs::path& target) {
   const fs::path folder = nearest_folder(target);
   const std::string name =
       target.has_filename() ? target.filename().string() : target.parent_path().filename().string();
-  // As long as the name of the temporary file that will hold the output until it is whole.
+  // As long as the name of the temporary file of the output.
   const fs::path probe = folder / fmt::format(".{}.{}.part", name, ::getpid());
   const int file = ::open(probe.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
   if (file < 0) return cannot_write(errno, target);

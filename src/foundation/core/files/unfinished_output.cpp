@@ -11,7 +11,7 @@ inline namespace core {
 namespace fs = std::filesystem;
 namespace {
 
-/// A path and the process that makes it: a forked child does not remove what its parent is making.
+/// A path and its process: a forked child does not remove the files of its parent.
 struct Entry {
   fs::path path;
   pid_t process;
@@ -40,7 +40,7 @@ void take_off(std::vector<Entry>& entries, const fs::path& path) {
   if (found != entries.end()) entries.erase(found);
 }
 
-/// The last finished output that does not lie in an unfinished one; empty: none.
+/// The last finished output outside all unfinished ones; empty: none.
 fs::path last_finished(const Registry& list) {
   for (auto output = list.finished.rbegin(); output != list.finished.rend(); ++output) {
     const auto holds = [&](const Entry& entry) {
@@ -72,7 +72,7 @@ void forget_finished_output(const fs::path& path) {
 void end_without_unfinished_outputs(std::string (*say_why)(const fs::path& output)) {
   registry().mutex.lock();  // for ever: no output is finished from here on
   const std::string line = say_why(last_finished(registry()));
-  // A shell takes the place of this program: with it all threads are gone that could make a removed folder anew.
+  // A shell replaces this program: this ends all threads that could recreate a removed folder.
   constexpr const char* kScript = R"(line=$1; shift; rm -rf -- "$@"; printf '%s\n' "$line" >&2; exit 1)";
   std::vector<std::string> words = {"sh", "-c", kScript, "sh", line};
   for (const Entry& entry : registry().entries)
@@ -81,7 +81,7 @@ void end_without_unfinished_outputs(std::string (*say_why)(const fs::path& outpu
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   ::execv("/bin/sh", arguments.data());
-  std::error_code ignored;  // no shell: as well as this program can
+  std::error_code ignored;  // without a shell: removed by this program
   for (std::size_t i = 5; i < words.size(); ++i) fs::remove_all(words[i], ignored);
   std::fprintf(stderr, "%s\n", line.c_str());
   ::_exit(1);

@@ -8,7 +8,7 @@ namespace {
 
 std::filesystem::path folder(const char* variable, const char* below_home) {
   const char* given = std::getenv(variable);
-  // What is not absolute is to be ignored (XDG base directory specification).
+  // Relative paths must be ignored (XDG base directory specification).
   if (given != nullptr && std::filesystem::path(given).is_absolute()) return std::filesystem::path(given) / "trocar";
   const char* home = std::getenv("HOME");
   const std::filesystem::path base =

@@ -26,7 +26,7 @@ ColumnRange columns_inside(const GridGeometry& geometry, const Vec3& start, cons
   }
   const auto inside = [&](int u) { return is_inside(geometry, start + static_cast<double>(u) * step); };
 
-  // The divisions round: one column to each side may be wrong. Rounded sums are monotonic, so the ends decide.
+  // The divisions are rounded: one column on each side can be wrong. Rounded sums are monotonic, so the ends decide.
   int first = static_cast<int>(std::min(low, static_cast<double>(columns)));
   int last = static_cast<int>(std::max(high, -1.0)) + 1;
   if (first > 0 && inside(first - 1)) --first;

@@ -38,7 +38,7 @@ void find_runs(std::span<const std::uint8_t> row, bool of_set, std::vector<Run>&
   }
 }
 
-/// Joins the runs of two neighbouring rows that share a column.
+/// Joins the runs of two adjacent rows that share a column.
 void join_rows(const RunLabels& labels, std::size_t row_a, std::size_t row_b, Forest& forest) {
   std::size_t a = labels.row_begin[row_a];
   std::size_t b = labels.row_begin[row_b];
@@ -74,7 +74,7 @@ RunLabels label_runs(std::span<const std::uint8_t> voxels, const Block& block, b
     if (r >= block.rows) join_rows(labels, r - block.rows, r, forest);
   }
 
-  // A root comes before every other run of its tree, so its component is known when theirs is asked for.
+  // A root precedes every other run of its tree, so its component is known when theirs is needed.
   for (std::size_t n = 0; n < labels.runs.size(); ++n) {
     const std::uint32_t root = forest.root(static_cast<std::uint32_t>(n));
     labels.runs[n].component =

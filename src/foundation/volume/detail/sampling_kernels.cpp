@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-// Compiled once for each instruction set by foreach_target.h; the fitting one is chosen when the program runs.
+// Compiled for each instruction set by foreach_target.h; selected at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volume/detail/sampling_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -21,7 +21,7 @@ using I = hn::RebindToSigned<F>;
 using VF = hn::Vec<F>;
 using VI = hn::Vec<I>;
 
-/// Splits positions into the cell's first voxel (returned) and the place in the cell.
+/// Splits positions into the cell's first voxel (returned) and the position in the cell.
 HWY_INLINE VI split(VF position, const AxisLimits& axis, VF& fraction) {
   const F f;
   const VF clamped = hn::Min(hn::Max(position, hn::Set(f, axis.low)), hn::Set(f, axis.high));

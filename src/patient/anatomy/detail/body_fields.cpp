@@ -24,9 +24,9 @@ constexpr double kFatSheetMm = 5.0;     // radius of what is too thin to be the 
 constexpr double kStepMm = 1.5 * kCoarseMm;
 constexpr double kLungVesselMm = 6.0;  // vessels up to this radius belong to the lung
 constexpr double kMinLungMl = 20.0;
-constexpr double kLungAboveHu = -940.0;  // mean of aerated lung -700..-900, of bowel gas below
+constexpr double kLungAboveHu = -940.0;  // mean of aerated lung -700..-900, of bowel gas lower
 
-/// What the fields are found from, on the coarse grid.
+/// Input of the fields, on the coarse grid.
 struct Coarse {
   volume::CtGrid ct;
   volume::MaskGrid body;
@@ -80,8 +80,8 @@ volume::MaskGrid closed(const volume::MaskGrid& mask, double radius_mm) {
   return volume::erode(volume::dilate(mask, radius_mm), radius_mm);
 }
 
-/// Fat below the skin: all that the straight way to the nearest skin leads through is fat too. (Connectedness would
-/// lead around the muscles into the visceral fat.) Thin shadows behind gaps between muscles are cut off.
+/// Fat below the skin: the straight line to the nearest skin contains only fat. (Connectedness would lead around the
+/// muscles into the visceral fat.) Thin shadows behind gaps between muscles are removed.
 volume::MaskGrid subcutaneous_fat(const Coarse& coarse, const volume::FloatGrid& skin_distance_mm) {
   const volume::GridGeometry& grid = coarse.ct.geometry;
   std::vector<std::pair<float, std::size_t>> by_depth;
@@ -102,22 +102,22 @@ volume::MaskGrid subcutaneous_fat(const Coarse& coarse, const volume::FloatGrid&
 }
 
 volume::FloatGrid find_wall(const Coarse& coarse, const volume::FloatGrid& skin_distance_mm) {
-  // Closed first: some segmentations leave the marrow out.
+  // Closed first: some segmentations omit the marrow.
   const volume::MaskGrid spine = opened(closed(coarse.bone, kThickBoneMm), kThickBoneMm);
   const volume::MaskGrid spine_with_discs = closed(spine, kDiscMm);
   const volume::FloatGrid to_spine_mm = volume::distance_to_mask_mm(spine);
   volume::FloatGrid wall = volume::distance_to_mask_mm(subcutaneous_fat(coarse, skin_distance_mm));
   for (std::size_t n = 0; n < wall.voxels.size(); ++n) {
-    // The fat's mask was shrunk: its border lies that much farther out.
+    // The mask of the fat was eroded: its border is farther out by that distance.
     const auto from_fat_mm = static_cast<float>(wall.voxels[n] - kFatSheetMm - kWallReachMm);
     const auto from_spine_mm = static_cast<float>(to_spine_mm.voxels[n] - kSpineReachMm);
-    const bool in_spine = spine_with_discs.voxels[n] != 0;  // disc, canal, marrow: no muscle
+    const bool in_spine = spine_with_discs.voxels[n] != 0;  // disc, canal, marrow: not muscle
     wall.voxels[n] = in_spine ? static_cast<float>(kCoarseMm) : std::min(from_fat_mm, from_spine_mm);
   }
   return wall;
 }
 
-/// Large parts of air inside the body that are not as empty as bowel gas, and the lungs that have a label.
+/// Large parts of air inside the body that are denser than bowel gas, and the labelled lungs.
 volume::MaskGrid aerated_lung(const Coarse& coarse) {
   const volume::GridGeometry& grid = coarse.ct.geometry;
   const volume::MaskGrid air = select(grid, [&](std::size_t n) {

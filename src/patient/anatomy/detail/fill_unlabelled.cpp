@@ -18,22 +18,21 @@ namespace trocar::anatomy::detail {
 namespace {
 
 constexpr double kMinPartMm3 = 100.0;  // assumed: smaller islands are noise and partial volume
-constexpr double kLungRimMm = 3.0;     // assumed: the coarse lung's border is good to this
-constexpr double kThickSkinMm = 8.0;   // assumed: skin is nowhere on the trunk thicker
+constexpr double kLungRimMm = 3.0;     // assumed: accuracy of the coarse lung's border
+constexpr double kThickSkinMm = 8.0;   // assumed: skin of the trunk is nowhere thicker
 constexpr double kBeneathSkinMm = 4.0;
-constexpr double kAirWallMm =
-    2.0;  // assumed: what looks like fat this close to air is wall seen through partial volume
+constexpr double kAirWallMm = 2.0;  // assumed: apparent fat this close to air is a wall with partial volume
 
-/// The labels that are found from CT values.
+/// Labels assigned from CT values.
 constexpr std::array<std::string_view, 6> kFillNames = {"fat", "muscle", "bone_other", "gas", "lung", "soft_tissue"};
 
-/// The ids they have in this patient.
+/// Their ids in this patient.
 struct FillIds {
   std::uint8_t fat, muscle, bone, gas, lung, soft_tissue;
   std::array<std::uint8_t, 6> all() const { return {fat, muscle, bone, gas, lung, soft_tissue}; }  ///< As kFillNames.
 };
 
-/// The id of a name in the table, else the next free one.
+/// The id of a name in the table, otherwise the next free one.
 FillIds choose_ids(const LabelTable& table) {
   std::uint8_t next = table.labels.empty() ? 1 : static_cast<std::uint8_t>(table.labels.back().id + 1);
   std::array<std::uint8_t, 6> ids{};
@@ -44,7 +43,7 @@ FillIds choose_ids(const LabelTable& table) {
   return {ids[0], ids[1], ids[2], ids[3], ids[4], ids[5]};
 }
 
-/// Where a voxel lies that has no label.
+/// Position of an unlabelled voxel.
 struct Place {
   bool in_wall = true;
   bool in_lung = false;
@@ -60,7 +59,7 @@ std::uint8_t classify(int hu, const Place& place, const FillIds& ids) {
   return hu <= kMuscleUpToHu && place.in_wall ? ids.muscle : ids.soft_tissue;
 }
 
-/// Samples the coarse fields at the voxels of a finer grid that covers the same box.
+/// Samples the coarse fields at the voxels of a finer grid with the same box.
 class FieldSampler {
  public:
   FieldSampler(const BodyFields& fields, const volume::GridGeometry& grid) : fields_(fields) {
@@ -97,7 +96,7 @@ void classify_all(const volume::CtGrid& smooth, const volume::FloatGrid& skin_di
   });
 }
 
-/// Lean tissue just below the surface with fat beneath it is skin, thicker than elsewhere: it joins the subcutis.
+/// Lean tissue just below the surface with fat beneath it is thicker skin: it becomes part of the subcutis.
 void remove_thick_skin(const volume::FloatGrid& skin_distance_mm, const FillIds& ids, volume::LabelGrid& labels) {
   std::vector<std::size_t> skin;
   for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
@@ -125,7 +124,7 @@ void demote_faint_bone(const volume::CtGrid& ct, const FillIds& ids, volume::Lab
   }
 }
 
-/// Turns fat that is seen between air and the tissue around it into soft tissue: pleura or the wall of a bowel.
+/// Turns apparent fat between air and the surrounding tissue into soft tissue: pleura or the wall of a bowel.
 void restore_air_walls(const LabelTable& table, const FillIds& ids, volume::LabelGrid& labels) {
   std::array<bool, 256> is_air{};
   for (const Label& label : table.labels) is_air[label.id] = label.tissue == "lung";

@@ -23,7 +23,7 @@ void add_small_parts(const volume::LabelGrid& labels, std::uint8_t id, std::size
   volume::MaskGrid mask(labels.geometry);
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) mask.voxels[n] = labels.voxels[n] == id ? 1 : 0;
   const volume::Components parts = volume::connected_components(mask);
-  // Parts are numbered by falling size: the small ones come last.
+  // Parts are sorted by decreasing size: the small ones come last.
   const auto first_small = std::find_if(parts.voxel_counts.begin(), parts.voxel_counts.end(),
                                         [&](std::size_t voxels) { return voxels < min_voxels; });
   const auto large_count = static_cast<std::size_t>(first_small - parts.voxel_counts.begin());
@@ -40,7 +40,7 @@ void merge_small_parts(volume::LabelGrid& labels, std::span<const std::uint8_t> 
   SmallParts small;
   for (const std::uint8_t id : ids) add_small_parts(labels, id, min_voxels, small);
 
-  // Small parts are taken out first, so that each is measured against large parts only.
+  // Small parts are removed first, so that each is compared with large parts only.
   std::array<std::size_t, 256> column_of{};  // 0: none of `ids`
   for (std::size_t n = 0; n < ids.size(); ++n) column_of[ids[n]] = n + 1;
   const std::size_t columns = ids.size() + 1;

@@ -14,8 +14,8 @@
 namespace trocar::anatomy::detail {
 namespace {
 
-constexpr double kMinOverlap = 0.05;         // of the smaller grid; below, the files are of different scans
-constexpr std::size_t kMaxStructures = 245;  // of 255 label values, the rest is for what is found from HU
+constexpr double kMinOverlap = 0.05;         // of the smaller grid; below, the files belong to different scans
+constexpr std::size_t kMaxStructures = 245;  // of 255 label values; the others are for labels from HU
 constexpr std::size_t kBlock = 1 << 16;
 
 std::array<std::size_t, 256> count_values(const volume::LabelGrid& labels) {
@@ -95,7 +95,7 @@ class Merger {
       const auto v = static_cast<std::uint8_t>(value);
       if (v == 0 || is_left_out(name)) continue;
       if (counts[v] == 0) {
-        // A label map names more than a scan shows; a file of its own that is empty is worth a word.
+        // A label map can name more structures than a scan contains; an empty mask file causes a warning.
         if (source.names.size() == 1) empty_masks.push_back(name);
         continue;
       }

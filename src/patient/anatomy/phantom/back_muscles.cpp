@@ -15,7 +15,7 @@ std::string side_of(float sign) {
   return sign < 0.0F ? "_right" : "_left";
 }
 
-/// Multifidus beside the spinous processes, longissimus and iliocostalis outside it, a cleft of fat between.
+/// Multifidus next to the spinous processes, longissimus and iliocostalis outside it, with a cleft of fat in between.
 void add_erector_spinae(Anatomy& anatomy, float sign) {
   const std::uint8_t fat = anatomy.label("fat");
   const auto& noise = anatomy.noise;
@@ -74,7 +74,7 @@ void add_quadratus_lumborum(Anatomy& anatomy, float sign) {
       60.0F, 9.0F, 6.0F);
 }
 
-/// The crura of the diaphragm beside the aorta.
+/// The crura of the diaphragm next to the aorta.
 void add_crus(Anatomy& anatomy, float sign) {
   const std::vector<Knot> crus_knots{{Vec3f(20.0F, -2.0F, 66.0F), 4.5F},
                                      {Vec3f(19.0F, 4.0F, 45.0F), 5.0F},

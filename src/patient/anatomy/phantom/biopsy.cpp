@@ -16,9 +16,9 @@ constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
 constexpr int kTries = 20000;
 constexpr float kLongestPathMm = 120.0F;
 constexpr std::size_t kLesions = 3;
-constexpr float kFromHilumMm = 38.0F;  ///< The great branches of the vessels need their room.
+constexpr float kFromHilumMm = 38.0F;  ///< Space for the main branches of the vessels.
 
-/// Structures that a path keeps away from.
+/// Structures that a path avoids.
 struct Risks {
   std::vector<const Structure*> bones;
   std::vector<const Structure*> organs;
@@ -53,7 +53,7 @@ float organ_margin(const PathMargins& m) {
   return static_cast<float>(m.organ_mm + m.reserve_mm);
 }
 
-/// The point where a ray from inside leaves the body.
+/// Intersection of a ray from inside with the body surface.
 Vec3f leave_body(const Anatomy& anatomy, Vec3f inside, const Vec3f& direction) {
   float low = 0.0F;
   float high = kLongestPathMm + 150.0F;
@@ -64,7 +64,7 @@ Vec3f leave_body(const Anatomy& anatomy, Vec3f inside, const Vec3f& direction) {
   return inside + low * direction;
 }
 
-/// Whether a lesion may lie here: covered by liver, and no vessel that counts is swallowed.
+/// True if a lesion can be here: covered by liver, and without a significant vessel.
 bool has_room(const Anatomy& anatomy, const Risks& risks, const Lesion& lesion, float cover_mm, float vessel_mm) {
   const Place place = anatomy.torso.at(lesion.centre);
   for (const Vec3f& gate : {kHilum, kVenousConfluence})
@@ -73,7 +73,7 @@ bool has_room(const Anatomy& anatomy, const Risks& risks, const Lesion& lesion, 
          Risks::all_farther(risks.organs, place, lesion.radius_mm + vessel_mm);
 }
 
-/// Walks the path from the skin to the target and a little beyond.
+/// Checks the path from the skin to the target and slightly beyond.
 bool is_safe(const Anatomy& anatomy, const Risks& risks, const Vec3f& entry, const Lesion& lesion,
              const PathMargins& margins) {
   const Vec3f direction = (lesion.centre - entry).normalized();
@@ -97,7 +97,7 @@ struct Case {
   Vec3f entry;
 };
 
-/// A lesion and a way to it between the ribs of the right flank.
+/// A lesion and a path to it between the ribs of the right flank.
 std::optional<Case> find_case(const Anatomy& anatomy, const Risks& risks, const PathMargins& margins, Random& random) {
   const auto between = [&](double low, double high) { return static_cast<float>(random.uniform(low, high)); };
   for (int n = 0; n < kTries; ++n) {
@@ -118,7 +118,7 @@ std::optional<Case> find_case(const Anatomy& anatomy, const Risks& risks, const 
   return std::nullopt;
 }
 
-/// A further lesion anywhere in the liver, apart from the others.
+/// A further lesion anywhere in the liver, away from the others.
 std::optional<Lesion> find_lesion(const Anatomy& anatomy, const Risks& risks, const std::vector<Lesion>& others,
                                   Random& random) {
   const Box& box = risks.liver->bounds;

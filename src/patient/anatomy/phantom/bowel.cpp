@@ -10,7 +10,7 @@ namespace {
 constexpr float kGasHu = -940.0F;
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// Content of a piece of bowel, lying supine: gas in front (towards -y), fluid or stool behind.
+/// Content of a piece of bowel in supine position: gas in front (towards -y), fluid or stool behind.
 struct Lumen {
   float wall_mm;
   float wall_hu;
@@ -24,7 +24,7 @@ Paint paint_lumen(const Place& place, float distance, const Brush& brush, const 
   const float inside = distance + lumen.wall_mm;
   const float mottle = noise(place.p / 3.6F) + 0.6F * noise(place.p / 8.0F);
   const float stool_hu = 45.0F + 25.0F * mottle - 420.0F * smooth_step(0.45F, 0.9F, mottle);
-  // Folds of the mucosa stand into the lumen.
+  // Folds of the mucosa extend into the lumen.
   const float folds =
       std::abs(std::sin(0.55F * hit.arc_mm)) * smooth_step(-6.5F, -1.5F, distance) * (1.0F - lumen.stool);
   const float fluid_hu = mix(lumen.fluid_hu + 6.0F * mottle, lumen.wall_hu, 0.55F * folds);
@@ -35,7 +35,7 @@ Paint paint_lumen(const Place& place, float distance, const Brush& brush, const 
   return {mix(lumen.wall_hu, hu, brush.cover(inside)), inside < 0.0F && level < 0.0F ? gas : organ};
 }
 
-/// A loop of bowel; `lumen_at` tells its content along the way.
+/// A loop of bowel; `lumen_at` returns its content along the loop.
 void add_loop(Anatomy& anatomy, const std::string& name, std::vector<Cone> cones, float haustra_mm, float haustra_depth,
               const std::function<Lumen(const TubeHit&)>& lumen_at) {
   const Tube tube(std::move(cones));
@@ -48,7 +48,7 @@ void add_loop(Anatomy& anatomy, const std::string& name, std::vector<Cone> cones
     const float d = hit.distance + haustra_depth * (1.0F - folds) + 1.5F * noise(place.p / 14.0F);
     return smooth_max(d, place.cavity + 4.0F, 4.0F);
   };
-  // Fat around the loop keeps neighbours apart.
+  // Fat around the loop separates it from its neighbours.
   anatomy.add({"bowel_fat", warped(tube.bounds()),
                [=](const Place& place) { return smooth_max(tube.distance(place.q) - 1.5F, place.cavity + 3.0F, 3.0F); },
                [=](const Place&, float, const Brush&) {
@@ -61,21 +61,21 @@ void add_loop(Anatomy& anatomy, const std::string& name, std::vector<Cone> cones
                }});
 }
 
-/// Loops that fill the space below the pancreas, one tube that goes to and fro.
+/// Loops that fill the space below the pancreas: one tube in a serpentine.
 std::vector<Knot> small_bowel_way(Random& random) {
   std::vector<Knot> knots;
   const auto jitter = [&](float mm) { return static_cast<float>(random.uniform(-mm, mm)); };
   constexpr int kColumns = 6;
   constexpr int kLayers = 3;
   constexpr int kRows = 4;
-  constexpr int kUpperColumn = 3;  // the highest row lies left of the pancreas's head only
+  constexpr int kUpperColumn = 3;  // the highest row is only left of the pancreas's head
   for (int row = 0; row < kRows; ++row)
     for (int n = 0; n < kColumns; ++n) {
       const int column = row % 2 == 0 ? n : kColumns - 1 - n;
       if (row == 0 && column < kUpperColumn) continue;
       for (int m = 0; m < kLayers; ++m) {
         const int layer = n % 2 == 0 ? m : kLayers - 1 - m;
-        // Staggered, so that no row shows in a slice.
+        // Staggered, so that no row is visible in a slice.
         const float x = -50.0F + 25.0F * static_cast<float>(column) + 9.0F * static_cast<float>((row + layer) % 2);
         const float y = -68.0F + 25.0F * static_cast<float>(layer);
         const float slant = 9.0F * std::sin(1.3F * static_cast<float>(column) + 2.0F * static_cast<float>(layer));

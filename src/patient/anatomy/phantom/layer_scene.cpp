@@ -8,7 +8,7 @@
 namespace trocar::anatomy::phantom {
 namespace {
 
-// Hounsfield units of the portal-venous phase, textbook-like [assumed].
+// Hounsfield units of the portal venous phase, typical values [assumed].
 constexpr float kSkinHu = 20.0F;
 constexpr float kFatHu = -105.0F;
 constexpr float kMuscleHu = 55.0F;
@@ -28,7 +28,7 @@ constexpr float kGasHu = -850.0F;
 
 constexpr float kSkinMm = 2.0F;
 constexpr float kCortexMm = 1.4F;
-constexpr float kEnd = 1000.0F;  ///< Beyond the block.
+constexpr float kEnd = 1000.0F;  ///< Outside the block.
 
 float slab(float depth, float from, float to) {
   return std::max(from - depth, depth - to);
@@ -48,22 +48,22 @@ void add_cover(LayerScene& scene) {
   scene.shapes.push_back({"fat", kSkinHu, 0.0F, [](float, float d, float) { return slab(d, 0.0F, kSkinMm); }});
 }
 
-// The lumbar block lies between two vertebrae: the interspace is at z = 0.
+// The lumbar block is between two vertebrae: the interspace is at z = 0.
 constexpr float kSpinousHalfWidth = 3.5F;
 constexpr float kGapHalf = 7.0F;      ///< Half the height between two spinous processes.
-constexpr float kSpinousTop = 27.0F;  ///< Upper end of the upper one, over the interspace.
+constexpr float kSpinousTop = 27.0F;  ///< Upper end of the upper process, above the interspace.
 constexpr float kDiscHalf = 5.0F;
 constexpr float kCanalEnd = 74.0F;
 
 float body(float x, float d) {
   return elliptic_cylinder(x, d - 91.0F, 24.0F, 17.0F);
 }
-/// The canal, grown by a wall.
+/// The canal, enlarged by a wall.
 float canal(float x, float d, float wall) {
   const float half = 0.5F * (kCanalEnd - lumbar::kEpidural);
   return elliptic_cylinder(x, d - lumbar::kEpidural - half, 12.0F + wall, half + wall);
 }
-/// Everything of a vertebra, for the one above; the one below is its mirror image.
+/// The upper vertebra; the lower one is its mirror image.
 float vertebra(float x, float d, float z) {
   const float side = std::abs(x);
   const float corpus = std::max(body(x, d), kDiscHalf - z);
@@ -106,7 +106,7 @@ void add_loop(LayerScene& scene, float z0, bool has_gas) {
 LayerScene lumbar_scene() {
   LayerScene scene;
   scene.is_from_back = true;
-  scene.target_mm = lumbar::kDura + 10.0F;  // the dura gives way up to 6 mm behind its resting place
+  scene.target_mm = lumbar::kDura + 10.0F;  // the dura can be indented by up to 6 mm before its puncture
   scene.path_name = "lumbar puncture";
   add_cover(scene);
   add_back_muscles(scene);

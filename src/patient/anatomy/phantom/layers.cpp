@@ -14,10 +14,10 @@ namespace {
 
 const Vec3 kHalfBox(40.0, 70.0, 40.0);
 constexpr double kVoxel_mm = 0.8;
-constexpr float kSkinY = 45.0F;  ///< The skin lies 25 mm inside the box: air before it.
+constexpr float kSkinY = 45.0F;  ///< The skin is 25 mm inside the box, with air in front.
 constexpr float kTexture_mm = 6.0F;
 constexpr double kPsfSigma_mm =
-    0.7;  ///< With the voxel an edge as wide as a CT's with a soft kernel, FWHM 1.8 mm. [assumed]
+    0.7;  ///< Together with the voxel, an edge as wide as that of a CT with a soft kernel, FWHM 1.8 mm. [assumed]
 constexpr float kAirHu = -1000.0F;
 
 volume::GridGeometry scene_geometry(const PhantomResolution& resolution) {
@@ -32,7 +32,7 @@ volume::GridGeometry scene_geometry(const PhantomResolution& resolution) {
   return geometry;
 }
 
-/// Labels of the scene's shapes in their order, one a name.
+/// Labels of the scene's shapes in their order, one per name.
 struct ShapeLabels {
   LabelTable table;
   std::vector<std::uint8_t> ids;  ///< By shape.
@@ -55,7 +55,7 @@ float depth_at(const LayerScene& scene, double y) {
   return kSkinY + (scene.is_from_back ? -1.0F : 1.0F) * static_cast<float>(y);
 }
 
-/// The scene as it is, voxels at a border in proportion: HU, labels, distance to the skin.
+/// Renders the scene with partial volume at borders: HU, labels, distance to the skin.
 void paint(const LayerScene& scene, const ShapeLabels& labels, std::uint64_t seed, volume::FloatGrid& hu,
            VirtualPatient& patient) {
   const volume::GridGeometry& geometry = hu.geometry;
@@ -76,7 +76,7 @@ void paint(const LayerScene& scene, const ShapeLabels& labels, std::uint64_t see
         const float distance = shape.distance(p.x(), depth, p.z());
         const float cover = clamp01(0.5F - distance / voxel_mm);
         if (cover > 0.0F) value = mix(value, shape.hu + shape.texture_hu * texture, cover);
-        if (distance <= 0.0F) label = labels.ids[s];  // slabs that touch leave nothing between them
+        if (distance <= 0.0F) label = labels.ids[s];  // inclusive, so that touching slabs leave no gap
       }
       hu.voxels[n] = value;
       patient.labels.voxels[n] = depth > 0.0F ? label : 0;

@@ -8,7 +8,7 @@ namespace {
 
 struct LiverShape {
   float scale;
-  float left_reach;  ///< How far the left lobe reaches across (x, mm).
+  float left_reach;  ///< Extent of the left lobe (x, mm).
   float tip_z;       ///< Lowest point of the right lobe.
 
   float operator()(const Place& place, const ValueNoise& noise) const {
@@ -17,11 +17,11 @@ struct LiverShape {
     const Vec3f l = q - Vec3f(left_reach - 62.0F, -52.0F, 50.0F);
     const float left =
         ellipsoid(Vec3f(l.x(), l.y() + 0.10F * l.x(), l.z() - 0.12F * l.x()), Vec3f(68.0F, 50.0F, 34.0F));
-    // The visceral surface rises from the right lower tip to the left and to the back, a little hollow.
+    // The visceral surface rises from the right lower tip to the left and to the back, slightly concave.
     const float rise = tip_z + 0.66F * (q.x() + 112.0F) + 0.20F * q.y() + 9.0F * bump(q.x(), -50.0F, 40.0F);
     const float above = (rise - q.z()) * 0.80F;
     float d = smooth_min(smooth_max(right, above, 22.0F), left, 26.0F);
-    // Behind, the liver leaves room to the spine and the great vessels.
+    // Behind, the liver leaves space for the spine and the great vessels.
     d = smooth_max(d, -elliptic_cylinder(q.x() - 12.0F, q.y() - 42.0F, 47.0F, 46.0F), 10.0F);
     // Porta hepatis, and the fissure of the round ligament.
     d = smooth_max(d, -ellipsoid(q - Vec3f(-22.0F, -14.0F, 6.0F), Vec3f(22.0F, 17.0F, 17.0F)), 9.0F);
@@ -49,7 +49,7 @@ void add_liver(Anatomy& anatomy) {
       [=, &noise](const Place& place) { return smooth_max(shape(place, noise), 4.0F - kidney(place), 4.0F); }, 106.0F,
       3.5F, 9.0F);
 
-  // The gallbladder hangs in its fossa on the visceral surface.
+  // The gallbladder is in its fossa on the visceral surface.
   const float x = static_cast<float>(random.uniform(-54.0, -46.0));
   const Tube gallbladder(chain({{Vec3f(x + 12.0F, -22.0F, 4.0F), 4.0F},
                                 {Vec3f(x + 6.0F, -32.0F, -2.0F), 9.0F},

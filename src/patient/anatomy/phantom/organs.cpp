@@ -16,7 +16,7 @@ Vec3f vary(Random& random, const Vec3f& centre, float spread) {
   return {x, y, one(centre.z())};
 }
 
-/// Kidney in its own frame: x away from the spine, y posterior, z up, the origin in its middle.
+/// Kidney in its own frame: x away from the spine, y posterior, z up, the origin in its centre.
 struct KidneyShape {
   Vec3f centre;
   float sign;  ///< -1 right, 1 left.
@@ -25,7 +25,7 @@ struct KidneyShape {
   Vec3f local(const Vec3f& q) const {
     const Vec3f u = (q - centre) / scale;
     const float x = sign * u.x();
-    const float turned_x = 0.82F * x + 0.57F * u.y();  // the hilum looks forward and inward
+    const float turned_x = 0.82F * x + 0.57F * u.y();  // the hilum faces forward and inward
     const float turned_y = -0.57F * x + 0.82F * u.y();
     return {turned_x + 0.20F * u.z(), turned_y - 0.06F * u.z(), u.z()};  // upper pole inward and back
   }
@@ -37,7 +37,7 @@ struct KidneyShape {
   float sinus(const Vec3f& u) const {
     return ellipsoid(u - Vec3f(-15.0F, 0.0F, 0.0F), Vec3f(14.0F, 6.5F, 25.0F)) * scale;
   }
-  /// Pyramids stand around the sinus, their tips in it.
+  /// Pyramids around the sinus, with their tips in it.
   float pyramids(const Vec3f& u, float wobble) const {
     const float along = std::cos(u.z() * 0.36F + wobble);
     const float around = std::cos(std::atan2(u.y(), u.x() + 15.0F) * 4.0F + 1.6F * wobble);
@@ -56,7 +56,7 @@ void add_kidney(Anatomy& anatomy, float sign) {
   const auto outline = [=, &noise](const Place& place) {
     return shape.outline(shape.local(place.q)) + 1.3F * noise(place.p / 17.0F);
   };
-  // Fat of the capsule, behind thicker, inside a thin fascia.
+  // Fat of the capsule, thicker behind, inside a thin fascia.
   const auto capsule = [=](const Place& place) {
     const Vec3f u = shape.local(place.q);
     return ellipsoid(u - Vec3f(-2.0F, 3.0F, 0.0F), Vec3f(36.0F, 31.0F, 68.0F)) * shape.scale;
@@ -135,7 +135,7 @@ void add_pancreas(Anatomy& anatomy) {
                  return tube.distance(place.q) + 1.7F * noise(place.p / 5.0F) + 1.2F * noise(place.p / 11.0F);
                },
                [=, &noise](const Place& place, float distance, const Brush&) {
-                 // Fat enters between the lobules from outside.
+                 // Fat between the lobules from outside.
                  const float lobules =
                      smooth_step(0.15F, 0.6F, noise(place.p / 4.2F)) * smooth_step(-9.0F, 0.0F, distance);
                  return Paint{mix(103.0F, 10.0F, lobules), label};

@@ -18,7 +18,7 @@ constexpr volume::Index3 kDefaultSize{380, 300, 240};
 constexpr std::int64_t kLeastSize = 16;
 constexpr std::int64_t kGreatestSize = 1024;
 
-/// The phantom's box divided into voxels; the box is the same for every size.
+/// The phantom's box divided into voxels; the box is the same for every resolution.
 volume::GridGeometry box_geometry(const PhantomResolution& resolution) {
   volume::GridGeometry geometry;
   const Vec3 extent = 2.0 * Vec3(kHalfWidth, kHalfDepth, kHalfHeight);

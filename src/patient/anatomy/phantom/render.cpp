@@ -12,7 +12,7 @@ namespace {
 constexpr float kAirHu = -1000.0F;
 constexpr double kBlockMm = 6.5;
 
-/// Voxels [low, high) of a grid, small enough that few structures touch them.
+/// Voxels [low, high) of a grid, small enough that few structures overlap it.
 struct Block {
   volume::Index3 low, high;
 };
@@ -54,8 +54,8 @@ class Painter {
     return geometry_.to_mm(Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k))).cast<float>();
   }
 
-  /// The structures that may show in a block, in painting order: those that it cannot touch are left out, and those
-  /// under one that fills it.
+  /// The structures that can be visible in a block, in painting order, without those outside it and those covered
+  /// completely.
   void find_near(const Block& block, std::vector<const Structure*>& near) const {
     near.clear();
     const Vec3f first = voxel_centre(block.low[0], block.low[1], block.low[2]);
@@ -123,7 +123,7 @@ Rendering render(const Anatomy& anatomy, const volume::GridGeometry& geometry, c
                  Culling culling) {
   Rendering out{volume::CtGrid(geometry), volume::LabelGrid(geometry), volume::FloatGrid(geometry)};
   const Painter painter(anatomy, geometry, culling, out);
-  // A few layers at a time, so that progress is told from the calling thread.
+  // A few layers at a time, so that the calling thread reports the progress.
   constexpr std::size_t kBatch = 4;
   for (std::size_t first = 0; first < painter.layers(); first += kBatch) {
     report(progress, "rendering the anatomy", static_cast<double>(first) / static_cast<double>(painter.layers()));

@@ -13,7 +13,7 @@ namespace {
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kDegree = kPi / 180.0F;
 
-// A rib lies on the chest wall, just outside the cavity, and falls from its vertebra to the front.
+// A rib follows the chest wall, just outside the cavity, and descends from its vertebra to the front.
 constexpr float kRibOutwardMm = 6.3F;
 constexpr float kRibHalfThicknessMm = 3.2F;
 constexpr float kRibHalfHeightMm = 6.2F;
@@ -39,7 +39,7 @@ RibHit nearest_rib(const Place& place) {
   int best = 5;
   for (int rib = 6; rib <= 12; ++rib)
     if (std::abs(level - vertebra_height(rib - 5)) < std::abs(level - vertebra_height(best - 5))) best = rib;
-  const float off = std::abs(level - vertebra_height(best - 5)) * 0.88F;  // the rib is oblique: across it
+  const float off = std::abs(level - vertebra_height(best - 5)) * 0.88F;  // the rib is oblique: perpendicular to it
   const float along = std::max(off - kRibHalfHeightMm + kRibHalfThicknessMm, 0.0F);
   const float swept = std::hypot(along, place.cavity - kRibOutwardMm) - kRibHalfThicknessMm;
   const float radius = std::hypot(place.p.x(), place.p.y());
@@ -89,7 +89,7 @@ void add_ribs(Anatomy& anatomy) {
 void add_cartilages(Anatomy& anatomy) {
   const auto& contours = anatomy.torso.contours();
   std::vector<Cone> cones;
-  // Each cartilage goes on from its rib's end and rises to the next one above, the seventh to the sternum.
+  // Each cartilage continues from the end of its rib to the next one above, the seventh to the sternum.
   struct Way {
     int rib;
     float middle_deg, middle_z, end_deg, end_z;
@@ -138,7 +138,7 @@ void add_cartilages(Anatomy& anatomy) {
                }});
 }
 
-/// The arch and its processes, around the body's centre.
+/// The arch and its processes, around the vertebral body's centre.
 Tube vertebral_arch(bool lumbar) {
   std::vector<Cone> cones;
   const auto both = [&](const Vec3f& a, const Vec3f& b, float radius_a, float radius_b) {

@@ -14,7 +14,7 @@ namespace {
 constexpr float kSigmaSkinHu = 9.0F;
 constexpr float kSigmaMiddleHu = 13.0F;
 constexpr float kMiddleMm = 90.0F;
-/// A Gaussian of 0.75 voxels in the slice, a lighter one across slices.
+/// A Gaussian of 0.75 voxels in the slice, a weaker one across slices.
 constexpr std::array<float, 5> kInPlane{0.0152F, 0.2186F, 0.5324F, 0.2186F, 0.0152F};
 constexpr std::array<float, 3> kAcross{0.2F, 0.6F, 0.2F};
 
@@ -67,7 +67,7 @@ class SliceNoise {
       for (std::size_t i = 0; i < static_cast<std::size_t>(columns_); ++i) {
         float sum = 0.0F;
         for (std::size_t s = 0; s < kInPlane.size(); ++s) sum += kInPlane[s] * rough_[j * wide + i + s];
-        rough_[j * wide + i] = sum;  // behind what is still to be read
+        rough_[j * wide + i] = sum;  // only overwrites values that are no longer needed
       }
     for (std::size_t j = 0; j < static_cast<std::size_t>(rows_); ++j)
       for (std::size_t i = 0; i < static_cast<std::size_t>(columns_); ++i) {

@@ -6,7 +6,7 @@
 namespace trocar::anatomy::phantom {
 namespace {
 
-/// All that can lie above the diaphragm.
+/// Bounds of all structures above the diaphragm.
 Box upper_box() {
   return {Vec3f(-kHalfWidth, -kHalfDepth, -20.0F), Vec3f(kHalfWidth, kHalfDepth, kHalfHeight + 5.0F)};
 }

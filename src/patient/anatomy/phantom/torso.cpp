@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kLatticeMm = 4.0F;
-constexpr float kMargin = 8.0F;  ///< The lattice reaches beyond the box, so that nothing is extrapolated.
+constexpr float kMargin = 8.0F;  ///< The lattice extends beyond the box, so that nothing is extrapolated.
 constexpr float kWarpMm = 4.5F;
 constexpr float kWarpSizeMm = 75.0F;
 
@@ -26,7 +26,7 @@ float superellipse(float phi, float a, float b, float exponent) {
   return std::pow(std::pow(u, exponent) + std::pow(v, exponent), -1.0F / exponent);
 }
 
-/// One contour of a slice as a polygon, with the factor that turns the distance in the slice into that in space.
+/// One contour of a slice as a polygon, with the factor that converts the distance in the slice to that in space.
 struct SliceContour {
   static constexpr std::size_t kPoints = 200;
   std::array<float, kPoints> x, y, slope_factor;
@@ -64,7 +64,7 @@ struct SliceContour {
   }
 
  private:
-  /// Signed distance to an edge; the inside lies to the right of the way around.
+  /// Signed distance to an edge; the inside is to the right of the direction of travel.
   float to_edge(std::size_t a, std::size_t b, float px, float py) const {
     const float dx = x[b] - x[a];
     const float dy = y[b] - y[a];
@@ -142,7 +142,7 @@ float TorsoContours::cavity_radius(float phi, float z) const {
 
 float TorsoContours::diaphragm_height(float x, float y, float cavity) const {
   const float side = std::atan2(std::abs(x), y);
-  // Where the diaphragm leaves the wall: low behind (the costophrenic recess), high in front.
+  // Height at which the diaphragm leaves the wall: low behind (the costophrenic recess), high in front.
   const float rim =
       16.0F + 17.0F * smooth_step(rad(20.0F), rad(95.0F), side) + 41.0F * smooth_step(rad(92.0F), rad(160.0F), side);
   const float right = 16.0F * bump(x, -72.0F, 58.0F) * bump(y, -5.0F, 75.0F);
@@ -188,7 +188,7 @@ void Torso::fill_slice(std::int64_t k, const ValueNoise& warp) {
       const Vec3f cell = Vec3f(x, y, z) / kWarpSizeMm;
       for (int a = 0; a < 3; ++a) node[4 + a] = kWarpMm * warp(cell + Vec3f::Constant(7.3F * static_cast<float>(a)));
     }
-  // The distance from the diaphragm is its height difference made shorter by its slope.
+  // The distance from the diaphragm is the height difference corrected for its slope.
   for (std::size_t j = 0; j < rows; ++j)
     for (std::size_t i = 0; i < columns; ++i) {
       const auto slope = [&](std::size_t low, std::size_t high, std::size_t steps) {

@@ -11,10 +11,10 @@ constexpr float kFatHu = -102.0F;
 constexpr float kMuscleHu = 58.0F;
 constexpr float kSkinHu = 55.0F;
 constexpr float kSkinMm = 2.0F;
-/// The diaphragm's costal part and the transversus line the cavity.
+/// Thickness of the diaphragm's costal part and the transversus around the cavity.
 constexpr float kLiningMm = 2.2F;
 
-/// 1 on a curved sheet where the noise crosses zero, falling to 0 within about `thickness` of a cell.
+/// 1 on a curved sheet at the zero of the noise, decreasing to 0 within about `thickness` of a cell.
 float sheet(const ValueNoise& noise, const Vec3f& cell, float thickness) {
   const float n = noise(cell);
   return std::max(0.0F, 1.0F - std::abs(n) / thickness);
@@ -33,7 +33,7 @@ void add_subcutaneous_fat(Anatomy& anatomy) {
                }});
 }
 
-/// Where in the wall a place lies: the layers of the flank, the rectus in front, the chest's muscles above.
+/// Position in the wall: the layers of the flank, the rectus in front, the chest's muscles above.
 struct WallPlace {
   float depth;      ///< 0 at the wall's outer surface, 1 at the cavity.
   float thickness;  ///< mm.
@@ -61,7 +61,7 @@ float fat_planes(const Place& place, const ValueNoise& noise) {
   float d = plane(mix(0.36F, 0.40F, chest), 0.75F * flank);
   d = std::min(d, plane(0.70F, 0.55F * flank * (1.0F - chest)));
   if (flank < 0.05F) d = 1.0F;
-  // Linea semilunaris beside the rectus, and its sheath's fat behind it.
+  // Linea semilunaris next to the rectus, and its sheath's fat behind it.
   const float x = std::abs(place.p.x());
   const float front = smooth_step(120.0F * kDegree, 128.0F * kDegree, at.side);
   if (front > 0.5F) {

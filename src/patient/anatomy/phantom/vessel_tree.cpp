@@ -8,7 +8,7 @@
 namespace trocar::anatomy::phantom {
 namespace {
 
-constexpr float kRunShare = 0.55F;  ///< The same share as the rule's, of the daughters.
+constexpr float kRunShare = 0.55F;  ///< As root_share of the rule, for the daughters.
 constexpr int kPieces = 4;
 constexpr int kTries = 24;
 constexpr std::size_t kLeastPlaces = 4;
@@ -20,7 +20,7 @@ class Grower {
   void grow(const Vec3f& start, const Vec3f& direction, std::span<Vec3f> territory, float radius, bool is_root) {
     if (radius < rule_.least_radius_mm || territory.size() < kLeastPlaces) return;
     const Vec3f middle = mean(territory);
-    // Where no run fits, the vessel forks at once: its smaller daughters find their ways.
+    // If no run fits, the vessel forks at once: smaller daughters are tried.
     Vec3f fork = start;
     Vec3f heading = direction;
     if (const auto run = find_run(start, direction, middle, radius, is_root)) {
@@ -42,7 +42,7 @@ class Grower {
   std::vector<Cone> take() { return std::move(cones_); }
 
  private:
-  /// A bent run: a quadratic curve.
+  /// A curved run: a quadratic curve.
   struct Run {
     Vec3f start, control, end;
     Vec3f at(float t) const { return (1 - t) * (1 - t) * start + 2 * t * (1 - t) * control + t * t * end; }
@@ -74,7 +74,7 @@ class Grower {
                               bool is_root) {
     const float share = is_root ? rule_.root_share : kRunShare;
     for (int attempt = 0; attempt < kTries; ++attempt) {
-      // Each try is shorter and bends more freely.
+      // Each try is shorter and may bend more.
       const float tried = static_cast<float>(attempt) / kTries;
       const Vec3f way = share * (1.0F - 0.75F * tried) * (middle - start);
       const float length = way.norm();
@@ -87,14 +87,14 @@ class Grower {
   }
 
   bool is_allowed(const Run& run, float radius, bool is_root) const {
-    const int first = is_root ? 11 : 3;  // a root enters from outside; a daughter leaves its parent first
+    const int first = is_root ? 11 : 3;  // a root enters from outside; a daughter starts inside its parent
     for (int n = first; n <= 12; ++n)
       if (!rule_.allowed(run.at(static_cast<float>(n) / 12.0F), radius)) return false;
     return true;
   }
 
-  /// Sorts the places into two halves, cut through their middle where they spread most, seen along the heading; returns
-  /// the size of the first.
+  /// Sorts the points into two halves, cut through their centre along the direction of largest spread perpendicular to
+  /// the heading; returns the size of the first.
   static std::size_t split(std::span<Vec3f> places, const Vec3f& heading) {
     const Vec3f middle = mean(places);
     Eigen::Matrix3f spread = Eigen::Matrix3f::Zero();

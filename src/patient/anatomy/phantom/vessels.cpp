@@ -25,7 +25,7 @@ std::vector<Cone> joined(std::initializer_list<std::vector<Cone>> parts) {
   return all;
 }
 
-/// Places spread evenly through the liver: what a vessel tree has to supply.
+/// Points distributed evenly in the liver: the territory of a vessel tree.
 std::vector<Vec3f> liver_territory(const Anatomy& anatomy, float depth_mm) {
   const Structure& liver = anatomy.find("liver");
   constexpr float kStepMm = 6.0F;

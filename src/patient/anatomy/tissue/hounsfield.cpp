@@ -11,13 +11,13 @@
 namespace trocar::anatomy {
 namespace {
 
-// All numbers are assumed: far from what CTs of a trunk show (a fifth and more of the voxels is air, nine tenths of the
-// rest soft tissue) and from what other numbers show (next to none).
+// All numbers are assumed, with a large margin: in CTs of a trunk, a fifth or more of the voxels is air and nine tenths
+// of the rest is soft tissue; in other data there are almost none.
 constexpr int kAirFrom = -1200, kAirBelow = -300;
 constexpr int kSoftFrom = -250, kSoftBelow = 300;
 constexpr double kLeastAir = 0.001;  ///< Of all voxels.
-constexpr double kLeastSoft = 0.4;   ///< Of the voxels above air,
-constexpr double kLeastBody = 0.02;  ///< and of all voxels.
+constexpr double kLeastSoft = 0.4;   ///< Of the voxels above air.
+constexpr double kLeastBody = 0.02;  ///< Of all voxels.
 
 constexpr const char* kAdvice =
     "give a CT in Hounsfield units that shows the skin and air around it, or the missing scale with --rescale "

@@ -9,7 +9,7 @@
 namespace trocar::anatomy {
 namespace {
 
-/// How far every value of an assumed curve may be off, as factors around 1.
+/// Uncertainty of every value of an assumed curve, as factors around 1.
 constexpr std::string_view kFactors = "factors";
 constexpr config::Range kFactorRange{0.01, 100.0};
 
@@ -31,7 +31,7 @@ Status read_knots(const config::TomlTable& section, HuTransfer& transfer) {
   return {};
 }
 
-/// KEY = {values = [one a knot], source = "…", factors = [0.5, 2.0]}.
+/// KEY = {values = [one per knot], source = "…", factors = [0.5, 2.0]}.
 Status read_curve(const config::TomlTable& section, const TissueField<HuLaw>& field, TissueTable& table) {
   HuTransfer& transfer = table.transfer;
   TROCAR_TRY(const config::TomlTable entry, section.table(field.name));

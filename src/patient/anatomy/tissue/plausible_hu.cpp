@@ -14,7 +14,7 @@ struct HuRange {
   double low;
   double high;
 };
-// Wide limits around textbook values: what lies outside is not this tissue, plain or with contrast. [assumed]
+// Wide limits around textbook values for the tissue, with or without contrast agent. [assumed]
 constexpr std::array kRanges{
     HuRange{"bone", 90, 2000},        HuRange{"liver", 0, 250},      HuRange{"liver_lesion", -30, 300},
     HuRange{"spleen", 0, 300},        HuRange{"kidney", -10, 350},   HuRange{"vessel", -20, 600},

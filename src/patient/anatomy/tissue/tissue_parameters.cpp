@@ -11,7 +11,7 @@
 namespace trocar::anatomy {
 namespace {
 
-/// In which of the force models a number is felt (physics.md, table of the models' parts).
+/// Force models that use a number (physics.md, table of the models' parts).
 struct Felt {
   bool insertion, proxy, combined;
 };
@@ -20,14 +20,13 @@ constexpr Felt kInsertionAndCombined{true, false, true};
 constexpr Felt kInsertionAlone{true, false, false};
 constexpr Felt kProxyAndCombined{false, true, true};
 
-/// What a window says of a field of the table.
+/// Display texts of a field of the table.
 struct Wording {
   std::string_view key, symbol, name, unit;
   double log_from;
   Felt felt;
 };
-// Ranges that span decades are shown on a logarithmic scale; where the range begins at zero, the scale begins below
-// every shipped number.
+// Ranges over decades have a logarithmic scale; if the range starts at zero, the scale starts below every default.
 constexpr std::array<Wording, 4> kLayerWords{{
     {"k", "k", "stiffness of the surface", "N/mm", 0.001, kEverywhere},
     {"nu", "ν", "viscosity of the surface", "N·s/mm", 1e-4, kInsertionAndCombined},
@@ -106,7 +105,7 @@ class Collector {
   }
 
  private:
-  /// Paper A has one nu for both laws; where the table gives two, each is adjusted by itself.
+  /// Paper A has one nu for both laws; if the table has two, each is adjusted separately.
   bool has_one_viscosity() const noexcept {
     return layer_ && first_ == &tissue_ && layer_->viscosity_ns_per_mm == tissue_.viscosity_ns_per_mm;
   }
@@ -129,7 +128,7 @@ class Collector {
         setting = fmt::format("layers.{}.nu", layer_->name);
       }
     } else if (!layer_->is_wall) {
-      words.felt = kInsertionAndCombined;  // The proxy feels such a surface as a border in the CT.
+      words.felt = kInsertionAndCombined;  // For the proxy, such a surface is a border in the CT.
     }
     TissueParameter made = parameter_of(words, std::move(setting), layer_->*field.member, field.range);
     made.may_be_never = field.name == kPunctureForce;
@@ -138,7 +137,7 @@ class Collector {
   }
 
   void add_tissue_field(const TissueField<TissueParams>& field) {
-    // On the first tissue of a layer plain nu would change the layer, too.
+    // On the first tissue of a layer, plain nu would change the layer, too.
     const bool is_double = field.short_name == "nu" && first_ == &tissue_;
     std::string setting = fmt::format("{}{}.{}", is_double ? "tissues." : "", tissue_.name, field.short_name);
     add(parameter_of(words_of(kTissueWords, field.short_name), std::move(setting), tissue_.*field.member, field.range),
@@ -148,7 +147,7 @@ class Collector {
   const TissueTable& table_;
   const TissueParams& tissue_;
   const LayerParams* layer_ = nullptr;
-  const TissueParams* first_ = nullptr;  ///< That carries the layer.
+  const TissueParams* first_ = nullptr;  ///< The first tissue of the layer.
   TissueParameterGroup group_;
 };
 

@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::string_view kViscosity = "nu";  // of layers and of tissues
 
-/// A number of a table under the name by which apply_override reaches it and nothing else.
+/// A number of a table with the unique name used by apply_override.
 struct NamedNumber {
   std::string setting;
-  std::string path;  ///< In the table's provenance.
+  std::string path;  ///< Key of the table's provenance.
   double value = 0.0;
 };
 

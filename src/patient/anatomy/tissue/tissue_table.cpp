@@ -36,7 +36,7 @@ Status read_number(const config::TomlTable& row, std::string_view key, config::R
   return {};
 }
 
-/// puncture_force_n = {never = true, source = "…"}; nothing when the entry is an ordinary number.
+/// puncture_force_n = {never = true, source = "…"}; empty if the entry is an ordinary number.
 Result<std::optional<std::string>> read_never(const config::TomlTable& row, std::string_view key) {
   const auto entry = row.table(key);
   if (!entry || !entry->has("never")) return std::optional<std::string>();
@@ -47,7 +47,7 @@ Result<std::optional<std::string>> read_never(const config::TomlTable& row, std:
   return std::optional(std::move(source));
 }
 
-/// Reads the fields of a row; in a profile only those that stand there.
+/// Reads the fields of a row; in a profile only the present ones.
 template <class T>
 Status read_fields(const config::TomlTable& row, std::span<const TissueField<T>> fields, const std::string& path,
                    bool are_required, T& entry, TissueTable& table) {
@@ -74,8 +74,8 @@ std::vector<std::string_view> field_names(std::span<const TissueField<T>> fields
   return names;
 }
 
-/// The fields of a tissue that a row must have. Sessions that were stored before tissues had a Young's modulus still
-/// load: what is missing takes the default, and says so.
+/// The required fields of a tissue. Sessions stored before tissues had a Young's modulus can still be loaded: missing
+/// fields get the default, with a corresponding source.
 std::span<const TissueField<TissueParams>> required_fields(const config::TomlTable& row, bool is_stored,
                                                            const std::string& path, TissueTable& table) {
   const std::span<const TissueField<TissueParams>> fields = kTissueFields;

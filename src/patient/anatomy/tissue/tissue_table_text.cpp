@@ -1,4 +1,4 @@
-// The tissue table as people write it: overrides on the command line, and the text that a session stores.
+// The tissue table as text: overrides on the command line, and the text stored in a session.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ Status check_range(const Assignment& assignment, std::string_view field, config:
                     "give a number in this range");
 }
 
-/// Sets the fields that an override reaches; knows nothing of text.
+/// Sets the fields of an override.
 class Override {
  public:
   Override(TissueTable& table, const Assignment& assignment, std::string_view text)
@@ -102,7 +102,7 @@ class Override {
     return {};
   }
 
-  /// tissues.NAME.KEY, layers.NAME.KEY: that row alone. `kind` ends in its dot.
+  /// tissues.NAME.KEY, layers.NAME.KEY: only that row. `kind` includes its dot.
   template <class T>
   Status set_row(std::vector<T>& rows, std::span<const TissueField<T>> fields, std::string_view kind) {
     const std::string_view name = assignment_.name.substr(kind.size());
@@ -193,7 +193,7 @@ void append_number(std::string& out, std::string_view key, double value, const s
                    const std::map<std::string, Provenance>& provenance) {
   const Provenance source = find_provenance(provenance, path);
   out += fmt::format("{} = {{", key);
-  // The shortest digits that read back to the same bits.
+  // The shortest decimal text that is read back as the same bits.
   out += std::isinf(value) ? "never = true" : fmt::format("value = {}", value);
   out += ", source = " + config::toml_quoted(source.source);
   if (source.low && source.high) out += fmt::format(", range = [{}, {}]", *source.low, *source.high);

@@ -21,9 +21,9 @@ namespace trocar::surface::detail {
 namespace {
 
 constexpr int kFull = 255;
-constexpr double kFewTriangles = 1000.0;  // assumed: a mesh this small is drawn as it is
+constexpr double kFewTriangles = 1000.0;  // assumed: a mesh this small is not simplified
 
-/// The grid with an empty voxel around it, so that its contour closes.
+/// The grid with an empty voxel around it, so that its contour is closed.
 vtkNew<vtkImageData> to_vtk(const volume::Grid<std::uint8_t>& grid) {
   const auto& size = grid.geometry.size;
   const Vec3& spacing_mm = grid.geometry.spacing_mm;
@@ -80,8 +80,8 @@ Vec3 mean_vertex(vtkPolyData& surface) {
   return sum / static_cast<double>(surface.GetNumberOfPoints());
 }
 
-/// The filter is linear, but its window (Hamming, before VTK 9.4) multiplies all coordinates by about 1.002 or 0.998.
-/// A small tetrahedron far from the origin tells by how much.
+/// The filter is linear, but its window (Hamming, before VTK 9.4) scales all coordinates by about 1.002 or 0.998. A
+/// small tetrahedron far from the origin measures this factor.
 double filter_gain(const SurfaceOptions& options) {
   constexpr double kFarMm = 1000.0;
   vtkNew<vtkPoints> points;
@@ -99,7 +99,7 @@ double filter_gain(const SurfaceOptions& options) {
   return mean_vertex(*low_passed(*tetrahedron, options)).x() / kFarMm;
 }
 
-/// Low-passed without stretching it.
+/// Low-pass filter without scaling.
 vtkSmartPointer<vtkPolyData> smoothed(vtkPolyData& surface, const SurfaceOptions& options) {
   vtkSmartPointer<vtkPolyData> result = low_passed(surface, options);
   const double gain = filter_gain(options);

@@ -7,14 +7,14 @@
 namespace trocar::surface::detail {
 namespace {
 
-/// An edge that is walked once, packed for sorting.
+/// A directed edge without its opposite, packed for sorting.
 struct HalfEdge {
   std::uint32_t low = 0;
   std::uint32_t high = 0;
-  int direction = 0;  ///< 1 from low to high, -1 back.
+  int direction = 0;  ///< 1: from low to high index, -1: reverse.
 };
 
-/// The directed edges that are missing: each vertex has as many of them leaving as arriving.
+/// The missing directed edges: at each vertex, as many leave as arrive.
 std::multimap<std::uint32_t, std::uint32_t> missing_edges(const TriangleMesh& mesh) {
   std::vector<HalfEdge> edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -63,7 +63,7 @@ void restore_volume(TriangleMesh& mesh, double volume_mm3, double max_shift_mm) 
   std::vector<Vec3f> normals(mesh.vertices.size(), Vec3f::Zero());
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3f normal =
-        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);  // weighs by area
+        (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);  // weighted by area
     normals[a] += normal;
     normals[b] += normal;
     normals[c] += normal;

@@ -30,7 +30,7 @@ StylusHold make_hand() noexcept {
 StylusHold make_guiding_hand(double tip_mm) noexcept {
   StylusHold hand = make_hand();
   hand.point_mm = tip_mm;
-  // 0.1 kg at the stylus, 150 mm away: follows with the 0.08 s of H1 and does not swing.
+  // 0.1 kg at the stylus, 150 mm away: follows with the 0.08 s of H1 without oscillation.
   hand.turning_nmm_per_rad = 1500.0;
   hand.turning_damping_nmms_per_rad = 120.0;
   return hand;
@@ -44,7 +44,7 @@ ClosedLoop::ClosedLoop(std::shared_ptr<const HapticScene> scene, const DevicePre
   if (holder == Holder::kBare45g) params_.mass_kg = kLight_kg;
   if (holder == Holder::kBare150g) params_.mass_kg = kHeavy_kg;
   params_.weight_n = preset.capability.stylus_weight_n;
-  // Without torque nothing can carry a lever: such a gimbal is balanced.
+  // A device without torque cannot carry a lever: its gimbal is balanced.
   params_.weight_lever_mm = preset.has_torque() ? preset.capability.stylus_lever_mm : 0.0;
 }
 

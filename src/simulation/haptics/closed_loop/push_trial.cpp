@@ -73,7 +73,7 @@ BoneContact judge_bone_contact(const std::vector<PushSample>& samples, const Pus
   double f = 0.0;
   double xx = 0.0;
   double xf = 0.0;
-  for (auto it = reaches(0.1); it < to; ++it) {  // straight line by least squares: counts ripple
+  for (auto it = reaches(0.1); it < to; ++it) {  // linear regression: encoder counts cause ripple
     n += 1.0;
     x += it->device_mm;
     f += it->resistance_n;

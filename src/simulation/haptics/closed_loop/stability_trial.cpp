@@ -11,7 +11,7 @@ constexpr double kCarry_s = 2.0;
 constexpr double kSettle_s = 0.5;
 constexpr double kStart_mm = -5.0;  // above the skin
 
-/// Smallest box around what was seen.
+/// Smallest box around the visited points.
 struct Extent {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 high = -low;
@@ -31,7 +31,7 @@ void carry_in(ClosedLoop& loop, double depth_mm) noexcept {
   for (int i = 0; i < static_cast<int>(kSettle_s / loop.dt_s()); ++i) loop.carry({0.0, 0.0, depth_mm}, Vec3::UnitZ());
 }
 
-/// A hand that wants to stay here, or nobody.
+/// A hand that holds the present pose, or no hand.
 StylusHold hold_here(const ClosedLoop& loop, Holder holder, double needle_mm) noexcept {
   StylusHold hold;
   if (holder == Holder::kHand) hold = make_hand();
@@ -40,8 +40,8 @@ StylusHold hold_here(const ClosedLoop& loop, Holder holder, double needle_mm) no
   return hold;
 }
 
-/// Limits: a tip whose place is told in counts may wander by four of them, and counts swung ten times a second cost the
-/// coupling's spring. The force has one limit for all devices.
+/// Limits: a quantised tip may wander by four counts, and an oscillation by counts ten times a second against the
+/// coupling's spring defines the power. The force has one limit for all devices.
 void judge(StabilityOutcome& outcome, const DevicePreset& preset, const StabilityTrial& trial,
            const HapticScene& scene) noexcept {
   constexpr double kCounts = 4.0;
@@ -58,7 +58,7 @@ StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, c
   const auto loop = std::make_unique<ClosedLoop>(scene, preset, holder);
   carry_in(*loop, trial.depth_mm);
   const StylusHold hold = hold_here(*loop, holder, scene->needle.length_mm);
-  // Nothing holds a needle across the skin before it is open.
+  // A needle is not constrained laterally before the skin puncture.
   const bool is_open =
       loop->last().phase != telemetry::InsertionPhase::kOutside && loop->last().contact_to_puncture_mm != Vec3::Zero();
   if (is_open) loop->stylus().v_P += Vec3(trial.tap_mm_per_s, 0.0, 0.0);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMmPerM = 1000.0;
 
-/// Velocities (v of S, w) and what acts along them, and matrices between the two.
+/// Velocities (v of S, w), the corresponding forces and torques, and matrices between the two.
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using PointVelocity = Eigen::Matrix<double, 3, 6>;
@@ -33,8 +33,8 @@ PointVelocity velocity_at(const Vec3& r) noexcept {
   return J;
 }
 
-/// The stylus and the hand on it as one body for a tick: A x = b, x the mean velocities. Trapezoidal rule: the springs
-/// pull as they do half-way, M (x_end - x_start) = dt (push - B x - K (dt/2) x).
+/// The stylus and the hand as one body for a tick: A x = b, x the mean velocities. Trapezoidal rule: the springs act as
+/// at the middle of the tick, M (x_end - x_start) = dt (push - B x - K (dt/2) x).
 struct MovingBody {
   Mat6 A;
   Vec6 b;
@@ -57,7 +57,7 @@ MovingBody moving_body(const VirtualStylusState& state, const VirtualStylusParam
 
   const Vec3 way = hold.X_PS * Vec3(0.0, 0.0, hold.point_mm) - (state.X_PS.p() + r_SH);
   const Vec3 anchor_velocity = hold.velocity_P + hold.angular_velocity_P.cross(hold.point_mm * hold.X_PS.R().col(2));
-  const Vec3 to_centre = state.w_P.cross(state.w_P.cross(r_SH));  // acceleration of H that no velocity tells
+  const Vec3 to_centre = state.w_P.cross(state.w_P.cross(r_SH));  // acceleration of H that is not in the velocities
   const Vec3 on_H = hold.stiffness_n_per_mm * way + hold.damping_ns_per_mm * anchor_velocity + hold.push_n -
                     hold.mass_kg / kMmPerM * to_centre;
   const Vec3 weight = gravity_P * params.weight_n;
@@ -70,15 +70,15 @@ MovingBody moving_body(const VirtualStylusState& state, const VirtualStylusParam
   return {mass + half_s * (damping + half_s * stiffness), mass * stacked(state.v_P, state.w_P) + half_s * push};
 }
 
-/// Dry friction on three of the six velocities. `impulse`: what it gives.
+/// Dry friction on three of the six velocities. `impulse`: its present value.
 struct DryFriction {
-  int first = 0;      ///< 0: v, 3: w.
+  int first = 0;      ///< Impulse at which it slips.
   double most = 0.0;  ///< Impulse at which it slides.
   Vec3 impulse = Vec3::Zero();
   bool stands = false;
 };
 
-/// The friction that stops its joint, or the most it can against the motion. `mobility`: velocity by impulse.
+/// The friction that stops its joint, or its maximum against the motion. `mobility`: velocity per impulse.
 void rub(DryFriction& friction, const Mat6& mobility, Vec6& velocities) noexcept {
   if (!(friction.most > 0.0)) return;
   const Mat3 own = mobility.block<3, 3>(friction.first, friction.first);
@@ -103,7 +103,7 @@ StylusMotion step_stylus(VirtualStylusState& state, const VirtualStylusParams& p
   DryFriction arm{0, half_s * params.friction_n};
   DryFriction gimbal{3, half_s * params.turning_friction_nmm};
   if (arm.most > 0.0 || gimbal.most > 0.0) {
-    constexpr int kRounds = 4;  // each knows what the other gave before
+    constexpr int kRounds = 4;  // each uses the last result of the other
     const Mat6 mobility = factors.solve(Mat6::Identity());
     for (int i = 0; i < kRounds; ++i) {
       rub(arm, mobility, mean);

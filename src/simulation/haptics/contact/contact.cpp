@@ -9,9 +9,9 @@
 namespace trocar::haptics {
 namespace {
 
-constexpr double kNear_mm = 1.0;           // points further from the skin cost one look at the distance
-constexpr double kJump_mm = 5.0;           // no hand does this between two ticks, whatever their time ...
-constexpr double kJump_mm_per_s = 5000.0;  // ... or is this fast
+constexpr double kNear_mm = 1.0;           // points further from the skin need only one distance lookup
+constexpr double kJump_mm = 5.0;           // exceeds hand motion between two ticks of any length ...
+constexpr double kJump_mm_per_s = 5000.0;  // ... or at this speed
 constexpr double kJump_rad = 0.5;
 
 Mat3 rotation_of(const Vec3& turn) noexcept {
@@ -35,7 +35,7 @@ class SkinField {
         row_(static_cast<std::size_t>(distance_.geometry.size[0])),
         plane_(row_ * static_cast<std::size_t>(distance_.geometry.size[1])) {}
 
-  /// Nothing outside the volume or without a gradient.
+  /// Empty outside the volume or without a gradient.
   std::optional<SkinHere> at(const Vec3& p_P) const noexcept {
     const volume::GridGeometry& g = distance_.geometry;
     const Vec3 index = (g.R_PV.transpose() * (p_P - g.origin_P)).cwiseProduct(per_mm_);
@@ -81,7 +81,7 @@ TissueColumn blend(const TissueColumn& from, const TissueColumn& to, double shar
           mix(from.stiffening_per_mm, to.stiffening_per_mm)};
 }
 
-/// The points of the face at the skin, with the tool at `X_PT`; `index` says which they are.
+/// The points of the face near the skin, with the tool at `X_PT`; `index` gives their numbers.
 void find_points(ContactBalance& balance, std::array<std::uint8_t, kMaxContactPoints>& index, const ContactState& state,
                  const HapticScene& scene, const Pose& X_PT, const Pose& X_PT_before) noexcept {
   const ContactFace& face = scene.face;
@@ -116,7 +116,7 @@ bool has_jumped(const ContactState& state, const Pose& X_PT, double dt_s) noexce
   return !(way_mm <= kJump_mm + kJump_mm_per_s * dt_s) || !(cosine > std::cos(kJump_rad));
 }
 
-/// The tool where the device has it: outside the body at once, inside it with forces that grow from zero.
+/// Sets the tool to the device's pose: outside the body at once, inside it with forces that increase from zero.
 bool start(ContactState& state, const HapticScene& scene, const Pose& X_PT) noexcept {
   state = {};
   state.is_started = true;
@@ -140,7 +140,7 @@ ContactStep step_contact(ContactState& state, const HapticScene& scene, const Po
   step.has_jumped = state.is_started && has_jumped(state, X_PT, dt_s);
   if (!state.is_started || step.has_jumped) step.started_inside = start(state, scene, X_PT);
 
-  // The tool as it was shown, carried along by the device.
+  // The previous virtual tool, moved with the device.
   ContactBalance balance;
   balance.offset_P = state.offset_P;
   balance.tilt_P = state.tilt_P;

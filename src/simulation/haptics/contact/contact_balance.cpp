@@ -11,7 +11,7 @@ constexpr double kForceTolerance_n = 1e-9;
 constexpr double kShare = 1.0 / (2.0 * (1.0 + kPoisson));  // shear modulus over Young's modulus
 constexpr double kMaxTurn_rad = 0.05;
 
-/// The balance while it is being solved.
+/// State of the solver of the balance.
 class Solver {
  public:
   explicit Solver(const ContactBalance& balance) noexcept
@@ -53,7 +53,8 @@ class Solver {
   double depth_mm(const PressedPoint& point) const noexcept {
     return point.depth_mm - point.normal_P.dot(motion(point));
   }
-  /// Tissue is a spring and a damper with the coupling's time constant: it answers the indentation that far ahead.
+  /// Tissue is a spring and a damper with the coupling's time constant: its response is that to the indentation at that
+  /// time ahead.
   ColumnResponse respond_ahead(const PressedPoint& point, double depth) const noexcept {
     if (!(depth > 0.0)) return {};
     const ColumnResponse response = respond(point.column, depth + ahead_ * (depth - point.depth_before_mm));
@@ -72,8 +73,8 @@ class Solver {
     return sum.norm() > 0.0 ? Vec3(sum.normalized()) : Vec3(Vec3::UnitZ());
   }
 
-  /// Moves the tool along the mean normal into balance. Contact minus coupling is convex and falls with s: a Newton
-  /// step ends left of the root wherever it began, from there on the steps only shrink.
+  /// Moves the tool along the mean normal into balance. Contact minus coupling is convex and decreases with s: a Newton
+  /// step ends left of the root from any start, and later steps only decrease.
   void press() noexcept {
     std::array<double, kMaxContactPoints> share;
     std::array<double, kMaxContactPoints> depth;
@@ -98,7 +99,7 @@ class Solver {
     out_.move_P += s * normal_;
   }
 
-  /// Friction of a point: the spring of the skin under it, at most mu times the normal force. True while it sticks.
+  /// Friction of a point: the spring of the skin below it, at most mu times the normal force. True while it sticks.
   bool rub(std::size_t i) noexcept {
     const PressedPoint& point = b_.points[i];
     const double k = shear_n_per_mm_[i];
@@ -122,7 +123,7 @@ class Solver {
     return false;
   }
 
-  /// All forces where the tool is now, and how they grow when it slides or turns.
+  /// All forces at the present pose of the tool, and their derivatives with respect to translation and rotation.
   void evaluate() noexcept {
     out_.contact_P = {};
     slide_n_per_mm_ = stiffness_ + rate_;
@@ -154,7 +155,7 @@ class Solver {
     const Vec3 rest = out_.contact_P.force_n - coupling_n();
     return (rest - normal_ * normal_.dot(rest)) / slide_n_per_mm_;
   }
-  /// The same for the turn and the torques.
+  /// The same for rotation and torques.
   Vec3 turn_step() const noexcept {
     const Vec3 step = turn_nmm_per_rad_.inverse() * (out_.contact_P.torque_nmm - coupling_nmm());
     const double angle = step.norm();
@@ -165,10 +166,10 @@ class Solver {
   std::size_t count_;
   double stiffness_;
   double rate_;   // N/mm: damping over dt
-  double ahead_;  // ticks that the tissue's damping looks ahead
+  double ahead_;  // prediction time of the tissue's damping in ticks
   double lever2_;
   std::array<double, kMaxContactPoints> shear_n_per_mm_;
-  std::array<Vec3, kMaxContactPoints> lever_P_;  // turns the tool: arm x normal
+  std::array<Vec3, kMaxContactPoints> lever_P_;  // rotates the tool: arm x normal
   Vec3 normal_ = Vec3::UnitZ();
   double slide_n_per_mm_ = 0.0;
   Mat3 turn_nmm_per_rad_ = Mat3::Zero();

@@ -10,7 +10,7 @@ constexpr double kTiny_mm = 1e-9;
 constexpr double kLeastLength_mm = 0.5;
 constexpr double kNPerMm2PerKpa = 1e-3;
 
-/// Young's modulus over HU: HuTransfer::at for this one number.
+/// Young's modulus over HU: HuTransfer::at for this number only.
 double young_of_hu(const anatomy::HuTransfer& transfer, double hu) noexcept {
   if (!(hu > transfer.hu[0])) return transfer.laws[0].young_kpa;
   for (std::size_t i = 1; i < transfer.knot_count; ++i) {
@@ -22,7 +22,7 @@ double young_of_hu(const anatomy::HuTransfer& transfer, double hu) noexcept {
   return transfer.laws[transfer.knot_count - 1].young_kpa;
 }
 
-/// Reads moduli along a ray in voxel indices. Beyond the volume its edge continues.
+/// Reads moduli along a ray in voxel indices. Outside the volume its edge continues.
 class Ray {
  public:
   Ray(const HapticScene& scene, const Vec3& from_P, const Vec3& direction_P) noexcept
@@ -72,7 +72,7 @@ class Ray {
   bool is_inside_;
 };
 
-/// Where between two depths the tissue becomes rigid.
+/// Depth between two limits at which the tissue becomes rigid.
 double rigid_from_mm(const Ray& ray, double soft_mm, double rigid_mm) noexcept {
   constexpr int kHalvings = 4;
   for (int i = 0; i < kHalvings; ++i) {
@@ -104,7 +104,7 @@ TissueColumn tissue_column(const HapticScene& scene, const Vec3& skin_point_P, c
     const double here = ray.soft_kpa(middle_mm);
     if (here >= kRigid_kpa) {
       column.length_mm = std::max(rigid_from_mm(ray, above_mm, middle_mm), kLeastLength_mm);
-      // The bone may begin on either side of the cell's border.
+      // The bone can start on either side of the cell's border.
       const double more_mm = column.length_mm - kCellBorder_mm[cell];
       if (std::abs(more_mm) > kTiny_mm)
         add(settlement_mm(column.length_mm, face.spread_mm) - face.settlement_mm[cell], more_mm);

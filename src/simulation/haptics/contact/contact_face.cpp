@@ -12,7 +12,7 @@ namespace {
 constexpr double kGelFriction = 0.05;     // [assumed] 0.02..0.2
 constexpr double kSkinFriction = 0.5;     // dry skin, typically: Derler, Gerhardt, review of skin friction [V abstract]
 constexpr double kProbeReach_mm = 80.0;   // [assumed] 50..120: hand on the housing
-constexpr double kFingerReach_mm = 20.0;  // [assumed] 0..60: nail to grip
+constexpr double kFingerReach_mm = 20.0;  // [assumed] 0..60: fingernail to grip
 
 void add_point(ContactFace& face, const Vec3& p_T, const Vec3& n_T, double area_mm2) {
   const auto i = static_cast<std::size_t>(face.count++);
@@ -48,7 +48,7 @@ Result<Tool> parse_tool(std::string_view name) {
 }
 
 double settlement_mm(double depth_mm, double spread_mm) noexcept {
-  // Integral of Boussinesq's stress under the middle of a disc; pi/4 makes the whole that of a rigid punch.
+  // Integral of Boussinesq's stress below the centre of a disc; pi/4 makes the total that of a rigid punch.
   const double a = 0.25 * std::numbers::pi * spread_mm;
   const double r = std::hypot(a, depth_mm);
   return depth_mm - r - a * a / r + 2.0 * a;
@@ -77,8 +77,8 @@ ContactFace make_transducer_face(double radius_mm, double width_mm, double thick
 }
 
 ContactFace make_finger_face(double radius_mm) {
-  // Rings between heights above the tip (as a share of the radius), narrow where contact begins: a shallow dent's
-  // volume is met within 5 %.
+  // Rings between heights above the tip (as a share of the radius), narrow near the first contact: the volume of a
+  // shallow indentation is exact to 5 %.
   constexpr std::array<int, 5> kPoints{3, 5, 6, 6, 7};
   constexpr std::array<double, 6> kBorder{0.0, 0.05, 0.15, 0.3, 0.55, 1.0};
   ContactFace face;

@@ -29,7 +29,7 @@ double AxialBalance::unbalance_n(double s_mm) const noexcept {
 }
 
 AxialSolution solve(const AxialBalance& balance) noexcept {
-  // Bracket: without resistance the needle would go to the device; resistance and damping only shorten the way.
+  // Bracket: without resistance the needle would move to the device; resistance and damping only shorten the motion.
   double low = std::min(balance.s_previous_mm, balance.s_device_mm);
   double high = std::max(balance.s_previous_mm, balance.s_device_mm);
   double f_low = balance.unbalance_n(low);
@@ -42,7 +42,7 @@ AxialSolution solve(const AxialBalance& balance) noexcept {
     f_high = balance.unbalance_n(high += reach);
   if (!(f_low <= 0.0) || !(f_high >= 0.0)) return {balance.s_previous_mm, true};
 
-  // Illinois variant of the false position: safe like bisection, nearly as fast as the secant.
+  // Illinois variant of the false position: robust like bisection, nearly as fast as the secant method.
   constexpr double kForceTolerance_n = 1e-10;
   constexpr double kWidth_mm = 1e-12;
   constexpr int kMaxSteps = 100;

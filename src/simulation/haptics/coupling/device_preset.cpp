@@ -29,12 +29,12 @@ Status read_optional(const config::TomlTable& row, std::string_view key, config:
   return {};
 }
 
-/// A sourced number where the key is there; else `value` stays.
+/// Reads a sourced number if the key is present; otherwise `value` is unchanged.
 Status read_given(const config::TomlTable& row, std::string_view key, config::Range range, double& value) {
   return row.has(key) ? read_value(row, key, range, value) : Status{};
 }
 
-/// Three plain numbers where the key is there (a calibration is measured on the spot and has no source), else zero.
+/// Three plain numbers if the key is present (a calibration is measured on site and has no source), else zero.
 Result<Vec3> read_vec3(const config::TomlTable& row, std::string_view key, config::Range range) {
   if (!row.has(key)) return Vec3(Vec3::Zero());
   TROCAR_TRY(const std::vector<double> numbers, row.numbers(key, range));
@@ -88,7 +88,7 @@ Status read_forces(const config::TomlTable& row, DevicePreset& preset) {
   return read_optional(row, "continuous_torque_nmm", {0.1, capability.peak_torque_nmm}, preset.continuous_torque_nmm);
 }
 
-/// How its motion and force become the patient's.
+/// Mapping of its motion and force to the patient.
 Status read_mapping(const config::TomlTable& row, DevicePreset& preset) {
   constexpr config::Range kRoom_mm{-5000.0, 5000.0};
   constexpr config::Range kTurn_deg{-360.0, 360.0};

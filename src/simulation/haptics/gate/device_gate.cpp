@@ -5,12 +5,12 @@
 namespace trocar::haptics {
 namespace {
 
-// Known shares: 6.2/37.5 N and 0.88/3.3 N, 188/515 N mm (data/devices.toml, premium and omni).
+// Known ratios: 6.2/37.5 N and 0.88/3.3 N, 188/515 N mm (data/devices.toml, premium and omni).
 constexpr double kContinuousForceShare = 0.2;   // [assumed, 0.15..0.5]
 constexpr double kContinuousTorqueShare = 0.3;  // [assumed, 0.15..0.5]
 constexpr double kLooseHand_ns_per_mm = 0.003;  // a quarter of the hand of H1 [assumed, 0.001..0.012]
 constexpr double kNeverVibrating_mw = 1e6;      // end of the gate's range
-constexpr double kSoftestScale = 0.1;           // below it the account would be open to anything [assumed]
+constexpr double kSoftestScale = 0.1;           // a smaller value would disable the energy account [assumed]
 
 }  // namespace
 
@@ -25,11 +25,11 @@ GateParams gate_params(const DevicePreset& preset) noexcept {
       device.peak_torque_nmm, preset.continuous_torque_nmm.value_or(kContinuousTorqueShare * device.peak_torque_nmm));
   params.max_damping_ns_per_mm = preset.max_damping_ns_per_mm;
   params.brake_ns_per_mm = std::min(params.brake_ns_per_mm, params.max_damping_ns_per_mm);
-  // What the patient's springs are at the device; never stiffer, which would hold back more.
+  // Stiffness of the patient's springs at the device; never stiffer, which would limit more.
   params.softest_n_per_mm *= std::clamp(preset.force_scale * preset.motion_scale, kSoftestScale, 1.0);
   params.softest_nmm_per_rad *= std::clamp(preset.force_scale, kSoftestScale, 1.0);
   params.physical_damping_ns_per_mm = preset.viscosity_ns_per_mm + kLooseHand_ns_per_mm;
-  if (!preset.has_force()) params.max_vibration_mw = kNeverVibrating_mw;  // a shown force moves nothing
+  if (!preset.has_force()) params.max_vibration_mw = kNeverVibrating_mw;  // a displayed force moves nothing
   params.count_mm = preset.encoder.count_mm;
   params.count_rad = preset.encoder.count_rad;
   return params;

@@ -8,7 +8,7 @@
 namespace trocar::haptics {
 namespace {
 
-/// A field's range, and what it is taken for where it is out of it: the end that gives the least force.
+/// Range of a field, and its replacement if it is out of range: the end with the least force.
 struct FieldRange {
   const char* name;
   double GateParams::*field;

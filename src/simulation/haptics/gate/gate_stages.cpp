@@ -15,7 +15,7 @@ constexpr double kQuiet_s = 0.25;           // without force, after which an exc
 constexpr double kCool = 0.8;               // share of the continuous heat up to which the peak is allowed [assumed]
 constexpr double kLateralShare = 0.2;  // of the force's limit that an axial force leaves to a lateral one [assumed]
 constexpr double kLeastAxis = 1e-6;    // length below which an axis has no direction
-constexpr double kRounding = 1e-12;    // by which a limited norm stays below its limit, relative
+constexpr double kRounding = 1e-12;    // relative margin that keeps a limited norm below its limit
 
 bool is_sound(const Vec3& value) noexcept {
   return detail::is_sound(value.x()) && detail::is_sound(value.y()) && detail::is_sound(value.z());
@@ -27,14 +27,14 @@ Vec3 clipped(const Vec3& value, double limit) noexcept {
   return norm > 0.0 ? Vec3(value * (limit * (1.0 - kRounding) / norm)) : Vec3(Vec3::Zero());
 }
 
-/// What a spring holds that wants `wanted` and gives at most `limit`.
+/// Energy stored in a spring with the demand `wanted` and the limit `limit`.
 double spring_energy_mj(double wanted, double limit, double stiffness) noexcept {
   const double given = std::min(wanted, limit);
   return given * (wanted - 0.5 * given) / stiffness;
 }
 
-/// Work of a pull on a way told in counts: `before` acted, for the last count of the way perhaps already `now`; that
-/// doubt is worth at most the device's friction.
+/// Work of a force along a quantised displacement: `before` acted, for the last count possibly `now`; this uncertainty
+/// is worth at most the device's friction.
 double work_mj(const Vec3& before, const Vec3& now, const Vec3& way, double count, double friction) noexcept {
   const double length = way.norm();
   if (length <= 0.0) return 0.0;
@@ -102,7 +102,7 @@ bool restore(GateState& state) noexcept {
   state = GateState{};
   state.fault = fault;
   state.mode = fault == telemetry::GateFault::kNone ? telemetry::GateMode::kOff : telemetry::GateMode::kFault;
-  state.force_heat = state.torque_heat = 1.0;  // how warm is not known: as warm as may be
+  state.force_heat = state.torque_heat = 1.0;  // unknown motor temperature: the maximum is assumed
   return false;
 }
 

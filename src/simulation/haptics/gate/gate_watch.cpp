@@ -5,18 +5,18 @@
 #include "haptics/gate/detail/gate_stages.h"
 #include "haptics/gate/loop_limits.h"
 
-/// Watches of the safety gate: the loop's period, impossible motion, vibration (physics.md G11-G13).
+/// Monitors of the safety gate: the loop's period, impossible motion, vibration (physics.md G11-G13).
 namespace trocar::haptics::detail {
 namespace {
 
-constexpr double kOwnShare = 0.5;          // of a late period, spent in the loop's own calls: it will be late again
-constexpr double kMemory_s = 0.05;         // one hole within it is excused [assumed]
-constexpr double kCutoff_hz = 30.0;        // hands stay below: tremor ends at 12 Hz [assumed]
-constexpr double kMean_s = 0.05;           // over which the power is averaged [assumed]
-constexpr double kMostVibration_s = 0.02;  // above the limit before a fault; a puncture is over by then [assumed]
-constexpr double kMostPower_mw = 1e9;      // of an account that stays finite
+constexpr double kOwnShare = 0.5;          // share of a late period in the loop's own calls: then it will be late again
+constexpr double kMemory_s = 0.05;         // one gap within it is tolerated [assumed]
+constexpr double kCutoff_hz = 30.0;        // hand motion is slower: tremor ends at 12 Hz [assumed]
+constexpr double kMean_s = 0.05;           // averaging time of the power [assumed]
+constexpr double kMostVibration_s = 0.02;  // above the limit before a fault; longer than a puncture [assumed]
+constexpr double kMostPower_mw = 1e9;      // bound that keeps the power finite
 
-/// One period of a low-pass; gives what it holds back.
+/// One period of a high-pass filter.
 Vec3 high_passed(Vec3& slow, const Vec3& value, double share) noexcept {
   slow += share * (value - slow);
   return value - slow;

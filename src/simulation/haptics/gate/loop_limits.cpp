@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kDelayPeriods = 1.5;    // of a wrench: held for a period, one period late (physics.md H2)
 constexpr double kLongestFull_s = 0.01;  // a loop below 100 Hz is slow for any coupling [assumed]
-constexpr double kLeastLate = 1.5;       // periods; a shorter delay of one period is rounding of the grid [assumed]
+constexpr double kLeastLate = 1.5;       // periods; a smaller delay is rounding of the grid [assumed]
 
 }  // namespace
 

@@ -8,18 +8,18 @@
 namespace trocar::haptics {
 namespace {
 
-constexpr double kNominalPeriod_s = 0.001;  // where the caller's is no time
-constexpr double kLongestPeriod_s = 0.1;    // a longer hole counts as this [assumed]
-constexpr double kLongestRise_s = 0.005;    // for what lets the force rise: a hole is no leave to jump [assumed]
+constexpr double kNominalPeriod_s = 0.001;  // for an invalid period of the caller
+constexpr double kLongestPeriod_s = 0.1;    // longer gaps count as this [assumed]
+constexpr double kLongestRise_s = 0.005;    // period for rises of the force: a gap does not permit a jump [assumed]
 constexpr double kRampEnd = 1e-9;           // share of a ramp that is rounding
 constexpr double kSum_s = 1e-9;             // rounding of a sum of periods
-constexpr double kFall_n_per_s = 20.0;      // slower is no drop but a hand that moves [assumed, 5..100]
-constexpr double kLeastDrop_n = 0.2;        // a fall worth telling [assumed, 0.1..1]
+constexpr double kFall_n_per_s = 20.0;      // slower changes are hand motion, not drops [assumed, 5..100]
+constexpr double kLeastDrop_n = 0.2;        // minimum reported drop [assumed, 0.1..1]
 
-/// The period as the gate counts it.
+/// Period used by the gate.
 struct Period {
-  double dt_s;    ///< For what falls and for what warms.
-  double rise_s;  ///< For what lets the force rise.
+  double dt_s;    ///< For decreases and for warming.
+  double rise_s;  ///< For increases of the force.
 };
 
 Period make_period(double dt_s) noexcept {
@@ -35,20 +35,20 @@ double ramped(double scale, double change) noexcept {
 }
 
 bool is_client_silent(const GateInput& input, const GateParams& params) noexcept {
-  return !(input.silence_s <= params.stale_s);  // NaN is silent, too
+  return !(input.silence_s <= params.stale_s);  // NaN counts as a timeout
 }
 
 bool is_too_fast(const GateInput& input, const GateParams& params) noexcept {
   return !(input.v_mm_per_s.norm() <= params.brake_mm_per_s);
 }
 
-/// Time above the brake's speed; it drains as it fills, so that a swing through standstill counts, too. Without a force
-/// the motors cannot have done it.
+/// Time above the brake's speed; it decreases at the same rate, so that an oscillation counts, too. Only with a force,
+/// because otherwise the motors are not the cause.
 void count_runaway(GateState& state, bool is_braking, double rise_s) noexcept {
   state.runaway_s = std::max(0.0, state.runaway_s + (is_braking ? rise_s : -rise_s));
 }
 
-/// Why the force must go in this period. The caller's word comes first: it names the cause.
+/// Fault of this period. The caller's fault comes first: it names the cause.
 telemetry::GateFault find_cause(const GateState& state, const GateInput& input, const GateParams& params,
                                 bool is_usable) noexcept {
   if (input.device_fault > telemetry::kLastGateFault) return telemetry::GateFault::kNotFinite;
@@ -65,7 +65,7 @@ telemetry::GateFault find_cause(const GateState& state, const GateInput& input, 
   return telemetry::GateFault::kNone;
 }
 
-/// Safe start, fading and resume (physics.md G7): moves the mode and its scale.
+/// Safe start, fading and resume (physics.md G7): updates the mode and its scale.
 void step_mode(GateState& state, const GateInput& input, const GateParams& params, const Period& period) noexcept {
   if (state.mode == telemetry::GateMode::kOff) {
     state.scale = 0.0;
@@ -90,7 +90,7 @@ void step_mode(GateState& state, const GateInput& input, const GateParams& param
   state.mode = state.scale < 1.0 ? telemetry::GateMode::kRising : telemetry::GateMode::kOn;
 }
 
-/// What goes out of a fault's period: the last wrench on its straight way to zero.
+/// Output during a fault: the last wrench on a linear ramp to zero.
 Wrench fault_wrench(GateState& state, const GateParams& params, const Period& period) noexcept {
   const double before = state.scale;
   state.scale = ramped(before, -period.dt_s / params.fault_ramp_s);
@@ -112,7 +112,7 @@ void release(GateState& state) noexcept {
   state.runaway_s = state.vibration_s = 0.0;
 }
 
-/// The period's input with the tissue's wrench weakened to what the loop's period permits (physics.md G11).
+/// Input of the period, with the tissue's wrench reduced to the share that the loop's period permits (physics.md G11).
 GateInput weakened(const GateInput& input, double share) noexcept {
   GateInput weak = input;
   weak.wanted.force_n *= share;
@@ -146,7 +146,7 @@ Wrench pass_stages(GateState& state, const GateInput& input, const GateParams& p
   return out;
 }
 
-/// Follows the falls of the force; a fall that is over is told once.
+/// Tracks drops of the force; each one is reported once, at its end.
 void follow_drop(GateState& state, double force_n, double dt_s, GateOutput& output) noexcept {
   const double last_n = state.last.force_n.norm();
   if (last_n - force_n > kFall_n_per_s * dt_s) {

@@ -13,8 +13,8 @@ int bin_of(double s_mm) noexcept {
 
 namespace {
 
-/// The wall at the border into a structure. Coming back out of a walled structure into the one around it (a vessel in
-/// the liver) pierces nothing.
+/// The wall at the border into a structure. Moving from a walled structure back into the one around it (a vessel in the
+/// liver) pierces nothing.
 std::uint8_t wall_at_next_bin(Channel& channel, std::uint8_t layer) noexcept {
   if (layer == channel.wall_here) return kNoLayer;
   const bool is_return = layer == channel.wall_before && channel.wall_here != kNoLayer;
@@ -26,7 +26,7 @@ std::uint8_t wall_at_next_bin(Channel& channel, std::uint8_t layer) noexcept {
 std::uint8_t walled_layer(const HapticScene& scene, std::uint8_t tissue) noexcept {
   const std::uint8_t layer = scene.tissues[tissue].layer;
   const bool is_walled = tissue != scene.skin && layer != kNoLayer && scene.layers[layer].is_wall;
-  return is_walled ? layer : kNoLayer;  // the skin is pierced where the path begins
+  return is_walled ? layer : kNoLayer;  // the skin is pierced where the path starts
 }
 
 }  // namespace

@@ -9,12 +9,12 @@
 namespace trocar::haptics {
 namespace {
 
-constexpr double kLook_mm = 10.0;  // Past the tip and the device: more than a tick can jump.
+constexpr double kLook_mm = 10.0;  // Beyond tip and device: more than the motion of one tick.
 constexpr double kContactHysteresis_mm = 0.1;
 constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the tip is this far out.
 constexpr double kSpeedSmoothing_s = 0.02;
 
-/// Needle and device on the line of this step, before and now.
+/// Needle and device on the line of this step, at its start and end.
 struct LineStep {
   double s_previous_mm;
   double s_device_previous_mm;
@@ -27,8 +27,8 @@ void stop_loading(InsertionState& state) noexcept {
   state.pending_s = 0.0;
 }
 
-/// Places needle and device on the line of this step: the path once the skin is open, before that the needle's own axis
-/// from where it meets the skin. Nothing: no skin ahead.
+/// Projects needle and device onto the line of this step: the path after the skin puncture, before that the needle's
+/// axis from its intersection with the skin. Empty: no skin ahead.
 std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path, const HapticScene& scene,
                                       const Vec3& tip_P, const Vec3& axis_P) noexcept {
   if (!path.is_open) {
@@ -41,11 +41,11 @@ std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path
       path.is_open = true;
     } else if (state.loading == kNoLayer) {
       start_channel(path, entry_P, axis_P);
-    } else {  // sliding and turning on the skin
+    } else {  // translation and rotation on the skin
       path.channel.origin_P = entry_P;
       path.channel.direction_P = axis_P;
     }
-    if (state.loading == kNoLayer) {  // nothing touched yet: needle and device were in one place
+    if (state.loading == kNoLayer) {  // no contact yet: needle and device coincided
       state.s_mm = state.s_device_mm = path.channel.direction_P.dot(state.device_tip_P - path.channel.origin_P);
     }
   }
@@ -53,18 +53,18 @@ std::optional<LineStep> place_on_line(InsertionState& state, InsertionPath& path
   return LineStep{state.s_mm, state.s_device_mm, line.direction_P.dot(tip_P - line.origin_P)};
 }
 
-/// The layer under load, or the one that the tip will meet next.
+/// The layer under load, or the next one ahead of the tip.
 LayerAhead layer_in_front(InsertionState& state, InsertionPath& path, const HapticScene& scene) noexcept {
   if (state.loading != kNoLayer) return {state.loading, state.surface_mm};
-  if (!path.is_open) return {scene.tissues[scene.skin].layer, 0.0};  // s is counted from the resting skin
+  if (!path.is_open) return {scene.tissues[scene.skin].layer, 0.0};  // s is measured from the resting skin
   look_ahead(path.channel, scene, std::max(state.s_mm, 0.0), kLook_mm);
-  // From the resting tip on: a layer that gave way may have lain over the next one.
+  // From the resting tip on: a punctured layer may have covered the next one.
   LayerAhead ahead = next_layer(path.channel, scene, path.rest_mm, std::max(state.s_mm, 0.0) + kLook_mm);
   ahead.surface_mm = std::max(ahead.surface_mm, state.s_mm);
   return ahead;
 }
 
-/// Friction of paper A: every tissue by the shaft length in it, and its fluctuation.
+/// Friction of paper A: each tissue by the shaft length in it, with its fluctuation.
 void add_friction(AxialBalance& balance, const InsertionState& state, const InsertionPath& path,
                   const HapticScene& scene) noexcept {
   const double fade = motion_fade(state.velocity_mm_per_s);
@@ -115,7 +115,7 @@ double holding_force_n(const InsertionPath& path, const HapticScene& scene, cons
   return force;
 }
 
-/// Karnopp: a needle at rest stays there while the forces on it are below the holding force.
+/// Karnopp: a needle at rest stays at rest while the forces on it are below the holding force.
 bool is_held(const InsertionState& state, const InsertionPath& path, const HapticScene& scene,
              const AxialBalance& balance) noexcept {
   if (!scene.options.has_stick || !path.is_open) return false;
@@ -125,11 +125,11 @@ bool is_held(const InsertionState& state, const InsertionPath& path, const Hapti
   const double s = balance.s_previous_mm;
   const double push = balance.coupling_n(s) - balance.prepuncture_n(s);
   const double holding = holding_force_n(path, scene, balance);
-  const double uncut = s >= balance.cut_to_mm ? balance.cutting_n : 0.0;  // fresh tissue holds until it is cut
+  const double uncut = s >= balance.cut_to_mm ? balance.cutting_n : 0.0;  // uncut tissue holds until it is cut
   return push <= holding + uncut && push >= -holding;
 }
 
-/// The part of the step after which the layer carries its puncture force.
+/// Fraction of the step at which the layer reaches its puncture force.
 struct Puncture {
   double fraction;
   AxialBalance balance;
@@ -146,7 +146,7 @@ Puncture find_puncture(const AxialBalance& whole, const LineStep& line, double v
     puncture.fraction = 0.5 * (low + high);
     puncture.balance.dt_s = whole.dt_s * puncture.fraction;
     puncture.balance.s_device_mm = std::lerp(line.s_device_previous_mm, line.s_device_mm, puncture.fraction);
-    // The device's speed changes over the tick, not at its start: the force is continuous between ticks.
+    // The device's speed changes linearly over the tick: the force is continuous between ticks.
     puncture.balance.v_device_mm_per_s =
         std::lerp(v_device_before_mm_per_s, whole.v_device_mm_per_s, puncture.fraction);
     puncture.s_mm = solve(puncture.balance).s_mm;
@@ -166,7 +166,7 @@ telemetry::InsertionPhase next_phase(const InsertionState& state, const Insertio
                                                                : telemetry::InsertionPhase::kInserted;
 }
 
-/// Contact with hysteresis: begins at the resting surface, ends a little above it.
+/// Contact with hysteresis: starts at the resting surface, ends slightly above it.
 void update_contact(InsertionState& state, const InsertionPath& path, const LayerAhead& ahead) noexcept {
   if (ahead.layer == kNoLayer) return;
   if (state.s_mm > ahead.surface_mm) {
@@ -178,7 +178,7 @@ void update_contact(InsertionState& state, const InsertionPath& path, const Laye
   }
 }
 
-/// The layer under load gives way; behind the skin this opens the path.
+/// Punctures the layer under load; for the skin this opens the path.
 void give_way(InsertionState& state, InsertionPath& path, std::uint8_t layer) noexcept {
   state.loading = kNoLayer;
   if (path.is_open) {
@@ -189,7 +189,7 @@ void give_way(InsertionState& state, InsertionPath& path, std::uint8_t layer) no
   path.contact_to_puncture_P = path.channel.origin_P + state.s_mm * path.channel.direction_P - state.contact_P;
 }
 
-/// No skin ahead: the virtual needle is where the device is.
+/// No skin ahead: the virtual needle is at the device.
 InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const Vec3& tip_P, const Vec3& axis_P,
                           double dt_s) noexcept {
   leave_body(path);
@@ -204,7 +204,7 @@ InsertionStep step_in_air(InsertionState& state, InsertionPath& path, const Vec3
   return step;
 }
 
-/// The values of the laws at the end of the step, as recorded.
+/// Values of the laws at the end of the step, as recorded.
 void record_forces(const AxialBalance& balance, double s_mm, bool is_stuck, const ProxyShare* share,
                    InsertionStep& step) noexcept {
   step.velocity_mm_per_s = is_stuck ? 0.0 : balance.velocity(s_mm);
@@ -225,7 +225,7 @@ std::uint8_t tissue_at_tip(const InsertionState& state, const InsertionPath& pat
   return path.rest_mm > 0.0 ? path.channel.tissue[static_cast<std::size_t>(bin_of(path.rest_mm))] : std::uint8_t{0};
 }
 
-/// Balance over the step, cut short where a layer gives way. Returns s of the virtual needle.
+/// Balance over the step, divided at a puncture. Returns s of the virtual needle.
 double solve_step(InsertionState& state, const HapticScene& scene, const LineStep& line, const LayerAhead& ahead,
                   AxialBalance& balance, InsertionStep& step) noexcept {
   state.pending_s = 0.0;
@@ -258,7 +258,7 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   const auto line = place_on_line(state, path, scene, device_tip_P, device_axis_P);
   if (!line) return step_in_air(state, path, device_tip_P, device_axis_P, dt_s);
 
-  // Balance of the virtual needle, over the tick and what the last puncture left of the one before.
+  // Balance of the virtual needle over the tick and the remaining time of the last puncture.
   const LayerAhead ahead = layer_in_front(state, path, scene);
   AxialBalance balance = make_balance(state, path, scene, *line, dt_s + state.pending_s, ahead, share);
   const double smoothing = dt_s / (dt_s + kSpeedSmoothing_s);
@@ -268,7 +268,7 @@ InsertionStep step_insertion(InsertionState& state, InsertionPath& path, const H
   const double s_mm = solve_step(state, scene, *line, ahead, balance, step);
   record_forces(balance, s_mm, state.is_stuck, share, step);
 
-  // The tip stays at the resting surface of the layer that it indents until that gives way.
+  // The tip stays at the resting surface of the indented layer until its puncture.
   state.s_mm = s_mm;
   state.s_device_mm = balance.s_device_mm;
   state.velocity_mm_per_s = step.velocity_mm_per_s;

@@ -39,7 +39,7 @@ void open_path(InsertionPath& path, std::uint8_t skin_layer) noexcept {
   path.is_open = true;
   if (skin_layer != kNoLayer) path.channel.pierce(skin_layer);
   path.rest_mm = 0.0;
-  path.channel.forget_bins();  // the line may have turned while the skin was loaded
+  path.channel.forget_bins();  // the line may have rotated while the skin was loaded
 }
 
 EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double rest_mm, std::uint8_t loading) noexcept {
@@ -60,7 +60,7 @@ EnteredLabels move_tip(InsertionPath& path, const HapticScene& scene, double res
       inserted = std::max(0.0, is_forward ? inserted + length : inserted - length);
     }
     const std::uint8_t label = path.channel.label[index];
-    // A tip that rests on a bin's border is not in the bin beyond it.
+    // A tip at the border of a bin is not in the next bin.
     if (!is_forward || length <= 0.0 || label == path.label || is_held_back(index)) continue;
     path.label = label;
     if (label != 0 && count < entered.labels.size())
@@ -87,7 +87,8 @@ void leave_body(InsertionPath& path) noexcept {
 
 namespace {
 
-/// Way (mm) back along the axis from a tip inside the body to the skin; the longest needle's length where none is met.
+/// Distance (mm) back along the axis from a tip inside the body to the skin; the longest needle's length if there is
+/// none.
 double way_to_skin_back(const HapticScene& scene, const Vec3& tip_P, const Vec3& axis_P) noexcept {
   constexpr double kStep_mm = 1.0;
   constexpr double kLongest_mm = (Channel::kBins - 1) * Channel::kBin_mm;

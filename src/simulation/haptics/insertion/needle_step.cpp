@@ -11,7 +11,7 @@ namespace {
 constexpr double kJump_mm = 5.0;
 constexpr double kJump_mm_per_s = 3000.0;
 
-/// Starts where the needle is: outside, or inside with everything down to the tip pierced.
+/// Starts at the needle's pose: outside, or inside with all layers down to the tip pierced.
 void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, NeedleStep& step) noexcept {
   step.has_jumped = state.is_started;
   leave_body(state.path);
@@ -23,7 +23,7 @@ void start(NeedleState& state, const HapticScene& scene, const Pose& X_PN, Needl
   state.is_started = true;
 }
 
-/// The pose a damping time ahead: springs that act on it damp in proportion to their stiffness (physics.md B7).
+/// The pose one damping time ahead: springs at this pose damp in proportion to their stiffness (physics.md B7).
 Pose pose_ahead(NeedleState& state, const Pose& X_PN, double ahead_s, double dt_s) noexcept {
   constexpr double kSmoothing_s = 0.002;
   const double share = dt_s / (dt_s + kSmoothing_s);
@@ -39,7 +39,7 @@ NeedleAtPath at_path(const HapticScene& scene, const Pose& X_PN) noexcept {
   return {X_PN.p() - scene.needle.length_mm * axis_P, axis_P, scene.needle.length_mm};
 }
 
-/// Paper A: path constraint while the skin is open, about S.
+/// Paper A: path constraint after the skin puncture, about S.
 Wrench path_constraint_wrench(const InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
                               const Pose& X_PN_ahead) noexcept {
   if (!path.is_open) return {};
@@ -47,20 +47,21 @@ Wrench path_constraint_wrench(const InsertionPath& path, const HapticScene& scen
   return path_constraint(line, at_path(scene, X_PN), at_path(scene, X_PN_ahead), scene.options.constraint);
 }
 
-/// Torque about S of resistances along the path: they act at the tip, by whose way they are found (physics.md T1).
+/// Torque about S of resistances along the path: they act at the tip, from whose motion they are computed (physics.md
+/// T1).
 Vec3 axial_torque_nmm(const HapticScene& scene, const Pose& X_PN, const Vec3& direction_P, double along_n) noexcept {
   return -along_n * Vec3(scene.needle.length_mm * X_PN.R().col(2)).cross(direction_P);
 }
 
-/// What the body proxies hold across the path, the shape it bends the needle to, and the torque about the grip of all
-/// forces (paper B, eq. 6): those along the path act at the tip, by whose way they are found.
+/// Forces of the body proxies across the path, the bent shape of the needle, and the torque about the grip of all
+/// forces (paper B, eq. 6): those along the path act at the tip, from whose motion they are computed.
 void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ahead, bool is_stylet_in,
                double cutting_mm_per_s, NeedleStep& step) noexcept {
   if (!state.path.is_open) return;
   const HeldShaft shaft = hold_shaft(state.path.channel, scene, X_PN_ahead, state.path.rest_mm, is_stylet_in);
   const InsertionStep& axial = step.axial;
   const double on_tip_n = axial.prepuncture_n + axial.cutting_n - step.tip_proxy_P.dot(axial.axis_P);
-  // The bevel pushes aside what it cuts: at rest it does not, or it would be a force without a potential.
+  // The bevel deflects only while it cuts: at rest its force would have no potential.
   const double cuts = cutting_mm_per_s > 0.0 ? motion_fade(cutting_mm_per_s) : 0.0;
   const ShaftReaction reaction = react(shaft, scene, bevel_force_P(scene.needle, X_PN_ahead, cuts * on_tip_n));
   state.shape = reaction.needle;
@@ -69,8 +70,8 @@ void hold_body(NeedleState& state, const HapticScene& scene, const Pose& X_PN_ah
   step.held_P.torque_nmm += axial_torque_nmm(scene, X_PN_ahead, axial.axis_P, along_n);
 }
 
-/// Model B's part along the path of the combined model: the shaft's friction, and the tip in unlabelled tissue, of
-/// which model A knows nothing.
+/// Contribution of model B along the path in the combined model: the shaft's friction, and the tip in unlabelled
+/// tissue, which model A does not include.
 ProxyShare proxy_share(const InsertionPath& path, const HapticScene& scene) noexcept {
   ProxyShare share;
   if (!path.is_open) return share;

@@ -7,7 +7,7 @@
 namespace trocar::haptics {
 namespace {
 
-/// Way (0..1) through the fade.
+/// Progress (0..1) through the fade.
 double fade_share(double depth_mm, const PathConstraintParams& params) noexcept {
   return std::clamp(depth_mm / params.fade_mm, 0.0, 1.0);
 }

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kTissuePoisson = 0.5;  // Soft tissue keeps its volume.
 constexpr double kNPerMm2PerKpa = 0.001;
-constexpr double kMostTipForce_n = 1000.0;  // Far beyond any device: keeps the numbers finite.
+constexpr double kMostTipForce_n = 1000.0;  // Beyond any device: keeps the numbers finite.
 
-/// A vector, cut to a length; zero where it is not a number.
+/// A vector clamped to a length; zero if it is not finite.
 Vec3 within(const Vec3& v, double most) noexcept {
   const double length = v.stableNorm();
   if (!std::isfinite(length)) return Vec3::Zero();
@@ -24,7 +24,7 @@ Vec3 across(const Vec3& v, const Vec3& axis) noexcept {
   return v - axis * axis.dot(v);
 }
 
-/// What the shaft feels in one cell of the channel.
+/// Resistance of the shaft in one cell of the channel.
 struct ShaftTissue {
   double dry_n_per_mm = 0.0;
   double viscosity_ns_per_mm = 0.0;
@@ -42,7 +42,7 @@ ShaftTissue tissue_at_bin(const Channel& channel, const HapticScene& scene, std:
   return {law.stick_n_per_mm, law.viscosity_ns_per_mm, law.young_kpa};
 }
 
-/// Part of the channel that a proxy stands for, within the body.
+/// Part of the channel of one proxy, within the body.
 struct Piece {
   double from_mm = 0.0;
   double to_mm = 0.0;
@@ -58,7 +58,7 @@ Piece piece_of(const NeedleBeam& beam, int node, double tip_mm) noexcept {
   return to_mm > from_mm ? Piece{from_mm, to_mm} : Piece{};
 }
 
-/// Adds up over the cells of a piece: `add(tissue, length_mm)`. Cells stand still in the channel, so that a sum changes
+/// Sums over the cells of a piece: `add(tissue, length_mm)`. Cells are fixed in the channel, so that a sum changes
 /// continuously as the needle slides.
 template <class Add>
 void for_each_cell(const Channel& channel, const HapticScene& scene, const Piece& piece, const Add& add) noexcept {
@@ -74,7 +74,7 @@ void for_each_cell(const Channel& channel, const HapticScene& scene, const Piece
   }
 }
 
-/// Stiffness of the tissue around a unit of shaft (Vesic 1961), and the tissue that has a given one.
+/// Stiffness of the tissue around a unit length of shaft (Vesic 1961), and the tissue with a given one.
 struct BedLaw {
   double diameter_mm;
   double bending_stiffness_n_mm2;
@@ -96,7 +96,7 @@ const NeedleBeam& beam_of(const HapticScene& scene, bool is_stylet_in) noexcept 
   return is_stylet_in ? scene.beam_with_stylet : scene.beam_without_stylet;
 }
 
-/// Springs of the bed, no stiffer in sum than what the device can show.
+/// Springs of the foundation, with a total stiffness within the device's limit.
 void fill_stiffness(BeamBed& bed, const Channel& channel, const HapticScene& scene, const NeedleBeam& beam,
                     double tip_mm) noexcept {
   const BedLaw law{2.0 * scene.needle.radius_mm, beam.bending_stiffness_n_mm2};
@@ -195,7 +195,7 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
     force_P *= shaft.share;
     reaction.wrench_P.force_n += force_P;
     reaction.wrench_P.torque_nmm += lever_P.cross(force_P);
-    // Steel does not stretch: spans keep their length and take their direction from the beam.
+    // The shaft does not stretch: spans keep their length and take their direction from the beam.
     const Vec3 span_P = axis_P * spacing_mm + bent_P - before_P;
     const double drawn_mm = span_P.stableNorm();
     const double kept = drawn_mm > 0.0 ? spacing_mm / drawn_mm : 0.0;

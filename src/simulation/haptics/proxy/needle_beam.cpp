@@ -7,27 +7,27 @@
 namespace trocar::haptics {
 namespace {
 
-/// Compliance of the shaft's end as built so far, clamp to node: deflection and slope a unit of force and of moment.
+/// Compliance of the shaft's end assembled so far, clamp to node: deflection and slope per unit force and moment.
 struct EndCompliance {
   double w_per_force = 0.0;
-  double w_per_moment = 0.0;  ///< Equals the slope a unit of force.
+  double w_per_moment = 0.0;  ///< Equals the slope per unit force.
   double slope_per_moment = 0.0;
 };
 
-/// A node with its spring, seen from the clamp: what the rest of the shaft pulls at.
+/// A node with its spring, seen from the clamp: the load point of the rest of the shaft.
 struct Node {
   EndCompliance compliance;
   Vec3 deflection = Vec3::Zero();
   double stiffness = 0.0;
 };
 
-/// One more span of shaft: its own bending, and the turn of the end before it as a lever.
+/// Adds a span of shaft: its own bending, and the rotation of the previous end as a lever.
 EndCompliance after_span(const EndCompliance& c, double h, double ei) noexcept {
   return {c.w_per_force + 2.0 * h * c.w_per_moment + h * h * c.slope_per_moment + h * h * h / (3.0 * ei),
           c.w_per_moment + h * c.slope_per_moment + h * h / (2.0 * ei), c.slope_per_moment + h / ei};
 }
 
-/// A spring across the end makes it stiffer; `share` is what is left of its compliance.
+/// A spring at the end increases the stiffness; `share` is the remaining part of its compliance.
 EndCompliance with_spring(const EndCompliance& c, double stiffness, double share) noexcept {
   return {c.w_per_force * share, c.w_per_moment * share,
           c.slope_per_moment - c.w_per_moment * c.w_per_moment * stiffness * share};
@@ -52,7 +52,7 @@ void limit(BeamSolution& solution, double most_mm) noexcept {
     deflection = std::isfinite(most) ? Vec3(deflection * scale) : Vec3::Zero();
 }
 
-constexpr double kRigid_n_per_mm = 1e9;  // Stiffer than anything; keeps the numbers finite.
+constexpr double kRigid_n_per_mm = 1e9;  // Stiffer than any tissue; keeps the numbers finite.
 
 double usable(double stiffness) noexcept {
   return stiffness > 0.0 && std::isfinite(stiffness) ? std::min(stiffness, kRigid_n_per_mm) : 0.0;
@@ -79,7 +79,7 @@ BeamSolution solve_beam(const NeedleBeam& beam, const BeamBed& bed) noexcept {
   const double h = beam.spacing_mm;
   solution.node_count = count;
 
-  // Outwards: what clamp, spans and springs up to a node amount to. Compliances only add up or shrink: nothing cancels.
+  // Outwards: compliance of clamp, spans and springs up to each node. All terms have the same sign: no cancellation.
   std::array<Node, kMaxBeamNodes> nodes;
   EndCompliance end;
   Vec3 deflection = Vec3::Zero();
@@ -99,7 +99,8 @@ BeamSolution solve_beam(const NeedleBeam& beam, const BeamBed& bed) noexcept {
     nodes[index] = {end, deflection, k};
   }
 
-  // Inwards: force and moment of all that lies beyond a node; once with the bed's pull, once a newton on the tip.
+  // Inwards: force and moment of everything beyond a node; once with the load of the foundation, once with one newton
+  // at the tip.
   Vec3 force = Vec3::Zero();
   Vec3 moment = Vec3::Zero();
   double tip_force = 1.0;
@@ -121,8 +122,8 @@ BeamSolution solve_beam(const NeedleBeam& beam, const BeamBed& bed) noexcept {
 }
 
 GripStiffness grip_stiffness(const NeedleBeam& beam, const BeamBed& bed) noexcept {
-  // From the tip inwards: stiffness K of all beyond, to deflection and slope. A span with compliance C and lever T
-  // makes it T' K (1 + C K)^-1 T.
+  // From the tip inwards: stiffness K of everything beyond, to deflection and slope. A span with compliance C and lever
+  // T transforms it to T' K (1 + C K)^-1 T.
   const double h = beam.spacing_mm;
   const double ei = beam.bending_stiffness_n_mm2;
   const double c_ww = h * h * h / (3.0 * ei);

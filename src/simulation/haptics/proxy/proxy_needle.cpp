@@ -10,11 +10,11 @@ namespace trocar::haptics {
 namespace {
 
 constexpr double kLook_mm = 10.0;
-constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the proxy is this far out.
+constexpr double kLeaveSkin_mm = 0.5;  // The insertion ends when the proxy is this far outside.
 constexpr double kGrazing = 0.17;      // cosine of 80 degrees: a flatter needle does not pierce
-constexpr double kTipGrip = 2.0;       // A sharp tip pricks: it slides only beyond 63 degrees. [assumed]
+constexpr double kTipGrip = 2.0;       // A sharp tip does not slide at smaller angles than 63 degrees. [assumed]
 constexpr double kAtWall_mm = 1e-6;
-constexpr double kHole_mm = 0.2;  // Less than this behind the deepest place is still its end.
+constexpr double kHole_mm = 0.2;  // Within this distance behind the deepest point it is at the end of the channel.
 
 double in_series(double a, double b) noexcept {
   return a * b / (a + b);
@@ -28,7 +28,7 @@ double skin_distance(const HapticScene& scene, const Vec3& p_P) noexcept {
   return volume::sample_linear(scene.patient->skin_distance_mm, p_P);
 }
 
-/// Where the way from a point outside to one inside meets the skin.
+/// Intersection of the skin with the line from a point outside to one inside.
 Vec3 meet_skin(const HapticScene& scene, const Vec3& outside_P, const Vec3& inside_P) noexcept {
   double low = 0.0;
   double high = 1.0;
@@ -39,10 +39,10 @@ Vec3 meet_skin(const HapticScene& scene, const Vec3& outside_P, const Vec3& insi
   return outside_P + low * (inside_P - outside_P);
 }
 
-/// The needle in its tissue during one step, and what the step has found.
+/// The needle in its tissue during one step, and the results of the step.
 struct TipStep {
   NeedleBalance balance;
-  double moved_mm = 0.0;  ///< By the proxy.
+  double moved_mm = 0.0;  ///< Motion of the proxy.
   double front_mm = 0.0;  ///< Tip on the path in the resting anatomy.
   std::uint8_t punctured = kNoLayer;
   bool hit_bound = false;
@@ -62,7 +62,7 @@ ProxyNeedleStep in_air(ProxyNeedleState& state, InsertionPath& path, const Pose&
   return step;
 }
 
-/// The tip on closed skin: it slides with friction, indents, and breaks through at the skin's puncture force.
+/// The tip on unpierced skin: it slides with friction, indents, and pierces at the skin's puncture force.
 ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN,
                         const Pose& X_PN_ahead, double dt_s) noexcept {
   const Vec3 axis_P = X_PN.R().col(2);
@@ -73,7 +73,7 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   const TipSpring spring = free_spring(k, damping_s(scene), X_PN_ahead.p(), state.proxy_P, Vec3::Zero(), dt_s);
   Vec3 f = spring.force_P;
   double f_normal = f.dot(inward_P);
-  if (!(f_normal > 0.0)) {  // a count back in the skin is no parting from it: the surface stays where it was
+  if (!(f_normal > 0.0)) {  // one count backwards does not end the contact: the surface stays
     if (!(skin_distance(scene, X_PN.p()) < 0.0)) return in_air(state, path, X_PN, dt_s);
     f = Vec3::Zero();
     f_normal = 0.0;
@@ -82,10 +82,10 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   ProxyNeedleStep step;
   const double puncture_n = layer == kNoLayer ? 0.0 : scene.layers[layer].puncture_force_n;
   const bool gives_way = axis_P.dot(inward_P) > kGrazing && f.dot(axis_P) >= puncture_n;
-  if (gives_way) {  // the skin bore its puncture force along the needle and no more
+  if (gives_way) {  // the load is limited to the puncture force along the needle
     f *= puncture_n / f.dot(axis_P);
   } else {
-    TipLaw skin;  // equations (3) and (4): closed along the normal, Coulomb friction across it
+    TipLaw skin;  // equations (3) and (4): blocked along the normal, Coulomb friction across it
     skin.normal_P = inward_P;
     skin.border = 1.0;
     skin.law.normal_n = f_normal;
@@ -112,8 +112,8 @@ ProxyNeedleStep on_skin(ProxyNeedleState& state, InsertionPath& path, const Hapt
   return step;
 }
 
-/// Reads the tissue's stiffness where the tip is now. Where it grows, or a wall is met, the proxy shifts so that the
-/// force of the tip stays what it was: a stiffness that is read anew must not be felt as a blow.
+/// Sets the stiffness of the tissue at the tip. If it increases, or a wall is met, the proxy shifts so that the tip
+/// force stays continuous.
 void set_stiffness(ProxyNeedleState& state, const NeedleDrive& drive, const Channel& channel, double tissue_n_per_mm,
                    bool meets_wall) noexcept {
   const double before = state.tissue_n_per_mm;
@@ -124,7 +124,7 @@ void set_stiffness(ProxyNeedleState& state, const NeedleDrive& drive, const Chan
   if (old.on_tip_n > 0.0) state.proxy_P += old.on_tip_n * (1.0 / before - 1.0 / tissue_n_per_mm) * u;
 }
 
-/// The tip presses on a wall, which bears it or gives way.
+/// The tip presses on a wall, which is punctured at its puncture force.
 void press_wall(TipStep& step, ProxyNeedleState& state, Channel& channel, const HapticScene& scene) noexcept {
   if (step.balance.on_tip_n < scene.layers[state.wall].puncture_force_n) return;
   step.punctured = state.wall;
@@ -132,7 +132,7 @@ void press_wall(TipStep& step, ProxyNeedleState& state, Channel& channel, const 
   step.front_mm = channel.cut_to_mm = state.wall_mm + 0.5 * Channel::kBin_mm;
 }
 
-/// How far the proxy moves on along the path (physics.md B3): against the greatest force that its tissue bears there.
+/// Motion of the proxy along the path (physics.md B3): against the largest force of its tissue.
 double motion_along(const TipStep& step, const TipLaw& law, const Vec3& u_P, double dt_s) noexcept {
   const double load_n = step.balance.on_tip_n;
   const double c = (1.0 - law.border) * law.law.viscosity_ns_per_mm;
@@ -141,7 +141,7 @@ double motion_along(const TipStep& step, const TipLaw& law, const Vec3& u_P, dou
   return std::copysign(way_mm, load_n);
 }
 
-/// The tissue, or the wall, that the front of the tip is at.
+/// The tissue, or the wall, at the front of the tip.
 struct Front {
   TipLaw law;
   double tissue_n_per_mm = 1.0;
@@ -152,7 +152,7 @@ Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticSc
                  const LayerAhead& ahead) noexcept {
   Front front;
   const double s_mm = channel.direction_P.dot(state.proxy_P - channel.origin_P);
-  if (state.wall != kNoLayer && s_mm < state.wall_anchor_mm - kAtWall_mm) state.wall = kNoLayer;  // back from it
+  if (state.wall != kNoLayer && s_mm < state.wall_anchor_mm - kAtWall_mm) state.wall = kNoLayer;  // moved back from it
   front.meets_wall = state.wall == kNoLayer && ahead.layer != kNoLayer && s_mm >= ahead.surface_mm - kAtWall_mm;
   if (front.meets_wall) {
     state.wall = ahead.layer;
@@ -162,7 +162,7 @@ Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticSc
   const auto bin = static_cast<std::size_t>(bin_of(front.mm));
   const TissueAt here = front.mm > 0.0 ? TissueAt{channel.tissue[bin], channel.label[bin]} : TissueAt{};
   front.law = tip_law_at(scene, state.proxy_P, here);
-  if (front.mm < channel.cut_to_mm - kHole_mm) {  // in its own hole the tip cuts nothing and meets no border
+  if (front.mm < channel.cut_to_mm - kHole_mm) {  // in its own channel the tip cuts nothing and meets no border
     front.law.border = 0.0;
     front.law.law.resistance_n = 0.0;
   }
@@ -171,7 +171,7 @@ Front find_front(ProxyNeedleState& state, const Channel& channel, const HapticSc
   return front;
 }
 
-/// Moves the proxy along the path until it rests, meets a wall or the bound of sub-steps.
+/// Moves the proxy along the path until it rests, meets a wall or reaches the limit of sub-steps.
 TipStep move_proxy(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene,
                    const NeedleDrive& drive) noexcept {
   Channel& channel = path.channel;
@@ -225,10 +225,10 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
                           state.needle_mm,
                           dt_s};
   const Vec3 origin_P = path.channel.origin_P;
-  state.proxy_P = origin_P + u.dot(state.proxy_P - origin_P) * u;  // the path holds the tip, too
+  state.proxy_P = origin_P + u.dot(state.proxy_P - origin_P) * u;  // the path also guides the tip
   const TipStep moved = move_proxy(state, path, scene, drive);
   const bool is_at_wall = moved.punctured != kNoLayer || state.wall != kNoLayer;
-  // A wall that gives way bore its puncture force and no more.
+  // The load of a punctured wall is its puncture force.
   const double on_tip_n =
       moved.punctured != kNoLayer ? scene.layers[moved.punctured].puncture_force_n : moved.balance.on_tip_n;
 
@@ -251,7 +251,7 @@ ProxyNeedleStep in_body(ProxyNeedleState& state, InsertionPath& path, const Hapt
   return step;
 }
 
-/// A tip that comes from outside: where it meets the skin, and the open hole it may fall into.
+/// A tip from outside: its intersection with the skin, and an open channel that it may enter.
 void meet(ProxyNeedleState& state, InsertionPath& path, const HapticScene& scene, const Pose& X_PN) noexcept {
   state.proxy_P = skin_distance(scene, state.proxy_P) >= 0.0 ? meet_skin(scene, state.proxy_P, X_PN.p()) : X_PN.p();
   state.contact_P = state.proxy_P;

@@ -27,13 +27,13 @@ std::uint8_t wall_of(const HapticScene& scene, const Vec3& p_P) noexcept {
   return layer != kNoLayer && scene.layers[layer].is_wall ? layer : kNoLayer;
 }
 
-/// Whether the air outside, as blurred as a CT shows it, reaches into the gradient at a point.
+/// True if the outside air, with a CT's blur, affects the gradient at a point.
 bool is_under_skin(const HapticScene& scene, const Vec3& p_P) noexcept {
   constexpr double kBlur_mm = 2.0;
   return volume::sample_linear(scene.patient->skin_distance_mm, p_P) > -(scene.transfer.gradient_scale_mm + kBlur_mm);
 }
 
-/// Whether the border at a point is that of a walled structure, which has a threshold of its own.
+/// True if the border at a point belongs to a walled structure, which has its own threshold.
 bool is_wall_border(const HapticScene& scene, const Vec3& p_P, const Vec3& normal_P) noexcept {
   const double reach_mm = 2.0 * scene.transfer.gradient_scale_mm;
   return wall_of(scene, p_P + reach_mm * normal_P) != wall_of(scene, p_P - reach_mm * normal_P);

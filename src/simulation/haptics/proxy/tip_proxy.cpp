@@ -6,7 +6,7 @@
 namespace trocar::haptics {
 namespace {
 
-/// The part of v that is longer than `threshold`.
+/// The part of v that exceeds `threshold`.
 Vec3 beyond(const Vec3& v, double threshold) noexcept {
   const double length = v.norm();
   return length > threshold && length > 0.0 ? Vec3(v * (1.0 - threshold / length)) : Vec3::Zero();
@@ -37,7 +37,7 @@ Vec3 proxy_motion(const TipSpring& spring, const TipLaw& tip, const Vec3& moved)
   const double c = (1.0 - tip.border) * tip.law.viscosity_ns_per_mm;
   const double resistance_n = (1.0 - tip.border) * tip.law.resistance_n + c * moved.norm() / spring.dt_s;
   const Vec3 residual = residual_force(spring.force_P, tip, resistance_n);
-  // Moving on by delta lowers the spring's force and raises what is viscous.
+  // A motion by delta reduces the spring's force and increases the viscous force.
   const double axial = residual.dot(spring.u_P);
   const Vec3 lateral = residual - axial * spring.u_P;
   return axial / (spring.axial_n_per_mm + c / spring.dt_s) * spring.u_P +

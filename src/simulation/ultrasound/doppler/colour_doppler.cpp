@@ -18,26 +18,26 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// Lines of the picture a line of cells, and gates: half of a pulse of four cycles at 2.5 MHz. Assumed.
+/// Image lines per line of cells, and the length of gates: half of a pulse of four cycles at 2.5 MHz. Assumed.
 constexpr double kLineStep = 2.0;
 constexpr double kGate_mm = 0.6;
 
 /// Planes across the beam's thickness, in its standard deviations (of amplitude), and their weights in power.
 struct Plane {
-  float zeta, weight;  ///< exp(-zeta²), to a sum of 1.
+  float zeta, weight;  ///< exp(-zeta²), normalised to a sum of 1.
 };
 constexpr std::array<Plane, 5> kPlanes = {
     {{-1.2F, 0.0826F}, {-0.6F, 0.2432F}, {0.0F, 0.3484F}, {0.6F, 0.2432F}, {1.2F, 0.0826F}}};
 
-/// Blood's echo against liver's speckle at the picture's frequency, as in data/acoustics.toml (vessel). Range -35..-20.
+/// Blood's echo relative to liver's speckle at the image frequency, as in data/acoustics.toml (vessel). Range -35..-20.
 constexpr double kBlood_db = -28.0;
-/// Noise against the picture's: a longer pulse of more energy in a narrower band. Assumed, range -12..-3.
+/// Noise relative to that of the image: a longer pulse with more energy in a narrower band. Assumed, range -12..-3.
 constexpr double kLongPulse_db = -6.0;
-/// Correlation between pulses, in units of the noise's power, that is shown at gain 0. Assumed, range 0.5..2: then
-/// noise hardly ever reaches it.
+/// Threshold of the displayed correlation between pulses, in units of the noise power, at gain 0. Assumed, range
+/// 0.5..2: noise hardly ever exceeds it.
 constexpr float kThreshold = 0.7F;
 
-/// Two normally distributed numbers of variance 1, to sums of four even ones (within +-3.5).
+/// Two approximately normal numbers of variance 1, as sums of four uniform ones (within +-3.5).
 std::array<float, 2> two_normals(std::uint64_t key) noexcept {
   std::array<float, 2> normals;
   for (float& normal : normals) {
@@ -50,7 +50,7 @@ std::array<float, 2> two_normals(std::uint64_t key) noexcept {
   return normals;
 }
 
-/// Power of one echo of many scatterers: exponentially distributed, mean 1.
+/// Power of one echo of many scatterers: exponential distribution, mean 1.
 float speckle_power(std::uint64_t key) noexcept {
   const auto even = static_cast<float>((mix64(key) >> 40) + 1) * 0x1p-24F;
   return -std::log(even);
@@ -66,8 +66,8 @@ struct ColourDoppler::Impl {
   bool has_kept = false;
   DopplerFrame frame;
   std::vector<float> raw_re, raw_im;    ///< Before smoothing.
-  std::vector<float> wide_re, wide_im;  ///< Along the gates.
-  std::vector<float> sigma_mm;          ///< A gate: half the beam's thickness.
+  std::vector<float> wide_re, wide_im;  ///< Smoothed along the gates.
+  std::vector<float> sigma_mm;          ///< Per gate: half the beam's thickness.
   VesselFlow::Moment moment{};
   detail::ColourConversion conversion;
 
@@ -106,19 +106,19 @@ void ColourDoppler::Impl::set_cells(const ScanGeometry& geometry, const DopplerS
   frame.scale_cm_per_s = usable_scale_cm_per_s(held, frame.first_mm + frame.gate_mm * frame.gates);
 }
 
-/// One line of cells on its way through the patient.
+/// One line of cells through the patient.
 struct ColourDoppler::Impl::Ray {
   SoundWay way;
   Vec3f start_P, along_P, elevation_P;
   float scale_mm_per_s;
-  float cut4;     ///< Fourth power of the wall filter's share.
-  float lowered;  ///< Frequency against the picture's.
+  float cut4;     ///< Fourth power of the wall filter's cutoff share.
+  float lowered;  ///< Frequency relative to that of the image.
   const Beam* beam;
 
   float rest_mm(float depth_mm, std::size_t sample) const noexcept {
     return way.gain.empty() ? depth_mm : depth_mm - way.pressed_mm * way.dent_share[sample];
   }
-  /// Of blood against the noise, in power.
+  /// Power of blood relative to the noise.
   float level(float depth_mm, std::size_t sample) const noexcept {
     constexpr auto kBlood = static_cast<float>(kBlood_db - detail::kReceiverNoise_db - kLongPulse_db);
     const float way_db = way.gain.empty()
@@ -145,7 +145,7 @@ ColourDoppler::Impl::Ray ColourDoppler::Impl::make_ray(const DopplerInput& input
   return ray;
 }
 
-/// Blood at a gate in all planes of the beam, through the wall filter; 0 where there is none.
+/// Echo of blood at a gate in all planes of the beam, after the wall filter; 0 without blood.
 std::array<float, 2> ColourDoppler::Impl::correlate(const Ray& ray, int gate, std::size_t sample,
                                                     std::uint64_t key) const noexcept {
   std::array<float, 2> sum{0.0F, 0.0F};
@@ -181,7 +181,7 @@ void ColourDoppler::Impl::measure_line(const DopplerInput& input, int line) noex
     const auto sample = std::min(static_cast<std::size_t>(depth_mm / scan.sample_mm()), last);
     const std::uint64_t key = mix64(input.seed ^ mix64(cell));
     const std::array<float, 2> blood = correlate(ray, gate, sample, key);
-    // Noise is uncorrelated between pulses: a mean of so many products with itself and with the signal.
+    // Noise is uncorrelated between pulses: the mean of its products with itself and with the signal.
     const float power = std::sqrt(blood[0] * blood[0] + blood[1] * blood[1]);
     const float deviation = spread * std::sqrt(0.5F + power);
     const std::array<float, 2> normal = two_normals(key);
@@ -190,7 +190,7 @@ void ColourDoppler::Impl::measure_line(const DopplerInput& input, int line) noex
   }
 }
 
-/// Neighbouring gates overlap by half a pulse.
+/// Adjacent gates overlap by half a pulse.
 void ColourDoppler::Impl::smooth_along(int line) noexcept {
   const auto smooth = [&](const std::vector<float>& from, std::vector<float>& to) {
     for (int gate = 0; gate < frame.gates; ++gate) {
@@ -204,7 +204,7 @@ void ColourDoppler::Impl::smooth_along(int line) noexcept {
   smooth(raw_im, wide_im);
 }
 
-/// Across lines, over time, and what is shown of it.
+/// Smooths across lines and over time, and prepares the display.
 void ColourDoppler::Impl::finish_line(int line) noexcept {
   const auto kept = has_kept ? static_cast<float>(held.persistence) : 0.0F;
   const float threshold = kThreshold * static_cast<float>(std::pow(10.0, -held.gain_db / 20.0));

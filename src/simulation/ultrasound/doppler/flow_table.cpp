@@ -23,7 +23,7 @@ Result<double> read_number(const config::TomlTable& row, std::string_view key, c
   return number.value;
 }
 
-/// Which of a few words a key says.
+/// Reads one of a few words.
 Result<std::size_t> read_word(const config::TomlTable& row, std::string_view key,
                               const std::vector<std::string>& words) {
   TROCAR_TRY(const std::string word, row.string(key));

@@ -24,7 +24,7 @@ namespace {
 
 using namespace detail;
 
-/// What one task needs beside the frame.
+/// Buffers of one task besides the frame.
 struct Scratch {
   WalkResult walk;
   Texture texture;
@@ -42,7 +42,7 @@ struct BMode::Impl {
   BasebandFrame out;
   NeedleImage needles;
   std::vector<Brick> bricks = make_brick_library();
-  std::vector<Scratch> scratch;  ///< One a group of scanlines.
+  std::vector<Scratch> scratch;  ///< One per group of scanlines.
 
   int groups() const noexcept { return (plan.lines + kGroup - 1) / kGroup; }
 
@@ -58,9 +58,9 @@ struct BMode::Impl {
   }
 
   void walk(int group, int first, int last) noexcept;
-  /// After all scanlines were walked: a scanline hears what lies between it and the next.
+  /// Call after walking all scanlines: a scanline receives echoes from the space up to the next one.
   void echo(int group, int first, int last) noexcept;
-  /// After all echoes are there: the frame's own samples.
+  /// Call after all echoes: the frame's samples.
   void spread(int group, int first, int last) noexcept;
 };
 
@@ -82,7 +82,7 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
     int& audible = frame.audible[static_cast<std::size_t>(line)];
     audible = 0;
     for (int order = 0; order < plan.planes; ++order) {
-      // The central plane first: the others take its layers and delays.
+      // The central plane first: the others use its layers and delays.
       const int plane = order == 0 ? central : (order <= central ? order - 1 : order);
       const float zeta = static_cast<float>(plane - central) * plan.plane_step;
       float* delay = plane == central ? frame.delay.data() + static_cast<std::size_t>(line) * samples : nullptr;

@@ -9,11 +9,11 @@
 namespace trocar::ultrasound {
 namespace {
 
-/// Standard deviation of the Gaussian aperture that stands for a uniform one of width 1. With it the two-way profile of
-/// two equal focused apertures is as wide at -6 dB as the exact one, sinc^2: 0.8859 wavelengths times f-number.
+/// Standard deviation of the Gaussian aperture that replaces a uniform one of width 1. The two-way profile of two equal
+/// focused apertures is then as wide at -6 dB as the exact one, sinc^2: 0.8859 wavelengths times f-number.
 constexpr double kGaussianAperture = 0.2991;
 
-/// One-way width of a Gaussian beam (docs/physics.md U3). Amplitude's standard deviation, mm.
+/// One-way width of a Gaussian beam (docs/physics.md U3). Standard deviation of the amplitude, mm.
 double one_way_sigma_mm(double depth_mm, double aperture_mm, double focus_mm, double wavelength_mm) noexcept {
   const double face_mm = kGaussianAperture * aperture_mm;
   const double geometric_mm = face_mm * (1.0 - depth_mm / focus_mm);
@@ -26,15 +26,15 @@ double one_way_sigma_mm(double depth_mm, double aperture_mm, double focus_mm, do
 double Beam::lateral_sigma_mm(double depth_mm) const noexcept {
   const double transmit_aperture_mm = std::min(focus_mm / f_number, aperture_mm);
   const double transmit_mm = one_way_sigma_mm(depth_mm, transmit_aperture_mm, focus_mm, wavelength_mm);
-  // Receiving is focused at every depth, and its aperture grows with the depth as long as there are elements: hence the
-  // diffraction limit of the larger one of two f-numbers.
+  // Receiving is focused at every depth with an aperture that grows with the depth up to its full size: hence the
+  // diffraction limit of the larger of two f-numbers.
   const double receive_f_number = std::max(f_number, depth_mm / aperture_mm);
   const double receive_mm = wavelength_mm * receive_f_number / (2.0 * std::numbers::pi * kGaussianAperture);
   return transmit_mm * receive_mm / std::hypot(transmit_mm, receive_mm);
 }
 
 double Beam::elevation_sigma_mm(double depth_mm) const noexcept {
-  // The lens focuses the way there and the way back alike.
+  // The lens focuses transmission and reception equally.
   return one_way_sigma_mm(depth_mm, elevation_aperture_mm, elevation_focus_mm, wavelength_mm) / std::numbers::sqrt2;
 }
 
@@ -43,7 +43,7 @@ Beam make_beam(const Transducer& transducer, double frequency_mhz, double focus_
   Beam beam;
   beam.frequency_mhz = frequency_mhz;
   beam.wavelength_mm = kScannerSpeed_mm_per_us / frequency_mhz;
-  // Half the amplitude at half the bandwidth from the centre; depth is half the way of the sound (docs/physics.md U2).
+  // Half the amplitude at half the bandwidth from the centre; the depth is half the sound path (docs/physics.md U2).
   beam.axial_sigma_mm =
       std::sqrt(2.0 * std::numbers::ln2) / (2.0 * std::numbers::pi) * beam.wavelength_mm / transducer.bandwidth;
   beam.focus_mm = focus_mm;

@@ -13,10 +13,10 @@
 namespace trocar::link::detail {
 namespace {
 
-constexpr int kCannotRun = 127;  // the shell's status for a program that cannot be run
+constexpr int kCannotRun = 127;  // the shell's status for a program that cannot be executed
 constexpr mode_t kLogMode = 0644;
 
-/// All that the child needs between fork and exec, where it may not allocate.
+/// All data that the child needs between fork and exec, where it may not allocate.
 struct Prepared {
   const char* path;
   char* const* arguments;
@@ -26,7 +26,7 @@ struct Prepared {
 
 [[noreturn]] void become(const Prepared& prepared) {
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (::getppid() != prepared.parent) ::_exit(kCannotRun);  // it ended before we asked
+  if (::getppid() != prepared.parent) ::_exit(kCannotRun);  // the parent ended before the prctl call
   sigset_t none;
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -41,7 +41,7 @@ struct Prepared {
   ::_exit(kCannotRun);
 }
 
-/// What stopped the child from running its program; 0: nothing.
+/// The error that stopped the child from executing its program; 0: none.
 int read_failure(int pipe) {
   int why = 0;
   ssize_t got = 0;

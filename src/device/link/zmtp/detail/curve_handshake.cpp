@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kKeyTextBytes = 40;
 constexpr std::size_t kShortNonce = 8, kLongNonce = 16, kMac = crypto_box_MACBYTES;
 
-// Layout of the commands, in bytes from their begin (RFC 26).
+// Layout of the commands, in bytes from their start (RFC 26).
 constexpr std::string_view kHello = "\x05HELLO", kWelcome = "\x07WELCOME", kInitiate = "\x08INITIATE";
 constexpr std::string_view kReady = "\x05READY", kMessage = "\x07MESSAGE";
 constexpr std::size_t kHelloBytes = 200, kHelloKey = 80, kHelloNonce = 112, kHelloBox = 120, kHelloZeros = 64;
@@ -38,7 +38,7 @@ std::uint8_t* raw(ByteVector& bytes) {
   return reinterpret_cast<std::uint8_t*>(bytes.data());
 }
 
-/// 24 bytes: a prefix that names the step, then the bytes that never repeat.
+/// 24 bytes: a prefix that names the step, then bytes that are never repeated.
 Nonce make_nonce(std::string_view prefix, ByteSpan rest) {
   Nonce nonce{};
   std::memcpy(nonce.data(), prefix.data(), prefix.size());
@@ -82,7 +82,7 @@ ByteVector seal_for(const CurveKey& to, const CurveKey& from_secret, const Nonce
   if (crypto_box_easy(raw(box), raw(plain), plain.size(), nonce.data(), to.data(), from_secret.data()) != 0) return {};
   return box;
 }
-/// False: damaged, or of another key.
+/// Returns false for damaged data or another key.
 bool open_from(const CurveKey& from, const CurveKey& to_secret, const Nonce& nonce, ByteSpan box, ByteVector& plain) {
   if (box.size() < kMac) return false;
   plain.resize(box.size() - kMac);
@@ -134,7 +134,7 @@ Result<CurveHandshake::Answer> CurveHandshake::answer_hello(std::span<const std:
   crypto_box_keypair(short_public_.data(), short_secret_.data());
   randombytes_buf(cookie_key_.data(), cookie_key_.size());
 
-  // The cookie comes back in INITIATE and proves that it belongs to this HELLO.
+  // INITIATE returns the cookie and proves that it belongs to this HELLO.
   ByteVector keys;
   append_bytes(keys, std::as_bytes(std::span(client_short_)));
   append_bytes(keys, std::as_bytes(std::span(short_secret_)));
@@ -226,7 +226,7 @@ std::vector<std::byte> CurveHandshake::seal(std::uint8_t flags, std::span<const 
   return message;
 }
 
-/// A client's short nonces only rise.
+/// The short nonces of a client only increase.
 bool CurveHandshake::is_fresh(std::span<const std::byte> nonce) {
   const std::uint64_t counter = counter_of(nonce);
   if (counter <= last_received_) return false;

@@ -35,7 +35,7 @@ std::optional<std::string> HandshakeMonitor::take() {
   std::optional<std::string> newest;
   ZmqFrame frame;
   while (events_.receive(frame, ZMQ_DONTWAIT)) {
-    // A frame of 16 bits of event and 32 bits of value, then the address.
+    // A frame with 16 bits of event and 32 bits of value, then the address.
     std::uint16_t event = 0;
     std::uint32_t value = 0;
     if (frame.bytes().size() == sizeof event + sizeof value) {

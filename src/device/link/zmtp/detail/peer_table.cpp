@@ -16,7 +16,7 @@ Peer* PeerTable::greet(std::string_view routing_id, const Hello& hello, std::uin
     peer->routing_id = routing_id;
     peer->session = new_session;
   } else if (peer->last_received > 0) {
-    // The same client begins anew, and keeps control if it had it.
+    // The same client reconnects, and keeps control if it had it.
     if (has_control(*peer)) controller_ = new_session;
     peer->session = new_session;
     peer->last_received = 0;
@@ -28,7 +28,7 @@ Peer* PeerTable::greet(std::string_view routing_id, const Hello& hello, std::uin
   return peer;
 }
 
-/// `peer` or, where it is null, a new one.
+/// True if there is a place for `peer`, or for a new client if null.
 bool PeerTable::has_place(const Peer* peer, bool wants_control) const {
   const auto others = std::ranges::count_if(
       peers_, [&](const Peer& other) { return &other != peer && other.wants_control == wants_control; });

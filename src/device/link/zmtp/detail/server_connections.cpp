@@ -22,13 +22,13 @@ namespace {
 
 constexpr std::string_view kIpc = "ipc://";
 constexpr std::size_t kReadAtOnce = 64 * 1024;
-constexpr int kMostAcceptedAtOnce = 8;  ///< In one look at the sockets.
-constexpr int kHeldBack_ms = 1;         ///< Between two looks at a rate limit.
-/// Descriptors that a server needs beside its connections: device, records, scenes, libraries. [assumed]
+constexpr int kMostAcceptedAtOnce = 8;  ///< Per poll of the sockets.
+constexpr int kHeldBack_ms = 1;         ///< Interval of checking a rate limit.
+/// Descriptors of a server besides its connections: device, records, scenes, libraries. [assumed]
 constexpr rlim_t kReservedDescriptors = 128;
-constexpr double kPauseAccepts = 50.0;  ///< Accepts that are left out where no descriptor is free: half a second.
+constexpr double kPauseAccepts = 50.0;  ///< Skipped accepts without a free descriptor: half a second.
 
-/// Raises the soft limit where it is too low for all connections and the reserve.
+/// Raises the soft limit if it is too low for all connections and the reserve.
 Status ensure_descriptors() {
   constexpr rlim_t kWanted = kReservedDescriptors + kMostStrangers + kMostControllers + kMostWatchers;
   rlimit limit{};
@@ -86,7 +86,7 @@ std::optional<ServerConnections::Incoming> ServerConnections::next_buffered(doub
     }
     if (incoming.event == ZmtpConnection::Event::kBroken) {
       report(fmt::format("a connection was closed: {}", connection.stream->why()), now_s);
-      flush(connection);  // what the peer should learn
+      flush(connection);  // the last message to the client
       connection.is_closed = true;
       ++refused_;
       continue;
@@ -96,12 +96,12 @@ std::optional<ServerConnections::Incoming> ServerConnections::next_buffered(doub
   return {};
 }
 
-/// A client that comes back by a new connection keeps its routing id; the old connection is dead.
+/// A client that reconnects keeps its routing id; the old connection is dead.
 void ServerConnections::name(Connection& connection) {
   std::string routing_id = connection.stream->identity();
   if (routing_id.empty()) {
     routing_id = fmt::format("connection {}", ++last_number_);
-    routing_id.insert(routing_id.begin(), '\0');  // no peer's own begins so
+    routing_id.insert(routing_id.begin(), '\0');  // routing ids of clients never start with it
   }
   if (Connection* old = find(routing_id)) {
     connection.since_s = std::max(connection.since_s, old->since_s);
@@ -186,7 +186,7 @@ void ServerConnections::accept_some(double now_s) {
   }
 }
 
-/// On ipc: the same user, or root. On tcp the keys decide.
+/// ipc: the same user, or root. tcp: decided by the keys.
 bool ServerConnections::may_connect(int socket) const {
   if (tcp_.is_open()) {
     constexpr int kOn = 1;
@@ -202,7 +202,7 @@ bool ServerConnections::may_connect(int socket) const {
 void ServerConnections::make_place() {
   const auto is_stranger = [](const Connection& c) { return !c.is_closed && !c.stream->is_greeted(); };
   if (static_cast<std::size_t>(std::ranges::count_if(connections_, is_stranger)) < kMostStrangers) return;
-  const auto oldest = std::ranges::find_if(connections_, is_stranger);  // they stand in the order of their accept
+  const auto oldest = std::ranges::find_if(connections_, is_stranger);  // they are in the order of their accept
   oldest->is_closed = true;
   oldest->socket.close();
 }

@@ -27,7 +27,7 @@ sockaddr* as_address(sockaddr_storage& storage) {
   return reinterpret_cast<sockaddr*>(&storage);
 }
 
-/// Of a URL that parse_endpoint() has made.
+/// Address of a URL made by parse_endpoint().
 std::optional<TcpAddress> parse_url(std::string_view url) {
   if (!url.starts_with(kTcp)) return {};
   const std::string_view address = url.substr(kTcp.size());

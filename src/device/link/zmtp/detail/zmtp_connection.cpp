@@ -9,10 +9,10 @@
 namespace trocar::link::detail {
 namespace {
 
-constexpr std::size_t kMostHandshakeBytes = 1024;  ///< The longest of RFC 26 has 257 and the metadata.
+constexpr std::size_t kMostHandshakeBytes = 1024;  ///< The longest command of RFC 26 has 257 bytes plus metadata.
 constexpr std::size_t kReadAtOnce = 64 * 1024;
-constexpr std::size_t kFrameOverhead = 64;  ///< Of ZMTP and CURVE, added to each limit.
-/// A connection that announces a larger frame is closed; a smaller one beyond the limit is skipped.
+constexpr std::size_t kFrameOverhead = 64;  ///< Overhead of ZMTP and CURVE, added to each limit.
+/// A connection that announces a larger frame is closed; a smaller frame beyond the limit is skipped.
 constexpr std::size_t kCutOffBytes = 2 * kMostMessageBytes;
 constexpr int kMostSkippedFrames = 64;
 constexpr std::uint8_t kCurveMore = 1, kCurveCommand = 2;  ///< Flags in a MESSAGE box.
@@ -87,7 +87,7 @@ ZmtpConnection::Incoming ZmtpConnection::next(double now_s) {
   return {state_ == State::kBroken ? Event::kBroken : Event::kNone, {}};
 }
 
-/// False: it is not all there.
+/// Returns false if it is incomplete.
 bool ZmtpConnection::read_greeting() {
   const auto greeting = in_.take_raw(zmtp::kGreetingBytes);
   if (greeting.empty()) return false;
@@ -149,7 +149,7 @@ void ZmtpConnection::take_metadata(std::span<const std::byte> bytes) {
   state_ = State::kTraffic;
 }
 
-/// The client's library reports the status to its owner.
+/// The client's library reports the status to its user.
 void ZmtpConnection::put_error() {
   std::vector<std::byte> error;
   append_bytes(error, bytes_of(kErrorName));

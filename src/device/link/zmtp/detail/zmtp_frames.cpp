@@ -7,11 +7,11 @@ namespace trocar::link::detail {
 namespace zmtp {
 namespace {
 
-// Of the greeting.
+// Bytes of the greeting.
 constexpr std::byte kSignatureBegin{0xFF}, kSignatureEnd{0x7F};
 constexpr std::size_t kSignatureEndAt = 9, kMajorAt = 10, kMechanismAt = 12, kServerAt = 32;
 constexpr std::byte kMajor{3};
-constexpr std::size_t kShortest = 1, kLongest = 9;  ///< Of a frame's size and flags.
+constexpr std::size_t kShortest = 1, kLongest = 9;  ///< Bytes of a frame's flags and size.
 constexpr std::size_t kMostShortBody = 255;
 
 void append_number(std::vector<std::byte>& bytes, std::uint64_t number, int count) {
@@ -125,7 +125,7 @@ FrameReader::Outcome FrameReader::next(std::size_t most_bytes, std::size_t cut_o
   return Outcome::kFrame;
 }
 
-/// Memory that a large message took is given back when it is gone.
+/// Memory of a large message is released with it.
 void FrameReader::drop_taken() {
   if (begin_ == 0) return;
   bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(begin_));

@@ -39,7 +39,7 @@ bool is_long_vr(std::string_view vr) {
   return std::find(kLong.begin(), kLong.end(), vr) != kLong.end();
 }
 
-/// The first bytes, enough to tell a DICOM file: with its mark, or starting straight with group 2 or 8.
+/// The first bytes identify a DICOM file: with its prefix, or starting directly with group 2 or 8.
 bool may_be_dicom(const InputFile& input) {
   std::array<char, kPreamble + 4> start{};
   std::ifstream file(input.pinned_path(), std::ios::binary);
@@ -52,7 +52,7 @@ bool may_be_dicom(const InputFile& input) {
 
 }  // namespace
 
-/// Walks through the elements of one file; every step returns false where the file ends too early or makes no sense.
+/// Iterates over the elements of one file; every step returns false if the file ends too early or is not valid.
 class DicomWalk {
  public:
   explicit DicomWalk(DicomHeader& header) : header_(header) {}
@@ -63,7 +63,7 @@ class DicomWalk {
     if (!walk_elements(Part::kMeta)) return false;
     header_.transfer_syntax_ = header_.text(kTransferSyntax);
     choose_encoding();
-    // What GDCM unpacks as a whole is left to be refused by its transfer syntax.
+    // A file that GDCM unpacks as a whole is refused later by its transfer syntax.
     return header_.transfer_syntax_ == kDeflated || walk_elements(Part::kDataSet);
   }
 
@@ -109,7 +109,7 @@ class DicomWalk {
     }
     if (left() < 12) return false;
     element.length = peek(8, 4);
-    // An unknown value of undefined length is written like implicit ones (PS3.5, 6.2.2).
+    // An unknown value of undefined length is encoded like an implicit one (PS3.5, 6.2.2).
     is_unknown_ = vr == "UN";
     at_ += 12;
     return true;

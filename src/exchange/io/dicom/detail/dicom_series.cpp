@@ -16,9 +16,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMaxTilt_deg = 0.3;
-/// Positions may be rounded when written (0.625 mm steps as 0.6, 1.3, 1.9): so far may a slice lie off an even step.
+/// Stored positions may be rounded (0.625 mm steps as 0.6, 1.3, 1.9): maximum deviation of a slice from an even step.
 constexpr double kMaxStepDeviation = 0.05;     ///< Fraction of the step.
-constexpr double kMaxStepDeviation_mm = 0.06;  ///< And this much where the step is small.
+constexpr double kMaxStepDeviation_mm = 0.06;  ///< At least this much for small steps.
 constexpr double kSamePlace_mm = 1e-3;
 constexpr const char* kNameOneSeries = "name the folder that holds the slices of one series";
 
@@ -32,7 +32,7 @@ bool is_alike(const DicomSlice& a, const DicomSlice& b) {
   return true;
 }
 
-/// What makes slices unusable one by one.
+/// Checks the slices one by one.
 Status check_slices(const std::vector<DicomSlice>& slices, const fs::path& folder) {
   if (slices.empty()) return fail("no DICOM image", folder.string(), kNameOneSeries);
   for (const DicomSlice& slice : slices) {
@@ -93,7 +93,7 @@ Status check_tilt(const Vec3& stack_P, const Vec3& normal_P, const fs::path& fol
               "resample it onto a straight grid, for example with 3D Slicer");
 }
 
-/// HU are of CTs. Other kinds that volumes in HU come as: cone-beam CT of a C-arm (XA), converted files (OT).
+/// HU exist only in CTs. Other modalities of volumes in HU: cone-beam CT of a C-arm (XA), converted files (OT).
 Status check_modality(const DicomSlice& slice, const fs::path& folder) {
   for (const char* modality : {"", "CT", "XA", "OT"})
     if (slice.modality == modality) return {};

@@ -23,7 +23,7 @@ constexpr std::string_view kRle = "1.2.840.10008.1.2.5";  ///< DICOM PS3.5, anne
 constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
 constexpr const char* kExportAgain = "export the series again, uncompressed";
 
-/// Numbers of a decimal string "a\b\c", as many as asked for or nothing.
+/// Numbers of a decimal string "a\b\c": exactly as many as requested, or empty.
 template <std::size_t N>
 std::optional<std::array<double, N>> decimals_of(const DicomHeader& header, std::uint32_t tag) {
   const std::string text = header.text(tag);
@@ -57,7 +57,7 @@ DicomSlice slice_of(const DicomHeader& header) {
     slice.position_P = Vec3((*p)[0], (*p)[1], (*p)[2]);
   if (const auto d = decimals_of<6>(header, dicom_tag(0x0020, 0x0037)))
     slice.directions_P = {Vec3((*d)[0], (*d)[1], (*d)[2]), Vec3((*d)[3], (*d)[4], (*d)[5])};
-  // DICOM names the distance between rows first.
+  // DICOM gives the distance between rows first.
   if (const auto s = decimals_of<2>(header, dicom_tag(0x0028, 0x0030))) slice.spacing_mm = {(*s)[1], (*s)[0]};
   if (const auto slope = decimals_of<1>(header, dicom_tag(0x0028, 0x1053))) slice.slope = (*slope)[0];
   if (const auto intercept = decimals_of<1>(header, dicom_tag(0x0028, 0x1052))) slice.intercept = (*intercept)[0];
@@ -69,7 +69,7 @@ DicomSlice slice_of(const DicomHeader& header) {
   return slice;
 }
 
-/// How the pixels are stored (PS3.3, C.7.6.3).
+/// Pixel encoding (PS3.3, C.7.6.3).
 struct PixelLayout {
   int bits_allocated = 16;
   int bits_stored = 16;
@@ -98,7 +98,7 @@ Result<PixelLayout> layout_of(const DicomHeader& header, const DicomSlice& slice
   return fail("stores its pixels in an unknown way", slice.file.string(), "give a CT series or a mask series");
 }
 
-/// Pixels that are not compressed: this machine's byte order, and the unused bits (old overlays) cleared.
+/// Uncompressed pixels: converted to this machine's byte order, with the unused bits (old overlays) cleared.
 void unpack_plain(std::span<const char> pixels, bool is_big_endian, const PixelLayout& layout,
                   std::span<std::byte> out) {
   std::memcpy(out.data(), pixels.data(), out.size());
@@ -127,7 +127,7 @@ std::uint32_t little_endian_32(std::span<const char> bytes, std::size_t at) {
   return value;
 }
 
-/// One run-length coded plane of bytes (PS3.5, annex G) into every `stride`-th byte of `out`.
+/// Unpacks one run-length coded plane of bytes (PS3.5, annex G) into every `stride`-th byte of `out`.
 bool unpack_rle_plane(std::span<const char> in, std::span<std::byte> out, std::size_t stride) {
   std::size_t at = 0;
   for (std::size_t to = 0; to < out.size();) {
@@ -144,7 +144,7 @@ bool unpack_rle_plane(std::span<const char> in, std::span<std::byte> out, std::s
   return true;
 }
 
-/// Run-length coded pixels, the high bytes first. Not through GDCM: a damaged file ends the program there.
+/// Run-length coded pixels, the high bytes first. GDCM is not used: a damaged file ends the program there.
 bool unpack_rle(const DicomHeader& header, const PixelLayout& layout, std::span<std::byte> out) {
   constexpr std::size_t kRleHeader = 64;
   std::vector<char> bytes;
@@ -159,7 +159,7 @@ bool unpack_rle(const DicomHeader& header, const PixelLayout& layout, std::span<
   return true;
 }
 
-/// Unpacks the fragments through GDCM's codecs. May throw what GDCM throws.
+/// Unpacks the fragments with GDCM's codecs. May throw exceptions of GDCM.
 bool unpack_compressed(const DicomHeader& header, const DicomSlice& slice, const PixelLayout& layout,
                        std::span<std::byte> out) {
   if (header.transfer_syntax() == kRle) return unpack_rle(header, layout, out);
@@ -189,7 +189,7 @@ bool unpack_compressed(const DicomHeader& header, const DicomSlice& slice, const
   return image.GetBufferLength() == out.size() && image.GetBuffer(reinterpret_cast<char*>(out.data()));
 }
 
-/// May throw what GDCM throws.
+/// May throw exceptions of GDCM.
 Status decode_throwing(const DicomSlice& slice, const std::function<Status(const RawVoxels&)>& use) {
   const std::string where = slice.file.string();
   TROCAR_TRY(const std::optional<DicomHeader> header, DicomHeader::read(slice.file));
@@ -216,7 +216,7 @@ Status decode_throwing(const DicomSlice& slice, const std::function<Status(const
 Result<std::optional<DicomSlice>> find_dicom_slice(const fs::path& path) {
   TROCAR_TRY(const std::optional<DicomHeader> header, DicomHeader::read(path));
   if (!header) return std::optional<DicomSlice>();
-  // Its elements cannot be seen: a slice that is left out in silence would shift the others.
+  // Its elements cannot be read; silently skipping a slice would shift the others.
   if (header->transfer_syntax() == kDeflated)
     return fail("deflated DICOM is not supported", path.string(), kExportAgain);
   DicomSlice slice = slice_of(*header);

@@ -12,7 +12,7 @@ namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMaxDepth = 16;  ///< Of sub-folders; DICOM media have four (patient, study, series, image).
+constexpr int kMaxDepth = 16;  ///< Depth of sub-folders; DICOM media have four levels (patient, study, series, image).
 constexpr std::size_t kMaxListed = 12;
 
 template <class Iterator>
@@ -47,7 +47,7 @@ bool is_ct_volume(const SeriesImages& images) {
   return images.front().modality == "CT" && images.size() > 1;
 }
 
-/// Index of the series that `wanted` names: a number from 1, or a UID.
+/// Index of the series given by `wanted`: a number from 1, or a UID.
 std::optional<std::size_t> find_wanted(const std::vector<SeriesImages>& series, const std::string& wanted) {
   std::size_t number = 0;
   const char* end = wanted.data() + wanted.size();

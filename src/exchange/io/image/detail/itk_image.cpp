@@ -13,7 +13,7 @@ namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
-/// Fast: level 1 unpacks as quickly as 6, packs four times faster and is a few per cent larger.
+/// Fast: level 1 unpacks as quickly as 6, packs four times faster and gives slightly larger files.
 constexpr int kCompressionLevel = 1;
 
 itk::ImageIOBase::Pointer make_image_io(ImageFormat format) {
@@ -76,7 +76,7 @@ TextFields text_fields(const itk::ImageIOBase& io) {
   return fields;
 }
 
-/// The whole image as the region to read or write.
+/// Selects the whole image as the region to read or write.
 void take_whole_region(itk::ImageIOBase& io) {
   itk::ImageIORegion region(io.GetNumberOfDimensions());
   for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) {
@@ -86,7 +86,7 @@ void take_whole_region(itk::ImageIOBase& io) {
   io.SetIORegion(region);
 }
 
-/// May throw what ITK throws.
+/// May throw exceptions of ITK.
 Result<ItkImage> read_throwing(itk::ImageIOBase& io, const CheckedImage& checked, ImageFormat format) {
   const std::string where = checked.file.path().string();
   io.SetFileName(checked.library_path.string());
@@ -126,7 +126,7 @@ itk::IOComponentEnum component_of(VoxelType type) {
   }
 }
 
-/// May throw what ITK throws.
+/// May throw exceptions of ITK.
 void write_throwing(itk::ImageIOBase& io, const ItkImage& image, std::span<const std::byte> bytes, const fs::path& path,
                     Packing packing) {
   io.SetFileName(path.string());
@@ -159,7 +159,7 @@ Result<ItkImage> read_with_itk(const CheckedImage& checked, ImageFormat format) 
   } catch (const std::bad_alloc&) {
     return fail("not enough memory to read the image", where, "close other programs or crop the image");
   } catch (const std::exception&) {
-    // ITK's own messages name source files and line numbers.
+    // ITK's own messages contain source file names and line numbers.
     return fail("cannot be read as an image", where, "open it in 3D Slicer and save it as .nrrd");
   }
 }

@@ -70,9 +70,8 @@ class NiftiHeader {
   bool is_version_2_;
 };
 
-/// Where the voxels lie must be said without doubt: without qform and sform ITK and others disagree about left and
-/// right, other units than mm it applies to the spacing only, and where the sform is sheared it takes the qform
-/// instead.
+/// The position of the voxels must be unambiguous: without qform and sform, ITK and other programs disagree about left
+/// and right; ITK applies units other than mm to the spacing only, and replaces a sheared sform by the qform.
 Status check_place(const NiftiHeader& header, const std::string& where) {
   if (!header.has_sform() && !header.has_qform())
     return fail("no orientation in the header (qform and sform codes are both 0)", where,
@@ -100,14 +99,14 @@ bool has_only_finite(std::span<unsigned char> bytes, bool is_swapped) {
   return true;
 }
 
-/// The NIfTI library reads NaN and infinity as 0 without a word: they are looked for here.
+/// The NIfTI library silently reads NaN and infinity as 0: they are detected here.
 Status check_finite(gzFile file, const NiftiHeader& header, std::uint64_t offset, std::uint64_t count,
                     const std::string& where) {
   if (!header.is_float() || gzseek(file, static_cast<z_off_t>(offset), SEEK_SET) < 0) return {};
   std::vector<unsigned char> chunk(kChunkBytes);
   while (count > 0) {
     const int got = gzread(file, chunk.data(), static_cast<unsigned>(std::min<std::uint64_t>(count, chunk.size())));
-    if (got <= 0) return {};  // A short file is found by check_payload().
+    if (got <= 0) return {};  // check_payload() reports a short file.
     count -= static_cast<std::uint64_t>(got);
     const std::span bytes(chunk.data(), static_cast<std::size_t>(got));
     if (!(header.bits_per_voxel() == 32 ? has_only_finite<float>(bytes, header.is_swapped())
@@ -122,7 +121,7 @@ Status check_finite(gzFile file, const NiftiHeader& header, std::uint64_t offset
 Result<Payload> nifti_payload(const InputFile& input) {
   const std::string where = input.path().string();
   std::array<unsigned char, 540> bytes{};
-  // gzread passes plain files through.
+  // gzread also reads uncompressed files.
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(input.pinned_path().c_str(), "rb"), gzclose);
   const int count = file ? gzread(file.get(), bytes.data(), bytes.size()) : -1;
   std::int32_t header_size = 0;

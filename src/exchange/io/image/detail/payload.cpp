@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::int64_t kMaxSide = 65'535;            ///< Voxels along one axis.
 constexpr std::uint64_t kMaxVoxels = 2'000'000'000;  ///< 4 GB of int16, far above any CT.
-constexpr std::size_t kMaxHeaderBytes = 16u << 20;   ///< .seg.nrrd headers of many segments are long.
-constexpr std::uint64_t kMaxDeflateRatio = 1'032;    ///< Deflate cannot pack tighter.
+constexpr std::size_t kMaxHeaderBytes = 16u << 20;   ///< .seg.nrrd files with many segments have long headers.
+constexpr std::uint64_t kMaxDeflateRatio = 1'032;    ///< Upper limit of deflate.
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -53,11 +53,11 @@ std::vector<std::int64_t> whole_numbers(const std::string& text) {
   return numbers;
 }
 
-/// Unpacks a gzip or zlib stream of `packed` bytes and throws the result away: true when it is sound and has at least
-/// `bytes` of them.
+/// Unpacks a gzip or zlib stream of `packed` bytes and discards the result: true if it is valid and has at least
+/// `bytes` bytes.
 bool is_sound_stream(std::ifstream& file, std::uint64_t packed, std::uint64_t bytes) {
   z_stream stream{};
-  if (inflateInit2(&stream, MAX_WBITS + 32) != Z_OK) return false;  // +32: gzip or zlib, whichever it is.
+  if (inflateInit2(&stream, MAX_WBITS + 32) != Z_OK) return false;  // +32: gzip or zlib, detected automatically
   const std::unique_ptr<z_stream, int (*)(z_stream*)> guard(&stream, inflateEnd);
   std::vector<unsigned char> in(kChunkBytes), out(kChunkBytes);
   std::uint64_t unpacked = 0;
@@ -72,7 +72,7 @@ bool is_sound_stream(std::ifstream& file, std::uint64_t packed, std::uint64_t by
       if (stream.avail_in == 0) return at_end && unpacked >= bytes;
     }
     if (at_end) {
-      // A further gzip member, or whatever else stands behind the voxels.
+      // A further gzip member, or other data after the voxels.
       if (unpacked >= bytes) return true;
       if (inflateReset(&stream) != Z_OK) return false;
       at_end = false;
@@ -103,11 +103,11 @@ Status check_payload(const Payload& payload, const InputFile& input, Check check
   return fail("the compressed voxels are damaged or end too early", where, kExportAgain);
 }
 
-// --- NRRD and MetaImage: text headers -------------------------------------------------------------------------------
+// NRRD and MetaImage: text headers.
 
 struct TextHeader {
   std::map<std::string, std::string> fields;  ///< Keys in lower case.
-  std::uint64_t end = 0;                      ///< Where the line after the header starts.
+  std::uint64_t end = 0;                      ///< Offset of the first byte after the header.
 
   std::string get(const std::string& key, std::string fallback = {}) const {
     const auto found = fields.find(key);
@@ -115,8 +115,8 @@ struct TextHeader {
   }
 };
 
-/// The libraries and this program must see the same lines: no control characters, and no line of blanks, which ends
-/// the header for one reader and not for the other.
+/// The libraries and this program must read the same lines: no control characters, and no line of blanks, which ends
+/// the header for some readers only.
 bool is_plain_line(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   const bool has_control =
@@ -124,8 +124,8 @@ bool is_plain_line(std::string_view line) {
   return !has_control && (line.empty() || !trim(line).empty());
 }
 
-/// Reads "key<separator>value" lines up to an empty line or one that begins with `last_key`. Nothing: no such line, or
-/// one that readers could understand differently.
+/// Reads "key<separator>value" lines up to an empty line or one that starts with `last_key`. Empty: no such line, or an
+/// ambiguous one.
 std::optional<TextHeader> read_text_header(const InputFile& input, char separator, std::string_view last_key) {
   std::ifstream file(input.pinned_path(), std::ios::binary);
   TextHeader header;
@@ -138,7 +138,7 @@ std::optional<TextHeader> read_text_header(const InputFile& input, char separato
     if (at == std::string::npos) continue;
     const std::string key = lower(trim(std::string_view(line).substr(0, at)));
     header.fields.emplace(key, trim(std::string_view(line).substr(at + 1)));
-    // The library takes this key in this spelling only, and would read on.
+    // The library accepts this key in this spelling only, and would otherwise continue to read.
     if (key == lower(std::string(last_key))) return line.starts_with(last_key) ? std::optional(header) : std::nullopt;
   }
   return header.fields.empty() ? std::nullopt : std::optional(header);
@@ -161,7 +161,7 @@ std::uint64_t take_list_axis(std::vector<std::int64_t>& sizes, const std::string
   return count;
 }
 
-/// Notes the file that a header names for its voxels.
+/// Stores the data file named in the header.
 Status take_data_file(const std::string& data_file, const std::string& where, Payload& payload) {
   if (data_file.empty()) return {};
   if (data_file.starts_with("LIST") || data_file.find('%') != std::string::npos)
@@ -279,7 +279,7 @@ Result<CheckedImage> open_image_file(const fs::path& path, ImageFormat format, C
     return CheckedImage{std::move(file), path};
   }
   TROCAR_TRY_STATUS(check_payload(payload, file, check, path.string()));
-  // The NIfTI library opens by the ending.
+  // The NIfTI library selects the format by the file name's ending.
   fs::path library_path = format == ImageFormat::kNifti ? path : file.pinned_path();
   return CheckedImage{std::move(file), std::move(library_path)};
 }

@@ -13,7 +13,7 @@
 namespace trocar::io::detail {
 namespace {
 
-/// Standard error as it was, while at least one MutedStandardError lives.
+/// The original standard error, while at least one MutedStandardError exists.
 struct Muting {
   std::mutex mutex;
   int count = 0;

@@ -46,7 +46,7 @@ auto with_type(VoxelType type, Use&& use) {
   return use(double{});
 }
 
-/// The numbers above 255 among whole numbers, at most 8 of them, sorted; empty: others are there, too.
+/// The numbers above 255 if all numbers are integers, at most 8 of them, sorted; otherwise empty.
 std::vector<int> labels_above_255(const RawVoxels& in, std::size_t voxels) {
   return with_type(in.type, [&]<class S>(S) {
     constexpr std::size_t kMost = 8;
@@ -63,7 +63,7 @@ std::vector<int> labels_above_255(const RawVoxels& in, std::size_t voxels) {
   });
 }
 
-/// Converts all numbers in parallel with convert(value, out&) -> bool; gives one value that could not be converted.
+/// Converts all numbers in parallel with convert(value, out&) -> bool; returns a value that could not be converted.
 template <class T, class Convert>
 std::optional<double> convert_all(const RawVoxels& in, std::span<T> out, const Convert& convert) {
   return with_type(in.type, [&]<class S>(S) -> std::optional<double> {
@@ -109,7 +109,7 @@ Status tidy_geometry(volume::GridGeometry& geometry) {
   const Mat3 product = geometry.R_PV.transpose() * geometry.R_PV;
   if ((product - Mat3::Identity()).cwiseAbs().maxCoeff() > kMaxShear)
     return fail("the image's axes are sheared or scaled, not at right angles", {}, "resample it onto a straight grid");
-  // The nearest orthonormal matrix, so that rounding in the file does not grow with the size of the volume.
+  // The nearest orthonormal matrix, so that rounding errors of the file do not grow with the size of the volume.
   const Eigen::JacobiSVD<Mat3> svd(geometry.R_PV, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Mat3 nearest = svd.matrixU() * svd.matrixV().transpose();
   if ((nearest - geometry.R_PV).cwiseAbs().maxCoeff() > 1e-12) geometry.R_PV = nearest;
@@ -177,7 +177,7 @@ Status convert_voxels(const RawVoxels& in, std::span<std::uint8_t> out) {
     if (!(value > -0.5 && value < 255.5)) return false;
     const double whole = std::round(value);
     voxel = static_cast<std::uint8_t>(whole);
-    // Labels that went through a float scaling are whole only up to its rounding.
+    // Labels stored with a float scaling are integers only up to its rounding.
     return std::abs(value - whole) <= 1e-3;
   });
   if (!bad) return {};

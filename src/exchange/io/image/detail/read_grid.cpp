@@ -16,7 +16,7 @@ Status check_image_path(const fs::path& path) {
   if (fs::file_size(path, error) == 0) return fail("the file is empty", path.string(), "copy or export it again");
   const auto format = find_image_format(path);
   if (format) return {};
-  // Without a known ending it may be one slice of a DICOM series.
+  // A file without a known ending can be one slice of a DICOM series.
   TROCAR_TRY(const std::optional<DicomSlice> slice, find_dicom_slice(path));
   if (!slice) return tl::unexpected(format.error());
   if (slice->frames > 1)

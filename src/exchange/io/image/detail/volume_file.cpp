@@ -10,9 +10,9 @@ namespace trocar::io::detail {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::uint64_t kHeaderBytes = 1 << 16;  ///< More than any header or compression overhead takes.
+constexpr std::uint64_t kHeaderBytes = 1 << 16;  ///< Upper limit of the overhead of header and compression.
 
-/// Asks the file system for the most that the image may take. The libraries say a full disk on the terminal only.
+/// Reserves the maximum size of the image. The libraries report a full disk on the terminal only.
 Status reserve_space(const fs::path& path, std::uint64_t bytes) {
   const int file = ::open(path.c_str(), O_CREAT | O_WRONLY | O_TRUNC | O_CLOEXEC, 0666);
   const bool is_open = file >= 0;

@@ -52,7 +52,7 @@ std::optional<FrameKey> find_frame_key(std::string_view key) {
   return result;
 }
 
-/// The lines "key = value" up to ElementDataFile. Errors: none such, too long.
+/// The lines "key = value" up to ElementDataFile. Errors: no such line, too long.
 Result<HeaderText> read_text(const InputFile& input) {
   const std::string where = input.path().string();
   std::ifstream file(input.pinned_path(), std::ios::binary);
@@ -91,7 +91,7 @@ Status take_size(const HeaderText& text, const std::string& where, ultrasound::T
   const auto sizes = find_numbers(value_of(text.fields, "DimSize"), 4);
   if (!sizes || sizes->size() < 3)
     return fail("the field DimSize does not give columns, rows and frames", where, kNeeded);
-  // PLUS writes depth 1 between rows and frames in some versions.
+  // Some versions of PLUS write depth 1 between rows and frames.
   if (sizes->size() == 4 && (*sizes)[2] != 1.0)
     return fail("is a sequence of volumes, not of pictures", where, kNeeded);
   const double columns = (*sizes)[0], rows = (*sizes)[1], frames = sizes->back();
@@ -123,7 +123,7 @@ Status check_pixel_type(const Fields& fields, const std::string& where) {
 
 Status take_orientation(const Fields& fields, const std::string& where, SequenceHeader& header) {
   const std::string orientation = value_of(fields, "UltrasoundImageOrientation", "MFA");
-  if (orientation.empty() || orientation.starts_with("XX")) return {};  // PLUS: not known
+  if (orientation.empty() || orientation.starts_with("XX")) return {};  // PLUS: unknown
   const bool is_known = orientation.size() >= 2 &&
                         std::string_view("MU").find(orientation[0]) != std::string_view::npos &&
                         std::string_view("FN").find(orientation[1]) != std::string_view::npos;
@@ -152,7 +152,7 @@ Status take_place_of_pixels(const HeaderText& text, const std::string& where, Se
   return {};
 }
 
-/// One field of a frame; those that are not known are left aside.
+/// Reads one field of a frame; ignores unknown ones.
 Status take_field(const Fields& fields, const std::string& name, const std::string& value,
                   ultrasound::TrackedSequence::Frame& frame) {
   if (name == "ImageStatus") {

@@ -12,14 +12,15 @@
 namespace trocar::io::detail {
 namespace {
 
-constexpr std::uint64_t kMaxDeflateRatio = 1'032;     ///< Deflate cannot pack tighter.
-constexpr int kCompressionLevel = 1;                  ///< Speckle hardly packs: higher levels cost time only.
+constexpr std::uint64_t kMaxDeflateRatio = 1'032;     ///< Upper limit of deflate.
+constexpr int kCompressionLevel = 1;                  ///< Speckle hardly compresses: higher levels only take more time.
 constexpr std::size_t kPiece = std::size_t{1} << 30;  ///< zlib counts in 32 bits.
 
-/// Unpacks a gzip or zlib stream of at most `packed` bytes into all of `out`. False: damaged, or too short.
+/// Unpacks a gzip or zlib stream of at most `packed` bytes into all of `out`. Returns false if it is damaged or too
+/// short.
 bool unpack(std::ifstream& file, std::uint64_t packed, std::span<std::uint8_t> out) {
   z_stream stream{};
-  if (inflateInit2(&stream, MAX_WBITS + 32) != Z_OK) return false;  // +32: gzip or zlib, whichever it is
+  if (inflateInit2(&stream, MAX_WBITS + 32) != Z_OK) return false;  // +32: gzip or zlib, detected automatically
   const std::unique_ptr<z_stream, int (*)(z_stream*)> guard(&stream, inflateEnd);
   std::vector<unsigned char> in(kChunkBytes);
   std::size_t done = 0;

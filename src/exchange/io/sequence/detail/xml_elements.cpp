@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMaxDepth = 32;
 constexpr std::size_t kMaxElements = 100'000;
 
-/// Collects elements while VTK's parser (expat) walks through the text.
+/// Collects elements while VTK's parser (expat) reads the text.
 class Collector : public vtkXMLParser {
  public:
   static Collector* New();
@@ -52,7 +52,7 @@ vtkStandardNewMacro(Collector);
 }  // namespace
 
 Result<std::vector<XmlElement>> parse_xml(std::string_view text) {
-  // Entities can blow a few bytes up to gigabytes; configurations have none.
+  // Entities can expand a few bytes to gigabytes; configurations have none.
   if (text.find("<!DOCTYPE") != std::string_view::npos || text.find("<!ENTITY") != std::string_view::npos)
     return fail("has a document type of its own", {}, "remove the <!DOCTYPE ...>");
   silence_libraries();

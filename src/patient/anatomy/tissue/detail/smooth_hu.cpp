@@ -14,7 +14,7 @@ std::int16_t weighted(int before, int here, int after) {
   return static_cast<std::int16_t>((before + 2 * here + after + 2) >> 2);
 }
 
-/// Along a row itself; the end values continue outside.
+/// Smooths along a row; the end values continue outside.
 void smooth_row(Row row) {
   std::int16_t before = row.front();
   for (std::size_t i = 0; i < row.size(); ++i) {
@@ -24,7 +24,7 @@ void smooth_row(Row row) {
   }
 }
 
-/// Across `count` rows, `stride` voxels apart.
+/// Smooths across `count` rows, `stride` voxels apart.
 void smooth_across(std::int16_t* first, std::size_t length, std::size_t stride, std::size_t count) {
   std::vector<std::int16_t> before(first, first + length);
   for (std::size_t n = 0; n < count; ++n) {

@@ -13,16 +13,16 @@ namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr double kLeastDepth_mm = 0.2;   ///< Voxels on the wall are not dearer than this makes them.
-constexpr double kCovers = 1.3;          ///< A path covers what lies within so many radii of it,
-constexpr double kCoversMore_mm = 1.5;   ///< and so much more.
-constexpr double kLeastBranch_mm = 4.0;  ///< What stands out less than this, or
-constexpr double kBulge = 1.0;      ///< so many of its neighbour's radii, is a bulge: a vein's section is no circle.
-constexpr double kSmoothing = 0.6;  ///< Radii; the standard deviation of what a place is smoothed over.
+constexpr double kLeastDepth_mm = 0.2;   ///< Lower limit for the cost of voxels at the wall.
+constexpr double kCovers = 1.3;          ///< Radius of the region covered by a path, in radii,
+constexpr double kCoversMore_mm = 1.5;   ///< plus this length.
+constexpr double kLeastBranch_mm = 4.0;  ///< Branches that protrude less than this, or
+constexpr double kBulge = 1.0;           ///< less than this many radii of the neighbour, are bulges.
+constexpr double kSmoothing = 0.6;       ///< Radii; standard deviation of the smoothing.
 constexpr double kLeastSmoothing_mm = 1.5;
 constexpr double kMostSmoothing_mm = 7.0;
 constexpr double kEndReach = 3.0;    ///< Radii.
-constexpr double kEndLeftOut = 1.6;  ///< Radii; a path from a corner to the middle is longer than one.
+constexpr double kEndLeftOut = 1.6;  ///< Radii; a path from a corner to the centre is longer than one.
 constexpr std::size_t kTipNodes = 12;
 
 /// One step to a neighbouring voxel.
@@ -45,7 +45,7 @@ std::vector<Step> make_steps(const volume::GridGeometry& geometry) {
   return steps;
 }
 
-/// A voxel on its way to the root.
+/// A voxel on its path to the root.
 struct RawNode {
   std::size_t voxel;
   int parent;       ///< Raw node.
@@ -53,7 +53,7 @@ struct RawNode {
 };
 
 struct Branch {
-  std::vector<int> nodes;  ///< Raw nodes from the one that it leaves (the root: itself) to its end.
+  std::vector<int> nodes;  ///< Raw nodes from the parent's node (the root: its own) to its end.
 };
 
 class Finder {
@@ -85,7 +85,8 @@ class Finder {
  private:
   enum State : std::uint8_t { kOutside, kUnseen, kSeen, kCovered };
 
-  /// Dijkstra from a voxel through its piece; the voxels by growing distance. With costs, `before_` leads back.
+  /// Dijkstra from a voxel through its component; returns the voxels by increasing distance. With costs, `before_`
+  /// contains the predecessors.
   std::vector<std::size_t> spread(std::size_t from, std::vector<float>& distance, bool is_cost) {
     using Entry = std::pair<float, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -118,7 +119,7 @@ class Finder {
     return 1.0F / (depth * depth * depth);
   }
 
-  /// The farthest voxel of the piece from any other is at one end.
+  /// The voxel of the component farthest from any other voxel is at one end.
   CentrelineTree make_tree(const std::vector<std::size_t>& piece) {
     const std::size_t root = piece.back();
     for (const std::size_t v : piece) way_[v] = kFar;
@@ -157,7 +158,7 @@ class Finder {
     branches_.push_back(std::move(branch));
   }
 
-  /// The path into a corner of the tube's end stands for all of that end.
+  /// The path into a corner of the tube's end represents the whole end.
   void widen_end(const std::vector<int>& nodes) {
     const std::size_t full = kept(nodes) - 1;
     const double radius_mm = raw_[static_cast<std::size_t>(nodes[full])].reach_mm;
@@ -172,7 +173,7 @@ class Finder {
     const volume::Index3 at = geometry_.index_of(v);
     return geometry_.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
   }
-  /// Whether a place lies well outside of the balls about all nodes.
+  /// True if a point is clearly outside the balls around all nodes.
   bool stands_out(std::size_t tip) const {
     const Vec3 p = place(tip);
     return std::all_of(raw_.begin(), raw_.end(), [&](const RawNode& node) {
@@ -180,7 +181,7 @@ class Finder {
     });
   }
 
-  /// Voxels about one of a path need no path of their own.
+  /// Voxels near a path need no separate path.
   void cover(std::size_t middle, double radius_mm) {
     const double reach_mm = kCovers * radius_mm + kCoversMore_mm;
     const volume::Index3 at = geometry_.index_of(middle);
@@ -199,13 +200,13 @@ class Finder {
         }
   }
 
-  /// How many nodes of a branch lie before the tube's end by more than its radius there: paths begin in corners. At
+  /// Number of nodes of a branch that are farther from the tube's end than its radius there: paths start in corners. At
   /// least half of them.
   std::size_t kept(const std::vector<int>& nodes) const {
     const auto voxel = [&](std::size_t n) { return raw_[static_cast<std::size_t>(nodes[n])].voxel; };
     const auto step_mm = [&](std::size_t n) { return (place(voxel(n)) - place(voxel(n - 1))).norm(); };
     const std::size_t half = nodes.size() / 2;
-    // That of balls that reach to the end or nearly.
+    // Radius of balls that extend to the end or nearly to it.
     double radius_mm = 0.0;
     double from_end_mm = 0.0;
     for (std::size_t n = nodes.size() - 1; n > half; from_end_mm += step_mm(n), --n)
@@ -231,12 +232,12 @@ class Finder {
       if (b == 0) {
         std::vector<int> backwards(nodes.rbegin(), nodes.rend());
         first = nodes.size() - kept(backwards);
-        // Whatever leaves within the end that is left out leaves from the first node.
+        // Branches from the removed end are attached to the first node.
         for (std::size_t n = 0; n <= first; ++n) index[static_cast<std::size_t>(nodes[n])] = 0;
       }
       nodes.erase(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(first));
       add_nodes(nodes, b == 0, index, tree);
-      // Branches that leave from the end that was left out leave from the last node.
+      // Branches from the removed end are attached to the last node.
       for (const int raw : branches_[b].nodes)
         if (index[static_cast<std::size_t>(raw)] < 0)
           index[static_cast<std::size_t>(raw)] = static_cast<int>(tree.nodes.size()) - 1;
@@ -263,7 +264,7 @@ class Finder {
     return sum / count;
   }
 
-  /// Smooths one branch (raw nodes, from the one that it leaves) and adds it.
+  /// Smooths one branch (raw nodes, from its parent's node) and adds it.
   void add_nodes(const std::vector<int>& nodes, bool is_first, std::vector<int>& index, CentrelineTree& tree) const {
     std::vector<Vec3> points;
     std::vector<double> along{0.0};
@@ -286,7 +287,7 @@ class Finder {
     }
   }
 
-  /// The line of least squares through a place's neighbourhood: where it is, and its direction.
+  /// The least squares line through a neighbourhood: position and direction.
   static CentrelineNode fitted(std::span<const Vec3> points, std::span<const double> along,
                                std::span<const double> depths, std::size_t at) {
     const double sigma = std::clamp(kSmoothing * depths[at], kLeastSmoothing_mm, kMostSmoothing_mm);

@@ -17,7 +17,7 @@ namespace {
 constexpr volume::Rgb kOutlineInk = {120, 190, 130};
 constexpr volume::Rgb kInk = {200, 205, 210};
 
-/// Colours from the baseline to the scale's end, evenly spaced.
+/// Colours from the baseline to the end of the scale, evenly spaced.
 constexpr std::array<volume::Rgb, 5> kToFace = {{{60, 0, 0}, {150, 0, 0}, {225, 20, 0}, {250, 120, 0}, {255, 240, 90}}};
 constexpr std::array<volume::Rgb, 5> kFromFace = {
     {{0, 0, 70}, {0, 10, 150}, {0, 50, 230}, {0, 150, 250}, {150, 250, 255}}};
@@ -32,7 +32,7 @@ volume::Rgb blend(const std::array<volume::Rgb, 5>& colours, double share) noexc
   return colour;
 }
 
-/// atan2(im, re) / pi to 2e-3, which is a colour's step.
+/// atan2(im, re) / pi to 2e-3, one step of colour.
 float half_turns(float re, float im) noexcept {
   const float x = std::abs(re);
   const float y = std::abs(im);
@@ -48,7 +48,7 @@ float half_turns(float re, float im) noexcept {
 }  // namespace
 
 volume::Rgb doppler_colour(double share, const DopplerSettings& settings) noexcept {
-  // With the baseline shifted by b the scale runs from b - 1 to b + 1.
+  // With a baseline shift of b the scale ranges from b - 1 to b + 1.
   const double b = settings.baseline;
   if (share > b + 1.0) share -= 2.0;
   if (share < b - 1.0) share += 2.0;

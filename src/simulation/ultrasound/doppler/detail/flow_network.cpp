@@ -8,14 +8,14 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr double kTouches_mm = 6.0;  ///< A tip so near to a structure ends there. Assumed, range 3..10.
+constexpr double kTouches_mm = 6.0;  ///< A tip within this distance of a structure ends there. Assumed, range 3..10.
 
 struct Reach {
-  std::vector<std::vector<double>> distance_mm;  ///< Of each tip of each tree from the named structures.
+  std::vector<std::vector<double>> distance_mm;  ///< Distance of each tip of each tree from the named structures.
   bool has_any = false;
 };
 
-/// Distances of the tips from the nearest voxel of what `near` names.
+/// Distances of the tips from the nearest voxel of the labels in `near`.
 Reach find_reach(const anatomy::VirtualPatient& patient, std::uint8_t label, const FlowRule& rule,
                  const std::vector<CentrelineTree>& trees) {
   Reach reach;
@@ -42,7 +42,7 @@ Reach find_reach(const anatomy::VirtualPatient& patient, std::uint8_t label, con
   return reach;
 }
 
-/// Nodes from one to another by way of where their ways to the root meet, as a length.
+/// Length of the path between two nodes through their common ancestor.
 double way_mm(const CentrelineTree& tree, int from, int to) {
   double sum = 0.0;
   while (from != to) {
@@ -54,9 +54,9 @@ double way_mm(const CentrelineTree& tree, int from, int to) {
   return sum;
 }
 
-/// The tip at the head: the one that is farthest from the most caudal one, along the vessels and in height together, so
-/// that the arch of the aorta does not matter; wide tips count more, so that winding branches do not either. At the
-/// feet: the other way round.
+/// The tip at the head: the one farthest from the most caudal one, with the sum of distance along the vessels and
+/// height, so that the arch of the aorta has no influence; wide tips have a larger weight, to exclude winding branches.
+/// At the feet: reversed.
 std::vector<bool> tip_at(const CentrelineTree& tree, FlowRule::At at) {
   const double sign = at == FlowRule::At::kHead ? 1.0 : -1.0;
   const auto opposite = std::min_element(
@@ -77,7 +77,7 @@ std::vector<bool> tip_at(const CentrelineTree& tree, FlowRule::At at) {
   return is_named_end;
 }
 
-/// Tips that touch what is named; else the nearest; and where all touch, all but the widest.
+/// Tips that touch the named labels; otherwise the nearest; if all touch, all but the widest.
 std::vector<bool> tips_near(const CentrelineTree& tree, const std::vector<double>& distance_mm) {
   std::vector<bool> is_named_end;
   for (const double distance : distance_mm) is_named_end.push_back(distance <= kTouches_mm);
@@ -115,7 +115,7 @@ std::vector<bool> flows_from_root(const CentrelineTree& tree, const std::vector<
   double taken = 0.0;
   for (std::size_t e = 0; e < tree.tips.size(); ++e)
     (is_source[e] ? given : taken) += std::pow(tree.tips[e].radius_mm, 3);
-  // What the part beyond a node gives to the rest.
+  // Flow from the part beyond a node into the rest.
   std::vector<double> net(tree.nodes.size(), 0.0);
   for (std::size_t e = 0; e < tree.tips.size(); ++e) {
     const double volume = std::pow(tree.tips[e].radius_mm, 3);

@@ -14,11 +14,11 @@ namespace trocar::ultrasound {
 namespace {
 
 constexpr double kJoins_mm =
-    6.0;  ///< So much of a vessel counts as part of the one that it joins. Assumed, range 3..10.
+    6.0;  ///< Length of a vessel counted as part of the vessel that it joins. Assumed, range 3..10.
 constexpr double kMargin_mm = 9.0;
 constexpr double kMostSpeed_mm_per_s = 3200.0;
 
-/// A point of a branch that owns lumen, and its neighbours.
+/// A point of a branch with lumen, and its neighbours.
 struct Owner {
   const VesselBranch* branch;
   std::size_t point;
@@ -29,7 +29,7 @@ Vec3 voxel_place(const volume::GridGeometry& geometry, std::size_t n) {
   return geometry.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
 }
 
-/// Unit tangent of flow and distance from the middle line at a place near a point of it.
+/// Unit tangent of the flow, and distance from the centreline, at a position near one of its points.
 struct Nearby {
   Vec3 flow_P;
   double from_middle_mm;
@@ -40,7 +40,7 @@ Nearby look_nearby(const Owner& owner, const Vec3& p_P) {
   const Vec3 away = p_P - point.p_P;
   const double along_mm = away.dot(point.flow_P);
   Nearby near{point.flow_P, (away - along_mm * point.flow_P).norm()};
-  // Towards whichever neighbour the place lies.
+  // Towards the neighbour on the side of the position.
   for (const std::ptrdiff_t step : {-1, 1}) {
     const auto n = static_cast<std::ptrdiff_t>(owner.point) + step;
     if (n < 0 || n >= static_cast<std::ptrdiff_t>(points.size())) continue;
@@ -54,7 +54,7 @@ Nearby look_nearby(const Owner& owner, const Vec3& p_P) {
   return near;
 }
 
-/// The point whose tube a place is deepest in.
+/// The point whose tube contains a position most deeply.
 const Owner& find_owner(const std::vector<Owner>& owners, const Vec3& p_P) {
   const Owner* best = owners.data();
   double least = std::numeric_limits<double>::infinity();
@@ -68,7 +68,7 @@ const Owner& find_owner(const std::vector<Owner>& owners, const Vec3& p_P) {
   return *best;
 }
 
-/// The profile runs from the middle line to the wall wherever that is: sections need not be round.
+/// The profile extends from the centreline to the actual wall: sections need not be round.
 Vec3 velocity_at(const Owner& owner, const Vec3& p_P, double depth_mm) {
   const Nearby near = look_nearby(owner, p_P);
   const double inside_mm = std::max(depth_mm, 0.0);
@@ -99,7 +99,7 @@ VesselFlowMaker::VesselFlowMaker(const anatomy::VirtualPatient& patient, FlowTab
                       -1);
 }
 
-/// Vessels whose blood comes from or goes to this one.
+/// Vessels connected to the blood flow of this one.
 std::array<bool, 256> VesselFlowMaker::find_joining(const anatomy::Label& label) const {
   std::array<bool, 256> joins{};
   for (const anatomy::Label& other : patient_.label_table.labels) {
@@ -130,7 +130,7 @@ VesselFlowMaker::Box VesselFlowMaker::box_of(const anatomy::Label& label) const 
   return box;
 }
 
-/// The piece of the flow's grid that covers a box of the labels.
+/// The part of the flow's grid that covers a box of the labels.
 volume::GridGeometry VesselFlowMaker::flow_grid_over(const Box& box) const {
   const volume::GridGeometry& source = patient_.labels.geometry;
   volume::GridGeometry piece = flow_->geometry_;
@@ -264,8 +264,8 @@ VesselFlow::Cell& VesselFlowMaker::cell(std::int64_t brick, std::int64_t offset)
   return flow_->cells_[static_cast<std::size_t>(first + offset)];
 }
 
-/// Into every brick that has the voxel: its own, and those whose last row it is. Where vessels meet the fuller one
-/// stays.
+/// Stores into every brick with this voxel: its own, and those whose last row it is. Where vessels meet, the cell with
+/// more lumen is kept.
 void VesselFlowMaker::store(const volume::Index3& at, const VesselFlow::Cell& value) {
   for (int n = 0; n < 8; ++n) {
     volume::Index3 brick, within;

@@ -7,19 +7,19 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr double kReach_mm = 3.0;  ///< To either side: several voxels, and less than most organs' curvature.
-constexpr int kMostSteps = 4;      ///< Scanlines looked at, to either side.
-constexpr float kSteepest = 1.7F;  ///< Slope that is still followed from line to line …
+constexpr double kReach_mm = 3.0;  ///< To each side: several voxels, and less than the curvature radius of most organs.
+constexpr int kMostSteps = 4;      ///< Scanlines to each side.
+constexpr float kSteepest = 1.7F;  ///< Largest slope followed from line to line,
 constexpr float kRamp = 16.0F;     ///< Samples.
-constexpr float kStep_mm = 1.2F;   ///< … beside a voxel's step.
+constexpr float kStep_mm = 1.2F;   ///< in addition to a voxel's step.
 
 std::span<const BorderKey> borders_of(const ScanPlan& plan, const FrameState& frame, int plane, int line) noexcept {
   const auto at = static_cast<std::size_t>(plane * plan.lines + line);
   return {frame.border_keys.data() + at * kMaxBorders, frame.border_counts[at]};
 }
 
-/// The border between two tissues that lies nearest to a place; nullptr: none within `reach` samples. They are
-/// sorted by depth, up to two of one ramp.
+/// The border between two tissues nearest to a position; nullptr: none within `reach` samples. They are sorted by
+/// depth, up to two per ramp.
 const BorderKey* find_near(std::span<const BorderKey> borders, std::uint16_t tissues, float walk,
                            float reach) noexcept {
   const BorderKey* found = nullptr;

@@ -9,12 +9,12 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-/// What the face of the array and the skin give back of an echo that returns to them (assumed, range 0.05..0.4).
+/// Reflection of returning echoes at the array's face and the skin (assumed, range 0.05..0.4).
 constexpr float kFaceReflection = 0.2F;
-/// Reflectors that give back less make no second echo worth a loop.
+/// Weaker reflectors have no relevant second echo.
 constexpr float kLeastReverberation = 0.003F;
 
-/// Bubbles that ring: how loud at first, against liver's speckle, and how fast they fade (assumed).
+/// Ring-down of bubbles: initial level relative to liver's speckle, and decay (assumed).
 constexpr float kRingLevel = 1.6F;
 constexpr float kRingFade_mm = 28.0F;
 
@@ -30,7 +30,7 @@ void add_ring_down(const ScanPlan& plan, FrameState& frame, int line) noexcept {
       std::max(0.0F, static_cast<float>(key & 0xffffU) / 65535.0F - kSilentShare) / (1.0F - kSilentShare);
   const float level = kRingLevel * loud * loud * reflector.rough_amplitude;
   const auto begin = static_cast<int>(reflector.shown);
-  // Bands: the pulse goes round within a cluster of bubbles.
+  // Bands: the pulse reverberates within a cluster of bubbles.
   const float band_mm = 1.2F + 1.6F * static_cast<float>((key >> 16) & 0xffU) / 255.0F;
   const float fade = std::exp(-plan.sample_mm / kRingFade_mm);
   float amplitude =
@@ -54,7 +54,7 @@ void add_reverberation(const ScanPlan& plan, const FrameState& frame, int look, 
   const auto lag = static_cast<int>(reflector.shown + 0.5F);
   if (again < kLeastReverberation || lag < 8) return;
   const std::size_t row = static_cast<std::size_t>(look * plan.lines + line) * static_cast<std::size_t>(plan.samples);
-  // From near to far, so that what came again comes again: A-lines at 2, 3, 4 … times the depth.
+  // From near to far, so that repeated echoes repeat again: A-lines at 2, 3, 4 … times the depth.
   for (int s = lag; s < plan.samples; ++s) {
     out.re[row + static_cast<std::size_t>(s)] += again * out.re[row + static_cast<std::size_t>(s - lag)];
     out.im[row + static_cast<std::size_t>(s)] += again * out.im[row + static_cast<std::size_t>(s - lag)];

@@ -9,10 +9,10 @@ namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-/// Width of a Gaussian that stands for a uniform aperture (docs/physics.md U3).
+/// Width of a Gaussian that replaces a uniform aperture (docs/physics.md U3).
 constexpr float kGaussianAperture = 0.2991F;
 
-/// A piece of the sum of what a scanline hears, between two samples.
+/// Adds an echo to a scanline, between two samples.
 void put(const ScanPlan& plan, FrameState& frame, std::size_t row, float shown, float re, float im) noexcept {
   if (!(shown >= 0.0F && shown < static_cast<float>(plan.samples - 1))) return;
   const auto sample = static_cast<std::size_t>(shown);
@@ -25,12 +25,12 @@ void put(const ScanPlan& plan, FrameState& frame, std::size_t row, float shown, 
   to_im[1] += part * im;
 }
 
-/// The way of a needle's echo on one scanline: samples `shown`, amplitude `gain`; false where it is not heard.
+/// Path of a needle's echo on one scanline: sample `shown`, amplitude `gain`; false if there is no echo.
 struct Way {
   float shown, gain;
 };
 bool find_way(const ScanPlan& plan, const FrameState& frame, int line, float walk, Way& way) noexcept {
-  // What lies behind a mirror is never met.
+  // Sound does not reach the space behind a mirror.
   const float depth_mm = (walk + 0.5F) * plan.sample_mm;
   const auto at_line = static_cast<std::size_t>(line);
   if (depth_mm > frame.walks[at_line].mirror_depth_mm) return false;
@@ -50,8 +50,8 @@ class Painter {
 
   void paint(const ShaftPiece& piece) noexcept {
     paint_on_lines(piece.line, piece.walk, [&](std::size_t row, const Way& way, float part) {
-      // Two samples share the echo. So shared, the pulse loses height between them, which is made good unless pieces at
-      // other depths do.
+      // The echo is split between two samples. This reduces the pulse height between them, which is compensated unless
+      // other pieces at different depths do so.
       const float offset = way.shown - std::floor(way.shown);
       const float height = (1.0F - offset) * std::exp(-0.5F * inverse_variance_ * offset * offset) +
                            offset * std::exp(-0.5F * inverse_variance_ * (1.0F - offset) * (1.0F - offset));
@@ -108,10 +108,10 @@ struct Cover {
   const ShaftPiece* piece = nullptr;
 };
 
-/// Amplitude left, there and back, of an echo from `depth_mm` behind a piece.
+/// Remaining amplitude, both ways, of an echo from `depth_mm` behind a piece.
 float behind(const ScanPlan& plan, const Cover& cover, float diameter_mm, float depth_mm) noexcept {
   const ShaftPiece& piece = *cover.piece;
-  // The wider the aperture that looks at what lies behind, the less of it a strip across the image covers.
+  // The wider the aperture seen from behind, the smaller the part blocked by a strip across the image.
   const float aperture_mm =
       std::min(depth_mm / static_cast<float>(plan.beam.f_number), static_cast<float>(plan.beam.aperture_mm));
   const float piece_mm = (piece.walk + 0.5F) * plan.sample_mm;
@@ -124,7 +124,7 @@ float behind(const ScanPlan& plan, const Cover& cover, float diameter_mm, float 
 }
 
 void darken(const ScanPlan& plan, FrameState& frame, int line, const Cover& cover, float diameter_mm) noexcept {
-  constexpr float kInPlane = 0.01F;  // a shaft along the image plane: no part of its shadow fills
+  constexpr float kInPlane = 0.01F;  // a shaft along the image plane: its shadow is not filled in
   const auto samples = static_cast<std::size_t>(plan.samples);
   const auto at_line = static_cast<std::size_t>(line);
   const auto begin = static_cast<int>(cover.piece->walk + diameter_mm / plan.sample_mm) + 1;
@@ -150,7 +150,7 @@ void darken(const ScanPlan& plan, FrameState& frame, int line, const Cover& cove
   }
 }
 
-/// What borders and scatterers behind a needle lose.
+/// Attenuates borders and scatterers behind a needle.
 void cast_shadow(const ScanPlan& plan, FrameState& frame, const NeedleImage& image, const NeedleImage::Part& part,
                  int first, int last) noexcept {
   constexpr float kReach = 3.0F;  // sigmas

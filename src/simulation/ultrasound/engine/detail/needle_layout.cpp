@@ -18,16 +18,16 @@ float amplitude(double level_db, double diameter_mm) noexcept {
   return static_cast<float>(std::pow(10.0, level_db / 20.0) * std::sqrt(diameter_mm / kNeedleReference_mm));
 }
 
-/// A point of a shaft as the beam meets it.
+/// A point of a shaft in the beam.
 struct Spot {
   float line, walk;
   std::size_t sample;
   float zeta;                        ///< From the image plane, in sigmas of the beam.
   float spacing_mm;                  ///< Between scanlines.
-  float lateral_sigma_mm;            ///< Of the point spread as it is applied.
-  float along, sideways, elevation;  ///< Shaft's direction, cosines.
-  float run_mm;                      ///< Length of the shaft that adds up within a resolution cell.
-  float level;                       ///< Share of that which lies across the beam.
+  float lateral_sigma_mm;            ///< Of the applied point spread.
+  float along, sideways, elevation;  ///< Direction cosines of the shaft.
+  float run_mm;                      ///< Length of the shaft within a resolution cell.
+  float level;                       ///< Share of it perpendicular to the beam.
 };
 
 bool find_spot(const ScanPlan& plan, const FrameState& frame, const Vec3f& p_T, const Vec3f& direction_T,
@@ -65,7 +65,7 @@ bool find_spot(const ScanPlan& plan, const FrameState& frame, const Vec3f& p_T, 
   return true;
 }
 
-/// A needle in the making, from its tip backwards.
+/// A needle under construction, from its tip backwards.
 class Layer {
  public:
   Layer(const ScanPlan& plan, const FrameState& frame, const NeedleEcho& needle, NeedleImage& image,
@@ -150,12 +150,12 @@ class Layer {
     piece.strip_lateral = spot.elevation * spot.elevation / across;
     piece.strip_sigma2_mm2 =
         piece.strip_lateral * lateral_mm * lateral_mm + (1.0F - piece.strip_lateral) * elevation_mm * elevation_mm;
-    constexpr float kEndOn = 0.2F;  // nearer to the beam's direction it covers less and less of it
+    constexpr float kEndOn = 0.2F;  // closer to the beam's direction it covers less
     piece.cover = std::min(1.0F, std::sqrt(across) / kEndOn);
     image_.pieces[part_.last_piece++] = piece;
   }
 
-  /// Grains keep their places on the needle, whatever of it is seen.
+  /// Grains have fixed positions on the needle, independent of the visible part.
   void lay_grains(const Vec3f& near_T, const Vec3f& back, float from, float to) noexcept {
     const float first = std::ceil((from_tip_mm_ + from) / kGrain_mm - 0.5F);
     Spot spot;
@@ -165,7 +165,7 @@ class Layer {
       if (!find_spot(plan_, frame_, near_T + back * (from_tip_mm - from_tip_mm_), back, spot)) continue;
       const float facing = std::sqrt(std::max(0.0F, 1.0F - spot.along * spot.along));
       const float level = from_tip_mm < tip_mm_ ? tip_rough_ : rough_ * facing;
-      // Grains add up in disorder: their mean square is what the resolution cell holds.
+      // Grains add up incoherently: their mean square is that of the resolution cell.
       const float share = std::sqrt(kGrain_mm * std::numbers::sqrt2_v<float> / spot.run_mm);
       const std::uint64_t bits = mix64(seed_ + static_cast<std::uint64_t>(n));
       push_grain(spot, level * share * std::exp(-0.5F * spot.zeta * spot.zeta), facing,
@@ -197,7 +197,7 @@ bool is_usable(const NeedleEcho& needle) noexcept {
          });
 }
 
-/// Unit direction from hub to tip at the tip; zero where all points are one.
+/// Unit direction from hub to tip at the tip; zero if all points coincide.
 Vec3 tip_axis(std::span<const Vec3> shaft) noexcept {
   for (std::size_t n = shaft.size() - 1; n-- > 0;) {
     const Vec3 way = shaft.back() - shaft[n];
@@ -206,7 +206,7 @@ Vec3 tip_axis(std::span<const Vec3> shaft) noexcept {
   return Vec3::Zero();
 }
 
-/// The needle that drags most of all: tissue is dragged by one.
+/// The needle with the largest drag: only one needle drags tissue.
 void drag_tissue(FrameState& frame, const NeedleEcho& needle, const Pose& X_TP, const Vec3& axis_P) noexcept {
   constexpr double kMostDrag_mm = 10.0;
   const double shift_mm = std::clamp(needle.displacement_mm, -kMostDrag_mm, kMostDrag_mm);
@@ -234,7 +234,7 @@ NeedleImage make_needle_image(const ScanPlan& plan) {
   const auto corner = [&](double x, double y, float side) {
     return Vec3f(static_cast<float>(x), static_cast<float>(y), side * kBeamEdge * thick);
   };
-  // A dented face moves what lies before it, and refraction sideways.
+  // Indentation moves tissue in front of the face, refraction moves it sideways.
   constexpr double kMargin_mm = 15.0;
   image.low_T = corner(extent.x0 - kMargin_mm, extent.y0 - kMargin_mm, -1.0F);
   image.high_T = corner(extent.x1 + kMargin_mm, extent.y1 + kMargin_mm, 1.0F);

@@ -9,7 +9,7 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-/// The point's place among scanlines and samples of `walk`, and in elevation; line < -1: not heard.
+/// The point's position among scanlines and samples of `walk`, and in elevation; line < -1: no echo.
 struct Heard {
   double line = -10.0, walk = 0.0, zeta = 0.0;
 };
@@ -25,7 +25,7 @@ Heard hear_point(const ScanPlan& plan, const FrameState& frame, const Vec3& p_T)
   const double walk = pressed_depth_mm(at.depth_mm / sample_mm, pressed, static_cast<double>(frame.dent_reach)) - 0.5;
   if (!(walk >= 0.0 && walk <= plan.samples - 1)) return {};
   const auto s = static_cast<std::size_t>(walk);
-  // The scanline that hears it is the one whose bent ray comes by.
+  // The scanline whose bent ray passes through it receives the echo.
   const double spacing_mm = plan.geometry.line_spacing_mm((walk + 0.5) * sample_mm);
   double line = at.line;
   for (int round = 0; round < 3; ++round)
@@ -48,7 +48,7 @@ void add_points(const ScanPlan& plan, FrameState& frame) noexcept {
     const auto nearest = std::clamp(static_cast<int>(std::lround(heard.line)), 0, plan.lines - 1);
     const std::size_t place = static_cast<std::size_t>(nearest) * static_cast<std::size_t>(plan.samples) +
                               static_cast<std::size_t>(heard.walk);
-    // Its own strength and the way's loss, not the backscatter of the tissue.
+    // Its own strength and the losses of the path, without the tissue's backscatter.
     const double amplitude = std::pow(10.0, point.amplitude_db / 20.0) * std::exp(-0.5 * heard.zeta * heard.zeta) *
                              static_cast<double>(frame.way_gain[place]);
     const double shown = heard.walk + static_cast<double>(frame.delay[place]);

@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::ScalableTag<float>;
 using VF = hn::Vec<F>;
 
-/// The lateral point spread of one scanline, of the look straight on and of looks from `kSides` angles to either side.
+/// The lateral point spread of one scanline, for the central angle and `kSides` steering angles to each side.
 template <std::size_t kSides>
 HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, int line, LookRows& rows) {
   const F f;
@@ -30,7 +30,7 @@ HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, 
     const float* weights = plan.lateral.data() + s;
     VF re = hn::Mul(hn::LoadU(f, weights), hn::LoadU(f, at_re));
     VF im = hn::Mul(hn::LoadU(f, weights), hn::LoadU(f, at_im));
-    // Looks from two sides: what both have in common, and what they differ in.
+    // Steering angles to both sides: common part and difference.
     VF both_re[kSides + 1], both_im[kSides + 1], apart_re[kSides + 1], apart_im[kSides + 1];
     for (std::size_t side = 0; side < kSides; ++side) {
       both_re[side] = re;
@@ -72,7 +72,7 @@ HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, 
   }
 }
 
-/// The pulse along one scanline; `from` has silence before and behind its samples.
+/// The pulse along one scanline; `from` is zero-padded at both ends.
 HWY_INLINE void spread_axially(const ScanPlan& plan, const float* from, float* to) {
   const F f;
   const auto lanes = static_cast<int>(hn::Lanes(f));
@@ -138,7 +138,7 @@ HWY_EXPORT(gains);
 
 LookRows::LookRows(const ScanPlan& plan)
     : stride_(static_cast<std::size_t>(plan.stride)), samples_(static_cast<std::size_t>(plan.samples)) {
-  // Looks come in pairs beside the first.
+  // Steering angles come in pairs in addition to the central one.
   looks_ = static_cast<std::size_t>(plan.looks / 2 * 2 + 1);
   values_.assign(2 * looks_ * stride_, 0.0F);
 }

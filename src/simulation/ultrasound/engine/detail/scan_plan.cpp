@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNeperPerDb = std::numbers::ln10 / 20.0;
 constexpr double kGelSpeed_m_per_s = 1540.0;
-constexpr float kSilent = -60.0F;  // neper: nothing
+constexpr float kSilent = -60.0F;  // neper: below any signal
 
 void fill_rows(ScanPlan& plan, const AcousticTable& table) {
   const double mhz = plan.acquisition.frequency_mhz;
@@ -54,12 +54,12 @@ void fill_planes(ScanPlan& plan) {
   for (float& weight : plan.plane_weight) weight /= sum;
 }
 
-/// Scatterers are shared out among two scanlines, which widens the beam by itself.
+/// Scatterers are split between two scanlines, which widens the beam.
 constexpr double kSharingVariance = 1.0 / 6.0;
 
-/// Looks of a compound listen from the sides: the same beam on a tilted wave front. `sigma` of the beam, scanlines.
+/// Compounding angles receive from the sides: the same beam on a tilted wave front. `sigma` of the beam, scanlines.
 void fill_looks(ScanPlan& plan, const std::vector<double>& sigma) {
-  constexpr double kLookTurn = 1.7;  // rad a sigma: with it their speckle's correlation with the middle look's is 0.24
+  constexpr double kLookTurn = 1.7;  // rad per sigma: speckle correlation of 0.24 with the central angle
   constexpr double kMostTurn = 0.45 * std::numbers::pi;
   plan.looks = plan.acquisition.looks;
   plan.main_lobe_reach = *std::max_element(plan.main_lobe_reach_at.begin(), plan.main_lobe_reach_at.end());
@@ -126,8 +126,8 @@ void fill_axial(ScanPlan& plan) {
     plan.axial.push_back(static_cast<float>(std::exp(-0.5 * k * k / (sigma * sigma))));
 }
 
-/// As many scatterers as the smallest resolution cell needs for fully developed speckle, and the factor that makes its
-/// mean independent of the cell's size: n E[a^2] pi^1.5 sx sy sz is the mean intensity of a Gaussian point spread.
+/// Number of scatterers that the smallest resolution cell needs for fully developed speckle, and the factor that makes
+/// its mean independent of the cell's size: n E[a^2] pi^1.5 sx sy sz is the mean intensity of a Gaussian point spread.
 void fill_scatterers(ScanPlan& plan) {
   constexpr double kWantedPerCell = 4.0;
   constexpr double kEffectiveVolume = 15.75;  // (2 pi)^1.5, of sx sy sz: (sum w^2)^2 / sum w^4
@@ -144,7 +144,7 @@ void fill_scatterers(ScanPlan& plan) {
   plan.speckle_scale.resize(n);
   plan.most_rank.resize(n);
   for (std::size_t s = 0; s < n; ++s) {
-    // A small part of a stratified brick is less even than the whole: the fewer, the more of them in a resolution cell.
+    // A small part of a stratified brick is less uniform than the whole: fewer scatterers in larger resolution cells.
     const double share = std::clamp(1.6 * std::pow(smallest_mm3 / volume_mm3[s], 0.7), 0.1, 1.0);
     plan.most_rank[s] = static_cast<float>(share);
     const double mean = share * per_mm3 * kMeanSquareScatterer * std::pow(std::numbers::pi, 1.5) * volume_mm3[s];
@@ -173,7 +173,7 @@ ScanPlan make_scan_plan(const AcousticScene& scene, const Transducer& transducer
     plan.elevation_sigma_mm.push_back(static_cast<float>(sigma_mm));
     plan.inverse_elevation_sigma.push_back(static_cast<float>(1.0 / sigma_mm));
   }
-  // Kernels read whole vectors.
+  // Padding, because kernels read whole vectors.
   plan.elevation_sigma_mm.resize(n + 16, plan.elevation_sigma_mm.back());
   fill_rows(plan, scene.table);
   fill_planes(plan);

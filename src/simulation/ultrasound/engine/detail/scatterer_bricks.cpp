@@ -23,7 +23,8 @@ std::vector<Brick> make_brick_library() {
   std::vector<Brick> library(kBricks);
   for (Brick& brick : library) {
     for (std::size_t s = 0; s < kBrickScatterers; ++s) {
-      // The first four fall into a tetrahedron of octants, the first eight into all: any first part of a brick is even.
+      // The first four are in a tetrahedron of octants, the first eight in all octants: any first part of a brick is
+      // uniform.
       constexpr std::size_t kOctants[8] = {0, 3, 5, 6, 7, 4, 2, 1};
       const std::size_t octant = kOctants[s & 7U], quarter = s >> 3;
       const std::size_t i = 2 * (octant & 1U) + (quarter & 1U);

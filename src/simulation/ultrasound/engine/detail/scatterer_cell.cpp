@@ -10,7 +10,7 @@ std::size_t sample_near(const ScanPlan& plan, float s) noexcept {
   return static_cast<std::size_t>(std::clamp(s, 0.0F, static_cast<float>(plan.samples - 1)));
 }
 
-/// Through the values at both ends and the middle between them.
+/// Through the values at both ends and the middle.
 void fit_parabola(const std::vector<float>& values, std::size_t first, std::size_t last,
                   float (&parabola)[3]) noexcept {
   const std::size_t middle = (first + last) / 2;
@@ -104,7 +104,7 @@ CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) 
 
 namespace {
 
-/// Narrows first..last to the steps n for which start + step * n <= most.
+/// Narrows first..last to the steps n with start + step * n <= most.
 void stay_below(float start, float step, float most, int& first, int& last) noexcept {
   constexpr float kLevel = 1e-4F;
   if (std::abs(step) < kLevel) {

@@ -15,15 +15,15 @@
 #define TROCAR_ULTRASOUND_ECHO_TYPES
 namespace trocar::ultrasound::detail {
 
-/// Scatterers that are near a cell, in T, until there are enough to hear them together.
+/// Scatterers near a cell, in T, collected for batch processing.
 struct alignas(64) Candidates {
   static constexpr int kMost = 1024;
   float x[kMost + 64], y[kMost + 64], z[kMost + 64], rank[kMost + 64];
   int count = 0;
 };
 
-/// Echoes of some candidates: where each goes in the task's field, and what it adds there to the real and imaginary
-/// part of two neighbouring scanlines.
+/// Echoes of some candidates: position in the task's field, and contributions to the real and imaginary part of two
+/// adjacent scanlines.
 struct alignas(64) Echoes {
   std::int32_t place[Candidates::kMost + 64];
   float parts[4 * (Candidates::kMost + 64)];
@@ -48,7 +48,7 @@ HWY_INLINE VF axis_of(const PlacedBrick& brick, int a, VF x, VF y, VF z) {
   return hn::MulAdd(hn::Set(f, brick.x[a]), x, hn::MulAdd(hn::Set(f, brick.y[a]), y, far));
 }
 
-/// arctan for |t| <= 1.2; Taylor-like minimax, error below 1e-4 rad where fans are.
+/// arctan for |t| <= 1.2; minimax approximation, error below 1e-4 rad for fans.
 HWY_INLINE VF arctan(VF t) {
   const F f;
   const VF t2 = hn::Mul(t, t);
@@ -64,7 +64,7 @@ HWY_INLINE VF arctan(VF t) {
 /// cos and sin of a number of cycles, to 3e-4.
 HWY_INLINE void turn(VF cycles, VF& cosine, VF& sine) {
   const F f;
-  // Half the angle lies in -pi/2..pi/2, where short series do; then the double angle.
+  // Half the angle is in -pi/2..pi/2, where short series suffice; then the double angle.
   const VF half = hn::Mul(hn::Set(f, 3.14159265F), hn::Sub(cycles, hn::Round(cycles)));
   const VF h2 = hn::Mul(half, half);
   VF s = hn::Set(f, -1.8363654e-4F);
@@ -92,7 +92,7 @@ HWY_INLINE void drag_along(const Drag& drag, VF& x, VF& y, VF& z) {
   z = hn::MulAdd(falls, hn::Set(f, drag.shift_T.z()), z);
 }
 
-/// Where along the scanline that resting tissue lies now, samples: pressed_depth_mm of probe_contact.h.
+/// Position of resting tissue along the scanline now, in samples: pressed_depth_mm of probe_contact.h.
 HWY_INLINE VF walk_of_rest(const FrameState& frame, VF rest, VF pressed) {
   const F f;
   const VF reach = hn::Set(f, frame.dent_reach);
@@ -105,7 +105,7 @@ HWY_INLINE VF walk_of_rest(const FrameState& frame, VF rest, VF pressed) {
   return hn::IfThenElse(hn::Lt(rest, reach), yielding, rest);
 }
 
-/// Appends those scatterers of a brick that the cell's bounds let pass.
+/// Appends the scatterers of a brick that are within the cell's bounds.
 void take_near(const ScanPlan& plan, const Drag* drag, const Cell& cell, const PlacedBrick& placed, Candidates& near) {
   const F f;
   const VF radius = hn::Set(f, plan.geometry.is_fan ? static_cast<float>(plan.geometry.radius_mm) : 0.0F);
@@ -143,13 +143,13 @@ HWY_INLINE VF at_depth(const float (&parabola)[3], VF sample) {
                     hn::Set(f, parabola[0]));
 }
 
-/// Whole numbers of [0, most] nearest to `values`.
+/// Integers of [0, most] nearest to `values`.
 HWY_INLINE VI nearest_index(VF values, VF most) {
   const F f;
   return hn::NearestInt(hn::Min(hn::Max(values, hn::Zero(f)), most));
 }
 
-/// The scanline, fractional, whose bent ray comes by a place on the straight one `line`, `lines_per_mm` apart.
+/// The fractional scanline whose bent ray passes through a position on the straight `line`, `lines_per_mm` apart.
 HWY_INLINE VF bent_line(const ScanPlan& plan, const FrameState& frame, VF line, VI sample, VF lines_per_mm) {
   const F f;
   const I d;
@@ -164,7 +164,7 @@ HWY_INLINE VF bent_line(const ScanPlan& plan, const FrameState& frame, VF line, 
   return bent;
 }
 
-/// What the cell's scanlines hear of the candidates; returns how many echoes.
+/// Echoes of the candidates on the cell's scanlines; returns their number.
 int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const Candidates& near, Echoes& echoes) {
   const F f;
   const I d;
@@ -190,7 +190,7 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
       line = hn::MulAdd(x, per_line, middle);
       rest = hn::Mul(y, per_mm);
     }
-    // Depths count from the face, samples from half a step before it.
+    // Depths start at the face, samples half a step before it.
     VF walk = hn::Sub(rest, half);
     auto heard = hn::FirstN(f, static_cast<std::size_t>(near.count - s));
     heard =
@@ -216,7 +216,7 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     heard = hn::And(heard, hn::Lt(rank, most_rank));
     if (hn::AllFalse(f, heard)) continue;
 
-    // Of the task's own scanlines: the neighbours' gains may not be there yet.
+    // Of the task's own scanlines: the gains of adjacent tasks may not be computed yet.
     const VI own_line = hn::NearestInt(hn::Min(hn::Max(line, hn::Set(f, static_cast<float>(cell.first_line))),
                                                hn::Set(f, static_cast<float>(cell.last_line - 1))));
     const VF plane =
@@ -227,7 +227,7 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     const VF shown = hn::Add(walk, hn::GatherIndex(f, frame.delay.data(), in_line));
     const VI packed =
         hn::And(hn::GatherOffset(d, reinterpret_cast<const std::int32_t*>(frame.gain.data()), hn::Add(place, place)),
-                hn::Set(d, 0xffff));  // two bytes each: the upper half is the next one's
+                hn::Set(d, 0xffff));  // two bytes each: the upper half belongs to the next one
     const VF log_gain = hn::MulAdd(hn::ConvertTo(f, hn::ShiftRight<kShareBits>(packed)), hn::Set(f, kLogGainStep),
                                    hn::Set(f, kLeastLogGain));
     const VI share_class = hn::And(packed, hn::Set(d, (1 << kShareBits) - 1));
@@ -275,7 +275,7 @@ void splat(const Echoes& echoes, int n, float* field) noexcept {
   }
 }
 
-/// Hears what has been gathered and adds it to the field.
+/// Computes the echoes of the collected scatterers and adds them to the field.
 void flush(const ScanPlan& plan, const FrameState& frame, const Cell& cell, Candidates& near, Echoes& echoes,
            float* field) noexcept {
   const int n = HWY_DYNAMIC_DISPATCH(hear)(plan, frame, cell, near, echoes);
@@ -285,7 +285,7 @@ void flush(const ScanPlan& plan, const FrameState& frame, const Cell& cell, Cand
 
 /// From the field to the scanlines [first, last).
 void add_field(const ScanPlan& plan, const ScattererField& field, FrameState& frame, int first, int last) noexcept {
-  constexpr int kRows = 16;  // which stay in the nearest cache meanwhile
+  constexpr int kRows = 16;  // they stay in the first-level cache
   for (int begin = -kBeforeFace; begin < plan.samples; begin += kRows) {
     const int end = std::min(begin + kRows, plan.samples);
     for (int line = first; line < last; ++line) {
@@ -311,7 +311,7 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
   const Eigen::Matrix3f side_T = (X_TP.R() * static_cast<double>(plan.brick_mm)).cast<float>();
   const bool has_drag = frame.drag.reach_mm > 0.0F;
   const float radius_mm = 0.87F * plan.brick_mm + (has_drag ? frame.drag.shift_T.norm() : 0.0F);
-  constexpr int kSegments = 14;  // to a depth: what varies along one is near enough to a parabola
+  constexpr int kSegments = 14;  // per depth: the variation along one is nearly a parabola
   const float segment = static_cast<float>(plan.samples) / kSegments;
   const auto take = HWY_DYNAMIC_DISPATCH(take_near);
   Candidates near;
