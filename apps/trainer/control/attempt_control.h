@@ -15,7 +15,7 @@ namespace trocar::trainer {
 
 class WorkPage;
 
-/// One attempt in the window: gestures move the hands, servers send states, desk and panel display them.
+/// One attempt in the window: gestures move the hands, servers send states, workspace and panel display them.
 class AttemptControl : public QObject {
   Q_OBJECT
 

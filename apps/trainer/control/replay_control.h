@@ -14,7 +14,7 @@ namespace trocar::trainer {
 
 class WorkPage;
 
-/// A recorded attempt on the desk: the time line moves the needle in all views, score and hints stand beside it.
+/// A recorded attempt in the workspace: the time line moves the needle in all views, score and hints stand beside it.
 class ReplayControl : public QObject {
   Q_OBJECT
 

@@ -10,13 +10,13 @@
 #include "panels/puncture_panel.h"
 #include "parameters/parameter_panel.h"
 #include "views/plots/time_line.h"
-#include "workspace/desk.h"
+#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
 
-constexpr int kSideColumns = 34;    ///< Average characters.
-constexpr int kLeastDesk_px = 640;  ///< Two columns of views.
+constexpr int kSideColumns = 34;         ///< Average characters.
+constexpr int kLeastWorkspace_px = 640;  ///< Two columns of views.
 
 }  // namespace
 
@@ -31,7 +31,7 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
   side_ = new QStackedWidget;
   side_->addWidget(puncture_);
   side_->addWidget(feedback_);
-  desk_ = new Desk;
+  workspace_ = new Workspace;
   time_line_ = new TimeLine;
   time_line_->setObjectName(QStringLiteral("time-line"));
   time_line_->hide();
@@ -39,12 +39,12 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
   parameters_->hide();
   auto* column = new QVBoxLayout;
   column->setSpacing(0);
-  column->addWidget(desk_, 1);
+  column->addWidget(workspace_, 1);
   column->addWidget(time_line_);
   row->addWidget(side_);
   row->addLayout(column, 1);
   row->addWidget(parameters_);
-  connect(desk_, &Desk::layout_chosen, this, &WorkPage::fit);
+  connect(workspace_, &Workspace::layout_chosen, this, &WorkPage::fit);
   connect(puncture_, &PuncturePanel::asked, this, [this] {
     if (side_->isHidden()) toggle_parameters();  // its question must be visible
   });
@@ -55,8 +55,9 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
 void WorkPage::fit() {
   const int side_px = fontMetrics().averageCharWidth() * kSideColumns;
   if (side_->maximumWidth() != side_px) side_->setFixedWidth(side_px);
-  const bool has_room = !are_parameters_shown() || width() >= side_px + std::max(kLeastDesk_px, desk_->needed_width()) +
-                                                                  parameters_->sizeHint().width();
+  const bool has_room =
+      !are_parameters_shown() ||
+      width() >= side_px + std::max(kLeastWorkspace_px, workspace_->needed_width()) + parameters_->sizeHint().width();
   if (side_->isHidden() == has_room) side_->setVisible(has_room);
 }
 

@@ -6,7 +6,7 @@ class QStackedWidget;
 
 namespace trocar::trainer {
 
-class Desk;
+class Workspace;
 class FeedbackPanel;
 class ParameterPanel;
 class PuncturePanel;
@@ -21,7 +21,7 @@ class WorkPage : public QWidget {
  public:
   explicit WorkPage(QWidget* parent = nullptr);
 
-  Desk& desk() noexcept { return *desk_; }
+  Workspace& workspace() noexcept { return *workspace_; }
   PuncturePanel& puncture() noexcept { return *puncture_; }
   FeedbackPanel& feedback() noexcept { return *feedback_; }
   ParameterPanel& parameters() noexcept { return *parameters_; }
@@ -45,7 +45,7 @@ class WorkPage : public QWidget {
  private:
   void fit();
 
-  Desk* desk_ = nullptr;
+  Workspace* workspace_ = nullptr;
   QStackedWidget* side_ = nullptr;
   PuncturePanel* puncture_ = nullptr;
   FeedbackPanel* feedback_ = nullptr;

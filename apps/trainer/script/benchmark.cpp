@@ -1,6 +1,6 @@
 #include "script/benchmark.h"
 
-#include "workspace/desk.h"
+#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 
@@ -15,7 +15,7 @@ Result<std::vector<ScriptStep>> benchmark_steps() {
       "key H\n"
       "wait 2\n");
   int number = 0;
-  for (const QString& layout : Desk::layouts()) {
+  for (const QString& layout : Workspace::layouts()) {
     ++number;
     // In and out again, so that each layout displays a tool that moves through skin and liver.
     text += QStringLiteral(

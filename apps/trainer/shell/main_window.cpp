@@ -27,7 +27,7 @@
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "ui_kit/wheel_guard.h"
-#include "workspace/desk.h"
+#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
@@ -102,7 +102,7 @@ QWidget* MainWindow::make_top_bar() {
   row->addStretch();
   auto* views = make_tool_button("views-menu", tr("Views"), tr("Layouts and visible views"));
   views_menu_ = new QMenu(views);
-  work_->desk().fill_menu(*views_menu_);
+  work_->workspace().fill_menu(*views_menu_);
   fill_text_menu(*views_menu_->addMenu(tr("Text size")));
   add_sound(*views_menu_);
   views_menu_->addSeparator();
@@ -199,7 +199,7 @@ QVariantMap MainWindow::facts() const {
   facts[QStringLiteral("page")] = page_;
   facts[QStringLiteral("banner")] = banner_->isVisible() ? banner_->text() : QString();
   facts[QStringLiteral("is_tissues_open")] = work_->are_parameters_shown();
-  facts[QStringLiteral("layout")] = work_->desk().layout_name();
+  facts[QStringLiteral("layout")] = work_->workspace().layout_name();
   facts[QStringLiteral("mirror")] = static_cast<int>(mirror_->settings().axis);
   facts[QStringLiteral("columns")] = width();
   facts[QStringLiteral("rows")] = height();
@@ -209,7 +209,7 @@ QVariantMap MainWindow::facts() const {
 void MainWindow::closeEvent(QCloseEvent* event) {
   if (!flow_->may_close()) return event->ignore();
   QSettings().setValue(QStringLiteral("window/geometry"), saveGeometry());
-  work_->desk().save_layout();
+  work_->workspace().save_layout();
   flow_->close();
   QMainWindow::closeEvent(event);
 }

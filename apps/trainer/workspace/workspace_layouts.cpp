@@ -1,4 +1,4 @@
-// Layouts of the desk: selection, storage and adaptation to the window.
+// Layouts of the workspace: selection, storage and adaptation to the window.
 #include <QAction>
 #include <QDockWidget>
 #include <QEvent>
@@ -8,13 +8,14 @@
 #include <QTimer>
 #include <algorithm>
 
-#include "workspace/desk.h"
 #include "workspace/layouts.h"
+#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
 
-/// Stored layouts are valid for a fixed number of views: with another number they are ignored.
+/// Stored layouts are valid for a fixed number of views: with another number they are ignored. The group is named
+/// "desk" in the settings files of users.
 QString settings_key(const QString& layout) {
   return QStringLiteral("desk/") + layout;
 }
@@ -24,7 +25,7 @@ QString shares_key(const QString& layout) {
 
 }  // namespace
 
-const std::vector<QString>& Desk::layouts() {
+const std::vector<QString>& Workspace::layouts() {
   static const std::vector<QString> names = [] {
     std::vector<QString> all;
     for (const Layout& layout : built_in_layouts()) all.push_back(layout.name);
@@ -33,7 +34,7 @@ const std::vector<QString>& Desk::layouts() {
   return names;
 }
 
-void Desk::choose_layout(const QString& name) {
+void Workspace::choose_layout(const QString& name) {
   if (std::find(layouts().begin(), layouts().end(), name) == layouts().end()) return choose_layout(layouts().front());
   if (!layout_.isEmpty()) save_layout();
   layout_ = name;
@@ -55,7 +56,7 @@ void Desk::choose_layout(const QString& name) {
   Q_EMIT layout_chosen();
 }
 
-void Desk::save_layout() const {
+void Workspace::save_layout() const {
   QSettings settings;
   settings.setValue(settings_key(layout_), saveState(static_cast<int>(docks_.size())));
   QVariantMap shares;
@@ -63,7 +64,7 @@ void Desk::save_layout() const {
   settings.setValue(shares_key(layout_), shares);
 }
 
-void Desk::reset_layout() {
+void Workspace::reset_layout() {
   QSettings().remove(settings_key(layout_));
   QSettings().remove(shares_key(layout_));
   is_arranging_ = true;
@@ -73,7 +74,7 @@ void Desk::reset_layout() {
 }
 
 /// Stores the shares after a user's change (drag, show, hide); a change of the window's size keeps them.
-void Desk::note_shares() {
+void Workspace::note_shares() {
   if (!isVisible() || is_arranging_) return;
   for (const auto& [view, dock] : docks_) {
     if (dock->isHidden() || dock->isFloating() || dock->visibleRegion().isEmpty()) continue;
@@ -82,7 +83,7 @@ void Desk::note_shares() {
 }
 
 /// Always from the same shares, so that sizes do not drift.
-void Desk::fit_to_shares() {
+void Workspace::fit_to_shares() {
   QList<QDockWidget*> docks;
   QList<int> widths, heights;
   for (const auto& [view, dock] : docks_) {
@@ -96,22 +97,22 @@ void Desk::fit_to_shares() {
   resizeDocks(docks, heights, Qt::Vertical);
 }
 
-void Desk::resizeEvent(QResizeEvent* event) {
+void Workspace::resizeEvent(QResizeEvent* event) {
   QMainWindow::resizeEvent(event);
   fit_to_shares();
 }
 
-bool Desk::event(QEvent* event) {
+bool Workspace::event(QEvent* event) {
   const bool is_taken = QMainWindow::event(event);
   if (event->type() == QEvent::MouseButtonRelease) note_shares();  // of a border between views
   return is_taken;
 }
 
-int Desk::needed_width() const {
+int Workspace::needed_width() const {
   return layout()->minimumSize().width();
 }
 
-void Desk::arrange(const QString& name) {
+void Workspace::arrange(const QString& name) {
   const auto layout = std::find_if(built_in_layouts().begin(), built_in_layouts().end(),
                                    [&](const Layout& l) { return l.name == name; });
   // Puts all hidden views into a column on the right: there the menu shows a view that is not in the layout, and the
@@ -139,7 +140,7 @@ void Desk::arrange(const QString& name) {
     arrange_rows(column, static_cast<double>(column.share) / all_columns);
 }
 
-void Desk::arrange_rows(const LayoutColumn& column, double width_share) {
+void Workspace::arrange_rows(const LayoutColumn& column, double width_share) {
   QList<QDockWidget*> rows;
   int all_cells = 0;
   for (const LayoutCell& cell : column.cells) all_cells += cell.share;
@@ -160,7 +161,7 @@ void Desk::arrange_rows(const LayoutColumn& column, double width_share) {
   }
 }
 
-void Desk::fill_menu(QMenu& menu) {
+void Workspace::fill_menu(QMenu& menu) {
   int number = 0;
   for (const QString& name : layouts()) {
     QAction* action = menu.addAction(tr("Layout: %1").arg(name));
@@ -168,13 +169,13 @@ void Desk::fill_menu(QMenu& menu) {
     connect(action, &QAction::triggered, this, [this, name] { choose_layout(name); });
   }
   QAction* reset = menu.addAction(tr("Reset layout"));
-  connect(reset, &QAction::triggered, this, &Desk::reset_layout);
+  connect(reset, &QAction::triggered, this, &Workspace::reset_layout);
   menu.addSeparator();
   for (const auto& [name, dock] : docks_) add_to_menu(menu, name, *dock);
 }
 
 /// Qt's own action hides a view behind the tab of another.
-void Desk::add_to_menu(QMenu& menu, const QString& name, QDockWidget& dock) {
+void Workspace::add_to_menu(QMenu& menu, const QString& name, QDockWidget& dock) {
   QAction* action = menu.addAction(dock.windowTitle());
   action->setObjectName(QStringLiteral("show-") + name);
   action->setCheckable(true);
@@ -184,7 +185,7 @@ void Desk::add_to_menu(QMenu& menu, const QString& name, QDockWidget& dock) {
     const bool was_seen = is_seen();
     dock.setVisible(!was_seen);
     if (!was_seen) dock.raise();
-    QTimer::singleShot(0, this, &Desk::note_shares);
+    QTimer::singleShot(0, this, &Workspace::note_shares);
   });
 }
 

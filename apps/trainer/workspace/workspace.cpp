@@ -1,4 +1,4 @@
-#include "workspace/desk.h"
+#include "workspace/workspace.h"
 
 #include <QAction>
 #include <QDockWidget>
@@ -62,9 +62,9 @@ QWidget* make_title(QDockWidget& dock, QWidget& line) {
     row->addWidget(button);
     return button;
   };
-  QObject::connect(add(QStringLiteral("❐"), Desk::tr("Undock the view, or dock it again")), &QToolButton::clicked,
+  QObject::connect(add(QStringLiteral("❐"), Workspace::tr("Undock the view, or dock it again")), &QToolButton::clicked,
                    &dock, [&dock] { dock.setFloating(!dock.isFloating()); });
-  QObject::connect(add(QStringLiteral("✕"), Desk::tr("Hide the view; show it again with the menu Views")),
+  QObject::connect(add(QStringLiteral("✕"), Workspace::tr("Hide the view; show it again with the menu Views")),
                    &QToolButton::clicked, &dock, &QDockWidget::hide);
   return bar;
 }
@@ -106,8 +106,8 @@ ToolsShown seen_from_outside(ToolsShown tools) {
 
 }  // namespace
 
-Desk::Desk(QWidget* parent) : QMainWindow(parent) {
-  setObjectName(QStringLiteral("desk"));
+Workspace::Workspace(QWidget* parent) : QMainWindow(parent) {
+  setObjectName(QStringLiteral("workspace"));
   setDockNestingEnabled(true);
   setDockOptions(QMainWindow::AllowNestedDocks | QMainWindow::AllowTabbedDocks);
   view_3d_ = new PatientView;
@@ -142,7 +142,7 @@ Desk::Desk(QWidget* parent) : QMainWindow(parent) {
   choose_layout(QSettings().value(QStringLiteral("desk/layout"), built_in_layouts().front().name).toString());
 }
 
-void Desk::add_view(const char* name, const QString& title, QWidget& view, QWidget* strip) {
+void Workspace::add_view(const char* name, const QString& title, QWidget& view, QWidget* strip) {
   auto* dock = new QDockWidget(title, this);
   dock->setObjectName(QStringLiteral("dock-") + QString::fromLatin1(name));
   if (strip == nullptr) {
@@ -155,13 +155,13 @@ void Desk::add_view(const char* name, const QString& title, QWidget& view, QWidg
   addDockWidget(Qt::LeftDockWidgetArea, dock);
   dock->hide();  // the layout decides
   docks_[QString::fromLatin1(name)] = dock;
-  const auto note = [this] { QTimer::singleShot(0, this, &Desk::note_shares); };
+  const auto note = [this] { QTimer::singleShot(0, this, &Workspace::note_shares); };
   connect(dock, &QDockWidget::dockLocationChanged, this, note);
   connect(dock, &QDockWidget::topLevelChanged, this, note);
 }
 
 /// In the title of the ultrasound view, where it does not cover the image.
-void Desk::add_knobs_button() {
+void Workspace::add_knobs_button() {
   auto* knobs = make_tool_button("ultrasound-knobs", tr("Knobs"), tr("Image controls next to the ultrasound image"),
                                  QStringLiteral("K"));
   knobs->setCheckable(true);
@@ -172,7 +172,7 @@ void Desk::add_knobs_button() {
   connect(knobs, &QToolButton::toggled, ultrasound_controls_, &QWidget::setVisible);
 }
 
-void Desk::connect_views() {
+void Workspace::connect_views() {
   for (SliceView* slice : slices_) {
     connect(slice, &SliceView::focus_moved, this, [this](const Vec3& p_P) {
       for (SliceView* other : slices_) other->set_focus(p_P);
@@ -183,20 +183,20 @@ void Desk::connect_views() {
   }
 }
 
-void Desk::show_in_space(PatientView& view) {
+void Workspace::show_in_space(PatientView& view) {
   view.show_patient(open_->the_case.patient, open_->meshes, open_->the_case.plan.line_P.b);
   const tasks::EntryZone zone = entry_zone_of(open_->the_case);
   view.set_path(open_->the_case.plan.line_P, zone.radius_mm);
   view.scene().set_entry_centre(zone.centre_P);
 }
 
-void Desk::show_case(std::shared_ptr<const cases::OpenCase> open) {
+void Workspace::show_case(std::shared_ptr<const cases::OpenCase> open) {
   begin_case(std::move(open));
   while (show_part()) {
   }
 }
 
-void Desk::begin_case(std::shared_ptr<const cases::OpenCase> open) {
+void Workspace::begin_case(std::shared_ptr<const cases::OpenCase> open) {
   open_ = std::move(open);
   has_side_patient_ = false;
   picture_number_ = 0;
@@ -205,7 +205,7 @@ void Desk::begin_case(std::shared_ptr<const cases::OpenCase> open) {
   parts_shown_ = 0;
 }
 
-bool Desk::show_part() {
+bool Workspace::show_part() {
   switch (parts_shown_++) {
     case 0:
       show_in_space(*view_3d_);
@@ -225,7 +225,7 @@ bool Desk::show_part() {
   }
 }
 
-void Desk::show_in_slices() {
+void Workspace::show_in_slices() {
   const cases::Case& the_case = open_->the_case;
   const slices::Box body_P = slices::body_box(*the_case.patient);
   for (SliceView* slice : slices_) {
@@ -236,7 +236,7 @@ void Desk::show_in_slices() {
   }
 }
 
-void Desk::show_help(Difficulty difficulty) {
+void Workspace::show_help(Difficulty difficulty) {
   const scene::Guidance guidance = guidance_of(difficulty);
   for (PatientView* view : {view_3d_, side_}) {
     view->set_guidance(guidance);
@@ -248,7 +248,7 @@ void Desk::show_help(Difficulty difficulty) {
   structures_->refresh();
 }
 
-void Desk::set_tip_hidden(bool is_hidden) {
+void Workspace::set_tip_hidden(bool is_hidden) {
   is_tip_hidden_ = is_hidden;
   tools_.reset();
   forces_->set_depth_shown(!is_hidden);
@@ -259,7 +259,7 @@ void Desk::set_tip_hidden(bool is_hidden) {
   }
 }
 
-void Desk::show_tools(const ToolsShown& tools) {
+void Workspace::show_tools(const ToolsShown& tools) {
   for (PatientView* view : {view_3d_, side_}) view->set_tools_moving(tools.are_moving);
   are_moving_ = tools.are_moving;
   if (tools_ && are_same(tools, *tools_)) return;
@@ -280,7 +280,7 @@ void Desk::show_tools(const ToolsShown& tools) {
   if (tools.X_PT) ultrasound_->set_transducer_pose(*tools.X_PT);
 }
 
-void Desk::draw(double now_s) {
+void Workspace::draw(double now_s) {
   // Computing its surfaces takes seconds: only if they are visible.
   if (!has_side_patient_ && side_->isVisible()) {
     show_in_space(*side_);
@@ -295,7 +295,7 @@ void Desk::draw(double now_s) {
 }
 
 /// Two views share the time of one; while tools move, the side view is drawn in every second frame.
-void Desk::draw_in_space() {
+void Workspace::draw_in_space() {
   const bool has_both = view_3d_->isVisible() && side_->isVisible();
   for (PatientView* view : {view_3d_, side_}) {
     view->set_frame_target(has_both ? kFrameOfTwo_ms : kFrameOfOne_ms);
@@ -304,7 +304,7 @@ void Desk::draw_in_space() {
 }
 
 /// Slices follow the tools; while tools move, each slice is updated in every second frame to save processor time.
-void Desk::follow_with_slices() {
+void Workspace::follow_with_slices() {
   ++frame_;
   for (std::size_t s = 0; s < slices_.size(); ++s) {
     const unsigned bit = 1U << s;
@@ -318,7 +318,7 @@ void Desk::follow_with_slices() {
 
 /// The newest ultrasound image as a plane in the 3D views. With the tools at rest, one full-detail image stays: a
 /// change of its noise does not justify another frame of the patient.
-void Desk::show_picture_in_space() {
+void Workspace::show_picture_in_space() {
   const auto picture = ultrasound_->picture();
   if (!picture || picture->number == picture_number_ || (has_whole_picture_ && !are_moving_)) return;
   picture_number_ = picture->number;

@@ -1,4 +1,4 @@
-#include "workspace/desk.h"
+#include "workspace/workspace.h"
 
 #include <gtest/gtest.h>
 
@@ -23,19 +23,19 @@
 namespace trocar::trainer {
 namespace {
 
-TEST(Desk, ShowsOfThePlanWhatTheHelpAllows) {
-  Desk desk;
-  desk.resize(1000, 700);
-  desk.show();
-  desk.show_case(open_abdomen());
+TEST(Workspace, ShowsOfThePlanWhatTheHelpAllows) {
+  Workspace workspace;
+  workspace.resize(1000, 700);
+  workspace.show();
+  workspace.show_case(open_abdomen());
   QCoreApplication::processEvents();
-  auto* axial = desk.findChild<SliceView*>(QStringLiteral("slice-axial"));
+  auto* axial = workspace.findChild<SliceView*>(QStringLiteral("slice-axial"));
   ASSERT_NE(axial, nullptr);
   axial->resize(480, 400);
   const auto share_of = [&](const QColor& color) { return share_near(axial->grab().toImage(), color, 40); };
   const volume::Rgb& green = open_abdomen()->the_case.patient->label_table.find("liver_lesion_1")->color;
   const QColor lesion(green[0], green[1], green[2]);
-  auto* lesion_eye = desk.findChild<QToolButton*>(QStringLiteral("structure-eye-liver-lesion-1"));
+  auto* lesion_eye = workspace.findChild<QToolButton*>(QStringLiteral("structure-eye-liver-lesion-1"));
   ASSERT_NE(lesion_eye, nullptr);
   struct Expected {
     Difficulty difficulty;
@@ -46,11 +46,11 @@ TEST(Desk, ShowsOfThePlanWhatTheHelpAllows) {
   for (const Expected& e : {Expected{Difficulty::kGuided, scene::Guidance::kPath, true, true, true},
                             Expected{Difficulty::kAssisted, scene::Guidance::kTarget, true, true, false},
                             Expected{Difficulty::kExam, scene::Guidance::kNone, false, false, false}}) {
-    desk.show_help(e.difficulty);
-    EXPECT_EQ(desk.view_3d().scene().guidance(), e.in_space);
-    EXPECT_EQ(desk.ultrasound().is_guide_offered(), e.is_guide_offered);
-    EXPECT_EQ(desk.ultrasound().is_guide_visible(), e.is_guide_shown);
-    EXPECT_EQ(desk.findChild<QToolButton*>(QStringLiteral("show-guidance"))->isEnabled(),
+    workspace.show_help(e.difficulty);
+    EXPECT_EQ(workspace.view_3d().scene().guidance(), e.in_space);
+    EXPECT_EQ(workspace.ultrasound().is_guide_offered(), e.is_guide_offered);
+    EXPECT_EQ(workspace.ultrasound().is_guide_visible(), e.is_guide_shown);
+    EXPECT_EQ(workspace.findChild<QToolButton*>(QStringLiteral("show-guidance"))->isEnabled(),
               e.in_space != scene::Guidance::kNone);
     EXPECT_EQ(share_of(theme().target) > 0.0002, e.has_target) << title_of(e.difficulty);
     EXPECT_EQ(share_near(axial->grab().toImage(), lesion, 12) > 0.0001, e.has_target) << title_of(e.difficulty);
@@ -64,9 +64,9 @@ TEST(Desk, ShowsOfThePlanWhatTheHelpAllows) {
 using Sizes = std::map<QString, QSize>;
 
 /// Of the views that are shown.
-Sizes sizes_of(const Desk& desk) {
+Sizes sizes_of(const Workspace& workspace) {
   Sizes sizes;
-  for (const QDockWidget* dock : desk.findChildren<QDockWidget*>())
+  for (const QDockWidget* dock : workspace.findChildren<QDockWidget*>())
     if (dock->isVisible()) sizes[dock->objectName()] = dock->size();
   return sizes;
 }
@@ -85,59 +85,59 @@ void expect_same(const Sizes& now, const Sizes& before, const std::string& after
   }
 }
 
-struct DeskLayoutTest : testing::Test {
-  DeskLayoutTest() {
+struct WorkspaceLayoutTest : testing::Test {
+  WorkspaceLayoutTest() {
     QSettings().clear();
-    desk.resize(1000, 700);
-    desk.show();
-    desk.choose_layout(QStringLiteral("Puncture"));
+    workspace.resize(1000, 700);
+    workspace.show();
+    workspace.choose_layout(QStringLiteral("Puncture"));
     settle();
   }
-  Desk desk;
+  Workspace workspace;
 };
 
-TEST_F(DeskLayoutTest, ViewsKeepTheirSizesOverRounds) {
-  const Sizes before = sizes_of(desk);
+TEST_F(WorkspaceLayoutTest, ViewsKeepTheirSizesOverRounds) {
+  const Sizes before = sizes_of(workspace);
   for (int round = 0; round < 5; ++round) {
     // As a time line below and a panel beside come and go, and pages change.
-    desk.resize(760, 640);
+    workspace.resize(760, 640);
     settle();
-    desk.hide();
-    desk.resize(1000, 700);
-    desk.show();
+    workspace.hide();
+    workspace.resize(1000, 700);
+    workspace.show();
     settle();
-    expect_same(sizes_of(desk), before, "round " + std::to_string(round));
+    expect_same(sizes_of(workspace), before, "round " + std::to_string(round));
   }
 }
 
-TEST_F(DeskLayoutTest, LayoutsComeBackAsTheyWereLeft) {
-  const Sizes before = sizes_of(desk);
-  for (const QString& layout : Desk::layouts()) {
-    desk.choose_layout(layout);
+TEST_F(WorkspaceLayoutTest, LayoutsComeBackAsTheyWereLeft) {
+  const Sizes before = sizes_of(workspace);
+  for (const QString& layout : Workspace::layouts()) {
+    workspace.choose_layout(layout);
     settle();
   }
-  desk.choose_layout(QStringLiteral("Puncture"));
+  workspace.choose_layout(QStringLiteral("Puncture"));
   settle();
-  expect_same(sizes_of(desk), before, "all layouts");
+  expect_same(sizes_of(workspace), before, "all layouts");
 }
 
-TEST_F(DeskLayoutTest, EveryLayoutFitsBesideTheTissuesOfASmallScreen) {
-  for (const QString& layout : Desk::layouts()) {
-    desk.choose_layout(layout);
+TEST_F(WorkspaceLayoutTest, EveryLayoutFitsBesideTheTissuesOfASmallScreen) {
+  for (const QString& layout : Workspace::layouts()) {
+    workspace.choose_layout(layout);
     settle();
-    EXPECT_LE(desk.needed_width(), 680) << layout.toStdString();
-    EXPECT_LE(desk.minimumSizeHint().height(), 560) << layout.toStdString();
+    EXPECT_LE(workspace.needed_width(), 680) << layout.toStdString();
+    EXPECT_LE(workspace.minimumSizeHint().height(), 560) << layout.toStdString();
   }
 }
 
-TEST_F(DeskLayoutTest, TheMenuBringsAViewForwardFromBehindAnothersTab) {
+TEST_F(WorkspaceLayoutTest, TheMenuBringsAViewForwardFromBehindAnothersTab) {
   QMenu menu;
-  desk.fill_menu(menu);
-  auto* ultrasound = desk.findChild<QDockWidget*>(QStringLiteral("dock-ultrasound"));
-  auto* space = desk.findChild<QDockWidget*>(QStringLiteral("dock-3d"));
+  workspace.fill_menu(menu);
+  auto* ultrasound = workspace.findChild<QDockWidget*>(QStringLiteral("dock-ultrasound"));
+  auto* space = workspace.findChild<QDockWidget*>(QStringLiteral("dock-3d"));
   ASSERT_NE(ultrasound, nullptr);
   ASSERT_NE(space, nullptr);
-  desk.tabifyDockWidget(ultrasound, space);
+  workspace.tabifyDockWidget(ultrasound, space);
   space->raise();
   settle();
   ASSERT_TRUE(ultrasound->visibleRegion().isEmpty());
@@ -164,34 +164,34 @@ ToolsShown needle_at(double inside_mm) {
   return tools;
 }
 
-TEST(Desk, WithTheTipHiddenSlicesTellNothingOfItsDepth) {
-  Desk desk;
-  desk.resize(1000, 700);
-  desk.choose_layout(QStringLiteral("Slices"));
-  desk.show();
-  desk.show_case(open_abdomen());
-  desk.show_help(Difficulty::kExam);
+TEST(Workspace, WithTheTipHiddenSlicesTellNothingOfItsDepth) {
+  Workspace workspace;
+  workspace.resize(1000, 700);
+  workspace.choose_layout(QStringLiteral("Slices"));
+  workspace.show();
+  workspace.show_case(open_abdomen());
+  workspace.show_help(Difficulty::kExam);
   QCoreApplication::processEvents();
-  auto* axial = desk.findChild<SliceView*>(QStringLiteral("slice-axial"));
+  auto* axial = workspace.findChild<SliceView*>(QStringLiteral("slice-axial"));
   const Vec3 entry_P = open_abdomen()->the_case.plan.line_P.a;
   const auto show = [&](double inside_mm) {
-    desk.show_tools(needle_at(inside_mm));
-    desk.draw(0.0);
+    workspace.show_tools(needle_at(inside_mm));
+    workspace.draw(0.0);
   };
-  desk.set_tip_hidden(true);
+  workspace.set_tip_hidden(true);
   const Vec3 middle_P = axial->focus();
   for (const char* name : {"slice-axial", "slice-along-needle", "slice-across-needle"}) {
-    auto* slice = desk.findChild<SliceView*>(QString::fromLatin1(name));
+    auto* slice = workspace.findChild<SliceView*>(QString::fromLatin1(name));
     show(20.0);
     axial->set_focus(entry_P);  // where the needle is
     const QImage shallow = slice->grab().toImage();
-    desk.show_tools(needle_at(50.0));
-    desk.draw(0.0);
+    workspace.show_tools(needle_at(50.0));
+    workspace.draw(0.0);
     EXPECT_EQ(slice->grab().toImage(), shallow) << name;
     axial->set_focus(middle_P);
   }
   EXPECT_EQ(axial->focus(), middle_P);
-  desk.set_tip_hidden(false);
+  workspace.set_tip_hidden(false);
   show(20.0);
   const QImage shallow = axial->grab().toImage();
   show(50.0);

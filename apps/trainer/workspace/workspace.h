@@ -41,11 +41,11 @@ struct ToolsShown {
 };
 
 /// All views of a case in dockable layouts, which are stored. Keys: Ctrl+1 .. Ctrl+4 select a layout.
-class Desk : public QMainWindow {
+class Workspace : public QMainWindow {
   Q_OBJECT
 
  public:
-  explicit Desk(QWidget* parent = nullptr);
+  explicit Workspace(QWidget* parent = nullptr);
 
   void show_case(std::shared_ptr<const cases::OpenCase> open);
   /// The same in parts, each short enough for one frame: show_part() shows the next one; returns false when complete.
@@ -107,7 +107,7 @@ class Desk : public QMainWindow {
   ForcePlot* forces_ = nullptr;
   std::map<QString, QDockWidget*> docks_;
   QString layout_;
-  std::map<QString, QSizeF> shares_;  ///< Of the desk's size, by view; of a hidden view the last one.
+  std::map<QString, QSizeF> shares_;  ///< Of the workspace's size, by view; of a hidden view the last one.
   bool is_arranging_ = false;         ///< The program moves the docks, not a person.
   std::shared_ptr<const cases::OpenCase> open_;
   bool is_tip_hidden_ = false;
