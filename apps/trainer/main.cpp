@@ -22,7 +22,7 @@
 #include "script/benchmark.h"
 #include "script/script_player.h"
 #include "shell/main_window.h"
-#include "shell/trainer_application.h"
+#include "ui_kit/trainer_application.h"
 #include "tasks/task.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/screen_scale.h"

@@ -7,9 +7,9 @@
 #include "attempt/hands/pointer_hand.h"
 #include "attempt/live/live_attempt.h"
 #include "cases/open_case.h"
+#include "choice/seat_choice.h"
 #include "control/page_keys.h"
 #include "control/tool_gestures.h"
-#include "shell/seat_choice.h"
 
 namespace trocar::trainer {
 

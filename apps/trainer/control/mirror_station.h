@@ -3,7 +3,7 @@
 #include <QObject>
 
 #include "geometry/pose.h"
-#include "shell/mirror_settings.h"
+#include "panels/mirror_settings.h"
 
 class QMainWindow;
 class QMenu;

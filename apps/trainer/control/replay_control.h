@@ -7,8 +7,8 @@
 
 #include "attempt/record/attempt_replay.h"
 #include "cases/open_case.h"
+#include "choice/seat_choice.h"
 #include "control/page_keys.h"
-#include "shell/seat_choice.h"
 
 namespace trocar::trainer {
 

@@ -13,9 +13,9 @@
 #include "attempt/record/attempt_replay.h"
 #include "attempt/record/journal.h"
 #include "cases/open_case.h"
+#include "choice/seat_choice.h"
 #include "core/background_job.h"
 #include "devices/pointer/speaker.h"
-#include "shell/seat_choice.h"
 #include "ui_kit/frame_count.h"
 
 namespace trocar::trainer {

@@ -3,7 +3,7 @@
 #include <QWidget>
 
 #include "cases/open_case.h"
-#include "shell/seat_choice.h"
+#include "choice/seat_choice.h"
 
 class QBoxLayout;
 class QLabel;

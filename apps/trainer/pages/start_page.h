@@ -2,7 +2,7 @@
 
 #include <QWidget>
 
-#include "shell/seat_choice.h"
+#include "choice/seat_choice.h"
 
 class QButtonGroup;
 class QComboBox;

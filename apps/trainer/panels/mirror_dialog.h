@@ -2,7 +2,7 @@
 
 #include <QDialog>
 
-#include "shell/mirror_settings.h"
+#include "panels/mirror_settings.h"
 
 class QCheckBox;
 class QComboBox;

@@ -1,4 +1,4 @@
-#include "shell/status_strip.h"
+#include "panels/status_strip.h"
 
 #include <gtest/gtest.h>
 

@@ -11,10 +11,10 @@
 
 #include "attempt/guide/needle_shaft.h"
 #include "panels/structure_panel.h"
-#include "shell/trainer_application.h"
 #include "slices/slice_geometry.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/trainer_application.h"
 #include "ultrasound/scanner/scan_annotation.h"
 #include "views/patient/patient_view.h"
 #include "views/plots/force_plot.h"

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "cases/open_case.h"
+#include "choice/difficulty.h"
 #include "geometry/pose.h"
 #include "geometry/segment.h"
-#include "shell/seat_choice.h"
 
 class QDockWidget;
 class QMenu;

@@ -1,4 +1,4 @@
-#include "shell/seat_choice.h"
+#include "choice/difficulty.h"
 
 namespace trocar::trainer {
 

@@ -1,11 +1,11 @@
-#include "control/device_check.h"
+#include "panels/device_check.h"
 
 #include <QStringList>
 #include <algorithm>
 
 #include "attempt/servers/local_server.h"
-#include "control/seat_words.h"
 #include "link/client/server_process.h"
+#include "panels/status_text.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {

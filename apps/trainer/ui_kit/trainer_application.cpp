@@ -1,4 +1,4 @@
-#include "shell/trainer_application.h"
+#include "ui_kit/trainer_application.h"
 
 #include <QEvent>
 #include <QMetaEnum>

@@ -1,4 +1,4 @@
-#include "control/seat_words.h"
+#include "panels/status_text.h"
 
 #include <algorithm>
 

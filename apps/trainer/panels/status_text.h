@@ -4,7 +4,7 @@
 
 #include "attempt/live/attempt_view.h"
 #include "core/result.h"
-#include "shell/status_strip.h"
+#include "panels/status_strip.h"
 
 namespace trocar::trainer {
 

@@ -1,4 +1,4 @@
-#include "shell/window_mirror.h"
+#include "ui_kit/window_mirror.h"
 
 #include <QApplication>
 #include <QGraphicsEffect>

@@ -2,7 +2,7 @@
 
 #include "geometry/pose.h"
 #include "scene/camera.h"
-#include "shell/window_mirror.h"
+#include "ui_kit/window_mirror.h"
 
 namespace trocar::trainer {
 

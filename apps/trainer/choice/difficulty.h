@@ -1,9 +1,8 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <cstddef>
 
-#include "cases/prepare_case.h"
 #include "scene/guidance.h"
 
 namespace trocar::trainer {
@@ -23,17 +22,5 @@ const char* name_of(Difficulty difficulty) noexcept;
 /// "Assisted", and what that means in a line.
 const char* title_of(Difficulty difficulty) noexcept;
 const char* help_text_of(Difficulty difficulty) noexcept;
-
-/// What is chosen on the start page.
-struct SeatChoice {
-  std::string task = "liver-biopsy";
-  std::string patient = "abdomen";  ///< Embedded patient's name, or a folder.
-  std::uint64_t patient_seed = 1;
-  std::string needle;       ///< Empty: the task's own.
-  std::string force_model;  ///< Empty: the task's own.
-  Difficulty difficulty = Difficulty::kGuided;
-  std::string needle_device = "mouse";  ///< As trocar-hapticd --device takes it; likewise of the transducer. "mouse"
-  std::string probe_device = "mouse";   ///< is the simulated device with room for a whole body.
-};
 
 }  // namespace trocar::trainer

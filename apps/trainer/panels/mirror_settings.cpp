@@ -1,4 +1,4 @@
-#include "shell/mirror_settings.h"
+#include "panels/mirror_settings.h"
 
 #include <QGuiApplication>
 #include <QScreen>
