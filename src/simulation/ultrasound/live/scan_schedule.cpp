@@ -7,7 +7,7 @@ namespace {
 
 /// Nominal work of a frame, in samples: constant work (contact, scan conversion), and work for every sample, elevation
 /// plane and steering angle. Measured with frames of the embedded abdomen; FrameCost learns the difference.
-constexpr double kWorkOfFrame = 1.3e6, kWorkOfSample = 1.0, kWorkOfPlane = 1.0, kWorkOfLook = 0.6;
+constexpr double kWorkOfFrame = 1.3e6, kWorkOfSample = 1.0, kWorkOfPlane = 1.0, kWorkOfAngle = 0.6;
 
 }  // namespace
 
@@ -21,14 +21,14 @@ Acquisition with_detail(const Acquisition& full, ScanDetail detail) noexcept {
   a.samples = std::min(a.samples, full.samples);
   // A single plane makes borders too bright and sharp, and saves little.
   a.planes = std::min(full.planes, 3);
-  a.looks = std::min(full.looks, is_middle ? 2 : 1);
+  a.steering_angles = std::min(full.steering_angles, is_middle ? 2 : 1);
   return a;
 }
 
 double ScanLevels::work(const ScanRequest& request, ScanDetail detail) const noexcept {
   const Acquisition a = with_detail(request.acquisition, detail);
-  return kWorkOfFrame +
-         a.lines * static_cast<double>(a.samples) * (kWorkOfSample + kWorkOfPlane * a.planes + kWorkOfLook * a.looks);
+  return kWorkOfFrame + a.lines * static_cast<double>(a.samples) *
+                            (kWorkOfSample + kWorkOfPlane * a.planes + kWorkOfAngle * a.steering_angles);
 }
 
 }  // namespace trocar::ultrasound

@@ -31,7 +31,9 @@ class ScanLevels {
   explicit ScanLevels(const ScanPace& pace = {}) : pace_(pace) {}
 
   LivePace pace() const noexcept { return pace_.live; }
-  bool is_same(const ScanRequest& a, const ScanRequest& b) const noexcept { return is_as_good(a, b, pace_.tremor_mm); }
+  bool is_same(const ScanRequest& a, const ScanRequest& b) const noexcept {
+    return is_equivalent(a, b, pace_.tremor_mm);
+  }
   /// In samples.
   double work(const ScanRequest& request, ScanDetail detail) const noexcept;
   double refresh_s(const ScanRequest& request) const noexcept {

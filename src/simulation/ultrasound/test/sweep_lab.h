@@ -73,7 +73,7 @@ inline ultrasound::MechanicalSweepOptions lab_options() {
   options.acquisition.lines = 128;
   options.acquisition.samples = 512;
   options.acquisition.planes = 3;
-  options.acquisition.looks = 1;
+  options.acquisition.steering_angles = 1;
   options.acquisition.artefacts.noise = false;
   options.sweep_rad = 0.8;
   options.step_rad = 0.02;

@@ -108,6 +108,6 @@ FrameState make_frame_state(const AcousticScene& scene);
 /// Takes buffers for a plan.
 void fit_frame(FrameState& frame, const ScanPlan& plan);
 /// Before a frame: no border is known on any plane, so that nothing of the last frame can be read.
-void forget_borders(FrameState& frame) noexcept;
+void clear_borders(FrameState& frame) noexcept;
 
 }  // namespace trocar::ultrasound::detail

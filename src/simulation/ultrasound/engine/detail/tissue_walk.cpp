@@ -392,7 +392,7 @@ void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& li
   Walk(plan, frame, line, zeta, result, delay).run();
 }
 
-void keep_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept {
+void store_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept {
   const auto at = static_cast<std::size_t>(plane * plan.lines + line);
   for (std::size_t b = 0; b < static_cast<std::size_t>(result.border_count); ++b) {
     const Border& border = result.borders[b];

@@ -11,12 +11,12 @@
 namespace trocar::ultrasound::detail {
 
 /// A patient as the placement of a transducer sees him. Frame P, mm. Refers to the patient.
-struct ViewGround {
+struct ViewAnatomy {
   const anatomy::VirtualPatient& patient;
   std::array<bool, 256> is_bone{}, is_lung{}, is_through{};  ///< By label.
   std::vector<ScanEnd> ends;
 
-  ViewGround(const anatomy::VirtualPatient& of, const ProbeView& view);
+  ViewAnatomy(const anatomy::VirtualPatient& of, const ProbeView& view);
 
   double skin_mm(const Vec3& p_P) const noexcept;    ///< Negative inside.
   Vec3 skin_normal(const Vec3& p_P) const noexcept;  ///< Outwards, unit, of a patch of some millimetres.

@@ -1,4 +1,4 @@
-#include "ultrasound/probe/detail/view_sight.h"
+#include "ultrasound/probe/detail/view_rays.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,24 +19,23 @@ constexpr double kBetweenRibs = 0.2;         ///< Standard deviation of what cou
 
 }  // namespace
 
-ViewSight::ViewSight(const ViewGround& ground, const ProbeView& view, const Transducer& transducer,
-                     const Vec3& target_P)
+ViewRays::ViewRays(const ViewAnatomy& ground, const ProbeView& view, const Transducer& transducer, const Vec3& target_P)
     : ground_(ground),
       scan_(make_scan_geometry(transducer, std::min(view.depth_mm, transducer.greatest_depth_mm), kLines, 16)),
       target_P_(target_P),
-      is_between_ribs_(view.bone == BoneWish::kBeside),
-      shows_bone_(view.bone == BoneWish::kShow) {
+      is_between_ribs_(view.bone == BonePreference::kBeside),
+      shows_bone_(view.bone == BonePreference::kShow) {
   const anatomy::Label* target = find_target(ground.patient, view.targets);
   if (target != nullptr) is_subject_[target->id] = true;
   if (shows_bone_)
     for (std::size_t id = 0; id < is_subject_.size(); ++id) is_subject_[id] = is_subject_[id] || ground.is_bone[id];
-  is_surface_ =
-      view.bone == BoneWish::kShow || (target != nullptr && (ground.is_bone[target->id] || ground.is_lung[target->id]));
+  is_surface_ = view.bone == BonePreference::kShow ||
+                (target != nullptr && (ground.is_bone[target->id] || ground.is_lung[target->id]));
   frequency_mhz_ =
       std::clamp(view.frequency_mhz.value_or(transducer.frequency_mhz), transducer.lowest_mhz, transducer.highest_mhz);
 }
 
-ViewSight::Ray ViewSight::trace(const Pose& X_PT, int line, const Vec2& target_T) const {
+ViewRays::Ray ViewRays::trace(const Pose& X_PT, int line, const Vec2& target_T) const {
   const Vec2 origin = scan_.line_origin(line), direction = scan_.line_direction(line);
   Ray ray;
   ray.end_mm = scan_.depth_mm;
@@ -71,19 +70,19 @@ ViewSight::Ray ViewSight::trace(const Pose& X_PT, int line, const Vec2& target_T
   return ray;
 }
 
-double ViewSight::weight(double line) const noexcept {
+double ViewRays::weight(double line) const noexcept {
   if (!is_between_ribs_) return 1.0;
   const double off = (line - scan_.middle_line()) / scan_.middle_line();
   return std::exp(-0.5 * off * off / (kBetweenRibs * kBetweenRibs));
 }
 
-double ViewSight::heard_share(double depth_mm) const noexcept {
+double ViewRays::penetration_share(double depth_mm) const noexcept {
   const double loss_db = 2.0 * kLoss_db_per_cm_mhz * frequency_mhz_ * depth_mm / 10.0;
   return std::clamp((-kReceiverNoise_db - loss_db) / kFade_db, 0.0, 1.0);
 }
 
 /// Beyond an end of the CT the subject is taken to go on as its mirror image.
-bool ViewSight::is_subject(const Vec3& p_P, bool& is_unscanned_there) const {
+bool ViewRays::is_subject(const Vec3& p_P, bool& is_unscanned_there) const {
   Vec3 inside_P = p_P;
   is_unscanned_there = false;
   for (const ScanEnd& end : ground_.ends) {
@@ -95,7 +94,7 @@ bool ViewSight::is_subject(const Vec3& p_P, bool& is_unscanned_there) const {
   return is_subject_[ground_.label_at(inside_P)];
 }
 
-ViewVisibility ViewSight::measure_area(const Pose& X_PT, const std::vector<Ray>& rays, const Vec2& target_T) const {
+ViewVisibility ViewRays::measure_area(const Pose& X_PT, const std::vector<Ray>& rays, const Vec2& target_T) const {
   ViewVisibility shares;
   double all = 0.0;
   for (double y = -kSubject_mm; y <= kSubject_mm; y += kAreaStep_mm) {
@@ -118,8 +117,8 @@ ViewVisibility ViewSight::measure_area(const Pose& X_PT, const std::vector<Ray>&
       } else if (is_unscanned_there) {
         shares.unscanned += counted;
       } else {
-        shares.visible += counted * heard_share(at.depth_mm);
-        shares.too_deep += counted * (1.0 - heard_share(at.depth_mm));
+        shares.visible += counted * penetration_share(at.depth_mm);
+        shares.too_deep += counted * (1.0 - penetration_share(at.depth_mm));
       }
     }
   }
@@ -131,7 +130,7 @@ ViewVisibility ViewSight::measure_area(const Pose& X_PT, const std::vector<Ray>&
 }
 
 /// Scanlines that pass near the target: each meets the subject, or would beyond the end of the CT.
-ViewVisibility ViewSight::measure_surface(const std::vector<Ray>& rays, const Vec2& target_T) const {
+ViewVisibility ViewRays::measure_surface(const std::vector<Ray>& rays, const Vec2& target_T) const {
   ViewVisibility shares;
   double all = 0.0;
   for (int line = 0; line < kLines; ++line) {
@@ -146,8 +145,8 @@ ViewVisibility ViewSight::measure_surface(const std::vector<Ray>& rays, const Ve
     if (!is_met && ray.end == End::kUnscanned) {
       shares.unscanned += counted;
     } else if (is_met && ray.end_mm >= ray.subject_mm - kEdge_mm) {
-      shares.visible += counted * heard_share(ray.subject_mm);
-      shares.too_deep += counted * (1.0 - heard_share(ray.subject_mm));
+      shares.visible += counted * penetration_share(ray.subject_mm);
+      shares.too_deep += counted * (1.0 - penetration_share(ray.subject_mm));
     } else {
       (ray.end == End::kBone ? shares.behind_bone : shares.behind_gas) += counted;
     }
@@ -159,7 +158,7 @@ ViewVisibility ViewSight::measure_surface(const std::vector<Ray>& rays, const Ve
   return shares;
 }
 
-ViewVisibility ViewSight::measure(const Pose& X_PT) const {
+ViewVisibility ViewRays::measure(const Pose& X_PT) const {
   const Vec3 target_T = X_PT.inverse() * target_P_;
   const Vec2 in_plane_T(target_T.x(), target_T.y());
   std::vector<Ray> rays;

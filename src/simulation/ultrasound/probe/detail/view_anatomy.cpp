@@ -1,4 +1,4 @@
-#include "ultrasound/probe/detail/view_ground.h"
+#include "ultrasound/probe/detail/view_anatomy.h"
 
 #include <limits>
 
@@ -62,7 +62,7 @@ Vec3 facing_point(const volume::LabelGrid& labels, std::uint8_t id, const Vec3& 
 
 }  // namespace
 
-ViewGround::ViewGround(const anatomy::VirtualPatient& of, const ProbeView& view)
+ViewAnatomy::ViewAnatomy(const anatomy::VirtualPatient& of, const ProbeView& view)
     : patient(of), ends(find_scan_ends(of)) {
   for (const anatomy::Label& label : of.label_table.labels) {
     is_bone[label.id] = label.tissue == "bone" || label.tissue == "cartilage";  // of ribs
@@ -71,11 +71,11 @@ ViewGround::ViewGround(const anatomy::VirtualPatient& of, const ProbeView& view)
   if (const anatomy::Label* through = find_target(of, view.through)) is_through[through->id] = true;
 }
 
-double ViewGround::skin_mm(const Vec3& p_P) const noexcept {
+double ViewAnatomy::skin_mm(const Vec3& p_P) const noexcept {
   return volume::sample_linear(patient.skin_distance_mm, p_P);
 }
 
-Vec3 ViewGround::skin_normal(const Vec3& p_P) const noexcept {
+Vec3 ViewAnatomy::skin_normal(const Vec3& p_P) const noexcept {
   Vec3 slope;
   for (int a = 0; a < 3; ++a) {
     const Vec3 step = kSlope_mm * Vec3::Unit(a);
@@ -84,23 +84,23 @@ Vec3 ViewGround::skin_normal(const Vec3& p_P) const noexcept {
   return slope.norm() > 1e-9 ? Vec3(slope.normalized()) : Vec3(0, -1, 0);
 }
 
-Vec3 ViewGround::on_skin(Vec3 p_P) const noexcept {
+Vec3 ViewAnatomy::on_skin(Vec3 p_P) const noexcept {
   for (int round = 0; round < 4; ++round) p_P -= skin_mm(p_P) * skin_normal(p_P);
   return p_P;
 }
 
-bool ViewGround::contains(const Vec3& p_P) const noexcept {
+bool ViewAnatomy::contains(const Vec3& p_P) const noexcept {
   const Vec3 index = patient.labels.geometry.to_index(p_P);
   const volume::Index3& size = patient.labels.geometry.size;
   return (index.array() > -0.5).all() && index.x() < static_cast<double>(size[0]) - 0.5 &&
          index.y() < static_cast<double>(size[1]) - 0.5 && index.z() < static_cast<double>(size[2]) - 0.5;
 }
 
-std::uint8_t ViewGround::label_at(const Vec3& p_P) const noexcept {
+std::uint8_t ViewAnatomy::label_at(const Vec3& p_P) const noexcept {
   return volume::sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
 }
 
-bool ViewGround::is_gas_at(const Vec3& p_P) const noexcept {
+bool ViewAnatomy::is_gas_at(const Vec3& p_P) const noexcept {
   return volume::sample_nearest<std::int16_t>(patient.ct, p_P, 0) < kGasBelow_hu;
 }
 

@@ -3,17 +3,17 @@
 #include <array>
 #include <vector>
 
-#include "ultrasound/probe/detail/view_ground.h"
+#include "ultrasound/probe/detail/view_anatomy.h"
 #include "ultrasound/probe/scan_geometry.h"
 #include "ultrasound/probe/view_visibility.h"
 
 /// How much of a view's subject is seen from a pose, by straight scanlines through the labels (docs/physics.md U16).
 namespace trocar::ultrasound::detail {
 
-class ViewSight {
+class ViewRays {
  public:
   /// Refers to the ground, which must outlive it.
-  ViewSight(const ViewGround& ground, const ProbeView& view, const Transducer& transducer, const Vec3& target_P);
+  ViewRays(const ViewAnatomy& ground, const ProbeView& view, const Transducer& transducer, const Vec3& target_P);
 
   ViewVisibility measure(const Pose& X_PT) const;
 
@@ -30,12 +30,12 @@ class ViewSight {
   };
   Ray trace(const Pose& X_PT, int line, const Vec2& target_T) const;
   double weight(double line) const noexcept;
-  double heard_share(double depth_mm) const noexcept;
+  double penetration_share(double depth_mm) const noexcept;
   bool is_subject(const Vec3& p_P, bool& is_unscanned_there) const;
   ViewVisibility measure_area(const Pose& X_PT, const std::vector<Ray>& rays, const Vec2& target_T) const;
   ViewVisibility measure_surface(const std::vector<Ray>& rays, const Vec2& target_T) const;
 
-  const ViewGround& ground_;
+  const ViewAnatomy& ground_;
   ScanGeometry scan_;
   Vec3 target_P_;
   std::array<bool, 256> is_subject_{};  ///< By label.
