@@ -77,14 +77,14 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
   page_.workspace().show_help(choice_.difficulty);  // the replay of the last attempt showed all
   page_.workspace().set_tip_hidden(is_tip_hidden());
   connect_panel();
-  ForcePlot& plot = page_.workspace().forces();
+  ForcePlot& plot = page_.forces();
   plot.clear();
   plot.set_bands(is_exam() ? std::vector<ForcePlot::Band>{} : force_bands(*open_));
   plot.set_reference({});
   plot.set_cursor({});
   plot.set_predicted(is_exam() ? std::vector<QPointF>{} : predicted_curve(*open_));
   // A full-quality picture takes long without a graphics card: needle motion cancels it.
-  page_.workspace().view_3d().set_interrupt([this] {
+  page_.view_3d().set_interrupt([this] {
     constexpr double kMoved_mm = 0.5;
     return (attempt_.view().needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
   });
@@ -93,7 +93,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
 }
 
 AttemptControl::~AttemptControl() {
-  page_.workspace().view_3d().set_interrupt({});
+  page_.view_3d().set_interrupt({});
   page_.workspace().set_tip_hidden(false);
   gestures_.unwatch();
 }
@@ -110,9 +110,8 @@ void AttemptControl::connect_panel() {
   connect(&gestures_, &ToolGestures::gestured, this, &AttemptControl::gesture);
   connect(&gestures_, &ToolGestures::key_struck, this, &AttemptControl::strike);
   connect(&gestures_, &ToolGestures::taken, &panel, &PuncturePanel::show_hand);
-  Workspace& workspace = page_.workspace();
-  gestures_.watch(workspace.view_3d(), [this] { return scale_of_3d(); });
-  gestures_.watch(workspace.ultrasound(), [this] { return scale_of_ultrasound(); });
+  gestures_.watch(page_.view_3d(), [this] { return scale_of_3d(); });
+  gestures_.watch(page_.ultrasound(), [this] { return scale_of_ultrasound(); });
 }
 
 void AttemptControl::take(ToolInHand tool) {
@@ -148,13 +147,13 @@ void AttemptControl::ask_to_close() {
 }
 
 ViewScale AttemptControl::scale_of_3d() const {
-  const PatientView& view = page_.workspace().view_3d();
+  const PatientView& view = page_.view_3d();
   const scene::CameraView& camera = view.view();
   return {camera.right_P(), -camera.up_P, camera.mm_per_pixel(needle_.entry_P(), std::max(1, view.height()))};
 }
 
 ViewScale AttemptControl::scale_of_ultrasound() const {
-  const UltrasoundView& view = page_.workspace().ultrasound();
+  const UltrasoundView& view = page_.ultrasound();
   const auto picture = view.picture();
   if (!picture || view.measuring_tool() != MeasuringTool::kNone || view.is_frozen() || view.is_over_mark()) return {};
   const auto& corners_P = picture->corners_P;
@@ -227,7 +226,7 @@ void AttemptControl::advance(double dt_s) {
   if (!is_led_[1] && view_.probe.is_known) probe_.put(view_.probe.X_PT);
   attempt_.set_hand(attempt::HandTool::kNeedle, needle_.X_PN());
   attempt_.set_hand(attempt::HandTool::kProbe, probe_.X_PT());
-  ForcePlot& plot = page_.workspace().forces();
+  ForcePlot& plot = page_.forces();
   if (++frame_ % kFramesAPlot == 0) {
     std::vector<ForcePoint> points;
     for (const trocar::attempt::ForcePoint& point : attempt_.take_forces())
@@ -250,7 +249,7 @@ void AttemptControl::look_at_events() {
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(text),
                                is_risk(open_->the_case, event));
     if (event.kind == telemetry::EventKind::kPuncture)
-      page_.workspace().forces().add_event(event.depth_mm, event.time_s, to_qt(anatomy::layer_words(event.name)));
+      page_.forces().add_event(event.depth_mm, event.time_s, to_qt(anatomy::layer_words(event.name)));
   }
 }
 
@@ -258,7 +257,7 @@ void AttemptControl::look_at_shot() {
   if (!view_.shot || has_shown_shot_) return;
   has_shown_shot_ = true;
   if (!is_exam()) page_.puncture().show_core(*view_.shot);  // in an exam its composition would reveal the solution
-  page_.workspace().forces().add_event(view_.shot->depth_mm, view_.shot->time_s, tr("shot"));
+  page_.forces().add_event(view_.shot->depth_mm, view_.shot->time_s, tr("shot"));
   Q_EMIT gun_fired();
 }
 

@@ -105,7 +105,7 @@ bool ReplayControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
   if ((key.modifiers() & ~Qt::KeypadModifier) != Qt::NoModifier || place.is_text || place.is_aside) return false;
   if (!page_.time_line().isVisible()) return false;
   TimeLine& line = page_.time_line();
-  const UltrasoundView& ultrasound = page_.workspace().ultrasound();
+  const UltrasoundView& ultrasound = page_.ultrasound();
   switch (key.key()) {
     case Qt::Key_Space:
       if (place.takes_space) return false;
@@ -127,7 +127,7 @@ bool ReplayControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
 }
 
 void ReplayControl::fill_plot() {
-  ForcePlot& plot = page_.workspace().forces();
+  ForcePlot& plot = page_.forces();
   plot.clear();
   plot.set_bands(force_bands(*open_));
   plot.set_predicted({});
@@ -192,7 +192,7 @@ void ReplayControl::show_at(double time_s, bool is_moving) {
   if (const auto& shot = replay_.shot(); shot && time_s >= shot->time_s)
     show_shot(tools, *shot, time_s - shot->time_s, sample.depth_mm);
   page_.workspace().show_tools(tools);
-  page_.workspace().forces().set_cursor(time_s);
+  page_.forces().set_cursor(time_s);
   shown_s_ = time_s;
 }
 

@@ -171,12 +171,11 @@ void SeatFlow::show_opened() {
   }
   opened_.reset();
   release_freed_memory();  // memory of the previous case and of opening
-  Workspace& workspace = window_.work().workspace();
-  workspace.show_help(choice_.difficulty);
+  window_.work().workspace().show_help(choice_.difficulty);
   // The depth of the target belongs to the plan, too.
   const bool is_guided = choice_.difficulty == Difficulty::kGuided;
   const double depth_mm = is_guided ? open_->probe_depth_mm : open_->neutral.depth_mm;
-  workspace.ultrasound().change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = depth_mm; });
+  window_.work().ultrasound().change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = depth_mm; });
   window_.briefing().show_case(*open_, choice_.difficulty);
   if (cut_off_) load_replay(std::exchange(cut_off_, {})->session);
 }
@@ -345,7 +344,7 @@ void SeatFlow::frame() {
   if (attempt_ || replay_) {
     window_.work().parameters().advance();
     const cases::Case& the_case = open_->the_case;
-    window_.mirror().lead_camera(window_.work().workspace().view_3d(),
+    window_.mirror().lead_camera(window_.work().view_3d(),
                                  cases::room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
     window_.work().workspace().draw(now);
   }
@@ -389,16 +388,16 @@ QVariantMap SeatFlow::facts() const {
   if (replay_) facts.insert(replay_->facts());
   // Settings of the displayed ultrasound image.
   const bool tells_plan = !attempt_ || !is_exam();
-  if (const auto picture = window_.work().workspace().ultrasound().picture(); picture && open_ && tells_plan)
+  if (const auto picture = window_.work().ultrasound().picture(); picture && open_ && tells_plan)
     facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("frame_p50_ms")] = quantile(frame_ms_, 0.5);
   facts[QStringLiteral("frame_p99_ms")] = quantile(frame_ms_, 0.99);
-  const scene::FrameTimes& renders = window_.work().workspace().view_3d().moving_frame_times();
+  const scene::FrameTimes& renders = window_.work().view_3d().moving_frame_times();
   facts[QStringLiteral("render_p50_ms")] = renders.p50_ms();
   facts[QStringLiteral("render_p99_ms")] = renders.p99_ms();
-  const scene::FrameTimes& stills = window_.work().workspace().view_3d().still_frame_times();
+  const scene::FrameTimes& stills = window_.work().view_3d().still_frame_times();
   facts[QStringLiteral("still_p50_ms")] = stills.p50_ms();
-  facts[QStringLiteral("unwatched_ms")] = window_.work().workspace().view_3d().unwatched_times().percentile_ms(1.0);
+  facts[QStringLiteral("unwatched_ms")] = window_.work().view_3d().unwatched_times().percentile_ms(1.0);
   if (const auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) {
     const auto& slowest = application->slowest();
     facts[QStringLiteral("slowest_ms")] = slowest.empty() ? 0.0 : slowest.front().ms;
@@ -410,7 +409,7 @@ QVariantMap SeatFlow::facts() const {
 }
 
 void SeatFlow::reset_watch() {
-  window_.work().workspace().view_3d().clear_frame_times();
+  window_.work().view_3d().clear_frame_times();
   frame_ms_.clear();
   if (auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) application->reset_watch();
 }

@@ -6,10 +6,14 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "core/check.h"
 #include "panels/feedback_panel.h"
 #include "panels/puncture_panel.h"
 #include "parameters/parameter_panel.h"
+#include "views/patient/patient_view.h"
+#include "views/plots/force_plot.h"
 #include "views/plots/time_line.h"
+#include "views/ultrasound/ultrasound_view.h"
 #include "workspace/workspace.h"
 
 namespace trocar::trainer {
@@ -32,6 +36,10 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
   side_->addWidget(puncture_);
   side_->addWidget(feedback_);
   workspace_ = new Workspace;
+  view_3d_ = workspace_->find<PatientView>("3d");
+  ultrasound_ = workspace_->find<UltrasoundView>("ultrasound");
+  forces_ = workspace_->find<ForcePlot>("forces");
+  TROCAR_CHECK(view_3d_ != nullptr && ultrasound_ != nullptr && forces_ != nullptr);
   time_line_ = new TimeLine;
   time_line_->setObjectName(QStringLiteral("time-line"));
   time_line_->hide();

@@ -121,7 +121,7 @@ QWidget* MainWindow::make_top_bar() {
   });
   connect(builder, &QToolButton::clicked, this,
           [this] { page_ == QLatin1String("case-builder") ? flow_->go_to_start() : flow_->go_to_case_builder(); });
-  connect(keys, &QToolButton::clicked, this, [this] { show_keys(this); });
+  connect(keys, &QToolButton::clicked, this, [this] { show_keys(this, work_->workspace()); });
   return bar;
 }
 

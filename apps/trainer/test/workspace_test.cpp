@@ -47,9 +47,9 @@ TEST(Workspace, ShowsOfThePlanWhatTheHelpAllows) {
                             Expected{Difficulty::kAssisted, scene::Guidance::kTarget, true, true, false},
                             Expected{Difficulty::kExam, scene::Guidance::kNone, false, false, false}}) {
     workspace.show_help(e.difficulty);
-    EXPECT_EQ(workspace.view_3d().scene().guidance(), e.in_space);
-    EXPECT_EQ(workspace.ultrasound().is_guide_offered(), e.is_guide_offered);
-    EXPECT_EQ(workspace.ultrasound().is_guide_visible(), e.is_guide_shown);
+    EXPECT_EQ(workspace.find<PatientView>("3d")->scene().guidance(), e.in_space);
+    EXPECT_EQ(workspace.find<UltrasoundView>("ultrasound")->is_guide_offered(), e.is_guide_offered);
+    EXPECT_EQ(workspace.find<UltrasoundView>("ultrasound")->is_guide_visible(), e.is_guide_shown);
     EXPECT_EQ(workspace.findChild<QToolButton*>(QStringLiteral("show-guidance"))->isEnabled(),
               e.in_space != scene::Guidance::kNone);
     EXPECT_EQ(share_of(theme().target) > 0.0002, e.has_target) << title_of(e.difficulty);
@@ -112,8 +112,8 @@ TEST_F(WorkspaceLayoutTest, ViewsKeepTheirSizesOverRounds) {
 
 TEST_F(WorkspaceLayoutTest, LayoutsComeBackAsTheyWereLeft) {
   const Sizes before = sizes_of(workspace);
-  for (const QString& layout : Workspace::layouts()) {
-    workspace.choose_layout(layout);
+  for (const Layout& layout : workspace.layouts()) {
+    workspace.choose_layout(layout.name);
     settle();
   }
   workspace.choose_layout(QStringLiteral("Puncture"));
@@ -122,11 +122,11 @@ TEST_F(WorkspaceLayoutTest, LayoutsComeBackAsTheyWereLeft) {
 }
 
 TEST_F(WorkspaceLayoutTest, EveryLayoutFitsBesideTheTissuesOfASmallScreen) {
-  for (const QString& layout : Workspace::layouts()) {
-    workspace.choose_layout(layout);
+  for (const Layout& layout : workspace.layouts()) {
+    workspace.choose_layout(layout.name);
     settle();
-    EXPECT_LE(workspace.needed_width(), 680) << layout.toStdString();
-    EXPECT_LE(workspace.minimumSizeHint().height(), 560) << layout.toStdString();
+    EXPECT_LE(workspace.needed_width(), 680) << layout.name.toStdString();
+    EXPECT_LE(workspace.minimumSizeHint().height(), 560) << layout.name.toStdString();
   }
 }
 

@@ -5,66 +5,52 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "cases/open_case.h"
 #include "choice/difficulty.h"
-#include "geometry/pose.h"
-#include "geometry/segment.h"
+#include "views/tools_shown.h"
+#include "views/view_registry.h"
+#include "workspace/layouts.h"
+#include "workspace/standard_views.h"
 
 class QDockWidget;
 class QMenu;
 
 namespace trocar::trainer {
 
-class ForcePlot;
-struct LayoutColumn;
-class PatientView;
-class SliceMarks;
-class SliceView;
-class StructurePanel;
-class UltrasoundControls;
-class UltrasoundView;
-
-/// Where the tools are in one frame. Frame P.
-struct ToolsShown {
-  std::vector<Vec3> shaft_P;        ///< Hub to tip; empty: no needle.
-  Pose X_PN;                        ///< Of the needle's tip.
-  std::optional<Segment> hand_P;    ///< Where the hand holds the needle, when it is ahead of it.
-  std::optional<Segment> stylet_P;  ///< Of a gun, ahead of its cannula.
-  std::optional<Segment> core_P;    ///< Where a core was taken.
-  std::optional<Pose> X_PT;         ///< Transducer.
-  std::optional<Vec3> focus_P;      ///< What the slices go through.
-  double inside_mm = 0.0;           ///< Length of the needle in the body.
-  bool are_moving = false;
-};
-
-/// All views of a case in dockable layouts, which are stored. Keys: Ctrl+1 .. Ctrl+4 select a layout.
+/// All views of a case in dockable layouts, which are stored. It knows views by their ViewDescription only: the
+/// registry is the one place that names them. Keys: Ctrl+1 .. Ctrl+4 select a layout.
 class Workspace : public QMainWindow {
   Q_OBJECT
 
  public:
-  explicit Workspace(QWidget* parent = nullptr);
+  explicit Workspace(ViewRegistry registry = standard_views(), QWidget* parent = nullptr);
+  ~Workspace() override;
 
   void show_case(std::shared_ptr<const cases::OpenCase> open);
   /// The same in parts, each short enough for one frame: show_part() shows the next one; returns false when complete.
   void begin_case(std::shared_ptr<const cases::OpenCase> open);
   bool show_part();
-  /// Of the plan, in all views; the structure panel and the keys of the views show no more than that.
+  /// Of the plan, in all views; panels and keys of the views show no more than that.
   void show_help(Difficulty difficulty);
-  /// Hidden: slices and 3D show the needle up to the skin alone, slices do not follow it, and the plot tells no depth.
-  /// The ultrasound shows what a scanner shows. The cross-hairs are put into the middle of the body.
+  /// Hidden: slices and 3D show the needle up to the skin only, slices do not follow it, and the plot has no depth. The
+  /// ultrasound shows what a scanner shows. The crosshairs are moved to the middle of the body.
   void set_tip_hidden(bool is_hidden);
   void show_tools(const ToolsShown& tools);
   /// Draws what has changed; once a frame. `now_s`: any steady clock.
   void draw(double now_s);
 
-  PatientView& view_3d() noexcept { return *view_3d_; }
-  UltrasoundView& ultrasound() noexcept { return *ultrasound_; }
-  ForcePlot& forces() noexcept { return *forces_; }
+  /// The widget of a view, or a part of it, by its type: find<ForcePlot>("forces"); nullptr: there is none.
+  template <class Widget>
+  Widget* find(const char* id) const {
+    QWidget* widget = find_widget(QString::fromLatin1(id));
+    auto* own = qobject_cast<Widget*>(widget);
+    return own != nullptr || widget == nullptr ? own : widget->findChild<Widget*>();
+  }
+  const ViewRegistry& registry() const noexcept { return registry_; }
 
-  static const std::vector<QString>& layouts();
+  const std::vector<Layout>& layouts() const noexcept { return layouts_; }
   QString layout_name() const { return layout_; }
   void choose_layout(const QString& name);
   void reset_layout();
@@ -82,44 +68,27 @@ class Workspace : public QMainWindow {
   bool event(QEvent* event) override;
 
  private:
-  /// A view that has a strip of its own lends it to the title.
-  void add_view(const char* name, const QString& title, QWidget& view, QWidget* strip = nullptr);
+  void add_view(const ViewDescription& description);
+  QWidget* find_widget(const QString& id) const;
   void arrange(const QString& layout);
   void arrange_rows(const LayoutColumn& column, double width_share);
   void note_shares();
   void fit_to_shares();
-  void add_to_menu(QMenu& menu, const QString& name, QDockWidget& dock);
-  void add_knobs_button();
-  void connect_views();
-  void show_in_space(PatientView& view);
-  void show_in_slices();
-  void follow_with_slices();
-  void draw_in_space();
-  void show_picture_in_space();
+  void add_to_menu(QMenu& menu, const QString& id, QDockWidget& dock);
 
-  PatientView* view_3d_ = nullptr;
-  PatientView* side_ = nullptr;
-  std::vector<SliceView*> slices_;  ///< Axial, coronal, sagittal, along, across the needle.
-  std::vector<SliceMarks*> marks_;  ///< Over them.
-  StructurePanel* structures_ = nullptr;
-  UltrasoundView* ultrasound_ = nullptr;
-  UltrasoundControls* ultrasound_controls_ = nullptr;
-  ForcePlot* forces_ = nullptr;
+  ViewRegistry registry_;
+  std::vector<Layout> layouts_;
+  ViewContext context_;
+  std::vector<std::unique_ptr<View>> views_;  ///< As in the registry.
   std::map<QString, QDockWidget*> docks_;
   QString layout_;
   std::map<QString, QSizeF> shares_;  ///< Of the workspace's size, by view; of a hidden view the last one.
   bool is_arranging_ = false;         ///< The program moves the docks, not a person.
-  std::shared_ptr<const cases::OpenCase> open_;
+  CaseContext case_;
   bool is_tip_hidden_ = false;
-  std::optional<ToolsShown> tools_;   ///< Of the last frame.
-  ToolsShown shown_;                  ///< What slices and 3D may show of them.
-  std::uint64_t picture_number_ = 0;  ///< Of the one in the 3D views.
-  bool has_whole_picture_ = false;    ///< It is in full detail.
-  bool are_moving_ = false;
-  unsigned stale_slices_ = 0;  ///< A bit a slice that has not seen the tools yet.
-  std::size_t frame_ = 0;
-  bool has_side_patient_ = false;
-  int parts_shown_ = 0;  ///< Of the case.
+  std::optional<ToolsShown> tools_;  ///< Of the last frame.
+  FrameContext frame_;
+  std::size_t parts_shown_ = 0;  ///< Views that have opened the case.
 };
 
 }  // namespace trocar::trainer

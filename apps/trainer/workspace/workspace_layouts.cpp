@@ -14,8 +14,11 @@
 namespace trocar::trainer {
 namespace {
 
-/// Stored layouts are valid for a fixed number of views: with another number they are ignored. The group is named
-/// "desk" in the settings files of users.
+/// Of stored layouts, as in the settings files of users: the state of a layout without a view, or with one that is
+/// gone, is still valid.
+constexpr int kStateVersion = 10;
+
+/// The group is named "desk" in the settings files of users.
 QString settings_key(const QString& layout) {
   return QStringLiteral("desk/") + layout;
 }
@@ -25,17 +28,10 @@ QString shares_key(const QString& layout) {
 
 }  // namespace
 
-const std::vector<QString>& Workspace::layouts() {
-  static const std::vector<QString> names = [] {
-    std::vector<QString> all;
-    for (const Layout& layout : built_in_layouts()) all.push_back(layout.name);
-    return all;
-  }();
-  return names;
-}
-
 void Workspace::choose_layout(const QString& name) {
-  if (std::find(layouts().begin(), layouts().end(), name) == layouts().end()) return choose_layout(layouts().front());
+  const bool is_known =
+      std::any_of(layouts_.begin(), layouts_.end(), [&](const Layout& layout) { return layout.name == name; });
+  if (!is_known) return choose_layout(layouts_.front().name);
   if (!layout_.isEmpty()) save_layout();
   layout_ = name;
   QSettings settings;
@@ -45,7 +41,7 @@ void Workspace::choose_layout(const QString& name) {
   for (const auto& [view, dock] : docks_) dock->hide();
   is_arranging_ = true;
   const QVariantMap shares = settings.value(shares_key(name)).toMap();
-  if (!shares.isEmpty() && restoreState(kept, static_cast<int>(docks_.size()))) {
+  if (!shares.isEmpty() && restoreState(kept, kStateVersion)) {
     shares_.clear();
     for (auto share = shares.begin(); share != shares.end(); ++share) shares_[share.key()] = share->toSizeF();
   } else {
@@ -58,7 +54,7 @@ void Workspace::choose_layout(const QString& name) {
 
 void Workspace::save_layout() const {
   QSettings settings;
-  settings.setValue(settings_key(layout_), saveState(static_cast<int>(docks_.size())));
+  settings.setValue(settings_key(layout_), saveState(kStateVersion));
   QVariantMap shares;
   for (const auto& [view, share] : shares_) shares[view] = share;
   settings.setValue(shares_key(layout_), shares);
@@ -113,8 +109,7 @@ int Workspace::needed_width() const {
 }
 
 void Workspace::arrange(const QString& name) {
-  const auto layout = std::find_if(built_in_layouts().begin(), built_in_layouts().end(),
-                                   [&](const Layout& l) { return l.name == name; });
+  const auto layout = std::find_if(layouts_.begin(), layouts_.end(), [&](const Layout& l) { return l.name == name; });
   // Puts all hidden views into a column on the right: there the menu shows a view that is not in the layout, and the
   // stored layout records that it was hidden.
   for (const auto& [view, dock] : docks_) {
@@ -163,21 +158,24 @@ void Workspace::arrange_rows(const LayoutColumn& column, double width_share) {
 
 void Workspace::fill_menu(QMenu& menu) {
   int number = 0;
-  for (const QString& name : layouts()) {
-    QAction* action = menu.addAction(tr("Layout: %1").arg(name));
+  for (const Layout& layout : layouts_) {
+    QAction* action = menu.addAction(tr("Layout: %1").arg(layout.name));
     action->setShortcut(QKeySequence(QStringLiteral("Ctrl+%1").arg(++number)));
-    connect(action, &QAction::triggered, this, [this, name] { choose_layout(name); });
+    connect(action, &QAction::triggered, this, [this, name = layout.name] { choose_layout(name); });
   }
   QAction* reset = menu.addAction(tr("Reset layout"));
   connect(reset, &QAction::triggered, this, &Workspace::reset_layout);
   menu.addSeparator();
-  for (const auto& [name, dock] : docks_) add_to_menu(menu, name, *dock);
+  for (const auto& [id, dock] : docks_) add_to_menu(menu, id, *dock);
+  for (const ViewDescription& view : registry_.views())
+    if (auto* action = menu.findChild<QAction*>(QStringLiteral("show-") + view.id); !view.shortcut.isEmpty())
+      action->setShortcut(QKeySequence(view.shortcut));
 }
 
 /// Qt's own action hides a view behind the tab of another.
-void Workspace::add_to_menu(QMenu& menu, const QString& name, QDockWidget& dock) {
+void Workspace::add_to_menu(QMenu& menu, const QString& id, QDockWidget& dock) {
   QAction* action = menu.addAction(dock.windowTitle());
-  action->setObjectName(QStringLiteral("show-") + name);
+  action->setObjectName(QStringLiteral("show-") + id);
   action->setCheckable(true);
   const auto is_seen = [this, &dock] { return !dock.isHidden() && (!isVisible() || !dock.visibleRegion().isEmpty()); };
   connect(&menu, &QMenu::aboutToShow, action, [=] { action->setChecked(is_seen()); });
