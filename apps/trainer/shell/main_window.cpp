@@ -15,7 +15,6 @@
 #include <QVBoxLayout>
 
 #include "control/mirror_station.h"
-#include "control/seat_flow.h"
 #include "pages/briefing_page.h"
 #include "pages/case_page.h"
 #include "pages/start_page.h"
@@ -23,6 +22,7 @@
 #include "panels/device_test_dialog.h"
 #include "panels/status_strip.h"
 #include "shell/keys_dialog.h"
+#include "shell/seat_flow.h"
 #include "ui_kit/focus_ring.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"

@@ -1,4 +1,4 @@
-#include "control/seat_flow.h"
+#include "shell/seat_flow.h"
 
 #include <QDateTime>
 #include <QDir>
