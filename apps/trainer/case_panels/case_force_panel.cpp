@@ -79,8 +79,8 @@ class ForcePanel final : public CasePanel {
     const anatomy::NeedlePath* path = case_builder::find_expert_path(desk_.draft());
     const auto& preview = desk_.preview();
     if (path == nullptr || !preview || row >= static_cast<int>(preview->events.size())) return;
-    Q_EMIT place_wanted(path->line_P.a +
-                        preview->events[static_cast<std::size_t>(row)].way_mm * path->line_P.direction());
+    Q_EMIT place_requested(path->line_P.a +
+                           preview->events[static_cast<std::size_t>(row)].way_mm * path->line_P.direction());
   }
 
   QLabel* text_ = nullptr;

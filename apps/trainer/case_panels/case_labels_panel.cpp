@@ -182,7 +182,7 @@ class LabelsPanel final : public CasePanel {
   void jump_to(int row) {
     const std::uint8_t id = id_of(row);
     for (const anatomy::LabelStatistics& s : desk_.draft().imported->statistics)
-      if (s.id == id && s.voxels > 0) Q_EMIT place_wanted(s.centroid_P);
+      if (s.id == id && s.voxels > 0) Q_EMIT place_requested(s.centroid_P);
   }
 
   QTableWidget* table_ = nullptr;

@@ -39,7 +39,7 @@ void CaseLandmarks::add_naming() {
   pick_ = make_button("case-landmark-pick", tr("Place by click"),
                       tr("Click in a slice, or double-click in 3D; click again to move it"), QStringLiteral("Ctrl+L"));
   pick_->setCheckable(true);
-  connect(pick_, &QPushButton::clicked, this, &CaseLandmarks::picking_wanted);
+  connect(pick_, &QPushButton::clicked, this, &CaseLandmarks::picking_requested);
   layout()->addWidget(pick_);
 }
 
@@ -54,7 +54,7 @@ void CaseLandmarks::add_list() {
   list_->installEventFilter(this);
   const auto jump = [this](const QListWidgetItem* item) {
     const auto row = static_cast<std::size_t>(list_->row(item));
-    if (row < desk_.draft().landmarks.size()) Q_EMIT place_wanted(desk_.draft().landmarks[row].p_P);
+    if (row < desk_.draft().landmarks.size()) Q_EMIT place_requested(desk_.draft().landmarks[row].p_P);
   };
   connect(list_, &QListWidget::itemClicked, this, jump);
   connect(list_, &QListWidget::itemActivated, this, jump);

@@ -27,10 +27,10 @@ class CaseLandmarks : public QWidget {
   std::string name() const;
 
  Q_SIGNALS:
-  void picking_wanted(bool is_on);
+  void picking_requested(bool is_on);
   /// The name that the tool places is another one.
   void name_changed();
-  void place_wanted(const trocar::Vec3& p_P);
+  void place_requested(const trocar::Vec3& p_P);
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;

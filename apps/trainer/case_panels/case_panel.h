@@ -27,10 +27,10 @@ class CasePanel : public QWidget {
 
  Q_SIGNALS:
   /// A tool was chosen, or put away (kLook).
-  void click_wanted(trocar::trainer::CaseClick click);
+  void click_requested(trocar::trainer::CaseClick click);
   /// click_name() is another one.
   void click_name_changed();
-  void place_wanted(const trocar::Vec3& p_P);
+  void place_requested(const trocar::Vec3& p_P);
   void label_visible_changed(const QString& name, bool is_visible);
   void label_opacity_changed(double opacity);
   void case_opened(const QString& folder);

@@ -52,7 +52,7 @@ class PathPanel final : public CasePanel {
     QPushButton* button = make_button(name, text, tooltip, keys);
     button->setCheckable(true);
     connect(button, &QPushButton::clicked, this,
-            [this, click](bool is_on) { Q_EMIT click_wanted(is_on ? click : CaseClick::kLook); });
+            [this, click](bool is_on) { Q_EMIT click_requested(is_on ? click : CaseClick::kLook); });
     return button;
   }
 

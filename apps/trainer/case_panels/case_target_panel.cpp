@@ -98,7 +98,7 @@ class TargetPanel final : public CasePanel {
     where_ = make_label({}, "dim");
     content()->addWidget(where_);
     connect(pick_, &QPushButton::clicked, this,
-            [this](bool is_on) { Q_EMIT click_wanted(is_on ? CaseClick::kTarget : CaseClick::kLook); });
+            [this](bool is_on) { Q_EMIT click_requested(is_on ? CaseClick::kTarget : CaseClick::kLook); });
   }
 
   QWidget* make_risks() {
@@ -113,10 +113,10 @@ class TargetPanel final : public CasePanel {
 
   QWidget* make_landmarks() {
     landmarks_ = new CaseLandmarks(desk_);
-    connect(landmarks_, &CaseLandmarks::picking_wanted, this,
-            [this](bool is_on) { Q_EMIT click_wanted(is_on ? CaseClick::kLandmark : CaseClick::kLook); });
+    connect(landmarks_, &CaseLandmarks::picking_requested, this,
+            [this](bool is_on) { Q_EMIT click_requested(is_on ? CaseClick::kLandmark : CaseClick::kLook); });
     connect(landmarks_, &CaseLandmarks::name_changed, this, &CasePanel::click_name_changed);
-    connect(landmarks_, &CaseLandmarks::place_wanted, this, &CasePanel::place_wanted);
+    connect(landmarks_, &CaseLandmarks::place_requested, this, &CasePanel::place_requested);
     return landmarks_;
   }
 

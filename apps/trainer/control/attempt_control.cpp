@@ -89,7 +89,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
     return (attempt_.view().needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
   });
   page_.puncture().begin(kFullForce_n, choice_.difficulty == Difficulty::kGuided);
-  take(ToolInHand::kNeedle);
+  take(ActiveTool::kNeedle);
 }
 
 AttemptControl::~AttemptControl() {
@@ -100,34 +100,34 @@ AttemptControl::~AttemptControl() {
 
 void AttemptControl::connect_panel() {
   PuncturePanel& panel = page_.puncture();
-  connect(&panel, &PuncturePanel::hand_wanted, this, &AttemptControl::take);
-  connect(&panel, &PuncturePanel::clamp_wanted, this, &AttemptControl::toggle_clamp);
-  connect(&panel, &PuncturePanel::aim_wanted, this, &AttemptControl::aim);
-  connect(&panel, &PuncturePanel::fire_wanted, this, [this] { attempt_.fire(); });
-  connect(&panel, &PuncturePanel::end_wanted, this, &AttemptControl::ask_to_end);
+  connect(&panel, &PuncturePanel::tool_requested, this, &AttemptControl::take);
+  connect(&panel, &PuncturePanel::clamp_requested, this, &AttemptControl::toggle_clamp);
+  connect(&panel, &PuncturePanel::aim_requested, this, &AttemptControl::aim);
+  connect(&panel, &PuncturePanel::fire_requested, this, [this] { attempt_.fire(); });
+  connect(&panel, &PuncturePanel::end_requested, this, &AttemptControl::ask_to_end);
   connect(&panel, &PuncturePanel::confirmed, this,
           [this] { question_ == Question::kEnd ? attempt_.finish() : Q_EMIT close_confirmed(); });
   connect(&gestures_, &ToolGestures::gestured, this, &AttemptControl::gesture);
-  connect(&gestures_, &ToolGestures::key_struck, this, &AttemptControl::strike);
-  connect(&gestures_, &ToolGestures::taken, &panel, &PuncturePanel::show_hand);
+  connect(&gestures_, &ToolGestures::key_pressed, this, &AttemptControl::handle_key);
+  connect(&gestures_, &ToolGestures::taken, &panel, &PuncturePanel::show_active_tool);
   gestures_.watch(page_.view_3d(), [this] { return scale_of_3d(); });
   gestures_.watch(page_.ultrasound(), [this] { return scale_of_ultrasound(); });
 }
 
-void AttemptControl::take(ToolInHand tool) {
-  if (gestures_.in_hand() != tool) gestures_.take(tool);
-  page_.puncture().show_hand(tool);
+void AttemptControl::take(ActiveTool tool) {
+  if (gestures_.active_tool() != tool) gestures_.take(tool);
+  page_.puncture().show_active_tool(tool);
 }
 
 bool AttemptControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
-  if (key.key() != Qt::Key_Space || key.modifiers() != Qt::NoModifier) return gestures_.strike(key, place);
+  if (key.key() != Qt::Key_Space || key.modifiers() != Qt::NoModifier) return gestures_.handle_key(key, place);
   // Space in a text field stops the forces but must not switch them on.
   if (place.is_text && attempt_.view().are_forces_stopped) return false;
   if (!key.isAutoRepeat()) toggle_forces();
   return true;
 }
 
-void AttemptControl::strike(int key) {
+void AttemptControl::handle_key(int key) {
   if (key == Qt::Key_H) aim();
   if (key == Qt::Key_X) toggle_clamp();
   if (key == Qt::Key_E) ask_to_end();
@@ -175,8 +175,8 @@ void AttemptControl::gesture(const Gesture& gesture) {
         return hand.push(gesture.right);
     }
   };
-  if (gestures_.in_hand() == ToolInHand::kNeedle && is_free(attempt::HandTool::kNeedle)) move(needle_);
-  if (gestures_.in_hand() == ToolInHand::kTransducer && is_free(attempt::HandTool::kProbe)) move(probe_);
+  if (gestures_.active_tool() == ActiveTool::kNeedle && is_free(attempt::HandTool::kNeedle)) move(needle_);
+  if (gestures_.active_tool() == ActiveTool::kTransducer && is_free(attempt::HandTool::kProbe)) move(probe_);
 }
 
 bool AttemptControl::is_free(attempt::HandTool tool) const {
@@ -186,22 +186,22 @@ bool AttemptControl::is_free(attempt::HandTool tool) const {
 
 void AttemptControl::aim() {
   if (choice_.difficulty != Difficulty::kGuided)
-    return say(tr("The planned position is available in guided attempts only."));
-  if (gestures_.in_hand() == ToolInHand::kTransducer && is_led_[1]) probe_.put(open_->X_PT_start);
-  if (gestures_.in_hand() == ToolInHand::kNeedle && is_led_[0] && !needle_.is_past_skin())
+    return show_notice(tr("The planned position is available in guided attempts only."));
+  if (gestures_.active_tool() == ActiveTool::kTransducer && is_led_[1]) probe_.put(open_->X_PT_start);
+  if (gestures_.active_tool() == ActiveTool::kNeedle && is_led_[0] && !needle_.is_past_skin())
     needle_.aim_at(open_->the_case.plan.line_P);
 }
 
-void AttemptControl::say(const QString& text) {
-  constexpr double kSaid_s = 5.0;
-  said_ = text;
-  said_s_ = kSaid_s;
+void AttemptControl::show_notice(const QString& text) {
+  constexpr double kNotice_s = 5.0;
+  notice_ = text;
+  notice_s_ = kNotice_s;
 }
 
 void AttemptControl::toggle_clamp() {
-  if (gestures_.in_hand() == ToolInHand::kNone) return;
+  if (gestures_.active_tool() == ActiveTool::kNone) return;
   const attempt::HandTool tool =
-      gestures_.in_hand() == ToolInHand::kNeedle ? attempt::HandTool::kNeedle : attempt::HandTool::kProbe;
+      gestures_.active_tool() == ActiveTool::kNeedle ? attempt::HandTool::kNeedle : attempt::HandTool::kProbe;
   bool& is_clamped = is_clamped_[static_cast<std::size_t>(tool)];
   is_clamped = !is_clamped;
   attempt_.hold(tool, is_clamped);
@@ -233,15 +233,15 @@ void AttemptControl::advance(double dt_s) {
       points.push_back({point.time_s, point.depth_mm, point.force_n});
     plot.append(points);
   }
-  look_at_events();
-  look_at_shot();
-  said_s_ -= dt_s;
+  poll_events();
+  poll_shot();
+  notice_s_ -= dt_s;
   show_tools(dt_s);
   show_panel();
 }
 
 /// An exam shows no layer names and no labels: they would reveal the solution.
-void AttemptControl::look_at_events() {
+void AttemptControl::poll_events() {
   for (const attempt::AttemptEvent& event : attempt_.take_events()) {
     const bool is_shot = event.kind == telemetry::EventKind::kNone;
     if (is_exam() && !is_shot) continue;
@@ -253,7 +253,7 @@ void AttemptControl::look_at_events() {
   }
 }
 
-void AttemptControl::look_at_shot() {
+void AttemptControl::poll_shot() {
   if (!view_.shot || has_shown_shot_) return;
   has_shown_shot_ = true;
   if (!is_exam()) page_.puncture().show_core(*view_.shot);  // in an exam its composition would reveal the solution
@@ -291,7 +291,7 @@ double AttemptControl::distance_mm() const {
 }
 
 QString AttemptControl::hint() const {
-  return said_s_ > 0.0 ? said_ : to_qt(view_.hint);
+  return notice_s_ > 0.0 ? notice_ : to_qt(view_.hint);
 }
 
 void AttemptControl::show_panel() {
@@ -300,7 +300,7 @@ void AttemptControl::show_panel() {
   figures.tissue = is_exam() ? QStringLiteral("–") : to_qt(view_.needle.tissue);
   const bool is_starting =
       view_.phase == attempt::AttemptPhase::kStarting || view_.phase == attempt::AttemptPhase::kFinishing;
-  figures.hint = is_starting && said_s_ <= 0.0 ? to_qt(view_.progress) : hint();
+  figures.hint = is_starting && notice_s_ <= 0.0 ? to_qt(view_.progress) : hint();
   if (!is_tip_hidden()) figures.depth_mm = view_.needle.depth_mm;
   if (choice_.difficulty == Difficulty::kGuided && view_.needle.is_known) figures.to_target_mm = distance_mm();
   figures.force_n = std::abs(view_.needle.resistance_n);

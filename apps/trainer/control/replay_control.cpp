@@ -96,7 +96,7 @@ ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<cons
   page_.feedback().show_notes(notes_of(replay_, warnings));
   page_.workspace().show_help(
       Difficulty::kGuided);  // after the attempt the expert's path is visible at every level of help
-  connect(&page_.feedback(), &FeedbackPanel::worst_wanted, this, &ReplayControl::go_to_worst);
+  connect(&page_.feedback(), &FeedbackPanel::worst_requested, this, &ReplayControl::go_to_worst);
   show_at(replay_.duration_s(), false);
 }
 

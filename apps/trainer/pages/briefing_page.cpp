@@ -179,8 +179,8 @@ QWidget* BriefingPage::make_bottom() {
   begin_ = make_button("begin", tr("Begin"), tr("Starts the haptic servers and the attempt"), QStringLiteral("Return"));
   begin_->setProperty("role", "primary");
   row->addWidget(begin_);
-  connect(back, &QPushButton::clicked, this, &BriefingPage::back_wanted);
-  connect(begin_, &QPushButton::clicked, this, &BriefingPage::begin_wanted);
+  connect(back, &QPushButton::clicked, this, &BriefingPage::back_requested);
+  connect(begin_, &QPushButton::clicked, this, &BriefingPage::begin_requested);
   return bottom;
 }
 

@@ -26,8 +26,8 @@ class BriefingPage : public QWidget {
   void show_case(const cases::OpenCase& open, Difficulty difficulty);
 
  Q_SIGNALS:
-  void begin_wanted();
-  void back_wanted();
+  void begin_requested();
+  void back_requested();
 
  private:
   QWidget* make_text();

@@ -138,9 +138,9 @@ void CasePage::add_panel(CasePanel* panel, const QString& title) {
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   stack_->addWidget(scroll);
   panels_.push_back(panel);
-  connect(panel, &CasePanel::click_wanted, this, &CasePage::set_click);
+  connect(panel, &CasePanel::click_requested, this, &CasePage::set_click);
   connect(panel, &CasePanel::click_name_changed, this, &CasePage::show_hint);
-  connect(panel, &CasePanel::place_wanted, this, &CasePage::show_place);
+  connect(panel, &CasePanel::place_requested, this, &CasePage::show_place);
   connect(panel, &CasePanel::label_opacity_changed, this, [this](double opacity) {
     for (SliceView* slice : slices_) slice->set_label_opacity(opacity);
   });

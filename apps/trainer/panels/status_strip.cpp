@@ -66,7 +66,7 @@ StatusStrip::StatusStrip(QWidget* parent) : QFrame(parent) {
   stop_->setFocusPolicy(Qt::NoFocus);
   row->addWidget(stop_);
   for (QLabel* label : {needle_, probe_, frames_}) label->setMinimumWidth(1);  // the button is never shrunk
-  connect(stop_, &QPushButton::clicked, this, &StatusStrip::toggle_wanted);
+  connect(stop_, &QPushButton::clicked, this, &StatusStrip::toggle_requested);
   show_forces(false, false);
 }
 

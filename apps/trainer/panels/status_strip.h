@@ -42,7 +42,7 @@ class StatusStrip : public QFrame {
 
  Q_SIGNALS:
   /// The button was pressed; Space acts alike.
-  void toggle_wanted();
+  void toggle_requested();
 
  protected:
   void resizeEvent(QResizeEvent* event) override;

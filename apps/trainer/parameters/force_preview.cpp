@@ -53,7 +53,7 @@ ForcePreview::ForcePreview(QWidget* parent)
   model_->addItem(tr("Proxy (CT and walls)"), QStringLiteral("proxy"));
   model_->addItem(tr("Combined"), QStringLiteral("combined"));
   connect(model_, QOverload<int>::of(&QComboBox::activated), this, [this] {
-    want();
+    request();
     Q_EMIT model_changed(model());
   });
   refusal_->setObjectName(QStringLiteral("parameter-preview-error"));
@@ -105,13 +105,13 @@ void ForcePreview::show_case(std::shared_ptr<const cases::OpenCase> open_case) {
     defaults_[case_->force_model] = case_->predicted;
   }
   show_bands();
-  want();
+  request();
 }
 
 void ForcePreview::show_settings(std::vector<std::string> settings) {
   if (settings == settings_) return;
   settings_ = std::move(settings);
-  want();
+  request();
 }
 
 bool ForcePreview::offers(const QString& model) const {
@@ -121,11 +121,11 @@ bool ForcePreview::offers(const QString& model) const {
 void ForcePreview::choose_model(const QString& model) {
   const QSignalBlocker silent(model_);
   model_->setCurrentIndex(std::max(0, model_->findData(model)));
-  want();
+  request();
 }
 
 /// Discards the running prediction and requests a new one.
-void ForcePreview::want() {
+void ForcePreview::request() {
   retired_.retire(std::exchange(job_, {}));
   changed_.clear();
   is_wanted_ = case_ != nullptr;

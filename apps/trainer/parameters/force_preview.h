@@ -51,7 +51,7 @@ class ForcePreview : public QWidget {
   void model_changed(QString model);
 
  private:
-  void want();
+  void request();
   void start_work();
   void take_work();
   void show_curves();

@@ -279,17 +279,17 @@ void ParameterProfiles::remove() {
   ask(Question::kNone);
   read_folder();
   if (done) {
-    tell(tr("Profile “%1” is deleted; its values stay active.").arg(breakable(name)), false);
+    show_message(tr("Profile “%1” is deleted; its values stay active.").arg(breakable(name)), false);
   } else {
     show_problem(to_qt(done.error().text()));
   }
 }
 
 void ParameterProfiles::show_problem(const QString& text) {
-  tell(breakable(text), true);
+  show_message(breakable(text), true);
 }
 
-void ParameterProfiles::tell(const QString& text, bool is_problem) {
+void ParameterProfiles::show_message(const QString& text, bool is_problem) {
   problem_->setText(text);
   problem_->setStyleSheet(QStringLiteral("color: %1").arg((is_problem ? theme().bad : theme().dim).name()));
   problem_->setVisible(!text.isEmpty());

@@ -66,7 +66,7 @@ class ParameterProfiles : public QWidget {
   void save();
   void remove();
   void list_entries();
-  void tell(const QString& text, bool is_problem);
+  void show_message(const QString& text, bool is_problem);
   /// The profile that saving under this name would replace: one of that name, or one in that name's file.
   const cases::TissueProfile* find_same(const std::string& name) const noexcept;
   const cases::TissueProfile* current() const noexcept;

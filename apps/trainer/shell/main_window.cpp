@@ -116,8 +116,9 @@ QWidget* MainWindow::make_top_bar() {
   for (QToolButton* button : {views, tissues, builder, keys}) row->addWidget(button);
   connect(tissues, &QToolButton::clicked, this, [this] {
     if (!work_->toggle_parameters())
-      tell(tr("The Tissues panel is closed in an exam: it shows path, depths and forces, and changes the task."),
-           BannerKind::kWarning);
+      show_message(
+          tr("The Tissues panel is closed in an exam: it shows path, depths and forces, and changes the task."),
+          BannerKind::kWarning);
   });
   connect(builder, &QToolButton::clicked, this,
           [this] { page_ == QLatin1String("case-builder") ? flow_->go_to_start() : flow_->go_to_case_builder(); });
@@ -189,8 +190,8 @@ void MainWindow::show_banner(const QString& text, BannerKind kind) {
   banner_->set_state(text, kind);
 }
 
-void MainWindow::tell(const QString& text, BannerKind kind) {
-  banner_->tell(text, kind);
+void MainWindow::show_message(const QString& text, BannerKind kind) {
+  banner_->show_message(text, kind);
 }
 
 QVariantMap MainWindow::facts() const {

@@ -83,22 +83,22 @@ SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
 SeatFlow::~SeatFlow() = default;
 
 void SeatFlow::connect_pages() {
-  connect(&window_.start(), &StartPage::start_wanted, this, &SeatFlow::open);
-  connect(&window_.start(), &StartPage::recovery_wanted, this, &SeatFlow::recover);
+  connect(&window_.start(), &StartPage::start_requested, this, &SeatFlow::open);
+  connect(&window_.start(), &StartPage::recovery_requested, this, &SeatFlow::recover);
   connect(&window_.start(), &StartPage::recovery_declined, this, [this] {
     if (offered_) journal_.forget(*std::exchange(offered_, {}));
   });
-  connect(&window_.briefing(), &BriefingPage::back_wanted, this, &SeatFlow::go_to_start);
-  connect(&window_.briefing(), &BriefingPage::begin_wanted, this, &SeatFlow::begin_attempt);
+  connect(&window_.briefing(), &BriefingPage::back_requested, this, &SeatFlow::go_to_start);
+  connect(&window_.briefing(), &BriefingPage::begin_requested, this, &SeatFlow::begin_attempt);
   FeedbackPanel& feedback = window_.work().feedback();
-  connect(&feedback, &FeedbackPanel::again_wanted, this, &SeatFlow::try_again);
-  connect(&feedback, &FeedbackPanel::other_case_wanted, this, &SeatFlow::go_to_start);
-  connect(&feedback, &FeedbackPanel::report_wanted, this, &SeatFlow::save_report);
+  connect(&feedback, &FeedbackPanel::again_requested, this, &SeatFlow::try_again);
+  connect(&feedback, &FeedbackPanel::other_case_requested, this, &SeatFlow::go_to_start);
+  connect(&feedback, &FeedbackPanel::report_requested, this, &SeatFlow::save_report);
   connect(&window_.case_builder(), &CasePage::case_saved, this, [this](const QString& folder) {
     window_.start().add_patient(folder);
     go_to_start();
   });
-  connect(&window_.strip(), &StatusStrip::toggle_wanted, this, [this] {
+  connect(&window_.strip(), &StatusStrip::toggle_requested, this, [this] {
     if (attempt_) attempt_->toggle_forces();
   });
   ParameterPanel& parameters = window_.work().parameters();
@@ -128,10 +128,10 @@ void SeatFlow::go_to_case_builder() {
   const QString is_scored = tr("The attempt is being scored. The case builder is available afterwards.");
   if (attempt_) {
     const bool is_ending = attempt_->view().phase == attempt::AttemptPhase::kFinishing;
-    return attempt_->say(
+    return attempt_->show_notice(
         is_ending ? is_scored : tr("The case builder is not available during an attempt. End the attempt first (E)."));
   }
-  if (loading_.has_work()) return window_.tell(is_scored, BannerKind::kWarning);
+  if (loading_.has_work()) return window_.show_message(is_scored, BannerKind::kWarning);
   window_.show_page(QStringLiteral("case-builder"));
 }
 
@@ -146,7 +146,7 @@ void SeatFlow::open(const SeatChoice& choice) {
   window_.show_page(QStringLiteral("briefing"));
 }
 
-void SeatFlow::look_at_opening() {
+void SeatFlow::poll_opening() {
   if (!opening_.has_work()) return;
   const JobView view = opening_.view();
   auto result = opening_.take();
@@ -240,12 +240,12 @@ void SeatFlow::try_again() {
   begin_attempt();
 }
 
-void SeatFlow::look_at_attempt() {
+void SeatFlow::poll_attempt() {
   if (!attempt_) return;
   const attempt::AttemptView& view = attempt_->view();
   window_.show_banner(to_qt(view.banner),
                       view.phase == attempt::AttemptPhase::kFailed ? BannerKind::kError : BannerKind::kWarning);
-  tell_of_servers(view);
+  report_recoveries(view);
   std::vector<ServerLine> servers{line_of(view.servers[0], tr("Needle"))};
   if (view.has_probe) servers.push_back(line_of(view.servers[1], tr("Transducer")));
   window_.strip().show_servers(servers);
@@ -274,10 +274,10 @@ void SeatFlow::look_at_attempt() {
   }
 }
 
-void SeatFlow::tell_of_servers(const attempt::AttemptView& view) {
+void SeatFlow::report_recoveries(const attempt::AttemptView& view) {
   if (view.recoveries == recoveries_) return;
   recoveries_ = view.recoveries;
-  window_.tell(to_qt(view.recovered), BannerKind::kSuccess);
+  window_.show_message(to_qt(view.recovered), BannerKind::kSuccess);
 }
 
 void SeatFlow::load_replay(const std::filesystem::path& session) {
@@ -285,7 +285,7 @@ void SeatFlow::load_replay(const std::filesystem::path& session) {
       [session, open = open_](const Progress&) { return attempt::AttemptReplay::load(session, open); });
 }
 
-void SeatFlow::look_at_replay() {
+void SeatFlow::poll_replay() {
   auto loaded = loading_.take();
   if (!loaded) return;
   loading_ = {};
@@ -309,7 +309,7 @@ void SeatFlow::recover() {
   cut_off_ = std::exchange(offered_, {});
   if (!journal_.forget(*cut_off_)) {
     cut_off_.reset();
-    return window_.tell(tr("The attempt has been opened in another trainer."), BannerKind::kWarning);
+    return window_.show_message(tr("The attempt has been opened in another trainer."), BannerKind::kWarning);
   }
   SeatChoice choice = window_.start().choice();
   choice.task = cut_off_->choice.options.task;
@@ -327,16 +327,16 @@ void SeatFlow::save_report() {
   if (file.isEmpty()) return;
   const Status status = replay_->save_report(to_std(file));
   if (!status) return window_.show_banner(sentence_of(status.error()), BannerKind::kError);
-  window_.tell(tr("The report is in %1").arg(file), BannerKind::kSuccess);
+  window_.show_message(tr("The report is in %1").arg(file), BannerKind::kSuccess);
 }
 
 void SeatFlow::frame() {
   const double now = now_s();
   retired_.sweep();
   show_opened();
-  look_at_opening();
-  look_at_attempt();
-  look_at_replay();
+  poll_opening();
+  poll_attempt();
+  poll_replay();
   const double dt_s = frames_.since_last_s(now);
   if (attempt_) attempt_->advance(dt_s);
   if (replay_) replay_->advance(dt_s);
@@ -344,8 +344,8 @@ void SeatFlow::frame() {
   if (attempt_ || replay_) {
     window_.work().parameters().advance();
     const cases::Case& the_case = open_->the_case;
-    window_.mirror().lead_camera(window_.work().view_3d(),
-                                 cases::room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
+    window_.mirror().update_camera(window_.work().view_3d(),
+                                   cases::room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
     window_.work().workspace().draw(now);
   }
   if (attempt_) attempt_->attempt().frame_drawn();

@@ -51,14 +51,14 @@ class SeatFlow : public QObject {
  private:
   void connect_pages();
   void frame();
-  void look_at_opening();
+  void poll_opening();
   void show_opened();
   bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
   bool can_record();
-  void look_at_attempt();
-  void tell_of_servers(const attempt::AttemptView& view);
+  void poll_attempt();
+  void report_recoveries(const attempt::AttemptView& view);
   void show_replay(Result<attempt::AttemptReplay> replay);
-  void look_at_replay();
+  void poll_replay();
   void load_replay(const std::filesystem::path& session);
   void recover();
   void measure_frame(double now_s);

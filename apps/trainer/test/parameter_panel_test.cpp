@@ -62,13 +62,13 @@ TEST_F(ParameterPanelTest, AStifferCapsuleChangesThePredictedForceAndUndoGivesIt
   EXPECT_GT(way_mm("liver_capsule"), before_mm + 0.2) << "a softer capsule gives way later";
   keep_picture("parameters_changed.png");
 
-  EXPECT_TRUE(strike(panel, QStringLiteral("Ctrl+Z")));
+  EXPECT_TRUE(press_keys(panel, QStringLiteral("Ctrl+Z")));
   EXPECT_EQ(part<QLineEdit>("parameter-liver-k")->text(), QStringLiteral("0.42"));
   settle();
   EXPECT_EQ(sent.back(), QStringList());
   EXPECT_EQ(panel.preview().changed_curve().size(), before.size());
   EXPECT_EQ(way_mm("liver_capsule"), before_mm);
-  EXPECT_TRUE(strike(panel, QStringLiteral("Ctrl+Shift+Z")));
+  EXPECT_TRUE(press_keys(panel, QStringLiteral("Ctrl+Shift+Z")));
   settle();
   EXPECT_EQ(sent.back(), QStringList{QStringLiteral("liver.k=0.05")});
 }

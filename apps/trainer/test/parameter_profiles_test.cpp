@@ -117,7 +117,7 @@ TEST_F(ParameterProfilesTest, DeletingIsAskedAndLeavesTheNumbers) {
   save_as("Soft");
   click("parameter-profile-delete");
   EXPECT_TRUE(part<QLabel>("parameter-profile-question")->text().contains(QStringLiteral("Delete “Soft”")));
-  EXPECT_TRUE(strike(panel, QStringLiteral("Escape")));
+  EXPECT_TRUE(press_keys(panel, QStringLiteral("Escape")));
   EXPECT_FALSE(part<QLabel>("parameter-profile-question")->isVisible());
   EXPECT_EQ(cases::list_profiles(place()).profiles.size(), 1u);
   click("parameter-profile-delete");

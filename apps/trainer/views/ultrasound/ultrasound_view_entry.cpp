@@ -13,7 +13,7 @@ namespace {
 /// In the title of the dock, where it covers nothing of the picture.
 QToolButton* make_controls_button() {
   auto* button =
-      make_tool_button("ultrasound-knobs", UltrasoundView::tr("Knobs"),
+      make_tool_button("show-ultrasound-controls", UltrasoundView::tr("Controls"),
                        UltrasoundView::tr("Image controls next to the ultrasound image"), QStringLiteral("K"));
   button->setCheckable(true);
   button->setFocusPolicy(Qt::NoFocus);
