@@ -13,7 +13,7 @@ namespace {
 
 class ForcePanel final : public CasePanel {
  public:
-  ForcePanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  ForcePanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     text_ = make_label({}, "dim");
     text_->setObjectName(QStringLiteral("case-force-text"));
     text_->setWordWrap(true);
@@ -39,9 +39,9 @@ class ForcePanel final : public CasePanel {
   }
 
   void refresh() override {
-    const auto& preview = desk_.preview();
+    const auto& preview = editor_.preview();
     if (!preview) {
-      text_->setText(!desk_.has_patient() ? tr("Import a patient first.") : to_qt(desk_.preview_error()));
+      text_->setText(!editor_.has_patient() ? tr("Import a patient first.") : to_qt(editor_.preview_error()));
       plot_->set_predicted({});
       plot_->set_bands({});
       table_->setRowCount(0);
@@ -71,13 +71,13 @@ class ForcePanel final : public CasePanel {
 
  private:
   QColor color_of(const std::string& name) const {
-    const anatomy::Label* label = desk_.draft().label_table.find(std::string_view(name));
+    const anatomy::Label* label = editor_.draft().label_table.find(std::string_view(name));
     return label != nullptr ? QColor(label->color[0], label->color[1], label->color[2]) : QColor(200, 170, 150);
   }
 
   void jump_to(int row) {
-    const anatomy::NeedlePath* path = case_builder::find_expert_path(desk_.draft());
-    const auto& preview = desk_.preview();
+    const anatomy::NeedlePath* path = case_builder::find_expert_path(editor_.draft());
+    const auto& preview = editor_.preview();
     if (path == nullptr || !preview || row >= static_cast<int>(preview->events.size())) return;
     Q_EMIT place_requested(path->line_P.a +
                            preview->events[static_cast<std::size_t>(row)].way_mm * path->line_P.direction());
@@ -90,8 +90,8 @@ class ForcePanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_force_panel(case_builder::CaseDesk& desk, QWidget* parent) {
-  return new ForcePanel(desk, parent);
+CasePanel* make_force_panel(case_builder::CaseEditor& editor, QWidget* parent) {
+  return new ForcePanel(editor, parent);
 }
 
 }  // namespace trocar::trainer

@@ -3,7 +3,7 @@
 #include <QWidget>
 #include <string>
 
-#include "case_builder/case_desk.h"
+#include "case_builder/case_editor.h"
 #include "geometry/pose.h"
 
 class QComboBox;
@@ -19,7 +19,7 @@ class CaseLandmarks : public QWidget {
   Q_OBJECT
 
  public:
-  explicit CaseLandmarks(case_builder::CaseDesk& desk, QWidget* parent = nullptr);
+  explicit CaseLandmarks(case_builder::CaseEditor& editor, QWidget* parent = nullptr);
 
   void refresh();
   void show_picking(bool is_on);
@@ -42,7 +42,7 @@ class CaseLandmarks : public QWidget {
   void rename(int row);
   void remove_current();
 
-  case_builder::CaseDesk& desk_;
+  case_builder::CaseEditor& editor_;
   QComboBox* name_ = nullptr;
   QPushButton* pick_ = nullptr;
   QListWidget* list_ = nullptr;

@@ -1,4 +1,4 @@
-#include "case_builder/case_desk.h"
+#include "case_builder/case_editor.h"
 
 #include <fmt/format.h>
 
@@ -12,12 +12,12 @@
 namespace trocar::case_builder {
 namespace fs = std::filesystem;
 
-CaseDesk::CaseDesk() {
+CaseEditor::CaseEditor() {
   if (const Status loaded = load_tables(); !loaded) say(loaded.error().text(), true);
 }
-CaseDesk::~CaseDesk() = default;
+CaseEditor::~CaseEditor() = default;
 
-Status CaseDesk::load_tables() {
+Status CaseEditor::load_tables() {
   const fs::path data = data_dir();
   if (data.empty()) return fail("the data folder was not found", {}, "set TROCAR_DATA_DIR to it");
   TROCAR_TRY(templates_, tasks::load_tasks(data / "tasks"));
@@ -26,19 +26,19 @@ Status CaseDesk::load_tables() {
   return {};
 }
 
-const tasks::Needle* CaseDesk::needle() const noexcept {
+const tasks::Needle* CaseEditor::needle() const noexcept {
   const auto found = std::find_if(needles_.begin(), needles_.end(),
                                   [&](const tasks::Needle& needle) { return needle.name == draft().task.needle; });
   return found != needles_.end() ? &*found : nullptr;
 }
 
-void CaseDesk::say(std::string message, bool is_error) {
+void CaseEditor::say(std::string message, bool is_error) {
   message_ = std::move(message);
   is_error_ = is_error;
   has_news_ = true;
 }
 
-bool CaseDesk::edit(Result<CaseDraft> next, std::string what, const std::string& gesture) {
+bool CaseEditor::edit(Result<CaseDraft> next, std::string what, const std::string& gesture) {
   if (!next) {
     say(next.error().text(), true);
     return false;
@@ -48,19 +48,19 @@ bool CaseDesk::edit(Result<CaseDraft> next, std::string what, const std::string&
   return true;
 }
 
-void CaseDesk::undo() {
+void CaseEditor::undo() {
   if (!history_.can_undo()) return;
   say("Undone: " + history_.undo_text());
   history_.undo();
 }
 
-void CaseDesk::redo() {
+void CaseEditor::redo() {
   if (!history_.can_redo()) return;
   say("Redone: " + history_.redo_text());
   history_.redo();
 }
 
-void CaseDesk::import_patient(ImportRequest request) {
+void CaseEditor::import_patient(ImportRequest request) {
   if (work_ == Work::kSaving) return say("the case is being saved; wait a moment", true);
   cancel();
   import_ = BackgroundJob<CaseDraft>([request = std::move(request)](const Progress& progress, std::stop_token stop) {
@@ -70,7 +70,7 @@ void CaseDesk::import_patient(ImportRequest request) {
   say({});
 }
 
-void CaseDesk::plan_path() {
+void CaseEditor::plan_path() {
   if (work_ != Work::kNone || !has_patient()) return;
   const tasks::Needle* the_needle = needle();
   if (the_needle == nullptr) return say("there is no needle \"" + draft().task.needle + "\"", true);
@@ -85,7 +85,7 @@ void CaseDesk::plan_path() {
   say({});
 }
 
-void CaseDesk::save(SaveOptions options) {
+void CaseEditor::save(SaveOptions options) {
   if (work_ != Work::kNone) return say("another job is running; wait a moment", true);
   save_version_ = history_.version();
   save_ = BackgroundJob<fs::path>([draft = draft(), patients = patients_,
@@ -97,7 +97,7 @@ void CaseDesk::save(SaveOptions options) {
   say({});
 }
 
-void CaseDesk::cancel() {
+void CaseEditor::cancel() {
   if (work_ == Work::kNone || work_ == Work::kSaving) return;
   retired_.retire(std::exchange(import_, {}));
   retired_.retire(std::exchange(plan_, {}));
@@ -105,7 +105,7 @@ void CaseDesk::cancel() {
   say("Cancelled; nothing was changed.");
 }
 
-JobView CaseDesk::work_view() const {
+JobView CaseEditor::work_view() const {
   switch (work_) {
     case Work::kImporting:
       return import_.view();
@@ -119,7 +119,7 @@ JobView CaseDesk::work_view() const {
   return {};
 }
 
-bool CaseDesk::take_import() {
+bool CaseEditor::take_import() {
   auto draft = import_.take();
   if (!draft) return false;
   work_ = Work::kNone;
@@ -136,7 +136,7 @@ bool CaseDesk::take_import() {
   return true;
 }
 
-bool CaseDesk::take_plan() {
+bool CaseEditor::take_plan() {
   const auto line_P = plan_.take();
   if (!line_P) return false;
   work_ = Work::kNone;
@@ -151,7 +151,7 @@ bool CaseDesk::take_plan() {
   return true;
 }
 
-bool CaseDesk::take_save() {
+bool CaseEditor::take_save() {
   const auto folder = save_.take();
   if (!folder) return false;
   work_ = Work::kNone;
@@ -166,7 +166,7 @@ bool CaseDesk::take_save() {
   return true;
 }
 
-void CaseDesk::start_review() {
+void CaseEditor::start_review() {
   const tasks::Needle* the_needle = needle();
   is_reviewing_ = true;
   review_ = BackgroundJob<Review>(
@@ -185,7 +185,7 @@ void CaseDesk::start_review() {
       });
 }
 
-bool CaseDesk::take_review() {
+bool CaseEditor::take_review() {
   if (!is_reviewing_) return false;
   auto review = review_.take();
   if (!review) return false;
@@ -205,7 +205,7 @@ bool CaseDesk::take_review() {
   return true;
 }
 
-bool CaseDesk::advance() {
+bool CaseEditor::advance() {
   retired_.sweep();
   bool is_new = std::exchange(has_news_, false);
   is_new |= take_import();

@@ -20,15 +20,15 @@ namespace trocar::case_builder {
 /// State of the case builder: the draft with its history, and its background work. Every change triggers new checks and
 /// forces. Owned by one thread, which calls advance() once per frame; no call blocks. message() returns errors, one
 /// line each.
-class CaseDesk {
+class CaseEditor {
  public:
   enum class Work : std::uint8_t { kNone, kImporting, kPlanning, kSaving };
 
   /// Reads the tables of the data folder; what is wrong with them is in message().
-  CaseDesk();
-  ~CaseDesk();
-  CaseDesk(const CaseDesk&) = delete;
-  CaseDesk& operator=(const CaseDesk&) = delete;
+  CaseEditor();
+  ~CaseEditor();
+  CaseEditor(const CaseEditor&) = delete;
+  CaseEditor& operator=(const CaseEditor&) = delete;
 
   /// Collects finished work and starts requested work. Returns true if displayed data may have changed.
   bool advance();
