@@ -31,8 +31,9 @@ std::vector<telemetry::TickSample> drive(haptics::HapticState& state, const hapt
   const auto count = static_cast<int>(std::abs((to_mm - from_mm) / step));
   for (int i = 1; i <= count; ++i) {
     const Vec3 tip_P = path_P.a + path_P.direction() * (from_mm + step * i);
-    const Pose X_DS = scene.X_PD.inverse() * needle_pose(tip_P, path_P.direction()) * scene.X_SN.inverse();
-    samples.push_back(haptics::tick(state, {i * kDt_s, kDt_s, X_DS}, scene).sample);
+    samples.push_back(
+        haptics::tick(state, {i * kDt_s, kDt_s, telemetry::to_tool_pose(needle_pose(tip_P, path_P.direction()))}, scene)
+            .sample);
   }
   return samples;
 }

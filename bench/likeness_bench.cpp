@@ -10,8 +10,8 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "core/files/data_dir.h"
-#include "io/image/png.h"
 #include "io/sequence/sequence_file.h"
+#include "png/png_file.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/figures/picture_figures.h"
 #include "ultrasound/probe/probe_placement.h"
@@ -162,7 +162,7 @@ Status write_pictures(const std::filesystem::path& folder, const std::optional<P
   std::filesystem::create_directories(folder, error);
   if (error) return fail("the folder could not be made", folder.string(), error.message());
   const volume::RgbImage image = real ? side_by_side(real->shown, synthetic.shown) : synthetic.shown;
-  return io::write_png(image, folder / "likeness.png");
+  return png::write_png(image, folder / "likeness.png");
 }
 
 Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(const Options& options) {

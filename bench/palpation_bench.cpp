@@ -210,8 +210,8 @@ void add_time(std::vector<CaseResult>& results, const haptics::HapticScene& scen
     for (int i = 0; i < kTicks; ++i) {
       const double way = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * i / kTicks);
       const Place place = on_skin(*scene.patient, from_P + way * (to_P - from_P));
-      const Pose X_DS = scene.X_PD.inverse() * pose_on(place, -depth_mm, 0.0) * scene.X_SN.inverse();
-      const haptics::HapticInput input{i * kDt_s, kDt_s, X_DS, true, {}};
+      const haptics::HapticInput input{
+          i * kDt_s, kDt_s, telemetry::to_tool_pose(pose_on(place, -depth_mm, 0.0)), true, {}};
       ticks.push_back(time_us([&] { sink = sink + haptics::tick(*state, input, scene).f_D.x(); }));
       calibrations.push_back(time_us([&] { sink = calibration_arithmetic(sink); }));
       if (i == 0)

@@ -60,9 +60,15 @@ function(trocar_add_module tier name uses libraries)
     endif()
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${links} PRIVATE trocar_warnings)
-    if(NOT "itk" IN_LIST libraries)  # ITK brings an Eigen of its own
-      trocar_use_precompiled(${target} trocar_precompiled)
-    endif()
+    trocar_use_precompiled(${target} trocar_precompiled)
+    foreach(source IN LISTS sources)
+      if(EXISTS ${source})
+        file(STRINGS ${source} itk_include REGEX "^#include <(itk|gdcm)" LIMIT_COUNT 1)
+        if(itk_include)  # ITK brings an Eigen of its own
+          set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+        endif()
+      endif()
+    endforeach()
     if("vtk-rendering" IN_LIST libraries)
       vtk_module_autoinit(TARGETS ${target} MODULES VTK::RenderingCore VTK::RenderingOpenGL2
         VTK::RenderingVolumeOpenGL2 VTK::RenderingFreeType)
@@ -80,11 +86,6 @@ function(trocar_add_module tier name uses libraries)
     trocar_add_test(${name} ${target} ${tests})
     include(${folder}/test/standin/CMakeLists.txt OPTIONAL)
   endif()
-endfunction()
-
-# Tests are compiled once and run once: optimising them costs more than it gains. What they test keeps its options.
-function(trocar_optimise_little target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 # One test program of GoogleTest files.

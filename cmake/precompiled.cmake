@@ -1,6 +1,7 @@
 # Headers that most files read, compiled once for all of them. Two thirds of the build's time was the reading of headers.
 # A file still names every header it uses: the preset `check` builds without this, each header alone.
-set(trocar_common_headers <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <tl/expected.hpp>
+set(trocar_common_headers "${PROJECT_SOURCE_DIR}/src/foundation/core/result.h"
+  "${PROJECT_SOURCE_DIR}/src/foundation/geometry/pose.h" <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <tl/expected.hpp>
   <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <set>
   <span> <sstream> <string> <string_view> <tuple> <utility> <variant> <vector>)
 
@@ -11,6 +12,7 @@ function(trocar_precompile name)
   file(GENERATE OUTPUT ${source} CONTENT "// Carries the precompiled header.\n")
   add_library(${name} OBJECT ${source})
   target_link_libraries(${name} PRIVATE Eigen3::Eigen fmt::fmt tl::expected trocar_warnings)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src/foundation)
   target_precompile_headers(${name} PRIVATE ${trocar_common_headers} ${ARGN})
 endfunction()
 

@@ -12,12 +12,12 @@
 #include "cases/prepare_case.h"
 #include "commands.h"
 #include "core/files/atomic_file.h"
-#include "io/image/png.h"
 #include "io/markups_file.h"
 #include "io/patient/patient_source.h"
 #include "number_option.h"
 #include "patient_option.h"
 #include "patient_summary.h"
+#include "png/png_file.h"
 #include "scene/render_patient.h"
 #include "slices/slice_legend.h"
 #include "tasks/needle.h"
@@ -190,7 +190,7 @@ Status write_slices(const anatomy::VirtualPatient& patient, const fs::path& fold
     for (const auto& [options, ending] : {std::pair{plain, ""}, std::pair{slices::SliceOptions{}, "_labels"}}) {
       slices::SlicePicture picture = slices::make_slice_picture(patient, orientation, through_P, options);
       slices::draw_slice_legend(picture);
-      TROCAR_TRY_STATUS(io::write_png(picture.image, folder / fmt::format("slice_{}{}.png", name, ending)));
+      TROCAR_TRY_STATUS(png::write_png(picture.image, folder / fmt::format("slice_{}{}.png", name, ending)));
     }
   }
   return {};
@@ -212,7 +212,7 @@ Status write_views(const anatomy::VirtualPatient& patient, const std::vector<ana
     options.camera = camera;
     options.paths = patient.paths;
     TROCAR_TRY(const volume::RgbImage picture, scene::render_patient(patient, meshes, options));
-    TROCAR_TRY_STATUS(io::write_png(picture, folder / fmt::format("view_{}.png", name)));
+    TROCAR_TRY_STATUS(png::write_png(picture, folder / fmt::format("view_{}.png", name)));
   }
   return {};
 }

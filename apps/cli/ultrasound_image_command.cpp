@@ -13,9 +13,9 @@
 #include "bench/harness.h"
 #include "commands.h"
 #include "io/image/image_file.h"
-#include "io/image/png.h"
 #include "io/sequence/transform_file.h"
 #include "number_option.h"
+#include "png/png_file.h"
 #include "ultrasound/scanner/scan_annotation.h"
 #include "ultrasound/scanner/scanner.h"
 #include "ultrasound/sweep/freehand_sweep.h"
@@ -192,7 +192,7 @@ Status write_picture(const Arguments& arguments, const Scan& scan, const ultraso
     ultrasound::draw_annotation(picture, ultrasound::make_scan_annotation(raster, geometry, caption));
     if (colour) draw_colour_bar(picture, *colour);
   }
-  return io::write_png(picture, arguments.out);
+  return png::write_png(picture, arguments.out);
 }
 
 Status make_image(const Arguments& arguments) {

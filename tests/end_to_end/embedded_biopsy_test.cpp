@@ -116,11 +116,15 @@ TEST_F(EmbeddedBiopsy, ReplayGivesTheSameForces) {
   ASSERT_TRUE(attempt::run_session(*the_case, options).has_value());
   const Attempt replay = perform(*the_case, "replay:" + options.session.string());
   ASSERT_EQ(replay.session.samples.size(), expert->session.samples.size());
-  double worst_n = 0.0;
-  for (std::size_t i = 0; i < replay.session.samples.size(); ++i)
-    worst_n = std::max(worst_n, (replay.session.samples[i].f_total_n - expert->session.samples[i].f_total_n).norm());
-  EXPECT_LT(worst_n, 1e-6);  // the pose is stored as a quaternion: rounding of the last digits
-  EXPECT_NEAR(replay.result.outcome.score, expert->result.outcome.score, 1e-6);
+  for (std::size_t i = 0; i < replay.session.samples.size(); ++i) {
+    const telemetry::TickSample& now = replay.session.samples[i];
+    const telemetry::TickSample& then = expert->session.samples[i];
+    ASSERT_EQ(now.f_total_n, then.f_total_n) << i;
+    ASSERT_EQ(now.tau_nmm, then.tau_nmm) << i;
+    ASSERT_EQ(now.tip_mm, then.tip_mm) << i;
+    ASSERT_EQ(now.device_rotation_wxyz, then.device_rotation_wxyz) << i;
+  }
+  EXPECT_EQ(replay.result.outcome.score, expert->result.outcome.score);
 }
 
 TEST_F(EmbeddedBiopsy, ReplayAppliesChangesAtTheirTick) {

@@ -143,7 +143,7 @@ struct ServerStatus {
   std::string state;      ///< "no scene", "loading", "ready", "running", "fault" …
   std::string gate_mode;  ///< to_string(GateMode)
   std::string fault;      ///< to_string(GateFault); "none".
-  std::string warning;    ///< "the client's window has stood still for 2 s"; empty: none.
+  std::string warning;    ///< "the client's window has not drawn a frame for 2.0 s"; empty: none.
   std::string grant;      ///< RealTimeGrant::text
   std::string patient, patient_hash, force_model, task;
   double loading = 0.0;  ///< 0..1 while a scene is being built.

@@ -139,7 +139,9 @@ Servo::Wanted Servo::feel(const Sensed& sensed, const ServoInput& input, telemet
   }
   const haptics::HapticScene& scene = *input.scene->scene;
   const haptics::HapticOutput output =
-      tick(tick_, {input.now_s, std::min(input.dt_s, haptics::kMaxDt_s), X_WS, input.is_stylet_in}, scene);
+      tick(tick_,
+           {input.now_s, std::min(input.dt_s, haptics::kMaxDt_s), haptics::tool_pose(scene, X_WS), input.is_stylet_in},
+           scene);
   sample = output.sample;
 
   const Vec3 axis_W = X_WS.R() * scene.X_SN.R().col(scene.options.tool == haptics::Tool::kNeedle ? 2 : 1);

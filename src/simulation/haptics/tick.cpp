@@ -6,8 +6,9 @@
 namespace trocar::haptics {
 namespace {
 
-bool is_usable(const HapticInput& input) noexcept {
-  return input.X_DS.is_finite() && input.X_DS.p().norm() < kFarAway_mm && input.dt_s > 0.0 && input.dt_s <= kMaxDt_s;
+bool is_usable(const HapticInput& input, const HapticScene& scene) noexcept {
+  const bool is_near = (input.tool.p_mm - scene.X_PD.p()).norm() < kFarAway_mm;
+  return input.tool.is_valid() && is_near && input.dt_s > 0.0 && input.dt_s <= kMaxDt_s;
 }
 
 HapticOutput reject(const HapticState& state, const HapticInput& input) noexcept {
@@ -50,11 +51,15 @@ void add_events(EventList& events, const NeedleStep& step) noexcept {
 
 }  // namespace
 
+telemetry::ToolPose tool_pose(const HapticScene& scene, const Pose& X_DS) noexcept {
+  return telemetry::to_tool_pose(scene.X_PD * X_DS * scene.X_SN);
+}
+
 HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept {
-  if (!is_usable(input)) return reject(state, input);
+  if (!is_usable(input, scene)) return reject(state, input);
   if (scene.options.tool != Tool::kNeedle) return tick_contact(state, input, scene);
-  const Pose X_PS = scene.X_PD * input.X_DS;
-  const Pose X_PN = X_PS * scene.X_SN;
+  const Pose X_PN = input.tool.pose();
+  const Pose X_PS = X_PN * scene.X_SN.inverse();
 
   const NeedleStep step =
       step_needle(state.needle, scene, input.resting.pull_back(X_PN), input.is_stylet_in, input.dt_s);
@@ -73,10 +78,9 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
   const double axial_n = sample.f_prepuncture_n + sample.f_friction_n + sample.f_cutting_n + sample.f_body_axial_n;
   sample.f_total_n = sample.axis * axial_n + sample.f_constraint_n + sample.f_tip_proxy_n + weight.force_n;
   sample.tau_nmm = forward(step.held_P.torque_nmm) + weight.torque_nmm;
-  sample.device_mm = X_PN.p();
+  sample.device_mm = input.tool.p_mm;
+  sample.device_rotation_wxyz = input.tool.rotation_wxyz;
   sample.contact_to_puncture_mm = state.needle.path.contact_to_puncture_P;
-  const Eigen::Quaterniond q(X_PN.R());
-  sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
 
   EventList events(sample);
   add_events(events, step);

@@ -5,19 +5,24 @@
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion/needle_step.h"
 #include "telemetry/tick_sample.h"
+#include "telemetry/tool_pose.h"
 
 namespace trocar::haptics {
 
 /// Input of a tick from the device.
 struct HapticInput {
   double time_s = 0.0;
-  double dt_s = 0.001;  ///< Since the last tick; 0 < dt <= kMaxDt_s.
-  Pose X_DS;            ///< Stylus in the device base.
+  double dt_s = 0.001;       ///< Since the last tick; 0 < dt <= kMaxDt_s.
+  telemetry::ToolPose tool;  ///< X_PN or X_PT, see tool_pose().
   bool is_stylet_in = true;
   anatomy::RestingAnatomy resting{};  ///< The patient's motion now.
 };
 
-/// All that a tick carries to the next one. Fixed size, copyable: recorded inputs replay to the same bits.
+/// The scene's tool on the stylus of a device: X_PD * X_DS * X_SN (or X_ST).
+telemetry::ToolPose tool_pose(const HapticScene& scene, const Pose& X_DS) noexcept;
+
+/// All that a tick carries to the next one. Fixed size, copyable: recorded inputs (the sample's time and tool pose)
+/// replay to the same bits.
 struct HapticState {
   NeedleState needle;
   ContactState contact;  ///< Of a transducer or a finger.

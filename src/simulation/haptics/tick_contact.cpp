@@ -5,8 +5,8 @@
 namespace trocar::haptics {
 
 HapticOutput tick_contact(HapticState& state, const HapticInput& input, const HapticScene& scene) noexcept {
-  const Pose X_PS = scene.X_PD * input.X_DS;
-  const Pose X_PT_now = X_PS * scene.X_SN;
+  const Pose X_PT_now = input.tool.pose();
+  const Pose X_PS = X_PT_now * scene.X_SN.inverse();
   const Pose X_PT = input.resting.pull_back(X_PT_now);
   const Pose X_PT_before = state.contact.X_PT;
   const bool was_started = state.contact.is_started;
@@ -32,10 +32,9 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   sample.f_total_n = force_P + weight.force_n;
   sample.tau_nmm = torque_P + (X_PT_now.p() - X_PS.p()).cross(force_P) + weight.torque_nmm;
   sample.device_f_n = sample.f_total_n;
-  sample.device_mm = X_PT_now.p();
+  sample.device_mm = input.tool.p_mm;
+  sample.device_rotation_wxyz = input.tool.rotation_wxyz;
   sample.breathing = input.resting.breathing;
-  const Eigen::Quaterniond q(X_PT_now.R());
-  sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
 
   EventList events(sample);
   if (step.has_jumped) events.add(telemetry::LimitReason::kJumped);

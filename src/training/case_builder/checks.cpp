@@ -13,10 +13,11 @@
 namespace trocar::case_builder {
 namespace {
 
-constexpr double kOutside_mm = 2.0;     ///< Beyond the skin: more than the edge of a voxel.
-constexpr double kShareOutside = 0.02;  ///< Of a label that may lie there without a word, as in build_patient.
+constexpr double kOutside_mm = 2.0;     ///< Outside the skin: more than the edge of a voxel.
+constexpr double kShareOutside = 0.02;  ///< Share of a label outside without a warning, as in build_patient.
 
-/// Plausible volumes (ml) of adult organs, wide: half and twice the ends of what is seen. [assumed]
+/// Plausible volumes (ml) of adult organs, with wide limits: half the minimum and twice the maximum of published
+/// ranges. [assumed]
 struct OrganVolume {
   const char* tissue;
   double least_ml, most_ml;
@@ -27,7 +28,7 @@ constexpr OrganVolume kOrganVolumes[] = {{"liver", 500.0, 5000.0},
                                          {"gallbladder", 1.0, 300.0},
                                          {"liver_lesion", 0.03, 2000.0}};
 
-/// Lines of checks, gathered step by step.
+/// Results of the checks, collected step by step.
 class Checks {
  public:
   Checks(const CaseDraft& draft, const anatomy::VirtualPatient& patient, const tasks::Needle& needle,
@@ -71,7 +72,7 @@ class Checks {
     for (const std::string& doubt : doubts) warn(CaseStep::kLabels, doubt);
     for (const std::string& warning : draft_.imported->warnings) {
       const bool is_told = std::find(doubts.begin(), doubts.end(), warning) != doubts.end() ||
-                           warning.starts_with("cut by the border of the CT");  // a doubt in other words
+                           warning.starts_with("cut off by the border of the CT");  // the same doubt in different words
       if (!is_told) warn(CaseStep::kImport, warning);
     }
     look_outside();

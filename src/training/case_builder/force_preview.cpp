@@ -8,7 +8,7 @@ namespace trocar::case_builder {
 namespace {
 
 constexpr double kSpeed_mm_per_s = 10.0;
-constexpr double kMostLag_mm = 20.0;  ///< Behind the device by what tissue and coupling yield.
+constexpr double kMostLag_mm = 20.0;  ///< Behind the device by the compliance of tissue and coupling.
 
 }  // namespace
 

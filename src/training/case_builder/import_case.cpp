@@ -14,7 +14,7 @@ namespace trocar::case_builder {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr double kVolumesPart = 0.55;  // of the time that an import takes; the surfaces take the rest
+constexpr double kVolumesPart = 0.55;  // share of an import's time; the surfaces take the rest
 
 bool is_patient_folder(const std::string& path) {
   std::error_code ignored;

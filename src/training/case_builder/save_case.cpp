@@ -8,7 +8,7 @@ namespace trocar::case_builder {
 namespace {
 namespace fs = std::filesystem;
 
-/// The patient as it is written. One copy of the volumes, for the time of the saving.
+/// The patient to write. Copies the volumes once, during the saving.
 anatomy::VirtualPatient patient_of(const CaseDraft& draft, DraftPatient& patients) {
   anatomy::VirtualPatient patient = *patients.of(draft);
   patient.name = draft.name;
@@ -32,7 +32,7 @@ Status check_target(const SaveOptions& options) {
   return {};
 }
 
-/// Puts the new folder in the place of the old one, which comes back where that fails.
+/// Replaces the old folder by the new one, and restores the old one on failure.
 Status replace(const fs::path& fresh, const fs::path& folder) {
   const fs::path old = folder.parent_path() / fmt::format(".{}.old", folder.filename().string());
   std::error_code error;
@@ -60,7 +60,7 @@ Status save_case(const CaseDraft& draft, DraftPatient& patients, const SaveOptio
   const fs::path folder = fs::absolute(options.folder).lexically_normal();
   const fs::path target = folder.has_filename() ? folder : folder.parent_path();
   std::error_code ignored;
-  fs::create_directories(target.parent_path(), ignored);  // where that fails, writing says so
+  fs::create_directories(target.parent_path(), ignored);  // an error is reported when writing
   if (!fs::exists(target / "patient.toml", ignored))
     return io::save_patient(patient, *draft_meshes(draft), target, progress, extras);
   const fs::path fresh = target.parent_path() / fmt::format(".{}.new", target.filename().string());

@@ -13,7 +13,7 @@ std::vector<CurvePoint> force_curve(const haptics::HapticScene& scene, const Pre
   const int count = tick_count(motion);
   curve.reserve(static_cast<std::size_t>(count));
   for (int i = 1; i <= count; ++i) {
-    const telemetry::TickSample sample = haptics::tick(*state, input_at(motion, scene, i), scene).sample;
+    const telemetry::TickSample sample = haptics::tick(*state, input_at(motion, i), scene).sample;
     CurvePoint point;
     point.time_s = sample.time_s;
     point.way_mm = way_mm(motion, i);
@@ -29,7 +29,7 @@ std::vector<CurvePoint> force_curve(const haptics::HapticScene& scene, const Pre
 }
 
 std::vector<CurveEvent> find_curve_events(const std::vector<CurvePoint>& curve, const anatomy::TissueTable& tissues) {
-  // The record may name the puncture a tick or two after the force was highest.
+  // The record may name the puncture one or two ticks after the maximum of the force.
   constexpr std::size_t kPeakWindow = 5;
   std::vector<std::size_t> punctures;
   for (std::size_t i = 0; i < curve.size(); ++i)

@@ -19,21 +19,21 @@
 namespace trocar::cases {
 namespace {
 
-constexpr double kPastTarget_mm = 25.0;      ///< The needle's line goes by the target at least so far.
+constexpr double kPastTarget_mm = 25.0;      ///< Minimum distance of the needle's line from the target.
 constexpr double kBesideZone_mm = 20.0;      ///< From the edge of the task's own entry zone.
-constexpr double kFarthest_mm = 160.0;       ///< From the entry; further ones only where there is no other.
-constexpr double kPatientsEnd_mm = 20.0;     ///< To head and feet the picture goes on at least so far.
-constexpr double kSlope_mm = 6.0;            ///< The skin's normal is that of a patch so large.
-constexpr double kLeastUp = 0.3;             ///< Of the skin's unit normal, out of the side that is worked on.
-constexpr double kBetween_mm = 10.0;         ///< Places that are looked at lie so far apart, and
-constexpr double kFarthestLevel_mm = 150.0;  ///< at most so far from the organ's level.
+constexpr double kFarthest_mm = 160.0;       ///< From the entry; farther ones only if there is no other.
+constexpr double kPatientsEnd_mm = 20.0;     ///< Minimum extent of the body in the image towards head and feet.
+constexpr double kSlope_mm = 6.0;            ///< The skin's normal is averaged over a patch of this size.
+constexpr double kLeastUp = 0.3;             ///< Of the skin's unit normal, towards the working side.
+constexpr double kBetween_mm = 10.0;         ///< Distance of the examined positions, and
+constexpr double kFarthestLevel_mm = 150.0;  ///< maximum distance from the organ's level.
 constexpr double kStep_mm = 2.0;
 constexpr double kShaftStep_mm = 10.0;
 constexpr double kShaftFree_mm = 8.0;  ///< Between shaft and skin.
 constexpr double kPress_mm = 3.0;
 constexpr double kTouching = 0.8;
 constexpr int kLines = 33;
-/// Seen from the front, nothing of the liver's plan in them; then all others in the file's order.
+/// From the front, without the plan's part of the liver; then all others in the file's order.
 constexpr std::array kFirstViews{"aorta-transverse", "aorta"};
 constexpr const char* kLesionView = "liver-lesion";
 
@@ -42,7 +42,7 @@ struct Skin {
   Vec3 out_P;  ///< Unit.
 };
 
-/// The skin of the side that one works on, from the organ's level to head and feet.
+/// The skin on the working side, from the organ's level towards head and feet.
 class UpperSkin {
  public:
   UpperSkin(const Case& the_case, const Vec3& entry_P) : skin_mm_(the_case.patient->skin_distance_mm) {
@@ -59,7 +59,7 @@ class UpperSkin {
     find_places(organ_level_mm(the_case));
   }
 
-  /// By how near they lie to the middle of the organ's level.
+  /// Sorted by the distance from the centre of the organ's level.
   const std::vector<Skin>& places() const noexcept { return places_; }
   double mm(const Vec3& p_P) const { return volume::sample_linear(skin_mm_, p_P); }
   bool is_on_side(const Vec3& out_P) const { return out_P.dot(up_P_) >= kLeastUp; }
@@ -82,14 +82,14 @@ class UpperSkin {
   }
 
  private:
-  /// Of its middle; the entry zone's or target's own where the patient has no such label.
+  /// Of its centre; the entry zone or target if the patient has no such label.
   static double organ_level_mm(const Case& the_case) {
     const volume::LabelGrid& labels = the_case.patient->labels;
     std::array<bool, 256> is_of_organ{};
     for (const anatomy::Label& label : the_case.patient->label_table.labels)
       is_of_organ[label.id] = tasks::is_organ(the_case.task, label);
     double sum_mm = 0.0, count = 0.0;
-    constexpr std::size_t kEvery = 61;  // a prime: in no step with rows and slices
+    constexpr std::size_t kEvery = 61;  // a prime, to avoid alignment with rows and slices
     for (std::size_t n = 0; n < labels.voxels.size(); n += kEvery) {
       if (!is_of_organ[labels.voxels[n]]) continue;
       const volume::Index3 ijk = labels.geometry.index_of(n);
@@ -101,11 +101,11 @@ class UpperSkin {
     return count > 0.0 ? sum_mm / count : the_case.plan.line_P.b.z();
   }
 
-  /// Where a line from above meets the body first.
+  /// First intersection of a vertical line from above with the body.
   std::optional<Skin> below(double x_mm, double z_mm) const {
     const double top_mm = up_P_.y() < 0.0 ? bounds_P_.min().y() : bounds_P_.max().y();
     Vec3 p_P(x_mm, top_mm, z_mm);
-    if (mm(p_P) <= 0.0) return std::nullopt;  // the picture ends within the body
+    if (mm(p_P) <= 0.0) return std::nullopt;  // the image ends within the body
     for (double gone_mm = 0.0; gone_mm < bounds_P_.sizes().y(); gone_mm += kStep_mm, p_P -= kStep_mm * up_P_) {
       const double distance_mm = mm(p_P);
       if (distance_mm > 0.0) continue;
@@ -170,7 +170,7 @@ class NeutralProbe {
                const Pose& X_PT_planned)
       : case_(the_case), skin_(skin), transducer_(transducer), X_PT_planned_(X_PT_planned) {}
 
-  /// In a view of something else than the lesion; its depth of picture with it.
+  /// In a view of another structure than the lesion, with its image depth.
   std::optional<std::pair<Pose, double>> in_view(const std::vector<ultrasound::ProbeView>& views) const {
     std::vector<std::string> names(kFirstViews.begin(), kFirstViews.end());
     for (const ultrasound::ProbeView& view : views) names.push_back(view.name);
@@ -187,7 +187,7 @@ class NeutralProbe {
     return std::nullopt;
   }
 
-  /// Across the body, wherever the skin lets it touch.
+  /// Across the body, at the first position with contact.
   std::optional<Pose> anywhere() const {
     const ultrasound::ScanGeometry scan =
         ultrasound::make_scan_geometry(transducer_, transducer_.greatest_depth_mm, kLines, 16);

@@ -20,11 +20,11 @@ namespace {
 constexpr double kPredictedSpeed_mm_per_s = 10.0;
 constexpr double kPredictedPast_mm = 10.0;
 
-/// Parts of the work that go on side by side, shown as one.
+/// Progress of parallel parts, combined into one.
 class SharedProgress {
  public:
   explicit SharedProgress(const Progress& whole) : whole_(whole) {}
-  /// `share`: of the whole, 0..1. Outlived by this.
+  /// `share`: of the whole, 0..1. This must outlive it.
   Progress part(double share) {
     const std::lock_guard lock(mutex_);
     const std::size_t index = done_.size();
@@ -50,7 +50,7 @@ io::PatientSource source_of(const CaseChoice& choice) {
   return {choice.patient_source, choice.patient_seed};
 }
 
-/// The patient, from where it is kept if it is; `made.server_source` says where from.
+/// The patient, from the cache if possible; `made.server_source` is its source for servers.
 Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(OpenCase& made, const io::PatientCache& cache,
                                                                   const Progress& progress) {
   made.server_source = made.choice.patient_source;
@@ -70,7 +70,7 @@ Status add_surfaces(OpenCase& made, const anatomy::VirtualPatient& patient, cons
   TROCAR_TRY(auto meshes, io::open_meshes({made.server_source, made.choice.patient_seed}, patient, progress));
   const bool is_kept = made.server_source != made.choice.patient_source;
   if (!is_kept) {
-    // Where it cannot be kept, it is made again the next time.
+    // If it cannot be cached, it is generated again next time.
     if (const auto kept = cache.keep(source_of(made.choice), patient, meshes)) made.server_source = kept->string();
   }
   made.meshes = std::make_shared<const std::vector<anatomy::NamedMesh>>(std::move(meshes));
@@ -140,11 +140,11 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
   const auto begin = std::chrono::steady_clock::now();
   auto made = std::make_shared<OpenCase>();
   made->choice = choice;
-  made->choice.options.patient_folder = choice.patient_source;  // where a task of the patient's own would lie
+  made->choice.options.patient_folder = choice.patient_source;  // path of the patient's own task, if any
   const io::PatientCache cache(options.cache_folder);
   std::shared_ptr<const OpenCase> previous = options.previous;
   if (previous && !is_same_patient(previous->choice, choice)) previous.reset();
-  // What is wrong with the tables is told before a patient is opened.
+  // Errors of the tables are reported before a patient is opened.
   TROCAR_TRY_STATUS(load_tables(made->choice.options));
   SharedProgress shared(progress);
   std::shared_ptr<const anatomy::VirtualPatient> patient;

@@ -40,8 +40,7 @@ Status find_task(Case& made, const CaseOptions& options, const fs::path& tasks_f
   return fail_usage("the patient has no task of its own", options.patient_folder, "name a task, see trocar task list");
 }
 
-/// The path that the task names, measured as a planned one. What is wrong with it is told and stays the author's
-/// affair.
+/// The path named by the task, measured like a planned one. Its faults are reported, but do not prevent the attempt.
 Result<tasks::PlannedPath> find_expert_path(const Case& the_case, const anatomy::VirtualPatient& patient) {
   const std::string& name = the_case.task.expert_path;
   for (const anatomy::NeedlePath& path : patient.paths) {

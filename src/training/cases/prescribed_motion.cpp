@@ -6,7 +6,7 @@
 namespace trocar::cases {
 namespace {
 
-/// 0 at the skin, 1 at the path's end, without a step in speed.
+/// 0 at the skin, 1 at the path's end, with continuous speed.
 double share_of_drift(const PrescribedMotion& motion, double s_mm) noexcept {
   const double x = std::clamp(s_mm / std::max(motion.line_P.length_mm(), 1e-9), 0.0, 1.0);
   return x * x * (3.0 - 2.0 * x);
@@ -23,7 +23,7 @@ double way_mm(const PrescribedMotion& motion, int tick) noexcept {
   return motion.speed_mm_per_s * motion.dt_s * tick - motion.before_mm;
 }
 
-haptics::HapticInput input_at(const PrescribedMotion& motion, const haptics::HapticScene& scene, int tick) noexcept {
+haptics::HapticInput input_at(const PrescribedMotion& motion, int tick) noexcept {
   const double s_mm = way_mm(motion, tick);
   const double share = share_of_drift(motion, s_mm);
   const Vec3 axis_P = motion.line_P.direction();
@@ -31,11 +31,10 @@ haptics::HapticInput input_at(const PrescribedMotion& motion, const haptics::Hap
   const double angle_rad = share * motion.tilt_rad_P.norm();
   Mat3 R_PN = needle_pose(tip_P, axis_P).R();
   if (angle_rad > 0.0) R_PN = Eigen::AngleAxisd(angle_rad, motion.tilt_rad_P.normalized()).toRotationMatrix() * R_PN;
-  const Pose X_DS = scene.X_PD.inverse() * Pose(R_PN, tip_P) * scene.X_SN.inverse();
   haptics::HapticInput input;
   input.time_s = motion.dt_s * tick;
   input.dt_s = motion.dt_s;
-  input.X_DS = X_DS;
+  input.tool = telemetry::to_tool_pose({R_PN, tip_P});
   return input;
 }
 

@@ -23,6 +23,6 @@ int tick_count(const PrescribedMotion& motion) noexcept;
 /// Way of the tip along the path at a tick (1 = the first), mm; negative outside the skin.
 double way_mm(const PrescribedMotion& motion, int tick) noexcept;
 /// What the device gives the scene at that tick.
-haptics::HapticInput input_at(const PrescribedMotion& motion, const haptics::HapticScene& scene, int tick) noexcept;
+haptics::HapticInput input_at(const PrescribedMotion& motion, int tick) noexcept;
 
 }  // namespace trocar::cases

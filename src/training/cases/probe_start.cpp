@@ -15,28 +15,28 @@
 namespace trocar::cases {
 namespace {
 
-constexpr const char* kTransducer = "C5-2";  // the abdomen's
+constexpr const char* kTransducer = "C5-2";  // of the abdomen's view
 constexpr const char* kLesionView = "liver-lesion";
 constexpr int kLines = 33;
-constexpr int kPlanes = 12;             ///< About the path: every 15 degrees.
-constexpr double kBesideFace_mm = 8.0;  ///< Free skin between the face's end and the entry.
-constexpr double kFarthest_mm = 24.0;   ///< Further along the skin than need be.
+constexpr int kPlanes = 12;             ///< Around the path: every 15 degrees.
+constexpr double kBesideFace_mm = 8.0;  ///< Free skin between the end of the face and the entry.
+constexpr double kFarthest_mm = 24.0;   ///< Additional distance along the skin.
 constexpr double kSlide_mm = 4.0;
 constexpr double kPress_mm = 3.0;
 constexpr double kWayStep_mm = 2.0;
-constexpr double kSlope_mm = 6.0;   ///< The skin's normal is that of a patch so large.
+constexpr double kSlope_mm = 6.0;   ///< The skin's normal is averaged over a patch of this size.
 constexpr int kGasBelow_hu = -300;  ///< As in src/patient/anatomy; gas in bowel is labelled bowel.
 constexpr double kBehindTarget = 1.33;
 constexpr double kDepthStep_mm = 10.0;
 constexpr double kLeastDepth_mm = 80.0;
-constexpr double kTiltedSkin = 35.0 * std::numbers::pi / 180.0;  ///< Of the plane against the skin, at most.
+constexpr double kTiltedSkin = 35.0 * std::numbers::pi / 180.0;  ///< Maximum tilt of the plane relative to the skin.
 constexpr double kTouching = 0.8;
-constexpr std::array kSeen{0.3, 0.5, 0.7, 0.85, 1.0};  ///< Places on the path that should be seen.
+constexpr std::array kSeen{0.3, 0.5, 0.7, 0.85, 1.0};  ///< Checked points of the path.
 
-// Weights of what a place costs; assumed, chosen on the embedded patients.
+// Weights of the cost of a pose; assumed, chosen on the embedded patients.
 constexpr double kTargetCost = 4.0;
-constexpr double kDarkCost = 1.0;  ///< All of the fan behind ribs or gas: between ribs is better than across them.
-constexpr double kTiltCost = 2.0;  ///< A rad between plane and skin's normal.
+constexpr double kDarkCost = 1.0;  ///< All of the fan behind ribs or gas; between ribs is better.
+constexpr double kTiltCost = 2.0;  ///< Per rad between plane and skin's normal.
 constexpr double kContactCost = 1.5;
 constexpr double kUnderHubCost = 1.5;
 constexpr double kFarCost = 0.5;
@@ -87,7 +87,7 @@ class InPlane {
     return slope.norm() > 1e-9 ? Vec3(slope.normalized()) : Vec3(-path_P_.direction());
   }
 
-  /// `plane_P`: the image plane's normal; its sign says to which side of the entry the face goes.
+  /// `plane_P`: normal of the image plane; its sign selects the side of the entry for the face.
   Place try_place(const Vec3& plane_P, double far_mm) const {
     Place place;
     const Vec3 n_P = outwards(path_P_.a);
@@ -118,7 +118,7 @@ class InPlane {
     return place;
   }
 
-  /// +x to the head where the plane runs along the body, else to the patient's right.
+  /// +x to the head if the plane is along the body, else to the patient's right.
   static Mat3 oriented(const Vec3& y_P, const Vec3& plane_P) {
     Vec3 x_P = y_P.cross(plane_P).normalized();
     const bool is_along_body = std::abs(x_P.z()) > 0.5;
@@ -138,7 +138,7 @@ class InPlane {
     return scan_.to_polar({p_T.x(), p_T.y()});
   }
 
-  /// 0: seen; 1: outside the fan; between: the share of the way that lies behind bone or gas.
+  /// 0: visible; 1: outside the fan; between: the share of the way that is behind bone or gas.
   double hidden_share(const Pose& X_PT, const Vec3& p_P) const {
     const ultrasound::Polar at = polar(X_PT, p_P);
     if (!(at.line >= 0.0 && at.line <= scan_.lines - 1 && at.depth_mm > 0.0 && at.depth_mm < scan_.depth_mm))
@@ -146,7 +146,7 @@ class InPlane {
     return hidden_share(X_PT, at);
   }
 
-  /// Of all scanlines down to a depth.
+  /// Mean of all scanlines down to a depth.
   double dark_share(const Pose& X_PT, double depth_mm) const {
     double sum = 0.0;
     for (int line = 0; line < scan_.lines; ++line)
@@ -154,7 +154,7 @@ class InPlane {
     return sum / scan_.lines;
   }
 
-  /// The share of the way to a place of the fan that lies behind bone or gas.
+  /// The share of the line to a point of the fan that is behind bone or gas.
   double hidden_share(const Pose& X_PT, const ultrasound::Polar& at) const {
     const ultrasound::Vec2 from = scan_.line_origin(at.line);
     const ultrasound::Vec2 way = scan_.line_direction(at.line);
@@ -177,7 +177,7 @@ class InPlane {
   std::array<bool, 256> hides_{};
 };
 
-/// The lesion's view where the patient has one, else the first that he has.
+/// The lesion's view if the patient has one, else his first view.
 std::optional<Pose> standard_view(const anatomy::VirtualPatient& patient,
                                   const std::vector<ultrasound::ProbeView>& views,
                                   const ultrasound::Transducer& transducer, std::string& title) {

@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::size_t kPathsAtOnce = 64;  ///< Between two reports of progress.
 
-/// Any unit vector across `axis`, turned about it by `angle_rad`.
+/// A unit vector perpendicular to `axis`, rotated about it by `angle_rad`.
 Vec3 across(const Vec3& axis, double angle_rad) {
   const Vec3 first = axis.unitOrthogonal();
   return std::cos(angle_rad) * first + std::sin(angle_rad) * axis.cross(first);
 }
 
-/// Two needles, one in each scene; big, so a worker makes them once for its paths.
+/// Two needles, one per scene; large, so a worker allocates them once for all its paths.
 struct Needles {
   haptics::HapticState full;
   haptics::HapticState partly;
@@ -39,7 +39,7 @@ PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, co
   double full2 = 0.0;
   const int count = tick_count(motion);
   for (int i = 1; i <= count; ++i) {
-    const haptics::HapticInput input = input_at(motion, full, i);
+    const haptics::HapticInput input = input_at(motion, i);
     const haptics::HapticOutput a = haptics::tick(needles.full, input, full);
     const haptics::HapticOutput b = haptics::tick(needles.partly, input, partly);
     if (way_mm(motion, i) <= 0.0) continue;
@@ -87,7 +87,7 @@ std::vector<std::size_t> spread_choice(std::size_t available, std::size_t count,
   std::vector<std::size_t> chosen;
   count = std::min(count, available);
   chosen.reserve(count);
-  // One from each of `count` equal parts: rising, and none twice, since a part holds at least one number.
+  // One from each of `count` equal parts: increasing and distinct, since a part contains at least one number.
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t from = i * available / count;
     const std::size_t to = (i + 1) * available / count;

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kForceModel = "force_model=";
 
-/// What SetParameters takes; the rest belongs to the device.
+/// Parameters accepted by SetParameters; the others belong to the device.
 bool is_setting_of_a_server(const std::string& option) {
   constexpr std::array<std::string_view, 4> kNames{kForceModel, "coupling.stiffness=", "coupling.damping=", "bending="};
   return std::ranges::any_of(kNames, [&](std::string_view name) { return option.starts_with(name); });
@@ -25,7 +25,7 @@ void set_force_model(std::vector<std::string>& options, const std::string& force
   options.push_back(std::string(kForceModel) + force_model);
 }
 
-/// As a session of an older program has them: one table, and the device's preset for the rest.
+/// As in a session of an older program: one table, and the device's preset for the rest.
 std::vector<storage::SessionParameters> recorded_parameters(const storage::Session& session) {
   std::vector<storage::SessionParameters> all = session.parameters;
   const storage::SessionInfo& info = session.info;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 80;
 
-/// C0 controls and DEL. `char` may be signed or not: bytes of UTF-8 beyond ASCII are neither.
+/// C0 controls and DEL. `char` may be signed or not: non-ASCII bytes of UTF-8 are neither.
 bool is_control(char c) noexcept {
   const auto byte = static_cast<unsigned char>(c);
   return byte < 0x20 || byte == 0x7f;

@@ -37,7 +37,7 @@ double nice_step(const AxisRange& range, int at_most) {
 }
 
 AxisRange nice_range(const AxisRange& range, double step) {
-  // A value on a tick must not be pushed to the next one by rounding.
+  // Rounding must not move a value on a tick to the next one.
   constexpr double kSlack = 1e-9;
   return {step * std::floor(range.low / step + kSlack), step * std::ceil(range.high / step - kSlack)};
 }

@@ -18,9 +18,9 @@ constexpr double kRight = 16.0;
 constexpr double kBottom = 42.0;
 constexpr double kRow = 17.0;  ///< Height of a row of legend, names or labels.
 constexpr double kFont = 11.5;
-constexpr double kColumn = 0.5;        ///< Width (px) of the columns that curves are thinned to.
-constexpr double kTickSpacing = 62.0;  ///< Least room (px) for a number on the x axis ...
-constexpr double kTickHeight = 34.0;   ///< ... and on the y axis.
+constexpr double kColumn = 0.5;        ///< Width (px) of the columns to which curves are thinned.
+constexpr double kTickSpacing = 62.0;  ///< Minimum space (px) for a number on the x axis,
+constexpr double kTickHeight = 34.0;   ///< and on the y axis.
 
 /// The plot area in the picture and the map from data to it.
 struct Frame {
@@ -40,7 +40,7 @@ AxisRange x_range_of(const Plot& plot) {
   return range_of(values);
 }
 
-/// All curves and markers, zero always in sight.
+/// All curves and markers, always including zero.
 AxisRange y_range_of(const Plot& plot) {
   std::vector<double> values{0.0};
   for (const PlotSeries& series : plot.series)
@@ -85,7 +85,7 @@ std::string draw_legend(const std::vector<LegendEntry>& entries) {
   return out;
 }
 
-/// Names in one row above the plot area, each tied to its place by a short line where it had to move.
+/// Names in one row above the plot area, each connected to its position by a short line if it was moved.
 std::string draw_names(const Frame& frame, double baseline, const std::vector<double>& at,
                        const std::vector<std::string>& names, const char* style) {
   std::vector<double> widths;
@@ -145,7 +145,7 @@ std::string draw_axes(const Plot& plot, const Frame& frame) {
   return out;
 }
 
-/// One unbroken piece of a curve, thinned.
+/// One continuous piece of a curve, thinned.
 void append_piece(std::string& path, const std::vector<Point2>& piece) {
   bool is_first = true;
   for (const Point2& point : thin_out(piece, kColumn)) {
@@ -185,7 +185,7 @@ std::string marker_shape(std::size_t number, double x, double y) {
   }
 }
 
-/// Markers with their labels above them, spread where they would overlap.
+/// Markers with labels above them, spread to avoid overlap.
 std::string draw_markers(const Plot& plot, const Frame& frame) {
   std::vector<double> at;
   std::vector<double> widths;
@@ -248,10 +248,10 @@ Drawing draw(const Plot& plot) {
   frame.x = x_range_of(plot);
   frame.x_step = nice_step(frame.x, std::max(1, static_cast<int>((frame.right - frame.left) / kTickSpacing)));
   frame.y = y_range_of(plot);
-  // Room for the labels above the highest marker.
+  // Space for the labels above the highest marker.
   if (!plot.markers.empty()) frame.y.high += 0.16 * (frame.y.high - frame.y.low);
   frame.y_step = nice_step(frame.y, std::max(2, static_cast<int>((frame.bottom - frame.top) / kTickHeight)));
-  // A curve that only dips below zero gets no whole step of room there.
+  // A curve slightly below zero gets less than a whole step of space there.
   constexpr double kDip = 0.35;
   const double dip = frame.y.low;
   frame.y = nice_range(frame.y, frame.y_step);
@@ -275,7 +275,7 @@ std::string to_svg(const Plot& plot) {
 }
 
 std::string to_svg_file(const Plot& plot, std::string_view title) {
-  constexpr double kTitle = 30.0;  // room above the drawing
+  constexpr double kTitle = 30.0;  // space above the drawing
   constexpr double kMargin = 8.0;
   const Drawing drawing = draw(plot);
   const double width = drawing.width + 2.0 * kMargin;

@@ -8,7 +8,7 @@ namespace fs = std::filesystem;
 using namespace detail;
 namespace {
 
-/// Whether it is a session without an outcome. One without ticks may not have its tables yet.
+/// True for a session without an outcome. One without ticks may not have its tables yet.
 bool is_incomplete(soci::session& database) {
   if (pragma_integer(database, "application_id") != kApplicationId) return false;
   int tables = 0;
@@ -18,7 +18,7 @@ bool is_incomplete(soci::session& database) {
   return outcomes == 0;
 }
 
-/// A name beside the session that is not taken: first.incomplete.session, first.incomplete-2.session …
+/// A free name next to the session: first.incomplete.session, first.incomplete-2.session …
 fs::path free_name(const fs::path& path) {
   std::error_code ignored;
   for (int n = 1;; ++n) {
@@ -29,7 +29,7 @@ fs::path free_name(const fs::path& path) {
   }
 }
 
-/// Whether an interrupted program left it: an incomplete session, now in one file, or a file that is still empty.
+/// True for the file of an interrupted program: an incomplete session, now in one file, or an empty file.
 Result<bool> make_single(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;
@@ -47,7 +47,7 @@ Result<bool> make_single(const fs::path& path) {
                                   database << "PRAGMA journal_mode = DELETE", soci::into(mode);
                                   if (mode != "delete") throw soci::soci_error("it is locked");
                                 });
-  if (!is_checked) return false;  // not a database: somebody else's file
+  if (!is_checked) return false;  // not a database: a file of another program
   TROCAR_TRY_STATUS(status);
   return is_left;
 }

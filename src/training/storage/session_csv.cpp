@@ -12,13 +12,13 @@ namespace trocar::storage {
 using namespace detail;
 namespace {
 
-constexpr std::size_t kBytesATick = 420;  ///< Usual length of a row, to reserve by.
+constexpr std::size_t kBytesATick = 420;  ///< Usual length of a row, for reserving memory.
 
 std::string name_of(const std::vector<std::string>& names, std::uint8_t id) {
   return id < names.size() ? names[id] : fmt::format("#{}", id);
 }
 
-/// A field as RFC 4180 wants it: quoted where it holds a comma, a quotation mark or a line break.
+/// A field according to RFC 4180: quoted if it contains a comma, a quotation mark or a line break.
 void append_text(std::string& out, const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     out += text;
@@ -36,7 +36,7 @@ std::string joined(const std::string& events, const std::string& mark) {
   return events.empty() || mark.empty() ? events + mark : events + ';' + mark;
 }
 
-/// The shortest digits that read back to the same double, whatever the locale.
+/// The shortest digits that read back to the same double, independent of the locale.
 void append_number(std::string& out, double value) {
   char digits[32];
   const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
@@ -52,7 +52,7 @@ void append_header(std::string& out) {
   out.back() = '\n';
 }
 
-/// Marks by sample: what the event column says beside the events.
+/// Marks by sample: additional texts of the event column.
 std::map<std::size_t, std::string> marks_of(const Session& session) {
   std::map<std::size_t, std::string> marks;
   if (session.samples.empty()) return marks;
@@ -68,7 +68,7 @@ std::map<std::size_t, std::string> marks_of(const Session& session) {
   return marks;
 }
 
-/// What the tables beside the ticks say of a tick, by its index.
+/// Data of other tables for a tick, by its index.
 using TickNotes = std::map<std::size_t, std::string>;
 
 void add_note(TickNotes& notes, std::size_t tick, const std::string& text) {
@@ -90,7 +90,7 @@ TickNotes notes_of(const Session& session) {
   return notes;
 }
 
-/// What the event column says: notes of what came before the tick, its events, marks of the record.
+/// Text of the event column: notes before the tick, its events, marks of the record.
 struct EventColumn {
   std::string note, mark;
 };

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kAdvice = "name a file made by `trocar run`";
 
-/// Looks at the first bytes, so that SQLite never sees (or makes) what is no database.
+/// Checks the first bytes, so that SQLite never opens (or creates) a file that is not a database.
 Status check_file(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -54,7 +54,7 @@ void apply(const SessionParameters& first, SessionInfo& info) {
     if (option.starts_with(kForceModel)) info.force_model = option.substr(kForceModel.size());
 }
 
-/// A killed session needs its folder: SQLite makes an index of the -wal file there.
+/// A killed session needs its folder: SQLite creates an index of the -wal file there.
 const char* open_advice(const fs::path& path) {
   std::error_code error;
   return fs::exists(path.string() + "-wal", error)
@@ -62,7 +62,7 @@ const char* open_advice(const fs::path& path) {
              : "check the file; if it was copied, copy it again";
 }
 
-/// The damaged parts, the first of them by name.
+/// The damaged parts, with the name of the first.
 std::string damage_text(const Session& session) {
   constexpr std::size_t kNamed = 8;
   std::string text;
@@ -102,7 +102,7 @@ Result<Session> salvage_session(const fs::path& path) {
   TROCAR_TRY_STATUS(identity);
   if (!session.damage.empty() && session.samples.empty())
     return tl::unexpected(damage_error(session, path, "nothing can be read; if it was copied, copy it again"));
-  // The info was written before the first tick; the server says at that tick what was in force.
+  // The info was written before the first tick, at which the server reports the actual parameters.
   if (!session.parameters.empty() && session.parameters.front().tick == 0)
     apply(session.parameters.front(), session.info);
   if (!outcome_json.empty()) {

@@ -25,11 +25,11 @@ using namespace detail;
 namespace {
 
 constexpr double kBatchSeconds = 0.5;         ///< Session time between two commits.
-constexpr double kMaxBatchTicks = 100'000.0;  ///< Bound of the buffer whatever the rate says.
+constexpr double kMaxBatchTicks = 100'000.0;  ///< Limit of the buffer at any rate.
 constexpr const char* kWriteAdvice = "free some disk space or choose another folder";
 constexpr const char* kPlaceAdvice = "choose another folder";
 
-/// Takes the name: an existing file is never touched. A missing folder is made.
+/// Creates the file: an existing file is never changed. A missing folder is created.
 Status claim(const fs::path& path) {
   TROCAR_TRY_STATUS(make_parent_folder(path));
   const int file = ::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0644);
@@ -37,7 +37,7 @@ Status claim(const fs::path& path) {
     return fail_usage("output already exists", path.string(), "choose another name or delete it");
   if (file < 0) return fail(fmt::format("cannot write: {}", std::strerror(errno)), path.string(), kPlaceAdvice);
   ::close(file);
-  // Companions of a session that is gone would be read as a part of the new one.
+  // Leftover companion files of a deleted session would be read as a part of the new one.
   const std::vector<fs::path> files = session_files(path);
   for (std::size_t n = 1; n < files.size(); ++n) {
     std::error_code ignored;
@@ -53,7 +53,7 @@ void remove_all(const std::vector<fs::path>& files) {
 
 }  // namespace
 
-/// Invariant: every buffered column is as long as `samples`.
+/// Invariant: every buffered column has the length of `samples`.
 struct SessionWriter::Impl {
   fs::path path;
   SessionInfo info;
@@ -64,7 +64,7 @@ struct SessionWriter::Impl {
   std::optional<Error> failure;
   bool is_finished = false;
 
-  // Buffered columns, to which the statements are bound.
+  // Buffered columns, bound to the statements.
   std::vector<telemetry::TickSample> samples;
   std::vector<int> tick_column;
   std::vector<std::vector<double>> real_columns;
@@ -84,7 +84,7 @@ struct SessionWriter::Impl {
     if (!is_finished && !failure) static_cast<void>(flush());
     insert_events.reset();
     insert_ticks.reset();
-    if (!is_finished) static_cast<void>(make_single_file());  // an incomplete session is one file, too
+    if (!is_finished) static_cast<void>(make_single_file());  // an incomplete session is also one file
   }
 
   void set_up();
@@ -161,7 +161,7 @@ void SessionWriter::Impl::buffer(const telemetry::TickSample& sample) {
   std::size_t integer = 0;
   visit_stored_columns(sample, [&](const char*, const auto& field) {
     if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>) {
-      // SQLite has no NaN: it is kept as NULL.
+      // SQLite has no NaN: it is stored as NULL.
       real_indicators[real].push_back(std::isnan(field) ? soci::i_null : soci::i_ok);
       real_columns[real++].push_back(field);
     } else {
@@ -211,7 +211,7 @@ void SessionWriter::Impl::clear() {
   parameters.clear();
 }
 
-/// All is committed, so another reader of the session, which keeps the -wal file alive, is no failure; a full disk is.
+/// All is committed: another reader of the session, which keeps the -wal file, is not an error; a full disk is.
 Status SessionWriter::Impl::make_single_file() {
   const Status status = guarded("the session cannot be written", path, kWriteAdvice, [&] {
     std::string mode;
@@ -257,7 +257,7 @@ Status SessionWriter::append(const TransducerSample& sample) {
   TROCAR_CHECK(impl_ != nullptr && !impl_->is_finished);
   if (impl_->failure) return tl::unexpected(*impl_->failure);
   impl_->transducer.add(sample);
-  return impl_->transducer.span_s() >= kBatchSeconds ? impl_->flush() : Status{};  // it moves on without the needle
+  return impl_->transducer.span_s() >= kBatchSeconds ? impl_->flush() : Status{};  // it moves without the needle
 }
 
 Status SessionWriter::append(const SessionParameters& parameters) {

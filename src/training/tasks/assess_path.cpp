@@ -21,10 +21,10 @@ using detail::Role;
 
 constexpr double kStep_mm = 0.25;
 constexpr double kChunk_mm = 8.0;
-constexpr double kOnSkin_mm = 3.0;    ///< So near to the skin a path begins at it: a voxel or two.
-constexpr double kNotchShare = 0.25;  ///< Of the notch around its middle in which the target has to be.
+constexpr double kOnSkin_mm = 3.0;    ///< Distance from the skin at which a path may start: one or two voxels.
+constexpr double kNotchShare = 0.25;  ///< Part of the notch around its centre that must contain the target.
 
-/// Everything that a walk along the path meets.
+/// Collects all findings along the path.
 class Assessor {
  public:
   Assessor(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle, const Segment& line_P)
@@ -117,7 +117,7 @@ class Assessor {
     Vec3 where_P = Vec3::Zero();
   };
 
-  /// Every risk voxel within its margin, and 10 mm more, of one piece of the way.
+  /// Finds every risk voxel within its margin plus 10 mm of one piece of the path.
   void look_around(const Segment& piece, double radius_mm, std::array<Nearest, 256>& nearest) const {
     const volume::GridGeometry& geometry = patient_.labels.geometry;
     const detail::IndexBox box = detail::clipped(detail::united(detail::box_around(geometry, piece.a, radius_mm),
@@ -246,7 +246,7 @@ std::optional<Vec3> find_nearest_skin(const anatomy::VirtualPatient& patient, co
     if (std::abs(distance) < kClose_mm) return q_P;
     const Vec3 normal = detail::skin_normal(patient.skin_distance_mm, q_P);
     if (!(normal.norm() > 0.0)) return std::nullopt;
-    q_P -= 0.8 * distance * normal;  // damped: at edges of the skin the normal turns
+    q_P -= 0.8 * distance * normal;  // damped: the normal changes abruptly at edges of the skin
   }
   return std::nullopt;
 }

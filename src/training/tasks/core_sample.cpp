@@ -16,7 +16,7 @@ std::uint8_t label_id(const anatomy::VirtualPatient& patient, const Vec3& p_P) n
   return volume::sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
 }
 
-/// Calls visit(middle_mm, length_mm) for each step of a stretch; not at all where there is none.
+/// Calls visit(middle_mm, length_mm) for each step of a stretch; not if it is empty.
 template <class Visit>
 void walk(double from_mm, double to_mm, Visit visit) {
   if (!(to_mm > from_mm)) return;
@@ -95,7 +95,7 @@ BiopsyCore take_core(const Task& task, const anatomy::VirtualPatient& patient, c
   const double shot = shot_mm(labels, patient, needle, tip_P, axis_P);
   const double notch_end_mm = shot - needle.dead_space_mm;
   const double notch_begin_mm =
-      std::max(0.0, notch_end_mm - needle.notch_mm);  // what stays in the cannula takes nothing
+      std::max(0.0, notch_end_mm - needle.notch_mm);  // the part inside the cannula takes no tissue
   walk(notch_begin_mm, notch_end_mm, [&](double beyond_tip_mm, double length_mm) {
     const std::uint8_t id = label_id(patient, tip_P + beyond_tip_mm * axis_P);
     add_to_pieces(core.pieces, patient.label_table.find(id), length_mm);

@@ -12,8 +12,8 @@
 namespace trocar::tasks {
 namespace {
 
-constexpr double kStep_mm = 0.5;         // between places tested for risk structures
-constexpr double kTremor_mm = 1.0;       // to and fro below this is not counted as travel
+constexpr double kStep_mm = 0.5;         // distance of the points tested for risk structures
+constexpr double kTremor_mm = 1.0;       // smaller motions to and fro do not count as travel
 constexpr double kSkinSearch_mm = 40.0;  // from the tip that pierced the skin back to the resting skin
 
 bool is_usable(const telemetry::TickSample& sample) noexcept {
@@ -27,7 +27,7 @@ bool has_punctured(const telemetry::TickSample& sample, std::optional<std::uint8
   });
 }
 
-/// Where the line through a tip crosses the resting skin: skin that gives way has been pressed in.
+/// Intersection of the line through a tip with the resting skin: the skin is indented at its puncture.
 Vec3 skin_crossing(const anatomy::VirtualPatient& patient, const Vec3& tip_P, const Vec3& axis_P) noexcept {
   if (patient.skin_distance_mm.empty()) return tip_P;
   const auto outside_mm = [&](double back_mm) {
@@ -58,7 +58,7 @@ class RiskFinder {
     is_found_[id] = true;
     found.push_back({patient_.label_table.find(id)->name, depth_mm, risk->penalty});
   }
-  /// Tests from p_P to q_P, p_P left out.
+  /// Tests from p_P to q_P, without p_P.
   void test_way(const Vec3& p_P, const Vec3& q_P, double depth_mm) {
     const int steps = std::max(1, static_cast<int>(std::ceil(std::min((q_P - p_P).norm(), 1000.0) / kStep_mm)));
     for (int step = 1; step <= steps; ++step) test(p_P + (q_P - p_P) * step / steps, depth_mm);
@@ -87,15 +87,15 @@ std::vector<RiskTouch> find_risks(const Task& task, const anatomy::VirtualPatien
   }
   const telemetry::TickSample& last = samples[end];
   const int steps = static_cast<int>(std::min(last.depth_mm, 1000.0) / kStep_mm);
-  for (int step = steps; step >= 1; --step)  // from the skin down: the first touch of the shaft comes first
+  for (int step = steps; step >= 1; --step)  // from the skin down: the first contact of the shaft comes first
     finder.test(last.tip_mm - step * kStep_mm * last.axis, last.depth_mm - step * kStep_mm);
   return std::move(finder.found);
 }
 
-/// Inward way of the tip, counted between turning points that lie further apart than a tremor.
+/// Inward travel of the tip, counted between turning points that are further apart than tremor.
 double inward_travel_mm(std::span<const telemetry::TickSample> samples) noexcept {
   double travel_mm = 0.0;
-  double turn_mm = 0.0;  // the deepest point while going in, the shallowest while coming out
+  double turn_mm = 0.0;  // the deepest point during insertion, the shallowest during withdrawal
   bool is_going_in = true;
   for (const telemetry::TickSample& sample : samples) {
     if (!is_usable(sample)) continue;
@@ -124,8 +124,8 @@ std::optional<std::size_t> end_of_attempt(std::span<const telemetry::TickSample>
   return deepest;
 }
 
-/// The last place before `end` at which the skin was pierced, and how many there were. A model without puncture events
-/// enters where the depth turns positive.
+/// The last skin puncture before `end`, and their number. A model without puncture events enters where the depth
+/// becomes positive.
 struct Entry {
   std::optional<std::size_t> sample;
   int count = 0;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kUses{"biopsy", "aspiration", "spinal", "epidural", "ascites"};
 constexpr std::array<std::string_view, 5> kModels{"chiba", "tuohy", "quincke", "biopsy-gun", "trocar"};
-constexpr double kThinnestWall = 0.95;  ///< Largest bore as a share of the outer diameter.
+constexpr double kThinnestWall = 0.95;  ///< Maximum bore as a share of the outer diameter.
 
 Status read_value(const config::TomlTable& row, std::string_view key, config::Range range, double& value) {
   TROCAR_TRY(const config::SourcedNumber number, config::read_sourced_number(row, key, range));

@@ -7,7 +7,7 @@
 namespace trocar::tasks {
 namespace {
 
-// How an expert moves; all assumed, but for the tremor.
+// Motion of an expert; all assumed, except the tremor.
 constexpr double kTremor_mm = 0.05;  // rms while holding still: Riviere, Rader, Khosla 1997, eye surgeons, 49 um
 constexpr double kStart_mm = -20.0;
 constexpr double kApproach_mm_s = 20.0;
@@ -15,20 +15,20 @@ constexpr double kTouching_mm_s = 5.0;
 constexpr double kSkinPause_s = 0.5;
 constexpr double kCruise_mm_s = 18.0;
 constexpr double kPressing_mm_s = 9.0;   // against a resisting layer
-constexpr double kUnfelt_n = 0.3;        // resistance that changes nothing
-constexpr double kFirm_n = 1.2;          // resistance at which the speed is down to pressing
-constexpr double kAfterDrop_mm_s = 4.0;  // after something gave way
+constexpr double kUnfelt_n = 0.3;        // resistance without an effect
+constexpr double kFirm_n = 1.2;          // resistance at which the speed is reduced to pressing
+constexpr double kAfterDrop_mm_s = 4.0;  // after a puncture
 constexpr double kReaction_s = 0.15;     // from the drop to the slower hand
-constexpr double kCaution_s = 0.35;      // how long it stays slow
+constexpr double kCaution_s = 0.35;      // duration of the slow motion
 constexpr double kFineZone_mm = 10.0;    // before the target
 constexpr double kFine_mm_s = 5.0;
-constexpr double kHoming_per_s = 2.0;  // the last millimetres: speed per distance left
+constexpr double kHoming_per_s = 2.0;  // the last millimetres: speed per remaining distance
 constexpr double kArrived_mm = 0.3;
-constexpr double kCreepBack_mm_s = 3.0;  // gives way when the relaxing tissue lets the tip creep past the target
+constexpr double kCreepBack_mm_s = 3.0;  // yields if the relaxing tissue lets the tip creep past the target
 constexpr double kHold_s = 0.5;
 constexpr double kAfterFire_s = 0.5;
 constexpr double kWithdraw_mm_s = 30.0;
-constexpr double kStuck_s = 4.0;  // without a millimetre gained: give up
+constexpr double kStuck_s = 4.0;  // without a millimetre of progress: stop
 constexpr double kGiveUp_s = 45.0;
 constexpr double kOutOfTime_s = 58.0;
 
@@ -92,7 +92,7 @@ class Expert final : public Operator {
   double in_step_s() const noexcept { return hand_.elapsed_s() - step_start_s_; }
   double target_left_mm() const noexcept { return target_mm_ - hand_.tip_mm(); }
 
-  /// Slower the more it feels, for a moment after something gave way, and towards the target.
+  /// Slower with more resistance, for some time after a puncture, and towards the target.
   double insertion_speed_mm_s() noexcept {
     if (hand_.has_felt_drop()) drop_s_ = hand_.elapsed_s();
     const double since_drop_s = hand_.elapsed_s() - drop_s_;

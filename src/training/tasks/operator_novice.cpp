@@ -10,7 +10,7 @@
 namespace trocar::tasks {
 namespace {
 
-// How far a novice is off; assumed, where nothing else is said.
+// Errors of a novice; assumed unless stated otherwise.
 constexpr double kTremor_mm = 0.2;  // rms a lateral axis: PMC3032442 figure 4, 0.17 and 0.25 mm without visual feedback
 constexpr double kEntryError_mm[] = {3.0, 8.0};
 constexpr double kAngleError_deg[] = {2.0, 6.0};  // CT-guided with a frame: median 1.1, range 0..6.6 (doi
@@ -28,14 +28,14 @@ constexpr double kBeforeFire_s[] = {0.3, 1.5};
 constexpr double kAfterFire_s = 0.5;
 constexpr double kWithdraw_mm_s = 50.0;
 constexpr double kStuck_s = 3.0;
-constexpr double kStop_s = 40.0;  // whatever happens: fire and withdraw
+constexpr double kStop_s = 40.0;  // in any case: fire and withdraw
 constexpr double kOutOfTime_s = 58.0;
 
 double draw(Random& random, const double (&range)[2]) noexcept {
   return random.uniform(range[0], range[1]);
 }
 
-/// The line the novice really takes: entry and angle off in directions of their own.
+/// The novice's actual line: entry and angle with errors in random directions.
 Segment miss(const Segment& path_P, Random& random) noexcept {
   const Mat3 R_PN = needle_pose(path_P.a, path_P.direction()).R();
   const auto sideways_P = [&] {

@@ -25,14 +25,14 @@ using detail::PlanningMap;
 using detail::PlanTargets;
 using Verdict = detail::PathVerdict;
 
-constexpr std::size_t kMinLines = 65536;  ///< Lines that are tried: at 100 mm depth 1.4 mm apart on the skin.
+constexpr std::size_t kMinLines = 65536;  ///< Tested lines: at 100 mm depth 1.4 mm apart on the skin.
 constexpr std::size_t kLinesPerTarget = 2048;
-constexpr std::size_t kLinesPerPath = 32;  ///< About a fortieth of all lines are paths in a real abdomen.
+constexpr std::size_t kLinesPerPath = 32;  ///< About one line in forty is a path in a real abdomen.
 constexpr std::size_t kMaxLines = std::size_t{1} << 22;
-constexpr std::size_t kBlock = 64;            ///< Paths that are checked side by side.
-constexpr std::size_t kMaxSpreadCount = 500;  ///< More paths than this are not spread: they lie close anyway.
+constexpr std::size_t kBlock = 64;            ///< Paths checked in parallel.
+constexpr std::size_t kMaxSpreadCount = 500;  ///< More paths are not spread: they are close together anyway.
 constexpr double kFirstSpread_mm = 16.0;
-/// Length that a path may have more to keep the whole reported margin instead of none [assumed].
+/// Accepted additional length of a path with the full reported margin instead of none [assumed].
 constexpr double kMarginWorth_mm = 20.0;
 
 /// Direction n of a low-discrepancy sequence on the sphere (Roberts' R2 sequence, shifted by the seed).
@@ -47,7 +47,7 @@ Vec3 direction(std::uint64_t seed, std::size_t n) {
   return {r * std::cos(2.0 * std::numbers::pi * v), r * std::sin(2.0 * std::numbers::pi * v), z};
 }
 
-/// The same towards the entry zone, in the cone of directions that it fills as seen from the target.
+/// The same towards the entry zone, in the cone of directions that it covers from the target.
 Vec3 direction_to(const EntryZone& zone, const Vec3& target_P, const Vec3& on_sphere) {
   const Vec3 way = zone.centre_P - target_P;
   const double distance = way.norm();
@@ -77,7 +77,7 @@ std::vector<PathCandidate> trace_lines(const PlanningMap& map, const Needle& nee
   return lines;
 }
 
-/// Candidates in the order of the least cost that they can have, and the findings of their exact checks.
+/// Candidates in the order of their lower cost bound, and the findings of their exact checks.
 class Selection {
  public:
   Selection(const PlanningMap& map, const Needle& needle, std::vector<PathCandidate>& lines)
@@ -91,8 +91,8 @@ class Selection {
     is_checked_.assign(order_.size(), false);
   }
 
-  /// The `count` paths of lowest cost whose entries are at least `spread_mm` apart. A checked path is taken once its
-  /// cost is not above the least cost of every path that is not checked yet.
+  /// The `count` paths of lowest cost with entries at least `spread_mm` apart. A checked path is selected when its cost
+  /// is not above the lower bound of every unchecked path.
   std::vector<PlannedPath> choose(std::size_t count, double spread_mm, const Progress& progress) {
     std::vector<std::size_t> chosen;
     const auto is_apart = [&](std::size_t n) {
@@ -100,7 +100,7 @@ class Selection {
                return (line(n).line_P.a - line(other).line_P.a).norm() < spread_mm;
              });
     };
-    std::set<std::pair<double, std::size_t>> waiting;  // checked and free, by cost
+    std::set<std::pair<double, std::size_t>> waiting;  // checked and free, sorted by cost
     for (std::size_t next = 0; chosen.size() < count && (next < order_.size() || !waiting.empty());) {
       std::vector<std::size_t> block;
       for (; next < order_.size() && block.size() < kBlock; ++next)
@@ -121,7 +121,7 @@ class Selection {
     return paths;
   }
 
-  /// Writes what the exact looks found back to the lines, for the error message.
+  /// Writes the results of the exact checks back to the lines, for the error message.
   void settle() {
     for (std::size_t n = 0; n < order_.size(); ++n) {
       if (!is_checked_[n]) continue;
@@ -166,7 +166,7 @@ class Selection {
   std::vector<bool> is_checked_;
 };
 
-/// Label of the risk voxel whose margin is kept least around a point; nullptr when there is none.
+/// Label of the risk voxel with the largest margin violation around a point; nullptr if there is none.
 const anatomy::Label* nearest_risk(const PlanningMap& map, const Vec3& p_P) {
   const volume::LabelGrid& labels = map.patient.labels;
   const detail::IndexBox box = detail::clipped(
@@ -188,7 +188,7 @@ const anatomy::Label* nearest_risk(const PlanningMap& map, const Vec3& p_P) {
   return nearest;
 }
 
-/// A verdict in words, without the structure where that makes no difference.
+/// Text of a verdict, without the structure if that is irrelevant.
 std::string reason_of(const PlanningMap& map, const Needle& needle, const PathCandidate& line) {
   const Task& task = map.task;
   switch (line.verdict) {
@@ -227,8 +227,8 @@ bool is_about_skin(Verdict verdict) {
          verdict == Verdict::kOutsideZone || verdict == Verdict::kGlancing;
 }
 
-/// Names what ruled out the most lines; the lines that do not even start at a usable place of the skin (half of a body
-/// is its back) count only where there are no others.
+/// Names the reason that excluded the most lines; lines without a valid entry on the skin (half of a body is its back)
+/// count only if there are no others.
 tl::unexpected<Error> no_path(const PlanningMap& map, const Needle& needle, const std::vector<PathCandidate>& lines) {
   constexpr std::size_t kMaxAsked = 4000;
   std::vector<const PathCandidate*> asked;

@@ -10,18 +10,18 @@
 namespace trocar::tasks {
 namespace {
 
-// What each part is worth; they add up to 100.
+// Weights of the parts; their sum is 100.
 struct Weights {
   double target, core, risk, entry, angle, length, time;
 };
 constexpr Weights kBiopsy{25, 25, 20, 10, 10, 5, 5};
 constexpr Weights kPuncture{50, 0, 20, 10, 10, 5, 5};
 
-constexpr double kEnoughCore = 0.5;  // share of what was possible that counts as having reached the target
+constexpr double kEnoughCore = 0.5;  // share of the maximum that counts as having reached the target
 
-constexpr double kLesionReach = 2.0;  // a core of lesion counts as reached up to this multiple of the target tolerance
+constexpr double kLesionReach = 2.0;  // a core with lesion counts up to this multiple of the target tolerance
 
-/// Share of a part's points at a deviation: 1 at 0, 1/2 at the tolerance, falling without end (docs/physics.md, S1).
+/// Share of a part's points at a deviation: 1 at 0, 1/2 at the tolerance, decreasing without end (docs/physics.md, S1).
 double share_at(double deviation, double tolerance) noexcept {
   const double ratio = tolerance > 0.0 ? deviation / tolerance : HUGE_VAL;
   return deviation > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 1.0;
@@ -37,7 +37,7 @@ double core_share(const BiopsyCore& core, double possible_mm) noexcept {
   return possible_mm > 0.0 ? std::min(1.0, core.target_mm / possible_mm) : 0.0;
 }
 
-/// What the stylet touched and the needle had not.
+/// Structures touched by the stylet but not by the needle.
 std::vector<RiskTouch> find_stylet_risks(const TaskLabels& labels, const anatomy::VirtualPatient& patient,
                                          const AttemptMetrics& metrics, const std::optional<BiopsyCore>& core) {
   std::vector<RiskTouch> touches;
@@ -50,7 +50,7 @@ std::vector<RiskTouch> find_stylet_risks(const TaskLabels& labels, const anatomy
   return touches;
 }
 
-/// How far the entry is from where it should be: from the zone's edge, or without a zone from the expert's entry.
+/// Distance of the entry from its target: from the zone's edge, or without a zone from the expert's entry.
 double entry_miss_mm(const Task& task, const PlannedPath& plan, const AttemptMetrics& metrics) noexcept {
   if (task.entry_zone) return task.entry_zone->distance_outside_mm(plan.line_P.a + metrics.entry_offset_P);
   return metrics.entry_offset_P.norm();
@@ -98,8 +98,9 @@ std::vector<ScorePart> parts_of(const Worth& worth, const Weights& weights, cons
   return parts;
 }
 
-/// A biopsy reaches its target with a core taken near the planned point, or with a core that holds lesion from somewhat
-/// further off, since a lesion has a size. Healthy organ is everywhere: a core of it proves nothing about the place.
+/// A biopsy reaches its target with a core taken near the planned point, or with a core that contains lesion from
+/// slightly further away, since a lesion has a size. Healthy organ is everywhere: a core of it does not prove the
+/// position.
 bool has_reached_target(const Task& task, const Needle& needle, const AttemptMetrics& metrics,
                         const std::optional<BiopsyCore>& core, double core_share, bool is_parenchymal) noexcept {
   if (!metrics.has_entered || (needle.is_biopsy && !core)) return false;
@@ -108,7 +109,7 @@ bool has_reached_target(const Task& task, const Needle& needle, const AttemptMet
   return core && !is_parenchymal && core_share >= kEnoughCore && off_mm <= kLesionReach * task.target_tolerance_mm;
 }
 
-/// Empty: it can be judged.
+/// Empty: it can be scored.
 std::string why_not_scored(const Needle& needle, const AttemptMetrics& metrics, bool has_fired) {
   if (!metrics.has_touched_skin) return "the needle never touched the skin";
   if (!metrics.has_entered) return "the needle did not pierce the skin";
@@ -129,7 +130,7 @@ Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, 
   double possible_mm = 0.0;
   if (needle.is_biopsy) {
     possible_mm = take_core(task, patient, needle, plan.line_P.b, plan.line_P.direction()).target_mm;
-    if (possible_mm <= 0.0) possible_mm = needle.notch_mm;  // a plan that takes nothing is no measure
+    if (possible_mm <= 0.0) possible_mm = needle.notch_mm;  // a plan without a core is no reference
     if (fired && metrics.has_entered) outcome.core = take_core(task, patient, needle, metrics.tip_P, metrics.axis_P);
   }
 
@@ -151,7 +152,7 @@ Outcome score_attempt(const Task& task, const anatomy::VirtualPatient& patient, 
   outcome.target_reached = has_reached_target(task, needle, metrics, outcome.core, worth.core, labels.is_parenchymal());
   outcome.hints = make_hints(
       {task, needle, plan, metrics, outcome.core, stylet_risks, possible_mm, labels.is_parenchymal(), outcome.parts});
-  if (!outcome.is_scored()) outcome.parts.clear();  // a hint may still speak of them
+  if (!outcome.is_scored()) outcome.parts.clear();  // hints may still mention them
   return outcome;
 }
 

@@ -9,7 +9,7 @@
 namespace trocar::tasks {
 namespace {
 
-/// How often each label occurs, and which labels lie on the border of the volume.
+/// Number of voxels of each label, and the labels at the border of the volume.
 struct LabelCounts {
   std::array<std::size_t, 256> voxels{};
   std::array<bool, 256> touches_border{};
@@ -31,7 +31,7 @@ LabelCounts count_labels(const volume::LabelGrid& labels) {
   return counts;
 }
 
-/// What a patient has of a task's structures.
+/// Structures of a task that a patient has.
 struct Inventory {
   bool has_organ = false;
   bool has_target = false;
@@ -53,7 +53,7 @@ Inventory take_inventory(const Task& task, const anatomy::VirtualPatient& patien
   return found;
 }
 
-/// Risk structures of the task that the patient does not show.
+/// Risk structures of the task that are not labelled in the patient.
 std::vector<std::string> unlabelled_risks(const Task& task, const anatomy::VirtualPatient& patient,
                                           const LabelCounts& counts) {
   std::vector<std::string> missing;

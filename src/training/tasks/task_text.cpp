@@ -13,7 +13,7 @@ namespace {
 
 constexpr config::Range kCoordinate_mm{-1e5, 1e5};
 
-/// Reads the keys of a task file. A whole task must have them all; one with a base has those that differ.
+/// Reads the keys of a task file. A complete task must have them all; one with a base has the differing ones.
 class TaskReader {
  public:
   TaskReader(const config::TomlTable& document, bool is_whole) : document_(document), is_whole_(is_whole) {}
@@ -172,7 +172,7 @@ Result<std::vector<fs::path>> task_files(const fs::path& folder) {
   return files;
 }
 
-/// Writes the keys of which two tasks have different values.
+/// Writes the keys with different values in two tasks.
 class DifferenceWriter {
  public:
   void text(const char* key, const std::string& value, const std::string& base) {
@@ -183,7 +183,7 @@ class DifferenceWriter {
   }
   void point(const char* key, const Vec3& p) { text_ += fmt::format("{} = [{}, {}, {}]\n", key, p.x(), p.y(), p.z()); }
   void line(const std::string& line) { text_ += line + "\n"; }
-  /// Ends a table: its title stands before it where it has keys.
+  /// Ends a table: adds its title if it has keys.
   void close(std::string& document, const std::string& title) {
     if (!text_.empty()) document += (title.empty() ? "" : fmt::format("\n[{}]\n", title)) + text_;
     text_.clear();

@@ -30,7 +30,7 @@ struct Wording {
 constexpr std::array<Wording, 4> kLayerWords{{
     {"k", "k", "stiffness of the surface", "N/mm", 0.001, kEverywhere},
     {"nu", "ν", "viscosity of the surface", "N·s/mm", 1e-4, kInsertionAndCombined},
-    {"dx", "Δx", "displacement step Δx of the loading law", "mm", 0.01, kEverywhere},
+    {"dx", "Δx", "step of the loading law", "mm", 0.01, kEverywhere},
     {"fp", "F_p", "puncture force", "N", 0.01, kEverywhere},
 }};
 constexpr std::array<Wording, 6> kTissueWords{{
@@ -38,7 +38,7 @@ constexpr std::array<Wording, 6> kTissueWords{{
     {"mu", "μ", "friction coefficient", "", 0.0, kInsertionAlone},
     {"delta", "δ", "roughness", "N", 0.0, kInsertionAlone},
     {"stick", "s", "holding force at rest", "N/mm", 1e-4, kEverywhere},
-    {"fc", "F_c", "cutting force (R₀ of the proxy)", "N", 0.0, kEverywhere},
+    {"fc", "F_c", "cutting force, R₀ of proxy", "N", 0.0, kEverywhere},
     {"young", "E", "Young's modulus", "kPa", 0.1, kProxyAndCombined},
 }};
 constexpr std::array<Wording, 8> kCurveWords{{
@@ -53,7 +53,7 @@ constexpr std::array<Wording, 8> kCurveWords{{
 }};
 constexpr std::array<Wording, 3> kGradientWords{{
     {"scale", "h", "gradient distance", "mm", 0.0, kProxyAndCombined},
-    {"none", "g_none", "gradient below which there is no border", "HU/mm", 0.0, kProxyAndCombined},
+    {"none", "g_none", "gradient without a border", "HU/mm", 0.0, kProxyAndCombined},
     {"full", "g_full", "gradient of a full border", "HU/mm", 0.0, kProxyAndCombined},
 }};
 constexpr Wording kThicknessWords{kSkinThickness, "d", "thickness", "mm", 0.0, kEverywhere};

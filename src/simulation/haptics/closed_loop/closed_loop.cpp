@@ -70,7 +70,7 @@ const telemetry::TickSample& ClosedLoop::sense() noexcept {
   HapticInput input;
   input.time_s = time_s_;
   input.dt_s = dt_s_;
-  input.X_DS = X_DS;
+  input.tool = tool_pose(*scene_, X_DS);
   const HapticOutput output = tick(state_, input, *scene_);
   sample_ = output.sample;
   acting_P_ = wrench_P_;

@@ -118,10 +118,9 @@ class Driver {
       : scene_(std::move(scene)), dt_s_(1.0 / rate_hz) {}
 
   telemetry::TickSample to(const Vec3& tip_P, const Vec3& axis_P = Vec3::UnitZ()) {
-    const Pose X_DS = scene_->X_PD.inverse() * needle_pose(tip_P, axis_P) * scene_->X_SN.inverse();
     time_s_ += dt_s_;
     depth_mm_ = tip_P.z();
-    return haptics::tick(state_, {time_s_, dt_s_, X_DS}, *scene_).sample;
+    return haptics::tick(state_, {time_s_, dt_s_, telemetry::to_tool_pose(needle_pose(tip_P, axis_P))}, *scene_).sample;
   }
   /// Straight down (or up) to a depth at constant speed; all samples.
   std::vector<telemetry::TickSample> move(double to_depth_mm, double speed_mm_per_s) {

@@ -21,7 +21,7 @@ TEST(Tick, NeverAllocates) {
   std::size_t events = 0;
   for (int i = 0; i < 12000; ++i) {
     const double z = i < 8000 ? -10.0 + 0.01 * i : 70.0 - 0.02 * (i - 8000);
-    input.X_DS = needle_pose({0, 0, z}, Vec3::UnitZ()) * scene->X_SN.inverse();
+    input.tool = telemetry::to_tool_pose(needle_pose({0, 0, z}, Vec3::UnitZ()));
     const AllocationGuard guard;
     haptics::tick(state, input, *scene);
     events += guard.count();
@@ -142,7 +142,7 @@ TEST(Tick, StaysFiniteWhateverComesIn) {
       default:
         break;
     }
-    input.X_DS = needle_pose(tip, Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 1.0)) * scene->X_SN.inverse();
+    input.tool = telemetry::to_tool_pose(needle_pose(tip, Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 1.0)));
     const haptics::HapticOutput output = haptics::tick(state, input, *scene);
     ASSERT_TRUE(output.f_D.allFinite() && output.tau_D.allFinite());
     ASSERT_TRUE(output.sample.tip_mm.allFinite() && output.sample.f_total_n.allFinite());
@@ -159,7 +159,7 @@ TEST(Tick, ReplaysToTheSameBits) {
     double sum = 0.0;
     for (int i = 0; i < 5000; ++i) {
       const Vec3 tip(0.1 * std::sin(0.01 * i), 0.0, -10.0 + 0.012 * i);
-      sum += haptics::tick(state, {0.001 * i, 0.001, needle_pose(tip, Vec3::UnitZ()) * scene->X_SN.inverse()}, *scene)
+      sum += haptics::tick(state, {0.001 * i, 0.001, telemetry::to_tool_pose(needle_pose(tip, Vec3::UnitZ()))}, *scene)
                  .f_D.z();
     }
     return sum;
@@ -184,8 +184,7 @@ TEST_P(ClosedLoop, ComesToRestInEveryTissue) {
       hand.anchor_P.z() = -5.0 + (depth + 5.0) * std::min(1.0, i / 2000.0);
       haptics::step_device(device, {GetParam(), 0.5}, hand, force_P, scene->gravity_P, 0.001);
       const Vec3 tip = (device.X_PN.p() / kCount_mm).array().round() * kCount_mm;
-      force_P =
-          haptics::tick(state, {0.001 * i, 0.001, Pose(device.X_PN.R(), tip) * scene->X_SN.inverse()}, *scene).f_D;
+      force_P = haptics::tick(state, {0.001 * i, 0.001, telemetry::to_tool_pose({device.X_PN.R(), tip})}, *scene).f_D;
       if (i < 5500) continue;
       low = std::min(low, device.X_PN.p().z());
       high = std::max(high, device.X_PN.p().z());

@@ -14,7 +14,7 @@ constexpr double kPatchWidth_mm = 12.0;
 constexpr double kFirstPatch_mm = 30.0;  ///< Deeper than the layers of skin, fat and muscle.
 constexpr double kSpeckleBand_mm = 10.0;
 constexpr std::size_t kLeastPatches = 15;
-/// What counts as homogeneous tissue: bright enough to be no shadow and no lumen, no edge, no bright spot.
+/// Criteria of homogeneous tissue: brighter than shadows and lumina, without edges and bright spots.
 constexpr double kLeastGray = 14.0;
 constexpr double kLeastDeviation = 0.5;  ///< Gray; rounding alone makes 0.29.
 constexpr double kMostTrend = 0.7;       ///< Range of the quadratic trend over the mean.

@@ -26,7 +26,8 @@ double digamma(double x) {
   return shift + std::log(x) - 0.5 / x - square * (1.0 / 12.0 - square * (1.0 / 120.0 - square / 252.0));
 }
 
-/// The m whose ln m - digamma(m) is the mean of ln(mean intensity / intensity). Falls with m, so bisection is safe.
+/// The m with ln m - digamma(m) equal to the mean of ln(mean intensity / intensity). It decreases with m, so bisection
+/// converges.
 double most_likely_m(std::span<const float> envelope, double mean_intensity) {
   const double floor = mean_intensity * 1e-12;
   double mean_log = 0.0;
@@ -64,8 +65,8 @@ std::vector<double> autocovariance(const EchoPatch& patch, double mean, bool is_
   return covariance;
 }
 
-/// Where the curve falls to one half, between shifts i - 1 and i: on the Gaussian through both values, or straight
-/// where there is none.
+/// Position of half the maximum between shifts i - 1 and i: on the Gaussian through both values, or linear if there is
+/// none.
 double half_height_shift(std::size_t i, double before, double here) {
   const auto x1 = static_cast<double>(i);
   const double x0 = x1 - 1.0;
@@ -78,7 +79,7 @@ struct Widths {
   double fwhm = 0.0;
   double cell = 0.0;
 };
-/// In steps. The cell's integral ends where the curve first meets zero; noise lies beyond.
+/// In steps. The cell's integral ends at the first zero of the curve; beyond is noise.
 Widths widths_of(const std::vector<double>& covariance) {
   Widths widths{std::numeric_limits<double>::quiet_NaN(), 1.0};
   for (std::size_t i = 1; i < covariance.size(); ++i) {

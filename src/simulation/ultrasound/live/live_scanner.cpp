@@ -14,7 +14,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-/// Two servers' loops, the window and the drawing.
+/// Cores for two servers' loops, the window and the drawing.
 constexpr int kCoresOfOthers = 3;
 
 bool is_finite(const ScanRequest& request) noexcept {

@@ -12,13 +12,13 @@
 namespace trocar::ultrasound {
 namespace {
 
-/// What renders one detail.
+/// Objects that render one level of detail.
 struct Stage {
   BMode engine;
   std::optional<ColourDoppler> doppler;
 };
 
-/// What a kept picture has beside its levels.
+/// Data of a stored frame besides its levels.
 struct Companion {
   ScanDetail detail = ScanDetail::kFull;
   double coupled_share = 1.0;
@@ -52,11 +52,11 @@ struct PictureMaker::Impl {
   Transducer transducer;
   std::array<std::optional<Stage>, kScanDetails> stages;
   std::array<std::optional<Scanner>, kScanDetails> scanners;
-  std::optional<Scanner> kept_scanner;  ///< Of what the loop shows.
+  std::optional<Scanner> kept_scanner;  ///< For displayed frames of the loop.
   std::optional<ScanDetail> last_detail;
-  bool had_colour = false;  ///< The last picture.
+  bool had_colour = false;  ///< Of the last image.
   std::optional<CineLoop> cine;
-  std::vector<Companion> companions;  ///< Of the loop's slots, by pushes.
+  std::vector<Companion> companions;  ///< For the slots of the loop, by number of pushes.
   std::size_t pushes = 0;
   std::vector<std::uint8_t> full_levels;
   detail::ColourConversion kept_colours;
@@ -141,7 +141,7 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
   const ScanRequest request = within_ranges(asked, impl.transducer);
   Stage& stage = impl.stage(request.acquisition, detail);
   Scanner& scanner = impl.scanner(impl.scanners[static_cast<std::size_t>(detail)], request);
-  // A frame persists into the next one of its kind: not over pictures of another detail or without colour.
+  // Persistence combines frames of the same kind only: not those of another detail or without colour.
   const bool is_other_detail = impl.last_detail != detail;
   const bool has_colour = request.has_doppler && impl.flow;
   if (is_other_detail) scanner.reset();
@@ -216,7 +216,7 @@ ScanPicture PictureMaker::show_kept(const ScanRequest& asked) {
   picture.is_frozen = true;
   if (companion.has_doppler && request.has_doppler) {
     picture.doppler = companion.doppler_settings;
-    // Of a colour frame these controls can still be turned.
+    // Settings that can still change for a stored colour frame.
     picture.doppler.baseline = request.doppler.baseline;
     picture.doppler.is_inverted = request.doppler.is_inverted;
     picture.doppler.write_priority = request.doppler.write_priority;

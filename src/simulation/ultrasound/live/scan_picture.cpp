@@ -9,7 +9,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-/// Two neighbours and the share of the second, of 256.
+/// Two neighbours and the weight of the second, of 256.
 struct Between {
   std::size_t low, high;
   unsigned part;

@@ -9,7 +9,7 @@ namespace {
 constexpr double kLeastDepth_mm = 20.0;
 constexpr double kLeastFocus_mm = 5.0;
 constexpr int kLeastSide = 16, kMostSide = 2048;
-/// Where a turn of the transducer is felt: half a usual face wide, half a picture deep.
+/// Lever for rotations of the transducer: half a usual face wide, half an image deep.
 constexpr double kReach_mm = 60.0;
 
 double held(double value, double low, double high, double fallback) noexcept {

@@ -19,7 +19,7 @@ Acquisition with_detail(const Acquisition& full, ScanDetail detail) noexcept {
   a.samples = std::max(64, is_middle ? full.samples * 3 / 4 : full.samples / 2);
   a.lines = std::min(a.lines, full.lines);
   a.samples = std::min(a.samples, full.samples);
-  // A single plane makes borders too bright and sharp, and saves little.
+  // A single plane makes borders too bright and sharp, and saves little time.
   a.planes = std::min(full.planes, 3);
   a.steering_angles = std::min(full.steering_angles, is_middle ? 2 : 1);
   return a;

@@ -11,7 +11,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-/// Room beside the scan and air before the skin.
+/// Margin around the scan, and air outside the skin.
 constexpr double kRim_mm = 6.0;
 
 double own_skin_distance_mm(const SceneBox& box, const Vec3& p_P) {
@@ -19,7 +19,7 @@ double own_skin_distance_mm(const SceneBox& box, const Vec3& p_P) {
   return box.face_radius_mm - std::hypot(p_P.x(), p_P.y() + box.face_radius_mm);
 }
 
-/// How far a convex face falls back at the edges of the box.
+/// Sag of a convex face at the edges of the box.
 double sag_mm(const SceneBox& box) {
   if (box.face_radius_mm <= 0.0) return 0.0;
   const double half_mm = std::min(box.half_width_mm, box.face_radius_mm);
@@ -32,7 +32,7 @@ volume::GridGeometry grid_of(const SceneBox& box) {
   volume::GridGeometry grid;
   grid.spacing_mm = Vec3::Constant(box.spacing_mm);
   grid.size = {2 * whole(box.half_width_mm), whole(before_mm) + whole(box.depth_mm), 2 * whole(box.half_thickness_mm)};
-  // Voxels' middles lie half a spacing beside whole ones, so that borders lie on whole ones.
+  // Voxel centres are at half spacings, so that borders are at multiples of the spacing.
   grid.origin_P = box.spacing_mm * Vec3(0.5 - static_cast<double>(whole(box.half_width_mm)),
                                         0.5 - static_cast<double>(whole(before_mm)),
                                         0.5 - static_cast<double>(whole(box.half_thickness_mm)));

@@ -7,7 +7,7 @@ namespace trocar::ultrasound {
 namespace {
 
 constexpr double kSilent_db = -80.0;
-/// Impedance of the common medium over a speed: the density at which a border does not reflect.
+/// Impedance of the common medium divided by a speed: the density at which a border has no reflection.
 constexpr double kCommonImpedance = 1540.0 * 1000.0;
 
 AcousticTissue medium_named(std::string name, double backscatter_db, double attenuation) {

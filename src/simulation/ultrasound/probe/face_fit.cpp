@@ -11,9 +11,9 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kGreatestTilt = 15.0 * std::numbers::pi / 180.0;  ///< In the plane, for the sake of contact.
+constexpr double kGreatestTilt = 15.0 * std::numbers::pi / 180.0;  ///< In the image plane, to improve the contact.
 constexpr double kPressStep_mm = 0.5;
-constexpr double kTouchingShare = 0.97;  ///< Of the scanlines that are to have contact.
+constexpr double kTouchingShare = 0.97;  ///< Required share of scanlines with contact.
 
 Pose tilted(const Vec3& skin_P, const Mat3& R_PT, double tilt) {
   return {R_PT * Mat3(Eigen::AngleAxisd(tilt, Vec3::UnitZ())), skin_P};
@@ -31,7 +31,7 @@ Pose lay_along(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& sc
       sum_xx += at_T.x() * at_T.x();
       sum_xd += at_T.x() * -volume::sample_linear(skin_distance_mm, X_PT * Vec3(at_T.x(), at_T.y(), 0.0));
     }
-    if (sum_xx <= 0.0) break;  // a phased array: all scanlines leave one point
+    if (sum_xx <= 0.0) break;  // a phased array: all scanlines start at one point
     tilt = std::clamp(tilt - std::atan(sum_xd / sum_xx), -kGreatestTilt, kGreatestTilt);
   }
   return tilted(skin_P, R_PT, tilt);

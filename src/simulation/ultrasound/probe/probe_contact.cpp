@@ -12,17 +12,17 @@ namespace {
 constexpr int kMaxSteps = 24;
 constexpr double kTolerance_mm = 0.02;
 
-// Assumed: half of a dent lies within the fat where that is 20 mm thick.
+// Assumed: half of an indentation is within the fat if that is 20 mm thick.
 constexpr double kReachWithoutFat_mm = 24.0;
 constexpr double kReachOfFat = 0.8;
 constexpr double kLeastReach_mm = 12.0;
 constexpr double kGreatestReach_mm = 48.0;
-/// Harder than this is bone (6 MRayl or more; cartilage and muscle have less than 2.5).
+/// A larger impedance is bone (6 MRayl or more; cartilage and muscle have less than 2.5).
 constexpr double kRigid_mrayl = 3.0;
 constexpr int kReachLines = 9;
 
-/// Way from p to the skin along a unit direction, at most `farthest_mm`: the signed distance never exceeds it, so
-/// steps of that length approach the skin and do not pass it.
+/// Distance from p to the skin along a unit direction, at most `farthest_mm`: the signed distance never exceeds it, so
+/// steps of that length approach the skin without passing it.
 double way_to_skin_mm(const volume::FloatGrid& skin_distance_mm, const Vec3& p_P, const Vec3& direction_P, double sign,
                       double farthest_mm) noexcept {
   double way_mm = 0.0;
@@ -55,7 +55,7 @@ std::uint8_t tissue_at(const AcousticScene& scene, const Vec3& p_P) noexcept {
   return static_cast<std::uint8_t>(scene.tissue[scene.geometry.offset(ijk)] & ~kMixedCell);
 }
 
-/// Reach under one scanline.
+/// Depth of the indented tissue under one scanline.
 double line_reach_mm(const AcousticScene& scene, std::uint8_t fat, const Scanline& line) noexcept {
   constexpr double kStep_mm = 1.0;
   double fat_mm = 0.0;

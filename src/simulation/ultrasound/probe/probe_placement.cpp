@@ -23,29 +23,29 @@ using detail::ViewRays;
 
 constexpr double kFarthestSkin_mm = 400.0;
 constexpr double kSearchStep_mm = 4.0;
-constexpr double kFreeSlant = 30.0 * std::numbers::pi / 180.0;  ///< Between beam and skin, without a malus.
+constexpr double kFreeSlant = 30.0 * std::numbers::pi / 180.0;  ///< Between beam and skin, without a penalty.
 constexpr int kLines = 33;
 constexpr double kWayStep_mm = 2.0;
 
-// Weights of what a place costs; assumed, chosen on the embedded patients and two CTs.
-constexpr double kUnseenCost = 2.0;   ///< A subject of which nothing is visible.
-constexpr double kThroughCost = 0.7;  ///< A way that meets nothing of what it should pass.
-constexpr double kShiftCost = 0.15;   ///< A place at the end of the search.
-constexpr double kSlantCost = 2.0;    ///< A rad beyond kFreeSlant.
-constexpr double kContactCost = 1.5;  ///< A face that touches nowhere.
-constexpr double kDentCost = 0.04;    ///< A mm of the deepest dent beyond kFreeDent_mm.
+// Weights of the cost of a pose; assumed, chosen on the embedded patients and two CTs.
+constexpr double kUnseenCost = 2.0;   ///< An invisible subject.
+constexpr double kThroughCost = 0.7;  ///< A path without any of the structures that it should pass.
+constexpr double kShiftCost = 0.15;   ///< A position at the end of the search.
+constexpr double kSlantCost = 2.0;    ///< Per rad beyond kFreeSlant.
+constexpr double kContactCost = 1.5;  ///< A face without contact.
+constexpr double kDentCost = 0.04;    ///< Per mm of the deepest indentation beyond kFreeDent_mm.
 constexpr double kFreeDent_mm = 9.0;
-constexpr double kFarCost = 0.4;   ///< A place at the end of the wide search.
-constexpr double kTurnCost = 0.2;  ///< A plane turned by kMostTurn.
+constexpr double kFarCost = 0.4;   ///< A position at the end of the wide search.
+constexpr double kTurnCost = 0.2;  ///< A plane rotated by kMostTurn.
 
 // The wide search.
-constexpr double kFarthest = 60.0 * std::numbers::pi / 180.0;  ///< From the view's direction.
+constexpr double kFarthest = 60.0 * std::numbers::pi / 180.0;  ///< From the direction of the view.
 constexpr double kFarStep = 8.0 * std::numbers::pi / 180.0;
-constexpr double kMostTurn = 60.0 * std::numbers::pi / 180.0;  ///< Of the plane about the beam.
-constexpr int kTurns = 2;                                      ///< Steps to either side.
+constexpr double kMostTurn = 60.0 * std::numbers::pi / 180.0;  ///< Of the plane around the beam.
+constexpr int kTurns = 2;                                      ///< Steps to each side.
 constexpr double kRefine_mm = 12.0;
 
-/// First point of the skin on the way from a point inside; nothing where the way leaves the volume before.
+/// First intersection with the skin from a point inside; empty if the line leaves the volume before.
 std::optional<Vec3> skin_along(const ViewAnatomy& ground, const Vec3& from_P, const Vec3& direction_P) {
   double inside_mm = 0.0;
   for (double way_mm = 0.0; way_mm < kFarthestSkin_mm; way_mm += kWayStep_mm) {
@@ -62,8 +62,8 @@ std::optional<Vec3> skin_along(const ViewAnatomy& ground, const Vec3& from_P, co
   return std::nullopt;
 }
 
-/// The skin in the view's direction, else in one nearer to the shortest way out: a part of the body that is cut off, or
-/// a block of tissue, has no skin at its sides.
+/// The skin in the direction of the view, else in one closer to the shortest way out: a truncated body or a block of
+/// tissue has no skin at its sides.
 std::optional<Vec3> find_skin(const ViewAnatomy& ground, const Vec3& target_P, const Vec3& direction_P) {
   const Vec3 shortest = ground.skin_normal(target_P);
   for (const double share : {0.0, 0.5, 1.0}) {
@@ -74,15 +74,15 @@ std::optional<Vec3> find_skin(const ViewAnatomy& ground, const Vec3& target_P, c
   return std::nullopt;
 }
 
-/// +x of T before it is made square to the beam.
+/// +x of T before it is made perpendicular to the beam.
 Vec3 marker(const ProbeView& view, const Vec3& beam_P) {
-  constexpr double kFromFlank = 0.8;  // cosine: the patient's right lies along the beam
+  constexpr double kFromFlank = 0.8;  // cosine: the patient's right is nearly parallel to the beam
   if (view.plane == ScanPlane::kLongitudinal) return Vec3::UnitZ();
   if (std::abs(beam_P.x()) < kFromFlank) return -Vec3::UnitX();
   return Vec3::UnitZ().cross(beam_P);
 }
 
-/// `turn_rad`: beside what the view says.
+/// `turn_rad`: in addition to the angle of the view.
 Mat3 orientation(const ProbeView& view, const Vec3& beam_P, double turn_rad = 0.0) {
   const Vec3 wish = marker(view, beam_P);
   Vec3 x = wish - wish.dot(beam_P) * beam_P;
@@ -93,7 +93,7 @@ Mat3 orientation(const ProbeView& view, const Vec3& beam_P, double turn_rad = 0.
   return R_PT;
 }
 
-/// A place that has been tried.
+/// A pose that was tried.
 struct Candidate {
   Pose X_PT;
   ViewVisibility visibility;
@@ -111,7 +111,7 @@ class Placer {
         rays_(ground, view, transducer, target_P),
         target_P_(target_P) {}
 
-  /// The face on a point of the skin; `extra_cost` for how far that is from where the view wants it.
+  /// The face on a point of the skin; `extra_cost` for the distance from the point of the view.
   Candidate place(const Vec3& skin_P, double turn_rad, double extra_cost) const {
     const Vec3 beam_P = (target_P_ - skin_P).normalized();
     Candidate candidate;
@@ -128,7 +128,7 @@ class Placer {
     return candidate;
   }
 
-  /// The best place within a distance along the skin; `best` is what to beat.
+  /// The best pose within a distance along the skin; must have a lower cost than `best`.
   Candidate search_near(const Vec3& skin_P, double turn_rad, double reach_mm, double extra_cost, Candidate best) const {
     const Mat3 R_PT = orientation(view_, (target_P_ - skin_P).normalized(), turn_rad);
     const Vec3 normal = ground_.skin_normal(skin_P);
@@ -150,7 +150,7 @@ class Placer {
     return best;
   }
 
-  /// The best place of those that are seen from the target within kFarthest of the view's direction, the plane turned.
+  /// The best pose in directions from the target within kFarthest of the view's direction, with rotations of the plane.
   Candidate search_far(Candidate best) const {
     const Vec3 middle = view_.direction_P, side = middle.unitOrthogonal(), other = middle.cross(side);
     const double before = best.cost;
@@ -178,10 +178,10 @@ class Placer {
   }
 
  private:
-  /// What a scanline meets on its way to the target's depth.
+  /// Structures on a scanline down to the target's depth.
   struct Way {
-    double seen = 1.0;     ///< Share before bone or gas.
-    double through = 0.0;  ///< Share in what it should pass.
+    double seen = 1.0;     ///< Share in front of bone or gas.
+    double through = 0.0;  ///< Share in structures that it should pass.
     bool is_at_bone = false;
   };
 
@@ -209,7 +209,7 @@ class Placer {
     const double depth_mm = (target_P_ - X_PT.p()).norm();
     const double middle = scan_.middle_line();
     double hidden = 0.0, missed = 0.0, weights = 0.0;
-    std::array<double, 2> bone{};  // by side
+    std::array<double, 2> bone{};  // per side
     int in_side = 0;
     for (int n = 0; n < kLines; ++n) {
       const double off = (n - middle) / middle;  // -1..1
@@ -229,10 +229,10 @@ class Placer {
     return cost;
   }
 
-  /// Standard deviation of the scanlines' weights, in halves of the width; between ribs only the middle is free.
+  /// Standard deviation of the scanlines' weights, in half widths; between ribs only the centre is free.
   double middle_share() const { return view_.bone == BonePreference::kBeside ? 0.2 : 0.4; }
   static constexpr double kSide = 0.3;
-  static constexpr double kRibShare = 0.3;  ///< Of a side's scanlines that a rib takes.
+  static constexpr double kRibShare = 0.3;  ///< Share of a side's scanlines blocked by a rib.
 
   const ViewAnatomy& ground_;
   const ProbeView& view_;

@@ -16,7 +16,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr std::size_t kLeastVoxels = 8;  // fewer are a segmentation's crumbs
+constexpr std::size_t kLeastVoxels = 8;  // smaller labels are segmentation noise
 
 /// Reads one of a few words.
 template <class T, std::size_t N>
@@ -107,7 +107,7 @@ const anatomy::Label* find_counted(const anatomy::LabelTable& table, const std::
   return nullptr;
 }
 
-/// The patterns of which the patient needs one and has none; nullptr: nothing is missing.
+/// The patterns that the patient needs one of but lacks; nullptr: none is missing.
 const std::vector<std::string>* find_missing(const anatomy::LabelTable& table,
                                              const std::array<std::size_t, 256>& voxels, const ProbeView& view) {
   if (find_counted(table, voxels, view.targets) == nullptr) return &view.targets;

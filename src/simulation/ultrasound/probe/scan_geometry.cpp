@@ -8,7 +8,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-/// Part of the picture that stays empty at each side of the scan, so that its edge is seen.
+/// Fraction of the image that is empty at each side of the scan, so that its edge is visible.
 constexpr double kRasterMargin = 0.02;
 
 }  // namespace
@@ -43,7 +43,7 @@ ScanGeometry::Extent ScanGeometry::extent() const noexcept {
   const double half = middle_line() * line_step;
   if (!is_fan) return {-half, 0.0, half, depth_mm};
   const double reach_mm = radius_mm + depth_mm;
-  // The outermost scanlines end lowest on the face; where they point backwards (half > 90 degrees), at their far end.
+  // The outermost scanlines end lowest on the face; if they point backwards (half > 90 degrees), at their far end.
   const double lowest_mm = std::cos(half) * (std::cos(half) < 0.0 ? reach_mm : radius_mm) - radius_mm;
   const double widest_mm = half < 0.5 * EIGEN_PI ? reach_mm * std::sin(half) : reach_mm;
   return {-widest_mm, lowest_mm, widest_mm, depth_mm};
@@ -59,7 +59,7 @@ ScanGeometry make_scan_geometry(const Transducer& transducer, double depth_mm, i
   scan.is_fan = transducer.kind != TransducerKind::kLinear;
   const bool has_arc = scan.is_fan && transducer.kind != TransducerKind::kPhased;
   scan.radius_mm = has_arc ? transducer.radius_mm : 0.0;
-  // A linear array's outermost scanlines leave it at the middles of its outermost elements.
+  // A linear array's outermost scanlines start at the centres of its outermost elements.
   const double width = scan.is_fan ? transducer.field_of_view_rad : transducer.pitch_mm * (transducer.elements - 1);
   scan.line_step = width / (lines - 1);
   return scan;

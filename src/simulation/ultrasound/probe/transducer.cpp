@@ -21,7 +21,7 @@ constexpr std::pair<std::string_view, TransducerKind> kKinds[] = {
     {"mechanical_convex", TransducerKind::kMechanicalConvex},
 };
 
-/// Reads sourced numbers of a row and keeps their keys, so that any other key is an error.
+/// Reads sourced numbers of a row and records their keys, so that any other key is an error.
 class Reader {
  public:
   explicit Reader(const config::TomlTable& row) : row_(row) {}

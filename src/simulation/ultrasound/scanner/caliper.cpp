@@ -7,7 +7,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr int kMeanSteps = 8;  ///< The arithmetic-geometric mean doubles its digits with each; five are enough.
+constexpr int kMeanSteps = 8;  ///< Each step of the mean doubles the digits; five suffice.
 
 double cross(const Vec2& a, const Vec2& b) noexcept {
   return a.x() * b.y() - a.y() * b.x();
@@ -43,7 +43,7 @@ double EllipseCaliper::area_mm2() const noexcept {
 double EllipseCaliper::circumference_mm() const noexcept {
   double a = std::max(0.5 * length_mm(), half_width_mm);
   double b = std::min(0.5 * length_mm(), half_width_mm);
-  if (b <= 0.0) return 4.0 * a;  // there and back
+  if (b <= 0.0) return 4.0 * a;  // both ways
   // 2 pi / M(a, b) * (a^2 - sum of 2^(n-1) c_n^2), with c_0^2 = a^2 - b^2 and c_n = (a - b) / 2 of the step before
   // (Abramowitz and Stegun 17.6).
   double sum = a * a - 0.5 * (a * a - b * b);

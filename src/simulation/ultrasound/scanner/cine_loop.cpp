@@ -61,7 +61,7 @@ void CineLoop::step(int frames) noexcept {
 
 void CineLoop::play(double elapsed_s) noexcept {
   if (!is_frozen_ || first_ == last_ || !(elapsed_s >= 0.0) || !std::isfinite(elapsed_s)) return;
-  // The last frame is shown as long as frames are on average before the first one comes again.
+  // The display time of the last frame before the loop restarts is the mean frame interval.
   const double span_s = time_s(last_) - time_s(first_);
   const double pause_s = span_s / (last_ - first_);
   if (!(span_s > 0.0)) return;

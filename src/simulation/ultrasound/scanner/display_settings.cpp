@@ -22,13 +22,14 @@ constexpr Range kPersistence{0.0, 0.95};
 constexpr std::array<std::pair<GrayMap, std::string_view>, 3> kNames = {
     {{GrayMap::kLinear, "linear"}, {GrayMap::kSoft, "soft"}, {GrayMap::kHighContrast, "high-contrast"}}};
 
-/// How sharply the automatic TGC bends into its limit. Assumed, range 1..6.
+/// Sharpness of the transition of the automatic TGC to its limit. Assumed, range 1..6.
 constexpr double kLimitBend_db = 3.0;
 
-/// Gray maps, fitted to the sweep of docs/validation.md: liver's mean and spread, and the gray of what does not echo.
-constexpr double kSoftSteepness = 4.5;  ///< Gray grows by e that often over the dynamic range.
+/// Gray maps, fitted to the sweep of docs/validation.md: mean and spread of liver, and the gray of tissue without
+/// echoes.
+constexpr double kSoftSteepness = 4.5;  ///< Number of e-folds of the gray value over the dynamic range.
 constexpr double kSoftFloor = 8.0 / 255.0;
-constexpr double kSoftFloorRise = 0.04;  ///< Part of the dynamic range over which the floor is reached.
+constexpr double kSoftFloorRise = 0.04;  ///< Part of the dynamic range in which the floor is reached.
 constexpr double kHighContrastSteepness = 6.0;
 
 Status in_range(double value, Range range, std::string_view control, std::string_view unit) {
@@ -44,12 +45,12 @@ double held(double value, Range range, double fallback) noexcept {
 double automatic_db(const DisplaySettings& settings, double depth_mm, double frequency_mhz) noexcept {
   const double loss_db = 2.0 * settings.automatic_tgc_db_per_cm_mhz * frequency_mhz * 0.1 * std::max(depth_mm, 0.0);
   const double beyond = (loss_db - settings.automatic_tgc_limit_db) / kLimitBend_db;
-  if (beyond > 30.0) return settings.automatic_tgc_limit_db;  // where the exponential would grow out of hand
+  if (beyond > 30.0) return settings.automatic_tgc_limit_db;  // limits the exponential
   return loss_db - kLimitBend_db * std::log1p(std::exp(beyond));
 }
 
-/// Slope of the slider curve at a slider, dB a slider. Zero at a hill or hollow and the harmonic mean elsewhere, so
-/// that the cubic does not overshoot (Fritsch and Butland 1984).
+/// Slope of the slider curve at a slider, dB per slider. Zero at an extremum and the harmonic mean elsewhere, so that
+/// the cubic does not overshoot (Fritsch and Butland 1984).
 double slope_at(const std::array<double, kTgcSliders>& tgc_db, int slider) noexcept {
   if (slider <= 0 || slider >= kTgcSliders - 1) return 0.0;
   const auto i = static_cast<std::size_t>(slider);
@@ -69,7 +70,7 @@ double sliders_db(const std::array<double, kTgcSliders>& tgc_db, double place) n
          slope_at(tgc_db, first + 1) * t * t * s;
 }
 
-/// 0..1 to 0..1, `steepness` times e over the whole.
+/// Maps 0..1 to 0..1 exponentially, with `steepness` e-folds.
 double exponential(double x, double steepness) noexcept {
   return std::expm1(steepness * x) / std::expm1(steepness);
 }

@@ -19,15 +19,15 @@ constexpr int kMargin = 6;
 constexpr int kLineHeight = 10;
 constexpr int kShortTick = 3;
 constexpr int kLongTick = 6;
-constexpr int kLabelColumns = 2 * volume::kGlyphAdvance;  ///< Room for two digits right of the scale.
+constexpr int kLabelColumns = 2 * volume::kGlyphAdvance;  ///< Space for two digits right of the scale.
 constexpr int kWedgeColumns = 8;
 constexpr int kTriangle = 4;
 constexpr int kMarkerDistance = 9;
 constexpr double kMarkerRadius = 3.0;
-/// Pictures of so many columns are written with one pixel a dot, twice as many with two.
+/// Images up to this number of columns use one pixel per dot, twice as many use two.
 constexpr int kColumnsPerScale = 640;
 
-/// Ticks of the depth scale: for shallow pictures every 5 mm and a label a cm, else every cm and a label each 5 cm.
+/// Ticks of the depth scale: for shallow images every 5 mm with a label per cm, else every cm with a label per 5 cm.
 constexpr double kShallow_mm = 60.0;
 
 std::string depth_label(double depth_mm) {
@@ -84,7 +84,7 @@ void draw_box(volume::RgbImage& image, int column, int row, int columns, int row
   }
 }
 
-/// Filled, its point at (column, row) and to the right.
+/// Filled, with its point at (column, row), extending to the right.
 void draw_triangle(volume::RgbImage& image, int column, int row, int size, volume::Rgb colour) {
   for (int i = 0; i <= size; ++i) draw_box(image, column - i, row - i, 1, 2 * i + 1, colour);
 }
@@ -110,7 +110,7 @@ ScanAnnotation make_scan_annotation(const RasterGeometry& raster, const ScanGeom
   const Vec2 end_pixel = raster.to_pixel(scan.line_origin(scan.lines - 1));
   const double outwards = raster.is_mirrored ? -1.0 : 1.0;
   const Vec2 marker = end_pixel + Vec2(outwards * kMarkerDistance * annotation.text_scale, 0.0);
-  // A linear array may fill the picture: the whole marker is in it.
+  // A linear array can fill the image: the marker is then inside it.
   const double radius = kMarkerRadius * annotation.text_scale;
   const Vec2 last(raster.columns - 1, raster.rows - 1);
   annotation.marker_pixel = marker.cwiseMin(last - Vec2(radius, radius)).cwiseMax(Vec2(radius, radius));

@@ -19,10 +19,10 @@ using detail::kLevelStep_db;
 using detail::kMostLanes;
 using detail::kMostSamples;
 
-/// Fine levels that one gray value is looked up for: 1/32 dB.
+/// Number of levels of 1/32 dB per entry of the gray table.
 constexpr int kLookupShift = 4;
 constexpr std::size_t kLookupSize = (std::size_t{1} << 16) >> kLookupShift;
-/// Least work of a thread: a sixteenth of a usual frame.
+/// Minimum work of a thread: a sixteenth of a usual frame.
 constexpr std::size_t kLinesTogether = 16;
 constexpr std::size_t kRowsTogether = 32;
 
@@ -57,16 +57,16 @@ struct Scanner::Impl {
   detail::Receiver receiver;
   detail::ScanConversion conversion;
   const float noise_amplitude = static_cast<float>(std::pow(10.0, detail::kReceiverNoise_db / 20.0));
-  double receiver_sigma_mm = -1.0;  ///< Of the pulse that `receiver` is made for.
+  double receiver_sigma_mm = -1.0;  ///< Pulse length for which `receiver` was made.
   std::optional<DisplaySettings> applied;
   std::optional<DisplaySettings> looked_up;
   double applied_mhz = 0.0;
 
-  std::vector<float> offset;                           ///< TGC less the floor of each sample, fine levels.
-  std::array<std::uint8_t, kLookupSize> gray_of_fine;  ///< By fine level >> kLookupShift.
-  std::array<std::uint8_t, 256> gray_of_level_of;      ///< By level.
-  std::size_t stride = 0;                              ///< Of `state`: whole vectors a line.
-  std::vector<std::uint16_t> state;                    ///< Fine levels of the picture, with what persists.
+  std::vector<float> offset;                           ///< TGC minus the floor of each sample, in levels of 1/32 dB.
+  std::array<std::uint8_t, kLookupSize> gray_of_fine;  ///< Indexed by level >> kLookupShift.
+  std::array<std::uint8_t, 256> gray_of_level_of;      ///< Indexed by level.
+  std::size_t stride = 0;                              ///< Row length of `state`: a multiple of the vector length.
+  std::vector<std::uint16_t> state;                    ///< Levels of the image with persistence.
   bool has_state = false;
   std::vector<std::uint8_t> levels;
   std::vector<std::uint8_t> polar;
@@ -121,7 +121,7 @@ void Scanner::Impl::set_lookup(const DisplaySettings& wanted) {
   for (std::size_t i = 0; i < 256; ++i) {
     gray_of_level_of[i] = gray_of_level(level_db(static_cast<std::uint8_t>(i)), wanted);
   }
-  // Nothing, and what is no number, is black however far the gain is turned up.
+  // Zero and non-finite values stay black at any gain.
   gray_of_fine[0] = gray_of_level_of[0] = 0;
 }
 
@@ -133,7 +133,7 @@ void Scanner::Impl::receive_line(const BasebandFrame& frame, std::size_t line, s
   const detail::Receiver::Noise noise = receiver.noise(seed, line);
   const auto steering_angles = static_cast<std::size_t>(frame.steering_angles);
   const std::size_t angle_step = lines() * n;
-  constexpr std::size_t kNoiseStep = 1021;  // far beyond the pulse, so that steering_angles have noise of their own
+  constexpr std::size_t kNoiseStep = 1021;  // far beyond the pulse, so that compounding angles have independent noise
   const float level = artefacts.noise ? noise_amplitude : 0.0F;
 
   std::array<std::uint16_t, kMostSamples> fresh;

@@ -14,7 +14,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kMaxVoxels = 256e6;  ///< 2.5 GB while it is made.
+constexpr double kMaxVoxels = 256e6;  ///< 2.5 GB during the reconstruction.
 constexpr std::size_t kGrain = 1 << 16;
 
 bool is_within(double value, double low, double high) {
@@ -73,7 +73,7 @@ Result<std::vector<detail::PlacedFrame>> place_frames(const TrackedSequence& seq
   return placed;
 }
 
-/// Voxels along one axis: the last is the last that a pixel can meet, the nearest or the one beyond.
+/// Voxels along one axis: the last one that a pixel can reach, by nearest neighbour or interpolation.
 double voxels_along(double length_mm, double spacing_mm, FreehandInterpolation interpolation) {
   const double last = length_mm / spacing_mm;
   return 1.0 + (interpolation == FreehandInterpolation::kLinear ? std::ceil(last) : std::floor(last + 0.5));

@@ -18,7 +18,7 @@ Pose sensor_pose_in_transducer() {
   return {Eigen::AngleAxisd(0.3, Vec3(1.0, 2.0, -1.0).normalized()).toRotationMatrix(), {12.0, -95.0, 20.0}};
 }
 
-/// A tracker at the side of the couch that looks down on the patient. Assumed.
+/// A tracker at the side of the couch, above the patient. Assumed.
 Pose patient_pose_in_tracker() {
   return {Eigen::AngleAxisd(2.1, Vec3(1.0, 0.3, 0.2).normalized()).toRotationMatrix(), {150.0, -60.0, -1100.0}};
 }
@@ -30,7 +30,7 @@ TrackedSequence::Matrix4 matrix_of(const Pose& X) {
   return matrix;
 }
 
-/// (column, row, 0) of a picture to points of T.
+/// Maps (column, row, 0) of an image to points of T.
 TrackedSequence::Matrix4 image_to_transducer(const RasterGeometry& raster) {
   TrackedSequence::Matrix4 matrix = TrackedSequence::Matrix4::Identity();
   matrix.diagonal().head<3>().setConstant(raster.mm_per_pixel);
@@ -39,8 +39,8 @@ TrackedSequence::Matrix4 image_to_transducer(const RasterGeometry& raster) {
   return matrix;
 }
 
-/// Along y of T from that pose, until the middle of its face is that deep; the pose itself where there is no such
-/// place.
+/// Moves along y of T until the centre of the face is at this depth; returns the pose itself if there is no such
+/// position.
 Pose follow_skin(const volume::FloatGrid& skin_distance_mm, const Pose& X_PT, double depth_of_face_mm) {
   constexpr double kFarthest_mm = 60.0;
   constexpr double kTolerance_mm = 0.05;
@@ -90,7 +90,7 @@ std::vector<Pose> tilt_on_skin(const Pose& X_PT, double angle_rad, double radius
 Pose sway(const Pose& X_PT, int frame) noexcept {
   constexpr double kReach_mm = 3.8;
   constexpr double kTilt_rad = 0.05;
-  const double phase = 0.11 * frame + 0.05;  // no frame is the still one
+  const double phase = 0.11 * frame + 0.05;  // no frame is exactly at the nominal pose
   const double tilt_rad = kTilt_rad * std::sin(1.7 * phase);
   const double c = std::cos(tilt_rad), s = std::sin(tilt_rad);
   Mat3 R;

@@ -16,10 +16,10 @@ namespace trocar::ultrasound {
 namespace {
 
 constexpr double kMaxVoxels = 256e6;
-constexpr double kMaxSamples = 1e9;  ///< A byte each.
+constexpr double kMaxSamples = 1e9;  ///< One byte each.
 constexpr double kLeastSweep_rad = 0.01;
 constexpr int kMostFrames = 1000;
-/// The scanner's picture is not used, only its gray levels a scanline.
+/// The scanner's image is not used, only the gray levels per scanline.
 constexpr int kNoColumns = 16;
 
 bool is_within(double value, double low, double high) {
@@ -32,7 +32,7 @@ struct Frames {
   double mean_contact = 0.0;
 };
 
-/// Samples are finer than voxels: a voxel shows the mean of those that it is long, not one by chance.
+/// Samples are finer than voxels: a voxel gets the mean of the samples along its length.
 void average_along_lines(const std::vector<std::uint8_t>& polar, int samples, int half_length, std::uint8_t* out) {
   const std::size_t n = static_cast<std::size_t>(samples);
   for (std::size_t line = 0; line < polar.size() / n; ++line) {
@@ -70,10 +70,10 @@ Frames take_frames(const std::shared_ptr<const AcousticScene>& scene, const Tran
   return frames;
 }
 
-/// Lower neighbour and the part of the upper one; nothing beyond half a sample outside.
+/// Lower neighbour and the weight of the upper one; empty beyond half a sample outside.
 struct Between {
   std::size_t lower = 0;
-  std::size_t step = 0;  ///< To the upper one; 0 at the end.
+  std::size_t step = 0;  ///< Offset of the upper one; 0 at the end.
   float part = 0.0F;
 };
 bool find_between(double at, int count, Between& between) {
@@ -129,7 +129,7 @@ Result<SweepGeometry> plan_sweep(const Transducer& transducer, const MechanicalS
   return geometry;
 }
 
-/// A grid of T in which a plane of voxels lies in the middle frame.
+/// A grid in T with a plane of voxels in the middle frame.
 Result<volume::GridGeometry> lay_grid(const SweepGeometry& geometry, double spacing_mm) {
   if (!is_within(spacing_mm, 0.2, 5.0))
     return fail_usage(fmt::format("a spacing of {} mm is not within 0.2..5", spacing_mm), "spacing",
@@ -177,7 +177,7 @@ SweepGeometry::Extent SweepGeometry::extent() const noexcept {
   const ScanGeometry::Extent plane = scan.extent();
   const double half = 0.5 * sweep_rad;
   const double far_mm = plane.y1 + radius_mm;
-  const double near_mm = plane.y0 + radius_mm;  // may be behind the axis where the face is strongly curved
+  const double near_mm = plane.y0 + radius_mm;  // can be behind the axis if the face is strongly curved
   const double lowest = std::min(near_mm * std::cos(half), near_mm) - radius_mm;
   const double widest = std::max(far_mm, std::abs(near_mm)) * std::sin(half);
   return {{plane.x0, lowest, -widest}, {plane.x1, plane.y1, widest}};

@@ -13,15 +13,15 @@ namespace {
 
 using Matrix4 = TransformGraph::Matrix4;
 
-constexpr double kLeastDeterminant = 1e-12;  ///< Of the linear part: pixels of 0.1 µm would pass.
+constexpr double kLeastDeterminant = 1e-12;  ///< Of the linear part: permits pixels of 0.1 µm.
 
 struct Edge {
   std::string from, to;
   Matrix4 matrix;
 };
 
-/// Frames begin with a capital, so "ToolToTracker" can be cut in one way; where a name can be cut in several, all
-/// count.
+/// Frame names start with a capital, so that "ToolToTracker" can be split in one way; if a name can be split in several
+/// ways, all are used.
 void add_edges(const std::string& name, const Matrix4& matrix, std::vector<Edge>& edges) {
   for (std::size_t at = name.find("To", 1); at != std::string::npos; at = name.find("To", at + 1)) {
     const std::size_t next = at + 2;
@@ -38,7 +38,7 @@ std::vector<Edge> edges_of(const TrackedSequence::Transforms& transforms) {
   return edges;
 }
 
-/// All frames that can be reached from one, each with the transform to it, breadth first.
+/// All frames connected to one, each with the transform to it, breadth first.
 std::map<std::string, Matrix4, std::less<>> reach(const std::vector<Edge>& edges, std::string_view from) {
   std::map<std::string, Matrix4, std::less<>> reached{{std::string(from), Matrix4::Identity()}};
   std::deque<std::string> queue{std::string(from)};

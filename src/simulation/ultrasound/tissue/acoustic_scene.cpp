@@ -17,12 +17,12 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kMargin_mm = 20.0;      ///< Of air around the body: what the face meets before the skin.
+constexpr double kMargin_mm = 20.0;      ///< Air around the body: in front of the skin.
 constexpr double kSkinSpacing_mm = 2.0;  ///< Of the distance to the skin, which is smooth.
 constexpr double kSkin_mm = 2.0;         ///< Thickness of the skin, as TissueTable::skin_thickness_mm.
-/// Assumed: calms a CT's noise, keeps its vessels of 3 mm. With the mean over a cell that a scan reads it is 1.2 mm.
+/// Assumed: reduces a CT's noise but keeps vessels of 3 mm. With the mean over a cell in a scan it is 1.2 mm.
 constexpr double kTextureSigma_mm = 1.1;
-/// A grid finer than this share of the CT's voxels shows nothing more.
+/// A grid finer than this fraction of the CT's voxels adds no detail.
 constexpr double kLeastShareOfVoxel = 0.5;
 
 /// Grid of cubes over the window's voxels, to their outer faces.
@@ -57,8 +57,8 @@ void smooth_along(volume::FloatGrid& grid, std::size_t axis) {
   });
 }
 
-/// Distance to the skin on a grid of 2 mm, without the steps that voxels of a mask leave in it (standard deviation of
-/// the kernel 1.4 mm; a ball's surface of radius r moves inwards by 2 mm²/r).
+/// Distance to the skin on a grid of 2 mm, without the voxel steps of a mask (standard deviation of the kernel 1.4 mm;
+/// a ball's surface of radius r moves inwards by 2 mm²/r).
 volume::FloatGrid smooth_skin_distance(const volume::FloatGrid& source, const volume::GridGeometry& window) {
   volume::FloatGrid skin(cubic_geometry(window, kSkinSpacing_mm, true));
   parallel_for(skin.voxels.size(), 1 << 12, [&](std::size_t first, std::size_t last) {
@@ -72,7 +72,7 @@ volume::FloatGrid smooth_skin_distance(const volume::FloatGrid& source, const vo
   return skin;
 }
 
-/// Rows of a coarse grid that shares the axes, at the rows of a finer one.
+/// Rows of a coarse grid with the same axes, at the rows of a finer one.
 class RowSampler {
  public:
   RowSampler(const volume::FloatGrid& coarse, const volume::GridGeometry& fine)
@@ -122,7 +122,7 @@ class RowSampler {
   std::vector<float> line_;
 };
 
-/// Where a target voxel lies between source voxels, along one axis.
+/// Position of a target voxel between source voxels, along one axis.
 struct Between {
   std::int64_t low, high;
   float fraction;
@@ -134,7 +134,7 @@ Between between_voxels(double at, std::int64_t size) {
   return {low, std::min(low + 1, size - 1), static_cast<float>(inside - static_cast<double>(low))};
 }
 
-/// Fills target slices one by one, each from the two source slices around it.
+/// Fills target slices one by one, each from the two adjacent source slices.
 class SceneSlices {
  public:
   SceneSlices(const detail::TissueVolume& source, const volume::FloatGrid& skin, std::uint8_t skin_tissue,
@@ -182,7 +182,7 @@ class SceneSlices {
     }
   }
 
-  /// Linear between the source voxels around that are of the tissue.
+  /// Linear between the surrounding source voxels of the tissue.
   std::int8_t texture(const Between& along_u, std::uint8_t tissue) const {
     float sum = 0.0F;
     float weight = 0.0F;
@@ -271,7 +271,7 @@ void mark_mixed_cells(AcousticScene& scene) {
       const std::uint8_t* own = scene.tissue.data() + row * width;
       const auto j = static_cast<std::int64_t>(row) % size[1];
       const auto k = static_cast<std::int64_t>(row) / size[1];
-      // At the grid's far faces the last voxels go on.
+      // At the grid's far faces the last voxels continue.
       const std::size_t next_j = j + 1 < size[1] ? width : 0;
       const std::size_t next_k = k + 1 < size[2] ? width * static_cast<std::size_t>(size[1]) : 0;
       for (std::size_t i = 0; i < width; ++i)

@@ -10,7 +10,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr std::size_t kMostTissues = 127;  // AcousticScene keeps them in seven bits
+constexpr std::size_t kMostTissues = 127;  // AcousticScene stores them in seven bits
 
 struct Field {
   std::string_view key;

@@ -8,10 +8,10 @@
 namespace trocar::ultrasound {
 namespace {
 
-constexpr double kBody_mm = 3.0;  ///< A face cuts the body where the skin lies farther outside than this.
+constexpr double kBody_mm = 3.0;  ///< A face cuts the body if the skin is farther outside than this.
 constexpr volume::Rgb kHatch{58, 66, 78};
 constexpr int kHatchStep_px = 12, kHatchWidth_px = 1;
-constexpr int kHatchColumns = 640;  ///< Pictures of so many columns have lines of one pixel, twice as many of two.
+constexpr int kHatchColumns = 640;  ///< Up to this number of columns, lines have one pixel.
 
 bool is_cut(const anatomy::VirtualPatient& patient, int axis, bool is_last) {
   const volume::GridGeometry& grid = patient.labels.geometry;
@@ -28,7 +28,7 @@ bool is_cut(const anatomy::VirtualPatient& patient, int axis, bool is_last) {
   return false;
 }
 
-/// The plane's half that an end leaves, in T: normal · (x, y) <= offset.
+/// The half plane left by an end, in T: normal · (x, y) <= offset.
 struct HalfPlane {
   Vec2 normal{0.0, 0.0};
   double offset_mm = 0.0;
@@ -39,7 +39,7 @@ HalfPlane in_plane(const ScanEnd& end, const Pose& X_PT) noexcept {
   return {{normal_T.x(), normal_T.y()}, end.offset_mm - end.normal_P.dot(X_PT.p())};
 }
 
-/// Sutherland and Hodgman: the polygon within a half plane.
+/// Sutherland and Hodgman: intersection of a polygon and a half plane.
 std::vector<Vec2> clipped(const std::vector<Vec2>& polygon, const HalfPlane& half) {
   std::vector<Vec2> result;
   for (std::size_t n = 0; n < polygon.size(); ++n) {

@@ -25,7 +25,7 @@ std::vector<Vec3> needle_shaft(const telemetry::TickSample& sample, double lengt
     const double t = static_cast<double>(i) / (kPoints - 1);
     const double left = 1.0 - t;
     const Vec3 chord_P = hub_P + t * way_P;
-    // Hermite: at the chord's length, bent by how the ends' directions differ from it.
+    // Hermite curve with the chord's length, bent by the differences between end directions and chord.
     const Vec3 tangent_hub = span_mm * grip_axis - way_P, tangent_tip = span_mm * tip_axis - way_P;
     const Vec3 bend = t * left * (left * tangent_hub - t * tangent_tip);
     bend_mm = std::max(bend_mm, bend.norm());

@@ -9,7 +9,7 @@
 namespace trocar::attempt {
 namespace {
 
-constexpr double kLongestStep_mm = 20.0;  ///< Of one gesture: what is longer is a slip of the pointer.
+constexpr double kLongestStep_mm = 20.0;  ///< Limit of one gesture: longer ones are pointer errors.
 
 Vec3 bounded(const Vec3& shift_P) {
   if (!shift_P.allFinite()) return Vec3::Zero();
@@ -17,13 +17,13 @@ Vec3 bounded(const Vec3& shift_P) {
   return size > kLongestStep_mm ? Vec3(kLongestStep_mm / size * shift_P) : shift_P;
 }
 
-/// A point moved along the skin: the shift's tangential part, then back onto the skin.
+/// Moves a point along the skin: the tangential part of the shift, then projection onto the skin.
 Vec3 moved_on_skin(const anatomy::VirtualPatient& patient, const Vec3& skin_P, const Vec3& shift_P) {
   const Vec3 inward_P = skin_inward(patient, skin_P);
   return nearest_skin_point(patient, skin_P + shift_P - inward_P.dot(shift_P) * inward_P);
 }
 
-/// The direction, bent towards the skin's normal where it is flatter than allowed.
+/// The direction, turned towards the skin's normal if it is flatter than allowed.
 Vec3 steep_enough(const Vec3& axis_P, const Vec3& inward_P, double flattest_rad) {
   const double angle = angle_between_rad(axis_P, inward_P);
   if (angle <= flattest_rad) return axis_P;
@@ -32,7 +32,7 @@ Vec3 steep_enough(const Vec3& axis_P, const Vec3& inward_P, double flattest_rad)
   return Eigen::AngleAxisd(flattest_rad, hinge.normalized()) * inward_P;
 }
 
-/// A handle at the far end leans to the right and down: so turns what it holds.
+/// A handle at the far end tilts to the right and down: the corresponding rotation of the tool.
 Vec3 leaned(const Vec3& axis_P, const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad) {
   const Vec3 handle_P = -axis_P + std::tan(std::clamp(right_rad, -0.5, 0.5)) * right_P +
                         std::tan(std::clamp(down_rad, -0.5, 0.5)) * down_P;

@@ -15,7 +15,7 @@ constexpr double kPressing_mm_s = 10.0;           // [assumed]
 constexpr double kTremor_mm = 0.1;                // amplitude [assumed]
 constexpr std::array kTremor_hz{8.0, 9.7, 11.9};  // physiological: 8 to 12 Hz
 
-constexpr double kNearlyAlongBody = 0.99;  // a skin that looks at head or feet has no direction along the body
+constexpr double kNearlyAlongBody = 0.99;  // skin that faces head or feet has no direction along the body
 
 struct SkinPoint {
   Vec3 p_P;
@@ -23,7 +23,7 @@ struct SkinPoint {
 };
 
 SkinPoint find_skin(const volume::FloatGrid& distance_mm, Vec3 p_P) noexcept {
-  constexpr int kSteps = 20;  // the distance is nearly a true one: a few are enough
+  constexpr int kSteps = 20;  // the distance is nearly exact: a few steps suffice
   Vec3 outwards_P = -Vec3::UnitY();
   for (int i = 0; i < kSteps; ++i) {
     const Vec3 slope = volume::gradient_per_mm(distance_mm, p_P);
@@ -48,7 +48,7 @@ ProbeHand::ProbeHand(const anatomy::VirtualPatient& patient, const Segment& path
 
   Mat3 R_PT;
   R_PT.col(1) = -place.outwards_P;
-  // Lateral: across the body.
+  // Lateral direction: across the body.
   R_PT.col(0) = (across - across.dot(R_PT.col(1)) * R_PT.col(1)).normalized();
   R_PT.col(2) = R_PT.col(0).cross(R_PT.col(1));
   X_PT_skin_ = Pose(R_PT, place.p_P);

@@ -10,10 +10,10 @@
 namespace trocar::attempt {
 namespace {
 
-constexpr double kLongestGap_s = 0.1;    // between two ticks: a longer one is time in which nobody could act
+constexpr double kLongestGap_s = 0.1;    // between two ticks: a longer gap is time without control
 constexpr double kLongestStep_s = 0.02;  // of a hand: a longer gap between ticks is a pause, not a motion
 
-/// The server resumed the needle while the hand was being placed, in ticks that are not recorded.
+/// The server resumed the needle while placing the hand, in ticks that are not recorded.
 void note_resumption(telemetry::TickSample& sample) noexcept {
   if (sample.phase == telemetry::InsertionPhase::kOutside) return;
   for (telemetry::TickEvent& event : sample.events) {
@@ -35,7 +35,7 @@ link::HandTarget hand_target(const tasks::HandCommand& command, double server_ti
   target.damping_ns_per_mm = spring.damping_ns_per_mm;
   target.mass_kg = spring.mass_kg;
   target.holds_tip = true;
-  const haptics::StylusHold guiding = haptics::make_guiding_hand(0.0);  // the server knows where the tip is
+  const haptics::StylusHold guiding = haptics::make_guiding_hand(0.0);  // the server knows the tip's position
   target.turning_nmm_per_rad = guiding.turning_nmm_per_rad;
   target.turning_damping_nmms_per_rad = guiding.turning_damping_nmms_per_rad;
   target.is_rigid = command.is_rigid;
@@ -97,7 +97,7 @@ Result<double> LiveOperator::record(const telemetry::TickSample& tick, bool is_s
 
 Result<bool> LiveOperator::take(const telemetry::TickSample& tick) {
   TROCAR_TRY(const double step_s, record(tick, true));
-  // Ticks that never arrived, because this program did not read them, were not seen either.
+  // Ticks lost because this program did not read them count as unseen, too.
   view_.dt_s = std::min(step_s, kLongestStep_s);
   view_.time_s += view_.dt_s;
   unseen_s_ += step_s - view_.dt_s;

@@ -9,7 +9,7 @@
 namespace trocar::attempt {
 namespace {
 
-/// An operator as it was named: the text after the colon, if any, is its speed or its session.
+/// An operator by its name: the text after the colon is its speed or its session.
 struct OperatorChoice {
   enum class Kind { kExpert, kNovice, kConstantVelocity, kReplay };
   Kind kind = Kind::kExpert;
@@ -100,7 +100,7 @@ Result<std::shared_ptr<const storage::Session>> load_replayed(std::string_view o
 
 std::string recorded_preset(const storage::SessionInfo& info) {
   if (!info.device_preset.empty()) return info.device_preset;
-  // An older program kept the words alone: "premium, simulated: …" or "virtual:premium, …, through trocar-hapticd …".
+  // An older program stored only the text: "premium, simulated: …" or "virtual:premium, …, through trocar-hapticd …".
   constexpr std::string_view kSimulated = ", simulated: ";
   const std::string name = info.device.substr(0, info.device.find(','));
   if (std::string preset = preset_of_device(name); !preset.empty()) return preset;

@@ -25,18 +25,18 @@ using State = ServerSeat::State;
 
 constexpr std::chrono::milliseconds kBetweenLooks{1};
 constexpr double kSameRate_hz = 0.5;
-/// Ticks that are older when they come were not answered in time: a server's hand stands still when it hears nothing
-/// for so long, and the operator's must not have moved on meanwhile.
+/// Older ticks arrive too late for a reply: a server's hand stops without messages for this time, and the operator's
+/// must not have moved on meanwhile.
 constexpr double kAnswered_s = 0.05;
 
 Status check_interruption() {
   return is_interrupted() ? tl::unexpected(interruption_error("trocar run")) : Status{};
 }
 
-/// The servers of an attempt: the needle's, and perhaps the probe's.
+/// The servers of an attempt: the needle's, and optionally the probe's.
 class LiveServers {
  public:
-  /// Connected, told apart, and holding nothing yet.
+  /// Connected and identified, without a scene.
   static Result<LiveServers> connect(const RunOptions& options, const RealtimeOptions& realtime, double own_rate_hz,
                                      const Progress& progress);
 
@@ -46,16 +46,16 @@ class LiveServers {
   /// Waits until all of them have reached that state.
   Status wait_for(State state, const Progress& progress);
 
-  /// One look at all. Errors: what befalls the needle's server; without the probe's the attempt goes on.
+  /// Advances all of them. Errors: those of the needle's server; without the probe's server the attempt continues.
   Result<State> look();
-  /// Moves the transducer's hand on and records where it was felt.
+  /// Moves the transducer's hand and records its virtual pose.
   Status move_probe(const ProbeHand& hand, LiveOperator& live);
   void stop();
   void tell(RunResult& result);
 
  private:
   std::optional<OwnServers> own_;
-  std::vector<ServerSeat> needle_, probe_;  ///< One, one at most.
+  std::vector<ServerSeat> needle_, probe_;  ///< At most one.
   std::vector<ServerFigures> lost_;
   std::vector<std::string> warnings_;
   std::optional<double> probe_on_s_;
@@ -183,8 +183,8 @@ SceneParameters parameters_of(const ServerSeat& needle) {
   return newest == nullptr ? SceneParameters{} : *newest;
 }
 
-/// The changes of parameters of a replayed session, sent when as many ticks were made as before them. The server says
-/// from which tick on it felt them.
+/// The changes of parameters of a replayed session, sent after the same number of ticks. The server reports the first
+/// tick with them.
 class ReplayedChanges {
  public:
   explicit ReplayedChanges(const Performer& performer) : parameters_(performer.parameters) {}
@@ -199,16 +199,16 @@ class ReplayedChanges {
 
  private:
   std::span<const storage::SessionParameters> parameters_;
-  std::size_t next_ = 1;  ///< The first ones are the scene's.
+  std::size_t next_ = 1;  ///< The first ones are those of the scene.
 };
 
-/// The closed loop through the servers, until the operator is done.
+/// The closed loop through the servers, until the operator has finished.
 Status perform(LiveServers& servers, LiveOperator& live, AttemptRecord& record, ReplayedChanges changes,
                const ProbeHand& probe_hand, const Progress& progress) {
   bool was_on = false;
   while (true) {
     TROCAR_TRY_STATUS(check_interruption());
-    // Ticks first: when a look finds the server changed, all of the old one's are already taken.
+    // Ticks first: when look() detects a change of the server, all ticks of the old one have been taken.
     ServerSeat& needle = servers.needle();
     const std::vector<link::NumberedSample> samples = needle.take_samples();
     if (!samples.empty() && !was_on) live.begin(needle.view().clock_offset_s);

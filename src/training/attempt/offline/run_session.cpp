@@ -19,6 +19,7 @@
 #include "haptics/scene_options.h"
 #include "haptics/tick.h"
 #include "tasks/hand.h"
+#include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
 namespace {
@@ -29,7 +30,7 @@ Result<haptics::DevicePreset> find_device(const RunOptions& options) {
   return haptics::load_device_preset(data / "devices.toml", options.device);
 }
 
-/// One step of the device under the operator's hand and the force of the last tick.
+/// One step of the device with the operator's hand and the force of the last tick.
 void move_device(haptics::VirtualDeviceState& device, double mass_kg, const tasks::HandCommand& command,
                  const Vec3& force_P, const haptics::HapticScene& scene, double dt_s) noexcept {
   if (command.is_rigid) {
@@ -48,11 +49,11 @@ void move_device(haptics::VirtualDeviceState& device, double mass_kg, const task
   haptics::step_device(device, params, hold, force_P, scene.gravity_P, dt_s);
 }
 
-/// The scenes of an attempt: one, or in a replay one for each change of parameters.
+/// The scenes of an attempt: one, or in a replay one per change of parameters.
 class SceneSchedule {
  public:
   struct Entry {
-    std::size_t tick = 0;  ///< The first one that feels it.
+    std::size_t tick = 0;  ///< The first tick with it.
     std::shared_ptr<const haptics::HapticScene> scene;
     SceneParameters parameters;
   };
@@ -60,7 +61,7 @@ class SceneSchedule {
                                     const haptics::DevicePreset& device);
 
   const Entry& first() const noexcept { return entries_.front(); }
-  /// The scene of a tick; ticks are asked for in order.
+  /// The scene of a tick; ticks must be requested in order.
   const Entry& at(std::size_t tick) noexcept {
     while (now_ + 1 < entries_.size() && entries_[now_ + 1].tick <= tick) ++now_;
     return entries_[now_];
@@ -69,7 +70,7 @@ class SceneSchedule {
  private:
   Status add(const cases::Case& the_case, const storage::SessionParameters& parameters, haptics::HapticOptions options,
              haptics::DeviceCapability device);
-  std::vector<Entry> entries_;  ///< Not empty, by tick.
+  std::vector<Entry> entries_;  ///< Not empty, sorted by tick.
   std::size_t now_ = 0;
 };
 
@@ -103,10 +104,11 @@ Status SceneSchedule::add(const cases::Case& the_case, const storage::SessionPar
   return {};
 }
 
-/// When a tick is, and how long after the last one: regular, or as recorded.
-class TickTimes {
+/// When a tick is, and where its tool: regular, or as recorded by the session that is replayed.
+class RecordedTicks {
  public:
-  explicit TickTimes(const Performer& performer) : dt_s_(1.0 / performer.rate_hz), session_(performer.replayed.get()) {}
+  explicit RecordedTicks(const Performer& performer)
+      : dt_s_(1.0 / performer.rate_hz), session_(performer.replayed.get()) {}
 
   double time_s(std::size_t tick) const noexcept {
     if (session_ == nullptr) return static_cast<double>(tick) * dt_s_;
@@ -119,7 +121,14 @@ class TickTimes {
     const double step_s = time_s(tick) - time_s(tick - 1);
     return std::abs(step_s - dt_s_) < kRounding_s ? dt_s_ : std::clamp(step_s, kRounding_s, haptics::kMaxDt_s);
   }
-  /// The interruption that the tick ends; null: none.
+  /// Empty: the operator's hand moves it.
+  std::optional<telemetry::ToolPose> tool(std::size_t tick) const noexcept {
+    if (session_ == nullptr || session_->samples.empty()) return {};
+    const telemetry::TickSample& sample = session_->samples[std::min(tick, session_->samples.size() - 1)];
+    const telemetry::ToolPose tool{sample.device_rotation_wxyz, sample.device_mm};
+    return tool.is_valid() ? tool : telemetry::to_tool_pose(telemetry::device_pose(sample));
+  }
+  /// The interruption that ends at the tick; null: none.
   const tasks::Interruption* interruption(std::size_t tick) const noexcept {
     if (session_ == nullptr) return nullptr;
     const auto found = std::ranges::find(session_->interruptions, time_s(tick), &tasks::Interruption::to_s);
@@ -136,18 +145,18 @@ class TickTimes {
   const storage::Session* session_;
 };
 
-/// The closed loop, until the operator is done. Gives how many ticks it took.
+/// The closed loop, until the operator has finished. Returns the number of ticks.
 Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, double mass_kg, AttemptRecord& record,
                             const Progress& progress) {
-  const TickTimes times(performer);
-  const std::size_t most_ticks = times.most_ticks();
+  const RecordedTicks recorded(performer);
+  const std::size_t most_ticks = recorded.most_ticks();
   const SceneSchedule::Entry* before = nullptr;
   haptics::VirtualDeviceState device;
   haptics::HapticState state;
   tasks::OperatorView view;
   for (std::size_t i = 0; i < most_ticks; ++i) {
-    view.time_s = times.time_s(i);
-    view.dt_s = times.dt_s(i);
+    view.time_s = recorded.time_s(i);
+    view.dt_s = recorded.dt_s(i);
     if (is_interrupted()) return tl::unexpected(interruption_error("trocar run"));
     const tasks::HandCommand command = performer.the_operator->next(view);
     if (command.is_done) return i;
@@ -155,15 +164,15 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     const haptics::HapticScene& scene = *now.scene;
     if (i == 0) device.X_PN = command.X_PN;
     const bool is_another_model = before != nullptr && before->scene->options.force_model != scene.options.force_model;
-    if (is_another_model) state = {};  // as a server does: the insertion begins anew
+    if (is_another_model) state = {};  // as in a server: the insertion restarts
     move_device(device, mass_kg, command, state.last.device_f_n, scene, view.dt_s);
-    if (const tasks::Interruption* gap = times.interruption(i)) {
+    if (const tasks::Interruption* gap = recorded.interruption(i)) {
       if (gap->reason == tasks::kServerWasAway) state = {};
       TROCAR_TRY_STATUS(record.append(*gap));
     }
 
-    const Pose X_DS = scene.X_PD.inverse() * device.X_PN * scene.X_SN.inverse();
-    const haptics::HapticOutput output = tick(state, {view.time_s, view.dt_s, X_DS}, scene);
+    const telemetry::ToolPose tool = recorded.tool(i).value_or(telemetry::to_tool_pose(device.X_PN));
+    const haptics::HapticOutput output = tick(state, {view.time_s, view.dt_s, tool}, scene);
     view.X_PN_device = device.X_PN;
     view.last = output.sample;
     record.note(command);
@@ -197,7 +206,7 @@ Result<RunResult> run_session(const cases::Case& the_case, const RunOptions& giv
                            to_string(scenes.first().scene->options.force_model), device.name,
                            scenes.first().parameters};
   const InterruptibleWork interruptible;
-  std::optional<UnfinishedOutput> unfinished;  // ends after the record, which still writes when it ends
+  std::optional<UnfinishedOutput> unfinished;  // declared before the record, whose destructor still writes
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(the_case, options, facts));
   unfinished.emplace(storage::session_files(options.session));
   const auto start = std::chrono::steady_clock::now();

@@ -44,7 +44,7 @@ storage::SessionInfo describe(const cases::Case& the_case, const RunOptions& opt
   return info;
 }
 
-/// What differs from `before`: numbers of tissues, then options.
+/// Differences from `before`: numbers of tissues, then options.
 std::vector<std::string> changed(const anatomy::TissueTable& before, const std::vector<std::string>& options_before,
                                  const anatomy::TissueTable& now, const std::vector<std::string>& options) {
   std::vector<std::string> settings = anatomy::changed_settings(before, now);

@@ -105,8 +105,8 @@ void AttemptReplay::find_moments() {
   if (shot_) moments_.push_back({shot_->time_s, Kind::kFired, shot_words(*shot_)});
 }
 
-/// What was at risk comes first; then where the needle was farthest beside the path in the body; then the greatest
-/// force. A needle that met nothing has no worst moment.
+/// Contact with a risk structure comes first; then the largest distance of the needle from the path in the body; then
+/// the largest force. A needle without contact has no worst moment.
 void AttemptReplay::find_worst() {
   const auto risk = std::find_if(moments_.begin(), moments_.end(),
                                  [](const ReplayMoment& m) { return m.kind == ReplayMoment::Kind::kRisk; });

@@ -24,7 +24,7 @@ config::Json to_json(const SeatState& state) {
           {"seed", options.seed}};
 }
 
-/// Nothing where a field is missing or of another kind.
+/// Empty if a field is missing or has another type.
 std::optional<SeatState> from_json(const config::Json& json) {
   const auto text = [&](const char* key) -> std::optional<std::string> {
     return json.contains(key) && json[key].is_string() ? std::optional(json[key].get<std::string>()) : std::nullopt;
@@ -57,7 +57,7 @@ std::optional<SeatState> load_state(const fs::path& file) {
   return json ? from_json(*json) : std::nullopt;
 }
 
-/// Nothing where another trainer holds the lock, or it cannot be had.
+/// Empty if another trainer holds the lock, or it is not available.
 std::optional<FileLock> lock_of(fs::path file) {
   auto lock = FileLock::try_lock(file.replace_extension(".lock"));
   return lock ? *std::move(lock) : std::nullopt;

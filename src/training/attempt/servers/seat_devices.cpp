@@ -18,12 +18,12 @@ struct DeviceTitle {
   std::string_view title;
 };
 constexpr std::string_view kOpenHaptics = "openhaptics";
-constexpr std::string_view kDefaultName = "Default Device";  // what the vendor's library takes where none is named
+constexpr std::string_view kDefaultName = "Default Device";  // default of the vendor's library
 constexpr std::array kPointers{DeviceTitle{"mouse", "Mouse and keyboard"}, DeviceTitle{"gamepad", "Gamepad"},
                                DeviceTitle{"spacemouse", "SpaceMouse"}};
 constexpr std::array kOthers{DeviceTitle{"forcedimension", "Force Dimension"}, DeviceTitle{"haply", "Haply Inverse3"}};
 
-/// Names that the vendor's setup program has given, in order.
+/// Device names assigned in the vendor's setup program, in order.
 std::vector<std::string> openhaptics_names() {
   const char* home = std::getenv("GTDD_HOME");
   const fs::path folder = fs::path(home != nullptr && *home != '\0' ? home : "/usr/share/3DSystems") / "config";
@@ -35,7 +35,7 @@ std::vector<std::string> openhaptics_names() {
   return names;
 }
 
-/// The hardware that a spec means.
+/// The hardware of a spec.
 std::string hardware_of(const std::string& spec) {
   return spec == kOpenHaptics ? spec + ":" + std::string(kDefaultName) : spec;
 }

@@ -14,14 +14,14 @@ using State = ServerSeat::State;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPlaceAgain{20}, kResetAgain{200};
-constexpr double kLongestLook_s = 0.05;  // a longer hole between two looks is this program's own
-/// A client that went away without a word keeps control for so long.
+constexpr double kLongestLook_s = 0.05;  // a longer gap between two calls is caused by this program itself
+/// A client that disconnects without Goodbye keeps control for this time.
 constexpr double kControlPatience_s = link::kControlLost_s + 1.0;
 constexpr double kSagging_mm =
-    10.0;  // without forces the hand alone bears the stylus' weight: 0.5 N at 0.6 N/mm, tilted
+    10.0;  // without forces only the hand holds the stylus' weight: 0.5 N at 0.6 N/mm, tilted
 constexpr double kSettled_mm = 0.5;
 constexpr double kSettledAxis = 0.02;    // rad
-constexpr double kMostSettling_s = 1.0;  // inside tissue it comes to rest elsewhere
+constexpr double kMostSettling_s = 1.0;  // inside tissue it comes to rest at another position
 
 Vec3 axis_of(const telemetry::TickSample& sample) noexcept {
   const auto& [w, x, y, z] = sample.device_rotation_wxyz;
@@ -45,7 +45,8 @@ ServerSeat::ServerSeat(std::unique_ptr<ServerConnection> connection, std::string
 void ServerSeat::hold(const SeatRequest& request) {
   request_ = request;
   request_->place.v_P = request_->place.w_P = Vec3::Zero();
-  // A soft hand would let the stylus sag across the needle's channel until the forces are on: they would not come on.
+  // With a soft hand the stylus would sag across the needle's channel before the forces are on, and they would not
+  // switch on.
   request_->place.is_rigid = true;
 }
 
@@ -134,7 +135,7 @@ Result<State> ServerSeat::look() {
   return state_;
 }
 
-/// The motors of a device in a person's hand are not turned on again behind their back.
+/// The motors of a device in a person's hand are not switched on again without confirmation.
 bool ServerSeat::is_stall_to_forgive() const {
   const std::string& fault = view_.status.fault;
   const bool is_stall =

@@ -69,8 +69,8 @@ class ServerSeat {
 
   const link::ClientView& view() const noexcept { return view_; }
   const std::string& endpoint() const noexcept { return endpoint_; }
-  int returns() const noexcept { return returns_; }  ///< Of a server that went away,
-  int stalls() const noexcept { return stalls_; }    ///< or that had stood still.
+  int returns() const noexcept { return returns_; }  ///< Number of reconnections.
+  int stalls() const noexcept { return stalls_; }    ///< Number of stalls of its loop.
   ServerFigures figures() const;
 
  private:

@@ -62,7 +62,8 @@ TEST(Checks, ImplausibleVolumeIsAWarning) {
 }
 
 TEST(Checks, UnknownTissueIsAnError) {
-  EXPECT_NE(find(checks_of(*set_label_tissue(made_draft(), 3, "jelly")), CheckLevel::kError, "no tissue \"jelly\""),
+  EXPECT_NE(find(checks_of(*set_label_tissue(made_draft(), 3, "jelly")), CheckLevel::kError,
+                 "tissue \"jelly\" is not in the tissue table"),
             nullptr);
 }
 

@@ -107,7 +107,7 @@ TEST(PrescribedMotion, RunsFromOutsideTheSkinToTheTargetAndItsDrift) {
   motion.line_P = {{1.0, 2.0, 0.0}, {1.0, 2.0, 40.0}};
   motion.drift_P = {0.5, 0.0, 0.0};
   motion.tilt_rad_P = {0.0, 0.01, 0.0};
-  const auto tip_at = [&](int tick) { return scene->X_PD * input_at(motion, *scene, tick).X_DS * scene->X_SN; };
+  const auto tip_at = [&](int tick) { return input_at(motion, tick).tool.pose(); };
   constexpr double kRounding = 1e-9;
   EXPECT_TRUE(tip_at(0).p().isApprox(Vec3(1.0, 2.0, -10.0), kRounding));
   EXPECT_NEAR(angle_between_rad(tip_at(0).R().col(2), Vec3::UnitZ()), 0.0, kRounding);

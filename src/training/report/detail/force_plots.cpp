@@ -13,14 +13,14 @@
 namespace trocar::report::detail {
 namespace {
 
-constexpr std::size_t kMostInsertions = 3;  ///< Drawn; more would not be told apart.
-constexpr double kPlotPixels = 1400.0;      ///< Stripes narrower than one of these are joined to the one before.
+constexpr std::size_t kMostInsertions = 3;  ///< Drawn insertions; more would not be distinguishable.
+constexpr double kPlotPixels = 1400.0;      ///< Narrower stripes are joined to the previous one.
 
 std::string figure(const std::string& body, std::string_view caption) {
   return "<figure>" + body + "<figcaption>" + std::string(caption) + "</figcaption></figure>";
 }
 
-/// Stripes of the deepest insertion's tissues; each tissue is named where it is met first and where it is wide.
+/// Stripes of the deepest insertion's tissues; each tissue is named at its first stripe and at wide ones.
 std::vector<PlotBand> tissue_bands(const storage::Session& session, const Insertion& insertion, double depth_mm) {
   constexpr double kWide = 0.12;  // of the axis
   std::vector<PlotBand> bands;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "io/image/png.h"
+#include "png/png_file.h"
 #include "report/detail/html.h"
 #include "report/plot_scale.h"
 #include "report/session_analysis.h"
@@ -15,19 +15,19 @@ namespace trocar::report::detail {
 namespace {
 
 constexpr int kPicturePx = 440;
-constexpr double kField_mm = 220.0;      ///< Least side of the square that a slice shows ...
-constexpr double kAroundPath_mm = 60.0;  ///< ... and what it shows around the path at least.
+constexpr double kField_mm = 220.0;      ///< Minimum side of the square displayed by a slice,
+constexpr double kAroundPath_mm = 60.0;  ///< and minimum margin around the path.
 constexpr double kScaleBar_mm = 50.0;
-constexpr double kShaftOutside_mm = 30.0;  ///< Of the needle's shaft drawn beyond the skin.
+constexpr double kShaftOutside_mm = 30.0;  ///< Length of the needle's shaft drawn outside the skin.
 
-/// What is drawn over each slice, in P.
+/// Drawing over each slice, in P.
 struct PathDrawing {
   std::optional<Segment> planned_P;
-  std::vector<std::vector<Vec3>> own_P;  ///< The tip's way in, one line an insertion.
+  std::vector<std::vector<Vec3>> own_P;  ///< Path of the tip during insertion, one line per insertion.
   std::vector<Vec3> own_entries_P;
-  std::optional<Segment> shaft_P;  ///< The needle where it was fired, or deepest: from outside to the tip.
+  std::optional<Segment> shaft_P;  ///< The needle at firing, or at its deepest position: from outside to the tip.
   Vec3 through_P = Vec3::Zero();
-  Vec3 center_P = Vec3::Zero();  ///< Middle of the path.
+  Vec3 center_P = Vec3::Zero();  ///< Centre of the path.
   double field_mm = kField_mm;
 };
 
@@ -59,7 +59,7 @@ PathDrawing collect(const storage::Session& session) {
   return drawing;
 }
 
-/// Draws points of P over one picture. Pixel centres of the picture lie at halves of the SVG's units.
+/// Draws points of P over one picture. Pixel centres are at half SVG units.
 class Overlay {
  public:
   explicit Overlay(const slices::SlicePicture& picture) : picture_(picture) {}
@@ -143,7 +143,8 @@ std::string draw_overlay(const slices::SlicePicture& picture, const SliceText& t
   return overlay.svg();
 }
 
-/// One slice as a figure; figures share the row's width by their size in mm, so that all have one scale.
+/// One slice as a figure; figures share the row's width in proportion to their size in mm, so that all have the same
+/// scale.
 std::string slice_figure(const anatomy::VirtualPatient& patient, const SliceText& text, const PathDrawing& drawing) {
   slices::SliceOptions options;
   options.size_px = kPicturePx;
@@ -157,7 +158,7 @@ std::string slice_figure(const anatomy::VirtualPatient& patient, const SliceText
       "<figure style=\"flex:{0:.0f} 1 0\"><svg viewBox=\"0 0 {1} {2}\" role=\"img\" aria-label=\"{3} CT slice with the "
       "needle path\"><image width=\"{1}\" height=\"{2}\" href=\"data:image/png;base64,{4}\"/>{5}</svg>"
       "<figcaption>{3}</figcaption></figure>",
-      width_mm, picture.image.columns, picture.image.rows, text.title, base64(io::encode_png(picture.image)),
+      width_mm, picture.image.columns, picture.image.rows, text.title, base64(png::encode_png(picture.image)),
       draw_overlay(picture, text, drawing));
 }
 

@@ -11,9 +11,9 @@
 namespace trocar::report::detail {
 namespace {
 
-constexpr double kLowShare = 0.5;  ///< Of a part's points; below it the bar is shown as weak.
+constexpr double kLowShare = 0.5;  ///< Share of a part's points below which the bar is drawn as weak.
 
-/// A number with at most one decimal, none where it is whole.
+/// A number with at most one decimal, none for integers.
 std::string short_number(double value) {
   const bool is_whole = std::abs(value - std::round(value)) < 0.05;
   return number_text(value, is_whole ? 0 : 1);
@@ -25,7 +25,7 @@ std::string join(const std::vector<std::string>& names) {
   return out;
 }
 
-/// "2026-01-02T03:04:05Z" -> "2026-01-02 03:04 UTC"; anything else as it is.
+/// "2026-01-02T03:04:05Z" -> "2026-01-02 03:04 UTC"; other texts are unchanged.
 std::string date_text(const std::string& utc) {
   if (utc.size() < 16 || utc[10] != 'T') return escape(utc);
   return escape(utc.substr(0, 10) + " " + utc.substr(11, 5) + " UTC");
@@ -68,7 +68,7 @@ std::string part_row(const tasks::ScorePart& part) {
       short_number(part.points), short_number(part.max_points));
 }
 
-/// The notch as a bar, its pieces to scale.
+/// The notch as a bar with its pieces to scale.
 std::string core_bar(const tasks::BiopsyCore& core) {
   constexpr double kWidth = 760.0;
   constexpr double kMargin = 14.0;
@@ -104,7 +104,7 @@ std::string case_row(const char* name, const std::string& value) {
   return value.empty() ? std::string() : fmt::format("<tr><th>{}</th><td>{}</td></tr>", name, escape(value));
 }
 
-/// What changed while the attempt was performed, and when; what a user had set before it began.
+/// Changes during the attempt with their times; settings of the user before it.
 std::string changes_rows(const storage::Session& session) {
   std::string rows;
   for (const storage::SessionParameters& change : session.parameters) {
@@ -125,7 +125,7 @@ std::string interruption_rows(const storage::Session& session) {
   return rows;
 }
 
-/// The tables in force, each under the time from which on it was.
+/// The tissue tables, each with the time from which on it was used.
 std::string tissue_tables(const storage::Session& session) {
   const auto details = [](const std::string& title, const std::string& table) {
     return fmt::format("<details><summary>{}</summary><pre>{}</pre></details>", escape(title), escape(table));
@@ -152,7 +152,7 @@ std::string page_header(const storage::Session& session) {
       fact("Date", date_text(info.started_utc)), fact("Trocar", escape(info.program_version)));
 }
 
-/// The damaged parts, and that they are left out; empty where all is whole.
+/// Lists the damaged parts, which are missing; empty if there is no damage.
 std::string damage_note(const storage::Session& session) {
   if (session.damage.empty()) return {};
   std::string parts;
@@ -161,7 +161,7 @@ std::string damage_note(const storage::Session& session) {
   return "<p class=\"warning\"><b>This session is damaged.</b> Missing: " + parts + ".</p>";
 }
 
-/// "Target reached", with the level of help that the score was reached at.
+/// "Target reached", with the level of help of the attempt.
 std::string verdict_of(const storage::Session& session) {
   const tasks::Outcome& outcome = *session.outcome;
   std::string verdict = outcome.target_reached ? "Target reached" : "Target missed";
@@ -221,7 +221,7 @@ std::string case_section(const storage::Session& session) {
   out += case_row("Patient", info.patient_name);
   out += case_row("Patient's source", info.patient_source);
   out += case_row("Patient's hash", info.patient_hash);
-  // An embedded patient is named as it is called; a folder has no seed.
+  // An embedded patient by its name; a folder has no seed.
   if (info.patient_source == info.patient_name) out += case_row("Patient's seed", fmt::format("{}", info.patient_seed));
   out += case_row("Operator, seed", fmt::format("{}, {}", info.operator_name, info.seed));
   out += case_row("Level of help", info.level);

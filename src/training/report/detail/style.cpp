@@ -107,7 +107,7 @@ std::string style_sheet() {
 }
 
 std::string plot_style() {
-  // In a page the style of all <svg> comes with it.
+  // In a page, the page's style covers all <svg> elements.
   constexpr std::string_view kAlone =
       "svg { font: 11.5px \"Segoe UI\", \"Helvetica Neue\", \"DejaVu Sans\", Arial, sans-serif; fill: #1c2733; }\n"
       ".paper { fill: #ffffff; } .heading { font-size: 14px; font-weight: 650; }";

@@ -11,7 +11,7 @@
 namespace trocar::storage::detail {
 namespace {
 
-/// The enumerators' words in place of their numbers.
+/// The words of the enumerators instead of their numbers.
 template <class Enum>
 std::string words_of(const char* column, Enum last) {
   std::string text = fmt::format("CASE t.{}", column);
@@ -20,7 +20,7 @@ std::string words_of(const char* column, Enum last) {
   return text + fmt::format(" END AS {}", column);
 }
 
-/// Columns of the view, which shows names where the table has numbers.
+/// Columns of the view, which has names instead of the table's numbers.
 std::string view_columns() {
   std::string list;
   const telemetry::TickSample sample;

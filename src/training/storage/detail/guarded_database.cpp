@@ -7,7 +7,7 @@
 namespace trocar::storage::detail {
 namespace {
 
-// Reading a tick of about 500 bytes takes some 150 steps, three times over at most.
+// Reading a tick of about 500 bytes takes about 150 steps, up to three times.
 constexpr std::int64_t kLeastSteps = 20'000'000;
 constexpr std::int64_t kStepsAByte = 4;
 constexpr int kStepsACall = 10'000;

@@ -10,7 +10,8 @@
 namespace trocar::storage::detail {
 namespace {
 
-/// The one list of what `info` keeps: calls visit(key, field) for each member; strings, numbers and truth values.
+/// The single list of the contents of `info`: calls visit(key, field) for each member; strings, numbers and truth
+/// values.
 template <class Info, class Visitor>
 void visit_info(Info& info, Visitor&& visit) {
   visit("program_version", info.program_version);
@@ -37,7 +38,7 @@ void visit_info(Info& info, Visitor&& visit) {
   visit("is_parenchymal", info.is_parenchymal);
 }
 
-/// Likewise; sessions of older programs do not have them.
+/// Likewise; not in sessions of older programs.
 template <class Info, class Visitor>
 void visit_added_info(Info& info, Visitor&& visit) {
   visit("task_toml", info.task_toml);

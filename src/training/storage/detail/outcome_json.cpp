@@ -22,7 +22,7 @@ config::Json core_json(const tasks::BiopsyCore& core) {
           {"other_mm", core.other_mm},        {"risks_in_throw", core.risks_in_throw}};
 }
 
-/// Reads the members of one object; the first that is missing or of another kind makes the whole reading fail.
+/// Reads the members of one object; a missing member or a wrong type makes the whole reading fail.
 class Reader {
  public:
   explicit Reader(const config::Json& object, bool& is_good) : object_(object), is_good_(is_good) {}

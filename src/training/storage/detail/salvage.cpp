@@ -13,9 +13,9 @@
 namespace trocar::storage::detail {
 namespace {
 
-constexpr std::size_t kUncheckedBlockTicks = 500;  // a session without checksums is read in blocks, too
+constexpr std::size_t kUncheckedBlockTicks = 500;  // a session without checksums is also read in blocks
 
-// Parts of a session as messages name them.
+// Names of the parts of a session in messages.
 constexpr const char* kInfoPart = "facts of the case (table info)";
 constexpr const char* kNamesPart = "names of tissues, layers, labels or phases";
 constexpr const char* kBlocksPart = "list of tick blocks (table tick_blocks)";
@@ -63,7 +63,7 @@ class Salvage {
     return rows > 0 || written.has_value();
   }
 
-  /// Notes damage where the work throws.
+  /// Records damage if the work throws.
   template <class Work>
   bool attempt(const char* part, const Work& work) {
     try {
@@ -75,7 +75,7 @@ class Salvage {
     }
   }
 
-  /// Whether rows fit their checksum. One that is missing is damage where it must be there.
+  /// Checks rows against their checksum. A missing checksum is damage if it is required.
   bool check(const char* part, const CheckedRows& rows, bool is_required) {
     if (!session_.has_checksums) return true;
     if (has_part(part)) return false;
@@ -107,7 +107,7 @@ class Salvage {
     last->part = fmt::format("ticks {} to {}", last->first_tick, last->first_tick + last->ticks - 1);
   }
 
-  /// How many ticks the table says it has; 0 where it cannot be read.
+  /// Number of ticks according to the table; 0 if it cannot be read.
   std::size_t ticks_in_table() {
     int last = -1;
     soci::indicator indicator = soci::i_null;
@@ -138,7 +138,7 @@ class Salvage {
     move_parameters_to_samples();
   }
 
-  /// A table that sessions of older programs lack; one that is missing but has a checksum is damage.
+  /// A table that sessions of older programs lack; a missing table with a checksum is damage.
   template <class Rows, class Work>
   void read_added(const char* part, const CheckedRows& checked, Rows& rows, const Work& work) {
     bool was_written = database_.has_table(checked.name);
@@ -148,7 +148,7 @@ class Salvage {
     if (!attempt(part, work) || !check(part, checked, is_finished_)) rows.clear();
   }
 
-  /// Where ticks are missing, parameters are those of the first sample behind their tick.
+  /// If ticks are missing, parameters apply from the first sample after their tick.
   void move_parameters_to_samples() {
     const auto& samples = session_.samples;
     if (session_.damage.empty()) return;
@@ -178,7 +178,7 @@ class Salvage {
     if (ticks > next_tick) note_ticks(next_tick, ticks - next_tick);
   }
 
-  /// The sample of a tick, where it was read.
+  /// The sample of a tick, if it was read.
   std::optional<std::size_t> sample_of(std::size_t tick) const {
     std::size_t missing = 0;
     for (const SessionDamage& damage : session_.damage) {

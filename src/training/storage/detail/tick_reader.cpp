@@ -75,7 +75,7 @@ std::set<std::string> present_columns(soci::session& database) {
   return present;
 }
 
-/// Text of a column in the SELECT: its name, or the value of a sample that was never filled where it is missing.
+/// Text of a column in the SELECT: its name, or the default value if it is missing.
 template <class Field>
 std::string column_text(const std::set<std::string>& present, const char* name, const Field& unfilled) {
   if (present.contains(name)) return name;
@@ -85,7 +85,7 @@ std::string column_text(const std::set<std::string>& present, const char* name, 
     return fmt::format("{} AS {}", static_cast<int>(unfilled), name);
 }
 
-/// Binds the columns to a statement and gives their texts.
+/// Binds the columns to a statement and returns their texts.
 std::string bind_columns(soci::statement& select, TickColumns& columns, const std::set<std::string>& present) {
   std::string names = "tick";
   const telemetry::TickSample sample;

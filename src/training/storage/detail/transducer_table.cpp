@@ -28,7 +28,7 @@ Row row_of(const TransducerSample& sample) {
 TransducerSample sample_of(const Row& row) {
   const auto& [time_s, x, y, z, qw, qx, qy, qz, contact_n] = row;
   const Eigen::Quaterniond q(qw, qx, qy, qz);
-  constexpr double kLeastNorm = 0.5;  // it was written as a unit quaternion
+  constexpr double kLeastNorm = 0.5;  // stored as a unit quaternion
   if (!is_finite(row) || q.norm() < kLeastNorm) throw soci::soci_error("a pose of the transducer is invalid");
   return {time_s, Pose(q.normalized().toRotationMatrix(), Vec3(x, y, z)), contact_n};
 }

@@ -14,9 +14,9 @@ constexpr double kTremorHigh_hz = 12.0;
 constexpr double kTremorAlongNeedle = 0.1;  // assumed
 
 constexpr double kSpeedSmoothing_s = 0.06;  // of each of two stages; assumed
-constexpr double kMaxLead_mm = 12.0;        // how far the hand pushes ahead of the device: 7 N at 0.6 N/mm; assumed
+constexpr double kMaxLead_mm = 12.0;        // lead of the hand over the device: 7 N at 0.6 N/mm; assumed
 constexpr double kFeeling_s = 0.02;         // assumed
-constexpr double kTouch_n = 0.15;           // assumed; a fingertip feels less
+constexpr double kTouch_n = 0.15;           // assumed; below the threshold of a fingertip
 constexpr double kLeastDrop_n = 0.3;        // assumed
 constexpr double kDropShare = 0.3;          // of the peak: well above the 7 % of Pang, Tan, Durlach
 
@@ -66,7 +66,7 @@ GuidedHand::GuidedHand(const Segment& line_P, double start_mm, const Tremor& tre
 
 void GuidedHand::sense(const OperatorView& view) noexcept {
   has_felt_drop_ = false;
-  if (is_first_) {  // nothing seen or felt yet
+  if (is_first_) {  // nothing detected yet
     is_first_ = false;
     start_time_s_ = view.time_s;
     return;
@@ -74,7 +74,7 @@ void GuidedHand::sense(const OperatorView& view) noexcept {
   elapsed_s_ = view.time_s - start_time_s_;
   device_mm_ = (view.X_PN_device.p() - start_P_).dot(axis_P_);
   tip_mm_ = (view.last.tip_mm - start_P_).dot(axis_P_);
-  const Vec3 felt_P = view.last.device_f_n - view.last.f_weight_n;  // the rest of it only carries the stylus
+  const Vec3 felt_P = view.last.device_f_n - view.last.f_weight_n;  // the rest only holds the stylus
   push_n_ += (-felt_P.dot(axis_P_) - push_n_) * smoothing(view.dt_s, kFeeling_s);
   is_touching_ = push_n_ > kTouch_n || view.last.phase != telemetry::InsertionPhase::kOutside;
 

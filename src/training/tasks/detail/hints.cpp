@@ -11,9 +11,9 @@
 namespace trocar::tasks {
 namespace {
 
-constexpr double kMatters = 0.1;          // share of a part's points that must be lost before it is spoken of
+constexpr double kMatters = 0.1;          // minimum lost share of a part's points for a hint
 constexpr double kNameable = 0.5;         // rounds to 1 mm or degree
-constexpr double kRepeatedTravel = 0.25;  // share of the excess travel from which retractions are spoken of
+constexpr double kRepeatedTravel = 0.25;  // share of the excess travel for a hint about retractions
 
 struct Hint {
   double lost_points;
@@ -25,7 +25,7 @@ const ScorePart* find_part(std::span<const ScorePart> parts, std::string_view na
   return found != parts.end() ? &*found : nullptr;
 }
 
-/// Points lost in a part, 0 where they do not matter.
+/// Points lost in a part, 0 if negligible.
 double lost(const HintSubject& subject, std::string_view name) {
   const ScorePart* part = find_part(subject.parts, name);
   const double points = part != nullptr ? part->max_points - part->points : 0.0;
@@ -36,7 +36,7 @@ std::string target_name(const HintSubject& subject) {
   return subject.is_parenchymal ? anatomy::structure_words(subject.task.organ) + " tissue" : "lesion";
 }
 
-/// "5 mm short of it and 4 mm too far towards the feet", and what to do about it.
+/// "5 mm short of it and 4 mm too far towards the feet", with the advice.
 struct Correction {
   std::string deviation;
   std::string advice;
@@ -70,7 +70,7 @@ void add_target_hint(const HintSubject& subject, std::vector<Hint>& hints) {
     const std::string where = lost_target > 0.0 ? fmt::format(" The tip stopped {}.", correction.deviation) : "";
     hints.push_back({lost_core + lost_target,
                      "No core was taken: bring the tip to the target, hold it still and fire the gun." + where});
-  } else if (subject.core && subject.core->pieces.empty()) {  // going deeper would be the wrong advice
+  } else if (subject.core && subject.core->pieces.empty()) {  // deeper insertion would be wrong advice
     hints.push_back(
         {lost_core + lost_target,
          "No tissue was taken: the stylet hit bone. Choose an insertion point and a direction that pass beside "
@@ -122,7 +122,7 @@ void add_risk_hints(const HintSubject& subject, std::vector<Hint>& hints) {
                                     anatomy::structure_words(touch.label), subject.needle.throw_mm)});
 }
 
-/// Travel beyond the path's length is either repeated after a retraction or lies beyond the target.
+/// Travel beyond the path's length is either repeated after a retraction or beyond the target.
 std::string travel_hint(const AttemptMetrics& metrics, double path_mm) {
   const double repeated_mm = metrics.travel_mm - metrics.deepest_mm;
   if (repeated_mm < kRepeatedTravel * (metrics.travel_mm - path_mm))

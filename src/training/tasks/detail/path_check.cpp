@@ -10,11 +10,11 @@
 namespace trocar::tasks::detail {
 namespace {
 
-constexpr double kBorder_mm = 3.0;        ///< An entry this near to the volume's border may lie on a cut face.
-constexpr double kNormalRadius_mm = 3.0;  ///< The skin's normal is taken over this distance: voxels are steps.
+constexpr double kBorder_mm = 3.0;        ///< An entry this close to the volume's border may be on a cut face.
+constexpr double kNormalRadius_mm = 3.0;  ///< Averaging distance of the skin's normal: voxels form steps.
 constexpr double kScreenStep_mm = 2.0;
 constexpr double kWalkStep_mm = 0.25;
-constexpr double kSkinTolerance_mm = 0.5;  ///< Above the skin: still a fold of it, not a way out of the body.
+constexpr double kSkinTolerance_mm = 0.5;  ///< Above the skin: still a fold of it, not outside the body.
 constexpr double kMinMuscle_mm = 2.0;
 constexpr double kChunk_mm = 8.0;  ///< Of the path, for the exact margins.
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -47,7 +47,7 @@ double distance_to_skin(const volume::FloatGrid& skin_distance, const Vec3& star
       return -1.0;
     }
     inside = s;
-    s += std::max(-distance, kSkinTolerance_mm);  // no surface is nearer than the distance to it
+    s += std::max(-distance, kSkinTolerance_mm);  // no surface is nearer than the distance
   }
   for (int n = 0; n < 20; ++n) {
     const double middle = 0.5 * (inside + s);
@@ -56,8 +56,8 @@ double distance_to_skin(const volume::FloatGrid& skin_distance, const Vec3& star
   return s;
 }
 
-/// Tells the nearest risk voxel around one piece of the path; `findings` keeps the smallest clearance. Stops at the
-/// first margin that is not kept.
+/// Finds the nearest risk voxel around one piece of the path; `findings` keeps the smallest clearance. Stops at the
+/// first violated margin.
 void look_around(const PlanningMap& map, const Segment& piece, PathFindings& findings) {
   const volume::GridGeometry& geometry = map.patient.labels.geometry;
   const double half_voxel = 0.5 * geometry.spacing_mm.norm();
@@ -81,13 +81,13 @@ void look_around(const PlanningMap& map, const Segment& piece, PathFindings& fin
       }
 }
 
-/// Bound of the error of an interpolated coarse clearance: half a cell for the interpolation, and half a cell for the
-/// position of the voxel within its cell.
+/// Upper limit of the error of an interpolated coarse clearance: half a cell for the interpolation, and half a cell for
+/// the position of the voxel within its cell.
 double coarse_error_mm(const PlanningMap& map) {
   return 2.0 * map.slack_mm;
 }
 
-/// Exact clearance of the whole way: pieces in order of their coarse clearance, until none can be nearer.
+/// Exact clearance of the whole path: pieces in order of their coarse clearance, until none can be nearer.
 void measure_margins(const PlanningMap& map, const Segment& way, PathFindings& findings) {
   const int count = static_cast<int>(std::ceil(way.length_mm() / kChunk_mm));
   const double error = coarse_error_mm(map);
@@ -110,7 +110,7 @@ void measure_margins(const PlanningMap& map, const Segment& way, PathFindings& f
   }
 }
 
-/// Lengths met on the way from the skin to the end of the throw.
+/// Lengths along the path from the skin to the end of the throw.
 class Walk {
  public:
   Walk(const PlanningMap& map, double tip_mm) : map_(map), tip_mm_(tip_mm) {}
@@ -125,7 +125,7 @@ class Walk {
     if (has_organ_ && !is_organ) outside_mm_ += kWalkStep_mm;
     has_target_ |= role == Role::kTarget;
     if (role == Role::kOrgan && !has_target_ && s < tip_mm_) organ_mm_ += kWalkStep_mm;
-    // Oblique voxel borders may show the organ's surface twice within a voxel.
+    // Oblique voxel borders may contain the organ's surface twice within a voxel.
     if (outside_mm_ > map_.patient.labels.geometry.spacing_mm.norm()) return stop(PathVerdict::kLeavesOrgan, p_P);
     if (s > 1.0 && sample_linear(map_.patient.skin_distance_mm, p_P) > kSkinTolerance_mm)
       return stop(PathVerdict::kGlancing, p_P);

@@ -15,11 +15,11 @@
 namespace trocar::tasks::detail {
 namespace {
 
-constexpr double kCell_mm = 2.5;           ///< Edge of the coarse cells, about.
+constexpr double kCell_mm = 2.5;           ///< Approximate edge of the coarse cells.
 constexpr double kTargetSpread_mm = 10.0;  ///< Between parenchymal targets.
 constexpr std::size_t kMaxTargets = 48;
 constexpr std::size_t kMaxLesions = 16;
-constexpr double kLesionCore = 0.8;  ///< A lesion's middle: where it is deeper than this part of its greatest depth.
+constexpr double kLesionCore = 0.8;  ///< Centre of a lesion: deeper than this fraction of its maximum depth.
 
 Role role_of(const Task& task, const anatomy::Label& label) {
   if (is_target(task, label)) return Role::kTarget;
@@ -31,7 +31,7 @@ Role role_of(const Task& task, const anatomy::Label& label) {
   return Role::kForbidden;
 }
 
-/// The middle of one lesion: the centre of its deepest part, or its deepest voxel where the part is bent.
+/// The centre of one lesion: that of its deepest part, or its deepest voxel if the part is curved.
 Vec3 lesion_middle(const volume::LabelGrid& labels, std::uint8_t id, const IndexBox& box) {
   const volume::MaskGrid mask = cut_mask(labels, grown(box, 1), [&](std::uint8_t label) { return label == id; });
   const volume::FloatGrid distance = volume::signed_distance_mm(mask);
@@ -61,7 +61,7 @@ std::vector<Vec3> parenchymal_points(const PlanningMap& map, const IndexBox& org
     is_vessel[label.id] = label.tissue == "vessel";
     is_inside[label.id] = is_organ(map.task, label) || is_vessel[label.id];
   }
-  // One cell around the organ, even beyond the volume: what is not seen is not the organ.
+  // One cell around the organ, even outside the volume: unseen space does not count as organ.
   const BlockGrid blocks =
       make_blocks(labels.geometry, grown(organ_box, blocks_factor(labels.geometry, kCell_mm)), kCell_mm);
   const volume::MaskGrid outside = block_mask(
@@ -82,7 +82,7 @@ std::vector<Vec3> parenchymal_points(const PlanningMap& map, const IndexBox& org
   return points;
 }
 
-/// At most kMaxTargets of the points, the ones nearest to the skin, some way apart.
+/// At most kMaxTargets of the points, those nearest to the skin, with a minimum distance.
 std::vector<Vec3> spread_targets(const std::vector<Vec3>& points, const volume::FloatGrid& skin_distance) {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t n = 0; n < points.size(); ++n)
@@ -154,7 +154,7 @@ void measure_clearance(PlanningMap& map, const PlanTargets& targets, double reac
   map.slack_mm = blocks.half_diagonal_mm;
   map.clearance_mm = volume::FloatGrid(blocks.geometry, std::numeric_limits<float>::infinity());
 
-  // One distance map a margin, not one a structure.
+  // One distance map per margin instead of one per structure.
   std::map<double, std::array<bool, 256>> ids_of_margin;
   for (std::size_t id = 0; id < map.risks.size(); ++id)
     if (map.risks[id]) ids_of_margin[map.risks[id]->margin_mm][id] = true;
@@ -168,7 +168,7 @@ void measure_clearance(PlanningMap& map, const PlanTargets& targets, double reac
       map.clearance_mm.voxels[n] =
           std::min(map.clearance_mm.voxels[n], distance.voxels[n] - static_cast<float>(margin));
   }
-  // Far from everything, but finite, so that interpolation stays so.
+  // Far from everything but finite, so that interpolation is finite.
   for (float& clearance : map.clearance_mm.voxels) clearance = std::min(clearance, static_cast<float>(reach_mm));
 }
 

@@ -59,7 +59,7 @@ TEST(ReleasedStylus, TickOfAServerCarriesTheStylus) {
     for (int i = 0; i < 2000; ++i) {
       haptics::HapticInput input;
       input.time_s = bench.time_s;
-      input.X_DS = reading.X_DS;
+      input.tool = haptics::tool_pose(scene, reading.X_DS);
       const haptics::HapticOutput output = haptics::tick(state, input, scene);
       reading = bench.period(DeviceHand{}, {output.f_D, output.tau_D});
     }

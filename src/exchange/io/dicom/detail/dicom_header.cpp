@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::size_t kPreamble = 128;
 constexpr std::size_t kMaxKept = 4096;  ///< Longer elements are not header text.
+constexpr std::size_t kMaxFragments = 1 << 16;
 constexpr std::uint32_t kUndefined = 0xffffffff;
 constexpr int kMaxDepth = 32;
 constexpr std::uint32_t kItem = dicom_tag(0xfffe, 0xe000);
 constexpr std::uint32_t kItemEnd = dicom_tag(0xfffe, 0xe00d);
 constexpr std::uint32_t kSequenceEnd = dicom_tag(0xfffe, 0xe0dd);
 constexpr std::uint32_t kPixelData = dicom_tag(0x7fe0, 0x0010);
-constexpr std::uint32_t kTransferSyntax = dicom_tag(0x0002, 0x0010);
 
 // DICOM PS3.5, annex A.
 constexpr std::string_view kImplicitLittle = "1.2.840.10008.1.2";
@@ -30,6 +30,10 @@ constexpr std::string_view kDeflated = "1.2.840.10008.1.2.1.99";
 bool is_vr(std::string_view vr) {
   return vr.size() == 2 && std::isupper(static_cast<unsigned char>(vr[0])) != 0 &&
          std::isupper(static_cast<unsigned char>(vr[1])) != 0;
+}
+
+bool is_kept(std::uint32_t tag) {
+  return std::ranges::find(dicom_tags::kAll, tag) != dicom_tags::kAll.end();
 }
 
 /// Value representations with a 32-bit length.
@@ -61,7 +65,7 @@ class DicomWalk {
     const bool has_mark = header_.bytes_.size() >= kPreamble + 4 && header_.bytes_.compare(kPreamble, 4, "DICM") == 0;
     at_ = has_mark ? kPreamble + 4 : 0;
     if (!walk_elements(Part::kMeta)) return false;
-    header_.transfer_syntax_ = header_.text(kTransferSyntax);
+    header_.transfer_syntax_ = header_.text(dicom_tags::kTransferSyntax);
     choose_encoding();
     // A file that GDCM unpacks as a whole is refused later by its transfer syntax.
     return header_.transfer_syntax_ == kDeflated || walk_elements(Part::kDataSet);
@@ -134,7 +138,7 @@ class DicomWalk {
         if (!skip_sequence(is_implicit_ || is_unknown_, 0)) return false;
         continue;
       }
-      if (element.length <= kMaxKept) header_.elements_[element.tag] = {at_, element.length};
+      if (element.length <= kMaxKept && is_kept(element.tag)) header_.elements_[element.tag] = {at_, element.length};
       if (!skip(element.length)) return false;
     }
     return true;
@@ -174,6 +178,7 @@ class DicomWalk {
       if (!read_element(item, true)) return false;
       if (item.tag == kSequenceEnd) return true;
       if (item.tag != kItem || item.length == kUndefined) return false;
+      if (header_.pixels_.size() == kMaxFragments) return false;
       if (!is_offset_table) header_.pixels_.push_back({at_, item.length});
       if (!skip(item.length)) return false;
     }

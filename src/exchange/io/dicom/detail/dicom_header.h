@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -16,6 +17,35 @@ namespace trocar::io::detail {
 constexpr std::uint32_t dicom_tag(std::uint16_t group, std::uint16_t element) {
   return (static_cast<std::uint32_t>(group) << 16) | element;
 }
+
+/// The elements that are read. A file may have millions of others: these are not kept.
+namespace dicom_tags {
+inline constexpr std::uint32_t kTransferSyntax = dicom_tag(0x0002, 0x0010);
+inline constexpr std::uint32_t kModality = dicom_tag(0x0008, 0x0060);
+inline constexpr std::uint32_t kSeriesDescription = dicom_tag(0x0008, 0x103e);
+inline constexpr std::uint32_t kPatientId = dicom_tag(0x0010, 0x0020);
+inline constexpr std::uint32_t kSeriesUid = dicom_tag(0x0020, 0x000e);
+inline constexpr std::uint32_t kImagePosition = dicom_tag(0x0020, 0x0032);
+inline constexpr std::uint32_t kImageOrientation = dicom_tag(0x0020, 0x0037);
+inline constexpr std::uint32_t kFrameOfReference = dicom_tag(0x0020, 0x0052);
+inline constexpr std::uint32_t kSamplesPerPixel = dicom_tag(0x0028, 0x0002);
+inline constexpr std::uint32_t kPhotometric = dicom_tag(0x0028, 0x0004);
+inline constexpr std::uint32_t kNumberOfFrames = dicom_tag(0x0028, 0x0008);
+inline constexpr std::uint32_t kRows = dicom_tag(0x0028, 0x0010);
+inline constexpr std::uint32_t kColumns = dicom_tag(0x0028, 0x0011);
+inline constexpr std::uint32_t kPixelSpacing = dicom_tag(0x0028, 0x0030);
+inline constexpr std::uint32_t kBitsAllocated = dicom_tag(0x0028, 0x0100);
+inline constexpr std::uint32_t kBitsStored = dicom_tag(0x0028, 0x0101);
+inline constexpr std::uint32_t kHighBit = dicom_tag(0x0028, 0x0102);
+inline constexpr std::uint32_t kPixelRepresentation = dicom_tag(0x0028, 0x0103);
+inline constexpr std::uint32_t kRescaleIntercept = dicom_tag(0x0028, 0x1052);
+inline constexpr std::uint32_t kRescaleSlope = dicom_tag(0x0028, 0x1053);
+inline constexpr std::array kAll{
+    kTransferSyntax,   kModality,         kSeriesDescription, kPatientId,   kSeriesUid,      kImagePosition,
+    kImageOrientation, kFrameOfReference, kSamplesPerPixel,   kPhotometric, kNumberOfFrames, kRows,
+    kColumns,          kPixelSpacing,     kBitsAllocated,     kBitsStored,  kHighBit,        kPixelRepresentation,
+    kRescaleIntercept, kRescaleSlope};
+}  // namespace dicom_tags
 
 /// One DICOM file taken apart: short elements of the top level and where the pixels lie. Every length is held against
 /// the file before it is used: GDCM as Debian builds it aborts the program on cut or damaged files, so it never sees

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/dicom/detail/codestream.h"
 #include "io/dicom/detail/dicom_header.h"
 #include "io/image/detail/quiet.h"
 
@@ -43,25 +44,25 @@ std::optional<std::array<double, N>> decimals_of(const DicomHeader& header, std:
 
 DicomSlice slice_of(const DicomHeader& header) {
   DicomSlice slice;
-  slice.series_uid = header.text(dicom_tag(0x0020, 0x000e));
-  slice.series_description = header.text(dicom_tag(0x0008, 0x103e));
-  slice.modality = header.text(dicom_tag(0x0008, 0x0060));
-  slice.patient_id = header.text(dicom_tag(0x0010, 0x0020));
-  slice.frame_of_reference = header.text(dicom_tag(0x0020, 0x0052));
-  slice.rows = header.number(dicom_tag(0x0028, 0x0010)).value_or(0);
-  slice.columns = header.number(dicom_tag(0x0028, 0x0011)).value_or(0);
-  slice.samples_per_pixel = header.number(dicom_tag(0x0028, 0x0002)).value_or(1);
-  if (const auto frames = decimals_of<1>(header, dicom_tag(0x0028, 0x0008)))
+  slice.series_uid = header.text(dicom_tags::kSeriesUid);
+  slice.series_description = header.text(dicom_tags::kSeriesDescription);
+  slice.modality = header.text(dicom_tags::kModality);
+  slice.patient_id = header.text(dicom_tags::kPatientId);
+  slice.frame_of_reference = header.text(dicom_tags::kFrameOfReference);
+  slice.rows = header.number(dicom_tags::kRows).value_or(0);
+  slice.columns = header.number(dicom_tags::kColumns).value_or(0);
+  slice.samples_per_pixel = header.number(dicom_tags::kSamplesPerPixel).value_or(1);
+  if (const auto frames = decimals_of<1>(header, dicom_tags::kNumberOfFrames))
     slice.frames = static_cast<int>(std::clamp((*frames)[0], 0.0, 1e6));
-  if (const auto p = decimals_of<3>(header, dicom_tag(0x0020, 0x0032)))
+  if (const auto p = decimals_of<3>(header, dicom_tags::kImagePosition))
     slice.position_P = Vec3((*p)[0], (*p)[1], (*p)[2]);
-  if (const auto d = decimals_of<6>(header, dicom_tag(0x0020, 0x0037)))
+  if (const auto d = decimals_of<6>(header, dicom_tags::kImageOrientation))
     slice.directions_P = {Vec3((*d)[0], (*d)[1], (*d)[2]), Vec3((*d)[3], (*d)[4], (*d)[5])};
   // DICOM gives the distance between rows first.
-  if (const auto s = decimals_of<2>(header, dicom_tag(0x0028, 0x0030))) slice.spacing_mm = {(*s)[1], (*s)[0]};
-  if (const auto slope = decimals_of<1>(header, dicom_tag(0x0028, 0x1053))) slice.slope = (*slope)[0];
-  if (const auto intercept = decimals_of<1>(header, dicom_tag(0x0028, 0x1052))) slice.intercept = (*intercept)[0];
-  const auto bytes_per_pixel = static_cast<std::size_t>(header.number(dicom_tag(0x0028, 0x0100)).value_or(16) / 8);
+  if (const auto s = decimals_of<2>(header, dicom_tags::kPixelSpacing)) slice.spacing_mm = {(*s)[1], (*s)[0]};
+  if (const auto slope = decimals_of<1>(header, dicom_tags::kRescaleSlope)) slice.slope = (*slope)[0];
+  if (const auto intercept = decimals_of<1>(header, dicom_tags::kRescaleIntercept)) slice.intercept = (*intercept)[0];
+  const auto bytes_per_pixel = static_cast<std::size_t>(header.number(dicom_tags::kBitsAllocated).value_or(16) / 8);
   slice.declared_bytes = static_cast<std::size_t>(slice.columns) * static_cast<std::size_t>(slice.rows) *
                          static_cast<std::size_t>(std::max(slice.samples_per_pixel, 1)) * bytes_per_pixel;
   const auto pixels = header.pixels();
@@ -86,14 +87,14 @@ struct PixelLayout {
 
 Result<PixelLayout> layout_of(const DicomHeader& header, const DicomSlice& slice) {
   PixelLayout layout;
-  layout.bits_allocated = header.number(dicom_tag(0x0028, 0x0100)).value_or(16);
-  layout.bits_stored = header.number(dicom_tag(0x0028, 0x0101)).value_or(layout.bits_allocated);
-  layout.high_bit = header.number(dicom_tag(0x0028, 0x0102)).value_or(layout.bits_stored - 1);
-  layout.is_signed = header.number(dicom_tag(0x0028, 0x0103)).value_or(0) != 0;
+  layout.bits_allocated = header.number(dicom_tags::kBitsAllocated).value_or(16);
+  layout.bits_stored = header.number(dicom_tags::kBitsStored).value_or(layout.bits_allocated);
+  layout.high_bit = header.number(dicom_tags::kHighBit).value_or(layout.bits_stored - 1);
+  layout.is_signed = header.number(dicom_tags::kPixelRepresentation).value_or(0) != 0;
   layout.count = static_cast<std::size_t>(slice.columns) * static_cast<std::size_t>(slice.rows);
   const bool is_known = (layout.bits_allocated == 8 || layout.bits_allocated == 16) && layout.bits_stored >= 1 &&
                         layout.high_bit < layout.bits_allocated && layout.high_bit + 1 >= layout.bits_stored &&
-                        header.text(dicom_tag(0x0028, 0x0004)) != "PALETTE COLOR";
+                        header.text(dicom_tags::kPhotometric) != "PALETTE COLOR";
   if (is_known) return layout;
   return fail("stores its pixels in an unknown way", slice.file.string(), "give a CT series or a mask series");
 }
@@ -159,12 +160,25 @@ bool unpack_rle(const DicomHeader& header, const PixelLayout& layout, std::span<
   return true;
 }
 
+/// Whether the stream holds the image that the header describes; GDCM ends the program where it holds more components.
+bool is_as_described(const DicomHeader& header, const DicomSlice& slice) {
+  std::vector<char> start;
+  constexpr std::size_t kLongestStart = 1 << 20;  // comments and tables may come before the size
+  for (const std::span<const char> piece : header.pixels()) {
+    if (start.size() >= kLongestStart) break;
+    start.insert(start.end(), piece.begin(),
+                 piece.begin() + static_cast<std::ptrdiff_t>(std::min(piece.size(), kLongestStart)));
+  }
+  const auto size = codestream_size(start);
+  return size && size->components == 1 && size->columns == slice.columns && size->rows == slice.rows;
+}
+
 /// Unpacks the fragments with GDCM's codecs. May throw exceptions of GDCM.
 bool unpack_compressed(const DicomHeader& header, const DicomSlice& slice, const PixelLayout& layout,
                        std::span<std::byte> out) {
   if (header.transfer_syntax() == kRle) return unpack_rle(header, layout, out);
   const auto syntax = gdcm::TransferSyntax::GetTSType(header.transfer_syntax().c_str());
-  if (syntax == gdcm::TransferSyntax::TS_END) return false;
+  if (syntax == gdcm::TransferSyntax::TS_END || !is_as_described(header, slice)) return false;
   gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
   for (const std::span<const char> piece : header.pixels()) {
     gdcm::Fragment fragment;

@@ -169,6 +169,23 @@ TEST(RealSlices, RunLengthAndJpegLsKeepTheSamePixels) {
   EXPECT_NEAR(mean_of(data / "693_J2KI.dcm") / mean_of(data / "pydata_693_UNCR.dcm"), 1.0, 0.01);
 }
 
+TEST(RealSlices, OfThreeComponentsThatClaimOneIsRefused) {
+  const auto file = test_data() / "bad-input/dicom/pydata_US1_J2KR.dcm";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real data at " << file;
+  std::string bytes = testing::read_bytes(file);
+  const std::string_view samples_per_pixel("\x28\x00\x02\x00US\x02\x00\x03", 9);
+  const std::size_t at = bytes.find(samples_per_pixel);
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + samples_per_pixel.size() - 1] = 1;
+  const TemporaryFolder folder;
+  testing::write_bytes(folder / "slice.dcm", bytes);
+  const auto slice = detail::find_dicom_slice(folder / "slice.dcm");
+  ASSERT_TRUE(slice && *slice) << slice.error().text();
+  const Status decoded = detail::decode_slice(**slice, [](const detail::RawVoxels&) { return Status(); });
+  ASSERT_FALSE(decoded);  // GDCM ends the program
+  EXPECT_NE(decoded.error().what.find("cannot be unpacked"), std::string::npos) << decoded.error().text();
+}
+
 class RealSeries : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -245,7 +245,7 @@ TEST(ContactTick, NeverAllocatesAndStaysFiniteWhateverComesIn) {
         default:
           break;
       }
-      input.X_DS = scene->X_PD.inverse() * face_down(tip, random.uniform(-3, 3)) * scene->X_SN.inverse();
+      input.tool = telemetry::to_tool_pose(face_down(tip, random.uniform(-3, 3)));
       const AllocationGuard guard;
       const haptics::HapticOutput output = haptics::tick(state, input, *scene);
       allocations += guard.count();
@@ -268,7 +268,7 @@ TEST(ContactTick, RecordsTheToolAndComposesTheTotal) {
   haptics::ContactState own;
   for (int i = 0; i < 1000; ++i) {
     const Pose X_PT = face_down({0, 0, std::min(8.0, -2.0 + 0.02 * i)}, 0.1);
-    sample = haptics::tick(state, {0.001 * i, kDt_s, X_PT * scene->X_SN.inverse(), true, {}}, *scene).sample;
+    sample = haptics::tick(state, {0.001 * i, kDt_s, telemetry::to_tool_pose(X_PT), true, {}}, *scene).sample;
     contact = haptics::step_contact(own, *scene, X_PT, kDt_s).wrench_P;
   }
   EXPECT_LT((sample.f_constraint_n - contact.force_n).norm(), 1e-9);
@@ -323,7 +323,7 @@ TEST_P(RestingOnSkin, ComesToRestAndStays) {
       haptics::step_device(device, {GetParam().mass_kg, weight_n}, hand, force_P, Vec3::UnitZ(), kDt_s);
       const Vec3 seen = (device.X_PN.p() / kCount_mm).array().round() * kCount_mm;
       force_P =
-          haptics::tick(state, {kDt_s * i, kDt_s, Pose(hand.R_PN, seen) * scene->X_SN.inverse(), true, {}}, *scene).f_D;
+          haptics::tick(state, {kDt_s * i, kDt_s, telemetry::to_tool_pose({hand.R_PN, seen}), true, {}}, *scene).f_D;
       if (i < 4000) continue;
       low = low.cwiseMin(device.X_PN.p());
       high = high.cwiseMax(device.X_PN.p());

@@ -253,7 +253,7 @@ TEST_P(Models, StayFiniteAndNeverAllocateWhateverComesIn) {
         break;
     }
     const Vec3 axis = Vec3(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3), 1.0).normalized();
-    input.X_DS = needle_pose(here, axis) * scene->X_SN.inverse();
+    input.tool = telemetry::to_tool_pose(needle_pose(here, axis));
     const AllocationGuard guard;
     const haptics::HapticOutput output = haptics::tick(state, input, *scene);
     allocations += guard.count();

@@ -11,7 +11,7 @@ constexpr double kReach_mm = 3.0;  ///< To each side: several voxels, and less t
 constexpr int kMostSteps = 4;      ///< Scanlines to each side.
 constexpr float kSteepest = 1.7F;  ///< Largest slope followed from line to line,
 constexpr float kRamp = 16.0F;     ///< Samples.
-constexpr float kStep_mm = 1.2F;   ///< in addition to a voxel's step.
+constexpr float kStep_mm = 1.2F;   ///< in addition to the step of a voxel.
 
 std::span<const BorderKey> borders_of(const ScanPlan& plan, const FrameState& frame, int plane, int line) noexcept {
   const auto at = static_cast<std::size_t>(plane * plan.lines + line);

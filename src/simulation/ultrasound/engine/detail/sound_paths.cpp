@@ -8,17 +8,17 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-/// A border that reflects more than this (amplitude) from a tissue far lighter than water is gas: it can mirror.
+/// A border with a larger reflection (amplitude) from a tissue far lighter than water is gas and can act as a mirror.
 constexpr float kMirrorReflection = 0.6F;
-/// What a mirror gives back of what falls on it, twice over a surface that is never quite smooth (assumed).
+/// Amplitude share of two reflections at a slightly rough mirror (assumed).
 constexpr float kMirrorShare = 0.5F;
 
 std::array<float, 3> floats(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-/// Slope of a surface across the image, mean over scanlines about `line`: only the central plane was probed, and the
-/// volume's gradient on one scanline has the voxels' steps in it.
+/// Slope of a surface across the image, mean over scanlines around `line`: only the central plane was sampled, and the
+/// volume's gradient on one scanline contains the voxels' steps.
 float slope_across(const ScanPlan& plan, const FrameState& frame, int line) noexcept {
   constexpr int kReach = 8;
   float sum = 0.0F;
@@ -32,7 +32,7 @@ float slope_across(const ScanPlan& plan, const FrameState& frame, int line) noex
   return count > 0 ? sum / static_cast<float>(count) : 0.0F;
 }
 
-/// The mirror that stands where a scanline meets gas; its side away from the transducer shows what lies before it.
+/// Sets the mirror at the first gas of a scanline; behind it the image shows the structures in front of it.
 void set_mirror(const ScanPlan& plan, FrameState& frame, int l) noexcept {
   LineWalk& line = frame.walks[static_cast<std::size_t>(l)];
   const Border& border = frame.gas[static_cast<std::size_t>(l)].border;
@@ -59,7 +59,7 @@ void set_mirror(const ScanPlan& plan, FrameState& frame, int l) noexcept {
   line.mirror_gain = kMirrorShare * (1.0F - plan.roughness[border.behind]) * std::abs(border.reflection);
 }
 
-/// Notes the first gas that a scanline meets.
+/// Records the first gas on a scanline.
 void note_gas(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, int line) noexcept {
   GasBorder& gas = frame.gas[static_cast<std::size_t>(line)];
   gas = {};
@@ -117,7 +117,7 @@ void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, i
     float* slowness = frame.slowness.data() + static_cast<std::size_t>(l) * coarse;
     for (std::size_t c = 0; c < coarse; ++c) {
       const std::size_t s = std::min(c * kCoarse, static_cast<std::size_t>(plan.samples - 1));
-      constexpr float kBendable = 0.15F;  // gas and bone let nothing through that could be seen
+      constexpr float kBendable = 0.15F;  // nothing behind gas and bone is visible
       way[c] = scratch.log_way[s];
       const float slow = plan.slowness[scratch.tissue[s]];
       slowness[c] = std::abs(slow) < kBendable ? slow : 0.0F;
@@ -139,15 +139,15 @@ double depth_mm_of(const ScanPlan& plan, std::size_t c) noexcept {
   return static_cast<double>(c) * kCoarse * static_cast<double>(plan.sample_mm);
 }
 
-/// Distance of neighbouring scanlines. Those of a phased array leave one point: there it counts as kLeast_mm, for what
-/// is nearer together than that says nothing of how the tissue differs to either side.
+/// Distance of adjacent scanlines. Those of a phased array start at one point: there it is at least kLeast_mm, because
+/// smaller distances contain no information about lateral differences.
 double spacing_mm(const ScanPlan& plan, std::size_t c) noexcept {
   constexpr double kLeast_mm = 0.02;
   return std::max(plan.geometry.line_spacing_mm(depth_mm_of(plan, c)), kLeast_mm);
 }
 
-/// A beam is as wide as its aperture near the face and narrow at its focus: what is smaller than that hardly bends or
-/// shades it. Scanlines to either side over which a depth is averaged; `share` of the beam's width there.
+/// A beam is as wide as its aperture near the face and narrow at its focus: smaller structures hardly refract or shadow
+/// it. Scanlines to each side over which a depth is averaged; `share` of the beam's width there.
 int half_width(const ScanPlan& plan, std::size_t c, double share) noexcept {
   const double depth_mm = depth_mm_of(plan, c);
   const double width_mm = share * plan.beam.aperture_mm * std::abs(1.0 - depth_mm / plan.beam.focus_mm);
@@ -171,7 +171,7 @@ void average_lines(const ScanPlan& plan, int half, const Value& value, const Tak
   }
 }
 
-/// Shadows have soft edges: sound comes past a small obstacle. Adds to focus_log.
+/// Shadows have soft edges: sound passes around a small obstacle. Adds to focus_log.
 void soften_shadows(const ScanPlan& plan, FrameState& frame) noexcept {
   const auto coarse = plan.coarse_samples();
   constexpr float kMostChange = 1.5F;  // neper
@@ -189,9 +189,9 @@ void soften_shadows(const ScanPlan& plan, FrameState& frame) noexcept {
   }
 }
 
-/// Edge shadows: a scanline that grazes a border between tissues of different speed is turned by (n - 1) tan(tilt), and
-/// what is turned by more than the beam's opening does not come back. The tilt is that in the image plane: the other
-/// planes are not walked yet. Adds to focus_log, behind the border.
+/// Edge shadows: a scanline nearly tangential to a border between tissues of different speed is deflected by (n - 1)
+/// tan(tilt); a deflection beyond the beam's opening returns no echo. The tilt is that in the image plane: the other
+/// planes are not computed yet. Adds to focus_log, behind the border.
 void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
   constexpr float kOpening_rad = 0.13F;  // assumed, about 1 / (2 f-number)
   constexpr float kMostTangent = 3.0F, kMostLoss = 2.3F, kBendable = 0.15F;
@@ -201,7 +201,7 @@ void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
     const auto first = static_cast<std::size_t>(central * plan.lines + line);
     float loss = 0.0F;
     std::size_t c = 0;
-    float* losses = frame.smooth_slowness.data() + static_cast<std::size_t>(line) * coarse;  // free until later
+    float* losses = frame.smooth_slowness.data() + static_cast<std::size_t>(line) * coarse;  // unused until later
     for (std::size_t b = 0; b < frame.border_counts[first]; ++b) {
       const Border& border = frame.borders[first * kMaxBorders + b];
       const float before = plan.slowness[border.before & 127U], behind = plan.slowness[border.behind & 127U];
@@ -212,7 +212,7 @@ void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
       for (const auto end = static_cast<std::size_t>(std::max(border.walk, 0.0F)) / kCoarse; c <= end && c < coarse;
            ++c)
         losses[c] = loss;
-      loss = std::min(loss + turned * turned, kMostLoss);  // half of its square, there and back
+      loss = std::min(loss + turned * turned, kMostLoss);  // half of its square, for both ways
     }
     for (; c < coarse; ++c) losses[c] = loss;
   }
@@ -235,8 +235,8 @@ void refract_lines(const ScanPlan& plan, FrameState& frame) noexcept {
   if (!plan.acquisition.artefacts.refraction) return;
   shade_edges(plan, frame);
   const float step_mm = kCoarse * plan.sample_mm;
-  // A ray turns towards the slower side: slope += -d(ln c)/dx * dr; ln c = -ln(1 + slowness). The change is kept in
-  // bend_mm first.
+  // A ray bends towards the slower side: slope += -d(ln c)/dx * dr; ln c = -ln(1 + slowness). The change is first
+  // stored in bend_mm.
   for (std::size_t c = 0; c < coarse; ++c) {
     const int half = half_width(plan, c, kBendingShare);
     const auto spacing = static_cast<float>(spacing_mm(plan, c));
@@ -268,7 +268,7 @@ void refract_lines(const ScanPlan& plan, FrameState& frame) noexcept {
       const auto spacing = static_cast<float>(spacing_mm(plan, c));
       const float parting = (frame.bend_mm[high * coarse + c] - frame.bend_mm[low * coarse + c]) /
                             (static_cast<float>(high - low) * spacing);
-      // Intensity goes with the inverse of the width of the tube of rays, there and back.
+      // Intensity is inversely proportional to the width of the ray tube, both ways.
       frame.focus_log[l * coarse + c] -= std::log(std::clamp(1.0F + parting, 0.4F, 2.5F));
     }
   }

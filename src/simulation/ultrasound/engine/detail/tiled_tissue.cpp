@@ -9,7 +9,7 @@ namespace trocar::ultrasound::detail {
 
 namespace {
 
-/// Mean texture of the cell from that voxel to the next along i, j and k: that of the cell's middle.
+/// Mean texture of the cell from that voxel to the next along i, j and k: that of the cell's centre.
 std::int8_t mean_texture(const AcousticScene& scene, const volume::Index3& voxel) {
   const volume::GridGeometry& grid = scene.geometry;
   int sum = 0;

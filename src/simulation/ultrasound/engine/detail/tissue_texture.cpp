@@ -9,9 +9,9 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-/// Layers of muscle and septa of fat lie along the skin, about so far apart (assumed, range 1..4 mm), waving over …
+/// Distance of the layers of muscle and septa of fat, which are parallel to the skin (assumed, range 1..4 mm).
 constexpr float kLayer_mm = 2.2F;
-/// … this distance.
+/// Length scale of their waviness.
 constexpr float kWave_mm = 9.0F;
 
 float value_at(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
@@ -26,7 +26,7 @@ float ease(float t) noexcept {
   return t * t * (3.0F - 2.0F * t);
 }
 
-/// Smooth noise, -1..1, a lattice unit wide.
+/// Smooth noise, -1..1, with a lattice unit of 1.
 float noise(float x, float y, float z) noexcept {
   const float fx = std::floor(x), fy = std::floor(y), fz = std::floor(z);
   const auto i = static_cast<std::int32_t>(fx), j = static_cast<std::int32_t>(fy), k = static_cast<std::int32_t>(fz);
@@ -37,7 +37,7 @@ float noise(float x, float y, float z) noexcept {
   return std::lerp(std::lerp(row(j, k), row(j + 1, k), v), std::lerp(row(j, k + 1), row(j + 1, k + 1), v), w);
 }
 
-/// Where in the layers a place is, and how strong they are there.
+/// Phase of a position in the layers, and their strength there.
 struct Layering {
   float phase = 0.0F;
   float strength = 0.0F;
@@ -49,7 +49,7 @@ Layering layering_at(float below_skin_mm, const Vec3& p_mm) noexcept {
   return {below_skin_mm / kLayer_mm + 0.9F * wave, 0.6F + 0.4F * noise(x / 5.0F + 31.0F, y / 5.0F, z / 5.0F)};
 }
 
-/// Profile of the layers along their phase: -0.5 between them, up to 1 on a bright sheet; sheets come unevenly.
+/// Profile of the layers along their phase: -0.5 between them, up to 1 on a bright sheet; the sheets are irregular.
 class LayerProfile {
  public:
   LayerProfile() {
@@ -70,10 +70,10 @@ class LayerProfile {
   std::array<float, steps> values_;
 };
 
-/// Layers along the central plane: their place in coarse steps, the sheets themselves sample by sample.
+/// Layers along the central plane: phase in coarse steps, sheets sample by sample.
 void make_fibres(const ScanPlan& plan, const FrameState& frame, const WalkResult& walk, Texture& texture) noexcept {
   static const LayerProfile profile;
-  constexpr int kLayering = 2 * kCoarse;  // samples; what is found there waves over centimetres
+  constexpr int kLayering = 2 * kCoarse;  // samples; the phase varies over centimetres
   const AcousticScene& scene = *frame.scene;
   Layering last;
   bool was_in = false;

@@ -25,7 +25,7 @@ void place_samples(const ScanPlan& plan, const FrameState& frame, const LineWalk
   const F f;
   const I d;
   const volume::GridGeometry& grid = frame.scene->geometry;
-  // Offset among the tiles: (index / 4) * stride + (index % 4) * step, an axis.
+  // Offset in the tiles: (index / 4) * stride + (index % 4) * step per axis.
   const std::int32_t stride[3] = {TiledTissue::kTile, frame.tiles.row(), frame.tiles.slab()};
   const std::int32_t step[3] = {1, 4, 16};
   const VF zeta_v = hn::Set(f, zeta);
@@ -96,7 +96,7 @@ Blend blend_at(const FrameState& frame, const std::array<TissueRow, kTissues>& r
 
 Vec3 impedance_slope(const FrameState& frame, const std::array<TissueRow, kTissues>& rows, const Vec3& index) noexcept {
   // The corners of a tetrahedron: four samples instead of six.
-  constexpr double kReach = 0.87;  // voxels along each axis, 1.5 from the middle
+  constexpr double kReach = 0.87;  // voxels along each axis, 1.5 from the centre
   const Vec3 corners[4] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
   Vec3 slope = Vec3::Zero();
   for (const Vec3& corner : corners) {
@@ -109,34 +109,34 @@ Vec3 impedance_slope(const FrameState& frame, const std::array<TissueRow, kTissu
 namespace {
 
 constexpr int kBlock = 16;
-/// Middles of a block's samples.
+/// Centres of a block's samples.
 constexpr std::array<float, kBlock> kSteps{0.5F, 1.5F, 2.5F,  3.5F,  4.5F,  5.5F,  6.5F,  7.5F,
                                            8.5F, 9.5F, 10.5F, 11.5F, 12.5F, 13.5F, 14.5F, 15.5F};
-/// 131 dB: from there even a perfect reflector, 48 dB above liver's speckle, is 20 dB below the receiver's noise (-63
+/// 131 dB: beyond it even a perfect reflector, 48 dB above liver's speckle, is 20 dB below the receiver's noise (-63
 /// dB).
 constexpr float kInaudible = -15.1F;
 constexpr float kSilence = -60.0F;  // neper
-/// Organs are wrapped: a border reflects at least so much, even between tissues of one impedance (assumed).
+/// Organs have capsules: minimum reflection of a border, even between tissues of equal impedance (assumed).
 constexpr float kWrapping = 0.03F;
-/// Tissue so near to the face is still met through coupling gel where the volume shows air.
+/// If the volume has air at the face, tissue up to this distance is reached through coupling gel.
 constexpr float kEntry_mm = 5.0F;
 
-/// Amplitude reflected where the impedance's logarithm rises so much: tanh(rise / 2). Few borders need more than a
-/// series.
+/// Reflected amplitude for an increase of the impedance's logarithm: tanh(rise / 2). A series suffices for most
+/// borders.
 float reflection_of(float rise) noexcept {
   constexpr float kSmall = 0.1F;
   const float half = 0.5F * rise;
   return std::abs(half) < kSmall ? half * (1.0F - half * half / 3.0F) : std::tanh(half);
 }
 
-/// What is reflected does not go on: 1 - R^2 of the intensity passes, there and back; its logarithm.
+/// The transmitted intensity is 1 - R^2 for each direction; its logarithm.
 float log_passed(float reflection) noexcept {
   constexpr float kSmall = 0.01F;
   const float lost = reflection * reflection;
   return lost < kSmall ? -lost * (1.0F + 0.5F * lost) : std::log(std::max(1.0F - lost, 1e-4F));
 }
 
-/// The walk in the making.
+/// Computes the walk along one scanline.
 class Walk {
  public:
   Walk(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta, WalkResult& result,
@@ -167,7 +167,7 @@ class Walk {
   }
 
  private:
-  /// Nothing more will be heard: the rest of the scanline lies in shadow.
+  /// Ends the scanline: the rest is in shadow.
   void fall_silent(int s) noexcept {
     const auto left = static_cast<std::size_t>(plan_.samples - s);
     std::fill_n(result_.log_gain.begin() + s, left, kSilence);
@@ -180,7 +180,7 @@ class Walk {
     result_.audible = s;
   }
 
-  /// Samples about the mirror on this plane, where the walk turns back within the mixed cells of the border.
+  /// Samples around the mirror on this plane, where the walk reverses within the mixed cells of the border.
   void stand_mirror(float zeta) noexcept {
     const auto near = static_cast<std::size_t>(
         std::clamp(line_.mirror_depth_mm / plan_.sample_mm, 0.0F, static_cast<float>(plan_.samples - 1)));
@@ -196,7 +196,7 @@ class Walk {
     mirror_to_ = static_cast<int>(walk + reach) + 1;
   }
 
-  /// Near the mirror: the tissue before it, and at its middle the mirror itself.
+  /// Near the mirror: the tissue in front of it, and the mirror at its centre.
   void step_at_mirror(int s) noexcept {
     if (is_in_ramp_) finish_ramp();
     const std::uint8_t tissue = settled_ == kNoData ? line_.mirror_before : settled_;
@@ -212,12 +212,12 @@ class Walk {
     log_gain_ += std::log(std::max(line_.mirror_gain, 1e-6F));
   }
 
-  /// How many of the next samples, at most a block, lie in whole cells of the tissue that the walk is in.
+  /// Number of the next samples, at most a block, in whole cells of the present tissue.
   int same_tissue(int s) const noexcept {
     if (is_in_ramp_ || tissue_ == kNoData) return 0;
     const int most = std::min(kBlock, (s < mirror_from_ ? std::min(mirror_from_, plan_.samples) : plan_.samples) - s);
     if (s >= mirror_from_ && s < mirror_to_) return 0;
-    // Tiles are several blocks' samples wide: mostly one of a single tissue holds the whole block.
+    // A tile is as wide as several blocks: mostly a single-tissue tile contains the whole block.
     static_assert(kBlock == 16);
     const std::int32_t* cells = result_.cell.data() + s;
     const auto is_whole = [&](int n) { return cells[n] >= 0 && frame_.tiles.tile_tissue(cells[n]) == tissue_; };
@@ -227,7 +227,7 @@ class Walk {
     return n;
   }
 
-  /// `n` samples of the tissue that the walk is in; `kCount` is the same, or Eigen::Dynamic.
+  /// `n` samples of the present tissue; `kCount` is the same, or Eigen::Dynamic.
   template <int kCount>
   void step_same(int s, int n) noexcept {
     using Samples = Eigen::Array<float, kCount, 1>;
@@ -273,7 +273,7 @@ class Walk {
         tissue = voxel;
         row = rows[tissue];
       } else {
-        // A voxel is several samples long: every other one is enough within a border.
+        // A voxel is several samples long: within a border every second sample suffices.
         if (!was_blended_ || (s & 1) == 0)
           blend_ = blend_at(frame_, rows, result_.index[0][at], result_.index[1][at], result_.index[2][at]);
         tissue = blend_.tissue;
@@ -287,7 +287,7 @@ class Walk {
     pass(s, tissue, row);
   }
 
-  /// Borders are ramps of the impedance over a voxel or two; each becomes one border at its middle.
+  /// Borders are impedance ramps over one or two voxels; each becomes one border at its centre.
   void meet(int s, std::uint8_t tissue, const TissueRow& row, bool is_mixed) noexcept {
     if (tissue == kNoData || tissue_ == kNoData) {
       is_in_ramp_ = false;
@@ -324,7 +324,7 @@ class Walk {
     ramp_begin_ = s;
     up_ = down_ = up_at_ = down_at_ = most_ = 0.0F;
     behind_ = settled_;
-    // A border's echo has the losses of the tissue before it, not those of an absorber within its own ramp.
+    // A border's echo has the losses of the tissue in front of it, not those of an absorber within its own ramp.
     ramp_log_gain_ = log_gain_;
   }
 
@@ -375,7 +375,7 @@ class Walk {
   Blend blend_{};
 
   std::uint8_t tissue_ = kNoData;   ///< Of the last sample.
-  std::uint8_t settled_ = kNoData;  ///< The last one that a whole cell was made of.
+  std::uint8_t settled_ = kNoData;  ///< Tissue of the last whole cell.
   std::uint8_t behind_ = kNoData;
   float log_z_ = 0.0F;
   bool is_in_ramp_ = false;

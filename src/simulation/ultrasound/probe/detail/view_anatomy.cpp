@@ -7,7 +7,7 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr double kSlope_mm = 6.0;   ///< The skin's normal is that of a patch so large, not of a voxel.
+constexpr double kSlope_mm = 6.0;   ///< The skin's normal is averaged over a patch of this size.
 constexpr int kGasBelow_hu = -300;  ///< As in src/patient/anatomy; gas in bowel is labelled bowel.
 constexpr double kFacingSlab_mm = 8.0;
 
@@ -47,7 +47,7 @@ Vec3 nearest_voxel(const volume::LabelGrid& labels, std::uint8_t id, const Vec3&
   return best_P;
 }
 
-/// Middle of the part of a label that lies nearest to a point.
+/// Centre of the part of a label nearest to a point.
 Vec3 facing_point(const volume::LabelGrid& labels, std::uint8_t id, const Vec3& from_P) {
   const double nearest_mm = (nearest_voxel(labels, id, from_P) - from_P).norm();
   Vec3 sum = Vec3::Zero();
@@ -65,7 +65,7 @@ Vec3 facing_point(const volume::LabelGrid& labels, std::uint8_t id, const Vec3& 
 ViewAnatomy::ViewAnatomy(const anatomy::VirtualPatient& of, const ProbeView& view)
     : patient(of), ends(find_scan_ends(of)) {
   for (const anatomy::Label& label : of.label_table.labels) {
-    is_bone[label.id] = label.tissue == "bone" || label.tissue == "cartilage";  // of ribs
+    is_bone[label.id] = label.tissue == "bone" || label.tissue == "cartilage";  // the cartilage of ribs
     is_lung[label.id] = label.tissue == "lung" || label.tissue == "gas";
   }
   if (const anatomy::Label* through = find_target(of, view.through)) is_through[through->id] = true;

@@ -8,14 +8,14 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr double kSubject_mm = 40.0;  ///< The subject: the target within so far of the view's point [assumed].
-constexpr double kLeaves_mm = 60.0;   ///< Where a scanline leaves the CT so near to it, the subject may go on there.
+constexpr double kSubject_mm = 40.0;  ///< The subject: the target within this distance of the view's point [assumed].
+constexpr double kLeaves_mm = 60.0;   ///< The subject may continue if a scanline leaves the CT this near.
 constexpr double kAreaStep_mm = 3.0;
 constexpr double kRayStep_mm = 2.0;
-constexpr double kEdge_mm = 8.0;             ///< Gas by its HU, so near before a lung's label, is the lung.
+constexpr double kEdge_mm = 8.0;             ///< Gas by its HU within this distance in front of a lung's label is lung.
 constexpr double kLoss_db_per_cm_mhz = 0.5;  ///< Soft tissue, one way.
-constexpr double kFade_db = 10.0;            ///< Above the noise; from there an echo fades [assumed].
-constexpr double kBetweenRibs = 0.2;         ///< Standard deviation of what counts, in halves of the width [assumed].
+constexpr double kFade_db = 10.0;            ///< Above the noise; below this an echo fades [assumed].
+constexpr double kBetweenRibs = 0.2;         ///< Standard deviation of the weights, in half widths [assumed].
 
 }  // namespace
 
@@ -81,7 +81,7 @@ double ViewRays::penetration_share(double depth_mm) const noexcept {
   return std::clamp((-kReceiverNoise_db - loss_db) / kFade_db, 0.0, 1.0);
 }
 
-/// Beyond an end of the CT the subject is taken to go on as its mirror image.
+/// Beyond an end of the CT, the subject is assumed to continue as its mirror image.
 bool ViewRays::is_subject(const Vec3& p_P, bool& is_unscanned_there) const {
   Vec3 inside_P = p_P;
   is_unscanned_there = false;
@@ -129,7 +129,7 @@ ViewVisibility ViewRays::measure_area(const Pose& X_PT, const std::vector<Ray>& 
   return shares;
 }
 
-/// Scanlines that pass near the target: each meets the subject, or would beyond the end of the CT.
+/// Scanlines near the target: each meets the subject, or would beyond the end of the CT.
 ViewVisibility ViewRays::measure_surface(const std::vector<Ray>& rays, const Vec2& target_T) const {
   ViewVisibility shares;
   double all = 0.0;

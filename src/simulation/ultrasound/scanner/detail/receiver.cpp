@@ -19,9 +19,9 @@ constexpr std::uint64_t kBandSeed = 0x5eed0003;
 /// -30..0 dB were measured in bladders, Lediju et al. 2008).
 constexpr double kHaze_db = -17.0;
 constexpr double kHazeDecay_mm = 5.0;
-/// Where it ends: it is faded out from half of that depth on, since TGC would lift a sudden end into view. Assumed.
+/// Depth at which it ends: it fades out from half of that depth on, since TGC would make a sudden end visible. Assumed.
 constexpr double kClutterDepth_mm = 25.0;
-/// Width of the haze's speckle, which is out of focus so near the face. Assumed, range 1..3.
+/// Width of the haze's speckle, which is out of focus so close to the face. Assumed, range 1..3.
 constexpr double kHazeWidth_mm = 1.5;
 
 /// Bands: the pulse's end and the echoes between the two sides of lens and skin. Assumed: first +4 dB (0..15), each
@@ -32,14 +32,14 @@ constexpr double kBandDecay_db = 4.0;
 constexpr double kBandSpacing_mm = 1.7;
 constexpr double kBandUnevenness = 0.3;
 constexpr double kUnevenness_mm = 8.0;
-/// Length of a band in that of the pulse: layers ring longer than a point. Assumed, range 1..2.
+/// Length of a band relative to that of the pulse: layers ring longer than a point. Assumed, range 1..2.
 constexpr double kBandLength = 1.5;
 
 double amplitude(double db) {
   return std::pow(10.0, db / 20.0);
 }
 
-/// Half of a Gaussian kernel, from its middle; its squares sum to `power` over the whole.
+/// Half of a Gaussian kernel, from its centre; its squares sum to `power` over the whole kernel.
 std::vector<float> gaussian(double sigma, double power) {
   const auto reach = static_cast<std::size_t>(std::ceil(4.0 * sigma));
   std::vector<float> kernel(reach + 1);
@@ -86,7 +86,7 @@ Receiver::Noise Receiver::noise(std::uint64_t seed, std::size_t line) const noex
 }
 
 void Receiver::set_geometry(const ScanGeometry& scan, const Beam& beam) {
-  // A pulse longer than that were no picture; the bound keeps the filter short.
+  // Limits the filter's length; a longer pulse is not useful.
   filter_noise(std::clamp(beam.axial_sigma_mm / scan.sample_mm(), 0.0, 64.0));
   const auto reached = static_cast<std::size_t>(std::ceil(kClutterDepth_mm / scan.sample_mm()));
   clutter_samples_ = std::max(reached, kMostLanes);
@@ -109,7 +109,7 @@ void Receiver::add_haze(const ScanGeometry& scan) {
     const double fade = 0.5 + 0.5 * std::cos(std::numbers::pi * end);
     level[s] = static_cast<float>(fade * amplitude(kHaze_db) * std::exp(-0.5 * depth_mm / kHazeDecay_mm));
   }
-  // Sources lie on lines beyond the ends as well: source j is line j - reach.
+  // Sources are also on lines beyond the ends: source j is line j - reach.
   const std::size_t reach = across.size() - 1;
   for (std::size_t source = 0; source < lines + 2 * reach; ++source) {
     const Noise noise = this->noise(kHazeSeed, source);
@@ -133,7 +133,7 @@ void Receiver::add_bands(const ScanGeometry& scan, const Beam& beam) {
     const double level = amplitude(kFirstBand_db - band * kBandDecay_db);
     const double phase = 2.0 * std::numbers::pi * uniform01(kBandSeed, static_cast<std::uint64_t>(band));
     for (std::size_t line = 0; line < static_cast<std::size_t>(scan.lines); ++line) {
-      // Two incommensurate waves along the face look like no pattern.
+      // Two incommensurate waves along the face have no visible pattern.
       const double along = static_cast<double>(line) * step_rad;
       const double wave = 0.5 * (std::sin(along + 2.0 * phase) + std::sin(0.618 * along + 3.0 * phase));
       const double here = level * (1.0 + kBandUnevenness * wave);

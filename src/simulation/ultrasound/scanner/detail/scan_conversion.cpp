@@ -10,7 +10,7 @@ namespace trocar::ultrasound::detail {
 namespace {
 
 constexpr int kBlock = static_cast<int>(kMostLanes);
-/// Rounding of a scanline's number that still counts as on the outermost one.
+/// Tolerance for rounding at the outermost scanline.
 constexpr double kLineTolerance = 1e-6;
 
 bool is_inside(const Polar& place, const ScanGeometry& scan) {
@@ -20,9 +20,9 @@ bool is_inside(const Polar& place, const ScanGeometry& scan) {
 
 struct Split {
   int first;
-  std::uint8_t weight;  ///< Of the next, of 255.
+  std::uint8_t weight;  ///< Weight of the next value, of 255.
 };
-/// The pair of values around a place among `count`; places beyond the ends are at the ends.
+/// The pair of values around a position among `count`; positions beyond the ends are clamped.
 Split split(double place, int count) {
   const double clamped = std::clamp(place, 0.0, static_cast<double>(count - 1));
   const int first = std::min(static_cast<int>(clamped), count - 2);
@@ -45,7 +45,7 @@ void ScanConversion::set_geometry(const ScanGeometry& scan, const RasterGeometry
   TROCAR_CHECK(scan.lines >= 2 && scan.samples >= 2 && raster.columns == columns_ && raster.rows == rows_);
   lines_ = scan.lines;
   samples_ = scan.samples;
-  // Black stands behind the last line, for both lines that a pixel beyond the scan asks for and for the gathers' width.
+  // The last line is followed by black, for both lines of a pixel beyond the scan and for the width of the gathers.
   const auto black = 2 * static_cast<std::size_t>(samples_) + sizeof(std::int32_t);
   line_samples_.assign(static_cast<std::size_t>(lines_) * static_cast<std::size_t>(samples_) + black, 0);
   const double coarseness = raster.mm_per_pixel / scan.sample_mm();
@@ -55,7 +55,7 @@ void ScanConversion::set_geometry(const ScanGeometry& scan, const RasterGeometry
   for (int row = 0; row < rows_; ++row) {
     row_blocks_[static_cast<std::size_t>(row)] = block;
     for (int column = 0; column < columns_; column += kBlock) {
-      const int first = std::min(column, columns_ - kBlock);  // the last one may overlap its neighbour
+      const int first = std::min(column, columns_ - kBlock);  // the last one may overlap the previous one
       bool touches = false;
       for (int c = first; c < first + kBlock && !touches; ++c) {
         touches = is_inside(scan.to_polar(raster.to_T(c, row)), scan);
@@ -92,7 +92,7 @@ void ScanConversion::set_line(std::size_t line, const std::uint8_t* gray) noexce
     std::copy_n(gray, n, target);
     return;
   }
-  // 16 bits hold the sum, and let the compiler do eight samples at a time.
+  // 16 bits suffice for the sum, so that the compiler processes eight samples at a time.
   const auto side = static_cast<std::uint16_t>(neighbour_weight_);
   const auto middle = static_cast<std::uint16_t>(256 - 2 * neighbour_weight_);
   target[0] = gray[0];

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-// Compiled once for each instruction set by foreach_target.h; the fitting one is chosen when the program runs.
+// Compiled for each instruction set by foreach_target.h; selected at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ultrasound/scanner/detail/scanner_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -51,7 +51,7 @@ HWY_INLINE void detect_at(const ReceivedLine& line, std::size_t s, std::uint16_t
     }
     power = hn::MulAdd(re, re, hn::MulAdd(im, im, power));
   }
-  // Far below and far above all that is shown; the comparison is false for NaN.
+  // Far outside the displayed range; the comparison is false for NaN.
   const VF least = hn::Set(f, 1e-30F);
   power = hn::Mul(power, hn::Set(f, 1.0F / static_cast<float>(line.steering_angles)));
   const VF clean = hn::Max(hn::IfThenElse(hn::Lt(power, hn::Set(f, 1e38F)), power, least), least);
@@ -96,7 +96,7 @@ HWY_INLINE VF load_weights(const std::uint8_t* weights) {
   return hn::Mul(hn::ConvertTo(f, hn::PromoteTo(I(), hn::LoadU(U8(), weights))), hn::Set(f, 1.0F / 255.0F));
 }
 
-/// Between a sample (lowest byte) and the next on its line.
+/// Interpolates between a sample (lowest byte) and the next on its line.
 HWY_INLINE VF between_samples(VI four, VF weight) {
   const F f;
   const VI byte = hn::Set(I(), 0xff);

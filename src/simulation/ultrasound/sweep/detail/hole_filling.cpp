@@ -27,14 +27,14 @@ constexpr std::array<std::array<int, 3>, 13> kSticks{{{1, 0, 0},
                                                       {1, -1, 1},
                                                       {-1, -1, 1}}};
 
-/// What is known, before anything is filled.
+/// Known voxels before filling.
 struct Known {
   const volume::GridGeometry& grid;
   const std::vector<std::uint8_t>& is_known;
   const std::vector<std::uint8_t>& gray;
 };
 
-/// Steps that stay in the grid from ijk along a direction (sign -1: against it).
+/// Steps from ijk along a direction that stay in the grid (sign -1: opposite direction).
 int room(const volume::GridGeometry& grid, const volume::Index3& ijk, const std::array<int, 3>& direction, int sign) {
   std::int64_t steps = std::numeric_limits<int>::max();
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -44,7 +44,7 @@ int room(const volume::GridGeometry& grid, const volume::Index3& ijk, const std:
   return static_cast<int>(steps);
 }
 
-/// Steps to the first known voxel, 0 where none is among the next `limit`.
+/// Steps to the first known voxel, 0 if there is none among the next `limit`.
 int steps_to_known(const Known& known, std::int64_t from, std::int64_t stride, int limit) {
   for (int n = 1; n <= limit; ++n)
     if (known.is_known[static_cast<std::size_t>(from + n * stride)] != 0) return n;
@@ -52,7 +52,7 @@ int steps_to_known(const Known& known, std::int64_t from, std::int64_t stride, i
 }
 
 struct StickValue {
-  int length2 = 0;  ///< Squared length of the stick, voxels, both ends counted.
+  int length2 = 0;  ///< Squared length of the stick in voxels, including both ends.
   double gray = 0.0;
 };
 
@@ -80,7 +80,7 @@ std::optional<double> fill_by_sticks(const Known& known, const volume::Index3& i
   for (const auto& stick : kSticks) {
     int longest = way.stick_length_limit;
     const int step2 = stick[0] * stick[0] + stick[1] * stick[1] + stick[2] * stick[2];
-    // Where one stick is wanted, a longer one than the best so far needs no search.
+    // If only one stick is needed, longer ones than the best so far are not searched.
     if (way.sticks == 1)
       while (longest * longest * step2 > shortest2) --longest;
     const auto value = find_stick(known, ijk, stick, longest);
@@ -100,7 +100,7 @@ std::optional<double> fill_by_sticks(const Known& known, const volume::Index3& i
   return weights > 0.0 ? std::optional(sum / weights) : std::nullopt;
 }
 
-/// Known voxels of the cube of half edge `radius`: how many, their weights and weighted gray.
+/// Known voxels of the cube of half edge `radius`: count, weights and weighted gray.
 struct CubeSum {
   std::size_t count = 0;
   double weights = 0.0, gray = 0.0;
@@ -157,7 +157,7 @@ std::optional<double> fill_by(const HoleFilling& way, const Known& known, const 
   return fill_by_sticks(known, ijk, way);
 }
 
-/// Blocks of 4³ voxels that have something known within reach: most of a sweep's box is empty and needs no search.
+/// Blocks of 4³ voxels with known voxels within reach: most of a sweep's box is empty and needs no search.
 class NearBlocks {
  public:
   NearBlocks(const volume::GridGeometry& grid, const std::vector<std::uint8_t>& is_known, std::int64_t reach) {

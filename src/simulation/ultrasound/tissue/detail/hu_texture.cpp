@@ -9,10 +9,10 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-constexpr float kBorderWeight = 0.05F;  // assumed: a voxel at a border shows both sides; only thin structures need it
-constexpr float kGreatest_hu = 200.0F;  // assumed: beyond lie streaks, calcifications and mislabelled voxels
-constexpr float kSkinAndPartial_mm = 3.5F;  // assumed: skin and what a voxel sees of it; the labels call it fat
-constexpr std::uint8_t kNeverEqual = 0xFE;  ///< Pads rows: no tissue and not kNoTissue.
+constexpr float kBorderWeight = 0.05F;      // assumed: a voxel at a border has both sides; only thin structures need it
+constexpr float kGreatest_hu = 200.0F;      // assumed: beyond are streaks, calcifications and mislabelled voxels
+constexpr float kSkinAndPartial_mm = 3.5F;  // assumed: skin with partial volume, labelled as fat
+constexpr std::uint8_t kNeverEqual = 0xFE;  ///< Padding of rows: no tissue, different from kNoTissue.
 
 /// Mean HU of each structure: a label, all gas, unlabelled voxels of one tissue.
 class StructureMeans {
@@ -71,7 +71,7 @@ class StructureMeans {
   std::array<float, 512> mean_hu_{};
 };
 
-/// One side of a Gaussian by voxels, middle first.
+/// One half of a Gaussian in voxels, centre first.
 std::vector<float> half_kernel(double sigma_mm, double spacing_mm) {
   const double sigma = sigma_mm / spacing_mm;
   std::vector<float> weights;
@@ -80,8 +80,8 @@ std::vector<float> half_kernel(double sigma_mm, double spacing_mm) {
   return weights;
 }
 
-/// A slice of sums and weights with a rim of `rim` voxels that belongs to no tissue. The normalised convolution sums
-/// both over the neighbours of the same tissue, one axis after the other.
+/// A slice of sums and weights with a rim of `rim` voxels without tissue. The normalised convolution sums both over the
+/// neighbours of the same tissue, one axis after the other.
 struct WeightedSlice {
   WeightedSlice(const volume::Index3& size, std::int64_t rim_)
       : width(size[0] + 2 * rim_),
@@ -98,7 +98,7 @@ struct WeightedSlice {
   std::size_t row(std::int64_t v) const noexcept { return static_cast<std::size_t>((v + rim) * width + rim); }
 };
 
-/// Whether a voxel's six neighbours are its own tissue; the volume's border is none.
+/// True if the six neighbours of a voxel have its tissue; false at the volume's border.
 bool is_pure(const TissueVolume& volume, std::int64_t u, std::int64_t v, std::int64_t w, const std::uint8_t* at) {
   const volume::Index3& size = volume.geometry.size;
   const std::int64_t slice = size[0] * size[1];

@@ -7,15 +7,15 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-/// How far borders are sought, in slice spacings and mm: assumed, a slope of about 1 in 3 is the flattest that is told
+/// Search distance of borders, in slice spacings and mm: assumed, a slope of about 1 in 3 is the flattest that differs
 /// from an end.
 constexpr double kReachSpacings = 3.0;
 constexpr double kLeastReach_mm = 6.0;
 constexpr double kGreatestReach_mm = 12.0;
-/// Of a structure's thickness: how far the border is taken to lie where there is none. A strip then goes on by 0.45 of
-/// a slice on average (1 - 0.5 ln 3), about what slices that meet it by chance stand for.
+/// Fraction of a structure's thickness: assumed distance of a missing border. A strip then continues by 0.45 of a slice
+/// on average (1 - 0.5 ln 3), the mean extent of structures met by the slices.
 constexpr float kEndShare = 0.25F;
-/// Thicker structures have slopes, which look like ends where they are flat; they are believed the more.
+/// Thicker structures have slopes, which look like ends if they are flat; they have a larger weight.
 constexpr float kThin_mm = 6.0F;
 
 float farthest_end_mm(float thickness_mm) {
@@ -56,7 +56,7 @@ SliceBlend::Change SliceBlend::find_change(std::int64_t u, std::int64_t v, std::
   const std::uint8_t lower = lower_[pixel];
   const std::uint8_t upper = upper_[pixel];
   Change change{static_cast<std::uint32_t>(pixel), 0.0F, 0.0F, upper, upper};
-  // Where the body ends the skin decides (a smooth distance), and what is inside goes on to it.
+  // At the end of the body the skin decides (a smooth distance), and structures inside continue to it.
   if (lower == kNoTissue) return change;
   if (upper == kNoTissue) {
     change.leave = change.arrive = 2.0F;
@@ -75,8 +75,8 @@ SliceBlend::Change SliceBlend::find_change(std::int64_t u, std::int64_t v, std::
     return change;
   }
 
-  // A thin structure without counterpart near by ends between the slices, as a rod's or a disc's rounded edge does; a
-  // far one is not its own. Of both tissues the thinner one knows better where the border goes.
+  // A thin structure without a counterpart nearby ends between the slices, like the rounded edge of a rod or disc; a
+  // distant one is different. Of two tissues, the thinner one determines the border.
   const float lower_mm = thickness_mm(lower_, u, v);
   const float upper_mm = thickness_mm(upper_, u, v);
   const float upper_away = std::min(borders.upper_away, farthest_end_mm(lower_mm));
@@ -116,7 +116,7 @@ SliceBlend::Borders SliceBlend::find_borders(std::int64_t u, std::int64_t v, std
   return found;
 }
 
-/// Shortest way through the tissue of a pixel along rows, columns and diagonals; each side counts up to the reach.
+/// Shortest path through the tissue of a pixel along rows, columns and diagonals; each side counts up to the reach.
 float SliceBlend::thickness_mm(const std::uint8_t* tissue, std::int64_t u, std::int64_t v) const {
   const volume::Index3& size = volume_.geometry.size;
   const Vec3& spacing_mm = volume_.geometry.spacing_mm;

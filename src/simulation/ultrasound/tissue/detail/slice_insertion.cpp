@@ -10,19 +10,19 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-/// Voxel index with 32 binary places: a step along a row is one addition, and its exact range in the grid a division.
+/// Voxel index with 32 fractional bits: a step along a row is one addition, and its exact range in the grid a division.
 using Fixed = std::int64_t;
 constexpr int kPlaces = 32;
 constexpr double kOne = 4294967296.0;
 constexpr Cell kFull = (kWholePixel * ((Cell{1} << 20) - 1)) << kWeightShift;
-constexpr std::size_t kSlabs = 64;  ///< Enough to keep some cores busy where a sweep crowds in one end.
+constexpr std::size_t kSlabs = 64;  ///< Enough for several cores if a sweep is concentrated at one end.
 
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
   const std::int64_t quotient = a / b;
   return quotient - ((a % b != 0) && ((a < 0) != (b < 0)) ? 1 : 0);
 }
 
-/// Narrows first..last to the steps n for which low <= start + n * step < high.
+/// Narrows first..last to the steps n with low <= start + n * step < high.
 void narrow(Fixed start, Fixed step, Fixed low, Fixed high, std::int64_t& first, std::int64_t& last) {
   const Fixed at_first = start + first * step, at_last = start + last * step;
   if (std::min(at_first, at_last) >= low && std::max(at_first, at_last) < high) return;
@@ -42,14 +42,14 @@ void meet(Cell& cell, Cell gray, Cell weight) {
   if constexpr (kCompounding == FreehandCompounding::kMean) {
     if (cell < kFull) cell += (weight << kWeightShift) | (gray * weight);
   } else {
-    // A pixel in the middle of eight voxels belongs to all of them, any other to those it is nearer to.
+    // A pixel at the centre of eight voxels belongs to all of them, any other to the nearest ones.
     if (weight * 8 < kWholePixel) return;
     const Cell whole = (kWholePixel << kWeightShift) | (gray * kWholePixel);
     cell = kCompounding == FreehandCompounding::kMaximum ? std::max(cell, whole) : whole;
   }
 }
 
-/// Slices first_k..last_k-1 of the volume, which one thread fills.
+/// Slices first_k..last_k-1 of the volume, filled by one thread.
 struct Slab {
   const volume::GridGeometry* grid;
   Cell* cells;
@@ -70,7 +70,8 @@ void insert_nearest(const Slab& slab, const std::uint8_t* row, FixedPoint at, co
   }
 }
 
-/// Shares a pixel among the eight voxels about it: `low` the one below on all axes, `part` in 256ths towards the next.
+/// Distributes a pixel to the eight voxels around it: `low` is the lower one on all axes, `part` in 256ths towards the
+/// next.
 template <FreehandCompounding kCompounding>
 void share(const Slab& slab, const volume::Index3& low, const std::array<Cell, 3>& part, Cell gray) {
   const auto& size = slab.grid->size;
@@ -118,7 +119,7 @@ InsertRow find_insert(const FreehandOptions& options) {
   return is_linear ? insert_linear<C::kMean> : insert_nearest<C::kMean>;
 }
 
-/// A picture in the grid's index, fixed point.
+/// An image in grid indices, fixed point.
 struct FixedFrame {
   const std::uint8_t* picture;
   Vec3 origin, row_step, column_step_voxels;
@@ -142,7 +143,7 @@ void insert_into_slab(const Slab& slab, const FixedFrame& frame, const std::vect
                       std::int64_t reach_below, InsertRow insert_row) {
   const auto& size = slab.grid->size;
   for (const PixelRun& run : runs) {
-    // From the run's own start: column 0 may be clipped away, and then lie far outside the grid.
+    // From the run's own start: column 0 may be clipped and far outside the grid.
     const Vec3 start = frame.origin + run.row * frame.row_step + run.first * frame.column_step_voxels;
     FixedPoint at{};
     for (int axis = 0; axis < 3; ++axis) at[static_cast<std::size_t>(axis)] = std::llround(start[axis] * kOne);
@@ -165,7 +166,7 @@ bool is_in_fan(const ClipFan& fan, int column, int row) {
          angle_rad <= fan.last_angle_rad;
 }
 
-/// The part of a rectangle that lies in the picture; the whole picture without one. May be empty.
+/// The part of a rectangle in the image; the whole image without one. May be empty.
 ClipRectangle inside(const std::optional<ClipRectangle>& rectangle, const TrackedSequence& sequence) {
   if (!rectangle) return {0, 0, sequence.columns, sequence.rows};
   ClipRectangle part;
@@ -176,7 +177,7 @@ ClipRectangle inside(const std::optional<ClipRectangle>& rectangle, const Tracke
   return part;
 }
 
-/// The brightest that each pixel gets in any frame.
+/// Maximum of each pixel over all frames.
 std::vector<std::uint8_t> brightest(const TrackedSequence& sequence) {
   std::vector<std::uint8_t> result(sequence.frame_pixels(), 0);
   for (std::size_t frame = 0; frame < sequence.frames.size(); ++frame) {
@@ -240,7 +241,7 @@ void insert_frames(const TrackedSequence& sequence, const std::vector<PlacedFram
   std::vector<FixedFrame> fixed;
   fixed.reserve(frames.size());
   for (const PlacedFrame& placed : frames) fixed.push_back(fix(sequence, placed, grid, shift));
-  // Each thread has slices of its own, so voxels see their pixels in the order of the frames.
+  // Each thread has its own slices, so that voxels receive their pixels in the order of the frames.
   const auto slices = static_cast<std::size_t>(grid.size[2]);
   const std::size_t slabs = std::min(kSlabs, slices);
   const InsertRow insert_row = find_insert(options);

@@ -11,8 +11,8 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-// HU of what has no label, as src/patient/anatomy finds them (adipose tissue up to -30 HU,
-// doi 10.1038/s41598-025-96238-6, table 1). A built patient has no such voxels; one that was made by hand may.
+// HU of unlabelled voxels, as in src/patient/anatomy (adipose tissue up to -30 HU, doi 10.1038/s41598-025-96238-6,
+// table 1). A built patient has no such voxels; a hand-made one may.
 constexpr int kGasBelow_hu = -300;
 constexpr int kFatUpTo_hu = -30;
 constexpr int kBoneAbove_hu = 250;
@@ -57,8 +57,7 @@ Bounds body_bounds(const volume::FloatGrid& skin_distance_mm) {
   return all;
 }
 
-/// The axes in cyclic order (which keeps the frame right-handed) so that the thickest voxels come last; k, where it is
-/// not clearly thinner than another.
+/// The axes in cyclic order (right-handed) with the thickest voxels last; k, if it is not clearly thinner than another.
 std::array<std::size_t, 3> order_axes(const Vec3& spacing_mm) {
   constexpr double kClearly = 1.2;
   std::size_t thickest = 2;
@@ -69,10 +68,10 @@ std::array<std::size_t, 3> order_axes(const Vec3& spacing_mm) {
   return {(thickest + 1) % 3, (thickest + 2) % 3, thickest};
 }
 
-/// What the labels of a patient mean to sound.
+/// Acoustic tissues of a patient's labels.
 struct TissueCodes {
   std::array<std::uint8_t, 256> by_label{};
-  std::array<bool, 256> holds_gas{};  ///< Segmentations give bowel with its contents.
+  std::array<bool, 256> holds_gas{};  ///< Segmented bowel includes its contents.
   std::uint8_t gas = 0, fat = 0, bone = 0, soft_tissue = 0;
 
   std::uint8_t of(std::uint8_t label, int hu) const noexcept {

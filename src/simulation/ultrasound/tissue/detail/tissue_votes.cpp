@@ -11,8 +11,8 @@
 namespace trocar::ultrasound::detail {
 namespace {
 
-/// Factor of a vote of a voxel in a structure of 3 or more, of 1 and of 2 voxels' thickness. Chosen so that a wall of
-/// one voxel wins in a strip about as wide as the kernel's spacing, wherever it lies between target voxels (tested).
+/// Weight of the vote of a voxel in a structure of 3 or more, of 1 and of 2 voxels' thickness. Chosen so that a wall of
+/// one voxel wins in a strip about as wide as the kernel's spacing, for any position between target voxels (tested).
 constexpr std::array<float, 3> kVoteFactor{1.0F, 2.6F, 1.4F};
 
 double cubic_b_spline(double x) {
@@ -34,7 +34,7 @@ AxisTaps make_taps(std::int64_t source_size, std::int64_t target_size, double of
     const auto first =
         std::clamp<std::int64_t>(static_cast<std::int64_t>(std::ceil(at - 2.0 * width)), 0, source_size - taps.count);
     taps.first.push_back(static_cast<std::int32_t>(first));
-    // Beyond the source's edge its last voxel goes on.
+    // Beyond the source's edge its last voxel continues.
     const double inside = std::clamp(at, 0.0, static_cast<double>(source_size - 1));
     double sum = 0.0;
     std::vector<double> weights;
@@ -116,7 +116,7 @@ void TissueVotes::find_thin() {
   }
 }
 
-/// A bump on a thick structure is thin too, but its neighbours are not: it is to be smoothed, not kept.
+/// A bump on a thick structure is also thin, but its neighbours are not: it is smoothed, not kept.
 bool TissueVotes::is_thin_structure(std::int64_t u, std::int64_t v) const noexcept {
   const std::uint8_t own = tissue_[v * width_ + u];
   int thin = 0;
@@ -155,7 +155,7 @@ std::uint8_t TissueVotes::winner(std::size_t target_u, std::size_t target_v) noe
   float most = 0.0F;
   for (std::size_t n = 0; n < seen_count; ++n) {
     const std::uint8_t tissue = seen[n];
-    // Of equals the smaller index, so that the order of the taps does not matter.
+    // Of equal votes the smaller index wins, independent of the order of the taps.
     if (votes_[tissue] > most || (votes_[tissue] == most && tissue < best)) {
       most = votes_[tissue];
       best = tissue;

@@ -16,14 +16,14 @@ namespace trocar::attempt {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenLooks{2};
-/// Ticks that are older when they come were not answered in time; see run_realtime_session.
+/// Older ticks arrive too late for a reply; see run_realtime_session.
 constexpr double kAnswered_s = 0.05;
-constexpr double kLongestPersons_s = 900.0;  ///< Every tick is kept in memory until it is scored. [assumed]
+constexpr double kLongestPersons_s = 900.0;  ///< Every tick is kept in memory until the scoring. [assumed]
 constexpr double kLongestStep_s = 0.02;      ///< Of a hand between two ticks.
 constexpr double kBeforeEntry_mm = 20.0;
-constexpr double kAboveSkin_mm = 10.0;  ///< The transducer comes down from there.
+constexpr double kAboveSkin_mm = 10.0;  ///< Initial height of the transducer.
 
-/// As a server sees it from its own working folder.
+/// As an absolute path, since a server has its own working folder.
 std::string as_server_sees(const std::string& patient) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(patient, ignored)) return patient;
@@ -108,11 +108,11 @@ void AttemptLoop::look_at(ToolServer& server) {
   for (std::string& message : server.take_messages()) message_ = std::move(message);
 }
 
-/// Before the forces were ever on there is nothing to be brought back: what fails then fails the attempt.
+/// Before the forces were on for the first time, nothing can be restored: any failure ends the attempt.
 Status AttemptLoop::check_start() {
   if (has_ever_been_on_) return {};
   if (needle_->has_given_up()) return tl::unexpected(needle_->failure());
-  // A transducer in a hand was asked for; without a simulated one the attempt goes on.
+  // A missing transducer in a real hand fails the attempt; a simulated one does not.
   const bool is_probe_in_hand = device_hold(options_.device_probe) != DeviceHold::kOurHand;
   if (probe_ && is_probe_in_hand && probe_->has_given_up()) return tl::unexpected(probe_->failure());
   progress_ = needle_->is_on() && probe_ ? probe_->doing() : needle_->doing();
@@ -123,7 +123,7 @@ Status AttemptLoop::check_start() {
 
 Status AttemptLoop::step() {
   TROCAR_TRY_STATUS(take_wishes());
-  // Ticks first: when a look finds the server changed, all of the old one's are already taken.
+  // Ticks first: when look() detects a change of the server, all ticks of the old one have been taken.
   TROCAR_TRY_STATUS(step_needle());
   if (probe_) TROCAR_TRY_STATUS(step_probe());
   look_at(*needle_);
@@ -137,7 +137,7 @@ Status AttemptLoop::step() {
   return {};
 }
 
-/// Ends the attempt in order while there is still room to close its session.
+/// Ends the attempt while there is still space to close its session.
 void AttemptLoop::watch_disk() {
   constexpr auto kEvery = std::chrono::seconds(1);
   const auto now = options_.clock->now();
@@ -180,7 +180,7 @@ void AttemptLoop::lead_hands(const AttemptWishes& wishes) {
   LedHand& needle = steering_->hand();
   if (wishes.needle_clamped) needle.clamp(*wishes.needle_clamped);
   if (wishes.probe_clamped) probe_hand_.clamp(*wishes.probe_clamped);
-  // Who does not see where the needle is does not move it: what the hand did meanwhile is nothing.
+  // Motions of the hand while the needle's position is unknown are discarded.
   if (wishes.needle && needle_->is_on() && !steering_->is_performing())
     needle.lead(wishes.needle->X_P, wishes.needle->v_P, wishes.needle->w_P);
   if (wishes.probe) probe_hand_.lead(wishes.probe->X_P, wishes.probe->v_P, wishes.probe->w_P);
@@ -240,7 +240,7 @@ Status AttemptLoop::step_needle() {
   }
   link::HandTarget target = live_ ? live_->hand() : hand_target(command_, needle_time_s_ + 1.0 / performer_.rate_hz);
   needle_->set_hand(target);
-  needle_->place_at(telemetry::felt_needle(samples.back().sample));  // in its channel, wherever the grip has swung
+  needle_->place_at(telemetry::felt_needle(samples.back().sample));  // in its channel, whatever the grip's rotation
   return {};
 }
 
@@ -287,7 +287,7 @@ void AttemptLoop::note_shot() {
   const std::optional<std::size_t>& fired = record_->fired();
   if (shot_ || !fired || *fired >= record_->samples().size()) return;
   shot_ = std::make_shared<const GunShot>(make_gun_shot(open_case_->the_case, record_->samples()[*fired]));
-  // The composition of the core stands beside its picture.
+  // The composition of the core is displayed next to its picture.
   events_.push_back({shot_->time_s, shot_->depth_mm, telemetry::EventKind::kNone, "shot",
                      fmt::format("the gun was fired at {:.0f}\u00a0mm", shot_->depth_mm)});
 }

@@ -1,4 +1,4 @@
-// What the window sees of an attempt.
+// Builds the view of an attempt for the window.
 #include "attempt/guide/gun_shot.h"
 #include "attempt/guide/needle_view.h"
 #include "attempt/guide/puncture_guide.h"
@@ -90,7 +90,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   view.has_fired = steering_->has_fired();
   view.notes = notes_;
   view.are_forces_stopped = is_stopped_;
-  for (const std::optional<ToolServer>* server : {&probe_, &needle_}) {  // the needle's banner counts more
+  for (const std::optional<ToolServer>* server : {&probe_, &needle_}) {  // the needle's banner has priority
     if (!*server) continue;
     ServerView& shown = view.servers[server == &needle_ ? 0 : 1];
     shown = (*server)->view();
@@ -112,7 +112,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
       view.hint = guide_puncture(open_case_->the_case, *last_needle_, view.has_fired);
   }
   std::vector<ForcePoint> forces = trace_.take();
-  constexpr std::size_t kMostKept = 100'000;  // by a window that takes none
+  constexpr std::size_t kMostKept = 100'000;  // if a window does not take them
 
   const std::lock_guard lock(desk_.mutex);
   AttemptNews& news = desk_.news;

@@ -14,11 +14,11 @@ namespace {
 using State = ServerSeat::State;
 using namespace std::chrono_literals;
 
-constexpr std::size_t kMostReturns = 6;  ///< In a minute; more often, something is wrong with the machine. [assumed]
-constexpr auto kAskAgain = 1s;           ///< Whether a device is back.
-constexpr auto kFresh = 250ms;           ///< An older tick does not tell where the tool is.
-constexpr auto kAsleep = 500ms;          ///< A silent process that sleeps for so long does not work any more. [assumed]
-constexpr double kMostPatience = 4.0;    ///< Of one that is busy: it may turn in a circle. [assumed]
+constexpr std::size_t kMostReturns = 6;  ///< Per minute; more mean a problem of the machine. [assumed]
+constexpr auto kAskAgain = 1s;           ///< Interval of the checks for a device.
+constexpr auto kFresh = 250ms;           ///< Older ticks do not give the pose of the tool.
+constexpr auto kAsleep = 500ms;          ///< A silent process that sleeps for this time has failed. [assumed]
+constexpr double kMostPatience = 4.0;    ///< Of a busy process: it may be in an endless loop. [assumed]
 
 std::string words_of(const std::string& device) {
   if (device == "spacemouse") return "SpaceMouse";
@@ -52,7 +52,7 @@ ToolServer::ToolServer(ServerHost& host, std::chrono::milliseconds patience, boo
 
 void ToolServer::connect() {
   if (seat_) missing_before_ += seat_->ticks_missing();
-  seat_.reset();  // says goodbye before the next one asks for control
+  seat_.reset();  // sends Goodbye before the next client requests control
   was_on_ = false;
   stalls_ = 0;
   lost_device_.reset();
@@ -105,7 +105,7 @@ std::string ToolServer::bring_back(const std::string& what, bool is_new_process)
   banner_ = is_new_process ? fmt::format("{}. It is being restarted; the forces return with the {} at its last pose",
                                          sentence(what), tool_)
                            : fmt::format("{}. The forces return with the {} at its last pose", sentence(what), tool_);
-  // Starting a process takes a while: the banner is to be seen before.
+  // Starting a process takes time: the banner must be visible before.
   is_restart_due_ = is_new_process;
   return is_new_process ? banner_ : seat_again(false);
 }
@@ -128,7 +128,7 @@ bool ToolServer::is_device_lost() const {
                                         fault == to_string(telemetry::GateFault::kDeviceSilent));
 }
 
-/// Until it is there again; forces stay off meanwhile, for the fault is latched.
+/// Until it is connected again; forces stay off meanwhile, because the fault is latched.
 std::string ToolServer::open_device_again() {
   LostDevice& lost = *lost_device_;
   const auto now = clock_->now();
@@ -148,11 +148,11 @@ std::string ToolServer::open_device_again() {
 
 std::string ToolServer::look() {
   if (has_given_up_ || waits_for_resume_ || !seat_) return {};
-  if (is_stopped_ && !was_on_) return {};  // seating it would turn forces on
+  if (is_stopped_ && !was_on_) return {};  // holding a scene would switch the forces on
   if (is_restart_due_) return seat_again(true);
   if (const Status alive = host_->check(); !alive) {
     if (!was_ever_heard_) {
-      // It cannot come up: a device that is not there, a wrong name.
+      // It cannot start: a missing device, a wrong name.
       return give_up(alive.error());
     }
     if (!is_stopped_) return bring_back(alive.error().what, true);
@@ -176,7 +176,7 @@ std::string ToolServer::look() {
     if (!interrupted_by_.empty())
       recovery_ = fmt::format("{}. The forces are on again and the puncture continues", sentence(interrupted_by_));
     interrupted_by_.clear();
-    const link::SetParameters now = parameters();  // set while the forces were coming on
+    const link::SetParameters now = parameters();  // set while the forces were switched on
     if (now.settings != seat_->adjusted().settings) before_[seat_->send(now)] = settings_;
   }
   if (was_on_ && *state != State::kOn) return note_interruption();
@@ -196,14 +196,14 @@ void ToolServer::note_replies() {
   for (const link::Reply& reply : seat_->take_replies()) {
     const auto before = before_.find(reply.request);
     if (before == before_.end()) continue;
-    if (!reply.is_done) settings_ = before->second;  // all of a message or nothing
+    if (!reply.is_done) settings_ = before->second;  // a message is applied completely or not at all
     messages_.push_back(reply.text);
     before_.erase(before);
     seat_->adjust(parameters());
   }
 }
 
-/// The server came back, or stood still; the seat has it hold the tool where it was.
+/// The server reconnected, or stalled; it holds the tool at its last pose.
 std::string ToolServer::note_interruption() {
   was_on_ = false;
   before_.clear();
@@ -215,7 +215,7 @@ std::string ToolServer::note_interruption() {
   return banner_ = fmt::format("The {} server {}. The forces return with the {} at its last pose", tool_, what, tool_);
 }
 
-/// Whether a silent server only wants a processor.
+/// True if a silent server only lacks processor time.
 bool ToolServer::is_slow() const {
   return clock_->now() - held_up_ < kAsleep &&
          seat_->view().silent_s < kMostPatience * std::chrono::duration<double>(patience_).count();
@@ -246,7 +246,7 @@ std::string ToolServer::cannot_go_on(const Error& why) {
     banner_ = fmt::format("The {} server does not respond because it gets no processor time. Waiting for it", tool_);
     return {};
   }
-  // A server that answers has a fault, which the next seat resets; one that does not is ended.
+  // A server that responds has a fault, which the next connection resets; one that does not respond is ended.
   return bring_back(why.what, !is_heard);
 }
 
@@ -327,7 +327,7 @@ void ToolServer::resume_forces() {
   }
   has_given_up_ = false;
   if (is_alive && seat_ && is_device_lost()) {
-    lost_device_.emplace();  // the next look opens it again
+    lost_device_.emplace();  // the next look() starts it again
     return;
   }
   const bool is_heard = seat_ && seat_->view().is_connected;

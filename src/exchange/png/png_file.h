@@ -6,10 +6,10 @@
 #include "core/result.h"
 #include "volume/image.h"
 
-namespace trocar::io {
+namespace trocar::png {
 
 /// The picture as PNG bytes.
 std::string encode_png(const volume::RgbImage& image);
 Status write_png(const volume::RgbImage& image, const std::filesystem::path& path);
 
-}  // namespace trocar::io
+}  // namespace trocar::png

@@ -1,11 +1,11 @@
-#include "io/image/png.h"
+#include "png/png_file.h"
 
 #include <png.h>
 
 #include "core/check.h"
 #include "core/files/atomic_file.h"
 
-namespace trocar::io {
+namespace trocar::png {
 
 std::string encode_png(const volume::RgbImage& image) {
   TROCAR_CHECK(image.columns > 0 && image.rows > 0);
@@ -27,4 +27,4 @@ Status write_png(const volume::RgbImage& image, const std::filesystem::path& pat
   return write_file_atomically(path, encode_png(image));
 }
 
-}  // namespace trocar::io
+}  // namespace trocar::png

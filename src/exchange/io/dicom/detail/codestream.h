@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+namespace trocar::io::detail {
+
+/// What a compressed image states of itself at its start.
+struct CodestreamSize {
+  int columns = 0;
+  int rows = 0;
+  int components = 0;
+};
+
+/// Of a JPEG, JPEG-LS (SOF segment; ISO 10918-1, 14495-1) or JPEG 2000 codestream (SIZ segment; ISO 15444-1, A.5.1).
+/// Empty: none of them, or cut before that segment.
+std::optional<CodestreamSize> codestream_size(std::span<const char> stream) noexcept;
+
+}  // namespace trocar::io::detail
