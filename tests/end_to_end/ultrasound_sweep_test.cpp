@@ -59,7 +59,7 @@ Result<SweptPatient> sweep_gallbladder() {
   options.acquisition.lines = 128;
   options.acquisition.samples = 512;
   options.acquisition.planes = 3;
-  options.acquisition.looks = 1;
+  options.acquisition.steering_angles = 1;
   options.display.gain_db = 12.0;
   options.columns = 320;
   options.rows = 240;
