@@ -1,37 +1,12 @@
 // Embedded patients in the user's cache: the same results with it and without.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <sstream>
-#include <vector>
-
 #include "cli/program.h"
 #include "core/files/atomic_file.h"
 
 namespace trocar::cli_test {
 namespace {
 namespace fs = std::filesystem;
-
-std::vector<std::string> cells(const std::string& csv) {
-  std::vector<std::string> all;
-  std::string text = read_file(csv).value_or("");
-  std::replace(text.begin(), text.end(), '\n', ',');
-  std::istringstream stream(text);
-  for (std::string cell; std::getline(stream, cell, ',');) all.push_back(cell);
-  return all;
-}
-
-/// The same text, or numbers as alike as the decimals of a header keep them.
-bool is_alike(const std::string& a, const std::string& b) {
-  constexpr double kRounding = 1e-9;
-  if (a == b) return true;
-  char *end_a = nullptr, *end_b = nullptr;
-  const double x = std::strtod(a.c_str(), &end_a), y = std::strtod(b.c_str(), &end_b);
-  const bool are_numbers = !a.empty() && !b.empty() && *end_a == '\0' && *end_b == '\0';
-  return are_numbers && std::abs(x - y) <= kRounding * std::max(1.0, std::abs(x));
-}
 
 TEST(Cache, GivesTheSameSessionAsAGeneratedPatient) {
   const TemporaryFolder folder;
@@ -53,12 +28,10 @@ TEST(Cache, GivesTheSameSessionAsAGeneratedPatient) {
   const auto entry = fs::directory_iterator(entries)->path();
   EXPECT_TRUE(entry.filename().string().starts_with("abdomen-3-")) << entry;
   run("warm", "");
-  const std::vector<std::string> plain = cells(folder / "plain.csv");
-  for (const char* name : {"cold", "warm"}) {
-    const std::vector<std::string> other = cells(folder / (name + std::string(".csv")));
-    ASSERT_EQ(other.size(), plain.size()) << name;
-    for (std::size_t n = 0; n < plain.size(); ++n) EXPECT_TRUE(is_alike(plain[n], other[n])) << name << " cell " << n;
-  }
+  const std::string plain = read_file(folder / "plain.csv").value_or("");
+  ASSERT_GT(plain.size(), 100000u);
+  for (const char* name : {"cold", "warm"})
+    EXPECT_TRUE(read_file(folder / (name + std::string(".csv"))).value_or("") == plain) << name << ": another bit";
   // A damaged entry is generated again.
   fs::resize_file(entry / "ct.nrrd", 100);
   run("mended", "");

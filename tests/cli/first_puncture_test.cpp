@@ -1,7 +1,6 @@
 // The whole line by command: patient, plan, puncture, CSV, report, pictures.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -18,29 +17,6 @@ namespace fs = std::filesystem;
 std::string read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-std::vector<std::string> cells_of(const std::string& csv) {
-  std::vector<std::string> cells(1);
-  for (const char c : csv) {
-    if (c == ',' || c == '\n') {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
-
-/// Equal text, or numbers within what a pose loses on its way through a quaternion.
-bool is_same(const std::string& a, const std::string& b) {
-  if (a == b) return true;
-  char* end_a = nullptr;
-  char* end_b = nullptr;
-  const double x = std::strtod(a.c_str(), &end_a);
-  const double y = std::strtod(b.c_str(), &end_b);
-  constexpr double kTolerance = 1e-8;
-  return *end_a == '\0' && *end_b == '\0' && std::abs(x - y) <= kTolerance;
 }
 
 class FirstPuncture : public testing::Test {
@@ -156,13 +132,9 @@ TEST_F(FirstPuncture, ReplayRepeatsTheRecording) {
   const std::string again_csv = *folder_ / "again.csv";
   ASSERT_EQ(trocar("session export '" + session_ + "' --csv '" + first_csv + "'").exit_status, 0);
   ASSERT_EQ(trocar("session export '" + again + "' --csv '" + again_csv + "'").exit_status, 0);
-  const auto first = cells_of(read(first_csv));
-  const auto second = cells_of(read(again_csv));
-  ASSERT_GT(first.size(), 40000u);
-  ASSERT_EQ(first.size(), second.size());
-  std::size_t different = 0;
-  for (std::size_t i = 0; i < first.size(); ++i) different += !is_same(first[i], second[i]);
-  EXPECT_EQ(different, 0u);
+  const std::string first = read(first_csv);
+  ASSERT_GT(first.size(), 100000u);
+  EXPECT_TRUE(read(again_csv) == first) << "another bit";
 }
 
 TEST_F(FirstPuncture, RenderWithoutAScreenWritesSlicesAndSaysWhatIsMissing) {

@@ -26,7 +26,7 @@ class LabelsPanel final : public CasePanel {
     add_opacity();
     add_table();
     add_editor();
-    content()->addWidget(make_label(tr("The check box shows or hides a structure in 3D."), "dim"));
+    content()->addWidget(make_label(tr("Check box: show the structure in 3D."), "dim"));
   }
 
   void refresh() override {

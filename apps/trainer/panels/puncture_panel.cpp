@@ -178,8 +178,8 @@ QWidget* PuncturePanel::make_figures() {
   phase_ = make_figure(*grid, 0, tr("Needle"), "phase");
   tissue_ = make_figure(*grid, 1, tr("Tissue at the tip"), "tissue");
   depth_ = make_figure(*grid, 2, tr("Depth"), "depth");
-  target_ = make_figure(*grid, 3, tr("Distance to the target"), "to-target");
-  time_ = make_figure(*grid, 4, tr("Time since the skin"), "time");
+  target_ = make_figure(*grid, 3, tr("Target distance"), "to-target");
+  time_ = make_figure(*grid, 4, tr("Time from skin"), "time");
   return box;
 }
 

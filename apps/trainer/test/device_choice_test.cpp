@@ -74,7 +74,7 @@ TEST_F(DeviceChoiceTest, ADeviceOfLastTimeThatIsNotListedIsKept) {
 TEST_F(DeviceChoiceTest, TheTestSaysWhetherADeviceAnswersMovesAndPushes) {
   DeviceTestDialog dialog(QStringLiteral("openhaptics:Left Device"), QStringLiteral("Left Device"));
   EXPECT_TRUE(
-      text_when(dialog, "device-answer", QStringLiteral("Premium")).startsWith(QStringLiteral("The device re")));
+      text_when(dialog, "device-answer", QStringLiteral("Premium")).startsWith(QStringLiteral("The device responds")));
   text_when(dialog, "device-pose", QStringLiteral("Move the device"));
   trocar::testing::place(*premium, {30.0, 10.0, 0.0});
   text_when(dialog, "device-pose", QStringLiteral("Right 30"));
@@ -95,7 +95,7 @@ TEST_F(DeviceChoiceTest, MissingAndUnpluggedDevicesAreToldInOneLine) {
   EXPECT_FALSE(missing.contains(QLatin1Char('\n')));
   omni->is_present = 1;
   dialog.findChild<QPushButton*>(QStringLiteral("device-again"))->click();
-  text_when(dialog, "device-answer", QStringLiteral("The device reswers"));
+  text_when(dialog, "device-answer", QStringLiteral("The device responds"));
   omni->is_present = 0;
   text_when(dialog, "device-answer", QStringLiteral("no longer responds"));
 }
@@ -106,7 +106,7 @@ TEST_F(DeviceChoiceTest, APremiumIsCalibratedWhereItsArmIsHeldForIt) {
   text_when(dialog, "device-answer", QStringLiteral("not calibrated"));
   premium->is_in_reset_position = 1;
   dialog.findChild<QPushButton*>(QStringLiteral("device-calibrate"))->click();
-  text_when(dialog, "device-answer", QStringLiteral("Calibrated. The device reswers"));
+  text_when(dialog, "device-answer", QStringLiteral("Calibrated. The device responds"));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "core/files/atomic_file.h"
 #include "core/log.h"
 #include "core/parallel.h"
+#include "io/image/detail/raw_volume.h"
 #include "io/image/detail/read_grid.h"
 #include "io/image/detail/volume_file.h"
 #include "io/image/image_file.h"
@@ -156,7 +157,10 @@ Status load_volumes(const fs::path& folder, anatomy::VirtualPatient& patient) {
 
 }  // namespace
 
-void round_skin_distance(anatomy::VirtualPatient& patient) {
+void round_as_saved(anatomy::VirtualPatient& patient) {
+  for (volume::GridGeometry* geometry :
+       {&patient.ct.geometry, &patient.labels.geometry, &patient.skin_distance_mm.geometry})
+    detail::round_geometry(*geometry);
   patient.skin_distance_mm = from_hundredths(to_hundredths(patient.skin_distance_mm));
 }
 

@@ -32,8 +32,8 @@ struct PatientTitle {
   std::string name, description;
 };
 Result<PatientTitle> load_patient_title(const std::filesystem::path& folder);
-/// Rounds the skin distance as a patient folder keeps it, so that a patient and its saved copy give the same results.
-void round_skin_distance(anatomy::VirtualPatient& patient);
+/// Rounds skin distance and geometry as a patient folder keeps them: a patient and its saved copy give the same bits.
+void round_as_saved(anatomy::VirtualPatient& patient);
 Result<std::vector<anatomy::NamedMesh>> load_patient_meshes(const std::filesystem::path& folder);
 
 }  // namespace trocar::io

@@ -80,7 +80,7 @@ Result<anatomy::VirtualPatient> open_patient(const PatientSource& source, const 
   }
   TROCAR_TRY(anatomy::VirtualPatient patient,
              anatomy::generate_phantom(source.folder_or_name, source.seed, {}, progress));
-  round_skin_distance(patient);
+  round_as_saved(patient);
   if (!source.cache_folder.empty()) log_if_failed(cache.keep(source, patient, {}));
   return patient;
 }

@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -101,6 +102,20 @@ std::size_t bytes_per_voxel(VoxelType type) noexcept {
   return with_type(type, []<class S>(S) { return sizeof(S); });
 }
 
+void round_geometry(volume::GridGeometry& geometry) {
+  constexpr double kRounding = 1e-12;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string text = fmt::format("{:.15g}", geometry.spacing_mm[axis]);
+    std::from_chars(text.data(), text.data() + text.size(), geometry.spacing_mm[axis]);
+    int along = 0;
+    const double most = geometry.R_PV.col(axis).cwiseAbs().maxCoeff(&along);
+    const double sign = geometry.R_PV(along, axis) < 0.0 ? -1.0 : 1.0;
+    const Vec3 unit = sign * Vec3::Unit(along);
+    if (most > 0.5 && (geometry.R_PV.col(axis) - unit).cwiseAbs().maxCoeff() < kRounding)
+      geometry.R_PV.col(axis) = unit;
+  }
+}
+
 Status tidy_geometry(volume::GridGeometry& geometry) {
   if (!geometry.spacing_mm.allFinite() || !geometry.origin_P.allFinite() || !geometry.R_PV.allFinite())
     return fail("the position of the image is not a number", {}, "export it again");
@@ -115,6 +130,7 @@ Status tidy_geometry(volume::GridGeometry& geometry) {
   if ((nearest - geometry.R_PV).cwiseAbs().maxCoeff() > 1e-12) geometry.R_PV = nearest;
   geometry.R_PV.array() += 0.0;  // -0 becomes 0.
   geometry.origin_P.array() += 0.0;
+  round_geometry(geometry);
   return {};
 }
 

@@ -41,6 +41,10 @@ inline constexpr double kMaxShear = 1e-3;
 /// Checks a geometry as read and makes its direction exactly orthonormal. Errors (without a place): a spacing that is
 /// zero or no number, a sheared direction. A mirrored direction is kept.
 Status tidy_geometry(volume::GridGeometry& geometry);
+/// Rounds the spacing to 15 significant digits, and axes parallel to those of P to exactly these. NRRD stores spacing
+/// times direction, and its reader divides them again: what was rounded before it was written is read back to the same
+/// bits.
+void round_geometry(volume::GridGeometry& geometry);
 
 /// One of the functions below: turns stored numbers into voxels.
 template <class T>

@@ -39,7 +39,7 @@ TEST(PatientCache, FindsWhatItKeptAndNothingElse) {
   EXPECT_EQ(loaded->content_hash, patient.content_hash);
 }
 
-TEST(PatientCache, KeptPatientIsThePatientWithARoundedSkinDistance) {
+TEST(PatientCache, KeptPatientIsThePatientRoundedAsSaved) {
   const TemporaryFolder folder;
   anatomy::VirtualPatient patient = coarse(3);
   const auto kept = PatientCache(folder / "patients").keep({"abdomen", 3}, patient, {});
@@ -47,9 +47,17 @@ TEST(PatientCache, KeptPatientIsThePatientWithARoundedSkinDistance) {
   const auto loaded = load_patient(*kept);
   ASSERT_TRUE(loaded) << loaded.error().text();
   EXPECT_NE(loaded->skin_distance_mm.voxels, patient.skin_distance_mm.voxels);
-  round_skin_distance(patient);
+  round_as_saved(patient);
   EXPECT_EQ(loaded->skin_distance_mm.voxels, patient.skin_distance_mm.voxels);
   EXPECT_EQ(loaded->ct.voxels, patient.ct.voxels);
+  for (const auto& [kept_grid, made_grid] :
+       {std::pair(&loaded->ct.geometry, &patient.ct.geometry),
+        std::pair(&loaded->labels.geometry, &patient.labels.geometry),
+        std::pair(&loaded->skin_distance_mm.geometry, &patient.skin_distance_mm.geometry)}) {
+    EXPECT_EQ(kept_grid->spacing_mm, made_grid->spacing_mm);
+    EXPECT_EQ(kept_grid->origin_P, made_grid->origin_P);
+    EXPECT_EQ(kept_grid->R_PV, made_grid->R_PV);
+  }
   EXPECT_EQ(loaded->labels.voxels, patient.labels.voxels);
 }
 

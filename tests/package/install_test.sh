@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Installs Trocar into a folder of its own, runs a program there and builds another project against the package:
+# install_test.sh BUILD_FOLDER SOURCE_FOLDER
+set -euo pipefail
+build=$1 source=$2
+prefix=$(mktemp -d)
+trap 'rm -rf "$prefix"' EXIT
+
+cmake --install "$build" --prefix "$prefix/usr" >/dev/null
+unset TROCAR_DATA_DIR TROCAR_BIN_DIR
+"$prefix/usr/bin/trocar" task list | grep -q liver-biopsy
+
+cmake -S "$source/tests/package/consumer" -B "$prefix/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_PREFIX_PATH="$prefix/usr" >/dev/null
+cmake --build "$prefix/build"
+# It pushes a needle into the skin of an embedded patient, and fails if it feels no force.
+"$prefix/build/first_force" "$prefix/usr/share/trocar"
