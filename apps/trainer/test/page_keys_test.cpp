@@ -85,7 +85,7 @@ TEST_F(KeysTest, KnowWhereTheyAreStruck) {
 TEST_F(KeysTest, ToolsAreTakenWhereverTheFocusIsAndArrowsThenMoveThem) {
   ToolGestures gestures;
   gestures.watch(*view, [] { return ViewScale{}; });
-  PageKeys keys(window, [&](const QKeyEvent& key, const KeyPlace& place) { return gestures.strike(key, place); });
+  PageKeys keys(window, [&](const QKeyEvent& key, const KeyPlace& place) { return gestures.handle_key(key, place); });
   int moved = 0, fired = 0, clicked = 0;
   QObject::connect(&gestures, &ToolGestures::gestured, [&] { ++moved; });
   QObject::connect(&gestures, &ToolGestures::key_pressed, [&] { ++fired; });
