@@ -12,7 +12,6 @@
 
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <exception>
@@ -22,6 +21,7 @@
 
 #include "core/files/atomic_file.h"
 #include "core/files/input_file.h"
+#include "core/parse_number.h"
 #include "io/image/detail/quiet.h"
 
 namespace trocar::io {
@@ -62,9 +62,8 @@ Status check_vtp(std::string_view text, const std::string& where) {
   for (auto at = text.find(kNumberOf); at != std::string_view::npos; at = text.find(kNumberOf, at + 1)) {
     const auto quote = text.find_first_of("\"'<>", at);
     if (quote == std::string_view::npos || text[quote] == '<' || text[quote] == '>') continue;
-    std::uint64_t count = 0;
-    std::from_chars(text.data() + quote + 1, text.data() + text.size(), count);
-    if (count > kMaxVertices || count > text.size() * kMaxPackRatio)
+    const auto count = find_leading_number<std::uint64_t>(text.substr(quote + 1));
+    if (count && (count->value > kMaxVertices || count->value > text.size() * kMaxPackRatio))
       return fail("the surface declares more points than its file can hold", where, kExportAgain);
   }
   return {};

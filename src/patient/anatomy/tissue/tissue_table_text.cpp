@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "anatomy/tissue/hu_transfer_text.h"
 #include "anatomy/tissue/tissue_fields.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "config/toml_quoted.h"
+#include "core/parse_number.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -42,9 +42,9 @@ Result<Assignment> parse_assignment(std::string_view text) {
     assignment.value = std::numeric_limits<double>::infinity();
     return assignment;
   }
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), assignment.value);
-  if (error != std::errc() || end != value.data() + value.size() || !std::isfinite(assignment.value))
-    return malformed();
+  const auto number = parse_number<double>(value);
+  if (!number) return malformed();
+  assignment.value = *number;
   return assignment;
 }
 

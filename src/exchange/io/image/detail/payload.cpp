@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "core/parse_number.h"
 #include "io/image/detail/header_payload.h"
 
 namespace trocar::io::detail {
@@ -37,18 +37,15 @@ std::string trim(std::string_view text) {
 
 std::vector<std::int64_t> whole_numbers(const std::string& text) {
   std::vector<std::int64_t> numbers;
-  const char* at = text.data();
-  const char* end = at + text.size();
-  while (at < end) {
-    if (std::isspace(static_cast<unsigned char>(*at))) {
-      ++at;
+  for (std::string_view rest = text; !rest.empty();) {
+    if (std::isspace(static_cast<unsigned char>(rest.front()))) {
+      rest.remove_prefix(1);
       continue;
     }
-    std::int64_t number = 0;
-    const auto [next, error] = std::from_chars(at, end, number);
-    if (error != std::errc{}) return {};
-    numbers.push_back(number);
-    at = next;
+    const auto number = find_leading_number<std::int64_t>(rest);
+    if (!number) return {};
+    numbers.push_back(number->value);
+    rest = number->rest;
   }
   return numbers;
 }
