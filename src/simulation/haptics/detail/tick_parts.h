@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "geometry/clamp_norm.h"
 #include "haptics/tick.h"
 
 /// What the ticks of all tools share. Private to `haptics`; all of it real-time safe.
@@ -33,14 +34,6 @@ inline Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) no
   const Vec3 lift_P = -scene.gravity_P * scene.device.stylus_weight_n;
   const Vec3 arm_P = R_PS * Vec3(0.0, 0.0, -scene.device.stylus_lever_mm);
   return {lift_P, arm_P.cross(lift_P)};
-}
-
-/// Scales a vector to a norm; true when it had to.
-inline bool clamp_norm(Vec3& v, double limit) noexcept {
-  const double norm = v.norm();
-  if (!(norm > limit)) return false;
-  v *= limit / norm;
-  return true;
 }
 
 /// The last step of every tick: `device_f_n` and the torque limited to the device's peaks, said in the events, turned
