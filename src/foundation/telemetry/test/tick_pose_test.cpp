@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/quaternion.h"
+
 namespace trocar::telemetry {
 namespace {
 
@@ -11,8 +13,7 @@ TickSample sample_at(const Pose& X_PN) {
   TickSample sample;
   sample.tip_mm = sample.device_mm = X_PN.p();
   sample.axis = X_PN.R().col(2);
-  const Eigen::Quaterniond q(X_PN.R());
-  sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
+  sample.device_rotation_wxyz = to_wxyz(Eigen::Quaterniond(X_PN.R()));
   return sample;
 }
 
