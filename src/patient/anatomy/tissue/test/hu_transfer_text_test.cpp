@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "anatomy/tissue/tissue_table.h"
+#include "config/toml_writer.h"
 #include "core/files/data_dir.h"
 
 namespace trocar::anatomy {
@@ -66,7 +67,7 @@ TEST(HuTransferText, ATableWithoutTheSectionLoads) {
 
 TEST(HuTransferText, DamagedCurvesAreRefusedWithTheirPlace) {
   const HuTransfer transfer = shipped().transfer;
-  const std::string second_knot = fmt::format("{}", transfer.hu[1]);
+  const std::string second_knot = config::TomlValue(transfer.hu[1]).text();
   std::string too_many = "hu = [-1001";
   for (std::size_t n = 0; n < HuTransfer::kMaxKnots; ++n)
     too_many += fmt::format(", {}", -1000.5 + 0.01 * static_cast<double>(n));
@@ -80,11 +81,11 @@ TEST(HuTransferText, DamagedCurvesAreRefusedWithTheirPlace) {
       {"hu = [", too_many + ", "},
       {"hu = [", "hu = []\nnone = ["},
       {"normal_n = {values = [", "normal_n = {values = [0.0, "},
-      {"normal_n = {values = [0", "normal_n = {values = [-1"},
-      {"normal_n = {values = [0", "normal_n = {values = [201"},
-      {"normal_n = {values = [0", "normal_n = {values = [nan"},
-      {"normal_n = {values = [0", "normal_n = {values = [inf"},
-      {"normal_n = {values = [0", "normal_n = {values = [\"0\""},
+      {"normal_n = {values = [0.0", "normal_n = {values = [-1"},
+      {"normal_n = {values = [0.0", "normal_n = {values = [201"},
+      {"normal_n = {values = [0.0", "normal_n = {values = [nan"},
+      {"normal_n = {values = [0.0", "normal_n = {values = [inf"},
+      {"normal_n = {values = [0.0", "normal_n = {values = [\"0\""},
       {"normal_n =", "normal ="},
       {"source = \"", "note = \""},
       {"factors = [", "factors = [1.2, "},
