@@ -84,8 +84,7 @@ TEST_F(PunctureGuide, WarnsOfBoneAheadBeforeAllElse) {
     const anatomy::Label* label = the_case.patient->label_table.find(labels.voxels[n]);
     if (label == nullptr || label->tissue != "bone") continue;
     const volume::Index3 ijk = labels.geometry.index_of(n);
-    bone_P = labels.geometry.to_mm(
-        Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    bone_P = labels.geometry.centre_mm(ijk);
   }
   ASSERT_TRUE(bone_P);
   telemetry::TickSample sample = on_path(10.0);
