@@ -255,7 +255,7 @@ TEST(BuildPatient, ASegmentationOfAnotherPlaceIsRefused) {
 TEST(BuildPatient, NamesWhatTheScanCuts) {
   const Built built = build({liver()});  // a cylinder through the whole scan
   ASSERT_TRUE(built.patient);
-  EXPECT_TRUE(has_warning(built, "cut by the border of the CT: liver"));
+  EXPECT_TRUE(has_warning(built, "cut off by the border of the CT: liver"));
 }
 
 TEST(BuildPatient, ACtWithoutABodyIsRefused) {
