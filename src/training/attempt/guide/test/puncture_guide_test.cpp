@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/patient/patient_source.h"
+#include "attempt/testing/phantom_case.h"
 
 namespace trocar::attempt {
 namespace {
@@ -10,9 +10,7 @@ namespace {
 class PunctureGuide : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto patient = io::open_patient({"layers-liver", 1});
-    ASSERT_TRUE(patient) << patient.error().text();
-    auto made = prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
+    auto made = testing::phantom_case("layers-liver");
     ASSERT_TRUE(made) << made.error().text();
     the_case = *std::move(made);
   }
