@@ -102,12 +102,6 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
   return path;
 }
 
-Figures single(double value) {
-  Figures figures;
-  figures.median = value;
-  return figures;
-}
-
 /// One line per puncture, in order; repeated punctures are numbered. In JSON, drop and drop time are separate cases; in
 /// text they are in the note.
 void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is_for_people) {
@@ -122,11 +116,11 @@ void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is
           fmt::format("peak, device {:.1f} mm deep; then {:.2f} N: {:.2f} N less, nine tenths of it in {:.0f} ms",
                       event.way_mm, event.after_n, event.drop_n(), event.fall_ms);
       if (event.highest_n > event.peak_n + kRise_n) note += fmt::format("; ROSE to {:.2f} N first", event.highest_n);
-      results.push_back({name, "n", single(event.peak_n), {}, note});
+      results.push_back({name, "n", figure_of(event.peak_n), {}, note});
       if (is_for_people) continue;
-      results.push_back({name + "/drop", "n", single(event.drop_n()), {}, ""});
-      results.push_back({name + "/fall", "ms", event.drop_n() > 0.0 ? single(event.fall_ms) : Figures{}, {}, ""});
-      results.push_back({name + "/way", "mm", single(event.way_mm), {}, "of the device past the resting skin"});
+      results.push_back({name + "/drop", "n", figure_of(event.drop_n()), {}, ""});
+      results.push_back({name + "/fall", "ms", event.drop_n() > 0.0 ? figure_of(event.fall_ms) : Figures{}, {}, ""});
+      results.push_back({name + "/way", "mm", figure_of(event.way_mm), {}, "of the device past the resting skin"});
     }
   }
 }

@@ -163,8 +163,7 @@ Status add_tumour(std::vector<CaseResult>& results, const anatomy::TissueTable& 
   const Vec3 centre(0.0, 20.0, 0.0);
   for (std::size_t n = 0; n < patient->labels.voxels.size(); ++n) {
     const volume::Index3 ijk = geometry.index_of(n);
-    const Vec3 p =
-        geometry.origin_P + Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
+    const Vec3 p = geometry.origin_P + volume::to_vec3(ijk);
     patient->skin_distance_mm.voxels[n] = static_cast<float>(-p.y());
     if (p.y() >= 0.0) patient->labels.voxels[n] = (p - centre).norm() < 10.0 ? 2 : 1;
   }

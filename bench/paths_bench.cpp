@@ -48,23 +48,17 @@ Figures over_paths(const std::vector<cases::PathError>& errors, double cases::Pa
   return figures_of(std::move(values));
 }
 
-Figures single(double value) {
-  Figures figures;
-  figures.median = value;
-  return figures;
-}
-
 std::vector<CaseResult> results_of(const std::vector<cases::PathError>& errors, const std::string& what,
                                    double took_s) {
   const cases::StudyFigures figures = cases::study_figures(errors);
   Figures max = over_paths(errors, &cases::PathError::max_n);
-  return {{"paths/mean-rms", "n", single(figures.mean_rms_n), {}, "mean over paths; published 0.12; " + what},
+  return {{"paths/mean-rms", "n", figure_of(figures.mean_rms_n), {}, "mean over paths; published 0.12; " + what},
           {"paths/rms", "n", over_paths(errors, &cases::PathError::rms_n), {}, "over paths"},
-          {"paths/mean-max", "n", single(figures.mean_max_n), {}, "mean over paths of the largest error of each"},
+          {"paths/mean-max", "n", figure_of(figures.mean_max_n), {}, "mean over paths of the largest error of each"},
           {"paths/max", "n", max, {}, "over paths, of the largest error of each; published max 1.6"},
           {"paths/affected",
            "ratio",
-           single(figures.affected),
+           figure_of(figures.affected),
            {},
            fmt::format("of all ticks behind the skin: off by more than {} N and {:.0f} %; published 0.12",
                        cases::kAffected_n, 100.0 * cases::kAffectedShare)},
@@ -79,14 +73,14 @@ std::vector<CaseResult> results_of(const std::vector<cases::PathError>& errors, 
            over_paths(errors, &cases::PathError::full_rms_n),
            {},
            "the fully segmented force itself, to hold the errors against"},
-          {"paths/time", "ms", single(1e3 * took_s), {}, "both forces on all paths, planning not counted"}};
+          {"paths/time", "ms", figure_of(1e3 * took_s), {}, "both forces on all paths, planning not counted"}};
 }
 
 void add_worst_places(std::vector<CaseResult>& results, const std::vector<cases::PathError>& errors,
                       const anatomy::TissueTable& tissues) {
   const auto places = cases::worst_places(errors, tissues);
   for (std::size_t i = 0; i < std::min(places.size(), kWorstPlaces); ++i) {
-    Figures figures = single(places[i].mean_max_n);
+    Figures figures = figure_of(places[i].mean_max_n);
     figures.max = places[i].max_n;
     results.push_back({"paths/worst/" + places[i].place,
                        "n",

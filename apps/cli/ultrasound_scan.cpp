@@ -5,11 +5,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <set>
 
+#include "core/parse_number.h"
 #include "io/sequence/transform_file.h"
 #include "number_option.h"
 #include "patient_option.h"
@@ -48,11 +47,10 @@ Status take_note(const io::TransformNotes& notes, const char* key, double low, d
   const auto note = notes.find(key);
   if (note == notes.end()) return {};
   const auto& text = note->second;
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number))
+  const auto number = parse_number<double>(text);
+  if (!number)
     return fail(fmt::format("{} is not a number: \"{}\"", key, text), where, "correct or delete the comment line");
-  value = std::clamp(number, low, high);
+  value = std::clamp(*number, low, high);
   return {};
 }
 

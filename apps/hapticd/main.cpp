@@ -19,6 +19,7 @@
 #include "program_end.h"
 #include "server/haptic_server.h"
 #include "storage/session_file.h"
+#include "telemetry/tick_pose.h"
 #include "test_mode.h"
 
 namespace {
@@ -63,11 +64,8 @@ Result<std::vector<Pose>> replayed_poses(const storage::Session& session, double
   const Pose X_NS = Pose::translation({0.0, 0.0, -needle_length_mm});
   std::vector<Pose> poses;
   poses.reserve(session.samples.size());
-  for (const telemetry::TickSample& sample : session.samples) {
-    const auto& q = sample.device_rotation_wxyz;
-    const Mat3 R_PN = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
-    poses.push_back(X_WP * Pose(R_PN, sample.device_mm) * X_NS);
-  }
+  for (const telemetry::TickSample& sample : session.samples)
+    poses.push_back(X_WP * telemetry::device_pose(sample) * X_NS);
   if (poses.empty()) return fail("the session has no ticks to replay", "replay", "give a recorded session");
   return poses;
 }

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <csignal>
 
-#include "anatomy/phantom/phantom.h"
 #include "attempt.h"
+#include "cases/testing/phantom_case.h"
 #include "core/files/atomic_file.h"
 #include "core/interruption.h"
 #include "haptics/insertion/insertion_law.h"
@@ -22,9 +22,7 @@ namespace {
 class EmbeddedBiopsy : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto patient = anatomy::generate_phantom("abdomen");
-    ASSERT_TRUE(patient.has_value());
-    auto prepared = cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
+    auto prepared = phantom_case("abdomen");
     ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
     the_case = new cases::Case(*std::move(prepared));
     expert = new Attempt(perform(*the_case, "expert"));

@@ -93,9 +93,7 @@ class UpperSkin {
     for (std::size_t n = 0; n < labels.voxels.size(); n += kEvery) {
       if (!is_of_organ[labels.voxels[n]]) continue;
       const volume::Index3 ijk = labels.geometry.index_of(n);
-      sum_mm +=
-          labels.geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])})
-              .z();
+      sum_mm += labels.geometry.centre_mm(ijk).z();
       count += 1.0;
     }
     return count > 0.0 ? sum_mm / count : the_case.plan.line_P.b.z();

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "config/toml.h"
-#include "config/toml_quoted.h"
+#include "config/toml_writer.h"
 #include "core/files/atomic_file.h"
 
 namespace trocar::cases {
@@ -27,20 +27,18 @@ Status check_name(const std::string& name) {
   const bool is_blank = std::all_of(name.begin(), name.end(), [](char c) { return c == ' '; });
   const bool has_control = std::any_of(name.begin(), name.end(), is_control);
   if (name.size() <= kLongestName && !is_blank && !has_control) return {};
-  return fail_usage("a profile's name has 1 to 80 characters and no control characters", config::toml_quoted(name),
+  return fail_usage("a profile's name has 1 to 80 characters and no control characters", fmt::format("\"{}\"", name),
                     "give it another name");
 }
 
 std::string to_toml(const TissueProfile& profile) {
-  std::string text =
-      "# Numbers of tissues that differ from the table's (trocar run --set KEY=VALUE takes them, too).\n";
-  text += fmt::format("name = {}\n", config::toml_quoted(profile.name));
-  if (!profile.note.empty()) text += fmt::format("note = {}\n", config::toml_quoted(profile.note));
-  if (!profile.force_model.empty()) text += fmt::format("force_model = {}\n", config::toml_quoted(profile.force_model));
-  text += "overrides = [\n";
-  for (const std::string& assignment : profile.overrides)
-    text += fmt::format("  {},\n", config::toml_quoted(assignment));
-  return text + "]\n";
+  config::TomlWriter writer;
+  writer.comment("Numbers of tissues that differ from the table's (trocar run --set KEY=VALUE takes them, too).");
+  writer.set("name", profile.name);
+  if (!profile.note.empty()) writer.set("note", profile.note);
+  if (!profile.force_model.empty()) writer.set("force_model", profile.force_model);
+  writer.set("overrides", profile.overrides);
+  return writer.text();
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -56,7 +57,7 @@ struct SoundPath {
   /// Tissue displayed at depth r has its rest position at r - pressed_mm * dent_share.
   float pressed_mm = 0.0F;
   std::span<const float> dent_share;
-  float mirror_depth_mm = 1e30F;  ///< Deeper samples show a mirror image.
+  float mirror_depth_mm = std::numeric_limits<float>::infinity();  ///< Deeper samples show a mirror image.
 };
 
 /// Ultrasound from an acoustic scene (docs/physics.md U1–U9). Buffers are taken once; render allocates nothing. The

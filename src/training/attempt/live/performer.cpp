@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "attempt/record/attempt_record.h"
+#include "core/parse_number.h"
 
 namespace trocar::attempt {
 namespace {
@@ -18,9 +17,8 @@ struct OperatorChoice {
 };
 
 Result<double> parse_speed(std::string_view text) {
-  double speed = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), speed);
-  if (error == std::errc() && end == text.data() + text.size() && speed >= 0.1 && speed <= 500.0) return speed;
+  const auto speed = parse_number<double>(text);
+  if (speed && *speed >= 0.1 && *speed <= 500.0) return *speed;
   return fail_usage(fmt::format("speed {} is not a number from 0.1 to 500 mm/s", text), "--operator constant-velocity",
                     "write it as constant-velocity:10");
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/quaternion.h"
 #include "haptics/gate/safety_gate.h"
 
 namespace trocar::attempt {
@@ -24,8 +25,7 @@ constexpr double kSettledAxis = 0.02;    // rad
 constexpr double kMostSettling_s = 1.0;  // inside tissue it comes to rest at another position
 
 Vec3 axis_of(const telemetry::TickSample& sample) noexcept {
-  const auto& [w, x, y, z] = sample.device_rotation_wxyz;
-  return Eigen::Quaterniond(w, x, y, z).toRotationMatrix().col(2);
+  return from_wxyz(sample.device_rotation_wxyz).toRotationMatrix().col(2);
 }
 
 bool has_fault(const link::ServerStatus& status) {

@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 using namespace testing;
 
 CaseDraft full_draft() {
-  CaseDraft draft = *set_expert_path(made_draft(), good_path(biopsy_gun()));
+  CaseDraft draft = *set_expert_path(made_draft(), good_path(shipped_needle()));
   draft = *set_target_label(draft, "lesion");
   draft = *set_risk(draft, {"vessel", "", 4.0, 40.0});
-  draft = *set_entry_zone(draft, good_path(biopsy_gun()).a, 15.0);
+  draft = *set_entry_zone(draft, good_path(shipped_needle()).a, 15.0);
   draft = *set_landmark(draft, "rib 9", {-80.0, 10.0, 5.0});
   draft = *rename_label(draft, 3, "liver of the box");
   draft.task.organ = "liver";
@@ -60,7 +60,7 @@ TEST(SaveCase, SavedCaseIsReadyForAnAttemptWithItsOwnTask) {
   const auto the_case =
       cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(*patient)), options);
   ASSERT_TRUE(the_case) << the_case.error().text();
-  EXPECT_EQ(the_case->plan.line_P.a, good_path(biopsy_gun()).a);
+  EXPECT_EQ(the_case->plan.line_P.a, good_path(shipped_needle()).a);
   EXPECT_GT(the_case->plan.organ_path_mm, 10.0);
   EXPECT_EQ(the_case->task.target_label, "lesion");
   options.patient_folder = "abdomen";

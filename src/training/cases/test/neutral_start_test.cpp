@@ -35,8 +35,7 @@ std::shared_ptr<const anatomy::VirtualPatient> cylinder() {
     patient->labels = volume::LabelGrid(grid, 0);
     for (std::size_t n = 0; n < grid.voxel_count(); ++n) {
       const volume::Index3 i = grid.index_of(n);
-      patient->skin_distance_mm.voxels[n] = static_cast<float>(
-          outside_mm(grid.to_mm({static_cast<double>(i[0]), static_cast<double>(i[1]), static_cast<double>(i[2])})));
+      patient->skin_distance_mm.voxels[n] = static_cast<float>(outside_mm(grid.centre_mm(i)));
     }
     return patient;
   }();

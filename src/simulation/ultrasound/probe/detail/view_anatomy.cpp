@@ -13,7 +13,7 @@ constexpr double kFacingSlab_mm = 8.0;
 
 Vec3 voxel_place(const volume::GridGeometry& geometry, std::size_t n) {
   const volume::Index3 ijk = geometry.index_of(n);
-  return geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+  return geometry.centre_mm(ijk);
 }
 
 /// Calls use(point) for every voxel of a label.
