@@ -14,7 +14,7 @@
 
 namespace trocar::link {
 
-inline constexpr std::uint32_t kLinkVersion = 2;  ///< Both sides must have the same.
+inline constexpr std::uint32_t kLinkVersion = 3;  ///< Both sides must have the same.
 
 // From a client.
 

@@ -48,8 +48,8 @@ flatbuffers::Offset<wire::ServerStatus> build_status(Builder& b, const ServerSta
 
 ServerMember build_body(Builder& b, const StateBatch& batch) {
   TROCAR_CHECK(batch.samples.size() <= kMostSamples);
-  const auto samples = b.CreateVectorOfNativeStructs<wire::Sample, telemetry::TickSample>(
-      batch.samples.data(), batch.samples.size(), detail::to_wire);
+  const auto samples = b.CreateVectorOfStructs<wire::Sample>(
+      batch.samples.size(), [&](std::size_t i, wire::Sample* packed) { write_sample(batch.samples[i], *packed); });
   flatbuffers::Offset<wire::ServerStatus> status;
   if (batch.status) status = build_status(b, *batch.status);
   return {wire::ServerBody::StateBatch,
@@ -147,8 +147,10 @@ void read_samples(const flatbuffers::Vector<const wire::Sample*>& samples, Inspe
     return in.refuse("misaligned ticks", "samples");
   }
   result.reserve(samples.size());
-  for (const wire::Sample* sample : samples) {
-    result.push_back(read_sample(*sample, in));
+  telemetry::TickSample sample;
+  for (const wire::Sample* packed : samples) {
+    read_sample(*packed, in, sample);
+    result.push_back(sample);
     if (!in.is_good()) return;
   }
 }

@@ -23,8 +23,8 @@ inline constexpr double kMostPosition_mm = 1e5;
 inline constexpr double kMostTime_s = 1e10;  ///< 300 years of a steady clock.
 inline constexpr Range kTimes_s = {-kMostTime_s, kMostTime_s};
 inline constexpr Range kDurations_s = {0.0, kMostTime_s};
-inline constexpr std::size_t kMostSettings = 256;         ///< In one list; the trainer has some dozens. [assumed]
-inline constexpr Range kMagnitudes = {0.0, 1e9};  ///< Of what is only shown.
+inline constexpr std::size_t kMostSettings = 256;  ///< In one list; the trainer has some dozens. [assumed]
+inline constexpr Range kMagnitudes = {0.0, 1e9};   ///< Of what is only shown.
 
 /// Takes values out of a verified message of strangers and keeps the first complaint. After a complaint values are
 /// empty or zero; no value leaves it unchecked.
@@ -41,7 +41,8 @@ class Inspection {
   double number(double value, Range range, const char* field);
   int whole_number(std::int32_t value, int low, int high, const char* field);
   /// Finite, and no longer than `longest`.
-  Vec3 vector(const wire::Vec3& vector, double longest, const char* field);
+  Vec3 vector(const Vec3& vector, double longest, const char* field);
+  Vec3 vector(const wire::Vec3& packed, double longest, const char* field);
   /// A rotation that is one within 1e-6 (made exact when it is off by more than rounding), not too far away.
   Pose pose(const wire::Pose& pose, const char* field);
   /// `last` is the enumeration's last value.

@@ -160,7 +160,17 @@ bool is_accepted_in_a_batch(const telemetry::TickSample& sample) {
 }
 
 TEST(UnsoundTick, EnumeratorsOutOfRangeAreRefused) {
-  EXPECT_FALSE(is_accepted_in_a_batch(with(&telemetry::TickSample::phase, static_cast<telemetry::InsertionPhase>(4))));
+  int enumerations = 0;
+  telemetry::for_each_tick_field(
+      [&]<class Value, telemetry::TickUse use>(const telemetry::TickField<Value, use>& field) {
+        if constexpr (std::is_enum_v<Value>) {
+          ++enumerations;
+          const auto last = static_cast<int>(last_of(Value{}));
+          EXPECT_TRUE(is_accepted_in_a_batch(with(field.member, static_cast<Value>(last)))) << field.name;
+          EXPECT_FALSE(is_accepted_in_a_batch(with(field.member, static_cast<Value>(last + 1)))) << field.name;
+        }
+      });
+  EXPECT_EQ(enumerations, 3);
   for (std::size_t i = 0; i < 4; ++i) {
     telemetry::TickSample sample;
     sample.events[i].kind = static_cast<telemetry::EventKind>(4);
