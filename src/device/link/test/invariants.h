@@ -33,6 +33,9 @@ std::string find_broken_invariant(Envelope<Body> message) {
                            },
                            [&](std::string& text) { check_text(text, false); },
                            [&](ServerCommand& command) { expect(command <= kLastServerCommand, "unknown command"); },
+                           [&](ServerState& state) { expect(state <= kLastServerState, "unknown state"); },
+                           [&](telemetry::GateMode& mode) { expect(mode <= last_of(mode), "unknown gate mode"); },
+                           [&](telemetry::GateFault& fault) { expect(fault <= last_of(fault), "unknown fault"); },
                            [&](LoadScene& scene) {
                              expect(scene.needle_length_mm >= 0.0 && scene.needle_radius_mm >= 0.0, "negative needle");
                              check_text(scene.tissues_toml, true);

@@ -60,6 +60,9 @@ class RandomMessages {
   template <class Enum>
   requires requires(Enum value) { last_of(value); }
   void fill(Enum& value) { value = static_cast<Enum>(below(static_cast<std::size_t>(last_of(value)) + 1)); }
+  void fill(ServerState& value) {
+    value = static_cast<ServerState>(below(static_cast<std::size_t>(kLastServerState) + 1));
+  }
   void fill(ServerCommand& value) {
     value = static_cast<ServerCommand>(below(static_cast<std::size_t>(kLastServerCommand) + 1));
   }

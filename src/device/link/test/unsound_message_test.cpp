@@ -155,6 +155,23 @@ TEST(UnsoundEnumerator, IsRefused) {
   EXPECT_FALSE(is_accepted(Command{1, static_cast<ServerCommand>(255)}));
 }
 
+bool is_accepted(const ServerStatus& status) {
+  return is_accepted(ServerMessage{1, 1, StateBatch{1, {}, status}});
+}
+
+TEST(UnsoundEnumerator, OfAStatusIsRefused) {
+  const auto accepts = [](auto field, auto last) {
+    const auto number = static_cast<int>(last);
+    using Enum = decltype(last);
+    EXPECT_FALSE(is_accepted(with(field, static_cast<Enum>(number + 1))));
+    EXPECT_FALSE(is_accepted(with(field, static_cast<Enum>(255))));
+    return is_accepted(with(field, last));
+  };
+  EXPECT_TRUE(accepts(&ServerStatus::state, kLastServerState));
+  EXPECT_TRUE(accepts(&ServerStatus::gate_mode, telemetry::kLastGateMode));
+  EXPECT_TRUE(accepts(&ServerStatus::fault, telemetry::kLastGateFault));
+}
+
 bool is_accepted_in_a_batch(const telemetry::TickSample& sample) {
   return is_accepted(ServerMessage{1, 1, StateBatch{1, {telemetry::TickSample{}, sample}, std::nullopt}});
 }
