@@ -69,7 +69,8 @@ namespace {
 
 /// A busy machine can make a loop slow: such a fault is reset, as a seat with a simulated device does.
 void reset_slow_loop(link::HapticClient& client) {
-  if (client.view().status.fault == "loop_slow") client.ask(link::ServerCommand::kResetFault, kPatience);
+  if (client.view().status.fault == telemetry::GateFault::kLoopSlow)
+    client.ask(link::ServerCommand::kResetFault, kPatience);
 }
 
 }  // namespace
@@ -83,8 +84,8 @@ void press_on_skin(link::HapticClient& client) {
   ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
   ASSERT_TRUE(wait_for([&] {
     reset_slow_loop(client);
-    return client.view().status.gate_mode == "on";
-  })) << client.view().status.gate_mode;
+    return client.view().status.gate_mode == telemetry::GateMode::kOn;
+  })) << to_string(client.view().status.gate_mode);
   // Slowly: a hand that is thrown at the skin goes through it.
   constexpr double kStep_mm = 0.02, kDeepest_mm = 3.5;
   double depth_mm = -5.0;

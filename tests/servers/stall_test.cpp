@@ -77,8 +77,8 @@ class Stalls : public LiveAttemptTest {
     auto since = std::chrono::steady_clock::now();
     return wait_for([&] {
       const attempt::AttemptView view = attempt->view();
-      const bool is_well =
-          view.phase == attempt::AttemptPhase::kInBody && view.banner.empty() && view.servers[0].gate == "on";
+      const bool is_well = view.phase == attempt::AttemptPhase::kInBody && view.banner.empty() &&
+                           view.servers[0].gate == telemetry::GateMode::kOn;
       const auto now = std::chrono::steady_clock::now();
       if (!is_well) since = now;
       return now - since > milliseconds(300);

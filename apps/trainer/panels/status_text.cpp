@@ -14,7 +14,7 @@ ServerLine line_of(const attempt::ServerView& server, const QString& tool) {
   line.served = server.wanted_hz > 0.0 ? std::min(1.0, server.rate_hz / server.wanted_hz) : 1.0;
   line.lateness_p99_us = server.p99_us;
   line.ticks_missing = server.ticks_missing;
-  line.fault = to_qt(server.fault);
+  if (server.fault != telemetry::GateFault::kNone) line.fault = to_qt(to_string(server.fault));
   line.grant = to_qt(server.grant);
   line.is_real_time = server.grant.find("SCHED_FIFO") != std::string::npos;
   return line;

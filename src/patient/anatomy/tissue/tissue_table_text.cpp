@@ -6,8 +6,8 @@
 
 #include "anatomy/tissue/hu_transfer_text.h"
 #include "anatomy/tissue/tissue_fields.h"
+#include "anatomy/tissue/tissue_setting.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "core/parse_number.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -22,30 +22,12 @@ void write_fields(config::TomlWriter& writer, const T& entry, std::span<const Ti
                  provenance);
 }
 
+/// What an override names; `name` may hold dots.
 struct Assignment {
   std::string_view name;
   std::string_view key;
   double value = 0.0;
 };
-
-Result<Assignment> parse_assignment(std::string_view text) {
-  const auto malformed = [&] {
-    return fail_usage("--set needs NAME.KEY=NUMBER (finite)", std::string(text), "for example liver.k=0.5");
-  };
-  const std::size_t equals = text.find('=');
-  const std::size_t dot = text.substr(0, equals).rfind('.');
-  if (equals == std::string_view::npos || dot == std::string_view::npos) return malformed();
-  Assignment assignment{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), 0.0};
-  const std::string_view value = text.substr(equals + 1);
-  if (value == "never") {
-    assignment.value = std::numeric_limits<double>::infinity();
-    return assignment;
-  }
-  const auto number = parse_number<double>(value);
-  if (!number) return malformed();
-  assignment.value = *number;
-  return assignment;
-}
 
 Status check_range(const Assignment& assignment, std::string_view field, config::Range range, std::string_view text) {
   const bool is_never = std::isinf(assignment.value) && field == kPunctureForce;
@@ -218,9 +200,15 @@ std::string TissueTable::to_toml() const {
   return writer.text();
 }
 
+Status apply_setting(TissueTable& table, const TissueSetting& setting) {
+  const std::string text = to_string(setting);
+  const Assignment assignment{setting.row, setting.key, setting.value};
+  return Override(table, assignment, text).apply();
+}
+
 Status apply_override(TissueTable& table, std::string_view assignment) {
-  TROCAR_TRY(const Assignment parsed, parse_assignment(assignment));
-  return Override(table, parsed, assignment).apply();
+  TROCAR_TRY(const TissueSetting setting, parse_setting(assignment));
+  return apply_setting(table, setting);
 }
 
 }  // namespace trocar::anatomy

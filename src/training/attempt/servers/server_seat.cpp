@@ -29,7 +29,7 @@ Vec3 axis_of(const telemetry::TickSample& sample) noexcept {
 }
 
 bool has_fault(const link::ServerStatus& status) {
-  return !status.fault.empty() && status.fault != to_string(telemetry::GateFault::kNone);
+  return status.fault != telemetry::GateFault::kNone;
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ Result<State> ServerSeat::look() {
     ++stalls_;
     enter(State::kConnecting);
   } else if (is_ours && has_fault(view_.status)) {
-    return fail(fmt::format("the safety gate has latched a fault: {}", view_.status.fault), endpoint_,
+    return fail(fmt::format("the safety gate has latched a fault: {}", to_string(view_.status.fault)), endpoint_,
                 "see the server's flight record for the cause; restart the server");
   }
   return state_;
@@ -137,9 +137,8 @@ Result<State> ServerSeat::look() {
 
 /// The motors of a device in a person's hand are not switched on again without confirmation.
 bool ServerSeat::is_stall_to_forgive() const {
-  const std::string& fault = view_.status.fault;
-  const bool is_stall =
-      fault == to_string(telemetry::GateFault::kLoopStalled) || fault == to_string(telemetry::GateFault::kLoopSlow);
+  const telemetry::GateFault fault = view_.status.fault;
+  const bool is_stall = fault == telemetry::GateFault::kLoopStalled || fault == telemetry::GateFault::kLoopSlow;
   return request_ && !request_->is_in_real_hand && is_stall;
 }
 
@@ -249,7 +248,7 @@ Status ServerSeat::starting() {
   }
   if (state_ != State::kStarting) return {};
   const bool is_told_since = started_server_s_ > 0.0 && view_.status.server_time_s > started_server_s_;
-  if (is_told_since && view_.status.gate_mode == to_string(telemetry::GateMode::kOn)) {
+  if (is_told_since && view_.status.gate_mode == telemetry::GateMode::kOn) {
     enter(State::kSettling);
     return {};
   }

@@ -123,9 +123,9 @@ std::string ToolServer::seat_again(bool is_new_process) {
 }
 
 bool ToolServer::is_device_lost() const {
-  const std::string& fault = seat_->view().status.fault;
-  return seat_->view().is_connected && (fault == to_string(telemetry::GateFault::kDeviceLost) ||
-                                        fault == to_string(telemetry::GateFault::kDeviceSilent));
+  const telemetry::GateFault fault = seat_->view().status.fault;
+  return seat_->view().is_connected &&
+         (fault == telemetry::GateFault::kDeviceLost || fault == telemetry::GateFault::kDeviceSilent);
 }
 
 /// Until it is connected again; forces stay off meanwhile, because the fault is latched.
@@ -235,7 +235,7 @@ std::string ToolServer::cannot_go_on(const Error& why) {
     was_on_ = false;
     waits_for_resume_ = !is_stopped_;
     if (is_device_lost()) {
-      const bool is_gone = seat_->view().status.fault == to_string(telemetry::GateFault::kDeviceLost);
+      const bool is_gone = seat_->view().status.fault == telemetry::GateFault::kDeviceLost;
       return banner_ = fmt::format("{}, which moves the {}, {}, then resume the forces (Space).", device_words(),
                                    tool_ == "probe" ? "transducer" : tool_,
                                    is_gone ? "is disconnected. Plug it in again" : "sends no data. Check its cable");
@@ -368,7 +368,7 @@ ServerView ToolServer::view() const {
   view.p99_us = status.loop.lateness.p99_us;
   view.ticks_missing = missing_before_ + (seat_ ? seat_->ticks_missing() : 0);
   view.gate = status.gate_mode;
-  view.fault = status.fault == "none" ? std::string() : status.fault;
+  view.fault = status.fault;
   view.grant = status.grant;
   view.warning = status.warning;
   view.restarts = restarts_;
