@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
+
+#include "core/parse_number.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -28,10 +29,9 @@ Result<TissueSetting> parse_setting(std::string_view text) {
   if (equals == std::string_view::npos || name.find('.') == std::string_view::npos) return malformed();
   const std::string_view digits = text.substr(equals + 1);
   if (digits == kNever) return make_setting(name, std::numeric_limits<double>::infinity());
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) return malformed();
-  return make_setting(name, value);
+  const auto value = parse_number<double>(digits);
+  if (!value) return malformed();
+  return make_setting(name, *value);
 }
 
 std::string name_of(const TissueSetting& setting) {
