@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "core/testing/heap_memory.h"
+
 namespace trocar::bench {
 namespace {
 
@@ -12,14 +14,7 @@ std::atomic<std::size_t> allocations{0};
 
 void* take(std::size_t size, std::size_t alignment) {
   if (is_counting.load(std::memory_order_relaxed)) allocations.fetch_add(1, std::memory_order_relaxed);
-  void* memory = nullptr;
-  if (alignment <= alignof(std::max_align_t)) {
-    memory = std::malloc(size == 0 ? 1 : size);
-  } else if (::posix_memalign(&memory, alignment, size) != 0) {
-    memory = nullptr;
-  }
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
+  return testing::heap_memory(size, alignment);
 }
 
 }  // namespace

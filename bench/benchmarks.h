@@ -29,6 +29,8 @@ Result<std::vector<CaseResult>> run_contact_benchmark(const Options& options);
 Result<std::vector<CaseResult>> run_faults_benchmark(const Options& options);
 /// Fingertip and transducer on the embedded patient: newtons a place, and what a tick costs.
 Result<std::vector<CaseResult>> run_palpation_benchmark();
+/// Batches of ticks to bytes and back.
+Result<std::vector<CaseResult>> run_link_benchmark();
 /// Two live servers, a drawing client and a busy process: rate, lateness, ticks, missed deadlines.
 Result<std::vector<CaseResult>> run_servers_benchmark(const Options& options);
 /// Volumes from tracked freehand sweeps; with the test data against PLUS' own volume.

@@ -6,9 +6,9 @@
 #include <map>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/guide/needle_geometry.h"
 #include "bench/benchmarks.h"
 #include "bench/curve_output.h"
+#include "cases/needle_geometry.h"
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "tasks/needle.h"
@@ -79,7 +79,7 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
   if (needle == tables.needles.end())
     return fail("there is no needle of that name", needle_name, "use a needle of data/needles.toml");
 
-  attempt::PrescribedMotion motion;
+  cases::PrescribedMotion motion;
   motion.line_P = patient->paths.front().line_P;
   motion.speed_mm_per_s = kSpeed_mm_per_s;
   motion.after_mm = kAfter_mm;
@@ -92,20 +92,14 @@ Result<PathCurves> curves_of(std::shared_ptr<const anatomy::VirtualPatient> pati
     haptics::HapticOptions haptic;
     haptic.force_model = model;
     haptic.has_weight_compensation = false;
-    const haptics::NeedleGeometry geometry = attempt::needle_geometry(*needle);
+    const haptics::NeedleGeometry geometry = cases::needle_geometry(*needle);
     TROCAR_TRY(const auto scene, haptics::make_haptic_scene(patient, tables.tissues, geometry, {}, haptic));
-    if (path.pieces.empty()) path.pieces = attempt::pieces_along(*scene, tables.tissues, with_rest);
-    NamedCurve curve{to_string(model), attempt::force_curve(*scene, motion), {}};
-    curve.events = attempt::find_curve_events(curve.points, tables.tissues);
+    if (path.pieces.empty()) path.pieces = cases::pieces_along(*scene, tables.tissues, with_rest);
+    NamedCurve curve{to_string(model), cases::force_curve(*scene, motion), {}};
+    curve.events = cases::find_curve_events(curve.points, tables.tissues);
     path.curves.push_back(std::move(curve));
   }
   return path;
-}
-
-Figures single(double value) {
-  Figures figures;
-  figures.median = value;
-  return figures;
 }
 
 /// One line per puncture, in order; repeated punctures are numbered. In JSON, drop and drop time are separate cases; in
@@ -113,7 +107,7 @@ Figures single(double value) {
 void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is_for_people) {
   for (const NamedCurve& curve : path.curves) {
     std::map<std::string, int> times;
-    for (const attempt::CurveEvent& event : curve.events) {
+    for (const cases::CurveEvent& event : curve.events) {
       const int number = ++times[event.layer];
       std::string name = fmt::format("curves/{}/{}/{}", path.name, curve.name, event.layer);
       if (number > 1) name += fmt::format("-{}", number);
@@ -122,11 +116,11 @@ void add_cases(std::vector<CaseResult>& results, const PathCurves& path, bool is
           fmt::format("peak, device {:.1f} mm deep; then {:.2f} N: {:.2f} N less, nine tenths of it in {:.0f} ms",
                       event.way_mm, event.after_n, event.drop_n(), event.fall_ms);
       if (event.highest_n > event.peak_n + kRise_n) note += fmt::format("; ROSE to {:.2f} N first", event.highest_n);
-      results.push_back({name, "n", single(event.peak_n), {}, note});
+      results.push_back({name, "n", figure_of(event.peak_n), {}, note});
       if (is_for_people) continue;
-      results.push_back({name + "/drop", "n", single(event.drop_n()), {}, ""});
-      results.push_back({name + "/fall", "ms", event.drop_n() > 0.0 ? single(event.fall_ms) : Figures{}, {}, ""});
-      results.push_back({name + "/way", "mm", single(event.way_mm), {}, "of the device past the resting skin"});
+      results.push_back({name + "/drop", "n", figure_of(event.drop_n()), {}, ""});
+      results.push_back({name + "/fall", "ms", event.drop_n() > 0.0 ? figure_of(event.fall_ms) : Figures{}, {}, ""});
+      results.push_back({name + "/way", "mm", figure_of(event.way_mm), {}, "of the device past the resting skin"});
     }
   }
 }

@@ -73,6 +73,12 @@ Figures figures_of(std::vector<double> values) {
   return figures;
 }
 
+Figures figure_of(double value) {
+  Figures figures;
+  figures.median = value;
+  return figures;
+}
+
 config::Json machine_json() {
 #ifdef NDEBUG
   constexpr const char* kBuild = "release";

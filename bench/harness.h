@@ -41,6 +41,8 @@ Figures time_ms(int warm_up, int rounds, const std::function<void()>& work);
 /// Median, p99, p99.9 and maximum of any numbers, by nearest rank. A tail is left empty where fewer values than
 /// resolve it were taken: p99 below 100, p99.9 below 1000.
 Figures figures_of(std::vector<double> values);
+/// A single number: the median.
+Figures figure_of(double value);
 
 /// What a user may ask of a benchmark. An option that a benchmark does not name in Benchmark::options is refused.
 struct Options {

@@ -95,15 +95,9 @@ Result<Pictures> simulated(const anatomy::VirtualPatient& patient, const ultraso
   return pictures;
 }
 
-Figures single(double value) {
-  Figures figures;
-  figures.median = value;
-  return figures;
-}
-
 void add_cases(std::vector<CaseResult>& results, const std::string& name, const ultrasound::PictureFigures& figures) {
   const auto add = [&](const std::string& what, const std::string& unit, double value) {
-    results.push_back({fmt::format("likeness/{}/{}", name, what), unit, single(value), {}, ""});
+    results.push_back({fmt::format("likeness/{}/{}", name, what), unit, figure_of(value), {}, ""});
   };
   for (const int percent : {10, 25, 50, 75, 90, 99})
     add(fmt::format("gray-p{}", percent), "gray", ultrasound::gray_percentile(figures.histogram, percent / 100.0));
@@ -188,7 +182,7 @@ Result<std::vector<CaseResult>> run_likeness_benchmark(const Options& options) {
   if (real) {
     const double moved = ultrasound::earth_mover_distance(real->figures.histogram, synthetic.figures.histogram);
     results.push_back(
-        {"likeness/histogram-moved", "gray", single(moved), {}, "gray levels a pixel, earth mover's distance"});
+        {"likeness/histogram-moved", "gray", figure_of(moved), {}, "gray levels a pixel, earth mover's distance"});
     if (options.print) options.print(table_of(real->figures, synthetic.figures));
   }
   if (!options.out.empty()) TROCAR_TRY_STATUS(write_pictures(options.out, real, synthetic));

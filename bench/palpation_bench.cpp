@@ -10,9 +10,9 @@
 #include <numbers>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
+#include "cases/prepare_case.h"
 #include "haptics/tick.h"
 #include "volume/sampling.h"
 
@@ -163,8 +163,7 @@ Status add_tumour(std::vector<CaseResult>& results, const anatomy::TissueTable& 
   const Vec3 centre(0.0, 20.0, 0.0);
   for (std::size_t n = 0; n < patient->labels.voxels.size(); ++n) {
     const volume::Index3 ijk = geometry.index_of(n);
-    const Vec3 p =
-        geometry.origin_P + Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
+    const Vec3 p = geometry.origin_P + volume::to_vec3(ijk);
     patient->skin_distance_mm.voxels[n] = static_cast<float>(-p.y());
     if (p.y() >= 0.0) patient->labels.voxels[n] = (p - centre).norm() < 10.0 ? 2 : 1;
   }
@@ -239,7 +238,7 @@ void add_time(std::vector<CaseResult>& results, const haptics::HapticScene& scen
 }  // namespace
 
 Result<std::vector<CaseResult>> run_palpation_benchmark() {
-  TROCAR_TRY(const attempt::Case tables, attempt::load_tables({}));
+  TROCAR_TRY(const cases::Case tables, cases::load_tables({}));
   TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, {{512, 512, 119}}));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
   TROCAR_TRY(const auto finger, scene_for(patient, tables.tissues, haptics::Tool::kFinger));

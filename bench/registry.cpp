@@ -36,6 +36,7 @@ const std::vector<Benchmark>& all_benchmarks() {
       {"reconstruct", "volumes from tracked freehand sweeps; real ones against PLUS' own", run_reconstruct_benchmark},
       {"ultrasound", "B-mode frames of the embedded patient while the transducer moves, and what they allocate",
        run_ultrasound_benchmark},
+      {"link", "batches of ticks encoded and decoded, beside a fixed piece of arithmetic", run_link_benchmark},
       {"servers",
        "two live haptic servers, a drawing client and a busy process: lateness, ticks, missed deadlines",
        run_servers_benchmark,

@@ -28,7 +28,7 @@ constexpr double kMsPerS = 1000.0;
 struct Setting {
   std::string name;
   std::string transducer;
-  int looks = 3;
+  int steering_angles = 3;
 };
 
 struct Round {
@@ -159,7 +159,7 @@ Result<std::vector<CaseResult>> run_ultrasound_benchmark(const Options& options)
     TROCAR_TRY(const ultrasound::ProbePlacement placed, ultrasound::place_probe(patient, view, transducer));
     const Pose& X_PT = placed.X_PT;
     ultrasound::Acquisition acquisition = ultrasound::default_acquisition(transducer);
-    acquisition.looks = setting.looks;
+    acquisition.steering_angles = setting.steering_angles;
     const Best best = measure(scene, transducer, X_PT, acquisition);
     if (&setting == settings)
       results.push_back({"calibration/arithmetic", "us", best.calibration, {}, "a fixed loop, after each frame"});

@@ -60,7 +60,7 @@ function(trocar_add_module tier name uses libraries)
     set(generated ${CMAKE_BINARY_DIR}/generated/${name}/detail/${schema_name}_generated.h)
     get_filename_component(generated_folder ${generated} DIRECTORY)
     add_custom_command(OUTPUT ${generated} DEPENDS ${schema} VERBATIM
-      COMMAND ${FLATC} --cpp --scoped-enums -o ${generated_folder} ${schema})
+      COMMAND ${FLATC} --cpp --scoped-enums --reflect-names -o ${generated_folder} ${schema})
     list(APPEND sources ${generated})
   endforeach()
 

@@ -2,23 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <optional>
 #include <string>
-#include <system_error>
+
+#include "core/parse_number.h"
 
 namespace trocar::arguments {
 namespace {
-
-/// Parses a number from the whole text.
-template <class Number>
-std::optional<Number> parse_whole_text(std::string_view text) {
-  Number number{};
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return number;
-}
 
 template <class Number>
 struct Range {
@@ -38,7 +27,7 @@ CLI::Option* restrict_to(CLI::Option* option, Range<Number> range) {
   option->type_name("NUMBER");
   return option->transform(CLI::Validator(
       [range = std::move(range)](std::string& text) {
-        const auto number = parse_whole_text<Number>(text);
+        const auto number = parse_number<Number>(text);
         if (!number || !range.holds(*number))
           return fmt::format("\"{}\" is not a {} from {}", text, range.kind, range.text());
         text = fmt::format("{}", *number);

@@ -2,14 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
 
 #include "anatomy/phantom/phantom.h"
 #include "commands.h"
+#include "core/parse_number.h"
 #include "core/part_of_progress.h"
 #include "io/dicom/dicom_folder.h"
 #include "io/patient/build_from_files.h"
@@ -77,14 +76,10 @@ struct BuildArguments {
 
 Result<std::optional<anatomy::Rescale>> parse_rescale(const std::string& text) {
   if (text.empty()) return std::nullopt;
-  anatomy::Rescale rescale;
-  const char* end = text.data() + text.size();
-  const auto slope = std::from_chars(text.data(), end, rescale.slope);
-  if (slope.ec == std::errc{} && slope.ptr != end && *slope.ptr == ',') {
-    const auto intercept = std::from_chars(slope.ptr + 1, end, rescale.intercept);
-    const bool is_usable = std::isfinite(rescale.slope) && rescale.slope != 0.0 && std::isfinite(rescale.intercept);
-    if (intercept.ec == std::errc{} && intercept.ptr == end && is_usable) return rescale;
-  }
+  const auto slope = find_leading_number<double>(text);
+  const bool is_pair = slope && slope->value != 0.0 && slope->rest.starts_with(',');
+  if (const auto intercept = is_pair ? parse_number<double>(slope->rest.substr(1)) : std::nullopt)
+    return anatomy::Rescale{slope->value, *intercept};
   return fail_usage("--rescale needs two finite numbers, the first not 0", text,
                     "write SLOPE,INTERCEPT such as 1,-1024");
 }

@@ -5,11 +5,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <set>
 
+#include "core/parse_number.h"
 #include "io/sequence/transform_file.h"
 #include "number_option.h"
 #include "patient_option.h"
@@ -48,11 +47,10 @@ Status take_note(const io::TransformNotes& notes, const char* key, double low, d
   const auto note = notes.find(key);
   if (note == notes.end()) return {};
   const auto& text = note->second;
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number))
+  const auto number = parse_number<double>(text);
+  if (!number)
     return fail(fmt::format("{} is not a number: \"{}\"", key, text), where, "correct or delete the comment line");
-  value = std::clamp(number, low, high);
+  value = std::clamp(*number, low, high);
   return {};
 }
 
@@ -86,7 +84,7 @@ Result<ultrasound::Acquisition> gather_acquisition(const ScanArguments& a, const
       take("--focus-mm", a.focus_mm, kLeastFocus_mm, transducer.greatest_depth_mm, "mm", acquisition.focus_mm));
   acquisition.lines = a.lines.value_or(acquisition.lines);
   acquisition.samples = a.samples.value_or(acquisition.samples);
-  acquisition.looks = a.looks.value_or(acquisition.looks);
+  acquisition.steering_angles = a.steering_angles.value_or(acquisition.steering_angles);
   acquisition.planes = a.planes.value_or(acquisition.planes);
   if (acquisition.planes % 2 == 0)
     return fail_usage("--planes must be odd", fmt::format("{}", acquisition.planes), "give 1, 3, 5, 7 or 9");
@@ -159,8 +157,9 @@ void add_scan_options(CLI::App& command, ScanArguments& a) {
   arguments::whole_number_within(
       command.add_option("--planes", a.planes, "Number of elevation planes, an odd number; 5 when left out"), 1, 9);
   arguments::whole_number_within(
-      command.add_option("--looks", a.looks, "Number of compounding angles; 3 when left out, 1 gives full speckle"), 1,
-      5);
+      command.add_option("--looks", a.steering_angles,
+                         "Number of compounding angles; 3 when left out, 1 gives full speckle"),
+      1, 5);
   command
       .add_option(
           "--off", a.off,
@@ -282,7 +281,7 @@ config::Json to_json(const Scan& scan) {
           {"lines", a.lines},
           {"samples", a.samples},
           {"planes", a.planes},
-          {"looks", a.looks}};
+          {"looks", a.steering_angles}};
 }
 
 }  // namespace trocar::cli

@@ -22,7 +22,7 @@ struct ScanArguments {
   std::string pose, view, save_pose;
   std::string transducer;
   std::optional<double> depth_mm, frequency_mhz, focus_mm;
-  std::optional<int> lines, samples, planes, looks;
+  std::optional<int> lines, samples, planes, steering_angles;
   ultrasound::DisplaySettings display;
   std::vector<double> tgc_db;
   std::string gray_map;

@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "anatomy/phantom/phantom.h"
-#include "control/seat_flow.h"
 #include "core/files/data_dir.h"
 #include "core/files/user_folders.h"
 #include "core/version.h"
@@ -22,11 +21,12 @@
 #include "script/benchmark.h"
 #include "script/script_player.h"
 #include "shell/main_window.h"
-#include "shell/trainer_application.h"
+#include "shell/seat_flow.h"
 #include "tasks/task.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/screen_scale.h"
 #include "ui_kit/theme.h"
+#include "ui_kit/trainer_application.h"
 
 namespace {
 

@@ -137,7 +137,7 @@ TEST(Includes, QtBelongsToTheTrainerAlone) {
   EXPECT_NE(verdict("src/high/scene/a.cpp", "#include <QWidget>\n"), "");
 }
 
-TEST(Includes, RoomsOfTheTrainerSeeEachOther) {
+TEST(Includes, FoldersOfTheTrainerAreNamedInTheTrainerOnly) {
   EXPECT_EQ(verdict("apps/trainer/views/a.cpp", "#include \"shell/theme.h\"\n#include \"io/a.h\"\n"), "");
   EXPECT_NE(verdict("apps/cli/a.cpp", "#include \"shell/theme.h\"\n"), "");
 }

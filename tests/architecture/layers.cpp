@@ -268,6 +268,25 @@ std::vector<std::string> check_includes(const Modules& modules, const std::strin
   return complaints;
 }
 
+std::vector<std::string> check_folder_includes(const Modules& folders, const std::string& top, const std::string& path,
+                                               std::string_view source) {
+  if (!path.starts_with(top + "/")) return {};
+  const std::string below = path.substr(top.size() + 1);
+  const std::size_t slash = below.find('/');
+  const std::string folder = below.substr(0, slash);
+  if (slash == std::string::npos || folder == "test") return {};
+  if (!folders.contains(folder)) return {path + ": its folder is not in " + top + "/folders.txt"};
+  const std::set<std::string> allowed = reachable(folders, folder);
+  std::vector<std::string> complaints;
+  for (const Include& include : parse_includes(source)) {
+    const std::string target = include.header.substr(0, include.header.find('/'));
+    if (!include.is_quoted || !folders.contains(target) || allowed.contains(target)) continue;
+    complaints.push_back(path + ":" + std::to_string(include.line) + ": " + include.header + ": folder " + target +
+                         " is not below " + folder + " in " + top + "/folders.txt");
+  }
+  return complaints;
+}
+
 std::vector<std::string> check_module_readme(const std::string& module, std::string_view text) {
   const int count = count_lines(text);
   if (count >= kMinReadmeLines && count <= kMaxReadmeLines) return {};

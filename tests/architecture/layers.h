@@ -38,6 +38,12 @@ std::vector<Include> parse_includes(std::string_view source);
 /// src/TIER/MODULE/..., apps/NAME/..., bench/... or tests/....
 std::vector<std::string> check_includes(const Modules& modules, const std::string& path, std::string_view source);
 
+/// The same for the folders of one program: includes of a file in `top`/FOLDER/... of a folder that `folders` (a list
+/// in the same format, e.g. apps/trainer/folders.txt) does not allow. Files in `top` itself and in `top`/test/ may
+/// include all.
+std::vector<std::string> check_folder_includes(const Modules& folders, const std::string& top, const std::string& path,
+                                               std::string_view source);
+
 /// What is wrong with a module's README.md: it has 10 to 25 lines.
 std::vector<std::string> check_module_readme(const std::string& module, std::string_view text);
 

@@ -151,8 +151,7 @@ TEST(UltrasoundSweep, VolumeOfTheMotorAndOfAHandAgreeInThePatient) {
   std::vector<std::uint8_t> resampled(motor->voxels.size());
   for (std::size_t n = 0; n < resampled.size(); ++n) {
     const volume::Index3 ijk = motor->geometry.index_of(n);
-    const Vec3 p_P = motor->geometry.to_mm(
-        Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p_P = motor->geometry.centre_mm(ijk);
     resampled[n] = volume::sample_nearest(*hand, p_P, std::uint8_t{0});
   }
   EXPECT_GT(volume::correlation(motor->voxels, resampled, volume::ComparedVoxels::kBothAboveZero), 0.8);

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <csignal>
 
-#include "anatomy/phantom/phantom.h"
 #include "attempt.h"
+#include "cases/testing/phantom_case.h"
 #include "core/files/atomic_file.h"
 #include "core/interruption.h"
 #include "haptics/insertion/insertion_law.h"
@@ -22,11 +22,9 @@ namespace {
 class EmbeddedBiopsy : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto patient = anatomy::generate_phantom("abdomen");
-    ASSERT_TRUE(patient.has_value());
-    auto prepared = attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
+    auto prepared = phantom_case("abdomen");
     ASSERT_TRUE(prepared.has_value()) << prepared.error().text();
-    the_case = new attempt::Case(*std::move(prepared));
+    the_case = new cases::Case(*std::move(prepared));
     expert = new Attempt(perform(*the_case, "expert"));
   }
   static void TearDownTestSuite() {
@@ -35,7 +33,7 @@ class EmbeddedBiopsy : public ::testing::Test {
     expert = nullptr;
     the_case = nullptr;
   }
-  static inline attempt::Case* the_case = nullptr;
+  static inline cases::Case* the_case = nullptr;
   static inline Attempt* expert = nullptr;
 };
 
@@ -178,7 +176,7 @@ TEST_F(EmbeddedBiopsy, ReplayKeepsItsSeedsAndRefusesAnotherPatient) {
   EXPECT_EQ(replay.session.info.seed, 42u);
   EXPECT_NEAR(replay.result.outcome.score, first->outcome.score, 1e-6);
 
-  attempt::Case other = *the_case;
+  cases::Case other = *the_case;
   auto changed = std::make_shared<anatomy::VirtualPatient>(*the_case->patient);
   changed->content_hash = "another";
   other.patient = changed;
@@ -206,7 +204,7 @@ TEST_F(EmbeddedBiopsy, SessionExportsOneRowATick) {
 }
 
 /// Runs an attempt in a process of its own that meets trouble at the `moment`-th progress step; gives its exit status.
-int run_in_child(const attempt::Case& the_case, const std::filesystem::path& session, int moment, void (*trouble)()) {
+int run_in_child(const cases::Case& the_case, const std::filesystem::path& session, int moment, void (*trouble)()) {
   const pid_t child = ::fork();
   if (child == 0) {
     handle_interruptions("trocar run");

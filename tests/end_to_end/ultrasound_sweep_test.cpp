@@ -32,8 +32,7 @@ struct SweptPatient {
     for (std::size_t n = 0; n < grid.voxel_count(); ++n) {
       if (volume.gray.voxels[n] == 0) continue;
       const volume::Index3 ijk = grid.index_of(n);
-      const Vec3 p_P =
-          grid.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+      const Vec3 p_P = grid.centre_mm(ijk);
       if (volume::sample_nearest(patient.labels, Vec3(p_P - shift_P), std::uint8_t{0}) != label) continue;
       mean.sum += volume.gray.voxels[n];
       ++mean.voxels;
@@ -59,7 +58,7 @@ Result<SweptPatient> sweep_gallbladder() {
   options.acquisition.lines = 128;
   options.acquisition.samples = 512;
   options.acquisition.planes = 3;
-  options.acquisition.looks = 1;
+  options.acquisition.steering_angles = 1;
   options.display.gain_db = 12.0;
   options.columns = 320;
   options.rows = 240;

@@ -38,6 +38,7 @@ import attacks  # noqa: E402
 from link_client import Client, WHAT, load_scene, pose, set_parameters, simple, wire  # noqa: E402
 
 COMMANDS = wire.SimpleCommandNumber.SimpleCommandNumber
+MODE, FAULT = wire.GateMode.GateMode, wire.GateFault.GateFault
 # The layered patient: the skin is the plane y = -45 mm, the body lies beyond it. The room stands over the entry.
 ROOM = pose([0, 1, 0, 0, 0, -1, -1, 0, 0], [0.0, -175.0, 0.0])
 
@@ -96,7 +97,7 @@ def force_n(client):
 
 def is_on(client):
     status = client.status
-    return status is not None and status.GateMode() == b"on" and status.Fault() == b"none"
+    return status is not None and status.GateMode() == MODE.On and status.Fault() == FAULT.None_
 
 
 def expect(condition, what):

@@ -11,6 +11,8 @@ import flatbuffers
 import trocar.wire.ClientBody
 import trocar.wire.ClientMessage
 import trocar.wire.Command
+import trocar.wire.GateFault
+import trocar.wire.GateMode
 import trocar.wire.Goodbye
 import trocar.wire.Hand
 import trocar.wire.HandTarget

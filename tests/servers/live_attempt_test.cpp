@@ -93,10 +93,12 @@ TEST_F(LiveAttemptTest, StopsTheForcesAndGoesOn) {
   ASSERT_TRUE(wait_deeper(10.0)) << where();
   attempt->stop_forces();
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kStopped));
-  ASSERT_TRUE(wait_for([&] { return attempt->view().servers[0].gate == "off"; })) << attempt->view().servers[0].gate;
+  ASSERT_TRUE(wait_for([&] { return attempt->view().servers[0].gate == telemetry::GateMode::kOff; }))
+      << to_string(attempt->view().servers[0].gate);
   EXPECT_FALSE(attempt->view().banner.empty());
   attempt->resume_forces();
-  ASSERT_TRUE(wait_for([&] { return attempt->view().servers[0].gate == "on"; })) << attempt->view().servers[0].gate;
+  ASSERT_TRUE(wait_for([&] { return attempt->view().servers[0].gate == telemetry::GateMode::kOn; }))
+      << to_string(attempt->view().servers[0].gate);
   ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
   attempt->finish();
   EXPECT_GT(finished().outcome.score, 0.0);
@@ -106,7 +108,7 @@ TEST_F(LiveAttemptTest, StaysStoppedWhenTheServerDiesMeanwhile) {
   start(options());
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->stop_forces();
-  ASSERT_TRUE(wait_for([&] { return attempt->view().servers[0].gate == "off"; }));
+  ASSERT_TRUE(wait_for([&] { return attempt->view().servers[0].gate == telemetry::GateMode::kOff; }));
   const int pid = attempt->view().servers[0].pid;
   ::kill(pid, SIGKILL);
   ASSERT_TRUE(wait_for([&] { return attempt->view().banner.find("resume") != std::string::npos; })) << where();

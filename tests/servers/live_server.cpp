@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "attempt/case/scene_request.h"
+#include "cases/scene_request.h"
 
 namespace trocar::servers_test {
 namespace {
@@ -54,7 +54,7 @@ link::HapticClient connect(const std::string& url, bool wants_control) {
 link::LoadScene layers_scene() {
   link::LoadScene scene;
   scene.patient = "layers-liver";
-  scene.X_PW = attempt::room_in_patient({kEntry_P, kEntry_P + 40.0 * Vec3::UnitY()}, scene.needle_length_mm);
+  scene.X_PW = cases::room_in_patient({kEntry_P, kEntry_P + 40.0 * Vec3::UnitY()}, scene.needle_length_mm);
   return scene;
 }
 
@@ -69,7 +69,8 @@ namespace {
 
 /// A busy machine can make a loop slow: such a fault is reset, as a seat with a simulated device does.
 void reset_slow_loop(link::HapticClient& client) {
-  if (client.view().status.fault == "loop_slow") client.ask(link::ServerCommand::kResetFault, kPatience);
+  if (client.view().status.fault == telemetry::GateFault::kLoopSlow)
+    client.ask(link::ServerCommand::kResetFault, kPatience);
 }
 
 }  // namespace
@@ -83,8 +84,8 @@ void press_on_skin(link::HapticClient& client) {
   ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
   ASSERT_TRUE(wait_for([&] {
     reset_slow_loop(client);
-    return client.view().status.gate_mode == "on";
-  })) << client.view().status.gate_mode;
+    return client.view().status.gate_mode == telemetry::GateMode::kOn;
+  })) << to_string(client.view().status.gate_mode);
   // Slowly: a hand that is thrown at the skin goes through it.
   constexpr double kStep_mm = 0.02, kDeepest_mm = 3.5;
   double depth_mm = -5.0;

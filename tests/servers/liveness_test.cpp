@@ -102,7 +102,7 @@ TEST(Liveness, ForceFadesWhileTheClientIsStoppedAndComesBackSmoothly) {
       last = numbered;
     }
     return last && felt_n(last->sample) > 0.4;
-  })) << watcher.view().status.state;
+  })) << to_string(watcher.view().status.state);
   EXPECT_LT(largest_rise_n, 0.1) << "N in one tick";
 }
 
@@ -128,22 +128,25 @@ TEST(Liveness, AServerThatWasStoppedHasAFaultUntilItIsReset) {
   constexpr double kStopped_s = 0.5;  // twice the hole that a loop may have
   EXPECT_TRUE(wait_for([&] { return client.view().silent_s > kStopped_s; }));
   server.kill(SIGCONT);
-  ASSERT_TRUE(wait_for([&] { return client.view().status.state == "fault"; }));
-  const std::string fault = client.view().status.fault;
-  EXPECT_TRUE(fault == "loop_stalled" || fault == "loop_slow") << fault;  // slow: it came late on a busy machine before
+  ASSERT_TRUE(wait_for([&] { return client.view().status.state == link::ServerState::kFault; }));
+  const telemetry::GateFault fault = client.view().status.fault;
+  EXPECT_TRUE(fault == telemetry::GateFault::kLoopStalled || fault == telemetry::GateFault::kLoopSlow)
+      << to_string(fault);  // slow: it came late on a busy machine before
   EXPECT_TRUE(wait_for([&] {
     const auto newest = client.newest();
     return newest && newest->device_f_n.norm() == 0.0;
   }));
-  EXPECT_TRUE(wait_for(
-      [&] { return client.ask(link::ServerCommand::kResetFault, kPatience) && client.view().status.fault == "none"; }));
+  EXPECT_TRUE(wait_for([&] {
+    return client.ask(link::ServerCommand::kResetFault, kPatience) &&
+           client.view().status.fault == telemetry::GateFault::kNone;
+  }));
 }
 
 TEST(Liveness, AFlightRecordTellsOfAFault) {
   LiveServer server({"--fault", "nan@0.1"});
   link::HapticClient client = connect(server.url());
   ASSERT_TRUE(client.ask(layers_scene(), kPatience));
-  EXPECT_TRUE(wait_for([&] { return client.view().status.state == "fault"; }));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.state == link::ServerState::kFault; }));
   EXPECT_TRUE(wait_for([&] { return client.view().status.warning.find("flight-") != std::string::npos; }))
       << client.view().status.warning;
   int flights = 0;
@@ -157,14 +160,15 @@ TEST(Liveness, AnUnpluggedDeviceIsOpenedAgainOnRequest) {
   LiveServer server({"--fault", "disconnect@0.1+0.2"});
   link::HapticClient client = connect(server.url());
   ASSERT_TRUE(client.ask(layers_scene(), kPatience));
-  ASSERT_TRUE(wait_for([&] { return client.view().status.fault == "device_lost"; }));
+  ASSERT_TRUE(wait_for([&] { return client.view().status.fault == telemetry::GateFault::kDeviceLost; }));
   // The schedule plugs it in again after a while; until then it stays lost.
   ASSERT_TRUE(wait_for([&] {
     return client.ask(link::ServerCommand::kReconnect, kPatience) &&
-           client.ask(link::ServerCommand::kResetFault, kPatience) && client.view().status.fault == "none";
+           client.ask(link::ServerCommand::kResetFault, kPatience) &&
+           client.view().status.fault == telemetry::GateFault::kNone;
   }));
   ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
-  EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.state == link::ServerState::kRunning; }));
 }
 
 TEST(Liveness, EndsOnRequestWithItsFiguresAndExitStatusZero) {

@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <future>
 
-#include "attempt/case/prepare_case.h"
 #include "attempt/live/realtime_session.h"
+#include "attempt/servers/link_connection.h"
 #include "attempt/servers/server_seat.h"
+#include "cases/prepare_case.h"
 #include "servers/live_attempt_lab.h"
 #include "storage/session_file.h"
 
@@ -76,8 +77,8 @@ class Stalls : public LiveAttemptTest {
     auto since = std::chrono::steady_clock::now();
     return wait_for([&] {
       const attempt::AttemptView view = attempt->view();
-      const bool is_well =
-          view.phase == attempt::AttemptPhase::kInBody && view.banner.empty() && view.servers[0].gate == "on";
+      const bool is_well = view.phase == attempt::AttemptPhase::kInBody && view.banner.empty() &&
+                           view.servers[0].gate == telemetry::GateMode::kOn;
       const auto now = std::chrono::steady_clock::now();
       if (!is_well) since = now;
       return now - since > milliseconds(300);
@@ -220,8 +221,10 @@ TEST(SeatStalls, ASeatWaitsForControlThatIsNotFreeYet) {
   ASSERT_TRUE(wait_for([&] { return gone->view().welcome.has_control; }));
   link::ClientOptions options;
   options.endpoint = server.url();
-  auto seat = attempt::ServerSeat::connect(options, kPatience);
-  ASSERT_TRUE(seat) << seat.error().text();
+  auto connection = attempt::connect_by_link(options);
+  ASSERT_TRUE(connection) << connection.error().text();
+  SteadyClock clock;
+  std::optional<attempt::ServerSeat> seat(std::in_place, *std::move(connection), server.url(), kPatience, clock);
   ASSERT_TRUE(wait_for([&] {
     const auto looked = seat->look();
     EXPECT_TRUE(looked) << looked.error().text();
@@ -240,7 +243,7 @@ class RealtimeStalls : public ::testing::Test {
  protected:
   /// `trocar run --realtime` on a thread of its own; a watcher sees how deep its needle is.
   void begin(milliseconds patience) {
-    auto prepared = attempt::prepare_case(abdomen_case()->the_case.patient, {});
+    auto prepared = cases::prepare_case(abdomen_case()->the_case.patient, {});
     ASSERT_TRUE(prepared) << prepared.error().text();
     the_case_.emplace(*std::move(prepared));
     attempt::RunOptions run;
@@ -272,7 +275,7 @@ class RealtimeStalls : public ::testing::Test {
   TemporaryFolder folder_;
   LiveServer server_;
   link::HapticClient watcher_ = connect(server_.url(), false);
-  std::optional<attempt::Case> the_case_;
+  std::optional<cases::Case> the_case_;
   std::future<Result<attempt::RunResult>> result_;
 };
 

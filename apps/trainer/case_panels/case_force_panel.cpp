@@ -13,7 +13,7 @@ namespace {
 
 class ForcePanel final : public CasePanel {
  public:
-  ForcePanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  ForcePanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     text_ = make_label({}, "dim");
     text_->setObjectName(QStringLiteral("case-force-text"));
     text_->setWordWrap(true);
@@ -39,9 +39,9 @@ class ForcePanel final : public CasePanel {
   }
 
   void refresh() override {
-    const auto& preview = desk_.preview();
+    const auto& preview = editor_.preview();
     if (!preview) {
-      text_->setText(!desk_.has_patient() ? tr("Import a patient first.") : to_qt(desk_.preview_error()));
+      text_->setText(!editor_.has_patient() ? tr("Import a patient first.") : to_qt(editor_.preview_error()));
       plot_->set_predicted({});
       plot_->set_bands({});
       table_->setRowCount(0);
@@ -49,16 +49,16 @@ class ForcePanel final : public CasePanel {
     }
     text_->setText(tr("At 10 mm/s along the path; at most %1 N.").arg(preview->highest_n, 0, 'f', 1));
     std::vector<QPointF> curve;
-    for (const attempt::CurvePoint& point : preview->curve)
+    for (const cases::CurvePoint& point : preview->curve)
       if (curve.empty() || point.tip_mm > curve.back().x()) curve.emplace_back(point.tip_mm, point.force_n);
     plot_->set_predicted(std::move(curve));
     std::vector<ForcePlot::Band> bands;
-    for (const attempt::PathPiece& piece : preview->pieces)
+    for (const cases::PathPiece& piece : preview->pieces)
       bands.push_back({piece.from_mm, piece.to_mm, to_qt(piece.name), color_of(piece.name)});
     plot_->set_bands(std::move(bands));
     table_->setRowCount(static_cast<int>(preview->events.size()));
     for (std::size_t n = 0; n < preview->events.size(); ++n) {
-      const attempt::CurveEvent& event = preview->events[n];
+      const cases::CurveEvent& event = preview->events[n];
       const QStringList texts{to_qt(event.layer).replace(QLatin1Char('_'), QLatin1Char(' ')),
                               QString::number(event.way_mm, 'f', 1), QString::number(event.peak_n, 'f', 2)};
       for (int column = 0; column < 3; ++column) {
@@ -71,16 +71,16 @@ class ForcePanel final : public CasePanel {
 
  private:
   QColor color_of(const std::string& name) const {
-    const anatomy::Label* label = desk_.draft().label_table.find(std::string_view(name));
+    const anatomy::Label* label = editor_.draft().label_table.find(std::string_view(name));
     return label != nullptr ? QColor(label->color[0], label->color[1], label->color[2]) : QColor(200, 170, 150);
   }
 
   void jump_to(int row) {
-    const anatomy::NeedlePath* path = case_builder::find_expert_path(desk_.draft());
-    const auto& preview = desk_.preview();
+    const anatomy::NeedlePath* path = case_builder::find_expert_path(editor_.draft());
+    const auto& preview = editor_.preview();
     if (path == nullptr || !preview || row >= static_cast<int>(preview->events.size())) return;
-    Q_EMIT place_wanted(path->line_P.a +
-                        preview->events[static_cast<std::size_t>(row)].way_mm * path->line_P.direction());
+    Q_EMIT place_requested(path->line_P.a +
+                           preview->events[static_cast<std::size_t>(row)].way_mm * path->line_P.direction());
   }
 
   QLabel* text_ = nullptr;
@@ -90,8 +90,8 @@ class ForcePanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_force_panel(case_builder::CaseDesk& desk, QWidget* parent) {
-  return new ForcePanel(desk, parent);
+CasePanel* make_force_panel(case_builder::CaseEditor& editor, QWidget* parent) {
+  return new ForcePanel(editor, parent);
 }
 
 }  // namespace trocar::trainer

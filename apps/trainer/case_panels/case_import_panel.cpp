@@ -24,7 +24,7 @@ QString first_line(const QString& entry) {
 
 class ImportPanel final : public CasePanel {
  public:
-  ImportPanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  ImportPanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     content()->addWidget(make_label(tr("CT, or a complete patient folder"), "dim"));
     ct_ = add_field("case-ct", tr("CT"), tr("Path of a CT: NIfTI, NRRD, MHA, a DICOM folder; or a patient folder"));
     add_choosers();
@@ -55,11 +55,11 @@ class ImportPanel final : public CasePanel {
   }
 
   void refresh() override {
-    const bool is_importing = desk_.work() == case_builder::CaseDesk::Work::kImporting;
+    const bool is_importing = editor_.work() == case_builder::CaseEditor::Work::kImporting;
     start_->setEnabled(!is_importing);
     if (was_importing_ && !is_importing) {
-      has_failed_ = desk_.is_error();
-      if (desk_.draft().imported != before_) remember();  // neither failed nor cancelled
+      has_failed_ = editor_.is_error();
+      if (editor_.draft().imported != before_) remember();  // neither failed nor cancelled
       fill_recent();
     }
     was_importing_ = is_importing;
@@ -129,12 +129,12 @@ class ImportPanel final : public CasePanel {
     for (const QString& path : labels_->text().split(QLatin1Char(';')))
       if (!path.trimmed().isEmpty()) request.labels.push_back(to_std(path.trimmed()));
     request.label_map = to_std(map_->currentText().trimmed());
-    if (desk_.has_patient()) request.task = desk_.draft().base.name;
+    if (editor_.has_patient()) request.task = editor_.draft().base.name;
     imported_ =
         QStringList{ct_->text().trimmed(), labels_->text().trimmed(), map_->currentText()}.join(QLatin1Char('\n'));
     has_failed_ = false;
-    before_ = desk_.draft().imported;
-    desk_.import_patient(std::move(request));
+    before_ = editor_.draft().imported;
+    editor_.import_patient(std::move(request));
   }
 
   /// Stores the fields of the import.
@@ -177,8 +177,8 @@ class ImportPanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_import_panel(case_builder::CaseDesk& desk, QWidget* parent) {
-  return new ImportPanel(desk, parent);
+CasePanel* make_import_panel(case_builder::CaseEditor& editor, QWidget* parent) {
+  return new ImportPanel(editor, parent);
 }
 
 }  // namespace trocar::trainer

@@ -22,7 +22,7 @@ enum Column { kName, kTissue, kVolume, kColumns };
 
 class LabelsPanel final : public CasePanel {
  public:
-  LabelsPanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  LabelsPanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     add_opacity();
     add_table();
     add_editor();
@@ -100,22 +100,22 @@ class LabelsPanel final : public CasePanel {
     tissue_->setObjectName(QStringLiteral("case-label-tissue"));
     tissue_->setAccessibleName(tr("Tissue of the label"));
     tissue_->setToolTip(tr("Mechanical tissue of the selected label"));
-    for (const anatomy::TissueParams& tissue : desk_.tissues().tissues)
+    for (const anatomy::TissueParams& tissue : editor_.tissues().tissues)
       if (tissue.name != "air") tissue_->addItem(to_qt(tissue.name));
     content()->addWidget(tissue_);
     connect(name_, &QLineEdit::editingFinished, this, [this] {
       const anatomy::Label* label = selected();
       if (is_refreshing_ || label == nullptr || name_->text() == to_qt(label->name)) return;
-      if (!desk_.edit(case_builder::rename_label(desk_.draft(), label->id, to_std(name_->text().trimmed())),
-                      "rename a label")) {
+      if (!editor_.edit(case_builder::rename_label(editor_.draft(), label->id, to_std(name_->text().trimmed())),
+                        "rename a label")) {
         name_->setText(to_qt(label->name));
       }
     });
     connect(tissue_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] {
       const anatomy::Label* label = selected();
       if (is_refreshing_ || label == nullptr || tissue_->currentIndex() < 0) return;
-      desk_.edit(case_builder::set_label_tissue(desk_.draft(), label->id, to_std(tissue_->currentText())),
-                 "change a tissue");
+      editor_.edit(case_builder::set_label_tissue(editor_.draft(), label->id, to_std(tissue_->currentText())),
+                   "change a tissue");
     });
     connect(color_, &QPushButton::clicked, this, [this] { choose_color(); });
   }
@@ -127,19 +127,19 @@ class LabelsPanel final : public CasePanel {
     const QColor before(label->color[0], label->color[1], label->color[2]);
     const QColor color = QColorDialog::getColor(before, this, tr("Colour of %1").arg(to_qt(label->name)));
     if (!color.isValid()) return;
-    desk_.edit(
-        case_builder::set_label_color(desk_.draft(), id,
+    editor_.edit(
+        case_builder::set_label_color(editor_.draft(), id,
                                       {static_cast<std::uint8_t>(color.red()), static_cast<std::uint8_t>(color.green()),
                                        static_cast<std::uint8_t>(color.blue())}),
         "change a colour");
   }
 
   void fill_table() {
-    const std::vector<anatomy::Label>& labels = desk_.draft().label_table.labels;
+    const std::vector<anatomy::Label>& labels = editor_.draft().label_table.labels;
     table_->setRowCount(static_cast<int>(labels.size()));
     std::map<std::uint8_t, double> volumes;
-    if (desk_.has_patient())
-      for (const anatomy::LabelStatistics& s : desk_.draft().imported->statistics) volumes[s.id] = s.volume_ml;
+    if (editor_.has_patient())
+      for (const anatomy::LabelStatistics& s : editor_.draft().imported->statistics) volumes[s.id] = s.volume_ml;
     for (std::size_t n = 0; n < labels.size(); ++n) {
       const anatomy::Label& label = labels[n];
       const int row = static_cast<int>(n);
@@ -167,7 +167,7 @@ class LabelsPanel final : public CasePanel {
   const anatomy::Label* selected() const {
     const int row = table_->currentRow();
     if (row < 0 || table_->item(row, kName) == nullptr) return nullptr;
-    return desk_.draft().label_table.find(id_of(row));
+    return editor_.draft().label_table.find(id_of(row));
   }
 
   void show_selected() {
@@ -181,8 +181,8 @@ class LabelsPanel final : public CasePanel {
 
   void jump_to(int row) {
     const std::uint8_t id = id_of(row);
-    for (const anatomy::LabelStatistics& s : desk_.draft().imported->statistics)
-      if (s.id == id && s.voxels > 0) Q_EMIT place_wanted(s.centroid_P);
+    for (const anatomy::LabelStatistics& s : editor_.draft().imported->statistics)
+      if (s.id == id && s.voxels > 0) Q_EMIT place_requested(s.centroid_P);
   }
 
   QTableWidget* table_ = nullptr;
@@ -194,8 +194,8 @@ class LabelsPanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_labels_panel(case_builder::CaseDesk& desk, QWidget* parent) {
-  return new LabelsPanel(desk, parent);
+CasePanel* make_labels_panel(case_builder::CaseEditor& editor, QWidget* parent) {
+  return new LabelsPanel(editor, parent);
 }
 
 }  // namespace trocar::trainer

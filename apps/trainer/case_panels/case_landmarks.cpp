@@ -14,7 +14,7 @@
 
 namespace trocar::trainer {
 
-CaseLandmarks::CaseLandmarks(case_builder::CaseDesk& desk, QWidget* parent) : QWidget(parent), desk_(desk) {
+CaseLandmarks::CaseLandmarks(case_builder::CaseEditor& editor, QWidget* parent) : QWidget(parent), editor_(editor) {
   auto* content = new QVBoxLayout(this);
   content->setContentsMargins(0, 8, 0, 0);
   content->setSpacing(8);
@@ -39,7 +39,7 @@ void CaseLandmarks::add_naming() {
   pick_ = make_button("case-landmark-pick", tr("Place by click"),
                       tr("Click in a slice, or double-click in 3D; click again to move it"), QStringLiteral("Ctrl+L"));
   pick_->setCheckable(true);
-  connect(pick_, &QPushButton::clicked, this, &CaseLandmarks::picking_wanted);
+  connect(pick_, &QPushButton::clicked, this, &CaseLandmarks::picking_requested);
   layout()->addWidget(pick_);
 }
 
@@ -54,7 +54,7 @@ void CaseLandmarks::add_list() {
   list_->installEventFilter(this);
   const auto jump = [this](const QListWidgetItem* item) {
     const auto row = static_cast<std::size_t>(list_->row(item));
-    if (row < desk_.draft().landmarks.size()) Q_EMIT place_wanted(desk_.draft().landmarks[row].p_P);
+    if (row < editor_.draft().landmarks.size()) Q_EMIT place_requested(editor_.draft().landmarks[row].p_P);
   };
   connect(list_, &QListWidget::itemClicked, this, jump);
   connect(list_, &QListWidget::itemActivated, this, jump);
@@ -94,14 +94,14 @@ void CaseLandmarks::show_picking(bool is_on) {
 void CaseLandmarks::rename(int row) {
   const std::string name = to_std(list_->item(row)->text().trimmed());
   const auto at = static_cast<std::size_t>(row);
-  if (at >= desk_.draft().landmarks.size() || name == desk_.draft().landmarks[at].name) return refresh();
-  if (!desk_.edit(case_builder::rename_landmark(desk_.draft(), at, name), "rename a landmark")) refresh();
+  if (at >= editor_.draft().landmarks.size() || name == editor_.draft().landmarks[at].name) return refresh();
+  if (!editor_.edit(case_builder::rename_landmark(editor_.draft(), at, name), "rename a landmark")) refresh();
 }
 
 void CaseLandmarks::remove_current() {
   if (list_->currentRow() < 0) return;
-  desk_.edit(case_builder::remove_landmark(desk_.draft(), static_cast<std::size_t>(list_->currentRow())),
-             "remove a landmark");
+  editor_.edit(case_builder::remove_landmark(editor_.draft(), static_cast<std::size_t>(list_->currentRow())),
+               "remove a landmark");
 }
 
 bool CaseLandmarks::eventFilter(QObject* watched, QEvent* event) {
@@ -115,7 +115,7 @@ bool CaseLandmarks::eventFilter(QObject* watched, QEvent* event) {
 
 void CaseLandmarks::refresh() {
   is_refreshing_ = true;
-  const auto& landmarks = desk_.draft().landmarks;
+  const auto& landmarks = editor_.draft().landmarks;
   const int current = list_->currentRow();
   while (list_->count() > static_cast<int>(landmarks.size())) delete list_->takeItem(list_->count() - 1);
   for (std::size_t n = 0; n < landmarks.size(); ++n) {

@@ -3,7 +3,7 @@
 #include <QWidget>
 #include <string>
 
-#include "case_builder/case_desk.h"
+#include "case_builder/case_editor.h"
 #include "geometry/pose.h"
 
 class QComboBox;
@@ -19,7 +19,7 @@ class CaseLandmarks : public QWidget {
   Q_OBJECT
 
  public:
-  explicit CaseLandmarks(case_builder::CaseDesk& desk, QWidget* parent = nullptr);
+  explicit CaseLandmarks(case_builder::CaseEditor& editor, QWidget* parent = nullptr);
 
   void refresh();
   void show_picking(bool is_on);
@@ -27,10 +27,10 @@ class CaseLandmarks : public QWidget {
   std::string name() const;
 
  Q_SIGNALS:
-  void picking_wanted(bool is_on);
+  void picking_requested(bool is_on);
   /// The name that the tool places is another one.
   void name_changed();
-  void place_wanted(const trocar::Vec3& p_P);
+  void place_requested(const trocar::Vec3& p_P);
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
@@ -42,7 +42,7 @@ class CaseLandmarks : public QWidget {
   void rename(int row);
   void remove_current();
 
-  case_builder::CaseDesk& desk_;
+  case_builder::CaseEditor& editor_;
   QComboBox* name_ = nullptr;
   QPushButton* pick_ = nullptr;
   QListWidget* list_ = nullptr;

@@ -4,8 +4,8 @@
 
 namespace trocar::trainer {
 
-CasePanel::CasePanel(case_builder::CaseDesk& desk, QWidget* parent)
-    : QWidget(parent), desk_(desk), content_(new QVBoxLayout(this)) {
+CasePanel::CasePanel(case_builder::CaseEditor& editor, QWidget* parent)
+    : QWidget(parent), editor_(editor), content_(new QVBoxLayout(this)) {
   content_->setContentsMargins(0, 0, 0, 0);
   content_->setSpacing(8);
 }

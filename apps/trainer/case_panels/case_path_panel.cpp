@@ -13,7 +13,7 @@ namespace {
 
 class PathPanel final : public CasePanel {
  public:
-  PathPanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  PathPanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     content()->addWidget(make_label(tr("Entry zone"), "heading"));
     add_zone();
     content()->addSpacing(8);
@@ -24,19 +24,19 @@ class PathPanel final : public CasePanel {
 
   void refresh() override {
     is_refreshing_ = true;
-    const tasks::Task& task = desk_.draft().task;
+    const tasks::Task& task = editor_.draft().task;
     zone_text_->setText(task.entry_zone
                             ? tr("Entry points within %1 mm get full points.").arg(task.entry_zone->radius_mm)
                             : tr("No zone: the entry point is compared with the expert's."));
     if (task.entry_zone && !radius_->hasFocus()) radius_->setValue(task.entry_zone->radius_mm);
     no_zone_->setEnabled(task.entry_zone.has_value());
-    const anatomy::NeedlePath* path = case_builder::find_expert_path(desk_.draft());
+    const anatomy::NeedlePath* path = case_builder::find_expert_path(editor_.draft());
     no_path_->setEnabled(path != nullptr);
     path_text_->setText(
         path != nullptr
             ? tr("%1 mm from the skin to the end position of the tip.").arg(path->line_P.length_mm(), 0, 'f', 0)
             : tr("No path: it is planned each time the case is opened."));
-    plan_->setEnabled(desk_.has_patient() && desk_.work() == case_builder::CaseDesk::Work::kNone);
+    plan_->setEnabled(editor_.has_patient() && editor_.work() == case_builder::CaseEditor::Work::kNone);
     is_refreshing_ = false;
   }
 
@@ -52,7 +52,7 @@ class PathPanel final : public CasePanel {
     QPushButton* button = make_button(name, text, tooltip, keys);
     button->setCheckable(true);
     connect(button, &QPushButton::clicked, this,
-            [this, click](bool is_on) { Q_EMIT click_wanted(is_on ? click : CaseClick::kLook); });
+            [this, click](bool is_on) { Q_EMIT click_requested(is_on ? click : CaseClick::kLook); });
     return button;
   }
 
@@ -84,13 +84,13 @@ class PathPanel final : public CasePanel {
                            tr("The entry point is then compared with the expert's path only"));
     content()->addWidget(no_zone_);
     connect(radius_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, [this](double radius_mm) {
-      const auto& zone = desk_.draft().task.entry_zone;
+      const auto& zone = editor_.draft().task.entry_zone;
       if (is_refreshing_ || !zone) return;
-      desk_.edit(case_builder::set_entry_zone(desk_.draft(), zone->centre_P, radius_mm), "change the entry zone",
-                 "zone radius");
+      editor_.edit(case_builder::set_entry_zone(editor_.draft(), zone->centre_P, radius_mm), "change the entry zone",
+                   "zone radius");
     });
     connect(no_zone_, &QPushButton::clicked, this,
-            [this] { desk_.edit(case_builder::clear_entry_zone(desk_.draft()), "remove the entry zone"); });
+            [this] { editor_.edit(case_builder::clear_entry_zone(editor_.draft()), "remove the entry zone"); });
   }
 
   void add_path() {
@@ -111,9 +111,9 @@ class PathPanel final : public CasePanel {
     no_path_ =
         make_button("case-path-clear", tr("Remove path"), tr("The path is then planned each time the case is opened"));
     content()->addWidget(no_path_);
-    connect(plan_, &QPushButton::clicked, this, [this] { desk_.plan_path(); });
+    connect(plan_, &QPushButton::clicked, this, [this] { editor_.plan_path(); });
     connect(no_path_, &QPushButton::clicked, this,
-            [this] { desk_.edit(case_builder::clear_expert_path(desk_.draft()), "remove the path"); });
+            [this] { editor_.edit(case_builder::clear_expert_path(editor_.draft()), "remove the path"); });
   }
 
   QPushButton* zone_ = nullptr;
@@ -129,8 +129,8 @@ class PathPanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_path_panel(case_builder::CaseDesk& desk, QWidget* parent) {
-  return new PathPanel(desk, parent);
+CasePanel* make_path_panel(case_builder::CaseEditor& editor, QWidget* parent) {
+  return new PathPanel(editor, parent);
 }
 
 }  // namespace trocar::trainer

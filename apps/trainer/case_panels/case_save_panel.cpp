@@ -16,30 +16,30 @@ namespace {
 
 class SavePanel final : public CasePanel {
  public:
-  SavePanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  SavePanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     name_ = add_line("case-name", tr("Name"), tr("Name shown to trainees in the list of cases"));
     connect(name_, &QLineEdit::textEdited, this, [this](const QString& text) {
-      case_builder::CaseDraft next = desk_.draft();
+      case_builder::CaseDraft next = editor_.draft();
       next.name = to_std(text);
-      desk_.edit(std::move(next), "name the case", "name");
+      editor_.edit(std::move(next), "name the case", "name");
     });
     description_ =
         add_text("case-description", tr("Description"), tr("Description shown to trainees before they begin"));
     connect(description_, &QPlainTextEdit::textChanged, this, [this] {
       if (is_refreshing_) return;
-      case_builder::CaseDraft next = desk_.draft();
+      case_builder::CaseDraft next = editor_.draft();
       next.description = to_std(description_->toPlainText());
-      desk_.edit(std::move(next), "describe the case", "description");
+      editor_.edit(std::move(next), "describe the case", "description");
     });
     provenance_ = add_text("case-provenance", tr("Source of the data, one line each"),
                            tr("Data set, licence, who made the labels"));
     connect(provenance_, &QPlainTextEdit::textChanged, this, [this] {
       if (is_refreshing_) return;
-      case_builder::CaseDraft next = desk_.draft();
+      case_builder::CaseDraft next = editor_.draft();
       next.provenance.clear();
       for (const QString& line : provenance_->toPlainText().split(QLatin1Char('\n')))
         if (!line.trimmed().isEmpty()) next.provenance.push_back(to_std(line.trimmed()));
-      desk_.edit(std::move(next), "say where it comes from", "provenance");
+      editor_.edit(std::move(next), "say where it comes from", "provenance");
     });
     add_folder();
     content()->addStretch();
@@ -47,7 +47,7 @@ class SavePanel final : public CasePanel {
 
   void refresh() override {
     is_refreshing_ = true;
-    const case_builder::CaseDraft& draft = desk_.draft();
+    const case_builder::CaseDraft& draft = editor_.draft();
     if (!name_->hasFocus()) name_->setText(to_qt(draft.name));
     if (!description_->hasFocus() && description_->toPlainText() != to_qt(draft.description))
       description_->setPlainText(to_qt(draft.description));
@@ -55,8 +55,8 @@ class SavePanel final : public CasePanel {
     for (const std::string& line : draft.provenance) lines << to_qt(line);
     if (!provenance_->hasFocus() && provenance_->toPlainText() != lines.join(QLatin1Char('\n')))
       provenance_->setPlainText(lines.join(QLatin1Char('\n')));
-    save_->setEnabled(desk_.has_patient() && desk_.work() == case_builder::CaseDesk::Work::kNone);
-    open_->setEnabled(desk_.is_saved());
+    save_->setEnabled(editor_.has_patient() && editor_.work() == case_builder::CaseEditor::Work::kNone);
+    open_->setEnabled(editor_.is_saved());
     is_refreshing_ = false;
   }
 
@@ -106,14 +106,14 @@ class SavePanel final : public CasePanel {
     });
     connect(save_, &QPushButton::clicked, this, [this] { save(); });
     connect(folder_, &QLineEdit::returnPressed, this, [this] { save(); });
-    connect(open_, &QPushButton::clicked, this, [this] { Q_EMIT case_opened(to_qt(desk_.saved_folder().string())); });
+    connect(open_, &QPushButton::clicked, this, [this] { Q_EMIT case_opened(to_qt(editor_.saved_folder().string())); });
   }
 
   void save() {
     case_builder::SaveOptions options;
     options.folder = to_std(folder_->text().trimmed());
     options.overwrites = replaces_->isChecked();
-    desk_.save(std::move(options));
+    editor_.save(std::move(options));
   }
 
   QLineEdit* name_ = nullptr;
@@ -127,8 +127,8 @@ class SavePanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_save_panel(case_builder::CaseDesk& desk, QWidget* parent) {
-  return new SavePanel(desk, parent);
+CasePanel* make_save_panel(case_builder::CaseEditor& editor, QWidget* parent) {
+  return new SavePanel(editor, parent);
 }
 
 }  // namespace trocar::trainer

@@ -24,7 +24,7 @@ QString name_of(const tasks::RiskStructure& risk) {
 
 class TargetPanel final : public CasePanel {
  public:
-  TargetPanel(case_builder::CaseDesk& desk, QWidget* parent) : CasePanel(desk, parent) {
+  TargetPanel(case_builder::CaseEditor& editor, QWidget* parent) : CasePanel(editor, parent) {
     add_template();
     add_target();
     auto* tabs = new QTabWidget;
@@ -36,7 +36,7 @@ class TargetPanel final : public CasePanel {
 
   void refresh() override {
     is_refreshing_ = true;
-    const case_builder::CaseDraft& draft = desk_.draft();
+    const case_builder::CaseDraft& draft = editor_.draft();
     template_->setCurrentIndex(template_->findData(to_qt(draft.base.name)));
     fill_labels();
     target_->setCurrentIndex(std::max(0, target_->findData(to_qt(draft.task.target_label))));
@@ -76,11 +76,11 @@ class TargetPanel final : public CasePanel {
   void add_template() {
     template_ =
         add_box("case-template", tr("Task, as a template"), tr("Limits, scoring and risks are copied from this task"));
-    for (const tasks::Task& task : desk_.templates()) template_->addItem(to_qt(task.title), to_qt(task.name));
+    for (const tasks::Task& task : editor_.templates()) template_->addItem(to_qt(task.title), to_qt(task.name));
     connect(template_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int row) {
       if (is_refreshing_ || row < 0) return;
-      desk_.edit(case_builder::use_template(desk_.draft(), desk_.templates()[static_cast<std::size_t>(row)]),
-                 "choose a template");
+      editor_.edit(case_builder::use_template(editor_.draft(), editor_.templates()[static_cast<std::size_t>(row)]),
+                   "choose a template");
     });
   }
 
@@ -88,8 +88,8 @@ class TargetPanel final : public CasePanel {
     target_ = add_box("case-target-label", tr("Target"), tr("The target structure"));
     connect(target_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this](int row) {
       if (is_refreshing_ || row < 0) return;
-      desk_.edit(case_builder::set_target_label(desk_.draft(), to_std(target_->currentData().toString())),
-                 "choose the target");
+      editor_.edit(case_builder::set_target_label(editor_.draft(), to_std(target_->currentData().toString())),
+                   "choose the target");
     });
     pick_ = make_button("case-target-pick", tr("Click a point"),
                         tr("Click the target in a slice, or double click it in 3D"), QStringLiteral("Ctrl+T"));
@@ -98,7 +98,7 @@ class TargetPanel final : public CasePanel {
     where_ = make_label({}, "dim");
     content()->addWidget(where_);
     connect(pick_, &QPushButton::clicked, this,
-            [this](bool is_on) { Q_EMIT click_wanted(is_on ? CaseClick::kTarget : CaseClick::kLook); });
+            [this](bool is_on) { Q_EMIT click_requested(is_on ? CaseClick::kTarget : CaseClick::kLook); });
   }
 
   QWidget* make_risks() {
@@ -112,11 +112,11 @@ class TargetPanel final : public CasePanel {
   }
 
   QWidget* make_landmarks() {
-    landmarks_ = new CaseLandmarks(desk_);
-    connect(landmarks_, &CaseLandmarks::picking_wanted, this,
-            [this](bool is_on) { Q_EMIT click_wanted(is_on ? CaseClick::kLandmark : CaseClick::kLook); });
+    landmarks_ = new CaseLandmarks(editor_);
+    connect(landmarks_, &CaseLandmarks::picking_requested, this,
+            [this](bool is_on) { Q_EMIT click_requested(is_on ? CaseClick::kLandmark : CaseClick::kLook); });
     connect(landmarks_, &CaseLandmarks::name_changed, this, &CasePanel::click_name_changed);
-    connect(landmarks_, &CaseLandmarks::place_wanted, this, &CasePanel::place_wanted);
+    connect(landmarks_, &CaseLandmarks::place_requested, this, &CasePanel::place_requested);
     return landmarks_;
   }
 
@@ -174,8 +174,8 @@ class TargetPanel final : public CasePanel {
     connect(add, &QPushButton::clicked, this, [this] { add_risk(); });
     connect(remove, &QPushButton::clicked, this, [this] {
       if (table_->currentRow() >= 0)
-        desk_.edit(case_builder::remove_risk(desk_.draft(), static_cast<std::size_t>(table_->currentRow())),
-                   "remove a risk");
+        editor_.edit(case_builder::remove_risk(editor_.draft(), static_cast<std::size_t>(table_->currentRow())),
+                     "remove a risk");
     });
   }
 
@@ -183,13 +183,13 @@ class TargetPanel final : public CasePanel {
     const std::string name = to_std(structure_->currentData().toString());
     if (name.empty()) return;
     tasks::RiskStructure risk;
-    (desk_.draft().label_table.find(std::string_view(name)) != nullptr ? risk.label : risk.tissue) = name;
-    desk_.edit(case_builder::set_risk(desk_.draft(), risk), "add a risk");
+    (editor_.draft().label_table.find(std::string_view(name)) != nullptr ? risk.label : risk.tissue) = name;
+    editor_.edit(case_builder::set_risk(editor_.draft(), risk), "add a risk");
   }
 
   const tasks::RiskStructure* selected() const {
     const int row = table_->currentRow();
-    const auto& risks = desk_.draft().task.risks;
+    const auto& risks = editor_.draft().task.risks;
     return row >= 0 && row < static_cast<int>(risks.size()) ? &risks[static_cast<std::size_t>(row)] : nullptr;
   }
 
@@ -211,19 +211,19 @@ class TargetPanel final : public CasePanel {
     tasks::RiskStructure next = *risk;
     next.margin_mm = margin_->value();
     next.penalty = penalty_->value();
-    desk_.edit(case_builder::set_risk(desk_.draft(), next), "change a risk", "risk " + risk->tissue + risk->label);
+    editor_.edit(case_builder::set_risk(editor_.draft(), next), "change a risk", "risk " + risk->tissue + risk->label);
   }
 
   /// Labels of the patient; the first entry selects the tissues of the template.
   void fill_labels() {
     QStringList names;
-    for (const anatomy::Label& label : desk_.draft().label_table.labels) names << to_qt(label.name);
+    for (const anatomy::Label& label : editor_.draft().label_table.labels) names << to_qt(label.name);
     if (names == shown_labels_ && target_->count() > 0) return;
     shown_labels_ = names;
     target_->clear();
     target_->addItem(tr("as in the task"), QString());
     structure_->clear();
-    for (const anatomy::TissueParams& tissue : desk_.tissues().tissues)
+    for (const anatomy::TissueParams& tissue : editor_.tissues().tissues)
       if (tissue.name != "air" && tissue.name != "skin")
         structure_->addItem(tr("all %1").arg(to_qt(tissue.name)), to_qt(tissue.name));
     for (const QString& name : names) {
@@ -233,7 +233,7 @@ class TargetPanel final : public CasePanel {
   }
 
   void fill_table() {
-    const auto& risks = desk_.draft().task.risks;
+    const auto& risks = editor_.draft().task.risks;
     table_->setRowCount(static_cast<int>(risks.size()));
     for (std::size_t n = 0; n < risks.size(); ++n) {
       const QStringList texts{name_of(risks[n]), tr("%1 mm").arg(risks[n].margin_mm),
@@ -262,8 +262,8 @@ class TargetPanel final : public CasePanel {
 
 }  // namespace
 
-CasePanel* make_target_panel(case_builder::CaseDesk& desk, QWidget* parent) {
-  return new TargetPanel(desk, parent);
+CasePanel* make_target_panel(case_builder::CaseEditor& editor, QWidget* parent) {
+  return new TargetPanel(editor, parent);
 }
 
 }  // namespace trocar::trainer

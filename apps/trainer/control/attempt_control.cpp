@@ -14,8 +14,8 @@
 #include "views/patient/patient_view.h"
 #include "views/plots/force_plot.h"
 #include "views/ultrasound/ultrasound_view.h"
-#include "workspace/desk.h"
 #include "workspace/shot_display.h"
+#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
@@ -53,7 +53,7 @@ QString phase_text(const attempt::AttemptView& view) {
   return {};
 }
 
-bool is_risk(const attempt::Case& the_case, const attempt::AttemptEvent& event) {
+bool is_risk(const cases::Case& the_case, const attempt::AttemptEvent& event) {
   if (event.kind != telemetry::EventKind::kEnter) return false;
   const anatomy::Label* label = the_case.patient->label_table.find(std::string_view(event.name));
   return label != nullptr && find_risk(the_case.task, *label) != nullptr;
@@ -61,7 +61,7 @@ bool is_risk(const attempt::Case& the_case, const attempt::AttemptEvent& event) 
 
 }  // namespace
 
-AttemptControl::AttemptControl(std::shared_ptr<const attempt::OpenCase> open, const SeatChoice& choice,
+AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, const SeatChoice& choice,
                                attempt::AttemptOptions options, std::shared_ptr<attempt::SeatServers> servers,
                                WorkPage& page)
     : open_(std::move(open)),
@@ -74,61 +74,60 @@ AttemptControl::AttemptControl(std::shared_ptr<const attempt::OpenCase> open, co
               attempt::is_moved_by_hand_targets(choice.probe_device)},
       keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
-  page_.desk().show_help(choice_.difficulty);  // the replay of the last attempt showed all
-  page_.desk().set_tip_hidden(is_tip_hidden());
+  page_.workspace().show_help(choice_.difficulty);  // the replay of the last attempt showed all
+  page_.workspace().set_tip_hidden(is_tip_hidden());
   connect_panel();
-  ForcePlot& plot = page_.desk().forces();
+  ForcePlot& plot = page_.forces();
   plot.clear();
   plot.set_bands(is_exam() ? std::vector<ForcePlot::Band>{} : force_bands(*open_));
   plot.set_reference({});
   plot.set_cursor({});
   plot.set_predicted(is_exam() ? std::vector<QPointF>{} : predicted_curve(*open_));
   // A full-quality picture takes long without a graphics card: needle motion cancels it.
-  page_.desk().view_3d().set_interrupt([this] {
+  page_.view_3d().set_interrupt([this] {
     constexpr double kMoved_mm = 0.5;
     return (attempt_.view().needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
   });
   page_.puncture().begin(kFullForce_n, choice_.difficulty == Difficulty::kGuided);
-  take(ToolInHand::kNeedle);
+  take(ActiveTool::kNeedle);
 }
 
 AttemptControl::~AttemptControl() {
-  page_.desk().view_3d().set_interrupt({});
-  page_.desk().set_tip_hidden(false);
+  page_.view_3d().set_interrupt({});
+  page_.workspace().set_tip_hidden(false);
   gestures_.unwatch();
 }
 
 void AttemptControl::connect_panel() {
   PuncturePanel& panel = page_.puncture();
-  connect(&panel, &PuncturePanel::hand_wanted, this, &AttemptControl::take);
-  connect(&panel, &PuncturePanel::clamp_wanted, this, &AttemptControl::toggle_clamp);
-  connect(&panel, &PuncturePanel::aim_wanted, this, &AttemptControl::aim);
-  connect(&panel, &PuncturePanel::fire_wanted, this, [this] { attempt_.fire(); });
-  connect(&panel, &PuncturePanel::end_wanted, this, &AttemptControl::ask_to_end);
+  connect(&panel, &PuncturePanel::tool_requested, this, &AttemptControl::take);
+  connect(&panel, &PuncturePanel::clamp_requested, this, &AttemptControl::toggle_clamp);
+  connect(&panel, &PuncturePanel::aim_requested, this, &AttemptControl::aim);
+  connect(&panel, &PuncturePanel::fire_requested, this, [this] { attempt_.fire(); });
+  connect(&panel, &PuncturePanel::end_requested, this, &AttemptControl::ask_to_end);
   connect(&panel, &PuncturePanel::confirmed, this,
           [this] { question_ == Question::kEnd ? attempt_.finish() : Q_EMIT close_confirmed(); });
   connect(&gestures_, &ToolGestures::gestured, this, &AttemptControl::gesture);
-  connect(&gestures_, &ToolGestures::key_struck, this, &AttemptControl::strike);
-  connect(&gestures_, &ToolGestures::taken, &panel, &PuncturePanel::show_hand);
-  Desk& desk = page_.desk();
-  gestures_.watch(desk.view_3d(), [this] { return scale_of_3d(); });
-  gestures_.watch(desk.ultrasound(), [this] { return scale_of_ultrasound(); });
+  connect(&gestures_, &ToolGestures::key_pressed, this, &AttemptControl::handle_key);
+  connect(&gestures_, &ToolGestures::taken, &panel, &PuncturePanel::show_active_tool);
+  gestures_.watch(page_.view_3d(), [this] { return scale_of_3d(); });
+  gestures_.watch(page_.ultrasound(), [this] { return scale_of_ultrasound(); });
 }
 
-void AttemptControl::take(ToolInHand tool) {
-  if (gestures_.in_hand() != tool) gestures_.take(tool);
-  page_.puncture().show_hand(tool);
+void AttemptControl::take(ActiveTool tool) {
+  if (gestures_.active_tool() != tool) gestures_.take(tool);
+  page_.puncture().show_active_tool(tool);
 }
 
 bool AttemptControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
-  if (key.key() != Qt::Key_Space || key.modifiers() != Qt::NoModifier) return gestures_.strike(key, place);
+  if (key.key() != Qt::Key_Space || key.modifiers() != Qt::NoModifier) return gestures_.handle_key(key, place);
   // Space in a text field stops the forces but must not switch them on.
   if (place.is_text && attempt_.view().are_forces_stopped) return false;
   if (!key.isAutoRepeat()) toggle_forces();
   return true;
 }
 
-void AttemptControl::strike(int key) {
+void AttemptControl::handle_key(int key) {
   if (key == Qt::Key_H) aim();
   if (key == Qt::Key_X) toggle_clamp();
   if (key == Qt::Key_E) ask_to_end();
@@ -148,13 +147,13 @@ void AttemptControl::ask_to_close() {
 }
 
 ViewScale AttemptControl::scale_of_3d() const {
-  const PatientView& view = page_.desk().view_3d();
+  const PatientView& view = page_.view_3d();
   const scene::CameraView& camera = view.view();
   return {camera.right_P(), -camera.up_P, camera.mm_per_pixel(needle_.entry_P(), std::max(1, view.height()))};
 }
 
 ViewScale AttemptControl::scale_of_ultrasound() const {
-  const UltrasoundView& view = page_.desk().ultrasound();
+  const UltrasoundView& view = page_.ultrasound();
   const auto picture = view.picture();
   if (!picture || view.measuring_tool() != MeasuringTool::kNone || view.is_frozen() || view.is_over_mark()) return {};
   const auto& corners_P = picture->corners_P;
@@ -176,8 +175,8 @@ void AttemptControl::gesture(const Gesture& gesture) {
         return hand.push(gesture.right);
     }
   };
-  if (gestures_.in_hand() == ToolInHand::kNeedle && is_free(attempt::HandTool::kNeedle)) move(needle_);
-  if (gestures_.in_hand() == ToolInHand::kTransducer && is_free(attempt::HandTool::kProbe)) move(probe_);
+  if (gestures_.active_tool() == ActiveTool::kNeedle && is_free(attempt::HandTool::kNeedle)) move(needle_);
+  if (gestures_.active_tool() == ActiveTool::kTransducer && is_free(attempt::HandTool::kProbe)) move(probe_);
 }
 
 bool AttemptControl::is_free(attempt::HandTool tool) const {
@@ -187,22 +186,22 @@ bool AttemptControl::is_free(attempt::HandTool tool) const {
 
 void AttemptControl::aim() {
   if (choice_.difficulty != Difficulty::kGuided)
-    return say(tr("The planned position is available in guided attempts only."));
-  if (gestures_.in_hand() == ToolInHand::kTransducer && is_led_[1]) probe_.put(open_->X_PT_start);
-  if (gestures_.in_hand() == ToolInHand::kNeedle && is_led_[0] && !needle_.is_past_skin())
+    return show_notice(tr("The planned position is available in guided attempts only."));
+  if (gestures_.active_tool() == ActiveTool::kTransducer && is_led_[1]) probe_.put(open_->X_PT_start);
+  if (gestures_.active_tool() == ActiveTool::kNeedle && is_led_[0] && !needle_.is_past_skin())
     needle_.aim_at(open_->the_case.plan.line_P);
 }
 
-void AttemptControl::say(const QString& text) {
-  constexpr double kSaid_s = 5.0;
-  said_ = text;
-  said_s_ = kSaid_s;
+void AttemptControl::show_notice(const QString& text) {
+  constexpr double kNotice_s = 5.0;
+  notice_ = text;
+  notice_s_ = kNotice_s;
 }
 
 void AttemptControl::toggle_clamp() {
-  if (gestures_.in_hand() == ToolInHand::kNone) return;
+  if (gestures_.active_tool() == ActiveTool::kNone) return;
   const attempt::HandTool tool =
-      gestures_.in_hand() == ToolInHand::kNeedle ? attempt::HandTool::kNeedle : attempt::HandTool::kProbe;
+      gestures_.active_tool() == ActiveTool::kNeedle ? attempt::HandTool::kNeedle : attempt::HandTool::kProbe;
   bool& is_clamped = is_clamped_[static_cast<std::size_t>(tool)];
   is_clamped = !is_clamped;
   attempt_.hold(tool, is_clamped);
@@ -227,22 +226,22 @@ void AttemptControl::advance(double dt_s) {
   if (!is_led_[1] && view_.probe.is_known) probe_.put(view_.probe.X_PT);
   attempt_.set_hand(attempt::HandTool::kNeedle, needle_.X_PN());
   attempt_.set_hand(attempt::HandTool::kProbe, probe_.X_PT());
-  ForcePlot& plot = page_.desk().forces();
+  ForcePlot& plot = page_.forces();
   if (++frame_ % kFramesAPlot == 0) {
     std::vector<ForcePoint> points;
     for (const trocar::attempt::ForcePoint& point : attempt_.take_forces())
       points.push_back({point.time_s, point.depth_mm, point.force_n});
     plot.append(points);
   }
-  look_at_events();
-  look_at_shot();
-  said_s_ -= dt_s;
+  poll_events();
+  poll_shot();
+  notice_s_ -= dt_s;
   show_tools(dt_s);
   show_panel();
 }
 
 /// An exam shows no layer names and no labels: they would reveal the solution.
-void AttemptControl::look_at_events() {
+void AttemptControl::poll_events() {
   for (const attempt::AttemptEvent& event : attempt_.take_events()) {
     const bool is_shot = event.kind == telemetry::EventKind::kNone;
     if (is_exam() && !is_shot) continue;
@@ -250,15 +249,15 @@ void AttemptControl::look_at_events() {
     page_.puncture().add_event(QStringLiteral("%1 s  %2").arg(event.time_s, 0, 'f', 1).arg(text),
                                is_risk(open_->the_case, event));
     if (event.kind == telemetry::EventKind::kPuncture)
-      page_.desk().forces().add_event(event.depth_mm, event.time_s, to_qt(anatomy::layer_words(event.name)));
+      page_.forces().add_event(event.depth_mm, event.time_s, to_qt(anatomy::layer_words(event.name)));
   }
 }
 
-void AttemptControl::look_at_shot() {
+void AttemptControl::poll_shot() {
   if (!view_.shot || has_shown_shot_) return;
   has_shown_shot_ = true;
   if (!is_exam()) page_.puncture().show_core(*view_.shot);  // in an exam its composition would reveal the solution
-  page_.desk().forces().add_event(view_.shot->depth_mm, view_.shot->time_s, tr("shot"));
+  page_.forces().add_event(view_.shot->depth_mm, view_.shot->time_s, tr("shot"));
   Q_EMIT gun_fired();
 }
 
@@ -284,7 +283,7 @@ void AttemptControl::show_tools(double dt_s) {
   still_s_ = is_moving ? 0.0 : still_s_ + dt_s;
   tools.are_moving = still_s_ < kStill_s;
   if (view_.shot) show_shot(tools, *view_.shot, view_.since_shot_s, needle.depth_mm);
-  page_.desk().show_tools(tools);
+  page_.workspace().show_tools(tools);
 }
 
 double AttemptControl::distance_mm() const {
@@ -292,7 +291,7 @@ double AttemptControl::distance_mm() const {
 }
 
 QString AttemptControl::hint() const {
-  return said_s_ > 0.0 ? said_ : to_qt(view_.hint);
+  return notice_s_ > 0.0 ? notice_ : to_qt(view_.hint);
 }
 
 void AttemptControl::show_panel() {
@@ -301,7 +300,7 @@ void AttemptControl::show_panel() {
   figures.tissue = is_exam() ? QStringLiteral("–") : to_qt(view_.needle.tissue);
   const bool is_starting =
       view_.phase == attempt::AttemptPhase::kStarting || view_.phase == attempt::AttemptPhase::kFinishing;
-  figures.hint = is_starting && said_s_ <= 0.0 ? to_qt(view_.progress) : hint();
+  figures.hint = is_starting && notice_s_ <= 0.0 ? to_qt(view_.progress) : hint();
   if (!is_tip_hidden()) figures.depth_mm = view_.needle.depth_mm;
   if (choice_.difficulty == Difficulty::kGuided && view_.needle.is_known) figures.to_target_mm = distance_mm();
   figures.force_n = std::abs(view_.needle.resistance_n);

@@ -4,24 +4,24 @@
 #include <QVariantMap>
 #include <memory>
 
-#include "attempt/case/open_case.h"
 #include "attempt/hands/pointer_hand.h"
 #include "attempt/live/live_attempt.h"
+#include "cases/open_case.h"
+#include "choice/seat_choice.h"
 #include "control/page_keys.h"
 #include "control/tool_gestures.h"
-#include "shell/seat_choice.h"
 
 namespace trocar::trainer {
 
 class WorkPage;
 
-/// One attempt in the window: gestures move the hands, servers send states, desk and panel display them.
+/// One attempt in the window: gestures move the hands, servers send states, workspace and panel display them.
 class AttemptControl : public QObject {
   Q_OBJECT
 
  public:
-  AttemptControl(std::shared_ptr<const attempt::OpenCase> open, const SeatChoice& choice,
-                 attempt::AttemptOptions options, std::shared_ptr<attempt::SeatServers> servers, WorkPage& page);
+  AttemptControl(std::shared_ptr<const cases::OpenCase> open, const SeatChoice& choice, attempt::AttemptOptions options,
+                 std::shared_ptr<attempt::SeatServers> servers, WorkPage& page);
   ~AttemptControl() override;
 
   /// Once a frame.
@@ -36,7 +36,7 @@ class AttemptControl : public QObject {
   void ask_to_close();
   void end_server(const QString& tool);
   /// In the hint's place, for some seconds.
-  void say(const QString& text);
+  void show_notice(const QString& text);
   QVariantMap facts() const;
 
  Q_SIGNALS:
@@ -48,15 +48,15 @@ class AttemptControl : public QObject {
   void connect_panel();
   void gesture(const Gesture& gesture);
   bool take_key(const QKeyEvent& key, const KeyPlace& place);
-  void strike(int key);
-  void take(ToolInHand tool);
+  void handle_key(int key);
+  void take(ActiveTool tool);
   void aim();
   void toggle_clamp();
   QString hint() const;
   void show_tools(double dt_s);
   void show_panel();
-  void look_at_events();
-  void look_at_shot();
+  void poll_events();
+  void poll_shot();
   bool is_free(attempt::HandTool tool) const;
   /// True in an exam that hides the needle tip in the body.
   bool is_tip_hidden() const noexcept { return is_exam() && !open_->the_case.task.exam_shows_needle; }
@@ -66,7 +66,7 @@ class AttemptControl : public QObject {
   QVariantMap solution_facts() const;
   double distance_mm() const;
 
-  std::shared_ptr<const attempt::OpenCase> open_;
+  std::shared_ptr<const cases::OpenCase> open_;
   SeatChoice choice_;
   WorkPage& page_;
   attempt::LiveAttempt attempt_;
@@ -80,8 +80,8 @@ class AttemptControl : public QObject {
   bool has_shown_shot_ = false;
   double still_s_ = 0.0;
   Question question_ = Question::kEnd;  ///< Asked last.
-  QString said_;
-  double said_s_ = 0.0;  ///< So long it is still shown.
+  QString notice_;
+  double notice_s_ = 0.0;  ///< So long it is still shown.
   std::size_t frame_ = 0;
 };
 

@@ -60,7 +60,7 @@ void MirrorStation::show_dialog() {
   dialog->show();
 }
 
-void MirrorStation::lead_camera(PatientView& view, const Pose& X_PW) const {
+void MirrorStation::update_camera(PatientView& view, const Pose& X_PW) const {
   view.set_row_on_screen([this](int row) { return mirror_.row_on_screen(row); });
   if (!settings_.is_camera_fixed) return;
   const QPointF middle = window_.rect().center();

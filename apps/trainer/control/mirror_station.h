@@ -3,7 +3,7 @@
 #include <QObject>
 
 #include "geometry/pose.h"
-#include "shell/mirror_settings.h"
+#include "panels/mirror_settings.h"
 
 class QMainWindow;
 class QMenu;
@@ -26,7 +26,7 @@ class MirrorStation : public QObject {
   /// F8: over, and back.
   void toggle();
   /// Before the view draws: its camera, where it is fixed. X_PW: the room about the device in the patient.
-  void lead_camera(PatientView& view, const Pose& X_PW) const;
+  void update_camera(PatientView& view, const Pose& X_PW) const;
 
  private:
   void show_dialog();

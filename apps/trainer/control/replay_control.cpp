@@ -14,8 +14,8 @@
 #include "views/plots/force_plot.h"
 #include "views/plots/time_line.h"
 #include "views/ultrasound/ultrasound_view.h"
-#include "workspace/desk.h"
 #include "workspace/shot_display.h"
+#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
@@ -79,8 +79,8 @@ QString level_title(const std::string& name) {
 
 }  // namespace
 
-ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const attempt::OpenCase> open,
-                             WorkPage& page, const std::vector<std::string>& warnings)
+ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<const cases::OpenCase> open, WorkPage& page,
+                             const std::vector<std::string>& warnings)
     : replay_(std::move(replay)),
       open_(std::move(open)),
       page_(page),
@@ -94,8 +94,9 @@ ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<cons
   page_.feedback().show_level(level_title(replay_.session().info.level));
   page_.feedback().show_core(replay_.shot() ? &*replay_.shot() : nullptr);
   page_.feedback().show_notes(notes_of(replay_, warnings));
-  page_.desk().show_help(Difficulty::kGuided);  // after the attempt the expert's path is visible at every level of help
-  connect(&page_.feedback(), &FeedbackPanel::worst_wanted, this, &ReplayControl::go_to_worst);
+  page_.workspace().show_help(
+      Difficulty::kGuided);  // after the attempt the expert's path is visible at every level of help
+  connect(&page_.feedback(), &FeedbackPanel::worst_requested, this, &ReplayControl::go_to_worst);
   show_at(replay_.duration_s(), false);
 }
 
@@ -104,7 +105,7 @@ bool ReplayControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
   if ((key.modifiers() & ~Qt::KeypadModifier) != Qt::NoModifier || place.is_text || place.is_aside) return false;
   if (!page_.time_line().isVisible()) return false;
   TimeLine& line = page_.time_line();
-  const UltrasoundView& ultrasound = page_.desk().ultrasound();
+  const UltrasoundView& ultrasound = page_.ultrasound();
   switch (key.key()) {
     case Qt::Key_Space:
       if (place.takes_space) return false;
@@ -126,7 +127,7 @@ bool ReplayControl::take_key(const QKeyEvent& key, const KeyPlace& place) {
 }
 
 void ReplayControl::fill_plot() {
-  ForcePlot& plot = page_.desk().forces();
+  ForcePlot& plot = page_.forces();
   plot.clear();
   plot.set_bands(force_bands(*open_));
   plot.set_predicted({});
@@ -190,8 +191,8 @@ void ReplayControl::show_at(double time_s, bool is_moving) {
   tools.are_moving = is_moving;
   if (const auto& shot = replay_.shot(); shot && time_s >= shot->time_s)
     show_shot(tools, *shot, time_s - shot->time_s, sample.depth_mm);
-  page_.desk().show_tools(tools);
-  page_.desk().forces().set_cursor(time_s);
+  page_.workspace().show_tools(tools);
+  page_.forces().set_cursor(time_s);
   shown_s_ = time_s;
 }
 

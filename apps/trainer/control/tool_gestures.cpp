@@ -44,8 +44,8 @@ void ToolGestures::unwatch() {
   from_px_.reset();
 }
 
-void ToolGestures::take(ToolInHand tool) {
-  in_hand_ = tool;
+void ToolGestures::take(ActiveTool tool) {
+  active_tool_ = tool;
   from_px_.reset();
   Q_EMIT taken(tool);
 }
@@ -60,7 +60,7 @@ const ToolGestures::Watched* ToolGestures::find(const QObject* object) const {
 bool ToolGestures::eventFilter(QObject* object, QEvent* event) {
   const Watched* watched = find(object);
   if (watched == nullptr) return false;
-  const bool is_view = in_hand_ == ToolInHand::kNone || (QApplication::keyboardModifiers() & Qt::ControlModifier) ||
+  const bool is_view = active_tool_ == ActiveTool::kNone || (QApplication::keyboardModifiers() & Qt::ControlModifier) ||
                        watched->scale().mm_per_px <= 0.0;
   switch (event->type()) {
     case QEvent::MouseButtonPress:
@@ -117,14 +117,14 @@ bool ToolGestures::has_focus() const {
 }
 
 /// Sets the focus to a view, so that arrow keys move the tool instead of a list or slider.
-bool ToolGestures::take_by_key(ToolInHand tool) {
+bool ToolGestures::take_by_key(ActiveTool tool) {
   take(tool);
   if (!watched_.empty() && !has_focus()) watched_.front().view->setFocus(Qt::ShortcutFocusReason);
   return true;
 }
 
 bool ToolGestures::move_by_key(const QKeyEvent& event) {
-  if (in_hand_ == ToolInHand::kNone) return false;
+  if (active_tool_ == ActiveTool::kNone) return false;
   const bool is_tilt = event.modifiers() & Qt::ShiftModifier;
   const ViewScale view = watched_.empty() ? ViewScale{} : watched_.front().scale();
   const auto step = [&](double right, double down) {
@@ -154,19 +154,19 @@ bool ToolGestures::move_by_key(const QKeyEvent& event) {
   }
 }
 
-bool ToolGestures::strike(const QKeyEvent& event, const KeyPlace& place) {
+bool ToolGestures::handle_key(const QKeyEvent& event, const KeyPlace& place) {
   if ((event.modifiers() & (Qt::ControlModifier | Qt::AltModifier)) || place.is_text || place.is_aside) return false;
   switch (event.key()) {
     case Qt::Key_A:
-      return take_by_key(ToolInHand::kNeedle);
+      return take_by_key(ActiveTool::kNeedle);
     case Qt::Key_S:
-      return take_by_key(ToolInHand::kTransducer);
+      return take_by_key(ActiveTool::kTransducer);
     case Qt::Key_V:
-      return take_by_key(ToolInHand::kNone);
+      return take_by_key(ActiveTool::kNone);
     case Qt::Key_H:
     case Qt::Key_X:
     case Qt::Key_E:
-      Q_EMIT key_struck(event.key());
+      Q_EMIT key_pressed(event.key());
       return true;
     case Qt::Key_Return:
     case Qt::Key_Enter:
@@ -175,7 +175,7 @@ bool ToolGestures::strike(const QKeyEvent& event, const KeyPlace& place) {
         place.button->click();
         return true;
       }
-      Q_EMIT key_struck(event.key());
+      Q_EMIT key_pressed(event.key());
       return true;
     default:
       // Arrow keys also move sliders, lists and slices.

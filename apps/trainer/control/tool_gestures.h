@@ -49,17 +49,17 @@ class ToolGestures : public QObject {
   void unwatch();
   /// A, S and V take a tool, arrows and page keys move it, H, X, E and Enter are signalled. False: the key is none of
   /// these, or the widget with the focus uses it.
-  bool strike(const QKeyEvent& event, const KeyPlace& place);
-  ToolInHand in_hand() const noexcept { return in_hand_; }
-  void take(ToolInHand tool);
+  bool handle_key(const QKeyEvent& event, const KeyPlace& place);
+  ActiveTool active_tool() const noexcept { return active_tool_; }
+  void take(ActiveTool tool);
 
   bool eventFilter(QObject* watched, QEvent* event) override;
 
  Q_SIGNALS:
   void gestured(const trocar::trainer::Gesture& gesture);
-  void taken(trocar::trainer::ToolInHand tool);
+  void taken(trocar::trainer::ActiveTool tool);
   /// Keys that mean something for the attempt: H aim, X clamp, Enter fire, E end.
-  void key_struck(int key);
+  void key_pressed(int key);
 
  private:
   struct Watched {
@@ -70,12 +70,12 @@ class ToolGestures : public QObject {
   bool press(const QMouseEvent& event);
   bool move(const Watched& watched, const QMouseEvent& event);
   bool turn(const Watched& watched, const QWheelEvent& event);
-  bool take_by_key(ToolInHand tool);
+  bool take_by_key(ActiveTool tool);
   bool move_by_key(const QKeyEvent& event);
   bool has_focus() const;
 
   std::vector<Watched> watched_;
-  ToolInHand in_hand_ = ToolInHand::kNone;
+  ActiveTool active_tool_ = ActiveTool::kNone;
   std::optional<QPointF> from_px_;
 };
 

@@ -47,7 +47,7 @@ const char* hint_of(CaseClick click) {
 
 }  // namespace
 
-CasePage::CasePage(QWidget* parent) : QWidget(parent), desk_(std::make_unique<case_builder::CaseDesk>()) {
+CasePage::CasePage(QWidget* parent) : QWidget(parent), editor_(std::make_unique<case_builder::CaseEditor>()) {
   setObjectName(QStringLiteral("case-page"));
   setFocusPolicy(Qt::StrongFocus);
   auto* page = new QVBoxLayout(this);
@@ -90,8 +90,8 @@ QWidget* CasePage::make_head() {
   redo_ = make_button("case-redo", tr("Redo"), tr("Redo the step"), QStringLiteral("Ctrl+Shift+Z"));
   row->addWidget(undo_);
   row->addWidget(redo_);
-  connect(undo_, &QPushButton::clicked, this, [this] { desk_->undo(); });
-  connect(redo_, &QPushButton::clicked, this, [this] { desk_->redo(); });
+  connect(undo_, &QPushButton::clicked, this, [this] { editor_->undo(); });
+  connect(redo_, &QPushButton::clicked, this, [this] { editor_->redo(); });
   return head;
 }
 
@@ -123,12 +123,12 @@ QWidget* CasePage::make_steps() {
   stack_ = new QStackedWidget;
   stack_->setStyleSheet(QStringLiteral("QStackedWidget { background: transparent; }"));
   content->addWidget(stack_, 1);
-  add_panel(make_import_panel(*desk_, this), tr("Import CT and labels"));
-  add_panel(make_labels_panel(*desk_, this), tr("Check the labels"));
-  add_panel(make_target_panel(*desk_, this), tr("Target and risks"));
-  add_panel(make_path_panel(*desk_, this), tr("Entry and path"));
-  add_panel(make_force_panel(*desk_, this), tr("Forces along the path"));
-  add_panel(make_save_panel(*desk_, this), tr("Name and save"));
+  add_panel(make_import_panel(*editor_, this), tr("Import CT and labels"));
+  add_panel(make_labels_panel(*editor_, this), tr("Check the labels"));
+  add_panel(make_target_panel(*editor_, this), tr("Target and risks"));
+  add_panel(make_path_panel(*editor_, this), tr("Entry and path"));
+  add_panel(make_force_panel(*editor_, this), tr("Forces along the path"));
+  add_panel(make_save_panel(*editor_, this), tr("Name and save"));
   return card;
 }
 
@@ -138,9 +138,9 @@ void CasePage::add_panel(CasePanel* panel, const QString& title) {
   scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   stack_->addWidget(scroll);
   panels_.push_back(panel);
-  connect(panel, &CasePanel::click_wanted, this, &CasePage::set_click);
+  connect(panel, &CasePanel::click_requested, this, &CasePage::set_click);
   connect(panel, &CasePanel::click_name_changed, this, &CasePage::show_hint);
-  connect(panel, &CasePanel::place_wanted, this, &CasePage::show_place);
+  connect(panel, &CasePanel::place_requested, this, &CasePage::show_place);
   connect(panel, &CasePanel::label_opacity_changed, this, [this](double opacity) {
     for (SliceView* slice : slices_) slice->set_label_opacity(opacity);
   });
@@ -203,7 +203,7 @@ QWidget* CasePage::make_foot() {
   row->addWidget(progress_);
   cancel_ = make_button("case-cancel", tr("Cancel"), tr("Cancel the running work; the case is unchanged"));
   row->addWidget(cancel_);
-  connect(cancel_, &QPushButton::clicked, this, [this] { desk_->cancel(); });
+  connect(cancel_, &QPushButton::clicked, this, [this] { editor_->cancel(); });
   return foot;
 }
 
@@ -242,7 +242,7 @@ void CasePage::show_place(const Vec3& p_P) {
 }
 
 Result<case_builder::CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
-  const case_builder::CaseDraft& draft = desk_->draft();
+  const case_builder::CaseDraft& draft = editor_->draft();
   const anatomy::NeedlePath* path = case_builder::find_expert_path(draft);
   switch (click_) {
     case CaseClick::kTarget:
@@ -252,11 +252,11 @@ Result<case_builder::CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
     case CaseClick::kEntry: {
       const auto target_P = path != nullptr ? std::optional(path->line_P.b) : case_builder::find_target_point(draft);
       if (!target_P) return fail("a path needs a target first", {}, "go to step 3 and select one");
-      const auto entry_P = tasks::find_nearest_skin(*desk_->patient(), p_P);
+      const auto entry_P = tasks::find_nearest_skin(*editor_->patient(), p_P);
       if (!entry_P) return fail("no skin near this position", {}, "click on the patient's skin");
       Segment line_P{*entry_P, *target_P};
       // A biopsy needle stops short of the target, so that the notch is in the target.
-      if (const tasks::Needle* needle = desk_->needle(); path == nullptr && needle != nullptr)
+      if (const tasks::Needle* needle = editor_->needle(); path == nullptr && needle != nullptr)
         line_P.b -= needle->notch_middle_mm() * line_P.direction();
       return case_builder::set_expert_path(draft, line_P);
     }
@@ -273,27 +273,27 @@ Result<case_builder::CaseDraft> CasePage::clicked_draft(const Vec3& p_P) const {
 }
 
 void CasePage::click_at(const Vec3& p_P, bool is_drag) {
-  if (click_ == CaseClick::kLook || !desk_->patient()) return;
+  if (click_ == CaseClick::kLook || !editor_->patient()) return;
   const char* const words[] = {
       "", "set the target", "set the entry zone", "set the entry", "set the tip", "place a landmark"};
   const std::string what = words[static_cast<std::size_t>(click_)];
   // Press and drag are one step; the release ends it.
-  desk_->edit(clicked_draft(p_P), what, what + std::to_string(clicks_));
+  editor_->edit(clicked_draft(p_P), what, what + std::to_string(clicks_));
   if (!is_drag) ++clicks_;
 }
 
 void CasePage::refresh_views() {
-  if (desk_->patient() != shown_patient_ || desk_->meshes() != shown_meshes_) {
-    shown_patient_ = desk_->patient();
-    shown_meshes_ = desk_->meshes();
+  if (editor_->patient() != shown_patient_ || editor_->meshes() != shown_meshes_) {
+    shown_patient_ = editor_->patient();
+    shown_meshes_ = editor_->meshes();
     for (SliceView* slice : slices_) slice->show_patient(shown_patient_);
-    const bool is_known = placed_import_ == desk_->draft().imported && view_->is_ready();
+    const bool is_known = placed_import_ == editor_->draft().imported && view_->is_ready();
     const scene::CameraView before = view_->view();
     if (shown_patient_ && shown_meshes_) view_->show_patient(shown_patient_, shown_meshes_);
     if (is_known) view_->set_view(before);  // a new name or tissue does not change the camera
     shown_landmarks_.reset();
   }
-  const case_builder::CaseDraft& draft = desk_->draft();
+  const case_builder::CaseDraft& draft = editor_->draft();
   const auto target_P = case_builder::find_target_point(draft);
   if (placed_import_ != draft.imported && shown_patient_) {
     placed_import_ = draft.imported;
@@ -316,7 +316,7 @@ void CasePage::refresh_views() {
 }
 
 void CasePage::show_landmarks() {
-  const std::vector<anatomy::Landmark>& landmarks = desk_->draft().landmarks;
+  const std::vector<anatomy::Landmark>& landmarks = editor_->draft().landmarks;
   const auto is_same = [](const anatomy::Landmark& a, const anatomy::Landmark& b) {
     return a.name == b.name && a.p_P == b.p_P;
   };
@@ -329,34 +329,34 @@ void CasePage::show_landmarks() {
 }
 
 void CasePage::refresh_foot() {
-  const bool is_busy = desk_->work() != case_builder::CaseDesk::Work::kNone;
-  const JobView view = desk_->work_view();
+  const bool is_busy = editor_->work() != case_builder::CaseEditor::Work::kNone;
+  const JobView view = editor_->work_view();
   progress_->setVisible(is_busy);
   progress_->setValue(static_cast<int>(1000.0 * view.fraction));
-  cancel_->setVisible(is_busy && desk_->work() != case_builder::CaseDesk::Work::kSaving);
-  const QString text = is_busy ? to_qt(view.step) : to_qt(desk_->message());
+  cancel_->setVisible(is_busy && editor_->work() != case_builder::CaseEditor::Work::kSaving);
+  const QString text = is_busy ? to_qt(view.step) : to_qt(editor_->message());
   message_->setText(text);
   message_->setToolTip(text);
-  message_->setStyleSheet(!is_busy && desk_->is_error() ? QStringLiteral("color: %1;").arg(theme().bad.name())
-                                                        : QString());
+  message_->setStyleSheet(!is_busy && editor_->is_error() ? QStringLiteral("color: %1;").arg(theme().bad.name())
+                                                          : QString());
 }
 
 void CasePage::refresh() {
   refresh_foot();
   // A change of progress only updates the bar.
-  const Shown now{desk_->history().version(), desk_->is_reviewed(), desk_->work(), desk_->patient().get(),
-                  desk_->message()};
+  const Shown now{editor_->history().version(), editor_->is_reviewed(), editor_->work(), editor_->patient().get(),
+                  editor_->message()};
   if (now == shown_) return;
   shown_ = now;
   for (CasePanel* panel : panels_) panel->refresh();
   for (int step = 0; step < case_builder::kCaseSteps; ++step) {
     std::optional<case_builder::CheckLevel> level;
-    if (desk_->has_patient() && desk_->is_reviewed())
-      level = case_builder::worst_level(desk_->checks(), static_cast<case_builder::CaseStep>(step));
+    if (editor_->has_patient() && editor_->is_reviewed())
+      level = case_builder::worst_level(editor_->checks(), static_cast<case_builder::CaseStep>(step));
     steps_[static_cast<std::size_t>(step)]->setIcon(level_icon(level));
   }
-  checks_->show_checks(desk_->checks());
-  const case_builder::CaseHistory& history = desk_->history();
+  checks_->show_checks(editor_->checks());
+  const case_builder::CaseHistory& history = editor_->history();
   undo_->setEnabled(history.can_undo());
   redo_->setEnabled(history.can_redo());
   undo_->setToolTip(tr("Undo: %1  (Ctrl+Z)").arg(to_qt(history.undo_text())));
@@ -365,7 +365,7 @@ void CasePage::refresh() {
 }
 
 void CasePage::advance() {
-  if (desk_->advance()) refresh();
+  if (editor_->advance()) refresh();
   if (isVisible()) view_->draw();
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "case_builder/case_desk.h"
+#include "case_builder/case_editor.h"
 #include "case_panels/case_panel.h"
 
 class QLabel;
@@ -37,7 +37,7 @@ class CasePage : public QWidget {
 
   /// Once a frame.
   void advance();
-  case_builder::CaseDesk& desk() noexcept { return *desk_; }
+  case_builder::CaseEditor& editor() noexcept { return *editor_; }
 
  Q_SIGNALS:
   /// "Open this case" was pressed: the patient folder with its own task.
@@ -64,7 +64,7 @@ class CasePage : public QWidget {
   void click_at(const Vec3& p_P, bool is_drag);
   Result<case_builder::CaseDraft> clicked_draft(const Vec3& p_P) const;
 
-  std::unique_ptr<case_builder::CaseDesk> desk_;
+  std::unique_ptr<case_builder::CaseEditor> editor_;
   std::vector<QPushButton*> steps_;
   std::vector<CasePanel*> panels_;
   QStackedWidget* stack_ = nullptr;
@@ -86,7 +86,7 @@ class CasePage : public QWidget {
   struct Shown {
     std::uint64_t version = ~std::uint64_t{0};
     bool is_reviewed = false;
-    case_builder::CaseDesk::Work work = case_builder::CaseDesk::Work::kNone;
+    case_builder::CaseEditor::Work work = case_builder::CaseEditor::Work::kNone;
     const anatomy::VirtualPatient* patient = nullptr;
     std::string message;
     bool operator==(const Shown&) const = default;

@@ -87,13 +87,13 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent) {
   page->addLayout(bottom);
   connect(start_, &QPushButton::clicked, this, [this] {
     save();
-    Q_EMIT start_wanted(choice());
+    Q_EMIT start_requested(choice());
   });
   connect(tasks_, &QListWidget::currentRowChanged, this, [this] {
     fill_patients();
     fill_needles();
   });
-  connect(patients_, &QListWidget::currentRowChanged, this, [this] { tell_patient(); });
+  connect(patients_, &QListWidget::currentRowChanged, this, [this] { show_patient_details(); });
 
   const QSettings settings;
   const auto text = [&](const char* key, const std::string& otherwise) {
@@ -207,7 +207,7 @@ QWidget* StartPage::make_recovery() {
   auto* decline = make_button("decline-recovery", tr("Not now"), tr("Keeps the recording and starts a new attempt"));
   row->addWidget(resume);
   row->addWidget(decline);
-  connect(resume, &QPushButton::clicked, this, &StartPage::recovery_wanted);
+  connect(resume, &QPushButton::clicked, this, &StartPage::recovery_requested);
   connect(decline, &QPushButton::clicked, this, [this] {
     offer_recovery({});
     Q_EMIT recovery_declined();
@@ -257,10 +257,10 @@ void StartPage::fill_patients() {
     QListWidgetItem* again = find_item(*patients_, chosen);
     patients_->setCurrentItem(again != nullptr ? again : patients_->item(0));
   }
-  tell_patient();
+  show_patient_details();
 }
 
-void StartPage::tell_patient() {
+void StartPage::show_patient_details() {
   const QListWidgetItem* patient = patients_->currentItem();
   patient_text_->setText(patient == nullptr ? tr("No patient for this task yet: open a folder.")
                                             : patient->data(kText).toString());

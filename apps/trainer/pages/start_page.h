@@ -2,7 +2,7 @@
 
 #include <QWidget>
 
-#include "shell/seat_choice.h"
+#include "choice/seat_choice.h"
 
 class QButtonGroup;
 class QComboBox;
@@ -31,8 +31,8 @@ class StartPage : public QWidget {
   void add_patient(const QString& folder);
 
  Q_SIGNALS:
-  void start_wanted(const trocar::trainer::SeatChoice& choice);
-  void recovery_wanted();
+  void start_requested(const trocar::trainer::SeatChoice& choice);
+  void recovery_requested();
   void recovery_declined();
 
  private:
@@ -44,7 +44,7 @@ class StartPage : public QWidget {
   void fill_patients();
   void fill_needles();
   void open_folder();
-  void tell_patient();
+  void show_patient_details();
   void save() const;
 
   QListWidget* tasks_ = nullptr;

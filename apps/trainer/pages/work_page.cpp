@@ -6,17 +6,21 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
+#include "core/check.h"
 #include "panels/feedback_panel.h"
 #include "panels/puncture_panel.h"
 #include "parameters/parameter_panel.h"
+#include "views/patient/patient_view.h"
+#include "views/plots/force_plot.h"
 #include "views/plots/time_line.h"
-#include "workspace/desk.h"
+#include "views/ultrasound/ultrasound_view.h"
+#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
 
-constexpr int kSideColumns = 34;    ///< Average characters.
-constexpr int kLeastDesk_px = 640;  ///< Two columns of views.
+constexpr int kSideColumns = 34;         ///< Average characters.
+constexpr int kLeastWorkspace_px = 640;  ///< Two columns of views.
 
 }  // namespace
 
@@ -31,7 +35,11 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
   side_ = new QStackedWidget;
   side_->addWidget(puncture_);
   side_->addWidget(feedback_);
-  desk_ = new Desk;
+  workspace_ = new Workspace;
+  view_3d_ = workspace_->find<PatientView>("3d");
+  ultrasound_ = workspace_->find<UltrasoundView>("ultrasound");
+  forces_ = workspace_->find<ForcePlot>("forces");
+  TROCAR_CHECK(view_3d_ != nullptr && ultrasound_ != nullptr && forces_ != nullptr);
   time_line_ = new TimeLine;
   time_line_->setObjectName(QStringLiteral("time-line"));
   time_line_->hide();
@@ -39,12 +47,12 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
   parameters_->hide();
   auto* column = new QVBoxLayout;
   column->setSpacing(0);
-  column->addWidget(desk_, 1);
+  column->addWidget(workspace_, 1);
   column->addWidget(time_line_);
   row->addWidget(side_);
   row->addLayout(column, 1);
   row->addWidget(parameters_);
-  connect(desk_, &Desk::layout_chosen, this, &WorkPage::fit);
+  connect(workspace_, &Workspace::layout_chosen, this, &WorkPage::fit);
   connect(puncture_, &PuncturePanel::asked, this, [this] {
     if (side_->isHidden()) toggle_parameters();  // its question must be visible
   });
@@ -55,8 +63,9 @@ WorkPage::WorkPage(QWidget* parent) : QWidget(parent) {
 void WorkPage::fit() {
   const int side_px = fontMetrics().averageCharWidth() * kSideColumns;
   if (side_->maximumWidth() != side_px) side_->setFixedWidth(side_px);
-  const bool has_room = !are_parameters_shown() || width() >= side_px + std::max(kLeastDesk_px, desk_->needed_width()) +
-                                                                  parameters_->sizeHint().width();
+  const bool has_room =
+      !are_parameters_shown() ||
+      width() >= side_px + std::max(kLeastWorkspace_px, workspace_->needed_width()) + parameters_->sizeHint().width();
   if (side_->isHidden() == has_room) side_->setVisible(has_room);
 }
 

@@ -6,12 +6,14 @@ class QStackedWidget;
 
 namespace trocar::trainer {
 
-class Desk;
 class FeedbackPanel;
+class ForcePlot;
 class ParameterPanel;
+class PatientView;
 class PuncturePanel;
-class StructurePanel;
 class TimeLine;
+class UltrasoundView;
+class Workspace;
 
 /// The views, and beside them what belongs to the moment: figures and tools while the puncture goes on, score and
 /// replay afterwards.
@@ -21,7 +23,11 @@ class WorkPage : public QWidget {
  public:
   explicit WorkPage(QWidget* parent = nullptr);
 
-  Desk& desk() noexcept { return *desk_; }
+  Workspace& workspace() noexcept { return *workspace_; }
+  /// Views that attempt and replay work with.
+  PatientView& view_3d() noexcept { return *view_3d_; }
+  UltrasoundView& ultrasound() noexcept { return *ultrasound_; }
+  ForcePlot& forces() noexcept { return *forces_; }
   PuncturePanel& puncture() noexcept { return *puncture_; }
   FeedbackPanel& feedback() noexcept { return *feedback_; }
   ParameterPanel& parameters() noexcept { return *parameters_; }
@@ -45,7 +51,10 @@ class WorkPage : public QWidget {
  private:
   void fit();
 
-  Desk* desk_ = nullptr;
+  Workspace* workspace_ = nullptr;
+  PatientView* view_3d_ = nullptr;
+  UltrasoundView* ultrasound_ = nullptr;
+  ForcePlot* forces_ = nullptr;
   QStackedWidget* side_ = nullptr;
   PuncturePanel* puncture_ = nullptr;
   FeedbackPanel* feedback_ = nullptr;

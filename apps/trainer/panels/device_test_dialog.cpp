@@ -5,7 +5,7 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
-#include "control/device_check.h"
+#include "panels/device_check.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "views/ultrasound/pose_picture.h"

@@ -117,10 +117,10 @@ QWidget* FeedbackPanel::make_buttons() {
   grid->addWidget(worst_button_, 1, 0, 1, 2);
   grid->addWidget(report, 2, 0);
   grid->addWidget(other, 2, 1);
-  connect(again, &QPushButton::clicked, this, &FeedbackPanel::again_wanted);
-  connect(worst_button_, &QPushButton::clicked, this, &FeedbackPanel::worst_wanted);
-  connect(other, &QPushButton::clicked, this, &FeedbackPanel::other_case_wanted);
-  connect(report, &QPushButton::clicked, this, &FeedbackPanel::report_wanted);
+  connect(again, &QPushButton::clicked, this, &FeedbackPanel::again_requested);
+  connect(worst_button_, &QPushButton::clicked, this, &FeedbackPanel::worst_requested);
+  connect(other, &QPushButton::clicked, this, &FeedbackPanel::other_case_requested);
+  connect(report, &QPushButton::clicked, this, &FeedbackPanel::report_requested);
   return bar;
 }
 

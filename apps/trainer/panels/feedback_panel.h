@@ -36,10 +36,10 @@ class FeedbackPanel : public QWidget {
   void show_notes(const QStringList& notes);
 
  Q_SIGNALS:
-  void again_wanted();
-  void other_case_wanted();
-  void report_wanted();
-  void worst_wanted();
+  void again_requested();
+  void other_case_requested();
+  void report_requested();
+  void worst_requested();
 
  private:
   QWidget* make_buttons();

@@ -58,8 +58,8 @@ MirrorDialog::MirrorDialog(const MirrorSettings& settings, QWidget* parent) : QD
   auto* close = make_button("mirror-close", tr("Close"), tr("The settings are saved"));
   column->addWidget(close, 0, Qt::AlignRight);
   connect(close, &QPushButton::clicked, this, &QDialog::close);
-  connect(axis_, qOverload<int>(&QComboBox::currentIndexChanged), this, &MirrorDialog::tell);
-  connect(fixed_, &QCheckBox::toggled, this, &MirrorDialog::tell);
+  connect(axis_, qOverload<int>(&QComboBox::currentIndexChanged), this, &MirrorDialog::notify_change);
+  connect(fixed_, &QCheckBox::toggled, this, &MirrorDialog::notify_change);
 }
 
 QDoubleSpinBox* MirrorDialog::add(QFormLayout& form, const char* name, const QString& title, const QString& tooltip,
@@ -73,7 +73,7 @@ QDoubleSpinBox* MirrorDialog::add(QFormLayout& form, const char* name, const QSt
   box->setSuffix(unit);
   box->setValue(value);
   form.addRow(make_label(title, "dim"), box);
-  connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &MirrorDialog::tell);
+  connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &MirrorDialog::notify_change);
   return box;
 }
 
@@ -88,7 +88,7 @@ MirrorSettings MirrorDialog::settings() const {
   return settings;
 }
 
-void MirrorDialog::tell() {
+void MirrorDialog::notify_change() {
   Q_EMIT changed(settings());
 }
 

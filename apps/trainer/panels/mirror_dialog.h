@@ -2,7 +2,7 @@
 
 #include <QDialog>
 
-#include "shell/mirror_settings.h"
+#include "panels/mirror_settings.h"
 
 class QCheckBox;
 class QComboBox;
@@ -25,7 +25,7 @@ class MirrorDialog : public QDialog {
   QDoubleSpinBox* add(QFormLayout& form, const char* name, const QString& title, const QString& tooltip,
                       const QString& unit, double least, double most, double value);
   MirrorSettings settings() const;
-  void tell();
+  void notify_change();
 
   QComboBox* axis_ = nullptr;
   QCheckBox* fixed_ = nullptr;

@@ -40,7 +40,7 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   auto* content = new QVBoxLayout(inside);
   content->setContentsMargins(12, 12, 12, 4);
   content->setSpacing(10);
-  content->addWidget(make_hand());
+  content->addWidget(make_tool_choice());
   content->addWidget(make_figures());
   hint_ = make_label({});
   hint_->setObjectName(QStringLiteral("hint"));
@@ -79,38 +79,38 @@ PuncturePanel::PuncturePanel(QWidget* parent) : QWidget(parent) {
   buttons->addWidget(end_);
   buttons->addWidget(make_question());
   column->addLayout(buttons);
-  connect(fire_, &QPushButton::clicked, this, &PuncturePanel::fire_wanted);
-  connect(end_, &QPushButton::clicked, this, &PuncturePanel::end_wanted);
+  connect(fire_, &QPushButton::clicked, this, &PuncturePanel::fire_requested);
+  connect(end_, &QPushButton::clicked, this, &PuncturePanel::end_requested);
 }
 
-QWidget* PuncturePanel::make_hand() {
+QWidget* PuncturePanel::make_tool_choice() {
   auto* box = new QWidget;
   auto* grid = new QGridLayout(box);
   grid->setContentsMargins(0, 0, 0, 0);
   grid->setSpacing(6);
   grid->addWidget(make_label(tr("Active tool"), "dim"), 0, 0, 1, 2);
-  hand_ = new QButtonGroup(this);
-  const auto add = [&](ToolInHand tool, const char* name, const QString& text, const QString& tooltip, int row,
+  tool_buttons_ = new QButtonGroup(this);
+  const auto add = [&](ActiveTool tool, const char* name, const QString& text, const QString& tooltip, int row,
                        int column) {
     auto* button = make_button(name, text, tooltip);
     button->setCheckable(true);
     button->setFocusPolicy(Qt::NoFocus);
-    hand_->addButton(button, static_cast<int>(tool));
+    tool_buttons_->addButton(button, static_cast<int>(tool));
     grid->addWidget(button, row, column);
-    connect(button, &QPushButton::clicked, this, [this, tool] { Q_EMIT hand_wanted(tool); });
+    connect(button, &QPushButton::clicked, this, [this, tool] { Q_EMIT tool_requested(tool); });
   };
-  add(ToolInHand::kNeedle, "hand-needle", tr("Needle"), tr("The mouse moves the needle (A)"), 1, 0);
-  add(ToolInHand::kTransducer, "hand-transducer", tr("Transducer"), tr("The mouse moves the transducer (S)"), 1, 1);
-  add(ToolInHand::kNone, "hand-none", tr("View"), tr("The mouse rotates the view (V)"), 2, 0);
+  add(ActiveTool::kNeedle, "tool-needle", tr("Needle"), tr("The mouse moves the needle (A)"), 1, 0);
+  add(ActiveTool::kTransducer, "tool-transducer", tr("Transducer"), tr("The mouse moves the transducer (S)"), 1, 1);
+  add(ActiveTool::kNone, "tool-none", tr("View"), tr("The mouse rotates the view (V)"), 2, 0);
   clamp_ = make_button("clamp", tr("Clamp"), tr("Hold the active tool in place (X)"));
   clamp_->setCheckable(true);
   clamp_->setFocusPolicy(Qt::NoFocus);
   grid->addWidget(clamp_, 2, 1);
-  connect(clamp_, &QPushButton::clicked, this, &PuncturePanel::clamp_wanted);
+  connect(clamp_, &QPushButton::clicked, this, &PuncturePanel::clamp_requested);
   aim_ = make_button("aim", tr("To the planned entry"), {});
   aim_->setFocusPolicy(Qt::NoFocus);
   grid->addWidget(aim_, 3, 0, 1, 2);
-  connect(aim_, &QPushButton::clicked, this, &PuncturePanel::aim_wanted);
+  connect(aim_, &QPushButton::clicked, this, &PuncturePanel::aim_requested);
   return box;
 }
 
@@ -206,14 +206,14 @@ void PuncturePanel::show_figures(const PunctureFigures& figures) {
   force_->set_force(figures.force_n, figures.time_s);
   force_->set_lag(figures.lag_mm);
   if (fire_->isEnabled() != figures.can_fire) fire_->setEnabled(figures.can_fire);
-  const int hand = hand_->checkedId();
-  const bool is_clamped = (hand == static_cast<int>(ToolInHand::kNeedle) && figures.is_clamped[0]) ||
-                          (hand == static_cast<int>(ToolInHand::kTransducer) && figures.is_clamped[1]);
+  const int tool = tool_buttons_->checkedId();
+  const bool is_clamped = (tool == static_cast<int>(ActiveTool::kNeedle) && figures.is_clamped[0]) ||
+                          (tool == static_cast<int>(ActiveTool::kTransducer) && figures.is_clamped[1]);
   if (clamp_->isChecked() != is_clamped) clamp_->setChecked(is_clamped);
 }
 
-void PuncturePanel::show_hand(ToolInHand tool) {
-  if (auto* button = hand_->button(static_cast<int>(tool))) button->setChecked(true);
+void PuncturePanel::show_active_tool(ActiveTool tool) {
+  if (auto* button = tool_buttons_->button(static_cast<int>(tool))) button->setChecked(true);
 }
 
 void PuncturePanel::add_event(const QString& text, bool is_bad) {

@@ -20,7 +20,7 @@ namespace trocar::trainer {
 class CorePicture;
 class ForceBar;
 
-enum class ToolInHand { kNone, kNeedle, kTransducer };
+enum class ActiveTool { kNone, kNeedle, kTransducer };
 
 /// Contents of the panel in one frame.
 struct PunctureFigures {
@@ -49,7 +49,7 @@ class PuncturePanel : public QWidget {
   /// `can_aim`: the tools may be put where the plan has them.
   void begin(double most_force_n, bool can_aim);
   void show_figures(const PunctureFigures& figures);
-  void show_hand(ToolInHand tool);
+  void show_active_tool(ActiveTool tool);
   /// A bad one is in the colour of what is wrong.
   void add_event(const QString& text, bool is_bad = false);
   /// The core that the gun took, until the next begin().
@@ -59,11 +59,11 @@ class PuncturePanel : public QWidget {
   bool is_asking() const;
 
  Q_SIGNALS:
-  void hand_wanted(trocar::trainer::ToolInHand tool);
-  void clamp_wanted();
-  void aim_wanted();
-  void fire_wanted();
-  void end_wanted();
+  void tool_requested(trocar::trainer::ActiveTool tool);
+  void clamp_requested();
+  void aim_requested();
+  void fire_requested();
+  void end_requested();
   void asked();
   /// The question was answered with yes.
   void confirmed();
@@ -71,10 +71,10 @@ class PuncturePanel : public QWidget {
  private:
   QWidget* make_question();
   void answer(bool is_yes);
-  QWidget* make_hand();
+  QWidget* make_tool_choice();
   QWidget* make_figures();
 
-  QButtonGroup* hand_ = nullptr;
+  QButtonGroup* tool_buttons_ = nullptr;
   QPushButton* clamp_ = nullptr;
   QPushButton* aim_ = nullptr;
   QLabel* phase_ = nullptr;

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "core/parse_number.h"
 
 namespace trocar::trainer {
 namespace {
@@ -17,12 +18,10 @@ std::string text_of(double value) {
   return std::isinf(value) ? "never" : fmt::format("{}", value);  // the shortest digits that read back
 }
 
-/// Parses the number after the "=" of a setting; apply_override reports errors.
+/// The number after the "=" of a setting that apply_override has accepted.
 double number_in(std::string_view text) {
-  double value = std::numeric_limits<double>::quiet_NaN();
   if (text == "never") return std::numeric_limits<double>::infinity();
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
+  return parse_number<double>(text).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace

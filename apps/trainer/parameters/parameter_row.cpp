@@ -180,7 +180,7 @@ void ParameterRow::show_value(double value) {
 }
 
 void ParameterRow::set_felt(bool is_felt) {
-  set_look(*caption_, "role", is_felt ? QString() : QStringLiteral("dim"));
+  set_style(*caption_, "role", is_felt ? QString() : QStringLiteral("dim"));
 }
 
 void ParameterRow::show_refusal(const QString& text) {

@@ -1,6 +1,6 @@
 #include "script/benchmark.h"
 
-#include "workspace/desk.h"
+#include "workspace/layouts.h"
 
 namespace trocar::trainer {
 
@@ -14,9 +14,7 @@ Result<std::vector<ScriptStep>> benchmark_steps() {
       "wait-for phase is ready within 120\n"
       "key H\n"
       "wait 2\n");
-  int number = 0;
-  for (const QString& layout : Desk::layouts()) {
-    ++number;
+  for (std::size_t number = 1; number <= built_in_layouts().size(); ++number) {
     // In and out again, so that each layout displays a tool that moves through skin and liver.
     text += QStringLiteral(
                 "key Ctrl+%1\n"
@@ -29,7 +27,6 @@ Result<std::vector<ScriptStep>> benchmark_steps() {
                 .arg(number)
                 .arg(number % 2 == 1 ? QStringLiteral("12") : QStringLiteral("-12"),
                      number % 2 == 1 ? QStringLiteral("> 45") : QStringLiteral("< 1"));
-    Q_UNUSED(layout);
   }
   return parse_script(text, QStringLiteral("benchmark"));
 }

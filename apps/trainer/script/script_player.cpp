@@ -133,10 +133,10 @@ Result<ScriptPlayer::Progress> ScriptPlayer::play(const ScriptStep& step) {
   if (verb.startsWith(QLatin1String("expect")) || verb == QLatin1String("screenshot") || verb == QLatin1String("print"))
     return play_looking(step);
   if (verb == QLatin1String("key")) {
-    TROCAR_TRY_STATUS(strike(*stage_.window, a[0]));
+    TROCAR_TRY_STATUS(press_keys(*stage_.window, a[0]));
     return ++sent_ >= (a.size() > 1 ? a[1].toInt() : 1) ? Progress::kDone : Progress::kAgain;
   }
-  if (verb == QLatin1String("key-until")) return play_until(step, [&] { return strike(*stage_.window, a[0]); });
+  if (verb == QLatin1String("key-until")) return play_until(step, [&] { return press_keys(*stage_.window, a[0]); });
   if (verb == QLatin1String("type")) {
     type_text(*stage_.window, a[0]);
     return Progress::kDone;

@@ -107,7 +107,7 @@ void turn_wheel(QWidget& widget, const QPointF& place, int notches) {
   QCoreApplication::sendEvent(&target, &event);
 }
 
-Status strike(QWidget& window, const QString& keys) {
+Status press_keys(QWidget& window, const QString& keys) {
   const QKeySequence sequence(keys, QKeySequence::PortableText);
   if (sequence.count() != 1 || sequence.toString().isEmpty())
     return fail("there is no key \"" + to_std(keys) + "\"", {}, "write Ctrl+Z, Space, F5 …");

@@ -20,7 +20,7 @@ void double_click(QWidget& widget, const QPointF& place);
 /// Notches; positive: away from the user.
 void turn_wheel(QWidget& widget, const QPointF& place, int notches);
 /// A key or chord by its name, "Ctrl+Z", to the focus of the active window, shortcuts included. Error: no such key.
-Status strike(QWidget& window, const QString& keys);
+Status press_keys(QWidget& window, const QString& keys);
 void type_text(QWidget& window, const QString& text);
 /// An entry of a list, box, tab bar by its words, or a value of a slider, number, check box, text field. Error: the
 /// widget has none such.

@@ -5,8 +5,10 @@
 #include <QLabel>
 #include <QPushButton>
 #include <span>
+#include <vector>
 
 #include "ui_kit/parts.h"
+#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
@@ -27,15 +29,7 @@ constexpr Key kTools[] = {
     {"Enter", "fires the biopsy gun"},
     {"E", "ends the attempt"},
     {"Space", "stops all forces, or switches them on again"}};
-constexpr Key kViews[] = {{"Ctrl+1 … 4", "layouts"},
-                          {"F", "freezes the ultrasound"},
-                          {"G, D", "gain, depth; with Shift less"},
-                          {"C", "colour Doppler"},
-                          {"M", "measures a distance; its ends can be dragged"},
-                          {"Delete", "deletes the selected caliper, otherwise the last"},
-                          {"T, L, B", "3D view: follow the tip, along, beside the needle"},
-                          {"O, I", "3D view: guidance, landmarks"},
-                          {"Tab", "next control; Space presses it, during a puncture Enter"},
+constexpr Key kPages[] = {{"Tab", "next control; Space presses it, during a puncture Enter"},
                           {"Ctrl++, Ctrl+-", "larger, smaller text"},
                           {"Ctrl+R", "tries again"},
                           {"W", "worst moment of the replay"},
@@ -46,19 +40,33 @@ constexpr Key kViews[] = {{"Ctrl+1 … 4", "layouts"},
                           {"F8", "switches window mirroring on or off"},
                           {"F11", "full screen"}};
 
-void add_keys(QGridLayout& grid, int column, const QString& title, std::span<const Key> keys) {
+using Keys = std::vector<ViewKeys>;
+
+void append(Keys& keys, std::span<const Key> more) {
+  for (const Key& key : more) keys.push_back({QString::fromUtf8(key.keys), QString::fromUtf8(key.does)});
+}
+
+Keys keys_of_views_and_pages(const Workspace& workspace) {
+  Keys keys{{QStringLiteral("Ctrl+1 … %1").arg(workspace.layouts().size()), QStringLiteral("layouts")}};
+  for (const ViewDescription& view : workspace.registry().views())
+    keys.insert(keys.end(), view.keys.begin(), view.keys.end());
+  append(keys, kPages);
+  return keys;
+}
+
+void add_keys(QGridLayout& grid, int column, const QString& title, const Keys& keys) {
   grid.addWidget(make_label(title, "heading"), 0, column, 1, 2);
   int row = 1;
-  for (const Key& key : keys) {
-    grid.addWidget(make_label(QString::fromUtf8(key.keys), "badge"), row, column, Qt::AlignLeft);
-    grid.addWidget(make_label(QString::fromUtf8(key.does)), row, column + 1);
+  for (const ViewKeys& key : keys) {
+    grid.addWidget(make_label(key.keys, "badge"), row, column, Qt::AlignLeft);
+    grid.addWidget(make_label(key.action), row, column + 1);
     ++row;
   }
 }
 
 }  // namespace
 
-void show_keys(QWidget* parent) {
+void show_keys(QWidget* parent, const Workspace& workspace) {
   QDialog dialog(parent);
   dialog.setObjectName(QStringLiteral("keys"));
   dialog.setWindowTitle(QDialog::tr("Keys and mouse"));
@@ -66,8 +74,10 @@ void show_keys(QWidget* parent) {
   grid->setContentsMargins(24, 20, 24, 20);
   grid->setHorizontalSpacing(16);
   grid->setVerticalSpacing(8);
-  add_keys(*grid, 0, QDialog::tr("Tools"), kTools);
-  add_keys(*grid, 2, QDialog::tr("Views and pages"), kViews);
+  Keys tools;
+  append(tools, kTools);
+  add_keys(*grid, 0, QDialog::tr("Tools"), tools);
+  add_keys(*grid, 2, QDialog::tr("Views and pages"), keys_of_views_and_pages(workspace));
   auto* close = make_button("close-keys", QDialog::tr("Close"), QDialog::tr("Closes this"), QStringLiteral("Esc"));
   grid->addWidget(close, grid->rowCount(), 3, Qt::AlignRight);
   QObject::connect(close, &QPushButton::clicked, &dialog, &QDialog::accept);

@@ -15,19 +15,19 @@
 #include <QVBoxLayout>
 
 #include "control/mirror_station.h"
-#include "control/seat_flow.h"
 #include "pages/briefing_page.h"
 #include "pages/case_page.h"
 #include "pages/start_page.h"
 #include "pages/work_page.h"
 #include "panels/device_test_dialog.h"
+#include "panels/status_strip.h"
 #include "shell/keys_dialog.h"
-#include "shell/status_strip.h"
+#include "shell/seat_flow.h"
 #include "ui_kit/focus_ring.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "ui_kit/wheel_guard.h"
-#include "workspace/desk.h"
+#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
@@ -102,7 +102,7 @@ QWidget* MainWindow::make_top_bar() {
   row->addStretch();
   auto* views = make_tool_button("views-menu", tr("Views"), tr("Layouts and visible views"));
   views_menu_ = new QMenu(views);
-  work_->desk().fill_menu(*views_menu_);
+  work_->workspace().fill_menu(*views_menu_);
   fill_text_menu(*views_menu_->addMenu(tr("Text size")));
   add_sound(*views_menu_);
   views_menu_->addSeparator();
@@ -116,12 +116,13 @@ QWidget* MainWindow::make_top_bar() {
   for (QToolButton* button : {views, tissues, builder, keys}) row->addWidget(button);
   connect(tissues, &QToolButton::clicked, this, [this] {
     if (!work_->toggle_parameters())
-      tell(tr("The Tissues panel is closed in an exam: it shows path, depths and forces, and changes the task."),
-           BannerKind::kWarning);
+      show_message(
+          tr("The Tissues panel is closed in an exam: it shows path, depths and forces, and changes the task."),
+          BannerKind::kWarning);
   });
   connect(builder, &QToolButton::clicked, this,
           [this] { page_ == QLatin1String("case-builder") ? flow_->go_to_start() : flow_->go_to_case_builder(); });
-  connect(keys, &QToolButton::clicked, this, [this] { show_keys(this); });
+  connect(keys, &QToolButton::clicked, this, [this] { show_keys(this, work_->workspace()); });
   return bar;
 }
 
@@ -189,8 +190,8 @@ void MainWindow::show_banner(const QString& text, BannerKind kind) {
   banner_->set_state(text, kind);
 }
 
-void MainWindow::tell(const QString& text, BannerKind kind) {
-  banner_->tell(text, kind);
+void MainWindow::show_message(const QString& text, BannerKind kind) {
+  banner_->show_message(text, kind);
 }
 
 QVariantMap MainWindow::facts() const {
@@ -199,7 +200,7 @@ QVariantMap MainWindow::facts() const {
   facts[QStringLiteral("page")] = page_;
   facts[QStringLiteral("banner")] = banner_->isVisible() ? banner_->text() : QString();
   facts[QStringLiteral("is_tissues_open")] = work_->are_parameters_shown();
-  facts[QStringLiteral("layout")] = work_->desk().layout_name();
+  facts[QStringLiteral("layout")] = work_->workspace().layout_name();
   facts[QStringLiteral("mirror")] = static_cast<int>(mirror_->settings().axis);
   facts[QStringLiteral("columns")] = width();
   facts[QStringLiteral("rows")] = height();
@@ -209,7 +210,7 @@ QVariantMap MainWindow::facts() const {
 void MainWindow::closeEvent(QCloseEvent* event) {
   if (!flow_->may_close()) return event->ignore();
   QSettings().setValue(QStringLiteral("window/geometry"), saveGeometry());
-  work_->desk().save_layout();
+  work_->workspace().save_layout();
   flow_->close();
   QMainWindow::closeEvent(event);
 }

@@ -45,7 +45,7 @@ class MainWindow : public QMainWindow {
   /// Over the pages, until it is empty again or replaced.
   void show_banner(const QString& text, BannerKind kind = BannerKind::kWarning);
   /// Likewise for some seconds.
-  void tell(const QString& text, BannerKind kind);
+  void show_message(const QString& text, BannerKind kind);
   bool has_sound() const;  ///< As the user has set it; on at first.
   /// What the window shows and knows, for scripts.
   QVariantMap facts() const;

@@ -74,16 +74,16 @@ TEST_F(BannerTest, LetsClicksThrough) {
 TEST_F(BannerTest, SuccessIsGreenAndGoesByItselfAndTheStateComesBack) {
   banner->set_state(QStringLiteral("The disk is almost full."), BannerKind::kWarning);
   EXPECT_TRUE(has_color(theme().warning));
-  banner->tell(QStringLiteral("The report is in /tmp/report.html"), BannerKind::kSuccess);
+  banner->show_message(QStringLiteral("The report is in /tmp/report.html"), BannerKind::kSuccess);
   EXPECT_TRUE(has_color(theme().good));
   banner->set_state(QStringLiteral("The disk is almost full."), BannerKind::kWarning);  // as each frame does
   EXPECT_TRUE(banner->text().startsWith(QStringLiteral("The report")));
   QElapsedTimer clock;
   clock.start();
-  while (banner->text().startsWith(QStringLiteral("The report")) && clock.elapsed() < 2 * Banner::kTold_ms)
+  while (banner->text().startsWith(QStringLiteral("The report")) && clock.elapsed() < 2 * Banner::kMessage_ms)
     QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
   EXPECT_EQ(banner->text(), QStringLiteral("The disk is almost full."));
-  banner->tell(QStringLiteral("The report is in /tmp/report.html"), BannerKind::kSuccess);
+  banner->show_message(QStringLiteral("The report is in /tmp/report.html"), BannerKind::kSuccess);
   banner->set_state(QStringLiteral("The server of the needle was killed."), BannerKind::kError);
   EXPECT_TRUE(has_color(theme().bad)) << "what is wrong is not hidden by a success";
   banner->set_state({}, BannerKind::kWarning);

@@ -23,8 +23,8 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/case/prepare_case.h"
 #include "case_builder/case_edits.h"
+#include "cases/prepare_case.h"
 #include "core/files/atomic_file.h"
 #include "core/files/temporary_folder.h"
 #include "core/testing/test_data.h"
@@ -93,10 +93,10 @@ class CasePageTest : public ::testing::Test {
     return is_there();
   }
   bool wait_for_work() {
-    return wait_for([&] { return page_.desk().work() == case_builder::CaseDesk::Work::kNone; });
+    return wait_for([&] { return page_.editor().work() == case_builder::CaseEditor::Work::kNone; });
   }
   bool wait_for_review() {
-    return wait_for([&] { return page_.desk().is_reviewed(); });
+    return wait_for([&] { return page_.editor().is_reviewed(); });
   }
   void import(const std::string& ct, const std::string& labels, const std::string& map) {
     press("case-step-1");
@@ -111,7 +111,7 @@ class CasePageTest : public ::testing::Test {
   void import_files() {
     start_import_of_files();
     ASSERT_TRUE(wait_for_work());
-    ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
+    ASSERT_TRUE(page_.editor().has_patient()) << page_.editor().message();
   }
   void click(SliceView& slice, const Vec3& p_P) {
     const QPointF at = slice.position_of(p_P);
@@ -151,7 +151,7 @@ class CasePageTest : public ::testing::Test {
   }
   int errors(case_builder::CaseStep step) {
     return static_cast<int>(std::count_if(
-        page_.desk().checks().begin(), page_.desk().checks().end(), [&](const case_builder::CaseCheck& check) {
+        page_.editor().checks().begin(), page_.editor().checks().end(), [&](const case_builder::CaseCheck& check) {
           return check.step == step && check.level == case_builder::CheckLevel::kError;
         }));
   }
@@ -167,39 +167,39 @@ TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   ASSERT_TRUE(wait_for_review());
 
   press("case-step-3");
-  const Vec3 target_P = *find_target_point(page_.desk().draft());
+  const Vec3 target_P = *find_target_point(page_.editor().draft());
   press("case-target-pick");
   click(find<SliceView>("slice-axial"), target_P);
-  ASSERT_TRUE(page_.desk().draft().task.target_P);
-  EXPECT_LT((*page_.desk().draft().task.target_P - target_P).norm(), 1.5);  // a pixel
+  ASSERT_TRUE(page_.editor().draft().task.target_P);
+  EXPECT_LT((*page_.editor().draft().task.target_P - target_P).norm(), 1.5);  // a pixel
   press("case-undo");
   page_.advance();
-  EXPECT_FALSE(page_.desk().draft().task.target_P);
+  EXPECT_FALSE(page_.editor().draft().task.target_P);
   press("case-redo");
-  EXPECT_TRUE(page_.desk().draft().task.target_P);
+  EXPECT_TRUE(page_.editor().draft().task.target_P);
 
   press("case-step-4");
   press("case-plan");
   ASSERT_TRUE(wait_for_work());
-  const anatomy::NeedlePath* path = case_builder::find_expert_path(page_.desk().draft());
-  ASSERT_NE(path, nullptr) << page_.desk().message();
+  const anatomy::NeedlePath* path = case_builder::find_expert_path(page_.editor().draft());
+  ASSERT_NE(path, nullptr) << page_.editor().message();
   const Segment planned_P = path->line_P;
   press("case-zone-pick");
   auto& axial = find<SliceView>("slice-axial");
   axial.set_focus(planned_P.a);
   click(axial, planned_P.a);
-  ASSERT_TRUE(page_.desk().draft().task.entry_zone);
-  EXPECT_LT((page_.desk().draft().task.entry_zone->centre_P - planned_P.a).norm(), 3.0);
+  ASSERT_TRUE(page_.editor().draft().task.entry_zone);
+  EXPECT_LT((page_.editor().draft().task.entry_zone->centre_P - planned_P.a).norm(), 3.0);
   press("case-entry-pick");
   axial.set_focus(planned_P.a);
   click(axial, planned_P.a);
-  EXPECT_GT((case_builder::find_expert_path(page_.desk().draft())->line_P.a - planned_P.a).norm(), 0.0);
-  EXPECT_LT((case_builder::find_expert_path(page_.desk().draft())->line_P.a - planned_P.a).norm(), 3.0);
+  EXPECT_GT((case_builder::find_expert_path(page_.editor().draft())->line_P.a - planned_P.a).norm(), 0.0);
+  EXPECT_LT((case_builder::find_expert_path(page_.editor().draft())->line_P.a - planned_P.a).norm(), 3.0);
   press("case-undo");  // a planned path may keep its margins just so
   ASSERT_TRUE(wait_for_review());
   EXPECT_EQ(errors(case_builder::CaseStep::kPath), 0);
   press("case-step-5");
-  ASSERT_TRUE(page_.desk().preview());
+  ASSERT_TRUE(page_.editor().preview());
   EXPECT_GE(find<QTableWidget>("case-force-events").rowCount(), 2);
 
   place_landmarks();
@@ -212,7 +212,7 @@ TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   EXPECT_FALSE(find<QPushButton>("case-open").isEnabled());
   press("case-save");
   ASSERT_TRUE(wait_for_work());
-  ASSERT_FALSE(page_.desk().is_error()) << page_.desk().message();
+  ASSERT_FALSE(page_.editor().is_error()) << page_.editor().message();
   ASSERT_TRUE(fs::exists(case_folder / "task.toml"));
   std::vector<std::string> opened;
   QObject::connect(&page_, &CasePage::case_saved, [&](const QString& at) { opened.push_back(to_std(at)); });
@@ -224,18 +224,18 @@ TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
   ASSERT_EQ(patient->landmarks.size(), 2U);
   EXPECT_EQ(patient->landmarks[0].name, "xiphoid process");
   EXPECT_EQ(patient->landmarks[1].name, "where the drain was");
-  attempt::CaseOptions options;
+  cases::CaseOptions options;
   options.task.clear();
   options.patient_folder = case_folder.string();
   const auto the_case =
-      attempt::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(*patient)), options);
+      cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(*patient)), options);
   ASSERT_TRUE(the_case) << the_case.error().text();
-  const case_builder::CaseDraft made = page_.desk().draft();
+  const case_builder::CaseDraft made = page_.editor().draft();
   EXPECT_LT((the_case->plan.line_P.a - case_builder::find_expert_path(made)->line_P.a).norm(), 1e-6);
 
   import(case_folder.string(), "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
-  case_builder::CaseDraft again = page_.desk().draft();
+  case_builder::CaseDraft again = page_.editor().draft();
   again.imported = made.imported;
   EXPECT_TRUE(case_builder::is_same_draft(again, made));
 }
@@ -246,14 +246,14 @@ TEST_F(CasePageTest, RealCtBecomesACase) {
   import((data / "example_ct.nii.gz").string(), (data / "example_seg_fast_force_split.nii.gz").string(),
          "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
-  ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
+  ASSERT_TRUE(page_.editor().has_patient()) << page_.editor().message();
   ASSERT_TRUE(wait_for_review());
   EXPECT_GT(find<QTableWidget>("case-label-table").rowCount(), 30);
   EXPECT_GT(find<QListWidget>("case-checks").count(), 3);
   press("case-step-4");
   press("case-plan");
   ASSERT_TRUE(wait_for_work());
-  ASSERT_NE(case_builder::find_expert_path(page_.desk().draft()), nullptr) << page_.desk().message();
+  ASSERT_NE(case_builder::find_expert_path(page_.editor().draft()), nullptr) << page_.editor().message();
   ASSERT_TRUE(wait_for_review());
   EXPECT_EQ(errors(case_builder::CaseStep::kPath), 0);
   save_steps("case_torso");
@@ -262,17 +262,17 @@ TEST_F(CasePageTest, RealCtBecomesACase) {
 TEST_F(CasePageTest, BrokenImportSaysOneLineAndLeavesTheDraft) {
   import("layers-liver", "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
-  ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
-  const case_builder::CaseDraft before = page_.desk().draft();
+  ASSERT_TRUE(page_.editor().has_patient()) << page_.editor().message();
+  const case_builder::CaseDraft before = page_.editor().draft();
   const TemporaryFolder folder;
   ASSERT_TRUE(write_file_atomically(folder / "ct.nrrd", "NRRD0004\nno volume"));
   import((folder / "ct.nrrd").string(), (folder / "ct.nrrd").string(), "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
-  EXPECT_TRUE(page_.desk().is_error());
+  EXPECT_TRUE(page_.editor().is_error());
   const QString text = find<QLabel>("case-message").text();
   EXPECT_FALSE(text.isEmpty());
   EXPECT_FALSE(text.contains(QLatin1Char('\n')));
-  EXPECT_TRUE(case_builder::is_same_draft(page_.desk().draft(), before));
+  EXPECT_TRUE(case_builder::is_same_draft(page_.editor().draft(), before));
 }
 
 TEST_F(CasePageTest, OnlyImportsThatSucceededAreRecent) {
@@ -282,7 +282,7 @@ TEST_F(CasePageTest, OnlyImportsThatSucceededAreRecent) {
   ASSERT_TRUE(write_file_atomically(folder / "broken.nrrd", "NRRD0004\nno volume"));
   import((folder / "broken.nrrd").string(), (folder / "broken.nrrd").string(), "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
-  EXPECT_TRUE(page_.desk().is_error());
+  EXPECT_TRUE(page_.editor().is_error());
   EXPECT_EQ(recent.count(), before);
   for (int row = 0; row < recent.count(); ++row)
     EXPECT_FALSE(recent.item(row)->toolTip().contains(QStringLiteral("broken")));
@@ -310,7 +310,7 @@ TEST_F(CasePageTest, FilesThatAreChosenAfterAFailureReplaceTheFailedOnes) {
   EXPECT_EQ(labels.text().count(QLatin1Char(';')), 1) << "several are added up";
   import("layers-liver", "/nowhere/labels.nrrd", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
-  ASSERT_TRUE(page_.desk().is_error());
+  ASSERT_TRUE(page_.editor().is_error());
   choose(folder / "one.nrrd");
   EXPECT_EQ(labels.text(), to_qt((folder / "one.nrrd").string()));
 }
@@ -326,15 +326,15 @@ TEST_F(CasePageTest, CancelledImportLeavesThePageAsItWas) {
   EXPECT_TRUE(find<QPushButton>("case-cancel").isVisible());
   press("case-cancel");
   page_.advance();
-  EXPECT_EQ(page_.desk().work(), case_builder::CaseDesk::Work::kNone);
-  EXPECT_FALSE(page_.desk().has_patient());
+  EXPECT_EQ(page_.editor().work(), case_builder::CaseEditor::Work::kNone);
+  EXPECT_FALSE(page_.editor().has_patient());
   EXPECT_FALSE(find<QPushButton>("case-cancel").isVisible());
 }
 
 TEST_F(CasePageTest, LabelsAndRisksAreEditedWithUndo) {
   import("layers-liver", "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
-  ASSERT_TRUE(page_.desk().has_patient()) << page_.desk().message();
+  ASSERT_TRUE(page_.editor().has_patient()) << page_.editor().message();
   press("case-step-2");
   auto& table = find<QTableWidget>("case-label-table");
   ASSERT_GT(table.rowCount(), 1);
@@ -366,7 +366,7 @@ TEST_F(CasePageTest, LandmarksArePlacedMovedRenamedAndRemovedWithUndo) {
   import("layers-liver", "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
   press("case-step-3");
-  const auto& landmarks = [&]() -> const std::vector<anatomy::Landmark>& { return page_.desk().draft().landmarks; };
+  const auto& landmarks = [&]() -> const std::vector<anatomy::Landmark>& { return page_.editor().draft().landmarks; };
   auto& axial = find<SliceView>("slice-axial");
   auto& list = find<QListWidget>("case-landmarks");
   find<QTabWidget>("case-target-tabs").setCurrentIndex(1);
@@ -392,7 +392,7 @@ TEST_F(CasePageTest, LandmarksArePlacedMovedRenamedAndRemovedWithUndo) {
   EXPECT_LT((landmarks()[before].p_P - first_P).norm(), 2.5);
   find<QComboBox>("case-landmark-name").setEditText(QStringLiteral("  "));
   click(axial, second_P);
-  EXPECT_TRUE(page_.desk().is_error()) << "a landmark without a name";
+  EXPECT_TRUE(page_.editor().is_error()) << "a landmark without a name";
   find<QComboBox>("case-landmark-name").setEditText(QStringLiteral("umbilicus"));
   click(axial, second_P);
   page_.advance();
@@ -425,7 +425,7 @@ TEST_F(CasePageTest, CheckJumpsToWhatItMeans) {
   page_.advance();
   const Vec3 target_P = find<SliceView>("slice-axial").focus();  // the middle of the body
   const Vec3 begin_P = target_P - Vec3(0.0, 0.0, 20.0);
-  ASSERT_TRUE(page_.desk().edit(case_builder::set_expert_path(page_.desk().draft(), {begin_P, target_P}), "path"));
+  ASSERT_TRUE(page_.editor().edit(case_builder::set_expert_path(page_.editor().draft(), {begin_P, target_P}), "path"));
   ASSERT_TRUE(wait_for_review());
   EXPECT_GT(errors(case_builder::CaseStep::kPath), 0);
   auto& checks = find<QListWidget>("case-checks");

@@ -4,7 +4,7 @@
 
 #include <QLabel>
 
-#include "shell/status_strip.h"
+#include "panels/status_strip.h"
 
 namespace trocar::trainer {
 namespace {

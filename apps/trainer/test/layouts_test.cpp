@@ -8,7 +8,7 @@
 #include <QSettings>
 #include <set>
 
-#include "workspace/desk.h"
+#include "workspace/workspace.h"
 
 namespace trocar::trainer {
 namespace {
@@ -20,9 +20,9 @@ struct LayoutsTest : ::testing::Test {
   LayoutsTest() { QSettings().clear(); }
 };
 
-Names shown_by(const Desk& desk) {
+Names shown_by(const Workspace& workspace) {
   Names names;
-  for (const QDockWidget* dock : desk.findChildren<QDockWidget*>()) {
+  for (const QDockWidget* dock : workspace.findChildren<QDockWidget*>()) {
     if (dock->isVisible()) names.insert(dock->objectName().mid(5).toStdString());
   }
   return names;
@@ -39,31 +39,31 @@ Names named_by(const Layout& layout) {
 }
 
 TEST_F(LayoutsTest, ALayoutShowsItsViewsAndNoOthersWheneverItIsChosen) {
-  Desk desk;
-  desk.resize(1000, 700);
-  desk.show();
+  Workspace workspace;
+  workspace.resize(1000, 700);
+  workspace.show();
   for (int round = 0; round < 3; ++round) {  // from the second on as it was kept
     for (const Layout& layout : built_in_layouts()) {
-      desk.choose_layout(layout.name);
+      workspace.choose_layout(layout.name);
       QApplication::processEvents();
-      EXPECT_EQ(desk.width(), 1000) << "a change of layout must not widen the window";
-      EXPECT_EQ(shown_by(desk), named_by(layout)) << layout.name.toStdString() << " in round " << round;
+      EXPECT_EQ(workspace.width(), 1000) << "a change of layout must not widen the window";
+      EXPECT_EQ(shown_by(workspace), named_by(layout)) << layout.name.toStdString() << " in round " << round;
     }
   }
 }
 
 TEST_F(LayoutsTest, TheMenuAddsAViewToALayoutThatDoesNotHaveIt) {
-  Desk desk;
-  desk.resize(1000, 700);
-  desk.show();
+  Workspace workspace;
+  workspace.resize(1000, 700);
+  workspace.show();
   const Layout& first = built_in_layouts().front();
-  desk.choose_layout(first.name);
-  auto* dock = desk.findChild<QDockWidget*>(QStringLiteral("dock-coronal"));
+  workspace.choose_layout(first.name);
+  auto* dock = workspace.findChild<QDockWidget*>(QStringLiteral("dock-coronal"));
   dock->toggleViewAction()->trigger();
   QApplication::processEvents();
   ASSERT_TRUE(dock->isVisible());
   const QRect place = dock->geometry();
-  for (const QDockWidget* other : desk.findChildren<QDockWidget*>()) {
+  for (const QDockWidget* other : workspace.findChildren<QDockWidget*>()) {
     if (other != dock && other->isVisible()) {
       EXPECT_FALSE(other->geometry().intersects(place)) << "it covers " << other->objectName().toStdString();
     }
@@ -71,19 +71,19 @@ TEST_F(LayoutsTest, TheMenuAddsAViewToALayoutThatDoesNotHaveIt) {
 }
 
 TEST_F(LayoutsTest, AViewThatWasHiddenStaysHiddenUntilTheLayoutIsReset) {
-  Desk desk;
-  desk.resize(1000, 700);
-  desk.show();
+  Workspace workspace;
+  workspace.resize(1000, 700);
+  workspace.show();
   const Layout& first = built_in_layouts().front();
-  desk.choose_layout(first.name);
-  desk.findChild<QDockWidget*>(QStringLiteral("dock-forces"))->hide();
-  desk.choose_layout(built_in_layouts().back().name);
-  desk.choose_layout(first.name);
+  workspace.choose_layout(first.name);
+  workspace.findChild<QDockWidget*>(QStringLiteral("dock-forces"))->hide();
+  workspace.choose_layout(built_in_layouts().back().name);
+  workspace.choose_layout(first.name);
   Names expected = named_by(first);
   expected.erase("forces");
-  EXPECT_EQ(shown_by(desk), expected);
-  desk.reset_layout();
-  EXPECT_EQ(shown_by(desk), named_by(first));
+  EXPECT_EQ(shown_by(workspace), expected);
+  workspace.reset_layout();
+  EXPECT_EQ(shown_by(workspace), named_by(first));
 }
 
 }  // namespace

@@ -85,18 +85,18 @@ TEST_F(KeysTest, KnowWhereTheyAreStruck) {
 TEST_F(KeysTest, ToolsAreTakenWhereverTheFocusIsAndArrowsThenMoveThem) {
   ToolGestures gestures;
   gestures.watch(*view, [] { return ViewScale{}; });
-  PageKeys keys(window, [&](const QKeyEvent& key, const KeyPlace& place) { return gestures.strike(key, place); });
+  PageKeys keys(window, [&](const QKeyEvent& key, const KeyPlace& place) { return gestures.handle_key(key, place); });
   int moved = 0, fired = 0, clicked = 0;
   QObject::connect(&gestures, &ToolGestures::gestured, [&] { ++moved; });
-  QObject::connect(&gestures, &ToolGestures::key_struck, [&] { ++fired; });
+  QObject::connect(&gestures, &ToolGestures::key_pressed, [&] { ++fired; });
   QObject::connect(button, &QPushButton::clicked, [&] { ++clicked; });
   for (QWidget* widget : std::initializer_list<QWidget*>{choice, list, radio, button, slider}) {
     strike(*widget, Qt::Key_S);
-    EXPECT_EQ(gestures.in_hand(), ToolInHand::kTransducer) << widget->metaObject()->className();
+    EXPECT_EQ(gestures.active_tool(), ActiveTool::kTransducer) << widget->metaObject()->className();
     EXPECT_EQ(choice->currentText(), QStringLiteral("aorta"));
     press_key(*window.focusWidget(), Qt::Key_PageUp);
     strike(*widget, Qt::Key_A);
-    EXPECT_EQ(gestures.in_hand(), ToolInHand::kNeedle) << widget->metaObject()->className();
+    EXPECT_EQ(gestures.active_tool(), ActiveTool::kNeedle) << widget->metaObject()->className();
   }
   EXPECT_EQ(moved, 5);
   // Arrows belong to the control that has the focus.
@@ -109,7 +109,7 @@ TEST_F(KeysTest, ToolsAreTakenWhereverTheFocusIsAndArrowsThenMoveThem) {
   EXPECT_EQ(moved, 5);
   strike(*text, Qt::Key_S);
   strike(*number, Qt::Key_S);
-  EXPECT_EQ(gestures.in_hand(), ToolInHand::kNeedle);
+  EXPECT_EQ(gestures.active_tool(), ActiveTool::kNeedle);
   strike(*button, Qt::Key_Return);
   EXPECT_EQ(clicked, 1);
   EXPECT_EQ(fired, 0);

@@ -1,4 +1,4 @@
-#include "shell/status_strip.h"
+#include "panels/status_strip.h"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(StatusStrip, ItsButtonSaysWhatAPressDoes) {
   StatusStrip strip;
   auto* stop = strip.findChild<QPushButton*>(QStringLiteral("force-stop"));
   int presses = 0;
-  QObject::connect(&strip, &StatusStrip::toggle_wanted, [&] { ++presses; });
+  QObject::connect(&strip, &StatusStrip::toggle_requested, [&] { ++presses; });
   stop->click();
   EXPECT_EQ(presses, 0);  // no attempt
   strip.show_forces(true, false);

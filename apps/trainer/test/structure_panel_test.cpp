@@ -111,9 +111,9 @@ TEST_F(StructurePanelTest, UndoHasItsKeysInThePanel) {
   panel->activateWindow();
   find<QSlider>("structure-opacity-kidney-left").setFocus();
   QApplication::processEvents();
-  EXPECT_TRUE(strike(*panel, QStringLiteral("Ctrl+Z")));
+  EXPECT_TRUE(press_keys(*panel, QStringLiteral("Ctrl+Z")));
   EXPECT_NE(opacity("kidney_left"), 0.4);
-  EXPECT_TRUE(strike(*panel, QStringLiteral("Ctrl+Shift+Z")));
+  EXPECT_TRUE(press_keys(*panel, QStringLiteral("Ctrl+Shift+Z")));
   EXPECT_DOUBLE_EQ(opacity("kidney_left"), 0.4);
 }
 

@@ -30,7 +30,7 @@ struct Patient {
 inline const Patient& abdomen() {
   static const Patient made = [] {
     Patient p;
-    const attempt::OpenCase& open = *open_abdomen();
+    const cases::OpenCase& open = *open_abdomen();
     p.patient = open.the_case.patient;
     p.scene = open.acoustic;
     p.flow = open.flow;
@@ -61,7 +61,7 @@ inline Place place(const std::string& name, const ultrasound::Transducer& probe)
   return {ultrasound::place_probe(*abdomen().patient, view, probe).value().X_PT, view.depth_mm};
 }
 
-/// Views of the embedded patient, with a frame loop, a mouse and keys; knobs are kept in a folder of the test's own.
+/// Views of the embedded patient, with a frame loop, a mouse and keys; controls are kept in a folder of the test's own.
 class UltrasoundViewTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { abdomen(); }

@@ -388,7 +388,7 @@ TEST_F(UltrasoundViewTest, TheWholeMarkerIsInTheView) {
       }
 }
 
-TEST_F(UltrasoundViewTest, KnobsAreKeptForEachTransducer) {
+TEST_F(UltrasoundViewTest, ControlsAreKeptForEachTransducer) {
   {
     UltrasoundView view;
     open(view, "liver-right-kidney", {480, 420});

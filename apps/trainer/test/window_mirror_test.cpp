@@ -1,4 +1,4 @@
-#include "shell/window_mirror.h"
+#include "ui_kit/window_mirror.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <QWindow>
 #include <memory>
 
-#include "shell/mirror_settings.h"
+#include "panels/mirror_settings.h"
 
 namespace trocar::trainer {
 namespace {

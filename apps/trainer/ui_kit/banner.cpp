@@ -80,8 +80,8 @@ Banner::Banner(QWidget& area) : QLabel(&area), area_(area) {
   setAttribute(Qt::WA_TransparentForMouseEvents);
   hide();
   area.installEventFilter(this);
-  told_.setSingleShot(true);
-  connect(&told_, &QTimer::timeout, this, [this] { show_message(state_); });
+  message_timer_.setSingleShot(true);
+  connect(&message_timer_, &QTimer::timeout, this, [this] { display(state_); });
   constexpr int kPlaceEvery_ms = 500;  // docks and panels appear and disappear below it
   placing_.setInterval(kPlaceEvery_ms);
   connect(&placing_, &QTimer::timeout, this, &Banner::place);
@@ -90,17 +90,17 @@ Banner::Banner(QWidget& area) : QLabel(&area), area_(area) {
 void Banner::set_state(const QString& text, BannerKind kind) {
   if (state_.text == text && state_.kind == kind) return;
   state_ = {text, kind};
-  if (text.isEmpty() && told_.isActive()) return;
-  told_.stop();
-  show_message(state_);
+  if (text.isEmpty() && message_timer_.isActive()) return;
+  message_timer_.stop();
+  display(state_);
 }
 
-void Banner::tell(const QString& text, BannerKind kind) {
-  told_.start(kTold_ms);
-  show_message({text, kind});
+void Banner::show_message(const QString& text, BannerKind kind) {
+  message_timer_.start(kMessage_ms);
+  display({text, kind});
 }
 
-void Banner::show_message(const Message& message) {
+void Banner::display(const Message& message) {
   setVisible(!message.text.isEmpty());
   if (message.text.isEmpty()) return placing_.stop();
   setText(message.text);

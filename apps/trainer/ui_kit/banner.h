@@ -8,7 +8,7 @@ namespace trocar::trainer {
 enum class BannerKind { kError, kWarning, kSuccess };
 
 /// A message on top of the pages. It takes no space in their layout and no mouse events, and avoids controls and text.
-/// A state stays until it is replaced; other messages disappear after kTold_ms.
+/// A state stays until it is replaced; other messages disappear after kMessage_ms.
 class Banner : public QLabel {
   Q_OBJECT
 
@@ -18,12 +18,12 @@ class Banner : public QLabel {
 
   /// Empty: none.
   void set_state(const QString& text, BannerKind kind);
-  /// For kTold_ms, instead of the state; a new state ends it.
-  void tell(const QString& text, BannerKind kind);
+  /// For kMessage_ms, instead of the state; a new state ends it.
+  void show_message(const QString& text, BannerKind kind);
   /// Looks for its place again: after the page has changed.
   void place();
 
-  static constexpr int kTold_ms = 5000;
+  static constexpr int kMessage_ms = 5000;
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
@@ -33,12 +33,12 @@ class Banner : public QLabel {
     QString text;
     BannerKind kind = BannerKind::kWarning;
   };
-  void show_message(const Message& message);
+  void display(const Message& message);
   QRect free_place(const QSize& size) const;
 
   QWidget& area_;
   Message state_;
-  QTimer told_, placing_;
+  QTimer message_timer_, placing_;
 };
 
 }  // namespace trocar::trainer

@@ -57,7 +57,7 @@ QScrollArea* make_scrolled(QWidget& content) {
   return area;
 }
 
-void set_look(QWidget& widget, const char* property, const QVariant& value) {
+void set_style(QWidget& widget, const char* property, const QVariant& value) {
   if (widget.property(property) == value) return;
   widget.setProperty(property, value);
   widget.style()->unpolish(&widget);

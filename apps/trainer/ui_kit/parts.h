@@ -28,7 +28,7 @@ QFrame* make_card(const QString& heading, QBoxLayout*& content);
 /// The content in a frameless scroll area that scrolls it where there is less room than it needs.
 QScrollArea* make_scrolled(QWidget& content);
 /// Sets a property used by the style sheet and updates the style.
-void set_look(QWidget& widget, const char* property, const QVariant& value);
+void set_style(QWidget& widget, const char* property, const QVariant& value);
 
 QString to_qt(std::string_view text);
 std::string to_std(const QString& text);

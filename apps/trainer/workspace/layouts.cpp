@@ -1,5 +1,7 @@
 #include "workspace/layouts.h"
 
+#include <algorithm>
+
 namespace trocar::trainer {
 namespace {
 
@@ -8,6 +10,19 @@ LayoutCell cell(std::initializer_list<const char*> views, int share) {
   for (const char* view : views) result.views.push_back(QString::fromLatin1(view));
   result.share = share;
   return result;
+}
+
+void place(std::vector<Layout>& layouts, const QString& view, const LayoutPlace& place) {
+  const LayoutCell cell{{view}, place.share};
+  const auto layout =
+      std::find_if(layouts.begin(), layouts.end(), [&](const Layout& l) { return l.name == place.layout; });
+  if (layout == layouts.end()) {
+    layouts.push_back({place.layout, {{{cell}, 1}}});
+  } else if (place.column < static_cast<int>(layout->columns.size())) {
+    layout->columns[static_cast<std::size_t>(std::max(0, place.column))].cells.push_back(cell);
+  } else {
+    layout->columns.push_back({{cell}, place.share});
+  }
 }
 
 }  // namespace
@@ -28,6 +43,13 @@ const std::vector<Layout>& built_in_layouts() {
         {{cell({"coronal"}, 1), cell({"across"}, 1)}, 1},
         {{cell({"sagittal"}, 1), cell({"3d"}, 1)}, 1}}},
   };
+  return layouts;
+}
+
+std::vector<Layout> layouts_of(const ViewRegistry& registry) {
+  std::vector<Layout> layouts = built_in_layouts();
+  for (const ViewDescription& view : registry.views())
+    for (const LayoutPlace& at : view.places) place(layouts, view.id, at);
   return layouts;
 }
 

@@ -4,6 +4,8 @@
 #include <QStringList>
 #include <vector>
 
+#include "views/view_registry.h"
+
 namespace trocar::trainer {
 
 /// A layout as columns of views, each with its share of the width; a column's rows with their shares of its height.
@@ -23,5 +25,8 @@ struct Layout {
 
 /// The built-in layouts, the first one is where a task begins.
 const std::vector<Layout>& built_in_layouts();
+
+/// The same with the places of registered views: rows at the foot of columns, new columns and new layouts.
+std::vector<Layout> layouts_of(const ViewRegistry& registry);
 
 }  // namespace trocar::trainer

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "attempt/guide/gun_shot.h"
-#include "workspace/desk.h"
+#include "views/tools_shown.h"
 
 namespace trocar::trainer {
 

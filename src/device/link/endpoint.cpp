@@ -4,12 +4,12 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
 
 #include "core/log.h"
+#include "core/parse_number.h"
 #include "link/detail/clean_text.h"
 #include "link/detail/private_folder.h"
 #include "link/zmtp/detail/tcp_address.h"
@@ -22,15 +22,6 @@ constexpr std::size_t kMostPathBytes = sizeof(sockaddr_un::sun_path) - 1;
 constexpr std::string_view kIpc = "ipc://";
 constexpr std::string_view kTcp = "tcp://";
 constexpr std::string_view kAdvice = "write ipc:///PATH, or tcp://ADDRESS:PORT as in tcp://127.0.0.1:5571";
-
-/// An integer of 0 to `most`, digits only.
-std::optional<unsigned> parse_number(std::string_view digits, unsigned most) {
-  unsigned value = 0;
-  const char* const end = digits.data() + digits.size();
-  const auto [stop, error] = std::from_chars(digits.data(), end, value);
-  const bool is_number = !digits.empty() && error == std::errc() && stop == end && value <= most;
-  return is_number ? std::optional(value) : std::nullopt;
-}
 
 Result<Endpoint> parse_ipc(std::string_view path) {
   const std::string where = fmt::format("{}{}", kIpc, path);
@@ -49,8 +40,8 @@ Result<Endpoint> parse_tcp(std::string_view address) {
   const std::size_t colon = address.rfind(':');
   if (colon == std::string_view::npos) return fail_usage("the port is missing", where, std::string(kAdvice));
   std::string_view host = address.substr(0, colon);
-  const auto port = parse_number(address.substr(colon + 1), kMostPort);
-  if (!port)
+  const auto port = parse_number<unsigned>(address.substr(colon + 1));
+  if (!port || *port > kMostPort)
     return fail_usage(fmt::format("the port is not a number of 0 to {}", kMostPort), where,
                       "write it as tcp://127.0.0.1:5571");
   if (host == "localhost") host = "127.0.0.1";  // sockets cannot be bound to names

@@ -9,12 +9,13 @@
 
 #include "geometry/pose.h"
 #include "link/limits.h"
+#include "link/server_state.h"
 #include "realtime/loop_statistics.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::link {
 
-inline constexpr std::uint32_t kLinkVersion = 2;  ///< Both sides must have the same.
+inline constexpr std::uint32_t kLinkVersion = 3;  ///< Both sides must have the same.
 
 // From a client.
 
@@ -140,11 +141,11 @@ struct Pong {
 /// Data for a status bar.
 struct ServerStatus {
   double server_time_s = 0.0;
-  std::string state;      ///< "no scene", "loading", "ready", "running", "fault" …
-  std::string gate_mode;  ///< to_string(GateMode)
-  std::string fault;      ///< to_string(GateFault); "none".
-  std::string warning;    ///< "the client's window has not drawn a frame for 2.0 s"; empty: none.
-  std::string grant;      ///< RealTimeGrant::text
+  ServerState state = ServerState::kNoScene;
+  telemetry::GateMode gate_mode = telemetry::GateMode::kOff;
+  telemetry::GateFault fault = telemetry::GateFault::kNone;
+  std::string warning;  ///< "the client's window has stood still for 2 s"; empty: none.
+  std::string grant;    ///< RealTimeGrant::text
   std::string patient, patient_hash, force_model, task;
   double loading = 0.0;  ///< 0..1 while a scene is being built.
   realtime::LoopSummary loop;

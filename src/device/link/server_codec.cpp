@@ -32,9 +32,11 @@ wire::Latency to_wire(const realtime::LatencySummary& latency) {
 }
 
 flatbuffers::Offset<wire::ServerStatus> build_status(Builder& b, const ServerStatus& status) {
-  const Text state = b.CreateString(status.state), gate_mode = b.CreateString(status.gate_mode);
-  const Text fault = b.CreateString(status.fault), warning = b.CreateString(status.warning);
-  const Text grant = b.CreateString(status.grant), patient = b.CreateString(status.patient);
+  const auto state = static_cast<wire::ServerState>(status.state);
+  const auto gate_mode = static_cast<wire::GateMode>(status.gate_mode);
+  const auto fault = static_cast<wire::GateFault>(status.fault);
+  const Text warning = b.CreateString(status.warning), grant = b.CreateString(status.grant);
+  const Text patient = b.CreateString(status.patient);
   const Text hash = b.CreateString(status.patient_hash), force_model = b.CreateString(status.force_model);
   const Text task = b.CreateString(status.task);
   const realtime::LoopSummary& l = status.loop;
@@ -48,8 +50,8 @@ flatbuffers::Offset<wire::ServerStatus> build_status(Builder& b, const ServerSta
 
 ServerMember build_body(Builder& b, const StateBatch& batch) {
   TROCAR_CHECK(batch.samples.size() <= kMostSamples);
-  const auto samples = b.CreateVectorOfNativeStructs<wire::Sample, telemetry::TickSample>(
-      batch.samples.data(), batch.samples.size(), detail::to_wire);
+  const auto samples = b.CreateVectorOfStructs<wire::Sample>(
+      batch.samples.size(), [&](std::size_t i, wire::Sample* packed) { write_sample(batch.samples[i], *packed); });
   flatbuffers::Offset<wire::ServerStatus> status;
   if (batch.status) status = build_status(b, *batch.status);
   return {wire::ServerBody::StateBatch,
@@ -115,9 +117,9 @@ realtime::LoopSummary read(const wire::Loop& loop, Inspection& in) {
 ServerStatus read(const wire::ServerStatus& table, Inspection& in) {
   ServerStatus status;
   status.server_time_s = in.number(table.server_time_s(), kTimes_s, "server_time_s");
-  status.state = in.text(table.state(), "state");
-  status.gate_mode = in.text(table.gate_mode(), "gate_mode");
-  status.fault = in.text(table.fault(), "fault");
+  status.state = in.enumerator(table.state(), kLastServerState, "state");
+  status.gate_mode = in.enumerator(table.gate_mode(), telemetry::kLastGateMode, "gate_mode");
+  status.fault = in.enumerator(table.fault(), telemetry::kLastGateFault, "fault");
   status.warning = in.text(table.warning(), "warning");
   status.grant = in.text(table.grant(), "grant");
   status.patient = in.text(table.patient(), "patient");
@@ -147,8 +149,10 @@ void read_samples(const flatbuffers::Vector<const wire::Sample*>& samples, Inspe
     return in.refuse("misaligned ticks", "samples");
   }
   result.reserve(samples.size());
-  for (const wire::Sample* sample : samples) {
-    result.push_back(read_sample(*sample, in));
+  telemetry::TickSample sample;
+  for (const wire::Sample* packed : samples) {
+    read_sample(*packed, in, sample);
+    result.push_back(sample);
     if (!in.is_good()) return;
   }
 }

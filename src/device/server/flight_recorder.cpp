@@ -3,27 +3,61 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 
 #include "core/files/atomic_file.h"
+#include "telemetry/tick_fields.h"
 
 namespace trocar::server {
 namespace fs = std::filesystem;
 namespace {
 
-std::string csv_row(const ServoRecord& r) {
-  const auto vec = [](const Vec3& v) { return fmt::format("{},{},{}", v.x(), v.y(), v.z()); };
+/// Calls visit(name, value) for every column of a flight record: the fields of the tick, then those of the device and
+/// the gate, in the frame D.
+template <class Visitor>
+void visit_columns(const ServoRecord& r, Visitor&& visit) {
+  const auto visit_vector = [&](std::array<const char*, 3> names, const Vec3& v) {
+    for (std::size_t i = 0; i < names.size(); ++i) visit(names[i], v[static_cast<Eigen::Index>(i)]);
+  };
+  visit("tick", r.tick);
+  telemetry::for_each_tick_field(
+      [&]<class Value, telemetry::TickUse use>(const telemetry::TickField<Value, use>& field) {
+        if constexpr (use.is_in_flight_record) telemetry::for_each_column(r.sample, field, visit);
+      });
+  visit("device_status", static_cast<int>(r.status));
+  visit_vector({"x_mm", "y_mm", "z_mm"}, r.X_DS.p());
   const Eigen::Quaterniond q(r.X_DS.R());
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.tick, r.sample.time_s,
-                     static_cast<int>(r.status), vec(r.X_DS.p()), q.w(), q.x(), q.y(), q.z(), r.buttons,
-                     vec(r.wanted_D.force_n), vec(r.wanted_D.torque_nmm), vec(r.written_D.force_n),
-                     vec(r.written_D.torque_nmm), to_string(r.mode), to_string(r.fault), r.actions, r.scale,
-                     r.silence_s, vec(r.sample.tip_mm));
+  visit("qw", q.w());
+  visit("qx", q.x());
+  visit("qy", q.y());
+  visit("qz", q.z());
+  visit("buttons", r.buttons);
+  visit_vector({"wanted_fx_n", "wanted_fy_n", "wanted_fz_n"}, r.wanted_D.force_n);
+  visit_vector({"wanted_tx_nmm", "wanted_ty_nmm", "wanted_tz_nmm"}, r.wanted_D.torque_nmm);
+  visit_vector({"written_fx_n", "written_fy_n", "written_fz_n"}, r.written_D.force_n);
+  visit_vector({"written_tx_nmm", "written_ty_nmm", "written_tz_nmm"}, r.written_D.torque_nmm);
+  visit("gate_actions", r.actions);
+  visit("silence_s", r.silence_s);
 }
 
-constexpr std::string_view kHeader =
-    "tick,time_s,device_status,x_mm,y_mm,z_mm,qw,qx,qy,qz,buttons,wanted_fx_n,wanted_fy_n,wanted_fz_n,wanted_tx_nmm,"
-    "wanted_ty_nmm,wanted_tz_nmm,written_fx_n,written_fy_n,written_fz_n,written_tx_nmm,written_ty_nmm,written_tz_nmm,"
-    "gate_mode,fault,gate_actions,gate_scale,silence_s,tip_x_mm,tip_y_mm,tip_z_mm\n";
+std::string csv_header() {
+  std::string line;
+  visit_columns(ServoRecord(), [&](const char* name, const auto&) { line += fmt::format("{},", name); });
+  line.back() = '\n';
+  return line;
+}
+
+void append_row(std::string& text, const ServoRecord& record) {
+  visit_columns(record, [&](const char*, const auto& value) {
+    if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(value)>>)
+      text += to_string(value);
+    else
+      fmt::format_to(std::back_inserter(text), "{}", value);
+    text += ',';
+  });
+  text.back() = '\n';
+}
 
 /// "flight-20260101T000000Z-runaway.csv"
 bool is_flight_name(const std::string& name) {
@@ -90,10 +124,10 @@ std::optional<std::vector<ServoRecord>> FlightRecorder::add(const ServoRecord& r
 
 Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, const std::string& utc,
                                            const std::vector<ServoRecord>& flight) {
-  std::string text(kHeader);
+  std::string text = csv_header();
   telemetry::GateFault fault = telemetry::GateFault::kNone;
   for (const ServoRecord& record : flight) {
-    text += csv_row(record);
+    append_row(text, record);
     if (fault == telemetry::GateFault::kNone) fault = record.fault;
   }
   const std::filesystem::path path = folder / fmt::format("flight-{}-{}.csv", utc, to_string(fault));

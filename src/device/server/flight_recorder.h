@@ -42,8 +42,9 @@ struct FlightQuota {
 std::size_t keep_quota(const std::filesystem::path& folder, const std::filesystem::path& newest,
                        const FlightQuota& quota = {});
 
-/// Writes FOLDER/flight-UTC-FAULT.csv, one row a period: time, pose, buttons, wanted and written wrench, what the gate
-/// did. Older records make room for it (keep_quota). Gives its path.
+/// Writes FOLDER/flight-UTC-FAULT.csv, one row per period: the tick's fields that telemetry/tick_fields.h names for it,
+/// pose, buttons, wanted and written wrench, actions of the gate. Older records make room for it (keep_quota). Gives
+/// its path.
 Result<std::filesystem::path> write_flight(const std::filesystem::path& folder, const std::string& utc,
                                            const std::vector<ServoRecord>& flight);
 

@@ -146,8 +146,8 @@ link::ServerStatus LinkThread::make_status(double now_s) {
   const ControlStatus control = shared_.door.status();
   link::ServerStatus status;
   status.server_time_s = now_s;
-  status.gate_mode = to_string(newest_.mode);
-  status.fault = to_string(newest_.fault);
+  status.gate_mode = newest_.mode;
+  status.fault = newest_.fault;
   status.warning = warning();
   if (shared_.has_grant.load(std::memory_order_acquire)) status.grant = shared_.grant.text();
   status.patient = control.patient;
@@ -165,11 +165,11 @@ link::ServerStatus LinkThread::make_status(double now_s) {
   status.drop_s = drop_s_;
   status.is_device_connected = newest_.status != devices::DeviceStatus::kDisconnected;
   status.has_controller = in_control_ != 0;
-  status.state = newest_.fault != telemetry::GateFault::kNone        ? "fault"
-                 : control.loading > 0.0                             ? "loading"
-                 : !control.has_scene                                ? "no scene"
-                 : shared_.is_wanted.load(std::memory_order_relaxed) ? "running"
-                                                                     : "ready";
+  status.state = newest_.fault != telemetry::GateFault::kNone        ? link::ServerState::kFault
+                 : control.loading > 0.0                             ? link::ServerState::kLoading
+                 : !control.has_scene                                ? link::ServerState::kNoScene
+                 : shared_.is_wanted.load(std::memory_order_relaxed) ? link::ServerState::kRunning
+                                                                     : link::ServerState::kReady;
   return status;
 }
 

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <new>
 
+#include "core/parse_number.h"
 #include "haptics/coupling/coupling_limits.h"
 
 namespace trocar::server {
@@ -17,11 +16,8 @@ struct Setting {
   std::string_view name, value;
 };
 
-Result<double> parse_number(const Setting& setting) {
-  double number = 0.0;
-  const char* end = setting.value.data() + setting.value.size();
-  const auto [stop, error] = std::from_chars(setting.value.data(), end, number);
-  if (error == std::errc() && stop == end && std::isfinite(number)) return number;
+Result<double> number_of(const Setting& setting) {
+  if (const auto number = parse_number<double>(setting.value)) return *number;
   return fail_usage(fmt::format("\"{}\" is not a number", setting.value), std::string(setting.name),
                     "send a decimal number");
 }
@@ -45,11 +41,11 @@ Result<bool> apply_option(std::string_view text, haptics::HapticOptions& options
   if (setting.name == "force_model") {
     TROCAR_TRY(options.force_model, haptics::parse_force_model(setting.value));
   } else if (setting.name == "coupling.stiffness") {
-    TROCAR_TRY(options.coupling.stiffness_n_per_mm, parse_number(setting));
+    TROCAR_TRY(options.coupling.stiffness_n_per_mm, number_of(setting));
   } else if (setting.name == "coupling.damping") {
-    TROCAR_TRY(options.coupling.damping_ns_per_mm, parse_number(setting));
+    TROCAR_TRY(options.coupling.damping_ns_per_mm, number_of(setting));
   } else if (setting.name == "bending") {
-    TROCAR_TRY(const double bending, parse_number(setting));
+    TROCAR_TRY(const double bending, number_of(setting));
     options.has_bending = bending != 0.0;
   } else {
     return false;

@@ -5,6 +5,7 @@
 #include "devices/device_wrench.h"
 #include "haptics/closed_loop/rotation.h"
 #include "haptics/gate/device_gate.h"
+#include "telemetry/tick_events.h"
 
 namespace trocar::server {
 namespace {
@@ -23,15 +24,6 @@ constexpr std::array kGateEvents{
     GateEvent{haptics::kGatePassivity, telemetry::LimitReason::kPassivity},
     GateEvent{haptics::kGateSlew, telemetry::LimitReason::kSlew},
 };
-
-/// Adds an event in the first free entry; if there is none, the event is dropped: `limited` is still set.
-void add_event(telemetry::TickSample& sample, telemetry::LimitReason reason) noexcept {
-  for (telemetry::TickEvent& event : sample.events) {
-    if (event.kind != telemetry::EventKind::kNone) continue;
-    event = {telemetry::EventKind::kLimit, static_cast<std::uint8_t>(reason)};
-    return;
-  }
-}
 
 /// Vector from S to the needle's entry point on the skin, in the room; empty outside the body.
 std::optional<Vec3> to_entry_W(const haptics::HapticState& state, const haptics::HapticScene& scene,
@@ -164,7 +156,7 @@ void Servo::note_gate(const haptics::GateOutput& output, const ServoInput& input
   const auto begun = static_cast<std::uint16_t>(output.actions & ~actions_before_);
   actions_before_ = output.actions;
   for (const GateEvent& event : kGateEvents) {
-    if ((begun & event.action) != 0) add_event(sample, event.reason);
+    if ((begun & event.action) != 0) telemetry::add_event(sample, telemetry::limit_event(event.reason));
   }
   if (output.actions != 0) sample.limited = true;
   sample.gate_mode = gate_.mode;

@@ -149,7 +149,7 @@ void PatientScene::Impl::place_camera(int rows) {
   } else {
     surfaces.set_cut(std::nullopt);
   }
-  tools.set_transducer_glassy(needle_P && follow == FollowMode::kAlongNeedle);
+  tools.set_transducer_translucent(needle_P && follow == FollowMode::kAlongNeedle);
   if (needle_P) tools.set_least_thickness(kLeastNeedle_px * view.mm_per_pixel(needle_P->b, rows));
 }
 
@@ -426,7 +426,7 @@ std::string PatientScene::renderer_name() const {
 
 bool PatientScene::has_gpu() const {
   const std::string& name = impl_->renderer_name;
-  return !name.empty() && !detail::is_by_processor(name);
+  return !name.empty() && !detail::is_software_renderer(name);
 }
 
 std::size_t PatientScene::triangle_count(int mesh_level) const {

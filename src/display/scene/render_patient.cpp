@@ -29,7 +29,7 @@ void add_surface(vtkRenderer& renderer, const TriangleMesh& mesh_P, const Appear
   vtkNew<vtkActor> actor;
   actor->SetMapper(detail::make_mapper(detail::to_polydata(mesh_P)));
   detail::apply(look, *actor);
-  detail::make_glassy(*actor);
+  detail::make_translucent(*actor);
   renderer.AddActor(actor);
 }
 

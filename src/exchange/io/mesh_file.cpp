@@ -12,7 +12,6 @@
 
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <exception>
@@ -22,6 +21,8 @@
 
 #include "core/files/atomic_file.h"
 #include "core/files/input_file.h"
+#include "core/parse_number.h"
+#include "io/image/detail/inflate_input.h"
 #include "io/image/detail/quiet.h"
 
 namespace trocar::io {
@@ -53,7 +54,6 @@ Status check_stl(const std::string& bytes, const std::string& where) {
 
 /// VTK allocates the declared size of a .vtp file. Each point and polygon takes more than one byte, even compressed.
 Status check_vtp(std::string_view text, const std::string& where) {
-  constexpr std::uint64_t kMaxPackRatio = 1'032;  ///< Of deflate.
   if (text.find("<VTKFile") == std::string_view::npos || text.find("PolyData") == std::string_view::npos)
     return fail("not a VTK surface", where, kExportAgain);
   if (text.find("<!DOCTYPE") != std::string_view::npos || text.find("<!ENTITY") != std::string_view::npos)
@@ -62,9 +62,8 @@ Status check_vtp(std::string_view text, const std::string& where) {
   for (auto at = text.find(kNumberOf); at != std::string_view::npos; at = text.find(kNumberOf, at + 1)) {
     const auto quote = text.find_first_of("\"'<>", at);
     if (quote == std::string_view::npos || text[quote] == '<' || text[quote] == '>') continue;
-    std::uint64_t count = 0;
-    std::from_chars(text.data() + quote + 1, text.data() + text.size(), count);
-    if (count > kMaxVertices || count > text.size() * kMaxPackRatio)
+    const auto count = find_leading_number<std::uint64_t>(text.substr(quote + 1));
+    if (count && (count->value > kMaxVertices || count->value > text.size() * detail::kMaxDeflateRatio))
       return fail("the surface declares more points than its file can hold", where, kExportAgain);
   }
   return {};

@@ -4,26 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
+#include "config/detail/toml_library.h"
 #include "config/detail/toml_text.h"
 #include "core/files/input_file.h"
-
-namespace {
-/// Not inline, so that toml++'s noexcept functions can call it without a warning.
-[[noreturn]] void give_up(const char* condition) {
-  throw std::logic_error(condition);
-}
-}  // namespace
-
-// toml++ asserts conditions that malformed text can violate ("[ ="): here a failed assertion is a parse error in every
-// build type.
-#pragma push_macro("NDEBUG")
-#undef NDEBUG
-#define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : give_up(#condition))
-#define TOML_HEADER_ONLY 1
-#include <toml++/toml.h>
-#pragma pop_macro("NDEBUG")
 
 namespace trocar::config {
 

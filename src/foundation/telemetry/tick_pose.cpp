@@ -1,11 +1,12 @@
 #include "telemetry/tick_pose.h"
 
+#include "geometry/quaternion.h"
+
 namespace trocar::telemetry {
 namespace {
 
 Mat3 device_rotation(const TickSample& sample) noexcept {
-  const auto& [w, x, y, z] = sample.device_rotation_wxyz;
-  const Eigen::Quaterniond q(w, x, y, z);
+  const Eigen::Quaterniond q = from_wxyz(sample.device_rotation_wxyz);
   return q.norm() > 0.0 ? q.normalized().toRotationMatrix() : Mat3(Mat3::Identity());
 }
 

@@ -10,15 +10,19 @@ namespace trocar::telemetry {
 
 /// Where the needle is in its insertion.
 enum class InsertionPhase : std::uint8_t { kOutside, kLoading, kInserted, kRetracting };
+inline constexpr InsertionPhase kLastInsertionPhase = InsertionPhase::kRetracting;
 const char* to_string(InsertionPhase phase) noexcept;
 
 /// Something that happened at a tick. `id` is a layer id (TissueTable) for kPuncture, a label id for kEnter, a
 /// LimitReason for kLimit.
 enum class EventKind : std::uint8_t { kNone, kPuncture, kEnter, kLimit };
+inline constexpr EventKind kLastEventKind = EventKind::kLimit;
 struct TickEvent {
   EventKind kind = EventKind::kNone;
   std::uint8_t id = 0;
 };
+using TickEvents = std::array<TickEvent, 4>;  ///< Of one tick, filled from the front.
+using Quaternion = std::array<double, 4>;     ///< w, x, y, z.
 
 /// Why the haptic side changed or refused something.
 enum class LimitReason : std::uint8_t {
@@ -40,7 +44,7 @@ enum class LimitReason : std::uint8_t {
 const char* to_string(LimitReason reason) noexcept;
 
 /// The record of one haptic tick: made by `haptics`, carried by `link`, scored by `training`, kept by `storage`.
-/// Vectors in P; the columns of `trocar session export` in docs and --help are exactly these fields.
+/// Vectors in P. tick_fields.h describes the fields for all records of them.
 struct TickSample {
   double time_s = 0.0;
   Vec3 tip_mm = Vec3::Zero();        ///< Tip of the virtual needle.
@@ -55,9 +59,9 @@ struct TickSample {
   double f_cutting_n = 0.0;
   Vec3 f_constraint_n = Vec3::Zero();
   Vec3 f_weight_n = Vec3::Zero();
-  Vec3 f_total_n = Vec3::Zero();      ///< axis*(pre + friction + cutting + body) + constraint + tip proxy + weight.
-  Vec3 tau_nmm = Vec3::Zero();        ///< About the stylus origin S.
-  std::array<TickEvent, 4> events{};  ///< Filled from the front.
+  Vec3 f_total_n = Vec3::Zero();  ///< axis*(pre + friction + cutting + body) + constraint + tip proxy + weight.
+  Vec3 tau_nmm = Vec3::Zero();    ///< About the stylus origin S.
+  TickEvents events{};
   bool limited = false;    ///< The tick (device limits, rejected input) or the safety gate changed the wrench.
   double breathing = 0.0;  ///< Phase 0..1, 0 = end-expiration.
   Vec3 f_tip_proxy_n = Vec3::Zero();  ///< Volume proxy of paper B; zero with the insertion model.
@@ -66,7 +70,7 @@ struct TickSample {
   Vec3 device_mm = Vec3::Zero();      ///< Needle tip as the device has it (before the coupling).
   Vec3 device_f_n = Vec3::Zero();     ///< What went to the device.
   /// R_PN of the device's needle: with device_mm and time_s all that a replay needs. Stored, not in the CSV.
-  std::array<double, 4> device_rotation_wxyz{1, 0, 0, 0};
+  Quaternion device_rotation_wxyz{1, 0, 0, 0};
   /// PX_p of paper A: from the first contact with the skin to its puncture; zero before. Stored, not in the CSV.
   Vec3 contact_to_puncture_mm = Vec3::Zero();
   Vec3 device_tau_nmm = Vec3::Zero();      ///< Torque that went to the device, about S; zero where it has no motors.

@@ -12,6 +12,10 @@ namespace trocar::volume {
 
 using Index3 = std::array<std::int64_t, 3>;  ///< Voxel index (i, j, k).
 
+inline Vec3 to_vec3(const Index3& ijk) noexcept {
+  return {static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])};
+}
+
 /// Where a grid of voxels lies in the patient frame P (LPS, mm), as in ITK: voxel centres at integer indices.
 /// Invariant kept by the readers: spacing > 0, direction orthonormal (a mirrored grid is re-ordered when read).
 struct GridGeometry {
@@ -24,6 +28,8 @@ struct GridGeometry {
   double voxel_volume_mm3() const noexcept { return spacing_mm.prod(); }
   /// Index (may be fractional) -> point in P.
   Vec3 to_mm(const Vec3& index) const noexcept { return origin_P + R_PV * index.cwiseProduct(spacing_mm); }
+  /// Centre of a voxel in P.
+  Vec3 centre_mm(const Index3& ijk) const noexcept { return to_mm(to_vec3(ijk)); }
   /// Point in P -> fractional index.
   Vec3 to_index(const Vec3& p_P) const noexcept {
     return (R_PV.transpose() * (p_P - origin_P)).cwiseQuotient(spacing_mm);

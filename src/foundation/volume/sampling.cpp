@@ -157,8 +157,7 @@ void sample_points(const CtGrid& grid, std::span<const Vec3f> points_P, float ou
   // Relative to the centre of the grid, floats are small and precise.
   const Index3 anchor{geometry.size[0] / 2, geometry.size[1] / 2, geometry.size[2] / 2};
   const detail::CellGrid around = cells_around(grid, anchor);
-  const Vec3 anchor_P =
-      geometry.to_mm({static_cast<double>(anchor[0]), static_cast<double>(anchor[1]), static_cast<double>(anchor[2])});
+  const Vec3 anchor_P = geometry.centre_mm(anchor);
   const Vec3 near_P = anchor_P.cast<float>().cast<double>();
   const Vec3 offset = geometry.to_index(near_P) - geometry.to_index(anchor_P);
   detail::PointMap map;

@@ -44,8 +44,7 @@ std::vector<LabelStatistics> label_statistics(const VirtualPatient& patient) {
       statistics.volume_ml = count * geometry.voxel_volume_mm3() / 1000.0;
       statistics.mean_hu = static_cast<double>(sum.hu) / count;
       statistics.touches_border = sum.touches_border;
-      const Vec3 index(static_cast<double>(sum.index[0]), static_cast<double>(sum.index[1]),
-                       static_cast<double>(sum.index[2]));
+      const Vec3 index = volume::to_vec3(sum.index);
       statistics.centroid_P = geometry.to_mm(index / count);
     }
     all.push_back(statistics);

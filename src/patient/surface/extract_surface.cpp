@@ -72,8 +72,7 @@ volume::MaskGrid cut_out(const volume::LabelGrid& labels, const Body& body) {
   const Box& box = body.box;
   volume::GridGeometry geometry = labels.geometry;
   for (std::size_t a = 0; a < 3; ++a) geometry.size[a] = box.high[a] - box.low[a] + 1;
-  geometry.origin_P = labels.geometry.to_mm(
-      Vec3(static_cast<double>(box.low[0]), static_cast<double>(box.low[1]), static_cast<double>(box.low[2])));
+  geometry.origin_P = labels.geometry.centre_mm(box.low);
   volume::MaskGrid mask(geometry);
   std::size_t n = 0;
   for (std::int64_t k = box.low[2]; k <= box.high[2]; ++k) {

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <string_view>
 #include <type_traits>
+
+#include "core/parse_number.h"
 
 namespace trocar::haptics {
 namespace {
@@ -33,10 +33,8 @@ void visit_numbers(Options& options, Device& device, Visitor&& visit) {
   visit("device.lever", device.stylus_lever_mm);
 }
 
-Result<double> parse_number(std::string_view name, std::string_view text) {
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(number)) return number;
+Result<double> number_of(std::string_view name, std::string_view text) {
+  if (const auto number = parse_number<double>(text)) return *number;
   return fail_usage(fmt::format("\"{}\" is not a finite number", text), std::string(name), "give a decimal number");
 }
 
@@ -45,7 +43,7 @@ Status restore_option(std::string_view name, std::string_view value, HapticOptio
     TROCAR_TRY(options.force_model, parse_force_model(value));
     return {};
   }
-  TROCAR_TRY(const double number, parse_number(name, value));
+  TROCAR_TRY(const double number, number_of(name, value));
   bool is_known = false;
   visit_numbers(options, device, [&](std::string_view known, auto& field) {
     if (known != name) return;

@@ -41,9 +41,9 @@ void fill_insertion(telemetry::TickSample& sample, const InsertionStep& step) no
 void add_events(EventList& events, const NeedleStep& step) noexcept {
   if (step.has_jumped) events.add(telemetry::LimitReason::kJumped);
   if (step.has_resumed) events.add(telemetry::LimitReason::kResumedInside);
-  if (step.axial.punctured != kNoLayer) events.add(telemetry::EventKind::kPuncture, step.axial.punctured);
+  if (step.axial.punctured != kNoLayer) events.add({telemetry::EventKind::kPuncture, step.axial.punctured});
   for (const std::uint8_t label : step.axial.entered.labels) {
-    if (label != 0) events.add(telemetry::EventKind::kEnter, label);
+    if (label != 0) events.add({telemetry::EventKind::kEnter, label});
   }
   if (step.axial.entered.is_overflown) events.add(telemetry::LimitReason::kEventsDropped);
   if (step.axial.hit_solver_bound) events.add(telemetry::LimitReason::kSolverBound);

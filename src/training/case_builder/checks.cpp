@@ -107,8 +107,7 @@ class Checks {
       refuse(CaseStep::kLabels,
              fmt::format("{:.0f} % of {} is outside the body: does the segmentation belong to this CT?", 100.0 * share,
                          label.name),
-             patient_.labels.geometry.to_mm(
-                 {static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])}));
+             patient_.labels.geometry.centre_mm(ijk));
     }
   }
 

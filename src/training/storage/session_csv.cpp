@@ -103,8 +103,7 @@ void append_row(std::string& out, const SessionInfo& info, const telemetry::Tick
       append_number(out, field);
     else if constexpr (std::is_same_v<Field, std::uint8_t>)
       append_text(out, name_of(info.tissue_names, field));
-    else if constexpr (std::is_same_v<Field, telemetry::InsertionPhase> || std::is_same_v<Field, telemetry::GateMode> ||
-                       std::is_same_v<Field, telemetry::GateFault>)
+    else if constexpr (std::is_enum_v<Field>)
       out += to_string(field);
     else if constexpr (std::is_same_v<Field, bool>)
       out += field ? '1' : '0';

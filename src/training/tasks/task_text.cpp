@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "config/toml.h"
-#include "config/toml_quoted.h"
+#include "config/toml_writer.h"
 #include "tasks/task.h"
 
 namespace trocar::tasks {
@@ -172,38 +172,36 @@ Result<std::vector<fs::path>> task_files(const fs::path& folder) {
   return files;
 }
 
-/// Writes the keys with different values in two tasks.
+/// Writes the keys with different values in two tasks; a table only if it has such keys.
 class DifferenceWriter {
  public:
-  void text(const char* key, const std::string& value, const std::string& base) {
-    if (value != base) text_ += fmt::format("{} = {}\n", key, config::toml_quoted(value));
+  void begin_table(std::string_view name) { table_ = name; }
+  void set(std::string_view key, const config::TomlValue& value) {
+    if (!table_.empty()) writer_.begin_table({table_});
+    table_ = {};
+    writer_.set(key, value);
   }
-  void number(const char* key, double value, double base) {
-    if (value != base) text_ += fmt::format("{} = {}\n", key, value);
+  template <class T>
+  void set_changed(std::string_view key, const T& value, const T& base) {
+    if (value != base) set(key, value);
   }
-  void point(const char* key, const Vec3& p) { text_ += fmt::format("{} = [{}, {}, {}]\n", key, p.x(), p.y(), p.z()); }
-  void line(const std::string& line) { text_ += line + "\n"; }
-  /// Ends a table: adds its title if it has keys.
-  void close(std::string& document, const std::string& title) {
-    if (!text_.empty()) document += (title.empty() ? "" : fmt::format("\n[{}]\n", title)) + text_;
-    text_.clear();
-  }
+  void set_point(std::string_view key, const Vec3& p) { set(key, std::vector<double>(p.begin(), p.end())); }
+  config::TomlWriter& writer() { return writer_; }
 
  private:
-  std::string text_;
+  config::TomlWriter writer_;
+  std::string_view table_;  ///< Not yet written.
 };
 
 bool is_same(const RiskStructure& a, const RiskStructure& b) {
   return a.tissue == b.tissue && a.label == b.label && a.margin_mm == b.margin_mm && a.penalty == b.penalty;
 }
 
-std::string risks_text(const std::vector<RiskStructure>& risks) {
-  std::string text;
-  for (const RiskStructure& risk : risks)
-    text +=
-        fmt::format("\n[[risks]]\n{} = {}\nmargin_mm = {}\npenalty = {}\n", risk.tissue.empty() ? "label" : "tissue",
-                    config::toml_quoted(risk.tissue.empty() ? risk.label : risk.tissue), risk.margin_mm, risk.penalty);
-  return text;
+void write_risk(config::TomlWriter& writer, const RiskStructure& risk) {
+  writer.begin_row("risks");
+  writer.set(risk.tissue.empty() ? "label" : "tissue", risk.tissue.empty() ? risk.label : risk.tissue);
+  writer.set("margin_mm", risk.margin_mm);
+  writer.set("penalty", risk.penalty);
 }
 
 }  // namespace
@@ -241,48 +239,44 @@ Result<Task> parse_task(std::string_view text, const std::string& name, const st
 }
 
 std::string task_to_toml(const Task& task, const Task& base) {
-  std::string document = fmt::format("# A task made for one patient: what differs from its base.\nbase = {}\n",
-                                     config::toml_quoted(base.name));
   DifferenceWriter keys;
-  keys.text("title", task.title, base.title);
-  keys.text("organ", task.organ, base.organ);
-  keys.text("needle", task.needle, base.needle);
-  keys.text("force_model", task.force_model, base.force_model);
-  keys.text("expert_path", task.expert_path, base.expert_path);
-  if (task.target_tissues != base.target_tissues) {
-    std::vector<std::string> quoted;
-    for (const std::string& tissue : task.target_tissues) quoted.push_back(config::toml_quoted(tissue));
-    keys.line(fmt::format("target_tissues = [{}]", fmt::join(quoted, ", ")));
-  }
+  keys.writer().comment("A task made for one patient: what differs from its base.");
+  keys.set("base", base.name);
+  keys.set_changed("title", task.title, base.title);
+  keys.set_changed("organ", task.organ, base.organ);
+  keys.set_changed("needle", task.needle, base.needle);
+  keys.set_changed("force_model", task.force_model, base.force_model);
+  keys.set_changed("expert_path", task.expert_path, base.expert_path);
+  keys.set_changed("target_tissues", task.target_tissues, base.target_tissues);
   const bool has_same_risks =
       std::equal(task.risks.begin(), task.risks.end(), base.risks.begin(), base.risks.end(), is_same);
-  if (!has_same_risks && task.risks.empty()) keys.line("risks = []");
-  keys.close(document, "");
-  keys.number("min_organ_path_mm", task.min_organ_path_mm, base.min_organ_path_mm);
-  keys.number("max_path_mm", task.max_path_mm, base.max_path_mm);
-  keys.number("max_entry_angle_deg", task.max_entry_angle_deg, base.max_entry_angle_deg);
-  keys.number("max_posterior_deg", task.max_posterior_deg, base.max_posterior_deg);
-  keys.close(document, "path");
-  keys.number("depth_mm", task.parenchymal_depth_mm, base.parenchymal_depth_mm);
-  keys.number("vessel_mm", task.parenchymal_vessel_mm, base.parenchymal_vessel_mm);
-  keys.close(document, "parenchymal");
-  keys.number("target_tolerance_mm", task.target_tolerance_mm, base.target_tolerance_mm);
-  keys.number("entry_tolerance_mm", task.entry_tolerance_mm, base.entry_tolerance_mm);
-  keys.number("angle_tolerance_deg", task.angle_tolerance_deg, base.angle_tolerance_deg);
-  keys.number("time_limit_s", task.time_limit_s, base.time_limit_s);
-  keys.close(document, "scoring");
-  if (task.exam_shows_needle != base.exam_shows_needle)
-    keys.line(fmt::format("shows_needle = {}", task.exam_shows_needle));
-  keys.close(document, "exam");
-  keys.text("label", task.target_label, base.target_label);
-  if (task.target_P) keys.point("point_mm", *task.target_P);
-  keys.close(document, "target");
+  if (!has_same_risks && task.risks.empty()) keys.set("risks", std::vector<std::string>());
+  keys.begin_table("path");
+  keys.set_changed("min_organ_path_mm", task.min_organ_path_mm, base.min_organ_path_mm);
+  keys.set_changed("max_path_mm", task.max_path_mm, base.max_path_mm);
+  keys.set_changed("max_entry_angle_deg", task.max_entry_angle_deg, base.max_entry_angle_deg);
+  keys.set_changed("max_posterior_deg", task.max_posterior_deg, base.max_posterior_deg);
+  keys.begin_table("parenchymal");
+  keys.set_changed("depth_mm", task.parenchymal_depth_mm, base.parenchymal_depth_mm);
+  keys.set_changed("vessel_mm", task.parenchymal_vessel_mm, base.parenchymal_vessel_mm);
+  keys.begin_table("scoring");
+  keys.set_changed("target_tolerance_mm", task.target_tolerance_mm, base.target_tolerance_mm);
+  keys.set_changed("entry_tolerance_mm", task.entry_tolerance_mm, base.entry_tolerance_mm);
+  keys.set_changed("angle_tolerance_deg", task.angle_tolerance_deg, base.angle_tolerance_deg);
+  keys.set_changed("time_limit_s", task.time_limit_s, base.time_limit_s);
+  keys.begin_table("exam");
+  keys.set_changed("shows_needle", task.exam_shows_needle, base.exam_shows_needle);
+  keys.begin_table("target");
+  keys.set_changed("label", task.target_label, base.target_label);
+  if (task.target_P) keys.set_point("point_mm", *task.target_P);
+  keys.begin_table("entry_zone");
   if (task.entry_zone) {
-    keys.point("centre_mm", task.entry_zone->centre_P);
-    keys.line(fmt::format("radius_mm = {}", task.entry_zone->radius_mm));
+    keys.set_point("centre_mm", task.entry_zone->centre_P);
+    keys.set("radius_mm", task.entry_zone->radius_mm);
   }
-  keys.close(document, "entry_zone");
-  return has_same_risks ? document : document + risks_text(task.risks);
+  if (!has_same_risks)
+    for (const RiskStructure& risk : task.risks) write_risk(keys.writer(), risk);
+  return keys.writer().text();
 }
 
 }  // namespace trocar::tasks

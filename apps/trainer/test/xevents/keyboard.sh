@@ -15,9 +15,9 @@ key space
 seen 2-ready
 shot ready
 
-# Through the knobs of the scanner: a choice keeps its own arrows, and A brings the needle back.
+# Through the controls of the scanner: a choice keeps its own arrows, and A brings the needle back.
 key k
-for n in 1 2 3 4; do key Tab; shot "knobs-$n"; done
+for n in 1 2 3 4; do key Tab; shot "controls-$n"; done
 key a
 shot needle-again
 key k

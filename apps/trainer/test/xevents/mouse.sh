@@ -16,13 +16,13 @@ shot ready
 drag 500 260 540 280 # the needle glides over the skin
 shot glided
 click 122 172 # To the planned entry
-click 1164 55 # Knobs
-shot knobs
-move 1060 336 # over the choice of the transducer: nothing is chosen, the knobs scroll
+click 1164 55 # Controls
+shot controls
+move 1060 336 # over the choice of the transducer: nothing is chosen, the controls scroll
 wheel down 1
 move 1066 431 # over a slider: its value stays
 wheel down 1
-shot knobs-scrolled
+shot controls-scrolled
 click 1164 55
 
 into_the_body() { move 500 260 && wheel up 2; }

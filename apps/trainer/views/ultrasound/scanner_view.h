@@ -9,7 +9,7 @@ namespace trocar::trainer {
 class UltrasoundControls;
 class UltrasoundView;
 
-/// An ultrasound view and its knobs, hidden at first: beside the picture, or below it where the picture would become
+/// An ultrasound view and its controls, hidden at first: beside the picture, or below it where the picture would become
 /// too narrow.
 class ScannerView : public QWidget {
   Q_OBJECT

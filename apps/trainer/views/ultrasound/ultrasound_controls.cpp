@@ -33,7 +33,7 @@ QVBoxLayout* section(QWidget*& widget, const QString& heading) {
   return box;
 }
 
-QGridLayout* knob_grid() {
+QGridLayout* control_grid() {
   auto* grid = new QGridLayout;
   grid->setHorizontalSpacing(8);
   grid->setVerticalSpacing(5);
@@ -98,7 +98,7 @@ void UltrasoundControls::load_tables() {
 QWidget* UltrasoundControls::make_source() {
   QWidget* widget = nullptr;
   QVBoxLayout* box = section(widget, {});
-  auto* grid = knob_grid();
+  auto* grid = control_grid();
   const auto combo = [&](int row, const char* name, const QString& label, const QString& tooltip) {
     auto* made = new QComboBox;
     made->setObjectName(QString::fromLatin1(name));
@@ -171,25 +171,25 @@ QWidget* UltrasoundControls::make_freeze() {
   return widget;
 }
 
-void UltrasoundControls::add_knob(QGridLayout& grid, const KnobSpec& spec) {
-  Knob knob{new QSlider(Qt::Horizontal), make_label({}), spec.step, spec.number, spec.text};
-  knob.slider->setObjectName(QString::fromLatin1(spec.name));
-  knob.slider->setAccessibleName(spec.label);
-  knob.slider->setToolTip(spec.tooltip);
-  knob.slider->setRange(static_cast<int>(std::lround(spec.low / spec.step)),
-                        static_cast<int>(std::lround(spec.high / spec.step)));
-  knob.value->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+void UltrasoundControls::add_control(QGridLayout& grid, const ControlSpec& spec) {
+  Control control{new QSlider(Qt::Horizontal), make_label({}), spec.step, spec.number, spec.text};
+  control.slider->setObjectName(QString::fromLatin1(spec.name));
+  control.slider->setAccessibleName(spec.label);
+  control.slider->setToolTip(spec.tooltip);
+  control.slider->setRange(static_cast<int>(std::lround(spec.low / spec.step)),
+                           static_cast<int>(std::lround(spec.high / spec.step)));
+  control.value->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   const double widest = std::max(QFontMetricsF(font()).horizontalAdvance(spec.text(spec.low)),
                                  QFontMetricsF(font()).horizontalAdvance(spec.text(spec.high)));
-  knob.value->setMinimumWidth(static_cast<int>(widest) + 4);
+  control.value->setMinimumWidth(static_cast<int>(widest) + 4);
   const int row = grid.rowCount();
   grid.addWidget(make_label(spec.label), row, 0);
-  grid.addWidget(knob.slider, row, 1);
-  grid.addWidget(knob.value, row, 2);
-  connect(knob.slider, &QSlider::valueChanged, this, [this, number = spec.number, step = spec.step](int position) {
+  grid.addWidget(control.slider, row, 1);
+  grid.addWidget(control.value, row, 2);
+  connect(control.slider, &QSlider::valueChanged, this, [this, number = spec.number, step = spec.step](int position) {
     view_.change_settings([&](UltrasoundSettings& s) { number(s) = position * step; });
   });
-  knobs_.push_back(std::move(knob));
+  controls_.push_back(std::move(control));
 }
 
 QCheckBox* UltrasoundControls::add_check(QBoxLayout& box, const char* name, const QString& text, const QString& tooltip,
@@ -208,22 +208,22 @@ QCheckBox* UltrasoundControls::add_check(QBoxLayout& box, const char* name, cons
 QWidget* UltrasoundControls::make_picture() {
   QWidget* widget = nullptr;
   QVBoxLayout* box = section(widget, tr("Picture"));
-  auto* grid = knob_grid();
+  auto* grid = control_grid();
   using S = UltrasoundSettings;
-  add_knob(*grid, {"ultrasound-gain", tr("Gain"), tr("Gain of all echoes  (G, Shift+G)"), -40, 40, 1,
-                   [](S& s) -> double& { return s.display.gain_db; }, decibels()});
-  add_knob(*grid, {"ultrasound-depth", tr("Depth"), tr("Imaging depth  (D, Shift+D)"), 20, 300, 5,
-                   [](S& s) -> double& { return s.acquisition.depth_mm; }, centimetres()});
-  add_knob(*grid, {"ultrasound-frequency", tr("Frequency"), tr("Higher: better resolution; lower: more penetration"), 1,
-                   20, 0.1, [](S& s) -> double& { return s.acquisition.frequency_mhz; },
-                   [](double mhz) { return QStringLiteral("%1 MHz").arg(mhz, 0, 'f', 1); }});
-  add_knob(*grid, {"ultrasound-focus", tr("Focus"), tr("Depth of the transmit focus"), 5, 300, 5,
-                   [](S& s) -> double& { return s.acquisition.focus_mm; }, centimetres()});
-  add_knob(*grid, {"ultrasound-dynamic-range", tr("Dynamic range"), tr("Smaller: higher contrast"), 20, 100, 1,
-                   [](S& s) -> double& { return s.display.dynamic_range_db; }, decibels()});
-  add_knob(*grid, {"ultrasound-persistence", tr("Persistence"), tr("Weight of the previous frame"), 0, 0.95, 0.05,
-                   [](S& s) -> double& { return s.display.persistence; },
-                   [](double part) { return QStringLiteral("%1 %").arg(100.0 * part, 0, 'f', 0); }});
+  add_control(*grid, {"ultrasound-gain", tr("Gain"), tr("Gain of all echoes  (G, Shift+G)"), -40, 40, 1,
+                      [](S& s) -> double& { return s.display.gain_db; }, decibels()});
+  add_control(*grid, {"ultrasound-depth", tr("Depth"), tr("Imaging depth  (D, Shift+D)"), 20, 300, 5,
+                      [](S& s) -> double& { return s.acquisition.depth_mm; }, centimetres()});
+  add_control(*grid, {"ultrasound-frequency", tr("Frequency"), tr("Higher: better resolution; lower: more penetration"),
+                      1, 20, 0.1, [](S& s) -> double& { return s.acquisition.frequency_mhz; },
+                      [](double mhz) { return QStringLiteral("%1 MHz").arg(mhz, 0, 'f', 1); }});
+  add_control(*grid, {"ultrasound-focus", tr("Focus"), tr("Depth of the transmit focus"), 5, 300, 5,
+                      [](S& s) -> double& { return s.acquisition.focus_mm; }, centimetres()});
+  add_control(*grid, {"ultrasound-dynamic-range", tr("Dynamic range"), tr("Smaller: higher contrast"), 20, 100, 1,
+                      [](S& s) -> double& { return s.display.dynamic_range_db; }, decibels()});
+  add_control(*grid, {"ultrasound-persistence", tr("Persistence"), tr("Weight of the previous frame"), 0, 0.95, 0.05,
+                      [](S& s) -> double& { return s.display.persistence; },
+                      [](double part) { return QStringLiteral("%1 %").arg(100.0 * part, 0, 'f', 0); }});
   gray_map_ = new QComboBox;
   gray_map_->setObjectName(QStringLiteral("ultrasound-gray-map"));
   gray_map_->setAccessibleName(tr("Gray map"));
@@ -244,13 +244,13 @@ QWidget* UltrasoundControls::make_picture() {
 QWidget* UltrasoundControls::make_tgc() {
   QWidget* widget = nullptr;
   QVBoxLayout* box = section(widget, tr("Gain over depth (TGC)"));
-  auto* grid = knob_grid();
+  auto* grid = control_grid();
   grid->setVerticalSpacing(2);
   for (std::size_t n = 0; n < ultrasound::kTgcSliders; ++n) {
     const QByteArray name = QStringLiteral("ultrasound-tgc-%1").arg(n + 1).toLatin1();
     const QString label = n == 0 ? tr("near") : n + 1 == ultrasound::kTgcSliders ? tr("far") : QString();
-    add_knob(*grid, {name.constData(), label, tr("TGC slider %1 of 8, from near to far").arg(n + 1), -20, 20, 1,
-                     [n](UltrasoundSettings& s) -> double& { return s.display.tgc_db[n]; }, decibels()});
+    add_control(*grid, {name.constData(), label, tr("TGC slider %1 of 8, from near to far").arg(n + 1), -20, 20, 1,
+                        [n](UltrasoundSettings& s) -> double& { return s.display.tgc_db[n]; }, decibels()});
   }
   box->addLayout(grid);
   return widget;
@@ -305,11 +305,11 @@ QWidget* UltrasoundControls::make_guide() {
   });
   add_check(*box, "ultrasound-guide-side", tr("Guide on the marked side"), tr("The side of the green dot"),
             [](S& s) -> bool& { return s.guide.is_on_marked_side; });
-  auto* grid = knob_grid();
-  add_knob(*grid,
-           {"ultrasound-guide-angle", tr("Angle"), tr("Angle between the guide and the central axis of the beam"), 10,
-            80, 1, [](S& s) -> double& { return s.guide.angle_deg; },
-            [](double deg) { return QStringLiteral("%1°").arg(deg, 0, 'f', 0); }});
+  auto* grid = control_grid();
+  add_control(
+      *grid, {"ultrasound-guide-angle", tr("Angle"), tr("Angle between the guide and the central axis of the beam"), 10,
+              80, 1, [](S& s) -> double& { return s.guide.angle_deg; },
+              [](double deg) { return QStringLiteral("%1°").arg(deg, 0, 'f', 0); }});
   box->addLayout(grid);
   guide_ = widget;
   return widget;
@@ -321,34 +321,34 @@ QWidget* UltrasoundControls::make_doppler() {
   using S = UltrasoundSettings;
   doppler_ = add_check(*box, "ultrasound-doppler", tr("Show flow"), tr("Colour Doppler  (C); drag the box"),
                        [](S& s) -> bool& { return s.has_doppler; });
-  doppler_knobs_ = new QWidget;
-  auto* knobs = new QVBoxLayout(doppler_knobs_);
-  knobs->setContentsMargins(0, 0, 0, 0);
-  knobs->setSpacing(6);
-  auto* grid = knob_grid();
-  add_knob(*grid, {"ultrasound-doppler-scale", tr("Scale"), tr("Velocity limit before aliasing (PRF)"), 2, 200, 1,
-                   [](S& s) -> double& { return s.doppler.scale_cm_per_s; },
-                   [](double cm_per_s) { return QStringLiteral("%1 cm/s").arg(cm_per_s, 0, 'f', 0); }});
-  add_knob(*grid, {"ultrasound-doppler-baseline", tr("Baseline"), tr("Baseline shift"), -0.9, 0.9, 0.05,
-                   [](S& s) -> double& { return s.doppler.baseline; },
-                   [](double b) { return QStringLiteral("%1 %").arg(100.0 * b, 0, 'f', 0); }});
-  add_knob(*grid, {"ultrasound-doppler-gain", tr("Gain"), tr("Colour gain: higher shows weaker flow, then noise"), -40,
-                   40, 1, [](S& s) -> double& { return s.doppler.gain_db; }, decibels()});
-  knobs->addLayout(grid);
-  add_check(*knobs, "ultrasound-doppler-invert", tr("Invert colours"), tr("Blue towards the transducer"),
+  doppler_controls_ = new QWidget;
+  auto* controls = new QVBoxLayout(doppler_controls_);
+  controls->setContentsMargins(0, 0, 0, 0);
+  controls->setSpacing(6);
+  auto* grid = control_grid();
+  add_control(*grid, {"ultrasound-doppler-scale", tr("Scale"), tr("Velocity limit before aliasing (PRF)"), 2, 200, 1,
+                      [](S& s) -> double& { return s.doppler.scale_cm_per_s; },
+                      [](double cm_per_s) { return QStringLiteral("%1 cm/s").arg(cm_per_s, 0, 'f', 0); }});
+  add_control(*grid, {"ultrasound-doppler-baseline", tr("Baseline"), tr("Baseline shift"), -0.9, 0.9, 0.05,
+                      [](S& s) -> double& { return s.doppler.baseline; },
+                      [](double b) { return QStringLiteral("%1 %").arg(100.0 * b, 0, 'f', 0); }});
+  add_control(*grid, {"ultrasound-doppler-gain", tr("Gain"), tr("Colour gain: higher shows weaker flow, then noise"),
+                      -40, 40, 1, [](S& s) -> double& { return s.doppler.gain_db; }, decibels()});
+  controls->addLayout(grid);
+  add_check(*controls, "ultrasound-doppler-invert", tr("Invert colours"), tr("Blue towards the transducer"),
             [](S& s) -> bool& { return s.doppler.is_inverted; });
-  box->addWidget(doppler_knobs_);
+  box->addWidget(doppler_controls_);
   return widget;
 }
 
 void UltrasoundControls::set_ranges() {
   const ultrasound::Transducer& t = view_.transducer();
   const auto set = [this](const char* name, double low, double high) {
-    for (Knob& knob : knobs_) {
-      if (knob.slider->objectName() != QLatin1String(name)) continue;
-      const QSignalBlocker quiet(knob.slider);
-      knob.slider->setRange(static_cast<int>(std::ceil(low / knob.step - 1e-9)),
-                            static_cast<int>(std::floor(high / knob.step + 1e-9)));
+    for (Control& control : controls_) {
+      if (control.slider->objectName() != QLatin1String(name)) continue;
+      const QSignalBlocker quiet(control.slider);
+      control.slider->setRange(static_cast<int>(std::ceil(low / control.step - 1e-9)),
+                               static_cast<int>(std::floor(high / control.step + 1e-9)));
     }
   };
   set("ultrasound-depth", 20.0, t.greatest_depth_mm);
@@ -359,11 +359,11 @@ void UltrasoundControls::set_ranges() {
 void UltrasoundControls::show_view() {
   set_ranges();
   UltrasoundSettings settings = view_.settings();
-  for (Knob& knob : knobs_) {
-    const double value = knob.number(settings);
-    const QSignalBlocker quiet(knob.slider);
-    knob.slider->setValue(static_cast<int>(std::lround(value / knob.step)));
-    knob.value->setText(knob.text(value));
+  for (Control& control : controls_) {
+    const double value = control.number(settings);
+    const QSignalBlocker quiet(control.slider);
+    control.slider->setValue(static_cast<int>(std::lround(value / control.step)));
+    control.value->setText(control.text(value));
   }
   for (Check& check : checks_) check.box->setChecked(check.flag(settings));
   gray_map_->setCurrentIndex(gray_map_->findText(to_qt(ultrasound::name_of(settings.display.gray_map))));
@@ -390,7 +390,7 @@ void UltrasoundControls::show_view() {
   guide_->setEnabled(view_.is_guide_offered());
   axis_->setChecked(view_.is_guide_visible() && view_.is_guide_offered());
   doppler_->setEnabled(view_.has_flow());
-  doppler_knobs_->setVisible(settings.has_doppler);
+  doppler_controls_->setVisible(settings.has_doppler);
 }
 
 }  // namespace trocar::trainer

@@ -28,7 +28,7 @@ class UltrasoundControls : public QWidget {
 
  private:
   /// A slider over one number of the settings.
-  struct Knob {
+  struct Control {
     QSlider* slider = nullptr;
     QLabel* value = nullptr;
     double step = 1.0;
@@ -39,7 +39,7 @@ class UltrasoundControls : public QWidget {
     QCheckBox* box = nullptr;
     std::function<bool&(UltrasoundSettings&)> flag;
   };
-  struct KnobSpec {
+  struct ControlSpec {
     const char* name;
     QString label, tooltip;
     double low, high, step;
@@ -55,7 +55,7 @@ class UltrasoundControls : public QWidget {
   QWidget* make_measuring();
   QWidget* make_guide();
   QWidget* make_doppler();
-  void add_knob(QGridLayout& grid, const KnobSpec& spec);
+  void add_control(QGridLayout& grid, const ControlSpec& spec);
   QCheckBox* add_check(QBoxLayout& box, const char* name, const QString& text, const QString& tooltip,
                        std::function<bool&(UltrasoundSettings&)> flag);
   void apply_preset(int index);
@@ -65,7 +65,7 @@ class UltrasoundControls : public QWidget {
   UltrasoundView& view_;
   std::vector<ultrasound::Transducer> transducers_;
   std::vector<ultrasound::ScanPreset> presets_;
-  std::vector<Knob> knobs_;
+  std::vector<Control> controls_;
   std::vector<Check> checks_;
   QComboBox* transducer_ = nullptr;
   QComboBox* preset_ = nullptr;
@@ -80,7 +80,7 @@ class UltrasoundControls : public QWidget {
   QPushButton* clear_ = nullptr;
   QWidget* guide_ = nullptr;
   QCheckBox* axis_ = nullptr;
-  QWidget* doppler_knobs_ = nullptr;
+  QWidget* doppler_controls_ = nullptr;
   QCheckBox* doppler_ = nullptr;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace trocar::trainer {
 namespace {
@@ -39,7 +40,7 @@ UltrasoundLayout lay_out(const QSizeF& view, const ultrasound::ScanGeometry& sca
   const double left_most = room.caption.isEmpty() ? 0.0 : room.caption.width() + 1.5 * room.margin;
   const double right_most = room.bars.isEmpty() ? 0.0 : room.bars.width() + 1.5 * room.margin;
   const double marker = scan.is_fan ? 0.0 : room.marker;
-  double best_mm_per_pixel = 1e30;
+  double best_mm_per_pixel = std::numeric_limits<double>::infinity();
   for (int l = 0; l <= kSteps; ++l)
     for (int r = 0; r <= kSteps; ++r) {
       const double left = left_most * l / kSteps, right = right_most * r / kSteps;

@@ -12,23 +12,23 @@ namespace {
 
 /// Reads or writes all stored settings, so that both use the same names.
 template <class Visitor>
-void visit(UltrasoundSettings& s, const Visitor& knob) {
-  knob("depth_mm", s.acquisition.depth_mm);
-  knob("frequency_mhz", s.acquisition.frequency_mhz);
-  knob("focus_mm", s.acquisition.focus_mm);
-  knob("gain_db", s.display.gain_db);
+void visit(UltrasoundSettings& s, const Visitor& field) {
+  field("depth_mm", s.acquisition.depth_mm);
+  field("frequency_mhz", s.acquisition.frequency_mhz);
+  field("focus_mm", s.acquisition.focus_mm);
+  field("gain_db", s.display.gain_db);
   for (std::size_t n = 0; n < s.display.tgc_db.size(); ++n)
-    knob(QStringLiteral("tgc_db/%1").arg(n + 1).toLatin1().constData(), s.display.tgc_db[n]);
-  knob("dynamic_range_db", s.display.dynamic_range_db);
-  knob("persistence", s.display.persistence);
-  knob("is_marker_left", s.display.is_mirrored);
-  knob("doppler/scale_cm_per_s", s.doppler.scale_cm_per_s);
-  knob("doppler/gain_db", s.doppler.gain_db);
-  knob("doppler/baseline", s.doppler.baseline);
-  knob("doppler/is_inverted", s.doppler.is_inverted);
-  knob("guide/is_shown", s.guide.is_shown);
-  knob("guide/angle_deg", s.guide.angle_deg);
-  knob("guide/is_on_marked_side", s.guide.is_on_marked_side);
+    field(QStringLiteral("tgc_db/%1").arg(n + 1).toLatin1().constData(), s.display.tgc_db[n]);
+  field("dynamic_range_db", s.display.dynamic_range_db);
+  field("persistence", s.display.persistence);
+  field("is_marker_left", s.display.is_mirrored);
+  field("doppler/scale_cm_per_s", s.doppler.scale_cm_per_s);
+  field("doppler/gain_db", s.doppler.gain_db);
+  field("doppler/baseline", s.doppler.baseline);
+  field("doppler/is_inverted", s.doppler.is_inverted);
+  field("guide/is_shown", s.guide.is_shown);
+  field("guide/angle_deg", s.guide.angle_deg);
+  field("guide/is_on_marked_side", s.guide.is_on_marked_side);
 }
 
 QString group(const ultrasound::Transducer& transducer) {

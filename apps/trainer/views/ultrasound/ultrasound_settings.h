@@ -15,7 +15,7 @@ struct NeedleGuide {
   bool operator==(const NeedleGuide&) const = default;
 };
 
-/// All knobs of the ultrasound view.
+/// All controls of the ultrasound view.
 struct UltrasoundSettings {
   ultrasound::Acquisition acquisition;
   ultrasound::DisplaySettings display;
@@ -27,7 +27,7 @@ struct UltrasoundSettings {
 };
 
 UltrasoundSettings default_settings(const ultrasound::Transducer& transducer);
-/// Every knob in its range.
+/// Every control in its range.
 UltrasoundSettings within_ranges(const UltrasoundSettings& settings, const ultrasound::Transducer& transducer);
 
 /// As they were left for that transducer (QSettings, group "ultrasound"); the defaults where nothing was kept. Doppler

@@ -134,7 +134,7 @@ ultrasound::ScanRequest UltrasoundView::make_request(double now_s) {
   request.has_doppler = settings_.has_doppler && flow_;
   request.doppler = settings_.doppler;
   request.time_s = now_s;
-  const QSizeF size = layout_for(picture_ && is_frozen() ? picture_->scan : wished_scan()).picture.size();
+  const QSizeF size = layout_for(picture_ && is_frozen() ? picture_->scan : requested_scan()).picture.size();
   const double wanted_px = std::max(size.width(), size.height()) * devicePixelRatioF();
   const double scale = devicePixelRatioF() * std::min(1.0, kMostPixels_px / std::max(wanted_px, 1.0));
   request.columns = static_cast<int>(std::lround(size.width() * scale));
@@ -235,7 +235,7 @@ void UltrasoundView::play_cine(bool is_playing) {
   scanner_.play_cine(is_playing);
 }
 
-ultrasound::ScanGeometry UltrasoundView::wished_scan() const {
+ultrasound::ScanGeometry UltrasoundView::requested_scan() const {
   const ultrasound::Acquisition& a = settings_.acquisition;
   return ultrasound::make_scan_geometry(transducer_, a.depth_mm, a.lines, a.samples);
 }

@@ -33,7 +33,7 @@ class UltrasoundView : public QWidget {
   explicit UltrasoundView(QWidget* parent = nullptr);
   ~UltrasoundView() override;
 
-  /// Begins with another patient; `flow` may be nullptr. The knobs are those that were kept for the transducer.
+  /// Begins with another patient; `flow` may be nullptr. The controls are those that were kept for the transducer.
   void show_patient(std::shared_ptr<const ultrasound::AcousticScene> scene,
                     std::shared_ptr<const ultrasound::VesselFlow> flow, const ultrasound::Transducer& transducer);
   void set_transducer_pose(const Pose& X_PT);
@@ -56,11 +56,11 @@ class UltrasoundView : public QWidget {
   bool has_patient() const noexcept { return scene_ != nullptr; }
   bool has_flow() const noexcept { return flow_ != nullptr; }
   const ultrasound::Transducer& transducer() const noexcept { return transducer_; }
-  /// Another array on the same patient, with its own knobs; the patient's view begins anew.
+  /// Another array on the same patient, with its own controls; the patient's view begins anew.
   void choose_transducer(const ultrasound::Transducer& transducer);
 
   const UltrasoundSettings& settings() const noexcept { return settings_; }
-  /// Knobs beyond their range are held in it. Kept for the next time.
+  /// Controls beyond their range are held in it. Kept for the next time.
   void set_settings(const UltrasoundSettings& settings);
   void change_settings(const std::function<void(UltrasoundSettings&)>& change);
   void reset_settings();
@@ -92,7 +92,7 @@ class UltrasoundView : public QWidget {
   QSize minimumSizeHint() const override { return {240, 180}; }
 
  Q_SIGNALS:
-  /// Knobs, tool, measurements, freezing or the transducer are not what they were.
+  /// Controls, tool, measurements, freezing or the transducer are not what they were.
   void changed();
 
  protected:
@@ -125,7 +125,7 @@ class UltrasoundView : public QWidget {
   void count_picture(double now_s, bool is_live);
   void save_now();
 
-  ultrasound::ScanGeometry wished_scan() const;
+  ultrasound::ScanGeometry requested_scan() const;
   UltrasoundRoom room() const;
   const UltrasoundLayout& layout_for(const ultrasound::ScanGeometry& scan) const;
   std::vector<ultrasound::Vec2> guide_line_T() const;

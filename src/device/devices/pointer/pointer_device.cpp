@@ -5,18 +5,13 @@
 
 #include "devices/detail/factories.h"
 #include "devices/simulated/detail/hand_motion.h"
+#include "geometry/clamp_norm.h"
 #include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {
 namespace {
 
 constexpr double kMaxGap_s = 0.1;
-
-/// `step` shortened to at most `most`.
-Vec3 limited(const Vec3& step, double most) noexcept {
-  const double norm = step.norm();
-  return norm > most ? Vec3(step * (most / norm)) : step;
-}
 
 }  // namespace
 
@@ -48,9 +43,9 @@ DeviceReading PointerDevice::read(double now_s) noexcept {
       X_DS_ = X_DS_wanted;
     } else {
       const double share = 1.0 - std::exp(-dt_s / std::max(params_.time_constant_s, 1e-6));
-      const Vec3 step = limited(share * (X_DS_wanted.p() - X_DS_.p()), params_.max_speed_mm_per_s * dt_s);
+      const Vec3 step = clamped_norm(share * (X_DS_wanted.p() - X_DS_.p()), params_.max_speed_mm_per_s * dt_s);
       const Vec3 left = haptics::rotation_vector(X_DS_wanted.R() * X_DS_.R().transpose());
-      const Vec3 turn = limited(share * left, params_.max_turn_rad_per_s * dt_s);
+      const Vec3 turn = clamped_norm(share * left, params_.max_turn_rad_per_s * dt_s);
       const Eigen::Quaterniond turned(haptics::rotation_from_vector(turn) * X_DS_.R());
       X_DS_ = Pose(turned.normalized().toRotationMatrix(), X_DS_.p() + step);
     }

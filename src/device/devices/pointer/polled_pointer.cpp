@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/clamp_norm.h"
+#include "haptics/closed_loop/rotation.h"
 #include "realtime/periodic_loop.h"
 
 namespace trocar::devices {
@@ -19,12 +21,6 @@ constexpr std::int64_t kNsPerMs = 1'000'000;
 bool is_finite(const PointerMotion& motion) noexcept {
   return motion.v_D.allFinite() && motion.w_D.allFinite() && std::isfinite(motion.inward_mm_per_s) &&
          std::isfinite(motion.turning_rad_per_s);
-}
-
-Mat3 rotation_of(const Vec3& vector_rad) noexcept {
-  const double angle_rad = vector_rad.norm();
-  if (angle_rad <= 0.0) return Mat3::Identity();
-  return Eigen::AngleAxisd(angle_rad, vector_rad / angle_rad).toRotationMatrix();
 }
 
 /// Waits for new data of the source, the end, or one period.
@@ -43,10 +39,9 @@ Pose move_pointer(const Pose& X_DS, const PointerMotion& motion, double dt_s, do
   if (!is_finite(motion) || !(dt_s > 0.0) || !std::isfinite(dt_s)) return X_DS;
   const Vec3 v_D = motion.v_D + motion.inward_mm_per_s * X_DS.R().col(2);
   Vec3 p_DS = X_DS.p() + dt_s * v_D;
-  const double distance_mm = p_DS.norm();
-  if (distance_mm > workspace_radius_mm) p_DS *= workspace_radius_mm / distance_mm;
-  const Mat3 R_DS =
-      rotation_of(dt_s * motion.w_D) * X_DS.R() * rotation_of(Vec3(0.0, 0.0, dt_s * motion.turning_rad_per_s));
+  clamp_norm(p_DS, workspace_radius_mm);
+  const Mat3 R_DS = haptics::rotation_from_vector(dt_s * motion.w_D) * X_DS.R() *
+                    haptics::rotation_from_vector(Vec3(0.0, 0.0, dt_s * motion.turning_rad_per_s));
   const Pose moved(Eigen::Quaterniond(R_DS).normalized().toRotationMatrix(), p_DS);
   return moved.is_finite() ? moved : X_DS;  // avoids huge velocities
 }

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <string>
+
+#include "core/parse_number.h"
 
 namespace trocar::devices {
 namespace {
@@ -36,13 +37,10 @@ const FaultKind* find_fault(std::string_view name) noexcept {
   return nullptr;
 }
 
-/// Parses a finite, non-negative number from the whole text.
-std::optional<double> parse_number(std::string_view text, double high) noexcept {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_whole = error == std::errc() && end == text.data() + text.size();
-  if (!is_whole || !(value >= 0.0 && value <= high)) return std::nullopt;
-  return value;
+/// A number from 0 to `high`.
+std::optional<double> parse_number_below(std::string_view text, double high) noexcept {
+  const auto value = parse_number<double>(text);
+  return value && *value >= 0.0 && *value <= high ? value : std::nullopt;
 }
 
 tl::unexpected<Error> refuse(std::string_view text, std::string what) {
@@ -77,18 +75,18 @@ Result<ScheduledFault> parse_fault(std::string_view text) {
                                      : fmt::format("{} takes no amount", kind->name));
   }
   if (takes_amount) {
-    const auto amount = parse_number(what.substr(colon + 1), kind->high);
+    const auto amount = parse_number_below(what.substr(colon + 1), kind->high);
     if (!amount) return refuse(text, fmt::format("the amount is not a number of 0..{} {}", kind->high, kind->unit));
     fault.amount = *amount;
   }
 
   const std::size_t plus = when.find('+');
-  const auto from_s = parse_number(when.substr(0, plus), kMaxTime_s);
+  const auto from_s = parse_number_below(when.substr(0, plus), kMaxTime_s);
   if (!from_s) return refuse(text, fmt::format("the start is not a number of 0..{} s", kMaxTime_s));
   fault.from_s = *from_s;
   fault.for_s = std::numeric_limits<double>::infinity();
   if (plus == std::string_view::npos) return fault;
-  const auto for_s = parse_number(when.substr(plus + 1), kMaxTime_s);
+  const auto for_s = parse_number_below(when.substr(plus + 1), kMaxTime_s);
   if (!for_s) return refuse(text, fmt::format("its duration is not a number of 0..{} s", kMaxTime_s));
   fault.for_s = *for_s;
   return fault;

@@ -5,6 +5,7 @@
 
 #include "devices/detail/factories.h"
 #include "devices/simulated/detail/hand_motion.h"
+#include "geometry/clamp_norm.h"
 #include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {
@@ -15,11 +16,6 @@ constexpr double kMaxStep_s = 1e-3;  ///< physics.md H2 holds at 1 kHz.
 /// Twice the stiffest hand of physics.md H1, and the same at the end of a 30 mm grip. A stiffer hand would oscillate.
 constexpr double kStiffestHand_n_per_mm = 10.0;
 constexpr double kStiffestTurn_nmm_per_rad = 1e4;
-
-void clamp_norm(Vec3& v, double most) noexcept {
-  const double norm = v.norm();
-  if (norm > most) v *= most / norm;
-}
 
 template <class T, std::size_t n>
 void push_front(std::array<T, n>& values, const T& value) noexcept {

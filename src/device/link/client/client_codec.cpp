@@ -38,6 +38,7 @@ static_assert(is_number(wire::InsertionPhase::Retracting,
                         static_cast<std::size_t>(telemetry::InsertionPhase::kRetracting)));
 static_assert(is_number(wire::GateMode::Absent, static_cast<std::size_t>(telemetry::kLastGateMode)));
 static_assert(is_number(wire::GateFault::Vibration, static_cast<std::size_t>(telemetry::kLastGateFault)));
+static_assert(is_number(wire::ServerState::Fault, static_cast<std::size_t>(kLastServerState)));
 static_assert(is_number(wire::LimitReason::Jumped, static_cast<std::size_t>(telemetry::LimitReason::kJumped)));
 static_assert(is_number(wire::LimitReason::Fault, static_cast<std::size_t>(telemetry::LimitReason::kFault)));
 
@@ -76,7 +77,8 @@ CommandMember build_what(Builder& b, const SetParameters& parameters) {
 }
 
 CommandMember build_what(Builder& b, ServerCommand command) {
-  return {wire::What::SimpleCommand, wire::CreateSimpleCommand(b, static_cast<std::uint8_t>(command)).Union()};
+  return {wire::What::SimpleCommand,
+          wire::CreateSimpleCommand(b, static_cast<wire::SimpleCommandNumber>(command)).Union()};
 }
 
 ClientMember build_body(Builder& b, const Hello& hello) {

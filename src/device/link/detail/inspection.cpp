@@ -70,11 +70,14 @@ int Inspection::whole_number(std::int32_t value, int low, int high, const char* 
   return low;
 }
 
-Vec3 Inspection::vector(const wire::Vec3& vector, double longest, const char* field) {
-  const Vec3 v = from_wire(vector);
-  if (v.squaredNorm() <= longest * longest) return v;  // false for NaN
+Vec3 Inspection::vector(const Vec3& vector, double longest, const char* field) {
+  if (vector.squaredNorm() <= longest * longest) return vector;  // false for NaN
   refuse(fmt::format("not a vector of at most {:g}", longest), field);
   return Vec3::Zero();
+}
+
+Vec3 Inspection::vector(const wire::Vec3& packed, double longest, const char* field) {
+  return vector(from_wire(packed), longest, field);
 }
 
 Pose Inspection::pose(const wire::Pose& pose, const char* field) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/result.h"
@@ -41,15 +42,21 @@ class Inspection {
   double number(double value, Range range, const char* field);
   int whole_number(std::int32_t value, int low, int high, const char* field);
   /// Finite, and no longer than `longest`.
-  Vec3 vector(const wire::Vec3& vector, double longest, const char* field);
+  Vec3 vector(const Vec3& vector, double longest, const char* field);
+  Vec3 vector(const wire::Vec3& packed, double longest, const char* field);
   /// A rotation that is one within 1e-6 (made exact when it is off by more than rounding), not too far away.
   Pose pose(const wire::Pose& pose, const char* field);
-  /// `last` is the enumeration's last value.
+  /// `last` is the enumeration's last value; an enumeration of the schema has the same numbers.
   template <class Enum>
   Enum enumerator(std::uint8_t value, Enum last, const char* field) {
     if (value <= static_cast<std::uint8_t>(last)) return static_cast<Enum>(value);
     refuse("a value that the enumeration does not have", field);
     return Enum{};
+  }
+  template <class WireEnum, class Enum>
+  requires std::is_enum_v<WireEnum> Enum enumerator(WireEnum value, Enum last, const char* field) {
+    static_assert(sizeof(WireEnum) == sizeof(std::uint8_t));
+    return enumerator(static_cast<std::uint8_t>(value), last, field);
   }
 
   void refuse(std::string what, const char* field);

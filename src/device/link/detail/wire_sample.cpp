@@ -1,87 +1,87 @@
 #include "link/detail/wire_sample.h"
 
+#include <bit>
+#include <cstring>
+
+#include "link/detail/wire_layout.h"
+
 namespace trocar::link::detail {
 namespace {
 
-constexpr double kLongestAxis = 2.0;  ///< A unit vector, with tolerance for rounding and for a tick without one (zero).
-constexpr flatbuffers::uoffset_t kEvents = 4;
-static_assert(std::tuple_size_v<decltype(telemetry::TickSample::events)> == kEvents);
+using telemetry::Quaternion;
+using telemetry::TickEvents;
+using telemetry::TickLimit;
+
+constexpr double kLongestAxis = 2.0;  ///< A unit vector with room for rounding and for a tick without one (zero).
+static_assert(std::endian::native == std::endian::little, "FlatBuffers stores little-endian numbers");
+
+void put(std::byte* to, double value) {
+  std::memcpy(to, &value, sizeof value);
+}
+void put(std::byte* to, const Vec3& value) {
+  std::memcpy(to, value.data(), 3 * sizeof(double));
+}
+void put(std::byte* to, const Quaternion& value) {
+  std::memcpy(to, value.data(), sizeof value);
+}
+void put(std::byte* to, const TickEvents& events) {
+  for (const telemetry::TickEvent& event : events) {
+    *to++ = static_cast<std::byte>(event.kind);
+    *to++ = static_cast<std::byte>(event.id);
+  }
+}
+template <class ByteValue>
+requires(sizeof(ByteValue) == 1) void put(std::byte* to, ByteValue value) {
+  *to = static_cast<std::byte>(value);
+}
+
+/// Takes one field out of a sample's bytes into `value`.
+struct Taken {
+  const std::byte* from;
+  const char* name;
+  TickLimit limit;
+  Inspection& inspection;
+
+  void into(double& value) const {
+    std::memcpy(&value, from, sizeof value);
+    if (limit == TickLimit::kTime) value = inspection.number(value, kTimes_s, name);
+  }
+  void into(Vec3& value) const {
+    std::memcpy(value.data(), from, 3 * sizeof(double));
+    if (limit == TickLimit::kPosition) value = inspection.vector(value, kMostPosition_mm, name);
+    if (limit == TickLimit::kAxis) value = inspection.vector(value, kLongestAxis, name);
+  }
+  void into(Quaternion& value) const { std::memcpy(value.data(), from, sizeof value); }
+  void into(TickEvents& events) const {
+    const std::byte* next = from;
+    for (telemetry::TickEvent& event : events) {
+      const auto kind = std::to_integer<std::uint8_t>(*next++);
+      event.kind = inspection.enumerator(kind, last_of(event.kind), name);
+      event.id = std::to_integer<std::uint8_t>(*next++);
+    }
+  }
+  void into(std::uint8_t& value) const { value = std::to_integer<std::uint8_t>(*from); }
+  void into(bool& value) const { value = *from != std::byte{0}; }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void into(Enum& value) const {
+    value = inspection.enumerator(std::to_integer<std::uint8_t>(*from), last_of(value), name);
+  }
+};
 
 }  // namespace
 
-wire::Sample to_wire(const telemetry::TickSample& s) {
-  std::array<wire::Event, kEvents> events;
-  for (std::size_t i = 0; i < kEvents; ++i) {
-    events[i] = {static_cast<std::uint8_t>(s.events[i].kind), s.events[i].id};
-  }
-  return {s.time_s,
-          to_wire(s.tip_mm),
-          to_wire(s.axis),
-          s.axial_velocity_mm_s,
-          s.depth_mm,
-          s.layer_displacement_mm,
-          s.f_prepuncture_n,
-          s.f_friction_n,
-          s.f_cutting_n,
-          to_wire(s.f_constraint_n),
-          to_wire(s.f_weight_n),
-          to_wire(s.f_total_n),
-          to_wire(s.tau_nmm),
-          s.breathing,
-          to_wire(s.f_tip_proxy_n),
-          s.f_body_axial_n,
-          s.f_stick_n,
-          to_wire(s.device_mm),
-          to_wire(s.device_f_n),
-          flatbuffers::span<const double, 4>(s.device_rotation_wxyz.data(), 4),
-          to_wire(s.contact_to_puncture_mm),
-          to_wire(s.device_tau_nmm),
-          s.gate_scale,
-          s.coupling_share,
-          flatbuffers::span<const wire::Event, kEvents>(events.data(), kEvents),
-          s.tissue,
-          static_cast<std::uint8_t>(s.phase),
-          s.limited,
-          static_cast<std::uint8_t>(s.gate_mode),
-          static_cast<std::uint8_t>(s.gate_fault)};
+void write_sample(const telemetry::TickSample& sample, wire::Sample& packed) noexcept {
+  auto* bytes = reinterpret_cast<std::byte*>(&packed);
+  for_each_wire_field([&](const auto& field, std::size_t offset) { put(bytes + offset, sample.*field.member); });
+  std::memset(bytes + kWireBytes, 0, sizeof packed - kWireBytes);
 }
 
-telemetry::TickSample read_sample(const wire::Sample& w, Inspection& inspection) {
-  telemetry::TickSample s;
-  s.time_s = inspection.number(w.time_s(), kTimes_s, "time_s of a tick");
-  s.tip_mm = inspection.vector(w.tip_mm(), kMostPosition_mm, "tip_mm of a tick");
-  s.axis = inspection.vector(w.axis(), kLongestAxis, "axis of a tick");
-  s.axial_velocity_mm_s = w.axial_velocity_mm_s();
-  s.depth_mm = w.depth_mm();
-  s.tissue = w.tissue();
-  s.phase = inspection.enumerator(w.phase(), telemetry::InsertionPhase::kRetracting, "phase of a tick");
-  s.layer_displacement_mm = w.layer_displacement_mm();
-  s.f_prepuncture_n = w.f_prepuncture_n();
-  s.f_friction_n = w.f_friction_n();
-  s.f_cutting_n = w.f_cutting_n();
-  s.f_constraint_n = from_wire(w.f_constraint_n());
-  s.f_weight_n = from_wire(w.f_weight_n());
-  s.f_total_n = from_wire(w.f_total_n());
-  s.tau_nmm = from_wire(w.tau_nmm());
-  for (flatbuffers::uoffset_t i = 0; i < kEvents; ++i) {
-    const wire::Event& event = *w.events()->Get(i);
-    s.events[i] = {inspection.enumerator(event.kind(), telemetry::EventKind::kLimit, "event of a tick"), event.id()};
-  }
-  s.limited = w.limited();
-  s.breathing = w.breathing();
-  s.f_tip_proxy_n = from_wire(w.f_tip_proxy_n());
-  s.f_body_axial_n = w.f_body_axial_n();
-  s.f_stick_n = w.f_stick_n();
-  s.device_mm = inspection.vector(w.device_mm(), kMostPosition_mm, "device_mm of a tick");
-  s.device_f_n = from_wire(w.device_f_n());
-  for (flatbuffers::uoffset_t i = 0; i < 4; ++i) s.device_rotation_wxyz[i] = w.device_rotation_wxyz()->Get(i);
-  s.contact_to_puncture_mm = from_wire(w.contact_to_puncture_mm());
-  s.device_tau_nmm = from_wire(w.device_tau_nmm());
-  s.gate_scale = w.gate_scale();
-  s.coupling_share = w.coupling_share();
-  s.gate_mode = inspection.enumerator(w.gate_mode(), telemetry::kLastGateMode, "gate_mode of a tick");
-  s.gate_fault = inspection.enumerator(w.gate_fault(), telemetry::kLastGateFault, "gate_fault of a tick");
-  return s;
+void read_sample(const wire::Sample& packed, Inspection& inspection, telemetry::TickSample& sample) {
+  const auto* bytes = reinterpret_cast<const std::byte*>(&packed);
+  for_each_wire_field([&](const auto& field, std::size_t offset) {
+    Taken{bytes + offset, field.name, field.limit, inspection}.into(sample.*field.member);
+  });
 }
 
 }  // namespace trocar::link::detail

@@ -33,6 +33,9 @@ std::string find_broken_invariant(Envelope<Body> message) {
                            },
                            [&](std::string& text) { check_text(text, false); },
                            [&](ServerCommand& command) { expect(command <= kLastServerCommand, "unknown command"); },
+                           [&](ServerState& state) { expect(state <= kLastServerState, "unknown state"); },
+                           [&](telemetry::GateMode& mode) { expect(mode <= last_of(mode), "unknown gate mode"); },
+                           [&](telemetry::GateFault& fault) { expect(fault <= last_of(fault), "unknown fault"); },
                            [&](LoadScene& scene) {
                              expect(scene.needle_length_mm >= 0.0 && scene.needle_radius_mm >= 0.0, "negative needle");
                              check_text(scene.tissues_toml, true);
@@ -52,9 +55,12 @@ std::string find_broken_invariant(Envelope<Body> message) {
                              expect(std::isfinite(sample.time_s), "tick without a time");
                              expect(is_near(sample.tip_mm) && is_near(sample.device_mm), "tick far away");
                              expect(sample.axis.allFinite(), "axis not finite");
-                             expect(sample.phase <= telemetry::InsertionPhase::kRetracting, "unknown phase");
                              for (const telemetry::TickEvent& event : sample.events)
-                               expect(event.kind <= telemetry::EventKind::kLimit, "unknown event");
+                               expect(event.kind <= last_of(event.kind), "unknown event");
+                             telemetry::for_each_tick_field([&](const auto& field) {
+                               if constexpr (requires { last_of(sample.*field.member); })
+                                 expect(sample.*field.member <= last_of(sample.*field.member), field.name);
+                             });
                            }});
   if constexpr (std::is_same_v<Body, ServerBody>) {
     const auto* batch = std::get_if<StateBatch>(&message.body);

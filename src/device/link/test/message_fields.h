@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "link/messages.h"
+#include "telemetry/tick_fields.h"
 
 namespace trocar::link {
 
@@ -58,8 +59,7 @@ void each_field(T& value, Visit&& visit) {
     auto& [a, b] = value;
     all(a, b);
   } else if constexpr (std::is_same_v<Plain, telemetry::TickSample>) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, aa, ab, ac, ad] = value;
-    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, aa, ab, ac, ad);
+    telemetry::for_each_tick_field([&](const auto& field) { visit(value.*field.member); });
   } else if constexpr (std::is_same_v<Plain, StateBatch>) {
     auto& [a, b, c, d] = value;
     all(a, b, c, d);

@@ -56,14 +56,13 @@ class RandomMessages {
   void fill(std::uint8_t& value) { value = static_cast<std::uint8_t>(random_.next()); }
   void fill(std::uint32_t& value) { value = static_cast<std::uint32_t>(random_.next()); }
   void fill(std::uint64_t& value) { value = random_.next(); }
-  void fill(telemetry::InsertionPhase& value) { value = static_cast<telemetry::InsertionPhase>(below(4)); }
-  void fill(telemetry::GateMode& value) {
-    value = static_cast<telemetry::GateMode>(below(static_cast<std::size_t>(telemetry::kLastGateMode) + 1));
+  /// An enumeration of telemetry.
+  template <class Enum>
+  requires requires(Enum value) { last_of(value); }
+  void fill(Enum& value) { value = static_cast<Enum>(below(static_cast<std::size_t>(last_of(value)) + 1)); }
+  void fill(ServerState& value) {
+    value = static_cast<ServerState>(below(static_cast<std::size_t>(kLastServerState) + 1));
   }
-  void fill(telemetry::GateFault& value) {
-    value = static_cast<telemetry::GateFault>(below(static_cast<std::size_t>(telemetry::kLastGateFault) + 1));
-  }
-  void fill(telemetry::EventKind& value) { value = static_cast<telemetry::EventKind>(below(4)); }
   void fill(ServerCommand& value) {
     value = static_cast<ServerCommand>(below(static_cast<std::size_t>(kLastServerCommand) + 1));
   }

@@ -155,12 +155,39 @@ TEST(UnsoundEnumerator, IsRefused) {
   EXPECT_FALSE(is_accepted(Command{1, static_cast<ServerCommand>(255)}));
 }
 
+bool is_accepted(const ServerStatus& status) {
+  return is_accepted(ServerMessage{1, 1, StateBatch{1, {}, status}});
+}
+
+TEST(UnsoundEnumerator, OfAStatusIsRefused) {
+  const auto accepts = [](auto field, auto last) {
+    const auto number = static_cast<int>(last);
+    using Enum = decltype(last);
+    EXPECT_FALSE(is_accepted(with(field, static_cast<Enum>(number + 1))));
+    EXPECT_FALSE(is_accepted(with(field, static_cast<Enum>(255))));
+    return is_accepted(with(field, last));
+  };
+  EXPECT_TRUE(accepts(&ServerStatus::state, kLastServerState));
+  EXPECT_TRUE(accepts(&ServerStatus::gate_mode, telemetry::kLastGateMode));
+  EXPECT_TRUE(accepts(&ServerStatus::fault, telemetry::kLastGateFault));
+}
+
 bool is_accepted_in_a_batch(const telemetry::TickSample& sample) {
   return is_accepted(ServerMessage{1, 1, StateBatch{1, {telemetry::TickSample{}, sample}, std::nullopt}});
 }
 
 TEST(UnsoundTick, EnumeratorsOutOfRangeAreRefused) {
-  EXPECT_FALSE(is_accepted_in_a_batch(with(&telemetry::TickSample::phase, static_cast<telemetry::InsertionPhase>(4))));
+  int enumerations = 0;
+  telemetry::for_each_tick_field(
+      [&]<class Value, telemetry::TickUse use>(const telemetry::TickField<Value, use>& field) {
+        if constexpr (std::is_enum_v<Value>) {
+          ++enumerations;
+          const auto last = static_cast<int>(last_of(Value{}));
+          EXPECT_TRUE(is_accepted_in_a_batch(with(field.member, static_cast<Value>(last)))) << field.name;
+          EXPECT_FALSE(is_accepted_in_a_batch(with(field.member, static_cast<Value>(last + 1)))) << field.name;
+        }
+      });
+  EXPECT_EQ(enumerations, 3);
   for (std::size_t i = 0; i < 4; ++i) {
     telemetry::TickSample sample;
     sample.events[i].kind = static_cast<telemetry::EventKind>(4);

@@ -43,17 +43,6 @@ void count_wait(void* waited_s, double wait_ms) noexcept {
   *static_cast<double*>(waited_s) += 1e-3 * wait_ms;
 }
 
-/// Smallest box around the visited points.
-struct Extent {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 high = -low;
-  void add(const Vec3& v) noexcept {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  double largest() const noexcept { return (high - low).maxCoeff(); }
-};
-
 }  // namespace
 
 SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const haptics::DevicePreset& preset,
@@ -67,7 +56,7 @@ SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const haptics::Devi
 
   SlowLoopOutcome outcome;
   outcome.zero_s = std::numeric_limits<double>::infinity();
-  Extent travel;
+  Eigen::AlignedBox3d travel;
   ServoInput input;
   input.scene = &scene;
   input.is_wanted = true;
@@ -89,7 +78,7 @@ SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const haptics::Devi
     outcome.longest_period_s = std::max(outcome.longest_period_s, input.dt_s);
     outcome.after_n = std::max(outcome.after_n, written_n);
     outcome.least_share = std::min(outcome.least_share, record.sample.coupling_share);
-    travel.add(record.X_DS.p());
+    travel.extend(record.X_DS.p());
     const double since_s = input.now_s - begun_s;
     if (written_n > 0.0) {
       outcome.zero_s = std::numeric_limits<double>::infinity();
@@ -102,7 +91,7 @@ SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const haptics::Devi
       outcome.latch_periods = slow_periods;
     }
   }
-  outcome.travel_mm = travel.largest();
+  outcome.travel_mm = travel.sizes().maxCoeff();
   return outcome;
 }
 

@@ -76,12 +76,12 @@ TEST(HapticServer, LoadsASceneAndRuns) {
   const auto loaded = client.ask(testing::layered_request(), kPatience);
   ASSERT_TRUE(loaded) << loaded.error().text();
   ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
-  EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
-  EXPECT_TRUE(wait_for([&] { return client.view().status.gate_mode == to_string(telemetry::GateMode::kOn); }));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.state == link::ServerState::kRunning; }));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.gate_mode == telemetry::GateMode::kOn; }));
   EXPECT_EQ(client.view().status.patient, "layers");
   EXPECT_FALSE(client.view().status.grant.empty());
   EXPECT_TRUE(client.ask(link::ServerCommand::kStop, kPatience));
-  EXPECT_TRUE(wait_for([&] { return client.view().status.state == "ready"; }));
+  EXPECT_TRUE(wait_for([&] { return client.view().status.state == link::ServerState::kReady; }));
 }
 
 TEST(HapticServer, SendsEveryTickOrCountsIt) {
@@ -170,10 +170,10 @@ TEST(HapticServer, TakesForcesBackWhenTheClientInControlLeaves) {
     link::HapticClient client = rig.connect();
     ASSERT_TRUE(client.ask(testing::layered_request(), kPatience));
     ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
-    EXPECT_TRUE(wait_for([&] { return client.view().status.state == "running"; }));
+    EXPECT_TRUE(wait_for([&] { return client.view().status.state == link::ServerState::kRunning; }));
   }
   link::HapticClient next = rig.connect();
-  EXPECT_TRUE(wait_for([&] { return next.view().status.state == "ready"; }));
+  EXPECT_TRUE(wait_for([&] { return next.view().status.state == link::ServerState::kReady; }));
 }
 
 TEST(HapticServer, WarnsOfAClientsWindowThatStandsStill) {
@@ -196,7 +196,7 @@ TEST(HapticServer, CountsBadMessagesAndKeepsItsForcesMeanwhile) {
   link::HapticClient client = rig.connect();
   ASSERT_TRUE(client.ask(testing::layered_request(), kPatience));
   ASSERT_TRUE(client.ask(link::ServerCommand::kStart, kPatience));
-  ASSERT_TRUE(wait_for([&] { return client.view().status.gate_mode == to_string(telemetry::GateMode::kOn); }));
+  ASSERT_TRUE(wait_for([&] { return client.view().status.gate_mode == telemetry::GateMode::kOn; }));
 
   testing::RawClient stranger(rig.server().url());
   stranger.connect();
@@ -221,8 +221,8 @@ TEST(HapticServer, CountsBadMessagesAndKeepsItsForcesMeanwhile) {
 
   EXPECT_TRUE(wait_for([&] { return client.view().status.messages_refused >= 3 * kRounds + 3; }))
       << client.view().status.messages_refused;
-  EXPECT_EQ(client.view().status.gate_mode, to_string(telemetry::GateMode::kOn));
-  EXPECT_EQ(client.view().status.state, "running");
+  EXPECT_EQ(client.view().status.gate_mode, telemetry::GateMode::kOn);
+  EXPECT_EQ(client.view().status.state, link::ServerState::kRunning);
 }
 
 TEST(HapticServer, EndsWhatHasStartedWhereAThreadDoesNotStart) {
@@ -293,7 +293,7 @@ TEST(HapticServer, FadesBeforeADeviceIsOpenedAgainAndComesBackSoftly) {
   ASSERT_TRUE(client && client->wait_connected(kPatience));
   ASSERT_TRUE(client->ask(testing::layered_request(), kPatience));
   ASSERT_TRUE(client->ask(link::ServerCommand::kStart, kPatience));
-  ASSERT_TRUE(wait_for([&] { return client->view().status.gate_mode == to_string(telemetry::GateMode::kOn); }));
+  ASSERT_TRUE(wait_for([&] { return client->view().status.gate_mode == telemetry::GateMode::kOn; }));
   // Pressed slowly, until something is felt; a busy machine may have latched a fault meanwhile.
   ASSERT_TRUE(wait_for([&] {
     if (log.depth_mm < 3.0) log.depth_mm = log.depth_mm + 0.01;

@@ -70,7 +70,7 @@ void apply(const Appearance& look, vtkActor& actor) {
   property.SetInterpolationToPhong();
 }
 
-void make_glassy(vtkActor& actor) {
+void make_translucent(vtkActor& actor) {
   actor.GetShaderProperty()->AddFragmentShaderReplacement(
       "//VTK::Light::Impl", true,
       "//VTK::Light::Impl\n"

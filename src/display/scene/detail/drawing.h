@@ -29,7 +29,7 @@ vtkSmartPointer<vtkPolyDataMapper> make_mapper(vtkPolyData* data);
 void apply(const Appearance& look, vtkActor& actor);
 /// Clear where it is seen face on, denser towards its outline, like glass. Of a translucent surface the front alone is
 /// drawn: its far side would veil what lies inside. Once for an actor; has an effect while its opacity is below 1.
-void make_glassy(vtkActor& actor);
+void make_translucent(vtkActor& actor);
 /// Drawn in its own colour, whatever the light.
 void make_unlit(vtkActor& actor);
 

@@ -62,7 +62,7 @@ std::string renderer_of(vtkRenderWindow& window) {
   return first == std::string::npos ? std::string() : text.substr(first, text.find('\n', first) - first);
 }
 
-bool is_by_processor(std::string_view renderer_name) {
+bool is_software_renderer(std::string_view renderer_name) {
   constexpr std::array<std::string_view, 5> kPrograms = {"llvmpipe", "softpipe", "swrast", "SWR", "Software"};
   return std::any_of(kPrograms.begin(), kPrograms.end(),
                      [&](std::string_view program) { return renderer_name.find(program) != std::string_view::npos; });

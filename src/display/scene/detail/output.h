@@ -20,6 +20,6 @@ void mirror(std::span<std::uint32_t> pixels, int columns, bool left_right, bool 
 /// OpenGL's name of what draws; "" before the window has a context.
 std::string renderer_of(vtkRenderWindow& window);
 /// Whether a renderer of that name is a program on the processor.
-bool is_by_processor(std::string_view renderer_name);
+bool is_software_renderer(std::string_view renderer_name);
 
 }  // namespace trocar::scene::detail

@@ -98,7 +98,7 @@ bool SurfaceLayer::poll() {
     auto actor = vtkSmartPointer<BreakableActor>::New();
     actor->frame_break = &frame_break_;
     surface.actor = actor;
-    make_glassy(*actor);
+    make_translucent(*actor);
     actor->SetMapper(surface.mapper);
     if (is_cut_) surface.mapper->AddClippingPlane(cut_);
     update(surface);

@@ -16,7 +16,7 @@ namespace {
 
 /// Smaller motion is invisible: five thousandths of a millimetre.
 constexpr double kUnseen_mm = 0.005;
-constexpr double kGlassyTransducer = 0.3;
+constexpr double kTranslucentTransducer = 0.3;
 constexpr double kGhostOpacity = 0.4;
 constexpr double kGhostRadius_mm = 1.2;
 constexpr double kGhostHubRadius_mm = 4.0;
@@ -169,9 +169,9 @@ bool ToolLayer::set_transducer(const std::optional<Pose>& X_PT, const Transducer
   return true;
 }
 
-void ToolLayer::set_transducer_glassy(bool is_glassy) {
-  transducer_->GetProperty()->SetOpacity(is_glassy ? kGlassyTransducer : 1.0);
-  transducer_->GetProperty()->SetBackfaceCulling(is_glassy);
+void ToolLayer::set_transducer_translucent(bool is_translucent) {
+  transducer_->GetProperty()->SetOpacity(is_translucent ? kTranslucentTransducer : 1.0);
+  transducer_->GetProperty()->SetBackfaceCulling(is_translucent);
 }
 
 std::optional<Segment> ToolLayer::needle_P() const noexcept {

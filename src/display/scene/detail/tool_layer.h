@@ -24,7 +24,7 @@ class ToolLayer {
   bool set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   bool set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
   /// What stands behind the transducer is seen through it.
-  void set_transducer_glassy(bool is_glassy);
+  void set_transducer_translucent(bool is_translucent);
   /// Draws the needle no thinner than this.
   void set_least_thickness(double least_mm);
 

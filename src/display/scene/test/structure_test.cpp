@@ -19,9 +19,7 @@ anatomy::VirtualPatient liver_in_fat() {
   const Vec3 middle_P(80, 80, 80);
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
     const volume::Index3 ijk = g.index_of(n);
-    const double away_mm =
-        (g.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])}) - middle_P)
-            .norm();
+    const double away_mm = (g.centre_mm(ijk) - middle_P).norm();
     if (away_mm < 50.0) patient.labels.voxels[n] = away_mm < 5.0 ? kLesion : kLiver;
   }
   return patient;

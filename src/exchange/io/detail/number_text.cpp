@@ -1,9 +1,6 @@
 #include "io/detail/number_text.h"
 
-#include <fmt/format.h>
-
-#include <charconv>
-#include <cmath>
+#include "core/parse_number.h"
 
 namespace trocar::io::detail {
 namespace {
@@ -22,11 +19,9 @@ std::optional<std::vector<double>> find_numbers(std::string_view text, std::size
   std::vector<double> numbers;
   for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
     const std::string_view word = text.substr(0, text.find_first_of(kWhite));
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number) || numbers.size() == most)
-      return std::nullopt;
-    numbers.push_back(number);
+    const auto number = parse_number<double>(word);
+    if (!number || numbers.size() == most) return std::nullopt;
+    numbers.push_back(*number);
     text.remove_prefix(word.size());
   }
   return numbers;

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 #include "anatomy/build_patient.h"
 #include "anatomy/label_table.h"
 #include "config/toml.h"
+#include "core/parse_number.h"
 
 namespace trocar::io {
 namespace {
@@ -20,14 +19,6 @@ std::map<int, std::string> totalsegmentator_names() {
   for (int number = 1; number <= kMaxLabel; ++number)
     if (const auto name = anatomy::totalsegmentator_name(number)) names.emplace(number, *name);
   return names;
-}
-
-/// Empty if the key is not an integer.
-std::optional<int> number_of(std::string_view key) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
-  if (error != std::errc{} || end != key.data() + key.size()) return std::nullopt;
-  return number;
 }
 
 /// The list as texts; its TOML entries can be numbers or texts.
@@ -50,7 +41,7 @@ Status LabelMap::read_entry(const std::string& key, std::string name, const std:
     rest_ = std::move(name);
     return {};
   }
-  const std::optional<int> number = number_of(key);
+  const std::optional<int> number = parse_number<int>(key);
   if (number && (*number < 1 || *number > kMaxLabel))
     return fail(fmt::format("\"{}\" is not a label number from 1 to {}", key, kMaxLabel), where,
                 "write lines such as 5 = \"liver\"");

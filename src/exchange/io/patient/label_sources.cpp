@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 
 #include "anatomy/label_table.h"
 #include "core/parallel.h"
+#include "core/parse_number.h"
 #include "io/dicom/detail/find_series.h"
 #include "io/image/detail/payload.h"
 #include "io/image/detail/read_grid.h"
@@ -79,10 +79,8 @@ std::vector<Segment3dSlicer> segments_in(const detail::RawVolume& raw) {
   const std::map<std::string, std::string> fields(raw.fields.begin(), raw.fields.end());
   const auto number = [&](const std::string& key, int fallback) {
     const auto found = fields.find(key);
-    int value = fallback;
-    if (found != fields.end())
-      std::from_chars(found->second.data(), found->second.data() + found->second.size(), value);
-    return value;
+    const auto value = found == fields.end() ? std::nullopt : find_leading_number<int>(found->second);
+    return value ? value->value : fallback;
   };
   std::vector<Segment3dSlicer> segments;
   for (int n = 0;; ++n) {

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/SVD>
-#include <charconv>
-#include <cmath>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -13,6 +11,7 @@
 
 #include "core/files/atomic_file.h"
 #include "core/files/input_file.h"
+#include "core/parse_number.h"
 #include "io/detail/itk_transform.h"
 
 namespace trocar::io {
@@ -31,9 +30,7 @@ std::optional<std::size_t> count_numbers(std::string_view text) {
     if (first == std::string_view::npos) return count;
     text.remove_prefix(first);
     const std::string_view word = text.substr(0, text.find_first_of(" \t\r"));
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(number)) return std::nullopt;
+    if (!parse_number<double>(word)) return std::nullopt;
     text.remove_prefix(word.size());
   }
 }

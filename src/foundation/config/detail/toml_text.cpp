@@ -5,33 +5,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/utf8.h"
+
 namespace trocar::config::detail {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
 constexpr int kMaxDepth = 32;  ///< Nested brackets, and dots of one key.
-
-/// Length of the well-formed UTF-8 character at the start of `text`; 0 if it is malformed (Unicode, table 3-7).
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t n) -> unsigned { return static_cast<unsigned char>(text[n]); };
-  const auto tail = [&](std::size_t n, unsigned low = 0x80, unsigned high = 0xbf) {
-    return n < text.size() && byte(n) >= low && byte(n) <= high;
-  };
-  const unsigned lead = byte(0);
-  if (lead < 0x80) return 1;
-  if (lead >= 0xc2 && lead <= 0xdf) return tail(1) ? 2 : 0;
-  if (lead >= 0xe0 && lead <= 0xef) {
-    const unsigned low = lead == 0xe0 ? 0xa0 : 0x80;   // no overlong forms
-    const unsigned high = lead == 0xed ? 0x9f : 0xbf;  // no surrogates
-    return tail(1, low, high) && tail(2) ? 3 : 0;
-  }
-  if (lead >= 0xf0 && lead <= 0xf4) {
-    const unsigned low = lead == 0xf0 ? 0x90 : 0x80;
-    const unsigned high = lead == 0xf4 ? 0x8f : 0xbf;  // up to U+10FFFF
-    return tail(1, low, high) && tail(2) && tail(3) ? 4 : 0;
-  }
-  return 0;
-}
 
 /// Scans the text like toml++ up to the first error: text after an error is never parsed.
 class Scanner {
@@ -115,13 +95,13 @@ Status check_toml_text(std::string_view text, const std::string& name) {
   int line = 1;
   for (std::size_t n = 0; n < text.size();) {
     const char c = text[n];
-    const std::size_t length = utf8_length(text.substr(n));
+    const auto character = first_character(text.substr(n));
     const bool is_control = (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\r' && c != '\n') || c == 0x7f;
-    if (length == 0 || is_control)
+    if (!character || is_control)
       return fail(is_control ? "a control character in a configuration file" : "not UTF-8 text",
                   fmt::format("{}, line {}", name, line), "save the file as UTF-8 text");
     if (c == '\n') ++line;
-    n += length;
+    n += character->bytes;
   }
   Scanner scanner(text);
   if (const std::string fault = scanner.find_fault(); !fault.empty())

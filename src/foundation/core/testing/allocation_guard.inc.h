@@ -5,6 +5,7 @@
 #include <new>
 
 #include "core/testing/allocation_guard.h"
+#include "core/testing/heap_memory.h"
 
 namespace trocar::testing {
 
@@ -17,14 +18,7 @@ std::size_t AllocationGuard::count() const noexcept {
 
 inline void* counted_allocation(std::size_t size, std::size_t alignment) {
   ++allocation_events;
-  void* memory = nullptr;
-  if (alignment <= alignof(std::max_align_t)) {
-    memory = std::malloc(size == 0 ? 1 : size);
-  } else if (::posix_memalign(&memory, alignment, size) != 0) {
-    memory = nullptr;
-  }
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
+  return heap_memory(size, alignment);
 }
 
 inline void* counted_allocation_or_none(std::size_t size) noexcept {

@@ -2,19 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "telemetry/testing/sample_at.h"
+
 namespace trocar::telemetry {
 namespace {
 
-const Pose kHeld = needle_pose({10.0, 20.0, 30.0}, Vec3(0.3, 1.0, -0.2).normalized());
+using testing::sample_at;
 
-TickSample sample_at(const Pose& X_PN) {
-  TickSample sample;
-  sample.tip_mm = sample.device_mm = X_PN.p();
-  sample.axis = X_PN.R().col(2);
-  const Eigen::Quaterniond q(X_PN.R());
-  sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
-  return sample;
-}
+const Pose kHeld = needle_pose({10.0, 20.0, 30.0}, Vec3(0.3, 1.0, -0.2).normalized());
 
 TEST(FeltNeedle, TurnsTheDevicesPoseToTheFeltAxis) {
   TickSample sample = sample_at(kHeld);

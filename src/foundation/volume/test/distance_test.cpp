@@ -16,7 +16,7 @@ namespace {
 constexpr double kRounding = 3e-7;
 
 Vec3 centre_mm(const GridGeometry& geometry, const Index3& ijk) {
-  return geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])});
+  return geometry.centre_mm(ijk);
 }
 
 /// The points that the signed distance is measured to, by definition: half way between neighbours that differ.

@@ -39,8 +39,7 @@ TEST(AlongP, KeepsEveryVoxelOfATurnedGridAtItsPlace) {
     EXPECT_TRUE(order_along_P(found.geometry).is_identity());
     for (std::size_t n = 0; n < found.voxels.size(); ++n) {
       const Index3 ijk = found.geometry.index_of(n);
-      const Vec3 p_P =
-          found.geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])});
+      const Vec3 p_P = found.geometry.centre_mm(ijk);
       const Vec3 index = grid.geometry.to_index(p_P);
       const Index3 nearest{std::lround(index.x()), std::lround(index.y()), std::lround(index.z())};
       ASSERT_TRUE(grid.geometry.contains(nearest));

@@ -65,7 +65,7 @@ TEST(IsotropicGeometry, CoversTheSameBox) {
     const GridGeometry source = oblique_geometry({50, 60, 31}, random);
     const GridGeometry target = isotropic_geometry(source, 0.8);
     const auto corners = [](const GridGeometry& g) {
-      const Vec3 last(static_cast<double>(g.size[0]), static_cast<double>(g.size[1]), static_cast<double>(g.size[2]));
+      const Vec3 last = to_vec3(g.size);
       return std::pair{g.to_mm(Vec3::Constant(-0.5)), g.to_mm(last - Vec3::Constant(0.5))};
     };
     EXPECT_LT((corners(source).first - corners(target).first).norm(), 1e-9);

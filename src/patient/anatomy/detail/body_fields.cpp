@@ -36,10 +36,6 @@ struct Coarse {
   volume::MaskGrid lung;        ///< Labelled.
 };
 
-Vec3 to_vec3(const volume::Index3& ijk) {
-  return {static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])};
-}
-
 std::array<bool, 256> ids_of_tissue(const LabelTable& table, std::string_view tissue) {
   std::array<bool, 256> ids{};
   for (const Label& label : table.labels) ids[label.id] = label.tissue == tissue;
@@ -55,7 +51,7 @@ Coarse make_coarse(const volume::CtGrid& ct, const volume::LabelGrid& labels, co
   const auto is_bone = ids_of_tissue(table, "bone");
   const auto is_lung = ids_of_tissue(table, "lung");
   for (std::size_t n = 0; n < coarse.body.voxels.size(); ++n) {
-    const float distance_mm = volume::sample_nearest(skin_distance_mm, grid.to_mm(to_vec3(grid.index_of(n))), 1.0F);
+    const float distance_mm = volume::sample_nearest(skin_distance_mm, grid.centre_mm(grid.index_of(n)), 1.0F);
     const std::uint8_t id = coarse_labels.voxels[n];
     const bool inside = distance_mm < 0.0F;
     coarse.body.voxels[n] = inside;
@@ -88,12 +84,12 @@ volume::MaskGrid subcutaneous_fat(const Coarse& coarse, const volume::FloatGrid&
   for (std::size_t n = 0; n < coarse.unlabelled.voxels.size(); ++n) {
     const std::int16_t hu = coarse.ct.voxels[n];
     if (coarse.unlabelled.voxels[n] && !coarse.skin_shell.voxels[n] && hu > kFatAboveHu && hu <= kFatUpToHu)
-      by_depth.emplace_back(-volume::sample_nearest(skin_distance_mm, grid.to_mm(to_vec3(grid.index_of(n))), 0.0F), n);
+      by_depth.emplace_back(-volume::sample_nearest(skin_distance_mm, grid.centre_mm(grid.index_of(n)), 0.0F), n);
   }
   std::sort(by_depth.begin(), by_depth.end());
   volume::MaskGrid fat = coarse.skin_shell;
   for (const auto& [depth_mm, n] : by_depth) {
-    const Vec3 p_P = grid.to_mm(to_vec3(grid.index_of(n)));
+    const Vec3 p_P = grid.centre_mm(grid.index_of(n));
     const Vec3 outward_P = volume::gradient_per_mm(skin_distance_mm, p_P).normalized();
     fat.voxels[n] = volume::sample_nearest<std::uint8_t>(fat, p_P + kStepMm * outward_P, 0);
   }

@@ -69,7 +69,7 @@ class FieldSampler {
   }
 
   Place at(const volume::Index3& ijk) const {
-    const Vec3 index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
+    const Vec3 index = volume::to_vec3(ijk);
     const Vec3 coarse_index = offset_ + scale_.cwiseProduct(index);
     const double lung_mm = volume::sample_linear_at_index(fields_.lung_mm, coarse_index);
     return {volume::sample_linear_at_index(fields_.wall_mm, coarse_index) < 0.0, lung_mm < -kLungRimMm,
@@ -102,8 +102,7 @@ void remove_thick_skin(const volume::FloatGrid& skin_distance_mm, const FillIds&
   for (std::size_t n = 0; n < labels.voxels.size(); ++n) {
     if (labels.voxels[n] != ids.muscle || skin_distance_mm.voxels[n] < -kThickSkinMm) continue;
     const volume::Index3 ijk = labels.geometry.index_of(n);
-    const Vec3 p_P = labels.geometry.to_mm(
-        Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p_P = labels.geometry.centre_mm(ijk);
     const Vec3 inward_P = -volume::gradient_per_mm(skin_distance_mm, p_P).normalized();
     if (volume::sample_nearest<std::uint8_t>(labels, p_P + kBeneathSkinMm * inward_P, 0) == ids.fat) skin.push_back(n);
   }

@@ -64,9 +64,7 @@ void paint(const LayerScene& scene, const ShapeLabels& labels, std::uint64_t see
   parallel_for(hu.voxels.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       const volume::Index3 ijk = geometry.index_of(n);
-      const Vec3f p =
-          geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])))
-              .cast<float>();
+      const Vec3f p = geometry.centre_mm(ijk).cast<float>();
       const float depth = depth_at(scene, p.y());
       const float texture = noise.fractal(p, kTexture_mm);
       float value = kAirHu;

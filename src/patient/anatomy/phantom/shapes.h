@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/random.h"
@@ -14,10 +15,10 @@ namespace trocar::anatomy::phantom {
 /// Upper bound of the slope of every structure's distance function, noise and warp included.
 inline constexpr float kSteepness = 1.7F;
 
-/// An axis-aligned box of P.
+/// An axis-aligned box of P; empty by default.
 struct Box {
-  Vec3f low = Vec3f::Constant(1e9F);
-  Vec3f high = Vec3f::Constant(-1e9F);
+  Vec3f low = Vec3f::Constant(std::numeric_limits<float>::infinity());
+  Vec3f high = Vec3f::Constant(-std::numeric_limits<float>::infinity());
 
   static Box around(const Vec3f& centre, const Vec3f& half) { return {centre - half, centre + half}; }
   void add(const Vec3f& p, float radius);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/parallel.h"
@@ -47,7 +48,7 @@ struct SliceContour {
   float distance(float px, float py) const {
     constexpr std::size_t kCoarse = 4;
     std::size_t near = 0;
-    float least = 1e12F;
+    float least = std::numeric_limits<float>::infinity();
     const auto look_at = [&](std::size_t n) {
       const float square = (x[n] - px) * (x[n] - px) + (y[n] - py) * (y[n] - py);
       if (square < least) {

@@ -61,8 +61,7 @@ struct Torso {
   static void for_each(const volume::GridGeometry& geometry, const auto& visit) {
     for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
       const volume::Index3 ijk = geometry.index_of(n);
-      visit(n, geometry.to_mm(
-                   Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]))));
+      visit(n, geometry.centre_mm(ijk));
     }
   }
 

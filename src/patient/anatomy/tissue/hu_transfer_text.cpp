@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include "config/sourced_number.h"
-#include "config/toml_quoted.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -90,22 +89,21 @@ Status read_hu_transfer(const config::TomlTable& document, TissueTable& table) {
   return {};
 }
 
-void append_hu_transfer(std::string& out, const TissueTable& table) {
+void write_hu_transfer(config::TomlWriter& writer, const TissueTable& table) {
   const HuTransfer& transfer = table.transfer;
   if (transfer.knot_count == 0) return;
-  out += fmt::format("\n[{}]\nhu = [{}]\n", kTransfer,
-                     fmt::join(transfer.hu.begin(), transfer.hu.begin() + transfer.knot_count, ", "));
+  writer.begin_table({kTransfer});
+  writer.set("hu", std::vector<double>(transfer.hu.begin(), transfer.hu.begin() + transfer.knot_count));
   for (const auto& field : kHuLawFields) {
     std::vector<double> values;
     for (std::size_t n = 0; n < transfer.knot_count; ++n) values.push_back(transfer.laws[n].*field.member);
     const Provenance source = find_provenance(table.provenance, path_of(field.name));
-    out += fmt::format("{} = {{values = [{}], source = {}", field.name, fmt::join(values, ", "),
-                       config::toml_quoted(source.source));
-    if (source.low && source.high) out += fmt::format(", {} = [{}, {}]", kFactors, *source.low, *source.high);
-    out += "}\n";
+    std::vector<config::TomlValue::Entry> curve{{"values", values}, {"source", source.source}};
+    if (source.low && source.high) curve.push_back({kFactors, std::vector<double>{*source.low, *source.high}});
+    writer.set(field.name, curve);
   }
   for (const auto& field : kGradientFields)
-    append_number(out, field.name, transfer.*field.member, path_of(field.name), table.provenance);
+    write_number(writer, field.name, transfer.*field.member, path_of(field.name), table.provenance);
 }
 
 }  // namespace trocar::anatomy

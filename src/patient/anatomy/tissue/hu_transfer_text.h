@@ -34,7 +34,7 @@ inline constexpr config::Range kHuRange{-1100.0, 4000.0};
 /// curves of another length, numbers out of range or without source, thresholds that cross.
 Status read_hu_transfer(const config::TomlTable& document, TissueTable& table);
 
-/// Appends [transfer] so that read_hu_transfer gives the same; nothing for a table without.
-void append_hu_transfer(std::string& out, const TissueTable& table);
+/// Writes [transfer] so that read_hu_transfer gives the same; nothing for a table without.
+void write_hu_transfer(config::TomlWriter& writer, const TissueTable& table);
 
 }  // namespace trocar::anatomy

@@ -6,6 +6,7 @@
 
 #include "anatomy/tissue/tissue_table.h"
 #include "config/toml.h"
+#include "config/toml_writer.h"
 
 namespace trocar::anatomy {
 
@@ -58,8 +59,8 @@ const TissueField<T>* find_field(std::span<const TissueField<T>> fields, std::st
 
 /// Source of a user's value: "set by the user".
 Provenance find_provenance(const std::map<std::string, Provenance>& provenance, const std::string& path);
-/// Appends KEY = {value = 0.46, source = "…", range = [low, high]}; an infinite value is written as never = true.
-void append_number(std::string& out, std::string_view key, double value, const std::string& path,
-                   const std::map<std::string, Provenance>& provenance);
+/// Writes KEY = {value = 0.46, source = "…", range = [low, high]}; an infinite value is written as never = true.
+void write_number(config::TomlWriter& writer, std::string_view key, double value, const std::string& path,
+                  const std::map<std::string, Provenance>& provenance);
 
 }  // namespace trocar::anatomy

@@ -2,13 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "anatomy/tissue/hu_transfer_text.h"
 #include "anatomy/tissue/tissue_fields.h"
+#include "anatomy/tissue/tissue_setting.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "config/toml_quoted.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -16,37 +15,19 @@ namespace {
 constexpr std::string_view kOfLayers = "layers.", kOfTissues = "tissues.";
 
 template <class T>
-void append_fields(std::string& out, const T& entry, std::span<const TissueField<T>> fields, std::string_view kind,
-                   const std::map<std::string, Provenance>& provenance) {
+void write_fields(config::TomlWriter& writer, const T& entry, std::span<const TissueField<T>> fields,
+                  std::string_view kind, const std::map<std::string, Provenance>& provenance) {
   for (const TissueField<T>& field : fields)
-    append_number(out, field.name, entry.*field.member, fmt::format("{}.{}.{}", kind, entry.name, field.name),
-                  provenance);
+    write_number(writer, field.name, entry.*field.member, fmt::format("{}.{}.{}", kind, entry.name, field.name),
+                 provenance);
 }
 
+/// What an override names; `name` may hold dots.
 struct Assignment {
   std::string_view name;
   std::string_view key;
   double value = 0.0;
 };
-
-Result<Assignment> parse_assignment(std::string_view text) {
-  const auto malformed = [&] {
-    return fail_usage("--set needs NAME.KEY=NUMBER (finite)", std::string(text), "for example liver.k=0.5");
-  };
-  const std::size_t equals = text.find('=');
-  const std::size_t dot = text.substr(0, equals).rfind('.');
-  if (equals == std::string_view::npos || dot == std::string_view::npos) return malformed();
-  Assignment assignment{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), 0.0};
-  const std::string_view value = text.substr(equals + 1);
-  if (value == "never") {
-    assignment.value = std::numeric_limits<double>::infinity();
-    return assignment;
-  }
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), assignment.value);
-  if (error != std::errc() || end != value.data() + value.size() || !std::isfinite(assignment.value))
-    return malformed();
-  return assignment;
-}
 
 Status check_range(const Assignment& assignment, std::string_view field, config::Range range, std::string_view text) {
   const bool is_never = std::isinf(assignment.value) && field == kPunctureForce;
@@ -189,38 +170,45 @@ Provenance find_provenance(const std::map<std::string, Provenance>& provenance, 
   return it != provenance.end() ? it->second : Provenance{std::string(kOverrideSource), {}, {}};
 }
 
-void append_number(std::string& out, std::string_view key, double value, const std::string& path,
-                   const std::map<std::string, Provenance>& provenance) {
+void write_number(config::TomlWriter& writer, std::string_view key, double value, const std::string& path,
+                  const std::map<std::string, Provenance>& provenance) {
+  using Entry = config::TomlValue::Entry;
   const Provenance source = find_provenance(provenance, path);
-  out += fmt::format("{} = {{", key);
-  // The shortest decimal text that is read back as the same bits.
-  out += std::isinf(value) ? "never = true" : fmt::format("value = {}", value);
-  out += ", source = " + config::toml_quoted(source.source);
-  if (source.low && source.high) out += fmt::format(", range = [{}, {}]", *source.low, *source.high);
-  out += "}\n";
+  std::vector<Entry> number{std::isinf(value) ? Entry{"never", true} : Entry{"value", value},
+                            {"source", source.source}};
+  if (source.low && source.high) number.push_back({"range", std::vector<double>{*source.low, *source.high}});
+  writer.set(key, number);
 }
 
 std::string TissueTable::to_toml() const {
-  std::string out = fmt::format("applied_profile = {}\n\n[skin]\n", config::toml_quoted(profile));
-  append_number(out, kSkinThickness, skin_thickness_mm, "skin.thickness_mm", provenance);
+  config::TomlWriter writer;
+  writer.set("applied_profile", profile);
+  writer.begin_table({"skin"});
+  write_number(writer, kSkinThickness, skin_thickness_mm, "skin.thickness_mm", provenance);
   for (const LayerParams& layer : layers) {
-    out += fmt::format("\n[layers.{}]\n", config::toml_quoted(layer.name));
-    if (layer.is_wall) out += fmt::format("{} = true\n", kWall);
-    append_fields<LayerParams>(out, layer, kLayerFields, "layers", provenance);
+    writer.begin_table({"layers", layer.name});
+    if (layer.is_wall) writer.set(kWall, true);
+    write_fields<LayerParams>(writer, layer, kLayerFields, "layers", provenance);
   }
   for (std::size_t n = 1; n < tissues.size(); ++n) {
     const TissueParams& tissue = tissues[n];
-    out += fmt::format("\n[tissues.{}]\n", config::toml_quoted(tissue.name));
-    if (tissue.layer) out += fmt::format("layer = {}\n", config::toml_quoted(layers[*tissue.layer].name));
-    append_fields<TissueParams>(out, tissue, kTissueFields, "tissues", provenance);
+    writer.begin_table({"tissues", tissue.name});
+    if (tissue.layer) writer.set("layer", layers[*tissue.layer].name);
+    write_fields<TissueParams>(writer, tissue, kTissueFields, "tissues", provenance);
   }
-  append_hu_transfer(out, *this);
-  return out;
+  write_hu_transfer(writer, *this);
+  return writer.text();
+}
+
+Status apply_setting(TissueTable& table, const TissueSetting& setting) {
+  const std::string text = to_string(setting);
+  const Assignment assignment{setting.row, setting.key, setting.value};
+  return Override(table, assignment, text).apply();
 }
 
 Status apply_override(TissueTable& table, std::string_view assignment) {
-  TROCAR_TRY(const Assignment parsed, parse_assignment(assignment));
-  return Override(table, parsed, assignment).apply();
+  TROCAR_TRY(const TissueSetting setting, parse_setting(assignment));
+  return apply_setting(table, setting);
 }
 
 }  // namespace trocar::anatomy

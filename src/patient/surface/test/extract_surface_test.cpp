@@ -23,8 +23,7 @@ volume::MaskGrid fill(const volume::GridGeometry& geometry, const auto& is_insid
   volume::MaskGrid mask(geometry);
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
     const volume::Index3 ijk = geometry.index_of(n);
-    mask.voxels[n] = is_inside(
-        geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]))));
+    mask.voxels[n] = is_inside(geometry.centre_mm(ijk));
   }
   return mask;
 }
@@ -180,9 +179,7 @@ anatomy::VirtualPatient small_patient() {
   patient.skin_distance_mm = volume::FloatGrid(geometry);
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
     const volume::Index3 ijk = geometry.index_of(n);
-    const Vec3 r =
-        geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]))) -
-        Vec3(39, 39, 39);
+    const Vec3 r = geometry.centre_mm(ijk) - Vec3(39, 39, 39);
     patient.skin_distance_mm.voxels[n] = static_cast<float>(r.norm() - 35.0);
     patient.labels.voxels[n] = r.norm() < 15.0 ? 3 : r.norm() < 35.0 ? 1 : 0;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace trocar::haptics {
 
@@ -41,8 +42,8 @@ BoneContact judge_bone_contact(const std::vector<PushSample>& samples, const Pus
   const double end_s = samples.back().time_s;
   double sum = 0.0;
   int count = 0;
-  double low = 1e9;
-  double high = -1e9;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
   for (const PushSample& s : samples) {
     if (s.time_s > end_s - 0.2 * trial.hold_s) {
       sum += s.resistance_n;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace trocar::haptics {
 namespace {
@@ -10,17 +9,6 @@ namespace {
 constexpr double kCarry_s = 2.0;
 constexpr double kSettle_s = 0.5;
 constexpr double kStart_mm = -5.0;  // above the skin
-
-/// Smallest box around the visited points.
-struct Extent {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
-  Vec3 high = -low;
-  void add(const Vec3& v) noexcept {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  double largest() const noexcept { return (high - low).maxCoeff(); }
-};
 
 void carry_in(ClosedLoop& loop, double depth_mm) noexcept {
   const auto ticks = static_cast<int>(kCarry_s / loop.dt_s());
@@ -66,18 +54,18 @@ StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, c
 
   StabilityOutcome outcome;
   outcome.must_rest = holder == Holder::kHand || holder == Holder::kGuidingHand;
-  Extent position;
-  Extent force;
+  Eigen::AlignedBox3d position;
+  Eigen::AlignedBox3d force;
   const auto ticks = static_cast<int>(trial.seconds / loop->dt_s());
   for (int i = 0; i < ticks; ++i) {
     if (i == ticks / 6) loop->restart_observer();
     loop->run(hold);
     if (i < ticks - ticks / 6) continue;
-    position.add(loop->tip_P());
-    force.add(loop->wrench_P().force_n);
+    position.extend(loop->tip_P());
+    force.extend(loop->wrench_P().force_n);
   }
-  outcome.position_mm = position.largest();
-  outcome.force_n = force.largest();
+  outcome.position_mm = position.sizes().maxCoeff();
+  outcome.force_n = force.sizes().maxCoeff();
   outcome.growth_mj = loop->observer().growth_mj();
   outcome.is_finite = loop->stylus().X_PS.is_finite() && std::isfinite(outcome.growth_mj);
   judge(outcome, preset, trial, *scene);

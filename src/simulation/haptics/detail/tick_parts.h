@@ -1,30 +1,24 @@
 #pragma once
 
-#include <cstddef>
-
+#include "geometry/clamp_norm.h"
 #include "haptics/tick.h"
+#include "telemetry/tick_events.h"
 
 /// What the ticks of all tools share. Private to `haptics`; all of it real-time safe.
 namespace trocar::haptics {
 
-/// Fills the few places for events in a sample; the last one says when there were more.
+/// Adds events to a sample; the last entry says when there were more.
 class EventList {
  public:
   explicit EventList(telemetry::TickSample& sample) noexcept : sample_(sample) {}
-  void add(telemetry::EventKind kind, std::uint8_t id) noexcept {
-    if (count_ < sample_.events.size())
-      sample_.events[count_++] = {kind, id};
-    else
-      sample_.events.back() = {telemetry::EventKind::kLimit,
-                               static_cast<std::uint8_t>(telemetry::LimitReason::kEventsDropped)};
+  void add(telemetry::TickEvent event) noexcept {
+    if (!telemetry::add_event(sample_, event))
+      sample_.events.back() = telemetry::limit_event(telemetry::LimitReason::kEventsDropped);
   }
-  void add(telemetry::LimitReason reason) noexcept {
-    add(telemetry::EventKind::kLimit, static_cast<std::uint8_t>(reason));
-  }
+  void add(telemetry::LimitReason reason) noexcept { add(telemetry::limit_event(reason)); }
 
  private:
   telemetry::TickSample& sample_;
-  std::size_t count_ = 0;
 };
 
 /// Carries the weight of links and stylus, so that the hand feels only the tool (paper A; physics.md W1).
@@ -33,14 +27,6 @@ inline Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) no
   const Vec3 lift_P = -scene.gravity_P * scene.device.stylus_weight_n;
   const Vec3 arm_P = R_PS * Vec3(0.0, 0.0, -scene.device.stylus_lever_mm);
   return {lift_P, arm_P.cross(lift_P)};
-}
-
-/// Scales a vector to a norm; true when it had to.
-inline bool clamp_norm(Vec3& v, double limit) noexcept {
-  const double norm = v.norm();
-  if (!(norm > limit)) return false;
-  v *= limit / norm;
-  return true;
 }
 
 /// The last step of every tick: `device_f_n` and the torque limited to the device's peaks, said in the events, turned

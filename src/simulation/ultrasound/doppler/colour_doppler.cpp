@@ -108,7 +108,7 @@ void ColourDoppler::Impl::set_cells(const ScanGeometry& geometry, const DopplerS
 
 /// One line of cells through the patient.
 struct ColourDoppler::Impl::Ray {
-  SoundWay way;
+  SoundPath way;
   Vec3f start_P, along_P, elevation_P;
   float scale_mm_per_s;
   float cut4;     ///< Fourth power of the wall filter's cutoff share.
@@ -134,7 +134,7 @@ ColourDoppler::Impl::Ray ColourDoppler::Impl::make_ray(const DopplerInput& input
   const Vec2 direction_T = scan.line_direction(place);
   const auto cut = static_cast<float>(held.wall_filter);
   Ray ray;
-  if (input.engine != nullptr) ray.way = input.engine->sound_way(static_cast<int>(place));
+  if (input.engine != nullptr) ray.way = input.engine->sound_path(static_cast<int>(place));
   ray.start_P = (input.X_PT * Vec3(origin_T.x(), origin_T.y(), 0.0)).cast<float>();
   ray.along_P = (input.X_PT.R() * Vec3(direction_T.x(), direction_T.y(), 0.0)).cast<float>();
   ray.elevation_P = input.X_PT.R().col(2).cast<float>();

@@ -16,17 +16,17 @@ constexpr double kSpeed_mm_per_s = kScannerSpeed_mm_per_us * 1e6;
 constexpr double kHz_per_MHz = 1e6;
 constexpr double kLeastCosine = 0.0175;  // 89 degrees
 
-struct Knob {
+struct Control {
   const char* name;
   double DopplerSettings::*value;
   double low, high;
 };
-constexpr Knob kKnobs[] = {{"scale", &DopplerSettings::scale_cm_per_s, 2.0, 200.0},
-                           {"frequency", &DopplerSettings::frequency_mhz, 1.0, 15.0},
-                           {"wall filter", &DopplerSettings::wall_filter, 0.0, 0.6},
-                           {"colour gain", &DopplerSettings::gain_db, -40.0, 40.0},
-                           {"persistence", &DopplerSettings::persistence, 0.0, 0.95},
-                           {"baseline", &DopplerSettings::baseline, -0.9, 0.9}};
+constexpr Control kControls[] = {{"scale", &DopplerSettings::scale_cm_per_s, 2.0, 200.0},
+                                 {"frequency", &DopplerSettings::frequency_mhz, 1.0, 15.0},
+                                 {"wall filter", &DopplerSettings::wall_filter, 0.0, 0.6},
+                                 {"colour gain", &DopplerSettings::gain_db, -40.0, 40.0},
+                                 {"persistence", &DopplerSettings::persistence, 0.0, 0.95},
+                                 {"baseline", &DopplerSettings::baseline, -0.9, 0.9}};
 
 bool is_box(const DopplerBox& box) noexcept {
   return box.first_line >= 0.0 && box.first_line < box.last_line && box.last_line <= 1.0 && box.near >= 0.0 &&
@@ -36,11 +36,11 @@ bool is_box(const DopplerBox& box) noexcept {
 }  // namespace
 
 Status check(const DopplerSettings& settings) {
-  for (const Knob& knob : kKnobs) {
-    const double value = settings.*knob.value;
-    if (value >= knob.low && value <= knob.high) continue;
-    return fail_usage(fmt::format("the Doppler {} is {}", knob.name, value), "settings",
-                      fmt::format("give {} to {}", knob.low, knob.high));
+  for (const Control& control : kControls) {
+    const double value = settings.*control.value;
+    if (value >= control.low && value <= control.high) continue;
+    return fail_usage(fmt::format("the Doppler {} is {}", control.name, value), "settings",
+                      fmt::format("give {} to {}", control.low, control.high));
   }
   if (settings.write_priority < 0 || settings.write_priority > 255)
     return fail_usage(fmt::format("the write priority is {}", settings.write_priority), "settings", "give 0 to 255");
@@ -55,9 +55,9 @@ Status check(const DopplerSettings& settings) {
 DopplerSettings within_ranges(const DopplerSettings& settings) noexcept {
   DopplerSettings held = settings;
   const DopplerSettings defaults;
-  for (const Knob& knob : kKnobs) {
-    double& value = held.*knob.value;
-    value = std::isnan(value) ? defaults.*knob.value : std::clamp(value, knob.low, knob.high);
+  for (const Control& control : kControls) {
+    double& value = held.*control.value;
+    value = std::isnan(value) ? defaults.*control.value : std::clamp(value, control.low, control.high);
   }
   held.write_priority = std::clamp(held.write_priority, 0, 255);
   held.ensemble = std::clamp(held.ensemble, 3, 32);

@@ -13,7 +13,7 @@ struct DopplerBox {
   bool operator==(const DopplerBox&) const = default;
 };
 
-/// The knobs of colour Doppler.
+/// The controls of colour Doppler.
 struct DopplerSettings {
   /// Velocity at the ends of the colour scale, along the beam: c PRF / (4 f). Held to what the box's depth allows.
   /// Range 2..200.
@@ -31,9 +31,9 @@ struct DopplerSettings {
   bool operator==(const DopplerSettings&) const = default;
 };
 
-/// An error names the knob that is out of its range (exit status 2).
+/// An error names the control that is out of its range (exit status 2).
 Status check(const DopplerSettings& settings);
-/// The same settings with each knob held in its range; one that is not a number gets its default. Real-time safe.
+/// The same settings with each control held in its range; one that is not a number gets its default. Real-time safe.
 DopplerSettings within_ranges(const DopplerSettings& settings) noexcept;
 
 /// Largest velocity without aliasing at a pulse repetition frequency: c PRF / (4 f), cm/s.

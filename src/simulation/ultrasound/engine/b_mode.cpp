@@ -29,7 +29,7 @@ struct Scratch {
   WalkResult walk;
   Texture texture;
   ScattererField scatterers;
-  LookRows rows;
+  SteeringRows rows;
 };
 
 }  // namespace
@@ -99,7 +99,7 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
                 frame.way_gain.data() + static_cast<std::size_t>(line) * samples);
       }
       audible = std::max(audible, s.walk.audible);
-      keep_borders(plan, frame, s.walk, plane, line);
+      store_borders(plan, frame, s.walk, plane, line);
     }
   }
 }
@@ -117,7 +117,7 @@ void BMode::Impl::spread(int group, int first, int last) noexcept {
   for (int line = first; line < last; ++line) {
     spread_echoes(plan, frame, line, scratch[static_cast<std::size_t>(group)].rows, out);
     if (!plan.acquisition.artefacts.reverberation) continue;
-    for (int look = 0; look < plan.looks; ++look) add_reverberation(plan, frame, look, line, out);
+    for (int angle = 0; angle < plan.steering_angles; ++angle) add_reverberation(plan, frame, angle, line, out);
   }
 }
 
@@ -151,7 +151,7 @@ BMode& BMode::operator=(BMode&&) noexcept = default;
 void BMode::set_acquisition(const Acquisition& acquisition) {
   Impl& impl = *impl_;
   TROCAR_CHECK(acquisition.samples >= 16 && acquisition.samples <= kMaxSamples && acquisition.lines >= 2);
-  TROCAR_CHECK(acquisition.looks >= 1 && acquisition.looks <= 5);
+  TROCAR_CHECK(acquisition.steering_angles >= 1 && acquisition.steering_angles <= 5);
   TROCAR_CHECK(acquisition.planes >= 1 && acquisition.planes <= kMaxPlanes && acquisition.planes % 2 == 1);
   impl.plan = make_scan_plan(*impl.scene, impl.transducer, acquisition);
   fit_frame(impl.frame, impl.plan);
@@ -159,14 +159,14 @@ void BMode::set_acquisition(const Acquisition& acquisition) {
   impl.scratch.resize(static_cast<std::size_t>(impl.groups()));
   for (Scratch& scratch : impl.scratch) {
     scratch.scatterers = make_scatterer_field(impl.plan);
-    scratch.rows = LookRows(impl.plan);
+    scratch.rows = SteeringRows(impl.plan);
   }
   impl.out.geometry = impl.plan.geometry;
   impl.out.beam = impl.plan.beam;
   const auto lines = static_cast<std::size_t>(impl.plan.lines);
-  impl.out.looks = impl.plan.looks;
-  impl.out.re.assign(static_cast<std::size_t>(impl.plan.looks) * lines * static_cast<std::size_t>(impl.plan.samples),
-                     0.0F);
+  impl.out.steering_angles = impl.plan.steering_angles;
+  impl.out.re.assign(
+      static_cast<std::size_t>(impl.plan.steering_angles) * lines * static_cast<std::size_t>(impl.plan.samples), 0.0F);
   impl.out.im = impl.out.re;
   impl.out.contact.assign(lines, 1.0F);
 }
@@ -183,7 +183,7 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   ScanPlan& plan = impl.plan;
   FrameState& frame = impl.frame;
   frame.X_PT = input.X_PT;
-  forget_borders(frame);
+  clear_borders(frame);
   find_contact(impl.scene->skin_distance_mm, plan.geometry, input.X_PT, frame.contact);
   const double reach_mm = find_dent_reach_mm(*impl.scene, plan.geometry, input.X_PT);
   frame.dent_reach = static_cast<float>(reach_mm / plan.geometry.sample_mm());
@@ -194,9 +194,9 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   impl.for_groups([&](int group, int first, int last) {
     probe_lines(plan, frame, impl.scratch[static_cast<std::size_t>(group)].walk, first, last);
   });
-  stand_mirrors(plan, frame);
-  bend_lines(plan, frame);
-  lay_needles(plan, frame, input.needles, impl.needles);
+  place_mirrors(plan, frame);
+  refract_lines(plan, frame);
+  lay_out_needles(plan, frame, input.needles, impl.needles);
   impl.for_groups([&](int group, int first, int last) { impl.walk(group, first, last); });
   impl.for_groups([&](int group, int first, int last) { impl.echo(group, first, last); });
   add_points(plan, frame);
@@ -205,7 +205,7 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   return impl.out;
 }
 
-SoundWay BMode::sound_way(int line) const noexcept {
+SoundPath BMode::sound_path(int line) const noexcept {
   const Impl& impl = *impl_;
   TROCAR_CHECK(line >= 0 && line < impl.plan.lines);
   const auto samples = static_cast<std::size_t>(impl.plan.samples);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,15 +15,15 @@
 
 namespace trocar::ultrasound {
 
-/// How the transducer listens: what a scanner's knobs change before the echoes are there.
+/// How the transducer listens: what a scanner's controls change before the echoes are there.
 struct Acquisition {
   double depth_mm = 160.0;
   double frequency_mhz = 3.5;
   double focus_mm = 80.0;
-  int lines = 256;     ///< Range 2..1024.
-  int samples = 1024;  ///< A scanline. Range 16..4096.
-  int looks = 3;       ///< Number of compounding angles whose images are averaged. Range 1..5; 1: full speckle.
-  int planes = 5;      ///< Across the beam's thickness. 1, 3, 5, 7 or 9.
+  int lines = 256;          ///< Range 2..1024.
+  int samples = 1024;       ///< A scanline. Range 16..4096.
+  int steering_angles = 3;  ///< Number of compounding angles whose images are averaged. Range 1..5; 1: full speckle.
+  int planes = 5;           ///< Across the beam's thickness. 1, 3, 5, 7 or 9.
   Artefacts artefacts;
 
   bool operator==(const Acquisition&) const = default;
@@ -38,12 +39,12 @@ struct BModeInput {
 };
 
 /// Echoes of one frame, beamformed, demodulated and not yet amplified: complex baseband, scanline by scanline (sample
-/// runs fastest), look after look. 1.0 is the root mean square of liver's speckle without attenuation.
+/// runs fastest), angle after angle. 1.0 is the root mean square of liver's speckle without attenuation.
 struct BasebandFrame {
   ScanGeometry geometry;
   Beam beam;
-  int looks = 1;
-  std::vector<float> re, im;   ///< looks * lines * samples.
+  int steering_angles = 1;
+  std::vector<float> re, im;   ///< steering_angles * lines * samples.
   std::vector<float> contact;  ///< A scanline: 1 where the face is coupled to the skin, 0 in air.
 };
 
@@ -51,12 +52,12 @@ struct BasebandFrame {
 double coupled_share(const BasebandFrame& frame) noexcept;
 
 /// Losses of the last frame along one scanline; for Doppler.
-struct SoundWay {
+struct SoundPath {
   std::span<const float> gain;  ///< A sample: amplitude left of an echo from there, without its own strength.
   /// Tissue displayed at depth r has its rest position at r - pressed_mm * dent_share.
   float pressed_mm = 0.0F;
   std::span<const float> dent_share;
-  float mirror_depth_mm = 1e30F;  ///< Deeper samples show a mirror image.
+  float mirror_depth_mm = std::numeric_limits<float>::infinity();  ///< Deeper samples show a mirror image.
 };
 
 /// Ultrasound from an acoustic scene (docs/physics.md U1–U9). Buffers are taken once; render allocates nothing. The
@@ -76,7 +77,7 @@ class BMode {
   /// The echoes from that pose. The frame stays valid until the next call.
   const BasebandFrame& render(const BModeInput& input) noexcept;
   /// Of a scanline of that frame; valid as long. 0 <= line < lines.
-  SoundWay sound_way(int line) const noexcept;
+  SoundPath sound_path(int line) const noexcept;
 
  private:
   struct Impl;

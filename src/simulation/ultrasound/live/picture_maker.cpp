@@ -174,7 +174,7 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
   picture.coupled_share = trocar::ultrasound::coupled_share(echoes);
   set_unscanned(*impl.scene, picture);
   for (int line = 0; line < echoes.geometry.lines; ++line)
-    picture.pressed_mm.push_back(stage.engine.sound_way(line).pressed_mm);
+    picture.pressed_mm.push_back(stage.engine.sound_path(line).pressed_mm);
   picture.dent_reach_mm = find_dent_reach_mm(*impl.scene, echoes.geometry, request.X_PT);
 
   Companion companion{detail, picture.coupled_share, picture.pressed_mm, picture.dent_reach_mm, false, {}, {}, {}};

@@ -33,6 +33,8 @@ struct ScanPicture {
   double doppler_scale_cm_per_s = 0.0;  ///< In use; 0 without Doppler.
   DopplerSettings doppler;
   bool is_frozen = false;        ///< From the cine loop.
+  int cine_position = -1;        ///< Of the frame in the cine loop, from the oldest, 0.
+  int cine_size = 0;             ///< Frames in the cine loop.
   double unscanned_share = 0.0;  ///< Of the picture, beyond the ends of the CT (scan_ends.h), 0..1.
   std::vector<Vec2> scanned_T;   ///< The polygon of the image plane within the ends; empty: nothing.
   /// How far the face dents the skin on each scanline, and how deep tissue yields (probe_contact.h).

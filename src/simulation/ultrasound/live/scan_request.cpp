@@ -23,7 +23,7 @@ Acquisition within_ranges(const Acquisition& wanted, const Transducer& transduce
   a.focus_mm = held(wanted.focus_mm, kLeastFocus_mm, a.depth_mm, transducer.focus_mm);
   a.lines = std::clamp(wanted.lines, 16, 1024);
   a.samples = std::clamp(wanted.samples, 64, 4096);
-  a.looks = std::clamp(wanted.looks, 1, 5);
+  a.steering_angles = std::clamp(wanted.steering_angles, 1, 5);
   a.planes = std::clamp(wanted.planes, 1, 9) | 1;
   return a;
 }
@@ -52,7 +52,7 @@ bool has_same_settings(const ScanRequest& a, const ScanRequest& b) noexcept {
          (!a.has_doppler || a.doppler == b.doppler) && a.columns == b.columns && a.rows == b.rows;
 }
 
-bool is_as_good(const ScanRequest& a, const ScanRequest& b, double tolerance_mm) noexcept {
+bool is_equivalent(const ScanRequest& a, const ScanRequest& b, double tolerance_mm) noexcept {
   if (!has_same_settings(a, b)) return false;
   if (a.needle_diameter_mm != b.needle_diameter_mm || a.needle_bore_share != b.needle_bore_share) return false;
   if (std::abs(a.tip_shift_mm - b.tip_shift_mm) > tolerance_mm) return false;

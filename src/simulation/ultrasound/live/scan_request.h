@@ -32,8 +32,8 @@ ScanRequest within_ranges(const ScanRequest& request, const Transducer& transduc
 
 /// True if a frame of `a` can also be displayed for `b`: same pose within a hand's tremor (corners and needle within
 /// `tolerance_mm`), same settings and size. Time is ignored.
-bool is_as_good(const ScanRequest& a, const ScanRequest& b, double tolerance_mm) noexcept;
-/// The knobs of it alone.
+bool is_equivalent(const ScanRequest& a, const ScanRequest& b, double tolerance_mm) noexcept;
+/// The same for the settings only.
 bool has_same_settings(const ScanRequest& a, const ScanRequest& b) noexcept;
 
 }  // namespace trocar::ultrasound

@@ -66,8 +66,7 @@ AcousticScene paint_scene(const SceneBox& box, AcousticTable table, const Tissue
   parallel_for(scene.tissue.size(), static_cast<std::size_t>(grid.size[0]), [&](std::size_t first, std::size_t last) {
     for (std::size_t at = first; at < last; ++at) {
       const volume::Index3 ijk = grid.index_of(at);
-      const Vec3 p_P =
-          grid.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+      const Vec3 p_P = grid.centre_mm(ijk);
       const double skin_mm = skin_distance_at ? skin_distance_at(p_P) : own_skin_distance_mm(box, p_P);
       scene.skin_distance_mm.voxels[at] = static_cast<float>(skin_mm);
       scene.tissue[at] = skin_mm > 0.0 ? std::uint8_t{0} : tissue_at(p_P);

@@ -10,16 +10,16 @@
 #include <optional>
 #include <vector>
 
-#include "ultrasound/probe/detail/view_ground.h"
-#include "ultrasound/probe/detail/view_sight.h"
+#include "ultrasound/probe/detail/view_anatomy.h"
+#include "ultrasound/probe/detail/view_rays.h"
 #include "ultrasound/probe/face_fit.h"
 #include "ultrasound/probe/scan_geometry.h"
 
 namespace trocar::ultrasound {
 namespace {
 
-using detail::ViewGround;
-using detail::ViewSight;
+using detail::ViewAnatomy;
+using detail::ViewRays;
 
 constexpr double kFarthestSkin_mm = 400.0;
 constexpr double kSearchStep_mm = 4.0;
@@ -46,7 +46,7 @@ constexpr int kTurns = 2;                                      ///< Steps to eac
 constexpr double kRefine_mm = 12.0;
 
 /// First intersection with the skin from a point inside; empty if the line leaves the volume before.
-std::optional<Vec3> skin_along(const ViewGround& ground, const Vec3& from_P, const Vec3& direction_P) {
+std::optional<Vec3> skin_along(const ViewAnatomy& ground, const Vec3& from_P, const Vec3& direction_P) {
   double inside_mm = 0.0;
   for (double way_mm = 0.0; way_mm < kFarthestSkin_mm; way_mm += kWayStep_mm) {
     const Vec3 p_P = from_P + way_mm * direction_P;
@@ -64,7 +64,7 @@ std::optional<Vec3> skin_along(const ViewGround& ground, const Vec3& from_P, con
 
 /// The skin in the direction of the view, else in one closer to the shortest way out: a truncated body or a block of
 /// tissue has no skin at its sides.
-std::optional<Vec3> find_skin(const ViewGround& ground, const Vec3& target_P, const Vec3& direction_P) {
+std::optional<Vec3> find_skin(const ViewAnatomy& ground, const Vec3& target_P, const Vec3& direction_P) {
   const Vec3 shortest = ground.skin_normal(target_P);
   for (const double share : {0.0, 0.5, 1.0}) {
     const Vec3 between = (1.0 - share) * direction_P + share * shortest;
@@ -104,11 +104,11 @@ struct Candidate {
 
 class Placer {
  public:
-  Placer(const ViewGround& ground, const ProbeView& view, const Transducer& transducer, const Vec3& target_P)
+  Placer(const ViewAnatomy& ground, const ProbeView& view, const Transducer& transducer, const Vec3& target_P)
       : ground_(ground),
         view_(view),
         scan_(make_scan_geometry(transducer, view.depth_mm, kLines, 16)),
-        sight_(ground, view, transducer, target_P),
+        rays_(ground, view, transducer, target_P),
         target_P_(target_P) {}
 
   /// The face on a point of the skin; `extra_cost` for the distance from the point of the view.
@@ -120,7 +120,7 @@ class Placer {
     const FaceFit fit = fit_face(ground_.patient.skin_distance_mm, scan_, skin_P, orientation(view_, beam_P, turn_rad),
                                  view_.pressed_mm);
     candidate.X_PT = fit.X_PT;
-    candidate.visibility = sight_.measure(fit.X_PT);
+    candidate.visibility = rays_.measure(fit.X_PT);
     const double slant = std::acos(std::clamp(-ground_.skin_normal(skin_P).dot(candidate.X_PT.R().col(1)), -1.0, 1.0));
     candidate.cost = kUnseenCost * (1.0 - candidate.visibility.visible) + way_cost(candidate.X_PT) + extra_cost +
                      kSlantCost * std::max(slant - kFreeSlant, 0.0) + kContactCost * (1.0 - fit.touching) +
@@ -217,27 +217,27 @@ class Placer {
       const double weight = std::exp(-0.5 * std::pow(off / middle_share(), 2));
       weights += weight;
       missed += weight * (1.0 - way.through);
-      hidden += weight * (view_.bone == BoneWish::kShow ? 1.0 - (way.is_at_bone ? 1.0 : 0.0) : 1.0 - way.seen);
+      hidden += weight * (view_.bone == BonePreference::kShow ? 1.0 - (way.is_at_bone ? 1.0 : 0.0) : 1.0 - way.seen);
       if (off < -kSide) ++in_side;
       if (std::abs(off) > kSide && way.is_at_bone) bone[off < 0.0 ? 0 : 1] += 1.0;
     }
     double cost = hidden / weights;
     if (!view_.through.empty()) cost += kThroughCost * missed / weights;
-    if (view_.bone == BoneWish::kBeside) {
+    if (view_.bone == BonePreference::kBeside) {
       for (const double lines : bone) cost += 1.0 - std::min(lines / (kRibShare * in_side), 1.0);
     }
     return cost;
   }
 
   /// Standard deviation of the scanlines' weights, in half widths; between ribs only the centre is free.
-  double middle_share() const { return view_.bone == BoneWish::kBeside ? 0.2 : 0.4; }
+  double middle_share() const { return view_.bone == BonePreference::kBeside ? 0.2 : 0.4; }
   static constexpr double kSide = 0.3;
   static constexpr double kRibShare = 0.3;  ///< Share of a side's scanlines blocked by a rib.
 
-  const ViewGround& ground_;
+  const ViewAnatomy& ground_;
   const ProbeView& view_;
   ScanGeometry scan_;
-  ViewSight sight_;
+  ViewRays rays_;
   Vec3 target_P_;
 };
 
@@ -247,7 +247,7 @@ Result<ProbePlacement> place_probe(const anatomy::VirtualPatient& patient, const
                                    const Transducer& transducer) {
   if (patient.labels.empty()) return fail("the patient has no voxels", patient.name, "build the patient again");
   TROCAR_TRY(const Vec3 target_P, detail::find_target_point(patient, view));
-  const ViewGround ground(patient, view);
+  const ViewAnatomy ground(patient, view);
   const Placer placer(ground, view, transducer, target_P);
   Candidate best;
   if (const std::optional<Vec3> skin_P = find_skin(ground, target_P, view.direction_P))

@@ -46,8 +46,8 @@ Result<Vec3> read_vector(const config::TomlTable& row, std::string_view key, con
 Status read_choices(const config::TomlTable& row, ProbeView& view) {
   constexpr std::pair<std::string_view, ScanPlane> kPlanes[] = {{"longitudinal", ScanPlane::kLongitudinal},
                                                                 {"transverse", ScanPlane::kTransverse}};
-  constexpr std::pair<std::string_view, BoneWish> kBones[] = {
-      {"avoid", BoneWish::kAvoid}, {"beside", BoneWish::kBeside}, {"show", BoneWish::kShow}};
+  constexpr std::pair<std::string_view, BonePreference> kBones[] = {
+      {"avoid", BonePreference::kAvoid}, {"beside", BonePreference::kBeside}, {"show", BonePreference::kShow}};
   constexpr std::pair<std::string_view, TargetPoint> kPoints[] = {{"middle", TargetPoint::kMiddle},
                                                                   {"facing", TargetPoint::kFacing}};
   TROCAR_TRY_STATUS(read_word(row, "plane", kPlanes, view.plane));

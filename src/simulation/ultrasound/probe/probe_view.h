@@ -18,7 +18,7 @@ enum class ScanPlane {
 };
 
 /// Treatment of bone in a view.
-enum class BoneWish {
+enum class BonePreference {
   kAvoid,   ///< None in the middle.
   kBeside,  ///< A free middle with a rib at either side.
   kShow,    ///< Bone is what the view is about.
@@ -41,7 +41,7 @@ struct ProbeView {
   Vec3 direction_P{0, -1, 0};     ///< Unit, from the target to the skin.
   ScanPlane plane = ScanPlane::kLongitudinal;
   double angle_rad = 0.0;  ///< Turns the plane about the beam (y of T), right-handed. Range -pi..pi.
-  BoneWish bone = BoneWish::kAvoid;
+  BonePreference bone = BonePreference::kAvoid;
   double pressed_mm = 5.0;              ///< The middle of the face dents the skin at least so deep. Range 0..15.
   double search_mm = 20.0;              ///< The face may move so far along the skin for a better way in. Range 0..60.
   double depth_mm = 160.0;              ///< Of the picture. Range 20..300.

@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
-#include "ultrasound/probe/detail/view_sight.h"
+#include "ultrasound/probe/detail/view_rays.h"
 
 namespace trocar::ultrasound {
 
 Result<ViewVisibility> measure_visibility(const anatomy::VirtualPatient& patient, const ProbeView& view,
                                           const Transducer& transducer, const Pose& X_PT) {
   TROCAR_TRY(const Vec3 target_P, detail::find_target_point(patient, view));
-  const detail::ViewGround ground(patient, view);
-  return detail::ViewSight(ground, view, transducer, target_P).measure(X_PT);
+  const detail::ViewAnatomy ground(patient, view);
+  return detail::ViewRays(ground, view, transducer, target_P).measure(X_PT);
 }
 
 std::string hidden_causes(const ViewVisibility& visibility) {

@@ -32,9 +32,9 @@ constexpr double kSoftFloor = 8.0 / 255.0;
 constexpr double kSoftFloorRise = 0.04;  ///< Part of the dynamic range in which the floor is reached.
 constexpr double kHighContrastSteepness = 6.0;
 
-Status in_range(double value, Range range, std::string_view knob, std::string_view unit) {
+Status in_range(double value, Range range, std::string_view control, std::string_view unit) {
   if (range.holds(value)) return {};
-  return fail_usage(fmt::format("{} of {} {} cannot be set", knob, value, unit), {},
+  return fail_usage(fmt::format("{} of {} {} cannot be set", control, value, unit), {},
                     fmt::format("choose {} to {}", range.low, range.high));
 }
 

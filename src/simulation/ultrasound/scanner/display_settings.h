@@ -35,7 +35,7 @@ struct DisplaySettings {
   bool operator==(const DisplaySettings&) const = default;
 };
 
-/// An error names the knob that is out of its range (exit status 2).
+/// An error names the control that is out of its range (exit status 2).
 Status check(const DisplaySettings& settings);
 /// Returns the settings clamped to their ranges; NaN is replaced by the default. Real-time safe.
 DisplaySettings within_ranges(const DisplaySettings& settings) noexcept;

@@ -131,8 +131,8 @@ void Scanner::Impl::receive_line(const BasebandFrame& frame, std::size_t line, s
   const float* const re = frame.re.data() + line * n;
   const float* const im = frame.im.data() + line * n;
   const detail::Receiver::Noise noise = receiver.noise(seed, line);
-  const auto looks = static_cast<std::size_t>(frame.looks);
-  const std::size_t look_step = lines() * n;
+  const auto steering_angles = static_cast<std::size_t>(frame.steering_angles);
+  const std::size_t angle_step = lines() * n;
   constexpr std::size_t kNoiseStep = 1021;  // far beyond the pulse, so that compounding angles have independent noise
   const float level = artefacts.noise ? noise_amplitude : 0.0F;
 
@@ -144,13 +144,13 @@ void Scanner::Impl::receive_line(const BasebandFrame& frame, std::size_t line, s
   const std::size_t near = artefacts.clutter ? receiver.clutter_samples() : 0;
   if (near > 0) {
     const detail::Receiver::Noise clutter = receiver.clutter(line);
-    detail::detect(
-        {re, im, noise.re, noise.im, level, clutter.re, clutter.im, looks, look_step, kNoiseStep, offset.data(), near},
-        target);
+    detail::detect({re, im, noise.re, noise.im, level, clutter.re, clutter.im, steering_angles, angle_step, kNoiseStep,
+                    offset.data(), near},
+                   target);
   }
   if (near < n) {
-    detail::detect({re + near, im + near, noise.re + near, noise.im + near, level, nullptr, nullptr, looks, look_step,
-                    kNoiseStep, offset.data() + near, n - near},
+    detail::detect({re + near, im + near, noise.re + near, noise.im + near, level, nullptr, nullptr, steering_angles,
+                    angle_step, kNoiseStep, offset.data() + near, n - near},
                    target + near);
   }
   if (persists) detail::persist(fresh.data(), static_cast<float>(applied->persistence), n, kept);
@@ -182,7 +182,7 @@ const GrayImage& Scanner::show(const BasebandFrame& frame, std::uint64_t seed) n
   const DisplaySettings held = within_ranges(settings);
   impl_->set_scan(frame.geometry, held.is_mirrored);
   const std::size_t count = impl_->lines() * impl_->samples();
-  const std::size_t echoes = count * static_cast<std::size_t>(frame.looks);
+  const std::size_t echoes = count * static_cast<std::size_t>(frame.steering_angles);
   TROCAR_CHECK(frame.re.size() == echoes && frame.im.size() == echoes);
   impl_->set_receiver(frame.beam);
   impl_->set_settings(held, frame.beam.frequency_mhz);

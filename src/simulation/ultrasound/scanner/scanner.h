@@ -30,7 +30,7 @@ class Scanner {
   Scanner(Scanner&&) noexcept;
   Scanner& operator=(Scanner&&) noexcept;
 
-  DisplaySettings settings;  ///< Knobs beyond their range are held in it.
+  DisplaySettings settings;  ///< Controls beyond their range are held in it.
   Artefacts artefacts;       ///< Of these: clutter, noise.
 
   /// The picture of a frame; `seed` makes its noise. Valid until the next call. Samples that are no number are black,

@@ -197,7 +197,7 @@ Result<SweepVolume> make_mechanical_sweep(const std::shared_ptr<const AcousticSc
   parallel_for(volume.gray.voxels.size() / row, 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first * row; n < last * row; ++n) {
       const volume::Index3 ijk = grid.index_of(n);
-      const Vec3 index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
+      const Vec3 index = volume::to_vec3(ijk);
       volume.gray.voxels[n] = gray_at(frames, volume.geometry, grid.to_mm(index));
     }
   });

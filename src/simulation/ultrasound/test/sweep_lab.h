@@ -73,7 +73,7 @@ inline ultrasound::MechanicalSweepOptions lab_options() {
   options.acquisition.lines = 128;
   options.acquisition.samples = 512;
   options.acquisition.planes = 3;
-  options.acquisition.looks = 1;
+  options.acquisition.steering_angles = 1;
   options.acquisition.artefacts.noise = false;
   options.sweep_rad = 0.8;
   options.step_rad = 0.02;
@@ -90,8 +90,7 @@ inline Vec3 brightest_near(const volume::LabelGrid& volume, const Vec3& p_P) {
   for (const bool is_search : {true, false}) {
     for (std::size_t n = 0; n < grid.voxel_count(); ++n) {
       const volume::Index3 ijk = grid.index_of(n);
-      const Vec3 q_P =
-          grid.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+      const Vec3 q_P = grid.centre_mm(ijk);
       if ((q_P - p_P).norm() > kReach_mm) continue;
       const int gray = volume.voxels[n];
       if (is_search) most = std::max(most, gray);

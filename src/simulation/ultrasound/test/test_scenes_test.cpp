@@ -113,8 +113,7 @@ TEST(TestScenes, CellsAreMixedAtBordersAlone) {
     if ((scene->tissue[at] & kMixedCell) == 0) continue;
     ++mixed;
     const volume::Index3 ijk = scene->geometry.index_of(at);
-    const Vec3 p = scene->geometry.to_mm(
-        Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p = scene->geometry.centre_mm(ijk);
     const bool is_near_skin = std::abs(p.y()) < 1.1;
     const bool is_near_slab = std::abs(p.x()) < 11.1 && p.y() > 18.9 && p.y() < 29.1;
     const bool is_at_rim = ijk[0] == scene->geometry.size[0] - 1 || ijk[1] == scene->geometry.size[1] - 1 ||

@@ -64,7 +64,7 @@ volume::FloatGrid smooth_skin_distance(const volume::FloatGrid& source, const vo
   parallel_for(skin.voxels.size(), 1 << 12, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       const volume::Index3 ijk = skin.geometry.index_of(n);
-      const Vec3 index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
+      const Vec3 index = volume::to_vec3(ijk);
       skin.voxels[n] = static_cast<float>(volume::sample_linear(source, skin.geometry.to_mm(index)));
     }
   });

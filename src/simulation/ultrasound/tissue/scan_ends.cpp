@@ -20,8 +20,7 @@ bool is_cut(const anatomy::VirtualPatient& patient, int axis, bool is_last) {
   at[a] = is_last ? grid.size[a] - 1 : 0;
   for (at[b] = 0; at[b] < grid.size[b]; ++at[b]) {
     for (at[c] = 0; at[c] < grid.size[c]; ++at[c]) {
-      const Vec3 p_P =
-          grid.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
+      const Vec3 p_P = grid.centre_mm(at);
       if (volume::sample_linear(patient.skin_distance_mm, p_P) < -kBody_mm) return true;
     }
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/clamp_norm.h"
+
 namespace trocar::attempt {
 namespace {
 
@@ -11,11 +13,6 @@ Mat3 turned(const Mat3& R, const Vec3& turn_rad) noexcept {
   if (angle < 1e-12) return R;
   const Mat3 by = Eigen::AngleAxisd(angle, turn_rad / angle).toRotationMatrix();
   return Eigen::Quaterniond(by * R).normalized().toRotationMatrix();
-}
-
-Vec3 shortened(const Vec3& v, double most) noexcept {
-  const double norm = v.norm();
-  return norm > most ? Vec3(v * (most / norm)) : v;
 }
 
 }  // namespace
@@ -31,7 +28,7 @@ Pose moved(const Pose& X, const Vec3& shift, const Vec3& turn_rad) noexcept {
 
 Pose moved_towards(const Pose& from, const Pose& to, double most_mm, double most_rad) noexcept {
   if (!from.is_finite() || !to.is_finite()) return from;
-  return moved(from, shortened(to.p() - from.p(), most_mm), shortened(turn_between(from.R(), to.R()), most_rad));
+  return moved(from, clamped_norm(to.p() - from.p(), most_mm), clamped_norm(turn_between(from.R(), to.R()), most_rad));
 }
 
 void LedHand::put(const Pose& X_P) noexcept {
@@ -44,8 +41,8 @@ void LedHand::put(const Pose& X_P) noexcept {
 void LedHand::lead(const Pose& X_P, const Vec3& v_P, const Vec3& w_P) noexcept {
   if (is_clamped_ || !X_P.is_finite() || !v_P.allFinite() || !w_P.allFinite()) return;
   goal_P_ = X_P;
-  goal_v_P_ = shortened(v_P, limits_.most_mm_per_s);
-  goal_w_P_ = shortened(w_P, limits_.most_rad_per_s);
+  goal_v_P_ = clamped_norm(v_P, limits_.most_mm_per_s);
+  goal_w_P_ = clamped_norm(w_P, limits_.most_rad_per_s);
   age_s_ = 0.0;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/clamp_norm.h"
 #include "volume/sampling.h"
 
 namespace trocar::attempt {
@@ -12,9 +13,7 @@ namespace {
 constexpr double kLongestStep_mm = 20.0;  ///< Limit of one gesture: longer ones are pointer errors.
 
 Vec3 bounded(const Vec3& shift_P) {
-  if (!shift_P.allFinite()) return Vec3::Zero();
-  const double size = shift_P.norm();
-  return size > kLongestStep_mm ? Vec3(kLongestStep_mm / size * shift_P) : shift_P;
+  return shift_P.allFinite() ? clamped_norm(shift_P, kLongestStep_mm) : Vec3(Vec3::Zero());
 }
 
 /// Moves a point along the skin: the tangential part of the shift, then projection onto the skin.

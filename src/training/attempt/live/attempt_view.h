@@ -63,12 +63,12 @@ struct ServerView {
   double rate_hz = 0.0, wanted_hz = 0.0;  ///< Served, wished for.
   double p99_us = 0.0;                    ///< Lateness of its periods.
   std::uint64_t ticks_missing = 0;        ///< Made there, never received here.
-  std::string gate;                       ///< "on", "off", "rising" …
-  std::string fault;                      ///< Of the safety gate; empty: none.
-  std::string grant;                      ///< What real time the system granted.
-  std::string warning;                    ///< The server's own.
-  bool waits_for_resume = false;          ///< Has no forces until resume_forces(), although the user did not stop them.
-  int restarts = 0;                       ///< Number of restarts and reconnections.
+  telemetry::GateMode gate = telemetry::GateMode::kOff;
+  telemetry::GateFault fault = telemetry::GateFault::kNone;  ///< Of the safety gate.
+  std::string grant;                                         ///< What real time the system granted.
+  std::string warning;                                       ///< The server's own.
+  bool waits_for_resume = false;  ///< It has no forces until resume_forces(), though nobody stopped them.
+  int restarts = 0;               ///< How often it was started again or seated again.
 };
 
 /// All data of an attempt displayed by a page at one time.

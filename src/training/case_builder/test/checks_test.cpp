@@ -14,7 +14,7 @@ using namespace testing;
 
 std::vector<CaseCheck> checks_of(const CaseDraft& draft) {
   DraftPatient patients;
-  return check_draft(draft, *patients.of(draft), biopsy_gun(), shipped_tissues());
+  return check_draft(draft, *patients.of(draft), shipped_needle(), shipped_tissues());
 }
 
 /// The check of that level which has the words in it; nullptr: none.
@@ -25,7 +25,7 @@ const CaseCheck* find(const std::vector<CaseCheck>& checks, CheckLevel level, co
 }
 
 CaseDraft sound_draft() {
-  return *set_expert_path(made_draft(), good_path(biopsy_gun()));
+  return *set_expert_path(made_draft(), good_path(shipped_needle()));
 }
 
 TEST(Checks, SoundDraftHasNoError) {
@@ -89,7 +89,7 @@ TEST(Checks, TargetThatIsARiskIsAnError) {
 TEST(Checks, FaultsOfThePathAreNamedWithTheirPlace) {
   BoxPatient box;
   box.special = [](const Vec3& p) { return std::abs(p.x() + 85.0) < 3.0 && std::abs(p.z()) < 6.0 ? "bone" : ""; };
-  CaseDraft draft = *set_expert_path(made_draft(box), good_path(biopsy_gun()));
+  CaseDraft draft = *set_expert_path(made_draft(box), good_path(shipped_needle()));
   draft = *set_entry_zone(draft, {-95.0, 40.0, 0.0}, 10.0);
   const auto checks = checks_of(draft);
   const CaseCheck* crossing = find(checks, CheckLevel::kError, "goes through rib (bone)");
@@ -105,15 +105,15 @@ TEST(Checks, FaultsOfThePathAreNamedWithTheirPlace) {
 TEST(ForcePreview, HasTheLayersOfThePathInOrder) {
   const CaseDraft draft = sound_draft();
   DraftPatient patients;
-  const auto preview = preview_forces(draft, patients.of(draft), biopsy_gun(), shipped_tissues());
+  const auto preview = preview_forces(draft, patients.of(draft), shipped_needle(), shipped_tissues());
   ASSERT_TRUE(preview) << preview.error().text();
   std::vector<std::string> layers;
-  for (const attempt::CurveEvent& event : preview->events) layers.push_back(event.layer);
+  for (const cases::CurveEvent& event : preview->events) layers.push_back(event.layer);
   EXPECT_EQ(layers, (std::vector<std::string>{"skin", "muscle", "liver_capsule"}));
   ASSERT_FALSE(preview->pieces.empty());
   EXPECT_EQ(preview->pieces.front().name, "skin");
   EXPECT_GT(preview->highest_n, 2.0);
-  EXPECT_FALSE(preview_forces(made_draft(), patients.of(draft), biopsy_gun(), shipped_tissues()));
+  EXPECT_FALSE(preview_forces(made_draft(), patients.of(draft), shipped_needle(), shipped_tissues()));
 }
 
 TEST(DraftPatient, IsTheImportUntilLabelsAreEdited) {

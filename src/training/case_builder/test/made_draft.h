@@ -1,21 +1,13 @@
 #pragma once
 
+#include "anatomy/testing/shipped_tissues.h"
 #include "case_builder/case_draft.h"
 #include "core/files/data_dir.h"
 #include "tasks/needle.h"
 #include "tasks/test/box_patient.h"
+#include "tasks/testing/shipped_task.h"
 
 namespace trocar::testing {
-
-inline tasks::Task liver_biopsy() {
-  return *tasks::load_task(data_dir() / "tasks", "liver-biopsy");
-}
-inline tasks::Needle biopsy_gun() {
-  return *tasks::load_needle(data_dir() / "needles.toml", "biopsy-18g");
-}
-inline anatomy::TissueTable shipped_tissues() {
-  return *anatomy::load_tissue_table(data_dir() / "tissues.toml");
-}
 
 /// A draft of the patient made of shapes, as an import would give it, without surfaces.
 inline case_builder::CaseDraft made_draft(const BoxPatient& box = {}) {

@@ -22,8 +22,7 @@ inline anatomy::VirtualPatient example_patient() {
   patient.label_table.labels = {{1, "liver", "liver", {150, 68, 52}}, {2, "fat", "adipose", {240, 205, 105}}};
   for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
     const volume::Index3 ijk = geometry.index_of(n);
-    const Vec3 p_P =
-        geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p_P = geometry.centre_mm(ijk);
     if (p_P.cwiseAbs().maxCoeff() < 35.0) {
       patient.ct.voxels[n] = p_P.norm() < 20.0 ? std::int16_t{60} : std::int16_t{-100};
       patient.labels.voxels[n] = p_P.norm() < 20.0 ? 1 : 2;

@@ -13,9 +13,9 @@ namespace {
 
 /// The words of the enumerators instead of their numbers.
 template <class Enum>
-std::string words_of(const char* column, Enum last) {
+std::string words_of(const char* column, Enum value) {
   std::string text = fmt::format("CASE t.{}", column);
-  for (int i = 0; i <= static_cast<int>(last); ++i)
+  for (int i = 0; i <= static_cast<int>(last_of(value)); ++i)
     text += fmt::format(" WHEN {} THEN '{}'", i, to_string(static_cast<Enum>(i)));
   return text + fmt::format(" END AS {}", column);
 }
@@ -31,11 +31,9 @@ std::string view_columns() {
       list += fmt::format("(SELECT name FROM tissues WHERE id = t.{0}) AS {0}", name);
     else if constexpr (std::is_same_v<Field, telemetry::InsertionPhase>)
       list += fmt::format("(SELECT name FROM phases WHERE id = t.{0}) AS {0}", name);
-    else if constexpr (std::is_same_v<Field, telemetry::GateMode>)
-      list += words_of(name, telemetry::kLastGateMode);
-    else if constexpr (std::is_same_v<Field, telemetry::GateFault>)
-      list += words_of(name, telemetry::kLastGateFault);
-    else if constexpr (std::is_same_v<Field, std::array<telemetry::TickEvent, 4>>)
+    else if constexpr (std::is_enum_v<Field>)
+      list += words_of(name, field);
+    else if constexpr (std::is_same_v<Field, telemetry::TickEvents>)
       list += fmt::format(
           "coalesce((SELECT group_concat(text, ';') FROM ({} UNION ALL SELECT text FROM (SELECT text FROM events e"
           " WHERE e.tick = t.tick ORDER BY slot))), '') AS {}",

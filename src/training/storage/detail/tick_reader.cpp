@@ -11,28 +11,22 @@ namespace {
 
 constexpr std::size_t kRowsAFetch = 4096;
 
-void set_field(std::uint8_t& field, int value) {
-  if (value < 0 || value > 255) throw soci::soci_error("a tissue is out of range");
-  field = static_cast<std::uint8_t>(value);
+/// Values above `last` are those of a damaged file or of a newer program.
+int within(int value, int last, const char* column) {
+  if (value < 0 || value > last) throw soci::soci_error(fmt::format("a value of {} is out of range", column));
+  return value;
 }
-void set_field(telemetry::InsertionPhase& field, int value) {
-  if (value < 0 || value > static_cast<int>(telemetry::InsertionPhase::kRetracting))
-    throw soci::soci_error("a phase is out of range");
-  field = static_cast<telemetry::InsertionPhase>(value);
+
+void set_field(std::uint8_t& field, int value, const char* column) {
+  field = static_cast<std::uint8_t>(within(value, std::numeric_limits<std::uint8_t>::max(), column));
 }
-void set_field(telemetry::GateMode& field, int value) {
-  if (value < 0 || value > static_cast<int>(telemetry::kLastGateMode))
-    throw soci::soci_error("a gate mode is out of range");
-  field = static_cast<telemetry::GateMode>(value);
+void set_field(bool& field, int value, const char* column) {
+  field = within(value, 1, column) != 0;
 }
-void set_field(telemetry::GateFault& field, int value) {
-  if (value < 0 || value > static_cast<int>(telemetry::kLastGateFault))
-    throw soci::soci_error("a gate fault is out of range");
-  field = static_cast<telemetry::GateFault>(value);
-}
-void set_field(bool& field, int value) {
-  if (value < 0 || value > 1) throw soci::soci_error("a truth value is out of range");
-  field = value != 0;
+template <class Enum>
+requires std::is_enum_v<Enum>
+void set_field(Enum& field, int value, const char* column) {
+  field = static_cast<Enum>(within(value, static_cast<int>(last_of(field)), column));
 }
 
 /// The columns of one fetch.
@@ -52,13 +46,13 @@ struct TickColumns {
     telemetry::TickSample sample;
     std::size_t real = 0;
     std::size_t integer = 0;
-    visit_stored_columns(sample, [&](const char*, auto& field) {
+    visit_stored_columns(sample, [&](const char* name, auto& field) {
       if constexpr (kIsReal<std::remove_cvref_t<decltype(field)>>) {
         const bool is_null = indicators[real][index] == soci::i_null;
         field = is_null ? std::numeric_limits<double>::quiet_NaN() : reals[real][index];
         ++real;
       } else {
-        set_field(field, integers[integer++][index]);
+        set_field(field, integers[integer++][index], name);
       }
     });
     return sample;
@@ -128,7 +122,7 @@ void read_events(soci::session& database, const TickBlock& block, std::vector<te
   while (select.fetch()) {
     const bool is_good = tick >= 0 && slot >= 0 &&
                          static_cast<std::size_t>(slot) < telemetry::TickSample{}.events.size() && id >= 0 &&
-                         id <= 255 && kind > 0 && kind <= static_cast<int>(telemetry::EventKind::kLimit) &&
+                         id <= 255 && kind > 0 && kind <= static_cast<int>(telemetry::kLastEventKind) &&
                          static_cast<std::size_t>(tick) - block.first_tick < samples.size();
     if (!is_good) throw soci::soci_error("an event is out of range");
     samples[static_cast<std::size_t>(tick) - block.first_tick].events[static_cast<std::size_t>(slot)] = {

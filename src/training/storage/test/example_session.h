@@ -9,8 +9,8 @@
 
 #include "core/files/temporary_folder.h"
 #include "core/random.h"
-#include "storage/detail/columns.h"
 #include "storage/session_file.h"
+#include "telemetry/tick_fields.h"
 
 namespace trocar::testing {
 
@@ -43,42 +43,24 @@ inline storage::SessionInfo example_info() {
 /// Tick number n of a made-up attempt: every field has its own value, none is a round number.
 inline telemetry::TickSample example_sample(std::size_t n) {
   Random random(n + 1);
-  const auto number = [&] { return random.uniform(-100.0, 100.0); };
-  const auto vector = [&] { return Vec3(number(), number(), number()); };
   telemetry::TickSample s;
+  telemetry::for_each_tick_field([&](const auto& field) {
+    telemetry::for_each_column(s, field, [&](const char*, auto& value) {
+      using Value = std::remove_cvref_t<decltype(value)>;
+      if constexpr (std::is_same_v<Value, double>)
+        value = random.uniform(-100.0, 100.0);
+      else if constexpr (std::is_enum_v<Value>)
+        value = static_cast<Value>(n % (static_cast<std::size_t>(last_of(value)) + 1));
+    });
+  });
   s.time_s = 0.001 * static_cast<double>(n);
-  s.tip_mm = vector();
-  s.axis = vector().normalized();
-  s.axial_velocity_mm_s = number();
-  s.depth_mm = number();
+  s.axis.normalize();
   s.tissue = static_cast<std::uint8_t>(n % 5);
-  s.phase = static_cast<telemetry::InsertionPhase>(n % 4);
-  s.layer_displacement_mm = number();
-  s.f_prepuncture_n = number();
-  s.f_friction_n = number();
-  s.f_cutting_n = number();
-  s.f_constraint_n = vector();
-  s.f_weight_n = vector();
-  s.f_total_n = vector();
-  s.tau_nmm = vector();
   if (n % 50 == 3) s.events[0] = {telemetry::EventKind::kPuncture, 2};
   if (n % 100 == 3) s.events[1] = {telemetry::EventKind::kEnter, 7};
   if (n % 200 == 3)
     s.events[2] = {telemetry::EventKind::kLimit, static_cast<std::uint8_t>(telemetry::LimitReason::kTorqueClamped)};
   s.limited = n % 7 == 0;
-  s.breathing = random.uniform();
-  s.f_tip_proxy_n = vector();
-  s.f_body_axial_n = number();
-  s.f_stick_n = number();
-  s.device_mm = vector();
-  s.device_f_n = vector();
-  s.device_rotation_wxyz = {number(), number(), number(), number()};
-  s.contact_to_puncture_mm = {number(), number(), number()};
-  s.device_tau_nmm = vector();
-  s.gate_mode = static_cast<telemetry::GateMode>(n % 7);
-  s.gate_fault = static_cast<telemetry::GateFault>(n % 11);
-  s.gate_scale = random.uniform();
-  s.coupling_share = random.uniform();
   return s;
 }
 
@@ -122,11 +104,14 @@ inline void write_example(const std::filesystem::path& path, std::size_t ticks) 
 /// All fields of a sample, bit by bit.
 inline std::vector<std::uint64_t> bits_of(const telemetry::TickSample& sample) {
   std::vector<std::uint64_t> bits;
-  storage::detail::visit_stored_columns(sample, [&](const char*, const auto& field) {
-    if constexpr (storage::detail::kIsReal<std::remove_cvref_t<decltype(field)>>)
-      bits.push_back(std::bit_cast<std::uint64_t>(field));
-    else
-      bits.push_back(static_cast<std::uint64_t>(field));
+  telemetry::for_each_tick_field([&](const auto& field) {
+    telemetry::for_each_column(sample, field, [&](const char*, const auto& value) {
+      using Value = std::remove_cvref_t<decltype(value)>;
+      if constexpr (std::is_same_v<Value, double>)
+        bits.push_back(std::bit_cast<std::uint64_t>(value));
+      else if constexpr (!std::is_same_v<Value, telemetry::TickEvents>)
+        bits.push_back(static_cast<std::uint64_t>(value));
+    });
   });
   for (const telemetry::TickEvent& event : sample.events) {
     bits.push_back(static_cast<std::uint64_t>(event.kind));

@@ -39,7 +39,7 @@ struct BlockGrid {
 
   Vec3 centre(std::size_t cell) const noexcept {
     const volume::Index3 ijk = geometry.index_of(cell);
-    return geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])});
+    return geometry.centre_mm(ijk);
   }
 };
 volume::Index3 blocks_factor(const volume::GridGeometry& geometry, double cell_mm) noexcept;
@@ -79,8 +79,7 @@ volume::MaskGrid cut_mask(const volume::LabelGrid& labels, const IndexBox& box, 
   const IndexBox in = clipped(box, labels.geometry);
   volume::GridGeometry geometry = labels.geometry;
   for (std::size_t a = 0; a < 3; ++a) geometry.size[a] = in.high[a] - in.low[a] + 1;
-  geometry.origin_P = labels.geometry.to_mm(
-      {static_cast<double>(in.low[0]), static_cast<double>(in.low[1]), static_cast<double>(in.low[2])});
+  geometry.origin_P = labels.geometry.centre_mm(in.low);
   volume::MaskGrid mask(geometry);
   for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
     const volume::Index3 ijk = geometry.index_of(n);

@@ -38,7 +38,7 @@ Vec3 lesion_middle(const volume::LabelGrid& labels, std::uint8_t id, const Index
   const auto deepest = std::min_element(distance.voxels.begin(), distance.voxels.end());
   const auto point_of = [&](std::size_t n) {
     const volume::Index3 ijk = mask.geometry.index_of(n);
-    return mask.geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])});
+    return mask.geometry.centre_mm(ijk);
   };
   Vec3 sum = Vec3::Zero();
   double count = 0.0;

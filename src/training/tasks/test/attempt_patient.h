@@ -21,8 +21,7 @@ inline anatomy::VirtualPatient make_box_patient(bool has_lesion = true) {
                                 {5, "portal_vein", "vessel"}, {6, "rib_right_9", "bone"}};
   for (std::size_t i = 0; i < geometry.voxel_count(); ++i) {
     const volume::Index3 ijk = geometry.index_of(i);
-    const Vec3 p_P =
-        geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p_P = geometry.centre_mm(ijk);
     std::uint8_t label = 0;
     if (p_P.y() > 0.0) label = 1;
     if (p_P.y() > 10.0) label = p_P.z() > 70.0 && p_P.z() < 80.0 ? 6 : 2;

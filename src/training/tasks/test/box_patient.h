@@ -58,8 +58,7 @@ struct BoxPatient {
     patient.ct = volume::CtGrid(geometry);
     for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
       const volume::Index3 ijk = geometry.index_of(n);
-      const Vec3 p =
-          geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+      const Vec3 p = geometry.centre_mm(ijk);
       patient.labels.voxels[n] = label_at(p);
       patient.skin_distance_mm.voxels[n] = static_cast<float>(skin_distance(p));
     }

@@ -7,6 +7,7 @@
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
+#include "core/testing/changed_file.h"
 
 namespace trocar::tasks {
 namespace {
@@ -62,14 +63,8 @@ TEST(Needle, UnknownNameListsTheKnownOnes) {
 }
 
 TEST(Needle, ImpossibleNeedleIsRefused) {
-  const std::string good = *read_file(kFile);
-  const TemporaryFolder folder;
-  const auto path = folder / "needles.toml";
-  const auto is_refused = [&](const std::string& from, const std::string& to) {
-    std::string text = good;
-    text.replace(text.find(from), from.size(), to);
-    EXPECT_TRUE(write_file_atomically(path, text));
-    return !load_needles(path);
+  const auto is_refused = [](const std::string& from, const std::string& to) {
+    return !testing::load_changed(kFile, from, to, [](const auto& file) { return load_needles(file); });
   };
   EXPECT_FALSE(is_refused("gauge", "gauge"));
   EXPECT_TRUE(is_refused("dead_space_mm = {value = 3", "dead_space_mm = {value = 4"));

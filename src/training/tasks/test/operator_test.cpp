@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/testing/allocation_guard.inc.h"
+#include "geometry/quaternion.h"
 #include "tasks/test/layered_body.h"
 
 namespace trocar::tasks {
@@ -153,8 +154,7 @@ TEST(Replay, GivesTheRecordedDevicePosesTickByTick) {
   LayeredBody recorded(the_case.path_P, skin_muscle_capsule(), 0.001);
   recorded.run(*make_novice(the_case), 60.0);
   for (telemetry::TickSample& sample : recorded.samples) {
-    const Eigen::Quaterniond q(needle_pose(sample.device_mm, sample.axis).R());
-    sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
+    sample.device_rotation_wxyz = to_wxyz(Eigen::Quaterniond(needle_pose(sample.device_mm, sample.axis).R()));
   }
   LayeredBody replayed(the_case.path_P, skin_muscle_capsule(), 0.001);
   replayed.run(*make_replay(recorded.samples, recorded.fired.at(0)), 60.0);

@@ -10,20 +10,16 @@
 #include "tasks/test/attempt_patient.h"
 #include "tasks/test/box_patient.h"
 #include "tasks/test/layered_body.h"
+#include "tasks/testing/shipped_task.h"
 
 namespace trocar::tasks {
 namespace {
 
 using testing::BoxPatient;
+using testing::liver_biopsy;
+using testing::shipped_needle;
 
 const std::filesystem::path kTasks = data_dir() / "tasks";
-
-Task liver_biopsy() {
-  return *load_task(kTasks, "liver-biopsy");
-}
-Needle gun() {
-  return *load_needle(data_dir() / "needles.toml", "biopsy-18g");
-}
 
 Task changed_task() {
   Task task = liver_biopsy();
@@ -89,13 +85,13 @@ TEST(OwnTask, PathsArePlannedToThePointAndFromTheZone) {
   Task task = liver_biopsy();
   task.target_P = Vec3(-45.0, 10.0, 5.0);
   task.entry_zone = EntryZone{{-100.0, 5.0, 5.0}, 12.0};
-  const auto paths = plan_paths(task, patient, gun(), {3, 1});
+  const auto paths = plan_paths(task, patient, shipped_needle(), {3, 1});
   ASSERT_TRUE(paths) << paths.error().text();
   for (const PlannedPath& path : *paths) {
     EXPECT_LE((path.line_P.a - task.entry_zone->centre_P).norm(), 12.0);
-    const Vec3 notch_P = path.line_P.b + gun().notch_middle_mm() * path.line_P.direction();
+    const Vec3 notch_P = path.line_P.b + shipped_needle().notch_middle_mm() * path.line_P.direction();
     EXPECT_LT((notch_P - *task.target_P).norm(), 1e-6);
-    const PathAssessment assessment = assess_path(task, patient, gun(), path.line_P);
+    const PathAssessment assessment = assess_path(task, patient, shipped_needle(), path.line_P);
     EXPECT_TRUE(assessment.findings.empty()) << assessment.findings.front().text;
     EXPECT_NEAR(assessment.path.organ_path_mm, path.organ_path_mm, 0.3);
     EXPECT_NEAR(assessment.path.spare_margin_mm, path.spare_margin_mm, 1e-6);
@@ -105,7 +101,7 @@ TEST(OwnTask, PathsArePlannedToThePointAndFromTheZone) {
 TEST(OwnTask, ZoneWithoutAPathIsNamed) {
   Task task = liver_biopsy();
   task.entry_zone = EntryZone{{-30.0, 70.0, 0.0}, 10.0};  // on the back
-  const auto paths = plan_paths(task, BoxPatient{}.make(), gun(), {});
+  const auto paths = plan_paths(task, BoxPatient{}.make(), shipped_needle(), {});
   ASSERT_FALSE(paths);
   EXPECT_NE(paths.error().text().find("no safe path"), std::string::npos) << paths.error().text();
 }
@@ -113,7 +109,7 @@ TEST(OwnTask, ZoneWithoutAPathIsNamed) {
 TEST(OwnTask, TargetPointOutsideTheOrganIsRefused) {
   Task task = liver_biopsy();
   task.target_P = Vec3(60.0, 0.0, 0.0);
-  const auto paths = plan_paths(task, BoxPatient{}.make(), gun(), {});
+  const auto paths = plan_paths(task, BoxPatient{}.make(), shipped_needle(), {});
   ASSERT_FALSE(paths);
   EXPECT_NE(paths.error().text().find("target point"), std::string::npos) << paths.error().text();
 }
@@ -165,7 +161,7 @@ TEST(AssessPath, NamesEveryFaultOfADrawnPath) {
   const anatomy::VirtualPatient patient = box.make();
   Task task = liver_biopsy();
   const Segment through_bone{{-100.0, 0.0, 0.0}, {-45.0, 0.0, 0.0}};
-  PathAssessment assessment = assess_path(task, patient, gun(), through_bone);
+  PathAssessment assessment = assess_path(task, patient, shipped_needle(), through_bone);
   EXPECT_TRUE(has(assessment, PathFault::kCrosses, "rib"));
   EXPECT_TRUE(has(assessment, PathFault::kOffTarget));
   EXPECT_FALSE(has(assessment, PathFault::kGlancing));
@@ -173,7 +169,7 @@ TEST(AssessPath, NamesEveryFaultOfADrawnPath) {
 
   const Segment past_vessel{{-100.0, 7.0, 0.0}, {-45.0, 7.0, 0.0}};
   task.risks = {{"vessel", "", 5.0, 10.0}};
-  assessment = assess_path(task, patient, gun(), past_vessel);
+  assessment = assess_path(task, patient, shipped_needle(), past_vessel);
   ASSERT_TRUE(has(assessment, PathFault::kMargin, "vessel"));
   for (const PathFinding& finding : assessment.findings) {
     if (finding.fault != PathFault::kMargin) continue;
@@ -185,11 +181,11 @@ TEST(AssessPath, NamesEveryFaultOfADrawnPath) {
 
   task.max_path_mm = 40.0;
   task.entry_zone = EntryZone{{0.0, -70.0, 0.0}, 10.0};
-  assessment = assess_path(task, patient, gun(), {{-100.0, 40.0, 0.0}, {-80.0, -20.0, 0.0}});
+  assessment = assess_path(task, patient, shipped_needle(), {{-100.0, 40.0, 0.0}, {-80.0, -20.0, 0.0}});
   EXPECT_TRUE(has(assessment, PathFault::kTooLong));
   EXPECT_TRUE(has(assessment, PathFault::kGlancing));
   EXPECT_TRUE(has(assessment, PathFault::kOutsideZone));
-  assessment = assess_path(task, patient, gun(), {{-80.0, 0.0, 0.0}, {-75.0, 0.0, 0.0}});
+  assessment = assess_path(task, patient, shipped_needle(), {{-80.0, 0.0, 0.0}, {-75.0, 0.0, 0.0}});
   EXPECT_TRUE(has(assessment, PathFault::kNotOnSkin));
   EXPECT_TRUE(has(assessment, PathFault::kOrganPath));
 }

@@ -9,19 +9,15 @@
 
 #include "core/files/data_dir.h"
 #include "tasks/test/box_patient.h"
+#include "tasks/testing/shipped_task.h"
 #include "volume/sampling.h"
 
 namespace trocar::tasks {
 namespace {
 
 using testing::BoxPatient;
-
-Task liver_biopsy() {
-  return *load_task(data_dir() / "tasks", "liver-biopsy");
-}
-Needle needle(std::string_view name = "biopsy-18g") {
-  return *load_needle(data_dir() / "needles.toml", name);
-}
+using testing::liver_biopsy;
+using testing::shipped_needle;
 
 std::string tissue_at(const anatomy::VirtualPatient& patient, const Vec3& p_P) {
   const anatomy::Label* label = anatomy::find_label(patient, p_P);
@@ -48,8 +44,7 @@ double smallest_clearance(const Task& task, const anatomy::VirtualPatient& patie
     const RiskStructure* risk = risks[patient.labels.voxels[v]];
     if (!risk) continue;
     const volume::Index3 ijk = geometry.index_of(v);
-    const Vec3 centre =
-        geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])});
+    const Vec3 centre = geometry.centre_mm(ijk);
     if (distance_mm(way, centre) - risk->margin_mm > smallest + geometry.spacing_mm.norm()) continue;
     for (double s = 0.0; s <= 1.0; s += 0.002) {
       const Vec3 outside = ((way.at(s) - centre).cwiseAbs() - 0.5 * geometry.spacing_mm).cwiseMax(0.0);
@@ -76,14 +71,14 @@ BoxPatient crowded() {
 
 TEST(Plan, BestPathGoesStraightDownWhereNothingIsInTheWay) {
   const BoxPatient box;
-  const auto paths = plan_paths(liver_biopsy(), box.make(), needle());
+  const auto paths = plan_paths(liver_biopsy(), box.make(), shipped_needle());
   ASSERT_TRUE(paths) << paths.error().text();
   ASSERT_EQ(paths->size(), 1u);
   const PlannedPath& path = paths->front();
   const double depth_mm = 70.0 + box.lesion_centre_P.y();  // of the lesion's centre below the front
-  EXPECT_NEAR(path.length_mm, depth_mm - needle().notch_middle_mm(), 0.1);
+  EXPECT_NEAR(path.length_mm, depth_mm - shipped_needle().notch_middle_mm(), 0.1);
   EXPECT_NEAR(path.length_mm, path.line_P.length_mm(), 1e-9);
-  EXPECT_LT((notch_middle(path, needle()) - box.lesion_centre_P).norm(), 0.1);
+  EXPECT_LT((notch_middle(path, shipped_needle()) - box.lesion_centre_P).norm(), 0.1);
   EXPECT_NEAR(path.line_P.a.y(), -70.0, 0.01);
   // Liver from 22 mm below the skin to the tip, which comes to rest before the lesion's border; voxels are 2 mm.
   EXPECT_NEAR(path.organ_path_mm, path.length_mm - 22.0, 1.5);
@@ -93,7 +88,7 @@ TEST(Plan, BestPathGoesStraightDownWhereNothingIsInTheWay) {
 
 TEST(Plan, NeedleThatIsNotFiredIsPutIntoTheTarget) {
   const BoxPatient box;
-  const auto paths = plan_paths(liver_biopsy(), box.make(), needle("chiba-22g"));
+  const auto paths = plan_paths(liver_biopsy(), box.make(), shipped_needle("chiba-22g"));
   ASSERT_TRUE(paths) << paths.error().text();
   EXPECT_LT((paths->front().line_P.b - box.lesion_centre_P).norm(), 0.1);
   EXPECT_NEAR(paths->front().length_mm, 55.0, 0.1);
@@ -107,7 +102,7 @@ TEST(Plan, BestPathPassesARibWithSpareMargin) {
     const double depth = p.y() + 70.0;
     return depth > 12.5 && depth < 21.5 && std::abs(p.z()) < 5.0 ? "bone" : "";
   };
-  const auto paths = plan_paths(liver_biopsy(), box.make(), needle());
+  const auto paths = plan_paths(liver_biopsy(), box.make(), shipped_needle());
   ASSERT_TRUE(paths) << paths.error().text();
   double least_mm = 1e9;
   double shortest_mm = 1e9;
@@ -115,7 +110,7 @@ TEST(Plan, BestPathPassesARibWithSpareMargin) {
        t += 1e-4) {  // tangent of the tilt; edge of the rib's voxels at depth 21 mm, 5 mm aside
     const double stretch = std::sqrt(1.0 + t * t);
     const double spare_mm = ((55.0 - 21.0) * t - 5.0) / stretch - 3.0;
-    const double length_mm = 55.0 * stretch - needle().notch_middle_mm();
+    const double length_mm = 55.0 * stretch - shipped_needle().notch_middle_mm();
     if (spare_mm < 0.0) continue;
     shortest_mm = std::min(shortest_mm, length_mm);
     least_mm = std::min(least_mm, path_cost_mm(length_mm, spare_mm));
@@ -146,8 +141,9 @@ TEST(Plan, SpareMarginIsWorthLengthTheMoreTheLessThereIs) {
 // The planner checks candidates in the order of a bound; nothing that it leaves unchecked may be better.
 TEST(Plan, OnePathIsTheBestOfAll) {
   const anatomy::VirtualPatient patient = crowded().make();
-  const auto one = plan_paths(liver_biopsy(), patient, needle(), {1, 3});
-  const auto all = plan_paths(liver_biopsy(), patient, needle(), {2000, 3});  // not spread, and of the same lines
+  const auto one = plan_paths(liver_biopsy(), patient, shipped_needle(), {1, 3});
+  const auto all =
+      plan_paths(liver_biopsy(), patient, shipped_needle(), {2000, 3});  // not spread, and of the same lines
   ASSERT_TRUE(one && all);
   ASSERT_GT(all->size(), 500u);
   double least_mm = 1e9;
@@ -160,11 +156,11 @@ TEST(Plan, OnePathIsTheBestOfAll) {
 TEST(Plan, EveryPathKeepsEveryMarginOverTheWholeThrow) {
   const Task task = liver_biopsy();
   const anatomy::VirtualPatient patient = crowded().make();
-  const auto paths = plan_paths(task, patient, needle(), {40, 3});
+  const auto paths = plan_paths(task, patient, shipped_needle(), {40, 3});
   ASSERT_TRUE(paths) << paths.error().text();
   ASSERT_EQ(paths->size(), 40u);
   for (const PlannedPath& path : *paths) {
-    const double smallest = smallest_clearance(task, patient, path, needle());
+    const double smallest = smallest_clearance(task, patient, path, shipped_needle());
     EXPECT_GE(smallest, -0.02);
     EXPECT_NEAR(path.spare_margin_mm, std::min(smallest, 10.0), 0.05);
     EXPECT_EQ(path.nearest_risk.empty(), path.spare_margin_mm >= 10.0);
@@ -174,11 +170,11 @@ TEST(Plan, EveryPathKeepsEveryMarginOverTheWholeThrow) {
 TEST(Plan, EveryPathPassesSkinMuscleAndLiverInThisOrderAndStaysInside) {
   const Task task = liver_biopsy();
   const anatomy::VirtualPatient patient = crowded().make();
-  const auto paths = plan_paths(task, patient, needle(), {60, 4});
+  const auto paths = plan_paths(task, patient, shipped_needle(), {60, 4});
   ASSERT_TRUE(paths) << paths.error().text();
   for (const PlannedPath& path : *paths) {
     EXPECT_NEAR(volume::sample_linear(patient.skin_distance_mm, path.line_P.a), 0.0, 0.01);
-    const Segment way{path.line_P.a, end_of_throw(path, needle())};
+    const Segment way{path.line_P.a, end_of_throw(path, shipped_needle())};
     double muscle_mm = 0.0;
     double organ_mm = 0.0;
     bool has_organ = false;
@@ -197,16 +193,16 @@ TEST(Plan, EveryPathPassesSkinMuscleAndLiverInThisOrderAndStaysInside) {
     EXPECT_TRUE(has_lesion);
     EXPECT_GE(organ_mm, task.min_organ_path_mm - 0.3);
     EXPECT_NEAR(organ_mm, path.organ_path_mm, 0.8);
-    EXPECT_EQ(tissue_at(patient, notch_middle(path, needle())), "liver_lesion");
+    EXPECT_EQ(tissue_at(patient, notch_middle(path, shipped_needle())), "liver_lesion");
     EXPECT_LE(path.length_mm, task.max_path_mm);
   }
 }
 
 TEST(Plan, PathsAreSortedApartAndTheSameForTheSameSeed) {
   const anatomy::VirtualPatient patient = crowded().make();
-  const auto a = plan_paths(liver_biopsy(), patient, needle(), {12, 5});
-  const auto b = plan_paths(liver_biopsy(), patient, needle(), {12, 5});
-  const auto c = plan_paths(liver_biopsy(), patient, needle(), {12, 6});
+  const auto a = plan_paths(liver_biopsy(), patient, shipped_needle(), {12, 5});
+  const auto b = plan_paths(liver_biopsy(), patient, shipped_needle(), {12, 5});
+  const auto c = plan_paths(liver_biopsy(), patient, shipped_needle(), {12, 6});
   ASSERT_TRUE(a && b && c);
   ASSERT_EQ(a->size(), 12u);
   bool differs = false;
@@ -223,7 +219,7 @@ TEST(Plan, PathsAreSortedApartAndTheSameForTheSameSeed) {
 }
 
 TEST(Plan, ManyPathsAreManyDifferentPaths) {
-  const auto paths = plan_paths(liver_biopsy(), crowded().make(), needle(), {3000, 1});
+  const auto paths = plan_paths(liver_biopsy(), crowded().make(), shipped_needle(), {3000, 1});
   ASSERT_TRUE(paths) << paths.error().text();
   EXPECT_EQ(paths->size(), 3000u);
   std::set<std::array<double, 3>> entries;
@@ -235,11 +231,11 @@ TEST(Plan, WithoutLesionTheTargetIsDeepInTheLiverAndAwayFromVessels) {
   BoxPatient box = crowded();
   box.lesion_radius_mm = 0.0;
   const anatomy::VirtualPatient patient = box.make();
-  const auto paths = plan_paths(liver_biopsy(), patient, needle(), {10, 2});
+  const auto paths = plan_paths(liver_biopsy(), patient, shipped_needle(), {10, 2});
   ASSERT_TRUE(paths) << paths.error().text();
   const volume::GridGeometry& geometry = patient.labels.geometry;
   for (const PlannedPath& path : *paths) {
-    const Vec3 target = notch_middle(path, needle());
+    const Vec3 target = notch_middle(path, shipped_needle());
     double to_vessel = 1e9;
     double to_surface = 1e9;
     for (std::size_t v = 0; v < patient.labels.voxels.size(); ++v) {
@@ -247,10 +243,7 @@ TEST(Plan, WithoutLesionTheTargetIsDeepInTheLiverAndAwayFromVessels) {
       const std::string tissue = id ? patient.label_table.find(id)->tissue : "";
       if (tissue == "liver") continue;
       const volume::Index3 ijk = geometry.index_of(v);
-      const double distance =
-          (geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])}) -
-           target)
-              .norm();
+      const double distance = (geometry.centre_mm(ijk) - target).norm();
       (tissue == "vessel" ? to_vessel : to_surface) = std::min(tissue == "vessel" ? to_vessel : to_surface, distance);
     }
     EXPECT_GE(to_surface, 20.0);
@@ -261,7 +254,7 @@ TEST(Plan, WithoutLesionTheTargetIsDeepInTheLiverAndAwayFromVessels) {
 TEST(Plan, PatientLiesOnTheBack) {
   BoxPatient box;
   box.lesion_centre_P = {-30.0, 25.0, 0.0};  // 45 mm below the back, 70 mm from the side, 95 mm from the front
-  const auto paths = plan_paths(liver_biopsy(), box.make(), needle(), {50, 1});
+  const auto paths = plan_paths(liver_biopsy(), box.make(), shipped_needle(), {50, 1});
   ASSERT_TRUE(paths) << paths.error().text();
   for (const PlannedPath& path : *paths) EXPECT_LT(path.line_P.a.y(), 69.0);
 }
@@ -269,13 +262,13 @@ TEST(Plan, PatientLiesOnTheBack) {
 TEST(Plan, EntriesKeepAwayFromTheCutFacesOfTheVolume) {
   BoxPatient box;
   box.half_volume_mm.z() = 30.0;
-  const auto paths = plan_paths(liver_biopsy(), box.make(), needle(), {300, 1});
+  const auto paths = plan_paths(liver_biopsy(), box.make(), shipped_needle(), {300, 1});
   ASSERT_TRUE(paths) << paths.error().text();
   for (const PlannedPath& path : *paths) EXPECT_LE(std::abs(path.line_P.a.z()), 27.0);
 }
 
 std::string error_of(const Task& task, const BoxPatient& box) {
-  const auto paths = plan_paths(task, box.make(), needle());
+  const auto paths = plan_paths(task, box.make(), shipped_needle());
   return paths ? "no error" : paths.error().text();
 }
 
@@ -322,7 +315,7 @@ TEST(Plan, ErrorNamesTheConstraintThatLeftNoPath) {
 TEST(Plan, ImpossibleCountIsAUsageError) {
   const anatomy::VirtualPatient patient = BoxPatient{}.make();
   for (const int count : {0, -1, 100001})
-    EXPECT_EQ(plan_paths(liver_biopsy(), patient, needle(), {count}).error().exit_status, 2);
+    EXPECT_EQ(plan_paths(liver_biopsy(), patient, shipped_needle(), {count}).error().exit_status, 2);
 }
 
 }  // namespace

@@ -7,17 +7,15 @@
 #include "core/files/temporary_folder.h"
 #include "tasks/needle.h"
 #include "tasks/test/box_patient.h"
+#include "tasks/testing/shipped_task.h"
 
 namespace trocar::tasks {
 namespace {
 
 using testing::BoxPatient;
+using testing::liver_biopsy;
 
 const std::filesystem::path kTasks = data_dir() / "tasks";
-
-Task liver_biopsy() {
-  return *load_task(kTasks, "liver-biopsy");
-}
 
 bool mentions(const TaskReadiness& readiness, std::string_view text) {
   for (const std::string& reason : readiness.reasons)

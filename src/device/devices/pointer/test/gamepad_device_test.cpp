@@ -8,19 +8,19 @@
 #include <cmath>
 #include <limits>
 
-#include "core/files/data_dir.h"
-#include "core/testing/allocation_guard.h"
-#include "devices/device_spec.h"
-#include "devices/test/bounded_wait.h"
+#include "devices/pointer/test/pointer_checks.h"
+#include "devices/pointer/test/virtual_gamepad.h"
 
 namespace trocar::devices {
 namespace {
 
+using testing::is_gone;
+using testing::kTick_s;
+using testing::reads_until;
 using testing::wait_until;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kTick_s = 0.001;
 
 /// SDL's virtual joystick in the layout of a gamepad. Its state is set by any thread and taken over by SDL's update in
 /// the thread that polls, where the rumble comes back.
@@ -39,12 +39,7 @@ class VirtualPad {
   VirtualPad& operator=(const VirtualPad&) = delete;
 
   void attach() {
-    SDL_VirtualJoystickDesc description{};
-    description.version = SDL_VIRTUAL_JOYSTICK_DESC_VERSION;
-    description.type = SDL_JOYSTICK_TYPE_GAMECONTROLLER;
-    description.naxes = SDL_CONTROLLER_AXIS_MAX;
-    description.nbuttons = SDL_CONTROLLER_BUTTON_MAX;
-    description.name = "Trocar test pad";
+    SDL_VirtualJoystickDesc description = testing::gamepad_description("Trocar test pad");
     description.userdata = this;
     description.Update = [](void* self) { static_cast<VirtualPad*>(self)->update(); };
     description.Rumble = [](void* self, Uint16 low, Uint16 high) {
@@ -108,15 +103,6 @@ std::unique_ptr<HapticDevice> open_pad() {
   auto device = PolledPointer::open(gamepad(), make_gamepad_source());
   EXPECT_TRUE(device.has_value()) << device.error().text();
   return device ? std::move(*device) : nullptr;
-}
-
-/// Readings of a made-up clock until the condition holds: the pad's thread is asynchronous, the clock is not.
-template <class Predicate>
-bool reads_until(HapticDevice& device, double& now_s, Predicate&& holds) {
-  return wait_until([&] {
-    now_s += kTick_s;
-    return holds(device.read(now_s));
-  });
 }
 
 TEST(GamepadMotion, RestsWithinTheDeadZone) {
@@ -285,7 +271,6 @@ TEST(Gamepad, UnpluggedIsGoneAndComesBackWhereItWas) {
   EXPECT_TRUE(reads_until(*device, now_s, [](const DeviceReading& r) { return r.X_DS.p().x() > 1.0; }));
   pad.set_axis(SDL_CONTROLLER_AXIS_LEFTX, 0.0);
   pad.detach();
-  const auto is_gone = [](const DeviceReading& r) { return r.status == DeviceStatus::kDisconnected; };
   EXPECT_TRUE(reads_until(*device, now_s, is_gone));
   EXPECT_FALSE(device->write({}));
   EXPECT_FALSE(device->reconnect().has_value());
@@ -310,24 +295,12 @@ TEST(Gamepad, ReadAndWriteDoNotAllocate) {
   ASSERT_NE(device, nullptr);
   pad.set_axis(SDL_CONTROLLER_AXIS_LEFTX, 1.0);
   pad.set_axis(SDL_CONTROLLER_AXIS_RIGHTX, 1.0);
-  constexpr int kTicks = 1000;
-  const testing::AllocationGuard guard;
-  for (int i = 0; i < kTicks; ++i) {
-    device->read(kTick_s * i);
-    device->write({Vec3(0.0, 1.0, 0.0), Vec3::Zero()});
-  }
-  EXPECT_EQ(guard.count(), 0U);
+  testing::expect_no_allocation(*device);
 }
 
 TEST(Gamepad, IsOpenedByItsName) {
   const VirtualPad pad;
-  const auto spec = parse_device_spec("gamepad");
-  ASSERT_TRUE(spec.has_value()) << spec.error().text();
-  DeviceOptions options;
-  options.devices_file = data_dir() / "devices.toml";
-  const auto device = open_device(*spec, options);
-  ASSERT_TRUE(device.has_value()) << device.error().text();
-  EXPECT_EQ((*device)->preset().name, "gamepad");
+  testing::expect_opened_by_name("gamepad");
 }
 
 }  // namespace

@@ -5,20 +5,18 @@
 #include <limits>
 #include <string>
 
-#include "core/files/data_dir.h"
-#include "core/testing/allocation_guard.h"
-#include "devices/device_spec.h"
-#include "devices/test/bounded_wait.h"
+#include "devices/pointer/test/pointer_checks.h"
 #include "spacenav_daemon.h"
 
 namespace trocar::devices {
 namespace {
 
+using testing::is_gone;
+using testing::reads_until;
 using testing::SpacenavDaemon;
 using testing::wait_until;
 
 constexpr int kFull = static_cast<int>(kCapFull_counts);
-constexpr double kTick_s = 0.001;
 
 haptics::DevicePreset spacemouse() {
   haptics::DevicePreset preset;
@@ -32,18 +30,6 @@ std::unique_ptr<HapticDevice> open_cap(const SpacenavDaemon& daemon) {
   EXPECT_TRUE(device.has_value()) << device.error().text();
   EXPECT_TRUE(wait_until([&] { return daemon.is_connected(); }));
   return device ? std::move(*device) : nullptr;
-}
-
-template <class Predicate>
-bool reads_until(HapticDevice& device, double& now_s, Predicate&& holds) {
-  return wait_until([&] {
-    now_s += kTick_s;
-    return holds(device.read(now_s));
-  });
-}
-
-bool is_gone(const DeviceReading& reading) {
-  return reading.status == DeviceStatus::kDisconnected;
 }
 
 TEST(SpaceMouseMotion, PushesBecomeDevicesAxes) {
@@ -175,24 +161,12 @@ TEST(SpaceMouse, ReadAndWriteDoNotAllocate) {
   const auto device = open_cap(daemon);
   ASSERT_NE(device, nullptr);
   daemon.push_cap({kFull, kFull, kFull, kFull, kFull, kFull});
-  constexpr int kTicks = 1000;
-  const testing::AllocationGuard guard;
-  for (int i = 0; i < kTicks; ++i) {
-    device->read(kTick_s * i);
-    device->write({Vec3(0.0, 1.0, 0.0), Vec3::Zero()});
-  }
-  EXPECT_EQ(guard.count(), 0U);
+  testing::expect_no_allocation(*device);
 }
 
 TEST(SpaceMouse, IsOpenedByItsName) {
   const SpacenavDaemon daemon;
-  const auto spec = parse_device_spec("spacemouse");
-  ASSERT_TRUE(spec.has_value()) << spec.error().text();
-  DeviceOptions options;
-  options.devices_file = data_dir() / "devices.toml";
-  const auto device = open_device(*spec, options);
-  ASSERT_TRUE(device.has_value()) << device.error().text();
-  EXPECT_EQ((*device)->preset().name, "spacemouse");
+  testing::expect_opened_by_name("spacemouse");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "devices/pointer/test/gamepad_stand_in.h"
+#include "devices/pointer/test/virtual_gamepad.h"
 
 namespace {
 
@@ -33,12 +34,7 @@ int find_pad() {
 }
 
 void plug_in() {
-  SDL_VirtualJoystickDesc description{};
-  description.version = SDL_VIRTUAL_JOYSTICK_DESC_VERSION;
-  description.type = SDL_JOYSTICK_TYPE_GAMECONTROLLER;
-  description.naxes = SDL_CONTROLLER_AXIS_MAX;
-  description.nbuttons = SDL_CONTROLLER_BUTTON_MAX;
-  description.name = "Trocar stand-in pad";
+  SDL_VirtualJoystickDesc description = trocar::testing::gamepad_description("Trocar stand-in pad");
   description.Rumble = [](void*, Uint16 low, Uint16) {
     if (low > controls()->strongest_rumble) controls()->strongest_rumble = low;
     return 0;

@@ -6,6 +6,7 @@
 
 #include "devices/haptic_device.h"
 #include "devices/simulated/detail/hand_motion.h"  // is_sane
+#include "geometry/clamp_norm.h"
 #include "realtime/triple_buffer.h"
 
 namespace trocar::devices {
@@ -55,8 +56,8 @@ class ServoExchange {
     const bool is_taken = is_sane(wrench_D);
     haptics::Wrench sent;
     if (is_taken) {
-      sent.force_n = cut(wrench_D.force_n, capability.peak_force_n);
-      sent.torque_nmm = cut(wrench_D.torque_nmm, capability.peak_torque_nmm);
+      sent.force_n = clamped_norm(wrench_D.force_n, capability.peak_force_n);
+      sent.torque_nmm = clamped_norm(wrench_D.torque_nmm, capability.peak_torque_nmm);
     }
     wrenches_.write(sent);
     return is_taken && !sample_.is_force_refused && !is_lost();
@@ -80,11 +81,6 @@ class ServoExchange {
   bool is_lost() const noexcept { return is_lost_.load(std::memory_order_relaxed); }
 
  private:
-  static Vec3 cut(const Vec3& vector, double peak) noexcept {
-    const double norm = vector.norm();
-    return norm <= peak ? vector : Vec3(vector * (peak / norm));
-  }
-
   // Of the real-time thread.
   ServoSample sample_;
   double heard_s_ = 0.0;

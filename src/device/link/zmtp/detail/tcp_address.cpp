@@ -6,8 +6,9 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
+
+#include "core/parse_number.h"
 
 namespace trocar::link::detail {
 namespace {
@@ -33,8 +34,7 @@ std::optional<TcpAddress> parse_url(std::string_view url) {
   const std::string_view address = url.substr(kTcp.size());
   const std::size_t colon = address.rfind(':');
   if (colon == std::string_view::npos) return {};
-  unsigned port = 0;
-  std::from_chars(address.data() + colon + 1, address.data() + address.size(), port);
+  const unsigned port = parse_number<unsigned>(address.substr(colon + 1)).value_or(0);
   return parse_tcp_address(address.substr(0, colon), port);
 }
 

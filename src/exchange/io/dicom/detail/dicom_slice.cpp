@@ -5,13 +5,12 @@
 #include <gdcmSequenceOfFragments.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstring>
 #include <new>
 #include <string_view>
 #include <vector>
 
+#include "core/parse_number.h"
 #include "io/dicom/detail/codestream.h"
 #include "io/dicom/detail/dicom_header.h"
 #include "io/image/detail/quiet.h"
@@ -35,8 +34,9 @@ std::optional<std::array<double, N>> decimals_of(const DicomHeader& header, std:
     const std::size_t end = std::min(text.find('\\', begin), text.size());
     const std::size_t first = text.find_first_not_of(" +", begin);
     if (first >= end) return std::nullopt;
-    const auto parsed = std::from_chars(text.data() + first, text.data() + end, number);
-    if (parsed.ec != std::errc{} || !std::isfinite(number)) return std::nullopt;
+    const auto found = find_leading_number<double>(std::string_view(text).substr(first, end - first));
+    if (!found) return std::nullopt;
+    number = found->value;
     begin = end + 1;
   }
   return numbers;

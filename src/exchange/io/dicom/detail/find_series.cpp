@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 
 #include "core/parallel.h"
+#include "core/parse_number.h"
 
 namespace trocar::io::detail {
 namespace fs = std::filesystem;
@@ -49,10 +49,8 @@ bool is_ct_volume(const SeriesImages& images) {
 
 /// Index of the series given by `wanted`: a number from 1, or a UID.
 std::optional<std::size_t> find_wanted(const std::vector<SeriesImages>& series, const std::string& wanted) {
-  std::size_t number = 0;
-  const char* end = wanted.data() + wanted.size();
-  const auto [stop, error] = std::from_chars(wanted.data(), end, number);
-  if (error == std::errc() && stop == end && number >= 1 && number <= series.size()) return number - 1;
+  const auto number = parse_number<std::size_t>(wanted);
+  if (number && *number >= 1 && *number <= series.size()) return *number - 1;
   const auto found = std::find_if(series.begin(), series.end(), [&](const SeriesImages& images) {
     return !wanted.empty() && images.front().series_uid == wanted;
   });

@@ -1,19 +1,18 @@
 #include "io/image/detail/payload.h"
 
 #include <fmt/format.h>
-#include <itk_zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <fstream>
 #include <map>
-#include <memory>
 #include <optional>
 #include <vector>
 
+#include "core/parse_number.h"
 #include "io/image/detail/header_payload.h"
+#include "io/image/detail/inflate_input.h"
 
 namespace trocar::io::detail {
 namespace fs = std::filesystem;
@@ -22,7 +21,6 @@ namespace {
 constexpr std::int64_t kMaxSide = 65'535;            ///< Voxels along one axis.
 constexpr std::uint64_t kMaxVoxels = 2'000'000'000;  ///< 4 GB of int16, far above any CT.
 constexpr std::size_t kMaxHeaderBytes = 16u << 20;   ///< .seg.nrrd files with many segments have long headers.
-constexpr std::uint64_t kMaxDeflateRatio = 1'032;    ///< Upper limit of deflate.
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -37,18 +35,15 @@ std::string trim(std::string_view text) {
 
 std::vector<std::int64_t> whole_numbers(const std::string& text) {
   std::vector<std::int64_t> numbers;
-  const char* at = text.data();
-  const char* end = at + text.size();
-  while (at < end) {
-    if (std::isspace(static_cast<unsigned char>(*at))) {
-      ++at;
+  for (std::string_view rest = text; !rest.empty();) {
+    if (std::isspace(static_cast<unsigned char>(rest.front()))) {
+      rest.remove_prefix(1);
       continue;
     }
-    std::int64_t number = 0;
-    const auto [next, error] = std::from_chars(at, end, number);
-    if (error != std::errc{}) return {};
-    numbers.push_back(number);
-    at = next;
+    const auto number = find_leading_number<std::int64_t>(rest);
+    if (!number) return {};
+    numbers.push_back(number->value);
+    rest = number->rest;
   }
   return numbers;
 }
@@ -56,21 +51,14 @@ std::vector<std::int64_t> whole_numbers(const std::string& text) {
 /// Unpacks a gzip or zlib stream of `packed` bytes and discards the result: true if it is valid and has at least
 /// `bytes` bytes.
 bool is_sound_stream(std::ifstream& file, std::uint64_t packed, std::uint64_t bytes) {
-  z_stream stream{};
-  if (inflateInit2(&stream, MAX_WBITS + 32) != Z_OK) return false;  // +32: gzip or zlib, detected automatically
-  const std::unique_ptr<z_stream, int (*)(z_stream*)> guard(&stream, inflateEnd);
-  std::vector<unsigned char> in(kChunkBytes), out(kChunkBytes);
+  InflateInput input(file, packed);
+  if (!input.is_ready()) return false;
+  z_stream& stream = input.stream();
+  std::vector<unsigned char> out(kChunkBytes);
   std::uint64_t unpacked = 0;
   bool at_end = false;
   while (true) {
-    if (stream.avail_in == 0) {
-      file.read(reinterpret_cast<char*>(in.data()),
-                static_cast<std::streamsize>(std::min<std::uint64_t>(in.size(), packed)));
-      stream.next_in = in.data();
-      stream.avail_in = static_cast<unsigned>(file.gcount());
-      packed -= stream.avail_in;
-      if (stream.avail_in == 0) return at_end && unpacked >= bytes;
-    }
+    if (!input.refill()) return at_end && unpacked >= bytes;
     if (at_end) {
       // A further gzip member, or other data after the voxels.
       if (unpacked >= bytes) return true;

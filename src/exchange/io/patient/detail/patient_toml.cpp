@@ -6,7 +6,7 @@
 #include <set>
 
 #include "config/toml.h"
-#include "config/toml_quoted.h"
+#include "config/toml_writer.h"
 #include "core/files/input_file.h"
 #include "io/patient/patient_folder.h"
 
@@ -64,23 +64,27 @@ Status check_version(const config::TomlTable& file, const fs::path& path) {
 }  // namespace
 
 std::string to_toml(const PatientDescription& patient) {
-  std::string text =
-      "# A virtual patient. ct.nrrd: HU; labels.nrrd: ids of [[labels]]; skin_distance.nrrd: hundredths\n"
-      "# of a mm, negative inside the body. Frame P: LPS, mm.\n";
-  text += fmt::format("format_version = {}\n", kPatientFormatVersion);
-  text += fmt::format("name = {}\n", config::toml_quoted(patient.name));
-  text += fmt::format("description = {}\n", config::toml_quoted(patient.description));
-  text += "provenance = [\n";
-  for (const std::string& line : patient.provenance) text += fmt::format("  {},\n", config::toml_quoted(line));
-  text += fmt::format("]\ncontent_hash = {}\n", config::toml_quoted(patient.content_hash));
-  for (const anatomy::Label& label : patient.label_table.labels)
-    text += fmt::format("\n[[labels]]\nid = {}\nname = {}\ntissue = {}\ncolor = [{}, {}, {}]\n", label.id,
-                        config::toml_quoted(label.name), config::toml_quoted(label.tissue), label.color[0],
-                        label.color[1], label.color[2]);
-  for (const PatientMeshEntry& mesh : patient.meshes)
-    text += fmt::format("\n[[meshes]]\nname = {}\nfile = {}\n", config::toml_quoted(mesh.name),
-                        config::toml_quoted(mesh.file));
-  return text;
+  config::TomlWriter writer;
+  writer.comment("A virtual patient. ct.nrrd: HU; labels.nrrd: ids of [[labels]]; skin_distance.nrrd: hundredths");
+  writer.comment("of a mm, negative inside the body. Frame P: LPS, mm.");
+  writer.set("format_version", kPatientFormatVersion);
+  writer.set("name", patient.name);
+  writer.set("description", patient.description);
+  writer.set("provenance", patient.provenance);
+  writer.set("content_hash", patient.content_hash);
+  for (const anatomy::Label& label : patient.label_table.labels) {
+    writer.begin_row("labels");
+    writer.set("id", label.id);
+    writer.set("name", label.name);
+    writer.set("tissue", label.tissue);
+    writer.set("color", std::vector<int>(label.color.begin(), label.color.end()));
+  }
+  for (const PatientMeshEntry& mesh : patient.meshes) {
+    writer.begin_row("meshes");
+    writer.set("name", mesh.name);
+    writer.set("file", mesh.file);
+  }
+  return writer.text();
 }
 
 Result<PatientDescription> load_patient_toml(const fs::path& path, const fs::path& folder) {

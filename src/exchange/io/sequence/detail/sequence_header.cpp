@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -12,6 +11,7 @@
 #include <optional>
 #include <set>
 
+#include "core/parse_number.h"
 #include "io/detail/number_text.h"
 #include "io/image/detail/header_payload.h"
 
@@ -44,12 +44,9 @@ struct FrameKey {
 std::optional<FrameKey> find_frame_key(std::string_view key) {
   if (!key.starts_with(kFramePrefix)) return std::nullopt;
   key.remove_prefix(kFramePrefix.size());
-  FrameKey result{};
-  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), result.frame);
-  const auto digits = static_cast<std::size_t>(end - key.data());
-  if (error != std::errc{} || digits + 1 >= key.size() || *end != '_') return std::nullopt;
-  result.name = key.substr(digits + 1);
-  return result;
+  const auto frame = find_leading_number<std::size_t>(key);
+  if (!frame || frame->rest.size() < 2 || frame->rest.front() != '_') return std::nullopt;
+  return FrameKey{frame->value, frame->rest.substr(1)};
 }
 
 /// The lines "key = value" up to ElementDataFile. Errors: no such line, too long.

@@ -5,35 +5,25 @@
 
 #include <algorithm>
 #include <fstream>
-#include <memory>
 
-#include "io/image/detail/header_payload.h"
+#include "io/image/detail/inflate_input.h"
 
 namespace trocar::io::detail {
 namespace {
 
-constexpr std::uint64_t kMaxDeflateRatio = 1'032;     ///< Upper limit of deflate.
 constexpr int kCompressionLevel = 1;                  ///< Speckle hardly compresses: higher levels only take more time.
 constexpr std::size_t kPiece = std::size_t{1} << 30;  ///< zlib counts in 32 bits.
 
 /// Unpacks a gzip or zlib stream of at most `packed` bytes into all of `out`. Returns false if it is damaged or too
 /// short.
 bool unpack(std::ifstream& file, std::uint64_t packed, std::span<std::uint8_t> out) {
-  z_stream stream{};
-  if (inflateInit2(&stream, MAX_WBITS + 32) != Z_OK) return false;  // +32: gzip or zlib, detected automatically
-  const std::unique_ptr<z_stream, int (*)(z_stream*)> guard(&stream, inflateEnd);
-  std::vector<unsigned char> in(kChunkBytes);
+  InflateInput input(file, packed);
+  if (!input.is_ready()) return false;
+  z_stream& stream = input.stream();
   std::size_t done = 0;
   int status = Z_OK;
   while (done < out.size() && status == Z_OK) {
-    if (stream.avail_in == 0) {
-      file.read(reinterpret_cast<char*>(in.data()),
-                static_cast<std::streamsize>(std::min<std::uint64_t>(in.size(), packed)));
-      stream.next_in = in.data();
-      stream.avail_in = static_cast<unsigned>(file.gcount());
-      packed -= stream.avail_in;
-      if (stream.avail_in == 0) return false;
-    }
+    if (!input.refill()) return false;
     const std::size_t room = std::min(out.size() - done, kPiece);
     stream.next_out = out.data() + done;
     stream.avail_out = static_cast<unsigned>(room);

@@ -73,8 +73,7 @@ class ExpertPath : public testing::TestWithParam<std::uint64_t> {
     for (std::size_t n = 0; n < mask.voxels.size(); ++n) {
       if (mask.voxels[n] == 0) continue;
       const volume::Index3 at = mask.geometry.index_of(n);
-      const Vec3 p =
-          mask.geometry.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
+      const Vec3 p = mask.geometry.centre_mm(at);
       least = std::min(least, distance_mm(line_, p));
     }
     return least;

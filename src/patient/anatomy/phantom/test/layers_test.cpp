@@ -97,8 +97,7 @@ TEST(LayeredScene, BoneLiesBesideTheLumbarPathAndNotOnIt) {
     const Label* label = patient.label_table.find(patient.labels.voxels[n]);
     if (label == nullptr || label->tissue != "bone") continue;
     const volume::Index3 ijk = patient.labels.geometry.index_of(n);
-    const Vec3 p = patient.labels.geometry.to_mm(
-        Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p = patient.labels.geometry.centre_mm(ijk);
     nearest_mm = std::min(nearest_mm, distance_mm(line, p));
   }
   EXPECT_GT(nearest_mm, 5.0);

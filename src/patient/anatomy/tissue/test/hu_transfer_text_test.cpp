@@ -5,21 +5,18 @@
 
 #include <cmath>
 
+#include "anatomy/testing/shipped_tissues.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "core/files/data_dir.h"
+#include "config/toml_writer.h"
 
 namespace trocar::anatomy {
 namespace {
 
-TissueTable shipped() {
-  auto table = load_tissue_table(data_dir() / "tissues.toml");
-  EXPECT_TRUE(table) << (table ? "" : table.error().text());
-  return table.value_or(TissueTable{});
-}
+using testing::shipped_tissues;
 
 /// Loads the shipped table with its [transfer] changed at one place.
 Result<TissueTable> changed(const std::string& from, const std::string& to) {
-  std::string text = shipped().to_toml();
+  std::string text = shipped_tissues().to_toml();
   const std::size_t section = text.find("[transfer]");
   const std::size_t at = text.find(from, section);
   EXPECT_NE(at, std::string::npos) << from;
@@ -28,14 +25,14 @@ Result<TissueTable> changed(const std::string& from, const std::string& to) {
 }
 
 TEST(HuTransferText, ShippedCurvesHaveKnotsThatRiseAndThresholdsInOrder) {
-  const HuTransfer transfer = shipped().transfer;
+  const HuTransfer transfer = shipped_tissues().transfer;
   ASSERT_GE(transfer.knot_count, 8u);
   for (std::size_t n = 1; n < transfer.knot_count; ++n) EXPECT_GT(transfer.hu[n], transfer.hu[n - 1]);
   EXPECT_LT(transfer.gradient_none_hu_per_mm, transfer.gradient_full_hu_per_mm);
 }
 
 TEST(HuTransferText, GasIsNothingAndCompactBoneStopsEveryDevice) {
-  const HuTransfer transfer = shipped().transfer;
+  const HuTransfer transfer = shipped_tissues().transfer;
   for (const double hu : {-1000.0, -500.0, -250.0}) {
     EXPECT_EQ(transfer.at(hu).normal_n, 0.0) << hu;
     EXPECT_EQ(transfer.at(hu).tangential_n, 0.0) << hu;
@@ -48,7 +45,7 @@ TEST(HuTransferText, GasIsNothingAndCompactBoneStopsEveryDevice) {
 }
 
 TEST(HuTransferText, EnhancedVesselsDoNotFeelLikeBone) {
-  const HuTransfer transfer = shipped().transfer;
+  const HuTransfer transfer = shipped_tissues().transfer;
   for (double hu = 120.0; hu <= 200.0; hu += 5.0) {
     EXPECT_LE(transfer.at(hu).normal_n, 1.5 * transfer.at(60.0).normal_n) << hu;
     EXPECT_LE(transfer.at(hu).resistance_n, 1.0) << hu;
@@ -56,7 +53,7 @@ TEST(HuTransferText, EnhancedVesselsDoNotFeelLikeBone) {
 }
 
 TEST(HuTransferText, ATableWithoutTheSectionLoads) {
-  std::string text = shipped().to_toml();
+  std::string text = shipped_tissues().to_toml();
   text.resize(text.find("[transfer]"));
   const auto table = parse_tissue_table(text, "old.toml");
   ASSERT_TRUE(table) << table.error().text();
@@ -65,8 +62,8 @@ TEST(HuTransferText, ATableWithoutTheSectionLoads) {
 }
 
 TEST(HuTransferText, DamagedCurvesAreRefusedWithTheirPlace) {
-  const HuTransfer transfer = shipped().transfer;
-  const std::string second_knot = fmt::format("{}", transfer.hu[1]);
+  const HuTransfer transfer = shipped_tissues().transfer;
+  const std::string second_knot = config::TomlValue(transfer.hu[1]).text();
   std::string too_many = "hu = [-1001";
   for (std::size_t n = 0; n < HuTransfer::kMaxKnots; ++n)
     too_many += fmt::format(", {}", -1000.5 + 0.01 * static_cast<double>(n));
@@ -80,11 +77,11 @@ TEST(HuTransferText, DamagedCurvesAreRefusedWithTheirPlace) {
       {"hu = [", too_many + ", "},
       {"hu = [", "hu = []\nnone = ["},
       {"normal_n = {values = [", "normal_n = {values = [0.0, "},
-      {"normal_n = {values = [0", "normal_n = {values = [-1"},
-      {"normal_n = {values = [0", "normal_n = {values = [201"},
-      {"normal_n = {values = [0", "normal_n = {values = [nan"},
-      {"normal_n = {values = [0", "normal_n = {values = [inf"},
-      {"normal_n = {values = [0", "normal_n = {values = [\"0\""},
+      {"normal_n = {values = [0.0", "normal_n = {values = [-1"},
+      {"normal_n = {values = [0.0", "normal_n = {values = [201"},
+      {"normal_n = {values = [0.0", "normal_n = {values = [nan"},
+      {"normal_n = {values = [0.0", "normal_n = {values = [inf"},
+      {"normal_n = {values = [0.0", "normal_n = {values = [\"0\""},
       {"normal_n =", "normal ="},
       {"source = \"", "note = \""},
       {"factors = [", "factors = [1.2, "},
@@ -103,7 +100,7 @@ TEST(HuTransferText, DamagedCurvesAreRefusedWithTheirPlace) {
 TEST(HuTransferText, AnAssumedCurveNeedsItsFactors) {
   const auto table = changed(", factors = [", ", faktors = [");
   ASSERT_FALSE(table);
-  const std::string text = shipped().to_toml();
+  const std::string text = shipped_tissues().to_toml();
   const std::size_t begin = text.find(", factors = [", text.find("[transfer]"));
   const std::size_t end = text.find(']', begin) + 1;
   const auto without = changed(text.substr(begin, end - begin), "");
@@ -112,7 +109,7 @@ TEST(HuTransferText, AnAssumedCurveNeedsItsFactors) {
 }
 
 TEST(HuTransferText, OverridesReachTheGradientAndWalls) {
-  TissueTable table = shipped();
+  TissueTable table = shipped_tissues();
   ASSERT_TRUE(apply_override(table, "transfer.gradient_scale_mm=2.5"));
   EXPECT_EQ(table.transfer.gradient_scale_mm, 2.5);
   EXPECT_EQ(table.provenance.at("transfer.gradient_scale_mm").source, "set by the user");
@@ -130,7 +127,7 @@ TEST(HuTransferText, OverridesReachTheGradientAndWalls) {
 }
 
 TEST(HuTransferText, UnusableOverridesChangeNothing) {
-  const TissueTable before = shipped();
+  const TissueTable before = shipped_tissues();
   for (const char* bad : {"transfer.gradient_scale_mm=0", "transfer.scale=nan", "transfer.hu=1", "transfer.normal_n=3",
                           "transfer.none=999", "transfer.full=1", "muscle.wall=2", "muscle.wall=never",
                           "adipose.wall=1", "liver.young=-1", "liver.young=1000001"}) {
@@ -146,7 +143,7 @@ TEST(HuTransferText, UnusableOverridesChangeNothing) {
 }
 
 TEST(HuTransferText, ATableStoredBeforeYoungsModulusLoadsAndAFileWithoutItDoesNot) {
-  std::string text = shipped().to_toml();
+  std::string text = shipped_tissues().to_toml();
   const auto drop_young = [&](std::string& t) {
     for (std::size_t at = t.find("young_kpa"); at != std::string::npos && at < t.find("[transfer]");
          at = t.find("young_kpa"))

@@ -6,14 +6,12 @@
 #include <cmath>
 #include <set>
 
-#include "core/files/data_dir.h"
+#include "anatomy/testing/shipped_tissues.h"
 
 namespace trocar::anatomy {
 namespace {
 
-TissueTable shipped() {
-  return load_tissue_table(data_dir() / "tissues.toml").value();
-}
+using testing::shipped_tissues;
 
 const TissueParameter* find(const std::vector<TissueParameterGroup>& groups, std::string_view group,
                             std::string_view key) {
@@ -24,7 +22,7 @@ const TissueParameter* find(const std::vector<TissueParameterGroup>& groups, std
 }
 
 TEST(TissueParameters, OverrideOfEachIsReadBackAsIt) {
-  const TissueTable table = shipped();
+  const TissueTable table = shipped_tissues();
   for (const auto& group : tissue_parameters(table)) {
     std::set<std::string_view> keys;
     for (const TissueParameter& parameter : group.parameters) {
@@ -55,7 +53,7 @@ TEST(TissueParameters, OverrideOfEachIsReadBackAsIt) {
 }
 
 TEST(TissueParameters, HaveTheNumbersOfTableOneOfPaperA) {
-  const auto groups = tissue_parameters(shipped());
+  const auto groups = tissue_parameters(shipped_tissues());
   const std::tuple<const char*, const char*, double> table_1[] = {
       {"skin", "k", 0.46},     {"skin", "nu", 0.02},   {"skin", "mu", 0.18},  {"skin", "dx", 0.1},
       {"adipose", "nu", 0.01}, {"adipose", "mu", 0.1}, {"muscle", "k", 0.19}, {"muscle", "nu", 0.03},
@@ -72,7 +70,7 @@ TEST(TissueParameters, HaveTheNumbersOfTableOneOfPaperA) {
 }
 
 TEST(TissueParameters, TissuesUnderOneSurfaceShareItsNumbers) {
-  const auto groups = tissue_parameters(shipped());
+  const auto groups = tissue_parameters(shipped_tissues());
   const TissueParameter* parameter = find(groups, "liver_lesion", "k");
   ASSERT_NE(parameter, nullptr);
   EXPECT_EQ(parameter->setting, "liver.k");
@@ -82,7 +80,7 @@ TEST(TissueParameters, TissuesUnderOneSurfaceShareItsNumbers) {
 }
 
 TEST(TissueParameters, ScalesBeginAtOrBelowEveryNumber) {
-  for (const auto& group : tissue_parameters(shipped()))
+  for (const auto& group : tissue_parameters(shipped_tissues()))
     for (const auto& parameter : group.parameters) {
       if (parameter.log_from > 0.0 && parameter.value > 0.0) {
         EXPECT_LE(parameter.log_from, parameter.value) << parameter.setting;

@@ -2,18 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files/data_dir.h"
+#include "anatomy/testing/shipped_tissues.h"
 
 namespace trocar::anatomy {
 namespace {
 
-using Settings = std::vector<std::string>;
+using testing::shipped_tissues;
 
-TissueTable shipped() {
-  auto table = load_tissue_table(data_dir() / "tissues.toml");
-  EXPECT_TRUE(table) << table.error().text();
-  return *std::move(table);
-}
+using Settings = std::vector<std::string>;
 
 TissueTable with(TissueTable table, const Settings& settings) {
   for (const std::string& setting : settings) {
@@ -24,7 +20,7 @@ TissueTable with(TissueTable table, const Settings& settings) {
 }
 
 TEST(TissueSettings, NameWhatMakesOneTableOfAnother) {
-  const TissueTable table = shipped();
+  const TissueTable table = shipped_tissues();
   EXPECT_TRUE(changed_settings(table, table).empty());
   const Settings settings{"skin.fp=6",   "tissues.liver.nu=0.011", "bone.fp=50",
                           "skin.wall=1", "skin.thickness_mm=3.5",  "transfer.tn_factor=1.3"};
@@ -38,7 +34,7 @@ TEST(TissueSettings, NameWhatMakesOneTableOfAnother) {
 }
 
 TEST(TissueSettings, OfTheUserAreThoseThatWereSet) {
-  const TissueTable table = shipped();
+  const TissueTable table = shipped_tissues();
   EXPECT_TRUE(user_settings(table).empty());
   EXPECT_EQ(user_settings(with(table, {"skin.fp=6"})), Settings{"skin.fp=6"});
   const auto stored = parse_tissue_table(with(table, {"skin.fp=6"}).to_toml(), "stored");
@@ -47,17 +43,17 @@ TEST(TissueSettings, OfTheUserAreThoseThatWereSet) {
 }
 
 TEST(TissueSettings, SayThatATableWasReplaced) {
-  TissueTable other = shipped();
+  TissueTable other = shipped_tissues();
   other.layers.front().name = "hide";
-  EXPECT_EQ(changed_settings(shipped(), other), Settings{"tissues=replaced"});
-  other = shipped();
+  EXPECT_EQ(changed_settings(shipped_tissues(), other), Settings{"tissues=replaced"});
+  other = shipped_tissues();
   other.transfer.laws[0].normal_n += 1.0;
   other.transfer.laws[1].normal_n += 1.0;
-  EXPECT_EQ(changed_settings(shipped(), other), Settings{"transfer.tn=replaced"});
+  EXPECT_EQ(changed_settings(shipped_tissues(), other), Settings{"transfer.tn=replaced"});
 }
 
 TEST(TissueSettings, SurviveNamesWithControlCharacters) {
-  TissueTable table = shipped();
+  TissueTable table = shipped_tissues();
   table.profile =
       "a\x7f"
       "b\tc";

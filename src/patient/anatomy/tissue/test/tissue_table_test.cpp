@@ -343,8 +343,8 @@ TEST(TissueTable, DamagedTableIsRefusedWithItsPlace) {
   refused("value = 0.46", "value = nan");
   refused("layer = \"muscle\"", "layer = \"mussle\"");
   refused("friction_mu", "friction");
-  refused("[tissues.\"skin\"]", "[tissues.\"hide\"]");
-  refused("[tissues.\"liver\"]", "[tissues.\"air\"]");
+  refused("[tissues.skin]", "[tissues.hide]");
+  refused("[tissues.liver]", "[tissues.air]");
   refused("source = \"paper A, Table 1\"", "note = \"\"");
   refused("never = true", "never = false");
   refused("[skin]", "[skin2]");

@@ -32,8 +32,7 @@ inline std::shared_ptr<anatomy::VirtualPatient> flat_patient(const std::function
   patient->skin_distance_mm = volume::FloatGrid(geometry, 0.0F);
   for (std::size_t n = 0; n < patient->labels.voxels.size(); ++n) {
     const volume::Index3 ijk = geometry.index_of(n);
-    const Vec3 p =
-        geometry.to_mm({static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])});
+    const Vec3 p = geometry.centre_mm(ijk);
     patient->skin_distance_mm.voxels[n] = static_cast<float>(-p.z());
     if (p.z() >= 0.0) patient->labels.voxels[n] = label_at(p);
   }

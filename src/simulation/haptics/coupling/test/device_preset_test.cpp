@@ -9,6 +9,7 @@
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
+#include "core/testing/changed_file.h"
 #include "haptics/test/layered_patient.h"
 
 namespace trocar::haptics {
@@ -99,13 +100,9 @@ TEST(DevicePreset, PointingDeviceGivesNoForce) {
   EXPECT_TRUE(load_device_preset(kFile, "omni")->has_force());
 }
 
-/// The shipped table with one text replaced.
+/// Loads the shipped table with one text replaced.
 Result<std::vector<DevicePreset>> load_changed(const std::string& from, const std::string& to) {
-  std::string text = *read_file(kFile);
-  const TemporaryFolder folder;
-  text.replace(text.find(from), from.size(), to);
-  EXPECT_TRUE(write_file_atomically(folder / "devices.toml", text));
-  return load_device_presets(folder / "devices.toml");
+  return testing::load_changed(kFile, from, to, [](const auto& file) { return load_device_presets(file); });
 }
 
 TEST(DevicePreset, CalibrationPutsTheBaseIntoTheRoom) {
@@ -148,15 +145,7 @@ TEST(DevicePreset, UnknownNameListsTheKnownOnes) {
 }
 
 TEST(DevicePreset, ImpossibleDeviceIsRefused) {
-  const std::string good = *read_file(kFile);
-  const TemporaryFolder folder;
-  const auto path = folder / "devices.toml";
-  const auto is_refused = [&](const std::string& from, const std::string& to) {
-    std::string text = good;
-    text.replace(text.find(from), from.size(), to);
-    EXPECT_TRUE(write_file_atomically(path, text));
-    return !load_device_presets(path);
-  };
+  const auto is_refused = [](const std::string& from, const std::string& to) { return !load_changed(from, to); };
   EXPECT_FALSE(is_refused("title", "title"));
   EXPECT_TRUE(is_refused("sensed_dof = 6", "sensed_dof = 5"));
   EXPECT_TRUE(is_refused("actuated_dof = 6", "actuated_dof = 3"));  // and has torques

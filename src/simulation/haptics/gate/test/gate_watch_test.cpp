@@ -10,26 +10,15 @@
 #include "haptics/gate/detail/gate_stages.h"
 #include "haptics/gate/device_gate.h"
 #include "haptics/gate/loop_limits.h"
+#include "haptics/gate/test/gate_rig.h"
 
 namespace trocar::haptics {
 namespace {
 
+using testing::open_gate;
+using testing::wanting;
+
 constexpr double kDt_s = 0.001;
-
-GateInput wanting(const Vec3& force_n) {
-  GateInput input;
-  input.wanted.force_n = force_n;
-  input.is_wanted = true;
-  return input;
-}
-
-GateState open_gate(const GateParams& params = {}) {
-  GateState state;
-  for (int i = 0; i < 5000 && state.mode != telemetry::GateMode::kOn; ++i)
-    step_gate(state, wanting(Vec3::Zero()), params);
-  EXPECT_EQ(state.mode, telemetry::GateMode::kOn);
-  return state;
-}
 
 /// Growth a period of a mass with viscosity on a coupling whose force is held for a period and one period late, in the
 /// last half of many periods: above 1 it swings up. Exact for a constant force.

@@ -6,29 +6,16 @@
 
 #include "core/random.h"
 #include "haptics/gate/safety_gate.h"
+#include "haptics/gate/test/gate_rig.h"
 
 namespace trocar::haptics {
 namespace {
 
+using testing::force_n;
+using testing::open_gate;
+using testing::wanting;
+
 constexpr double kDt_s = 0.001;
-
-GateInput wanting(const Vec3& force_n, const Vec3& torque_nmm = Vec3::Zero()) {
-  GateInput input;
-  input.wanted = {force_n, torque_nmm};
-  input.is_wanted = true;
-  return input;
-}
-
-GateState open_gate(const GateParams& params = {}) {
-  GateState state;
-  for (int i = 0; i < 5000 && state.mode != telemetry::GateMode::kOn; ++i)
-    step_gate(state, wanting(Vec3::Zero()), params);
-  return state;
-}
-
-double force_n(const GateOutput& output) {
-  return output.wrench.force_n.norm();
-}
 
 // --- drops and rises ---
 

@@ -13,32 +13,17 @@
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
 #include "haptics/gate/device_gate.h"
+#include "haptics/gate/test/gate_rig.h"
 
 namespace trocar::haptics {
 namespace {
 
+using testing::force_n;
+using testing::open_gate;
+using testing::wanting;
+
 constexpr double kDt_s = 0.001;
 constexpr double kRounding_n = 1e-9;  // sums of a few hundred steps of a ramp
-
-GateInput wanting(const Vec3& force_n) {
-  GateInput input;
-  input.wanted.force_n = force_n;
-  input.is_wanted = true;
-  return input;
-}
-
-/// A gate that gives full force, as after a safe start in air.
-GateState open_gate(const GateParams& params = {}) {
-  GateState state;
-  for (int i = 0; i < 5000 && state.mode != telemetry::GateMode::kOn; ++i)
-    step_gate(state, wanting(Vec3::Zero()), params);
-  EXPECT_EQ(state.mode, telemetry::GateMode::kOn);
-  return state;
-}
-
-double force_n(const GateOutput& output) {
-  return output.wrench.force_n.norm();
-}
 
 bool is_within(const Wrench& wrench, const GateParams& params) {
   return wrench.force_n.allFinite() && wrench.torque_nmm.allFinite() && wrench.force_n.norm() <= params.peak_force_n &&

@@ -171,7 +171,7 @@ class Finder {
   double depth_mm(std::size_t v) const { return static_cast<double>(depth_.voxels[v]); }
   Vec3 place(std::size_t v) const {
     const volume::Index3 at = geometry_.index_of(v);
-    return geometry_.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
+    return geometry_.centre_mm(at);
   }
   /// True if a point is clearly outside the balls around all nodes.
   bool stands_out(std::size_t tip) const {

@@ -29,8 +29,7 @@ Reach find_reach(const anatomy::VirtualPatient& patient, std::uint8_t label, con
     if (!is_near[patient.labels.voxels[n]]) continue;
     reach.has_any = true;
     const volume::Index3 at = geometry.index_of(n);
-    const Vec3 p_P =
-        geometry.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
+    const Vec3 p_P = geometry.centre_mm(at);
     for (std::size_t t = 0; t < trees.size(); ++t)
       for (std::size_t e = 0; e < trees[t].tips.size(); ++e) {
         double& least = reach.distance_mm[t][e];

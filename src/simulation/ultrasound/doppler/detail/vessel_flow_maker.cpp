@@ -26,7 +26,7 @@ struct Owner {
 
 Vec3 voxel_place(const volume::GridGeometry& geometry, std::size_t n) {
   const volume::Index3 at = geometry.index_of(n);
-  return geometry.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
+  return geometry.centre_mm(at);
 }
 
 /// Unit tangent of the flow, and distance from the centreline, at a position near one of its points.
@@ -162,8 +162,7 @@ VesselFlowMaker::Lumen VesselFlowMaker::find_lumen(const anatomy::Label& label) 
   if (box.high[0] < 0) return {};
   volume::GridGeometry cut = patient_.labels.geometry;
   for (std::size_t a = 0; a < 3; ++a) cut.size[a] = box.high[a] - box.low[a] + 1;
-  cut.origin_P = patient_.labels.geometry.to_mm(
-      Vec3(static_cast<double>(box.low[0]), static_cast<double>(box.low[1]), static_cast<double>(box.low[2])));
+  cut.origin_P = patient_.labels.geometry.centre_mm(box.low);
   volume::MaskGrid own(cut);
   volume::MaskGrid joining(cut);
   const std::array<bool, 256> joins = find_joining(label);

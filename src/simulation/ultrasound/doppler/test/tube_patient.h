@@ -7,6 +7,7 @@
 
 #include "anatomy/patient.h"
 #include "ultrasound/doppler/flow_table.h"
+#include "volume/testing/centred_grid.h"
 
 namespace trocar::testing {
 
@@ -16,20 +17,13 @@ inline anatomy::VirtualPatient make_tube_patient(
     const std::vector<std::pair<std::string, std::function<bool(const Vec3&)>>>& shapes) {
   anatomy::VirtualPatient patient;
   patient.name = "tubes";
-  volume::GridGeometry geometry;
-  geometry.spacing_mm = spacing_mm;
-  for (std::size_t a = 0; a < 3; ++a)
-    geometry.size[a] = std::llround(extent_mm[static_cast<Eigen::Index>(a)] / spacing_mm[static_cast<Eigen::Index>(a)]);
-  const Vec3 size(static_cast<double>(geometry.size[0]), static_cast<double>(geometry.size[1]),
-                  static_cast<double>(geometry.size[2]));
-  geometry.origin_P = -0.5 * (size - Vec3::Ones()).cwiseProduct(spacing_mm);
+  const volume::GridGeometry geometry = centred_grid(extent_mm, spacing_mm);
   patient.labels = volume::LabelGrid(geometry);
   for (std::size_t s = 0; s < shapes.size(); ++s)
     patient.label_table.labels.push_back({static_cast<std::uint8_t>(s + 1), shapes[s].first, "vessel", {}});
   for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
     const volume::Index3 at = geometry.index_of(n);
-    const Vec3 p_P =
-        geometry.to_mm(Vec3(static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])));
+    const Vec3 p_P = geometry.centre_mm(at);
     for (std::size_t s = shapes.size(); s-- > 0;)
       if (shapes[s].second(p_P)) patient.labels.voxels[n] = static_cast<std::uint8_t>(s + 1);
   }

@@ -31,7 +31,7 @@ void fit_frame(FrameState& frame, const ScanPlan& plan) {
   for (auto* echoes : {&frame.re, &frame.im}) echoes->assign(plan.echo_row(plan.lines + plan.lateral_reach), 0.0F);
 }
 
-void forget_borders(FrameState& frame) noexcept {
+void clear_borders(FrameState& frame) noexcept {
   std::fill(frame.border_counts.begin(), frame.border_counts.end(), std::uint8_t{0});
 }
 

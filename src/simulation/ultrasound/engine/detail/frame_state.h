@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "geometry/pose.h"
@@ -18,14 +19,17 @@ namespace trocar::ultrasound::detail {
 struct LineWalk {
   std::array<float, 3> origin{}, along{}, lateral{};  ///< Index, index a mm.
   /// Distance behind the mirror, mm: [0] + [1] * along + [2] * elevation + [3] * lateral.
-  std::array<float, 4> mirror{-1e30F, 0.0F, 0.0F, 0.0F};
+  std::array<float, 4> mirror{};
   std::array<float, 3> mirror_normal{};  ///< Index for each mm of distance, twice.
   float mirror_gain = 0.0F;              ///< Amplitude of what the mirror shows.
-  float mirror_depth_mm = 1e30F;         ///< Along the central plane, from the face; 1e30: no mirror.
+  /// Along the central plane, from the face; infinite: no mirror.
+  float mirror_depth_mm = std::numeric_limits<float>::infinity();
   float mirror_reflection = 0.0F;
   std::uint8_t mirror_before = 0, mirror_behind = 0;  ///< Tissues.
   float pressed_mm = 0.0F;
   float coupling = 1.0F;
+
+  bool has_mirror() const noexcept { return mirror_depth_mm < std::numeric_limits<float>::infinity(); }
 };
 
 /// A border that a scanline crosses.
@@ -108,6 +112,6 @@ FrameState make_frame_state(const AcousticScene& scene);
 /// Takes buffers for a plan.
 void fit_frame(FrameState& frame, const ScanPlan& plan);
 /// Before a frame: no border is known on any plane, so that nothing of the last frame can be read.
-void forget_borders(FrameState& frame) noexcept;
+void clear_borders(FrameState& frame) noexcept;
 
 }  // namespace trocar::ultrasound::detail

@@ -48,12 +48,13 @@ void add_ring_down(const ScanPlan& plan, FrameState& frame, int line) noexcept {
   }
 }
 
-void add_reverberation(const ScanPlan& plan, const FrameState& frame, int look, int line, BasebandFrame& out) noexcept {
+void add_reverberation(const ScanPlan& plan, const FrameState& frame, int angle, int line,
+                       BasebandFrame& out) noexcept {
   const Reflector& reflector = frame.reflectors[static_cast<std::size_t>(line)];
   const float again = kFaceReflection * reflector.amplitude;
   const auto lag = static_cast<int>(reflector.shown + 0.5F);
   if (again < kLeastReverberation || lag < 8) return;
-  const std::size_t row = static_cast<std::size_t>(look * plan.lines + line) * static_cast<std::size_t>(plan.samples);
+  const std::size_t row = static_cast<std::size_t>(angle * plan.lines + line) * static_cast<std::size_t>(plan.samples);
   // From near to far, so that repeated echoes repeat again: A-lines at 2, 3, 4 … times the depth.
   for (int s = lag; s < plan.samples; ++s) {
     out.re[row + static_cast<std::size_t>(s)] += again * out.re[row + static_cast<std::size_t>(s - lag)];

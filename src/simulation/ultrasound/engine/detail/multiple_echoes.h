@@ -11,6 +11,6 @@ namespace trocar::ultrasound::detail {
 void add_ring_down(const ScanPlan& plan, FrameState& frame, int line) noexcept;
 /// Echoes between the face and a reflector that is smooth and square to the scanline: everything comes again, later by
 /// the reflector's depth, and again (A-lines).
-void add_reverberation(const ScanPlan& plan, const FrameState& frame, int look, int line, BasebandFrame& out) noexcept;
+void add_reverberation(const ScanPlan& plan, const FrameState& frame, int angle, int line, BasebandFrame& out) noexcept;
 
 }  // namespace trocar::ultrasound::detail

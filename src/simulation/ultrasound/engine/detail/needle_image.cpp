@@ -141,7 +141,7 @@ void darken(const ScanPlan& plan, FrameState& frame, int line, const Cover& cove
       ScattererGain* gains =
           frame.gain.data() +
           (static_cast<std::size_t>(plane) * static_cast<std::size_t>(plan.lines) + at_line) * samples + at;
-      for (std::size_t k = 0; k < n; ++k) gains[k] = weaken(gains[k], neper);
+      for (std::size_t k = 0; k < n; ++k) gains[k] = attenuate(gains[k], neper);
     }
     fade(frame.way_gain.data() + at_line * samples + at);
     const std::size_t row = plan.echo_row(line) + at;

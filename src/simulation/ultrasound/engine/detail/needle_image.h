@@ -69,9 +69,9 @@ struct NeedleImage {
 
 NeedleImage make_needle_image(const ScanPlan& plan);
 
-/// Lays needles out along the scanlines and sets frame.drag. After bend_lines; allocates nothing.
-void lay_needles(const ScanPlan& plan, FrameState& frame, std::span<const NeedleEcho> needles,
-                 NeedleImage& image) noexcept;
+/// Lays needles out along the scanlines and sets frame.drag. After refract_lines; allocates nothing.
+void lay_out_needles(const ScanPlan& plan, FrameState& frame, std::span<const NeedleEcho> needles,
+                     NeedleImage& image) noexcept;
 
 /// Shadows and echoes on the scanlines [first, last), whose gains and surface echoes are there.
 void add_needles(const ScanPlan& plan, FrameState& frame, const NeedleImage& image, int first, int last) noexcept;

@@ -241,8 +241,8 @@ NeedleImage make_needle_image(const ScanPlan& plan) {
   return image;
 }
 
-void lay_needles(const ScanPlan& plan, FrameState& frame, std::span<const NeedleEcho> needles,
-                 NeedleImage& image) noexcept {
+void lay_out_needles(const ScanPlan& plan, FrameState& frame, std::span<const NeedleEcho> needles,
+                     NeedleImage& image) noexcept {
   image.count = 0;
   frame.drag = {};
   const Pose X_TP = frame.X_PT.inverse();

@@ -10,11 +10,11 @@ namespace trocar::ultrasound::detail {
 namespace {
 
 /// The point's position among scanlines and samples of `walk`, and in elevation; line < -1: no echo.
-struct Heard {
+struct ImagedPoint {
   double line = -10.0, walk = 0.0, zeta = 0.0;
 };
 
-Heard hear_point(const ScanPlan& plan, const FrameState& frame, const Vec3& p_T) noexcept {
+ImagedPoint image_point(const ScanPlan& plan, const FrameState& frame, const Vec3& p_T) noexcept {
   const Polar at = plan.geometry.to_polar(Vec2(p_T.x(), p_T.y()));
   const auto nearest = [&](double line) {
     return static_cast<std::size_t>(std::clamp(std::lround(line), 0L, plan.lines - 1L));
@@ -42,22 +42,22 @@ void add_points(const ScanPlan& plan, FrameState& frame) noexcept {
       kBeamEdge * *std::max_element(plan.elevation_sigma_mm.begin(), plan.elevation_sigma_mm.end()));
   for (const AcousticPoint& point : frame.scene->points) {
     if (std::abs(X_TP.R().row(2).dot(point.p_P) + X_TP.p().z()) > thickest_mm) continue;
-    const Heard heard = hear_point(plan, frame, X_TP * point.p_P);
-    if (heard.line < -1.0 || std::abs(heard.zeta) > static_cast<double>(kBeamEdge)) continue;
-    const auto line = static_cast<int>(std::floor(heard.line));
-    const auto nearest = std::clamp(static_cast<int>(std::lround(heard.line)), 0, plan.lines - 1);
+    const ImagedPoint imaged = image_point(plan, frame, X_TP * point.p_P);
+    if (imaged.line < -1.0 || std::abs(imaged.zeta) > static_cast<double>(kBeamEdge)) continue;
+    const auto line = static_cast<int>(std::floor(imaged.line));
+    const auto nearest = std::clamp(static_cast<int>(std::lround(imaged.line)), 0, plan.lines - 1);
     const std::size_t place = static_cast<std::size_t>(nearest) * static_cast<std::size_t>(plan.samples) +
-                              static_cast<std::size_t>(heard.walk);
+                              static_cast<std::size_t>(imaged.walk);
     // Its own strength and the losses of the path, without the tissue's backscatter.
-    const double amplitude = std::pow(10.0, point.amplitude_db / 20.0) * std::exp(-0.5 * heard.zeta * heard.zeta) *
+    const double amplitude = std::pow(10.0, point.amplitude_db / 20.0) * std::exp(-0.5 * imaged.zeta * imaged.zeta) *
                              static_cast<double>(frame.way_gain[place]);
-    const double shown = heard.walk + static_cast<double>(frame.delay[place]);
+    const double shown = imaged.walk + static_cast<double>(frame.delay[place]);
     const auto sample = static_cast<std::ptrdiff_t>(std::lround(shown));
     if (sample < 0 || sample >= plan.samples) continue;
     const double turn = 2.0 * std::numbers::pi * shown * static_cast<double>(plan.cycles_per_sample);
     for (int side = 0; side < 2; ++side) {
       if (line + side < 0 || line + side >= plan.lines) continue;
-      const double part = side == 0 ? 1.0 - (heard.line - line) : heard.line - line;
+      const double part = side == 0 ? 1.0 - (imaged.line - line) : imaged.line - line;
       const auto to = plan.echo_row(line + side) + static_cast<std::size_t>(sample);
       frame.re[to] += static_cast<float>(part * amplitude * std::cos(turn));
       frame.im[to] -= static_cast<float>(part * amplitude * std::sin(turn));

@@ -20,7 +20,7 @@ using VF = hn::Vec<F>;
 
 /// The lateral point spread of one scanline, for the central angle and `kSides` steering angles to each side.
 template <std::size_t kSides>
-HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, int line, LookRows& rows) {
+HWY_INLINE void spread_laterally(const ScanPlan& plan, const FrameState& frame, int line, SteeringRows& rows) {
   const F f;
   const auto lanes = static_cast<int>(hn::Lanes(f));
   const std::ptrdiff_t stride = plan.stride, samples = plan.samples;
@@ -90,8 +90,8 @@ HWY_INLINE void spread_axially(const ScanPlan& plan, const float* from, float* t
   }
 }
 
-void spread(const ScanPlan& plan, const FrameState& frame, int line, LookRows& rows, BasebandFrame& out) {
-  switch (plan.looks / 2) {
+void spread(const ScanPlan& plan, const FrameState& frame, int line, SteeringRows& rows, BasebandFrame& out) {
+  switch (plan.steering_angles / 2) {
     case 0:
       spread_laterally<0>(plan, frame, line, rows);
       break;
@@ -102,12 +102,12 @@ void spread(const ScanPlan& plan, const FrameState& frame, int line, LookRows& r
       spread_laterally<2>(plan, frame, line, rows);
       break;
   }
-  rows.silence_behind();
-  for (std::size_t look = 0; look < static_cast<std::size_t>(plan.looks); ++look) {
-    const std::size_t to = (look * static_cast<std::size_t>(plan.lines) + static_cast<std::size_t>(line)) *
+  rows.clear_padding();
+  for (std::size_t angle = 0; angle < static_cast<std::size_t>(plan.steering_angles); ++angle) {
+    const std::size_t to = (angle * static_cast<std::size_t>(plan.lines) + static_cast<std::size_t>(line)) *
                            static_cast<std::size_t>(plan.samples);
-    spread_axially(plan, rows.re(look), out.re.data() + to);
-    spread_axially(plan, rows.im(look), out.im.data() + to);
+    spread_axially(plan, rows.re(angle), out.re.data() + to);
+    spread_axially(plan, rows.im(angle), out.im.data() + to);
   }
 }
 
@@ -136,20 +136,20 @@ namespace trocar::ultrasound::detail {
 HWY_EXPORT(spread);
 HWY_EXPORT(gains);
 
-LookRows::LookRows(const ScanPlan& plan)
+SteeringRows::SteeringRows(const ScanPlan& plan)
     : stride_(static_cast<std::size_t>(plan.stride)), samples_(static_cast<std::size_t>(plan.samples)) {
   // Steering angles come in pairs in addition to the central one.
-  looks_ = static_cast<std::size_t>(plan.looks / 2 * 2 + 1);
-  values_.assign(2 * looks_ * stride_, 0.0F);
+  angles_ = static_cast<std::size_t>(plan.steering_angles / 2 * 2 + 1);
+  values_.assign(2 * angles_ * stride_, 0.0F);
 }
 
-void LookRows::silence_behind() noexcept {
+void SteeringRows::clear_padding() noexcept {
   constexpr std::size_t kMostLanes = 16;
-  for (std::size_t row = 0; row < 2 * looks_; ++row)
+  for (std::size_t row = 0; row < 2 * angles_; ++row)
     std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(row * stride_ + kPad + samples_), kMostLanes, 0.0F);
 }
 
-void spread_echoes(const ScanPlan& plan, const FrameState& frame, int line, LookRows& rows,
+void spread_echoes(const ScanPlan& plan, const FrameState& frame, int line, SteeringRows& rows,
                    BasebandFrame& out) noexcept {
   HWY_DYNAMIC_DISPATCH(spread)(plan, frame, line, rows, out);
 }

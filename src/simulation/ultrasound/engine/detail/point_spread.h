@@ -9,26 +9,26 @@
 
 namespace trocar::ultrasound::detail {
 
-/// One scanline of all looks on its way through spread_echoes; a task has its own.
-class LookRows {
+/// One scanline at all steering angles on its way through spread_echoes; a task has its own.
+class SteeringRows {
  public:
-  LookRows() = default;
-  explicit LookRows(const ScanPlan& plan);
+  SteeringRows() = default;
+  explicit SteeringRows(const ScanPlan& plan);
 
-  /// Samples of a look, with silence before and behind them.
-  float* re(std::size_t look) noexcept { return values_.data() + 2 * look * stride_ + kPad; }
-  float* im(std::size_t look) noexcept { return re(look) + stride_; }
+  /// Samples of one angle, with zeros before and behind them.
+  float* re(std::size_t angle) noexcept { return values_.data() + 2 * angle * stride_ + kPad; }
+  float* im(std::size_t angle) noexcept { return re(angle) + stride_; }
   /// Vectors write beyond the last sample: makes that silence again.
-  void silence_behind() noexcept;
+  void clear_padding() noexcept;
 
  private:
-  std::size_t stride_ = 0, samples_ = 0, looks_ = 1;
+  std::size_t stride_ = 0, samples_ = 0, angles_ = 1;
   std::vector<float> values_;
 };
 
 /// Spreads the echoes `re` and `im` of all scanlines, laterally and along the pulse, to one scanline's samples of every
-/// look.
-void spread_echoes(const ScanPlan& plan, const FrameState& frame, int line, LookRows& rows,
+/// angle.
+void spread_echoes(const ScanPlan& plan, const FrameState& frame, int line, SteeringRows& rows,
                    BasebandFrame& out) noexcept;
 
 /// gain[s] = exp(log_gain[s] + added[s]), 0 where that is nothing. Both inputs reach 16 floats beyond n.

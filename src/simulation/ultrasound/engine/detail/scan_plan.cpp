@@ -58,18 +58,18 @@ void fill_planes(ScanPlan& plan) {
 constexpr double kSharingVariance = 1.0 / 6.0;
 
 /// Compounding angles receive from the sides: the same beam on a tilted wave front. `sigma` of the beam, scanlines.
-void fill_looks(ScanPlan& plan, const std::vector<double>& sigma) {
-  constexpr double kLookTurn = 1.7;  // rad per sigma: speckle correlation of 0.24 with the central angle
+void fill_steering_angles(ScanPlan& plan, const std::vector<double>& sigma) {
+  constexpr double kSteeringTurn = 1.7;  // rad per sigma: speckle correlation of 0.24 with the central angle
   constexpr double kMostTurn = 0.45 * std::numbers::pi;
-  plan.looks = plan.acquisition.looks;
+  plan.steering_angles = plan.acquisition.steering_angles;
   plan.main_lobe_reach = *std::max_element(plan.main_lobe_reach_at.begin(), plan.main_lobe_reach_at.end());
-  const auto sides = static_cast<std::size_t>(plan.looks / 2);
+  const auto sides = static_cast<std::size_t>(plan.steering_angles / 2);
   plan.side_cosine.assign(plan.side_row(sides, 1) + 16, 0.0F);
   plan.side_sine = plan.side_cosine;
   for (std::size_t side = 0; side < sides; ++side) {
     for (int k = 1; k <= plan.main_lobe_reach; ++k) {
       for (std::size_t s = 0; s < sigma.size(); ++s) {
-        const double turn = static_cast<double>(side + 1) * k * std::min(kLookTurn / sigma[s], kMostTurn);
+        const double turn = static_cast<double>(side + 1) * k * std::min(kSteeringTurn / sigma[s], kMostTurn);
         const auto weight = static_cast<double>(plan.lateral[static_cast<std::size_t>(k) * sigma.size() + s]);
         plan.side_cosine[plan.side_row(side, k) + s] = static_cast<float>(weight * std::cos(turn));
         plan.side_sine[plan.side_row(side, k) + s] = static_cast<float>(weight * std::sin(turn));
@@ -115,7 +115,7 @@ void fill_lateral(ScanPlan& plan) {
     const int reach = std::clamp(static_cast<int>(std::ceil(reach_sigma * kernel_sigma[s])), 1, plan.lateral_reach);
     plan.lateral_reach_at[s / 16] = std::max(plan.lateral_reach_at[s / 16], reach);
   }
-  fill_looks(plan, sigma);
+  fill_steering_angles(plan, sigma);
 }
 
 void fill_axial(ScanPlan& plan) {

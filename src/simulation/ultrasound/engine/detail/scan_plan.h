@@ -54,12 +54,13 @@ struct ScanPlan {
   std::vector<float> most_rank;  ///< Share of the scatterers that are enough there: resolution cells differ in size.
   std::vector<float> surface_scale;  ///< Makes a plane reflector independent of how many scanlines see it.
 
-  int looks = 1;               ///< Of the compound: straight on, then pairs from angles to either side.
+  int steering_angles = 1;     ///< Of the compound: straight on, then pairs from angles to either side.
   std::vector<float> lateral;  ///< (lateral_reach + 1) rows of `samples` weights: of scanlines 0, 1, 2 … away; 16 more.
   int lateral_reach = 0;
   int main_lobe_reach = 0;
   std::vector<int> main_lobe_reach_at;
-  /// Of looks from the side: rows of `samples`, lateral weights times cosine and sine of the phase between scanlines.
+  /// Of steering angles to the sides: rows of `samples`, lateral weights times cosine and sine of the phase between
+  /// scanlines.
   std::vector<float> side_cosine, side_sine;
   std::vector<int> lateral_reach_at;  ///< The same for each 16 samples: the fan's scanlines part with depth.
   std::vector<float> axial;           ///< axial_reach + 1 weights: half of the symmetric pulse.

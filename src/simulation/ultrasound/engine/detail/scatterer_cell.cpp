@@ -79,14 +79,12 @@ Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int las
 
 CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept {
   CellBox box{};
-  Vec3 low = Vec3::Constant(1e30), high = Vec3::Constant(-1e30);
+  Eigen::AlignedBox3d bounds_P;
   for (const double line : {cell.low_line, 0.5 * (cell.low_line + cell.high_line), cell.high_line}) {
     for (const float rest : {cell.first_rest, cell.last_rest}) {
       const Vec2 p = plan.geometry.to_cartesian({line, (static_cast<double>(rest) + 0.5) * plan.geometry.sample_mm()});
       for (const float z : {-cell.half_thickness_mm, cell.half_thickness_mm}) {
-        const Vec3 p_P = frame.X_PT * Vec3(p.x(), p.y(), static_cast<double>(z));
-        low = low.cwiseMin(p_P);
-        high = high.cwiseMax(p_P);
+        bounds_P.extend(frame.X_PT * Vec3(p.x(), p.y(), static_cast<double>(z)));
       }
     }
   }
@@ -96,8 +94,8 @@ CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) 
   };
   for (std::size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<Eigen::Index>(a);
-    box.low[a] = brick_of(low[axis] - reach_mm);
-    box.high[a] = brick_of(high[axis] + reach_mm);
+    box.low[a] = brick_of(bounds_P.min()[axis] - reach_mm);
+    box.high[a] = brick_of(bounds_P.max()[axis] + reach_mm);
   }
   return box;
 }

@@ -165,7 +165,8 @@ HWY_INLINE VF bent_line(const ScanPlan& plan, const FrameState& frame, VF line, 
 }
 
 /// Echoes of the candidates on the cell's scanlines; returns their number.
-int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const Candidates& near, Echoes& echoes) {
+int accumulate_echoes(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const Candidates& near,
+                      Echoes& echoes) {
   const F f;
   const I d;
   const ScanGeometry& g = plan.geometry;
@@ -192,14 +193,14 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     }
     // Depths start at the face, samples half a step before it.
     VF walk = hn::Sub(rest, half);
-    auto heard = hn::FirstN(f, static_cast<std::size_t>(near.count - s));
-    heard =
-        hn::And(heard, hn::And(hn::Ge(walk, hn::Set(f, cell.first_rest)), hn::Lt(walk, hn::Set(f, cell.last_rest))));
+    auto contributes = hn::FirstN(f, static_cast<std::size_t>(near.count - s));
+    contributes = hn::And(contributes,
+                          hn::And(hn::Ge(walk, hn::Set(f, cell.first_rest)), hn::Lt(walk, hn::Set(f, cell.last_rest))));
     if (cell.yields) {
       const VI near_line = nearest_index(line, hn::Set(f, static_cast<float>(plan.lines - 1)));
       walk = hn::Sub(walk_of_rest(frame, rest, hn::GatherIndex(f, frame.pressed_samples.data(), near_line)), half);
     }
-    heard = hn::And(heard, hn::And(hn::Ge(walk, hn::Zero(f)), hn::Le(walk, last_sample)));
+    contributes = hn::And(contributes, hn::And(hn::Ge(walk, hn::Zero(f)), hn::Le(walk, last_sample)));
     const VI at = hn::ConvertTo(d, hn::Min(hn::Max(walk, hn::Zero(f)), last_sample));
     if (is_bent) {
       const VF step = hn::Set(f, static_cast<float>(g.line_step));
@@ -207,14 +208,14 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
       const VF lines_per_mm = hn::Div(hn::Set(f, 1.0F), hn::Max(spacing_mm, hn::Set(f, 0.02F)));
       line = bent_line(plan, frame, line, at, lines_per_mm);
     }
-    heard = hn::And(heard, hn::And(hn::Ge(line, hn::Set(f, static_cast<float>(cell.first_line - 1))),
-                                   hn::Lt(line, hn::Set(f, static_cast<float>(cell.last_line)))));
+    contributes = hn::And(contributes, hn::And(hn::Ge(line, hn::Set(f, static_cast<float>(cell.first_line - 1))),
+                                               hn::Lt(line, hn::Set(f, static_cast<float>(cell.last_line)))));
     const VF zeta = hn::Mul(hn::Load(f, near.z + s), at_depth(cell.inverse_elevation_sigma, walk));
-    heard = hn::And(heard, hn::Lt(hn::Abs(zeta), hn::Set(f, kBeamEdge)));
+    contributes = hn::And(contributes, hn::Lt(hn::Abs(zeta), hn::Set(f, kBeamEdge)));
     const VF signed_rank = hn::Load(f, near.rank + s);
     const VF rank = hn::Abs(signed_rank), most_rank = at_depth(cell.rank, walk);
-    heard = hn::And(heard, hn::Lt(rank, most_rank));
-    if (hn::AllFalse(f, heard)) continue;
+    contributes = hn::And(contributes, hn::Lt(rank, most_rank));
+    if (hn::AllFalse(f, contributes)) continue;
 
     // Of the task's own scanlines: the gains of adjacent tasks may not be computed yet.
     const VI own_line = hn::NearestInt(hn::Min(hn::Max(line, hn::Set(f, static_cast<float>(cell.first_line))),
@@ -234,9 +235,9 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     VF share = hn::Set(f, kShares[0]);  // most tissues'
     if (!hn::AllTrue(d, hn::Eq(share_class, hn::Zero(d)))) share = hn::GatherIndex(f, kShares.data(), share_class);
     const VI sample = hn::ConvertTo(d, hn::Add(shown, half));
-    heard = hn::And(heard, hn::And(hn::Lt(rank, hn::Mul(share, most_rank)), hn::Le(shown, last_sample)));
-    heard = hn::And(heard, hn::RebindMask(f, hn::Gt(sample, hn::Set(d, -kBeforeFace - 1))));
-    if (hn::AllFalse(f, heard)) continue;
+    contributes = hn::And(contributes, hn::And(hn::Lt(rank, hn::Mul(share, most_rank)), hn::Le(shown, last_sample)));
+    contributes = hn::And(contributes, hn::RebindMask(f, hn::Gt(sample, hn::Set(d, -kBeforeFace - 1))));
+    if (hn::AllFalse(f, contributes)) continue;
     const VF weight = hn::Mul(hn::Exp(f, hn::MulAdd(hn::Mul(zeta, zeta), hn::Set(f, -0.5F), log_gain)),
                               at_depth(cell.speckle_scale, walk));
     const VF amplitude = hn::CopySign(weight, signed_rank);
@@ -246,11 +247,13 @@ int hear(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const 
     const VF lower = hn::Floor(line), part = hn::Sub(line, lower), rest_of_it = hn::Sub(hn::Set(f, 1.0F), part);
     const VI column = hn::Sub(hn::ConvertTo(d, lower), hn::Set(d, cell.first_line - 1));
     const VI row = hn::Mul(hn::Add(sample, hn::Set(d, kBeforeFace)), hn::Set(d, kFieldRow));
-    hn::StoreU(hn::Compress(hn::Add(row, hn::Add(column, column)), hn::RebindMask(d, heard)), d, echoes.place + n);
-    hn::StoreInterleaved4(hn::Compress(hn::Mul(rest_of_it, re), heard), hn::Compress(hn::Mul(rest_of_it, im), heard),
-                          hn::Compress(hn::Mul(part, re), heard), hn::Compress(hn::Mul(part, im), heard), f,
+    hn::StoreU(hn::Compress(hn::Add(row, hn::Add(column, column)), hn::RebindMask(d, contributes)), d,
+               echoes.place + n);
+    hn::StoreInterleaved4(hn::Compress(hn::Mul(rest_of_it, re), contributes),
+                          hn::Compress(hn::Mul(rest_of_it, im), contributes),
+                          hn::Compress(hn::Mul(part, re), contributes), hn::Compress(hn::Mul(part, im), contributes), f,
                           echoes.parts + 4 * n);
-    n += static_cast<int>(hn::CountTrue(f, heard));
+    n += static_cast<int>(hn::CountTrue(f, contributes));
   }
   return n;
 }
@@ -263,7 +266,7 @@ HWY_AFTER_NAMESPACE();
 namespace trocar::ultrasound::detail {
 
 HWY_EXPORT(take_near);
-HWY_EXPORT(hear);
+HWY_EXPORT(accumulate_echoes);
 
 namespace {
 
@@ -278,7 +281,7 @@ void splat(const Echoes& echoes, int n, float* field) noexcept {
 /// Computes the echoes of the collected scatterers and adds them to the field.
 void flush(const ScanPlan& plan, const FrameState& frame, const Cell& cell, Candidates& near, Echoes& echoes,
            float* field) noexcept {
-  const int n = HWY_DYNAMIC_DISPATCH(hear)(plan, frame, cell, near, echoes);
+  const int n = HWY_DYNAMIC_DISPATCH(accumulate_echoes)(plan, frame, cell, near, echoes);
   splat(echoes, n, field);
   near.count = 0;
 }

@@ -23,7 +23,7 @@ void pack_gains(const float* log_gain, const float* added, const std::uint8_t* s
                 ScattererGain* gains) noexcept;
 
 /// The same gain, weakened by so many neper.
-constexpr ScattererGain weaken(ScattererGain gain, float neper) noexcept {
+constexpr ScattererGain attenuate(ScattererGain gain, float neper) noexcept {
   const auto steps = static_cast<int>(neper / kLogGainStep + 0.5F);
   const int level = (gain >> kShareBits) - steps;
   return static_cast<ScattererGain>((level > 0 ? level : 0) << kShareBits | (gain & ((1 << kShareBits) - 1)));

@@ -122,12 +122,12 @@ void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, i
       const float slow = plan.slowness[scratch.tissue[s]];
       slowness[c] = std::abs(slow) < kBendable ? slow : 0.0F;
     }
-    keep_borders(plan, frame, scratch, plan.planes / 2, l);
+    store_borders(plan, frame, scratch, plan.planes / 2, l);
     note_gas(plan, frame, scratch, l);
   }
 }
 
-void stand_mirrors(const ScanPlan& plan, FrameState& frame) noexcept {
+void place_mirrors(const ScanPlan& plan, FrameState& frame) noexcept {
   if (!plan.acquisition.artefacts.mirror) return;
   for (int l = 0; l < plan.lines; ++l)
     if (frame.gas[static_cast<std::size_t>(l)].is_there) set_mirror(plan, frame, l);
@@ -225,7 +225,7 @@ void shade_edges(const ScanPlan& plan, FrameState& frame) noexcept {
 
 }  // namespace
 
-void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept {
+void refract_lines(const ScanPlan& plan, FrameState& frame) noexcept {
   const auto coarse = plan.coarse_samples();
   const auto lines = static_cast<std::size_t>(plan.lines);
   frame.widest_warp = 0.0F;

@@ -15,9 +15,9 @@ void aim_lines(const ScanPlan& plan, FrameState& frame) noexcept;
 void probe_lines(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, int first, int last) noexcept;
 
 /// After all lines were probed: the mirrors.
-void stand_mirrors(const ScanPlan& plan, FrameState& frame) noexcept;
+void place_mirrors(const ScanPlan& plan, FrameState& frame) noexcept;
 
 /// After all lines were probed: displacement and focusing by refraction, from how slowness changes sideways.
-void bend_lines(const ScanPlan& plan, FrameState& frame) noexcept;
+void refract_lines(const ScanPlan& plan, FrameState& frame) noexcept;
 
 }  // namespace trocar::ultrasound::detail

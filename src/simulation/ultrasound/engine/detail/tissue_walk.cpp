@@ -31,7 +31,7 @@ void place_samples(const ScanPlan& plan, const FrameState& frame, const LineWalk
   const VF zeta_v = hn::Set(f, zeta);
   const VF pressed = hn::Set(f, -line.pressed_mm);
   const VF mm = hn::Set(f, plan.sample_mm);
-  const bool has_mirror = line.mirror[0] > -1e29F || line.mirror[1] != 0.0F;
+  const bool has_mirror = line.has_mirror();
   for (int s = 0; s < plan.samples; s += static_cast<int>(hn::Lanes(f))) {
     const VF at = hn::Iota(f, static_cast<float>(s) + 0.5F);
     const VF along = hn::MulAdd(pressed, hn::LoadU(f, frame.contact_shape.data() + s), hn::Mul(at, mm));
@@ -144,7 +144,7 @@ class Walk {
       : plan_(plan), frame_(frame), line_(line), result_(result), delay_(delay) {
     log_gain_ = 2.0F * std::log(std::max(line.coupling, 1e-6F));
     entry_samples_ = static_cast<int>(kEntry_mm / plan.sample_mm);
-    if (line.mirror_depth_mm < 1e29F) stand_mirror(zeta);
+    if (line.has_mirror()) stand_mirror(zeta);
   }
 
   void run() noexcept {
@@ -392,7 +392,7 @@ void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& li
   Walk(plan, frame, line, zeta, result, delay).run();
 }
 
-void keep_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept {
+void store_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept {
   const auto at = static_cast<std::size_t>(plane * plan.lines + line);
   for (std::size_t b = 0; b < static_cast<std::size_t>(result.border_count); ++b) {
     const Border& border = result.borders[b];

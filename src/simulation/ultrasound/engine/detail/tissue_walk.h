@@ -32,7 +32,7 @@ void walk_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& li
                float* delay) noexcept;
 
 /// Keeps a walk's borders with the frame.
-void keep_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept;
+void store_borders(const ScanPlan& plan, FrameState& frame, const WalkResult& result, int plane, int line) noexcept;
 
 /// Only finds the places of the samples (index, cell).
 void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,

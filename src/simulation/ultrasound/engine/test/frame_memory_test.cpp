@@ -54,7 +54,7 @@ std::vector<Shot> make_shots(const Transducer& transducer) {
   shallow.samples = 190;
   fine.lines = 97;
   fine.samples = 300;
-  fine.looks = 1;
+  fine.steering_angles = 1;
   bare.artefacts = no_artefacts();
   thin.planes = 1;
   const auto turned = [](const Vec3& axis, double angle_rad, const Vec3& p_P) {
@@ -86,7 +86,7 @@ Taken take(BMode& engine, const Shot& shot) {
   const BasebandFrame& frame = engine.render({shot.X_PT, needles, 0.0});
   Taken taken{frame.re, frame.im, frame.contact, {}};
   for (int line = 0; line < frame.geometry.lines; ++line) {
-    const SoundWay way = engine.sound_way(line);
+    const SoundPath way = engine.sound_path(line);
     taken.gain.insert(taken.gain.end(), way.gain.begin(), way.gain.end());
     taken.gain.push_back(way.pressed_mm);
     taken.gain.push_back(way.mirror_depth_mm);

@@ -29,7 +29,7 @@ inline ultrasound::Acquisition shallow(int lines = 128, int samples = 640) {
   acquisition.focus_mm = 60.0;
   acquisition.lines = lines;
   acquisition.samples = samples;
-  acquisition.looks = 1;
+  acquisition.steering_angles = 1;
   return acquisition;
 }
 
@@ -57,7 +57,7 @@ class NeedleAlone {
     std::fill(frame.re.begin(), frame.re.end(), 0.0F);
     std::fill(frame.im.begin(), frame.im.end(), 0.0F);
     std::fill(frame.way_gain.begin(), frame.way_gain.end(), 1.0F);
-    lay_needles(plan, frame, input.needles, image);
+    lay_out_needles(plan, frame, input.needles, image);
     for (int first = 0; first < plan.lines; first += kGroup)
       add_needles(plan, frame, image, first, std::min(first + kGroup, plan.lines));
     for (int line = 0; line < plan.lines; ++line) spread_echoes(plan, frame, line, rows, out);
@@ -68,7 +68,7 @@ class NeedleAlone {
   ScanPlan plan;
   FrameState frame;
   NeedleImage image;
-  LookRows rows;
+  SteeringRows rows;
   ultrasound::BasebandFrame out;
 };
 

@@ -144,7 +144,7 @@ TEST(NeedleEffects, AllocatesNothing) {
   // More than are drawn.
   const std::vector<NeedleEcho> needles(NeedleImage::kMostNeedles + 3, needle_of(shaft));
   const AllocationGuard guard;
-  lay_needles(engine.plan, engine.frame, needles, engine.image);
+  lay_out_needles(engine.plan, engine.frame, needles, engine.image);
   for (int first = 0; first < engine.plan.lines; first += kGroup)
     add_needles(engine.plan, engine.frame, engine.image, first, first + kGroup);
   EXPECT_EQ(guard.count(), 0U);

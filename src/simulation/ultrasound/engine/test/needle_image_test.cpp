@@ -33,9 +33,9 @@ double mean_level_db(NeedleAlone& engine, double angle_rad, double depth_mm = 60
   double power = 0.0;
   int n = 0;
   const int middle = engine.plan.lines / 2;
-  for (int look = -8; look <= 8; ++look) {
+  for (int step = -8; step <= 8; ++step) {
     // Moved along itself, so that other grains of its surface are met.
-    const Vec3 tip = Vec3(0.0, depth_mm, 0.0) + (40.0 + 2.5 * look) * in_plane(angle_rad);
+    const Vec3 tip = Vec3(0.0, depth_mm, 0.0) + (40.0 + 2.5 * step) * in_plane(angle_rad);
     const auto shaft = shaft_to(tip, in_plane(angle_rad));
     const BasebandFrame frame = seen(engine, needle_of(shaft));
     for (int line = middle - 2; line <= middle + 2; line += 2, ++n) {
@@ -69,7 +69,7 @@ TEST(NeedleImage, ShowsALineWhereTheShaftLies) {
 
 TEST(NeedleImage, LevelFollowsTheTilt) {
   NeedleAlone engine(shallow(256, 1024));
-  // Rough surfaces glint: 51 looks of which a third are independent leave 1.1 dB.
+  // Rough surfaces glint: 51 measurements of which a third are independent leave 1.1 dB.
   for (const double tilt_deg : {0.0, 8.0, 16.0, 24.0, 35.0, 50.0, 65.0, 80.0})
     EXPECT_NEAR(mean_level_db(engine, (90.0 - tilt_deg) * kPi / 180.0), shaft_db(tilt_deg * kPi / 180.0),
                 tilt_deg < 20.0 ? 1.0 : 2.5)

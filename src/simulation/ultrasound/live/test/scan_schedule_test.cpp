@@ -11,7 +11,7 @@ namespace {
 constexpr double kFrame_s = 1.0 / 60.0;
 
 double nominal_ms(const Acquisition& a, double ms_a_million) {
-  return 1e-6 * ms_a_million * (1.3e6 + a.lines * a.samples * (1.0 + a.planes + 0.6 * a.looks));
+  return 1e-6 * ms_a_million * (1.3e6 + a.lines * a.samples * (1.0 + a.planes + 0.6 * a.steering_angles));
 }
 
 /// A machine on which frames take what their work says, with a hand that asks 60 times a second.
@@ -45,7 +45,7 @@ TEST(ScanDetail, NeverAsksForMoreThanFull) {
   Acquisition tiny;
   tiny.lines = 12;
   tiny.samples = 48;
-  tiny.planes = tiny.looks = 1;
+  tiny.planes = tiny.steering_angles = 1;
   for (const ScanDetail detail : {ScanDetail::kFast, ScanDetail::kMiddle, ScanDetail::kFull})
     EXPECT_EQ(with_detail(tiny, detail), tiny);
   const Acquisition usual;
@@ -164,7 +164,7 @@ TEST(ScanRequest, IsHeldToItsRanges) {
   request.acquisition.lines = -4;
   request.acquisition.samples = 1 << 20;
   request.acquisition.planes = 4;
-  request.acquisition.looks = 0;
+  request.acquisition.steering_angles = 0;
   request.needle_diameter_mm = 70.0;
   request.columns = 0;
   request.rows = 100000;
@@ -175,7 +175,7 @@ TEST(ScanRequest, IsHeldToItsRanges) {
   EXPECT_EQ(held.acquisition.lines, 16);
   EXPECT_EQ(held.acquisition.samples, 4096);
   EXPECT_EQ(held.acquisition.planes % 2, 1);
-  EXPECT_EQ(held.acquisition.looks, 1);
+  EXPECT_EQ(held.acquisition.steering_angles, 1);
   EXPECT_EQ(held.needle_diameter_mm, 5.0);
   EXPECT_EQ(held.columns, 16);
   EXPECT_EQ(held.rows, 2048);

@@ -41,7 +41,7 @@ TEST(ProbeViews, KeysReachTheirFields) {
   EXPECT_LT((view.direction_P - Vec3(0, 0.6, -0.8)).norm(), 1e-12);
   EXPECT_EQ(view.plane, ScanPlane::kTransverse);
   EXPECT_NEAR(view.angle_rad, -0.5 * std::numbers::pi, 1e-12);
-  EXPECT_EQ(view.bone, BoneWish::kBeside);
+  EXPECT_EQ(view.bone, BonePreference::kBeside);
   EXPECT_EQ(view.through.size(), 2U);
   EXPECT_EQ(view.point, TargetPoint::kFacing);
   EXPECT_EQ(view.offset_mm, Vec3(1, 2, 3));

@@ -8,6 +8,7 @@
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
+#include "core/testing/changed_file.h"
 #include "ultrasound/probe/scan_geometry.h"
 
 namespace trocar::ultrasound {
@@ -64,13 +65,7 @@ TEST(Transducers, UnknownNameIsRefusedWithTheKnownOnes) {
 
 /// Loads the shipped file with one text replaced.
 Result<std::vector<Transducer>> load_changed(const std::string& from, const std::string& to) {
-  std::string text = *read_file(kFile);
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  if (at != std::string::npos) text.replace(at, from.size(), to);
-  const TemporaryFolder folder;
-  EXPECT_TRUE(write_file_atomically(folder / "transducers.toml", text));
-  return load_transducers(folder / "transducers.toml");
+  return testing::load_changed(kFile, from, to, [](const auto& file) { return load_transducers(file); });
 }
 
 TEST(Transducers, WrongEntryNamesFileTransducerAndKey) {

@@ -41,8 +41,8 @@ HWY_INLINE void detect_at(const ReceivedLine& line, std::size_t s, std::uint16_t
   const F f;
   const VF noise = hn::Set(f, line.noise);
   VF power = hn::Zero(f);
-  for (std::size_t look = 0; look < line.looks; ++look) {
-    const std::size_t at = s + look * line.look_step, noise_at = s + look * line.noise_step;
+  for (std::size_t angle = 0; angle < line.steering_angles; ++angle) {
+    const std::size_t at = s + angle * line.angle_step, noise_at = s + angle * line.noise_step;
     VF re = hn::MulAdd(noise, hn::LoadU(f, line.noise_re + noise_at), hn::LoadU(f, line.re + at));
     VF im = hn::MulAdd(noise, hn::LoadU(f, line.noise_im + noise_at), hn::LoadU(f, line.im + at));
     if constexpr (kWithClutter) {
@@ -53,7 +53,7 @@ HWY_INLINE void detect_at(const ReceivedLine& line, std::size_t s, std::uint16_t
   }
   // Far outside the displayed range; the comparison is false for NaN.
   const VF least = hn::Set(f, 1e-30F);
-  power = hn::Mul(power, hn::Set(f, 1.0F / static_cast<float>(line.looks)));
+  power = hn::Mul(power, hn::Set(f, 1.0F / static_cast<float>(line.steering_angles)));
   const VF clean = hn::Max(hn::IfThenElse(hn::Lt(power, hn::Set(f, 1e38F)), power, least), least);
   constexpr auto kScale = static_cast<float>(3.01029995663981 * kFineLevels_per_db);
   const VF fine = hn::MulAdd(log2_of(clean), hn::Set(f, kScale), hn::LoadU(f, line.offset + s));

@@ -26,14 +26,14 @@ struct ReceivedLine {
   float noise;              ///< Amplitude the noise is added with.
   const float* clutter_re;  ///< Null without clutter.
   const float* clutter_im;
-  std::size_t looks;       ///< Of a compound; their powers are averaged.
-  std::size_t look_step;   ///< Floats of re and im from look to look.
-  std::size_t noise_step;  ///< The same of the noise.
-  const float* offset;     ///< TGC of each sample less the floor, fine levels.
+  std::size_t steering_angles;  ///< Of a compound; their powers are averaged.
+  std::size_t angle_step;       ///< Floats of re and im from angle to angle.
+  std::size_t noise_step;       ///< The same of the noise.
+  const float* offset;          ///< TGC of each sample less the floor, fine levels.
   std::size_t n;
 };
 
-/// Level after TGC: mean of |echo + noise + clutter|^2 over the looks, in fine levels.
+/// Level after TGC: mean of |echo + noise + clutter|^2 over the steering_angles, in fine levels.
 void detect(const ReceivedLine& line, std::uint16_t* level) noexcept;
 
 /// state += (fresh - state) * (1 - kept). Works on n rounded up to a multiple of kMostLanes.

@@ -40,8 +40,7 @@ TEST(FreehandSweep, ATiltReconstructsToTheVolumeOfTheMotor) {
   std::vector<std::uint8_t> resampled(direct->gray.voxels.size());
   for (std::size_t n = 0; n < resampled.size(); ++n) {
     const volume::Index3 ijk = direct->gray.geometry.index_of(n);
-    const Vec3 p_P = direct->gray.geometry.to_mm(
-        Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p_P = direct->gray.geometry.centre_mm(ijk);
     resampled[n] = static_cast<std::uint8_t>(
         std::lround(volume::sample_linear_at_index(hand.gray, hand.gray.geometry.to_index(p_P))));
   }
@@ -66,8 +65,7 @@ TEST(FreehandSweep, ASlideKeepsTheFaceAsDeepOnACurvedSkin) {
   constexpr double kRadius_mm = 80.0;
   for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
     const volume::Index3 ijk = geometry.index_of(n);
-    const Vec3 p =
-        geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p = geometry.centre_mm(ijk);
     skin.voxels[n] = static_cast<float>(std::hypot(p.y() - kRadius_mm, p.z()) - kRadius_mm);
   }
   const Pose X_PT = Pose::translation({0.0, 4.0, 0.0});  // pressed in by 4 mm

@@ -174,7 +174,7 @@ TEST(Freehand, RestoresASmoothFieldFromTiltedPictures) {
     for (std::size_t n = 0; n < gray.voxels.size(); ++n) {
       if (gray.voxels[n] == 0) continue;
       const volume::Index3 ijk = gray.geometry.index_of(n);
-      const Vec3 index(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2]));
+      const Vec3 index = volume::to_vec3(ijk);
       sum2 += std::pow(gray.voxels[n] - field(gray.geometry.to_mm(index)), 2);
       count += 1.0;
     }

@@ -104,8 +104,7 @@ TEST(MechanicalSweep, IsBlackBesideTheFan) {
   std::size_t inside = 0, lit = 0;
   for (std::size_t n = 0; n < grid.voxel_count(); ++n) {
     const volume::Index3 ijk = grid.index_of(n);
-    const Vec3 p_T =
-        grid.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p_T = grid.centre_mm(ijk);
     const SweepGeometry::Place place = volume->geometry.to_place(p_T);
     const double depth_mm = place.polar.depth_mm;
     const int frames = volume->geometry.frames, lines = volume->geometry.scan.lines;

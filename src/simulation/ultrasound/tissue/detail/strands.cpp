@@ -45,18 +45,17 @@ void add_strands(AcousticScene& scene) {
   const auto& tissues = scene.table.tissues;
   if (std::none_of(tissues.begin(), tissues.end(), [](const AcousticTissue& t) { return t.strands_per_ml > 0.0; }))
     return;
-  Vec3 low = Vec3::Constant(1e30), high = Vec3::Constant(-1e30);
+  Eigen::AlignedBox3d box;
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 index;
     for (int a = 0; a < 3; ++a)
       index[a] = ((corner >> a) & 1) != 0 ? static_cast<double>(scene.geometry.size[static_cast<std::size_t>(a)]) : 0.0;
-    low = low.cwiseMin(scene.geometry.to_mm(index));
-    high = high.cwiseMax(scene.geometry.to_mm(index));
+    box.extend(scene.geometry.to_mm(index));
   }
   const auto cell = [](double mm) { return static_cast<std::int64_t>(std::floor(mm / kCell_mm)); };
-  for (std::int64_t k = cell(low.z()); k <= cell(high.z()); ++k) {
-    for (std::int64_t j = cell(low.y()); j <= cell(high.y()); ++j) {
-      for (std::int64_t i = cell(low.x()); i <= cell(high.x()); ++i) {
+  for (std::int64_t k = cell(box.min().z()); k <= cell(box.max().z()); ++k) {
+    for (std::int64_t j = cell(box.min().y()); j <= cell(box.max().y()); ++j) {
+      for (std::int64_t i = cell(box.min().x()); i <= cell(box.max().x()); ++i) {
         constexpr std::int64_t kMask = 0x1fffff;
         Random random(static_cast<std::uint64_t>((i & kMask) | (j & kMask) << 21 | (k & kMask) << 42));
         const Vec3 within(random.uniform(), random.uniform(), random.uniform());

@@ -126,8 +126,7 @@ Result<BodyWindow> find_body_window(const anatomy::VirtualPatient& patient, doub
                                                static_cast<std::size_t>(grid.size[0] * grid.size[1])};
   BodyWindow window;
   window.first = grid.offset(box.low);
-  window.geometry.origin_P = grid.to_mm(
-      Vec3(static_cast<double>(box.low[0]), static_cast<double>(box.low[1]), static_cast<double>(box.low[2])));
+  window.geometry.origin_P = grid.centre_mm(box.low);
   for (std::size_t n = 0; n < 3; ++n) {
     const auto to = static_cast<Eigen::Index>(n);
     const auto from = static_cast<Eigen::Index>(axes[n]);

@@ -22,8 +22,7 @@ std::shared_ptr<const AcousticScene> make_scene(const anatomy::VirtualPatient& p
 
 Vec3 place(const AcousticScene& scene, std::size_t n) {
   const volume::Index3 ijk = scene.geometry.index_of(n);
-  return scene.geometry.to_mm(
-      Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+  return scene.geometry.centre_mm(ijk);
 }
 
 std::string tissue_name(const AcousticScene& scene, std::size_t n) {
@@ -203,8 +202,7 @@ TEST(AcousticScene, IsCroppedToTheBodyAndItsMargin) {
   });
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n) {
     const volume::Index3 ijk = patient.labels.geometry.index_of(n);
-    const Vec3 p_P = patient.labels.geometry.to_mm(
-        Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p_P = patient.labels.geometry.centre_mm(ijk);
     patient.skin_distance_mm.voxels[n] = static_cast<float>((p_P - Vec3(0, 24, 0)).norm() - 15.0);
   }
   const auto scene = make_scene(patient);

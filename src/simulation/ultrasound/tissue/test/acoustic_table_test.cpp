@@ -8,6 +8,7 @@
 #include "core/files/atomic_file.h"
 #include "core/files/data_dir.h"
 #include "core/files/temporary_folder.h"
+#include "core/testing/changed_file.h"
 
 namespace trocar::ultrasound {
 namespace {
@@ -94,13 +95,7 @@ TEST(AcousticTable, VesselsWithContrastMediumAndLesionsAreDarkInLiver) {
 
 /// Loads the shipped file with one text replaced.
 Result<AcousticTable> load_changed(const std::string& from, const std::string& to) {
-  std::string text = *read_file(kFile);
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  if (at != std::string::npos) text.replace(at, from.size(), to);
-  const TemporaryFolder folder;
-  EXPECT_TRUE(write_file_atomically(folder / "acoustics.toml", text));
-  return load_acoustic_table(folder / "acoustics.toml");
+  return testing::load_changed(kFile, from, to, [](const auto& file) { return load_acoustic_table(file); });
 }
 
 TEST(AcousticTable, WrongEntryNamesFileTissueAndKey) {

@@ -6,6 +6,7 @@
 
 #include "anatomy/patient.h"
 #include "ultrasound/tissue/acoustic_table.h"
+#include "volume/testing/centred_grid.h"
 
 namespace trocar::testing {
 
@@ -26,21 +27,14 @@ inline anatomy::VirtualPatient make_block(const Vec3& extent_mm, const Vec3& spa
   constexpr double kAir_mm = 12.0;
   anatomy::VirtualPatient patient;
   patient.name = "block";
-  volume::GridGeometry geometry;
-  geometry.spacing_mm = spacing_mm;
-  for (std::size_t a = 0; a < 3; ++a)
-    geometry.size[a] = std::llround(extent_mm[static_cast<Eigen::Index>(a)] / spacing_mm[static_cast<Eigen::Index>(a)]);
-  const Vec3 size(static_cast<double>(geometry.size[0]), static_cast<double>(geometry.size[1]),
-                  static_cast<double>(geometry.size[2]));
-  geometry.origin_P = -0.5 * (size - Vec3::Ones()).cwiseProduct(spacing_mm);
+  volume::GridGeometry geometry = centred_grid(extent_mm, spacing_mm);
   geometry.origin_P.y() = 0.5 * spacing_mm.y() - kAir_mm;
   patient.ct = volume::CtGrid(geometry, -1000);
   patient.labels = volume::LabelGrid(geometry);
   patient.skin_distance_mm = volume::FloatGrid(geometry);
   for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
     const volume::Index3 ijk = geometry.index_of(n);
-    const Vec3 p_P =
-        geometry.to_mm(Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    const Vec3 p_P = geometry.centre_mm(ijk);
     patient.skin_distance_mm.voxels[n] = static_cast<float>(-p_P.y());
     if (p_P.y() <= 0.0) continue;
     const BlockVoxel made = voxel(p_P);

@@ -3,20 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "geometry/pose.h"
+#include "telemetry/testing/sample_at.h"
 
 namespace trocar::attempt {
 namespace {
 
-constexpr double kLength_mm = 150.0;
+using testing::sample_at;
 
-telemetry::TickSample sample_at(const Pose& X_PN) {
-  telemetry::TickSample sample;
-  sample.tip_mm = sample.device_mm = X_PN.p();
-  sample.axis = X_PN.R().col(2);
-  const Eigen::Quaterniond q(X_PN.R());
-  sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};
-  return sample;
-}
+constexpr double kLength_mm = 150.0;
 
 double length_of(const std::vector<Vec3>& points) {
   double length_mm = 0.0;

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "io/patient/patient_source.h"
+#include "cases/testing/phantom_case.h"
 
 namespace trocar::attempt {
 namespace {
@@ -10,9 +10,7 @@ namespace {
 class PunctureGuide : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto patient = io::open_patient({"layers-liver", 1});
-    ASSERT_TRUE(patient) << patient.error().text();
-    auto made = prepare_case(std::make_shared<const anatomy::VirtualPatient>(*std::move(patient)), {});
+    auto made = testing::phantom_case("layers-liver");
     ASSERT_TRUE(made) << made.error().text();
     the_case = *std::move(made);
   }
@@ -33,7 +31,7 @@ class PunctureGuide : public ::testing::Test {
   static bool says(const telemetry::TickSample& sample, const std::string& words) {
     return guide_puncture(the_case, sample).find(words) != std::string::npos;
   }
-  static inline Case the_case;
+  static inline cases::Case the_case;
 };
 
 TEST_F(PunctureGuide, SaysAdvanceOnThePathAndFireAtItsEnd) {
@@ -84,8 +82,7 @@ TEST_F(PunctureGuide, WarnsOfBoneAheadBeforeAllElse) {
     const anatomy::Label* label = the_case.patient->label_table.find(labels.voxels[n]);
     if (label == nullptr || label->tissue != "bone") continue;
     const volume::Index3 ijk = labels.geometry.index_of(n);
-    bone_P = labels.geometry.to_mm(
-        Vec3(static_cast<double>(ijk[0]), static_cast<double>(ijk[1]), static_cast<double>(ijk[2])));
+    bone_P = labels.geometry.centre_mm(ijk);
   }
   ASSERT_TRUE(bone_P);
   telemetry::TickSample sample = on_path(10.0);

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <thread>
 
-#include "attempt/case/scene_request.h"
 #include "attempt/guide/gun_shot.h"
 #include "attempt/live/attempt_event.h"
 #include "attempt/record/recording_room.h"
+#include "cases/scene_request.h"
 #include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
@@ -30,14 +30,14 @@ std::string as_server_sees(const std::string& patient) {
   return std::filesystem::absolute(patient, ignored).lexically_normal().string();
 }
 
-SeatRequest seat_request(const OpenCase& open_case, const AttemptOptions& options, const char* tool) {
-  SceneChoice choice;
+SeatRequest seat_request(const cases::OpenCase& open_case, const AttemptOptions& options, const char* tool) {
+  cases::SceneChoice choice;
   choice.tool = tool;
   choice.force_model = options.force_model.empty() ? open_case.force_model : options.force_model;
   choice.patient_source = as_server_sees(open_case.server_source);
   choice.patient_seed = open_case.choice.patient_seed;
   choice.seed = options.seed;
-  return {scene_request(open_case.the_case, choice), {}};
+  return {cases::scene_request(open_case.the_case, choice), {}};
 }
 
 Pose before_entry(const Segment& path_P) {
@@ -46,7 +46,7 @@ Pose before_entry(const Segment& path_P) {
 
 }  // namespace
 
-AttemptLoop::AttemptLoop(std::shared_ptr<const OpenCase> open_case, const AttemptOptions& options,
+AttemptLoop::AttemptLoop(std::shared_ptr<const cases::OpenCase> open_case, const AttemptOptions& options,
                          std::shared_ptr<SeatServers> servers, AttemptDesk& desk)
     : open_case_(std::move(open_case)), options_(options), servers_(std::move(servers)), desk_(desk) {
   auto steering = std::make_unique<SteeredNeedle>();
@@ -65,7 +65,7 @@ void AttemptLoop::run(const std::stop_token& stop) {
     status = step();
     watch_disk();
     publish(phase_now());
-    std::this_thread::sleep_for(kBetweenLooks);
+    options_.clock->sleep_for(kBetweenLooks);
   }
   if (!stop.stop_requested()) conclude(std::move(status));
 }
@@ -79,7 +79,7 @@ Status AttemptLoop::start() {
     TROCAR_TRY(servers_, SeatServers::start(options_));
   }
   const Segment& path_P = open_case_->the_case.plan.line_P;
-  needle_.emplace(servers_->needle, options_.patience, true);
+  needle_.emplace(*servers_->needle, options_.patience, true, *options_.clock);
   SeatRequest needle = seat_request(*open_case_, options_, "needle");
   command_.X_PN = options_.X_PN_start.value_or(before_entry(path_P));
   steering_->hand().put(command_.X_PN);
@@ -87,7 +87,7 @@ Status AttemptLoop::start() {
   needle_->hold(needle);
   if (!servers_->probe) return {};
 
-  probe_.emplace(*servers_->probe, options_.patience, true);
+  probe_.emplace(*servers_->probe, options_.patience, true, *options_.clock);
   SeatRequest probe = seat_request(*open_case_, options_, "probe");
   const Pose X_PT = options_.X_PT_start.value_or(open_case_->X_PT_start);
   probe_hand_.put(X_PT * Pose::translation({0.0, -kAboveSkin_mm, 0.0}));
@@ -140,7 +140,7 @@ Status AttemptLoop::step() {
 /// Ends the attempt while there is still space to close its session.
 void AttemptLoop::watch_disk() {
   constexpr auto kEvery = std::chrono::seconds(1);
-  const auto now = std::chrono::steady_clock::now();
+  const auto now = options_.clock->now();
   if (!record_ || !options_.free_bytes || now - disk_looked_at_ < kEvery) return;
   disk_looked_at_ = now;
   const std::filesystem::path folder = options_.session.parent_path();

@@ -35,7 +35,7 @@ struct AttemptWishes {
 /// What goes from the attempt's thread to the window.
 struct AttemptNews {
   AttemptView view;
-  std::chrono::steady_clock::time_point told;  ///< When the view was made.
+  Clock::TimePoint told;  ///< When the view was made.
   std::vector<ForcePoint> forces;
   std::vector<AttemptEvent> events;
   std::optional<Result<RunResult>> result;
@@ -52,7 +52,7 @@ struct AttemptDesk {
 /// The attempt itself, all on one thread.
 class AttemptLoop {
  public:
-  AttemptLoop(std::shared_ptr<const OpenCase> open_case, const AttemptOptions& options,
+  AttemptLoop(std::shared_ptr<const cases::OpenCase> open_case, const AttemptOptions& options,
               std::shared_ptr<SeatServers> servers, AttemptDesk& desk);
   /// Until it is finished, has failed, or is told to stop.
   void run(const std::stop_token& stop);
@@ -81,7 +81,7 @@ class AttemptLoop {
   TransducerView probe_now() const;
   void publish(AttemptPhase phase, std::optional<Result<RunResult>> result = {});
 
-  std::shared_ptr<const OpenCase> open_case_;
+  std::shared_ptr<const cases::OpenCase> open_case_;
   AttemptOptions options_;
   std::shared_ptr<SeatServers> servers_;
   AttemptDesk& desk_;
@@ -101,7 +101,7 @@ class AttemptLoop {
   std::optional<double> contact_s_;
   double session_s_ = 0.0, since_contact_s_ = 0.0;  ///< Active time: kept for the view after the record is closed.
   ForceTrace trace_;
-  std::chrono::steady_clock::time_point disk_looked_at_;
+  Clock::TimePoint disk_looked_at_;
   std::string disk_banner_, cut_short_;
   std::vector<AttemptEvent> events_;
   std::shared_ptr<const GunShot> shot_;

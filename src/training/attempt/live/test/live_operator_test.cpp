@@ -6,6 +6,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "core/files/temporary_folder.h"
+#include "geometry/quaternion.h"
 
 namespace trocar::attempt {
 namespace {
@@ -30,7 +31,7 @@ class LiveOperatorTest : public testing::Test {
  protected:
   void SetUp() override {
     auto patient = anatomy::generate_phantom("layers-liver");
-    auto tables = load_tables({});
+    auto tables = cases::load_tables({});
     ASSERT_TRUE(patient.has_value() && tables.has_value());
     the_case_ = *std::move(tables);
     the_case_.patient = std::make_shared<const anatomy::VirtualPatient>(*std::move(patient));
@@ -66,7 +67,7 @@ class LiveOperatorTest : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  Case the_case_;
+  cases::Case the_case_;
   Performer performer_;
   Witness* witness_ = nullptr;
   std::optional<AttemptRecord> record_;
@@ -250,7 +251,7 @@ TEST_F(LiveOperatorTest, ResumesTheNeedleInItsChannelWhereverTheGripHasSwung) {
   inside.device_mm = {4.0, 27.0, 3.0};
   const Eigen::Quaterniond swung(
       Mat3(Eigen::AngleAxisd(0.28, Vec3::UnitX()) * rotation_between(Vec3::UnitZ(), Vec3::UnitY())));
-  inside.device_rotation_wxyz = {swung.w(), swung.x(), swung.y(), swung.z()};
+  inside.device_rotation_wxyz = to_wxyz(swung);
   ASSERT_TRUE(live_->take(inside));
   EXPECT_EQ(live_->X_PN_to_resume().p(), inside.tip_mm);
   EXPECT_NEAR((live_->X_PN_to_resume().R().col(2) - Vec3::UnitY()).norm(), 0.0, kTolerance_s);

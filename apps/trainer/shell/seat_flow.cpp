@@ -1,0 +1,417 @@
+#include "shell/seat_flow.h"
+
+#include <QDateTime>
+#include <QDir>
+#include <QFileDialog>
+#include <algorithm>
+
+#include "attempt/record/recording_room.h"
+#include "cases/scene_request.h"
+#include "control/attempt_control.h"
+#include "control/mirror_station.h"
+#include "control/replay_control.h"
+#include "core/available_memory.h"
+#include "core/files/disk_space.h"
+#include "core/files/user_folders.h"
+#include "pages/briefing_page.h"
+#include "pages/case_page.h"
+#include "pages/start_page.h"
+#include "pages/work_page.h"
+#include "panels/feedback_panel.h"
+#include "panels/puncture_panel.h"
+#include "panels/status_strip.h"
+#include "panels/status_text.h"
+#include "parameters/force_preview.h"
+#include "parameters/parameter_panel.h"
+#include "report/html_report.h"
+#include "shell/main_window.h"
+#include "ui_kit/parts.h"
+#include "ui_kit/trainer_application.h"
+#include "views/patient/patient_view.h"
+#include "views/plots/time_line.h"
+#include "views/ultrasound/ultrasound_view.h"
+#include "workspace/workspace.h"
+
+namespace trocar::trainer {
+namespace {
+
+constexpr int kFrame_ms = 16;
+constexpr std::size_t kMostFrames = 200'000;  // an hour
+
+cases::CaseChoice case_choice(const SeatChoice& choice) {
+  cases::CaseChoice result;
+  // A patient of the case builder contains its own task.
+  result.options.task = cases::has_own_task(choice.patient) ? std::string() : choice.task;
+  result.options.needle = choice.needle;
+  result.patient_source = choice.patient;
+  result.patient_seed = choice.patient_seed;
+  result.force_model = choice.force_model;
+  return result;
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+std::vector<std::string> texts(const QStringList& list) {
+  std::vector<std::string> result;
+  for (const QString& text : list) result.push_back(to_std(text));
+  return result;
+}
+
+}  // namespace
+
+SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
+    : QObject(&window), window_(window), state_folder_(std::move(state_folder)), journal_(state_folder_) {
+  connect_pages();
+  offered_ = journal_.find_cut_off();
+  if (offered_)
+    window_.start().offer_recovery(
+        tr("The last attempt was interrupted. Its recording is kept: you can score and replay it."));
+  can_record();
+  clock_.start();
+  timer_.setTimerType(Qt::PreciseTimer);
+  timer_.setInterval(kFrame_ms);
+  timer_.setObjectName(QStringLiteral("frame-timer"));
+  connect(&timer_, &QTimer::timeout, this, &SeatFlow::frame);
+  timer_.start();
+}
+
+SeatFlow::~SeatFlow() = default;
+
+void SeatFlow::connect_pages() {
+  connect(&window_.start(), &StartPage::start_requested, this, &SeatFlow::open);
+  connect(&window_.start(), &StartPage::recovery_requested, this, &SeatFlow::recover);
+  connect(&window_.start(), &StartPage::recovery_declined, this, [this] {
+    if (offered_) journal_.forget(*std::exchange(offered_, {}));
+  });
+  connect(&window_.briefing(), &BriefingPage::back_requested, this, &SeatFlow::go_to_start);
+  connect(&window_.briefing(), &BriefingPage::begin_requested, this, &SeatFlow::begin_attempt);
+  FeedbackPanel& feedback = window_.work().feedback();
+  connect(&feedback, &FeedbackPanel::again_requested, this, &SeatFlow::try_again);
+  connect(&feedback, &FeedbackPanel::other_case_requested, this, &SeatFlow::go_to_start);
+  connect(&feedback, &FeedbackPanel::report_requested, this, &SeatFlow::save_report);
+  connect(&window_.case_builder(), &CasePage::case_saved, this, [this](const QString& folder) {
+    window_.start().add_patient(folder);
+    go_to_start();
+  });
+  connect(&window_.strip(), &StatusStrip::toggle_requested, this, [this] {
+    if (attempt_) attempt_->toggle_forces();
+  });
+  ParameterPanel& parameters = window_.work().parameters();
+  connect(&parameters, &ParameterPanel::parameters_changed, this, [this](const QStringList& changed) {
+    if (attempt_ && !is_exam()) attempt_->attempt().set_parameters(texts(changed));
+  });
+  connect(&parameters, &ParameterPanel::model_changed, this, [this](const QString& model) {
+    if (attempt_ && !is_exam()) attempt_->attempt().set_parameters({"force_model=" + to_std(model)});
+  });
+}
+
+void SeatFlow::go_to_start() {
+  retired_.retire(std::exchange(opening_, {}));
+  opened_.reset();
+  attempt_.reset();
+  replay_.reset();
+  window_.strip().show_forces(false, false);
+  window_.strip().show_servers({});
+  window_.work().set_parameters_locked(false);
+  window_.show_banner({});
+  window_.show_page(QStringLiteral("start"));
+  can_record();
+  release_freed_memory();  // a replay holds every tick
+}
+
+void SeatFlow::go_to_case_builder() {
+  const QString is_scored = tr("The attempt is being scored. The case builder is available afterwards.");
+  if (attempt_) {
+    const bool is_ending = attempt_->view().phase == attempt::AttemptPhase::kFinishing;
+    return attempt_->show_notice(
+        is_ending ? is_scored : tr("The case builder is not available during an attempt. End the attempt first (E)."));
+  }
+  if (loading_.has_work()) return window_.show_message(is_scored, BannerKind::kWarning);
+  window_.show_page(QStringLiteral("case-builder"));
+}
+
+void SeatFlow::open(const SeatChoice& choice) {
+  choice_ = choice;
+  // An interrupted exam can be replayed but not continued.
+  window_.work().set_parameters_locked(is_exam() && !cut_off_);
+  opened_.reset();
+  retired_.retire(std::exchange(
+      opening_, cases::open_case(case_choice(choice), cases::OpenOptions{open_, user_cache_folder() / "patients"})));
+  window_.briefing().show_opening(choice);
+  window_.show_page(QStringLiteral("briefing"));
+}
+
+void SeatFlow::poll_opening() {
+  if (!opening_.has_work()) return;
+  const JobView view = opening_.view();
+  auto result = opening_.take();
+  if (!result) {
+    if (!view.is_done) window_.briefing().show_progress(to_qt(view.step), view.fraction);
+    return;
+  }
+  opening_ = {};
+  if (!*result) return window_.briefing().show_error(to_qt(result->error().text()));
+  opened_ = **result;
+  window_.work().workspace().begin_case(opened_);
+}
+
+/// The briefing is last: it enables the start.
+void SeatFlow::show_opened() {
+  if (!opened_) return;
+  if (window_.work().workspace().show_part()) return;
+  if (open_ != opened_) {
+    open_ = opened_;
+    window_.work().parameters().show_case(open_);
+    return;
+  }
+  opened_.reset();
+  release_freed_memory();  // memory of the previous case and of opening
+  window_.work().workspace().show_help(choice_.difficulty);
+  // The depth of the target belongs to the plan, too.
+  const bool is_guided = choice_.difficulty == Difficulty::kGuided;
+  const double depth_mm = is_guided ? open_->probe_depth_mm : open_->neutral.depth_mm;
+  window_.work().ultrasound().change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = depth_mm; });
+  window_.briefing().show_case(*open_, choice_.difficulty);
+  if (cut_off_) load_replay(std::exchange(cut_off_, {})->session);
+}
+
+/// Checks if sessions can be written; displays present and impending problems.
+bool SeatFlow::can_record() {
+  const std::filesystem::path folder = state_folder_ / "sessions";
+  if (const Status made = make_writable_folder(folder); !made) {
+    window_.show_banner(
+        tr("Cannot record attempts in %1: %2. Start trocar-trainer with --state and a folder with write permission.")
+            .arg(to_qt(folder.string()), to_qt(made.error().what)),
+        BannerKind::kError);
+    return false;
+  }
+  const attempt::RecordingRoom room(folder, find_free_bytes(folder));
+  const Status start = room.check_start();
+  if (!start) window_.show_banner(sentence_of(start.error()), BannerKind::kError);
+  if (start && !room.start_warning().empty()) window_.show_banner(to_qt(room.start_warning()));
+  return start.has_value();
+}
+
+void SeatFlow::begin_attempt() {
+  if (!open_ || !can_record()) return;
+  attempt::AttemptOptions options;
+  const QString name = QDateTime::currentDateTime().toString(QStringLiteral("yyyy-MM-dd_HH-mm-ss-zzz"));
+  options.session = state_folder_ / "sessions" / to_std(name + QStringLiteral(".trocar"));
+  options.device_needle = choice_.needle_device;
+  options.device_probe = choice_.probe_device;
+  options.level = name_of(choice_.difficulty);
+  if (!is_exam()) options.force_model = to_std(window_.work().parameters().preview().model());
+  options.is_guided = choice_.difficulty != Difficulty::kExam;
+  if (choice_.difficulty != Difficulty::kGuided) {
+    // The start of the plan would reveal the solution.
+    options.X_PN_start = open_->neutral.X_PN;
+    options.X_PT_start = open_->neutral.X_PT;
+  }
+  if (const Status kept = journal_.begin({case_choice(choice_), options.session}); !kept)
+    return window_.show_banner(sentence_of(kept.error()), BannerKind::kError);
+  replay_.reset();
+  recoveries_ = 0;
+  window_.work().set_parameters_locked(is_exam());
+  window_.work().show_puncture();
+  window_.show_page(QStringLiteral("puncture"));
+  frames_.restart();
+  attempt_ = std::make_unique<AttemptControl>(open_, choice_, std::move(options), servers_, window_.work());
+  connect(
+      attempt_.get(), &AttemptControl::close_confirmed, this,
+      [this] {
+        is_close_confirmed_ = true;
+        window_.close();
+      },
+      Qt::QueuedConnection);
+  connect(attempt_.get(), &AttemptControl::gun_fired, this, [this] {
+    if (window_.has_sound()) speaker_.play(gun_click_);
+  });
+  if (const QStringList changed = window_.work().parameters().settings(); !changed.isEmpty() && !is_exam())
+    attempt_->attempt().set_parameters(texts(changed));
+}
+
+void SeatFlow::try_again() {
+  attempt_.reset();
+  begin_attempt();
+}
+
+void SeatFlow::poll_attempt() {
+  if (!attempt_) return;
+  const attempt::AttemptView& view = attempt_->view();
+  window_.show_banner(to_qt(view.banner),
+                      view.phase == attempt::AttemptPhase::kFailed ? BannerKind::kError : BannerKind::kWarning);
+  report_recoveries(view);
+  std::vector<ServerLine> servers{line_of(view.servers[0], tr("Needle"))};
+  if (view.has_probe) servers.push_back(line_of(view.servers[1], tr("Transducer")));
+  window_.strip().show_servers(servers);
+  window_.strip().show_forces(view.phase != attempt::AttemptPhase::kFinishing, view.are_forces_stopped);
+  auto result = attempt_->attempt().take_result();
+  if (!result) return;
+  const std::filesystem::path session = attempt_->attempt().session_path();
+  servers_ = attempt_->attempt().servers();
+  attempt_.reset();
+  window_.strip().show_forces(false, false);
+  window_.strip().show_servers({});  // the servers wait for the next attempt; their status is outdated
+  window_.show_banner({});
+  journal_.clear();
+  if (!*result) {
+    window_.strip().show_servers({});
+    window_.show_banner(sentence_of(result->error()) + tr(" Press Begin to try again, or Back for the start page."),
+                        BannerKind::kError);
+    return window_.show_page(QStringLiteral("briefing"));
+  }
+  warnings_ = (*result)->warnings;
+  cut_short_ = (*result)->cut_short;
+  if ((*result)->unsaved) {
+    show_replay(attempt::AttemptReplay::of(*std::move((*result)->unsaved), open_));
+  } else {
+    load_replay(session);
+  }
+}
+
+void SeatFlow::report_recoveries(const attempt::AttemptView& view) {
+  if (view.recoveries == recoveries_) return;
+  recoveries_ = view.recoveries;
+  window_.show_message(to_qt(view.recovered), BannerKind::kSuccess);
+}
+
+void SeatFlow::load_replay(const std::filesystem::path& session) {
+  loading_ = BackgroundJob<attempt::AttemptReplay>(
+      [session, open = open_](const Progress&) { return attempt::AttemptReplay::load(session, open); });
+}
+
+void SeatFlow::poll_replay() {
+  auto loaded = loading_.take();
+  if (!loaded) return;
+  loading_ = {};
+  show_replay(*std::move(loaded));
+}
+
+void SeatFlow::show_replay(Result<attempt::AttemptReplay> replay) {
+  if (!replay) return window_.show_banner(sentence_of(replay.error()), BannerKind::kError);
+  window_.show_banner(to_qt(std::exchange(cut_short_, {})));
+  replay_ = std::make_unique<ReplayControl>(*std::move(replay), open_, window_.work(), std::exchange(warnings_, {}));
+  window_.work().set_parameters_locked(false);
+  window_.work().show_feedback();
+  window_.show_page(QStringLiteral("feedback"));
+  window_.work().time_line().setFocus();
+}
+
+/// Opens the case of the interrupted attempt; its replay follows when the case is open.
+void SeatFlow::recover() {
+  window_.start().offer_recovery({});
+  if (!offered_) return;
+  cut_off_ = std::exchange(offered_, {});
+  if (!journal_.forget(*cut_off_)) {
+    cut_off_.reset();
+    return window_.show_message(tr("The attempt has been opened in another trainer."), BannerKind::kWarning);
+  }
+  SeatChoice choice = window_.start().choice();
+  choice.task = cut_off_->choice.options.task;
+  choice.patient = cut_off_->choice.patient_source;
+  choice.patient_seed = cut_off_->choice.patient_seed;
+  choice.needle = cut_off_->choice.options.needle;
+  choice.force_model = cut_off_->choice.force_model;
+  open(choice);
+}
+
+void SeatFlow::save_report() {
+  if (!replay_) return;
+  const QString file = QFileDialog::getSaveFileName(&window_, tr("Report of the attempt"),
+                                                    QStringLiteral("report.html"), tr("Pages (*.html)"));
+  if (file.isEmpty()) return;
+  const Status status = replay_->save_report(to_std(file));
+  if (!status) return window_.show_banner(sentence_of(status.error()), BannerKind::kError);
+  window_.show_message(tr("The report is in %1").arg(file), BannerKind::kSuccess);
+}
+
+void SeatFlow::frame() {
+  const double now = now_s();
+  retired_.sweep();
+  show_opened();
+  poll_opening();
+  poll_attempt();
+  poll_replay();
+  const double dt_s = frames_.since_last_s(now);
+  if (attempt_) attempt_->advance(dt_s);
+  if (replay_) replay_->advance(dt_s);
+  if (window_.page() == QLatin1String("case-builder")) window_.case_builder().advance();
+  if (attempt_ || replay_) {
+    window_.work().parameters().advance();
+    const cases::Case& the_case = open_->the_case;
+    window_.mirror().update_camera(window_.work().view_3d(),
+                                   cases::room_in_patient(the_case.plan.line_P, the_case.needle.length_mm));
+    window_.work().workspace().draw(now);
+  }
+  if (attempt_) attempt_->attempt().frame_drawn();
+  measure_frame(now_s());
+}
+
+void SeatFlow::measure_frame(double now) {
+  const double frame_s = frames_.since_last_s(now);
+  if (frame_s > 0.0 && (attempt_ || replay_) && frame_ms_.size() < kMostFrames) frame_ms_.push_back(1e3 * frame_s);
+  frames_.add(now, attempt_ != nullptr);
+  if (const auto figures = frames_.figures()) window_.strip().show_frames(*figures);
+}
+
+bool SeatFlow::may_close() {
+  if (!attempt_ || is_close_confirmed_ || attempt_->view().phase == attempt::AttemptPhase::kStarting) return true;
+  attempt_->ask_to_close();
+  return false;
+}
+
+void SeatFlow::close() {
+  timer_.stop();
+  attempt_.reset();
+  replay_.reset();
+  servers_.reset();
+  retired_.retire(std::exchange(opening_, {}));
+}
+
+void SeatFlow::end_server(const QString& tool) {
+  if (attempt_) attempt_->end_server(tool);
+}
+
+QVariantMap SeatFlow::facts() const {
+  QVariantMap facts;
+  facts[QStringLiteral("case")] = open_ ? to_qt(open_->the_case.patient->name) : QString();
+  facts[QStringLiteral("is_open")] = open_ != nullptr && !opening_.has_work() && !opened_;
+  constexpr double kBytesPerMiB = 1024.0 * 1024.0;
+  facts[QStringLiteral("memory_mb")] = static_cast<double>(resident_memory_bytes()) / kBytesPerMiB;
+  facts[QStringLiteral("late_frames")] = static_cast<qulonglong>(frames_.late());
+  if (attempt_) facts.insert(attempt_->facts());
+  if (replay_) facts.insert(replay_->facts());
+  // Settings of the displayed ultrasound image.
+  const bool tells_plan = !attempt_ || !is_exam();
+  if (const auto picture = window_.work().ultrasound().picture(); picture && open_ && tells_plan)
+    facts[QStringLiteral("picture_from_plan_mm")] = (picture->X_PT.p() - open_->X_PT_start.p()).norm();
+  facts[QStringLiteral("frame_p50_ms")] = quantile(frame_ms_, 0.5);
+  facts[QStringLiteral("frame_p99_ms")] = quantile(frame_ms_, 0.99);
+  const scene::FrameTimes& renders = window_.work().view_3d().moving_frame_times();
+  facts[QStringLiteral("render_p50_ms")] = renders.p50_ms();
+  facts[QStringLiteral("render_p99_ms")] = renders.p99_ms();
+  const scene::FrameTimes& stills = window_.work().view_3d().still_frame_times();
+  facts[QStringLiteral("still_p50_ms")] = stills.p50_ms();
+  facts[QStringLiteral("unwatched_ms")] = window_.work().view_3d().unwatched_times().percentile_ms(1.0);
+  if (const auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) {
+    const auto& slowest = application->slowest();
+    facts[QStringLiteral("slowest_ms")] = slowest.empty() ? 0.0 : slowest.front().ms;
+    facts[QStringLiteral("slowest")] =
+        slowest.empty() ? QString()
+                        : QStringLiteral("%1 ms: %2").arg(slowest.front().ms, 0, 'f', 1).arg(slowest.front().what);
+  }
+  return facts;
+}
+
+void SeatFlow::reset_watch() {
+  window_.work().view_3d().clear_frame_times();
+  frame_ms_.clear();
+  if (auto* application = qobject_cast<TrainerApplication*>(QCoreApplication::instance())) application->reset_watch();
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <QElapsedTimer>
+#include <QObject>
+#include <QTimer>
+#include <QVariantMap>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "attempt/live/live_attempt.h"
+#include "attempt/record/attempt_replay.h"
+#include "attempt/record/journal.h"
+#include "cases/open_case.h"
+#include "choice/seat_choice.h"
+#include "core/background_job.h"
+#include "devices/pointer/speaker.h"
+#include "ui_kit/frame_count.h"
+
+namespace trocar::trainer {
+
+class AttemptControl;
+class MainWindow;
+class ReplayControl;
+
+/// Sequence of pages: start, open, briefing, puncture, feedback. Owns the data of case and attempt; polls background
+/// work and draws the views once per frame.
+class SeatFlow : public QObject {
+  Q_OBJECT
+
+ public:
+  SeatFlow(MainWindow& window, std::filesystem::path state_folder);
+  ~SeatFlow() override;
+
+  void go_to_start();
+  void go_to_case_builder();
+  void open(const SeatChoice& choice);
+  void begin_attempt();
+  void try_again();
+  void save_report();
+  /// False: an attempt runs; the trainee is asked, and the window is closed when the answer is yes.
+  bool may_close();
+  void close();
+  QVariantMap facts() const;
+  /// Kills a haptic server, for scripts that try what happens.
+  void end_server(const QString& tool);
+  /// Frame times and slow handlers count from now on.
+  void reset_watch();
+
+ private:
+  void connect_pages();
+  void frame();
+  void poll_opening();
+  void show_opened();
+  bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
+  bool can_record();
+  void poll_attempt();
+  void report_recoveries(const attempt::AttemptView& view);
+  void show_replay(Result<attempt::AttemptReplay> replay);
+  void poll_replay();
+  void load_replay(const std::filesystem::path& session);
+  void recover();
+  void measure_frame(double now_s);
+  double now_s() const { return static_cast<double>(clock_.nsecsElapsed()) / 1e9; }
+
+  MainWindow& window_;
+  std::filesystem::path state_folder_;
+  attempt::Journal journal_;
+  SeatChoice choice_;
+  BackgroundJob<std::shared_ptr<const cases::OpenCase>> opening_;
+  BackgroundJob<attempt::AttemptReplay> loading_;
+  RetiredJobs retired_;
+  devices::Speaker speaker_;
+  std::vector<float> gun_click_ = devices::make_gun_click();
+  std::optional<attempt::SeatState> offered_;      ///< Was cut off; offered on the start page.
+  std::optional<attempt::SeatState> cut_off_;      ///< Being opened, to be scored and shown.
+  std::shared_ptr<const cases::OpenCase> opened_;  ///< Being shown, a part a frame; open_ when all is shown.
+  std::shared_ptr<const cases::OpenCase> open_;
+  std::shared_ptr<attempt::SeatServers> servers_;  ///< Kept from one attempt to the next.
+  std::unique_ptr<AttemptControl> attempt_;
+  std::unique_ptr<ReplayControl> replay_;
+  bool is_close_confirmed_ = false;
+  int recoveries_ = 0;                 ///< Of the attempt's servers, as far as they were told.
+  std::string cut_short_;              ///< See RunResult; of the same attempt.
+  std::vector<std::string> warnings_;  ///< Of the attempt whose replay is being loaded.
+  QTimer timer_;
+  QElapsedTimer clock_;
+  FrameCount frames_;
+  std::vector<double> frame_ms_;  ///< Since the last reset, of an attempt or replay; kMostFrames at most.
+};
+
+}  // namespace trocar::trainer

@@ -1,0 +1,118 @@
+#include "views/patient/patient_view_entry.h"
+
+#include <algorithm>
+
+#include "ui_kit/trainer_application.h"
+#include "ultrasound/live/scan_picture.h"
+#include "ultrasound/scanner/scan_annotation.h"
+#include "views/patient/patient_view.h"
+
+namespace trocar::trainer {
+namespace {
+
+/// Frame time available to the 3D views while tools move, so that 15 frames per second remain with slices, ultrasound
+/// and curves.
+constexpr double kFrameOfOne_ms = 32.0, kFrameOfTwo_ms = 20.0;
+
+enum class Role { kMain, kSide };
+
+class PatientViewEntry final : public View {
+ public:
+  PatientViewEntry(Role role, ViewContext& context) : role_(role), context_(context), view_(new PatientView) {
+    view_->setObjectName(role == Role::kMain ? QStringLiteral("view-3d") : QStringLiteral("view-side"));
+    if (role == Role::kMain) context.main_3d_view = view_;
+    if (role == Role::kSide) view_->set_follow(scene::FollowMode::kSide);
+    context.all_3d_views.push_back(view_);
+  }
+
+  QWidget& widget() override { return *view_; }
+
+  bool open(const CaseContext& context) override {
+    case_ = context;
+    picture_number_ = 0;
+    has_patient_ = false;
+    if (role_ == Role::kMain) show_patient();
+    return has_patient_;
+  }
+
+  void show_help(Difficulty difficulty) override {
+    view_->set_guidance(guidance_of(difficulty));
+    view_->set_guidance_visible(true);
+  }
+
+  void show_tools(const ToolContext& context) override {
+    const tasks::Needle& needle = context.open.the_case.needle;
+    const ToolsShown& tools = context.visible;
+    view_->set_needle(tools.shaft_P, needle.outer_diameter_mm, scene::needle_model(needle.model));
+    view_->set_hand(tools.hand_P);
+    view_->set_shot(tools.stylet_P, tools.core_P);
+    has_whole_picture_ = false;
+  }
+
+  void update(const FrameContext& frame) override { view_->set_tools_moving(frame.are_tools_moving); }
+
+  void draw(const FrameContext& frame) override {
+    if (!view_->isVisible()) return;
+    // The surfaces of the side view cost seconds of computing: only where it is visible.
+    if (!has_patient_ && case_.open) show_patient();
+    show_picture(frame.are_tools_moving);
+    // Two views share the time of one; while tools move the side view is drawn every other time.
+    const auto& all = context_.all_3d_views;
+    const bool has_both = std::count_if(all.begin(), all.end(), [](const auto* v) { return v->isVisible(); }) > 1;
+    if (has_both && role_ == Role::kSide && frame.are_tools_moving && frame.number % 2 == 0) return;
+    const TrainerApplication::DrawingScope drawing;
+    view_->set_frame_target(has_both ? kFrameOfTwo_ms : kFrameOfOne_ms);
+    view_->draw();
+  }
+
+ private:
+  void show_patient() {
+    const cases::Case& the_case = case_.open->the_case;
+    view_->show_patient(the_case.patient, case_.open->meshes, the_case.plan.line_P.b);
+    view_->set_path(the_case.plan.line_P, case_.entry_zone.radius_mm);
+    view_->scene().set_entry_centre(case_.entry_zone.centre_P);
+    has_patient_ = true;
+  }
+
+  /// The newest ultrasound image as a plane. With the tools at rest one in full detail stays there: its noise alone is
+  /// not worth drawing the patient again.
+  void show_picture(bool are_tools_moving) {
+    const auto picture = context_.ultrasound_picture();
+    if (!picture || picture->number == picture_number_ || (has_whole_picture_ && !are_tools_moving)) return;
+    picture_number_ = picture->number;
+    has_whole_picture_ = picture->detail == ultrasound::ScanDetail::kFull;
+    view_->set_transducer(picture->X_PT, picture->scan);
+    view_->set_ultrasound(picture->colour.pixels.empty() ? ultrasound::to_rgb(picture->gray) : picture->colour,
+                          picture->corners_P);
+  }
+
+  Role role_;
+  ViewContext& context_;
+  PatientView* view_;
+  CaseContext case_;
+  bool has_patient_ = false;
+  std::uint64_t picture_number_ = 0;
+  bool has_whole_picture_ = false;  ///< The picture has full detail.
+};
+
+}  // namespace
+
+ViewDescription patient_view_entry() {
+  ViewDescription view;
+  view.id = QStringLiteral("3d");
+  view.title = PatientView::tr("3D");
+  view.keys = {{QStringLiteral("T, L, B"), PatientView::tr("3D view: follow the tip, along, beside the needle")},
+               {QStringLiteral("O, I"), PatientView::tr("3D view: guidance, landmarks")}};
+  view.make = [](ViewContext& context) { return std::make_unique<PatientViewEntry>(Role::kMain, context); };
+  return view;
+}
+
+ViewDescription side_view_entry() {
+  ViewDescription view;
+  view.id = QStringLiteral("side");
+  view.title = PatientView::tr("Side view");
+  view.make = [](ViewContext& context) { return std::make_unique<PatientViewEntry>(Role::kSide, context); };
+  return view;
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,81 @@
+#include "views/ultrasound/ultrasound_view_entry.h"
+
+#include <QToolButton>
+
+#include "ui_kit/parts.h"
+#include "views/ultrasound/scanner_view.h"
+#include "views/ultrasound/ultrasound_controls.h"
+#include "views/ultrasound/ultrasound_view.h"
+
+namespace trocar::trainer {
+namespace {
+
+/// In the title of the dock, where it covers nothing of the picture.
+QToolButton* make_controls_button() {
+  auto* button =
+      make_tool_button("show-ultrasound-controls", UltrasoundView::tr("Controls"),
+                       UltrasoundView::tr("Image controls next to the ultrasound image"), QStringLiteral("K"));
+  button->setCheckable(true);
+  button->setFocusPolicy(Qt::NoFocus);
+  button->setStyleSheet(QStringLiteral("QToolButton { padding: 0 8px; min-height: 0; }"));
+  return button;
+}
+
+class UltrasoundViewEntry final : public View {
+ public:
+  explicit UltrasoundViewEntry(ViewContext& context)
+      : view_(new UltrasoundView),
+        controls_(new UltrasoundControls(*view_)),
+        scanner_(new ScannerView(*view_, *controls_)),
+        button_(make_controls_button()) {
+    QObject::connect(button_, &QToolButton::toggled, controls_, &QWidget::setVisible);
+    context.ultrasound_picture = [view = view_] { return view->picture(); };
+  }
+
+  QWidget& widget() override { return *scanner_; }
+  QWidget* title_button() override { return button_; }
+
+  bool open(const CaseContext& context) override {
+    const cases::OpenCase& open = *context.open;
+    view_->show_patient(open.acoustic, open.flow, open.transducer);
+    view_->change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = open.probe_depth_mm; });
+    return true;
+  }
+
+  void show_help(Difficulty difficulty) override {
+    view_->set_guide_offered(difficulty != Difficulty::kExam);
+    view_->set_guide_visible(guidance_of(difficulty) == scene::Guidance::kPath);
+  }
+
+  void show_tools(const ToolContext& context) override {
+    std::vector<Vec3> metal_P = context.tools.shaft_P;  // the stylet also reflects sound
+    if (context.tools.stylet_P) metal_P.push_back(context.tools.stylet_P->b);
+    view_->set_needle(metal_P, context.open.the_case.needle.outer_diameter_mm);
+    if (context.tools.X_PT) view_->set_transducer_pose(*context.tools.X_PT);
+  }
+
+  void update(const FrameContext& frame) override { view_->advance(frame.now_s); }
+
+ private:
+  UltrasoundView* view_;
+  UltrasoundControls* controls_;
+  ScannerView* scanner_;
+  QToolButton* button_;
+};
+
+}  // namespace
+
+ViewDescription ultrasound_view_entry() {
+  ViewDescription view;
+  view.id = QStringLiteral("ultrasound");
+  view.title = UltrasoundView::tr("Ultrasound");
+  view.keys = {{QStringLiteral("F"), UltrasoundView::tr("freezes the ultrasound")},
+               {QStringLiteral("G, D"), UltrasoundView::tr("gain, depth; with Shift less")},
+               {QStringLiteral("C"), UltrasoundView::tr("colour Doppler")},
+               {QStringLiteral("M"), UltrasoundView::tr("measures a distance; its ends can be dragged")},
+               {QStringLiteral("Delete"), UltrasoundView::tr("deletes the selected caliper, otherwise the last")}};
+  view.make = [](ViewContext& context) { return std::make_unique<UltrasoundViewEntry>(context); };
+  return view;
+}
+
+}  // namespace trocar::trainer

@@ -1,0 +1,10 @@
+#pragma once
+
+namespace trocar {
+inline namespace core {
+
+/// Adds to the niceness of the calling thread, where the system has one per thread (Linux). A refusal is ignored.
+void lower_priority(int nice) noexcept;
+
+}  // namespace core
+}  // namespace trocar

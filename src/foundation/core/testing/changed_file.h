@@ -1,0 +1,27 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/files/atomic_file.h"
+#include "core/files/input_file.h"
+#include "core/files/temporary_folder.h"
+
+namespace trocar::testing {
+
+/// What `load` makes of a copy of a file in which the text `from` is replaced at its first place.
+template <class Load>
+auto load_changed(const std::filesystem::path& file, std::string_view from, std::string_view to, const Load& load) {
+  std::string text = *read_file(file);
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  if (at != std::string::npos) text.replace(at, from.size(), to);
+  const TemporaryFolder folder;
+  EXPECT_TRUE(write_file_atomically(folder / file.filename().string(), text));
+  return load(folder / file.filename().string());
+}
+
+}  // namespace trocar::testing

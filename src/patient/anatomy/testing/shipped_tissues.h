@@ -1,0 +1,17 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "anatomy/tissue/tissue_table.h"
+#include "core/files/data_dir.h"
+
+namespace trocar::testing {
+
+/// The table of the data folder.
+inline anatomy::TissueTable shipped_tissues() {
+  auto table = anatomy::load_tissue_table(data_dir() / "tissues.toml");
+  EXPECT_TRUE(table) << (table ? "" : table.error().text());
+  return table.value_or(anatomy::TissueTable{});
+}
+
+}  // namespace trocar::testing

@@ -1,0 +1,74 @@
+#include "attempt/servers/local_server.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <utility>
+
+#include "attempt/servers/link_connection.h"
+
+namespace trocar::attempt {
+namespace {
+
+constexpr const char* kLog = "log";
+
+std::string last_line(const std::filesystem::path& log) {
+  std::ifstream file(log);
+  std::string last;
+  for (std::string line; std::getline(file, line);)
+    if (!line.empty()) last = line;
+  return last;
+}
+
+}  // namespace
+
+std::optional<Error> error_of_line(std::string_view line) {
+  constexpr std::string_view kMark = "error: ", kBetween = " — ";
+  if (!line.starts_with(kMark)) return std::nullopt;
+  line.remove_prefix(kMark.size());
+  const std::size_t first = line.find(kBetween), last = line.rfind(kBetween);
+  if (first == std::string_view::npos) return Error{std::string(line), {}, {}};
+  const std::string what(line.substr(0, first)), advice(line.substr(last + kBetween.size()));
+  const std::size_t begin = first + kBetween.size();
+  return Error{what, first == last ? std::string() : std::string(line.substr(begin, last - begin)), advice};
+}
+
+Result<std::unique_ptr<LocalServer>> LocalServer::start(const LocalServerOptions& options) {
+  std::unique_ptr<LocalServer> server(new LocalServer);
+  server->options_ = options;
+  server->folder_ = std::make_unique<TemporaryFolder>();
+  server->endpoint_ = "ipc://" + (*server->folder_ / options.tool).string();
+  TROCAR_TRY_STATUS(server->restart());
+  return server;
+}
+
+Result<std::unique_ptr<ServerConnection>> LocalServer::connect(link::ClientOptions options) {
+  options.endpoint = endpoint_;
+  return connect_by_link(options);
+}
+
+Status LocalServer::restart() {
+  TROCAR_TRY(const std::filesystem::path program, link::find_server_program());
+  const std::string flights = options_.flight_folder.empty() ? "." : options_.flight_folder.string();
+  const std::vector<std::string> arguments{"--device",         options_.device,
+                                           "--tool",           options_.tool,
+                                           "--rate",           fmt::format("{}", options_.rate_hz),
+                                           "--priority",       fmt::format("{}", options_.priority),
+                                           "--endpoint",       endpoint_,
+                                           "--flight-records", flights};
+  process_.reset();
+  TROCAR_TRY(link::ServerProcess process, link::ServerProcess::start(program, arguments, *folder_ / kLog));
+  process_ = std::make_unique<link::ServerProcess>(std::move(process));
+  return {};
+}
+
+Status LocalServer::check() {
+  if (process_ && process_->is_running()) return {};
+  const std::string last = last_line(*folder_ / kLog);
+  if (auto told = error_of_line(last)) return tl::unexpected(*std::move(told));
+  return fail(fmt::format("the server of the {} {}", options_.tool,
+                          process_ ? process_->how_it_ended() : "could not be started again"),
+              "trocar-hapticd", last);
+}
+
+}  // namespace trocar::attempt

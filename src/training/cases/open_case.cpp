@@ -1,0 +1,212 @@
+#include "cases/open_case.h"
+
+#include <array>
+#include <chrono>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "cases/needle_geometry.h"
+#include "cases/probe_start.h"
+#include "core/files/data_dir.h"
+#include "core/parallel.h"
+#include "io/patient/patient_cache.h"
+#include "io/patient/patient_source.h"
+
+namespace trocar::cases {
+namespace {
+
+constexpr double kPredictedSpeed_mm_per_s = 10.0;
+constexpr double kPredictedPast_mm = 10.0;
+
+/// Progress of parallel parts, combined into one.
+class SharedProgress {
+ public:
+  explicit SharedProgress(const Progress& whole) : whole_(whole) {}
+  /// `share`: of the whole, 0..1. This must outlive it.
+  Progress part(double share) {
+    const std::lock_guard lock(mutex_);
+    const std::size_t index = done_.size();
+    done_.push_back(0.0);
+    return [this, share, index](std::string_view step, double fraction) {
+      const std::lock_guard own_lock(mutex_);
+      done_[index] = share * fraction;
+      report(whole_, step, std::accumulate(done_.begin(), done_.end(), 0.0));
+    };
+  }
+
+ private:
+  const Progress& whole_;
+  std::mutex mutex_;
+  std::vector<double> done_;
+};
+
+bool is_same_patient(const CaseChoice& a, const CaseChoice& b) {
+  return a.patient_source == b.patient_source && a.patient_seed == b.patient_seed;
+}
+
+io::PatientSource source_of(const CaseChoice& choice) {
+  return {choice.patient_source, choice.patient_seed};
+}
+
+/// The patient, from the cache if possible; `made.server_source` is its source for servers.
+Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(OpenCase& made, const io::PatientCache& cache,
+                                                                  const Progress& progress) {
+  made.server_source = made.choice.patient_source;
+  if (const auto kept = cache.find(source_of(made.choice))) {
+    if (auto patient = io::open_patient({kept->string(), 1}, progress)) {
+      made.server_source = kept->string();
+      return std::make_shared<const anatomy::VirtualPatient>(*std::move(patient));
+    }
+    cache.forget(source_of(made.choice));
+  }
+  TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(source_of(made.choice), progress));
+  return std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
+}
+
+Status add_surfaces(OpenCase& made, const anatomy::VirtualPatient& patient, const io::PatientCache& cache,
+                    const Progress& progress) {
+  TROCAR_TRY(auto meshes, io::open_meshes({made.server_source, made.choice.patient_seed}, patient, progress));
+  const bool is_kept = made.server_source != made.choice.patient_source;
+  if (!is_kept) {
+    // If it cannot be cached, it is generated again next time.
+    if (const auto kept = cache.keep(source_of(made.choice), patient, meshes)) made.server_source = kept->string();
+  }
+  made.meshes = std::make_shared<const std::vector<anatomy::NamedMesh>>(std::move(meshes));
+  return {};
+}
+
+Status add_acoustics(OpenCase& made, const anatomy::VirtualPatient& patient, const Progress& progress) {
+  TROCAR_TRY(ultrasound::AcousticTable acoustics, ultrasound::load_acoustic_table(data_dir() / "acoustics.toml"));
+  TROCAR_TRY(made.acoustic, ultrasound::make_acoustic_scene(patient, std::move(acoustics), {}, progress));
+  TROCAR_TRY(ultrasound::FlowTable flows, ultrasound::load_flow_table(data_dir() / "flow.toml"));
+  auto flow = ultrasound::make_vessel_flow(patient, std::move(flows));
+  if (flow) {
+    made.flow = *std::move(flow);
+  } else {
+    made.notes.push_back("no colour Doppler: " + flow.error().text());
+  }
+  return {};
+}
+
+Status add_case(OpenCase& made, std::shared_ptr<const anatomy::VirtualPatient> patient, const Progress& progress) {
+  TROCAR_TRY(made.the_case, prepare_case(std::move(patient), made.choice.options, progress));
+  made.force_model = made.choice.force_model.empty() ? made.the_case.task.force_model : made.choice.force_model;
+  TROCAR_TRY(ProbeStart start, find_probe_start(*made.the_case.patient, made.the_case.plan.line_P));
+  made.transducer = std::move(start.transducer);
+  made.probe_depth_mm = start.depth_mm;
+  made.X_PT_start = start.X_PT;
+  made.is_in_plane = start.is_in_plane;
+  if (!start.note.empty()) made.notes.push_back(start.note);
+  TROCAR_TRY(made.neutral, find_neutral_start(made.the_case, made.transducer, made.X_PT_start));
+  if (!made.neutral.note.empty()) made.notes.push_back(made.neutral.note);
+  return {};
+}
+
+Result<std::shared_ptr<const haptics::HapticScene>> scene_of(const Case& the_case, const anatomy::TissueTable& tissues,
+                                                             const std::string& force_model) {
+  haptics::HapticOptions haptics;
+  haptics.has_weight_compensation = false;
+  TROCAR_TRY(haptics.force_model, haptics::parse_force_model(force_model));
+  return haptics::make_haptic_scene(the_case.patient, tissues, needle_geometry(the_case.needle), {}, haptics);
+}
+
+std::vector<CurvePoint> curve_of(const Case& the_case, const haptics::HapticScene& scene) {
+  PrescribedMotion motion;
+  motion.line_P = the_case.plan.line_P;
+  motion.speed_mm_per_s = kPredictedSpeed_mm_per_s;
+  motion.after_mm = kPredictedPast_mm;
+  return force_curve(scene, motion);
+}
+
+Status add_prediction(OpenCase& made) {
+  TROCAR_TRY(const auto scene, scene_of(made.the_case, made.the_case.tissues, made.force_model));
+  made.pieces = pieces_along(*scene, made.the_case.tissues, made.the_case.plan.line_P);
+  made.predicted = curve_of(made.the_case, *scene);
+  return {};
+}
+
+}  // namespace
+
+bool operator==(const CaseChoice& a, const CaseChoice& b) {
+  const CaseOptions &x = a.options, &y = b.options;
+  return is_same_patient(a, b) && a.force_model == b.force_model && x.task == y.task && x.needle == y.needle &&
+         x.tissue_file == y.tissue_file && x.profile == y.profile && x.overrides == y.overrides && x.seed == y.seed;
+}
+
+Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice, const OpenOptions& options,
+                                                       const Progress& progress, const std::stop_token& stop) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto made = std::make_shared<OpenCase>();
+  made->choice = choice;
+  made->choice.options.patient_folder = choice.patient_source;  // path of the patient's own task, if any
+  const io::PatientCache cache(options.cache_folder);
+  std::shared_ptr<const OpenCase> previous = options.previous;
+  if (previous && !is_same_patient(previous->choice, choice)) previous.reset();
+  // Errors of the tables are reported before a patient is opened.
+  TROCAR_TRY_STATUS(load_tables(made->choice.options));
+  SharedProgress shared(progress);
+  std::shared_ptr<const anatomy::VirtualPatient> patient;
+  if (previous) {
+    patient = previous->the_case.patient;
+    made->server_source = previous->server_source;
+    made->meshes = previous->meshes;
+    made->acoustic = previous->acoustic;
+    made->flow = previous->flow;
+    if (!made->flow) made->notes.push_back("no colour Doppler: no vessel of this patient has flow");
+    TROCAR_TRY_STATUS(add_case(*made, patient, shared.part(0.8)));
+  } else {
+    TROCAR_TRY(patient, patient_of(*made, cache, shared.part(0.3)));
+    if (stop.stop_requested()) return fail("the case was not opened: cancelled", "case", "open it again");
+    std::array<Status, 3> done;
+    const Progress of_case = shared.part(0.2), of_surfaces = shared.part(0.2), of_acoustics = shared.part(0.25);
+    OpenCase acoustics;
+    acoustics.choice = choice;
+    parallel_invoke([&] { done[0] = add_case(*made, patient, of_case); },
+                    [&] { done[1] = add_surfaces(*made, *patient, cache, of_surfaces); },
+                    [&] { done[2] = add_acoustics(acoustics, *patient, of_acoustics); });
+    for (Status& status : done) TROCAR_TRY_STATUS(std::move(status));
+    made->acoustic = std::move(acoustics.acoustic);
+    made->flow = std::move(acoustics.flow);
+    made->notes.insert(made->notes.end(), acoustics.notes.begin(), acoustics.notes.end());
+  }
+  if (stop.stop_requested()) return fail("the case was not opened: cancelled", "case", "open it again");
+  report(progress, "predicting the force", 0.95);
+  TROCAR_TRY_STATUS(add_prediction(*made));
+  made->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report(progress, "open", 1.0);
+  return std::shared_ptr<const OpenCase>(std::move(made));
+}
+
+BackgroundJob<std::shared_ptr<const OpenCase>> open_case(CaseChoice choice, OpenOptions options) {
+  return BackgroundJob<std::shared_ptr<const OpenCase>>([choice = std::move(choice), options = std::move(options)](
+                                                            const Progress& progress, const std::stop_token& stop) {
+    return make_open_case(choice, options, progress, stop);
+  });
+}
+
+BackgroundJob<std::shared_ptr<const OpenCase>> open_case(CaseChoice choice, std::shared_ptr<const OpenCase> previous) {
+  return open_case(std::move(choice), OpenOptions{std::move(previous), {}});
+}
+
+Result<std::vector<CurvePoint>> predict_force(const Case& the_case, const std::vector<std::string>& overrides,
+                                              const std::string& force_model) {
+  anatomy::TissueTable tissues = the_case.tissues;
+  for (const std::string& assignment : overrides) TROCAR_TRY_STATUS(anatomy::apply_override(tissues, assignment));
+  TROCAR_TRY(const auto scene,
+             scene_of(the_case, tissues, force_model.empty() ? the_case.task.force_model : force_model));
+  return curve_of(the_case, *scene);
+}
+
+BackgroundJob<std::vector<CurvePoint>> predict_force_in_background(std::shared_ptr<const OpenCase> open_case,
+                                                                   std::vector<std::string> overrides,
+                                                                   std::string force_model) {
+  if (force_model.empty()) force_model = open_case->force_model;
+  return BackgroundJob<std::vector<CurvePoint>>([open_case = std::move(open_case), overrides = std::move(overrides),
+                                                 force_model = std::move(force_model)](const Progress&) {
+    return predict_force(open_case->the_case, overrides, force_model);
+  });
+}
+
+}  // namespace trocar::cases

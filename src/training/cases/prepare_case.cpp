@@ -1,0 +1,99 @@
+#include "cases/prepare_case.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "anatomy/phantom/phantom.h"
+#include "core/files/atomic_file.h"
+#include "core/files/data_dir.h"
+#include "core/log.h"
+#include "tasks/assess_path.h"
+
+namespace trocar::cases {
+namespace {
+namespace fs = std::filesystem;
+
+Status read_task_file(Case& made, const fs::path& file, const fs::path& tasks_folder) {
+  TROCAR_TRY(made.task, tasks::load_task_file(file, tasks_folder));
+  TROCAR_TRY(made.task_toml, read_file(file));
+  return {};
+}
+
+Status find_task(Case& made, const CaseOptions& options, const fs::path& tasks_folder) {
+  if (options.task.ends_with(".toml")) return read_task_file(made, options.task, tasks_folder);
+  if (!options.task.empty()) {
+    TROCAR_TRY(made.task, tasks::load_task(tasks_folder, options.task));
+    return {};
+  }
+  if (has_own_task(options.patient_folder))
+    return read_task_file(made, fs::path(options.patient_folder) / tasks::kOwnTaskFile, tasks_folder);
+  std::error_code ignored;
+  const auto& embedded = anatomy::embedded_patients();
+  const bool is_known = options.patient_folder.empty() || fs::exists(options.patient_folder, ignored) ||
+                        std::any_of(embedded.begin(), embedded.end(), [&](const anatomy::PhantomInfo& info) {
+                          return info.name == options.patient_folder;
+                        });
+  if (!is_known)
+    return fail_usage("no such patient", options.patient_folder, "name a patient folder, or see trocar patient list");
+  return fail_usage("the patient has no task of its own", options.patient_folder, "name a task, see trocar task list");
+}
+
+/// The path named by the task, measured like a planned one. Its faults are reported, but do not prevent the attempt.
+Result<tasks::PlannedPath> find_expert_path(const Case& the_case, const anatomy::VirtualPatient& patient) {
+  const std::string& name = the_case.task.expert_path;
+  for (const anatomy::NeedlePath& path : patient.paths) {
+    if (path.name != name) continue;
+    const tasks::PathAssessment assessment = tasks::assess_path(the_case.task, patient, the_case.needle, path.line_P);
+    for (const tasks::PathFinding& finding : assessment.findings) log_warning("expert path {}: {}", name, finding.text);
+    return assessment.path;
+  }
+  return fail(fmt::format("the expert path \"{}\" is not among the patient's paths", name), patient.name,
+              "draw it again in the case builder, or take expert_path out of the task");
+}
+
+}  // namespace
+
+bool has_own_task(const std::string& patient_folder) {
+  std::error_code ignored;
+  return !patient_folder.empty() && fs::is_regular_file(fs::path(patient_folder) / tasks::kOwnTaskFile, ignored);
+}
+
+Result<Case> load_tables(const CaseOptions& options) {
+  const std::filesystem::path data = data_dir();
+  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  Case made;
+  TROCAR_TRY_STATUS(find_task(made, options, data / "tasks"));
+  const std::string needle = options.needle.empty() ? made.task.needle : options.needle;
+  TROCAR_TRY(made.needle, tasks::load_needle(data / "needles.toml", needle));
+  const std::filesystem::path tissues =
+      options.tissue_file.empty() ? data / "tissues.toml" : std::filesystem::path(options.tissue_file);
+  TROCAR_TRY(made.tissues, anatomy::load_tissue_table(tissues, options.profile));
+  for (const std::string& assignment : options.overrides)
+    TROCAR_TRY_STATUS(anatomy::apply_override(made.tissues, assignment));
+  return made;
+}
+
+Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const CaseOptions& options,
+                          const Progress& progress) {
+  TROCAR_TRY(Case made, load_tables(options));
+  const tasks::TaskReadiness readiness = tasks::check_task(made.task, *patient);
+  if (!readiness.is_possible)
+    return fail(
+        fmt::format("the patient does not support the task {}: {}", made.task.name, fmt::join(readiness.reasons, "; ")),
+        patient->name, "see trocar patient check");
+  made.is_parenchymal = readiness.is_parenchymal;
+  if (!made.task.expert_path.empty()) {
+    TROCAR_TRY(made.plan, find_expert_path(made, *patient));
+  } else {
+    TROCAR_TRY(const auto paths, tasks::plan_paths(made.task, *patient, made.needle, {1, options.seed}, progress));
+    made.plan = paths.front();
+  }
+  log_info("expert path: {:.1f} mm, {:.1f} mm of it in the organ, {:.1f} mm to spare from {}", made.plan.length_mm,
+           made.plan.organ_path_mm, made.plan.spare_margin_mm, made.plan.nearest_risk);
+  made.patient = std::move(patient);
+  return made;
+}
+
+}  // namespace trocar::cases

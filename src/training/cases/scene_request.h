@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include "cases/prepare_case.h"
+#include "link/messages.h"
+
+namespace trocar::cases {
+
+/// How a scene is asked of a server.
+struct SceneChoice {
+  std::string tool = "needle";
+  std::string force_model;     ///< Empty: the task's.
+  std::string patient_source;  ///< As the server can open it: a folder of its machine, or an embedded patient's name.
+  std::uint64_t patient_seed = 1;
+  std::uint64_t seed = 1;
+};
+link::LoadScene scene_request(const Case& the_case, const SceneChoice& choice);
+
+/// Pose of the room for a supine patient: the user is at the patient's right side (W: x towards the feet, y to the
+/// patient's left, z up). The origin is the grip with the needle inserted half-way, so that a centred workspace covers
+/// the whole puncture.
+Pose room_in_patient(const Segment& path_P, double needle_length_mm) noexcept;
+
+}  // namespace trocar::cases

@@ -1,0 +1,175 @@
+#include "cases/segmentation_study.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numbers>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "haptics/tick.h"
+
+namespace trocar::cases {
+namespace {
+
+constexpr std::size_t kPathsAtOnce = 64;  ///< Between two reports of progress.
+
+/// A unit vector perpendicular to `axis`, rotated about it by `angle_rad`.
+Vec3 across(const Vec3& axis, double angle_rad) {
+  const Vec3 first = axis.unitOrthogonal();
+  return std::cos(angle_rad) * first + std::sin(angle_rad) * axis.cross(first);
+}
+
+/// Two needles, one per scene; large, so a worker allocates them once for all its paths.
+struct Needles {
+  haptics::HapticState full;
+  haptics::HapticState partly;
+};
+
+PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, const haptics::HapticScene& partly,
+                          const PrescribedMotion& motion) {
+  needles.full = haptics::HapticState{};
+  needles.partly = haptics::HapticState{};
+  PathError error;
+  error.line_P = motion.line_P;
+  double sum2 = 0.0;
+  double torque2 = 0.0;
+  double full2 = 0.0;
+  const int count = tick_count(motion);
+  for (int i = 1; i <= count; ++i) {
+    const haptics::HapticInput input = input_at(motion, i);
+    const haptics::HapticOutput a = haptics::tick(needles.full, input, full);
+    const haptics::HapticOutput b = haptics::tick(needles.partly, input, partly);
+    if (way_mm(motion, i) <= 0.0) continue;
+    const double difference_n = (a.f_D - b.f_D).norm();
+    const double torque_nmm = (a.tau_D - b.tau_D).norm();
+    const double force_n = a.f_D.norm();
+    ++error.ticks;
+    sum2 += difference_n * difference_n;
+    torque2 += torque_nmm * torque_nmm;
+    full2 += force_n * force_n;
+    error.full_max_n = std::max(error.full_max_n, force_n);
+    error.torque_max_nmm = std::max(error.torque_max_nmm, torque_nmm);
+    if (difference_n > std::max(kAffected_n, kAffectedShare * force_n)) ++error.affected;
+    if (difference_n <= error.max_n) continue;
+    error.max_n = difference_n;
+    error.worst_tissue = a.sample.tissue;
+    error.worst_ahead = haptics::tissue_at(full, a.sample.device_mm).tissue;
+    error.worst_depth_mm = way_mm(motion, i);
+  }
+  const double ticks = std::max(1, error.ticks);
+  error.rms_n = std::sqrt(sum2 / ticks);
+  error.torque_rms_nmm = std::sqrt(torque2 / ticks);
+  error.full_rms_n = std::sqrt(full2 / ticks);
+  return error;
+}
+
+}  // namespace
+
+anatomy::VirtualPatient partly_segmented(const anatomy::VirtualPatient& full,
+                                         std::span<const std::string_view> tissues) {
+  anatomy::VirtualPatient partly = full;
+  partly.name += ", partly segmented";
+  std::array<std::uint8_t, 256> kept{};
+  partly.label_table.labels.clear();
+  for (const anatomy::Label& label : full.label_table.labels) {
+    if (std::find(tissues.begin(), tissues.end(), label.tissue) == tissues.end()) continue;
+    kept[label.id] = label.id;
+    partly.label_table.labels.push_back(label);
+  }
+  for (std::uint8_t& voxel : partly.labels.voxels) voxel = kept[voxel];
+  return partly;
+}
+
+std::vector<std::size_t> spread_choice(std::size_t available, std::size_t count, std::uint64_t seed) {
+  std::vector<std::size_t> chosen;
+  count = std::min(count, available);
+  chosen.reserve(count);
+  // One from each of `count` equal parts: increasing and distinct, since a part contains at least one number.
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t from = i * available / count;
+    const std::size_t to = (i + 1) * available / count;
+    chosen.push_back(from + static_cast<std::size_t>(uniform01(seed, i) * static_cast<double>(to - from)));
+  }
+  return chosen;
+}
+
+PrescribedMotion study_motion(const Segment& line_P, std::size_t number, const StudyMotion& study) {
+  Random random(mix64(study.seed) ^ number);
+  PrescribedMotion motion;
+  motion.line_P = line_P;
+  motion.speed_mm_per_s = study.speed_mm_per_s;
+  const Vec3 axis = line_P.direction();
+  const auto any = [&](double most) {
+    const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+    return Vec3(random.uniform(0.0, most) * across(axis, angle));
+  };
+  motion.drift_P = any(study.max_drift_mm);
+  motion.tilt_rad_P = any(study.max_tilt_rad);
+  return motion;
+}
+
+std::vector<PathError> compare_forces(const haptics::HapticScene& full, const haptics::HapticScene& partly,
+                                      std::span<const PrescribedMotion> motions, const Progress& progress) {
+  std::vector<PathError> errors(motions.size());
+  for (std::size_t from = 0; from < motions.size(); from += kPathsAtOnce) {
+    report(progress, "comparing forces", static_cast<double>(from) / static_cast<double>(motions.size()));
+    parallel_for(std::min(kPathsAtOnce, motions.size() - from), 4, [&](std::size_t first, std::size_t last) {
+      const auto needles = std::make_unique<Needles>();
+      for (std::size_t i = from + first; i < from + last; ++i)
+        errors[i] = compare_on_path(*needles, full, partly, motions[i]);
+    });
+  }
+  report(progress, "comparing forces", 1.0);
+  return errors;
+}
+
+StudyFigures study_figures(std::span<const PathError> errors) {
+  StudyFigures figures;
+  figures.paths = errors.size();
+  if (errors.empty()) return figures;
+  double ticks = 0.0;
+  for (const PathError& error : errors) {
+    figures.mean_rms_n += error.rms_n;
+    figures.mean_max_n += error.max_n;
+    figures.mean_torque_rms_nmm += error.torque_rms_nmm;
+    figures.mean_full_rms_n += error.full_rms_n;
+    figures.max_n = std::max(figures.max_n, error.max_n);
+    figures.max_torque_nmm = std::max(figures.max_torque_nmm, error.torque_max_nmm);
+    figures.affected += error.affected;
+    ticks += error.ticks;
+  }
+  const auto count = static_cast<double>(errors.size());
+  figures.mean_rms_n /= count;
+  figures.mean_max_n /= count;
+  figures.mean_torque_rms_nmm /= count;
+  figures.mean_full_rms_n /= count;
+  figures.affected /= std::max(1.0, ticks);
+  return figures;
+}
+
+std::vector<WorstPlace> worst_places(std::span<const PathError> errors, const anatomy::TissueTable& tissues) {
+  std::map<std::string, WorstPlace> places;
+  for (const PathError& error : errors) {
+    if (!(error.max_n > 0.0)) continue;
+    std::string name = tissues.tissues[error.worst_tissue].name;
+    if (error.worst_ahead != error.worst_tissue) name += " > " + tissues.tissues[error.worst_ahead].name;
+    WorstPlace& place = places[name];
+    place.place = name;
+    ++place.paths;
+    place.mean_max_n += error.max_n;
+    place.max_n = std::max(place.max_n, error.max_n);
+  }
+  std::vector<WorstPlace> sorted;
+  for (auto& [name, place] : places) {
+    place.mean_max_n /= place.paths;
+    sorted.push_back(place);
+  }
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const WorstPlace& a, const WorstPlace& b) { return a.paths > b.paths; });
+  return sorted;
+}
+
+}  // namespace trocar::cases

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "anatomy/patient.h"
+#include "anatomy/tissue/tissue_table.h"
+#include "cases/prescribed_motion.h"
+#include "core/progress.h"
+#include "haptics/haptic_scene.h"
+
+namespace trocar::cases {
+
+/// What stays labelled in a partly segmented patient (the study of the Luebeck group: references.md, Sci Rep 2017):
+/// bones, the liver with its lesions, the vessels. The skin is a distance, not a label, and stays too. Rib cartilage is
+/// not among them: a bone threshold does not find it.
+inline constexpr std::string_view kPartlySegmented[] = {"bone", "liver", "liver_lesion", "vessel"};
+
+/// The same patient with only the labels of these tissues; all else is 0, felt from its HU.
+anatomy::VirtualPatient partly_segmented(const anatomy::VirtualPatient& full,
+                                         std::span<const std::string_view> tissues);
+
+/// `count` of `available` numbers, spread evenly over all of them, in rising order; all where there are fewer.
+std::vector<std::size_t> spread_choice(std::size_t available, std::size_t count, std::uint64_t seed);
+
+/// Motion along a path with a drift and a tilt of its own, at most these.
+struct StudyMotion {
+  double speed_mm_per_s = 10.0;
+  double max_drift_mm = 1.0;   ///< Of the tip at the target. [assumed]
+  double max_tilt_rad = 0.02;  ///< [assumed]
+  std::uint64_t seed = 1;
+};
+PrescribedMotion study_motion(const Segment& line_P, std::size_t number, const StudyMotion& study);
+
+/// How much two scenes differ on one path: wrench on the device (force in N, torque about the grip in N mm, without
+/// the stylus' weight), over the ticks in which the tip is past the skin.
+struct PathError {
+  int ticks = 0;
+  double rms_n = 0.0, max_n = 0.0;
+  double torque_rms_nmm = 0.0, torque_max_nmm = 0.0;
+  int affected = 0;                           ///< Ticks with |dF| > max(kAffected_n, kAffectedShare |F|).
+  double full_rms_n = 0.0, full_max_n = 0.0;  ///< |F| of the first scene.
+  // Where it was worst, in the first scene: the tissue that the needle's tip had reached and the one that the device's
+  // tip pushed it against, and how deep.
+  std::uint8_t worst_tissue = 0, worst_ahead = 0;
+  double worst_depth_mm = 0.0;
+  Segment line_P{Vec3::Zero(), Vec3::Zero()};
+};
+inline constexpr double kAffected_n = 0.05;
+inline constexpr double kAffectedShare = 0.07;  ///< Force JND (Pang, Tan, Durlach; references.md).
+
+/// Drives both scenes with the same poses along every path. Parallel over paths; the result does not depend on the
+/// number of threads. The scenes must differ in their patients only.
+std::vector<PathError> compare_forces(const haptics::HapticScene& full, const haptics::HapticScene& partly,
+                                      std::span<const PrescribedMotion> motions, const Progress& progress = {});
+
+/// The figures of the study, over paths.
+struct StudyFigures {
+  std::size_t paths = 0;
+  double mean_rms_n = 0.0, mean_max_n = 0.0, max_n = 0.0;
+  double mean_torque_rms_nmm = 0.0, max_torque_nmm = 0.0;
+  double affected = 0.0;  ///< Share of all ticks, 0..1.
+  double mean_full_rms_n = 0.0;
+};
+StudyFigures study_figures(std::span<const PathError> errors);
+
+/// Places of the worst ticks: "adipose > muscle" (the tip still in adipose, pushed against muscle), most often first.
+struct WorstPlace {
+  std::string place;
+  int paths = 0;
+  double mean_max_n = 0.0, max_n = 0.0;
+};
+std::vector<WorstPlace> worst_places(std::span<const PathError> errors, const anatomy::TissueTable& tissues);
+
+}  // namespace trocar::cases

@@ -1,0 +1,95 @@
+#include "cases/session_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/files/data_dir.h"
+#include "tasks/assess_path.h"
+
+namespace trocar::cases {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr std::string_view kForceModel = "force_model=";
+
+/// Parameters accepted by SetParameters; the others belong to the device.
+bool is_setting_of_a_server(const std::string& option) {
+  constexpr std::array<std::string_view, 4> kNames{kForceModel, "coupling.stiffness=", "coupling.damping=", "bending="};
+  return std::ranges::any_of(kNames, [&](std::string_view name) { return option.starts_with(name); });
+}
+
+void set_force_model(std::vector<std::string>& options, const std::string& force_model) {
+  std::erase_if(options, [](const std::string& option) { return option.starts_with(kForceModel); });
+  options.push_back(std::string(kForceModel) + force_model);
+}
+
+/// As in a session of an older program: one table, and the device's preset for the rest.
+std::vector<storage::SessionParameters> recorded_parameters(const storage::Session& session) {
+  std::vector<storage::SessionParameters> all = session.parameters;
+  const storage::SessionInfo& info = session.info;
+  if (all.empty() || all.front().tick != 0)
+    all.insert(all.begin(), {0, 0.0, {}, {std::string(kForceModel) + info.force_model}, info.tissue_table_toml});
+  return all;
+}
+
+}  // namespace
+
+Result<std::vector<storage::SessionParameters>> replay_parameters(const storage::Session& session,
+                                                                  const ReplayChanges& changes) {
+  std::vector<storage::SessionParameters> all = recorded_parameters(session);
+  std::string other_table;
+  if (!changes.tissue_file.empty() || !changes.profile.empty()) {
+    const fs::path file = changes.tissue_file.empty() ? data_dir() / "tissues.toml" : fs::path(changes.tissue_file);
+    TROCAR_TRY(const anatomy::TissueTable table, anatomy::load_tissue_table(file, changes.profile));
+    other_table = table.to_toml();
+  }
+  for (storage::SessionParameters& parameters : all) {
+    if (!other_table.empty()) parameters.tissue_table_toml = other_table;
+    if (!changes.force_model.empty()) set_force_model(parameters.options, changes.force_model);
+    TROCAR_TRY(anatomy::TissueTable table,
+               anatomy::parse_tissue_table(parameters.tissue_table_toml, "the session's tissue table"));
+    for (const std::string& assignment : changes.overrides)
+      TROCAR_TRY_STATUS(anatomy::apply_override(table, assignment));
+    if (!changes.overrides.empty()) parameters.tissue_table_toml = table.to_toml();
+  }
+  return all;
+}
+
+Status check_patient(const storage::Session& session, const anatomy::VirtualPatient& patient) {
+  const storage::SessionInfo& info = session.info;
+  if (info.patient_hash == patient.content_hash) return {};
+  return fail_usage(fmt::format("the session was recorded in another patient: content hash {}, this one has {}",
+                                info.patient_hash, patient.content_hash),
+                    patient.name,
+                    fmt::format("name the patient of the session ({}), or add --other-patient", info.patient_source));
+}
+
+Result<Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const storage::Session& session,
+                          const storage::SessionParameters& first, bool is_other_patient_meant) {
+  if (!is_other_patient_meant) TROCAR_TRY_STATUS(check_patient(session, *patient));
+  const fs::path data = data_dir();
+  if (data.empty()) return fail("the data folder was not found", "", "set TROCAR_DATA_DIR to it");
+  const storage::SessionInfo& info = session.info;
+  Case restored;
+  restored.task_toml = info.task_toml;
+  TROCAR_TRY(restored.task, info.task_toml.empty()
+                                ? tasks::load_task(data / "tasks", info.task)
+                                : tasks::parse_task(info.task_toml, info.task, "the session's task", data / "tasks"));
+  TROCAR_TRY(restored.needle, tasks::load_needle(data / "needles.toml", info.needle));
+  TROCAR_TRY(restored.tissues, anatomy::parse_tissue_table(first.tissue_table_toml, "the session's tissue table"));
+  restored.plan = tasks::assess_path(restored.task, *patient, restored.needle, info.plan_P.line_P).path;
+  restored.is_parenchymal = info.is_parenchymal;
+  restored.patient = std::move(patient);
+  return restored;
+}
+
+link::SetParameters as_command(const storage::SessionParameters& parameters) {
+  link::SetParameters command;
+  std::ranges::copy_if(parameters.options, std::back_inserter(command.settings), is_setting_of_a_server);
+  command.tissues_toml = parameters.tissue_table_toml;
+  return command;
+}
+
+}  // namespace trocar::cases

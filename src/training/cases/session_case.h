@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cases/prepare_case.h"
+#include "link/messages.h"
+#include "storage/session_file.h"
+
+namespace trocar::cases {
+
+/// Intended differences of a replay: other tissue. Empty: as recorded.
+struct ReplayChanges {
+  std::vector<std::string> overrides;  ///< On top of every table of the session: "liver.k=0.5".
+  std::string tissue_file, profile;    ///< Instead of every table of the session; empty: none.
+  std::string force_model;             ///< Empty: as recorded.
+
+  bool is_any() const noexcept {
+    return !overrides.empty() || !tissue_file.empty() || !profile.empty() || !force_model.empty();
+  }
+};
+
+/// The parameters of a replay: those of the session with the changes, by tick; the first at tick 0. Errors: a number
+/// that a table does not take, a session with a damaged table.
+Result<std::vector<storage::SessionParameters>> replay_parameters(const storage::Session& session,
+                                                                  const ReplayChanges& changes);
+
+/// The case of a session: its task, needle, plan, and the tissues in force at its first tick. Errors: another patient
+/// (exit status 2) unless that is meant, a task or needle that this program does not know.
+Result<Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const storage::Session& session,
+                          const storage::SessionParameters& first, bool is_other_patient_meant = false);
+
+/// Whether the session was recorded in that patient. Error (exit status 2): it was not.
+Status check_patient(const storage::Session& session, const anatomy::VirtualPatient& patient);
+
+/// SetParameters message that gives a loaded scene these parameters.
+link::SetParameters as_command(const storage::SessionParameters& parameters);
+
+}  // namespace trocar::cases

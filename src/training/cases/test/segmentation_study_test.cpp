@@ -1,0 +1,121 @@
+#include "cases/segmentation_study.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "haptics/test/layered_patient.h"
+
+namespace trocar::cases {
+namespace {
+
+using testing::kFat;
+using testing::kLiver;
+using testing::kMuscle;
+using testing::layered_patient;
+using testing::liver_way;
+using testing::paper_tissues;
+
+std::shared_ptr<const haptics::HapticScene> scene_of(std::shared_ptr<const anatomy::VirtualPatient> patient) {
+  haptics::HapticOptions options;
+  options.has_weight_compensation = false;
+  auto scene = haptics::make_haptic_scene(std::move(patient), paper_tissues(), {}, {}, options);
+  TROCAR_CHECK(scene.has_value());
+  return *scene;
+}
+
+/// Ways from different places of the skin to 35 mm, in the liver.
+std::vector<PrescribedMotion> motions(std::size_t count) {
+  std::vector<PrescribedMotion> made;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = static_cast<double>(i) - 2.0;
+    made.push_back(study_motion({{x, 0.0, 0.0}, {0.0, 1.0, 35.0}}, i, {}));
+  }
+  return made;
+}
+
+TEST(SegmentationStudy, FindsNoErrorBetweenIdenticalScenes) {
+  const auto scene = scene_of(layered_patient(liver_way()));
+  const auto same = scene_of(layered_patient(liver_way()));
+  const auto errors = compare_forces(*scene, *same, motions(4));
+  ASSERT_EQ(errors.size(), 4U);
+  for (const PathError& error : errors) {
+    EXPECT_EQ(error.rms_n, 0.0);
+    EXPECT_EQ(error.max_n, 0.0);
+    EXPECT_EQ(error.torque_max_nmm, 0.0);
+    EXPECT_EQ(error.affected, 0);
+    EXPECT_GT(error.full_rms_n, 0.1);  // there was something to be compared
+    EXPECT_NEAR(error.ticks, error.line_P.length_mm() * 100.0, 2.0);
+  }
+  EXPECT_TRUE(worst_places(errors, paper_tissues()).empty());
+}
+
+TEST(SegmentationStudy, FeelsALabelThatIsGone) {
+  const auto full = layered_patient(liver_way());
+  const auto partly = std::make_shared<const anatomy::VirtualPatient>(partly_segmented(*full, kPartlySegmented));
+  const auto errors = compare_forces(*scene_of(full), *scene_of(partly), motions(4));
+  const StudyFigures figures = study_figures(errors);
+  EXPECT_EQ(figures.paths, 4U);
+  // The muscle's surface gives way at 2.5 N and is not there any more.
+  EXPECT_GT(figures.mean_max_n, 1.5);
+  EXPECT_GT(figures.mean_rms_n, 0.1);
+  EXPECT_GT(figures.affected, 0.0);
+  EXPECT_LT(figures.affected, 1.0);
+  EXPECT_GE(figures.max_n, figures.mean_max_n);
+  const auto places = worst_places(errors, paper_tissues());
+  ASSERT_FALSE(places.empty());
+  EXPECT_NE(places.front().place.find("muscle"), std::string::npos);
+}
+
+TEST(SegmentationStudy, GivesTheSameFiguresAgain) {
+  const auto full = scene_of(layered_patient(liver_way()));
+  const auto other = scene_of(layered_patient({{0, kFat}, {20, kLiver}}));
+  const auto first = compare_forces(*full, *other, motions(5));
+  const auto second = compare_forces(*full, *other, motions(5));
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].rms_n, second[i].rms_n);
+  EXPECT_NE(first[0].rms_n, first[4].rms_n);
+}
+
+TEST(PartlySegmented, KeepsOnlyTheNamedTissues) {
+  const auto full = layered_patient(liver_way());
+  const anatomy::VirtualPatient partly = partly_segmented(*full, kPartlySegmented);
+  EXPECT_EQ(anatomy::find_label(partly, {0.0, 0.0, 5.0}), nullptr);   // fat
+  EXPECT_EQ(anatomy::find_label(partly, {0.0, 0.0, 15.0}), nullptr);  // muscle
+  ASSERT_NE(anatomy::find_label(partly, {0.0, 0.0, 30.0}), nullptr);
+  EXPECT_EQ(anatomy::find_label(partly, {0.0, 0.0, 30.0})->id, kLiver);
+  EXPECT_EQ(partly.label_table.find(kMuscle), nullptr);
+  EXPECT_EQ(partly.skin_distance_mm.voxels, full->skin_distance_mm.voxels);
+}
+
+TEST(SpreadChoice, TakesEachOnceFromAllOver) {
+  for (const std::size_t available : {0UL, 1UL, 7UL, 1000UL, 1001UL}) {
+    for (const std::size_t count : {1UL, 7UL, 100UL}) {
+      const auto chosen = spread_choice(available, count, 3);
+      const std::set<std::size_t> different(chosen.begin(), chosen.end());
+      EXPECT_EQ(chosen.size(), std::min(available, count));
+      EXPECT_EQ(different.size(), chosen.size());
+      for (const std::size_t number : chosen) EXPECT_LT(number, available);
+    }
+  }
+  EXPECT_NE(spread_choice(1000, 10, 1), spread_choice(1000, 10, 2));
+  EXPECT_GE(spread_choice(1000, 10, 1).back(), 900U);
+}
+
+TEST(PrescribedMotion, RunsFromOutsideTheSkinToTheTargetAndItsDrift) {
+  const auto scene = scene_of(layered_patient(liver_way()));
+  PrescribedMotion motion;
+  motion.line_P = {{1.0, 2.0, 0.0}, {1.0, 2.0, 40.0}};
+  motion.drift_P = {0.5, 0.0, 0.0};
+  motion.tilt_rad_P = {0.0, 0.01, 0.0};
+  const auto tip_at = [&](int tick) { return input_at(motion, tick).tool.pose(); };
+  constexpr double kRounding = 1e-9;
+  EXPECT_TRUE(tip_at(0).p().isApprox(Vec3(1.0, 2.0, -10.0), kRounding));
+  EXPECT_NEAR(angle_between_rad(tip_at(0).R().col(2), Vec3::UnitZ()), 0.0, kRounding);
+  const int last = tick_count(motion);
+  EXPECT_EQ(last, 5000);
+  EXPECT_TRUE(tip_at(last).p().isApprox(Vec3(1.5, 2.0, 40.0), kRounding));
+  EXPECT_NEAR(angle_between_rad(tip_at(last).R().col(2), Vec3::UnitZ()), 0.01, 1e-6);
+}
+
+}  // namespace
+}  // namespace trocar::cases
