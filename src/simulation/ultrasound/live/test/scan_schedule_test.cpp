@@ -132,7 +132,7 @@ TEST(ScanSchedule, TakesTremorForStillAndADriftForMotion) {
   EXPECT_EQ(machine.last, ScanDetail::kFast);
 }
 
-TEST(ScanSchedule, RendersAtOnceWhenNeedleOrKnobsChange) {
+TEST(ScanSchedule, RendersAtOnceWhenNeedleOrSettingsChange) {
   ScanSchedule schedule;
   ScanRequest request;
   request.needle_shaft_P = {{0, 0, 0}, {0, 40, 0}};
