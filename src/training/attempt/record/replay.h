@@ -23,7 +23,7 @@ struct ReplayChanges {
 };
 
 /// The parameters of a replay: those of the session with the changes, by tick; the first at tick 0. Errors: a number
-/// that a table does not take, a session with a damaged table.
+/// that a table does not take, a session with a damaged table or option.
 Result<std::vector<storage::SessionParameters>> replay_parameters(const storage::Session& session,
                                                                   const ReplayChanges& changes);
 
@@ -35,7 +35,7 @@ Result<Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient
 /// Whether the session was recorded in that patient. Error (exit status 2): it was not.
 Status check_patient(const storage::Session& session, const anatomy::VirtualPatient& patient);
 
-/// What a server is asked for so that a loaded scene gets these parameters.
+/// The command that gives a loaded scene these parameters, which replay_parameters() has checked.
 link::SetParameters as_command(const storage::SessionParameters& parameters);
 
 }  // namespace trocar::attempt
