@@ -49,7 +49,7 @@ Result<Measured> measure_round(const link::ServerMessage& message) {
     if (!*decoded) return tl::unexpected(decoded->error());
     calibration_us.push_back(time_us([&] { sum = calibration_arithmetic(sum); }));
   }
-  if (sum > 1e9) return fail("the calibration is wrong", "link", "");
+  if (sum > 1e9) return fail("the calibration gave a wrong number", "link", "run the benchmark again");
   return Measured{figures_of(std::move(encode_us)), figures_of(std::move(decode_us)),
                   figures_of(std::move(calibration_us))};
 }

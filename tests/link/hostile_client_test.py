@@ -100,6 +100,10 @@ def is_on(client):
     return status is not None and status.GateMode() == MODE.On and status.Fault() == FAULT.None_
 
 
+def name_of(enumeration, number):
+    return next((name for name, value in vars(enumeration).items() if value == number), number)
+
+
 def expect(condition, what):
     if not condition:
         raise AssertionError(what)
@@ -143,8 +147,9 @@ class Watch:
         client = self.client
         rate_hz = (client.next_tick - self.ticks) / (time.monotonic() - self.begin)
         # A client without a processor is silent, and its force fades; it comes back by itself.
-        expect(client.wait(lambda: is_on(client)), f"{name}: no force, gate {client.status.GateMode()}, "
-                                                   f"fault {client.status.Fault()}")
+        expect(client.wait(lambda: is_on(client)),
+               f"{name}: no force, gate {name_of(MODE, client.status.GateMode())}, "
+               f"fault {name_of(FAULT, client.status.Fault())}")
         expect(client.wait(lambda: abs(force_n(client) - self.force) < 0.1), f"{name}: the force is {force_n(client)} N, "
                                                                                f"it was {self.force} N")
         expect(self.highest < self.force + 0.1, f"{name}: the force rose to {self.highest} N from {self.force} N")
@@ -172,7 +177,7 @@ def oversized_parameters(server, client, force):
     watch = Watch(server, client, force)
     count = 12 if arguments.seconds < 5.0 else 60
     requests = [client.command(slow)]
-    requests += [client.command(set_parameters(*["x" * 200_000] * 3)) for _ in range(count)]
+    requests += [client.command(set_parameters(*[("x" * 200_000, "k", 0.5)] * 3)) for _ in range(count)]
     expect(client.wait(lambda: all(request in client.replies for request in requests)), "a command has no reply")
     replies = [client.replies[request] for request in requests]
     refused = sum("busy" in reply for _, reply in replies)

@@ -31,6 +31,7 @@ import trocar.wire.SetParameters
 import trocar.wire.SimpleCommand
 import trocar.wire.SimpleCommandNumber
 import trocar.wire.StateBatch
+import trocar.wire.TissueSetting
 import trocar.wire.Vec3
 import trocar.wire.Version
 import trocar.wire.Welcome
@@ -177,9 +178,16 @@ def load_scene(patient, x_pw, **fields):
     return scene, WHAT.LoadScene
 
 
-def set_parameters(*settings):
+def set_parameters(*settings, **options):
+    """Settings are (row, key, value); a value of None: never."""
     body = wire.SetParameters.SetParametersT()
-    body.settings = list(settings)
+    body.tissues = []
+    for row, key, value in settings:
+        setting = wire.TissueSetting.TissueSettingT()
+        setting.row, setting.key, setting.value = row, key, value
+        body.tissues.append(setting)
+    for name, value in options.items():
+        setattr(body, name, value)
     return body, WHAT.SetParameters
 
 

@@ -9,6 +9,7 @@
 #include "attempt/hands/hand_motion.h"
 #include "attempt/offline/run_session.h"
 #include "attempt/record/attempt_replay.h"
+#include "cases/scene_request.h"
 #include "core/files/temporary_folder.h"
 #include "servers/live_attempt_lab.h"
 #include "storage/session_file.h"
@@ -164,13 +165,13 @@ TEST_F(LiveAttemptTest, TheReplayMovesTheTransducerAsItWasMoved) {
 TEST_F(LiveAttemptTest, ParametersReachTheServerWhileItRuns) {
   start(options());
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
-  attempt->set_parameters({"skin.fp=30"});
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 30.0}}));
   ASSERT_TRUE(wait_for([&] { return attempt->view().message.find("changed parameters") != std::string::npos; }));
-  attempt->set_parameters({"skin.colour=9"});
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "colour", 9.0}}));
   ASSERT_TRUE(wait_for([&] { return attempt->view().message.find("colour") != std::string::npos; }))
       << attempt->view().message;
   // What was refused changed nothing, and a message replaces the one before it.
-  attempt->set_parameters({"skin.fp=30", "liver.mu=0.2"});
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 30.0}, {"liver", "mu", 0.2}}));
   attempt->perform(expert());  // gives up at a skin that does not give way
   ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
   attempt->finish();
@@ -195,11 +196,11 @@ TEST_F(LiveAttemptTest, RecordsTheTissuesThatWereFeltAndReplaysThem) {
   chosen.waits_for_begin = true;
   start(chosen);
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
-  attempt->set_parameters({"skin.fp=4"});  // before anything is recorded
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 4.0}}));  // before anything is recorded
   ASSERT_TRUE(wait_for([&] { return !attempt->view().message.empty(); }));
   attempt->begin();
   ASSERT_TRUE(wait_for([&] { return attempt->view().session_s > 0.1; }));
-  attempt->set_parameters({"skin.fp=6"});
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 6.0}}));
   attempt->perform(expert());
   ASSERT_TRUE(wait_for([&] { return !attempt->view().is_performing; })) << where();
   attempt->finish();
@@ -240,7 +241,7 @@ TEST_F(LiveAttemptTest, RecordsTheTissuesThatWereFeltAndReplaysThem) {
 TEST_F(LiveAttemptTest, ChangedTissuesOutliveTheirServer) {
   start(options());
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
-  attempt->set_parameters({"skin.fp=6"});
+  attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 6.0}}));
   ASSERT_TRUE(wait_for([&] { return !attempt->view().message.empty(); }));
   ASSERT_TRUE(wait_for([&] { return attempt->view().session_s > 0.1; }));
   const int pid = attempt->view().servers[0].pid;

@@ -3,26 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
-
-#include "core/parse_number.h"
 
 namespace trocar::trainer {
 namespace {
 
 constexpr std::string_view kNone = "transfer.none", kFull = "transfer.full";
-
-std::string text_of(double value) {
-  return std::isinf(value) ? "never" : fmt::format("{}", value);  // the shortest digits that read back
-}
-
-/// The number after the "=" of a setting that apply_override has accepted.
-double number_in(std::string_view text) {
-  if (text == "never") return std::numeric_limits<double>::infinity();
-  return parse_number<double>(text).value_or(std::numeric_limits<double>::quiet_NaN());
-}
 
 }  // namespace
 
@@ -139,13 +125,12 @@ Result<ParameterEdits::Values> ParameterEdits::read(const std::vector<std::strin
   Values values;
   anatomy::TissueTable table = defaults_;
   for (const std::string& text : settings) {
-    TROCAR_TRY_STATUS(anatomy::apply_override(table, text));
-    const std::string_view all = text;
-    const std::size_t equals = all.find('=');
-    const anatomy::TissueParameter* named = find(all.substr(0, equals));
+    TROCAR_TRY(const anatomy::TissueSetting setting, anatomy::parse_setting(text));
+    TROCAR_TRY_STATUS(anatomy::apply_setting(table, setting));
+    const anatomy::TissueParameter* named = find(name_of(setting));
     const bool is_new = named != nullptr && !values.contains(named->setting);
     if (named != nullptr) {
-      values[named->setting] = number_in(all.substr(equals + 1));
+      values[named->setting] = setting.value;
     } else {
       read_from(table, values);
     }
@@ -175,8 +160,8 @@ void ParameterEdits::read_from(const anatomy::TissueTable& table, Values& values
 /// True if these numbers turn the defaults into this table; sources are ignored.
 bool ParameterEdits::gives(const Values& values, anatomy::TissueTable table) const {
   anatomy::TissueTable made = defaults_;
-  for (const std::string& setting : settings_of(values))
-    if (!anatomy::apply_override(made, setting)) return false;
+  for (const anatomy::TissueSetting& setting : changes_of(values))
+    if (!anatomy::apply_setting(made, setting)) return false;
   made.provenance.clear();
   table.provenance.clear();
   return made.to_toml() == table.to_toml();
@@ -194,14 +179,20 @@ void ParameterEdits::keep(Step step, bool joins) {
   steps_.step_to(std::move(step), joins);
 }
 
-std::vector<std::string> ParameterEdits::settings_of(const Values& values) const {
-  std::vector<std::string> settings;
-  const auto add = [&](std::string_view setting) {
-    const auto change = values.find(setting);
-    std::string text = change != values.end() ? fmt::format("{}={}", setting, text_of(change->second)) : "";
+std::vector<std::string> ParameterEdits::settings() const {
+  std::vector<std::string> texts;
+  for (const anatomy::TissueSetting& setting : changes()) texts.push_back(to_string(setting));
+  return texts;
+}
+
+std::vector<anatomy::TissueSetting> ParameterEdits::changes_of(const Values& values) const {
+  std::vector<anatomy::TissueSetting> settings;
+  const auto add = [&](std::string_view name) {
+    const auto change = values.find(name);
+    if (change == values.end()) return;
+    anatomy::TissueSetting setting = anatomy::make_setting(name, change->second);
     // Tissues with the same surface refer to the same number.
-    if (!text.empty() && std::find(settings.begin(), settings.end(), text) == settings.end())
-      settings.push_back(std::move(text));
+    if (std::find(settings.begin(), settings.end(), setting) == settings.end()) settings.push_back(std::move(setting));
   };
   // The lower threshold must never exceed the upper one in between: a raised upper threshold is set first.
   const anatomy::TissueParameter* full = find(kFull);
@@ -216,7 +207,8 @@ std::vector<std::string> ParameterEdits::settings_of(const Values& values) const
 
 Status ParameterEdits::check(const Values& values) const {
   anatomy::TissueTable table = defaults_;
-  for (const std::string& setting : settings_of(values)) TROCAR_TRY_STATUS(anatomy::apply_override(table, setting));
+  for (const anatomy::TissueSetting& setting : changes_of(values))
+    TROCAR_TRY_STATUS(anatomy::apply_setting(table, setting));
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "anatomy/tissue/tissue_parameters.h"
+#include "anatomy/tissue/tissue_setting.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "core/result.h"
 #include "core/step_history.h"
@@ -56,8 +57,9 @@ class ParameterEdits {
   void undo() { steps_.undo(); }
   void redo() { steps_.redo(); }
 
-  /// What differs from the defaults, "liver.k=0.5", in an order that can be applied one after the other.
-  std::vector<std::string> settings() const { return settings_of(now().values); }
+  /// What differs from the defaults, in an order that can be applied one after the other; settings() as "liver.k=0.5".
+  std::vector<anatomy::TissueSetting> changes() const { return changes_of(now().values); }
+  std::vector<std::string> settings() const;
 
  private:
   using Values = std::map<std::string, double, std::less<>>;
@@ -69,7 +71,7 @@ class ParameterEdits {
     std::string base_model;
   };
 
-  std::vector<std::string> settings_of(const Values& values) const;
+  std::vector<anatomy::TissueSetting> changes_of(const Values& values) const;
   Status check(const Values& values) const;
   void keep(Values values, bool joins = false);
   void keep(Step step, bool joins = false);

@@ -44,6 +44,7 @@ class ParameterPanel : public QWidget {
 
   /// What differs from the case's numbers now: "liver.k=0.5".
   QStringList settings() const;
+  std::vector<anatomy::TissueSetting> changes() const { return edits_.changes(); }
   /// All changes at once, as one step of undo. Errors: a name that the tissues have not, a number out of range.
   Status apply_settings(const QStringList& settings);
   const ForcePreview& preview() const noexcept { return *preview_; }

@@ -56,12 +56,6 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-std::vector<std::string> texts(const QStringList& list) {
-  std::vector<std::string> result;
-  for (const QString& text : list) result.push_back(to_std(text));
-  return result;
-}
-
 }  // namespace
 
 SeatFlow::SeatFlow(MainWindow& window, std::filesystem::path state_folder)
@@ -102,11 +96,12 @@ void SeatFlow::connect_pages() {
     if (attempt_) attempt_->toggle_forces();
   });
   ParameterPanel& parameters = window_.work().parameters();
-  connect(&parameters, &ParameterPanel::parameters_changed, this, [this](const QStringList& changed) {
-    if (attempt_ && !is_exam()) attempt_->attempt().set_parameters(texts(changed));
+  connect(&parameters, &ParameterPanel::parameters_changed, this, [this] {
+    if (attempt_ && !is_exam())
+      attempt_->attempt().set_parameters(attempt::tissue_parameters(window_.work().parameters().changes()));
   });
   connect(&parameters, &ParameterPanel::model_changed, this, [this](const QString& model) {
-    if (attempt_ && !is_exam()) attempt_->attempt().set_parameters({"force_model=" + to_std(model)});
+    if (attempt_ && !is_exam()) attempt_->attempt().set_parameters({.force_model = to_std(model)});
   });
 }
 
@@ -231,8 +226,8 @@ void SeatFlow::begin_attempt() {
   connect(attempt_.get(), &AttemptControl::gun_fired, this, [this] {
     if (window_.has_sound()) speaker_.play(gun_click_);
   });
-  if (const QStringList changed = window_.work().parameters().settings(); !changed.isEmpty() && !is_exam())
-    attempt_->attempt().set_parameters(texts(changed));
+  if (const auto changes = window_.work().parameters().changes(); !changes.empty() && !is_exam())
+    attempt_->attempt().set_parameters(attempt::tissue_parameters(changes));
 }
 
 void SeatFlow::try_again() {

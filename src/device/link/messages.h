@@ -53,12 +53,24 @@ struct LoadScene {
   Pose X_PW;  ///< Room in the patient.
 };
 
-/// While it runs: "liver.k=0.5", "coupling.stiffness=0.8", "force_model=proxy". The scene is built anew and swapped in;
-/// the insertion goes on. Numbers of tissues are all that differ from the loaded table: they replace those of the last
-/// message that named any; no settings at all: as loaded. A `tissues_toml` that is not empty replaces the loaded table.
+/// A number of the tissue table; anatomy/tissue/tissue_setting.h has rows, keys and ranges.
+struct TissueSetting {
+  std::string row, key;         ///< "liver", "k"
+  std::optional<double> value;  ///< None: never gives way.
+  bool operator==(const TissueSetting&) const = default;
+};
+
+/// While it runs. The scene is built anew and swapped in; the insertion goes on. What is empty stays as it is.
 struct SetParameters {
-  std::vector<std::string> settings;
-  std::string tissues_toml = {};
+  /// All numbers that differ from the loaded table: they replace those of the last message that had any. An empty list:
+  /// as loaded.
+  std::optional<std::vector<TissueSetting>> tissues = {};
+  std::string tissues_toml = {};  ///< Replaces the loaded table; `tissues` then applies to this one.
+  std::string force_model = {};   ///< insertion | proxy | combined
+  std::optional<double> coupling_stiffness_n_per_mm = {};
+  std::optional<double> coupling_damping_ns_per_mm = {};
+  std::optional<bool> has_bending = {};
+  bool operator==(const SetParameters&) const = default;
 };
 
 enum class ServerCommand : std::uint8_t {

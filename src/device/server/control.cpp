@@ -42,7 +42,11 @@ std::size_t text_bytes(const ControlJob& job) {
   }
   std::size_t bytes = 0;
   if (const auto* parameters = std::get_if<link::SetParameters>(&job.what)) {
-    for (const std::string& setting : parameters->settings) bytes += setting.size() + sizeof setting;
+    bytes += parameters->tissues_toml.size() + parameters->force_model.size();
+    if (parameters->tissues) {
+      for (const link::TissueSetting& setting : *parameters->tissues)
+        bytes += setting.row.size() + setting.key.size() + sizeof setting;
+    }
   }
   return bytes;
 }

@@ -3,24 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <new>
 
-#include "core/parse_number.h"
+#include "anatomy/tissue/tissue_setting.h"
 #include "haptics/coupling/coupling_limits.h"
 
 namespace trocar::server {
 namespace {
-
-/// Splits "NAME=VALUE".
-struct Setting {
-  std::string_view name, value;
-};
-
-Result<double> number_of(const Setting& setting) {
-  if (const auto number = parse_number<double>(setting.value)) return *number;
-  return fail_usage(fmt::format("\"{}\" is not a number", setting.value), std::string(setting.name),
-                    "send a decimal number");
-}
 
 haptics::NeedleGeometry needle_of(const link::LoadScene& request) noexcept {
   haptics::NeedleGeometry needle;
@@ -34,23 +24,20 @@ haptics::NeedleGeometry needle_of(const link::LoadScene& request) noexcept {
   return needle;
 }
 
-/// Tissue options of a scene; empty if the text is not valid.
-Result<bool> apply_option(std::string_view text, haptics::HapticOptions& options) {
-  const std::size_t at = text.find('=');
-  const Setting setting{text.substr(0, at), at == std::string_view::npos ? "" : text.substr(at + 1)};
-  if (setting.name == "force_model") {
-    TROCAR_TRY(options.force_model, haptics::parse_force_model(setting.value));
-  } else if (setting.name == "coupling.stiffness") {
-    TROCAR_TRY(options.coupling.stiffness_n_per_mm, number_of(setting));
-  } else if (setting.name == "coupling.damping") {
-    TROCAR_TRY(options.coupling.damping_ns_per_mm, number_of(setting));
-  } else if (setting.name == "bending") {
-    TROCAR_TRY(const double bending, number_of(setting));
-    options.has_bending = bending != 0.0;
-  } else {
-    return false;
+/// The options that the request has; the others stay.
+Status apply_options(const link::SetParameters& request, haptics::HapticOptions& options) {
+  if (!request.force_model.empty()) {
+    TROCAR_TRY(options.force_model, haptics::parse_force_model(request.force_model));
   }
-  return true;
+  haptics::CouplingParams& coupling = options.coupling;
+  coupling.stiffness_n_per_mm = request.coupling_stiffness_n_per_mm.value_or(coupling.stiffness_n_per_mm);
+  coupling.damping_ns_per_mm = request.coupling_damping_ns_per_mm.value_or(coupling.damping_ns_per_mm);
+  options.has_bending = request.has_bending.value_or(options.has_bending);
+  return {};
+}
+
+anatomy::TissueSetting setting_of(const link::TissueSetting& setting) {
+  return {setting.row, setting.key, setting.value.value_or(std::numeric_limits<double>::infinity())};
 }
 
 /// Any step can run out of memory: then the scene is refused, and the loop continues with the last one.
@@ -155,15 +142,12 @@ Result<ServoScene> SceneBuilder::change_throwing(const link::SetParameters& requ
   if (!request.tissues_toml.empty()) {
     TROCAR_TRY(parts.loaded, anatomy::parse_tissue_table(request.tissues_toml, "the client's tissue table"));
   }
-  anatomy::TissueTable tissues = parts.loaded;
-  bool has_tissues = request.settings.empty() || !request.tissues_toml.empty();
-  for (const std::string& setting : request.settings) {
-    TROCAR_TRY(const bool is_option, apply_option(setting, parts.options));
-    if (is_option) continue;
-    TROCAR_TRY_STATUS(anatomy::apply_override(tissues, setting));
-    has_tissues = true;
+  TROCAR_TRY_STATUS(apply_options(request, parts.options));
+  if (request.tissues || !request.tissues_toml.empty()) parts.tissues = parts.loaded;
+  if (request.tissues) {
+    for (const link::TissueSetting& setting : *request.tissues)
+      TROCAR_TRY_STATUS(anatomy::apply_setting(parts.tissues, setting_of(setting)));
   }
-  if (has_tissues) parts.tissues = std::move(tissues);
   const bool continues = parts.options.force_model == parts_.options.force_model;
   return build(request_, patient_, std::move(parts), continues);
 }

@@ -28,11 +28,10 @@ class SceneBuilder {
   /// was requested (looked at between the steps: tables, patient, scene); the last scene stays.
   Result<ServoScene> load(const link::LoadScene& request, const Progress& progress = {},
                           const std::stop_token& stop = {});
-  /// The last scene with other numbers: "liver.k=0.5", "coupling.stiffness=0.8", "coupling.damping=0.002",
-  /// "force_model=proxy", "bending=0". All of them or none. Numbers of tissues replace those of earlier changes: what
-  /// is not named is again as it was loaded (no settings at all: every tissue), so that a change that was undone or a
-  /// message that was lost leaves nothing behind; a change that names no tissue leaves them. A tissue table in the
-  /// request replaces the loaded one first. Errors: no scene yet, an unknown name, a number out of range.
+  /// The last scene with other numbers: all of the request or none. Numbers of tissues replace those of earlier
+  /// changes: a number that is not named has its loaded value again, so that a change that was undone or a message that
+  /// was lost leaves nothing behind; a request without tissues leaves them. A tissue table in the request replaces the
+  /// loaded one first. Errors: no scene yet, an unknown name, a number out of range.
   Result<ServoScene> change(const link::SetParameters& request);
 
   const link::LoadScene& request() const noexcept { return request_; }

@@ -1,5 +1,7 @@
 #include "cases/scene_request.h"
 
+#include <cmath>
+
 #include "cases/needle_geometry.h"
 
 namespace trocar::cases {
@@ -35,6 +37,16 @@ link::LoadScene scene_request(const Case& the_case, const SceneChoice& choice) {
   request.seed = choice.seed;
   request.X_PW = room_in_patient(the_case.plan.line_P, needle.length_mm);
   return request;
+}
+
+link::SetParameters tissue_parameters(const std::vector<anatomy::TissueSetting>& settings) {
+  link::SetParameters parameters;
+  parameters.tissues.emplace();
+  for (const anatomy::TissueSetting& setting : settings) {
+    const bool is_never = std::isinf(setting.value);
+    parameters.tissues->push_back({setting.row, setting.key, is_never ? std::nullopt : std::optional(setting.value)});
+  }
+  return parameters;
 }
 
 }  // namespace trocar::cases

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "anatomy/tissue/tissue_setting.h"
 #include "cases/prepare_case.h"
 #include "link/messages.h"
 
@@ -16,6 +18,9 @@ struct SceneChoice {
   std::uint64_t seed = 1;
 };
 link::LoadScene scene_request(const Case& the_case, const SceneChoice& choice);
+
+/// All numbers of tissues that differ from the scene's table, as the link carries them.
+link::SetParameters tissue_parameters(const std::vector<anatomy::TissueSetting>& settings);
 
 /// Pose of the room for a supine patient: the user is at the patient's right side (W: x towards the feet, y to the
 /// patient's left, z up). The origin is the grip with the needle inserted half-way, so that a centred workspace covers

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <string_view>
 
+#include "core/check.h"
 #include "core/files/data_dir.h"
+#include "haptics/scene_options.h"
 #include "tasks/assess_path.h"
 
 namespace trocar::cases {
@@ -13,12 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kForceModel = "force_model=";
-
-/// Parameters accepted by SetParameters; the others belong to the device.
-bool is_setting_of_a_server(const std::string& option) {
-  constexpr std::array<std::string_view, 4> kNames{kForceModel, "coupling.stiffness=", "coupling.damping=", "bending="};
-  return std::ranges::any_of(kNames, [&](std::string_view name) { return option.starts_with(name); });
-}
 
 void set_force_model(std::vector<std::string>& options, const std::string& force_model) {
   std::erase_if(options, [](const std::string& option) { return option.starts_with(kForceModel); });
@@ -53,6 +49,9 @@ Result<std::vector<storage::SessionParameters>> replay_parameters(const storage:
     for (const std::string& assignment : changes.overrides)
       TROCAR_TRY_STATUS(anatomy::apply_override(table, assignment));
     if (!changes.overrides.empty()) parameters.tissue_table_toml = table.to_toml();
+    haptics::HapticOptions options;
+    haptics::DeviceCapability device;
+    TROCAR_TRY_STATUS(haptics::restore_options(parameters.options, options, device));
   }
   return all;
 }
@@ -86,8 +85,17 @@ Result<Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> patient
 }
 
 link::SetParameters as_command(const storage::SessionParameters& parameters) {
+  haptics::HapticOptions options;
+  haptics::DeviceCapability device;  // belongs to the server
+  TROCAR_CHECK(haptics::restore_options(parameters.options, options, device).has_value());
+  const auto has = [&](std::string_view name) {
+    return std::ranges::any_of(parameters.options, [&](const std::string& option) { return option.starts_with(name); });
+  };
   link::SetParameters command;
-  std::ranges::copy_if(parameters.options, std::back_inserter(command.settings), is_setting_of_a_server);
+  if (has(kForceModel)) command.force_model = to_string(options.force_model);
+  if (has("coupling.stiffness=")) command.coupling_stiffness_n_per_mm = options.coupling.stiffness_n_per_mm;
+  if (has("coupling.damping=")) command.coupling_damping_ns_per_mm = options.coupling.damping_ns_per_mm;
+  if (has("bending=")) command.has_bending = options.has_bending;
   command.tissues_toml = parameters.tissue_table_toml;
   return command;
 }

@@ -23,7 +23,7 @@ struct ReplayChanges {
 };
 
 /// The parameters of a replay: those of the session with the changes, by tick; the first at tick 0. Errors: a number
-/// that a table does not take, a session with a damaged table.
+/// that a table does not take, a session with a damaged table or option.
 Result<std::vector<storage::SessionParameters>> replay_parameters(const storage::Session& session,
                                                                   const ReplayChanges& changes);
 

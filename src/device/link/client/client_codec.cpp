@@ -49,6 +49,8 @@ constexpr Range kYoung_gpa = {0.0, 1e4};
 constexpr Range kBevels_rad = {0.0, 3.2};
 constexpr Range kShares = {0.0, 1.0};
 constexpr Range kHandParameters = {0.0, 1e6};
+constexpr Range kSettingValues = {-1e9, 1e9};
+constexpr Range kCouplings = {-1e6, 1e6};
 constexpr double kMostSpeed_mm_per_s = 1e5;
 constexpr double kMostTurning_rad_per_s = 1e4;
 
@@ -70,10 +72,25 @@ CommandMember build_what(Builder& b, const LoadScene& scene) {
   return {wire::What::LoadScene, table.Union()};
 }
 
+using SettingList = flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<wire::TissueSetting>>>;
+
+SettingList build_settings(Builder& b, const std::vector<TissueSetting>& settings) {
+  std::vector<flatbuffers::Offset<wire::TissueSetting>> tables;
+  for (const TissueSetting& setting : settings) {
+    const Text row = b.CreateString(setting.row), key = b.CreateString(setting.key);
+    tables.push_back(wire::CreateTissueSetting(b, row, key, setting.value));
+  }
+  return b.CreateVector(tables);
+}
+
 CommandMember build_what(Builder& b, const SetParameters& parameters) {
-  const auto settings = b.CreateVectorOfStrings(parameters.settings);
-  const Text tissues = b.CreateString(parameters.tissues_toml);
-  return {wire::What::SetParameters, wire::CreateSetParameters(b, settings, tissues).Union()};
+  SettingList tissues;
+  if (parameters.tissues) tissues = build_settings(b, *parameters.tissues);
+  const Text table = b.CreateString(parameters.tissues_toml), force_model = b.CreateString(parameters.force_model);
+  return {wire::What::SetParameters,
+          wire::CreateSetParameters(b, tissues, table, force_model, parameters.coupling_stiffness_n_per_mm,
+                                    parameters.coupling_damping_ns_per_mm, parameters.has_bending)
+              .Union()};
 }
 
 CommandMember build_what(Builder& b, ServerCommand command) {
@@ -145,8 +162,30 @@ LoadScene read(const wire::LoadScene& table, Inspection& in) {
   return scene;
 }
 
+std::vector<TissueSetting> read(const flatbuffers::Vector<flatbuffers::Offset<wire::TissueSetting>>& list,
+                                Inspection& in) {
+  std::vector<TissueSetting> settings;
+  if (!in.has_room(list.size(), kMostSettings, "tissues")) return settings;
+  for (const wire::TissueSetting* setting : list) {
+    const std::string row = in.text(setting->row(), "row of a tissue setting");
+    const std::string key = in.text(setting->key(), "key of a tissue setting");
+    settings.push_back({row, key, in.number(setting->value(), kSettingValues, "value of a tissue setting")});
+    if (!in.is_good()) return {};
+  }
+  return settings;
+}
+
 SetParameters read(const wire::SetParameters& table, Inspection& in) {
-  return {in.texts(table.settings(), "settings"), in.text(table.tissues_toml(), "tissues_toml", Layout::kLines)};
+  SetParameters parameters;
+  if (table.tissues() != nullptr) parameters.tissues = read(*table.tissues(), in);
+  parameters.tissues_toml = in.text(table.tissues_toml(), "tissues_toml", Layout::kLines);
+  parameters.force_model = in.text(table.force_model(), "force_model");
+  parameters.coupling_stiffness_n_per_mm =
+      in.number(table.coupling_stiffness_n_per_mm(), kCouplings, "coupling_stiffness_n_per_mm");
+  parameters.coupling_damping_ns_per_mm =
+      in.number(table.coupling_damping_ns_per_mm(), kCouplings, "coupling_damping_ns_per_mm");
+  parameters.has_bending = table.has_bending();
+  return parameters;
 }
 
 Command read(const wire::Command& table, Inspection& in) {

@@ -4,13 +4,14 @@
 
 #include <cstring>
 
+#include "link/detail/inspection.h"
 #include "link/messages.h"
 
 namespace trocar::link::detail {
 namespace {
 
-constexpr flatbuffers::uoffset_t kMostDepth = 4;  ///< Depth of root, body and contents: 3.
-constexpr flatbuffers::uoffset_t kMostTables = 8;
+constexpr flatbuffers::uoffset_t kMostDepth = 4;  ///< Root, Command, SetParameters, TissueSetting.
+constexpr flatbuffers::uoffset_t kMostTables = kMostSettings + 8;
 
 }  // namespace
 

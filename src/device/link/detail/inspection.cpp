@@ -46,16 +46,18 @@ std::vector<std::string> Inspection::texts(const flatbuffers::Vector<flatbuffers
                                            const char* field) {
   std::vector<std::string> lines;
   if (list == nullptr || complaint_) return lines;
-  if (list->size() > kMostSettings) {
-    refuse(fmt::format("more settings than a message may have: {}, {} are allowed", list->size(), kMostSettings),
-           field);
-    return lines;
-  }
+  if (!has_room(list->size(), kMostSettings, field)) return lines;
   for (const flatbuffers::String* line : *list) {
     lines.push_back(text(line, field));
     if (complaint_) return {};
   }
   return lines;
+}
+
+bool Inspection::has_room(std::size_t items, std::size_t most, const char* field) {
+  if (items <= most) return true;
+  refuse(fmt::format("more items than a list may have: {}, {} are allowed", items, most), field);
+  return false;
 }
 
 double Inspection::number(double value, Range range, const char* field) {

@@ -36,10 +36,15 @@ class Inspection {
 
   /// UTF-8 without control characters, at most kMostTextBytes; absent is empty.
   std::string text(const flatbuffers::String* text, const char* field, Layout layout = Layout::kLine);
+  /// Refuses a list of more than `most` items.
+  bool has_room(std::size_t items, std::size_t most, const char* field);
   /// A list of at most kMostSettings lines; absent is empty.
   std::vector<std::string> texts(const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>* list,
                                  const char* field);
   double number(double value, Range range, const char* field);
+  std::optional<double> number(std::optional<double> value, Range range, const char* field) {
+    return value ? std::optional(number(*value, range, field)) : std::nullopt;
+  }
   int whole_number(std::int32_t value, int low, int high, const char* field);
   /// Finite, and no longer than `longest`.
   Vec3 vector(const Vec3& vector, double longest, const char* field);

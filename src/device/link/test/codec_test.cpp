@@ -34,7 +34,8 @@ TEST(Codec, EveryServerMessageComesBackBitForBit) {
 TEST(Codec, DefaultsComeThrough) {
   for (const ClientBody& body :
        {ClientBody(Hello{}), ClientBody(Heartbeat{}), ClientBody(Command{}), ClientBody(Command{0, LoadScene{}}),
-        ClientBody(Command{0, SetParameters{}}), ClientBody(HandTarget{}), ClientBody(Goodbye{})}) {
+        ClientBody(Command{0, SetParameters{}}), ClientBody(Command{0, SetParameters{std::vector<TissueSetting>()}}),
+        ClientBody(HandTarget{}), ClientBody(Goodbye{})}) {
     const ClientMessage message{0, 0, body};
     const auto decoded = decode_client_message(encode(message));
     ASSERT_TRUE(decoded) << decoded.error().text();

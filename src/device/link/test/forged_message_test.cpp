@@ -91,7 +91,8 @@ TEST(ForgedMessage, MissingPartsAreRefusedAndMissingTextsEmpty) {
 Bytes forge_settings(std::size_t count, std::size_t text_bytes) {
   Builder b;
   const Text shared = b.CreateString(std::string(text_bytes, 'a'));
-  const auto settings = b.CreateVector(std::vector<Text>(count, shared));
+  const auto setting = wire::CreateTissueSetting(b, shared);
+  const auto settings = b.CreateVector(std::vector<flatbuffers::Offset<wire::TissueSetting>>(count, setting));
   const auto what = wire::CreateSetParameters(b, settings).Union();
   const auto command = wire::CreateCommand(b, 1, wire::What::SetParameters, what).Union();
   return finish_client(b, wire::ClientBody::Command, command);
@@ -106,7 +107,7 @@ TEST(ForgedMessage, OneTextNamedOftenDoesNotMultiply) {
 TEST(ForgedMessage, TooManySettingsAreRefused) {
   constexpr std::size_t kMany = 257;
   EXPECT_TRUE(decode_client_message(forge_settings(kMany - 1, 0)));
-  expect_says(complaint(decode_client_message(forge_settings(kMany, 0))), "more settings");
+  expect_says(complaint(decode_client_message(forge_settings(kMany, 0))), "more items");
 }
 
 TEST(ForgedMessage, TooManyTicksAreRefused) {

@@ -22,9 +22,12 @@ void each_field(T& value, Visit&& visit) {
   } else if constexpr (std::is_same_v<Plain, LoadScene>) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = value;
     all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
+  } else if constexpr (std::is_same_v<Plain, TissueSetting>) {
+    auto& [a, b, c] = value;
+    all(a, b, c);
   } else if constexpr (std::is_same_v<Plain, SetParameters>) {
-    auto& [a, b] = value;
-    all(a, b);
+    auto& [a, b, c, d, e, f] = value;
+    all(a, b, c, d, e, f);
   } else if constexpr (std::is_same_v<Plain, Command>) {
     auto& [a, b] = value;
     all(a, b);

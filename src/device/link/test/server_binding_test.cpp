@@ -137,11 +137,11 @@ TEST_F(SecureServer, CarriesLongMessagesBothWays) {
   use(client, allowed_);
   join(*server_, client);
   SetParameters parameters;
-  parameters.settings.assign(3, std::string(kMostTextBytes, 'x'));
+  parameters.tissues = std::vector(3, TissueSetting{std::string(kMostTextBytes, 'x'), "k", 0.5});
   client.send(Command{7, parameters});
   const auto received = serve(*server_);
   ASSERT_TRUE(received);
-  EXPECT_EQ(std::get<SetParameters>(std::get<Command>(received->body).what).settings, parameters.settings);
+  EXPECT_EQ(std::get<SetParameters>(std::get<Command>(received->body).what), parameters);
   server_->send_batch(test_batch(3, kMostSamples));
   const auto batch = client.next<StateBatch>();
   ASSERT_TRUE(batch);

@@ -81,7 +81,7 @@ TEST(UnsoundText, IsRefusedWhereverItStands) {
 TEST(UnsoundText, LinesAreForTissueTablesAlone) {
   EXPECT_TRUE(is_accepted(Command{1, with(&LoadScene::tissues_toml, "[skin]\r\n\tk = 1 # é\n")}));
   EXPECT_FALSE(is_accepted(Command{1, with(&LoadScene::patient, "a\nb")}));
-  EXPECT_FALSE(is_accepted(Command{1, SetParameters{{"liver.k=0.5\n"}}}));
+  EXPECT_FALSE(is_accepted(Command{1, SetParameters{std::vector<TissueSetting>{{"liver\n", "k", 0.5}}}}));
   EXPECT_FALSE(is_accepted(Hello{"a\tb", true}));
 }
 

@@ -46,7 +46,7 @@ TEST(ControlDoor, ClosingStopsTheRunningJob) {
 
 ControlJob parameters_of(std::size_t bytes) {
   link::SetParameters parameters;
-  parameters.settings.emplace_back(bytes, 'x');
+  parameters.tissues.emplace().push_back({std::string(bytes, 'x'), "k", 0.5});
   return {1, 2, parameters};
 }
 

@@ -117,8 +117,10 @@ TEST(HapticServer, NumbersTheTicksOfAScene) {
   const link::Reply loaded = reply_to(client, client.send(testing::layered_request()));
   ASSERT_TRUE(loaded.is_done) << loaded.text;
   ASSERT_GT(loaded.scene, 0U);
-  const link::Reply changed =
-      reply_to(client, client.send(link::SetParameters{{"skin.fp=6", "coupling.stiffness=0.5"}}));
+  link::SetParameters parameters;
+  parameters.tissues = std::vector<link::TissueSetting>{{"skin", "fp", 6.0}};
+  parameters.coupling_stiffness_n_per_mm = 0.5;
+  const link::Reply changed = reply_to(client, client.send(parameters));
   ASSERT_TRUE(changed.is_done) << changed.text;
   EXPECT_GT(changed.scene, loaded.scene);
   const auto table = anatomy::parse_tissue_table(changed.tissues_toml, "reply");

@@ -1,10 +1,12 @@
 #include "server/scene_builder.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <new>
 
+#include "anatomy/tissue/tissue_setting.h"
 #include "haptics/coupling/coupling_limits.h"
 #include "server/test/servo_rig.h"
 
@@ -15,6 +17,15 @@ using testing::data_file;
 using testing::device_preset;
 using testing::layered_opener;
 using testing::layered_request;
+
+/// One number of a tissue as a message, and a message without any.
+link::SetParameters tissue(const char* text) {
+  const anatomy::TissueSetting setting = anatomy::parse_setting(text).value();
+  link::TissueSetting sent{setting.row, setting.key, setting.value};
+  if (std::isinf(setting.value)) sent.value.reset();
+  return {.tissues = std::vector{sent}};
+}
+const link::SetParameters kAsLoaded{.tissues = std::vector<link::TissueSetting>()};
 
 SceneBuilder make_builder(const char* device = "premium") {
   return {layered_opener(), data_file("tissues.toml"), device_preset(device)};
@@ -31,7 +42,7 @@ TEST(SceneBuilder, BuildsWhatIsAskedFor) {
 
 TEST(SceneBuilder, SaysWhatIsWrongAndKeepsTheLastScene) {
   SceneBuilder builder = make_builder();
-  EXPECT_FALSE(builder.change({{"liver.k=0.5"}})) << "there is none yet";
+  EXPECT_FALSE(builder.change(tissue("liver.k=0.5"))) << "there is none yet";
   ASSERT_TRUE(builder.load(layered_request()));
   for (const auto& spoil : std::vector<std::function<void(link::LoadScene&)>>{
            [](link::LoadScene& r) { r.patient = "nobody"; }, [](link::LoadScene& r) { r.tool = "spoon"; },
@@ -45,7 +56,7 @@ TEST(SceneBuilder, SaysWhatIsWrongAndKeepsTheLastScene) {
     EXPECT_FALSE(scene.error().what.empty());
   }
   EXPECT_EQ(builder.request().patient, "layers");
-  EXPECT_TRUE(builder.change({{"liver.k=0.5"}}));
+  EXPECT_TRUE(builder.change(tissue("liver.k=0.5")));
 }
 
 TEST(SceneBuilder, StopsBetweenItsStepsAndKeepsTheLastScene) {
@@ -80,7 +91,7 @@ TEST(SceneBuilder, RefusesAPatientThatMemoryDoesNotHold) {
   const auto refused = builder.load(other);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().what.find("not enough memory"), std::string::npos);
-  EXPECT_TRUE(builder.change({{"liver.k=0.5"}})) << "the last scene is still there";
+  EXPECT_TRUE(builder.change(tissue("liver.k=0.5"))) << "the last scene is still there";
 }
 
 TEST(SceneBuilder, ReplacesTheLoadedTable) {
@@ -88,27 +99,31 @@ TEST(SceneBuilder, ReplacesTheLoadedTable) {
   ASSERT_TRUE(builder.load(layered_request()));
   anatomy::TissueTable other = builder.tissues();
   ASSERT_TRUE(anatomy::apply_override(other, "skin.fp=6"));
-  ASSERT_TRUE(builder.change({{"liver.mu=0.2"}, other.to_toml()}));
+  link::SetParameters replaced = tissue("liver.mu=0.2");
+  replaced.tissues_toml = other.to_toml();
+  ASSERT_TRUE(builder.change(replaced));
   EXPECT_EQ(builder.tissues().layers[*other.find_layer("skin")].puncture_force_n, 6.0);
-  ASSERT_TRUE(builder.change({}));
+  ASSERT_TRUE(builder.change(kAsLoaded));
   EXPECT_EQ(builder.tissues().to_toml(), other.to_toml());
-  EXPECT_FALSE(builder.change({{}, "[tissues"}));
+  EXPECT_FALSE(builder.change({.tissues_toml = "[tissues"}));
 }
 
 TEST(SceneBuilder, ChangesAllNumbersOrNone) {
   SceneBuilder builder = make_builder();
   const auto before = builder.load(layered_request());
   ASSERT_TRUE(before);
-  EXPECT_FALSE(builder.change({{"coupling.stiffness=0.5", "liver.nonsense=1"}}));
-  const auto after = builder.change({{"liver.mu=0.2"}});
+  link::SetParameters half = tissue("liver.nonsense=1");
+  half.coupling_stiffness_n_per_mm = 0.5;
+  EXPECT_FALSE(builder.change(half));
+  const auto after = builder.change(tissue("liver.mu=0.2"));
   ASSERT_TRUE(after) << after.error().text();
   EXPECT_TRUE(after->continues);
   EXPECT_GT(after->number, before->number);
   EXPECT_EQ(after->scene->options.coupling.stiffness_n_per_mm, before->scene->options.coupling.stiffness_n_per_mm);
-  for (const char* bad :
-       {"coupling.stiffness=much", "coupling.stiffness=nan", "liver.mu=1e9", "force_model=none", ""}) {
-    EXPECT_FALSE(builder.change({{bad}})) << bad;
-  }
+  EXPECT_FALSE(builder.change(tissue("liver.mu=1e9")));
+  EXPECT_FALSE(builder.change(tissue("liver.mu=never")));
+  EXPECT_FALSE(builder.change({.force_model = "none"}));
+  EXPECT_FALSE(builder.change({.coupling_stiffness_n_per_mm = std::numeric_limits<double>::quiet_NaN()}));
 }
 
 TEST(SceneBuilder, NumbersOfTissuesReplaceThoseOfEarlierChanges) {
@@ -119,14 +134,14 @@ TEST(SceneBuilder, NumbersOfTissuesReplaceThoseOfEarlierChanges) {
   const std::uint8_t liver = *table.find_tissue("liver"), capsule = *table.find_layer("liver_capsule");
   const auto cutting_n = [&](const auto& scene) { return scene->scene->tissues[liver].cutting_n; };
   const auto fp_n = [&](const auto& scene) { return scene->scene->layers[capsule].puncture_force_n; };
-  EXPECT_EQ(cutting_n(builder.change({{"liver.fc=2"}})), 2.0);
-  EXPECT_EQ(cutting_n(builder.change({{"coupling.stiffness=0.5"}})), 2.0) << "names no tissue";
-  const auto other = builder.change({{"liver.fp=3"}});
+  EXPECT_EQ(cutting_n(builder.change(tissue("liver.fc=2"))), 2.0);
+  EXPECT_EQ(cutting_n(builder.change({.coupling_stiffness_n_per_mm = 0.5})), 2.0) << "names no tissue";
+  const auto other = builder.change(tissue("liver.fp=3"));
   EXPECT_EQ(fp_n(other), 3.0);
   EXPECT_EQ(cutting_n(other), cutting_n(loaded)) << "is not named any more";
-  EXPECT_FALSE(builder.change({{"liver.fc=99"}}));
-  EXPECT_EQ(fp_n(builder.change({{"bending=1"}})), 3.0) << "a refused change changes nothing";
-  const auto reset = builder.change({});
+  EXPECT_FALSE(builder.change(tissue("liver.fc=99")));
+  EXPECT_EQ(fp_n(builder.change({.has_bending = true})), 3.0) << "a refused change changes nothing";
+  const auto reset = builder.change(kAsLoaded);
   ASSERT_TRUE(reset);
   EXPECT_EQ(fp_n(reset), fp_n(loaded));
 }
@@ -134,7 +149,7 @@ TEST(SceneBuilder, NumbersOfTissuesReplaceThoseOfEarlierChanges) {
 TEST(SceneBuilder, StartsAnewWithAnotherForceModel) {
   SceneBuilder builder = make_builder();
   ASSERT_TRUE(builder.load(layered_request()));
-  const auto scene = builder.change({{"force_model=combined"}});
+  const auto scene = builder.change({.force_model = "combined"});
   ASSERT_TRUE(scene);
   EXPECT_FALSE(scene->continues);
 }
@@ -155,20 +170,23 @@ TEST(SceneBuilder, RefusesACouplingThatTheDeviceDoesNotBear) {
     SceneBuilder builder = make_builder(device);
     const auto before = builder.load(layered_request());
     ASSERT_TRUE(before) << before.error().text();
-    for (const char* bad : {"coupling.damping=1", "coupling.damping=0.2", "coupling.damping=-0.001",
-                            "coupling.stiffness=19", "coupling.stiffness=0.001", "coupling.stiffness=-1"}) {
-      const auto scene = builder.change({{bad}});
-      ASSERT_FALSE(scene) << device << ' ' << bad;
+    const auto expect_refused = [&](const link::SetParameters& bad, const char* name) {
+      const auto scene = builder.change(bad);
+      ASSERT_FALSE(scene) << device;
       const std::string text = scene.error().text();
-      EXPECT_NE(text.find(std::string(bad).substr(0, 13)), std::string::npos) << text;
+      EXPECT_NE(text.find(name), std::string::npos) << text;
       EXPECT_NE(text.find("give a number from"), std::string::npos) << text;
       EXPECT_EQ(text.find('\n'), std::string::npos);
-    }
+    };
+    for (const double damping : {1.0, 0.2, -0.001})
+      expect_refused({.coupling_damping_ns_per_mm = damping}, "coupling.damp");
+    for (const double stiffness : {19.0, 0.001, -1.0})
+      expect_refused({.coupling_stiffness_n_per_mm = stiffness}, "coupling.stiff");
     const haptics::CouplingLimits limits = haptics::limits_of(preset);
-    EXPECT_TRUE(builder.change({{fmt::format("coupling.stiffness={}", limits.most_n_per_mm)}})) << device;
-    EXPECT_FALSE(builder.change({{fmt::format("coupling.stiffness={}", 1.01 * limits.most_n_per_mm)}})) << device;
-    EXPECT_TRUE(builder.change({{fmt::format("coupling.damping={}", limits.most_ns_per_mm)}})) << device;
-    EXPECT_FALSE(builder.change({{fmt::format("coupling.damping={}", 1.01 * limits.most_ns_per_mm)}})) << device;
+    EXPECT_TRUE(builder.change({.coupling_stiffness_n_per_mm = limits.most_n_per_mm})) << device;
+    EXPECT_FALSE(builder.change({.coupling_stiffness_n_per_mm = 1.01 * limits.most_n_per_mm})) << device;
+    EXPECT_TRUE(builder.change({.coupling_damping_ns_per_mm = limits.most_ns_per_mm})) << device;
+    EXPECT_FALSE(builder.change({.coupling_damping_ns_per_mm = 1.01 * limits.most_ns_per_mm})) << device;
   }
 }
 

@@ -164,7 +164,7 @@ TEST(Servo, GoesOnWithTheInsertionWhenOnlyNumbersChange) {
   rig.move_to(30.0, 20.0);
   const double before_mm = rig.hold(0.3).back().sample.depth_mm;
   ASSERT_GT(before_mm, 15.0);
-  auto changed = rig.builder.change({{"liver.mu=0.1"}});
+  auto changed = rig.builder.change({.tissues = std::vector<link::TissueSetting>{{"liver", "mu", 0.1}}});
   ASSERT_TRUE(changed) << changed.error().text();
   rig.input.scene = &*changed;
   const auto records = rig.hold(0.3);

@@ -126,9 +126,9 @@ void LiveAttempt::resume_forces() {
   impl_->desk.wishes.stopped = false;
 }
 
-void LiveAttempt::set_parameters(std::vector<std::string> settings) {
+void LiveAttempt::set_parameters(link::SetParameters parameters) {
   const std::lock_guard lock(impl_->desk.mutex);
-  impl_->desk.wishes.settings.push_back(std::move(settings));
+  impl_->desk.wishes.parameters.push_back(std::move(parameters));
 }
 
 void LiveAttempt::perform(std::unique_ptr<tasks::Operator> the_operator) {

@@ -14,6 +14,7 @@
 #include "cases/open_case.h"
 #include "core/clock.h"
 #include "core/files/disk_space.h"
+#include "link/messages.h"
 #include "tasks/operator.h"
 
 namespace trocar::attempt {
@@ -99,10 +100,9 @@ class LiveAttempt {
   void fire();   ///< The biopsy gun; counts once.
   void stop_forces();
   void resume_forces();
-  /// "liver.k=0.5", "force_model=proxy": to the servers while they run; the insertion goes on. Numbers of tissues are
-  /// all that differ from the case's table, and replace those of the last call that named any; an empty list: as the
-  /// case has them (see SetParameters). What the server says of it is the view's message.
-  void set_parameters(std::vector<std::string> settings);
+  /// To the servers while they run; the insertion goes on. The loaded table is the case's. The server's answer is the
+  /// view's message.
+  void set_parameters(link::SetParameters parameters);
   /// An operator of `training` moves the needle, after the hand has gone to where it begins; the view's is_performing
   /// says how long.
   void perform(std::unique_ptr<tasks::Operator> the_operator);

@@ -28,6 +28,13 @@ Vec3 axis_of(const telemetry::TickSample& sample) noexcept {
   return from_wxyz(sample.device_rotation_wxyz).toRotationMatrix().col(2);
 }
 
+/// Of a scene that was just loaded.
+bool changes_nothing(const link::SetParameters& parameters) {
+  link::SetParameters options = parameters;
+  if (options.tissues && options.tissues->empty()) options.tissues.reset();
+  return options == link::SetParameters{};
+}
+
 bool has_fault(const link::ServerStatus& status) {
   return status.fault != telemetry::GateFault::kNone;
 }
@@ -201,7 +208,7 @@ Status ServerSeat::loading_scene() {
 
 void ServerSeat::load_parameters() {
   adjusted_ = request_->parameters;
-  if (adjusted_.settings.empty() && adjusted_.tissues_toml.empty()) {
+  if (changes_nothing(adjusted_)) {
     enter(State::kPlacing);
     return;
   }

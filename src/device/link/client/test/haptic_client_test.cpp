@@ -59,10 +59,11 @@ TEST(HapticClient, AskGivesTheReplyOrItsError) {
   RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   EXPECT_EQ(client.ask(ServerCommand::kStart, kPatience).value_or("nothing"), "done");
-  const auto refused = client.ask(SetParameters{{"liver.k=0.5"}}, kPatience);
+  const SetParameters parameters{std::vector<TissueSetting>{{"liver", "k", 0.5}}};
+  const auto refused = client.ask(parameters, kPatience);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().what.find("only obeys"), std::string::npos);
-  EXPECT_EQ(std::get<SetParameters>(server.received<Command>().back().what).settings.front(), "liver.k=0.5");
+  EXPECT_EQ(std::get<SetParameters>(server.received<Command>().back().what), parameters);
 }
 
 TEST(HapticClient, CommandsHaveTheirOwnNumbersAndReplies) {

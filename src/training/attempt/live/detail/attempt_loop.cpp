@@ -164,9 +164,9 @@ Status AttemptLoop::take_wishes() {
   if (wishes.fires) steering_->fire();
   if (wishes.stopped) stop_or_resume(*wishes.stopped);
   if (wishes.performer) steering_->perform(std::move(wishes.performer));
-  for (const std::vector<std::string>& settings : wishes.settings) {
-    needle_->set_parameters(settings);
-    if (probe_) probe_->set_parameters(settings);
+  for (const link::SetParameters& parameters : wishes.parameters) {
+    needle_->set_parameters(parameters);
+    if (probe_) probe_->set_parameters(parameters);
   }
   if (wishes.has_drawn) {
     needle_->frame_drawn();

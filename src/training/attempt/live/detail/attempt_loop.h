@@ -27,7 +27,7 @@ struct AttemptWishes {
   std::optional<Lead> needle, probe;
   std::optional<bool> needle_clamped, probe_clamped;
   std::optional<bool> stopped;
-  std::vector<std::vector<std::string>> settings;  ///< Messages, in order.
+  std::vector<link::SetParameters> parameters;  ///< In order.
   std::unique_ptr<tasks::Operator> performer;
   bool begins = false, fires = false, finishes = false, has_drawn = false;
 };

@@ -31,6 +31,16 @@ std::string sentence(std::string text) {
   return text;
 }
 
+/// All that was set, by one change after the other; the tissue table is the scene's.
+link::SetParameters merged(link::SetParameters all, const link::SetParameters& change) {
+  if (change.tissues) all.tissues = change.tissues;
+  if (!change.force_model.empty()) all.force_model = change.force_model;
+  if (change.coupling_stiffness_n_per_mm) all.coupling_stiffness_n_per_mm = change.coupling_stiffness_n_per_mm;
+  if (change.coupling_damping_ns_per_mm) all.coupling_damping_ns_per_mm = change.coupling_damping_ns_per_mm;
+  if (change.has_bending) all.has_bending = change.has_bending;
+  return all;
+}
+
 }  // namespace
 
 DeviceHold device_hold(const std::string& device_spec) {
@@ -67,7 +77,7 @@ void ToolServer::connect() {
   }
   seat_.emplace(*std::move(connection), host_->endpoint(), patience_, *clock_);
   if (!request_) return;
-  request_->parameters = parameters();
+  request_->parameters = parameters_;
   seat_->hold(*request_);
 }
 
@@ -75,7 +85,7 @@ void ToolServer::hold(const SeatRequest& request) {
   request_ = request;
   request_->is_in_real_hand = is_real_hand_;
   request_->resets_fault = true;
-  request_->parameters = parameters();
+  request_->parameters = parameters_;
   if (seat_) seat_->hold(*request_);
 }
 
@@ -164,7 +174,7 @@ std::string ToolServer::look() {
   was_ever_heard_ = was_ever_heard_ || seat_->view().welcome.session != 0;
   if (seat_->view().is_connected || host_->is_held_up()) held_up_ = clock_->now();
   if (std::optional<std::string> refusal = seat_->take_refusal()) {
-    settings_ = {};
+    parameters_ = {};
     messages_.push_back(*std::move(refusal));
   }
   if (!state) return cannot_go_on(state.error());
@@ -176,8 +186,7 @@ std::string ToolServer::look() {
     if (!interrupted_by_.empty())
       recovery_ = fmt::format("{}. The forces are on again and the puncture continues", sentence(interrupted_by_));
     interrupted_by_.clear();
-    const link::SetParameters now = parameters();  // set while the forces were switched on
-    if (now.settings != seat_->adjusted().settings) before_[seat_->send(now)] = settings_;
+    if (parameters_ != seat_->adjusted()) before_[seat_->send(parameters_)] = parameters_;  // set meanwhile
   }
   if (was_on_ && *state != State::kOn) return note_interruption();
   if (!was_on_) return {};
@@ -196,10 +205,10 @@ void ToolServer::note_replies() {
   for (const link::Reply& reply : seat_->take_replies()) {
     const auto before = before_.find(reply.request);
     if (before == before_.end()) continue;
-    if (!reply.is_done) settings_ = before->second;  // a message is applied completely or not at all
+    if (!reply.is_done) parameters_ = before->second;  // all of a message or nothing
     messages_.push_back(reply.text);
     before_.erase(before);
-    seat_->adjust(parameters());
+    seat_->adjust(parameters_);
   }
 }
 
@@ -283,27 +292,11 @@ void ToolServer::set_hand(const link::HandTarget& target) {
   if (is_on()) seat_->set_hand(target);
 }
 
-link::SetParameters ToolServer::parameters() const {
-  std::vector<std::string> all = settings_.tissues;
-  for (const auto& [key, setting] : settings_.other) all.push_back(setting);
-  return {std::move(all)};
-}
-
-void ToolServer::set_parameters(const std::vector<std::string>& settings) {
-  const Settings before = settings_;
-  std::vector<std::string> tissues;
-  for (const std::string& setting : settings) {
-    const std::string key = setting.substr(0, setting.find('='));
-    const bool is_tissues = key != "force_model" && key != "bending" && !key.starts_with("coupling.");
-    if (is_tissues) {
-      tissues.push_back(setting);
-    } else {
-      settings_.other[key] = setting;
-    }
-  }
-  if (!tissues.empty() || settings.empty()) settings_.tissues = std::move(tissues);
-  if (seat_) seat_->adjust(parameters());
-  if (is_on()) before_[seat_->send(link::SetParameters{settings})] = before;
+void ToolServer::set_parameters(const link::SetParameters& change) {
+  const link::SetParameters before = parameters_;
+  parameters_ = merged(std::move(parameters_), change);
+  if (seat_) seat_->adjust(parameters_);
+  if (is_on()) before_[seat_->send(change)] = before;
 }
 
 std::vector<std::string> ToolServer::take_messages() {

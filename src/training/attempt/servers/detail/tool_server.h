@@ -53,7 +53,7 @@ class ToolServer {
   void set_hand(const link::HandTarget& target);
   /// As SetParameters means them. Sent now, and what holds then again whenever the server comes back, before its forces
   /// do. What is said of them comes by take_messages().
-  void set_parameters(const std::vector<std::string>& settings);
+  void set_parameters(const link::SetParameters& change);
   std::vector<std::string> take_messages();
   void stop_forces();
   void resume_forces();
@@ -77,8 +77,6 @@ class ToolServer {
   std::string note_interruption();
   std::string open_device_again();
   std::string device_words() const;  ///< "gamepad"
-  /// All that was set since the scene was loaded.
-  link::SetParameters parameters() const;
   void note_replies();
 
   ServerHost* host_;
@@ -94,13 +92,8 @@ class ToolServer {
   std::string interrupted_by_;   ///< Since the forces were last on; empty: nothing.
   bool is_restart_due_ = false;  ///< Announced; the next look starts the process.
   Error failure_;
-  /// What was set since the scene was loaded.
-  struct Settings {
-    std::vector<std::string> tissues;          ///< Of the last message that named any.
-    std::map<std::string, std::string> other;  ///< "force_model=proxy", by key.
-  };
-  Settings settings_;
-  std::map<std::uint32_t, Settings> before_;  ///< What held before a message that is not answered yet.
+  link::SetParameters parameters_;                       ///< All that was set since the scene was loaded.
+  std::map<std::uint32_t, link::SetParameters> before_;  ///< What held before a message that is not answered yet.
   std::vector<std::string> messages_;
   std::deque<Clock::TimePoint> returns_;  ///< Of the last minute.
   Clock::TimePoint ticked_;               ///< When a tick was last taken.
