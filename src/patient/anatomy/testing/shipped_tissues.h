@@ -2,14 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <string_view>
+
 #include "anatomy/tissue/tissue_table.h"
 #include "core/files/data_dir.h"
 
 namespace trocar::testing {
 
 /// The table of the data folder.
-inline anatomy::TissueTable shipped_tissues() {
-  auto table = anatomy::load_tissue_table(data_dir() / "tissues.toml");
+inline anatomy::TissueTable shipped_tissues(std::string_view profile = {}) {
+  auto table = anatomy::load_tissue_table(data_dir() / "tissues.toml", profile);
   EXPECT_TRUE(table) << (table ? "" : table.error().text());
   return table.value_or(anatomy::TissueTable{});
 }

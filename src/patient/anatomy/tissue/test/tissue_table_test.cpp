@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <regex>
 #include <set>
 
+#include "anatomy/testing/shipped_tissues.h"
 #include "anatomy/tissue/hu_transfer_text.h"
 #include "core/files/data_dir.h"
 #include "core/random.h"
@@ -13,11 +15,7 @@
 namespace trocar::anatomy {
 namespace {
 
-TissueTable shipped(std::string_view profile = {}) {
-  auto table = load_tissue_table(data_dir() / "tissues.toml", profile);
-  EXPECT_TRUE(table) << (table ? "" : table.error().text());
-  return table.value_or(TissueTable{});
-}
+using testing::shipped_tissues;
 
 const TissueParams& tissue(const TissueTable& table, std::string_view name) {
   return table.tissues.at(table.find_tissue(name).value());
@@ -92,7 +90,7 @@ void expect_same(const TissueTable& a, const TissueTable& b) {
 }
 
 TEST(TissueTable, HoldsTable1OfPaperAAsPrinted) {
-  const TissueTable table = shipped();
+  const TissueTable table = shipped_tissues();
   struct Printed {
     std::string path;
     double actual, printed;
@@ -127,7 +125,7 @@ TEST(TissueTable, HoldsTable1OfPaperAAsPrinted) {
 
 TEST(TissueTable, EveryNumberHasASourceAndEveryAssumedFiniteNumberARange) {
   for (const std::string_view profile : {"paper-a", "tented"}) {
-    const TissueTable table = shipped(profile);
+    const TissueTable table = shipped_tissues(profile);
     EXPECT_EQ(table.provenance.size(), 1 + kLayerFields.size() * table.layers.size() +
                                            kTissueFields.size() * (table.tissues.size() - 1) + kHuLawFields.size() +
                                            kGradientFields.size());
@@ -142,7 +140,7 @@ TEST(TissueTable, EveryNumberHasASourceAndEveryAssumedFiniteNumberARange) {
 }
 
 TEST(TissueTable, CoversTheVocabularyAndTheLayersItCarries) {
-  const TissueTable table = shipped();
+  const TissueTable table = shipped_tissues();
   const std::map<std::string, std::string> layer_of = {{"skin", "skin"},
                                                        {"muscle", "muscle"},
                                                        {"liver", "liver_capsule"},
@@ -179,7 +177,7 @@ TEST(TissueTable, CoversTheVocabularyAndTheLayersItCarries) {
 
 // Depths and slopes that were computed from Table 1 outside of this program (static, 18 G).
 TEST(TissueTable, PaperProfilePuncturesAsStiffAsTable1Says) {
-  const TissueTable table = shipped("paper-a");
+  const TissueTable table = shipped_tissues("paper-a");
   struct Expected {
     std::string_view name;
     double x_mm, slope;
@@ -193,8 +191,8 @@ TEST(TissueTable, PaperProfilePuncturesAsStiffAsTable1Says) {
 }
 
 TEST(TissueTable, TentedProfileIndents4To5MillimetresWithAtMost1Point5NewtonAMillimetre) {
-  const TissueTable table = shipped("tented");
-  const TissueTable paper = shipped("paper-a");
+  const TissueTable table = shipped_tissues("tented");
+  const TissueTable paper = shipped_tissues("paper-a");
   for (const std::string_view name : {"skin", "muscle", "liver_capsule"}) {
     const double x = puncture_depth_mm(layer(table, name));
     EXPECT_GE(x, 3.995) << name;  // the figures are rounded to half a hundredth of a millimetre
@@ -216,7 +214,7 @@ TEST(TissueTable, ProfilesAreListedAndAnUnknownOneIsAUsageError) {
 TEST(TissueTable, TextReadsBackToTheSameBits) {
   Random random(5);
   for (const std::string_view profile : {"paper-a", "tented"}) {
-    TissueTable table = shipped(profile);
+    TissueTable table = shipped_tissues(profile);
     for (LayerParams& entry : table.layers) entry.delta_x_mm = random.uniform(0.01, 20.0);
     for (TissueParams& entry : table.tissues)
       if (entry.name != "air") entry.friction_mu = random.uniform(0.0, 2.0) * 1e-7;
@@ -227,14 +225,14 @@ TEST(TissueTable, TextReadsBackToTheSameBits) {
     expect_same(*again, table);
     EXPECT_EQ(again->to_toml(), table.to_toml());
   }
-  const auto shipped_again = parse_tissue_table(shipped("tented").to_toml(), "stored", "tented");
+  const auto shipped_again = parse_tissue_table(shipped_tissues("tented").to_toml(), "stored", "tented");
   ASSERT_TRUE(shipped_again) << shipped_again.error().text();
-  expect_same(*shipped_again, shipped("tented"));
-  EXPECT_EQ(parse_tissue_table(shipped("tented").to_toml(), "stored", "paper-a").error().exit_status, 2);
+  expect_same(*shipped_again, shipped_tissues("tented"));
+  EXPECT_EQ(parse_tissue_table(shipped_tissues("tented").to_toml(), "stored", "paper-a").error().exit_status, 2);
 }
 
 TEST(TissueTable, OverrideReachesTissueLayerOrBoth) {
-  TissueTable table = shipped();
+  TissueTable table = shipped_tissues();
   ASSERT_TRUE(apply_override(table, "liver.k=0.5"));
   EXPECT_EQ(layer(table, "liver_capsule").stiffness_n_per_mm, 0.5);
   ASSERT_TRUE(apply_override(table, "liver_capsule.fp=2"));
@@ -260,17 +258,17 @@ TEST(TissueTable, OverrideReachesTissueLayerOrBoth) {
 }
 
 TEST(TissueTable, OverrideOfARowReachesThatRowAlone) {
-  TissueTable table = shipped();
+  TissueTable table = shipped_tissues();
   ASSERT_TRUE(apply_override(table, "layers.vessel.nu=0.03"));
   EXPECT_EQ(layer(table, "vessel").viscosity_ns_per_mm, 0.03);
-  EXPECT_EQ(tissue(table, "vessel").viscosity_ns_per_mm, tissue(shipped(), "vessel").viscosity_ns_per_mm);
+  EXPECT_EQ(tissue(table, "vessel").viscosity_ns_per_mm, tissue(shipped_tissues(), "vessel").viscosity_ns_per_mm);
   ASSERT_TRUE(apply_override(table, "tissues.vessel.nu=0.01"));
   EXPECT_EQ(tissue(table, "vessel").viscosity_ns_per_mm, 0.01);
   EXPECT_EQ(layer(table, "vessel").viscosity_ns_per_mm, 0.03);
 }
 
 TEST(TissueTable, OverrideScalesACurveOverHu) {
-  const TissueTable before = shipped();
+  const TissueTable before = shipped_tissues();
   TissueTable table = before;
   ASSERT_TRUE(apply_override(table, "transfer.tn_factor=2"));
   ASSERT_TRUE(apply_override(table, "transfer.stiffness_n_per_mm_factor=10"));
@@ -287,7 +285,7 @@ TEST(TissueTable, OverrideScalesACurveOverHu) {
 }
 
 TEST(TissueTable, UnusableOverrideIsAUsageErrorAndChangesNothing) {
-  const TissueTable before = shipped();
+  const TissueTable before = shipped_tissues();
   for (const char* bad : {"",
                           "liver",
                           "liver.k",
@@ -326,8 +324,19 @@ TEST(TissueTable, UnusableOverrideIsAUsageErrorAndChangesNothing) {
   }
 }
 
+TEST(TissueTable, ReadsTheTextOfOlderVersions) {
+  // Every name in quotes, whole numbers without a fraction.
+  const TissueTable table = shipped_tissues();
+  std::string text = std::regex_replace(table.to_toml(), std::regex(R"(\[(layers|tissues)\.(\w+)\])"), "[$1.\"$2\"]");
+  text = std::regex_replace(text, std::regex(R"(value = (\d+)\.0,)"), "value = $1,");
+  EXPECT_NE(text.find("[tissues.\"liver\"]"), std::string::npos);
+  const auto read = parse_tissue_table(text, "an older session");
+  ASSERT_TRUE(read) << read.error().text();
+  expect_same(*read, table);
+}
+
 TEST(TissueTable, DamagedTableIsRefusedWithItsPlace) {
-  const std::string good = shipped().to_toml();
+  const std::string good = shipped_tissues().to_toml();
   const auto refused = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     const std::size_t at = text.find(from);
