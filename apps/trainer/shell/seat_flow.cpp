@@ -98,7 +98,7 @@ void SeatFlow::connect_pages() {
   ParameterPanel& parameters = window_.work().parameters();
   connect(&parameters, &ParameterPanel::parameters_changed, this, [this] {
     if (attempt_ && !is_exam())
-      attempt_->attempt().set_parameters(attempt::tissue_parameters(window_.work().parameters().changes()));
+      attempt_->attempt().set_parameters(cases::tissue_parameters(window_.work().parameters().changes()));
   });
   connect(&parameters, &ParameterPanel::model_changed, this, [this](const QString& model) {
     if (attempt_ && !is_exam()) attempt_->attempt().set_parameters({.force_model = to_std(model)});
@@ -227,7 +227,7 @@ void SeatFlow::begin_attempt() {
     if (window_.has_sound()) speaker_.play(gun_click_);
   });
   if (const auto changes = window_.work().parameters().changes(); !changes.empty() && !is_exam())
-    attempt_->attempt().set_parameters(attempt::tissue_parameters(changes));
+    attempt_->attempt().set_parameters(cases::tissue_parameters(changes));
 }
 
 void SeatFlow::try_again() {
